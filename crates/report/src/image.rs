@@ -111,7 +111,7 @@ impl RgbaImage {
     }
 
     /// The image as the address of a PNG in a page.
-    pub(crate) fn to_data_url(&self) -> io::Result<String> {
+    pub fn to_data_url(&self) -> io::Result<String> {
         Ok(format!("data:image/png;base64,{}", STANDARD.encode(self.to_png()?)))
     }
 }

@@ -11,6 +11,7 @@ mod build;
 mod change;
 mod components;
 mod distances;
+mod duplicates;
 mod evaluate;
 mod explain;
 mod export;
@@ -30,6 +31,9 @@ pub use build::{
 };
 pub use change::{MergeReport, add_to_index, merge_indexes, remove_from_index};
 pub use distances::PairwiseDistance;
+pub use duplicates::{
+    DuplicateFile, DuplicateGroup, DuplicateMember, DuplicateOptions, DuplicateReport, find_duplicates,
+};
 pub use evaluate::{EvaluateOptions, Measure, evaluate_index, evaluate_matrix};
 pub use export::export_index;
 pub use found::{ComponentResult, GraphRank, PartRank, SearchResult};

@@ -1,5 +1,6 @@
 //! The command line: a contract that other people's scripts rely on.
 
+mod duplicates;
 mod field;
 mod generate;
 mod geodesic;
@@ -22,6 +23,7 @@ use clap_complete::Shell;
 
 use self::settings::{FormArgs, OfComparison, OfEmbedding, OfForm, OfMaps, distance_method, one_of};
 
+pub(crate) use duplicates::{DuplicatesArgs, KindArg};
 pub(crate) use field::{FieldBuildArgs, FieldCommand, FieldQueryArgs};
 pub(crate) use generate::{FamilyArg, GenerateArgs};
 pub(crate) use geodesic::GeodesicArgs;
@@ -87,6 +89,8 @@ pub(crate) enum Command {
     Index(IndexCommand),
     /// Find the shapes of an index that are most similar to meshes, and predict their classes
     Search(SearchArgs),
+    /// Find files that hold one shape, in an index or a folder, and suggest which to keep
+    Duplicates(DuplicatesArgs),
     /// Score how well an index or a matrix of distances separates classes
     Evaluate(EvaluateArgs),
     /// Serve an index to browsers: drop a mesh and see the most similar shapes

@@ -3,6 +3,7 @@
 mod compare;
 mod completions;
 mod convert;
+mod duplicates;
 mod embed;
 mod evaluate;
 mod field;
@@ -33,6 +34,7 @@ pub(crate) fn run(command: &Command, common: &Common) -> anyhow::Result<ExitCode
         Command::Render(args) => render::draw(args, common),
         Command::Index(command) => index::index(command, common),
         Command::Search(args) => search::search(args, common),
+        Command::Duplicates(args) => duplicates::duplicates(args, common),
         Command::Evaluate(args) => evaluate::evaluate(args, common),
         Command::Serve(args) => serve::serve(args),
         Command::Generate(args) => generate::generate(args, common),

@@ -1,0 +1,360 @@
+//! Groups of shapes of an index that are one: copies of a file, and the same surface in another place, size or
+//! triangulation.
+//!
+//! ```text
+//! fused vectors -> near pairs -> clusters -> meshes -> keeper, and what is proved to be the keeper
+//! ```
+
+use std::collections::{BTreeMap, HashMap};
+use std::path::PathBuf;
+use std::time::Instant;
+
+use base::{Budget, Observer};
+use descriptors::{ShapeDistance, ShapeMetric};
+use index::{SearchMode, ShapeEntry, ShapeVectors};
+use rayon::prelude::*;
+use relations::{Handedness, MeshGeometry, Relation, RelationKind};
+use serde::Serialize;
+use surface::DisjointSets;
+
+use super::place::mesh_path;
+use super::search::ShapeSearch;
+use crate::error::Error;
+
+/// Nearest shapes of each shape whose meshes are compared. A shape with more copies is still found by theirs.
+const NEIGHBOURS: usize = 16;
+
+/// Copies have fused vectors that are nearer than this: noise, decimation and arcs move them. Two classes are farther apart
+/// on most pairs of the built-in families. A safety limit: the meshes decide.
+const NEAR: f64 = 4.0;
+
+/// The kinds that make two files duplicates.
+const KINDS: [RelationKind; 6] = [
+    RelationKind::IdenticalFile,
+    RelationKind::IdenticalGeometry,
+    RelationKind::Scaled,
+    RelationKind::Mirrored,
+    RelationKind::Noisy,
+    RelationKind::Remeshed,
+];
+
+/// What counts as a duplicate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DuplicateOptions {
+    /// Kinds of relation. Default: one file, one geometry, scaled, mirrored, noisy, remeshed.
+    pub kinds: Vec<RelationKind>,
+    /// The least confidence. Default: 0.9.
+    pub min_confidence: f64,
+}
+
+impl Default for DuplicateOptions {
+    fn default() -> Self {
+        Self { kinds: KINDS.to_vec(), min_confidence: 0.9 }
+    }
+}
+
+/// A file of a group.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DuplicateFile {
+    /// The shape.
+    pub id: String,
+    /// Its file.
+    pub path: PathBuf,
+    /// Size of the file in bytes; unknown for members of archives.
+    pub bytes: Option<u64>,
+    /// When it was last changed, in seconds since 1970.
+    pub modified: Option<u64>,
+    /// Lengths of the bounding box, in units of the file; unknown for a file that cannot be read.
+    pub size: Option<[f64; 3]>,
+    /// Number of vertices in different positions.
+    pub vertices: Option<usize>,
+}
+
+/// A file that is the shape of the keeper of its group.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DuplicateMember {
+    /// The file.
+    #[serde(flatten)]
+    pub file: DuplicateFile,
+    /// How it is related to the keeper.
+    pub relation: Relation,
+}
+
+/// Files of one shape.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DuplicateGroup {
+    /// The file that is suggested to be kept.
+    pub keeper: DuplicateFile,
+    /// Why it is suggested.
+    pub why: String,
+    /// The others, by what they have in common with it.
+    pub members: Vec<DuplicateMember>,
+}
+
+/// The duplicates of an index.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DuplicateReport {
+    /// Shapes of the index.
+    pub n_shapes: usize,
+    /// Pairs of meshes that were compared.
+    pub n_compared: usize,
+    /// Groups, those with the most files first.
+    pub groups: Vec<DuplicateGroup>,
+    /// Shapes whose file is gone or has changed since it was indexed; only equal contents are known of them.
+    pub unread: Vec<String>,
+    /// Wall-clock seconds.
+    pub seconds: f64,
+}
+
+impl DuplicateReport {
+    /// Bytes of all files but the keepers.
+    #[must_use]
+    pub fn spare_bytes(&self) -> u64 {
+        let members = self.groups.iter().flat_map(|group| &group.members);
+        members.filter_map(|member| member.file.bytes).sum()
+    }
+}
+
+/// A shape with its numbers.
+struct Candidate {
+    id: String,
+    entry: ShapeEntry,
+    vectors: ShapeVectors,
+}
+
+/// Finds the duplicates of an index. Signatures choose which meshes are compared, and their geometry decides: every member
+/// of a group is proved against its keeper. Nothing is changed.
+///
+/// ```
+/// use canonform::{BuildOptions, DescribeOptions, DuplicateOptions, RelationKind, ShapeSearch, build_index, find_duplicates, mesh};
+///
+/// let folder = tempfile::tempdir()?;
+/// let mut ring = mesh::shapes::torus(24, 12, 2.0, 0.7);
+/// mesh::io::write(&folder.path().join("ring.off"), &ring)?;
+/// mesh::io::write(&folder.path().join("ball.off"), &mesh::shapes::icosphere(2))?;
+/// ring.positions.iter_mut().for_each(|p| *p *= 25.4);
+/// mesh::io::write(&folder.path().join("ring-mm.ply"), &ring)?;
+/// let index = folder.path().join("shapes.canonform");
+/// let describe = DescribeOptions::default();
+/// build_index(folder.path(), &index, &BuildOptions::new(&describe), &())?;
+///
+/// let found = find_duplicates(&ShapeSearch::open(&index)?, &DuplicateOptions::default(), &())?;
+/// assert_eq!((found.groups.len(), found.groups[0].members[0].relation.kind), (1, RelationKind::Scaled));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`Error::Index`], [`Error::Exceeded`].
+pub fn find_duplicates(
+    search: &ShapeSearch,
+    options: &DuplicateOptions,
+    observer: &dyn Observer,
+) -> Result<DuplicateReport, Error> {
+    let start = Instant::now();
+    let budget = observer.budget();
+    let candidates = candidates(search)?;
+    let near = near_pairs(search, &candidates, observer)?;
+    let clusters = clusters(candidates.len(), &near);
+    observer.begin("comparing", clusters.len());
+    let found = clusters
+        .par_iter()
+        .map(|cluster| {
+            let found = Cluster::read(search, &candidates, cluster).groups(&near, options, &budget);
+            observer.step();
+            found
+        })
+        .collect::<Result<Vec<_>, Error>>()?;
+    let mut report = DuplicateReport {
+        n_shapes: candidates.len(),
+        n_compared: 0,
+        groups: Vec::new(),
+        unread: Vec::new(),
+        seconds: 0.0,
+    };
+    for (groups, unread, n_compared) in found {
+        report.groups.extend(groups);
+        report.unread.extend(unread);
+        report.n_compared += n_compared;
+    }
+    report.unread.sort();
+    report.groups.sort_by(|a, b| b.members.len().cmp(&a.members.len()).then(a.keeper.id.cmp(&b.keeper.id)));
+    report.seconds = start.elapsed().as_secs_f64();
+    Ok(report)
+}
+
+fn candidates(search: &ShapeSearch) -> Result<Vec<Candidate>, Error> {
+    let entries = search.index().entries()?;
+    let read = |(id, entry): (String, ShapeEntry)| {
+        let vectors = search.index().vectors(&id)?;
+        Ok(Candidate { id, entry, vectors })
+    };
+    entries.into_par_iter().map(read).collect()
+}
+
+/// Pairs of equal content, and of shapes whose vectors are near: the first is the lower number.
+fn near_pairs(
+    search: &ShapeSearch,
+    candidates: &[Candidate],
+    observer: &dyn Observer,
+) -> Result<BTreeMap<(usize, usize), f64>, Error> {
+    let budget = observer.budget();
+    let number: HashMap<&str, usize> =
+        candidates.iter().enumerate().map(|(i, candidate)| (candidate.id.as_str(), i)).collect();
+    observer.begin("searching", candidates.len());
+    let near = |(i, candidate): (usize, &Candidate)| {
+        budget.check()?;
+        let found = search.index().nearest(&candidate.vectors.fused, NEIGHBOURS + 1, SearchMode::Auto)?;
+        observer.step();
+        let others = found.shapes.into_iter().filter_map(|shape| number.get(shape.id.as_str()).copied());
+        let pair = |j: usize| {
+            let distance = ShapeMetric::robust(&candidate.vectors.fused, &candidates[j].vectors.fused);
+            (i != j && distance < NEAR).then_some(((i.min(j), i.max(j)), distance))
+        };
+        Ok::<_, Error>(others.filter_map(pair).collect::<Vec<_>>())
+    };
+    let found = candidates.par_iter().enumerate().map(near).collect::<Result<Vec<_>, Error>>()?;
+    let mut pairs: BTreeMap<(usize, usize), f64> = found.into_iter().flatten().collect();
+    let mut first: HashMap<_, usize> = HashMap::new();
+    for (i, candidate) in candidates.iter().enumerate() {
+        let earlier = *first.entry(candidate.entry.content).or_insert(i);
+        if earlier != i {
+            pairs.insert((earlier, i), 0.0);
+        }
+    }
+    Ok(pairs)
+}
+
+/// Shapes that near pairs connect.
+fn clusters(n: usize, near: &BTreeMap<(usize, usize), f64>) -> Vec<Vec<usize>> {
+    let mut sets = DisjointSets::new(n);
+    near.keys().for_each(|&(i, j)| {
+        sets.union(i as u32, j as u32);
+    });
+    let mut members: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    (0..n).for_each(|i| members.entry(sets.find(i as u32)).or_default().push(i));
+    members.into_values().filter(|members| members.len() > 1).collect()
+}
+
+/// Shapes that may be copies of each other, with their meshes.
+struct Cluster<'a> {
+    /// In the order in which they are kept.
+    shapes: Vec<ClusterShape<'a>>,
+}
+
+struct ClusterShape<'a> {
+    number: usize,
+    candidate: &'a Candidate,
+    geometry: Option<MeshGeometry>,
+    file: DuplicateFile,
+}
+
+type Found = (Vec<DuplicateGroup>, Vec<String>, usize);
+
+impl<'a> Cluster<'a> {
+    fn read(search: &ShapeSearch, candidates: &'a [Candidate], numbers: &[usize]) -> Self {
+        let mut shapes: Vec<ClusterShape<'a>> = numbers
+            .iter()
+            .map(|&number| {
+                let candidate = &candidates[number];
+                let geometry = search.geometry(&candidate.id, &candidate.entry);
+                let path = mesh_path(search.index().path(), &candidate.entry.path);
+                let facts = std::fs::metadata(&path).ok();
+                let since_1970 =
+                    |time: std::time::SystemTime| time.duration_since(std::time::UNIX_EPOCH).ok();
+                let modified = facts.as_ref().and_then(|facts| since_1970(facts.modified().ok()?));
+                let file = DuplicateFile {
+                    id: candidate.id.clone(),
+                    bytes: facts.map(|facts| facts.len()),
+                    modified: modified.map(|time| time.as_secs()),
+                    size: geometry.as_ref().and_then(|geometry| {
+                        let [low, high] = geometry.to_mesh().bounds()?;
+                        Some((high - low).into())
+                    }),
+                    vertices: geometry.as_ref().map(MeshGeometry::n_vertices),
+                    path,
+                };
+                ClusterShape { number, candidate, geometry, file }
+            })
+            .collect();
+        // The finest mesh, then the oldest file, then the shortest path.
+        shapes.sort_by_key(|shape| {
+            let file = &shape.file;
+            (std::cmp::Reverse(file.vertices), file.modified, file.path.as_os_str().len(), file.id.clone())
+        });
+        Self { shapes }
+    }
+
+    /// Takes the first shape that is left as a keeper, and what is proved to be the same, until none is left.
+    fn groups(
+        self,
+        near: &BTreeMap<(usize, usize), f64>,
+        options: &DuplicateOptions,
+        budget: &Budget,
+    ) -> Result<Found, Error> {
+        // Parts and variants have other moments than what they are compared with.
+        let surfaces_only = options.kinds.iter().all(|kind| *kind <= RelationKind::Remeshed);
+        let mut n_compared = 0;
+        let mut left: Vec<&ClusterShape<'_>> = self.shapes.iter().collect();
+        let mut groups = Vec::new();
+        while let Some((keeper, others)) = left.split_first() {
+            let mut rest = Vec::new();
+            let mut members = Vec::new();
+            for &other in others {
+                budget.check()?;
+                let relation = related(keeper, other, near, surfaces_only);
+                n_compared += usize::from(relation.is_some());
+                let is_one = |told: &Relation| {
+                    options.kinds.contains(&told.kind) && told.confidence >= options.min_confidence
+                };
+                match relation.filter(is_one) {
+                    Some(relation) => members.push(DuplicateMember { file: other.file.clone(), relation }),
+                    None => rest.push(other),
+                }
+            }
+            if !members.is_empty() {
+                members.sort_by(|a, b| a.relation.kind.cmp(&b.relation.kind).then(a.file.id.cmp(&b.file.id)));
+                let why = why(&keeper.file, &members);
+                groups.push(DuplicateGroup { keeper: keeper.file.clone(), why, members });
+            }
+            left = rest;
+        }
+        let unread = self.shapes.iter().filter(|shape| shape.geometry.is_none());
+        let unread = unread.map(|shape| shape.file.id.clone()).collect();
+        Ok((groups, unread, n_compared))
+    }
+}
+
+/// How a shape is related to a keeper; `None` if their meshes cannot be one surface.
+fn related(
+    keeper: &ClusterShape<'_>,
+    other: &ClusterShape<'_>,
+    near: &BTreeMap<(usize, usize), f64>,
+    surfaces_only: bool,
+) -> Option<Relation> {
+    let contents = [keeper, other].map(|shape| Some(shape.candidate.entry.content));
+    let pair = (keeper.number.min(other.number), keeper.number.max(other.number));
+    // Copies of copies need not be near themselves.
+    let fused = near.get(&pair).copied().unwrap_or_else(|| {
+        ShapeMetric::robust(&keeper.candidate.vectors.fused, &other.candidate.vectors.fused)
+    });
+    let distance = ShapeDistance { fused, combined: fused };
+    let by_distance = Relation::by_distance(distance, 1.0, Handedness::Unknown)
+        .named(&keeper.file.id, &other.file.id)
+        .by_files(contents);
+    if by_distance.kind == RelationKind::IdenticalFile {
+        return Some(by_distance);
+    }
+    let (a, b) = (keeper.geometry.as_ref()?, other.geometry.as_ref()?);
+    (!surfaces_only || a.may_be_part_or_copy_of(b)).then(|| by_distance.by_meshes([a, b]))
+}
+
+/// Why a file is kept.
+fn why(keeper: &DuplicateFile, members: &[DuplicateMember]) -> String {
+    let is_finest = members.iter().any(|member| member.file.vertices < keeper.vertices);
+    let is_oldest = members.iter().any(|member| member.file.modified > keeper.modified);
+    match (is_finest, is_oldest) {
+        (true, _) => "it has the most vertices".to_owned(),
+        (false, true) => "it is the oldest".to_owned(),
+        (false, false) => "its path is the shortest, or the first".to_owned(),
+    }
+}

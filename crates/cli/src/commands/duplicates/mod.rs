@@ -1,0 +1,172 @@
+//! `canonform duplicates`.
+
+mod page;
+mod script;
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::Result;
+use base::files::write_bytes;
+use base::terminal::Bars;
+use canonform::{
+    BuildOptions, DescribeOptions, DuplicateFile, DuplicateGroup, DuplicateOptions, DuplicateReport,
+    RelationKind, ShapeSearch, build_index, find_duplicates, is_dataset,
+};
+
+use crate::args::{Common, DuplicatesArgs, KindArg};
+use crate::output::{check_folder, count, print, print_json};
+
+/// Finds the files of an index or a dataset that hold one shape.
+pub(crate) fn duplicates(args: &DuplicatesArgs, common: &Common) -> Result<ExitCode> {
+    for path in [&args.csv, &args.html, &args.script].into_iter().flatten() {
+        check_folder(path)?;
+    }
+    let bars = Bars::new(common.quiet);
+    let described = is_dataset(&args.input).then(|| Described::build(&args.input, &bars)).transpose()?;
+    let search = ShapeSearch::open(described.as_ref().map_or(args.input.as_path(), |index| &index.path))?;
+    let kinds = args.kinds.iter().map(|kind| kind_of(*kind)).collect();
+    let options = DuplicateOptions { kinds, min_confidence: args.min_confidence };
+    let mut report = find_duplicates(&search, &options, &bars)?;
+    bars.finish();
+    report.groups.iter_mut().for_each(|group| {
+        let members = group.members.iter_mut().map(|member| &mut member.file);
+        members.chain([&mut group.keeper]).for_each(|file| file.path = short(&file.path));
+    });
+    if let Some(path) = &args.csv {
+        write_bytes(path, csv(&report).as_bytes())?;
+    }
+    if let Some(path) = &args.html {
+        write_bytes(path, page::page(&report, &search)?.as_bytes())?;
+    }
+    if let Some(path) = &args.script {
+        write_bytes(path, script::script(&report).as_bytes())?;
+    }
+    if common.json {
+        print_json(&report)?;
+    } else {
+        print(&text(&report))?;
+    }
+    Ok(if report.groups.is_empty() { ExitCode::from(1) } else { ExitCode::SUCCESS })
+}
+
+/// The index of a dataset, which is removed in the end.
+struct Described {
+    path: PathBuf,
+}
+
+impl Described {
+    fn build(dataset: &Path, bars: &Bars) -> Result<Self> {
+        let name = format!("canonform-duplicates-{}.canonform", std::process::id());
+        let index = Self { path: std::env::temp_dir().join(name) };
+        let describe = DescribeOptions::default();
+        let built = build_index(dataset, &index.path, &BuildOptions::new(&describe), bars)?;
+        for failure in &built.failed {
+            base::terminal::note(&format!("left out {}: {}", failure.path.display(), failure.error));
+        }
+        Ok(index)
+    }
+}
+
+impl Drop for Described {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_file(&self.path);
+    }
+}
+
+fn kind_of(kind: KindArg) -> RelationKind {
+    match kind {
+        KindArg::File => RelationKind::IdenticalFile,
+        KindArg::Geometry => RelationKind::IdenticalGeometry,
+        KindArg::Scaled => RelationKind::Scaled,
+        KindArg::Mirrored => RelationKind::Mirrored,
+        KindArg::Noisy => RelationKind::Noisy,
+        KindArg::Remeshed => RelationKind::Remeshed,
+        KindArg::Copies => RelationKind::Copies,
+        KindArg::Part => RelationKind::PartOf,
+        KindArg::Variant => RelationKind::Variant,
+        KindArg::Pose => RelationKind::OtherPose,
+    }
+}
+
+/// The path below the current folder, if it lies there.
+fn short(path: &Path) -> PathBuf {
+    let Ok(whole) = path.canonicalize() else { return path.to_owned() };
+    let here = std::env::current_dir().and_then(|here| here.canonicalize());
+    here.ok().and_then(|here| whole.strip_prefix(here).ok().map(Path::to_owned)).unwrap_or(whole)
+}
+
+/// Size of the file, lengths of its box, and the day of its last change.
+fn facts(file: &DuplicateFile) -> String {
+    let bytes = file.bytes.map(|bytes| report::numbers::bytes(bytes as usize));
+    let size = file.size.map(|size| size.map(|x| format!("{x:.4}")).map(|x| trimmed(&x)).join(" × "));
+    let day = file.modified.and_then(|seconds| chrono::DateTime::from_timestamp(seconds as i64, 0));
+    let day = day.map(|day| day.format("%Y-%m-%d").to_string());
+    [bytes, size, day].into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
+
+fn trimmed(number: &str) -> String {
+    number.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+fn text(report: &DuplicateReport) -> String {
+    let n_spare: usize = report.groups.iter().map(|group| group.members.len()).sum();
+    let mut text = if report.groups.is_empty() {
+        format!("no duplicates among {}\n", count(report.n_shapes, "shape"))
+    } else {
+        format!(
+            "{} of {} can be spared: {} of files of one shape, {} without those to keep\n",
+            n_spare,
+            count(report.n_shapes, "shape"),
+            count(report.groups.len(), "group"),
+            report::numbers::bytes(report.spare_bytes() as usize)
+        )
+    };
+    for DuplicateGroup { keeper, why, members } in &report.groups {
+        text += &format!("\nkeep {} ({why}; {})\n", keeper.path.display(), facts(keeper));
+        for member in members {
+            let told = &member.relation;
+            text += &format!("  {told} (confidence {:.2}; {})\n", told.confidence, facts(&member.file));
+        }
+    }
+    if !report.unread.is_empty() {
+        text += &format!(
+            "\n{} could not be read, or changed since the index was built: {}\n",
+            count(report.unread.len(), "file"),
+            report.unread.join(", ")
+        );
+    }
+    text
+}
+
+/// One line per file, keepers first.
+fn csv(report: &DuplicateReport) -> String {
+    let mut text = "group,role,id,path,kind,confidence,relation,bytes,modified\n".to_owned();
+    let quoted = |value: &str| format!("\"{}\"", value.replace('"', "\"\""));
+    for (i, DuplicateGroup { keeper, why, members }) in report.groups.iter().enumerate() {
+        let mut line = |role: &str, file: &DuplicateFile, kind: &str, confidence: &str, words: &str| {
+            let number = |value: Option<u64>| value.map(|value| value.to_string()).unwrap_or_default();
+            let path = file.path.display().to_string();
+            let cells = [
+                (i + 1).to_string(),
+                role.to_owned(),
+                quoted(&file.id),
+                quoted(&path),
+                kind.to_owned(),
+                confidence.to_owned(),
+                quoted(words),
+                number(file.bytes),
+                number(file.modified),
+            ];
+            text += &format!("{}\n", cells.join(","));
+        };
+        line("keep", keeper, "", "", why);
+        for member in members {
+            let told = &member.relation;
+            let kind = serde_json::to_value(told.kind).unwrap_or_default();
+            let confidence = format!("{:.3}", told.confidence);
+            line("spare", &member.file, kind.as_str().unwrap_or_default(), &confidence, &told.to_string());
+        }
+    }
+    text
+}
