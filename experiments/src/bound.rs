@@ -13,6 +13,9 @@ use crate::sweep::MeasuredNumbers;
 pub(crate) struct Bound {
     /// Name of the number; the module of the experiment lists them.
     pub(crate) value: String,
+    /// The number in words, for readers; conditions of texts need none.
+    #[serde(default)]
+    pub(crate) words: String,
     at_least: Option<f64>,
     at_most: Option<f64>,
     /// Whether the bounds themselves are excluded.
@@ -37,11 +40,11 @@ impl Bound {
     pub(crate) fn check(&self, measured: &MeasuredNumbers) -> Result<Expectation> {
         let value =
             *measured.get(&self.value).with_context(|| format!("nothing measures `{}`", self.value))?;
-        let strict = if self.strictly { " (strictly)" } else { "" };
-        let low = self.at_least.map(|limit| format!("at least {limit}{strict}"));
-        let high = self.at_most.map(|limit| format!("at most {limit}{strict}"));
+        let [least, most] = if self.strictly { ["above", "below"] } else { ["at least", "at most"] };
+        let low = self.at_least.map(|limit| format!("{least} {limit}"));
+        let high = self.at_most.map(|limit| format!("{most} {limit}"));
         Ok(Expectation {
-            what: self.value.clone(),
+            what: if self.words.is_empty() { &self.value } else { &self.words }.clone(),
             expected: low.into_iter().chain(high).collect::<Vec<_>>().join(", "),
             measured: digits(value),
             held: self.holds(value),

@@ -27,7 +27,7 @@ pub(crate) struct Config {
 #[serde(deny_unknown_fields)]
 pub(crate) struct Findings {
     #[serde(default)]
-    expect: Vec<Bound>,
+    pub(crate) expect: Vec<Bound>,
     /// Of the figure, with numbers as in the analysis.
     #[serde(default)]
     pub(crate) caption: String,
@@ -103,6 +103,7 @@ mod tests {
         at_least = 1.0
         [[expect]]
         value = "x"
+        words = "The number x"
         at_least = 1.0
         strictly = true
         on = ["paper"]
@@ -111,6 +112,9 @@ mod tests {
     #[test]
     fn bounds_apply_to_their_collections_and_may_be_strict() {
         let config = Config::parse("test", TEXT).unwrap();
+        let limits = config.findings.check(Setting::Paper, &[("x".to_owned(), 1.0)].into()).unwrap();
+        let limits: Vec<_> = limits.iter().map(|e| (e.what.as_str(), e.expected.as_str())).collect();
+        assert_eq!(limits, [("x", "at least 1"), ("The number x", "above 1")]);
         let held = |setting, x: f64| {
             let found = config.findings.check(setting, &[("x".to_owned(), x)].into()).unwrap();
             found.iter().map(|e| e.held).collect::<Vec<_>>()

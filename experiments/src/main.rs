@@ -15,6 +15,7 @@ mod described;
 mod experiment;
 mod families;
 mod gallery;
+mod lead;
 mod machine;
 mod paper;
 mod prose;

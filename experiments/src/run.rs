@@ -14,6 +14,7 @@ use report::results::{Published, RunProvenance, provenance};
 use crate::args::RunArgs;
 use crate::collection::SurfaceCollection;
 use crate::context::Context;
+use crate::lead::lead;
 use crate::specimen::specimens;
 use crate::table::{ALL, EXPERIMENTS, TableEntry};
 
@@ -102,7 +103,7 @@ pub(crate) fn list() -> Result<ExitCode> {
 }
 
 fn write_page(folder: &Path) -> Result<std::path::PathBuf> {
-    Ok(write_report(folder, &EXPERIMENTS.map(|entry| entry.section))?)
+    Ok(write_report(folder, &lead(folder)?, &EXPERIMENTS.map(|entry| entry.section))?)
 }
 
 /// `experiments report`: writes the page and prints its path; with a path, also the summary of the paper.

@@ -95,6 +95,8 @@ pub(crate) fn parse_name(name: &str) -> Result<String, String> {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
     use super::*;
 
     #[test]
@@ -104,6 +106,18 @@ mod tests {
             config.options.insert("typo".to_owned(), 1.into());
             let fault = (entry.read)(config.options).err().unwrap();
             assert!(fault.to_string().contains("typo"), "{}", entry.section.name);
+        }
+    }
+
+    #[test]
+    fn every_expectation_is_in_words_of_its_own() {
+        for entry in &EXPERIMENTS {
+            let (config, _) = entry.parse().unwrap();
+            let mut named = BTreeMap::new();
+            for bound in &config.findings.expect {
+                assert!(bound.words.contains(' '), "{}: {}", entry.section.name, bound.value);
+                assert_eq!(*named.entry(&bound.words).or_insert(&bound.value), &bound.value);
+            }
         }
     }
 

@@ -85,7 +85,7 @@ fn eye(browser: &Browser, css: &str) -> [f64; 3] {
 fn point_on_map(browser: &Browser, shape: usize) -> [i32; 2] {
     let at = browser
         .eval(&format!(
-            "const plot = document.querySelector('#figure4-map');
+            "const plot = document.querySelector('#figure4-map-0');
              const box = plot.querySelector('.nsewdrag').getBoundingClientRect();
              const trace = plot._fullData.findIndex(t => t.customdata && [...t.customdata].includes({shape}));
              const at = [...plot._fullData[trace].customdata].indexOf({shape});
@@ -105,7 +105,7 @@ fn assert_readable_in_the_dark(browser: &Browser) {
         return [light(back), light(style.color)];";
     let light = browser.eval(light).unwrap();
     assert!(number(&light[0]) < 0.2 && number(&light[1]) > 0.7, "{light}");
-    let tick = "getComputedStyle(document.querySelector('#figure4-map .xtick text')).fill";
+    let tick = "getComputedStyle(document.querySelector('#figure4-map-0 .xtick text')).fill";
     browser.wait_for(&format!("{tick}.startsWith('rgb(2')")).unwrap();
     browser.screenshot_all(&picture("report-dark-1280")).unwrap();
 }
@@ -148,7 +148,7 @@ fn text(browser: &Browser, css: &str) -> String {
 #[test]
 fn hovering_shows_a_card_and_clicking_chooses_shapes() {
     let Some(browser) = opened([1280, 900]) else { return };
-    shown(&browser, "#figure4-map");
+    shown(&browser, "#figure4-map-0");
     let facts = |key: &str| {
         browser.eval(&format!("return document.querySelector('#figure4-facts').dataset.{key}")).unwrap()
     };
@@ -170,10 +170,10 @@ fn hovering_shows_a_card_and_clicking_chooses_shapes() {
     assert_eq!(text(&browser, "#figure4-first-shape .canonform-title"), names[20]);
 
     // A cell of the matrix names its two shapes; a click chooses both.
-    shown(&browser, "#figure4-matrix");
+    shown(&browser, "#figure4-matrix-0");
     let cell = browser
         .eval(
-            "const plot = document.querySelector('#figure4-matrix');
+            "const plot = document.querySelector('#figure4-matrix-0');
              const box = plot.querySelector('.nsewdrag').getBoundingClientRect();
              const { xaxis, yaxis } = plot._fullLayout;
              return [box.left + xaxis.d2p(3), box.top + yaxis.d2p(12)];",
@@ -181,8 +181,8 @@ fn hovering_shows_a_card_and_clicking_chooses_shapes() {
         .unwrap();
     let cell = [0, 1].map(|i| number(&cell[i]).round() as i32);
     browser.hover_at(cell).unwrap();
-    browser.wait_for("document.querySelector('#figure4-matrix .hoverlayer').textContent !== ''").unwrap();
-    let label = text(&browser, "#figure4-matrix .hoverlayer");
+    browser.wait_for("document.querySelector('#figure4-matrix-0 .hoverlayer').textContent !== ''").unwrap();
+    let label = text(&browser, "#figure4-matrix-0 .hoverlayer");
     assert!([12, 3].iter().all(|shape| label.contains(names[*shape].as_str().unwrap())), "{label}");
     browser.click_at(cell).unwrap();
     browser.wait_for("document.querySelector('#figure4-facts').dataset.first === '12'").unwrap();
@@ -193,7 +193,7 @@ fn hovering_shows_a_card_and_clicking_chooses_shapes() {
 #[test]
 fn views_rotate_together_by_mouse_and_keyboard() {
     let Some(browser) = opened([1280, 900]) else { return };
-    shown(&browser, "#figure4-map");
+    shown(&browser, "#figure4-map-0");
     let views = ["#figure4-first-shape", "#figure4-second-form", "#figure4-overlay"];
     views.iter().for_each(|view| shown(&browser, view));
     let before = eye(&browser, views[0]);
@@ -234,7 +234,7 @@ fn the_layout_is_stable_and_fits_wide_and_narrow_screens_dark_mode_and_print() {
         assert!(shifts < 0.001, "{name}: the layout shifts by {shifts}: {moved}");
         let widths = browser.eval("return [document.documentElement.scrollWidth, innerWidth]").unwrap();
         assert!(number(&widths[0]) <= number(&widths[1]), "{name}: {widths}");
-        for part in ["map", "overlay"] {
+        for part in ["map-0", "overlay"] {
             shown(&browser, &format!("#figure4-{part}"));
             browser.screenshot(&picture(&format!("report-{part}-{name}"))).unwrap();
         }

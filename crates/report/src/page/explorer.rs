@@ -119,11 +119,11 @@ fn live(record: &Record<Figure4Results>, shapes: Option<&ShapesRecord>) -> Strin
     let mut scales = vec![(Scale::Raw, "original"), (Scale::Normalized, "ignored")];
     scales.retain(|(scale, _)| has(*scale));
     let scales: Vec<_> = scales.into_iter().map(|(scale, text)| (scale.name(), text)).collect();
-    let mut controls = select("figure4-method", "Method", &methods, 0)
-        + &select("figure4-scale", "Size", &scales, 0)
+    let mut controls = select("figure4-scale", "Size", &scales, 0)
         + &select("figure4-first", "Shape 1", &names, 0)
         + &select("figure4-second", "Shape 2", &names, 1);
     if shapes.is_some() {
+        controls += &select("figure4-method", "Forms in 3D", &methods, 0);
         controls += &color_select("figure4-color");
     }
     let views = match shapes {
@@ -134,7 +134,22 @@ fn live(record: &Record<Figure4Results>, shapes: Option<&ShapesRecord>) -> Strin
             escape(&provenance.command)
         ),
     };
-    fill(include_str!("explorer.html"), &[("controls", &controls), ("views", &views)])
+    let [maps, matrices] = [
+        ("map", "Map of the shapes", "a shape"),
+        ("matrix", "Distances of all pairs", "a pair"),
+    ]
+    .map(|(kind, what, choice)| {
+        let plot = |(i, (method, _)): (usize, &(&str, &str))| {
+            format!(
+                "<div class=\"plot square\" id=\"figure4-{kind}-{i}\" data-plot=\"{kind}\" data-method=\"{method}\" \
+                 role=\"img\" aria-label=\"{what} by {method}; choose {choice} in the form above or with a click\"></div>\n",
+                method = escape(method)
+            )
+        };
+        methods.iter().enumerate().map(plot).collect::<String>()
+    });
+    let values = [("controls", &controls), ("maps", &maps), ("matrices", &matrices), ("views", &views)];
+    fill(include_str!("explorer.html"), &values.map(|(name, value)| (name, value.as_str())))
 }
 
 fn color_select(id: &str) -> String {

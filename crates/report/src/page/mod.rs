@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use crate::error::ReportError;
 use crate::results::{Expectation, ExpectationOutcome};
 use base::files::write_bytes;
-use html::{escape, marked};
+use html::{escape, marked, paragraphs};
 pub use section::{ResultsFolder, Section, SectionContent, charts, explorer, gallery};
 
 /// Name of the page in the folder of results.
@@ -23,27 +23,40 @@ pub const FILE: &str = "report.html";
 
 /// Writes `report.html` into a folder of results and returns its path.
 ///
-/// The page shows the records of the experiments with the PNG files beside them. It names every missing record or
-/// image and the command that creates it, so a page can be written after any run.
+/// The page begins with `lead`, paragraphs of plain text, and shows the records of the experiments with the PNG files
+/// beside them. Its last line names the experiments without a record and the command that runs them, so a page can be
+/// written after any run.
 ///
 /// # Errors
 /// [`ReportError::File`] and [`ReportError::Parse`] if a record exists but cannot be read, the errors of
 /// [`Results::validate`](crate::Results::validate), [`ReportError::File`] if the page cannot be written.
-pub fn write_report(folder: impl AsRef<Path>, sections: &[Section]) -> Result<PathBuf, ReportError> {
+pub fn write_report(
+    folder: impl AsRef<Path>,
+    lead: &str,
+    sections: &[Section],
+) -> Result<PathBuf, ReportError> {
     let path = folder.as_ref().join(FILE);
     let folder = ResultsFolder::new(folder.as_ref(), sections.iter().map(|section| section.name))?;
-    let content = |section: &Section| (section.show)(&folder, section.name);
-    let contents: Vec<SectionContent> = sections.iter().map(content).collect::<Result<_, _>>()?;
-    write_bytes(&path, page(sections, &contents).as_bytes())?;
+    let (mut made, mut open) = (Vec::new(), Vec::new());
+    for section in sections {
+        match (section.show)(&folder, section.name)? {
+            Some(content) => made.push((section, content)),
+            None => open.push(section),
+        }
+    }
+    let header = paragraphs(lead) + &headline(&made);
+    write_bytes(&path, page(&header, &made, &folder.closing(&open)).as_bytes())?;
     Ok(path)
 }
 
+/// An experiment that has run, and what the page shows of it.
+type ShownSection<'a> = (&'a Section, SectionContent);
+
 /// How many expectations held, and a link to each that did not.
-fn headline(sections: &[Section], contents: &[SectionContent]) -> String {
+fn headline(sections: &[ShownSection<'_>]) -> String {
     let all: Vec<(&Section, &Expectation)> = sections
         .iter()
-        .zip(contents)
-        .flat_map(|(section, content)| content.expectations.iter().map(move |e| (section, e)))
+        .flat_map(|(section, content)| content.expectations.iter().map(move |e| (*section, e)))
         .collect();
     if all.is_empty() {
         return String::new();
@@ -88,23 +101,23 @@ fn headline(sections: &[Section], contents: &[SectionContent]) -> String {
     html
 }
 
-fn page(sections: &[Section], contents: &[SectionContent]) -> String {
-    let link = |section: &Section| format!("<li><a href=\"#{}\">{}</a></li>", section.name, section.short());
-    let section =
-        |(Section { name, title, .. }, SectionContent { html, .. }): (&Section, &SectionContent)| {
-            format!("<section id=\"{name}\">\n<h2>{title}</h2>\n{html}</section>\n")
-        };
+fn page(header: &str, sections: &[ShownSection<'_>], closing: &str) -> String {
+    let link = |(section, _): &ShownSection<'_>| {
+        format!("<li><a href=\"#{}\">{}</a></li>", section.name, section.short())
+    };
+    let section = |(Section { name, title, .. }, SectionContent { html, .. }): &ShownSection<'_>| {
+        format!("<section id=\"{name}\">\n<h2>{title}</h2>\n{html}</section>\n")
+    };
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          {head}<title>canonform: results</title>\n<style>\n{style}</style>\n</head>\n\
-         <body>\n<header>\n<h1>canonform: results</h1>\n{verdict}</header>\n\
-         <nav aria-label=\"Experiments\"><ul>{links}</ul></nav>\n<main>\n{main}</main>\n{tail}</body>\n</html>\n",
+         <body>\n<header>\n<h1>canonform: results</h1>\n{header}</header>\n\
+         <nav aria-label=\"Experiments\"><ul>{links}</ul></nav>\n<main>\n{main}</main>\n{closing}{tail}</body>\n</html>\n",
         head = scripts::head(),
         style = include_str!("style.css"),
-        verdict = headline(sections, contents),
         links = sections.iter().map(link).collect::<String>(),
-        main = sections.iter().zip(contents).map(section).collect::<String>(),
+        main = sections.iter().map(section).collect::<String>(),
         tail = scripts::tail(),
     )
 }

@@ -23,8 +23,8 @@ pub struct Section {
     pub name: &'static str,
     /// The heading. Its first sentence, such as `Figure 1.`, is the link to it.
     pub title: &'static str,
-    /// Makes its content: [`charts`], [`gallery`] or [`explorer()`].
-    pub show: fn(&ResultsFolder<'_>, &str) -> Result<SectionContent, ReportError>,
+    /// Makes its content, if it has run: [`charts`], [`gallery`] or [`explorer()`].
+    pub show: fn(&ResultsFolder<'_>, &str) -> Result<Option<SectionContent>, ReportError>,
 }
 
 impl Section {
@@ -56,9 +56,21 @@ impl<'a> ResultsFolder<'a> {
         Ok(Self { path, shapes: explorer::shapes(path)?, arguments })
     }
 
-    /// The command that runs an experiment on the shapes of the others, into this folder.
-    fn command(&self, name: &str) -> String {
-        format!("cargo run --release -p experiments -- run {name}{}", self.arguments)
+    /// The last line of the page: which experiments have not run, and the command that runs them on the shapes of the
+    /// others, into this folder; empty if all have.
+    pub(super) fn closing(&self, open: &[&Section]) -> String {
+        if open.is_empty() {
+            return String::new();
+        }
+        let titles: Vec<String> = open.iter().map(|section| escape(section.short())).collect();
+        let names: Vec<&str> = open.iter().map(|section| section.name).collect();
+        let command =
+            format!("cargo run --release -p experiments -- run {}{}", names.join(" "), self.arguments);
+        format!(
+            "<footer><p class=\"pale\">Not run: {}. To run them: <code>{}</code></p></footer>\n",
+            titles.join(", "),
+            escape(&command)
+        )
     }
 }
 
@@ -69,11 +81,14 @@ pub struct SectionContent {
     pub(super) expectations: Vec<Expectation>,
 }
 
-/// All figures of an experiment as charts, or a note that it has not run.
+/// All figures of an experiment as charts; nothing if it has not run.
 ///
 /// # Errors
 /// Those of [`write_report`](super::write_report).
-pub fn charts<T: Results>(folder: &ResultsFolder<'_>, name: &str) -> Result<SectionContent, ReportError> {
+pub fn charts<T: Results>(
+    folder: &ResultsFolder<'_>,
+    name: &str,
+) -> Result<Option<SectionContent>, ReportError> {
     content(folder, name, |_: &Record<T>, figures| {
         figures.iter().map(|figure| chart(folder.path, name, figure)).collect()
     })
@@ -83,7 +98,7 @@ pub fn charts<T: Results>(folder: &ResultsFolder<'_>, name: &str) -> Result<Sect
 ///
 /// # Errors
 /// Those of [`write_report`](super::write_report).
-pub fn gallery(folder: &ResultsFolder<'_>, name: &str) -> Result<SectionContent, ReportError> {
+pub fn gallery(folder: &ResultsFolder<'_>, name: &str) -> Result<Option<SectionContent>, ReportError> {
     content(folder, name, |record: &Record<Figure1Results>, figures| {
         let charts = figures.iter().map(|figure| chart(folder.path, name, figure));
         Ok(charts.collect::<Result<String, _>>()?
@@ -95,7 +110,7 @@ pub fn gallery(folder: &ResultsFolder<'_>, name: &str) -> Result<SectionContent,
 ///
 /// # Errors
 /// Those of [`write_report`](super::write_report).
-pub fn explorer(folder: &ResultsFolder<'_>, name: &str) -> Result<SectionContent, ReportError> {
+pub fn explorer(folder: &ResultsFolder<'_>, name: &str) -> Result<Option<SectionContent>, ReportError> {
     content(folder, name, |record: &Record<Figure4Results>, figures| {
         let still = figures.iter().map(|figure| picture(folder.path, name, figure));
         explorer::explorer(record, folder.shapes.as_ref(), &still.collect::<Result<String, _>>()?)
@@ -107,15 +122,10 @@ fn content<T: Results>(
     folder: &ResultsFolder<'_>,
     name: &str,
     body: impl FnOnce(&Record<T>, &[Figure]) -> Result<String, ReportError>,
-) -> Result<SectionContent, ReportError> {
+) -> Result<Option<SectionContent>, ReportError> {
     let path = folder.path.join(format!("{name}.json"));
     if !path.exists() {
-        let html = format!(
-            "<div class=\"missing\"><p>Not run yet: there is no <code>{name}.json</code> in this folder. To create it, \
-             run <code>{}</code>.</p></div>\n",
-            escape(&folder.command(name))
-        );
-        return Ok(SectionContent { html, expectations: vec![] });
+        return Ok(None);
     }
     let record: Record<T> = read(path)?;
     record.results.validate()?;
@@ -127,7 +137,7 @@ fn content<T: Results>(
         record.results.tables().iter().map(table).collect(),
         provenance(&record.provenance),
     ];
-    Ok(SectionContent { html: html.concat(), expectations: record.expectations })
+    Ok(Some(SectionContent { html: html.concat(), expectations: record.expectations }))
 }
 
 /// The anchor of the expectations of an experiment.
@@ -174,12 +184,9 @@ fn provenance(p: &RunProvenance) -> String {
     let facts = facts.iter().filter(|(_, fact)| !fact.trim().is_empty());
     let facts: String =
         facts.map(|(term, fact)| format!("<dt>{term}</dt><dd>{}</dd>\n", escape(fact))).collect();
-    let options = format!("<pre><code>{}</code></pre>\n", escape(&as_toml(&p.options)));
-    format!(
-        "<h3>How it was made</h3>\n<pre><code>{}</code></pre>\n<dl>\n{facts}</dl>\n{}",
-        escape(&p.command),
-        folded("All options", &options)
-    )
+    let code = |text: &str| format!("<pre><code>{}</code></pre>\n", escape(text));
+    let made = code(&p.command) + &format!("<dl>\n{facts}</dl>\n") + &code(&as_toml(&p.options));
+    folded("How it was made", &made)
 }
 
 /// Options as TOML; options that have no value are left out.

@@ -28,7 +28,7 @@ fn sections() -> Vec<Section> {
 }
 
 fn page_of(folder: &Path) -> String {
-    let path = write_report(folder, &sections()).unwrap();
+    let path = write_report(folder, "Seen & found.", &sections()).unwrap();
     assert_eq!(path, folder.join(FILE));
     let html = fs::read_to_string(path).unwrap();
     assert_balanced(&html);
@@ -36,18 +36,34 @@ fn page_of(folder: &Path) -> String {
 }
 
 #[test]
-fn missing_experiments_are_named_with_the_command_that_runs_them() {
+fn one_line_names_the_experiments_that_did_not_run_and_the_command_that_runs_them() {
     let folder = tempfile::tempdir().unwrap();
     let html = page_of(folder.path());
-    for Section { name, .. } in sections() {
-        assert!(html.contains(&format!("there is no <code>{name}.json</code> in this folder")));
-        assert!(html.contains(&format!("run {name}</code>")));
-    }
-    assert!(!without_scripts(&html).contains("expectations"));
+    let all = "run figure1 figure3 figure4 figure9 retrieval figure5a figure5b figure6 figure7 figure8 scaling</code>";
+    assert_holds(&html, &["Not run: Shapes, Forms, Classes, Times, Scores, figure5a,", all]);
+    let plain = without_scripts(&html);
+    assert!(!plain.contains("expectations") && !plain.contains("<section") && !plain.contains("<li>"));
     // With the options of a record that is there.
     write(&figure4_record(&CLASSES), folder.path().join("figure4.json")).unwrap();
-    let command = "-- run figure9 --dataset &#39;a &amp; b&#39; --output results</code>";
-    assert_holds(&page_of(folder.path()), &[command]);
+    let html = page_of(folder.path());
+    let command = "figure8 scaling --dataset &#39;a &amp; b&#39; --output results</code>";
+    assert_holds(&html, &[command, "<li><a href=\"#figure4\">Classes</a></li>"]);
+    assert_eq!(html.matches("<section id=").count(), 1);
+    assert_eq!(html.matches("Not run").count(), 1);
+    // Nothing if all have run.
+    let folder = full_folder(&figure4_record(&CLASSES), None);
+    assert!(!page_of(folder.path()).contains("Not run"));
+}
+
+#[test]
+fn the_page_begins_with_what_is_seen_and_folds_how_it_was_made() {
+    let folder = full_folder(&figure4_record(&CLASSES), None);
+    let html = page_of(folder.path());
+    assert_holds(&html, &["<h1>canonform: results</h1>\n<p>Seen &amp; found.</p>\n"]);
+    let made = "<details>\n<summary>How it was made</summary>\n<pre><code>experiments run all";
+    assert_eq!(html.matches(made).count(), sections().len());
+    let folded = html.split(made).skip(1).filter_map(|part| part.split("</details>").next());
+    folded.for_each(|folded| assert_holds(folded, &["a processor", "embedding 0.25 s", "rank = 5"]));
 }
 
 #[test]
@@ -147,7 +163,7 @@ fn names_from_files_never_become_markup() {
 fn an_unreadable_record_is_an_error_that_names_the_file() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("figure4.json"), "{\"names\": 3").unwrap();
-    let error = write_report(folder.path(), &sections()).unwrap_err();
+    let error = write_report(folder.path(), "", &sections()).unwrap_err();
     assert!(
         matches!(error, ReportError::Parse { .. }) && error.to_string().contains("figure4.json"),
         "{error}"
@@ -223,6 +239,13 @@ fn every_section_has_its_plots_and_their_data_once_in_the_page() {
     assert_eq!(islands["figure4-data"]["names"].as_array().map(Vec::len), Some(5));
     assert_eq!(islands["figure4-data"]["thumbnails"][4]["forms"].as_array().map(Vec::len), Some(2));
     assert_eq!(islands["figure4-shape-4"]["forms"][0]["size"], 2.0);
+    // The maps of both methods, and their matrices, are beside each other.
+    for kind in ["map", "matrix"] {
+        let plots: Vec<&str> = plain.split(&format!("data-plot=\"{kind}\" data-method=\"")).skip(1).collect();
+        assert_eq!(plots.len(), 2);
+        assert!(plots[0].starts_with("NMDS\"") && plots[1].starts_with("KPCA-Nyström\""));
+        assert!(!plots[0].contains("</div>\n</div>"), "one grid");
+    }
     assert!(plain.contains("id=\"figure1-explorer\""));
     assert!(plain.contains("<option value=\"0\" selected>cat0</option>"));
     let ids: Vec<&str> = html.split(" id=\"").skip(1).filter_map(|part| part.split('"').next()).collect();
@@ -246,7 +269,7 @@ fn folders_without_surfaces_have_their_map_and_name_the_command_that_adds_them()
     let others = shapes_record(&[("cat", 2)]);
     for shapes in [None, Some(&others)] {
         let html = page_of(full_folder(&figure4, shapes).path());
-        assert!(html.contains("id=\"figure4-map\"") && !html.contains("id=\"figure4-overlay\""));
+        assert!(html.contains("id=\"figure4-map-0\"") && !html.contains("id=\"figure4-overlay\""));
         assert!(html.contains("run <code>experiments run all --dataset &#39;a &amp; b&#39;</code>"));
         assert!(!html.contains("id=\"figure4-shape-0\"") && !html.contains("id=\"figure1-explorer\""));
     }
