@@ -15,7 +15,7 @@ use mesh::shapes;
 use tempfile::TempDir;
 
 use super::*;
-use crate::{Dataset, LabelFile, SkipKind, list_shapes};
+use crate::{Dataset, LabelSource, SkipKind, list_shapes};
 use crate::{content_hash, count_skipped};
 
 fn folder() -> TempDir {
@@ -296,7 +296,7 @@ fn rows_of_a_parquet_file_are_meshes_with_classes() {
     // A file of labels goes first.
     let labels = place.path().join("labels.csv");
     fs::write(&labels, "two,other\nfour.obj.gz,else\n").unwrap();
-    let dataset = Dataset::read(&path, Some(&LabelFile::read(&labels).unwrap())).unwrap();
+    let dataset = Dataset::read(&path, Some(&LabelSource::read(&labels).unwrap())).unwrap();
     let labels: Vec<_> = dataset.shapes.iter().map(|shape| shape.label.as_str()).collect();
     assert_eq!(labels, ["", "else", "", "other"]);
     for (rows, words) in [
@@ -356,7 +356,7 @@ fn archives_with_bytes_changed_do_not_panic() {
     ] {
         let path = Path::new(name);
         open_mutations(name, &intact, |file| {
-            let Ok(archive) = cache::members(path, file, container) else { return 0 };
+            let Ok(archive) = cache::members(path, file, container, u64::MAX) else { return 0 };
             archive.members().filter(|(member, _)| archive.read(member, path).is_ok()).count()
         });
     }

@@ -12,6 +12,7 @@ mod handedness;
 mod in_space;
 mod kind;
 mod mesh_change;
+mod mesh_overlay;
 mod of_meshes;
 mod parts;
 mod same_surface;
@@ -27,6 +28,7 @@ pub use geometry::MeshGeometry;
 pub use handedness::{Handedness, handedness};
 pub use in_space::SurfaceGap;
 pub use kind::{Change, RelationKind};
+pub use mesh_overlay::MeshOverlay;
 pub use parts::{Parts, Side};
 pub use units::UnitChange;
 
