@@ -85,10 +85,11 @@ pub(crate) struct BuildArgs {
     /// Output index
     #[arg(short, long, value_name = "INDEX")]
     pub(crate) output: PathBuf,
-    /// Where classes come from: sub-folders, leading letters of file names, or a file of lines `name,label`, which need not
-    /// name all shapes [default: sub-folders if at least two hold at least two meshes each and none lies in another; else
-    /// letters if at least two names share them, unless nearly all do; else none]
-    #[arg(long, value_name = "folders|names|none|FILE.csv")]
+    /// Where classes come from: `folders`, `names` (their leading letters), `none`, or a file of lines `name,label`
+    ///
+    /// The file need not name all shapes. By default, sub-folders are classes if at least two hold at least two meshes each
+    /// and none lies in another; else leading letters, if at least two names share them and not nearly all do.
+    #[arg(long, value_name = "SOURCE")]
     pub(crate) labels: Option<PathBuf>,
     /// Remove the shapes that did not come from this folder, such as those that `index add` put in
     #[arg(long)]
@@ -133,7 +134,7 @@ pub(crate) struct AddArgs {
     pub(crate) label: Option<String>,
     /// Where classes come from, as for `build` [default: as for `build`; a single file has the class that its name begins
     /// with if the index knows it]
-    #[arg(long, value_name = "folders|names|none|FILE.csv")]
+    #[arg(long, value_name = "SOURCE")]
     pub(crate) labels: Option<PathBuf>,
     /// Replace shapes that have the same name
     #[arg(long)]
@@ -182,7 +183,7 @@ pub(crate) struct EvaluateArgs {
     pub(crate) input: PathBuf,
     /// Where classes come from, as for `index build`; for a matrix without names, a file of labels in the order of its rows
     /// [default: those of the index; for a matrix, from the names]
-    #[arg(long, value_name = "folders|names|FILE.csv")]
+    #[arg(long, value_name = "SOURCE")]
     pub(crate) labels: Option<PathBuf>,
     /// Signatures of an index to measure distances between: `fused`, `moments`, `d2`, `geodesic-spectrum`,
     /// `shape-dna`, `heat-kernel` or `wave-kernel`

@@ -162,18 +162,18 @@ fn numbers_are_no_classes_and_label_files_may_be_partial() {
 #[test]
 fn the_build_says_what_classes_it_took_and_obeys_whoever_chooses() {
     let place = Workplace::new();
-    for (name, kind) in [("animals/cat0", 0), ("animals/cat1", 0), ("things/ball0", 1), ("things/ball1", 1)] {
-        place.add(&format!("meshes/{name}.off"), &body(kind, name.len()));
+    for (class, kind) in [("animals/cat", 0), ("things/ball", 1)] {
+        (0..3).for_each(|i| place.add(&format!("meshes/{class}{i}.off"), &body(kind, i)));
     }
     for (source, from, classes, said) in [
         (
             "",
             "folders",
-            serde_json::json!({"animals": 2, "things": 2}),
+            serde_json::json!({"animals": 3, "things": 3}),
             "2 from sub-folders; pass --labels none",
         ),
-        (" --labels names", "names", serde_json::json!({"ball": 2, "cat": 2}), "2 from leading letters"),
-        (" --labels none", "none", serde_json::json!({"": 4}), "none"),
+        (" --labels names", "names", serde_json::json!({"ball": 3, "cat": 3}), "2 from leading letters"),
+        (" --labels none", "none", serde_json::json!({"": 6}), "none"),
     ] {
         let command = format!("{}{source}", BUILD.join(" "));
         let built = place.json(&command[..]);

@@ -15,6 +15,9 @@ function extent({ positions }) {
   return Math.max(...ends.map(([low, high]) => high - low));
 }
 
+// Results whose files are read to say how they are related; the others keep what the index tells.
+const MOST_EXPLAINED = 24;
+
 // Gaps below this share of the extent are rounding, and have the colour of zero.
 const ROUNDING = 1e-3;
 
@@ -167,6 +170,7 @@ export class Answer {
     const { found } = this;
     const params = searched(state);
     params.set('explain', 'true');
+    params.set('k', Math.min(state.k ?? USUAL_K, MOST_EXPLAINED));
     params.set('geometry', 'false');
     const answer = await ask(`/api/search?${params}`);
     if (this.found !== found || answer.error) return;
