@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
-use canonform::{LabelFile, Observer, Surface, list_shapes, read_surface};
+use canonform::{LabelSource, Observer, Surface, list_shapes, read_surface};
 use clap::Args;
 use mesh::RepairOptions;
 use rayon::prelude::*;
@@ -31,12 +31,13 @@ const VERTICES: usize = 3400;
 /// Where the shapes come from, on the command line.
 #[derive(Debug, Args)]
 pub(crate) struct ShapeSource {
-    /// A folder of meshes; classes come from sub-folders or from the leading letters of file names
+    /// A folder of meshes; classes come from sub-folders or from the leading letters of file names, as for `canonform index
+    /// build`
     /// [default: the built-in articulated families]
     #[arg(long, value_name = "DIR")]
     dataset: Option<PathBuf>,
-    /// A file of lines `name,label` with the classes of the shapes in the folder
-    #[arg(long, value_name = "FILE", requires = "dataset")]
+    /// Where classes come from: `folders`, `names`, or a file of lines `name,label`
+    #[arg(long, value_name = "folders|names|FILE.csv", requires = "dataset")]
     labels: Option<PathBuf>,
     /// Classes to use, in this order, or `all` [default: cat, centaur and david, as in the paper, if the
     /// folder has them; else all]
@@ -105,7 +106,7 @@ impl SurfaceCollection {
                 (dataset, shapes.into_par_iter().map(shape).collect::<Vec<_>>())
             }
             Some(folder) => {
-                let labels = args.labels.as_deref().map(LabelFile::read).transpose()?;
+                let labels = args.labels.as_deref().map(LabelSource::read).transpose()?;
                 let mut files = list_shapes(folder, labels.as_ref())?;
                 // A label file need not name all shapes.
                 files.retain(|file| !file.label.is_empty());

@@ -95,8 +95,8 @@ mod testing;
 pub use ::mesh::{BadPoint, InputMap, InputPoint, PointError, Surface};
 pub use base::{Budget, ContentHash, Exceeded, Observer};
 pub use collection::{
-    Dataset, LabelFile, ShapeFile, SkipKind, Skipped, Storage, content_hash, is_dataset, label_of,
-    list_shapes, read_mesh, read_mesh_file,
+    Dataset, LabelFile, LabelOrigin, LabelSource, ShapeFile, SkipKind, Skipped, Storage, UnusedLabel,
+    content_hash, is_archive_name, is_dataset, label_of, list_shapes, read_mesh, read_mesh_file, single_mesh,
 };
 pub use compare::{
     Compared, ComparedMesh, Comparison, FaceAgreement, FormAlignments, MeshComparison, Overlay, Residual,
@@ -115,8 +115,8 @@ pub use form::{
 };
 pub use input::{AllPairs, Asymmetry, PathPoint, SurfacePath, distance_rows, read_surface};
 pub use relations::{
-    Basis, Because, Change, Handedness, MeshGeometry, Parts, Relation, RelationKind, Side, SurfaceGap,
-    UnitChange,
+    Basis, Because, Change, Handedness, MeshGeometry, MeshOverlay, Parts, Relation, RelationKind, Side,
+    SurfaceGap, UnitChange,
 };
 pub use retrieval::RankBy;
 pub use shape_index::{

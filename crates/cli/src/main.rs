@@ -10,17 +10,16 @@ mod remedy;
 
 use std::process::ExitCode;
 
-use clap::Parser;
 use peak_alloc::PeakAlloc;
 
-use crate::args::Arguments;
+use crate::args::{Arguments, parsed};
 
 /// Counts the heap for `canonform methods`, which reports the peak of every method.
 #[global_allocator]
 static ALLOCATOR: PeakAlloc = PeakAlloc;
 
 fn main() -> ExitCode {
-    let Arguments { common, command } = Arguments::parse();
+    let Arguments { common, command } = parsed();
     base::terminal::set_quiet(common.quiet);
     base::terminal::run(common.threads.into(), || {
         commands::run(&command, &common).map(input::exit_code_of).map_err(remedy::remedied)

@@ -25,6 +25,14 @@ pub enum CollectionError {
         /// What is wrong and what is expected.
         what: String,
     },
+    /// An archive of another number of meshes where one is wanted.
+    #[error("{path}: the archive holds {n_meshes} meshes; give one that holds one mesh, or a mesh", path = path.display())]
+    NotOneMesh {
+        /// The archive.
+        path: PathBuf,
+        /// Its meshes.
+        n_meshes: usize,
+    },
     /// A folder, an archive or a list without meshes.
     #[error(
         "{path}: no mesh found in it or its sub-folders; \

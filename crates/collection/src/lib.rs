@@ -4,7 +4,9 @@
 //! use canonform_collection::{Dataset, read_mesh};
 //!
 //! let folder = tempfile::tempdir()?;
-//! mesh::io::write(&folder.path().join("ball1.off"), &mesh::shapes::icosphere(2))?;
+//! for name in ["ball1.off", "ball2.off"] {
+//!     mesh::io::write(&folder.path().join(name), &mesh::shapes::icosphere(2))?;
+//! }
 //! let found = Dataset::read(folder.path(), None)?;
 //! assert_eq!((found.shapes[0].name.as_str(), found.shapes[0].label.as_str()), ("ball1", "ball"));
 //! assert_eq!(read_mesh(&found.shapes[0].path)?.n_vertices(), 162);
@@ -18,8 +20,8 @@ mod storage;
 
 pub use content::{content_hash, content_of};
 pub use dataset::{
-    Dataset, LabelFile, ShapeFile, SkipKind, Skipped, count_skipped, drop_single_class, label_in, label_of,
-    list_shapes,
+    Dataset, LabelFile, LabelOrigin, LabelSource, ShapeFile, SkipKind, Skipped, UnusedLabel, count_skipped,
+    drop_single_class, label_of, label_shapes, list_shapes, n_classes,
 };
 pub use error::CollectionError;
-pub use storage::{Storage, is_dataset, member_of, read_mesh, read_mesh_file};
+pub use storage::{Storage, is_archive_name, is_dataset, member_of, read_mesh, read_mesh_file, single_mesh};

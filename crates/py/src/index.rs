@@ -8,7 +8,7 @@ use canonform::descriptors::DescriptorError;
 use canonform::index::{ExportFormat, SearchMode, ShapeEntry};
 use canonform::mesh::RepairOptions;
 use canonform::{
-    BuildOptions, DescribedQuery, Elsewhere, EvaluateOptions, Explain, Inputs, LabelFile, MeshGeometry,
+    BuildOptions, DescribedQuery, Elsewhere, EvaluateOptions, Explain, Inputs, LabelSource, MeshGeometry,
     PairwiseDistance, Query, SearchOptions, ShapeFile, ShapeSearch, Shard, add_to_index, build_index,
     content_hash, evaluate_index, export_index, indexed_shapes, mesh_path, remove_from_index,
 };
@@ -59,9 +59,9 @@ fn rank_by<T: FromStr<Err = String>>(rank: &str) -> PyResult<T> {
     })
 }
 
-/// Reads a label file.
-fn labels_of(labels: Option<PathBuf>) -> PyResult<Option<LabelFile>> {
-    labels.map(|path| LabelFile::read(&path)).transpose().map_err(|fault| to_python(&fault.into()))
+/// Where classes come from: a word, or a label file.
+fn labels_of(labels: Option<PathBuf>) -> PyResult<Option<LabelSource>> {
+    labels.map(|path| LabelSource::read(&path)).transpose().map_err(|fault| to_python(&fault.into()))
 }
 
 /// The report on a build, with the remedies of failures in words.

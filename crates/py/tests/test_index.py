@@ -81,6 +81,8 @@ def test_labels_come_from_a_mapping_or_a_file(collection: Path, tmp_path: Path) 
     file = tmp_path / "labels.csv"
     file.write_text("cat0,x\n")
     assert Index.build(collection, tmp_path / "j.canonform", labels=file).info()["classes"]["x"] == 1
+    none = Index.build(collection, tmp_path / "n.canonform", labels="none")
+    assert none.info()["unlabelled"] == 9 and none.build_report is not None and none.build_report["labels_from"] == "none"
     with pytest.raises(OptionError, match="comma"):
         Index.build(collection, tmp_path / "k.canonform", labels={"a": "b,c"})
 

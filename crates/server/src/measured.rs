@@ -3,7 +3,7 @@
 use canonform::descriptors::CanonicalForm;
 use canonform::mesh::TriMesh;
 use canonform::surface::VertexId;
-use canonform::{Error, MeasuredSurface, MeshGeometry, Overlay, Surface, VertexMap};
+use canonform::{Error, MeasuredSurface, MeshGeometry, MeshOverlay, Overlay, Surface, VertexMap};
 
 use report::viewer::Geometry;
 
@@ -14,6 +14,7 @@ const FACE_BYTES: usize = 150;
 /// Names of the values on meshes and forms.
 const DISTANCE: &str = "distance along the surface";
 const RESIDUAL: &str = "distance to the other form";
+const GAP: &str = "distance to the other mesh";
 
 /// Size of the dots drawn at points, as a fraction of the spread of the form.
 const DOT: f64 = 0.025;
@@ -75,6 +76,11 @@ impl Measured {
 /// A form without a mesh: its points as dots.
 pub(crate) fn dots(form: &CanonicalForm) -> TriMesh {
     report::render::dots(form.points(), DOT * form.spread())
+}
+
+/// Both meshes of an overlay in space.
+pub(crate) fn in_space(overlay: &MeshOverlay) -> [Geometry; 2] {
+    [0, 1].map(|i| Geometry::in_place(&overlay.meshes[i]).with_values(GAP, &overlay.gaps[i]))
 }
 
 /// One form of an overlay: with the faces of its mesh, or as dots if the mesh is missing.

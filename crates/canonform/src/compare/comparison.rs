@@ -96,7 +96,7 @@ pub struct Overlay {
     pub residuals: [Vec<f64>; 2],
 }
 
-/// The distances of the points of one form from the other, in brief.
+/// The distances of the points of one form or mesh from the other, in brief.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Residual {
     /// The median; of two in the middle, the upper one.
@@ -128,11 +128,17 @@ impl Overlay {
 
     /// The residuals of both forms, in brief; zero for a form without points.
     pub fn residual(&self) -> [Residual; 2] {
-        self.residuals.each_ref().map(|residuals| {
-            let mut order: Vec<usize> = (0..residuals.len()).collect();
-            order.sort_by(|&i, &j| residuals[i].total_cmp(&residuals[j]));
-            let Some(&max_point) = order.last() else { return Residual::default() };
-            Residual { median: residuals[order[order.len() / 2]], max: residuals[max_point], max_point }
-        })
+        self.residuals.each_ref().map(|residuals| Residual::of(residuals))
+    }
+}
+
+impl Residual {
+    /// Of distances; zero if there are none.
+    #[must_use]
+    pub fn of(distances: &[f64]) -> Self {
+        let mut order: Vec<usize> = (0..distances.len()).collect();
+        order.sort_by(|&i, &j| distances[i].total_cmp(&distances[j]));
+        let Some(&max_point) = order.last() else { return Self::default() };
+        Self { median: distances[order[order.len() / 2]], max: distances[max_point], max_point }
     }
 }

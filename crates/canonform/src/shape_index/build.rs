@@ -18,7 +18,7 @@ use super::source::{Hashed, Listed, Listing, ShapeLimits, Shard, hash_all, share
 use crate::error::{Error, Remedy};
 use crate::form::{DescribeOptions, describe};
 use base::Observer;
-use collection::{LabelFile, ShapeFile, count_skipped};
+use collection::{LabelOrigin, LabelSource, ShapeFile, UnusedLabel, count_skipped, n_classes};
 use mesh::Surface;
 
 /// Most shapes written to disk in one transaction.
@@ -32,8 +32,8 @@ const WAITING: usize = 64;
 pub struct BuildOptions<'a> {
     /// How shapes are described.
     pub describe: &'a DescribeOptions,
-    /// Classes by name. Default: from the names of folders and files.
-    pub labels: Option<&'a LabelFile>,
+    /// Where classes come from. Default: the names of folders and files decide, as for a [`Dataset`](collection::Dataset).
+    pub labels: Option<&'a LabelSource>,
     /// The part of the folder to index. Default: all of it.
     pub shard: Option<Shard>,
     /// The shapes to index, by name: part of them, as [`indexed_shapes`] names them. Default: all of them.
@@ -142,8 +142,14 @@ pub struct BuildReport {
     /// The class that nearly all shapes would have got from the letters that their names begin with. It says nothing, so
     /// they have none.
     pub single_class: Option<String>,
+    /// What the classes were taken from; `None` for meshes that were added.
+    pub labels_from: Option<LabelOrigin>,
+    /// Classes of the shapes of this run.
+    pub n_classes: usize,
     /// Lines of the label file that name none of the shapes.
     pub unused_labels: usize,
+    /// These lines.
+    pub unused_label_lines: Vec<UnusedLabel>,
     /// What was found beside meshes: the number of each kind.
     pub skipped: BTreeMap<String, usize>,
     /// What was skipped although its name is that of a mesh or a folder.
@@ -173,7 +179,10 @@ impl BuildReport {
         Self {
             unlabelled: listing.shapes.iter().filter(|listed| listed.file.label.is_empty()).count(),
             single_class: listing.single_class.clone(),
-            unused_labels: listing.unused_labels,
+            labels_from: listing.labelled_by,
+            n_classes: n_classes(listing.shapes.iter().map(|listed| &listed.file)),
+            unused_labels: listing.unused_labels.len(),
+            unused_label_lines: listing.unused_labels.clone(),
             skipped: count_skipped(&listing.skipped),
             skipped_paths: unexpected.map(|skipped| skipped.path.clone()).collect(),
             ..Self::default()
@@ -305,7 +314,7 @@ pub fn build_index(
 pub fn indexed_shapes(
     folder: &Path,
     path: &Path,
-    labels: Option<&LabelFile>,
+    labels: Option<&LabelSource>,
 ) -> Result<Vec<ShapeFile>, Error> {
     let home = Home::of(path)?;
     let listing = Listing::of_folder(&Root::new(folder, &home)?, labels)?;

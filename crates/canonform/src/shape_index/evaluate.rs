@@ -11,7 +11,7 @@ use retrieval::{Evaluation, Labels, RankBy, evaluate_ranked, pairwise_distances}
 
 use crate::error::Error;
 use base::Observer;
-use collection::{CollectionError, LabelFile, label_in};
+use collection::{CollectionError, LabelSource, label_of};
 
 /// Most shapes evaluated at once: their matrix takes 800 MB.
 const MOST: usize = 10_000;
@@ -42,8 +42,8 @@ impl FromStr for Measure {
 pub struct EvaluateOptions<'a> {
     /// The vectors of an index that distances are measured between. Default: [`Measure::Fused`].
     pub measure: Measure,
-    /// Classes by name. Default: those of the index, or from the names of a matrix.
-    pub labels: Option<&'a LabelFile>,
+    /// Where classes come from. Default: those of the index, or from the names of a matrix.
+    pub labels: Option<&'a LabelSource>,
     /// Number of neighbours that vote. Default: 1.
     pub knn_k: usize,
     /// Whether the ranking on the neighbour graph is scored beside that by distance. Default: [`RankBy::Plain`], that by
@@ -75,7 +75,7 @@ pub fn evaluate_index(
     let (mut names, mut rows) = (Vec::with_capacity(n), Vec::with_capacity(n));
     index.each(|shape| {
         let label = match labels {
-            Some(file) => label_in(Some(file), &shape.id, Some(Path::new(&shape.entry.path))),
+            Some(source) => source.label(&shape.id, Some(Path::new(&shape.entry.path))),
             None => shape.entry.label,
         };
         // Nothing can be said about shapes without a class.
@@ -129,9 +129,10 @@ pub fn evaluate_matrix(path: &Path, options: &EvaluateOptions<'_>) -> Result<Eva
     let text = std::fs::read_to_string(path).map_err(|source| FileError::read(path, source))?;
     let Matrix { names, rows } = Matrix::parse(&text, path)?;
     let classes: Vec<String> = match (labels, names) {
-        (_, Some(names)) => names.iter().map(|name| label_in(labels, name, None)).collect(),
-        (Some(file), None) => file.in_order().to_vec(),
-        (None, None) => return Err(Error::NoNames { path: path.to_owned() }),
+        (None, Some(names)) => names.iter().map(|name| label_of(name)).collect(),
+        (Some(source), Some(names)) => names.iter().map(|name| source.label(name, None)).collect(),
+        (Some(LabelSource::File(file)), None) => file.in_order().to_vec(),
+        (_, None) => return Err(Error::NoNames { path: path.to_owned() }),
     };
     // Rows that a label file does not name are left out; missing lines of a file without names are an error.
     let (rows, classes) = match classes.iter().any(String::is_empty) {

@@ -46,6 +46,8 @@ pub struct Prediction {
     pub unknown: Option<Unknown>,
     /// The class, or why there is none, in words.
     pub explanation: String,
+    /// What is wrong with the query, in a sentence that ends the explanation.
+    pub warning: Option<String>,
 }
 
 /// The votes for a class.
@@ -117,16 +119,16 @@ impl Completeness {
         signs
     }
 
-    /// The warning that the query has shortcuts; empty if it has none.
-    fn warning(self) -> String {
+    /// The warning that the query has shortcuts.
+    fn warning(self) -> Option<String> {
         let places = match self.shortcuts {
-            0 => return String::new(),
+            0 => return None,
             1 => "one place".to_owned(),
             n => format!("{n} places"),
         };
-        format!(
-            ". The query probably has a shortcut: distant parts of its surface are joined in {places}; it was compared as if they were separate"
-        )
+        Some(format!(
+            "The query probably has a shortcut: distant parts of its surface are joined in {places}; it was compared as if they were separate"
+        ))
     }
 }
 
@@ -186,8 +188,12 @@ pub(super) fn predicted(
         nearest,
         unknown,
         explanation: String::new(),
+        warning: query.warning(),
     };
-    found.explanation = found.in_words(&signs, as_part) + &query.warning();
+    found.explanation = found.in_words(&signs, as_part);
+    if let Some(warning) = &found.warning {
+        found.explanation += &format!(". {warning}");
+    }
     found
 }
 

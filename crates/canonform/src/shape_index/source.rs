@@ -17,8 +17,8 @@ use super::place::{Home, Root, mesh_path};
 use crate::error::Error;
 use base::Observer;
 use collection::{
-    CollectionError, Dataset, LabelFile, ShapeFile, SkipKind, Skipped, Storage, content_hash, content_of,
-    drop_single_class, is_dataset, label_in, read_mesh_file,
+    CollectionError, Dataset, LabelOrigin, LabelSource, ShapeFile, SkipKind, Skipped, Storage, UnusedLabel,
+    content_hash, content_of, drop_single_class, is_dataset, label_of, label_shapes, read_mesh_file,
 };
 
 /// One of several equal parts of a collection.
@@ -61,8 +61,9 @@ impl FromStr for Shard {
 pub struct Inputs<'a> {
     /// Mesh files, and folders of them.
     pub paths: &'a [PathBuf],
-    /// Classes by name. Default: from the names of folders and files.
-    pub labels: Option<&'a LabelFile>,
+    /// Where classes come from. Default: the names of folders and files decide, as for a [`Dataset`]; a single file has the
+    /// class that its name suggests if the index knows it.
+    pub labels: Option<&'a LabelSource>,
     /// One class for all of them, regardless of their names.
     pub label: Option<&'a str>,
     /// What describing each of them may use.
@@ -121,30 +122,35 @@ pub(super) struct Listing {
     pub(super) skipped: Vec<Skipped>,
     /// The label that nearly all shapes would have got.
     pub(super) single_class: Option<String>,
+    /// Where classes come from; several inputs may differ.
+    pub(super) labelled_by: Option<LabelOrigin>,
     /// Lines of the label file that name none of the shapes.
-    pub(super) unused_labels: usize,
+    pub(super) unused_labels: Vec<UnusedLabel>,
 }
 
 impl Listing {
     /// The meshes of a folder; files that differ only in their extensions have them in their names.
-    pub(super) fn of_folder(root: &Root<'_>, labels: Option<&LabelFile>) -> Result<Self, Error> {
-        let Dataset { shapes, skipped } = Dataset::read(root.given(), labels)?;
+    pub(super) fn of_folder(root: &Root<'_>, labels: Option<&LabelSource>) -> Result<Self, Error> {
+        let Dataset { shapes, labelled_by, skipped } = Dataset::read(root.given(), labels)?;
         let stored = shapes.iter().map(|shape| root.text(&shape.path)).collect();
-        Ok(Self::new(shapes, stored, skipped, labels, |_| false))
+        let listing = Self::new(shapes, stored, skipped, labels, |_| false);
+        let labelled_by = if listing.single_class.is_some() { LabelOrigin::None } else { labelled_by };
+        Ok(Self { labelled_by: Some(labelled_by), ..listing })
     }
 
     fn new(
         mut shapes: Vec<ShapeFile>,
         stored: Vec<String>,
         skipped: Vec<Skipped>,
-        labels: Option<&LabelFile>,
+        labels: Option<&LabelSource>,
         is_class: impl Fn(&str) -> bool,
     ) -> Self {
         let single_class = labels.is_none().then(|| drop_single_class(&mut shapes, is_class)).flatten();
-        let unused_labels = labels.map_or(0, |labels| labels.n_unused(&shapes));
+        let file = labels.and_then(LabelSource::file);
+        let unused_labels = file.map_or_else(Vec::new, |file| file.unused(&shapes));
         name_apart(&mut shapes);
         let listed = shapes.into_iter().zip(stored).map(|(file, stored)| Listed { file, stored });
-        Self { shapes: listed.collect(), skipped, single_class, unused_labels }
+        Self { shapes: listed.collect(), skipped, single_class, labelled_by: None, unused_labels }
     }
 }
 
@@ -153,7 +159,7 @@ impl Inputs<'_> {
     /// index.
     pub(super) fn list(&self, home: &Home, is_class: impl Fn(&str) -> bool) -> Result<Listing, Error> {
         let (mut shapes, mut stored, mut skipped) = (Vec::new(), Vec::new(), Vec::new());
-        let mut seen = HashSet::new();
+        let (mut seen, mut single) = (HashSet::new(), Vec::new());
         let mut skip = |path: &Path, kind| skipped.push(Skipped { path: path.to_owned(), kind });
         for path in self.paths {
             if is_dataset(path) {
@@ -181,17 +187,32 @@ impl Inputs<'_> {
                 // What cannot be found is reported when it is read.
                 _ => {
                     stored.push(home.file_text(path));
-                    let label = label_in(self.labels, name, Some(path));
+                    single.push(shapes.len());
+                    let label = String::new();
                     shapes.push(ShapeFile { label, name: name.to_owned(), path: path.clone() });
                 }
             }
         }
+        self.label_single(&mut shapes, &single, &is_class);
         if let Some(label) = self.label {
             shapes.iter_mut().for_each(|shape| shape.label = label.to_owned());
         }
         // A class that was asked for is one.
         let is_class = |label: &str| self.label == Some(label) || is_class(label);
         Ok(Listing::new(shapes, stored, skipped, self.labels, is_class))
+    }
+
+    /// Labels the files at these places, which belong to no dataset, together.
+    fn label_single(&self, shapes: &mut [ShapeFile], places: &[usize], is_class: impl Fn(&str) -> bool) {
+        let mut single: Vec<ShapeFile> = places.iter().map(|place| shapes[*place].clone()).collect();
+        label_shapes(&mut single, self.labels);
+        for (place, mut shape) in places.iter().zip(single) {
+            let suggested = label_of(&shape.name);
+            if self.labels.is_none() && shape.label.is_empty() && is_class(&suggested) {
+                shape.label = suggested;
+            }
+            shapes[*place] = shape;
+        }
     }
 }
 

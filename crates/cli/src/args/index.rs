@@ -79,15 +79,17 @@ pub(crate) struct ListArgs {
 #[derive(Debug, Args)]
 pub(crate) struct BuildArgs {
     /// Dataset: a folder of meshes, an archive (.zip, .tar, .tar.gz), a .parquet file with the columns id, label, format
-    /// and bytes, or a .txt file with a path in every line. Classes are the names of sub-folders, else the leading letters
-    /// of file names, unless nearly all names begin with the same letters
+    /// and bytes, or a .txt file with a path in every line
     #[arg(value_name = "DIR")]
     pub(crate) folder: PathBuf,
     /// Output index
     #[arg(short, long, value_name = "INDEX")]
     pub(crate) output: PathBuf,
-    /// Classes, a file of lines `name,label`; shapes that it does not name have none
-    #[arg(long, value_name = "FILE.csv")]
+    /// Where classes come from: `folders`, `names` (their leading letters), `none`, or a file of lines `name,label`
+    ///
+    /// The file need not name all shapes. By default, sub-folders are classes if at least two hold at least two meshes each
+    /// and none lies in another; else leading letters, if at least two names share them and not nearly all do.
+    #[arg(long, value_name = "SOURCE")]
     pub(crate) labels: Option<PathBuf>,
     /// Remove the shapes that did not come from this folder, such as those that `index add` put in
     #[arg(long)]
@@ -127,11 +129,12 @@ pub(crate) struct AddArgs {
     /// Meshes, or datasets: folders, archives and lists
     #[arg(required = true, value_name = "MESH|DIR")]
     pub(crate) meshes: Vec<PathBuf>,
-    /// Class of all these meshes [default: from their names]
+    /// Class of all these meshes
     #[arg(long, value_name = "CLASS", conflicts_with = "labels")]
     pub(crate) label: Option<String>,
-    /// Classes, a file of lines `name,label`; shapes that it does not name have none
-    #[arg(long, value_name = "FILE.csv")]
+    /// Where classes come from, as for `build` [default: as for `build`; a single file has the class that its name begins
+    /// with if the index knows it]
+    #[arg(long, value_name = "SOURCE")]
     pub(crate) labels: Option<PathBuf>,
     /// Replace shapes that have the same name
     #[arg(long)]
@@ -178,9 +181,9 @@ pub(crate) struct EvaluateArgs {
     /// An index; or a distance matrix, one line of comma-separated numbers per shape, optionally below a line of names
     #[arg(value_name = "INDEX|MATRIX.csv")]
     pub(crate) input: PathBuf,
-    /// Classes, a file of lines `name,label`; for a matrix without names, labels in the order of its rows [default:
-    /// those of the index; for a matrix, from the names]
-    #[arg(long, value_name = "FILE")]
+    /// Where classes come from, as for `index build`; for a matrix without names, a file of labels in the order of its rows
+    /// [default: those of the index; for a matrix, from the names]
+    #[arg(long, value_name = "SOURCE")]
     pub(crate) labels: Option<PathBuf>,
     /// Signatures of an index to measure distances between: `fused`, `moments`, `d2`, `geodesic-spectrum`,
     /// `shape-dna`, `heat-kernel` or `wave-kernel`

@@ -18,7 +18,7 @@ use canonform::mesh::io::{Content, mesh_files, or_list, writable};
 use canonform::settings::Named;
 use canonform::{InputPoint, StressChoice};
 use clap::builder::TypedValueParser;
-use clap::{Args, Parser, Subcommand};
+use clap::{Arg, ArgAction, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use clap_complete::Shell;
 
 use self::settings::{FormArgs, OfComparison, OfEmbedding, OfForm, OfMaps, distance_method, one_of};
@@ -44,6 +44,28 @@ pub(crate) struct Arguments {
     pub(crate) common: Common,
     #[command(subcommand)]
     pub(crate) command: Command,
+}
+
+/// The program with its commands. `-h` and `--help` list what is often needed, `--help-all` everything.
+pub(crate) fn program() -> clap::Command {
+    with_help(Arguments::command())
+}
+
+fn with_help(command: clap::Command) -> clap::Command {
+    let usual = Arg::new("help").short('h').long("help").action(ArgAction::HelpShort);
+    let all = Arg::new("help_all").long("help-all").action(ArgAction::HelpLong);
+    let names: Vec<String> = command.get_subcommands().map(|inner| inner.get_name().to_owned()).collect();
+    let command = command
+        .disable_help_flag(true)
+        .arg(usual.help("Print this help").display_order(990))
+        .arg(all.help("Print help with all options, their values, and notes").display_order(991));
+    names.into_iter().fold(command, |command, name| command.mut_subcommand(name, with_help))
+}
+
+/// Parses the command line, or prints help or an error and ends the program.
+pub(crate) fn parsed() -> Arguments {
+    let arguments = Arguments::from_arg_matches(&program().get_matches());
+    arguments.unwrap_or_else(|fault| fault.format(&mut program()).exit())
 }
 
 /// What commands read.
@@ -138,7 +160,7 @@ Examples:
   canonform embed - --format off -o - --output-format ply < cat.off > form.ply";
 
 #[derive(Debug, Args)]
-#[command(after_long_help = EMBED_NOTES, after_help = "See `--help` for the formulas of the stress, and for examples.")]
+#[command(after_long_help = EMBED_NOTES, after_help = "See `--help-all` for the options of methods, the formulas of the stress, and examples.")]
 pub(crate) struct EmbedArgs {
     /// Meshes, datasets (folders, archives, lists), patterns such as 'scans/*.ply', or `-` for standard input
     #[arg(required = true, value_name = "MESH")]
@@ -180,7 +202,7 @@ Examples:
   canonform convert - - --format obj --output-format glb < cat.obj > cat.glb";
 
 #[derive(Debug, Args)]
-#[command(after_long_help = CONVERT_NOTES, after_help = "See `--help` for what is kept, and for examples.")]
+#[command(after_long_help = CONVERT_NOTES, after_help = "See `--help-all` for what is kept, and for examples.")]
 pub(crate) struct ConvertArgs {
     /// Mesh, dataset or pattern, or `-` for standard input
     #[arg(value_name = "IN")]
@@ -277,7 +299,7 @@ Examples:
   canonform match cat0.off cat1.off --json";
 
 #[derive(Debug, Args)]
-#[command(after_long_help = MATCH_NOTES, after_help = "See `--help` for what is written, and for examples.")]
+#[command(after_long_help = MATCH_NOTES, after_help = "See `--help-all` for what is written, and for examples.")]
 pub(crate) struct MatchArgs {
     #[command(flatten)]
     pub(crate) pair: PairArgs,

@@ -70,9 +70,27 @@ fn heading(group: OptionGroup) -> Option<&'static str> {
     }
 }
 
+/// Options of methods and solvers, which only `--help-all` lists; so it does those of fast marching.
+const SELDOM: [&str; 10] = [
+    "rank",
+    "sampling",
+    "first_sample",
+    "regularization",
+    "alpha",
+    "sigma",
+    "eigenvectors",
+    "mu",
+    "iterations",
+    "tolerance",
+];
+
 fn arg(option: &'static OptionSpec) -> Arg {
     let help = option.help(flag);
-    let arg = Arg::new(option.name).long(option.name.replace('_', "-")).help_heading(heading(option.group));
+    let is_seldom = option.group == OptionGroup::Marching || SELDOM.contains(&option.name);
+    let arg = Arg::new(option.name)
+        .long(option.name.replace('_', "-"))
+        .help_heading(heading(option.group))
+        .hide_short_help(is_seldom);
     let arg = match help.split_once("\n\n") {
         Some((first, _)) => arg.help(first.to_owned()).long_help(help),
         None => arg.help(help),

@@ -27,7 +27,7 @@ pub(crate) struct Common {
     #[arg(long, global = true, value_name = "EXT")]
     pub(crate) format: Option<String>,
     /// The same, where --format means something else
-    #[arg(long, global = true, value_name = "EXT", value_parser = input_format())]
+    #[arg(long, global = true, value_name = "EXT", value_parser = input_format(), hide_short_help = true)]
     pub(crate) input_format: Option<&'static str>,
     /// Write nothing but errors to standard error: no progress, no notes on repairs
     #[arg(long, short, global = true)]

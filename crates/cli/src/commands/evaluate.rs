@@ -6,7 +6,7 @@ use anyhow::Result;
 use base::terminal::Bars;
 use canonform::mesh::io::extension;
 use canonform::retrieval::{Evaluation, ScoreIntervals, Scores};
-use canonform::{EvaluateOptions, LabelFile, evaluate_index, evaluate_matrix};
+use canonform::{EvaluateOptions, LabelSource, evaluate_index, evaluate_matrix};
 
 use crate::args::{Common, EvaluateArgs};
 use crate::input::named;
@@ -14,7 +14,7 @@ use crate::output::{Answer, Fact, facts, report, table_of};
 
 /// Scores an index or a matrix.
 pub(crate) fn evaluate(args: &EvaluateArgs, common: &Common) -> Result<ExitCode> {
-    let labels = args.labels.as_deref().map(LabelFile::read).transpose()?;
+    let labels = args.labels.as_deref().map(LabelSource::read).transpose()?;
     let options =
         EvaluateOptions { measure: args.by, labels: labels.as_ref(), knn_k: args.k, rank_by: args.rank };
     let scores = if extension(&args.input) == "csv" {

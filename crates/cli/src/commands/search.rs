@@ -1,13 +1,14 @@
 //! `canonform search`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::Result;
+use anyhow::{Result, anyhow};
 use canonform::index::SearchMode;
+use canonform::mesh::io::without_extension;
 use canonform::{
-    ComponentResult, Explain, Relation, SearchOptions, SearchRank, SearchReport, ShapeSearch, content_hash,
-    is_dataset, list_shapes, mesh_path,
+    ComponentResult, Explain, Prediction, Relation, SearchOptions, SearchRank, SearchReport, ShapeSearch,
+    Unknown, content_hash, is_dataset, list_shapes, mesh_path,
 };
 use serde::Serialize;
 
@@ -107,13 +108,13 @@ pub(crate) fn search(args: &SearchArgs, common: &Common) -> Result<ExitCode> {
                 answers.push(Answer { query: query.name(), report });
             }
             Err(fault) => {
-                let missing = matches!(query, Query::Mesh(path) if !is_there(path));
-                let fault = match missing {
-                    true => fault.context(format!(
-                        "{} is neither a file nor a shape of the index; `canonform index list` names its shapes",
-                        query.name()
-                    )),
-                    false => fault,
+                let fault = match query {
+                    Query::Mesh(path) if !is_there(path) => fault.context(neither(path, &index)),
+                    Query::Indexed(id) => match meant(Path::new(id), &index) {
+                        Some(meant) => anyhow!("the index has no shape `{id}`; did you mean {meant}?"),
+                        None => fault,
+                    },
+                    Query::Mesh(_) => fault,
                 };
                 if queries.len() == 1 {
                     return Err(fault);
@@ -130,6 +131,30 @@ pub(crate) fn search(args: &SearchArgs, common: &Common) -> Result<ExitCode> {
         print_json(&Json { queries: &answers, failed: &failed })?;
     }
     Ok(code)
+}
+
+/// Most shapes that an error suggests.
+const MOST_SUGGESTED: usize = 3;
+
+/// The error that a name is that of nothing.
+fn neither(given: &Path, index: &ShapeSearch) -> String {
+    let advice = match meant(given, index) {
+        Some(meant) => format!("did you mean {meant}?"),
+        None => "`canonform index list` names its shapes".to_owned(),
+    };
+    format!("{} is neither a file nor a shape of the index; {advice}", given.display())
+}
+
+/// Shapes that somebody may have meant by a name that is none: those of this name in a folder, or without one.
+fn meant(given: &Path, index: &ShapeSearch) -> Option<String> {
+    let wanted = without_extension(given).to_string_lossy().to_lowercase();
+    let file_of = |name: &str| name.rsplit('/').next().unwrap_or_default().to_owned();
+    let is_meant = |id: &String| file_of(&id.to_lowercase()) == file_of(&wanted);
+    let ids = index.index().entries().unwrap_or_default().into_iter().map(|(id, _)| id);
+    let ids: Vec<String> = ids.filter(is_meant).collect();
+    let is_known = ids.iter().any(|id| Path::new(id) == given);
+    let named: Vec<String> = ids.iter().take(MOST_SUGGESTED).map(|id| format!("`{id}`")).collect();
+    (!is_known && !named.is_empty()).then(|| named.join(" or "))
 }
 
 /// The shapes found and the class; with `details`, how each shape is related and what the search did.
@@ -151,9 +176,9 @@ fn text(query: String, report: &SearchReport, details: bool) -> String {
     }
     text.extend(report.components.iter().map(component));
     text.extend(report.wholes.iter().map(|whole| format!("  {}\n", explained(&whole.relation))));
-    text += &format!("  class: {}", report.predicted.explanation);
+    text += &class(&report.predicted);
     if details || report.recall < 1.0 {
-        text += &format!("\n  {} of {} shapes measured", report.measured, report.n_shapes);
+        text += &format!("  {} of {} shapes measured", report.measured, report.n_shapes);
     }
     if report.recall < 1.0 {
         text += &format!(", {:.1} % of the nearest found", 100.0 * report.recall);
@@ -162,15 +187,29 @@ fn text(query: String, report: &SearchReport, details: bool) -> String {
         let seconds = report.seconds.describe + report.seconds.search;
         text += &format!(", {} aligned, {seconds:.3} s", report.aligned);
     }
+    text.truncate(text.trim_end().len());
     text
 }
 
+/// The class, if the index has classes, and what the user should know of the query.
+fn class(predicted: &Prediction) -> String {
+    match (predicted.unknown, &predicted.warning) {
+        (Some(Unknown::Unlabelled), None) => String::new(),
+        (Some(Unknown::Unlabelled), Some(warning)) => format!("  {warning}\n"),
+        _ => format!("  class: {}\n", predicted.explanation),
+    }
+}
+
 fn table(report: &SearchReport) -> comfy_table::Table {
+    let has_classes = report.results.iter().any(|result| !result.label.is_empty());
     let mut head = vec!["", "shape", "class", "distance", "relation"];
     match report.rank_by {
         SearchRank::Plain => {}
         SearchRank::Graph => drop(head.splice(3..3, ["rank distance", "plain"])),
         SearchRank::Part => drop(head.splice(3..3, ["part distance", "share"])),
+    }
+    if !has_classes {
+        head.remove(2);
     }
     let mut table = table_of(head);
     for result in &report.results {
@@ -188,6 +227,9 @@ fn table(report: &SearchReport) -> comfy_table::Table {
         if let Some(found) = result.as_part {
             let share = format!("{:.0} %", 100.0 * found.part_share);
             row.splice(3..3, [format!("{:.4}", found.part_distance), share]);
+        }
+        if !has_classes {
+            row.remove(2);
         }
         table.add_row(row);
     }

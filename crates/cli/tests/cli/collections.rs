@@ -88,6 +88,11 @@ fn queries_are_meshes_folders_and_shapes_of_the_index() {
     assert_eq!(search(&["--id", "ring0"])["results"][0]["id"], "ring0");
     place.refused("search all.canonform --id cat", &["`cat`", "index list"]);
     place.refused("search all.canonform cat", &["cat", "neither a file nor a shape", "index list"]);
+    place.refused(
+        "search all.canonform old/ring2.off",
+        &["neither a file nor a shape", "did you mean `ring2`?"],
+    );
+    place.refused("search all.canonform --id Ring2", &["no shape `Ring2`", "did you mean `ring2`?"]);
     // One query and many have the same keys.
     let many = place.json("search all.canonform meshes --id ring2");
     assert_eq!(many["queries"].as_array().unwrap().len(), 7);
@@ -145,10 +150,49 @@ fn numbers_are_no_classes_and_label_files_may_be_partial() {
         .unwrap();
     let built = place.json(&[&BUILD[..], &["--labels", "labels.csv"]].concat());
     assert_eq!((&built["unlabelled"], &built["unused_labels"]), (&2.into(), &1.into()));
+    assert_eq!(built["unused_label_lines"], serde_json::json!([{"line": 4, "name": "scan.7"}]));
+    let warned = place.done(&[&BUILD[..], &["--labels", "labels.csv"]].concat()).err;
+    assert!(warned.contains("1 line of labels.csv names no shape: line 4, `scan.7`"), "{warned}");
     assert_eq!(classes(&place), serde_json::json!({"": 2, "ball": 1, "ring": 3}));
     let listed = place.json("index list all.canonform --unlabelled");
     assert_eq!(ids(&listed), ["T173", "scan"]);
     assert_eq!(place.json("evaluate all.canonform")["n"], 4);
+}
+
+#[test]
+fn the_build_says_what_classes_it_took_and_obeys_whoever_chooses() {
+    let place = Workplace::new();
+    for (class, kind) in [("animals/cat", 0), ("things/ball", 1)] {
+        (0..3).for_each(|i| place.add(&format!("meshes/{class}{i}.off"), &body(kind, i)));
+    }
+    for (source, from, classes, said) in [
+        (
+            "",
+            "folders",
+            serde_json::json!({"animals": 3, "things": 3}),
+            "2 from sub-folders; pass --labels none",
+        ),
+        (" --labels names", "names", serde_json::json!({"ball": 3, "cat": 3}), "2 from leading letters"),
+        (" --labels none", "none", serde_json::json!({"": 6}), "none"),
+    ] {
+        let command = format!("{}{source}", BUILD.join(" "));
+        let built = place.json(&command[..]);
+        assert_eq!(
+            (&built["labels_from"], &place.json("index info all.canonform")["classes"]),
+            (&from.into(), &classes)
+        );
+        let told = place.done(&command[..]).out;
+        assert!(told.lines().any(|line| line.contains("classes") && line.contains(said)), "{told}");
+    }
+    // Without classes there is nothing to say of them.
+    let told = place.done("search all.canonform animals/cat0").out;
+    assert!(!told.contains("class:") && !told.contains("│ class "), "{told}");
+    place.refused("search all.canonform cat0", &["did you mean `animals/cat0`?"]);
+    assert_eq!(
+        place.json("evaluate all.canonform --labels folders")["classes"],
+        serde_json::json!(["animals", "things"])
+    );
+    place.refused("evaluate all.canonform", &["--labels"]);
 }
 
 #[test]

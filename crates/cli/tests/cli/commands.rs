@@ -384,20 +384,36 @@ fn help_mentions_every_option() {
         ("completions", vec![], "bash zsh fish"),
     ] {
         assert!(front.contains(command.split(' ').next().unwrap()), "no `{command}` in {front}");
-        let page = place.done(format!("{command} --help")).out;
+        let page = place.done(format!("{command} --help-all")).out;
         let words = words.split_whitespace().chain(["--json", "--threads", "--seed", "--details"]);
-        words.for_each(|word| assert!(page.contains(word), "{command} --help does not mention {word}"));
+        words.for_each(|word| assert!(page.contains(word), "{command} --help-all does not mention {word}"));
         for option in SCHEMA.iter().filter(|option| groups.contains(&option.group)) {
             let flag = format!("--{}", option.name.replace('_', "-"));
             let names = option.names().into_iter().map(|(name, _)| name.to_owned());
             for word in names.chain([flag, option.placeholder.to_owned()]) {
-                assert!(page.contains(&word), "{command} --help does not mention {word}");
+                assert!(page.contains(&word), "{command} --help-all does not mention {word}");
             }
         }
     }
-    let embed = place.done("embed --help").out;
+    let embed = place.done("embed --help-all").out;
     assert!(embed.contains("||Z Z' + 1/2 J E J||_F / p") && embed.contains("sqrt(sum (d_ij"), "{embed}");
     assert!(place.done("--version").out.starts_with("canonform "));
+}
+
+#[test]
+fn help_fits_two_screens_unless_all_is_asked_for() {
+    let place = Workplace::new();
+    // As many lines as a terminal of this width needs.
+    let n_lines =
+        |page: &str| page.lines().map(|line| line.chars().count().div_ceil(120).max(1)).sum::<usize>();
+    for command in
+        ["embed", "compare", "index build", "match", "methods", "search", "info", "geodesic", "render"]
+    {
+        let [brief, usual] = ["-h", "--help"].map(|flag| place.done(format!("{command} {flag}")).out);
+        assert_eq!(brief, usual);
+        assert!(n_lines(&usual) < 60, "{command} --help has {} lines: {usual}", n_lines(&usual));
+        assert!(usual.contains("--help-all"), "{usual}");
+    }
 }
 
 #[test]

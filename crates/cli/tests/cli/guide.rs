@@ -175,14 +175,14 @@ fn pictures_of_the_guide_are_shown() {
     }
 }
 
-/// What `--help` says of a command, and of all commands.
+/// What `--help-all` says of a command, and of all commands.
 struct Help(BTreeMap<Vec<String>, String>);
 
 impl Help {
     fn of(&mut self, command: &[&str]) -> &str {
         let key: Vec<String> = command.iter().map(|word| (*word).to_owned()).collect();
         self.0.entry(key).or_insert_with(|| {
-            let output = Command::new(program()).args(command).arg("--help").output().unwrap();
+            let output = Command::new(program()).args(command).arg("--help-all").output().unwrap();
             if output.status.success() { String::from_utf8(output.stdout).unwrap() } else { String::new() }
         })
     }

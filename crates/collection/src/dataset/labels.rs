@@ -1,10 +1,11 @@
-//! Classes of shapes, from names or from a file.
+//! Classes of shapes from a file.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use base::files::FileError;
 use mesh::io::{is_mesh_path, without_extension};
+use serde::Serialize;
 
 use super::shape_file::ShapeFile;
 use crate::error::CollectionError;
@@ -13,8 +14,23 @@ use crate::error::CollectionError;
 #[derive(Debug, Clone, PartialEq)]
 pub struct LabelFile {
     path: PathBuf,
-    labels: HashMap<String, String>,
+    labels: HashMap<String, LabelLine>,
     in_order: Vec<String>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+struct LabelLine {
+    number: usize,
+    label: String,
+}
+
+/// A line of a label file that names no shape.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct UnusedLabel {
+    /// Its number, from 1.
+    pub line: usize,
+    /// The name in it.
+    pub name: String,
 }
 
 impl LabelFile {
@@ -35,7 +51,8 @@ impl LabelFile {
             }
             match line.split(',').map(str::trim).collect::<Vec<_>>()[..] {
                 [name, label] if !name.is_empty() && !label.is_empty() => {
-                    labels.insert(joined(Path::new(name)), label.to_owned());
+                    let line = LabelLine { number: number + 1, label: label.to_owned() };
+                    labels.insert(joined(Path::new(name)), line);
                     in_order.push(label.to_owned());
                 }
                 [label] if !has_names => in_order.push(label.to_owned()),
@@ -62,7 +79,7 @@ impl LabelFile {
     /// The label of a shape, if the file names it: as `scan.001`, or with the extension of its mesh as `scan.001.off`.
     pub fn label(&self, name: &str, mesh: Option<&Path>) -> Option<&str> {
         let key = self.key(name, mesh)?;
-        self.labels.get(key).map(String::as_str)
+        self.labels.get(key).map(|line| line.label.as_str())
     }
 
     /// How the file names a shape.
@@ -77,11 +94,15 @@ impl LabelFile {
         found.map(|(key, _)| key.as_str())
     }
 
-    /// Number of lines that name none of these shapes.
-    pub fn n_unused(&self, shapes: &[ShapeFile]) -> usize {
-        let used: std::collections::HashSet<&str> =
+    /// The lines that name none of these shapes, in their order.
+    pub fn unused(&self, shapes: &[ShapeFile]) -> Vec<UnusedLabel> {
+        let used: HashSet<&str> =
             shapes.iter().filter_map(|shape| self.key(&shape.name, Some(&shape.path))).collect();
-        self.labels.len() - used.len()
+        let unused = self.labels.iter().filter(|(name, _)| !used.contains(name.as_str()));
+        let mut lines: Vec<UnusedLabel> =
+            unused.map(|(name, line)| UnusedLabel { line: line.number, name: name.clone() }).collect();
+        lines.sort_by_key(|unused| unused.line);
+        lines
     }
 }
 
@@ -106,77 +127,16 @@ pub(super) fn joined(path: &Path) -> String {
     path.iter().map(|part| part.to_string_lossy()).collect::<Vec<_>>().join("/")
 }
 
-/// The class of a shape by its name: its sub-folder, else the leading letters of its file name
-/// (`cat0` is a `cat`), else the whole name.
-pub fn label_of(name: &str) -> String {
-    if let Some((folder, _)) = name.rsplit_once('/') {
-        return folder.to_owned();
-    }
-    let letters = name.trim_start_matches(char::is_alphabetic).len();
-    match &name[..name.len() - letters] {
-        "" => name.to_owned(),
-        leading => leading.to_owned(),
-    }
-}
-
-/// The class of a shape in a label file, empty if the file does not name it; by its name if there is no file.
-pub fn label_in(labels: Option<&LabelFile>, name: &str, mesh: Option<&Path>) -> String {
-    labels.map_or_else(|| label_of(name), |file| file.label(name, mesh).unwrap_or_default().to_owned())
-}
-
-/// Share of the shapes of a folder without sub-folders that make one label suspicious.
-const NEARLY_ALL: f64 = 0.95;
-
-/// Removes labels that come from leading letters, if nearly all shapes would get the same one: names such as `T174` are
-/// numbers rather than classes. Returns that label.
-///
-/// `known` tells labels that are classes already.
-pub fn drop_single_class(shapes: &mut [ShapeFile], known: impl Fn(&str) -> bool) -> Option<String> {
-    if shapes.len() < 2 || shapes.iter().any(|shape| shape.name.contains('/')) {
-        return None;
-    }
-    let mut counts: HashMap<&str, usize> = HashMap::new();
-    shapes.iter().for_each(|shape| *counts.entry(&shape.label).or_default() += 1);
-    let (label, count) = counts.iter().max_by_key(|(label, count)| (**count, **label))?;
-    let others_are_single = counts.iter().all(|(other, count)| other == label || *count == 1);
-    if (*count as f64) < NEARLY_ALL * shapes.len() as f64 || !others_are_single || known(label) {
-        return None;
-    }
-    let label = (*label).to_owned();
-    shapes.iter_mut().for_each(|shape| shape.label.clear());
-    Some(label)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn file(text: &str) -> LabelFile {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("labels.csv");
-        std::fs::write(&path, text).unwrap();
-        LabelFile::read(&path).unwrap()
-    }
-
-    fn shapes(names: &[&str]) -> Vec<ShapeFile> {
-        let shape = |name: &&str| ShapeFile {
-            name: (*name).to_owned(),
-            label: label_of(name),
-            path: format!("{name}.off").into(),
-        };
-        names.iter().map(shape).collect()
-    }
-
-    #[test]
-    fn labels_come_from_folders_or_leading_letters() {
-        for (name, label) in [("cat0", "cat"), ("cats/sitting1", "cats"), ("0001", "0001"), ("T_rex", "T")] {
-            assert_eq!(label_of(name), label);
-        }
-    }
-
     #[test]
     fn names_with_dots_are_labelled_and_no_others() {
-        let labels = file("name,label\nscan.001,a\nscan.002.off,b\nscan.7,c\nsub/x.off,d\n");
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("labels.csv");
+        std::fs::write(&path, "name,label\nscan.001,a\nscan.002.off,b\nscan.7,c\nsub/x.off,d\n").unwrap();
+        let labels = LabelFile::read(&path).unwrap();
         let of = |name: &str| labels.label(name, Some(Path::new("any.off")));
         assert_eq!(
             [of("scan.001"), of("scan.002"), of("scan"), of("sub/x")],
@@ -186,25 +146,13 @@ mod tests {
         assert_eq!(labels.label("scan.002", Some(Path::new("scan.002.ply"))), None);
         // Rows of a matrix are no files.
         assert_eq!([labels.label("scan.002", None), labels.label("scan", None)], [Some("b"), None]);
-        assert_eq!(label_in(Some(&labels), "y", None), "");
-        assert_eq!(labels.n_unused(&shapes(&["scan.001", "sub/x", "y"])), 2);
-    }
-
-    #[test]
-    fn one_class_for_nearly_all_shapes_is_none() {
-        let names: Vec<String> = (0..40).map(|i| format!("T{i}")).collect();
-        let mut numbered = shapes(&names.iter().map(String::as_str).collect::<Vec<_>>());
-        assert_eq!(drop_single_class(&mut numbered.clone(), |label| label == "T"), None, "a class by now");
-        numbered.extend(shapes(&["query"]));
-        assert_eq!(drop_single_class(&mut numbered, |_| false).as_deref(), Some("T"));
-        assert!(numbered.iter().all(|shape| shape.label.is_empty()));
-        for classes in [&["cat0", "cat1", "dog0", "dog1"][..], &["cat0"], &["cats/0", "cats/1"]] {
-            let mut classes = shapes(classes);
-            assert_eq!(drop_single_class(&mut classes, |_| false), None);
-            assert!(classes.iter().all(|shape| !shape.label.is_empty()));
-        }
-        // A few of one class beside many of another are two classes.
-        let mut skewed = shapes(&[&vec!["cat0"; 98][..], &["dog0", "dog1"]].concat());
-        assert_eq!(drop_single_class(&mut skewed, |_| false), None);
+        let shape = |name: &str| ShapeFile {
+            name: name.to_owned(),
+            label: String::new(),
+            path: format!("{name}.off").into(),
+        };
+        let unused = labels.unused(&["scan.001", "sub/x", "y"].map(shape));
+        let unused: Vec<_> = unused.iter().map(|unused| (unused.line, unused.name.as_str())).collect();
+        assert_eq!(unused, [(3, "scan.002.off"), (4, "scan.7")]);
     }
 }

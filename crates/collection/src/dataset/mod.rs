@@ -1,5 +1,6 @@
 //! A folder, an archive or a list of meshes as a labelled dataset.
 
+mod classes;
 mod labels;
 mod shape_file;
 mod walk;
@@ -14,7 +15,8 @@ use crate::storage::{Container, ListedPath, Storage, open_archive, read_list};
 use labels::joined;
 use walk::Walk;
 
-pub use labels::{LabelFile, drop_single_class, label_in, label_of};
+pub use classes::{LabelOrigin, LabelSource, drop_single_class, label_of, label_shapes, n_classes};
+pub use labels::{LabelFile, UnusedLabel};
 pub use shape_file::ShapeFile;
 pub use walk::{SkipKind, Skipped};
 
@@ -23,6 +25,8 @@ pub use walk::{SkipKind, Skipped};
 pub struct Dataset {
     /// The meshes, in natural order of their names (`cat2` before `cat10`).
     pub shapes: Vec<ShapeFile>,
+    /// Where their classes come from.
+    pub labelled_by: LabelOrigin,
     /// Everything else, in the order of the paths.
     pub skipped: Vec<Skipped>,
 }
@@ -37,9 +41,12 @@ impl Dataset {
     /// * a `.txt` or `.list` file with a path in every line, relative to its folder. Folders around all of its meshes are left
     ///   out of the names.
     ///
+    /// Without `labels`, classes are those that a Parquet file states; else the sub-folders, if at least two hold at least
+    /// two meshes each and none lies in another; else the leading letters of file names, if at least two share them.
+    ///
     /// # Errors
     /// [`CollectionError::File`] and [`CollectionError::Mesh`] if it cannot be read, [`CollectionError::BadLine`], [`CollectionError::NoShapes`].
-    pub fn read(path: &Path, labels: Option<&LabelFile>) -> Result<Self, CollectionError> {
+    pub fn read(path: &Path, labels: Option<&LabelSource>) -> Result<Self, CollectionError> {
         let found = match Container::of(path) {
             Some(Container::List) => Found::in_list(path)?,
             Some(Container::Zip | Container::Tar | Container::Parquet) => Found::in_archive(path)?,
@@ -51,11 +58,7 @@ impl Dataset {
             .map(|mesh| {
                 let name =
                     joined(&without_extension(mesh.path.strip_prefix(&found.root).unwrap_or(&mesh.path)));
-                let label = match (labels, mesh.label) {
-                    (None, Some(label)) => label,
-                    _ => label_in(labels, &name, Some(&mesh.path)),
-                };
-                ShapeFile { label, name, path: mesh.path }
+                ShapeFile { label: mesh.label.unwrap_or_default(), name, path: mesh.path }
             })
             .collect();
         if shapes.is_empty() {
@@ -64,7 +67,8 @@ impl Dataset {
         shapes.sort_by(|a, b| {
             natural_key(&a.name).cmp(&natural_key(&b.name)).then_with(|| a.path.cmp(&b.path))
         });
-        Ok(Self { shapes, skipped: found.skipped })
+        let labelled_by = classes::label_shapes(&mut shapes, labels);
+        Ok(Self { shapes, labelled_by, skipped: found.skipped })
     }
 }
 
@@ -151,7 +155,7 @@ pub fn count_skipped(skipped: &[Skipped]) -> BTreeMap<String, usize> {
 ///
 /// # Errors
 /// [`CollectionError::File`], [`CollectionError::NoShapes`].
-pub fn list_shapes(path: &Path, labels: Option<&LabelFile>) -> Result<Vec<ShapeFile>, CollectionError> {
+pub fn list_shapes(path: &Path, labels: Option<&LabelSource>) -> Result<Vec<ShapeFile>, CollectionError> {
     Ok(Dataset::read(path, labels)?.shapes)
 }
 

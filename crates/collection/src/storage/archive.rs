@@ -44,8 +44,8 @@ pub(super) enum Data {
 
 /// Members that are decompressed one by one.
 pub(super) trait Entries: std::fmt::Debug + Send + Sync {
-    /// The content of a member.
-    fn read(&self, member: &Member) -> Result<Vec<u8>, Fault>;
+    /// The content of a member, at most so many bytes.
+    fn read(&self, member: &Member, most: u64) -> Result<Vec<u8>, Fault>;
 }
 
 impl Archive {
@@ -80,6 +80,11 @@ impl Archive {
 
     /// The content of a member; `path` names it in messages.
     pub(super) fn read(&self, name: &str, path: &Path) -> Result<Vec<u8>, MeshError> {
+        self.read_at_most(name, path, u64::MAX)
+    }
+
+    /// As [`read`](Self::read), or an error if the member has more bytes.
+    pub(super) fn read_at_most(&self, name: &str, path: &Path, most: u64) -> Result<Vec<u8>, MeshError> {
         let member = self.member(name).ok_or_else(|| {
             MeshError::Io(base::files::FileError::read(
                 path,
@@ -88,7 +93,7 @@ impl Archive {
         })?;
         match &self.data {
             Data::Nowhere => Ok(Vec::new()),
-            Data::Entries(entries) => entries.read(member).map_err(|what| fault(path, what)),
+            Data::Entries(entries) => entries.read(member, most).map_err(|what| fault(path, what)),
             Data::Plain(window) => {
                 let mut bytes = Vec::new();
                 let read = window.part(member.at, member.size).read_to_end(&mut bytes);
@@ -127,11 +132,11 @@ pub(super) struct Spool {
 }
 
 impl Spool {
-    /// `size` is that of the compressed file.
-    pub(super) fn new(size: u64) -> Result<Self, Fault> {
+    /// `size` is that of the compressed file; no more than `most` bytes are kept.
+    pub(super) fn new(size: u64, most: u64) -> Result<Self, Fault> {
         let file =
             base::files::nameless_in(&std::env::temp_dir()).map_err(|error| cannot_keep(&error.source))?;
-        Ok(Self { file, n_bytes: 0, limit: inflated_limit(size) })
+        Ok(Self { file, n_bytes: 0, limit: inflated_limit(size).min(most) })
     }
 
     /// Appends bytes and returns where they begin.

@@ -50,7 +50,7 @@ pub(super) fn open(path: &Path) -> Result<Arc<Archive>, MeshError> {
         let file = File::open(path).map_err(cannot_read)?;
         let container = Container::by_name(path).unwrap_or(Container::Zip);
         return slot
-            .get_or_init(|| members(path, file, container).map(Arc::new))
+            .get_or_init(|| members(path, file, container, u64::MAX).map(Arc::new))
             .clone()
             .map_err(|what| fault(path, what));
     }
@@ -60,11 +60,11 @@ pub(super) fn open(path: &Path) -> Result<Arc<Archive>, MeshError> {
     }
 }
 
-/// Reads the names of all members.
-pub(super) fn members(path: &Path, file: File, container: Container) -> Result<Archive, Fault> {
+/// Reads the names of all members. Compression of the whole hides at most so many bytes.
+pub(super) fn members(path: &Path, file: File, container: Container, most: u64) -> Result<Archive, Fault> {
     match container {
         Container::Zip => zip::open(file),
-        Container::Tar => tar::open(path, file),
+        Container::Tar => tar::open(path, file, most),
         _ => parquet::open(file),
     }
 }

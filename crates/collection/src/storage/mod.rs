@@ -9,6 +9,7 @@ mod cache;
 mod container;
 mod list;
 mod parquet;
+mod single;
 mod tar;
 mod window;
 mod zip;
@@ -23,6 +24,7 @@ pub(crate) use archive::Archive;
 pub(crate) use container::Container;
 use container::fault;
 pub(crate) use list::ListedPath;
+pub use single::{is_archive_name, single_mesh};
 
 /// Whether a path leads to a dataset: a folder, an archive (`.zip`, `.tar`, `.tar.gz`, `.tgz`), a `.parquet` file with a
 /// column of bytes, or a list of paths (`.txt`, `.list`).

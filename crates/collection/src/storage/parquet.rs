@@ -46,7 +46,7 @@ fn read(file: File) -> Result<Archive, Fault> {
     }
     let reader = SerializedFileReader::new(file).map_err(damaged)?;
     let columns = Columns::of(reader.metadata().file_metadata().schema_descr())?;
-    let mut spool = Spool::new(size)?;
+    let mut spool = Spool::new(size, u64::MAX)?;
     let mut rows: Vec<(String, Member)> = Vec::new();
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group).map_err(damaged)?;

@@ -12,7 +12,7 @@ use super::archive::{Archive, Data, Member, Spool};
 use super::window::Window;
 use crate::dataset::SkipKind;
 
-pub(super) fn open(path: &Path, file: File) -> Result<Archive, Fault> {
+pub(super) fn open(path: &Path, file: File, most: u64) -> Result<Archive, Fault> {
     let damaged =
         |error: std::io::Error| Fault::Syntax { expected: "an intact tar archive", found: error.to_string() };
     let window = Window::whole(file).map_err(damaged)?;
@@ -20,7 +20,7 @@ pub(super) fn open(path: &Path, file: File) -> Result<Archive, Fault> {
         return Err(Fault::Empty);
     }
     let is_tar = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("tar"));
-    let window = if is_tar { window } else { inflated(window)? };
+    let window = if is_tar { window } else { inflated(window, most)? };
     let mut archive = Archive::of(Data::Plain(window.clone()));
     let mut headers = tar::Archive::new(window);
     for entry in headers.entries_with_seek().map_err(damaged)? {
@@ -43,9 +43,9 @@ pub(super) fn open(path: &Path, file: File) -> Result<Archive, Fault> {
     Ok(archive)
 }
 
-/// Decompresses everything.
-fn inflated(window: Window) -> Result<Window, Fault> {
-    let mut spool = Spool::new(window.len())?;
+/// Decompresses everything, at most so many bytes.
+fn inflated(window: Window, most: u64) -> Result<Window, Fault> {
+    let mut spool = Spool::new(window.len(), most)?;
     let mut stream = MultiGzDecoder::new(window);
     let mut buffer = vec![0; 1 << 16];
     loop {

@@ -50,7 +50,7 @@ pub(super) fn open(file: File) -> Result<Archive, Fault> {
 
 impl Entries for Zip {
     /// Decompresses a member, whose checksum must be right.
-    fn read(&self, member: &Member) -> Result<Vec<u8>, Fault> {
+    fn read(&self, member: &Member, most: u64) -> Result<Vec<u8>, Fault> {
         let mut archive = self.0.clone();
         let at = member.at as usize;
         let entry = archive.by_index_data(at).map_err(damaged)?;
@@ -61,11 +61,11 @@ impl Entries for Zip {
             });
         }
         // The stated sizes may be wrong.
-        let limit = inflated_limit(entry.compressed_size());
+        let limit = inflated_limit(entry.compressed_size()).min(most);
         let entry = archive.by_index(at).map_err(damaged)?;
         let mut bytes = Vec::new();
         entry
-            .take(limit + 1)
+            .take(limit.saturating_add(1))
             .read_to_end(&mut bytes)
             .map_err(|error| Fault::Syntax { expected: "compressed data", found: error.to_string() })?;
         match bytes.len() as u64 > limit {

@@ -201,12 +201,13 @@ class Index:
         Parameters
         ----------
         meshes
-            A folder, also with sub-folders, an archive, a list file, or paths of mesh files. Classes are the names of the sub-folders,
-            else the leading letters of the file names.
+            A folder, also with sub-folders, an archive, a list file, or paths of mesh files.
         path
             The index.
         labels
-            Classes by name of the shape, or a file of lines `name,label`; shapes that it does not name have no class.
+            Where classes come from: "folders", "names" (their leading letters), "none", classes by name of the shape, or a file of
+            lines `name,label`; shapes that are not named there have no class. By default, sub-folders are classes if at least two hold
+            at least two meshes each and none lies in another, else leading letters if at least two names share them.
         prune
             Remove shapes of the index that did not come from these meshes.
         shard
@@ -477,7 +478,7 @@ def _dataset(meshes: AnyPath | Iterable[AnyPath], folder: str | None = None) -> 
 
 @contextmanager
 def _label_file(labels: Mapping[str, str] | AnyPath | None) -> Iterator[str | None]:
-    """The file of labels: the one given, or a temporary one with the labels given."""
+    """The word or file given, or a temporary file with the labels given."""
     if labels is None or isinstance(labels, (str, os.PathLike)):
         yield None if labels is None else os.fspath(labels)
         return

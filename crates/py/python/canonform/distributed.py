@@ -129,7 +129,9 @@ def build_index(
     # Workers do not see temporary files of the client, so lists of meshes and labels are kept beside the shards.
     with _label_file(labels) as given, _dataset(meshes, place) as (dataset, name):
         dataset, label_file = os.path.abspath(dataset), None
-        if given is not None:
+        if given in ("folders", "names", "none"):
+            label_file = given
+        elif given is not None:
             label_file = os.path.join(place, "labels.csv")
             shutil.copyfile(given, label_file)
         found = _canonform.list_folder(dataset, out, label_file)

@@ -211,6 +211,7 @@ struct RelationRecord<'a> {
     confidence: f64,
     changes: &'a [Change],
     text: String,
+    brief: String,
     because: BecauseRecord<'a>,
 }
 
@@ -225,6 +226,7 @@ impl Serialize for Relation {
     fn serialize<S: Serializer>(&self, out: S) -> Result<S::Ok, S::Error> {
         let Self { kind, confidence, changes, because, .. } = self;
         let (text, because) = (self.to_string(), BecauseRecord { text: self.reason(), because });
-        RelationRecord { kind: *kind, confidence: *confidence, changes, text, because }.serialize(out)
+        let brief = self.in_brief();
+        RelationRecord { kind: *kind, confidence: *confidence, changes, text, brief, because }.serialize(out)
     }
 }

@@ -58,10 +58,80 @@ const canonform = (() => {
     return part;
   }
 
+  // Faces whose normals differ by more than 40 degrees meet at a crease.
+  const SMOOTH = Math.cos((40 * Math.PI) / 180);
+  // Creases of larger surfaces, in numbers in three per face, would take seconds to find.
+  const MOST_CORNERS = 900_000;
+
+  // Unit normals of faces; zero for one without area.
+  function normalsOf(positions, faces) {
+    const normals = new Float32Array(faces.length);
+    const side = (from, to) => [0, 1, 2].map((i) => positions[3 * to + i] - positions[3 * from + i]);
+    for (let f = 0; f < faces.length; f += 3) {
+      const [u, v] = [side(faces[f], faces[f + 1]), side(faces[f], faces[f + 2])];
+      const normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+      const length = Math.hypot(...normal);
+      if (length > 0) normals.set(normal.map((x) => x / length), f);
+    }
+    return normals;
+  }
+
+  // The surface with the vertices at creases once for every smooth piece, so that flat faces look flat: plotly has one
+  // normal per vertex. Corners of faces are joined across every edge that is not a crease.
+  function creased({ positions, faces, values }) {
+    const whole = { positions, faces, values };
+    if (faces.length > MOST_CORNERS) return whole;
+    const normals = normalsOf(positions, faces);
+    const joined = Uint32Array.from(faces, (_, corner) => corner);
+    const piece = (corner) => {
+      let at = corner;
+      while (joined[at] !== at) at = joined[at] = joined[joined[at]];
+      return at;
+    };
+    const next = (corner) => (corner % 3 === 2 ? corner - 2 : corner + 1);
+    const edges = new Map();
+    const n = positions.length / 3;
+    let isSharp = false;
+    for (let corner = 0; corner < faces.length; corner += 1) {
+      const [a, b] = [faces[corner], faces[next(corner)]];
+      const edge = Math.min(a, b) * n + Math.max(a, b);
+      const other = edges.get(edge);
+      if (other === undefined) {
+        edges.set(edge, corner);
+        continue;
+      }
+      const [f, g] = [corner - (corner % 3), other - (other % 3)];
+      const isReversed = faces[other] === a;
+      const [x, y, z] = [0, 1, 2].map((i) => normals[f + i] * normals[g + i]);
+      const cosine = isReversed ? -(x + y + z) : x + y + z;
+      const hasArea = (face) => normals[face] !== 0 || normals[face + 1] !== 0 || normals[face + 2] !== 0;
+      if (cosine < SMOOTH && hasArea(f) && hasArea(g)) {
+        isSharp = true;
+        continue;
+      }
+      joined[piece(corner)] = piece(isReversed ? other : next(other));
+      joined[piece(next(corner))] = piece(isReversed ? next(other) : other);
+    }
+    if (!isSharp) return whole;
+    const [numbers, sources] = [new Map(), []];
+    const split = faces.map((vertex, corner) => {
+      const at = piece(corner);
+      if (!numbers.has(at)) numbers.set(at, sources.push(vertex) - 1);
+      return numbers.get(at);
+    });
+    return {
+      positions: Float32Array.from({ length: 3 * sources.length }, (_, i) => positions[3 * sources[Math.floor(i / 3)] + (i % 3)]),
+      faces: split,
+      values: values && Float32Array.from(sources, (vertex) => values[vertex]),
+    };
+  }
+
   function traces(geometry, { opacity = 1, name, range, colors }) {
-    const positions = decode(geometry.positions, Float32Array);
-    const faces = decode(geometry.faces, Uint32Array);
-    const values = geometry.values ? decode(geometry.values, Float32Array) : null;
+    const { positions, faces, values } = creased({
+      positions: decode(geometry.positions, Float32Array),
+      faces: decode(geometry.faces, Uint32Array),
+      values: geometry.values ? decode(geometry.values, Float32Array) : null,
+    });
     const base = {
       type: 'mesh3d', x: strided(positions, 0), y: strided(positions, 1), z: strided(positions, 2),
       // With the default, plotly considers small triangles degenerate and leaves them black.
@@ -304,8 +374,17 @@ const canonform = (() => {
       this.scene.tabIndex = 0;
       this.scene.setAttribute('role', 'application');
       this.scene.setAttribute('aria-label', 'Surface in 3D. Arrow keys turn it, plus and minus zoom, Home resets.');
-      this.scene.addEventListener('pointerdown', () => this.scene.focus({ preventScroll: true }));
-      this.scene.addEventListener('keydown', (event) => this.steer(event));
+      // The outline of the focus is for keyboards.
+      const outline = (style) => { this.scene.style.outline = style; };
+      this.scene.addEventListener('pointerdown', () => {
+        outline('none');
+        this.scene.focus({ preventScroll: true });
+      });
+      this.scene.addEventListener('blur', () => outline(''));
+      this.scene.addEventListener('keydown', (event) => {
+        outline('');
+        this.steer(event);
+      });
     }
 
     steer(event) {

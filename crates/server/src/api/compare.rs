@@ -14,7 +14,7 @@ use super::shapes::is_missing;
 use crate::app::App;
 use crate::collection::Collection;
 use crate::error::ApiError;
-use crate::measured::{Measured, overlaid};
+use crate::measured::{Measured, in_space, overlaid};
 
 /// The two shapes: `query` or `a`, and `b`.
 #[derive(Deserialize)]
@@ -58,6 +58,11 @@ struct Answer {
     residual: [Residual; 2],
     /// Both forms after alignment, coloured by the distance of each point from the other form.
     forms: [Geometry; 2],
+    /// Both meshes after alignment in space, coloured by the distance of each vertex from the other mesh, if they are alike as
+    /// rigid bodies.
+    meshes: Option<[Geometry; 2]>,
+    /// How far the meshes are apart, in units of the first.
+    gap: Option<Residual>,
 }
 
 /// One of the two shapes.
@@ -124,5 +129,12 @@ fn answer(
     found.relation = found.relation.named(&name, &params.b);
     let form = |i, side: &ComparedShape| overlaid(&found.overlay, i, side.measured.as_deref(), dot);
     let forms = [form(0, &a), form(1, &b)];
-    Ok(Answer { a: name, b: params.b, residual: found.residual, found, forms })
+    budget.check().map_err(ApiError::exceeded)?;
+    let laid = match (of_a.geometry, of_b.geometry) {
+        (Some(a), Some(b)) => found.relation.overlay([a, b]),
+        _ => None,
+    };
+    let meshes = laid.as_ref().map(in_space);
+    let gap = laid.map(|laid| Residual::of(&laid.gaps.concat()));
+    Ok(Answer { a: name, b: params.b, residual: found.residual, found, forms, meshes, gap })
 }

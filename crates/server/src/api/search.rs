@@ -10,7 +10,7 @@ use canonform::mesh::RepairReport;
 use canonform::mesh::io::{MemoryFile, ReadLimits, is_mesh_path, mesh_files, read_memory};
 use canonform::{
     Budget, Error, Explain, MeasuredSurface, MeshGeometry, SearchOptions, SearchRank, SearchReport,
-    SearchSeconds, Surface,
+    SearchSeconds, Surface, is_archive_name, single_mesh,
 };
 use report::viewer::Geometry;
 use serde::{Deserialize, Serialize};
@@ -244,6 +244,7 @@ fn with_upload(app: &App, upload: Upload, wanted: &Wanted, budget: &Budget) -> R
     };
     let start = Instant::now();
     let collection = app.served.collection();
+    let upload = unpacked(upload, app.options.max_upload as u64)?;
     let address = App::address(&upload.files);
     let query = match app.kept(&collection, &address) {
         Some(known) => known,
@@ -259,6 +260,18 @@ fn with_upload(app: &App, upload: Upload, wanted: &Wanted, budget: &Budget) -> R
     let seconds = SearchSeconds { describe, ..report.seconds };
     let answer = Answer::new(&collection, query.name.clone(), SearchReport { seconds, ..report });
     Ok(Answer { query_id: Some(address), ..answer.with_measured(&query.measured, wanted.geometry) })
+}
+
+/// The upload with the mesh of an archive instead of the archive.
+fn unpacked(upload: Upload, most: u64) -> Result<Upload, ApiError> {
+    match &upload.files[..] {
+        [(name, bytes)] if is_archive_name(name) => {
+            let files =
+                single_mesh(name, bytes, most).map_err(|fault| ApiError::of_upload(name, fault.into()))?;
+            Ok(Upload { files, ..upload })
+        }
+        _ => Ok(upload),
+    }
 }
 
 fn measure(app: &App, collection: &Collection, upload: Upload, budget: &Budget) -> Result<Query, Error> {

@@ -1,10 +1,25 @@
-// The results: repairs, mesh and form, class, nearest shapes, the overlay of two forms, and corresponding points.
-import { mark, tile } from './shapes.js';
+// The results: repairs, mesh and form, class, nearest shapes, the overlay of two meshes or forms, and corresponding points.
+import { commonFolder, folderOf, mark, tile } from './shapes.js';
 import { USUAL_K, searched } from './state.js';
 
 const byId = (id) => document.getElementById(id);
 const sentence = (text) => `${text[0].toUpperCase()}${text.slice(1)}.`;
-const number = (value) => Number(value).toPrecision(3).replace(/\.?0+$/, '');
+const number = (value) => Number(value.toPrecision(3)).toString();
+const percent = (share) => `${Math.round(100 * share)} %`;
+
+// The largest extent of a surface.
+function extent({ positions }) {
+  const all = canonform.decode(positions, Float32Array);
+  const ends = [0, 1, 2].map(() => [Infinity, -Infinity]);
+  all.forEach((x, i) => { ends[i % 3] = [Math.min(ends[i % 3][0], x), Math.max(ends[i % 3][1], x)]; });
+  return Math.max(...ends.map(([low, high]) => high - low));
+}
+
+// Results whose files are read to say how they are related; the others keep what the index tells.
+const MOST_EXPLAINED = 24;
+
+// Gaps below this share of the extent are rounding, and have the colour of zero.
+const ROUNDING = 1e-3;
 
 // Views are created once and then updated: browsers limit the number of WebGL scenes.
 const views = {};
@@ -39,6 +54,7 @@ export class Answer {
   }
 
   begin(name) {
+    this.leaveStart();
     this.root.dataset.state = 'busy';
     this.root.dataset.query = name;
     this.root.setAttribute('aria-busy', 'true');
@@ -58,9 +74,21 @@ export class Answer {
     this.hide();
   }
 
+  // The list of shapes moves beside the answer. Until there is one it is hidden, so that it is not seen to jump.
+  leaveStart() {
+    if (byId('page').dataset.at === 'answer') return;
+    const had = byId('pick').contains(document.activeElement);
+    byId('page').dataset.at = 'answer';
+    byId('pick').hidden = true;
+    if (had) this.root.focus({ preventScroll: true });
+  }
+
   // Old results do not answer a new query.
   hide() {
     this.comparison += 1;
+    this.found = null;
+    byId('page').dataset.at = 'start';
+    byId('pick').hidden = false;
     this.root.removeAttribute('aria-busy');
     byId('found').hidden = true;
     byId('start').hidden = false;
@@ -96,19 +124,13 @@ export class Answer {
     view('form-view', found.form, { title: found.mesh ? 'Canonical form' : 'Canonical form, points stored in the index' });
     byId('mesh-view').hidden = !found.mesh;
     if (found.mesh) view('mesh-view', found.mesh, { title: 'Shape', linkedWith: views['form-view'] });
-    const tiles = found.results.map(({ rank, id, label, distance, ...order }) => {
-      const lines = [['more', label], ['more', `${distance.toFixed(3)} away`]];
-      // Distances ascend in the plain order only; what another order follows does as well.
-      if (order.rank_distance !== undefined) lines.push(['more', `rank distance ${order.rank_distance.toFixed(3)}`]);
-      if (order.part_distance !== undefined) {
-        lines.push(['more', `part distance ${order.part_distance.toFixed(3)}`]);
-        lines.push(['more', `${Math.round(100 * order.part_share)} % of it`]);
-      }
-      const item = tile(id, label, lines, this.picked);
-      Object.assign(item.firstChild.dataset, { distance, rank });
-      return item;
-    });
-    byId('results').replaceChildren(...tiles);
+    const folder = commonFolder(found.results.map(({ id }) => id));
+    byId('results-folder').textContent = folder && `in ${folder}`;
+    byId('results').replaceChildren(...found.results.map((result) => this.card(result, folder)));
+    byId('results').dataset.explained = 'false';
+    byId('components').replaceChildren();
+    byId('pick').hidden = false;
+    this.explain(state);
     this.root.dataset.query = found.query;
     this.root.dataset.state = 'ready';
     this.root.removeAttribute('aria-busy');
@@ -116,28 +138,78 @@ export class Answer {
     if (this.root.getBoundingClientRect().top > 0.6 * innerHeight) this.root.scrollIntoView({ block: 'start' });
   }
 
-  showClass({ predicted, repair, repaired, mesh_missing: missing, n_shapes: known, seconds }) {
+  // A result: its name and folder, its class, and how it is related to the query.
+  card(result, common) {
+    const { rank, id, label, distance, relation } = result;
+    const folder = folderOf(id).slice(common.length).replace(/^\//, '');
+    const lines = [];
+    if (folder && folder !== label) lines.push(['more', folder]);
+    if (label) lines.push(['more', label]);
+    if (result.part_share !== undefined) lines.push(['more', `the query is ${percent(result.part_share)} of it`]);
+    lines.push(['kind', relation.brief]);
+    const item = tile(id, label, lines, '', this.picked);
+    Object.assign(item.firstChild.dataset, { distance, rank });
+    this.tell(item.firstChild, result);
+    return item;
+  }
+
+  // Says on a card how a shape is related; all about it is shown on hover.
+  tell(card, { id, relation, distance, ...order }) {
+    card.dataset.kind = relation.kind;
+    card.querySelector('.kind').textContent = relation.brief;
+    const lines = [id, `${relation.text} (${percent(relation.confidence)} certain)`, `distance ${number(distance)}`];
+    // What another order follows.
+    if (order.rank_distance !== undefined) lines.push(`rank distance ${number(order.rank_distance)}`);
+    if (order.part_distance !== undefined) lines.push(`part distance ${number(order.part_distance)}`);
+    card.title = lines.join('\n');
+  }
+
+  // Compares the files and meshes of the results with the query, which takes longer than the search: cards then say what
+  // is the same file or surface, and the components of the query are named.
+  async explain(state) {
+    const { found } = this;
+    const params = searched(state);
+    params.set('explain', 'true');
+    params.set('k', Math.min(state.k ?? USUAL_K, MOST_EXPLAINED));
+    params.set('geometry', 'false');
+    const answer = await ask(`/api/search?${params}`);
+    if (this.found !== found || answer.error) return;
+    const cards = new Map([...byId('results').querySelectorAll('.tile')].map((card) => [card.dataset.id, card]));
+    for (const result of answer.results) if (cards.has(result.id)) this.tell(cards.get(result.id), result);
+    const parts = (answer.components ?? []).map(({ copies, n_vertices: n, nearest }) =>
+      `${copies === 1 ? '1 component' : `${copies} components`} of ${n} vertices: ${nearest?.relation.text ?? 'nothing found'}.`);
+    const wholes = (answer.wholes ?? []).map(({ relation }) => `${relation.text}.`);
+    this.list('components', [...parts, ...wholes]);
+    byId('results').dataset.explained = 'true';
+  }
+
+  list(id, texts) {
+    byId(id).replaceChildren(...texts.map((text) => {
+      const item = document.createElement('li');
+      item.textContent = text;
+      return item;
+    }));
+  }
+
+  showClass({ predicted, repair, repaired, mesh_missing: missing }) {
     const [label, line] = [predicted.label, byId('predicted')];
     line.dataset.label = label ?? '';
     const words = predicted.explanation;
-    if (label === null) {
+    if (predicted.unknown === 'unlabelled') {
+      // Without classes there is none to predict.
+      line.textContent = predicted.warning ? `${predicted.warning}.` : '';
+    } else if (label === null) {
       line.textContent = `Class: ${words}.`;
     } else {
       const strong = document.createElement('strong');
       strong.textContent = label;
       line.replaceChildren('Class: ', strong, `${words.slice(label.length)}.`);
     }
-    const size = repair ? `${repair.input_vertices} vertices, ${repair.input_faces} faces; ` : '';
-    const time = (seconds.describe + seconds.search).toFixed(2);
-    byId('facts').textContent = `${size}searched ${known} shapes in ${time} s`;
+    byId('facts').textContent = repair ? `${repair.input_vertices} vertices, ${repair.input_faces} faces` : '';
     const lines = [...repaired];
     if (missing) lines.push(missing);
     else if (lines.length === 0) lines.push('No repairs needed.');
-    byId('repaired').replaceChildren(...lines.map((text) => {
-      const item = document.createElement('li');
-      item.textContent = text;
-      return item;
-    }));
+    this.list('repaired', lines);
   }
 
   uncompare() {
@@ -170,14 +242,19 @@ export class Answer {
       byId('overlay-kind').textContent = answer.remedy ? `${answer.error}; ${answer.remedy}` : answer.error;
       return;
     }
-    const { relation, distance, normalized_distance: normalized, residual } = answer;
+    const { relation, meshes, gap, residual } = answer;
+    const inSpace = Boolean(meshes);
+    overlay.dataset.shown = inSpace ? 'meshes' : 'forms';
+    byId('shown-both').textContent = inSpace ? 'both meshes' : 'both forms';
+    const most = inSpace ? gap.max : Math.max(residual[0].max, residual[1].max);
+    const isRounding = inSpace && most < ROUNDING * extent(meshes[0]) * ROUNDING;
+    const shown = inSpace
+      ? 'The picture shows the meshes, aligned in space at the size of the first. Colour is the gap between them: '
+      : 'The picture shows the canonical forms, aligned, since the meshes are not one rigid body. Colour is the distance between them: ';
     // Names keep their letters.
     byId('overlay-kind').textContent = `${relation.text} (${Math.round(100 * relation.confidence)} % certain).`;
     byId('overlay-kind').dataset.kind = relation.kind;
-    byId('overlay-facts').textContent = `${sentence(relation.because.text)} ` +
-      `Distance between the forms: ${number(distance)}, ${number(normalized)} at equal size. ` +
-      `Points of the first form are ${number(residual[0].median)} from the second (median), ` +
-      `${number(residual[0].max)} at most.`;
+    byId('overlay-facts').textContent = `${sentence(relation.because.text)} ${shown}${isRounding ? 'there is none' : `at most ${number(most)}`}.`;
     byId('shown-first').textContent = answer.a;
     byId('shown-second').textContent = answer.b;
     this.overlaid = answer;
@@ -191,6 +268,8 @@ export class Answer {
     const [part, facts] = [byId('match'), byId('match-facts')];
     part.hidden = false;
     part.dataset.state = 'busy';
+    byId('match-title').textContent = `Corresponding points of ${this.found.query} and ${byId('overlay').dataset.id}`;
+    part.scrollIntoView({ block: 'start' });
     facts.textContent = 'Matching, which takes some seconds…';
     const answer = await ask(`/api/match?${this.pair}`);
     if (comparison !== this.comparison) return;
@@ -204,22 +283,26 @@ export class Answer {
     facts.textContent = `${sentence(answer.maps.map(change).join(', '))} Points that the first map joins have the same colour.`;
     await Promise.all(['match-first', 'match-second'].map(
       (id, i) => view(id, answer.meshes[i], { title: [answer.a, answer.b][i] })));
+    part.scrollIntoView({ block: 'start' });
     part.dataset.state = 'ready';
   }
 
-  // Coloured by the residual; with both shown, the second is a pale shell around the first.
+  // Coloured by the gap or the residual; with both shown, the second is a pale shell around the first.
   drawOverlay() {
     if (!this.overlaid) return undefined;
-    const { forms, residual, a, b } = this.overlaid;
+    const { meshes, gap, forms, residual, a, b } = this.overlaid;
+    const [first, second] = meshes ?? forms;
     const shown = document.querySelector('input[name=shown]:checked').value;
-    const range = [0, Math.max(residual[0].max, residual[1].max)];
-    const shell = { ...forms[1], values: undefined, color: '#8fa3b8' };
+    const most = meshes ? Math.max(gap.max, ROUNDING * extent(first)) : Math.max(residual[0].max, residual[1].max);
+    const range = [0, most];
+    const shell = { ...second, values: undefined, color: '#8fa3b8' };
     const [surfaces, opacity] = {
-      both: [[forms[0], shell], [1, 0.35]],
-      first: [[forms[0]], [1]],
-      second: [[forms[1]], [1]],
+      both: [[first, shell], [1, 0.35]],
+      first: [[first], [1]],
+      second: [[second], [1]],
     }[shown];
-    const title = { both: `${a} inside ${b}`, first: a, second: b }[shown];
+    const kind = meshes ? 'Meshes' : 'Canonical forms';
+    const title = { both: `${kind}: ${a} inside ${b}`, first: `${kind}: ${a}`, second: `${kind}: ${b}` }[shown];
     return view('overlay-view', surfaces, { title, opacity, range });
   }
 }

@@ -3,28 +3,31 @@
 // app.js      follows the address of the page
 // state.js    what the address says
 // ask.js      drop zone, file button, requests with their progress
-// shapes.js   tiles, list of the shapes of the index, some of them at the start
-// answer.js   results: class, views, nearest shapes, overlay
+// shapes.js   tiles, list of the shapes of the index
+// answer.js   results: class, views, nearest shapes, overlay of two meshes or forms
 //
 // Stable names, for tests and other scripts:
 //   #file #drop              file input (the files of one mesh); drop zone, class `over` while dragged over
 //   #progress #status #error progress bar; current activity; error, worded as on the command line; #retry
 //   #index-size #index-note  size of the index; whether it has changed; #search-again
 //   #filter #shapes #more    search field, list of shapes, button to show more; #shapes-count
-//     #shapes button.tile[data-id][data-label], aria-pressed on the query
+//     #shapes li.folder, button.tile[data-id][data-label], aria-pressed on the query
+//   #page                    data-at: `start` or `answer`
 //   #answer                  data-state: `empty`, `busy`, `ready` or `failed`; data-query: name of the query
-//     #start #sample         shown without a query: tiles of some shapes
+//     #start                 shown without a query
 //     #query-name #predicted[data-label] #facts #repaired (li: one line per repair)
 //     #mesh-view #form-view  viewers with linked cameras; data-state from viewer.js
 //     #k #rank #exact #as-csv #as-json  number and order of results, exact search, downloads
-//     #results button.tile[data-id][data-label][data-distance], aria-pressed on the one in the overlay
-//     #overlay               data-state: `busy`, `ready` or `failed`; data-id of the shape
+//     #results-folder        the folder that all results have in common
+//     #results button.tile[data-id][data-label][data-distance][data-kind], aria-pressed on the one in the overlay
+//     #results[data-explained]  whether files and meshes were compared for the kinds; #components of the query
+//     #overlay               data-state: `busy`, `ready` or `failed`; data-id of the shape; data-shown: `meshes` or `forms`
 //       #overlay-title #overlay-kind[data-kind] #overlay-facts #overlay-view, input[name=shown] (both, first, second)
 //       #search-hit #close-hit  a search with the shape of the overlay; back to the results alone
-//       #match-hit #match[data-state] #match-facts #match-first #match-second  corresponding points of both meshes
+//       #match-hit #match[data-state] #match-title #match-facts #match-first #match-second  corresponding points of both meshes
 // Texts from outside are set as text, never as HTML.
 import { Ask } from './ask.js';
-import { Sample, Shapes } from './shapes.js';
+import { Shapes } from './shapes.js';
 import { Answer } from './answer.js';
 import { address, read, sameSearch, searched } from './state.js';
 
@@ -42,7 +45,6 @@ const shapes = new Shapes({
   picked: (shape) => go({ ...read(), shape, query: null, hit: null }),
   filtered: (filter) => history.replaceState(history.state, '', address({ ...read(), filter })),
 });
-const sample = new Sample((shape) => go({ ...read(), shape, query: null, hit: null }));
 const ask = new Ask({
   begin(name) { shown = null; answer.begin(name); shapes.mark(null); title(name); },
   answer(found) {
@@ -145,7 +147,7 @@ async function check() {
     byId('search-again').hidden = !(read().shape || read().query);
   }
   version = index.version;
-  await Promise.all([shapes.search(byId('filter').value), sample.load()]);
+  await shapes.search(byId('filter').value);
 }
 setInterval(() => { if (!document.hidden) check(); }, CHECK);
 document.addEventListener('visibilitychange', () => { if (!document.hidden) check(); });

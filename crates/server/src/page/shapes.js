@@ -1,13 +1,25 @@
-// Tiles of shapes: the list of the index, filtered while typing, and some shapes at the start.
+// Tiles of shapes, and the list of the index, filtered while typing.
 
 const PAGE = 60;
-const SAMPLE = 24;
 
 // A busy server refuses pictures too; they are asked for again after these milliseconds.
 const AGAIN = [2000, 5000, 15000];
 
-// A button with a thumbnail, of a size that does not depend on the image.
-export function tile(id, label, lines, pressed) {
+// A name has folders in front of it, separated by slashes.
+export const folderOf = (id) => id.slice(0, Math.max(id.lastIndexOf('/'), 0));
+export const nameOf = (id) => id.slice(id.lastIndexOf('/') + 1);
+
+// The innermost folder that all names have in common; empty if there is none.
+export function commonFolder(ids) {
+  const [first = [], ...others] = ids.map((id) => folderOf(id).split('/'));
+  const differs = (part, i) => others.some((parts) => parts[i] !== part);
+  const end = first.findIndex(differs);
+  return (end < 0 ? first : first.slice(0, end)).join('/');
+}
+
+// A button with a thumbnail, of a size that does not depend on the image. `lines` are [class, text]; `about` is the
+// full text, shown on hover.
+export function tile(id, label, lines, about, pressed) {
   const button = document.createElement('button');
   button.type = 'button';
   button.className = 'tile';
@@ -28,12 +40,12 @@ export function tile(id, label, lines, pressed) {
   });
   image.src = address;
   button.append(image);
-  for (const [kind, text] of [['name', id], ...lines]) {
+  for (const [kind, text] of [['name', nameOf(id)], ...lines]) {
     const line = button.appendChild(document.createElement('span'));
     line.className = kind;
     line.textContent = text;
   }
-  button.title = [id, ...lines.map(([, text]) => text)].join(', ');
+  button.title = about;
   button.addEventListener('click', () => pressed(id));
   const item = document.createElement('li');
   item.append(button);
@@ -62,7 +74,20 @@ export class Shapes {
         this.search(filter.value);
       }, 200);
     });
-    this.more.addEventListener('click', () => this.load(this.list.children.length));
+    this.more.addEventListener('click', () => this.load(this.list.querySelectorAll('.tile').length));
+  }
+
+  // Each folder is named once, above its shapes.
+  append({ id, label }) {
+    const folder = folderOf(id);
+    if (folder !== this.folder) {
+      this.folder = folder;
+      const heading = this.list.appendChild(document.createElement('li'));
+      heading.className = 'folder';
+      heading.textContent = folder || 'No folder';
+    }
+    const lines = label && label !== folder ? [['more', label]] : [];
+    this.list.append(tile(id, label, lines, label ? `${id}, ${label}` : id, this.picked));
   }
 
   search(text) {
@@ -77,9 +102,11 @@ export class Shapes {
     // Responses to earlier input may arrive late.
     if (!response.ok || text !== this.text) return;
     const { total, shapes } = await response.json();
-    const tiles = shapes.map(({ id, label }) => tile(id, label, [['more', label]], this.picked));
-    if (offset === 0) this.list.replaceChildren(...tiles);
-    else this.list.append(...tiles);
+    if (offset === 0) {
+      this.list.replaceChildren();
+      this.folder = '';
+    }
+    for (const shape of shapes) this.append(shape);
     this.more.hidden = offset + shapes.length >= total;
     this.count.textContent = total === 1 ? '1 shape' : `${total} shapes`;
     mark(this.list, this.asked);
@@ -88,20 +115,5 @@ export class Shapes {
   mark(id) {
     this.asked = id;
     mark(this.list, id);
-  }
-}
-
-// Some shapes of as many classes as possible.
-export class Sample {
-  constructor(picked) {
-    this.picked = picked;
-  }
-
-  async load() {
-    const response = await fetch(`/api/shapes?${new URLSearchParams({ sample: SAMPLE })}`);
-    if (!response.ok) return;
-    const { shapes } = await response.json();
-    const tiles = shapes.map(({ id, label }) => tile(id, label, [['more', label]], this.picked));
-    document.getElementById('sample').replaceChildren(...tiles);
   }
 }

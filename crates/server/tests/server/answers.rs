@@ -65,6 +65,55 @@ fn an_upload_finds_itself_in_every_format() {
     }
 }
 
+/// A tar archive.
+fn archive(files: &[(&str, &[u8])]) -> Vec<u8> {
+    let mut all = Vec::new();
+    for (name, content) in files {
+        let mut header = [0; 512];
+        header[..name.len()].copy_from_slice(name.as_bytes());
+        header[124..135].copy_from_slice(format!("{:011o}", content.len()).as_bytes());
+        header[148..156].fill(b' ');
+        header[156] = b'0';
+        let sum: u32 = header.iter().map(|byte| u32::from(*byte)).sum();
+        header[148..154].copy_from_slice(format!("{sum:06o}").as_bytes());
+        header[154] = 0;
+        all.extend(header);
+        all.extend(*content);
+        all.resize(all.len().next_multiple_of(512), 0);
+    }
+    all.resize(all.len() + 1024, 0);
+    all
+}
+
+#[test]
+fn an_archive_of_one_mesh_is_that_mesh() {
+    use std::io::Write;
+
+    let server = Served::start(options());
+    let ring = std::fs::read(server.mesh("ring0")).unwrap();
+    let one = archive(&[("scans/ring.off", &ring), ("scans/notes.md", b"a ring")]);
+    let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::default());
+    packed.write_all(&one).unwrap();
+    let packed = packed.finish().unwrap();
+    for (name, content) in [("scans.tar", &one), ("scans.tar.gz", &packed)] {
+        let answer = upload(server.address, &[(name, content)], &[("explain", "true")]).unwrap().json();
+        assert_eq!(
+            (&answer["query"], &answer["results"][0]["relation"]["kind"]),
+            (&"ring.off".into(), &"identical-file".into()),
+            "{answer}"
+        );
+    }
+    for (files, n_meshes) in [(&[("a.off", &ring[..]), ("b.off", &ring)][..], 2), (&[("a.md", b"")], 0)] {
+        let answer = upload(server.address, &[("all.tar", &archive(files))], &[]).unwrap();
+        let error = answer.json()["error"].as_str().unwrap().to_owned();
+        assert!(error.starts_with(&format!("all.tar: the archive holds {n_meshes} meshes")), "{error}");
+        assert_eq!(answer.status, 422);
+    }
+    // A damaged archive is a bad request.
+    let answer = upload(server.address, &[("all.zip", b"PK")], &[]).unwrap();
+    assert_eq!(answer.status, 400, "{}", answer.json());
+}
+
 #[test]
 fn an_upload_gives_the_same_answer_as_the_library() {
     let server = Served::start(options());
@@ -345,9 +394,18 @@ fn an_upload_can_be_compared_with_its_results() {
             "residuals are distances between the aligned forms: {nearest}, {residual}"
         );
     }
+    // The meshes are one rigid body, and coincide.
+    let laid = [0, 1].map(|i| geometry(&json["meshes"][i]));
+    assert_eq!(laid[0].faces.len(), mesh.n_faces());
+    for p in &laid[0].positions {
+        let nearest = laid[1].positions.iter().map(|q| away(p, q)).fold(f32::INFINITY, f32::min);
+        assert!(nearest < 1e-4, "{nearest}");
+    }
+    assert!(json["gap"]["max"].as_f64().unwrap() < 1e-6, "{}", json["gap"]);
     let pair = get(&server, "/api/compare?a=ring0&b=box0").json();
     description.check("get", "/api/compare", 200, &pair);
     assert_eq!(pair["relation"]["kind"], "different");
+    assert!(pair["meshes"].is_null() && pair["gap"].is_null());
     for (target, status) in [
         ("query=0123456789abcdef0123456789abcdef&b=ring1".to_owned(), 410),
         ("a=none&b=ring1".to_owned(), 404),

@@ -7,14 +7,14 @@ use anyhow::Result;
 use base::terminal::Bars;
 use canonform::index::damaged_path;
 use canonform::{
-    BuildOptions, BuildReport, Elsewhere, FailureReason, Inputs, LabelFile, MergeReport, add_to_index,
-    build_index, merge_indexes, remove_from_index,
+    BuildOptions, BuildReport, Elsewhere, FailureReason, Inputs, LabelOrigin, LabelSource, MergeReport,
+    add_to_index, build_index, merge_indexes, remove_from_index,
 };
 use serde::Serialize;
 
 use crate::args::{AddArgs, BuildArgs, Common, MAX_DROPPED};
 use crate::input::{check_dropped, is_named};
-use crate::output::{Answer, check_folder, count, exit_code, report};
+use crate::output::{Answer, Fact, check_folder, count, exit_code, report};
 use crate::remedy::with_remedy;
 
 #[derive(Serialize)]
@@ -26,7 +26,7 @@ struct Json<T: Serialize> {
 
 pub(super) fn build(args: &BuildArgs, common: &Common) -> Result<ExitCode> {
     check_folder(&args.output)?;
-    let labels = args.labels.as_deref().map(LabelFile::read).transpose()?;
+    let labels = args.labels.as_deref().map(LabelSource::read).transpose()?;
     let describe = args.describe.describe_options(common)?;
     let options = BuildOptions {
         labels: labels.as_ref(),
@@ -41,7 +41,7 @@ pub(super) fn build(args: &BuildArgs, common: &Common) -> Result<ExitCode> {
 }
 
 pub(super) fn add(args: &AddArgs, common: &Common) -> Result<ExitCode> {
-    let labels = args.labels.as_deref().map(LabelFile::read).transpose()?;
+    let labels = args.labels.as_deref().map(LabelSource::read).transpose()?;
     let inputs = Inputs {
         paths: &args.meshes,
         labels: labels.as_ref(),
@@ -52,14 +52,15 @@ pub(super) fn add(args: &AddArgs, common: &Common) -> Result<ExitCode> {
     summarize(&args.index, added, labels.as_ref(), MAX_DROPPED, common)
 }
 
-/// Most names that a note lists.
+/// Most names that a note lists, and most lines of a file.
 const MOST_NAMED: usize = 10;
+const MOST_LINES: usize = 3;
 
 /// Prints what happened to the meshes, those that lost more of their surface than allowed and failures last.
 fn summarize(
     index: &Path,
     built: BuildReport,
-    labels: Option<&LabelFile>,
+    labels: Option<&LabelSource>,
     max_dropped: f64,
     common: &Common,
 ) -> Result<ExitCode> {
@@ -81,7 +82,7 @@ fn summarize(
 }
 
 /// What users should know although nothing failed.
-fn notes(index: &Path, built: &BuildReport, labels: Option<&LabelFile>) -> Vec<String> {
+fn notes(index: &Path, built: &BuildReport, labels: Option<&LabelSource>) -> Vec<String> {
     let mut notes = Vec::new();
     if built.replaced_damaged {
         notes.push(format!(
@@ -95,9 +96,8 @@ fn notes(index: &Path, built: &BuildReport, labels: Option<&LabelFile>) -> Vec<S
              each class into a sub-folder, or pass --labels FILE.csv"
         ));
     }
-    if let (Some(labels), 1..) = (labels, built.unused_labels) {
-        let path = labels.path().display();
-        notes.push(format!("warning: {} lines of {path} name no shape", built.unused_labels));
+    if let (Some(file), [_, ..]) = (labels.and_then(LabelSource::file), &built.unused_label_lines[..]) {
+        notes.push(unused_labels(file.path(), built));
     }
     let skipped = &built.skipped_paths;
     notes.extend(skipped.iter().take(MOST_NAMED).map(|path| format!("warning: skipped {}", path.display())));
@@ -113,6 +113,36 @@ fn notes(index: &Path, built: &BuildReport, labels: Option<&LabelFile>) -> Vec<S
     notes
 }
 
+/// The lines of a label file that name no shape.
+fn unused_labels(path: &Path, built: &BuildReport) -> String {
+    let lines = &built.unused_label_lines;
+    let named =
+        lines.iter().take(MOST_LINES).map(|unused| format!("line {}, `{}`", unused.line, unused.name));
+    let more = if lines.len() > MOST_LINES { "; ..." } else { "" };
+    let (n, names) = match lines.len() {
+        1 => ("1 line".to_owned(), "names"),
+        n => (format!("{n} lines"), "name"),
+    };
+    let named = named.collect::<Vec<_>>().join("; ");
+    format!("warning: {n} of {} {names} no shape: {named}{more}", path.display())
+}
+
+/// What the classes of a folder were taken from.
+fn classes(report: &BuildReport) -> Option<String> {
+    let from = match report.labels_from? {
+        LabelOrigin::None => return Some("none".to_owned()),
+        LabelOrigin::Folders => "sub-folders",
+        LabelOrigin::Names => "leading letters of file names",
+        LabelOrigin::File => "the label file",
+        LabelOrigin::Dataset => "the dataset",
+    };
+    let remedy = match report.labels_from {
+        Some(LabelOrigin::Folders | LabelOrigin::Names) => "; pass --labels none to have none",
+        _ => "",
+    };
+    Some(format!("{} from {from}{remedy}", report.n_classes))
+}
+
 fn answer(index: &Path, report: &BuildReport, max_dropped: f64) -> Answer {
     let (name, described, unchanged) = (index.display(), report.described, report.unchanged);
     let sentence = match index.exists() {
@@ -122,7 +152,7 @@ fn answer(index: &Path, report: &BuildReport, max_dropped: f64) -> Answer {
         }
         false => format!("{name} was not written: no mesh could be described"),
     };
-    let mut facts = Vec::new();
+    let mut facts: Vec<Fact> = classes(report).map(|words| ("classes", words)).into_iter().collect();
     if !report.failed.is_empty() {
         facts.push(("failed", failures(report)));
     }

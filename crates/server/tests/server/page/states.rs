@@ -12,7 +12,8 @@ use crate::running::options;
 
 const N_RESULTS: &str = "document.querySelectorAll('#results .tile').length";
 const AT_THE_START: &str = "document.querySelector('#answer').dataset.state === 'empty' && \
-                            document.querySelectorAll('#sample .tile').length === 10";
+                            document.querySelector('#page').dataset.at === 'start' && \
+                            document.querySelectorAll('#shapes .tile').length === 10";
 
 /// The first result that is not the query itself.
 fn hit(page: &Page) -> String {
@@ -25,7 +26,7 @@ fn every_state_of_an_indexed_shape_is_reached_by_its_address() {
     let Some(page) = Page::open(1280, 900) else { return };
     page.wait_for(AT_THE_START);
     assert_eq!(page.address(), "/");
-    page.browser.click("#sample .tile[data-id^=cat]").unwrap();
+    page.browser.click("#shapes .tile[data-id^=cat]").unwrap();
     page.answered();
     let shape = page.text("#query-name");
     assert_eq!(page.address(), format!("/?shape={shape}"));
@@ -88,7 +89,9 @@ fn options_filters_and_downloads_follow_the_address() {
     page.browser
         .eval("const r = document.querySelector('#rank'); r.value = 'graph'; r.dispatchEvent(new Event('change'))")
         .unwrap();
-    page.wait_for("document.querySelector('#results').textContent.includes('rank distance')");
+    page.wait_for(
+        "[...document.querySelectorAll('#results .tile')].every(tile => tile.title.includes('rank distance'))",
+    );
     assert_eq!(page.address(), "/?shape=cat0&k=6&rank=graph&filter=cent");
     page.browser.eval("history.back()").unwrap();
     page.wait_for("document.querySelector('#rank').value === 'plain'");
@@ -142,7 +145,7 @@ fn the_page_can_be_used_with_the_keyboard_alone() {
          .every(e => { e.focus({ preventScroll: true }); return document.activeElement === e && e.tabIndex === 0; })",
     );
     assert_eq!(reached, true);
-    page.browser.type_into("#sample .tile[data-id^=cat]", "\u{e007}").unwrap();
+    page.browser.type_into("#shapes .tile[data-id^=cat]", "\u{e007}").unwrap();
     page.answered();
     page.browser.type_into("#results li:nth-child(2) .tile", "\u{e00d}").unwrap();
     page.wait_for("document.querySelector('#overlay').dataset.state === 'ready'");
