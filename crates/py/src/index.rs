@@ -8,9 +8,10 @@ use canonform::descriptors::DescriptorError;
 use canonform::index::{ExportFormat, SearchMode, ShapeEntry};
 use canonform::mesh::RepairOptions;
 use canonform::{
-    BuildOptions, DescribedQuery, Elsewhere, EvaluateOptions, Explain, Inputs, LabelSource, MeshGeometry,
-    PairwiseDistance, Query, SearchOptions, ShapeFile, ShapeSearch, Shard, add_to_index, build_index,
-    content_hash, evaluate_index, export_index, indexed_shapes, mesh_path, remove_from_index,
+    BuildOptions, DescribedQuery, DuplicateOptions, Elsewhere, EvaluateOptions, Explain, Inputs, LabelSource,
+    MeshGeometry, PairwiseDistance, Query, SearchOptions, ShapeFile, ShapeSearch, Shard, add_to_index,
+    build_index, content_hash, evaluate_index, export_index, find_duplicates, indexed_shapes, mesh_path,
+    remove_from_index,
 };
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
@@ -304,9 +305,34 @@ impl Index {
         })
     }
 
-    /// Writes the index as lines of JSON.
+    /// Writes the index in the format of the extension.
     fn export(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        run_alone(py, None, |_| export_index(self.search.index(), ExportFormat::JsonLines, &path))
+        let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+        let Some(format) = ExportFormat::named(extension) else {
+            let known = ExportFormat::ALL.map(ExportFormat::extension).join(", ");
+            let message = format!("`{extension}` is not a format of exports; use one of {known}");
+            return Err(Exception::Option.with(&message));
+        };
+        run_alone(py, None, |_| export_index(self.search.index(), format, &path))
+    }
+
+    /// Finds the shapes that are one; returns the report as JSON.
+    fn duplicates(
+        &self,
+        py: Python<'_>,
+        kinds: Option<Vec<String>>,
+        min_confidence: f64,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<String> {
+        let mut options = DuplicateOptions { min_confidence, ..DuplicateOptions::default() };
+        if let Some(kinds) = kinds {
+            let kinds = kinds.into_iter().map(serde_json::Value::from).collect();
+            options.kinds = serde_json::from_value(serde_json::Value::Array(kinds))
+                .map_err(|fault| Exception::Option.with(&format!("kinds: {fault}")))?;
+        }
+        let found =
+            run_alone(py, progress.as_ref(), |observer| find_duplicates(&self.search, &options, observer))?;
+        Ok(json(&found))
     }
 }
 

@@ -13,6 +13,6 @@ mod testing;
 
 pub use maps::{MapKind, MapOptions, MapShape, SurfaceMap, map_surfaces};
 pub use relation::{
-    Basis, Because, Change, CutPiece, Difference, Dimension, Handedness, MeshGeometry, MeshOverlay, Parts, Relation,
-    RelationKind, Side, SurfaceGap, UnitChange, handedness,
+    Basis, Because, Change, CutPiece, Difference, Dimension, Handedness, MeshGeometry, MeshOverlay, Parts,
+    Relation, RelationKind, Side, SurfaceGap, UnitChange, handedness,
 };

@@ -16,6 +16,8 @@ mod commands;
 #[cfg(test)]
 mod dropped;
 #[cfg(test)]
+mod duplicates;
+#[cfg(test)]
 mod errors;
 #[cfg(test)]
 mod field;

@@ -24,6 +24,8 @@ def vertices_of(vertices: ArrayLike) -> Floats:
 def faces_of(faces: ArrayLike) -> Ints:
     """An m x 3 array of int64; the same array if it is one already."""
     array = np.asarray(faces)
+    if array.size == 0:
+        raise MeshError("there are no faces; leave out `faces` for a point cloud")
     if array.ndim == 2 and array.shape[1] == 4:
         raise MeshError("faces have 4 corners; split them into triangles first, for example with trimesh or PyVista")
     if array.ndim != 2 or array.shape[1] != 3:
@@ -32,6 +34,9 @@ def faces_of(faces: ArrayLike) -> Ints:
         array = array.astype(np.int64)
     if array.dtype.kind not in "iu":
         raise MeshError(f"faces must be whole numbers, not {array.dtype}")
+    if array.min() < 0:
+        row = int(np.flatnonzero(array.min(axis=1) < 0)[0])
+        raise MeshError(f"face {row} has the vertex number {int(array[row].min())}; vertices are counted from 0")
     return np.ascontiguousarray(array, dtype=np.int64)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -17,7 +18,7 @@ from . import _canonform, _html
 from ._arrays import Floats
 from ._settings import Progress, encoded, form_options, options_of, shown
 from ._surface import Surface
-from .errors import CanonformError, OptionError
+from .errors import CanonformError, OptionError, SkippedMeshWarning
 
 if TYPE_CHECKING:
     import pandas
@@ -238,6 +239,7 @@ class Index:
 
             first = report["failed"][0]["error"] if report["failed"] else "there are no meshes"
             raise MeshError(f"no mesh of {name} could be described, so no index was written; the first: {first}")
+        _warn_of_skipped(report)
         index = cls(path)
         index.build_report = report
         return index
@@ -415,8 +417,30 @@ class Index:
         """The surface of a shape. Its mesh file must be where it was, and unchanged."""
         return Surface._of(self._inner.surface(id), id)
 
+    def duplicates(
+        self, *, kinds: Iterable[str] | None = None, min_confidence: float = 0.9, progress: Progress = False
+    ) -> list[dict[str, Any]]:
+        """Groups of shapes that are one: the same file or surface, in another place, size or triangulation.
+
+        Each group has `keeper` (`id`, `path`, `bytes`, `modified`, `size`, `vertices`), `why` it is suggested, and `members`: these
+        keys, and the `relation` to the keeper, which is proved by the triangles of both. Nothing is changed.
+
+        Parameters
+        ----------
+        kinds
+            Kinds of relation, by default "identical-file", "identical-geometry", "scaled", "mirrored", "noisy" and "remeshed"; also
+            "copies", "part-of", "variant" and "other-pose".
+        min_confidence
+            The least confidence, 0 to 1.
+        """
+        wanted = None if kinds is None else list(kinds)
+        with shown(progress) as update:
+            found: dict[str, Any] = json.loads(self._inner.duplicates(wanted, float(min_confidence), update))
+        groups: list[dict[str, Any]] = found["groups"]
+        return groups
+
     def export(self, path: AnyPath) -> None:
-        """Write the index as lines of JSON, the same however it was built."""
+        """Write the index, the same however it was built. The extension tells the format: jsonl, parquet, npz or csv."""
         self._inner.export(os.fspath(path))
 
     def to_pandas(self) -> pandas.DataFrame:
@@ -447,6 +471,18 @@ class Index:
             ("bytes", f"{info['n_bytes']:,}"),
         ]
         return _html.card(self.path, rows)
+
+
+def _warn_of_skipped(report: dict[str, Any]) -> None:
+    failed = report["failed"]
+    if failed:
+        first = failed[0]
+        warnings.warn(
+            f"{len(failed)} of the meshes are not in the index; the first, {first['path']}: {first['error']}; "
+            "`build_report` lists them",
+            SkippedMeshWarning,
+            stacklevel=3,
+        )
 
 
 def _whole(number: float | None) -> int | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,12 +18,17 @@ from ._arrays import Floats, Ints, mesh_of
 from ._field import DistanceField
 from ._form import Form
 from ._settings import Progress, encoded, options_of, shown
+from .errors import OptionError, PointError, SurfaceLossWarning
 
 Point: TypeAlias = int | np.integer[Any] | str
 """A vertex by its number; a point of an edge, such as "17-42@0.3"; or of a face, such as "f8@2:1:1"."""
 
 Points: TypeAlias = list[Point] | tuple[Point, ...] | range | Ints
 """Several points."""
+
+
+_MOST_DROPPED = 0.01
+"""Losing more of a surface is a warning."""
 
 
 def distance_methods() -> dict[str, str]:
@@ -134,6 +140,7 @@ class Surface:
         vertices, triangles = mesh_of(mesh, faces)
         self._inner = _canonform.Surface(vertices, triangles, encoded(components=components, weld=weld))
         self._name = ""
+        self._warn_of_loss()
 
     @classmethod
     def read(cls, path: str | os.PathLike[str], *, components: str = "largest", weld: str | float = "seams") -> Surface:
@@ -142,7 +149,19 @@ class Surface:
         Raises `MissingFileError`, `FileError` and `MeshError`.
         """
         inner = _canonform.Surface.read(os.fspath(path), encoded(components=components, weld=weld))
-        return cls._of(inner, os.path.basename(os.fspath(path)))
+        surface = cls._of(inner, os.path.basename(os.fspath(path)))
+        surface._warn_of_loss()
+        return surface
+
+    def _warn_of_loss(self) -> None:
+        share = self.repair_report["dropped_area_share"]
+        if share > _MOST_DROPPED:
+            warnings.warn(
+                f"{100 * share:.0f} % of the surface{f' of {self._name}' if self._name else ''} is not used: {self.repair_report}; "
+                'components="bridge" keeps it',
+                SurfaceLossWarning,
+                stacklevel=3,
+            )
 
     @classmethod
     def _of(cls, inner: _canonform.Surface, name: str = "") -> Surface:
@@ -218,7 +237,7 @@ class Surface:
         PointError
             If the mesh has no such point, or the repair dropped it.
         """
-        return self._inner.distances(_several(sources), method, update, obtuse, float(max_distance))
+        return self._inner.distances(_several(sources, self.n_vertices), method, update, obtuse, float(max_distance))
 
     def distances_many(
         self,
@@ -236,7 +255,7 @@ class Surface:
         """
         with shown(progress) as report:
             return self._inner.distances_many(
-                _several(sources), method, update, obtuse, float(max_distance), report
+                _several(sources, self.n_vertices), method, update, obtuse, float(max_distance), report
             )
 
     @overload
@@ -419,6 +438,8 @@ class Surface:
 
     def picture(self, values: ArrayLike | None = None, *, width: int = 600, height: int = 600) -> bytes:
         """A shaded picture of the surface as the bytes of a PNG file, coloured by values at its vertices if given."""
+        if values is not None and np.shape(values) != (self.n_vertices,):
+            raise OptionError(f"values must be one number for each of the {self.n_vertices} vertices, not of shape {np.shape(values)}")
         return _html.picture(self.vertices, self.faces, values, (width, height))
 
     def __repr__(self) -> str:
@@ -436,9 +457,23 @@ class Surface:
         return _html.card(self._name or "Surface", rows, [_html.image(self.picture(width=440, height=440))])
 
 
-def _several(points: Any) -> list[Any]:
+def _several(points: Any, n_vertices: int) -> list[Any]:
+    """Points one by one. A mask stands for the vertices where it is true."""
+    if isinstance(points, (bool, np.bool_)):
+        raise PointError(f"{points} is not a point; give the number of a vertex")
     if isinstance(points, (int, str, np.integer)):
         return [points]
-    if isinstance(points, np.ndarray):
-        points = points.ravel().tolist()
+    if isinstance(points, (float, np.floating)):
+        raise PointError(f"{points} is not a point; vertices have whole numbers")
+    array = np.asarray(points) if isinstance(points, np.ndarray) or _is_mask(points) else None
+    if array is not None and array.dtype == bool:
+        if array.shape != (n_vertices,):
+            raise PointError(f"a mask of sources needs one value for each of the {n_vertices} vertices; it has shape {array.shape}")
+        points = np.flatnonzero(array).tolist()
+    elif array is not None:
+        points = array.ravel().tolist()
     return list(points)
+
+
+def _is_mask(points: Any) -> bool:
+    return isinstance(points, (list, tuple)) and any(isinstance(point, (bool, np.bool_)) for point in points)

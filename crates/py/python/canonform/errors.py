@@ -18,6 +18,8 @@ __all__ = [
     "OptionError",
     "PointError",
     "ShapeIndexError",
+    "SkippedMeshWarning",
+    "SurfaceLossWarning",
     "TimeLimitError",
 ]
 
@@ -68,3 +70,11 @@ class ShapeIndexError(CanonformError, RuntimeError):
 
 class NoSuchShapeError(ShapeIndexError, LookupError):
     """An index has no shape of this name."""
+
+
+class SurfaceLossWarning(UserWarning):
+    """The repair of a mesh dropped more than 1 % of its surface; the command line ends with code 1 then."""
+
+
+class SkippedMeshWarning(UserWarning):
+    """Some meshes are not in the index."""

@@ -192,6 +192,12 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         X = validate_data(self, X, dtype=np.float64, reset=reset, ensure_min_samples=2 if reset else 1)
         if reset and self.metric == "precomputed" and X.shape[0] != X.shape[1]:
             raise ValueError(f"metric='precomputed' needs the distances between all pairs, a square matrix; X has shape {X.shape}")
+        if reset and self.metric == "precomputed" and not np.allclose(X, X.T, rtol=0, atol=1e-6 * np.abs(X).max(initial=0)):
+            i, j = np.unravel_index(np.abs(X - X.T).argmax(), X.shape)
+            raise ValueError(
+                f"metric='precomputed' needs a symmetric matrix, but X[{i}, {j}] is {X[i, j]:.6g} and X[{j}, {i}] is {X[j, i]:.6g}; "
+                "pass (X + X.T) / 2 for the mean of both"
+            )
         return X
 
     def _column(self, a: Any, X: Any) -> Floats:

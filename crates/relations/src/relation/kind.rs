@@ -1,9 +1,9 @@
 //! Kinds of relation, and changes between two meshes.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// How two meshes are related, by what changed least. The kinds are in descending order of what the meshes have in common.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RelationKind {
     /// The files have the same bytes.
