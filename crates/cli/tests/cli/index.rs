@@ -72,7 +72,7 @@ fn a_folder_becomes_an_index_that_finds_its_shapes() {
 fn an_unknown_class_is_explained() {
     let place = Workplace::new();
     (0..3).for_each(|i| place.add(&format!("meshes/rings/{i}.off"), &body(0, i)));
-    place.done(&BUILD);
+    place.done(&[&BUILD[..], &["--labels", "folders"]].concat());
     // A long thin cone that is open at its base.
     let mut cone = canonform::mesh::shapes::grid(40, 12, 1.0);
     for p in &mut cone.positions {

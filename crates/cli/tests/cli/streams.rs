@@ -107,7 +107,7 @@ fn every_mesh_of_a_folder_becomes_a_form() {
     let shapes = json["shapes"].as_array().unwrap();
     let facts: Vec<_> =
         shapes.iter().map(|s| [&s["name"], &s["label"]].map(|v| v.as_str().unwrap())).collect();
-    assert_eq!(facts, [["cat0", "cat"], ["cat1", "cat"], ["dogs/rex", "dogs"]]);
+    assert_eq!(facts, [["cat0", "cat"], ["cat1", "cat"], ["dogs/rex", "rex"]]);
     assert!(json["failed"].as_array().unwrap().is_empty());
     assert_eq!(io::read(&place.path("forms/cat0.off")).unwrap().faces, ring().faces);
     assert!(io::read(&place.path("forms/dogs/rex.off")).is_ok());
