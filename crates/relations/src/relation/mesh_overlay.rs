@@ -21,7 +21,7 @@ pub struct MeshOverlay {
 }
 
 impl Relation {
-    /// The meshes laid over each other, if they are alike as rigid bodies: one surface, at any size or mirrored.
+    /// The meshes laid over each other, if they are alike as rigid bodies: one surface, at any size or mirrored, or variants of a part.
     ///
     /// ```
     /// use canonform_relations::{Handedness, MeshGeometry, Relation};
@@ -37,7 +37,7 @@ impl Relation {
     /// ```
     #[must_use]
     pub fn overlay(&self, [a, b]: [&MeshGeometry; 2]) -> Option<MeshOverlay> {
-        if self.kind >= RelationKind::Copies {
+        if self.kind >= RelationKind::Copies && self.kind != RelationKind::Variant {
             return None;
         }
         let exact = same_vertices(a, b).map(|same| {
