@@ -34,6 +34,13 @@ pub(crate) fn exit_code(all_done: bool) -> ExitCode {
     if all_done { ExitCode::SUCCESS } else { ExitCode::from(2) }
 }
 
+/// Bytes in powers of 1000, as disks are sold.
+pub(crate) fn decimal_bytes(bytes: u128) -> String {
+    let units = [(1_000_000_000_000, "TB"), (1_000_000_000, "GB"), (1_000_000, "MB")];
+    let (unit, name) = units.into_iter().find(|(unit, _)| bytes >= *unit).unwrap_or((1_000, "kB"));
+    format!("{:.1} {name}", bytes as f64 / unit as f64)
+}
+
 /// Prints one JSON object to standard output.
 pub(crate) fn print_json(value: &impl Serialize) -> Result<()> {
     let mut out = io::stdout().lock();

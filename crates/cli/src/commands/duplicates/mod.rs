@@ -15,7 +15,7 @@ use canonform::{
 };
 
 use crate::args::{Common, DuplicatesArgs, KindArg};
-use crate::output::{check_folder, count, print, print_json};
+use crate::output::{check_folder, count, decimal_bytes, print, print_json};
 
 /// Finds the files of an index or a dataset that hold one shape.
 pub(crate) fn duplicates(args: &DuplicatesArgs, common: &Common) -> Result<ExitCode> {
@@ -98,15 +98,16 @@ fn short(path: &Path) -> PathBuf {
 
 /// Size of the file, lengths of its box, and the day of its last change.
 fn facts(file: &DuplicateFile) -> String {
-    let bytes = file.bytes.map(|bytes| report::numbers::bytes(bytes as usize));
-    let size = file.size.map(|size| size.map(|x| format!("{x:.4}")).map(|x| trimmed(&x)).join(" × "));
+    let bytes = file.bytes.map(|bytes| decimal_bytes(bytes.into()));
+    let size = file.size.map(|size| size.map(in_four_digits).join(" × "));
     let day = file.modified.and_then(|seconds| chrono::DateTime::from_timestamp(seconds as i64, 0));
     let day = day.map(|day| day.format("%Y-%m-%d").to_string());
     [bytes, size, day].into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
-fn trimmed(number: &str) -> String {
-    number.trim_end_matches('0').trim_end_matches('.').to_owned()
+fn in_four_digits(x: f64) -> String {
+    let digits = (3.0 - x.abs().max(1e-9).log10().floor()).clamp(0.0, 9.0) as usize;
+    format!("{x:.digits$}")
 }
 
 fn text(report: &DuplicateReport) -> String {
@@ -119,7 +120,7 @@ fn text(report: &DuplicateReport) -> String {
             n_spare,
             count(report.n_shapes, "shape"),
             count(report.groups.len(), "group"),
-            report::numbers::bytes(report.spare_bytes() as usize)
+            decimal_bytes(report.spare_bytes().into())
         )
     };
     for DuplicateGroup { keeper, why, members } in &report.groups {

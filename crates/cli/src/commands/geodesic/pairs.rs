@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use super::task::Task;
 use crate::input::named;
-use crate::output::{Answer, fill_npy, shown};
+use crate::output::{Answer, decimal_bytes, fill_npy, shown};
 
 /// Default memory for distances, in bytes.
 const DEFAULT_MEMORY: usize = 1 << 30;
@@ -57,13 +57,6 @@ pub(super) fn check_size(n_vertices: usize, force: bool) -> Result<()> {
         base::terminal::note(&size);
     }
     Ok(())
-}
-
-/// Bytes in powers of 1000, as disks are sold.
-fn decimal_bytes(bytes: u128) -> String {
-    let units = [(1_000_000_000_000, "TB"), (1_000_000_000, "GB"), (1_000_000, "MB")];
-    let (unit, name) = units.into_iter().find(|(unit, _)| bytes >= *unit).unwrap_or((1_000, "kB"));
-    format!("{:.1} {name}", bytes as f64 / unit as f64)
 }
 
 /// Measures, writes and reports the distances between all pairs.
