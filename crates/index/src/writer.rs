@@ -138,12 +138,20 @@ impl IndexWriter {
         let path = path.to_owned();
         let mut writer =
             Self { path, log, base, options, n_shapes: 0, length: None, resumed, replaces_damaged };
-        if let Err(fault) = writer.count() {
-            // A job that has not begun leaves nothing to resume, so that a damaged index can be built again.
-            if !resumed {
-                writer.discard()?;
+        match writer.count() {
+            Ok(()) => {}
+            // Not every byte is checked when an index is opened.
+            Err(IndexError::Damaged { .. }) if job.starts_over() => {
+                (writer.base, writer.replaces_damaged) = (None, true);
+                writer.count()?;
             }
-            return Err(fault);
+            Err(fault) => {
+                // A job that has not begun leaves nothing to resume, so that a damaged index can be built again.
+                if !resumed {
+                    writer.discard()?;
+                }
+                return Err(fault);
+            }
         }
         Ok(writer)
     }

@@ -121,6 +121,25 @@ impl SmoothRegions {
     /// If a face has a repeated vertex or one that does not exist, see [`surface::Topology::new`].
     #[must_use]
     pub fn of(mesh: &TriMesh) -> Self {
+        // Products of lengths neither overflow nor vanish near the unit.
+        let unit = mesh.unit();
+        let positions = mesh.positions.iter().map(|p| p / unit).collect();
+        let mut found = Self::near_unit(&TriMesh { positions, faces: mesh.faces.clone() });
+        found.chord_errors.iter_mut().for_each(|error| *error *= unit);
+        for region in &mut found.all {
+            match &mut region.shape {
+                RegionShape::Plane { offset, .. } => *offset *= unit,
+                RegionShape::Cylinder { centre, radius, .. } => {
+                    *centre *= unit;
+                    *radius *= unit;
+                }
+                RegionShape::Curved => {}
+            }
+        }
+        found
+    }
+
+    fn near_unit(mesh: &TriMesh) -> Self {
         let topology = Topology::new(mesh.n_vertices(), mesh.faces.clone());
         let (flats, of_face) = flats(mesh, &topology);
         let creases = creases(mesh, &topology, &flats, &of_face);
@@ -154,9 +173,7 @@ impl SmoothRegions {
         let chord_errors = chord_errors(mesh, &flats, &of_face, blunt);
         Self { all, chord_errors, is_mechanical }
     }
-}
 
-impl SmoothRegions {
     /// Directions of planes and axes with the share of the area across or around them, the largest first.
     #[must_use]
     pub fn directions(&self) -> Vec<(Vector3<f64>, f64)> {

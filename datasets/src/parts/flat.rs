@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use earcut::Earcut;
 
-use super::Diagonals;
+use super::options::Diagonals;
 
 type Triangle = [usize; 3];
 

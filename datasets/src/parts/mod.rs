@@ -5,6 +5,7 @@
 mod build;
 mod family;
 mod flat;
+mod options;
 mod solid;
 #[cfg(test)]
 mod tests;
@@ -16,6 +17,7 @@ use mesh::TriMesh;
 use crate::stream::{Purpose, Stream};
 
 pub use family::PartFamily;
+pub use options::{Diagonals, PartMesh};
 use solid::Solid;
 
 /// A mechanical part: a family and its parameters. Lengths are in millimetres.
@@ -36,30 +38,6 @@ use solid::Solid;
 pub struct MechanicalPart {
     family: PartFamily,
     values: Vec<f64>,
-}
-
-/// How the surface of a [`MechanicalPart`] is divided into triangles.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct PartMesh {
-    /// Number of segments of a full circle, at least 6.
-    pub arcs: usize,
-    /// How planar faces are divided.
-    pub diagonals: Diagonals,
-}
-
-impl Default for PartMesh {
-    fn default() -> Self {
-        Self { arcs: 32, diagonals: Diagonals::Clipped }
-    }
-}
-
-/// How planar faces are divided into triangles. The surface is the same, and so are its vertices.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Diagonals {
-    /// By clipping ears: many triangles are long and thin.
-    Clipped,
-    /// With other diagonals, which make the worst triangles better.
-    Even,
 }
 
 impl MechanicalPart {

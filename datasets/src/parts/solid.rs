@@ -7,7 +7,7 @@ use nalgebra::{Point3, Vector3};
 use surface::VertexId;
 
 use super::flat::triangulate;
-use super::{Diagonals, PartMesh};
+use super::options::{Diagonals, PartMesh};
 use crate::trig::sin_cos;
 
 /// A closed polygon of vertices, without repeating the first. All loops of a solid run counter-clockwise as seen against

@@ -400,3 +400,17 @@ impl Named for FormDistance {
         ]
     }
 }
+
+/// Options of methods and solvers that few users need, as help pages may leave out.
+pub const SELDOM: [&str; 10] = [
+    "rank",
+    "sampling",
+    "first_sample",
+    "regularization",
+    "alpha",
+    "sigma",
+    "eigenvectors",
+    "mu",
+    "iterations",
+    "tolerance",
+];

@@ -5,6 +5,7 @@
 //! fused vectors -> near pairs -> clusters -> meshes -> keeper, and what is proved to be the keeper
 //! ```
 
+use std::cmp::Reverse;
 use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -27,6 +28,9 @@ const NEIGHBOURS: usize = 16;
 /// Copies have fused vectors that are nearer than this: noise, decimation and arcs move them. Two classes are farther apart
 /// on most pairs of the built-in families. A safety limit: the meshes decide.
 const NEAR: f64 = 4.0;
+
+/// Sizes of files in one unit differ by less than this (logarithm). A tolerance of decimation.
+const SAME_SIZE: f64 = 0.01;
 
 /// The kinds that make two files duplicates.
 const KINDS: [RelationKind; 6] = [
@@ -276,10 +280,17 @@ impl<'a> Cluster<'a> {
                 ClusterShape { number, candidate, geometry, file }
             })
             .collect();
-        // The finest mesh, then the oldest file, then the shortest path.
-        shapes.sort_by_key(|shape| {
+        // The finest mesh, at the size of most, then the oldest file, then the shortest path.
+        let sizes: Vec<f64> =
+            shapes.iter().filter_map(|shape| Some(shape.geometry.as_ref()?.size())).collect();
+        let n_alike = |shape: &ClusterShape<'_>| {
+            let size = shape.geometry.as_ref().map_or(f64::NAN, MeshGeometry::size);
+            sizes.iter().filter(|other| (size / **other).ln().abs() < SAME_SIZE).count()
+        };
+        shapes.sort_by_cached_key(|shape| {
             let file = &shape.file;
-            (std::cmp::Reverse(file.vertices), file.modified, file.path.as_os_str().len(), file.id.clone())
+            let path = file.path.as_os_str().len();
+            (Reverse(file.vertices), Reverse(n_alike(shape)), file.modified, path, file.id.clone())
         });
         Self { shapes }
     }
@@ -355,6 +366,6 @@ fn why(keeper: &DuplicateFile, members: &[DuplicateMember]) -> String {
     match (is_finest, is_oldest) {
         (true, _) => "it has the most vertices".to_owned(),
         (false, true) => "it is the oldest".to_owned(),
-        (false, false) => "its path is the shortest, or the first".to_owned(),
+        (false, false) => "it has the size of most, or the shortest path".to_owned(),
     }
 }

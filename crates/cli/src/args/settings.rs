@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 use anyhow::{Result, anyhow};
 use canonform::geodesics::Method;
 use canonform::mesh::RepairOptions;
-use canonform::settings::{Named, NoEffect, OptionGroup, OptionSpec, SCHEMA, Settings};
+use canonform::settings::{Named, NoEffect, OptionGroup, OptionSpec, SCHEMA, SELDOM, Settings};
 use canonform::{DescribeOptions, FormOptions};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
@@ -69,20 +69,6 @@ fn heading(group: OptionGroup) -> Option<&'static str> {
         _ => None,
     }
 }
-
-/// Options of methods and solvers, which only `--help-all` lists; so it does those of fast marching.
-const SELDOM: [&str; 10] = [
-    "rank",
-    "sampling",
-    "first_sample",
-    "regularization",
-    "alpha",
-    "sigma",
-    "eigenvectors",
-    "mu",
-    "iterations",
-    "tolerance",
-];
 
 fn arg(option: &'static OptionSpec) -> Arg {
     let help = option.help(flag);

@@ -2,6 +2,7 @@
 
 mod page;
 mod script;
+mod words;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -14,8 +15,9 @@ use canonform::{
     RelationKind, ShapeSearch, build_index, find_duplicates, is_dataset,
 };
 
+use self::words::text;
 use crate::args::{Common, DuplicatesArgs, KindArg};
-use crate::output::{check_folder, count, decimal_bytes, print, print_json};
+use crate::output::{check_folder, print, print_json};
 
 /// Finds the files of an index or a dataset that hold one shape.
 pub(crate) fn duplicates(args: &DuplicatesArgs, common: &Common) -> Result<ExitCode> {
@@ -94,50 +96,6 @@ fn short(path: &Path) -> PathBuf {
     let Ok(whole) = path.canonicalize() else { return path.to_owned() };
     let here = std::env::current_dir().and_then(|here| here.canonicalize());
     here.ok().and_then(|here| whole.strip_prefix(here).ok().map(Path::to_owned)).unwrap_or(whole)
-}
-
-/// Size of the file, lengths of its box, and the day of its last change.
-fn facts(file: &DuplicateFile) -> String {
-    let bytes = file.bytes.map(|bytes| decimal_bytes(bytes.into()));
-    let size = file.size.map(|size| size.map(in_four_digits).join(" × "));
-    let day = file.modified.and_then(|seconds| chrono::DateTime::from_timestamp(seconds as i64, 0));
-    let day = day.map(|day| day.format("%Y-%m-%d").to_string());
-    [bytes, size, day].into_iter().flatten().collect::<Vec<_>>().join(", ")
-}
-
-fn in_four_digits(x: f64) -> String {
-    let digits = (3.0 - x.abs().max(1e-9).log10().floor()).clamp(0.0, 9.0) as usize;
-    format!("{x:.digits$}")
-}
-
-fn text(report: &DuplicateReport) -> String {
-    let n_spare: usize = report.groups.iter().map(|group| group.members.len()).sum();
-    let mut text = if report.groups.is_empty() {
-        format!("no duplicates among {}\n", count(report.n_shapes, "shape"))
-    } else {
-        format!(
-            "{} of {} can be spared: {} of files of one shape, {} without those to keep\n",
-            n_spare,
-            count(report.n_shapes, "shape"),
-            count(report.groups.len(), "group"),
-            decimal_bytes(report.spare_bytes().into())
-        )
-    };
-    for DuplicateGroup { keeper, why, members } in &report.groups {
-        text += &format!("\nkeep {} ({why}; {})\n", keeper.path.display(), facts(keeper));
-        for member in members {
-            let told = &member.relation;
-            text += &format!("  {told} (confidence {:.2}; {})\n", told.confidence, facts(&member.file));
-        }
-    }
-    if !report.unread.is_empty() {
-        text += &format!(
-            "\n{} could not be read, or changed since the index was built: {}\n",
-            count(report.unread.len(), "file"),
-            report.unread.join(", ")
-        );
-    }
-    text
 }
 
 /// One line per file, keepers first.

@@ -4,6 +4,8 @@ use anyhow::Result;
 use canonform::{DuplicateFile, DuplicateReport, ShapeSearch};
 use report::render::{RenderOptions, render};
 
+use super::words::{facts, text};
+
 const HEAD: &str = "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
 <meta name=\"viewport\" content=\"width=device-width\">\n\
 <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; style-src 'unsafe-inline'\">\n\
@@ -15,23 +17,21 @@ figcaption { overflow-wrap: anywhere } .keep { font-weight: 600 } small { color:
 
 /// The page: a row for each group, the file to keep first.
 pub(super) fn page(report: &DuplicateReport, search: &ShapeSearch) -> Result<String> {
-    let mut text = format!(
-        "{HEAD}<h1>Duplicates</h1>\n<p>{}</p>\n",
-        escape(super::text(report).lines().next().unwrap_or(""))
-    );
+    let mut page =
+        format!("{HEAD}<h1>Duplicates</h1>\n<p>{}</p>\n", escape(text(report).lines().next().unwrap_or("")));
     for group in &report.groups {
-        text += "<section>\n";
+        page += "<section>\n";
         let keep =
             format!("<span class=\"keep\">keep {}</span>", escape(&group.keeper.path.display().to_string()));
-        text += &card(&group.keeper, &keep, &group.why, search)?;
+        page += &card(&group.keeper, &keep, &group.why, search)?;
         for member in &group.members {
             let told = &member.relation;
             let words = format!("{}, confidence {:.2}", told, told.confidence);
-            text += &card(&member.file, &escape(&member.file.path.display().to_string()), &words, search)?;
+            page += &card(&member.file, &escape(&member.file.path.display().to_string()), &words, search)?;
         }
-        text += "</section>\n";
+        page += "</section>\n";
     }
-    Ok(text)
+    Ok(page)
 }
 
 fn card(file: &DuplicateFile, title: &str, words: &str, search: &ShapeSearch) -> Result<String> {
@@ -46,7 +46,7 @@ fn card(file: &DuplicateFile, title: &str, words: &str, search: &ShapeSearch) ->
     Ok(format!(
         "<figure>{picture}<figcaption>{title}<small>{}</small><small>{}</small></figcaption></figure>\n",
         escape(words),
-        escape(&super::facts(file))
+        escape(&facts(file))
     ))
 }
 
