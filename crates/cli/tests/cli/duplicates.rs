@@ -29,9 +29,9 @@ fn collection() -> Workplace {
         mesh
     };
     let turn = Rotation3::from_euler_angles(0.4, 1.0, -0.3);
-    place.add("models/turned.ply", &changed(&|p| *p = turn * *p));
+    place.add("models/turned and moved.ply", &changed(&|p| *p = turn * *p));
     place.add("models/large.off", &changed(&|p| p.coords *= 25.4));
-    place.add("models/mirrored.off", &changed(&|p| p.x = -p.x));
+    place.add("models/mirror image.off", &changed(&|p| p.x = -p.x));
     place.add("models/finer.off", &shapes::subdivide(&mesh));
     place.add("models/ball.off", &shapes::icosphere(3));
     place
@@ -51,14 +51,17 @@ fn files_of_one_shape_are_one_group_and_nothing_is_changed() {
         .iter()
         .map(|member| (member["id"].as_str().unwrap(), member["relation"]["kind"].as_str().unwrap()))
         .collect();
-    let names = ["copy of original", "large", "mirrored", "original", "turned"];
+    let names = ["copy of original", "large", "mirror image", "original", "turned and moved"];
     assert!(kinds.keys().eq(&names), "{kinds:?}");
     assert!(members.iter().all(|member| member["relation"]["confidence"].as_f64().unwrap() < 1.0));
     assert_eq!(fs::read_to_string(place.path("found.csv")).unwrap().lines().count(), 7);
     assert_eq!(fs::read_to_string(place.path("found.html")).unwrap().matches("<img").count(), 6);
     // Other triangles are not moved without a look.
     let script = fs::read_to_string(place.path("move.sh")).unwrap();
-    assert!(script.contains("# mv -n -- 'models/turned.ply'") && !script.contains("\nmv "), "{script}");
+    assert!(
+        script.contains("# mv -n -- 'models/turned and moved.ply'") && !script.contains("\nmv "),
+        "{script}"
+    );
     assert_eq!(fs::read_dir(place.path("models")).unwrap().count(), before);
 }
 
