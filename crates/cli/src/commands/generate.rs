@@ -68,6 +68,9 @@ pub(crate) fn generate(args: &GenerateArgs, common: &Common) -> Result<ExitCode>
     }
     bar.finish_and_clear();
     report(common, &json, |json| {
+        if args.family == FamilyArg::Parts {
+            return format!("{} mechanical parts in {}", json.shapes.len(), json.output.display());
+        }
         let (folder, n_vertices) = (json.output.display(), args.vertices);
         let classes = if json.n_classes == 1 { "class" } else { "classes" };
         format!(
