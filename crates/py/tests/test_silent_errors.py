@@ -98,10 +98,10 @@ def test_asymmetric_distances_are_refused() -> None:
 
     points = np.random.default_rng(0).normal(size=(30, 3))
     matrix = np.linalg.norm(points[:, None] - points, axis=-1)
-    NystromMDS(metric="precomputed").fit(matrix)
+    NystromMDS(n_landmarks=12, metric="precomputed").fit(matrix)
     matrix[3, 4] += 1
     with pytest.raises(ValueError, match=r"symmetric.*X\[3, 4\]"):
-        NystromMDS(metric="precomputed").fit(matrix)
+        NystromMDS(n_landmarks=12, metric="precomputed").fit(matrix)
 
 
 def test_all_warnings_are_public() -> None:
