@@ -30,20 +30,21 @@ const ROUND: f64 = 0.05;
 /// Normals of a cylinder are this near to a plane, in the mean square. A tolerance.
 const ACROSS: f64 = 1e-3;
 
-/// A surface is mechanical if planes and cylinders between sharp edges have at least this share of its area. Organic
-/// bodies of the built-in families have none, mechanical parts at least .5 (`cargo test -p tests --test laws mechanical`).
-const MECHANICAL: f64 = 0.3;
+/// A surface is mechanical if planes and cylinders between sharp edges have at least this share of its area. All
+/// generated parts but balls have it, and no creature (`cargo test -p canonform-datasets parts_are_mechanical`).
+const MECHANICAL: f64 = 0.15;
 
 /// A surface with this many planes of at least [`WIDE`] triangles is mechanical, too, such as a bent pipe with its two ends.
 /// A convention: one plane may be the base of a bust.
 const LEAST_WIDE: usize = 2;
 const WIDE: usize = 6;
 
-/// Least share of the area of a plane that counts for [`MECHANICAL`]. A convention.
-const LARGE: f64 = 0.005;
+/// Area vectors of a body add up to zero, those of a sheet to its area. Below this share a surface is a body. A convention: a
+/// box without a lid has a fifth, half of a cylinder .6.
+const MOST_OPEN: f64 = 0.4;
 
-/// Directions nearer to each other than this are one (cosine). A tolerance of rounding and of arcs.
-const PARALLEL: f64 = 0.999;
+/// Least share of the area of a plane that counts for [`MECHANICAL`]. A convention.
+const LARGE: f64 = 0.0025;
 
 /// What a smooth piece of a surface is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,6 +88,7 @@ pub struct SmoothRegion {
 /// let cube = SmoothRegions::of(&shapes::cube(4));
 /// assert!(cube.is_mechanical && cube.all.len() == 6);
 /// assert!(!SmoothRegions::of(&shapes::icosphere(3)).is_mechanical);
+/// assert!(!SmoothRegions::of(&shapes::grid(4, 4, 1.0)).is_mechanical, "a sheet bends");
 /// ```
 #[derive(Debug)]
 pub struct SmoothRegions {
@@ -115,6 +117,9 @@ struct Crease {
 }
 
 impl SmoothRegions {
+    /// Directions nearer to each other than this are one (cosine). A tolerance of rounding and of arcs.
+    pub const PARALLEL: f64 = 0.999;
+
     /// Finds the pieces.
     ///
     /// # Panics
@@ -167,7 +172,7 @@ impl SmoothRegions {
                 region
             })
             .collect();
-        let is_mechanical = plain >= MECHANICAL || wide >= LEAST_WIDE;
+        let is_mechanical = (plain >= MECHANICAL || wide >= LEAST_WIDE) && is_body(mesh);
         let sharp = if is_mechanical { SHARP } else { ORGANIC_SHARP }.to_radians();
         let blunt = creases.iter().filter(|crease| crease.turn < sharp);
         let chord_errors = chord_errors(mesh, &flats, &of_face, blunt);
@@ -184,7 +189,7 @@ impl SmoothRegions {
                 RegionShape::Cylinder { axis, .. } => axis,
                 RegionShape::Curved => continue,
             };
-            match all.iter_mut().find(|(known, _)| known.dot(&direction).abs() > PARALLEL) {
+            match all.iter_mut().find(|(known, _)| known.dot(&direction).abs() > Self::PARALLEL) {
                 Some((_, area)) => *area += region.area,
                 None => all.push((direction, region.area)),
             }
@@ -192,6 +197,12 @@ impl SmoothRegions {
         all.sort_by(|a, b| b.1.total_cmp(&a.1));
         all
     }
+}
+
+/// Whether a surface encloses a volume, at least in part. Sheets bend.
+fn is_body(mesh: &TriMesh) -> bool {
+    let sum: Vector3<f64> = (0..mesh.n_faces()).map(|f| mesh.area_vector(f)).sum();
+    sum.norm() < MOST_OPEN * 2.0 * mesh.area()
 }
 
 /// Grows flats from the largest triangles, and tells the flat of every face.
@@ -220,7 +231,7 @@ fn flats(mesh: &TriMesh, topology: &Topology) -> (Vec<Flat>, Vec<usize>) {
         of_face[seed] = flats.len();
         while let Some(f) = pending.pop() {
             flat.faces.push(f);
-            flat.area += vectors[f].norm() / total;
+            flat.area += 0.5 * vectors[f].norm() / total;
             for corner in surface::FaceId::from(f).corners() {
                 for &other in topology.edge_corners(topology.opposite_edge(corner)) {
                     let g = other.face().index();

@@ -68,3 +68,19 @@ fn lists_are_reproducible_without_duplicates_and_full_of_near_parts() {
     assert!(near >= 80, "{near}");
     assert!(all().len() > 400, "{}", all().len());
 }
+
+#[test]
+fn parts_are_mechanical_and_bodies_are_not() {
+    let is_mechanical = |mesh: &TriMesh| mesh::SmoothRegions::of(mesh).is_mechanical;
+    for part in mechanical_parts(0, 320) {
+        // A ball has neither planes nor edges.
+        let expected = part.family() != PartFamily::Sphere;
+        assert_eq!(is_mechanical(&part.mesh(&PartMesh::default())), expected, "{}", part.name());
+    }
+    for n_vertices in [1000, 3000] {
+        let options = crate::CreatureOptions { n_poses: 1, n_vertices, ..Default::default() };
+        for shape in crate::creatures(&options).unwrap() {
+            assert!(!is_mechanical(&shape.mesh), "{}", shape.name);
+        }
+    }
+}

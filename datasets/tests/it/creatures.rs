@@ -50,7 +50,7 @@ fn families_have_their_own_labels_and_sizes() {
 
 #[test]
 fn bytes_depend_on_the_seed_and_not_on_threads_or_the_number_of_families() {
-    let few = options(5, 2);
+    let few = options(4, 2);
     let threads = |n| ThreadPoolBuilder::new().num_threads(n).build().unwrap();
     let all = threads(2).install(|| creatures(&few)).unwrap();
     assert_eq!(threads(1).install(|| creatures(&few)).unwrap(), all);

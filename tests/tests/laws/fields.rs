@@ -38,14 +38,15 @@ fn scored(field: &DistanceField, pairs: &[[VertexId; 2]], exact: &[f64]) -> Fiel
 }
 
 #[test]
-fn intervals_hold_all_pairs_of_bodies() {
+fn intervals_hold_pairs_of_bodies() {
     for family in Family::all() {
         let surface = surface(&body(family));
         let n = surface.n_input_vertices();
         let solver = Method::Exact.prepare(surface.intrinsic(), &()).unwrap();
         let vertices: Vec<VertexId> = (0..n).map(VertexId::from).collect();
-        let columns = solver.distance_columns(&vertices).unwrap();
-        let pairs: Vec<_> = vertices.iter().flat_map(|&b| vertices.iter().map(move |&a| [a, b])).collect();
+        let sources: Vec<VertexId> = vertices.iter().copied().step_by(3).collect();
+        let columns = solver.distance_columns(&sources).unwrap();
+        let pairs: Vec<_> = sources.iter().flat_map(|&b| vertices.iter().map(move |&a| [a, b])).collect();
         for method in [Method::Exact, Method::default()] {
             let field = field(&surface, method);
             let score = scored(&field, &pairs, columns.as_slice());

@@ -117,9 +117,9 @@ fn bodies(n_vertices: usize, poses: usize) -> Vec<(String, TriMesh)> {
 
 #[test]
 fn every_change_of_a_built_in_shape_is_told() {
-    for n_vertices in [1000, 3400, 10_000] {
+    for (n_vertices, poses) in [(1000, 2), (3400, 2), (10_000, 1)] {
         println!("{n_vertices} vertices");
-        for (label, score) in scores(&bodies(n_vertices, 2), &[&VARIANTS[..], &MORE].concat()) {
+        for (label, score) in scores(&bodies(n_vertices, poses), &[&VARIANTS[..], &MORE].concat()) {
             assert_eq!(score.falsely_identical, 0, "{label}");
             assert_eq!(score.right, score.all, "{n_vertices} vertices, {label}: {:?}", score.wrong);
         }
@@ -194,10 +194,12 @@ fn every_change_of_a_tosca_shape_is_told() {
         one.len(),
         shapes.len() - 1
     );
-    let scores = scores(&shapes, &VARIANTS);
+    // One in three: all of them take minutes.
+    let some: Vec<_> = shapes.iter().step_by(3).cloned().collect();
+    let scores = scores(&some, &VARIANTS);
     let total = |of: fn(&ToldKinds) -> usize| scores.values().map(of).sum::<usize>();
     let (right, all) = (total(|s| s.right), total(|s| s.all));
-    println!("{} shapes: {right} of {all} right, {:.2} %", shapes.len(), 100.0 * right as f64 / all as f64);
+    println!("{} shapes: {right} of {all} right, {:.2} %", some.len(), 100.0 * right as f64 / all as f64);
     assert_eq!(total(|s| s.falsely_identical), 0);
     assert!(right as f64 >= 0.98 * all as f64, "{right} of {all}");
 }

@@ -9,6 +9,8 @@ mod pinch;
 mod shortcut;
 mod spike;
 
+use std::cell::OnceCell;
+
 use base::{Exceeded, Observer};
 
 use crate::regions::SmoothRegions;
@@ -54,12 +56,14 @@ pub fn cut_shortcuts(mesh: &TriMesh, observer: &dyn Observer) -> Result<CutSurfa
     let budget = observer.budget();
     let size = mesh.root_of_area();
     let mut opened = pinch::cut(mesh, DETOUR * size);
-    // The holes of a part that is made of planes and cylinders are meant.
-    if SmoothRegions::of(mesh).is_mechanical {
-        return Ok(opened);
-    }
+    // The holes of a part that is made of planes and cylinders are meant. Few surfaces have handles, so that only theirs are
+    // looked at.
+    let is_mechanical = OnceCell::new();
     while let Some((cut, shortcut)) = handle::cut(&opened.refined.mesh, GIRTH * size, DETOUR * size, &budget)?
     {
+        if *is_mechanical.get_or_init(|| SmoothRegions::of(mesh).is_mechanical) {
+            break;
+        }
         let n_cut = opened.shortcuts.len() + 1;
         opened.refined = opened.refined.then(cut);
         opened.shortcuts.push(shortcut);

@@ -37,8 +37,9 @@ const MOST_DIRECTIONS: usize = 6;
 /// Directions that span a frame are at least this far from parallel (sine). A safety limit.
 const ACROSS: f64 = 0.2;
 
-/// Shares of the area and cosines that differ by less than this are alike, so that more frames are tried. A safety limit.
-const ALIKE: f64 = 0.05;
+/// Shares of the area, and half of the cosines, that differ by less than this are alike, so that more frames are tried. A
+/// safety limit.
+const ALIKE: f64 = 0.025;
 
 /// Turned starts about one axis, and about all, the samples that rank them, and how many of them are refined.
 const TURNS: usize = 36;
@@ -133,11 +134,10 @@ fn unmirrored(
 
 /// Whether a surface is its own mirror image.
 pub(super) fn is_symmetric(geometry: &MeshGeometry) -> bool {
-    let still = Similarity { motion: Alignment::about_origin(Matrix3::identity()), scale: 1.0 };
     let zero = SurfaceGap { rms: 0.0, max: 0.0 };
     // A reflection of the surface, undone by itself, is a map without a reflection.
     let is_image = |mirror: Alignment| {
-        let map = Similarity { motion: mirror.after(&still.motion), scale: 1.0 };
+        let map = Similarity { motion: mirror, scale: 1.0 };
         let near = gap(geometry, geometry, &map, RANKING).is_some_and(|gap| gap.rms < CLOSE);
         near && gap(geometry, geometry, &refined(geometry, geometry, map), usize::MAX)
             .is_some_and(|gap| !is_decisive(&zero, &gap))
@@ -226,7 +226,7 @@ fn framed_starts(a: &MeshGeometry, b: &MeshGeometry, reflected: bool) -> Vec<Ali
         is_across
             && alike(*area_x, area)
             && alike(*area_y, other_area)
-            && alike(x.dot(y).abs(), first.dot(&second).abs())
+            && alike(0.5 * x.dot(y).abs(), 0.5 * first.dot(&second).abs())
     });
     fitting
         .flat_map(|((x, _), (y, _))| [(x, y), (x, -y), (-x, y), (-x, -y)])

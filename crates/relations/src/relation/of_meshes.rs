@@ -14,8 +14,8 @@ use super::{Basis, Change, Relation, RelationKind, SIZE_OF_SURFACES, SIZE_OF_VER
 /// Triangles in common are hardly chance. A convention.
 const CUT: f64 = 0.99;
 
-/// The share of parts called variants that are variants of one part. Measured on generated parts (`cargo test -p tests
-/// --test laws mechanical -- --nocapture`).
+/// The share of parts called variants that are variants of one part. Measured on generated parts (`experiments run
+/// evidence`).
 const VARIANT: f64 = 0.95;
 
 impl Relation {

@@ -1,6 +1,6 @@
 //! In what two mechanical parts of one build differ: holes, bosses, lengths and steps.
 
-use mesh::{RegionShape, SmoothRegion};
+use mesh::{RegionShape, SmoothRegion, SmoothRegions};
 use nalgebra::Vector3;
 use serde::Serialize;
 
@@ -8,11 +8,8 @@ use super::geometry::MeshGeometry;
 use super::numbers::in_four_digits;
 use super::same_surface::euler_characteristic_if_closed;
 
-/// Directions nearer to each other than this are one (cosine). A tolerance of rounding and of arcs.
-const PARALLEL: f64 = 0.999;
-
 /// Regions with a smaller share of the area are details. A convention.
-const LEAST_AREA: f64 = 5e-4;
+const LEAST_AREA: f64 = 2.5e-4;
 
 /// Dimensions that differ by less than this share are equal, and so are those that differ by less than [`EQUAL_LENGTH`] of
 /// the size. A tolerance: arcs of few segments are measured a little too small.
@@ -139,7 +136,7 @@ impl Dimensions {
 /// Distances between neighbouring planes across a direction.
 fn steps(regions: &[&SmoothRegion], direction: &Vector3<f64>) -> Vec<f64> {
     let offset = |region: &&SmoothRegion| match region.shape {
-        RegionShape::Plane { normal, offset } if normal.dot(direction).abs() > PARALLEL => {
+        RegionShape::Plane { normal, offset } if normal.dot(direction).abs() > SmoothRegions::PARALLEL => {
             Some(offset * normal.dot(direction).signum())
         }
         _ => None,
@@ -154,7 +151,7 @@ fn steps(regions: &[&SmoothRegion], direction: &Vector3<f64>) -> Vec<f64> {
 /// that is round has its diameter across.
 fn extents(part: &MeshGeometry, directions: &[Vector3<f64>]) -> [f64; 3] {
     let first = directions.first().copied().unwrap_or_else(Vector3::x);
-    let across = directions.iter().find(|d| d.dot(&first).abs() < 1.0 - PARALLEL).copied();
+    let across = directions.iter().find(|d| d.dot(&first).abs() < 1.0 - SmoothRegions::PARALLEL).copied();
     let second = across.unwrap_or_else(|| first.cross(&Vector3::ith(first.iamin(), 1.0)).normalize());
     let frame = [first, second, first.cross(&second)];
     let along = |d: &Vector3<f64>| {
