@@ -1,6 +1,6 @@
 //! Maps between two surfaces.
 
-use canonform::correspond;
+use canonform::{VertexMap, correspond};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use report::color::{perceptual, place_colors};
@@ -10,9 +10,11 @@ use crate::run::run;
 use crate::settings::Settings;
 use crate::surface::Surface;
 
-type Maps<'py> = (String, Vec<Bound<'py, PyArray1<i64>>>, Bound<'py, PyArray2<u8>>);
+type MapArrays<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray2<f64>>);
+type Maps<'py> = (String, Vec<[Option<MapArrays<'py>>; 2]>, Bound<'py, PyArray2<u8>>);
 
-/// The maps as the JSON of `canonform match`, the partner of each vertex under each of them, and a colour for each vertex of
+/// The maps as the JSON of `canonform match`; the partner of each vertex and the map of functions under each of them and its
+/// alternative; and a colour for each vertex of
 /// the second input, by its place in the form.
 #[pyfunction]
 pub(crate) fn match_surfaces<'py>(
@@ -30,11 +32,19 @@ pub(crate) fn match_surfaces<'py>(
         let colors = place_colors(sides[1].shape.form_points());
         Ok((found, b.inner.in_input_order(&colors, perceptual(f64::NAN))))
     })?;
-    let maps = found.maps.iter().map(|map| {
+    let arrays = |map: &VertexMap| -> PyResult<MapArrays<'py>> {
         let number = |v: &Option<canonform::surface::VertexId>| v.map_or(-1, |v| i64::from(v.0));
-        map.vertices.iter().map(number).collect::<Vec<_>>().into_pyarray(py)
-    });
+        let vertices = map.vertices.iter().map(number).collect::<Vec<_>>().into_pyarray(py);
+        let k = map.functional.ncols();
+        let rows: Vec<f64> = map.functional.transpose().iter().copied().collect();
+        Ok((vertices, rows.into_pyarray(py).reshape([k, k])?))
+    };
+    let maps = found
+        .maps
+        .iter()
+        .map(|map| Ok([Some(arrays(map)?), map.alternative.as_deref().map(arrays).transpose()?]));
+    let maps = maps.collect::<PyResult<Vec<_>>>()?;
     let n_colors = colors.len();
     let colors = colors.into_flattened().into_pyarray(py).reshape([n_colors, 3])?;
-    Ok((json(&found), maps.collect(), colors))
+    Ok((json(&found), maps, colors))
 }

@@ -15,6 +15,10 @@ def test_both_maps_of_a_symmetric_pair_are_found(cats: list[Shape]) -> None:
         assert m.vertices.shape == (a.n_vertices,) and m.vertices.dtype == np.int64
         assert 0 <= m.vertices.min() and m.vertices.max() < b.n_vertices
         assert 0 < m.distortion < 0.1
+        assert m.confidence > 0.9 and m.alternative is None
+        c = m.functional(30)
+        assert c.shape == (30, 30) and np.linalg.norm(c.T @ c - np.eye(30)) / np.sqrt(30) < 0.4
+        np.testing.assert_array_equal(c, m.functional()[:30, :30])
     assert found.best.kind == "direct" or found.best.distortion < found.maps[1].distortion
     assert found._repr_html_().count("<img") == 3 and "direct" in repr(found)
 

@@ -3,7 +3,8 @@
 use std::borrow::Borrow;
 use std::time::Instant;
 
-use relations::{MapKind, map_surfaces};
+use linalg::Matrix;
+use relations::{MapKind, SurfaceMap, map_surfaces};
 use serde::Serialize;
 use surface::VertexId;
 
@@ -22,10 +23,19 @@ pub struct VertexMap {
     pub distortion: f64,
     /// How far it keeps the orientation, from -1 to 1; `None` if a surface cannot be oriented.
     pub agreement: Option<f64>,
+    /// The probability that this map is the right one of its kind: below [`SurfaceMap::CERTAIN`] another one is nearly as
+    /// good, such as one that turns people back to front.
+    pub confidence: f64,
+    /// The next best map of this kind, if this one is uncertain.
+    pub alternative: Option<Box<VertexMap>>,
     /// For every vertex of the first input, its partner among the vertices of the second input; `None` for a vertex that the
     /// repair dropped.
     #[serde(skip)]
     pub vertices: Vec<Option<VertexId>>,
+    /// The map of functions of the second surface to functions of the first: its columns are the coefficients of the
+    /// eigenfunctions of the second, pulled back, in those of the first.
+    #[serde(skip)]
+    pub functional: Matrix,
 }
 
 /// The maps from one surface to another.
@@ -69,14 +79,28 @@ pub fn correspond<S: Borrow<Surface>>(
     let start = Instant::now();
     let found = map_surfaces(&a.shape, &b.shape, &options.mapping, observer)?;
     let (from, to) = (a.surface(), b.surface());
-    let maps = found.into_iter().map(|map| {
+    let maps = found.into_iter().map(|map| VertexMap::new(map, [from, to]));
+    Ok(Correspondence { maps: maps.collect(), seconds: start.elapsed().as_secs_f64() })
+}
+
+impl VertexMap {
+    /// A map of the vertices of the repaired meshes as one of the inputs.
+    fn new(map: SurfaceMap, [from, to]: [&Surface; 2]) -> Self {
         let partners: Vec<_> = map.vertices.iter().map(|v| Some(to.input_vertex(*v))).collect();
-        VertexMap {
+        Self {
             kind: map.kind,
             distortion: map.distortion,
             agreement: map.agreement,
+            confidence: map.confidence,
+            alternative: map.alternative.map(|other| Box::new(Self::new(*other, [from, to]))),
             vertices: from.in_input_order(&partners, None),
+            functional: map.functional,
         }
-    });
-    Ok(Correspondence { maps: maps.collect(), seconds: start.elapsed().as_secs_f64() })
+    }
+
+    /// Whether no other map of its kind is nearly as good.
+    #[must_use]
+    pub fn is_certain(&self) -> bool {
+        self.confidence >= SurfaceMap::CERTAIN
+    }
 }

@@ -37,6 +37,8 @@ struct MapJson {
     /// Vertices of the first mesh that have a partner.
     matched: usize,
     path: Option<PathBuf>,
+    /// The file of the alternative.
+    alternative_path: Option<PathBuf>,
 }
 
 #[derive(Serialize)]
@@ -79,10 +81,15 @@ pub(crate) fn match_meshes(args: &MatchArgs, common: &Common) -> Result<ExitCode
             0 => path.clone(),
             _ => beside(path, map.kind.name()),
         });
-        if let (Some(path), Some(format)) = (&path, format.as_deref()) {
-            write(path, format, &map, [&a, &b], &colors)?;
+        let other = map.alternative.as_deref();
+        let alternative_path =
+            path.as_ref().filter(|_| other.is_some()).map(|path| beside(path, "alternative"));
+        for (path, map) in [(&path, Some(&map)), (&alternative_path, other)] {
+            if let (Some(path), Some(map), Some(format)) = (path, map, format.as_deref()) {
+                write(path, format, map, [&a, &b], &colors)?;
+            }
         }
-        maps.push(MapJson { matched: map.vertices.iter().flatten().count(), map, path });
+        maps.push(MapJson { matched: map.vertices.iter().flatten().count(), map, path, alternative_path });
     }
     if let (Some(path), Some("ply")) = (&args.output, format.as_deref()) {
         let path = beside(path, "target");
@@ -166,12 +173,24 @@ fn write(path: &Path, format: &str, map: &VertexMap, [a, b]: [&MappedFile; 2], c
 
 fn table(json: &MatchJson) -> String {
     let mut rows = Vec::new();
-    for MapJson { map, matched, path } in &json.maps {
+    for MapJson { map, matched, path, alternative_path } in &json.maps {
         let file = path.as_ref().map_or(String::new(), |path| format!(", in {}", path.display()));
         let agreement = map.agreement.map_or("cannot be told".to_owned(), |value| format!("{value:.2}"));
         rows.push((map.kind.name(), format!("{matched} vertices{file}")));
         rows.push(("  distortion", format!("{:.4}", map.distortion)));
         rows.push(("  agreement", agreement));
+        let other =
+            alternative_path.as_ref().map_or(String::new(), |path| format!(", in {}", path.display()));
+        rows.push(match &map.alternative {
+            None => ("  confidence", format!("{:.2}", map.confidence)),
+            Some(_) => (
+                "  confidence",
+                format!(
+                    "{:.2}: uncertain, front and back may be exchanged; another map is nearly as good{other}",
+                    map.confidence
+                ),
+            ),
+        });
     }
     if let Some(path) = &json.target {
         rows.push(("target", path.display().to_string()));

@@ -31,7 +31,8 @@ fn both_maps_of_a_pair_are_written_in_every_format() {
     assert_eq!(maps.len(), 2);
     let other = maps[1]["kind"].as_str().unwrap();
     for (map, path) in maps.iter().zip(["map.npy".to_owned(), format!("map-{other}.npy")]) {
-        assert_keys(map, "kind distortion agreement matched path");
+        assert_keys(map, "kind distortion agreement confidence alternative matched path alternative_path");
+        assert!(map["confidence"].as_f64().unwrap() > 0.9 && map["alternative"].is_null(), "{map}");
         assert_eq!(map["path"], path.as_str());
         assert!(map["distortion"].as_f64().unwrap() < 0.06, "{map}");
         let found = numbers(&place, &path);

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _canonform, _html
-from ._arrays import Ints
+from ._arrays import Floats, Ints
 from ._settings import Progress, encoded, shown
 from ._surface import Surface
 
@@ -17,8 +17,9 @@ from ._surface import Surface
 class SurfaceMap:
     """A map from the vertices of one surface to those of another."""
 
-    def __init__(self, report: dict[str, Any], vertices: Ints) -> None:
-        self.vertices = vertices
+    def __init__(self, report: dict[str, Any], arrays: list[tuple[Ints, Floats] | None]) -> None:
+        assert arrays[0] is not None
+        self.vertices, self._functional = arrays[0]
         """For each vertex of the first surface, its partner on the second, or -1 if the repair dropped the vertex; shape (n,)."""
         self.kind: str = report["kind"]
         """"direct" if the map keeps the orientation, "mirrored" if it reverses it, "unoriented" if a surface has none."""
@@ -26,6 +27,21 @@ class SurfaceMap:
         """The mean change of distances, as a share of the square root of the area."""
         self.agreement: float | None = report["agreement"]
         """How far the map keeps the orientation, from -1 to 1; `None` if a surface cannot be oriented."""
+        self.confidence: float = report["confidence"]
+        """The probability that this map is the right one of its kind, and not the next best."""
+        other = arrays[1] if len(arrays) > 1 else None
+        self.alternative: SurfaceMap | None = SurfaceMap(report["alternative"], [other]) if other is not None else None
+        """The next best map of this kind, if this one is uncertain: front and back may be exchanged."""
+
+    def functional(self, k: int | None = None) -> Floats:
+        """The map of functions, shape (k, k): column j has the coefficients of the j-th eigenfunction of the second surface,
+        pulled back to the first, in the eigenfunctions of the first. `k` is at most 150, the default."""
+        most = len(self._functional)
+        if k is None:
+            k = most
+        if not 1 <= k <= most:
+            raise ValueError(f"k is {k}; the map has {most} eigenfunctions")
+        return self._functional[:k, :k].copy()
 
     def carry(self, values: ArrayLike) -> NDArray[Any]:
         """Values at the vertices of the second surface, carried to those of the first; NaN where there is no partner."""
@@ -43,9 +59,13 @@ class Match:
     """The maps from one surface to another: the direct one first, unless it distorts distances clearly more."""
 
     def __init__(
-        self, report: dict[str, Any], vertices: list[Ints], colors: NDArray[np.uint8], shapes: tuple[Surface, Surface]
+        self,
+        report: dict[str, Any],
+        arrays: list[list[tuple[Ints, Floats] | None]],
+        colors: NDArray[np.uint8],
+        shapes: tuple[Surface, Surface],
     ) -> None:
-        self.maps = [SurfaceMap(*entry) for entry in zip(report["maps"], vertices, strict=True)]
+        self.maps = [SurfaceMap(*entry) for entry in zip(report["maps"], arrays, strict=True)]
         """At most two maps, of different kinds."""
         self.seconds: float = report["seconds"]
         """The time of the search, after both surfaces were prepared."""

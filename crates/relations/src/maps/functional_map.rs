@@ -58,6 +58,12 @@ impl FunctionalMaps {
         self.forth.nrows()
     }
 
+    /// How far both maps are from orthogonal ones: `(|C'C - I|² + |D'D - I|²) / k`. Isometries have 0.
+    pub(super) fn defect(&self) -> f64 {
+        let one = |map: &Matrix| (map.tr_mul(map) - Matrix::identity(self.k(), self.k())).norm_squared();
+        (one(&self.forth) + one(&self.back)) / self.k() as f64
+    }
+
     /// Points of the first surface, where [`partners_b`](Self::partners_b) are near those that they correspond to: `Φ`.
     pub(super) fn points_a(&self, rows: &Matrix) -> Matrix {
         rows.columns(0, self.k()).into_owned()

@@ -2,11 +2,14 @@
 //!
 //! ```text
 //! form, spectrum, distances -> MapShape
-//! two of them -> alignments of the forms -> maps of samples, refined -> SurfaceMap, the best of each orientation
+//! two of them -> maps of functions that fit, alignments of the forms -> maps of samples, refined
+//!             -> SurfaceMap, the best of each orientation
 //! ```
 
+mod curvature;
 mod functional_map;
 mod nearest_rows;
+mod operators;
 mod orientation;
 mod search;
 mod shape;

@@ -25,7 +25,7 @@ impl Oriented {
     }
 
     /// The area form `df ∧ dg` at all vertices, as a multiple of the oriented area.
-    fn area_form(&self, f: &[f64], g: &[f64]) -> Vec<f64> {
+    pub(super) fn area_form(&self, f: &[f64], g: &[f64]) -> Vec<f64> {
         let mut sums = vec![0.0; self.densities.len()];
         for face in &self.faces {
             let [a, b, c] = *face;

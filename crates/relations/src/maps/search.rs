@@ -8,6 +8,7 @@ use surface::VertexId;
 
 use super::functional_map::{FunctionalMaps, SampleMaps, SampledPair, schedule, zoom_out};
 use super::nearest_rows::Cells;
+use super::operators::{FITTED, fitted};
 use super::orientation::agreement;
 use super::shape::MapShape;
 use descriptors::Alignment;
@@ -62,8 +63,21 @@ pub struct SurfaceMap {
     pub distortion: f64,
     /// How far the map preserves orientation, from -1 to 1; `None` if a surface cannot be oriented.
     pub agreement: Option<f64>,
+    /// The probability that this map is the right one of its kind, and not the next best; calibrated by the law
+    /// `correspondence`.
+    pub confidence: f64,
     /// The partner of each vertex of the first surface.
     pub vertices: Vec<VertexId>,
+    /// The map of functions of the second surface to functions of the first, in their eigenfunctions: `C`, as in
+    /// [`LaplaceSpectrum`](descriptors::LaplaceSpectrum).
+    pub functional: Matrix,
+    /// The next best map of this kind, unless this one is [certain](Self::CERTAIN).
+    pub alternative: Option<Box<SurfaceMap>>,
+}
+
+impl SurfaceMap {
+    /// Maps of at least this confidence are certain: the next best one is so much worse that it is not refined. A convention.
+    pub const CERTAIN: f64 = 0.7;
 }
 
 // `experiments run matching` measures the maps that follow from these limits.
@@ -71,36 +85,28 @@ pub struct SurfaceMap {
 /// Maps agree with an orientation beyond this. A safety limit: it is near 1 or -1 for smooth maps, and 0 for random ones.
 const AGREEMENT: f64 = 0.1;
 
-/// A sketched map agrees with an orientation everywhere beyond this; below, it may be a mixture of two maps. A safety limit:
-/// without such maps, all beyond [`AGREEMENT`] are taken.
+/// A map agrees with an orientation everywhere beyond this; below, it may be a mixture of two maps. A safety limit: without
+/// such maps, all beyond [`AGREEMENT`] are taken.
 const SURE: f64 = 0.5;
 
-/// Samples by which the maps of all alignments are compared.
+/// Samples by which the maps of all starts are compared, and eigenfunctions of their last step.
 const SKETCHED: usize = 400;
+const SKETCH_FUNCTIONS: usize = 60;
 
-/// Eigenfunctions of the first step of a map from an alignment, and from the composition of two maps.
+/// Eigenfunctions of the first step of a map from an alignment.
 const FIRST: usize = 6;
-const COMPOSED_FIRST: usize = 14;
 
-/// Eigenfunctions of the last step of a sketch.
-const SKETCH_FUNCTIONS: usize = 24;
+/// A map from an alignment, or from another map and a mirror, is taken if its [score](Candidate::score) is below this share
+/// of that of all fitted maps, which know inside from outside. Measured on built-in people (`experiments run matching`): with
+/// 0.9 and more, a mirrored map of 30 turns from right to wrong.
+const CLEARLY_BETTER: f64 = 0.7;
 
-/// Distinct sketches of each orientation that are refined.
-const REFINED: usize = 3;
-
-/// Sketches that are composed with the symmetries of both surfaces.
-const COMPOSED: usize = 3;
-
-/// A map of a surface to itself of at most this distortion is a symmetry. A safety limit: more symmetries cost time only.
-const SYMMETRY: f64 = 0.08;
-
-/// Maps whose images are less than this apart on average, as a share of the square root of the area, are one. A safety limit:
-/// fewer maps are refined.
+/// Maps whose images are less than this apart on average, as a share of the square root of the area, are one. A safety limit.
 const SAME: f64 = 0.06;
 
-/// Of maps whose distortions are within this factor, the one that keeps the wave kernels better is chosen: measured by
-/// `experiments run matching`.
-const NEAR_BEST: f64 = 1.25;
+/// The odds that a map is right, and not the next best, are the ratio of their scores to this power. Chosen on built-in
+/// people of 1,000 and 3,400 vertices.
+const ODDS: f64 = 8.0;
 
 /// The direct map comes second if its distortion is more than this multiple of the mirrored one's. A convention.
 const CLEARLY_WORSE: f64 = 1.5;
@@ -111,15 +117,20 @@ struct Candidate {
     functional: FunctionalMaps,
     /// Vertices of the second surface: the images of the landmarks of the first.
     images: Vec<usize>,
-    distortion: f64,
     agreement: Option<f64>,
-    /// How far the wave kernels of corresponding samples differ, from 0 to 1.
-    waves: f64,
+    /// Lower is better: the distortion of distances times the distance of the maps of functions from orthogonal ones,
+    /// `(|C'C - I|² + |D'D - I|²) / k`. A man turned back to front keeps distances nearly as well as another pose does, but
+    /// his map is no isometry in detail.
+    score: f64,
 }
 
 impl Candidate {
     fn kind(&self) -> MapKind {
         kind(self.agreement, AGREEMENT)
+    }
+
+    fn is_sure(&self) -> bool {
+        self.kind() == kind(self.agreement, SURE)
     }
 }
 
@@ -134,14 +145,12 @@ fn kind(agreement: Option<f64>, least: f64) -> MapKind {
 /// The best maps of the first surface to the second, one for each orientation: the direct one first, unless it distorts
 /// distances clearly more.
 ///
-/// 1. Every alignment of the forms maps samples to the nearest ones. These maps are refined on few eigenfunctions of the
-///    Laplacian, there and back (ZoomOut, `melzi2019` in `REFERENCES.bib`).
-/// 2. The best of them are composed with the symmetries of both surfaces, their maps to themselves, which are found in the
-///    same way. So no map is missed because the alignment that leads to it fits badly.
-/// 3. The best maps of each orientation that differ from each other are refined on all samples and eigenfunctions.
-/// 4. Of those of nearly the least distortion, one is chosen by the wave kernels of corresponding points. A man turned back
-///    to front keeps distances nearly as well as another pose does, but not the wave kernels of face, chest and feet.
-/// 5. All vertices follow.
+/// 1. Maps of functions are fitted in closed form to the curvature and the wave kernels of both surfaces, once for each
+///    orientation (`ren2018` in `REFERENCES.bib`). Each alignment of the forms maps samples to the nearest ones, too.
+/// 2. All these maps are refined with few samples, by taking in eigenfunctions of higher frequency, there and back (ZoomOut,
+///    `melzi2019`).
+/// 3. Of each orientation, the one that keeps distances and the products of functions best is refined on all samples and
+///    eigenfunctions, and all vertices follow. How much worse the next best is says how certain it is.
 ///
 /// Shapes that are alike under a mirror have two maps of small distortion; for others, one of the two has a large
 /// distortion. If a surface cannot be oriented, there is one map.
@@ -154,25 +163,17 @@ pub fn map_surfaces(
     options: &MapOptions,
     observer: &dyn Observer,
 ) -> Result<Vec<SurfaceMap>, DescriptorError> {
-    let search = MapSearch { options, budget: observer.budget() };
-    let n_sketched = SKETCHED.min(a.samples.len()).min(b.samples.len());
-    let found = search.sketches(a, b, n_sketched)?;
-    let [of_a, of_b] = [search.symmetries(a, n_sketched)?, search.symmetries(b, n_sketched)?];
-    let composed = found.iter().take(COMPOSED).flat_map(|map| {
-        let before = of_a.iter().map(|symmetry| symmetry.maps.then(&map.maps));
-        before.chain(of_b.iter().map(|symmetry| map.maps.then(&symmetry.maps)))
-    });
-    let composed: Vec<SampleMaps> = composed.collect();
-    let composed = search.zoomed(a, b, composed, n_sketched, [COMPOSED_FIRST, SKETCH_FUNCTIONS])?;
-    let sketched = distinct(b, found.into_iter().chain(composed).collect())?;
+    let budget = observer.budget();
+    let search = MapSearch { a, b, options, budget: &budget };
+    let mut sketches = search.sketches()?;
     let mut maps = Vec::new();
     for sought in [MapKind::Direct, MapKind::Mirrored, MapKind::Unoriented] {
         if sought == MapKind::Unoriented && !maps.is_empty() {
             break;
         }
-        if let Some(best) = search.refined(a, b, &sketched, sought)? {
-            maps.push(best.on_all_vertices(a, b)?);
-        }
+        let (of_kind, others) = sketches.into_iter().partition(|found| found.kind() == sought);
+        sketches = others;
+        maps.extend(search.best(of_kind)?);
     }
     if let [direct, mirrored] = &maps[..]
         && mirrored.distortion * CLEARLY_WORSE < direct.distortion
@@ -183,74 +184,105 @@ pub fn map_surfaces(
 }
 
 /// A search with its options.
+#[derive(Clone, Copy)]
 struct MapSearch<'a> {
+    a: &'a MapShape,
+    b: &'a MapShape,
     options: &'a MapOptions,
-    budget: Budget,
+    budget: &'a Budget,
 }
 
 impl MapSearch<'_> {
-    /// The maps of all alignments of the forms that differ from each other, refined on few samples and eigenfunctions;
-    /// that of least distortion first.
-    fn sketches(&self, a: &MapShape, b: &MapShape, n: usize) -> Result<Vec<Candidate>, DescriptorError> {
-        let starts =
-            alignments(&a.form, &b.form).iter().map(|motion| nearest_samples(a, b, motion, n)).collect();
-        distinct(b, self.zoomed(a, b, starts, n, [FIRST, SKETCH_FUNCTIONS])?)
-    }
-
-    /// Maps of a surface to itself that distort distances little, except the identity.
-    fn symmetries(&self, shape: &MapShape, n: usize) -> Result<Vec<Candidate>, DescriptorError> {
-        let mut found = self.sketches(shape, shape, n.min(shape.samples.len()))?;
-        let moves = |map: &Candidate| map.images.iter().zip(shape.landmarks()).any(|(y, x)| y != x);
-        found.retain(|map| map.distortion < SYMMETRY && moves(map));
+    /// Maps of few samples and eigenfunctions from all starts.
+    fn sketches(&self) -> Result<Vec<Candidate>, DescriptorError> {
+        let (a, b) = (self.a, self.b);
+        let n = SKETCHED.min(a.samples.len()).min(b.samples.len());
+        let [rows_a, rows_b] = [a, b].map(|shape| shape.at_samples.rows(0, n).into_owned());
+        let pair = SampledPair { a: &rows_a, b: &rows_b };
+        let starts = [1.0, -1.0].into_iter().flat_map(|sign| fitted_starts(pair, [a, b], sign)).collect();
+        let mut found = self.zoomed(starts, [FITTED, SKETCH_FUNCTIONS])?;
+        let best = |kind: MapKind| {
+            let of_kind = found.iter().filter(|found| found.kind() == kind);
+            of_kind.min_by(|x, y| x.score.total_cmp(&y.score)).map(|found| &found.maps)
+        };
+        let best = [best(MapKind::Direct), best(MapKind::Mirrored)];
+        let [of_a, of_b] = [self.mirror(a, &rows_a)?, self.mirror(b, &rows_b)?];
+        let composed = best.into_iter().flatten().flat_map(|maps| {
+            let before = of_a.iter().map(|mirror| mirror.then(maps));
+            before.chain(of_b.iter().map(|mirror| maps.then(mirror)))
+        });
+        let composed = composed.collect();
+        let aligned = alignments(&a.form, &b.form);
+        let aligned = aligned.iter().map(|motion| nearest_samples(a, b, motion, n)).collect();
+        let others = self.zoomed(composed, [FITTED, SKETCH_FUNCTIONS])?.into_iter();
+        let others = others.chain(self.zoomed(aligned, [FIRST, SKETCH_FUNCTIONS])?);
+        found.extend(others.map(|found| Candidate { score: found.score / CLEARLY_BETTER, ..found }));
         Ok(found)
     }
 
-    /// The best map of one orientation, refined on all samples and eigenfunctions.
-    fn refined(
-        &self,
-        a: &MapShape,
-        b: &MapShape,
-        sketched: &[Candidate],
-        sought: MapKind,
-    ) -> Result<Option<Candidate>, DescriptorError> {
-        let all = SampledPair { a: &a.at_samples, b: &b.at_samples };
-        let starts = |least: f64| -> Vec<SampleMaps> {
-            let of_kind = sketched.iter().filter(|found| kind(found.agreement, least) == sought);
-            of_kind.take(REFINED).map(|found| found.functional.sample_maps(all)).collect()
-        };
-        let mut chosen = starts(if sought == MapKind::Unoriented { AGREEMENT } else { SURE });
-        if chosen.is_empty() {
-            chosen = starts(AGREEMENT);
-        }
-        let n_samples = a.samples.len().min(b.samples.len());
-        let mut refined =
-            self.zoomed(a, b, chosen, n_samples, [SKETCH_FUNCTIONS, self.options.eigenfunctions])?;
-        // A map that keeps the orientation in one place and reverses it in another is a mixture of two.
-        refined.retain(|found| found.kind() == sought);
-        if refined.iter().any(|found| kind(found.agreement, SURE) == sought) {
-            refined.retain(|found| kind(found.agreement, SURE) == sought);
-        }
-        by_distortion(&mut refined);
-        let limit = refined.first().map_or(0.0, |best| best.distortion * NEAR_BEST);
-        let near = refined.into_iter().filter(|found| found.distortion <= limit);
-        Ok(near.min_by(|x, y| x.waves.total_cmp(&y.waves)))
+    /// The map of the samples of a surface to themselves that reverses its orientation and scores best.
+    fn mirror(&self, shape: &MapShape, rows: &Matrix) -> Result<Option<SampleMaps>, DescriptorError> {
+        let pair = SampledPair { a: rows, b: rows };
+        let starts = fitted_starts(pair, [shape; 2], -1.0);
+        let search = MapSearch { a: shape, b: shape, ..*self };
+        let found = search.zoomed(starts, [FITTED, SKETCH_FUNCTIONS])?;
+        let mirrored = found.into_iter().filter(|found| found.kind() == MapKind::Mirrored);
+        Ok(mirrored.min_by(|x, y| x.score.total_cmp(&y.score)).map(|found| found.maps))
     }
 
-    /// Refines maps of the first `n` samples, from some eigenfunctions to more.
-    fn zoomed(
-        &self,
-        a: &MapShape,
-        b: &MapShape,
-        starts: Vec<SampleMaps>,
-        n: usize,
-        ends: [usize; 2],
-    ) -> Result<Vec<Candidate>, DescriptorError> {
+    /// The best map of candidates of one kind, refined on all samples and eigenfunctions.
+    fn best(&self, mut found: Vec<Candidate>) -> Result<Option<SurfaceMap>, DescriptorError> {
+        if found.iter().any(Candidate::is_sure) {
+            found.retain(Candidate::is_sure);
+        }
+        found.sort_by(|x, y| x.score.total_cmp(&y.score));
+        let Some(best) = found.first() else { return Ok(None) };
+        let rival = found.iter().find_map(|other| match self.is_same(best, other) {
+            Ok(true) => None,
+            Ok(false) => Some(Ok(other)),
+            Err(error) => Some(Err(error)),
+        });
+        let rival = rival.transpose()?;
+        let odds =
+            rival.map_or(f64::INFINITY, |rival| (rival.score / best.score.max(f64::MIN_POSITIVE)).powf(ODDS));
+        let confidence = if odds.is_finite() { odds / (1.0 + odds) } else { 1.0 };
+        let mut map = self.refined(best, confidence)?;
+        if let Some(rival) = rival.filter(|_| confidence < SurfaceMap::CERTAIN) {
+            map.alternative = Some(Box::new(self.refined(rival, 1.0 - confidence)?));
+        }
+        Ok(Some(map))
+    }
+
+    /// Whether two maps are nearly the same: the distance of two points is at least the difference of their distances from
+    /// any landmark.
+    fn is_same(&self, x: &Candidate, y: &Candidate) -> Result<bool, DescriptorError> {
+        let [x, y] = [self.b.distances_to(&x.images)?, self.b.distances_to(&y.images)?];
+        let gaps = x.column_iter().zip(y.column_iter()).map(|(x, y)| (x - y).amax());
+        Ok(gaps.sum::<f64>() < SAME * x.ncols() as f64)
+    }
+
+    /// A map on all samples and eigenfunctions, and then on all vertices.
+    fn refined(&self, sketch: &Candidate, confidence: f64) -> Result<SurfaceMap, DescriptorError> {
+        let all = SampledPair { a: &self.a.at_samples, b: &self.b.at_samples };
+        let start = sketch.functional.sample_maps(all);
+        let refined = self.zoomed(vec![start], [SKETCH_FUNCTIONS, self.options.eigenfunctions])?;
+        // Refinement may mix two maps; the sketch is not a mixture.
+        match refined.iter().find(|found| found.kind() == sketch.kind()) {
+            Some(found) => found.on_all_vertices(self.a, self.b, confidence),
+            None => sketch.on_all_vertices(self.a, self.b, confidence),
+        }
+    }
+
+    /// Refines maps of the first samples, from some eigenfunctions to more.
+    fn zoomed(&self, starts: Vec<SampleMaps>, ends: [usize; 2]) -> Result<Vec<Candidate>, DescriptorError> {
+        let (a, b) = (self.a, self.b);
+        // A map of all samples is one of all on both sides, which may differ in number.
+        let lengths = starts.first().map_or([0; 2], |start| [start.forth.len(), start.back.len()]);
+        let n = lengths[0].min(lengths[1]);
         let known = a.vectors.ncols().min(b.vectors.ncols()).min((n / 4).max(1));
         let [first, last] = ends.map(|k| k.min(known).min(self.options.eigenfunctions.max(1)));
         let counts = schedule(first, last);
-        // A map of all samples is one of all on both sides, which may differ in number.
-        let rows = |shape: &MapShape, starts: usize| shape.at_samples.rows(0, starts).into_owned();
-        let lengths = starts.first().map_or([0; 2], |start| [start.forth.len(), start.back.len()]);
+        let rows = |shape: &MapShape, n: usize| shape.at_samples.rows(0, n).into_owned();
         let (rows_a, rows_b) = (rows(a, lengths[0]), rows(b, lengths[1]));
         let pair = SampledPair { a: &rows_a, b: &rows_b };
         let one = |start: SampleMaps| {
@@ -262,30 +294,10 @@ impl MapSearch<'_> {
     }
 }
 
-fn by_distortion(found: &mut [Candidate]) {
-    found.sort_by(|x, y| x.distortion.total_cmp(&y.distortion));
-}
-
-/// The maps by ascending distortion, without those that are nearly the same as one before. Maps of two orientations are never
-/// the same, however thin the body is.
-fn distinct(b: &MapShape, mut found: Vec<Candidate>) -> Result<Vec<Candidate>, DescriptorError> {
-    by_distortion(&mut found);
-    let mut kept: Vec<(Candidate, Matrix)> = Vec::new();
-    for candidate in found {
-        let places = b.distances_to(&candidate.images)?;
-        // The distance of two points is at least the difference of their distances from any landmark.
-        let is_same = |(kept, other): &(Candidate, Matrix)| {
-            if kept.kind() != candidate.kind() {
-                return false;
-            }
-            let gaps = places.column_iter().zip(other.column_iter()).map(|(x, y)| (x - y).amax());
-            gaps.sum::<f64>() < SAME * places.ncols() as f64
-        };
-        if !kept.iter().any(is_same) {
-            kept.push((candidate, places));
-        }
-    }
-    Ok(kept.into_iter().map(|(candidate, _)| candidate).collect())
+/// Maps of the first samples that follow from fitted maps of functions.
+fn fitted_starts(pair: SampledPair<'_>, [a, b]: [&MapShape; 2], sign: f64) -> Vec<SampleMaps> {
+    let fitted = a.operators.iter().zip(&b.operators).flat_map(|(x, y)| fitted(x, y, sign));
+    fitted.map(|forth| FunctionalMaps { back: forth.transpose(), forth }.sample_maps(pair)).collect()
 }
 
 /// Maps each of the first samples to the nearest one in the aligned forms.
@@ -319,11 +331,16 @@ impl Candidate {
         let pairs: Vec<(usize, usize)> =
             a.samples.iter().zip(&maps.forth).map(|(&x, &y)| (x, b.samples[y as usize])).collect();
         let agreement = orientation(a, b, &functional, &pairs);
-        let waves = wave_gap(&a.waves, &b.waves, &maps.forth);
-        Ok(Self { maps, functional, images: forth, distortion, agreement, waves })
+        let score = distortion * functional.defect();
+        Ok(Self { maps, functional, images: forth, agreement, score })
     }
 
-    fn on_all_vertices(&self, a: &MapShape, b: &MapShape) -> Result<SurfaceMap, DescriptorError> {
+    fn on_all_vertices(
+        &self,
+        a: &MapShape,
+        b: &MapShape,
+        confidence: f64,
+    ) -> Result<SurfaceMap, DescriptorError> {
         let (on_a, on_b) = (self.functional.partners_b(&b.vectors), self.functional.partners_a(&a.vectors));
         let near_b = Cells { rows: &on_a, centres: &b.samples, members: &b.cells };
         let near_a = Cells { rows: &on_b, centres: &a.samples, members: &a.cells };
@@ -333,7 +350,15 @@ impl Candidate {
         let back: Vec<usize> = back.into_iter().map(|x| x as usize).collect();
         let distortion = codistortion(a, b, &images, &back)?;
         let vertices = forth.into_iter().map(VertexId).collect();
-        Ok(SurfaceMap { kind: self.kind(), distortion, agreement: self.agreement, vertices })
+        Ok(SurfaceMap {
+            kind: self.kind(),
+            distortion,
+            agreement: self.agreement,
+            confidence,
+            vertices,
+            functional: self.functional.forth.clone(),
+            alternative: None,
+        })
     }
 }
 
@@ -344,17 +369,6 @@ fn codistortion(a: &MapShape, b: &MapShape, forth: &[usize], back: &[usize]) -> 
     let gaps = (0..on_a.nrows()).flat_map(|i| (0..on_a.ncols()).map(move |j| (i, j)));
     let sum: f64 = gaps.map(|(i, j)| (on_a[(i, j)] - on_b[(j, i)]).abs()).sum();
     Ok(sum / on_a.len().max(1) as f64)
-}
-
-/// The mean of `|w - v| / (w + v)` over the wave kernels of corresponding samples.
-fn wave_gap(a: &Matrix, b: &Matrix, forth: &[u32]) -> f64 {
-    let mut sum = 0.0;
-    for (x, &y) in forth.iter().enumerate() {
-        for (w, v) in a.row(x).iter().zip(b.row(y as usize).iter()) {
-            sum += (w - v).abs() / (w + v).max(f64::MIN_POSITIVE);
-        }
-    }
-    sum / (forth.len() * a.ncols()).max(1) as f64
 }
 
 /// How far a map of vertices preserves orientation.

@@ -4,12 +4,18 @@ use linalg::{LandmarkDistances, Matrix};
 use mesh::TriMesh;
 use nalgebra::Point3;
 
+use super::curvature::curvatures;
+use super::operators::Operators;
 use super::orientation::Oriented;
+use crate::outward::outward;
 use descriptors::DescriptorError;
 use descriptors::LaplaceSpectrum;
 use descriptors::PreparedForm;
 use descriptors::wave_kernels;
 use descriptors::{CanonicalForm, Normalization};
+
+/// One in so many wave kernels takes part in fitted maps: neighbours are nearly the same. As `ren2018` in `REFERENCES.bib`.
+const KERNELS: usize = 5;
 
 /// A surface with everything that maps to other surfaces are found by. Lengths are those of the surface at unit area.
 #[derive(Debug)]
@@ -25,8 +31,9 @@ pub struct MapShape {
     pub(super) cells: Vec<Vec<u32>>,
     /// Eigenfunctions at the samples.
     pub(super) at_samples: Matrix,
-    /// Wave kernels at the samples.
-    pub(super) waves: Matrix,
+    /// What maps of functions are fitted to: with the curvature, which knows inside from outside, if the surface has an
+    /// inside; and with the wave kernels, too.
+    pub(super) operators: Vec<Operators>,
     distances: LandmarkDistances,
     size: f64,
     /// `None` if the surface cannot be oriented.
@@ -68,11 +75,13 @@ impl MapShape {
         for (vertex, &sample) in (0..).zip(nearest) {
             cells[sample].push(vertex);
         }
+        let oriented = Oriented::new(mesh, &spectrum.masses);
+        let operators = operators(mesh, &spectrum, oriented.as_ref());
         Ok(Self {
             points: at,
             at_samples: spectrum.vectors.select_rows(&samples),
-            oriented: Oriented::new(mesh, &spectrum.masses),
-            waves: wave_kernels(&spectrum, &samples),
+            oriented,
+            operators,
             size: spectrum.area.sqrt(),
             vectors: spectrum.vectors,
             form,
@@ -106,4 +115,16 @@ impl MapShape {
         }
         Ok(found)
     }
+}
+
+fn operators(mesh: &TriMesh, spectrum: &LaplaceSpectrum, oriented: Option<&Oriented>) -> Vec<Operators> {
+    let all: Vec<usize> = (0..mesh.n_vertices()).collect();
+    let kernels = wave_kernels(spectrum, &all);
+    let some: Vec<usize> = (0..kernels.ncols()).step_by(KERNELS).collect();
+    let kernels = kernels.select_columns(&some);
+    let Some(outward) = outward(mesh) else { return vec![Operators::new(spectrum, kernels, oriented)] };
+    let curvatures = curvatures(&outward, spectrum);
+    let columns: Vec<_> = kernels.column_iter().chain(curvatures.column_iter()).collect();
+    let both = Matrix::from_columns(&columns);
+    vec![Operators::new(spectrum, curvatures, oriented), Operators::new(spectrum, both, oriented)]
 }

@@ -279,7 +279,8 @@ export class Answer {
       return;
     }
     const words = { direct: 'the map that keeps left and right', mirrored: 'the mirrored map', unoriented: 'the map' };
-    const change = ({ kind, distortion }) => `${words[kind]} changes distances by ${number(100 * distortion)} % of the square root of the area`;
+    const doubt = ({ alternative }) => (alternative ? ' (uncertain: front and back may be exchanged)' : '');
+    const change = (map) => `${words[map.kind]} changes distances by ${number(100 * map.distortion)} % of the square root of the area${doubt(map)}`;
     facts.textContent = `${sentence(answer.maps.map(change).join(', '))} Points that the first map joins have the same colour.`;
     await Promise.all(['match-first', 'match-second'].map(
       (id, i) => view(id, answer.meshes[i], { title: [answer.a, answer.b][i] })));

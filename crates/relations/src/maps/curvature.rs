@@ -1,0 +1,70 @@
+//! The curvature of a surface, which tells its inside from its outside.
+
+use linalg::Matrix;
+use mesh::TriMesh;
+use nalgebra::DVector;
+use surface::{EdgeId, Topology};
+
+use descriptors::LaplaceSpectrum;
+
+/// Times of heat by which the curvature is smoothed, at unit area. A convention: bumps of 3 to 10 % of the square root of the
+/// area are left.
+const TIMES: [f64; 3] = [0.001, 0.003, 0.01];
+
+/// The mean curvature, positive where the surface bulges outwards, smoothed by heat: a row for each vertex, a column for each
+/// time. `outward` has its normals outwards.
+pub(super) fn curvatures(outward: &TriMesh, spectrum: &LaplaceSpectrum) -> Matrix {
+    let integrated = spectrum.vectors.transpose() * mean_curvature(outward);
+    let mut found = Matrix::zeros(outward.n_vertices(), TIMES.len());
+    for (mut column, time) in found.column_iter_mut().zip(TIMES) {
+        let left = spectrum.values.iter().map(|value| (-time * value).exp());
+        let left = DVector::from_iterator(integrated.len(), left).component_mul(&integrated);
+        column.copy_from(&(&spectrum.vectors * left));
+    }
+    found
+}
+
+/// The mean curvature, integrated around every vertex: half of the bend of each edge, which is its length times the angle
+/// between the normals of its faces, goes to either end (Cohen-Steiner and Morvan 2003, `cohensteiner2003` in
+/// `REFERENCES.bib`), up to a factor.
+fn mean_curvature(outward: &TriMesh) -> DVector<f64> {
+    let topology = Topology::new(outward.n_vertices(), outward.faces.clone());
+    let mut sums = DVector::zeros(outward.n_vertices());
+    for (e, ends) in topology.edges().iter().enumerate() {
+        let &[corner, opposite] = topology.edge_corners(EdgeId::from(e)) else { continue };
+        let [m, n] = [corner, opposite].map(|corner| outward.area_vector(corner.face().index()));
+        let [p, q] = ends.map(|v| outward.positions[v.index()]);
+        let tip = outward.positions[topology.corner_vertex(opposite).index()];
+        // Convex if the other face lies below this one.
+        let sign = if m.dot(&(tip - p)) < 0.0 { 1.0 } else { -1.0 };
+        let bend = sign * (q - p).norm() * m.cross(&n).norm().atan2(m.dot(&n));
+        ends.iter().for_each(|v| sums[v.index()] += bend);
+    }
+    sums
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mesh::shapes;
+
+    #[test]
+    fn a_ball_bulges_evenly_and_a_ring_bulges_outside() {
+        let of = |mesh: &TriMesh| {
+            let spectrum = LaplaceSpectrum::new(&mesh.intrinsic(), 60, &()).unwrap();
+            curvatures(mesh, &spectrum)
+        };
+        let ball = of(&shapes::icosphere(4));
+        assert!(ball.min() > 0.0 && ball.max() < 1.05 * ball.min(), "{} to {}", ball.min(), ball.max());
+        // The mean curvature of a ring is 1/2 (1/r + cos(v) / (R + r cos(v))).
+        let ring = shapes::torus(80, 40, 2.0, 1.0);
+        let found = of(&ring);
+        let ratio = |v: usize| {
+            let along = ring.positions[v].x.hypot(ring.positions[v].y);
+            found[(v, 0)] / (1.0 + (along - 2.0) / along)
+        };
+        let ratios: Vec<f64> = (0..ring.n_vertices()).map(ratio).collect();
+        let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
+        assert!(ratios.iter().all(|x| (x / mean - 1.0).abs() < 0.3), "{mean}");
+    }
+}
