@@ -10,11 +10,12 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import get_args
 
 import canonform
 import pytest
-from canonform import _canonform
-from conftest import ROOT
+from canonform import _canonform, _settings
+from conftest import ROOT, grid
 
 SOURCE = ROOT / "crates" / "py" / "python" / "canonform"
 MODULES = sorted(path.stem for path in SOURCE.glob("*.py") if path.stem != "__init__")
@@ -41,6 +42,23 @@ def test_types_hold() -> None:
     command = [sys.executable, "-m", "mypy", "--config-file", ROOT / "crates" / "py" / "pyproject.toml", SOURCE]
     done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT / "crates" / "py")
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_types_name_what_is_possible() -> None:
+    square = canonform.Surface(*grid())
+    assert get_args(_settings.DistanceMethod) == tuple(canonform.distance_methods())
+    assert get_args(_settings.EmbeddingMethod) == tuple(canonform.embedding_methods())
+    others = {
+        "update": _settings.Update,
+        "obtuse": _settings.Obtuse,
+        "sampling": _settings.Sampling,
+        "regularization": _settings.Regularization,
+        "stress": _settings.Stress,
+    }
+    for option, named in others.items():
+        with pytest.raises(canonform.errors.OptionError) as raised:
+            square.canonical_form(**{option: "?"})
+        assert set(re.findall('"([^"?]+)"', str(raised.value).split("use ")[1])) == set(get_args(named)), option
 
 
 def test_stubs_name_what_the_module_has() -> None:

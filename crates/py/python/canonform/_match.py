@@ -10,11 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _canonform, _html
 from ._arrays import Ints
-from ._settings import Progress, encoded, shown
-from ._surface import Surface
+from ._settings import DistanceMethod, Progress, encoded, shown
+from ._stored import Stored
+from ._surface import AnyMesh, Surface, surface_of
 
 
-class SurfaceMap:
+class SurfaceMap(Stored):
     """A map from the vertices of one surface to those of another."""
 
     def __init__(self, report: dict[str, Any], vertices: Ints) -> None:
@@ -39,7 +40,7 @@ class SurfaceMap:
         return f"SurfaceMap({self.kind!r}, distortion={self.distortion:.4f})"
 
 
-class Match:
+class Match(Stored):
     """The maps from one surface to another: the direct one first, unless it distorts distances clearly more."""
 
     def __init__(
@@ -75,17 +76,17 @@ class Match:
 
 
 def match(
-    a: Surface,
-    b: Surface,
+    a: AnyMesh,
+    b: AnyMesh,
     *,
     eigenfunctions: int | None = None,
     n: int | str = 100,
-    geodesic: str = "fast-marching",
+    geodesic: DistanceMethod = "fast-marching",
     timeout: float | None = None,
     memory: int | str | None = None,
     progress: Progress = False,
 ) -> Match:
-    """Map the vertices of `a` to those of `b`.
+    """Map the vertices of `a` to those of `b`: surfaces, mesh files, or meshes in memory.
 
     Shapes that are alike under a mirror, as animals are, have two maps: the direct one takes the left side to the left side, the
     mirrored one to the right side. Both are found. Each surface is prepared once, and kept.
@@ -98,6 +99,7 @@ def match(
         How the canonical forms are made whose alignments the search starts from, as in `Surface.canonical_form`.
     """
     settings = encoded(eigenfunctions=eigenfunctions, n=n, geodesic=geodesic, timeout=timeout, memory=memory)
+    a, b = surface_of(a), surface_of(b)
     with shown(progress) as report:
         found, vertices, colors = _canonform.match_surfaces(a._inner, b._inner, settings, report)
     return Match(json.loads(found), vertices, colors, (a, b))
