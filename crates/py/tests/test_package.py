@@ -9,6 +9,7 @@ import inspect
 import re
 import subprocess
 import sys
+import textwrap
 from pathlib import Path
 from typing import get_args
 
@@ -84,6 +85,19 @@ def test_everything_public_is_documented() -> None:
             for member, value in vars(found).items():
                 if not member.startswith("_") and (callable(value) or isinstance(value, (property, classmethod))):
                     assert inspect.getdoc(getattr(found, member)), f"{name}.{member}"
+
+
+def test_every_attribute_is_documented() -> None:
+    classes = [getattr(canonform, name) for name in canonform.__all__ if inspect.isclass(getattr(canonform, name))]
+    for found in [*classes, canonform.datasets.Shape]:
+        source = ast.parse(textwrap.dedent(inspect.getsource(found))).body[0]
+        assert isinstance(source, ast.ClassDef)
+        fields = [n.target.id for n in source.body if isinstance(n, ast.AnnAssign) and isinstance(n.target, ast.Name)]
+        stored = [n for n in ast.walk(source) if isinstance(n, ast.Attribute) and isinstance(n.ctx, ast.Store)]
+        stores = [n.attr for n in stored if isinstance(n.value, ast.Name) and n.value.id == "self"]
+        words = set(re.findall(r"\w+", inspect.getdoc(found) or ""))
+        missing = {name for name in fields + stores if not name.startswith("_") and not name.endswith("_")} - words
+        assert not missing, (found, missing)
 
 
 def test_the_version_is_that_of_the_workspace() -> None:

@@ -123,3 +123,26 @@ def test_values_are_equal_and_hash(square: Surface, first: Callable, second: Cal
     a, b, c = first(square), second(square), other(square)
     assert a == b and hash(a) == hash(b) and a != c and a != "a"
     assert len({a, b, c}) == 2
+
+
+def test_many_calls_take_no_more_memory(square: Surface) -> None:
+    resource = pytest.importorskip("resource")
+    field = square.distance_field(10)
+    form = square.canonical_form(n=20)
+
+    def call(times: int) -> None:
+        for i in range(times):
+            square.distances(i % 81)
+            field.pair(3, i % 81)
+            form.place(i % 81)
+            if i % 10 == 0:
+                pickle.loads(pickle.dumps(square))
+                pickle.loads(pickle.dumps(field))
+                with pytest.raises(CanonformError):
+                    square.distances(81)
+
+    call(500)
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    call(2000)
+    kilobytes = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before
+    assert kilobytes < 5000

@@ -17,19 +17,28 @@ from ._surface import AnyMesh, Surface, surface_of
 
 
 class Alignment(Stored):
-    """The rigid motion that takes one form onto another: `points @ rotation.T + translation`."""
+    """The rigid motion that takes one form onto another: `points @ rotation.T + translation`.
+
+    Attributes
+    ----------
+    rotation
+        An orthogonal matrix, shape (3, 3); its determinant is -1 if the motion includes a reflection.
+    translation
+        In mesh units, shape (3,).
+    reflected
+        Whether the motion includes a reflection.
+    rms
+        Root mean square distance between nearest points of the aligned forms, in mesh units.
+    hausdorff95
+        Hausdorff distance without the farthest 5 % of points, in mesh units.
+    """
 
     def __init__(self, inner: _canonform.Alignment) -> None:
         self.rotation: Floats = inner.rotation()
-        """An orthogonal matrix, shape (3, 3); its determinant is -1 if the motion includes a reflection."""
         self.translation: Floats = inner.translation()
-        """In mesh units, shape (3,)."""
         self.reflected: bool = inner.reflected
-        """Whether the motion includes a reflection."""
         self.rms: float = inner.rms
-        """Root mean square distance between nearest points of the aligned forms, in mesh units."""
         self.hausdorff95: float = inner.hausdorff95
-        """Hausdorff distance without the farthest 5 % of points, in mesh units."""
 
     def apply(self, points: ArrayLike) -> Floats:
         """Moves points, shape (k, 3)."""
@@ -53,13 +62,19 @@ def align(a: Form | AnyMesh, b: Form | AnyMesh, *, reflections: bool = True) -> 
 
 
 class Comparison(Stored):
-    """How two shapes resemble each other."""
+    """How two shapes resemble each other.
+
+    Attributes
+    ----------
+    report
+        The object that `canonform compare --json` prints.
+    residuals
+        For each vertex of the first mesh, the distance of its form from that of the second, in mesh units; shape (n,).
+    """
 
     def __init__(self, report: dict[str, Any], residuals: Floats, shapes: tuple[Surface, Surface]) -> None:
         self.report = report
-        """The object that `canonform compare --json` prints."""
         self.residuals = residuals
-        """For each vertex of the first mesh, the distance of its form from that of the second, in mesh units; shape (n,)."""
         self._shapes = shapes
 
     @property

@@ -19,16 +19,24 @@ from .errors import PointError
 
 @dataclass(frozen=True)
 class PairDistance:
-    """The distance of two vertices, with bounds, in mesh units."""
+    """The distance of two vertices, with bounds, in mesh units.
+
+    Attributes
+    ----------
+    distance
+        The estimate, between the bounds.
+    lower
+        The distance is not below this.
+    upper
+        The distance is not above this.
+    exact
+        Whether the distance is exact instead of an estimate.
+    """
 
     distance: float
-    """The estimate, between the bounds."""
     lower: float
-    """The distance is not below this."""
     upper: float
-    """The distance is not above this."""
     exact: bool
-    """Whether the distance is exact instead of an estimate."""
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -36,16 +44,23 @@ class PairDistances(ByValue):
     """The distances of several pairs, with bounds: arrays of one number for each pair, in mesh units.
 
     `numpy.asarray(distances)` gives the distances.
+
+    Attributes
+    ----------
+    distance
+        The estimates, between the bounds. Infinite if the repair dropped one of the vertices.
+    lower
+        No distance is below these.
+    upper
+        No distance is above these.
+    exact
+        Which distances are exact instead of estimates.
     """
 
     distance: Floats
-    """The estimates, between the bounds. Infinite if the repair dropped one of the vertices."""
     lower: Floats
-    """No distance is below these."""
     upper: Floats
-    """No distance is above these."""
     exact: NDArray[np.bool_]
-    """Which distances are exact instead of estimates."""
 
     def __len__(self) -> int:
         return len(self.distance)

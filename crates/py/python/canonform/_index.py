@@ -48,48 +48,78 @@ _PICTURED = 6
 
 @dataclass(frozen=True)
 class ShapeEntry:
-    """A shape of an index."""
+    """A shape of an index.
+
+    Attributes
+    ----------
+    id
+        Its name.
+    label
+        Its class; empty if it has none.
+    path
+        Its mesh file.
+    n_vertices, n_faces
+        The size of its mesh; None if the index does not say.
+    """
 
     id: str
     label: str
-    """Its class; empty if it has none."""
     path: str
-    """Its mesh file."""
     n_vertices: int | None
     n_faces: int | None
 
 
 @dataclass(frozen=True)
 class Result:
-    """A shape that was found."""
+    """A shape that was found.
+
+    Attributes
+    ----------
+    rank
+        Counted from 1.
+    id
+        Its name.
+    label
+        Its class; empty if it has none.
+    path
+        Its mesh file.
+    distance
+        Combined distance from the query, by signatures and aligned forms.
+    fused
+        Distance by signatures alone.
+    relation
+        How the query and the shape are related, as in `Comparison.relation`; by files and meshes, too, if the search explains.
+    rank_distance
+        What results are ordered by if they are ranked on the graph of nearest neighbours.
+    part_distance
+        What results are ordered by if the query is taken as a part: 0 if it fits.
+    part_share
+        The share of the area of the shape that the query has if it is taken as a part.
+    """
 
     rank: int
-    """Counted from 1."""
     id: str
     label: str
-    """Its class; empty if it has none."""
     path: str
-    """Its mesh file."""
     distance: float
-    """Combined distance from the query, by signatures and aligned forms."""
     fused: float
-    """Distance by signatures alone."""
     relation: dict[str, Any]
-    """How the query and the shape are related, as in `Comparison.relation`; by files and meshes, too, if the search explains."""
     rank_distance: float | None
-    """What results are ordered by if they are ranked on the graph of nearest neighbours."""
     part_distance: float | None
-    """What results are ordered by if the query is taken as a part: 0 if it fits."""
     part_share: float | None
-    """The share of the area of the shape that the query has if it is taken as a part."""
 
 
 class SearchResults(Stored, Sequence[Result]):
-    """The shapes nearest to a query, nearest first."""
+    """The shapes nearest to a query, nearest first.
+
+    Attributes
+    ----------
+    report
+        The answer that `canonform search --json` prints.
+    """
 
     def __init__(self, report: dict[str, Any], query: Surface | None, name: str, index: Index) -> None:
         self.report = report
-        """The answer that `canonform search --json` prints."""
         self._results = [
             Result(
                 **{key: found[key] for key in ("rank", "id", "label", "path", "distance", "fused", "relation")},
@@ -177,12 +207,17 @@ class Index(Stored):
     `Index.build(meshes, path)` makes one, `Index(path)` opens it. An index is one file; it finds shapes by their signatures and orders
     them by their aligned forms. Other programs may search it at the same time, also while it is changed; methods that change it continue
     to work with the new content.
+
+    Attributes
+    ----------
+    build_report
+        What happened to each mesh when this object built or changed the index: the object that `canonform index build --json`
+        prints.
     """
 
     def __init__(self, path: AnyPath) -> None:
         self._inner = _canonform.Index.open(os.fspath(path))
         self.build_report: dict[str, Any] | None = None
-        """What happened to each mesh when this object built or changed the index: the object that `canonform index build --json` prints."""
 
     def _state(self) -> dict[str, Any]:
         return {"path": os.path.abspath(self.path), "build_report": self.build_report}

@@ -16,17 +16,25 @@ from ._surface import AnyMesh, Surface, surface_of
 
 
 class SurfaceMap(Stored):
-    """A map from the vertices of one surface to those of another."""
+    """A map from the vertices of one surface to those of another.
+
+    Attributes
+    ----------
+    vertices
+        For each vertex of the first surface, its partner on the second, or -1 if the repair dropped the vertex; shape (n,).
+    kind
+        "direct" if the map keeps the orientation, "mirrored" if it reverses it, "unoriented" if a surface has none.
+    distortion
+        The mean change of distances, as a share of the square root of the area.
+    agreement
+        How far the map keeps the orientation, from -1 to 1; `None` if a surface cannot be oriented.
+    """
 
     def __init__(self, report: dict[str, Any], vertices: Ints) -> None:
         self.vertices = vertices
-        """For each vertex of the first surface, its partner on the second, or -1 if the repair dropped the vertex; shape (n,)."""
         self.kind: str = report["kind"]
-        """"direct" if the map keeps the orientation, "mirrored" if it reverses it, "unoriented" if a surface has none."""
         self.distortion: float = report["distortion"]
-        """The mean change of distances, as a share of the square root of the area."""
         self.agreement: float | None = report["agreement"]
-        """How far the map keeps the orientation, from -1 to 1; `None` if a surface cannot be oriented."""
 
     def carry(self, values: ArrayLike) -> NDArray[Any]:
         """Values at the vertices of the second surface, carried to those of the first; NaN where there is no partner."""
@@ -41,15 +49,21 @@ class SurfaceMap(Stored):
 
 
 class Match(Stored):
-    """The maps from one surface to another: the direct one first, unless it distorts distances clearly more."""
+    """The maps from one surface to another: the direct one first, unless it distorts distances clearly more.
+
+    Attributes
+    ----------
+    maps
+        At most two maps, of different kinds.
+    seconds
+        The time of the search, after both surfaces were prepared.
+    """
 
     def __init__(
         self, report: dict[str, Any], vertices: list[Ints], colors: NDArray[np.uint8], shapes: tuple[Surface, Surface]
     ) -> None:
         self.maps = [SurfaceMap(*entry) for entry in zip(report["maps"], vertices, strict=True)]
-        """At most two maps, of different kinds."""
         self.seconds: float = report["seconds"]
-        """The time of the search, after both surfaces were prepared."""
         self._colors = colors
         self._shapes = shapes
 

@@ -16,14 +16,21 @@ from .errors import OptionError
 
 @dataclass(frozen=True)
 class EdgePoint:
-    """A point of an edge. It may stand wherever a vertex may, as a source or a target."""
+    """A point of an edge. It may stand wherever a vertex may, as a source or a target.
+
+    Attributes
+    ----------
+    start
+        The vertex at one end.
+    end
+        The vertex at the other.
+    t
+        Where the point is, from 0 at the start to 1 at the end.
+    """
 
     start: int
-    """The vertex at one end."""
     end: int
-    """The vertex at the other."""
     t: float = 0.5
-    """Where the point is, from 0 at the start to 1 at the end."""
 
     def __str__(self) -> str:
         return f"{self.start}-{self.end}@{self.t!r}"
@@ -31,12 +38,18 @@ class EdgePoint:
 
 @dataclass(frozen=True)
 class FacePoint:
-    """A point of a face. It may stand wherever a vertex may, as a source or a target."""
+    """A point of a face. It may stand wherever a vertex may, as a source or a target.
+
+    Attributes
+    ----------
+    face
+        The face.
+    weights
+        Weights of the corners of the face, in their order: not negative, with a positive sum.
+    """
 
     face: int
-    """The face."""
     weights: tuple[float, float, float] = (1.0, 1.0, 1.0)
-    """Weights of the corners of the face, in their order: not negative, with a positive sum."""
 
     def __str__(self) -> str:
         return f"f{self.face}@{':'.join(repr(float(weight)) for weight in self.weights)}"
@@ -56,16 +69,24 @@ def parsed(text: str) -> int | EdgePoint | FacePoint:
 
 @dataclass(frozen=True, repr=False, eq=False)
 class ClosestPoints(ByValue):
-    """The points of a surface that are nearest to points in space. `numpy.asarray` gives them."""
+    """The points of a surface that are nearest to points in space. `numpy.asarray` gives them.
+
+    Attributes
+    ----------
+    points
+        Shape (k, 3), in mesh units.
+    distances
+        How far they are, in mesh units: shape (k,).
+    faces
+        The face that each lies in: shape (k,).
+    weights
+        The weights of the corners of that face: shape (k, 3).
+    """
 
     points: Floats
-    """Shape (k, 3), in mesh units."""
     distances: Floats
-    """How far they are, in mesh units: shape (k,)."""
     faces: Ints
-    """The face that each lies in: shape (k,)."""
     weights: Floats
-    """The weights of the corners of that face: shape (k, 3)."""
 
     @property
     def at(self) -> list[FacePoint]:
@@ -85,14 +106,22 @@ class ClosestPoints(ByValue):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Eigenbasis(ByValue):
-    """The smoothest functions on a surface: `laplacian @ functions == mass @ functions * values`."""
+    """The smoothest functions on a surface: `laplacian @ functions == mass @ functions * values`.
+
+    Attributes
+    ----------
+    values
+        Eigenvalues, ascending from 0, in one over squared mesh units: shape (k,).
+    functions
+        Eigenfunctions as columns, orthonormal with the areas around vertices: shape (n, k). NaN for vertices that the repair
+        dropped.
+    masses
+        The area around each vertex, in squared mesh units: shape (n,).
+    """
 
     values: Floats
-    """Eigenvalues, ascending from 0, in one over squared mesh units: shape (k,)."""
     functions: Floats
-    """Eigenfunctions as columns, orthonormal with the areas around vertices: shape (n, k). NaN for vertices that the repair dropped."""
     masses: Floats
-    """The area around each vertex, in squared mesh units: shape (n,)."""
 
     @cached_property
     def _weighted(self) -> Floats:

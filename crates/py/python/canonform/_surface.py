@@ -75,12 +75,16 @@ class RepairReport(dict[str, Any]):
     """What the repair of a mesh changed: the object `repair` that the command line prints, with the same keys.
 
     `str(report)` says it in words.
+
+    Attributes
+    ----------
+    lines
+        One line for each kind of change; empty if nothing was changed.
     """
 
     def __init__(self, report: dict[str, Any], lines: list[str]) -> None:
         super().__init__(report)
         self.lines = lines
-        """One line for each kind of change; empty if nothing was changed."""
 
     def __str__(self) -> str:
         return "\n".join(self.lines) or "nothing to repair"
@@ -88,16 +92,24 @@ class RepairReport(dict[str, Any]):
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Path(ByValue):
-    """A shortest path along a surface."""
+    """A shortest path along a surface.
+
+    Attributes
+    ----------
+    points
+        Its points from start to end, joined by straight lines: shape (k, 3), in mesh units.
+    at
+        The point of the mesh that each of them is: the number of a vertex, or a point of an edge or face.
+    along
+        The distance of each from the start, along the path, in mesh units: shape (k,).
+    length
+        Its length, in mesh units.
+    """
 
     points: Floats
-    """Its points from start to end, joined by straight lines: shape (k, 3), in mesh units."""
     at: list[int | EdgePoint | FacePoint]
-    """The point of the mesh that each of them is: the number of a vertex, or a point of an edge or face."""
     along: Floats
-    """The distance of each from the start, along the path, in mesh units: shape (k,)."""
     length: float
-    """Its length, in mesh units."""
 
     def __len__(self) -> int:
         return len(self.points)
@@ -484,16 +496,16 @@ class Surface(Constant):
 
         Vertices that the repair dropped have empty rows; of those that it merged, the first stands for all.
         """
-        from scipy import sparse
-
+        scipy_sparse = _sparse()
         rows, columns, values, _ = _canonform.laplacian(self._inner, _is_intrinsic(kind))
-        return sparse.csr_array(sparse.coo_array((values, (rows, columns)), shape=(self.n_vertices, self.n_vertices)))
+        matrix: sparse.csr_array = scipy_sparse.coo_array((values, (rows, columns)), shape=(self.n_vertices, self.n_vertices)).tocsr()
+        return matrix
 
     def mass(self, *, kind: str = "intrinsic") -> sparse.dia_array:
         """The areas around the vertices, in squared mesh units, as a sparse diagonal matrix: shape (n, n). Needs SciPy."""
-        from scipy import sparse
-
-        return sparse.diags_array(_canonform.laplacian(self._inner, _is_intrinsic(kind))[3])
+        masses = _canonform.laplacian(self._inner, _is_intrinsic(kind))[3]
+        diagonal: sparse.dia_array = _sparse().diags_array(masses)
+        return diagonal
 
     def eigenbasis(self, k: int = 100, *, progress: Progress = False) -> Eigenbasis:
         """The `k` smallest eigenvalues and eigenfunctions of the intrinsic Laplacian; fewer if the surface has fewer vertices."""
@@ -623,6 +635,14 @@ def _several(points: Any, n_vertices: int) -> list[Any]:
     elif array is not None:
         points = array.ravel().tolist()
     return [str(point) if isinstance(point, (EdgePoint, FacePoint)) else point for point in points]
+
+
+def _sparse() -> Any:
+    try:
+        from scipy import sparse
+    except ImportError as missing:
+        raise ImportError("sparse matrices need the package SciPy (`pip install scipy`)") from missing
+    return sparse
 
 
 def _is_intrinsic(kind: str) -> bool:

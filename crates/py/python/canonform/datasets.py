@@ -21,19 +21,28 @@ __all__ = ["Shape", "families", "generate", "write"]
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Shape(ByValue):
-    """A generated mesh."""
+    """A generated mesh.
+
+    Attributes
+    ----------
+    name
+        Family and number, such as "cat0".
+    label
+        Family, such as "cat".
+    vertices
+        Shape (n, 3).
+    faces
+        Shape (m, 3).
+    rest
+        Where the vertices are before the body takes its pose, shape (n, 3): points of two shapes of a family correspond if they are
+        in the same place there. None for creatures.
+    """
 
     name: str
-    """Family and number, such as "cat0"."""
     label: str
-    """Family, such as "cat"."""
     vertices: Floats
-    """Shape (n, 3)."""
     faces: Ints
-    """Shape (m, 3)."""
     rest: Floats | None = None
-    """Where the vertices are before the body takes its pose, shape (n, 3): points of two shapes of a family correspond if they are in
-    the same place there. None for creatures."""
 
     def true_map(self, other: Shape) -> Ints:
         """For each vertex, the vertex of another shape of the family that it truly corresponds to: shape (n,).
