@@ -89,8 +89,6 @@ mod error;
 mod form;
 mod input;
 mod shape_index;
-#[cfg(test)]
-mod testing;
 
 pub use ::mesh::{BadPoint, InputMap, InputPoint, PointError, Surface};
 pub use base::{Budget, ContentHash, Exceeded, Observer};

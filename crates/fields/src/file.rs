@@ -169,7 +169,8 @@ impl DistanceField {
     }
 
     /// The content of its file.
-    pub(crate) fn to_bytes(&self) -> Vec<u8> {
+    #[must_use]
+    pub fn to_bytes(&self) -> Vec<u8> {
         let text = self.text();
         let counts = self.counts(text.len());
         let (bounds, factors) = (self.metric.bounds().parts(), self.metric.factors().parts());
@@ -197,7 +198,10 @@ impl DistanceField {
     }
 
     /// Reads the content of a file.
-    pub(crate) fn from_bytes(bytes: &[u8]) -> Result<Self, FieldFault> {
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, FieldFault> {
         use FieldFault::{Damaged, NotAField, OtherVersion};
         let mut rest = bytes.strip_prefix(MAGIC).ok_or(NotAField)?;
         let found = u32::from_le_bytes(*take(&mut rest).ok_or(CUT)?);

@@ -70,7 +70,7 @@ mod tests;
 
 pub use base::ContentHash;
 pub use error::IndexError;
-pub use export::{ExportError, ExportFormat};
+pub use export::{ExportError, ExportFormat, csv_field};
 pub use reader::Index;
 pub use search::{Found, FoundOnGraph, NearShape, RankedShape, SearchMode, Searcher};
 pub use shape::{Shape, ShapeEntry, ShapeVectors};

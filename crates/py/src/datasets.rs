@@ -1,9 +1,10 @@
 //! Generated shapes.
 
 use ::datasets::{
-    ArticulatedOptions, CreatureOptions, DatasetError, Family, LabeledShape, articulated_shape, creature,
-    creature_plans,
+    ArticulatedOptions, CreatureOptions, DatasetError, Family, LabeledShape, RestedShape,
+    articulated_at_rest, creature, creature_plans,
 };
+use canonform::mesh::TriMesh;
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use rayon::prelude::*;
@@ -12,8 +13,9 @@ use crate::arrays;
 use crate::error::of_dataset;
 use crate::run::run_alone;
 
-/// A shape: name, class, vertices and faces.
-type Generated<'py> = (String, String, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<i64>>);
+/// A shape: name, class, vertices, faces, and the vertices at rest, if the shapes of its family correspond there.
+type Generated<'py> =
+    (String, String, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<i64>>, Option<Bound<'py, PyArray2<f64>>>);
 
 /// The families of articulated shapes, each with its number of shapes, and the plans of creatures.
 #[pyfunction]
@@ -33,7 +35,10 @@ pub(crate) fn generate<'py>(
     let options = ArticulatedOptions { seed, n_vertices };
     options.validate().map_err(|fault| of_dataset(&fault))?;
     let families = Family::all();
-    made(py, &shapes, progress, |(family, pose)| articulated_shape(families[family], pose, &options))
+    made(py, &shapes, progress, |(family, pose)| {
+        let RestedShape { shape, rest } = articulated_at_rest(families[family], 0, pose, &options)?;
+        Ok((shape, Some(rest)))
+    })
 }
 
 /// Creatures, by family and pose.
@@ -48,14 +53,14 @@ pub(crate) fn creatures<'py>(
     let n_families = shapes.iter().map(|(family, _)| family + 1).max().unwrap_or(0);
     let n_poses = shapes.iter().map(|(_, pose)| pose + 1).max().unwrap_or(0);
     let options = CreatureOptions { seed, n_families, n_poses, n_vertices };
-    made(py, &shapes, progress, |(family, pose)| creature(family, pose, &options))
+    made(py, &shapes, progress, |(family, pose)| Ok((creature(family, pose, &options)?, None)))
 }
 
 fn made<'py>(
     py: Python<'py>,
     shapes: &[(usize, usize)],
     progress: Option<Py<PyAny>>,
-    make: impl Fn((usize, usize)) -> Result<LabeledShape, DatasetError> + Sync,
+    make: impl Fn((usize, usize)) -> Result<(LabeledShape, Option<TriMesh>), DatasetError> + Sync,
 ) -> PyResult<Vec<Generated<'py>>> {
     let made = run_alone(py, progress.as_ref(), |observer| {
         observer.begin("shapes", shapes.len());
@@ -68,9 +73,10 @@ fn made<'py>(
         };
         shapes.par_iter().map(of_shape).collect::<Result<Vec<_>, canonform::Error>>()
     })?;
-    let arrays = |shape: Result<LabeledShape, DatasetError>| {
-        let LabeledShape { name, label, mesh, .. } = shape.map_err(|fault| of_dataset(&fault))?;
-        Ok((name, label, arrays::positions(py, &mesh.positions)?, arrays::faces(py, &mesh.faces)?))
+    let arrays = |shape: Result<(LabeledShape, Option<TriMesh>), DatasetError>| {
+        let (LabeledShape { name, label, mesh, .. }, rest) = shape.map_err(|fault| of_dataset(&fault))?;
+        let rest = rest.map(|rest| arrays::positions(py, &rest.positions)).transpose()?;
+        Ok((name, label, arrays::positions(py, &mesh.positions)?, arrays::faces(py, &mesh.faces)?, rest))
     };
     made.into_iter().map(arrays).collect()
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use canonform::{FieldOptions, Finish, PairDistance, PairKind};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 
 use crate::arrays;
 use crate::error::Exception;
@@ -80,6 +81,18 @@ impl DistanceField {
 
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         run_alone(py, None, |_| Ok(self.0.save(&path)?))
+    }
+
+    /// The content of its file.
+    fn to_bytes<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
+        PyBytes::new(py, &py.detach(|| self.0.to_bytes()))
+    }
+
+    /// The field of which these bytes are the file.
+    #[staticmethod]
+    fn from_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
+        let read = py.detach(|| canonform::DistanceField::from_bytes(bytes));
+        read.map(Self).map_err(|fault| Exception::File.with(&fault.to_string()))
     }
 
     #[getter]

@@ -13,7 +13,7 @@ use canonform::{
     build_index, content_hash, evaluate_index, export_index, find_duplicates, indexed_shapes, mesh_path,
     remove_from_index,
 };
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -212,6 +212,19 @@ impl Index {
         })?;
         report.place(|path| mesh_path(&self.path, path).to_string_lossy().into_owned());
         Ok(json(&report))
+    }
+
+    /// Name and distance of the shapes whose signatures are nearest to a vector.
+    fn nearest(
+        &self,
+        py: Python<'_>,
+        vector: PyReadonlyArray1<'_, f32>,
+        k: usize,
+        exact: bool,
+    ) -> PyResult<Vec<(String, f64)>> {
+        let (vector, mode) = (vector.as_slice()?, if exact { SearchMode::Exact } else { SearchMode::Auto });
+        let found = run_alone(py, None, |_| Ok(self.search.index().nearest(vector, k, mode)?))?;
+        Ok(found.shapes.into_iter().map(|shape| (shape.id, shape.distance)).collect())
     }
 
     #[getter]

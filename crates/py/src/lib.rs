@@ -17,6 +17,7 @@ mod form;
 mod index;
 mod matching;
 mod nystrom;
+mod operators;
 mod picture;
 mod points;
 mod record;
@@ -44,6 +45,8 @@ mod _canonform {
     use crate::matching::match_surfaces;
     #[pymodule_export]
     use crate::nystrom::{Extension, SampleSearch, nystrom};
+    #[pymodule_export]
+    use crate::operators::{closest_points, eigenbasis, laplacian};
     #[pymodule_export]
     use crate::picture::draw;
     #[pymodule_export]

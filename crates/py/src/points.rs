@@ -8,14 +8,20 @@ use crate::error::Exception;
 
 /// Points of the input: vertex numbers, or text such as `17-42@0.3`.
 pub(crate) fn points_of(points: &Bound<'_, PyAny>) -> PyResult<Vec<InputPoint>> {
-    points.try_iter()?.map(|point| point_of(&point?)).collect()
+    let given = points.try_iter().map_err(|_| not_a_point(points))?;
+    given.map(|point| point_of(&point?)).collect()
 }
 
 pub(crate) fn point_of(point: &Bound<'_, PyAny>) -> PyResult<InputPoint> {
     if let Ok(text) = point.extract::<&str>() {
         return text.parse().map_err(|fault: canonform::BadPoint| Exception::Point.with(&fault.to_string()));
     }
-    Ok(InputPoint::Vertex(vertex(point.extract()?)?))
+    Ok(InputPoint::Vertex(vertex(point.extract().map_err(|_| not_a_point(point))?)?))
+}
+
+fn not_a_point(given: &Bound<'_, PyAny>) -> PyErr {
+    let message = "is not a point; give the number of a vertex, or text such as \"17-42@0.3\"";
+    Exception::Point.with(&format!("{given} {message}"))
 }
 
 pub(crate) fn vertex(number: i64) -> PyResult<VertexId> {

@@ -15,7 +15,7 @@ use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use crate::error::to_python;
+use crate::error::{Exception, to_python};
 
 /// Time between two looks for signals.
 const INTERVAL: Duration = Duration::from_millis(50);
@@ -158,7 +158,9 @@ fn started(n_threads: usize) -> PyResult<ThreadPool> {
 
 /// Sets the number of worker threads, 0 for all cores. Results do not depend on it.
 #[pyfunction]
-pub(crate) fn set_threads(n: usize) -> PyResult<()> {
+pub(crate) fn set_threads(n: i64) -> PyResult<()> {
+    let message = || format!("n={n} is not possible: give a number of threads, or 0 for all cores");
+    let n = usize::try_from(n).map_err(|_| Exception::Option.with(&message()))?;
     // The pool of a parent process is left alone.
     drop(pool()?);
     let new = Arc::new(started(n.min(1024))?);

@@ -7,7 +7,7 @@ use base::Budget;
 use canonform::ContentHash;
 use canonform::descriptors::SignatureKind;
 use canonform::geodesics::{DistanceSolver, FirstSample, Method, PathTracer, Sampling, Source};
-use canonform::mesh::TriMesh;
+use canonform::mesh::{RepairOptions, TriMesh};
 use canonform::surface::VertexId;
 use canonform::{
     ComparedMesh, CorrespondOptions, DescribeOptions, Error, FormOptions, InputPoint, MappedSurface,
@@ -197,6 +197,9 @@ impl Surface {
     }
 }
 
+/// Vertices, faces, options of the repair as JSON, and the hash of a file.
+type State<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<i64>>, String, Option<String>);
+
 /// A path: its points, the points of the input that they are, and its length.
 type FoundPath<'py> = (Bound<'py, PyArray2<f64>>, Vec<String>, Vec<f64>, f64);
 
@@ -226,6 +229,32 @@ impl Surface {
             let inner = canonform::Surface::new(&mesh, &options, observer)?;
             Ok(Self::of(mesh, inner, Some(content)))
         })
+    }
+
+    /// What [`restore`](Self::restore) needs: vertices and faces as they were given, how they are repaired, and the hash of
+    /// the file that they are from.
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<State<'py>> {
+        let mesh = &self.mesh;
+        let (vertices, faces) = (arrays::positions(py, &mesh.positions)?, arrays::faces(py, &mesh.faces)?);
+        Ok((vertices, faces, json(&self.inner.repair), self.content.map(|hash| hash.to_string())))
+    }
+
+    /// The surface of which [`state`](Self::state) is the state.
+    #[staticmethod]
+    fn restore(
+        py: Python<'_>,
+        vertices: PyReadonlyArray2<'_, f64>,
+        faces: PyReadonlyArray2<'_, i64>,
+        repair: &str,
+        content: Option<&str>,
+    ) -> PyResult<Self> {
+        let options: RepairOptions =
+            serde_json::from_str(repair).map_err(|fault| Exception::Option.with(&fault.to_string()))?;
+        let content: Option<ContentHash> =
+            content.map(str::parse).transpose().map_err(|fault: String| Exception::Canonform.with(&fault))?;
+        let mesh = arrays::mesh_of(&vertices, &faces)?;
+        let inner = run_alone(py, None, |observer| Ok(canonform::Surface::new(&mesh, &options, observer)?))?;
+        Ok(Self::of(mesh, inner, content))
     }
 
     #[getter]

@@ -8,11 +8,10 @@
 mod maps;
 mod outward;
 mod relation;
-#[cfg(test)]
-mod testing;
 
 pub use maps::{MapKind, MapOptions, MapShape, SurfaceMap, map_surfaces};
 pub use relation::{
-    Basis, Because, Change, CutPiece, Difference, Dimension, Handedness, MeshGeometry, MeshOverlay, Parts,
-    Relation, RelationKind, Side, SurfaceGap, UnitChange, handedness,
+    Basis, Because, Change, CutPiece, Difference, Dimension, Handedness, MeshGeometry, MeshOverlay,
+    NearestOnSurface, Parts, Relation, RelationKind, Side, SurfaceGap, TriangleTree, UnitChange, handedness,
+    in_four_digits,
 };

@@ -186,7 +186,7 @@ mod tests {
 
     use super::*;
     use crate::form::{EmbedMethod, FormOptions, Samples};
-    use crate::testing::lopsided;
+    use mesh::shapes::lopsided_torus;
 
     fn described_by(mesh: &TriMesh, options: &DescribeOptions) -> ShapeDescription {
         describe(&Surface::new(mesh, &options.form.repair, &()).unwrap(), options, &()).unwrap()
@@ -198,7 +198,7 @@ mod tests {
 
     #[test]
     fn a_description_beyond_the_memory_of_its_budget_is_an_error() {
-        let surface = Surface::new(&lopsided(), &Default::default(), &()).unwrap();
+        let surface = Surface::new(&lopsided_torus(), &Default::default(), &()).unwrap();
         let within =
             |bytes| describe(&surface, &DescribeOptions::default(), &Budget::unlimited().with_memory(bytes));
         assert!(matches!(within(1_000_000), Err(Error::Exceeded(_))));
@@ -207,9 +207,9 @@ mod tests {
 
     #[test]
     fn holes_are_closed_and_still_counted_as_boundaries() {
-        let mut pierced = lopsided();
+        let mut pierced = lopsided_torus();
         pierced.faces.retain(|face| !face.contains(&VertexId(100)));
-        let (whole, pierced) = (described(&lopsided()), described(&pierced));
+        let (whole, pierced) = (described(&lopsided_torus()), described(&pierced));
         assert!(gap(&whole, &pierced) < 0.3, "{}", gap(&whole, &pierced));
         assert_eq!(whole.longest_boundary, 0.0);
         assert!(pierced.longest_boundary > 0.5);
@@ -217,9 +217,9 @@ mod tests {
 
     #[test]
     fn a_weld_of_two_distant_points_is_cut() {
-        let mut welded = lopsided();
+        let mut welded = lopsided_torus();
         welded.faces.iter_mut().flatten().filter(|v| v.0 == 400).for_each(|v| *v = VertexId(5));
-        let (whole, welded) = (described(&lopsided()), described(&welded));
+        let (whole, welded) = (described(&lopsided_torus()), described(&welded));
         assert!(gap(&whole, &welded) < 0.5, "{}", gap(&whole, &welded));
         assert!(whole.shortcuts.is_empty());
         let [shortcut] = welded.shortcuts[..] else { panic!("{:?}", welded.shortcuts) };
@@ -252,7 +252,7 @@ mod tests {
 
     #[test]
     fn vertex_order_changes_little() {
-        let mesh = lopsided();
+        let mesh = lopsided_torus();
         let base = described(&mesh);
         let n = mesh.n_vertices();
         let renumbered = TriMesh {
@@ -267,7 +267,7 @@ mod tests {
 
     #[test]
     fn the_fused_distance_is_the_weighted_sum_of_the_parts() {
-        let (a, b) = (described(&lopsided()), described(&shapes::icosphere(3)));
+        let (a, b) = (described(&lopsided_torus()), described(&shapes::icosphere(3)));
         let part = |(a, b): (&Signature, &Signature)| {
             ShapeMetric::weight(a.kind) * (a.distance(b) / ShapeMetric::unit(a.kind)).powi(2)
         };
@@ -279,7 +279,7 @@ mod tests {
 
     #[test]
     fn size_counts_if_chosen() {
-        let small = lopsided();
+        let small = lopsided_torus();
         let mut large = small.clone();
         large.positions.iter_mut().for_each(|p| p.coords *= 1.05);
         let options = DescribeOptions { size: Normalization::Raw, ..Default::default() };
@@ -313,7 +313,7 @@ mod tests {
 
     #[test]
     fn every_method_is_described_and_the_form_is_a_part_of_the_embedded_one() {
-        let mesh = lopsided();
+        let mesh = lopsided_torus();
         let surface = Surface::new(&mesh, &Default::default(), &()).unwrap();
         for method in EmbedMethod::all() {
             let form = FormOptions { method, samples: Samples::Count(60), ..FormOptions::default() };
@@ -331,7 +331,7 @@ mod tests {
 
     #[test]
     fn classical_scaling_and_nmds_measure_the_same_samples() {
-        let surface = Surface::new(&lopsided(), &Default::default(), &()).unwrap();
+        let surface = Surface::new(&lopsided_torus(), &Default::default(), &()).unwrap();
         let samples = |method| {
             // Its distances do not depend on the direction.
             let geodesic = Method::Dijkstra;
@@ -345,7 +345,7 @@ mod tests {
     #[test]
     fn the_repair_of_the_surface_is_part_of_the_options() {
         let repair = RepairOptions { weld: Weld::All, ..RepairOptions::default() };
-        let surface = Surface::new(&lopsided(), &repair, &()).unwrap();
+        let surface = Surface::new(&lopsided_torus(), &repair, &()).unwrap();
         let description = describe(&surface, &DescribeOptions::default(), &()).unwrap();
         assert_eq!(description.options.form.repair, repair);
     }

@@ -198,7 +198,7 @@ mod tests {
 
     use super::*;
     use crate::form::{FormOptions, Samples, embed, embed_again, embed_and_measure};
-    use crate::testing::lopsided;
+    use mesh::shapes::lopsided_torus;
 
     fn surface(mesh: &mesh::TriMesh) -> Surface {
         Surface::new(mesh, &Default::default(), &()).unwrap()
@@ -228,7 +228,7 @@ mod tests {
 
     #[test]
     fn points_are_placed_as_by_their_distances() {
-        let surface = surface(&lopsided());
+        let surface = surface(&lopsided_torus());
         let form = embed(&surface, &FormOptions::default(), &()).unwrap();
         let solver = Method::Exact.prepare(surface.intrinsic(), &()).unwrap();
         let extension = form.extension().unwrap();
@@ -249,7 +249,7 @@ mod tests {
 
     #[test]
     fn more_samples_are_added_without_measuring_the_first_again() {
-        let [surface, other] = [lopsided(), shapes::icosphere(2)].map(|mesh| surface(&mesh));
+        let [surface, other] = [lopsided_torus(), shapes::icosphere(2)].map(|mesh| surface(&mesh));
         let stress = StressOptions::default();
         for sampling in Sampling::ALL {
             let of =

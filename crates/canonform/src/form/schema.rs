@@ -48,6 +48,8 @@ pub struct OptionSpec {
     pub placeholder: &'static str,
     /// Its default in words; empty for an option that is off by default.
     pub default: &'static str,
+    /// Whether few users need it, so that help pages may leave it out.
+    pub is_seldom: bool,
     help: &'static str,
     names: fn() -> Vec<(&'static str, &'static str)>,
     check: fn(&str) -> Result<(), String>,
@@ -80,13 +82,13 @@ pub static SCHEMA: [OptionSpec; 24] = [
     .of(|m| m.is_sampled() && m.has_unit() && !matches!(m, EmbedMethod::Smacof { .. })),
     parsed::<usize>(OptionGroup::Form, "dim", "K", "3", "Dimensions of the embedding"),
     named::<Method>(OptionGroup::Form, "geodesic", "fast-marching", "How to measure distances"),
-    named::<Update>(OptionGroup::Marching, "update", "point-source", "Local solver"),
+    named::<Update>(OptionGroup::Marching, "update", "point-source", "Local solver").seldom(),
     named::<ObtuseTreatment>(
         OptionGroup::Marching,
         "obtuse",
         "flip",
         "What to do about angles wider than 90 degrees",
-    ),
+    ).seldom(),
     named::<ComponentPolicy>(
         OptionGroup::Repair,
         "components",
@@ -110,9 +112,9 @@ pub static SCHEMA: [OptionSpec; 24] = [
         "half the samples, at least {dim} + 4",
         "Number of eigenpairs of the sample matrix to keep (of columns for cur)",
     )
-    .of(|m| m.regularization().is_some() || matches!(m, EmbedMethod::KernelPca { .. })),
+    .of(|m| m.regularization().is_some() || matches!(m, EmbedMethod::KernelPca { .. })).seldom(),
     named::<Sampling>(OptionGroup::Method, "sampling", "farthest", "How to choose samples")
-        .of(EmbedMethod::is_sampled),
+        .of(EmbedMethod::is_sampled).seldom(),
     parsed::<u32>(
         OptionGroup::Method,
         "first_sample",
@@ -120,14 +122,14 @@ pub static SCHEMA: [OptionSpec; 24] = [
         "the vertex farthest from vertex 0; with other samplings, drawn with {seed}",
         "First sample, a vertex of the input",
     )
-    .of(EmbedMethod::is_sampled),
+    .of(EmbedMethod::is_sampled).seldom(),
     named::<Regularization>(
         OptionGroup::Method,
         "regularization",
         "low-rank",
         "How nmds, and the start of smacof, regularise the inverse of the sample matrix",
     )
-    .of(is_regularized),
+    .of(is_regularized).seldom(),
     parsed::<RpiAlpha>(
         OptionGroup::Method,
         "alpha",
@@ -136,7 +138,7 @@ pub static SCHEMA: [OptionSpec; 24] = [
         "For {regularization} rpi: alpha over the fourth power of the largest eigenvalue, or `paper` for the third \
          power of that eigenvalue, which depends on the unit of length",
     )
-    .of(is_regularized),
+    .of(is_regularized).seldom(),
     parsed::<Bandwidth>(
         OptionGroup::Method,
         "sigma",
@@ -144,7 +146,7 @@ pub static SCHEMA: [OptionSpec; 24] = [
         "mean",
         "Kernel width of kpca, in mesh units or as a statistic of the measured distances",
     )
-    .of(|m| matches!(m, EmbedMethod::KernelPca { .. })),
+    .of(|m| matches!(m, EmbedMethod::KernelPca { .. })).seldom(),
     parsed::<usize>(
         OptionGroup::Method,
         "eigenvectors",
@@ -152,7 +154,7 @@ pub static SCHEMA: [OptionSpec; 24] = [
         "300",
         "Number of Laplace-Beltrami eigenfunctions for spectral",
     )
-    .of(is_spectral),
+    .of(is_spectral).seldom(),
     parsed::<f64>(
         OptionGroup::Method,
         "mu",
@@ -161,9 +163,9 @@ pub static SCHEMA: [OptionSpec; 24] = [
         "Weight of the distances against smoothness in spectral, for a surface of unit area; `inf` fits the \
          distances exactly",
     )
-    .of(is_spectral),
+    .of(is_spectral).seldom(),
     parsed::<usize>(OptionGroup::Method, "iterations", "N", "300", "Maximum number of smacof steps")
-        .of(is_smacof),
+        .of(is_smacof).seldom(),
     parsed::<f64>(
         OptionGroup::Method,
         "tolerance",
@@ -171,7 +173,7 @@ pub static SCHEMA: [OptionSpec; 24] = [
         "1e-6",
         "Stop smacof when a step reduces the stress by less than this fraction",
     )
-    .of(is_smacof),
+    .of(is_smacof).seldom(),
     named::<StressChoice>(OptionGroup::Stress, "stress", "auto", "How to find the stress; see below for its formulas"),
     parsed::<usize>(
         OptionGroup::Description,
@@ -209,6 +211,7 @@ const fn named<T: Named>(
         group,
         placeholder: "",
         default,
+        is_seldom: false,
         help,
         names: || T::table().into_iter().map(|(name, help, _)| (name, help)).collect(),
         check: check_name::<T>,
@@ -229,6 +232,7 @@ const fn parsed<T: FromStr<Err: Display>>(
         group,
         placeholder,
         default,
+        is_seldom: false,
         help,
         names: Vec::new,
         check: |text| text.parse::<T>().map(drop).map_err(|fault| fault.to_string()),
@@ -251,6 +255,11 @@ impl OptionSpec {
     /// The same option, for some methods only.
     const fn of(self, applies: fn(&EmbedMethod) -> bool) -> Self {
         Self { applies, ..self }
+    }
+
+    /// The same option, which few users need.
+    const fn seldom(self) -> Self {
+        Self { is_seldom: true, ..self }
     }
 
     /// The same option with another check of its values.
@@ -400,17 +409,3 @@ impl Named for FormDistance {
         ]
     }
 }
-
-/// Options of methods and solvers that few users need, as help pages may leave out.
-pub const SELDOM: [&str; 10] = [
-    "rank",
-    "sampling",
-    "first_sample",
-    "regularization",
-    "alpha",
-    "sigma",
-    "eigenvectors",
-    "mu",
-    "iterations",
-    "tolerance",
-];

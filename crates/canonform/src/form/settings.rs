@@ -13,7 +13,7 @@ use super::distances::Samples;
 use super::method::EmbedMethod;
 use super::options::{DescribeOptions, FormOptions};
 
-pub use super::schema::{Named, OptionGroup, OptionSpec, SCHEMA, SELDOM};
+pub use super::schema::{Named, OptionGroup, OptionSpec, SCHEMA};
 
 /// The settings that were given: values of options of the [`SCHEMA`].
 ///

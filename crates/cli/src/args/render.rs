@@ -32,7 +32,7 @@ Examples:
 Several meshes: a mesh that cannot be drawn is reported and does not stop the others; the exit code is then 2.";
 
 #[derive(Debug, Args)]
-#[command(after_long_help = NOTES, after_help = "See `--help` for how to write views and fields, and for examples.")]
+#[command(after_long_help = NOTES, after_help = "See `--help-all` for how to write views and fields, and for examples.")]
 pub(crate) struct RenderArgs {
     /// Meshes, datasets (folders, archives, lists), patterns such as 'scans/*.ply', or `-` for standard input
     #[arg(required = true, value_name = "MESH")]
@@ -44,17 +44,17 @@ pub(crate) struct RenderArgs {
     /// Width and height in pixels, or one number for both
     #[arg(long, default_value = "800x800", value_name = "WIDTHxHEIGHT", value_parser = parse_size)]
     pub(crate) size: [u32; 2],
-    /// Where the viewer stands [default: 30,12, or principal with --form]
-    #[arg(long, value_name = "VIEW|AZIMUTH,ELEVATION", value_parser = parse_view, allow_hyphen_values = true)]
+    /// Where the viewer stands: the name of a view, or AZIMUTH,ELEVATION in degrees [default: 30,12, or principal with --form]
+    #[arg(long, value_name = "VIEW", value_parser = parse_view, allow_hyphen_values = true)]
     pub(crate) view: Option<Place>,
     /// Axis of the mesh that points up
-    #[arg(long, value_parser = axis(), default_value = "z")]
+    #[arg(long, hide_short_help = true, value_parser = axis(), default_value = "z")]
     pub(crate) up: [f64; 3],
     /// Background: white, dark, transparent or a colour #rrggbb
-    #[arg(long, default_value = "white", value_name = "BACKGROUND", value_parser = parse_background)]
+    #[arg(long, hide_short_help = true, default_value = "white", value_name = "BACKGROUND", value_parser = parse_background)]
     pub(crate) background: Background,
     /// Colour of the mesh, #rrggbb [default: a light clay, or the values that a .ply file carries]
-    #[arg(long, value_name = "#rrggbb", value_parser = parse_color, conflicts_with_all = ["field", "distance_from"])]
+    #[arg(long, hide_short_help = true, value_name = "#rrggbb", value_parser = parse_color, conflicts_with_all = ["field", "distance_from"])]
     pub(crate) color: Option<[u8; 3]>,
     /// Colours of the values
     #[arg(long, default_value_t, value_name = "MAP", value_parser = color_map())]
@@ -63,20 +63,20 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "FIELD")]
     pub(crate) field: Option<PathBuf>,
     /// Row of the field, counted from 0; required if it has several
-    #[arg(long, value_name = "ROW", requires = "field")]
+    #[arg(long, hide_short_help = true, value_name = "ROW", requires = "field")]
     pub(crate) row: Option<usize>,
     /// Colour by the distance from the nearest of these points, by fast marching; write points as for `canonform
     /// geodesic`
-    #[arg(long, value_delimiter = ',', value_name = "POINT[,POINT...]", conflicts_with = "field")]
+    #[arg(long, value_delimiter = ',', value_name = "POINTS", conflicts_with = "field")]
     pub(crate) distance_from: Vec<InputPoint>,
     /// Number of lines of equal value, evenly spaced over the range
-    #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1000))]
+    #[arg(long, hide_short_help = true, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub(crate) isolines: u32,
     /// The values of the darkest and the lightest colour [default: the smallest and the largest]
-    #[arg(long, value_name = "LOW,HIGH", value_parser = parse_range, allow_hyphen_values = true)]
+    #[arg(long, hide_short_help = true, value_name = "LOW,HIGH", value_parser = parse_range, allow_hyphen_values = true)]
     pub(crate) range: Option<[f64; 2]>,
     /// Omit the colour bar; small pictures have none
-    #[arg(long)]
+    #[arg(long, hide_short_help = true)]
     pub(crate) no_bar: bool,
     /// Draw the canonical form (NMDS from 100 samples) instead of the mesh
     #[arg(long)]

@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 use anyhow::{Result, anyhow};
 use canonform::geodesics::Method;
 use canonform::mesh::RepairOptions;
-use canonform::settings::{Named, NoEffect, OptionGroup, OptionSpec, SCHEMA, SELDOM, Settings};
+use canonform::settings::{Named, NoEffect, OptionGroup, OptionSpec, SCHEMA, Settings};
 use canonform::{DescribeOptions, FormOptions};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
@@ -72,11 +72,10 @@ fn heading(group: OptionGroup) -> Option<&'static str> {
 
 fn arg(option: &'static OptionSpec) -> Arg {
     let help = option.help(flag);
-    let is_seldom = option.group == OptionGroup::Marching || SELDOM.contains(&option.name);
     let arg = Arg::new(option.name)
         .long(option.name.replace('_', "-"))
         .help_heading(heading(option.group))
-        .hide_short_help(is_seldom);
+        .hide_short_help(option.is_seldom);
     let arg = match help.split_once("\n\n") {
         Some((first, _)) => arg.help(first.to_owned()).long_help(help),
         None => arg.help(help),

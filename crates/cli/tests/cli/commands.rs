@@ -406,7 +406,9 @@ fn help_fits_two_screens_unless_all_is_asked_for() {
     // As many lines as a terminal of this width needs.
     let n_lines =
         |page: &str| page.lines().map(|line| line.chars().count().div_ceil(120).max(1)).sum::<usize>();
-    for command in ["embed", "compare", "index build", "match", "methods", "search", "info", "geodesic"] {
+    for command in
+        ["embed", "compare", "index build", "match", "methods", "search", "info", "geodesic", "render"]
+    {
         let [brief, usual] = ["-h", "--help"].map(|flag| place.done(format!("{command} {flag}")).out);
         assert_eq!(brief, usual);
         assert!(n_lines(&usual) < 60, "{command} --help has {} lines: {usual}", n_lines(&usual));

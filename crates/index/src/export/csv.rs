@@ -12,7 +12,7 @@ pub(super) fn write(index: &Index, out: &mut dyn Write) -> Result<(), ExportErro
     for column in &columns {
         match column {
             Column::Text(name, _) => head.push((*name).to_owned()),
-            Column::Fact(name) => head.push(quoted(&format!("fact_{name}"))),
+            Column::Fact(name) => head.push(csv_field(&format!("fact_{name}"))),
             Column::Floats(name, extents) if name == "fused" => {
                 head.extend((0..extents[0]).map(|i| format!("fused_{i}")));
             }
@@ -27,7 +27,7 @@ fn row(out: &mut dyn Write, columns: &[Column], shape: &Shape) -> io::Result<()>
     let mut cells: Vec<String> = Vec::new();
     for column in columns {
         match column {
-            Column::Text(name, _) => cells.push(quoted(&text_of(shape, name))),
+            Column::Text(name, _) => cells.push(csv_field(&text_of(shape, name))),
             Column::Fact(name) => {
                 cells.push(shape.entry.fact(name).map_or_else(String::new, |x| x.to_string()))
             }
@@ -40,10 +40,25 @@ fn row(out: &mut dyn Write, columns: &[Column], shape: &Shape) -> io::Result<()>
     writeln!(out, "{}", cells.join(","))
 }
 
-/// A text in quotes, if it needs them.
-fn quoted(text: &str) -> String {
+/// A field of comma-separated values (RFC 4180), in quotes where it must be.
+#[must_use]
+pub fn csv_field(text: &str) -> String {
     match text.contains([',', '"', '\n', '\r']) {
         true => format!("\"{}\"", text.replace('"', "\"\"")),
         false => text.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_fields_that_need_quotes_have_them() {
+        for (field, expected) in
+            [("cat 1", "cat 1"), ("a,b", "\"a,b\""), ("\"", "\"\"\"\""), ("a\nb", "\"a\nb\"")]
+        {
+            assert_eq!(csv_field(field), expected);
+        }
     }
 }

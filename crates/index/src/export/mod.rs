@@ -15,6 +15,7 @@ use serde::{Serialize, Serializer};
 
 use crate::{Index, Shape};
 
+pub use csv::csv_field;
 pub use error::ExportError;
 
 /// The first line of an export.

@@ -108,6 +108,17 @@ pub fn torus(n_major: usize, n_minor: usize, major: f64, minor: f64) -> TriMesh 
     TriMesh { positions, faces: triangles(n_major, n_minor, vertex) }
 }
 
+/// A torus of 40 x 20 vertices with a bump: no symmetry.
+#[must_use]
+pub fn lopsided_torus() -> TriMesh {
+    let mut mesh = torus(40, 20, 2.0, 0.7);
+    for p in &mut mesh.positions {
+        let bump = (-(*p - Point3::new(2.4, 0.5, 0.3)).norm_squared()).exp();
+        p.coords *= 1.0 + 0.5 * bump + 0.1 * p.y;
+    }
+    mesh
+}
+
 #[cfg(test)]
 mod tests {
     use std::f64::consts::PI;

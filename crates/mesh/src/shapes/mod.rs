@@ -18,7 +18,7 @@ mod closed;
 mod flat;
 mod subdivision;
 
-pub use closed::{cube, cylinder, icosphere, tetrahedron, torus};
+pub use closed::{cube, cylinder, icosphere, lopsided_torus, tetrahedron, torus};
 pub use flat::{fold, folded_sheet, grid, jittered_grid, sheared_grid};
 pub use subdivision::subdivide;
 

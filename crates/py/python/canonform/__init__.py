@@ -31,18 +31,24 @@ from ._field import DistanceField, PairDistance, PairDistances
 from ._form import Form
 from ._index import Index, Result, SearchResults, ShapeEntry
 from ._match import Match, SurfaceMap, match
+from ._operators import ClosestPoints, EdgePoint, Eigenbasis, FacePoint
 from ._surface import Path, RepairReport, Surface, distance_methods, embedding_methods, signature_kinds
 from .errors import CanonformError
 
 if _TYPE_CHECKING:
     from . import distributed
+    from ._settings import Components, Weld
     from .learn import NystromMDS
 
 __all__ = [
     "Alignment",
     "CanonformError",
+    "ClosestPoints",
     "Comparison",
     "DistanceField",
+    "EdgePoint",
+    "Eigenbasis",
+    "FacePoint",
     "Form",
     "Index",
     "Match",
@@ -72,7 +78,7 @@ __all__ = [
 ]
 
 
-def read(path: str | _os.PathLike[str], *, components: str = "largest", weld: str | float = "seams") -> Surface:
+def read(path: str | _os.PathLike[str], *, components: Components = "largest", weld: Weld = "seams") -> Surface:
     """Read and repair a mesh file; see `Surface` for the options.
 
     Raises `MissingFileError`, `FileError` and `MeshError`.

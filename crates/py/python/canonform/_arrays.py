@@ -15,7 +15,7 @@ Ints: TypeAlias = NDArray[np.int64]
 
 def vertices_of(vertices: ArrayLike) -> Floats:
     """An n x 3 array of float64; the same array if it is one already."""
-    array = np.asarray(vertices)
+    array = _array(vertices, "vertices")
     if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind not in "fiu":
         raise MeshError(f"vertices must be an array of numbers of shape (n, 3), not {_described(array)}")
     return np.ascontiguousarray(array, dtype=np.float64)
@@ -23,7 +23,7 @@ def vertices_of(vertices: ArrayLike) -> Floats:
 
 def faces_of(faces: ArrayLike) -> Ints:
     """An m x 3 array of int64; the same array if it is one already."""
-    array = np.asarray(faces)
+    array = _array(faces, "faces")
     if array.size == 0:
         raise MeshError("there are no faces; leave out `faces` for a point cloud")
     if array.ndim == 2 and array.shape[1] == 4:
@@ -65,6 +65,8 @@ def _trimesh(mesh: Any) -> tuple[Any, Any] | None:
 def _meshio(mesh: Any) -> tuple[Any, Any] | None:
     if not (hasattr(mesh, "points") and hasattr(mesh, "cells")):
         return None
+    if hasattr(mesh, "extract_surface"):
+        raise MeshError("a grid is not a mesh; call its methods extract_surface().triangulate() first")
     blocks = [block.data for block in mesh.cells if block.type == "triangle"]
     others = sorted({block.type for block in mesh.cells if block.type not in ("triangle", "line", "vertex")})
     if others:
@@ -86,6 +88,13 @@ def _open3d(mesh: Any) -> tuple[Any, Any] | None:
     if hasattr(mesh, "vertices") and hasattr(mesh, "triangles"):
         return np.asarray(mesh.vertices), np.asarray(mesh.triangles)
     return None
+
+
+def _array(values: Any, name: str) -> NDArray[Any]:
+    try:
+        return np.asarray(values)
+    except ValueError as fault:
+        raise MeshError(f"{name} must be an array with 3 numbers in each row: {fault}") from fault
 
 
 def _described(array: NDArray[Any]) -> str:

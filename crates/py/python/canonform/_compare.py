@@ -11,24 +11,34 @@ from numpy.typing import ArrayLike
 from . import _canonform, _html
 from ._arrays import Floats
 from ._form import Form
-from ._settings import Progress, options_of, shown
-from ._surface import Surface
+from ._settings import DistanceMethod, EmbeddingMethod, FormDistance, Obtuse, Progress, Regularization, Sampling, Update, options_of, shown
+from ._stored import Stored
+from ._surface import AnyMesh, Surface, surface_of
 
 
-class Alignment:
-    """The rigid motion that takes one form onto another: `points @ rotation.T + translation`."""
+class Alignment(Stored):
+    """The rigid motion that takes one form onto another: `points @ rotation.T + translation`.
+
+    Attributes
+    ----------
+    rotation
+        An orthogonal matrix, shape (3, 3); its determinant is -1 if the motion includes a reflection.
+    translation
+        In mesh units, shape (3,).
+    reflected
+        Whether the motion includes a reflection.
+    rms
+        Root mean square distance between nearest points of the aligned forms, in mesh units.
+    hausdorff95
+        Hausdorff distance without the farthest 5 % of points, in mesh units.
+    """
 
     def __init__(self, inner: _canonform.Alignment) -> None:
         self.rotation: Floats = inner.rotation()
-        """An orthogonal matrix, shape (3, 3); its determinant is -1 if the motion includes a reflection."""
         self.translation: Floats = inner.translation()
-        """In mesh units, shape (3,)."""
         self.reflected: bool = inner.reflected
-        """Whether the motion includes a reflection."""
         self.rms: float = inner.rms
-        """Root mean square distance between nearest points of the aligned forms, in mesh units."""
         self.hausdorff95: float = inner.hausdorff95
-        """Hausdorff distance without the farthest 5 % of points, in mesh units."""
 
     def apply(self, points: ArrayLike) -> Floats:
         """Moves points, shape (k, 3)."""
@@ -40,25 +50,31 @@ class Alignment:
         return f"Alignment(rms={self.rms:.6g}, hausdorff95={self.hausdorff95:.6g}{reflected})"
 
 
-def align(a: Form | Surface, b: Form | Surface, *, reflections: bool = True) -> Alignment:
+def align(a: Form | AnyMesh, b: Form | AnyMesh, *, reflections: bool = True) -> Alignment:
     """The motion that takes the form of a onto that of b, in mesh units.
 
-    A surface stands for its canonical form with default options. `compare` uses forms at equal size instead.
+    A surface, or a mesh as `compare` takes it, stands for its canonical form with default options. `compare` uses forms at equal size instead.
 
     Raises `EmbeddingError` for forms that are not three-dimensional.
     """
-    forms = [shape.canonical_form(stress="skip") if isinstance(shape, Surface) else shape for shape in (a, b)]
+    forms = [shape if isinstance(shape, Form) else surface_of(shape).canonical_form(stress="skip") for shape in (a, b)]
     return Alignment(_canonform.align(forms[0]._inner, forms[1]._inner, reflections))
 
 
-class Comparison:
-    """How two shapes resemble each other."""
+class Comparison(Stored):
+    """How two shapes resemble each other.
+
+    Attributes
+    ----------
+    report
+        The object that `canonform compare --json` prints.
+    residuals
+        For each vertex of the first mesh, the distance of its form from that of the second, in mesh units; shape (n,).
+    """
 
     def __init__(self, report: dict[str, Any], residuals: Floats, shapes: tuple[Surface, Surface]) -> None:
         self.report = report
-        """The object that `canonform compare --json` prints."""
         self.residuals = residuals
-        """For each vertex of the first mesh, the distance of its form from that of the second, in mesh units; shape (n,)."""
         self._shapes = shapes
 
     @property
@@ -117,19 +133,19 @@ class Comparison:
 
 
 def compare(
-    a: Surface,
-    b: Surface,
+    a: AnyMesh,
+    b: AnyMesh,
     *,
     names: tuple[str, str] | None = None,
-    distance: str = "nn-rms",
+    distance: FormDistance = "nn-rms",
     n: int | str = 100,
-    method: str = "nmds",
-    geodesic: str = "fast-marching",
-    update: str | None = None,
-    obtuse: str | None = None,
-    sampling: str | None = None,
+    method: EmbeddingMethod = "nmds",
+    geodesic: DistanceMethod = "fast-marching",
+    update: Update | None = None,
+    obtuse: Obtuse | None = None,
+    sampling: Sampling | None = None,
     first_sample: int | None = None,
-    regularization: str | None = None,
+    regularization: Regularization | None = None,
     rank: int | None = None,
     alpha: float | str | None = None,
     sigma: float | str | None = None,
@@ -144,7 +160,7 @@ def compare(
 ) -> Comparison:
     """Compare two shapes: one shape, one class or different ones; the same geometry, scaled, mirrored, remeshed, part of the other.
 
-    Each side is described once, and kept.
+    Both are surfaces, mesh files, or meshes in memory as `Surface` takes them. A surface is described once, and keeps that.
 
     Parameters
     ----------
@@ -155,6 +171,7 @@ def compare(
         other options, which are those of `Surface.canonical_form`.
     """
     settings = options_of(locals())
+    a, b = surface_of(a), surface_of(b)
     called = names or (a._name or "the first", b._name or "the second")
     with shown(progress) as report:
         found, residuals = _canonform.compare(a._inner, b._inner, list(called), settings, report)

@@ -12,39 +12,55 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _canonform
 from ._arrays import Floats, Ints
-from ._settings import Progress, shown
+from ._settings import Progress, number, shown, whole
+from ._stored import ByValue, Constant
 from .errors import PointError
 
 
 @dataclass(frozen=True)
 class PairDistance:
-    """The distance of two vertices, with bounds, in mesh units."""
+    """The distance of two vertices, with bounds, in mesh units.
+
+    Attributes
+    ----------
+    distance
+        The estimate, between the bounds.
+    lower
+        The distance is not below this.
+    upper
+        The distance is not above this.
+    exact
+        Whether the distance is exact instead of an estimate.
+    """
 
     distance: float
-    """The estimate, between the bounds."""
     lower: float
-    """The distance is not below this."""
     upper: float
-    """The distance is not above this."""
     exact: bool
-    """Whether the distance is exact instead of an estimate."""
 
 
-@dataclass(frozen=True, repr=False)
-class PairDistances:
+@dataclass(frozen=True, repr=False, eq=False)
+class PairDistances(ByValue):
     """The distances of several pairs, with bounds: arrays of one number for each pair, in mesh units.
 
     `numpy.asarray(distances)` gives the distances.
+
+    Attributes
+    ----------
+    distance
+        The estimates, between the bounds. Infinite if the repair dropped one of the vertices.
+    lower
+        No distance is below these.
+    upper
+        No distance is above these.
+    exact
+        Which distances are exact instead of estimates.
     """
 
     distance: Floats
-    """The estimates, between the bounds. Infinite if the repair dropped one of the vertices."""
     lower: Floats
-    """No distance is below these."""
     upper: Floats
-    """No distance is above these."""
     exact: NDArray[np.bool_]
-    """Which distances are exact instead of estimates."""
 
     def __len__(self) -> int:
         return len(self.distance)
@@ -56,7 +72,7 @@ class PairDistances:
         return f"PairDistances({len(self)} pairs, {int(self.exact.sum())} exact)"
 
 
-class DistanceField:
+class DistanceField(Constant):
     """The distances between all pairs of vertices of a surface, in a few hundred bytes per vertex, with bounds.
 
     Made by `Surface.distance_field`, or read from a file by `DistanceField.load`. A file is that of the command line.
@@ -73,6 +89,12 @@ class DistanceField:
 
     def __init__(self, inner: _canonform.DistanceField) -> None:
         self._inner = inner
+
+    def _state(self) -> dict[str, Any]:
+        return {"bytes": self._inner.to_bytes()}
+
+    def _restore(self, state: dict[str, Any]) -> None:
+        self._inner = _canonform.DistanceField.from_bytes(state["bytes"])
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> DistanceField:
@@ -106,7 +128,7 @@ class DistanceField:
 
     def pair(self, a: int, b: int) -> PairDistance:
         """The distance of two vertices, estimated. Raises `PointError`."""
-        return PairDistance(*self._inner.pair(int(a), int(b)))
+        return PairDistance(*self._inner.pair(_vertex(a), _vertex(b)))
 
     def pairs(
         self, pairs: ArrayLike, *, tolerance: float | None = 0.05, progress: Progress = False
@@ -132,17 +154,28 @@ class DistanceField:
         if array.ndim != 2 or array.shape[1] != 2 or array.dtype.kind not in "iu":
             raise PointError(f"pairs must be an array of vertex numbers of shape (k, 2), not {array.dtype} of shape {array.shape}")
         with shown(progress) as report:
-            return PairDistances(*self._inner.pairs(np.ascontiguousarray(array, dtype=np.int64), tolerance, report))
+            return PairDistances(*self._inner.pairs(np.ascontiguousarray(array, dtype=np.int64), _share(tolerance), report))
 
     def row(self, source: int, *, tolerance: float | None = 0.05) -> PairDistances:
         """The distances from one vertex to all, in the order of the input; `tolerance` as in `pairs`."""
-        return PairDistances(*self._inner.row(int(source), tolerance))
+        return PairDistances(*self._inner.row(_vertex(source), _share(tolerance)))
 
     def nearest(self, source: int, k: int) -> tuple[Ints, Floats]:
         """The `k` vertices nearest to one of them along the surface, itself left out, and their exact distances, nearest first."""
-        return self._inner.nearest(int(source), int(k))
+        return self._inner.nearest(_vertex(source), whole("k", k))
 
     def __repr__(self) -> str:
         facts = self.facts
         bounds = facts["bounds"]["kind"]
         return f"DistanceField({facts['n_vertices']} vertices, {facts['n_landmarks']} landmarks, {bounds} bounds)"
+
+
+def _vertex(vertex: Any) -> int:
+    number = vertex.item() if isinstance(vertex, np.generic) else vertex
+    if isinstance(number, bool) or not isinstance(number, int) or not -(2**63) <= number < 2**63:
+        raise PointError(f"{vertex!r} is not a vertex; give its number")
+    return number
+
+
+def _share(tolerance: float | None) -> float | None:
+    return None if tolerance is None else number("tolerance", tolerance)

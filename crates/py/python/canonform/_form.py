@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -13,21 +13,45 @@ from numpy.typing import NDArray
 
 from . import _canonform, _html
 from ._arrays import Floats, Ints
-from ._settings import Progress, encoded, shown
+from ._settings import Progress, Stress, encoded, shown
+from ._stored import Constant
 
 if TYPE_CHECKING:
-    from ._surface import Surface
+    from ._surface import Point, Surface
 
 
-class Form:
+class Form(Constant):
     """A surface, embedded so that straight-line distances approximate the distances along it.
 
-    `numpy.asarray(form)` gives its points.
+    `numpy.asarray(form)` gives its points. A pickled form holds its points and its report; the distances of the samples, and what
+    `place`, `finer`, `align` and `reuse` need, are made again when they are first asked for.
     """
 
-    def __init__(self, inner: _canonform.Form, name: str = "") -> None:
-        self._inner = inner
+    def __init__(
+        self, inner: _canonform.Form | None, surface: Surface, settings: str, name: str = "", coarse: Form | None = None
+    ) -> None:
+        self._made = inner
+        self._surface, self._settings, self._coarse = surface, settings, coarse
         self._name = name
+
+    @property
+    def _inner(self) -> _canonform.Form:
+        if self._made is None:
+            surface = self._surface._inner
+            # Without the limits of the call that made it, which do not change the form.
+            settings = json.dumps({k: v for k, v in json.loads(self._settings).items() if k not in ("timeout", "memory")})
+            coarse = self._coarse
+            finer = None if coarse is None else surface.finer(coarse._inner, settings, None)
+            self._made = finer or surface.canonical_form(settings, None, None)
+        return self._made
+
+    def _state(self) -> dict[str, Any]:
+        made = {name: getattr(self, name) for name in ("points", "faces", "eigenvalues", "report", "options")}
+        return {**{k: v for k, v in vars(self).items() if k != "distances"}, **made, "_made": None}
+
+    def _restore(self, state: dict[str, Any]) -> None:
+        super()._restore(state)
+        self.points.flags.writeable = self.faces.flags.writeable = False
 
     @cached_property
     def points(self) -> Floats:
@@ -70,6 +94,19 @@ class Form:
         stress = self.report["stress"]
         return None if stress is None else float(stress["normalized"])
 
+    @property
+    def normalized_stress_interval(self) -> tuple[float, float] | None:
+        """A 95 % confidence interval of `normalized_stress`; its value twice if all pairs were measured."""
+        stress = self.report["stress"]
+        return None if stress is None else (float(stress["normalized_interval"][0]), float(stress["normalized_interval"][1]))
+
+    def _stress_in_words(self) -> str:
+        interval = self.normalized_stress_interval
+        if interval is None:
+            return "not measured"
+        low, high = interval
+        return f"{self.normalized_stress:.4f}" + (f" ({low:.4f} to {high:.4f})" if low < high else "")
+
     @cached_property
     def eigenvalues(self) -> Floats:
         """Eigenvalues, descending, in squared mesh units; the first `dim` belong to the columns of `points`."""
@@ -85,24 +122,27 @@ class Form:
         """Distances from each sample to all vertices, shape (number of samples, n), in mesh units."""
         return self._inner.distances()
 
-    def place(self, points: int | str | Sequence[int | str]) -> Floats:
+    def place(self, points: Point | Iterable[Point]) -> Floats:
         """Coordinates of points of the surface, shape (number of points, dim), in mesh units. Needs method="nmds".
 
         Parameters
         ----------
         points
-            Points as in `Surface.distances`: vertex numbers, or text such as "17-42@0.3" on an edge and "f8@2:1:1" in a face.
+            Points as in `Surface.distances`.
         """
-        one = isinstance(points, (int, np.integer, str))
-        return self._inner.place([points] if one else list(points))  # type: ignore[list-item,arg-type]
+        from ._surface import _several
 
-    def finer(self, surface: Surface, *, stress: str = "auto", seed: int = 0, progress: Progress = False) -> Form:
+        return self._inner.place(_several(points, len(self)))
+
+    def finer(self, surface: Surface, *, stress: Stress = "auto", seed: int = 0, progress: Progress = False) -> Form:
         """A finer mesh of the same surface in the coordinates of this form, placed by the distances from its samples.
 
         The meshes are in the same place: each sample is the nearest vertex of the finer mesh. Needs method="nmds".
         """
+        settings = encoded(stress=stress, seed=seed)
         with shown(progress) as report:
-            return Form(surface._inner.finer(self._inner, encoded(stress=stress, seed=seed), report), self._name)
+            inner = surface._inner.finer(self._inner, settings, report)
+        return Form(inner, surface, settings, self._name, self)
 
     def write(self, path: str | os.PathLike[str]) -> None:
         """Write the form as a mesh; the extension tells the format. Vertices that the repair dropped are left out."""
@@ -123,18 +163,16 @@ class Form:
 
     def __repr__(self) -> str:
         report = self.report
-        stress = self.normalized_stress
-        quality = "" if stress is None else f", normalized stress {stress:.4f}"
+        quality = "" if report["stress"] is None else f", normalized stress {self._stress_in_words()}"
         name = f"{self._name!r}, " if self._name else ""
         return f"Form({name}{report['n_vertices']} x {report['dim']}, {report['method']}, {report['n_samples']} samples{quality})"
 
     def _repr_html_(self) -> str:
         report = self.report
-        stress = self.normalized_stress
         rows = [
             ("method", f"{report['method']} on {report['geodesic']} distances"),
             ("samples, rank", f"{report['n_samples']}, {report['rank']}"),
-            ("normalized stress", "not measured" if stress is None else f"{stress:.4f}"),
+            ("normalized stress", self._stress_in_words()),
             ("negative mass", f"{report['negative_mass']:.4f}"),
             ("seconds", f"{report['seconds']['total']:.3f}"),
         ]

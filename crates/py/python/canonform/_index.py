@@ -12,66 +12,114 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, TypeAlias, overload
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from . import _canonform, _html
 from ._arrays import Floats
-from ._settings import Progress, encoded, form_options, options_of, shown
-from ._surface import Surface
-from .errors import CanonformError, OptionError, SkippedMeshWarning
+from ._settings import (
+    Components,
+    DistanceMethod,
+    EmbeddingMethod,
+    Progress,
+    Rank,
+    Weld,
+    encoded,
+    form_options,
+    options_of,
+    shown,
+    whole,
+    word,
+)
+from ._stored import Stored
+from ._surface import AnyMesh, Surface, surface_of
+from .datasets import Shape
+from .errors import CanonformError, OptionError, ShapeIndexError, SkippedMeshWarning
 
 if TYPE_CHECKING:
     import pandas
 
 AnyPath: TypeAlias = str | os.PathLike[str]
 
+Meshes: TypeAlias = AnyPath | Mapping[str, AnyMesh] | Iterable[AnyPath | Surface | tuple[str, AnyMesh] | tuple[str, AnyMesh, str]]
+"""A dataset on disk, paths of mesh files, or meshes with names."""
+
 _PICTURED = 6
 
 
 @dataclass(frozen=True)
 class ShapeEntry:
-    """A shape of an index."""
+    """A shape of an index.
+
+    Attributes
+    ----------
+    id
+        Its name.
+    label
+        Its class; empty if it has none.
+    path
+        Its mesh file.
+    n_vertices, n_faces
+        The size of its mesh; None if the index does not say.
+    """
 
     id: str
     label: str
-    """Its class; empty if it has none."""
     path: str
-    """Its mesh file."""
     n_vertices: int | None
     n_faces: int | None
 
 
 @dataclass(frozen=True)
 class Result:
-    """A shape that was found."""
+    """A shape that was found.
+
+    Attributes
+    ----------
+    rank
+        Counted from 1.
+    id
+        Its name.
+    label
+        Its class; empty if it has none.
+    path
+        Its mesh file.
+    distance
+        Combined distance from the query, by signatures and aligned forms.
+    fused
+        Distance by signatures alone.
+    relation
+        How the query and the shape are related, as in `Comparison.relation`; by files and meshes, too, if the search explains.
+    rank_distance
+        What results are ordered by if they are ranked on the graph of nearest neighbours.
+    part_distance
+        What results are ordered by if the query is taken as a part: 0 if it fits.
+    part_share
+        The share of the area of the shape that the query has if it is taken as a part.
+    """
 
     rank: int
-    """Counted from 1."""
     id: str
     label: str
-    """Its class; empty if it has none."""
     path: str
-    """Its mesh file."""
     distance: float
-    """Combined distance from the query, by signatures and aligned forms."""
     fused: float
-    """Distance by signatures alone."""
     relation: dict[str, Any]
-    """How the query and the shape are related, as in `Comparison.relation`; by files and meshes, too, if the search explains."""
     rank_distance: float | None
-    """What results are ordered by if they are ranked on the graph of nearest neighbours."""
     part_distance: float | None
-    """What results are ordered by if the query is taken as a part: 0 if it fits."""
     part_share: float | None
-    """The share of the area of the shape that the query has if it is taken as a part."""
 
 
-class SearchResults(Sequence[Result]):
-    """The shapes nearest to a query, nearest first."""
+class SearchResults(Stored, Sequence[Result]):
+    """The shapes nearest to a query, nearest first.
 
-    def __init__(self, report: dict[str, Any], query: Surface | None, name: str, index: _canonform.Index) -> None:
+    Attributes
+    ----------
+    report
+        The answer that `canonform search --json` prints.
+    """
+
+    def __init__(self, report: dict[str, Any], query: Surface | None, name: str, index: Index) -> None:
         self.report = report
-        """The answer that `canonform search --json` prints."""
         self._results = [
             Result(
                 **{key: found[key] for key in ("rank", "id", "label", "path", "distance", "fused", "relation")},
@@ -131,7 +179,7 @@ class SearchResults(Sequence[Result]):
             pictures.append(_captioned(self._query, f"query: {self._name}"))
         for found in self[:_PICTURED]:
             try:
-                pictures.append(_captioned(Surface._of(self._index.surface(found.id)), f"{found.rank}. {found.id}"))
+                pictures.append(_captioned(self._index.surface(found.id), f"{found.rank}. {found.id}"))
             except CanonformError:
                 # The file may be gone, and the results are worth showing all the same.
                 pictures.append(_caption("", f"{found.rank}. {found.id}"))
@@ -153,18 +201,29 @@ def _caption(image: str, caption: str) -> str:
     return f'<div style="text-align:center;max-width:120px">{image}<div style="font-size:11px">{escape(caption)}</div></div>'
 
 
-class Index:
+class Index(Stored):
     """A searchable file of shapes.
 
     `Index.build(meshes, path)` makes one, `Index(path)` opens it. An index is one file; it finds shapes by their signatures and orders
     them by their aligned forms. Other programs may search it at the same time, also while it is changed; methods that change it continue
     to work with the new content.
+
+    Attributes
+    ----------
+    build_report
+        What happened to each mesh when this object built or changed the index: the object that `canonform index build --json`
+        prints.
     """
 
     def __init__(self, path: AnyPath) -> None:
         self._inner = _canonform.Index.open(os.fspath(path))
         self.build_report: dict[str, Any] | None = None
-        """What happened to each mesh when this object built or changed the index: the object that `canonform index build --json` prints."""
+
+    def _state(self) -> dict[str, Any]:
+        return {"path": os.path.abspath(self.path), "build_report": self.build_report}
+
+    def _restore(self, state: dict[str, Any]) -> None:
+        self._inner, self.build_report = _canonform.Index.open(state["path"]), state["build_report"]
 
     @classmethod
     def open(cls, path: AnyPath) -> Index:
@@ -174,7 +233,7 @@ class Index:
     @classmethod
     def build(
         cls,
-        meshes: AnyPath | Iterable[AnyPath],
+        meshes: Meshes,
         path: AnyPath,
         *,
         labels: Mapping[str, str] | AnyPath | None = None,
@@ -183,11 +242,11 @@ class Index:
         n: int = 100,
         points: int = 1000,
         size: bool = False,
-        method: str = "nmds",
-        geodesic: str = "fast-marching",
+        method: EmbeddingMethod = "nmds",
+        geodesic: DistanceMethod = "fast-marching",
         form: Mapping[str, Any] | None = None,
-        components: str = "largest",
-        weld: str | float = "seams",
+        components: Components = "largest",
+        weld: Weld = "seams",
         seed: int = 0,
         max_vertices: int | None = None,
         timeout: float | None = None,
@@ -202,7 +261,9 @@ class Index:
         Parameters
         ----------
         meshes
-            A folder, also with sub-folders, an archive, a list file, or paths of mesh files.
+            A folder, also with sub-folders, an archive, a list file, or paths of mesh files. Or meshes in memory, as `Surface` takes
+            them: a dictionary from names to meshes, or (name, mesh) and (name, mesh, class). They are kept as files in the folder
+            PATH.meshes, from which results are explained and drawn.
         path
             The index.
         labels
@@ -232,6 +293,7 @@ class Index:
             If the file is not an index, or was made with other options.
         """
         settings = options_of({**locals(), **form_options(form)})
+        meshes, labels = _in_files(meshes, path, labels, replace=True)
         with shown(progress) as update, _label_file(labels) as label_file, _dataset(meshes) as (dataset, name):
             report = json.loads(_canonform.Index.build(dataset, os.fspath(path), label_file, prune, shard, None, settings, update))
         if not os.path.exists(path):
@@ -255,7 +317,7 @@ class Index:
 
     def add(
         self,
-        meshes: AnyPath | Iterable[AnyPath],
+        meshes: Meshes,
         *,
         label: str | None = None,
         labels: Mapping[str, str] | AnyPath | None = None,
@@ -265,7 +327,7 @@ class Index:
         memory: int | str | None = None,
         progress: Progress = False,
     ) -> dict[str, Any]:
-        """Add mesh files and folders of them, described with the options of the index. Returns what happened to each.
+        """Add meshes as in `build`: files, folders of them, or meshes in memory, described with the options of the index. Returns what happened to each.
 
         Parameters
         ----------
@@ -277,6 +339,9 @@ class Index:
         """
         if label is not None and labels is not None:
             raise OptionError("label= has no effect with labels=; leave one of them out")
+        meshes, labels = _in_files(meshes, self.path, labels, replace=replace)
+        if label is not None and labels is not None:
+            raise OptionError("label= has no effect for meshes that come with a class; leave one of them out")
         paths = [meshes] if isinstance(meshes, (str, os.PathLike)) else list(meshes)
         settings = encoded(max_vertices=max_vertices, timeout=timeout, memory=memory)
         with shown(progress) as update, _label_file(labels) as label_file:
@@ -296,14 +361,14 @@ class Index:
         self._inner, self.build_report = _canonform.Index.open(self.path), report
 
     def search(
-        self, query: Surface | AnyPath, k: int = 10, *, rank: str = "plain", explain: bool = False, exact: bool = False
+        self, query: AnyMesh, k: int = 10, *, rank: Rank = "plain", explain: bool = False, exact: bool = False
     ) -> SearchResults:
         """Find the shapes nearest to a query.
 
         Parameters
         ----------
         query
-            A surface, a mesh file, or the name of a shape of the index.
+            A surface, a mesh as `Surface` takes it, a mesh file, or the name of a shape of the index.
         k
             Number of results.
         rank
@@ -314,18 +379,19 @@ class Index:
         exact
             Compare the signatures of all shapes, even in a large index.
         """
-        if isinstance(query, Surface):
+        if not isinstance(query, (str, os.PathLike)):
+            query = surface_of(query)
             name = query._name or "the query"
-            report = self._inner.search(query._inner, name, k, rank, explain, exact)
-            return SearchResults(json.loads(report), query, name, self._inner)
+            report = self._inner.search(query._inner, name, whole("k", k), word("rank", rank), explain, exact)
+            return SearchResults(json.loads(report), query, name, self)
         text = os.fspath(query)
         if not os.path.exists(text) and text not in self:
             from .errors import NoSuchShapeError
 
             raise NoSuchShapeError(f"{text!r} is neither a file nor a shape of the index; Index.shapes() names its shapes")
         name = os.path.basename(text) if os.path.exists(text) else text
-        report = self._inner.search(text, name, k, rank, explain, exact)
-        return SearchResults(json.loads(report), self._pictured(text), name, self._inner)
+        report = self._inner.search(text, name, whole("k", k), word("rank", rank), explain, exact)
+        return SearchResults(json.loads(report), self._pictured(text), name, self)
 
     def _pictured(self, query: str) -> Surface | None:
         try:
@@ -333,7 +399,7 @@ class Index:
         except CanonformError:
             return None
 
-    def classify(self, query: Surface | AnyPath, *, rank: str = "plain") -> str | None:
+    def classify(self, query: AnyMesh, *, rank: Rank = "plain") -> str | None:
         """The class of a query by the votes of the nearest shapes; None if no shape is near enough. `search` says why."""
         return self.search(query, 0, rank=rank).label
 
@@ -342,7 +408,7 @@ class Index:
         *,
         by: str = "fused",
         k: int = 1,
-        rank: str = "plain",
+        rank: Rank = "plain",
         labels: Mapping[str, str] | AnyPath | None = None,
         progress: Progress = False,
     ) -> dict[str, Any]:
@@ -358,7 +424,7 @@ class Index:
             "plain", or "graph" to score the ranking on the graph of nearest neighbours as well, under the key `graph`.
         """
         with shown(progress) as update, _label_file(labels) as label_file:
-            scores: dict[str, Any] = json.loads(self._inner.evaluate(by, k, rank, label_file, update))
+            scores: dict[str, Any] = json.loads(self._inner.evaluate(word("by", by), whole("k", k), word("rank", rank), label_file, update))
         return scores
 
     @property
@@ -386,6 +452,13 @@ class Index:
         """The fused signature of one shape."""
         return self._inner.vector(id)
 
+    def nearest(self, vector: ArrayLike, k: int = 10, *, exact: bool = False) -> list[tuple[str, float]]:
+        """The shapes whose signatures are nearest to a vector, such as `Surface.signature()`: names and distances, nearest first."""
+        array = np.asarray(vector)
+        if array.ndim != 1 or array.dtype.kind not in "fiu":
+            raise OptionError(f"vector must be an array of numbers of shape (d,), not {array.dtype} of shape {array.shape}")
+        return self._inner.nearest(np.ascontiguousarray(array, dtype=np.float32), whole("k", k), bool(exact))
+
     def distances(
         self,
         ids: Sequence[str] | None = None,
@@ -411,7 +484,7 @@ class Index:
         """
         rows = list(self) if ids is None else list(ids)
         with shown(progress) as update:
-            return self._inner.distances(rows, None if others is None else list(others), kind, update)
+            return self._inner.distances(rows, None if others is None else list(others), word("kind", kind), update)
 
     def surface(self, id: str) -> Surface:
         """The surface of a shape. Its mesh file must be where it was, and unchanged."""
@@ -487,6 +560,67 @@ def _warn_of_skipped(report: dict[str, Any]) -> None:
 
 def _whole(number: float | None) -> int | None:
     return None if number is None else int(number)
+
+
+def _in_files(
+    meshes: Meshes, index: AnyPath, labels: Mapping[str, str] | AnyPath | None, *, replace: bool
+) -> tuple[AnyPath | list[AnyPath], Mapping[str, str] | AnyPath | None]:
+    """Paths of the meshes, and classes: those in memory are written to a folder beside the index."""
+    if isinstance(meshes, (str, os.PathLike)):
+        return meshes, labels
+    if not isinstance(meshes, Iterable):
+        raise OptionError(f"meshes={meshes!r} is not possible: give a folder, paths of mesh files, or meshes with names")
+    given: list[Any] = list(meshes.items()) if isinstance(meshes, Mapping) else list(meshes)
+    folder = f"{os.fspath(index)}.meshes"
+    paths: list[AnyPath] = []
+    known: dict[str, str] = {}
+    taken: set[str] = set()
+    for i, item in enumerate(given):
+        if isinstance(item, (str, os.PathLike)):
+            paths.append(item)
+            continue
+        name, mesh, label = _named(item, i)
+        if name in taken:
+            raise OptionError(f"two meshes have the name {name!r}")
+        taken.add(name)
+        if label:
+            known[name] = label
+        paths.append(_kept(surface_of(mesh), os.path.join(folder, f"{name}.ply"), replace))
+    if known and labels is not None:
+        raise OptionError("labels= has no effect for meshes that come with a class; leave one of them out")
+    return paths, known or labels
+
+
+def _named(item: Any, i: int) -> tuple[str, AnyMesh, str]:
+    """Name, mesh and class of a mesh in memory, which has this place among others."""
+    name, mesh, label = "", item, ""
+    if isinstance(item, tuple) and item and isinstance(item[0], str):
+        if len(item) not in (2, 3):
+            raise OptionError(f"meshes[{i}] is not possible: give (name, mesh) or (name, mesh, class)")
+        name, mesh, label = (*item, "")[:3]
+    elif isinstance(item, Shape):
+        name, label = item.name, item.label
+    elif isinstance(item, Surface):
+        name = os.path.splitext(item._name)[0]
+    name = name or f"mesh{i}"
+    if name != name.strip() or name.startswith(".") or any(c in name for c in '/\\:\n\r\0'):
+        raise OptionError(f"the name {name!r} is not possible: it stands for a file of this name")
+    return name, mesh, label or ""
+
+
+def _kept(surface: Surface, path: str, replace: bool) -> str:
+    """Writes a mesh for an index, unless it is there already."""
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    if os.path.exists(path) and not replace:
+        with TemporaryDirectory() as folder:
+            new = os.path.join(folder, "new.ply")
+            surface.write(new)
+            with open(new, "rb") as one, open(path, "rb") as other:
+                if one.read() != other.read():
+                    raise ShapeIndexError(f"{path} has another mesh of this name; rename the new one, or pass replace=True")
+        return path
+    surface.write(path)
+    return path
 
 
 @contextmanager

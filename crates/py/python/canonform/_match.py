@@ -10,28 +10,39 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _canonform, _html
 from ._arrays import Floats, Ints
-from ._settings import Progress, encoded, shown
-from ._surface import Surface
+from ._settings import DistanceMethod, Progress, encoded, shown
+from ._stored import Stored
+from ._surface import AnyMesh, Surface, surface_of
 
 
-class SurfaceMap:
-    """A map from the vertices of one surface to those of another."""
+class SurfaceMap(Stored):
+    """A map from the vertices of one surface to those of another.
+
+    Attributes
+    ----------
+    vertices
+        For each vertex of the first surface, its partner on the second, or -1 if the repair dropped the vertex; shape (n,).
+    kind
+        "direct" if the map keeps the orientation, "mirrored" if it reverses it, "unoriented" if a surface has none.
+    distortion
+        The mean change of distances, as a share of the square root of the area.
+    agreement
+        How far the map keeps the orientation, from -1 to 1; `None` if a surface cannot be oriented.
+    confidence
+        The probability that this map is the right one of its kind, and not the next best.
+    alternative
+        The next best map of this kind, if this one is uncertain: front and back may be exchanged.
+    """
 
     def __init__(self, report: dict[str, Any], arrays: list[tuple[Ints, Floats] | None]) -> None:
         assert arrays[0] is not None
         self.vertices, self._functional = arrays[0]
-        """For each vertex of the first surface, its partner on the second, or -1 if the repair dropped the vertex; shape (n,)."""
         self.kind: str = report["kind"]
-        """"direct" if the map keeps the orientation, "mirrored" if it reverses it, "unoriented" if a surface has none."""
         self.distortion: float = report["distortion"]
-        """The mean change of distances, as a share of the square root of the area."""
         self.agreement: float | None = report["agreement"]
-        """How far the map keeps the orientation, from -1 to 1; `None` if a surface cannot be oriented."""
         self.confidence: float = report["confidence"]
-        """The probability that this map is the right one of its kind, and not the next best."""
         other = arrays[1] if len(arrays) > 1 else None
         self.alternative: SurfaceMap | None = SurfaceMap(report["alternative"], [other]) if other is not None else None
-        """The next best map of this kind, if this one is uncertain: front and back may be exchanged."""
 
     def functional(self, k: int | None = None) -> Floats:
         """The map of functions, shape (k, k): column j has the coefficients of the j-th eigenfunction of the second surface,
@@ -55,8 +66,16 @@ class SurfaceMap:
         return f"SurfaceMap({self.kind!r}, distortion={self.distortion:.4f})"
 
 
-class Match:
-    """The maps from one surface to another: the direct one first, unless it distorts distances clearly more."""
+class Match(Stored):
+    """The maps from one surface to another: the direct one first, unless it distorts distances clearly more.
+
+    Attributes
+    ----------
+    maps
+        At most two maps, of different kinds.
+    seconds
+        The time of the search, after both surfaces were prepared.
+    """
 
     def __init__(
         self,
@@ -66,9 +85,7 @@ class Match:
         shapes: tuple[Surface, Surface],
     ) -> None:
         self.maps = [SurfaceMap(*entry) for entry in zip(report["maps"], arrays, strict=True)]
-        """At most two maps, of different kinds."""
         self.seconds: float = report["seconds"]
-        """The time of the search, after both surfaces were prepared."""
         self._colors = colors
         self._shapes = shapes
 
@@ -95,17 +112,17 @@ class Match:
 
 
 def match(
-    a: Surface,
-    b: Surface,
+    a: AnyMesh,
+    b: AnyMesh,
     *,
     eigenfunctions: int | None = None,
     n: int | str = 100,
-    geodesic: str = "fast-marching",
+    geodesic: DistanceMethod = "fast-marching",
     timeout: float | None = None,
     memory: int | str | None = None,
     progress: Progress = False,
 ) -> Match:
-    """Map the vertices of `a` to those of `b`.
+    """Map the vertices of `a` to those of `b`: surfaces, mesh files, or meshes in memory.
 
     Shapes that are alike under a mirror, as animals are, have two maps: the direct one takes the left side to the left side, the
     mirrored one to the right side. Both are found. Each surface is prepared once, and kept.
@@ -118,6 +135,7 @@ def match(
         How the canonical forms are made whose alignments the search starts from, as in `Surface.canonical_form`.
     """
     settings = encoded(eigenfunctions=eigenfunctions, n=n, geodesic=geodesic, timeout=timeout, memory=memory)
+    a, b = surface_of(a), surface_of(b)
     with shown(progress) as report:
         found, vertices, colors = _canonform.match_surfaces(a._inner, b._inner, settings, report)
     return Match(json.loads(found), vertices, colors, (a, b))

@@ -6,12 +6,27 @@ import json
 import math
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import Any, TypeAlias
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
 
 from . import _canonform
+from .errors import OptionError
 
 Progress: TypeAlias = bool | Callable[[str, int, int], None]
 """`True` shows a bar (needs the package tqdm); a function gets the stage, the steps done and all steps."""
+
+DistanceMethod: TypeAlias = Literal["fast-marching", "exact", "heat", "dijkstra", "bfs"]
+EmbeddingMethod: TypeAlias = Literal["nmds", "landmark", "spectral", "fmds", "kpca", "mds", "smacof"]
+Update: TypeAlias = Literal["point-source", "virtual-source", "planar"]
+Obtuse: TypeAlias = Literal["flip", "unfold", "ignore"]
+Sampling: TypeAlias = Literal["farthest", "random", "min-variance", "max-variance"]
+Regularization: TypeAlias = Literal["low-rank", "cur", "rpi", "none"]
+Stress: TypeAlias = Literal["auto", "exact", "estimate", "skip"]
+Components: TypeAlias = Literal["largest", "bridge", "error"]
+Weld: TypeAlias = Literal["seams", "all", "none"] | float
+FormDistance: TypeAlias = Literal["nn-rms", "hausdorff95"]
+Rank: TypeAlias = Literal["plain", "graph", "part"]
 
 _SIZES = {"": 0, "K": 1, "M": 2, "G": 3, "T": 4}
 
@@ -34,15 +49,53 @@ def _plain(value: Any) -> Any:
     # NumPy numbers.
     value = value.item() if hasattr(value, "item") else value
     if not isinstance(value, (bool, int, float, str)):
-        raise TypeError(f"{value!r} is not a number, text or truth value")
+        raise OptionError(f"{value!r} is not possible: give a number, text or a truth value")
     # JSON has no infinity.
     return "inf" if isinstance(value, float) and math.isinf(value) and value > 0 else value
 
 
+def whole(name: str, value: Any, least: int = 0) -> int:
+    """The whole number that an argument must be."""
+    number = value.item() if isinstance(value, np.generic) else value
+    if isinstance(number, bool) or not isinstance(number, int) or not least <= number < 2**63:
+        raise OptionError(f"{name}={value!r} is not possible: give a whole number, {least} or more")
+    return number
+
+
+def some_whole(name: str, value: Any, least: int = 0) -> int | None:
+    """The same, unless it is left out."""
+    return None if value is None else whole(name, value, least)
+
+
+def word(name: str, value: Any) -> str:
+    """The text that an argument must be."""
+    if not isinstance(value, str):
+        raise OptionError(f"{name}={value!r} is not possible: give text")
+    return value
+
+
+def ways(method: str, update: str | None, obtuse: str | None) -> tuple[str, str | None, str | None]:
+    """How distances are measured, as text."""
+    return (
+        word("method", method),
+        None if update is None else word("update", update),
+        None if obtuse is None else word("obtuse", obtuse),
+    )
+
+
+def number(name: str, value: Any) -> float:
+    """The number that an argument must be."""
+    try:
+        found = float(value)
+    except (TypeError, ValueError):
+        found = math.nan
+    if math.isnan(found):
+        raise OptionError(f"{name}={value!r} is not possible: give a number")
+    return found
+
+
 def form_options(form: Mapping[str, Any] | None) -> dict[str, Any]:
     """Further options of forms, by name."""
-    from .errors import OptionError
-
     options = dict(form or {})
     unknown = sorted(set(options) - _FORM)
     if unknown:
@@ -52,10 +105,8 @@ def form_options(form: Mapping[str, Any] | None) -> dict[str, Any]:
 
 def n_bytes(size: int | str) -> int:
     """A memory size such as 2_000_000_000 or "2G", in bytes."""
-    from .errors import OptionError
-
     if not isinstance(size, str):
-        return int(size)
+        return whole("memory", size)
     text = size.strip().upper().removesuffix("B").removesuffix("I")
     unit = text[-1:] if text[-1:].isalpha() else ""
     number = text.removesuffix(unit)

@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, TypeAlias, overload
+from typing import TYPE_CHECKING, Any, TypeAlias, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,11 +17,36 @@ from . import _canonform, _html
 from ._arrays import Floats, Ints, mesh_of
 from ._field import DistanceField
 from ._form import Form
-from ._settings import Progress, encoded, options_of, shown
+from ._operators import ClosestPoints, EdgePoint, Eigenbasis, FacePoint, parsed
+from ._settings import (
+    Components,
+    DistanceMethod,
+    EmbeddingMethod,
+    Obtuse,
+    Progress,
+    Regularization,
+    Sampling,
+    Stress,
+    Update,
+    Weld,
+    encoded,
+    number,
+    options_of,
+    shown,
+    some_whole,
+    ways,
+    whole,
+    word,
+)
+from ._stored import ByValue, Constant
 from .errors import OptionError, PointError, SurfaceLossWarning
 
-Point: TypeAlias = int | np.integer[Any] | str
-"""A vertex by its number; a point of an edge, such as "17-42@0.3"; or of a face, such as "f8@2:1:1"."""
+if TYPE_CHECKING:
+    import trimesh
+    from scipy import sparse
+
+Point: TypeAlias = int | np.integer[Any] | EdgePoint | FacePoint | str
+"""A vertex by its number, or a point of an edge or face; also as text, such as "17-42@0.3" and "f8@2:1:1"."""
 
 Points: TypeAlias = list[Point] | tuple[Point, ...] | range | Ints
 """Several points."""
@@ -50,29 +75,41 @@ class RepairReport(dict[str, Any]):
     """What the repair of a mesh changed: the object `repair` that the command line prints, with the same keys.
 
     `str(report)` says it in words.
+
+    Attributes
+    ----------
+    lines
+        One line for each kind of change; empty if nothing was changed.
     """
 
     def __init__(self, report: dict[str, Any], lines: list[str]) -> None:
         super().__init__(report)
         self.lines = lines
-        """One line for each kind of change; empty if nothing was changed."""
 
     def __str__(self) -> str:
         return "\n".join(self.lines) or "nothing to repair"
 
 
-@dataclass(frozen=True, repr=False)
-class Path:
-    """A shortest path along a surface."""
+@dataclass(frozen=True, repr=False, eq=False)
+class Path(ByValue):
+    """A shortest path along a surface.
+
+    Attributes
+    ----------
+    points
+        Its points from start to end, joined by straight lines: shape (k, 3), in mesh units.
+    at
+        The point of the mesh that each of them is: the number of a vertex, or a point of an edge or face.
+    along
+        The distance of each from the start, along the path, in mesh units: shape (k,).
+    length
+        Its length, in mesh units.
+    """
 
     points: Floats
-    """Its points from start to end, joined by straight lines: shape (k, 3), in mesh units."""
-    at: list[str]
-    """The point of the mesh that each of them is, as `Point` writes them."""
+    at: list[int | EdgePoint | FacePoint]
     along: Floats
-    """The distance of each from the start, along the path, in mesh units: shape (k,)."""
     length: float
-    """Its length, in mesh units."""
 
     def __len__(self) -> int:
         return len(self.points)
@@ -84,7 +121,7 @@ class Path:
         return f"Path(length={self.length:.6g}, points={len(self)}, from {self.at[0]} to {self.at[-1]})"
 
 
-class Surface:
+class Surface(Constant):
     """A triangle mesh, repaired, with everything that was prepared on it.
 
     Preparing a solver takes longer than one run of it, so it is kept: keep the surface, and call it as often as you like, from several
@@ -134,8 +171,8 @@ class Surface:
         mesh: ArrayLike | Any,
         faces: ArrayLike | None = None,
         *,
-        components: str = "largest",
-        weld: str | float = "seams",
+        components: Components = "largest",
+        weld: Weld = "seams",
     ) -> None:
         vertices, triangles = mesh_of(mesh, faces)
         self._inner = _canonform.Surface(vertices, triangles, encoded(components=components, weld=weld))
@@ -143,7 +180,7 @@ class Surface:
         self._warn_of_loss()
 
     @classmethod
-    def read(cls, path: str | os.PathLike[str], *, components: str = "largest", weld: str | float = "seams") -> Surface:
+    def read(cls, path: str | os.PathLike[str], *, components: Components = "largest", weld: Weld = "seams") -> Surface:
         """Read and repair a mesh file. The extension tells the format.
 
         Raises `MissingFileError`, `FileError` and `MeshError`.
@@ -168,6 +205,14 @@ class Surface:
         surface = cls.__new__(cls)
         surface._inner, surface._name = inner, name
         return surface
+
+    def _state(self) -> dict[str, Any]:
+        vertices, faces, repair, content = self._inner.state()
+        return {"vertices": vertices, "faces": faces, "repair": repair, "content": content, "name": self._name}
+
+    def _restore(self, state: dict[str, Any]) -> None:
+        mesh = (state[key] for key in ("vertices", "faces", "repair", "content"))
+        self._inner, self._name = _canonform.Surface.restore(*mesh), state["name"]
 
     @property
     def n_vertices(self) -> int:
@@ -208,9 +253,9 @@ class Surface:
         self,
         sources: Point | Iterable[Point],
         *,
-        method: str = "fast-marching",
-        update: str | None = None,
-        obtuse: str | None = None,
+        method: DistanceMethod = "fast-marching",
+        update: Update | None = None,
+        obtuse: Obtuse | None = None,
         max_distance: float = np.inf,
     ) -> Floats:
         """Distances along the surface from the nearest of the sources to every vertex.
@@ -218,7 +263,7 @@ class Surface:
         Parameters
         ----------
         sources
-            A vertex number, a point of an edge or face as text, or several of them.
+            A vertex number, an `EdgePoint`, a `FacePoint`, or several of them; or a mask of the vertices.
         method
             One of `distance_methods()`: "fast-marching", "exact", "heat", "dijkstra", "bfs".
         update, obtuse
@@ -237,15 +282,15 @@ class Surface:
         PointError
             If the mesh has no such point, or the repair dropped it.
         """
-        return self._inner.distances(_several(sources, self.n_vertices), method, update, obtuse, float(max_distance))
+        return self._inner.distances(_several(sources, self.n_vertices), *ways(method, update, obtuse), number("max_distance", max_distance))
 
     def distances_many(
         self,
         sources: Iterable[Point],
         *,
-        method: str = "fast-marching",
-        update: str | None = None,
-        obtuse: str | None = None,
+        method: DistanceMethod = "fast-marching",
+        update: Update | None = None,
+        obtuse: Obtuse | None = None,
         max_distance: float = np.inf,
         progress: Progress = False,
     ) -> Floats:
@@ -255,23 +300,23 @@ class Surface:
         """
         with shown(progress) as report:
             return self._inner.distances_many(
-                _several(sources, self.n_vertices), method, update, obtuse, float(max_distance), report
+                _several(sources, self.n_vertices), *ways(method, update, obtuse), number("max_distance", max_distance), report
             )
 
     @overload
-    def path(self, a: Point, b: Point, *, method: str = ..., update: str | None = ..., obtuse: str | None = ...) -> Path: ...
+    def path(self, a: Point, b: Point, *, method: DistanceMethod = ..., update: Update | None = ..., obtuse: Obtuse | None = ...) -> Path: ...
     @overload
     def path(
-        self, a: Point, b: Points, *, method: str = ..., update: str | None = ..., obtuse: str | None = ...
+        self, a: Point, b: Points, *, method: DistanceMethod = ..., update: Update | None = ..., obtuse: Obtuse | None = ...
     ) -> list[Path]: ...
     def path(
         self,
         a: Point,
         b: Point | Points,
         *,
-        method: str = "fast-marching",
-        update: str | None = None,
-        obtuse: str | None = None,
+        method: DistanceMethod = "fast-marching",
+        update: Update | None = None,
+        obtuse: Obtuse | None = None,
     ) -> Path | list[Path]:
         """The shortest path along the surface from a to b; one path for each if b is a list, tuple or array of points.
 
@@ -280,8 +325,11 @@ class Surface:
 
         Raises `PointError`.
         """
-        single = isinstance(b, (int, str, np.integer))
-        found = [Path(*path) for path in self._inner.paths(a, _several(b), method, update, obtuse)]
+        single = isinstance(b, (int, str, np.integer, EdgePoint, FacePoint))
+        [source] = _several(a, self.n_vertices)
+        ends = _several(b, self.n_vertices)
+        paths = self._inner.paths(source, ends, *ways(method, update, obtuse))
+        found = [Path(points, list(map(parsed, at)), along, length) for points, at, along, length in paths]
         return found[0] if single else found
 
     def farthest_points(
@@ -289,9 +337,9 @@ class Surface:
         n: int,
         *,
         first: int | None = None,
-        method: str = "fast-marching",
-        update: str | None = None,
-        obtuse: str | None = None,
+        method: DistanceMethod = "fast-marching",
+        update: Update | None = None,
+        obtuse: Obtuse | None = None,
         progress: Progress = False,
     ) -> Ints:
         """Vertices spread evenly over the surface, each the farthest from those before it.
@@ -309,16 +357,16 @@ class Surface:
             Vertex numbers of the input.
         """
         with shown(progress) as report:
-            return self._inner.farthest_points(n, first, method, update, obtuse, report)
+            return self._inner.farthest_points(whole("n", n), some_whole("first", first), *ways(method, update, obtuse), report)
 
     def distance_field(
         self,
         landmarks: int = 100,
         *,
         rank: int | None = None,
-        method: str = "fast-marching",
-        update: str | None = None,
-        obtuse: str | None = None,
+        method: DistanceMethod = "fast-marching",
+        update: Update | None = None,
+        obtuse: Obtuse | None = None,
         progress: Progress = False,
     ) -> DistanceField:
         """The distances between all pairs of vertices, with bounds, in little memory.
@@ -334,7 +382,7 @@ class Surface:
             was measured on this surface.
         """
         with shown(progress) as report:
-            inner = _canonform.DistanceField.build(self._inner, landmarks, rank, method, update, obtuse, report)
+            inner = _canonform.DistanceField.build(self._inner, whole("landmarks", landmarks), some_whole("rank", rank), *ways(method, update, obtuse), report)
         return DistanceField(inner)
 
     def canonical_form(
@@ -342,14 +390,14 @@ class Surface:
         n: int | str = 100,
         *,
         target_stress: float | None = None,
-        method: str = "nmds",
+        method: EmbeddingMethod = "nmds",
         dim: int = 3,
-        geodesic: str = "fast-marching",
-        update: str | None = None,
-        obtuse: str | None = None,
-        sampling: str | None = None,
+        geodesic: DistanceMethod = "fast-marching",
+        update: Update | None = None,
+        obtuse: Obtuse | None = None,
+        sampling: Sampling | None = None,
         first_sample: int | None = None,
-        regularization: str | None = None,
+        regularization: Regularization | None = None,
         rank: int | None = None,
         alpha: float | str | None = None,
         sigma: float | str | None = None,
@@ -358,7 +406,7 @@ class Surface:
         iterations: int | None = None,
         tolerance: float | None = None,
         seed: int = 0,
-        stress: str = "auto",
+        stress: Stress = "auto",
         reuse: Form | None = None,
         timeout: float | None = None,
         memory: int | str | None = None,
@@ -411,7 +459,8 @@ class Surface:
         settings = options_of(locals())
         with shown(progress) as report:
             earlier = None if reuse is None else reuse._inner
-            return Form(self._inner.canonical_form(settings, earlier, report), self._name)
+            inner = self._inner.canonical_form(settings, earlier, report)
+        return Form(inner, self, settings, self._name)
 
     def signature(
         self, kind: str = "fused", *, n: int = 100, size: bool = False, progress: Progress = False
@@ -434,7 +483,116 @@ class Surface:
             float32 for "fused", else float64. It is computed once and kept.
         """
         with shown(progress) as report:
-            return self._inner.signature(kind, encoded(n=n, size=size), report)
+            return self._inner.signature(word("kind", kind), encoded(n=n, size=size), report)
+
+    def laplacian(self, *, kind: str = "intrinsic") -> sparse.csr_array:
+        """The stiffness matrix, sparse, symmetric, positive semidefinite: shape (n, n). Needs SciPy.
+
+        Parameters
+        ----------
+        kind
+            "intrinsic": cotangents on an intrinsic Delaunay triangulation (Sharp and Crane 2020), none of them negative, for any mesh.
+            "cotangent": cotangents of the faces as they are.
+
+        Vertices that the repair dropped have empty rows; of those that it merged, the first stands for all.
+        """
+        scipy_sparse = _sparse()
+        rows, columns, values, _ = _canonform.laplacian(self._inner, _is_intrinsic(kind))
+        matrix: sparse.csr_array = scipy_sparse.coo_array((values, (rows, columns)), shape=(self.n_vertices, self.n_vertices)).tocsr()
+        return matrix
+
+    def mass(self, *, kind: str = "intrinsic") -> sparse.dia_array:
+        """The areas around the vertices, in squared mesh units, as a sparse diagonal matrix: shape (n, n). Needs SciPy."""
+        masses = _canonform.laplacian(self._inner, _is_intrinsic(kind))[3]
+        diagonal: sparse.dia_array = _sparse().diags_array(masses)
+        return diagonal
+
+    def eigenbasis(self, k: int = 100, *, progress: Progress = False) -> Eigenbasis:
+        """The `k` smallest eigenvalues and eigenfunctions of the intrinsic Laplacian; fewer if the surface has fewer vertices."""
+        with shown(progress) as report:
+            values, functions = _canonform.eigenbasis(self._inner, whole("k", k, 1), report)
+        return Eigenbasis(values, functions, _canonform.laplacian(self._inner, True)[3])
+
+    def hks(self, times: ArrayLike | None = None, *, n: int = 16, k: int = 100) -> Floats:
+        """The heat kernel signature of every vertex from `k` eigenfunctions, see `Eigenbasis.hks`."""
+        return self.eigenbasis(k).hks(times, n=n)
+
+    def wks(self, energies: ArrayLike | None = None, *, n: int = 16, k: int = 100) -> Floats:
+        """The wave kernel signature of every vertex from `k` eigenfunctions, see `Eigenbasis.wks`."""
+        return self.eigenbasis(k).wks(energies, n=n)
+
+    @cached_property
+    def _face_vectors(self) -> Floats:
+        """The normal of each face, as long as twice its area."""
+        a, b, c = (self.vertices[self.faces[:, corner]] for corner in range(3))
+        vectors: Floats = np.cross(b - a, c - a)
+        return vectors
+
+    @cached_property
+    def areas(self) -> Floats:
+        """The area of each face of the input, in squared mesh units: shape (m,)."""
+        areas: Floats = 0.5 * np.linalg.norm(self._face_vectors, axis=1)
+        return areas
+
+    @cached_property
+    def face_normals(self) -> Floats:
+        """The unit normal of each face of the input: shape (m, 3). NaN for a face without area."""
+        return _units(self._face_vectors)
+
+    @cached_property
+    def normals(self) -> Floats:
+        """The unit normal at each vertex of the input, the mean of its faces by area: shape (n, 3). NaN at a vertex without faces."""
+        sums = np.zeros_like(self.vertices)
+        for corner in range(3):
+            np.add.at(sums, self.faces[:, corner], self._face_vectors)
+        return _units(sums)
+
+    @cached_property
+    def edges(self) -> Ints:
+        """The edges of the input as pairs of vertices, each once and in order: shape (k, 2)."""
+        sides = np.sort(self.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+        edges: Ints = np.unique(sides, axis=0)
+        return edges
+
+    def gradient(self, values: ArrayLike) -> Floats:
+        """The gradient on each face of a function that is linear there, from its values at the vertices: shape (m, 3).
+
+        NaN on a face without area.
+        """
+        array = np.asarray(values, dtype=np.float64)
+        if array.shape != (self.n_vertices,):
+            raise OptionError(f"values must be one number for each of the {self.n_vertices} vertices, not of shape {array.shape}")
+        corners = self.vertices[self.faces]
+        opposite = np.roll(corners, 1, axis=1) - np.roll(corners, -1, axis=1)
+        sides = np.cross(self._face_vectors[:, None, :], opposite)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            gradient: Floats = (array[self.faces][:, :, None] * sides).sum(axis=1) / (2 * self.areas[:, None]) ** 2
+        return gradient
+
+    def closest_point(self, points: ArrayLike) -> ClosestPoints:
+        """For points in space, shape (3,) or (k, 3), the nearest points of the faces of the input."""
+        try:
+            queries = np.ascontiguousarray(np.atleast_2d(np.asarray(points, dtype=np.float64)))
+        except (TypeError, ValueError) as fault:
+            raise PointError(f"points must be an array of shape (k, 3): {fault}") from fault
+        if queries.ndim != 2 or queries.shape[1] != 3 or not np.isfinite(queries).all():
+            raise PointError(f"points must be an array of finite numbers of shape (k, 3), not of shape {queries.shape}")
+        places, distances, faces = _canonform.closest_points(self._inner, queries)
+        a, b, c = (self.vertices[self.faces[faces, corner]] for corner in range(3))
+        normal = np.cross(b - a, c - a)
+        shares = [np.einsum("ij,ij->i", np.cross(y - x, places - x), normal) for x, y in ((b, c), (c, a), (a, b))]
+        weights = np.clip(np.stack(shares, axis=1) / np.einsum("ij,ij->i", normal, normal)[:, None], 0, 1)
+        return ClosestPoints(places, distances, faces, weights)
+
+    def to_trimesh(self) -> trimesh.Trimesh:
+        """The input as a mesh of the package trimesh, with vertices and faces in their order."""
+        import trimesh
+
+        return trimesh.Trimesh(self.vertices, self.faces, process=False)
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """Write the input as a mesh file. The extension tells the format; .ply keeps coordinates exactly. Raises `FileError`."""
+        _canonform.write(np.ascontiguousarray(self.vertices), self.faces, os.fspath(path))
 
     def picture(self, values: ArrayLike | None = None, *, width: int = 600, height: int = 600) -> bytes:
         """A shaded picture of the surface as the bytes of a PNG file, coloured by values at its vertices if given."""
@@ -459,6 +617,10 @@ class Surface:
 
 def _several(points: Any, n_vertices: int) -> list[Any]:
     """Points one by one. A mask stands for the vertices where it is true."""
+    if isinstance(points, (EdgePoint, FacePoint)):
+        return [str(points)]
+    if not isinstance(points, (int, str, float, np.number, Iterable)):
+        raise PointError(f"{points!r} is not a point; give the number of a vertex")
     if isinstance(points, (bool, np.bool_)):
         raise PointError(f"{points} is not a point; give the number of a vertex")
     if isinstance(points, (int, str, np.integer)):
@@ -472,8 +634,47 @@ def _several(points: Any, n_vertices: int) -> list[Any]:
         points = np.flatnonzero(array).tolist()
     elif array is not None:
         points = array.ravel().tolist()
-    return list(points)
+    return [str(point) if isinstance(point, (EdgePoint, FacePoint)) else point for point in points]
+
+
+def _sparse() -> Any:
+    try:
+        from scipy import sparse
+    except ImportError as missing:
+        raise ImportError("sparse matrices need the package SciPy (`pip install scipy`)") from missing
+    return sparse
+
+
+def _is_intrinsic(kind: str) -> bool:
+    if kind not in ("intrinsic", "cotangent"):
+        raise OptionError(f'kind={kind!r} is not possible: use "intrinsic" or "cotangent"')
+    return kind == "intrinsic"
+
+
+def _units(vectors: Floats) -> Floats:
+    with np.errstate(invalid="ignore", divide="ignore"):
+        units: Floats = vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+    return units
 
 
 def _is_mask(points: Any) -> bool:
     return isinstance(points, (list, tuple)) and any(isinstance(point, (bool, np.bool_)) for point in points)
+
+
+AnyMesh: TypeAlias = Surface | str | os.PathLike[str] | ArrayLike | Any
+"""A surface, or what makes one: a mesh file, a mesh of another package, a generated shape, vertices with faces, or points."""
+
+
+def surface_of(mesh: AnyMesh) -> Surface:
+    """The surface that a mesh is, or makes."""
+    from .datasets import Shape
+
+    if isinstance(mesh, Surface):
+        return mesh
+    if isinstance(mesh, Shape):
+        return mesh.surface()
+    if isinstance(mesh, (str, os.PathLike)):
+        return Surface.read(mesh)
+    if isinstance(mesh, tuple) and len(mesh) == 2 and np.ndim(mesh[0]) == 2:
+        return Surface(*mesh)
+    return Surface(mesh)

@@ -5,28 +5,60 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
 
 from . import _canonform, _html
 from ._arrays import Floats, Ints
-from ._settings import Progress, shown
+from ._settings import Progress, shown, whole
+from ._stored import ByValue
 from ._surface import Surface
 from .errors import OptionError
 
 __all__ = ["Shape", "families", "generate", "write"]
 
 
-@dataclass(frozen=True, repr=False)
-class Shape:
-    """A generated mesh."""
+@dataclass(frozen=True, repr=False, eq=False)
+class Shape(ByValue):
+    """A generated mesh.
+
+    Attributes
+    ----------
+    name
+        Family and number, such as "cat0".
+    label
+        Family, such as "cat".
+    vertices
+        Shape (n, 3).
+    faces
+        Shape (m, 3).
+    rest
+        Where the vertices are before the body takes its pose, shape (n, 3): points of two shapes of a family correspond if they are
+        in the same place there. None for creatures.
+    """
 
     name: str
-    """Family and number, such as "cat0"."""
     label: str
-    """Family, such as "cat"."""
     vertices: Floats
-    """Shape (n, 3)."""
     faces: Ints
-    """Shape (m, 3)."""
+    rest: Floats | None = None
+
+    def true_map(self, other: Shape) -> Ints:
+        """For each vertex, the vertex of another shape of the family that it truly corresponds to: shape (n,).
+
+        Raises `OptionError` for shapes of different families, and of creatures.
+        """
+        if self.rest is None or other.rest is None or self.label != other.label:
+            raise OptionError(f"{self.name} and {other.name} have no true map; give two shapes of one of the families cat, centaur and david")
+        near = Surface(other.rest, other.faces).closest_point(self.rest)
+        corners = other.faces[near.faces]
+        nearest = np.linalg.norm(other.rest[corners] - near.points[:, None], axis=2).argmin(axis=1)
+        found: Ints = corners[np.arange(len(corners)), nearest]
+        return found
+
+    def _state(self) -> dict[str, Any]:
+        return {name: value for name, value in vars(self).items() if name != "_surface"}
 
     def surface(self) -> Surface:
         """The mesh as a surface. The same object every time, so that what is prepared on it is kept."""
@@ -77,6 +109,7 @@ def generate(
     OptionError
         If there is no such family, pose or number of vertices.
     """
+    n_vertices, seed = whole("n_vertices", n_vertices), whole("seed", seed)
     articulated, plans = _canonform.families()
     known = dict(articulated)
     names = list(known) if family == "all" else [family] if isinstance(family, str) else list(family)

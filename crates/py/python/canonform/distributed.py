@@ -25,7 +25,7 @@ import numpy as np
 from . import _canonform
 from ._arrays import Floats
 from ._index import AnyPath, Index, _dataset, _label_file
-from ._settings import Progress, form_options, options_of, shown
+from ._settings import Components, DistanceMethod, EmbeddingMethod, Progress, Weld, form_options, options_of, shown
 from .errors import MeshError, OptionError
 
 try:
@@ -79,11 +79,11 @@ def build_index(
     n: int = 100,
     points: int = 1000,
     size: bool = False,
-    method: str = "nmds",
-    geodesic: str = "fast-marching",
+    method: EmbeddingMethod = "nmds",
+    geodesic: DistanceMethod = "fast-marching",
     form: Mapping[str, Any] | None = None,
-    components: str = "largest",
-    weld: str | float = "seams",
+    components: Components = "largest",
+    weld: Weld = "seams",
     seed: int = 0,
     max_vertices: int | None = None,
     timeout: float | None = None,

@@ -146,11 +146,11 @@ mod tests {
     use nalgebra::{Rotation3, Vector3};
 
     use super::*;
-    use crate::testing::lopsided;
+    use mesh::shapes::lopsided_torus;
 
     #[test]
     fn a_piece_is_found_in_the_whole_wherever_it_lies() {
-        let whole = lopsided();
+        let whole = lopsided_torus();
         let turn = Rotation3::from_euler_angles(0.3, 2.0, -1.0);
         for height in [-0.5, 0.2, 0.6] {
             let above = |face: &&[VertexId; 3]| face.iter().all(|v| whole.positions[v.index()].x > height);

@@ -240,7 +240,7 @@ mod tests {
     use nalgebra::Rotation3;
 
     use super::*;
-    use crate::testing::lopsided;
+    use mesh::shapes::lopsided_torus;
 
     /// The mesh moved, with vertices and faces in another order, and rounded as files do.
     fn moved(mesh: &TriMesh, scale: f64, flip: f64) -> TriMesh {
@@ -269,19 +269,19 @@ mod tests {
     #[test]
     fn moved_and_reordered_vertices_are_found_again() {
         let symmetric = [shapes::icosphere(3), shapes::cube(4), shapes::tetrahedron(2)];
-        for mesh in symmetric.iter().chain([&lopsided()]) {
+        for mesh in symmetric.iter().chain([&lopsided_torus()]) {
             let same = found(mesh, &moved(mesh, 25.4, 1.0)).unwrap();
             assert!(same.same_faces && !same.mirrored && same.gap < 1e-6, "{same:?}");
             assert!((same.scale - 1.0).abs() < 1e-6, "at unit area: {}", same.scale);
         }
-        let mirrored = found(&lopsided(), &moved(&lopsided(), 1.0, -1.0)).unwrap();
+        let mirrored = found(&lopsided_torus(), &moved(&lopsided_torus(), 1.0, -1.0)).unwrap();
         assert!(mirrored.same_faces && mirrored.mirrored);
         assert!(mirrored.rotation.determinant() < 0.0);
     }
 
     #[test]
     fn other_vertices_and_other_faces_are_told_apart() {
-        let mesh = lopsided();
+        let mesh = lopsided_torus();
         let mut nudged = mesh.clone();
         nudged.positions[77].x += 0.01;
         assert_eq!(found(&mesh, &nudged), None);

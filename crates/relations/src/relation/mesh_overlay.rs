@@ -72,7 +72,7 @@ mod tests {
 
     use super::*;
     use crate::relation::Handedness;
-    use crate::testing::lopsided;
+    use mesh::shapes::lopsided_torus;
 
     fn related(a: &MeshGeometry, b: &MeshGeometry) -> Relation {
         let near = ShapeDistance { fused: 0.1, combined: 0.1 };
@@ -81,7 +81,7 @@ mod tests {
 
     #[test]
     fn copies_coincide_at_the_size_of_the_first() {
-        let mesh = lopsided();
+        let mesh = lopsided_torus();
         let turn = Rotation3::from_euler_angles(0.3, 2.0, -1.0);
         for (scale, flip) in [(1.0, 1.0), (25.4, 1.0), (0.5, -1.0)] {
             let mut other = mesh::shapes::subdivide(&mesh);

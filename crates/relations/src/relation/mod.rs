@@ -33,7 +33,9 @@ pub use handedness::{Handedness, handedness};
 pub use in_space::SurfaceGap;
 pub use kind::{Change, RelationKind};
 pub use mesh_overlay::MeshOverlay;
+pub use numbers::in_four_digits;
 pub use parts::{Parts, Side};
+pub use triangles::{NearestOnSurface, TriangleTree};
 pub use units::UnitChange;
 pub use variant::{Difference, Dimension};
 

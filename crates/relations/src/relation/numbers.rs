@@ -17,7 +17,8 @@ pub(super) fn significant(x: f64) -> String {
 }
 
 /// A number with four significant digits and no zeros at the end.
-pub(super) fn in_four_digits(x: f64) -> String {
+#[must_use]
+pub fn in_four_digits(x: f64) -> String {
     in_digits(4, x)
 }
 

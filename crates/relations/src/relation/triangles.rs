@@ -8,7 +8,7 @@ const LEAF: usize = 6;
 
 /// A tree of bounding boxes over the triangles of a mesh, parents before their children.
 #[derive(Debug)]
-pub(super) struct TriangleTree {
+pub struct TriangleTree {
     triangles: Vec<Placed>,
     nodes: Vec<Node>,
 }
@@ -35,19 +35,21 @@ struct Placed {
 
 /// The nearest point of a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct NearestOnSurface {
-    pub(super) point: Point3<f64>,
+pub struct NearestOnSurface {
+    /// The point.
+    pub point: Point3<f64>,
     /// Unit normal of its triangle.
-    pub(super) normal: Vector3<f64>,
+    pub normal: Vector3<f64>,
     /// Squared distance to it.
-    pub(super) sq_distance: f64,
+    pub sq_distance: f64,
     /// Its face.
-    pub(super) face: usize,
+    pub face: usize,
 }
 
 impl TriangleTree {
     /// The tree over the triangles that have an area. `O(n log n)`.
-    pub(super) fn new(mesh: &TriMesh) -> Self {
+    #[must_use]
+    pub fn new(mesh: &TriMesh) -> Self {
         let all = (0..mesh.n_faces()).map(|f| Placed { corners: mesh.triangle(f), face: f as u32 });
         let triangles: Vec<_> = all.filter(|t| normal(&t.corners).norm() > 0.0).collect();
         let mut tree = Self { nodes: Vec::with_capacity(triangles.len() / 2 + 1), triangles };
@@ -77,7 +79,8 @@ impl TriangleTree {
     }
 
     /// The point of the surface that is nearest to `query`; `None` for a surface without area.
-    pub(super) fn nearest(&self, query: &Point3<f64>) -> Option<NearestOnSurface> {
+    #[must_use]
+    pub fn nearest(&self, query: &Point3<f64>) -> Option<NearestOnSurface> {
         let mut best: Option<(Point3<f64>, usize, f64)> = None;
         let mut pending = vec![(0, 0.0)];
         while let Some((index, bound)) = pending.pop() {

@@ -6,7 +6,7 @@ use crate::results::ExpectationOutcome;
 use crate::table::{Cell, Table};
 
 /// Text with the special characters of HTML escaped, for elements and attributes.
-pub(super) fn escape(text: &str) -> String {
+pub fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in text.chars() {
         match c {

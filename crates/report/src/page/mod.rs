@@ -15,7 +15,8 @@ use std::path::{Path, PathBuf};
 use crate::error::ReportError;
 use crate::results::{Expectation, ExpectationOutcome};
 use base::files::write_bytes;
-use html::{escape, marked, paragraphs};
+pub use html::escape;
+use html::{marked, paragraphs};
 pub use section::{ResultsFolder, Section, SectionContent, charts, explorer, gallery};
 
 /// Name of the page in the folder of results.

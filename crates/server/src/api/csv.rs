@@ -1,5 +1,6 @@
 //! Results as CSV (RFC 4180).
 
+use canonform::index::csv_field;
 use canonform::{SearchRank, SearchReport};
 
 /// One line per result, under a header.
@@ -18,30 +19,8 @@ pub(super) fn of(query: &str, report: &SearchReport) -> String {
         let as_part = found.as_part.into_iter().flat_map(|fit| [fit.part_distance, fit.part_share]);
         let order: Vec<String> = on_graph.chain(as_part).map(|number| number.to_string()).collect();
         let fields: Vec<String> =
-            fields.into_iter().chain(order.iter().map(String::as_str)).map(quoted).collect();
+            fields.into_iter().chain(order.iter().map(String::as_str)).map(csv_field).collect();
         text += &(fields.join(",") + "\r\n");
     }
     text
-}
-
-/// A field, in quotes where it must be.
-fn quoted(field: &str) -> String {
-    match field.contains([',', '"', '\r', '\n']) {
-        true => format!("\"{}\"", field.replace('"', "\"\"")),
-        false => field.to_owned(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn only_fields_that_need_quotes_have_them() {
-        for (field, expected) in
-            [("cat 1", "cat 1"), ("a,b", "\"a,b\""), ("\"", "\"\"\"\""), ("a\nb", "\"a\nb\"")]
-        {
-            assert_eq!(quoted(field), expected);
-        }
-    }
 }

@@ -10,6 +10,7 @@ use std::process::ExitCode;
 use anyhow::Result;
 use base::files::write_bytes;
 use base::terminal::Bars;
+use canonform::index::csv_field;
 use canonform::{
     BuildOptions, DescribeOptions, DuplicateFile, DuplicateGroup, DuplicateOptions, DuplicateReport,
     RelationKind, ShapeSearch, build_index, find_duplicates, is_dataset,
@@ -101,7 +102,6 @@ fn short(path: &Path) -> PathBuf {
 /// One line per file, keepers first.
 fn csv(report: &DuplicateReport) -> String {
     let mut text = "group,role,id,path,kind,confidence,relation,bytes,modified\n".to_owned();
-    let quoted = |value: &str| format!("\"{}\"", value.replace('"', "\"\""));
     for (i, DuplicateGroup { keeper, why, members }) in report.groups.iter().enumerate() {
         let mut line = |role: &str, file: &DuplicateFile, kind: &str, confidence: &str, words: &str| {
             let number = |value: Option<u64>| value.map(|value| value.to_string()).unwrap_or_default();
@@ -109,11 +109,11 @@ fn csv(report: &DuplicateReport) -> String {
             let cells = [
                 (i + 1).to_string(),
                 role.to_owned(),
-                quoted(&file.id),
-                quoted(&path),
+                csv_field(&file.id),
+                csv_field(&path),
                 kind.to_owned(),
                 confidence.to_owned(),
-                quoted(words),
+                csv_field(words),
                 number(file.bytes),
                 number(file.modified),
             ];

@@ -2,6 +2,7 @@
 
 use anyhow::Result;
 use canonform::{DuplicateFile, DuplicateReport, ShapeSearch};
+use report::page::escape;
 use report::render::{RenderOptions, render};
 
 use super::words::{facts, text};
@@ -48,8 +49,4 @@ fn card(file: &DuplicateFile, title: &str, words: &str, search: &ShapeSearch) ->
         escape(words),
         escape(&facts(file))
     ))
-}
-
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

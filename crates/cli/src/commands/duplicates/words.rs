@@ -1,5 +1,6 @@
 //! Duplicates in words.
 
+use canonform::relations::in_four_digits;
 use canonform::{DuplicateFile, DuplicateGroup, DuplicateReport};
 
 use crate::output::{count, decimal_bytes};
@@ -11,11 +12,6 @@ pub(super) fn facts(file: &DuplicateFile) -> String {
     let day = file.modified.and_then(|seconds| chrono::DateTime::from_timestamp(seconds as i64, 0));
     let day = day.map(|day| day.format("%Y-%m-%d").to_string());
     [bytes, size, day].into_iter().flatten().collect::<Vec<_>>().join(", ")
-}
-
-fn in_four_digits(x: f64) -> String {
-    let digits = (3.0 - x.abs().max(1e-9).log10().floor()).clamp(0.0, 9.0) as usize;
-    format!("{x:.digits$}")
 }
 
 /// The answer, and a paragraph for each group.

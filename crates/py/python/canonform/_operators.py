@@ -1,0 +1,192 @@
+"""What is computed on surfaces: eigenfunctions, kernels, nearest points, and points as objects."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ._arrays import Floats, Ints
+from ._settings import whole
+from ._stored import ByValue
+from .errors import OptionError
+
+
+@dataclass(frozen=True)
+class EdgePoint:
+    """A point of an edge. It may stand wherever a vertex may, as a source or a target.
+
+    Attributes
+    ----------
+    start
+        The vertex at one end.
+    end
+        The vertex at the other.
+    t
+        Where the point is, from 0 at the start to 1 at the end.
+    """
+
+    start: int
+    end: int
+    t: float = 0.5
+
+    def __str__(self) -> str:
+        return f"{self.start}-{self.end}@{self.t!r}"
+
+
+@dataclass(frozen=True)
+class FacePoint:
+    """A point of a face. It may stand wherever a vertex may, as a source or a target.
+
+    Attributes
+    ----------
+    face
+        The face.
+    weights
+        Weights of the corners of the face, in their order: not negative, with a positive sum.
+    """
+
+    face: int
+    weights: tuple[float, float, float] = (1.0, 1.0, 1.0)
+
+    def __str__(self) -> str:
+        return f"f{self.face}@{':'.join(repr(float(weight)) for weight in self.weights)}"
+
+
+def parsed(text: str) -> int | EdgePoint | FacePoint:
+    """The point that text stands for."""
+    place, _, share = text.partition("@")
+    if place.startswith("f"):
+        a, b, c = (float(weight) for weight in share.split(":"))
+        return FacePoint(int(place[1:]), (a, b, c))
+    if "-" in place:
+        start, end = place.split("-")
+        return EdgePoint(int(start), int(end), float(share))
+    return int(place)
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class ClosestPoints(ByValue):
+    """The points of a surface that are nearest to points in space. `numpy.asarray` gives them.
+
+    Attributes
+    ----------
+    points
+        Shape (k, 3), in mesh units.
+    distances
+        How far they are, in mesh units: shape (k,).
+    faces
+        The face that each lies in: shape (k,).
+    weights
+        The weights of the corners of that face: shape (k, 3).
+    """
+
+    points: Floats
+    distances: Floats
+    faces: Ints
+    weights: Floats
+
+    @property
+    def at(self) -> list[FacePoint]:
+        """The points as sources of distances and ends of paths."""
+        pairs = zip(self.faces.tolist(), self.weights.tolist(), strict=True)
+        return [FacePoint(face, (a, b, c)) for face, (a, b, c) in pairs]
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def __array__(self, dtype: object = None, copy: bool | None = None) -> Floats:
+        return np.array(self.points, dtype=dtype, copy=True if copy is None else copy)  # type: ignore[call-overload,no-any-return]
+
+    def __repr__(self) -> str:
+        return f"ClosestPoints({len(self)} points)"
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Eigenbasis(ByValue):
+    """The smoothest functions on a surface: `laplacian @ functions == mass @ functions * values`.
+
+    Attributes
+    ----------
+    values
+        Eigenvalues, ascending from 0, in one over squared mesh units: shape (k,).
+    functions
+        Eigenfunctions as columns, orthonormal with the areas around vertices: shape (n, k). NaN for vertices that the repair
+        dropped.
+    masses
+        The area around each vertex, in squared mesh units: shape (n,).
+    """
+
+    values: Floats
+    functions: Floats
+    masses: Floats
+
+    @cached_property
+    def _weighted(self) -> Floats:
+        weighted: Floats = np.nan_to_num(self.functions) * self.masses[:, None]
+        return weighted
+
+    def project(self, values: ArrayLike) -> Floats:
+        """The coefficients of functions, shape (n,) or (n, d), in this basis: shape (k,) or (k, d)."""
+        array = np.asarray(values, dtype=np.float64)
+        if array.ndim not in (1, 2) or len(array) != len(self.masses):
+            raise OptionError(f"values must be one row for each of the {len(self.masses)} vertices, not of shape {array.shape}")
+        coefficients: Floats = self._weighted.T @ array
+        return coefficients
+
+    def synthesize(self, coefficients: ArrayLike) -> Floats:
+        """The functions of coefficients, shape (k,) or (k, d), at the vertices."""
+        found: Floats = self.functions @ np.asarray(coefficients, dtype=np.float64)
+        return found
+
+    def hks(self, times: ArrayLike | None = None, *, n: int = 16) -> Floats:
+        """The heat kernel signature of every vertex (Sun et al. 2009), shape (n_vertices, number of times).
+
+        `times` are in squared mesh units; by default `n` of them, from the time of the last eigenfunction to that of the first.
+        """
+        curved = self._curved()
+        if times is None:
+            first, last = (float(4 * np.log(10) / value) for value in curved[[-1, 0]])
+            times = np.geomspace(first, last, whole("n", n, 1))
+        at = np.atleast_1d(np.asarray(times, dtype=np.float64))
+        return self._spread(np.exp(-np.multiply.outer(self.values, at)))
+
+    def wks(self, energies: ArrayLike | None = None, *, n: int = 16) -> Floats:
+        """The wave kernel signature of every vertex (Aubry et al. 2011), shape (n_vertices, number of energies).
+
+        `energies` are logarithms of eigenvalues; by default `n` of them, evenly spaced over those of the basis.
+        """
+        curved = self._curved()
+        low, high = np.log(curved[[0, -1]])
+        width = 7 * (high - low) / (whole("n", n, 1) if energies is None else max(np.size(energies), 1))
+        if energies is None:
+            energies = np.linspace(low, high, n)
+        at = np.atleast_1d(np.asarray(energies, dtype=np.float64))
+        # The constant functions say nothing.
+        logarithms = np.log(np.where(self._is_curved, self.values, 1.0))
+        exponents = -0.5 * ((at[None, :] - logarithms[:, None]) / (width or 1.0)) ** 2
+        weights = np.where(self._is_curved[:, None], np.exp(exponents), 0.0)
+        return self._spread(weights / weights.sum(axis=0))
+
+    @property
+    def _is_curved(self) -> Floats:
+        curved: Floats = self.values * self.masses.sum() > 1e-6
+        return curved
+
+    def _curved(self) -> Floats:
+        curved: Floats = self.values[self._is_curved]
+        if not len(curved):
+            raise OptionError(f"k={len(self.values)} is not possible here: kernels need an eigenfunction that is not constant")
+        return curved
+
+    def _spread(self, weights: Floats) -> Floats:
+        spread: Floats = self.functions**2 @ weights
+        return spread
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def __repr__(self) -> str:
+        return f"Eigenbasis({len(self.masses)} vertices, {len(self)} functions)"

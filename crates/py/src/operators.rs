@@ -1,0 +1,132 @@
+//! What surfaces are computed with: Laplacians, their eigenfunctions, and nearest points. Rows are vertices of the input.
+
+use canonform::descriptors::LaplaceSpectrum;
+use canonform::relations::TriangleTree;
+use canonform::surface::laplacian::{Element, Laplacian};
+use canonform::surface::{Triangle, VertexId};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2};
+use pyo3::prelude::*;
+use rayon::prelude::*;
+
+use crate::arrays;
+use crate::run::run_alone;
+use crate::surface::Surface;
+
+/// Rows, columns and values of a matrix, and the areas around the vertices.
+type Operators<'py> = (
+    Bound<'py, PyArray1<i64>>,
+    Bound<'py, PyArray1<i64>>,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+);
+
+/// Points, their distances, and the faces that they lie in.
+type Nearest<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<i64>>);
+
+/// The stiffness matrix, in which entries of the same place add up, and the area around each vertex in squared mesh units.
+/// Vertices that the repair dropped have neither; of those that it merged, the first stands for all.
+#[pyfunction]
+pub(crate) fn laplacian<'py>(
+    py: Python<'py>,
+    surface: &Surface,
+    intrinsic: bool,
+) -> PyResult<Operators<'py>> {
+    let inner = &surface.inner;
+    let (entries, masses) = run_alone(py, None, |_| {
+        Ok(match intrinsic {
+            true => {
+                let laplacian = Laplacian::new(inner.intrinsic());
+                let sq_unit = laplacian.metric().unit.powi(2);
+                let masses: Vec<f64> = laplacian.masses().iter().map(|mass| mass * sq_unit).collect();
+                (laplacian.stiffness_entries().collect::<Vec<_>>(), masses)
+            }
+            false => cotangents(surface),
+        })
+    })?;
+    let input = |v: usize| inner.input_vertex(VertexId::from(v)).index();
+    let mut of_input = vec![0.0; inner.n_input_vertices()];
+    masses.iter().enumerate().for_each(|(v, mass)| of_input[input(v)] = *mass);
+    let (mut rows, mut columns, mut values) = (Vec::new(), Vec::new(), Vec::new());
+    for (i, j, value) in entries {
+        let [i, j] = [i, j].map(|v| input(v) as i64);
+        let mirrored = if i == j { None } else { Some((j, i)) };
+        for (row, column) in [(i, j)].into_iter().chain(mirrored) {
+            rows.push(row);
+            columns.push(column);
+            values.push(value);
+        }
+    }
+    Ok((rows.into_pyarray(py), columns.into_pyarray(py), values.into_pyarray(py), of_input.into_pyarray(py)))
+}
+
+/// Entries of the textbook stiffness matrix, and areas around vertices, of the repaired faces as they are.
+fn cotangents(surface: &Surface) -> (Vec<(usize, usize, f64)>, Vec<f64>) {
+    let mesh = surface.inner.mesh();
+    let mut masses = vec![0.0; mesh.n_vertices()];
+    let mut entries = Vec::with_capacity(9 * mesh.n_faces());
+    for (f, face) in mesh.faces.iter().enumerate() {
+        let [a, b, c] = mesh.triangle(f);
+        let [ab, bc, ca] = [(b - a).norm(), (c - b).norm(), (a - c).norm()];
+        let element =
+            Element { vertices: face.map(|v| v.0), triangle: Triangle::from_sides([ab, ca, bc]), share: 1.0 };
+        for v in face {
+            masses[v.index()] += element.triangle.area() / 3.0;
+        }
+        for (ends, weight) in element.weights() {
+            let [i, j] = ends.map(|v| v as usize);
+            entries.extend([(i, i, weight), (j, j, weight), (i, j, -weight)]);
+        }
+    }
+    (entries, masses)
+}
+
+/// The smallest eigenvalues of the Laplacian, in one over squared mesh units, and its eigenfunctions as columns, orthonormal
+/// with the areas around vertices; NaN for vertices that the repair dropped.
+#[pyfunction]
+pub(crate) fn eigenbasis<'py>(
+    py: Python<'py>,
+    surface: &Surface,
+    k: usize,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>)> {
+    let inner = &surface.inner;
+    let spectrum = run_alone(py, progress.as_ref(), |observer| {
+        Ok(LaplaceSpectrum::new(inner.intrinsic(), k, observer)?)
+    })?;
+    let LaplaceSpectrum { values, vectors, area, .. } = spectrum;
+    let values = values.iter().map(|value| value / area).collect();
+    let map = &inner.repaired.input_to_repaired;
+    let shape = [map.len(), vectors.ncols()];
+    let rows =
+        arrays::picked_rows(&(vectors / area.sqrt()), map.iter().map(|vertex| vertex.map(VertexId::index)));
+    Ok((arrays::vector(py, values), arrays::matrix(py, rows, shape)?))
+}
+
+/// For each of several points in space, the nearest point of the faces of the input.
+#[pyfunction]
+pub(crate) fn closest_points<'py>(
+    py: Python<'py>,
+    surface: &Surface,
+    points: PyReadonlyArray2<'py, f64>,
+) -> PyResult<Nearest<'py>> {
+    let queries = points.as_slice()?.as_chunks::<3>().0;
+    let mesh = canonform::mesh::TriMesh {
+        positions: surface.mesh.positions.clone(),
+        faces: surface.inner.input_faces.clone(),
+    };
+    let found = run_alone(py, None, |_| {
+        let tree = TriangleTree::new(&mesh);
+        let nearest = |point: &[f64; 3]| tree.nearest(&(*point).into());
+        Ok(queries.par_iter().map(nearest).collect::<Vec<_>>())
+    })?;
+    let missing = [f64::NAN; 3];
+    let places = found.iter().flat_map(|found| found.map_or(missing, |found| found.point.into())).collect();
+    let distances =
+        found.iter().map(|found| found.map_or(f64::NAN, |found| found.sq_distance.sqrt())).collect();
+    let faces: Vec<i64> = found.iter().map(|found| found.map_or(-1, |found| found.face as i64)).collect();
+    Ok((
+        arrays::matrix(py, places, [queries.len(), 3])?,
+        arrays::vector(py, distances),
+        faces.into_pyarray(py),
+    ))
+}

@@ -1,0 +1,147 @@
+"""Meshes in memory, wherever meshes are taken, and what is told about wrong arguments."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import canonform
+import numpy as np
+import pytest
+from canonform import Index, Surface
+from canonform.datasets import Shape
+from canonform.errors import CanonformError, MeshError, OptionError, PointError, ShapeIndexError
+from conftest import grid
+
+trimesh = pytest.importorskip("trimesh")
+
+
+@pytest.fixture(scope="module")
+def shapes() -> list[Shape]:
+    return canonform.datasets.generate(["cat", "david"], poses=2, n_vertices=1000)
+
+
+@pytest.fixture(scope="module")
+def index(shapes: list[Shape], tmp_path_factory: pytest.TempPathFactory) -> Index:
+    """One mesh of each kind that is in memory."""
+    tom, tim, dave, don = shapes
+    items: list[Any] = [
+        ("tom", tom.surface(), "cat"),
+        ("tim", trimesh.Trimesh(tim.vertices, tim.faces, process=False), "cat"),
+        ("dave", (dave.vertices, dave.faces), "david"),
+        don,
+    ]
+    return Index.build(iter(items), tmp_path_factory.mktemp("memory") / "i.canonform")
+
+
+def test_an_index_of_meshes_in_memory_is_complete(index: Index, shapes: list[Shape]) -> None:
+    assert sorted(index) == ["dave", "david1", "tim", "tom"]
+    assert index.info()["classes"] == {"cat": 2, "david": 2}
+    np.testing.assert_array_equal(index.surface("tim").vertices, shapes[1].vertices)
+    np.testing.assert_array_equal(index.vector("tom"), shapes[0].surface().signature())
+    found = index.search("tom", k=2, explain=True)
+    assert [result.label for result in found] == ["cat", "cat"]
+
+
+def test_any_mesh_is_a_query(index: Index, shapes: list[Shape]) -> None:
+    cat = shapes[0]
+    for query in (cat, trimesh.Trimesh(cat.vertices, cat.faces, process=False), (cat.vertices, cat.faces), index.surface("tom")):
+        assert index.search(query, k=1)[0].id == "tom"
+    assert index.classify(shapes[2]) == "david"
+
+
+def test_a_vector_is_a_query_by_signatures(index: Index, shapes: list[Shape]) -> None:
+    [(name, distance), (other, _)] = index.nearest(shapes[0].surface().signature(), k=2)
+    assert (name, distance, other) == ("tom", 0.0, "tim")
+    assert index.nearest(index.vector("dave"), k=1, exact=True)[0][0] == "dave"
+
+
+def test_meshes_in_memory_are_added(index: Index, shapes: list[Shape], tmp_path: Path) -> None:
+    own = Index.build({"tom": shapes[0], "dave": shapes[2]}, tmp_path / "own.canonform")
+    assert own.info()["unlabelled"] == 2
+    own.add([("tim", shapes[1], "cat")])
+    own.add({"don": shapes[3]}, label="david")
+    assert own.info()["classes"] == {"cat": 1, "david": 1} and len(own) == 4
+    with pytest.raises(ShapeIndexError, match="replace=True"):
+        own.add({"tom": shapes[1]})
+    np.testing.assert_array_equal(own.surface("tom").vertices, shapes[0].vertices)
+    own.add({"tom": shapes[1]}, replace=True)
+    np.testing.assert_array_equal(own.surface("tom").vertices, shapes[1].vertices)
+    again = Index.build({"tom": shapes[1], "dave": shapes[2]}, own.path)
+    assert again.build_report is not None and again.build_report["unchanged"] == 2
+
+
+def test_compare_match_and_align_take_any_mesh(shapes: list[Shape], tmp_path: Path) -> None:
+    a, b = shapes[:2]
+    expected = canonform.compare(a.surface(), b.surface()).distance
+    [file] = canonform.datasets.write([b], tmp_path, format="ply")
+    for other in (b, file, Path(file), (b.vertices, b.faces), trimesh.Trimesh(b.vertices, b.faces, process=False)):
+        assert canonform.compare(a, other).distance == pytest.approx(expected)
+    assert canonform.match((a.vertices, a.faces), file, eigenfunctions=30).best.vertices.shape == (1000,)
+    assert canonform.align(a, a.surface().canonical_form(stress="skip")).rms < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("call", "kind", "words"),
+    [
+        (lambda s, i: canonform.compare(s, object()), MeshError, "object is not a mesh"),
+        (lambda s, i: canonform.compare("nowhere.off", s), canonform.errors.MissingFileError, "nowhere.off"),
+        (lambda s, i: canonform.match(s, None), MeshError, "NoneType is not a mesh"),
+        (lambda s, i: canonform.align(s, [[1, 2, 3]]), MeshError, "at least 12 points"),
+        (lambda s, i: Surface([[0, 0, 0], [1, 2]], [[0, 1, 2]]), MeshError, "3 numbers in each row"),
+        (lambda s, i: Surface(SimpleNamespace(points=1, cells=1, extract_surface=1)), MeshError, "extract_surface"),
+        (lambda s, i: s.distances(None), PointError, "None is not a point"),
+        (lambda s, i: s.distances([0.5]), PointError, "0.5 is not a point"),
+        (lambda s, i: s.distances(np.array([0.5])), PointError, "0.5 is not a point"),
+        (lambda s, i: s.distances(-1), PointError, "-1 is not a vertex"),
+        (lambda s, i: s.distances(2**70), PointError, "is not a point"),
+        (lambda s, i: s.path(0.5, 3), PointError, "whole numbers"),
+        (lambda s, i: s.path(0, None), PointError, "None is not a point"),
+        (lambda s, i: s.distances(0, max_distance="far"), OptionError, "max_distance='far'"),
+        (lambda s, i: s.farthest_points(-1), OptionError, "n=-1 is not possible"),
+        (lambda s, i: s.farthest_points(3, first=-1), OptionError, "first=-1"),
+        (lambda s, i: s.distance_field(-3), OptionError, "landmarks=-3"),
+        (lambda s, i: s.canonical_form(n=-1), OptionError, "n=-1 is not possible"),
+        (lambda s, i: s.canonical_form(seed=-1), OptionError, "seed=-1"),
+        (lambda s, i: s.canonical_form(rank=[3]), OptionError, "[3]"),
+        (lambda s, i: s.canonical_form(memory=1.5), OptionError, "memory=1.5"),
+        (lambda s, i: s.canonical_form(method=5), OptionError, "method=5"),
+        (lambda s, i: s.distances(0, method=5), OptionError, "method=5"),
+        (lambda s, i: s.signature(3), OptionError, "kind=3"),
+        (lambda s, i: i.search("tom", k=-1), OptionError, "k=-1"),
+        (lambda s, i: i.search("tom", k=1.5), OptionError, "k=1.5"),
+        (lambda s, i: i.search(3), MeshError, "int is not a mesh"),
+        (lambda s, i: i.evaluate(k=-1), OptionError, "k=-1"),
+        (lambda s, i: i.add([("a/b", s)]), OptionError, "'a/b'"),
+        (lambda s, i: i.add([("a", s, "x", 4)]), OptionError, "meshes[0]"),
+        (lambda s, i: i.add([("a", s), ("a", s)]), OptionError, "two meshes"),
+        (lambda s, i: i.add([object()]), MeshError, "object is not a mesh"),
+        (lambda s, i: i.nearest([1, 2]), ShapeIndexError, "2"),
+        (lambda s, i: i.nearest("tom"), OptionError, "vector must be"),
+        (lambda s, i: i.add(5), OptionError, "meshes=5"),
+        (lambda s, i: canonform.datasets.generate("cat", n_vertices=-1), OptionError, "n_vertices=-1"),
+        (lambda s, i: canonform.datasets.generate("cat", n_vertices=1000, seed=-1), OptionError, "seed=-1"),
+        (lambda s, i: canonform.set_threads(-1), OptionError, "n=-1"),
+    ],
+)
+def test_every_error_is_ours(index: Index, square: Surface, call: Callable, kind: type[Exception], words: str) -> None:
+    with pytest.raises(CanonformError) as raised:
+        call(square, index)
+    assert type(raised.value) is kind and words in str(raised.value), repr(raised.value)
+
+
+def test_generated_shapes_come_with_their_true_maps() -> None:
+    a, b = canonform.datasets.generate("cat", poses=2, n_vertices=1000)
+    truth = a.true_map(b)
+    assert truth.shape == (1000,) and a.rest is not None and b.rest is not None
+    spacing = np.sqrt(b.surface().area / 1000)
+    assert np.linalg.norm(a.rest - b.rest[truth], axis=1).max() < 2 * spacing
+    np.testing.assert_array_equal(a.true_map(a), np.arange(1000))
+    found = {m.kind: m for m in canonform.match(a, b).maps}["direct"]
+    error = b.surface().distances_many(truth[::50])[np.arange(20), found.vertices[::50]]
+    assert np.median(error) < 3 * spacing
+    dog = canonform.datasets.generate("david", poses=1, n_vertices=1000)[0]
+    with pytest.raises(OptionError, match="no true map"):
+        a.true_map(dog)

@@ -1,0 +1,150 @@
+"""What surfaces are computed with: Laplacians, eigenfunctions, kernels, normals, gradients, nearest points."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import canonform
+import numpy as np
+import pytest
+from canonform import EdgePoint, FacePoint, Surface
+from canonform.datasets import Shape
+from canonform.errors import OptionError, PointError
+from conftest import grid
+
+scipy = pytest.importorskip("scipy")
+
+
+def ball(n: int = 3000) -> Surface:
+    """A round surface of radius 2."""
+    from scipy.spatial import ConvexHull
+
+    i = np.arange(n) + 0.5
+    height, turn = 1 - 2 * i / n, i * np.pi * (1 + 5**0.5)
+    radius = np.sqrt(1 - height**2)
+    points = 2 * np.column_stack([radius * np.cos(turn), radius * np.sin(turn), height])
+    faces = ConvexHull(points).simplices
+    a, b, c = points[faces].transpose(1, 0, 2)
+    inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), a) < 0
+    faces[inward] = faces[inward][:, ::-1]
+    return Surface(points, faces)
+
+
+@pytest.mark.parametrize("kind", ["intrinsic", "cotangent"])
+def test_matrices_are_those_of_linear_elements(cat: Shape, kind: str) -> None:
+    surface = cat.surface()
+    stiffness, mass = surface.laplacian(kind=kind), surface.mass(kind=kind)
+    assert stiffness.shape == mass.shape == (1000, 1000) and stiffness.nnz < 10_000
+    assert abs(stiffness - stiffness.T).max() < 1e-12
+    assert np.abs(stiffness @ np.ones(1000)).max() < 1e-9 * stiffness.diagonal().max()
+    assert mass.diagonal().sum() == pytest.approx(surface.area)
+    with pytest.raises(OptionError, match="cotangent"):
+        surface.laplacian(kind="graph")
+
+
+def test_no_intrinsic_weight_is_negative() -> None:
+    vertices, faces = grid(9)
+    surface = Surface(vertices @ np.array([[1, 0, 0], [2.7, 1, 0], [0, 0, 1.0]]), faces)
+    negative = {
+        kind: max(0.0, -(matrix := -surface.laplacian(kind=kind)).tocoo().data[matrix.tocoo().row != matrix.tocoo().col].min())
+        for kind in ("intrinsic", "cotangent")
+    }
+    assert negative["intrinsic"] < 1e-12 < negative["cotangent"]
+
+
+def test_a_flat_function_has_the_energy_of_its_slope() -> None:
+    surface = Surface(*grid(12, 3.0))
+    x = surface.vertices @ [3.0, -4.0, 0.0]
+    for kind in ("intrinsic", "cotangent"):
+        assert x @ (surface.laplacian(kind=kind) @ x) == pytest.approx(25 * surface.area)
+    np.testing.assert_allclose(surface.gradient(x), np.tile([3.0, -4.0, 0.0], (surface.n_faces, 1)), atol=1e-9)
+
+
+def test_the_eigenbasis_of_a_ball_is_known() -> None:
+    surface = ball()
+    basis = surface.eigenbasis(9)
+    # l (l + 1) / r^2, with multiplicity 2 l + 1.
+    np.testing.assert_allclose(basis.values, np.repeat([0, 0.5, 1.5], [1, 3, 5]), atol=0.01)
+    gram = basis.functions.T @ (surface.mass() @ basis.functions)
+    np.testing.assert_allclose(gram, np.eye(9), atol=1e-8)
+    residual = surface.laplacian() @ basis.functions - (surface.mass() @ basis.functions) * basis.values
+    assert np.abs(residual).max() < 1e-6
+    x = surface.vertices
+    np.testing.assert_allclose(basis.synthesize(basis.project(x)), x, atol=0.02)
+    with pytest.raises(OptionError, match="3000 vertices"):
+        basis.project(np.zeros(5))
+    with pytest.raises(OptionError, match="k=0"):
+        surface.eigenbasis(0)
+
+
+def test_kernels_are_constant_on_a_ball_and_follow_poses(cats: list[Shape]) -> None:
+    basis = ball().eigenbasis(36)
+    for kernel in (basis.hks(n=5), basis.wks(n=5)):
+        assert kernel.shape == (3000, 5) and np.isfinite(kernel).all()
+    # Up to the times at which only whole multiplets count.
+    late = basis.hks(n=5)[:, 2:]
+    assert (late.std(axis=0) < 0.02 * late.mean(axis=0)).all()
+    a, b = (shape.surface() for shape in cats)
+    for kernel in ("hks", "wks"):
+        ours, theirs = (np.sort(np.log(getattr(surface, kernel)(n=6, k=60)), axis=0) for surface in (a, b))
+        assert np.abs(ours - theirs).mean() < 0.2, kernel
+    assert a.hks([1.0, 100.0], k=20).shape == (1000, 2)
+    assert a.hks(np.geomspace(1, 10, 3), k=20).min() > 0
+
+
+def test_dropped_and_merged_vertices_keep_their_places() -> None:
+    vertices, faces = grid()
+    surface = Surface(np.concatenate([vertices, [[9.0, 9.0, 0.0]]]), faces)
+    assert surface.laplacian().shape == (82, 82) and surface.mass().diagonal()[81] == 0
+    basis = surface.eigenbasis(5)
+    assert np.isnan(basis.functions[81]).all() and np.isfinite(basis.functions[:81]).all()
+    assert np.isfinite(basis.project(np.ones(82))).all()
+
+
+def test_normals_areas_and_edges(square: Surface, cat: Shape) -> None:
+    np.testing.assert_array_equal(square.normals, np.tile([0.0, 0.0, 1.0], (81, 1)))
+    np.testing.assert_array_equal(square.face_normals, np.tile([0.0, 0.0, 1.0], (128, 1)))
+    assert square.areas.sum() == pytest.approx(1.0) and square.edges.shape == (81 + 128 - 1, 2)
+    round_one = ball()
+    assert np.abs(round_one.normals - round_one.vertices / 2).max() < 0.05
+    trimesh = pytest.importorskip("trimesh")
+    mesh = cat.surface().to_trimesh()
+    assert isinstance(mesh, trimesh.Trimesh)
+    np.testing.assert_allclose(cat.surface().areas, mesh.area_faces)
+    np.testing.assert_array_equal(cat.surface().edges, np.unique(np.sort(mesh.edges_unique, axis=1), axis=0))
+
+
+def test_the_closest_point_is_the_nearest_of_all_faces(cat: Shape) -> None:
+    surface = cat.surface()
+    # Beside the middles of faces, along their normals.
+    chosen = np.arange(0, surface.n_faces, 97)
+    middles = surface.vertices[surface.faces[chosen]].mean(axis=1)
+    found = surface.closest_point(middles + 1e-6 * surface.face_normals[chosen])
+    np.testing.assert_array_equal(found.faces, chosen)
+    np.testing.assert_allclose(np.asarray(found), middles, atol=1e-9)
+    np.testing.assert_allclose(found.distances, 1e-6, rtol=1e-3)
+    corners = surface.vertices[surface.faces[found.faces]]
+    np.testing.assert_allclose(np.einsum("ij,ijk->ik", found.weights, corners), found.points, atol=1e-9)
+    point = found.at[0]
+    assert isinstance(point, FacePoint) and surface.distances(point).argmin() in surface.faces[point.face]
+    for wrong in ([[0, 0]], "x", [[np.nan, 0, 0]]):
+        with pytest.raises(PointError):
+            surface.closest_point(wrong)
+
+
+def test_points_are_objects(square: Surface) -> None:
+    on_edge, in_face = EdgePoint(3, 4, 0.25), FacePoint(8, (2, 1, 1))
+    np.testing.assert_array_equal(square.distances(on_edge), square.distances("3-4@0.25"))
+    np.testing.assert_array_equal(square.distances([on_edge, in_face]), square.distances(["3-4@0.25", "f8@2:1:1"]))
+    path = square.path(on_edge, in_face)
+    assert (path.at[0], path.at[-1]) == (on_edge, in_face)
+    assert {type(point) for point in path.at[1:-1]} <= {EdgePoint, int}
+    form = square.canonical_form(n=20)
+    np.testing.assert_array_equal(form.place([on_edge]), form.place(["3-4@0.25"]))
+
+
+def test_surfaces_are_written_exactly(cat: Shape, tmp_path: Path) -> None:
+    cat.surface().write(tmp_path / "cat.ply")
+    again = canonform.read(tmp_path / "cat.ply")
+    np.testing.assert_array_equal(again.vertices, cat.vertices)
+    np.testing.assert_array_equal(again.faces, cat.faces)
