@@ -13,6 +13,7 @@ pytest.importorskip("distributed")
 
 from canonform import Index  # noqa: E402
 from canonform.distributed import batches_by_size, build_index, distance_matrix  # noqa: E402
+from canonform.datasets import Shape  # noqa: E402
 from canonform.errors import MeshError, OptionError  # noqa: E402
 from distributed import Client, LocalCluster  # noqa: E402
 
@@ -53,6 +54,17 @@ def test_two_workers_make_the_index_of_one_process(client: Client, collection: P
     assert index.build_report["described"] == 9 and index.build_report["batches"] >= 4
     assert not (tmp_path / "many.canonform.shards").exists()
     assert index.search(collection / "cat1.off", k=1)[0].id == "cat1"
+
+
+def test_meshes_in_memory_are_described_by_workers(client: Client, cats: list[Shape], tmp_path: Path) -> None:
+    index = build_index(cats, client, tmp_path / "i.canonform")
+    assert list(index) == ["cat0", "cat1"] and index.info()["classes"] == {"cat": 2}
+    # Objects go to workers and back.
+    surface = cats[0].surface()
+    distances = client.submit(lambda surface: surface.distances(0), surface).result()
+    np.testing.assert_array_equal(distances, surface.distances(0))
+    form = client.submit(lambda surface: surface.canonical_form(n=20), surface).result()
+    np.testing.assert_array_equal(form.points, surface.canonical_form(n=20).points)
 
 
 def test_a_finished_batch_is_not_described_again(client: Client, collection: Path, tmp_path: Path) -> None:

@@ -297,3 +297,14 @@ def test_keywords_are_the_options_of_the_library() -> None:
     keywords = set(inspect.signature(Surface.canonical_form).parameters)
     assert of_form | {"n", "method", "geodesic", "target_stress", "stress"} <= keywords
     assert keywords - options == {"self", "reuse", "progress"}
+
+
+def test_unaligned_arrays_are_read(square: Surface) -> None:
+    def unaligned(array: np.ndarray) -> np.ndarray:
+        found = np.frombuffer(b"x" + array.tobytes(), dtype=array.dtype, offset=1).reshape(array.shape)
+        assert not found.flags.aligned
+        return found
+
+    surface = Surface(*map(unaligned, grid()))
+    np.testing.assert_array_equal(surface.distances(0), square.distances(0))
+    assert surface.picture(unaligned(surface.distances(0))) == square.picture(square.distances(0))

@@ -13,12 +13,17 @@ Floats: TypeAlias = NDArray[np.float64]
 Ints: TypeAlias = NDArray[np.int64]
 
 
+def straight(array: ArrayLike, dtype: Any = None) -> NDArray[Any]:
+    """The same numbers in order and aligned, as Rust reads them; the same array if they are already."""
+    return np.require(array, dtype, ["C_CONTIGUOUS", "ALIGNED"])
+
+
 def vertices_of(vertices: ArrayLike) -> Floats:
     """An n x 3 array of float64; the same array if it is one already."""
     array = _array(vertices, "vertices")
     if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind not in "fiu":
         raise MeshError(f"vertices must be an array of numbers of shape (n, 3), not {_described(array)}")
-    return np.ascontiguousarray(array, dtype=np.float64)
+    return straight(array, dtype=np.float64)
 
 
 def faces_of(faces: ArrayLike) -> Ints:
@@ -37,7 +42,7 @@ def faces_of(faces: ArrayLike) -> Ints:
     if array.min() < 0:
         row = int(np.flatnonzero(array.min(axis=1) < 0)[0])
         raise MeshError(f"face {row} has the vertex number {int(array[row].min())}; vertices are counted from 0")
-    return np.ascontiguousarray(array, dtype=np.int64)
+    return straight(array, dtype=np.int64)
 
 
 def mesh_of(mesh: Any, faces: Any) -> tuple[Floats, Ints]:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _canonform
-from ._arrays import Floats, Ints
+from ._arrays import Floats, Ints, straight
 from ._settings import Progress, number, shown, whole
 from ._stored import ByValue, Constant
 from .errors import PointError
@@ -154,7 +154,7 @@ class DistanceField(Constant):
         if array.ndim != 2 or array.shape[1] != 2 or array.dtype.kind not in "iu":
             raise PointError(f"pairs must be an array of vertex numbers of shape (k, 2), not {array.dtype} of shape {array.shape}")
         with shown(progress) as report:
-            return PairDistances(*self._inner.pairs(np.ascontiguousarray(array, dtype=np.int64), _share(tolerance), report))
+            return PairDistances(*self._inner.pairs(straight(array, dtype=np.int64), _share(tolerance), report))
 
     def row(self, source: int, *, tolerance: float | None = 0.05) -> PairDistances:
         """The distances from one vertex to all, in the order of the input; `tolerance` as in `pairs`."""

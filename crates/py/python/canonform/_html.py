@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _canonform
+from ._arrays import straight
 
 _BOX = "display:inline-block;font-family:sans-serif;font-size:13px;border:1px solid #8884;border-radius:6px;padding:10px 14px"
 _CELL = "text-align:left;padding:2px 12px 2px 0;background:none;vertical-align:top"
@@ -23,9 +24,9 @@ def picture(
     colors: NDArray[np.uint8] | None = None,
 ) -> bytes:
     """A PNG file of a mesh, coloured by values, or by one colour for each vertex."""
-    numbers = None if values is None else np.ascontiguousarray(values, dtype=np.float64)
-    shades = None if colors is None else np.ascontiguousarray(colors, dtype=np.uint8)
-    return _canonform.draw(np.ascontiguousarray(vertices), np.ascontiguousarray(faces), numbers, shades, size)
+    numbers = None if values is None else straight(values, dtype=np.float64)
+    shades = None if colors is None else straight(colors, dtype=np.uint8)
+    return _canonform.draw(straight(vertices), straight(faces), numbers, shades, size)
 
 
 def image(png: bytes, side: int = 220, title: str = "") -> str:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _canonform, _html
-from ._arrays import Floats
+from ._arrays import Floats, Ints, straight
 from ._settings import (
     Components,
     DistanceMethod,
@@ -31,7 +31,7 @@ from ._settings import (
     word,
 )
 from ._stored import Stored
-from ._surface import AnyMesh, Surface, surface_of
+from ._surface import AnyMesh, Surface, arrays_of, surface_of
 from .datasets import Shape
 from .errors import CanonformError, OptionError, ShapeIndexError, SkippedMeshWarning
 
@@ -457,7 +457,7 @@ class Index(Stored):
         array = np.asarray(vector)
         if array.ndim != 1 or array.dtype.kind not in "fiu":
             raise OptionError(f"vector must be an array of numbers of shape (d,), not {array.dtype} of shape {array.shape}")
-        return self._inner.nearest(np.ascontiguousarray(array, dtype=np.float32), whole("k", k), bool(exact))
+        return self._inner.nearest(straight(array, dtype=np.float32), whole("k", k), bool(exact))
 
     def distances(
         self,
@@ -585,7 +585,7 @@ def _in_files(
         taken.add(name)
         if label:
             known[name] = label
-        paths.append(_kept(surface_of(mesh), os.path.join(folder, f"{name}.ply"), replace))
+        paths.append(_kept(arrays_of(mesh), os.path.join(folder, f"{name}.ply"), replace))
     if known and labels is not None:
         raise OptionError("labels= has no effect for meshes that come with a class; leave one of them out")
     return paths, known or labels
@@ -608,18 +608,18 @@ def _named(item: Any, i: int) -> tuple[str, AnyMesh, str]:
     return name, mesh, label or ""
 
 
-def _kept(surface: Surface, path: str, replace: bool) -> str:
+def _kept(mesh: tuple[Floats, Ints], path: str, replace: bool) -> str:
     """Writes a mesh for an index, unless it is there already."""
     os.makedirs(os.path.dirname(path), exist_ok=True)
     if os.path.exists(path) and not replace:
         with TemporaryDirectory() as folder:
             new = os.path.join(folder, "new.ply")
-            surface.write(new)
+            _canonform.write(*mesh, new)
             with open(new, "rb") as one, open(path, "rb") as other:
                 if one.read() != other.read():
                     raise ShapeIndexError(f"{path} has another mesh of this name; rename the new one, or pass replace=True")
         return path
-    surface.write(path)
+    _canonform.write(*mesh, path)
     return path
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ._arrays import straight
 from .errors import CanonformError
 
 _VERSION = 1
@@ -63,7 +64,8 @@ def _restored(kind: type[Stored], version: int, checksum: int, state: dict[str, 
     if _checksum(state) != checksum:
         raise CanonformError(f"this pickled {kind.__name__} is damaged: its checksum is wrong; make it again")
     made = kind.__new__(kind)
-    made._restore(state)
+    # Arrays that arrive in buffers of their own may be unaligned.
+    made._restore({name: straight(value) if isinstance(value, np.ndarray) else value for name, value in state.items()})
     return made
 
 

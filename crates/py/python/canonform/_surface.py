@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _canonform, _html
-from ._arrays import Floats, Ints, mesh_of
+from ._arrays import Floats, Ints, mesh_of, straight
 from ._field import DistanceField
 from ._form import Form
 from ._operators import ClosestPoints, EdgePoint, Eigenbasis, FacePoint, parsed
@@ -572,7 +572,7 @@ class Surface(Constant):
     def closest_point(self, points: ArrayLike) -> ClosestPoints:
         """For points in space, shape (3,) or (k, 3), the nearest points of the faces of the input."""
         try:
-            queries = np.ascontiguousarray(np.atleast_2d(np.asarray(points, dtype=np.float64)))
+            queries = straight(np.atleast_2d(np.asarray(points, dtype=np.float64)))
         except (TypeError, ValueError) as fault:
             raise PointError(f"points must be an array of shape (k, 3): {fault}") from fault
         if queries.ndim != 2 or queries.shape[1] != 3 or not np.isfinite(queries).all():
@@ -592,7 +592,7 @@ class Surface(Constant):
 
     def write(self, path: str | os.PathLike[str]) -> None:
         """Write the input as a mesh file. The extension tells the format; .ply keeps coordinates exactly. Raises `FileError`."""
-        _canonform.write(np.ascontiguousarray(self.vertices), self.faces, os.fspath(path))
+        _canonform.write(straight(self.vertices), self.faces, os.fspath(path))
 
     def picture(self, values: ArrayLike | None = None, *, width: int = 600, height: int = 600) -> bytes:
         """A shaded picture of the surface as the bytes of a PNG file, coloured by values at its vertices if given."""
@@ -675,6 +675,18 @@ def surface_of(mesh: AnyMesh) -> Surface:
         return mesh.surface()
     if isinstance(mesh, (str, os.PathLike)):
         return Surface.read(mesh)
-    if isinstance(mesh, tuple) and len(mesh) == 2 and np.ndim(mesh[0]) == 2:
-        return Surface(*mesh)
-    return Surface(mesh)
+    return Surface(*_with_faces(mesh))
+
+
+def arrays_of(mesh: AnyMesh) -> tuple[Floats, Ints]:
+    """The vertices and faces of a mesh as they are, without a repair."""
+    if isinstance(mesh, Surface):
+        return mesh.vertices, mesh.faces
+    if isinstance(mesh, (str, os.PathLike)):
+        return arrays_of(Surface.read(mesh))
+    return mesh_of(*_with_faces(mesh))
+
+
+def _with_faces(mesh: Any) -> tuple[Any, Any]:
+    is_pair = isinstance(mesh, tuple) and len(mesh) == 2 and np.ndim(mesh[0]) == 2
+    return mesh if is_pair else (mesh, None)

@@ -24,7 +24,7 @@ import numpy as np
 
 from . import _canonform
 from ._arrays import Floats
-from ._index import AnyPath, Index, _dataset, _label_file
+from ._index import AnyPath, Index, Meshes, _dataset, _in_files, _label_file
 from ._settings import Components, DistanceMethod, EmbeddingMethod, Progress, Weld, form_options, options_of, shown
 from .errors import MeshError, OptionError
 
@@ -71,7 +71,7 @@ def batches_by_size(sizes: Sequence[int], n_batches: int, most: int = _MOST_IN_B
 
 
 def build_index(
-    meshes: AnyPath | Iterable[AnyPath],
+    meshes: Meshes,
     client: Client,
     out: AnyPath,
     *,
@@ -126,6 +126,7 @@ def build_index(
     out = os.path.abspath(out)
     place = os.path.abspath(shards if shards is not None else f"{out}.shards")
     os.makedirs(place, exist_ok=True)
+    meshes, labels = _in_files(meshes, out, labels, replace=True)
     # Workers do not see temporary files of the client, so lists of meshes and labels are kept beside the shards.
     with _label_file(labels) as given, _dataset(meshes, place) as (dataset, name):
         dataset, label_file = os.path.abspath(dataset), None
