@@ -20,6 +20,9 @@ type Operators<'py> = (
     Bound<'py, PyArray1<f64>>,
 );
 
+/// Eigenvalues, and eigenfunctions as columns.
+type Eigenpairs<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>);
+
 /// Points, their distances, and the faces that they lie in.
 type Nearest<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<i64>>);
 
@@ -88,7 +91,7 @@ pub(crate) fn eigenbasis<'py>(
     surface: &Surface,
     k: usize,
     progress: Option<Py<PyAny>>,
-) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>)> {
+) -> PyResult<Eigenpairs<'py>> {
     let inner = &surface.inner;
     let spectrum = run_alone(py, progress.as_ref(), |observer| {
         Ok(LaplaceSpectrum::new(inner.intrinsic(), k, observer)?)
