@@ -63,8 +63,8 @@ pub struct SurfaceMap {
     pub distortion: f64,
     /// How far the map preserves orientation, from -1 to 1; `None` if a surface cannot be oriented.
     pub agreement: Option<f64>,
-    /// The probability that this map is the right one of its kind, and not the next best; calibrated by the law
-    /// `correspondence`.
+    /// How likely this map is the right one of its kind, and not the next best: a guide, which is not calibrated (decision
+    /// 19).
     pub confidence: f64,
     /// The partner of each vertex of the first surface.
     pub vertices: Vec<VertexId>,
