@@ -5,6 +5,7 @@ use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use report::color::{perceptual, place_colors};
 
+use crate::arrays;
 use crate::record::json;
 use crate::run::run;
 use crate::settings::Settings;
@@ -14,8 +15,7 @@ type MapArrays<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray2<f64>>);
 type Maps<'py> = (String, Vec<[Option<MapArrays<'py>>; 2]>, Bound<'py, PyArray2<u8>>);
 
 /// The maps as the JSON of `canonform match`; the partner of each vertex and the map of functions under each of them and its
-/// alternative; and a colour for each vertex of
-/// the second input, by its place in the form.
+/// alternative; and a colour for each vertex of the second input, by its place in the form.
 #[pyfunction]
 pub(crate) fn match_surfaces<'py>(
     py: Python<'py>,
@@ -36,8 +36,8 @@ pub(crate) fn match_surfaces<'py>(
         let number = |v: &Option<canonform::surface::VertexId>| v.map_or(-1, |v| i64::from(v.0));
         let vertices = map.vertices.iter().map(number).collect::<Vec<_>>().into_pyarray(py);
         let k = map.functional.ncols();
-        let rows: Vec<f64> = map.functional.transpose().iter().copied().collect();
-        Ok((vertices, rows.into_pyarray(py).reshape([k, k])?))
+        let rows = arrays::picked_rows(&map.functional, (0..k).map(Some));
+        Ok((vertices, arrays::matrix(py, rows, [k, k])?))
     };
     let maps = found
         .maps

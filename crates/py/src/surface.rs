@@ -107,6 +107,17 @@ impl Surface {
         Self { mesh, inner: Arc::new(inner), content, unchanged, solvers, descriptions, compared, matched }
     }
 
+    /// Repairs a mesh; `content` is the hash of its file.
+    fn repaired(
+        py: Python<'_>,
+        mesh: TriMesh,
+        options: &RepairOptions,
+        content: Option<ContentHash>,
+    ) -> PyResult<Self> {
+        let inner = run_alone(py, None, |observer| Ok(canonform::Surface::new(&mesh, options, observer)?))?;
+        Ok(Self::of(mesh, inner, content))
+    }
+
     /// Values of the repaired vertices in the order of the input; without a copy if that is the same.
     fn in_input_order(&self, values: Vec<f64>) -> Vec<f64> {
         match self.unchanged {
@@ -213,10 +224,7 @@ impl Surface {
         faces: PyReadonlyArray2<'_, i64>,
         settings: &str,
     ) -> PyResult<Self> {
-        let options = Settings::parse(settings)?.repair();
-        let mesh = arrays::mesh_of(&vertices, &faces)?;
-        let inner = run_alone(py, None, |observer| Ok(canonform::Surface::new(&mesh, &options, observer)?))?;
-        Ok(Self::of(mesh, inner, None))
+        Self::repaired(py, arrays::mesh_of(&vertices, &faces)?, &Settings::parse(settings)?.repair(), None)
     }
 
     /// Reads and repairs a mesh file.
@@ -252,9 +260,7 @@ impl Surface {
             serde_json::from_str(repair).map_err(|fault| Exception::Option.with(&fault.to_string()))?;
         let content: Option<ContentHash> =
             content.map(str::parse).transpose().map_err(|fault: String| Exception::Canonform.with(&fault))?;
-        let mesh = arrays::mesh_of(&vertices, &faces)?;
-        let inner = run_alone(py, None, |observer| Ok(canonform::Surface::new(&mesh, &options, observer)?))?;
-        Ok(Self::of(mesh, inner, content))
+        Self::repaired(py, arrays::mesh_of(&vertices, &faces)?, &options, content)
     }
 
     #[getter]

@@ -102,13 +102,14 @@ impl Experiment for MatchingOptions {
         }
         let mut pairs: Vec<[&Posed<'_>; 2]> = Vec::new();
         for (i, a) in known.iter().enumerate() {
-            let others = known[i + 1..].iter().chain(&known[..i]).filter(|b| b.shape.label == a.shape.label);
-            let n = known.iter().filter(|b| b.shape.label == a.shape.label).count();
-            match n <= FEW {
-                true => pairs
-                    .extend(known[i + 1..].iter().filter(|b| b.shape.label == a.shape.label).map(|b| [a, b])),
-                false => pairs.extend(others.take(1).map(|b| [a, b])),
-            }
+            let (earlier, later) = (&known[..i], &known[i + 1..]);
+            let is_alike = |b: &&Posed<'_>| b.shape.label == a.shape.label;
+            let few = later.iter().chain(earlier).filter(is_alike).count() < FEW;
+            let partners: Vec<_> = match few {
+                true => later.iter().filter(is_alike).collect(),
+                false => later.iter().chain(earlier).find(is_alike).into_iter().collect(),
+            };
+            pairs.extend(partners.into_iter().map(|b| [a, b]));
         }
         context.observer.begin("matching", pairs.len());
         let mut found = Vec::new();

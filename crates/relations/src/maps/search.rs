@@ -12,6 +12,7 @@ use super::operators::{FITTED, fitted};
 use super::orientation::agreement;
 use super::shape::MapShape;
 use descriptors::Alignment;
+use descriptors::Boundary;
 use descriptors::DescriptorError;
 use descriptors::alignments;
 
@@ -97,16 +98,16 @@ const SKETCH_FUNCTIONS: usize = 60;
 const FIRST: usize = 6;
 
 /// A map from an alignment, or from another map and a mirror, is taken if its [score](Candidate::score) is below this share
-/// of that of all fitted maps, which know inside from outside. Measured on built-in people (`experiments run matching`): with
-/// 0.9 and more, a mirrored map of 30 turns from right to wrong.
+/// of that of all fitted maps, which know inside from outside. Chosen on built-in people of 1,000 vertices: with 0.8 and
+/// more, one more of 15 mirrored maps is wrong.
 const CLEARLY_BETTER: f64 = 0.7;
 
 /// Maps whose images are less than this apart on average, as a share of the square root of the area, are one. A safety limit.
 const SAME: f64 = 0.06;
 
-/// The odds that a map is right, and not the next best, are the ratio of their scores to this power. Chosen on built-in
-/// people of 1,000 and 3,400 vertices.
-const ODDS: f64 = 8.0;
+/// The odds that a map is right, and not the next best, are the ratio of their scores to this power. A convention, which is
+/// not calibrated: maps that are divided by [`CLEARLY_BETTER`] count as so much worse.
+const STEEPNESS: f64 = 8.0;
 
 /// The direct map comes second if its distortion is more than this multiple of the mirrored one's. A convention.
 const CLEARLY_WORSE: f64 = 1.5;
@@ -201,11 +202,7 @@ impl MapSearch<'_> {
         let pair = SampledPair { a: &rows_a, b: &rows_b };
         let starts = [1.0, -1.0].into_iter().flat_map(|sign| fitted_starts(pair, [a, b], sign)).collect();
         let mut found = self.zoomed(starts, [FITTED, SKETCH_FUNCTIONS])?;
-        let best = |kind: MapKind| {
-            let of_kind = found.iter().filter(|found| found.kind() == kind);
-            of_kind.min_by(|x, y| x.score.total_cmp(&y.score)).map(|found| &found.maps)
-        };
-        let best = [best(MapKind::Direct), best(MapKind::Mirrored)];
+        let best = [MapKind::Direct, MapKind::Mirrored].map(|kind| best_of(&found, kind));
         let [of_a, of_b] = [self.mirror(a, &rows_a)?, self.mirror(b, &rows_b)?];
         let composed = best.into_iter().flatten().flat_map(|maps| {
             let before = of_a.iter().map(|mirror| mirror.then(maps));
@@ -226,8 +223,7 @@ impl MapSearch<'_> {
         let starts = fitted_starts(pair, [shape; 2], -1.0);
         let search = MapSearch { a: shape, b: shape, ..*self };
         let found = search.zoomed(starts, [FITTED, SKETCH_FUNCTIONS])?;
-        let mirrored = found.into_iter().filter(|found| found.kind() == MapKind::Mirrored);
-        Ok(mirrored.min_by(|x, y| x.score.total_cmp(&y.score)).map(|found| found.maps))
+        Ok(best_of(&found, MapKind::Mirrored).cloned())
     }
 
     /// The best map of candidates of one kind, refined on all samples and eigenfunctions.
@@ -243,9 +239,10 @@ impl MapSearch<'_> {
             Err(error) => Some(Err(error)),
         });
         let rival = rival.transpose()?;
-        let odds =
-            rival.map_or(f64::INFINITY, |rival| (rival.score / best.score.max(f64::MIN_POSITIVE)).powf(ODDS));
-        let confidence = if odds.is_finite() { odds / (1.0 + odds) } else { 1.0 };
+        let confidence = rival.map_or(1.0, |rival| {
+            let boundary = Boundary { at: rival.score.max(f64::MIN_POSITIVE), steepness: STEEPNESS };
+            boundary.probability(best.score)
+        });
         let mut map = self.refined(best, confidence)?;
         if let Some(rival) = rival.filter(|_| confidence < SurfaceMap::CERTAIN) {
             map.alternative = Some(Box::new(self.refined(rival, 1.0 - confidence)?));
@@ -292,6 +289,12 @@ impl MapSearch<'_> {
         };
         starts.into_par_iter().map(one).collect()
     }
+}
+
+/// The maps of samples of one kind that score best.
+fn best_of(found: &[Candidate], kind: MapKind) -> Option<&SampleMaps> {
+    let of_kind = found.iter().filter(|found| found.kind() == kind);
+    of_kind.min_by(|x, y| x.score.total_cmp(&y.score)).map(|found| &found.maps)
 }
 
 /// Maps of the first samples that follow from fitted maps of functions.
