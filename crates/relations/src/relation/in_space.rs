@@ -90,7 +90,9 @@ pub(super) fn aligned(a: &MeshGeometry, b: &MeshGeometry) -> Option<Aligned> {
     let found =
         |start: FormAlignment, is_worth: bool| if is_worth { best(a, b, &start.alignment) } else { None };
     let proper_found = found(proper, worth(proper, reflected));
-    let reflected_found = found(reflected, worth(reflected, proper));
+    // No reflection is decisively better than a map that is as good as refinement ends.
+    let is_found = proper_found.as_ref().is_some_and(|(_, gap)| gap.rms <= EXCESS);
+    let reflected_found = found(reflected, !is_found && worth(reflected, proper));
     let ((map, gap), mirrored) = match (proper_found, reflected_found) {
         (Some(proper), Some(reflected)) if is_decisive(&reflected.1, &proper.1) => {
             match unmirrored(a, b, &reflected) {
@@ -193,6 +195,9 @@ fn best(a: &MeshGeometry, b: &MeshGeometry, start: &Alignment) -> Option<(Simila
         let distance = gap(a, b, &found, usize::MAX)?;
         if distance.rms < best.1.rms {
             best = (found, distance);
+        }
+        if best.1.rms < SEATED {
+            break;
         }
     }
     Some(best)

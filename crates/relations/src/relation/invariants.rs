@@ -1,0 +1,62 @@
+//! Numbers of a surface that tell cheaply that two surfaces are not one.
+
+use super::geometry::MeshGeometry;
+use super::same_surface::{euler_characteristic_if_closed, rms_chord_error};
+
+/// Spreads of organic copies, at unit area, differ by less than this, by decimation, noise and holes. A safety limit: it saves
+/// time.
+const MOST_OF_BODIES: f64 = 0.05;
+
+/// Spreads and volumes of mechanical copies differ by less than this, and in multiples of the error of flat triangles by
+/// less than [`ARCS`]. Twice the largest of generated parts with circles of 12 to 64 segments (`cargo test -p tests --test
+/// laws -- invariants --nocapture`).
+const EXACT: f64 = 5e-4;
+const ARCS: f64 = 2.0;
+
+/// What copies of one surface have in common, whatever their triangles, places and sizes.
+///
+/// ```
+/// use canonform_relations::MeshGeometry;
+/// use mesh::shapes;
+///
+/// let [cube, finer, ball] = [shapes::cube(2), shapes::cube(5), shapes::icosphere(3)]
+///     .map(|mesh| MeshGeometry::new(&mesh, None).unwrap().invariants());
+/// assert!(cube.may_be_copy_of(&finer) && !cube.may_be_copy_of(&ball));
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurfaceInvariants {
+    /// Root mean square distance from the centroid along the principal axes, descending, at unit area.
+    pub spreads: [f64; 3],
+    /// The enclosed volume at unit area, and the Euler characteristic; `None` for surfaces that are not closed.
+    pub closed: Option<(f64, isize)>,
+    /// Root mean square of the error of flat triangles, at unit area; `None` unless the surface is mechanical.
+    pub chords: Option<f64>,
+}
+
+impl SurfaceInvariants {
+    /// Whether two surfaces may be one. If not, no alignment need be tried.
+    #[must_use]
+    pub fn may_be_copy_of(&self, other: &Self) -> bool {
+        let spread = self.spreads.iter().zip(&other.spreads).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
+        let (Some(a), Some(b)) = (self.chords, other.chords) else { return spread < MOST_OF_BODIES };
+        let most = EXACT + ARCS * (a + b);
+        let is_same_solid = match (self.closed, other.closed) {
+            (Some((x, handles)), Some((y, others))) => handles == others && (x - y).abs() < most,
+            _ => true,
+        };
+        spread < most && is_same_solid
+    }
+}
+
+impl MeshGeometry {
+    /// Its invariants.
+    #[must_use]
+    pub fn invariants(&self) -> SurfaceInvariants {
+        let volume = |euler| (self.mesh.signed_volume().abs(), euler);
+        SurfaceInvariants {
+            spreads: self.spreads,
+            closed: euler_characteristic_if_closed(self).map(volume),
+            chords: self.is_mechanical().then(|| rms_chord_error(self)),
+        }
+    }
+}
