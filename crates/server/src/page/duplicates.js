@@ -83,8 +83,10 @@ const section = ({ keeper }) => [...document.querySelectorAll('#groups .group')]
 // A file: its picture, what it is, and buttons to mark it.
 function card(file, keeper, first) {
   const { id, relation } = file;
+  // The names are on the cards.
+  const change = relation?.text.split(`${id} is ${keeper} `).at(-1);
   const told = relation
-    ? [['kind', `${relation.text} (${Math.round(100 * relation.confidence)} % certain)`], ['more', relation.because.text]]
+    ? [['kind', `${relation.brief} (${Math.round(100 * relation.confidence)} % certain)`], ['more', `${change}; ${relation.because.text}`]]
     : [['kind', `Suggested to keep: ${file.why}`]];
   const lines = [...(folderOf(id) ? [['more', folderOf(id)]] : []), ['more', facts(file)], ...told];
   const compared = () => go(relation ? { a: keeper, b: id } : { a: first, b: keeper });
