@@ -119,19 +119,18 @@ def timed(program, index):
 
 
 def judged(found, of):
-    """Members of groups whose keeper has the same original, and those whose keeper has another."""
-    told, false = set(), []
+    """Copies that are in one group with another file of their original, and members that are another part than their keeper."""
+    told, false = 0, []
     for group in found["groups"]:
-        keeper = of[group["keeper"]["id"]]
-        for member in group["members"]:
-            changes = member["relation"]["changes"]
-            if of[member["id"]] == keeper:
-                told.add(member["id"])
+        keeper, members = group["keeper"]["id"], group["members"]
+        originals = [of[id] for id in [keeper, *(member["id"] for member in members)]]
+        told += len(originals) - len(set(originals))
+        for member in members:
             # Some parts are others at another size, or their mirror images.
-            elif "scaled" not in changes and "mirrored" not in changes:
-                false.append((group["keeper"]["id"], member["id"], member["relation"]["text"]))
-    # Of a shape with k files, k - 1 are members.
-    return len(told), false
+            is_alike = {"scaled", "mirrored"} & set(member["relation"]["changes"])
+            if of[member["id"]] != of[keeper] and not is_alike:
+                false.append((keeper, member["id"], member["relation"]["text"]))
+    return told, false
 
 
 def measure(program, folder, n, rounds):

@@ -82,7 +82,9 @@ impl Duplicates {
             None => Ok(Known::Progress(lock(&run.watched.progress).clone())),
             Some(Ok(report)) => Ok(Known::Report(report.clone())),
             // The next client starts another search.
-            Some(Err(_)) => Err(now.take().and_then(|run| run.outcome?.err()).unwrap_or_else(ApiError::internal)),
+            Some(Err(_)) => {
+                Err(now.take().and_then(|run| run.outcome?.err()).unwrap_or_else(ApiError::internal))
+            }
         }
     }
 

@@ -56,9 +56,12 @@ fn groups_are_compared_marked_and_moved_by_the_script() {
         page.browser.click("nav a").unwrap();
         page.wait_for(READY);
         assert_eq!(page.address(), "/duplicates");
-        assert!(page.text("#told").starts_with("3 of 6 shapes can be spared: 2 groups of files of one shape"));
+        assert!(
+            page.text("#told").starts_with("3 of 6 shapes can be spared: 2 groups of files of one shape")
+        );
         page.picture("body", &format!("duplicates-{width}"));
-        let sizes = "[...document.querySelectorAll('.group')].map(group => group.querySelectorAll('.tile').length)";
+        let sizes =
+            "[...document.querySelectorAll('.group')].map(group => group.querySelectorAll('.tile').length)";
         assert_eq!(page.eval(sizes), json!([3, 2]));
 
         // Every control is reached by Tab; Enter on a file shows it beside the one to keep.
@@ -86,7 +89,11 @@ fn groups_are_compared_marked_and_moved_by_the_script() {
         for id in ["cat", "finer cat"] {
             page.browser.click(&format!("[aria-label='Spare {id}']")).unwrap();
         }
-        assert!(page.text("#marked").contains("Of 1 group nothing would be left: finer cat."), "{}", page.text("#marked"));
+        assert!(
+            page.text("#marked").contains("Of 1 group nothing would be left: finer cat."),
+            "{}",
+            page.text("#marked")
+        );
         assert_eq!(page.eval("document.querySelector('#as-script').disabled"), true);
         page.browser.click("[aria-label='Spare finer cat']").unwrap();
         page.browser.click("#suggest").unwrap();
