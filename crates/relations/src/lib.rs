@@ -12,6 +12,6 @@ mod relation;
 pub use maps::{MapKind, MapOptions, MapShape, SurfaceMap, map_surfaces};
 pub use relation::{
     Basis, Because, Change, CutPiece, Difference, Dimension, Handedness, MeshGeometry, MeshOverlay,
-    NearestOnSurface, Parts, Relation, RelationKind, Side, SurfaceGap, TriangleTree, UnitChange, handedness,
-    in_four_digits,
+    NearestOnSurface, Parts, Relation, RelationKind, Side, SurfaceGap, SurfaceInvariants, TriangleTree,
+    UnitChange, handedness, in_four_digits,
 };

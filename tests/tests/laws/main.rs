@@ -41,6 +41,8 @@ mod guarantees;
 #[cfg(test)]
 mod invariance;
 #[cfg(test)]
+mod invariants;
+#[cfg(test)]
 mod isometry;
 #[cfg(test)]
 mod licences;

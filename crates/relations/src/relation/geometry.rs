@@ -21,11 +21,6 @@ const ROUNDING: f64 = 1e-5;
 /// Vertices of one geometry are never farther apart than this, relative to the size, wherever the mesh lies. A safety limit.
 const MOST_ROUNDING: f64 = 1e-4;
 
-/// Spreads of copies, at unit area, differ by less than this: of mechanical parts by coarse arcs, of others by decimation,
-/// noise and holes. A safety limit: it saves time.
-const MOST_OF_PARTS: f64 = 0.01;
-const MOST_OF_BODIES: f64 = 0.05;
-
 /// Most components that are compared on their own, the largest by area.
 const MOST_COMPONENTS: usize = 200;
 
@@ -148,18 +143,6 @@ impl MeshGeometry {
     pub fn n_bytes(&self) -> usize {
         // With the tree, the samples and the components, which are made when they are needed.
         100 * self.n_vertices() + 250 * self.n_faces()
-    }
-
-    /// Whether the two may be one surface, or one a part of the other: otherwise their moments differ too much, and their
-    /// meshes need not be compared.
-    #[must_use]
-    pub fn may_be_part_or_copy_of(&self, other: &Self) -> bool {
-        if self.n_components() > 1 || other.n_components() > 1 {
-            return true;
-        }
-        let most = if self.is_mechanical() && other.is_mechanical() { MOST_OF_PARTS } else { MOST_OF_BODIES };
-        let [a, b] = [self, other].map(|geometry| geometry.spreads);
-        a.iter().zip(&b).all(|(x, y)| (x - y).abs() < most)
     }
 
     /// Evenly spread points of the surface.
