@@ -119,6 +119,9 @@ const SAME: f64 = 0.06;
 /// is no mixture: agrees with the reversal beyond [`PURE`]. A safety limit: bodies in different poses have .02 to .04.
 const SYMMETRIC: f64 = 0.06;
 
+/// Most such maps of a surface: people are nearly alike from left to right, and from back to front.
+const MIRRORS: usize = 2;
+
 /// A map whose agreement with an orientation is less is a mixture, at least in parts. Right maps of built-in people, cats and
 /// centaurs have .89 and more.
 const PURE: f64 = 0.8;
@@ -221,18 +224,23 @@ struct MapSearch<'a> {
 impl MapSearch<'_> {
     /// Maps of few samples and eigenfunctions from all starts, and those that differ from them by a mirror.
     fn sketches(&self) -> Result<Vec<Candidate>, DescriptorError> {
+        let found = self.sketched(self.starts(&[1.0, -1.0])?.iter().map(|start| &start.functional))?;
+        self.with_mirrored(self.distinct(found)?)
+    }
+
+    /// Different maps that are fitted with these signs, or follow from alignments of the forms.
+    fn starts(&self, signs: &[f64]) -> Result<Vec<Candidate>, DescriptorError> {
         let (a, b) = (self.a, self.b);
         let [rows_a, rows_b] = self.rows(ROUGH);
         let pair = SampledPair { a: &rows_a, b: &rows_b };
-        let fits = [1.0, -1.0].into_iter().flat_map(|sign| fitted_starts(pair, [a, b], sign)).collect();
+        let fits = signs.iter().flat_map(|sign| fitted_starts(pair, [a, b], *sign)).collect();
         let aligned = alignments(&a.form, &b.form);
         let mut aligned: Vec<_> =
-            aligned.iter().map(|motion| nearest_samples(a, b, motion, rows_a.nrows().min(rows_b.nrows()))).collect();
+            aligned.iter().map(|motion| nearest_samples(a, b, motion, rows_a.nrows())).collect();
         aligned.dedup();
-        let mut rough = self.zoomed(fits, [FITTED, ROUGH_FUNCTIONS])?;
-        rough.extend(self.zoomed(aligned, [FIRST, ROUGH_FUNCTIONS])?);
-        let found = self.sketched(self.distinct(rough)?.into_iter().map(|found| found.functional).collect())?;
-        self.with_mirrored(self.distinct(found)?)
+        let mut found = self.zoomed(fits, [FITTED, ROUGH_FUNCTIONS])?;
+        found.extend(self.zoomed(aligned, [FIRST, ROUGH_FUNCTIONS])?);
+        self.distinct(found)
     }
 
     /// Eigenfunctions at the first samples of both surfaces.
@@ -242,10 +250,13 @@ impl MapSearch<'_> {
     }
 
     /// The sketches that follow from maps of functions.
-    fn sketched(&self, starts: Vec<FunctionalMaps>) -> Result<Vec<Candidate>, DescriptorError> {
+    fn sketched<'m>(
+        &self,
+        starts: impl Iterator<Item = &'m FunctionalMaps>,
+    ) -> Result<Vec<Candidate>, DescriptorError> {
         let [rows_a, rows_b] = self.rows(SKETCHED);
         let pair = SampledPair { a: &rows_a, b: &rows_b };
-        let starts = starts.iter().map(|start| start.sample_maps(pair)).collect();
+        let starts = starts.map(|start| start.sample_maps(pair)).collect();
         self.zoomed(starts, [FITTED, SKETCH_FUNCTIONS])
     }
 
@@ -267,43 +278,41 @@ impl MapSearch<'_> {
         Ok(kept)
     }
 
-    /// These maps and those that differ from them by the mirror of a surface, if there is one, with the scores of both together.
+    /// These maps and those that differ from them by a mirror of a surface, if there is one. Each has the score of both
+    /// together.
     fn with_mirrored(&self, found: Vec<Candidate>) -> Result<Vec<Candidate>, DescriptorError> {
-        let [of_a, of_b] = [self.mirror(self.a)?, self.mirror(self.b)?];
-        if of_a.is_none() && of_b.is_none() {
-            return Ok(found);
-        }
+        let [of_a, of_b] = [self.mirrors(self.a)?, self.mirrors(self.b)?];
         let mut all = Vec::new();
         for one in found {
             let before = of_a.iter().map(|mirror| mirror.then(&one.functional));
             let after = of_b.iter().map(|mirror| one.functional.then(mirror));
-            let others = self.sketched(before.chain(after).collect())?.into_iter();
-            let others = others.filter(|other| other.kind() != one.kind());
-            let Some(other) = others.min_by(|x, y| x.score.total_cmp(&y.score)) else {
-                all.push(one);
-                continue;
-            };
-            let score = (one.score * other.score).sqrt();
-            all.extend([Candidate { score, ..one }, Candidate { score, ..other }]);
+            let others: Vec<_> = before.chain(after).collect();
+            let mut others = self.sketched(others.iter())?;
+            others.retain(|other| other.kind() != one.kind());
+            others.iter_mut().for_each(|other| other.score = (one.score * other.score).sqrt());
+            let least = others.iter().map(|other| other.score).reduce(f64::min);
+            all.push(Candidate { score: least.unwrap_or(one.score), ..one });
+            all.extend(others);
         }
         Ok(all)
     }
 
-    /// The map of a surface to itself that exchanges left and right.
-    fn mirror<'s>(&self, shape: &'s MapShape) -> Result<Option<&'s FunctionalMaps>, DescriptorError> {
-        if shape.mirror.get().is_none() {
+    /// The maps of a surface to itself that reverse its orientation and change distances little.
+    fn mirrors<'s>(&self, shape: &'s MapShape) -> Result<&'s [FunctionalMaps], DescriptorError> {
+        if shape.mirrors.get().is_none() {
             let search = MapSearch { a: shape, b: shape, ..*self };
-            let [rows, _] = search.rows(SKETCHED);
-            let starts = fitted_starts(SampledPair { a: &rows, b: &rows }, [shape; 2], -1.0);
-            let found = search.zoomed(starts, [FITTED, SKETCH_FUNCTIONS])?.into_iter();
-            let pure = found.filter(|found| {
-                found.agreement.is_some_and(|agreement| agreement < -PURE) && found.distortion < SYMMETRIC
+            let mut starts = search.starts(&[-1.0])?;
+            starts.retain(|start| start.kind() == MapKind::Mirrored);
+            let mut found = search.sketched(starts.iter().map(|start| &start.functional))?;
+            found.retain(|found| {
+                found.kind() == MapKind::Mirrored && !found.is_mixture() && found.distortion < SYMMETRIC
             });
-            let best = pure.min_by(|x, y| x.score.total_cmp(&y.score)).map(|found| found.functional);
-            // Another thread finds the same.
-            let _ = shape.mirror.set(best);
+            let mut found = search.distinct(found)?;
+            found.truncate(MIRRORS);
+            // If another thread was faster, it found the same.
+            let _ = shape.mirrors.set(found.into_iter().map(|found| found.functional).collect());
         }
-        Ok(shape.mirror.get().and_then(Option::as_ref))
+        Ok(shape.mirrors.get().map_or(&[], Vec::as_slice))
     }
 
     /// The best map of candidates of one kind, refined on all samples and eigenfunctions.

@@ -43,8 +43,9 @@ pub struct MapShape {
     pub(super) oriented: Option<Oriented>,
     /// The area forms of the first eigenfunctions at the samples, if it can.
     pub(super) area_forms: Option<Matrix>,
-    /// The map of the surface to itself that exchanges left and right, if there is one, once it was sought.
-    pub(super) mirror: OnceLock<Option<FunctionalMaps>>,
+    /// The maps of the surface to itself that reverse its orientation, such as the one that exchanges left and right, once they
+    /// were sought.
+    pub(super) mirrors: OnceLock<Vec<FunctionalMaps>>,
 }
 
 impl MapShape {
@@ -88,7 +89,7 @@ impl MapShape {
             points: at,
             at_samples: spectrum.vectors.select_rows(&samples),
             area_forms: oriented.as_ref().map(|oriented| oriented.area_forms(&spectrum.vectors, &samples)),
-            mirror: OnceLock::new(),
+            mirrors: OnceLock::new(),
             oriented,
             operators,
             size: spectrum.area.sqrt(),
