@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use surface::VertexId;
 
+use super::curvature::mismatch;
 use super::functional_map::{FunctionalMaps, SampleMaps, SampledPair, schedule, zoom_out};
 use super::local::vertex_confidence;
 use super::nearest_rows::Cells;
@@ -65,8 +66,8 @@ pub struct SurfaceMap {
     pub distortion: f64,
     /// How far the map preserves orientation, from -1 to 1; `None` if a surface cannot be oriented.
     pub agreement: Option<f64>,
-    /// How likely this map is the right one of its kind, and not the next best: a guide, which is not calibrated (decision
-    /// 19).
+    /// How likely this map is the right one of its kind, and not the next best: the odds follow from the ratio of their scores
+    /// (decision 19). At most 1/2 for a mixture of two maps, which agrees with an orientation in some places only.
     pub confidence: f64,
     /// The partner of each vertex of the first surface.
     pub vertices: Vec<VertexId>,
@@ -90,10 +91,6 @@ impl SurfaceMap {
 
 /// Maps agree with an orientation beyond this. A safety limit: it is near 1 or -1 for smooth maps, and 0 for random ones.
 const AGREEMENT: f64 = 0.1;
-
-/// A map agrees with an orientation everywhere beyond this; below, it may be a mixture of two maps. A safety limit: without
-/// such maps, all beyond [`AGREEMENT`] are taken.
-const SURE: f64 = 0.5;
 
 /// Leading eigenfunctions of each surface by which the nearest samples of a vertex are found. A safety limit.
 const COARSE: usize = 40;
@@ -122,15 +119,23 @@ const SYMMETRIC: f64 = 0.06;
 /// Most such maps of a surface: people are nearly alike from left to right, and from back to front.
 const MIRRORS: usize = 2;
 
-/// A map whose agreement with an orientation is less is a mixture, at least in parts. Right maps of built-in people, cats and
-/// centaurs have .89 and more.
-const PURE: f64 = 0.8;
+/// A map that agrees less with an orientation is a mixture of two, at least in parts. Right maps of built-in shapes have .85 and
+/// more, those of cats of 5,000 vertices .79 and more, and most mixtures less than .7.
+const PURE: f64 = 0.7;
+
+/// Refinement that loses so much of the agreement mixes two maps. A safety limit: it changes by less than .05 otherwise.
+const LOST: f64 = 0.1;
 
 /// Agreements nearer to 1 than this are as good as 1. A tolerance.
 const FULL: f64 = 0.05;
 
-/// The odds that a map is right, and not the next best, are the ratio of their scores to this power.
-const STEEPNESS: f64 = 8.0;
+/// The odds that a map is right, and not the next best, are the ratio of their scores to this power. Chosen on built-in people,
+/// where the rival of a wrong map scores less than 1.28 times as much, and that of nearly all right ones more: a ratio of 1.28
+/// is where maps become [certain](SurfaceMap::CERTAIN).
+const STEEPNESS: f64 = 3.4;
+
+/// The most confidence in a mixture: as likely wrong as right. A convention.
+const OF_MIXTURE: f64 = 0.5;
 
 /// The direct map comes second if its distortion is more than this multiple of the mirrored one's. A convention.
 const CLEARLY_WORSE: f64 = 1.5;
@@ -143,31 +148,24 @@ struct Candidate {
     distortion: f64,
     agreement: Option<f64>,
     /// Lower is better: the distortion of distances, times the distance of the maps of functions from orthogonal ones,
-    /// `(|C'C - I|² + |D'D - I|²) / k`, times the distance of the agreement from 1. A man turned back to front keeps distances
-    /// nearly as well as another pose does, but his map is no isometry in detail; a mixture of two maps keeps the orientation
-    /// in some places only. Of two maps that differ by a mirror, the geometric mean: they are right together.
+    /// `(|C'C - I|² + |D'D - I|²) / k`, times the distances of the agreement and of the correlation of curvatures from 1. A man
+    /// turned back to front keeps distances nearly as well as another pose does, but his map is no isometry in detail, and his
+    /// belly is not bent as his back; a mixture of two maps keeps the orientation in some places only. Of two maps that differ
+    /// by a mirror, the geometric mean: they are right together.
     score: f64,
 }
 
 impl Candidate {
     fn kind(&self) -> MapKind {
-        kind(self.agreement, AGREEMENT)
-    }
-
-    fn is_sure(&self) -> bool {
-        self.kind() == kind(self.agreement, SURE)
+        match self.agreement {
+            Some(value) if value > AGREEMENT => MapKind::Direct,
+            Some(value) if value < -AGREEMENT => MapKind::Mirrored,
+            _ => MapKind::Unoriented,
+        }
     }
 
     fn is_mixture(&self) -> bool {
         self.agreement.is_some_and(|agreement| agreement.abs() < PURE)
-    }
-}
-
-fn kind(agreement: Option<f64>, least: f64) -> MapKind {
-    match agreement {
-        Some(value) if value > least => MapKind::Direct,
-        Some(value) if value < -least => MapKind::Mirrored,
-        _ => MapKind::Unoriented,
     }
 }
 
@@ -177,9 +175,11 @@ fn kind(agreement: Option<f64>, least: f64) -> MapKind {
 /// 1. Maps of functions are fitted in closed form to the curvature and the wave kernels of both surfaces, once for each
 ///    orientation (`ren2018` in `REFERENCES.bib`). Each alignment of the forms maps samples to the nearest ones, too.
 /// 2. All these maps are refined with few samples, by taking in eigenfunctions of higher frequency, there and back (ZoomOut,
-///    `melzi2019`).
-/// 3. Of each orientation, the one that keeps distances and the products of functions best is refined on all samples and
-///    eigenfunctions, and all vertices follow. How much worse the next best is says how certain it is.
+///    `melzi2019`); the best different ones then with more.
+/// 3. Each map is followed by the mirrors of the surfaces, which exchange left and right, or front and back. A map and one that
+///    differs by a mirror are scored together.
+/// 4. Of each orientation, the one that keeps distances, the products of functions and the orientation best is refined on all
+///    samples and eigenfunctions, and all vertices follow. How much worse the next best is says how certain it is.
 ///
 /// Shapes that are alike under a mirror have two maps of small distortion; for others, one of the two has a large
 /// distortion. If a surface cannot be oriented, there is one map.
@@ -317,10 +317,7 @@ impl MapSearch<'_> {
 
     /// The best map of candidates of one kind, refined on all samples and eigenfunctions.
     fn best(&self, mut found: Vec<Candidate>) -> Result<Option<SurfaceMap>, DescriptorError> {
-        if found.iter().any(Candidate::is_sure) {
-            found.retain(Candidate::is_sure);
-        }
-        found.sort_by(|x, y| x.score.total_cmp(&y.score));
+        found.sort_by(|x, y| x.is_mixture().cmp(&y.is_mixture()).then(x.score.total_cmp(&y.score)));
         let Some(best) = found.first() else { return Ok(None) };
         let rival = found.iter().find_map(|other| match self.is_same(best, other) {
             Ok(true) => None,
@@ -332,6 +329,7 @@ impl MapSearch<'_> {
             let boundary = Boundary { at: rival.score.max(f64::MIN_POSITIVE), steepness: STEEPNESS };
             boundary.probability(best.score)
         });
+        let confidence = if best.is_mixture() { confidence.min(OF_MIXTURE) } else { confidence };
         let mut map = self.refined(best, confidence)?;
         if let Some(rival) = rival.filter(|_| confidence < SurfaceMap::CERTAIN) {
             map.alternative = Some(Box::new(self.refined(rival, 1.0 - confidence)?));
@@ -352,8 +350,12 @@ impl MapSearch<'_> {
         let all = SampledPair { a: &self.a.at_samples, b: &self.b.at_samples };
         let start = sketch.functional.sample_maps(all);
         let refined = self.zoomed(vec![start], [SKETCH_FUNCTIONS, self.options.eigenfunctions])?;
-        // Refinement may mix two maps; the sketch is not a mixture.
-        match refined.iter().find(|found| found.kind() == sketch.kind() && !found.is_mixture()) {
+        // Refinement may mix two maps, where the sketch is right.
+        let agrees = |found: &Candidate| match (sketch.agreement, found.agreement) {
+            (Some(before), Some(after)) => after * before.signum() > before.abs() - LOST,
+            _ => true,
+        };
+        match refined.iter().find(|found| agrees(found)) {
             Some(found) => found.on_all_vertices(self.a, self.b, confidence),
             None => sketch.on_all_vertices(self.a, self.b, confidence),
         }
@@ -416,7 +418,11 @@ impl Candidate {
         let distortion = codistortion(a, b, &forth, &back)?;
         let agreement = orientation(a, b, &functional, &maps.forth);
         let missing = agreement.map_or(1.0, |agreement| (1.0 - agreement.abs()).max(FULL));
-        let score = distortion * functional.defect() * missing;
+        let mismatch = match (&a.curvature, &b.curvature) {
+            (Some(x), Some(y)) => 0.5 * (mismatch(x, y, &maps.forth) + mismatch(y, x, &maps.back)),
+            _ => 1.0,
+        };
+        let score = distortion * functional.defect() * missing * mismatch;
         Ok(Self { functional, images: forth, distortion, agreement, score })
     }
 
