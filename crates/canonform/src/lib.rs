@@ -100,7 +100,9 @@ pub use compare::{
     Compared, ComparedMesh, Comparison, FaceAgreement, FormAlignments, MeshComparison, Overlay, Residual,
     compare, compare_meshes, embedded_distances, form_alignments,
 };
-pub use correspond::{CorrespondOptions, Correspondence, MappedSurface, VertexMap, correspond};
+pub use correspond::{
+    CorrespondOptions, Correspondence, FacePoint, MappedSurface, PointMap, VertexMap, correspond,
+};
 pub use error::{Error, Remedy};
 pub use fields::{
     DistanceField, FieldBounds, FieldFacts, FieldFault, FieldOptions, Finish, PairDistance, PairKind,
@@ -113,7 +115,7 @@ pub use form::{
 };
 pub use input::{AllPairs, Asymmetry, PathPoint, SurfacePath, distance_rows, read_surface};
 pub use relations::{
-    Basis, Because, Change, Handedness, MeshGeometry, MeshOverlay, Parts, Relation, RelationKind, Side,
+    Basis, Because, Change, Handedness, KnownMap, MeshGeometry, MeshOverlay, Parts, Relation, RelationKind, Side,
     SurfaceGap, UnitChange,
 };
 pub use retrieval::RankBy;

@@ -9,7 +9,9 @@ mod maps;
 mod outward;
 mod relation;
 
-pub use maps::{MapKind, MapOptions, MapShape, SurfaceMap, map_surfaces};
+pub use maps::{
+    KnownMap, MapElements, MapKind, MapOptions, MapShape, SurfaceMap, map_surfaces, mapped_points,
+};
 pub use relation::{
     Basis, Because, Change, CutPiece, Difference, Dimension, Handedness, MeshGeometry, MeshOverlay,
     NearestOnSurface, Parts, Relation, RelationKind, Side, SurfaceGap, TriangleTree, UnitChange, handedness,

@@ -8,6 +8,7 @@ use relations::{MapKind, SurfaceMap, map_surfaces};
 use serde::Serialize;
 use surface::VertexId;
 
+use super::known;
 use super::mapped_surface::MappedSurface;
 use super::options::CorrespondOptions;
 use crate::error::Error;
@@ -33,9 +34,13 @@ pub struct VertexMap {
     #[serde(skip)]
     pub vertices: Vec<Option<VertexId>>,
     /// The map of functions of the second surface to functions of the first: its columns are the coefficients of the
-    /// eigenfunctions of the second, pulled back, in those of the first.
+    /// eigenfunctions of the second, pulled back, in those of the first. [`MapShape::spectrum`](relations::MapShape::spectrum)
+    /// has them.
     #[serde(skip)]
     pub functional: Matrix,
+    /// The landmarks that it contains, as vertices of the repaired meshes.
+    #[serde(skip)]
+    pub(super) landmarks: Vec<[VertexId; 2]>,
 }
 
 /// The maps from one surface to another.
@@ -69,7 +74,8 @@ pub struct Correspondence {
 /// ```
 ///
 /// # Errors
-/// [`Error::Descriptor`] and [`Error::Exceeded`].
+/// [`Error::Point`] and [`Error::UnusableMap`], if what is known of the map does not fit the meshes; [`Error::Descriptor`] and
+/// [`Error::Exceeded`].
 pub fn correspond<S: Borrow<Surface>>(
     a: &MappedSurface<S>,
     b: &MappedSurface<S>,
@@ -77,24 +83,26 @@ pub fn correspond<S: Borrow<Surface>>(
     observer: &dyn Observer,
 ) -> Result<Correspondence, Error> {
     let start = Instant::now();
-    let found = map_surfaces(&a.shape, &b.shape, &options.mapping, observer)?;
-    let (from, to) = (a.surface(), b.surface());
-    let maps = found.into_iter().map(|map| VertexMap::new(map, [from, to]));
+    let surfaces = [a.surface(), b.surface()];
+    let known = known::repaired(&options.known, surfaces)?;
+    let found = map_surfaces(&a.shape, &b.shape, &known, &options.mapping, observer)?;
+    let maps = found.into_iter().map(|map| VertexMap::new(map, surfaces, &known.landmarks));
     Ok(Correspondence { maps: maps.collect(), seconds: start.elapsed().as_secs_f64() })
 }
 
 impl VertexMap {
     /// A map of the vertices of the repaired meshes as one of the inputs.
-    fn new(map: SurfaceMap, [from, to]: [&Surface; 2]) -> Self {
+    fn new(map: SurfaceMap, [from, to]: [&Surface; 2], landmarks: &[[VertexId; 2]]) -> Self {
         let partners: Vec<_> = map.vertices.iter().map(|v| Some(to.input_vertex(*v))).collect();
         Self {
             kind: map.kind,
             distortion: map.distortion,
             agreement: map.agreement,
             confidence: map.confidence,
-            alternative: map.alternative.map(|other| Box::new(Self::new(*other, [from, to]))),
+            alternative: map.alternative.map(|other| Box::new(Self::new(*other, [from, to], landmarks))),
             vertices: from.in_input_order(&partners, None),
             functional: map.functional,
+            landmarks: landmarks.to_vec(),
         }
     }
 

@@ -8,11 +8,15 @@
 
 mod curvature;
 mod functional_map;
+mod known;
 mod nearest_rows;
 mod operators;
 mod orientation;
+mod points;
 mod search;
 mod shape;
 
+pub use known::KnownMap;
+pub use points::{MapElements, mapped_points};
 pub use search::{MapKind, MapOptions, SurfaceMap, map_surfaces};
 pub use shape::MapShape;

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use surface::VertexId;
 
+use super::known::KnownMap;
 use super::functional_map::{FunctionalMaps, SampleMaps, SampledPair, schedule, zoom_out};
 use super::nearest_rows::Cells;
 use super::operators::{FITTED, fitted};
@@ -156,16 +157,21 @@ fn kind(agreement: Option<f64>, least: f64) -> MapKind {
 /// Shapes that are alike under a mirror have two maps of small distortion; for others, one of the two has a large
 /// distortion. If a surface cannot be oriented, there is one map.
 ///
+/// What is `known` of the map enters all of it: landmarks, as heat that is placed at them, and functions are fitted, too; maps
+/// that do not respect the landmarks are dropped; and an initial map is one more start, which comes out unless another map is
+/// clearly better.
+///
 /// # Errors
 /// [`DescriptorError::Linalg`], also if the budget of the observer is exceeded.
 pub fn map_surfaces(
     a: &MapShape,
     b: &MapShape,
+    known: &KnownMap,
     options: &MapOptions,
     observer: &dyn Observer,
 ) -> Result<Vec<SurfaceMap>, DescriptorError> {
     let budget = observer.budget();
-    let search = MapSearch { a, b, options, budget: &budget };
+    let search = MapSearch { a, b, known, options, budget: &budget };
     let mut sketches = search.sketches()?;
     let mut maps = Vec::new();
     for sought in [MapKind::Direct, MapKind::Mirrored, MapKind::Unoriented] {
@@ -176,11 +182,13 @@ pub fn map_surfaces(
         sketches = others;
         maps.extend(search.best(of_kind)?);
     }
+    known.nearest_first(&mut maps, b)?;
     if let [direct, mirrored] = &maps[..]
         && mirrored.distortion * CLEARLY_WORSE < direct.distortion
     {
         maps.reverse();
     }
+    maps.iter_mut().for_each(|map| known.kept_by(map));
     Ok(maps)
 }
 
@@ -189,6 +197,7 @@ pub fn map_surfaces(
 struct MapSearch<'a> {
     a: &'a MapShape,
     b: &'a MapShape,
+    known: &'a KnownMap,
     options: &'a MapOptions,
     budget: &'a Budget,
 }
@@ -200,7 +209,8 @@ impl MapSearch<'_> {
         let n = SKETCHED.min(a.samples.len()).min(b.samples.len());
         let [rows_a, rows_b] = [a, b].map(|shape| shape.at_samples.rows(0, n).into_owned());
         let pair = SampledPair { a: &rows_a, b: &rows_b };
-        let starts = [1.0, -1.0].into_iter().flat_map(|sign| fitted_starts(pair, [a, b], sign)).collect();
+        let starts = [1.0, -1.0].into_iter().flat_map(|sign| fitted_starts(pair, [a, b], sign));
+        let starts = starts.chain(self.known.fitted_starts(pair, [a, b])).collect();
         let mut found = self.zoomed(starts, [FITTED, SKETCH_FUNCTIONS])?;
         let best = [MapKind::Direct, MapKind::Mirrored].map(|kind| best_of(&found, kind));
         let [of_a, of_b] = [self.mirror(a, &rows_a)?, self.mirror(b, &rows_b)?];
@@ -214,7 +224,14 @@ impl MapSearch<'_> {
         let others = self.zoomed(composed, [FITTED, SKETCH_FUNCTIONS])?.into_iter();
         let others = others.chain(self.zoomed(aligned, [FIRST, SKETCH_FUNCTIONS])?);
         found.extend(others.map(|found| Candidate { score: found.score / CLEARLY_BETTER, ..found }));
-        Ok(found)
+        if let Some((start, k)) = self.known.initial_start(pair, [a, b], SKETCH_FUNCTIONS) {
+            let initial = self.zoomed(vec![start], [k, SKETCH_FUNCTIONS])?.into_iter();
+            found.extend(initial.map(|found| Candidate { score: found.score / CLEARLY_WORSE, ..found }));
+        }
+        let maps: Vec<&FunctionalMaps> = found.iter().map(|found| &found.functional).collect();
+        let respected = self.known.respected(&maps, [a, b])?;
+        let all = found.into_iter().zip(respected);
+        Ok(all.filter_map(|(found, respected)| respected.then_some(found)).collect())
     }
 
     /// The map of the samples of a surface to themselves that reverses its orientation and scores best.
