@@ -9,6 +9,7 @@
 mod curvature;
 mod functional_map;
 mod known;
+mod local;
 mod nearest_rows;
 mod operators;
 mod orientation;

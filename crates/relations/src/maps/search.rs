@@ -8,6 +8,7 @@ use surface::VertexId;
 
 use super::known::KnownMap;
 use super::functional_map::{FunctionalMaps, SampleMaps, SampledPair, schedule, zoom_out};
+use super::local::vertex_confidence;
 use super::nearest_rows::Cells;
 use super::operators::{FITTED, fitted};
 use super::orientation::agreement;
@@ -70,6 +71,10 @@ pub struct SurfaceMap {
     pub confidence: f64,
     /// The partner of each vertex of the first surface.
     pub vertices: Vec<VertexId>,
+    /// How well the map keeps the distances of each vertex of the first surface to points near it, from 0, where it is torn or
+    /// takes a region to a point, to 1: one less their relative change. It does not tell whether the whole map is right, which
+    /// [`confidence`](Self::confidence) does.
+    pub vertex_confidence: Vec<f64>,
     /// The map of functions of the second surface to functions of the first, in their eigenfunctions: `C`, as in
     /// [`LaplaceSpectrum`](descriptors::LaplaceSpectrum).
     pub functional: Matrix,
@@ -367,6 +372,9 @@ impl Candidate {
         let forth = near_b.nearest(&self.functional.points_a(&a.vectors));
         let back = near_a.nearest(&self.functional.points_b(&b.vectors.select_rows(b.landmarks())));
         let images: Vec<usize> = a.landmarks().iter().map(|&x| forth[x] as usize).collect();
+        let on_b = b.distances_to(&forth.iter().map(|y| *y as usize).collect::<Vec<_>>())?;
+        let all: Vec<usize> = (0..a.n_vertices()).collect();
+        let vertex_confidence = vertex_confidence(&a.distances_to(&all)?, a.landmarks(), &on_b);
         let back: Vec<usize> = back.into_iter().map(|x| x as usize).collect();
         let distortion = codistortion(a, b, &images, &back)?;
         let vertices = forth.into_iter().map(VertexId).collect();
@@ -376,6 +384,7 @@ impl Candidate {
             agreement: self.agreement,
             confidence,
             vertices,
+            vertex_confidence,
             functional: self.functional.forth.clone(),
             alternative: None,
         })
