@@ -101,7 +101,8 @@ pub use compare::{
     compare, compare_meshes, embedded_distances, form_alignments,
 };
 pub use correspond::{
-    CorrespondOptions, Correspondence, FacePoint, MappedSurface, PointMap, VertexMap, correspond,
+    CollectionMaps, CorrespondOptions, Correspondence, FacePoint, MappedSurface, PairMap, PointMap, VertexMap,
+    correspond, correspond_all,
 };
 pub use error::{Error, Remedy};
 pub use fields::{

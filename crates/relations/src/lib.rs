@@ -10,7 +10,8 @@ mod outward;
 mod relation;
 
 pub use maps::{
-    KnownMap, MapElements, MapKind, MapOptions, MapShape, SurfaceMap, map_surfaces, mapped_points,
+    ConsistentMaps, CycleReport, KnownMap, MapElements, MapKind, MapOptions, MapShape, SurfaceMap, all_pairs,
+    consistent_maps, map_surfaces, mapped_points,
 };
 pub use relation::{
     Basis, Because, Change, CutPiece, Difference, Dimension, Handedness, MeshGeometry, MeshOverlay,

@@ -33,6 +33,10 @@ pub struct VertexMap {
     /// repair dropped.
     #[serde(skip)]
     pub vertices: Vec<Option<VertexId>>,
+    /// For every vertex of the first input, how well the map keeps distances around it, from 0 to 1; 0 for a vertex that the
+    /// repair dropped. See [`SurfaceMap::vertex_confidence`].
+    #[serde(skip)]
+    pub vertex_confidence: Vec<f64>,
     /// The map of functions of the second surface to functions of the first: its columns are the coefficients of the
     /// eigenfunctions of the second, pulled back, in those of the first. [`MapShape::spectrum`](relations::MapShape::spectrum)
     /// has them.
@@ -92,7 +96,7 @@ pub fn correspond<S: Borrow<Surface>>(
 
 impl VertexMap {
     /// A map of the vertices of the repaired meshes as one of the inputs.
-    fn new(map: SurfaceMap, [from, to]: [&Surface; 2], landmarks: &[[VertexId; 2]]) -> Self {
+    pub(super) fn new(map: SurfaceMap, [from, to]: [&Surface; 2], landmarks: &[[VertexId; 2]]) -> Self {
         let partners: Vec<_> = map.vertices.iter().map(|v| Some(to.input_vertex(*v))).collect();
         Self {
             kind: map.kind,
@@ -101,6 +105,7 @@ impl VertexMap {
             confidence: map.confidence,
             alternative: map.alternative.map(|other| Box::new(Self::new(*other, [from, to], landmarks))),
             vertices: from.in_input_order(&partners, None),
+            vertex_confidence: from.in_input_order(&map.vertex_confidence, 0.0),
             functional: map.functional,
             landmarks: landmarks.to_vec(),
         }

@@ -392,7 +392,12 @@ impl Candidate {
 }
 
 /// The mean of `|d(x_i, g y_j) - d(f x_i, y_j)|` over landmarks; `forth` and `back` are the images of the landmarks.
-fn codistortion(a: &MapShape, b: &MapShape, forth: &[usize], back: &[usize]) -> Result<f64, DescriptorError> {
+pub(super) fn codistortion(
+    a: &MapShape,
+    b: &MapShape,
+    forth: &[usize],
+    back: &[usize],
+) -> Result<f64, DescriptorError> {
     let on_a = a.distances_to(back)?;
     let on_b = b.distances_to(forth)?;
     let gaps = (0..on_a.nrows()).flat_map(|i| (0..on_a.ncols()).map(move |j| (i, j)));
