@@ -101,7 +101,7 @@ pub use compare::{
     compare, compare_meshes, embedded_distances, form_alignments,
 };
 pub use correspond::{
-    CollectionMaps, CorrespondOptions, Correspondence, FacePoint, MappedSurface, PairMap, PointMap, VertexMap,
+    CollectionMaps, CorrespondOptions, Correspondence, FacePoint, MappedSurface, Mapping, PairMap, PointMap, VertexMap,
     correspond, correspond_all,
 };
 pub use error::{Error, Remedy};

@@ -11,6 +11,7 @@ use surface::VertexId;
 use super::known;
 use super::mapped_surface::MappedSurface;
 use super::options::CorrespondOptions;
+use super::point_map::Mapping;
 use crate::error::Error;
 use base::Observer;
 use mesh::Surface;
@@ -42,9 +43,9 @@ pub struct VertexMap {
     /// has them.
     #[serde(skip)]
     pub functional: Matrix,
-    /// The landmarks that it contains, as vertices of the repaired meshes.
+    /// The landmarks that it was given and contains.
     #[serde(skip)]
-    pub(super) landmarks: Vec<[VertexId; 2]>,
+    pub landmarks: Vec<[VertexId; 2]>,
 }
 
 /// The maps from one surface to another.
@@ -90,7 +91,7 @@ pub fn correspond<S: Borrow<Surface>>(
     let surfaces = [a.surface(), b.surface()];
     let known = known::repaired(&options.known, surfaces)?;
     let found = map_surfaces(&a.shape, &b.shape, &known, &options.mapping, observer)?;
-    let maps = found.into_iter().map(|map| VertexMap::new(map, surfaces, &known.landmarks));
+    let maps = found.into_iter().map(|map| VertexMap::new(map, surfaces, &options.known.landmarks));
     Ok(Correspondence { maps: maps.collect(), seconds: start.elapsed().as_secs_f64() })
 }
 
@@ -109,6 +110,12 @@ impl VertexMap {
             functional: map.functional,
             landmarks: landmarks.to_vec(),
         }
+    }
+
+    /// The map between the surfaces that it was found for, which takes points into faces and carries functions.
+    #[must_use]
+    pub fn between<'a, S>(&'a self, shapes: [&'a MappedSurface<S>; 2]) -> Mapping<'a, S> {
+        Mapping { shapes, functional: &self.functional, landmarks: &self.landmarks }
     }
 
     /// Whether no other map of its kind is nearly as good.

@@ -11,4 +11,4 @@ pub use collection::{CollectionMaps, PairMap, correspond_all};
 pub use correspondence::{Correspondence, VertexMap, correspond};
 pub use mapped_surface::MappedSurface;
 pub use options::CorrespondOptions;
-pub use point_map::{FacePoint, PointMap};
+pub use point_map::{FacePoint, Mapping, PointMap};

@@ -8,7 +8,6 @@ use mesh::{InputPoint, Surface};
 use relations::{MapElements, Side, mapped_points};
 use surface::{FaceId, SurfacePoint, VertexId};
 
-use super::correspondence::VertexMap;
 use super::mapped_surface::MappedSurface;
 
 /// A point inside a face, in the numbers of the input.
@@ -37,6 +36,17 @@ impl FacePoint {
     }
 }
 
+/// What takes points of one surface to points of another.
+#[derive(Debug, Clone, Copy)]
+pub struct Mapping<'a, S = Surface> {
+    /// The first and the second surface.
+    pub shapes: [&'a MappedSurface<S>; 2],
+    /// The functional map, as in [`VertexMap::functional`](super::VertexMap::functional).
+    pub functional: &'a Matrix,
+    /// Pairs that stay as they are, in the numbers of the inputs.
+    pub landmarks: &'a [[VertexId; 2]],
+}
+
 /// Where a map takes the elements of one surface: points inside the faces of the other one. By them, functions, labels and texture
 /// coordinates of that other surface are carried to this one.
 ///
@@ -55,7 +65,7 @@ impl FacePoint {
 /// let map = &correspond(a, b, &options, &())?.maps[0];
 ///
 /// // From the first surface to the second: for every vertex of the second its place on the first.
-/// let places = map.points([a, b], Side::Second);
+/// let places = map.between([a, b]).vertices(Side::Second);
 /// let constant = places.values(&Matrix::from_element(21 * 17, 1, 7.0));
 /// assert!(constant.iter().all(|value| (value - 7.0).abs() < 1e-12));
 /// # Ok::<(), canonform::Error>(())
@@ -117,45 +127,43 @@ impl PointMap {
     }
 }
 
-impl VertexMap {
+impl<S: Borrow<Surface>> Mapping<'_, S> {
     /// For every vertex of one side, its point on the other surface: of the first side, where the map takes it; of the second, what
-    /// is taken to it. `shapes` are the surfaces that were mapped.
+    /// is taken to it.
     #[must_use]
-    pub fn points<S: Borrow<Surface>>(&self, shapes: [&MappedSurface<S>; 2], of: Side) -> PointMap {
-        let [own, other] = ordered(shapes.map(|shape| shape.surface()), of);
-        let mut found = self.mapped(shapes, of, MapElements::Vertices);
-        for pair in &self.landmarks {
-            let [x, y] = ordered(*pair, of);
-            found[x.index()] = SurfacePoint::Vertex(y);
+    pub fn vertices(&self, of: Side) -> PointMap {
+        let surfaces = self.shapes.map(|shape| shape.surface());
+        let [own, other] = ordered(surfaces, of);
+        let mut found = self.mapped(of, MapElements::Vertices);
+        for [x, y] in self.landmarks {
+            let pair = [surfaces[0].repaired_vertex(*x), surfaces[1].repaired_vertex(*y)];
+            if let [Ok(x), Ok(y)] = ordered(pair, of) {
+                found[x.index()] = SurfacePoint::Vertex(y);
+            }
         }
         let points = in_faces(&found, other);
         PointMap { points: own.in_input_order(&points, None) }
     }
 
-    /// For every face of one side, the point of its centroid on the other surface, as [`points`](Self::points).
+    /// The same for the centroid of every face of one side.
     #[must_use]
-    pub fn face_points<S: Borrow<Surface>>(&self, shapes: [&MappedSurface<S>; 2], of: Side) -> PointMap {
-        let [own, other] = ordered(shapes.map(|shape| shape.surface()), of);
+    pub fn faces(&self, of: Side) -> PointMap {
+        let [own, other] = ordered(self.shapes.map(|shape| shape.surface()), of);
         let repaired = |face: &[VertexId; 3]| -> Option<[VertexId; 3]> {
             let [a, b, c] = face.map(|v| own.repaired_vertex(v).ok());
             Some([a?, b?, c?])
         };
         let faces: Vec<_> = own.input_faces.iter().map(repaired).collect();
         let known: Vec<_> = faces.iter().flatten().copied().collect();
-        let found = self.mapped(shapes, of, MapElements::Faces(&known));
+        let found = self.mapped(of, MapElements::Faces(&known));
         let mut found = in_faces(&found, other).into_iter();
         PointMap { points: faces.iter().map(|face| face.and_then(|_| found.next().flatten())).collect() }
     }
 
-    fn mapped<S: Borrow<Surface>>(
-        &self,
-        shapes: [&MappedSurface<S>; 2],
-        of: Side,
-        elements: MapElements<'_>,
-    ) -> Vec<SurfacePoint> {
-        let [_, target] = ordered(shapes.map(|shape| shape.surface()), of);
+    fn mapped(&self, of: Side, elements: MapElements<'_>) -> Vec<SurfacePoint> {
+        let [_, target] = ordered(self.shapes.map(|shape| shape.surface()), of);
         let topology = target.intrinsic().topology();
-        mapped_points(shapes.map(|shape| &shape.shape), &self.functional, of, elements, topology)
+        mapped_points(self.shapes.map(|shape| &shape.shape), self.functional, of, elements, topology)
     }
 }
 

@@ -107,7 +107,7 @@ impl Pictured {
             mix(*color, grey, 1.0 - (confidence / DOUBTFUL - 1.0).clamp(0.0, 1.0))
         };
         let source: Vec<Rgb> = colors.iter().zip(&map.vertex_confidence).map(faded).collect();
-        let places = map.points([&a.mapped, &b.mapped], Side::Second);
+        let places = map.between([&a.mapped, &b.mapped]).vertices(Side::Second);
         let (target, origins) = carried(&places, &source);
         Self { source, target, origins }
     }

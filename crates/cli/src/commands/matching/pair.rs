@@ -132,7 +132,10 @@ fn written(
         0 => path.to_owned(),
         _ => beside(path, map.kind.name()),
     });
-    let points = with_points.then(|| map.points(sides.map(|side| &side.mapped), Side::First));
+    let points_of = |map: &VertexMap| {
+        with_points.then(|| map.between(sides.map(|side| &side.mapped)).vertices(Side::First))
+    };
+    let points = points_of(&map);
     let mut picture = None;
     let mut alternative_path = None;
     if let (Some(path), Some(format)) = (&path, format) {
@@ -144,8 +147,7 @@ fn written(
         }
         if let Some(other) = &map.alternative {
             let path = beside(path, "alternative");
-            let points = with_points.then(|| other.points(sides.map(|side| &side.mapped), Side::First));
-            write(&path, format, other, points.as_ref(), sides)?;
+            write(&path, format, other, points_of(other).as_ref(), sides)?;
             alternative_path = Some(path);
         }
     }

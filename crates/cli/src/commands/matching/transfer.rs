@@ -99,9 +99,8 @@ fn of_text(text: &str) -> Result<Content> {
     let rows: Vec<(usize, Vec<&str>)> =
         lines.map(|(number, line)| (number + 1, line.split(',').map(str::trim).collect())).collect();
     let n_columns = rows.first().map_or(0, |(_, row)| row.len());
-    if n_columns == 1 && rows.iter().any(|(_, row)| row[0].parse::<f64>().is_err() || row[0].parse::<i64>().is_ok())
-        && rows.iter().all(|(_, row)| row[0].parse::<f64>().is_err() || row[0].parse::<i64>().is_ok())
-    {
+    let is_label = |word: &str| word.parse::<i64>().is_ok() || word.parse::<f64>().is_err();
+    if rows.iter().all(|(_, row)| row.len() == 1 && is_label(row[0])) {
         return Ok(Content::Labels(rows.iter().map(|(_, row)| row[0].to_owned()).collect()));
     }
     let mut values = Vec::new();
@@ -121,20 +120,20 @@ fn of_text(text: &str) -> Result<Content> {
 impl Transfer {
     /// Writes what a map carries to the second mesh.
     pub(super) fn write(&self, path: &Path, map: &VertexMap, sides: [&MappedFile; 2]) -> Result<Transferred> {
-        let shapes = sides.map(|side| &side.mapped);
+        let mapping = map.between(sides.map(|side| &side.mapped));
         let found = match (&self.elements, &self.content) {
             (Elements::Vertices, Content::Values(values)) => {
-                Carried::Values(map.points(shapes, Side::Second).values(values))
+                Carried::Values(mapping.vertices(Side::Second).values(values))
             }
             (Elements::Vertices, Content::Labels(labels)) => {
-                Carried::Labels(map.points(shapes, Side::Second).vertex_labels(labels))
+                Carried::Labels(mapping.vertices(Side::Second).vertex_labels(labels))
             }
             (Elements::Faces, Content::Labels(labels)) => {
-                Carried::Labels(map.face_points(shapes, Side::Second).face_labels(labels))
+                Carried::Labels(mapping.faces(Side::Second).face_labels(labels))
             }
             (Elements::Faces, Content::Values(values)) => {
                 let rows: Vec<usize> = (0..values.nrows()).collect();
-                let rows = map.face_points(shapes, Side::Second).face_labels(&rows);
+                let rows = mapping.faces(Side::Second).face_labels(&rows);
                 Carried::Values(Matrix::from_fn(rows.len(), values.ncols(), |i, j| {
                     rows[i].map_or(f64::NAN, |row| values[(row, j)])
                 }))
