@@ -5,8 +5,8 @@ use canonform::surface::VertexId;
 use canonform::{
     CorrespondOptions, KnownMap, Mapping, PointMap, Side, VertexMap, correspond, correspond_all,
 };
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use numpy::PyUntypedArrayMethods;
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use report::color::{perceptual, place_colors};
 
@@ -111,7 +111,8 @@ pub(crate) fn match_collection<'py>(
     let options: Vec<CorrespondOptions> =
         surfaces.iter().map(|surface| settings.correspond(surface.inner.repair)).collect::<PyResult<_>>()?;
     let found = run(py, &settings.budget()?, progress.as_ref(), |observer| {
-        let sides = surfaces.iter().zip(&options).map(|(surface, options)| surface.matched(options, observer));
+        let sides =
+            surfaces.iter().zip(&options).map(|(surface, options)| surface.matched(options, observer));
         let sides = sides.collect::<Result<Vec<_>, _>>()?;
         let sides: Vec<_> = sides.iter().map(|side| &**side).collect();
         correspond_all(&sides, &options.first().cloned().unwrap_or_default(), observer)
@@ -177,9 +178,5 @@ pub(crate) fn map_basis<'py>(
     });
     let rows = arrays::picked_rows(&spectrum.vectors, map.iter().map(|vertex| vertex.map(VertexId::index)));
     let shape = [map.len(), spectrum.vectors.ncols()];
-    Ok((
-        arrays::vector(py, spectrum.values),
-        arrays::matrix(py, rows, shape)?,
-        arrays::vector(py, masses),
-    ))
+    Ok((arrays::vector(py, spectrum.values), arrays::matrix(py, rows, shape)?, arrays::vector(py, masses)))
 }

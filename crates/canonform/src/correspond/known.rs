@@ -13,7 +13,9 @@ use crate::error::Error;
 /// [`Error::Point`] for a landmark that a surface does not have; [`Error::UnusableMap`] for an initial map or functions of the
 /// wrong length, or that are not finite.
 pub(super) fn repaired(known: &KnownMap, [a, b]: [&Surface; 2]) -> Result<KnownMap, Error> {
-    let pair = |[x, y]: &[VertexId; 2]| Ok([a.repaired_vertex(*x)?, b.repaired_vertex(*y)?]);
+    let pair = |[x, y]: &[VertexId; 2]| -> Result<[VertexId; 2], Error> {
+        Ok([a.repaired_vertex(*x)?, b.repaired_vertex(*y)?])
+    };
     let landmarks = known.landmarks.iter().map(pair).collect::<Result<_, Error>>()?;
     let functions = match &known.functions {
         None => None,
@@ -56,9 +58,8 @@ fn initial(given: &[Option<VertexId>], [a, b]: [&Surface; 2]) -> Result<Vec<Opti
 /// Rows of the input as rows of the repaired mesh.
 fn of_repaired(functions: &Matrix, surface: &Surface) -> Result<Matrix, Error> {
     check_rows("a matrix of functions", functions.nrows(), surface)?;
-    let rows: Vec<usize> = (0..surface.mesh().n_vertices())
-        .map(|v| surface.input_vertex(VertexId::from(v)).index())
-        .collect();
+    let rows: Vec<usize> =
+        (0..surface.mesh().n_vertices()).map(|v| surface.input_vertex(VertexId::from(v)).index()).collect();
     let found = functions.select_rows(&rows);
     match found.iter().position(|value| !value.is_finite()) {
         None => Ok(found),

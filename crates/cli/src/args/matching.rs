@@ -79,7 +79,8 @@ pub(crate) struct MatchArgs {
 pub(crate) const MAP_FORMATS: [&str; 4] = ["npy", "csv", "ply", "png"];
 
 /// Those without a picture.
-pub(crate) const TABLE_FORMATS: [(&str, &str); 2] = [("npy", "NumPy array"), ("csv", "Text with a line of names")];
+pub(crate) const TABLE_FORMATS: [(&str, &str); 2] =
+    [("npy", "NumPy array"), ("csv", "Text with a line of names")];
 
 fn match_help() -> String {
     format!(

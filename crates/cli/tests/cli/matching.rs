@@ -31,7 +31,8 @@ fn both_maps_of_a_pair_are_written_in_every_format() {
     assert_eq!(maps.len(), 2);
     let other = maps[1]["kind"].as_str().unwrap();
     for (map, path) in maps.iter().zip(["map.npy".to_owned(), format!("map-{other}.npy")]) {
-        let keys = "kind distortion agreement confidence alternative matched doubtful path picture alternative_path";
+        let keys =
+            "kind distortion agreement confidence alternative matched doubtful path picture alternative_path";
         assert_keys(map, keys);
         assert!(map["confidence"].as_f64().unwrap() > 0.9 && map["alternative"].is_null(), "{map}");
         assert!(map["doubtful"].as_f64().unwrap() < 0.1, "{map}");
@@ -46,7 +47,9 @@ fn both_maps_of_a_pair_are_written_in_every_format() {
     let csv = fs::read_to_string(place.path("map.csv")).unwrap();
     let rows: Vec<&str> = csv.lines().collect();
     assert_eq!((rows[0], rows.len()), ("vertex,match,confidence", 1001));
-    assert!(rows[1..].iter().zip(&npy).enumerate().all(|(x, (row, y))| row.starts_with(&format!("{x},{y},"))));
+    assert!(
+        rows[1..].iter().zip(&npy).enumerate().all(|(x, (row, y))| row.starts_with(&format!("{x},{y},")))
+    );
     let json = place.json("match cat0.off cat1.off -o map.ply");
     assert_eq!((&json["target"], &json["source"]), (&"map.ply".into(), &"map-source.ply".into()));
     for (name, mesh) in [("map.ply", "cat1.off"), ("map-source.ply", "cat0.off")] {
@@ -115,7 +118,17 @@ fn values_labels_and_texture_coordinates_are_carried() {
     assert!(read("carried.csv").iter().all(near));
     // Coordinates, as functions, arrive near the same vertices.
     let position = |v: usize| cat.positions[v].coords;
-    fs::write(place.path("xyz.csv"), lines(&|v| { let p = position(v); format!("{},{},{}", p.x, p.y, p.z) }, 1000)).unwrap();
+    fs::write(
+        place.path("xyz.csv"),
+        lines(
+            &|v| {
+                let p = position(v);
+                format!("{},{},{}", p.x, p.y, p.z)
+            },
+            1000,
+        ),
+    )
+    .unwrap();
     place.done("match cat0.off cat1.off --transfer xyz.csv -o carried.csv");
     let size = cat.area().sqrt();
     let gap = |(v, line): (usize, &String)| {
@@ -134,14 +147,18 @@ fn values_labels_and_texture_coordinates_are_carried() {
     let part = |f: usize| i64::from(position(cat.faces[f][0].index()).x > 0.0);
     fs::write(place.path("faces.csv"), lines(&|f| part(f).to_string(), n_faces)).unwrap();
     let json = place.json("match cat0.off cat1.off --transfer faces.csv -o carried.npy");
-    assert_eq!((&json["transfer"]["kind"], &json["transfer"]["elements"]), (&"labels".into(), &"faces".into()));
+    assert_eq!(
+        (&json["transfer"]["kind"], &json["transfer"]["elements"]),
+        (&"labels".into(), &"faces".into())
+    );
     let found = numbers(&place, "carried.npy");
     let right = found.iter().enumerate().filter(|(f, found)| part(*f) == **found).count();
     assert!(found.len() == n_faces && right * 100 > 93 * n_faces, "{right} of {n_faces}");
     place.done("match cat0.off cat1.off --transfer parts.csv -o parts.png");
     assert!(fs::read(place.path("parts.png")).unwrap().starts_with(b"\x89PNG"));
     // Words need text, and rows elements.
-    place.refused("match cat0.off cat1.off --transfer parts.csv -o carried.npy", &["carried.npy", "use .csv"]);
+    place
+        .refused("match cat0.off cat1.off --transfer parts.csv -o carried.npy", &["carried.npy", "use .csv"]);
     fs::write(place.path("few.csv"), "1.5\n2.5\n").unwrap();
     place.refused(
         "match cat0.off cat1.off --transfer few.csv -o carried.csv",
@@ -152,7 +169,8 @@ fn values_labels_and_texture_coordinates_are_carried() {
 #[test]
 fn points_and_functional_maps_are_written() {
     let place = cats();
-    let json = place.json("match cat0.off cat1.off --points -o map.csv --functional c.npy --eigenfunctions 40");
+    let json =
+        place.json("match cat0.off cat1.off --points -o map.csv --functional c.npy --eigenfunctions 40");
     let points = json["maps"][0]["points"].as_array().unwrap();
     assert!(points.len() == 1000 && points[0].as_str().unwrap().starts_with('f'));
     let csv = fs::read_to_string(place.path("map.csv")).unwrap();

@@ -142,7 +142,7 @@ struct Network<'a> {
 }
 
 impl<'a> Network<'a> {
-    fn both(&self, map: impl Fn(usize) -> &'a SurfaceMap + Sync) -> Vec<Both> {
+    fn both(&self, map: impl Sync + Fn(usize) -> &'a SurfaceMap) -> Vec<Both> {
         let one = |(p, &[i, j]): (usize, &[usize; 2])| {
             let (a, b, found) = (self.shapes[i], self.shapes[j], map(p));
             let k = found.functional.ncols();
@@ -203,7 +203,7 @@ impl<'a> Network<'a> {
             }
         }
         let (gap, map) = best;
-        Ok(Choice { map, is_first: std::ptr::eq(map, &raw const maps[0]), agrees: gap < AGREE })
+        Ok(Choice { map, is_first: std::ptr::eq(map, &maps[0]), agrees: gap < AGREE })
     }
 
     /// The coefficients, for each surface, of functions that all maps take to each other as well as possible.
@@ -221,8 +221,7 @@ impl<'a> Network<'a> {
             let images: Vec<usize> = own.samples.iter().map(|&x| map[x] as usize).collect();
             coefficients(&own.at_samples, &other.vectors.columns(0, k).select_rows(&images))
         };
-        let maps: Vec<[Matrix; 2]> =
-            self.pairs.par_iter().map(|&[i, j]| [one(i, j), one(j, i)]).collect();
+        let maps: Vec<[Matrix; 2]> = self.pairs.par_iter().map(|&[i, j]| [one(i, j), one(j, i)]).collect();
         let mut sum = Matrix::zeros(n * k, n * k);
         let identity = Matrix::identity(k, k);
         for ((&[i, j], both), choice) in self.pairs.iter().zip(&maps).zip(chosen) {

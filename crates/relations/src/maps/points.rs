@@ -126,7 +126,9 @@ impl OnTriangle {
         let share = |along: f64, sq: f64| if sq > 0.0 { (along / sq).clamp(0.0, 1.0) } else { 0.0 };
         let opposite = share(uu - uv + vw - uw, uu - 2.0 * uv + vv);
         let sides = [at(share(uw, uu), 0.0), at(0.0, share(vw, vv)), at(1.0 - opposite, opposite)];
-        sides.into_iter().fold(sides[0], |best, side| if side.sq_distance < best.sq_distance { side } else { best })
+        sides
+            .into_iter()
+            .fold(sides[0], |best, side| if side.sq_distance < best.sq_distance { side } else { best })
     }
 }
 

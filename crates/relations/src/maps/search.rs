@@ -6,8 +6,8 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use surface::VertexId;
 
-use super::known::KnownMap;
 use super::functional_map::{FunctionalMaps, SampleMaps, SampledPair, schedule, zoom_out};
+use super::known::KnownMap;
 use super::local::vertex_confidence;
 use super::nearest_rows::Cells;
 use super::operators::{FITTED, fitted};

@@ -77,8 +77,9 @@ pub(super) fn match_all(
         path: shape.path.clone(),
         n_vertices: side.surface().n_input_vertices(),
     };
-    let load = mapped.iter().map(|side| side.surface().load_seconds + side.surface().repair_seconds).sum();
-    let prepare = mapped.iter().map(|side| side.seconds).sum();
+    let load: f64 =
+        mapped.iter().map(|side| side.surface().load_seconds + side.surface().repair_seconds).sum();
+    let prepare: f64 = mapped.iter().map(|side| side.seconds).sum();
     let json = CollectionJson {
         meshes: shapes.iter().zip(&mapped).map(mesh).collect(),
         pairs,
@@ -131,8 +132,10 @@ fn table(json: &CollectionJson) -> String {
     for PairJson { a, b, map, agreed, .. } in &json.pairs {
         let (distortion, confidence) = (format!("{:.4}", map.distortion), format!("{:.2}", map.confidence));
         let alone = if *agreed { "agreed" } else { "replaced" };
-        table.add_row(vec![a, b, map.kind.name(), &distortion, &confidence, alone]);
+        table.add_row(vec![a.as_str(), b, map.kind.name(), &distortion, &confidence, alone]);
     }
     let CycleReport { n_cycles, before, after } = json.cycles;
-    format!("{table}\ncycles of three: {n_cycles}, mean error {before:.4} before and {after:.4} after the maps agree")
+    format!(
+        "{table}\ncycles of three: {n_cycles}, mean error {before:.4} before and {after:.4} after the maps agree"
+    )
 }

@@ -47,7 +47,11 @@ fn of_array(path: &Path) -> Result<Vec<Option<VertexId>>> {
     if n_columns != 1 && n_columns != numbers.len() {
         bail!("the array has {n_columns} columns; a map has one number for each vertex of the first mesh");
     }
-    numbers.iter().enumerate().map(|(row, number)| partner(*number).with_context(|| format!("row {row}"))).collect()
+    numbers
+        .iter()
+        .enumerate()
+        .map(|(row, number)| partner(*number).with_context(|| format!("row {row}")))
+        .collect()
 }
 
 /// Lines of a map as it is written, `vertex,match`, or one number in every line.
@@ -59,7 +63,7 @@ fn of_text(text: &str, n_vertices: usize) -> Result<Vec<Option<VertexId>>> {
         if number == 0 && words.iter().all(|word| word.starts_with(char::is_alphabetic)) {
             continue;
         }
-        let mut read = || {
+        let mut read = || -> Result<()> {
             let (vertex, image) = of_line(&words, next)?;
             match found.get_mut(vertex) {
                 Some(place) => *place = image,
@@ -111,7 +115,9 @@ mod tests {
         {
             assert_eq!(of_text(text, 3).unwrap(), expected, "{text}");
         }
-        for (text, what) in [("0,1\n7,2", "line 2: vertex 7"), ("x", "line"), ("0,1.5", "line 1"), ("-2", "line 1")] {
+        for (text, what) in
+            [("0,1\n7,2", "line 2: vertex 7"), ("x", "line"), ("0,1.5", "line 1"), ("-2", "line 1")]
+        {
             let found = of_text(text, 3);
             match text {
                 // A line of names.

@@ -91,8 +91,8 @@ pub(super) fn match_pair(
         _ => None,
     };
     let is_ply = format.as_deref() == Some("ply") && transfer.is_none();
-    let [target, source] = ["", "-source"].map(|_| args.output.clone().filter(|_| is_ply));
-    let source = source.map(|path| beside(&path, "source"));
+    let target = args.output.clone().filter(|_| is_ply);
+    let source = target.as_deref().map(|path| beside(path, "source"));
     // What was transferred took the place of the maps.
     let output = args.output.as_deref().filter(|_| transfer.is_none()).zip(format.as_deref());
     let maps = found.maps.into_iter().enumerate();
@@ -204,7 +204,9 @@ fn table(json: &MatchJson) -> String {
         rows.push(("  doubtful", format!("{:.1} % of the vertices", 100.0 * doubtful)));
     }
     let files = [("target", &json.target), ("source", &json.source)];
-    rows.extend(files.into_iter().filter_map(|(name, path)| Some((name, path.as_ref()?.display().to_string()))));
+    rows.extend(
+        files.into_iter().filter_map(|(name, path)| Some((name, path.as_ref()?.display().to_string()))),
+    );
     if let Some(picture) = json.maps.first().and_then(|map| map.picture.as_ref()) {
         rows.push(("picture", picture.display().to_string()));
     }

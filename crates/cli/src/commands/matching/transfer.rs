@@ -61,7 +61,7 @@ impl fmt::Display for Transferred {
 
 /// Reads one row for each vertex or each face of a mesh.
 pub(super) fn read_transfer(path: &Path, side: &MappedFile) -> Result<Transfer> {
-    let read = || {
+    let read = || -> Result<Transfer> {
         let content = match check_format(path, "values", &["npy", "csv"])?.as_str() {
             "npy" => of_array(path)?,
             _ => of_text(&std::fs::read_to_string(path)?)?,
@@ -90,7 +90,9 @@ fn of_array(path: &Path) -> Result<Content> {
     let n_columns = if n_columns == numbers.len() { 1 } else { n_columns };
     Ok(match is_whole(path)? && n_columns == 1 {
         true => Content::Labels(numbers.iter().map(|number| (*number as i64).to_string()).collect()),
-        false => Content::Values(Matrix::from_row_slice(numbers.len() / n_columns.max(1), n_columns, &numbers)),
+        false => {
+            Content::Values(Matrix::from_row_slice(numbers.len() / n_columns.max(1), n_columns, &numbers))
+        }
     })
 }
 
@@ -106,7 +108,10 @@ fn of_text(text: &str) -> Result<Content> {
     let mut values = Vec::new();
     for (number, row) in &rows {
         if row.len() != n_columns {
-            bail!("line {number} has {} values, but the first line has {n_columns}; give as many in every line", row.len());
+            bail!(
+                "line {number} has {} values, but the first line has {n_columns}; give as many in every line",
+                row.len()
+            );
         }
         for word in row {
             values.push(word.parse::<f64>().with_context(|| {
@@ -235,8 +240,13 @@ mod tests {
         assert_eq!(of_text("ear\nleg\n\near\n").unwrap(), labels(&["ear", "leg", "ear"]));
         assert_eq!(of_text("3\n1\n").unwrap(), labels(&["3", "1"]));
         assert_eq!(of_text("3\n1.5\n").unwrap(), Content::Values(Matrix::from_row_slice(2, 1, &[3.0, 1.5])));
-        assert_eq!(of_text("0,1\n1,0\n").unwrap(), Content::Values(Matrix::from_row_slice(2, 2, &[0.0, 1.0, 1.0, 0.0])));
-        for (text, what) in [("1.5\near", "line 2: `ear`"), ("1,2\n3", "line 2 has 1"), ("a,b", "line 1: `a`")] {
+        assert_eq!(
+            of_text("0,1\n1,0\n").unwrap(),
+            Content::Values(Matrix::from_row_slice(2, 2, &[0.0, 1.0, 1.0, 0.0]))
+        );
+        for (text, what) in
+            [("1.5\near", "line 2: `ear`"), ("1,2\n3", "line 2 has 1"), ("a,b", "line 1: `a`")]
+        {
             assert!(of_text(text).unwrap_err().to_string().contains(what), "{text}");
         }
     }
