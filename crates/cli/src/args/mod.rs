@@ -29,7 +29,7 @@ pub(crate) use field::{FieldBuildArgs, FieldCommand, FieldQueryArgs};
 pub(crate) use generate::{FamilyArg, GenerateArgs};
 pub(crate) use geodesic::GeodesicArgs;
 pub(crate) use index::{AddArgs, BuildArgs, EvaluateArgs, IndexCommand, ListArgs, SearchArgs};
-pub(crate) use matching::{MAP_FORMATS, MatchArgs, TABLE_FORMATS};
+pub(crate) use matching::{MAP_FORMATS, MatchArgs};
 pub(crate) use render::{Place, RenderArgs};
 pub(crate) use serve::ServeArgs;
 pub(crate) use settings::{MAX_DROPPED, RepairArgs};

@@ -83,7 +83,7 @@ fn landmarks_break_the_symmetry_and_an_initial_map_comes_out() {
     }
     // The mirrored map, as a start, comes out first.
     for (name, kind) in [("both.npy", "direct"), ("both-mirrored.npy", "mirrored")] {
-        let json = place.json(&format!("match cat0.off cat1.off --initial {name} -o again.csv"));
+        let json = place.json(format!("match cat0.off cat1.off --initial {name} -o again.csv").as_str());
         assert_eq!(json["maps"][0]["kind"], kind);
         let again = place.json("match cat0.off cat1.off --initial again.csv");
         assert_eq!(again["maps"][0]["kind"], kind);

@@ -23,7 +23,7 @@ Side: TypeAlias = Literal["a", "b"]
 _Arrays: TypeAlias = tuple[Ints, Floats, Floats]
 
 _GREY = 160
-# Below this confidence a vertex is grey in pictures, as in those of the command line.
+# Colours fade to grey around this confidence, as in pictures of the command line.
 _DOUBTFUL = 0.5
 
 
@@ -246,7 +246,7 @@ class Match(Stored):
         size = (width, height)
         pictures = []
         for m in self.maps:
-            doubt = 1 - np.clip(m.vertex_confidence / _DOUBTFUL - 1, 0, 1)
+            doubt = np.clip(1.5 - m.vertex_confidence / _DOUBTFUL, 0, 1)
             source = self._colors + (_GREY - self._colors.astype(np.float64)) * doubt[:, None]
             target = np.nan_to_num(m.transfer(source), nan=_GREY)
             if not pictures:

@@ -6,7 +6,7 @@ use surface::VertexId;
 use super::functional_map::{FunctionalMaps, SampleMaps, SampledPair};
 use super::nearest_rows::nearest_rows;
 use super::operators::{Operators, fitted};
-use super::search::SurfaceMap;
+use super::search::{CLEARLY_WORSE, SurfaceMap};
 use super::shape::MapShape;
 use descriptors::DescriptorError;
 
@@ -108,6 +108,12 @@ impl KnownMap {
         // Two points are at least as far apart as their distances from any landmark of the form differ.
         let gaps = b.distances_to(&images)? - b.distances_to(&to)?;
         Ok(gaps.amax())
+    }
+
+    /// With landmarks, drops maps that distort clearly more than another one: they respect the landmarks by a mixture of two maps.
+    pub(super) fn without_mixtures(&self, maps: &mut Vec<SurfaceMap>) {
+        let least = maps.iter().map(|map| map.distortion).fold(f64::INFINITY, f64::min);
+        maps.retain(|map| self.landmarks.is_empty() || map.distortion <= CLEARLY_WORSE * least);
     }
 
     /// Sorts maps by how near they are to the initial map, the nearest first.

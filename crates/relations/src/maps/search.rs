@@ -116,7 +116,7 @@ const SAME: f64 = 0.06;
 const STEEPNESS: f64 = 8.0;
 
 /// The direct map comes second if its distortion is more than this multiple of the mirrored one's. A convention.
-const CLEARLY_WORSE: f64 = 1.5;
+pub(super) const CLEARLY_WORSE: f64 = 1.5;
 
 /// A map of samples and of functions, with what ranks it among others.
 struct Candidate {
@@ -187,6 +187,7 @@ pub fn map_surfaces(
         sketches = others;
         maps.extend(search.best(of_kind)?);
     }
+    known.without_mixtures(&mut maps);
     known.nearest_first(&mut maps, b)?;
     if let [direct, mirrored] = &maps[..]
         && mirrored.distortion * CLEARLY_WORSE < direct.distortion

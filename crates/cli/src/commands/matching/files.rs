@@ -16,7 +16,8 @@ use serde::Serialize;
 
 use crate::output::write_npy;
 
-/// Below this confidence a vertex is grey in pictures, and counted as doubtful. A convention.
+/// Below this confidence a vertex is counted as doubtful. In pictures, colours fade from half as much above it to grey at half of
+/// it. A convention.
 pub(super) const DOUBTFUL: f64 = 0.5;
 
 /// A mesh as it was read, and prepared.
@@ -104,7 +105,7 @@ impl Pictured {
         let surface = a.mapped.surface();
         let colors = surface.in_input_order(&place_colors(a.mapped.shape.form_points()), grey);
         let faded = |(color, confidence): (&Rgb, &f64)| {
-            mix(*color, grey, 1.0 - (confidence / DOUBTFUL - 1.0).clamp(0.0, 1.0))
+            mix(*color, grey, (1.5 - confidence / DOUBTFUL).clamp(0.0, 1.0))
         };
         let source: Vec<Rgb> = colors.iter().zip(&map.vertex_confidence).map(faded).collect();
         let places = map.between([&a.mapped, &b.mapped]).vertices(Side::Second);
