@@ -21,8 +21,8 @@ pub enum MapElements<'a> {
 /// `REFERENCES.bib`).
 ///
 /// A map of functions `C` places both surfaces in the space of the eigenfunctions of the first, `Φ` and `Ψ C'`, whose
-/// triangles stay flat. The point of an element is the nearest one on the faces around the nearest vertex, and on from there
-/// from face to face as long as it gets nearer.
+/// triangles stay flat. The point of an element is the nearest one on the faces around the nearest vertex, or around those of its
+/// corners, and on from there from face to face as long as it gets nearer.
 ///
 /// * `shapes` are the first and the second surface, and `functional` is `C` as in
 ///   [`SurfaceMap::functional`](super::SurfaceMap::functional);
@@ -44,27 +44,31 @@ pub fn mapped_points(
         Side::First => (on_a, on_b, b),
         Side::Second => (on_b, on_a, a),
     };
-    let queries = match elements {
-        MapElements::Vertices => own,
-        MapElements::Faces(faces) => Matrix::from_fn(faces.len(), own.ncols(), |i, j| {
-            faces[i].iter().map(|v| own[(v.index(), j)]).sum::<f64>() / 3.0
-        }),
+    let nearest = Cells { rows: &other, centres: &shape.samples, members: &shape.cells }.nearest(&own);
+    let start = |v: usize| VertexId(nearest[v]);
+    let (queries, starts): (Matrix, Vec<Vec<VertexId>>) = match elements {
+        MapElements::Vertices => (own, (0..nearest.len()).map(|v| vec![start(v)]).collect()),
+        MapElements::Faces(faces) => {
+            let mean = |i: usize, j: usize| faces[i].iter().map(|v| own[(v.index(), j)]).sum::<f64>() / 3.0;
+            let starts = faces.iter().map(|face| face.iter().map(|v| start(v.index())).collect());
+            (Matrix::from_fn(faces.len(), own.ncols(), mean), starts.collect())
+        }
     };
-    let starts = Cells { rows: &other, centres: &shape.samples, members: &shape.cells }.nearest(&queries);
     // Rows next to each other in memory.
     let (queries, rows) = (queries.transpose(), other.transpose());
-    let one = |(i, start): (usize, u32)| {
+    let one = |(i, starts): (usize, Vec<VertexId>)| {
         let n = queries.nrows();
-        nearest_point(&queries.as_slice()[i * n..(i + 1) * n], &rows, target, VertexId(start))
+        nearest_point(&queries.as_slice()[i * n..(i + 1) * n], &rows, target, starts)
     };
     starts.into_par_iter().enumerate().map(one).collect()
 }
 
-/// The nearest point of the faces around a vertex, and on from there. `rows` has a column for each vertex.
-fn nearest_point(query: &[f64], rows: &Matrix, target: &Topology, start: VertexId) -> SurfacePoint {
+/// The nearest point of the faces around some vertices, and on from there. `rows` has a column for each vertex.
+fn nearest_point(query: &[f64], rows: &Matrix, target: &Topology, starts: Vec<VertexId>) -> SurfacePoint {
     let mut best: Option<(FaceId, OnTriangle)> = None;
     let mut seen: Vec<FaceId> = Vec::new();
-    let mut around = vec![start];
+    let start = starts[0];
+    let mut around = starts;
     loop {
         let before = best.as_ref().map(|(face, _)| *face);
         for corner in around.iter().flat_map(|v| target.vertex_corners(*v)) {

@@ -234,10 +234,35 @@ impl MapSearch<'_> {
             let initial = self.zoomed(vec![start], [k, SKETCH_FUNCTIONS])?.into_iter();
             found.extend(initial.map(|found| Candidate { score: found.score / CLEARLY_WORSE, ..found }));
         }
+        self.respecting(found)
+    }
+
+    /// The maps that respect the landmarks. Of an orientation whose other maps are clearly better, only mixtures of two maps
+    /// respect them, and there is none.
+    fn respecting(&self, found: Vec<Candidate>) -> Result<Vec<Candidate>, DescriptorError> {
+        if self.known.landmarks.is_empty() {
+            return Ok(found);
+        }
         let maps: Vec<&FunctionalMaps> = found.iter().map(|found| &found.functional).collect();
-        let respected = self.known.respected(&maps, [a, b])?;
+        let respected = self.known.respected(&maps, [self.a, self.b])?;
+        let kinds = [MapKind::Direct, MapKind::Mirrored, MapKind::Unoriented];
+        let price = kinds.map(|kind| {
+            let of_kind = || found.iter().zip(&respected).filter(|(found, _)| found.kind() == kind);
+            let least = |scores: &mut dyn Iterator<Item = f64>| scores.fold(f64::INFINITY, f64::min);
+            let any = least(&mut of_kind().map(|(found, _)| found.score));
+            let best =
+                least(&mut of_kind().filter(|(_, respected)| **respected).map(|(found, _)| found.score));
+            best.max(f64::MIN_POSITIVE) / any.max(f64::MIN_POSITIVE)
+        });
+        // Infinite for an orientation without such a map; not a number for one without any.
+        let least = price.into_iter().fold(f64::INFINITY, f64::min);
+        let is_kept =
+            |kind| kinds.iter().zip(price).any(|(k, price)| *k == kind && price * CLEARLY_BETTER <= least);
         let all = found.into_iter().zip(respected);
-        Ok(all.filter_map(|(found, respected)| respected.then_some(found)).collect())
+        Ok(all
+            .filter(|(found, respected)| *respected && is_kept(found.kind()))
+            .map(|(found, _)| found)
+            .collect())
     }
 
     /// The map of the samples of a surface to themselves that reverses its orientation and scores best.
