@@ -182,7 +182,7 @@ fn points_and_functional_maps_are_written() {
 #[test]
 fn several_meshes_are_mapped_to_each_other() {
     let place = Workplace::new();
-    place.done("generate --family cat --poses 3 --vertices 600 -o cats");
+    place.done("generate --family cat --poses 3 --vertices 1000 -o cats");
     let json = place.json("match cats -o maps");
     assert_keys(&json, "meshes pairs cycles seconds");
     let pairs = json["pairs"].as_array().unwrap();
@@ -192,7 +192,7 @@ fn several_meshes_are_mapped_to_each_other() {
         assert!(pair["kind"] == "direct" && pair["agreed"] == true, "{pair}");
     }
     assert_eq!(pairs[2]["path"], "maps/cat1-cat2.npy");
-    assert_eq!(numbers(&place, "maps/cat1-cat2.npy").len(), 600);
+    assert_eq!(numbers(&place, "maps/cat1-cat2.npy").len(), 1000);
     let cycles = &json["cycles"];
     let [before, after] = ["before", "after"].map(|key| cycles[key].as_f64().unwrap());
     assert!(cycles["n_cycles"] == 1 && after < before && before < 0.06, "{cycles}");
