@@ -30,6 +30,9 @@ type Functions<'py> = (PyReadonlyArray2<'py, f64>, PyReadonlyArray2<'py, f64>);
 /// Faces, their corners and the weights of these.
 type Points<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray2<i64>>, Bound<'py, PyArray2<f64>>);
 
+/// Eigenvalues, eigenfunctions as columns, and the areas around the vertices.
+type Basis<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>);
+
 fn pairs_of(pairs: &Pairs<'_>) -> PyResult<Vec<[VertexId; 2]>> {
     let pairs = pairs.as_slice()?.as_chunks::<2>().0.iter();
     pairs.map(|[a, b]| Ok([vertex(*a)?, vertex(*b)?])).collect()
@@ -160,11 +163,7 @@ pub(crate) fn map_points<'py>(
 /// The eigenvalues and eigenfunctions in which maps of a surface are written, and the share of the area around each vertex: of
 /// the surface scaled to unit area.
 #[pyfunction]
-pub(crate) fn map_basis<'py>(
-    py: Python<'py>,
-    surface: &Surface,
-    settings: &str,
-) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>)> {
+pub(crate) fn map_basis<'py>(py: Python<'py>, surface: &Surface, settings: &str) -> PyResult<Basis<'py>> {
     let settings = Settings::parse(settings)?;
     let options = settings.correspond(surface.inner.repair)?;
     let spectrum = run(py, &settings.budget()?, None, |observer| {
