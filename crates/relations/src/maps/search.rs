@@ -116,7 +116,7 @@ const SAME: f64 = 0.06;
 const STEEPNESS: f64 = 8.0;
 
 /// The direct map comes second if its distortion is more than this multiple of the mirrored one's. A convention.
-pub(super) const CLEARLY_WORSE: f64 = 1.5;
+const CLEARLY_WORSE: f64 = 1.5;
 
 /// A map of samples and of functions, with what ranks it among others.
 struct Candidate {
