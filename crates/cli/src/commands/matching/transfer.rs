@@ -86,7 +86,7 @@ pub(super) fn read_transfer(path: &Path, side: &MappedFile) -> Result<Transfer> 
 
 fn of_array(path: &Path) -> Result<Content> {
     let (n_columns, numbers) = read_numbers(path)?;
-    // An array of one dimension is a column.
+    // An array of one dimension, or one row as `canonform geodesic` writes it, is a column.
     let n_columns = if n_columns == numbers.len() { 1 } else { n_columns };
     Ok(match is_whole(path)? && n_columns == 1 {
         true => Content::Labels(numbers.iter().map(|number| (*number as i64).to_string()).collect()),
@@ -119,7 +119,8 @@ fn of_text(text: &str) -> Result<Content> {
             })?);
         }
     }
-    Ok(Content::Values(Matrix::from_row_slice(rows.len(), n_columns, &values)))
+    let (n_rows, n_columns) = if rows.len() == 1 { (n_columns, 1) } else { (rows.len(), n_columns) };
+    Ok(Content::Values(Matrix::from_row_slice(n_rows, n_columns, &values)))
 }
 
 impl Transfer {
