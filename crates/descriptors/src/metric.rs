@@ -47,8 +47,8 @@ const CALIBRATION: [(SignatureKind, f64, f64); SignatureKind::ALL.len()] = [
 /// The unit is the root mean square distance between copies of a mechanical part. With the weight, parts of one family are by
 /// this signature as far apart, root mean square, as the [boundary](ShapeMetric::SAME_SHAPE) of two bodies of one class.
 /// Measured on 110 generated parts with four copies each (`cargo run --release -p experiments -- units`), on which copies are
-/// .0019 apart and parts of one family .0657.
-const RIGID: [f64; 2] = [0.0019, 0.00144];
+/// .0014 apart and parts of one family .0274.
+const RIGID: [f64; 2] = [0.0014, 0.0045];
 
 /// Two values of fused vectors that differ by more standard deviations between poses count less, see
 /// [`ShapeMetric::robust`].

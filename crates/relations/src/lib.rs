@@ -9,7 +9,10 @@ mod maps;
 mod outward;
 mod relation;
 
-pub use maps::{MapKind, MapOptions, MapShape, SurfaceMap, map_surfaces};
+pub use maps::{
+    ConsistentMaps, CycleReport, KnownMap, MapElements, MapKind, MapOptions, MapShape, SurfaceMap, all_pairs,
+    consistent_maps, map_surfaces, mapped_points,
+};
 pub use relation::{
     Basis, Because, Change, CutPiece, Difference, Dimension, Handedness, MeshGeometry, MeshOverlay,
     NearestOnSurface, Parts, Relation, RelationKind, Side, SurfaceGap, SurfaceInvariants, TriangleTree,

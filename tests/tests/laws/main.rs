@@ -47,6 +47,8 @@ mod isometry;
 #[cfg(test)]
 mod licences;
 #[cfg(test)]
+mod map_uses;
+#[cfg(test)]
 mod marching;
 #[cfg(test)]
 mod matches;

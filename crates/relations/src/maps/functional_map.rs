@@ -28,19 +28,24 @@ pub(super) struct FunctionalMaps {
     pub(super) back: Matrix,
 }
 
+/// The coefficients, by least squares over evenly spread samples, of as many functions in the first eigenfunctions.
+pub(super) fn coefficients(eigenfunctions: &Matrix, functions: &Matrix) -> Matrix {
+    let own = eigenfunctions.columns(0, functions.ncols());
+    let transposed = own.transpose();
+    let (gram, right) = (&transposed * own, transposed * functions);
+    match Cholesky::new(gram) {
+        Some(factor) => factor.solve(&right),
+        // As many functions as samples, or more.
+        None => right / functions.nrows() as f64,
+    }
+}
+
 impl FunctionalMaps {
     /// The maps of functions by least squares over the samples.
     pub(super) fn new(pair: SampledPair<'_>, maps: &SampleMaps, k: usize) -> Self {
         let one = |own: &Matrix, other: &Matrix, map: &[u32]| {
-            let own = own.columns(0, k);
             let pulled = Matrix::from_fn(map.len(), k, |i, j| other[(map[i] as usize, j)]);
-            let transposed = own.transpose();
-            let (gram, right) = (&transposed * own, transposed * pulled);
-            match Cholesky::new(gram) {
-                Some(factor) => factor.solve(&right),
-                // As many functions as samples, or more.
-                None => right / map.len() as f64,
-            }
+            coefficients(own, &pulled)
         };
         Self { forth: one(pair.a, pair.b, &maps.forth), back: one(pair.b, pair.a, &maps.back) }
     }

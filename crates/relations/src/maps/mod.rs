@@ -8,12 +8,18 @@
 
 mod curvature;
 mod functional_map;
+mod known;
 mod local;
 mod nearest_rows;
+mod network;
 mod operators;
 mod orientation;
+mod points;
 mod search;
 mod shape;
 
+pub use known::KnownMap;
+pub use network::{ConsistentMaps, CycleReport, all_pairs, consistent_maps};
+pub use points::{MapElements, mapped_points};
 pub use search::{MapKind, MapOptions, SurfaceMap, map_surfaces};
 pub use shape::MapShape;

@@ -3,6 +3,8 @@
 use linalg::Matrix;
 use rayon::prelude::*;
 
+use super::shape::MapShape;
+
 /// Rows of the first matrix multiplied at a time. The result does not depend on it.
 const BLOCK: usize = 128;
 
@@ -36,7 +38,10 @@ pub(super) fn nearest_rows(x: &Matrix, y: &Matrix) -> [Vec<u32>; 2] {
     let mut to_x = vec![(0, f64::INFINITY); y.nrows()];
     for (block_to_y, block_to_x) in blocks {
         to_y.extend(block_to_y);
-        to_x.iter_mut().zip(block_to_x).filter(|(best, found)| found.1 < best.1).for_each(|(best, found)| *best = found);
+        to_x.iter_mut()
+            .zip(block_to_x)
+            .filter(|(best, found)| found.1 < best.1)
+            .for_each(|(best, found)| *best = found);
     }
     [to_y, to_x.into_iter().map(|(i, _)| i).collect()]
 }
@@ -46,7 +51,7 @@ pub(super) struct Cells<'a> {
     /// All rows.
     pub(super) rows: &'a Matrix,
     /// Columns by which the nearest cells are found.
-    pub(super) coarse: &'a [usize],
+    pub(super) coarse: Vec<usize>,
     /// The row in the middle of each cell.
     pub(super) centres: &'a [usize],
     /// The rows of each cell.
@@ -56,17 +61,23 @@ pub(super) struct Cells<'a> {
 /// Cells searched for each row.
 const PROBED: usize = 8;
 
-impl Cells<'_> {
+impl<'a> Cells<'a> {
+    /// The vertices of a surface, with their places in rows.
+    pub(super) fn of(shape: &'a MapShape, rows: &'a Matrix) -> Self {
+        let coarse = (0..rows.ncols()).collect();
+        Self { rows, coarse, centres: &shape.samples, members: &shape.cells }
+    }
+
     /// For every row of `x` the nearest row of the cells with the eight nearest centres; the one of the nearer centre, or
     /// the first, in case of a tie.
     ///
     /// Cost `O(m c d)` for `c` centres; parallel, and independent of the number of threads.
     pub(super) fn nearest(&self, x: &Matrix) -> Vec<u32> {
-        let centres = self.rows.select_rows(self.centres).select_columns(self.coarse);
+        let centres = self.rows.select_rows(self.centres).select_columns(&self.coarse);
         let of_centres = half_squares(&centres);
         // Rows next to each other in memory.
         let (sources, targets) = (x.transpose(), self.rows.transpose());
-        let coarse = sources.select_rows(self.coarse);
+        let coarse = sources.select_rows(&self.coarse);
         let starts: Vec<usize> = (0..x.nrows()).step_by(BLOCK).collect();
         let blocks: Vec<Vec<u32>> = starts
             .into_par_iter()
@@ -168,7 +179,7 @@ mod tests {
         let (x, y) = (curve(230, 0.3), curve(400, 0.0));
         let members: Vec<Vec<u32>> = (0..40).map(|c| (10 * c..10 * c + 10).collect()).collect();
         let centres: Vec<usize> = (0..40).map(|c| 10 * c + 5).collect();
-        let cells = Cells { rows: &y, coarse: &[0, 1], centres: &centres, members: &members };
+        let cells = Cells { rows: &y, coarse: vec![0, 1], centres: &centres, members: &members };
         assert_eq!(cells.nearest(&x), by_hand(&x, &y));
     }
 }

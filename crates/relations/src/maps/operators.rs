@@ -65,6 +65,20 @@ impl Operators {
     }
 }
 
+impl Operators {
+    /// All functions of both, with their operators.
+    pub(super) fn and(&self, other: &Self) -> Self {
+        let joined = |x: &[Matrix], y: &[Matrix]| x.iter().chain(y).cloned().collect();
+        let columns: Vec<_> = self.functions.column_iter().chain(other.functions.column_iter()).collect();
+        Self {
+            values: self.values.clone(),
+            functions: Matrix::from_columns(&columns),
+            products: joined(&self.products, &other.products),
+            area_forms: joined(&self.area_forms, &other.area_forms),
+        }
+    }
+}
+
 /// The operators over their mean norm.
 fn of_mean_norm_1(operators: Vec<Matrix>) -> Vec<Matrix> {
     let mean = operators.iter().map(Matrix::norm).sum::<f64>() / operators.len().max(1) as f64;

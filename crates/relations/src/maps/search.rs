@@ -8,6 +8,7 @@ use surface::VertexId;
 
 use super::curvature::mismatch;
 use super::functional_map::{FunctionalMaps, SampleMaps, SampledPair, schedule, zoom_out};
+use super::known::KnownMap;
 use super::local::vertex_confidence;
 use super::nearest_rows::Cells;
 use super::operators::{FITTED, fitted};
@@ -137,6 +138,10 @@ const STEEPNESS: f64 = 3.4;
 /// The most confidence in a mixture: as likely wrong as right. A convention.
 const OF_MIXTURE: f64 = 0.5;
 
+/// An orientation is dropped if its best map that respects the landmarks scores so much worse than its best that the price in
+/// the other orientation is below this share. A safety limit.
+const CLEARLY_BETTER: f64 = 0.7;
+
 /// The direct map comes second if its distortion is more than this multiple of the mirrored one's. A convention.
 const CLEARLY_WORSE: f64 = 1.5;
 
@@ -184,16 +189,21 @@ impl Candidate {
 /// Shapes that are alike under a mirror have two maps of small distortion; for others, one of the two has a large
 /// distortion. If a surface cannot be oriented, there is one map.
 ///
+/// What is `known` of the map enters all of it: landmarks, as heat that is placed at them, and functions are fitted, too; maps
+/// that do not respect the landmarks are dropped; and an initial map is one more start, which comes out unless another map is
+/// clearly better.
+///
 /// # Errors
 /// [`DescriptorError::Linalg`], also if the budget of the observer is exceeded.
 pub fn map_surfaces(
     a: &MapShape,
     b: &MapShape,
+    known: &KnownMap,
     options: &MapOptions,
     observer: &dyn Observer,
 ) -> Result<Vec<SurfaceMap>, DescriptorError> {
     let budget = observer.budget();
-    let search = MapSearch { a, b, options, budget: &budget };
+    let search = MapSearch { a, b, known, options, budget: &budget };
     let mut sketches = search.sketches()?;
     let mut maps = Vec::new();
     for sought in [MapKind::Direct, MapKind::Mirrored, MapKind::Unoriented] {
@@ -204,11 +214,14 @@ pub fn map_surfaces(
         sketches = others;
         maps.extend(search.best(of_kind)?);
     }
+    known.without_mixtures(&mut maps);
+    known.nearest_first(&mut maps, b)?;
     if let [direct, mirrored] = &maps[..]
         && mirrored.distortion * CLEARLY_WORSE < direct.distortion
     {
         maps.reverse();
     }
+    maps.iter_mut().for_each(|map| known.kept_by(map));
     Ok(maps)
 }
 
@@ -217,6 +230,7 @@ pub fn map_surfaces(
 struct MapSearch<'a> {
     a: &'a MapShape,
     b: &'a MapShape,
+    known: &'a KnownMap,
     options: &'a MapOptions,
     budget: &'a Budget,
 }
@@ -224,8 +238,44 @@ struct MapSearch<'a> {
 impl MapSearch<'_> {
     /// Maps of few samples and eigenfunctions from all starts, and those that differ from them by a mirror.
     fn sketches(&self) -> Result<Vec<Candidate>, DescriptorError> {
-        let found = self.sketched(self.starts(&[1.0, -1.0])?.iter().map(|start| &start.functional))?;
-        self.with_mirrored(self.distinct(found)?)
+        let starts = self.starts(&[1.0, -1.0])?;
+        let found = self.sketched(starts.iter().map(|start| &start.functional))?;
+        let mut found = self.with_mirrored(self.distinct(found)?)?;
+        let [rows_a, rows_b] = self.rows(SKETCHED);
+        let pair = SampledPair { a: &rows_a, b: &rows_b };
+        if let Some((start, k)) = self.known.initial_start(pair, [self.a, self.b], SKETCH_FUNCTIONS) {
+            let initial = self.zoomed(vec![start], [k, SKETCH_FUNCTIONS])?.into_iter();
+            found.extend(initial.map(|found| Candidate { score: found.score / CLEARLY_WORSE, ..found }));
+        }
+        self.respecting(found)
+    }
+
+    /// The maps that respect the landmarks. Of an orientation whose other maps are clearly better, only mixtures of two maps
+    /// respect them, and there is none.
+    fn respecting(&self, found: Vec<Candidate>) -> Result<Vec<Candidate>, DescriptorError> {
+        if self.known.landmarks.is_empty() {
+            return Ok(found);
+        }
+        let maps: Vec<&FunctionalMaps> = found.iter().map(|found| &found.functional).collect();
+        let respected = self.known.respected(&maps, [self.a, self.b])?;
+        let kinds = [MapKind::Direct, MapKind::Mirrored, MapKind::Unoriented];
+        let price = kinds.map(|kind| {
+            let of_kind = || found.iter().zip(&respected).filter(|(found, _)| found.kind() == kind);
+            let least = |scores: &mut dyn Iterator<Item = f64>| scores.fold(f64::INFINITY, f64::min);
+            let any = least(&mut of_kind().map(|(found, _)| found.score));
+            let best =
+                least(&mut of_kind().filter(|(_, respected)| **respected).map(|(found, _)| found.score));
+            best.max(f64::MIN_POSITIVE) / any.max(f64::MIN_POSITIVE)
+        });
+        // Infinite for an orientation without such a map; not a number for one without any.
+        let least = price.into_iter().fold(f64::INFINITY, f64::min);
+        let is_kept =
+            |kind| kinds.iter().zip(price).any(|(k, price)| *k == kind && price * CLEARLY_BETTER <= least);
+        let all = found.into_iter().zip(respected);
+        Ok(all
+            .filter(|(found, respected)| *respected && is_kept(found.kind()))
+            .map(|(found, _)| found)
+            .collect())
     }
 
     /// Different maps that are fitted with these signs, or follow from alignments of the forms.
@@ -233,7 +283,8 @@ impl MapSearch<'_> {
         let (a, b) = (self.a, self.b);
         let [rows_a, rows_b] = self.rows(ROUGH);
         let pair = SampledPair { a: &rows_a, b: &rows_b };
-        let fits = signs.iter().flat_map(|sign| fitted_starts(pair, [a, b], *sign)).collect();
+        let fits = signs.iter().flat_map(|sign| fitted_starts(pair, [a, b], *sign));
+        let fits = fits.chain(self.known.fitted_starts(pair, [a, b])).collect();
         let aligned = alignments(&a.form, &b.form);
         let mut aligned: Vec<_> =
             aligned.iter().map(|motion| nearest_samples(a, b, motion, rows_a.nrows())).collect();
@@ -270,7 +321,9 @@ impl MapSearch<'_> {
         for next in found {
             let mut of_kind = kept.iter().filter(|other| other.kind() == next.kind());
             if of_kind.clone().count() < SKETCHES
-                && !of_kind.try_fold(false, |same, other| Ok::<_, DescriptorError>(same || self.is_same(&next, other)?))?
+                && !of_kind.try_fold(false, |same, other| {
+                    Ok::<_, DescriptorError>(same || self.is_same(&next, other)?)
+                })?
             {
                 kept.push(next);
             }
@@ -300,7 +353,7 @@ impl MapSearch<'_> {
     /// The maps of a surface to itself that reverse its orientation and change distances little.
     fn mirrors<'s>(&self, shape: &'s MapShape) -> Result<&'s [FunctionalMaps], DescriptorError> {
         if shape.mirrors.get().is_none() {
-            let search = MapSearch { a: shape, b: shape, ..*self };
+            let search = MapSearch { a: shape, b: shape, known: &KnownMap::default(), ..*self };
             let mut starts = search.starts(&[-1.0])?;
             starts.retain(|start| start.kind() == MapKind::Mirrored);
             let mut found = search.sketched(starts.iter().map(|start| &start.functional))?;
@@ -435,8 +488,8 @@ impl Candidate {
         let (on_a, on_b) = (self.functional.places_a(&a.vectors), self.functional.places_b(&b.vectors));
         let k = self.functional.k();
         let coarse: Vec<usize> = (0..k.min(COARSE)).flat_map(|j| [j, k + j]).collect();
-        let near_b = Cells { rows: &on_b, coarse: &coarse, centres: &b.samples, members: &b.cells };
-        let near_a = Cells { rows: &on_a, coarse: &coarse, centres: &a.samples, members: &a.cells };
+        let near_b = Cells { coarse: coarse.clone(), ..Cells::of(b, &on_b) };
+        let near_a = Cells { coarse, ..Cells::of(a, &on_a) };
         let forth = near_b.nearest(&on_a);
         let back = near_a.nearest(&on_b.select_rows(b.landmarks()));
         let images: Vec<usize> = a.landmarks().iter().map(|&x| forth[x] as usize).collect();
@@ -460,7 +513,12 @@ impl Candidate {
 }
 
 /// The mean of `|d(x_i, g y_j) - d(f x_i, y_j)|` over landmarks; `forth` and `back` are the images of the landmarks.
-fn codistortion(a: &MapShape, b: &MapShape, forth: &[usize], back: &[usize]) -> Result<f64, DescriptorError> {
+pub(super) fn codistortion(
+    a: &MapShape,
+    b: &MapShape,
+    forth: &[usize],
+    back: &[usize],
+) -> Result<f64, DescriptorError> {
     let on_a = a.distances_to(back)?;
     let on_b = b.distances_to(forth)?;
     let gaps = (0..on_a.nrows()).flat_map(|i| (0..on_a.ncols()).map(move |j| (i, j)));

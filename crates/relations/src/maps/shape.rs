@@ -28,6 +28,8 @@ pub struct MapShape {
     pub(super) points: Vec<Point3<f64>>,
     /// Eigenfunctions at the vertices.
     pub(super) vectors: Matrix,
+    /// The rest of the spectrum, without its eigenfunctions.
+    spectrum: LaplaceSpectrum,
     /// Vertices spread evenly over the surface; the landmarks first.
     pub(super) samples: Vec<usize>,
     /// The vertices nearest to each sample.
@@ -67,7 +69,7 @@ impl MapShape {
     pub fn new(
         form: &CanonicalForm,
         mesh: &TriMesh,
-        spectrum: LaplaceSpectrum,
+        mut spectrum: LaplaceSpectrum,
         distances: LandmarkDistances,
         samples: Vec<usize>,
         nearest: &[usize],
@@ -98,7 +100,8 @@ impl MapShape {
             operators,
             curvature,
             size: spectrum.area.sqrt(),
-            vectors: spectrum.vectors,
+            vectors: std::mem::replace(&mut spectrum.vectors, Matrix::zeros(0, 0)),
+            spectrum,
             form,
             samples,
             cells,
@@ -109,6 +112,11 @@ impl MapShape {
     /// Number of vertices.
     pub fn n_vertices(&self) -> usize {
         self.vectors.nrows()
+    }
+
+    /// The eigenvalues and eigenfunctions in which maps of functions are written. Copies them.
+    pub fn spectrum(&self) -> LaplaceSpectrum {
+        LaplaceSpectrum { vectors: self.vectors.clone(), ..self.spectrum.clone() }
     }
 
     /// The form of all vertices in its principal axes, at unit area.
