@@ -135,11 +135,7 @@ fn built_in(shape: &LabeledSurface, seed: u64) -> Result<PlacedShape<'_>> {
 
 /// A shape from a file. If its vertices are numbered as those of the first shape of its class, it gets triangles of its own, as
 /// the same triangulation would help, and every new vertex the place of the nearest old one on the first shape.
-fn from_file<'a>(
-    shape: &'a LabeledSurface,
-    first: &LabeledSurface,
-    seed: u64,
-) -> Result<PlacedShape<'a>> {
+fn from_file<'a>(shape: &'a LabeledSurface, first: &LabeledSurface, seed: u64) -> Result<PlacedShape<'a>> {
     let name = shape.name.clone();
     let [mesh, rest] = [shape, first].map(|shape| shape.surface.mesh());
     if !is_numbered_alike(mesh, rest) {
