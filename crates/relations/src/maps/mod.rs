@@ -8,6 +8,7 @@
 
 mod curvature;
 mod functional_map;
+mod local;
 mod nearest_rows;
 mod operators;
 mod orientation;

@@ -7,9 +7,10 @@ use serde::{Deserialize, Serialize};
 use surface::VertexId;
 
 use super::functional_map::{FunctionalMaps, SampleMaps, SampledPair, schedule, zoom_out};
+use super::local::vertex_confidence;
 use super::nearest_rows::Cells;
 use super::operators::{FITTED, fitted};
-use super::orientation::agreement;
+use super::orientation::{FUNCTIONS as FORMS, agreement};
 use super::shape::MapShape;
 use descriptors::Alignment;
 use descriptors::Boundary;
@@ -69,6 +70,10 @@ pub struct SurfaceMap {
     pub confidence: f64,
     /// The partner of each vertex of the first surface.
     pub vertices: Vec<VertexId>,
+    /// How well the map keeps the distances of each vertex of the first surface to points near it, from 0, where it is torn or
+    /// takes a region to a point, to 1: one less their relative change. It does not tell whether the whole map is right, which
+    /// [`confidence`](Self::confidence) does.
+    pub vertex_confidence: Vec<f64>,
     /// The map of functions of the second surface to functions of the first, in their eigenfunctions: `C`, as in
     /// [`LaplaceSpectrum`](descriptors::LaplaceSpectrum).
     pub functional: Matrix,
@@ -90,38 +95,57 @@ const AGREEMENT: f64 = 0.1;
 /// such maps, all beyond [`AGREEMENT`] are taken.
 const SURE: f64 = 0.5;
 
-/// Samples by which the maps of all starts are compared, and eigenfunctions of their last step.
+/// Leading eigenfunctions of each surface by which the nearest samples of a vertex are found. A safety limit.
+const COARSE: usize = 40;
+
+/// Samples by which all starts are refined a little, and eigenfunctions of their last step: enough to tell which are the same.
+const ROUGH: usize = 200;
+const ROUGH_FUNCTIONS: usize = 30;
+
+/// Different maps of each orientation that are sketched.
+const SKETCHES: usize = 4;
+
+/// Samples by which sketches are refined and compared, and eigenfunctions of their last step.
 const SKETCHED: usize = 400;
 const SKETCH_FUNCTIONS: usize = 60;
 
 /// Eigenfunctions of the first step of a map from an alignment.
 const FIRST: usize = 6;
 
-/// A map from an alignment, or from another map and a mirror, is taken if its [score](Candidate::score) is below this share
-/// of that of all fitted maps, which know inside from outside. Chosen on built-in people of 1,000 vertices: with 0.8 and
-/// more, one more of 15 mirrored maps is wrong.
-const CLEARLY_BETTER: f64 = 0.7;
-
 /// Maps whose images are less than this apart on average, as a share of the square root of the area, are one. A safety limit.
 const SAME: f64 = 0.06;
 
-/// The odds that a map is right, and not the next best, are the ratio of their scores to this power. A convention, which is
-/// not calibrated: maps that are divided by [`CLEARLY_BETTER`] count as so much worse.
+/// A surface is alike under a mirror if a map to itself that reverses its orientation changes distances by less than this, and
+/// is no mixture: agrees with the reversal beyond [`PURE`]. A safety limit: bodies in different poses have .02 to .04.
+const SYMMETRIC: f64 = 0.06;
+
+/// Most such maps of a surface: people are nearly alike from left to right, and from back to front.
+const MIRRORS: usize = 2;
+
+/// A map whose agreement with an orientation is less is a mixture, at least in parts. Right maps of built-in people, cats and
+/// centaurs have .89 and more.
+const PURE: f64 = 0.8;
+
+/// Agreements nearer to 1 than this are as good as 1. A tolerance.
+const FULL: f64 = 0.05;
+
+/// The odds that a map is right, and not the next best, are the ratio of their scores to this power.
 const STEEPNESS: f64 = 8.0;
 
 /// The direct map comes second if its distortion is more than this multiple of the mirrored one's. A convention.
 const CLEARLY_WORSE: f64 = 1.5;
 
-/// A map of samples and of functions, with what ranks it among others.
+/// A map of functions and of samples, with what ranks it among others.
 struct Candidate {
-    maps: SampleMaps,
     functional: FunctionalMaps,
     /// Vertices of the second surface: the images of the landmarks of the first.
     images: Vec<usize>,
+    distortion: f64,
     agreement: Option<f64>,
-    /// Lower is better: the distortion of distances times the distance of the maps of functions from orthogonal ones,
-    /// `(|C'C - I|² + |D'D - I|²) / k`. A man turned back to front keeps distances nearly as well as another pose does, but
-    /// his map is no isometry in detail.
+    /// Lower is better: the distortion of distances, times the distance of the maps of functions from orthogonal ones,
+    /// `(|C'C - I|² + |D'D - I|²) / k`, times the distance of the agreement from 1. A man turned back to front keeps distances
+    /// nearly as well as another pose does, but his map is no isometry in detail; a mixture of two maps keeps the orientation
+    /// in some places only. Of two maps that differ by a mirror, the geometric mean: they are right together.
     score: f64,
 }
 
@@ -132,6 +156,10 @@ impl Candidate {
 
     fn is_sure(&self) -> bool {
         self.kind() == kind(self.agreement, SURE)
+    }
+
+    fn is_mixture(&self) -> bool {
+        self.agreement.is_some_and(|agreement| agreement.abs() < PURE)
     }
 }
 
@@ -194,36 +222,97 @@ struct MapSearch<'a> {
 }
 
 impl MapSearch<'_> {
-    /// Maps of few samples and eigenfunctions from all starts.
+    /// Maps of few samples and eigenfunctions from all starts, and those that differ from them by a mirror.
     fn sketches(&self) -> Result<Vec<Candidate>, DescriptorError> {
-        let (a, b) = (self.a, self.b);
-        let n = SKETCHED.min(a.samples.len()).min(b.samples.len());
-        let [rows_a, rows_b] = [a, b].map(|shape| shape.at_samples.rows(0, n).into_owned());
-        let pair = SampledPair { a: &rows_a, b: &rows_b };
-        let starts = [1.0, -1.0].into_iter().flat_map(|sign| fitted_starts(pair, [a, b], sign)).collect();
-        let mut found = self.zoomed(starts, [FITTED, SKETCH_FUNCTIONS])?;
-        let best = [MapKind::Direct, MapKind::Mirrored].map(|kind| best_of(&found, kind));
-        let [of_a, of_b] = [self.mirror(a, &rows_a)?, self.mirror(b, &rows_b)?];
-        let composed = best.into_iter().flatten().flat_map(|maps| {
-            let before = of_a.iter().map(|mirror| mirror.then(maps));
-            before.chain(of_b.iter().map(|mirror| maps.then(mirror)))
-        });
-        let composed = composed.collect();
-        let aligned = alignments(&a.form, &b.form);
-        let aligned = aligned.iter().map(|motion| nearest_samples(a, b, motion, n)).collect();
-        let others = self.zoomed(composed, [FITTED, SKETCH_FUNCTIONS])?.into_iter();
-        let others = others.chain(self.zoomed(aligned, [FIRST, SKETCH_FUNCTIONS])?);
-        found.extend(others.map(|found| Candidate { score: found.score / CLEARLY_BETTER, ..found }));
-        Ok(found)
+        let found = self.sketched(self.starts(&[1.0, -1.0])?.iter().map(|start| &start.functional))?;
+        self.with_mirrored(self.distinct(found)?)
     }
 
-    /// The map of the samples of a surface to themselves that reverses its orientation and scores best.
-    fn mirror(&self, shape: &MapShape, rows: &Matrix) -> Result<Option<SampleMaps>, DescriptorError> {
-        let pair = SampledPair { a: rows, b: rows };
-        let starts = fitted_starts(pair, [shape; 2], -1.0);
-        let search = MapSearch { a: shape, b: shape, ..*self };
-        let found = search.zoomed(starts, [FITTED, SKETCH_FUNCTIONS])?;
-        Ok(best_of(&found, MapKind::Mirrored).cloned())
+    /// Different maps that are fitted with these signs, or follow from alignments of the forms.
+    fn starts(&self, signs: &[f64]) -> Result<Vec<Candidate>, DescriptorError> {
+        let (a, b) = (self.a, self.b);
+        let [rows_a, rows_b] = self.rows(ROUGH);
+        let pair = SampledPair { a: &rows_a, b: &rows_b };
+        let fits = signs.iter().flat_map(|sign| fitted_starts(pair, [a, b], *sign)).collect();
+        let aligned = alignments(&a.form, &b.form);
+        let mut aligned: Vec<_> =
+            aligned.iter().map(|motion| nearest_samples(a, b, motion, rows_a.nrows())).collect();
+        aligned.dedup();
+        let mut found = self.zoomed(fits, [FITTED, ROUGH_FUNCTIONS])?;
+        found.extend(self.zoomed(aligned, [FIRST, ROUGH_FUNCTIONS])?);
+        self.distinct(found)
+    }
+
+    /// Eigenfunctions at the first samples of both surfaces.
+    fn rows(&self, n: usize) -> [Matrix; 2] {
+        let n = n.min(self.a.samples.len()).min(self.b.samples.len());
+        [self.a, self.b].map(|shape| shape.at_samples.rows(0, n).into_owned())
+    }
+
+    /// The sketches that follow from maps of functions.
+    fn sketched<'m>(
+        &self,
+        starts: impl Iterator<Item = &'m FunctionalMaps>,
+    ) -> Result<Vec<Candidate>, DescriptorError> {
+        let [rows_a, rows_b] = self.rows(SKETCHED);
+        let pair = SampledPair { a: &rows_a, b: &rows_b };
+        let starts = starts.map(|start| start.sample_maps(pair)).collect();
+        self.zoomed(starts, [FITTED, SKETCH_FUNCTIONS])
+    }
+
+    /// The best maps of each orientation that are not the same; those of none only if there are no others.
+    fn distinct(&self, mut found: Vec<Candidate>) -> Result<Vec<Candidate>, DescriptorError> {
+        if found.iter().any(|found| found.kind() != MapKind::Unoriented) {
+            found.retain(|found| found.kind() != MapKind::Unoriented);
+        }
+        found.sort_by(|x, y| x.score.total_cmp(&y.score));
+        let mut kept: Vec<Candidate> = Vec::new();
+        for next in found {
+            let mut of_kind = kept.iter().filter(|other| other.kind() == next.kind());
+            if of_kind.clone().count() < SKETCHES
+                && !of_kind.try_fold(false, |same, other| Ok::<_, DescriptorError>(same || self.is_same(&next, other)?))?
+            {
+                kept.push(next);
+            }
+        }
+        Ok(kept)
+    }
+
+    /// These maps and those that differ from them by a mirror of a surface, if there is one. Each has the score of both
+    /// together.
+    fn with_mirrored(&self, found: Vec<Candidate>) -> Result<Vec<Candidate>, DescriptorError> {
+        let [of_a, of_b] = [self.mirrors(self.a)?, self.mirrors(self.b)?];
+        let mut all = Vec::new();
+        for one in found {
+            let before = of_a.iter().map(|mirror| mirror.then(&one.functional));
+            let after = of_b.iter().map(|mirror| one.functional.then(mirror));
+            let others: Vec<_> = before.chain(after).collect();
+            let mut others = self.sketched(others.iter())?;
+            others.retain(|other| other.kind() != one.kind());
+            others.iter_mut().for_each(|other| other.score = (one.score * other.score).sqrt());
+            let least = others.iter().map(|other| other.score).reduce(f64::min);
+            all.push(Candidate { score: least.unwrap_or(one.score), ..one });
+            all.extend(others);
+        }
+        Ok(all)
+    }
+
+    /// The maps of a surface to itself that reverse its orientation and change distances little.
+    fn mirrors<'s>(&self, shape: &'s MapShape) -> Result<&'s [FunctionalMaps], DescriptorError> {
+        if shape.mirrors.get().is_none() {
+            let search = MapSearch { a: shape, b: shape, ..*self };
+            let mut starts = search.starts(&[-1.0])?;
+            starts.retain(|start| start.kind() == MapKind::Mirrored);
+            let mut found = search.sketched(starts.iter().map(|start| &start.functional))?;
+            found.retain(|found| {
+                found.kind() == MapKind::Mirrored && !found.is_mixture() && found.distortion < SYMMETRIC
+            });
+            let mut found = search.distinct(found)?;
+            found.truncate(MIRRORS);
+            // If another thread was faster, it found the same.
+            let _ = shape.mirrors.set(found.into_iter().map(|found| found.functional).collect());
+        }
+        Ok(shape.mirrors.get().map_or(&[], Vec::as_slice))
     }
 
     /// The best map of candidates of one kind, refined on all samples and eigenfunctions.
@@ -264,7 +353,7 @@ impl MapSearch<'_> {
         let start = sketch.functional.sample_maps(all);
         let refined = self.zoomed(vec![start], [SKETCH_FUNCTIONS, self.options.eigenfunctions])?;
         // Refinement may mix two maps; the sketch is not a mixture.
-        match refined.iter().find(|found| found.kind() == sketch.kind()) {
+        match refined.iter().find(|found| found.kind() == sketch.kind() && !found.is_mixture()) {
             Some(found) => found.on_all_vertices(self.a, self.b, confidence),
             None => sketch.on_all_vertices(self.a, self.b, confidence),
         }
@@ -289,12 +378,6 @@ impl MapSearch<'_> {
         };
         starts.into_par_iter().map(one).collect()
     }
-}
-
-/// The maps of samples of one kind that score best.
-fn best_of(found: &[Candidate], kind: MapKind) -> Option<&SampleMaps> {
-    let of_kind = found.iter().filter(|found| found.kind() == kind);
-    of_kind.min_by(|x, y| x.score.total_cmp(&y.score)).map(|found| &found.maps)
 }
 
 /// Maps of the first samples that follow from fitted maps of functions.
@@ -331,11 +414,10 @@ impl Candidate {
         };
         let (forth, back) = (image(&maps.forth, b, n_a), image(&maps.back, a, n_b));
         let distortion = codistortion(a, b, &forth, &back)?;
-        let pairs: Vec<(usize, usize)> =
-            a.samples.iter().zip(&maps.forth).map(|(&x, &y)| (x, b.samples[y as usize])).collect();
-        let agreement = orientation(a, b, &functional, &pairs);
-        let score = distortion * functional.defect();
-        Ok(Self { maps, functional, images: forth, agreement, score })
+        let agreement = orientation(a, b, &functional, &maps.forth);
+        let missing = agreement.map_or(1.0, |agreement| (1.0 - agreement.abs()).max(FULL));
+        let score = distortion * functional.defect() * missing;
+        Ok(Self { functional, images: forth, distortion, agreement, score })
     }
 
     fn on_all_vertices(
@@ -344,12 +426,17 @@ impl Candidate {
         b: &MapShape,
         confidence: f64,
     ) -> Result<SurfaceMap, DescriptorError> {
-        let (on_a, on_b) = (self.functional.partners_b(&b.vectors), self.functional.partners_a(&a.vectors));
-        let near_b = Cells { rows: &on_a, centres: &b.samples, members: &b.cells };
-        let near_a = Cells { rows: &on_b, centres: &a.samples, members: &a.cells };
-        let forth = near_b.nearest(&self.functional.points_a(&a.vectors));
-        let back = near_a.nearest(&self.functional.points_b(&b.vectors.select_rows(b.landmarks())));
+        let (on_a, on_b) = (self.functional.places_a(&a.vectors), self.functional.places_b(&b.vectors));
+        let k = self.functional.k();
+        let coarse: Vec<usize> = (0..k.min(COARSE)).flat_map(|j| [j, k + j]).collect();
+        let near_b = Cells { rows: &on_b, coarse: &coarse, centres: &b.samples, members: &b.cells };
+        let near_a = Cells { rows: &on_a, coarse: &coarse, centres: &a.samples, members: &a.cells };
+        let forth = near_b.nearest(&on_a);
+        let back = near_a.nearest(&on_b.select_rows(b.landmarks()));
         let images: Vec<usize> = a.landmarks().iter().map(|&x| forth[x] as usize).collect();
+        let on_b = b.distances_to(&forth.iter().map(|y| *y as usize).collect::<Vec<_>>())?;
+        let all: Vec<usize> = (0..a.n_vertices()).collect();
+        let vertex_confidence = vertex_confidence(&a.distances_to(&all)?, a.landmarks(), &on_b);
         let back: Vec<usize> = back.into_iter().map(|x| x as usize).collect();
         let distortion = codistortion(a, b, &images, &back)?;
         let vertices = forth.into_iter().map(VertexId).collect();
@@ -359,6 +446,7 @@ impl Candidate {
             agreement: self.agreement,
             confidence,
             vertices,
+            vertex_confidence,
             functional: self.functional.forth.clone(),
             alternative: None,
         })
@@ -374,15 +462,10 @@ fn codistortion(a: &MapShape, b: &MapShape, forth: &[usize], back: &[usize]) -> 
     Ok(sum / on_a.len().max(1) as f64)
 }
 
-/// How far a map of vertices preserves orientation.
-fn orientation(
-    a: &MapShape,
-    b: &MapShape,
-    functional: &FunctionalMaps,
-    pairs: &[(usize, usize)],
-) -> Option<f64> {
-    let oriented = [a.oriented.as_ref()?, b.oriented.as_ref()?];
+/// How far a map of samples preserves orientation.
+fn orientation(a: &MapShape, b: &MapShape, functional: &FunctionalMaps, partners: &[u32]) -> Option<f64> {
+    let (oriented, forms) = (a.oriented.as_ref()?, b.area_forms.as_ref()?);
     let k = functional.k();
-    let pulled: Matrix = a.vectors.columns(0, k) * &functional.forth;
-    Some(agreement(oriented, &pulled, &b.vectors, pairs))
+    let pulled: Matrix = a.vectors.columns(0, k) * functional.forth.columns(0, k.min(FORMS + 1));
+    Some(agreement(&oriented.area_forms(&pulled, &a.samples[..partners.len()]), forms, partners))
 }

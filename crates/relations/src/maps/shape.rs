@@ -1,10 +1,13 @@
 //! A surface, prepared to be mapped to others.
 
+use std::sync::OnceLock;
+
 use linalg::{LandmarkDistances, Matrix};
 use mesh::TriMesh;
 use nalgebra::Point3;
 
 use super::curvature::curvatures;
+use super::functional_map::FunctionalMaps;
 use super::operators::Operators;
 use super::orientation::Oriented;
 use crate::outward::outward;
@@ -38,6 +41,11 @@ pub struct MapShape {
     size: f64,
     /// `None` if the surface cannot be oriented.
     pub(super) oriented: Option<Oriented>,
+    /// The area forms of the first eigenfunctions at the samples, if it can.
+    pub(super) area_forms: Option<Matrix>,
+    /// The maps of the surface to itself that reverse its orientation, such as the one that exchanges left and right, once they
+    /// were sought.
+    pub(super) mirrors: OnceLock<Vec<FunctionalMaps>>,
 }
 
 impl MapShape {
@@ -80,6 +88,8 @@ impl MapShape {
         Ok(Self {
             points: at,
             at_samples: spectrum.vectors.select_rows(&samples),
+            area_forms: oriented.as_ref().map(|oriented| oriented.area_forms(&spectrum.vectors, &samples)),
+            mirrors: OnceLock::new(),
             oriented,
             operators,
             size: spectrum.area.sqrt(),
