@@ -12,14 +12,6 @@ pub(super) struct SampleMaps {
     pub(super) back: Vec<u32>,
 }
 
-impl SampleMaps {
-    /// These maps, followed by others.
-    pub(super) fn then(&self, next: &Self) -> Self {
-        let follow = |first: &[u32], second: &[u32]| first.iter().map(|&i| second[i as usize]).collect();
-        Self { forth: follow(&self.forth, &next.forth), back: follow(&next.back, &self.back) }
-    }
-}
-
 /// Eigenfunctions at the samples of two surfaces, evenly spread, one row for each sample.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SampledPair<'a> {
@@ -69,33 +61,39 @@ impl FunctionalMaps {
         (one(&self.forth) + one(&self.back)) / self.k() as f64
     }
 
-    /// Points of the first surface, where [`partners_b`](Self::partners_b) are near those that they correspond to: `Φ`.
-    pub(super) fn points_a(&self, rows: &Matrix) -> Matrix {
-        rows.columns(0, self.k()).into_owned()
+    /// Places of points of the first surface, near those of the points of the second to which they correspond, by both
+    /// maps: `[Φ, Φ D']`.
+    pub(super) fn places_a(&self, rows: &Matrix) -> Matrix {
+        let own = rows.columns(0, self.k());
+        beside(own.into_owned(), own * self.back.transpose())
     }
 
-    /// Points of the second surface among those of the first: `Ψ C'`.
-    pub(super) fn partners_b(&self, rows: &Matrix) -> Matrix {
-        rows.columns(0, self.k()) * self.forth.transpose()
-    }
-
-    /// Points of the second surface, where [`partners_a`](Self::partners_a) are near those that they correspond to: `Ψ`.
-    pub(super) fn points_b(&self, rows: &Matrix) -> Matrix {
-        rows.columns(0, self.k()).into_owned()
-    }
-
-    /// Points of the first surface among those of the second: `Φ D'`.
-    pub(super) fn partners_a(&self, rows: &Matrix) -> Matrix {
-        rows.columns(0, self.k()) * self.back.transpose()
+    /// Places of points of the second surface: `[Ψ C', Ψ]`.
+    pub(super) fn places_b(&self, rows: &Matrix) -> Matrix {
+        let own = rows.columns(0, self.k());
+        beside(own * self.forth.transpose(), own.into_owned())
     }
 
     /// The maps of samples that follow.
     pub(super) fn sample_maps(&self, pair: SampledPair<'_>) -> SampleMaps {
-        SampleMaps {
-            forth: nearest_rows(&self.points_a(pair.a), &self.partners_b(pair.b)),
-            back: nearest_rows(&self.points_b(pair.b), &self.partners_a(pair.a)),
-        }
+        let [forth, back] = nearest_rows(&self.places_a(pair.a), &self.places_b(pair.b));
+        SampleMaps { forth, back }
     }
+
+    /// These maps, followed by others.
+    pub(super) fn then(&self, next: &Self) -> Self {
+        let k = self.k().min(next.k());
+        let product = |x: &Matrix, y: &Matrix| x.view((0, 0), (k, k)) * y.view((0, 0), (k, k));
+        Self { forth: product(&self.forth, &next.forth), back: product(&next.back, &self.back) }
+    }
+}
+
+/// The columns of both matrices.
+fn beside(left: Matrix, right: Matrix) -> Matrix {
+    let k = left.ncols();
+    let mut both = left.resize_horizontally(k + right.ncols(), 0.0);
+    both.columns_mut(k, right.ncols()).copy_from(&right);
+    both
 }
 
 /// The numbers of eigenfunctions from `first` to `last`: each a step of a tenth, at least two, more than the one before.

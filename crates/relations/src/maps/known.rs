@@ -106,8 +106,8 @@ impl KnownMap {
     fn miss(&self, functional: &FunctionalMaps, [a, b]: [&MapShape; 2]) -> Result<f64, DescriptorError> {
         let [from, to]: [Vec<usize>; 2] =
             [0, 1].map(|side| self.landmarks.iter().map(|pair| pair[side].index()).collect());
-        let queries = functional.points_a(&a.vectors.select_rows(&from));
-        let images = nearest_rows(&queries, &functional.partners_b(&b.vectors));
+        let queries = functional.places_a(&a.vectors.select_rows(&from));
+        let [images, _] = nearest_rows(&queries, &functional.places_b(&b.vectors));
         let images: Vec<usize> = images.into_iter().map(|y| y as usize).collect();
         // Two points are at least as far apart as their distances from any landmark of the form differ.
         let gaps = b.distances_to(&images)? - b.distances_to(&to)?;

@@ -1,10 +1,13 @@
 //! A surface, prepared to be mapped to others.
 
+use std::sync::OnceLock;
+
 use linalg::{LandmarkDistances, Matrix};
 use mesh::TriMesh;
 use nalgebra::Point3;
 
 use super::curvature::curvatures;
+use super::functional_map::FunctionalMaps;
 use super::operators::Operators;
 use super::orientation::Oriented;
 use crate::outward::outward;
@@ -36,10 +39,17 @@ pub struct MapShape {
     /// What maps of functions are fitted to: with the curvature, which knows inside from outside, if the surface has an
     /// inside; and with the wave kernels, too.
     pub(super) operators: Vec<Operators>,
+    /// The curvature at the samples, smoothed least, if the surface has an inside.
+    pub(super) curvature: Option<Vec<f64>>,
     distances: LandmarkDistances,
     size: f64,
     /// `None` if the surface cannot be oriented.
     pub(super) oriented: Option<Oriented>,
+    /// The area forms of the first eigenfunctions at the samples, if it can.
+    pub(super) area_forms: Option<Matrix>,
+    /// The maps of the surface to itself that reverse its orientation, such as the one that exchanges left and right, once they
+    /// were sought.
+    pub(super) mirrors: OnceLock<Vec<FunctionalMaps>>,
 }
 
 impl MapShape {
@@ -78,12 +88,17 @@ impl MapShape {
             cells[sample].push(vertex);
         }
         let oriented = Oriented::new(mesh, &spectrum.masses);
-        let operators = operators(mesh, &spectrum, oriented.as_ref());
+        let curvatures = outward(mesh).map(|outward| curvatures(&outward, &spectrum));
+        let curvature = curvatures.as_ref().map(|columns| samples.iter().map(|&v| columns[(v, 0)]).collect());
+        let operators = operators(curvatures, &spectrum, oriented.as_ref());
         Ok(Self {
             points: at,
             at_samples: spectrum.vectors.select_rows(&samples),
+            area_forms: oriented.as_ref().map(|oriented| oriented.area_forms(&spectrum.vectors, &samples)),
+            mirrors: OnceLock::new(),
             oriented,
             operators,
+            curvature,
             size: spectrum.area.sqrt(),
             vectors: std::mem::replace(&mut spectrum.vectors, Matrix::zeros(0, 0)),
             spectrum,
@@ -125,13 +140,16 @@ impl MapShape {
     }
 }
 
-fn operators(mesh: &TriMesh, spectrum: &LaplaceSpectrum, oriented: Option<&Oriented>) -> Vec<Operators> {
-    let all: Vec<usize> = (0..mesh.n_vertices()).collect();
+fn operators(
+    curvatures: Option<Matrix>,
+    spectrum: &LaplaceSpectrum,
+    oriented: Option<&Oriented>,
+) -> Vec<Operators> {
+    let all: Vec<usize> = (0..spectrum.vectors.nrows()).collect();
     let kernels = wave_kernels(spectrum, &all);
     let some: Vec<usize> = (0..kernels.ncols()).step_by(KERNELS).collect();
     let kernels = kernels.select_columns(&some);
-    let Some(outward) = outward(mesh) else { return vec![Operators::new(spectrum, kernels, oriented)] };
-    let curvatures = curvatures(&outward, spectrum);
+    let Some(curvatures) = curvatures else { return vec![Operators::new(spectrum, kernels, oriented)] };
     let columns: Vec<_> = kernels.column_iter().chain(curvatures.column_iter()).collect();
     let both = Matrix::from_columns(&columns);
     vec![Operators::new(spectrum, curvatures, oriented), Operators::new(spectrum, both, oriented)]
