@@ -9,6 +9,7 @@ use surface::VertexId;
 use super::functional_map::coefficients;
 use super::local::vertex_confidence;
 use super::nearest_rows::Cells;
+use super::points::Placed;
 use super::search::{MapKind, SurfaceMap, codistortion};
 use super::shape::MapShape;
 use descriptors::DescriptorError;
@@ -88,7 +89,12 @@ pub fn consistent_maps(
     check()?;
     let placed: Vec<Matrix> =
         shapes.iter().zip(&common).map(|(shape, y)| shape.vectors.columns(0, y.nrows()) * y).collect();
-    let nearest = |i: usize, j: usize| Cells::of(shapes[j], &placed[j]).nearest(&placed[i]);
+    let nearest = |i: usize, j: usize| {
+        let (rows, shape) = (&placed[j], shapes[j]);
+        let coarse: Vec<usize> = (0..rows.ncols()).collect();
+        let cells = Cells { rows, coarse: &coarse, centres: &shape.samples, members: &shape.cells };
+        cells.nearest(&placed[i])
+    };
     let joined: Vec<Both> =
         pairs.par_iter().map(|&[i, j]| Both { forth: nearest(i, j), back: nearest(j, i) }).collect();
     let after = network.cycles(&joined)?;
@@ -142,10 +148,9 @@ impl<'a> Network<'a> {
     fn both(&self, map: impl Sync + Fn(usize) -> &'a SurfaceMap) -> Vec<Both> {
         let one = |(p, &[i, j]): (usize, &[usize; 2])| {
             let (a, b, found) = (self.shapes[i], self.shapes[j], map(p));
-            let k = found.functional.ncols();
-            let on_a = a.vectors.columns(0, k).into_owned();
-            let on_b = b.vectors.columns(0, k) * found.functional.transpose();
-            let back = Cells::of(a, &on_a).nearest(&on_b);
+            let Placed { on_a, on_b, coarse } = Placed::new([a, b], &found.functional);
+            let near_a = Cells { rows: &on_a, coarse: &coarse, centres: &a.samples, members: &a.cells };
+            let back = near_a.nearest(&on_b);
             Both { forth: found.vertices.iter().map(|v| v.0).collect(), back }
         };
         self.pairs.par_iter().enumerate().map(one).collect()

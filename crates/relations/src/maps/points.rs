@@ -4,7 +4,9 @@ use linalg::Matrix;
 use rayon::prelude::*;
 use surface::{FaceId, SurfacePoint, Topology, VertexId};
 
+use super::functional_map::FunctionalMaps;
 use super::nearest_rows::Cells;
+use super::search::COARSE;
 use super::shape::MapShape;
 use crate::relation::Side;
 
@@ -20,7 +22,7 @@ pub enum MapElements<'a> {
 /// For elements of one surface, their points inside the faces of the other one (the precise map of `ezuz2017` in
 /// `REFERENCES.bib`).
 ///
-/// A map of functions `C` places both surfaces in the space of the eigenfunctions of the first, `Φ` and `Ψ C'`, whose
+/// A map of functions `C` places both surfaces in the space of the eigenfunctions of both, `[Φ, Φ C]` and `[Ψ C', Ψ]`, where
 /// triangles stay flat. The point of an element is the nearest one on the faces around the nearest vertex, or around those of its
 /// corners, and on from there from face to face as long as it gets nearer.
 ///
@@ -38,13 +40,13 @@ pub fn mapped_points(
     elements: MapElements<'_>,
     target: &Topology,
 ) -> Vec<SurfacePoint> {
-    let on_a = a.vectors.columns(0, functional.nrows()).into_owned();
-    let on_b = b.vectors.columns(0, functional.ncols()) * functional.transpose();
+    let Placed { on_a, on_b, coarse } = Placed::new([a, b], functional);
     let (own, other, shape) = match of {
         Side::First => (on_a, on_b, b),
         Side::Second => (on_b, on_a, a),
     };
-    let nearest = Cells::of(shape, &other).nearest(&own);
+    let cells = Cells { rows: &other, coarse: &coarse, centres: &shape.samples, members: &shape.cells };
+    let nearest = cells.nearest(&own);
     let start = |v: usize| VertexId(nearest[v]);
     let (queries, starts): (Matrix, Vec<Vec<VertexId>>) = match elements {
         MapElements::Vertices => (own, (0..nearest.len()).map(|v| vec![start(v)]).collect()),
@@ -61,6 +63,24 @@ pub fn mapped_points(
         nearest_point(&queries.as_slice()[i * n..(i + 1) * n], &rows, target, starts)
     };
     starts.into_par_iter().enumerate().map(one).collect()
+}
+
+/// Two surfaces in one space, a row for each vertex.
+pub(super) struct Placed {
+    pub(super) on_a: Matrix,
+    pub(super) on_b: Matrix,
+    /// Leading columns, see [`Cells::coarse`].
+    pub(super) coarse: Vec<usize>,
+}
+
+impl Placed {
+    /// By a map of functions, whose transpose stands for the one back.
+    pub(super) fn new([a, b]: [&MapShape; 2], functional: &Matrix) -> Self {
+        let k = functional.ncols();
+        let maps = FunctionalMaps { back: functional.transpose(), forth: functional.clone() };
+        let coarse = (0..k.min(COARSE)).flat_map(|j| [j, k + j]).collect();
+        Self { on_a: maps.places_a(&a.vectors), on_b: maps.places_b(&b.vectors), coarse }
+    }
 }
 
 /// The nearest point of the faces around some vertices, and on from there. `rows` has a column for each vertex.

@@ -94,7 +94,7 @@ impl SurfaceMap {
 const AGREEMENT: f64 = 0.1;
 
 /// Leading eigenfunctions of each surface by which the nearest samples of a vertex are found. A safety limit.
-const COARSE: usize = 40;
+pub(super) const COARSE: usize = 40;
 
 /// Samples by which all starts are refined a little, and eigenfunctions of their last step: enough to tell which are the same.
 const ROUGH: usize = 200;
@@ -270,7 +270,7 @@ impl MapSearch<'_> {
         // Infinite for an orientation without such a map; not a number for one without any.
         let least = price.into_iter().fold(f64::INFINITY, f64::min);
         let is_kept =
-            |kind| kinds.iter().zip(price).any(|(k, price)| *k == kind && price * CLEARLY_BETTER <= least);
+            |kind| kinds.iter().zip(price).any(|(k, price)| *k == kind && price <= CLEARLY_WORSE * least);
         let all = found.into_iter().zip(respected);
         Ok(all
             .filter(|(found, respected)| *respected && is_kept(found.kind()))
@@ -353,7 +353,8 @@ impl MapSearch<'_> {
     /// The maps of a surface to itself that reverse its orientation and change distances little.
     fn mirrors<'s>(&self, shape: &'s MapShape) -> Result<&'s [FunctionalMaps], DescriptorError> {
         if shape.mirrors.get().is_none() {
-            let search = MapSearch { a: shape, b: shape, known: &KnownMap::default(), ..*self };
+            let nothing = KnownMap::default();
+            let search = MapSearch { a: shape, b: shape, known: &nothing, ..*self };
             let mut starts = search.starts(&[-1.0])?;
             starts.retain(|start| start.kind() == MapKind::Mirrored);
             let mut found = search.sketched(starts.iter().map(|start| &start.functional))?;
