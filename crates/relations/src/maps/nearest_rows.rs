@@ -3,8 +3,6 @@
 use linalg::Matrix;
 use rayon::prelude::*;
 
-use super::shape::MapShape;
-
 /// Rows of the first matrix multiplied at a time. The result does not depend on it.
 const BLOCK: usize = 128;
 
@@ -51,7 +49,7 @@ pub(super) struct Cells<'a> {
     /// All rows.
     pub(super) rows: &'a Matrix,
     /// Columns by which the nearest cells are found.
-    pub(super) coarse: Vec<usize>,
+    pub(super) coarse: &'a [usize],
     /// The row in the middle of each cell.
     pub(super) centres: &'a [usize],
     /// The rows of each cell.
@@ -61,23 +59,17 @@ pub(super) struct Cells<'a> {
 /// Cells searched for each row.
 const PROBED: usize = 8;
 
-impl<'a> Cells<'a> {
-    /// The vertices of a surface, with their places in rows.
-    pub(super) fn of(shape: &'a MapShape, rows: &'a Matrix) -> Self {
-        let coarse = (0..rows.ncols()).collect();
-        Self { rows, coarse, centres: &shape.samples, members: &shape.cells }
-    }
-
+impl Cells<'_> {
     /// For every row of `x` the nearest row of the cells with the eight nearest centres; the one of the nearer centre, or
     /// the first, in case of a tie.
     ///
     /// Cost `O(m c d)` for `c` centres; parallel, and independent of the number of threads.
     pub(super) fn nearest(&self, x: &Matrix) -> Vec<u32> {
-        let centres = self.rows.select_rows(self.centres).select_columns(&self.coarse);
+        let centres = self.rows.select_rows(self.centres).select_columns(self.coarse);
         let of_centres = half_squares(&centres);
         // Rows next to each other in memory.
         let (sources, targets) = (x.transpose(), self.rows.transpose());
-        let coarse = sources.select_rows(&self.coarse);
+        let coarse = sources.select_rows(self.coarse);
         let starts: Vec<usize> = (0..x.nrows()).step_by(BLOCK).collect();
         let blocks: Vec<Vec<u32>> = starts
             .into_par_iter()
@@ -179,7 +171,7 @@ mod tests {
         let (x, y) = (curve(230, 0.3), curve(400, 0.0));
         let members: Vec<Vec<u32>> = (0..40).map(|c| (10 * c..10 * c + 10).collect()).collect();
         let centres: Vec<usize> = (0..40).map(|c| 10 * c + 5).collect();
-        let cells = Cells { rows: &y, coarse: vec![0, 1], centres: &centres, members: &members };
+        let cells = Cells { rows: &y, coarse: &[0, 1], centres: &centres, members: &members };
         assert_eq!(cells.nearest(&x), by_hand(&x, &y));
     }
 }

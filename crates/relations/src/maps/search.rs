@@ -138,10 +138,6 @@ const STEEPNESS: f64 = 3.4;
 /// The most confidence in a mixture: as likely wrong as right. A convention.
 const OF_MIXTURE: f64 = 0.5;
 
-/// An orientation is dropped if its best map that respects the landmarks scores so much worse than its best that the price in
-/// the other orientation is below this share. A safety limit.
-const CLEARLY_BETTER: f64 = 0.7;
-
 /// The direct map comes second if its distortion is more than this multiple of the mirrored one's. A convention.
 const CLEARLY_WORSE: f64 = 1.5;
 
@@ -489,8 +485,8 @@ impl Candidate {
         let (on_a, on_b) = (self.functional.places_a(&a.vectors), self.functional.places_b(&b.vectors));
         let k = self.functional.k();
         let coarse: Vec<usize> = (0..k.min(COARSE)).flat_map(|j| [j, k + j]).collect();
-        let near_b = Cells { coarse: coarse.clone(), ..Cells::of(b, &on_b) };
-        let near_a = Cells { coarse, ..Cells::of(a, &on_a) };
+        let near_b = Cells { rows: &on_b, coarse: &coarse, centres: &b.samples, members: &b.cells };
+        let near_a = Cells { rows: &on_a, coarse: &coarse, centres: &a.samples, members: &a.cells };
         let forth = near_b.nearest(&on_a);
         let back = near_a.nearest(&on_b.select_rows(b.landmarks()));
         let images: Vec<usize> = a.landmarks().iter().map(|&x| forth[x] as usize).collect();
