@@ -36,7 +36,10 @@ pub(super) fn nearest_rows(x: &Matrix, y: &Matrix) -> [Vec<u32>; 2] {
     let mut to_x = vec![(0, f64::INFINITY); y.nrows()];
     for (block_to_y, block_to_x) in blocks {
         to_y.extend(block_to_y);
-        to_x.iter_mut().zip(block_to_x).filter(|(best, found)| found.1 < best.1).for_each(|(best, found)| *best = found);
+        to_x.iter_mut()
+            .zip(block_to_x)
+            .filter(|(best, found)| found.1 < best.1)
+            .for_each(|(best, found)| *best = found);
     }
     [to_y, to_x.into_iter().map(|(i, _)| i).collect()]
 }
