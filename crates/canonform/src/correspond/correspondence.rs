@@ -25,8 +25,8 @@ pub struct VertexMap {
     pub distortion: f64,
     /// How far it keeps the orientation, from -1 to 1; `None` if a surface cannot be oriented.
     pub agreement: Option<f64>,
-    /// How likely this map is the right one of its kind, which is not calibrated: below [`SurfaceMap::CERTAIN`] another one is
-    /// nearly as good, such as one that turns people back to front.
+    /// How likely this map is the right one of its kind: below [`SurfaceMap::CERTAIN`] it is a mixture, or another one is nearly as
+    /// good, such as one that turns people back to front.
     pub confidence: f64,
     /// The next best map of this kind, if this one is uncertain.
     pub alternative: Option<Box<VertexMap>>,

@@ -84,7 +84,7 @@ class SurfaceMap(Stored):
     agreement
         How far the map keeps the orientation, from -1 to 1; `None` if a surface cannot be oriented.
     confidence
-        How likely this map is the right one of its kind, and not the next best.
+        How likely this map is the right one of its kind, and not the next best; below 0.7 it is uncertain.
     alternative
         The next best map of this kind, if this one is uncertain: front and back may be exchanged.
     """
