@@ -6,8 +6,8 @@ use surface::VertexId;
 use super::functional_map::{FunctionalMaps, SampleMaps, SampledPair};
 use super::nearest_rows::nearest_rows;
 use super::operators::{Operators, fitted};
-use super::search::SurfaceMap;
 use super::shape::MapShape;
+use super::surface_map::SurfaceMap;
 use descriptors::DescriptorError;
 
 /// Times of heat that is placed at landmarks, at unit area. A convention: those by which the curvature is smoothed.

@@ -17,9 +17,11 @@ mod orientation;
 mod points;
 mod search;
 mod shape;
+mod surface_map;
 
 pub use known::KnownMap;
 pub use network::{ConsistentMaps, CycleReport, all_pairs, consistent_maps};
 pub use points::{MapElements, mapped_points};
-pub use search::{MapKind, MapOptions, SurfaceMap, map_surfaces};
+pub use search::{MapOptions, map_surfaces};
 pub use shape::MapShape;
+pub use surface_map::{MapKind, SurfaceMap};

@@ -10,8 +10,9 @@ use super::functional_map::coefficients;
 use super::local::vertex_confidence;
 use super::nearest_rows::Cells;
 use super::points::Placed;
-use super::search::{MapKind, SurfaceMap, codistortion};
+use super::search::codistortion;
 use super::shape::MapShape;
+use super::surface_map::{MapKind, SurfaceMap};
 use descriptors::DescriptorError;
 
 /// Maps whose images are less than this apart on average agree, as a share of the square root of the area. A safety limit: maps
