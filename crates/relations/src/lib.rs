@@ -9,7 +9,7 @@ mod maps;
 mod outward;
 mod relation;
 
-pub use maps::{MapKind, MapOptions, MapShape, SurfaceMap, map_surfaces};
+pub use maps::{MapKind, MapOptions, MapShape, PartOfWhole, SurfaceMap, map_surfaces};
 pub use relation::{
     Basis, Because, Change, CutPiece, Difference, Dimension, Handedness, MeshGeometry, MeshOverlay,
     NearestOnSurface, Parts, Relation, RelationKind, Side, SurfaceGap, TriangleTree, UnitChange, handedness,

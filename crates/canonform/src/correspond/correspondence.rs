@@ -4,7 +4,7 @@ use std::borrow::Borrow;
 use std::time::Instant;
 
 use linalg::Matrix;
-use relations::{MapKind, SurfaceMap, map_surfaces};
+use relations::{MapKind, PartOfWhole, SurfaceMap, map_surfaces};
 use serde::Serialize;
 use surface::VertexId;
 
@@ -28,8 +28,10 @@ pub struct VertexMap {
     pub confidence: f64,
     /// The next best map of this kind, if this one is uncertain.
     pub alternative: Option<Box<VertexMap>>,
+    /// Which surface is a part of the other, and how much of the whole it covers; `None` if both are mapped as wholes.
+    pub part: Option<PartOfWhole>,
     /// For every vertex of the first input, its partner among the vertices of the second input; `None` for a vertex that the
-    /// repair dropped.
+    /// repair dropped, and for one of a whole that is missing in the part.
     #[serde(skip)]
     pub vertices: Vec<Option<VertexId>>,
     /// The map of functions of the second surface to functions of the first: its columns are the coefficients of the
@@ -86,13 +88,16 @@ pub fn correspond<S: Borrow<Surface>>(
 impl VertexMap {
     /// A map of the vertices of the repaired meshes as one of the inputs.
     fn new(map: SurfaceMap, [from, to]: [&Surface; 2]) -> Self {
-        let partners: Vec<_> = map.vertices.iter().map(|v| Some(to.input_vertex(*v))).collect();
+        let has_partner = |x: usize| map.part.as_ref().is_none_or(|part| part.matched[x]);
+        let partner = |(x, v): (usize, &VertexId)| has_partner(x).then(|| to.input_vertex(*v));
+        let partners: Vec<_> = map.vertices.iter().enumerate().map(partner).collect();
         Self {
             kind: map.kind,
             distortion: map.distortion,
             agreement: map.agreement,
             confidence: map.confidence,
             alternative: map.alternative.map(|other| Box::new(Self::new(*other, [from, to]))),
+            part: map.part,
             vertices: from.in_input_order(&partners, None),
             functional: map.functional,
         }

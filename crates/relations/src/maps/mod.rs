@@ -11,8 +11,10 @@ mod functional_map;
 mod nearest_rows;
 mod operators;
 mod orientation;
+mod part;
 mod search;
 mod shape;
 
+pub use part::PartOfWhole;
 pub use search::{MapKind, MapOptions, SurfaceMap, map_surfaces};
 pub use shape::MapShape;

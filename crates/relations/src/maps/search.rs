@@ -10,6 +10,7 @@ use super::functional_map::{FunctionalMaps, SampleMaps, SampledPair, schedule, z
 use super::nearest_rows::Cells;
 use super::operators::{FITTED, fitted};
 use super::orientation::agreement;
+use super::part::{PartOfWhole, or_of_part};
 use super::shape::MapShape;
 use descriptors::Alignment;
 use descriptors::Boundary;
@@ -74,6 +75,8 @@ pub struct SurfaceMap {
     pub functional: Matrix,
     /// The next best map of this kind, unless this one is [certain](Self::CERTAIN).
     pub alternative: Option<Box<SurfaceMap>>,
+    /// Which surface is a part of the other; `None` if both are mapped as wholes.
+    pub part: Option<PartOfWhole>,
 }
 
 impl SurfaceMap {
@@ -127,12 +130,17 @@ struct Candidate {
 
 impl Candidate {
     fn kind(&self) -> MapKind {
-        kind(self.agreement, AGREEMENT)
+        kind_of(self.agreement)
     }
 
     fn is_sure(&self) -> bool {
         self.kind() == kind(self.agreement, SURE)
     }
+}
+
+/// The kind of a map of some agreement.
+pub(super) fn kind_of(agreement: Option<f64>) -> MapKind {
+    kind(agreement, AGREEMENT)
 }
 
 fn kind(agreement: Option<f64>, least: f64) -> MapKind {
@@ -176,12 +184,17 @@ pub fn map_surfaces(
         sketches = others;
         maps.extend(search.best(of_kind)?);
     }
+    or_of_part(in_order(maps), a, b, &budget)
+}
+
+/// The direct map first, unless it distorts distances clearly more.
+pub(super) fn in_order(mut maps: Vec<SurfaceMap>) -> Vec<SurfaceMap> {
     if let [direct, mirrored] = &maps[..]
         && mirrored.distortion * CLEARLY_WORSE < direct.distortion
     {
         maps.reverse();
     }
-    Ok(maps)
+    maps
 }
 
 /// A search with its options.
@@ -361,6 +374,7 @@ impl Candidate {
             vertices,
             functional: self.functional.forth.clone(),
             alternative: None,
+            part: None,
         })
     }
 }

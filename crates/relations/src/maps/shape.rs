@@ -2,9 +2,9 @@
 
 use linalg::{LandmarkDistances, Matrix};
 use mesh::TriMesh;
-use nalgebra::Point3;
+use nalgebra::{DVector, Point3};
 
-use super::curvature::curvatures;
+use super::curvature::{bends, smoothed};
 use super::operators::Operators;
 use super::orientation::Oriented;
 use crate::outward::outward;
@@ -35,9 +35,18 @@ pub struct MapShape {
     /// inside; and with the wave kernels, too.
     pub(super) operators: Vec<Operators>,
     distances: LandmarkDistances,
-    size: f64,
+    /// The square root of the area, in mesh units.
+    pub(super) size: f64,
     /// `None` if the surface cannot be oriented.
     pub(super) oriented: Option<Oriented>,
+    /// Eigenvalues at unit area.
+    pub(super) values: Vec<f64>,
+    /// The share of the area around each vertex.
+    pub(super) masses: Vec<f64>,
+    /// Coefficients of the mean curvature in the eigenfunctions; `None` if the surface has no outside.
+    pub(super) bends: Option<DVector<f64>>,
+    /// The distance of each vertex from the boundary, at unit area; `None` if there is no boundary.
+    pub(super) from_cut: Option<Vec<f64>>,
 }
 
 impl MapShape {
@@ -76,8 +85,13 @@ impl MapShape {
             cells[sample].push(vertex);
         }
         let oriented = Oriented::new(mesh, &spectrum.masses);
-        let operators = operators(mesh, &spectrum, oriented.as_ref());
+        let bends = outward(mesh).map(|outward| bends(&outward, &spectrum));
+        let operators = operators(&spectrum, bends.as_ref(), oriented.as_ref());
         Ok(Self {
+            bends,
+            from_cut: None,
+            values: spectrum.values,
+            masses: spectrum.masses,
             points: at,
             at_samples: spectrum.vectors.select_rows(&samples),
             oriented,
@@ -89,6 +103,18 @@ impl MapShape {
             cells,
             distances,
         })
+    }
+
+    /// The surface as a possible part of another one that was cut off at its boundary: `from_cut` is the distance of each
+    /// vertex from it, in mesh units.
+    ///
+    /// # Panics
+    /// Unless there is one distance for each vertex.
+    #[must_use]
+    pub fn with_cut(mut self, from_cut: &[f64]) -> Self {
+        assert_eq!(from_cut.len(), self.n_vertices(), "one distance for each vertex");
+        self.from_cut = Some(from_cut.iter().map(|d| d / self.size).collect());
+        self
     }
 
     /// Number of vertices.
@@ -117,13 +143,17 @@ impl MapShape {
     }
 }
 
-fn operators(mesh: &TriMesh, spectrum: &LaplaceSpectrum, oriented: Option<&Oriented>) -> Vec<Operators> {
-    let all: Vec<usize> = (0..mesh.n_vertices()).collect();
+fn operators(
+    spectrum: &LaplaceSpectrum,
+    bends: Option<&DVector<f64>>,
+    oriented: Option<&Oriented>,
+) -> Vec<Operators> {
+    let all: Vec<usize> = (0..spectrum.masses.len()).collect();
     let kernels = wave_kernels(spectrum, &all);
     let some: Vec<usize> = (0..kernels.ncols()).step_by(KERNELS).collect();
     let kernels = kernels.select_columns(&some);
-    let Some(outward) = outward(mesh) else { return vec![Operators::new(spectrum, kernels, oriented)] };
-    let curvatures = curvatures(&outward, spectrum);
+    let Some(bends) = bends else { return vec![Operators::new(spectrum, kernels, oriented)] };
+    let curvatures = smoothed(bends, &spectrum.values, &spectrum.vectors, 1.0);
     let columns: Vec<_> = kernels.column_iter().chain(curvatures.column_iter()).collect();
     let both = Matrix::from_columns(&columns);
     vec![Operators::new(spectrum, curvatures, oriented), Operators::new(spectrum, both, oriented)]

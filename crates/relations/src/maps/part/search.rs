@@ -1,0 +1,178 @@
+//! The search for the best maps of a part.
+
+use base::Budget;
+use linalg::{LinalgError, Matrix};
+use nalgebra::Cholesky;
+use rayon::prelude::*;
+
+use super::super::orientation::agreement;
+use super::super::search::{MapKind, SurfaceMap, kind_of, in_order};
+use super::super::shape::MapShape;
+use super::landmarks::placements;
+use super::places::{Changes, Fineness, Places, placed, placed_again};
+use super::sides::Sides;
+use super::vertices::{Coverage, all_vertices, onto_part};
+use super::PartOfWhole;
+use crate::relation::Side;
+use descriptors::{Boundary, DescriptorError};
+use surface::VertexId;
+
+/// Placements of landmarks that are extended to samples.
+const SKETCHES: usize = 24;
+const SKETCHED: Fineness = Fineness { xs: 150, ys: 400 };
+const SKETCH_ANCHORS: usize = 40;
+
+/// All samples.
+const FINE: Fineness = Fineness { xs: usize::MAX, ys: usize::MAX };
+
+/// Eigenfunctions of the whole whose area forms tell the orientation, and of the part in which they are smoothed.
+const ORIENTED: [usize; 2] = [13, 30];
+
+/// Eigenfunctions of the whole in the map of functions.
+const FUNCTIONS: usize = 60;
+
+/// Two maps are one if the images of samples are less than this apart on average. A safety limit.
+const SAME: f64 = 0.06;
+
+/// As for maps of whole surfaces.
+const STEEPNESS: f64 = 8.0;
+
+/// Weight of curvature in the score.
+const CURVATURE: f64 = 0.1;
+
+/// A map of samples with what ranks it.
+struct Candidate {
+    places: Places,
+    agreement: Option<f64>,
+    changes: Changes,
+}
+
+impl Candidate {
+    fn new(sides: &Sides<'_>, places: Places) -> Self {
+        let agreement = orientation(sides, &places);
+        Self { agreement, changes: Changes::of(sides, &places), places }
+    }
+
+    /// Lower is better.
+    fn score(&self) -> f64 {
+        self.changes.distances + CURVATURE * self.changes.curvature
+    }
+
+    fn kind(&self) -> MapKind {
+        kind_of(self.agreement)
+    }
+}
+
+/// The best maps of each orientation from the first surface to the second, one of which is a part of the other.
+pub(super) fn part_maps(
+    part: &MapShape,
+    whole: &MapShape,
+    side: Side,
+    budget: &Budget,
+) -> Result<Vec<SurfaceMap>, DescriptorError> {
+    let Some(sides) = Sides::new(part, whole)? else { return Ok(Vec::new()) };
+    let (chosen, starts) = placements(&sides, SKETCHES)?;
+    budget.check().map_err(LinalgError::from)?;
+    let sketch = |images: &Vec<usize>| {
+        let anchors: Vec<(usize, usize)> = chosen.iter().copied().zip(images.iter().copied()).collect();
+        let mut places = placed(&sides, &anchors, SKETCHED);
+        for _ in 0..2 {
+            places = placed_again(&sides, &places, SKETCH_ANCHORS, SKETCHED);
+        }
+        Candidate::new(&sides, places)
+    };
+    let mut found: Vec<Candidate> = starts.par_iter().map(|start| sketch(&start.images)).collect();
+    found.sort_by(|a, b| a.score().total_cmp(&b.score()));
+    let mut maps = Vec::new();
+    for kind in [MapKind::Direct, MapKind::Mirrored, MapKind::Unoriented] {
+        if kind == MapKind::Unoriented && !maps.is_empty() {
+            break;
+        }
+        budget.check().map_err(LinalgError::from)?;
+        let of_kind: Vec<&Candidate> = found.iter().filter(|found| found.kind() == kind).collect();
+        maps.extend(best(&sides, &of_kind, side)?);
+    }
+    Ok(in_order(maps))
+}
+
+/// The first of some maps in the order of their scores, refined; with the next one if that is nearly as good.
+fn best(sides: &Sides<'_>, found: &[&Candidate], side: Side) -> Result<Option<SurfaceMap>, DescriptorError> {
+    let Some((best, others)) = found.split_first() else { return Ok(None) };
+    let rival = others.iter().find(|other| gap(sides, &best.places, &other.places) > SAME);
+    let confidence = rival.map_or(1.0, |rival| {
+        let boundary = Boundary { at: rival.score().max(f64::MIN_POSITIVE), steepness: STEEPNESS };
+        boundary.probability(best.score())
+    });
+    let mut map = refined(sides, best, confidence, side)?;
+    if let Some(rival) = rival.filter(|_| confidence < SurfaceMap::CERTAIN) {
+        map.alternative = Some(Box::new(refined(sides, rival, 1.0 - confidence, side)?));
+    }
+    Ok(Some(map))
+}
+
+/// How far the images of samples are apart, on average.
+fn gap(sides: &Sides<'_>, a: &Places, b: &Places) -> f64 {
+    a.iter().zip(b).map(|(y, z)| sides.in_whole[(*y, *z)]).sum::<f64>() / a.len().max(1) as f64
+}
+
+fn refined(
+    sides: &Sides<'_>,
+    sketch: &Candidate,
+    confidence: f64,
+    side: Side,
+) -> Result<SurfaceMap, DescriptorError> {
+    let mut places = placed_again(sides, &sketch.places, usize::MAX, FINE);
+    places = placed_again(sides, &places, usize::MAX, FINE);
+    let fine = Candidate::new(sides, places);
+    let agreement = if fine.kind() == sketch.kind() { fine.agreement } else { sketch.agreement };
+    let images = all_vertices(sides, &fine.places)?;
+    let Coverage { covered, partners, matched } = onto_part(sides, &images)?;
+    let functional = functional(sides, &fine.places, FUNCTIONS, usize::MAX).unwrap_or_else(|| Matrix::zeros(0, 0));
+    let id = |v: usize| VertexId::from(v);
+    let (vertices, matched, functional) = match side {
+        Side::First => (images.iter().copied().map(id).collect(), vec![true; images.len()], functional),
+        Side::Second => {
+            let share = sides.scale().powi(2);
+            (partners.into_iter().map(id).collect(), matched, functional.transpose() * share)
+        }
+    };
+    Ok(SurfaceMap {
+        kind: sketch.kind(),
+        distortion: fine.changes.distances,
+        agreement,
+        confidence,
+        vertices,
+        functional,
+        part: Some(PartOfWhole { part: side, covered, matched }),
+        alternative: None,
+    })
+}
+
+/// The map of the first `n` eigenfunctions of the whole to those of the part with eigenvalues as low, at most `most`, by least
+/// squares over the samples.
+fn functional(sides: &Sides<'_>, places: &Places, n: usize, most: usize) -> Option<Matrix> {
+    let n = n.min(sides.whole.vectors.ncols());
+    // Eigenvalues at unit area; those of the part in the unit of the whole are larger.
+    let last = sides.whole.values[n - 1] * sides.scale().powi(2);
+    let k = sides.part.values.iter().filter(|value| **value <= last).count();
+    let k = k.min(most).min(places.len() / 3).max(1);
+    let own = sides.part.vectors.select_rows(&sides.xs[..places.len()]).columns(0, k).into_owned();
+    let images: Vec<usize> = places.iter().map(|y| sides.ys[*y]).collect();
+    let pulled = sides.whole.vectors.select_rows(&images).columns(0, n).into_owned();
+    Some(Cholesky::new(own.tr_mul(&own))?.solve(&own.tr_mul(&pulled)))
+}
+
+/// How far a map preserves orientation.
+fn orientation(sides: &Sides<'_>, places: &Places) -> Option<f64> {
+    let oriented = [sides.part.oriented.as_ref()?, sides.whole.oriented.as_ref()?];
+    let [n, k] = ORIENTED;
+    let n = n.min(sides.whole.vectors.ncols());
+    let k = k.min(sides.part.vectors.ncols()).min(places.len() / 3).max(1);
+    let own = sides.part.vectors.columns(0, k);
+    let at = own.select_rows(&sides.xs[..places.len()]);
+    let images: Vec<usize> = places.iter().map(|y| sides.ys[*y]).collect();
+    let pulled = sides.whole.vectors.select_rows(&images).columns(0, n).into_owned();
+    let map = Cholesky::new(at.tr_mul(&at))?.solve(&at.tr_mul(&pulled));
+    let pairs: Vec<(usize, usize)> = sides.xs.iter().copied().zip(images).collect();
+    Some(agreement(oriented, &(own * map), &sides.whole.vectors, &pairs))
+}
