@@ -29,6 +29,7 @@ pub struct VertexMap {
     /// The next best map of this kind, if this one is uncertain.
     pub alternative: Option<Box<VertexMap>>,
     /// Which surface is a part of the other, and how much of the whole it covers; `None` if both are mapped as wholes.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub part: Option<PartOfWhole>,
     /// For every vertex of the first input, its partner among the vertices of the second input; `None` for a vertex that the
     /// repair dropped, and for one of a whole that is missing in the part.
@@ -51,8 +52,9 @@ pub struct Correspondence {
 
 /// Maps the vertices of one surface to those of another.
 ///
-/// Shapes that are alike under a mirror have two maps of small distortion, one for each orientation. Both are returned. See
-/// [`map_surfaces`] for how they are found; the result does not depend on the number of threads.
+/// Shapes that are alike under a mirror have two maps of small distortion, one for each orientation. Both are returned. One
+/// surface may be a part of the other that a cut has left. See [`map_surfaces`] for how maps are found; the result does not
+/// depend on the number of threads.
 ///
 /// ```
 /// use canonform::{CorrespondOptions, MappedSurface, Surface, correspond, mesh::shapes};

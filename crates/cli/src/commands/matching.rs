@@ -8,6 +8,7 @@ use anyhow::Result;
 use base::terminal::Bars;
 use canonform::mesh::TriMesh;
 use canonform::mesh::io::VertexField;
+use canonform::relations::{PartOfWhole, Side};
 use canonform::surface::VertexId;
 use canonform::{CorrespondOptions, MappedSurface, Surface, VertexMap, correspond};
 use npyz::WriterBuilder;
@@ -177,6 +178,10 @@ fn table(json: &MatchJson) -> String {
         let file = path.as_ref().map_or(String::new(), |path| format!(", in {}", path.display()));
         let agreement = map.agreement.map_or("cannot be told".to_owned(), |value| format!("{value:.2}"));
         rows.push((map.kind.name(), format!("{matched} vertices{file}")));
+        if let Some(PartOfWhole { part, covered, .. }) = &map.part {
+            let [part, whole] = if *part == Side::First { ["first", "second"] } else { ["second", "first"] };
+            rows.push(("  part", format!("the {part} mesh, of {:.0} % of the {whole}", 100.0 * covered)));
+        }
         rows.push(("  distortion", format!("{:.4}", map.distortion)));
         rows.push(("  agreement", agreement));
         let other =

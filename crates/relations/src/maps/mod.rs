@@ -4,6 +4,7 @@
 //! form, spectrum, distances -> MapShape
 //! two of them -> maps of functions that fit, alignments of the forms -> maps of samples, refined
 //!             -> SurfaceMap, the best of each orientation
+//! one of them a part -> places of landmarks and samples by their distances -> SurfaceMap
 //! ```
 
 mod curvature;
@@ -12,9 +13,12 @@ mod nearest_rows;
 mod operators;
 mod orientation;
 mod part;
+mod part_of_whole;
 mod search;
 mod shape;
+mod whole_or_part;
 
-pub use part::PartOfWhole;
-pub use search::{MapKind, MapOptions, SurfaceMap, map_surfaces};
+pub use part_of_whole::PartOfWhole;
+pub use search::{MapKind, MapOptions, SurfaceMap};
 pub use shape::MapShape;
+pub use whole_or_part::map_surfaces;

@@ -10,7 +10,7 @@ use super::functional_map::{FunctionalMaps, SampleMaps, SampledPair, schedule, z
 use super::nearest_rows::Cells;
 use super::operators::{FITTED, fitted};
 use super::orientation::agreement;
-use super::part::{PartOfWhole, or_of_part};
+use super::part_of_whole::PartOfWhole;
 use super::shape::MapShape;
 use descriptors::Alignment;
 use descriptors::Boundary;
@@ -163,10 +163,7 @@ fn kind(agreement: Option<f64>, least: f64) -> MapKind {
 ///
 /// Shapes that are alike under a mirror have two maps of small distortion; for others, one of the two has a large
 /// distortion. If a surface cannot be oriented, there is one map.
-///
-/// # Errors
-/// [`DescriptorError::Linalg`], also if the budget of the observer is exceeded.
-pub fn map_surfaces(
+pub(super) fn map_wholes(
     a: &MapShape,
     b: &MapShape,
     options: &MapOptions,
@@ -184,7 +181,7 @@ pub fn map_surfaces(
         sketches = others;
         maps.extend(search.best(of_kind)?);
     }
-    or_of_part(in_order(maps), a, b, &budget)
+    Ok(in_order(maps))
 }
 
 /// The direct map first, unless it distorts distances clearly more.
@@ -195,6 +192,17 @@ pub(super) fn in_order(mut maps: Vec<SurfaceMap>) -> Vec<SurfaceMap> {
         maps.reverse();
     }
     maps
+}
+
+/// The images of the first samples of a surface under its best mirror, if it has one.
+pub(super) fn mirrored_samples(
+    shape: &MapShape,
+    options: &MapOptions,
+    budget: &Budget,
+) -> Result<Option<Vec<u32>>, DescriptorError> {
+    let search = MapSearch { a: shape, b: shape, options, budget };
+    let rows = shape.at_samples.rows(0, SKETCHED.min(shape.samples.len())).into_owned();
+    Ok(search.mirror(shape, &rows)?.map(|maps| maps.forth))
 }
 
 /// A search with its options.

@@ -7,6 +7,9 @@ use super::sides::Sides;
 /// Weight of the difference of curvatures, beside 1 for the mean loss of distances. Chosen on built-in bodies.
 const CURVATURE: f64 = 0.01;
 
+/// Changes of distances count up to this in the mean: with a few wrong landmarks, a map may be right. A safety limit.
+const MOST: f64 = 0.3;
+
 /// Samples of the part, as many as are placed: positions among the samples of the whole.
 pub(super) type Places = Vec<usize>;
 
@@ -44,32 +47,26 @@ pub(super) fn placed_again(sides: &Sides<'_>, places: &Places, n: usize, finenes
     placed(sides, &anchors, fineness)
 }
 
-/// The mean change of the distances between landmarks and samples: its size, and its loss with the mean difference of
-/// curvatures.
+/// How a map changes a part.
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Changes {
+    /// The mean change of the distances between landmarks and samples.
     pub(super) distances: f64,
-    pub(super) unexplained: f64,
+    /// The mean squared difference of curvatures, in units of their variance.
     pub(super) curvature: f64,
 }
 
 impl Changes {
     pub(super) fn of(sides: &Sides<'_>, places: &Places) -> Self {
         let n = sides.n_landmarks()[0].min(places.len());
-        let (mut distances, mut unexplained) = (0.0, 0.0);
-        for l in 0..n {
-            for (x, place) in places.iter().enumerate() {
-                let known = sides.known(l, x);
-                let found = sides.in_whole[(*place, places[l])];
-                distances += (found - known.most).abs().min(0.3);
-                unexplained += (known.least - found).max(found - known.most).max(0.0);
-            }
-        }
+        let change = |l: usize, x: usize| {
+            let found = sides.in_whole[(places[x], places[l])];
+            (found - sides.in_part[(l, x)]).abs().min(MOST)
+        };
+        let changes = (0..n).flat_map(|l| (0..places.len()).map(move |x| (l, x)));
+        let distances: f64 = changes.map(|(l, x)| change(l, x)).sum();
         let curvature: f64 = places.iter().enumerate().map(|(x, y)| sides.curvature_gap(x, *y)).sum();
-        let n_pairs = (n * places.len()).max(1) as f64;
-        Self {
-            distances: distances / n_pairs,
-            unexplained: unexplained / n_pairs,
-            curvature: curvature / places.len().max(1) as f64,
-        }
+        let each = |sum: f64, n: usize| sum / n.max(1) as f64;
+        Self { distances: each(distances, n * places.len()), curvature: each(curvature, places.len()) }
     }
 }

@@ -9,7 +9,7 @@ use descriptors::DescriptorError;
 
 /// Samples of the part and of the whole among which a map is sought. The samples of the whole are 3 % of the square root of
 /// its area apart.
-const OF_PART: usize = 400;
+const OF_PART: usize = 1000;
 const OF_WHOLE: usize = 1000;
 
 /// Differences of curvature count if a point is so far from the cut, for each time of smoothing. Heat of the three times reaches
