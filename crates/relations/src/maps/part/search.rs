@@ -17,36 +17,41 @@ use crate::relation::Side;
 use descriptors::{Boundary, DescriptorError};
 use surface::VertexId;
 
-/// Placements of landmarks that are extended to samples.
+/// Placements of landmarks that are extended to samples, the samples, and the landmarks by which they are placed. Conventions of
+/// time.
 const SKETCHES: usize = 24;
 const SKETCHED: Fineness = Fineness { xs: 150, ys: 400 };
 const SKETCH_ANCHORS: usize = 40;
 
-/// The best sketches of each orientation are compared again with more samples.
-const COMPARED: usize = 3;
+/// The best sketches of each orientation are compared again with more samples: as many as there is time for.
+const COMPARED: usize = 4;
 const FINER: Fineness = Fineness { xs: 400, ys: usize::MAX };
 
 /// All samples.
 const FINE: Fineness = Fineness { xs: usize::MAX, ys: usize::MAX };
 
-/// Eigenfunctions of the whole whose area forms tell the orientation, and of the part in which they are smoothed.
+/// Conventions: eigenfunctions of the whole whose area forms tell the orientation, and of the part in which they are smoothed.
 const ORIENTED: [usize; 2] = [13, 30];
 
-/// Eigenfunctions of the whole in the map of functions.
+/// Eigenfunctions of the whole in the map of functions, and in that whose [`defect`] counts. Conventions.
 const FUNCTIONS: usize = 60;
+const FEW_FUNCTIONS: usize = 40;
 
-/// Two maps are one if the images of samples are less than this apart on average. A safety limit.
+/// Two maps are one if the images of samples are less than this apart on average, and sketches if they are less than this. Safety
+/// limits: sketches change by less when they are refined, and people turned back to front are three times as far apart.
 const SAME: f64 = 0.12;
+const SAME_SKETCH: f64 = 0.07;
 
 /// The odds that a map is right, and not the next best, are the ratio of their scores to this power: a map is certain if the
 /// next best scores 1.4 times as much. Chosen on built-in men, of whom two of six were back to front with 1.1 and 1.4.
 const STEEPNESS: f64 = 2.5;
 
-/// Maps that change distances more than this are doubtful: right ones of built-in bodies change them by 0.014 to 0.03.
+/// Maps that change distances more than this are doubtful: right ones of built-in bodies change them by 0.014 to 0.032
+/// in 25 of 26 pairs.
 const DOUBTFUL: Boundary = Boundary { at: 0.045, steepness: 8.0 };
 
-/// Weights of the mean difference of curvatures and of the [`defect`], beside 1 for the mean change of distances. Chosen on built-in
-/// bodies; with half or twice as much, the same maps are taken.
+/// Weights of the mean difference of curvatures and of the [`defect`], beside 1 for the mean change of distances. Chosen on 14
+/// maps of built-in bodies, where with 0.2 instead of 0.1 one more is wrong; up to 0.02 instead of 0.01 none is.
 const CURVATURE: f64 = 0.1;
 const DEFECT: f64 = 0.01;
 
@@ -116,7 +121,7 @@ pub(super) fn part_maps(
         budget.check().map_err(LinalgError::from)?;
         let mut different: Vec<&Candidate> = Vec::new();
         for sketch in found.iter().filter(|found| found.kind() == kind) {
-            let is_new = |other: &&Candidate| gap(&sides, &sketch.places, &other.places) > SAME;
+            let is_new = |other: &&Candidate| gap(&sides, &sketch.places, &other.places) > SAME_SKETCH;
             if different.len() < COMPARED && different.iter().all(is_new) {
                 different.push(sketch);
             }
@@ -135,7 +140,7 @@ pub(super) fn part_maps(
 /// The first of some maps in the order of their scores, refined; with the next one if that is nearly as good.
 fn best(sides: &Sides<'_>, found: &[Candidate], side: Side) -> Result<Option<SurfaceMap>, DescriptorError> {
     let Some((best, others)) = found.split_first() else { return Ok(None) };
-    let rival = others.first();
+    let rival = others.iter().find(|other| gap(sides, &best.places, &other.places) > SAME);
     let alone = rival.map_or(1.0, |rival| {
         let boundary = Boundary { at: rival.score().max(f64::MIN_POSITIVE), steepness: STEEPNESS };
         boundary.probability(best.score())
@@ -164,7 +169,8 @@ fn refined(
     let agreement = if fine.kind() == sketch.kind() { fine.agreement } else { sketch.agreement };
     let images = all_vertices(sides, &fine.places)?;
     let Coverage { covered, partners, matched } = onto_part(sides, &images)?;
-    let functional = functional(sides, &fine.places, FUNCTIONS, usize::MAX).unwrap_or_else(|| Matrix::zeros(0, 0));
+    let functional =
+        functional(sides, &fine.places, FUNCTIONS, usize::MAX).unwrap_or_else(|| Matrix::zeros(0, 0));
     let id = |v: usize| VertexId::from(v);
     let (vertices, matched, functional) = match side {
         Side::First => (images.iter().copied().map(id).collect(), vec![true; images.len()], functional),
@@ -216,7 +222,7 @@ fn orientation(sides: &Sides<'_>, places: &Places) -> Option<f64> {
 
 /// How far the map of functions is from one of a part, whose rows are orthonormal: `|C C' - I|² / k`.
 fn defect(sides: &Sides<'_>, places: &Places) -> f64 {
-    let Some(map) = functional(sides, places, 40, places.len() / 5) else { return 1.0 };
+    let Some(map) = functional(sides, places, FEW_FUNCTIONS, places.len() / 5) else { return 1.0 };
     // The eigenfunctions of the whole have norm 1 over its area.
     let map = map * sides.scale();
     let k = map.nrows();

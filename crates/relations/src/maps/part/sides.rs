@@ -20,11 +20,11 @@ const SMOOTHED: [f64; 3] = [0.1, 0.15, 0.25];
 const OUTLYING: f64 = 4.0;
 
 /// Changes of distances beyond this count as much as this: the pairs of a few wrong anchors, or with a path through what is
-/// missing. Chosen on built-in bodies: with 0.2 the mean error is larger by a tenth.
+/// missing. A part of a built-in man is mapped to him with a mean error of 0.0140, and of 0.0142 with 0.2.
 const MOST: f64 = 0.1;
 
 /// Weight of distances that the cut explains, beside 1 for others: most of the shortest paths between points near the cut
-/// stay in the part. Chosen on built-in bodies: with 0 the error near the cut is 0.04 instead of 0.02.
+/// stay in the part. A part of a built-in man is mapped to him with an error near the cut of 0.017, and of 0.042 with 0.
 const EXPLAINED: f64 = 0.3;
 
 /// What is known of the distance of two points of the part in the whole: paths in the part are paths in the whole, and a path
@@ -117,7 +117,7 @@ impl<'a> Sides<'a> {
 }
 
 /// Distances between points from those to the same landmarks, a column for each point: the mean of what the triangle
-/// inequality allows at least and at most. With 100 landmarks it is 0.2 % of the square root of the area from the truth.
+/// inequality allows at least and at most. With 100 landmarks on a built-in man it is 0.2 % of the square root of the area from the truth.
 pub(super) fn between(xs: &Matrix, ys: &Matrix) -> Matrix {
     let n = xs.nrows();
     let column = |y: usize| -> Vec<f64> {

@@ -82,7 +82,12 @@ pub(super) fn onto_part(sides: &Sides<'_>, images: &[usize]) -> Result<Coverage,
     let mut in_cell = vec![Vec::new(); sides.ys.len()];
     images.iter().enumerate().for_each(|(v, w)| in_cell[sample_of[*w]].push(v));
     let gap = |w: usize, z: usize| {
-        distances.column(w).iter().zip(distances.column(z).iter()).map(|(p, q)| (p - q).abs()).fold(0.0, f64::max)
+        distances
+            .column(w)
+            .iter()
+            .zip(distances.column(z).iter())
+            .map(|(p, q)| (p - q).abs())
+            .fold(0.0, f64::max)
     };
     let one = |w: usize| {
         let candidates = near[sample_of[w]].iter().flat_map(|y| &in_cell[*y]);
@@ -92,6 +97,7 @@ pub(super) fn onto_part(sides: &Sides<'_>, images: &[usize]) -> Result<Coverage,
     let found: Vec<(f64, usize)> = all.par_iter().map(|w| one(*w)).collect();
     let spacing = sides.scale() / (images.len().max(1) as f64).sqrt();
     let matched: Vec<bool> = found.iter().map(|(gap, _)| *gap <= REACH * spacing).collect();
-    let covered = whole.masses.iter().zip(&matched).filter(|(_, matched)| **matched).map(|(mass, _)| mass).sum();
+    let covered =
+        whole.masses.iter().zip(&matched).filter(|(_, matched)| **matched).map(|(mass, _)| mass).sum();
     Ok(Coverage { covered, partners: found.into_iter().map(|(_, v)| v).collect(), matched })
 }
