@@ -82,7 +82,7 @@ impl Candidate {
 }
 
 /// The best maps of each orientation from the first surface to the second, one of which is a part of the other.
-pub(super) fn part_maps(
+pub(in crate::maps) fn part_maps(
     part: &MapShape,
     whole: &MapShape,
     side: Side,
