@@ -41,7 +41,7 @@ fn losses(sides: &Sides<'_>, anchors: &[(usize, usize)], x: usize, n: usize) -> 
 }
 
 /// Places with all of the first `n` landmarks as anchors.
-pub(super) fn placed_again(sides: &Sides<'_>, places: &Places, n: usize, fineness: Fineness) -> Places {
+pub(super) fn placed_again(sides: &Sides<'_>, places: &[usize], n: usize, fineness: Fineness) -> Places {
     let n = n.min(sides.n_landmarks()[0]).min(places.len());
     let anchors: Vec<(usize, usize)> = (0..n).map(|l| (l, places[l])).collect();
     placed(sides, &anchors, fineness)
@@ -57,7 +57,7 @@ pub(super) struct Changes {
 }
 
 impl Changes {
-    pub(super) fn of(sides: &Sides<'_>, places: &Places) -> Self {
+    pub(super) fn of(sides: &Sides<'_>, places: &[usize]) -> Self {
         let n = sides.n_landmarks()[0].min(places.len());
         let change = |l: usize, x: usize| {
             let found = sides.in_whole[(places[x], places[l])];

@@ -154,7 +154,7 @@ fn best(sides: &Sides<'_>, found: &[Candidate], side: Side) -> Result<Option<Sur
 }
 
 /// How far the images of samples are apart, on average.
-fn gap(sides: &Sides<'_>, a: &Places, b: &Places) -> f64 {
+fn gap(sides: &Sides<'_>, a: &[usize], b: &[usize]) -> f64 {
     a.iter().zip(b).map(|(y, z)| sides.in_whole[(*y, *z)]).sum::<f64>() / a.len().max(1) as f64
 }
 
@@ -193,7 +193,7 @@ fn refined(
 
 /// The map of the first `n` eigenfunctions of the whole to those of the part with eigenvalues as low, at most `most`, by least
 /// squares over the samples.
-fn functional(sides: &Sides<'_>, places: &Places, n: usize, most: usize) -> Option<Matrix> {
+fn functional(sides: &Sides<'_>, places: &[usize], n: usize, most: usize) -> Option<Matrix> {
     let n = n.min(sides.whole.vectors.ncols());
     // Eigenvalues at unit area; those of the part in the unit of the whole are larger.
     let last = sides.whole.values[n - 1] * sides.scale().powi(2);
@@ -206,7 +206,7 @@ fn functional(sides: &Sides<'_>, places: &Places, n: usize, most: usize) -> Opti
 }
 
 /// How far a map preserves orientation.
-fn orientation(sides: &Sides<'_>, places: &Places) -> Option<f64> {
+fn orientation(sides: &Sides<'_>, places: &[usize]) -> Option<f64> {
     let oriented = [sides.part.oriented.as_ref()?, sides.whole.oriented.as_ref()?];
     let [n, k] = ORIENTED;
     let n = n.min(sides.whole.vectors.ncols());
@@ -221,7 +221,7 @@ fn orientation(sides: &Sides<'_>, places: &Places) -> Option<f64> {
 }
 
 /// How far the map of functions is from one of a part, whose rows are orthonormal: `|C C' - I|² / k`.
-fn defect(sides: &Sides<'_>, places: &Places) -> f64 {
+fn defect(sides: &Sides<'_>, places: &[usize]) -> f64 {
     let Some(map) = functional(sides, places, FEW_FUNCTIONS, places.len() / 5) else { return 1.0 };
     // The eigenfunctions of the whole have norm 1 over its area.
     let map = map * sides.scale();

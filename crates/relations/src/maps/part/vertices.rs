@@ -3,7 +3,6 @@
 use linalg::Matrix;
 use rayon::prelude::*;
 
-use super::places::Places;
 use super::sides::{Sides, between};
 use descriptors::DescriptorError;
 
@@ -42,7 +41,7 @@ fn neighbors(sides: &Sides<'_>) -> Vec<Vec<usize>> {
 
 /// The vertex of the whole for each vertex of the part: near the place of its sample, the one whose distances from the images
 /// of the landmarks fit best.
-pub(super) fn all_vertices(sides: &Sides<'_>, places: &Places) -> Result<Vec<usize>, DescriptorError> {
+pub(super) fn all_vertices(sides: &Sides<'_>, places: &[usize]) -> Result<Vec<usize>, DescriptorError> {
     let (part, whole) = (sides.part, sides.whole);
     let near = neighbors(sides);
     let all: Vec<usize> = (0..whole.n_vertices()).collect();
