@@ -12,10 +12,6 @@ use descriptors::DescriptorError;
 /// larger one is mapped as a whole, and of a smaller one too little is known. Safety limits.
 const SHARES: [f64; 2] = [0.25, 0.92];
 
-/// Maps of a part must change distances by less than this share of what maps of wholes change them by. Where a plane has cut
-/// off 30 % of a built-in body, it is a third or less.
-const CLEARLY_BETTER: f64 = 0.7;
-
 /// The best maps of the first surface to the second, one for each orientation: the direct one first, unless it distorts
 /// distances clearly more.
 ///
@@ -54,7 +50,7 @@ pub fn map_surfaces(
     let [part, whole] = if side == Side::First { [a, b] } else { [b, a] };
     let of_part = part_maps(part, whole, side, options, observer)?;
     let least = |maps: &[SurfaceMap]| maps.iter().map(|map| map.distortion).fold(f64::INFINITY, f64::min);
-    Ok(if least(&of_part) < CLEARLY_BETTER * least(&of_wholes) { of_part } else { of_wholes })
+    Ok(if least(&of_part) < least(&of_wholes) { of_part } else { of_wholes })
 }
 
 /// The surface that may be a part of the other; `None` if neither has a boundary and is much smaller.
