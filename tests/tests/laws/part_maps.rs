@@ -84,7 +84,7 @@ fn a_part_is_mapped_to_where_it_was_in_another_pose_and_back() {
         let PartOfWhole { part: side, covered, .. } = part_of(map);
         let error = part.error(&whole, map, unit);
         println!("{kind:?}: error {error:.4}, {covered:.3} covered, distortion {:.4}", map.distortion);
-        assert!(*side == Side::First && (0.6..0.8).contains(covered), "{side:?}: {covered}");
+        assert!(*side == Side::First && (0.6..0.85).contains(covered), "{side:?}: {covered}");
         assert!(error < 0.07 && map.vertices.iter().all(Option::is_some), "{kind:?}: {error}");
     }
     // Back: what is missing has no partner.

@@ -11,7 +11,7 @@ const PROBED: usize = 8;
 
 /// A vertex of the whole has a partner if the image of one is at most so many times as far as the images are from each other
 /// on average. A convention.
-const REACH: f64 = 2.5;
+const REACH: f64 = 2.0;
 
 /// The part, seen from the whole.
 pub(super) struct Coverage {
