@@ -27,6 +27,8 @@ pub(crate) struct BodyModel {
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 struct BodyDescription {
+    /// The file whose parts and chains come first.
+    extends: Option<String>,
     area: f64,
     spacing: f64,
     /// The angle (degrees) about the y axis by which the topmost joints of legs turn in a pose.
@@ -198,9 +200,16 @@ impl BodyDescription {
         found
     }
 
-    /// A file with the upper half of a man, if it says so.
+    /// A file with the body that it extends and the upper half of a man, if it says so.
     fn whole(text: &str) -> Self {
         let mut found = Self::read(text);
+        if let Some(name) = found.extends.take() {
+            assert_eq!(name, "david", "the only body that others extend");
+            let mut base = Self::whole(include_str!("../bodies/david.toml"));
+            base.parts.append(&mut found.parts);
+            base.chains.append(&mut found.chains);
+            (found.parts, found.chains) = (base.parts, base.chains);
+        }
         let Some(ManAt { offset, grain }) = found.man.take() else { return found };
         let mut man = Self::read(include_str!("../bodies/man.toml"));
         let shift = |at: &mut [f64]| at.iter_mut().zip(offset).for_each(|(x, by)| *x += by);

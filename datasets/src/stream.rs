@@ -40,13 +40,17 @@ impl Purpose {
     }
 }
 
+/// Families whose streams are numbered together, before those of [`Purpose::Damage`].
+const FAMILIES: u64 = 3;
+
 /// A stream of random numbers that depends only on seed, family, pose and purpose.
 #[derive(Debug, Clone)]
 pub(crate) struct Stream(ChaCha8Rng);
 
 impl Stream {
     pub(crate) fn new(seed: u64, family: usize, pose: usize, purpose: Purpose) -> Self {
-        Self::numbered(seed, (pose as u64) * 16 + (family as u64) * 4 + purpose.number())
+        let (group, family) = (family as u64 / FAMILIES, family as u64 % FAMILIES);
+        Self::numbered(seed, (group << 62) | ((pose as u64) * 16 + family * 4 + purpose.number()))
     }
 
     /// The stream of a creature, none of those of [`new`](Self::new).

@@ -26,6 +26,11 @@ const TOSCA_CLASSES: [&str; 12] = [
     "victoria", "wolf",
 ];
 
+/// The classes of TOSCA of which whole maps are known, sorted, and the least number of vertices of their shapes in full
+/// resolution.
+const MAPPED_CLASSES: [&str; 3] = ["cat", "david", "gorilla"];
+const FULL_RESOLUTION: usize = 20_000;
+
 const VERTICES: usize = 3400;
 
 /// Where the shapes come from, on the command line.
@@ -43,7 +48,8 @@ pub(crate) struct ShapeSource {
     /// folder has them; else all]
     #[arg(long, value_delimiter = ',', value_name = "CLASS,...")]
     classes: Vec<String>,
-    /// Built-in families: `articulated` (30 shapes), `creatures:FxP` (F random families of P shapes each), or both
+    /// Built-in families: `articulated` (30 shapes), `creatures:FxP` (F random families of P shapes each), `parts:NxC` (C
+    /// copies each of N mechanical parts), or several of them
     #[arg(
         long,
         value_delimiter = ',',
@@ -168,6 +174,10 @@ impl SurfaceCollection {
             Setting::Paper
         } else if BTreeSet::from_iter(&self.classes).into_iter().eq(TOSCA_CLASSES) {
             Setting::Tosca
+        } else if BTreeSet::from_iter(&self.classes).into_iter().eq(MAPPED_CLASSES)
+            && self.shapes.iter().all(|shape| shape.surface.mesh().n_vertices() >= FULL_RESOLUTION)
+        {
+            Setting::FullResolution
         } else {
             Setting::Other
         }
@@ -212,6 +222,9 @@ pub(crate) enum Setting {
     Paper,
     /// All classes of TOSCA from a folder.
     Tosca,
+    /// The classes of TOSCA whose shapes correspond vertex by vertex, in full resolution, from a folder. Only what names it
+    /// applies to it.
+    FullResolution,
     /// Any other collection; no expectation applies.
     Other,
 }

@@ -5,6 +5,8 @@ use std::str::FromStr;
 
 use datasets::{ArticulatedOptions, CreatureOptions, DatasetError, LabeledShape, articulated, creatures};
 
+use crate::parts::parts;
+
 /// Built-in families.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Families {
@@ -12,6 +14,8 @@ pub(crate) enum Families {
     Articulated,
     /// Creatures: the number of families, and of shapes of each.
     Creatures(usize, usize),
+    /// Mechanical parts: the number of parts, and of copies of each. Their meshes are as fine as they need to be.
+    Parts(usize, usize),
 }
 
 impl Families {
@@ -22,6 +26,7 @@ impl Families {
             Self::Creatures(n_families, n_poses) => {
                 creatures(&CreatureOptions { seed, n_families, n_poses, n_vertices })
             }
+            Self::Parts(n_parts, n_copies) => Ok(parts(seed, n_parts, n_copies)),
         }
     }
 }
@@ -31,13 +36,19 @@ impl FromStr for Families {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let counts = || {
-            let (families, poses) = text.strip_prefix("creatures:")?.split_once('x')?;
-            let [families, poses] = [families, poses].map(|n| n.parse().ok().filter(|n| *n > 0));
-            Some(Self::Creatures(families?, poses?))
+            let (name, counts) = text.split_once(':')?;
+            let (classes, shapes) = counts.split_once('x')?;
+            let [classes, shapes] = [classes, shapes].map(|n| n.parse().ok().filter(|n| *n > 0));
+            match name {
+                "creatures" => Some(Self::Creatures(classes?, shapes?)),
+                "parts" => Some(Self::Parts(classes?, shapes?)),
+                _ => None,
+            }
         };
         let found = if text == "articulated" { Some(Self::Articulated) } else { counts() };
         found.ok_or_else(|| {
-            "use `articulated`, or `creatures:40x8` for 40 families of 8 shapes each; separate several by commas"
+            "use `articulated`, `creatures:40x8` for 40 families of 8 shapes each, or `parts:56x4` for 4 copies each of 56 \
+             mechanical parts; separate several by commas"
                 .to_owned()
         })
     }
@@ -48,6 +59,7 @@ impl fmt::Display for Families {
         match self {
             Self::Articulated => f.write_str("articulated"),
             Self::Creatures(families, poses) => write!(f, "creatures:{families}x{poses}"),
+            Self::Parts(parts, copies) => write!(f, "parts:{parts}x{copies}"),
         }
     }
 }
@@ -58,10 +70,11 @@ mod tests {
 
     #[test]
     fn families_are_written_as_they_are_read() {
-        for text in ["articulated", "creatures:40x8"] {
+        for text in ["articulated", "creatures:40x8", "parts:56x4"] {
             assert_eq!(text.parse::<Families>().unwrap().to_string(), text);
         }
-        for text in ["", "cats", "creatures", "creatures:40", "creatures:0x8", "creatures:4x-1"] {
+        for text in ["", "cats", "creatures", "creatures:40", "creatures:0x8", "creatures:4x-1", "gears:4x4"]
+        {
             assert!(text.parse::<Families>().unwrap_err().contains("creatures:40x8"), "{text}");
         }
     }

@@ -18,6 +18,7 @@ mod gallery;
 mod lead;
 mod machine;
 mod paper;
+mod parts;
 mod prose;
 mod quoted;
 mod run;

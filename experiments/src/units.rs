@@ -5,17 +5,22 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use base::terminal::Bars;
-use canonform::Observer;
+use canonform::{Observer, Surface};
 use datasets::{ArticulatedOptions, Family, LabeledShape, articulated};
-use descriptors::{FormDistance, ShapeMetric, ShapePair, SignatureKind};
+use descriptors::{FormDistance, ShapeMetric, ShapePair, SignatureKind, rigid_signature};
 use linalg::Matrix;
 use rayon::prelude::*;
 
 use crate::described::DescribedBody;
+use crate::parts::parts;
 use crate::thresholds::{self, relatives};
 
 /// Vertices of the shapes of each seed, in turn, since collections mix resolutions.
 const VERTICES: [usize; 5] = [3400, 1500, 8000, 2500, 5000];
+
+/// Mechanical parts whose rigid signatures are measured, and copies of each.
+const PARTS: usize = 110;
+const COPIES: usize = 4;
 
 /// `experiments units`: for every signature and for aligned forms, the root mean square distance between two shapes of
 /// one built-in family with poses and triangulations of their own, and the ratio of the mean squared distance between
@@ -45,7 +50,7 @@ pub(crate) fn units(seeds: usize, quiet: bool) -> Result<ExitCode> {
         .filter(|(a, b)| a.label == b.label && a.seed == b.seed)
         .collect();
     let mut parts = Vec::new();
-    for kind in SignatureKind::ALL {
+    for kind in SignatureKind::ALL.into_iter().filter(|kind| *kind != SignatureKind::Rigid) {
         let distance = |(a, b): &BodyPair<'_>| {
             let of = |shape: &DescribedBody| shape.description.signature(kind).cloned();
             of(a).zip(of(b)).map_or(f64::NAN, |(a, b)| a.distance(&b))
@@ -91,6 +96,13 @@ pub(crate) fn units(seeds: usize, quiet: bool) -> Result<ExitCode> {
             "{name:<18} {unit:>7.4} {separation:>11.1} {bodies:>10.1} {components:>11.1} {weight:>7.4} {used_unit:>14.4} {used_weight:>7.4}"
         )?;
     }
+    let [copies, family] = rigid()?;
+    let [unit, weight] = [ShapeMetric::unit, ShapeMetric::weight].map(|of| of(SignatureKind::Rigid));
+    let wanted = (ShapeMetric::SAME_SHAPE.at * copies / family).powi(2);
+    writeln!(
+        out,
+        "rigid signature of parts: copies {copies:.4}, one family {family:.4}; weight {wanted:.5}; in use {unit}, {weight}"
+    )?;
     shapes.extend(others);
     thresholds::print(&shapes, &mut out)?;
     Ok(ExitCode::SUCCESS)
@@ -112,6 +124,24 @@ fn components(shapes: &[DescribedBody], kind: SignatureKind) -> f64 {
         covariance += centred.transpose() * centred;
     }
     covariance.trace().powi(2) / covariance.norm_squared()
+}
+
+/// Root mean square distances by the rigid signature: between copies of a mechanical part, and between parts of one family.
+fn rigid() -> Result<[f64; 2]> {
+    let described = |shape: &LabeledShape| -> Result<_> {
+        let surface = Surface::new(&shape.mesh, &Default::default(), &())?.for_description(&())?;
+        Ok((shape.label.clone(), rigid_signature(surface.mesh())))
+    };
+    let shapes = parts(0, PARTS, COPIES);
+    let found = shapes.par_iter().map(described).collect::<Result<Vec<_>>>()?;
+    // Names of parts begin with their family.
+    let family = |label: &str| label.split('-').next().map(str::to_owned);
+    let rms = |of: &dyn Fn(&str, &str) -> bool| {
+        let pairs = found.iter().enumerate().flat_map(|(i, a)| found[..i].iter().map(move |b| (a, b)));
+        let pairs = pairs.filter(|(a, b)| of(&a.0, &b.0));
+        mean_square(pairs.map(|(a, b)| a.1.distance(&b.1))).sqrt()
+    };
+    Ok([rms(&|a, b| a == b), rms(&|a, b| a != b && family(a) == family(b))])
 }
 
 type BodyPair<'a> = (&'a DescribedBody, &'a DescribedBody);

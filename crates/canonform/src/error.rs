@@ -201,6 +201,9 @@ pub enum Error {
         /// The limit.
         limit_mib: usize,
     },
+    /// What is known of a map does not fit the meshes.
+    #[error("{0}")]
+    UnusableMap(String),
     /// A folder or a text file that cannot be read.
     #[error(transparent)]
     File(#[from] FileError),

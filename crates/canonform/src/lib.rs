@@ -100,7 +100,10 @@ pub use compare::{
     Compared, ComparedMesh, Comparison, FaceAgreement, FormAlignments, MeshComparison, Overlay, Residual,
     compare, compare_meshes, embedded_distances, form_alignments,
 };
-pub use correspond::{CorrespondOptions, Correspondence, MappedSurface, VertexMap, correspond};
+pub use correspond::{
+    CollectionMaps, CorrespondOptions, Correspondence, FacePoint, MappedSurface, Mapping, PairMap, PointMap,
+    VertexMap, correspond, correspond_all,
+};
 pub use error::{Error, Remedy};
 pub use fields::{
     DistanceField, FieldBounds, FieldFacts, FieldFault, FieldOptions, Finish, PairDistance, PairKind,
@@ -113,8 +116,8 @@ pub use form::{
 };
 pub use input::{AllPairs, Asymmetry, PathPoint, SurfacePath, distance_rows, read_surface};
 pub use relations::{
-    Basis, Because, Change, Handedness, MeshGeometry, MeshOverlay, Parts, Relation, RelationKind, Side,
-    SurfaceGap, UnitChange,
+    Basis, Because, Change, Handedness, KnownMap, MeshGeometry, MeshOverlay, Parts, Relation, RelationKind,
+    Side, SurfaceGap, UnitChange,
 };
 pub use retrieval::RankBy;
 pub use shape_index::{

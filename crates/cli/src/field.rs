@@ -23,6 +23,12 @@ pub(crate) fn read_numbers(path: &Path) -> Result<(usize, Vec<f64>)> {
     Ok((n_columns, values))
 }
 
+/// Whether the numbers of a NumPy array are whole by their type.
+pub(crate) fn is_whole(path: &Path) -> Result<bool> {
+    let kind = NpyFile::new(BufReader::new(File::open(path)?))?.dtype().descr();
+    Ok(!kind.contains('f'))
+}
+
 /// Rows of equal length, one after the other.
 struct Rows {
     n_columns: usize,

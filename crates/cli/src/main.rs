@@ -6,6 +6,7 @@ mod commands;
 mod field;
 mod input;
 mod output;
+mod pairs;
 mod remedy;
 
 use std::process::ExitCode;

@@ -34,6 +34,6 @@ pub use prepared::PreparedForm;
 pub use shape_pair::{PreparedShape, ShapePair};
 pub use signature::{
     Signature, SignatureKind, d2_histogram, geodesic_spectrum, heat_kernel_signature, moment_signature,
-    shape_dna, wave_kernel_signature, wave_kernels,
+    rigid_signature, shape_dna, wave_kernel_signature, wave_kernels,
 };
 pub use spectrum::LaplaceSpectrum;

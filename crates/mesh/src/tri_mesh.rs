@@ -1,6 +1,6 @@
 //! Triangle meshes in space.
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Matrix3, Point3, Vector3};
 use surface::{IntrinsicMesh, Topology, VertexId, power_of_two_below};
 
 /// An indexed triangle mesh: vertex positions and faces, exactly as they were read.
@@ -101,6 +101,23 @@ impl TriMesh {
             a.coords.dot(&b.coords.cross(&c.coords)) / 6.0
         };
         (0..self.n_faces()).map(cone).sum()
+    }
+
+    /// The centroid of the surface, and its second moments about it: the mean of `(x - c)(x - c)'` over the area, exact for
+    /// flat faces.
+    #[must_use]
+    pub fn moments(&self) -> (Vector3<f64>, Matrix3<f64>) {
+        let (mut first, mut second, mut total) = (Vector3::zeros(), Matrix3::zeros(), 0.0);
+        for (f, area) in self.face_areas().enumerate() {
+            let corners = self.triangle(f).map(|p| p.coords);
+            let sum: Vector3<f64> = corners.iter().sum();
+            first += sum * (area / 3.0);
+            let squares: Matrix3<f64> = corners.iter().map(|p| p * p.transpose()).sum();
+            second += (squares + sum * sum.transpose()) * (area / 12.0);
+            total += area;
+        }
+        let centroid = first / total;
+        (centroid, second / total - centroid * centroid.transpose())
     }
 
     /// The lumped mass of each vertex, a third of the area of its faces, in squared mesh units.

@@ -75,7 +75,7 @@ impl Exception {
                 Self::Point
             }
             Error::Field(_) => Self::File,
-            Error::BadDescription { .. } | Error::NoSuchShard { .. } => Self::Option,
+            Error::BadDescription { .. } | Error::NoSuchShard { .. } | Error::UnusableMap(_) => Self::Option,
             Error::Descriptor(DescriptorError::UnknownSignature { .. }) => Self::Option,
             Error::Index(IndexError::NoSuchShape { .. }) => Self::NoSuchShape,
             Error::Index(IndexError::Io { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => {

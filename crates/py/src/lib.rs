@@ -42,7 +42,7 @@ mod _canonform {
     #[pymodule_export]
     use crate::index::{Index, content_hashes, list_folder, merge_indexes};
     #[pymodule_export]
-    use crate::matching::match_surfaces;
+    use crate::matching::{map_basis, map_points, match_collection, match_surfaces};
     #[pymodule_export]
     use crate::nystrom::{Extension, SampleSearch, nystrom};
     #[pymodule_export]

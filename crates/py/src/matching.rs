@@ -1,50 +1,181 @@
-//! Maps between two surfaces.
+//! Maps between surfaces.
 
-use canonform::{VertexMap, correspond};
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
+use canonform::linalg::Matrix;
+use canonform::surface::VertexId;
+use canonform::{
+    CorrespondOptions, KnownMap, Mapping, PointMap, Side, VertexMap, correspond, correspond_all,
+};
+use numpy::PyUntypedArrayMethods;
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use report::color::{perceptual, place_colors};
 
 use crate::arrays;
+use crate::points::vertex;
 use crate::record::json;
 use crate::run::run;
 use crate::settings::Settings;
 use crate::surface::Surface;
 
-type MapArrays<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray2<f64>>);
+/// The partner of each vertex, its confidence, and the map of functions.
+type MapArrays<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>);
 type Maps<'py> = (String, Vec<[Option<MapArrays<'py>>; 2]>, Bound<'py, PyArray2<u8>>);
 
-/// The maps as the JSON of `canonform match`; the partner of each vertex and the map of functions under each of them and its
-/// alternative; and a colour for each vertex of the second input, by its place in the form.
+/// Pairs of vertices, as rows.
+type Pairs<'py> = PyReadonlyArray2<'py, i64>;
+
+/// Functions at the vertices of both surfaces, as columns.
+type Functions<'py> = (PyReadonlyArray2<'py, f64>, PyReadonlyArray2<'py, f64>);
+
+/// Faces, their corners and the weights of these.
+type Points<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray2<i64>>, Bound<'py, PyArray2<f64>>);
+
+/// Eigenvalues, eigenfunctions as columns, and the areas around the vertices.
+type Basis<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>);
+
+fn pairs_of(pairs: &Pairs<'_>) -> PyResult<Vec<[VertexId; 2]>> {
+    let pairs = pairs.as_slice()?.as_chunks::<2>().0.iter();
+    pairs.map(|[a, b]| Ok([vertex(*a)?, vertex(*b)?])).collect()
+}
+
+fn matrix_of(values: &PyReadonlyArray2<'_, f64>) -> PyResult<Matrix> {
+    let [rows, columns] = [values.shape()[0], values.shape()[1]];
+    Ok(Matrix::from_row_slice(rows, columns, values.as_slice()?))
+}
+
+fn known(
+    landmarks: &Pairs<'_>,
+    initial: Option<PyReadonlyArray1<'_, i64>>,
+    functions: Option<Functions<'_>>,
+) -> PyResult<KnownMap> {
+    let partner = |number: &i64| if *number == -1 { Ok(None) } else { vertex(*number).map(Some) };
+    let initial = match &initial {
+        Some(initial) => initial.as_slice()?.iter().map(partner).collect::<PyResult<_>>()?,
+        None => Vec::new(),
+    };
+    let functions = match &functions {
+        Some((f, g)) => Some([matrix_of(f)?, matrix_of(g)?]),
+        None => None,
+    };
+    Ok(KnownMap { landmarks: pairs_of(landmarks)?, initial, functions })
+}
+
+fn arrays_of<'py>(py: Python<'py>, map: &VertexMap) -> PyResult<MapArrays<'py>> {
+    let number = |v: &Option<VertexId>| v.map_or(-1, |v| i64::from(v.0));
+    let vertices = map.vertices.iter().map(number).collect::<Vec<_>>().into_pyarray(py);
+    let confidence = arrays::vector(py, map.vertex_confidence.clone());
+    Ok((vertices, confidence, arrays::of_matrix(py, &map.functional)?))
+}
+
+/// The maps as the JSON of `canonform match`; the arrays of each of them and of its alternative; and a colour for each vertex of
+/// the first input, by its place in the form.
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn match_surfaces<'py>(
     py: Python<'py>,
     a: &Surface,
     b: &Surface,
+    landmarks: Pairs<'py>,
+    initial: Option<PyReadonlyArray1<'py, i64>>,
+    functions: Option<Functions<'py>>,
     settings: &str,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Maps<'py>> {
     let settings = Settings::parse(settings)?;
     let [of_a, of_b] = [settings.correspond(a.inner.repair)?, settings.correspond(b.inner.repair)?];
+    let known = known(&landmarks, initial, functions)?;
     let (found, colors) = run(py, &settings.budget()?, progress.as_ref(), |observer| {
         let sides = [a.matched(&of_a, observer)?, b.matched(&of_b, observer)?];
-        let found = correspond(&sides[0], &sides[1], &of_a, observer)?;
-        let colors = place_colors(sides[1].shape.form_points());
-        Ok((found, b.inner.in_input_order(&colors, perceptual(f64::NAN))))
+        let options = CorrespondOptions { known, ..of_a };
+        let found = correspond(&sides[0], &sides[1], &options, observer)?;
+        let colors = place_colors(sides[0].shape.form_points());
+        Ok((found, a.inner.in_input_order(&colors, perceptual(f64::NAN))))
     })?;
-    let arrays = |map: &VertexMap| -> PyResult<MapArrays<'py>> {
-        let number = |v: &Option<canonform::surface::VertexId>| v.map_or(-1, |v| i64::from(v.0));
-        let vertices = map.vertices.iter().map(number).collect::<Vec<_>>().into_pyarray(py);
-        let k = map.functional.ncols();
-        let rows = arrays::picked_rows(&map.functional, (0..k).map(Some));
-        Ok((vertices, arrays::matrix(py, rows, [k, k])?))
-    };
-    let maps = found
-        .maps
-        .iter()
-        .map(|map| Ok([Some(arrays(map)?), map.alternative.as_deref().map(arrays).transpose()?]));
+    let maps = found.maps.iter().map(|map| {
+        let other = map.alternative.as_deref().map(|map| arrays_of(py, map)).transpose()?;
+        Ok([Some(arrays_of(py, map)?), other])
+    });
     let maps = maps.collect::<PyResult<Vec<_>>>()?;
     let n_colors = colors.len();
     let colors = colors.into_flattened().into_pyarray(py).reshape([n_colors, 3])?;
     Ok((json(&found), maps, colors))
+}
+
+/// The maps of all pairs of several surfaces as JSON, and the arrays of each.
+#[pyfunction]
+pub(crate) fn match_collection<'py>(
+    py: Python<'py>,
+    surfaces: Vec<PyRef<'py, Surface>>,
+    settings: &str,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<(String, Vec<MapArrays<'py>>)> {
+    let settings = Settings::parse(settings)?;
+    let surfaces: Vec<&Surface> = surfaces.iter().map(|surface| &**surface).collect();
+    let options: Vec<CorrespondOptions> =
+        surfaces.iter().map(|surface| settings.correspond(surface.inner.repair)).collect::<PyResult<_>>()?;
+    let found = run(py, &settings.budget()?, progress.as_ref(), |observer| {
+        let sides =
+            surfaces.iter().zip(&options).map(|(surface, options)| surface.matched(options, observer));
+        let sides = sides.collect::<Result<Vec<_>, _>>()?;
+        let sides: Vec<_> = sides.iter().map(|side| &**side).collect();
+        correspond_all(&sides, &options.first().cloned().unwrap_or_default(), observer)
+    })?;
+    let maps = found.pairs.iter().map(|pair| arrays_of(py, &pair.map)).collect::<PyResult<_>>()?;
+    Ok((json(&found), maps))
+}
+
+/// The points inside the faces of the other surface that a map takes the vertices or faces of one side to: faces, corners and
+/// weights; -1 and NaN for what the repair dropped.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+pub(crate) fn map_points<'py>(
+    py: Python<'py>,
+    a: &Surface,
+    b: &Surface,
+    functional: PyReadonlyArray2<'py, f64>,
+    landmarks: Pairs<'py>,
+    of_second: bool,
+    of_faces: bool,
+    settings: &str,
+) -> PyResult<Points<'py>> {
+    let settings = Settings::parse(settings)?;
+    let [of_a, of_b] = [settings.correspond(a.inner.repair)?, settings.correspond(b.inner.repair)?];
+    let (functional, landmarks) = (matrix_of(&functional)?, pairs_of(&landmarks)?);
+    let of = if of_second { Side::Second } else { Side::First };
+    let PointMap { points } = run(py, &settings.budget()?, None, |observer| {
+        let sides = [a.matched(&of_a, observer)?, b.matched(&of_b, observer)?];
+        let mapping =
+            Mapping { shapes: [&*sides[0], &*sides[1]], functional: &functional, landmarks: &landmarks };
+        Ok(if of_faces { mapping.faces(of) } else { mapping.vertices(of) })
+    })?;
+    let faces: Vec<i64> = points.iter().map(|p| p.map_or(-1, |p| i64::from(p.face.0))).collect();
+    let corners: Vec<i64> =
+        points.iter().flat_map(|p| p.map_or([-1; 3], |p| p.corners.map(|v| i64::from(v.0)))).collect();
+    let weights = points.iter().flat_map(|p| p.map_or([f64::NAN; 3], |p| p.weights)).collect();
+    let n = points.len();
+    Ok((
+        faces.into_pyarray(py),
+        corners.into_pyarray(py).reshape([n, 3])?,
+        arrays::matrix(py, weights, [n, 3])?,
+    ))
+}
+
+/// The eigenvalues and eigenfunctions in which maps of a surface are written, and the share of the area around each vertex: of
+/// the surface scaled to unit area.
+#[pyfunction]
+pub(crate) fn map_basis<'py>(py: Python<'py>, surface: &Surface, settings: &str) -> PyResult<Basis<'py>> {
+    let settings = Settings::parse(settings)?;
+    let options = settings.correspond(surface.inner.repair)?;
+    let spectrum = run(py, &settings.budget()?, None, |observer| {
+        Ok(surface.matched(&options, observer)?.shape.spectrum())
+    })?;
+    let inner = &surface.inner;
+    let map = &inner.repaired.input_to_repaired;
+    let mut masses = vec![0.0; map.len()];
+    spectrum.masses.iter().enumerate().for_each(|(v, mass)| {
+        masses[inner.input_vertex(VertexId::from(v)).index()] = *mass;
+    });
+    let rows = arrays::picked_rows(&spectrum.vectors, map.iter().map(|vertex| vertex.map(VertexId::index)));
+    let shape = [map.len(), spectrum.vectors.ncols()];
+    Ok((arrays::vector(py, spectrum.values), arrays::matrix(py, rows, shape)?, arrays::vector(py, masses)))
 }

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import pickle
+
 import canonform
 import numpy as np
+import pytest
 from canonform.datasets import Shape
+from canonform.errors import OptionError, PointError
 
 
 def test_both_maps_of_a_symmetric_pair_are_found(cats: list[Shape]) -> None:
@@ -14,6 +18,7 @@ def test_both_maps_of_a_symmetric_pair_are_found(cats: list[Shape]) -> None:
     for m in found.maps:
         assert m.vertices.shape == (a.n_vertices,) and m.vertices.dtype == np.int64
         assert 0 <= m.vertices.min() and m.vertices.max() < b.n_vertices
+        assert m.vertex_confidence.shape == (a.n_vertices,) and np.median(m.vertex_confidence) > 0.5
         assert 0 < m.distortion < 0.1
         assert m.confidence > 0.9 and m.alternative is None
         c = m.functional(30)
@@ -23,8 +28,92 @@ def test_both_maps_of_a_symmetric_pair_are_found(cats: list[Shape]) -> None:
     assert found._repr_html_().count("<img") == 3 and "direct" in repr(found)
 
 
-def test_values_are_carried_and_a_surface_matches_itself(cat: Shape) -> None:
+def test_a_surface_matches_itself_and_carries_its_own_values(cat: Shape) -> None:
     surface = cat.surface()
     maps = {m.kind: m for m in canonform.match(surface, surface).maps}
-    np.testing.assert_array_equal(maps["direct"].vertices, np.arange(surface.n_vertices))
-    np.testing.assert_array_equal(maps["direct"].carry(surface.vertices), surface.vertices)
+    m = maps["direct"]
+    np.testing.assert_array_equal(m.vertices, np.arange(surface.n_vertices))
+    for to in ("a", "b"):
+        np.testing.assert_allclose(m.transfer(surface.vertices, to), surface.vertices, atol=1e-6 * np.ptp(surface.vertices))
+        np.testing.assert_array_equal(m.transfer(np.arange(surface.n_vertices), to), np.arange(surface.n_vertices))
+        np.testing.assert_array_equal(m.transfer(np.arange(surface.n_faces), to), np.arange(surface.n_faces))
+
+
+def test_values_labels_and_points_are_carried_both_ways(cats: list[Shape]) -> None:
+    a, b = (shape.surface() for shape in cats)
+    m = next(m for m in canonform.match(a, b).maps if m.kind == "direct")
+    np.testing.assert_allclose(m.transfer(np.full(a.n_vertices, 2.5)), 2.5)
+    there = m.transfer(a.vertices)
+    back = m.transfer(there, to="a")
+    size = np.sqrt(a.area)
+    assert np.linalg.norm(back - a.vertices, axis=1).mean() < 0.01 * size
+    assert np.linalg.norm(there[m.vertices] - a.vertices, axis=1).mean() < 0.03 * size
+    names = np.where(a.vertices[:, 2] > 40, "upper", "lower")
+    assert (m.transfer(names)[m.vertices] == names).mean() > 0.95
+    assert m.transfer(names).dtype.kind == "U"
+    points = m.points()
+    assert points.weights.shape == (a.n_vertices, 3) and len(points.at) == a.n_vertices
+    np.testing.assert_allclose(points.weights.sum(axis=1), 1)
+    np.testing.assert_array_equal(points.corners, b.faces[points.faces])
+    np.testing.assert_allclose(points.interpolate(b.vertices), m.transfer(b.vertices, to="a"))
+    assert b.path(points.at[0], 5).length > 0
+    again = pickle.loads(pickle.dumps(m))
+    np.testing.assert_array_equal(again.transfer(names), m.transfer(names))
+    with pytest.raises(OptionError, match="3 rows"):
+        m.transfer([1.0, 2.0, 3.0])
+    with pytest.raises(OptionError, match="to="):
+        m.transfer(names, to="c")  # type: ignore[arg-type]
+
+
+def test_the_functional_map_takes_coefficients_to_each_other(cats: list[Shape]) -> None:
+    a, b = (shape.surface() for shape in cats)
+    m = canonform.match(a, b).best
+    k = 40
+    phi, psi = m.bases(k)
+    assert phi.functions.shape == (a.n_vertices, k)
+    np.testing.assert_allclose(phi.masses.sum(), 1)
+    np.testing.assert_allclose(psi.functions.T @ (psi.masses[:, None] * psi.functions), np.eye(k), atol=1e-6)
+    # A smooth function of b, pulled back by the matrix and by the points.
+    smooth = psi.functions[:, :10] @ np.linspace(1, 2, 10)
+    by_matrix = phi.synthesize(m.functional(k) @ psi.project(smooth))
+    by_points = m.transfer(smooth, to="a")
+    assert np.linalg.norm(by_matrix - by_points) < 0.1 * np.linalg.norm(by_points)
+    with pytest.raises(OptionError, match="k=1000"):
+        m.bases(1000)
+
+
+def test_landmarks_initial_maps_and_descriptors(cats: list[Shape]) -> None:
+    a, b = (shape.surface() for shape in cats)
+    direct, mirrored = sorted(canonform.match(a, b).maps, key=lambda m: m.kind)
+    # Where the maps are farthest apart.
+    far = int(np.linalg.norm(b.vertices[direct.vertices] - b.vertices[mirrored.vertices], axis=1).argmax())
+    for m in (direct, mirrored):
+        found = canonform.match(a, b, landmarks=[(far, m.vertices[far])])
+        assert [other.kind for other in found.maps] == [m.kind]
+        assert found.best.vertices[far] == m.vertices[far]
+    assert canonform.match(a, b, initial=mirrored.vertices).best.kind == "mirrored"
+    side = np.sin(a.vertices[:, 1] / 10)
+    there = direct.transfer(side)
+    assert "direct" in [m.kind for m in canonform.match(a, b, descriptors=(side, there)).maps]
+    with pytest.raises(PointError, match="5000"):
+        canonform.match(a, b, landmarks=[(0, 5000)])
+    with pytest.raises(OptionError, match="pairs"):
+        canonform.match(a, b, landmarks=[1, 2, 3])
+    with pytest.raises(OptionError, match="3 rows"):
+        canonform.match(a, b, initial=[1, 2, 3])
+    with pytest.raises(OptionError, match="1 and 2"):
+        canonform.match(a, b, descriptors=(side, np.c_[there, there]))
+
+
+def test_maps_of_several_surfaces_agree() -> None:
+    shapes = canonform.datasets.generate("cat", poses=3, n_vertices=1000)
+    found = canonform.match_all(shapes)
+    assert found.pairs == [(0, 1), (0, 2), (1, 2)] and found.n_cycles == 1 and not found.replaced
+    assert found.cycles_after < found.cycles_before < 0.06
+    m = found[0, 2]
+    assert m.kind == "direct" and m.vertices.shape == (1000,)
+    cycle = found[0, 1].transfer(np.arange(1000.0), to="a")
+    assert cycle.shape == (1000,)
+    with pytest.raises(OptionError, match="no map"):
+        found[2, 0]
+    assert "cycles" in repr(found)

@@ -9,9 +9,12 @@ mod maps;
 mod outward;
 mod relation;
 
-pub use maps::{MapKind, MapOptions, MapShape, PartOfWhole, SurfaceMap, map_surfaces};
+pub use maps::{
+    ConsistentMaps, CycleReport, KnownMap, MapElements, MapKind, MapOptions, MapShape, PartOfWhole, SurfaceMap,
+    all_pairs, consistent_maps, map_surfaces, mapped_points,
+};
 pub use relation::{
     Basis, Because, Change, CutPiece, Difference, Dimension, Handedness, MeshGeometry, MeshOverlay,
-    NearestOnSurface, Parts, Relation, RelationKind, Side, SurfaceGap, TriangleTree, UnitChange, handedness,
-    in_four_digits,
+    NearestOnSurface, Parts, Relation, RelationKind, Side, SurfaceGap, SurfaceInvariants, TriangleTree,
+    UnitChange, handedness, in_four_digits,
 };

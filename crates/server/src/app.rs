@@ -12,6 +12,7 @@ use canonform::{
 
 use crate::cache::Cache;
 use crate::collection::{Collection, Served};
+use crate::duplicates::Duplicates;
 use crate::error::ApiError;
 use crate::load::VERTEX_BYTES;
 use crate::measured::Measured;
@@ -25,6 +26,7 @@ pub(crate) struct App {
     pub(crate) options: ServeOptions,
     pub(crate) work: Work,
     pub(crate) uploads: Arc<Places>,
+    pub(crate) duplicates: Duplicates,
     measured: Cache<Arc<Measured>>,
     pub(crate) thumbnails: Cache<Bytes>,
     queries: Cache<Arc<Query>>,
@@ -73,6 +75,7 @@ impl App {
             served: Served::open(index)?,
             work: Work::new(&options),
             uploads: Places::new(options.max_uploads),
+            duplicates: Duplicates::new(options.idle_time),
             // Thumbnails are smaller than meshes.
             measured: Cache::new(options.cache / 4 * 3),
             thumbnails: Cache::new(options.cache / 4),

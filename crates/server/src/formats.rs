@@ -18,7 +18,7 @@ mod tests {
 
     #[test]
     fn placeholders_are_replaced_by_all_formats() {
-        let page = filled_in(include_str!("page/index.html"));
+        let page = crate::page::whole(include_str!("page/index.html"));
         let description = filled_in(include_str!("../openapi.json"));
         for text in [&page, &description] {
             assert!(text.contains(&mesh_files()) && !text.contains("{{"));

@@ -14,6 +14,7 @@ mod app;
 mod cache;
 mod collection;
 mod connection;
+mod duplicates;
 mod error;
 mod formats;
 mod guard;

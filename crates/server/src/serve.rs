@@ -23,7 +23,7 @@ use crate::{api, connection, page};
 const RETRY_PAUSE: Duration = Duration::from_millis(100);
 
 /// Stack size of the threads that measure.
-const STACK: usize = 8 << 20;
+pub(crate) const STACK: usize = 8 << 20;
 
 /// A server with its address and its index, ready to [`run`](Self::run).
 pub struct Server {
@@ -129,6 +129,7 @@ impl Server {
         }
         drop(listener);
         refreshing.abort();
+        app.duplicates.cancel();
         let _ = tokio::time::timeout(options.farewell, graceful.shutdown()).await;
         Ok(())
     }
@@ -138,6 +139,7 @@ impl Server {
 async fn refresh(app: Arc<App>) {
     loop {
         tokio::time::sleep(app.options.index_check).await;
+        app.duplicates.cancel_unwanted();
         let shared = app.clone();
         // A panic while opening leaves the old index in service.
         let _ = tokio::task::spawn_blocking(move || shared.served.refresh()).await;

@@ -4,7 +4,8 @@ use std::collections::HashSet;
 use std::f64::consts::PI;
 
 use canonform_datasets::{
-    ArticulatedOptions, DatasetError, Family, LabeledShape, articulated, articulated_body, articulated_shape,
+    ArticulatedOptions, DatasetError, Family, LabeledShape, articulated, articulated_at_rest,
+    articulated_body, articulated_shape,
 };
 use mesh::{TriMesh, validate};
 use nalgebra::Point3;
@@ -91,18 +92,56 @@ fn winding_number(mesh: &TriMesh, p: Point3<f64>) -> f64 {
 #[test]
 fn hardly_any_skin_is_inside_the_body() {
     articulated(&options(1000)).unwrap().par_iter().for_each(|LabeledShape { name, mesh, .. }| {
-        let centers: Vec<Point3<f64>> = (0..mesh.n_faces())
-            .step_by(10)
-            .map(|f| {
-                let [a, b, c] = mesh.triangle(f);
-                let out = (b - a).cross(&(c - a)).normalize();
-                Point3::from((a.coords + b.coords + c.coords) / 3.0) + out * 0.3
-            })
-            .collect();
-        let inside = centers.iter().filter(|p| winding_number(mesh, **p) > 0.5).count();
         // Some skin folds inwards at bent knees and elbows.
-        assert!(inside * 20 <= centers.len(), "{name}: {inside} of {} faces", centers.len());
+        let inside = share_inside(mesh);
+        assert!(inside <= 0.05, "{name}: {inside}");
     });
+}
+
+/// The share of the skin that is inside the body.
+fn share_inside(mesh: &TriMesh) -> f64 {
+    let center = |f| {
+        let [a, b, c] = mesh.triangle(f);
+        let out = (b - a).cross(&(c - a)).normalize();
+        Point3::from((a.coords + b.coords + c.coords) / 3.0) + out * 0.3
+    };
+    let centers: Vec<Point3<f64>> = (0..mesh.n_faces()).step_by(10).map(center).collect();
+    let inside = centers.iter().filter(|p| winding_number(mesh, **p) > 0.5).count();
+    inside as f64 / centers.len() as f64
+}
+
+#[test]
+fn people_are_clean_spheres_of_the_same_size_whose_limbs_touch() {
+    let family = Family::Person;
+    assert!(!Family::all().contains(&family), "people are not in the dataset");
+    (0..family.n_shapes()).into_par_iter().for_each(|pose| {
+        let LabeledShape { name, label, mesh } = articulated_shape(family, pose, &options(3400)).unwrap();
+        assert_eq!((label.as_str(), name), ("person", format!("person{pose}")));
+        let report = validate(&mesh);
+        assert!(report.is_clean() && report.genus == Some(0), "{pose}: {report:?}");
+        assert_eq!((report.n_vertices, report.n_boundary_edges), (3400, 0));
+        assert!((report.area / 18_000.0 - 1.0).abs() < 0.04, "{pose}: area {}", report.area);
+        let inside = share_inside(&mesh);
+        println!("{pose}: {inside:.3} inside");
+        assert!(if pose == 0 { inside == 0.0 } else { inside < 0.05 }, "{pose}: {inside}");
+    });
+}
+
+#[test]
+fn all_bodies_of_a_family_rest_on_the_first_one() {
+    let rested = |body, pose| articulated_at_rest(Family::Person, body, pose, &options(1000)).unwrap();
+    let first = rested(0, 0);
+    assert_eq!(first.rest.positions.len(), first.shape.mesh.n_vertices());
+    let bounds = |mesh: &TriMesh| mesh.bounds().unwrap();
+    let [low, high] = bounds(&first.rest);
+    for (body, pose) in [(1, 0), (2, 3)] {
+        let found = rested(body, pose);
+        assert_eq!(found.rest.faces, found.shape.mesh.faces);
+        let [other_low, other_high] = bounds(&found.rest);
+        assert!((other_low - low).norm() < 4.0 && (other_high - high).norm() < 4.0, "{body}, {pose}");
+        let [low, high] = [bounds(&found.shape.mesh)[0], bounds(&found.shape.mesh)[1]];
+        assert!((high - low - (other_high - other_low)).norm() > 4.0, "the body has other proportions");
+    }
 }
 
 #[test]

@@ -6,9 +6,9 @@
 
 use anyhow::Result;
 use canonform::{Handedness, MeshGeometry, Relation, RelationKind};
-use datasets::{Damage, Diagonals, MechanicalPart, PartMesh, mechanical_parts};
+use datasets::{Damage, MechanicalPart, PartMesh, mechanical_parts};
 use descriptors::ShapeDistance;
-use mesh::{TriMesh, refine};
+use mesh::TriMesh;
 use rayon::prelude::*;
 use report::results::Series;
 use serde::Deserialize;
@@ -16,6 +16,7 @@ use surface::VertexId;
 
 use crate::context::Context;
 use crate::experiment::Experiment;
+use crate::parts::copies;
 use crate::sweep::{linear, mean, numbers, panel, point, share};
 
 /// Bins of confidence, by their lower ends.
@@ -151,43 +152,6 @@ fn geometry(mesh: &TriMesh) -> Option<MeshGeometry> {
 fn related(a: &MeshGeometry, b: &MeshGeometry) -> Relation {
     let near = ShapeDistance { fused: 0.5, combined: 0.5 };
     Relation::by_distance(near, 1.0, Handedness::Unknown).by_meshes([a, b])
-}
-
-/// The part as other programs would write it.
-fn copies(part: &MechanicalPart) -> Vec<TriMesh> {
-    let with_arcs = |arcs| part.mesh(&PartMesh { arcs, ..PartMesh::default() });
-    let mesh = part.mesh(&PartMesh::default());
-    let refined = refine(&mesh, mesh.root_of_area() / 12.0, 20_000).mesh;
-    let moved = |mesh: &TriMesh| Damage::Move.apply(mesh, 7);
-    let even = part.mesh(&PartMesh { diagonals: Diagonals::Even, ..PartMesh::default() });
-    vec![
-        moved(&mesh),
-        renumbered(&mesh),
-        in_inches(&mesh),
-        Damage::Mirror.apply(&mesh, 7),
-        moved(&Damage::Mirror.apply(&even, 7)),
-        moved(&even),
-        moved(&Damage::Subdivide(1).apply(&mesh, 7)),
-        Damage::Decimate(0.5).apply(&refined, 7),
-        refined,
-        moved(&with_arcs(48)),
-        in_inches(&moved(&with_arcs(64))),
-        with_arcs(20),
-    ]
-}
-
-fn in_inches(mesh: &TriMesh) -> TriMesh {
-    TriMesh { positions: mesh.positions.iter().map(|p| p / 25.4).collect(), faces: mesh.faces.clone() }
-}
-
-/// Rounded to 32 bits, with vertices and faces in another order.
-fn renumbered(mesh: &TriMesh) -> TriMesh {
-    let n = mesh.n_vertices();
-    let other = |v: VertexId| VertexId::from(n - 1 - v.index());
-    TriMesh {
-        positions: mesh.positions.iter().rev().map(|p| p.map(|x| f64::from(x as f32))).collect(),
-        faces: mesh.faces.iter().rev().map(|[a, b, c]| [*b, *c, *a].map(other)).collect(),
-    }
 }
 
 /// Shapes of the collection beside pieces of them, moved.

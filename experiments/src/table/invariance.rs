@@ -8,6 +8,7 @@ use anyhow::{Context as _, Result};
 use canonform::{Handedness, MeshGeometry, Relation, RelationKind, ShapeDescription, describe, rerank};
 use datasets::Damage;
 use descriptors::{FormDistance, ShapeMetric, ShapePair, SignatureKind};
+use mesh::{SmoothRegions, TriMesh};
 use report::results::{InvarianceResults, InvarianceRow, SignatureChange};
 use retrieval::Candidate;
 use serde::Deserialize;
@@ -47,16 +48,25 @@ struct DamagedShape {
     is_told: Option<bool>,
 }
 
-/// What a damaged shape is beside the undamaged one.
-fn kind_of(damage: Damage) -> Option<RelationKind> {
+/// What a damaged shape may be said to be beside the undamaged one. The mirror image of a symmetric surface is the surface, with
+/// other triangles. Noise and new triangles cut the edges of mechanical parts off, so that the surface is another one.
+fn kinds_of(damage: Damage, mesh: &TriMesh) -> &'static [RelationKind] {
     match damage {
-        Damage::Move => Some(RelationKind::IdenticalGeometry),
-        Damage::Scale => Some(RelationKind::Scaled),
-        Damage::Mirror => Some(RelationKind::Mirrored),
-        Damage::Noise(_) => Some(RelationKind::Noisy),
-        Damage::Subdivide(_) | Damage::Decimate(_) | Damage::Remesh => Some(RelationKind::Remeshed),
-        _ => None,
+        Damage::Move => &[RelationKind::IdenticalGeometry],
+        Damage::Scale => &[RelationKind::Scaled],
+        Damage::Mirror if is_mechanical(mesh) => {
+            &[RelationKind::IdenticalGeometry, RelationKind::Mirrored, RelationKind::Remeshed]
+        }
+        Damage::Mirror => &[RelationKind::Mirrored],
+        Damage::Subdivide(_) => &[RelationKind::Remeshed],
+        Damage::Noise(_) if !is_mechanical(mesh) => &[RelationKind::Noisy],
+        Damage::Decimate(_) | Damage::Remesh if !is_mechanical(mesh) => &[RelationKind::Remeshed],
+        _ => &[],
     }
+}
+
+fn is_mechanical(mesh: &TriMesh) -> bool {
+    SmoothRegions::of(mesh).is_mechanical
 }
 
 #[derive(Debug, Deserialize)]
@@ -88,11 +98,11 @@ impl Experiment for InvarianceOptions {
                 let mesh = damage.apply(query.shape.surface.mesh(), query.seed);
                 let geometries =
                     [query.shape.surface.mesh(), &mesh].map(|mesh| MeshGeometry::new(mesh, None));
-                let is_told = match (kind_of(damage), &geometries) {
-                    (Some(kind), [Some(a), Some(b)]) => {
+                let is_told = match (kinds_of(damage, query.shape.surface.mesh()), &geometries) {
+                    (kinds @ [_, ..], [Some(a), Some(b)]) => {
                         let by_distance =
                             Relation::by_distance(pair.distance(), pair.scale(), Handedness::Unknown);
-                        Some(by_distance.by_meshes([a, b]).kind == kind)
+                        Some(kinds.contains(&by_distance.by_meshes([a, b]).kind))
                     }
                     _ => None,
                 };
@@ -141,6 +151,7 @@ fn changes(before: &ShapeDescription, after: &ShapeDescription) -> Vec<[f64; 2]>
 fn row(damage: Damage, found: &[DamagedShape]) -> InvarianceRow {
     let median_of = |value: &dyn Fn(&DamagedShape) -> f64| upper_median(found.iter().map(value));
     let farthest = found.iter().max_by(|a, b| a.combined.total_cmp(&b.combined));
+    let told: Vec<bool> = found.iter().filter_map(|f| f.is_told).collect();
     let change = |(i, kind): (usize, SignatureKind)| SignatureChange {
         name: kind.name().to_owned(),
         relative: median_of(&|f| f.changes[i][0]),
@@ -157,7 +168,7 @@ fn row(damage: Damage, found: &[DamagedShape]) -> InvarianceRow {
         top1: share(found, |f| f.is_top1),
         top1_others: share(found, |f| f.is_top1_of_others),
         unknown: share(found, |f| f.is_unknown),
-        told: kind_of(damage).map(|_| share(found, |f| f.is_told == Some(true))),
+        told: (!told.is_empty()).then(|| share(&told, |is_told| *is_told)),
     }
 }
 

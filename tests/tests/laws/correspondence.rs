@@ -153,3 +153,21 @@ fn poses_are_mapped_to_their_true_partners() {
         }
     }
 }
+
+#[test]
+fn a_sheet_that_fits_in_two_ways_is_uncertain_and_both_are_returned() {
+    let flat = shapes::grid(25, 19, 0.1);
+    let found = maps(&flat, &shapes::fold(&flat, 0.9, 1.2));
+    let n = flat.n_vertices();
+    for map in &found.maps {
+        assert!(!map.is_certain(), "{:?}: {}", map.kind, map.confidence);
+        let other = map.alternative.as_ref().expect("the other way");
+        // They differ by half a turn.
+        let turned = images(other);
+        let gap = |(x, y): (usize, &usize)| {
+            (flat.positions[*y] - flat.positions[turned[n - 1 - x]]).norm() / flat.area().sqrt()
+        };
+        let mean = images(map).iter().enumerate().map(gap).sum::<f64>() / n as f64;
+        assert!(mean < 0.05, "{:?}: {mean}", map.kind);
+    }
+}

@@ -42,9 +42,13 @@ mod guarantees;
 #[cfg(test)]
 mod invariance;
 #[cfg(test)]
+mod invariants;
+#[cfg(test)]
 mod isometry;
 #[cfg(test)]
 mod licences;
+#[cfg(test)]
+mod map_uses;
 #[cfg(test)]
 mod marching;
 #[cfg(test)]

@@ -8,8 +8,10 @@ use relations::{MapKind, PartOfWhole, SurfaceMap, map_surfaces};
 use serde::Serialize;
 use surface::VertexId;
 
+use super::known;
 use super::mapped_surface::MappedSurface;
 use super::options::CorrespondOptions;
+use super::point_map::Mapping;
 use crate::error::Error;
 use base::Observer;
 use mesh::Surface;
@@ -35,10 +37,18 @@ pub struct VertexMap {
     /// repair dropped, and for one of a whole that is missing in the part.
     #[serde(skip)]
     pub vertices: Vec<Option<VertexId>>,
+    /// For every vertex of the first input, how well the map keeps distances around it, from 0 to 1; 0 for a vertex that the
+    /// repair dropped. See [`SurfaceMap::vertex_confidence`].
+    #[serde(skip)]
+    pub vertex_confidence: Vec<f64>,
     /// The map of functions of the second surface to functions of the first: its columns are the coefficients of the
-    /// eigenfunctions of the second, pulled back, in those of the first.
+    /// eigenfunctions of the second, pulled back, in those of the first. [`MapShape::spectrum`](relations::MapShape::spectrum)
+    /// has them.
     #[serde(skip)]
     pub functional: Matrix,
+    /// The landmarks that it was given and contains.
+    #[serde(skip)]
+    pub landmarks: Vec<[VertexId; 2]>,
 }
 
 /// The maps from one surface to another.
@@ -73,7 +83,8 @@ pub struct Correspondence {
 /// ```
 ///
 /// # Errors
-/// [`Error::Descriptor`] and [`Error::Exceeded`].
+/// [`Error::Point`] and [`Error::UnusableMap`], if what is known of the map does not fit the meshes; [`Error::Descriptor`] and
+/// [`Error::Exceeded`].
 pub fn correspond<S: Borrow<Surface>>(
     a: &MappedSurface<S>,
     b: &MappedSurface<S>,
@@ -81,15 +92,16 @@ pub fn correspond<S: Borrow<Surface>>(
     observer: &dyn Observer,
 ) -> Result<Correspondence, Error> {
     let start = Instant::now();
-    let found = map_surfaces(&a.shape, &b.shape, &options.mapping, observer)?;
-    let (from, to) = (a.surface(), b.surface());
-    let maps = found.into_iter().map(|map| VertexMap::new(map, [from, to]));
+    let surfaces = [a.surface(), b.surface()];
+    let known = known::repaired(&options.known, surfaces)?;
+    let found = map_surfaces(&a.shape, &b.shape, &known, &options.mapping, observer)?;
+    let maps = found.into_iter().map(|map| VertexMap::new(map, surfaces, &options.known.landmarks));
     Ok(Correspondence { maps: maps.collect(), seconds: start.elapsed().as_secs_f64() })
 }
 
 impl VertexMap {
     /// A map of the vertices of the repaired meshes as one of the inputs.
-    fn new(map: SurfaceMap, [from, to]: [&Surface; 2]) -> Self {
+    pub(super) fn new(map: SurfaceMap, [from, to]: [&Surface; 2], landmarks: &[[VertexId; 2]]) -> Self {
         let has_partner = |x: usize| map.part.as_ref().is_none_or(|part| part.matched[x]);
         let partner = |(x, v): (usize, &VertexId)| has_partner(x).then(|| to.input_vertex(*v));
         let partners: Vec<_> = map.vertices.iter().enumerate().map(partner).collect();
@@ -98,11 +110,19 @@ impl VertexMap {
             distortion: map.distortion,
             agreement: map.agreement,
             confidence: map.confidence,
-            alternative: map.alternative.map(|other| Box::new(Self::new(*other, [from, to]))),
+            alternative: map.alternative.map(|other| Box::new(Self::new(*other, [from, to], landmarks))),
             part: map.part,
             vertices: from.in_input_order(&partners, None),
+            vertex_confidence: from.in_input_order(&map.vertex_confidence, 0.0),
             functional: map.functional,
+            landmarks: landmarks.to_vec(),
         }
+    }
+
+    /// The map between the surfaces that it was found for, which takes points into faces and carries functions.
+    #[must_use]
+    pub fn between<'a, S>(&'a self, shapes: [&'a MappedSurface<S>; 2]) -> Mapping<'a, S> {
+        Mapping { shapes, functional: &self.functional, landmarks: &self.landmarks }
     }
 
     /// Whether no other map of its kind is nearly as good.

@@ -1,6 +1,6 @@
 //! Options of maps between surfaces.
 
-use relations::MapOptions;
+use relations::{KnownMap, MapOptions};
 
 use crate::form::FormOptions;
 
@@ -13,10 +13,13 @@ pub struct CorrespondOptions {
     pub spread: usize,
     /// How maps are refined.
     pub mapping: MapOptions,
+    /// What is known of the map of two surfaces, in the numbers of their inputs. Default: nothing.
+    pub known: KnownMap,
 }
 
 impl Default for CorrespondOptions {
     fn default() -> Self {
-        Self { form: FormOptions::default(), spread: 1000, mapping: MapOptions::default() }
+        let (form, mapping, known) = Default::default();
+        Self { form, spread: 1000, mapping, known }
     }
 }

@@ -4,7 +4,7 @@ use base::Observer;
 use descriptors::{
     CanonicalForm, DescriptorError, DiscAreas, LaplaceSpectrum, Normalization, PreparedShape, ShapeMetric,
     Signature, SignatureKind, d2_histogram, geodesic_spectrum, heat_kernel_signature, moment_signature,
-    shape_dna, wave_kernel_signature,
+    rigid_signature, shape_dna, wave_kernel_signature,
 };
 use mesh::{RepairReport, Shortcut};
 
@@ -48,7 +48,7 @@ pub struct ShapeDescription {
 ///
 /// let surface = Surface::new(&shapes::torus(24, 12, 2.0, 0.7), &Default::default(), &())?;
 /// let description = describe(&surface, &DescribeOptions::default(), &())?;
-/// assert_eq!(description.signatures.len(), 6);
+/// assert_eq!(description.signatures.len(), 7);
 /// assert!(description.diameter > 6.0 && description.area > 50.0);
 /// # Ok::<(), canonform::Error>(())
 /// ```
@@ -137,6 +137,7 @@ impl MeasuredSurface {
             shape_dna(&spectrum),
             heat_kernel_signature(&spectrum),
             wave_kernel_signature(&spectrum),
+            rigid_signature(prepared.mesh()),
         ];
         let area = match options.size {
             Normalization::Raw => Some(spectrum.area),

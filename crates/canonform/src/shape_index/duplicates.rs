@@ -2,7 +2,7 @@
 //! triangulation.
 //!
 //! ```text
-//! fused vectors -> near pairs -> clusters -> meshes -> keeper, and what is proved to be the keeper
+//! fused vectors -> near pairs -> invariants -> clusters -> meshes -> keeper, and what is proved to be the keeper
 //! ```
 
 use std::cmp::Reverse;
@@ -10,11 +10,11 @@ use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
 use std::time::Instant;
 
-use base::{Budget, Observer};
+use base::Observer;
 use descriptors::{ShapeDistance, ShapeMetric};
 use index::{SearchMode, ShapeEntry, ShapeVectors};
 use rayon::prelude::*;
-use relations::{Handedness, MeshGeometry, Relation, RelationKind};
+use relations::{Handedness, MeshGeometry, Relation, RelationKind, SurfaceInvariants};
 use serde::Serialize;
 use surface::DisjointSets;
 
@@ -124,7 +124,12 @@ struct Candidate {
     id: String,
     entry: ShapeEntry,
     vectors: ShapeVectors,
+    /// Of its mesh, if that was read: it is near another shape, and unchanged.
+    invariants: Option<SurfaceInvariants>,
 }
+
+/// Two shapes by their numbers, the lower one first.
+type Pair = (usize, usize);
 
 /// Finds the duplicates of an index. Signatures choose which meshes are compared, and their geometry decides: every member
 /// of a group is proved against its keeper. Nothing is changed.
@@ -155,18 +160,23 @@ pub fn find_duplicates(
     observer: &dyn Observer,
 ) -> Result<DuplicateReport, Error> {
     let start = Instant::now();
-    let budget = observer.budget();
-    let candidates = candidates(search)?;
+    let mut candidates = candidates(search)?;
     let near = near_pairs(search, &candidates, observer)?;
-    let clusters = clusters(candidates.len(), &near);
-    observer.begin("comparing", clusters.len());
+    let clusters = clusters(candidates.len(), near.keys().copied());
+    let to_read: Vec<usize> = clusters.concat();
+    read_invariants(search, &mut candidates, &to_read, observer)?;
+    // Copies of copies need not be near themselves.
+    let pairs = clusters.iter().flat_map(|cluster| pairs_of(cluster));
+    let clusters = self::clusters(
+        candidates.len(),
+        pairs.filter(|&(i, j)| candidates[i].may_be(&candidates[j], options)),
+    );
+    let unread = to_read.into_iter().filter(|&i| candidates[i].invariants.is_none());
+    let mut unread: Vec<String> = unread.map(|i| candidates[i].id.clone()).collect();
+    observer.begin("comparing", clusters.iter().map(Vec::len).sum());
     let found = clusters
         .par_iter()
-        .map(|cluster| {
-            let found = Cluster::read(search, &candidates, cluster).groups(&near, options, &budget);
-            observer.step();
-            found
-        })
+        .map(|cluster| Cluster::read(search, &candidates, cluster).groups(&near, options, observer))
         .collect::<Result<Vec<_>, Error>>()?;
     let mut report = DuplicateReport {
         n_shapes: candidates.len(),
@@ -175,12 +185,12 @@ pub fn find_duplicates(
         unread: Vec::new(),
         seconds: 0.0,
     };
-    for (groups, unread, n_compared) in found {
+    for (groups, n_compared) in found {
         report.groups.extend(groups);
-        report.unread.extend(unread);
         report.n_compared += n_compared;
     }
-    report.unread.sort();
+    unread.sort();
+    report.unread = unread;
     report.groups.sort_by(|a, b| b.members.len().cmp(&a.members.len()).then(a.keeper.id.cmp(&b.keeper.id)));
     report.seconds = start.elapsed().as_secs_f64();
     Ok(report)
@@ -190,9 +200,46 @@ fn candidates(search: &ShapeSearch) -> Result<Vec<Candidate>, Error> {
     let entries = search.index().entries()?;
     let read = |(id, entry): (String, ShapeEntry)| {
         let vectors = search.index().vectors(&id)?;
-        Ok(Candidate { id, entry, vectors })
+        Ok(Candidate { id, entry, vectors, invariants: None })
     };
     entries.into_par_iter().map(read).collect()
+}
+
+/// Reads the meshes of some shapes for their invariants, and does not keep them.
+fn read_invariants(
+    search: &ShapeSearch,
+    candidates: &mut [Candidate],
+    numbers: &[usize],
+    observer: &dyn Observer,
+) -> Result<(), Error> {
+    let budget = observer.budget();
+    observer.begin("reading", numbers.len());
+    let read = |&i: &usize| {
+        budget.check()?;
+        let geometry = search.geometry(&candidates[i].id, &candidates[i].entry);
+        observer.step();
+        Ok(geometry.map(|geometry| geometry.invariants()))
+    };
+    let found = numbers.par_iter().map(read).collect::<Result<Vec<_>, Error>>()?;
+    numbers.iter().zip(found).for_each(|(&i, invariants)| candidates[i].invariants = invariants);
+    Ok(())
+}
+
+fn pairs_of(cluster: &[usize]) -> impl Iterator<Item = Pair> {
+    cluster.iter().enumerate().flat_map(|(n, &i)| cluster[n + 1..].iter().map(move |&j| (i, j)))
+}
+
+impl Candidate {
+    /// Whether their meshes, or their files, may be one.
+    fn may_be(&self, other: &Self, options: &DuplicateOptions) -> bool {
+        // Parts and variants have other invariants than what they are compared with.
+        let surfaces_only = options.kinds.iter().all(|kind| *kind <= RelationKind::Remeshed);
+        self.entry.content == other.entry.content
+            || match (&self.invariants, &other.invariants) {
+                (Some(a), Some(b)) => !surfaces_only || a.may_be_copy_of(b),
+                _ => false,
+            }
+    }
 }
 
 /// Pairs of equal content, and of shapes whose vectors are near: the first is the lower number.
@@ -200,7 +247,7 @@ fn near_pairs(
     search: &ShapeSearch,
     candidates: &[Candidate],
     observer: &dyn Observer,
-) -> Result<BTreeMap<(usize, usize), f64>, Error> {
+) -> Result<BTreeMap<Pair, f64>, Error> {
     let budget = observer.budget();
     let number: HashMap<&str, usize> =
         candidates.iter().enumerate().map(|(i, candidate)| (candidate.id.as_str(), i)).collect();
@@ -217,7 +264,7 @@ fn near_pairs(
         Ok::<_, Error>(others.filter_map(pair).collect::<Vec<_>>())
     };
     let found = candidates.par_iter().enumerate().map(near).collect::<Result<Vec<_>, Error>>()?;
-    let mut pairs: BTreeMap<(usize, usize), f64> = found.into_iter().flatten().collect();
+    let mut pairs: BTreeMap<Pair, f64> = found.into_iter().flatten().collect();
     let mut first: HashMap<_, usize> = HashMap::new();
     for (i, candidate) in candidates.iter().enumerate() {
         let earlier = *first.entry(candidate.entry.content).or_insert(i);
@@ -228,10 +275,10 @@ fn near_pairs(
     Ok(pairs)
 }
 
-/// Shapes that near pairs connect.
-fn clusters(n: usize, near: &BTreeMap<(usize, usize), f64>) -> Vec<Vec<usize>> {
+/// Shapes that pairs connect.
+fn clusters(n: usize, pairs: impl Iterator<Item = Pair>) -> Vec<Vec<usize>> {
     let mut sets = DisjointSets::new(n);
-    near.keys().for_each(|&(i, j)| {
+    pairs.for_each(|(i, j)| {
         sets.union(i as u32, j as u32);
     });
     let mut members: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
@@ -252,12 +299,13 @@ struct ClusterShape<'a> {
     file: DuplicateFile,
 }
 
-type Found = (Vec<DuplicateGroup>, Vec<String>, usize);
+/// The groups of a cluster, and the number of meshes that were compared.
+type Found = (Vec<DuplicateGroup>, usize);
 
 impl<'a> Cluster<'a> {
     fn read(search: &ShapeSearch, candidates: &'a [Candidate], numbers: &[usize]) -> Self {
         let mut shapes: Vec<ClusterShape<'a>> = numbers
-            .iter()
+            .par_iter()
             .map(|&number| {
                 let candidate = &candidates[number];
                 let geometry = search.geometry(&candidate.id, &candidate.entry);
@@ -298,21 +346,24 @@ impl<'a> Cluster<'a> {
     /// Takes the first shape that is left as a keeper, and what is proved to be the same, until none is left.
     fn groups(
         self,
-        near: &BTreeMap<(usize, usize), f64>,
+        near: &BTreeMap<Pair, f64>,
         options: &DuplicateOptions,
-        budget: &Budget,
+        observer: &dyn Observer,
     ) -> Result<Found, Error> {
-        // Parts and variants have other moments than what they are compared with.
-        let surfaces_only = options.kinds.iter().all(|kind| *kind <= RelationKind::Remeshed);
+        let budget = observer.budget();
         let mut n_compared = 0;
         let mut left: Vec<&ClusterShape<'_>> = self.shapes.iter().collect();
         let mut groups = Vec::new();
         while let Some((keeper, others)) = left.split_first() {
             let mut rest = Vec::new();
             let mut members = Vec::new();
-            for &other in others {
+            let relate = |other: &&ClusterShape<'_>| {
                 budget.check()?;
-                let relation = related(keeper, other, near, surfaces_only);
+                let may_be = keeper.candidate.may_be(other.candidate, options);
+                Ok(if may_be { related(keeper, other, near) } else { None })
+            };
+            let relations = others.par_iter().map(relate).collect::<Result<Vec<_>, Error>>()?;
+            for (&other, relation) in others.iter().zip(relations) {
                 n_compared += usize::from(relation.is_some());
                 let is_one = |told: &Relation| {
                     options.kinds.contains(&told.kind) && told.confidence >= options.min_confidence
@@ -322,6 +373,7 @@ impl<'a> Cluster<'a> {
                     None => rest.push(other),
                 }
             }
+            (0..=members.len()).for_each(|_| observer.step());
             if !members.is_empty() {
                 members.sort_by(|a, b| a.relation.kind.cmp(&b.relation.kind).then(a.file.id.cmp(&b.file.id)));
                 let why = why(&keeper.file, &members);
@@ -329,22 +381,18 @@ impl<'a> Cluster<'a> {
             }
             left = rest;
         }
-        let unread = self.shapes.iter().filter(|shape| shape.geometry.is_none());
-        let unread = unread.map(|shape| shape.file.id.clone()).collect();
-        Ok((groups, unread, n_compared))
+        Ok((groups, n_compared))
     }
 }
 
-/// How a shape is related to a keeper; `None` if their meshes cannot be one surface.
+/// How a shape is related to a keeper; `None` if a mesh cannot be read.
 fn related(
     keeper: &ClusterShape<'_>,
     other: &ClusterShape<'_>,
-    near: &BTreeMap<(usize, usize), f64>,
-    surfaces_only: bool,
+    near: &BTreeMap<Pair, f64>,
 ) -> Option<Relation> {
     let contents = [keeper, other].map(|shape| Some(shape.candidate.entry.content));
     let pair = (keeper.number.min(other.number), keeper.number.max(other.number));
-    // Copies of copies need not be near themselves.
     let fused = near.get(&pair).copied().unwrap_or_else(|| {
         ShapeMetric::robust(&keeper.candidate.vectors.fused, &other.candidate.vectors.fused)
     });
@@ -356,7 +404,7 @@ fn related(
         return Some(by_distance);
     }
     let (a, b) = (keeper.geometry.as_ref()?, other.geometry.as_ref()?);
-    (!surfaces_only || a.may_be_part_or_copy_of(b)).then(|| by_distance.by_meshes([a, b]))
+    Some(by_distance.by_meshes([a, b]))
 }
 
 /// Why a file is kept.

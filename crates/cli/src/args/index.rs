@@ -186,7 +186,7 @@ pub(crate) struct EvaluateArgs {
     #[arg(long, value_name = "SOURCE")]
     pub(crate) labels: Option<PathBuf>,
     /// Signatures of an index to measure distances between: `fused`, `moments`, `d2`, `geodesic-spectrum`,
-    /// `shape-dna`, `heat-kernel` or `wave-kernel`
+    /// `shape-dna`, `heat-kernel`, `wave-kernel` or `rigid`
     #[arg(long, value_name = "SIGNATURE", default_value = "fused")]
     pub(crate) by: Measure,
     /// Number of neighbours that vote on the class of a shape

@@ -5,6 +5,7 @@ mod field;
 mod generate;
 mod geodesic;
 mod index;
+mod matching;
 mod render;
 mod serve;
 mod settings;
@@ -21,13 +22,14 @@ use clap::builder::TypedValueParser;
 use clap::{Arg, ArgAction, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use clap_complete::Shell;
 
-use self::settings::{FormArgs, OfComparison, OfEmbedding, OfForm, OfMaps, distance_method, one_of};
+use self::settings::{FormArgs, OfComparison, OfEmbedding, OfForm, distance_method, one_of};
 
 pub(crate) use duplicates::{DuplicatesArgs, KindArg};
 pub(crate) use field::{FieldBuildArgs, FieldCommand, FieldQueryArgs};
 pub(crate) use generate::{FamilyArg, GenerateArgs};
 pub(crate) use geodesic::GeodesicArgs;
 pub(crate) use index::{AddArgs, BuildArgs, EvaluateArgs, IndexCommand, ListArgs, SearchArgs};
+pub(crate) use matching::{MAP_FORMATS, MatchArgs};
 pub(crate) use render::{Place, RenderArgs};
 pub(crate) use serve::ServeArgs;
 pub(crate) use settings::{MAX_DROPPED, RepairArgs};
@@ -100,7 +102,7 @@ pub(crate) enum Command {
     /// Shapes are compared by their combined distance, by signatures and aligned canonical forms. The certainty is a probability,
     /// measured on poses and bodies of the built-in shapes.
     Compare(CompareArgs),
-    /// Map the vertices of a mesh to those of another one, directly and mirrored
+    /// Map the vertices of a mesh to those of another one, or several meshes to each other
     Match(MatchArgs),
     /// Convert a mesh, or every mesh of a folder or an archive, to another file format
     Convert(ConvertArgs),
@@ -277,45 +279,6 @@ pub(crate) struct CompareArgs {
     pub(crate) form: FormArgs<OfComparison>,
     #[command(flatten)]
     pub(crate) limits: LimitArgs,
-}
-
-/// What is written, and what the numbers mean.
-const MATCH_NOTES: &str = "\
-Shapes that are alike under a mirror, as animals are, have two maps: the direct one takes the left side to the left side, the
-mirrored one to the right side. Both are found. The direct one goes to -o, unless it distorts distances clearly more; the other
-one goes to a file beside it: map.npy and map-mirrored.npy. Without -o, only the table is printed.
-
-  .npy   one int64 for each vertex of A, in its order: the vertex of B, or -1 for a vertex that the repair dropped
-  .csv   a line `vertex,match` for each vertex of A
-  .ply   A in the colours of B; B is written beside it, as map-target.ply
-  .png   a picture of A in the colours of B, and of B
-
-distortion  the mean change of distances under the map, as a share of the square root of the area; both meshes at unit area
-agreement   how far the map keeps the orientation of the surface, from -1 to 1
-
-Examples:
-  canonform match cat0.off cat1.off -o map.npy
-  canonform match cat0.off cat1.off -o map.png
-  canonform match cat0.off cat1.off --json";
-
-#[derive(Debug, Args)]
-#[command(after_long_help = MATCH_NOTES, after_help = "See `--help-all` for what is written, and for examples.")]
-pub(crate) struct MatchArgs {
-    #[command(flatten)]
-    pub(crate) pair: PairArgs,
-    #[arg(short, long, value_name = "MAP", help = match_help())]
-    pub(crate) output: Option<PathBuf>,
-    #[command(flatten)]
-    pub(crate) form: FormArgs<OfMaps>,
-    #[command(flatten)]
-    pub(crate) limits: LimitArgs,
-}
-
-/// Extensions of the files that maps are written to.
-pub(crate) const MAP_FORMATS: [&str; 4] = ["npy", "csv", "ply", "png"];
-
-fn match_help() -> String {
-    format!("Output file of the first map: {}; a second map is written beside it", or_list(MAP_FORMATS))
 }
 
 /// Extensions of the files that forms are written to, each with a line of help.

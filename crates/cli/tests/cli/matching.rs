@@ -25,14 +25,17 @@ fn numbers(place: &Workplace, name: &str) -> Vec<i64> {
 fn both_maps_of_a_pair_are_written_in_every_format() {
     let place = cats();
     let json = place.json("match cat0.off cat1.off -o map.npy");
-    assert_keys(&json, "a b n_vertices maps target seconds");
+    assert_keys(&json, "a b n_vertices maps target source transfer functional seconds");
     assert_keys(&json["seconds"], "load prepare matching total");
     let maps = json["maps"].as_array().unwrap();
     assert_eq!(maps.len(), 2);
     let other = maps[1]["kind"].as_str().unwrap();
     for (map, path) in maps.iter().zip(["map.npy".to_owned(), format!("map-{other}.npy")]) {
-        assert_keys(map, "kind distortion agreement confidence alternative matched path alternative_path");
+        let keys =
+            "kind distortion agreement confidence alternative matched doubtful path picture alternative_path";
+        assert_keys(map, keys);
         assert!(map["confidence"].as_f64().unwrap() > 0.9 && map["alternative"].is_null(), "{map}");
+        assert!(map["doubtful"].as_f64().unwrap() < 0.1, "{map}");
         assert_eq!(map["path"], path.as_str());
         assert!(map["distortion"].as_f64().unwrap() < 0.06, "{map}");
         let found = numbers(&place, &path);
@@ -43,17 +46,159 @@ fn both_maps_of_a_pair_are_written_in_every_format() {
     assert!(table.contains("distortion") && table.contains(&format!("map-{other}.csv")), "{table}");
     let csv = fs::read_to_string(place.path("map.csv")).unwrap();
     let rows: Vec<&str> = csv.lines().collect();
-    assert_eq!((rows[0], rows.len()), ("vertex,match", 1001));
-    assert!(rows[1..].iter().zip(&npy).enumerate().all(|(x, (row, y))| *row == format!("{x},{y}")));
+    assert_eq!((rows[0], rows.len()), ("vertex,match,confidence", 1001));
+    assert!(
+        rows[1..].iter().zip(&npy).enumerate().all(|(x, (row, y))| row.starts_with(&format!("{x},{y},")))
+    );
     let json = place.json("match cat0.off cat1.off -o map.ply");
-    assert_eq!(json["target"], "map-target.ply");
-    for (name, mesh) in [("map.ply", "cat0.off"), ("map-target.ply", "cat1.off")] {
+    assert_eq!((&json["target"], &json["source"]), (&"map.ply".into(), &"map-source.ply".into()));
+    for (name, mesh) in [("map.ply", "cat1.off"), ("map-source.ply", "cat0.off")] {
         let [colored, plain] = [name, mesh].map(|name| canonform::mesh::io::read(&place.path(name)).unwrap());
         assert_eq!(colored.faces, plain.faces);
     }
+    assert_eq!(json["maps"][0]["picture"], "map.png");
+    let beside = fs::read(place.path("map.png")).unwrap();
+    fs::remove_file(place.path("map.png")).unwrap();
     place.done("match cat0.off cat1.off -o map.png");
-    assert!(fs::read(place.path("map.png")).unwrap().starts_with(b"\x89PNG"));
+    assert!(beside.starts_with(b"\x89PNG") && beside == fs::read(place.path("map.png")).unwrap());
     assert!(place.path(&format!("map-{other}.png")).is_file());
+}
+
+#[test]
+fn landmarks_break_the_symmetry_and_an_initial_map_comes_out() {
+    let place = cats();
+    place.done("match cat0.off cat1.off -o both.npy");
+    // Partners of a few vertices under each map: those that are far apart, so that only one of the maps takes them there.
+    let maps = ["both.npy", "both-mirrored.npy"].map(|name| numbers(&place, name));
+    let other = canonform::mesh::io::read(&place.path("cat1.off")).unwrap();
+    let image = |map: usize, v: usize| other.positions[maps[map][v] as usize];
+    let apart = |v: &usize| (image(0, *v) - image(1, *v)).norm();
+    let far = (0..1000).max_by(|v, w| apart(v).total_cmp(&apart(w))).unwrap();
+    for (map, kind) in maps.iter().zip(["direct", "mirrored"]) {
+        fs::write(place.path("pairs.csv"), format!("a,b\n{far},{}\n", map[far])).unwrap();
+        let json = place.json("match cat0.off cat1.off --landmarks pairs.csv -o map.npy");
+        let found = json["maps"].as_array().unwrap();
+        assert!(found.len() == 1 && found[0]["kind"] == kind, "{json}");
+        assert_eq!(numbers(&place, "map.npy")[far], map[far]);
+    }
+    // The mirrored map, as a start, comes out first.
+    for (name, kind) in [("both.npy", "direct"), ("both-mirrored.npy", "mirrored")] {
+        let json = place.json(format!("match cat0.off cat1.off --initial {name} -o again.csv").as_str());
+        assert_eq!(json["maps"][0]["kind"], kind);
+        let again = place.json("match cat0.off cat1.off --initial again.csv");
+        assert_eq!(again["maps"][0]["kind"], kind);
+    }
+    fs::write(place.path("pairs.csv"), "1,2\n3,4000\n").unwrap();
+    place.refused(
+        "match cat0.off cat1.off --landmarks pairs.csv",
+        &["pairs.csv", "line 2", "4000", "counted from 0", "second mesh"],
+    );
+    fs::write(place.path("pairs.csv"), "1,2\n3;x\n").unwrap();
+    place.refused("match cat0.off cat1.off --landmarks pairs.csv", &["pairs.csv", "line 2", "17,42"]);
+    fs::write(place.path("start.csv"), "1\n2\nx\n").unwrap();
+    place.refused("match cat0.off cat1.off --initial start.csv", &["start.csv", "line 3", "`x`"]);
+}
+
+#[test]
+fn values_labels_and_texture_coordinates_are_carried() {
+    let place = cats();
+    let cat = canonform::mesh::io::read(&place.path("cat0.off")).unwrap();
+    let lines = |line: &dyn Fn(usize) -> String, n: usize| (0..n).map(line).collect::<Vec<_>>().join("\n");
+    let read = |name: &str| -> Vec<String> {
+        fs::read_to_string(place.path(name)).unwrap().lines().map(str::to_owned).collect()
+    };
+    // A constant stays one.
+    fs::write(place.path("ones.csv"), lines(&|_| "2.5".into(), 1000)).unwrap();
+    let json = place.json("match cat0.off cat1.off --transfer ones.csv -o carried.csv");
+    assert_keys(&json["transfer"], "path elements kind rows columns");
+    assert_eq!((&json["transfer"]["kind"], &json["transfer"]["rows"]), (&"values".into(), &1000.into()));
+    let near = |line: &String| (line.parse::<f64>().unwrap() - 2.5).abs() < 1e-9;
+    assert!(read("carried.csv").iter().all(near));
+    // Coordinates, as functions, arrive where the map takes their vertices.
+    place.done("match cat0.off cat1.off -o map.npy");
+    let map: Vec<usize> = numbers(&place, "map.npy").into_iter().map(|v| v as usize).collect();
+    let position = |v: usize| cat.positions[v].coords;
+    let coordinates = |v: usize| format!("{},{},{}", position(v).x, position(v).y, position(v).z);
+    fs::write(place.path("xyz.csv"), lines(&coordinates, 1000)).unwrap();
+    place.done("match cat0.off cat1.off --transfer xyz.csv -o carried.csv");
+    let carried = read("carried.csv");
+    let gap = |v: usize| {
+        let found: Vec<f64> = carried[map[v]].split(',').map(|word| word.parse().unwrap()).collect();
+        (nalgebra::Vector3::from_column_slice(&found) - position(v)).norm() / cat.area().sqrt()
+    };
+    let mean = (0..1000).map(gap).sum::<f64>() / 1000.0;
+    assert!(mean < 0.03, "{mean}");
+    // Labels of vertices, in words, and of faces, as numbers.
+    let name = |v: usize| if position(v).z > 40.0 { "upper" } else { "lower" };
+    fs::write(place.path("parts.csv"), lines(&|v| name(v).into(), 1000)).unwrap();
+    place.done("match cat0.off cat1.off --transfer parts.csv -o carried.csv");
+    let carried = read("carried.csv");
+    let right = (0..1000).filter(|v| name(*v) == carried[map[*v]]).count();
+    assert!(right > 950, "{right} of 1000");
+    let part = |f: usize| i64::from(name(cat.faces[f][0].index()) == "upper");
+    fs::write(place.path("faces.csv"), lines(&|f| part(f).to_string(), cat.n_faces())).unwrap();
+    let json = place.json("match cat0.off cat1.off --transfer faces.csv -o carried.npy");
+    assert_eq!(
+        (&json["transfer"]["kind"], &json["transfer"]["elements"]),
+        (&"labels".into(), &"faces".into())
+    );
+    let other = canonform::mesh::io::read(&place.path("cat1.off")).unwrap();
+    let found = numbers(&place, "carried.npy");
+    assert_eq!(found.len(), other.n_faces());
+    let same = |f: &usize| i64::from(carried[other.faces[*f][0].index()] == "upper") == found[*f];
+    let right = (0..found.len()).filter(same).count();
+    assert!(right * 100 > 90 * found.len(), "{right} of {}", found.len());
+    place.done("match cat0.off cat1.off --transfer parts.csv -o parts.png");
+    assert!(fs::read(place.path("parts.png")).unwrap().starts_with(b"\x89PNG"));
+    // Words need text, and rows elements.
+    place
+        .refused("match cat0.off cat1.off --transfer parts.csv -o carried.npy", &["carried.npy", "use .csv"]);
+    fs::write(place.path("few.csv"), "1.5\n2.5\n").unwrap();
+    place.refused(
+        "match cat0.off cat1.off --transfer few.csv -o carried.csv",
+        &["few.csv", "2 rows", "1000 vertices", "each face"],
+    );
+}
+
+#[test]
+fn points_and_functional_maps_are_written() {
+    let place = cats();
+    let json =
+        place.json("match cat0.off cat1.off --points -o map.csv --functional c.npy --eigenfunctions 40");
+    let points = json["maps"][0]["points"].as_array().unwrap();
+    assert!(points.len() == 1000 && points[0].as_str().unwrap().starts_with('f'));
+    let csv = fs::read_to_string(place.path("map.csv")).unwrap();
+    assert_eq!(csv.lines().next(), Some("vertex,match,confidence,face,w0,w1,w2"));
+    for line in csv.lines().skip(1) {
+        let sum: f64 = line.split(',').skip(4).map(|word| word.parse::<f64>().unwrap()).sum();
+        assert!((sum - 1.0).abs() < 1e-9, "{line}");
+    }
+    assert_eq!(json["functional"]["eigenvalues"][0].as_array().unwrap().len(), 40);
+    for (name, size) in [("c.npy", 40 * 40), ("c-a.npy", 1000 * 40), ("c-b.npy", 1000 * 40)] {
+        assert_eq!(fs::metadata(place.path(name)).unwrap().len(), 128 + 8 * size, "{name}");
+    }
+}
+
+#[test]
+fn several_meshes_are_mapped_to_each_other() {
+    let place = Workplace::new();
+    place.done("generate --family cat --poses 3 --vertices 1000 -o cats");
+    let json = place.json("match cats -o maps");
+    assert_keys(&json, "meshes pairs cycles seconds");
+    let pairs = json["pairs"].as_array().unwrap();
+    assert_eq!(pairs.len(), 3);
+    for pair in pairs {
+        assert_keys(pair, "a b kind distortion agreement confidence alternative agreed path");
+        assert!(pair["kind"] == "direct" && pair["agreed"] == true, "{pair}");
+    }
+    assert_eq!(pairs[2]["path"], "maps/cat1-cat2.npy");
+    assert_eq!(numbers(&place, "maps/cat1-cat2.npy").len(), 1000);
+    let cycles = &json["cycles"];
+    let [before, after] = ["before", "after"].map(|key| cycles[key].as_f64().unwrap());
+    assert!(cycles["n_cycles"] == 1 && after < before && before < 0.06, "{cycles}");
+    place.refused("match cats --points", &["--points", "two meshes", "3"]);
+    place.refused("match cats -o map.npy", &["map.npy", "folder"]);
+    place.refused("match cats/cat0.off", &["second"]);
 }
 
 #[test]

@@ -22,6 +22,8 @@ pub enum SignatureKind {
     HeatKernel,
     /// [`wave_kernel_signature`](crate::wave_kernel_signature).
     WaveKernel,
+    /// [`rigid_signature`](crate::rigid_signature).
+    Rigid,
 }
 
 /// Name and number of values of every kind.
@@ -32,12 +34,20 @@ const TABLE: [(&str, usize); SignatureKind::ALL.len()] = [
     ("shape-dna", 20),
     ("heat-kernel", 32),
     ("wave-kernel", 96),
+    ("rigid", 27),
 ];
 
 impl SignatureKind {
     /// All kinds, in the order of a fused vector.
-    pub const ALL: [Self; 6] =
-        [Self::Moments, Self::D2, Self::GeodesicSpectrum, Self::ShapeDna, Self::HeatKernel, Self::WaveKernel];
+    pub const ALL: [Self; 7] = [
+        Self::Moments,
+        Self::D2,
+        Self::GeodesicSpectrum,
+        Self::ShapeDna,
+        Self::HeatKernel,
+        Self::WaveKernel,
+        Self::Rigid,
+    ];
 
     /// The name used on the command line and in records.
     pub const fn name(self) -> &'static str {

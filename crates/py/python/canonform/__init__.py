@@ -30,7 +30,7 @@ from ._compare import Alignment, Comparison, align, compare
 from ._field import DistanceField, PairDistance, PairDistances
 from ._form import Form
 from ._index import Index, Result, SearchResults, ShapeEntry
-from ._match import Match, SurfaceMap, match
+from ._match import MapCollection, MappedPoints, Match, SurfaceMap, match, match_all
 from ._operators import ClosestPoints, EdgePoint, Eigenbasis, FacePoint
 from ._surface import Path, RepairReport, Surface, distance_methods, embedding_methods, signature_kinds
 from .errors import CanonformError
@@ -51,6 +51,8 @@ __all__ = [
     "FacePoint",
     "Form",
     "Index",
+    "MapCollection",
+    "MappedPoints",
     "Match",
     "NystromMDS",
     "PairDistance",
@@ -71,6 +73,7 @@ __all__ = [
     "embedding_methods",
     "errors",
     "match",
+    "match_all",
     "read",
     "set_threads",
     "signature_kinds",

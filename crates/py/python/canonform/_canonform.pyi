@@ -159,7 +159,28 @@ def compare(a: Surface, b: Surface, names: list[str], settings: str, progress: _
 def creatures(shapes: list[tuple[int, int]], n_vertices: int, seed: int, progress: _Progress) -> list[_Generated]: ...
 def generate(shapes: list[tuple[int, int]], n_vertices: int, seed: int, progress: _Progress) -> list[_Generated]: ...
 def families() -> tuple[list[tuple[str, int]], list[str]]: ...
-def match_surfaces(a: Surface, b: Surface, settings: str, progress: _Progress) -> tuple[str, list[list[tuple[_Ints, _Floats] | None]], _Colors]: ...
+def match_surfaces(
+    a: Surface,
+    b: Surface,
+    landmarks: _Ints,
+    initial: _Ints | None,
+    functions: tuple[_Floats, _Floats] | None,
+    settings: str,
+    progress: _Progress,
+) -> tuple[str, list[list[tuple[_Ints, _Floats, _Floats] | None]], _Colors]: ...
+def match_collection(
+    surfaces: list[Surface], settings: str, progress: _Progress
+) -> tuple[str, list[tuple[_Ints, _Floats, _Floats]]]: ...
+def map_points(
+    a: Surface,
+    b: Surface,
+    functional: _Floats,
+    landmarks: _Ints,
+    of_second: bool,
+    of_faces: bool,
+    settings: str,
+) -> tuple[_Ints, _Ints, _Floats]: ...
+def map_basis(surface: Surface, settings: str) -> tuple[_Floats, _Floats, _Floats]: ...
 def draw(
     vertices: _Floats, faces: _Ints, values: _Floats | None, colors: _Colors | None, size: tuple[int, int]
 ) -> bytes: ...

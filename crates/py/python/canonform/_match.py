@@ -1,27 +1,82 @@
-"""Maps between two surfaces."""
+"""Maps between surfaces."""
 
 from __future__ import annotations
 
 import json
-from typing import Any
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _canonform, _html
-from ._arrays import Floats, Ints
+from ._arrays import Floats, Ints, straight
+from ._operators import Eigenbasis, FacePoint
 from ._settings import DistanceMethod, Progress, encoded, shown
-from ._stored import Stored
+from ._stored import ByValue, Stored
 from ._surface import AnyMesh, Surface, surface_of
+from .errors import OptionError
+
+Side: TypeAlias = Literal["a", "b"]
+
+_Arrays: TypeAlias = tuple[Ints, Floats, Floats]
+
+_GREY = 160
+# Colours fade to grey around this confidence, as in pictures of the command line.
+_DOUBTFUL = 0.5
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class MappedPoints(ByValue):
+    """Points inside the faces of a surface that a map takes vertices or faces of another surface to.
+
+    Attributes
+    ----------
+    faces
+        The face that each lies in, or -1 if the repair dropped the vertex: shape (n,).
+    corners
+        The vertices of that face: shape (n, 3).
+    weights
+        The weights of these vertices, with sum 1; NaN for dropped vertices: shape (n, 3).
+    """
+
+    faces: Ints
+    corners: Ints
+    weights: Floats
+
+    @property
+    def at(self) -> list[FacePoint | None]:
+        """The points as sources of distances and ends of paths; `None` for dropped vertices."""
+        pairs = zip(self.faces.tolist(), self.weights.tolist(), strict=True)
+        return [None if face < 0 else FacePoint(face, (u, v, w)) for face, (u, v, w) in pairs]
+
+    def interpolate(self, values: ArrayLike) -> Floats:
+        """Values at the vertices of that surface, shape (m,) or (m, d), at the points; NaN for dropped vertices."""
+        array = np.asarray(values, dtype=np.float64)
+        weights = self.weights if array.ndim == 1 else self.weights[:, :, None]
+        parts = array[self.corners] * weights
+        # Not a number times zero is not a number.
+        parts[np.broadcast_to(weights == 0, parts.shape)] = 0
+        found: Floats = parts.sum(axis=1)
+        return found
+
+    def __len__(self) -> int:
+        return len(self.faces)
+
+    def __repr__(self) -> str:
+        return f"MappedPoints({len(self)} points)"
 
 
 class SurfaceMap(Stored):
-    """A map from the vertices of one surface to those of another.
+    """A map from the vertices of one surface, `a`, to another, `b`.
 
     Attributes
     ----------
     vertices
-        For each vertex of the first surface, its partner on the second, or -1 if the repair dropped the vertex; shape (n,).
+        For each vertex of `a`, its partner on `b`, or -1 if the repair dropped the vertex; shape (n,).
+    vertex_confidence
+        How well the map keeps distances around each vertex of `a`, from 0 to 1; shape (n,).
     kind
         "direct" if the map keeps the orientation, "mirrored" if it reverses it, "unoriented" if a surface has none.
     distortion
@@ -29,41 +84,128 @@ class SurfaceMap(Stored):
     agreement
         How far the map keeps the orientation, from -1 to 1; `None` if a surface cannot be oriented.
     confidence
-        How likely this map is the right one of its kind, and not the next best; not calibrated.
+        How likely this map is the right one of its kind, and not the next best.
     alternative
         The next best map of this kind, if this one is uncertain: front and back may be exchanged.
     """
 
-    def __init__(self, report: dict[str, Any], arrays: list[tuple[Ints, Floats] | None]) -> None:
+    def __init__(
+        self,
+        report: dict[str, Any],
+        arrays: Sequence[_Arrays | None],
+        shapes: tuple[Surface, Surface],
+        landmarks: Ints,
+        settings: str,
+    ) -> None:
         assert arrays[0] is not None
-        self.vertices, self._functional = arrays[0]
+        self.vertices, self.vertex_confidence, self._functional = arrays[0]
         self.kind: str = report["kind"]
         self.distortion: float = report["distortion"]
         self.agreement: float | None = report["agreement"]
         self.confidence: float = report["confidence"]
+        self._shapes, self._landmarks, self._settings = shapes, landmarks, settings
+        self._points: dict[str, MappedPoints] = {}
         other = arrays[1] if len(arrays) > 1 else None
-        self.alternative: SurfaceMap | None = SurfaceMap(report["alternative"], [other]) if other is not None else None
+        self.alternative: SurfaceMap | None = None
+        if other is not None:
+            self.alternative = SurfaceMap(report["alternative"], [other], shapes, landmarks, settings)
 
     def functional(self, k: int | None = None) -> Floats:
-        """The map of functions, shape (k, k): column j has the coefficients of the j-th eigenfunction of the second surface,
-        pulled back to the first, in the eigenfunctions of the first. `k` is at most 150, the default."""
-        most = len(self._functional)
-        if k is None:
-            k = most
-        if not 1 <= k <= most:
-            raise ValueError(f"k is {k}; the map has {most} eigenfunctions")
+        """The map of functions, shape (k, k): column j has the coefficients of the j-th eigenfunction of `b`, pulled back to `a`,
+        in the eigenfunctions of `a`. `bases` gives these; `k` is at most their number, the default."""
+        k = self._count(k)
         return self._functional[:k, :k].copy()
 
-    def carry(self, values: ArrayLike) -> NDArray[Any]:
-        """Values at the vertices of the second surface, carried to those of the first; NaN where there is no partner."""
-        carried: NDArray[Any] = np.asarray(values)[self.vertices]
-        if (missing := self.vertices < 0).any():
-            carried = carried.astype(np.result_type(carried.dtype, np.float64))
-            carried[missing] = np.nan
-        return carried
+    def bases(self, k: int | None = None) -> tuple[Eigenbasis, Eigenbasis]:
+        """The eigenfunctions of `a` and of `b` that `functional` is written in, of both surfaces scaled to unit area."""
+        most = self._count(k)
+        found = [_canonform.map_basis(shape._inner, self._settings) for shape in self._shapes]
+        a, b = (Eigenbasis(values[:most], functions[:, :most].copy(), masses) for values, functions, masses in found)
+        return a, b
+
+    def _count(self, k: int | None) -> int:
+        most = len(self._functional)
+        if k is not None and not 1 <= k <= most:
+            raise OptionError(f"k={k} is not possible: the map has {most} eigenfunctions")
+        return most if k is None else k
+
+    def points(self, of: Side = "a") -> MappedPoints:
+        """The points inside faces of `b` that the vertices of `a` are mapped to; with `of="b"`, the points of `a` that are mapped to
+        the vertices of `b`."""
+        return self._mapped(_side("of", of), "vertices")
+
+    def _mapped(self, of: Side, elements: str) -> MappedPoints:
+        key = f"{elements} of {of}"
+        if key not in self._points:
+            a, b = (shape._inner for shape in self._shapes)
+            found = _canonform.map_points(
+                a, b, straight(self._functional), self._landmarks, of == "b", elements == "faces", self._settings
+            )
+            self._points[key] = MappedPoints(*found)
+        return self._points[key]
+
+    def transfer(self, values: ArrayLike, to: Side = "b") -> NDArray[Any]:
+        """Carry values from one surface to the other: from `a` to `b`, or back with `to="a"`.
+
+        Parameters
+        ----------
+        values
+            One row for each vertex of the surface that they come from, or one for each of its faces. Fractional numbers at
+            vertices are interpolated inside faces, which also carries texture coordinates, two columns: a seam along which the
+            mesh doubles its vertices stays sharp. Everything else is a label, such as the number or name of a segment: the
+            label of the largest weight, or that of the face.
+        to
+            The surface that they go to.
+
+        Returns one row for each vertex or face of that surface. Of those that the repair dropped, numbers are NaN or -1, and other
+        labels are empty.
+        """
+        at = "a" if _side("to", to) == "a" else "b"
+        source = self._shapes[1 if at == "a" else 0]
+        array = np.asarray(values)
+        n = len(array) if array.ndim else 0
+        if n == source.n_vertices:
+            points = self._mapped(at, "vertices")
+            if array.dtype.kind == "f":
+                return points.interpolate(array)
+            return _labels(array, _majority(array, points), points.faces < 0)
+        if n == source.n_faces and n:
+            points = self._mapped(at, "faces")
+            return _labels(array, points.faces, points.faces < 0)
+        raise OptionError(
+            f"values have {n} rows, but the surface that they come from has {source.n_vertices} vertices and "
+            f"{source.n_faces} faces; give one row for each vertex or for each face"
+        )
 
     def __repr__(self) -> str:
         return f"SurfaceMap({self.kind!r}, distortion={self.distortion:.4f})"
+
+
+def _side(name: str, value: Any) -> Side:
+    if value not in ("a", "b"):
+        raise OptionError(f"{name}={value!r} is not possible: give \"a\" or \"b\"")
+    side: Side = value
+    return side
+
+
+def _majority(labels: NDArray[Any], points: MappedPoints) -> Ints:
+    """For each point, a corner whose label has the largest weight."""
+    _, classes = np.unique(labels, return_inverse=True, axis=0 if labels.ndim > 1 else None)
+    of = classes.reshape(len(labels))[points.corners]
+    weights = np.nan_to_num(points.weights)
+    sums = ((of[:, :, None] == of[:, None, :]) * weights[:, None, :]).sum(axis=2)
+    best: Ints = np.take_along_axis(points.corners, sums.argmax(axis=1)[:, None], axis=1)[:, 0]
+    return best
+
+
+def _labels(labels: NDArray[Any], rows: Ints, missing: NDArray[np.bool_]) -> NDArray[Any]:
+    found: NDArray[Any] = labels[rows]
+    if missing.any():
+        kind = labels.dtype.kind
+        if kind in "bu":
+            found = found.astype(np.int64)
+        found[missing] = np.nan if kind == "f" else -1 if kind in "biu" else "" if kind in "US" else None
+    return found
 
 
 class Match(Stored):
@@ -80,11 +222,14 @@ class Match(Stored):
     def __init__(
         self,
         report: dict[str, Any],
-        arrays: list[list[tuple[Ints, Floats] | None]],
+        arrays: list[list[_Arrays | None]],
         colors: NDArray[np.uint8],
         shapes: tuple[Surface, Surface],
+        landmarks: Ints,
+        settings: str,
     ) -> None:
-        self.maps = [SurfaceMap(*entry) for entry in zip(report["maps"], arrays, strict=True)]
+        found = zip(report["maps"], arrays, strict=True)
+        self.maps = [SurfaceMap(*entry, shapes, landmarks, settings) for entry in found]
         self.seconds: float = report["seconds"]
         self._colors = colors
         self._shapes = shapes
@@ -95,17 +240,25 @@ class Match(Stored):
         return self.maps[0]
 
     def pictures(self, *, width: int = 600, height: int = 600) -> list[bytes]:
-        """PNG files: the second surface in colours, and the first in the same colours under each map."""
+        """PNG files: the first surface in colours, and the second in the colours that each map carries to it; grey where the map is
+        not to be relied on."""
         a, b = self._shapes
-        colors = [np.where((m.vertices < 0)[:, None], np.uint8(160), self._colors[m.vertices]) for m in self.maps]
-        first = [_html.picture(a.vertices, a.faces, None, (width, height), shades) for shades in colors]
-        return [_html.picture(b.vertices, b.faces, None, (width, height), self._colors), *first]
+        size = (width, height)
+        pictures = []
+        for m in self.maps:
+            doubt = np.clip(1.5 - m.vertex_confidence / _DOUBTFUL, 0, 1)
+            source = self._colors + (_GREY - self._colors.astype(np.float64)) * doubt[:, None]
+            target = np.nan_to_num(m.transfer(source), nan=_GREY)
+            if not pictures:
+                pictures.append(_html.picture(a.vertices, a.faces, None, size, source.round().astype(np.uint8)))
+            pictures.append(_html.picture(b.vertices, b.faces, None, size, target.round().astype(np.uint8)))
+        return pictures
 
     def __repr__(self) -> str:
         return f"Match({', '.join(map(repr, self.maps))})"
 
     def _repr_html_(self) -> str:
-        titles = ["the second, in colours", *(f"the first, {m.kind} map" for m in self.maps)]
+        titles = ["the first, in colours", *(f"the second, {m.kind} map" for m in self.maps)]
         shown = zip(self.pictures(width=440, height=440), titles, strict=True)
         rows = [(m.kind, f"distortion {m.distortion:.4f}") for m in self.maps]
         return _html.card("Match", rows, [_html.image(png, title=title) for png, title in shown])
@@ -115,6 +268,9 @@ def match(
     a: AnyMesh,
     b: AnyMesh,
     *,
+    landmarks: ArrayLike | None = None,
+    initial: ArrayLike | None = None,
+    descriptors: tuple[ArrayLike, ArrayLike] | None = None,
     eigenfunctions: int | None = None,
     n: int | str = 100,
     geodesic: DistanceMethod = "fast-marching",
@@ -129,13 +285,119 @@ def match(
 
     Parameters
     ----------
+    landmarks
+        Known pairs: rows of a vertex of `a` and one of `b`. Maps that do not respect them are not returned; those that do contain
+        them. One ear is enough to tell left from right.
+    initial
+        A map to start from: for each vertex of `a`, its partner on `b`, or -1. It is refined, and comes out unless another map is
+        clearly better.
+    descriptors
+        Functions that correspond, beside those that are computed: an array for each surface, one row for each vertex and one
+        column for each function.
     eigenfunctions
         Most eigenfunctions of each surface that the map is refined with.
     n, geodesic
         How the canonical forms are made whose alignments the search starts from, as in `Surface.canonical_form`.
     """
     settings = encoded(eigenfunctions=eigenfunctions, n=n, geodesic=geodesic, timeout=timeout, memory=memory)
+    pairs, start, functions = _pairs(landmarks), _partners(initial), _functions(descriptors)
     a, b = surface_of(a), surface_of(b)
     with shown(progress) as report:
-        found, vertices, colors = _canonform.match_surfaces(a._inner, b._inner, settings, report)
-    return Match(json.loads(found), vertices, colors, (a, b))
+        found, arrays, colors = _canonform.match_surfaces(a._inner, b._inner, pairs, start, functions, settings, report)
+    return Match(json.loads(found), arrays, colors, (a, b), pairs, settings)
+
+
+def _pairs(landmarks: ArrayLike | None) -> Ints:
+    if landmarks is None:
+        return np.empty((0, 2), dtype=np.int64)
+    array = np.asarray(landmarks)
+    if array.size == 0:
+        return np.empty((0, 2), dtype=np.int64)
+    if array.ndim != 2 or array.shape[1] != 2 or array.dtype.kind not in "iu":
+        raise OptionError(f"landmarks must be pairs of vertex numbers, such as [(17, 42)], not of shape {array.shape} of {array.dtype}")
+    return straight(array, dtype=np.int64)
+
+
+def _partners(initial: ArrayLike | None) -> Ints | None:
+    if initial is None:
+        return None
+    array = np.asarray(initial)
+    if array.ndim != 1 or array.dtype.kind not in "iu":
+        raise OptionError(f"initial must have one vertex number for each vertex of a, not shape {array.shape} of {array.dtype}")
+    return straight(array, dtype=np.int64)
+
+
+def _functions(descriptors: tuple[ArrayLike, ArrayLike] | None) -> tuple[Floats, Floats] | None:
+    if descriptors is None:
+        return None
+    both = [np.asarray(functions, dtype=np.float64) for functions in descriptors]
+    if len(both) != 2 or any(array.ndim not in (1, 2) for array in both):
+        raise OptionError("descriptors must be two arrays, one for each surface, with one row for each vertex")
+    f, g = (straight(array.reshape(len(array), -1)) for array in both)
+    return f, g
+
+
+class MapCollection(Stored):
+    """The maps between several surfaces, which agree with each other: `maps[i, j]` is the one from surface i to surface j, i < j.
+
+    Attributes
+    ----------
+    pairs
+        The pairs (i, j).
+    replaced
+        Those of them whose map, found for these two alone, did not agree with the others.
+    n_cycles
+        Cycles of three surfaces.
+    cycles_before
+        How far points are from where they started after a cycle of the maps of pairs: the mean, as a share of the square root of
+        the area.
+    cycles_after
+        The same of the maps that agree.
+    seconds
+        The time of the search, after the surfaces were prepared.
+    """
+
+    def __init__(self, report: dict[str, Any], arrays: list[_Arrays], shapes: list[Surface], settings: str) -> None:
+        none = _pairs(None)
+        self.pairs: list[tuple[int, int]] = [(pair["a"], pair["b"]) for pair in report["pairs"]]
+        found = zip(report["pairs"], arrays, strict=True)
+        self._maps = [SurfaceMap(pair, [of], (shapes[pair["a"]], shapes[pair["b"]]), none, settings) for pair, of in found]
+        self.replaced = [(pair["a"], pair["b"]) for pair in report["pairs"] if not pair["agreed"]]
+        cycles = report["cycles"]
+        self.n_cycles: int = cycles["n_cycles"]
+        self.cycles_before: float = cycles["before"]
+        self.cycles_after: float = cycles["after"]
+        self.seconds: float = report["seconds"]
+
+    def __getitem__(self, pair: tuple[int, int]) -> SurfaceMap:
+        if pair not in self.pairs:
+            raise OptionError(f"there is no map {pair}; maps go from a surface to a later one, as {self.pairs[:1]}")
+        return self._maps[self.pairs.index(pair)]
+
+    def __len__(self) -> int:
+        return len(self.pairs)
+
+    def __repr__(self) -> str:
+        return f"MapCollection({len(self)} maps, cycles {self.cycles_before:.4f} before, {self.cycles_after:.4f} after)"
+
+
+def match_all(
+    shapes: Iterable[AnyMesh],
+    *,
+    eigenfunctions: int | None = None,
+    n: int | str = 100,
+    geodesic: DistanceMethod = "fast-marching",
+    timeout: float | None = None,
+    memory: int | str | None = None,
+    progress: Progress = False,
+) -> MapCollection:
+    """Map several surfaces to each other, so that the maps agree: from one to a second and on to a third is the same as at once.
+
+    All pairs are mapped as by `match`. Maps that disagree with the others, such as one that turns a man back to front, are replaced.
+    The parameters are those of `match`.
+    """
+    settings = encoded(eigenfunctions=eigenfunctions, n=n, geodesic=geodesic, timeout=timeout, memory=memory)
+    surfaces = [surface_of(shape) for shape in shapes]
+    with shown(progress) as report:
+        found, arrays = _canonform.match_collection([surface._inner for surface in surfaces], settings, report)
+    return MapCollection(json.loads(found), arrays, surfaces, settings)

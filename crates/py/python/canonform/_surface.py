@@ -471,7 +471,7 @@ class Surface(Constant):
         ----------
         kind
             "fused" for all signatures as one vector, by which an index is searched: Euclidean distances between such vectors compare
-            shapes. Or one of "moments", "d2", "geodesic-spectrum", "shape-dna", "heat-kernel", "wave-kernel".
+            shapes. Or one of "moments", "d2", "geodesic-spectrum", "shape-dna", "heat-kernel", "wave-kernel", "rigid".
         n
             Number of samples.
         size

@@ -12,14 +12,6 @@ pub(super) struct SampleMaps {
     pub(super) back: Vec<u32>,
 }
 
-impl SampleMaps {
-    /// These maps, followed by others.
-    pub(super) fn then(&self, next: &Self) -> Self {
-        let follow = |first: &[u32], second: &[u32]| first.iter().map(|&i| second[i as usize]).collect();
-        Self { forth: follow(&self.forth, &next.forth), back: follow(&next.back, &self.back) }
-    }
-}
-
 /// Eigenfunctions at the samples of two surfaces, evenly spread, one row for each sample.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SampledPair<'a> {
@@ -36,19 +28,24 @@ pub(super) struct FunctionalMaps {
     pub(super) back: Matrix,
 }
 
+/// The coefficients, by least squares over evenly spread samples, of as many functions in the first eigenfunctions.
+pub(super) fn coefficients(eigenfunctions: &Matrix, functions: &Matrix) -> Matrix {
+    let own = eigenfunctions.columns(0, functions.ncols());
+    let transposed = own.transpose();
+    let (gram, right) = (&transposed * own, transposed * functions);
+    match Cholesky::new(gram) {
+        Some(factor) => factor.solve(&right),
+        // As many functions as samples, or more.
+        None => right / functions.nrows() as f64,
+    }
+}
+
 impl FunctionalMaps {
     /// The maps of functions by least squares over the samples.
     pub(super) fn new(pair: SampledPair<'_>, maps: &SampleMaps, k: usize) -> Self {
         let one = |own: &Matrix, other: &Matrix, map: &[u32]| {
-            let own = own.columns(0, k);
             let pulled = Matrix::from_fn(map.len(), k, |i, j| other[(map[i] as usize, j)]);
-            let transposed = own.transpose();
-            let (gram, right) = (&transposed * own, transposed * pulled);
-            match Cholesky::new(gram) {
-                Some(factor) => factor.solve(&right),
-                // As many functions as samples, or more.
-                None => right / map.len() as f64,
-            }
+            coefficients(own, &pulled)
         };
         Self { forth: one(pair.a, pair.b, &maps.forth), back: one(pair.b, pair.a, &maps.back) }
     }
@@ -64,33 +61,39 @@ impl FunctionalMaps {
         (one(&self.forth) + one(&self.back)) / self.k() as f64
     }
 
-    /// Points of the first surface, where [`partners_b`](Self::partners_b) are near those that they correspond to: `Φ`.
-    pub(super) fn points_a(&self, rows: &Matrix) -> Matrix {
-        rows.columns(0, self.k()).into_owned()
+    /// Places of points of the first surface, near those of the points of the second to which they correspond, by both
+    /// maps: `[Φ, Φ D']`.
+    pub(super) fn places_a(&self, rows: &Matrix) -> Matrix {
+        let own = rows.columns(0, self.k());
+        beside(own.into_owned(), own * self.back.transpose())
     }
 
-    /// Points of the second surface among those of the first: `Ψ C'`.
-    pub(super) fn partners_b(&self, rows: &Matrix) -> Matrix {
-        rows.columns(0, self.k()) * self.forth.transpose()
-    }
-
-    /// Points of the second surface, where [`partners_a`](Self::partners_a) are near those that they correspond to: `Ψ`.
-    pub(super) fn points_b(&self, rows: &Matrix) -> Matrix {
-        rows.columns(0, self.k()).into_owned()
-    }
-
-    /// Points of the first surface among those of the second: `Φ D'`.
-    pub(super) fn partners_a(&self, rows: &Matrix) -> Matrix {
-        rows.columns(0, self.k()) * self.back.transpose()
+    /// Places of points of the second surface: `[Ψ C', Ψ]`.
+    pub(super) fn places_b(&self, rows: &Matrix) -> Matrix {
+        let own = rows.columns(0, self.k());
+        beside(own * self.forth.transpose(), own.into_owned())
     }
 
     /// The maps of samples that follow.
     pub(super) fn sample_maps(&self, pair: SampledPair<'_>) -> SampleMaps {
-        SampleMaps {
-            forth: nearest_rows(&self.points_a(pair.a), &self.partners_b(pair.b)),
-            back: nearest_rows(&self.points_b(pair.b), &self.partners_a(pair.a)),
-        }
+        let [forth, back] = nearest_rows(&self.places_a(pair.a), &self.places_b(pair.b));
+        SampleMaps { forth, back }
     }
+
+    /// These maps, followed by others.
+    pub(super) fn then(&self, next: &Self) -> Self {
+        let k = self.k().min(next.k());
+        let product = |x: &Matrix, y: &Matrix| x.view((0, 0), (k, k)) * y.view((0, 0), (k, k));
+        Self { forth: product(&self.forth, &next.forth), back: product(&next.back, &self.back) }
+    }
+}
+
+/// The columns of both matrices.
+fn beside(left: Matrix, right: Matrix) -> Matrix {
+    let k = left.ncols();
+    let mut both = left.resize_horizontally(k + right.ncols(), 0.0);
+    both.columns_mut(k, right.ncols()).copy_from(&right);
+    both
 }
 
 /// The numbers of eigenfunctions from `first` to `last`: each a step of a tenth, at least two, more than the one before.

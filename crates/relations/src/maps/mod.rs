@@ -9,16 +9,23 @@
 
 mod curvature;
 mod functional_map;
+mod known;
+mod local;
 mod nearest_rows;
+mod network;
 mod operators;
 mod orientation;
 mod part;
 mod part_of_whole;
+mod points;
 mod search;
 mod shape;
 mod whole_or_part;
 
+pub use known::KnownMap;
+pub use network::{ConsistentMaps, CycleReport, all_pairs, consistent_maps};
 pub use part_of_whole::PartOfWhole;
+pub use points::{MapElements, mapped_points};
 pub use search::{MapKind, MapOptions, SurfaceMap};
 pub use shape::MapShape;
 pub use whole_or_part::map_surfaces;

@@ -6,31 +6,50 @@ use rayon::prelude::*;
 /// Rows of the first matrix multiplied at a time. The result does not depend on it.
 const BLOCK: usize = 128;
 
-/// For every row of `x` the nearest row of `y`; the first in case of a tie.
+/// For every row of `x` the nearest row of `y`, and for every row of `y` the nearest of `x`; the first in case of a tie.
 ///
 /// By products of blocks of the matrices: in tens of dimensions no search tree is faster. Cost `O(m n d)`; parallel, and
 /// independent of the number of threads.
-pub(super) fn nearest_rows(x: &Matrix, y: &Matrix) -> Vec<u32> {
-    let halves = half_squares(y);
+pub(super) fn nearest_rows(x: &Matrix, y: &Matrix) -> [Vec<u32>; 2] {
+    let [of_x, of_y] = [x, y].map(half_squares);
     let starts: Vec<usize> = (0..x.nrows()).step_by(BLOCK).collect();
-    let blocks: Vec<Vec<u32>> = starts
+    let blocks: Vec<(Vec<u32>, Vec<(u32, f64)>)> = starts
         .into_par_iter()
         .map(|start| {
             let rows = start..(start + BLOCK).min(x.nrows());
-            let products = y * x.rows_range(rows).transpose();
-            let gaps = |column: nalgebra::DVectorView<'_, f64>| {
-                least(column.iter().zip(&halves).map(|(dot, half)| half - dot)).0
-            };
-            products.column_iter().map(gaps).collect()
+            let products = y * x.rows_range(rows.clone()).transpose();
+            let mut to_x = vec![(0, f64::INFINITY); y.nrows()];
+            let mut to_y = Vec::with_capacity(rows.len());
+            for (i, column) in (start as u32..).zip(products.column_iter()) {
+                let half = of_x[i as usize];
+                for (best, dot) in to_x.iter_mut().zip(column.iter()) {
+                    if half - dot < best.1 {
+                        *best = (i, half - dot);
+                    }
+                }
+                to_y.push(least(column.iter().zip(&of_y).map(|(dot, half)| half - dot)).0);
+            }
+            (to_y, to_x)
         })
         .collect();
-    blocks.concat()
+    let mut to_y = Vec::with_capacity(x.nrows());
+    let mut to_x = vec![(0, f64::INFINITY); y.nrows()];
+    for (block_to_y, block_to_x) in blocks {
+        to_y.extend(block_to_y);
+        to_x.iter_mut()
+            .zip(block_to_x)
+            .filter(|(best, found)| found.1 < best.1)
+            .for_each(|(best, found)| *best = found);
+    }
+    [to_y, to_x.into_iter().map(|(i, _)| i).collect()]
 }
 
 /// Rows of a matrix in cells, each around one of them.
 pub(super) struct Cells<'a> {
     /// All rows.
     pub(super) rows: &'a Matrix,
+    /// Columns by which the nearest cells are found.
+    pub(super) coarse: &'a [usize],
     /// The row in the middle of each cell.
     pub(super) centres: &'a [usize],
     /// The rows of each cell.
@@ -46,16 +65,17 @@ impl Cells<'_> {
     ///
     /// Cost `O(m c d)` for `c` centres; parallel, and independent of the number of threads.
     pub(super) fn nearest(&self, x: &Matrix) -> Vec<u32> {
-        let centres = self.rows.select_rows(self.centres);
+        let centres = self.rows.select_rows(self.centres).select_columns(self.coarse);
         let of_centres = half_squares(&centres);
         // Rows next to each other in memory.
         let (sources, targets) = (x.transpose(), self.rows.transpose());
+        let coarse = sources.select_rows(self.coarse);
         let starts: Vec<usize> = (0..x.nrows()).step_by(BLOCK).collect();
         let blocks: Vec<Vec<u32>> = starts
             .into_par_iter()
             .map(|start| {
                 let rows = start..(start + BLOCK).min(x.nrows());
-                let products = &centres * sources.columns_range(rows.clone());
+                let products = &centres * coarse.columns_range(rows.clone());
                 let one = |(i, column): (usize, nalgebra::DVectorView<'_, f64>)| {
                     let mut order: Vec<(f64, u32)> = column
                         .iter()
@@ -136,8 +156,7 @@ mod tests {
     #[test]
     fn nearest_rows_are_found_across_blocks() {
         let (x, y) = (rows(300, 7, 0.1), rows(170, 7, 0.9));
-        assert_eq!(nearest_rows(&x, &y), by_hand(&x, &y));
-        assert_eq!(nearest_rows(&y, &x), by_hand(&y, &x));
+        assert_eq!(nearest_rows(&x, &y), [by_hand(&x, &y), by_hand(&y, &x)]);
     }
 
     #[test]
@@ -152,7 +171,7 @@ mod tests {
         let (x, y) = (curve(230, 0.3), curve(400, 0.0));
         let members: Vec<Vec<u32>> = (0..40).map(|c| (10 * c..10 * c + 10).collect()).collect();
         let centres: Vec<usize> = (0..40).map(|c| 10 * c + 5).collect();
-        let cells = Cells { rows: &y, centres: &centres, members: &members };
+        let cells = Cells { rows: &y, coarse: &[0, 1], centres: &centres, members: &members };
         assert_eq!(cells.nearest(&x), by_hand(&x, &y));
     }
 }

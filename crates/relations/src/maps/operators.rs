@@ -65,6 +65,20 @@ impl Operators {
     }
 }
 
+impl Operators {
+    /// All functions of both, with their operators.
+    pub(super) fn and(&self, other: &Self) -> Self {
+        let joined = |x: &[Matrix], y: &[Matrix]| x.iter().chain(y).cloned().collect();
+        let columns: Vec<_> = self.functions.column_iter().chain(other.functions.column_iter()).collect();
+        Self {
+            values: self.values.clone(),
+            functions: Matrix::from_columns(&columns),
+            products: joined(&self.products, &other.products),
+            area_forms: joined(&self.area_forms, &other.area_forms),
+        }
+    }
+}
+
 /// The operators over their mean norm.
 fn of_mean_norm_1(operators: Vec<Matrix>) -> Vec<Matrix> {
     let mean = operators.iter().map(Matrix::norm).sum::<f64>() / operators.len().max(1) as f64;
@@ -94,11 +108,12 @@ pub(super) fn fitted(a: &Operators, b: &Operators, sign: f64) -> Vec<Matrix> {
     // The normal equations of the columns of C, one after the other.
     let mut matrix = (&g * g.transpose()).kronecker(&one) * VALUES + DMatrix::identity(k * k, k * k) * RIDGE;
     let right = f * g.transpose() * VALUES;
-    a.products.iter().zip(&b.products).for_each(|(x, y)| matrix += commutator(&top(x), &top(y)));
-    a.area_forms.iter().zip(&b.area_forms).for_each(|(x, y)| matrix += commutator(&top(x), &(top(y) * sign)));
+    let products = a.products.iter().zip(&b.products).map(|(x, y)| [top(x), top(y)]);
+    let area_forms = a.area_forms.iter().zip(&b.area_forms).map(|(x, y)| [top(x), top(y) * sign]);
+    matrix += commutators(k, products.chain(area_forms));
     let largest = a.values[k - 1].max(b.values[k - 1]).max(f64::MIN_POSITIVE);
     let [x, y] = [a, b].map(|of| DMatrix::from_diagonal(&(of.values.rows(0, k) / largest)));
-    let of_values = commutator(&x, &y);
+    let of_values = commutators(k, [[x, y]]);
     let solve = |weight: f64| {
         let factor = Cholesky::new(&matrix + &of_values * weight)?;
         let found = factor.solve(&DVector::from_column_slice(right.as_slice()));
@@ -108,9 +123,15 @@ pub(super) fn fitted(a: &Operators, b: &Operators, sign: f64) -> Vec<Matrix> {
     EIGENVALUES.into_iter().filter_map(solve).collect()
 }
 
-/// The matrix of the quadratic form `|X C - C Y|²` of the columns of `C`, one after the other.
-fn commutator(x: &DMatrix<f64>, y: &DMatrix<f64>) -> DMatrix<f64> {
-    let one = DMatrix::identity(x.nrows(), x.nrows());
-    let both = y.kronecker(x) + y.transpose().kronecker(&x.transpose());
-    (y * y.transpose()).kronecker(&one) + one.kronecker(&(x.transpose() * x)) - both
+/// The matrix of the quadratic form `Σ |X C - C Y|²` of the columns of `C`, one after the other.
+fn commutators(k: usize, pairs: impl IntoIterator<Item = [DMatrix<f64>; 2]>) -> DMatrix<f64> {
+    let (mut of_x, mut of_y) = (DMatrix::zeros(k, k), DMatrix::zeros(k, k));
+    let mut both = DMatrix::zeros(k * k, k * k);
+    for [x, y] in pairs {
+        of_x += x.transpose() * &x;
+        of_y += &y * y.transpose();
+        both += y.kronecker(&x);
+    }
+    let one = DMatrix::identity(k, k);
+    of_y.kronecker(&one) + one.kronecker(&of_x) - both.transpose() - both
 }

@@ -6,7 +6,7 @@ use mesh::TriMesh;
 use crate::outward::oriented_faces;
 
 /// Eigenfunctions whose area forms are compared.
-const FUNCTIONS: usize = 12;
+pub(super) const FUNCTIONS: usize = 12;
 
 /// An oriented surface: faces that all turn the same way.
 #[derive(Debug)]
@@ -38,30 +38,47 @@ impl Oriented {
     }
 }
 
+impl Oriented {
+    /// The area forms `df ∧ dg` of all pairs of the first functions, without the constant one in column 0: a row for each of
+    /// some vertices, which differ, and a column for each pair.
+    pub(super) fn area_forms(&self, functions: &Matrix, vertices: &[usize]) -> Matrix {
+        let last = functions.ncols().min(FUNCTIONS + 1);
+        let pairs: Vec<[usize; 2]> = (2..last).flat_map(|j| (1..j).map(move |i| [i, j])).collect();
+        let mut rows = vec![None; self.densities.len()];
+        vertices.iter().enumerate().for_each(|(row, &v)| rows[v] = Some(row));
+        // A column for each vertex, so that what is summed is together in memory.
+        let mut sums = Matrix::zeros(pairs.len(), vertices.len());
+        for face in &self.faces {
+            let at = face.map(|v| rows[v]);
+            if at.iter().all(Option::is_none) {
+                continue;
+            }
+            let [a, b, c] = face.map(|v| functions.row(v));
+            let [p, q] = [b - &a, c - &a];
+            for (k, &[i, j]) in pairs.iter().enumerate() {
+                let form = (p[i] * q[j] - q[i] * p[j]) / 6.0;
+                at.iter().flatten().for_each(|&row| sums[(k, row)] += form);
+            }
+        }
+        sums.column_iter_mut().zip(vertices).for_each(|(mut column, &v)| column *= self.densities[v]);
+        sums.transpose()
+    }
+}
+
 /// How far a map preserves orientation, from -1 for one that reverses it to 1.
 ///
 /// The pull-back of the area form `df ∧ dg` of two functions is the area form of the functions pulled back, times the sign of
-/// the map. This is the correlation of both over the first eigenfunctions `psi` of the second surface and over pairs of
-/// corresponding vertices. `pulled` are these functions, pulled back to the first surface.
-pub(super) fn agreement(
-    [a, b]: [&Oriented; 2],
-    pulled: &Matrix,
-    psi: &Matrix,
-    pairs: &[(usize, usize)],
-) -> f64 {
-    let last = pulled.ncols().min(psi.ncols()).min(FUNCTIONS + 1);
+/// the map. This is the correlation of both over pairs of corresponding vertices: `pulled` has the forms of functions of the
+/// second surface, pulled back, at vertices of the first, and `forms` those of the functions themselves at vertices of the
+/// second, of which `partners` names a row for each row of `pulled`.
+pub(super) fn agreement(pulled: &Matrix, forms: &Matrix, partners: &[u32]) -> f64 {
     let (mut both, mut sq_a, mut sq_b) = (0.0, 0.0, 0.0);
-    // Column 0 is constant.
-    for i in 1..last {
-        for j in i + 1..last {
-            let column = |x: &Matrix, j: usize| -> Vec<f64> { x.column(j).iter().copied().collect() };
-            let on_a = a.area_form(&column(pulled, i), &column(pulled, j));
-            let on_b = b.area_form(&column(psi, i), &column(psi, j));
-            for &(x, y) in pairs {
-                both += on_a[x] * on_b[y];
-                sq_a += on_a[x] * on_a[x];
-                sq_b += on_b[y] * on_b[y];
-            }
+    for j in 0..pulled.ncols().min(forms.ncols()) {
+        for (x, &row) in pulled.column(j).iter().zip(partners) {
+            let y = forms[(row as usize, j)];
+            both += x * y;
+            sq_a += x * x;
+            sq_b += y * y;
         }
     }
     let scale = (sq_a * sq_b).sqrt();

@@ -6,10 +6,13 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use surface::VertexId;
 
+use super::curvature::mismatch;
 use super::functional_map::{FunctionalMaps, SampleMaps, SampledPair, schedule, zoom_out};
+use super::known::KnownMap;
+use super::local::vertex_confidence;
 use super::nearest_rows::Cells;
 use super::operators::{FITTED, fitted};
-use super::orientation::agreement;
+use super::orientation::{FUNCTIONS as FORMS, agreement};
 use super::part_of_whole::PartOfWhole;
 use super::shape::MapShape;
 use descriptors::Alignment;
@@ -65,11 +68,15 @@ pub struct SurfaceMap {
     pub distortion: f64,
     /// How far the map preserves orientation, from -1 to 1; `None` if a surface cannot be oriented.
     pub agreement: Option<f64>,
-    /// How likely this map is the right one of its kind, and not the next best: a guide, which is not calibrated (decision
-    /// 19).
+    /// How likely this map is the right one of its kind, and not the next best: the odds follow from the ratio of their scores
+    /// (decision 19). At most 1/2 for a mixture of two maps, which agrees with an orientation in some places only.
     pub confidence: f64,
     /// The partner of each vertex of the first surface.
     pub vertices: Vec<VertexId>,
+    /// How well the map keeps the distances of each vertex of the first surface to points near it, from 0, where it is torn or
+    /// takes a region to a point, to 1: one less their relative change. It does not tell whether the whole map is right, which
+    /// [`confidence`](Self::confidence) does.
+    pub vertex_confidence: Vec<f64>,
     /// The map of functions of the second surface to functions of the first, in their eigenfunctions: `C`, as in
     /// [`LaplaceSpectrum`](descriptors::LaplaceSpectrum).
     pub functional: Matrix,
@@ -89,42 +96,66 @@ impl SurfaceMap {
 /// Maps agree with an orientation beyond this. A safety limit: it is near 1 or -1 for smooth maps, and 0 for random ones.
 const AGREEMENT: f64 = 0.1;
 
-/// A map agrees with an orientation everywhere beyond this; below, it may be a mixture of two maps. A safety limit: without
-/// such maps, all beyond [`AGREEMENT`] are taken.
-const SURE: f64 = 0.5;
+/// Leading eigenfunctions of each surface by which the nearest samples of a vertex are found. A safety limit.
+pub(super) const COARSE: usize = 40;
 
-/// Samples by which the maps of all starts are compared, and eigenfunctions of their last step.
+/// Samples by which all starts are refined a little, and eigenfunctions of their last step: enough to tell which are the same.
+const ROUGH: usize = 200;
+const ROUGH_FUNCTIONS: usize = 30;
+
+/// Different maps of each orientation that are sketched.
+const SKETCHES: usize = 4;
+
+/// Samples by which sketches are refined and compared, and eigenfunctions of their last step.
 const SKETCHED: usize = 400;
 const SKETCH_FUNCTIONS: usize = 60;
 
 /// Eigenfunctions of the first step of a map from an alignment.
 const FIRST: usize = 6;
 
-/// A map from an alignment, or from another map and a mirror, is taken if its [score](Candidate::score) is below this share
-/// of that of all fitted maps, which know inside from outside. Chosen on built-in people of 1,000 vertices: with 0.8 and
-/// more, one more of 15 mirrored maps is wrong.
-const CLEARLY_BETTER: f64 = 0.7;
-
 /// Maps whose images are less than this apart on average, as a share of the square root of the area, are one. A safety limit.
 const SAME: f64 = 0.06;
 
-/// The odds that a map is right, and not the next best, are the ratio of their scores to this power. A convention, which is
-/// not calibrated: maps that are divided by [`CLEARLY_BETTER`] count as so much worse.
-const STEEPNESS: f64 = 8.0;
+/// A surface is alike under a mirror if a map to itself that reverses its orientation changes distances by less than this, and
+/// is no mixture: agrees with the reversal beyond [`PURE`]. A safety limit: bodies in different poses have .02 to .04.
+const SYMMETRIC: f64 = 0.06;
+
+/// Most such maps of a surface: people are nearly alike from left to right, and from back to front.
+const MIRRORS: usize = 2;
+
+/// A map that agrees less with an orientation is a mixture of two, at least in parts. Right maps of built-in shapes have .85 and
+/// more, those of cats of 5,000 vertices .79 and more, and most mixtures less than .7.
+const PURE: f64 = 0.7;
+
+/// Refinement that loses so much of the agreement mixes two maps. A safety limit: it changes by less than .05 otherwise.
+const LOST: f64 = 0.1;
+
+/// Agreements nearer to 1 than this are as good as 1. A tolerance.
+const FULL: f64 = 0.05;
+
+/// The odds that a map is right, and not the next best, are the ratio of their scores to this power. Chosen on built-in people,
+/// where the rival of a wrong map scores less than 1.28 times as much, and that of nearly all right ones more: a ratio of 1.28
+/// is where maps become [certain](SurfaceMap::CERTAIN).
+const STEEPNESS: f64 = 3.4;
+
+/// The most confidence in a mixture: as likely wrong as right. A convention.
+const OF_MIXTURE: f64 = 0.5;
 
 /// The direct map comes second if its distortion is more than this multiple of the mirrored one's. A convention.
 const CLEARLY_WORSE: f64 = 1.5;
 
-/// A map of samples and of functions, with what ranks it among others.
+/// A map of functions and of samples, with what ranks it among others.
 struct Candidate {
-    maps: SampleMaps,
     functional: FunctionalMaps,
     /// Vertices of the second surface: the images of the landmarks of the first.
     images: Vec<usize>,
+    distortion: f64,
     agreement: Option<f64>,
-    /// Lower is better: the distortion of distances times the distance of the maps of functions from orthogonal ones,
-    /// `(|C'C - I|² + |D'D - I|²) / k`. A man turned back to front keeps distances nearly as well as another pose does, but
-    /// his map is no isometry in detail.
+    /// Lower is better: the distortion of distances, times the distance of the maps of functions from orthogonal ones,
+    /// `(|C'C - I|² + |D'D - I|²) / k`, times the distances of the agreement and of the correlation of curvatures from 1. A man
+    /// turned back to front keeps distances nearly as well as another pose does, but his map is no isometry in detail, and his
+    /// belly is not bent as his back; a mixture of two maps keeps the orientation in some places only. Of two maps that differ
+    /// by a mirror, the geometric mean: they are right together.
     score: f64,
 }
 
@@ -133,20 +164,16 @@ impl Candidate {
         kind_of(self.agreement)
     }
 
-    fn is_sure(&self) -> bool {
-        self.kind() == kind(self.agreement, SURE)
+    fn is_mixture(&self) -> bool {
+        self.agreement.is_some_and(|agreement| agreement.abs() < PURE)
     }
 }
 
 /// The kind of a map of some agreement.
 pub(super) fn kind_of(agreement: Option<f64>) -> MapKind {
-    kind(agreement, AGREEMENT)
-}
-
-fn kind(agreement: Option<f64>, least: f64) -> MapKind {
     match agreement {
-        Some(value) if value > least => MapKind::Direct,
-        Some(value) if value < -least => MapKind::Mirrored,
+        Some(value) if value > AGREEMENT => MapKind::Direct,
+        Some(value) if value < -AGREEMENT => MapKind::Mirrored,
         _ => MapKind::Unoriented,
     }
 }
@@ -157,20 +184,27 @@ fn kind(agreement: Option<f64>, least: f64) -> MapKind {
 /// 1. Maps of functions are fitted in closed form to the curvature and the wave kernels of both surfaces, once for each
 ///    orientation (`ren2018` in `REFERENCES.bib`). Each alignment of the forms maps samples to the nearest ones, too.
 /// 2. All these maps are refined with few samples, by taking in eigenfunctions of higher frequency, there and back (ZoomOut,
-///    `melzi2019`).
-/// 3. Of each orientation, the one that keeps distances and the products of functions best is refined on all samples and
-///    eigenfunctions, and all vertices follow. How much worse the next best is says how certain it is.
+///    `melzi2019`); the best different ones then with more.
+/// 3. Each map is followed by the mirrors of the surfaces, which exchange left and right, or front and back. A map and one that
+///    differs by a mirror are scored together.
+/// 4. Of each orientation, the one that keeps distances, the products of functions and the orientation best is refined on all
+///    samples and eigenfunctions, and all vertices follow. How much worse the next best is says how certain it is.
 ///
 /// Shapes that are alike under a mirror have two maps of small distortion; for others, one of the two has a large
 /// distortion. If a surface cannot be oriented, there is one map.
+///
+/// What is `known` of the map enters all of it: landmarks, as heat that is placed at them, and functions are fitted, too; maps
+/// that do not respect the landmarks are dropped; and an initial map is one more start, which comes out unless another map is
+/// clearly better.
 pub(super) fn map_wholes(
     a: &MapShape,
     b: &MapShape,
+    known: &KnownMap,
     options: &MapOptions,
     observer: &dyn Observer,
 ) -> Result<Vec<SurfaceMap>, DescriptorError> {
     let budget = observer.budget();
-    let search = MapSearch { a, b, options, budget: &budget };
+    let search = MapSearch { a, b, known, options, budget: &budget };
     let mut sketches = search.sketches()?;
     let mut maps = Vec::new();
     for sought in [MapKind::Direct, MapKind::Mirrored, MapKind::Unoriented] {
@@ -181,7 +215,11 @@ pub(super) fn map_wholes(
         sketches = others;
         maps.extend(search.best(of_kind)?);
     }
-    Ok(in_order(maps))
+    known.without_mixtures(&mut maps);
+    known.nearest_first(&mut maps, b)?;
+    let mut maps = in_order(maps);
+    maps.iter_mut().for_each(|map| known.kept_by(map));
+    Ok(maps)
 }
 
 /// The direct map first, unless it distorts distances clearly more.
@@ -200,9 +238,10 @@ pub(super) fn mirrored_samples(
     options: &MapOptions,
     budget: &Budget,
 ) -> Result<Option<Vec<u32>>, DescriptorError> {
-    let search = MapSearch { a: shape, b: shape, options, budget };
-    let rows = shape.at_samples.rows(0, SKETCHED.min(shape.samples.len())).into_owned();
-    Ok(search.mirror(shape, &rows)?.map(|maps| maps.forth))
+    let search = MapSearch { a: shape, b: shape, known: &KnownMap::default(), options, budget };
+    let [a, b] = search.rows(SKETCHED);
+    let pair = SampledPair { a: &a, b: &b };
+    Ok(search.mirrors(shape)?.first().map(|mirror| mirror.sample_maps(pair).forth))
 }
 
 /// A search with its options.
@@ -210,49 +249,148 @@ pub(super) fn mirrored_samples(
 struct MapSearch<'a> {
     a: &'a MapShape,
     b: &'a MapShape,
+    known: &'a KnownMap,
     options: &'a MapOptions,
     budget: &'a Budget,
 }
 
 impl MapSearch<'_> {
-    /// Maps of few samples and eigenfunctions from all starts.
+    /// Maps of few samples and eigenfunctions from all starts, and those that differ from them by a mirror.
     fn sketches(&self) -> Result<Vec<Candidate>, DescriptorError> {
-        let (a, b) = (self.a, self.b);
-        let n = SKETCHED.min(a.samples.len()).min(b.samples.len());
-        let [rows_a, rows_b] = [a, b].map(|shape| shape.at_samples.rows(0, n).into_owned());
+        let starts = self.starts(&[1.0, -1.0])?;
+        let found = self.sketched(starts.iter().map(|start| &start.functional))?;
+        let mut found = self.with_mirrored(self.distinct(found)?)?;
+        let [rows_a, rows_b] = self.rows(SKETCHED);
         let pair = SampledPair { a: &rows_a, b: &rows_b };
-        let starts = [1.0, -1.0].into_iter().flat_map(|sign| fitted_starts(pair, [a, b], sign)).collect();
-        let mut found = self.zoomed(starts, [FITTED, SKETCH_FUNCTIONS])?;
-        let best = [MapKind::Direct, MapKind::Mirrored].map(|kind| best_of(&found, kind));
-        let [of_a, of_b] = [self.mirror(a, &rows_a)?, self.mirror(b, &rows_b)?];
-        let composed = best.into_iter().flatten().flat_map(|maps| {
-            let before = of_a.iter().map(|mirror| mirror.then(maps));
-            before.chain(of_b.iter().map(|mirror| maps.then(mirror)))
-        });
-        let composed = composed.collect();
-        let aligned = alignments(&a.form, &b.form);
-        let aligned = aligned.iter().map(|motion| nearest_samples(a, b, motion, n)).collect();
-        let others = self.zoomed(composed, [FITTED, SKETCH_FUNCTIONS])?.into_iter();
-        let others = others.chain(self.zoomed(aligned, [FIRST, SKETCH_FUNCTIONS])?);
-        found.extend(others.map(|found| Candidate { score: found.score / CLEARLY_BETTER, ..found }));
-        Ok(found)
+        if let Some((start, k)) = self.known.initial_start(pair, [self.a, self.b], SKETCH_FUNCTIONS) {
+            let initial = self.zoomed(vec![start], [k, SKETCH_FUNCTIONS])?.into_iter();
+            found.extend(initial.map(|found| Candidate { score: found.score / CLEARLY_WORSE, ..found }));
+        }
+        self.respecting(found)
     }
 
-    /// The map of the samples of a surface to themselves that reverses its orientation and scores best.
-    fn mirror(&self, shape: &MapShape, rows: &Matrix) -> Result<Option<SampleMaps>, DescriptorError> {
-        let pair = SampledPair { a: rows, b: rows };
-        let starts = fitted_starts(pair, [shape; 2], -1.0);
-        let search = MapSearch { a: shape, b: shape, ..*self };
-        let found = search.zoomed(starts, [FITTED, SKETCH_FUNCTIONS])?;
-        Ok(best_of(&found, MapKind::Mirrored).cloned())
+    /// The maps that respect the landmarks. Of an orientation whose other maps are clearly better, only mixtures of two maps
+    /// respect them, and there is none.
+    fn respecting(&self, found: Vec<Candidate>) -> Result<Vec<Candidate>, DescriptorError> {
+        if self.known.landmarks.is_empty() {
+            return Ok(found);
+        }
+        let maps: Vec<&FunctionalMaps> = found.iter().map(|found| &found.functional).collect();
+        let respected = self.known.respected(&maps, [self.a, self.b])?;
+        let kinds = [MapKind::Direct, MapKind::Mirrored, MapKind::Unoriented];
+        let price = kinds.map(|kind| {
+            let of_kind = || found.iter().zip(&respected).filter(|(found, _)| found.kind() == kind);
+            let least = |scores: &mut dyn Iterator<Item = f64>| scores.fold(f64::INFINITY, f64::min);
+            let any = least(&mut of_kind().map(|(found, _)| found.score));
+            let best =
+                least(&mut of_kind().filter(|(_, respected)| **respected).map(|(found, _)| found.score));
+            best.max(f64::MIN_POSITIVE) / any.max(f64::MIN_POSITIVE)
+        });
+        // Infinite for an orientation without such a map; not a number for one without any.
+        let least = price.into_iter().fold(f64::INFINITY, f64::min);
+        let is_kept =
+            |kind| kinds.iter().zip(price).any(|(k, price)| *k == kind && price <= CLEARLY_WORSE * least);
+        let all = found.into_iter().zip(respected);
+        Ok(all
+            .filter(|(found, respected)| *respected && is_kept(found.kind()))
+            .map(|(found, _)| found)
+            .collect())
+    }
+
+    /// Different maps that are fitted with these signs, or follow from alignments of the forms.
+    fn starts(&self, signs: &[f64]) -> Result<Vec<Candidate>, DescriptorError> {
+        let (a, b) = (self.a, self.b);
+        let [rows_a, rows_b] = self.rows(ROUGH);
+        let pair = SampledPair { a: &rows_a, b: &rows_b };
+        let fits = signs.iter().flat_map(|sign| fitted_starts(pair, [a, b], *sign));
+        let fits = fits.chain(self.known.fitted_starts(pair, [a, b])).collect();
+        let aligned = alignments(&a.form, &b.form);
+        let mut aligned: Vec<_> =
+            aligned.iter().map(|motion| nearest_samples(a, b, motion, rows_a.nrows())).collect();
+        aligned.dedup();
+        let mut found = self.zoomed(fits, [FITTED, ROUGH_FUNCTIONS])?;
+        found.extend(self.zoomed(aligned, [FIRST, ROUGH_FUNCTIONS])?);
+        self.distinct(found)
+    }
+
+    /// Eigenfunctions at the first samples of both surfaces.
+    fn rows(&self, n: usize) -> [Matrix; 2] {
+        let n = n.min(self.a.samples.len()).min(self.b.samples.len());
+        [self.a, self.b].map(|shape| shape.at_samples.rows(0, n).into_owned())
+    }
+
+    /// The sketches that follow from maps of functions.
+    fn sketched<'m>(
+        &self,
+        starts: impl Iterator<Item = &'m FunctionalMaps>,
+    ) -> Result<Vec<Candidate>, DescriptorError> {
+        let [rows_a, rows_b] = self.rows(SKETCHED);
+        let pair = SampledPair { a: &rows_a, b: &rows_b };
+        let starts = starts.map(|start| start.sample_maps(pair)).collect();
+        self.zoomed(starts, [FITTED, SKETCH_FUNCTIONS])
+    }
+
+    /// The best maps of each orientation that are not the same; those of none only if there are no others.
+    fn distinct(&self, mut found: Vec<Candidate>) -> Result<Vec<Candidate>, DescriptorError> {
+        if found.iter().any(|found| found.kind() != MapKind::Unoriented) {
+            found.retain(|found| found.kind() != MapKind::Unoriented);
+        }
+        found.sort_by(|x, y| x.score.total_cmp(&y.score));
+        let mut kept: Vec<Candidate> = Vec::new();
+        for next in found {
+            let mut of_kind = kept.iter().filter(|other| other.kind() == next.kind());
+            if of_kind.clone().count() < SKETCHES
+                && !of_kind.try_fold(false, |same, other| {
+                    Ok::<_, DescriptorError>(same || self.is_same(&next, other)?)
+                })?
+            {
+                kept.push(next);
+            }
+        }
+        Ok(kept)
+    }
+
+    /// These maps and those that differ from them by a mirror of a surface, if there is one. Each has the score of both
+    /// together.
+    fn with_mirrored(&self, found: Vec<Candidate>) -> Result<Vec<Candidate>, DescriptorError> {
+        let [of_a, of_b] = [self.mirrors(self.a)?, self.mirrors(self.b)?];
+        let mut all = Vec::new();
+        for one in found {
+            let before = of_a.iter().map(|mirror| mirror.then(&one.functional));
+            let after = of_b.iter().map(|mirror| one.functional.then(mirror));
+            let others: Vec<_> = before.chain(after).collect();
+            let mut others = self.sketched(others.iter())?;
+            others.retain(|other| other.kind() != one.kind());
+            others.iter_mut().for_each(|other| other.score = (one.score * other.score).sqrt());
+            let least = others.iter().map(|other| other.score).reduce(f64::min);
+            all.push(Candidate { score: least.unwrap_or(one.score), ..one });
+            all.extend(others);
+        }
+        Ok(all)
+    }
+
+    /// The maps of a surface to itself that reverse its orientation and change distances little.
+    fn mirrors<'s>(&self, shape: &'s MapShape) -> Result<&'s [FunctionalMaps], DescriptorError> {
+        if shape.mirrors.get().is_none() {
+            let nothing = KnownMap::default();
+            let search = MapSearch { a: shape, b: shape, known: &nothing, ..*self };
+            let mut starts = search.starts(&[-1.0])?;
+            starts.retain(|start| start.kind() == MapKind::Mirrored);
+            let mut found = search.sketched(starts.iter().map(|start| &start.functional))?;
+            found.retain(|found| {
+                found.kind() == MapKind::Mirrored && !found.is_mixture() && found.distortion < SYMMETRIC
+            });
+            let mut found = search.distinct(found)?;
+            found.truncate(MIRRORS);
+            // If another thread was faster, it found the same.
+            let _ = shape.mirrors.set(found.into_iter().map(|found| found.functional).collect());
+        }
+        Ok(shape.mirrors.get().map_or(&[], Vec::as_slice))
     }
 
     /// The best map of candidates of one kind, refined on all samples and eigenfunctions.
     fn best(&self, mut found: Vec<Candidate>) -> Result<Option<SurfaceMap>, DescriptorError> {
-        if found.iter().any(Candidate::is_sure) {
-            found.retain(Candidate::is_sure);
-        }
-        found.sort_by(|x, y| x.score.total_cmp(&y.score));
+        found.sort_by(|x, y| x.is_mixture().cmp(&y.is_mixture()).then(x.score.total_cmp(&y.score)));
         let Some(best) = found.first() else { return Ok(None) };
         let rival = found.iter().find_map(|other| match self.is_same(best, other) {
             Ok(true) => None,
@@ -264,6 +402,7 @@ impl MapSearch<'_> {
             let boundary = Boundary { at: rival.score.max(f64::MIN_POSITIVE), steepness: STEEPNESS };
             boundary.probability(best.score)
         });
+        let confidence = if best.is_mixture() { confidence.min(OF_MIXTURE) } else { confidence };
         let mut map = self.refined(best, confidence)?;
         if let Some(rival) = rival.filter(|_| confidence < SurfaceMap::CERTAIN) {
             map.alternative = Some(Box::new(self.refined(rival, 1.0 - confidence)?));
@@ -284,8 +423,12 @@ impl MapSearch<'_> {
         let all = SampledPair { a: &self.a.at_samples, b: &self.b.at_samples };
         let start = sketch.functional.sample_maps(all);
         let refined = self.zoomed(vec![start], [SKETCH_FUNCTIONS, self.options.eigenfunctions])?;
-        // Refinement may mix two maps; the sketch is not a mixture.
-        match refined.iter().find(|found| found.kind() == sketch.kind()) {
+        // Refinement may mix two maps, where the sketch is right.
+        let agrees = |found: &Candidate| match (sketch.agreement, found.agreement) {
+            (Some(before), Some(after)) => after * before.signum() > before.abs() - LOST,
+            _ => true,
+        };
+        match refined.iter().find(|found| agrees(found)) {
             Some(found) => found.on_all_vertices(self.a, self.b, confidence),
             None => sketch.on_all_vertices(self.a, self.b, confidence),
         }
@@ -310,12 +453,6 @@ impl MapSearch<'_> {
         };
         starts.into_par_iter().map(one).collect()
     }
-}
-
-/// The maps of samples of one kind that score best.
-fn best_of(found: &[Candidate], kind: MapKind) -> Option<&SampleMaps> {
-    let of_kind = found.iter().filter(|found| found.kind() == kind);
-    of_kind.min_by(|x, y| x.score.total_cmp(&y.score)).map(|found| &found.maps)
 }
 
 /// Maps of the first samples that follow from fitted maps of functions.
@@ -352,11 +489,14 @@ impl Candidate {
         };
         let (forth, back) = (image(&maps.forth, b, n_a), image(&maps.back, a, n_b));
         let distortion = codistortion(a, b, &forth, &back)?;
-        let pairs: Vec<(usize, usize)> =
-            a.samples.iter().zip(&maps.forth).map(|(&x, &y)| (x, b.samples[y as usize])).collect();
-        let agreement = orientation(a, b, &functional, &pairs);
-        let score = distortion * functional.defect();
-        Ok(Self { maps, functional, images: forth, agreement, score })
+        let agreement = orientation(a, b, &functional, &maps.forth);
+        let missing = agreement.map_or(1.0, |agreement| (1.0 - agreement.abs()).max(FULL));
+        let mismatch = match (&a.curvature, &b.curvature) {
+            (Some(x), Some(y)) => 0.5 * (mismatch(x, y, &maps.forth) + mismatch(y, x, &maps.back)),
+            _ => 1.0,
+        };
+        let score = distortion * functional.defect() * missing * mismatch;
+        Ok(Self { functional, images: forth, distortion, agreement, score })
     }
 
     fn on_all_vertices(
@@ -365,12 +505,17 @@ impl Candidate {
         b: &MapShape,
         confidence: f64,
     ) -> Result<SurfaceMap, DescriptorError> {
-        let (on_a, on_b) = (self.functional.partners_b(&b.vectors), self.functional.partners_a(&a.vectors));
-        let near_b = Cells { rows: &on_a, centres: &b.samples, members: &b.cells };
-        let near_a = Cells { rows: &on_b, centres: &a.samples, members: &a.cells };
-        let forth = near_b.nearest(&self.functional.points_a(&a.vectors));
-        let back = near_a.nearest(&self.functional.points_b(&b.vectors.select_rows(b.landmarks())));
+        let (on_a, on_b) = (self.functional.places_a(&a.vectors), self.functional.places_b(&b.vectors));
+        let k = self.functional.k();
+        let coarse: Vec<usize> = (0..k.min(COARSE)).flat_map(|j| [j, k + j]).collect();
+        let near_b = Cells { rows: &on_b, coarse: &coarse, centres: &b.samples, members: &b.cells };
+        let near_a = Cells { rows: &on_a, coarse: &coarse, centres: &a.samples, members: &a.cells };
+        let forth = near_b.nearest(&on_a);
+        let back = near_a.nearest(&on_b.select_rows(b.landmarks()));
         let images: Vec<usize> = a.landmarks().iter().map(|&x| forth[x] as usize).collect();
+        let on_b = b.distances_to(&forth.iter().map(|y| *y as usize).collect::<Vec<_>>())?;
+        let all: Vec<usize> = (0..a.n_vertices()).collect();
+        let vertex_confidence = vertex_confidence(&a.distances_to(&all)?, a.landmarks(), &on_b);
         let back: Vec<usize> = back.into_iter().map(|x| x as usize).collect();
         let distortion = codistortion(a, b, &images, &back)?;
         let vertices = forth.into_iter().map(VertexId).collect();
@@ -380,6 +525,7 @@ impl Candidate {
             agreement: self.agreement,
             confidence,
             vertices,
+            vertex_confidence,
             functional: self.functional.forth.clone(),
             alternative: None,
             part: None,
@@ -388,7 +534,12 @@ impl Candidate {
 }
 
 /// The mean of `|d(x_i, g y_j) - d(f x_i, y_j)|` over landmarks; `forth` and `back` are the images of the landmarks.
-fn codistortion(a: &MapShape, b: &MapShape, forth: &[usize], back: &[usize]) -> Result<f64, DescriptorError> {
+pub(super) fn codistortion(
+    a: &MapShape,
+    b: &MapShape,
+    forth: &[usize],
+    back: &[usize],
+) -> Result<f64, DescriptorError> {
     let on_a = a.distances_to(back)?;
     let on_b = b.distances_to(forth)?;
     let gaps = (0..on_a.nrows()).flat_map(|i| (0..on_a.ncols()).map(move |j| (i, j)));
@@ -396,15 +547,10 @@ fn codistortion(a: &MapShape, b: &MapShape, forth: &[usize], back: &[usize]) -> 
     Ok(sum / on_a.len().max(1) as f64)
 }
 
-/// How far a map of vertices preserves orientation.
-fn orientation(
-    a: &MapShape,
-    b: &MapShape,
-    functional: &FunctionalMaps,
-    pairs: &[(usize, usize)],
-) -> Option<f64> {
-    let oriented = [a.oriented.as_ref()?, b.oriented.as_ref()?];
+/// How far a map of samples preserves orientation.
+fn orientation(a: &MapShape, b: &MapShape, functional: &FunctionalMaps, partners: &[u32]) -> Option<f64> {
+    let (oriented, forms) = (a.oriented.as_ref()?, b.area_forms.as_ref()?);
     let k = functional.k();
-    let pulled: Matrix = a.vectors.columns(0, k) * &functional.forth;
-    Some(agreement(oriented, &pulled, &b.vectors, pairs))
+    let pulled: Matrix = a.vectors.columns(0, k) * functional.forth.columns(0, k.min(FORMS + 1));
+    Some(agreement(&oriented.area_forms(&pulled, &a.samples[..partners.len()]), forms, partners))
 }

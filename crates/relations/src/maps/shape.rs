@@ -1,10 +1,13 @@
 //! A surface, prepared to be mapped to others.
 
+use std::sync::OnceLock;
+
 use linalg::{LandmarkDistances, Matrix};
 use mesh::TriMesh;
 use nalgebra::{DVector, Point3};
 
 use super::curvature::{bends, smoothed};
+use super::functional_map::FunctionalMaps;
 use super::operators::Operators;
 use super::orientation::Oriented;
 use crate::outward::outward;
@@ -25,6 +28,8 @@ pub struct MapShape {
     pub(super) points: Vec<Point3<f64>>,
     /// Eigenfunctions at the vertices.
     pub(super) vectors: Matrix,
+    /// The rest of the spectrum, without its eigenfunctions.
+    spectrum: LaplaceSpectrum,
     /// Vertices spread evenly over the surface; the landmarks first.
     pub(super) samples: Vec<usize>,
     /// The vertices nearest to each sample.
@@ -34,6 +39,8 @@ pub struct MapShape {
     /// What maps of functions are fitted to: with the curvature, which knows inside from outside, if the surface has an
     /// inside; and with the wave kernels, too.
     pub(super) operators: Vec<Operators>,
+    /// The curvature at the samples, smoothed least, if the surface has an inside.
+    pub(super) curvature: Option<Vec<f64>>,
     distances: LandmarkDistances,
     /// The square root of the area, in mesh units.
     pub(super) size: f64,
@@ -47,6 +54,11 @@ pub struct MapShape {
     pub(super) bends: Option<DVector<f64>>,
     /// The distance of each vertex from the boundary, at unit area; `None` if there is no boundary.
     pub(super) from_cut: Option<Vec<f64>>,
+    /// The area forms of the first eigenfunctions at the samples, if it can.
+    pub(super) area_forms: Option<Matrix>,
+    /// The maps of the surface to itself that reverse its orientation, such as the one that exchanges left and right, once they
+    /// were sought.
+    pub(super) mirrors: OnceLock<Vec<FunctionalMaps>>,
 }
 
 impl MapShape {
@@ -66,7 +78,7 @@ impl MapShape {
     pub fn new(
         form: &CanonicalForm,
         mesh: &TriMesh,
-        spectrum: LaplaceSpectrum,
+        mut spectrum: LaplaceSpectrum,
         distances: LandmarkDistances,
         samples: Vec<usize>,
         nearest: &[usize],
@@ -86,7 +98,10 @@ impl MapShape {
         }
         let oriented = Oriented::new(mesh, &spectrum.masses);
         let bends = outward(mesh).map(|outward| bends(&outward, &spectrum));
-        let operators = operators(&spectrum, bends.as_ref(), oriented.as_ref());
+        let curvatures =
+            bends.as_ref().map(|bends| smoothed(bends, &spectrum.values, &spectrum.vectors, 1.0));
+        let curvature = curvatures.as_ref().map(|columns| samples.iter().map(|&v| columns[(v, 0)]).collect());
+        let operators = operators(curvatures, &spectrum, oriented.as_ref());
         Ok(Self {
             bends,
             from_cut: None,
@@ -94,10 +109,14 @@ impl MapShape {
             masses: spectrum.masses,
             points: at,
             at_samples: spectrum.vectors.select_rows(&samples),
+            area_forms: oriented.as_ref().map(|oriented| oriented.area_forms(&spectrum.vectors, &samples)),
+            mirrors: OnceLock::new(),
             oriented,
             operators,
+            curvature,
             size: spectrum.area.sqrt(),
-            vectors: spectrum.vectors,
+            vectors: std::mem::replace(&mut spectrum.vectors, Matrix::zeros(0, 0)),
+            spectrum,
             form,
             samples,
             cells,
@@ -122,6 +141,11 @@ impl MapShape {
         self.vectors.nrows()
     }
 
+    /// The eigenvalues and eigenfunctions in which maps of functions are written. Copies them.
+    pub fn spectrum(&self) -> LaplaceSpectrum {
+        LaplaceSpectrum { vectors: self.vectors.clone(), ..self.spectrum.clone() }
+    }
+
     /// The form of all vertices in its principal axes, at unit area.
     pub fn form_points(&self) -> &[Point3<f64>] {
         self.form.points()
@@ -144,16 +168,15 @@ impl MapShape {
 }
 
 fn operators(
+    curvatures: Option<Matrix>,
     spectrum: &LaplaceSpectrum,
-    bends: Option<&DVector<f64>>,
     oriented: Option<&Oriented>,
 ) -> Vec<Operators> {
-    let all: Vec<usize> = (0..spectrum.masses.len()).collect();
+    let all: Vec<usize> = (0..spectrum.vectors.nrows()).collect();
     let kernels = wave_kernels(spectrum, &all);
     let some: Vec<usize> = (0..kernels.ncols()).step_by(KERNELS).collect();
     let kernels = kernels.select_columns(&some);
-    let Some(bends) = bends else { return vec![Operators::new(spectrum, kernels, oriented)] };
-    let curvatures = smoothed(bends, &spectrum.values, &spectrum.vectors, 1.0);
+    let Some(curvatures) = curvatures else { return vec![Operators::new(spectrum, kernels, oriented)] };
     let columns: Vec<_> = kernels.column_iter().chain(curvatures.column_iter()).collect();
     let both = Matrix::from_columns(&columns);
     vec![Operators::new(spectrum, curvatures, oriented), Operators::new(spectrum, both, oriented)]

@@ -2,6 +2,7 @@
 
 use base::Observer;
 
+use super::known::KnownMap;
 use super::part::part_maps;
 use super::search::{MapOptions, SurfaceMap, map_wholes};
 use super::shape::MapShape;
@@ -17,7 +18,7 @@ const SHARES: [f64; 2] = [0.25, 0.92];
 ///
 /// If one surface has a boundary and is clearly smaller, it may be a part of the other that a cut has left, if both have the
 /// same unit of length. Then maps of a part are sought, too, and those that change distances less are returned.
-/// [`SurfaceMap::part`] tells which.
+/// [`SurfaceMap::part`] tells which. If anything is `known` of the map, both are mapped as wholes.
 ///
 /// Wholes:
 /// 1. Maps of functions are fitted in closed form to the curvature and the wave kernels of both surfaces, once for each
@@ -37,16 +38,21 @@ const SHARES: [f64; 2] = [0.25, 0.92];
 ///    landmarks. Of distances that a path through what is missing may shorten, only bounds are known.
 /// 3. Of each orientation, the map that keeps distances, curvature and the products of functions best is taken.
 ///
+/// What is `known` of the map enters all of it: landmarks, as heat that is placed at them, and functions are fitted, too; maps
+/// that do not respect the landmarks are dropped; and an initial map is one more start, which comes out unless another map is
+/// clearly better.
+///
 /// # Errors
 /// [`DescriptorError::Linalg`], also if the budget of the observer is exceeded.
 pub fn map_surfaces(
     a: &MapShape,
     b: &MapShape,
+    known: &KnownMap,
     options: &MapOptions,
     observer: &dyn Observer,
 ) -> Result<Vec<SurfaceMap>, DescriptorError> {
-    let of_wholes = map_wholes(a, b, options, observer)?;
-    let Some(side) = possible_part(a, b) else { return Ok(of_wholes) };
+    let of_wholes = map_wholes(a, b, known, options, observer)?;
+    let Some(side) = possible_part(a, b).filter(|_| known.is_empty()) else { return Ok(of_wholes) };
     let [part, whole] = if side == Side::First { [a, b] } else { [b, a] };
     let of_part = part_maps(part, whole, side, options, observer)?;
     let least = |maps: &[SurfaceMap]| maps.iter().map(|map| map.distortion).fold(f64::INFINITY, f64::min);

@@ -4,13 +4,14 @@ use std::collections::HashSet;
 use std::num::NonZero;
 
 use descriptors::{Alignment, NearestPoints};
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 use serde::Serialize;
 use surface::VertexId;
 
 use super::exact::Similarity;
 use super::geometry::{MeshGeometry, sorted};
 use super::parts::Side;
+use super::units::UnitChange;
 
 /// The least share of the faces of a piece that are faces of the whole: cutting makes new ones along the cut only. A
 /// safety limit.
@@ -18,6 +19,9 @@ const LEAST_SHARED: f64 = 0.6;
 
 /// The largest share of the whole that a piece has; with more it is another triangulation. A convention.
 const MOST_LEFT: f64 = 0.98;
+
+/// The least share that is looked for in another unit of length. A convention, which saves time.
+const LEAST_LEFT: f64 = 0.1;
 
 /// Fewer faces in common may be chance.
 const LEAST_FACES: usize = 12;
@@ -38,15 +42,28 @@ pub struct CutPiece {
     pub left: f64,
 }
 
-/// What is left of `whole` if `piece` was cut out of it and perhaps moved: the share of its area.
-pub(super) fn left_of(whole: &MeshGeometry, piece: &MeshGeometry) -> Option<f64> {
-    let scale = piece.size / whole.size;
-    let left = scale * scale;
-    if left > MOST_LEFT || piece.n_faces() < LEAST_FACES || piece.n_faces() > whole.n_faces() {
+/// A piece of a whole.
+pub(super) struct FoundPiece {
+    /// The share of the area of the whole that is left.
+    pub(super) left: f64,
+    /// Lengths of the piece over those of the whole.
+    pub(super) factor: f64,
+}
+
+/// What is left of `whole` if `piece` was cut out of it and perhaps moved or written in another unit of length.
+pub(super) fn piece_of(whole: &MeshGeometry, piece: &MeshGeometry) -> Option<FoundPiece> {
+    if piece.n_faces() < LEAST_FACES || piece.n_faces() > whole.n_faces() {
         return None;
     }
-    let search = PieceSearch::new(whole, piece, scale)?;
-    search.candidates().into_iter().find_map(|motion| search.shared(&motion)).map(|_| left)
+    let found = |factor: f64| {
+        let scale = piece.size / (factor * whole.size);
+        let left = scale * scale;
+        let is_possible = left <= MOST_LEFT && (factor == 1.0 || left >= LEAST_LEFT);
+        let search = PieceSearch::new(whole, piece, scale, factor).filter(|_| is_possible)?;
+        let shared = search.candidates().into_iter().find_map(|motion| search.shared(&motion));
+        shared.map(|_| FoundPiece { left, factor })
+    };
+    std::iter::once(1.0).chain(UnitChange::factors()).find_map(found)
 }
 
 struct PieceSearch<'a> {
@@ -56,14 +73,18 @@ struct PieceSearch<'a> {
     points: Vec<Point3<f64>>,
     vertices: NearestPoints,
     tolerance: f64,
+    /// The translation of a piece that was not moved.
+    in_place: Vector3<f64>,
 }
 
 impl<'a> PieceSearch<'a> {
-    fn new(whole: &'a MeshGeometry, piece: &'a MeshGeometry, scale: f64) -> Option<Self> {
+    fn new(whole: &'a MeshGeometry, piece: &'a MeshGeometry, scale: f64, factor: f64) -> Option<Self> {
         let points = piece.mesh.positions.iter().map(|p| p * scale).collect();
         let vertices = NearestPoints::new(whole.mesh.positions.clone()).ok()?;
         let tolerance = 4.0 * (whole.rounding + piece.rounding * scale);
-        Some(Self { whole, piece, points, vertices, tolerance })
+        // A piece that stayed in place has its own centre.
+        let in_place = (piece.centre.coords / factor - whole.centre.coords) / whole.size;
+        Some(Self { whole, piece, points, vertices, tolerance, in_place })
     }
 
     /// Motions that take a face of the piece to one of the whole with the same sides. The largest faces are tried: they say
@@ -80,8 +101,7 @@ impl<'a> PieceSearch<'a> {
         order.sort_by(|&f, &g| areas[g].total_cmp(&areas[f]).then(f.cmp(&g)));
         let step = (order.len() / (2 * TRIED)).max(1);
         let mut motions = vec![Alignment::about_origin(nalgebra::Matrix3::identity())];
-        // A piece that stayed in place has its own centre.
-        motions[0].translation = (self.piece.centre - self.whole.centre) / self.whole.size;
+        motions[0].translation = self.in_place;
         for f in order.into_iter().step_by(step).take(TRIED) {
             let own = by_sides(self.piece.mesh.faces[f].map(VertexId::index), |v| self.points[v]);
             let wanted = sides(own, |v| self.points[v]);
@@ -158,12 +178,22 @@ mod tests {
             let mut piece = TriMesh { faces, ..whole.clone() }.without_unused_vertices();
             let share = piece.area() / whole.area();
             piece.positions.iter_mut().for_each(|p| *p = turn * *p + Vector3::new(4.0, 1.0, 2.0));
-            let [a, b] = [&whole, &piece].map(|mesh| MeshGeometry::new(mesh, None).unwrap());
-            let left = left_of(&a, &b).unwrap();
-            assert!((left - share).abs() < 1e-9, "{left}, {share}");
-            assert_eq!(left_of(&b, &a), None);
+            for factor in [1.0, 25.4] {
+                let piece = TriMesh {
+                    positions: piece.positions.iter().map(|p| p * factor).collect(),
+                    faces: piece.faces.clone(),
+                };
+                let [a, b] = [&whole, &piece].map(|mesh| MeshGeometry::new(mesh, None).unwrap());
+                let found = piece_of(&a, &b).unwrap();
+                assert!(
+                    (found.left - share).abs() < 1e-9 && found.factor == factor,
+                    "{}, {share}",
+                    found.left
+                );
+                assert!(piece_of(&b, &a).is_none());
+            }
         }
         let [a, b] = [&whole, &mesh::shapes::icosphere(2)].map(|mesh| MeshGeometry::new(mesh, None).unwrap());
-        assert_eq!(left_of(&a, &b), None);
+        assert!(piece_of(&a, &b).is_none());
     }
 }

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use base::ContentHash;
 use descriptors::{CanonicalForm, PreparedForm};
 use mesh::{SmoothRegions, TriMesh, is_noisy};
-use nalgebra::{Matrix3, Point3, Vector3};
+use nalgebra::Point3;
 use surface::{VertexId, components_of_faces};
 
 use super::triangles::TriangleTree;
@@ -20,11 +20,6 @@ const ROUNDING: f64 = 1e-5;
 
 /// Vertices of one geometry are never farther apart than this, relative to the size, wherever the mesh lies. A safety limit.
 const MOST_ROUNDING: f64 = 1e-4;
-
-/// Spreads of copies, at unit area, differ by less than this: of mechanical parts by coarse arcs, of others by decimation,
-/// noise and holes. A safety limit: it saves time.
-const MOST_OF_PARTS: f64 = 0.01;
-const MOST_OF_BODIES: f64 = 0.05;
 
 /// Most components that are compared on their own, the largest by area.
 const MOST_COMPONENTS: usize = 200;
@@ -88,7 +83,7 @@ impl MeshGeometry {
         }
         let origin = mesh.bounds()?[0];
         mesh.positions.iter_mut().for_each(|p| *p = Point3::from((*p - origin) / size));
-        let (centroid, covariance) = moments(&mesh);
+        let (centroid, covariance) = mesh.moments();
         mesh.positions.iter_mut().for_each(|p| *p -= centroid);
         let mut spreads: [f64; 3] = covariance.symmetric_eigenvalues().map(|x| x.max(0.0).sqrt()).into();
         spreads.sort_by(|a, b| b.total_cmp(a));
@@ -148,18 +143,6 @@ impl MeshGeometry {
     pub fn n_bytes(&self) -> usize {
         // With the tree, the samples and the components, which are made when they are needed.
         100 * self.n_vertices() + 250 * self.n_faces()
-    }
-
-    /// Whether the two may be one surface, or one a part of the other: otherwise their moments differ too much, and their
-    /// meshes need not be compared.
-    #[must_use]
-    pub fn may_be_part_or_copy_of(&self, other: &Self) -> bool {
-        if self.n_components() > 1 || other.n_components() > 1 {
-            return true;
-        }
-        let most = if self.is_mechanical() && other.is_mechanical() { MOST_OF_PARTS } else { MOST_OF_BODIES };
-        let [a, b] = [self, other].map(|geometry| geometry.spreads);
-        a.iter().zip(&b).all(|(x, y)| (x - y).abs() < most)
     }
 
     /// Evenly spread points of the surface.
@@ -250,21 +233,6 @@ pub(super) fn sorted(mut face: [VertexId; 3]) -> [VertexId; 3] {
     face
 }
 
-/// The centroid of a surface of unit area, and the second moments about it.
-fn moments(mesh: &TriMesh) -> (Vector3<f64>, Matrix3<f64>) {
-    let (mut first, mut second, mut total) = (Vector3::zeros(), Matrix3::zeros(), 0.0);
-    for (f, area) in mesh.face_areas().enumerate() {
-        let corners = mesh.triangle(f).map(|p| p.coords);
-        let sum: Vector3<f64> = corners.iter().sum();
-        first += sum * (area / 3.0);
-        let squares: Matrix3<f64> = corners.iter().map(|p| p * p.transpose()).sum();
-        second += (squares + sum * sum.transpose()) * (area / 12.0);
-        total += area;
-    }
-    let centroid = first / total;
-    (centroid, second / total - centroid * centroid.transpose())
-}
-
 /// Points of a surface, one in each of `n` pieces of equal area.
 fn sampled(mesh: &TriMesh, n: usize) -> Vec<Point3<f64>> {
     // Steps of a sequence whose leading points fill a square evenly (Roberts' generalised golden ratio).
@@ -289,6 +257,7 @@ fn sampled(mesh: &TriMesh, n: usize) -> Vec<Point3<f64>> {
 #[cfg(test)]
 mod tests {
     use mesh::shapes;
+    use nalgebra::Vector3;
 
     use super::*;
 
@@ -312,7 +281,7 @@ mod tests {
         let geometry = MeshGeometry::new(&torus, None).unwrap();
         assert!((geometry.mesh.area() - 1.0).abs() < 1e-12);
         assert!((geometry.centre - Point3::new(300.0, -7.0, 20.0)).norm() < 1e-9);
-        assert!(moments(&geometry.mesh).0.norm() < 1e-12);
+        assert!(geometry.mesh.moments().0.norm() < 1e-12);
         let samples = geometry.samples();
         assert_eq!(samples.len(), SAMPLES);
         let mean = samples.iter().fold(Vector3::zeros(), |sum, p| sum + p.coords) / SAMPLES as f64;

@@ -55,7 +55,8 @@ const DECISIVE: f64 = 1.25;
 /// those at which the refinement ends.
 const EXCESS: f64 = 1e-4;
 
-/// An alignment of the samples is refined unless the other handedness is better by this factor. A safety limit: it saves time.
+/// An alignment of the samples is refined unless the other handedness is better by this factor, and one that is refined counts
+/// unless the best is better by it. A safety limit: it saves time.
 const PROMISING: f64 = 1.6;
 
 /// How far two surfaces are apart after alignment in space, relative to the size of the second: the square root of its area.
@@ -90,7 +91,9 @@ pub(super) fn aligned(a: &MeshGeometry, b: &MeshGeometry) -> Option<Aligned> {
     let found =
         |start: FormAlignment, is_worth: bool| if is_worth { best(a, b, &start.alignment) } else { None };
     let proper_found = found(proper, worth(proper, reflected));
-    let reflected_found = found(reflected, worth(reflected, proper));
+    // No reflection is decisively better than a map that is as good as refinement ends.
+    let is_found = proper_found.as_ref().is_some_and(|(_, gap)| gap.rms <= EXCESS);
+    let reflected_found = found(reflected, !is_found && worth(reflected, proper));
     let ((map, gap), mirrored) = match (proper_found, reflected_found) {
         (Some(proper), Some(reflected)) if is_decisive(&reflected.1, &proper.1) => {
             match unmirrored(a, b, &reflected) {
@@ -120,13 +123,8 @@ fn unmirrored(
     (map, apart): &(Similarity, SurfaceGap),
 ) -> Option<(Similarity, SurfaceGap)> {
     let after = |mirror: Alignment| Similarity { motion: mirror.after(&map.motion), scale: map.scale };
-    let mut ranked: Vec<(f64, Similarity)> = mirror_planes(b)
-        .into_iter()
-        .filter_map(|mirror| Some((gap(a, b, &after(mirror), RANKING)?.rms, after(mirror))))
-        .collect();
-    ranked.sort_by(|x, y| x.0.total_cmp(&y.0));
-    ranked.into_iter().take(RANKED).find_map(|(_, start)| {
-        let found = refined(a, b, start);
+    nearest_starts(a, b, mirror_planes(b).into_iter().map(after)).into_iter().find_map(|start| {
+        let (found, _) = refined(a, b, start);
         let distance = gap(a, b, &found, usize::MAX)?;
         (!is_decisive(apart, &distance)).then_some((found, distance))
     })
@@ -139,7 +137,7 @@ pub(super) fn is_symmetric(geometry: &MeshGeometry) -> bool {
     let is_image = |mirror: Alignment| {
         let map = Similarity { motion: mirror, scale: 1.0 };
         let near = gap(geometry, geometry, &map, RANKING).is_some_and(|gap| gap.rms < CLOSE);
-        near && gap(geometry, geometry, &refined(geometry, geometry, map), usize::MAX)
+        near && gap(geometry, geometry, &refined(geometry, geometry, map).0, usize::MAX)
             .is_some_and(|gap| !is_decisive(&zero, &gap))
     };
     mirror_planes(geometry).into_iter().any(is_image)
@@ -170,7 +168,7 @@ fn best(a: &MeshGeometry, b: &MeshGeometry, start: &Alignment) -> Option<(Simila
         let translation = motion.translation * b.spread();
         Similarity { motion: Alignment { translation, ..motion }, scale: b.spread() / a.spread() }
     };
-    let found = refined(a, b, scaled(*start));
+    let (found, _) = refined(a, b, scaled(*start));
     let mut best = (found, gap(a, b, &found, usize::MAX)?);
     let is_mechanical = a.is_mechanical() && b.is_mechanical();
     if best.1.rms < if is_mechanical { SEATED } else { CLOSE } {
@@ -180,22 +178,43 @@ fn best(a: &MeshGeometry, b: &MeshGeometry, start: &Alignment) -> Option<(Simila
     if is_mechanical {
         turned.extend(framed_starts(a, b, start.reflected));
     }
-    let mut ranked: Vec<(f64, Similarity)> = turned
-        .into_iter()
-        .filter_map(|motion| {
-            let start = scaled(motion);
-            Some((gap(a, b, &start, RANKING)?.rms, start))
-        })
-        .collect();
-    ranked.sort_by(|x, y| x.0.total_cmp(&y.0));
-    for (_, start) in ranked.into_iter().take(RANKED) {
-        let found = refined(a, b, start);
+    for start in nearest_starts(a, b, turned.into_iter().map(scaled)) {
+        let (found, rms) = refined(a, b, start);
+        if rms > PROMISING * best.1.rms {
+            continue;
+        }
         let distance = gap(a, b, &found, usize::MAX)?;
         if distance.rms < best.1.rms {
             best = (found, distance);
         }
+        if best.1.rms < SEATED {
+            break;
+        }
     }
     Some(best)
+}
+
+/// The [`RANKED`] starts that bring few samples nearest to the other surface, in this order.
+fn nearest_starts(
+    a: &MeshGeometry,
+    b: &MeshGeometry,
+    starts: impl Iterator<Item = Similarity>,
+) -> Vec<Similarity> {
+    let mut ranked: Vec<(f64, Similarity)> = Vec::with_capacity(RANKED + 1);
+    for start in starts {
+        let most = ranked.get(RANKED - 1).map_or(f64::INFINITY, |last| last.0);
+        let mut sum = 0.0;
+        // The sum only grows, so most starts are left early.
+        let is_near = contacts(a, b, &start, RANKING).all(|contact| {
+            sum += contact.sq_distance();
+            sum < most
+        });
+        if is_near {
+            ranked.insert(ranked.partition_point(|other| other.0 <= sum), (sum, start));
+            ranked.truncate(RANKED);
+        }
+    }
+    ranked.into_iter().map(|(_, start)| start).collect()
 }
 
 /// Whether the spreads along the first and second, and along the second and third axis are nearly equal.
@@ -278,42 +297,51 @@ struct Contact {
     normal: Vector3<f64>,
 }
 
+impl Contact {
+    fn sq_distance(&self) -> f64 {
+        (self.from - self.to).norm_squared()
+    }
+}
+
 /// Nearest points in both directions, of every so many samples, under a map.
-fn contacts(a: &MeshGeometry, b: &MeshGeometry, map: &Similarity, n: usize) -> Vec<Contact> {
+fn contacts<'a>(
+    a: &'a MeshGeometry,
+    b: &'a MeshGeometry,
+    map: &'a Similarity,
+    n: usize,
+) -> impl Iterator<Item = Contact> + 'a {
     let (samples_a, samples_b) = (a.samples(), b.samples());
     let step = |samples: &[Point3<f64>]| (samples.len() / n.max(1)).max(1);
-    let there = samples_a.iter().step_by(step(samples_a)).filter_map(|p| {
+    let there = samples_a.iter().step_by(step(samples_a)).filter_map(move |p| {
         let from = map.apply(p);
         let near = b.tree().nearest(&from)?;
         Some(Contact { from, to: near.point, normal: near.normal })
     });
     let back = map.motion.inverse();
-    let here = samples_b.iter().step_by(step(samples_b)).filter_map(|q| {
+    let here = samples_b.iter().step_by(step(samples_b)).filter_map(move |q| {
         let near = a.tree().nearest(&(back.apply(q) / map.scale))?;
         let normal = map.motion.rotation * near.normal;
         Some(Contact { from: map.apply(&near.point), to: *q, normal })
     });
-    there.chain(here).collect()
+    there.chain(here)
 }
 
 /// The distance under a map, by at least `n` samples of either surface.
 pub(super) fn gap(a: &MeshGeometry, b: &MeshGeometry, map: &Similarity, n: usize) -> Option<SurfaceGap> {
-    let contacts = contacts(a, b, map, n);
-    let squares = || contacts.iter().map(|contact| (contact.from - contact.to).norm_squared());
-    (!contacts.is_empty()).then(|| SurfaceGap {
-        rms: (squares().sum::<f64>() / contacts.len() as f64).sqrt(),
-        max: squares().fold(0.0, f64::max).sqrt(),
-    })
+    let squares = contacts(a, b, map, n).map(|contact| contact.sq_distance());
+    let (n, sum, max) = squares.fold((0, 0.0, 0.0), |(n, sum, max), sq| (n + 1, sum + sq, f64::max(max, sq)));
+    (n > 0).then(|| SurfaceGap { rms: (sum / f64::from(n)).sqrt(), max: max.sqrt() })
 }
 
 /// Refines a map by iterative closest points. Each step moves points towards the tangent planes of their partners (Chen and
-/// Medioni 1992, `chen1992` in `REFERENCES.bib`), in seven degrees of freedom: motion and scale.
-fn refined(a: &MeshGeometry, b: &MeshGeometry, start: Similarity) -> Similarity {
+/// Medioni 1992, `chen1992` in `REFERENCES.bib`), in seven degrees of freedom: motion and scale. Returns the root mean square
+/// distance of the samples, too.
+fn refined(a: &MeshGeometry, b: &MeshGeometry, start: Similarity) -> (Similarity, f64) {
     let error = |contacts: &[Contact]| {
-        contacts.iter().map(|c| (c.from - c.to).norm_squared()).sum::<f64>() / contacts.len().max(1) as f64
+        contacts.iter().map(Contact::sq_distance).sum::<f64>() / contacts.len().max(1) as f64
     };
     let mut map = start;
-    let mut found = contacts(a, b, &map, REFINING);
+    let mut found: Vec<Contact> = contacts(a, b, &map, REFINING).collect();
     let mut damping = 1e-6;
     for _ in 0..STEPS {
         let before = error(&found);
@@ -327,7 +355,7 @@ fn refined(a: &MeshGeometry, b: &MeshGeometry, start: Similarity) -> Similarity 
             },
             scale: map.scale * step.scale,
         };
-        let after = contacts(a, b, &next, REFINING);
+        let after: Vec<Contact> = contacts(a, b, &next, REFINING).collect();
         let reached = error(&after);
         if reached < before {
             (map, found) = (next, after);
@@ -342,7 +370,8 @@ fn refined(a: &MeshGeometry, b: &MeshGeometry, start: Similarity) -> Similarity 
             }
         }
     }
-    map
+    let rms = error(&found).sqrt();
+    (map, rms)
 }
 
 /// The small similarity that brings points nearest to the tangent planes of their partners; `damping` shortens it.

@@ -1,6 +1,6 @@
 //! The relation of two meshes.
 
-use super::cut::{CutPiece, left_of};
+use super::cut::{CutPiece, FoundPiece, piece_of};
 use super::exact::{SameVertices, same_vertices};
 use super::geometry::MeshGeometry;
 use super::in_space::{Aligned, aligned, is_symmetric};
@@ -158,10 +158,17 @@ impl Relation {
     /// Of meshes that are not one surface. Parts of machines do not bend, so they are variants of one part, or other parts.
     fn with_differences(mut self, meshes: [&MeshGeometry; 2], rms: Option<f64>) -> Self {
         let [a, b] = meshes;
-        let cuts = [(Side::First, left_of(a, b)), (Side::Second, left_of(b, a))];
-        if let Some((whole, left)) = cuts.into_iter().find_map(|(whole, left)| Some((whole, left?))) {
+        let cuts = [(Side::First, piece_of(a, b)), (Side::Second, piece_of(b, a))];
+        if let Some((whole, found)) = cuts.into_iter().find_map(|(whole, found)| Some((whole, found?))) {
+            let FoundPiece { left, factor } = found;
             self.because.cut = Some(CutPiece { whole, left });
-            return self.found(RelationKind::PartOf, CUT, vec![Change::Cut], 1.0);
+            let scale = if whole == Side::First { factor } else { 1.0 / factor };
+            let mut changes = vec![Change::Cut];
+            if factor != 1.0 {
+                changes.insert(0, Change::Scaled);
+                self.because.units = UnitChange::of(scale, SIZE_OF_VERTICES);
+            }
+            return self.found(RelationKind::PartOf, CUT, changes, scale);
         }
         if let Some(differences) = differences(meshes, rms) {
             self.because.differences = differences;

@@ -89,7 +89,7 @@ pub(super) fn is_one_surface(same: &SameVertices, [a, b]: [&MeshGeometry; 2]) ->
     })
 }
 
-fn rms_chord_error(mesh: &MeshGeometry) -> f64 {
+pub(super) fn rms_chord_error(mesh: &MeshGeometry) -> f64 {
     let errors = mesh.regions().chord_errors.iter();
     mesh.mesh.face_areas().zip(errors).map(|(area, error)| area * error * error).sum::<f64>().sqrt()
 }

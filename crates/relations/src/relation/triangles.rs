@@ -4,7 +4,13 @@ use mesh::TriMesh;
 use nalgebra::{Point3, Vector3};
 
 /// Most triangles in a leaf of the tree.
-const LEAF: usize = 6;
+const LEAF: usize = 4;
+
+/// Most nodes that wait while a tree is searched, one more than its depth: a leaf has half of the triangles of its parent.
+const DEPTH: usize = 64;
+
+/// Squared distances are rounded by less than this share.
+const ROUNDING: f64 = 1e-9;
 
 /// A tree of bounding boxes over the triangles of a mesh, parents before their children.
 #[derive(Debug)]
@@ -30,6 +36,7 @@ enum NodeContent {
 #[derive(Debug, Clone, Copy)]
 struct Placed {
     corners: [Point3<f64>; 3],
+    normal: Vector3<f64>,
     face: u32,
 }
 
@@ -50,8 +57,11 @@ impl TriangleTree {
     /// The tree over the triangles that have an area. `O(n log n)`.
     #[must_use]
     pub fn new(mesh: &TriMesh) -> Self {
-        let all = (0..mesh.n_faces()).map(|f| Placed { corners: mesh.triangle(f), face: f as u32 });
-        let triangles: Vec<_> = all.filter(|t| normal(&t.corners).norm() > 0.0).collect();
+        let placed = |f: usize| {
+            let corners = mesh.triangle(f);
+            Some(Placed { corners, normal: normal(&corners).try_normalize(0.0)?, face: f as u32 })
+        };
+        let triangles: Vec<_> = (0..mesh.n_faces()).filter_map(placed).collect();
         let mut tree = Self { nodes: Vec::with_capacity(triangles.len() / 2 + 1), triangles };
         if !tree.triangles.is_empty() {
             tree.grow(0..tree.triangles.len());
@@ -82,16 +92,25 @@ impl TriangleTree {
     #[must_use]
     pub fn nearest(&self, query: &Point3<f64>) -> Option<NearestOnSurface> {
         let mut best: Option<(Point3<f64>, usize, f64)> = None;
-        let mut pending = vec![(0, 0.0)];
-        while let Some((index, bound)) = pending.pop() {
-            let Some(node) = self.nodes.get(index) else { break };
+        let mut pending = [(0, 0.0); DEPTH];
+        let mut n_pending = usize::from(!self.nodes.is_empty());
+        while n_pending > 0 {
+            n_pending -= 1;
+            let (index, bound) = pending[n_pending];
             if best.is_some_and(|best| bound >= best.2) {
                 continue;
             }
+            let node = &self.nodes[index];
             match &node.content {
                 NodeContent::Triangles(range) => {
                     for i in range.clone() {
-                        let point = nearest_of_triangle(query, &self.triangles[i].corners);
+                        let Placed { corners, normal, .. } = &self.triangles[i];
+                        // A triangle is no nearer than its plane.
+                        let height = normal.dot(&(query - corners[0]));
+                        if best.is_some_and(|best| height * height > best.2 * (1.0 + ROUNDING)) {
+                            continue;
+                        }
+                        let point = nearest_of_triangle(query, corners);
                         let sq = (point - query).norm_squared();
                         if best.is_none_or(|best| sq < best.2) {
                             best = Some((point, i, sq));
@@ -101,13 +120,15 @@ impl TriangleTree {
                 NodeContent::Children(children) => {
                     let [a, b] = children.map(|child| (child, self.nodes[child].sq_distance(query)));
                     // The nearer one is searched first.
-                    pending.extend(if a.1 < b.1 { [b, a] } else { [a, b] });
+                    let order = if a.1 < b.1 { [b, a] } else { [a, b] };
+                    pending[n_pending..n_pending + 2].copy_from_slice(&order);
+                    n_pending += 2;
                 }
             }
         }
         best.map(|(point, i, sq_distance)| {
-            let Placed { corners, face } = &self.triangles[i];
-            NearestOnSurface { point, normal: normal(corners).normalize(), sq_distance, face: *face as usize }
+            let Placed { normal, face, .. } = self.triangles[i];
+            NearestOnSurface { point, normal, sq_distance, face: face as usize }
         })
     }
 }

@@ -29,6 +29,11 @@ pub struct UnitChange {
 }
 
 impl UnitChange {
+    /// By how much numbers grow with every change of unit, in both directions.
+    pub(super) fn factors() -> impl Iterator<Item = f64> {
+        UNITS.iter().flat_map(|(.., factor)| [*factor, 1.0 / factor])
+    }
+
     /// The change of unit that multiplies sizes by `scale`, up to a relative error.
     ///
     /// ```

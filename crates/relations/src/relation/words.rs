@@ -155,7 +155,12 @@ impl Relation {
         let CutPiece { whole, left } =
             self.because.cut.unwrap_or(CutPiece { whole: Side::Second, left: 1.0 });
         let (part, whole) = if whole == Side::Second { (a, b) } else { (b, a) };
-        write!(f, "{part} is a piece of {whole}: {} of its surface", percent(left))
+        write!(f, "{part} is a piece of {whole}: {} of its surface", percent(left))?;
+        if self.has(Change::Scaled) {
+            f.write_str(", ")?;
+            self.write_scale(f)?;
+        }
+        Ok(())
     }
 
     fn write_parts(&self, f: &mut Formatter<'_>, parts: Parts) -> fmt::Result {

@@ -3,6 +3,7 @@
 mod answer;
 mod compare;
 mod csv;
+mod duplicates;
 mod matching;
 mod search;
 mod shapes;
@@ -39,6 +40,7 @@ fn routes() -> Vec<Route> {
         ("get", "/api/shapes/{id}/thumbnail", get(shapes::thumbnail)),
         ("get", "/api/compare", get(compare::compare)),
         ("get", "/api/match", get(matching::matching)),
+        ("get", "/api/duplicates", get(duplicates::duplicates)),
         ("get", "/api/openapi.json", get(openapi)),
         ("get", "/healthz", get(health)),
     ]

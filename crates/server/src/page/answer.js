@@ -1,41 +1,12 @@
-// The results: repairs, mesh and form, class, nearest shapes, the overlay of two meshes or forms, and corresponding points.
+// The results: repairs, mesh and form, class, nearest shapes.
+import { Comparison, ask, byId, number, view, views } from './comparison.js';
 import { commonFolder, folderOf, mark, tile } from './shapes.js';
 import { USUAL_K, searched } from './state.js';
 
-const byId = (id) => document.getElementById(id);
-const sentence = (text) => `${text[0].toUpperCase()}${text.slice(1)}.`;
-const number = (value) => Number(value.toPrecision(3)).toString();
 const percent = (share) => `${Math.round(100 * share)} %`;
-
-// The largest extent of a surface.
-function extent({ positions }) {
-  const all = canonform.decode(positions, Float32Array);
-  const ends = [0, 1, 2].map(() => [Infinity, -Infinity]);
-  all.forEach((x, i) => { ends[i % 3] = [Math.min(ends[i % 3][0], x), Math.max(ends[i % 3][1], x)]; });
-  return Math.max(...ends.map(([low, high]) => high - low));
-}
 
 // Results whose files are read to say how they are related; the others keep what the index tells.
 const MOST_EXPLAINED = 24;
-
-// Gaps below this share of the extent are rounding, and have the colour of zero.
-const ROUNDING = 1e-3;
-
-// Views are created once and then updated: browsers limit the number of WebGL scenes.
-const views = {};
-function view(id, geometries, options) {
-  if (views[id]) return views[id].update(geometries, options);
-  views[id] = canonform.view(byId(id), geometries, options);
-  return undefined;
-}
-
-async function ask(address) {
-  try {
-    return await (await fetch(address)).json();
-  } catch {
-    return { error: 'The server did not respond', remedy: 'check that it is running' };
-  }
-}
 
 export class Answer {
   // Calls `picked` with a result to overlay, and `closed` without one.
@@ -43,10 +14,7 @@ export class Answer {
     this.picked = picked;
     this.root = byId('answer');
     this.root.dataset.state = 'empty';
-    this.comparison = 0;
-    byId('overlay-shown').addEventListener('change', () => this.drawOverlay());
-    byId('match-hit').addEventListener('click', () => this.match());
-    byId('close-hit').addEventListener('click', () => {
+    this.comparison = new Comparison(() => {
       const result = byId('results').querySelector('[aria-pressed=true]');
       closed();
       result?.focus();
@@ -85,7 +53,7 @@ export class Answer {
 
   // Old results do not answer a new query.
   hide() {
-    this.comparison += 1;
+    this.comparison.hide();
     this.found = null;
     byId('page').dataset.at = 'start';
     byId('pick').hidden = false;
@@ -108,11 +76,10 @@ export class Answer {
 
   show(found, state) {
     this.found = found;
-    this.comparison += 1;
+    this.comparison.hide();
     byId('start').hidden = true;
     byId('found').hidden = false;
     byId('found').classList.remove('busy');
-    byId('overlay').hidden = true;
     byId('query-name').textContent = found.query;
     this.showClass(found);
     for (const format of ['csv', 'json']) {
@@ -213,97 +180,13 @@ export class Answer {
   }
 
   uncompare() {
-    this.comparison += 1;
-    byId('overlay').hidden = true;
+    this.comparison.hide();
     mark(byId('results'), null);
   }
 
-  async compare(id) {
-    const overlay = byId('overlay');
-    const comparison = ++this.comparison;
+  compare(id) {
     const { query, query_id: queryId } = this.found;
     mark(byId('results'), id);
-    const isNew = overlay.hidden;
-    overlay.hidden = false;
-    overlay.dataset.state = 'busy';
-    overlay.dataset.id = id;
-    byId('overlay-title').textContent = `${query} over ${id}`;
-    byId('overlay-kind').textContent = 'Aligning…';
-    byId('overlay-kind').dataset.kind = '';
-    byId('overlay-facts').textContent = '';
-    if (isNew) byId('overlay-title').focus({ preventScroll: true });
-    overlay.scrollIntoView({ block: 'nearest' });
-    byId('match').hidden = true;
-    this.pair = new URLSearchParams({ ...(queryId ? { query: queryId } : { a: query }), b: id });
-    const answer = await ask(`/api/compare?${this.pair}`);
-    if (comparison !== this.comparison) return;
-    if (answer.error) {
-      overlay.dataset.state = 'failed';
-      byId('overlay-kind').textContent = answer.remedy ? `${answer.error}; ${answer.remedy}` : answer.error;
-      return;
-    }
-    const { relation, meshes, gap, residual } = answer;
-    const inSpace = Boolean(meshes);
-    overlay.dataset.shown = inSpace ? 'meshes' : 'forms';
-    byId('shown-both').textContent = inSpace ? 'both meshes' : 'both forms';
-    const most = inSpace ? gap.max : Math.max(residual[0].max, residual[1].max);
-    const isRounding = inSpace && most < ROUNDING * extent(meshes[0]) * ROUNDING;
-    const shown = inSpace
-      ? 'The picture shows the meshes, aligned in space at the size of the first. Colour is the gap between them: '
-      : 'The picture shows the canonical forms, aligned, since the meshes are not one rigid body. Colour is the distance between them: ';
-    // Names keep their letters.
-    byId('overlay-kind').textContent = `${relation.text} (${Math.round(100 * relation.confidence)} % certain).`;
-    byId('overlay-kind').dataset.kind = relation.kind;
-    byId('overlay-facts').textContent = `${sentence(relation.because.text)} ${shown}${isRounding ? 'there is none' : `at most ${number(most)}`}.`;
-    byId('shown-first').textContent = answer.a;
-    byId('shown-second').textContent = answer.b;
-    this.overlaid = answer;
-    await this.drawOverlay();
-    overlay.dataset.state = 'ready';
-  }
-
-  // Maps the query to the shape of the overlay, and shows both in corresponding colours.
-  async match() {
-    const { comparison } = this;
-    const [part, facts] = [byId('match'), byId('match-facts')];
-    part.hidden = false;
-    part.dataset.state = 'busy';
-    byId('match-title').textContent = `Corresponding points of ${this.found.query} and ${byId('overlay').dataset.id}`;
-    part.scrollIntoView({ block: 'start' });
-    facts.textContent = 'Matching, which takes some seconds…';
-    const answer = await ask(`/api/match?${this.pair}`);
-    if (comparison !== this.comparison) return;
-    if (answer.error) {
-      part.dataset.state = 'failed';
-      facts.textContent = answer.remedy ? `${answer.error}; ${answer.remedy}` : answer.error;
-      return;
-    }
-    const words = { direct: 'the map that keeps left and right', mirrored: 'the mirrored map', unoriented: 'the map' };
-    const doubt = ({ alternative }) => (alternative ? ' (uncertain: front and back may be exchanged)' : '');
-    const change = (map) => `${words[map.kind]} changes distances by ${number(100 * map.distortion)} % of the square root of the area${doubt(map)}`;
-    facts.textContent = `${sentence(answer.maps.map(change).join(', '))} Points that the first map joins have the same colour.`;
-    await Promise.all(['match-first', 'match-second'].map(
-      (id, i) => view(id, answer.meshes[i], { title: [answer.a, answer.b][i] })));
-    part.scrollIntoView({ block: 'start' });
-    part.dataset.state = 'ready';
-  }
-
-  // Coloured by the gap or the residual; with both shown, the second is a pale shell around the first.
-  drawOverlay() {
-    if (!this.overlaid) return undefined;
-    const { meshes, gap, forms, residual, a, b } = this.overlaid;
-    const [first, second] = meshes ?? forms;
-    const shown = document.querySelector('input[name=shown]:checked').value;
-    const most = meshes ? Math.max(gap.max, ROUNDING * extent(first)) : Math.max(residual[0].max, residual[1].max);
-    const range = [0, most];
-    const shell = { ...second, values: undefined, color: '#8fa3b8' };
-    const [surfaces, opacity] = {
-      both: [[first, shell], [1, 0.35]],
-      first: [[first], [1]],
-      second: [[second], [1]],
-    }[shown];
-    const kind = meshes ? 'Meshes' : 'Canonical forms';
-    const title = { both: `${kind}: ${a} inside ${b}`, first: `${kind}: ${a}`, second: `${kind}: ${b}` }[shown];
-    return view('overlay-view', surfaces, { title, opacity, range });
+    return this.comparison.show(query, id, new URLSearchParams({ ...(queryId ? { query: queryId } : { a: query }), b: id }));
   }
 }

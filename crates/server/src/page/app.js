@@ -4,7 +4,8 @@
 // state.js    what the address says
 // ask.js      drop zone, file button, requests with their progress
 // shapes.js   tiles, list of the shapes of the index
-// answer.js   results: class, views, nearest shapes, overlay of two meshes or forms
+// answer.js   results: class, views, nearest shapes
+// comparison.js  overlay of two meshes or forms, corresponding points
 //
 // Stable names, for tests and other scripts:
 //   #file #drop              file input (the files of one mesh); drop zone, class `over` while dragged over
@@ -22,7 +23,7 @@
 //     #results button.tile[data-id][data-label][data-distance][data-kind], aria-pressed on the one in the overlay
 //     #results[data-explained]  whether files and meshes were compared for the kinds; #components of the query
 //     #overlay               data-state: `busy`, `ready` or `failed`; data-id of the shape; data-shown: `meshes` or `forms`
-//       #overlay-title #overlay-kind[data-kind] #overlay-facts #overlay-view, input[name=shown] (both, first, second)
+//       #overlay-title #overlay-kind[data-kind] #overlay-facts #overlay-view #overlay-second, input[name=shown] (both, beside, first, second)
 //       #search-hit #close-hit  a search with the shape of the overlay; back to the results alone
 //       #match-hit #match[data-state] #match-title #match-facts #match-first #match-second  corresponding points of both meshes
 // Texts from outside are set as text, never as HTML.

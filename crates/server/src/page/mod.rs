@@ -1,4 +1,4 @@
-//! The page: files embedded in the program.
+//! The pages: files embedded in the program.
 
 use std::collections::hash_map::DefaultHasher;
 use std::hash::{Hash, Hasher};
@@ -18,6 +18,13 @@ const HTML: &str = "text/html; charset=utf-8";
 const CSS: &str = "text/css; charset=utf-8";
 const JS: &str = "text/javascript; charset=utf-8";
 
+/// A page with what all pages have in common.
+pub(crate) fn whole(text: &str) -> String {
+    let shared =
+        [("{{icon}}", include_str!("icon.html")), ("{{comparison}}", include_str!("comparison.html"))];
+    filled_in(&shared.iter().fold(text.to_owned(), |text, (name, part)| text.replace(name, part.trim_end())))
+}
+
 pub(crate) fn router() -> Router<Arc<App>> {
     let files = [
         ("/assets/style.css", CSS, include_str!("style.css")),
@@ -26,12 +33,16 @@ pub(crate) fn router() -> Router<Arc<App>> {
         ("/assets/ask.js", JS, include_str!("ask.js")),
         ("/assets/shapes.js", JS, include_str!("shapes.js")),
         ("/assets/answer.js", JS, include_str!("answer.js")),
+        ("/assets/comparison.js", JS, include_str!("comparison.js")),
+        ("/assets/duplicates.js", JS, include_str!("duplicates.js")),
+        ("/assets/marks.js", JS, include_str!("marks.js")),
         ("/assets/viewer.js", JS, report::viewer::viewer_js()),
         ("/assets/plotly.js", JS, report::viewer::plotly_js()),
     ];
-    let page = ("/", HTML, Bytes::from(filled_in(include_str!("index.html"))));
+    let pages = [("/", include_str!("index.html")), ("/duplicates", include_str!("duplicates.html"))];
+    let pages = pages.map(|(path, text)| (path, HTML, Bytes::from(whole(text))));
     let files = files.map(|(path, kind, text)| (path, kind, Bytes::from_static(text.as_bytes())));
-    std::iter::once(page).chain(files).fold(Router::new(), |router, (path, kind, text)| {
+    pages.into_iter().chain(files).fold(Router::new(), |router, (path, kind, text)| {
         let mut hash = DefaultHasher::new();
         text.hash(&mut hash);
         let tag = tag(&format!("{:016x}", hash.finish()));

@@ -7,6 +7,8 @@ mod attacks;
 #[cfg(test)]
 mod client;
 #[cfg(test)]
+mod duplicates;
+#[cfg(test)]
 mod hostile;
 #[cfg(test)]
 mod index;

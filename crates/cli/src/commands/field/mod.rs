@@ -1,9 +1,8 @@
 //! `canonform field`.
 //!
-//! `build` (fields, and facts about them), `query` (distances), `pairs` (files of pairs).
+//! `build` (fields, and facts about them), `query` (distances).
 
 mod build;
-mod pairs;
 mod query;
 
 use std::process::ExitCode;

@@ -10,10 +10,10 @@ use canonform::surface::VertexId;
 use canonform::{DistanceField, FieldBounds, PairDistance, PairKind};
 use serde::Serialize;
 
-use super::pairs;
 use crate::args::{Common, FieldQueryArgs};
 use crate::input::named;
 use crate::output::{check_folder, check_format, report, write_npy};
+use crate::pairs;
 
 #[derive(Serialize)]
 struct QueryJson {

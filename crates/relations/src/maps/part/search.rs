@@ -5,6 +5,7 @@ use linalg::{LinalgError, Matrix};
 use nalgebra::Cholesky;
 use rayon::prelude::*;
 
+use super::super::local::vertex_confidence;
 use super::super::orientation::agreement;
 use super::super::part_of_whole::PartOfWhole;
 use super::super::search::{MapKind, MapOptions, SurfaceMap, in_order, kind_of, mirrored_samples};
@@ -171,6 +172,7 @@ fn refined(
     let Coverage { covered, partners, matched } = onto_part(sides, &images)?;
     let functional =
         functional(sides, &fine.places, FUNCTIONS, usize::MAX).unwrap_or_else(|| Matrix::zeros(0, 0));
+    let vertex_confidence = confidences(sides, side, &images, &partners)?;
     let id = |v: usize| VertexId::from(v);
     let (vertices, matched, functional) = match side {
         Side::First => (images.iter().copied().map(id).collect(), vec![true; images.len()], functional),
@@ -185,9 +187,30 @@ fn refined(
         agreement,
         confidence,
         vertices,
+        vertex_confidence,
         functional,
         part: Some(PartOfWhole { part: side, covered, matched }),
         alternative: None,
+    })
+}
+
+/// The confidence of each vertex of the first surface, by its distances in the unit of the whole.
+fn confidences(
+    sides: &Sides<'_>,
+    side: Side,
+    images: &[usize],
+    partners: &[usize],
+) -> Result<Vec<f64>, DescriptorError> {
+    let (part, whole) = (sides.part, sides.whole);
+    let in_part = |vertices: &[usize]| Ok::<_, DescriptorError>(part.distances_to(vertices)? * sides.scale());
+    let all = |shape: &MapShape| (0..shape.n_vertices()).collect::<Vec<usize>>();
+    Ok(match side {
+        Side::First => {
+            vertex_confidence(&in_part(&all(part))?, part.landmarks(), &whole.distances_to(images)?)
+        }
+        Side::Second => {
+            vertex_confidence(&whole.distances_to(&all(whole))?, whole.landmarks(), &in_part(partners)?)
+        }
     })
 }
 
@@ -207,7 +230,7 @@ fn functional(sides: &Sides<'_>, places: &[usize], n: usize, most: usize) -> Opt
 
 /// How far a map preserves orientation.
 fn orientation(sides: &Sides<'_>, places: &[usize]) -> Option<f64> {
-    let oriented = [sides.part.oriented.as_ref()?, sides.whole.oriented.as_ref()?];
+    let (oriented, forms) = (sides.part.oriented.as_ref()?, sides.whole.area_forms.as_ref()?);
     let [n, k] = ORIENTED;
     let n = n.min(sides.whole.vectors.ncols());
     let k = k.min(sides.part.vectors.ncols()).min(places.len() / 3).max(1);
@@ -216,8 +239,9 @@ fn orientation(sides: &Sides<'_>, places: &[usize]) -> Option<f64> {
     let images: Vec<usize> = places.iter().map(|y| sides.ys[*y]).collect();
     let pulled = sides.whole.vectors.select_rows(&images).columns(0, n).into_owned();
     let map = Cholesky::new(at.tr_mul(&at))?.solve(&at.tr_mul(&pulled));
-    let pairs: Vec<(usize, usize)> = sides.xs.iter().copied().zip(images).collect();
-    Some(agreement(oriented, &(own * map), &sides.whole.vectors, &pairs))
+    let pulled = oriented.area_forms(&(own * map), &sides.xs[..places.len()]);
+    let places: Vec<u32> = places.iter().map(|y| *y as u32).collect();
+    Some(agreement(&pulled, forms, &places))
 }
 
 /// How far the map of functions is from one of a part, whose rows are orthonormal: `|C C' - I|² / k`.

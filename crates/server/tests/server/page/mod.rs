@@ -2,6 +2,7 @@
 //!
 //! Screenshots go to `target/browser`.
 
+mod duplicates;
 mod search;
 mod states;
 mod support;

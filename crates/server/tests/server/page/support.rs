@@ -68,13 +68,19 @@ impl Page {
 
     /// As [`open`](Self::open), with options of the server.
     pub(crate) fn with(width: u32, height: u32, options: ServeOptions) -> Option<Self> {
+        let page = Self::of(&collection().join("all.canonform"), [width, height], options)?;
+        page.go("/");
+        page.wait_for("document.querySelectorAll('#shapes .tile').length === 10");
+        Some(page)
+    }
+
+    /// A browser for the pages of an index, which opens none yet.
+    pub(crate) fn of(index: &Path, [width, height]: [u32; 2], options: ServeOptions) -> Option<Self> {
         let browser = Browser::start()?;
         let turn = shared_turn();
-        let server = Running::start(&collection().join("all.canonform"), options);
+        let server = Running::start(index, options);
         browser.resize(width, height).unwrap();
         browser.watch_layout().unwrap();
-        browser.open(&format!("http://{}/", server.address)).unwrap();
-        browser.wait_for("document.querySelectorAll('#shapes .tile').length === 10").unwrap();
         Some(Self { browser, server, _turn: turn })
     }
 

@@ -1,0 +1,244 @@
+//! Points inside faces, and what they carry from one surface to another.
+
+use std::borrow::Borrow;
+use std::collections::HashMap;
+
+use linalg::Matrix;
+use mesh::{InputPoint, Surface};
+use relations::{MapElements, Side, mapped_points};
+use surface::{FaceId, SurfacePoint, VertexId};
+
+use super::mapped_surface::MappedSurface;
+
+/// A point inside a face, in the numbers of the input.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FacePoint {
+    /// The face.
+    pub face: FaceId,
+    /// Its vertices.
+    pub corners: [VertexId; 3],
+    /// Their weights: not negative, with sum 1.
+    pub weights: [f64; 3],
+}
+
+impl FacePoint {
+    /// The point as it is written.
+    #[must_use]
+    pub fn point(&self) -> InputPoint {
+        InputPoint::Face { face: self.face, weights: self.weights }
+    }
+
+    /// The corner of the largest weight, the first in case of a tie.
+    #[must_use]
+    pub fn nearest_corner(&self) -> VertexId {
+        let [a, b, c] = self.weights;
+        self.corners[if a >= b && a >= c { 0 } else { usize::from(b < c) + 1 }]
+    }
+}
+
+/// What takes points of one surface to points of another.
+#[derive(Debug, Clone, Copy)]
+pub struct Mapping<'a, S = Surface> {
+    /// The first and the second surface.
+    pub shapes: [&'a MappedSurface<S>; 2],
+    /// The functional map, as in [`VertexMap::functional`](super::VertexMap::functional).
+    pub functional: &'a Matrix,
+    /// Pairs that stay as they are, in the numbers of the inputs.
+    pub landmarks: &'a [[VertexId; 2]],
+}
+
+/// Where a map takes the elements of one surface: points inside the faces of the other one. By them, functions, labels and texture
+/// coordinates of that other surface are carried to this one.
+///
+/// ```
+/// use canonform::linalg::Matrix;
+/// use canonform::relations::Side;
+/// use canonform::{CorrespondOptions, MappedSurface, Surface, correspond, mesh::shapes};
+///
+/// let flat = shapes::grid(21, 17, 0.1);
+/// let options = CorrespondOptions::default();
+/// let surfaces = [flat.clone(), shapes::fold(&flat, 0.8, 1.2)].map(|mesh| {
+///     let surface = Surface::new(&mesh, &options.form.repair, &()).unwrap();
+///     MappedSurface::new(surface, &options, &()).unwrap()
+/// });
+/// let [a, b] = &surfaces;
+/// let map = &correspond(a, b, &options, &())?.maps[0];
+///
+/// // From the first surface to the second: for every vertex of the second its place on the first.
+/// let places = map.between([a, b]).vertices(Side::Second);
+/// let constant = places.values(&Matrix::from_element(21 * 17, 1, 7.0));
+/// assert!(constant.iter().all(|value| (value - 7.0).abs() < 1e-12));
+/// # Ok::<(), canonform::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointMap {
+    /// For every element of the input, its point on the other surface; `None` for those that the repair dropped.
+    pub points: Vec<Option<FacePoint>>,
+}
+
+impl PointMap {
+    /// Functions of the other surface, carried to these elements: interpolated inside faces. `values` has a row for every vertex
+    /// of the other input, and a column for every function; the result has a row for every element, NaN where it has no point.
+    ///
+    /// Texture coordinates are two functions. The corners are those of the input's face, so a seam along which the input
+    /// doubles its vertices stays sharp on the other surface; here, a face across the seam has corners on both sides of it.
+    ///
+    /// # Panics
+    /// If `values` has fewer rows than the other input has vertices.
+    #[must_use]
+    pub fn values(&self, values: &Matrix) -> Matrix {
+        Matrix::from_fn(self.points.len(), values.ncols(), |i, j| {
+            self.points[i].map_or(f64::NAN, |point| {
+                let part = |(corner, weight): (&VertexId, &f64)| match weight {
+                    // Not a number times zero is not a number.
+                    0.0 => 0.0,
+                    weight => weight * values[(corner.index(), j)],
+                };
+                point.corners.iter().zip(&point.weights).map(part).sum()
+            })
+        })
+    }
+
+    /// Labels of the vertices of the other surface, carried to these elements: the one of the largest weight.
+    ///
+    /// # Panics
+    /// If there are fewer labels than the other input has vertices.
+    #[must_use]
+    pub fn vertex_labels<L: Clone + PartialEq>(&self, labels: &[L]) -> Vec<Option<L>> {
+        let label = |point: &FacePoint| {
+            let of = point.corners.map(|corner| &labels[corner.index()]);
+            let weight = |label: &L| -> f64 {
+                of.iter().zip(point.weights).filter(|(other, _)| **other == label).map(|(_, w)| w).sum()
+            };
+            let weights = of.map(weight);
+            let most = weights.iter().copied().fold(0.0, f64::max);
+            weights.iter().position(|w| *w == most).map(|i| of[i].clone())
+        };
+        self.points.iter().map(|point| point.as_ref().and_then(label)).collect()
+    }
+
+    /// Labels of the faces of the other surface, carried to these elements: that of the face of their point.
+    ///
+    /// # Panics
+    /// If there are fewer labels than the other input has faces.
+    #[must_use]
+    pub fn face_labels<L: Clone>(&self, labels: &[L]) -> Vec<Option<L>> {
+        self.points.iter().map(|point| point.map(|point| labels[point.face.index()].clone())).collect()
+    }
+}
+
+impl<S: Borrow<Surface>> Mapping<'_, S> {
+    /// For every vertex of one side, its point on the other surface: of the first side, where the map takes it; of the second, what
+    /// is taken to it.
+    #[must_use]
+    pub fn vertices(&self, of: Side) -> PointMap {
+        let surfaces = self.shapes.map(|shape| shape.surface());
+        let [own, other] = ordered(surfaces, of);
+        let mut found = self.mapped(of, MapElements::Vertices);
+        for [x, y] in self.landmarks {
+            let pair = [surfaces[0].repaired_vertex(*x), surfaces[1].repaired_vertex(*y)];
+            if let [Ok(x), Ok(y)] = ordered(pair, of) {
+                found[x.index()] = SurfacePoint::Vertex(y);
+            }
+        }
+        let points = in_faces(&found, other);
+        PointMap { points: own.in_input_order(&points, None) }
+    }
+
+    /// The same for the centroid of every face of one side.
+    #[must_use]
+    pub fn faces(&self, of: Side) -> PointMap {
+        let [own, other] = ordered(self.shapes.map(|shape| shape.surface()), of);
+        let repaired = |face: &[VertexId; 3]| -> Option<[VertexId; 3]> {
+            let [a, b, c] = face.map(|v| own.repaired_vertex(v).ok());
+            Some([a?, b?, c?])
+        };
+        let faces: Vec<_> = own.input_faces.iter().map(repaired).collect();
+        let known: Vec<_> = faces.iter().flatten().copied().collect();
+        let found = self.mapped(of, MapElements::Faces(&known));
+        let mut found = in_faces(&found, other).into_iter();
+        PointMap { points: faces.iter().map(|face| face.and_then(|_| found.next().flatten())).collect() }
+    }
+
+    fn mapped(&self, of: Side, elements: MapElements<'_>) -> Vec<SurfacePoint> {
+        let [_, target] = ordered(self.shapes.map(|shape| shape.surface()), of);
+        let topology = target.intrinsic().topology();
+        mapped_points(self.shapes.map(|shape| &shape.shape), self.functional, of, elements, topology)
+    }
+}
+
+/// A pair, with the one of a side first.
+fn ordered<T>([first, second]: [T; 2], side: Side) -> [T; 2] {
+    match side {
+        Side::First => [first, second],
+        Side::Second => [second, first],
+    }
+}
+
+/// Points of a repaired mesh in faces of its input. A face that the repair added, as a bridge, has none: its points go to the
+/// nearest corner.
+fn in_faces(points: &[SurfacePoint], surface: &Surface) -> Vec<Option<FacePoint>> {
+    let topology = surface.intrinsic().topology();
+    let to_repaired = &surface.repaired.input_to_repaired;
+    let mut faces: HashMap<[VertexId; 3], usize> = HashMap::new();
+    let mut around: Vec<Option<usize>> = vec![None; topology.n_vertices()];
+    for (i, face) in surface.input_faces.iter().enumerate() {
+        let [Some(a), Some(b), Some(c)] = face.map(|v| to_repaired[v.index()]) else { continue };
+        let mut key = [a, b, c];
+        key.sort_unstable();
+        faces.entry(key).or_insert(i);
+        key.iter().for_each(|v| around[v.index()] = around[v.index()].or(Some(i)));
+    }
+    let in_face = |i: usize, weight: &dyn Fn(VertexId) -> f64| {
+        let corners = surface.input_faces[i];
+        let weights = corners.map(|v| to_repaired[v.index()].map_or(0.0, weight));
+        FacePoint { face: FaceId::from(i), corners, weights }
+    };
+    let at_vertex = |v: VertexId| {
+        let one = |w: VertexId| f64::from(u8::from(w == v));
+        around[v.index()].map(|i| in_face(i, &one))
+    };
+    let place = |point: &SurfacePoint| match *point {
+        SurfacePoint::Vertex(v) => at_vertex(v),
+        SurfacePoint::Edge { edge, t } => {
+            let [a, b] = topology.edges()[edge.index()];
+            at_vertex(if t < 0.5 { a } else { b })
+        }
+        SurfacePoint::Face { face, barycentric } => {
+            let vertices = topology.faces()[face.index()];
+            let mut key = vertices;
+            key.sort_unstable();
+            let weight = |v: VertexId| vertices.iter().position(|w| *w == v).map_or(0.0, |i| barycentric[i]);
+            match faces.get(&key) {
+                Some(i) => Some(in_face(*i, &weight)),
+                None => {
+                    let most = vertices.into_iter().max_by(|v, w| weight(*v).total_cmp(&weight(*w)));
+                    most.and_then(at_vertex)
+                }
+            }
+        }
+    };
+    points.iter().map(place).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(weights: [f64; 3]) -> Option<FacePoint> {
+        Some(FacePoint { face: FaceId(0), corners: [0, 1, 2].map(VertexId), weights })
+    }
+
+    #[test]
+    fn labels_go_by_majority_and_values_by_weight() {
+        let map = PointMap { points: vec![point([0.4, 0.3, 0.3]), point([1.0, 0.0, 0.0]), None] };
+        assert_eq!(map.vertex_labels(&["ear", "leg", "leg"]), [Some("leg"), Some("ear"), None]);
+        assert_eq!(map.face_labels(&[7]), [Some(7), Some(7), None]);
+        let values = map.values(&Matrix::from_row_slice(3, 2, &[1.0, 10.0, 2.0, f64::NAN, 3.0, f64::NAN]));
+        assert!((values[(0, 0)] - 1.9).abs() < 1e-12 && values[(0, 1)].is_nan());
+        assert_eq!((values[(1, 0)], values[(1, 1)]), (1.0, 10.0));
+        assert!(values[(2, 0)].is_nan());
+        assert_eq!(point([0.2, 0.3, 0.5]).map(|p| p.nearest_corner()), Some(VertexId(2)));
+        assert_eq!(point([0.4, 0.4, 0.2]).map(|p| p.nearest_corner()), Some(VertexId(0)));
+    }
+}

@@ -1,0 +1,169 @@
+//! What is known of a map before it is searched for.
+
+use linalg::Matrix;
+use surface::VertexId;
+
+use super::functional_map::{FunctionalMaps, SampleMaps, SampledPair};
+use super::nearest_rows::nearest_rows;
+use super::operators::{Operators, fitted};
+use super::search::SurfaceMap;
+use super::shape::MapShape;
+use descriptors::DescriptorError;
+
+/// Times of heat that is placed at landmarks, at unit area. A convention: those by which the curvature is smoothed.
+const TIMES: [f64; 3] = [0.001, 0.003, 0.01];
+
+/// Maps that take every landmark within this of its partner respect them, as a share of the square root of the area. A safety
+/// limit: two maps that are as far apart on average are one.
+const RESPECTED: f64 = 0.06;
+
+/// Where no map takes all landmarks so near, those respect them that miss by no more than this multiple of the least. A safety
+/// limit, for landmarks that were placed by hand.
+const BARELY: f64 = 1.5;
+
+/// A map is torn if the share of its vertices whose confidence is below one half exceeds that of another map by this. Between
+/// built-in cats with one landmark, mixtures exceed by 0.09 to 0.39, right maps by 0.01.
+const TORN: f64 = 0.05;
+
+/// An initial map is refined from one function for so many of its pairs. A convention.
+const PAIRS_A_FUNCTION: usize = 4;
+
+/// What is known of a map from one surface to another, before the rest of it is searched for. By default, nothing.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct KnownMap {
+    /// Corresponding points: a vertex of the first surface, and one of the second. Maps that do not respect them are not
+    /// returned, and those that do contain these pairs.
+    pub landmarks: Vec<[VertexId; 2]>,
+    /// A map to start from: the partner of each vertex of the first surface, where there is one. Empty if there is no such map.
+    pub initial: Vec<Option<VertexId>>,
+    /// Functions that correspond, as columns with a row for every vertex: one matrix for each surface.
+    pub functions: Option<[Matrix; 2]>,
+}
+
+impl KnownMap {
+    /// Whether nothing is known.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Maps of samples that are fitted to the landmarks and functions, alone and together with what surfaces have in common.
+    pub(super) fn fitted_starts(&self, pair: SampledPair<'_>, [a, b]: [&MapShape; 2]) -> Vec<SampleMaps> {
+        let known = [(a, 0), (b, 1)].map(|(shape, side)| self.operators(shape, side));
+        let [Some(on_a), Some(on_b)] = known else { return Vec::new() };
+        let both = a.operators.iter().zip(&b.operators).map(|(x, y)| [x.and(&on_a), y.and(&on_b)]);
+        let all: Vec<[Operators; 2]> = both.collect();
+        let all = all.iter().map(|[x, y]| [x, y]).chain([[&on_a, &on_b]]);
+        let fits = all.flat_map(|[x, y]| [1.0, -1.0].into_iter().flat_map(move |sign| fitted(x, y, sign)));
+        fits.map(|forth| FunctionalMaps { back: forth.transpose(), forth }.sample_maps(pair)).collect()
+    }
+
+    /// The functions known on one side: heat that was placed at the landmarks, and those that were given.
+    fn operators(&self, shape: &MapShape, side: usize) -> Option<Operators> {
+        let spectrum = shape.spectrum();
+        let mut columns = Vec::new();
+        for pair in &self.landmarks {
+            let at = spectrum.vectors.row(pair[side].index()).transpose();
+            for time in TIMES {
+                let left = at.zip_map(&nalgebra::DVector::from_column_slice(&spectrum.values), |v, value| {
+                    v * (-time * value).exp()
+                });
+                columns.push(&spectrum.vectors * left);
+            }
+        }
+        let given = self.functions.iter().flat_map(|both| both[side].column_iter());
+        columns.extend(given.map(|column| column.into_owned()));
+        let functions = (!columns.is_empty()).then(|| Matrix::from_columns(&columns))?;
+        Some(Operators::new(&spectrum, functions, shape.oriented.as_ref()))
+    }
+
+    /// The maps of samples that follow from the initial map, and the number of eigenfunctions to refine it from.
+    pub(super) fn initial_start(
+        &self,
+        pair: SampledPair<'_>,
+        [a, b]: [&MapShape; 2],
+        most: usize,
+    ) -> Option<(SampleMaps, usize)> {
+        let partner = |&x: &usize| Some((x, self.initial.get(x).copied().flatten()?.index()));
+        // Samples are spread evenly; all vertices, where few of them have partners.
+        let mut pairs: Vec<(usize, usize)> = a.samples.iter().filter_map(partner).collect();
+        if pairs.len() < PAIRS_A_FUNCTION * most {
+            pairs = (0..self.initial.len()).filter_map(|x| partner(&x)).collect();
+        }
+        let k = most.min(pairs.len() / PAIRS_A_FUNCTION).min(a.vectors.ncols()).min(b.vectors.ncols());
+        if k == 0 {
+            return None;
+        }
+        let (xs, ys): (Vec<usize>, Vec<usize>) = pairs.into_iter().unzip();
+        let [rows_a, rows_b] = [(a, &xs), (b, &ys)].map(|(shape, rows)| shape.vectors.select_rows(rows));
+        let all: Vec<u32> = (0..).take(xs.len()).collect();
+        let known = SampledPair { a: &rows_a, b: &rows_b };
+        let functional = FunctionalMaps::new(known, &SampleMaps { forth: all.clone(), back: all }, k);
+        Some((functional.sample_maps(pair), k))
+    }
+
+    /// How far a map takes the landmark that it misses most from its partner, as a share of the square root of the area.
+    fn miss(&self, functional: &FunctionalMaps, [a, b]: [&MapShape; 2]) -> Result<f64, DescriptorError> {
+        let [from, to]: [Vec<usize>; 2] =
+            [0, 1].map(|side| self.landmarks.iter().map(|pair| pair[side].index()).collect());
+        let queries = functional.places_a(&a.vectors.select_rows(&from));
+        let [images, _] = nearest_rows(&queries, &functional.places_b(&b.vectors));
+        let images: Vec<usize> = images.into_iter().map(|y| y as usize).collect();
+        // Two points are at least as far apart as their distances from any landmark of the form differ.
+        let gaps = b.distances_to(&images)? - b.distances_to(&to)?;
+        Ok(gaps.amax())
+    }
+
+    /// With landmarks, drops maps that are torn: they respect the landmarks by a mixture of two maps.
+    pub(super) fn without_mixtures(&self, maps: &mut Vec<SurfaceMap>) {
+        let torn = |map: &SurfaceMap| {
+            let n_torn = map.vertex_confidence.iter().filter(|confidence| **confidence < 0.5).count();
+            n_torn as f64 / map.vertex_confidence.len().max(1) as f64
+        };
+        let least = maps.iter().map(torn).fold(f64::INFINITY, f64::min);
+        maps.retain(|map| self.landmarks.is_empty() || torn(map) <= least + TORN);
+    }
+
+    /// Sorts maps by how near they are to the initial map, the nearest first.
+    pub(super) fn nearest_first(&self, maps: &mut [SurfaceMap], b: &MapShape) -> Result<(), DescriptorError> {
+        let known: Vec<(usize, usize)> =
+            self.initial.iter().enumerate().filter_map(|(x, y)| Some((x, (*y)?.index()))).collect();
+        let to = b.distances_to(&known.iter().map(|(_, y)| *y).collect::<Vec<_>>())?;
+        let gap = |map: &SurfaceMap| -> Result<f64, DescriptorError> {
+            let images: Vec<usize> = known.iter().map(|(x, _)| map.vertices[*x].index()).collect();
+            Ok((b.distances_to(&images)? - &to).abs().sum())
+        };
+        let gaps: Result<Vec<f64>, _> = maps.iter().map(gap).collect();
+        if let [first, second] = gaps?[..]
+            && second < first
+        {
+            maps.swap(0, 1);
+        }
+        Ok(())
+    }
+
+    /// Puts the landmarks into a map and its alternative.
+    pub(super) fn kept_by(&self, map: &mut SurfaceMap) {
+        for [x, y] in &self.landmarks {
+            map.vertices[x.index()] = *y;
+        }
+        if let Some(other) = &mut map.alternative {
+            self.kept_by(other);
+        }
+    }
+
+    /// Which of several maps respect the landmarks: all of them if there are none.
+    pub(super) fn respected(
+        &self,
+        maps: &[&FunctionalMaps],
+        shapes: [&MapShape; 2],
+    ) -> Result<Vec<bool>, DescriptorError> {
+        if self.landmarks.is_empty() {
+            return Ok(vec![true; maps.len()]);
+        }
+        let misses: Result<Vec<f64>, _> = maps.iter().map(|map| self.miss(map, shapes)).collect();
+        let misses = misses?;
+        let least = misses.iter().copied().fold(f64::INFINITY, f64::min);
+        Ok(misses.iter().map(|miss| *miss <= RESPECTED.max(BARELY * least)).collect())
+    }
+}

@@ -1,0 +1,87 @@
+//! How well a map keeps distances around every vertex.
+
+use linalg::Matrix;
+use nalgebra::DVectorView;
+use rayon::prelude::*;
+
+/// Landmarks near a vertex whose distances are compared. A convention: with 100 landmarks they are within a fifth of the square
+/// root of the area or so.
+const NEAR: usize = 6;
+
+/// A confidence for every vertex of the first surface, from 0 to 1: one less the relative change of its distances to the
+/// nearest landmarks, `1 - Σ|d_B - d_A| / Σ d_A`, at least 0.
+///
+/// It is 1 for an isometry, and 0 where the map is torn, or takes a region to a point. A map that is wrong everywhere in the
+/// same smooth way, as one that turns a body back to front, keeps distances, and its vertices are confident.
+///
+/// * `on_a` has the distances of the landmarks of the first surface to its vertices, a column for each vertex, and `landmarks`
+///   these landmarks;
+/// * `on_b` has the distances of the landmarks of the second surface to the images of these vertices. Two images are at
+///   least as far apart as their distances to any landmark differ; the largest difference stands for their distance.
+pub(super) fn vertex_confidence(on_a: &Matrix, landmarks: &[usize], on_b: &Matrix) -> Vec<f64> {
+    let one = |x: usize| {
+        let from_x = on_a.column(x);
+        let mut near: Vec<usize> = (0..landmarks.len()).filter(|l| landmarks[*l] != x).collect();
+        near.sort_unstable_by(|k, l| from_x[*k].total_cmp(&from_x[*l]).then(k.cmp(l)));
+        near.truncate(NEAR);
+        let change = |l: &usize| (gap(on_b.column(x), on_b.column(landmarks[*l])) - from_x[*l]).abs();
+        let [changes, all] = [near.iter().map(change).sum(), near.iter().map(|l| from_x[*l]).sum::<f64>()];
+        if all > 0.0 { f64::max(1.0 - changes / all, 0.0) } else { 1.0 }
+    };
+    (0..on_a.ncols()).into_par_iter().map(one).collect()
+}
+
+/// The least possible distance of two points, from their distances to the same landmarks.
+fn gap(p: DVectorView<'_, f64>, q: DVectorView<'_, f64>) -> f64 {
+    p.iter().zip(&q).map(|(p, q)| (p - q).abs()).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Point2, Rotation2};
+
+    fn sheet(n: usize) -> Vec<Point2<f64>> {
+        (0..n * n).map(|i| Point2::new((i % n) as f64, (i / n) as f64) / n as f64).collect()
+    }
+
+    /// The confidence of a map of a flat sheet into the plane.
+    fn of(map: impl Fn(Point2<f64>) -> Point2<f64>) -> Vec<f64> {
+        let points = sheet(30);
+        let landmarks: Vec<usize> = (0..points.len()).step_by(17).collect();
+        let images: Vec<_> = points.iter().map(|p| map(*p)).collect();
+        let distances = |from: &[Point2<f64>], to: &[Point2<f64>]| {
+            Matrix::from_fn(from.len(), to.len(), |i, j| (from[i] - to[j]).norm())
+        };
+        let some: Vec<_> = landmarks.iter().map(|l| points[*l]).collect();
+        // Landmarks of the plane around all images.
+        let marks: Vec<_> = sheet(12).iter().map(|p| p * 6.0 - nalgebra::Vector2::new(2.0, 2.0)).collect();
+        vertex_confidence(&distances(&some, &points), &landmarks, &distances(&marks, &images))
+    }
+
+    #[test]
+    fn isometries_are_confident_everywhere() {
+        let turn = Rotation2::new(0.7);
+        let found = of(|p| Point2::new(1.0 - p.x, p.y));
+        assert!(found.iter().all(|c| *c > 0.95 && *c <= 1.0), "{found:?}");
+        assert!(of(|p| turn * p).iter().all(|c| *c > 0.95));
+    }
+
+    #[test]
+    fn stretching_lowers_the_confidence_by_as_much() {
+        let found = of(|p| Point2::from(p.coords * 1.3));
+        assert!(found.iter().all(|c| (c - 0.7).abs() < 0.05), "{found:?}");
+    }
+
+    #[test]
+    fn collapsed_and_torn_regions_have_no_confidence() {
+        let collapsed = of(|_| Point2::new(0.5, 0.5));
+        assert!(collapsed.iter().all(|c| *c < 1e-9));
+        // The right half is moved away.
+        let torn = of(|p| if p.x < 0.5 { p } else { Point2::new(p.x + 1.0, p.y) });
+        for (p, c) in sheet(30).iter().zip(torn) {
+            let from_tear = (p.x - 0.483).abs();
+            assert!(if from_tear < 0.03 { c < 0.5 } else { from_tear < 0.35 || c > 0.9 }, "{p}: {c}");
+        }
+    }
+}

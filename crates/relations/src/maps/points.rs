@@ -1,0 +1,203 @@
+//! Points inside faces that maps take points to.
+
+use linalg::Matrix;
+use rayon::prelude::*;
+use surface::{FaceId, SurfacePoint, Topology, VertexId};
+
+use super::functional_map::FunctionalMaps;
+use super::nearest_rows::Cells;
+use super::search::COARSE;
+use super::shape::MapShape;
+use crate::relation::Side;
+
+/// What is mapped of a surface.
+#[derive(Debug, Clone, Copy)]
+pub enum MapElements<'a> {
+    /// All vertices.
+    Vertices,
+    /// The centroids of some faces.
+    Faces(&'a [[VertexId; 3]]),
+}
+
+/// For elements of one surface, their points inside the faces of the other one (the precise map of `ezuz2017` in
+/// `REFERENCES.bib`).
+///
+/// A map of functions `C` places both surfaces in the space of the eigenfunctions of both, `[Φ, Φ C]` and `[Ψ C', Ψ]`, where
+/// triangles stay flat. The point of an element is the nearest one on the faces around the nearest vertex, or around those of its
+/// corners, and on from there from face to face as long as it gets nearer.
+///
+/// * `shapes` are the first and the second surface, and `functional` is `C` as in
+///   [`SurfaceMap::functional`](super::SurfaceMap::functional);
+/// * the elements are those of the side `of`, and `target` is the connectivity of the other one.
+///
+/// The same map serves both directions: what it takes from the second surface to the first is found by nearest points, too.
+/// Parallel, and independent of the number of threads.
+#[must_use]
+pub fn mapped_points(
+    [a, b]: [&MapShape; 2],
+    functional: &Matrix,
+    of: Side,
+    elements: MapElements<'_>,
+    target: &Topology,
+) -> Vec<SurfacePoint> {
+    let Placed { on_a, on_b, coarse } = Placed::new([a, b], functional);
+    let (own, other, shape) = match of {
+        Side::First => (on_a, on_b, b),
+        Side::Second => (on_b, on_a, a),
+    };
+    let cells = Cells { rows: &other, coarse: &coarse, centres: &shape.samples, members: &shape.cells };
+    let nearest = cells.nearest(&own);
+    let start = |v: usize| VertexId(nearest[v]);
+    let (queries, starts): (Matrix, Vec<Vec<VertexId>>) = match elements {
+        MapElements::Vertices => (own, (0..nearest.len()).map(|v| vec![start(v)]).collect()),
+        MapElements::Faces(faces) => {
+            let mean = |i: usize, j: usize| faces[i].iter().map(|v| own[(v.index(), j)]).sum::<f64>() / 3.0;
+            let starts = faces.iter().map(|face| face.iter().map(|v| start(v.index())).collect());
+            (Matrix::from_fn(faces.len(), own.ncols(), mean), starts.collect())
+        }
+    };
+    // Rows next to each other in memory.
+    let (queries, rows) = (queries.transpose(), other.transpose());
+    let one = |(i, starts): (usize, Vec<VertexId>)| {
+        let n = queries.nrows();
+        nearest_point(&queries.as_slice()[i * n..(i + 1) * n], &rows, target, starts)
+    };
+    starts.into_par_iter().enumerate().map(one).collect()
+}
+
+/// Two surfaces in one space, a row for each vertex.
+pub(super) struct Placed {
+    pub(super) on_a: Matrix,
+    pub(super) on_b: Matrix,
+    /// Leading columns, see [`Cells::coarse`].
+    pub(super) coarse: Vec<usize>,
+}
+
+impl Placed {
+    /// By a map of functions, whose transpose stands for the one back.
+    pub(super) fn new([a, b]: [&MapShape; 2], functional: &Matrix) -> Self {
+        let k = functional.ncols();
+        let maps = FunctionalMaps { back: functional.transpose(), forth: functional.clone() };
+        let coarse = (0..k.min(COARSE)).flat_map(|j| [j, k + j]).collect();
+        Self { on_a: maps.places_a(&a.vectors), on_b: maps.places_b(&b.vectors), coarse }
+    }
+}
+
+/// The nearest point of the faces around some vertices, and on from there. `rows` has a column for each vertex.
+fn nearest_point(query: &[f64], rows: &Matrix, target: &Topology, starts: Vec<VertexId>) -> SurfacePoint {
+    let mut best: Option<(FaceId, OnTriangle)> = None;
+    let mut seen: Vec<FaceId> = Vec::new();
+    let start = starts[0];
+    let mut around = starts;
+    loop {
+        let before = best.as_ref().map(|(face, _)| *face);
+        for corner in around.iter().flat_map(|v| target.vertex_corners(*v)) {
+            let face = corner.face();
+            if seen.contains(&face) {
+                continue;
+            }
+            seen.push(face);
+            let corners = target.faces()[face.index()].map(|v| column(rows, v));
+            let found = OnTriangle::nearest(query, corners);
+            if best.as_ref().is_none_or(|(_, best)| found.sq_distance < best.sq_distance) {
+                best = Some((face, found));
+            }
+        }
+        match &best {
+            Some((face, _)) if before != Some(*face) => around = target.faces()[face.index()].to_vec(),
+            Some((face, found)) => {
+                return SurfacePoint::Face { face: *face, barycentric: found.weights };
+            }
+            // A vertex without a face.
+            None => return SurfacePoint::Vertex(start),
+        }
+    }
+}
+
+fn column(rows: &Matrix, vertex: VertexId) -> &[f64] {
+    let n = rows.nrows();
+    &rows.as_slice()[vertex.index() * n..][..n]
+}
+
+/// The point of a triangle that is nearest to another point, in any number of dimensions.
+#[derive(Debug, Clone, Copy)]
+struct OnTriangle {
+    weights: [f64; 3],
+    sq_distance: f64,
+}
+
+impl OnTriangle {
+    fn nearest(query: &[f64], [p, q, r]: [&[f64]; 3]) -> Self {
+        // All that matters are products of the sides from `p` and of the way from `p` to the query.
+        let mut sums = [0.0; 6];
+        for (((x, p), q), r) in query.iter().zip(p).zip(q).zip(r) {
+            let (u, v, w) = (q - p, r - p, x - p);
+            for (sum, product) in sums.iter_mut().zip([u * u, u * v, v * v, u * w, v * w, w * w]) {
+                *sum += product;
+            }
+        }
+        let [uu, uv, vv, uw, vw, ww] = sums;
+        let at = |s: f64, t: f64| Self {
+            weights: [f64::max(1.0 - s - t, 0.0), s, t],
+            sq_distance: ww - 2.0 * (s * uw + t * vw) + s * s * uu + 2.0 * s * t * uv + t * t * vv,
+        };
+        let area = uu * vv - uv * uv;
+        let (s, t) = ((vv * uw - uv * vw) / area, (uu * vw - uv * uw) / area);
+        if s >= 0.0 && t >= 0.0 && s + t <= 1.0 {
+            return at(s, t);
+        }
+        // Outside, or the triangle has no area: on a side. A side without length is its first end.
+        let share = |along: f64, sq: f64| if sq > 0.0 { (along / sq).clamp(0.0, 1.0) } else { 0.0 };
+        let opposite = share(uu - uv + vw - uw, uu - 2.0 * uv + vv);
+        let sides = [at(share(uw, uu), 0.0), at(0.0, share(vw, vv)), at(1.0 - opposite, opposite)];
+        sides
+            .into_iter()
+            .fold(sides[0], |best, side| if side.sq_distance < best.sq_distance { side } else { best })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(weights: [f64; 3], corners: [&[f64]; 3]) -> Vec<f64> {
+        (0..corners[0].len()).map(|i| (0..3).map(|c| weights[c] * corners[c][i]).sum()).collect()
+    }
+
+    #[test]
+    fn the_nearest_point_of_a_triangle_is_no_farther_than_any_other() {
+        let wave = |seed: f64| -> Vec<f64> { (0..7).map(|i| (seed + 1.7 * f64::from(i)).sin()).collect() };
+        for case in 0..40 {
+            let seed = 3.1 * f64::from(case);
+            let [p, q, r, x] = [0.0, 0.9, 2.3, 4.7].map(|shift| wave(seed * (1.0 + shift) + shift));
+            let corners = [&p[..], &q[..], &r[..]];
+            let found = OnTriangle::nearest(&x, corners);
+            assert!((found.weights.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+            let sq = |weights: [f64; 3]| -> f64 {
+                point(weights, corners).iter().zip(&x).map(|(a, b)| (a - b).powi(2)).sum()
+            };
+            assert!((sq(found.weights) - found.sq_distance).abs() < 1e-9);
+            for i in 0..=20 {
+                for j in 0..=20 - i {
+                    let [s, t] = [i, j].map(|n| f64::from(n) / 20.0);
+                    assert!(sq([1.0 - s - t, s, t]) >= found.sq_distance - 1e-9);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn points_of_a_triangle_are_found_again() {
+        let [p, q, r] = [[0.0, 0.0, 0.0, 1.0], [1.0, 0.0, 0.2, 0.0], [0.0, 2.0, 0.0, -1.0]];
+        for weights in [[0.2, 0.3, 0.5], [1.0, 0.0, 0.0], [0.0, 0.4, 0.6]] {
+            let corners = [&p[..], &q[..], &r[..]];
+            let found = OnTriangle::nearest(&point(weights, corners), corners);
+            assert!(found.weights.iter().zip(weights).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?}");
+            assert!(found.sq_distance.abs() < 1e-12);
+        }
+        // Without area, and without length.
+        let found = OnTriangle::nearest(&q, [&p, &p, &q]);
+        assert!(found.sq_distance.abs() < 1e-12 && (found.weights[2] - 1.0).abs() < 1e-12);
+        assert_eq!(OnTriangle::nearest(&q, [&p, &p, &p]).weights[1..], [0.0, 0.0]);
+    }
+}

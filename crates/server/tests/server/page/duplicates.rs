@@ -1,0 +1,133 @@
+//! The page of duplicates: groups, marks, downloads, the comparison of two members.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use canonform::{BuildOptions, DescribeOptions, build_index};
+use datasets::{Damage, Family, PartMesh, mechanical_parts};
+use serde_json::json;
+
+use super::support::{AWKWARD, Page, body};
+use crate::running::options;
+
+const READY: &str = "document.querySelector('#duplicates').dataset.state === 'ready'";
+
+/// A part with a copy of its file and one that is turned, the second part of the family, and a cat with a finer copy.
+fn index(folder: &Path) {
+    let meshes = folder.join("meshes");
+    fs::create_dir(&meshes).unwrap();
+    let write = |name: &str, mesh: &canonform::mesh::TriMesh| {
+        canonform::mesh::io::write(&meshes.join(format!("{name}.off")), mesh).unwrap();
+    };
+    let [part, other] = [0, 5].map(|i| mechanical_parts(0, 8)[i].mesh(&PartMesh::default()));
+    write("part", &part);
+    write(AWKWARD, &part);
+    write("turned part", &Damage::Move.apply(&part, 3));
+    write("other part", &other);
+    let cat = body(Family::Cat, 0).mesh;
+    write("cat", &cat);
+    write("finer cat", &canonform::mesh::shapes::subdivide(&cat));
+    let describe = DescribeOptions::default();
+    build_index(&meshes, &folder.join("all.canonform"), &BuildOptions::new(&describe), &()).unwrap();
+}
+
+/// The text that a button downloads.
+fn downloaded(page: &Page, css: &str) -> String {
+    let body = format!(
+        "return new Promise(done => {{
+             const make = URL.createObjectURL;
+             URL.createObjectURL = blob => {{ URL.createObjectURL = make; blob.text().then(done); return make(blob); }};
+             document.querySelector('{css}').click();
+         }})"
+    );
+    page.browser.eval(&body).unwrap().as_str().unwrap().to_owned()
+}
+
+#[test]
+fn groups_are_compared_marked_and_moved_by_the_script() {
+    let folder = tempfile::tempdir().unwrap();
+    index(folder.path());
+    let path = folder.path().join("all.canonform");
+    for width in [1280, 360] {
+        let Some(page) = Page::of(&path, [width, 800], options()) else { return };
+        page.go("/");
+        page.wait_for("document.querySelectorAll('#shapes .tile').length === 6");
+        page.browser.click("nav a").unwrap();
+        page.wait_for(READY);
+        assert_eq!(page.address(), "/duplicates");
+        assert!(
+            page.text("#told").starts_with("3 of 6 shapes can be spared: 2 groups of files of one shape")
+        );
+        page.picture("body", &format!("duplicates-{width}"));
+        let sizes =
+            "[...document.querySelectorAll('.group')].map(group => group.querySelectorAll('.tile').length)";
+        assert_eq!(page.eval(sizes), json!([3, 2]));
+
+        // Every control is reached by Tab; Enter on a file shows it beside the one to keep.
+        let reached = page.eval(
+            "[...document.querySelectorAll('a, button, input, select')].filter(e => e.getClientRects().length > 0 && !e.disabled) \
+             .every(e => { e.focus({ preventScroll: true }); return document.activeElement === e && e.tabIndex === 0; })",
+        );
+        assert_eq!(reached, true);
+        page.browser.type_into(".tile[data-id=cat]", "\u{e007}").unwrap();
+        page.overlaid("cat");
+        assert_eq!(page.address(), "/duplicates?a=finer+cat&b=cat");
+        page.browser.eval("location.reload()").unwrap();
+        page.wait_for(READY);
+        page.overlaid("cat");
+        for view in ["overlay-view", "overlay-second"] {
+            page.wait_for(&format!("document.querySelector('#{view}').dataset.state === 'ready'"));
+        }
+        assert_eq!(page.eval("document.querySelector('#overlay').dataset.shown"), "meshes");
+        assert_eq!(page.eval("document.querySelector('#overlay').closest('.group').dataset.id"), "finer cat");
+        page.picture("#overlay", &format!("duplicates-{width}-compared"));
+        page.browser.click("#close-hit").unwrap();
+        page.wait_for("document.querySelector('#overlay').hidden");
+
+        // A group keeps one file at least, and marks stay.
+        for id in ["cat", "finer cat"] {
+            page.browser.click(&format!("[aria-label='Spare {id}']")).unwrap();
+        }
+        assert!(
+            page.text("#marked").contains("Of 1 group nothing would be left: finer cat."),
+            "{}",
+            page.text("#marked")
+        );
+        assert_eq!(page.eval("document.querySelector('#as-script').disabled"), true);
+        page.browser.click("[aria-label='Spare finer cat']").unwrap();
+        page.browser.click("#suggest").unwrap();
+        page.browser.eval("location.reload()").unwrap();
+        page.wait_for(READY);
+        assert!(page.text("#marked").starts_with("3 files marked as spare"), "{}", page.text("#marked"));
+        page.picture("#tools", &format!("duplicates-{width}-marked"));
+        let table = downloaded(&page, "#as-csv");
+        assert_eq!((table.lines().count(), table.matches(",spare,").count()), (6, 3), "{table}");
+        assert_eq!(page.eval("document.querySelectorAll('img[src=\"x\"]').length"), 0);
+        let script = downloaded(&page, "#as-script");
+        page.assert_sound();
+        if width == 360 {
+            moves(folder.path(), &script);
+        }
+        page.browser.click("#clear").unwrap();
+        assert!(page.text("#marked").starts_with("0 files marked"));
+    }
+}
+
+/// Runs the script: what is spared is moved, whatever its name, and nothing is lost.
+fn moves(folder: &Path, script: &str) {
+    fs::write(folder.join("move.sh"), script).unwrap();
+    let names = |path: &str| {
+        let files = fs::read_dir(folder.join(path)).unwrap();
+        let mut names: Vec<_> = files.map(|file| file.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    };
+    let before = names("meshes");
+    assert!(Command::new("sh").arg("move.sh").current_dir(folder).status().unwrap().success());
+    let [kept, moved] = ["meshes", "duplicates"].map(names);
+    assert_eq!((kept.len(), moved.len()), (3, 3), "{kept:?}, {moved:?}");
+    let mut all = [kept, moved].concat();
+    all.sort();
+    assert_eq!(all, before);
+}

@@ -1,0 +1,181 @@
+//! Matching: dense maps between the shapes of a class: all pairs of seven or fewer, and each to the next one of more.
+//!
+//! The truth is known for built-in shapes, by the place of a vertex on the body at rest, and for meshes whose vertices are
+//! numbered alike: these get triangles of their own, so that the same triangulation does not help. The error of a vertex is the
+//! distance on the second surface between its image and its true partner, as a share of the square root of the area. Without a
+//! truth, the distance from a vertex to its image under the map there and the map back takes its place.
+//!
+//! The built-in classes are joined by `person`, people whose limbs touch, and `bodies`, people of different bodies; all classes
+//! together are `all`. Measures, each after the name of a group:
+//! * `pairs`; `direct` and `mirrored`, the mean errors; `median`, of direct maps; `direct 5|10|25`, the share of vertices with an
+//!   error below so many hundredths;
+//! * `failed`, the share of pairs without a direct map whose mean error is below a tenth, and `failures`, their number;
+//! * `doubted`, the share of failed maps that were called uncertain, and `doubted in vain`, of the others;
+//! * `flipped`, the share of pairs whose mirrored map has the lesser distortion; `distortion`; `return`; `seconds`;
+//!
+//! `A to B`, the mean error of a direct map; `preparation seconds`; and `worst direct`, the largest mean error of a group.
+
+mod errors;
+mod shapes;
+
+use anyhow::{Context as _, Result};
+use canonform::{CorrespondOptions, MappedSurface, Surface};
+use report::results::{CurvesPanel, Mark, Series};
+use serde::Deserialize;
+
+use self::errors::{JudgedMap, MappedPair, middle};
+use self::shapes::{MapGroup, PlacedShape, VertexPlaces};
+use crate::context::Context;
+use crate::experiment::Experiment;
+use crate::sweep::{MeasuredNumbers, linear, mean, note, panel, point, share};
+
+/// Errors of the horizontal axis.
+const STEPS: usize = 50;
+const MOST: f64 = 0.25;
+
+/// The name of all groups together.
+const ALL: &str = "all";
+
+/// Published means on 343 pairs of people of FAUST and SCAPE, remeshed each on its own to 5,000 vertices, by methods without
+/// learning (`melzi2019` in `REFERENCES.bib`); no curve is at hand as numbers.
+const PUBLISHED: [(&str, f64); 2] = [("ZoomOut, mean", 0.0217), ("PMF, mean", 0.086)];
+
+/// A shape that is ready to be mapped.
+struct PreparedShape<'a> {
+    name: String,
+    mapped: MappedSurface<std::borrow::Cow<'a, Surface>>,
+    places: VertexPlaces,
+}
+
+/// The pairs of a group.
+struct MappedGroup {
+    name: String,
+    pairs: Vec<MappedPair>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct MatchingOptions {}
+
+impl Experiment for MatchingOptions {
+    fn run(&self, context: &Context<'_>) -> Result<()> {
+        let options = CorrespondOptions::default();
+        let groups = MapGroup::all(context.collection, context.seed)?;
+        let mut measured = MeasuredNumbers::new();
+        let mut found = Vec::new();
+        let mut preparation = Vec::new();
+        // One after the other, so that times are those of a machine at rest.
+        for group in groups {
+            let pairs = group.pairs();
+            let MapGroup { name, shapes } = group;
+            context.observer.begin("preparing", shapes.len());
+            let mut prepared = Vec::new();
+            for shape in shapes {
+                prepared.push(PreparedShape::new(shape, &options)?);
+                context.observer.step();
+            }
+            preparation.extend(prepared.iter().map(|shape| shape.mapped.seconds));
+            context.observer.begin("matching", pairs.len());
+            let mut mapped = Vec::new();
+            for [a, b] in pairs.into_iter().map(|pair| pair.map(|i| &prepared[i])) {
+                let names = format!("{} to {}", a.name, b.name);
+                let pair = MappedPair::new(a, b, &options).with_context(|| names.clone())?;
+                measured.extend(pair.error().map(|error| (names, error)));
+                mapped.push(pair);
+                context.observer.step();
+            }
+            found.push(MappedGroup { name, pairs: mapped });
+        }
+        measured.insert("preparation seconds".to_owned(), mean(preparation));
+        let mut worst = f64::NEG_INFINITY;
+        for MappedGroup { name, pairs } in &found {
+            worst = worst.max(measure(name, &pairs.iter().collect::<Vec<_>>(), &mut measured));
+        }
+        let all: Vec<&MappedPair> = found.iter().flat_map(|group| &group.pairs).collect();
+        measure(ALL, &all, &mut measured);
+        measured.insert("worst direct".to_owned(), worst);
+        let mut provenance = context.provenance(&[]);
+        provenance.options["matching"] = serde_json::to_value(options.mapping)?;
+        provenance.options["spread"] = options.spread.into();
+        context.publish_curves(panels(&found), provenance, &measured)
+    }
+}
+
+impl<'a> PreparedShape<'a> {
+    fn new(shape: PlacedShape<'a>, options: &CorrespondOptions) -> Result<Self> {
+        let PlacedShape { name, surface, places } = shape;
+        let mapped = MappedSurface::new(surface, options, &()).with_context(|| name.clone())?;
+        Ok(Self { name, mapped, places })
+    }
+}
+
+/// The errors of one kind of map over some pairs.
+fn errors(pairs: &[&MappedPair], of: impl Fn(&MappedPair) -> Option<&JudgedMap>) -> Vec<f64> {
+    pairs.iter().filter_map(|pair| of(pair)).flat_map(|map| map.errors.iter().copied()).collect()
+}
+
+/// Adds the figures of some pairs, and returns the mean error of the direct map.
+fn measure(group: &str, pairs: &[&MappedPair], measured: &mut MeasuredNumbers) -> f64 {
+    let mut add = |what: &str, value: f64| note(measured, group, [(what, value)]);
+    let direct = errors(pairs, |pair| pair.direct.as_ref());
+    let known: Vec<&&MappedPair> = pairs.iter().filter(|pair| pair.is_known).collect();
+    add("pairs", pairs.len() as f64);
+    if !known.is_empty() {
+        add("direct", mean(direct.iter().copied()));
+        add("mirrored", mean(errors(pairs, |pair| pair.mirrored.as_ref())));
+        add("median", middle(&direct));
+        for (name, limit) in [("direct 5", 0.05), ("direct 10", 0.1), ("direct 25", 0.25)] {
+            add(name, share(&direct, |error| *error < limit));
+        }
+        add("failed", share(&known, |pair| pair.has_failed()));
+        add("failures", known.iter().filter(|pair| pair.has_failed()).count() as f64);
+        let (wrong, right): (Vec<&JudgedMap>, Vec<&JudgedMap>) =
+            known.iter().flat_map(|pair| pair.judged()).partition(|map| map.has_failed());
+        for (what, maps) in [("doubted", wrong), ("doubted in vain", right)] {
+            if !maps.is_empty() {
+                add(what, share(&maps, |map| !map.is_certain));
+            }
+        }
+    }
+    add("flipped", share(pairs, |pair| pair.is_flipped()));
+    add("distortion", mean(pairs.iter().map(|pair| pair.distortion())));
+    add("return", mean(pairs.iter().flat_map(|pair| pair.there_and_back.iter().copied())));
+    add("seconds", mean(pairs.iter().map(|pair| pair.seconds)));
+    mean(direct)
+}
+
+/// Cumulative errors, a panel for each kind that was measured.
+fn panels(groups: &[MappedGroup]) -> Vec<CurvesPanel> {
+    type Of = fn(&MappedPair) -> Option<&Vec<f64>>;
+    let kinds: [(&str, Of); 3] = [
+        ("direct map", |pair| pair.direct.as_ref().map(|map| &map.errors)),
+        ("mirrored map", |pair| pair.mirrored.as_ref().map(|map| &map.errors)),
+        ("there and back", |pair| Some(&pair.there_and_back)),
+    ];
+    let mut panels = Vec::new();
+    for (title, of) in kinds {
+        let mut curves = Vec::new();
+        for MappedGroup { name, pairs } in groups {
+            let runs: Vec<&Vec<f64>> =
+                pairs.iter().filter_map(of).filter(|errors| !errors.is_empty()).collect();
+            if runs.is_empty() {
+                continue;
+            }
+            let at = |step: usize| {
+                let limit = MOST * step as f64 / STEPS as f64;
+                let below = |errors: &&Vec<f64>| share(errors, |error| *error <= limit);
+                point(limit, &runs.iter().map(below).collect::<Vec<_>>())
+            };
+            curves.push(Series { name: name.clone(), points: (0..=STEPS).map(at).collect() });
+        }
+        if !curves.is_empty() {
+            let mut panel = panel(title, linear("error / sqrt(area)"), linear("share of vertices"), curves);
+            if title == "direct map" {
+                let mark = |(name, x): (&str, f64)| Mark { x, name: name.to_owned() };
+                panel.marks = PUBLISHED.map(mark).into();
+            }
+            panels.push(panel);
+        }
+    }
+    panels
+}

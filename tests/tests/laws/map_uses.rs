@@ -1,0 +1,251 @@
+//! What maps are good for: known pairs, points inside faces, what they carry, and maps that agree.
+
+use canonform::relations::MapKind;
+use canonform::{
+    CorrespondOptions, Error, KnownMap, MappedSurface, Mapping, PointMap, Side, Surface, VertexMap,
+    correspond, correspond_all,
+};
+use datasets::{ArticulatedOptions, Family, RestedShape, articulated_at_rest};
+use descriptors::NearestPoints;
+use linalg::Matrix;
+use mesh::{TriMesh, refine, shapes};
+use surface::VertexId;
+
+use crate::support::{body, surface};
+
+fn prepared(mesh: &TriMesh) -> MappedSurface {
+    MappedSurface::new(surface(mesh), &CorrespondOptions::default(), &()).unwrap()
+}
+
+/// A pose of a cat, with its vertices at rest.
+fn cat(pose: usize) -> RestedShape {
+    let options = ArticulatedOptions { n_vertices: 1000, ..ArticulatedOptions::default() };
+    articulated_at_rest(Family::Cat, 0, pose, &options).unwrap()
+}
+
+/// The true partners of vertices: the nearest ones at rest.
+fn partners(a: &RestedShape, b: &RestedShape) -> Vec<VertexId> {
+    let nearest = NearestPoints::new(b.rest.positions.clone()).unwrap();
+    a.rest.positions.iter().map(|p| VertexId::from(nearest.nearest(p).0)).collect()
+}
+
+fn with(known: KnownMap, [a, b]: [&MappedSurface; 2]) -> Vec<VertexMap> {
+    let options = CorrespondOptions { known, ..CorrespondOptions::default() };
+    correspond(a, b, &options, &()).unwrap().maps
+}
+
+fn coordinates(mesh: &TriMesh) -> Matrix {
+    Matrix::from_fn(mesh.n_vertices(), 3, |i, j| mesh.positions[i][j])
+}
+
+/// The mean distance of rows, as a share of the square root of an area.
+fn gap(found: &Matrix, expected: &Matrix, mesh: &TriMesh) -> f64 {
+    let gaps = (found - expected).row_iter().map(|row| row.norm()).sum::<f64>();
+    gaps / found.nrows() as f64 / mesh.area().sqrt()
+}
+
+/// A vertex at the end of each leg on the right side: landmarks that tell left from right.
+fn right_ends(rest: &TriMesh) -> Vec<VertexId> {
+    let along = |way: [f64; 3], v: usize| rest.positions[v].coords.dot(&nalgebra::Vector3::from(way));
+    let farthest = |way: [f64; 3]| {
+        (0..rest.n_vertices()).max_by(|v, w| along(way, *v).total_cmp(&along(way, *w))).map(VertexId::from)
+    };
+    [[1.0, 1.0, -1.0], [1.0, -1.0, -1.0]].into_iter().filter_map(farthest).collect()
+}
+
+#[test]
+fn the_identity_carries_everything_to_itself() {
+    let mesh = body(Family::Cat);
+    let side = prepared(&mesh);
+    let map = &with(KnownMap::default(), [&side, &side])[0];
+    let own = coordinates(&mesh);
+    let labels: Vec<usize> = (0..mesh.n_vertices()).collect();
+    let of_faces: Vec<usize> = (0..mesh.n_faces()).collect();
+    for of in [Side::First, Side::Second] {
+        let between = map.between([&side, &side]);
+        let points = between.vertices(of);
+        assert!(gap(&points.values(&own), &own, &mesh) < 1e-6);
+        assert_eq!(points.vertex_labels(&labels), labels.iter().copied().map(Some).collect::<Vec<_>>());
+        assert_eq!(
+            between.faces(of).face_labels(&of_faces),
+            of_faces.iter().copied().map(Some).collect::<Vec<_>>()
+        );
+    }
+    let k = map.functional.ncols();
+    assert!((&map.functional - Matrix::identity(k, k)).norm() < 1e-6);
+    let spectrum = side.shape.spectrum();
+    assert_eq!((spectrum.values.len(), spectrum.vectors.shape()), (k, (mesh.n_vertices(), k)));
+}
+
+#[test]
+fn constants_stay_and_there_and_back_is_near_the_identity() {
+    let meshes = [0, 4].map(|pose| cat(pose).shape.mesh);
+    let sides = meshes.each_ref().map(prepared);
+    let shapes = sides.each_ref();
+    let map = &with(KnownMap::default(), shapes)[0];
+    let between = map.between(shapes);
+    for (of, [own, other]) in [(Side::First, [0, 1]), (Side::Second, [1, 0])] {
+        let points = between.vertices(of);
+        let n = meshes[other].n_vertices();
+        assert!(
+            points.values(&Matrix::from_element(n, 1, 7.0)).iter().all(|value| (value - 7.0).abs() < 1e-12)
+        );
+        assert!(points.vertex_labels(&vec!["one"; n]).iter().all(|label| *label == Some("one")));
+        let faces = between.faces(of).face_labels(&vec![1; meshes[other].n_faces()]);
+        assert!(faces.len() == meshes[own].n_faces() && faces.iter().all(|label| *label == Some(1)));
+        // The nearest corner is the vertex that the map names, nearly always.
+        if of == Side::First {
+            let same = points.points.iter().zip(&map.vertices);
+            let same = same.filter(|(p, v)| p.map(|p| p.nearest_corner()) == **v).count();
+            assert!(same > 850, "{same} of 1000");
+        }
+    }
+    let own = coordinates(&meshes[0]);
+    let there = between.vertices(Side::Second).values(&own);
+    let back = between.vertices(Side::First).values(&there);
+    let error = gap(&back, &own, &meshes[0]);
+    assert!(error < 0.01, "{error}");
+}
+
+#[test]
+fn points_inside_faces_are_nearer_than_vertices() {
+    let coarse = body(Family::Cat);
+    let size = coarse.area().sqrt();
+    let fine = refine(&coarse, 0.03 * size, 20_000).mesh;
+    let sides = [&fine, &coarse].map(prepared);
+    let shapes = sides.each_ref();
+    let map = &with(KnownMap::default(), shapes)[0];
+    let places = coordinates(&coarse);
+    let truth = coordinates(&fine);
+    let inside = gap(&map.between(shapes).vertices(Side::First).values(&places), &truth, &fine);
+    let images: Vec<usize> = map.vertices.iter().map(|v| v.unwrap().index()).collect();
+    let at_vertices = gap(&places.select_rows(&images), &truth, &fine);
+    println!("inside faces {inside:.5}, at vertices {at_vertices:.5}");
+    assert!(inside < 0.7 * at_vertices, "{inside}, at vertices {at_vertices}");
+}
+
+#[test]
+fn landmarks_that_break_the_symmetry_leave_one_map() {
+    let cats = [0, 4].map(cat);
+    let sides = cats.each_ref().map(|cat| prepared(&cat.shape.mesh));
+    let shapes = sides.each_ref();
+    assert_eq!(with(KnownMap::default(), shapes).len(), 2);
+    let ends = right_ends(&cats[0].rest);
+    let truth = partners(&cats[0], &cats[1]);
+    let landmarks: Vec<[VertexId; 2]> = ends.iter().map(|v| [*v, truth[v.index()]]).collect();
+    let found = with(KnownMap { landmarks: landmarks.clone(), ..KnownMap::default() }, shapes);
+    assert_eq!(found.iter().map(|map| map.kind).collect::<Vec<_>>(), [MapKind::Direct]);
+    assert!(landmarks.iter().all(|[x, y]| found[0].vertices[x.index()] == Some(*y)), "known pairs are kept");
+    let points = found[0].between(shapes).vertices(Side::First).points;
+    assert!(landmarks.iter().all(|[x, y]| points[x.index()].unwrap().nearest_corner() == *y));
+    // One of them is enough.
+    for pair in landmarks {
+        let found = with(KnownMap { landmarks: vec![pair], ..KnownMap::default() }, shapes);
+        assert_eq!(found.iter().map(|map| map.kind).collect::<Vec<_>>(), [MapKind::Direct], "{pair:?}");
+    }
+    // The mirrored map, by partners on the other side.
+    let mirrored =
+        with(KnownMap::default(), shapes).into_iter().find(|map| map.kind == MapKind::Mirrored).unwrap();
+    let landmarks = ends.iter().map(|v| [*v, mirrored.vertices[v.index()].unwrap()]).collect();
+    let found = with(KnownMap { landmarks, ..KnownMap::default() }, shapes);
+    assert_eq!(found.iter().map(|map| map.kind).collect::<Vec<_>>(), [MapKind::Mirrored]);
+    // As a start, it comes first.
+    let initial = mirrored.vertices.clone();
+    let found = with(KnownMap { initial, ..KnownMap::default() }, shapes);
+    assert_eq!(found[0].kind, MapKind::Mirrored);
+    // A function that tells left from right finds the direct map.
+    let sideways =
+        |cat: &RestedShape| Matrix::from_fn(cat.rest.n_vertices(), 1, |v, _| cat.rest.positions[v].x);
+    let functions = Some(cats.each_ref().map(sideways));
+    let found = with(KnownMap { functions, ..KnownMap::default() }, shapes);
+    assert!(found.iter().any(|map| map.kind == MapKind::Direct));
+}
+
+#[test]
+fn what_does_not_fit_the_meshes_is_refused() {
+    let sides = [shapes::grid(9, 7, 0.1), shapes::grid(8, 8, 0.1)].each_ref().map(prepared);
+    let refused = |known: KnownMap| {
+        let options = CorrespondOptions { known, ..CorrespondOptions::default() };
+        correspond(&sides[0], &sides[1], &options, &()).unwrap_err()
+    };
+    let landmarks = vec![[VertexId(0), VertexId(64)]];
+    assert!(matches!(refused(KnownMap { landmarks, ..KnownMap::default() }), Error::Point(_)));
+    let initial = vec![Some(VertexId(0)); 5];
+    assert!(refused(KnownMap { initial, ..KnownMap::default() }).to_string().contains("5 rows"));
+    let initial = vec![None; 63];
+    assert!(refused(KnownMap { initial, ..KnownMap::default() }).to_string().contains("no vertex a partner"));
+    for (n, columns, value, what) in
+        [(64, 2, 1.0, "1 and 2"), (60, 1, 1.0, "60 rows"), (64, 1, f64::NAN, "not finite at vertex 0")]
+    {
+        let functions = Some([Matrix::from_element(63, 1, 1.0), Matrix::from_element(n, columns, value)]);
+        let fault = refused(KnownMap { functions, ..KnownMap::default() }).to_string();
+        assert!(fault.contains(what), "{fault}");
+    }
+}
+
+#[test]
+fn maps_of_one_shape_close_to_cycles() {
+    let mesh = body(Family::Cat);
+    let side = prepared(&mesh);
+    let found = correspond_all(&[&side, &side, &side], &CorrespondOptions::default(), &()).unwrap();
+    assert_eq!(found.pairs.iter().map(|pair| [pair.a, pair.b]).collect::<Vec<_>>(), [[0, 1], [0, 2], [1, 2]]);
+    assert_eq!((found.cycles.n_cycles, found.cycles.before, found.cycles.after), (1, 0.0, 0.0));
+    for pair in &found.pairs {
+        let fixed = pair.map.vertices.iter().enumerate().filter(|(x, y)| **y == Some(VertexId::from(*x)));
+        assert_eq!(fixed.count(), mesh.n_vertices());
+        assert!(pair.agreed && pair.map.kind == MapKind::Direct);
+    }
+    let two = correspond_all(&[&side, &side], &CorrespondOptions::default(), &()).unwrap();
+    assert_eq!((two.pairs.len(), two.cycles.n_cycles), (1, 0));
+}
+
+#[test]
+fn maps_of_several_poses_agree_and_stay_right() {
+    let cats = [0, 2, 4, 6].map(cat);
+    let sides = cats.each_ref().map(|cat| prepared(&cat.shape.mesh));
+    let shapes: Vec<&MappedSurface> = sides.iter().collect();
+    let found = correspond_all(&shapes, &CorrespondOptions::default(), &()).unwrap();
+    println!("{:?}", found.cycles);
+    assert!(found.cycles.after < 0.8 * found.cycles.before);
+    let error = |map: &VertexMap, a: usize, b: usize| {
+        let images: Vec<usize> = map.vertices.iter().map(|v| v.unwrap().index()).collect();
+        let truth: Vec<usize> = partners(&cats[a], &cats[b]).into_iter().map(VertexId::index).collect();
+        let places = coordinates(&cats[b].shape.mesh);
+        gap(&places.select_rows(&images), &places.select_rows(&truth), &cats[b].shape.mesh)
+    };
+    let alone = |a: usize, b: usize| error(&with(KnownMap::default(), [shapes[a], shapes[b]])[0], a, b);
+    let (mut before, mut after) = (0.0, 0.0);
+    for pair in &found.pairs {
+        before += alone(pair.a, pair.b) / 6.0;
+        after += error(&pair.map, pair.a, pair.b) / 6.0;
+        assert_eq!(pair.map.kind, MapKind::Direct);
+    }
+    println!("mean error {before:.4} alone, {after:.4} together");
+    assert!(after < 1.1 * before, "{after}, alone {before}");
+}
+
+#[test]
+fn twins_of_a_seam_keep_their_own_values() {
+    // A tube whose first and last columns coincide: texture coordinates jump there.
+    let (n, m) = (24, 16);
+    let mut tube = shapes::grid(n + 1, m, 1.0);
+    let texture = Matrix::from_fn(tube.n_vertices(), 1, |v, _| tube.positions[v].x / n as f64);
+    for p in &mut tube.positions {
+        let angle = p.x / n as f64 * std::f64::consts::TAU;
+        let radius = 2.0 + 0.1 * p.y;
+        *p = nalgebra::Point3::new(radius * angle.cos(), radius * angle.sin(), p.y);
+    }
+    let side = prepared(&tube);
+    assert!(side.surface().mesh().n_vertices() < tube.n_vertices(), "the repair welds the seam");
+    let k = side.shape.spectrum().values.len();
+    let identity = Matrix::identity(k, k);
+    let mapping: Mapping<'_, Surface> =
+        Mapping { shapes: [&side, &side], functional: &identity, landmarks: &[] };
+    let PointMap { points } = mapping.faces(Side::First);
+    // The centroid of each face has the mean of its own corners, also beside the seam.
+    let found = PointMap { points }.values(&texture);
+    for (f, face) in tube.faces.iter().enumerate() {
+        let mean = face.iter().map(|v| texture[(v.index(), 0)]).sum::<f64>() / 3.0;
+        assert!((found[(f, 0)] - mean).abs() < 1e-6, "face {f}: {} for {mean}", found[(f, 0)]);
+    }
+}
