@@ -25,8 +25,8 @@ pub struct VertexMap {
     pub distortion: f64,
     /// How far it keeps the orientation, from -1 to 1; `None` if a surface cannot be oriented.
     pub agreement: Option<f64>,
-    /// How likely this map is the right one of its kind, which is not calibrated: below [`SurfaceMap::CERTAIN`] another one is
-    /// nearly as good, such as one that turns people back to front.
+    /// How likely this map is the right one of its kind: below [`SurfaceMap::CERTAIN`] it is a mixture, or another one is nearly as
+    /// good, such as one that turns people back to front.
     pub confidence: f64,
     /// The next best map of this kind, if this one is uncertain.
     pub alternative: Option<Box<VertexMap>>,
@@ -43,7 +43,7 @@ pub struct VertexMap {
     pub vertex_confidence: Vec<f64>,
     /// The map of functions of the second surface to functions of the first: its columns are the coefficients of the
     /// eigenfunctions of the second, pulled back, in those of the first. [`MapShape::spectrum`](relations::MapShape::spectrum)
-    /// has them.
+    /// has them. That of a part has fewer eigenfunctions of the part, and functions of the part are zero elsewhere.
     #[serde(skip)]
     pub functional: Matrix,
     /// The landmarks that it was given and contains.
@@ -102,17 +102,26 @@ pub fn correspond<S: Borrow<Surface>>(
 impl VertexMap {
     /// A map of the vertices of the repaired meshes as one of the inputs.
     pub(super) fn new(map: SurfaceMap, [from, to]: [&Surface; 2], landmarks: &[[VertexId; 2]]) -> Self {
-        let has_partner = |x: usize| map.part.as_ref().is_none_or(|part| part.matched[x]);
-        let partner = |(x, v): (usize, &VertexId)| has_partner(x).then(|| to.input_vertex(*v));
-        let partners: Vec<_> = map.vertices.iter().enumerate().map(partner).collect();
+        let in_input = |partners: &[Option<VertexId>], from: &Surface, to: &Surface| {
+            let partners: Vec<_> = partners.iter().map(|v| v.map(|v| to.input_vertex(v))).collect();
+            from.in_input_order(&partners, None)
+        };
+        let part = map.part.map(|part| {
+            let [of_first, of_second] = &part.partners;
+            PartOfWhole { partners: [in_input(of_first, from, to), in_input(of_second, to, from)], ..part }
+        });
+        let vertices = match &part {
+            Some(part) => part.partners[0].clone(),
+            None => in_input(&map.vertices.iter().copied().map(Some).collect::<Vec<_>>(), from, to),
+        };
         Self {
             kind: map.kind,
             distortion: map.distortion,
             agreement: map.agreement,
             confidence: map.confidence,
             alternative: map.alternative.map(|other| Box::new(Self::new(*other, [from, to], landmarks))),
-            part: map.part,
-            vertices: from.in_input_order(&partners, None),
+            part,
+            vertices,
             vertex_confidence: from.in_input_order(&map.vertex_confidence, 0.0),
             functional: map.functional,
             landmarks: landmarks.to_vec(),
@@ -122,7 +131,8 @@ impl VertexMap {
     /// The map between the surfaces that it was found for, which takes points into faces and carries functions.
     #[must_use]
     pub fn between<'a, S>(&'a self, shapes: [&'a MappedSurface<S>; 2]) -> Mapping<'a, S> {
-        Mapping { shapes, functional: &self.functional, landmarks: &self.landmarks }
+        let partners = self.part.as_ref().map(|part| &part.partners);
+        Mapping { shapes, functional: &self.functional, landmarks: &self.landmarks, partners }
     }
 
     /// Whether no other map of its kind is nearly as good.

@@ -14,7 +14,7 @@ const TIMES: [f64; 3] = [0.001, 0.003, 0.01];
 /// Coefficients of the mean curvature, positive where the surface bulges outwards, in the eigenfunctions. `outward` has its
 /// normals outwards.
 pub(super) fn bends(outward: &TriMesh, spectrum: &LaplaceSpectrum) -> DVector<f64> {
-    spectrum.vectors.tr_mul(&mean_curvature(outward))
+    spectrum.vectors.transpose() * mean_curvature(outward)
 }
 
 /// The mean curvature at some points, smoothed by heat: a row for each point, a column for each time. `values` are eigenvalues

@@ -26,6 +26,6 @@ pub use known::KnownMap;
 pub use network::{ConsistentMaps, CycleReport, all_pairs, consistent_maps};
 pub use part_of_whole::PartOfWhole;
 pub use points::{MapElements, mapped_points};
-pub use search::{MapKind, MapOptions, SurfaceMap};
+pub use search::{MapKind, MapOptions, SurfaceMap, map_wholes};
 pub use shape::MapShape;
 pub use whole_or_part::map_surfaces;

@@ -1,6 +1,7 @@
 //! What a map of a part says of the whole.
 
 use serde::Serialize;
+use surface::VertexId;
 
 use crate::relation::Side;
 
@@ -11,7 +12,7 @@ pub struct PartOfWhole {
     pub part: Side,
     /// The share of the area of the whole that has partners.
     pub covered: f64,
-    /// Whether each vertex of the first surface has a partner. If that is the part, all have.
+    /// For each vertex of the first surface and of the second, its partner on the other, if it has one. All of the part have.
     #[serde(skip)]
-    pub matched: Vec<bool>,
+    pub partners: [Vec<Option<VertexId>>; 2],
 }

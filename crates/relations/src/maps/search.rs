@@ -196,7 +196,7 @@ pub(super) fn kind_of(agreement: Option<f64>) -> MapKind {
 /// What is `known` of the map enters all of it: landmarks, as heat that is placed at them, and functions are fitted, too; maps
 /// that do not respect the landmarks are dropped; and an initial map is one more start, which comes out unless another map is
 /// clearly better.
-pub(super) fn map_wholes(
+pub fn map_wholes(
     a: &MapShape,
     b: &MapShape,
     known: &KnownMap,
@@ -338,12 +338,10 @@ impl MapSearch<'_> {
         found.sort_by(|x, y| x.score.total_cmp(&y.score));
         let mut kept: Vec<Candidate> = Vec::new();
         for next in found {
-            let mut of_kind = kept.iter().filter(|other| other.kind() == next.kind());
-            if of_kind.clone().count() < SKETCHES
-                && !of_kind.try_fold(false, |same, other| {
-                    Ok::<_, DescriptorError>(same || self.is_same(&next, other)?)
-                })?
-            {
+            let of_kind: Vec<&Candidate> = kept.iter().filter(|other| other.kind() == next.kind()).collect();
+            let known = of_kind.iter().map(|other| self.is_same(&next, other));
+            let known = known.collect::<Result<Vec<bool>, _>>()?;
+            if known.len() < SKETCHES && !known.contains(&true) {
                 kept.push(next);
             }
         }
@@ -372,8 +370,11 @@ impl MapSearch<'_> {
     /// The maps of a surface to itself that reverse its orientation and change distances little.
     fn mirrors<'s>(&self, shape: &'s MapShape) -> Result<&'s [FunctionalMaps], DescriptorError> {
         if shape.mirrors.get().is_none() {
+            // Whatever the options of this search, since others use them too.
+            let options = MapOptions { eigenfunctions: SKETCH_FUNCTIONS };
             let nothing = KnownMap::default();
-            let search = MapSearch { a: shape, b: shape, known: &nothing, ..*self };
+            let search =
+                MapSearch { a: shape, b: shape, known: &nothing, options: &options, budget: self.budget };
             let mut starts = search.starts(&[-1.0])?;
             starts.retain(|start| start.kind() == MapKind::Mirrored);
             let mut found = search.sketched(starts.iter().map(|start| &start.functional))?;

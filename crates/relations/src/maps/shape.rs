@@ -29,7 +29,7 @@ pub struct MapShape {
     /// Eigenfunctions at the vertices.
     pub(super) vectors: Matrix,
     /// The rest of the spectrum, without its eigenfunctions.
-    spectrum: LaplaceSpectrum,
+    pub(super) spectrum: LaplaceSpectrum,
     /// Vertices spread evenly over the surface; the landmarks first.
     pub(super) samples: Vec<usize>,
     /// The vertices nearest to each sample.
@@ -46,10 +46,6 @@ pub struct MapShape {
     pub(super) size: f64,
     /// `None` if the surface cannot be oriented.
     pub(super) oriented: Option<Oriented>,
-    /// Eigenvalues at unit area.
-    pub(super) values: Vec<f64>,
-    /// The share of the area around each vertex.
-    pub(super) masses: Vec<f64>,
     /// Coefficients of the mean curvature in the eigenfunctions; `None` if the surface has no outside.
     pub(super) bends: Option<DVector<f64>>,
     /// The distance of each vertex from the boundary, at unit area; `None` if there is no boundary.
@@ -105,8 +101,6 @@ impl MapShape {
         Ok(Self {
             bends,
             from_cut: None,
-            values: spectrum.values,
-            masses: spectrum.masses,
             points: at,
             at_samples: spectrum.vectors.select_rows(&samples),
             area_forms: oriented.as_ref().map(|oriented| oriented.area_forms(&spectrum.vectors, &samples)),

@@ -160,7 +160,7 @@ fn areas(
                 let inside = (radius * (1.0 + RIM) - d * scale) / (2.0 * RIM * radius);
                 inside.clamp(0.0, 1.0) * mass
             };
-            let area: f64 = distances.row(*l).iter().zip(&shape.masses).map(share).sum();
+            let area: f64 = distances.row(*l).iter().zip(&shape.spectrum.masses).map(share).sum();
             found[(r, i)] = (area * scale * scale).max(f64::MIN_POSITIVE).ln();
         }
     }

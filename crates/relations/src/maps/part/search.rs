@@ -174,11 +174,13 @@ fn refined(
         functional(sides, &fine.places, FUNCTIONS, usize::MAX).unwrap_or_else(|| Matrix::zeros(0, 0));
     let vertex_confidence = confidences(sides, side, &images, &partners)?;
     let id = |v: usize| VertexId::from(v);
-    let (vertices, matched, functional) = match side {
-        Side::First => (images.iter().copied().map(id).collect(), vec![true; images.len()], functional),
+    let onto_whole: Vec<_> = images.iter().map(|w| Some(id(*w))).collect();
+    let onto_part = partners.iter().zip(&matched).map(|(v, matched)| matched.then(|| id(*v))).collect();
+    let (vertices, partners, functional) = match side {
+        Side::First => (images, [onto_whole, onto_part], functional),
         Side::Second => {
             let share = sides.scale().powi(2);
-            (partners.into_iter().map(id).collect(), matched, functional.transpose() * share)
+            (partners, [onto_part, onto_whole], functional.transpose() * share)
         }
     };
     Ok(SurfaceMap {
@@ -186,10 +188,10 @@ fn refined(
         distortion: fine.changes.distances,
         agreement,
         confidence,
-        vertices,
+        vertices: vertices.into_iter().map(id).collect(),
         vertex_confidence,
         functional,
-        part: Some(PartOfWhole { part: side, covered, matched }),
+        part: Some(PartOfWhole { part: side, covered, partners }),
         alternative: None,
     })
 }
@@ -219,8 +221,8 @@ fn confidences(
 fn functional(sides: &Sides<'_>, places: &[usize], n: usize, most: usize) -> Option<Matrix> {
     let n = n.min(sides.whole.vectors.ncols());
     // Eigenvalues at unit area; those of the part in the unit of the whole are larger.
-    let last = sides.whole.values[n - 1] * sides.scale().powi(2);
-    let k = sides.part.values.iter().filter(|value| **value <= last).count();
+    let last = sides.whole.spectrum.values[n - 1] * sides.scale().powi(2);
+    let k = sides.part.spectrum.values.iter().filter(|value| **value <= last).count();
     let k = k.min(most).min(places.len() / 3).max(1);
     let own = sides.part.vectors.select_rows(&sides.xs[..places.len()]).columns(0, k).into_owned();
     let images: Vec<usize> = places.iter().map(|y| sides.ys[*y]).collect();

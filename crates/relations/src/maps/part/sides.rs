@@ -7,11 +7,6 @@ use super::super::curvature::smoothed;
 use super::super::shape::MapShape;
 use descriptors::DescriptorError;
 
-/// Samples of the part and of the whole among which a map is sought. The samples of the whole are 3 % of the square root of
-/// its area apart.
-const OF_PART: usize = 1000;
-const OF_WHOLE: usize = 1000;
-
 /// Differences of curvature count if a point is so far from the cut, for each time of smoothing. Heat of the three times reaches
 /// as far.
 const SMOOTHED: [f64; 3] = [0.1, 0.15, 0.25];
@@ -69,8 +64,7 @@ impl<'a> Sides<'a> {
         let Some(from_cut) = &part.from_cut else { return Ok(None) };
         let scale = part.size / whole.size;
         let from_cut = from_cut.iter().map(|d| d * scale).collect();
-        let xs = part.samples[..OF_PART.min(part.samples.len())].to_vec();
-        let ys = whole.samples[..OF_WHOLE.min(whole.samples.len())].to_vec();
+        let (xs, ys) = (part.samples.clone(), whole.samples.clone());
         let in_part = part.distances_to(&xs)? * scale;
         let to_samples = whole.distances_to(&ys)?;
         let in_whole = between(&to_samples, &to_samples);
@@ -85,7 +79,7 @@ impl<'a> Sides<'a> {
 
     /// Numbers of landmarks of the part and of the whole that are samples.
     pub(super) fn n_landmarks(&self) -> [usize; 2] {
-        [self.part.landmarks().len().min(self.xs.len()), self.whole.landmarks().len().min(self.ys.len())]
+        [self.part.landmarks().len(), self.whole.landmarks().len()]
     }
 
     /// What is known of the distance of a landmark and a sample of the part.
@@ -145,8 +139,9 @@ fn curvatures(part: &MapShape, whole: &MapShape, [xs, ys]: [&[usize]; 2]) -> [Ma
     let scale = part.size / whole.size;
     let unit = |shape: &MapShape| whole.size / (shape.size * shape.size);
     let mut on_part =
-        smoothed(of_part, &part.values, &part.vectors.select_rows(xs), scale.powi(-2)) * unit(part);
-    let mut on_whole = smoothed(of_whole, &whole.values, &whole.vectors.select_rows(ys), 1.0) * unit(whole);
+        smoothed(of_part, &part.spectrum.values, &part.vectors.select_rows(xs), scale.powi(-2)) * unit(part);
+    let mut on_whole =
+        smoothed(of_whole, &whole.spectrum.values, &whole.vectors.select_rows(ys), 1.0) * unit(whole);
     for (mut p, mut q) in on_part.column_iter_mut().zip(on_whole.column_iter_mut()) {
         let deviation = q.variance().sqrt().max(f64::MIN_POSITIVE);
         p /= deviation;

@@ -96,7 +96,13 @@ pub(super) fn onto_part(sides: &Sides<'_>, images: &[usize]) -> Result<Coverage,
     let found: Vec<(f64, usize)> = all.par_iter().map(|w| one(*w)).collect();
     let spacing = sides.scale() / (images.len().max(1) as f64).sqrt();
     let matched: Vec<bool> = found.iter().map(|(gap, _)| *gap <= REACH * spacing).collect();
-    let covered =
-        whole.masses.iter().zip(&matched).filter(|(_, matched)| **matched).map(|(mass, _)| mass).sum();
+    let covered = whole
+        .spectrum
+        .masses
+        .iter()
+        .zip(&matched)
+        .filter(|(_, matched)| **matched)
+        .map(|(mass, _)| mass)
+        .sum();
     Ok(Coverage { covered, partners: found.into_iter().map(|(_, v)| v).collect(), matched })
 }
