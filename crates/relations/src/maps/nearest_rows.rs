@@ -6,6 +6,9 @@ use rayon::prelude::*;
 /// Rows of the first matrix multiplied at a time. The result does not depend on it.
 const BLOCK: usize = 128;
 
+/// For each row of a block the nearest row of `y`, and for each row of `y` the nearest of the block with half of its gap.
+type NearestOfBlock = (Vec<u32>, Vec<(u32, f64)>);
+
 /// For every row of `x` the nearest row of `y`, and for every row of `y` the nearest of `x`; the first in case of a tie.
 ///
 /// By products of blocks of the matrices: in tens of dimensions no search tree is faster. Cost `O(m n d)`; parallel, and
@@ -13,7 +16,7 @@ const BLOCK: usize = 128;
 pub(super) fn nearest_rows(x: &Matrix, y: &Matrix) -> [Vec<u32>; 2] {
     let [of_x, of_y] = [x, y].map(half_squares);
     let starts: Vec<usize> = (0..x.nrows()).step_by(BLOCK).collect();
-    let blocks: Vec<(Vec<u32>, Vec<(u32, f64)>)> = starts
+    let blocks: Vec<NearestOfBlock> = starts
         .into_par_iter()
         .map(|start| {
             let rows = start..(start + BLOCK).min(x.nrows());

@@ -54,7 +54,7 @@ impl Oriented {
                 continue;
             }
             let [a, b, c] = face.map(|v| functions.row(v));
-            let [p, q] = [b - &a, c - &a];
+            let [p, q] = [b - a, c - a];
             for (k, &[i, j]) in pairs.iter().enumerate() {
                 let form = (p[i] * q[j] - q[i] * p[j]) / 6.0;
                 at.iter().flatten().for_each(|&row| sums[(k, row)] += form);
