@@ -1,7 +1,7 @@
 //! Dense maps between a whole and what a cut has left of it.
 
 use canonform::relations::{MapKind, PartOfWhole, Side};
-use canonform::{CorrespondOptions, MappedSurface, VertexMap, correspond};
+use canonform::{CorrespondOptions, MappedSurface, PointMap, VertexMap, correspond};
 use datasets::{ArticulatedOptions, Damage, Family, articulated_at_rest};
 use descriptors::NearestPoints;
 use geodesics::Method;
@@ -111,6 +111,19 @@ fn a_piece_of_a_surface_is_mapped_to_itself() {
     let error = part.error(&whole, map, whole.mesh.area().sqrt());
     println!("error {error:.4}, distortion {:.4}, confidence {:.2}", map.distortion, map.confidence);
     assert!(part_of(map).part == Side::First && error < 0.03, "{error}");
+    // Points go by vertices, both ways; faces go where all of their corners do.
+    let sides = [&part, &whole];
+    for (of, partners) in [Side::First, Side::Second].into_iter().zip(&part_of(map).partners) {
+        let between = map.between(sides.map(|side| &side.mapped));
+        let corners = |found: PointMap| found.points.into_iter().map(|p| Some(p?.nearest_corner()));
+        assert!(corners(between.vertices(of)).eq(partners.iter().copied()));
+        let mesh = &sides[of as usize].mesh;
+        let is_mapped = |face: &[VertexId; 3]| face.iter().all(|v| partners[v.index()].is_some());
+        let faces = between.faces(of).points;
+        assert!(faces.iter().map(Option::is_some).eq(mesh.faces.iter().map(is_mapped)));
+    }
+    let functional = &map.functional;
+    assert!(functional.nrows() < functional.ncols() && functional.iter().all(|c| c.is_finite()));
 }
 
 #[test]
