@@ -120,7 +120,7 @@ impl ShapeDistance {
 
 impl ShapeMetric {
     /// Version of the calibration and of the signatures. Fused vectors of different versions cannot be compared.
-    pub const VERSION: u32 = 3;
+    pub const VERSION: u32 = 4;
 
     /// The boundary between two poses of one body and two bodies of one class.
     ///

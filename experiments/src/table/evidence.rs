@@ -213,6 +213,23 @@ mod tests {
     }
 
     #[test]
+    fn arcs_do_not_explain_a_difference_of_vertices() {
+        let pipes: Vec<MechanicalPart> = mechanical_parts(0, 400)
+            .into_iter()
+            .filter(|part| part.name().starts_with("bent-pipe-d20-t1.5-r3"))
+            .collect();
+        let geometries: Vec<MeshGeometry> =
+            pipes.iter().map(|pipe| geometry(&pipe.mesh(&PartMesh::default())).unwrap()).collect();
+        assert!(pipes.len() > 2);
+        for (i, a) in pipes.iter().enumerate() {
+            for (j, b) in pipes.iter().enumerate().take(i) {
+                let told = related(&geometries[i], &geometries[j]);
+                assert!(!is_one_surface(&told), "{}, {}: {told}", a.name(), b.name());
+            }
+        }
+    }
+
+    #[test]
     fn calibrated_answers_have_no_error() {
         let said: Vec<Said> = (0..1000).map(|i| (0.9, i % 10 != 0)).collect();
         assert!(calibration(&said).1 < 1e-9);

@@ -3,7 +3,7 @@
 //! Two triangulations of one surface differ by the error of flat triangles: at most the height of the arcs that stand over
 //! them. What else differs is a difference of the surfaces, and one that is measured anywhere is enough.
 
-use descriptors::{Alignment, Boundary};
+use descriptors::{Alignment, Boundary, NearestPoints};
 use nalgebra::Point3;
 use surface::Topology;
 
@@ -103,7 +103,28 @@ fn same_part(aligned: &Aligned, [a, b]: [&MeshGeometry; 2]) -> f64 {
     }
     let back = inverse(&aligned.map);
     let worst = worst([a, b], &aligned.map).max(worst([b, a], &back));
-    SAME_PART.probability(worst)
+    SAME_PART.probability(worst.max(displaced(aligned, [a, b]).unwrap_or(0.0)))
+}
+
+/// How far the vertices of one triangulation are apart, in multiples of what is allowed: they lie on the surface, so arcs do not
+/// explain it. `None` unless every vertex has a nearest one of its own, as in two triangulations of one kind.
+fn displaced(aligned: &Aligned, [a, b]: [&MeshGeometry; 2]) -> Option<f64> {
+    if a.n_vertices() != b.n_vertices() || a.n_faces() != b.n_faces() {
+        return None;
+    }
+    let nearest = NearestPoints::new(b.mesh.positions.clone()).ok()?;
+    let partner: Vec<usize> =
+        a.mesh.positions.iter().map(|p| nearest.nearest(&aligned.map.apply(p)).0).collect();
+    let mut is_taken = vec![false; b.n_vertices()];
+    if partner.iter().any(|&v| std::mem::replace(&mut is_taken[v], true)) {
+        return None;
+    }
+    let pairs: Vec<_> =
+        a.mesh.positions.iter().zip(&partner).map(|(p, &v)| (*p, b.mesh.positions[v])).collect();
+    // A part that is round may be aligned at another angle than its vertices.
+    let map = Similarity::fit(&pairs, aligned.mirrored)?;
+    let gap = pairs.iter().map(|(p, q)| (map.apply(p) - q).norm()).fold(0.0, f64::max);
+    Some(gap / (EXACT + a.rounding + b.rounding))
 }
 
 /// The largest distance from points of one surface to the other, in multiples of what is allowed there.
