@@ -17,8 +17,13 @@ use crate::run::run;
 use crate::settings::Settings;
 use crate::surface::Surface;
 
-/// The partner of each vertex, its confidence, and the map of functions.
-type MapArrays<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>);
+/// The partner of each vertex, its confidence, and the map of functions; of a part, the partners of the vertices of both surfaces.
+type MapArrays<'py> = (
+    Bound<'py, PyArray1<i64>>,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray2<f64>>,
+    Option<[Bound<'py, PyArray1<i64>>; 2]>,
+);
 type Maps<'py> = (String, Vec<[Option<MapArrays<'py>>; 2]>, Bound<'py, PyArray2<u8>>);
 
 /// Pairs of vertices, as rows.
@@ -43,16 +48,18 @@ fn matrix_of(values: &PyReadonlyArray2<'_, f64>) -> PyResult<Matrix> {
     Ok(Matrix::from_row_slice(rows, columns, values.as_slice()?))
 }
 
+/// Numbers of vertices; -1 stands for none.
+fn partners_of(numbers: &PyReadonlyArray1<'_, i64>) -> PyResult<Vec<Option<VertexId>>> {
+    let partner = |number: &i64| if *number == -1 { Ok(None) } else { vertex(*number).map(Some) };
+    numbers.as_slice()?.iter().map(partner).collect()
+}
+
 fn known(
     landmarks: &Pairs<'_>,
     initial: Option<PyReadonlyArray1<'_, i64>>,
     functions: Option<Functions<'_>>,
 ) -> PyResult<KnownMap> {
-    let partner = |number: &i64| if *number == -1 { Ok(None) } else { vertex(*number).map(Some) };
-    let initial = match &initial {
-        Some(initial) => initial.as_slice()?.iter().map(partner).collect::<PyResult<_>>()?,
-        None => Vec::new(),
-    };
+    let initial = initial.as_ref().map(partners_of).transpose()?.unwrap_or_default();
     let functions = match &functions {
         Some((f, g)) => Some([matrix_of(f)?, matrix_of(g)?]),
         None => None,
@@ -62,9 +69,11 @@ fn known(
 
 fn arrays_of<'py>(py: Python<'py>, map: &VertexMap) -> PyResult<MapArrays<'py>> {
     let number = |v: &Option<VertexId>| v.map_or(-1, |v| i64::from(v.0));
-    let vertices = map.vertices.iter().map(number).collect::<Vec<_>>().into_pyarray(py);
+    let numbers =
+        |partners: &[Option<VertexId>]| partners.iter().map(number).collect::<Vec<_>>().into_pyarray(py);
+    let partners = map.part.as_ref().map(|part| part.partners.each_ref().map(|of| numbers(of)));
     let confidence = arrays::vector(py, map.vertex_confidence.clone());
-    Ok((vertices, confidence, arrays::of_matrix(py, &map.functional)?))
+    Ok((numbers(&map.vertices), confidence, arrays::of_matrix(py, &map.functional)?, partners))
 }
 
 /// The maps as the JSON of `canonform match`; the arrays of each of them and of its alternative; and a colour for each vertex of
@@ -125,7 +134,7 @@ pub(crate) fn match_collection<'py>(
 }
 
 /// The points inside the faces of the other surface that a map takes the vertices or faces of one side to: faces, corners and
-/// weights; -1 and NaN for what the repair dropped.
+/// weights; -1 and NaN for what the repair dropped, or a part lacks. `partners` are those of a part and a whole.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn map_points<'py>(
@@ -134,6 +143,7 @@ pub(crate) fn map_points<'py>(
     b: &Surface,
     functional: PyReadonlyArray2<'py, f64>,
     landmarks: Pairs<'py>,
+    partners: Option<[PyReadonlyArray1<'py, i64>; 2]>,
     of_second: bool,
     of_faces: bool,
     settings: &str,
@@ -141,11 +151,19 @@ pub(crate) fn map_points<'py>(
     let settings = Settings::parse(settings)?;
     let [of_a, of_b] = [settings.correspond(a.inner.repair)?, settings.correspond(b.inner.repair)?];
     let (functional, landmarks) = (matrix_of(&functional)?, pairs_of(&landmarks)?);
+    let partners = match &partners {
+        Some([a, b]) => Some([partners_of(a)?, partners_of(b)?]),
+        None => None,
+    };
     let of = if of_second { Side::Second } else { Side::First };
     let PointMap { points } = run(py, &settings.budget()?, None, |observer| {
         let sides = [a.matched(&of_a, observer)?, b.matched(&of_b, observer)?];
-        let mapping =
-            Mapping { shapes: [&*sides[0], &*sides[1]], functional: &functional, landmarks: &landmarks };
+        let mapping = Mapping {
+            shapes: [&*sides[0], &*sides[1]],
+            functional: &functional,
+            landmarks: &landmarks,
+            partners: partners.as_ref(),
+        };
         Ok(if of_faces { mapping.faces(of) } else { mapping.vertices(of) })
     })?;
     let faces: Vec<i64> = points.iter().map(|p| p.map_or(-1, |p| i64::from(p.face.0))).collect();

@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use crate::collection::Collection;
 use crate::error::ApiError;
-use crate::serve::STACK;
+use crate::options::STACK;
 
 /// The search in progress, or the last one: one for each version of the index.
 pub(crate) struct Duplicates {

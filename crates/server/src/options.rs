@@ -3,6 +3,9 @@
 use std::net::{Ipv4Addr, SocketAddr};
 use std::time::Duration;
 
+/// Stack size of the threads that measure.
+pub(crate) const STACK: usize = 8 << 20;
+
 /// Where a server listens, and its limits.
 ///
 /// Together they bound its memory: `max_uploads` uploads of `max_upload` bytes, `jobs` meshes of `max_vertices` in

@@ -14,16 +14,13 @@ use tokio::sync::watch;
 use crate::app::App;
 use crate::error::ServerError;
 use crate::guard::guard;
-use crate::options::ServeOptions;
+use crate::options::{STACK, ServeOptions};
 use crate::pace::Pace;
 use crate::places::Places;
 use crate::{api, connection, page};
 
 /// Pause after a connection could not be accepted, for example because of too many open files.
 const RETRY_PAUSE: Duration = Duration::from_millis(100);
-
-/// Stack size of the threads that measure.
-pub(crate) const STACK: usize = 8 << 20;
 
 /// A server with its address and its index, ready to [`run`](Self::run).
 pub struct Server {

@@ -15,6 +15,7 @@
 //! | `invariance` | signatures of subdivided, simplified, remeshed, noisy and moved shapes |
 //! | `fields` | distance fields against exact distances |
 //! | `matches` | how a changed mesh is related to the original |
+//! | `part_maps` | dense maps between a part and a whole |
 //! | `samples` | how many samples are enough, and the interval of the stress after that choice |
 //! | `isometry` | invariance to folding, motions, renumbering and units |
 //! | `scale` | the same results in any unit of length |
@@ -59,6 +60,8 @@ mod one_of_each;
 mod packaging;
 #[cfg(test)]
 mod pages;
+#[cfg(test)]
+mod part_maps;
 #[cfg(test)]
 mod real_meshes;
 #[cfg(test)]

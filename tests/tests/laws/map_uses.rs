@@ -240,7 +240,7 @@ fn twins_of_a_seam_keep_their_own_values() {
     let k = side.shape.spectrum().values.len();
     let identity = Matrix::identity(k, k);
     let mapping: Mapping<'_, Surface> =
-        Mapping { shapes: [&side, &side], functional: &identity, landmarks: &[] };
+        Mapping { shapes: [&side, &side], functional: &identity, landmarks: &[], partners: None };
     let PointMap { points } = mapping.faces(Side::First);
     // The centroid of each face has the mean of its own corners, also beside the seam.
     let found = PointMap { points }.values(&texture);

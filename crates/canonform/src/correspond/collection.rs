@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use base::Observer;
 use mesh::Surface;
-use relations::{ConsistentMaps, CycleReport, SurfaceMap, all_pairs, consistent_maps, map_surfaces};
+use relations::{ConsistentMaps, CycleReport, SurfaceMap, all_pairs, consistent_maps, map_wholes};
 use serde::Serialize;
 
 use super::correspondence::VertexMap;
@@ -40,7 +40,7 @@ pub struct CollectionMaps {
 
 /// Maps several surfaces to each other, so that the maps agree: from one surface to a second and on to a third is the same as at once.
 ///
-/// All pairs are mapped as by [`correspond`](super::correspond). Maps that disagree with the others, such as one that turns a man
+/// All pairs are mapped as by [`correspond`](super::correspond), but always as wholes. Maps that disagree with the others, such as one that turns a man
 /// back to front, are replaced; then all of them are made consistent, see [`consistent_maps`]. Two surfaces have no cycle, and keep
 /// their first map.
 ///
@@ -63,7 +63,7 @@ pub fn correspond_all<S: Borrow<Surface>>(
     observer.begin("maps", pairs.len());
     let mut found = Vec::with_capacity(pairs.len());
     for &[i, j] in &pairs {
-        let maps = map_surfaces(shapes[i], shapes[j], &options.known, &options.mapping, observer)?;
+        let maps = map_wholes(shapes[i], shapes[j], &options.known, &options.mapping, observer)?;
         if maps.is_empty() {
             return Err(Error::UnusableMap(format!(
                 "there is no map between the surfaces {i} and {j}, counted from 0; leave one of them out"

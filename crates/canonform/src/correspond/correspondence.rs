@@ -4,7 +4,7 @@ use std::borrow::Borrow;
 use std::time::Instant;
 
 use linalg::Matrix;
-use relations::{MapKind, SurfaceMap, map_surfaces};
+use relations::{MapKind, PartOfWhole, SurfaceMap, map_surfaces};
 use serde::Serialize;
 use surface::VertexId;
 
@@ -30,8 +30,11 @@ pub struct VertexMap {
     pub confidence: f64,
     /// The next best map of this kind, if this one is uncertain.
     pub alternative: Option<Box<VertexMap>>,
+    /// Which surface is a part of the other, and how much of the whole it covers; `None` if both are mapped as wholes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub part: Option<PartOfWhole>,
     /// For every vertex of the first input, its partner among the vertices of the second input; `None` for a vertex that the
-    /// repair dropped.
+    /// repair dropped, and for one of a whole that is missing in the part.
     #[serde(skip)]
     pub vertices: Vec<Option<VertexId>>,
     /// For every vertex of the first input, how well the map keeps distances around it, from 0 to 1; 0 for a vertex that the
@@ -40,7 +43,7 @@ pub struct VertexMap {
     pub vertex_confidence: Vec<f64>,
     /// The map of functions of the second surface to functions of the first: its columns are the coefficients of the
     /// eigenfunctions of the second, pulled back, in those of the first. [`MapShape::spectrum`](relations::MapShape::spectrum)
-    /// has them.
+    /// has them. That of a part has fewer eigenfunctions of the part, and functions of the part are zero elsewhere.
     #[serde(skip)]
     pub functional: Matrix,
     /// The landmarks that it was given and contains.
@@ -59,8 +62,9 @@ pub struct Correspondence {
 
 /// Maps the vertices of one surface to those of another.
 ///
-/// Shapes that are alike under a mirror have two maps of small distortion, one for each orientation. Both are returned. See
-/// [`map_surfaces`] for how they are found; the result does not depend on the number of threads.
+/// Shapes that are alike under a mirror have two maps of small distortion, one for each orientation. Both are returned. One
+/// surface may be a part of the other that a cut has left. See [`map_surfaces`] for how maps are found; the result does not
+/// depend on the number of threads.
 ///
 /// ```
 /// use canonform::{CorrespondOptions, MappedSurface, Surface, correspond, mesh::shapes};
@@ -98,14 +102,26 @@ pub fn correspond<S: Borrow<Surface>>(
 impl VertexMap {
     /// A map of the vertices of the repaired meshes as one of the inputs.
     pub(super) fn new(map: SurfaceMap, [from, to]: [&Surface; 2], landmarks: &[[VertexId; 2]]) -> Self {
-        let partners: Vec<_> = map.vertices.iter().map(|v| Some(to.input_vertex(*v))).collect();
+        let in_input = |partners: &[Option<VertexId>], from: &Surface, to: &Surface| {
+            let partners: Vec<_> = partners.iter().map(|v| v.map(|v| to.input_vertex(v))).collect();
+            from.in_input_order(&partners, None)
+        };
+        let part = map.part.map(|part| {
+            let [of_first, of_second] = &part.partners;
+            PartOfWhole { partners: [in_input(of_first, from, to), in_input(of_second, to, from)], ..part }
+        });
+        let vertices = match &part {
+            Some(part) => part.partners[0].clone(),
+            None => in_input(&map.vertices.iter().copied().map(Some).collect::<Vec<_>>(), from, to),
+        };
         Self {
             kind: map.kind,
             distortion: map.distortion,
             agreement: map.agreement,
             confidence: map.confidence,
             alternative: map.alternative.map(|other| Box::new(Self::new(*other, [from, to], landmarks))),
-            vertices: from.in_input_order(&partners, None),
+            part,
+            vertices,
             vertex_confidence: from.in_input_order(&map.vertex_confidence, 0.0),
             functional: map.functional,
             landmarks: landmarks.to_vec(),
@@ -115,7 +131,8 @@ impl VertexMap {
     /// The map between the surfaces that it was found for, which takes points into faces and carries functions.
     #[must_use]
     pub fn between<'a, S>(&'a self, shapes: [&'a MappedSurface<S>; 2]) -> Mapping<'a, S> {
-        Mapping { shapes, functional: &self.functional, landmarks: &self.landmarks }
+        let partners = self.part.as_ref().map(|part| &part.partners);
+        Mapping { shapes, functional: &self.functional, landmarks: &self.landmarks, partners }
     }
 
     /// Whether no other map of its kind is nearly as good.

@@ -4,7 +4,7 @@ use std::borrow::Borrow;
 use std::time::Instant;
 
 use descriptors::LaplaceSpectrum;
-use geodesics::SpreadSamples;
+use geodesics::{DistanceSolver, Source, SpreadSamples};
 use relations::MapShape;
 
 use super::options::CorrespondOptions;
@@ -37,10 +37,15 @@ impl<S: Borrow<Surface>> MappedSurface<S> {
         let form = embedded.form(repaired)?;
         let solver = options.form.geodesic.prepare(repaired.intrinsic(), observer)?;
         let spread = SpreadSamples::new(solver.as_ref(), &embedded.distances, options.spread)?;
+        let from_cut = from_cut(repaired, solver.as_ref())?;
         drop(solver);
         let spectrum = LaplaceSpectrum::new(repaired.intrinsic(), options.mapping.eigenfunctions, observer)?;
         let SpreadSamples { samples, nearest, .. } = spread;
         let shape = MapShape::new(&form, repaired.mesh(), spectrum, embedded.distances, samples, &nearest)?;
+        let shape = match from_cut {
+            Some(from_cut) => shape.with_cut(&from_cut),
+            None => shape,
+        };
         Ok(Self { shape, seconds: start.elapsed().as_secs_f64(), surface })
     }
 
@@ -48,4 +53,16 @@ impl<S: Borrow<Surface>> MappedSurface<S> {
     pub fn surface(&self) -> &Surface {
         self.surface.borrow()
     }
+}
+
+/// The distance of each vertex from the boundary; `None` without one.
+fn from_cut(surface: &Surface, solver: &dyn DistanceSolver) -> Result<Option<Vec<f64>>, Error> {
+    let (cut, _) = surface.boundary_vertices();
+    if cut.is_empty() {
+        return Ok(None);
+    }
+    let sources: Vec<Source> = cut.into_iter().map(Source::vertex).collect();
+    let mut from_cut = vec![f64::INFINITY; solver.n_vertices()];
+    solver.solve_into(&sources, f64::INFINITY, &mut from_cut)?;
+    Ok(Some(from_cut))
 }

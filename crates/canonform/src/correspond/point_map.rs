@@ -1,12 +1,13 @@
 //! Points inside faces, and what they carry from one surface to another.
 
 use std::borrow::Borrow;
+use std::cmp::Reverse;
 use std::collections::HashMap;
 
 use linalg::Matrix;
 use mesh::{InputPoint, Surface};
 use relations::{MapElements, Side, mapped_points};
-use surface::{FaceId, SurfacePoint, VertexId};
+use surface::{FaceId, SurfacePoint, Topology, VertexId};
 
 use super::mapped_surface::MappedSurface;
 
@@ -45,6 +46,8 @@ pub struct Mapping<'a, S = Surface> {
     pub functional: &'a Matrix,
     /// Pairs that stay as they are, in the numbers of the inputs.
     pub landmarks: &'a [[VertexId; 2]],
+    /// Of a part and a whole, which correspond vertex by vertex: the partners of the vertices of both inputs, where they have one.
+    pub partners: Option<&'a [Vec<Option<VertexId>>; 2]>,
 }
 
 /// Where a map takes the elements of one surface: points inside the faces of the other one. By them, functions, labels and texture
@@ -134,6 +137,12 @@ impl<S: Borrow<Surface>> Mapping<'_, S> {
     pub fn vertices(&self, of: Side) -> PointMap {
         let surfaces = self.shapes.map(|shape| shape.surface());
         let [own, other] = ordered(surfaces, of);
+        if let Some(partners) = self.partners {
+            let [partners, _] = ordered(partners.each_ref(), of);
+            let point = |v: &Option<VertexId>| Some(SurfacePoint::Vertex(other.repaired_vertex((*v)?).ok()?));
+            let points: Vec<_> = partners.iter().map(point).collect();
+            return PointMap { points: in_faces(&points, other) };
+        }
         let mut found = self.mapped(of, MapElements::Vertices);
         for [x, y] in self.landmarks {
             let pair = [surfaces[0].repaired_vertex(*x), surfaces[1].repaired_vertex(*y)];
@@ -141,7 +150,7 @@ impl<S: Borrow<Surface>> Mapping<'_, S> {
                 found[x.index()] = SurfacePoint::Vertex(y);
             }
         }
-        let points = in_faces(&found, other);
+        let points = in_faces(&all(found), other);
         PointMap { points: own.in_input_order(&points, None) }
     }
 
@@ -149,6 +158,15 @@ impl<S: Borrow<Surface>> Mapping<'_, S> {
     #[must_use]
     pub fn faces(&self, of: Side) -> PointMap {
         let [own, other] = ordered(self.shapes.map(|shape| shape.surface()), of);
+        if let Some(partners) = self.partners {
+            let [partners, _] = ordered(partners.each_ref(), of);
+            let partner = |v: VertexId| other.repaired_vertex(partners[v.index()]?).ok();
+            let topology = other.intrinsic().topology();
+            let point =
+                |[a, b, c]: &[VertexId; 3]| face_among([partner(*a)?, partner(*b)?, partner(*c)?], topology);
+            let points: Vec<_> = own.input_faces.iter().map(point).collect();
+            return PointMap { points: in_faces(&points, other) };
+        }
         let repaired = |face: &[VertexId; 3]| -> Option<[VertexId; 3]> {
             let [a, b, c] = face.map(|v| own.repaired_vertex(v).ok());
             Some([a?, b?, c?])
@@ -156,7 +174,7 @@ impl<S: Borrow<Surface>> Mapping<'_, S> {
         let faces: Vec<_> = own.input_faces.iter().map(repaired).collect();
         let known: Vec<_> = faces.iter().flatten().copied().collect();
         let found = self.mapped(of, MapElements::Faces(&known));
-        let mut found = in_faces(&found, other).into_iter();
+        let mut found = in_faces(&all(found), other).into_iter();
         PointMap { points: faces.iter().map(|face| face.and_then(|_| found.next().flatten())).collect() }
     }
 
@@ -175,9 +193,24 @@ fn ordered<T>([first, second]: [T; 2], side: Side) -> [T; 2] {
     }
 }
 
+fn all(points: Vec<SurfacePoint>) -> Vec<Option<SurfacePoint>> {
+    points.into_iter().map(Some).collect()
+}
+
+/// The centroid of a face with as many of three vertices as possible.
+fn face_among(vertices: [VertexId; 3], topology: &Topology) -> Option<SurfacePoint> {
+    let faces = vertices.into_iter().flat_map(|v| topology.vertex_corners(v)).map(|corner| corner.face());
+    let shared = |face: &FaceId| {
+        let corners = topology.faces()[face.index()];
+        (vertices.iter().filter(|v| corners.contains(v)).count(), Reverse(*face))
+    };
+    let face = faces.max_by_key(shared)?;
+    Some(SurfacePoint::Face { face, barycentric: [1.0 / 3.0; 3] })
+}
+
 /// Points of a repaired mesh in faces of its input. A face that the repair added, as a bridge, has none: its points go to the
 /// nearest corner.
-fn in_faces(points: &[SurfacePoint], surface: &Surface) -> Vec<Option<FacePoint>> {
+fn in_faces(points: &[Option<SurfacePoint>], surface: &Surface) -> Vec<Option<FacePoint>> {
     let topology = surface.intrinsic().topology();
     let to_repaired = &surface.repaired.input_to_repaired;
     let mut faces: HashMap<[VertexId; 3], usize> = HashMap::new();
@@ -218,7 +251,7 @@ fn in_faces(points: &[SurfacePoint], surface: &Surface) -> Vec<Option<FacePoint>
             }
         }
     };
-    points.iter().map(place).collect()
+    points.iter().map(|point| point.as_ref().and_then(place)).collect()
 }
 
 #[cfg(test)]

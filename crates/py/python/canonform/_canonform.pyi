@@ -11,6 +11,7 @@ _Colors = NDArray[np.uint8]
 _Progress = Callable[[str, int, int], None] | None
 _Path = tuple[_Floats, list[str], _Floats, float]
 _Generated = tuple[str, str, _Floats, _Ints, _Floats | None]
+_MapArrays = tuple[_Ints, _Floats, _Floats, list[_Ints] | None]
 
 __version__: str
 
@@ -167,15 +168,16 @@ def match_surfaces(
     functions: tuple[_Floats, _Floats] | None,
     settings: str,
     progress: _Progress,
-) -> tuple[str, list[list[tuple[_Ints, _Floats, _Floats] | None]], _Colors]: ...
+) -> tuple[str, list[list[_MapArrays | None]], _Colors]: ...
 def match_collection(
     surfaces: list[Surface], settings: str, progress: _Progress
-) -> tuple[str, list[tuple[_Ints, _Floats, _Floats]]]: ...
+) -> tuple[str, list[_MapArrays]]: ...
 def map_points(
     a: Surface,
     b: Surface,
     functional: _Floats,
     landmarks: _Ints,
+    partners: list[_Ints] | None,
     of_second: bool,
     of_faces: bool,
     settings: str,

@@ -20,7 +20,7 @@ from .errors import OptionError
 
 Side: TypeAlias = Literal["a", "b"]
 
-_Arrays: TypeAlias = tuple[Ints, Floats, Floats]
+_Arrays: TypeAlias = tuple[Ints, Floats, Floats, list[Ints] | None]
 
 _GREY = 160
 # Colours fade to grey around this confidence, as in pictures of the command line.
@@ -74,7 +74,7 @@ class SurfaceMap(Stored):
     Attributes
     ----------
     vertices
-        For each vertex of `a`, its partner on `b`, or -1 if the repair dropped the vertex; shape (n,).
+        For each vertex of `a`, its partner on `b`, or -1 if the repair dropped the vertex, or the part `b` lacks it; shape (n,).
     vertex_confidence
         How well the map keeps distances around each vertex of `a`, from 0 to 1; shape (n,).
     kind
@@ -87,6 +87,8 @@ class SurfaceMap(Stored):
         How likely this map is the right one of its kind, and not the next best; below 0.7 it is uncertain.
     alternative
         The next best map of this kind, if this one is uncertain: front and back may be exchanged.
+    part
+        "first" or "second", the surface that is a part of the other; `None` if both are mapped as wholes.
     """
 
     def __init__(
@@ -98,11 +100,12 @@ class SurfaceMap(Stored):
         settings: str,
     ) -> None:
         assert arrays[0] is not None
-        self.vertices, self.vertex_confidence, self._functional = arrays[0]
+        self.vertices, self.vertex_confidence, self._functional, self._partners = arrays[0]
         self.kind: str = report["kind"]
         self.distortion: float = report["distortion"]
         self.agreement: float | None = report["agreement"]
         self.confidence: float = report["confidence"]
+        self.part: str | None = report.get("part", {}).get("part")
         self._shapes, self._landmarks, self._settings = shapes, landmarks, settings
         self._points: dict[str, MappedPoints] = {}
         other = arrays[1] if len(arrays) > 1 else None
@@ -111,23 +114,28 @@ class SurfaceMap(Stored):
             self.alternative = SurfaceMap(report["alternative"], [other], shapes, landmarks, settings)
 
     def functional(self, k: int | None = None) -> Floats:
-        """The map of functions, shape (k, k): column j has the coefficients of the j-th eigenfunction of `b`, pulled back to `a`,
-        in the eigenfunctions of `a`. `bases` gives these; `k` is at most their number, the default."""
-        k = self._count(k)
-        return self._functional[:k, :k].copy()
+        """The map of functions, shape (k, k), fewer for a part: column j has the coefficients of the j-th eigenfunction of `b`,
+        pulled back to `a`, in the eigenfunctions of `a`. `bases` gives these; `k` is at most their number, the default."""
+        rows, columns = self._counts(k)
+        return self._functional[:rows, :columns].copy()
 
     def bases(self, k: int | None = None) -> tuple[Eigenbasis, Eigenbasis]:
         """The eigenfunctions of `a` and of `b` that `functional` is written in, of both surfaces scaled to unit area."""
-        most = self._count(k)
+        counts = self._counts(k)
         found = [_canonform.map_basis(shape._inner, self._settings) for shape in self._shapes]
-        a, b = (Eigenbasis(values[:most], functions[:, :most].copy(), masses) for values, functions, masses in found)
+        a, b = (
+            Eigenbasis(values[:most], functions[:, :most].copy(), masses)
+            for (values, functions, masses), most in zip(found, counts, strict=True)
+        )
         return a, b
 
-    def _count(self, k: int | None) -> int:
-        most = len(self._functional)
+    def _counts(self, k: int | None) -> tuple[int, int]:
+        rows, columns = self._functional.shape
+        most = max(rows, columns)
         if k is not None and not 1 <= k <= most:
             raise OptionError(f"k={k} is not possible: the map has {most} eigenfunctions")
-        return most if k is None else k
+        k = most if k is None else k
+        return min(k, rows), min(k, columns)
 
     def points(self, of: Side = "a") -> MappedPoints:
         """The points inside faces of `b` that the vertices of `a` are mapped to; with `of="b"`, the points of `a` that are mapped to
@@ -139,7 +147,14 @@ class SurfaceMap(Stored):
         if key not in self._points:
             a, b = (shape._inner for shape in self._shapes)
             found = _canonform.map_points(
-                a, b, straight(self._functional), self._landmarks, of == "b", elements == "faces", self._settings
+                a,
+                b,
+                straight(self._functional),
+                self._landmarks,
+                self._partners,
+                of == "b",
+                elements == "faces",
+                self._settings,
             )
             self._points[key] = MappedPoints(*found)
         return self._points[key]
@@ -393,7 +408,7 @@ def match_all(
 ) -> MapCollection:
     """Map several surfaces to each other, so that the maps agree: from one to a second and on to a third is the same as at once.
 
-    All pairs are mapped as by `match`. Maps that disagree with the others, such as one that turns a man back to front, are replaced.
+    All pairs are mapped as by `match`, but as wholes. Maps that disagree with the others, such as one that turns a man back to front, are replaced.
     The parameters are those of `match`.
     """
     settings = encoded(eigenfunctions=eigenfunctions, n=n, geodesic=geodesic, timeout=timeout, memory=memory)

@@ -11,15 +11,20 @@ use descriptors::LaplaceSpectrum;
 /// area are left.
 const TIMES: [f64; 3] = [0.001, 0.003, 0.01];
 
-/// The mean curvature, positive where the surface bulges outwards, smoothed by heat: a row for each vertex, a column for each
-/// time. `outward` has its normals outwards.
-pub(super) fn curvatures(outward: &TriMesh, spectrum: &LaplaceSpectrum) -> Matrix {
-    let integrated = spectrum.vectors.transpose() * mean_curvature(outward);
-    let mut found = Matrix::zeros(outward.n_vertices(), TIMES.len());
+/// Coefficients of the mean curvature, positive where the surface bulges outwards, in the eigenfunctions. `outward` has its
+/// normals outwards.
+pub(super) fn bends(outward: &TriMesh, spectrum: &LaplaceSpectrum) -> DVector<f64> {
+    spectrum.vectors.transpose() * mean_curvature(outward)
+}
+
+/// The mean curvature at some points, smoothed by heat: a row for each point, a column for each time. `values` are eigenvalues
+/// and `vectors` the eigenfunctions at these points; times are those at unit area, times `factor`.
+pub(super) fn smoothed(bends: &DVector<f64>, values: &[f64], vectors: &Matrix, factor: f64) -> Matrix {
+    let mut found = Matrix::zeros(vectors.nrows(), TIMES.len());
     for (mut column, time) in found.column_iter_mut().zip(TIMES) {
-        let left = spectrum.values.iter().map(|value| (-time * value).exp());
-        let left = DVector::from_iterator(integrated.len(), left).component_mul(&integrated);
-        column.copy_from(&(&spectrum.vectors * left));
+        let left = values.iter().map(|value| (-time * factor * value).exp());
+        let left = DVector::from_iterator(bends.len(), left).component_mul(bends);
+        column.copy_from(&(vectors * left));
     }
     found
 }
@@ -63,7 +68,7 @@ mod tests {
     fn a_ball_bulges_evenly_and_a_ring_bulges_outside() {
         let of = |mesh: &TriMesh| {
             let spectrum = LaplaceSpectrum::new(&mesh.intrinsic(), 60, &()).unwrap();
-            curvatures(mesh, &spectrum)
+            smoothed(&bends(mesh, &spectrum), &spectrum.values, &spectrum.vectors, 1.0)
         };
         let ball = of(&shapes::icosphere(4));
         assert!(ball.min() > 0.0 && ball.max() < 1.05 * ball.min(), "{} to {}", ball.min(), ball.max());

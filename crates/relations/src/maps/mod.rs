@@ -4,6 +4,7 @@
 //! form, spectrum, distances -> MapShape
 //! two of them -> maps of functions that fit, alignments of the forms -> maps of samples, refined
 //!             -> SurfaceMap, the best of each orientation
+//! one of them a part -> places of landmarks and samples by their distances -> SurfaceMap
 //! ```
 
 mod curvature;
@@ -14,14 +15,19 @@ mod nearest_rows;
 mod network;
 mod operators;
 mod orientation;
+mod part;
+mod part_of_whole;
 mod points;
 mod search;
 mod shape;
 mod surface_map;
+mod whole_or_part;
 
 pub use known::KnownMap;
 pub use network::{ConsistentMaps, CycleReport, all_pairs, consistent_maps};
+pub use part_of_whole::PartOfWhole;
 pub use points::{MapElements, mapped_points};
-pub use search::{MapOptions, map_surfaces};
+pub use search::{MapOptions, map_wholes};
 pub use shape::MapShape;
 pub use surface_map::{MapKind, SurfaceMap};
+pub use whole_or_part::map_surfaces;

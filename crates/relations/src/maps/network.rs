@@ -59,13 +59,13 @@ pub fn all_pairs(n: usize) -> Vec<[usize; 2]> {
 /// 3. The functions that all these maps of functions take to each other best, `Σ |C_ij Y_j - Y_i|²` least with
 ///    `Σ Y_i' Y_i = I`, place all surfaces in one space (`wang2013`), in which every vertex is mapped to the nearest one.
 ///
-/// `found` has the maps of every [pair](all_pairs), the best first.
+/// `found` has the maps of every [pair](all_pairs) as [wholes](super::map_wholes), the best first.
 ///
 /// # Errors
 /// [`DescriptorError::Linalg`], also if the budget of the observer is exceeded.
 ///
 /// # Panics
-/// If there are fewer than three surfaces, or a pair without a map.
+/// If there are fewer than three surfaces, a pair without a map, or the map of a part.
 pub fn consistent_maps(
     shapes: &[&MapShape],
     found: &[Vec<SurfaceMap>],
@@ -76,6 +76,7 @@ pub fn consistent_maps(
     let pairs = all_pairs(shapes.len());
     assert!(shapes.len() > 2 && found.len() == pairs.len(), "maps of all pairs of at least three surfaces");
     assert!(found.iter().all(|maps| !maps.is_empty()), "every pair has a map");
+    assert!(found.iter().flatten().all(|map| map.part.is_none()), "maps of wholes");
     let network = Network { shapes, pairs: &pairs };
     let first: Vec<Both> = network.both(|pair| &found[pair][0]);
     check()?;
@@ -276,6 +277,7 @@ impl<'a> Network<'a> {
             vertices: both.forth.iter().copied().map(VertexId).collect(),
             functional: &common[i] * pseudo_inverse(&common[j])?,
             alternative: None,
+            part: None,
         })
     }
 }

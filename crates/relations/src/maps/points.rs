@@ -32,6 +32,9 @@ pub enum MapElements<'a> {
 ///
 /// The same map serves both directions: what it takes from the second surface to the first is found by nearest points, too.
 /// Parallel, and independent of the number of threads.
+///
+/// # Panics
+/// If `functional` is not square, as that of a part.
 #[must_use]
 pub fn mapped_points(
     [a, b]: [&MapShape; 2],
@@ -77,6 +80,7 @@ impl Placed {
     /// By a map of functions, whose transpose stands for the one back.
     pub(super) fn new([a, b]: [&MapShape; 2], functional: &Matrix) -> Self {
         let k = functional.ncols();
+        assert_eq!(functional.nrows(), k, "a functional map of wholes");
         let maps = FunctionalMaps { back: functional.transpose(), forth: functional.clone() };
         let coarse = (0..k.min(COARSE)).flat_map(|j| [j, k + j]).collect();
         Self { on_a: maps.places_a(&a.vectors), on_b: maps.places_b(&b.vectors), coarse }

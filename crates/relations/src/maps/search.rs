@@ -103,15 +103,20 @@ struct Candidate {
 
 impl Candidate {
     fn kind(&self) -> MapKind {
-        match self.agreement {
-            Some(value) if value > AGREEMENT => MapKind::Direct,
-            Some(value) if value < -AGREEMENT => MapKind::Mirrored,
-            _ => MapKind::Unoriented,
-        }
+        kind_of(self.agreement)
     }
 
     fn is_mixture(&self) -> bool {
         self.agreement.is_some_and(|agreement| agreement.abs() < PURE)
+    }
+}
+
+/// The kind of a map of some agreement.
+pub(super) fn kind_of(agreement: Option<f64>) -> MapKind {
+    match agreement {
+        Some(value) if value > AGREEMENT => MapKind::Direct,
+        Some(value) if value < -AGREEMENT => MapKind::Mirrored,
+        _ => MapKind::Unoriented,
     }
 }
 
@@ -133,10 +138,7 @@ impl Candidate {
 /// What is `known` of the map enters all of it: landmarks, as heat that is placed at them, and functions are fitted, too; maps
 /// that do not respect the landmarks are dropped; and an initial map is one more start, which comes out unless another map is
 /// clearly better.
-///
-/// # Errors
-/// [`DescriptorError::Linalg`], also if the budget of the observer is exceeded.
-pub fn map_surfaces(
+pub fn map_wholes(
     a: &MapShape,
     b: &MapShape,
     known: &KnownMap,
@@ -157,13 +159,31 @@ pub fn map_surfaces(
     }
     known.without_mixtures(&mut maps);
     known.nearest_first(&mut maps, b)?;
+    let mut maps = in_order(maps);
+    maps.iter_mut().for_each(|map| known.kept_by(map));
+    Ok(maps)
+}
+
+/// The direct map first, unless it distorts distances clearly more.
+pub(super) fn in_order(mut maps: Vec<SurfaceMap>) -> Vec<SurfaceMap> {
     if let [direct, mirrored] = &maps[..]
         && mirrored.distortion * CLEARLY_WORSE < direct.distortion
     {
         maps.reverse();
     }
-    maps.iter_mut().for_each(|map| known.kept_by(map));
-    Ok(maps)
+    maps
+}
+
+/// The images of the first samples of a surface under its best mirror, if it has one.
+pub(super) fn mirrored_samples(
+    shape: &MapShape,
+    options: &MapOptions,
+    budget: &Budget,
+) -> Result<Option<Vec<u32>>, DescriptorError> {
+    let search = MapSearch { a: shape, b: shape, known: &KnownMap::default(), options, budget };
+    let [a, b] = search.rows(SKETCHED);
+    let pair = SampledPair { a: &a, b: &b };
+    Ok(search.mirrors(shape)?.first().map(|mirror| mirror.sample_maps(pair).forth))
 }
 
 /// A search with its options.
@@ -451,6 +471,7 @@ impl Candidate {
             vertex_confidence,
             functional: self.functional.forth.clone(),
             alternative: None,
+            part: None,
         })
     }
 }

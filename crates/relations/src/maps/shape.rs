@@ -4,9 +4,9 @@ use std::sync::OnceLock;
 
 use linalg::{LandmarkDistances, Matrix};
 use mesh::TriMesh;
-use nalgebra::Point3;
+use nalgebra::{DVector, Point3};
 
-use super::curvature::curvatures;
+use super::curvature::{bends, smoothed};
 use super::functional_map::FunctionalMaps;
 use super::operators::Operators;
 use super::orientation::Oriented;
@@ -29,7 +29,7 @@ pub struct MapShape {
     /// Eigenfunctions at the vertices.
     pub(super) vectors: Matrix,
     /// The rest of the spectrum, without its eigenfunctions.
-    spectrum: LaplaceSpectrum,
+    pub(super) spectrum: LaplaceSpectrum,
     /// Vertices spread evenly over the surface; the landmarks first.
     pub(super) samples: Vec<usize>,
     /// The vertices nearest to each sample.
@@ -42,9 +42,14 @@ pub struct MapShape {
     /// The curvature at the samples, smoothed least, if the surface has an inside.
     pub(super) curvature: Option<Vec<f64>>,
     distances: LandmarkDistances,
-    size: f64,
+    /// The square root of the area, in mesh units.
+    pub(super) size: f64,
     /// `None` if the surface cannot be oriented.
     pub(super) oriented: Option<Oriented>,
+    /// Coefficients of the mean curvature in the eigenfunctions; `None` if the surface has no outside.
+    pub(super) bends: Option<DVector<f64>>,
+    /// The distance of each vertex from the boundary, at unit area; `None` if there is no boundary.
+    pub(super) from_cut: Option<Vec<f64>>,
     /// The area forms of the first eigenfunctions at the samples, if it can.
     pub(super) area_forms: Option<Matrix>,
     /// The maps of the surface to itself that reverse its orientation, such as the one that exchanges left and right, once they
@@ -88,10 +93,14 @@ impl MapShape {
             cells[sample].push(vertex);
         }
         let oriented = Oriented::new(mesh, &spectrum.masses);
-        let curvatures = outward(mesh).map(|outward| curvatures(&outward, &spectrum));
+        let bends = outward(mesh).map(|outward| bends(&outward, &spectrum));
+        let curvatures =
+            bends.as_ref().map(|bends| smoothed(bends, &spectrum.values, &spectrum.vectors, 1.0));
         let curvature = curvatures.as_ref().map(|columns| samples.iter().map(|&v| columns[(v, 0)]).collect());
         let operators = operators(curvatures, &spectrum, oriented.as_ref());
         Ok(Self {
+            bends,
+            from_cut: None,
             points: at,
             at_samples: spectrum.vectors.select_rows(&samples),
             area_forms: oriented.as_ref().map(|oriented| oriented.area_forms(&spectrum.vectors, &samples)),
@@ -107,6 +116,18 @@ impl MapShape {
             cells,
             distances,
         })
+    }
+
+    /// The surface as a possible part of another one that was cut off at its boundary: `from_cut` is the distance of each
+    /// vertex from it, in mesh units.
+    ///
+    /// # Panics
+    /// Unless there is one distance for each vertex.
+    #[must_use]
+    pub fn with_cut(mut self, from_cut: &[f64]) -> Self {
+        assert_eq!(from_cut.len(), self.n_vertices(), "one distance for each vertex");
+        self.from_cut = Some(from_cut.iter().map(|d| d / self.size).collect());
+        self
     }
 
     /// Number of vertices.

@@ -4,6 +4,8 @@ use linalg::Matrix;
 use serde::Serialize;
 use surface::VertexId;
 
+use super::part_of_whole::PartOfWhole;
+
 /// How a map treats the orientation of the surfaces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -53,6 +55,8 @@ pub struct SurfaceMap {
     pub functional: Matrix,
     /// The next best map of this kind, unless this one is [certain](Self::CERTAIN).
     pub alternative: Option<Box<SurfaceMap>>,
+    /// Which surface is a part of the other; `None` if both are mapped as wholes.
+    pub part: Option<PartOfWhole>,
 }
 
 impl SurfaceMap {

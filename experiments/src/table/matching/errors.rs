@@ -7,7 +7,7 @@ use geodesics::{DistanceSolver, Method};
 use rayon::prelude::*;
 use surface::VertexId;
 
-use super::PreparedShape;
+use super::shapes::PreparedShape;
 use crate::sweep::{mean, median};
 
 /// Vertices of a pair whose errors are measured.

@@ -19,12 +19,12 @@ mod errors;
 mod shapes;
 
 use anyhow::{Context as _, Result};
-use canonform::{CorrespondOptions, MappedSurface, Surface};
+use canonform::CorrespondOptions;
 use report::results::{CurvesPanel, Mark, Series};
 use serde::Deserialize;
 
 use self::errors::{JudgedMap, MappedPair, middle};
-use self::shapes::{MapGroup, PlacedShape, VertexPlaces};
+use self::shapes::{MapGroup, PreparedShape};
 use crate::context::Context;
 use crate::experiment::Experiment;
 use crate::sweep::{MeasuredNumbers, linear, mean, note, panel, point, share};
@@ -39,13 +39,6 @@ const ALL: &str = "all";
 /// Published means on 343 pairs of people of FAUST and SCAPE, remeshed each on its own to 5,000 vertices, by methods without
 /// learning (`melzi2019` in `REFERENCES.bib`); no curve is at hand as numbers.
 const PUBLISHED: [(&str, f64); 2] = [("ZoomOut, mean", 0.0217), ("PMF, mean", 0.086)];
-
-/// A shape that is ready to be mapped.
-struct PreparedShape<'a> {
-    name: String,
-    mapped: MappedSurface<std::borrow::Cow<'a, Surface>>,
-    places: VertexPlaces,
-}
 
 /// The pairs of a group.
 struct MappedGroup {
@@ -98,14 +91,6 @@ impl Experiment for MatchingOptions {
         provenance.options["matching"] = serde_json::to_value(options.mapping)?;
         provenance.options["spread"] = options.spread.into();
         context.publish_curves(panels(&found), provenance, &measured)
-    }
-}
-
-impl<'a> PreparedShape<'a> {
-    fn new(shape: PlacedShape<'a>, options: &CorrespondOptions) -> Result<Self> {
-        let PlacedShape { name, surface, places } = shape;
-        let mapped = MappedSurface::new(surface, options, &()).with_context(|| name.clone())?;
-        Ok(Self { name, mapped, places })
     }
 }
 

@@ -9,8 +9,7 @@ use canonform::relations::CycleReport;
 use canonform::{CorrespondOptions, MappedSurface, PairMap, ShapeFile, VertexMap, correspond_all};
 use serde::Serialize;
 
-use super::SecondsJson;
-use super::files::write_table;
+use super::files::{SecondsJson, write_table};
 use crate::args::{Common, MatchArgs};
 use crate::input::{named, read_reported};
 use crate::output::{report, table_of};

@@ -26,6 +26,15 @@ pub(super) struct MappedFile {
     pub(super) mapped: MappedSurface,
 }
 
+/// How long the parts of the work took.
+#[derive(Serialize)]
+pub(super) struct SecondsJson {
+    pub(super) load: f64,
+    pub(super) prepare: f64,
+    pub(super) matching: f64,
+    pub(super) total: f64,
+}
+
 /// The path of a further file: `map-mirrored.npy` beside `map.npy`.
 pub(super) fn beside(path: &Path, what: &str) -> PathBuf {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
@@ -172,8 +181,8 @@ pub(super) struct FunctionalJson {
 impl std::fmt::Display for FunctionalJson {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let [a, b] = self.eigenfunctions.each_ref().map(|path| path.display());
-        let k = self.eigenvalues[0].len();
-        write!(f, "{k} x {k}, in {}; eigenfunctions in {a} and {b}", self.path.display())
+        let [rows, columns] = self.eigenvalues.each_ref().map(Vec::len);
+        write!(f, "{rows} x {columns}, in {}; eigenfunctions in {a} and {b}", self.path.display())
     }
 }
 
@@ -183,10 +192,10 @@ pub(super) fn write_functional(
     map: &VertexMap,
     sides: [&MappedFile; 2],
 ) -> Result<FunctionalJson> {
-    let k = map.functional.ncols();
+    let counts = [map.functional.nrows(), map.functional.ncols()];
     write_matrix(path, &map.functional)?;
     let mut values = Vec::new();
-    for (side, name) in sides.iter().zip(["a", "b"]) {
+    for ((side, name), k) in sides.iter().zip(["a", "b"]).zip(counts) {
         let spectrum = side.mapped.shape.spectrum();
         let vectors = spectrum.vectors.columns(0, k);
         let to_repaired = &side.mapped.surface().repaired.input_to_repaired;

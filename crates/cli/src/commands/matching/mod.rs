@@ -13,18 +13,9 @@ use std::process::ExitCode;
 
 use anyhow::{Result, bail};
 use canonform::CorrespondOptions;
-use serde::Serialize;
 
 use crate::args::{Common, MatchArgs};
 use crate::input::expand;
-
-#[derive(Serialize)]
-struct SecondsJson {
-    load: f64,
-    prepare: f64,
-    matching: f64,
-    total: f64,
-}
 
 /// Maps the vertices of one mesh to those of another, or several meshes to each other.
 pub(crate) fn match_meshes(args: &MatchArgs, common: &Common) -> Result<ExitCode> {

@@ -5,14 +5,16 @@ use std::process::ExitCode;
 
 use anyhow::{Result, bail};
 use base::terminal::Bars;
+use canonform::relations::PartOfWhole;
 use canonform::{CorrespondOptions, InputPoint, MappedSurface, PointMap, Side, VertexMap, correspond};
 use serde::Serialize;
 
 use super::files::{
-    DOUBTFUL, FunctionalJson, MappedFile, Pictured, beside, write_colored, write_functional, write_table,
+    DOUBTFUL, FunctionalJson, MappedFile, Pictured, SecondsJson, beside, write_colored, write_functional,
+    write_table,
 };
+use super::known;
 use super::transfer::{Transferred, read_transfer};
-use super::{SecondsJson, known};
 use crate::args::{Common, MAP_FORMATS, MatchArgs, PairArgs};
 use crate::input::read_pair;
 use crate::output::{check_folder, check_format, facts, report};
@@ -187,6 +189,10 @@ fn table(json: &MatchJson) -> String {
         let file = path.as_ref().map_or(String::new(), |path| format!(", in {}", path.display()));
         let agreement = map.agreement.map_or("cannot be told".to_owned(), |value| format!("{value:.2}"));
         rows.push((map.kind.name(), format!("{matched} vertices{file}")));
+        if let Some(PartOfWhole { part, covered, .. }) = &map.part {
+            let [part, whole] = if *part == Side::First { ["first", "second"] } else { ["second", "first"] };
+            rows.push(("  part", format!("the {part} mesh, of {:.0} % of the {whole}", 100.0 * covered)));
+        }
         rows.push(("  distortion", format!("{:.4}", map.distortion)));
         rows.push(("  agreement", agreement));
         let other =

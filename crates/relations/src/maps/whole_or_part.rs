@@ -1,0 +1,75 @@
+//! Maps of surfaces that are both whole, or one a part of the other.
+
+use base::Observer;
+
+use super::known::KnownMap;
+use super::part::part_maps;
+use super::search::{MapOptions, map_wholes};
+use super::shape::MapShape;
+use super::surface_map::SurfaceMap;
+use crate::relation::Side;
+use descriptors::DescriptorError;
+
+/// A surface with a boundary may be a part if its area is such a share of that of the other surface, both in the same unit. A
+/// larger one is mapped as a whole, and of a smaller one too little is known. Safety limits.
+const SHARES: [f64; 2] = [0.25, 0.92];
+
+/// The best maps of the first surface to the second, one for each orientation: the direct one first, unless it distorts
+/// distances clearly more.
+///
+/// If one surface has a boundary and is clearly smaller, it may be a part of the other that a cut has left, if both have the
+/// same unit of length. Then maps of a part are sought, too, and those that change distances less are returned.
+/// [`SurfaceMap::part`] tells which. If anything is `known` of the map, both are mapped as wholes.
+///
+/// Wholes:
+/// 1. Maps of functions are fitted in closed form to the curvature and the wave kernels of both surfaces, once for each
+///    orientation (`ren2018` in `REFERENCES.bib`). Each alignment of the forms maps samples to the nearest ones, too.
+/// 2. All these maps are refined with few samples, by taking in eigenfunctions of higher frequency, there and back (ZoomOut,
+///    `melzi2019`).
+/// 3. Of each orientation, the one that keeps distances and the products of functions best is refined on all samples and
+///    eigenfunctions, and all vertices follow. How much worse the next best is says how certain it is.
+///
+/// Shapes that are alike under a mirror have two maps of small distortion; for others, one of the two has a large
+/// distortion. If a surface cannot be oriented, there is one map.
+///
+/// A part:
+/// 1. Twelve landmarks of the part go one after the other to all landmarks of the whole. What keeps distances, curvature and
+///    areas of discs is kept.
+/// 2. All other samples go where their distances from these fit best, and then all again by their distances from all
+///    landmarks. Of distances that a path through what is missing may shorten, only bounds are known.
+/// 3. Of each orientation, the map that keeps distances, curvature and the products of functions best is taken.
+///
+/// What is `known` of the map enters all of it: landmarks, as heat that is placed at them, and functions are fitted, too; maps
+/// that do not respect the landmarks are dropped; and an initial map is one more start, which comes out unless another map is
+/// clearly better.
+///
+/// # Errors
+/// [`DescriptorError::Linalg`], also if the budget of the observer is exceeded.
+pub fn map_surfaces(
+    a: &MapShape,
+    b: &MapShape,
+    known: &KnownMap,
+    options: &MapOptions,
+    observer: &dyn Observer,
+) -> Result<Vec<SurfaceMap>, DescriptorError> {
+    let of_wholes = map_wholes(a, b, known, options, observer)?;
+    let Some(side) = possible_part(a, b).filter(|_| known.is_empty()) else { return Ok(of_wholes) };
+    let [part, whole] = if side == Side::First { [a, b] } else { [b, a] };
+    let of_part = part_maps(part, whole, side, options, observer)?;
+    let least = |maps: &[SurfaceMap]| maps.iter().map(|map| map.distortion).fold(f64::INFINITY, f64::min);
+    Ok(if least(&of_part) < least(&of_wholes) { of_part } else { of_wholes })
+}
+
+/// The surface that may be a part of the other; `None` if neither has a boundary and is much smaller.
+fn possible_part(a: &MapShape, b: &MapShape) -> Option<Side> {
+    let share = (a.size / b.size).powi(2);
+    let is_part =
+        |shape: &MapShape, share: f64| shape.from_cut.is_some() && share > SHARES[0] && share < SHARES[1];
+    if is_part(a, share) {
+        Some(Side::First)
+    } else if is_part(b, 1.0 / share) {
+        Some(Side::Second)
+    } else {
+        None
+    }
+}
