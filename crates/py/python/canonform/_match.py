@@ -175,7 +175,7 @@ class SurfaceMap(Stored):
         Returns one row for each vertex or face of that surface. Of those that the repair dropped, numbers are NaN or -1, and other
         labels are empty.
         """
-        at = "a" if _side("to", to) == "a" else "b"
+        at = _side("to", to)
         source = self._shapes[1 if at == "a" else 0]
         array = np.asarray(values)
         n = len(array) if array.ndim else 0
@@ -259,7 +259,7 @@ class Match(Stored):
         not to be relied on."""
         a, b = self._shapes
         size = (width, height)
-        pictures = []
+        pictures: list[bytes] = []
         for m in self.maps:
             doubt = np.clip(1.5 - m.vertex_confidence / _DOUBTFUL, 0, 1)
             source = self._colors + (_GREY - self._colors.astype(np.float64)) * doubt[:, None]
