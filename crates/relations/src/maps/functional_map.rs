@@ -28,6 +28,17 @@ pub(super) struct FunctionalMaps {
     pub(super) back: Matrix,
 }
 
+/// Leading eigenfunctions of each surface by which the nearest samples of a vertex are found. A safety limit.
+const COARSE: usize = 40;
+
+/// Two surfaces in one space, a row for each vertex.
+pub(super) struct Placed {
+    pub(super) on_a: Matrix,
+    pub(super) on_b: Matrix,
+    /// Leading columns, by which [`Cells`](super::nearest_rows::Cells) are found.
+    pub(super) coarse: Vec<usize>,
+}
+
 /// The coefficients, by least squares over evenly spread samples, of as many functions in the first eigenfunctions.
 pub(super) fn coefficients(eigenfunctions: &Matrix, functions: &Matrix) -> Matrix {
     let own = eigenfunctions.columns(0, functions.ncols());
@@ -72,6 +83,18 @@ impl FunctionalMaps {
     pub(super) fn places_b(&self, rows: &Matrix) -> Matrix {
         let own = rows.columns(0, self.k());
         beside(own * self.forth.transpose(), own.into_owned())
+    }
+
+    /// All vertices of both surfaces, by their eigenfunctions.
+    pub(super) fn placed(&self, [a, b]: [&Matrix; 2]) -> Placed {
+        let k = self.k();
+        let coarse = (0..k.min(COARSE)).flat_map(|j| [j, k + j]).collect();
+        Placed { on_a: self.places_a(a), on_b: self.places_b(b), coarse }
+    }
+
+    /// A map of functions, and its transpose for the one back.
+    pub(super) fn of_one(forth: &Matrix) -> Self {
+        Self { back: forth.transpose(), forth: forth.clone() }
     }
 
     /// The maps of samples that follow.

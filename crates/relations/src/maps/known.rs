@@ -55,7 +55,7 @@ impl KnownMap {
         let all: Vec<[Operators; 2]> = both.collect();
         let all = all.iter().map(|[x, y]| [x, y]).chain([[&on_a, &on_b]]);
         let fits = all.flat_map(|[x, y]| [1.0, -1.0].into_iter().flat_map(move |sign| fitted(x, y, sign)));
-        fits.map(|forth| FunctionalMaps { back: forth.transpose(), forth }.sample_maps(pair)).collect()
+        fits.map(|forth| FunctionalMaps::of_one(&forth).sample_maps(pair)).collect()
     }
 
     /// The functions known on one side: heat that was placed at the landmarks, and those that were given.

@@ -6,10 +6,9 @@ use rayon::prelude::*;
 use serde::Serialize;
 use surface::VertexId;
 
-use super::functional_map::coefficients;
+use super::functional_map::{FunctionalMaps, Placed, coefficients};
 use super::local::vertex_confidence;
 use super::nearest_rows::Cells;
-use super::points::Placed;
 use super::search::codistortion;
 use super::shape::MapShape;
 use super::surface_map::{MapKind, SurfaceMap};
@@ -150,7 +149,8 @@ impl<'a> Network<'a> {
     fn both(&self, map: impl Sync + Fn(usize) -> &'a SurfaceMap) -> Vec<Both> {
         let one = |(p, &[i, j]): (usize, &[usize; 2])| {
             let (a, b, found) = (self.shapes[i], self.shapes[j], map(p));
-            let Placed { on_a, on_b, coarse } = Placed::new([a, b], &found.functional);
+            let Placed { on_a, on_b, coarse } =
+                FunctionalMaps::of_one(&found.functional).placed([&a.vectors, &b.vectors]);
             let near_a = Cells { rows: &on_a, coarse: &coarse, centres: &a.samples, members: &a.cells };
             let back = near_a.nearest(&on_b);
             Both { forth: found.vertices.iter().map(|v| v.0).collect(), back }

@@ -4,9 +4,8 @@ use linalg::Matrix;
 use rayon::prelude::*;
 use surface::{FaceId, SurfacePoint, Topology, VertexId};
 
-use super::functional_map::FunctionalMaps;
+use super::functional_map::{FunctionalMaps, Placed};
 use super::nearest_rows::Cells;
-use super::search::COARSE;
 use super::shape::MapShape;
 use crate::relation::Side;
 
@@ -43,7 +42,7 @@ pub fn mapped_points(
     elements: MapElements<'_>,
     target: &Topology,
 ) -> Vec<SurfacePoint> {
-    let Placed { on_a, on_b, coarse } = Placed::new([a, b], functional);
+    let Placed { on_a, on_b, coarse } = FunctionalMaps::of_one(functional).placed([&a.vectors, &b.vectors]);
     let (own, other, shape) = match of {
         Side::First => (on_a, on_b, b),
         Side::Second => (on_b, on_a, a),
@@ -66,25 +65,6 @@ pub fn mapped_points(
         nearest_point(&queries.as_slice()[i * n..(i + 1) * n], &rows, target, starts)
     };
     starts.into_par_iter().enumerate().map(one).collect()
-}
-
-/// Two surfaces in one space, a row for each vertex.
-pub(super) struct Placed {
-    pub(super) on_a: Matrix,
-    pub(super) on_b: Matrix,
-    /// Leading columns, see [`Cells::coarse`].
-    pub(super) coarse: Vec<usize>,
-}
-
-impl Placed {
-    /// By a map of functions, whose transpose stands for the one back.
-    pub(super) fn new([a, b]: [&MapShape; 2], functional: &Matrix) -> Self {
-        let k = functional.ncols();
-        assert_eq!(functional.nrows(), k, "a functional map of wholes");
-        let maps = FunctionalMaps { back: functional.transpose(), forth: functional.clone() };
-        let coarse = (0..k.min(COARSE)).flat_map(|j| [j, k + j]).collect();
-        Self { on_a: maps.places_a(&a.vectors), on_b: maps.places_b(&b.vectors), coarse }
-    }
 }
 
 /// The nearest point of the faces around some vertices, and on from there. `rows` has a column for each vertex.

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use surface::VertexId;
 
 use super::curvature::mismatch;
-use super::functional_map::{FunctionalMaps, SampleMaps, SampledPair, schedule, zoom_out};
+use super::functional_map::{FunctionalMaps, Placed, SampleMaps, SampledPair, schedule, zoom_out};
 use super::known::KnownMap;
 use super::local::vertex_confidence;
 use super::nearest_rows::Cells;
@@ -37,9 +37,6 @@ impl Default for MapOptions {
 
 /// Maps agree with an orientation beyond this. A safety limit: it is near 1 or -1 for smooth maps, and 0 for random ones.
 const AGREEMENT: f64 = 0.1;
-
-/// Leading eigenfunctions of each surface by which the nearest samples of a vertex are found. A safety limit.
-pub(super) const COARSE: usize = 40;
 
 /// Samples by which all starts are refined a little, and eigenfunctions of their last step: enough to tell which are the same.
 const ROUGH: usize = 200;
@@ -138,6 +135,9 @@ pub(super) fn kind_of(agreement: Option<f64>) -> MapKind {
 /// What is `known` of the map enters all of it: landmarks, as heat that is placed at them, and functions are fitted, too; maps
 /// that do not respect the landmarks are dropped; and an initial map is one more start, which comes out unless another map is
 /// clearly better.
+///
+/// # Errors
+/// [`DescriptorError::Linalg`], also if the budget of the observer is exceeded.
 pub fn map_wholes(
     a: &MapShape,
     b: &MapShape,
@@ -401,7 +401,7 @@ impl MapSearch<'_> {
 /// Maps of the first samples that follow from fitted maps of functions.
 fn fitted_starts(pair: SampledPair<'_>, [a, b]: [&MapShape; 2], sign: f64) -> Vec<SampleMaps> {
     let fitted = a.operators.iter().zip(&b.operators).flat_map(|(x, y)| fitted(x, y, sign));
-    fitted.map(|forth| FunctionalMaps { back: forth.transpose(), forth }.sample_maps(pair)).collect()
+    fitted.map(|forth| FunctionalMaps::of_one(&forth).sample_maps(pair)).collect()
 }
 
 /// Maps each of the first samples to the nearest one in the aligned forms.
@@ -448,9 +448,7 @@ impl Candidate {
         b: &MapShape,
         confidence: f64,
     ) -> Result<SurfaceMap, DescriptorError> {
-        let (on_a, on_b) = (self.functional.places_a(&a.vectors), self.functional.places_b(&b.vectors));
-        let k = self.functional.k();
-        let coarse: Vec<usize> = (0..k.min(COARSE)).flat_map(|j| [j, k + j]).collect();
+        let Placed { on_a, on_b, coarse } = self.functional.placed([&a.vectors, &b.vectors]);
         let near_b = Cells { rows: &on_b, coarse: &coarse, centres: &b.samples, members: &b.cells };
         let near_a = Cells { rows: &on_a, coarse: &coarse, centres: &a.samples, members: &a.cells };
         let forth = near_b.nearest(&on_a);

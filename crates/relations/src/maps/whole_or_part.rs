@@ -21,16 +21,7 @@ const SHARES: [f64; 2] = [0.25, 0.92];
 /// same unit of length. Then maps of a part are sought, too, and those that change distances less are returned.
 /// [`SurfaceMap::part`] tells which. If anything is `known` of the map, both are mapped as wholes.
 ///
-/// Wholes:
-/// 1. Maps of functions are fitted in closed form to the curvature and the wave kernels of both surfaces, once for each
-///    orientation (`ren2018` in `REFERENCES.bib`). Each alignment of the forms maps samples to the nearest ones, too.
-/// 2. All these maps are refined with few samples, by taking in eigenfunctions of higher frequency, there and back (ZoomOut,
-///    `melzi2019`).
-/// 3. Of each orientation, the one that keeps distances and the products of functions best is refined on all samples and
-///    eigenfunctions, and all vertices follow. How much worse the next best is says how certain it is.
-///
-/// Shapes that are alike under a mirror have two maps of small distortion; for others, one of the two has a large
-/// distortion. If a surface cannot be oriented, there is one map.
+/// [`map_wholes`] says how wholes are mapped, and what is done with what is `known`.
 ///
 /// A part:
 /// 1. Twelve landmarks of the part go one after the other to all landmarks of the whole. What keeps distances, curvature and
@@ -38,10 +29,6 @@ const SHARES: [f64; 2] = [0.25, 0.92];
 /// 2. All other samples go where their distances from these fit best, and then all again by their distances from all
 ///    landmarks. Of distances that a path through what is missing may shorten, only bounds are known.
 /// 3. Of each orientation, the map that keeps distances, curvature and the products of functions best is taken.
-///
-/// What is `known` of the map enters all of it: landmarks, as heat that is placed at them, and functions are fitted, too; maps
-/// that do not respect the landmarks are dropped; and an initial map is one more start, which comes out unless another map is
-/// clearly better.
 ///
 /// # Errors
 /// [`DescriptorError::Linalg`], also if the budget of the observer is exceeded.

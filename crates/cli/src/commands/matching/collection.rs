@@ -76,19 +76,11 @@ pub(super) fn match_all(
         path: shape.path.clone(),
         n_vertices: side.surface().n_input_vertices(),
     };
-    let load: f64 =
-        mapped.iter().map(|side| side.surface().load_seconds + side.surface().repair_seconds).sum();
-    let prepare: f64 = mapped.iter().map(|side| side.seconds).sum();
     let json = CollectionJson {
         meshes: shapes.iter().zip(&mapped).map(mesh).collect(),
         pairs,
         cycles: found.cycles,
-        seconds: SecondsJson {
-            load,
-            prepare,
-            matching: found.seconds,
-            total: load + prepare + found.seconds,
-        },
+        seconds: SecondsJson::new(mapped.iter(), found.seconds),
     };
     report(common, &json, table)
 }

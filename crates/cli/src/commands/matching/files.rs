@@ -29,10 +29,20 @@ pub(super) struct MappedFile {
 /// How long the parts of the work took.
 #[derive(Serialize)]
 pub(super) struct SecondsJson {
-    pub(super) load: f64,
-    pub(super) prepare: f64,
-    pub(super) matching: f64,
-    pub(super) total: f64,
+    load: f64,
+    prepare: f64,
+    matching: f64,
+    total: f64,
+}
+
+impl SecondsJson {
+    /// Of surfaces that were read and prepared, and then mapped in `matching` seconds.
+    pub(super) fn new<'a>(sides: impl Iterator<Item = &'a MappedSurface> + Clone, matching: f64) -> Self {
+        let surfaces = sides.clone().map(MappedSurface::surface);
+        let load = surfaces.map(|surface| surface.load_seconds + surface.repair_seconds).sum();
+        let prepare = sides.map(|side| side.seconds).sum();
+        Self { load, prepare, matching, total: load + prepare + matching }
+    }
 }
 
 /// The path of a further file: `map-mirrored.npy` beside `map.npy`.

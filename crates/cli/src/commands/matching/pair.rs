@@ -99,9 +99,6 @@ pub(super) fn match_pair(
     let output = args.output.as_deref().filter(|_| transfer.is_none()).zip(format.as_deref());
     let maps = found.maps.into_iter().enumerate();
     let maps = maps.map(|(i, map)| written(i, map, args.points, output, sides)).collect::<Result<_>>()?;
-    let surfaces = [a.mapped.surface(), b.mapped.surface()];
-    let load = surfaces.map(|surface| surface.load_seconds + surface.repair_seconds).iter().sum();
-    let prepare = a.mapped.seconds + b.mapped.seconds;
     let json = MatchJson {
         a: pair.a,
         b: pair.b,
@@ -111,12 +108,7 @@ pub(super) fn match_pair(
         source,
         transfer,
         functional,
-        seconds: SecondsJson {
-            load,
-            prepare,
-            matching: found.seconds,
-            total: load + prepare + found.seconds,
-        },
+        seconds: SecondsJson::new([&a.mapped, &b.mapped].into_iter(), found.seconds),
     };
     report(common, &json, table)
 }
