@@ -22,9 +22,9 @@ const ARCS: f64 = 1.5;
 /// use canonform_relations::MeshGeometry;
 /// use mesh::shapes;
 ///
-/// let [cube, finer, ball] = [shapes::cube(2), shapes::cube(5), shapes::icosphere(3)]
+/// let [cube, finer, rod] = [shapes::cube(2), shapes::cube(5), shapes::cylinder(24, 4, 1.0, 2.0)]
 ///     .map(|mesh| MeshGeometry::new(&mesh, None).unwrap().invariants());
-/// assert!(cube.may_be_copy_of(&finer) && !cube.may_be_copy_of(&ball));
+/// assert!(cube.may_be_copy_of(&finer) && !cube.may_be_copy_of(&rod));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfaceInvariants {
