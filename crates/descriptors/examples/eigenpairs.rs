@@ -9,7 +9,7 @@ use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
 
-use linalg::{SparseSymmetric, smallest_eigenpairs};
+use linalg::{GeneralizedEigen, SparseSymmetric, smallest_eigenpairs};
 use mesh::{RepairOptions, io, repair};
 use surface::laplacian::Laplacian;
 
@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let stiffness = SparseSymmetric::from_entries(laplacian.n_vertices(), laplacian.stiffness_entries());
     let assembly = start.elapsed().as_secs_f64();
     let start = Instant::now();
-    let eigen = smallest_eigenpairs(&stiffness, &masses, pairs.parse()?, &())?;
+    let eigen = smallest_eigenpairs(&stiffness, &masses, pairs.parse()?, GeneralizedEigen::ACCURATE, &())?;
     let seconds = start.elapsed().as_secs_f64();
 
     let folder = Path::new(folder);

@@ -26,7 +26,15 @@ pub struct LaplaceSpectrum {
 
 impl LaplaceSpectrum {
     /// Number of eigenpairs that the signatures of a surface use.
-    pub const DESCRIBING: usize = 60;
+    pub(crate) const DESCRIBING: usize = 60;
+
+    /// The eigenpairs that the signatures of a surface use, as accurate as these need them.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn describing(mesh: &IntrinsicMesh, observer: &dyn Observer) -> Result<Self, DescriptorError> {
+        Self::found(mesh, Self::DESCRIBING, GeneralizedEigen::AVERAGED, observer)
+    }
 
     /// The `m` smallest eigenpairs, including the constant function; fewer on a surface with fewer vertices.
     ///
@@ -41,6 +49,15 @@ impl LaplaceSpectrum {
     /// [`DescriptorError::NoExtent`] for a surface without area; [`DescriptorError::Linalg`], also if the
     /// budget of the observer is exceeded.
     pub fn new(mesh: &IntrinsicMesh, m: usize, observer: &dyn Observer) -> Result<Self, DescriptorError> {
+        Self::found(mesh, m, GeneralizedEigen::ACCURATE, observer)
+    }
+
+    fn found(
+        mesh: &IntrinsicMesh,
+        m: usize,
+        tolerance: f64,
+        observer: &dyn Observer,
+    ) -> Result<Self, DescriptorError> {
         observer.budget().check().map_err(LinalgError::from)?;
         let laplacian = Laplacian::new(mesh);
         let mut masses = laplacian.masses();
@@ -50,7 +67,8 @@ impl LaplaceSpectrum {
         }
         masses.iter_mut().for_each(|mass| *mass /= area);
         let stiffness = SparseSymmetric::from_entries(mesh.n_vertices(), laplacian.stiffness_entries());
-        let GeneralizedEigen { values, vectors } = smallest_eigenpairs(&stiffness, &masses, m, observer)?;
+        let GeneralizedEigen { values, vectors } =
+            smallest_eigenpairs(&stiffness, &masses, m, tolerance, observer)?;
         let corrected = corrected(&laplacian, area, &values, &vectors);
         Ok(Self { values, corrected, vectors, masses, area: area * laplacian.metric().unit.powi(2) })
     }

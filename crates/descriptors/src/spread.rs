@@ -12,33 +12,103 @@ pub(crate) struct Spread {
     pub(crate) covering: f64,
 }
 
+/// The points whose nearest sample is the same.
+struct Cell {
+    members: Vec<usize>,
+    /// The member that is farthest from the sample, the first in case of a tie, and the square of its distance.
+    farthest: (usize, f64),
+}
+
+impl Cell {
+    fn new(members: Vec<usize>, gaps: &[f64]) -> Self {
+        let farther = |a: (usize, f64), i: &usize| {
+            let b = (*i, gaps[*i]);
+            if b.1 > a.1 || (b.1 == a.1 && b.0 < a.0) { b } else { a }
+        };
+        let farthest = members.iter().fold((usize::MAX, f64::NEG_INFINITY), farther);
+        Self { members, farthest }
+    }
+}
+
 /// Chooses up to `n` of the points, the one farthest from the origin first; fewer if points coincide.
 ///
-/// Cost `O(p n)`.
+/// A new sample takes points from cells only whose own sample is less than twice as far away as their farthest member, so
+/// that each point is looked at a few times.
 pub(crate) fn spread(points: &[Point3<f64>], n: usize) -> Spread {
-    let mut gap: Vec<f64> = points.iter().map(|p| p.coords.norm_squared()).collect();
+    let sq_distance = |i: usize, j: usize| (points[i] - points[j]).norm_squared();
+    let from_origin: Vec<f64> = points.iter().map(|p| p.coords.norm_squared()).collect();
+    let whole = Cell::new((0..points.len()).collect(), &from_origin);
     let mut nearest = vec![0; points.len()];
-    let mut samples = Vec::with_capacity(n.min(points.len()));
+    if n == 0 || points.is_empty() {
+        return Spread { samples: Vec::new(), nearest, covering: whole.farthest.1.max(0.0).sqrt() };
+    }
+    let mut samples = vec![if whole.farthest.0 < points.len() { whole.farthest.0 } else { 0 }];
+    let mut gaps: Vec<f64> = (0..points.len()).map(|i| sq_distance(i, samples[0])).collect();
+    let mut cells = vec![Cell::new(whole.members, &gaps)];
     while samples.len() < n.min(points.len()) {
-        let (mut next, mut widest) = (0, f64::NEG_INFINITY);
-        for (i, g) in gap.iter().enumerate() {
-            if *g > widest {
-                (next, widest) = (i, *g);
-            }
-        }
-        let first = samples.is_empty();
-        if !first && widest == 0.0 {
+        let none = (usize::MAX, f64::NEG_INFINITY);
+        let (next, widest) = cells
+            .iter()
+            .map(|cell| cell.farthest)
+            .fold(none, |a, b| if b.1 > a.1 || (b.1 == a.1 && b.0 < a.0) { b } else { a });
+        if widest.is_nan() || widest <= 0.0 {
             break;
         }
-        let at = points[next];
-        for ((g, owner), p) in gap.iter_mut().zip(&mut nearest).zip(points) {
-            let d = (p - at).norm_squared();
-            if first || d < *g {
-                (*g, *owner) = (d, samples.len());
+        let mut taken = Vec::new();
+        for (cell, sample) in cells.iter_mut().zip(&samples) {
+            // By the triangle inequality, nearer members are nearer to their own sample.
+            if sq_distance(*sample, next) >= 4.0 * cell.farthest.1 {
+                continue;
+            }
+            let before = taken.len();
+            cell.members.retain(|i| {
+                let sq = sq_distance(*i, next);
+                let is_nearer = sq < gaps[*i];
+                if is_nearer {
+                    gaps[*i] = sq;
+                    taken.push(*i);
+                }
+                !is_nearer
+            });
+            if taken.len() > before {
+                *cell = Cell::new(std::mem::take(&mut cell.members), &gaps);
             }
         }
+        taken.iter().for_each(|i| nearest[*i] = samples.len());
+        cells.push(Cell::new(taken, &gaps));
         samples.push(next);
     }
-    let covering = gap.iter().copied().fold(0.0, f64::max).sqrt();
+    let covering = gaps.iter().copied().fold(0.0, f64::max).sqrt();
     Spread { samples, nearest, covering }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_sample_is_the_point_farthest_from_those_before_it() {
+        let wave = |i: usize, f: f64| (f * i as f64).sin();
+        let mut points: Vec<_> =
+            (0..600).map(|i| Point3::new(wave(i, 0.7), 2.0 * wave(i, 1.3), wave(i, 2.9))).collect();
+        // Ties, and points that coincide.
+        points.extend((0..64).map(|i| Point3::new(f64::from(i / 16), f64::from(i % 4), 0.5)));
+        points.extend_from_within(..30);
+        let found = spread(&points, 400);
+        let mut gaps = vec![f64::INFINITY; points.len()];
+        for (k, sample) in found.samples.iter().enumerate() {
+            let widest = gaps.iter().copied().fold(0.0, f64::max);
+            assert!(k == 0 || *sample == gaps.iter().position(|gap| *gap == widest).unwrap(), "{k}");
+            for (i, gap) in gaps.iter_mut().enumerate() {
+                *gap = gap.min((points[i] - points[*sample]).norm_squared());
+            }
+        }
+        assert_eq!(found.samples.len(), 400);
+        assert_eq!(found.covering, gaps.iter().copied().fold(0.0, f64::max).sqrt());
+        for (i, (gap, nearest)) in gaps.iter().zip(&found.nearest).enumerate() {
+            assert_eq!((points[i] - points[found.samples[*nearest]]).norm_squared(), *gap);
+        }
+        assert_eq!(spread(&points, 10_000).samples.len(), points.len() - 30 - 48);
+        assert!(spread(&[], 5).samples.is_empty());
+    }
 }

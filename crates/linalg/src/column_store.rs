@@ -107,18 +107,29 @@ impl ColumnStore {
         matches!(self.backing, Backing::File(_))
     }
 
+    /// Makes room in memory for `more` columns, so that adding them moves none.
+    ///
+    /// # Errors
+    /// [`LinalgError::Exceeded`] if they do not fit into memory.
+    pub fn reserve(&mut self, more: usize, observer: &dyn Observer) -> Result<(), LinalgError> {
+        if let Backing::Memory(values) = &mut self.backing {
+            let needed = self.n_rows.saturating_mul(self.n_columns + more).saturating_mul(BYTES);
+            observer.budget().check_memory(needed)?;
+            let more = self.n_rows.saturating_mul(more);
+            values.try_reserve_exact(more).map_err(|_| Exceeded::Allocation { needed })?;
+        }
+        Ok(())
+    }
+
     /// Appends `more` columns of zeros and returns the places to fill them in, from any thread.
     ///
     /// # Errors
     /// [`LinalgError::Exceeded`] if they do not fit into memory.
     pub fn grow(&mut self, more: usize, observer: &dyn Observer) -> Result<Vec<ColumnSlot<'_>>, LinalgError> {
+        self.reserve(more, observer)?;
         let (n_rows, before) = (self.n_rows, self.n_columns);
         if let Backing::Memory(values) = &mut self.backing {
-            let needed = n_rows.saturating_mul(before + more).saturating_mul(BYTES);
-            observer.budget().check_memory(needed)?;
-            let more = n_rows.saturating_mul(more);
-            values.try_reserve_exact(more).map_err(|_| Exceeded::Allocation { needed })?;
-            values.resize(values.len() + more, 0.0);
+            values.resize(values.len() + n_rows.saturating_mul(more), 0.0);
         }
         self.n_columns += more;
         Ok(match &mut self.backing {

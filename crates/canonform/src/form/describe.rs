@@ -128,7 +128,7 @@ impl MeasuredSurface {
         options.validate()?;
         let form = embedded.form(prepared)?;
         let reduced = form.reduced(options.points);
-        let spectrum = LaplaceSpectrum::new(prepared.intrinsic(), LaplaceSpectrum::DESCRIBING, observer)?;
+        let spectrum = LaplaceSpectrum::describing(prepared.intrinsic(), observer)?;
         observer.budget().check()?;
         let signatures = vec![
             moment_signature(&form),

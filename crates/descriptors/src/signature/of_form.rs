@@ -59,13 +59,14 @@ const BINS: usize = SignatureKind::D2.n_values();
 ///
 /// * Invariant to bending, rigid motions, mirror images, the order of vertices and, if the form knows its area, scale;
 ///   changes with the triangulation as the form does.
-/// * Cost `O(p² log p)` for p points: use a [reduced](CanonicalForm::reduced) form.
+/// * Cost `O(p²)` for p points: use a [reduced](CanonicalForm::reduced) form.
 pub fn d2_histogram(form: &CanonicalForm) -> Signature {
     let unit = form.area().map_or_else(|| form.spread(), f64::sqrt);
-    let points: Vec<_> = form.points().iter().zip(form.weights()).collect();
+    let points: Vec<_> = form.points().iter().map(|p| p / unit).zip(form.weights()).collect();
+    let points = &points;
     let pairs = points
         .iter()
         .enumerate()
-        .flat_map(|(i, (p, a))| points[..i].iter().map(move |(q, b)| ((*p - *q).norm() / unit, *a * *b)));
-    Signature { kind: SignatureKind::D2, values: quantiles(pairs.collect(), BINS) }
+        .flat_map(|(i, (p, a))| points[..i].iter().map(move |(q, b)| ((p - q).norm(), *a * *b)));
+    Signature { kind: SignatureKind::D2, values: quantiles(pairs, BINS) }
 }

@@ -60,9 +60,8 @@ fn in_space(mesh: &TriMesh) -> Vec<f64> {
     let centred = TriMesh { positions: centred, faces: mesh.faces.clone() };
     let mut values = vec![centred.signed_volume().abs().cbrt()];
     values.extend(axes.iter());
-    values.extend(
-        quantiles(distances(&centred), DISTANCES).into_iter().map(|distance| OF_DISTANCES * distance),
-    );
+    let distances = quantiles(distances(&centred).iter().copied(), DISTANCES);
+    values.extend(distances.into_iter().map(|distance| OF_DISTANCES * distance));
     values.extend(powers(&centred)[2..].iter().map(|power| OF_NORMALS * power));
     values.iter_mut().filter(|value| !value.is_finite()).for_each(|value| *value = 0.0);
     values

@@ -133,7 +133,7 @@ fn filters(spectrum: &LaplaceSpectrum, n: usize, weight: impl Fn(usize, f64) -> 
 fn distributions(spectrum: &LaplaceSpectrum, filters: &Matrix, bins: usize) -> Vec<f64> {
     let densities = spectrum.vectors.map(|x| x * x) * filters;
     let one = |column: nalgebra::DVectorView<'_, f64>| {
-        quantiles(column.iter().copied().zip(spectrum.masses.iter().copied()).collect(), bins)
+        quantiles(column.iter().copied().zip(spectrum.masses.iter().copied()), bins)
     };
     densities.column_iter().flat_map(one).collect()
 }

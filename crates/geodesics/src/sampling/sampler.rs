@@ -141,6 +141,7 @@ impl<'a> Sampler<'a> {
     /// [`GeodesicError::Disconnected`] if a vertex cannot be reached.
     pub fn extend_to(&mut self, n: usize) -> Result<(), GeodesicError> {
         let n = n.min(self.solver.n_vertices());
+        self.store.reserve(n.saturating_sub(self.landmarks.len()), &self.solver.budget())?;
         if rayon::current_num_threads() > 1
             && let Some(pruned) = self.solver.pruned()
         {

@@ -58,7 +58,13 @@ fn full_cur(problem: &Problem, dim: usize) -> Result<Embedding, NmdsError> {
 }
 
 fn with_weight(problem: &Problem, dim: usize, mu: f64) -> Result<Embedding, NmdsError> {
-    let basis = smallest_eigenpairs(&problem.stiffness, &problem.masses, problem.masses.len(), &())?;
+    let basis = smallest_eigenpairs(
+        &problem.stiffness,
+        &problem.masses,
+        problem.masses.len(),
+        linalg::GeneralizedEigen::ACCURATE,
+        &(),
+    )?;
     let basis = SpectralBasis { values: &basis.values, vectors: &basis.vectors, masses: &problem.masses };
     spectral(&problem.samples, &basis, &SpectralOptions { mu, dim })
 }
