@@ -39,6 +39,9 @@ const MECHANICAL: f64 = 0.15;
 const LEAST_WIDE: usize = 2;
 const WIDE: usize = 6;
 
+/// A flat whose area differs by less than this share from that of a triangle is one. A tolerance of rounding.
+const OUTLINE: f64 = 1e-3;
+
 /// Area vectors of a body add up to zero, those of a sheet to its area. Below this share a surface is a body. A convention: a
 /// box without a lid has a fifth, half of a cylinder .6.
 const MOST_OPEN: f64 = 0.4;
@@ -108,6 +111,20 @@ struct Flat {
     area: f64,
 }
 
+impl Flat {
+    /// Whether its outline is a triangle: the one between the three vertices that are farthest out.
+    fn is_triangle(&self, mesh: &TriMesh) -> bool {
+        let corners = || self.faces.iter().flat_map(|&f| mesh.triangle(f));
+        let farthest = |sq: &dyn Fn(Point3<f64>) -> f64| corners().max_by(|p, q| sq(*p).total_cmp(&sq(*q)));
+        let Some(start) = corners().next() else { return true };
+        let Some(a) = farthest(&|p| (p - start).norm_squared()) else { return true };
+        let Some(b) = farthest(&|p| (p - a).norm_squared()) else { return true };
+        let Some(c) = farthest(&|p| (p - a).cross(&(b - a)).norm_squared()) else { return true };
+        let hull = 0.5 * (b - a).cross(&(c - a)).norm() / mesh.area();
+        (hull - self.area).abs() < OUTLINE * self.area
+    }
+}
+
 /// An edge between two flats.
 struct Crease {
     flats: [usize; 2],
@@ -159,15 +176,13 @@ impl SmoothRegions {
         let all: Vec<SmoothRegion> = members
             .map(|members| {
                 let region = region(mesh, &flats, &members);
-                // A single triangle is a plane by itself; organic meshes of few triangles have many.
-                let is_plain = match region.shape {
-                    RegionShape::Plane { .. } => members.len() == 1 && flats[members[0]].faces.len() > 1,
-                    RegionShape::Cylinder { .. } => true,
-                    RegionShape::Curved => false,
-                };
+                // A triangle is a plane by itself, divided or not; organic meshes of few triangles have many.
+                let flat = &flats[members[0]];
+                let is_plane = matches!(region.shape, RegionShape::Plane { .. }) && !flat.is_triangle(mesh);
+                let is_plain = is_plane || matches!(region.shape, RegionShape::Cylinder { .. });
                 if is_plain && region.area > LARGE {
                     plain += region.area;
-                    wide += usize::from(flats[members[0]].faces.len() >= WIDE);
+                    wide += usize::from(is_plane && flat.faces.len() >= WIDE);
                 }
                 region
             })
