@@ -114,11 +114,7 @@ impl ColumnStore {
     pub fn grow(&mut self, more: usize, observer: &dyn Observer) -> Result<Vec<ColumnSlot<'_>>, LinalgError> {
         let (n_rows, before) = (self.n_rows, self.n_columns);
         if let Backing::Memory(values) = &mut self.backing {
-            let needed = n_rows.saturating_mul(before + more).saturating_mul(BYTES);
-            observer.budget().check_memory(needed)?;
-            let more = n_rows.saturating_mul(more);
-            values.try_reserve_exact(more).map_err(|_| Exceeded::Allocation { needed })?;
-            values.resize(values.len() + more, 0.0);
+            observer.budget().extend(values, n_rows.saturating_mul(more))?;
         }
         self.n_columns += more;
         Ok(match &mut self.backing {
