@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     std::fs::create_dir_all(folder)?;
     let options = ArticulatedOptions { n_vertices, ..ArticulatedOptions::default() };
     for pose in 0..poses.parse()? {
-        let made = articulated_at_rest(Family::David, 0, pose, &options)?;
+        let made = articulated_at_rest(Family::David, 0, pose, &options, &())?;
         io::write(&folder.join(format!("{}.off", made.shape.name)), &made.shape.mesh)?;
         io::write(&folder.join(format!("{}-rest.off", made.shape.name)), &made.rest)?;
     }

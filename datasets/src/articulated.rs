@@ -1,5 +1,6 @@
 //! The built-in dataset: labelled shapes of articulated families.
 
+use base::{Budget, Observer};
 use mesh::TriMesh;
 use nalgebra::Point3;
 use rayon::prelude::*;
@@ -191,13 +192,13 @@ pub struct RestedShape {
 /// Generates a shape as [`articulated_body`] does, with the surface at rest: the ground truth of maps between shapes.
 ///
 /// # Errors
-/// As [`articulated()`].
+/// As [`articulated()`], and [`DatasetError::Exceeded`] when the budget of the observer is.
 ///
 /// ```
 /// use canonform_datasets::{ArticulatedOptions, Family, articulated_at_rest};
 ///
 /// let options = ArticulatedOptions { n_vertices: 1000, ..Default::default() };
-/// let found = articulated_at_rest(Family::Cat, 0, 3, &options)?;
+/// let found = articulated_at_rest(Family::Cat, 0, 3, &options, &())?;
 /// assert_eq!(found.rest.faces, found.shape.mesh.faces);
 /// assert_ne!(found.rest.positions, found.shape.mesh.positions);
 /// # Ok::<(), canonform_datasets::DatasetError>(())
@@ -207,9 +208,10 @@ pub fn articulated_at_rest(
     body: usize,
     pose: usize,
     options: &ArticulatedOptions,
+    observer: &dyn Observer,
 ) -> Result<RestedShape, DatasetError> {
     options.validate()?;
-    rested(family, &family.model(), [body, pose], options)
+    rested(family, &family.model(), [body, pose], options, &observer.budget())
 }
 
 /// Poses that have streams of random numbers of their own for every body.
@@ -221,7 +223,7 @@ fn shape(
     numbers: [usize; 2],
     options: &ArticulatedOptions,
 ) -> Result<LabeledShape, DatasetError> {
-    Ok(rested(family, model, numbers, options)?.shape)
+    Ok(rested(family, model, numbers, options, &Budget::unlimited())?.shape)
 }
 
 fn rested(
@@ -229,6 +231,7 @@ fn rested(
     model: &BodyModel,
     [body, pose]: [usize; 2],
     options: &ArticulatedOptions,
+    budget: &Budget,
 ) -> Result<RestedShape, DatasetError> {
     let ArticulatedOptions { seed, n_vertices } = *options;
     let name = match body {
@@ -236,7 +239,7 @@ fn rested(
         _ => format!("{}-body{body}-pose{pose}", family.name()),
     };
     let stream = |purpose| Stream::new(seed, family as usize, body * POSES_PER_BODY + pose, purpose);
-    let surface = rest_surface(model, n_vertices, &mut stream(Purpose::Lattice))
+    let surface = rest_surface(model, n_vertices, &mut stream(Purpose::Lattice), budget)?
         .ok_or_else(|| DatasetError::NoSurface { shape: name.clone(), n_vertices, seed })?;
     let mut posed = posed_skeleton(model, pose, &mut stream(Purpose::Pose));
     if body > 0 {
@@ -334,7 +337,10 @@ mod tests {
     fn poses_of_a_family_are_nearly_isometric() {
         for family in Family::all() {
             let model = family.model();
-            let surface = rest_surface(&model, 2000, &mut Stream::new(5, 0, 0, Purpose::Lattice)).unwrap();
+            let surface =
+                rest_surface(&model, 2000, &mut Stream::new(5, 0, 0, Purpose::Lattice), &Budget::unlimited())
+                    .unwrap()
+                    .unwrap();
             let positions = |pose: usize| {
                 let mut stream = Stream::new(1, family as usize, pose, Purpose::Pose);
                 posed_positions(&surface, &posed_skeleton(&model, pose, &mut stream), scale(&model))
@@ -357,7 +363,10 @@ mod tests {
     #[test]
     fn people_are_nearly_isometric_and_hardly_intersect_where_they_touch() {
         let model = Family::Person.model();
-        let surface = rest_surface(&model, 2000, &mut Stream::new(5, 0, 0, Purpose::Lattice)).unwrap();
+        let surface =
+            rest_surface(&model, 2000, &mut Stream::new(5, 0, 0, Purpose::Lattice), &Budget::unlimited())
+                .unwrap()
+                .unwrap();
         let posed = |seed, pose| {
             posed_skeleton(&model, pose, &mut Stream::new(seed, Family::Person as usize, pose, Purpose::Pose))
         };

@@ -27,4 +27,7 @@ pub enum DatasetError {
         /// The seed.
         seed: u64,
     },
+    /// A limit was exceeded, or the work was cancelled.
+    #[error(transparent)]
+    Exceeded(#[from] base::Exceeded),
 }

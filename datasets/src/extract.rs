@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use base::{Budget, Exceeded};
 use nalgebra::{Matrix3, Point3, Vector3};
 use rayon::prelude::*;
 use surface::VertexId;
@@ -50,13 +51,17 @@ struct Leaf {
 /// manifold for any body. The search descends from a cube around the body and drops blocks that the surface
 /// cannot reach: those where the value of the 1-Lipschitz function at the centre exceeds half the diagonal.
 /// Time and memory are `O(area / spacing^2)`.
-pub(crate) fn extract(body: &ImplicitBody, lattice: Lattice) -> RawSurface {
+pub(crate) fn extract(
+    body: &ImplicitBody,
+    lattice: Lattice,
+    budget: &Budget,
+) -> Result<RawSurface, Exceeded> {
     let loops = all_loops();
     let (center, radius) = body.bounding_ball();
     let leaves: Vec<Leaf> = crossed_blocks(body, lattice, center, radius)
         .into_par_iter()
-        .map(|origin| leaf(body, lattice, center, origin, &loops))
-        .collect();
+        .map(|origin| budget.check().map(|()| leaf(body, lattice, center, origin, &loops)))
+        .collect::<Result<_, _>>()?;
     let mut offsets = Vec::with_capacity(leaves.len());
     let mut positions = Vec::new();
     for leaf in &leaves {
@@ -69,7 +74,7 @@ pub(crate) fn extract(body: &ImplicitBody, lattice: Lattice) -> RawSurface {
         .map(|i| triangles(&leaves, &offsets, &by_origin, i, &loops))
         .collect::<Vec<_>>()
         .concat();
-    RawSurface { positions, faces }
+    Ok(RawSurface { positions, faces })
 }
 
 impl Lattice {
@@ -264,7 +269,7 @@ mod tests {
     #[test]
     fn a_ball_has_its_area_and_volume() {
         let body = ImplicitBody::new(vec![BodyPart::added(vec![Blob::ball([0.0, 2.0, 1.0], 5.0)])]);
-        let raw = extract(&body, lattice(0.3));
+        let raw = extract(&body, lattice(0.3), &Budget::unlimited()).unwrap();
         let (mut area, mut volume) = (0.0, 0.0);
         for face in &raw.faces {
             let [a, b, c] = face.map(|v| raw.positions[v.index()]);
@@ -288,7 +293,9 @@ mod tests {
             };
             blobs.push(Blob::ball([next(), next(), next()], 0.7));
         }
-        let raw = extract(&ImplicitBody::new(vec![BodyPart::added(blobs)]), lattice(0.6));
+        let raw =
+            extract(&ImplicitBody::new(vec![BodyPart::added(blobs)]), lattice(0.6), &Budget::unlimited())
+                .unwrap();
         assert!(raw.faces.len() > 1000);
         let table = EditableCorners::new(raw.positions.len(), &raw.faces);
         assert!(table.is_some(), "an edge does not have two faces, or a vertex has two fans");

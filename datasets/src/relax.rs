@@ -1,5 +1,6 @@
 //! Improvement of triangles on a surface: edge flips, tangential smoothing, projection.
 
+use base::{Budget, Exceeded};
 use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
 use surface::{CornerId, VertexId};
@@ -11,23 +12,33 @@ use crate::simplify::RestSurface;
 const CHUNK: usize = 1024;
 /// Smallest cosine of a dihedral angle, before and after a flip; beyond it, a flip would cut off a ridge.
 const RIDGE_COSINE: f64 = 0.7;
+/// Operations that a corner counts for in the meter of a budget.
+const OPERATIONS: usize = 16;
 
 /// Alternates flips and smoothing for `n_rounds` rounds; vertices end on the surface of the body. `surface` has
 /// no removed vertices.
-pub(crate) fn relax(surface: &mut RestSurface, body: &ImplicitBody, n_rounds: usize) {
-    flip_to_delaunay(surface);
+pub(crate) fn relax(
+    surface: &mut RestSurface,
+    body: &ImplicitBody,
+    n_rounds: usize,
+    budget: &Budget,
+) -> Result<(), Exceeded> {
+    flip_to_delaunay(surface, budget)?;
     for _ in 0..n_rounds {
-        smooth(surface, body);
-        flip_to_delaunay(surface);
+        smooth(surface, body, budget)?;
+        flip_to_delaunay(surface, budget)?;
     }
+    Ok(())
 }
 
 /// Flips edges whose opposite angles add up to more than 180 degrees, in a few sweeps.
-fn flip_to_delaunay(surface: &mut RestSurface) {
+fn flip_to_delaunay(surface: &mut RestSurface, budget: &Budget) -> Result<(), Exceeded> {
     const N_SWEEPS: usize = 3;
+    let mut meter = budget.meter();
     for _ in 0..N_SWEEPS {
         let mut n_flips = 0usize;
         for c in (0..surface.table.n_corners()).map(CornerId::from) {
+            meter.count(OPERATIONS)?;
             if surface.wants_flip(c) && surface.table.can_flip(c) {
                 surface.table.flip(c);
                 n_flips += 1;
@@ -37,6 +48,7 @@ fn flip_to_delaunay(surface: &mut RestSurface) {
             break;
         }
     }
+    Ok(())
 }
 
 impl RestSurface {
@@ -67,7 +79,7 @@ fn cotangent(apex: Point3<f64>, a: Point3<f64>, b: Point3<f64>) -> f64 {
 /// Moves each vertex in its tangent plane towards the weighted centre of its neighbours, then back onto the surface.
 /// The weights are proportional to the length of an edge over its grain, so that edges approach lengths proportional
 /// to the grain. All vertices move at once, so the result does not depend on their order or on the number of threads.
-fn smooth(surface: &mut RestSurface, body: &ImplicitBody) {
+fn smooth(surface: &mut RestSurface, body: &ImplicitBody, budget: &Budget) -> Result<(), Exceeded> {
     let (table, old, grain) = (&surface.table, &surface.positions, &surface.grain);
     let target = |v: usize| {
         let mut pull = Vector3::zeros();
@@ -89,12 +101,15 @@ fn smooth(surface: &mut RestSurface, body: &ImplicitBody) {
         body.project(moved, 1, shortest)
     };
     let mut moved = old.clone();
-    moved.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, positions)| {
+    moved.par_chunks_mut(CHUNK).enumerate().try_for_each(|(chunk, positions)| {
+        budget.check()?;
         for (i, p) in positions.iter_mut().enumerate() {
             *p = target(chunk * CHUNK + i);
         }
-    });
+        Ok(())
+    })?;
     surface.positions = moved;
+    Ok(())
 }
 
 #[cfg(test)]
@@ -112,13 +127,14 @@ mod tests {
         let body =
             ImplicitBody::new(vec![BodyPart::added(vec![Blob::cone([0.0; 3], 3.0, [0.0, 0.0, 8.0], 1.5)])]);
         let lattice = Lattice { rotation: Matrix3::identity(), shift: Vector3::repeat(0.37), spacing: 0.25 };
-        let raw = extract(&body, lattice);
+        let budget = Budget::unlimited();
+        let raw = extract(&body, lattice, &budget).unwrap();
         let table = EditableCorners::new(raw.positions.len(), &raw.faces).unwrap();
         let grain = vec![1.0; raw.positions.len()];
         let mut surface = RestSurface { table, positions: raw.positions, grain };
-        simplify(&mut surface, 800);
+        simplify(&mut surface, 800, &budget).unwrap();
         surface.compact();
-        relax(&mut surface, &body, 6);
+        relax(&mut surface, &body, 6, &budget).unwrap();
         let mut angles = Vec::new();
         for face in surface.table.faces() {
             let [a, b, c] = face.map(|v| surface.positions[v.index()]);

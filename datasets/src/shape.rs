@@ -1,5 +1,6 @@
 //! One shape: body and pose of a family through extraction, simplification, relaxation and bending.
 
+use base::{Budget, Exceeded};
 use mesh::TriMesh;
 use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
@@ -30,20 +31,25 @@ const N_ROUNDS: usize = 6;
 
 /// The rest surface with `n_vertices` vertices; `None` if no lattice gives a closed surface of that size in one piece and
 /// with as many handles as the model says.
-pub(crate) fn rest_surface(model: &BodyModel, n_vertices: usize, stream: &mut Stream) -> Option<RestSurface> {
+pub(crate) fn rest_surface(
+    model: &BodyModel,
+    n_vertices: usize,
+    stream: &mut Stream,
+    budget: &Budget,
+) -> Result<Option<RestSurface>, Exceeded> {
     let dense = (CROSSINGS * model.area / (SURPLUS * n_vertices as f64)).sqrt();
     let mut spacing = model.spacing.min(dense);
     let grading = stream.uniform(GRADING[0], GRADING[1]);
     for _ in 0..N_ATTEMPTS {
         let rotation = stream.rotation();
         let shift = Vector3::from([(); 3].map(|()| stream.uniform(0.0, 1.0)));
-        let raw = extract(&model.body, Lattice { rotation, shift, spacing });
+        let raw = extract(&model.body, Lattice { rotation, shift, spacing }, budget)?;
         spacing *= REFINEMENT;
-        if let Some(surface) = closed_surface(model, raw, grading, n_vertices) {
-            return Some(surface);
+        if let Some(surface) = closed_surface(model, raw, grading, n_vertices, budget)? {
+            return Ok(Some(surface));
         }
     }
-    None
+    Ok(None)
 }
 
 fn closed_surface(
@@ -51,20 +57,22 @@ fn closed_surface(
     raw: RawSurface,
     grading: f64,
     n_vertices: usize,
-) -> Option<RestSurface> {
+    budget: &Budget,
+) -> Result<Option<RestSurface>, Exceeded> {
     let n_raw = raw.positions.len();
     if n_raw < n_vertices || genus(&raw) != Some(model.genus) {
-        return None;
+        return Ok(None);
     }
-    let table = EditableCorners::new(n_raw, &raw.faces)?;
+    budget.check()?;
+    let Some(table) = EditableCorners::new(n_raw, &raw.faces) else { return Ok(None) };
     let grain = raw.positions.par_iter().map(|&p| 1.0 + grading * (model.skeleton.grain(p) - 1.0)).collect();
     let mut surface = RestSurface { table, positions: raw.positions, grain };
-    if simplify(&mut surface, n_vertices) != n_vertices {
-        return None;
+    if simplify(&mut surface, n_vertices, budget)? != n_vertices {
+        return Ok(None);
     }
     surface.compact();
-    relax(&mut surface, &model.body, N_ROUNDS);
-    Some(surface)
+    relax(&mut surface, &model.body, N_ROUNDS, budget)?;
+    Ok(Some(surface))
 }
 
 /// The number of handles of an extracted surface; `None` unless it is in one piece.

@@ -3,6 +3,7 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
+use base::{Budget, Exceeded};
 use nalgebra::Point3;
 use surface::VertexId;
 
@@ -29,32 +30,47 @@ const MOST_NEIGHBORS: usize = 12;
 /// if its collapse would break the manifold or invert a triangle. Edges far shorter than those of the result are
 /// collapsed in a few sweeps, `O(m)` for the bulk, the others in the order of a queue, `O(k log k)` for the rest.
 /// Returns the number of vertices left, which exceeds `n_vertices` only if no other edge can be collapsed.
-pub(crate) fn simplify(surface: &mut RestSurface, n_vertices: usize) -> usize {
+pub(crate) fn simplify(
+    surface: &mut RestSurface,
+    n_vertices: usize,
+    budget: &Budget,
+) -> Result<usize, Exceeded> {
     let mut n_left = surface.table.vertices().count();
     // The cost c of the final edges: equilateral triangles cover 2 sqrt(3) c grains^2 per vertex.
     let final_cost = surface.area_in_grains() / (12f64.sqrt() * n_vertices as f64);
     for share in [1.0 / 64.0, 1.0 / 24.0, 1.0 / 10.0, 0.2] {
-        n_left = sweep(surface, final_cost * share, n_left, n_vertices);
+        n_left = sweep(surface, final_cost * share, n_left, n_vertices, budget)?;
     }
     while n_left > n_vertices {
         // An edge that could not be collapsed in one round may be possible in the next.
         let n_before = n_left;
-        n_left = collapse_by_queue(surface, n_left, n_vertices);
+        n_left = collapse_by_queue(surface, n_left, n_vertices, budget)?;
         if n_left == n_before {
             break;
         }
     }
-    n_left
+    Ok(n_left)
 }
+
+/// Operations that a vertex or an edge counts for in the meter of a budget.
+const OPERATIONS: usize = 64;
 
 /// Collapses edges with a cost below `limit` in the order of their vertices.
 ///
 /// A vertex into which another was merged stays until the next sweep. Otherwise a whole region of short edges
 /// would collapse into a single vertex.
-fn sweep(surface: &mut RestSurface, limit: f64, mut n_left: usize, n_vertices: usize) -> usize {
+fn sweep(
+    surface: &mut RestSurface,
+    limit: f64,
+    mut n_left: usize,
+    n_vertices: usize,
+    budget: &Budget,
+) -> Result<usize, Exceeded> {
+    let mut meter = budget.meter();
     let mut neighbors = Vec::new();
     let mut stays = vec![false; surface.positions.len()];
     for v in (0..surface.positions.len()).map(VertexId::from) {
+        meter.count(OPERATIONS)?;
         if n_left <= n_vertices {
             break;
         }
@@ -72,10 +88,16 @@ fn sweep(surface: &mut RestSurface, limit: f64, mut n_left: usize, n_vertices: u
             }
         }
     }
-    n_left
+    Ok(n_left)
 }
 
-fn collapse_by_queue(surface: &mut RestSurface, mut n_left: usize, n_vertices: usize) -> usize {
+fn collapse_by_queue(
+    surface: &mut RestSurface,
+    mut n_left: usize,
+    n_vertices: usize,
+    budget: &Budget,
+) -> Result<usize, Exceeded> {
+    let mut meter = budget.meter();
     let mut entries = Vec::new();
     for v in surface.table.vertices() {
         entries.extend(surface.table.neighbors(v).filter(|&x| v < x).map(|x| Reverse(surface.entry(v, x))));
@@ -84,6 +106,7 @@ fn collapse_by_queue(surface: &mut RestSurface, mut n_left: usize, n_vertices: u
     while n_left > n_vertices
         && let Some(Reverse((_, u, w))) = queue.pop()
     {
+        meter.count(OPERATIONS)?;
         // Collapses never remove an edge between two living vertices.
         if !(surface.table.is_alive(u) && surface.table.is_alive(w)) {
             continue;
@@ -98,7 +121,7 @@ fn collapse_by_queue(surface: &mut RestSurface, mut n_left: usize, n_vertices: u
         n_left -= 1;
         queue.extend(surface.table.neighbors(kept).map(|x| Reverse(surface.entry(kept.min(x), kept.max(x)))));
     }
-    n_left
+    Ok(n_left)
 }
 
 impl RestSurface {
@@ -193,7 +216,7 @@ mod tests {
     fn the_result_is_a_sphere_with_exactly_the_requested_number_of_vertices() {
         for n_vertices in [2000, 500, 60, 4] {
             let mut surface = globe(50);
-            assert_eq!(simplify(&mut surface, n_vertices), n_vertices);
+            assert_eq!(simplify(&mut surface, n_vertices, &Budget::unlimited()), Ok(n_vertices));
             surface.compact();
             assert_eq!(surface.positions.len(), n_vertices);
             let faces: Vec<_> = surface.table.faces().collect();
@@ -208,7 +231,7 @@ mod tests {
         for (grain, p) in surface.grain.iter_mut().zip(&surface.positions) {
             *grain = if p.z > 0.0 { 1.0 } else { 0.5 };
         }
-        simplify(&mut surface, 600);
+        simplify(&mut surface, 600, &Budget::unlimited()).unwrap();
         surface.compact();
         let n_north = surface.positions.iter().filter(|p| p.z > 0.0).count();
         let ratio = (600 - n_north) as f64 / n_north as f64;
@@ -219,6 +242,6 @@ mod tests {
     fn requesting_more_vertices_than_there_are_changes_nothing() {
         let mut surface = globe(10);
         let n = surface.positions.len();
-        assert_eq!(simplify(&mut surface, n + 5), n);
+        assert_eq!(simplify(&mut surface, n + 5, &Budget::unlimited()), Ok(n));
     }
 }

@@ -138,12 +138,27 @@ impl Budget {
     /// # Errors
     /// [`Exceeded::Memory`] and [`Exceeded::Allocation`].
     pub fn vector<T: Clone + Default>(&self, n: usize) -> Result<Vec<T>, Exceeded> {
-        let needed = n.saturating_mul(size_of::<T>());
-        self.check_memory(needed)?;
         let mut vector = Vec::new();
-        vector.try_reserve_exact(n).map_err(|_| Exceeded::Allocation { needed })?;
-        vector.resize(n, T::default());
+        self.extend(&mut vector, n)?;
         Ok(vector)
+    }
+
+    /// Appends `n` default values to a vector, if it may hold that many and the system has the memory. The system clears a gigabyte
+    /// in about a second, so the budget is checked in between.
+    ///
+    /// # Errors
+    /// As [`vector`](Self::vector) and [`check`](Self::check); then the vector is as before.
+    pub fn extend<T: Clone + Default>(&self, vector: &mut Vec<T>, n: usize) -> Result<(), Exceeded> {
+        let before = vector.len();
+        let length = before.saturating_add(n);
+        let needed = length.saturating_mul(size_of::<T>());
+        self.check_memory(needed)?;
+        vector.try_reserve_exact(n).map_err(|_| Exceeded::Allocation { needed })?;
+        while vector.len() < length {
+            self.check().inspect_err(|_| vector.truncate(before))?;
+            vector.resize(length.min(vector.len() + BLOCK), T::default());
+        }
+        Ok(())
     }
 
     /// Checks this budget once in a while.
@@ -152,6 +167,9 @@ impl Budget {
         Meter { budget: self, left: INTERVAL }
     }
 }
+
+/// Values that are appended between two checks.
+const BLOCK: usize = 1 << 20;
 
 /// Operations between two checks by a [`Meter`]: a millisecond or less if each takes a few nanoseconds.
 const INTERVAL: usize = 1 << 16;
@@ -225,6 +243,10 @@ mod tests {
     #[test]
     fn a_vector_is_refused_by_the_limit_and_by_the_system() {
         assert_eq!(Budget::unlimited().vector::<u8>(3), Ok(vec![0; 3]));
+        let (mut vector, cancelled) = (vec![7], Budget::unlimited());
+        cancelled.extend(&mut vector, 2).unwrap();
+        cancelled.cancel();
+        assert_eq!((cancelled.extend(&mut vector, 1), vector), (Err(Exceeded::Cancelled), vec![7, 0, 0]));
         let small = Budget::unlimited().with_memory(10);
         assert_eq!(small.vector::<f64>(2), Err(Exceeded::Memory { needed: 16, limit: 10 }));
         let needed = usize::MAX;

@@ -126,10 +126,9 @@ impl ColumnStore {
     /// # Errors
     /// [`LinalgError::Exceeded`] if they do not fit into memory.
     pub fn grow(&mut self, more: usize, observer: &dyn Observer) -> Result<Vec<ColumnSlot<'_>>, LinalgError> {
-        self.reserve(more, observer)?;
         let (n_rows, before) = (self.n_rows, self.n_columns);
         if let Backing::Memory(values) = &mut self.backing {
-            values.resize(values.len() + n_rows.saturating_mul(more), 0.0);
+            observer.budget().extend(values, n_rows.saturating_mul(more))?;
         }
         self.n_columns += more;
         Ok(match &mut self.backing {

@@ -4,6 +4,7 @@ use ::datasets::{
     ArticulatedOptions, CreatureOptions, DatasetError, Family, LabeledShape, RestedShape,
     articulated_at_rest, creature, creature_plans,
 };
+use canonform::Observer;
 use canonform::mesh::TriMesh;
 use numpy::PyArray2;
 use pyo3::prelude::*;
@@ -20,7 +21,12 @@ type Generated<'py> =
 /// The families of articulated shapes, each with its number of shapes, and the plans of creatures.
 #[pyfunction]
 pub(crate) fn families() -> (Vec<(&'static str, usize)>, Vec<&'static str>) {
-    (Family::all().map(|family| (family.name(), family.n_shapes())).to_vec(), creature_plans())
+    (articulated_families().map(|family| (family.name(), family.n_shapes())).collect(), creature_plans())
+}
+
+/// The families of the dataset, and people.
+fn articulated_families() -> impl Iterator<Item = Family> {
+    Family::all().into_iter().chain([Family::Person])
 }
 
 /// Shapes of one of the articulated families, by pose.
@@ -34,9 +40,9 @@ pub(crate) fn generate<'py>(
 ) -> PyResult<Vec<Generated<'py>>> {
     let options = ArticulatedOptions { seed, n_vertices };
     options.validate().map_err(|fault| of_dataset(&fault))?;
-    let families = Family::all();
-    made(py, &shapes, progress, |(family, pose)| {
-        let RestedShape { shape, rest } = articulated_at_rest(families[family], 0, pose, &options)?;
+    let families: Vec<Family> = articulated_families().collect();
+    made(py, &shapes, progress, |(family, pose), observer| {
+        let RestedShape { shape, rest } = articulated_at_rest(families[family], 0, pose, &options, observer)?;
         Ok((shape, Some(rest)))
     })
 }
@@ -53,21 +59,24 @@ pub(crate) fn creatures<'py>(
     let n_families = shapes.iter().map(|(family, _)| family + 1).max().unwrap_or(0);
     let n_poses = shapes.iter().map(|(_, pose)| pose + 1).max().unwrap_or(0);
     let options = CreatureOptions { seed, n_families, n_poses, n_vertices };
-    made(py, &shapes, progress, |(family, pose)| Ok((creature(family, pose, &options)?, None)))
+    made(py, &shapes, progress, |(family, pose), observer| {
+        Ok((creature(family, pose, &options, observer)?, None))
+    })
 }
 
 fn made<'py>(
     py: Python<'py>,
     shapes: &[(usize, usize)],
     progress: Option<Py<PyAny>>,
-    make: impl Fn((usize, usize)) -> Result<(LabeledShape, Option<TriMesh>), DatasetError> + Sync,
+    make: impl Fn((usize, usize), &dyn Observer) -> Result<(LabeledShape, Option<TriMesh>), DatasetError> + Sync,
 ) -> PyResult<Vec<Generated<'py>>> {
     let made = run_alone(py, progress.as_ref(), |observer| {
         observer.begin("shapes", shapes.len());
         let of_shape = |shape: &(usize, usize)| {
-            // Generators have no budget.
-            observer.budget().check()?;
-            let made = make(*shape);
+            let made = match make(*shape, observer) {
+                Err(DatasetError::Exceeded(why)) => return Err(why.into()),
+                made => made,
+            };
             observer.step();
             Ok(made)
         };

@@ -110,8 +110,8 @@ fn words(remedy: Remedy) -> &'static str {
         Remedy::BridgeOrWeld => {
             "pass components=\"bridge\" to keep all components, or weld=TOLERANCE to close gaps that wide"
         }
-        Remedy::UseThreeDimensions => "leave out dim=",
-        Remedy::UseFastMarching => "use method=\"fast-marching\" (geodesic=\"fast-marching\" for a form)",
+        Remedy::UseThreeDimensions => "leave out n_components=",
+        Remedy::UseFastMarching => "use geodesic=\"fast-marching\"",
         Remedy::UseNystrom => "use method=\"nmds\", which needs only a few columns",
         Remedy::RaiseMemory => "raise memory=",
         Remedy::RaiseTimeLimit => "raise timeout=",

@@ -12,7 +12,7 @@ use crate::error::Exception;
 use crate::points::vertex;
 use crate::record::json;
 use crate::run::run_alone;
-use crate::settings::distance_method;
+use crate::settings::Settings;
 use crate::surface::Surface;
 
 /// The distances between all pairs of vertices of a surface.
@@ -57,18 +57,15 @@ fn answers<'py>(py: Python<'py>, found: &[PairDistance]) -> Answers<'py> {
 impl DistanceField {
     /// Measures the distances from landmarks of a surface.
     #[staticmethod]
-    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn build(
         py: Python<'_>,
         surface: &Surface,
         landmarks: usize,
         rank: Option<usize>,
-        method: &str,
-        update: Option<&str>,
-        obtuse: Option<&str>,
+        geodesic: &str,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Self> {
-        let options = FieldOptions { method: distance_method(method, update, obtuse)?, landmarks, rank };
+        let options = FieldOptions { method: Settings::parse(geodesic)?.distances()?, landmarks, rank };
         run_alone(py, progress.as_ref(), |observer| {
             Ok(Self(canonform::DistanceField::build(&surface.inner, &options, observer)?))
         })

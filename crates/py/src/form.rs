@@ -38,7 +38,7 @@ impl Form {
     fn to_mesh(&self) -> PyResult<TriMesh> {
         let coords = &self.embedded.embedding.coords;
         if coords.ncols() != 3 {
-            let message = format!("a mesh has 3 dimensions, not {}; leave out dim=", coords.ncols());
+            let message = format!("a mesh has 3 dimensions, not {}; leave out n_components=", coords.ncols());
             return Err(Exception::Embedding.with(&message));
         }
         let points: Vec<_> = coords.row_iter().map(|row| [row[0], row[1], row[2]].into()).collect();

@@ -46,13 +46,13 @@ mod _canonform {
     #[pymodule_export]
     use crate::nystrom::{Extension, SampleSearch, nystrom};
     #[pymodule_export]
-    use crate::operators::{closest_points, eigenbasis, laplacian};
+    use crate::operators::{closest_points, eigenbasis, laplacian, log_map};
     #[pymodule_export]
     use crate::picture::draw;
     #[pymodule_export]
     use crate::run::{set_threads, threads};
     #[pymodule_export]
-    use crate::settings::{methods, option_names, signature_kinds};
+    use crate::settings::{check_options, mesh_formats, options, signature_kinds};
     #[pymodule_export]
     use crate::surface::{Surface, write};
 

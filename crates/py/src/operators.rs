@@ -1,6 +1,7 @@
 //! What surfaces are computed with: Laplacians, their eigenfunctions, and nearest points. Rows are vertices of the input.
 
 use canonform::descriptors::LaplaceSpectrum;
+use canonform::geodesics::Method;
 use canonform::relations::TriangleTree;
 use canonform::surface::laplacian::{Element, Laplacian};
 use canonform::surface::{Triangle, VertexId};
@@ -9,6 +10,7 @@ use pyo3::prelude::*;
 use rayon::prelude::*;
 
 use crate::arrays;
+use crate::points::point_of;
 use crate::run::run_alone;
 use crate::surface::Surface;
 
@@ -132,4 +134,24 @@ pub(crate) fn closest_points<'py>(
         arrays::vector(py, distances),
         faces.into_pyarray(py),
     ))
+}
+
+/// The logarithmic map about a point, one row for each vertex of the input; NaN for those that the repair dropped.
+#[pyfunction]
+pub(crate) fn log_map<'py>(
+    py: Python<'py>,
+    surface: &Surface,
+    source: &Bound<'py, PyAny>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let (inner, source) = (&surface.inner, point_of(source)?);
+    let map = surface.solve(py, Method::Exact, progress.as_ref(), |solver, observer| {
+        let sources = surface.sources(&[source])?;
+        let mut distances = solver.budget().vector(solver.n_vertices())?;
+        solver.solve_into(&sources, f64::INFINITY, &mut distances)?;
+        Ok(canonform::geodesics::log_map(inner.intrinsic(), &sources[0], &distances, observer)?)
+    })?;
+    let of_input = inner.repaired.input_to_repaired.iter();
+    let rows = of_input.flat_map(|vertex| vertex.map_or([f64::NAN; 2], |vertex| map[vertex.index()]));
+    arrays::matrix(py, rows.collect(), [inner.n_input_vertices(), 2])
 }

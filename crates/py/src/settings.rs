@@ -5,7 +5,9 @@ use canonform::geodesics::Method;
 use canonform::mesh::RepairOptions;
 use canonform::nmds::{NystromOptions, SampleGoal};
 use canonform::settings::{Named, NoEffect, OptionGroup, OptionSpec, SCHEMA};
-use canonform::{Budget, CorrespondOptions, DescribeOptions, FormOptions, ShapeLimits, StressOptions};
+use canonform::{
+    Budget, CorrespondOptions, DescribeOptions, EmbedMethod, FormOptions, ShapeLimits, StressOptions,
+};
 use pyo3::prelude::*;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value, json};
@@ -23,20 +25,28 @@ pub(crate) struct Settings {
 /// Keywords of calls besides the schema of options.
 const OTHERS: [&str; 4] = ["seed", "timeout", "memory", "max_vertices"];
 
-/// The keyword of an option.
-fn keyword(option: &str) -> &str {
-    if option == "samples" { "n" } else { option }
+/// An option: its keyword, its default in words, the names that it is chosen from, each with what it does, and the methods that
+/// depend on it.
+type Described = (&'static str, &'static str, Vec<(&'static str, &'static str)>, Vec<&'static str>);
+
+/// The options that are further options of methods, and all others.
+#[pyfunction]
+pub(crate) fn options() -> (Vec<Described>, Vec<Described>) {
+    let described = |option: &OptionSpec| {
+        let methods = EmbedMethod::all().into_iter().filter(|method| option.applies_to(method));
+        (option.keyword, option.default, option.names(), methods.map(|method| method.name()).collect())
+    };
+    let (of_methods, others): (Vec<_>, Vec<_>) =
+        SCHEMA.iter().partition(|option| option.group == OptionGroup::Method && option.name != "method");
+    let others =
+        others.into_iter().map(described).chain(OTHERS.map(|name| (name, "", Vec::new(), Vec::new())));
+    (of_methods.into_iter().map(described).collect(), others.collect())
 }
 
-/// The keywords that are options, and those of them that are further options of forms.
+/// Checks options of a method, or of distances.
 #[pyfunction]
-pub(crate) fn option_names() -> (Vec<&'static str>, Vec<&'static str>) {
-    let all = SCHEMA.iter().map(|option| keyword(option.name)).chain(OTHERS);
-    let groups = [OptionGroup::Method, OptionGroup::Form, OptionGroup::Marching];
-    let of_form = SCHEMA.iter().filter(|option| groups.contains(&option.group)).map(|option| option.name);
-    // They have keywords of their own wherever forms are made.
-    let further = of_form.filter(|name| !["samples", "method", "geodesic"].contains(name));
-    (all.collect(), further.collect())
+pub(crate) fn check_options(settings: &str) -> PyResult<()> {
+    Settings::parse(settings)?.form(RepairOptions::default()).map(drop)
 }
 
 impl Settings {
@@ -46,7 +56,7 @@ impl Settings {
             serde_json::from_str(text).map_err(|fault| Exception::Option.with(&fault.to_string()))?;
         let (mut options, mut others) = (canonform::settings::Settings::default(), Map::new());
         for (name, value) in given {
-            let option = SCHEMA.iter().find(|option| keyword(option.name) == name);
+            let option = SCHEMA.iter().find(|option| option.keyword == name);
             let text = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
             match option.map(|option| options.set(option.name, &text)) {
                 Some(set) => set.map_err(|fault| refused(&name, &value, &fault))?,
@@ -71,6 +81,11 @@ impl Settings {
     /// How a mesh is repaired.
     pub(crate) fn repair(&self) -> RepairOptions {
         self.options.repair()
+    }
+
+    /// How distances are measured.
+    pub(crate) fn distances(&self) -> PyResult<Method> {
+        Ok(self.form(RepairOptions::default())?.geodesic)
     }
 
     /// How a form is made of a surface that was repaired in this way.
@@ -133,20 +148,6 @@ impl Settings {
     }
 }
 
-/// A distance method by name, with options of fast marching.
-pub(crate) fn distance_method(name: &str, update: Option<&str>, obtuse: Option<&str>) -> PyResult<Method> {
-    let mut settings = canonform::settings::Settings::default();
-    for (option, value) in [("update", update), ("obtuse", obtuse)] {
-        let set = value.map_or(Ok(()), |value| settings.set(option, value));
-        set.map_err(|fault| refused(option, &value.into(), &fault))?;
-    }
-    let checked = OptionSpec::named("geodesic").map_or(Ok(()), |option| option.check(name));
-    checked.map_err(|fault| refused("method", &name.into(), &fault))?;
-    let method = Method::named(name).unwrap_or_default();
-    settings.check_distances("method", method).map_err(|fault| without_effect(&fault))?;
-    Ok(settings.distances(method))
-}
-
 fn refused(name: &str, value: &Value, what: &str) -> PyErr {
     Exception::Option.with(&format!("{name}={value} is not possible: {what}"))
 }
@@ -155,19 +156,20 @@ fn refused(name: &str, value: &Value, what: &str) -> PyErr {
 fn without_effect(fault: &NoEffect) -> PyErr {
     let spell = |name: &str, values: &[&str]| {
         let values: Vec<_> = values.iter().map(|value| format!("{value:?}")).collect();
-        format!("{}={}", keyword(name), values.join(" or "))
+        let keyword = OptionSpec::named(name).map_or(name, |option| option.keyword);
+        format!("{keyword}={}", values.join(" or "))
     };
     Exception::Option.with(&fault.in_words(spell))
-}
-
-/// The names of all methods, each with what it computes: of distances and of embeddings.
-#[pyfunction]
-pub(crate) fn methods() -> [Vec<(&'static str, &'static str)>; 2] {
-    ["geodesic", "method"].map(|name| OptionSpec::named(name).map_or_else(Vec::new, OptionSpec::names))
 }
 
 /// The names of the kinds of signatures.
 #[pyfunction]
 pub(crate) fn signature_kinds() -> Vec<&'static str> {
     SignatureKind::ALL.map(SignatureKind::name).to_vec()
+}
+
+/// The extensions of the mesh formats that are written.
+#[pyfunction]
+pub(crate) fn mesh_formats() -> Vec<&'static str> {
+    canonform::mesh::io::writable(canonform::mesh::io::Content::Mesh).collect()
 }

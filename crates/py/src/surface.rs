@@ -23,7 +23,7 @@ use crate::form::Form;
 use crate::points::{point_of, points_of};
 use crate::record::json;
 use crate::run::{Stopped, run, run_alone};
-use crate::settings::{Settings, distance_method};
+use crate::settings::Settings;
 
 /// Most prepared solvers, descriptions and sides of comparisons that a surface keeps of each kind.
 const MOST_KEPT: usize = 4;
@@ -127,7 +127,7 @@ impl Surface {
     }
 
     /// Runs work with the solver of a method, which is prepared the first time.
-    fn solve<T: Send>(
+    pub(crate) fn solve<T: Send>(
         &self,
         py: Python<'_>,
         method: Method,
@@ -161,7 +161,7 @@ impl Surface {
         }
     }
 
-    fn sources(&self, points: &[InputPoint]) -> Result<Vec<Source>, Error> {
+    pub(crate) fn sources(&self, points: &[InputPoint]) -> Result<Vec<Source>, Error> {
         let located =
             |point: &InputPoint| Ok(Source::new(self.inner.intrinsic(), self.inner.locate(point)?)?);
         points.iter().map(located).collect()
@@ -297,12 +297,10 @@ impl Surface {
         &self,
         py: Python<'py>,
         sources: &Bound<'py, PyAny>,
-        method: &str,
-        update: Option<&str>,
-        obtuse: Option<&str>,
+        geodesic: &str,
         max_distance: f64,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let (method, points) = (distance_method(method, update, obtuse)?, points_of(sources)?);
+        let (method, points) = (Settings::parse(geodesic)?.distances()?, points_of(sources)?);
         let distances = self.solve(py, method, None, |solver, _| {
             let mut distances = solver.budget().vector(solver.n_vertices())?;
             solver.solve_into(&self.sources(&points)?, max_distance, &mut distances)?;
@@ -312,18 +310,15 @@ impl Surface {
     }
 
     /// One row of distances for each of several points, computed in parallel.
-    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn distances_many<'py>(
         &self,
         py: Python<'py>,
         sources: &Bound<'py, PyAny>,
-        method: &str,
-        update: Option<&str>,
-        obtuse: Option<&str>,
+        geodesic: &str,
         max_distance: f64,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let (method, points) = (distance_method(method, update, obtuse)?, points_of(sources)?);
+        let (method, points) = (Settings::parse(geodesic)?.distances()?, points_of(sources)?);
         let p = self.mesh.n_vertices();
         let rows = self.solve(py, method, progress.as_ref(), |solver, observer| {
             distance_rows(&self.inner, solver, &self.sources(&points)?, max_distance, observer)
@@ -337,11 +332,9 @@ impl Surface {
         py: Python<'py>,
         source: &Bound<'py, PyAny>,
         targets: &Bound<'py, PyAny>,
-        method: &str,
-        update: Option<&str>,
-        obtuse: Option<&str>,
+        geodesic: &str,
     ) -> PyResult<Vec<FoundPath<'py>>> {
-        let method = distance_method(method, update, obtuse)?;
+        let method = Settings::parse(geodesic)?.distances()?;
         let (source, targets) = (point_of(source)?, points_of(targets)?);
         let paths = self.solve(py, method, None, |solver, _| {
             let inner = &self.inner;
@@ -370,18 +363,15 @@ impl Surface {
     }
 
     /// Vertices spread evenly, each the farthest from those before it.
-    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn farthest_points<'py>(
         &self,
         py: Python<'py>,
         n: usize,
         first: Option<u32>,
-        method: &str,
-        update: Option<&str>,
-        obtuse: Option<&str>,
+        geodesic: &str,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<i64>>> {
-        let method = distance_method(method, update, obtuse)?;
+        let method = Settings::parse(geodesic)?.distances()?;
         let samples = self.solve(py, method, progress.as_ref(), |solver, observer| {
             let inner = &self.inner;
             let first = match first {

@@ -27,7 +27,7 @@ def test_a_copy_in_other_units_is_recognised(cat: Shape) -> None:
 
 
 def test_alignment_takes_one_form_onto_the_other(cats: list[Shape]) -> None:
-    forms = [shape.surface().canonical_form(n=60) for shape in cats]
+    forms = [shape.surface().canonical_form(n_landmarks=60) for shape in cats]
     found = canonform.align(*forms)
     np.testing.assert_allclose(found.rotation @ found.rotation.T, np.eye(3), atol=1e-12)
     assert np.linalg.det(found.rotation) == pytest.approx(-1 if found.reflected else 1)

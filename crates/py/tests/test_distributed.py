@@ -63,8 +63,8 @@ def test_meshes_in_memory_are_described_by_workers(client: Client, cats: list[Sh
     surface = cats[0].surface()
     distances = client.submit(lambda surface: surface.distances(0), surface).result()
     np.testing.assert_array_equal(distances, surface.distances(0))
-    form = client.submit(lambda surface: surface.canonical_form(n=20), surface).result()
-    np.testing.assert_array_equal(form.points, surface.canonical_form(n=20).points)
+    form = client.submit(lambda surface: surface.canonical_form(n_landmarks=20), surface).result()
+    np.testing.assert_array_equal(form.points, surface.canonical_form(n_landmarks=20).points)
 
 
 def test_a_finished_batch_is_not_described_again(client: Client, collection: Path, tmp_path: Path) -> None:

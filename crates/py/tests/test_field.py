@@ -20,13 +20,13 @@ def surface(cat: Shape) -> Surface:
 
 @pytest.fixture(scope="module", params=["exact", "fast-marching"])
 def field(request: pytest.FixtureRequest, surface: Surface) -> DistanceField:
-    return surface.distance_field(method=request.param)
+    return surface.distance_field(geodesic=request.param)
 
 
 def test_bounds_hold_the_exact_distances(surface: Surface, field: DistanceField) -> None:
     assert field.certified == (field.facts["method"] == "exact")
     for source in (0, 500):
-        exact = surface.distances(source, method="exact")
+        exact = surface.distances(source, geodesic="exact")
         for row in (field.row(source), field.row(source, tolerance=None)):
             assert len(row) == field.n_vertices
             assert (row.lower <= exact).all() and (exact <= row.upper).all()
@@ -42,7 +42,7 @@ def test_pairs_equal_single_pairs_and_are_finished_on_demand(surface: Surface, f
         pair = field.pair(a, b)
         assert (pair.distance, pair.lower, pair.upper) == (plain.distance[i], plain.lower[i], plain.upper[i])
     exact = field.pairs(pairs.astype(np.uint32), tolerance=0.0)
-    expected = [surface.distances(int(a), method="exact")[b] for a, b in pairs]
+    expected = [surface.distances(int(a), geodesic="exact")[b] for a, b in pairs]
     assert exact.exact.all()
     np.testing.assert_allclose(exact.distance, expected, rtol=1e-9)
     assert len(field.pairs([])) == 0
@@ -50,7 +50,7 @@ def test_pairs_equal_single_pairs_and_are_finished_on_demand(surface: Surface, f
 
 def test_the_nearest_vertices_are_exact(surface: Surface, field: DistanceField) -> None:
     vertices, distances = field.nearest(7, 10)
-    exact = surface.distances(7, method="exact")
+    exact = surface.distances(7, geodesic="exact")
     np.testing.assert_allclose(distances, np.sort(exact)[1:11], rtol=1e-9)
     np.testing.assert_allclose(exact[vertices], distances, rtol=1e-9)
 
@@ -81,4 +81,4 @@ def test_mistakes_are_named(field: DistanceField, surface: Surface, tmp_path: Pa
     (tmp_path / "other.field").write_text("solid")
     with pytest.raises(FileError, match="not a distance field"):
         DistanceField.load(tmp_path / "other.field")
-    assert "certified" in repr(surface.distance_field(5, method="exact"))
+    assert "certified" in repr(surface.distance_field(5, geodesic="exact"))

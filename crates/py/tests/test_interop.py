@@ -28,7 +28,7 @@ def test_trimesh(cat: Shape) -> None:
     mesh = trimesh.Trimesh(cat.vertices, cat.faces, process=False)
     surface = Surface(mesh)
     same(surface, cat)
-    form = trimesh.Trimesh(surface.canonical_form(n=30).points, surface.faces, process=False)
+    form = trimesh.Trimesh(surface.canonical_form(n_landmarks=30).points, surface.faces, process=False)
     assert form.is_watertight == mesh.is_watertight
 
 
@@ -60,7 +60,7 @@ def test_matplotlib(cat: Shape, tmp_path: Path) -> None:
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
-    form = cat.surface().canonical_form(n=30)
+    form = cat.surface().canonical_form(n_landmarks=30)
     figure = plt.figure()
     axes = figure.add_subplot(projection="3d")
     axes.plot_trisurf(*form.points.T, triangles=form.faces)
@@ -79,7 +79,7 @@ def test_polyscope(cat: Shape, tmp_path: Path) -> None:
         import sys, canonform, polyscope
         polyscope.init("openGL_mock")
         surface = canonform.read(sys.argv[1])
-        form = surface.canonical_form(n=30)
+        form = surface.canonical_form(n_landmarks=30)
         mesh = polyscope.register_surface_mesh("form", form.points, form.faces)
         mesh.add_scalar_quantity("distance", surface.distances(0))
         path = surface.path(0, 500)
@@ -95,5 +95,5 @@ def test_pandas(cats: list[Shape]) -> None:
     pandas = pytest.importorskip("pandas")
     frame = pandas.DataFrame({shape.name: shape.surface().signature() for shape in cats})
     assert frame.shape[1] == 2
-    report = pandas.json_normalize(cats[0].surface().canonical_form(n=30).report)
+    report = pandas.json_normalize(cats[0].surface().canonical_form(n_landmarks=30).report)
     assert report.loc[0, "n_samples"] == 30

@@ -80,10 +80,10 @@ def test_a_graph_is_unrolled() -> None:
 
 def test_the_form_of_a_surface_is_its_embedding(cat: Shape) -> None:
     surface = cat.surface()
-    form = surface.canonical_form(n=40)
+    form = surface.canonical_form(n_landmarks=40)
     metric = lambda a, b: surface.distances(int(a))[b]  # noqa: E731
     mds = NystromMDS(n_landmarks=40, metric=metric).fit(np.arange(surface.n_vertices))
-    np.testing.assert_array_equal(mds.landmarks_, form.samples)
+    np.testing.assert_array_equal(mds.landmarks_, form.landmarks)
     np.testing.assert_array_equal(mds.embedding_, form.points)
 
 
@@ -118,10 +118,10 @@ def test_landmarks_are_taken_until_they_are_enough() -> None:
 
 def test_a_surface_needs_as_many_landmarks_as_its_form(cat: Shape) -> None:
     surface = cat.surface()
-    form = surface.canonical_form(n="auto")
+    form = surface.canonical_form(n_landmarks="auto")
     metric = lambda a, b: surface.distances(int(a))[b]  # noqa: E731
     mds = NystromMDS(n_landmarks="auto", metric=metric).fit(np.arange(surface.n_vertices))
-    np.testing.assert_array_equal(mds.landmarks_, form.samples)
+    np.testing.assert_array_equal(mds.landmarks_, form.landmarks)
     np.testing.assert_array_equal(mds.embedding_, form.points)
 
 

@@ -78,7 +78,7 @@ def test_the_functional_map_takes_coefficients_to_each_other(cats: list[Shape]) 
     by_matrix = phi.synthesize(m.functional(k) @ psi.project(smooth))
     by_points = m.transfer(smooth, to="a")
     assert np.linalg.norm(by_matrix - by_points) < 0.1 * np.linalg.norm(by_points)
-    with pytest.raises(OptionError, match="k=1000"):
+    with pytest.raises(OptionError, match="n_eigenfunctions=1000"):
         m.bases(1000)
 
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import gc
+import os
+import pickle
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
@@ -79,7 +82,7 @@ def test_compare_match_and_align_take_any_mesh(shapes: list[Shape], tmp_path: Pa
     [file] = canonform.datasets.write([b], tmp_path, format="ply")
     for other in (b, file, Path(file), (b.vertices, b.faces), trimesh.Trimesh(b.vertices, b.faces, process=False)):
         assert canonform.compare(a, other).distance == pytest.approx(expected)
-    assert canonform.match((a.vertices, a.faces), file, eigenfunctions=30).best.vertices.shape == (1000,)
+    assert canonform.match((a.vertices, a.faces), file, n_eigenfunctions=30).best.vertices.shape == (1000,)
     assert canonform.align(a, a.surface().canonical_form(stress="skip")).rms < 1e-6
 
 
@@ -100,15 +103,15 @@ def test_compare_match_and_align_take_any_mesh(shapes: list[Shape], tmp_path: Pa
         (lambda s, i: s.path(0.5, 3), PointError, "whole numbers"),
         (lambda s, i: s.path(0, None), PointError, "None is not a point"),
         (lambda s, i: s.distances(0, max_distance="far"), OptionError, "max_distance='far'"),
-        (lambda s, i: s.farthest_points(-1), OptionError, "n=-1 is not possible"),
+        (lambda s, i: s.farthest_points(-1), OptionError, "n_points=-1 is not possible"),
         (lambda s, i: s.farthest_points(3, first=-1), OptionError, "first=-1"),
-        (lambda s, i: s.distance_field(-3), OptionError, "landmarks=-3"),
-        (lambda s, i: s.canonical_form(n=-1), OptionError, "n=-1 is not possible"),
+        (lambda s, i: s.distance_field(-3), OptionError, "n_landmarks=-3"),
+        (lambda s, i: s.canonical_form(n_landmarks=-1), OptionError, "n_landmarks=-1 is not possible"),
         (lambda s, i: s.canonical_form(seed=-1), OptionError, "seed=-1"),
-        (lambda s, i: s.canonical_form(rank=[3]), OptionError, "[3]"),
+        (lambda s, i: canonform.Nystrom(rank=[3]), OptionError, "rank=[3]"),
         (lambda s, i: s.canonical_form(memory=1.5), OptionError, "memory=1.5"),
         (lambda s, i: s.canonical_form(method=5), OptionError, "method=5"),
-        (lambda s, i: s.distances(0, method=5), OptionError, "method=5"),
+        (lambda s, i: s.distances(0, geodesic=5), OptionError, "geodesic=5"),
         (lambda s, i: s.signature(3), OptionError, "kind=3"),
         (lambda s, i: i.search("tom", k=-1), OptionError, "k=-1"),
         (lambda s, i: i.search("tom", k=1.5), OptionError, "k=1.5"),
@@ -142,6 +145,63 @@ def test_generated_shapes_come_with_their_true_maps() -> None:
     found = {m.kind: m for m in canonform.match(a, b).maps}["direct"]
     error = b.surface().distances_many(truth[::50])[np.arange(20), found.vertices[::50]]
     assert np.median(error) < 3 * spacing
+    first, second = canonform.datasets.generate("person", poses=[0, 3], n_vertices=1000)
+    assert (first.name, second.name, first.label) == ("person0", "person3", "person")
+    assert len(set(first.true_map(second).tolist())) > 500
     dog = canonform.datasets.generate("david", poses=1, n_vertices=1000)[0]
     with pytest.raises(OptionError, match="no true map"):
         a.true_map(dog)
+
+
+def _resident() -> int:
+    """The memory that is resident now, in bytes."""
+    pages = int(Path("/proc/self/statm").read_text().split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE")
+
+
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="no /proc")
+def test_ten_thousand_calls_take_no_more_memory(index: Index, square: Surface) -> None:
+    field, form, basis = square.distance_field(10), square.canonical_form(20), square.eigenbasis(9)
+    at, vector = canonform.FacePoint(8), index.vector("tom")
+
+    def wrong() -> None:
+        with pytest.raises(CanonformError):
+            square.distances(81)
+
+    calls: dict[str, Callable[[], object]] = {
+        "distances": lambda: square.distances(7),
+        "exact distances": lambda: square.distances(at, geodesic="exact"),
+        "options": lambda: square.distances(3, geodesic=canonform.FastMarching(update="planar")),
+        "distances_many": lambda: square.distances_many([0, 5]),
+        "path": lambda: square.path(0, 80),
+        "farthest_points": lambda: square.farthest_points(5),
+        "closest_point": lambda: square.closest_point([0.3, 0.2, 1.0]),
+        "gradient": lambda: square.gradient(square.vertices[:, 0]),
+        "laplacian": lambda: square.laplacian(),
+        "signature": lambda: square.signature(),
+        "hks": lambda: basis.hks(n_times=4),
+        "pair": lambda: field.pair(3, 70),
+        "pairs": lambda: field.pairs([[3, 70], [4, 5]]),
+        "nearest": lambda: field.nearest(3, 4),
+        "place": lambda: form.place(11),
+        "points": lambda: form._inner.points(),
+        "vector": lambda: index.vector("tom"),
+        "index.nearest": lambda: index.nearest(vector, k=2),
+        "contains": lambda: "tom" in index,
+        "shapes": lambda: index.shapes(),
+        "an error": wrong,
+        "a surface": lambda: Surface(square.vertices, square.faces),
+        "a pickle": lambda: pickle.loads(pickle.dumps(square)),
+        "a method": lambda: canonform.Nystrom(rank=9),
+    }
+    for name, call in calls.items():
+        for _ in range(300):
+            call()
+        gc.collect()
+        before = _resident()
+        for _ in range(10_000):
+            call()
+        gc.collect()
+        grown = _resident() - before
+        # A leak of 200 bytes a call would show; allocators keep a little.
+        assert grown < 2_000_000, f"{name}: {grown} bytes"

@@ -31,8 +31,8 @@ def test_every_result_has_a_view(cats: list[Shape], collection: Path, tmp_path: 
     for shown, n_pictures in [
         (cats[0], 1),
         (a, 1),
-        (a.canonical_form(n=30), 1),
-        (a.canonical_form(n=30, dim=2), 1),
+        (a.canonical_form(n_landmarks=30), 1),
+        (a.canonical_form(n_landmarks=30, n_components=2), 1),
         (canonform.compare(a, b), 2),
         (index, 0),
         (index.search(a, k=3), 4),

@@ -73,23 +73,24 @@ def test_the_eigenbasis_of_a_ball_is_known() -> None:
     np.testing.assert_allclose(basis.synthesize(basis.project(x)), x, atol=0.02)
     with pytest.raises(OptionError, match="3000 vertices"):
         basis.project(np.zeros(5))
-    with pytest.raises(OptionError, match="k=0"):
+    with pytest.raises(OptionError, match="n_eigenfunctions=0"):
         surface.eigenbasis(0)
 
 
 def test_kernels_are_constant_on_a_ball_and_follow_poses(cats: list[Shape]) -> None:
     basis = ball().eigenbasis(36)
-    for kernel in (basis.hks(n=5), basis.wks(n=5)):
+    for kernel in (basis.hks(n_times=5), basis.wks(n_energies=5)):
         assert kernel.shape == (3000, 5) and np.isfinite(kernel).all()
     # Up to the times at which only whole multiplets count.
-    late = basis.hks(n=5)[:, 2:]
+    late = basis.hks(n_times=5)[:, 2:]
     assert (late.std(axis=0) < 0.02 * late.mean(axis=0)).all()
     a, b = (shape.surface() for shape in cats)
-    for kernel in ("hks", "wks"):
-        ours, theirs = (np.sort(np.log(getattr(surface, kernel)(n=6, k=60)), axis=0) for surface in (a, b))
+    for kernel, count in (("hks", "n_times"), ("wks", "n_energies")):
+        given = {count: 6, "n_eigenfunctions": 60}
+        ours, theirs = (np.sort(np.log(getattr(surface, kernel)(**given)), axis=0) for surface in (a, b))
         assert np.abs(ours - theirs).mean() < 0.2, kernel
-    assert a.hks([1.0, 100.0], k=20).shape == (1000, 2)
-    assert a.hks(np.geomspace(1, 10, 3), k=20).min() > 0
+    assert a.hks([1.0, 100.0], n_eigenfunctions=20).shape == (1000, 2)
+    assert a.hks(np.geomspace(1, 10, 3), n_eigenfunctions=20).min() > 0
 
 
 def test_dropped_and_merged_vertices_keep_their_places() -> None:
@@ -139,7 +140,7 @@ def test_points_are_objects(square: Surface) -> None:
     path = square.path(on_edge, in_face)
     assert (path.at[0], path.at[-1]) == (on_edge, in_face)
     assert {type(point) for point in path.at[1:-1]} <= {EdgePoint, int}
-    form = square.canonical_form(n=20)
+    form = square.canonical_form(n_landmarks=20)
     np.testing.assert_array_equal(form.place([on_edge]), form.place(["3-4@0.25"]))
 
 
@@ -148,3 +149,49 @@ def test_surfaces_are_written_exactly(cat: Shape, tmp_path: Path) -> None:
     again = canonform.read(tmp_path / "cat.ply")
     np.testing.assert_array_equal(again.vertices, cat.vertices)
     np.testing.assert_array_equal(again.faces, cat.faces)
+
+
+def test_the_logarithmic_map_of_a_plane_is_the_plane() -> None:
+    vertices, faces = grid(12, 3.0)
+    turned = vertices @ np.array([[0.6, 0.0, 0.8], [0.0, 1.0, 0.0], [-0.8, 0.0, 0.6]]).T + 5
+    surface = Surface(turned, faces)
+    # Vertex v is at (v // 12, v % 12), and its neighbour with the lowest number one row before, diagonally.
+    source = 65
+    along = vertices[source - 13] - vertices[source]
+    x, y = along[:2] / np.linalg.norm(along)
+    expected = (vertices - vertices[source])[:, :2] @ np.array([[x, -y], [y, x]])
+    np.testing.assert_allclose(surface.log_map(source), expected, atol=1e-12)
+    # In a face, from the first corner to the second.
+    corners = vertices[faces[40]]
+    x, y = (corners[1] - corners[0])[:2] / np.linalg.norm(corners[1] - corners[0])
+    expected = (vertices - corners.mean(axis=0))[:, :2] @ np.array([[x, -y], [y, x]])
+    np.testing.assert_allclose(surface.log_map(FacePoint(40)), expected, atol=1e-12)
+
+
+def test_the_logarithmic_map_of_a_ball_is_azimuthal_equidistant() -> None:
+    surface = ball()
+    points, pole = surface.vertices / 2, 1000
+    found = surface.log_map(pole)
+    np.testing.assert_allclose(np.linalg.norm(found, axis=1), surface.distances(pole, geodesic="exact"), atol=1e-12)
+    angles = np.arccos(np.clip(points @ points[pole], -1, 1))
+    tangent = points - (points @ points[pole])[:, None] * points[pole]
+    lowest = min(surface.edges[(surface.edges == pole).any(axis=1)].ravel())
+    x = tangent[lowest] / np.linalg.norm(tangent[lowest])
+    y = np.cross(points[pole], x)
+    flat = 2 * angles[:, None] * np.column_stack([tangent @ x, tangent @ y])
+    expected = flat / np.maximum(np.linalg.norm(tangent, axis=1), 1e-9)[:, None]
+    # Near the other pole, all directions lead there.
+    near = angles < 2
+    assert np.linalg.norm(found - expected, axis=1)[near].max() < 0.1
+    assert np.linalg.norm(found - expected, axis=1)[near].mean() < 0.02
+
+
+def test_the_logarithmic_map_is_about_one_point(square: Surface) -> None:
+    assert square.log_map(3).shape == (81, 2) and (square.log_map(3)[3] == 0).all()
+    np.testing.assert_allclose(np.linalg.norm(square.log_map(EdgePoint(3, 4)), axis=1), square.distances(EdgePoint(3, 4), geodesic="exact"))
+    for wrong in ([0, 1], 81, None, []):
+        with pytest.raises(PointError):
+            square.log_map(wrong)
+    vertices, faces = grid()
+    with_loose = Surface(np.concatenate([vertices, [[9.0, 9.0, 0.0]]]), faces)
+    assert np.isnan(with_loose.log_map(0)[81]).all()

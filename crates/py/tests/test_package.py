@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import ast
 import doctest
-import importlib.util
 import inspect
+import pydoc
 import re
 import subprocess
 import sys
 import textwrap
+from collections.abc import Callable
+from dataclasses import fields
+from functools import cached_property
 from pathlib import Path
-from typing import get_args
+from typing import Any, get_args
 
 import canonform
 import pytest
-from canonform import _canonform, _settings
+from canonform import _canonform, _methods, _settings
 from conftest import ROOT, grid
 
 SOURCE = ROOT / "crates" / "py" / "python" / "canonform"
@@ -40,26 +43,139 @@ def test_the_readme_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
 
 def test_types_hold() -> None:
     pytest.importorskip("mypy")
-    command = [sys.executable, "-m", "mypy", "--config-file", ROOT / "crates" / "py" / "pyproject.toml", SOURCE]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT / "crates" / "py")
+    done = _mypy(SOURCE)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_types_name_what_is_possible() -> None:
-    square = canonform.Surface(*grid())
-    assert get_args(_settings.DistanceMethod) == tuple(canonform.distance_methods())
-    assert get_args(_settings.EmbeddingMethod) == tuple(canonform.embedding_methods())
-    others = {
+def _mypy(*arguments: object) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "mypy", "--config-file", ROOT / "crates" / "py" / "pyproject.toml", *arguments]
+    return subprocess.run(list(map(str, command)), capture_output=True, text=True, cwd=ROOT / "crates" / "py")
+
+
+def test_mypy_finds_wrong_names(tmp_path: Path) -> None:
+    """The lines that end in "# wrong" fail, and no others."""
+    pytest.importorskip("mypy")
+    snippet = tmp_path / "snippet.py"
+    snippet.write_text(WRONG_AND_RIGHT)
+    done = _mypy("--cache-dir", tmp_path / "cache", snippet)
+    found = {int(number) for number in re.findall(r"^.*snippet\.py:(\d+): error", done.stdout, re.M)}
+    expected = {i + 1 for i, line in enumerate(WRONG_AND_RIGHT.splitlines()) if line.endswith("# wrong")}
+    assert found == expected, done.stdout + done.stderr
+
+
+WRONG_AND_RIGHT = """
+import canonform
+from canonform import FastMarching, KernelPca, NystromMDS, Nystrom, Smacof, Spectral
+
+shape = canonform.datasets.generate("person", poses=1)[0]
+canonform.datasets.generate("parson")  # wrong
+canonform.datasets.write([shape], "folder", format="stl")
+canonform.datasets.write([shape], "folder", format="step")  # wrong
+cat = canonform.read("cat.off", components="bridge", weld=0.1)
+canonform.read("cat.off", components="all")  # wrong
+cat.distances(0, geodesic="exact")
+cat.distances(0, geodesic="fmm")  # wrong
+cat.distances(0, geodesic=FastMarching(update="planar", obtuse="unfold"))
+cat.distances(0, geodesic=FastMarching(update="plane"))  # wrong
+cat.path(0, 5, geodesic=Nystrom())  # wrong
+cat.canonical_form(200, method="smacof", stress="skip")
+cat.canonical_form("auto", method=Smacof(tolerance=1e-5, sampling="random"))
+cat.canonical_form("many")  # wrong
+cat.canonical_form(method="fmm")  # wrong
+cat.canonical_form(method=FastMarching())  # wrong
+cat.canonical_form(method=Nystrom(regularization="svd"))  # wrong
+cat.canonical_form(method=Nystrom(sigma="mean"))  # wrong
+cat.canonical_form(method=KernelPca(sigma="mode"))  # wrong
+cat.canonical_form(method=Spectral(mu="inf"))  # wrong
+cat.canonical_form(stress="none")  # wrong
+cat.canonical_form(rank=30)  # wrong
+cat.signature("shape-dna")
+cat.signature("shapedna")  # wrong
+cat.laplacian(kind="cotangents")  # wrong
+cat.mass(kind="lumped")  # wrong
+canonform.compare(cat, "dog.off", distance="hausdorff95")
+canonform.compare(cat, "dog.off", distance="hausdorff")  # wrong
+canonform.match(cat, cat, geodesic="fmm")  # wrong
+canonform.match(cat, cat).best.transfer([1.0], to="c")  # wrong
+index = canonform.Index.build("meshes", "i.canonform", method="landmark")
+canonform.Index.build("meshes", "i.canonform", method="pca")  # wrong
+index.search(cat, rank="graph")
+index.search(cat, rank="best")  # wrong
+index.evaluate(by="moments")
+index.evaluate(by="moment")  # wrong
+index.distances(kind="forms")  # wrong
+index.duplicates(kinds=["scaled"])
+index.duplicates(kinds=["equal"])  # wrong
+"""
+
+
+def _possible(call: Callable[[], object]) -> set[str]:
+    """What an error says is possible."""
+    with pytest.raises(canonform.errors.CanonformError) as raised:
+        call()
+    said = re.split(r"use |one of ", str(raised.value))[-1]
+    return set(re.findall(r'["`]([^"`?]+)["`]', said))
+
+
+def test_literals_are_what_rust_reports(tmp_path: Path) -> None:
+    of_methods, others = _canonform.options()
+    stated = {name: [value for value, _ in names] for name, _, names, _ in [*of_methods, *others] if names}
+    literals = {
+        "method": _settings.EmbeddingName,
+        "geodesic": _settings.DistanceName,
         "update": _settings.Update,
         "obtuse": _settings.Obtuse,
         "sampling": _settings.Sampling,
         "regularization": _settings.Regularization,
-        "stress": _settings.Stress,
+        "stress": _settings.StressChoice,
+        "components": _settings.Components,
+        "distance": _settings.FormDistance,
     }
-    for option, named in others.items():
-        with pytest.raises(canonform.errors.OptionError) as raised:
-            square.canonical_form(**{option: "?"})
-        assert set(re.findall('"([^"?]+)"', str(raised.value).split("use ")[1])) == set(get_args(named)), option
+    assert {name: list(get_args(literal)) for name, literal in literals.items()} == stated
+    assert list(get_args(_settings.SignatureKind)) == ["fused", *canonform.signature_kinds()]
+    assert list(get_args(_settings.Family)) == list(canonform.datasets.families())
+    assert list(get_args(_settings.MeshFormat)) == _canonform.mesh_formats()
+    shape = canonform.datasets.generate("cat", poses=1, n_vertices=1000)[0]
+    index = canonform.Index.build([shape], tmp_path / "i.canonform")
+    square = canonform.Surface(*grid())
+    wrong: Any = "?"
+    for literal, call in [
+        (_settings.LaplacianKind, lambda: square.laplacian(kind=wrong)),
+        (_settings.Ranking, lambda: index.search(square, rank=wrong)),
+        (_settings.IndexDistance, lambda: index.distances(kind=wrong)),
+        (_settings.RelationKind, lambda: index.duplicates(kinds=[wrong])),
+        (_settings.SignatureKind, lambda: square.signature(wrong)),
+    ]:
+        assert _possible(call) == set(get_args(literal)), literal
+
+
+def test_methods_have_the_options_that_rust_reports() -> None:
+    of_methods, others = _canonform.options()
+    kinds = [getattr(canonform, name) for name in canonform.__all__ if isinstance(getattr(canonform, name), type)]
+    methods = {kind._name: kind for kind in kinds if issubclass(kind, _methods.Options)}
+    marching = {name for name, *_ in others if name in ("update", "obtuse")}
+    expected = {name: set() for name in get_args(_settings.EmbeddingName)} | {"fast-marching": marching}
+    for option, _, _, of in of_methods:
+        for method in of:
+            expected[method].add(option)
+    found = {name: {field.name for field in fields(kind)} for name, kind in methods.items()}
+    assert found == {name: options for name, options in expected.items() if options}
+    # What is stated as a default is one.
+    defaults = {name: default for name, default, *_ in [*of_methods, *others]}
+    for kind in methods.values():
+        for field in fields(kind):
+            if field.default is not None:
+                assert str(field.default) == defaults[field.name] or float(field.default) == float(defaults[field.name])
+
+
+def test_keywords_are_the_options_of_the_library() -> None:
+    options = {name for name, *_ in _canonform.options()[1]}
+    keywords = set(inspect.signature(canonform.Surface.canonical_form).parameters)
+    assert keywords - options == {"self", "reuse", "progress"}
+    of_maps_meshes_and_indexes = {"components", "weld", "n_points", "size", "distance", "max_vertices", "eigenfunctions"}
+    assert options - keywords == {"update", "obtuse"} | of_maps_meshes_and_indexes
+    for call in (canonform.compare, canonform.Index.build):
+        assert {"n_landmarks", "method", "geodesic", "seed"} <= set(inspect.signature(call).parameters)
 
 
 def test_stubs_name_what_the_module_has() -> None:
@@ -73,31 +189,55 @@ def test_stubs_name_what_the_module_has() -> None:
             assert methods == {name for name in vars(getattr(_canonform, node.name)) if not name.startswith("_")}, node.name
 
 
+def _public() -> dict[str, Any]:
+    """Everything public by its name in the documentation."""
+    found = {name: getattr(canonform, name) for name in canonform.__all__ if name != "__version__"}
+    for module in (canonform.datasets, canonform.errors, canonform.distributed):
+        found |= {f"{module.__name__}.{name}": getattr(module, name) for name in module.__all__}
+    return found
+
+
 def test_everything_public_is_documented() -> None:
-    for name in canonform.__all__:
-        if name in ("NystromMDS", "distributed") and importlib.util.find_spec("sklearn") is None:
-            continue
-        found = getattr(canonform, name)
-        if name == "__version__":
-            continue
+    for name, found in _public().items():
         assert inspect.getdoc(found), name
-        if inspect.isclass(found):
-            for member, value in vars(found).items():
-                if not member.startswith("_") and (callable(value) or isinstance(value, (property, classmethod))):
-                    assert inspect.getdoc(getattr(found, member)), f"{name}.{member}"
+        if inspect.isclass(found) and found.__module__.startswith("canonform"):
+            own = [member for kind in found.__mro__ if kind.__module__.startswith("canonform") for member in vars(kind)]
+            members = {member for member in own if not member.startswith("_")}
+            # Fields of data classes are in the documentation of the class.
+            stated = set(re.findall(r"\w+", found.__doc__ or ""))
+            for member in members - (stated & _attributes(found)):
+                value = inspect.getattr_static(found, member)
+                documented = getattr(value, "__func__", value)
+                assert inspect.getdoc(documented), f"{name}.{member}"
 
 
-def test_every_attribute_is_documented() -> None:
-    classes = [getattr(canonform, name) for name in canonform.__all__ if inspect.isclass(getattr(canonform, name))]
-    for found in [*classes, canonform.datasets.Shape]:
-        source = ast.parse(textwrap.dedent(inspect.getsource(found))).body[0]
+def _attributes(found: type) -> set[str]:
+    """The attributes that a class declares, or stores in its methods."""
+    names: set[str] = set()
+    for kind in found.__mro__:
+        if not kind.__module__.startswith("canonform"):
+            continue
+        source = ast.parse(textwrap.dedent(inspect.getsource(kind))).body[0]
         assert isinstance(source, ast.ClassDef)
-        fields = [n.target.id for n in source.body if isinstance(n, ast.AnnAssign) and isinstance(n.target, ast.Name)]
+        names |= {n.target.id for n in source.body if isinstance(n, ast.AnnAssign) and isinstance(n.target, ast.Name)}
         stored = [n for n in ast.walk(source) if isinstance(n, ast.Attribute) and isinstance(n.ctx, ast.Store)]
-        stores = [n.attr for n in stored if isinstance(n.value, ast.Name) and n.value.id == "self"]
-        words = set(re.findall(r"\w+", inspect.getdoc(found) or ""))
-        missing = {name for name in fields + stores if not name.startswith("_") and not name.endswith("_")} - words
-        assert not missing, (found, missing)
+        names |= {n.attr for n in stored if isinstance(n.value, ast.Name) and n.value.id == "self"}
+    return {name for name in names if not name.startswith("_")}
+
+
+def test_help_names_every_attribute() -> None:
+    for name, found in _public().items():
+        if inspect.isclass(found):
+            properties = {member for member in dir(found) if isinstance(inspect.getattr_static(found, member), PROPERTIES)}
+            for attribute in _attributes(found) - properties:
+                section = (found.__doc__ or "").partition("Attributes\n")[2] + (found.__doc__ or "").partition("Parameters\n")[2]
+                assert re.search(rf"^ *(\w+, )*{attribute}\b", section, re.M), f"{name}.{attribute}"
+            for attribute in properties:
+                if not attribute.startswith("_"):
+                    assert attribute in pydoc.render_doc(found, renderer=pydoc.plaintext), f"{name}.{attribute}"
+
+
+PROPERTIES = (property, cached_property)
 
 
 def test_the_version_is_that_of_the_workspace() -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 import canonform
 import numpy as np
 import pytest
-from canonform import Index
+from canonform import FastMarching, Fmds, Index, KernelPca, Landmark, Nystrom, Smacof, Spectral
 from canonform.datasets import Shape
 from conftest import Program
 
@@ -34,17 +34,17 @@ def test_distances(program: Program, meshes: list[Path], tmp_path: Path, method:
     program.run("geodesic", meshes[0], "--source", "0,17,f3@1:2:1", "--method", method, "-o", out)
     surface = canonform.read(meshes[0])
     rows = np.load(out)
-    np.testing.assert_array_equal(surface.distances_many([0, 17, "f3@1:2:1"], method=method), rows)
-    np.testing.assert_array_equal(surface.distances(17, method=method), rows[1])
+    np.testing.assert_array_equal(surface.distances_many([0, 17, "f3@1:2:1"], geodesic=method), rows)
+    np.testing.assert_array_equal(surface.distances(17, geodesic=method), rows[1])
     program.run("geodesic", meshes[0], "--source", "0,17", "--nearest", "--method", method, "-o", out)
-    np.testing.assert_array_equal(surface.distances([0, 17], method=method), np.load(out)[0])
+    np.testing.assert_array_equal(surface.distances([0, 17], geodesic=method), np.load(out)[0])
 
 
 @pytest.mark.parametrize("update", ["point-source", "virtual-source", "planar"])
 def test_variants_of_fast_marching(program: Program, meshes: list[Path], tmp_path: Path, update: str) -> None:
     out = tmp_path / "rows.npy"
     program.run("geodesic", meshes[0], "--source", "5", "--update", update, "--obtuse", "unfold", "-o", out)
-    rows = canonform.read(meshes[0]).distances_many([5], update=update, obtuse="unfold")
+    rows = canonform.read(meshes[0]).distances_many([5], geodesic=FastMarching(update=update, obtuse="unfold"))
     np.testing.assert_array_equal(rows, np.load(out))
 
 
@@ -62,17 +62,22 @@ def test_paths(program: Program, meshes: list[Path], tmp_path: Path) -> None:
     ("flags", "arguments"),
     [
         ([], {}),
-        (["-n", "40", "--rank", "9", "--geodesic", "heat"], {"n": 40, "rank": 9, "geodesic": "heat"}),
-        (["-n", "auto", "--seed", "2"], {"n": "auto", "seed": 2}),
-        (["-n", "auto", "--target-stress", "0.2"], {"n": "auto", "target_stress": 0.2}),
-        (["-n", "30", "--method", "smacof", "--iterations", "5"], {"n": 30, "method": "smacof", "iterations": 5}),
-        (["--method", "spectral", "-n", "30", "--mu", "inf"], {"method": "spectral", "n": 30, "mu": float("inf")}),
-        (["--method", "kpca", "-n", "30", "--sigma", "median"], {"method": "kpca", "n": 30, "sigma": "median"}),
+        (
+            ["-n", "40", "--rank", "9", "--geodesic", "heat"],
+            {"n_landmarks": 40, "method": Nystrom(rank=9), "geodesic": "heat"},
+        ),
+        (["-n", "auto", "--seed", "2"], {"n_landmarks": "auto", "seed": 2}),
+        (["-n", "auto", "--target-stress", "0.2"], {"n_landmarks": "auto", "target_stress": 0.2}),
+        (["-n", "30", "--method", "smacof", "--iterations", "5"], {"n_landmarks": 30, "method": Smacof(max_iterations=5)}),
+        (["--method", "spectral", "-n", "30", "--mu", "inf"], {"method": Spectral(mu=float("inf")), "n_landmarks": 30}),
+        (["--method", "kpca", "-n", "30", "--sigma", "median"], {"method": KernelPca(sigma="median"), "n_landmarks": 30}),
         (
             ["--regularization", "rpi", "--alpha", "1e-9", "--sampling", "random", "--seed", "4", "--dim", "5"],
-            {"regularization": "rpi", "alpha": 1e-9, "sampling": "random", "seed": 4, "dim": 5},
+            {"method": Nystrom(regularization="rpi", alpha=1e-9, sampling="random"), "seed": 4, "n_components": 5},
         ),
-        (["--first-sample", "8", "--stress", "exact"], {"first_sample": 8, "stress": "exact"}),
+        (["--first-sample", "8", "--stress", "exact"], {"method": Nystrom(first=8), "stress": "exact"}),
+        (["--method", "landmark", "--sampling", "max-variance"], {"method": Landmark(sampling="max-variance")}),
+        (["--method", "fmds", "--update", "planar"], {"method": Fmds(), "geodesic": FastMarching(update="planar")}),
     ],
 )
 def test_forms(program: Program, meshes: list[Path], tmp_path: Path, flags: list[str], arguments: dict) -> None:
@@ -114,7 +119,7 @@ def test_repairs(program: Program, tmp_path: Path, cats: list[Shape]) -> None:
 
 
 def test_comparisons(program: Program, meshes: list[Path]) -> None:
-    for flags, arguments in [([], {}), (["-n", "40", "--method", "landmark"], {"n": 40, "method": "landmark"})]:
+    for flags, arguments in [([], {}), (["-n", "40", "--method", "landmark"], {"n_landmarks": 40, "method": "landmark"})]:
         report = program.json("compare", *meshes, *flags)
         a, b = map(canonform.read, meshes)
         found = canonform.compare(a, b, **arguments)
@@ -159,8 +164,8 @@ def test_indexes_with_other_forms(program: Program, meshes: list[Path], tmp_path
     folder = meshes[0].parent
     flags = ["-n", "40", "--rank", "9", "--update", "virtual-source", "--points", "300", "--size"]
     program.run("index", "build", folder, "-o", tmp_path / "theirs.canonform", *flags)
-    form = {"rank": 9, "update": "virtual-source"}
-    index = Index.build(folder, tmp_path / "ours.canonform", n=40, points=300, size=True, form=form)
+    options = {"method": Nystrom(rank=9), "geodesic": FastMarching(update="virtual-source")}
+    index = Index.build(folder, tmp_path / "ours.canonform", n_landmarks=40, n_points=300, size=True, **options)
     index.export(tmp_path / "ours.jsonl")
     assert program.run("index", "export", tmp_path / "theirs.canonform") == (tmp_path / "ours.jsonl").read_text()
 

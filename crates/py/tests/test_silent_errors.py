@@ -35,8 +35,10 @@ def index(tmp_path_factory: pytest.TempPathFactory) -> Index:
     _write(folder / "ring.off", _ring())
     _write(folder / "large.off", _ring(25.4))
     (folder / "broken.off").write_text("OFF\n3 1 0\n0 0 0\n")
-    with pytest.warns(SkippedMeshWarning, match=r"1 of the meshes.*broken\.off"):
-        return Index.build(folder, folder / "all.canonform")
+    with pytest.warns(SkippedMeshWarning, match=r"1 of the meshes.*broken\.off") as warned:
+        index = Index.build(folder, folder / "all.canonform")
+    assert warned[0].filename == __file__
+    return index
 
 
 def test_exports_have_the_format_of_their_name(index: Index, tmp_path: Path) -> None:

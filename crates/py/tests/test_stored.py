@@ -30,7 +30,8 @@ def everything(cats: list[Shape], tmp_path_factory: pytest.TempPathFactory) -> d
     [file] = canonform.datasets.write(cats[:1], folder)
     a, b = canonform.read(file), cats[1].surface()
     index = Index.build(folder, folder / "cats.canonform")
-    a_form, b_form = (surface.canonical_form(n=40, seed=3) for surface in (a, b))
+    found = canonform.match(a, b, n_eigenfunctions=40)
+    a_form, b_form = (surface.canonical_form(n_landmarks=40, seed=3) for surface in (a, b))
     return {
         "surface": a,
         "report": a.repair_report,
@@ -43,13 +44,34 @@ def everything(cats: list[Shape], tmp_path_factory: pytest.TempPathFactory) -> d
         "shape": cats[0],
         "alignment": canonform.align(a_form, b_form),
         "comparison": canonform.compare(a, b),
-        "match": canonform.match(a, b, eigenfunctions=40),
+        "match": found,
         "index": index,
         "search": index.search(b),
+        "result": index.search(b)[0],
         "entry": index.shapes()[0],
         "basis": a.eigenbasis(12),
         "nearest": a.closest_point([[0.0, 0.0, 0.0]]),
+        "map": found.best,
+        "mapped": found.best.points(),
+        "maps": canonform.match_all([a, b], n_eigenfunctions=40),
+        "edge point": canonform.EdgePoint(3, 4, 0.25),
+        "face point": canonform.FacePoint(8, (2.0, 1.0, 1.0)),
+        "marching": canonform.FastMarching(update="planar"),
+        "nystrom": canonform.Nystrom(rank=9),
+        "landmark": canonform.Landmark(sampling="random"),
+        "spectral": canonform.Spectral(mu=5.0),
+        "fmds": canonform.Fmds(first=3),
+        "kernel": canonform.KernelPca(sigma="median"),
+        "smacof": canonform.Smacof(max_iterations=5),
+        "estimator": canonform.NystromMDS(n_landmarks=20).fit(cats[0].vertices),
+        "error": canonform.errors.PointError("no such vertex"),
     }
+
+
+def test_every_public_type_is_among_them(everything: dict[str, Any]) -> None:
+    public = {getattr(canonform, name) for name in canonform.__all__ if isinstance(getattr(canonform, name), type)}
+    stored = {kind for value in everything.values() for kind in type(value).__mro__}
+    assert public <= stored, public - stored
 
 
 def test_everything_goes_through_a_process_pool(everything: dict[str, Any]) -> None:
@@ -59,7 +81,9 @@ def test_everything_goes_through_a_process_pool(everything: dict[str, Any]) -> N
     for name, value in everything.items():
         assert type(found[name]) is type(value), name
         assert repr(found[name]) == repr(value), name
-    for name in ("pairs", "pair", "path", "shape", "entry", "report", "basis", "nearest"):
+    by_value = ["pairs", "pair", "path", "shape", "result", "entry", "report", "basis", "nearest", "mapped", "edge point"]
+    methods = ["face point", "marching", "nystrom", "landmark", "spectral", "fmds", "kernel", "smacof"]
+    for name in [*by_value, *methods]:
         assert found[name] == everything[name], name
     surface, again = everything["surface"], found["surface"]
     np.testing.assert_array_equal(again.distances(5), surface.distances(5))
@@ -71,6 +95,9 @@ def test_everything_goes_through_a_process_pool(everything: dict[str, Any]) -> N
     assert [result.id for result in found["search"]] == [result.id for result in everything["search"]]
     np.testing.assert_array_equal(found["comparison"].residuals, everything["comparison"].residuals)
     np.testing.assert_array_equal(found["match"].best.vertices, everything["match"].best.vertices)
+    np.testing.assert_array_equal(found["map"].transfer(np.arange(1000)), everything["map"].transfer(np.arange(1000)))
+    np.testing.assert_array_equal(found["maps"][0, 1].vertices, everything["maps"][0, 1].vertices)
+    np.testing.assert_array_equal(found["estimator"].embedding_, everything["estimator"].embedding_)
     assert found["match"].pictures() == everything["match"].pictures()
     assert found["index"].shapes() == everything["index"].shapes()
 
@@ -79,7 +106,7 @@ def test_everything_goes_through_a_process_pool(everything: dict[str, Any]) -> N
 def test_a_form_is_made_again_only_when_needed(everything: dict[str, Any], name: str) -> None:
     form = everything[name]
     again = pickle.loads(pickle.dumps(form))
-    for attribute in ("points", "faces", "eigenvalues", "samples"):
+    for attribute in ("points", "faces", "eigenvalues", "landmarks"):
         np.testing.assert_array_equal(getattr(again, attribute), getattr(form, attribute))
     assert again.report == form.report and again.options == form.options and again._made is None
     assert not again.points.flags.writeable
@@ -123,26 +150,3 @@ def test_values_are_equal_and_hash(square: Surface, first: Callable, second: Cal
     a, b, c = first(square), second(square), other(square)
     assert a == b and hash(a) == hash(b) and a != c and a != "a"
     assert len({a, b, c}) == 2
-
-
-def test_many_calls_take_no_more_memory(square: Surface) -> None:
-    resource = pytest.importorskip("resource")
-    field = square.distance_field(10)
-    form = square.canonical_form(n=20)
-
-    def call(times: int) -> None:
-        for i in range(times):
-            square.distances(i % 81)
-            field.pair(3, i % 81)
-            form.place(i % 81)
-            if i % 10 == 0:
-                pickle.loads(pickle.dumps(square))
-                pickle.loads(pickle.dumps(field))
-                with pytest.raises(CanonformError):
-                    square.distances(81)
-
-    call(500)
-    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    call(2000)
-    kilobytes = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before
-    assert kilobytes < 5000

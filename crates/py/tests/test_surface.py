@@ -5,7 +5,7 @@ from __future__ import annotations
 import canonform
 import numpy as np
 import pytest
-from canonform import Surface
+from canonform import FastMarching, Landmark, Nystrom, Spectral, Surface
 from canonform.datasets import Shape
 from canonform.errors import EmbeddingError, MeshError, MissingFileError, OptionError, PointError, TimeLimitError
 from conftest import grid
@@ -16,12 +16,12 @@ def test_distances_in_the_plane_are_euclidean(square: Surface) -> None:
     vertices, _ = grid()
     for method in ("fast-marching", "exact"):
         expected = np.linalg.norm(vertices - vertices[0], axis=1)
-        np.testing.assert_allclose(square.distances(0, method=method), expected, atol=1e-12)
+        np.testing.assert_allclose(square.distances(0, geodesic=method), expected, atol=1e-12)
 
 
 def test_every_method_of_the_table_measures_distances(square: Surface) -> None:
     for method in canonform.distance_methods():
-        distances = square.distances(0, method=method)
+        distances = square.distances(0, geodesic=method)
         assert distances.shape == (81,) and np.isfinite(distances).all()
         assert distances.max() == pytest.approx(distances[80]), method
 
@@ -31,7 +31,7 @@ def test_several_sources_give_the_nearest_or_one_row_each(square: Surface) -> No
     assert rows.shape == (3, 81)
     for row, source in zip(rows, [0, 80, "3-4@0.25"], strict=True):
         np.testing.assert_array_equal(row, square.distances(source))
-    np.testing.assert_allclose(square.distances([0, 80], method="exact"), np.minimum(*square.distances_many([0, 80], method="exact")))
+    np.testing.assert_allclose(square.distances([0, 80], geodesic="exact"), np.minimum(*square.distances_many([0, 80], geodesic="exact")))
     assert square.distances_many([]).shape == (0, 81)
 
 
@@ -87,14 +87,14 @@ def test_points_without_faces_are_a_surface(tmp_path) -> None:
     assert (surface.n_vertices, surface.n_faces) == (2006, 3996)
     report = surface.repair_report["points"]
     assert (report["n_points"], report["replaced_points"], report["outliers"]) == (2006, 5, 1)
-    distances = surface.distances(0, method="exact")
+    distances = surface.distances(0, geodesic="exact")
     assert np.isinf(distances[2005]) and distances[2000] == 0
     straight = np.linalg.norm(points - points[0], axis=1)
     np.testing.assert_allclose(distances[:2000], 2 * np.arcsin(straight / 2), rtol=0.001)
     np.savetxt(tmp_path / "ball.xyz", points)
     read = canonform.read(tmp_path / "ball.xyz")
-    np.testing.assert_allclose(read.distances(0, method="exact"), distances[:2000])
-    assert len(read.canonical_form(n=20).points) == 2000
+    np.testing.assert_allclose(read.distances(0, geodesic="exact"), distances[:2000])
+    assert len(read.canonical_form(n_landmarks=20).points) == 2000
 
 
 def test_noisy_points_are_smoothed() -> None:
@@ -113,7 +113,7 @@ def test_results_are_in_the_order_of_the_input() -> None:
     expected = np.concatenate([[np.inf], Surface(vertices, faces).distances(3), [np.inf] * 3])
     np.testing.assert_array_equal(surface.distances(4), expected)
     np.testing.assert_array_equal(surface.distances_many([4])[0], expected)
-    form = surface.canonical_form(n=20)
+    form = surface.canonical_form(n_landmarks=20)
     assert np.isnan(form.points).all(axis=1).nonzero()[0].tolist() == [0, 82, 83, 84]
     assert surface.repair_report["dropped_components"] == 1
     assert "component" in str(surface.repair_report)
@@ -129,7 +129,7 @@ def test_paths_lead_from_start_to_end(cat: Shape) -> None:
     assert (path.at[0], path.at[-1]) == (3, 700)
     steps = np.linalg.norm(np.diff(path.points, axis=0), axis=1)
     np.testing.assert_allclose(np.cumsum(steps), path.along[1:], rtol=1e-9)
-    np.testing.assert_allclose(path.length, surface.distances(3, method="exact")[700], rtol=0.01)
+    np.testing.assert_allclose(path.length, surface.distances(3, geodesic="exact")[700], rtol=0.01)
     several = surface.path(3, [700, "10-11"] if _has_edge(cat, 10, 11) else [700, 5])
     assert len(several) == 2
     np.testing.assert_array_equal(several[0].points, path.points)
@@ -151,31 +151,31 @@ def test_a_form_of_a_folded_sheet_is_the_flat_sheet() -> None:
     folded = vertices.copy()
     half = folded[:, 0] > 0.5
     folded[half, 2], folded[half, 0] = folded[half, 0] - 0.5, 0.5
-    form = Surface(folded, faces).canonical_form(n=50, geodesic="exact")
+    form = Surface(folded, faces).canonical_form(n_landmarks=50, geodesic="exact")
     flat = np.linalg.norm(vertices[:, None] - vertices[None], axis=2)
     embedded = np.linalg.norm(form.points[:, None] - form.points[None], axis=2)
     np.testing.assert_allclose(embedded, flat, atol=0.01)
     assert form.normalized_stress is not None and form.normalized_stress < 0.005
-    assert form.report["n_samples"] == 50 and form.samples.shape == (50,)
-    np.testing.assert_allclose(form.distances[3], Surface(folded, faces).distances(form.samples[3], method="exact"))
+    assert form.report["n_samples"] == 50 and form.landmarks.shape == (50,)
+    np.testing.assert_allclose(form.distances[3], Surface(folded, faces).distances(form.landmarks[3], geodesic="exact"))
 
 
 def test_every_embedding_makes_a_form(square: Surface) -> None:
     for method in canonform.embedding_methods():
-        options = {"eigenvectors": 30} if method == "spectral" else {}
-        form = square.canonical_form(n=20, method=method, dim=2, **options)
+        chosen = Spectral(n_eigenfunctions=30) if method == "spectral" else method
+        form = square.canonical_form(n_landmarks=20, method=chosen, n_components=2)
         assert form.points.shape == (81, 2) and np.isfinite(form.points).all(), method
         assert form.report["method"] == method
 
 
 def test_a_form_is_written_as_a_mesh(cat: Shape, tmp_path) -> None:
-    form = cat.surface().canonical_form(n=30)
+    form = cat.surface().canonical_form(n_landmarks=30)
     form.write(tmp_path / "form.ply")
     again = canonform.read(tmp_path / "form.ply")
     np.testing.assert_allclose(again.vertices, form.points, rtol=1e-6, atol=1e-6 * np.abs(form.points).max())
     np.testing.assert_array_equal(again.faces, cat.faces)
-    with pytest.raises(EmbeddingError, match="dim="):
-        cat.surface().canonical_form(n=30, dim=2).write(tmp_path / "flat.ply")
+    with pytest.raises(EmbeddingError, match="n_components="):
+        cat.surface().canonical_form(n_landmarks=30, n_components=2).write(tmp_path / "flat.ply")
 
 
 def test_signatures_do_not_depend_on_pose_and_size(cats: list[Shape]) -> None:
@@ -191,35 +191,44 @@ def test_signatures_do_not_depend_on_pose_and_size(cats: list[Shape]) -> None:
 
 def test_settings_reach_the_library(cat: Shape) -> None:
     surface = cat.surface()
-    usual = surface.canonical_form(n=30)
-    other = surface.canonical_form(n=30, rank=7, sampling="random", seed=3, update="virtual-source")
+    usual = surface.canonical_form(n_landmarks=30)
+    method, geodesic = Nystrom(rank=7, sampling="random"), FastMarching(update="virtual-source")
+    other = surface.canonical_form(n_landmarks=30, method=method, geodesic=geodesic, seed=3)
     assert other.report["rank"] == 7 and other.report["sampling"] == "random"
     assert not np.array_equal(usual.points, other.points)
-    np.testing.assert_array_equal(surface.canonical_form(n=np.int64(30)).points, usual.points)
-    assert surface.canonical_form(n=40, method="spectral", mu=np.inf).report["method"] == "spectral"
+    np.testing.assert_array_equal(surface.canonical_form(n_landmarks=np.int64(30)).points, usual.points)
+    assert surface.canonical_form(n_landmarks=40, method=Spectral(mu=np.inf)).report["method"] == "spectral"
 
 
 @pytest.mark.parametrize(
     ("call", "kind", "words"),
     [
-        (lambda s: s.distances(0, method="fastest"), OptionError, 'method="fastest" is not possible: use "fast-marching"'),
-        (lambda s: s.distances(0, update="magic"), OptionError, 'update="magic" is not possible'),
-        (lambda s: s.distances(0, method="heat", obtuse="flip"), OptionError, 'obtuse= has no effect with method="heat"'),
+        (lambda s: s.distances(0, geodesic="fastest"), OptionError, 'geodesic="fastest" is not possible: use "fast-marching"'),
+        (lambda s: FastMarching(update="magic"), OptionError, 'update="magic" is not possible'),
+        (lambda s: s.distances(0, geodesic=Nystrom()), OptionError, "geodesic=Nystrom() is not possible"),
+        (lambda s: s.distances(0, method="exact"), OptionError, "method= is not possible: use geodesic="),
+        (lambda s: s.distances(0, update="planar"), OptionError, "use geodesic=FastMarching(update=...)"),
+        (lambda s: s.canonical_form(n=30), OptionError, "n= is not possible: use n_landmarks="),
+        (lambda s: s.canonical_form(dim=2), OptionError, "use n_components="),
+        (lambda s: s.canonical_form(rank=9), OptionError, "use method=Nystrom(rank=...)"),
+        (lambda s: s.eigenbasis(k=9), OptionError, "use n_eigenfunctions="),
         (lambda s: s.distances(-1), PointError, "-1 is not a vertex"),
         (lambda s: s.distances(81), PointError, "vertex 81 does not exist; the mesh has 128 faces and 81 vertices"),
         (lambda s: s.distances("x"), PointError, "write 17 for a vertex"),
         (lambda s: s.path(0, "0-80"), PointError, "edge 0-80 does not exist"),
         (lambda s: s.distances(1.5), PointError, "whole numbers"),
         (lambda s: s.canonical_form(method="umap"), OptionError, 'use "nmds"'),
-        (lambda s: s.canonical_form(mu=3), OptionError, 'mu= has no effect with method="nmds"; leave it out, or use method="spectral"'),
-        (lambda s: s.canonical_form(rank=5, regularization="none"), OptionError, 'or use regularization="low-rank" or "cur"'),
-        (lambda s: s.canonical_form(n=0), OptionError, "n=0 is not possible"),
-        (lambda s: s.canonical_form(n=3, dim=30), EmbeddingError, "30 dimensions"),
+        (lambda s: s.canonical_form("auto", method="mds", target_stress=1), OptionError, 'has no effect with method="mds"; leave it'),
+        (lambda s: Nystrom(rank=5, regularization="none"), OptionError, 'or use regularization="low-rank" or "cur"'),
+        (lambda s: Spectral(n_eigenfunctions=-1), OptionError, "n_eigenfunctions=-1 is not possible"),
+        (lambda s: Landmark(first=-1), OptionError, "first=-1 is not possible"),
+        (lambda s: s.canonical_form(n_landmarks=0), OptionError, "n_landmarks=0 is not possible"),
+        (lambda s: s.canonical_form(n_landmarks=3, n_components=30), EmbeddingError, "30 dimensions"),
         (lambda s: s.canonical_form(timeout=0), OptionError, "positive number of seconds"),
         (lambda s: s.canonical_form(timeout=1e-9), TimeLimitError, "raise timeout="),
         (lambda s: s.canonical_form(memory="1K"), canonform.errors.MemoryLimitError, "raise memory="),
         (lambda s: s.canonical_form(memory="much"), OptionError, '"2G"'),
-        (lambda s: s.canonical_form(first_sample=500), PointError, "vertex 500"),
+        (lambda s: s.canonical_form(method=Landmark(first=500)), PointError, "vertex 500"),
         (lambda s: s.signature("magic"), OptionError, '"fused", "moments"'),
         (lambda s: canonform.read("nowhere.off"), MissingFileError, "nowhere.off"),
         (lambda s: canonform.read(__file__), MeshError, "unknown mesh format"),
@@ -232,7 +241,7 @@ def test_settings_reach_the_library(cat: Shape) -> None:
         (lambda s: Surface(np.full((3, 3), np.nan), [[0, 1, 2]]), MeshError, "not finite"),
         (lambda s: Surface("cat.off"), MeshError, "canonform.read(path)"),
         (lambda s: Surface(grid()[0][:11]), MeshError, "at least 12 points"),
-        (lambda s: canonform.align(s.canonical_form(n=20, dim=2), s), EmbeddingError, "dim="),
+        (lambda s: canonform.align(s.canonical_form(n_landmarks=20, n_components=2), s), EmbeddingError, "n_components="),
         (lambda s: canonform.datasets.generate("whale"), OptionError, "'cat'"),
         (lambda s: canonform.datasets.generate("cat", n_vertices=10), OptionError, "1000"),
         (lambda s: canonform.datasets.generate("cat", poses=[9]), OptionError, "0 to 8"),
@@ -268,7 +277,7 @@ def test_threads_change_nothing(cat: Shape) -> None:
             canonform.set_threads(n)
             assert canonform.threads() == n
             surface = Surface(cat.vertices, cat.faces)
-            results.append((surface.distances_many(range(20)), surface.canonical_form(n=40).points, surface.signature()))
+            results.append((surface.distances_many(range(20)), surface.canonical_form(n_landmarks=40).points, surface.signature()))
     finally:
         canonform.set_threads(before)
     for a, b in zip(*results, strict=True):
@@ -277,26 +286,15 @@ def test_threads_change_nothing(cat: Shape) -> None:
 
 def test_samples_are_taken_until_a_target_is_reached_and_reused(cat: Shape) -> None:
     surface = cat.surface()
-    form = surface.canonical_form(n="auto", target_stress=0.5)
+    form = surface.canonical_form(n_landmarks="auto", target_stress=0.5)
     auto = form.report["auto"]
-    assert (auto["stop"], auto["verdict"], len(form.samples)) == ("target", "within", 8)
-    more = surface.canonical_form(n=30, reuse=form)
-    np.testing.assert_array_equal(more.points, surface.canonical_form(n=30).points)
-    with pytest.raises(canonform.errors.OptionError, match='use n="auto"'):
-        surface.canonical_form(n=30, target_stress=0.5)
-    missed = surface.canonical_form(n="auto", target_stress=1e-4).report["auto"]
+    assert (auto["stop"], auto["verdict"], len(form.landmarks)) == ("target", "within", 8)
+    more = surface.canonical_form(n_landmarks=30, reuse=form)
+    np.testing.assert_array_equal(more.points, surface.canonical_form(n_landmarks=30).points)
+    with pytest.raises(canonform.errors.OptionError, match='use n_landmarks="auto"'):
+        surface.canonical_form(n_landmarks=30, target_stress=0.5)
+    missed = surface.canonical_form(n_landmarks="auto", target_stress=1e-4).report["auto"]
     assert (missed["stop"], missed["verdict"]) == ("settled", "exceeded")
-
-
-def test_keywords_are_the_options_of_the_library() -> None:
-    import inspect
-
-    from canonform import Surface, _canonform
-
-    options, of_form = map(set, _canonform.option_names())
-    keywords = set(inspect.signature(Surface.canonical_form).parameters)
-    assert of_form | {"n", "method", "geodesic", "target_stress", "stress"} <= keywords
-    assert keywords - options == {"self", "reuse", "progress"}
 
 
 def test_unaligned_arrays_are_read(square: Surface) -> None:

@@ -7,6 +7,7 @@ mod draft;
 mod plans;
 mod proportions;
 
+use base::{Budget, Observer};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 use surface::VertexId;
@@ -90,17 +91,24 @@ pub fn creatures(options: &CreatureOptions) -> Result<Vec<LabeledShape>, Dataset
 /// As [`creatures`].
 pub fn creature_family(family: usize, options: &CreatureOptions) -> Result<Vec<LabeledShape>, DatasetError> {
     validate(options)?;
-    let model = model(family, options)?;
-    (0..options.n_poses).into_par_iter().map(|pose| shape(family, &model, pose, options)).collect()
+    let budget = Budget::unlimited();
+    let model = model(family, options, &budget)?;
+    (0..options.n_poses).into_par_iter().map(|pose| shape(family, &model, pose, options, &budget)).collect()
 }
 
 /// Generates one creature, the same as in [`creatures`]; poses beyond the number in the options are further variations.
 ///
 /// # Errors
-/// As [`creatures`].
-pub fn creature(family: usize, pose: usize, options: &CreatureOptions) -> Result<LabeledShape, DatasetError> {
+/// As [`creatures`], and [`DatasetError::Exceeded`] when the budget of the observer is.
+pub fn creature(
+    family: usize,
+    pose: usize,
+    options: &CreatureOptions,
+    observer: &dyn Observer,
+) -> Result<LabeledShape, DatasetError> {
     validate(options)?;
-    shape(family, &model(family, options)?, pose, options)
+    let budget = observer.budget();
+    shape(family, &model(family, options, &budget)?, pose, options, &budget)
 }
 
 /// The names of the body plans, in the order of the families; they are the labels of the first ones.
@@ -129,13 +137,13 @@ fn no_surface(shape: String, options: &CreatureOptions) -> DatasetError {
     DatasetError::NoSurface { shape, n_vertices: options.n_vertices, seed: options.seed }
 }
 
-fn model(family: usize, options: &CreatureOptions) -> Result<BodyModel, DatasetError> {
+fn model(family: usize, options: &CreatureOptions, budget: &Budget) -> Result<BodyModel, DatasetError> {
     let (plan, round) = (family % PLANS.len(), family / PLANS.len());
     for attempt in 0..N_ATTEMPTS {
         let mut proportions = Proportions::new(options.seed, plan, round, attempt);
         let mut draft = Draft::default();
         PLANS[plan].1(&mut proportions, &mut draft);
-        if let Some(model) = measured(draft, &mut proportions.into_stream()) {
+        if let Some(model) = measured(draft, &mut proportions.into_stream(), budget)? {
             return Ok(model);
         }
     }
@@ -143,18 +151,19 @@ fn model(family: usize, options: &CreatureOptions) -> Result<BodyModel, DatasetE
 }
 
 /// The model of a body with random poses; `None` if its limbs touch at rest.
-fn measured(draft: Draft, stream: &mut Stream) -> Option<BodyModel> {
+fn measured(draft: Draft, stream: &mut Stream, budget: &Budget) -> Result<Option<BodyModel>, DatasetError> {
     let body = draft.body();
-    let spacing = SPACING * draft.finest?;
-    let raw =
-        extract(&body, Lattice { rotation: Matrix3::identity(), shift: Vector3::repeat(0.37), spacing });
+    let Some(finest) = draft.finest else { return Ok(None) };
+    let spacing = SPACING * finest;
+    let lattice = Lattice { rotation: Matrix3::identity(), shift: Vector3::repeat(0.37), spacing };
+    let raw = extract(&body, lattice, budget)?;
     if genus(&raw) != Some(draft.genus) {
-        return None;
+        return Ok(None);
     }
     let mut poses = vec![Pose::rest(&draft.skeleton)];
     poses.extend((1..N_POSES).map(|_| typical_pose(&draft.skeleton, stream)));
     let Draft { skeleton, genus, .. } = draft;
-    Some(BodyModel { area: area(&raw), body, skeleton, poses, genus, spacing })
+    Ok(Some(BodyModel { area: area(&raw), body, skeleton, poses, genus, spacing }))
 }
 
 fn area(raw: &RawSurface) -> f64 {
@@ -193,11 +202,12 @@ fn shape(
     model: &BodyModel,
     pose: usize,
     options: &CreatureOptions,
+    budget: &Budget,
 ) -> Result<LabeledShape, DatasetError> {
     let label = label(family);
     let name = format!("{label}{pose}");
     let stream = |purpose| Stream::of_creature(options.seed, family, pose, purpose);
-    let surface = rest_surface(model, options.n_vertices, &mut stream(Purpose::Lattice))
+    let surface = rest_surface(model, options.n_vertices, &mut stream(Purpose::Lattice), budget)?
         .ok_or_else(|| no_surface(name.clone(), options))?;
     let posed = posed_skeleton(model, pose, &mut stream(Purpose::Pose));
     let positions = posed_positions(&surface, &posed, scale(model));

@@ -4,8 +4,8 @@ use std::collections::HashSet;
 use std::f64::consts::PI;
 
 use canonform_datasets::{
-    ArticulatedOptions, DatasetError, Family, LabeledShape, articulated, articulated_at_rest,
-    articulated_body, articulated_shape,
+    ArticulatedOptions, CreatureOptions, DatasetError, Family, LabeledShape, articulated,
+    articulated_at_rest, articulated_body, articulated_shape, creature,
 };
 use mesh::{TriMesh, validate};
 use nalgebra::Point3;
@@ -129,7 +129,7 @@ fn people_are_clean_spheres_of_the_same_size_whose_limbs_touch() {
 
 #[test]
 fn all_bodies_of_a_family_rest_on_the_first_one() {
-    let rested = |body, pose| articulated_at_rest(Family::Person, body, pose, &options(1000)).unwrap();
+    let rested = |body, pose| articulated_at_rest(Family::Person, body, pose, &options(1000), &()).unwrap();
     let first = rested(0, 0);
     assert_eq!(first.rest.positions.len(), first.shape.mesh.n_vertices());
     let bounds = |mesh: &TriMesh| mesh.bounds().unwrap();
@@ -142,6 +142,15 @@ fn all_bodies_of_a_family_rest_on_the_first_one() {
         let [low, high] = [bounds(&found.shape.mesh)[0], bounds(&found.shape.mesh)[1]];
         assert!((high - low - (other_high - other_low)).norm() > 4.0, "the body has other proportions");
     }
+}
+
+#[test]
+fn a_cancelled_shape_ends_early() {
+    let budget = base::Budget::unlimited();
+    budget.cancel();
+    let cancelled = Err(DatasetError::Exceeded(base::Exceeded::Cancelled));
+    assert_eq!(articulated_at_rest(Family::Cat, 0, 0, &options(1000), &budget).map(drop), cancelled);
+    assert_eq!(creature(0, 0, &CreatureOptions::default(), &budget).map(drop), cancelled);
 }
 
 #[test]

@@ -54,9 +54,9 @@ fn bytes_depend_on_the_seed_and_not_on_threads_or_the_number_of_families() {
     let threads = |n| ThreadPoolBuilder::new().num_threads(n).build().unwrap();
     let all = threads(2).install(|| creatures(&few)).unwrap();
     assert_eq!(threads(1).install(|| creatures(&few)).unwrap(), all);
-    assert_eq!(creature(3, 1, &options(40, 8)).unwrap(), all[7]);
+    assert_eq!(creature(3, 1, &options(40, 8), &()).unwrap(), all[7]);
     let other = CreatureOptions { seed: 2, ..few };
-    assert_ne!(creature(3, 1, &other).unwrap().mesh, all[7].mesh);
+    assert_ne!(creature(3, 1, &other, &()).unwrap().mesh, all[7].mesh);
 }
 
 #[test]

@@ -116,7 +116,7 @@ fn maps_do_not_depend_on_threads() {
 
 fn rested(family: Family, pose: usize) -> RestedShape {
     let options = ArticulatedOptions { n_vertices: 1500, ..ArticulatedOptions::default() };
-    articulated_at_rest(family, 0, pose, &options).unwrap()
+    articulated_at_rest(family, 0, pose, &options, &()).unwrap()
 }
 
 /// The mean distance of images from true partners, as a share of the square root of the area.

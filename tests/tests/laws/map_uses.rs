@@ -20,7 +20,7 @@ fn prepared(mesh: &TriMesh) -> MappedSurface {
 /// A pose of a cat, with its vertices at rest.
 fn cat(pose: usize) -> RestedShape {
     let options = ArticulatedOptions { n_vertices: 1000, ..ArticulatedOptions::default() };
-    articulated_at_rest(Family::Cat, 0, pose, &options).unwrap()
+    articulated_at_rest(Family::Cat, 0, pose, &options, &()).unwrap()
 }
 
 /// The true partners of vertices: the nearest ones at rest.

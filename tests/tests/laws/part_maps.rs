@@ -26,7 +26,7 @@ impl Known {
 
     fn pose(family: Family, pose: usize) -> Self {
         let options = ArticulatedOptions { n_vertices: 1500, ..ArticulatedOptions::default() };
-        let rested = articulated_at_rest(family, 0, pose, &options).unwrap();
+        let rested = articulated_at_rest(family, 0, pose, &options, &()).unwrap();
         Self::new(rested.shape.mesh, rested.rest.positions)
     }
 

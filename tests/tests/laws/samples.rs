@@ -20,7 +20,7 @@ fn of_kind(kind: &str, n_vertices: usize) -> TriMesh {
 
 fn of_plan(plan: usize, n_vertices: usize) -> TriMesh {
     let options = CreatureOptions { n_vertices, ..CreatureOptions::default() };
-    creature(plan, 0, &options).unwrap().mesh
+    creature(plan, 0, &options, &()).unwrap().mesh
 }
 
 fn all_pairs(surface: &Surface) -> DistanceMatrix {

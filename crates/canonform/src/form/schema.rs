@@ -40,8 +40,10 @@ pub enum OptionGroup {
 /// One option: its name, its meaning, and what values it may have.
 #[derive(Debug)]
 pub struct OptionSpec {
-    /// Its name, a keyword; words are joined by underscores.
+    /// Its name; words are joined by underscores.
     pub name: &'static str,
+    /// What Python calls it: there, samples are landmarks, as in scikit-learn, and counts begin with `n_`.
+    pub keyword: &'static str,
     /// What it is about.
     pub group: OptionGroup,
     /// What its values look like, such as `C|paper`; empty for options with [named values](Self::names).
@@ -70,7 +72,8 @@ pub trait Named: Sized {
 /// Every option. Commands list them in this order.
 pub static SCHEMA: [OptionSpec; 24] = [
     named::<EmbedMethod>(OptionGroup::Method, "method", "nmds", "How to turn distances into coordinates"),
-    parsed::<Samples>(OptionGroup::Form, "samples", "SAMPLES|auto", "100", "Number of samples, or `auto` to take as many as needed"),
+    parsed::<Samples>(OptionGroup::Form, "samples", "SAMPLES|auto", "100", "Number of samples, or `auto` to take as many as needed")
+        .called("n_landmarks"),
     parsed::<f64>(
         OptionGroup::Target,
         "target_stress",
@@ -80,7 +83,7 @@ pub static SCHEMA: [OptionSpec; 24] = [
     )
     .checked(check_stress)
     .of(|m| m.is_sampled() && m.has_unit() && !matches!(m, EmbedMethod::Smacof { .. })),
-    parsed::<usize>(OptionGroup::Form, "dim", "K", "3", "Dimensions of the embedding"),
+    parsed::<usize>(OptionGroup::Form, "dim", "K", "3", "Dimensions of the embedding").called("n_components"),
     named::<Method>(OptionGroup::Form, "geodesic", "fast-marching", "How to measure distances"),
     named::<Update>(OptionGroup::Marching, "update", "point-source", "Local solver").seldom(),
     named::<ObtuseTreatment>(
@@ -122,6 +125,7 @@ pub static SCHEMA: [OptionSpec; 24] = [
         "the vertex farthest from vertex 0; with other samplings, drawn with {seed}",
         "First sample, a vertex of the input",
     )
+    .called("first")
     .of(EmbedMethod::is_sampled).seldom(),
     named::<Regularization>(
         OptionGroup::Method,
@@ -154,6 +158,7 @@ pub static SCHEMA: [OptionSpec; 24] = [
         "300",
         "Number of Laplace-Beltrami eigenfunctions for spectral",
     )
+    .called("n_eigenfunctions")
     .of(is_spectral).seldom(),
     parsed::<f64>(
         OptionGroup::Method,
@@ -165,6 +170,7 @@ pub static SCHEMA: [OptionSpec; 24] = [
     )
     .of(is_spectral).seldom(),
     parsed::<usize>(OptionGroup::Method, "iterations", "N", "300", "Maximum number of smacof steps")
+        .called("max_iterations")
         .of(is_smacof).seldom(),
     parsed::<f64>(
         OptionGroup::Method,
@@ -181,7 +187,8 @@ pub static SCHEMA: [OptionSpec; 24] = [
         "POINTS",
         "1000",
         "Number of points of each form to keep for alignment",
-    ),
+    )
+    .called("n_points"),
     parsed::<bool>(
         OptionGroup::Description,
         "size",
@@ -208,6 +215,7 @@ const fn named<T: Named>(
 ) -> OptionSpec {
     OptionSpec {
         name,
+        keyword: name,
         group,
         placeholder: "",
         default,
@@ -229,6 +237,7 @@ const fn parsed<T: FromStr<Err: Display>>(
 ) -> OptionSpec {
     OptionSpec {
         name,
+        keyword: name,
         group,
         placeholder,
         default,
@@ -255,6 +264,11 @@ impl OptionSpec {
     /// The same option, for some methods only.
     const fn of(self, applies: fn(&EmbedMethod) -> bool) -> Self {
         Self { applies, ..self }
+    }
+
+    /// The same option, with another name in Python.
+    const fn called(self, keyword: &'static str) -> Self {
+        Self { keyword, ..self }
     }
 
     /// The same option, which few users need.

@@ -8,9 +8,9 @@ use clap::{Args, ValueEnum};
 
 /// Where the shapes go.
 const NOTES: &str = "\
-Shapes of the families cat, centaur and david are written to FOLDER/NAME.EXT, creatures to FOLDER/CLASS/NAME.EXT; both
-are datasets for `canonform index build`. The default seed gives the shapes that the experiments use. Files that are
-there already are replaced. Mechanical parts go to FOLDER/FAMILY-PARAMETERS.EXT, such as washer-m5-d10-t1.off; --vertices
+Shapes of the families cat, centaur, david and person are written to FOLDER/NAME.EXT, creatures to
+FOLDER/CLASS/NAME.EXT; both are datasets for `canonform index build`. The default seed gives the shapes that the
+experiments use. Files that are there already are replaced. Mechanical parts go to FOLDER/FAMILY-PARAMETERS.EXT, such as washer-m5-d10-t1.off; --vertices
 and --poses do not concern them.
 
 Examples:
@@ -31,7 +31,7 @@ pub(crate) struct GenerateArgs {
     /// Exact number of vertices of every shape, 1,000 to 1,000,000
     #[arg(long, value_name = "P", default_value_t = 3400)]
     pub(crate) vertices: usize,
-    /// Shapes of each class [default: 9 cats, 6 centaurs, 15 davids, 8 of each class of creatures]
+    /// Shapes of each class [default: 9 cats, 6 centaurs, 15 davids, 8 people, 8 of each class of creatures]
     #[arg(long, value_name = "N")]
     pub(crate) poses: Option<usize>,
     /// Number of mechanical parts
@@ -59,6 +59,8 @@ pub(crate) enum FamilyArg {
     Centaur,
     /// Poses of a man
     David,
+    /// Poses of a man whose front and back differ on every limb, on whom maps are judged
+    Person,
     /// Random bodies of 28 kinds, from worms to scissors; each class is one body
     Creatures,
     /// Screws, brackets and other mechanical parts in millimetres, many of nearly the same size

@@ -45,6 +45,7 @@ pub(crate) fn generate(args: &GenerateArgs, common: &Common) -> Result<ExitCode>
         FamilyArg::Cat => vec![Class::Articulated(Family::Cat)],
         FamilyArg::Centaur => vec![Class::Articulated(Family::Centaur)],
         FamilyArg::David => vec![Class::Articulated(Family::David)],
+        FamilyArg::Person => vec![Class::Articulated(Family::Person)],
         FamilyArg::Creatures => (0..args.classes).map(Class::Creature).collect(),
         FamilyArg::Parts => vec![Class::Parts],
     };

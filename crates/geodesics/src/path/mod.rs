@@ -11,11 +11,13 @@
 //! | `funnel` | the shortest path through a strip of faces |
 //! | `turn` | the angle of a path at a vertex, and the faces on its inner side |
 //! | `straighten` | replaces bends by detours over their inner side until there are none |
+//! | `log_map` | the direction and length of the paths to all vertices |
 
 mod descent;
 mod edges;
 mod field;
 mod funnel;
+mod log_map;
 mod plane;
 mod straighten;
 mod strip;
@@ -39,6 +41,8 @@ use straighten::straighten;
 use strip::{PathSection, StripPath};
 use surface::SurfacePoint;
 use visibility::nearest_visible;
+
+pub use log_map::log_map;
 
 /// A path along the surface, straight in every face it crosses.
 #[derive(Debug, Clone, PartialEq)]

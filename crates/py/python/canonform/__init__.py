@@ -7,10 +7,11 @@ straight lines equal these distances (their *canonical forms*), and aligns, comp
     >>> cat = canonform.datasets.generate("cat", n_vertices=1000)[0].surface()
     >>> cat.distances(0).shape
     (1000,)
-    >>> cat.canonical_form(n=50).points.shape
+    >>> cat.canonical_form(50).points.shape
     (1000, 3)
 
-`Surface` holds a mesh and everything that was prepared on it. `Index` is a searchable file of shapes. `NystromMDS` embeds any
+`Surface` holds a mesh and everything that was prepared on it. `method=` says how distances become coordinates, `geodesic=` how they are
+measured: a name, or an object such as `Nystrom` or `FastMarching` with the options of that method. Counts are called `n_...`. `Index` is a searchable file of shapes. `NystromMDS` embeds any
 metric space (needs scikit-learn), and `canonform.distributed` builds indexes on several machines (needs Dask).
 
 Arrays may be of any real type and layout. Vertices and faces are counted from 0, results are in the vertex order of the input, and
@@ -31,6 +32,7 @@ from ._field import DistanceField, PairDistance, PairDistances
 from ._form import Form
 from ._index import Index, Result, SearchResults, ShapeEntry
 from ._match import MapCollection, MappedPoints, Match, SurfaceMap, match, match_all
+from ._methods import FastMarching, Fmds, KernelPca, Landmark, Nystrom, Smacof, Spectral
 from ._operators import ClosestPoints, EdgePoint, Eigenbasis, FacePoint
 from ._surface import Path, RepairReport, Surface, distance_methods, embedding_methods, signature_kinds
 from .errors import CanonformError
@@ -49,11 +51,16 @@ __all__ = [
     "EdgePoint",
     "Eigenbasis",
     "FacePoint",
+    "FastMarching",
+    "Fmds",
     "Form",
     "Index",
+    "KernelPca",
+    "Landmark",
     "MapCollection",
     "MappedPoints",
     "Match",
+    "Nystrom",
     "NystromMDS",
     "PairDistance",
     "PairDistances",
@@ -62,6 +69,8 @@ __all__ = [
     "Result",
     "SearchResults",
     "ShapeEntry",
+    "Smacof",
+    "Spectral",
     "Surface",
     "SurfaceMap",
     "__version__",

@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike
 from . import _canonform, _html
 from ._arrays import Floats
 from ._form import Form
-from ._settings import DistanceMethod, EmbeddingMethod, FormDistance, Obtuse, Progress, Regularization, Sampling, Update, options_of, shown
+from ._methods import Embedding, Geodesic, options_of
+from ._settings import OF_FORMS, FormDistance, Landmarks, Progress, RelationKind, renamed, shown
 from ._stored import Stored
 from ._surface import AnyMesh, Surface, surface_of
 
@@ -99,9 +100,10 @@ class Comparison(Stored):
         return float(self.report["scale"])
 
     @property
-    def match(self) -> str:
+    def match(self) -> RelationKind:
         """The kind of relation, such as "identical-file", "scaled", "remeshed" or "other-pose"."""
-        return str(self.relation["kind"])
+        kind: RelationKind = self.relation["kind"]
+        return kind
 
     @property
     def confidence(self) -> float:
@@ -132,27 +134,16 @@ class Comparison(Stored):
         return _html.card("Comparison", rows, pictures)
 
 
+@renamed(**OF_FORMS)
 def compare(
     a: AnyMesh,
     b: AnyMesh,
     *,
     names: tuple[str, str] | None = None,
     distance: FormDistance = "nn-rms",
-    n: int | str = 100,
-    method: EmbeddingMethod = "nmds",
-    geodesic: DistanceMethod = "fast-marching",
-    update: Update | None = None,
-    obtuse: Obtuse | None = None,
-    sampling: Sampling | None = None,
-    first_sample: int | None = None,
-    regularization: Regularization | None = None,
-    rank: int | None = None,
-    alpha: float | str | None = None,
-    sigma: float | str | None = None,
-    eigenvectors: int | None = None,
-    mu: float | None = None,
-    iterations: int | None = None,
-    tolerance: float | None = None,
+    n_landmarks: Landmarks = 100,
+    method: Embedding = "nmds",
+    geodesic: Geodesic = "fast-marching",
     seed: int = 0,
     timeout: float | None = None,
     memory: int | str | None = None,
@@ -170,7 +161,7 @@ def compare(
         The distance of aligned forms that is stated: "nn-rms" or "hausdorff95". The relation does not depend on it, nor on the
         other options, which are those of `Surface.canonical_form`.
     """
-    settings = options_of(locals())
+    settings = options_of(**locals())
     a, b = surface_of(a), surface_of(b)
     called = names or (a._name or "the first", b._name or "the second")
     with shown(progress) as report:

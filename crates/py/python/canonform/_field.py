@@ -81,7 +81,7 @@ class DistanceField(Constant):
     --------
     >>> import canonform
     >>> cat = canonform.datasets.generate("cat", n_vertices=1000)[0].surface()
-    >>> field = cat.distance_field(method="exact")
+    >>> field = cat.distance_field(geodesic="exact")
     >>> pair = field.pair(3, 500)
     >>> pair.lower <= pair.distance <= pair.upper
     True

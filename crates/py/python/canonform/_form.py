@@ -4,26 +4,34 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _canonform, _html
 from ._arrays import Floats, Ints
-from ._settings import Progress, Stress, encoded, shown
+from ._settings import Progress, StressChoice, encoded, shown
 from ._stored import Constant
 
 if TYPE_CHECKING:
     from ._surface import Point, Surface
 
 
+_T = TypeVar("_T")
+
+
+def _interval(bounds: list[float]) -> tuple[float, float]:
+    low, high = bounds
+    return low, high
+
+
 class Form(Constant):
     """A surface, embedded so that straight-line distances approximate the distances along it.
 
-    `numpy.asarray(form)` gives its points. A pickled form holds its points and its report; the distances of the samples, and what
+    `numpy.asarray(form)` gives its points. A pickled form holds its points and its report; the distances of the landmarks, and what
     `place`, `finer`, `align` and `reuse` need, are made again when they are first asked for.
     """
 
@@ -55,7 +63,7 @@ class Form(Constant):
 
     @cached_property
     def points(self) -> Floats:
-        """Coordinates of the vertices, shape (n, dim), in mesh units and in the order of the input. NaN for vertices that the repair dropped.
+        """Coordinates of the vertices, shape (n, n_components), in mesh units and in the order of the input. NaN for vertices that the repair dropped.
 
         The same numbers as `canonform embed -o FORM.npy` writes.
         """
@@ -84,46 +92,60 @@ class Form(Constant):
 
     @property
     def stress(self) -> float | None:
-        """The paper's stress, in squared mesh units; None if it was not measured."""
-        stress = self.report["stress"]
-        return None if stress is None else float(stress["value"])
+        """The paper's stress, how far inner products are from those of the distances, in squared mesh units; None if not measured.
+
+        It grows with the mesh: compare forms by `normalized_stress`. An estimate, unless all pairs were measured, so see
+        `stress_interval`.
+        """
+        return self._stress("value", float)
+
+    @property
+    def stress_interval(self) -> tuple[float, float] | None:
+        """A 95 % confidence interval of `stress`; its value twice if all pairs were measured."""
+        return self._stress("interval", _interval)
 
     @property
     def normalized_stress(self) -> float | None:
-        """Kruskal's stress, the relative error of the distances; None if it was not measured."""
-        stress = self.report["stress"]
-        return None if stress is None else float(stress["normalized"])
+        """Kruskal's stress, the relative error of the distances; None if it was not measured.
+
+        An estimate, unless all pairs were measured, so see `normalized_stress_interval`. The argument `stress` of
+        `Surface.canonical_form` says which distances it is from.
+        """
+        return self._stress("normalized", float)
 
     @property
     def normalized_stress_interval(self) -> tuple[float, float] | None:
         """A 95 % confidence interval of `normalized_stress`; its value twice if all pairs were measured."""
-        stress = self.report["stress"]
-        return None if stress is None else (float(stress["normalized_interval"][0]), float(stress["normalized_interval"][1]))
+        return self._stress("normalized_interval", _interval)
 
-    def _stress_in_words(self) -> str:
-        interval = self.normalized_stress_interval
-        if interval is None:
+    def _stress(self, key: str, of: Callable[[Any], _T]) -> _T | None:
+        stress = self.report["stress"]
+        return None if stress is None else of(stress[key])
+
+    def _stress_in_words(self, key: str, interval: str) -> str:
+        value, bounds = self._stress(key, float), self._stress(interval, _interval)
+        if value is None or bounds is None:
             return "not measured"
-        low, high = interval
-        return f"{self.normalized_stress:.4f}" + (f" ({low:.4f} to {high:.4f})" if low < high else "")
+        low, high = bounds
+        return f"{value:.4g}" + (f" ({low:.4g} to {high:.4g}, estimated)" if low < high else "")
 
     @cached_property
     def eigenvalues(self) -> Floats:
-        """Eigenvalues, descending, in squared mesh units; the first `dim` belong to the columns of `points`."""
+        """Eigenvalues, descending, in squared mesh units; the first `n_components` belong to the columns of `points`."""
         return self._inner.eigenvalues()
 
     @property
-    def samples(self) -> Ints:
-        """The samples: vertex numbers of the input, in the order in which they were taken."""
+    def landmarks(self) -> Ints:
+        """The landmarks: vertex numbers of the input, in the order in which they were taken."""
         return np.array(self.report["samples"], dtype=np.int64)
 
     @cached_property
     def distances(self) -> Floats:
-        """Distances from each sample to all vertices, shape (number of samples, n), in mesh units."""
+        """Distances from each landmark to all vertices, shape (number of landmarks, n), in mesh units."""
         return self._inner.distances()
 
     def place(self, points: Point | Iterable[Point]) -> Floats:
-        """Coordinates of points of the surface, shape (number of points, dim), in mesh units. Needs method="nmds".
+        """Coordinates of points of the surface, shape (number of points, n_components), in mesh units. Needs method="nmds".
 
         Parameters
         ----------
@@ -134,10 +156,10 @@ class Form(Constant):
 
         return self._inner.place(_several(points, len(self)))
 
-    def finer(self, surface: Surface, *, stress: Stress = "auto", seed: int = 0, progress: Progress = False) -> Form:
-        """A finer mesh of the same surface in the coordinates of this form, placed by the distances from its samples.
+    def finer(self, surface: Surface, *, stress: StressChoice = "auto", seed: int = 0, progress: Progress = False) -> Form:
+        """A finer mesh of the same surface in the coordinates of this form, placed by the distances from its landmarks.
 
-        The meshes are in the same place: each sample is the nearest vertex of the finer mesh. Needs method="nmds".
+        The meshes are in the same place: each landmark is the nearest vertex of the finer mesh. Needs method="nmds".
         """
         settings = encoded(stress=stress, seed=seed)
         with shown(progress) as report:
@@ -163,16 +185,17 @@ class Form(Constant):
 
     def __repr__(self) -> str:
         report = self.report
-        quality = "" if report["stress"] is None else f", normalized stress {self._stress_in_words()}"
+        quality = "" if report["stress"] is None else f", normalized stress {self._stress_in_words('normalized', 'normalized_interval')}"
         name = f"{self._name!r}, " if self._name else ""
-        return f"Form({name}{report['n_vertices']} x {report['dim']}, {report['method']}, {report['n_samples']} samples{quality})"
+        return f"Form({name}{report['n_vertices']} x {report['dim']}, {report['method']}, {report['n_samples']} landmarks{quality})"
 
     def _repr_html_(self) -> str:
         report = self.report
         rows = [
             ("method", f"{report['method']} on {report['geodesic']} distances"),
-            ("samples, rank", f"{report['n_samples']}, {report['rank']}"),
-            ("normalized stress", self._stress_in_words()),
+            ("landmarks, rank", f"{report['n_samples']}, {report['rank']}"),
+            ("normalized stress", self._stress_in_words("normalized", "normalized_interval")),
+            ("stress, squared mesh units", self._stress_in_words("value", "interval")),
             ("negative mass", f"{report['negative_mass']:.4f}"),
             ("seconds", f"{report['seconds']['total']:.3f}"),
         ]

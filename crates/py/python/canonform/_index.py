@@ -16,16 +16,19 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _canonform, _html
 from ._arrays import Floats, Ints, straight
+from ._methods import Embedding, Geodesic, options_of
 from ._settings import (
+    OF_FORMS,
     Components,
-    DistanceMethod,
-    EmbeddingMethod,
+    IndexDistance,
+    Landmarks,
     Progress,
-    Rank,
+    Ranking,
+    RelationKind,
+    SignatureKind,
     Weld,
     encoded,
-    form_options,
-    options_of,
+    renamed,
     shown,
     whole,
     word,
@@ -201,6 +204,10 @@ def _caption(image: str, caption: str) -> str:
     return f'<div style="text-align:center;max-width:120px">{image}<div style="font-size:11px">{escape(caption)}</div></div>'
 
 
+OF_INDEXES = {**OF_FORMS, "points": "n_points=", "form": "method= and geodesic= with options"}
+"""What stands for earlier keywords."""
+
+
 class Index(Stored):
     """A searchable file of shapes.
 
@@ -231,6 +238,7 @@ class Index(Stored):
         return cls(path)
 
     @classmethod
+    @renamed(**OF_INDEXES)
     def build(
         cls,
         meshes: Meshes,
@@ -239,12 +247,11 @@ class Index(Stored):
         labels: Mapping[str, str] | AnyPath | None = None,
         prune: bool = False,
         shard: tuple[int, int] | None = None,
-        n: int = 100,
-        points: int = 1000,
+        n_landmarks: Landmarks = 100,
+        n_points: int = 1000,
         size: bool = False,
-        method: EmbeddingMethod = "nmds",
-        geodesic: DistanceMethod = "fast-marching",
-        form: Mapping[str, Any] | None = None,
+        method: Embedding = "nmds",
+        geodesic: Geodesic = "fast-marching",
         components: Components = "largest",
         weld: Weld = "seams",
         seed: int = 0,
@@ -274,12 +281,12 @@ class Index(Stored):
             Remove shapes of the index that did not come from these meshes.
         shard
             (i, k) to index the i-th of k equal parts of the meshes, counted from 1; `merge` joins them.
-        points
+        n_points
             Number of points of each form to keep for alignment.
         size
             Whether to distinguish shapes by size; then all meshes need the same unit of length.
-        n, method, geodesic, seed, form
-            How forms are made, see `Surface.canonical_form`; `form` holds the options that are seldom needed, such as {"rank": 30}.
+        n_landmarks, method, geodesic, seed
+            How forms are made, see `Surface.canonical_form`.
         components, weld
             How meshes are repaired, see `Surface`.
         max_vertices, timeout, memory
@@ -292,7 +299,7 @@ class Index(Stored):
         ShapeIndexError
             If the file is not an index, or was made with other options.
         """
-        settings = options_of({**locals(), **form_options(form)})
+        settings = options_of(**locals())
         meshes, labels = _in_files(meshes, path, labels, replace=True)
         with shown(progress) as update, _label_file(labels) as label_file, _dataset(meshes) as (dataset, name):
             report = json.loads(_canonform.Index.build(dataset, os.fspath(path), label_file, prune, shard, None, settings, update))
@@ -361,7 +368,7 @@ class Index(Stored):
         self._inner, self.build_report = _canonform.Index.open(self.path), report
 
     def search(
-        self, query: AnyMesh, k: int = 10, *, rank: Rank = "plain", explain: bool = False, exact: bool = False
+        self, query: AnyMesh, k: int = 10, *, rank: Ranking = "plain", explain: bool = False, exact: bool = False
     ) -> SearchResults:
         """Find the shapes nearest to a query.
 
@@ -399,16 +406,16 @@ class Index(Stored):
         except CanonformError:
             return None
 
-    def classify(self, query: AnyMesh, *, rank: Rank = "plain") -> str | None:
+    def classify(self, query: AnyMesh, *, rank: Ranking = "plain") -> str | None:
         """The class of a query by the votes of the nearest shapes; None if no shape is near enough. `search` says why."""
         return self.search(query, 0, rank=rank).label
 
     def evaluate(
         self,
         *,
-        by: str = "fused",
+        by: SignatureKind = "fused",
         k: int = 1,
-        rank: Rank = "plain",
+        rank: Ranking = "plain",
         labels: Mapping[str, str] | AnyPath | None = None,
         progress: Progress = False,
     ) -> dict[str, Any]:
@@ -464,7 +471,7 @@ class Index(Stored):
         ids: Sequence[str] | None = None,
         others: Sequence[str] | None = None,
         *,
-        kind: str = "combined",
+        kind: IndexDistance = "combined",
         progress: Progress = False,
     ) -> Floats:
         """Distances between shapes of the index, in parallel: all of them by default.
@@ -491,7 +498,7 @@ class Index(Stored):
         return Surface._of(self._inner.surface(id), id)
 
     def duplicates(
-        self, *, kinds: Iterable[str] | None = None, min_confidence: float = 0.9, progress: Progress = False
+        self, *, kinds: Iterable[RelationKind] | None = None, min_confidence: float = 0.9, progress: Progress = False
     ) -> list[dict[str, Any]]:
         """Groups of shapes that are one: the same file or surface, in another place, size or triangulation.
 
@@ -506,7 +513,7 @@ class Index(Stored):
         min_confidence
             The least confidence, 0 to 1.
         """
-        wanted = None if kinds is None else list(kinds)
+        wanted: list[str] | None = None if kinds is None else list(kinds)
         with shown(progress) as update:
             found: dict[str, Any] = json.loads(self._inner.duplicates(wanted, float(min_confidence), update))
         groups: list[dict[str, Any]] = found["groups"]
@@ -554,7 +561,7 @@ def _warn_of_skipped(report: dict[str, Any]) -> None:
             f"{len(failed)} of the meshes are not in the index; the first, {first['path']}: {first['error']}; "
             "`build_report` lists them",
             SkippedMeshWarning,
-            stacklevel=3,
+            stacklevel=4,
         )
 
 

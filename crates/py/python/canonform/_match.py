@@ -13,12 +13,15 @@ from numpy.typing import ArrayLike, NDArray
 from . import _canonform, _html
 from ._arrays import Floats, Ints, straight
 from ._operators import Eigenbasis, FacePoint
-from ._settings import DistanceMethod, Progress, encoded, shown
+from ._methods import Geodesic, options_of
+from ._settings import OF_MARCHING, Progress, renamed, shown, some_whole
 from ._stored import ByValue, Stored
 from ._surface import AnyMesh, Surface, surface_of
 from .errors import OptionError
 
 Side: TypeAlias = Literal["a", "b"]
+MapKind: TypeAlias = Literal["direct", "mirrored", "unoriented"]
+Part: TypeAlias = Literal["first", "second"]
 
 _Arrays: TypeAlias = tuple[Ints, Floats, Floats, list[Ints] | None]
 
@@ -101,11 +104,11 @@ class SurfaceMap(Stored):
     ) -> None:
         assert arrays[0] is not None
         self.vertices, self.vertex_confidence, self._functional, self._partners = arrays[0]
-        self.kind: str = report["kind"]
+        self.kind: MapKind = report["kind"]
         self.distortion: float = report["distortion"]
         self.agreement: float | None = report["agreement"]
         self.confidence: float = report["confidence"]
-        self.part: str | None = report.get("part", {}).get("part")
+        self.part: Part | None = report.get("part", {}).get("part")
         self._shapes, self._landmarks, self._settings = shapes, landmarks, settings
         self._points: dict[str, MappedPoints] = {}
         other = arrays[1] if len(arrays) > 1 else None
@@ -113,15 +116,17 @@ class SurfaceMap(Stored):
         if other is not None:
             self.alternative = SurfaceMap(report["alternative"], [other], shapes, landmarks, settings)
 
-    def functional(self, k: int | None = None) -> Floats:
-        """The map of functions, shape (k, k), fewer for a part: column j has the coefficients of the j-th eigenfunction of `b`,
-        pulled back to `a`, in the eigenfunctions of `a`. `bases` gives these; `k` is at most their number, the default."""
-        rows, columns = self._counts(k)
+    @renamed(k="n_eigenfunctions=")
+    def functional(self, n_eigenfunctions: int | None = None) -> Floats:
+        """The map of functions, a square matrix, smaller for a part: column j has the coefficients of the j-th eigenfunction of `b`,
+        pulled back to `a`, in the eigenfunctions of `a`. `bases` gives these; by default all that the map has."""
+        rows, columns = self._counts(n_eigenfunctions)
         return self._functional[:rows, :columns].copy()
 
-    def bases(self, k: int | None = None) -> tuple[Eigenbasis, Eigenbasis]:
+    @renamed(k="n_eigenfunctions=")
+    def bases(self, n_eigenfunctions: int | None = None) -> tuple[Eigenbasis, Eigenbasis]:
         """The eigenfunctions of `a` and of `b` that `functional` is written in, of both surfaces scaled to unit area."""
-        counts = self._counts(k)
+        counts = self._counts(n_eigenfunctions)
         found = [_canonform.map_basis(shape._inner, self._settings) for shape in self._shapes]
         a, b = (
             Eigenbasis(values[:most], functions[:, :most].copy(), masses)
@@ -133,7 +138,7 @@ class SurfaceMap(Stored):
         rows, columns = self._functional.shape
         most = max(rows, columns)
         if k is not None and not 1 <= k <= most:
-            raise OptionError(f"k={k} is not possible: the map has {most} eigenfunctions")
+            raise OptionError(f"n_eigenfunctions={k} is not possible: the map has {most} eigenfunctions")
         k = most if k is None else k
         return min(k, rows), min(k, columns)
 
@@ -223,6 +228,9 @@ def _labels(labels: NDArray[Any], rows: Ints, missing: NDArray[np.bool_]) -> NDA
     return found
 
 
+_of_maps = renamed(n="the default, 100 landmarks", eigenfunctions="n_eigenfunctions=", **OF_MARCHING)
+
+
 class Match(Stored):
     """The maps from one surface to another: the direct one first, unless it distorts distances clearly more.
 
@@ -279,6 +287,7 @@ class Match(Stored):
         return _html.card("Match", rows, [_html.image(png, title=title) for png, title in shown])
 
 
+@_of_maps
 def match(
     a: AnyMesh,
     b: AnyMesh,
@@ -286,9 +295,8 @@ def match(
     landmarks: ArrayLike | None = None,
     initial: ArrayLike | None = None,
     descriptors: tuple[ArrayLike, ArrayLike] | None = None,
-    eigenfunctions: int | None = None,
-    n: int | str = 100,
-    geodesic: DistanceMethod = "fast-marching",
+    n_eigenfunctions: int | None = None,
+    geodesic: Geodesic = "fast-marching",
     timeout: float | None = None,
     memory: int | str | None = None,
     progress: Progress = False,
@@ -309,12 +317,13 @@ def match(
     descriptors
         Functions that correspond, beside those that are computed: an array for each surface, one row for each vertex and one
         column for each function.
-    eigenfunctions
-        Most eigenfunctions of each surface that the map is refined with.
-    n, geodesic
-        How the canonical forms are made whose alignments the search starts from, as in `Surface.canonical_form`.
+    n_eigenfunctions
+        Most eigenfunctions of each surface that the map is refined with, 150 by default.
+    geodesic
+        How distances are measured, as in `Surface.distances`.
     """
-    settings = encoded(eigenfunctions=eigenfunctions, n=n, geodesic=geodesic, timeout=timeout, memory=memory)
+    eigenfunctions = some_whole("n_eigenfunctions", n_eigenfunctions)
+    settings = options_of(eigenfunctions=eigenfunctions, geodesic=geodesic, timeout=timeout, memory=memory)
     pairs, start, functions = _pairs(landmarks), _partners(initial), _functions(descriptors)
     a, b = surface_of(a), surface_of(b)
     with shown(progress) as report:
@@ -396,12 +405,12 @@ class MapCollection(Stored):
         return f"MapCollection({len(self)} maps, cycles {self.cycles_before:.4f} before, {self.cycles_after:.4f} after)"
 
 
+@_of_maps
 def match_all(
     shapes: Iterable[AnyMesh],
     *,
-    eigenfunctions: int | None = None,
-    n: int | str = 100,
-    geodesic: DistanceMethod = "fast-marching",
+    n_eigenfunctions: int | None = None,
+    geodesic: Geodesic = "fast-marching",
     timeout: float | None = None,
     memory: int | str | None = None,
     progress: Progress = False,
@@ -411,7 +420,8 @@ def match_all(
     All pairs are mapped as by `match`, but as wholes. Maps that disagree with the others, such as one that turns a man back to front, are replaced.
     The parameters are those of `match`.
     """
-    settings = encoded(eigenfunctions=eigenfunctions, n=n, geodesic=geodesic, timeout=timeout, memory=memory)
+    eigenfunctions = some_whole("n_eigenfunctions", n_eigenfunctions)
+    settings = options_of(eigenfunctions=eigenfunctions, geodesic=geodesic, timeout=timeout, memory=memory)
     surfaces = [surface_of(shape) for shape in shapes]
     with shown(progress) as report:
         found, arrays = _canonform.match_collection([surface._inner for surface in surfaces], settings, report)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ._arrays import Floats, Ints
-from ._settings import whole
+from ._settings import renamed, whole
 from ._stored import ByValue
 from .errors import OptionError
 
@@ -141,28 +141,30 @@ class Eigenbasis(ByValue):
         found: Floats = self.functions @ np.asarray(coefficients, dtype=np.float64)
         return found
 
-    def hks(self, times: ArrayLike | None = None, *, n: int = 16) -> Floats:
+    @renamed(n="n_times=")
+    def hks(self, times: ArrayLike | None = None, *, n_times: int = 16) -> Floats:
         """The heat kernel signature of every vertex (Sun et al. 2009), shape (n_vertices, number of times).
 
-        `times` are in squared mesh units; by default `n` of them, from the time of the last eigenfunction to that of the first.
+        `times` are in squared mesh units; by default `n_times` of them, from the time of the last eigenfunction to that of the first.
         """
         curved = self._curved()
         if times is None:
             first, last = (float(4 * np.log(10) / value) for value in curved[[-1, 0]])
-            times = np.geomspace(first, last, whole("n", n, 1))
+            times = np.geomspace(first, last, whole("n_times", n_times, 1))
         at = np.atleast_1d(np.asarray(times, dtype=np.float64))
         return self._spread(np.exp(-np.multiply.outer(self.values, at)))
 
-    def wks(self, energies: ArrayLike | None = None, *, n: int = 16) -> Floats:
+    @renamed(n="n_energies=")
+    def wks(self, energies: ArrayLike | None = None, *, n_energies: int = 16) -> Floats:
         """The wave kernel signature of every vertex (Aubry et al. 2011), shape (n_vertices, number of energies).
 
-        `energies` are logarithms of eigenvalues; by default `n` of them, evenly spaced over those of the basis.
+        `energies` are logarithms of eigenvalues; by default `n_energies` of them, evenly spaced over those of the basis.
         """
         curved = self._curved()
         low, high = np.log(curved[[0, -1]])
-        width = 7 * (high - low) / (whole("n", n, 1) if energies is None else max(np.size(energies), 1))
+        width = 7 * (high - low) / (whole("n_energies", n_energies, 1) if energies is None else max(np.size(energies), 1))
         if energies is None:
-            energies = np.linspace(low, high, n)
+            energies = np.linspace(low, high, n_energies)
         at = np.atleast_1d(np.asarray(energies, dtype=np.float64))
         # The constant functions say nothing.
         logarithms = np.log(np.where(self._is_curved, self.values, 1.0))
@@ -178,7 +180,7 @@ class Eigenbasis(ByValue):
     def _curved(self) -> Floats:
         curved: Floats = self.values[self._is_curved]
         if not len(curved):
-            raise OptionError(f"k={len(self.values)} is not possible here: kernels need an eigenfunction that is not constant")
+            raise OptionError(f"n_eigenfunctions={len(self.values)} is not possible here: kernels need an eigenfunction that is not constant")
         return curved
 
     def _spread(self, weights: Floats) -> Floats:

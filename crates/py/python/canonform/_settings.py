@@ -4,52 +4,65 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any, Literal, TypeAlias
+from functools import wraps
+from typing import Any, Literal, ParamSpec, TypeAlias, TypeVar
 
 import numpy as np
 
-from . import _canonform
 from .errors import OptionError
 
 Progress: TypeAlias = bool | Callable[[str, int, int], None]
 """`True` shows a bar (needs the package tqdm); a function gets the stage, the steps done and all steps."""
 
-DistanceMethod: TypeAlias = Literal["fast-marching", "exact", "heat", "dijkstra", "bfs"]
-EmbeddingMethod: TypeAlias = Literal["nmds", "landmark", "spectral", "fmds", "kpca", "mds", "smacof"]
+# The names that Rust knows; a test compares them.
+DistanceName: TypeAlias = Literal["fast-marching", "exact", "heat", "dijkstra", "bfs"]
+EmbeddingName: TypeAlias = Literal["nmds", "landmark", "spectral", "fmds", "kpca", "mds", "smacof"]
 Update: TypeAlias = Literal["point-source", "virtual-source", "planar"]
 Obtuse: TypeAlias = Literal["flip", "unfold", "ignore"]
 Sampling: TypeAlias = Literal["farthest", "random", "min-variance", "max-variance"]
-Regularization: TypeAlias = Literal["low-rank", "cur", "rpi", "none"]
-Stress: TypeAlias = Literal["auto", "exact", "estimate", "skip"]
+Regularization: TypeAlias = Literal["low-rank", "rpi", "none", "cur"]
+Bandwidth: TypeAlias = Literal["mean", "median", "max"] | float
+StressChoice: TypeAlias = Literal["auto", "exact", "estimate", "skip"]
 Components: TypeAlias = Literal["largest", "bridge", "error"]
 Weld: TypeAlias = Literal["seams", "all", "none"] | float
 FormDistance: TypeAlias = Literal["nn-rms", "hausdorff95"]
-Rank: TypeAlias = Literal["plain", "graph", "part"]
+LaplacianKind: TypeAlias = Literal["intrinsic", "cotangent"]
+SignatureKind: TypeAlias = Literal[
+    "fused", "moments", "d2", "geodesic-spectrum", "shape-dna", "heat-kernel", "wave-kernel", "rigid"
+]
+IndexDistance: TypeAlias = Literal["combined", "fused"]
+Ranking: TypeAlias = Literal["plain", "graph", "part"]
+RelationKind: TypeAlias = Literal[
+    "identical-file", "identical-geometry", "scaled", "mirrored", "noisy", "remeshed",
+    "copies", "part-of", "variant", "other-pose", "same-class", "different",
+]  # fmt: skip
+Family: TypeAlias = Literal[
+    "cat", "centaur", "david", "person",
+    "worm", "star", "octopus", "spider", "hand", "bird", "dog", "human", "fish", "ring", "ant", "lizard", "tree", "crab",
+    "glasses", "snake", "dinosaur", "teddy", "scissors", "giraffe", "tadpole", "turtle", "cup", "pliers", "ape", "key",
+    "centipede", "fork",
+]  # fmt: skip
+MeshFormat: TypeAlias = Literal["off", "obj", "ply", "stl", "vert", "glb", "3mf"]
+
+Landmarks: TypeAlias = int | Literal["auto"]
+"""A number of landmarks, or as many as are needed."""
 
 _SIZES = {"": 0, "K": 1, "M": 2, "G": 3, "T": 4}
 
 
-_OPTIONS, _FORM = map(frozenset, _canonform.option_names())
-
-
 def encoded(**settings: Any) -> str:
     """The settings that were given, as JSON."""
-    given = {name: _plain(value) for name, value in settings.items() if value is not None}
+    given = {name: _plain(name, value) for name, value in settings.items() if value is not None}
     return json.dumps({**given, "memory": n_bytes(given["memory"])} if "memory" in given else given)
 
 
-def options_of(arguments: Mapping[str, Any]) -> str:
-    """The options among the arguments of a call, as JSON."""
-    return encoded(**{name: value for name, value in arguments.items() if name in _OPTIONS})
-
-
-def _plain(value: Any) -> Any:
+def _plain(name: str, value: Any) -> Any:
     # NumPy numbers.
     value = value.item() if hasattr(value, "item") else value
     if not isinstance(value, (bool, int, float, str)):
-        raise OptionError(f"{value!r} is not possible: give a number, text or a truth value")
+        raise OptionError(f"{name}={value!r} is not possible: give a number, text or a truth value")
     # JSON has no infinity.
     return "inf" if isinstance(value, float) and math.isinf(value) and value > 0 else value
 
@@ -74,15 +87,6 @@ def word(name: str, value: Any) -> str:
     return value
 
 
-def ways(method: str, update: str | None, obtuse: str | None) -> tuple[str, str | None, str | None]:
-    """How distances are measured, as text."""
-    return (
-        word("method", method),
-        None if update is None else word("update", update),
-        None if obtuse is None else word("obtuse", obtuse),
-    )
-
-
 def number(name: str, value: Any) -> float:
     """The number that an argument must be."""
     try:
@@ -92,15 +96,6 @@ def number(name: str, value: Any) -> float:
     if math.isnan(found):
         raise OptionError(f"{name}={value!r} is not possible: give a number")
     return found
-
-
-def form_options(form: Mapping[str, Any] | None) -> dict[str, Any]:
-    """Further options of forms, by name."""
-    options = dict(form or {})
-    unknown = sorted(set(options) - _FORM)
-    if unknown:
-        raise OptionError(f"form={{{unknown[0]!r}: ...}} is not possible: use {', '.join(map(repr, sorted(_FORM)))}")
-    return options
 
 
 def n_bytes(size: int | str) -> int:
@@ -113,6 +108,44 @@ def n_bytes(size: int | str) -> int:
     if unit not in _SIZES or not number.isdigit():
         raise OptionError(f"memory={size!r} is not possible: give a number of bytes, or text such as \"800M\" or \"2G\"")
     return int(number) << (10 * _SIZES[unit])
+
+
+_P = ParamSpec("_P")
+_R = TypeVar("_R")
+
+_OF_METHODS = {
+    "regularization": "method=Nystrom(regularization=...)",
+    "rank": "method=Nystrom(rank=...)",
+    "alpha": "method=Nystrom(alpha=...)",
+    "sampling": "method=Nystrom(sampling=...)",
+    "first_sample": "method=Nystrom(first=...)",
+    "sigma": "method=KernelPca(sigma=...)",
+    "eigenvectors": "method=Spectral(n_eigenfunctions=...)",
+    "mu": "method=Spectral(mu=...)",
+    "iterations": "method=Smacof(max_iterations=...)",
+    "tolerance": "method=Smacof(tolerance=...)",
+}
+
+OF_MARCHING = {"update": "geodesic=FastMarching(update=...)", "obtuse": "geodesic=FastMarching(obtuse=...)"}
+"""What stands for earlier keywords of distances."""
+
+OF_FORMS = {"n": "n_landmarks=", "dim": "n_components=", **OF_MARCHING, **_OF_METHODS}
+"""What stands for earlier keywords of forms."""
+
+
+def renamed(**forms: str) -> Callable[[Callable[_P, _R]], Callable[_P, _R]]:
+    """A call that names what stands for keywords of earlier versions."""
+
+    def checked(call: Callable[_P, _R]) -> Callable[_P, _R]:
+        @wraps(call)
+        def checking(*args: _P.args, **kwargs: _P.kwargs) -> _R:
+            for old in forms.keys() & kwargs.keys():
+                raise OptionError(f"{old}= is not possible: use {forms[old]}")
+            return call(*args, **kwargs)
+
+        return checking
+
+    return checked
 
 
 @contextmanager

@@ -17,24 +17,23 @@ from . import _canonform, _html
 from ._arrays import Floats, Ints, mesh_of, straight
 from ._field import DistanceField
 from ._form import Form
+from ._methods import Embedding, Geodesic, options_of, way_of
 from ._operators import ClosestPoints, EdgePoint, Eigenbasis, FacePoint, parsed
 from ._settings import (
+    OF_FORMS,
+    OF_MARCHING,
     Components,
-    DistanceMethod,
-    EmbeddingMethod,
-    Obtuse,
+    Landmarks,
+    LaplacianKind,
     Progress,
-    Regularization,
-    Sampling,
-    Stress,
-    Update,
+    SignatureKind,
+    StressChoice,
     Weld,
     encoded,
     number,
-    options_of,
+    renamed,
     shown,
     some_whole,
-    ways,
     whole,
     word,
 )
@@ -58,12 +57,16 @@ _MOST_DROPPED = 0.01
 
 def distance_methods() -> dict[str, str]:
     """Methods that measure distances: names, and what they compute."""
-    return dict(_canonform.methods()[0])
+    return _named("geodesic")
 
 
 def embedding_methods() -> dict[str, str]:
     """Methods that turn distances into coordinates: names, and what they compute."""
-    return dict(_canonform.methods()[1])
+    return _named("method")
+
+
+def _named(option: str) -> dict[str, str]:
+    return next(dict(names) for name, _, names, _ in _canonform.options()[1] if name == option)
 
 
 def signature_kinds() -> list[str]:
@@ -121,6 +124,9 @@ class Path(ByValue):
         return f"Path(length={self.length:.6g}, points={len(self)}, from {self.at[0]} to {self.at[-1]})"
 
 
+_of_distances = renamed(method="geodesic=", **OF_MARCHING)
+
+
 class Surface(Constant):
     """A triangle mesh, repaired, with everything that was prepared on it.
 
@@ -159,7 +165,7 @@ class Surface(Constant):
     >>> height, turn = 1 - 2 * i / 2000, i * np.pi * (1 + 5**0.5)
     >>> radius = np.sqrt(1 - height**2)
     >>> ball = canonform.Surface(np.column_stack([radius * np.cos(turn), radius * np.sin(turn), height]))
-    >>> bool(abs(ball.distances(0, method="exact").max() - np.pi) < 0.02), bool(abs(ball.area - 4 * np.pi) < 0.1)
+    >>> bool(abs(ball.distances(0, geodesic="exact").max() - np.pi) < 0.02), bool(abs(ball.area - 4 * np.pi) < 0.1)
     (True, True)
     """
 
@@ -249,13 +255,12 @@ class Surface(Constant):
         report, lines = self._inner.repair_report()
         return RepairReport(json.loads(report), lines)
 
+    @_of_distances
     def distances(
         self,
         sources: Point | Iterable[Point],
         *,
-        method: DistanceMethod = "fast-marching",
-        update: Update | None = None,
-        obtuse: Obtuse | None = None,
+        geodesic: Geodesic = "fast-marching",
         max_distance: float = np.inf,
     ) -> Floats:
         """Distances along the surface from the nearest of the sources to every vertex.
@@ -264,11 +269,9 @@ class Surface(Constant):
         ----------
         sources
             A vertex number, an `EdgePoint`, a `FacePoint`, or several of them; or a mask of the vertices.
-        method
-            One of `distance_methods()`: "fast-marching", "exact", "heat", "dijkstra", "bfs".
-        update, obtuse
-            Variants of fast marching: "point-source", "virtual-source" (most accurate) or "planar"; and "flip", "unfold" or "ignore" for
-            wide angles.
+        geodesic
+            How distances are measured, one of `distance_methods()`: "fast-marching", "exact", "heat", "dijkstra", "bfs"; or
+            `FastMarching` with options.
         max_distance
             Do not look farther than this, in mesh units; vertices beyond are infinitely far.
 
@@ -282,15 +285,14 @@ class Surface(Constant):
         PointError
             If the mesh has no such point, or the repair dropped it.
         """
-        return self._inner.distances(_several(sources, self.n_vertices), *ways(method, update, obtuse), number("max_distance", max_distance))
+        return self._inner.distances(_several(sources, self.n_vertices), way_of(geodesic), number("max_distance", max_distance))
 
+    @_of_distances
     def distances_many(
         self,
         sources: Iterable[Point],
         *,
-        method: DistanceMethod = "fast-marching",
-        update: Update | None = None,
-        obtuse: Obtuse | None = None,
+        geodesic: Geodesic = "fast-marching",
         max_distance: float = np.inf,
         progress: Progress = False,
     ) -> Floats:
@@ -300,24 +302,15 @@ class Surface(Constant):
         """
         with shown(progress) as report:
             return self._inner.distances_many(
-                _several(sources, self.n_vertices), *ways(method, update, obtuse), number("max_distance", max_distance), report
+                _several(sources, self.n_vertices), way_of(geodesic), number("max_distance", max_distance), report
             )
 
     @overload
-    def path(self, a: Point, b: Point, *, method: DistanceMethod = ..., update: Update | None = ..., obtuse: Obtuse | None = ...) -> Path: ...
+    def path(self, a: Point, b: Point, *, geodesic: Geodesic = ...) -> Path: ...
     @overload
-    def path(
-        self, a: Point, b: Points, *, method: DistanceMethod = ..., update: Update | None = ..., obtuse: Obtuse | None = ...
-    ) -> list[Path]: ...
-    def path(
-        self,
-        a: Point,
-        b: Point | Points,
-        *,
-        method: DistanceMethod = "fast-marching",
-        update: Update | None = None,
-        obtuse: Obtuse | None = None,
-    ) -> Path | list[Path]:
+    def path(self, a: Point, b: Points, *, geodesic: Geodesic = ...) -> list[Path]: ...
+    @_of_distances
+    def path(self, a: Point, b: Point | Points, *, geodesic: Geodesic = "fast-marching") -> Path | list[Path]:
         """The shortest path along the surface from a to b; one path for each if b is a list, tuple or array of points.
 
         The path crosses faces: it is straightened until it is locally shortest, so it may be shorter than the distance that an approximate
@@ -328,85 +321,74 @@ class Surface(Constant):
         single = isinstance(b, (int, str, np.integer, EdgePoint, FacePoint))
         [source] = _several(a, self.n_vertices)
         ends = _several(b, self.n_vertices)
-        paths = self._inner.paths(source, ends, *ways(method, update, obtuse))
+        paths = self._inner.paths(source, ends, way_of(geodesic))
         found = [Path(points, list(map(parsed, at)), along, length) for points, at, along, length in paths]
         return found[0] if single else found
 
+    @renamed(n="n_points=", method="geodesic=", **OF_MARCHING)
     def farthest_points(
         self,
-        n: int,
+        n_points: int,
         *,
         first: int | None = None,
-        method: DistanceMethod = "fast-marching",
-        update: Update | None = None,
-        obtuse: Obtuse | None = None,
+        geodesic: Geodesic = "fast-marching",
         progress: Progress = False,
     ) -> Ints:
         """Vertices spread evenly over the surface, each the farthest from those before it.
 
         Parameters
         ----------
-        n
+        n_points
             How many; fewer if the surface has fewer vertices.
         first
             The first of them. By default, the vertex farthest from vertex 0, a tip of the surface.
 
         Returns
         -------
-        ndarray of shape (n,)
+        ndarray of shape (n_points,)
             Vertex numbers of the input.
         """
         with shown(progress) as report:
-            return self._inner.farthest_points(whole("n", n), some_whole("first", first), *ways(method, update, obtuse), report)
+            return self._inner.farthest_points(whole("n_points", n_points), some_whole("first", first), way_of(geodesic), report)
 
+    @renamed(landmarks="n_landmarks=", method="geodesic=", **OF_MARCHING)
     def distance_field(
         self,
-        landmarks: int = 100,
+        n_landmarks: int = 100,
         *,
         rank: int | None = None,
-        method: DistanceMethod = "fast-marching",
-        update: Update | None = None,
-        obtuse: Obtuse | None = None,
+        geodesic: Geodesic = "fast-marching",
         progress: Progress = False,
     ) -> DistanceField:
         """The distances between all pairs of vertices, with bounds, in little memory.
 
         Parameters
         ----------
-        landmarks
+        n_landmarks
             Number of landmarks; each takes 2 bytes per vertex.
         rank
             Number of eigenpairs behind the estimates, by default half the landmarks; each takes 2 bytes per vertex.
-        method, update, obtuse
+        geodesic
             How distances are measured, as in `distances`. Only "exact" certifies the bounds; with others they are widened by the error that
             was measured on this surface.
         """
         with shown(progress) as report:
-            inner = _canonform.DistanceField.build(self._inner, whole("landmarks", landmarks), some_whole("rank", rank), *ways(method, update, obtuse), report)
+            inner = _canonform.DistanceField.build(
+                self._inner, whole("n_landmarks", n_landmarks), some_whole("rank", rank), way_of(geodesic), report
+            )
         return DistanceField(inner)
 
+    @renamed(**OF_FORMS)
     def canonical_form(
         self,
-        n: int | str = 100,
+        n_landmarks: Landmarks = 100,
         *,
+        method: Embedding = "nmds",
+        n_components: int = 3,
+        geodesic: Geodesic = "fast-marching",
         target_stress: float | None = None,
-        method: EmbeddingMethod = "nmds",
-        dim: int = 3,
-        geodesic: DistanceMethod = "fast-marching",
-        update: Update | None = None,
-        obtuse: Obtuse | None = None,
-        sampling: Sampling | None = None,
-        first_sample: int | None = None,
-        regularization: Regularization | None = None,
-        rank: int | None = None,
-        alpha: float | str | None = None,
-        sigma: float | str | None = None,
-        eigenvectors: int | None = None,
-        mu: float | None = None,
-        iterations: int | None = None,
-        tolerance: float | None = None,
+        stress: StressChoice = "auto",
         seed: int = 0,
-        stress: Stress = "auto",
         reuse: Form | None = None,
         timeout: float | None = None,
         memory: int | str | None = None,
@@ -416,37 +398,29 @@ class Surface(Constant):
 
         Parameters
         ----------
-        n
-            Number of samples, or "auto" to take them until twice as many reduced the stress by less than 1 %.
-        target_stress
-            With n="auto", take samples until the normalised stress, estimated from held-out distances, is at most this. `report["auto"]`
-            says whether that was reached.
+        n_landmarks
+            Number of landmarks, vertices from which distances are measured; or "auto" to take them until twice as many reduced the
+            stress by less than 1 %, at most 640.
         method
-            One of `embedding_methods()`: "nmds", "landmark", "spectral", "fmds", "kpca", "mds", "smacof".
-        dim
+            How distances become coordinates, one of `embedding_methods()`: "nmds", "landmark", "spectral", "fmds", "kpca", "mds",
+            "smacof"; or one of `Nystrom`, `Landmark`, `Spectral`, `Fmds`, `KernelPca`, `Smacof` with options.
+        n_components
             Dimensions of the embedding.
-        geodesic, update, obtuse
+        geodesic
             How distances are measured, as in `distances`.
-        sampling
-            "farthest" (the default), "random", "min-variance" or "max-variance".
-        first_sample
-            A vertex. By default, farthest point sampling begins with the vertex farthest from vertex 0.
-        regularization, rank, alpha
-            How the matrix of the samples is inverted: "low-rank" keeps `rank` eigenvalues (by default half the samples), "cur" as many
-            columns, "rpi" damps small ones by `alpha`, and "none" keeps all.
-        sigma
-            Width of the kernel of "kpca": "mean", "median", "max" or a length in mesh units.
-        eigenvectors, mu
-            Eigenfunctions of "spectral", 300 by default, and the weight of the distances, 1000 by default.
-        iterations, tolerance
-            When "smacof" stops: 300 steps, or steps that reduce the stress by less than 1e-6.
-        seed
-            Of everything random.
+        target_stress
+            With n_landmarks="auto", take landmarks until the normalised stress, estimated from held-out distances, is at most this.
+            `report["auto"]` says whether that was reached.
         stress
-            How the stress is found: "auto", "exact", "estimate" or "skip".
+            From which distances the stress is found: "exact" measures those between all pairs of vertices, "estimate" those of 100
+            vertices to all others, "skip" none. "auto" is exact up to 1,000 vertices and where the method measures all pairs
+            anyway; else it estimates from one vertex for every 5 landmarks, at least 3, and at least 32 with n_landmarks="auto".
+            `Form.normalized_stress_interval` says how far an estimate is to be relied on.
+        seed
+            Of everything random, a whole number.
         reuse
-            An earlier form of this surface. Distances that it has measured are looked up, so that further samples, another rank or another
-            method cost less; the result is the same.
+            An earlier form of this surface. Distances that it has measured are looked up, so that further landmarks, another rank or
+            another method cost less; the result is the same.
         timeout, memory
             Limits, in seconds and in bytes; memory may be text such as "2G".
 
@@ -456,14 +430,15 @@ class Surface(Constant):
             If an option is not possible, or has no effect beside the others.
         EmbeddingError, LimitError
         """
-        settings = options_of(locals())
+        settings = options_of(**locals())
         with shown(progress) as report:
             earlier = None if reuse is None else reuse._inner
             inner = self._inner.canonical_form(settings, earlier, report)
         return Form(inner, self, settings, self._name)
 
+    @renamed(n="n_landmarks=")
     def signature(
-        self, kind: str = "fused", *, n: int = 100, size: bool = False, progress: Progress = False
+        self, kind: SignatureKind = "fused", *, n_landmarks: int = 100, size: bool = False, progress: Progress = False
     ) -> NDArray[np.float32] | Floats:
         """A vector that describes the shape regardless of pose, position, triangulation and, by default, size.
 
@@ -472,8 +447,8 @@ class Surface(Constant):
         kind
             "fused" for all signatures as one vector, by which an index is searched: Euclidean distances between such vectors compare
             shapes. Or one of "moments", "d2", "geodesic-spectrum", "shape-dna", "heat-kernel", "wave-kernel", "rigid".
-        n
-            Number of samples.
+        n_landmarks
+            Number of landmarks of the form, see `canonical_form`.
         size
             Whether size counts; then all meshes need the same unit of length.
 
@@ -483,9 +458,9 @@ class Surface(Constant):
             float32 for "fused", else float64. It is computed once and kept.
         """
         with shown(progress) as report:
-            return self._inner.signature(word("kind", kind), encoded(n=n, size=size), report)
+            return self._inner.signature(word("kind", kind), encoded(n_landmarks=n_landmarks, size=size), report)
 
-    def laplacian(self, *, kind: str = "intrinsic") -> sparse.csr_array:
+    def laplacian(self, *, kind: LaplacianKind = "intrinsic") -> sparse.csr_array:
         """The stiffness matrix, sparse, symmetric, positive semidefinite: shape (n, n). Needs SciPy.
 
         Parameters
@@ -501,25 +476,29 @@ class Surface(Constant):
         matrix: sparse.csr_array = scipy_sparse.coo_array((values, (rows, columns)), shape=(self.n_vertices, self.n_vertices)).tocsr()
         return matrix
 
-    def mass(self, *, kind: str = "intrinsic") -> sparse.dia_array:
+    def mass(self, *, kind: LaplacianKind = "intrinsic") -> sparse.dia_array:
         """The areas around the vertices, in squared mesh units, as a sparse diagonal matrix: shape (n, n). Needs SciPy."""
         masses = _canonform.laplacian(self._inner, _is_intrinsic(kind))[3]
         diagonal: sparse.dia_array = _sparse().diags_array(masses)
         return diagonal
 
-    def eigenbasis(self, k: int = 100, *, progress: Progress = False) -> Eigenbasis:
-        """The `k` smallest eigenvalues and eigenfunctions of the intrinsic Laplacian; fewer if the surface has fewer vertices."""
+    @renamed(k="n_eigenfunctions=")
+    def eigenbasis(self, n_eigenfunctions: int = 100, *, progress: Progress = False) -> Eigenbasis:
+        """The smallest eigenvalues of the intrinsic Laplacian, and their eigenfunctions; fewer if the surface has fewer vertices."""
         with shown(progress) as report:
-            values, functions = _canonform.eigenbasis(self._inner, whole("k", k, 1), report)
+            n = whole("n_eigenfunctions", n_eigenfunctions, 1)
+            values, functions = _canonform.eigenbasis(self._inner, n, report)
         return Eigenbasis(values, functions, _canonform.laplacian(self._inner, True)[3])
 
-    def hks(self, times: ArrayLike | None = None, *, n: int = 16, k: int = 100) -> Floats:
-        """The heat kernel signature of every vertex from `k` eigenfunctions, see `Eigenbasis.hks`."""
-        return self.eigenbasis(k).hks(times, n=n)
+    @renamed(n="n_times=", k="n_eigenfunctions=")
+    def hks(self, times: ArrayLike | None = None, *, n_times: int = 16, n_eigenfunctions: int = 100) -> Floats:
+        """The heat kernel signature of every vertex, see `Eigenbasis.hks`."""
+        return self.eigenbasis(n_eigenfunctions).hks(times, n_times=n_times)
 
-    def wks(self, energies: ArrayLike | None = None, *, n: int = 16, k: int = 100) -> Floats:
-        """The wave kernel signature of every vertex from `k` eigenfunctions, see `Eigenbasis.wks`."""
-        return self.eigenbasis(k).wks(energies, n=n)
+    @renamed(n="n_energies=", k="n_eigenfunctions=")
+    def wks(self, energies: ArrayLike | None = None, *, n_energies: int = 16, n_eigenfunctions: int = 100) -> Floats:
+        """The wave kernel signature of every vertex, see `Eigenbasis.wks`."""
+        return self.eigenbasis(n_eigenfunctions).wks(energies, n_energies=n_energies)
 
     @cached_property
     def _face_vectors(self) -> Floats:
@@ -568,6 +547,32 @@ class Surface(Constant):
         with np.errstate(invalid="ignore", divide="ignore"):
             gradient: Floats = (array[self.faces][:, :, None] * sides).sum(axis=1) / (2 * self.areas[:, None]) ** 2
         return gradient
+
+    def log_map(self, source: Point, *, progress: Progress = False) -> Floats:
+        """Where the vertices lie around a point, unrolled into the plane that touches there: shape (n, 2), in mesh units.
+
+        Row v is the logarithm of vertex v: the direction in which the shortest path from the source to it starts, as long as this
+        path. So its norm is `distances(source, geodesic="exact")[v]`, and neighbourhoods of several points can be laid over each
+        other. NaN for vertices that the repair dropped.
+
+        The first axis points, from a vertex, along the edge to its neighbour with the lowest number; from a point of an edge, to the
+        end with the higher number; in a face, from its first corner to the second. The second axis is 90 degrees to the left, seen
+        from the side on which the corners of faces run counterclockwise. Angles at an inner vertex are scaled to a full turn.
+
+        Takes a path to every vertex. Raises `PointError`.
+
+        Examples
+        --------
+        >>> import canonform, numpy as np
+        >>> square = canonform.Surface(np.array([[0, 0, 5], [1, 0, 5], [1, 1, 5], [0, 1, 5]]), np.array([[0, 1, 2], [0, 2, 3]]))
+        >>> (square.log_map(0) + 0.0).round(6).tolist()
+        [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
+        """
+        points = _several(source, self.n_vertices)
+        if len(points) != 1:
+            raise PointError(f"the logarithmic map is about one point, not {len(points)}")
+        with shown(progress) as report:
+            return _canonform.log_map(self._inner, points[0], report)
 
     def closest_point(self, points: ArrayLike) -> ClosestPoints:
         """For points in space, shape (3,) or (k, 3), the nearest points of the faces of the input."""

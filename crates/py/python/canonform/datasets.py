@@ -5,18 +5,20 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from . import _canonform, _html
 from ._arrays import Floats, Ints
-from ._settings import Progress, shown, whole
+from ._settings import Family, MeshFormat, Progress, shown, whole
 from ._stored import ByValue
 from ._surface import Surface
 from .errors import OptionError
 
 __all__ = ["Shape", "families", "generate", "write"]
+
+_DATASET = ["cat", "centaur", "david"]
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -50,7 +52,7 @@ class Shape(ByValue):
         Raises `OptionError` for shapes of different families, and of creatures.
         """
         if self.rest is None or other.rest is None or self.label != other.label:
-            raise OptionError(f"{self.name} and {other.name} have no true map; give two shapes of one of the families cat, centaur and david")
+            raise OptionError(f"{self.name} and {other.name} have no true map; give two shapes of one of the families cat, centaur, david and person")
         near = Surface(other.rest, other.faces).closest_point(self.rest)
         corners = other.faces[near.faces]
         nearest = np.linalg.norm(other.rest[corners] - near.points[:, None], axis=2).argmin(axis=1)
@@ -84,7 +86,7 @@ def families() -> dict[str, int | None]:
 
 
 def generate(
-    family: str | Iterable[str] = "all",
+    family: Family | Literal["all"] | Iterable[Family] = "all",
     *,
     poses: int | Sequence[int] | None = None,
     n_vertices: int = 3400,
@@ -96,7 +98,8 @@ def generate(
     Parameters
     ----------
     family
-        One or more of `families()`. "all" stands for cats, centaurs and davids: thirty shapes, as in Fig. 4 of the paper.
+        One or more of `families()`. "all" stands for cats, centaurs and davids: thirty shapes, as in Fig. 4 of the paper. People differ
+        in front and back on every limb, and their limbs touch: maps are judged on them.
     poses
         How many poses of each family, or which. By default all of them, and 8 of a creature.
     n_vertices
@@ -112,7 +115,7 @@ def generate(
     n_vertices, seed = whole("n_vertices", n_vertices), whole("seed", seed)
     articulated, plans = _canonform.families()
     known = dict(articulated)
-    names = list(known) if family == "all" else [family] if isinstance(family, str) else list(family)
+    names: list[str] = _DATASET if family == "all" else [family] if isinstance(family, str) else list(family)
     made: list[Shape] = []
     with shown(progress) as update:
         for name in names:
@@ -132,7 +135,7 @@ def generate(
     return made
 
 
-def write(shapes: Iterable[Shape], folder: str | os.PathLike[str], *, format: str = "off") -> list[str]:
+def write(shapes: Iterable[Shape], folder: str | os.PathLike[str], *, format: MeshFormat = "off") -> list[str]:
     """Write shapes into a folder, one file each, and return their paths."""
     os.makedirs(folder, exist_ok=True)
     paths = []

@@ -24,8 +24,9 @@ import numpy as np
 
 from . import _canonform
 from ._arrays import Floats
-from ._index import AnyPath, Index, Meshes, _dataset, _in_files, _label_file
-from ._settings import Components, DistanceMethod, EmbeddingMethod, Progress, Weld, form_options, options_of, shown
+from ._index import OF_INDEXES, AnyPath, Index, Meshes, _dataset, _in_files, _label_file
+from ._methods import Embedding, Geodesic, options_of
+from ._settings import Components, IndexDistance, Landmarks, Progress, Weld, renamed, shown
 from .errors import MeshError, OptionError
 
 try:
@@ -70,18 +71,18 @@ def batches_by_size(sizes: Sequence[int], n_batches: int, most: int = _MOST_IN_B
     return batches
 
 
+@renamed(**OF_INDEXES)
 def build_index(
     meshes: Meshes,
     client: Client,
     out: AnyPath,
     *,
     labels: Mapping[str, str] | AnyPath | None = None,
-    n: int = 100,
-    points: int = 1000,
+    n_landmarks: Landmarks = 100,
+    n_points: int = 1000,
     size: bool = False,
-    method: EmbeddingMethod = "nmds",
-    geodesic: DistanceMethod = "fast-marching",
-    form: Mapping[str, Any] | None = None,
+    method: Embedding = "nmds",
+    geodesic: Geodesic = "fast-marching",
     components: Components = "largest",
     weld: Weld = "seams",
     seed: int = 0,
@@ -102,7 +103,7 @@ def build_index(
 
     Parameters
     ----------
-    meshes, labels, n, points, size, method, geodesic, form, components, weld, seed, max_vertices, timeout, memory
+    meshes, labels, n_landmarks, n_points, size, method, geodesic, components, weld, seed, max_vertices, timeout, memory
         As in `Index.build`.
     client
         A `distributed.Client`, of any cluster: local, over SSH, or of Slurm through dask-jobqueue.
@@ -122,7 +123,7 @@ def build_index(
     MeshError
         If there are no meshes, or none of them can be described.
     """
-    settings = options_of({**locals(), **form_options(form)})
+    settings = options_of(**locals())
     out = os.path.abspath(out)
     place = os.path.abspath(shards if shards is not None else f"{out}.shards")
     os.makedirs(place, exist_ok=True)
@@ -178,7 +179,7 @@ def distance_matrix(
     index: Index | AnyPath,
     client: Client,
     *,
-    kind: str = "combined",
+    kind: IndexDistance = "combined",
     block: int = 64,
     retries: int = 3,
     progress: Progress = False,

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _canonform
 from ._arrays import Floats, Ints
-from ._settings import encoded
+from ._settings import Landmarks, Regularization, encoded
 
 try:
     from sklearn.base import BaseEstimator, ClassNamePrefixFeaturesOutMixin, TransformerMixin
@@ -56,16 +56,17 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
     sampling : {"farthest", "random"}, default="farthest"
         How landmarks are chosen: each the farthest from those before it, or at random.
     regularization : {"low-rank", "rpi", "none", "cur"}, default="low-rank"
-        How the matrix of the landmarks is inverted, see `Surface.canonical_form`.
+        How the matrix of the landmarks is inverted, see `Nystrom`. Its options are parameters here, since grids of scikit-learn change
+        them one by one.
     rank : int, default=None
         Number of eigenvalues that "low-rank" keeps. By default half the landmarks, at least n_components + 4.
-    alpha : float, default=None
+    alpha : float or "paper", default=None
         How strongly "rpi" damps small eigenvalues.
     target_stress : float, default=None
         With n_landmarks="auto": take landmarks until the normalised stress, the relative error of the distances, is at most this on
         distances that the embedding does not know.
     random_state : int, RandomState or None, default=None
-        For `sampling="random"`, and for the distances that n_landmarks="auto" looks at.
+        For `sampling="random"`, and for the distances that n_landmarks="auto" looks at. Elsewhere in canonform a whole number, `seed`.
     warm_start : bool, default=False
         Keep the distances from the landmarks, so that the next fit to the same points measures those from further landmarks only:
         `form.set_params(n_landmarks=200).fit(X)`. Takes the memory of n p numbers between fits.
@@ -107,15 +108,15 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
 
     def __init__(
         self,
-        n_landmarks: int | str = 100,
+        n_landmarks: Landmarks = 100,
         n_components: int = 3,
         *,
         metric: Metric = "euclidean",
         metric_params: dict[str, Any] | None = None,
-        sampling: str = "farthest",
-        regularization: str = "low-rank",
+        sampling: Literal["farthest", "random"] = "farthest",
+        regularization: Regularization = "low-rank",
         rank: int | None = None,
-        alpha: float | None = None,
+        alpha: float | Literal["paper"] | None = None,
         target_stress: float | None = None,
         random_state: Any = None,
         warm_start: bool = False,
@@ -212,7 +213,7 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         return distances
 
     def _settings(self) -> dict[str, Any]:
-        return {"dim": self.n_components, "regularization": self.regularization, "rank": self.rank, "alpha": self.alpha}
+        return {"n_components": self.n_components, "regularization": self.regularization, "rank": self.rank, "alpha": self.alpha}
 
     def _measure(self, X: Any, i: int) -> Floats:
         """The distances from a point of the fit to all."""
@@ -222,7 +223,7 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
     def _searched(self, X: Any, taken: _Landmarks) -> tuple[int, int | None]:
         """Takes landmarks until they are enough; their number, and the best rank for them."""
         seed = int(check_random_state(self.random_state).randint(2**31 - 1)) if self.random_state is not None else 0
-        settings = encoded(**self._settings(), n="auto", target_stress=self.target_stress)
+        settings = encoded(**self._settings(), n_landmarks="auto", target_stress=self.target_stress)
         search = _canonform.SampleSearch(settings, min(_MOST_LANDMARKS, len(X)), seed)
         landmarks, columns = taken.first(0)
         step, numbers = search.start()

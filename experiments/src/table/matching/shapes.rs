@@ -102,7 +102,7 @@ impl<'a> MapGroup<'a> {
         options: &ArticulatedOptions,
     ) -> Result<Self> {
         let one = |[body, pose]: [usize; 2]| {
-            let RestedShape { shape, rest } = articulated_at_rest(Family::Person, body, pose, options)?;
+            let RestedShape { shape, rest } = articulated_at_rest(Family::Person, body, pose, options, &())?;
             let surface = Cow::Owned(Surface::new(&shape.mesh, &Default::default(), &())?);
             let places = VertexPlaces::Symmetric(NearestPoints::new(rest.positions)?);
             Ok(PlacedShape { name: shape.name, surface, places })
@@ -127,7 +127,7 @@ fn built_in(shape: &LabeledSurface, seed: u64) -> Result<PlacedShape<'_>> {
     let family = family.context("a built-in family")?;
     let pose = shape.name.strip_prefix(family.name()).and_then(|pose| pose.parse().ok()).context("a pose")?;
     let options = ArticulatedOptions { seed, n_vertices: shape.surface.mesh().n_vertices() };
-    let rested = articulated_at_rest(family, 0, pose, &options)?;
+    let rested = articulated_at_rest(family, 0, pose, &options, &())?;
     anyhow::ensure!(rested.shape.mesh == *shape.surface.mesh(), "the shape is generated again");
     let places = VertexPlaces::Symmetric(NearestPoints::new(rested.rest.positions)?);
     Ok(PlacedShape { name: shape.name.clone(), surface: Cow::Borrowed(&shape.surface), places })

@@ -3,6 +3,7 @@
 mod closed_forms;
 mod degenerate;
 mod laws;
+mod log_map;
 mod reference;
 
 use surface::{FaceId, IntrinsicMesh, VertexId};

@@ -1,0 +1,173 @@
+//! The logarithmic map: where points lie around another one, by the direction and the length of their shortest paths.
+
+use std::f64::consts::TAU;
+
+use base::Observer;
+use rayon::prelude::*;
+use surface::{CornerId, EdgeId, FaceId, IntrinsicMesh, OneRing, SurfacePoint, VertexId, Winding};
+
+use super::PathTracer;
+use super::plane::Flat;
+use crate::error::GeodesicError;
+use crate::plane::{PlanePoint, sub};
+use crate::source::Source;
+
+/// The logarithmic map of every vertex about a source: a vector in the tangent plane of the source, in mesh units, that points
+/// along the shortest path to the vertex and is as long as it. `distances` are those from the source, best by
+/// [`Exact`](crate::Exact).
+///
+/// * **Axes.** The first one points, from a vertex, along the edge to its neighbour with the lowest number; from a point of an
+///   edge, to the higher end; in a face, from its first corner to the second. The second one is 90 degrees to the left, as the
+///   faces are oriented.
+/// * **Angles.** Those between edges at an interior vertex are scaled, so that they sum to 360 degrees. All others are kept: the
+///   map of a flat surface is flat.
+/// * Not a number for vertices at an infinite distance, and where the path begins with a link, which has no direction.
+///
+/// Traces a path to every vertex, in parallel.
+///
+/// # Errors
+/// [`GeodesicError::Exceeded`].
+///
+/// # Panics
+/// If there is not one distance per vertex.
+///
+/// ```
+/// use canonform_geodesics::{DistanceSolver, Exact, Source, log_map};
+/// use mesh::shapes;
+/// use surface::VertexId;
+///
+/// // A sheet of 4 x 3 vertices a unit apart: the first axis points from vertex 0 to vertex 1.
+/// let sheet = shapes::grid(4, 3, 1.0).intrinsic();
+/// let distances = Exact::new(&sheet, &()).distances(VertexId(0))?;
+/// let map = log_map(&sheet, &Source::vertex(VertexId(0)), &distances, &())?;
+/// assert!((map[11][0] - 3.0).abs() < 1e-12 && (map[11][1] - 2.0).abs() < 1e-12);
+/// # Ok::<(), canonform_geodesics::GeodesicError>(())
+/// ```
+pub fn log_map(
+    mesh: &IntrinsicMesh,
+    source: &Source,
+    distances: &[f64],
+    observer: &dyn Observer,
+) -> Result<Vec<[f64; 2]>, GeodesicError> {
+    let tracer = PathTracer::new(mesh, std::slice::from_ref(source), distances, observer);
+    let tangent = TangentPlane::at(mesh, source.point().simplified(mesh));
+    observer.begin("paths", distances.len());
+    let vector = |(vertex, distance): (usize, &f64)| {
+        let path = match tracer.path_to(SurfacePoint::Vertex(VertexId::from(vertex))) {
+            Ok(path) => path,
+            Err(GeodesicError::NoWay { .. }) => return Ok([f64::NAN; 2]),
+            Err(fault) => return Err(fault),
+        };
+        observer.step();
+        let Some(next) = path.points.get(1) else { return Ok([0.0; 2]) };
+        let angle = tangent.angle(mesh, *next);
+        Ok([distance * angle.cos(), distance * angle.sin()])
+    };
+    distances.par_iter().enumerate().map(vector).collect()
+}
+
+/// The faces around a point, unrolled into the plane that touches there.
+#[derive(Debug)]
+struct TangentPlane {
+    sheets: Vec<Sheet>,
+    /// The angle of the first axis.
+    zero: f64,
+    /// From angles on the surface to those in the plane.
+    scale: f64,
+}
+
+/// A face of a tangent plane: it is laid out with the point at `origin`, and an angle `a` there is `start + sign * a`.
+#[derive(Debug)]
+struct Sheet {
+    face: FaceId,
+    flat: Flat,
+    origin: PlanePoint,
+    start: f64,
+    sign: f64,
+}
+
+impl TangentPlane {
+    fn at(mesh: &IntrinsicMesh, point: SurfacePoint) -> Self {
+        match point {
+            SurfacePoint::Vertex(vertex) => Self::at_vertex(mesh, vertex),
+            SurfacePoint::Edge { edge, .. } => Self::at_edge(mesh, point, edge),
+            SurfacePoint::Face { face, .. } => {
+                let flat = Flat::of_face(mesh, face);
+                let origin = flat.point(mesh, point);
+                Self {
+                    sheets: vec![Sheet { face, flat, origin, start: 0.0, sign: 1.0 }],
+                    zero: 0.0,
+                    scale: 1.0,
+                }
+            }
+        }
+    }
+
+    /// The first face of the edge lies on the side that its orientation says, all others on the other side.
+    fn at_edge(mesh: &IntrinsicMesh, point: SurfacePoint, edge: EdgeId) -> Self {
+        let [low, high] = mesh.topology().edges()[edge.index()];
+        let layouts = mesh.topology().edge_corners(edge).iter().map(|corner| {
+            let flat = Flat::new(mesh, *corner);
+            // The corner opposite the edge is in the origin, and its face to the left of the side from the next corner on.
+            (
+                corner.face(),
+                flat,
+                if mesh.topology().corner_vertex(corner.next()) == low { 1.0 } else { -1.0 },
+            )
+        });
+        let mut first = None;
+        let sheets = layouts.map(|(face, flat, side)| {
+            let wanted = first.map_or(side, |first: f64| -first);
+            first = first.or(Some(side));
+            let sign = wanted * side;
+            let along = angle_of(sub(flat.vertex(high), flat.vertex(low)));
+            Sheet { face, flat, origin: flat.point(mesh, point), start: -sign * along, sign }
+        });
+        Self { sheets: sheets.collect(), zero: 0.0, scale: 1.0 }
+    }
+
+    fn at_vertex(mesh: &IntrinsicMesh, vertex: VertexId) -> Self {
+        let topology = mesh.topology();
+        let mut ring = OneRing::default();
+        ring.collect(topology, topology.vertex_corners(vertex));
+        let (mut sheets, mut sides, mut total) = (Vec::new(), Vec::new(), 0.0);
+        let mut orientation = (CornerId(u32::MAX), 1.0);
+        for corner in ring.fans().flat_map(|fan| fan.corners) {
+            let flat = Flat::new(mesh, corner.corner);
+            let [start, end] = [total, total + angle_of(flat.at[2])];
+            total = end;
+            let ends = [corner.opposite_last(), corner.opposite_first()].map(|c| topology.corner_vertex(c));
+            sides.extend([(ends[0], start), (ends[1], end)]);
+            let (start, sign) = match corner.winding {
+                Winding::Forward => (start, 1.0),
+                Winding::Backward => (end, -1.0),
+            };
+            if corner.corner < orientation.0 {
+                orientation = (corner.corner, sign);
+            }
+            sheets.push(Sheet { face: corner.corner.face(), flat, origin: [0.0; 2], start, sign });
+        }
+        let zero = sides.iter().min_by_key(|(end, _)| *end).map_or(0.0, |(_, angle)| *angle);
+        let scale = orientation.1 * if ring.is_closed() && total > 0.0 { TAU / total } else { 1.0 };
+        Self { sheets, zero, scale }
+    }
+
+    /// The angle between the first axis and the direction to a point of a face around; not a number for any other point.
+    fn angle(&self, mesh: &IntrinsicMesh, towards: SurfacePoint) -> f64 {
+        let sheet = self.sheets.iter().find(|sheet| match towards {
+            SurfacePoint::Vertex(vertex) => sheet.flat.vertices.contains(&vertex),
+            SurfacePoint::Edge { edge, .. } => {
+                sheet.face.corners().into_iter().any(|corner| mesh.topology().opposite_edge(corner) == edge)
+            }
+            SurfacePoint::Face { face, .. } => sheet.face == face,
+        });
+        sheet.map_or(f64::NAN, |sheet| {
+            let angle = angle_of(sub(sheet.flat.point(mesh, towards), sheet.origin));
+            self.scale * (sheet.start + sheet.sign * angle - self.zero)
+        })
+    }
+}
+
+fn angle_of([x, y]: PlanePoint) -> f64 {
+    y.atan2(x)
+}

@@ -1,0 +1,144 @@
+//! Laws of the logarithmic map.
+
+use std::f64::consts::{PI, TAU};
+
+use mesh::{TriMesh, shapes};
+use nalgebra::Point3;
+use surface::{EdgeId, FaceId, IntrinsicMesh, VertexId};
+
+use super::vertex;
+use crate::tests::assert_close;
+use crate::{DistanceSolver, Exact, Source, SurfacePoint, log_map};
+
+fn about(mesh: &IntrinsicMesh, point: SurfacePoint) -> Vec<[f64; 2]> {
+    let source = Source::new(mesh, point).unwrap();
+    let mut distances = vec![0.0; mesh.n_vertices()];
+    Exact::new(mesh, &()).solve_into(std::slice::from_ref(&source), f64::INFINITY, &mut distances).unwrap();
+    let map = log_map(mesh, &source, &distances, &()).unwrap();
+    for ([x, y], distance) in map.iter().zip(&distances) {
+        assert_close(x.hypot(*y), *distance, 1e-12);
+    }
+    map
+}
+
+/// Points of a plane in a frame with this origin and first axis.
+fn in_frame(points: &[[f64; 2]], [ox, oy]: [f64; 2], along: [f64; 2]) -> Vec<[f64; 2]> {
+    let length = along[0].hypot(along[1]);
+    let [cos, sin] = along.map(|x| x / length);
+    let turned = |[x, y]: &[f64; 2]| {
+        let [x, y] = [x - ox, y - oy];
+        [cos * x + sin * y, cos * y - sin * x]
+    };
+    points.iter().map(turned).collect()
+}
+
+fn assert_same(found: &[[f64; 2]], expected: &[[f64; 2]], tolerance: f64) {
+    for (i, (a, b)) in found.iter().zip(expected).enumerate() {
+        assert!((a[0] - b[0]).hypot(a[1] - b[1]) < tolerance, "vertex {i}: {a:?} instead of {b:?}");
+    }
+}
+
+#[test]
+fn the_map_of_a_flat_sheet_is_the_sheet() {
+    let sheet = shapes::jittered_grid(9, 7, 1.0, 0.2, 5);
+    let at: Vec<[f64; 2]> = sheet.positions.iter().map(|p| [p.x, p.y]).collect();
+    let mut turned = sheet.clone();
+    // Faces that are turned over do not unsettle the angles; the first one says what is left.
+    for face in turned.faces.iter_mut().skip(1).step_by(3) {
+        face.swap(1, 2);
+    }
+    for (sheet, is_turned) in [(&sheet, false), (&turned, true)] {
+        let mesh = sheet.intrinsic();
+        // The first axis points to the neighbour with the lowest number: before an inner vertex, and after the first corner.
+        for (source, lowest) in [(0, 1), (31, 21), (62, 52)] {
+            let neighbours = mesh.topology().edges().iter().filter(|ends| ends.contains(&VertexId(source)));
+            assert_eq!(neighbours.flatten().map(|v| v.0).filter(|v| *v != source).min(), Some(lowest));
+            let [from, to] = [source, lowest].map(|v| at[v as usize]);
+            let along = [to[0] - from[0], to[1] - from[1]];
+            let (found, expected) = (about(&mesh, vertex(source as usize)), in_frame(&at, from, along));
+            let is_mirrored = (found[35][1] - expected[35][1]).abs() > 1e-9;
+            assert!(is_turned || !is_mirrored);
+            let expected: Vec<_> =
+                expected.iter().map(|[x, y]| [*x, if is_mirrored { -y } else { *y }]).collect();
+            assert_same(&found, &expected, 1e-11);
+        }
+    }
+    let mesh = sheet.intrinsic();
+    let [a, b] = mesh.topology().edges()[60].map(|v| at[v.index()]);
+    let along = [b[0] - a[0], b[1] - a[1]];
+    let middle = [a[0] + 0.3 * along[0], a[1] + 0.3 * along[1]];
+    let point = SurfacePoint::Edge { edge: EdgeId(60), t: 0.3 };
+    assert_same(&about(&mesh, point), &in_frame(&at, middle, along), 1e-11);
+    let [a, b, c] = mesh.topology().faces()[40].map(|v| at[v.index()]);
+    let middle = [0, 1].map(|axis| 0.5 * a[axis] + 0.3 * b[axis] + 0.2 * c[axis]);
+    let point = SurfacePoint::Face { face: FaceId(40), barycentric: [0.5, 0.3, 0.2] };
+    assert_same(&about(&mesh, point), &in_frame(&at, middle, [b[0] - a[0], b[1] - a[1]]), 1e-11);
+}
+
+/// A cone of rings of 16 vertices around vertex 0, whose slope makes its total angle `angle`, and the polar coordinates of the
+/// vertices on its surface.
+fn cone(angle: f64) -> (IntrinsicMesh, Vec<[f64; 2]>) {
+    const AROUND: u32 = 16;
+    let mut polar = vec![[0.0; 2]];
+    let mut faces = Vec::new();
+    for ring in 0..6 {
+        for i in 0..AROUND {
+            polar.push([f64::from(ring + 1), angle * f64::from(i) / f64::from(AROUND)]);
+            let at = |ring: u32, i: u32| VertexId(1 + ring * AROUND + i % AROUND);
+            match ring {
+                0 => faces.push([VertexId(0), at(0, i), at(0, i + 1)]),
+                _ => faces.extend([
+                    [at(ring - 1, i), at(ring, i), at(ring, i + 1)],
+                    [at(ring - 1, i), at(ring, i + 1), at(ring - 1, i + 1)],
+                ]),
+            }
+        }
+    }
+    // The chord of a sector is the same in space as on the unrolled cone.
+    let sector = PI / f64::from(AROUND);
+    let radius = (0.5 * angle / f64::from(AROUND)).sin() / sector.sin();
+    let height = (1.0 - radius * radius).sqrt();
+    let place = |[r, a]: &[f64; 2]| {
+        let turn = a * TAU / angle;
+        Point3::new(r * radius * turn.cos(), r * radius * turn.sin(), -r * height)
+    };
+    (TriMesh { positions: polar.iter().map(place).collect(), faces }.intrinsic(), polar)
+}
+
+#[test]
+fn the_map_of_a_cone_unrolls_it() {
+    let angle = 1.5 * PI;
+    let (mesh, polar) = cone(angle);
+    // About the apex, angles are scaled to a full turn.
+    let scaled: Vec<_> =
+        polar.iter().map(|[r, a]| [r * (a * TAU / angle).cos(), r * (a * TAU / angle).sin()]).collect();
+    assert_same(&about(&mesh, vertex(0)), &scaled, 1e-11);
+    // About another vertex, the cone is cut on the far side and lies flat.
+    let source = 1 + 2 * 16;
+    let flat: Vec<_> = polar
+        .iter()
+        .map(|[r, a]| {
+            let a = if *a > angle / 2.0 { a - angle } else { *a };
+            [r * a.cos(), r * a.sin()]
+        })
+        .collect();
+    let lowest = flat[1 + 16];
+    let along = [lowest[0] - flat[source][0], lowest[1] - flat[source][1]];
+    let (found, expected) = (about(&mesh, vertex(source)), in_frame(&flat, flat[source], along));
+    // Two shortest paths lead to the vertices on the cut.
+    let is_single = |i: &usize| (polar[*i][1] - angle / 2.0).abs() > 1e-9;
+    let pick = |map: &[[f64; 2]]| (0..map.len()).filter(is_single).map(|i| map[i]).collect::<Vec<_>>();
+    assert_same(&pick(&found), &pick(&expected), 1e-10);
+}
+
+#[test]
+fn what_is_out_of_reach_has_no_place() {
+    let mesh = shapes::disjoint(&[shapes::grid(3, 3, 1.0), shapes::grid(2, 2, 1.0)]).intrinsic();
+    let source = Source::vertex(VertexId(0));
+    let distances = Exact::new(&mesh, &()).distances(VertexId(0)).unwrap();
+    let map = log_map(&mesh, &source, &distances, &()).unwrap();
+    assert!(map[9..].iter().all(|p| p[0].is_nan() && p[1].is_nan()) && map[8][0].is_finite());
+    let budget = base::Budget::unlimited();
+    budget.cancel();
+    assert!(log_map(&mesh, &source, &distances, &budget).is_err());
+}
