@@ -48,7 +48,7 @@ mod _canonform {
     #[pymodule_export]
     use crate::operators::{closest_points, eigenbasis, laplacian, log_map};
     #[pymodule_export]
-    use crate::picture::draw;
+    use crate::picture::{draw, scene_page};
     #[pymodule_export]
     use crate::run::{set_threads, threads};
     #[pymodule_export]

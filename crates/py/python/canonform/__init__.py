@@ -35,6 +35,7 @@ from ._match import MapCollection, MappedPoints, Match, SurfaceMap, match, match
 from ._methods import FastMarching, Fmds, KernelPca, Landmark, Nystrom, Smacof, Spectral
 from ._operators import ClosestPoints, EdgePoint, Eigenbasis, FacePoint
 from ._surface import Path, RepairReport, Surface, distance_methods, embedding_methods, signature_kinds
+from ._view import SurfaceView
 from .errors import CanonformError
 
 if _TYPE_CHECKING:
@@ -73,6 +74,7 @@ __all__ = [
     "Spectral",
     "Surface",
     "SurfaceMap",
+    "SurfaceView",
     "__version__",
     "align",
     "compare",

@@ -38,6 +38,7 @@ from ._settings import (
     word,
 )
 from ._stored import ByValue, Constant
+from ._view import SurfaceView, scene
 from .errors import OptionError, PointError, SurfaceLossWarning
 
 if TYPE_CHECKING:
@@ -601,9 +602,28 @@ class Surface(Constant):
 
     def picture(self, values: ArrayLike | None = None, *, width: int = 600, height: int = 600) -> bytes:
         """A shaded picture of the surface as the bytes of a PNG file, coloured by values at its vertices if given."""
-        if values is not None and np.shape(values) != (self.n_vertices,):
+        numbers = None if values is None else self._one_per_vertex(values)
+        return _html.picture(self.vertices, self.faces, numbers, (width, height))
+
+    def view(self, values: ArrayLike | None = None, *, name: str = "", height: int = 480) -> SurfaceView:
+        """The surface to turn and zoom in a notebook, coloured by values at its vertices if given.
+
+        Parameters
+        ----------
+        values
+            One number for each vertex; faces at vertices whose number is not finite are grey.
+        name
+            What the values are, for the colour bar.
+        height
+            Height of the view, in pixels.
+        """
+        numbers = None if values is None else self._one_per_vertex(values)
+        return scene(self.vertices, self.faces, numbers, self._name or "Surface", name, whole("height", height, 40))
+
+    def _one_per_vertex(self, values: ArrayLike) -> Floats:
+        if np.shape(values) != (self.n_vertices,):
             raise OptionError(f"values must be one number for each of the {self.n_vertices} vertices, not of shape {np.shape(values)}")
-        return _html.picture(self.vertices, self.faces, values, (width, height))
+        return straight(values, dtype=np.float64)
 
     def __repr__(self) -> str:
         name = f"{self._name!r}, " if self._name else ""

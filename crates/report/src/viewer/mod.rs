@@ -8,6 +8,7 @@
 
 pub mod base64;
 mod geometry;
+mod scene;
 
 use std::io::Read;
 use std::sync::LazyLock;
@@ -17,6 +18,7 @@ use flate2::read::GzDecoder;
 use crate::color::{hex, perceptual_stops};
 
 pub use geometry::Geometry;
+pub use scene::scene_page;
 
 /// The viewer: a script that defines the global `canonform` and uses `Plotly` from its first view on.
 ///
@@ -37,13 +39,15 @@ pub fn viewer_js() -> &'static str {
 #[must_use]
 pub fn plotly_js() -> &'static str {
     static SCRIPT: LazyLock<String> = LazyLock::new(|| {
-        let mut script = include_str!("prelude.js").to_owned();
+        let mut script = PRELUDE.to_owned();
         // The tests unpack the bundle, so it is known to be readable.
         let _ = GzDecoder::new(BUNDLE).read_to_string(&mut script);
         script
     });
     &SCRIPT
 }
+
+const PRELUDE: &str = include_str!("prelude.js");
 
 const BUNDLE: &[u8] = include_bytes!("../../assets/plotly/plotly.js.gz");
 

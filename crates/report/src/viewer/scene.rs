@@ -1,0 +1,79 @@
+//! A page of its own that shows a surface, for frames in notebooks.
+
+use std::io::Write;
+use std::sync::LazyLock;
+
+use ::base64::Engine;
+use ::base64::engine::general_purpose::STANDARD;
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use sha2::{Digest, Sha256};
+
+use super::{BUNDLE, Geometry, PRELUDE, plotly_js, viewer_js};
+use crate::page::escape;
+
+/// A page of HTML that shows a surface to turn and zoom: 0.7 MB of scripts, packed, and the surface.
+///
+/// It fetches nothing, and its policy allows its own scripts only. Before the surface is drawn, and without scripts or
+/// WebGL, the page is transparent.
+#[must_use]
+pub fn scene_page(geometry: Geometry, title: &str) -> String {
+    // The bundle is packed already, and packing it again takes a second.
+    static SCRIPTS: LazyLock<[[String; 2]; 3]> = LazyLock::new(|| {
+        let bundle = plotly_js().strip_prefix(PRELUDE).unwrap_or_default();
+        [
+            [packed("prelude", PRELUDE), hash(PRELUDE)],
+            [island("plotly", BUNDLE), hash(bundle)],
+            [packed("viewer", viewer_js()), hash(viewer_js())],
+        ]
+    });
+    let [islands, hashes] =
+        [0, 1].map(|part| SCRIPTS.each_ref().map(|script| script[part].as_str()).join(" "));
+    let start = include_str!("scene.js");
+    let scene = serde_json::to_string(&geometry.rounded()).unwrap_or_default();
+    format!(
+        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title>\n\
+         <meta http-equiv=\"content-security-policy\" content=\"default-src 'none'; script-src {hashes} {start_hash}; \
+         style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; form-action 'none'\">\n\
+         <style>html,body{{height:100%;margin:0;overflow:hidden}}body{{font:13px sans-serif}}#view{{height:100%}}\
+         .canonform-title{{margin:0}}.canonform-fallback{{position:absolute;bottom:0}}</style></head>\n\
+         <body><div id=\"view\"></div>\n{islands}{scene}<script>{start}</script></body></html>\n",
+        title = escape(title),
+        start_hash = hash(start),
+        scene = packed("scene", &scene),
+    )
+}
+
+fn hash(script: &str) -> String {
+    format!("'sha256-{}'", STANDARD.encode(Sha256::digest(script)))
+}
+
+/// Text as an element that is not run.
+fn packed(id: &str, text: &str) -> String {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::default());
+    // Writing to memory cannot fail.
+    let _ = encoder.write_all(text.as_bytes());
+    island(id, &encoder.finish().unwrap_or_default())
+}
+
+/// Bytes of gzip as such an element, in base64.
+fn island(id: &str, bytes: &[u8]) -> String {
+    format!("<script type=\"text/plain\" id=\"{id}\">{}</script>\n", STANDARD.encode(bytes))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scene_runs_its_own_scripts_only_and_names_cannot_leave_their_place() {
+        let geometry =
+            Geometry { positions: vec![[0.0, 0.5, 1.0]; 3], faces: vec![[0, 1, 2]], ..Geometry::default() };
+        let page = scene_page(geometry.with_values("</script>", &[1.0, 2.0, 3.0]), "<b>cat");
+        assert!(page.contains("&lt;b&gt;cat") && !page.contains("<b>cat"));
+        assert_eq!((page.matches("'sha256-").count(), page.matches("<script>").count()), (4, 1));
+        assert_eq!(page.matches("</script>").count(), 5);
+        assert!(!page.contains("http:") && !page.contains("https:") && !page.contains("unsafe-eval"));
+        assert!((600_000..900_000).contains(&page.len()), "{} bytes", page.len());
+    }
+}
