@@ -3,14 +3,26 @@
 from __future__ import annotations
 
 import base64
+import json
+import os
+import pickle
 import re
+import shutil
+import subprocess
+import time
+import urllib.request
 import xml.etree.ElementTree as ElementTree
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import canonform
 import numpy as np
-from canonform import Index, Surface
+import pytest
+from canonform import Index, Surface, SurfaceView
 from canonform.datasets import Shape
+from conftest import grid
 
 PNG = re.compile(r'src="data:image/png;base64,([A-Za-z0-9+/=]+)"')
 
@@ -65,3 +77,129 @@ def test_a_search_without_mesh_files_is_shown_all_the_same(tmp_path: Path, cats:
     for path in paths:
         Path(path).unlink()
     assert checked(index.search("cat0")._repr_html_()) == []
+
+
+# Headless, with WebGL in software.
+BROWSER = ["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--enable-unsafe-swiftshader", "--no-first-run"]
+NOWHERE = "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1"
+
+
+class Browser:
+    """Chromium, driven by WebDriver: JSON over HTTP."""
+
+    def __init__(self, address: str) -> None:
+        self.address = address
+
+    def ask(self, command: str, body: Any = None, method: str = "POST") -> Any:
+        data = None if method != "POST" else json.dumps(body or {}).encode()
+        request = urllib.request.Request(self.address + command, data, {"Content-Type": "application/json"}, method=method)
+        with urllib.request.urlopen(request, timeout=120) as answer:
+            return json.load(answer)["value"]
+
+    def script(self, text: str) -> Any:
+        return self.ask("/execute/sync", {"script": text, "args": []})
+
+    def enter_frame(self) -> None:
+        self.ask("/frame", {"id": self.ask("/element", {"using": "css selector", "value": "iframe"})})
+
+    def state(self) -> str:
+        """The state of the view, once it is drawn or has failed."""
+        for _ in range(240):
+            state: str | None = self.script("return document.getElementById('view')?.dataset.state")
+            if state in ("ready", "failed"):
+                return state
+            time.sleep(0.25)
+        raise AssertionError("nothing is drawn")
+
+
+@contextmanager
+def browsing(*arguments: str) -> Iterator[Browser]:
+    chromium, driver = (shutil.which(name) for name in ("chromium", "chromedriver"))
+    if chromium is None or driver is None:
+        assert os.environ.get("CANONFORM_BROWSER") != "required", "chromium or chromedriver is missing"
+        pytest.skip("needs chromium and chromedriver")
+    process = subprocess.Popen([driver, "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    try:
+        assert process.stdout is not None
+        port = next(line.split()[-1].rstrip(".") for line in process.stdout if "started successfully on port" in line)
+        browser = Browser(f"http://127.0.0.1:{port}/session")
+        options = {"binary": chromium, "args": [*BROWSER, NOWHERE, *arguments]}
+        wanted = {"browserName": "chrome", "goog:chromeOptions": options, "goog:loggingPrefs": {"browser": "ALL"}}
+        browser.address += "/" + browser.ask("", {"capabilities": {"alwaysMatch": wanted}})["sessionId"]
+        yield browser
+        browser.ask("", method="DELETE")
+    finally:
+        process.kill()
+        process.wait()
+        if process.stdout is not None:
+            process.stdout.close()
+
+
+@pytest.fixture(scope="module")
+def view(cat: Shape) -> SurfaceView:
+    surface = cat.surface()
+    return surface.view(surface.distances(0), name="distance <b>", height=300)
+
+
+def page_with(view: SurfaceView, folder: Path) -> str:
+    page = folder / "notebook.html"
+    page.write_text(f"<!doctype html><body>{view._repr_html_()}</body>", encoding="utf-8")
+    return page.as_uri()
+
+
+def test_a_view_turns_in_a_frame_without_a_network(view: SurfaceView, tmp_path: Path) -> None:
+    with browsing() as browser:
+        browser.ask("/url", {"url": page_with(view, tmp_path)})
+        browser.enter_frame()
+        assert browser.state() == "ready"
+        assert "distance <b>" in browser.script("return document.body.textContent")
+        eye = "return document.querySelector('.canonform-scene').layout.scene.camera.eye.x"
+        before = browser.script(eye)
+        browser.script(
+            "document.querySelector('.canonform-scene').dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowLeft', bubbles: true }))"
+        )
+        assert browser.script(eye) != before
+        assert browser.script("return getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)", "it covers the picture"
+        assert browser.script("return performance.getEntriesByType('resource').length") == 0
+        assert [entry for entry in browser.ask("/se/log", {"type": "browser"}) if entry["level"] == "SEVERE"] == []
+        written = tmp_path / "page.html"
+        view.write(written)
+        browser.ask("/url", {"url": written.as_uri()})
+        assert browser.state() == "ready"
+
+
+def test_without_webgl_a_view_is_its_picture(view: SurfaceView, tmp_path: Path) -> None:
+    with browsing("--disable-3d-apis") as browser:
+        browser.ask("/url", {"url": page_with(view, tmp_path)})
+        assert browser.script("const image = document.querySelector('img'); return [image.complete, image.naturalWidth]") == [True, 300]
+        browser.enter_frame()
+        assert browser.state() == "failed"
+        assert browser.script("return getComputedStyle(document.body).backgroundColor") == "rgba(0, 0, 0, 0)", "the picture is seen"
+
+
+def test_views_are_small_and_refuse_what_pictures_refuse(view: SurfaceView, cat: Shape) -> None:
+    assert len(view.page) < 800_000 and len(view._repr_html_()) < 1_000_000
+    assert pickle.loads(pickle.dumps(view)) == view and view.n_faces == len(cat.faces)
+    for wrong in (np.zeros(5), np.zeros((1000, 3))):
+        with pytest.raises(canonform.errors.OptionError, match="one number for each of the 1000 vertices"):
+            cat.surface().view(wrong)
+
+
+def test_large_surfaces_are_simplified_and_keep_shape_and_values() -> None:
+    from canonform._view import _visible
+
+    vertices, faces = grid(300)
+    found, triangles, values = _visible(vertices, faces, vertices[:, 0])
+    assert 30_000 < len(triangles) <= 100_000 < len(faces)
+    a, b, c = (found[triangles[:, k]] for k in range(3))
+    assert np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2 == pytest.approx(1, abs=0.02)
+    assert values is not None and np.allclose(values, found[:, 0])
+
+
+def test_what_a_repair_dropped_is_not_shown() -> None:
+    vertices, faces = grid(4)
+    vertices = np.concatenate([vertices, [[np.nan, 0, 0], [1e9, 0, 0]]])
+    from canonform._view import _visible
+
+    found, triangles, values = _visible(vertices, np.concatenate([faces, [[0, 1, 16]]]), None)
+    assert len(found) == 16 and len(triangles) == len(faces) and values is None
