@@ -5,7 +5,7 @@ OUT ?= out
 # For `make reproduce`: a folder of meshes with the classes of the paper. Default: the built-in dataset.
 DATASET ?=
 
-.PHONY: help setup build run test test-python wheels kills lint bench bench-peers bench-nmds bench-preparation bench-search bench-capacity bench-duplicates bench-maps bench-packages bench-eigsh fmt doc guide reproduce report paper plotly deny sbom fuzz fuzz-seeds package ci clean
+.PHONY: help setup build run test test-python wheels notebooks lint-packaging kills lint bench bench-peers bench-nmds bench-preparation bench-search bench-capacity bench-duplicates bench-maps bench-packages bench-eigsh fmt doc guide reproduce report paper plotly deny sbom fuzz fuzz-seeds package ci clean
 
 help: ## List these commands
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-17s %s\n", $$1, $$2}'
@@ -25,8 +25,14 @@ test: ## Run all tests
 test-python: ## Build the Python package and run its tests in an environment of its own (needs Python 3.11 or later)
 	crates/py/test.sh
 
-wheels: ## Build the wheel and the source distribution of the Python package in out/wheels, and try the wheel
+wheels: ## Build the wheel and the source distribution of the Python package in out/wheels, and try both in a bare Python
 	crates/py/wheels.sh $(OUT)/wheels
+
+notebooks: ## Run the notebooks of the Python package and store them with their outputs
+	CANONFORM_WRITE_DOCS=1 crates/py/test.sh tests/test_notebooks.py
+
+lint-packaging: ## Check workflows, container, citation, recipe and metadata with linters of PyPI and npm
+	packaging/lint.sh
 
 kills: ## Kill writing commands 200 times: nothing half-written, and the next run works
 	CANONFORM_KILLS=200 $(CARGO) test --locked -p canonform-cli --test cli killed

@@ -93,7 +93,10 @@ fn all_pages(root: &Path) -> Vec<PathBuf> {
         if root.join(folder).is_dir() {
             let in_target = |page: &PathBuf| {
                 page.components().any(|part| {
-                    matches!(part.as_os_str().to_str(), Some("target" | "node_modules" | ".venv"))
+                    matches!(
+                        part.as_os_str().to_str(),
+                        Some("target" | "node_modules" | ".venv" | ".pytest_cache")
+                    )
                 })
             };
             all.extend(pages(&root.join(folder)).into_iter().filter(|page| !in_target(page)));
