@@ -87,18 +87,22 @@ def theirs(a, b):
     from pyFM.functional import FunctionalMapping
     from pyFM.mesh import TriMesh
 
+    # Vertices without a face make its mass matrix singular.
+    used = [np.unique(faces) for _, faces in (a, b)]
+    meshes = [TriMesh(vertices[some], np.searchsorted(some, faces), area_normalize=True, center=True)
+              for (vertices, faces), some in zip((a, b), used)]
     # The map of points goes from the second mesh to the first.
-    target, source = (TriMesh(vertices, faces, area_normalize=True, center=True) for vertices, faces in (b, a))
-    start, used = time.perf_counter(), time.process_time()
+    source, target = meshes
+    start, spent = time.perf_counter(), time.process_time()
     model = FunctionalMapping(target, source)
+    found = np.zeros(len(a[0]), dtype=int)
     try:
         model.preprocess(descr_type="WKS", subsample_step=2)
         model.fit(**FIT)
-        found = model.get_p2p(model.zoomout_refine(**ZOOM))
-    # A vertex without area makes its mass matrix singular.
+        found[used[0]] = used[1][model.get_p2p(model.zoomout_refine(**ZOOM))]
     except (ValueError, RuntimeError):
         found = None
-    return found, (time.perf_counter() - start, time.process_time() - used)
+    return found, (time.perf_counter() - start, time.process_time() - spent)
 
 
 def measure(program, folder, shapes, pairs):
