@@ -103,6 +103,30 @@ fn a_part_is_mapped_to_where_it_was_in_another_pose_and_back() {
 }
 
 #[test]
+fn landmarks_of_a_part_are_kept_and_decide() {
+    let whole = Known::pose(Family::David, 0);
+    let part = Known::pose(Family::David, 5).part(0.7, 3);
+    let unit = whole.mesh.area().sqrt();
+    let nearest = |x: usize| part.partner(&whole, x, 1.0);
+    // Vertices far from each other that are on both, and their partners.
+    let n = part.mesh.n_vertices();
+    let pairs = [n / 7, n / 3, n / 2, 6 * n / 7].map(|x| [x, nearest(x).0].map(VertexId::from));
+    let mut options = CorrespondOptions::default();
+    options.known.landmarks = pairs.to_vec();
+    let maps = correspond(&part.mapped, &whole.mapped, &options, &()).unwrap().maps;
+    let map = &maps[0];
+    let error = part.error(&whole, map, unit);
+    println!(
+        "{:?}: error {error:.4}, alone {:.4}",
+        map.kind,
+        part.error(&whole, &part.maps_to(&whole)[0], unit)
+    );
+    assert!(map.kind == MapKind::Direct && part_of(map).part == Side::First, "{:?}", map.kind);
+    assert!(pairs.iter().all(|[x, y]| map.vertices[x.index()] == Some(*y)));
+    assert!(error < 0.08, "{error}");
+}
+
+#[test]
 fn a_piece_of_a_surface_is_mapped_to_itself() {
     let whole = Known::pose(Family::Centaur, 0);
     let part = whole.part(0.7, 1);

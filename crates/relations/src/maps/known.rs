@@ -15,7 +15,7 @@ const TIMES: [f64; 3] = [0.001, 0.003, 0.01];
 
 /// Maps that take every landmark within this of its partner respect them, as a share of the square root of the area. A safety
 /// limit: two maps that are as far apart on average are one.
-const RESPECTED: f64 = 0.06;
+pub(super) const RESPECTED: f64 = 0.06;
 
 /// Where no map takes all landmarks so near, those respect them that miss by no more than this multiple of the least. A safety
 /// limit, for landmarks that were placed by hand.

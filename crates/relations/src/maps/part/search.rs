@@ -5,6 +5,7 @@ use linalg::{LinalgError, Matrix};
 use nalgebra::Cholesky;
 use rayon::prelude::*;
 
+use super::super::known::{KnownMap, RESPECTED};
 use super::super::local::vertex_confidence;
 use super::super::orientation::agreement;
 use super::super::part_of_whole::PartOfWhole;
@@ -63,19 +64,22 @@ struct Candidate {
     agreement: Option<f64>,
     changes: Changes,
     defect: f64,
+    /// How far it takes known points from their partners on average, beyond what is [respected](RESPECTED).
+    miss: f64,
 }
 
 impl Candidate {
     fn new(sides: &Sides<'_>, places: Places) -> Self {
         let agreement = orientation(sides, &places);
         let defect = defect(sides, &places);
-        Self { agreement, changes: Changes::of(sides, &places), places, defect }
+        let miss = (sides.miss(&places) - RESPECTED).max(0.0);
+        Self { agreement, changes: Changes::of(sides, &places), places, defect, miss }
     }
 
     /// Lower is better.
     fn score(&self) -> f64 {
         let Changes { distances, curvature } = self.changes;
-        distances + CURVATURE * curvature + DEFECT * self.defect
+        distances + CURVATURE * curvature + DEFECT * self.defect + self.miss
     }
 
     fn kind(&self) -> MapKind {
@@ -83,16 +87,20 @@ impl Candidate {
     }
 }
 
-/// The best maps of each orientation from the first surface to the second, one of which is a part of the other.
+/// The best maps of each orientation from the first surface to the second, one of which is a part of the other. Of what is
+/// `known`, the landmarks count.
 pub(in crate::maps) fn part_maps(
     part: &MapShape,
     whole: &MapShape,
     side: Side,
+    known: &KnownMap,
     options: &MapOptions,
     observer: &dyn Observer,
 ) -> Result<Vec<SurfaceMap>, DescriptorError> {
     let budget = observer.budget();
-    let Some(sides) = Sides::new(part, whole)? else { return Ok(Vec::new()) };
+    let pairs: Vec<[usize; 2]> = known.landmarks.iter().map(|[x, y]| [x.index(), y.index()]).collect();
+    let pairs = pairs.into_iter().map(|[x, y]| if side == Side::First { [x, y] } else { [y, x] }).collect();
+    let Some(sides) = Sides::new(part, whole, pairs)? else { return Ok(Vec::new()) };
     let (chosen, starts) = placements(&sides, SKETCHES)?;
     budget.check().map_err(LinalgError::from)?;
     let sketch = |places: Places| {
@@ -136,7 +144,9 @@ pub(in crate::maps) fn part_maps(
         finer.sort_by(|a, b| a.score().total_cmp(&b.score()));
         maps.extend(best(&sides, &finer, side)?);
     }
-    Ok(in_order(maps))
+    let mut maps = in_order(maps);
+    maps.iter_mut().for_each(|map| known.kept_by(map));
+    Ok(maps)
 }
 
 /// The first of some maps in the order of their scores, refined; with the next one if that is nearly as good.

@@ -43,6 +43,8 @@ impl Known {
 pub(super) struct Sides<'a> {
     pub(super) part: &'a MapShape,
     pub(super) whole: &'a MapShape,
+    /// Corresponding samples that are known: positions in both lists of samples.
+    known: Vec<[usize; 2]>,
     /// Vertices of the part; its landmarks first.
     pub(super) xs: Vec<usize>,
     /// Vertices of the whole; its landmarks first.
@@ -59,8 +61,12 @@ pub(super) struct Sides<'a> {
 }
 
 impl<'a> Sides<'a> {
-    /// `None` unless the part has a cut.
-    pub(super) fn new(part: &'a MapShape, whole: &'a MapShape) -> Result<Option<Self>, DescriptorError> {
+    /// `None` unless the part has a cut. `pairs` are vertices of the part that are known to correspond to vertices of the whole.
+    pub(super) fn new(
+        part: &'a MapShape,
+        whole: &'a MapShape,
+        pairs: Vec<[usize; 2]>,
+    ) -> Result<Option<Self>, DescriptorError> {
         let Some(from_cut) = &part.from_cut else { return Ok(None) };
         let scale = part.size / whole.size;
         let from_cut = from_cut.iter().map(|d| d * scale).collect();
@@ -69,7 +75,11 @@ impl<'a> Sides<'a> {
         let to_samples = whole.distances_to(&ys)?;
         let in_whole = between(&to_samples, &to_samples);
         let curvatures = curvatures(part, whole, [&xs, &ys]);
-        Ok(Some(Self { part, whole, xs, ys, in_part, from_cut, in_whole, curvatures }))
+        let sample = |shape: &MapShape, v: usize| {
+            shape.cells.iter().position(|cell| cell.contains(&(v as u32))).unwrap_or(0)
+        };
+        let known = pairs.into_iter().map(|[x, y]| [sample(part, x), sample(whole, y)]).collect();
+        Ok(Some(Self { part, whole, known, xs, ys, in_part, from_cut, in_whole, curvatures }))
     }
 
     /// The length of one at unit area of the part.
@@ -91,6 +101,13 @@ impl<'a> Sides<'a> {
     pub(super) fn known_of(&self, landmark: usize, vertex: usize, most: f64) -> Known {
         let least = self.from_cut[self.xs[landmark]] + self.from_cut[vertex];
         Known { least: least.min(most), most }
+    }
+
+    /// How far places take the known samples from their partners, on average; 0 if none is known or placed.
+    pub(super) fn miss(&self, places: &[usize]) -> f64 {
+        let placed = self.known.iter().filter_map(|[x, y]| Some(self.in_whole[(*places.get(*x)?, *y)]));
+        let (sum, n) = placed.fold((0.0, 0), |(sum, n), gap| (sum + gap, n + 1));
+        sum / f64::from(n.max(1))
     }
 
     /// How much the losses of distances count that speak for a place.
