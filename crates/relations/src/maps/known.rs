@@ -146,6 +146,10 @@ impl KnownMap {
     pub(super) fn kept_by(&self, map: &mut SurfaceMap) {
         for [x, y] in &self.landmarks {
             map.vertices[x.index()] = *y;
+            if let Some(part) = &mut map.part {
+                part.partners[0][x.index()] = Some(*y);
+                part.partners[1][y.index()] = Some(*x);
+            }
         }
         if let Some(other) = &mut map.alternative {
             self.kept_by(other);
