@@ -63,7 +63,7 @@ def everything(cats: list[Shape], tmp_path_factory: pytest.TempPathFactory) -> d
         "fmds": canonform.Fmds(first=3),
         "kernel": canonform.KernelPca(sigma="median"),
         "smacof": canonform.Smacof(max_iterations=5),
-        "view": cats[0].view(),
+        "view": a.view(),
         "estimator": canonform.NystromMDS(n_landmarks=20).fit(cats[0].vertices),
         "error": canonform.errors.PointError("no such vertex"),
     }
