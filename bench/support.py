@@ -147,7 +147,7 @@ def machine():
 
 
 def table(head, rows):
-    return "\n".join([f"| {' | '.join(head)} |", "|" + "---|" * len(head), *(f"| {' | '.join(row)} |" for row in rows)])
+    return "\n".join([f"|{'|'.join(head)}|", "|" + "---|" * len(head), *(f"|{'|'.join(row)}|" for row in rows)])
 
 
 def mesh_table(corner, data, measure, first=0):
