@@ -21,13 +21,19 @@ struct Cell {
 
 impl Cell {
     fn new(members: Vec<usize>, gaps: &[f64]) -> Self {
-        let farther = |a: (usize, f64), i: &usize| {
-            let b = (*i, gaps[*i]);
-            if b.1 > a.1 || (b.1 == a.1 && b.0 < a.0) { b } else { a }
-        };
-        let farthest = members.iter().fold((usize::MAX, f64::NEG_INFINITY), farther);
+        let farthest = farthest(members.iter().map(|i| (*i, gaps[*i])));
         Self { members, farthest }
     }
+}
+
+/// The point with the largest distance, the first in case of a tie.
+fn farthest(points: impl Iterator<Item = (usize, f64)>) -> (usize, f64) {
+    points.fold(
+        (usize::MAX, f64::NEG_INFINITY),
+        |a, b| {
+            if b.1 > a.1 || (b.1 == a.1 && b.0 < a.0) { b } else { a }
+        },
+    )
 }
 
 /// Chooses up to `n` of the points, the one farthest from the origin first; fewer if points coincide.
@@ -46,11 +52,7 @@ pub(crate) fn spread(points: &[Point3<f64>], n: usize) -> Spread {
     let mut gaps: Vec<f64> = (0..points.len()).map(|i| sq_distance(i, samples[0])).collect();
     let mut cells = vec![Cell::new(whole.members, &gaps)];
     while samples.len() < n.min(points.len()) {
-        let none = (usize::MAX, f64::NEG_INFINITY);
-        let (next, widest) = cells
-            .iter()
-            .map(|cell| cell.farthest)
-            .fold(none, |a, b| if b.1 > a.1 || (b.1 == a.1 && b.0 < a.0) { b } else { a });
+        let (next, widest) = farthest(cells.iter().map(|cell| cell.farthest));
         if widest.is_nan() || widest <= 0.0 {
             break;
         }

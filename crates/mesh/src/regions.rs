@@ -112,15 +112,16 @@ struct Flat {
 }
 
 impl Flat {
-    /// Whether its outline is a triangle: the one between the three vertices that are farthest out.
-    fn is_triangle(&self, mesh: &TriMesh) -> bool {
+    /// Whether its outline is a triangle: the one between the three vertices that are farthest out. `total` is the area of the
+    /// mesh.
+    fn is_triangle(&self, mesh: &TriMesh, total: f64) -> bool {
         let corners = || self.faces.iter().flat_map(|&f| mesh.triangle(f));
         let farthest = |sq: &dyn Fn(Point3<f64>) -> f64| corners().max_by(|p, q| sq(*p).total_cmp(&sq(*q)));
         let Some(start) = corners().next() else { return true };
         let Some(a) = farthest(&|p| (p - start).norm_squared()) else { return true };
         let Some(b) = farthest(&|p| (p - a).norm_squared()) else { return true };
         let Some(c) = farthest(&|p| (p - a).cross(&(b - a)).norm_squared()) else { return true };
-        let hull = 0.5 * (b - a).cross(&(c - a)).norm() / mesh.area();
+        let hull = 0.5 * (b - a).cross(&(c - a)).norm() / total;
         (hull - self.area).abs() < OUTLINE * self.area
     }
 }
@@ -172,13 +173,15 @@ impl SmoothRegions {
         let mut members = vec![Vec::new(); flats.len()];
         (0..flats.len()).for_each(|flat| members[sets.find(flat as u32) as usize].push(flat));
         let members = members.into_iter().filter(|members| !members.is_empty());
+        let total = mesh.area();
         let (mut plain, mut wide) = (0.0, 0);
         let all: Vec<SmoothRegion> = members
             .map(|members| {
                 let region = region(mesh, &flats, &members);
                 // A triangle is a plane by itself, divided or not; organic meshes of few triangles have many.
                 let flat = &flats[members[0]];
-                let is_plane = matches!(region.shape, RegionShape::Plane { .. }) && !flat.is_triangle(mesh);
+                let is_plane =
+                    matches!(region.shape, RegionShape::Plane { .. }) && !flat.is_triangle(mesh, total);
                 let is_plain = is_plane || matches!(region.shape, RegionShape::Cylinder { .. });
                 if is_plain && region.area > LARGE {
                     plain += region.area;

@@ -135,6 +135,15 @@ impl MapShape {
         self.vectors.nrows()
     }
 
+    /// For every vertex, the position in the list of samples of the one whose cell has it.
+    pub(super) fn sample_of_vertices(&self) -> Vec<usize> {
+        let mut found = vec![0; self.n_vertices()];
+        for (sample, cell) in self.cells.iter().enumerate() {
+            cell.iter().for_each(|v| found[*v as usize] = sample);
+        }
+        found
+    }
+
     /// The eigenvalues and eigenfunctions in which maps of functions are written. Copies them.
     pub fn spectrum(&self) -> LaplaceSpectrum {
         LaplaceSpectrum { vectors: self.vectors.clone(), ..self.spectrum.clone() }

@@ -98,9 +98,9 @@ pub(in crate::maps) fn part_maps(
     observer: &dyn Observer,
 ) -> Result<Vec<SurfaceMap>, DescriptorError> {
     let budget = observer.budget();
-    let pairs: Vec<[usize; 2]> = known.landmarks.iter().map(|[x, y]| [x.index(), y.index()]).collect();
-    let pairs = pairs.into_iter().map(|[x, y]| if side == Side::First { [x, y] } else { [y, x] }).collect();
-    let Some(sides) = Sides::new(part, whole, pairs)? else { return Ok(Vec::new()) };
+    let onto_whole = |[x, y]: &[VertexId; 2]| if side == Side::First { [*x, *y] } else { [*y, *x] };
+    let pairs: Vec<[VertexId; 2]> = known.landmarks.iter().map(onto_whole).collect();
+    let Some(sides) = Sides::new(part, whole, &pairs)? else { return Ok(Vec::new()) };
     let (chosen, starts) = placements(&sides, SKETCHES)?;
     budget.check().map_err(LinalgError::from)?;
     let sketch = |places: Places| {

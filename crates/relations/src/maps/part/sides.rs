@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::super::curvature::smoothed;
 use super::super::shape::MapShape;
 use descriptors::DescriptorError;
+use surface::VertexId;
 
 /// Differences of curvature count if a point is so far from the cut, for each time of smoothing. Heat of the three times reaches
 /// as far.
@@ -65,7 +66,7 @@ impl<'a> Sides<'a> {
     pub(super) fn new(
         part: &'a MapShape,
         whole: &'a MapShape,
-        pairs: Vec<[usize; 2]>,
+        pairs: &[[VertexId; 2]],
     ) -> Result<Option<Self>, DescriptorError> {
         let Some(from_cut) = &part.from_cut else { return Ok(None) };
         let scale = part.size / whole.size;
@@ -75,10 +76,8 @@ impl<'a> Sides<'a> {
         let to_samples = whole.distances_to(&ys)?;
         let in_whole = between(&to_samples, &to_samples);
         let curvatures = curvatures(part, whole, [&xs, &ys]);
-        let sample = |shape: &MapShape, v: usize| {
-            shape.cells.iter().position(|cell| cell.contains(&(v as u32))).unwrap_or(0)
-        };
-        let known = pairs.into_iter().map(|[x, y]| [sample(part, x), sample(whole, y)]).collect();
+        let [of_part, of_whole] = [part, whole].map(MapShape::sample_of_vertices);
+        let known = pairs.iter().map(|[x, y]| [of_part[x.index()], of_whole[y.index()]]).collect();
         Ok(Some(Self { part, whole, known, xs, ys, in_part, from_cut, in_whole, curvatures }))
     }
 

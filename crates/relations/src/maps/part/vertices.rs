@@ -51,10 +51,7 @@ pub(super) fn all_vertices(sides: &Sides<'_>, places: &[usize]) -> Result<Vec<us
     let from_images = between(&whole.distances_to(&images)?, &whole.distances_to(&all)?);
     let vertices: Vec<usize> = (0..part.n_vertices()).collect();
     let in_part = part.distances_to(&vertices)? * sides.scale();
-    let mut sample_of = vec![0; part.n_vertices()];
-    for (sample, cell) in part.cells.iter().enumerate() {
-        cell.iter().for_each(|v| sample_of[*v as usize] = sample);
-    }
+    let sample_of = part.sample_of_vertices();
     let one = |v: usize| {
         let place = places[sample_of[v].min(places.len() - 1)];
         let members = near[place].iter().flat_map(|y| &whole.cells[*y]).map(|w| *w as usize);
@@ -74,10 +71,7 @@ pub(super) fn onto_part(sides: &Sides<'_>, images: &[usize]) -> Result<Coverage,
     let near = neighbors(sides);
     let all: Vec<usize> = (0..whole.n_vertices()).collect();
     let distances: Matrix = whole.distances_to(&all)?;
-    let mut sample_of = vec![0; whole.n_vertices()];
-    for (sample, cell) in whole.cells.iter().enumerate() {
-        cell.iter().for_each(|w| sample_of[*w as usize] = sample);
-    }
+    let sample_of = whole.sample_of_vertices();
     let mut in_cell = vec![Vec::new(); sides.ys.len()];
     images.iter().enumerate().for_each(|(v, w)| in_cell[sample_of[*w]].push(v));
     let gap = |w: usize, z: usize| {
