@@ -167,11 +167,14 @@ impl SurfaceCollection {
         self.shapes.iter().map(|shape| shape.label.clone()).collect()
     }
 
+    /// Whether the shapes are those of the built-in families, or some classes of them.
+    pub(crate) fn is_built_in(&self) -> bool {
+        self.dataset == BUILT_IN
+    }
+
     pub(crate) fn setting(&self) -> Setting {
-        if self.dataset == BUILT_IN {
-            Setting::BuiltIn
-        } else if self.classes == PAPER_CLASSES {
-            Setting::Paper
+        if self.classes == PAPER_CLASSES {
+            if self.is_built_in() { Setting::BuiltIn } else { Setting::Paper }
         } else if BTreeSet::from_iter(&self.classes).into_iter().eq(TOSCA_CLASSES) {
             Setting::Tosca
         } else if BTreeSet::from_iter(&self.classes).into_iter().eq(MAPPED_CLASSES)

@@ -127,6 +127,26 @@ fn landmarks_of_a_part_are_kept_and_decide() {
 }
 
 #[test]
+fn an_initial_map_of_a_part_decides_its_orientation() {
+    let whole = Known::pose(Family::Cat, 3);
+    let part = Known::pose(Family::Cat, 2).part(0.7, 2);
+    let unit = whole.mesh.area().sqrt();
+    for (from, to, sign) in [(&part, &whole, 1.0), (&part, &whole, -1.0), (&whole, &part, -1.0)] {
+        let partner = |x: usize| Some(VertexId::from(from.partner(to, x, sign).0));
+        let mut options = CorrespondOptions::default();
+        // A third of the vertices.
+        options.known.initial =
+            (0..from.mesh.n_vertices()).map(|x| partner(x).filter(|_| x % 3 == 0)).collect();
+        let maps = correspond(&from.mapped, &to.mapped, &options, &()).unwrap().maps;
+        let (map, error) = (&maps[0], from.error(to, &maps[0], unit));
+        println!("{sign}: {:?}, error {error:.4}", map.kind);
+        let sought = if sign < 0.0 { MapKind::Mirrored } else { MapKind::Direct };
+        assert!(map.kind == sought && map.part.is_some(), "{:?} for {sought:?}", map.kind);
+        assert!(error < 0.08, "{sought:?}: {error}");
+    }
+}
+
+#[test]
 fn a_piece_of_a_surface_is_mapped_to_itself() {
     let whole = Known::pose(Family::Centaur, 0);
     let part = whole.part(0.7, 1);

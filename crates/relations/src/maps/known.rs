@@ -47,6 +47,11 @@ impl KnownMap {
         *self == Self::default()
     }
 
+    /// The pairs of the initial map: a vertex of the first surface, and one of the second.
+    pub(super) fn initial_pairs(&self) -> impl Iterator<Item = [VertexId; 2]> {
+        self.initial.iter().enumerate().filter_map(|(x, y)| Some([VertexId::from(x), (*y)?]))
+    }
+
     /// Maps of samples that are fitted to the landmarks and functions, alone and together with what surfaces have in common.
     pub(super) fn fitted_starts(&self, pair: SampledPair<'_>, [a, b]: [&MapShape; 2]) -> Vec<SampleMaps> {
         let known = [(a, 0), (b, 1)].map(|(shape, side)| self.operators(shape, side));
@@ -127,7 +132,7 @@ impl KnownMap {
     /// Sorts maps by how near they are to the initial map, the nearest first.
     pub(super) fn nearest_first(&self, maps: &mut [SurfaceMap], b: &MapShape) -> Result<(), DescriptorError> {
         let known: Vec<(usize, usize)> =
-            self.initial.iter().enumerate().filter_map(|(x, y)| Some((x, (*y)?.index()))).collect();
+            self.initial_pairs().map(|pair| pair.map(VertexId::index)).map(|[x, y]| (x, y)).collect();
         let to = b.distances_to(&known.iter().map(|(_, y)| *y).collect::<Vec<_>>())?;
         let gap = |map: &SurfaceMap| -> Result<f64, DescriptorError> {
             let images: Vec<usize> = known.iter().map(|(x, _)| map.vertices[*x].index()).collect();

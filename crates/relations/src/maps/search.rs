@@ -13,7 +13,7 @@ use super::local::vertex_confidence;
 use super::nearest_rows::Cells;
 use super::operators::{FITTED, fitted};
 use super::orientation::{FUNCTIONS as FORMS, agreement};
-use super::shape::MapShape;
+use super::shape::{MapShape, Mirrors};
 use super::surface_map::{MapKind, SurfaceMap};
 use descriptors::Alignment;
 use descriptors::Boundary;
@@ -62,6 +62,10 @@ const SYMMETRIC: f64 = 0.06;
 /// Most such maps of a surface: people are nearly alike from left to right, and from back to front.
 const MIRRORS: usize = 2;
 
+/// A mirror that moves points by less than this on average, as a share of the square root of the area, exchanges front and back.
+/// A convention between the distances on built-in people (.06 to .07) and those of left and right (.18 and more, of cats).
+const THICK: f64 = 0.12;
+
 /// A map that agrees less with an orientation is a mixture of two, at least in parts. Right maps of built-in shapes have .85 and
 /// more, those of cats of 5,000 vertices .79 and more, and most mixtures less than .7.
 const PURE: f64 = 0.7;
@@ -81,7 +85,7 @@ const STEEPNESS: f64 = 3.4;
 const OF_MIXTURE: f64 = 0.5;
 
 /// The direct map comes second if its distortion is more than this multiple of the mirrored one's. A convention.
-const CLEARLY_WORSE: f64 = 1.5;
+pub(super) const CLEARLY_WORSE: f64 = 1.5;
 
 /// A map of functions and of samples, with what ranks it among others.
 struct Candidate {
@@ -183,7 +187,7 @@ pub(super) fn mirrored_samples(
     let search = MapSearch { a: shape, b: shape, known: &KnownMap::default(), options, budget };
     let [a, b] = search.rows(SKETCHED);
     let pair = SampledPair { a: &a, b: &b };
-    Ok(search.mirrors(shape)?.first().map(|mirror| mirror.sample_maps(pair).forth))
+    Ok(search.mirrors(shape)?.sides.as_ref().map(|mirror| mirror.sample_maps(pair).forth))
 }
 
 /// A search with its options.
@@ -290,15 +294,18 @@ impl MapSearch<'_> {
         Ok(kept)
     }
 
-    /// These maps and those that differ from them by a mirror of a surface, if there is one. Each has the score of both
-    /// together.
-    fn with_mirrored(&self, found: Vec<Candidate>) -> Result<Vec<Candidate>, DescriptorError> {
-        let [of_a, of_b] = [self.mirrors(self.a)?, self.mirrors(self.b)?];
+    /// These maps and those that differ from them by a mirror of a surface, if there is one. A map and the one that differs by
+    /// left and right stand and fall together: each has the score of both. Other mirrors only lead to more maps, since a right
+    /// map and a wrong one may differ by front and back.
+    fn with_mirrored(&self, mut found: Vec<Candidate>) -> Result<Vec<Candidate>, DescriptorError> {
+        let mirrors = [self.mirrors(self.a)?, self.mirrors(self.b)?];
+        let others = mirrors.map(|of| &of.others[..]);
+        let turned: Vec<_> = found.iter().flat_map(|one| mirrored(one, others)).collect();
+        found.extend(self.sketched(turned.iter())?);
+        let sides = mirrors.map(|of| of.sides.as_slice());
         let mut all = Vec::new();
-        for one in found {
-            let before = of_a.iter().map(|mirror| mirror.then(&one.functional));
-            let after = of_b.iter().map(|mirror| one.functional.then(mirror));
-            let others: Vec<_> = before.chain(after).collect();
+        for one in self.distinct(found)? {
+            let others: Vec<_> = mirrored(&one, sides).collect();
             let mut others = self.sketched(others.iter())?;
             others.retain(|other| other.kind() != one.kind());
             others.iter_mut().for_each(|other| other.score = (one.score * other.score).sqrt());
@@ -310,25 +317,28 @@ impl MapSearch<'_> {
     }
 
     /// The maps of a surface to itself that reverse its orientation and change distances little.
-    fn mirrors<'s>(&self, shape: &'s MapShape) -> Result<&'s [FunctionalMaps], DescriptorError> {
-        if shape.mirrors.get().is_none() {
-            // Whatever the options of this search, since others use them too.
-            let options = MapOptions { eigenfunctions: SKETCH_FUNCTIONS };
-            let nothing = KnownMap::default();
-            let search =
-                MapSearch { a: shape, b: shape, known: &nothing, options: &options, budget: self.budget };
-            let mut starts = search.starts(&[-1.0])?;
-            starts.retain(|start| start.kind() == MapKind::Mirrored);
-            let mut found = search.sketched(starts.iter().map(|start| &start.functional))?;
-            found.retain(|found| {
-                found.kind() == MapKind::Mirrored && !found.is_mixture() && found.distortion < SYMMETRIC
-            });
-            let mut found = search.distinct(found)?;
-            found.truncate(MIRRORS);
-            // If another thread was faster, it found the same.
-            let _ = shape.mirrors.set(found.into_iter().map(|found| found.functional).collect());
+    fn mirrors<'s>(&self, shape: &'s MapShape) -> Result<&'s Mirrors, DescriptorError> {
+        if let Some(known) = shape.mirrors.get() {
+            return Ok(known);
         }
-        Ok(shape.mirrors.get().map_or(&[], Vec::as_slice))
+        // Whatever the options of this search, since others use them too.
+        let options = MapOptions { eigenfunctions: SKETCH_FUNCTIONS };
+        let nothing = KnownMap::default();
+        let search =
+            MapSearch { a: shape, b: shape, known: &nothing, options: &options, budget: self.budget };
+        let mut starts = search.starts(&[-1.0])?;
+        starts.retain(|start| start.kind() == MapKind::Mirrored);
+        let mut found = search.sketched(starts.iter().map(|start| &start.functional))?;
+        found.retain(|found| {
+            found.kind() == MapKind::Mirrored && !found.is_mixture() && found.distortion < SYMMETRIC
+        });
+        let mut found = search.distinct(found)?;
+        found.truncate(MIRRORS);
+        let moved = found.iter().map(|found| shape.moved(&found.images)).collect::<Result<Vec<_>, _>>()?;
+        let sides = moved.iter().position(|moved| *moved > THICK).map(|i| found.remove(i).functional);
+        let others = found.into_iter().map(|found| found.functional).collect();
+        // If another thread was faster, it found the same.
+        Ok(shape.mirrors.get_or_init(|| Mirrors { sides, others }))
     }
 
     /// The best map of candidates of one kind, refined on all samples and eigenfunctions.
@@ -396,6 +406,15 @@ impl MapSearch<'_> {
         };
         starts.into_par_iter().map(one).collect()
     }
+}
+
+/// A map, before or after mirrors of the surfaces.
+fn mirrored<'m>(
+    one: &'m Candidate,
+    [of_a, of_b]: [&'m [FunctionalMaps]; 2],
+) -> impl Iterator<Item = FunctionalMaps> + 'm {
+    let before = of_a.iter().map(|mirror| mirror.then(&one.functional));
+    before.chain(of_b.iter().map(|mirror| one.functional.then(mirror)))
 }
 
 /// Maps of the first samples that follow from fitted maps of functions.

@@ -52,9 +52,17 @@ pub struct MapShape {
     pub(super) from_cut: Option<Vec<f64>>,
     /// The area forms of the first eigenfunctions at the samples, if it can.
     pub(super) area_forms: Option<Matrix>,
-    /// The maps of the surface to itself that reverse its orientation, such as the one that exchanges left and right, once they
-    /// were sought.
-    pub(super) mirrors: OnceLock<Vec<FunctionalMaps>>,
+    /// Its mirrors, once they were sought.
+    pub(super) mirrors: OnceLock<Mirrors>,
+}
+
+/// Maps of a surface to itself that reverse its orientation and change distances little.
+#[derive(Debug)]
+pub(super) struct Mirrors {
+    /// The one that exchanges left and right.
+    pub(super) sides: Option<FunctionalMaps>,
+    /// Others, such as the one that exchanges front and back.
+    pub(super) others: Vec<FunctionalMaps>,
 }
 
 impl MapShape {
@@ -157,6 +165,11 @@ impl MapShape {
     /// The vertices from which distances are known.
     pub(super) fn landmarks(&self) -> &[usize] {
         self.distances.landmarks()
+    }
+
+    /// The mean distance of the landmarks from their images, at unit area.
+    pub(super) fn moved(&self, images: &[usize]) -> Result<f64, DescriptorError> {
+        Ok(self.distances_to(images)?.diagonal().mean())
     }
 
     /// Distances from all landmarks to some vertices, one row for each landmark, at unit area.

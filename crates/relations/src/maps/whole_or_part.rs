@@ -19,7 +19,7 @@ const SHARES: [f64; 2] = [0.25, 0.92];
 ///
 /// If one surface has a boundary and is clearly smaller, it may be a part of the other that a cut has left, if both have the
 /// same unit of length. Then maps of a part are sought, too, and those that change distances less are returned.
-/// [`SurfaceMap::part`] tells which. With an initial map or known functions, both are mapped as wholes.
+/// [`SurfaceMap::part`] tells which. With known functions, both are mapped as wholes.
 ///
 /// [`map_wholes`] says how wholes are mapped, and what is done with what is `known`.
 ///
@@ -40,8 +40,7 @@ pub fn map_surfaces(
     observer: &dyn Observer,
 ) -> Result<Vec<SurfaceMap>, DescriptorError> {
     let of_wholes = map_wholes(a, b, known, options, observer)?;
-    let is_searched = known.initial.is_empty() && known.functions.is_none();
-    let Some(side) = possible_part(a, b).filter(|_| is_searched) else { return Ok(of_wholes) };
+    let Some(side) = possible_part(a, b).filter(|_| known.functions.is_none()) else { return Ok(of_wholes) };
     let [part, whole] = if side == Side::First { [a, b] } else { [b, a] };
     let of_part = part_maps(part, whole, side, known, options, observer)?;
     let least = |maps: &[SurfaceMap]| maps.iter().map(|map| map.distortion).fold(f64::INFINITY, f64::min);

@@ -5,7 +5,7 @@
 //! distance on the second surface between its image and its true partner, as a share of the square root of the area. Without a
 //! truth, the distance from a vertex to its image under the map there and the map back takes its place.
 //!
-//! The built-in classes are joined by `person`, people whose limbs touch, and `bodies`, people of different bodies; all classes
+//! All built-in classes are joined by `person`, people whose limbs touch, and `bodies`, people of different bodies; all classes
 //! together are `all`. Measures, each after the name of a group:
 //! * `pairs`; `direct` and `mirrored`, the mean errors; `median`, of direct maps; `direct 5|10|25`, the share of vertices with an
 //!   error below so many hundredths;

@@ -71,10 +71,10 @@ impl VertexPlaces {
 }
 
 impl<'a> MapGroup<'a> {
-    /// The groups of a run: the classes of the collection, and if they are built in, people whose limbs touch, and people of
-    /// different bodies.
+    /// The groups of a run: the classes of the collection, and if they are all built-in ones, people whose limbs touch, and
+    /// people of different bodies.
     pub(super) fn all(collection: &'a SurfaceCollection, seed: u64) -> Result<Vec<Self>> {
-        let is_built_in = collection.setting() == Setting::BuiltIn;
+        let is_built_in = collection.is_built_in();
         let of_class = |class: &String| -> Result<Self> {
             let all: Vec<_> = collection.shapes.iter().filter(|shape| shape.label == *class).collect();
             let one = |(i, shape): (usize, &&'a LabeledSurface)| match is_built_in {
@@ -85,7 +85,7 @@ impl<'a> MapGroup<'a> {
             Ok(Self { name: class.clone(), shapes })
         };
         let mut groups = collection.classes.iter().map(of_class).collect::<Result<Vec<_>>>()?;
-        if let Some(first) = collection.shapes.first().filter(|_| is_built_in) {
+        if let Some(first) = collection.shapes.first().filter(|_| collection.setting() == Setting::BuiltIn) {
             let options = ArticulatedOptions { seed, n_vertices: first.surface.mesh().n_vertices() };
             let poses = Family::Person.n_shapes();
             groups.push(Self::generated(TOUCHING, (0..poses).map(|pose| [0, pose]), &options)?);

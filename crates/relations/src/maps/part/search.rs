@@ -9,7 +9,7 @@ use super::super::known::{KnownMap, RESPECTED};
 use super::super::local::vertex_confidence;
 use super::super::orientation::agreement;
 use super::super::part_of_whole::PartOfWhole;
-use super::super::search::{MapOptions, in_order, kind_of, mirrored_samples};
+use super::super::search::{CLEARLY_WORSE, MapOptions, in_order, kind_of, mirrored_samples};
 use super::super::shape::MapShape;
 use super::super::surface_map::{MapKind, SurfaceMap};
 use super::landmarks::placements;
@@ -66,20 +66,30 @@ struct Candidate {
     defect: f64,
     /// How far it takes known points from their partners on average, beyond what is [respected](RESPECTED).
     miss: f64,
+    start: Start,
+}
+
+/// Where a map comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Start {
+    Placements,
+    /// The initial map: another one must be [clearly better](CLEARLY_WORSE).
+    Initial,
 }
 
 impl Candidate {
-    fn new(sides: &Sides<'_>, places: Places) -> Self {
+    fn new(sides: &Sides<'_>, places: Places, start: Start) -> Self {
         let agreement = orientation(sides, &places);
         let defect = defect(sides, &places);
         let miss = (sides.miss(&places) - RESPECTED).max(0.0);
-        Self { agreement, changes: Changes::of(sides, &places), places, defect, miss }
+        Self { agreement, changes: Changes::of(sides, &places), places, defect, miss, start }
     }
 
     /// Lower is better.
     fn score(&self) -> f64 {
         let Changes { distances, curvature } = self.changes;
-        distances + CURVATURE * curvature + DEFECT * self.defect + self.miss
+        let score = distances + CURVATURE * curvature + DEFECT * self.defect + self.miss;
+        if self.start == Start::Initial { score / CLEARLY_WORSE } else { score }
     }
 
     fn kind(&self) -> MapKind {
@@ -88,7 +98,7 @@ impl Candidate {
 }
 
 /// The best maps of each orientation from the first surface to the second, one of which is a part of the other. Of what is
-/// `known`, the landmarks count.
+/// `known`, landmarks and an initial map count.
 pub(in crate::maps) fn part_maps(
     part: &MapShape,
     whole: &MapShape,
@@ -98,18 +108,18 @@ pub(in crate::maps) fn part_maps(
     observer: &dyn Observer,
 ) -> Result<Vec<SurfaceMap>, DescriptorError> {
     let budget = observer.budget();
-    let onto_whole = |[x, y]: &[VertexId; 2]| if side == Side::First { [*x, *y] } else { [*y, *x] };
-    let pairs: Vec<[VertexId; 2]> = known.landmarks.iter().map(onto_whole).collect();
+    let onto_whole = |[x, y]: [VertexId; 2]| if side == Side::First { [x, y] } else { [y, x] };
+    let pairs: Vec<[VertexId; 2]> = known.landmarks.iter().copied().map(onto_whole).collect();
     let Some(sides) = Sides::new(part, whole, &pairs)? else { return Ok(Vec::new()) };
     let (chosen, starts) = placements(&sides, SKETCHES)?;
     budget.check().map_err(LinalgError::from)?;
-    let sketch = |places: Places| {
+    let sketch = |places: Places, start: Start| {
         let again = |places: Places| placed_again(&sides, &places, SKETCH_ANCHORS, SKETCHED);
-        Candidate::new(&sides, (0..2).fold(places, |places, _| again(places)))
+        Candidate::new(&sides, (0..2).fold(places, |places, _| again(places)), start)
     };
     let start = |images: &Vec<usize>| {
         let anchors: Vec<(usize, usize)> = chosen.iter().copied().zip(images.iter().copied()).collect();
-        sketch(placed(&sides, &anchors, SKETCHED))
+        sketch(placed(&sides, &anchors, SKETCHED), Start::Placements)
     };
     let mut found: Vec<Candidate> = starts.par_iter().map(|found| start(&found.images)).collect();
     if let Some(mirror) = mirrored_samples(whole, options, &budget)? {
@@ -118,9 +128,16 @@ pub(in crate::maps) fn part_maps(
             of_kind.min_by(|a, b| a.score().total_cmp(&b.score()))
         });
         let image = |y: &usize| mirror.get(*y).map_or(*y, |image| *image as usize);
-        let composed: Vec<Candidate> =
-            best.into_iter().flatten().map(|best| sketch(best.places.iter().map(image).collect())).collect();
+        let composed: Vec<Candidate> = best
+            .into_iter()
+            .flatten()
+            .map(|best| sketch(best.places.iter().map(image).collect(), Start::Placements))
+            .collect();
         found.extend(composed);
+    }
+    let initial = sides.anchors(known.initial_pairs().map(onto_whole));
+    if !initial.is_empty() {
+        found.push(sketch(placed(&sides, &initial, SKETCHED), Start::Initial));
     }
     found.sort_by(|a, b| a.score().total_cmp(&b.score()));
     let mut maps = Vec::new();
@@ -138,12 +155,14 @@ pub(in crate::maps) fn part_maps(
         }
         let finer = |sketch: &&Candidate| {
             let again = |places: Places| placed_again(&sides, &places, usize::MAX, FINER);
-            Candidate::new(&sides, (0..3).fold(sketch.places.clone(), |places, _| again(places)))
+            let places = (0..3).fold(sketch.places.clone(), |places, _| again(places));
+            Candidate::new(&sides, places, sketch.start)
         };
         let mut finer: Vec<Candidate> = different.iter().map(finer).collect();
         finer.sort_by(|a, b| a.score().total_cmp(&b.score()));
         maps.extend(best(&sides, &finer, side)?);
     }
+    known.nearest_first(&mut maps, if side == Side::First { whole } else { part })?;
     let mut maps = in_order(maps);
     maps.iter_mut().for_each(|map| known.kept_by(map));
     Ok(maps)
@@ -177,7 +196,7 @@ fn refined(
     side: Side,
 ) -> Result<SurfaceMap, DescriptorError> {
     let places = placed_again(sides, &sketch.places, usize::MAX, FINE);
-    let fine = Candidate::new(sides, places);
+    let fine = Candidate::new(sides, places, sketch.start);
     let agreement = if fine.kind() == sketch.kind() { fine.agreement } else { sketch.agreement };
     let images = all_vertices(sides, &fine.places)?;
     let Coverage { covered, partners, matched } = onto_part(sides, &images)?;

@@ -1,5 +1,7 @@
 //! A part and a whole in the same unit: the square root of the area of the whole.
 
+use std::collections::BTreeMap;
+
 use linalg::Matrix;
 use rayon::prelude::*;
 
@@ -44,6 +46,8 @@ impl Known {
 pub(super) struct Sides<'a> {
     pub(super) part: &'a MapShape,
     pub(super) whole: &'a MapShape,
+    /// The sample nearest to every vertex of the part and of the whole: positions in the lists of samples.
+    nearest: [Vec<usize>; 2],
     /// Corresponding samples that are known: positions in both lists of samples.
     known: Vec<[usize; 2]>,
     /// Vertices of the part; its landmarks first.
@@ -76,9 +80,24 @@ impl<'a> Sides<'a> {
         let to_samples = whole.distances_to(&ys)?;
         let in_whole = between(&to_samples, &to_samples);
         let curvatures = curvatures(part, whole, [&xs, &ys]);
-        let [of_part, of_whole] = [part, whole].map(MapShape::sample_of_vertices);
-        let known = pairs.iter().map(|[x, y]| [of_part[x.index()], of_whole[y.index()]]).collect();
-        Ok(Some(Self { part, whole, known, xs, ys, in_part, from_cut, in_whole, curvatures }))
+        let nearest = [part, whole].map(MapShape::sample_of_vertices);
+        let mut sides =
+            Self { part, whole, nearest, known: Vec::new(), xs, ys, in_part, from_cut, in_whole, curvatures };
+        sides.known = sides.sampled(pairs.iter().copied()).collect();
+        Ok(Some(sides))
+    }
+
+    /// Corresponding samples: those nearest to vertices of the part and of the whole.
+    fn sampled(&self, pairs: impl Iterator<Item = [VertexId; 2]>) -> impl Iterator<Item = [usize; 2]> {
+        pairs.map(|[x, y]| [self.nearest[0][x.index()], self.nearest[1][y.index()]])
+    }
+
+    /// The landmarks of the part near which a vertex has a known partner, each with a sample near one of them.
+    pub(super) fn anchors(&self, pairs: impl Iterator<Item = [VertexId; 2]>) -> Vec<(usize, usize)> {
+        let n = self.n_landmarks()[0];
+        let places: BTreeMap<usize, usize> =
+            self.sampled(pairs).filter(|[x, _]| *x < n).map(|[x, y]| (x, y)).collect();
+        places.into_iter().collect()
     }
 
     /// The length of one at unit area of the part.
