@@ -66,7 +66,8 @@ impl RowSample {
     ///   `1/2 J D J`, which does not change if `u_i + u_k` is subtracted from every `D_ik`. The means of rows, which vary
     ///   most, are then nearly zero.
     /// * Row i is drawn with a probability proportional to the estimate `sum_j w_j (r_ij - u_i - u_j)^2` of what it
-    ///   contributes, plus half the mean, with replacement (Hansen and Hurwitz 1943, `hansen1943` in `REFERENCES.bib`).
+    ///   contributes, plus half the mean, with replacement (Hansen and Hurwitz 1943, `hansen1943` in `REFERENCES.bib`): one row
+    ///   from each of `m` strata along the first coordinate. Intervals are those of rows without strata, and rather wide.
     ///
     /// On canonical forms of animals and humans, 4 rows then give an interval of +-30 % and 20 rows one of +-8 %, four times
     /// as narrow as with equally likely rows.
@@ -128,7 +129,11 @@ impl RowSample {
         let mean = expected.iter().sum::<f64>() / p;
         expected.iter_mut().for_each(|x| *x = if mean > 0.0 { *x / mean + LEVEL } else { 1.0 });
         let total: f64 = expected.iter().sum();
-        let rows = drawn(&expected, total, m, seed);
+        let mut order: Vec<usize> = (0..expected.len()).collect();
+        if let Some(along) = coords.column_iter().next() {
+            order.sort_by(|i, j| along[*i].total_cmp(&along[*j]));
+        }
+        let rows = drawn(&expected, &order, m, seed);
         let weights = rows.iter().map(|&i| total / (p * expected[i])).collect();
         Ok(Self { rows, weights, offsets, correction: 1.0 })
     }
@@ -177,22 +182,22 @@ fn shares(distances: &LandmarkDistances) -> Result<Vec<f64>, LinalgError> {
     Ok((0..n).map(|j| total(j) / distances.n_points().max(1) as f64).collect())
 }
 
-/// `m` numbers, ascending, drawn with replacement with probabilities proportional to `sizes`.
-fn drawn(sizes: &[f64], total: f64, m: usize, seed: u64) -> Vec<usize> {
+/// `m` numbers, drawn with probabilities proportional to `sizes`: one from each of `m` strata of equal size, which follow one
+/// another in `order`.
+fn drawn(sizes: &[f64], order: &[usize], m: usize, seed: u64) -> Vec<usize> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let mut uniform = || (rng.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
-    let mut marks: Vec<f64> = (0..m).map(|_| uniform() * total).collect();
-    marks.sort_unstable_by(f64::total_cmp);
-    let mut marks = marks.into_iter().peekable();
+    let stratum = sizes.iter().sum::<f64>() / m as f64;
+    let mut marks = (0..m).map(|k| (k as f64 + uniform()) * stratum).peekable();
     let (mut rows, mut sum) = (Vec::with_capacity(m), 0.0);
-    for (i, size) in sizes.iter().enumerate() {
-        sum += size;
+    for &i in order {
+        sum += sizes[i];
         while marks.next_if(|mark| *mark < sum).is_some() {
             rows.push(i);
         }
     }
     // Rounding of the sum.
-    rows.extend(marks.filter_map(|_| sizes.len().checked_sub(1)));
+    rows.extend(marks.filter_map(|_| order.last()));
     rows
 }
 

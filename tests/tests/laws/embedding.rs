@@ -1,14 +1,14 @@
 //! Laws of embeddings, on distances of meshes and through the whole pipeline.
 
 use canonform::{EmbedMethod, FormOptions, Samples, StressChoice, StressKind, embedded_distances};
-use datasets::Family;
+use datasets::{ArticulatedOptions, CreatureOptions, Family, articulated};
 use geodesics::{FirstSample, Sampling, Variance, farthest_point_sampling};
 use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
 use mesh::shapes;
 use nalgebra::Point3;
 use nmds::{
     Bandwidth, NystromOptions, Reconstruction, Regularization, RowSample, SmacofOptions, SpectralOptions,
-    classical, classical_full, estimate_stress, normalized_stress, nystrom, paper_stress,
+    classical, classical_full, estimate_stress, normalized_stress, nystrom, paper_stress, stress,
 };
 
 use crate::support::{body, embedded, gap, marching, measured, moved};
@@ -86,29 +86,69 @@ fn intervals_of_the_estimated_stress_contain_the_exact_one_as_often_as_they_say(
         sheet,
         shapes::cylinder(24, 30, 1.0, 3.0),
     ]);
-    let (mut covered, mut drawn) = (0, 0);
+    // Of the paper's stress and the normalised one.
+    let (mut covered, mut drawn) = ([0; 2], 0);
     for (number, mesh) in meshes.enumerate() {
         let solver = marching().prepare(&mesh.intrinsic(), &()).unwrap();
         let distances = solver.distance_matrix().unwrap();
         for (n, m) in [(10, 3), (20, 4), (40, 8), (100, 20)] {
             let samples = farthest_point_sampling(solver.as_ref(), n, FirstSample::default()).unwrap();
             let coords = nystrom(&samples, &NystromOptions::default()).unwrap().coords;
-            let exact = paper_stress(&coords, &distances).unwrap();
+            let exact = stress(&coords, &distances).unwrap();
+            let exact = [exact.paper, exact.normalized];
             let runs = 100;
-            let (mut here, mut width) = (0, 0.0);
+            let (mut here, mut width, mut error) = ([0; 2], [0.0; 2], [0.0; 2]);
             for seed in 0..runs {
                 let rows = RowSample::by_landmarks(&coords, &samples, 1.0, m, seed).unwrap();
-                let [low, high] = estimate_stress(&coords, &distances, &rows).unwrap().interval;
-                here += u64::from((low..=high).contains(&exact));
-                width += (high - low) / exact / runs as f64;
+                let found = estimate_stress(&coords, &distances, &rows).unwrap();
+                let values = [(found.value, found.interval), (found.normalized, found.normalized_interval)];
+                for (i, (value, [low, high])) in values.into_iter().enumerate() {
+                    here[i] += u64::from((low..=high).contains(&exact[i]));
+                    width[i] += 50.0 * (high - low) / exact[i] / runs as f64;
+                    error[i] += (value / exact[i] - 1.0).powi(2) / runs as f64;
+                }
             }
-            println!("mesh {number}, {n} samples, {m} rows: {here} of {runs}, +-{:.1} %", 50.0 * width);
-            assert!(here >= 80, "mesh {number}, {n} samples, {m} rows: {here} of {runs}");
-            (covered, drawn) = (covered + here, drawn + runs);
+            let error = error.map(|square| 100.0 * square.sqrt());
+            println!(
+                "mesh {number}, {n} samples, {m} rows: {here:?} of {runs}, +-{width:.1?} %, off by {error:.1?} %"
+            );
+            assert!(
+                here[0] >= 80 && here[1] >= 80,
+                "mesh {number}, {n} samples, {m} rows: {here:?} of {runs}"
+            );
+            covered = [covered[0] + here[0], covered[1] + here[1]];
+            drawn += runs;
         }
     }
-    println!("{covered} of {drawn} intervals contain the exact stress");
-    assert!(covered as f64 >= 0.95 * drawn as f64, "{covered} of {drawn}");
+    println!("{covered:?} of {drawn} intervals contain the exact stress");
+    assert!(covered.iter().all(|n| *n as f64 >= 0.95 * drawn as f64), "{covered:?} of {drawn}");
+}
+
+#[test]
+fn the_default_stress_costs_few_rows_and_its_intervals_contain_the_exact_one() {
+    let of = ArticulatedOptions { n_vertices: 1000, ..ArticulatedOptions::default() };
+    let creatures =
+        CreatureOptions { n_families: 5, n_poses: 2, n_vertices: 1000, ..CreatureOptions::default() };
+    let shapes = articulated(&of).unwrap().into_iter().chain(datasets::creatures(&creatures).unwrap());
+    let (mut within, mut all, mut error) = ([0; 2], 0, 0.0);
+    for (n, shape) in [20, 60, 100].into_iter().cycle().zip(shapes) {
+        let options = FormOptions { samples: Samples::Count(n), ..FormOptions::default() };
+        let stress = |choice| measured(&shape.mesh, &options, choice).report.stress.unwrap();
+        let [exact, found] = [StressChoice::Exact, StressChoice::Auto].map(stress);
+        assert!(
+            found.kind == StressKind::Estimated && found.rows <= n / 5,
+            "{} rows for {n} samples",
+            found.rows
+        );
+        let [low, high] = found.interval;
+        within[0] += usize::from((low..=high).contains(&exact.value));
+        let [low, high] = found.normalized_interval;
+        within[1] += usize::from((low..=high).contains(&exact.normalized));
+        error += (found.normalized / exact.normalized - 1.0).abs();
+        all += 1;
+    }
+    println!("{within:?} of {all} intervals, normalised stress off by {:.1} %", 100.0 * error / all as f64);
+    assert!(all == 40 && within.iter().all(|n| *n >= 38), "{within:?} of {all}");
 }
 
 #[test]

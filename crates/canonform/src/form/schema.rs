@@ -404,8 +404,8 @@ impl Named for StressChoice {
         vec![
             (
                 "auto",
-                "Exactly up to 1,000 vertices, beyond from one row for every 5 samples, at least 3, or 32 with \
-                 samples chosen automatically",
+                "Exactly where the method measures all pairs, else from one row for every 5 samples, at least 3, or 32 \
+                 with samples chosen automatically",
                 Self::Auto,
             ),
             ("exact", "From the distances between all pairs of vertices", Self::Exact),

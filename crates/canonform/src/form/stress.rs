@@ -11,9 +11,6 @@ use surface::{VertexId, unit_for};
 use crate::error::Error;
 use base::Observer;
 
-/// [`StressChoice::Auto`] is exact up to this many vertices, where that takes a tenth of a second.
-const EXACT_LIMIT: usize = 1000;
-
 /// [`StressChoice::Auto`] measures one row for this many samples.
 const SAMPLES_PER_ROW: usize = 5;
 
@@ -44,8 +41,8 @@ pub struct StressOptions {
 /// From which distances a stress is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum StressChoice {
-    /// From all pairs up to 1,000 vertices and where the method has measured them, else estimated from one row for every 5
-    /// samples, at least 3, so that it takes less than a fifth of the time for distances. If the number of samples
+    /// From all pairs where the method has measured them, else estimated from one row for every 5 samples, at least 3, so that
+    /// it takes less than a fifth of the time for distances. If the number of samples
     /// [was searched for](crate::Samples::Auto), from at least 32 rows.
     #[default]
     Auto,
@@ -61,7 +58,6 @@ impl StressChoice {
     /// Number of rows that an estimate for a form of `n_samples` samples is made from; `None` for all of them.
     fn n_rows(self, n_vertices: usize, n_samples: usize, searched: bool) -> Option<usize> {
         let n = match self {
-            Self::Auto if n_vertices <= EXACT_LIMIT => return None,
             Self::Auto => {
                 let fewest = if searched { FEWEST_ROWS_OF_SEARCH } else { FEWEST_ROWS };
                 (n_samples / SAMPLES_PER_ROW).max(fewest)

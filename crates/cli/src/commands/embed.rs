@@ -11,7 +11,7 @@ use canonform::nmds::SampleStop;
 use canonform::surface::VertexId;
 use canonform::{
     Budget, EmbedMethod, EmbedReport, FormOptions, InputMap, InputPoint, SamplesReport, ShapeFile,
-    StressKind, StressOptions, Surface, embed_and_measure, embed_and_release, embed_finer,
+    StressKind, StressOptions, StressReport, Surface, embed_and_measure, embed_and_release, embed_finer,
 };
 use serde::Serialize;
 
@@ -258,15 +258,20 @@ fn stress_text(report: &EmbedReport) -> String {
     }
 }
 
-fn normalized_text(report: &EmbedReport) -> String {
-    match &report.stress {
-        None => "-".to_owned(),
-        Some(s) if report.auto.is_some() && s.kind == StressKind::Estimated => {
-            let [low, high] = s.normalized_interval;
-            format!("{:.4} (95 %: {low:.4} to {high:.4})", s.normalized)
+/// The normalised stress, with its interval if it is estimated.
+pub(super) fn normalized_text(stress: &StressReport) -> String {
+    let value = format!("{:.4}", stress.normalized);
+    match stress.kind {
+        StressKind::Exact => value,
+        StressKind::Estimated => {
+            let [low, high] = stress.normalized_interval;
+            format!("{value} (95 %: {low:.4} to {high:.4})")
         }
-        Some(s) => format!("{:.4}", s.normalized),
     }
+}
+
+fn normalized_or_none(report: &EmbedReport) -> String {
+    report.stress.as_ref().map_or_else(|| "-".to_owned(), normalized_text)
 }
 
 /// The number of samples and the rank, and how they were found.
@@ -296,9 +301,16 @@ fn method_text(report: &EmbedReport) -> String {
 fn answer(json: &EmbedJson) -> Answer {
     let r = &json.report;
     let (output, n_vertices) = (shown(&json.output), r.n_vertices);
-    let off = r.stress.as_ref().map(|stress| 100.0 * stress.normalized);
-    let off = off.map_or_else(String::new, |off| {
-        format!("; its distances differ from those along the surface by {off:.1} %")
+    let off = r.stress.as_ref().map_or_else(String::new, |stress| {
+        let [low, high] = stress.normalized_interval.map(|end| 100.0 * end);
+        let interval = match stress.kind {
+            StressKind::Exact => String::new(),
+            StressKind::Estimated => format!(" ({low:.1} to {high:.1} %)"),
+        };
+        format!(
+            "; its distances differ from those along the surface by {:.1} %{interval}",
+            100.0 * stress.normalized
+        )
     });
     let eigenvalues: Vec<String> = r.eigenvalues.iter().take(r.dim).map(|v| format!("{v:.5e}")).collect();
     let places = json.points.iter().map(|point| {
@@ -307,7 +319,7 @@ fn answer(json: &EmbedJson) -> Answer {
     });
     let facts = [
         ("method", method_text(r)),
-        ("normalised stress", normalized_text(r)),
+        ("normalised stress", normalized_or_none(r)),
         ("seconds", format!("{:.3}", r.seconds.total)),
     ];
     Answer {
@@ -337,7 +349,7 @@ fn batch_table(json: &BatchJson, folder: &Path) -> String {
             r.n_embedded.to_string(),
             r.n_samples.to_string(),
             stress_text(r),
-            normalized_text(r),
+            normalized_or_none(r),
             format!("{:.3}", r.seconds.total),
         ]);
     }

@@ -3,6 +3,7 @@
 use std::process::ExitCode;
 use std::time::Instant;
 
+use super::embed::normalized_text;
 use anyhow::Result;
 use base::Budget;
 use base::terminal::{Bars, with_peak_bytes};
@@ -103,7 +104,7 @@ struct Column {
 const COLUMNS: [Column; 6] = [
     Column {
         name: "normalised stress  ",
-        text: |f| f.stress.as_ref().map_or_else(|| "no unit".to_owned(), |s| format!("{:.4}", s.normalized)),
+        text: |f| f.stress.as_ref().map_or_else(|| "no unit".to_owned(), normalized_text),
         marked: Some(|f| f.stress.as_ref().map(|s| s.normalized)),
         is_detail: false,
     },
