@@ -404,7 +404,7 @@ impl Named for StressChoice {
         vec![
             (
                 "auto",
-                "Exactly where the method measures all pairs, else from one row for every 5 samples, at least 3, or 32 \
+                "Exactly where the method measures all pairs, else from one row for every 7 samples, at least 3, or 32 \
                  with samples chosen automatically",
                 Self::Auto,
             ),

@@ -12,7 +12,7 @@ use crate::error::Error;
 use base::Observer;
 
 /// [`StressChoice::Auto`] measures one row for this many samples.
-const SAMPLES_PER_ROW: usize = 5;
+const SAMPLES_PER_ROW: usize = 7;
 
 /// Fewest rows with a useful interval.
 const FEWEST_ROWS: usize = 3;
@@ -41,7 +41,7 @@ pub struct StressOptions {
 /// From which distances a stress is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum StressChoice {
-    /// From all pairs where the method has measured them, else estimated from one row for every 5 samples, at least 3, so that
+    /// From all pairs where the method has measured them, else estimated from one row for every 7 samples, at least 3, so that
     /// it takes less than a fifth of the time for distances. If the number of samples
     /// [was searched for](crate::Samples::Auto), from at least 32 rows.
     #[default]

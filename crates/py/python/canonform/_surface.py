@@ -415,7 +415,7 @@ class Surface(Constant):
         stress
             From which distances the stress is found: "exact" measures those between all pairs of vertices, "estimate" those of 100
             vertices to all others, "skip" none. "auto" is exact where the method measures all pairs anyway;
-            else it estimates from one vertex for every 5 landmarks, at least 3, and at least 32 with n_landmarks="auto".
+            else it estimates from one vertex for every 7 landmarks, at least 3, and at least 32 with n_landmarks="auto".
             `Form.normalized_stress_interval` says how far an estimate is to be relied on.
         seed
             Of everything random, a whole number.
