@@ -4,6 +4,7 @@ use mesh::TriMesh;
 use nalgebra::{Matrix3, Point3, Vector3};
 use nmds::Embedding;
 use serde::{Deserialize, Serialize};
+use surface::VertexId;
 
 use crate::error::DescriptorError;
 use crate::spread::spread as spread_evenly;
@@ -105,16 +106,19 @@ impl CanonicalForm {
         Self { points, weights, area: self.area }
     }
 
-    /// The form at its first points, with as many new weights; coordinates and area stay.
+    /// The form at some of its points, with a new weight for each; coordinates and area stay.
     ///
     /// # Errors
-    /// [`DescriptorError::SizeMismatch`] for more weights than points; [`DescriptorError::NoExtent`] if one is negative or the
-    /// points coincide.
-    pub fn leading(&self, weights: Vec<f64>) -> Result<Self, DescriptorError> {
-        let n_points = self.points.len();
-        let points = self.points.get(..weights.len());
-        let points = points.ok_or(DescriptorError::SizeMismatch { n_points, n_vertices: weights.len() })?;
-        Self::from_parts(points.to_vec(), shares(weights), self.area)
+    /// [`DescriptorError::SizeMismatch`] unless there are as many weights as vertices, of points that exist;
+    /// [`DescriptorError::NoExtent`] if a weight is negative or the points coincide.
+    pub fn at(&self, vertices: &[VertexId], weights: Vec<f64>) -> Result<Self, DescriptorError> {
+        let fault = DescriptorError::SizeMismatch { n_points: self.points.len(), n_vertices: weights.len() };
+        if vertices.len() != weights.len() {
+            return Err(fault);
+        }
+        let points = vertices.iter().map(|v| self.points.get(v.index()).copied());
+        let points = points.collect::<Option<Vec<_>>>().ok_or(fault)?;
+        Self::from_parts(points, shares(weights), self.area)
     }
 
     /// The centred points, one per vertex, in the unit of the distances.
@@ -222,14 +226,15 @@ mod tests {
     }
 
     #[test]
-    fn leading_points_keep_their_coordinates() {
+    fn some_points_keep_their_coordinates() {
         let points = [[3.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -2.0]].map(Point3::from).to_vec();
         let form = CanonicalForm::from_parts(points, vec![0.2, 0.3, 0.5], Some(4.0)).unwrap();
-        let first = form.leading(vec![1.0, 3.0]).unwrap();
+        let first_two = [0, 1].map(VertexId);
+        let first = form.at(&first_two, vec![1.0, 3.0]).unwrap();
         assert_eq!((first.points(), first.weights()), (&form.points()[..2], &[0.25, 0.75][..]));
         assert_eq!(first.area(), form.area());
-        assert_eq!(form.leading(vec![0.0; 2]).unwrap().weights(), [0.5; 2]);
-        let fault = form.leading(vec![1.0; 4]).unwrap_err();
+        assert_eq!(form.at(&first_two, vec![0.0; 2]).unwrap().weights(), [0.5; 2]);
+        let fault = form.at(&[0, 1, 2, 3].map(VertexId), vec![1.0; 4]).unwrap_err();
         assert_eq!(fault, DescriptorError::SizeMismatch { n_points: 3, n_vertices: 4 });
     }
 

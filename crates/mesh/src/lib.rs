@@ -7,7 +7,8 @@
 //! * [`validate`] reports the properties and defects of a mesh.
 //! * [`repair()`] removes defects that algorithms cannot handle, as [`RepairOptions`] say, and reports every change.
 //! * [`cut_shortcuts`] separates surfaces that touch and were welded.
-//! * [`without_noise`] smooths noisy meshes, [`fill_holes`] closes small holes, [`refine()`] splits long edges.
+//! * [`without_noise`] smooths noisy meshes, [`fill_holes`] closes small holes, [`refine()`] splits long edges,
+//!   [`collapse_edges`] merges vertices.
 //! * [`triangulate_points`] makes a surface of a point cloud; [`repair()`] does so for a mesh without faces.
 //! * [`EdgeGraph`] finds shortest paths along edges.
 //! * [`shapes`] has small analytic surfaces for tests, benches and documentation.
@@ -33,6 +34,7 @@
 //! ```
 
 mod coincidence;
+mod collapse;
 mod edge_graph;
 mod error;
 mod face_set;
@@ -50,6 +52,7 @@ mod shortcuts;
 mod tri_mesh;
 mod validate;
 
+pub use collapse::{CollapsedMesh, collapse_edges};
 pub use edge_graph::EdgeGraph;
 pub use error::{Fault, MeshError, Place};
 pub use holes::fill_holes;

@@ -37,8 +37,7 @@ impl Measured {
         embedded: &MeasuredSurface,
     ) -> Result<Self, Error> {
         let form = embedded.form_of(&surface)?;
-        let mut distances = embedded.distances_from_first()?;
-        distances.truncate(surface.mesh().n_vertices());
+        let distances = embedded.distances_from_first()?;
         Ok(Self { surface, geometry, form, distances })
     }
 

@@ -2,12 +2,12 @@
 //!
 //! A retrieval system should find a shape again after each of them. All work on any mesh, not only on generated ones.
 
-mod collapse;
 mod cut_off;
 mod holes;
 mod kind;
 mod noise;
 mod paths;
+mod remesh;
 mod slice;
 mod weld;
 
@@ -16,6 +16,7 @@ use std::fmt;
 use mesh::{TriMesh, shapes};
 use nalgebra::{Matrix3, Point3};
 
+use self::remesh::{decimated, remeshed};
 use crate::stream::{Purpose, Stream};
 
 pub use kind::DamageKind;
@@ -66,9 +67,9 @@ impl Damage {
         let mut stream = Stream::new(seed, 0, 0, Purpose::Damage);
         match self {
             Self::Subdivide(times) => (0..times).fold(mesh.clone(), |mesh, _| shapes::subdivide(&mesh)),
-            Self::Decimate(share) => collapse::decimate(mesh, (share * mesh.n_vertices() as f64) as usize),
-            Self::Remesh => collapse::remesh(mesh, 1.0, &mut stream),
-            Self::Sample(share) => collapse::remesh(mesh, share, &mut stream),
+            Self::Decimate(share) => decimated(mesh, (share * mesh.n_vertices() as f64) as usize),
+            Self::Remesh => remeshed(mesh, 1.0, &mut stream),
+            Self::Sample(share) => remeshed(mesh, share, &mut stream),
             Self::Weld(pair, n) => weld::weld(mesh, pair, n, &mut stream),
             Self::Contact(n) => weld::contact(mesh, n, &mut stream),
             Self::CutOff(share) => cut_off::cut_off(mesh, share, &mut stream),

@@ -2,13 +2,13 @@
 
 use std::time::Instant;
 
-use ::surface::{IntrinsicMesh, VertexId};
-use base::Observer;
+use ::surface::{IntrinsicMesh, Link, VertexId};
+use base::{Exceeded, Observer};
 use nalgebra::Point3;
 
 use super::boundary::{boundaries, longest_boundary};
 use super::point::{InputPoint, PointError};
-use crate::{MeshError, RepairOptions, RepairReport, Repaired, Shortcut, TriMesh, repair};
+use crate::{MeshError, RepairOptions, RepairReport, Repaired, Shortcut, TriMesh, collapse_edges, repair};
 
 /// A repaired mesh, its intrinsic geometry, and the map back to the vertices of the input.
 #[derive(Debug, Clone)]
@@ -106,6 +106,40 @@ impl Surface {
         let input_vertex = self.input_vertex.iter().copied().chain(near).collect();
         let open_boundary = Some(self.longest_boundary());
         Self { repaired, input_vertex, open_boundary, shortcuts, ..self.clone() }
+    }
+
+    /// The same surface with at most `n_vertices` vertices, by [edge collapses](crate::collapse_edges) of least quadric error,
+    /// and for every vertex of this surface the one that it was merged into. `None` if it has no more. Boundaries stay where
+    /// they are, and the report on the repair is that of this surface.
+    ///
+    /// # Errors
+    /// [`Exceeded`].
+    pub fn simplified(
+        &self,
+        n_vertices: usize,
+        observer: &dyn Observer,
+    ) -> Result<Option<(Self, Vec<VertexId>)>, Exceeded> {
+        if self.mesh().n_vertices() <= n_vertices {
+            return Ok(None);
+        }
+        let found = collapse_edges(self.mesh(), n_vertices, |error, _, _| error, &observer.budget())?;
+        // Repaired meshes have no vertices without faces.
+        let Some(vertex_of) = found.vertex_of.into_iter().collect::<Option<Vec<VertexId>>>() else {
+            return Ok(None);
+        };
+        let moved = |link: &Link| Link { ends: link.ends.map(|v| vertex_of[v.index()]), ..*link };
+        let links = self.intrinsic().links().iter().map(moved).filter(|link| link.ends[0] != link.ends[1]);
+        let intrinsic = found.mesh.intrinsic().with_links(links.collect());
+        let mut input_vertex = vec![VertexId(u32::MAX); found.mesh.n_vertices()];
+        for (v, kept) in vertex_of.iter().enumerate().rev() {
+            input_vertex[kept.index()] = self.input_vertex[v];
+        }
+        let to_input = |vertex: &Option<VertexId>| vertex.map(|v| vertex_of[v.index()]);
+        let input_to_repaired = self.repaired.input_to_repaired.iter().map(to_input).collect();
+        let report = self.repaired.report.clone();
+        let repaired = Repaired { mesh: found.mesh, intrinsic, input_to_repaired, report };
+        let open_boundary = Some(self.longest_boundary());
+        Ok(Some((Self { repaired, input_vertex, open_boundary, ..self.clone() }, vertex_of)))
     }
 
     /// Length of the longest boundary of the repaired mesh, in mesh units.

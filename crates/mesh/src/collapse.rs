@@ -1,13 +1,13 @@
-//! Edge collapses on any mesh: decimation and remeshing.
+//! Edge collapses on any mesh.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use mesh::{TriMesh, shapes};
+use ::surface::VertexId;
+use base::{Budget, Exceeded};
 use nalgebra::{Matrix3, Point3, Vector3};
-use surface::VertexId;
 
-use crate::stream::Stream;
+use crate::TriMesh;
 
 /// Weight of the planes that hold boundaries in place, relative to those of faces.
 const BOUNDARY: f64 = 10.0;
@@ -15,24 +15,16 @@ const BOUNDARY: f64 = 10.0;
 /// Smallest cosine between the normals of a face before and after a collapse.
 const LEAST_COSINE: f64 = 0.2;
 
-/// Vertices per new vertex before a mesh is triangulated anew.
-const SURPLUS: usize = 6;
+/// Operations that a collapse counts for in the meter of a budget.
+const OPERATIONS: usize = 256;
 
-/// Collapses edges by quadric error until `n_vertices` vertices are left.
-pub(super) fn decimate(mesh: &TriMesh, n_vertices: usize) -> TriMesh {
-    collapsed(mesh, n_vertices, |error, _, _| error)
-}
-
-/// Triangulates a mesh anew, with the given share of its vertices: splits its faces into many and collapses short edges, in
-/// an order that is partly random.
-pub(super) fn remesh(mesh: &TriMesh, share: f64, stream: &mut Stream) -> TriMesh {
-    let n_vertices = (share * mesh.n_vertices() as f64) as usize;
-    let mut fine = mesh.clone();
-    while !fine.faces.is_empty() && fine.n_vertices() < SURPLUS * n_vertices {
-        fine = shapes::subdivide(&fine);
-    }
-    let factors: Vec<f64> = (0..fine.n_vertices()).map(|_| stream.uniform(0.7, 1.4)).collect();
-    collapsed(&fine, n_vertices, |_, sq_length, [a, b]| sq_length * factors[a] * factors[b])
+/// A mesh with fewer vertices, and where those of the original went.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CollapsedMesh {
+    /// The mesh.
+    pub mesh: TriMesh,
+    /// For each vertex of the original, the vertex that it was merged into; `None` if it had no face.
+    pub vertex_of: Vec<Option<VertexId>>,
 }
 
 /// A sum of weighted squared distances from planes, `x' A x + 2 b' x + c`.
@@ -92,6 +84,8 @@ struct Collapse<C> {
     /// The living faces at every vertex; empty at a dead one.
     faces_at: Vec<Vec<u32>>,
     quadrics: Vec<Quadric>,
+    /// The vertex that each one was merged into; itself for those that are left.
+    merged_into: Vec<u32>,
     /// How often a vertex has changed; older entries of the queue are void.
     changes: Vec<u32>,
     queue: BinaryHeap<Reverse<QueuedEdge>>,
@@ -99,23 +93,43 @@ struct Collapse<C> {
 }
 
 /// Collapses edges, those of least `cost` first, until `n_vertices` vertices are left or no edge can be collapsed.
-/// The cost is a function of the quadric error, the squared length and the ends. Edges stay if their collapse would
-/// pinch the surface or invert a face, and so do edges of more than two faces.
-fn collapsed(mesh: &TriMesh, n_vertices: usize, cost: impl Fn(f64, f64, [usize; 2]) -> f64) -> TriMesh {
-    let mut work = Collapse::new(mesh.without_unused_vertices(), cost);
-    let mut n_left = work.positions.len();
+///
+/// The cost is a function of the quadric error (Garland and Heckbert 1997, `garland1997` in `REFERENCES.bib`), in mesh units to
+/// the fourth power, the squared length and the ends. The merged vertex lies where the quadric error is least. Edges stay if
+/// their collapse would pinch the surface or invert a face, and so do edges of more than two faces. `O(n log n)`.
+///
+/// ```
+/// use canonform_mesh::{collapse_edges, shapes};
+/// use base::Budget;
+///
+/// let fine = shapes::icosphere(4);
+/// let coarse = collapse_edges(&fine, 500, |error, _, _| error, &Budget::unlimited())?;
+/// assert_eq!(coarse.mesh.n_vertices(), 500);
+/// assert!((coarse.mesh.area() / fine.area() - 1.0).abs() < 0.01);
+/// # Ok::<(), base::Exceeded>(())
+/// ```
+///
+/// # Errors
+/// [`Exceeded`].
+pub fn collapse_edges(
+    mesh: &TriMesh,
+    n_vertices: usize,
+    cost: impl Fn(f64, f64, [usize; 2]) -> f64,
+    budget: &Budget,
+) -> Result<CollapsedMesh, Exceeded> {
+    let mut meter = budget.meter();
+    let mut work = Collapse::new(mesh.clone(), cost);
+    let mut n_left = work.faces_at.iter().filter(|faces| !faces.is_empty()).count();
     while n_left > n_vertices.max(4)
         && let Some(Reverse((_, [a, b], changes))) = work.queue.pop()
     {
+        meter.count(OPERATIONS)?;
         let ends = [a as usize, b as usize];
         if ends.map(|v| work.changes[v]) == changes && work.collapse(ends) {
             n_left -= 1;
         }
     }
-    let mut alive = vec![false; work.faces.len()];
-    work.faces_at.iter().flatten().for_each(|&f| alive[f as usize] = true);
-    let faces = work.faces.iter().zip(alive).filter(|(_, alive)| *alive).map(|(face, _)| *face).collect();
-    TriMesh { positions: work.positions, faces }.without_unused_vertices()
+    Ok(work.finished())
 }
 
 impl<C: Fn(f64, f64, [usize; 2]) -> f64> Collapse<C> {
@@ -130,6 +144,7 @@ impl<C: Fn(f64, f64, [usize; 2]) -> f64> Collapse<C> {
             faces: mesh.faces,
             faces_at,
             quadrics: vec![Quadric::ZERO; n],
+            merged_into: (0..n as u32).collect(),
             changes: vec![0; n],
             queue: BinaryHeap::new(),
             cost,
@@ -141,6 +156,28 @@ impl<C: Fn(f64, f64, [usize; 2]) -> f64> Collapse<C> {
             work.enqueue(v, |w| v < w);
         }
         work
+    }
+
+    fn finished(self) -> CollapsedMesh {
+        let mut number = vec![None; self.positions.len()];
+        let mut positions = Vec::new();
+        for (v, faces) in self.faces_at.iter().enumerate().filter(|(_, faces)| !faces.is_empty()) {
+            number[v] = Some(VertexId::from(positions.len()));
+            positions.push(self.positions[v]);
+            debug_assert!(faces.iter().all(|&f| self.faces[f as usize].contains(&VertexId::from(v))));
+        }
+        let last = |mut v: u32| {
+            while self.merged_into[v as usize] != v {
+                v = self.merged_into[v as usize];
+            }
+            v as usize
+        };
+        let vertex_of: Vec<_> = (0..self.positions.len() as u32).map(|v| number[last(v)]).collect();
+        let mut alive = vec![false; self.faces.len()];
+        self.faces_at.iter().flatten().for_each(|&f| alive[f as usize] = true);
+        let left = self.faces.iter().zip(alive).filter(|(_, alive)| *alive).map(|(face, _)| *face);
+        let renumbered = |face: [VertexId; 3]| face.map(|v| number[v.index()].unwrap_or(v));
+        CollapsedMesh { mesh: TriMesh { positions, faces: left.map(renumbered).collect() }, vertex_of }
     }
 
     /// Adds the plane of a face to its vertices, and upright planes along its boundary edges.
@@ -222,6 +259,7 @@ impl<C: Fn(f64, f64, [usize; 2]) -> f64> Collapse<C> {
                 self.faces_at[v].push(f);
             }
         }
+        self.merged_into[w] = v as u32;
         self.positions[v] = target;
         self.quadrics[v] = sum;
         self.changes[v] += 1;
