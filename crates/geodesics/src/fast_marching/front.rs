@@ -5,7 +5,7 @@
 
 use base::{Budget, Exceeded};
 
-use super::buckets::Buckets;
+use super::buckets::{Buckets, NOWHERE, Queued};
 use super::one_ring::OneRings;
 use super::relaxation::{EdgeRelaxation, ROUNDING, Relaxations, Round, TriangleSolver, VertexLabel};
 use super::update::Stencil;
@@ -18,10 +18,16 @@ const VISITS_PER_VERTEX: usize = 256;
 /// What a relaxation counts for in the meter of a budget.
 const OPERATIONS: usize = 8;
 
+#[derive(Debug, Default)]
+struct Labels { labels: Vec<VertexLabel>, at: Vec<u32> }
+impl Queued for Labels {
+    fn distance(&self, v: u32) -> f64 { self.labels[v as usize].distance }
+    fn bucket(&mut self, v: u32) -> &mut u32 { &mut self.at[v as usize] }
+}
 /// A front that advances bucket by bucket, each in one round or a few.
 #[derive(Debug, Default)]
 pub(super) struct VertexFront {
-    labels: Vec<VertexLabel>,
+    labels: Labels,
     buckets: Buckets,
     /// The vertices of a round.
     round: Vec<u32>,
@@ -33,9 +39,11 @@ impl VertexFront {
     /// Prepares for a new run. Allocates only to grow.
     pub(super) fn reset(&mut self, rings: &OneRings) {
         let n = rings.order.len();
-        self.labels.clear();
-        self.labels.resize(n, VertexLabel::UNREACHED);
-        self.buckets.reset(n, rings.bucket_width, rings.longest);
+        self.labels.labels.clear();
+        self.labels.labels.resize(n, VertexLabel::UNREACHED);
+        self.labels.at.clear();
+        self.labels.at.resize(n, NOWHERE);
+        self.buckets.reset(rings.bucket_width, rings.longest);
     }
 
     /// Puts a vertex at a straight distance from the source into the front.
@@ -45,7 +53,7 @@ impl VertexFront {
 
     #[inline]
     pub(super) fn distance(&self, vertex: u32) -> f64 {
-        self.labels[vertex as usize].distance
+        self.labels.labels[vertex as usize].distance
     }
 
     /// Runs until no vertex is left, without continuing from vertices where it `stops` at their distance.
@@ -58,13 +66,13 @@ impl VertexFront {
     ) -> Result<(), Exceeded> {
         let Self { labels, buckets, round, relaxations, solver } = self;
         let mut meter = budget.meter();
-        let mut visits = VISITS_PER_VERTEX.saturating_mul(labels.len());
-        while let Some(finalized) = buckets.next_round(round, |v| labels[v as usize].distance) {
+        let mut visits = VISITS_PER_VERTEX.saturating_mul(labels.labels.len());
+        while let Some(finalized) = buckets.next_round(round, labels) {
             visits = visits.saturating_sub(round.len());
-            let round = Round { rings, labels, vertices: round, finalized, corrects: visits > 0 };
+            let round = Round { rings, labels: &labels.labels, vertices: round, finalized, corrects: visits > 0 };
             let (edges, triangles) = relaxations.find(round, &stops);
             meter.count(OPERATIONS * (1 + edges.len() + triangles.len()))?;
-            solver.solve(triangles, rings, labels, &update);
+            solver.solve(triangles, rings, &labels.labels, &update);
             // Triangles first: edges seldom lower what they have lowered.
             for (apex, label) in solver.results() {
                 lower(labels, buckets, apex, label);
@@ -79,11 +87,11 @@ impl VertexFront {
 
 /// Lowers the label of a vertex, if it is an improvement.
 #[inline]
-fn lower(labels: &mut [VertexLabel], buckets: &mut Buckets, vertex: u32, label: VertexLabel) {
-    let known = &mut labels[vertex as usize];
+fn lower(labels: &mut Labels, buckets: &mut Buckets, vertex: u32, label: VertexLabel) {
+    let known = &mut labels.labels[vertex as usize];
     if label.distance < known.distance * (1.0 - ROUNDING) {
         *known = label;
-        buckets.put(vertex, label.distance);
+        buckets.put(vertex, &mut labels.at[vertex as usize], label.distance);
     } else if label.distance <= known.distance * (1.0 + ROUNDING) {
         known.pseudo_source = known.pseudo_source.min(label.pseudo_source);
     }

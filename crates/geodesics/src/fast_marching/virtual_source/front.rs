@@ -5,13 +5,13 @@ use std::collections::BinaryHeap;
 
 use base::{Budget, Exceeded};
 
-use super::super::buckets::Buckets;
+use super::super::buckets::{Buckets, NOWHERE, Queued};
 use super::super::relaxation::ROUNDING;
-use super::crossing::{Crossing, Crossings, LANES, Views};
-use super::triangles::{EntrySide, Triangles, around};
+use super::crossing::{Crossings, LANES, SolveCrossings};
+use super::triangles::{MarchTriangle, Triangles, around};
 use super::window::SourceWindow;
-use crate::plane;
-use crate::prefetch::prefetch;
+use crate::plane::{self, PlanePoint};
+use crate::prefetch::prefetch_line;
 use crate::source::Source;
 
 /// Limit of the mean number of visits per triangle. Real surfaces need one or two.
@@ -21,39 +21,69 @@ const VISITS_PER_TRIANGLE: usize = 64;
 /// share of the longest side, which leaves room for rounding in flat triangles.
 const SAME_POINT: f64 = 1e-9;
 
-/// What a crossing counts for in the meter of a budget.
+/// What the crossings of a triangle count for in the meter of a budget.
 const OPERATIONS: usize = 16;
 
-/// What is known of a triangle: its window, and where that enters.
+/// Through which side a window enters, if not from inside the triangle: a corner that no triangle has.
+const INSIDE: u32 = 3;
+
+/// No triangle behind a side.
+const NO_CORNER: u32 = u32::MAX;
+
+/// What is known of a triangle: one cache line.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
 struct TriangleLabel {
     window: SourceWindow,
-    entry: EntrySide,
+    /// The corner opposite the side where the window enters.
+    entry: u32,
+    bucket: u32,
 }
 
 /// A window that may be better than the one of its triangle.
 #[derive(Debug, Clone, Copy)]
 struct WindowOffer {
+    triangle: u32,
+    entry: u32,
     /// The distance of the centroid.
     distance: f64,
-    label: TriangleLabel,
+    window: SourceWindow,
+}
+
+/// What is known of all triangles.
+#[derive(Debug, Default)]
+struct TriangleLabels {
+    /// The distances of the centroids.
+    distances: Vec<f64>,
+    /// The labels, which mean something at finite distances.
+    labels: Vec<TriangleLabel>,
+}
+
+impl Queued for TriangleLabels {
+    #[inline(always)]
+    fn distance(&self, triangle: u32) -> f64 {
+        self.distances[triangle as usize]
+    }
+
+    #[inline(always)]
+    fn bucket(&mut self, triangle: u32) -> &mut u32 {
+        &mut self.labels[triangle as usize].bucket
+    }
 }
 
 /// A front that advances bucket by bucket from triangle to triangle.
 #[derive(Debug, Default)]
 pub(crate) struct TriangleFront {
-    /// The distance of the centroid of every triangle.
-    distances: Vec<f64>,
-    /// The labels of triangles at finite distances.
-    labels: Vec<TriangleLabel>,
+    triangles: TriangleLabels,
+    n_reached: usize,
     buckets: Buckets,
     /// The triangles of a round.
     round: Vec<u32>,
-    candidates: Vec<WindowOffer>,
-    /// The crossings of a round.
-    crossings: Vec<Crossings>,
+    /// The crossings that are solved next, and for each the vertex and the two entries that they lead to.
+    crossings: Crossings,
+    ahead: [[u32; 3]; LANES],
     n_crossings: usize,
+    offers: Vec<WindowOffer>,
     /// The distance of every vertex.
     vertices: Vec<f64>,
     /// Vertices whose neighbours may be too far away.
@@ -68,18 +98,19 @@ impl TriangleFront {
     /// Prepares for a new run. Allocates only to grow.
     fn reset(&mut self, triangles: &Triangles) {
         let n = triangles.triangles.len();
-        self.distances.clear();
-        self.distances.resize(n, f64::INFINITY);
-        let blank =
-            TriangleLabel { window: SourceWindow::around([0.0; 2], 0.0), entry: EntrySide::new(0, false) };
-        self.labels.resize(n, blank);
+        self.triangles.distances.clear();
+        self.triangles.distances.resize(n, f64::INFINITY);
+        let window = SourceWindow::around([0.0; 2], f64::INFINITY);
+        self.triangles.labels.resize(n, TriangleLabel { window, entry: INSIDE, bucket: NOWHERE });
         self.vertices.clear();
         self.vertices.resize(triangles.order.len(), f64::INFINITY);
-        self.buckets.reset(n, triangles.bucket_width, triangles.longest);
+        self.buckets.reset(triangles.bucket_width, triangles.longest);
+        self.offers.clear();
         self.lowered.clear();
         self.hubs.clear();
         self.hubs.resize(triangles.n_hubs, f64::INFINITY);
         self.visits = VISITS_PER_TRIANGLE.saturating_mul(n);
+        (self.n_reached, self.n_crossings) = (0, 0);
     }
 
     /// Starts from a source.
@@ -101,37 +132,18 @@ impl TriangleFront {
             }
             self.start_around(triangles, vertex, *distance, |_, _| false);
         }
-        self.apply();
     }
 
     /// Starts from a point inside those triangles at a vertex all of whose vertices are at a known straight distance.
     fn start_inside(&mut self, triangles: &Triangles, vertex: u32, straight: impl Fn(u32) -> Option<f64>) {
-        for corner in triangles.corners.row(vertex as usize) {
-            let number = corner / 3;
+        for number in triangles.corners.row(vertex as usize).iter().map(|corner| corner / 3) {
             let triangle = triangles.at(number);
             let [Some(a), Some(b), Some(c)] = triangle.vertices.map(&straight) else { continue };
-            let from = [a, b, c];
-            // A label leaves through two sides, so the point needs one more to leave through the third.
-            for slot in [0, 1] {
-                let entry = EntrySide::new(3 * number + slot, false);
-                let [left, right, apex] = entry.corners();
-                let entered = triangle.entered(entry);
-                let window = SourceWindow::around(plane::apex([entered.base, from[left], from[right]]), 0.0);
-                let error = window.distance(entered.apex) - from[apex];
-                if error.is_nan() || error.abs() > SAME_POINT * triangles.longest {
-                    break;
-                }
-                let label = TriangleLabel { window, entry };
-                if slot == 0 {
-                    self.candidates
-                        .push(WindowOffer { distance: window.distance(entered.centroid()), label });
-                } else {
-                    self.cross(triangles, number, &label, false);
-                    self.cross(triangles, number, &label, true);
-                }
-            }
+            let Some(source) = located(triangle, [a, b, c], SAME_POINT * triangles.longest) else { continue };
+            let window = SourceWindow::around(source, 0.0);
+            let distance = window.distance(triangle.centroid());
+            self.offers.push(WindowOffer { triangle: number, entry: INSIDE, distance, window });
         }
-        self.solve_crossings();
     }
 
     /// Offers the rays from a vertex to all triangles around it.
@@ -157,14 +169,11 @@ impl TriangleFront {
     ) {
         let (number, slot) = (corner / 3, corner as usize % 3);
         let triangle = triangles.at(number);
-        let Some(side) = around(slot).into_iter().find(|side| triangle.lengths[*side] > 0.0) else { return };
-        let entry = EntrySide::new(3 * number + side as u32, false);
-        let entered = triangle.entered(entry);
-        let at = if entry.corners()[0] == slot { [0.0, 0.0] } else { [entered.base, 0.0] };
-        let window = SourceWindow::around(at, offset);
-        let distance = window.distance(entered.centroid());
-        if !stops(number, distance) && improves(distance, self.distances[number as usize]) {
-            self.candidates.push(WindowOffer { distance, label: TriangleLabel { window, entry } });
+        let window = SourceWindow::around(triangle.corners()[slot], offset);
+        let distance = window.distance(triangle.centroid());
+        if !stops(number, distance) && improves(distance, self.triangles.distance(number)) {
+            let entry = around(slot)[0] as u32;
+            self.offers.push(WindowOffer { triangle: number, entry, distance, window });
         }
     }
 
@@ -179,33 +188,42 @@ impl TriangleFront {
     ) -> Result<(), Exceeded> {
         self.reset(triangles);
         sources.iter().for_each(|source| self.start(triangles, source));
-        loop {
-            self.march(triangles, budget, &stops)?;
-            let has_unreached = self.reach_vertices(triangles);
-            self.relax_edges(triangles, budget)?;
-            for joint in &triangles.joints {
-                let offset = self.vertices[*joint as usize];
-                if offset.is_finite() {
-                    self.start_around(triangles, *joint, offset, &stops);
+        while !self.offers.is_empty() && self.visits > 0 {
+            for WindowOffer { triangle, window, .. } in &self.offers {
+                let triangle = triangles.at(*triangle);
+                for (vertex, corner) in triangle.vertices.into_iter().zip(triangle.corners()) {
+                    let known = &mut self.vertices[vertex as usize];
+                    *known = known.min(window.distance(corner));
                 }
             }
-            if has_unreached {
-                for number in 0..triangles.triangles.len() as u32 {
-                    if self.distances[number as usize] == f64::INFINITY {
-                        for (slot, vertex) in (0..).zip(triangles.at(number).vertices) {
-                            let offset = self.vertices[vertex as usize];
-                            if offset.is_finite() {
-                                self.start_at(triangles, 3 * number + slot, offset, &stops);
-                            }
-                        }
+            self.take_offers(triangles);
+            self.march(triangles, budget, &stops)?;
+            self.relax_edges(triangles, budget)?;
+            self.start_again(triangles, &stops);
+        }
+        budget.check()
+    }
+
+    /// Offers the rays from vertices that join parts, and next to triangles that were not reached.
+    fn start_again(&mut self, triangles: &Triangles, stops: impl Fn(u32, f64) -> bool) {
+        for joint in &triangles.joints {
+            let offset = self.vertices[*joint as usize];
+            if offset.is_finite() {
+                self.start_around(triangles, *joint, offset, &stops);
+            }
+        }
+        if self.n_reached == triangles.triangles.len() {
+            return;
+        }
+        for (number, triangle) in (0..).zip(&triangles.triangles) {
+            if self.triangles.distance(number) == f64::INFINITY {
+                for (slot, vertex) in (0..).zip(triangle.vertices) {
+                    let offset = self.vertices[vertex as usize];
+                    if offset.is_finite() {
+                        self.start_at(triangles, 3 * number + slot, offset, &stops);
                     }
                 }
             }
-            if self.candidates.is_empty() || self.visits == 0 {
-                self.candidates.clear();
-                return budget.check();
-            }
-            self.apply();
         }
     }
 
@@ -216,146 +234,175 @@ impl TriangleFront {
         stops: impl Fn(u32, f64) -> bool,
     ) -> Result<(), Exceeded> {
         let mut meter = budget.meter();
-        loop {
-            let distances = &self.distances;
-            if self.buckets.next_round(&mut self.round, |t| distances[t as usize]).is_none() {
-                return Ok(());
-            }
-            meter.count(OPERATIONS * (1 + self.round.len()))?;
-            self.visits = self.visits.saturating_sub(self.round.len());
-            let round = std::mem::take(&mut self.round);
+        let mut round = std::mem::take(&mut self.round);
+        while self.buckets.next_round(&mut round, &mut self.triangles).is_some() {
+            meter.count(OPERATIONS * (1 + round.len()))?;
+            self.visits = self.visits.saturating_sub(round.len());
             for number in &round {
-                prefetch(std::slice::from_ref(triangles.at(*number)));
-                prefetch(std::slice::from_ref(&self.labels[*number as usize]));
-            }
-            for number in &round {
-                for corner in triangles.at(*number).across {
-                    prefetch(std::slice::from_ref(triangles.at(corner / 3)));
-                    prefetch(std::slice::from_ref(&self.distances[corner as usize / 3]));
+                if !stops(*number, self.triangles.distance(*number)) {
+                    self.leave(triangles, *number);
                 }
             }
-            for number in &round {
-                if stops(*number, self.distances[*number as usize]) {
+            self.solve_crossings(triangles);
+            self.take_offers(triangles);
+        }
+        self.round = round;
+        Ok(())
+    }
+
+    /// Adds the crossings of the sides of a triangle through which its window leaves.
+    #[inline(always)]
+    fn leave(&mut self, triangles: &Triangles, number: u32) {
+        let triangle = triangles.at(number);
+        let entry = self.triangles.labels[number as usize].entry;
+        if entry == INSIDE || triangle.is_irregular() {
+            self.leave_irregular(triangles, number);
+            return;
+        }
+        let [left, right] = around(entry as usize);
+        self.cross(triangles, number, entry, [triangle.across[right], triangle.across[left]]);
+    }
+
+    /// The same, if more than two triangles share a side, or the source is inside.
+    #[cold]
+    #[inline(never)]
+    fn leave_irregular(&mut self, triangles: &Triangles, number: u32) {
+        let triangle = triangles.at(number);
+        let TriangleLabel { entry, window, .. } = self.triangles.labels[number as usize];
+        let entries = if entry == INSIDE { 0..2 } else { entry..entry + 1 };
+        for entry in entries {
+            let [left, right] = around(entry as usize);
+            let mut ways = [right, left].map(|side| 3 * number + side as u32);
+            let mut is_open = ways.map(|own| self.opens(triangles, own, &window));
+            while is_open[0] | is_open[1] {
+                let mut behind = [NO_CORNER; 2];
+                for exit in 0..2 {
+                    if is_open[exit] {
+                        let own = 3 * number + [right, left][exit] as u32;
+                        ways[exit] = triangles.at(ways[exit] / 3).across[ways[exit] as usize % 3];
+                        is_open[exit] = ways[exit] != own;
+                        behind[exit] = ways[exit];
+                    }
+                }
+                self.cross(triangles, number, entry, behind);
+            }
+        }
+        let _ = triangle;
+    }
+
+    /// Whether a window may cross a side: at a hub, only if the middle is nearer through it than through those before.
+    fn opens(&mut self, triangles: &Triangles, own: u32, window: &SourceWindow) -> bool {
+        let Some(hub) = triangles.hubs.get(&own) else { return true };
+        let corners = triangles.at(own / 3).corners();
+        let [start, end] = around(own as usize % 3).map(|slot| corners[slot]);
+        let middle = window.distance(plane::between(start, end, 0.5));
+        let known = &mut self.hubs[*hub as usize];
+        let opens = middle < *known * (1.0 - ROUNDING);
+        *known = if opens { middle } else { *known };
+        opens
+    }
+
+    /// Adds the crossing of a triangle towards the entries on the left and right.
+    #[inline(always)]
+    fn cross(&mut self, triangles: &Triangles, number: u32, entry: u32, behind: [u32; 2]) {
+        let triangle = triangles.at(number);
+        let lane = self.n_crossings;
+        let label = &self.triangles.labels[number as usize];
+        self.crossings.set(lane, &label.window, triangle, entry as usize);
+        let [left, right] = around(entry as usize);
+        let mut ahead = [triangle.vertices[entry as usize], NO_CORNER, NO_CORNER];
+        for (exit, side) in [(0, right), (1, left)] {
+            let corner = behind[exit];
+            if corner == NO_CORNER || corner == 3 * number + side as u32 {
+                continue;
+            }
+            let (other, slot) = (triangles.at(corner / 3), corner as usize % 3);
+            ahead[1 + exit] = corner;
+            if triangle.vertices[around(side)[1]] == other.vertices[around(slot)[0]] {
+                self.crossings.set_exit(lane, exit, other, slot);
+            } else {
+                ahead[1 + exit] |= MIRRORED;
+                self.crossings.set_exit(lane, exit, &other.mirrored(), [1, 0, 2][slot]);
+            }
+        }
+        self.ahead[lane] = ahead;
+        self.n_crossings += 1;
+        if self.n_crossings == LANES {
+            self.solve_crossings(triangles);
+        }
+    }
+
+    /// Solves the crossings, lowers the vertices that they lead to, and keeps the windows that may be better than those
+    /// of their triangles.
+    #[inline(always)]
+    fn solve_crossings(&mut self, triangles: &Triangles) {
+        let n = std::mem::take(&mut self.n_crossings);
+        self.instructions.dispatch(SolveCrossings(&mut self.crossings));
+        for (lane, [vertex, left, right]) in self.ahead.iter().enumerate().take(n) {
+            let distance = self.crossings.apex_distance(lane);
+            let known = &mut self.vertices[*vertex as usize];
+            *known = if distance < *known { distance } else { *known };
+            for (exit, corner) in [(0, *left), (1, *right)] {
+                if corner == NO_CORNER {
                     continue;
                 }
-                let label = self.labels[*number as usize];
-                self.cross(triangles, *number, &label, false);
-                self.cross(triangles, *number, &label, true);
-            }
-            self.round = round;
-            self.solve_crossings();
-        }
-    }
-
-    /// Adds the crossings of the side of a triangle on the left or right of its entry.
-    #[inline]
-    fn cross(&mut self, triangles: &Triangles, number: u32, label: &TriangleLabel, is_right: bool) {
-        let triangle = triangles.at(number);
-        let [left, right, apex] = label.entry.corners();
-        let (start, side) = if is_right { (apex, left) } else { (left, right) };
-        let length = triangle.lengths[side];
-        let own = 3 * number + side as u32;
-        let mut corner = triangle.across[side];
-        if triangles.at(corner / 3).across[corner as usize % 3] != own
-            && let Some(hub) = triangles.hubs.get(&own)
-        {
-            let middle = label.window.middle_distance(triangle.entered(label.entry), is_right);
-            let known = &mut self.hubs[*hub as usize];
-            if middle.is_nan() || middle >= *known * (1.0 - ROUNDING) {
-                return;
-            }
-            *known = middle;
-        }
-        while corner != own {
-            let behind = triangles.at(corner / 3);
-            let slot = corner as usize % 3;
-            if length > 0.0 {
-                let is_mirrored = behind.vertices[around(slot)[0]] != triangle.vertices[start];
-                let entry = EntrySide::new(corner, is_mirrored);
-                let (block, lane) = (self.n_crossings / LANES, self.n_crossings % LANES);
-                if block == self.crossings.len() {
-                    self.crossings.push(Crossings::default());
-                }
-                let crossing = Crossing {
-                    window: &label.window,
-                    from: triangle.sides(label.entry),
-                    is_right,
-                    to: behind.sides(entry),
-                    bends: behind.bends(entry),
-                    entry: entry.number(),
-                };
-                self.crossings[block].set(lane, crossing);
-                self.n_crossings += 1;
-            }
-            corner = behind.across[slot];
-        }
-    }
-
-    /// Solves all crossings and improves the triangles behind them.
-    fn solve_crossings(&mut self) {
-        let blocks = &mut self.crossings[..self.n_crossings.div_ceil(LANES)];
-        self.instructions.dispatch(|| blocks.iter_mut().for_each(Crossings::solve));
-        for first in (0..self.n_crossings).step_by(LANES) {
-            let block = &self.crossings[first / LANES];
-            for lane in 0..LANES.min(self.n_crossings - first) {
-                let entry = EntrySide::numbered(block.entry[lane]);
-                let distance = block.distance(lane);
-                let state = (&mut self.distances[..], &mut self.labels[..], &mut self.buckets);
-                improve(state, distance, entry, self.visits > 0, || block.window(lane));
-            }
-        }
-        self.n_crossings = 0;
-    }
-
-    /// Improves triangles at starts.
-    fn apply(&mut self) {
-        for WindowOffer { distance, label } in self.candidates.drain(..) {
-            let state = (&mut self.distances[..], &mut self.labels[..], &mut self.buckets);
-            improve(state, distance, label.entry, self.visits > 0, || label.window);
-        }
-    }
-
-    /// Lowers the vertices of all triangles to their distances. Returns whether some triangle was not reached.
-    fn reach_vertices(&mut self, triangles: &Triangles) -> bool {
-        let mut has_unreached = false;
-        let mut views = Views::default();
-        let numbers = 0..triangles.triangles.len();
-        for first in numbers.clone().step_by(LANES) {
-            let some = first..numbers.end.min(first + LANES);
-            for (lane, number) in some.clone().enumerate() {
-                let label = &self.labels[number];
-                let is_reached = self.distances[number] < f64::INFINITY;
-                has_unreached |= !is_reached;
-                views.set(lane, &label.window, triangles.triangles[number].sides(label.entry), is_reached);
-            }
-            self.instructions.dispatch(|| views.solve());
-            for (lane, number) in some.enumerate() {
-                let triangle = &triangles.triangles[number];
-                for (corner, distance) in
-                    self.labels[number].entry.corners().into_iter().zip(views.distances(lane))
-                {
-                    let known = &mut self.vertices[triangle.vertices[corner] as usize];
-                    *known = if distance < *known { distance } else { *known };
+                let (triangle, entry) = ((corner & !MIRRORED) / 3, (corner & !MIRRORED) % 3);
+                let distance = self.crossings.distance(lane, exit);
+                if distance <= self.triangles.distance(triangle) * (1.0 + ROUNDING) {
+                    let window = self.crossings.window(lane, exit);
+                    self.offers.push(WindowOffer { triangle, entry, distance, window });
+                    if corner & MIRRORED != 0 {
+                        let offer = self.offers.last_mut();
+                        let _ = offer.map(|offer| offer.window = unmirrored(&offer.window, triangles.at(triangle).base));
+                    }
                 }
             }
         }
-        has_unreached
+    }
+
+    /// Gives triangles other windows, if those are nearer to the source, or see as near but from a source that bent
+    /// less. A triangle that has one already keeps it when there were too many visits.
+    #[inline(always)]
+    fn take_offers(&mut self, triangles: &Triangles) {
+        for WindowOffer { triangle, entry, distance, window } in self.offers.drain(..) {
+            let TriangleLabels { distances, labels } = &mut self.triangles;
+            let (known, label) = (&mut distances[triangle as usize], &mut labels[triangle as usize]);
+            let is_new = *known == f64::INFINITY;
+            let is_nearer = improves(distance, *known);
+            let is_as_near = distance <= *known * (1.0 + ROUNDING);
+            if !is_nearer && !(is_as_near && improves(window.offset, label.window.offset)) {
+                continue;
+            }
+            if !is_new && self.visits == 0 {
+                continue;
+            }
+            *known = distance;
+            let mut bucket = if is_new { NOWHERE } else { label.bucket };
+            self.buckets.put(triangle, &mut bucket, distance);
+            *label = TriangleLabel { window, entry, bucket };
+            self.n_reached += usize::from(is_new);
+            let across = triangles.at(triangle).across;
+            for side in around(entry as usize % 3) {
+                let other = across[side] as usize / 3;
+                prefetch_line(&triangles.triangles[other]);
+                prefetch_line(&distances[other]);
+                prefetch_line(&labels[other]);
+            }
+        }
     }
 
     /// Lowers vertices along edges and links.
     fn relax_edges(&mut self, triangles: &Triangles, budget: &Budget) -> Result<(), Exceeded> {
         for triangle in &triangles.triangles {
-            let at = triangle.vertices.map(|v| self.vertices[v as usize]);
-            let too_long = [0, 1, 2].map(|side| {
-                let [a, b] = around(side).map(|end| at[end]);
-                let [near, far] = if a < b { [a, b] } else { [b, a] };
-                improves(near + triangle.lengths[side], far)
-            });
-            if too_long[0] | too_long[1] | too_long[2] {
-                for side in 0..3 {
-                    let [a, b] = around(side).map(|end| triangle.vertices[end]);
-                    self.relax(a, b, triangle.lengths[side]);
-                    self.relax(b, a, triangle.lengths[side]);
+            let [a, b, c] = triangle.vertices;
+            let [at_a, at_b, at_c] =
+                [self.vertices[a as usize], self.vertices[b as usize], self.vertices[c as usize]];
+            let [to_a, to_b, to_c] = triangle.sq_lengths();
+            let (ab, bc, ca) = (at_b - at_a, at_c - at_b, at_a - at_c);
+            if (bc * bc > to_a) | (ca * ca > to_b) | (ab * ab > to_c) {
+                for (side, [p, q]) in [(0, [b, c]), (1, [c, a]), (2, [a, b])] {
+                    self.relax(p, q, triangle.length(side));
+                    self.relax(q, p, triangle.length(side));
                 }
             }
         }
@@ -395,31 +442,26 @@ impl TriangleFront {
     }
 }
 
+/// The flag of an entry into a triangle that lies the other way round than the one before.
+const MIRRORED: u32 = 1 << 31;
+
+/// A window of a mirrored triangle in the plane of the triangle, whose base has the given length.
+fn unmirrored(window: &SourceWindow, base: f64) -> SourceWindow {
+    let SourceWindow { source: [x, y], limits: [left, right], offset } = *window;
+    let flipped = |[x, y]: PlanePoint| [-x, y];
+    SourceWindow { source: [base - x, y], limits: [flipped(right), flipped(left)], offset }
+}
+
 /// Whether a distance is less than the known one by more than rounding.
-#[inline]
+#[inline(always)]
 fn improves(distance: f64, known: f64) -> bool {
     distance < known * (1.0 - ROUNDING)
 }
 
-/// Gives a triangle another window, if that is nearer to the source, or sees as near but from a source that bent less.
-/// A triangle that has one already keeps it unless the front `corrects`.
-#[inline]
-fn improve(
-    (distances, labels, buckets): (&mut [f64], &mut [TriangleLabel], &mut Buckets),
-    distance: f64,
-    entry: EntrySide,
-    corrects: bool,
-    window: impl FnOnce() -> SourceWindow,
-) {
-    let number = entry.triangle();
-    let (known, label) = (&mut distances[number as usize], &mut labels[number as usize]);
-    if distance > *known * (1.0 + ROUNDING) || !(corrects || *known == f64::INFINITY) {
-        return;
-    }
-    let window = window();
-    if improves(distance, *known) || improves(window.offset, label.window.offset) {
-        *known = distance;
-        *label = TriangleLabel { window, entry };
-        buckets.put(number, distance);
-    }
+/// The point in the plane of a triangle at the given distances from its corners; none if no point is, up to a slack.
+fn located(triangle: &MarchTriangle, distances: [f64; 3], slack: f64) -> Option<PlanePoint> {
+    let [start, end, apex] = triangle.corners();
+    let at = plane::beyond([start, end], [triangle.base, distances[0], distances[1]], plane::GateSide::Ahead);
+    let error = plane::distance(at, apex) - distances[2];
+    (error.abs() <= slack).then_some(at)
 }
