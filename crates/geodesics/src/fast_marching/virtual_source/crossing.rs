@@ -123,6 +123,8 @@ struct Exit {
 pub(super) struct Crossings {
     window: WindowLanes,
     triangle: TriangleLanes,
+    /// The distances of the left and the right end of the entry.
+    known: [Lane; 2],
     /// Whether shortest paths may bend: at the left end of the entry, at the right one, and at the corner opposite.
     bends: [Lane; 3],
     /// On the left and on the right.
@@ -203,6 +205,13 @@ impl Crossings {
         }
     }
 
+    /// The distances known of the left and the right end of the entry.
+    #[inline(always)]
+    pub(super) fn set_known(&mut self, lane: usize, [left, right]: [f64; 2]) {
+        self.known[0][lane] = left;
+        self.known[1][lane] = right;
+    }
+
     /// The triangle behind the exit on the left (0) or right (1), with the corner opposite that side.
     #[inline(always)]
     pub(super) fn set_exit(&mut self, lane: usize, exit: usize, triangle: &MarchTriangle, corner: usize) {
@@ -241,7 +250,12 @@ impl Crossings {
             let (misses_left, misses_right) = (cross(to_apex, to_left) < 0.0, cross(to_apex, to_right) > 0.0);
             let end = select_point(misses_left, to_left, select_point(misses_right, to_right, [0.0; 2]));
             let bend = select_point(in_left, left, select_point(in_right, right, end));
-            self.distance[i] = offset + norm(bend) + norm(sub(to_apex, bend));
+            let through = offset + norm(bend) + norm(sub(to_apex, bend));
+            // Along the sides.
+            let at_left = self.known[0][i] + norm(sub(to_apex, to_left));
+            let at_right = self.known[1][i] + norm(sub(to_apex, to_right));
+            let along = select(at_left < at_right, at_left, at_right);
+            self.distance[i] = select(along < through, along, through);
             rays[0].set(i, to_left);
             rays[1].set(i, to_apex);
             rays[2].set(i, to_right);

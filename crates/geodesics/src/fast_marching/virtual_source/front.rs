@@ -21,6 +21,9 @@ const VISITS_PER_TRIANGLE: usize = 64;
 /// share of the longest side, which leaves room for rounding in flat triangles.
 const SAME_POINT: f64 = 1e-9;
 
+/// Distances may differ by the length of an edge and, squared, by this factor more: rounding.
+const SLACK: f64 = 1.0 + 1e-11;
+
 /// What the crossings of a triangle count for in the meter of a budget.
 const OPERATIONS: usize = 16;
 
@@ -310,7 +313,12 @@ impl TriangleFront {
         let label = &self.triangles.labels[number as usize];
         self.crossings.set(lane, &label.window, triangle, entry as usize);
         let [left, right] = around(entry as usize);
-        let mut ahead = [triangle.vertices[entry as usize], NO_CORNER, NO_CORNER];
+        let vertex = triangle.vertices[entry as usize];
+        prefetch_line(&self.vertices[vertex as usize]);
+        let at_left = self.vertices[triangle.vertices[left] as usize];
+        let at_right = self.vertices[triangle.vertices[right] as usize];
+        self.crossings.set_known(lane, [at_left, at_right]);
+        let mut ahead = [vertex, NO_CORNER, NO_CORNER];
         for (exit, side) in [(0, right), (1, left)] {
             let corner = behind[exit];
             if corner == NO_CORNER || corner == 3 * number + side as u32 {
@@ -334,7 +342,7 @@ impl TriangleFront {
 
     /// Solves the crossings, lowers the vertices that they lead to, and keeps the windows that may be better than those
     /// of their triangles.
-    #[inline(always)]
+    #[inline(never)]
     fn solve_crossings(&mut self, triangles: &Triangles) {
         let n = std::mem::take(&mut self.n_crossings);
         self.instructions.dispatch(SolveCrossings(&mut self.crossings));
@@ -362,7 +370,7 @@ impl TriangleFront {
 
     /// Gives triangles other windows, if those are nearer to the source, or see as near but from a source that bent
     /// less. A triangle that has one already keeps it when there were too many visits.
-    #[inline(always)]
+    #[inline(never)]
     fn take_offers(&mut self, triangles: &Triangles) {
         for WindowOffer { triangle, entry, distance, window } in self.offers.drain(..) {
             let TriangleLabels { distances, labels } = &mut self.triangles;
@@ -398,6 +406,7 @@ impl TriangleFront {
             let [at_a, at_b, at_c] =
                 [self.vertices[a as usize], self.vertices[b as usize], self.vertices[c as usize]];
             let [to_a, to_b, to_c] = triangle.sq_lengths();
+            let (to_a, to_b, to_c) = (SLACK * to_a, SLACK * to_b, SLACK * to_c);
             let (ab, bc, ca) = (at_b - at_a, at_c - at_b, at_a - at_c);
             if (bc * bc > to_a) | (ca * ca > to_b) | (ab * ab > to_c) {
                 for (side, [p, q]) in [(0, [b, c]), (1, [c, a]), (2, [a, b])] {
