@@ -233,11 +233,37 @@ impl Buckets {
 mod tests {
     use super::*;
 
+    /// Vertices at given distances.
+    struct Vertices {
+        distances: Vec<f64>,
+        buckets: Vec<u32>,
+    }
+
+    impl Vertices {
+        fn at(distances: Vec<f64>) -> Self {
+            Self { buckets: vec![NOWHERE; distances.len()], distances }
+        }
+
+        fn put(&mut self, vertex: u32, distance: f64, queue: &mut Buckets) {
+            queue.put(vertex, &mut self.buckets[vertex as usize], distance);
+        }
+    }
+
+    impl Queued for Vertices {
+        fn distance(&self, vertex: u32) -> f64 {
+            self.distances[vertex as usize]
+        }
+
+        fn bucket(&mut self, vertex: u32) -> &mut u32 {
+            &mut self.buckets[vertex as usize]
+        }
+    }
+
     /// Takes all vertices out, round by round, with the distance below which all are finalized.
-    fn rounds(buckets: &mut Buckets, distances: &[f64]) -> Vec<(f64, Vec<u32>)> {
+    fn rounds(buckets: &mut Buckets, vertices: &mut Vertices) -> Vec<(f64, Vec<u32>)> {
         let mut round = Vec::new();
         std::iter::from_fn(|| {
-            let finalized = buckets.next_round(&mut round, |v| distances[v as usize])?;
+            let finalized = buckets.next_round(&mut round, vertices)?;
             Some((finalized, round.clone()))
         })
         .collect()
@@ -247,13 +273,13 @@ mod tests {
     fn vertices_come_once_each_bucket_by_bucket() {
         // Far more buckets than the ring has, with long gaps.
         let distances: Vec<f64> = (0..500u32).map(|v| f64::from(v * 7919 % 1013).powi(3) * 0.01).collect();
-        let mut buckets = Buckets::default();
-        buckets.reset(distances.len(), 0.5, 20.0);
-        for (v, distance) in distances.iter().enumerate() {
-            buckets.put(v as u32, distance + 40.0);
-            buckets.put(v as u32, *distance);
+        let (mut buckets, mut vertices) = (Buckets::default(), Vertices::at(distances.clone()));
+        buckets.reset(0.5, 20.0);
+        for (v, distance) in (0..).zip(&distances) {
+            vertices.put(v, distance + 40.0, &mut buckets);
+            vertices.put(v, *distance, &mut buckets);
         }
-        let rounds = rounds(&mut buckets, &distances);
+        let rounds = rounds(&mut buckets, &mut vertices);
         let mut nearest = 0.0;
         for (finalized, round) in &rounds {
             let at = round.iter().map(|v| distances[*v as usize]);
@@ -268,37 +294,37 @@ mod tests {
 
     #[test]
     fn late_vertices_come_in_another_round_of_the_same_bucket() {
-        let mut distances = [0.0, 2.25, 2.75, 9.0];
-        let mut buckets = Buckets::default();
-        buckets.reset(4, 1.0, 100.0);
+        let (mut buckets, mut vertices) = (Buckets::default(), Vertices::at(vec![0.0, 2.25, 2.75, 9.0]));
+        buckets.reset(1.0, 100.0);
         for v in [0, 1, 3] {
-            buckets.put(v, distances[v as usize]);
+            vertices.put(v, vertices.distance(v), &mut buckets);
         }
         let mut round = Vec::new();
-        assert_eq!(buckets.next_round(&mut round, |_| 0.0), Some(0.0));
-        assert_eq!(buckets.next_round(&mut round, |_| 0.0), Some(2.0));
+        assert_eq!(buckets.next_round(&mut round, &mut vertices), Some(0.0));
+        assert_eq!(buckets.next_round(&mut round, &mut vertices), Some(2.0));
         assert_eq!(round, [1]);
-        buckets.put(2, 2.75);
-        distances[0] = -1.0;
-        buckets.put(0, distances[0]);
-        assert_eq!(rounds(&mut buckets, &distances), [(3.0, vec![2, 0]), (9.0, vec![3])]);
+        vertices.put(2, 2.75, &mut buckets);
+        vertices.distances[0] = -1.0;
+        vertices.put(0, -1.0, &mut buckets);
+        assert_eq!(rounds(&mut buckets, &mut vertices), [(3.0, vec![2, 0]), (9.0, vec![3])]);
     }
 
     #[test]
     fn a_bucket_that_keeps_filling_becomes_narrower() {
-        let (n, step) = (3000u32, 1e-3);
-        let mut buckets = Buckets::default();
-        buckets.reset(n as usize, 1.0, 1.0);
-        buckets.put(0, 0.0);
+        let n = 3000u32;
+        let (mut buckets, mut vertices) =
+            (Buckets::default(), Vertices::at((0..n).map(|v| f64::from(v) * 1e-3).collect()));
+        buckets.reset(1.0, 1.0);
+        vertices.put(0, 0.0, &mut buckets);
         let (mut round, mut next, mut before) = (Vec::new(), 0, 0.0);
-        while let Some(finalized) = buckets.next_round(&mut round, |v| f64::from(v) * step) {
+        while let Some(finalized) = buckets.next_round(&mut round, &mut vertices) {
             assert!(finalized >= before);
             before = finalized;
             for v in &round {
                 assert_eq!(*v, next);
                 next += 1;
                 if next < n {
-                    buckets.put(next, f64::from(next) * step);
+                    vertices.put(next, vertices.distance(next), &mut buckets);
                 }
             }
         }
@@ -310,9 +336,10 @@ mod tests {
     fn a_width_of_zero_gives_a_single_bucket() {
         let mut buckets = Buckets::default();
         for width in [0.0, f64::NAN, 1e-310] {
-            buckets.reset(3, width, 1.0);
-            (0..3).for_each(|v| buckets.put(v, f64::from(v)));
-            let n: usize = rounds(&mut buckets, &[0.0, 1.0, 2.0]).iter().map(|(_, round)| round.len()).sum();
+            let mut vertices = Vertices::at(vec![0.0, 1.0, 2.0]);
+            buckets.reset(width, 1.0);
+            (0..3).for_each(|v| vertices.put(v, f64::from(v), &mut buckets));
+            let n: usize = rounds(&mut buckets, &mut vertices).iter().map(|(_, round)| round.len()).sum();
             assert_eq!(n, 3);
         }
     }

@@ -6,7 +6,7 @@ use crate::plane::{PlanePoint, cross, norm, sub};
 /// If all of them are in the shadow of a limit, the window bends there. At 1 windows reach too far into shadows and
 /// distances become too short, at 0 they leave the light too early and distances become too long; `make bench-peers`
 /// measures the errors.
-pub(super) const TEST_POINTS: f64 = 0.75;
+pub(super) const TEST_POINTS: f64 = 0.7;
 
 /// A source is on the line through a side, and a ray meets its end, up to this share of the distance: rounding.
 pub(super) const COLLINEAR: f64 = 1e-12;
