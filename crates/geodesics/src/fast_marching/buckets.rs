@@ -223,7 +223,8 @@ impl Buckets {
             self.finalized = self.finalized.max(self.end());
         }
         self.set_width(width);
-        let nearest = self.moving.iter().map(|vertex| vertices.distance(*vertex)).fold(f64::INFINITY, f64::min);
+        let nearest =
+            self.moving.iter().map(|vertex| vertices.distance(*vertex)).fold(f64::INFINITY, f64::min);
         (self.current, self.is_fresh) = (self.bucket(nearest), true);
         self.put_moving(vertices);
     }

@@ -153,7 +153,13 @@ impl Rays {
     /// Continues a window with the given limits, which narrow to the ends of the side where paths may bend. Towards a
     /// source that lies behind the side, they turn around its first or second end.
     #[inline(always)]
-    fn cross(self, [left, right]: [PlanePoint; 2], bends: [bool; 2], offset: f64, pivots_right: bool) -> Behind {
+    fn cross(
+        self,
+        [left, right]: [PlanePoint; 2],
+        bends: [bool; 2],
+        offset: f64,
+        pivots_right: bool,
+    ) -> Behind {
         let Self { ends: [start, end], apex } = self;
         let base = sub(end, start);
         let third = 1.0 / 3.0;
@@ -196,7 +202,13 @@ impl Rays {
 impl Crossings {
     /// A window, and the triangle that it entered through the side opposite `corner`.
     #[inline(always)]
-    pub(super) fn set(&mut self, lane: usize, window: &SourceWindow, triangle: &MarchTriangle, corner: usize) {
+    pub(super) fn set(
+        &mut self,
+        lane: usize,
+        window: &SourceWindow,
+        triangle: &MarchTriangle,
+        corner: usize,
+    ) {
         self.window.set(lane, window);
         self.triangle.set(lane, triangle, corner);
         let [left, right] = around(corner);

@@ -8,7 +8,6 @@ use surface::{
     scalar_product,
 };
 
-use super::super::one_ring::EXCESS;
 use crate::graph::ranks;
 use crate::plane::{self, PlanePoint};
 
@@ -74,7 +73,6 @@ impl MarchTriangle {
         let [x, y] = self.apex;
         Self { apex: [self.base - x, y], ..*self }
     }
-
 }
 
 /// The triangles of a triangulation, and what front and vertices need to find them. Vertices and triangles are
@@ -104,6 +102,9 @@ pub(crate) struct Triangles {
 
 /// Width of the buckets, as a share of the mean edge length. It affects time only, which `make bench-peers` measures.
 const BUCKET_WIDTH: f64 = 0.3;
+
+/// Excess of a total angle, in radians, up to which it counts as rounding.
+const EXCESS: f64 = 5e-9;
 
 /// Edges of more triangles are hubs.
 const MOST_AROUND: usize = 8;
@@ -151,7 +152,11 @@ impl Triangles {
                 let is_irregular = face.corners().into_iter().any(|corner| across(across(corner)) != corner);
                 MarchTriangle {
                     base: lengths[2],
-                    apex: if lengths[2] > 0.0 { plane::apex([lengths[2], lengths[1], lengths[0]]) } else { [0.0; 2] },
+                    apex: if lengths[2] > 0.0 {
+                        plane::apex([lengths[2], lengths[1], lengths[0]])
+                    } else {
+                        [0.0; 2]
+                    },
                     across: [0, 1, 2].map(|slot| renamed(across(corner(slot)))),
                     vertices: [0, 1, 2].map(|slot| rank[triangulation.corner_vertex(corner(slot)).index()]),
                     flags: if is_irregular { MarchTriangle::IS_IRREGULAR } else { 0 },
@@ -161,7 +166,8 @@ impl Triangles {
         let hubs =
             (0..).zip(&many).flat_map(|(hub, edge)| edge.iter().map(move |corner| (renamed(*corner), hub)));
         let hubs = hubs.collect();
-        let corners = triangles.iter().flat_map(|t| t.vertices).zip(0..).map(|(v, corner)| (v as usize, corner));
+        let corners =
+            triangles.iter().flat_map(|t| t.vertices).zip(0..).map(|(v, corner)| (v as usize, corner));
         let corners = Rows::collect(n, corners);
         let renumbered = |link: &Link| Link { ends: link.ends.map(|v| VertexId(rank[v.index()])), ..*link };
         let all_links = links.iter().chain(removed).map(renumbered);
@@ -182,8 +188,7 @@ impl Triangles {
         joints.extend((0..).zip(&kinds).filter(|(_, kind)| kind.has_fans).map(|(v, _)| v));
         joints.sort_unstable();
         joints.dedup();
-        let longest =
-            glued.iter().flat_map(|t| t.lengths).chain(all_links.clone().map(|link| link.length));
+        let longest = glued.iter().flat_map(|t| t.lengths).chain(all_links.clone().map(|link| link.length));
         let longest = longest.fold(0.0, f64::max);
         Self {
             links: Link::by_vertex(n, all_links),
@@ -204,6 +209,11 @@ impl Triangles {
         (0..3).map(|side| self.at(triangle).length(side)).fold(0.0, f64::max)
     }
 
+    /// The length of the longest edge or link at a vertex.
+    pub(super) fn longest_at(&self, vertex: u32) -> f64 {
+        self.ways_from(vertex).map(|(_, length)| length).fold(0.0, f64::max)
+    }
+
     /// The mesh vertices of a triangle.
     pub(crate) fn mesh_vertices(&self, triangle: u32) -> [u32; 3] {
         self.at(triangle).vertices.map(|v| self.order[v as usize])
@@ -219,7 +229,10 @@ impl Triangles {
         let edges = self.corners.row(vertex as usize).iter().flat_map(|corner| {
             let (triangle, slot) = (self.at(corner / 3), *corner as usize % 3);
             let [next, prev] = around(slot);
-            [(triangle.vertices[next], triangle.length(prev)), (triangle.vertices[prev], triangle.length(next))]
+            [
+                (triangle.vertices[next], triangle.length(prev)),
+                (triangle.vertices[prev], triangle.length(next)),
+            ]
         });
         edges.chain(self.links.row(vertex as usize).iter().copied())
     }
