@@ -90,7 +90,7 @@ struct TriangleLanes {
 impl TriangleLanes {
     #[inline(always)]
     fn set(&mut self, lane: usize, triangle: &MarchTriangle, corner: usize) {
-        self.base[lane] = triangle.base;
+        self.base[lane] = triangle.base();
         self.apex.set(lane, triangle.apex);
         self.corner[lane] = corner as f64;
     }
@@ -213,7 +213,7 @@ impl Crossings {
         self.triangle.set(lane, triangle, corner);
         let [left, right] = around(corner);
         for (bends, slot) in self.bends.iter_mut().zip([left, right, corner]) {
-            bends[lane] = triangle.bends_at(slot) as f64;
+            bends[lane] = f64::from(triangle.bends_at(slot));
         }
     }
 

@@ -21,8 +21,8 @@ const VISITS_PER_TRIANGLE: usize = 64;
 /// share of the longest side, which leaves room for rounding in flat triangles.
 const SAME_POINT: f64 = 1e-9;
 
-/// Distances may differ by the length of an edge and, squared, by this factor more: rounding.
-const SLACK: f64 = 1.0 + 1e-11;
+/// The distances of two vertices may differ by the length of an edge times this: rounding.
+const SLACK: f64 = 1.0 + 1e-12;
 
 /// What the crossings of a triangle count for in the meter of a budget.
 const OPERATIONS: usize = 16;
@@ -141,7 +141,7 @@ impl TriangleFront {
     fn start_inside(&mut self, triangles: &Triangles, vertex: u32, straight: impl Fn(u32) -> Option<f64>) {
         for number in triangles.corners.row(vertex as usize).iter().map(|corner| corner / 3) {
             let triangle = triangles.at(number);
-            let [Some(a), Some(b), Some(c)] = triangle.vertices.map(&straight) else { continue };
+            let [Some(a), Some(b), Some(c)] = triangle.vertices().map(&straight) else { continue };
             let Some(source) = located(triangle, [a, b, c], SAME_POINT * triangles.longest) else { continue };
             let window = SourceWindow::around(source, 0.0);
             let distance = window.distance(triangle.centroid());
@@ -194,7 +194,7 @@ impl TriangleFront {
         while !self.offers.is_empty() && self.visits > 0 {
             for WindowOffer { triangle, window, .. } in &self.offers {
                 let triangle = triangles.at(*triangle);
-                for (vertex, corner) in triangle.vertices.into_iter().zip(triangle.corners()) {
+                for (vertex, corner) in triangle.vertices().into_iter().zip(triangle.corners()) {
                     let known = &mut self.vertices[vertex as usize];
                     *known = known.min(window.distance(corner));
                 }
@@ -220,7 +220,7 @@ impl TriangleFront {
         }
         for (number, triangle) in (0..).zip(&triangles.triangles) {
             if self.triangles.distance(number) == f64::INFINITY {
-                for (slot, vertex) in (0..).zip(triangle.vertices) {
+                for (slot, vertex) in (0..).zip(triangle.vertices()) {
                     let offset = self.vertices[vertex as usize];
                     if offset.is_finite() {
                         self.start_at(triangles, 3 * number + slot, offset, &stops);
@@ -311,10 +311,10 @@ impl TriangleFront {
         let label = &self.triangles.labels[number as usize];
         self.crossings.set(lane, &label.window, triangle, entry as usize);
         let [left, right] = around(entry as usize);
-        let vertex = triangle.vertices[entry as usize];
+        let vertex = triangle.vertex(entry as usize);
         prefetch(&self.vertices[vertex as usize]);
-        let at_left = self.vertices[triangle.vertices[left] as usize];
-        let at_right = self.vertices[triangle.vertices[right] as usize];
+        let at_left = self.vertices[triangle.vertex(left) as usize];
+        let at_right = self.vertices[triangle.vertex(right) as usize];
         self.crossings.set_known(lane, [at_left, at_right]);
         let mut ahead = [vertex, NO_CORNER, NO_CORNER];
         for (exit, side) in [(0, right), (1, left)] {
@@ -324,7 +324,7 @@ impl TriangleFront {
             }
             let (other, slot) = (triangles.at(corner / 3), corner as usize % 3);
             ahead[1 + exit] = corner;
-            if triangle.vertices[around(side)[1]] == other.vertices[around(slot)[0]] {
+            if triangle.vertex(around(side)[1]) == other.vertex(around(slot)[0]) {
                 self.crossings.set_exit(lane, exit, other, slot);
             } else {
                 ahead[1 + exit] |= MIRRORED;
@@ -357,7 +357,7 @@ impl TriangleFront {
                 if distance <= self.triangles.distance(triangle) * (1.0 + ROUNDING) {
                     let mut window = self.crossings.window(lane, exit);
                     if corner & MIRRORED != 0 {
-                        window = unmirrored(&window, triangles.at(triangle).base);
+                        window = unmirrored(&window, triangles.at(triangle).base());
                     }
                     self.offers.push(WindowOffer { triangle, entry, distance, window });
                 }
@@ -399,16 +399,14 @@ impl TriangleFront {
     /// Lowers vertices along edges and links.
     fn relax_edges(&mut self, triangles: &Triangles, budget: &Budget) -> Result<(), Exceeded> {
         for triangle in &triangles.triangles {
-            let [a, b, c] = triangle.vertices;
+            let ([a, b, c], [to_a, to_b, to_c]) = (triangle.vertices(), triangle.lengths);
             let [at_a, at_b, at_c] =
                 [self.vertices[a as usize], self.vertices[b as usize], self.vertices[c as usize]];
-            let [to_a, to_b, to_c] = triangle.sq_lengths();
-            let (to_a, to_b, to_c) = (SLACK * to_a, SLACK * to_b, SLACK * to_c);
-            let (ab, bc, ca) = (at_b - at_a, at_c - at_b, at_a - at_c);
-            if (bc * bc > to_a) | (ca * ca > to_b) | (ab * ab > to_c) {
-                for (side, [p, q]) in [(0, [b, c]), (1, [c, a]), (2, [a, b])] {
-                    self.relax(p, q, triangle.length(side));
-                    self.relax(q, p, triangle.length(side));
+            let (ab, bc, ca) = ((at_b - at_a).abs(), (at_c - at_b).abs(), (at_a - at_c).abs());
+            if (bc > SLACK * to_a) | (ca > SLACK * to_b) | (ab > SLACK * to_c) {
+                for (length, [p, q]) in [(to_a, [b, c]), (to_b, [c, a]), (to_c, [a, b])] {
+                    self.relax(p, q, length);
+                    self.relax(q, p, length);
                 }
             }
         }
@@ -467,7 +465,8 @@ fn improves(distance: f64, known: f64) -> bool {
 /// The point in the plane of a triangle at the given distances from its corners; none if no point is, up to a slack.
 fn located(triangle: &MarchTriangle, distances: [f64; 3], slack: f64) -> Option<PlanePoint> {
     let [start, end, apex] = triangle.corners();
-    let at = plane::beyond([start, end], [triangle.base, distances[0], distances[1]], plane::GateSide::Ahead);
+    let at =
+        plane::beyond([start, end], [triangle.base(), distances[0], distances[1]], plane::GateSide::Ahead);
     let error = plane::distance(at, apex) - distances[2];
     (error.abs() <= slack).then_some(at)
 }

@@ -79,7 +79,7 @@ impl PlanarFront {
     #[inline]
     fn update(&mut self, triangles: &Triangles, corner: u32, distance: f64) {
         let (triangle, slot) = (triangles.at(corner / 3), corner as usize % 3);
-        let ends = around(slot).map(|end| (triangle.vertices[end], end));
+        let ends = around(slot).map(|end| (triangle.vertex(end), end));
         let [next, prev] = ends.map(|(vertex, _)| self.distance(vertex));
         let [(near, near_slot), (far, far_slot)] = if next < prev { ends } else { [ends[1], ends[0]] };
         if !self.is_finalized(near) {

@@ -16,62 +16,66 @@ use crate::plane::{self, PlanePoint};
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
 pub(super) struct MarchTriangle {
-    /// The length of the side between corners 0 and 1.
-    pub(super) base: f64,
+    pub(super) lengths: [f64; 3],
     /// Corner 2.
     pub(super) apex: PlanePoint,
     /// For each side, the next of the corners opposite to it in the triangles that share it; the same corner again if
     /// no other triangle does.
     pub(super) across: [u32; 3],
-    pub(super) vertices: [u32; 3],
-    flags: u32,
+    /// The vertices with their flags.
+    vertices: [u32; 3],
 }
 
-impl MarchTriangle {
-    /// The flag of the first corner: shortest paths may bend there.
-    const BENDS: u32 = 1;
-    /// More than two triangles share a side.
-    const IS_IRREGULAR: u32 = 1 << 3;
+/// The flag of a vertex where shortest paths may bend.
+const BENDS: u32 = 1 << 31;
+/// The flag of the first vertex of a triangle a side of which is shared by more than two.
+const IS_IRREGULAR: u32 = 1 << 30;
 
-    /// Whether shortest paths may bend at a corner: 1 or 0.
+impl MarchTriangle {
+    /// The vertex at a corner.
     #[inline(always)]
-    pub(super) fn bends_at(&self, corner: usize) -> u64 {
-        u64::from(self.flags >> corner & 1)
+    pub(super) fn vertex(&self, corner: usize) -> u32 {
+        self.vertices[corner] & !(BENDS | IS_IRREGULAR)
+    }
+
+    #[inline(always)]
+    pub(super) fn vertices(&self) -> [u32; 3] {
+        [self.vertex(0), self.vertex(1), self.vertex(2)]
+    }
+
+    /// Whether shortest paths may bend at a corner.
+    #[inline(always)]
+    pub(super) fn bends_at(&self, corner: usize) -> bool {
+        self.vertices[corner] & BENDS != 0
     }
 
     /// Whether more than two triangles share a side.
     #[inline(always)]
     pub(super) fn is_irregular(&self) -> bool {
-        self.flags & Self::IS_IRREGULAR != 0
+        self.vertices[0] & IS_IRREGULAR != 0
+    }
+
+    /// The length of the side between corners 0 and 1.
+    #[inline(always)]
+    pub(super) fn base(&self) -> f64 {
+        self.lengths[2]
     }
 
     /// Where the corners are.
     #[inline(always)]
     pub(super) fn corners(&self) -> [PlanePoint; 3] {
-        [[0.0; 2], [self.base, 0.0], self.apex]
+        [[0.0; 2], [self.base(), 0.0], self.apex]
     }
 
     pub(super) fn centroid(&self) -> PlanePoint {
-        [(self.base + self.apex[0]) / 3.0, self.apex[1] / 3.0]
-    }
-
-    /// The squared lengths of the sides.
-    #[inline(always)]
-    pub(super) fn sq_lengths(&self) -> [f64; 3] {
-        let [x, y] = self.apex;
-        let (rest, sq_height) = (self.base - x, y * y);
-        [rest * rest + sq_height, x * x + sq_height, self.base * self.base]
-    }
-
-    pub(super) fn length(&self, side: usize) -> f64 {
-        self.sq_lengths()[side].sqrt()
+        [(self.base() + self.apex[0]) / 3.0, self.apex[1] / 3.0]
     }
 
     /// The same triangle the other way round: corners 0 and 1 change places.
     #[inline]
     pub(super) fn mirrored(&self) -> Self {
         let [x, y] = self.apex;
-        Self { apex: [self.base - x, y], ..*self }
+        Self { apex: [self.base() - x, y], ..*self }
     }
 }
 
@@ -120,6 +124,7 @@ impl Triangles {
         mean_edge_length: f64,
     ) -> Self {
         let n = order.len();
+        assert!(n < IS_IRREGULAR as usize, "more vertices than fit into 30 bits");
         let rank = ranks(&order);
         let glued = triangulation.triangles();
         // Triangles follow their first vertices.
@@ -150,24 +155,26 @@ impl Triangles {
                 let corner = |slot: usize| face.corners()[(slot + first) % 3];
                 let lengths = [0, 1, 2].map(|slot| glued[*t as usize].lengths[corner(slot).slot()]);
                 let is_irregular = face.corners().into_iter().any(|corner| across(across(corner)) != corner);
+                let mut vertices =
+                    [0, 1, 2].map(|slot| rank[triangulation.corner_vertex(corner(slot)).index()]);
+                vertices[0] |= if is_irregular { IS_IRREGULAR } else { 0 };
+                let apex = plane::apex([lengths[2], lengths[1], lengths[0]]);
                 MarchTriangle {
-                    base: lengths[2],
-                    apex: if lengths[2] > 0.0 {
-                        plane::apex([lengths[2], lengths[1], lengths[0]])
-                    } else {
-                        [0.0; 2]
-                    },
+                    lengths,
+                    apex: if lengths[2] > 0.0 { apex } else { [0.0; 2] },
                     across: [0, 1, 2].map(|slot| renamed(across(corner(slot)))),
-                    vertices: [0, 1, 2].map(|slot| rank[triangulation.corner_vertex(corner(slot)).index()]),
-                    flags: if is_irregular { MarchTriangle::IS_IRREGULAR } else { 0 },
+                    vertices,
                 }
             })
             .collect();
         let hubs =
             (0..).zip(&many).flat_map(|(hub, edge)| edge.iter().map(move |corner| (renamed(*corner), hub)));
         let hubs = hubs.collect();
-        let corners =
-            triangles.iter().flat_map(|t| t.vertices).zip(0..).map(|(v, corner)| (v as usize, corner));
+        let corners = triangles
+            .iter()
+            .flat_map(MarchTriangle::vertices)
+            .zip(0..)
+            .map(|(v, corner)| (v as usize, corner));
         let corners = Rows::collect(n, corners);
         let renumbered = |link: &Link| Link { ends: link.ends.map(|v| VertexId(rank[v.index()])), ..*link };
         let all_links = links.iter().chain(removed).map(renumbered);
@@ -179,8 +186,8 @@ impl Triangles {
         let kinds = kinds(triangulation, lengths_at, &corners, &order);
         triangles.par_iter_mut().for_each(|triangle| {
             for slot in 0..3 {
-                if kinds[triangle.vertices[slot] as usize].may_bend {
-                    triangle.flags |= MarchTriangle::BENDS << slot;
+                if kinds[triangle.vertex(slot) as usize].may_bend {
+                    triangle.vertices[slot] |= BENDS;
                 }
             }
         });
@@ -206,7 +213,7 @@ impl Triangles {
 
     /// The length of the longest side of a triangle.
     pub(crate) fn longest_of(&self, triangle: u32) -> f64 {
-        (0..3).map(|side| self.at(triangle).length(side)).fold(0.0, f64::max)
+        self.at(triangle).base()
     }
 
     /// The length of the longest edge or link at a vertex.
@@ -216,7 +223,7 @@ impl Triangles {
 
     /// The mesh vertices of a triangle.
     pub(crate) fn mesh_vertices(&self, triangle: u32) -> [u32; 3] {
-        self.at(triangle).vertices.map(|v| self.order[v as usize])
+        self.at(triangle).vertices().map(|v| self.order[v as usize])
     }
 
     #[inline]
@@ -229,10 +236,7 @@ impl Triangles {
         let edges = self.corners.row(vertex as usize).iter().flat_map(|corner| {
             let (triangle, slot) = (self.at(corner / 3), *corner as usize % 3);
             let [next, prev] = around(slot);
-            [
-                (triangle.vertices[next], triangle.length(prev)),
-                (triangle.vertices[prev], triangle.length(next)),
-            ]
+            [(triangle.vertex(next), triangle.lengths[prev]), (triangle.vertex(prev), triangle.lengths[next])]
         });
         edges.chain(self.links.row(vertex as usize).iter().copied())
     }
