@@ -1,6 +1,6 @@
 //! Figure 3: canonical forms of two shapes by several methods, and their stress.
 //!
-//! Measures, for `DISTANCES` in `default`, `planar`, `point-source` (the last two ignore obtuse triangles), a class
+//! Measures, for `DISTANCES` in `default`, `planar` (which ignores obtuse triangles), a class
 //! `SHAPE` and `METHOD` in `MDS`, `NMDS`, `SMDS`, `Min-Var`, `BFS`:
 //! * `DISTANCES SHAPE METHOD`: the ratio of the median stress to that of MDS with the same distances (1 for MDS);
 //! * `DISTANCES SHAPE METHOD stress|low|high`: the median, the least and the greatest stress;
@@ -34,13 +34,10 @@ const METHODS: [&str; 5] = ["MDS", "NMDS", "SMDS", "Min-Var", "BFS"];
 /// The embedding and the stress of every run of one method on one shape.
 type Runs = Vec<(Embedding, f64)>;
 
-/// Our default, and two variants of fast marching that leave obtuse triangles as they are.
-fn settings() -> [Distances; 3] {
-    let plain = |name, update| {
-        let options = FastMarchingOptions { update, obtuse: ObtuseTreatment::Ignore };
-        Distances { name, method: Method::FastMarching(options) }
-    };
-    [Distances::default(), plain("planar", Update::Planar), plain("point-source", Update::PointSource)]
+/// Our default, and the planar update, which leaves obtuse triangles as they are.
+fn settings() -> [Distances; 2] {
+    let options = FastMarchingOptions { update: Update::Planar, obtuse: ObtuseTreatment::Ignore };
+    [Distances::default(), Distances { name: "planar", method: Method::FastMarching(options) }]
 }
 
 #[derive(Debug, Deserialize)]

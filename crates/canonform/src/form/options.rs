@@ -16,7 +16,7 @@ use crate::error::Error;
 pub struct FormOptions {
     /// How the mesh is repaired. Default: keep the largest component, close cracks.
     pub repair: RepairOptions,
-    /// How distances are measured. Default: fast marching with the point-source update.
+    /// How distances are measured. Default: fast marching with virtual sources.
     #[serde(skip_serializing_if = "is_default")]
     pub geodesic: Method,
     /// Number of samples. Default: 100, as in the paper's Figure 4.

@@ -85,7 +85,7 @@ pub static SCHEMA: [OptionSpec; 24] = [
     .of(|m| m.is_sampled() && m.has_unit() && !matches!(m, EmbedMethod::Smacof { .. })),
     parsed::<usize>(OptionGroup::Form, "dim", "K", "3", "Dimensions of the embedding").called("n_components"),
     named::<Method>(OptionGroup::Form, "geodesic", "fast-marching", "How to measure distances"),
-    named::<Update>(OptionGroup::Marching, "update", "point-source", "Local solver").seldom(),
+    named::<Update>(OptionGroup::Marching, "update", "virtual-source", "Local solver").seldom(),
     named::<ObtuseTreatment>(
         OptionGroup::Marching,
         "obtuse",
@@ -368,12 +368,7 @@ impl Named for Regularization {
 impl Named for Update {
     fn table() -> Vec<(&'static str, &'static str, Self)> {
         vec![
-            ("point-source", "The front in a triangle comes from one point (fastest)", Self::PointSource),
-            (
-                "virtual-source",
-                "Triangles hand on where the source lies in their plane (most accurate)",
-                Self::VirtualSource,
-            ),
+            ("virtual-source", "Triangles hand on where the source lies in their plane", Self::VirtualSource),
             ("planar", "The front in a triangle is a straight line (Kimmel and Sethian)", Self::Planar),
         ]
     }

@@ -1,7 +1,7 @@
 //! Vertices in buckets, by tentative distance.
 
 /// A vertex in no bucket.
-const NOWHERE: u32 = u32::MAX;
+pub(super) const NOWHERE: u32 = u32::MAX;
 /// A vertex beyond all buckets of the ring.
 const BEYOND: u32 = u32::MAX - 1;
 /// The last number that a bucket can have.
@@ -22,6 +22,12 @@ const PERIOD: usize = 256;
 const SHARE: usize = 8;
 /// Buckets with less than one vertex in this many should be wider.
 const SPARSE: usize = 8;
+
+/// What a queue knows of its vertices: their tentative distances and their buckets.
+pub(super) trait Queued {
+    fn distance(&self, vertex: u32) -> f64;
+    fn bucket(&mut self, vertex: u32) -> &mut u32;
+}
 
 /// A bucket queue (Dial 1969, `dial1969`) for distances that are not integers: a bucket may have to be emptied
 /// several times (delta-stepping; Meyer and Sanders 2003, `meyer2003`).
@@ -53,8 +59,6 @@ pub(super) struct Buckets {
     beyond_from: u32,
     /// Vertices while they are sorted into buckets again.
     moving: Vec<u32>,
-    /// The bucket of every vertex.
-    buckets: Vec<u32>,
     /// Vertices that came into the current bucket after it was emptied.
     n_late: usize,
     /// Buckets, and vertices taken from them, since the width was last reconsidered.
@@ -63,13 +67,11 @@ pub(super) struct Buckets {
 }
 
 impl Buckets {
-    /// Empties the queue: `n` vertices in no bucket. Buckets are `width` wide at first, and vertices seldom more than
+    /// Empties the queue. Buckets are `width` wide at first, and vertices seldom more than
     /// `reach` ahead of the front. Allocates only to grow.
-    pub(super) fn reset(&mut self, n: usize, width: f64, reach: f64) {
+    pub(super) fn reset(&mut self, width: f64, reach: f64) {
         self.ring.iter_mut().for_each(Vec::clear);
         self.beyond.clear();
-        self.buckets.clear();
-        self.buckets.resize(n, NOWHERE);
         (self.n_entries, self.beyond_from) = (0, NOWHERE);
         (self.n_late, self.n_buckets, self.n_taken) = (0, 0, 0);
         (self.current, self.is_fresh, self.finalized) = (0, true, 0.0);
@@ -104,26 +106,26 @@ impl Buckets {
         ((distance * self.per_length) as u32).min(LAST)
     }
 
-    /// Puts a vertex into the bucket of this distance, or into the current one if that is later.
+    /// Puts a vertex, which is `at` a bucket, into the bucket of this distance, or into the current one if that is later.
     #[inline]
-    pub(super) fn put(&mut self, vertex: u32, distance: f64) {
+    pub(super) fn put(&mut self, vertex: u32, at: &mut u32, distance: f64) {
         let bucket = self.bucket(distance).max(self.current);
-        if self.buckets[vertex as usize] == bucket {
+        if *at == bucket {
             return;
         }
         if (bucket - self.current) as usize >= self.ring.len() {
-            self.put_beyond(vertex, bucket);
+            self.put_beyond(vertex, at, bucket);
             return;
         }
         let place = self.place(bucket);
-        self.buckets[vertex as usize] = bucket;
+        *at = bucket;
         self.ring[place].push(vertex);
         self.n_entries += 1;
     }
 
     #[cold]
-    fn put_beyond(&mut self, vertex: u32, bucket: u32) {
-        if std::mem::replace(&mut self.buckets[vertex as usize], BEYOND) != BEYOND {
+    fn put_beyond(&mut self, vertex: u32, at: &mut u32, bucket: u32) {
+        if std::mem::replace(at, BEYOND) != BEYOND {
             self.beyond.push(vertex);
         }
         self.beyond_from = self.beyond_from.min(bucket);
@@ -135,10 +137,10 @@ impl Buckets {
     /// A vertex that comes into the current bucket after it was emptied is taken in another round. What lies before
     /// the bucket is finalized in its first round, the whole bucket in the others.
     #[inline(never)]
-    pub(super) fn next_round(&mut self, round: &mut Vec<u32>, distance: impl Fn(u32) -> f64) -> Option<f64> {
+    pub(super) fn next_round(&mut self, round: &mut Vec<u32>, vertices: &mut impl Queued) -> Option<f64> {
         round.clear();
         while round.is_empty() {
-            self.fit_width(&distance);
+            self.fit_width(vertices);
             if self.n_entries == 0 {
                 if self.beyond.is_empty() {
                     return None;
@@ -146,7 +148,7 @@ impl Buckets {
                 self.go_to(self.beyond_from);
             }
             if self.beyond_from <= self.current {
-                self.bring_near(&distance);
+                self.bring_near(vertices);
             }
             let place = self.place(self.current);
             if self.ring[place].is_empty() {
@@ -155,7 +157,7 @@ impl Buckets {
             }
             self.n_entries -= self.ring[place].len();
             for vertex in self.ring[place].drain(..) {
-                let bucket = &mut self.buckets[vertex as usize];
+                let bucket = vertices.bucket(vertex);
                 if *bucket == self.current {
                     *bucket = NOWHERE;
                     round.push(vertex);
@@ -176,34 +178,35 @@ impl Buckets {
 
     /// Sorts the vertices beyond the ring again.
     #[cold]
-    fn bring_near(&mut self, distance: &impl Fn(u32) -> f64) {
+    fn bring_near(&mut self, vertices: &mut impl Queued) {
         std::mem::swap(&mut self.beyond, &mut self.moving);
         self.beyond_from = NOWHERE;
-        let buckets = &self.buckets;
-        self.moving.retain(|vertex| buckets[*vertex as usize] == BEYOND);
-        self.put_moving(distance);
+        self.moving.retain(|vertex| *vertices.bucket(*vertex) == BEYOND);
+        self.put_moving(vertices);
     }
 
     /// Puts all vertices that are being moved into their buckets.
-    fn put_moving(&mut self, distance: &impl Fn(u32) -> f64) {
+    fn put_moving(&mut self, vertices: &mut impl Queued) {
         for i in 0..self.moving.len() {
             let vertex = self.moving[i];
-            self.buckets[vertex as usize] = NOWHERE;
-            self.put(vertex, distance(vertex));
+            let distance = vertices.distance(vertex);
+            let bucket = vertices.bucket(vertex);
+            *bucket = NOWHERE;
+            self.put(vertex, bucket, distance);
         }
         self.moving.clear();
     }
 
     /// Makes buckets narrower or wider if that is due.
     #[inline]
-    fn fit_width(&mut self, distance: &impl Fn(u32) -> f64) {
+    fn fit_width(&mut self, vertices: &mut impl Queued) {
         let share = (self.n_entries + self.beyond.len()) / SHARE;
         let is_too_high = self.current > TOO_HIGH;
         if self.n_late > LATE + share && self.current < TOO_HIGH / FACTOR as u32 {
-            self.sort_again(self.width / FACTOR, distance);
+            self.sort_again(self.width / FACTOR, vertices);
         } else if self.n_buckets > PERIOD + share || is_too_high {
             if self.n_taken < self.n_buckets / SPARSE || is_too_high {
-                self.sort_again(self.width * FACTOR, distance);
+                self.sort_again(self.width * FACTOR, vertices);
             }
             (self.n_buckets, self.n_taken) = (0, 0);
         }
@@ -211,19 +214,19 @@ impl Buckets {
 
     /// Sorts all vertices into buckets of another width.
     #[cold]
-    fn sort_again(&mut self, width: f64, distance: &impl Fn(u32) -> f64) {
+    fn sort_again(&mut self, width: f64, vertices: &mut impl Queued) {
         self.moving.append(&mut self.beyond);
         self.ring.iter_mut().for_each(|bucket| self.moving.append(bucket));
-        let buckets = &mut self.buckets;
-        self.moving.retain(|vertex| std::mem::replace(&mut buckets[*vertex as usize], NOWHERE) != NOWHERE);
+        self.moving.retain(|vertex| std::mem::replace(vertices.bucket(*vertex), NOWHERE) != NOWHERE);
         (self.n_entries, self.beyond_from, self.n_late) = (0, NOWHERE, 0);
         if !self.is_fresh {
             self.finalized = self.finalized.max(self.end());
         }
         self.set_width(width);
-        let nearest = self.moving.iter().map(|vertex| distance(*vertex)).fold(f64::INFINITY, f64::min);
+        let nearest =
+            self.moving.iter().map(|vertex| vertices.distance(*vertex)).fold(f64::INFINITY, f64::min);
         (self.current, self.is_fresh) = (self.bucket(nearest), true);
-        self.put_moving(distance);
+        self.put_moving(vertices);
     }
 }
 
@@ -231,11 +234,37 @@ impl Buckets {
 mod tests {
     use super::*;
 
+    /// Vertices at given distances.
+    struct Vertices {
+        distances: Vec<f64>,
+        buckets: Vec<u32>,
+    }
+
+    impl Vertices {
+        fn at(distances: Vec<f64>) -> Self {
+            Self { buckets: vec![NOWHERE; distances.len()], distances }
+        }
+
+        fn put(&mut self, vertex: u32, distance: f64, queue: &mut Buckets) {
+            queue.put(vertex, &mut self.buckets[vertex as usize], distance);
+        }
+    }
+
+    impl Queued for Vertices {
+        fn distance(&self, vertex: u32) -> f64 {
+            self.distances[vertex as usize]
+        }
+
+        fn bucket(&mut self, vertex: u32) -> &mut u32 {
+            &mut self.buckets[vertex as usize]
+        }
+    }
+
     /// Takes all vertices out, round by round, with the distance below which all are finalized.
-    fn rounds(buckets: &mut Buckets, distances: &[f64]) -> Vec<(f64, Vec<u32>)> {
+    fn rounds(buckets: &mut Buckets, vertices: &mut Vertices) -> Vec<(f64, Vec<u32>)> {
         let mut round = Vec::new();
         std::iter::from_fn(|| {
-            let finalized = buckets.next_round(&mut round, |v| distances[v as usize])?;
+            let finalized = buckets.next_round(&mut round, vertices)?;
             Some((finalized, round.clone()))
         })
         .collect()
@@ -245,13 +274,13 @@ mod tests {
     fn vertices_come_once_each_bucket_by_bucket() {
         // Far more buckets than the ring has, with long gaps.
         let distances: Vec<f64> = (0..500u32).map(|v| f64::from(v * 7919 % 1013).powi(3) * 0.01).collect();
-        let mut buckets = Buckets::default();
-        buckets.reset(distances.len(), 0.5, 20.0);
-        for (v, distance) in distances.iter().enumerate() {
-            buckets.put(v as u32, distance + 40.0);
-            buckets.put(v as u32, *distance);
+        let (mut buckets, mut vertices) = (Buckets::default(), Vertices::at(distances.clone()));
+        buckets.reset(0.5, 20.0);
+        for (v, distance) in (0..).zip(&distances) {
+            vertices.put(v, distance + 40.0, &mut buckets);
+            vertices.put(v, *distance, &mut buckets);
         }
-        let rounds = rounds(&mut buckets, &distances);
+        let rounds = rounds(&mut buckets, &mut vertices);
         let mut nearest = 0.0;
         for (finalized, round) in &rounds {
             let at = round.iter().map(|v| distances[*v as usize]);
@@ -266,37 +295,37 @@ mod tests {
 
     #[test]
     fn late_vertices_come_in_another_round_of_the_same_bucket() {
-        let mut distances = [0.0, 2.25, 2.75, 9.0];
-        let mut buckets = Buckets::default();
-        buckets.reset(4, 1.0, 100.0);
+        let (mut buckets, mut vertices) = (Buckets::default(), Vertices::at(vec![0.0, 2.25, 2.75, 9.0]));
+        buckets.reset(1.0, 100.0);
         for v in [0, 1, 3] {
-            buckets.put(v, distances[v as usize]);
+            vertices.put(v, vertices.distance(v), &mut buckets);
         }
         let mut round = Vec::new();
-        assert_eq!(buckets.next_round(&mut round, |_| 0.0), Some(0.0));
-        assert_eq!(buckets.next_round(&mut round, |_| 0.0), Some(2.0));
+        assert_eq!(buckets.next_round(&mut round, &mut vertices), Some(0.0));
+        assert_eq!(buckets.next_round(&mut round, &mut vertices), Some(2.0));
         assert_eq!(round, [1]);
-        buckets.put(2, 2.75);
-        distances[0] = -1.0;
-        buckets.put(0, distances[0]);
-        assert_eq!(rounds(&mut buckets, &distances), [(3.0, vec![2, 0]), (9.0, vec![3])]);
+        vertices.put(2, 2.75, &mut buckets);
+        vertices.distances[0] = -1.0;
+        vertices.put(0, -1.0, &mut buckets);
+        assert_eq!(rounds(&mut buckets, &mut vertices), [(3.0, vec![2, 0]), (9.0, vec![3])]);
     }
 
     #[test]
     fn a_bucket_that_keeps_filling_becomes_narrower() {
-        let (n, step) = (3000u32, 1e-3);
-        let mut buckets = Buckets::default();
-        buckets.reset(n as usize, 1.0, 1.0);
-        buckets.put(0, 0.0);
+        let n = 3000u32;
+        let (mut buckets, mut vertices) =
+            (Buckets::default(), Vertices::at((0..n).map(|v| f64::from(v) * 1e-3).collect()));
+        buckets.reset(1.0, 1.0);
+        vertices.put(0, 0.0, &mut buckets);
         let (mut round, mut next, mut before) = (Vec::new(), 0, 0.0);
-        while let Some(finalized) = buckets.next_round(&mut round, |v| f64::from(v) * step) {
+        while let Some(finalized) = buckets.next_round(&mut round, &mut vertices) {
             assert!(finalized >= before);
             before = finalized;
             for v in &round {
                 assert_eq!(*v, next);
                 next += 1;
                 if next < n {
-                    buckets.put(next, f64::from(next) * step);
+                    vertices.put(next, vertices.distance(next), &mut buckets);
                 }
             }
         }
@@ -308,9 +337,10 @@ mod tests {
     fn a_width_of_zero_gives_a_single_bucket() {
         let mut buckets = Buckets::default();
         for width in [0.0, f64::NAN, 1e-310] {
-            buckets.reset(3, width, 1.0);
-            (0..3).for_each(|v| buckets.put(v, f64::from(v)));
-            let n: usize = rounds(&mut buckets, &[0.0, 1.0, 2.0]).iter().map(|(_, round)| round.len()).sum();
+            let mut vertices = Vertices::at(vec![0.0, 1.0, 2.0]);
+            buckets.reset(width, 1.0);
+            (0..3).for_each(|v| vertices.put(v, f64::from(v), &mut buckets));
+            let n: usize = rounds(&mut buckets, &mut vertices).iter().map(|(_, round)| round.len()).sum();
             assert_eq!(n, 3);
         }
     }

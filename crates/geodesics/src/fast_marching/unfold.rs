@@ -6,11 +6,22 @@
 
 use surface::{CornerId, FaceId, IntrinsicMesh, Link, VertexId};
 
-use super::one_ring::HalfCorner;
 use crate::plane::{GateSide, apex, beyond, dot, norm, sub};
 
 /// Limit of the triangles in a strip; strips of slivers may have no end.
 const MAX_STEPS: usize = 12;
+
+/// Half of an obtuse corner that unfolding has split, at one end of its base: a triangle that is used in one
+/// direction only, from the base to the apex.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct HalfCorner {
+    /// The other end of the base, and its distance.
+    pub(super) base: (u32, f64),
+    /// The vertex in the obtuse corner, and its distance.
+    pub(super) apex: (u32, f64),
+    /// The length of the third side.
+    pub(super) third: f64,
+}
 
 /// Splits all obtuse corners of a mesh where unfolding finds a vertex. Returns the segments that split them, and
 /// their halves with the vertices at both ends of each base.

@@ -2,6 +2,8 @@
 //!
 //! They have no branches, so that the same instructions solve several triangles. Comparisons with NaN fail.
 
+use surface::{double_area, scalar_product};
+
 /// A triangle `ABC` over which the distance at `C` is updated from those at `A` and `B`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stencil {
@@ -20,26 +22,10 @@ pub(crate) struct Stencil {
 /// the two.
 const COLLINEAR: f64 = 1e-12;
 
-/// See [`Stencil::may_complete_late_from_afar`]: a distant front is late only in corners wider than 86 degrees. A proven
-/// bound for any value; it affects time only, which `make bench` measures.
-pub(super) const FAR: f64 = 8.0;
-
 impl Stencil {
-    /// Whether a front that enters through the base can reach `C` before `A`.
-    ///
-    /// If it does, the angle at `C` exceeds the angle at `A`, so the base is longer than `BC`.
-    pub(super) fn may_complete_late(self) -> bool {
-        2.0 * self.dot > self.side * self.side
-    }
-
-    /// The same for a front whose source is farther away than [`FAR`] times the side `|AC|`.
-    ///
-    /// In the triangle of the source, `C` and `A`, the angle at `C` is no wider than that of the stencil, and the
-    /// source is farther from `A` than from `C`: `|AC| > 2 T cos C`, where `T` is the distance at `C`.
-    pub(super) fn may_complete_late_from_afar(self) -> bool {
-        let Self { base, side, dot, .. } = self;
-        let third = (base * base + side * side - 2.0 * dot).max(0.0).sqrt();
-        self.may_complete_late() & (2.0 * FAR * (side * side - dot) <= side * third)
+    /// The triangle with the lengths `|AB|`, `|AC|` and `|BC|`.
+    pub(super) fn of_sides([base, side, third]: [f64; 3]) -> Self {
+        Self { base, side, dot: scalar_product(third, base, side), cross: double_area([base, side, third]) }
     }
 
     /// Distance at `C` of a front that comes from a single point beyond the base, from the distances at `A` and `B`;

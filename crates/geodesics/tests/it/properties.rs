@@ -3,7 +3,6 @@
 
 use canonform_geodesics::{
     Dijkstra, DistanceSolver, Exact, FastMarching, FastMarchingOptions, PathTracer, Source, SurfacePoint,
-    Update,
 };
 use mesh::{TriMesh, shapes};
 use nalgebra::Point3;
@@ -94,13 +93,10 @@ fn euclid(mesh: &TriMesh, a: VertexId, b: usize) -> f64 {
     (mesh.positions[a.index()] - mesh.positions[b]).norm()
 }
 
-/// Fast marching with a local solver.
-fn marching(surface: &IntrinsicMesh, update: Update) -> FastMarching {
-    FastMarching::new(surface, FastMarchingOptions { update, ..Default::default() }, &())
+/// Fast marching with its default options.
+fn marching(surface: &IntrinsicMesh) -> FastMarching {
+    FastMarching::new(surface, FastMarchingOptions::default(), &())
 }
-
-/// The local solvers that are compared with exact distances.
-const ACCURATE: [Update; 2] = [Update::PointSource, Update::VirtualSource];
 
 /// Three solvers prepared for one surface.
 struct Solvers {
@@ -117,9 +113,12 @@ struct Found {
 }
 
 impl Solvers {
-    fn new(surface: &IntrinsicMesh, update: Update) -> Self {
-        let marching = marching(surface, update);
-        Self { exact: Exact::new(surface, &()), marching, along_edges: Dijkstra::new(surface, &()) }
+    fn new(surface: &IntrinsicMesh) -> Self {
+        Self {
+            exact: Exact::new(surface, &()),
+            marching: marching(surface),
+            along_edges: Dijkstra::new(surface, &()),
+        }
     }
 
     fn from(&self, source: VertexId) -> Found {
@@ -142,13 +141,9 @@ fn assert_lipschitz(surface: &IntrinsicMesh, distances: &[f64], name: &str) {
 
 /// Asserts what holds for any triangles.
 fn assert_laws(mesh: &TriMesh) {
-    ACCURATE.into_iter().for_each(|update| assert_laws_of(mesh, update));
-}
-
-fn assert_laws_of(mesh: &TriMesh, update: Update) {
     let surface = mesh.intrinsic();
     let (longest, open) = (longest_edge(&surface), left_open(&surface));
-    let solvers = Solvers::new(&surface, update);
+    let solvers = Solvers::new(&surface);
     for source in sources(mesh) {
         let Found { exact, marched, along_edges } = solvers.from(source);
         assert_lipschitz(&surface, &exact, "exact");
@@ -215,16 +210,14 @@ proptest! {
         let surface = mesh.intrinsic();
         let exact = Exact::new(&surface, &());
         let longest = longest_edge(&surface);
-        for update in ACCURATE {
-            let all = from_everywhere(&marching(&surface, update));
-            for source in sources(&mesh) {
-                let exact = exact.distances(source).unwrap();
-                for (v, e) in exact.iter().enumerate().filter(|(_, e)| e.is_finite()) {
-                    let [there, back] = [all[source.index()][v], all[v][source.index()]];
-                    prop_assert!((there - back).abs() <= longest, "{update:?}: {there} {back} {longest}");
-                    prop_assert!((there - e).abs() <= longest, "{update:?}: {there} {e} {longest}");
-                    prop_assert!(there >= euclid(&mesh, source, v) - longest, "{update:?}");
-                }
+        let all = from_everywhere(&marching(&surface));
+        for source in sources(&mesh) {
+            let exact = exact.distances(source).unwrap();
+            for (v, e) in exact.iter().enumerate().filter(|(_, e)| e.is_finite()) {
+                let [there, back] = [all[source.index()][v], all[v][source.index()]];
+                prop_assert!((there - back).abs() <= longest, "{there} {back} {longest}");
+                prop_assert!((there - e).abs() <= longest, "{there} {e} {longest}");
+                prop_assert!(there >= euclid(&mesh, source, v) - longest);
             }
         }
     }
@@ -234,7 +227,7 @@ proptest! {
         let surface = mesh.intrinsic();
         // Exact distances may miss paths through faces with a side of length zero, which repair drops.
         prop_assume!(surface.edge_lengths().iter().all(|length| *length > 0.0));
-        let (open, solvers) = (left_open(&surface), Solvers::new(&surface, Update::VirtualSource));
+        let (open, solvers) = (left_open(&surface), Solvers::new(&surface));
         for source in sources(&mesh) {
             let Found { exact, marched, along_edges } = solvers.from(source);
             let sources = [Source::vertex(source)];

@@ -3,11 +3,11 @@
 use canonform_geodesics::{FastMarchingOptions, Method, Update};
 use surface::{IntrinsicMesh, Topology, VertexId};
 
-/// Every method with its default options, and fast marching with virtual sources.
+/// Every method with its default options, and fast marching with the planar update.
 pub(crate) fn methods() -> Vec<(&'static str, Method)> {
-    let carried = FastMarchingOptions { update: Update::VirtualSource, ..Default::default() };
+    let planar = FastMarchingOptions { update: Update::Planar, ..Default::default() };
     let named = Method::all().map(|method| (method.name(), method));
-    named.into_iter().chain([("virtual sources", Method::FastMarching(carried))]).collect()
+    named.into_iter().chain([("planar", Method::FastMarching(planar))]).collect()
 }
 
 /// A surface of faces between points in space.

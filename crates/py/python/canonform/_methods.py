@@ -35,7 +35,7 @@ class FastMarching(Options):
     Attributes
     ----------
     update
-        The local solver: "point-source" (fastest), "virtual-source" (most accurate) or "planar".
+        The local solver: "virtual-source" or "planar".
     obtuse
         What happens to angles wider than 90 degrees: "flip", "unfold" or "ignore".
 
@@ -43,7 +43,7 @@ class FastMarching(Options):
     --------
     >>> import canonform
     >>> cat = canonform.datasets.generate("cat", poses=1, n_vertices=1000)[0].surface()
-    >>> distances = cat.distances(0, geodesic=canonform.FastMarching(update="virtual-source"))
+    >>> distances = cat.distances(0, geodesic=canonform.FastMarching(obtuse="ignore"))
     >>> bool(abs(distances - cat.distances(0, geodesic="exact")).max() < 0.02 * distances.max())
     True
     """
@@ -51,7 +51,7 @@ class FastMarching(Options):
     _of = "geodesic"
     _name = "fast-marching"
 
-    update: Update = "point-source"
+    update: Update = "virtual-source"
     obtuse: Obtuse = "flip"
 
 

@@ -8,89 +8,74 @@ use surface::{
     scalar_product,
 };
 
-use super::super::one_ring::EXCESS;
-use super::crossing::Sides;
-use super::window::Entered;
 use crate::graph::ranks;
+use crate::plane::{self, PlanePoint};
 
-/// A triangle: one cache line. Corners are numbered 0, 1 and 2, sides by the corner opposite.
+/// A triangle, laid out in the plane anticlockwise: one cache line. Corners are numbered 0, 1 and 2, sides by the corner
+/// opposite. Corner 0 is at the origin, and a longest side runs from there along the x-axis to corner 1.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
 pub(super) struct MarchTriangle {
     pub(super) lengths: [f64; 3],
-    double_area: f64,
+    /// Corner 2.
+    pub(super) apex: PlanePoint,
     /// For each side, the next of the corners opposite to it in the triangles that share it; the same corner again if
     /// no other triangle does.
     pub(super) across: [u32; 3],
-    pub(super) vertices: [u32; 3],
-    flags: u32,
+    /// The vertices with their flags.
+    vertices: [u32; 3],
 }
 
-/// A corner and the side opposite, through which the triangle is entered.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct EntrySide(u32);
-
-impl EntrySide {
-    /// Whether the next corner is the right end of the side, not the left one.
-    const MIRRORED: u32 = 1 << 31;
-
-    pub(super) fn new(corner: u32, is_mirrored: bool) -> Self {
-        Self(corner | if is_mirrored { Self::MIRRORED } else { 0 })
-    }
-
-    pub(super) fn number(self) -> u32 {
-        self.0
-    }
-
-    pub(super) fn numbered(number: u32) -> Self {
-        Self(number)
-    }
-
-    pub(super) fn triangle(self) -> u32 {
-        (self.0 & !Self::MIRRORED) / 3
-    }
-
-    pub(super) fn is_mirrored(self) -> bool {
-        self.0 & Self::MIRRORED != 0
-    }
-
-    /// The corners at the left and right end of the side, and the one opposite.
-    #[inline]
-    pub(super) fn corners(self) -> [usize; 3] {
-        let apex = (self.0 & !Self::MIRRORED) as usize % 3;
-        let [next, prev] = around(apex);
-        if self.is_mirrored() { [prev, next, apex] } else { [next, prev, apex] }
-    }
-}
+/// The flag of a vertex where shortest paths may bend.
+const BENDS: u32 = 1 << 31;
+/// The flag of the first vertex of a triangle a side of which is shared by more than two.
+const IS_IRREGULAR: u32 = 1 << 30;
 
 impl MarchTriangle {
-    /// The flag of the first corner's vertex: shortest paths may bend there.
-    const BENDS: u32 = 1;
-
-    /// The lengths of the triangle as seen through the side where it is entered.
-    #[inline]
-    pub(super) fn sides(&self, entry: EntrySide) -> Sides {
-        let [left, right, apex] = entry.corners();
-        Sides {
-            base: self.lengths[apex],
-            from_left: self.lengths[right],
-            from_right: self.lengths[left],
-            double_area: self.double_area,
-        }
+    /// The vertex at a corner.
+    #[inline(always)]
+    pub(super) fn vertex(&self, corner: usize) -> u32 {
+        self.vertices[corner] & !(BENDS | IS_IRREGULAR)
     }
 
-    /// Whether shortest paths may bend at the left and at the right end of an entry.
-    #[inline]
-    pub(super) fn bends(&self, entry: EntrySide) -> [bool; 2] {
-        let [left, right, _] = entry.corners();
-        [left, right].map(|corner| self.flags & (Self::BENDS << corner) != 0)
+    #[inline(always)]
+    pub(super) fn vertices(&self) -> [u32; 3] {
+        [self.vertex(0), self.vertex(1), self.vertex(2)]
     }
 
-    /// The triangle laid out above an entry.
+    /// Whether shortest paths may bend at a corner.
+    #[inline(always)]
+    pub(super) fn bends_at(&self, corner: usize) -> bool {
+        self.vertices[corner] & BENDS != 0
+    }
+
+    /// Whether more than two triangles share a side.
+    #[inline(always)]
+    pub(super) fn is_irregular(&self) -> bool {
+        self.vertices[0] & IS_IRREGULAR != 0
+    }
+
+    /// The length of the side between corners 0 and 1.
+    #[inline(always)]
+    pub(super) fn base(&self) -> f64 {
+        self.lengths[2]
+    }
+
+    /// Where the corners are.
+    #[inline(always)]
+    pub(super) fn corners(&self) -> [PlanePoint; 3] {
+        [[0.0; 2], [self.base(), 0.0], self.apex]
+    }
+
+    pub(super) fn centroid(&self) -> PlanePoint {
+        [(self.base() + self.apex[0]) / 3.0, self.apex[1] / 3.0]
+    }
+
+    /// The same triangle the other way round: corners 0 and 1 change places.
     #[inline]
-    pub(super) fn entered(&self, entry: EntrySide) -> Entered {
-        let sides = self.sides(entry);
-        Entered { base: sides.base, apex: sides.apex() }
+    pub(super) fn mirrored(&self) -> Self {
+        let [x, y] = self.apex;
+        Self { apex: [self.base() - x, y], ..*self }
     }
 }
 
@@ -122,6 +107,9 @@ pub(crate) struct Triangles {
 /// Width of the buckets, as a share of the mean edge length. It affects time only, which `make bench-peers` measures.
 const BUCKET_WIDTH: f64 = 0.3;
 
+/// Excess of a total angle, in radians, up to which it counts as rounding.
+const EXCESS: f64 = 5e-9;
+
 /// Edges of more triangles are hubs.
 const MOST_AROUND: usize = 8;
 
@@ -136,6 +124,7 @@ impl Triangles {
         mean_edge_length: f64,
     ) -> Self {
         let n = order.len();
+        assert!(n < IS_IRREGULAR as usize, "more vertices than fit into 30 bits");
         let rank = ranks(&order);
         let glued = triangulation.triangles();
         // Triangles follow their first vertices.
@@ -146,38 +135,59 @@ impl Triangles {
         for (i, t) in (0..).zip(place) {
             number[*t as usize] = i;
         }
-        let renamed = |corner: CornerId| 3 * number[corner.face().index()] + corner.slot() as u32;
+        // The corners of every triangle are turned so that the last is opposite the longest side.
+        let first_corner = |t: usize| {
+            let lengths = glued[t].lengths;
+            let longest = if lengths[1] > lengths[0] { 1 } else { 0 };
+            if lengths[2] > lengths[longest] { 0 } else { longest + 1 }
+        };
+        let renamed = |corner: CornerId| {
+            let t = corner.face().index();
+            3 * number[t] + ((corner.slot() + 3 - first_corner(t)) % 3) as u32
+        };
         let (next, many) = around_edges(triangulation);
         let across =
             |corner| triangulation.opposite(corner).unwrap_or_else(|| *next.get(&corner).unwrap_or(&corner));
         let mut triangles: Vec<MarchTriangle> = place
             .par_iter()
             .map(|t| {
-                let face = FaceId(*t);
-                let lengths = glued[face.index()].lengths;
+                let (face, first) = (FaceId(*t), first_corner(*t as usize));
+                let corner = |slot: usize| face.corners()[(slot + first) % 3];
+                let lengths = [0, 1, 2].map(|slot| glued[*t as usize].lengths[corner(slot).slot()]);
+                let is_irregular = face.corners().into_iter().any(|corner| across(across(corner)) != corner);
+                let mut vertices =
+                    [0, 1, 2].map(|slot| rank[triangulation.corner_vertex(corner(slot)).index()]);
+                vertices[0] |= if is_irregular { IS_IRREGULAR } else { 0 };
+                let apex = plane::apex([lengths[2], lengths[1], lengths[0]]);
                 MarchTriangle {
                     lengths,
-                    double_area: double_area(lengths),
-                    across: face.corners().map(|corner| renamed(across(corner))),
-                    vertices: glued[face.index()].vertices.map(|v| rank[v.index()]),
-                    flags: 0,
+                    apex: if lengths[2] > 0.0 { apex } else { [0.0; 2] },
+                    across: [0, 1, 2].map(|slot| renamed(across(corner(slot)))),
+                    vertices,
                 }
             })
             .collect();
         let hubs =
             (0..).zip(&many).flat_map(|(hub, edge)| edge.iter().map(move |corner| (renamed(*corner), hub)));
         let hubs = hubs.collect();
-        let corners = triangles.iter().enumerate().flat_map(|(t, triangle)| {
-            [0, 1, 2].map(|slot| (triangle.vertices[slot] as usize, (3 * t + slot) as u32))
-        });
+        let corners = triangles
+            .iter()
+            .flat_map(MarchTriangle::vertices)
+            .zip(0..)
+            .map(|(v, corner)| (v as usize, corner));
         let corners = Rows::collect(n, corners);
         let renumbered = |link: &Link| Link { ends: link.ends.map(|v| VertexId(rank[v.index()])), ..*link };
         let all_links = links.iter().chain(removed).map(renumbered);
-        let kinds = kinds(triangulation, &triangles, &corners, &order);
+        let lengths_at = |corner: u32| {
+            let (t, slot) = (place[corner as usize / 3] as usize, corner as usize % 3);
+            let first = first_corner(t);
+            [0, 1, 2].map(|k| glued[t].lengths[(slot + first + k) % 3])
+        };
+        let kinds = kinds(triangulation, lengths_at, &corners, &order);
         triangles.par_iter_mut().for_each(|triangle| {
             for slot in 0..3 {
-                if kinds[triangle.vertices[slot] as usize].may_bend {
-                    triangle.flags |= MarchTriangle::BENDS << slot;
+                if kinds[triangle.vertex(slot) as usize].may_bend {
+                    triangle.vertices[slot] |= BENDS;
                 }
             }
         });
@@ -185,8 +195,7 @@ impl Triangles {
         joints.extend((0..).zip(&kinds).filter(|(_, kind)| kind.has_fans).map(|(v, _)| v));
         joints.sort_unstable();
         joints.dedup();
-        let longest =
-            triangles.iter().flat_map(|t| t.lengths).chain(all_links.clone().map(|link| link.length));
+        let longest = glued.iter().flat_map(|t| t.lengths).chain(all_links.clone().map(|link| link.length));
         let longest = longest.fold(0.0, f64::max);
         Self {
             links: Link::by_vertex(n, all_links),
@@ -204,12 +213,17 @@ impl Triangles {
 
     /// The length of the longest side of a triangle.
     pub(crate) fn longest_of(&self, triangle: u32) -> f64 {
-        self.at(triangle).lengths.into_iter().fold(0.0, f64::max)
+        self.at(triangle).base()
+    }
+
+    /// The length of the longest edge or link at a vertex.
+    pub(super) fn longest_at(&self, vertex: u32) -> f64 {
+        self.ways_from(vertex).map(|(_, length)| length).fold(0.0, f64::max)
     }
 
     /// The mesh vertices of a triangle.
     pub(crate) fn mesh_vertices(&self, triangle: u32) -> [u32; 3] {
-        self.at(triangle).vertices.map(|v| self.order[v as usize])
+        self.at(triangle).vertices().map(|v| self.order[v as usize])
     }
 
     #[inline]
@@ -222,10 +236,7 @@ impl Triangles {
         let edges = self.corners.row(vertex as usize).iter().flat_map(|corner| {
             let (triangle, slot) = (self.at(corner / 3), *corner as usize % 3);
             let [next, prev] = around(slot);
-            [
-                (triangle.vertices[next], triangle.lengths[prev]),
-                (triangle.vertices[prev], triangle.lengths[next]),
-            ]
+            [(triangle.vertex(next), triangle.lengths[prev]), (triangle.vertex(prev), triangle.lengths[next])]
         });
         edges.chain(self.links.row(vertex as usize).iter().copied())
     }
@@ -262,10 +273,11 @@ struct Kind {
     has_fans: bool,
 }
 
-/// The kinds of the vertices, in the given order; `corners` are those of the triangles at each.
+/// The kinds of the vertices, in the given order; `corners` are those of the triangles at each, and `lengths_at` gives
+/// the lengths of the side opposite a corner and of the two others.
 fn kinds(
     triangulation: &Triangulation,
-    triangles: &[MarchTriangle],
+    lengths_at: impl Fn(u32) -> [f64; 3] + Sync,
     corners: &Rows<u32>,
     order: &[u32],
 ) -> Vec<Kind> {
@@ -273,9 +285,8 @@ fn kinds(
     let kind = |v: usize| {
         let mut angle = AngleSum::default();
         for corner in corners.row(v) {
-            let (t, slot) = (&triangles[*corner as usize / 3], *corner as usize % 3);
-            let [next, prev] = around(slot);
-            angle.add([t.double_area, scalar_product(t.lengths[slot], t.lengths[next], t.lengths[prev])]);
+            let [opposite, p, q] = lengths_at(*corner);
+            angle.add([double_area([opposite, p, q]), scalar_product(opposite, p, q)]);
         }
         let VertexCorners { first, n_corners, n_free } = surroundings[order[v] as usize];
         let is_closed = n_corners > 0 && n_free == 0;
