@@ -53,7 +53,7 @@ fn more_samples_approach_the_optimal_stress_from_above() {
     };
     let [few, many] = [10, 100].map(excess);
     println!("above classical scaling: {few:.2e} with 10 samples, {many:.2e} with 100");
-    assert!(many > -1e-12 && many < 0.002 && many < few && few < 0.2, "{few} {many}");
+    assert!(many > -1e-12 && many < 0.003 && many < few && few < 0.2, "{few} {many}");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Windows that leave triangles, several at a time.
 
 use super::triangles::{MarchTriangle, around};
-use super::window::{COLLINEAR, SourceWindow, TEST_POINTS};
+use super::window::{COLLINEAR, NEAR_MISS, SourceWindow, TEST_POINTS};
 use crate::plane::{PlanePoint, cross, dot, norm, sub};
 
 /// Number of triangles solved together.
@@ -179,9 +179,13 @@ impl Rays {
         };
         let leaves_left = shade(left, 1.0, at_left);
         let leaves_right = shade(right, -1.0, at_right);
-        // A ray through an end may bend there or not; it must not bend because of rounding.
+        // A ray through an end may bend there or not; it must not bend because of rounding. Nor need it if it passes close
+        // to an end where no shortest path bends.
         let slack = COLLINEAR * dot(ray, ray);
-        let (misses_left, misses_right) = (cross(ray, start) < -slack, cross(ray, end) > slack);
+        let (at_start, at_end) = (cross(ray, start), cross(ray, end));
+        let near = NEAR_MISS * (at_start - at_end);
+        let misses_left = at_start < -select(bends[0], slack, near);
+        let misses_right = at_end > select(bends[1], slack, near);
         // Where the path to the centroid bends, from the source.
         let is_end = is_behind | (!in_left & !in_right & (misses_left | misses_right));
         let is_right = (is_behind & pivots_right) | (!is_behind & !misses_left);

@@ -5,11 +5,10 @@ use std::collections::BinaryHeap;
 
 use base::{Budget, Exceeded};
 
-use super::ROUNDING;
 use super::buckets::{Buckets, NOWHERE, Queued};
 use super::crossing::{Crossings, LANES, SolveCrossings};
 use super::triangles::{MarchTriangle, Triangles, around};
-use super::window::SourceWindow;
+use super::window::{ROUNDING, SourceWindow};
 use crate::plane::{self, PlanePoint};
 use crate::prefetch::prefetch;
 use crate::source::Source;
@@ -366,17 +365,23 @@ impl TriangleFront {
     }
 
     /// Gives triangles other windows, if those are nearer to the source, or see as near but from a source that bent
-    /// less. A triangle that has one already keeps it when there were too many visits.
+    /// less, or as much but through the next side. A triangle that has one already keeps it when there were too many visits.
     #[inline(never)]
     fn take_offers(&mut self, triangles: &Triangles) {
         for WindowOffer { triangle, entry, distance, window } in self.offers.drain(..) {
             let TriangleLabels { distances, labels } = &mut self.triangles;
             let (known, label) = (&mut distances[triangle as usize], &mut labels[triangle as usize]);
             let is_new = *known == f64::INFINITY;
-            let is_nearer = improves(distance, *known);
-            let is_as_near = distance <= *known * (1.0 + ROUNDING);
-            if !is_nearer && !(is_as_near && improves(window.offset, label.window.offset)) {
-                continue;
+            if !improves(distance, *known) {
+                let is_as_near = distance <= *known * (1.0 + ROUNDING);
+                let is_less_bent = improves(window.offset, label.window.offset);
+                // The order of the sides does not depend on numbers.
+                let is_next = label.entry != INSIDE
+                    && around(label.entry as usize)[0] == entry as usize
+                    && window.offset <= label.window.offset * (1.0 + ROUNDING);
+                if !(is_as_near && (is_less_bent || is_next)) {
+                    continue;
+                }
             }
             if !is_new && self.visits == 0 {
                 continue;

@@ -58,9 +58,6 @@ use triangles::Triangles;
 use unfold::{HalfCorner, split_obtuse_corners};
 pub(crate) use update::Stencil;
 
-/// Distances that differ by less than this share are equal up to rounding: a smaller improvement causes no visit.
-const ROUNDING: f64 = 1e-13;
-
 /// The local solver of fast marching.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]

@@ -7,10 +7,10 @@
 use base::{Budget, Exceeded};
 use surface::Rows;
 
-use super::ROUNDING;
 use super::triangles::{Triangles, around};
 use super::unfold::HalfCorner;
 use super::update::Stencil;
+use super::window::ROUNDING;
 use crate::heap::VertexHeap;
 use crate::plane::{cross, dot, norm, sub};
 use crate::source::Source;

@@ -12,7 +12,8 @@ use crate::graph::ranks;
 use crate::plane::{self, PlanePoint};
 
 /// A triangle, laid out in the plane anticlockwise: one cache line. Corners are numbered 0, 1 and 2, sides by the corner
-/// opposite. Corner 0 is at the origin, and a longest side runs from there along the x-axis to corner 1.
+/// opposite. Corner 0 is at the origin, and a shortest side, the base, runs from there along the x-axis to corner 1: from
+/// another one, its direction would be inaccurate in needles.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
 pub(super) struct MarchTriangle {
@@ -55,7 +56,7 @@ impl MarchTriangle {
         self.vertices[0] & IS_IRREGULAR != 0
     }
 
-    /// The length of the side between corners 0 and 1.
+    /// The length of the base.
     #[inline(always)]
     pub(super) fn base(&self) -> f64 {
         self.lengths[2]
@@ -135,11 +136,11 @@ impl Triangles {
         for (i, t) in (0..).zip(place) {
             number[*t as usize] = i;
         }
-        // The corners of every triangle are turned so that the last is opposite the longest side.
+        // The corners of every triangle are turned so that the last is opposite the shortest side.
         let first_corner = |t: usize| {
             let lengths = glued[t].lengths;
-            let longest = if lengths[1] > lengths[0] { 1 } else { 0 };
-            if lengths[2] > lengths[longest] { 0 } else { longest + 1 }
+            let shortest = if lengths[1] < lengths[0] { 1 } else { 0 };
+            if lengths[2] <= lengths[shortest] { 0 } else { shortest + 1 }
         };
         let renamed = |corner: CornerId| {
             let t = corner.face().index();
@@ -161,7 +162,7 @@ impl Triangles {
                 let apex = plane::apex([lengths[2], lengths[1], lengths[0]]);
                 MarchTriangle {
                     lengths,
-                    apex: if lengths[2] > 0.0 { apex } else { [0.0; 2] },
+                    apex: if lengths[2] > 0.0 { apex } else { [lengths[1], 0.0] },
                     across: [0, 1, 2].map(|slot| renamed(across(corner(slot)))),
                     vertices,
                 }
@@ -213,7 +214,7 @@ impl Triangles {
 
     /// The length of the longest side of a triangle.
     pub(crate) fn longest_of(&self, triangle: u32) -> f64 {
-        self.at(triangle).base()
+        self.at(triangle).lengths.into_iter().fold(0.0, f64::max)
     }
 
     /// The length of the longest edge or link at a vertex.

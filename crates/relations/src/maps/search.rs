@@ -454,7 +454,8 @@ impl Candidate {
         let agreement = orientation(a, b, &functional, &maps.forth);
         let missing = agreement.map_or(1.0, |agreement| (1.0 - agreement.abs()).max(FULL));
         let mismatch = match (&a.curvature, &b.curvature) {
-            (Some(x), Some(y)) => 0.5 * (mismatch(x, y, &maps.forth) + mismatch(y, x, &maps.back)),
+            // Rounding may take the mismatch of equal curvatures below zero.
+            (Some(x), Some(y)) => (0.5 * (mismatch(x, y, &maps.forth) + mismatch(y, x, &maps.back))).max(0.0),
             _ => 1.0,
         };
         let score = distortion * functional.defect() * missing * mismatch;
