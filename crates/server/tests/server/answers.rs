@@ -383,8 +383,8 @@ fn an_upload_can_be_compared_with_its_results() {
         let largest = form.values.as_ref().unwrap().iter().copied().fold(0.0, f32::max);
         let largest_residual = json["residual"][i]["max"].as_f64().unwrap();
         assert!((f64::from(largest) - largest_residual).abs() < 1e-5, "{largest}, {largest_residual}");
-        // A power of two changes no tie between the samples of a ring.
-        assert!(largest_residual < 0.3, "one shape: {largest_residual}");
+        // A form of a ring may be turned about its axis by half a step; its longest edges are 2.9.
+        assert!(largest_residual < 2.0, "one shape: {largest_residual}");
     }
     let away = |p: &[f32; 3], q: &[f32; 3]| (0..3).map(|i| (p[i] - q[i]).powi(2)).sum::<f32>().sqrt();
     for (p, residual) in forms[0].positions.iter().zip(forms[0].values.as_ref().unwrap()) {
