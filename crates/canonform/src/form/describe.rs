@@ -262,7 +262,7 @@ mod tests {
 
     #[test]
     fn descriptions_are_finite_or_an_error() {
-        for far in [1e3, 1e150] {
+        for far in [1e3, 1e50, 8.9e124, 1e150] {
             let mut mesh = shapes::grid(5, 4, 0.1);
             mesh.positions[8].z = 1.0;
             mesh.positions[18].y = far;

@@ -16,6 +16,9 @@ use crate::source::Source;
 /// Limit of the mean number of visits per triangle. Real surfaces need one or two.
 const VISITS_PER_TRIANGLE: usize = 64;
 
+/// A front that was stopped looks at all triangles only if it knows more than one in so many. It affects time only.
+const FEW: usize = 16;
+
 /// Three distances from a point are those of one point if its position from two of them agrees with the third to this
 /// share of the longest side, which leaves room for rounding in flat triangles.
 const SAME_POINT: f64 = 1e-9;
@@ -77,7 +80,8 @@ impl Queued for TriangleLabels {
 #[derive(Debug, Default)]
 pub(super) struct TriangleFront {
     triangles: TriangleLabels,
-    n_reached: usize,
+    /// The triangles that have a window.
+    reached: Vec<u32>,
     buckets: Buckets,
     /// The triangles of a round.
     round: Vec<u32>,
@@ -90,6 +94,8 @@ pub(super) struct TriangleFront {
     vertices: Vec<f64>,
     /// Vertices whose neighbours may be too far away.
     lowered: BinaryHeap<Reverse<(u64, u32)>>,
+    /// Vertices that were first reached along edges and links.
+    along_edges: Vec<u32>,
     visits: usize,
     /// The distance of the middle of every hub.
     hubs: Vec<f64>,
@@ -109,10 +115,12 @@ impl TriangleFront {
         self.buckets.reset(triangles.bucket_width, triangles.longest);
         self.offers.clear();
         self.lowered.clear();
+        self.along_edges.clear();
+        self.reached.clear();
         self.hubs.clear();
         self.hubs.resize(triangles.n_hubs, f64::INFINITY);
         self.visits = VISITS_PER_TRIANGLE.saturating_mul(n);
-        (self.n_reached, self.n_crossings) = (0, 0);
+        self.n_crossings = 0;
     }
 
     /// Starts from a source.
@@ -200,7 +208,7 @@ impl TriangleFront {
             }
             self.take_offers(triangles);
             self.march(triangles, budget, &stops)?;
-            self.relax_edges(triangles, budget)?;
+            self.relax_edges(triangles, budget, &stops)?;
             self.start_again(triangles, &stops);
         }
         budget.check()
@@ -214,12 +222,24 @@ impl TriangleFront {
                 self.start_around(triangles, *joint, offset, &stops);
             }
         }
-        if self.n_reached == triangles.triangles.len() {
-            return;
+        if self.reached.len() < triangles.triangles.len() {
+            match self.nearby(triangles) {
+                Some(nearby) => self.start_next_to(triangles, nearby.into_iter(), stops),
+                None => self.start_next_to(triangles, 0..triangles.triangles.len() as u32, stops),
+            }
         }
-        for (number, triangle) in (0..).zip(&triangles.triangles) {
+    }
+
+    /// Offers the rays from all corners of those triangles that were not reached.
+    fn start_next_to(
+        &mut self,
+        triangles: &Triangles,
+        numbers: impl Iterator<Item = u32>,
+        stops: impl Fn(u32, f64) -> bool,
+    ) {
+        for number in numbers {
             if self.triangles.distance(number) == f64::INFINITY {
-                for (slot, vertex) in (0..).zip(triangle.vertices()) {
+                for (slot, vertex) in (0..).zip(triangles.at(number).vertices()) {
                     let offset = self.vertices[vertex as usize];
                     if offset.is_finite() {
                         self.start_at(triangles, 3 * number + slot, offset, &stops);
@@ -227,6 +247,21 @@ impl TriangleFront {
                 }
             }
         }
+    }
+
+    /// The triangles with a vertex that was reached, in ascending order; none if they may be a large share of all.
+    fn nearby(&self, triangles: &Triangles) -> Option<Vec<u32>> {
+        let n_known = self.reached.len() + self.along_edges.len();
+        if n_known > triangles.triangles.len() / FEW {
+            return None;
+        }
+        let corners = self.reached.iter().flat_map(|number| triangles.at(*number).vertices());
+        let vertices = corners.chain(self.along_edges.iter().copied());
+        let around = vertices.flat_map(|vertex| triangles.corners.row(vertex as usize));
+        let mut found: Vec<u32> = around.map(|corner| corner / 3).collect();
+        found.sort_unstable();
+        found.dedup();
+        Some(found)
     }
 
     fn march(
@@ -390,7 +425,9 @@ impl TriangleFront {
             let mut bucket = if is_new { NOWHERE } else { label.bucket };
             self.buckets.put(triangle, &mut bucket, distance);
             *label = TriangleLabel { window, entry, bucket };
-            self.n_reached += usize::from(is_new);
+            if is_new {
+                self.reached.push(triangle);
+            }
             let across = triangles.at(triangle).across;
             for side in around(entry as usize % 3) {
                 let other = across[side] as usize / 3;
@@ -401,9 +438,48 @@ impl TriangleFront {
         }
     }
 
-    /// Lowers vertices along edges and links.
-    fn relax_edges(&mut self, triangles: &Triangles, budget: &Budget) -> Result<(), Exceeded> {
-        for triangle in &triangles.triangles {
+    /// Lowers vertices along edges and links, without continuing along edges of triangles where it `stops` at the
+    /// distance of the vertex.
+    fn relax_edges(
+        &mut self,
+        triangles: &Triangles,
+        budget: &Budget,
+        stops: impl Fn(u32, f64) -> bool,
+    ) -> Result<(), Exceeded> {
+        match self.nearby(triangles) {
+            Some(nearby) => self.relax_sides(nearby.iter().map(|number| triangles.at(*number))),
+            None => self.relax_sides(triangles.triangles.iter()),
+        }
+        for vertex in 0..triangles.links.n_rows() as u32 {
+            for (end, length) in triangles.links.row(vertex as usize) {
+                self.relax(vertex, *end, *length);
+            }
+        }
+        let mut meter = budget.meter();
+        while let Some(Reverse((at, vertex))) = self.lowered.pop() {
+            let at = f64::from_bits(at);
+            if at > self.vertices[vertex as usize] {
+                continue;
+            }
+            for corner in triangles.corners.row(vertex as usize) {
+                meter.count(2)?;
+                if !stops(corner / 3, at) {
+                    for (end, length) in triangles.sides_from(*corner) {
+                        self.relax(vertex, end, length);
+                    }
+                }
+            }
+            for (end, length) in triangles.links.row(vertex as usize) {
+                meter.count(1)?;
+                self.relax(vertex, *end, *length);
+            }
+        }
+        Ok(())
+    }
+
+    /// Lowers the vertices of triangles along their sides.
+    fn relax_sides<'t>(&mut self, triangles: impl Iterator<Item = &'t MarchTriangle>) {
+        for triangle in triangles {
             let ([a, b, c], [to_a, to_b, to_c]) = (triangle.vertices(), triangle.lengths);
             let [at_a, at_b, at_c] =
                 [self.vertices[a as usize], self.vertices[b as usize], self.vertices[c as usize]];
@@ -415,22 +491,6 @@ impl TriangleFront {
                 }
             }
         }
-        for vertex in 0..triangles.links.n_rows() as u32 {
-            for (end, length) in triangles.links.row(vertex as usize) {
-                self.relax(vertex, *end, *length);
-            }
-        }
-        let mut meter = budget.meter();
-        while let Some(Reverse((at, vertex))) = self.lowered.pop() {
-            if f64::from_bits(at) > self.vertices[vertex as usize] {
-                continue;
-            }
-            for (end, length) in triangles.ways_from(vertex) {
-                meter.count(1)?;
-                self.relax(vertex, end, length);
-            }
-        }
-        Ok(())
     }
 
     /// Lowers a vertex to the distance of another and the length of the way between them, if that is less.
@@ -439,6 +499,9 @@ impl TriangleFront {
         let distance = self.vertices[from as usize] + length;
         let known = &mut self.vertices[to as usize];
         if improves(distance, *known) {
+            if *known == f64::INFINITY {
+                self.along_edges.push(to);
+            }
             *known = distance;
             self.lowered.push(Reverse((distance.to_bits(), to)));
         }

@@ -234,12 +234,15 @@ impl Triangles {
 
     /// The edges and links at a vertex: their other ends and lengths.
     pub(super) fn ways_from(&self, vertex: u32) -> impl Iterator<Item = (u32, f64)> {
-        let edges = self.corners.row(vertex as usize).iter().flat_map(|corner| {
-            let (triangle, slot) = (self.at(corner / 3), *corner as usize % 3);
-            let [next, prev] = around(slot);
-            [(triangle.vertex(next), triangle.lengths[prev]), (triangle.vertex(prev), triangle.lengths[next])]
-        });
+        let edges = self.corners.row(vertex as usize).iter().flat_map(|corner| self.sides_from(*corner));
         edges.chain(self.links.row(vertex as usize).iter().copied())
+    }
+
+    /// The two sides of a triangle that meet at a corner: their other ends and lengths.
+    #[inline]
+    pub(super) fn sides_from(&self, corner: u32) -> [(u32, f64); 2] {
+        let (triangle, [next, prev]) = (self.at(corner / 3), around(corner as usize % 3));
+        [(triangle.vertex(next), triangle.lengths[prev]), (triangle.vertex(prev), triangle.lengths[next])]
     }
 }
 

@@ -131,11 +131,10 @@ impl KnownMap {
 
     /// Sorts maps by how near they are to the initial map, the nearest first.
     pub(super) fn nearest_first(&self, maps: &mut [SurfaceMap], b: &MapShape) -> Result<(), DescriptorError> {
-        let known: Vec<(usize, usize)> =
-            self.initial_pairs().map(|pair| pair.map(VertexId::index)).map(|[x, y]| (x, y)).collect();
-        let to = b.distances_to(&known.iter().map(|(_, y)| *y).collect::<Vec<_>>())?;
+        let known: Vec<[usize; 2]> = self.initial_pairs().map(|pair| pair.map(VertexId::index)).collect();
+        let to = b.distances_to(&known.iter().map(|[_, y]| *y).collect::<Vec<_>>())?;
         let gap = |map: &SurfaceMap| -> Result<f64, DescriptorError> {
-            let images: Vec<usize> = known.iter().map(|(x, _)| map.vertices[*x].index()).collect();
+            let images: Vec<usize> = known.iter().map(|[x, _]| map.vertices[*x].index()).collect();
             Ok((b.distances_to(&images)? - &to).abs().sum())
         };
         let gaps: Result<Vec<f64>, _> = maps.iter().map(gap).collect();
