@@ -70,7 +70,8 @@ const THICK: f64 = 0.12;
 /// more, those of cats of 5,000 vertices .79 and more, and most mixtures less than .7.
 const PURE: f64 = 0.7;
 
-/// Refinement that loses so much of the agreement mixes two maps. A safety limit: it changes by less than .05 otherwise.
+/// A map that agrees so much less than another one, or than before its refinement, mixes two maps. A safety limit: refinement
+/// changes the agreement by less than .05 otherwise, and right maps of one pair have the same but for .03.
 const LOST: f64 = 0.1;
 
 /// Agreements nearer to 1 than this are as good as 1. A tolerance.
@@ -107,9 +108,16 @@ impl Candidate {
         kind_of(self.agreement)
     }
 
-    fn is_mixture(&self) -> bool {
-        self.agreement.is_some_and(|agreement| agreement.abs() < PURE)
+    /// Whether it agrees less than maps that are [no mixtures](least_agreement).
+    fn is_mixture(&self, least: f64) -> bool {
+        self.agreement.is_some_and(|agreement| agreement.abs() < least)
     }
+}
+
+/// The least agreement of a map that is no mixture, from all maps of one kind.
+fn least_agreement(found: &[Candidate]) -> f64 {
+    let agreements = found.iter().filter_map(|found| found.agreement);
+    agreements.map(|agreement| agreement.abs() - LOST).fold(PURE, f64::max)
 }
 
 /// The kind of a map of some agreement.
@@ -329,9 +337,9 @@ impl MapSearch<'_> {
         let mut starts = search.starts(&[-1.0])?;
         starts.retain(|start| start.kind() == MapKind::Mirrored);
         let mut found = search.sketched(starts.iter().map(|start| &start.functional))?;
-        found.retain(|found| {
-            found.kind() == MapKind::Mirrored && !found.is_mixture() && found.distortion < SYMMETRIC
-        });
+        found.retain(|found| found.kind() == MapKind::Mirrored && found.distortion < SYMMETRIC);
+        let least = least_agreement(&found);
+        found.retain(|found| !found.is_mixture(least));
         let mut found = search.distinct(found)?;
         found.truncate(MIRRORS);
         let moved = found.iter().map(|found| shape.moved(&found.images)).collect::<Result<Vec<_>, _>>()?;
@@ -343,9 +351,12 @@ impl MapSearch<'_> {
 
     /// The best map of candidates of one kind, refined on all samples and eigenfunctions.
     fn best(&self, mut found: Vec<Candidate>) -> Result<Option<SurfaceMap>, DescriptorError> {
-        found.sort_by(|x, y| x.is_mixture().cmp(&y.is_mixture()).then(x.score.total_cmp(&y.score)));
+        let least = least_agreement(&found);
+        let is_mixture = |found: &Candidate| found.is_mixture(least);
+        found.sort_by(|x, y| is_mixture(x).cmp(&is_mixture(y)).then(x.score.total_cmp(&y.score)));
         let Some(best) = found.first() else { return Ok(None) };
-        let rival = found.iter().find_map(|other| match self.is_same(best, other) {
+        let rivals = found.iter().filter(|other| is_mixture(best) || !is_mixture(other));
+        let rival = { rivals }.find_map(|other| match self.is_same(best, other) {
             Ok(true) => None,
             Ok(false) => Some(Ok(other)),
             Err(error) => Some(Err(error)),
@@ -355,7 +366,7 @@ impl MapSearch<'_> {
             let boundary = Boundary { at: rival.score.max(f64::MIN_POSITIVE), steepness: STEEPNESS };
             boundary.probability(best.score)
         });
-        let confidence = if best.is_mixture() { confidence.min(OF_MIXTURE) } else { confidence };
+        let confidence = if is_mixture(best) { confidence.min(OF_MIXTURE) } else { confidence };
         let mut map = self.refined(best, confidence)?;
         if let Some(rival) = rival.filter(|_| confidence < SurfaceMap::CERTAIN) {
             map.alternative = Some(Box::new(self.refined(rival, 1.0 - confidence)?));

@@ -16,6 +16,10 @@ const CHECKED: usize = 300;
 /// A map with a larger mean error has failed. A front-back error shows as .08 and more, since limbs are thin.
 const FAILED: f64 = 0.1;
 
+/// A map with a larger mean error is wrong, if only in parts: right ones have .04 and less, and a centaur whose trunk is turned
+/// back to front .08.
+const WRONG: f64 = 0.05;
+
 /// A map with the errors of its vertices, as shares of the square root of the area; none if their partners are not known.
 #[derive(Debug, Clone, Default)]
 pub(super) struct JudgedMap {
@@ -42,6 +46,11 @@ impl JudgedMap {
 
     pub(super) fn has_failed(&self) -> bool {
         self.mean() > FAILED
+    }
+
+    /// Whether it has failed, at least in parts.
+    pub(super) fn is_wrong(&self) -> bool {
+        self.mean() > WRONG
     }
 }
 

@@ -10,7 +10,8 @@
 //! * `pairs`; `direct` and `mirrored`, the mean errors; `median`, of direct maps; `direct 5|10|25`, the share of vertices with an
 //!   error below so many hundredths;
 //! * `failed`, the share of pairs without a direct map whose mean error is below a tenth, and `failures`, their number;
-//! * `doubted`, the share of failed maps that were called uncertain, and `doubted in vain`, of the others;
+//! * `doubted`, the share of wrong maps, of a mean error beyond .05, that were called uncertain, and `doubted in vain`, of the
+//!   others;
 //! * `flipped`, the share of pairs whose mirrored map has the lesser distortion; `distortion`; `return`; `seconds`;
 //!
 //! `A to B`, the mean error of a direct map; `preparation seconds`; and `worst direct`, the largest mean error of a group.
@@ -115,7 +116,7 @@ fn measure(group: &str, pairs: &[&MappedPair], measured: &mut MeasuredNumbers) -
         add("failed", share(&known, |pair| pair.has_failed()));
         add("failures", known.iter().filter(|pair| pair.has_failed()).count() as f64);
         let (wrong, right): (Vec<&JudgedMap>, Vec<&JudgedMap>) =
-            known.iter().flat_map(|pair| pair.judged()).partition(|map| map.has_failed());
+            known.iter().flat_map(|pair| pair.judged()).partition(|map| map.is_wrong());
         for (what, maps) in [("doubted", wrong), ("doubted in vain", right)] {
             if !maps.is_empty() {
                 add(what, share(&maps, |map| !map.is_certain));
