@@ -272,7 +272,7 @@ impl TriangleFront {
     ) -> Result<(), Exceeded> {
         let mut meter = budget.meter();
         let mut round = std::mem::take(&mut self.round);
-        while self.buckets.next_round(&mut round, &mut self.triangles).is_some() {
+        while self.buckets.next_round(&mut round, &mut self.triangles) {
             meter.count(OPERATIONS * (1 + round.len()))?;
             self.visits = self.visits.saturating_sub(round.len());
             for number in &round {
