@@ -41,7 +41,7 @@ fn kept(place: &Workplace, index: &str) -> usize {
 
 /// How often programs are killed; `make kills` does it 200 times.
 fn n_kills() -> u32 {
-    std::env::var("CANONFORM_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(24)
+    std::env::var("CANONFORM_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(12)
 }
 
 /// Starts the program and kills it after `time`, unless it ends before. Returns whether it was killed.
