@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the Python package and runs its tests in an environment of its own below target/. `--find` only prints the Python
-# that would be used. Further arguments go to pytest.
+# Builds the Python package and runs its tests in an environment of its own below target/, in two processes. `--find` only
+# prints the Python that would be used, and `--prepare` only makes the environment. Further arguments go to pytest.
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -22,13 +22,21 @@ if [ "${1:-}" = --find ]; then
     exit
 fi
 
-# The package is built with the profile of the Rust tests, so that what they compiled need not be compiled again.
 target=$(realpath -m "${CARGO_TARGET_DIR:-../../target}")
 environment=$target/python
 test -x "$environment/bin/python" || "$python" -m venv "$environment"
-"$environment/bin/pip" install --quiet --disable-pip-version-check 'maturin>=1.16,<2'
+mapfile -t packages < <("$environment/bin/python" -c '
+import tomllib
+with open("pyproject.toml", "rb") as file:
+    print(*tomllib.load(file)["project"]["optional-dependencies"]["test"], sep="\n")')
+"$environment/bin/pip" install --quiet --disable-pip-version-check 'maturin>=1.16,<2' "${packages[@]}"
+if [ "${1:-}" = --prepare ]; then
+    exit
+fi
+
+# The package is built with the profile of the Rust tests, so that what they compiled need not be compiled again.
 export VIRTUAL_ENV=$environment CARGO_TARGET_DIR=$target
 # CI names the program that the Rust tests built: building it alone would compile half of its dependencies again.
 test -n "${CANONFORM_PROGRAM:-}" || cargo build --locked -p canonform-cli
-"$environment/bin/maturin" develop --quiet --locked --profile dev --extras test
-exec "$environment/bin/python" -m pytest "$@"
+"$environment/bin/maturin" develop --quiet --locked --profile dev
+exec "$environment/bin/python" -m pytest --numprocesses 2 --dist loadfile "$@"
