@@ -214,7 +214,11 @@ mod tests {
             let at = |i: i32| {
                 let s = f64::from(i) / 100.0;
                 let long = s + 0.3 * (s * s - 0.3);
-                [Point3::new(x * s, 0.05, 0.0), Point3::new(0.0, y * long, 0.0), Point3::new(0.02, 0.0, 0.2 * s)]
+                [
+                    Point3::new(x * s, 0.05, 0.0),
+                    Point3::new(0.0, y * long, 0.0),
+                    Point3::new(0.02, 0.0, 0.2 * s),
+                ]
             };
             let points: Vec<_> = (-100..100).flat_map(at).collect();
             let weights = vec![1.0; points.len()];

@@ -1,8 +1,8 @@
 //! Signatures depend little on pose and triangulation, distinguish bodies, and exist for any mesh.
 
 use canonform::{DescribeOptions, ShapeDescription, describe, rerank};
-use datasets::{ArticulatedOptions, Family, articulated_shape};
-use descriptors::{ShapeMetric, SignatureKind};
+use datasets::{ArticulatedOptions, Damage, Family, articulated_shape};
+use descriptors::{FormViews, ShapeMetric, SignatureKind};
 use rayon::prelude::*;
 use retrieval::Candidate;
 
@@ -33,6 +33,29 @@ fn every_signature_separates_bodies_more_than_poses_and_triangulations() {
             found.iter().sum::<f64>() / found.len() as f64
         };
         assert!(mean(false) > 2.0 * mean(true), "{}: {} {}", kind.name(), mean(true), mean(false));
+    }
+}
+
+#[test]
+fn views_of_forms_separate_bodies_more_than_poses_and_triangulations() {
+    let shapes = described();
+    let views: Vec<FormViews> = shapes.iter().map(|shape| FormViews::new(&shape.form)).collect();
+    let pairs = || (0..9).flat_map(|i| (0..i).map(move |j| (i, j)));
+    let of = |same: bool| pairs().filter(move |(i, j)| (i / 3 == j / 3) == same);
+    let distance = |(i, j): (usize, usize)| views[i].distance(&views[j]);
+    let farthest = of(true).map(distance).fold(0.0, f64::max);
+    let nearest = of(false).map(distance).fold(f64::INFINITY, f64::min);
+    assert!(nearest > 2.0 * farthest, "poses {farthest}, bodies {nearest}");
+    // A form of fewer points and other triangles is the same.
+    let mesh = articulated_shape(Family::Cat, 2, &ArticulatedOptions::default()).unwrap().mesh;
+    let of = |damage: Option<Damage>| {
+        let changed = damage.map_or_else(|| mesh.clone(), |damage| damage.apply(&mesh, 5));
+        FormViews::new(&describe(&surface(&changed), &DescribeOptions::default(), &()).unwrap().form)
+    };
+    let own = of(None);
+    for damage in [Damage::Remesh, Damage::Subdivide(1), Damage::Mirror, Damage::Scale] {
+        let distance = own.distance(&of(Some(damage)));
+        assert!(distance < 0.5 * nearest, "{damage}: {distance}, bodies {nearest}");
     }
 }
 

@@ -5,8 +5,7 @@ use std::time::Instant;
 use anyhow::Result;
 use canonform::form_alignments;
 use descriptors::{
-    CanonicalForm, FormViews, Normalization, PreparedForm, Signature, d2_histogram, geodesic_spectrum,
-    moment_signature,
+    CanonicalForm, FormViews, Normalization, PreparedForm, Signature, geodesic_spectrum, moment_signature,
 };
 use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
 use rayon::prelude::*;
@@ -29,13 +28,10 @@ pub(super) enum FormComparison {
     Spectrum,
     /// The moments of the form.
     Moments,
-    /// The distribution of straight lines.
-    D2,
 }
 
 impl FormComparison {
-    pub(super) const ALL: [Self; 5] =
-        [Self::Views, Self::Aligned, Self::Spectrum, Self::Moments, Self::D2];
+    pub(super) const ALL: [Self; 4] = [Self::Views, Self::Aligned, Self::Spectrum, Self::Moments];
 
     pub(super) fn name(self) -> &'static str {
         match self {
@@ -43,16 +39,11 @@ impl FormComparison {
             Self::Aligned => "alignment",
             Self::Spectrum => "spectrum",
             Self::Moments => "moments",
-            Self::D2 => "D2",
         }
     }
 
     /// The distances between all forms, and the mean seconds of a signature.
-    pub(super) fn distances(
-        self,
-        made: &[MadeForm],
-        context: &Context<'_>,
-    ) -> Result<(DistanceMatrix, f64)> {
+    pub(super) fn distances(self, made: &[MadeForm], context: &Context<'_>) -> Result<(DistanceMatrix, f64)> {
         let forms: Vec<&CanonicalForm> = made.iter().map(|made| &made.form).collect();
         match self {
             Self::Views => {
@@ -67,7 +58,6 @@ impl FormComparison {
             }
             Self::Spectrum => by_signature(&forms, spectrum),
             Self::Moments => by_signature(&forms, |form| Ok(moment_signature(form))),
-            Self::D2 => by_signature(&forms, |form| Ok(d2_histogram(form))),
         }
     }
 }

@@ -2,9 +2,7 @@
 
 use anyhow::Result;
 use canonform::relations::MapKind;
-use descriptors::{
-    Alignment, CanonicalForm, Normalization, PreparedForm, Reflections, align_forms,
-};
+use descriptors::{Alignment, CanonicalForm, Normalization, PreparedForm, Reflections, align_forms};
 use nalgebra::Point3;
 use rayon::prelude::*;
 use report::results::{RecordedTable, TableEntry};
@@ -43,14 +41,16 @@ impl IdealAlignments {
         made: &[MadeForm],
         context: &Context<'_>,
     ) -> Result<Self> {
-        let placed = shapes.par_iter().map(|shape| built_in(shape, context.seed)).collect::<Result<Vec<_>>>()?;
+        let placed =
+            shapes.par_iter().map(|shape| built_in(shape, context.seed)).collect::<Result<Vec<_>>>()?;
         let unit = |form: &CanonicalForm| form.normalized(Normalization::UnitArea);
         let wholes: Vec<CanonicalForm> = made.iter().map(|made| unit(&made.whole)).collect();
         let prepared: Vec<PreparedForm> =
             made.iter().map(|made| PreparedForm::new(&unit(&made.form))).collect::<Result<_, _>>()?;
         let n = shapes.len();
         let all = (0..n).flat_map(|i| (0..i).map(move |j| [i, j]));
-        let (within, between): (Vec<_>, Vec<_>) = all.partition(|[i, j]| shapes[*i].label == shapes[*j].label);
+        let (within, between): (Vec<_>, Vec<_>) =
+            all.partition(|[i, j]| shapes[*i].label == shapes[*j].label);
         let some = |pairs: Vec<[usize; 2]>| -> Vec<[usize; 2]> {
             let step = pairs.len().div_ceil(PAIRS).max(1);
             pairs.into_iter().step_by(step).collect()
@@ -121,7 +121,8 @@ fn nearest(a: &CanonicalForm, b: &CanonicalForm, fit: &Alignment) -> f64 {
 
 /// A row for each method.
 pub(super) fn table(found: &[(FormMaker, IdealAlignments)]) -> RecordedTable {
-    let headings = ["form", "partners", "nearest points, ideal", "aligned", "of two classes", "angle, degrees"];
+    let headings =
+        ["form", "partners", "nearest points, ideal", "aligned", "of two classes", "angle, degrees"];
     let row = |(maker, ideal): &(FormMaker, IdealAlignments)| {
         let numbers = ideal.numbers().map(|(_, number)| TableEntry::from(number));
         [TableEntry::from(maker.name())].into_iter().chain(numbers).collect()

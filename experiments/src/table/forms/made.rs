@@ -5,8 +5,8 @@ use canonform::{EmbedMethod, Embedded, FormOptions, Samples, Surface, embed};
 use descriptors::CanonicalForm;
 use linalg::LandmarkDistances;
 use nmds::{
-    Bandwidth, Embedding, KernelPcaOptions, LandmarkSmacofOptions, NystromOptions,
-    kernel_pca, landmark_mds, landmark_smacof, nystrom,
+    Bandwidth, Embedding, KernelPcaOptions, LandmarkSmacofOptions, NystromOptions, kernel_pca, landmark_mds,
+    landmark_smacof, nystrom,
 };
 
 use crate::collection::{LabeledSurface, map};

@@ -9,8 +9,6 @@ mod compared;
 mod ideal;
 mod made;
 
-use std::time::Instant;
-
 use anyhow::Result;
 use canonform::embedded_distances;
 use linalg::DistanceMatrix;
@@ -24,6 +22,7 @@ use serde::Deserialize;
 use self::compared::FormComparison;
 use self::ideal::IdealAlignments;
 use self::made::{FormMaker, MadeForm, ShapeDistances};
+use crate::collection::LabeledSurface;
 use crate::context::Context;
 use crate::experiment::Experiment;
 use crate::sweep::{MeasuredNumbers, linear, mean, named, note, panel};
@@ -35,7 +34,7 @@ pub(crate) struct FormsOptions {
     samples: usize,
     /// Samples of the form with more of them.
     more_samples: usize,
-    /// Most shapes whose distances between all pairs of vertices are measured.
+    /// Most vertices of shapes whose distances between all pairs of vertices are measured.
     all_pairs: usize,
     /// Most shapes whose forms are all aligned with each other.
     aligned: usize,
@@ -59,7 +58,8 @@ impl Experiment for FormsOptions {
         let labels = Labels::new(&context.collection.labels());
         let distances = ShapeDistances::of(&shapes, self.more_samples, context)?;
         let (mut rows, mut ideals) = (Vec::new(), Vec::new());
-        let is_few = shapes.len() <= self.all_pairs;
+        let is_small = |shape: &&LabeledSurface| shape.surface.mesh().n_vertices() <= self.all_pairs;
+        let is_few = shapes.len() <= self.aligned && shapes.iter().all(is_small);
         for maker in FormMaker::ALL.into_iter().filter(|maker| is_few || !maker.needs_all_pairs()) {
             let made = maker.forms(&shapes, &distances, [self.samples, self.more_samples], context)?;
             for comparison in FormComparison::ALL {
@@ -100,12 +100,7 @@ impl FormScores {
         labels: &Labels,
         context: &Context<'_>,
     ) -> Result<Self> {
-        let start = Instant::now();
         let (distances, seconds) = comparison.distances(made, context)?;
-        let pairs = start.elapsed().as_secs_f64();
-        context.bars.finish();
-        let (maker_name, comparison_name) = (maker.name(), comparison.name());
-        eprintln!("{maker_name}, {comparison_name}: {pairs:.1} s for all pairs");
         let scores = QueryScores::new(&distances, labels)?;
         let options = BootstrapOptions::default();
         Ok(Self {
@@ -132,8 +127,9 @@ fn table(rows: &[FormScores]) -> RecordedTable {
     let one = |row: &FormScores| {
         let FormScores { mean, intervals, silhouettes, seconds, .. } = row;
         let ends = intervals.low.to_array().into_iter().zip(intervals.high.to_array());
-        let score =
-            |(score, (low, high)): (f64, (f64, f64))| format!("{score:.3} ({low:.2}-{high:.2})").as_str().into();
+        let score = |(score, (low, high)): (f64, (f64, f64))| {
+            format!("{score:.3} ({low:.2}-{high:.2})").as_str().into()
+        };
         let mut entries: Vec<TableEntry> = vec![row.maker.name().into(), row.comparison.name().into()];
         entries.extend(mean.to_array().into_iter().zip(ends).map(score));
         entries.extend(silhouettes.map(TableEntry::from));
@@ -158,7 +154,8 @@ fn figure(rows: &[FormScores]) -> CurvesPanel {
         let name = row.maker.name();
         let (mean, intervals) = (row.mean.map, row.intervals);
         let x = place(row.comparison).map_or(0.0, |place| place as f64);
-        let point = SeriesPoint { x, median: mean, low: intervals.low.map, high: intervals.high.map, runs: 1 };
+        let point =
+            SeriesPoint { x, median: mean, low: intervals.low.map, high: intervals.high.map, runs: 1 };
         match series.iter_mut().find(|series| series.name == name) {
             Some(series) => series.points.push(point),
             None => series.push(Series { name: name.to_owned(), points: vec![point] }),
