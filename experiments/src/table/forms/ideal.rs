@@ -11,7 +11,7 @@ use super::made::{FormMaker, MadeForm};
 use crate::collection::LabeledSurface;
 use crate::context::Context;
 use crate::sweep::mean;
-use crate::table::matching::shapes::{PlacedShape, VertexPlaces, built_in};
+use crate::table::matching::shapes::{PlacedShape, built_in};
 
 /// Pairs of either kind.
 const PAIRS: usize = 100;
@@ -57,7 +57,8 @@ impl IdealAlignments {
         };
         let found = |[i, j]: [usize; 2]| align_forms(&prepared[i], &prepared[j], Reflections::Allow);
         let one = |&[i, j]: &[usize; 2]| {
-            let pairs = partners(&wholes[i], &wholes[j], &placed[i], &placed[j]);
+            let n = shapes[i].surface.mesh().n_vertices();
+            let pairs = partners(n, [&wholes[i], &wholes[j]], [&placed[i], &placed[j]]);
             let fits = [false, true].into_iter().filter_map(|reflected| Alignment::fit(&pairs, reflected));
             let fits = fits.map(|fit| (misfit(&pairs, &fit), fit));
             let (partners, fit) = fits.min_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -89,19 +90,17 @@ impl IdealAlignments {
     }
 }
 
-/// Points of the first form and their true partners on the second.
+/// Some of the first `n` points of the first form, the vertices of the shape, and their true partners on the second.
 fn partners(
-    a: &CanonicalForm,
-    b: &CanonicalForm,
-    of_a: &PlacedShape<'_>,
-    of_b: &PlacedShape<'_>,
+    n: usize,
+    [a, b]: [&CanonicalForm; 2],
+    placed: [&PlacedShape<'_>; 2],
 ) -> Vec<(Point3<f64>, Point3<f64>)> {
-    let places: [&VertexPlaces; 2] = [&of_a.places, &of_b.places];
     let partner = |x: usize| {
-        let y = places[0].partner(x, places[1], MapKind::Direct)?;
+        let y = placed[0].places.partner(x, &placed[1].places, MapKind::Direct)?;
         Some((*a.points().get(x)?, *b.points().get(y)?))
     };
-    (0..a.points().len()).step_by(STRIDE).filter_map(partner).collect()
+    (0..n).step_by(STRIDE).filter_map(partner).collect()
 }
 
 fn misfit(pairs: &[(Point3<f64>, Point3<f64>)], fit: &Alignment) -> f64 {
