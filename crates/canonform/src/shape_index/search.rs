@@ -271,7 +271,7 @@ impl ShapeSearch {
     /// The shapes into which a part fits best, of all.
     fn by_part(&self, part: &PartDiscAreas, wanted: usize, budget: &Budget) -> Result<Shortlist, Error> {
         let fit = |id: &str| {
-            let areas = disc_areas(&self.index.vectors(&id)?);
+            let areas = disc_areas(&self.index.vectors(id)?);
             let missing = || Error::NoDiscAreas { path: self.index.path().to_owned(), id: id.to_owned() };
             let PartDistance { distance, share } = part.distance(&areas.ok_or_else(missing)?);
             let as_part = Some(PartRank { part_distance: distance, part_share: share });
