@@ -5,14 +5,14 @@ use canonform::{EmbedMethod, Embedded, FormOptions, Samples, Surface, embed};
 use descriptors::CanonicalForm;
 use linalg::LandmarkDistances;
 use nmds::{
-    Bandwidth, Embedding, KernelPcaOptions, LandmarkSmacofOptions, NystromOptions, kernel_pca, landmark_mds,
-    landmark_smacof, nystrom,
+    Bandwidth, Embedding, KernelPcaOptions, LandmarkSmacofOptions, NystromOptions, SmacofOptions, kernel_pca,
+    landmark_mds, landmark_smacof, nystrom,
 };
 
 use crate::collection::{LabeledSurface, map};
 use crate::context::Context;
 use crate::specimen::DIM;
-use crate::sweep::timed;
+use crate::sweep::{half, timed};
 
 /// Points of a form that are compared, as many as an index stores.
 const POINTS: usize = 1000;
@@ -126,8 +126,12 @@ impl FormMaker {
     fn form(self, shape: &ShapeDistances, [usual, more]: [usize; 2]) -> Result<(CanonicalForm, f64)> {
         let n = if self == Self::MoreSamples { more } else { usual };
         if self.needs_all_pairs() {
-            let method = EmbedMethod::named(if self == Self::Smacof { "smacof" } else { "classical" });
-            let method = method.context("a method")?;
+            let method = match self {
+                Self::Smacof => {
+                    EmbedMethod::Smacof { regularization: half(n), descent: SmacofOptions::default() }
+                }
+                _ => EmbedMethod::Classical,
+            };
             let options = FormOptions { method, samples: Samples::Count(n), ..FormOptions::default() };
             let (embedded, seconds) = timed(|| embed(&shape.surface, &options, &()))?;
             return Ok((embedded.form(&shape.surface)?, seconds));
