@@ -10,7 +10,9 @@ use base::terminal::Bars;
 use canonform::{DescribeOptions, Observer};
 use geodesics::{Sampling, Variance};
 use linalg::LandmarkDistances;
-use report::results::{CurvesPanel, CurvesResults, Expectation, Published, Record, RunProvenance, Series};
+use report::results::{
+    CurvesPanel, CurvesResults, Expectation, Published, Record, RecordedTable, RunProvenance, Series,
+};
 use report::{Results, save};
 use serde_json::{Map, Value};
 
@@ -162,10 +164,21 @@ impl Context<'_> {
         provenance: RunProvenance,
         measured: &MeasuredNumbers,
     ) -> Result<()> {
+        self.publish_with_tables(panels, Vec::new(), provenance, measured)
+    }
+
+    /// Publishes curves under the configured caption, with tables of their own.
+    pub(crate) fn publish_with_tables(
+        &self,
+        panels: Vec<CurvesPanel>,
+        tables: Vec<RecordedTable>,
+        provenance: RunProvenance,
+        measured: &MeasuredNumbers,
+    ) -> Result<()> {
         let number = |name: &str| self.known(measured).get(name).copied();
         let caption = filled(&self.config.findings.caption, number);
         let caption = caption.map_err(|name| anyhow!("the caption: nothing measures `{name}`"))?;
-        self.publish(CurvesResults { caption, panels }, provenance, measured)
+        self.publish(CurvesResults { caption, panels, tables }, provenance, measured)
     }
 
     /// Publishes a panel for every specimen, and its numbers after the class; each panel is `steps` of progress.

@@ -160,13 +160,25 @@ fn refined_fully(a: &PreparedForm, b: &PreparedForm, start: Alignment) -> FormAl
 
 /// Signed permutations of the principal axes that may bring `a` onto `b`.
 fn hypotheses(a: &PreparedForm, b: &PreparedForm, reflections: Reflections) -> Vec<Alignment> {
+    // Principal axes may be left-handed: then a motion between them reflects if the motion in space does not.
+    let flipped = a.to_principal.reflected != b.to_principal.reflected;
+    let mut motions = axis_motions(a.axis_spread, b.axis_spread);
+    motions.retain(|motion| match reflections {
+        Reflections::Allow => true,
+        Reflections::Forbid => motion.reflected == flipped,
+        Reflections::Require => motion.reflected != flipped,
+    });
+    motions
+}
+
+/// The 8 to 48 motions of the principal axes of a form onto those of another, with these spreads: all signs, and exchanges of
+/// axes with near-equal spreads in both forms.
+pub(crate) fn axis_motions(a: [f64; 3], b: [f64; 3]) -> Vec<Alignment> {
     const PERMUTATIONS: [[usize; 3]; 6] = [[0, 1, 2], [1, 0, 2], [0, 2, 1], [2, 1, 0], [1, 2, 0], [2, 0, 1]];
     let exchangeable = |i: usize, j: usize| {
         let near = |spread: [f64; 3]| spread[i.min(j)] <= NEAR_EQUAL_AXES * spread[i.max(j)];
-        near(a.axis_spread) && near(b.axis_spread)
+        near(a) && near(b)
     };
-    // Principal axes may be left-handed: then a motion between them reflects if the motion in space does not.
-    let flipped = a.to_principal.reflected != b.to_principal.reflected;
     let mut motions = Vec::new();
     for permutation in PERMUTATIONS {
         let allowed = (0..3).all(|i| {
@@ -184,15 +196,7 @@ fn hypotheses(a: &PreparedForm, b: &PreparedForm, reflections: Reflections) -> V
             for (i, j) in permutation.into_iter().enumerate() {
                 matrix[(i, j)] = if signs >> i & 1 == 0 { 1.0 } else { -1.0 };
             }
-            let motion = Alignment::about_origin(matrix);
-            let allowed = match reflections {
-                Reflections::Allow => true,
-                Reflections::Forbid => motion.reflected == flipped,
-                Reflections::Require => motion.reflected != flipped,
-            };
-            if allowed {
-                motions.push(motion);
-            }
+            motions.push(Alignment::about_origin(matrix));
         }
     }
     motions

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! nmds::Embedding -> CanonicalForm -> PreparedForm -> align_forms -> FormAlignment
+//! CanonicalForm -> FormViews, another way to compare forms
 //! CanonicalForm, linalg::LandmarkDistances, LaplaceSpectrum -> Signature -> ShapeMetric::fuse
 //! fused vector, form -> PreparedShape -> ShapePair (alignments, each found once) -> ShapeDistance
 //! ```
@@ -21,6 +22,7 @@ mod shape_pair;
 mod signature;
 mod spectrum;
 mod spread;
+mod views;
 
 pub use align::{FormAlignment, Reflections, align_forms, align_near_forms, alignments};
 pub use alignment::Alignment;
@@ -37,3 +39,4 @@ pub use signature::{
     rigid_signature, shape_dna, wave_kernel_signature, wave_kernels,
 };
 pub use spectrum::LaplaceSpectrum;
+pub use views::FormViews;

@@ -15,6 +15,7 @@
 //! | [`classical`], [`classical_full`] | all p x p distances | Torgerson 1952 |
 //! | [`OutOfSample`] | distances from further points to the n samples of [`nystrom`] | Bengio et al. 2003 |
 //! | [`smacof`] | all p x p distances, and a start | de Leeuw 1977 |
+//! | [`landmark_smacof`] | distances from n samples to all p points, and a start | the same; Sammon 1969 |
 //!
 //! [`SampleSearch`] finds how many samples are enough.
 //! [`LandmarkMetric`] approximates all pairs of distances from the same n columns, with bounds, instead of embedding them.
@@ -27,6 +28,7 @@ mod fmds;
 mod kernel_pca;
 mod landmark;
 mod landmark_metric;
+mod landmark_smacof;
 mod nystrom;
 mod out_of_sample;
 mod passes;
@@ -51,6 +53,7 @@ pub use landmark_metric::{
     BoundsParts, ColumnError, FactorParts, Interval, LandmarkBounds, LandmarkMetric, PairEstimate,
     SqDistanceFactors,
 };
+pub use landmark_smacof::{LandmarkSmacofOptions, landmark_smacof};
 pub use nystrom::{NystromOptions, nystrom, nystrom_extended};
 pub use out_of_sample::OutOfSample;
 pub use reconstruction::{Reconstruction, ReconstructionError, sample_eigenvalues};

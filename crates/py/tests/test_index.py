@@ -48,6 +48,13 @@ def test_a_part_finds_its_class(index: Index, collection: Path) -> None:
     assert index.search(part)[0].part_distance is None
 
 
+def test_forms_alone_order_results(index: Index) -> None:
+    found = index.search("cat1", rank="forms")
+    distances = [result.form_distance for result in found]
+    assert found[0].id == "cat1" and None not in distances and distances == sorted(distances)
+    assert index.search("cat1")[0].form_distance is None
+
+
 def test_results_go_to_pandas(index: Index) -> None:
     frame = index.search("cat0", k=4).to_pandas()
     assert list(frame.columns) == ["id", "label", "distance", "fused", "relation", "path"]

@@ -6,6 +6,7 @@ use crate::figure::{Figure, FigurePanels, Plot, PlotPoint, PlotSeries, SeriesKin
 use crate::record::Results;
 use crate::results::{CurvesPanel, CurvesResults, Series, SeriesPoint};
 use crate::table::{Cell, Table, significant};
+use crate::tables::shown;
 
 /// The distinct names of the series of all panels.
 fn series_names(panels: &[CurvesPanel]) -> Classes<'_> {
@@ -63,7 +64,7 @@ impl Results for CurvesResults {
         vec![Figure { part: "-curves", caption: self.caption.clone(), panels: FigurePanels::Plots(plots) }]
     }
 
-    /// One table per panel with every point of every curve.
+    /// The tables of the record, and one per panel with every point of every curve.
     fn tables(&self) -> Vec<Table> {
         let table = |panel: &CurvesPanel| {
             let points = panel.series.iter().flat_map(|s| s.points.iter().map(move |p| (&s.name, p)));
@@ -78,11 +79,15 @@ impl Results for CurvesResults {
             Table::new(format!("{}{unit}.", panel.y.name), headings, points.map(row).collect())
                 .folded(&panel.title)
         };
-        self.panels.iter().map(table).collect()
+        self.tables.iter().map(shown).chain(self.panels.iter().map(table)).collect()
     }
 
-    /// The medians of all curves side by side, one row per panel and place on the horizontal axis.
+    /// The first table of the record or, without one, the medians of all curves side by side, one row per panel and place on
+    /// the horizontal axis.
     fn summary(&self) -> Option<Table> {
+        if let Some(table) = self.tables.first() {
+            return Some(shown(table));
+        }
         let names = series_names(&self.panels);
         let rows = self.panels.iter().flat_map(|panel| {
             let mut places: Vec<f64> =

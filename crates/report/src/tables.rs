@@ -15,7 +15,8 @@ fn cell(entry: &TableEntry) -> Cell {
     }
 }
 
-fn shown(table: &RecordedTable) -> Table {
+/// The table of a record.
+pub(crate) fn shown(table: &RecordedTable) -> Table {
     let rows = table.rows.iter().map(|row| row.iter().map(cell).collect()).collect();
     let headings = table.headings.iter().map(String::as_str);
     Table { folded: table.folded.clone(), ..Table::new(&table.caption, headings, rows) }

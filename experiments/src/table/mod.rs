@@ -9,6 +9,7 @@ mod figure6;
 mod figure7;
 mod figure8;
 mod figure9;
+mod forms;
 mod invariance;
 mod matching;
 mod partial;
@@ -72,6 +73,7 @@ table! {
     "figure8" "Figure 8. Time against the number of samples" charts::<CurvesResults>, figure8::Figure8Options;
     "figure9" "Figure 9. Time and memory of whole embeddings" charts::<Figure9Results>, figure9::Figure9Options;
     "retrieval" "Retrieval. Classification by signatures and canonical forms" charts::<RetrievalResults>, retrieve::RetrievalOptions;
+    "forms" "Forms. Retrieval by canonical forms alone" charts::<CurvesResults>, forms::FormsOptions;
     "invariance" "Invariance. Retrieval of damaged shapes" charts::<InvarianceResults>, invariance::InvarianceOptions;
     "robustness" "Robustness. Scores of damaged shapes" charts::<CurvesResults>, robustness::RobustnessOptions;
     "matching" "Matching. Dense maps between poses" charts::<CurvesResults>, matching::MatchingOptions;

@@ -116,7 +116,7 @@ fn pages_are_short() {
     assert!(words(&root.join("README.md")) < 700);
     assert!(words(&root.join("ARCHITECTURE.md")) <= 1000);
     let decisions = pages(&root.join("docs/decisions"));
-    assert!(decisions.len() <= 26, "more than 25 decisions and their introduction");
+    assert!(decisions.len() <= 27, "more than 26 decisions and their introduction");
     for page in decisions {
         assert!(words(&page) <= 250, "{} has {} words", page.display(), words(&page));
     }

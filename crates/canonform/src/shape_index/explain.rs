@@ -130,6 +130,7 @@ impl ShapeSearch {
                 fused: distance.fused,
                 on_graph: None,
                 as_part: None,
+                form_distance: None,
                 relation: self.related(query, id, relation)?.to_component(n_components),
                 comparison: None,
             });

@@ -36,6 +36,9 @@ pub enum SearchRank {
     /// By how well the query fits as a part of the shape. Compares the query with every shape of the index, which must store
     /// disc areas, and needs the mesh or the surface of the query.
     Part,
+    /// By canonical forms alone, as they look from a few directions ([`descriptors::FormViews`]). Compares the query with every
+    /// shape of the index.
+    Forms,
 }
 
 impl FromStr for SearchRank {
@@ -46,7 +49,8 @@ impl FromStr for SearchRank {
             "plain" => Ok(Self::Plain),
             "graph" => Ok(Self::Graph),
             "part" => Ok(Self::Part),
-            _ => Err("use `plain`, `graph` or `part`".to_owned()),
+            "forms" => Ok(Self::Forms),
+            _ => Err("use `plain`, `graph`, `part` or `forms`".to_owned()),
         }
     }
 }

@@ -275,6 +275,7 @@ mod tests {
             fused: distance,
             on_graph: None,
             as_part: None,
+            form_distance: None,
             relation: Relation::by_distance(shape, 1.0, Handedness::Unknown),
             comparison: None,
         }

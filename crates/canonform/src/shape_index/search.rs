@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use base::{Budget, Observer};
 use collection::Storage;
-use descriptors::{PartDiscAreas, PartDistance, PreparedShape, ShapeMetric, ShapePair};
+use descriptors::{FormViews, PartDiscAreas, PartDistance, PreparedShape, ShapeMetric, ShapePair};
 use index::{Found, FoundOnGraph, Index, RankedShape, SearchMode, ShapeEntry};
 use mesh::TriMesh;
 use mesh::io::FileSource;
@@ -133,7 +133,7 @@ impl ShapeSearch {
     }
 
     /// Finds the shapes nearest to a query: candidates by fused signatures, ordered as the options say by aligned forms, by
-    /// their places on the graph of nearest neighbours, or as wholes of which the query is a part.
+    /// their places on the graph of nearest neighbours, as wholes of which the query is a part, or by forms alone.
     ///
     /// ```
     /// use canonform::{BuildOptions, DescribeOptions, Query, SearchOptions, ShapeSearch, build_index, mesh};
@@ -196,13 +196,14 @@ impl ShapeSearch {
                 let part = query.part.as_ref().ok_or(Error::NoPart)?;
                 self.by_part(part, wanted, budget)?
             }
+            SearchRank::Forms => self.by_forms(&query.shape, wanted, budget)?,
         };
         let found = self.aligned(&query.shape, shortlist, wanted, budget)?;
         let result = |(place, (ranked, order)): (usize, &(Ranked, Order))| {
             let id = found.ids[ranked.index].clone();
             let ShapeEntry { label, path, .. } = self.index.entry(&id)?;
             let Ranked { distance, fused, shape_distance, scale, .. } = *ranked;
-            let Order { on_graph, as_part } = *order;
+            let Order { on_graph, as_part, form_distance } = *order;
             let relation = Relation::by_distance(shape_distance, scale, Handedness::Unknown);
             let (rank, relation, comparison) = (place + 1, relation.named(query.name, &id), None);
             Ok(SearchResult {
@@ -214,6 +215,7 @@ impl ShapeSearch {
                 fused,
                 on_graph,
                 as_part,
+                form_distance,
                 relation,
                 comparison,
             })
@@ -268,27 +270,47 @@ impl ShapeSearch {
 
     /// The shapes into which a part fits best, of all.
     fn by_part(&self, part: &PartDiscAreas, wanted: usize, budget: &Budget) -> Result<Shortlist, Error> {
+        let fit = |id: &str| {
+            let areas = disc_areas(&self.index.vectors(id)?);
+            let missing = || Error::NoDiscAreas { path: self.index.path().to_owned(), id: id.to_owned() };
+            let PartDistance { distance, share } = part.distance(&areas.ok_or_else(missing)?);
+            let as_part = Some(PartRank { part_distance: distance, part_share: share });
+            Ok((distance, Order { as_part, ..Order::default() }))
+        };
+        self.by_all(wanted, budget, fit)
+    }
+
+    /// The shapes whose forms look most alike, of all.
+    fn by_forms(&self, query: &PreparedShape, wanted: usize, budget: &Budget) -> Result<Shortlist, Error> {
+        let views = FormViews::new(query.form());
+        let alike = |id: &str| {
+            let distance = views.distance(&FormViews::new(self.prepared(id)?.form()));
+            Ok((distance, Order { form_distance: Some(distance), ..Order::default() }))
+        };
+        self.by_all(wanted, budget, alike)
+    }
+
+    /// The first shapes by a distance that is measured from every shape of the index.
+    fn by_all(
+        &self,
+        wanted: usize,
+        budget: &Budget,
+        measured: impl Fn(&str) -> Result<(f64, Order), Error> + Sync,
+    ) -> Result<Shortlist, Error> {
         let ids: Vec<String> = self.index.entries()?.into_iter().map(|(id, _)| id).collect();
         let n_shapes = ids.len();
-        let fit = |id: String| {
+        let one = |id: String| {
             budget.check()?;
-            let areas = disc_areas(&self.index.vectors(&id)?);
-            let missing = || Error::NoDiscAreas { path: self.index.path().to_owned(), id: id.clone() };
-            let distance = part.distance(&areas.ok_or_else(missing)?);
-            Ok((distance, id))
+            Ok((measured(&id)?, id))
         };
-        let mut fits = ids.into_par_iter().map(fit).collect::<Result<Vec<_>, Error>>()?;
+        let mut found = ids.into_par_iter().map(one).collect::<Result<Vec<_>, Error>>()?;
         // Names are in order, so equal distances keep it.
-        fits.sort_by(|(a, _), (b, _)| a.distance.total_cmp(&b.distance));
-        fits.truncate(wanted);
-        let order = |(PartDistance { distance, share }, _): &(PartDistance, String)| Order {
-            as_part: Some(PartRank { part_distance: *distance, part_share: *share }),
-            ..Order::default()
-        };
-        let orders = Some(fits.iter().map(order).collect());
+        found.sort_by(|((a, _), _), ((b, _), _)| a.total_cmp(b));
+        found.truncate(wanted);
+        let orders = Some(found.iter().map(|((_, order), _)| *order).collect());
         let search =
             Found { shapes: Vec::new(), n_measured: n_shapes, n_shapes, recall: 1.0, threshold: None };
-        Ok(Shortlist { ids: fits.into_iter().map(|(_, id)| id).collect(), orders, search })
+        Ok(Shortlist { ids: found.into_iter().map(|(_, id)| id).collect(), orders, search })
     }
 
     /// Aligns the forms of a shortlist: of as many as are needed for the `wanted` nearest by combined distance, or of all of
@@ -327,6 +349,7 @@ impl ShapeSearch {
 struct Order {
     on_graph: Option<GraphRank>,
     as_part: Option<PartRank>,
+    form_distance: Option<f64>,
 }
 
 /// Shapes that may be results.
@@ -430,6 +453,25 @@ mod tests {
         let fault = search.search(Query::from(&query), &SearchOptions::default(), &()).unwrap_err();
         assert!(matches!(fault, Error::Index(IndexError::OtherOptions { .. })));
         assert!(fault.to_string().contains("\"points\":500"), "{fault}");
+    }
+
+    #[test]
+    fn forms_alone_rank_every_shape_and_a_mirror_image_is_the_same() {
+        let (_folder, search) = indexed(&DescribeOptions::default());
+        let options = SearchOptions { rank_by: SearchRank::Forms, ..SearchOptions::default() };
+        let by_name = search.search(Query::Id("ring0"), &options, &()).unwrap();
+        assert_eq!((by_name.rank_by, by_name.results.len(), by_name.measured), (SearchRank::Forms, 4, 4));
+        let distance = |found: &SearchResult| found.form_distance.unwrap();
+        assert!(by_name.results.windows(2).all(|pair| distance(&pair[0]) <= distance(&pair[1])));
+        assert!(by_name.results[0].id == "ring0" && distance(&by_name.results[0]) < 1e-6);
+        assert_eq!(by_name.results[1].id, "ring1");
+        let mut mirrored = search.mesh("ring0").unwrap();
+        mirrored.positions.iter_mut().for_each(|p| (p.x, p.y) = (-3.0 * p.x, 3.0 * p.y));
+        mirrored.positions.iter_mut().for_each(|p| p.z *= 3.0);
+        let by_mesh = search.search(Query::from(&mirrored), &options, &()).unwrap();
+        assert!(by_mesh.results[0].id == "ring0" && distance(&by_mesh.results[0]) < 0.02);
+        let plain = search.search(Query::Id("ring0"), &SearchOptions::default(), &()).unwrap();
+        assert!(plain.results.iter().all(|found| found.form_distance.is_none()));
     }
 
     #[test]

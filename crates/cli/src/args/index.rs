@@ -171,8 +171,8 @@ pub(crate) struct SearchArgs {
     pub(crate) exact: bool,
     /// How to order results: `plain`, by distance; `graph`, by distance of signatures and by the neighbours that query
     /// and shape have in common; `part`, by how well the query fits as a part of the shape, for a mesh that was cut or
-    /// scanned in part; compares it with every shape
-    #[arg(long, value_name = "plain|graph|part", default_value = "plain")]
+    /// scanned in part; `forms`, by canonical forms alone; the last two compare it with every shape
+    #[arg(long, visible_alias = "by", value_name = "plain|graph|part|forms", default_value = "plain")]
     pub(crate) rank: SearchRank,
 }
 

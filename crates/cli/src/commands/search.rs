@@ -165,6 +165,7 @@ fn text(query: String, report: &SearchReport, details: bool) -> String {
         SearchRank::Graph => {
             "  ordered by rank distance: signatures and neighbours in common; `plain` is the rank by signatures\n"
         }
+        SearchRank::Forms => "  ordered by form distance: how different the canonical forms alone look\n",
         SearchRank::Part => {
             "  ordered by part distance: how well the query fits as a part; `share` is its share of the shape\n"
         }
@@ -207,6 +208,7 @@ fn table(report: &SearchReport) -> comfy_table::Table {
         SearchRank::Plain => {}
         SearchRank::Graph => drop(head.splice(3..3, ["rank distance", "plain"])),
         SearchRank::Part => drop(head.splice(3..3, ["part distance", "share"])),
+        SearchRank::Forms => head.insert(3, "form distance"),
     }
     if !has_classes {
         head.remove(2);
@@ -227,6 +229,9 @@ fn table(report: &SearchReport) -> comfy_table::Table {
         if let Some(found) = result.as_part {
             let share = format!("{:.0} %", 100.0 * found.part_share);
             row.splice(3..3, [format!("{:.4}", found.part_distance), share]);
+        }
+        if let Some(distance) = result.form_distance {
+            row.insert(3, format!("{distance:.4}"));
         }
         if !has_classes {
             row.remove(2);

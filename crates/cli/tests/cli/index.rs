@@ -267,6 +267,12 @@ fn an_index_is_verified_described_and_scored() {
     assert_eq!(found["results"][0]["part_share"], 1.0);
     let text = place.done("search all.canonform --id ring1 --rank part").out;
     assert!(text.contains("part distance") && text.contains("100 %"), "{text}");
+    let found = place.found("all.canonform --id ring1 --by forms");
+    assert_eq!((&found["rank_by"], &found["results"][0]["id"]), (&"forms".into(), &"ring1".into()));
+    let distance = |i: usize| found["results"][i]["form_distance"].as_f64().unwrap();
+    assert!(distance(0) < 1e-6 && (1..9).all(|i| distance(i - 1) <= distance(i)));
+    let text = place.done("search all.canonform --id ring1 --rank forms").out;
+    assert!(text.contains("form distance") && text.contains("forms alone"), "{text}");
     place.refused("search all.canonform --id ring1 --rank best", &["best", "`part`"]);
     assert_eq!((&scores["nn"], &scores["map"], &scores["n"]), (&1.0.into(), &1.0.into(), &9.into()));
     let dna = place.json("evaluate all.canonform --by shape-dna");

@@ -98,6 +98,8 @@ class Result:
         What results are ordered by if the query is taken as a part: 0 if it fits.
     part_share
         The share of the area of the shape that the query has if it is taken as a part.
+    form_distance
+        What results are ordered by if they are ranked by canonical forms alone.
     """
 
     rank: int
@@ -110,6 +112,7 @@ class Result:
     rank_distance: float | None
     part_distance: float | None
     part_share: float | None
+    form_distance: float | None
 
 
 class SearchResults(Stored, Sequence[Result]):
@@ -126,7 +129,7 @@ class SearchResults(Stored, Sequence[Result]):
         self._results = [
             Result(
                 **{key: found[key] for key in ("rank", "id", "label", "path", "distance", "fused", "relation")},
-                **{key: found.get(key) for key in ("rank_distance", "part_distance", "part_share")},
+                **{key: found.get(key) for key in ("rank_distance", "part_distance", "part_share", "form_distance")},
             )
             for found in report["results"]
         ]
@@ -380,7 +383,8 @@ class Index(Stored):
             Number of results.
         rank
             "plain" orders results by distance, "graph" by distance and by the neighbours that query and shape have in common,
-            "part" by how well the query fits as a part of the shape, for a mesh that was cut or scanned in part.
+            "part" by how well the query fits as a part of the shape, for a mesh that was cut or scanned in part, "forms" by
+            canonical forms alone.
         explain
             Say how each result is related to the query, as `compare` does; reads the mesh files of the results.
         exact

@@ -33,7 +33,7 @@ SignatureKind: TypeAlias = Literal[
     "fused", "moments", "d2", "geodesic-spectrum", "shape-dna", "heat-kernel", "wave-kernel", "rigid"
 ]
 IndexDistance: TypeAlias = Literal["combined", "fused"]
-Ranking: TypeAlias = Literal["plain", "graph", "part"]
+Ranking: TypeAlias = Literal["plain", "graph", "part", "forms"]
 RelationKind: TypeAlias = Literal[
     "identical-file", "identical-geometry", "scaled", "mirrored", "noisy", "remeshed",
     "copies", "part-of", "variant", "other-pose", "same-class", "different",

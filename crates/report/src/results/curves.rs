@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::tables::RecordedTable;
+
 /// Curves over one quantity, in one or more panels: Figures 5 to 8 of the paper.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct CurvesResults {
@@ -9,6 +11,9 @@ pub struct CurvesResults {
     pub caption: String,
     /// The panels, in reading order.
     pub panels: Vec<CurvesPanel>,
+    /// Tables that stand before those of the panels; a run prints the first of them in place of the medians.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tables: Vec<RecordedTable>,
 }
 
 /// One plot.

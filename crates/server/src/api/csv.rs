@@ -10,6 +10,7 @@ pub(super) fn of(query: &str, report: &SearchReport) -> String {
         SearchRank::Plain => "\r\n",
         SearchRank::Graph => ",rank_distance\r\n",
         SearchRank::Part => ",part_distance,part_share\r\n",
+        SearchRank::Forms => ",form_distance\r\n",
     };
     for found in &report.results {
         let (rank, distance, fused) =
@@ -17,7 +18,8 @@ pub(super) fn of(query: &str, report: &SearchReport) -> String {
         let fields = [query, &rank, &found.id, &found.label, &found.path, &distance, &fused];
         let on_graph = found.on_graph.into_iter().map(|order| order.rank_distance);
         let as_part = found.as_part.into_iter().flat_map(|fit| [fit.part_distance, fit.part_share]);
-        let order: Vec<String> = on_graph.chain(as_part).map(|number| number.to_string()).collect();
+        let order: Vec<String> =
+            on_graph.chain(as_part).chain(found.form_distance).map(|number| number.to_string()).collect();
         let fields: Vec<String> =
             fields.into_iter().chain(order.iter().map(String::as_str)).map(csv_field).collect();
         text += &(fields.join(",") + "\r\n");

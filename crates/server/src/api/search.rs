@@ -70,7 +70,7 @@ impl SearchParams {
                 "k" => self.k = Some(text.parse().map_err(|_| wrong("a number"))?),
                 "exact" => self.exact = Some(choice()?),
                 "explain" => self.explain = Some(choice()?),
-                "rank" => self.rank = Some(text.parse().map_err(|_| wrong("plain, graph or part"))?),
+                "rank" => self.rank = Some(text.parse().map_err(|_| wrong("plain, graph, part or forms"))?),
                 "geometry" => self.geometry = Some(choice()?),
                 "format" => {
                     self.format = Some(match text.as_str() {

@@ -198,9 +198,11 @@ fn an_upload_can_be_searched_again_and_exported() {
     let shape = get(&server, "/api/search?shape=ring0&geometry=false&exact=true").json();
     description.check("get", "/api/search", 200, &shape);
     assert_eq!((ids(&shape)[0], &shape["mesh"]), ("ring0", &Value::Null));
-    for (rank, key, columns) in
-        [("graph", "rank_distance", ",rank_distance"), ("part", "part_share", ",part_distance,part_share")]
-    {
+    for (rank, key, columns) in [
+        ("graph", "rank_distance", ",rank_distance"),
+        ("part", "part_share", ",part_distance,part_share"),
+        ("forms", "form_distance", ",form_distance"),
+    ] {
         let found = get(&server, &format!("/api/search?shape=ring0&geometry=false&rank={rank}")).json();
         description.check("get", "/api/search", 200, &found);
         assert_eq!((ids(&found)[0], &found["rank_by"]), ("ring0", &rank.into()));

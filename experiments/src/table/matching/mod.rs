@@ -17,7 +17,7 @@
 //! `A to B`, the mean error of a direct map; `preparation seconds`; and `worst direct`, the largest mean error of a group.
 
 mod errors;
-mod shapes;
+pub(super) mod shapes;
 
 use anyhow::{Context as _, Result};
 use canonform::CorrespondOptions;

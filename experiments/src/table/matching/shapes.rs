@@ -32,14 +32,14 @@ const TOUCHING: &str = "person";
 const DIFFERENT: &str = "bodies";
 
 /// A shape with the place of every vertex on a surface on which all shapes of its group correspond.
-pub(super) struct PlacedShape<'a> {
+pub(in crate::table) struct PlacedShape<'a> {
     pub(super) name: String,
     pub(super) surface: Cow<'a, Surface>,
-    pub(super) places: VertexPlaces,
+    pub(in crate::table) places: VertexPlaces,
 }
 
 /// Where the vertices of a shape are on a common surface.
-pub(super) enum VertexPlaces {
+pub(in crate::table) enum VertexPlaces {
     Unknown,
     /// On one of the shapes.
     Known(NearestPoints),
@@ -55,7 +55,7 @@ pub(super) struct MapGroup<'a> {
 
 impl VertexPlaces {
     /// The true partner of vertex `x` among the vertices of `to`, directly or mirrored; `None` if it is not known.
-    pub(super) fn partner(&self, x: usize, to: &Self, kind: MapKind) -> Option<usize> {
+    pub(in crate::table) fn partner(&self, x: usize, to: &Self, kind: MapKind) -> Option<usize> {
         match (self, to, kind) {
             (Self::Symmetric(from), Self::Symmetric(to), MapKind::Mirrored) => {
                 let p = from.points()[x];
@@ -122,7 +122,7 @@ impl<'a> MapGroup<'a> {
 }
 
 /// A shape of the collection with its vertices on the body at rest.
-fn built_in(shape: &LabeledSurface, seed: u64) -> Result<PlacedShape<'_>> {
+pub(in crate::table) fn built_in(shape: &LabeledSurface, seed: u64) -> Result<PlacedShape<'_>> {
     let family = Family::all().into_iter().find(|family| family.name() == shape.label);
     let family = family.context("a built-in family")?;
     let pose = shape.name.strip_prefix(family.name()).and_then(|pose| pose.parse().ok()).context("a pose")?;
