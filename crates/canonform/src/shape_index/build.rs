@@ -243,36 +243,14 @@ pub fn build_index(
     observer: &dyn Observer,
 ) -> Result<BuildReport, Error> {
     let start = Instant::now();
-    options.describe.validate()?;
-    let text = options.describe.text();
-    // Refuse other options before any mesh is read.
-    let existing = match Index::open(path) {
-        Ok(index) => index.expect_options(&text).map(|()| Some(index))?,
-        // The writer takes care of an index that cannot be read.
-        Err(IndexError::Damaged { .. } | IndexError::PastVersion { .. }) => None,
-        Err(IndexError::Io { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => None,
-        Err(fault) => return Err(fault.into()),
-    };
     let home = Home::of(path)?;
     let root = Root::new(folder, &home)?;
-    let mut listing = Listing::of_folder(&root, options.labels)?;
-    listing.shapes = share(listing.shapes, options.shard);
-    if let Some(only) = options.only {
-        listing.shapes.retain(|listed| only.contains(&listed.file.name));
-    }
-    let mut report = BuildReport::of(&listing);
-    let hashed = hash_all(listing.shapes, observer);
-    if let Some(index) = &existing
-        && !work_path(path).exists()
-        && let Some(elsewhere) = is_current(index, &hashed, &root, options.elsewhere)?
-    {
-        let ids = hashed.iter().map(|(listed, _)| &listed.file.name);
-        report.list_dropped(path, ids, |id| index.entry(id).map(Some))?;
-        (report.n_shapes, report.unchanged, report.elsewhere) = (index.len(), hashed.len(), elsewhere);
+    let (hashed, mut report, is_done) = compared_with_index(&root, path, options, observer)?;
+    if is_done {
         report.seconds = start.elapsed().as_secs_f64();
         return Ok(report);
     }
-    drop(existing);
+    let text = options.describe.text();
     let mut writer = IndexWriter::open(path, Job::Build, Some(&text))?;
     report.resumed = writer.is_resumed();
     report.replaced_damaged = writer.replaces_damaged();
@@ -305,6 +283,56 @@ pub fn build_index(
     }
     report.seconds = start.elapsed().as_secs_f64();
     Ok(report)
+}
+
+/// The report of a [`build_index`] that would have nothing to do; `None` if it would change the index, or make one.
+///
+/// # Errors
+/// As for [`build_index`].
+pub fn unchanged_index(
+    folder: &Path,
+    path: &Path,
+    options: &BuildOptions<'_>,
+    observer: &dyn Observer,
+) -> Result<Option<BuildReport>, Error> {
+    let home = Home::of(path)?;
+    let (_, report, is_done) = compared_with_index(&Root::new(folder, &home)?, path, options, observer)?;
+    Ok(is_done.then_some(report))
+}
+
+/// The hashed files of a folder, the report on them before anything is described, and whether the index holds just these.
+fn compared_with_index(
+    root: &Root<'_>,
+    path: &Path,
+    options: &BuildOptions<'_>,
+    observer: &dyn Observer,
+) -> Result<(Vec<Hashed>, BuildReport, bool), Error> {
+    options.describe.validate()?;
+    // Refuse other options before any mesh is read.
+    let existing = match Index::open(path) {
+        Ok(index) => index.expect_options(&options.describe.text()).map(|()| Some(index))?,
+        // The writer takes care of an index that cannot be read.
+        Err(IndexError::Damaged { .. } | IndexError::PastVersion { .. }) => None,
+        Err(IndexError::Io { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => None,
+        Err(fault) => return Err(fault.into()),
+    };
+    let mut listing = Listing::of_folder(root, options.labels)?;
+    listing.shapes = share(listing.shapes, options.shard);
+    if let Some(only) = options.only {
+        listing.shapes.retain(|listed| only.contains(&listed.file.name));
+    }
+    let mut report = BuildReport::of(&listing);
+    let hashed = hash_all(listing.shapes, observer);
+    let Some(index) = existing.filter(|_| !work_path(path).exists()) else {
+        return Ok((hashed, report, false));
+    };
+    let Some(elsewhere) = is_current(&index, &hashed, root, options.elsewhere)? else {
+        return Ok((hashed, report, false));
+    };
+    let ids = hashed.iter().map(|(listed, _)| &listed.file.name);
+    report.list_dropped(path, ids, |id| index.entry(id).map(Some))?;
+    (report.n_shapes, report.unchanged, report.elsewhere) = (index.len(), hashed.len(), elsewhere);
+    Ok((hashed, report, true))
 }
 
 /// The shapes that [`build_index`] finds in a folder, with the names and classes that they get, without reading any mesh.
