@@ -57,8 +57,8 @@ def test_two_workers_find_what_one_index_finds(
     table = tmp_path / "shapes.lance"
     made = vector_table(shards, table)
     assert made == {"n_shapes": 9, "changed": 9, "partitions": 0, "probes": 0, "recall": 1.0}
-    for query in (collection / "cat1.off", "dog2" if "dog2" in whole else list(whole)[-1], canonform.read(str(collection / "cat0.off"))):
-        for k in (0, 3, 20):
+    for query, numbers in ((collection / "cat1.off", (0, 3, 20)), (list(whole)[-1], (4,)), (canonform.read(collection / "cat0.off"), (4,))):
+        for k in numbers:
             expected = found(whole.search(query, k, exact=True))
             for workers in (None, client):
                 for exact in (True, False):
@@ -148,6 +148,19 @@ def test_coded_vectors_state_their_recall(client: Client, tmp_path: Path, monkey
     assert [name for _, name, _ in alone[:2]] == ["s0", "new"]
     merged = sorted(near for piece in _vectors.pieces(table) for near in _vectors.nearest_in(piece, query, 10, facts.probes))
     assert [name for _, name, _ in merged[:10]] == [name for _, name, _ in alone]
+
+
+def test_other_programs_search_the_table(shards: list[Path], whole: Index, tmp_path: Path) -> None:
+    lance_ray, ray = pytest.importorskip("lance_ray"), pytest.importorskip("ray")
+    vector_table(shards, tmp_path / "shapes.lance")
+    ray.init(num_cpus=2, log_to_driver=False, include_dashboard=False)
+    try:
+        query = _vectors.padded(_vectors.opened(str(tmp_path / "shapes.lance")), whole.vector("cat1"))
+        near = {"column": "vector", "q": query, "k": 9}
+        found = lance_ray.vector_search(str(tmp_path / "shapes.lance"), nearest=near, columns=["id"], num_workers=2)
+    finally:
+        ray.shutdown()
+    assert found["id"].to_pylist() == [name for name, _ in whole.nearest(whole.vector("cat1"), 9, exact=True)]
 
 
 def test_mistakes_are_told(shards: list[Path], collection: Path, tmp_path: Path) -> None:

@@ -209,3 +209,76 @@ pub fn merge_matches(
         seconds: SearchSeconds::default(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use index::{Index, SearchMode, class_threshold};
+    use mesh::shapes;
+
+    use super::super::build::{BuildOptions, build_index};
+    use super::super::options::SearchOptions;
+    use super::super::query::Query;
+    use super::super::source::Shard;
+    use super::*;
+    use crate::form::{DescribeOptions, describe};
+
+    /// The answer of some shards, all of which are asked for candidates.
+    fn asked(shards: &[ShapeSearch], query: &PackedQuery, k: usize) -> SearchReport {
+        let n_shapes = shards.iter().map(|shard| shard.index().len()).sum();
+        let [n_candidates, wanted] = PackedQuery::shortlist(k, n_shapes);
+        let mut near = Vec::new();
+        for (place, shard) in shards.iter().enumerate() {
+            let found = shard.index().nearest(&query.fused, n_candidates, SearchMode::Exact).unwrap();
+            near.extend(found.shapes.into_iter().map(|shape| (shape.distance, shape.id, place)));
+        }
+        near.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1)));
+        near.truncate(n_candidates);
+        let matches = shards.iter().enumerate().map(|(place, shard)| {
+            let of = near.iter().filter(|near| near.2 == place).map(|near| near.1.clone());
+            // A name that the shard does not hold is left out.
+            let ids: Vec<String> = of.chain(["gone".to_owned()]).collect();
+            let found = shard.match_shapes(query, &ids, wanted, &()).unwrap();
+            serde_json::from_str(&serde_json::to_string(&found).unwrap()).unwrap()
+        });
+        let matches = matches.collect();
+        let indexes: Vec<Index> = shards.iter().map(|s| Index::open(s.index().path()).unwrap()).collect();
+        let threshold = class_threshold(&indexes).unwrap();
+        let search = ShardedSearch { n_shapes, measured: n_shapes, recall: 1.0, threshold };
+        merge_matches(query, matches, search, k)
+    }
+
+    #[test]
+    fn shards_answer_as_one_index() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        for (i, size) in [0.7, 0.75, 0.8].into_iter().enumerate() {
+            mesh::io::write(&at(&format!("ring{i}.off")), &shapes::torus(20, 10, 2.0, size)).unwrap();
+            mesh::io::write(&at(&format!("tube{i}.off")), &shapes::torus(30, 8, 4.0, size)).unwrap();
+        }
+        let describe_options = DescribeOptions::default();
+        let built = |name: &str, shard| {
+            let options = BuildOptions { shard, ..BuildOptions::new(&describe_options) };
+            build_index(folder.path(), &at(name), &options, &()).unwrap();
+            ShapeSearch::open(&at(name)).unwrap()
+        };
+        let whole = built("whole", None);
+        let shards = [1, 2].map(|i| built(&format!("part{i}"), Some(Shard::new(i, 2).unwrap())));
+        let mesh = shapes::torus(22, 13, 1.0, 0.36);
+        let surface = mesh::Surface::new(&mesh, &describe_options.form.repair, &()).unwrap();
+        let description = describe(&surface, &describe_options, &()).unwrap();
+        let queries = [
+            (Query::from(&description), PackedQuery::of(&description, "the query")),
+            (Query::Id("ring1"), whole.pack("ring1").unwrap()),
+        ];
+        for (query, packed) in queries {
+            let sent: PackedQuery = serde_json::from_str(&serde_json::to_string(&packed).unwrap()).unwrap();
+            assert_eq!(sent, packed);
+            for k in [0, 2, 10] {
+                let expected = whole.search(query, &SearchOptions { k, ..Default::default() }, &()).unwrap();
+                let found = asked(&shards, &sent, k);
+                let (aligned, seconds) = (expected.aligned, expected.seconds);
+                assert_eq!(SearchReport { aligned, seconds, ..found }, expected);
+            }
+        }
+    }
+}

@@ -75,7 +75,7 @@ class About:
 
     options: str = ""
     threshold: dict[str, Any] | None = None
-    shards: dict[str, tuple[int, int]] = field(default_factory=dict)
+    shards: dict[str, list[int]] = field(default_factory=dict)
     probes: int = 0
     partitions: int = 0
     recall: float = 1.0
@@ -248,9 +248,11 @@ def train(table: lance.LanceDataset, n_segments: int, run: Any) -> int:
 
     partitions = max(1, 2 * int(np.sqrt(table.count_rows())))
     builder = IndicesBuilder(table, "vector")
-    # As many samples for each partition as in an index.
-    ivf = builder.train_ivf(num_partitions=partitions, distance_type="l2", sample_rate=48, max_iters=12)
-    codes = builder.train_pq(ivf, num_subvectors=table.schema.field("vector").type.list_size // _WIDTH, sample_rate=64, max_iters=12)
+    n, n_codes = table.count_rows(), table.schema.field("vector").type.list_size // _WIDTH
+    # As many samples for each partition as in an index, and for each of the 256 codes.
+    samples, of_codes = (max(1, min(most, n // parts)) for most, parts in ((48, partitions), (64, 256)))
+    ivf = builder.train_ivf(num_partitions=partitions, distance_type="l2", sample_rate=samples, max_iters=12)
+    codes = builder.train_pq(ivf, num_subvectors=n_codes, sample_rate=of_codes, max_iters=12)
     fragments = [fragment.fragment_id for fragment in table.get_fragments()]
     parts = [fragments[i::n_segments] for i in range(min(n_segments, len(fragments)))]
     segments = run(segment_of, [(table.uri, table.version, part, ivf.centroids, codes.codebook) for part in parts])
@@ -298,23 +300,27 @@ def calibrate(table: lance.LanceDataset) -> tuple[int, float]:
 
 def exact_neighbors(table: lance.LanceDataset, names: list[str], queries: Vectors) -> list[set[str]]:
     """The names of the ten nearest other rows of each query, by comparing all."""
-    best = np.full((len(names), _NEAREST + 1), np.inf, np.float32)
-    ids = np.full(best.shape, None, object)
-    squares = (queries**2).sum(axis=1)
-    for batch in table.scanner(columns=["id", "vector"], batch_size=_BATCH).to_batches():
-        import pyarrow as pa
+    import pyarrow as pa
 
-        these = pa.Table.from_batches([batch])
-        vectors = matrix(these)
-        distances = squares[:, None] - 2 * queries @ vectors.T + (vectors**2).sum(axis=1)
+    best = np.full((len(names), _NEAREST + 1), np.inf, np.float32)
+    rows = np.full(best.shape, -1, np.int64)
+    first = 0
+    for batch in table.scanner(columns=["vector"], batch_size=_BATCH, scan_in_order=True).to_batches():
+        vectors = matrix(pa.Table.from_batches([batch]))
+        # The same for all rows of a query but its own square.
+        distances = (vectors**2).sum(axis=1) - 2 * queries @ vectors.T
         both = np.concatenate([best, distances], axis=1)
         kept = np.argpartition(both, _NEAREST, axis=1)[:, : _NEAREST + 1]
-        known = np.concatenate([ids, np.broadcast_to(np.array(these["id"].to_pylist(), object), distances.shape)], axis=1)
-        best, ids = np.take_along_axis(both, kept, 1), np.take_along_axis(known, kept, 1)
-    ranked = np.take_along_axis(ids, np.argsort(best, axis=1), 1)
+        both_rows = np.concatenate([rows, np.broadcast_to(first + np.arange(len(vectors)), distances.shape)], axis=1)
+        best, rows = np.take_along_axis(both, kept, 1), np.take_along_axis(both_rows, kept, 1)
+        first += len(vectors)
+    ranked = np.take_along_axis(rows, np.argsort(best, axis=1), 1)
+    places = np.unique(ranked[ranked >= 0]).tolist()
+    of = dict(zip(places, table.take(places, columns=["id"])["id"].to_pylist(), strict=True))
     found = []
     for name, row in zip(names, ranked.tolist(), strict=True):
-        found.append({other for other in [other for other in row if other not in (name, None)][:_NEAREST]})
+        others = [of[place] for place in row if place >= 0 and of[place] != name]
+        found.append(set(others[:_NEAREST]))
     return found
 
 

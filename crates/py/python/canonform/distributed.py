@@ -271,7 +271,7 @@ def vector_table(
     if not paths:
         raise OptionError("shards=[] is not possible: give paths of indexes")
     names = [os.path.relpath(path, os.path.dirname(uri)).replace(os.sep, "/") for path in paths]
-    stamps = dict(zip(names, map(_vectors.stamp, paths), strict=True))
+    stamps = {name: list(_vectors.stamp(path)) for name, path in zip(names, paths, strict=True)}
     threshold = json.loads(_canonform.class_threshold(paths))
     _refuse_repeated(paths)
     with shown(progress) as update:
@@ -295,7 +295,7 @@ def vector_table(
                 gone = ", ".join(sorted(set(facts.shards) - set(names))[:3])
                 raise OptionError(f"shards= leaves out indexes of the table: {gone}; name them, too, or make another table")
             for path, name in zip(paths, names, strict=True):
-                if facts.shards.get(name) != list(stamps[name]):
+                if facts.shards.get(name) != stamps[name]:
                     changed += _vectors.change(stored, name, rows_of(path, name))
     facts.options, facts.threshold, facts.shards = Index(paths[0])._inner.options, threshold, stamps
     n = stored.count_rows()
