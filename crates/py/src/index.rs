@@ -315,15 +315,8 @@ impl Index {
     /// The fused vectors of all shapes, in the order of `shapes`.
     fn vectors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let index = self.search.index();
-        let (flat, length) = run_alone(py, None, |_| {
-            let (mut flat, mut length) = (Vec::new(), 0);
-            index.each(|shape| {
-                length = shape.vectors.fused.len();
-                flat.extend(shape.vectors.fused);
-                Ok::<(), canonform::index::IndexError>(())
-            })?;
-            Ok((flat, length))
-        })?;
+        let flat = run_alone(py, None, |_| Ok(index.fused_vectors()?))?;
+        let length = flat.len().checked_div(index.len()).unwrap_or(0);
         flat.into_pyarray(py).reshape([index.len(), length])
     }
 

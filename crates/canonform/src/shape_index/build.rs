@@ -245,10 +245,13 @@ pub fn build_index(
     let start = Instant::now();
     let home = Home::of(path)?;
     let root = Root::new(folder, &home)?;
-    let (hashed, mut report, is_done) = compared_with_index(&root, path, options, observer)?;
-    if is_done {
-        report.seconds = start.elapsed().as_secs_f64();
-        return Ok(report);
+    let (existing, listing) = index_and_listing(&root, path, options)?;
+    let mut report = BuildReport::of(&listing);
+    let hashed = hash_all(listing.shapes, observer);
+    if let Some(index) = existing
+        && let Some(report) = current_report(&index, &hashed, &root, options.elsewhere, report.clone())?
+    {
+        return Ok(BuildReport { seconds: start.elapsed().as_secs_f64(), ..report });
     }
     let text = options.describe.text();
     let mut writer = IndexWriter::open(path, Job::Build, Some(&text))?;
@@ -295,18 +298,28 @@ pub fn unchanged_index(
     options: &BuildOptions<'_>,
     observer: &dyn Observer,
 ) -> Result<Option<BuildReport>, Error> {
-    let home = Home::of(path)?;
-    let (_, report, is_done) = compared_with_index(&Root::new(folder, &home)?, path, options, observer)?;
-    Ok(is_done.then_some(report))
+    let (home, start) = (Home::of(path)?, Instant::now());
+    let root = Root::new(folder, &home)?;
+    let (Some(index), listing) = index_and_listing(&root, path, options)? else { return Ok(None) };
+    // Without reading a mesh.
+    let entries: HashMap<String, ShapeEntry> = index.entries()?.into_iter().collect();
+    let is_known =
+        |listed: &Listed| entries.get(&listed.file.name).is_some_and(|entry| same_source(entry, listed));
+    if !listing.shapes.iter().all(is_known) {
+        return Ok(None);
+    }
+    let report = BuildReport::of(&listing);
+    let hashed = hash_all(listing.shapes, observer);
+    let current = current_report(&index, &hashed, &root, options.elsewhere, report)?;
+    Ok(current.map(|report| BuildReport { seconds: start.elapsed().as_secs_f64(), ..report }))
 }
 
-/// The hashed files of a folder, the report on them before anything is described, and whether the index holds just these.
-fn compared_with_index(
+/// The index at a path, unless it cannot be read or a run was interrupted, and the meshes that it should hold.
+fn index_and_listing(
     root: &Root<'_>,
     path: &Path,
     options: &BuildOptions<'_>,
-    observer: &dyn Observer,
-) -> Result<(Vec<Hashed>, BuildReport, bool), Error> {
+) -> Result<(Option<Index>, Listing), Error> {
     options.describe.validate()?;
     // Refuse other options before any mesh is read.
     let existing = match Index::open(path) {
@@ -321,18 +334,22 @@ fn compared_with_index(
     if let Some(only) = options.only {
         listing.shapes.retain(|listed| only.contains(&listed.file.name));
     }
-    let mut report = BuildReport::of(&listing);
-    let hashed = hash_all(listing.shapes, observer);
-    let Some(index) = existing.filter(|_| !work_path(path).exists()) else {
-        return Ok((hashed, report, false));
-    };
-    let Some(elsewhere) = is_current(&index, &hashed, root, options.elsewhere)? else {
-        return Ok((hashed, report, false));
-    };
+    Ok((existing.filter(|_| !work_path(path).exists()), listing))
+}
+
+/// The whole report, if the index holds just these files.
+fn current_report(
+    index: &Index,
+    hashed: &[Hashed],
+    root: &Root<'_>,
+    elsewhere: Elsewhere,
+    mut report: BuildReport,
+) -> Result<Option<BuildReport>, Error> {
+    let Some(others) = is_current(index, hashed, root, elsewhere)? else { return Ok(None) };
     let ids = hashed.iter().map(|(listed, _)| &listed.file.name);
-    report.list_dropped(path, ids, |id| index.entry(id).map(Some))?;
-    (report.n_shapes, report.unchanged, report.elsewhere) = (index.len(), hashed.len(), elsewhere);
-    Ok((hashed, report, true))
+    report.list_dropped(index.path(), ids, |id| index.entry(id).map(Some))?;
+    (report.n_shapes, report.unchanged, report.elsewhere) = (index.len(), hashed.len(), others);
+    Ok(Some(report))
 }
 
 /// The shapes that [`build_index`] finds in a folder, with the names and classes that they get, without reading any mesh.

@@ -82,13 +82,19 @@ class About:
 
 
 def opened(path: str, version: int | None = None) -> lance.LanceDataset:
-    """A table as it is now, or was in some version; caches of one process are kept."""
+    """A table as it is now, or was in some version, for reading: the caches of the process are kept, and nobody changes it."""
     known = _OPENED.get(path)
     if known is None:
         known = lance_module().dataset(path)
     wanted = known.latest_version if version is None else version
-    _OPENED[path] = known if known.version == wanted else known.checkout_version(wanted)
-    return _OPENED[path]
+    found = known if known.version == wanted else known.checkout_version(wanted)
+    _OPENED[path] = found
+    return found
+
+
+def writable(path: str) -> lance.LanceDataset:
+    """A table that the caller changes, and that is of the new version then."""
+    return lance_module().dataset(path)
 
 
 _OPENED: dict[str, Any] = {}
@@ -138,7 +144,7 @@ def create(path: str, pieces: Iterable[pyarrow.Table]) -> lance.LanceDataset:
     _OPENED.pop(path, None)
     reader = pa.RecordBatchReader.from_batches(first.schema, batches())
     lance_module().write_dataset(reader, path, mode="overwrite")
-    return opened(path)
+    return writable(path)
 
 
 def change(table: lance.LanceDataset, shard: str, now: pyarrow.Table) -> int:
@@ -243,10 +249,11 @@ def unindexed(table: lance.LanceDataset) -> int:
 
 def train(table: lance.LanceDataset, n_segments: int, run: Any) -> int:
     """Divides the vectors into partitions and codes them, in so many segments. `run` maps a function over the arguments of each, on
-    workers or here. Returns the number of partitions."""
+    workers or here. Returns the number of partitions, and leaves the table in the new version."""
     from lance.indices import IndicesBuilder
 
-    partitions = max(1, 2 * int(np.sqrt(table.count_rows())))
+    # Lance spends most of a search on reading candidates, so fewer and larger partitions than the cells of an index cost nothing.
+    partitions = max(1, int(np.sqrt(table.count_rows())))
     builder = IndicesBuilder(table, "vector")
     n, n_codes = table.count_rows(), table.schema.field("vector").type.list_size // _WIDTH
     # As many samples for each partition as in an index, and for each of the 256 codes.
@@ -256,7 +263,7 @@ def train(table: lance.LanceDataset, n_segments: int, run: Any) -> int:
     fragments = [fragment.fragment_id for fragment in table.get_fragments()]
     parts = [fragments[i::n_segments] for i in range(min(n_segments, len(fragments)))]
     segments = run(segment_of, [(table.uri, table.version, part, ivf.centroids, codes.codebook) for part in parts])
-    opened(table.uri).commit_existing_index_segments(_NAME, "vector", segments)
+    table.commit_existing_index_segments(_NAME, "vector", segments)
     return partitions
 
 

@@ -134,13 +134,13 @@ def build_index(
     out = os.path.abspath(out)
     place = os.path.abspath(shards if shards is not None else f"{out}.shards")
     meshes, labels = _in_files(meshes, out, labels, replace=True)
-    with _label_file(labels) as given, _dataset(meshes) as (dataset, _):
-        unchanged = _canonform.Index.unchanged(os.path.abspath(dataset), out, given, settings)
-    if unchanged is not None:
-        index = Index(out)
-        known = json.loads(unchanged)
-        index.build_report = {key: known[key] for key in ("n_shapes", "described", "unchanged", "failed")} | {"batches": 0}
-        return index
+    if os.path.exists(out):
+        with _label_file(labels) as given, _dataset(meshes) as (dataset, _):
+            unchanged = _canonform.Index.unchanged(os.path.abspath(dataset), out, given, settings)
+        if unchanged is not None:
+            index, known = Index(out), json.loads(unchanged)
+            index.build_report = {key: known[key] for key in ("n_shapes", "described", "unchanged", "failed")} | {"batches": 0}
+            return index
     _dask()
     os.makedirs(place, exist_ok=True)
     # Workers do not see temporary files of the client, so lists of meshes and labels are kept beside the shards.
@@ -272,40 +272,44 @@ def vector_table(
         raise OptionError("shards=[] is not possible: give paths of indexes")
     names = [os.path.relpath(path, os.path.dirname(uri)).replace(os.sep, "/") for path in paths]
     stamps = {name: list(_vectors.stamp(path)) for name, path in zip(names, paths, strict=True)}
-    threshold = json.loads(_canonform.class_threshold(paths))
-    _refuse_repeated(paths)
+    is_new = not os.path.exists(uri)
+    stored = None if is_new else _vectors.writable(uri)
+    facts = _vectors.About() if stored is None else _vectors.about(stored)
+    if set(facts.shards) - set(names):
+        gone = ", ".join(sorted(set(facts.shards) - set(names))[:3])
+        raise OptionError(f"shards= leaves out indexes of the table: {gone}; name them, too, or make another table")
+    new = [(path, name) for path, name in zip(paths, names, strict=True) if facts.shards.get(name) != stamps[name]]
+    if new:
+        _refuse_repeated(paths)
+    changed = 0
     with shown(progress) as update:
-        steps = iter(range(1, len(paths) + 1))
 
         def rows_of(path: str, name: str) -> Any:
             index = Index(path)
             listed = index.shapes()
             columns = [shape.id for shape in listed], [shape.label for shape in listed], [shape.path for shape in listed]
             if update is not None:
-                update("vectors", next(steps), len(paths))
+                update("vectors", 1 + new.index((path, name)), len(new))
             return _vectors.rows(*columns, name, index.vectors())
 
-        if not os.path.exists(uri):
-            stored = _vectors.create(uri, map(rows_of, paths, names))
-            facts, changed = _vectors.About(), stored.count_rows()
+        if stored is None:
+            stored = _vectors.create(uri, (rows_of(path, name) for path, name in new))
+            changed = stored.count_rows()
         else:
-            stored = _vectors.opened(uri)
-            facts, changed = _vectors.about(stored), 0
-            if set(facts.shards) - set(names):
-                gone = ", ".join(sorted(set(facts.shards) - set(names))[:3])
-                raise OptionError(f"shards= leaves out indexes of the table: {gone}; name them, too, or make another table")
-            for path, name in zip(paths, names, strict=True):
-                if facts.shards.get(name) != stamps[name]:
-                    changed += _vectors.change(stored, name, rows_of(path, name))
-    facts.options, facts.threshold, facts.shards = Index(paths[0])._inner.options, threshold, stamps
+            for path, name in new:
+                changed += _vectors.change(stored, name, rows_of(path, name))
     n = stored.count_rows()
-    # A few vectors beside the partitions are compared one by one.
-    if n > _vectors.LEAST and (facts.partitions == 0 or 8 * _vectors.unindexed(stored) > n):
+    # A few vectors beside the partitions are compared one by one, and hardly move the threshold.
+    trains = n > _vectors.LEAST and (facts.partitions == 0 or 8 * _vectors.unindexed(stored) > n)
+    if trains or new and n <= _vectors.LEAST:
+        facts.threshold = json.loads(_canonform.class_threshold(paths))
+    if trains:
         workers = 1 if client is None else max(1, len(client.nthreads()))
         facts.partitions = _vectors.train(stored, workers, lambda make, items: _mapped(client, make, items))
-        stored = _vectors.opened(uri)
         facts.probes, facts.recall = _vectors.calibrate(stored)
-    _vectors.describe(stored, facts)
+    if trains or new:
+        facts.options, facts.shards = Index(paths[0])._inner.options, stamps
+        _vectors.describe(stored, facts)
     return {"n_shapes": n, "changed": changed} | {name: getattr(facts, name) for name in ("partitions", "probes", "recall")}
 
 
