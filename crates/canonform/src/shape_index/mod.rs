@@ -39,12 +39,12 @@ pub use duplicates::{
 };
 pub use evaluate::{EvaluateOptions, Measure, evaluate_index, evaluate_matrix};
 pub use export::export_index;
-pub use found::{ComponentResult, GraphRank, PartRank, SearchResult};
+pub use found::{ComponentResult, GraphRank, PartRank, SearchResult, ShardMatch};
 pub use options::{Explain, SearchOptions, SearchRank};
 pub use place::mesh_path;
 pub use predict::{ClassVotes, NearestShape, Prediction, Unknown};
 pub use query::{DescribedQuery, Query};
 pub use rerank::{Ranked, Reranked, rerank};
 pub use search::{SearchReport, SearchSeconds, ShapeSearch};
-pub use shards::{PackedQuery, ShardMatch, ShardMatches, ShardedSearch, merge_matches};
+pub use shards::{PackedQuery, ShardMatches, ShardedSearch, merge_matches};
 pub use source::{Inputs, ShapeLimits, Shard};

@@ -14,13 +14,12 @@ use rayon::prelude::*;
 use retrieval::Candidate;
 use serde::Serialize;
 
-use super::found::{ComponentResult, GraphRank, PartRank, SearchResult, StoredComponent};
+use super::found::{ComponentResult, GraphRank, PartRank, SearchResult, ShardMatch, StoredComponent};
 use super::options::{Explain, SearchOptions, SearchRank};
 use super::predict::{Prediction, VOTERS, predicted};
 use super::query::{KnownQuery, Query};
 use super::record::{disc_areas, options_of, prepared};
 use super::rerank::{Ranked, Reranked, rerank};
-use super::shards::ShardMatch;
 use super::source::read_unchanged;
 use crate::compare::compare;
 use crate::error::Error;

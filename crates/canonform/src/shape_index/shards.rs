@@ -5,13 +5,12 @@
 //! ```
 
 use base::{Budget, Observer};
-use descriptors::{CanonicalForm, PreparedShape, ShapeDistance};
+use descriptors::{CanonicalForm, PreparedShape};
 use nalgebra::Point3;
-use relations::{Handedness, Relation};
 use retrieval::UnknownThreshold;
 use serde::{Deserialize, Serialize};
 
-use super::found::SearchResult;
+use super::found::ShardMatch;
 use super::options::SearchRank;
 use super::predict::{Completeness, predicted};
 use super::record::AREA;
@@ -73,44 +72,6 @@ impl PackedQuery {
     pub fn shortlist(k: usize, n_shapes: usize) -> [usize; 2] {
         let wanted = n_wanted(k, n_shapes);
         [n_candidates(wanted), wanted]
-    }
-}
-
-/// A shape of a shard, compared with a query.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ShardMatch {
-    /// Its name.
-    pub id: String,
-    /// Its class.
-    pub label: String,
-    /// The path of its mesh as its index states it.
-    pub path: String,
-    /// Combined distance from the query.
-    pub distance: f64,
-    /// Fused distance from the query.
-    pub fused: f64,
-    /// How far the shapes are apart, regardless of size.
-    #[serde(with = "BothDistances")]
-    pub shape_distance: ShapeDistance,
-    /// Size of the shape over that of the query.
-    pub scale: f64,
-}
-
-/// What a [`ShapeDistance`] is sent as.
-#[derive(Serialize, Deserialize)]
-#[serde(remote = "ShapeDistance")]
-struct BothDistances {
-    fused: f64,
-    combined: f64,
-}
-
-impl ShardMatch {
-    /// The result of a search for a query of this name.
-    pub(super) fn into_result(self, rank: usize, query: &str) -> SearchResult {
-        let Self { id, label, path, distance, fused, shape_distance, scale } = self;
-        let relation = Relation::by_distance(shape_distance, scale, Handedness::Unknown).named(query, &id);
-        let (on_graph, as_part, comparison) = (None, None, None);
-        SearchResult { rank, id, label, path, distance, fused, on_graph, as_part, relation, comparison }
     }
 }
 
