@@ -234,7 +234,7 @@ def measure(args, n, folder):
     row = dict(n=n, write=step("write", path, n, queries, count), code=step("code", path))
     row["table"] = step("table", path, queries)
     row["workers"] = {str(w): step("workers", path, queries, w) for w in (1, 2)}
-    if n == 1_000_000 or n < 1_000_000 and args.small:
+    if n == 1_000_000:
         row["faiss"] = step("faiss", path, queries, row["code"]["partitions"], -(-DIM // 8))
         if os.path.exists(args.vectors):
             row["ours"] = ours(args.vectors, folder, path, queries)
@@ -273,43 +273,41 @@ def digits(x):
     return f"{x:,.0f}" if abs(x) >= 100 else f"{x:.3g}"
 
 
+def each(*numbers):
+    return "/".join(map(digits, numbers))
+
+
 def section(rows):
     yield "## Search past one machine"
     yield (f"`make bench-shards` on {machine()}: synthetic vectors of {DIM} numbers in a [table](guide/clusters.md#search-in-several-indexes), "
-           f"{CANDIDATES} candidates for each query. Recall is that of the ten nearest of queries that the table does not have; in brackets "
-           "what the table states. Memory is the peak of each process.")
+           f"{CANDIDATES} candidates. Recall of the ten nearest of other queries, in brackets as stated; peaks of memory, processor seconds. "
+           "Other programs ran, so latencies are upper limits.")
     yield table(
-        ["vectors", "vectors, codes: MB", "write, code, calibrate: processor s", "writing, coding: MB", "visited partitions", "recall",
-         "one process: p50, p99 ms; MB", "one, two workers: p50 ms", "one, two workers: queries/s"],
-        [(f"{r['n']:,}", f"{digits(r['write']['size'] / 1e6)}, {digits(r['code']['size'] / 1e6)}",
-          ", ".join(map(digits, (r["write"]["seconds"], r["code"]["seconds"], r["code"]["calibrated"]))),
-          f"{digits(r['write']['megabytes'])}, {digits(r['code']['megabytes'])}", f"{r['code']['probes']} of {r['code']['partitions']:,}",
-          f"{r['table']['recall']:.4f} ({r['code']['stated']:.4f})",
-          ", ".join(map(digits, r["table"]["ms"])) + f"; {digits(r['table']['megabytes'])}",
-          ", ".join(digits(r["workers"][w]["ms"][0]) for w in "12"), ", ".join(digits(r["workers"][w]["rate"]) for w in "12"))
+        ["vectors", "MB: vectors/codes", "s: write/code/calibrate", "MB: write/code", "partitions", "recall", "alone: p50/p99 ms", "MB",
+         "1/2 workers: ms", "queries/s"],
+        [(f"{r['n']:,}", each(r["write"]["size"] / 1e6, r["code"]["size"] / 1e6),
+          each(r["write"]["seconds"], r["code"]["seconds"], r["code"]["calibrated"]),
+          each(r["write"]["megabytes"], r["code"]["megabytes"]), f"{r['code']['probes']}/{r['code']['partitions']:,}",
+          f"{r['table']['recall']:.4f}({r['code']['stated']:.4f})", each(*r["table"]["ms"]), digits(r["table"]["megabytes"]),
+          each(*(r["workers"][w]["ms"][0] for w in "12")), each(*(r["workers"][w]["rate"] for w in "12")))
          for r in rows])
-    beside = [r for r in rows if "faiss" in r]
-    if beside:
-        cells = []
-        for r in beside:
-            n, t, f = f"{r['n']:,}", r["table"], r["faiss"]
-            cells.append((n, "table", f"{t['recall']:.4f}", ", ".join(map(digits, t["ms"])), digits(r["write"]["seconds"] + r["code"]["seconds"]),
-                          digits(t["megabytes"])))
-            cells.append((n, "faiss IVF-PQ, refined", f"{f['recall']:.4f}", ", ".join(map(digits, f["ms"])), digits(f["seconds"]),
-                          digits(f["megabytes"])))
-            if "ours" in r:
-                for source in ("memory", "file"):
-                    o = r["ours"]
-                    cells.append((n, f"index, from {source}", f"{o['recall']:.4f}, stated", ", ".join(map(digits, o[source])),
-                                  digits(o["seconds"]), digits(o["megabytes"])))
-        yield "*Beside* the index of this project and faiss with codes of the same size, on one thread."
-        yield table(["vectors", "solver", "recall", "p50, p99 ms", "build, processor s", "MB"], cells)
-    task = task_seconds(rows)
+    for r in rows:
+        if "faiss" not in r:
+            continue
+        t, f = r["table"], r["faiss"]
+        cells = [("table", f"{t['recall']:.4f}", each(*t["ms"]), digits(r["write"]["seconds"] + r["code"]["seconds"]), digits(t["megabytes"])),
+                 ("faiss IVF-PQ, refined", f"{f['recall']:.4f}", each(*f["ms"]), digits(f["seconds"]), digits(f["megabytes"]))]
+        if "ours" in r:
+            o = r["ours"]
+            cells += [(f"index, {source}", f"{o['recall']:.4f}", each(*o[source]), digits(o["seconds"]), digits(o["megabytes"]))
+                      for source in ("memory", "file")]
+        yield f"*Beside others*, {r['n']:,} vectors, one thread:"
+        yield table(["solver", "recall", "p50/p99 ms", "build s", "MB"], cells)
     hours = ALL / rows[-1]["n"] * rows[-1]["code"]["seconds"] / 3600
-    yield (f"*A hundred million shapes*, simulated from these figures on machines of {CORES} cores: an alignment takes "
-           f"{1e3 * ALIGN / FORMS:.1f} ms, a task {1e3 * task:.2f} ms of the scheduler, coding {digits(hours)} core hours.")
-    yield table(["machines", "ms for a query", "queries/s", "bound by", "codes, GB each", "disk, GB each"],
-                [(f"{m:,}", digits(ms), digits(rate), bound, digits(code), digits(disk)) for m, ms, rate, bound, code, disk in simulate(rows)])
+    yield (f"*A hundred million shapes*, simulated on machines of {CORES} cores: {1e3 * ALIGN / FORMS:.1f} ms an alignment, "
+           f"{1e3 * task_seconds(rows):.2f} ms of the scheduler a task, {digits(hours)} core hours of coding.")
+    yield table(["machines", "ms", "queries/s", "bound by", "GB each: codes/disk"],
+                [(f"{m:,}", digits(ms), digits(rate), bound, each(code, disk)) for m, ms, rate, bound, code, disk in simulate(rows)])
 
 
 def main():
@@ -318,7 +316,7 @@ def main():
         found = STEPS[name](*args)
         print(json.dumps({"megabytes": peak(), **found}))
         return
-    options = arguments(__doc__, "target/release/canonform", 1, largest=SIZES[-1], small=0)
+    options = arguments(__doc__, "target/release/canonform", 1, largest=SIZES[-1])
     options.add_argument("--vectors", default="target/release/examples/vectors")
     options.add_argument("--folder", default="target", help="where the tables are written; the largest takes 9 GB")
     options.add_argument("--record", help="measurements: sizes in the file are not measured again")
