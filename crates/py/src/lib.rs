@@ -40,7 +40,10 @@ mod _canonform {
     #[pymodule_export]
     use crate::form::Form;
     #[pymodule_export]
-    use crate::index::{Index, content_hashes, list_folder, merge_indexes};
+    use crate::index::{
+        Index, class_threshold, content_hashes, list_folder, merge_indexes, merge_matches, pack_surface,
+        shortlist,
+    };
     #[pymodule_export]
     use crate::matching::{map_basis, map_points, match_collection, match_surfaces};
     #[pymodule_export]

@@ -243,36 +243,17 @@ pub fn build_index(
     observer: &dyn Observer,
 ) -> Result<BuildReport, Error> {
     let start = Instant::now();
-    options.describe.validate()?;
-    let text = options.describe.text();
-    // Refuse other options before any mesh is read.
-    let existing = match Index::open(path) {
-        Ok(index) => index.expect_options(&text).map(|()| Some(index))?,
-        // The writer takes care of an index that cannot be read.
-        Err(IndexError::Damaged { .. } | IndexError::PastVersion { .. }) => None,
-        Err(IndexError::Io { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => None,
-        Err(fault) => return Err(fault.into()),
-    };
     let home = Home::of(path)?;
     let root = Root::new(folder, &home)?;
-    let mut listing = Listing::of_folder(&root, options.labels)?;
-    listing.shapes = share(listing.shapes, options.shard);
-    if let Some(only) = options.only {
-        listing.shapes.retain(|listed| only.contains(&listed.file.name));
-    }
+    let (existing, listing) = index_and_listing(&root, path, options)?;
     let mut report = BuildReport::of(&listing);
     let hashed = hash_all(listing.shapes, observer);
-    if let Some(index) = &existing
-        && !work_path(path).exists()
-        && let Some(elsewhere) = is_current(index, &hashed, &root, options.elsewhere)?
+    if let Some(index) = existing
+        && let Some(report) = current_report(&index, &hashed, &root, options.elsewhere, report.clone())?
     {
-        let ids = hashed.iter().map(|(listed, _)| &listed.file.name);
-        report.list_dropped(path, ids, |id| index.entry(id).map(Some))?;
-        (report.n_shapes, report.unchanged, report.elsewhere) = (index.len(), hashed.len(), elsewhere);
-        report.seconds = start.elapsed().as_secs_f64();
-        return Ok(report);
+        return Ok(BuildReport { seconds: start.elapsed().as_secs_f64(), ..report });
     }
-    drop(existing);
+    let text = options.describe.text();
     let mut writer = IndexWriter::open(path, Job::Build, Some(&text))?;
     report.resumed = writer.is_resumed();
     report.replaced_damaged = writer.replaces_damaged();
@@ -305,6 +286,70 @@ pub fn build_index(
     }
     report.seconds = start.elapsed().as_secs_f64();
     Ok(report)
+}
+
+/// The report of a [`build_index`] that would have nothing to do; `None` if it would change the index, or make one.
+///
+/// # Errors
+/// As for [`build_index`].
+pub fn unchanged_index(
+    folder: &Path,
+    path: &Path,
+    options: &BuildOptions<'_>,
+    observer: &dyn Observer,
+) -> Result<Option<BuildReport>, Error> {
+    let (home, start) = (Home::of(path)?, Instant::now());
+    let root = Root::new(folder, &home)?;
+    let (Some(index), listing) = index_and_listing(&root, path, options)? else { return Ok(None) };
+    // Without reading a mesh.
+    let entries: HashMap<String, ShapeEntry> = index.entries()?.into_iter().collect();
+    let is_known =
+        |listed: &Listed| entries.get(&listed.file.name).is_some_and(|entry| same_source(entry, listed));
+    if !listing.shapes.iter().all(is_known) {
+        return Ok(None);
+    }
+    let report = BuildReport::of(&listing);
+    let hashed = hash_all(listing.shapes, observer);
+    let current = current_report(&index, &hashed, &root, options.elsewhere, report)?;
+    Ok(current.map(|report| BuildReport { seconds: start.elapsed().as_secs_f64(), ..report }))
+}
+
+/// The index at a path, unless it cannot be read or a run was interrupted, and the meshes that it should hold.
+fn index_and_listing(
+    root: &Root<'_>,
+    path: &Path,
+    options: &BuildOptions<'_>,
+) -> Result<(Option<Index>, Listing), Error> {
+    options.describe.validate()?;
+    // Refuse other options before any mesh is read.
+    let existing = match Index::open(path) {
+        Ok(index) => index.expect_options(&options.describe.text()).map(|()| Some(index))?,
+        // The writer takes care of an index that cannot be read.
+        Err(IndexError::Damaged { .. } | IndexError::PastVersion { .. }) => None,
+        Err(IndexError::Io { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => None,
+        Err(fault) => return Err(fault.into()),
+    };
+    let mut listing = Listing::of_folder(root, options.labels)?;
+    listing.shapes = share(listing.shapes, options.shard);
+    if let Some(only) = options.only {
+        listing.shapes.retain(|listed| only.contains(&listed.file.name));
+    }
+    Ok((existing.filter(|_| !work_path(path).exists()), listing))
+}
+
+/// The whole report, if the index holds just these files.
+fn current_report(
+    index: &Index,
+    hashed: &[Hashed],
+    root: &Root<'_>,
+    elsewhere: Elsewhere,
+    mut report: BuildReport,
+) -> Result<Option<BuildReport>, Error> {
+    let Some(others) = is_current(index, hashed, root, elsewhere)? else { return Ok(None) };
+    let ids = hashed.iter().map(|(listed, _)| &listed.file.name);
+    report.list_dropped(index.path(), ids, |id| index.entry(id).map(Some))?;
+    (report.n_shapes, report.unchanged, report.elsewhere) = (index.len(), hashed.len(), others);
+    Ok(Some(report))
 }
 
 /// The shapes that [`build_index`] finds in a folder, with the names and classes that they get, without reading any mesh.

@@ -1,9 +1,10 @@
 //! What a search found.
 
-use serde::Serialize;
+use descriptors::ShapeDistance;
+use serde::{Deserialize, Serialize};
 
 use crate::compare::Comparison;
-use relations::Relation;
+use relations::{Handedness, Relation};
 
 /// The place of a shape in a ranking on the graph.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -55,6 +56,56 @@ pub struct SearchResult {
     /// The numbers of the comparison with the query, if results are explained.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub comparison: Option<Comparison>,
+}
+
+/// A shape of a shard, compared with a query.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ShardMatch {
+    /// Its name.
+    pub id: String,
+    /// Its class.
+    pub label: String,
+    /// The path of its mesh as its index states it.
+    pub path: String,
+    /// Combined distance from the query.
+    pub distance: f64,
+    /// Fused distance from the query.
+    pub fused: f64,
+    /// How far the shapes are apart, regardless of size.
+    #[serde(with = "BothDistances")]
+    pub shape_distance: ShapeDistance,
+    /// Size of the shape over that of the query.
+    pub scale: f64,
+}
+
+/// What a [`ShapeDistance`] is sent as.
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "ShapeDistance")]
+struct BothDistances {
+    fused: f64,
+    combined: f64,
+}
+
+impl ShardMatch {
+    /// The result of a search for a query of this name.
+    pub(super) fn into_result(self, rank: usize, query: &str) -> SearchResult {
+        let Self { id, label, path, distance, fused, shape_distance, scale } = self;
+        let relation = Relation::by_distance(shape_distance, scale, Handedness::Unknown).named(query, &id);
+        let (on_graph, as_part, form_distance, comparison) = (None, None, None, None);
+        SearchResult {
+            rank,
+            id,
+            label,
+            path,
+            distance,
+            fused,
+            on_graph,
+            as_part,
+            form_distance,
+            relation,
+            comparison,
+        }
+    }
 }
 
 /// One of the components of a query, or several copies of one, and the shape nearest to it.

@@ -4,6 +4,7 @@
 //! files -> content hash -> unchanged? -> describe -> index::IndexWriter -> index::Index
 //! Query -> Index::nearest (fused signatures) -> rerank (aligned forms) -> vote
 //!                  -> Index::nearest_on_graph -> aligned forms of the results -> vote
+//! PackedQuery -> ShapeSearch::match_shapes of every shard -> merge_matches -> vote
 //! mesh -> describe_part -> disc areas of all shapes -> aligned forms of the results -> vote
 //! ```
 
@@ -24,10 +25,12 @@ mod record;
 mod rerank;
 mod resolve;
 mod search;
+mod shards;
 mod source;
 
 pub use build::{
     BuildOptions, BuildReport, Dropped, Elsewhere, Failure, FailureReason, build_index, indexed_shapes,
+    unchanged_index,
 };
 pub use change::{MergeReport, add_to_index, merge_indexes, remove_from_index};
 pub use distances::PairwiseDistance;
@@ -36,11 +39,12 @@ pub use duplicates::{
 };
 pub use evaluate::{EvaluateOptions, Measure, evaluate_index, evaluate_matrix};
 pub use export::export_index;
-pub use found::{ComponentResult, GraphRank, PartRank, SearchResult};
+pub use found::{ComponentResult, GraphRank, PartRank, SearchResult, ShardMatch};
 pub use options::{Explain, SearchOptions, SearchRank};
 pub use place::mesh_path;
 pub use predict::{ClassVotes, NearestShape, Prediction, Unknown};
 pub use query::{DescribedQuery, Query};
 pub use rerank::{Ranked, Reranked, rerank};
 pub use search::{SearchReport, SearchSeconds, ShapeSearch};
+pub use shards::{PackedQuery, ShardMatches, ShardedSearch, merge_matches};
 pub use source::{Inputs, ShapeLimits, Shard};

@@ -1,11 +1,13 @@
 //! The class that the nearest shapes suggest, or why there is none.
 
 use descriptors::{PartDistance, ShapeMetric};
+use index::ShapeEntry;
 use relations::Relation;
 use retrieval::{Neighbor, Tally, UnknownThreshold, vote};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::found::{PartRank, SearchResult};
+use super::record::{DROPPED as DROPPED_AREA, SHORTCUTS};
 use crate::form::ShapeDescription;
 
 /// Neighbours that vote on the class of a query.
@@ -87,7 +89,7 @@ pub enum Unknown {
 }
 
 /// What makes a surface look like a part of one, or like a damaged one.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub(super) struct Completeness {
     /// Share of the area that the repair dropped.
     pub(super) dropped: f64,
@@ -103,6 +105,15 @@ impl Completeness {
             dropped: description.repair.dropped_area_share,
             open: description.longest_boundary / description.area.sqrt(),
             shortcuts: description.shortcuts.len(),
+        }
+    }
+
+    /// What an index knows of a shape.
+    pub(super) fn of_entry(entry: &ShapeEntry) -> Self {
+        Self {
+            dropped: entry.fact(DROPPED_AREA).unwrap_or(0.0),
+            shortcuts: entry.fact(SHORTCUTS).unwrap_or(0.0) as usize,
+            ..Self::default()
         }
     }
 

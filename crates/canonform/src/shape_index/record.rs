@@ -11,7 +11,7 @@ use crate::error::Error;
 use crate::form::{DescribeOptions, ShapeDescription};
 
 /// The area of the surface, in squared mesh units.
-const AREA: &str = "area";
+pub(super) const AREA: &str = "area";
 
 /// The share of the surface that the repair dropped.
 pub(super) const DROPPED: &str = "dropped_area_share";

@@ -7,7 +7,6 @@ use relations::MeshGeometry;
 use super::options::{Explain, SearchOptions, SearchRank};
 use super::predict::Completeness;
 use super::query::{DescribedQuery, HeldGeometry, KnownQuery, Query};
-use super::record::{DROPPED, SHORTCUTS};
 use super::search::ShapeSearch;
 use crate::error::Error;
 use crate::form::{describe, describe_part};
@@ -61,11 +60,7 @@ impl ShapeSearch {
                     content: Some(entry.content),
                     geometry: geometry.map(|geometry| HeldGeometry::Owned(Box::new(geometry))),
                     part: as_part.then(part).transpose()?,
-                    complete: Completeness {
-                        dropped: entry.fact(DROPPED).unwrap_or(0.0),
-                        shortcuts: entry.fact(SHORTCUTS).unwrap_or(0.0) as usize,
-                        ..Completeness::default()
-                    },
+                    complete: Completeness::of_entry(&entry),
                 })
             }
         }

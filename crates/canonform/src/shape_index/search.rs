@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use retrieval::Candidate;
 use serde::Serialize;
 
-use super::found::{ComponentResult, GraphRank, PartRank, SearchResult, StoredComponent};
+use super::found::{ComponentResult, GraphRank, PartRank, SearchResult, ShardMatch, StoredComponent};
 use super::options::{Explain, SearchOptions, SearchRank};
 use super::predict::{Prediction, VOTERS, predicted};
 use super::query::{KnownQuery, Query};
@@ -24,13 +24,22 @@ use super::source::read_unchanged;
 use crate::compare::compare;
 use crate::error::Error;
 use crate::form::DescribeOptions;
-use relations::{Handedness, Relation};
 
 /// Most forms that are aligned for each result.
 const CANDIDATES: usize = 4;
 
 /// Forms that may be aligned, however few results are wanted.
 const LEAST_CANDIDATES: usize = 40;
+
+/// Results that are looked for if so many are requested: those that vote are among them.
+pub(super) fn n_wanted(k: usize, n_shapes: usize) -> usize {
+    k.max(VOTERS).min(n_shapes)
+}
+
+/// Shapes whose signatures are nearest that are candidates for so many results.
+pub(super) fn n_candidates(wanted: usize) -> usize {
+    CANDIDATES.saturating_mul(wanted).max(LEAST_CANDIDATES)
+}
 
 /// The answer to a search.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -186,8 +195,7 @@ impl ShapeSearch {
         budget: &Budget,
     ) -> Result<SearchReport, Error> {
         let start = Instant::now();
-        // There are no more results than shapes, however many are requested.
-        let wanted = options.k.max(VOTERS).min(self.index.len());
+        let wanted = n_wanted(options.k, self.index.len());
         let fused = query.shape.fused();
         let shortlist = match options.rank_by {
             SearchRank::Plain => self.by_distance(fused, wanted, options.mode)?,
@@ -200,25 +208,9 @@ impl ShapeSearch {
         };
         let found = self.aligned(&query.shape, shortlist, wanted, budget)?;
         let result = |(place, (ranked, order)): (usize, &(Ranked, Order))| {
-            let id = found.ids[ranked.index].clone();
-            let ShapeEntry { label, path, .. } = self.index.entry(&id)?;
-            let Ranked { distance, fused, shape_distance, scale, .. } = *ranked;
+            let near = self.ranked_shape(&found.ids[ranked.index], ranked)?;
             let Order { on_graph, as_part, form_distance } = *order;
-            let relation = Relation::by_distance(shape_distance, scale, Handedness::Unknown);
-            let (rank, relation, comparison) = (place + 1, relation.named(query.name, &id), None);
-            Ok(SearchResult {
-                rank,
-                id,
-                label,
-                path,
-                distance,
-                fused,
-                on_graph,
-                as_part,
-                form_distance,
-                relation,
-                comparison,
-            })
+            Ok(SearchResult { on_graph, as_part, form_distance, ..near.into_result(place + 1, query.name) })
         };
         let mut results = found.ranked.iter().enumerate().map(result).collect::<Result<Vec<_>, Error>>()?;
         let predicted = predicted(&results, found.search.threshold, query.complete);
@@ -250,7 +242,7 @@ impl ShapeSearch {
 
     /// The shapes whose signatures are nearest.
     fn by_distance(&self, fused: &[f32], wanted: usize, mode: SearchMode) -> Result<Shortlist, Error> {
-        let n_candidates = CANDIDATES.saturating_mul(wanted).max(LEAST_CANDIDATES);
+        let n_candidates = n_candidates(wanted);
         let mut search = self.index.nearest(fused, n_candidates, mode)?;
         let ids = std::mem::take(&mut search.shapes).into_iter().map(|near| near.id).collect();
         Ok(Shortlist { ids, orders: None, search })
@@ -323,6 +315,24 @@ impl ShapeSearch {
         budget: &Budget,
     ) -> Result<Ranking, Error> {
         let Shortlist { ids, orders, search } = shortlist;
+        let n = if orders.is_some() { ids.len() } else { wanted };
+        let Reranked { mut nearest, aligned, .. } = self.reranked(query, &ids, n, budget)?;
+        if orders.is_some() {
+            nearest.sort_by_key(|ranked| ranked.index);
+        }
+        let order = |ranked: &Ranked| orders.as_ref().map_or_else(Order::default, |all| all[ranked.index]);
+        let ranked = nearest.into_iter().map(|ranked| (ranked, order(&ranked))).collect();
+        Ok(Ranking { ids, ranked, aligned, search })
+    }
+
+    /// The `n` of these shapes that are nearest by combined distance.
+    pub(super) fn reranked(
+        &self,
+        query: &PreparedShape,
+        ids: &[String],
+        n: usize,
+        budget: &Budget,
+    ) -> Result<Reranked, Error> {
         let candidate = |(index, id): (usize, &String)| {
             let fused = self.index.vectors(id)?.fused;
             Ok(Candidate { index, bound: ShapeMetric::robust(query.fused(), &fused) })
@@ -333,14 +343,14 @@ impl ShapeSearch {
             budget.check()?;
             self.prepared(&ids[i])
         };
-        let n = if orders.is_some() { ids.len() } else { wanted };
-        let Reranked { mut nearest, aligned, .. } = rerank(query, candidates, n, shape)?;
-        if orders.is_some() {
-            nearest.sort_by_key(|ranked| ranked.index);
-        }
-        let order = |ranked: &Ranked| orders.as_ref().map_or_else(Order::default, |all| all[ranked.index]);
-        let ranked = nearest.into_iter().map(|ranked| (ranked, order(&ranked))).collect();
-        Ok(Ranking { ids, ranked, aligned, search })
+        rerank(query, candidates, n, shape)
+    }
+
+    /// What is known of a candidate after its alignment.
+    pub(super) fn ranked_shape(&self, id: &str, ranked: &Ranked) -> Result<ShardMatch, Error> {
+        let ShapeEntry { label, path, .. } = self.index.entry(id)?;
+        let Ranked { distance, fused, shape_distance, scale, .. } = *ranked;
+        Ok(ShardMatch { id: id.to_owned(), label, path, distance, fused, shape_distance, scale })
     }
 }
 

@@ -318,8 +318,9 @@ fn a_matrix_of_distances_is_scored() {
 #[test]
 fn an_index_takes_the_options_of_embed_and_applies_them_to_queries() {
     let place = collection();
-    ["ring2", "ball0", "ball1", "ball2"]
-        .map(|name| fs::remove_file(place.path(&format!("meshes/{name}.off"))).unwrap());
+    for name in ["ring2", "ball0", "ball1", "ball2"] {
+        fs::remove_file(place.path(&format!("meshes/{name}.off"))).unwrap();
+    }
     place.done(&BUILD);
     for (options, text) in [
         ("--geodesic dijkstra", "\"geodesic\":\"dijkstra\""),

@@ -2,6 +2,7 @@
 
 mod graph;
 mod searcher;
+mod threshold;
 
 use crate::tables::FUSED;
 use crate::texts::Texts;
@@ -11,6 +12,7 @@ use retrieval::UnknownThreshold;
 
 pub use graph::{FoundOnGraph, RankedShape};
 pub use searcher::Searcher;
+pub use threshold::class_threshold;
 
 /// How thoroughly to search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -5,6 +5,7 @@
 //! are trials is decided by hashes of their names, so it depends on the shapes alone.
 
 use std::collections::{HashMap, HashSet};
+use std::convert::Infallible;
 use std::ops::Range;
 
 use rayon::prelude::*;
@@ -42,6 +43,13 @@ pub(crate) type TrialKey = [u32; 2];
 fn trial_key(id: &str) -> TrialKey {
     let hash = ContentHash::of(&[id]).start();
     [(hash >> 32) as u32, hash as u32]
+}
+
+/// The key of a shape, and whether it has a class.
+type SampleKey = (TrialKey, bool);
+
+fn sample_key((id, class): (&str, &str)) -> SampleKey {
+    (trial_key(id), !class.is_empty())
 }
 
 /// A shape near a trial.
@@ -218,12 +226,13 @@ struct Sample {
 impl Sample {
     /// From names and classes; an empty class is none.
     fn of<'a>(shapes: impl Iterator<Item = (&'a str, &'a str)>) -> Self {
-        let mut keys: Vec<(TrialKey, bool)> =
-            shapes.map(|(id, class)| (trial_key(id), !class.is_empty())).collect();
+        Self::among(shapes.map(sample_key).collect())
+    }
+
+    fn among(mut keys: Vec<SampleKey>) -> Self {
         keys.sort_unstable();
-        let last = |keys: &mut dyn Iterator<Item = &(TrialKey, bool)>| {
-            keys.take(TRIALS).last().map_or([0; 2], |key| key.0)
-        };
+        let last =
+            |keys: &mut dyn Iterator<Item = &SampleKey>| keys.take(TRIALS).last().map_or([0; 2], |key| key.0);
         Self {
             all: last(&mut keys.iter()),
             labelled: last(&mut keys.iter().filter(|(_, labelled)| *labelled)),
@@ -259,16 +268,33 @@ impl Trials {
 
     /// Trials of an index that holds `shapes` in `n_cells` cells.
     pub(crate) fn of(shapes: Rows<'_>, n_cells: usize) -> Self {
-        let sample = Sample::of(shapes.pairs());
-        let of = shapes.pairs().enumerate().filter(|(_, (id, class))| sample.holds(id, class));
-        let mut trials = Self::stored(
-            of.map(|(i, (id, class))| Trial::new(id, class, shapes.row(i), n_cells)).collect(),
-            n_cells,
-        );
+        let once = Self::in_pieces(n_cells, |visit| {
+            visit(shapes);
+            Ok::<_, Infallible>(())
+        });
+        match once {
+            Ok(trials) => trials,
+            Err(never) => match never {},
+        }
+    }
+
+    /// The same of shapes that `everything` lists in some number of pieces, whenever it is called.
+    pub(crate) fn in_pieces<E>(
+        n_cells: usize,
+        mut everything: impl FnMut(&mut dyn FnMut(Rows<'_>)) -> Result<(), E>,
+    ) -> Result<Self, E> {
+        let mut keys: Vec<SampleKey> = Vec::new();
+        everything(&mut |shapes| keys.extend(shapes.pairs().map(sample_key)))?;
+        let sample = Sample::among(keys);
+        let mut trials = Self::stored(Vec::new(), n_cells);
+        everything(&mut |shapes| {
+            let of = shapes.pairs().enumerate().filter(|(_, (id, class))| sample.holds(id, class));
+            trials.all.extend(of.map(|(i, (id, class))| Trial::new(id, class, shapes.row(i), n_cells)));
+        })?;
         trials.all.sort_by_key(Trial::key);
-        meet_all(&mut trials.all.iter_mut().collect::<Vec<_>>(), shapes);
+        everything(&mut |shapes| meet_all(&mut trials.all.iter_mut().collect::<Vec<_>>(), shapes))?;
         trials.all.iter_mut().for_each(|trial| trial.is_stale = false);
-        trials
+        Ok(trials)
     }
 
     /// Takes changes into account. `everything` lists all shapes of the changed index in some number of pieces. It is
@@ -498,6 +524,18 @@ mod tests {
         let change = Change { id: outside.unwrap_or_default(), was_there: false, now };
         trials.change(&[change], |_| Err("nothing else is needed")).unwrap();
         assert_eq!(trials.all.len(), before.all.len());
+    }
+
+    #[test]
+    fn pieces_give_the_trials_of_the_whole() {
+        let all = noise(900, 16, 5);
+        let whole = Shapes::of(0..900, &all);
+        let pieces = [Shapes::of(0..10, &all), Shapes::of(10..700, &all), Shapes::of(700..900, &all)];
+        let found = Trials::in_pieces(7, |visit| {
+            pieces.iter().for_each(|piece| visit(piece.rows()));
+            Ok::<_, Infallible>(())
+        });
+        assert_eq!(found, Ok(Trials::of(whole.rows(), 7)));
     }
 
     #[test]

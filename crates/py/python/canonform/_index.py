@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any, TypeAlias, overload
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -115,6 +115,12 @@ class Result:
     form_distance: float | None
 
 
+class _Surfaces(Protocol):
+    """Where the surfaces of results are."""
+
+    def surface(self, id: str) -> Surface: ...
+
+
 class SearchResults(Stored, Sequence[Result]):
     """The shapes nearest to a query, nearest first.
 
@@ -124,7 +130,7 @@ class SearchResults(Stored, Sequence[Result]):
         The answer that `canonform search --json` prints.
     """
 
-    def __init__(self, report: dict[str, Any], query: Surface | None, name: str, index: Index) -> None:
+    def __init__(self, report: dict[str, Any], query: Surface | None, name: str, index: _Surfaces) -> None:
         self.report = report
         self._results = [
             Result(

@@ -1,4 +1,4 @@
-"""Indexes and distances on several machines, with Dask.
+"""Indexes, distances and searches on several machines, with Dask.
 
 Describing shapes is the heavy part of an index, and every shape is described on its own: a pool of tasks, without any exchange between
 them. `build_index` cuts a collection into batches, a worker makes an index of each, and the client merges them. Workers need this package
@@ -9,6 +9,14 @@ and must see the meshes and the index under the same paths.
     >>> index = canonform.distributed.build_index("meshes", client, "shapes.canonform", progress=True)   # doctest: +SKIP
 
 The result is that of `Index.build` and of `canonform index build`: both export the same bytes.
+
+What is too large for one index stays in several. `vector_table` collects their vectors in a Lance table, and `search` looks there first.
+Then it aligns forms where the indexes are: names and distances travel, forms do not.
+
+    >>> canonform.distributed.vector_table(["part-1.canonform", "part-2.canonform"], "shapes.lance")     # doctest: +SKIP
+    >>> results = canonform.distributed.search("shapes.lance", "query.off", client=client)               # doctest: +SKIP
+
+Without a client, this process does everything.
 """
 
 from __future__ import annotations
@@ -17,27 +25,26 @@ import hashlib
 import json
 import os
 import shutil
-from collections.abc import Iterable, Mapping, Sequence
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _canonform
-from ._arrays import Floats
-from ._index import OF_INDEXES, AnyPath, Index, Meshes, _dataset, _in_files, _label_file
+from . import _canonform, _vectors
+from ._arrays import Floats, straight
+from ._index import OF_INDEXES, AnyPath, Index, Meshes, SearchResults, _dataset, _in_files, _label_file
 from ._methods import Embedding, Geodesic, options_of
-from ._settings import Components, IndexDistance, Landmarks, Progress, Weld, renamed, shown
-from .errors import MeshError, OptionError
-
-try:
-    from distributed import as_completed, get_worker
-except ImportError as missing:
-    raise ImportError("canonform.distributed needs Dask: pip install 'canonform[dask]'") from missing
+from ._settings import Components, IndexDistance, Landmarks, Progress, Weld, renamed, shown, whole
+from ._stored import Stored
+from ._surface import AnyMesh, Surface, surface_of
+from .errors import MeshError, NoSuchShapeError, OptionError, ShapeIndexError
 
 if TYPE_CHECKING:
     from distributed import Client
 
-__all__ = ["batches_by_size", "build_index", "distance_matrix"]
+__all__ = ["batches_by_size", "build_index", "distance_matrix", "search", "vector_table"]
 
 _BATCHES_PER_THREAD = 8
 _MOST_IN_BATCH = 256
@@ -99,7 +106,7 @@ def build_index(
 
     Each batch becomes a small index in the folder `shards`, named by the hash of its options and of the content of its meshes. A batch
     that is there already is not described again, so a run that was interrupted goes on where it stopped. A batch whose worker is lost
-    moves to another worker; nothing else is repeated.
+    moves to another worker; nothing else is repeated. If the index holds just these meshes already, there is nothing to do.
 
     Parameters
     ----------
@@ -126,8 +133,16 @@ def build_index(
     settings = options_of(**locals())
     out = os.path.abspath(out)
     place = os.path.abspath(shards if shards is not None else f"{out}.shards")
-    os.makedirs(place, exist_ok=True)
     meshes, labels = _in_files(meshes, out, labels, replace=True)
+    if os.path.exists(out):
+        with _label_file(labels) as given, _dataset(meshes) as (dataset, _):
+            unchanged = _canonform.Index.unchanged(os.path.abspath(dataset), out, given, settings)
+        if unchanged is not None:
+            index, known = Index(out), json.loads(unchanged)
+            index.build_report = {key: known[key] for key in ("n_shapes", "described", "unchanged", "failed")} | {"batches": 0}
+            return index
+    _dask()
+    os.makedirs(place, exist_ok=True)
     # Workers do not see temporary files of the client, so lists of meshes and labels are kept beside the shards.
     with _label_file(labels) as given, _dataset(meshes, place) as (dataset, name):
         dataset, label_file = os.path.abspath(dataset), None
@@ -228,6 +243,235 @@ def distance_matrix(
     return ids, matrix
 
 
+def vector_table(
+    shards: Iterable[AnyPath], table: AnyPath, *, client: Client | None = None, progress: Progress = False
+) -> dict[str, Any]:
+    """Collect the vectors of indexes in a Lance table, in which `search` finds the shapes nearest to a query.
+
+    Call it again when indexes have changed: only their new and changed shapes are written, and searches that run meanwhile see the table
+    before or after. Beyond 50,000 shapes their vectors are divided into partitions and coded in a byte for eight numbers (IVF_PQ), and
+    searches in held-out queries decide how many partitions are visited.
+
+    Parameters
+    ----------
+    shards
+        Indexes made with the same options, such as the parts of `canonform index build --shard`. No two have a shape of the same name.
+    table
+        The folder of the table. Paths of indexes are kept as seen from its own folder, so that both can move.
+    client
+        A `distributed.Client` whose workers code the vectors. They must see the table under the same path.
+
+    Returns
+    -------
+    `n_shapes`, `changed`: shapes that were written; `partitions`, `probes`: how many of them a search visits, 0 if it compares all;
+    `recall`: the share of the ten nearest vectors that searches find, on queries that did not decide about it.
+    """
+    _vectors.lance_module()
+    paths, uri = [os.path.abspath(path) for path in shards], os.path.abspath(table)
+    if not paths:
+        raise OptionError("shards=[] is not possible: give paths of indexes")
+    names = [os.path.relpath(path, os.path.dirname(uri)).replace(os.sep, "/") for path in paths]
+    stamps = {name: list(_vectors.stamp(path)) for name, path in zip(names, paths, strict=True)}
+    is_new = not os.path.exists(uri)
+    stored = None if is_new else _vectors.writable(uri)
+    facts = _vectors.About() if stored is None else _vectors.about(stored)
+    if set(facts.shards) - set(names):
+        gone = ", ".join(sorted(set(facts.shards) - set(names))[:3])
+        raise OptionError(f"shards= leaves out indexes of the table: {gone}; name them, too, or make another table")
+    new = [(path, name) for path, name in zip(paths, names, strict=True) if facts.shards.get(name) != stamps[name]]
+    if new:
+        _refuse_repeated(paths)
+    changed = 0
+    with shown(progress) as update:
+
+        def rows_of(path: str, name: str) -> Any:
+            index = Index(path)
+            listed = index.shapes()
+            columns = [shape.id for shape in listed], [shape.label for shape in listed], [shape.path for shape in listed]
+            if update is not None:
+                update("vectors", 1 + new.index((path, name)), len(new))
+            return _vectors.rows(*columns, name, index.vectors())
+
+        if stored is None:
+            stored = _vectors.create(uri, (rows_of(path, name) for path, name in new))
+            changed = stored.count_rows()
+        else:
+            for path, name in new:
+                changed += _vectors.change(stored, name, rows_of(path, name))
+    n = stored.count_rows()
+    # A few vectors beside the partitions are compared one by one, and hardly move the threshold.
+    trains = n > _vectors.LEAST and (facts.partitions == 0 or 8 * _vectors.unindexed(stored) > n)
+    if trains or new and n <= _vectors.LEAST:
+        facts.threshold = json.loads(_canonform.class_threshold(paths))
+    if trains:
+        workers = 1 if client is None else max(1, len(client.nthreads()))
+        facts.partitions = _vectors.train(stored, workers, lambda make, items: _mapped(client, make, items))
+        facts.probes, facts.recall = _vectors.calibrate(stored)
+    if trains or new:
+        facts.options, facts.shards = Index(paths[0])._inner.options, stamps
+        _vectors.describe(stored, facts)
+    return {"n_shapes": n, "changed": changed} | {name: getattr(facts, name) for name in ("partitions", "probes", "recall")}
+
+
+def _refuse_repeated(paths: list[str]) -> None:
+    seen: dict[int, str] = {}
+    for path in paths:
+        for name in Index(path):
+            first = seen.setdefault(hash(name), path)
+            if first != path:
+                raise ShapeIndexError(f"{first} and {path} have a shape {name!r} each; rename one of them, or merge the indexes")
+
+
+def search(
+    table: AnyPath,
+    query: AnyMesh,
+    k: int = 10,
+    *,
+    client: Client | None = None,
+    exact: bool = False,
+    where: Mapping[str, str | Sequence[str]] | None = None,
+    retries: int = 3,
+) -> SearchResults:
+    """Find the shapes nearest to a query in all indexes of a table, as `Index.search` does in one.
+
+    Candidates come from the table. Their forms are aligned by tasks that open the index of each, and the best of all are the results. A
+    task whose worker is lost moves to another worker.
+
+    Parameters
+    ----------
+    table
+        A table of `vector_table`.
+    query
+        A surface, a mesh as `Surface` takes it, a mesh file, or the name of a shape. It is described by this process.
+    k
+        Number of results.
+    client
+        A `distributed.Client` whose workers search. They must see the table, and the indexes under the same paths. By default this
+        process searches.
+    exact
+        Compare the signatures of all shapes, where their indexes are. The results are then those of one index of all shapes.
+    where
+        The workers that see an index, by its path as in `vector_table`: addresses or names of hosts. By default all do.
+    retries
+        How often a task that raised an exception is tried again.
+
+    Returns
+    -------
+    The results of `Index.search`; `report["recall"]` is the measured share of the ten nearest signatures that such a search finds.
+    """
+    start = time.perf_counter()
+    uri = os.path.abspath(table)
+    stored = _vectors.opened(uri)
+    facts = _vectors.about(stored)
+    if not facts.options:
+        raise OptionError(f"{uri} is not a table of vector_table")
+    folder, n = os.path.dirname(uri), stored.count_rows()
+    workers = {os.path.abspath(path): [at] if isinstance(at, str) else list(at) for path, at in (where or {}).items()}
+
+    def run(task: Callable[..., Any], items: list[tuple[Any, ...]], shards: Sequence[str] = ()) -> list[Any]:
+        return _mapped(client, task, items, retries, [workers.get(shard) for shard in shards])
+
+    packed, surface, name = _packed(stored, query, folder, facts.options, run)
+    vector = np.array(json.loads(packed)["fused"], np.float32)
+    described = time.perf_counter()
+    n_candidates, wanted = _canonform.shortlist(whole("k", k), n)
+    shards = [os.path.join(folder, shard) for shard in facts.shards]
+    if exact:
+        lists = run(_nearest_of_shard, [(shard, vector, n_candidates) for shard in shards], shards)
+        near = [(distance, id, shard) for shard, found in zip(shards, lists, strict=True) for id, distance in found]
+    else:
+        row = _vectors.padded(stored, vector)
+        if client is None:
+            found = _vectors.nearest(stored, row, n_candidates, facts.probes)
+        else:
+            parts = [(piece, row, n_candidates, facts.probes) for piece in _vectors.pieces(stored)]
+            found = [near for some in run(_vectors.nearest_in, parts) for near in some]
+        near = [(distance, id, os.path.join(folder, shard)) for distance, id, shard in found]
+    candidates: dict[str, list[str]] = {}
+    for _, id, shard in sorted(near)[:n_candidates]:
+        candidates.setdefault(shard, []).append(id)
+    matches = run(_match_shapes, [(shard, packed, ids, wanted) for shard, ids in candidates.items()], list(candidates))
+    measured = n
+    if facts.probes and not exact:
+        loose = _vectors.unindexed(stored)
+        measured = loose + round((n - loose) * min(1, facts.probes / facts.partitions))
+    about = {"n_shapes": n, "measured": measured, "recall": 1.0 if exact else facts.recall, "threshold": facts.threshold}
+    report = json.loads(_canonform.merge_matches(packed, matches, json.dumps(about), k))
+    report["seconds"] = {"describe": described - start, "search": time.perf_counter() - described}
+    return SearchResults(report, surface, name, _Shards({id: shard for shard, ids in candidates.items() for id in ids}))
+
+
+class _Shards(Stored):
+    """The indexes that hold some shapes."""
+
+    def __init__(self, of: dict[str, str]) -> None:
+        self.of = of
+
+    def surface(self, id: str) -> Surface:
+        return Index(self.of[id]).surface(id)
+
+
+def _packed(
+    stored: Any, query: AnyMesh, folder: str, options: str, run: Callable[..., list[Any]]
+) -> tuple[str, Surface | None, str]:
+    """A described query, its surface if it is known, and what it is called."""
+    name = os.fspath(query) if isinstance(query, (str, os.PathLike)) else ""
+    if name and not os.path.exists(name):
+        escaped = name.replace("'", "''")
+        found = stored.to_table(columns=["shard"], filter=f"id = '{escaped}'")["shard"].to_pylist()
+        if not found:
+            raise NoSuchShapeError(f"{name!r} is neither a file nor a shape of the table")
+        shard = os.path.join(folder, found[0])
+        return run(_pack, [(shard, name)], [shard])[0], None, name
+    surface = Surface.read(name) if name else surface_of(query)
+    name = os.path.basename(name) or surface._name or "the query"
+    return _canonform.pack_surface(surface._inner, options, name), surface, name
+
+
+def _mapped(
+    client: Client | None,
+    task: Callable[..., Any],
+    items: list[tuple[Any, ...]],
+    retries: int = 3,
+    workers: Sequence[list[str] | None] = (),
+) -> list[Any]:
+    """The results of a task for each of these arguments, on workers or here."""
+    if client is None:
+        return [task(*item) for item in items]
+    at = workers or [None] * len(items)
+    tasks = [
+        client.submit(task, *item, workers=place, pure=False, retries=retries) for item, place in zip(items, at, strict=True)
+    ]
+    return _gathered(client, tasks, [1] * len(tasks), "", False)
+
+
+def _nearest_of_shard(path: str, vector: _vectors.Vectors, n: int) -> list[tuple[str, float]]:
+    # Arrays that travelled may be unaligned.
+    return _opened(path, _vectors.stamp(path)).nearest(straight(vector, dtype=np.float32), n, True)
+
+
+def _match_shapes(path: str, query: str, ids: list[str], wanted: int) -> str:
+    return _opened(path, _vectors.stamp(path)).match_shapes(query, ids, wanted)
+
+
+def _pack(path: str, id: str) -> str:
+    return _opened(path, _vectors.stamp(path)).pack(id)
+
+
+@lru_cache(maxsize=64)
+def _opened(path: str, _: tuple[int, int]) -> _canonform.Index:
+    """An index, opened again after it has changed."""
+    return _canonform.Index.open(path)
+
+
+def _dask() -> Any:
+    try:
+        import distributed
+    except ImportError as missing:
+        raise ImportError("canonform.distributed needs Dask: pip install 'canonform[dask]'") from missing
+    return distributed
+
+
 def _describe(
     dataset: str, shapes: list[tuple[str, str, str]], place: str, label_file: str | None, settings: str
 ) -> tuple[str, dict[str, Any]]:
@@ -251,7 +495,7 @@ def _measure(path: str, rows: list[str], columns: list[str] | None, kind: str) -
 
 def _use_threads_of_worker() -> None:
     """Not more threads than Dask gave the worker. The tasks of one worker share them."""
-    threads = get_worker().state.nthreads
+    threads = _dask().get_worker().state.nthreads
     if _canonform.threads() != threads:
         _canonform.set_threads(threads)
 
@@ -267,7 +511,7 @@ def _gathered(client: Client, tasks: list[Any], weights: Iterable[int], stage: s
     done, total = 0, sum(weight.values())
     try:
         with shown(progress) as update:
-            for task, result in as_completed(tasks, with_results=True):
+            for task, result in _dask().as_completed(tasks, with_results=True):
                 results[task.key] = result
                 done += weight[task.key]
                 if update is not None:

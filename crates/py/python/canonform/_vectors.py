@@ -1,0 +1,337 @@
+"""A Lance table with the fused vectors of many indexes: the shapes that a search in all of them begins with.
+
+Columns: `id`, `label`, `path`, `shard` (the index, as seen from the folder of the table) and `vector`, padded with zeros. LanceDB, lance-ray
+and whatever else reads Lance may search it, too. A reader keeps the version of the table that it opened.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import lance
+    import pyarrow
+
+Vectors = NDArray[np.float32]
+
+Near = tuple[float, str, str]
+"""Squared distance, name, and shard of a shape."""
+
+_ABOUT = "canonform"
+_NAME = "vector_idx"
+
+LEAST = 50_000
+"""Up to so many vectors all are compared, as in an index."""
+
+_WIDTH = 8
+"""Numbers that one byte stands for. A convention: Lance asks for vectors of a multiple of eight."""
+
+_RECALL = 0.99
+_QUERIES = 200
+"""Queries that choose how many partitions are searched, and as many others that measure the recall. One in a hundred is resolved."""
+
+_NEAREST = 10
+_REFINED = 4
+"""For each result so many candidates are measured by their full vectors. A convention: `calibrate` measures the recall."""
+
+_BATCH = 8192
+
+
+def lance_module() -> Any:
+    """The package that reads and writes the tables."""
+    try:
+        import lance
+    except ImportError as missing:
+        raise ImportError("tables of vectors need Lance: pip install 'canonform[lance]'") from missing
+    return lance
+
+
+@dataclass
+class About:
+    """What a table says about itself.
+
+    Attributes
+    ----------
+    options
+        How the shapes were described.
+    threshold
+        The fused distance beyond which a shape is of no class.
+    shards
+        Size and time of each index when it was read.
+    probes
+        Partitions that a search visits; 0 if it compares all vectors.
+    partitions
+        Partitions of the vectors.
+    recall
+        Share of the ten nearest that searches find, measured on queries that neither trained the partitions nor chose `probes`.
+    """
+
+    options: str = ""
+    threshold: dict[str, Any] | None = None
+    shards: dict[str, list[int]] = field(default_factory=dict)
+    probes: int = 0
+    partitions: int = 0
+    recall: float = 1.0
+
+
+def opened(path: str, version: int | None = None) -> lance.LanceDataset:
+    """A table as it is now, or was in some version, for reading: the caches of the process are kept, and nobody changes it."""
+    known = _OPENED.get(path)
+    if known is None:
+        known = lance_module().dataset(path)
+    wanted = known.latest_version if version is None else version
+    found = known if known.version == wanted else known.checkout_version(wanted)
+    _OPENED[path] = found
+    return found
+
+
+def writable(path: str) -> lance.LanceDataset:
+    """A table that the caller changes, and that is of the new version then."""
+    return lance_module().dataset(path)
+
+
+_OPENED: dict[str, Any] = {}
+
+
+def about(table: lance.LanceDataset) -> About:
+    """What a table says about itself."""
+    stored = (table.schema.metadata or {}).get(_ABOUT.encode())
+    return About() if stored is None else About(**json.loads(stored))
+
+
+def describe(table: lance.LanceDataset, facts: About) -> None:
+    """Makes a table say this about itself."""
+    table.update_schema_metadata({_ABOUT: json.dumps(vars(facts))})
+
+
+def rows(ids: Iterable[str], labels: Iterable[str], paths: Iterable[str], shard: str, vectors: Vectors) -> pyarrow.Table:
+    """Rows of a table."""
+    import pyarrow as pa
+
+    n, dim = vectors.shape
+    padded = np.zeros((n, -(-dim // _WIDTH) * _WIDTH), np.float32)
+    padded[:, :dim] = vectors
+    return pa.table(
+        {
+            "id": pa.array(ids, pa.string()),
+            "label": pa.array(labels, pa.string()),
+            "path": pa.array(paths, pa.string()),
+            "shard": pa.array([shard] * n, pa.string()),
+            "vector": pa.FixedSizeListArray.from_arrays(pa.array(padded.reshape(-1)), padded.shape[1]),
+        }
+    )
+
+
+def create(path: str, pieces: Iterable[pyarrow.Table]) -> lance.LanceDataset:
+    """Makes a table of some pieces, in one step for its readers."""
+    import pyarrow as pa
+
+    pieces = iter(pieces)
+    first = next(pieces)
+
+    def batches() -> Iterator[Any]:
+        yield from first.to_batches(_BATCH)
+        for piece in pieces:
+            yield from piece.to_batches(_BATCH)
+
+    _OPENED.pop(path, None)
+    reader = pa.RecordBatchReader.from_batches(first.schema, batches())
+    lance_module().write_dataset(reader, path, mode="overwrite")
+    return writable(path)
+
+
+def change(table: lance.LanceDataset, shard: str, now: pyarrow.Table) -> int:
+    """Makes the rows of a shard these. Returns how many are new or changed. Unchanged ones stay where they are."""
+    import pyarrow.compute as compute
+
+    before = table.to_table(columns=["id", "label", "vector"], filter=f"shard = '{shard.replace(chr(39), chr(39) * 2)}'")
+    known = {name: place for place, name in enumerate(before["id"].to_pylist())}
+    places = np.array([known.get(name, -1) for name in now["id"].to_pylist()], int)
+    differs = places < 0
+    if len(before):
+        old, new = matrix(before), matrix(now)
+        labels = np.array(before["label"].to_pylist(), object), np.array(now["label"].to_pylist(), object)
+        differs |= (labels[0][places] != labels[1]) | (old[places] != new).any(axis=1)
+    gone = [name for name, place in known.items() if place not in set(places.tolist())]
+    if differs.any():
+        changed = now.filter(differs)
+        table.merge_insert("id").when_matched_update_all().when_not_matched_insert_all().execute(changed)
+    if gone:
+        table.delete(compute.field("id").isin(gone))
+    return int(differs.sum()) + len(gone)
+
+
+def matrix(table: pyarrow.Table) -> Vectors:
+    """The vectors of rows."""
+    column = table["vector"].combine_chunks()
+    values: Vectors = column.flatten().to_numpy(zero_copy_only=False).reshape(len(table), -1)
+    return values
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A part of a version of a table that one task searches: segments of its vector index, or fragments that no segment covers."""
+
+    path: str
+    version: int
+    segments: tuple[str, ...] = ()
+    fragments: tuple[int, ...] = ()
+
+
+def pieces(table: lance.LanceDataset) -> list[Piece]:
+    """The parts of a table that can be searched apart from each other."""
+    uri, version = table.uri, table.version
+    left = {fragment.fragment_id for fragment in table.get_fragments()}
+    found = []
+    for index in table.describe_indices():
+        if index.name == _NAME:
+            for segment in index.segments:
+                left -= set(segment.fragment_ids)
+                found.append(Piece(uri, version, segments=(str(segment.uuid),)))
+    return found + [Piece(uri, version, fragments=(fragment,)) for fragment in sorted(left)]
+
+
+def nearest_in(piece: Piece, query: Vectors, n: int, probes: int) -> list[Near]:
+    """The shapes of a part nearest to a padded vector."""
+    table = opened(piece.path, piece.version)
+    if piece.segments:
+        near = {"column": "vector", "q": query, "k": n, "nprobes": probes, "refine_factor": _REFINED}
+        scanner = table.scanner(
+            columns=["id", "shard", "_distance"], nearest=near, index_segments=list(piece.segments), fast_search=True
+        )
+        return _listed(scanner.to_table())
+    found: list[Near] = []
+    fragments = [table.get_fragment(fragment) for fragment in piece.fragments]
+    for batch in table.scanner(columns=["id", "shard", "vector"], fragments=fragments).to_batches():
+        import pyarrow as pa
+
+        these = pa.Table.from_batches([batch])
+        distances = ((matrix(these) - query) ** 2).sum(axis=1)
+        best = np.argsort(distances, kind="stable")[:n]
+        chosen = these.select(["id", "shard"]).take(best).to_pydict()
+        found += zip(distances[best].tolist(), chosen["id"], chosen["shard"], strict=True)
+        found = sorted(found)[:n]
+    return found
+
+
+def nearest(table: lance.LanceDataset, query: Vectors, n: int, probes: int) -> list[Near]:
+    """The shapes of a table nearest to a padded vector, found by this process."""
+    near = {"column": "vector", "q": query, "k": n, "use_index": probes > 0}
+    if probes:
+        near |= {"nprobes": probes, "refine_factor": _REFINED}
+    return _listed(table.scanner(columns=["id", "shard", "_distance"], nearest=near).to_table())
+
+
+def _listed(found: pyarrow.Table) -> list[Near]:
+    given = found.to_pydict()
+    return sorted(zip(given["_distance"], given["id"], given["shard"], strict=True))
+
+
+def padded(table: lance.LanceDataset, vector: Vectors) -> Vectors:
+    """A vector as long as those of a table."""
+    row: Vectors = np.zeros(table.schema.field("vector").type.list_size, np.float32)
+    row[: len(vector)] = vector
+    return row
+
+
+def unindexed(table: lance.LanceDataset) -> int:
+    """Rows that no segment of the vector index covers."""
+    loose = [fragment for piece in pieces(table) for fragment in piece.fragments]
+    return sum(table.get_fragment(fragment).count_rows() for fragment in loose)
+
+
+def train(table: lance.LanceDataset, n_segments: int, run: Any) -> int:
+    """Divides the vectors into partitions and codes them, in so many segments. `run` maps a function over the arguments of each, on
+    workers or here. Returns the number of partitions, and leaves the table in the new version."""
+    from lance.indices import IndicesBuilder
+
+    # Lance spends most of a search on reading candidates, so fewer and larger partitions than the cells of an index cost nothing.
+    partitions = max(1, int(np.sqrt(table.count_rows())))
+    builder = IndicesBuilder(table, "vector")
+    n, n_codes = table.count_rows(), table.schema.field("vector").type.list_size // _WIDTH
+    # As many samples for each partition as in an index, and for each of the 256 codes.
+    samples, of_codes = (max(1, min(most, n // parts)) for most, parts in ((48, partitions), (64, 256)))
+    ivf = builder.train_ivf(num_partitions=partitions, distance_type="l2", sample_rate=samples, max_iters=12)
+    codes = builder.train_pq(ivf, num_subvectors=n_codes, sample_rate=of_codes, max_iters=12)
+    fragments = [fragment.fragment_id for fragment in table.get_fragments()]
+    parts = [fragments[i::n_segments] for i in range(min(n_segments, len(fragments)))]
+    segments = run(segment_of, [(table.uri, table.version, part, ivf.centroids, codes.codebook) for part in parts])
+    table.commit_existing_index_segments(_NAME, "vector", segments)
+    return partitions
+
+
+def segment_of(path: str, version: int, fragments: list[int], centroids: Any, codebook: Any) -> Any:
+    """One segment of the vector index."""
+    table = opened(path, version)
+    return table.create_index_uncommitted(
+        "vector",
+        "IVF_PQ",
+        name=_NAME,
+        metric="l2",
+        fragment_ids=fragments,
+        num_partitions=len(centroids),
+        num_sub_vectors=table.schema.field("vector").type.list_size // _WIDTH,
+        ivf_centroids=centroids,
+        pq_codebook=codebook,
+    )
+
+
+def calibrate(table: lance.LanceDataset) -> tuple[int, float]:
+    """How many partitions must be visited to find 99 of 100 of the ten nearest, and the recall reached, measured on other queries.
+
+    Queries are vectors of the table, none of which finds itself.
+    """
+    places = np.random.default_rng(0).permutation(table.count_rows())[: 2 * _QUERIES]
+    asked = table.take(np.sort(places).tolist(), columns=["id", "vector"])
+    names, queries = asked["id"].to_pylist(), matrix(asked)
+    truth = exact_neighbors(table, names, queries)
+    order = np.random.default_rng(1).permutation(len(names))
+    halves = np.array_split(order, 2)
+
+    def recall(chosen: NDArray[Any], probes: int) -> float:
+        found = [{name for _, name, _ in nearest(table, queries[i], 4 * _NEAREST, probes)} for i in chosen]
+        return float(np.mean([len(truth[i] & near) / max(1, len(truth[i])) for i, near in zip(chosen, found, strict=True)]))
+
+    probes = 1
+    while recall(halves[0], probes) < _RECALL and probes < table.count_rows():
+        probes *= 2
+    return probes, recall(halves[1], probes)
+
+
+def exact_neighbors(table: lance.LanceDataset, names: list[str], queries: Vectors) -> list[set[str]]:
+    """The names of the ten nearest other rows of each query, by comparing all."""
+    import pyarrow as pa
+
+    best = np.full((len(names), _NEAREST + 1), np.inf, np.float32)
+    rows = np.full(best.shape, -1, np.int64)
+    first = 0
+    for batch in table.scanner(columns=["vector"], batch_size=_BATCH, scan_in_order=True).to_batches():
+        vectors = matrix(pa.Table.from_batches([batch]))
+        # The same for all rows of a query but its own square.
+        distances = (vectors**2).sum(axis=1) - 2 * queries @ vectors.T
+        both = np.concatenate([best, distances], axis=1)
+        kept = np.argpartition(both, _NEAREST, axis=1)[:, : _NEAREST + 1]
+        both_rows = np.concatenate([rows, np.broadcast_to(first + np.arange(len(vectors)), distances.shape)], axis=1)
+        best, rows = np.take_along_axis(both, kept, 1), np.take_along_axis(both_rows, kept, 1)
+        first += len(vectors)
+    ranked = np.take_along_axis(rows, np.argsort(best, axis=1), 1)
+    places = np.unique(ranked[ranked >= 0]).tolist()
+    of = dict(zip(places, table.take(places, columns=["id"])["id"].to_pylist(), strict=True))
+    found = []
+    for name, row in zip(names, ranked.tolist(), strict=True):
+        others = [of[place] for place in row if place >= 0 and of[place] != name]
+        found.append(set(others[:_NEAREST]))
+    return found
+
+
+def stamp(path: str) -> tuple[int, int]:
+    """What changes when a file does."""
+    status = os.stat(path)
+    return status.st_size, status.st_mtime_ns

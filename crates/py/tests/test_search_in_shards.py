@@ -1,0 +1,178 @@
+"""Searching several indexes as one."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("lance")
+pytest.importorskip("distributed")
+
+import canonform  # noqa: E402
+from canonform import Index, SearchResults, _vectors  # noqa: E402
+from canonform.distributed import search, vector_table  # noqa: E402
+from canonform.errors import NoSuchShapeError, OptionError, ShapeIndexError  # noqa: E402
+from distributed import Client, LocalCluster  # noqa: E402
+
+# Dask, Lance and their dependencies warn of their own affairs.
+pytestmark = pytest.mark.filterwarnings("default")
+
+
+@pytest.fixture(scope="module")
+def client():
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster, Client(cluster) as client:
+        yield client
+
+
+@pytest.fixture(scope="module")
+def whole(collection: Path, tmp_path_factory: pytest.TempPathFactory) -> Index:
+    """One index of all shapes."""
+    return Index.build(collection, tmp_path_factory.mktemp("whole") / "whole.canonform")
+
+
+@pytest.fixture
+def shards(collection: Path, tmp_path: Path) -> list[Path]:
+    paths = [tmp_path / f"part-{i}.canonform" for i in (1, 2, 3)]
+    for i, path in enumerate(paths, 1):
+        Index.build(collection, path, shard=(i, 3))
+    return paths
+
+
+def found(results: SearchResults) -> dict[str, object]:
+    """All of a report that does not depend on where it was made."""
+    report = {key: value for key, value in results.report.items() if key not in ("seconds", "aligned", "measured")}
+    report["results"] = [{**result, "path": os.path.basename(result["path"])} for result in report["results"]]
+    return report
+
+
+def test_two_workers_find_what_one_index_finds(
+    client: Client, whole: Index, shards: list[Path], collection: Path, tmp_path: Path
+) -> None:
+    table = tmp_path / "shapes.lance"
+    made = vector_table(shards, table)
+    assert made == {"n_shapes": 9, "changed": 9, "partitions": 0, "probes": 0, "recall": 1.0}
+    for query, numbers in ((collection / "cat1.off", (0, 3, 20)), (list(whole)[-1], (4,)), (canonform.read(collection / "cat0.off"), (4,))):
+        for k in numbers:
+            expected = found(whole.search(query, k, exact=True))
+            for workers in (None, client):
+                for exact in (True, False):
+                    assert found(search(table, query, k, client=workers, exact=exact)) == expected
+    with pytest.raises(NoSuchShapeError, match="nothing"):
+        search(table, "nothing")
+    results = search(table, collection / "cat1.off", 2)
+    assert "cat" in results._repr_html_() and results.label == "cat"
+
+
+def test_a_killed_worker_costs_a_retry(whole: Index, shards: list[Path], collection: Path, tmp_path: Path) -> None:
+    table = tmp_path / "shapes.lance"
+    vector_table(shards, table)
+    expected = found(whole.search("cat1", 5, exact=True))
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster, Client(cluster) as client:
+        for exact in (True, False):
+            victim = next(iter(client.run(os.getpid).values()))
+            # Every worker is busy, so tasks of the search wait for the one that dies.
+            busy = client.map(lambda seconds: time.sleep(seconds), [0.5, 0.5001], pure=False)
+            threading.Timer(0.2, os.kill, (victim, signal.SIGKILL)).start()
+            assert found(search(table, "cat1", 5, client=client, exact=exact)) == expected
+            client.gather(busy)
+
+
+def test_shapes_are_added_while_others_search(
+    client: Client, whole: Index, collection: Path, tmp_path: Path
+) -> None:
+    names = sorted(collection.glob("*.off"))
+    parts = [tmp_path / "old.canonform", tmp_path / "new.canonform"]
+    Index.build(names[:4], parts[0], labels="names")
+    Index.build(names[4:6], parts[1], labels="names")
+    table = tmp_path / "shapes.lance"
+    vector_table(parts, table)
+    seen: list[int] = []
+    over = threading.Event()
+
+    def searching() -> None:
+        while not over.is_set():
+            results = search(table, names[0], 20)
+            assert results[0].id == names[0].stem and results[0].distance < 1e-6
+            seen.append(len(results))
+
+    thread = threading.Thread(target=searching)
+    thread.start()
+    try:
+        for mesh in names[6:]:
+            Index(parts[1]).add(mesh)
+            assert vector_table(parts, table)["changed"] == 1
+    finally:
+        over.set()
+        thread.join()
+    # Every answer is that of some state in between.
+    assert seen == sorted(seen) and set(seen) <= {6, 7, 8, 9}
+    expected = [result.id for result in whole.search(names[0], 20, exact=True)]
+    assert [result.id for result in search(table, names[0], 20, client=client)] == expected
+    assert vector_table(parts, table)["changed"] == 0
+    Index(parts[0]).remove(names[1].stem)
+    # Before the table knows, a shape that is gone is no result.
+    assert names[1].stem not in [result.id for result in search(table, names[0], 20, client=client)]
+    assert vector_table(parts, table) == {"n_shapes": 8, "changed": 1, "partitions": 0, "probes": 0, "recall": 1.0}
+
+
+def test_coded_vectors_state_their_recall(client: Client, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    random = np.random.default_rng(0)
+    centres = random.normal(size=(40, 20))
+    vectors = (centres[random.integers(0, 40, 3000)] + 0.3 * random.normal(size=(3000, 20))).astype("f4")
+    names = [f"s{i}" for i in range(3000)]
+    path = str(tmp_path / "vectors.lance")
+    rows = [_vectors.rows(names[i : i + 1000], [""] * 1000, [""] * 1000, "x.canonform", vectors[i : i + 1000]) for i in (0, 1000)]
+    table = _vectors.create(path, rows)
+    # A table of several fragments has a segment for each worker.
+    table.insert(_vectors.rows(names[2000:], [""] * 1000, [""] * 1000, "x.canonform", vectors[2000:]))
+    facts = _vectors.About(options="x")
+    facts.partitions = _vectors.train(table, 2, lambda task, items: client.gather([client.submit(task, *i) for i in items]))
+    facts.probes, facts.recall = _vectors.calibrate(table)
+    assert facts.partitions == 54 and 0 < facts.probes < 54 and 0.95 < facts.recall <= 1
+    pieces = _vectors.pieces(table)
+    assert [len(piece.segments) for piece in pieces] == [1, 1] and _vectors.unindexed(table) == 0
+    # New rows are found beside the coded ones.
+    table.insert(_vectors.rows(["new"], [""], [""], "x.canonform", vectors[:1] + 1e-4))
+    assert _vectors.unindexed(table) == 1
+    query = _vectors.padded(table, vectors[0])
+    alone = _vectors.nearest(table, query, 10, facts.probes)
+    assert [name for _, name, _ in alone[:2]] == ["s0", "new"]
+    merged = sorted(near for piece in _vectors.pieces(table) for near in _vectors.nearest_in(piece, query, 10, facts.probes))
+    assert [name for _, name, _ in merged[:10]] == [name for _, name, _ in alone]
+
+
+def test_other_programs_search_the_table(shards: list[Path], whole: Index, tmp_path: Path) -> None:
+    lance_ray, ray = pytest.importorskip("lance_ray"), pytest.importorskip("ray")
+    vector_table(shards, tmp_path / "shapes.lance")
+    ray.init(num_cpus=2, log_to_driver=False, include_dashboard=False)
+    try:
+        query = _vectors.padded(_vectors.opened(str(tmp_path / "shapes.lance")), whole.vector("cat1"))
+        near = {"column": "vector", "q": query, "k": 9}
+        found = lance_ray.vector_search(str(tmp_path / "shapes.lance"), nearest=near, columns=["id"], num_workers=2)
+    finally:
+        ray.shutdown()
+    assert found["id"].to_pylist() == [name for name, _ in whole.nearest(whole.vector("cat1"), 9, exact=True)]
+
+
+def test_mistakes_are_told(shards: list[Path], collection: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with monkeypatch.context() as without:
+        without.setitem(sys.modules, "lance", None)
+        with pytest.raises(ImportError, match=r"pip install 'canonform\[lance\]'"):
+            vector_table(shards, tmp_path / "none.lance")
+    with pytest.raises(OptionError, match="shards="):
+        vector_table([], tmp_path / "none.lance")
+    with pytest.raises(ShapeIndexError, match="'cat"):
+        vector_table([*shards, Index.build(collection, tmp_path / "all.canonform").path], tmp_path / "twice.lance")
+    with pytest.raises(ShapeIndexError):
+        other = Index.build([collection / "cat0.off"], tmp_path / "other.canonform", n_landmarks=50)
+        vector_table([shards[0], other.path], tmp_path / "other.lance")
+    vector_table(shards, tmp_path / "shapes.lance")
+    with pytest.raises(OptionError, match="part-3"):
+        vector_table(shards[:2], tmp_path / "shapes.lance")
