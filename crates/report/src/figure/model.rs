@@ -6,7 +6,7 @@ use super::axis::PlotAxis;
 use super::style::SeriesStyle;
 use crate::classes::Classes;
 use crate::color::Rgb;
-use crate::results::{Axis, Mark};
+use crate::results::{Axis, AxisScale, Mark};
 use crate::viewer::base64::encode;
 
 /// Panels under one caption: one static figure, and one chart on the page.
@@ -58,18 +58,29 @@ pub struct Plot {
 }
 
 impl Plot {
-    /// A plot over axes of these quantities that hold all series and marks.
+    /// A plot over axes of these quantities that hold all series and marks. Over categories, which the marks name, series are
+    /// not lines but stand beside each other.
     #[must_use]
     pub fn new(
         title: &str,
         label: String,
         x: &Axis,
         y: &Axis,
-        series: Vec<PlotSeries>,
-        marks: Vec<Mark>,
+        mut series: Vec<PlotSeries>,
+        mut marks: Vec<Mark>,
     ) -> Self {
+        let x = if x.scale == AxisScale::Category {
+            let n = series.len();
+            for (i, one) in series.iter_mut().enumerate() {
+                one.kind = SeriesKind::Filled;
+                one.points.iter_mut().for_each(|point| point.x += beside(i, n));
+            }
+            PlotAxis::categories(&x.name, marks.drain(..).map(|mark| mark.name))
+        } else {
+            let points = series.iter().flat_map(|series| &series.points).map(|p| p.x);
+            PlotAxis::holding(x, points.chain(marks.iter().map(|mark| mark.x)))
+        };
         let points = || series.iter().flat_map(|series| &series.points);
-        let x = PlotAxis::holding(x, points().map(|p| p.x).chain(marks.iter().map(|mark| mark.x)));
         let y = PlotAxis::holding(y, points().flat_map(|p| [p.low, p.y, p.high]));
         Self { title: title.to_owned(), label, x, y, is_map: false, series, marks, scores: vec![] }
     }
@@ -174,16 +185,21 @@ pub struct GroupedValue<'a> {
     pub paper: Option<f64>,
 }
 
+/// Where the `i`-th of `n` series stands beside the middle of a category.
+fn beside(i: usize, n: usize) -> f64 {
+    (i as f64 - (n as f64 - 1.0) / 2.0) * 0.7 / n as f64
+}
+
 /// A plot of our values (filled) and the paper's (hollow, with the name that `paper` makes of that of the series) over
 /// a vertical axis of this quantity. PlotSeries without a value are left out.
 pub fn grouped(title: &str, quantity: &Axis, groups: &[GroupedValue<'_>], paper: fn(&str) -> String) -> Plot {
     let categories = Classes::of(groups.iter().map(|group| group.category));
     let is_known = |group: &&GroupedValue<'_>| group.own.is_some() || group.paper.is_some();
     let names = Classes::of(groups.iter().filter(is_known).map(|group| group.series));
-    let n = names.names().len() as f64;
+    let n = names.names().len();
     let mut series = Vec::new();
     for (i, name) in names.names().iter().enumerate() {
-        let side = (i as f64 - (n - 1.0) / 2.0) * 0.7 / n;
+        let side = beside(i, n);
         let members = || groups.iter().filter(|group| group.series == *name);
         let x = |group: &GroupedValue<'_>| categories.index(group.category) as f64 + side;
         let own = members().filter_map(|g| Some(PlotPoint { x: x(g), ..g.own.clone()? }));
@@ -200,4 +216,31 @@ pub fn grouped(title: &str, quantity: &Axis, groups: &[GroupedValue<'_>], paper:
     let label = format!("{}: {title}", quantity.name);
     let x = PlotAxis::categories("", categories.names().iter().map(|name| (*name).to_owned()));
     Plot { x, ..Plot::new(title, label, quantity, quantity, series, vec![]) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn over_categories_series_stand_beside_each_other_and_marks_name_them() {
+        let axis = |scale| Axis { name: "by".to_owned(), unit: String::new(), scale };
+        let one = |name: &str| PlotSeries {
+            name: name.to_owned(),
+            style: SeriesStyle(0),
+            kind: SeriesKind::Curve,
+            points: [0.0, 1.0].map(|x| PlotPoint::new(x, 2.0, "")).to_vec(),
+        };
+        let marks = ["views", "spectrum"].into_iter().zip([0.0, 1.0]);
+        let marks = marks.map(|(name, x)| Mark { x, name: name.to_owned() }).collect();
+        let [x, y] = [AxisScale::Category, AxisScale::Linear].map(axis);
+        let plot = Plot::new("", String::new(), &x, &y, vec![one("a"), one("b")], marks);
+        assert_eq!(plot.x.ticks, [(0.0, "views".to_owned()), (1.0, "spectrum".to_owned())]);
+        assert!(plot.marks.is_empty() && plot.series.iter().all(|one| one.kind == SeriesKind::Filled));
+        for (i, [a, b]) in
+            [0, 1].map(|i| [0, 1].map(|k: usize| plot.series[k].points[i].x)).into_iter().enumerate()
+        {
+            assert!(a < i as f64 && b > i as f64 && b - a < 0.5, "{a} {b}");
+        }
+    }
 }
