@@ -30,18 +30,24 @@ NOTES = "canonform: signatures measured per query; ms to open, to load, to store
 ADDITION = "canonform, one shape added: ms, kB appended"
 
 
-def signatures(n, dim, seed, width):
-    """n points: families > classes of different sizes > poses on a manifold of six dimensions."""
-    random = np.random.default_rng(seed)
+def class_manifolds(random, n, dim):
+    """Classes of n points, in families: their centres, bases of a manifold of six dimensions, and shares of the points."""
     families, classes, sheet = 50, max(50, n // 200), 6
     centre = random.normal(size=(families, dim)).astype("f4")[random.integers(0, families, classes)]
     centre += 0.6 * random.normal(size=(classes, dim)).astype("f4")
     basis = (random.normal(size=(classes, sheet, dim)) / np.sqrt(sheet)).astype("f4")
     share = random.pareto(1.5, classes) + 0.2
-    of = np.sort(random.choice(classes, n, p=share / share.sum()))
+    return centre, basis, share / share.sum()
+
+
+def signatures(n, dim, seed, width):
+    """n points: families > classes of different sizes > poses on a manifold of six dimensions."""
+    random = np.random.default_rng(seed)
+    centre, basis, share = class_manifolds(random, n, dim)
+    of = np.sort(random.choice(len(share), n, p=share))
     rows = np.empty((n, dim), "f4")
     for c, first, count in zip(*np.unique(of, return_index=True, return_counts=True)):
-        pose = width * random.normal(size=(count, sheet))
+        pose = width * random.normal(size=(count, basis.shape[1]))
         pose[:, 0] += 0.3 * pose[:, 1] ** 2
         noise = 0.05 * random.normal(size=(count, dim))
         rows[first:first + count] = centre[c] + pose @ basis[c] + noise

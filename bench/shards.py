@@ -19,7 +19,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from capacity import processor_time
-from search import Ours
+from search import Ours, class_manifolds
 from support import arguments, machine, table, write_section
 
 SIZES = [100_000, 1_000_000, 10_000_000]
@@ -39,15 +39,11 @@ FORM = 35_600
 def pieces(n, seed=7, width=0.3, rows=20_000):
     """Vectors like those of search.signatures, some at a time."""
     random = np.random.default_rng(seed)
-    families, classes, sheet = 50, max(50, n // 200), 6
-    centre = random.normal(size=(families, DIM)).astype("f4")[random.integers(0, families, classes)]
-    centre += 0.6 * random.normal(size=(classes, DIM)).astype("f4")
-    basis = (random.normal(size=(classes, sheet, DIM)) / np.sqrt(sheet)).astype("f4")
-    share = random.pareto(1.5, classes) + 0.2
-    upto = np.cumsum(share / share.sum())
+    centre, basis, share = class_manifolds(random, n, DIM)
+    upto = np.cumsum(share)
     while True:
-        of = np.minimum(np.searchsorted(upto, random.random(rows)), classes - 1)
-        pose = (width * random.normal(size=(rows, sheet))).astype("f4")
+        of = np.minimum(np.searchsorted(upto, random.random(rows)), len(share) - 1)
+        pose = (width * random.normal(size=(rows, basis.shape[1]))).astype("f4")
         pose[:, 0] += 0.3 * pose[:, 1] ** 2
         noise = 0.05 * random.standard_normal((rows, DIM), dtype="f4")
         yield centre[of] + np.einsum("ij,ijk->ik", pose, basis[of]) + noise
