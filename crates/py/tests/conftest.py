@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import os
 import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -38,6 +40,28 @@ def program() -> Program:
     if not path.exists():
         pytest.fail(f"{path} is missing: run `cargo build -p canonform-cli`, or name the program in CANONFORM_PROGRAM")
     return Program(path)
+
+
+@contextmanager
+def two_workers() -> Iterator[Any]:
+    """A client of a cluster of two workers of one thread each."""
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster:
+        with distributed.Client(cluster) as client:
+            yield client
+
+
+@pytest.fixture(scope="module")
+def client() -> Iterator[Any]:
+    with two_workers() as client:
+        yield client
+
+
+@pytest.fixture
+def own_client() -> Iterator[Any]:
+    """For tests that kill workers."""
+    with two_workers() as client:
+        yield client
 
 
 @pytest.fixture(scope="session")

@@ -15,16 +15,10 @@ from canonform import Index  # noqa: E402
 from canonform.distributed import batches_by_size, build_index, distance_matrix  # noqa: E402
 from canonform.datasets import Shape  # noqa: E402
 from canonform.errors import MeshError, OptionError  # noqa: E402
-from distributed import Client, LocalCluster  # noqa: E402
+from distributed import Client  # noqa: E402
 
 # Dask and its dependencies warn of their own affairs.
 pytestmark = pytest.mark.filterwarnings("default")
-
-
-@pytest.fixture(scope="module")
-def client():
-    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster, Client(cluster) as client:
-        yield client
 
 
 def exported(index: Index, folder: Path, name: str) -> bytes:
@@ -87,28 +81,27 @@ def test_a_finished_batch_is_not_described_again(client: Client, collection: Pat
     assert third.build_report["described"] >= 1
 
 
-def test_a_lost_worker_costs_its_batch_only(collection: Path, tmp_path: Path) -> None:
+def test_a_lost_worker_costs_its_batch_only(own_client: Client, collection: Path, tmp_path: Path) -> None:
     single = Index.build(collection, tmp_path / "single.canonform")
     shards = tmp_path / "shards"
-    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster, Client(cluster) as client:
-        victims = client.run(os.getpid)
-        victim = next(iter(victims.values()))
-        finished: list[int] = []
+    victims = own_client.run(os.getpid)
+    victim = next(iter(victims.values()))
+    finished: list[int] = []
 
-        def kill_after_the_first(_: str, done: int, total: int) -> None:
-            if not finished:
-                os.kill(victim, signal.SIGKILL)
-            finished.append(done)
+    def kill_after_the_first(_: str, done: int, total: int) -> None:
+        if not finished:
+            os.kill(victim, signal.SIGKILL)
+        finished.append(done)
 
-        index = build_index(
-            collection,
-            client,
-            tmp_path / "many.canonform",
-            n_batches=9,
-            shards=shards,
-            keep_shards=True,
-            progress=kill_after_the_first,
-        )
+    index = build_index(
+        collection,
+        own_client,
+        tmp_path / "many.canonform",
+        n_batches=9,
+        shards=shards,
+        keep_shards=True,
+        progress=kill_after_the_first,
+    )
     assert exported(index, tmp_path, "many.jsonl") == exported(single, tmp_path, "single.jsonl")
     assert finished[-1] == 9 and index.build_report is not None
     # Every batch was described to its end once: at most the one that the worker had was begun twice.

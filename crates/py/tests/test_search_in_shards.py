@@ -19,16 +19,10 @@ import canonform  # noqa: E402
 from canonform import Index, SearchResults, _vectors  # noqa: E402
 from canonform.distributed import search, vector_table  # noqa: E402
 from canonform.errors import NoSuchShapeError, OptionError, ShapeIndexError  # noqa: E402
-from distributed import Client, LocalCluster  # noqa: E402
+from distributed import Client  # noqa: E402
 
 # Dask, Lance and their dependencies warn of their own affairs.
 pytestmark = pytest.mark.filterwarnings("default")
-
-
-@pytest.fixture(scope="module")
-def client():
-    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster, Client(cluster) as client:
-        yield client
 
 
 @pytest.fixture(scope="module")
@@ -70,18 +64,17 @@ def test_two_workers_find_what_one_index_finds(
     assert "cat" in results._repr_html_() and results.label == "cat"
 
 
-def test_a_killed_worker_costs_a_retry(whole: Index, shards: list[Path], collection: Path, tmp_path: Path) -> None:
+def test_a_killed_worker_costs_a_retry(own_client: Client, whole: Index, shards: list[Path], tmp_path: Path) -> None:
     table = tmp_path / "shapes.lance"
     vector_table(shards, table)
     expected = found(whole.search("cat1", 5, exact=True))
-    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster, Client(cluster) as client:
-        for exact in (True, False):
-            victim = next(iter(client.run(os.getpid).values()))
-            # Every worker is busy, so tasks of the search wait for the one that dies.
-            busy = client.map(lambda seconds: time.sleep(seconds), [0.5, 0.5001], pure=False)
-            threading.Timer(0.2, os.kill, (victim, signal.SIGKILL)).start()
-            assert found(search(table, "cat1", 5, client=client, exact=exact)) == expected
-            client.gather(busy)
+    for exact in (True, False):
+        victim = next(iter(own_client.run(os.getpid).values()))
+        # Every worker is busy, so tasks of the search wait for the one that dies.
+        busy = own_client.map(lambda seconds: time.sleep(seconds), [0.5, 0.5001], pure=False)
+        threading.Timer(0.2, os.kill, (victim, signal.SIGKILL)).start()
+        assert found(search(table, "cat1", 5, client=own_client, exact=exact)) == expected
+        own_client.gather(busy)
 
 
 def test_shapes_are_added_while_others_search(
