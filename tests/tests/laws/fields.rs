@@ -95,7 +95,7 @@ fn fields_follow_scale_and_renumbering() {
 fn intervals_hold_published_exact_distances_of_real_meshes() {
     let Some(data) = data("distance fields against exact distances") else { return };
     let scans = ["spot", "rocker-arm", "armadillo"].map(|name| (name, format!("single/{name}.obj")));
-    let poses = ["cat0", "centaur1", "horse0", "wolf1"];
+    let poses = ["cat0", "cat1", "centaur1", "centaur2", "horse0", "wolf0", "wolf1"];
     let poses = poses.map(|name| (name, format!("tosca-lowres/{name}.vert")));
     for (name, path) in scans.into_iter().chain(poses) {
         let surface =
