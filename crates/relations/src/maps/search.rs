@@ -355,8 +355,8 @@ impl MapSearch<'_> {
         let is_mixture = |found: &Candidate| found.is_mixture(least);
         found.sort_by(|x, y| is_mixture(x).cmp(&is_mixture(y)).then(x.score.total_cmp(&y.score)));
         let Some(best) = found.first() else { return Ok(None) };
-        let rivals = found.iter().filter(|other| is_mixture(best) || !is_mixture(other));
-        let rival = { rivals }.find_map(|other| match self.is_same(best, other) {
+        let mut rivals = found.iter().filter(|other| is_mixture(best) || !is_mixture(other));
+        let rival = rivals.find_map(|other| match self.is_same(best, other) {
             Ok(true) => None,
             Ok(false) => Some(Ok(other)),
             Err(error) => Some(Err(error)),
