@@ -45,8 +45,8 @@ impl IdealAlignments {
             shapes.par_iter().map(|shape| built_in(shape, context.seed)).collect::<Result<Vec<_>>>()?;
         let unit = |form: &CanonicalForm| form.normalized(Normalization::UnitArea);
         let wholes: Vec<CanonicalForm> = made.iter().map(|made| unit(&made.whole)).collect();
-        let prepared: Vec<PreparedForm> =
-            made.iter().map(|made| PreparedForm::new(&unit(&made.form))).collect::<Result<_, _>>()?;
+        let forms: Vec<CanonicalForm> = made.iter().map(|made| unit(&made.form)).collect();
+        let prepared: Vec<PreparedForm> = forms.iter().map(PreparedForm::new).collect::<Result<_, _>>()?;
         let n = shapes.len();
         let all = (0..n).flat_map(|i| (0..i).map(move |j| [i, j]));
         let (within, between): (Vec<_>, Vec<_>) =
@@ -66,7 +66,7 @@ impl IdealAlignments {
             let turn = fit.rotation.transpose() * found.alignment.rotation;
             let angle = (fit.reflected == found.alignment.reflected)
                 .then(|| (0.5 * (turn.trace() - 1.0)).clamp(-1.0, 1.0).acos().to_degrees());
-            Some((partners, nearest(&made[i].form, &made[j].form, &fit), found.rms, angle))
+            Some((partners, nearest(&forms[i], &forms[j], &fit), found.rms, angle))
         };
         let within: Vec<_> = some(within).par_iter().filter_map(one).collect();
         let between: Vec<f64> = some(between).par_iter().map(|pair| found(*pair).rms).collect();
@@ -107,9 +107,8 @@ fn misfit(pairs: &[(Point3<f64>, Point3<f64>)], fit: &Alignment) -> f64 {
     mean(pairs.iter().map(|(x, y)| (fit.apply(x) - y).norm_squared())).sqrt()
 }
 
-/// The distance of aligned forms, in both directions.
+/// The distance of forms at unit area once aligned, in both directions.
 fn nearest(a: &CanonicalForm, b: &CanonicalForm, fit: &Alignment) -> f64 {
-    let [a, b] = [a, b].map(|form| form.normalized(Normalization::UnitArea));
     let moved: Vec<Point3<f64>> = a.points().iter().map(|p| fit.apply(p)).collect();
     let one_way = |from: &[Point3<f64>], to: &[Point3<f64>]| {
         let least = |p: &Point3<f64>| to.iter().map(|q| (p - q).norm_squared()).fold(f64::INFINITY, f64::min);
