@@ -59,15 +59,21 @@ impl Alignment {
         for (x, y) in pairs {
             covariance += (x.coords - mean_x) * (y.coords - mean_y).transpose();
         }
-        let svd = covariance.svd(true, true);
-        let (u, v_t) = (svd.u?, svd.v_t?);
-        let mut signs = Vector3::repeat(1.0);
-        // nalgebra sorts singular values in descending order: the sign goes to the smallest one.
-        let wanted = if reflected { -1.0 } else { 1.0 };
-        signs[2] = wanted * (u.determinant() * v_t.determinant()).signum();
-        let rotation = v_t.transpose() * Matrix3::from_diagonal(&signs) * u.transpose();
+        let rotation = nearest_rotation(&covariance, reflected)?;
         Some(Self { rotation, translation: mean_y - rotation * mean_x, reflected })
     }
+}
+
+/// The rotation `R` that maximises `tr(R C)` for the cross-covariance `C = Σ x y'` of points and what they should be moved to;
+/// with a reflection if and only if `reflected`.
+pub(crate) fn nearest_rotation(covariance: &Matrix3<f64>, reflected: bool) -> Option<Matrix3<f64>> {
+    let svd = covariance.svd(true, true);
+    let (u, v_t) = (svd.u?, svd.v_t?);
+    let mut signs = Vector3::repeat(1.0);
+    // nalgebra sorts singular values in descending order: the sign goes to the smallest one.
+    let wanted = if reflected { -1.0 } else { 1.0 };
+    signs[2] = wanted * (u.determinant() * v_t.determinant()).signum();
+    Some(v_t.transpose() * Matrix3::from_diagonal(&signs) * u.transpose())
 }
 
 #[cfg(test)]

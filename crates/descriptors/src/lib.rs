@@ -14,6 +14,7 @@ mod alignment;
 mod boundary;
 mod canonical_form;
 mod error;
+mod features;
 mod metric;
 mod nearest;
 mod partial;
@@ -35,8 +36,8 @@ pub use partial::{DiscAreas, PartDiscAreas, PartDistance};
 pub use prepared::PreparedForm;
 pub use shape_pair::{PreparedShape, ShapePair};
 pub use signature::{
-    Signature, SignatureKind, d2_histogram, geodesic_spectrum, heat_kernel_signature, moment_signature,
-    rigid_signature, shape_dna, wave_kernel_signature, wave_kernels,
+    Signature, SignatureKind, d2_histogram, form_spectrum, geodesic_spectrum, heat_kernel_signature,
+    moment_signature, rigid_signature, shape_dna, wave_kernel_signature, wave_kernels,
 };
 pub use spectrum::LaplaceSpectrum;
 pub use views::FormViews;

@@ -26,14 +26,15 @@ pub enum FormDistance {
 /// the values within families: poses move the signature in that many independent ways, so that squared distances
 /// would grow with it if the values were whitened.
 ///
-/// Moments and D2 have no weight and are no part of fused vectors: two bodies of one family differ in them hardly more than
-/// two poses of one body.
+/// Signatures of the form have no weight and are no part of fused vectors: two bodies of one family differ in them hardly more
+/// than two poses of one body.
 ///
 /// All but those of the rigid signature (see [`RIGID`]) were measured on the built-in articulated families, in meshes of 1,500
 /// to 8,000 vertices, and on nothing else. `cargo run --release -p experiments -- units` measures them again.
 const CALIBRATION: [(SignatureKind, f64, f64); SignatureKind::ALL.len()] = [
     (SignatureKind::Moments, 0.115, 0.0),
     (SignatureKind::D2, 0.067, 0.0),
+    (SignatureKind::FormSpectrum, 0.217, 0.0),
     (SignatureKind::GeodesicSpectrum, 0.237, 0.07),
     (SignatureKind::ShapeDna, 0.084, 0.248),
     (SignatureKind::HeatKernel, 0.191, 0.204),

@@ -73,6 +73,21 @@ pub fn symmetric_eigen(a: &Matrix) -> Result<SymmetricEigen, LinalgError> {
     })
 }
 
+/// The eigenvalues of a symmetric matrix, in descending order, in a fraction of the time of [`symmetric_eigen`]. Only the lower
+/// triangle is read.
+///
+/// # Errors
+/// [`LinalgError::NotConverged`], also if an entry is not finite.
+pub fn symmetric_eigenvalues(a: &Matrix) -> Result<Vec<f64>, LinalgError> {
+    let n = a.nrows();
+    if a.iter().any(|x| !x.is_finite()) {
+        return Err(LinalgError::NotConverged(n));
+    }
+    let ascending =
+        view(a).self_adjoint_eigenvalues(Side::Lower).map_err(|_| LinalgError::NotConverged(n))?;
+    Ok(ascending.into_iter().rev().collect())
+}
+
 /// The thin QR decomposition of a p x n matrix with p >= n: an orthonormal p x n `Q` and an upper
 /// triangular n x n `R`.
 ///
@@ -134,12 +149,15 @@ mod tests {
             &a * &eigen.vectors - &eigen.vectors * Matrix::from_diagonal(&eigen.values.clone().into());
         assert!(residual.norm() < 1e-12 * a.norm());
         assert!((eigen.vectors.transpose() * &eigen.vectors - Matrix::identity(40, 40)).norm() < 1e-12);
+        let alone = symmetric_eigenvalues(&a).unwrap();
+        assert!(alone.iter().zip(&eigen.values).all(|(x, y)| (x - y).abs() < 1e-12 * a.norm()));
     }
 
     #[test]
     fn nan_is_an_error() {
         let a = Matrix::from_element(3, 3, f64::NAN);
         assert_eq!(symmetric_eigen(&a), Err(LinalgError::NotConverged(3)));
+        assert_eq!(symmetric_eigenvalues(&a), Err(LinalgError::NotConverged(3)));
     }
 
     #[test]

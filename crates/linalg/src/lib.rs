@@ -21,7 +21,8 @@ mod sparse;
 pub use cholesky::{EliminationOrder, SparseCholesky};
 pub use column_store::{ColumnSlot, ColumnStore};
 pub use decomposition::{
-    SymmetricEigen, leading_sign, pseudo_inverse, symmetric_eigen, thin_qr, triangular_factor,
+    SymmetricEigen, leading_sign, pseudo_inverse, symmetric_eigen, symmetric_eigenvalues, thin_qr,
+    triangular_factor,
 };
 pub use distance_matrix::DistanceMatrix;
 pub use error::LinalgError;

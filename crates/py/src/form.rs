@@ -56,6 +56,17 @@ impl Form {
         arrays::matrix(py, arrays::picked_rows(coords, rows), [map.len(), coords.ncols()])
     }
 
+    /// Coordinates of the surface bent into its form, in the order of the input.
+    fn bent_points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let bent = run_alone(py, None, |observer| {
+            Ok(self.weighted()?.with_features(self.surface.mesh(), observer)?)
+        })?;
+        let points: Vec<[f64; 3]> = bent.points().iter().map(|p| p.coords.into()).collect();
+        let rows = self.surface.in_input_order(&points, [f64::NAN; 3]);
+        let n = rows.len();
+        arrays::matrix(py, rows.into_flattened(), [n, 3])
+    }
+
     /// The faces of the input.
     fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
         arrays::faces(py, &self.surface.input_faces)

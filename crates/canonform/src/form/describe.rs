@@ -3,8 +3,8 @@
 use base::Observer;
 use descriptors::{
     CanonicalForm, DescriptorError, DiscAreas, LaplaceSpectrum, Normalization, PreparedShape, ShapeMetric,
-    Signature, SignatureKind, d2_histogram, geodesic_spectrum, heat_kernel_signature, moment_signature,
-    rigid_signature, shape_dna, wave_kernel_signature,
+    Signature, SignatureKind, d2_histogram, form_spectrum, geodesic_spectrum, heat_kernel_signature,
+    moment_signature, rigid_signature, shape_dna, wave_kernel_signature,
 };
 use mesh::{RepairReport, Shortcut};
 
@@ -54,7 +54,7 @@ pub struct ShapeDescription {
 ///
 /// let surface = Surface::new(&shapes::torus(24, 12, 2.0, 0.7), &Default::default(), &())?;
 /// let description = describe(&surface, &DescribeOptions::default(), &())?;
-/// assert_eq!(description.signatures.len(), 7);
+/// assert_eq!(description.signatures.len(), 8);
 /// assert!(description.diameter > 6.0 && description.area > 50.0);
 /// # Ok::<(), canonform::Error>(())
 /// ```
@@ -157,6 +157,7 @@ impl MeasuredSurface {
         let signatures = vec![
             moment_signature(&form),
             d2_histogram(&reduced),
+            form_spectrum(&reduced)?,
             geodesic_spectrum(&embedded.distances, &spectrum.masses, spectrum.area)?,
             shape_dna(&spectrum),
             heat_kernel_signature(&spectrum),

@@ -185,7 +185,7 @@ pub(crate) struct EvaluateArgs {
     /// [default: those of the index; for a matrix, from the names]
     #[arg(long, value_name = "SOURCE")]
     pub(crate) labels: Option<PathBuf>,
-    /// Signatures of an index to measure distances between: `fused`, `moments`, `d2`, `geodesic-spectrum`,
+    /// Signatures of an index to measure distances between: `fused`, `moments`, `d2`, `form-spectrum`, `geodesic-spectrum`,
     /// `shape-dna`, `heat-kernel`, `wave-kernel` or `rigid`
     #[arg(long, value_name = "SIGNATURE", default_value = "fused")]
     pub(crate) by: Measure,

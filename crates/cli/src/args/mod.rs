@@ -183,6 +183,10 @@ pub(crate) struct EmbedArgs {
     /// Place the mesh in the form of a coarser mesh of the same surface, by the distances from the samples of that form
     #[arg(long, value_name = "COARSER", conflicts_with = "stress_against")]
     pub(crate) extend: Option<PathBuf>,
+    /// Write the mesh itself, bent into the canonical form as rigidly as possible: limbs stay round, and ears stay ears. The
+    /// stress is that of the form
+    #[arg(long, conflicts_with_all = ["extend", "at"])]
+    pub(crate) features: bool,
     /// How to measure the distances that the stress compares the form with [default: as --geodesic]
     #[arg(long, value_parser = distance_method(), value_name = "METHOD")]
     pub(crate) stress_against: Option<Method>,

@@ -27,6 +27,9 @@ struct EmbedJson {
     report: EmbedReport,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     points: Vec<PointJson>,
+    /// Whether the output is the mesh bent into its form.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    features: bool,
     output: PathBuf,
 }
 
@@ -83,7 +86,9 @@ fn one(
     let surface = read_surface(mesh, &args.form.repair, common)?;
     let bars = Bars::with_budget(common.quiet, budget(args, output.path(), 1));
     let (report, points) = match (&args.extend, &args.at[..]) {
-        (None, []) => (embed_and_write(mesh, surface, output.path(), options, stress, &bars)?, Vec::new()),
+        (None, []) => {
+            (embed_and_write(mesh, surface, output.path(), args, options, stress, &bars)?, Vec::new())
+        }
         (coarser, at) => {
             let embedded = match coarser {
                 None => embed_and_measure(&surface, options, stress, &bars),
@@ -105,7 +110,7 @@ fn one(
     drop(bars);
     warn(&mesh.display().to_string(), &report);
     let reached = target_reached([&report]);
-    let json = EmbedJson { report, points, output: output.name() };
+    let json = EmbedJson { report, points, features: args.features, output: output.name() };
     let done = output.report(common, &json, |json| answer(json).text(common))?;
     Ok(if reached { done } else { ExitCode::from(1) })
 }
@@ -130,6 +135,7 @@ fn embed_and_write(
     mesh: &Path,
     mut surface: Surface,
     output: &Path,
+    args: &EmbedArgs,
     options: &FormOptions,
     stress: &StressOptions,
     bars: &Bars,
@@ -138,11 +144,29 @@ fn embed_and_write(
         // Only meshes need them.
         surface.input_faces = Vec::new();
     }
-    let (embedded, map) =
-        embed_and_release(surface, options, stress, bars).map_err(|fault| named(mesh, fault))?;
+    let embedded = if args.features {
+        bent(surface, options, stress, bars)
+    } else {
+        embed_and_release(surface, options, stress, bars)
+            .map(|(embedded, map)| (embedded.embedding.coords, map, embedded.report))
+    };
+    let (coords, map, report) = embedded.map_err(|fault| named(mesh, fault))?;
     create_folder_of(output)?;
-    write(output, &map, &embedded.embedding.coords)?;
-    Ok(embedded.report)
+    write(output, &map, &coords)?;
+    Ok(report)
+}
+
+/// The surface bent into its form.
+fn bent(
+    surface: Surface,
+    options: &FormOptions,
+    stress: &StressOptions,
+    bars: &Bars,
+) -> Result<(Matrix, InputMap, EmbedReport), canonform::Error> {
+    let embedded = embed_and_measure(&surface, options, stress, bars)?;
+    let form = embedded.form(&surface)?.with_features(surface.mesh(), bars)?;
+    let coords = Matrix::from_fn(form.points().len(), 3, |i, axis| form.points()[i][axis]);
+    Ok((coords, surface.into_parts().1, embedded.report))
 }
 
 /// The format of forms in a folder or on standard output.
@@ -172,8 +196,8 @@ fn batch(
     let Batch { done, failed } = results.make(common, |shape, output| {
         let (_, surface) = read_both(&shape.path, &args.form.repair, common)?;
         let bars = Bars::with_budget(true, budget(args, output, rayon::current_num_threads()));
-        let report = embed_and_write(&shape.path, surface, output, options, stress, &bars)?;
-        Ok(EmbedJson { report, points: Vec::new(), output: output.to_owned() })
+        let report = embed_and_write(&shape.path, surface, output, args, options, stress, &bars)?;
+        Ok(EmbedJson { report, points: Vec::new(), features: args.features, output: output.to_owned() })
     })?;
     let mut json = BatchJson { shapes: Vec::new(), failed };
     for (ShapeFile { name, label, path }, result) in done {
@@ -301,7 +325,7 @@ fn method_text(report: &EmbedReport) -> String {
 fn answer(json: &EmbedJson) -> Answer {
     let r = &json.report;
     let (output, n_vertices) = (shown(&json.output), r.n_vertices);
-    let off = r.stress.as_ref().map_or_else(String::new, |stress| {
+    let off = r.stress.as_ref().filter(|_| !json.features).map_or_else(String::new, |stress| {
         let [low, high] = stress.normalized_interval.map(|end| 100.0 * end);
         let interval = match stress.kind {
             StressKind::Exact => String::new(),
@@ -323,7 +347,10 @@ fn answer(json: &EmbedJson) -> Answer {
         ("seconds", format!("{:.3}", r.seconds.total)),
     ];
     Answer {
-        sentence: format!("{output} holds the canonical form of {n_vertices} vertices{off}"),
+        sentence: match json.features {
+            true => format!("{output} holds the mesh of {n_vertices} vertices, bent into its canonical form"),
+            false => format!("{output} holds the canonical form of {n_vertices} vertices{off}"),
+        },
         facts: facts.into_iter().chain(places).collect(),
         details: vec![
             ("vertices, faces", format!("{}, {}", r.n_vertices, r.n_faces)),

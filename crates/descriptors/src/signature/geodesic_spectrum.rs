@@ -1,6 +1,6 @@
 //! The spectrum of square roots of surface distances.
 
-use linalg::{LandmarkDistances, Matrix, symmetric_eigen, thin_qr};
+use linalg::{LandmarkDistances, Matrix, symmetric_eigen, symmetric_eigenvalues, thin_qr};
 
 use super::kind::{Signature, SignatureKind};
 use crate::error::DescriptorError;
@@ -68,16 +68,22 @@ pub fn geodesic_spectrum(
     let inverse =
         Matrix::from_diagonal(&eigen.values.iter().map(|value| 1.0 / value).collect::<Vec<_>>().into());
     let middle = &triangle * inverse * triangle.transpose();
-    let mut spectrum = symmetric_eigen(&((&middle + middle.transpose()) * 0.5))?.values;
+    let spectrum = symmetric_eigenvalues(&((&middle + middle.transpose()) * 0.5))?;
+    let offset = 0.5 * (unit.ln() - 0.5 * area.ln());
+    let values = magnitudes(spectrum, offset).ok_or(DescriptorError::NoExtent { n_points: p })?;
+    Ok(Signature { kind: SignatureKind::GeodesicSpectrum, values })
+}
+
+/// The logarithms of the largest magnitudes of eigenvalues, in descending order, plus `offset`; `None` if all are zero.
+pub(super) fn magnitudes(mut spectrum: Vec<f64>, offset: f64) -> Option<Vec<f64>> {
     spectrum.iter_mut().for_each(|value| *value = value.abs());
     spectrum.sort_by(|a, b| b.total_cmp(a));
-    let largest = spectrum.first().copied().filter(|value| *value > 0.0);
-    let largest = largest.ok_or(DescriptorError::NoExtent { n_points: p })?;
+    let largest = spectrum.first().copied().filter(|value| *value > 0.0)?;
     let value = |i: usize| {
         let share = spectrum.get(i).map_or(0.0, |value| value / largest).max(LEAST);
-        (share * largest).ln() + 0.5 * (unit.ln() - 0.5 * area.ln())
+        (share * largest).ln() + offset
     };
-    Ok(Signature { kind: SignatureKind::GeodesicSpectrum, values: (0..EIGENVALUES).map(value).collect() })
+    Some((0..EIGENVALUES).map(value).collect())
 }
 
 /// The half of the eigenvalues of largest magnitude, without those that are rounding errors.

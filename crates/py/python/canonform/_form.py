@@ -71,6 +71,21 @@ class Form(Constant):
         points.flags.writeable = False
         return points
 
+    def bent_surface(self) -> Floats:
+        """Coordinates of the surface itself, bent into this form as rigidly as possible: shape (n, 3), NaN for vertices that the repair dropped.
+
+        Features keep their shape: limbs stay round, and ears stay ears. The result has the handedness of the surface. Needs three components.
+
+        Examples
+        --------
+        >>> import canonform
+        >>> cat = canonform.datasets.generate("cat", poses=1, n_vertices=1000)[0].surface()
+        >>> bent = canonform.Surface(cat.canonical_form(100).bent_surface(), cat.faces)
+        >>> bool(abs(bent.area / cat.area - 1) < 0.05)
+        True
+        """
+        return self._inner.bent_points()
+
     @cached_property
     def faces(self) -> Ints:
         """The faces of the input, shape (m, 3)."""

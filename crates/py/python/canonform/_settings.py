@@ -30,7 +30,7 @@ Weld: TypeAlias = Literal["seams", "all", "none"] | float
 FormDistance: TypeAlias = Literal["nn-rms", "hausdorff95"]
 LaplacianKind: TypeAlias = Literal["intrinsic", "cotangent"]
 SignatureKind: TypeAlias = Literal[
-    "fused", "moments", "d2", "geodesic-spectrum", "shape-dna", "heat-kernel", "wave-kernel", "rigid"
+    "fused", "moments", "d2", "form-spectrum", "geodesic-spectrum", "shape-dna", "heat-kernel", "wave-kernel", "rigid"
 ]
 IndexDistance: TypeAlias = Literal["combined", "fused"]
 Ranking: TypeAlias = Literal["plain", "graph", "part", "forms"]

@@ -4,6 +4,7 @@ use anyhow::{Context as _, Result};
 use canonform::{EmbedMethod, Embedded, FormOptions, Samples, Surface, embed};
 use descriptors::CanonicalForm;
 use linalg::LandmarkDistances;
+use mesh::TriMesh;
 use nmds::{
     Bandwidth, Embedding, KernelPcaOptions, LandmarkSmacofOptions, NystromOptions, SmacofOptions, kernel_pca,
     landmark_mds, landmark_smacof, nystrom,
@@ -31,6 +32,8 @@ pub(super) struct MadeForm {
     pub(super) whole: CanonicalForm,
     /// At the points that are compared.
     pub(super) form: CanonicalForm,
+    /// With the triangles of the surface.
+    pub(super) mesh: TriMesh,
     /// Seconds from the surface to the form.
     pub(super) seconds: f64,
 }
@@ -40,6 +43,8 @@ pub(super) struct MadeForm {
 pub(super) enum FormMaker {
     /// The paper's.
     Nmds,
+    /// The surface bent towards it.
+    BentNmds,
     /// With more samples.
     MoreSamples,
     /// Classical scaling of the samples.
@@ -50,6 +55,8 @@ pub(super) enum FormMaker {
     Sammon,
     /// The paper's baseline.
     KernelPca,
+    /// The surface bent towards it.
+    BentKernelPca,
     /// Classical scaling of all pairs of vertices.
     Classical,
     /// Least squares of all pairs of vertices.
@@ -79,13 +86,15 @@ impl ShapeDistances {
 }
 
 impl FormMaker {
-    pub(super) const ALL: [Self; 8] = [
+    pub(super) const ALL: [Self; 10] = [
         Self::Nmds,
+        Self::BentNmds,
         Self::MoreSamples,
         Self::Landmark,
         Self::LeastSquares,
         Self::Sammon,
         Self::KernelPca,
+        Self::BentKernelPca,
         Self::Classical,
         Self::Smacof,
     ];
@@ -93,11 +102,13 @@ impl FormMaker {
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Nmds => "NMDS",
+            Self::BentNmds => "NMDS with features",
             Self::MoreSamples => "NMDS, more samples",
             Self::Landmark => "landmark MDS",
             Self::LeastSquares => "least squares",
             Self::Sammon => "Sammon",
             Self::KernelPca => "KPCA-Nystrom",
+            Self::BentKernelPca => "KPCA with features",
             Self::Classical => "classical scaling",
             Self::Smacof => "SMACOF of all pairs",
         }
@@ -119,7 +130,8 @@ impl FormMaker {
             let own = shapes.iter().position(|other| other.name == shape.name);
             let known = own.and_then(|i| distances.get(i)).context("a shape of the collection")?;
             let (whole, seconds) = self.form(known, samples)?;
-            Ok(MadeForm { form: whole.reduced(POINTS), whole, seconds })
+            let mesh = whole.to_mesh(known.surface.mesh());
+            Ok(MadeForm { form: whole.reduced(POINTS), whole, mesh, seconds })
         })
     }
 
@@ -139,8 +151,13 @@ impl FormMaker {
         let (distances, measuring) = shape.first(n)?;
         let (embedding, seconds) = timed(|| self.embedding(&distances, &shape.surface))?;
         let form = CanonicalForm::new(&embedding, shape.surface.mesh())?;
-        let has_unit = self != Self::KernelPca;
-        Ok((if has_unit { form } else { form.without_unit() }, measuring + seconds))
+        let has_unit = !matches!(self, Self::KernelPca | Self::BentKernelPca);
+        let form = if has_unit { form } else { form.without_unit() };
+        let (form, bending) = match self {
+            Self::BentNmds | Self::BentKernelPca => timed(|| form.with_features(shape.surface.mesh(), &()))?,
+            _ => (form, 0.0),
+        };
+        Ok((form, measuring + seconds + bending))
     }
 
     fn embedding(self, distances: &LandmarkDistances, surface: &Surface) -> Result<Embedding> {
@@ -154,7 +171,7 @@ impl FormMaker {
             Self::Landmark => landmark_mds(distances, DIM)?,
             Self::LeastSquares => by_least_squares(0.0)?,
             Self::Sammon => by_least_squares(1.0)?,
-            Self::KernelPca => {
+            Self::KernelPca | Self::BentKernelPca => {
                 let rank = Some(distances.n_landmarks().div_ceil(2));
                 kernel_pca(distances, &KernelPcaOptions { bandwidth: Bandwidth::Mean, rank, dim: DIM })?
             }
