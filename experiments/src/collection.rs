@@ -48,8 +48,8 @@ pub(crate) struct ShapeSource {
     /// folder has them; else all]
     #[arg(long, value_delimiter = ',', value_name = "CLASS,...")]
     classes: Vec<String>,
-    /// Built-in families: `articulated` (30 shapes), `creatures:FxP` (F random families of P shapes each), `parts:NxC` (C
-    /// copies each of N mechanical parts), or several of them
+    /// Built-in families: `articulated` (30 shapes), `bodies:BxP` (B bodies of each family in P poses), `creatures:FxP` (F random
+    /// families of P shapes each), `parts:NxC` (C copies each of N mechanical parts), or several of them
     #[arg(
         long,
         value_delimiter = ',',

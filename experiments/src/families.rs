@@ -3,7 +3,11 @@
 use std::fmt;
 use std::str::FromStr;
 
-use datasets::{ArticulatedOptions, CreatureOptions, DatasetError, LabeledShape, articulated, creatures};
+use datasets::{
+    ArticulatedOptions, CreatureOptions, DatasetError, Family, LabeledShape, articulated, articulated_body,
+    creatures,
+};
+use rayon::prelude::*;
 
 use crate::parts::parts;
 
@@ -12,6 +16,9 @@ use crate::parts::parts;
 pub(crate) enum Families {
     /// The thirty shapes of three families.
     Articulated,
+    /// Cats, centaurs and men, each body a class: the number of bodies of each family, and of poses of each. Bodies of one family
+    /// differ as adults do.
+    Bodies(usize, usize),
     /// Creatures: the number of families, and of shapes of each.
     Creatures(usize, usize),
     /// Mechanical parts: the number of parts, and of copies of each. Their meshes are as fine as they need to be.
@@ -23,6 +30,17 @@ impl Families {
     pub(crate) fn generate(self, seed: u64, n_vertices: usize) -> Result<Vec<LabeledShape>, DatasetError> {
         match self {
             Self::Articulated => articulated(&ArticulatedOptions { seed, n_vertices }),
+            Self::Bodies(n_bodies, n_poses) => {
+                let options = ArticulatedOptions { seed, n_vertices };
+                let one = |(family, body, pose)| {
+                    let shape = articulated_body(family, body, pose, &options)?;
+                    let label = format!("{}-{body}", family.name());
+                    Ok(LabeledShape { name: format!("{label}-{pose}"), label, ..shape })
+                };
+                let of = |family| (0..n_bodies * n_poses).map(move |i| (family, i / n_poses, i % n_poses));
+                let all: Vec<_> = Family::all().into_iter().chain([Family::Person]).flat_map(of).collect();
+                all.into_par_iter().map(one).collect()
+            }
             Self::Creatures(n_families, n_poses) => {
                 creatures(&CreatureOptions { seed, n_families, n_poses, n_vertices })
             }
@@ -40,6 +58,7 @@ impl FromStr for Families {
             let (classes, shapes) = counts.split_once('x')?;
             let [classes, shapes] = [classes, shapes].map(|n| n.parse().ok().filter(|n| *n > 0));
             match name {
+                "bodies" => Some(Self::Bodies(classes?, shapes?)),
                 "creatures" => Some(Self::Creatures(classes?, shapes?)),
                 "parts" => Some(Self::Parts(classes?, shapes?)),
                 _ => None,
@@ -47,8 +66,8 @@ impl FromStr for Families {
         };
         let found = if text == "articulated" { Some(Self::Articulated) } else { counts() };
         found.ok_or_else(|| {
-            "use `articulated`, `creatures:40x8` for 40 families of 8 shapes each, or `parts:56x4` for 4 copies each of 56 \
-             mechanical parts; separate several by commas"
+            "use `articulated`, `bodies:6x5` for 6 bodies of each family in 5 poses, `creatures:40x8` for 40 families of 8 \
+             shapes each, or `parts:56x4` for 4 copies each of 56 mechanical parts; separate several by commas"
                 .to_owned()
         })
     }
@@ -58,6 +77,7 @@ impl fmt::Display for Families {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Articulated => f.write_str("articulated"),
+            Self::Bodies(bodies, poses) => write!(f, "bodies:{bodies}x{poses}"),
             Self::Creatures(families, poses) => write!(f, "creatures:{families}x{poses}"),
             Self::Parts(parts, copies) => write!(f, "parts:{parts}x{copies}"),
         }
@@ -70,7 +90,7 @@ mod tests {
 
     #[test]
     fn families_are_written_as_they_are_read() {
-        for text in ["articulated", "creatures:40x8", "parts:56x4"] {
+        for text in ["articulated", "bodies:6x5", "creatures:40x8", "parts:56x4"] {
             assert_eq!(text.parse::<Families>().unwrap().to_string(), text);
         }
         for text in ["", "cats", "creatures", "creatures:40", "creatures:0x8", "creatures:4x-1", "gears:4x4"]

@@ -34,7 +34,7 @@ const USUAL_SPREAD: f64 = 0.43;
 /// * Needs points with weights only, so views can be made of a stored form. Cost `O(p)`, and 10 µs for a pair.
 ///
 /// Lian et al. 2013 (`lian2013` in `REFERENCES.bib`) compare depth images of forms by bags of local features, under all
-/// permutations of the axes. On built-in families that tells bodies apart less well, see `docs/decisions/026-views.md`.
+/// permutations of the axes. On built-in families that tells bodies apart less well, see `docs/decisions/026-forms-alone.md`.
 ///
 /// ```
 /// use canonform_descriptors::{CanonicalForm, FormViews};

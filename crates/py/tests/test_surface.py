@@ -168,6 +168,16 @@ def test_every_embedding_makes_a_form(square: Surface) -> None:
         assert form.report["method"] == method
 
 
+def test_a_surface_bent_into_its_form_is_its_surface(cat: Shape) -> None:
+    surface = cat.surface()
+    form = surface.canonical_form(50)
+    bent = canonform.Surface(form.bent_surface(), surface.faces)
+    assert abs(bent.area / surface.area - 1) < 0.05
+    assert abs(canonform.Surface(form.points, surface.faces).area / surface.area - 1) > 0.1
+    with pytest.raises(EmbeddingError):
+        surface.canonical_form(50, n_components=2).bent_surface()
+
+
 def test_a_form_is_written_as_a_mesh(cat: Shape, tmp_path) -> None:
     form = cat.surface().canonical_form(n_landmarks=30)
     form.write(tmp_path / "form.ply")

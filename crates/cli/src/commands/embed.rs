@@ -64,6 +64,9 @@ pub(crate) fn embed(args: &EmbedArgs, common: &Common) -> Result<ExitCode> {
             "note: -n has no effect with --method mds, which measures all pairs of vertices",
         );
     }
+    if args.features && options.dim != 3 {
+        bail!("--features bends the mesh in 3 dimensions; leave out --dim");
+    }
     match &args.meshes[..] {
         [mesh] if is_single(&args.meshes) => one(mesh, args, &options, &stress, common),
         _ if args.extend.is_some() || !args.at.is_empty() => {

@@ -31,6 +31,21 @@ fn an_array_has_one_row_per_vertex_and_nan_for_dropped_ones() {
 }
 
 #[test]
+fn a_mesh_bent_into_its_form_keeps_its_faces_and_nearly_its_area() {
+    let place = Workplace::new();
+    place.add("broken.off", &broken_ring());
+    let json = place.json("embed broken.off -n 20 --features -o bent.ply");
+    assert_eq!(json["features"], true);
+    let bent = io::read(&place.path("bent.ply")).unwrap();
+    assert!((bent.area() / ring().area() - 1.0).abs() < 0.1, "{}", bent.area() / ring().area());
+    place.done("embed broken.off -n 20 --features -o bent.npy");
+    let (shape, rows) = read_npy(&place.path("bent.npy"));
+    assert_eq!(shape, [170, 3]);
+    assert!(rows[..480].iter().all(|x| x.is_finite()) && rows[480..].iter().all(|x| x.is_nan()));
+    place.refused("embed broken.off --features --dim 2 -o bent.npy", &["leave out --dim"]);
+}
+
+#[test]
 fn distances_have_one_row_per_source_in_both_formats() {
     let place = Workplace::new();
     place.add("broken.off", &broken_ring());
