@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import sys
 import threading
@@ -42,7 +43,15 @@ def shards(collection: Path, tmp_path: Path) -> list[Path]:
 def found(results: SearchResults) -> dict[str, object]:
     """All of a report that does not depend on where it was made."""
     report = {key: value for key, value in results.report.items() if key not in ("seconds", "aligned", "measured")}
-    report["results"] = [{**result, "path": os.path.basename(result["path"])} for result in report["results"]]
+
+    def named(result: dict[str, object]) -> dict[str, object]:
+        return {**result, "path": os.path.basename(str(result["path"]))}
+
+    for key in ("results", "wholes"):
+        if key in report:
+            report[key] = [named(result) for result in report[key]]
+    for part in report.get("components", ()):
+        part["nearest"] = named(part["nearest"])
     return report
 
 
@@ -64,7 +73,57 @@ def test_two_workers_find_what_one_index_finds(
     assert "cat" in results._repr_html_() and results.label == "cat"
 
 
-def test_a_killed_worker_costs_a_retry(own_client: Client, whole: Index, shards: list[Path], tmp_path: Path) -> None:
+def plate(meshes: list[Path]) -> tuple[np.ndarray, np.ndarray]:
+    """Some meshes beside each other, the last two of them smaller."""
+    vertices, faces, n = [], [], 0
+    for i, path in enumerate(meshes):
+        surface = canonform.read(path)
+        vertices.append(surface.vertices / (1 + i) + [5.0 * i * np.ptp(surface.vertices), 0, 0])
+        faces.append(surface.faces + n)
+        n += len(surface.vertices)
+    return np.concatenate(vertices), np.concatenate(faces)
+
+
+def test_all_rankings_and_explanations_are_those_of_one_index(
+    client: Client, whole: Index, shards: list[Path], collection: Path, tmp_path: Path
+) -> None:
+    table = tmp_path / "shapes.lance"
+    vector_table(shards, table)
+    file, name = collection / "cat1.off", list(whole)[-1]
+    in_memory = canonform.read(collection / "cat0.off")
+    for query, rank, workers in (
+        (file, "plain", client), (name, "plain", None), (in_memory, "plain", None), (file, "part", None), (name, "part", client),
+        (in_memory, "forms", None), (name, "forms", client),
+    ):  # fmt: skip
+        for explain in (True, False):
+            expected = found(whole.search(query, 3, rank=rank, explain=explain))
+            assert found(search(table, query, 3, rank=rank, explain=explain, client=workers)) == expected
+    with pytest.raises(OptionError, match=r"Index\.merge"):
+        search(table, file, rank="graph")
+    with pytest.raises(OptionError, match='"forms"'):
+        search(table, file, rank="colour")
+
+
+def test_components_are_found_in_other_indexes(client: Client, collection: Path, tmp_path: Path) -> None:
+    meshes = tmp_path / "meshes"
+    meshes.mkdir()
+    for mesh in sorted(collection.glob("*.off"))[:3]:
+        shutil.copy(mesh, meshes)
+    vertices, faces = plate(sorted(meshes.glob("*.off")))
+    canonform.datasets.write([canonform.datasets.Shape("plate", "plate", vertices, faces)], meshes)
+    whole = Index.build(meshes, tmp_path / "whole.canonform")
+    parts = [Index.build(meshes, tmp_path / f"part-{i}.canonform", shard=(i, 2)).path for i in (1, 2)]
+    vector_table(parts, tmp_path / "shapes.lance")
+    for query, key in (("plate", "components"), (sorted(meshes.glob("*.off"))[0], "wholes")):
+        expected = found(whole.search(query, 2, explain=True))
+        assert expected[key]
+        for workers in (None, client):
+            assert found(search(tmp_path / "shapes.lance", query, 2, explain=True, client=workers)) == expected
+
+
+def test_a_killed_worker_costs_a_retry(
+    own_client: Client, whole: Index, shards: list[Path], tmp_path: Path
+) -> None:
     table = tmp_path / "shapes.lance"
     vector_table(shards, table)
     expected = found(whole.search("cat1", 5, exact=True))
