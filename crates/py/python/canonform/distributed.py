@@ -432,7 +432,7 @@ class _Search:
             lists = self.ask("shortlist", [(shard, packed, rank, n) for shard in shards])
             return sorted((distance, id, shard) for shard, some in zip(shards, lists, strict=True) for distance, id in some)[:n]
         row = _vectors.padded(self.table, np.array(json.loads(packed)["fused"], np.float32))
-        if self.client is None:
+        if self.client is None or self.table.count_rows() <= _vectors.ALONE:
             return _vectors.nearest(self.table, row, n, self.facts.probes)
         pieces = [(piece, row, n, self.facts.probes) for piece in _vectors.pieces(self.table)]
         lists = _mapped(self.client, _vectors.nearest_in, pieces, self.retries)
