@@ -205,6 +205,23 @@ def test_coded_vectors_state_their_recall(client: Client, tmp_path: Path, monkey
         assert {"s0", "new"} <= candidates and len(truth & candidates) >= 9
 
 
+def test_an_export_is_a_table_of_vectors(whole: Index, tmp_path: Path) -> None:
+    lancedb, parquet = pytest.importorskip("lancedb"), pytest.importorskip("pyarrow.parquet")
+    whole.export(tmp_path / "shapes.parquet")
+    whole.export(tmp_path / "vectors.lance")
+    exported = parquet.read_table(tmp_path / "shapes.parquet")
+    database = lancedb.connect(tmp_path)
+    expected = [name for name, _ in whole.nearest(whole.vector("cat1"), 9, exact=True)]
+    near = database.create_table("shapes", exported).search(whole.vector("cat1")).limit(9).to_list()
+    assert [row["id"] for row in near] == expected
+    assert {row["id"]: row["label"] for row in near} == {shape.id: shape.label for shape in whole.shapes()}
+    assert exported["fused"].type.list_size == len(whole.vector("cat1"))
+    assert np.array_equal(np.stack(exported["fused"].to_pylist()).astype("f4"), whole.vectors())
+    query = _vectors.padded(database.open_table("vectors").to_lance(), whole.vector("cat1"))
+    assert [row["id"] for row in database.open_table("vectors").search(query).limit(9).to_list()] == expected
+    assert [found.id for found in search(tmp_path / "vectors.lance", "cat1", 9)] == [found.id for found in whole.search("cat1", 9)]
+
+
 def test_other_programs_search_the_table(shards: list[Path], whole: Index, tmp_path: Path) -> None:
     lance_ray, ray = pytest.importorskip("lance_ray"), pytest.importorskip("ray")
     vector_table(shards, tmp_path / "shapes.lance")
