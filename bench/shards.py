@@ -274,8 +274,8 @@ def each(*numbers):
 def section(rows):
     yield "## Search past one machine"
     yield (f"`make bench-shards` on {machine()}: synthetic vectors of {DIM} numbers in a [table](guide/clusters.md#search-in-several-indexes), "
-           f"{CANDIDATES} candidates. Recall: how many of the ten nearest are among them, for other queries, in brackets as stated; peaks of memory, processor seconds. "
-           "Other programs ran, so latencies are upper limits.")
+           f"{CANDIDATES} candidates. Recall: the ten nearest among them, in brackets as stated; peaks of memory, processor seconds. "
+           "Other programs ran.")
     yield table(
         ["vectors", "MB: vectors/codes", "s: write/code/calibrate", "MB: write/code", "partitions", "recall", "alone: p50/p99 ms", "MB",
          "1/2 workers: ms", "queries/s"],
