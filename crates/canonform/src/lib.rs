@@ -125,9 +125,10 @@ pub use shape_index::{
     DuplicateGroup, DuplicateMember, DuplicateOptions, DuplicateReport, Elsewhere, EvaluateOptions, Explain,
     Failure, FailureReason, GraphRank, Inputs, Measure, MergeReport, NearestShape, PackedQuery,
     PairwiseDistance, PartRank, Prediction, Query, Ranked, Reranked, SearchOptions, SearchRank, SearchReport,
-    SearchResult, SearchSeconds, ShapeLimits, ShapeSearch, Shard, ShardMatch, ShardMatches, ShardedSearch,
-    Unknown, add_to_index, build_index, evaluate_index, evaluate_matrix, export_index, find_duplicates,
-    indexed_shapes, merge_indexes, merge_matches, mesh_path, remove_from_index, rerank, unchanged_index,
+    SearchResult, SearchSeconds, ShapeLimits, ShapeSearch, Shard, ShardExplained, ShardMatch, ShardMatches,
+    ShardedSearch, Unknown, add_to_index, build_index, evaluate_index, evaluate_matrix, export_index,
+    find_duplicates, indexed_shapes, merge_indexes, merge_matches, mesh_path, remove_from_index, rerank,
+    unchanged_index,
 };
 pub use {
     collection, descriptors, fields, geodesics, index, linalg, mesh, nmds, relations, retrieval, surface,

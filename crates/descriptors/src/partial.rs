@@ -2,6 +2,7 @@
 
 use linalg::LandmarkDistances;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::error::DescriptorError;
 
@@ -35,7 +36,7 @@ pub struct DiscAreas {
 /// are paths in the whole, so the disc of the whole has at least the points of the part that are as near in the part. It has
 /// at most those, the points `y` with `b(x) + b(y) <= r`, where `b` is the distance from the cut, because a path
 /// through what is missing leaves and enters by the cut; and what is missing within `r - b(x)` of the cut.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PartDiscAreas {
     /// The share of the part around each landmark.
     weights: Vec<f64>,

@@ -10,9 +10,9 @@ use canonform::mesh::RepairOptions;
 use canonform::{
     BuildOptions, DescribeOptions, DescribedQuery, DuplicateOptions, Elsewhere, Error, EvaluateOptions,
     Explain, Inputs, LabelSource, MeshGeometry, PackedQuery, PairwiseDistance, Query, SearchOptions,
-    ShapeFile, ShapeSearch, Shard, ShardMatches, ShardedSearch, add_to_index, build_index, content_hash,
-    evaluate_index, export_index, find_duplicates, indexed_shapes, mesh_path, remove_from_index,
-    unchanged_index,
+    SearchRank, ShapeFile, ShapeSearch, Shard, ShardMatches, ShardedSearch, add_to_index, build_index,
+    content_hash, evaluate_index, export_index, find_duplicates, indexed_shapes, mesh_path,
+    remove_from_index, unchanged_index,
 };
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -60,6 +60,12 @@ fn rank_by<T: FromStr<Err = String>>(rank: &str) -> PyResult<T> {
     rank.parse().map_err(|remedy: String| {
         Exception::Option.with(&format!("rank={rank:?} is not possible: {}", remedy.replace('`', "\"")))
     })
+}
+
+fn search_options(k: usize, rank: &str, explain: bool, exact: bool) -> PyResult<SearchOptions> {
+    let mode = if exact { SearchMode::Exact } else { SearchMode::Auto };
+    let explain = if explain { Explain::Kind } else { Explain::No };
+    Ok(SearchOptions { k, mode, explain, rank_by: rank_by(rank)? })
 }
 
 /// Where classes come from: a word, or a label file.
@@ -201,12 +207,7 @@ impl Index {
         explain: bool,
         exact: bool,
     ) -> PyResult<String> {
-        let options = SearchOptions {
-            k,
-            mode: if exact { SearchMode::Exact } else { SearchMode::Auto },
-            explain: if explain { Explain::Kind } else { Explain::No },
-            rank_by: rank_by(rank)?,
-        };
+        let options = search_options(k, rank, explain, exact)?;
         let (surface, path) = match &query {
             Wanted::Surface(surface) => (Some(surface.get()), PathBuf::new()),
             Wanted::Text(path) => (None, path.clone()),
@@ -238,7 +239,7 @@ impl Index {
             let content = explain.then(|| content_hash(&path)).transpose()?;
             search.search(Query::Mesh { mesh: &mesh, name, content }, &options, observer)
         })?;
-        report.place(|path| mesh_path(&self.path, path).to_string_lossy().into_owned());
+        report.place(|path| self.placed(path));
         Ok(json(&report))
     }
 
@@ -256,19 +257,47 @@ impl Index {
     }
 
     /// A shape as a query for other indexes, as JSON.
-    fn pack(&self, py: Python<'_>, id: &str) -> PyResult<String> {
-        Ok(json(&run_alone(py, None, |_| self.search.pack(id))?))
+    fn pack(&self, py: Python<'_>, id: &str, rank: &str, explain: bool) -> PyResult<String> {
+        let options = search_options(0, rank, explain, false)?;
+        Ok(json(&run_alone(py, None, |observer| self.search.pack(id, &options, observer))?))
     }
 
-    /// The nearest of some shapes to a packed query, as JSON.
-    fn match_shapes(&self, py: Python<'_>, query: &str, ids: Vec<String>, wanted: usize) -> PyResult<String> {
-        let query = unpacked(query)?;
+    /// The first shapes for a packed query, with what they are ordered by.
+    fn shortlist(&self, py: Python<'_>, query: &str, rank: &str, n: usize) -> PyResult<Vec<(f64, String)>> {
+        let (query, rank) = (unpacked(query)?, rank_by(rank)?);
+        run_alone(py, None, |observer| self.search.shortlist(&query, rank, n, observer))
+    }
+
+    /// The best of some shapes for a packed query, as JSON.
+    fn match_shapes(
+        &self,
+        py: Python<'_>,
+        query: &str,
+        ids: Vec<String>,
+        rank: &str,
+        wanted: usize,
+    ) -> PyResult<String> {
+        let (query, rank) = (unpacked(query)?, rank_by(rank)?);
         let mut found =
-            run_alone(py, None, |observer| self.search.match_shapes(&query, &ids, wanted, observer))?;
-        for near in &mut found.nearest {
-            near.path = mesh_path(&self.path, &near.path).to_string_lossy().into_owned();
-        }
+            run_alone(py, None, |observer| self.search.match_shapes(&query, &ids, rank, wanted, observer))?;
+        found.nearest.iter_mut().for_each(|near| near.path = self.placed(&near.path));
         Ok(json(&found))
+    }
+
+    /// What the meshes of this index tell about those of its matches that became results, as JSON.
+    fn explain(
+        &self,
+        py: Python<'_>,
+        query: &str,
+        found: &str,
+        results: HashSet<String>,
+    ) -> PyResult<String> {
+        let (query, mut found): (_, ShardMatches) = (unpacked(query)?, unpacked(found)?);
+        found.nearest.retain(|near| results.contains(&near.id));
+        let mut explained =
+            run_alone(py, None, |observer| self.search.explain_matches(&query, found.nearest, observer))?;
+        explained.wholes.iter_mut().for_each(|whole| whole.path = self.placed(&whole.path));
+        Ok(json(&explained))
     }
 
     /// How its shapes were described, as the index states it.
@@ -392,6 +421,13 @@ impl Index {
     }
 }
 
+impl Index {
+    /// The path of a mesh that this index states.
+    fn placed(&self, path: &str) -> String {
+        mesh_path(&self.path, path).to_string_lossy().into_owned()
+    }
+}
+
 /// What another process wrote as JSON.
 fn unpacked<T: DeserializeOwned>(text: &str) -> PyResult<T> {
     serde_json::from_str(text).map_err(|fault| Exception::Option.with(&format!("{text:.40}: {fault}")))
@@ -404,25 +440,44 @@ pub(crate) fn pack_surface(
     surface: Bound<'_, Surface>,
     options: &str,
     name: &str,
+    rank: &str,
+    explain: bool,
 ) -> PyResult<String> {
     let unknown = || Exception::Option.with(&format!("options {options:?} are not of this version"));
     let describe = DescribeOptions::from_text(options).ok_or_else(unknown)?;
-    let surface = surface.get();
+    let (surface, rank): (_, SearchRank) = (surface.get(), rank_by(rank)?);
     let query = run_alone(py, None, |observer| {
         // A surface that was repaired in another way is repaired again.
-        if surface.inner.repair != describe.form.repair {
-            let again = canonform::Surface::new(&surface.mesh, &describe.form.repair, observer)?;
-            return Ok(PackedQuery::of(&canonform::describe(&again, &describe, observer)?, name));
+        let again = match surface.inner.repair == describe.form.repair {
+            true => None,
+            false => Some(canonform::Surface::new(&surface.mesh, &describe.form.repair, observer)?),
+        };
+        let mut query = match &again {
+            Some(again) => PackedQuery::of(&canonform::describe(again, &describe, observer)?, name),
+            None => PackedQuery::of(&*surface.described(&describe, observer)?, name),
+        };
+        query.content = surface.content;
+        if rank == SearchRank::Part {
+            let repaired = again.as_ref().unwrap_or(&surface.inner);
+            query.part = Some(canonform::describe_part(repaired, &describe, observer)?);
         }
-        Ok(PackedQuery::of(&*surface.described(&describe, observer)?, name))
+        Ok(if explain { query.with_mesh(&surface.mesh) } else { query })
     })?;
     Ok(json(&query))
 }
 
+/// The components of a packed query: what is said of each, and the query for it; both as JSON.
+#[pyfunction]
+pub(crate) fn pack_components(py: Python<'_>, query: &str) -> PyResult<Vec<(String, String)>> {
+    let query: PackedQuery = unpacked(query)?;
+    let parts = run_alone(py, None, |observer| query.components(observer))?;
+    Ok(parts.iter().map(|(found, query)| (json(found), json(query))).collect())
+}
+
 /// How many candidates a search for `k` results has, and how many results each shard gives.
 #[pyfunction]
-pub(crate) fn shortlist(k: usize, n_shapes: usize) -> [usize; 2] {
-    PackedQuery::shortlist(k, n_shapes)
+pub(crate) fn shortlist(k: usize, n_shapes: usize, rank: &str) -> PyResult<[usize; 2]> {
+    Ok(PackedQuery::shortlist(k, n_shapes, rank_by(rank)?))
 }
 
 /// The answer to a search in shards, from what they found; all as JSON.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import sys
 import threading
@@ -42,7 +43,15 @@ def shards(collection: Path, tmp_path: Path) -> list[Path]:
 def found(results: SearchResults) -> dict[str, object]:
     """All of a report that does not depend on where it was made."""
     report = {key: value for key, value in results.report.items() if key not in ("seconds", "aligned", "measured")}
-    report["results"] = [{**result, "path": os.path.basename(result["path"])} for result in report["results"]]
+
+    def named(result: dict[str, object]) -> dict[str, object]:
+        return {**result, "path": os.path.basename(str(result["path"]))}
+
+    for key in ("results", "wholes"):
+        if key in report:
+            report[key] = [named(result) for result in report[key]]
+    for part in report.get("components", ()):
+        part["nearest"] = named(part["nearest"])
     return report
 
 
@@ -64,7 +73,59 @@ def test_two_workers_find_what_one_index_finds(
     assert "cat" in results._repr_html_() and results.label == "cat"
 
 
-def test_a_killed_worker_costs_a_retry(own_client: Client, whole: Index, shards: list[Path], tmp_path: Path) -> None:
+def plate(meshes: list[Path]) -> tuple[np.ndarray, np.ndarray]:
+    """Some meshes beside each other, the last two of them smaller."""
+    vertices, faces, n = [], [], 0
+    for i, path in enumerate(meshes):
+        surface = canonform.read(path)
+        vertices.append(surface.vertices / (1 + i) + [5.0 * i * np.ptp(surface.vertices), 0, 0])
+        faces.append(surface.faces + n)
+        n += len(surface.vertices)
+    return np.concatenate(vertices), np.concatenate(faces)
+
+
+def test_all_rankings_and_explanations_are_those_of_one_index(
+    client: Client, whole: Index, shards: list[Path], collection: Path, tmp_path: Path
+) -> None:
+    table = tmp_path / "shapes.lance"
+    vector_table(shards, table)
+    file, name = collection / "cat1.off", list(whole)[-1]
+    in_memory = canonform.read(collection / "cat0.off")
+    for query, rank, workers in (
+        (file, "plain", client), (name, "plain", None), (in_memory, "plain", None), (file, "part", None), (name, "part", client),
+        (in_memory, "forms", None), (name, "forms", client),
+    ):  # fmt: skip
+        for explain in (True, False):
+            expected = found(whole.search(query, 3, rank=rank, explain=explain))
+            assert found(search(table, query, 3, rank=rank, explain=explain, client=workers)) == expected
+    with pytest.raises(OptionError, match=r"Index\.merge"):
+        search(table, file, rank="graph")
+    with pytest.raises(OptionError, match='"forms"'):
+        search(table, file, rank="colour")
+
+
+def test_components_are_found_in_other_indexes(client: Client, collection: Path, tmp_path: Path) -> None:
+    meshes = tmp_path / "meshes"
+    meshes.mkdir()
+    for mesh in sorted(collection.glob("*.off"))[:3]:
+        shutil.copy(mesh, meshes)
+    vertices, faces = plate(sorted(meshes.glob("*.off")))
+    canonform.datasets.write([canonform.datasets.Shape("plate", "plate", vertices, faces)], meshes)
+    whole = Index.build(meshes, tmp_path / "whole.canonform")
+    parts = [Index.build(meshes, tmp_path / f"part-{i}.canonform", shard=(i, 2)).path for i in (1, 2)]
+    vector_table(parts, tmp_path / "shapes.lance")
+    for query, key in (("plate", "components"), (sorted(meshes.glob("*.off"))[0], "wholes")):
+        expected = found(whole.search(query, 2, explain=True))
+        assert expected[key]
+        for workers in (None, client):
+            assert found(search(tmp_path / "shapes.lance", query, 2, explain=True, client=workers)) == expected
+
+
+def test_a_killed_worker_costs_a_retry(
+    own_client: Client, whole: Index, shards: list[Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # As if the table were too large for one process.
+    monkeypatch.setattr(_vectors, "ALONE", 0)
     table = tmp_path / "shapes.lance"
     vector_table(shards, table)
     expected = found(whole.search("cat1", 5, exact=True))
@@ -135,10 +196,30 @@ def test_coded_vectors_state_their_recall(client: Client, tmp_path: Path, monkey
     table.insert(_vectors.rows(["new"], [""], [""], "x.canonform", vectors[:1] + 1e-4))
     assert _vectors.unindexed(table) == 1
     query = _vectors.padded(table, vectors[0])
-    alone = _vectors.nearest(table, query, 10, facts.probes)
-    assert [name for _, name, _ in alone[:2]] == ["s0", "new"]
-    merged = sorted(near for piece in _vectors.pieces(table) for near in _vectors.nearest_in(piece, query, 10, facts.probes))
-    assert [name for _, name, _ in merged[:10]] == [name for _, name, _ in alone]
+    alone = _vectors.nearest(table, query, 40, facts.probes)
+    merged = sorted(near for piece in _vectors.pieces(table) for near in _vectors.nearest_in(piece, query, 40, facts.probes))
+    # Distances of coded vectors are estimates, so the ten nearest are among the candidates, in some order.
+    truth = {names[i] for i in np.argsort(((vectors - vectors[0]) ** 2).sum(axis=1))[:10]}
+    for some in (alone, merged[:40]):
+        candidates = {name for _, name, _ in some}
+        assert {"s0", "new"} <= candidates and len(truth & candidates) >= 9
+
+
+def test_an_export_is_a_table_of_vectors(whole: Index, tmp_path: Path) -> None:
+    lancedb, parquet = pytest.importorskip("lancedb"), pytest.importorskip("pyarrow.parquet")
+    whole.export(tmp_path / "shapes.parquet")
+    whole.export(tmp_path / "vectors.lance")
+    exported = parquet.read_table(tmp_path / "shapes.parquet")
+    database = lancedb.connect(tmp_path)
+    expected = [name for name, _ in whole.nearest(whole.vector("cat1"), 9, exact=True)]
+    near = database.create_table("shapes", exported).search(whole.vector("cat1")).limit(9).to_list()
+    assert [row["id"] for row in near] == expected
+    assert {row["id"]: row["label"] for row in near} == {shape.id: shape.label for shape in whole.shapes()}
+    assert exported["fused"].type.list_size == len(whole.vector("cat1"))
+    assert np.array_equal(np.stack(exported["fused"].to_pylist()).astype("f4"), whole.vectors())
+    query = _vectors.padded(database.open_table("vectors").to_lance(), whole.vector("cat1"))
+    assert [row["id"] for row in database.open_table("vectors").search(query).limit(9).to_list()] == expected
+    assert [found.id for found in search(tmp_path / "vectors.lance", "cat1", 9)] == [found.id for found in whole.search("cat1", 9)]
 
 
 def test_other_programs_search_the_table(shards: list[Path], whole: Index, tmp_path: Path) -> None:

@@ -13,6 +13,7 @@ use super::record::{COMPONENTS, OTHER_COMPONENTS};
 use super::search::ShapeSearch;
 use super::source::read_unchanged;
 use crate::error::Error;
+use crate::form::{DescribeOptions, ShapeDescription};
 use relations::{Handedness, MeshGeometry, Relation, RelationKind};
 
 /// Most different components of a query that are searched for, the largest by area.
@@ -20,6 +21,42 @@ const MOST_SEARCHED: usize = 12;
 
 /// Most shapes of which a query is named as a component.
 const MOST_WHOLES: usize = 10;
+
+/// A component of a query.
+pub(super) struct QueryComponent<'a> {
+    /// Its place among the different components.
+    pub(super) place: usize,
+    pub(super) geometry: &'a MeshGeometry,
+    pub(super) description: ShapeDescription,
+    /// What it is called.
+    pub(super) name: String,
+    /// What is said of it, without a shape.
+    pub(super) found: ComponentResult,
+}
+
+/// The different components of a query that has several, largest first. One that cannot be described is left out.
+pub(super) fn components<'a>(
+    whole: &'a MeshGeometry,
+    name: &str,
+    options: &DescribeOptions,
+    budget: &Budget,
+) -> Result<Vec<QueryComponent<'a>>, Error> {
+    let mut found = Vec::new();
+    for (place, (geometry, copies)) in
+        whole.different_components().into_iter().take(MOST_SEARCHED).enumerate()
+    {
+        budget.check()?;
+        let Some(description) = described(geometry, options, budget)? else { continue };
+        let name = match copies {
+            1 => format!("a component of {name}"),
+            _ => format!("each of {copies} components of {name}"),
+        };
+        let area_share = (geometry.size() / whole.size()).powi(2);
+        let about = ComponentResult { copies, area_share, n_vertices: geometry.n_vertices(), nearest: None };
+        found.push(QueryComponent { place, geometry, description, name, found: about });
+    }
+    Ok(found)
+}
 
 impl ShapeSearch {
     /// How a query and a shape are related, once their files and meshes are known, too. The file of the shape is read again if it is
@@ -54,8 +91,7 @@ impl ShapeSearch {
         MeshGeometry::new(&mesh, Some(entry.content))
     }
 
-    /// Searches for each different component of a query that has several, largest first. A component that cannot be described
-    /// is left out.
+    /// Searches for each different component of a query that has several.
     pub(super) fn search_components(
         &self,
         query: &KnownQuery<'_>,
@@ -63,31 +99,20 @@ impl ShapeSearch {
         budget: &Budget,
     ) -> Result<Vec<ComponentResult>, Error> {
         let Some(whole) = query.geometry.as_deref() else { return Ok(Vec::new()) };
+        // The nearest one is wanted.
+        let options = SearchOptions { k: 1, rank_by: SearchRank::Plain, ..options.clone() };
         let mut found = Vec::new();
-        for (part, copies) in whole.different_components().into_iter().take(MOST_SEARCHED) {
-            budget.check()?;
-            let Some(description) = described(part, self.describe_options(), budget)? else { continue };
-            let name = match copies {
-                1 => format!("a component of {}", query.name),
-                _ => format!("each of {copies} components of {}", query.name),
-            };
+        for part in components(whole, query.name, self.describe_options(), budget)? {
             let known = KnownQuery {
-                shape: description.prepare()?,
-                name: &name,
+                shape: part.description.prepare()?,
+                name: &part.name,
                 content: None,
-                geometry: Some(HeldGeometry::Borrowed(part)),
+                geometry: Some(HeldGeometry::Borrowed(part.geometry)),
                 part: None,
                 complete: Completeness::default(),
             };
-            // The nearest one is wanted.
-            let options = SearchOptions { k: 1, rank_by: SearchRank::Plain, ..options.clone() };
-            let nearest = self.nearest(&known, &options, budget)?;
-            found.push(ComponentResult {
-                copies,
-                area_share: (part.size() / whole.size()).powi(2),
-                n_vertices: part.n_vertices(),
-                nearest: nearest.results.into_iter().next(),
-            });
+            let nearest = self.nearest(&known, &options, budget)?.results.into_iter().next();
+            found.push(ComponentResult { nearest, ..part.found });
         }
         Ok(found)
     }

@@ -1,5 +1,7 @@
 //! What a search found.
 
+use std::cmp::Ordering;
+
 use descriptors::ShapeDistance;
 use serde::{Deserialize, Serialize};
 
@@ -7,7 +9,7 @@ use crate::compare::Comparison;
 use relations::{Handedness, Relation};
 
 /// The place of a shape in a ranking on the graph.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct GraphRank {
     /// Rank distance, from 0 to 1: by fused distance and by neighbours in common, see [`retrieval::graph_rank`].
     pub rank_distance: f64,
@@ -16,7 +18,7 @@ pub struct GraphRank {
 }
 
 /// How well a query fits into a shape as a part of it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PartRank {
     /// Root mean square of the differences of logarithms of disc areas that no missing part explains; 0 if all fit. See
     /// [`descriptors::PartDiscAreas`].
@@ -59,6 +61,14 @@ pub struct SearchResult {
     pub comparison: Option<Comparison>,
 }
 
+/// What a result is ordered by, other than its distance.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub(super) struct Order {
+    pub(super) on_graph: Option<GraphRank>,
+    pub(super) as_part: Option<PartRank>,
+    pub(super) form_distance: Option<f64>,
+}
+
 /// A shape of a shard, compared with a query.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ShardMatch {
@@ -77,6 +87,7 @@ pub struct ShardMatch {
     pub shape_distance: ShapeDistance,
     /// Size of the shape over that of the query.
     pub scale: f64,
+    pub(super) order: Order,
 }
 
 /// What a [`ShapeDistance`] is sent as.
@@ -88,11 +99,22 @@ struct BothDistances {
 }
 
 impl ShardMatch {
+    /// The order in which one index would have met shapes of several.
+    pub(super) fn cmp(&self, other: &Self) -> Ordering {
+        let key = |x: &Self| match x.order {
+            Order { as_part: Some(part), .. } => [part.part_distance, 0.0],
+            Order { form_distance: Some(distance), .. } => [distance, 0.0],
+            _ => [x.distance, x.fused],
+        };
+        let numbers = key(self).into_iter().zip(key(other)).map(|(a, b)| a.total_cmp(&b));
+        numbers.fold(Ordering::Equal, Ordering::then).then_with(|| self.id.cmp(&other.id))
+    }
+
     /// The result of a search for a query of this name.
     pub(super) fn into_result(self, rank: usize, query: &str) -> SearchResult {
-        let Self { id, label, path, distance, fused, shape_distance, scale } = self;
+        let Self { id, label, path, distance, fused, shape_distance, scale, order } = self;
         let relation = Relation::by_distance(shape_distance, scale, Handedness::Unknown).named(query, &id);
-        let (on_graph, as_part, form_distance, comparison) = (None, None, None, None);
+        let Order { on_graph, as_part, form_distance } = order;
         SearchResult {
             rank,
             id,
@@ -104,7 +126,7 @@ impl ShardMatch {
             as_part,
             form_distance,
             relation,
-            comparison,
+            comparison: None,
         }
     }
 }

@@ -4,7 +4,7 @@
 //! files -> content hash -> unchanged? -> describe -> index::IndexWriter -> index::Index
 //! Query -> Index::nearest (fused signatures) -> rerank (aligned forms) -> vote
 //!                  -> Index::nearest_on_graph -> aligned forms of the results -> vote
-//! PackedQuery -> ShapeSearch::match_shapes of every shard -> merge_matches -> vote
+//! PackedQuery -> ShapeSearch::shortlist and match_shapes of every shard -> merge_matches -> vote
 //! mesh -> describe_part -> disc areas of all shapes -> aligned forms of the results -> vote
 //! ```
 
@@ -46,5 +46,5 @@ pub use predict::{ClassVotes, NearestShape, Prediction, Unknown};
 pub use query::{DescribedQuery, Query};
 pub use rerank::{Ranked, Reranked, rerank};
 pub use search::{SearchReport, SearchSeconds, ShapeSearch};
-pub use shards::{PackedQuery, ShardMatches, ShardedSearch, merge_matches};
+pub use shards::{PackedQuery, ShardExplained, ShardMatches, ShardedSearch, merge_matches};
 pub use source::{Inputs, ShapeLimits, Shard};

@@ -7,7 +7,8 @@ use std::time::Instant;
 use base::{Budget, Observer};
 use collection::Storage;
 use descriptors::{
-    PartDiscAreas, PartDistance, PreparedShape, ShapeMetric, ShapePair, SignatureKind, form_spectrum,
+    CanonicalForm, FormAlignment, PartDiscAreas, PartDistance, PreparedShape, ShapeMetric, ShapePair,
+    SignatureKind, form_spectrum,
 };
 use index::{Found, FoundOnGraph, Index, RankedShape, SearchMode, ShapeEntry};
 use mesh::TriMesh;
@@ -16,12 +17,13 @@ use rayon::prelude::*;
 use retrieval::Candidate;
 use serde::Serialize;
 
-use super::found::{ComponentResult, GraphRank, PartRank, SearchResult, ShardMatch, StoredComponent};
+use super::found::{ComponentResult, GraphRank, Order, PartRank, SearchResult, ShardMatch, StoredComponent};
 use super::options::{Explain, SearchOptions, SearchRank};
-use super::predict::{Prediction, VOTERS, predicted};
+use super::predict::{Completeness, Prediction, VOTERS, predicted};
 use super::query::{KnownQuery, Query};
 use super::record::{disc_areas, options_of, prepared};
 use super::rerank::{Ranked, Reranked, rerank};
+use super::shards::ShardedSearch;
 use super::source::read_unchanged;
 use crate::compare::compare;
 use crate::error::Error;
@@ -72,6 +74,32 @@ pub struct SearchReport {
 }
 
 impl SearchReport {
+    /// The answer to a query of this name, from the nearest shapes in their order.
+    pub(super) fn of(
+        (name, complete): (&str, Completeness),
+        nearest: Vec<ShardMatch>,
+        search: ShardedSearch,
+        k: usize,
+    ) -> Self {
+        let ShardedSearch { rank_by, n_shapes, measured, recall, threshold } = search;
+        let ranked = nearest.into_iter().enumerate();
+        let mut results: Vec<_> = ranked.map(|(i, found)| found.into_result(i + 1, name)).collect();
+        let predicted = predicted(&results, threshold, complete);
+        results.truncate(k);
+        Self {
+            results,
+            rank_by,
+            components: Vec::new(),
+            wholes: Vec::new(),
+            predicted,
+            n_shapes,
+            measured,
+            aligned: 0,
+            recall,
+            seconds: SearchSeconds::default(),
+        }
+    }
+
     /// Replaces the path of every shape that was found, which the index states as seen from its folder.
     pub fn place(&mut self, path: impl Fn(&str) -> String) {
         let components = self.components.iter_mut().filter_map(|part| part.nearest.as_mut());
@@ -202,48 +230,52 @@ impl ShapeSearch {
         let shortlist = match options.rank_by {
             SearchRank::Plain => self.by_distance(fused, wanted, options.mode)?,
             SearchRank::Graph => self.on_graph(fused, wanted, options.mode)?,
-            SearchRank::Part => {
-                let part = query.part.as_ref().ok_or(Error::NoPart)?;
-                self.by_part(part, wanted, budget)?
-            }
-            SearchRank::Forms => self.by_forms(&query.shape, wanted, budget)?,
+            rank => self.by_all(query, rank, self.ids()?, wanted, budget)?,
         };
-        let found = self.aligned(&query.shape, shortlist, wanted, budget)?;
-        let result = |(place, (ranked, order)): (usize, &(Ranked, Order))| {
-            let near = self.ranked_shape(&found.ids[ranked.index], ranked)?;
-            let Order { on_graph, as_part, form_distance } = *order;
-            Ok(SearchResult { on_graph, as_part, form_distance, ..near.into_result(place + 1, query.name) })
-        };
-        let mut results = found.ranked.iter().enumerate().map(result).collect::<Result<Vec<_>, Error>>()?;
-        let predicted = predicted(&results, found.search.threshold, query.complete);
-        results.truncate(options.k);
+        let (found, aligned) =
+            self.aligned(&query.shape, &shortlist.ids, shortlist.orders.as_deref(), wanted, budget)?;
+        let (matches, alignments): (Vec<_>, Vec<_>) = found.into_iter().unzip();
+        let Found { n_shapes, n_measured: measured, recall, threshold, .. } = shortlist.search;
+        let about = ShardedSearch { rank_by: options.rank_by, n_shapes, measured, recall, threshold };
+        let mut report = SearchReport::of((query.name, query.complete), matches, about, options.k);
+        report.aligned = aligned;
         if options.explain == Explain::Kind {
-            results.par_iter_mut().zip(&found.ranked).try_for_each(|(result, (ranked, _))| {
-                budget.check()?;
-                let shape = self.prepared(&result.id)?;
-                let pair = ShapePair::new(ShapeMetric::default(), [&query.shape, &shape])
-                    .with_best(ranked.alignment);
-                result.comparison = Some(compare(&pair)?);
-                result.relation = self.related(query, &result.id, result.relation.clone())?;
-                Ok::<_, Error>(())
-            })?;
+            let found = report.results.par_iter_mut().zip(alignments);
+            found.try_for_each(|(result, best)| self.explain(query, result, Some(best), budget))?;
         }
-        Ok(SearchReport {
-            results,
-            rank_by: options.rank_by,
-            components: Vec::new(),
-            wholes: Vec::new(),
-            predicted,
-            n_shapes: found.search.n_shapes,
-            measured: found.search.n_measured,
-            aligned: found.aligned,
-            recall: found.search.recall,
-            seconds: SearchSeconds { describe: 0.0, search: start.elapsed().as_secs_f64() },
-        })
+        report.seconds.search = start.elapsed().as_secs_f64();
+        Ok(report)
+    }
+
+    /// Adds what the files and meshes of a query and a result tell. `best` is the alignment of their forms, if it is known.
+    pub(super) fn explain(
+        &self,
+        query: &KnownQuery<'_>,
+        result: &mut SearchResult,
+        best: Option<FormAlignment>,
+        budget: &Budget,
+    ) -> Result<(), Error> {
+        budget.check()?;
+        let shape = self.prepared(&result.id)?;
+        let pair = ShapePair::new(ShapeMetric::default(), [&query.shape, &shape]);
+        let pair = if let Some(best) = best { pair.with_best(best) } else { pair };
+        result.comparison = Some(compare(&pair)?);
+        result.relation = self.related(query, &result.id, result.relation.clone())?;
+        Ok(())
+    }
+
+    /// The names of all shapes.
+    pub(super) fn ids(&self) -> Result<Vec<String>, Error> {
+        Ok(self.index.entries()?.into_iter().map(|(id, _)| id).collect())
     }
 
     /// The shapes whose signatures are nearest.
-    fn by_distance(&self, fused: &[f32], wanted: usize, mode: SearchMode) -> Result<Shortlist, Error> {
+    pub(super) fn by_distance(
+        &self,
+        fused: &[f32],
+        wanted: usize,
+        mode: SearchMode,
+    ) -> Result<Shortlist, Error> {
         let n_candidates = n_candidates(wanted);
         let mut search = self.index.nearest(fused, n_candidates, mode)?;
         let ids = std::mem::take(&mut search.shapes).into_iter().map(|near| near.id).collect();
@@ -256,82 +288,91 @@ impl ShapeSearch {
         let FoundOnGraph { shapes, search, .. } = self.index.nearest_on_graph(fused, wanted, mode)?;
         let order = |near: &RankedShape| {
             let RankedShape { rank_distance, plain_rank, .. } = *near;
-            Order { on_graph: Some(GraphRank { rank_distance, plain_rank }), ..Order::default() }
+            let on_graph = Some(GraphRank { rank_distance, plain_rank });
+            (rank_distance, Order { on_graph, ..Order::default() })
         };
         let orders = Some(shapes.iter().map(order).collect());
         Ok(Shortlist { ids: shapes.into_iter().map(|near| near.id).collect(), orders, search })
     }
 
-    /// The shapes into which a part fits best, of all.
-    fn by_part(&self, part: &PartDiscAreas, wanted: usize, budget: &Budget) -> Result<Shortlist, Error> {
-        let fit = |id: &str| {
-            let areas = disc_areas(&self.index.vectors(id)?);
-            let missing = || Error::NoDiscAreas { path: self.index.path().to_owned(), id: id.to_owned() };
-            let PartDistance { distance, share } = part.distance(&areas.ok_or_else(missing)?);
-            let as_part = Some(PartRank { part_distance: distance, part_share: share });
-            Ok((distance, Order { as_part, ..Order::default() }))
-        };
-        self.by_all(wanted, budget, fit)
-    }
-
-    /// The shapes whose forms are most alike, of all.
-    fn by_forms(&self, query: &PreparedShape, wanted: usize, budget: &Budget) -> Result<Shortlist, Error> {
-        let kind = SignatureKind::FormSpectrum;
-        let of_form = |shape: &PreparedShape| -> Result<Vec<f32>, Error> {
-            Ok(form_spectrum(shape.form())?.values.iter().map(|x| *x as f32).collect())
-        };
-        let own = of_form(query)?;
-        let alike = |id: &str| {
-            // Indexes that were built before this signature lack it.
-            let stored = self.index.vectors(id)?.signatures.into_iter().find(|(name, _)| name == kind.name());
-            let other = stored.map_or_else(|| of_form(&self.prepared(id)?), |(_, values)| Ok(values))?;
-            let distance = ShapeMetric::fused(&own, &other) / ShapeMetric::unit(kind);
-            Ok((distance, Order { form_distance: Some(distance), ..Order::default() }))
-        };
-        self.by_all(wanted, budget, alike)
-    }
-
-    /// The first shapes by a distance that is measured from every shape of the index.
-    fn by_all(
+    /// The first of some shapes by a distance that is measured from each of them: how well the query fits as a part, or how
+    /// much forms differ.
+    pub(super) fn by_all(
         &self,
+        query: &KnownQuery<'_>,
+        rank: SearchRank,
+        ids: Vec<String>,
         wanted: usize,
         budget: &Budget,
-        measured: impl Fn(&str) -> Result<(f64, Order), Error> + Sync,
     ) -> Result<Shortlist, Error> {
-        let ids: Vec<String> = self.index.entries()?.into_iter().map(|(id, _)| id).collect();
+        let part = query.part.as_ref().filter(|_| rank == SearchRank::Part);
+        if rank == SearchRank::Part && part.is_none() {
+            return Err(Error::NoPart);
+        }
+        let form = spectrum_of(query.shape.form())?;
+        let measured = |id: &str| match part {
+            Some(part) => self.fit(part, id),
+            None => {
+                let distance = self.form_distance(&form, id)?;
+                Ok((distance, Order { form_distance: Some(distance), ..Order::default() }))
+            }
+        };
         let n_shapes = ids.len();
         let one = |id: String| {
             budget.check()?;
             Ok((measured(&id)?, id))
         };
         let mut found = ids.into_par_iter().map(one).collect::<Result<Vec<_>, Error>>()?;
-        // Names are in order, so equal distances keep it.
-        found.sort_by(|((a, _), _), ((b, _), _)| a.total_cmp(b));
+        found.sort_by(|((a, _), x), ((b, _), y)| a.total_cmp(b).then_with(|| x.cmp(y)));
         found.truncate(wanted);
-        let orders = Some(found.iter().map(|((_, order), _)| *order).collect());
+        let (orders, ids): (Vec<_>, _) = found.into_iter().unzip();
         let search =
             Found { shapes: Vec::new(), n_measured: n_shapes, n_shapes, recall: 1.0, threshold: None };
-        Ok(Shortlist { ids: found.into_iter().map(|(_, id)| id).collect(), orders, search })
+        Ok(Shortlist { ids, orders: Some(orders), search })
+    }
+
+    /// The distance from the spectrum of a form, in units of two poses of one body.
+    fn form_distance(&self, form: &[f32], id: &str) -> Result<f64, Error> {
+        let kind = SignatureKind::FormSpectrum;
+        // Indexes that were built before this signature lack it.
+        let stored = self.index.vectors(id)?.signatures.into_iter().find(|(name, _)| name == kind.name());
+        let other =
+            stored.map_or_else(|| spectrum_of(self.prepared(id)?.form()), |(_, values)| Ok(values))?;
+        Ok(ShapeMetric::fused(form, &other) / ShapeMetric::unit(kind))
+    }
+
+    /// How well a part fits into a shape.
+    fn fit(&self, part: &PartDiscAreas, id: &str) -> Result<(f64, Order), Error> {
+        let areas = disc_areas(&self.index.vectors(id)?);
+        let missing = || Error::NoDiscAreas { path: self.index.path().to_owned(), id: id.to_owned() };
+        let PartDistance { distance, share } = part.distance(&areas.ok_or_else(missing)?);
+        let as_part = Some(PartRank { part_distance: distance, part_share: share });
+        Ok((distance, Order { as_part, ..Order::default() }))
     }
 
     /// Aligns the forms of a shortlist: of as many as are needed for the `wanted` nearest by combined distance, or of all of
-    /// them for their relations if something else decides on their order.
-    fn aligned(
+    /// them for their relations if something else decides on their order. Returns how many alignments were begun, too.
+    pub(super) fn aligned(
         &self,
         query: &PreparedShape,
-        shortlist: Shortlist,
+        ids: &[String],
+        orders: Option<&[(f64, Order)]>,
         wanted: usize,
         budget: &Budget,
-    ) -> Result<Ranking, Error> {
-        let Shortlist { ids, orders, search } = shortlist;
+    ) -> Result<(Vec<(ShardMatch, FormAlignment)>, usize), Error> {
         let n = if orders.is_some() { ids.len() } else { wanted };
-        let Reranked { mut nearest, aligned, .. } = self.reranked(query, &ids, n, budget)?;
+        let Reranked { mut nearest, aligned, .. } = self.reranked(query, ids, n, budget)?;
         if orders.is_some() {
             nearest.sort_by_key(|ranked| ranked.index);
         }
-        let order = |ranked: &Ranked| orders.as_ref().map_or_else(Order::default, |all| all[ranked.index]);
-        let ranked = nearest.into_iter().map(|ranked| (ranked, order(&ranked))).collect();
-        Ok(Ranking { ids, ranked, aligned, search })
+        let found = nearest.into_iter().map(|ranked| {
+            let Ranked { index, distance, fused, shape_distance, scale, alignment } = ranked;
+            let (id, order) = (ids[index].clone(), orders.map(|all| all[index].1));
+            let ShapeEntry { label, path, .. } = self.index.entry(&id)?;
+            let order = order.unwrap_or_default();
+            Ok((ShardMatch { id, label, path, distance, fused, shape_distance, scale, order }, alignment))
+        });
+        Ok((found.collect::<Result<_, Error>>()?, aligned))
     }
 
     /// The `n` of these shapes that are nearest by combined distance.
@@ -354,41 +395,20 @@ impl ShapeSearch {
         };
         rerank(query, candidates, n, shape)
     }
-
-    /// What is known of a candidate after its alignment.
-    pub(super) fn ranked_shape(&self, id: &str, ranked: &Ranked) -> Result<ShardMatch, Error> {
-        let ShapeEntry { label, path, .. } = self.index.entry(id)?;
-        let Ranked { distance, fused, shape_distance, scale, .. } = *ranked;
-        Ok(ShardMatch { id: id.to_owned(), label, path, distance, fused, shape_distance, scale })
-    }
-}
-
-/// What a result is ordered by, other than its distance.
-#[derive(Debug, Clone, Copy, Default)]
-struct Order {
-    on_graph: Option<GraphRank>,
-    as_part: Option<PartRank>,
-    form_distance: Option<f64>,
 }
 
 /// Shapes that may be results.
-struct Shortlist {
-    ids: Vec<String>,
+pub(super) struct Shortlist {
+    pub(super) ids: Vec<String>,
     /// What they are ordered by, if not by combined distance.
-    orders: Option<Vec<Order>>,
+    pub(super) orders: Option<Vec<(f64, Order)>>,
     /// About the search for signatures.
-    search: Found,
+    pub(super) search: Found,
 }
 
-/// Shapes in the order of the results.
-struct Ranking {
-    /// Names of the candidates.
-    ids: Vec<String>,
-    ranked: Vec<(Ranked, Order)>,
-    /// Shapes whose alignment was begun.
-    aligned: usize,
-    /// About the search for signatures.
-    search: Found,
+/// The spectrum of a form with the precision of an index.
+fn spectrum_of(form: &CanonicalForm) -> Result<Vec<f32>, Error> {
+    Ok(form_spectrum(form)?.values.iter().map(|value| *value as f32).collect())
 }
 
 #[cfg(test)]

@@ -1,22 +1,30 @@
-//! Searching several indexes as one: a packed query goes to each, and names and distances come back.
+//! Searching several indexes as one: a packed query goes to each, and names, distances and relations come back.
 //!
 //! ```text
-//! PackedQuery -> nearest signatures of all shards -> for each shard: match_shapes -> merge_matches -> SearchReport
+//! PackedQuery -> shortlist of every shard -> for the best of all: match_shapes -> merge_matches -> SearchReport
+//!             -> for the results, if they are explained: explain_matches
 //! ```
 
-use base::{Budget, Observer};
-use descriptors::{CanonicalForm, PreparedShape};
+use base::{Budget, ContentHash, Observer};
+use descriptors::{CanonicalForm, PartDiscAreas, PreparedShape};
+use index::SearchMode;
+use mesh::TriMesh;
 use nalgebra::Point3;
+use rayon::prelude::*;
+use relations::MeshGeometry;
 use retrieval::UnknownThreshold;
 use serde::{Deserialize, Serialize};
+use surface::VertexId;
 
-use super::found::ShardMatch;
-use super::options::SearchRank;
-use super::predict::{Completeness, predicted};
+use super::explain::components;
+use super::found::{ComponentResult, SearchResult, ShardMatch};
+use super::options::{Explain, SearchOptions, SearchRank};
+use super::predict::Completeness;
+use super::query::{HeldGeometry, KnownQuery, Query};
 use super::record::AREA;
-use super::search::{SearchReport, SearchSeconds, ShapeSearch, n_candidates, n_wanted};
+use super::search::{SearchReport, ShapeSearch, Shortlist, n_candidates, n_wanted};
 use crate::error::Error;
-use crate::form::ShapeDescription;
+use crate::form::{DescribeOptions, ShapeDescription};
 
 /// A described query that can be sent to other processes: what comparing it with other shapes needs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -25,6 +33,10 @@ pub struct PackedQuery {
     pub name: String,
     /// Its fused vector.
     pub fused: Vec<f32>,
+    /// The [hash](crate::content_hash) of its file.
+    pub content: Option<ContentHash>,
+    /// What its fit as a part is measured by, if results are ordered by it.
+    pub part: Option<PartDiscAreas>,
     /// The options it was described with, as indexes state them.
     options: String,
     points: Vec<[f64; 3]>,
@@ -32,6 +44,15 @@ pub struct PackedQuery {
     area: Option<f64>,
     form_area: Option<f64>,
     complete: Completeness,
+    mesh: Option<PackedMesh>,
+    /// Which of the different components of the mesh it is, if it is not the whole.
+    component: Option<usize>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct PackedMesh {
+    positions: Vec<[f64; 3]>,
+    faces: Vec<[VertexId; 3]>,
 }
 
 impl PackedQuery {
@@ -52,90 +73,214 @@ impl PackedQuery {
         Self {
             name: name.to_owned(),
             fused: fused.to_vec(),
+            content: None,
+            part: None,
             options: options.to_owned(),
-            points: form.points().iter().map(|p| [p.x, p.y, p.z]).collect(),
+            points: form.points().iter().map(|p| (*p).into()).collect(),
             weights: form.weights().to_vec(),
             area,
             form_area: form.area(),
             complete,
+            mesh: None,
+            component: None,
         }
     }
 
-    fn prepare(&self) -> Result<PreparedShape, Error> {
-        let points = self.points.iter().map(|[x, y, z]| Point3::new(*x, *y, *z)).collect();
-        let form = CanonicalForm::from_parts(points, self.weights.clone(), self.form_area)?;
-        Ok(PreparedShape::new(self.fused.clone(), &form, self.area)?)
+    /// Adds the mesh, by which results are explained.
+    #[must_use]
+    pub fn with_mesh(self, mesh: &TriMesh) -> Self {
+        let positions = mesh.positions.iter().map(|p| (*p).into()).collect();
+        Self { mesh: Some(PackedMesh { positions, faces: mesh.faces.clone() }), ..self }
     }
 
-    /// How many of the nearest signatures of all shards are candidates for `k` results, and how many results each shard gives.
+    /// The mesh of the whole in space.
+    fn geometry(&self) -> Option<MeshGeometry> {
+        let PackedMesh { positions, faces } = self.mesh.as_ref()?;
+        let positions = positions.iter().map(|p| Point3::from(*p)).collect();
+        MeshGeometry::new(&TriMesh { positions, faces: faces.clone() }, self.content)
+    }
+
+    fn known<'a>(&'a self, whole: Option<&'a MeshGeometry>) -> Result<KnownQuery<'a>, Error> {
+        let points = self.points.iter().map(|p| Point3::from(*p)).collect();
+        let form = CanonicalForm::from_parts(points, self.weights.clone(), self.form_area)?;
+        let geometry = whole.map(|whole| match self.component {
+            Some(i) => whole.different_components()[i].0,
+            None => whole,
+        });
+        Ok(KnownQuery {
+            shape: PreparedShape::new(self.fused.clone(), &form, self.area)?,
+            name: &self.name,
+            content: self.content.filter(|_| self.component.is_none()),
+            geometry: geometry.map(HeldGeometry::Borrowed),
+            part: self.part.clone(),
+            complete: self.complete,
+        })
+    }
+
+    /// The different components of a query that comes with its mesh, as queries of their own. Results are to be found for each.
+    ///
+    /// # Errors
+    /// [`Error::Exceeded`].
+    pub fn components(&self, observer: &dyn Observer) -> Result<Vec<(ComponentResult, Self)>, Error> {
+        let Some(options) = DescribeOptions::from_text(&self.options) else { return Ok(Vec::new()) };
+        let Some(whole) = self.geometry() else { return Ok(Vec::new()) };
+        let parts = components(&whole, &self.name, &options, &observer.budget())?;
+        let packed = parts.into_iter().map(|part| {
+            let complete = Completeness::default();
+            let query = Self { complete, ..Self::of(&part.description, &part.name) };
+            let (content, mesh, component) = (self.content, self.mesh.clone(), Some(part.place));
+            (part.found, Self { content, mesh, component, ..query })
+        });
+        Ok(packed.collect())
+    }
+
+    /// How many of the first shapes of all shards are candidates for `k` results, and how many results each shard gives.
     #[must_use]
-    pub fn shortlist(k: usize, n_shapes: usize) -> [usize; 2] {
+    pub fn shortlist(k: usize, n_shapes: usize, rank_by: SearchRank) -> [usize; 2] {
         let wanted = n_wanted(k, n_shapes);
-        [n_candidates(wanted), wanted]
+        let plain = matches!(rank_by, SearchRank::Plain | SearchRank::Graph);
+        [if plain { n_candidates(wanted) } else { wanted }, wanted]
     }
 }
 
 /// What a shard found among its candidates.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ShardMatches {
-    /// The nearest by combined distance.
+    /// The best, in the order of results.
     pub nearest: Vec<ShardMatch>,
     /// Shapes whose alignment was begun.
     pub aligned: usize,
 }
 
+/// What a shard knows about results.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ShardExplained {
+    /// The results, with their relations by files and meshes. Ranks are 0.
+    pub results: Vec<SearchResult>,
+    /// As in [`SearchReport::wholes`], for the shapes of this shard.
+    pub wholes: Vec<SearchResult>,
+}
+
 /// What is known of a search for signatures in all shards.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ShardedSearch {
+    /// How results are ordered.
+    pub rank_by: SearchRank,
     /// Shapes in all shards.
     pub n_shapes: usize,
     /// Shapes whose signatures were compared.
     pub measured: usize,
     /// Share of the ten nearest signatures that such searches find.
     pub recall: f64,
-    /// The [threshold](index::class_threshold) of all shards.
+    /// The [threshold](index::class_threshold) of all shards, if signatures were searched.
     pub threshold: Option<UnknownThreshold>,
 }
 
 impl ShapeSearch {
-    /// Packs a shape of the index as a query.
+    /// Packs a shape of the index as a query. Its mesh is read as for [`Query::Id`].
     ///
     /// # Errors
-    /// [`Error::Index`].
-    pub fn pack(&self, id: &str) -> Result<PackedQuery, Error> {
-        let (shape, entry) = (self.prepared(id)?, self.index().entry(id)?);
+    /// As of [`ShapeSearch::search`].
+    pub fn pack(
+        &self,
+        id: &str,
+        options: &SearchOptions,
+        observer: &dyn Observer,
+    ) -> Result<PackedQuery, Error> {
+        let unexplained = SearchOptions { explain: Explain::No, ..options.clone() };
+        let KnownQuery { shape, content, part, complete, .. } =
+            self.resolved(Query::Id(id), &unexplained, observer)?;
         let about = (id, shape.fused(), self.index().options());
-        let (area, complete) = (entry.fact(AREA), Completeness::of_entry(&entry));
-        Ok(PackedQuery::of_form(shape.form(), about, area, complete))
+        let area = self.index().entry(id)?.fact(AREA);
+        let packed =
+            PackedQuery { content, part, ..PackedQuery::of_form(shape.form(), about, area, complete) };
+        let mesh = (options.explain == Explain::Kind).then(|| self.mesh(id).ok()).flatten();
+        Ok(if let Some(mesh) = mesh { packed.with_mesh(&mesh) } else { packed })
     }
 
-    /// The `wanted` nearest of some shapes of this index by combined distance. Names that the index does not hold are left out:
-    /// their shapes were removed meanwhile.
+    /// The first `n` shapes of this index in some order, and the distances that they are ordered by: of signatures, all of which
+    /// are compared, or as a part, or of forms alone. A graph of several indexes does not exist, so it stands for signatures.
     ///
     /// # Errors
-    /// [`Error::Index`], also for a query that was described with other options; [`Error::Exceeded`].
+    /// As of [`ShapeSearch::search`].
+    pub fn shortlist(
+        &self,
+        query: &PackedQuery,
+        rank_by: SearchRank,
+        n: usize,
+        observer: &dyn Observer,
+    ) -> Result<Vec<(f64, String)>, Error> {
+        self.index().expect_options(&query.options)?;
+        if matches!(rank_by, SearchRank::Plain | SearchRank::Graph) {
+            let found = self.index().nearest(&query.fused, n, SearchMode::Exact)?;
+            return Ok(found.shapes.into_iter().map(|near| (near.distance, near.id)).collect());
+        }
+        let Shortlist { ids, orders, .. } =
+            self.by_all(&query.known(None)?, rank_by, self.ids()?, n, &observer.budget())?;
+        Ok(orders.into_iter().flatten().map(|(distance, _)| distance).zip(ids).collect())
+    }
+
+    /// The `wanted` best of some shapes of this index. Names that the index does not hold are left out: their shapes were removed
+    /// meanwhile.
+    ///
+    /// # Errors
+    /// As of [`ShapeSearch::search`].
     pub fn match_shapes(
         &self,
         query: &PackedQuery,
         ids: &[String],
+        rank_by: SearchRank,
         wanted: usize,
         observer: &dyn Observer,
     ) -> Result<ShardMatches, Error> {
         self.index().expect_options(&query.options)?;
-        let mut known = Vec::new();
-        for id in ids {
-            if self.index().contains(id)? {
-                known.push(id.clone());
+        let mut ids = ids.to_vec();
+        for place in (0..ids.len()).rev() {
+            if !self.index().contains(&ids[place])? {
+                ids.remove(place);
             }
         }
-        let budget: Budget = observer.budget();
-        let found = self.reranked(&query.prepare()?, &known, wanted, &budget)?;
-        let nearest = found.nearest.iter().map(|ranked| self.ranked_shape(&known[ranked.index], ranked));
-        Ok(ShardMatches { nearest: nearest.collect::<Result<_, _>>()?, aligned: found.aligned })
+        let (known, budget): (_, Budget) = (query.known(None)?, observer.budget());
+        let orders = match rank_by {
+            SearchRank::Plain | SearchRank::Graph => None,
+            _ => {
+                let Shortlist { ids: ordered, orders, .. } =
+                    self.by_all(&known, rank_by, std::mem::take(&mut ids), wanted, &budget)?;
+                ids = ordered;
+                orders
+            }
+        };
+        let (found, aligned) = self.aligned(&known.shape, &ids, orders.as_deref(), wanted, &budget)?;
+        Ok(ShardMatches { nearest: found.into_iter().map(|(found, _)| found).collect(), aligned })
+    }
+
+    /// What the files and meshes of this index tell about results, and of which shapes the query is a component.
+    ///
+    /// # Errors
+    /// As of [`ShapeSearch::search`].
+    pub fn explain_matches(
+        &self,
+        query: &PackedQuery,
+        matches: Vec<ShardMatch>,
+        observer: &dyn Observer,
+    ) -> Result<ShardExplained, Error> {
+        let (whole, budget) = (query.geometry(), observer.budget());
+        let known = query.known(whole.as_ref())?;
+        let explained = |found: ShardMatch| {
+            let mut result = found.into_result(0, known.name);
+            self.explain(&known, &mut result, None, &budget)?;
+            Ok(result)
+        };
+        let results = matches.into_par_iter().map(explained).collect::<Result<_, Error>>()?;
+        let wholes = match query.component {
+            Some(_) => Vec::new(),
+            None => self.search_wholes(&known, &budget)?,
+        };
+        Ok(ShardExplained { results, wholes })
     }
 }
 
-/// The answer to a search in shards: the `k` nearest of what they found, and the class.
+/// The answer to a search in shards: the `k` best of what they found, and the class.
 ///
 /// It is the answer of one index with the shapes of all shards, if the candidates were those of that index.
 #[must_use]
@@ -147,50 +292,29 @@ pub fn merge_matches(
 ) -> SearchReport {
     let aligned = shards.iter().map(|found| found.aligned).sum();
     let mut nearest: Vec<ShardMatch> = shards.into_iter().flat_map(|found| found.nearest).collect();
-    // The order in which one index would have met them.
-    nearest.sort_by(|a, b| {
-        let combined = a.distance.total_cmp(&b.distance);
-        combined.then(a.fused.total_cmp(&b.fused)).then_with(|| a.id.cmp(&b.id))
-    });
+    nearest.sort_by(ShardMatch::cmp);
     nearest.truncate(n_wanted(k, search.n_shapes));
-    let ranked = nearest.into_iter().enumerate();
-    let mut results: Vec<_> = ranked.map(|(i, found)| found.into_result(i + 1, &query.name)).collect();
-    let predicted = predicted(&results, search.threshold, query.complete);
-    results.truncate(k);
-    SearchReport {
-        results,
-        rank_by: SearchRank::Plain,
-        components: Vec::new(),
-        wholes: Vec::new(),
-        predicted,
-        n_shapes: search.n_shapes,
-        measured: search.measured,
-        aligned,
-        recall: search.recall,
-        seconds: SearchSeconds::default(),
-    }
+    SearchReport { aligned, ..SearchReport::of((&query.name, query.complete), nearest, search, k) }
 }
 
 #[cfg(test)]
 mod tests {
-    use index::{Index, SearchMode, class_threshold};
+    use index::{Index, class_threshold};
     use mesh::shapes;
 
     use super::super::build::{BuildOptions, build_index};
-    use super::super::options::SearchOptions;
-    use super::super::query::Query;
     use super::super::source::Shard;
     use super::*;
-    use crate::form::{DescribeOptions, describe};
+    use crate::form::describe;
 
     /// The answer of some shards, all of which are asked for candidates.
-    fn asked(shards: &[ShapeSearch], query: &PackedQuery, k: usize) -> SearchReport {
+    fn asked(shards: &[ShapeSearch], query: &PackedQuery, rank_by: SearchRank, k: usize) -> SearchReport {
         let n_shapes = shards.iter().map(|shard| shard.index().len()).sum();
-        let [n_candidates, wanted] = PackedQuery::shortlist(k, n_shapes);
+        let [n_candidates, wanted] = PackedQuery::shortlist(k, n_shapes, rank_by);
         let mut near = Vec::new();
         for (place, shard) in shards.iter().enumerate() {
-            let found = shard.index().nearest(&query.fused, n_candidates, SearchMode::Exact).unwrap();
-            near.extend(found.shapes.into_iter().map(|shape| (shape.distance, shape.id, place)));
+            let found = shard.shortlist(query, rank_by, n_candidates, &()).unwrap();
+            near.extend(found.into_iter().map(|(distance, id)| (distance, id, place)));
         }
         near.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1)));
         near.truncate(n_candidates);
@@ -198,13 +322,13 @@ mod tests {
             let of = near.iter().filter(|near| near.2 == place).map(|near| near.1.clone());
             // A name that the shard does not hold is left out.
             let ids: Vec<String> = of.chain(["gone".to_owned()]).collect();
-            let found = shard.match_shapes(query, &ids, wanted, &()).unwrap();
+            let found = shard.match_shapes(query, &ids, rank_by, wanted, &()).unwrap();
             serde_json::from_str(&serde_json::to_string(&found).unwrap()).unwrap()
         });
         let matches = matches.collect();
         let indexes: Vec<Index> = shards.iter().map(|s| Index::open(s.index().path()).unwrap()).collect();
-        let threshold = class_threshold(&indexes).unwrap();
-        let search = ShardedSearch { n_shapes, measured: n_shapes, recall: 1.0, threshold };
+        let threshold = class_threshold(&indexes).unwrap().filter(|_| rank_by == SearchRank::Plain);
+        let search = ShardedSearch { rank_by, n_shapes, measured: n_shapes, recall: 1.0, threshold };
         merge_matches(query, matches, search, k)
     }
 
@@ -229,14 +353,20 @@ mod tests {
         let description = describe(&surface, &describe_options, &()).unwrap();
         let queries = [
             (Query::from(&description), PackedQuery::of(&description, "the query")),
-            (Query::Id("ring1"), whole.pack("ring1").unwrap()),
+            (Query::Id("ring1"), whole.pack("ring1", &SearchOptions::default(), &()).unwrap()),
         ];
         for (query, packed) in queries {
             let sent: PackedQuery = serde_json::from_str(&serde_json::to_string(&packed).unwrap()).unwrap();
             assert_eq!(sent, packed);
-            for k in [0, 2, 10] {
-                let expected = whole.search(query, &SearchOptions { k, ..Default::default() }, &()).unwrap();
-                let found = asked(&shards, &sent, k);
+            for (k, rank_by) in [
+                (0, SearchRank::Plain),
+                (2, SearchRank::Plain),
+                (10, SearchRank::Plain),
+                (2, SearchRank::Forms),
+            ] {
+                let options = SearchOptions { k, rank_by, ..Default::default() };
+                let expected = whole.search(query, &options, &()).unwrap();
+                let found = asked(&shards, &sent, rank_by, k);
                 let (aligned, seconds) = (expected.aligned, expected.seconds);
                 assert_eq!(SearchReport { aligned, seconds, ..found }, expected);
             }

@@ -1,5 +1,6 @@
 //! Export of an index as files that do not depend on its history.
 
+mod arrow;
 mod columns;
 mod csv;
 mod error;

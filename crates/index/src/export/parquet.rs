@@ -13,6 +13,7 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::{ColumnPath, Type, TypePtr};
 
+use super::arrow::{self, Kind};
 use super::columns::{Column, columns, floats_of, text_of};
 use super::error::ExportError;
 use crate::{Index, Shape};
@@ -24,11 +25,12 @@ pub(super) fn write(index: &Index, file: &mut File) -> Result<(), ExportError> {
     let columns = columns(index)?;
     let schema = schema(&columns).map_err(failed)?;
     let options = KeyValue::new("canonform.options".to_owned(), index.options().to_owned());
+    let kinds = KeyValue::new(arrow::KEY.to_owned(), arrow::schema(columns.iter().map(kind)));
     let mut properties = WriterProperties::builder()
         .set_compression(Compression::SNAPPY)
         // Numbers hardly repeat.
         .set_dictionary_enabled(false)
-        .set_key_value_metadata(Some(vec![options]));
+        .set_key_value_metadata(Some(vec![options, kinds]));
     properties = properties.set_column_dictionary_enabled(ColumnPath::from("label"), true);
     let mut writer = SerializedFileWriter::new(file, schema, Arc::new(properties.build())).map_err(failed)?;
     let mut rows: Vec<Shape> = Vec::with_capacity(GROUP);
@@ -72,13 +74,34 @@ fn schema(columns: &[Column]) -> Result<TypePtr, ParquetError> {
     };
     let field = |column: &Column| match column {
         Column::Text(name, _) => text(name),
-        Column::Fact(name) => double(&format!("fact_{name}")),
+        Column::Fact(_) => double(&name_of(column)),
         Column::Floats(name, _) => {
             list(name, if is_signature(name) { Repetition::OPTIONAL } else { Repetition::REQUIRED })
         }
     };
     let fields = columns.iter().map(field).collect::<Result<_, _>>()?;
     Type::group_type_builder("shapes").with_fields(fields).build().map(Arc::new)
+}
+
+fn name_of(column: &Column) -> Cow<'_, str> {
+    match column {
+        Column::Text(name, _) => Cow::Borrowed(name),
+        Column::Fact(name) => Cow::Owned(format!("fact_{name}")),
+        Column::Floats(name, _) => Cow::Borrowed(name),
+    }
+}
+
+/// The name of a column, whether shapes may lack it, and its type. Only fused vectors are of one length in every index.
+fn kind(column: &Column) -> (Cow<'_, str>, bool, Kind) {
+    let (is_optional, kind) = match column {
+        Column::Text(..) => (false, Kind::Text),
+        Column::Fact(_) => (true, Kind::Double),
+        Column::Floats(name, extents) => match extents[..] {
+            [length] if name == "fused" && length > 0 => (false, Kind::FixedList(length)),
+            _ => (is_signature(name), Kind::List),
+        },
+    };
+    (name_of(column), is_optional, kind)
 }
 
 /// Whether shapes may lack this column. Others are empty then.

@@ -530,7 +530,15 @@ class Index(Stored):
         return groups
 
     def export(self, path: AnyPath) -> None:
-        """Write the index, the same however it was built. The extension tells the format: jsonl, parquet, npz or csv."""
+        """Write the index, the same however it was built. The extension tells the format: jsonl, parquet, npz or csv.
+
+        With the extension lance, write its vectors to a table as `distributed.vector_table` does.
+        """
+        if os.fspath(path).endswith(".lance"):
+            from .distributed import vector_table
+
+            vector_table([self.path], path)
+            return
         self._inner.export(os.fspath(path))
 
     def to_pandas(self) -> pandas.DataFrame:

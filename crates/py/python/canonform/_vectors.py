@@ -30,16 +30,22 @@ _NAME = "vector_idx"
 LEAST = 50_000
 """Up to so many vectors all are compared, as in an index."""
 
+ALONE = 20_000_000
+"""Up to so many vectors are searched by the process that asks: a task of a cluster takes longer (`make bench-shards`)."""
+
 _WIDTH = 8
-"""Numbers that one byte stands for. A convention: Lance asks for vectors of a multiple of eight."""
+"""Vectors are padded to a multiple of so many numbers, which Lance asks for."""
 
 _RECALL = 0.99
 _QUERIES = 200
 """Queries that choose how many partitions are searched, and as many others that measure the recall. One in a hundred is resolved."""
 
 _NEAREST = 10
-_REFINED = 4
-"""For each result so many candidates are measured by their full vectors. A convention: `calibrate` measures the recall."""
+_CODED = 4
+"""Numbers of a vector that one byte stands for. With 8, four vectors had to be read again for each result, at twice the time."""
+
+_MOST_PARTITIONS = 1000
+"""Finding the partition of each vector is most of coding: at 10^7, 3,000 partitions take three times as long."""
 
 _BATCH = 8192
 
@@ -202,7 +208,7 @@ def nearest_in(piece: Piece, query: Vectors, n: int, probes: int) -> list[Near]:
     """The shapes of a part nearest to a padded vector."""
     table = opened(piece.path, piece.version)
     if piece.segments:
-        near = {"column": "vector", "q": query, "k": n, "nprobes": probes, "refine_factor": _REFINED}
+        near = {"column": "vector", "q": query, "k": n, "nprobes": probes}
         scanner = table.scanner(
             columns=["id", "shard", "_distance"], nearest=near, index_segments=list(piece.segments), fast_search=True
         )
@@ -223,9 +229,7 @@ def nearest_in(piece: Piece, query: Vectors, n: int, probes: int) -> list[Near]:
 
 def nearest(table: lance.LanceDataset, query: Vectors, n: int, probes: int) -> list[Near]:
     """The shapes of a table nearest to a padded vector, found by this process."""
-    near = {"column": "vector", "q": query, "k": n, "use_index": probes > 0}
-    if probes:
-        near |= {"nprobes": probes, "refine_factor": _REFINED}
+    near = {"column": "vector", "q": query, "k": n, "use_index": probes > 0} | ({"nprobes": probes} if probes else {})
     return _listed(table.scanner(columns=["id", "shard", "_distance"], nearest=near).to_table())
 
 
@@ -252,19 +256,23 @@ def train(table: lance.LanceDataset, n_segments: int, run: Any) -> int:
     workers or here. Returns the number of partitions, and leaves the table in the new version."""
     from lance.indices import IndicesBuilder
 
-    # Lance spends most of a search on reading candidates, so fewer and larger partitions than the cells of an index cost nothing.
-    partitions = max(1, int(np.sqrt(table.count_rows())))
-    builder = IndicesBuilder(table, "vector")
-    n, n_codes = table.count_rows(), table.schema.field("vector").type.list_size // _WIDTH
+    n, builder = table.count_rows(), IndicesBuilder(table, "vector")
+    partitions = min(max(1, int(np.sqrt(n))), _MOST_PARTITIONS)
     # As many samples for each partition as in an index, and for each of the 256 codes.
     samples, of_codes = (max(1, min(most, n // parts)) for most, parts in ((48, partitions), (64, 256)))
     ivf = builder.train_ivf(num_partitions=partitions, distance_type="l2", sample_rate=samples, max_iters=12)
-    codes = builder.train_pq(ivf, num_subvectors=n_codes, sample_rate=of_codes, max_iters=12)
+    codes = builder.train_pq(ivf, num_subvectors=n_codes(table), sample_rate=of_codes, max_iters=12)
     fragments = [fragment.fragment_id for fragment in table.get_fragments()]
     parts = [fragments[i::n_segments] for i in range(min(n_segments, len(fragments)))]
     segments = run(segment_of, [(table.uri, table.version, part, ivf.centroids, codes.codebook) for part in parts])
     table.commit_existing_index_segments(_NAME, "vector", segments)
     return partitions
+
+
+def n_codes(table: lance.LanceDataset) -> int:
+    """Bytes of the code of a vector."""
+    size: int = table.schema.field("vector").type.list_size
+    return size // _CODED
 
 
 def segment_of(path: str, version: int, fragments: list[int], centroids: Any, codebook: Any) -> Any:
@@ -277,7 +285,7 @@ def segment_of(path: str, version: int, fragments: list[int], centroids: Any, co
         metric="l2",
         fragment_ids=fragments,
         num_partitions=len(centroids),
-        num_sub_vectors=table.schema.field("vector").type.list_size // _WIDTH,
+        num_sub_vectors=n_codes(table),
         ivf_centroids=centroids,
         pq_codebook=codebook,
     )

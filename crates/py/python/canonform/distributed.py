@@ -33,10 +33,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _canonform, _vectors
-from ._arrays import Floats, straight
+from ._arrays import Floats
 from ._index import OF_INDEXES, AnyPath, Index, Meshes, SearchResults, _dataset, _in_files, _label_file
 from ._methods import Embedding, Geodesic, options_of
-from ._settings import Components, IndexDistance, Landmarks, Progress, Weld, renamed, shown, whole
+from ._settings import Components, IndexDistance, Landmarks, Progress, Ranking, Weld, renamed, shown, whole, word
 from ._stored import Stored
 from ._surface import AnyMesh, Surface, surface_of
 from .errors import MeshError, NoSuchShapeError, OptionError, ShapeIndexError
@@ -327,8 +327,10 @@ def search(
     query: AnyMesh,
     k: int = 10,
     *,
-    client: Client | None = None,
+    rank: Ranking = "plain",
+    explain: bool = False,
     exact: bool = False,
+    client: Client | None = None,
     where: Mapping[str, str | Sequence[str]] | None = None,
     retries: int = 3,
 ) -> SearchResults:
@@ -343,11 +345,13 @@ def search(
         A table of `vector_table`.
     query
         A surface, a mesh as `Surface` takes it, a mesh file, or the name of a shape. It is described by this process.
-    k
-        Number of results.
+    k, explain
+        As in `Index.search`.
+    rank
+        "plain", "part" or "forms", as in `Index.search`; the last two compare the query with every shape, where its index is.
     client
-        A `distributed.Client` whose workers search. They must see the table, and the indexes under the same paths. By default this
-        process searches.
+        A `distributed.Client` whose workers search. They must see the table, and the indexes under the same paths, and their meshes if
+        results are explained. By default this process searches.
     exact
         Compare the signatures of all shapes, where their indexes are. The results are then those of one index of all shapes.
     where
@@ -359,46 +363,25 @@ def search(
     -------
     The results of `Index.search`; `report["recall"]` is the measured share of the ten nearest signatures that such a search finds.
     """
+    if rank == "graph":
+        raise OptionError(
+            'rank="graph" needs the neighbours of all shapes, which several indexes do not know: merge them with Index.merge and search '
+            'the result, or use "plain", "part" or "forms"'
+        )
     start = time.perf_counter()
-    uri = os.path.abspath(table)
-    stored = _vectors.opened(uri)
-    facts = _vectors.about(stored)
-    if not facts.options:
-        raise OptionError(f"{uri} is not a table of vector_table")
-    folder, n = os.path.dirname(uri), stored.count_rows()
-    workers = {os.path.abspath(path): [at] if isinstance(at, str) else list(at) for path, at in (where or {}).items()}
-
-    def run(task: Callable[..., Any], items: list[tuple[Any, ...]], shards: Sequence[str] = ()) -> list[Any]:
-        return _mapped(client, task, items, retries, [workers.get(shard) for shard in shards])
-
-    packed, surface, name = _packed(stored, query, folder, facts.options, run)
-    vector = np.array(json.loads(packed)["fused"], np.float32)
+    running = _Search(os.path.abspath(table), client, exact, where or {}, retries)
+    packed, surface, name = running.packed(query, word("rank", rank), explain)
     described = time.perf_counter()
-    n_candidates, wanted = _canonform.shortlist(whole("k", k), n)
-    shards = [os.path.join(folder, shard) for shard in facts.shards]
-    if exact:
-        lists = run(_nearest_of_shard, [(shard, vector, n_candidates) for shard in shards], shards)
-        near = [(distance, id, shard) for shard, found in zip(shards, lists, strict=True) for id, distance in found]
-    else:
-        row = _vectors.padded(stored, vector)
-        if client is None:
-            found = _vectors.nearest(stored, row, n_candidates, facts.probes)
-        else:
-            parts = [(piece, row, n_candidates, facts.probes) for piece in _vectors.pieces(stored)]
-            found = [near for some in run(_vectors.nearest_in, parts) for near in some]
-        near = [(distance, id, os.path.join(folder, shard)) for distance, id, shard in found]
-    candidates: dict[str, list[str]] = {}
-    for _, id, shard in sorted(near)[:n_candidates]:
-        candidates.setdefault(shard, []).append(id)
-    matches = run(_match_shapes, [(shard, packed, ids, wanted) for shard, ids in candidates.items()], list(candidates))
-    measured = n
-    if facts.probes and not exact:
-        loose = _vectors.unindexed(stored)
-        measured = loose + round((n - loose) * min(1, facts.probes / facts.partitions))
-    about = {"n_shapes": n, "measured": measured, "recall": 1.0 if exact else facts.recall, "threshold": facts.threshold}
-    report = json.loads(_canonform.merge_matches(packed, matches, json.dumps(about), k))
+    report = running.report(packed, whole("k", k), rank, explain)
+    if explain:
+        components = _canonform.pack_components(packed)
+        report["components"] = [
+            json.loads(about) | {"nearest": next(iter(running.report(part, 1, "plain", explain)["results"]), None)}
+            for about, part in components
+        ]
+    report = {key: value for key, value in report.items() if value or key not in ("components", "wholes")}
     report["seconds"] = {"describe": described - start, "search": time.perf_counter() - described}
-    return SearchResults(report, surface, name, _Shards({id: shard for shard, ids in candidates.items() for id in ids}))
+    return SearchResults(report, surface, name, _Shards(running.shards_of))
 
 
 class _Shards(Stored):
@@ -411,21 +394,78 @@ class _Shards(Stored):
         return Index(self.of[id]).surface(id)
 
 
-def _packed(
-    stored: Any, query: AnyMesh, folder: str, options: str, run: Callable[..., list[Any]]
-) -> tuple[str, Surface | None, str]:
-    """A described query, its surface if it is known, and what it is called."""
-    name = os.fspath(query) if isinstance(query, (str, os.PathLike)) else ""
-    if name and not os.path.exists(name):
-        escaped = name.replace("'", "''")
-        found = stored.to_table(columns=["shard"], filter=f"id = '{escaped}'")["shard"].to_pylist()
-        if not found:
-            raise NoSuchShapeError(f"{name!r} is neither a file nor a shape of the table")
-        shard = os.path.join(folder, found[0])
-        return run(_pack, [(shard, name)], [shard])[0], None, name
-    surface = Surface.read(name) if name else surface_of(query)
-    name = os.path.basename(name) or surface._name or "the query"
-    return _canonform.pack_surface(surface._inner, options, name), surface, name
+class _Search:
+    """A search in the indexes of a table, which are as the table states them when it begins."""
+
+    def __init__(
+        self, uri: str, client: Client | None, exact: bool, where: Mapping[str, str | Sequence[str]], retries: int
+    ) -> None:
+        self.table, self.folder, self.client, self.exact, self.retries = _vectors.opened(uri), os.path.dirname(uri), client, exact, retries
+        self.facts = _vectors.about(self.table)
+        if not self.facts.options:
+            raise OptionError(f"{uri} is not a table of vector_table")
+        self.workers = {os.path.abspath(path): [at] if isinstance(at, str) else list(at) for path, at in where.items()}
+        self.shards_of: dict[str, str] = {}
+
+    def ask(self, method: str, items: Iterable[tuple[Any, ...]]) -> list[Any]:
+        """What indexes answer, each asked with some arguments."""
+        asked = [(os.path.join(self.folder, shard), method, *arguments) for shard, *arguments in items]
+        return _mapped(self.client, _ask, asked, self.retries, [self.workers.get(item[0]) for item in asked])
+
+    def packed(self, query: AnyMesh, rank: str, explain: bool) -> tuple[str, Surface | None, str]:
+        """A described query, its surface if it is known, and what it is called."""
+        name = os.fspath(query) if isinstance(query, (str, os.PathLike)) else ""
+        if name and not os.path.exists(name):
+            escaped = name.replace("'", "''")
+            found = self.table.to_table(columns=["shard"], filter=f"id = '{escaped}'")["shard"].to_pylist()
+            if not found:
+                raise NoSuchShapeError(f"{name!r} is neither a file nor a shape of the table")
+            return self.ask("pack", [(found[0], name, rank, explain)])[0], None, name
+        surface = Surface.read(name) if name else surface_of(query)
+        name = os.path.basename(name) or surface._name or "the query"
+        return _canonform.pack_surface(surface._inner, self.facts.options, name, rank, explain), surface, name
+
+    def near(self, packed: str, n: int, rank: str) -> list[_vectors.Near]:
+        """The first shapes of all indexes."""
+        if self.exact or rank != "plain":
+            shards = list(self.facts.shards)
+            lists = self.ask("shortlist", [(shard, packed, rank, n) for shard in shards])
+            return sorted((distance, id, shard) for shard, some in zip(shards, lists, strict=True) for distance, id in some)[:n]
+        row = _vectors.padded(self.table, np.array(json.loads(packed)["fused"], np.float32))
+        if self.client is None or self.table.count_rows() <= _vectors.ALONE:
+            return _vectors.nearest(self.table, row, n, self.facts.probes)
+        pieces = [(piece, row, n, self.facts.probes) for piece in _vectors.pieces(self.table)]
+        lists = _mapped(self.client, _vectors.nearest_in, pieces, self.retries)
+        return sorted(near for some in lists for near in some)[:n]
+
+    def report(self, packed: str, k: int, rank: str, explain: bool) -> dict[str, Any]:
+        """The report on a query, without its components."""
+        n, facts = self.table.count_rows(), self.facts
+        n_candidates, wanted = _canonform.shortlist(k, n, rank)
+        candidates: dict[str, list[str]] = {}
+        for _, id, shard in self.near(packed, n_candidates, rank):
+            candidates.setdefault(shard, []).append(id)
+            self.shards_of[id] = os.path.join(self.folder, shard)
+        matches = self.ask("match_shapes", [(shard, packed, ids, rank, wanted) for shard, ids in candidates.items()])
+        about = {"rank_by": rank, "n_shapes": n, "measured": n, "recall": 1.0, "threshold": facts.threshold if rank == "plain" else None}
+        if facts.probes and rank == "plain" and not self.exact:
+            loose = _vectors.unindexed(self.table)
+            about |= {"recall": facts.recall, "measured": loose + round((n - loose) * min(1, facts.probes / facts.partitions))}
+        report: dict[str, Any] = json.loads(_canonform.merge_matches(packed, matches, json.dumps(about), k))
+        if explain:
+            results = {result["id"]: result for result in report["results"]}
+            of = dict(zip(candidates, matches, strict=True))
+            asked = [(shard, packed, of.get(shard, _NO_MATCHES), set(results)) for shard in facts.shards | of]
+            explained = [json.loads(some) for some in self.ask("explain", asked)]
+            for result in (result for some in explained for result in some["results"]):
+                results[result["id"]] |= {key: result[key] for key in ("relation", "comparison")}
+            wholes = sorted((whole for some in explained for whole in some["wholes"]), key=lambda found: (found["distance"], found["id"]))
+            report["wholes"] = [whole | {"rank": place} for place, whole in enumerate(wholes[:_MOST_WHOLES], 1)]
+        return report
+
+
+_MOST_WHOLES = 10
+_NO_MATCHES = '{"nearest": [], "aligned": 0}'
 
 
 def _mapped(
@@ -445,17 +485,9 @@ def _mapped(
     return _gathered(client, tasks, [1] * len(tasks), "", False)
 
 
-def _nearest_of_shard(path: str, vector: _vectors.Vectors, n: int) -> list[tuple[str, float]]:
-    # Arrays that travelled may be unaligned.
-    return _opened(path, _vectors.stamp(path)).nearest(straight(vector, dtype=np.float32), n, True)
-
-
-def _match_shapes(path: str, query: str, ids: list[str], wanted: int) -> str:
-    return _opened(path, _vectors.stamp(path)).match_shapes(query, ids, wanted)
-
-
-def _pack(path: str, id: str) -> str:
-    return _opened(path, _vectors.stamp(path)).pack(id)
+def _ask(path: str, method: str, *arguments: Any) -> Any:
+    """What an index answers."""
+    return getattr(_opened(path, _vectors.stamp(path)), method)(*arguments)
 
 
 @lru_cache(maxsize=64)
