@@ -54,7 +54,8 @@ impl<'a> Accessors<'a> {
     pub(super) fn indices(&self, index: Index, n_vertices: usize) -> Result<Vec<u32>, Located> {
         let accessor = self.get(index)?;
         let at = |fault: Fault| fault.at(Place::Part("accessor", index));
-        let ("SCALAR", Some(scalar)) = (accessor.kind.as_str(), schema::scalar(accessor.component_type)) else {
+        let ("SCALAR", Some(scalar)) = (accessor.kind.as_str(), schema::scalar(accessor.component_type))
+        else {
             let found = "another type".to_owned();
             return Err(at(Fault::Syntax { expected: "indices of type SCALAR", found }));
         };

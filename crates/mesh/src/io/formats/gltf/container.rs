@@ -183,8 +183,10 @@ impl<'a> Buffers<'a> {
     /// The bytes of a view and its stride.
     pub(super) fn view(&self, root: &Root, index: Index) -> Result<(&[u8], Option<usize>), Located> {
         let at = |fault: Fault| fault.at(crate::error::Place::Part("buffer view", index));
-        let view =
-            root.buffer_views.get(index).ok_or_else(|| missing("buffer view", index, root.buffer_views.len()))?;
+        let view = root
+            .buffer_views
+            .get(index)
+            .ok_or_else(|| missing("buffer view", index, root.buffer_views.len()))?;
         let buffer = view.buffer;
         let Some(slot) = self.0.get(buffer) else {
             return Err(missing("buffer", buffer, self.0.len()));

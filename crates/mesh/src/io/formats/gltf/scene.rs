@@ -145,7 +145,11 @@ impl Meshes<'_> {
     ) -> Result<(), Located> {
         let at = |fault: Fault| fault.at(Place::Part("mesh", number));
         if !self.known.contains_key(&number) {
-            let mesh = self.root.meshes.get(number).ok_or_else(|| missing("mesh", number, self.root.meshes.len()))?;
+            let mesh = self
+                .root
+                .meshes
+                .get(number)
+                .ok_or_else(|| missing("mesh", number, self.root.meshes.len()))?;
             let shape = self.decode(mesh)?;
             self.known.insert(number, shape);
         }
@@ -181,18 +185,14 @@ impl Meshes<'_> {
                     let at = Place::Part("accessor", position);
                     let whole = (start as u64).saturating_add(count);
                     self.limits.check(whole, 0).map_err(|fault| fault.at(at))?;
-                    shape
-                        .positions
-                        .extend(self.accessors.positions(position)?.into_iter().map(Point3::from));
+                    shape.positions.extend(self.accessors.positions(position)?.into_iter().map(Point3::from));
                     let count = shape.positions.len() - start;
                     starts.insert(position, (start, count));
                     (start, count)
                 }
             };
             let (corners, at) = match primitive.indices {
-                Some(index) => {
-                    (self.accessors.indices(index, count)?, Place::Part("accessor", index))
-                }
+                Some(index) => (self.accessors.indices(index, count)?, Place::Part("accessor", index)),
                 None => ((0..count as u32).collect(), Place::Part("accessor", position)),
             };
             push_faces(mode, &corners, start as u32, &mut shape.faces).map_err(|fault| fault.at(at))?;
