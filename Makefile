@@ -17,7 +17,7 @@ build: ## Build the programs
 	$(CARGO) build --release --locked
 
 run: ## Generate the built-in shapes, run figures 1 and 4, and write out/report.html
-	$(CARGO) run --release --locked -p experiments -- run figure1 figure4 --output $(OUT)
+	$(CARGO) run --release --locked --bin experiments -- run figure1 figure4 --output $(OUT)
 
 test: ## Run all tests
 	$(CARGO) test --workspace --locked --no-fail-fast

@@ -66,8 +66,8 @@ const ROUGH: Stage = Stage { n_samples: 100, among: Detail::Samples, steps: 20 }
 /// For the very best.
 const FINE: Stage = Stage { n_samples: usize::MAX, among: Detail::Points, steps: 30 };
 
-/// An error on the coarse sample beyond this multiple of the limit will not come below the limit. A safety limit, see
-/// [`align_near_forms`].
+/// An error on the coarse sample beyond this multiple of the limit, or of the best hypothesis, will not come below it. A
+/// safety limit, see [`align_near_forms`].
 const HOPELESS: f64 = 2.0;
 
 /// A step that reduces the error by less than this share is the last. A tolerance.
@@ -118,8 +118,18 @@ pub fn align_near_forms(a: &PreparedForm, b: &PreparedForm, limit: f64) -> Optio
 
 /// The best hypothesis after all stages but the last, and its error.
 fn refined_roughly(a: &PreparedForm, b: &PreparedForm, reflections: Reflections) -> (f64, Alignment) {
+    let mut best = (f64::INFINITY, Alignment::about_origin(Matrix3::identity()));
     let sketched = refine_all(a, b, hypotheses(a, b, reflections), SKETCH);
-    refine_all(a, b, sketched.into_iter().map(|(_, motion)| motion).take(REFINED), ROUGH)[0]
+    for (error, start) in sketched.into_iter().take(REFINED) {
+        if error > HOPELESS * best.0 {
+            break;
+        }
+        let found = refine(a, b, start, ROUGH);
+        if found.0 < best.0 {
+            best = found;
+        }
+    }
+    best
 }
 
 /// Motions of the principal axes of the first form to those of the second, the best of each handedness, after all stages

@@ -93,26 +93,26 @@ impl Extent {
     /// The extent from samples; no point of the form is farther than `covering` from the nearest one.
     fn new(samples: &[Point3<f64>], covering: f64) -> Self {
         let n_samples = samples.len();
-        let mut diameter = 0.0f64;
+        let mut sq_diameter = 0.0f64;
         let mut spans = Vec::with_capacity(n_samples / 2);
         let mut free = vec![true; n_samples];
         for i in 0..n_samples {
             let mut farthest = (0.0, i);
-            for j in 0..n_samples {
-                let length = (samples[i] - samples[j]).norm();
-                diameter = diameter.max(length);
-                if free[j] && length > farthest.0 {
-                    farthest = (length, j);
+            // Those before are paired already.
+            for j in i + 1..n_samples {
+                let sq_length = (samples[i] - samples[j]).norm_squared();
+                sq_diameter = sq_diameter.max(sq_length);
+                if sq_length > farthest.0 && free[j] {
+                    farthest = (sq_length, j);
                 }
             }
             if free[i] && farthest.1 != i {
-                free[i] = false;
                 free[farthest.1] = false;
-                spans.push(farthest.0);
+                spans.push(farthest.0.sqrt());
             }
         }
         spans.sort_by(|a, b| b.total_cmp(a));
-        Self { diameter: diameter + 2.0 * covering, spans, n_samples }
+        Self { diameter: sq_diameter.sqrt() + 2.0 * covering, spans, n_samples }
     }
 
     /// A lower bound of the root mean square distance between nearest points of two forms, over all motions.

@@ -1,10 +1,7 @@
 //! Typed arrays of numbers in buffers, dense and sparse.
 
-use gltf_json::accessor::{Accessor, ComponentType, GenericComponentType, IndexComponentType, Type};
-use gltf_json::validation::Checked;
-use gltf_json::{Index, Root, buffer};
-
 use super::container::{Buffers, missing};
+use super::schema::{self, Accessor, Index, Root};
 use crate::error::{Fault, Located, Place};
 use crate::io::binary::{ByteOrder, Scalar};
 
@@ -28,24 +25,20 @@ impl<'a> Accessors<'a> {
     }
 
     /// Number of rows.
-    pub(super) fn len(&self, index: Index<Accessor>) -> Result<u64, Located> {
-        Ok(self.get(index)?.count.0)
+    pub(super) fn len(&self, index: Index) -> Result<u64, Located> {
+        Ok(self.get(index)?.count)
     }
 
     /// Rows of three coordinates; integers that are normalised are fractions of their largest value.
-    pub(super) fn positions(&self, index: Index<Accessor>) -> Result<Vec<[f64; 3]>, Located> {
+    pub(super) fn positions(&self, index: Index) -> Result<Vec<[f64; 3]>, Located> {
         let accessor = self.get(index)?;
-        let number = index.value();
-        let at = |fault: Fault| fault.at(Place::Part("accessor", number));
-        let (Checked::Valid(Type::Vec3), Checked::Valid(GenericComponentType(component))) =
-            (accessor.type_, accessor.component_type)
-        else {
+        let at = |fault: Fault| fault.at(Place::Part("accessor", index));
+        let ("VEC3", Some(scalar)) = (accessor.kind.as_str(), schema::scalar(accessor.component_type)) else {
             let found = "another type".to_owned();
             return Err(at(Fault::Syntax { expected: "positions of type VEC3", found }));
         };
-        let scalar = scalar_of(component);
-        let numbers = self.numbers(accessor, number, &Layout { scalar, width: 3 })?;
-        let unit = if accessor.normalized { largest(component) } else { 1.0 };
+        let numbers = self.numbers(accessor, index, &Layout { scalar, width: 3 })?;
+        let unit = if accessor.normalized { largest(scalar) } else { 1.0 };
         // The most negative integer stands for -1 too.
         let scaled = |x: &f64| if accessor.normalized { (x / unit).max(-1.0) } else { *x };
         let rows: Vec<[f64; 3]> =
@@ -58,24 +51,19 @@ impl<'a> Accessors<'a> {
     }
 
     /// Vertex numbers, less than `n_vertices`.
-    pub(super) fn indices(&self, index: Index<Accessor>, n_vertices: usize) -> Result<Vec<u32>, Located> {
+    pub(super) fn indices(&self, index: Index, n_vertices: usize) -> Result<Vec<u32>, Located> {
         let accessor = self.get(index)?;
-        let number = index.value();
-        let at = |fault: Fault| fault.at(Place::Part("accessor", number));
-        let (Checked::Valid(Type::Scalar), Checked::Valid(GenericComponentType(component))) =
-            (accessor.type_, accessor.component_type)
+        let at = |fault: Fault| fault.at(Place::Part("accessor", index));
+        let ("SCALAR", Some(scalar)) = (accessor.kind.as_str(), schema::scalar(accessor.component_type))
         else {
             let found = "another type".to_owned();
             return Err(at(Fault::Syntax { expected: "indices of type SCALAR", found }));
         };
-        let scalar = match component {
-            ComponentType::U8 | ComponentType::U16 | ComponentType::U32 => scalar_of(component),
-            other => {
-                let found = format!("{other:?}");
-                return Err(at(Fault::Syntax { expected: "indices that are unsigned integers", found }));
-            }
-        };
-        let numbers = self.numbers(accessor, number, &Layout { scalar, width: 1 })?;
+        if !matches!(scalar, Scalar::U8 | Scalar::U16 | Scalar::U32) {
+            let found = format!("{scalar:?}");
+            return Err(at(Fault::Syntax { expected: "indices that are unsigned integers", found }));
+        }
+        let numbers = self.numbers(accessor, index, &Layout { scalar, width: 1 })?;
         if let Some(index) = numbers.iter().find(|x| **x >= n_vertices as f64) {
             let last = (n_vertices as u64).saturating_sub(1);
             return Err(at(Fault::IndexOutOfRange { index: index.to_string(), first: 0, last }));
@@ -83,18 +71,18 @@ impl<'a> Accessors<'a> {
         Ok(numbers.into_iter().map(|x| x as u32).collect())
     }
 
-    fn get(&self, index: Index<Accessor>) -> Result<&Accessor, Located> {
+    fn get(&self, index: Index) -> Result<&Accessor, Located> {
         let count = self.root.accessors.len();
-        self.root.get(index).ok_or_else(|| missing("accessor", index.value(), count))
+        self.root.accessors.get(index).ok_or_else(|| missing("accessor", index, count))
     }
 
     /// All numbers of an accessor, row by row.
     fn numbers(&self, accessor: &Accessor, number: usize, layout: &Layout) -> Result<Vec<f64>, Located> {
         let at = |fault: Fault| fault.at(Place::Part("accessor", number));
-        let count = accessor.count.0;
+        let count = accessor.count;
         let mut numbers = match accessor.buffer_view {
             Some(view) => {
-                let offset = accessor.byte_offset.map_or(0, |offset| offset.0);
+                let offset = accessor.byte_offset.unwrap_or(0);
                 self.rows(view, offset, count, layout, true, number)?
             }
             None if accessor.sparse.is_none() => {
@@ -107,15 +95,15 @@ impl<'a> Accessors<'a> {
             None => vec![0.0; count as usize * layout.width],
         };
         let Some(sparse) = &accessor.sparse else { return Ok(numbers) };
-        let Checked::Valid(IndexComponentType(component)) = sparse.indices.component_type else {
+        let Some(scalar) = schema::scalar(sparse.indices.component_type) else {
             let found = "another type".to_owned();
             return Err(at(Fault::Syntax { expected: "indices that are unsigned integers", found }));
         };
-        let places = Layout { scalar: scalar_of(component), width: 1 };
+        let places = Layout { scalar, width: 1 };
         let (of_places, of_values) = (&sparse.indices, &sparse.values);
-        let n = sparse.count.0;
-        let places = self.rows(of_places.buffer_view, of_places.byte_offset.0, n, &places, false, number)?;
-        let values = self.rows(of_values.buffer_view, of_values.byte_offset.0, n, layout, false, number)?;
+        let n = sparse.count;
+        let places = self.rows(of_places.buffer_view, of_places.byte_offset, n, &places, false, number)?;
+        let values = self.rows(of_values.buffer_view, of_values.byte_offset, n, layout, false, number)?;
         for (place, row) in places.iter().zip(values.chunks_exact(layout.width)) {
             let Some(slot) = (*place < count as f64).then_some(*place as usize * layout.width) else {
                 let (index, last) = (place.to_string(), count.saturating_sub(1));
@@ -129,7 +117,7 @@ impl<'a> Accessors<'a> {
     /// Rows of a buffer view.
     fn rows(
         &self,
-        view: Index<buffer::View>,
+        view: Index,
         offset: u64,
         count: u64,
         layout: &Layout,
@@ -167,25 +155,14 @@ impl<'a> Accessors<'a> {
     }
 }
 
-fn scalar_of(component: ComponentType) -> Scalar {
-    match component {
-        ComponentType::I8 => Scalar::I8,
-        ComponentType::U8 => Scalar::U8,
-        ComponentType::I16 => Scalar::I16,
-        ComponentType::U16 => Scalar::U16,
-        ComponentType::U32 => Scalar::U32,
-        ComponentType::F32 => Scalar::F32,
-    }
-}
-
 /// The integer that stands for 1.
-fn largest(component: ComponentType) -> f64 {
-    match component {
-        ComponentType::I8 => f64::from(i8::MAX),
-        ComponentType::U8 => f64::from(u8::MAX),
-        ComponentType::I16 => f64::from(i16::MAX),
-        ComponentType::U16 => f64::from(u16::MAX),
-        ComponentType::U32 => f64::from(u32::MAX),
-        ComponentType::F32 => 1.0,
+fn largest(scalar: Scalar) -> f64 {
+    match scalar {
+        Scalar::I8 => f64::from(i8::MAX),
+        Scalar::U8 => f64::from(u8::MAX),
+        Scalar::I16 => f64::from(i16::MAX),
+        Scalar::U16 => f64::from(u16::MAX),
+        Scalar::U32 => f64::from(u32::MAX),
+        _ => 1.0,
     }
 }

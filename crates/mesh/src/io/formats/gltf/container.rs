@@ -4,8 +4,8 @@ use std::borrow::Cow;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use gltf_json::{Index, Root, buffer};
 
+use super::schema::{Index, Root};
 use crate::error::{Fault, Located};
 use crate::io::text::{check_is_text, excerpt};
 
@@ -181,15 +181,13 @@ impl<'a> Buffers<'a> {
     }
 
     /// The bytes of a view and its stride.
-    pub(super) fn view(
-        &self,
-        root: &Root,
-        index: Index<buffer::View>,
-    ) -> Result<(&[u8], Option<usize>), Located> {
-        let number = index.value();
-        let at = |fault: Fault| fault.at(crate::error::Place::Part("buffer view", number));
-        let view = root.get(index).ok_or_else(|| missing("buffer view", number, root.buffer_views.len()))?;
-        let buffer = view.buffer.value();
+    pub(super) fn view(&self, root: &Root, index: Index) -> Result<(&[u8], Option<usize>), Located> {
+        let at = |fault: Fault| fault.at(crate::error::Place::Part("buffer view", index));
+        let view = root
+            .buffer_views
+            .get(index)
+            .ok_or_else(|| missing("buffer view", index, root.buffer_views.len()))?;
+        let buffer = view.buffer;
         let Some(slot) = self.0.get(buffer) else {
             return Err(missing("buffer", buffer, self.0.len()));
         };
@@ -199,14 +197,14 @@ impl<'a> Buffers<'a> {
                 remedy: "export it without compression",
             })
         })?;
-        let start = view.byte_offset.map_or(0, |offset| offset.0);
-        let end = start.checked_add(view.byte_length.0);
+        let start = view.byte_offset.unwrap_or(0);
+        let end = start.checked_add(view.byte_length);
         let range = end.and_then(|end| Some(usize::try_from(start).ok()?..usize::try_from(end).ok()?));
         let data = range.and_then(|range| bytes.get(range)).ok_or_else(|| {
             let (promised, found) = (end.unwrap_or(u64::MAX), bytes.len() as u64);
             at(Fault::Truncated { items: format!("bytes in buffer {buffer}"), promised, found })
         })?;
-        Ok((data, view.byte_stride.map(|stride| stride.0).filter(|stride| *stride > 0)))
+        Ok((data, view.byte_stride.filter(|stride| *stride > 0)))
     }
 }
 

@@ -12,9 +12,8 @@
 mod accessors;
 mod container;
 mod scene;
+mod schema;
 mod write;
-
-use gltf_json::Root;
 
 use crate::error::{Fault, Located};
 use crate::io::facts::{FileFacts, LengthUnit, MeshFile};
@@ -22,6 +21,7 @@ use crate::io::limits::ReadLimits;
 use crate::io::polygons::finish;
 use accessors::Accessors;
 use container::{Buffers, split_binary};
+use schema::Root;
 
 pub(super) use container::{check_binary_start, check_start};
 pub(super) use write::write;
@@ -94,7 +94,7 @@ fn parse_json(json: &[u8], start: usize) -> Result<Root, Located> {
     if json.trim_ascii().is_empty() {
         return Err(Fault::Empty.whole());
     }
-    Root::from_slice(json).map_err(|fault| {
+    serde_json::from_slice(json).map_err(|fault| {
         let expected = "the JSON of glTF 2.0";
         let found = Fault::Syntax { expected, found: fault.to_string() };
         match start {

@@ -2,15 +2,12 @@
 
 use std::collections::HashMap;
 
-use gltf_json::mesh::{Mode, Primitive, Semantic};
-use gltf_json::scene::Node;
-use gltf_json::validation::Checked;
-use gltf_json::{Index, Root, mesh::Mesh};
 use nalgebra::{Matrix4, Point3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use surface::VertexId;
 
 use super::accessors::Accessors;
 use super::container::missing;
+use super::schema::{Index, Mesh, Mode, Node, Primitive, Root};
 use crate::error::{Fault, Located, Place};
 use crate::io::limits::ReadLimits;
 use crate::io::polygons::{append_placed, check_copies};
@@ -35,16 +32,15 @@ pub(super) fn read(
     let mut meshes = Meshes { root, accessors, known: HashMap::new(), n_bytes, limits };
     if root.nodes.is_empty() {
         for number in 0..root.meshes.len() {
-            meshes.append(Index::new(number as u32), None, &mut scene)?;
+            meshes.append(number, None, &mut scene)?;
         }
         return Ok(scene);
     }
     let mut visited = vec![false; root.nodes.len()];
-    let mut open: Vec<(Index<Node>, Option<Matrix4<f64>>)> = Vec::new();
+    let mut open: Vec<(Index, Option<Matrix4<f64>>)> = Vec::new();
     open.extend(roots(root)?.into_iter().rev().map(|node| (node, None)));
-    while let Some((index, above)) = open.pop() {
-        let number = index.value();
-        let node = root.get(index).ok_or_else(|| missing("node", number, root.nodes.len()))?;
+    while let Some((number, above)) = open.pop() {
+        let node = root.nodes.get(number).ok_or_else(|| missing("node", number, root.nodes.len()))?;
         if std::mem::replace(&mut visited[number], true) {
             let found = "a node with several parents, or among its own children".to_owned();
             return Err(Fault::Syntax { expected: "a tree of nodes", found }.at(Place::Part("node", number)));
@@ -57,29 +53,28 @@ pub(super) fn read(
             let place = if node.skin.is_some() { None } else { here };
             meshes.append(mesh, place, &mut scene)?;
         }
-        open.extend(node.children.iter().flatten().rev().map(|child| (*child, here)));
+        open.extend(node.children.iter().rev().map(|child| (*child, here)));
     }
     Ok(scene)
 }
 
 /// The nodes at the top of the default scene, else of the first; of a file without scenes, all that are not children.
-fn roots(root: &Root) -> Result<Vec<Index<Node>>, Located> {
+fn roots(root: &Root) -> Result<Vec<Index>, Located> {
     if let Some(index) = root.scene {
         let count = root.scenes.len();
-        let scene = root.get(index).ok_or_else(|| missing("scene", index.value(), count))?;
+        let scene = root.scenes.get(index).ok_or_else(|| missing("scene", index, count))?;
         return Ok(scene.nodes.clone());
     }
     if let Some(scene) = root.scenes.first() {
         return Ok(scene.nodes.clone());
     }
     let mut is_child = vec![false; root.nodes.len()];
-    for child in root.nodes.iter().flat_map(|node| node.children.iter().flatten()) {
-        if let Some(is_child) = is_child.get_mut(child.value()) {
+    for child in root.nodes.iter().flat_map(|node| &node.children) {
+        if let Some(is_child) = is_child.get_mut(*child) {
             *is_child = true;
         }
     }
-    let tops = (0..root.nodes.len()).filter(|node| !is_child[*node]);
-    Ok(tops.map(|node| Index::new(node as u32)).collect())
+    Ok((0..root.nodes.len()).filter(|node| !is_child[*node]).collect())
 }
 
 /// The transform of a node; `None` if it changes nothing.
@@ -92,7 +87,7 @@ fn transform(node: &Node) -> Option<Matrix4<f64>> {
         return None;
     }
     let [x, y, z] = node.translation.unwrap_or([0.0; 3]).map(f64::from);
-    let [i, j, k, w] = node.rotation.map_or([0.0, 0.0, 0.0, 1.0], |rotation| rotation.0.map(f64::from));
+    let [i, j, k, w] = node.rotation.map_or([0.0, 0.0, 0.0, 1.0], |rotation| rotation.map(f64::from));
     let scale = Vector3::from(node.scale.unwrap_or([1.0; 3]).map(f64::from));
     // In the file the quaternion has 32 bits, or is not exactly of length one.
     let turn = match [i, j, k] {
@@ -107,12 +102,11 @@ fn transform(node: &Node) -> Option<Matrix4<f64>> {
 pub(super) fn ignored(root: &Root) -> Vec<&'static str> {
     let primitives = || root.meshes.iter().flat_map(|mesh| &mesh.primitives);
     let is_used = |what: bool, words| what.then_some(words);
-    let no_faces =
-        |primitive: &Primitive| !matches!(primitive.mode, Checked::Valid(mode) if is_of_faces(mode));
+    let no_faces = |primitive: &Primitive| !is_of_faces(primitive.mode);
     [
         is_used(root.scenes.len() > 1, "all scenes but the default one"),
         is_used(root.nodes.iter().any(|node| node.skin.is_some()), "skins: meshes are in their bind pose"),
-        is_used(primitives().any(|p| p.targets.as_ref().is_some_and(|t| !t.is_empty())), "morph targets"),
+        is_used(primitives().any(|p| !p.targets.is_empty()), "morph targets"),
         is_used(!root.animations.is_empty(), "animations"),
         is_used(primitives().any(no_faces), "points and lines"),
     ]
@@ -122,7 +116,7 @@ pub(super) fn ignored(root: &Root) -> Vec<&'static str> {
 }
 
 fn is_of_faces(mode: Mode) -> bool {
-    matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)
+    matches!(mode, Mode::Triangles | Mode::Strip | Mode::Fan)
 }
 
 /// The vertices and faces of a mesh before it is placed.
@@ -145,14 +139,17 @@ impl Meshes<'_> {
     /// Appends an instance of a mesh.
     fn append(
         &mut self,
-        index: Index<Mesh>,
+        number: Index,
         place: Option<Matrix4<f64>>,
         scene: &mut Scene,
     ) -> Result<(), Located> {
-        let number = index.value();
         let at = |fault: Fault| fault.at(Place::Part("mesh", number));
         if !self.known.contains_key(&number) {
-            let mesh = self.root.get(index).ok_or_else(|| missing("mesh", number, self.root.meshes.len()))?;
+            let mesh = self
+                .root
+                .meshes
+                .get(number)
+                .ok_or_else(|| missing("mesh", number, self.root.meshes.len()))?;
             let shape = self.decode(mesh)?;
             self.known.insert(number, shape);
         }
@@ -173,33 +170,30 @@ impl Meshes<'_> {
         let mut shape = Shape::default();
         let mut starts: HashMap<usize, (usize, usize)> = HashMap::new();
         for primitive in &mesh.primitives {
-            let Checked::Valid(mode) = primitive.mode else {
+            let mode = primitive.mode;
+            if let Mode::Unknown = mode {
                 let found = "another number".to_owned();
                 return Err(Fault::Syntax { expected: "the mode of a primitive, 0 to 6", found }.whole());
-            };
-            let position = primitive.attributes.get(&Checked::Valid(Semantic::Positions));
+            }
+            let position = primitive.attributes.get("POSITION").copied();
             let Some(position) = position.filter(|_| is_of_faces(mode)) else { continue };
-            let (start, count) = match starts.get(&position.value()) {
+            let (start, count) = match starts.get(&position) {
                 Some(known) => *known,
                 None => {
                     let start = shape.positions.len();
-                    let count = self.accessors.len(*position)?;
-                    let at = Place::Part("accessor", position.value());
+                    let count = self.accessors.len(position)?;
+                    let at = Place::Part("accessor", position);
                     let whole = (start as u64).saturating_add(count);
                     self.limits.check(whole, 0).map_err(|fault| fault.at(at))?;
-                    shape
-                        .positions
-                        .extend(self.accessors.positions(*position)?.into_iter().map(Point3::from));
+                    shape.positions.extend(self.accessors.positions(position)?.into_iter().map(Point3::from));
                     let count = shape.positions.len() - start;
-                    starts.insert(position.value(), (start, count));
+                    starts.insert(position, (start, count));
                     (start, count)
                 }
             };
             let (corners, at) = match primitive.indices {
-                Some(index) => {
-                    (self.accessors.indices(index, count)?, Place::Part("accessor", index.value()))
-                }
-                None => ((0..count as u32).collect(), Place::Part("accessor", position.value())),
+                Some(index) => (self.accessors.indices(index, count)?, Place::Part("accessor", index)),
+                None => ((0..count as u32).collect(), Place::Part("accessor", position)),
             };
             push_faces(mode, &corners, start as u32, &mut shape.faces).map_err(|fault| fault.at(at))?;
             let (vertices, faces) = (shape.positions.len() as u64, shape.faces.len() as u64);
@@ -214,7 +208,7 @@ impl Meshes<'_> {
 fn push_faces(mode: Mode, corners: &[u32], start: u32, faces: &mut Vec<[u32; 3]>) -> Result<(), Fault> {
     let mut push = |face: [u32; 3]| faces.push(face.map(|v| v + start));
     match mode {
-        Mode::TriangleStrip => {
+        Mode::Strip => {
             for (i, triple) in corners.windows(3).enumerate() {
                 let [a, b, c] = [triple[0], triple[1 + i % 2], triple[2 - i % 2]];
                 if a != b && b != c && c != a {
@@ -222,7 +216,7 @@ fn push_faces(mode: Mode, corners: &[u32], start: u32, faces: &mut Vec<[u32; 3]>
                 }
             }
         }
-        Mode::TriangleFan => {
+        Mode::Fan => {
             if let Some((apex, rim)) = corners.split_first() {
                 rim.windows(2).for_each(|edge| push([edge[0], edge[1], *apex]));
             }
