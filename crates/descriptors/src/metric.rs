@@ -34,7 +34,7 @@ pub enum FormDistance {
 const CALIBRATION: [(SignatureKind, f64, f64); SignatureKind::ALL.len()] = [
     (SignatureKind::Moments, 0.115, 0.0),
     (SignatureKind::D2, 0.067, 0.0),
-    (SignatureKind::FormSpectrum, 0.217, 0.0),
+    (SignatureKind::FormSpectrum, 0.181, 0.0),
     (SignatureKind::GeodesicSpectrum, 0.237, 0.07),
     (SignatureKind::ShapeDna, 0.084, 0.248),
     (SignatureKind::HeatKernel, 0.191, 0.204),

@@ -45,6 +45,6 @@ pub use place::mesh_path;
 pub use predict::{ClassVotes, NearestShape, Prediction, Unknown};
 pub use query::{DescribedQuery, Query};
 pub use rerank::{Ranked, Reranked, rerank};
-pub use search::{SearchReport, SearchSeconds, ShapeSearch};
-pub use shards::{PackedQuery, ShardExplained, ShardMatches, ShardedSearch, merge_matches};
+pub use search::{SearchReport, SearchSeconds, ShapeSearch, ShardedSearch};
+pub use shards::{PackedQuery, ShardExplained, ShardMatches, merge_matches};
 pub use source::{Inputs, ShapeLimits, Shard};

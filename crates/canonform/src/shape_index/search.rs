@@ -15,7 +15,8 @@ use mesh::TriMesh;
 use mesh::io::FileSource;
 use rayon::prelude::*;
 use retrieval::Candidate;
-use serde::Serialize;
+use retrieval::UnknownThreshold;
+use serde::{Deserialize, Serialize};
 
 use super::found::{ComponentResult, GraphRank, Order, PartRank, SearchResult, ShardMatch, StoredComponent};
 use super::options::{Explain, SearchOptions, SearchRank};
@@ -23,7 +24,6 @@ use super::predict::{Completeness, Prediction, VOTERS, predicted};
 use super::query::{KnownQuery, Query};
 use super::record::{disc_areas, options_of, prepared};
 use super::rerank::{Ranked, Reranked, rerank};
-use super::shards::ShardedSearch;
 use super::source::read_unchanged;
 use crate::compare::compare;
 use crate::error::Error;
@@ -71,6 +71,21 @@ pub struct SearchReport {
     pub recall: f64,
     /// Wall-clock seconds.
     pub seconds: SearchSeconds,
+}
+
+/// What is known of a search for signatures in all shards.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ShardedSearch {
+    /// How results are ordered.
+    pub rank_by: SearchRank,
+    /// Shapes in all shards.
+    pub n_shapes: usize,
+    /// Shapes whose signatures were compared.
+    pub measured: usize,
+    /// Share of the ten nearest signatures that such searches find.
+    pub recall: f64,
+    /// The [threshold](index::class_threshold) of all shards, if signatures were searched.
+    pub threshold: Option<UnknownThreshold>,
 }
 
 impl SearchReport {
@@ -502,8 +517,7 @@ mod tests {
         assert_eq!((by_name.rank_by, by_name.results.len(), by_name.measured), (SearchRank::Forms, 4, 4));
         let distance = |found: &SearchResult| found.form_distance.unwrap();
         assert!(by_name.results.windows(2).all(|pair| distance(&pair[0]) <= distance(&pair[1])));
-        // Points are stored with 32 bits, signatures are those of the form before.
-        assert!(by_name.results[0].id == "ring0" && distance(&by_name.results[0]) < 1e-3);
+        assert!(by_name.results[0].id == "ring0" && distance(&by_name.results[0]) == 0.0);
         assert_eq!(by_name.results[1].id, "ring1");
         let mut mirrored = search.mesh("ring0").unwrap();
         mirrored.positions.iter_mut().for_each(|p| (p.x, p.y) = (-3.0 * p.x, 3.0 * p.y));

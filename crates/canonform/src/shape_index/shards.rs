@@ -12,7 +12,6 @@ use mesh::TriMesh;
 use nalgebra::Point3;
 use rayon::prelude::*;
 use relations::MeshGeometry;
-use retrieval::UnknownThreshold;
 use serde::{Deserialize, Serialize};
 use surface::VertexId;
 
@@ -22,7 +21,7 @@ use super::options::{Explain, SearchOptions, SearchRank};
 use super::predict::Completeness;
 use super::query::{HeldGeometry, KnownQuery, Query};
 use super::record::AREA;
-use super::search::{SearchReport, ShapeSearch, Shortlist, n_candidates, n_wanted};
+use super::search::{SearchReport, ShapeSearch, ShardedSearch, Shortlist, n_candidates, n_wanted};
 use crate::error::Error;
 use crate::form::{DescribeOptions, ShapeDescription};
 
@@ -159,21 +158,6 @@ pub struct ShardExplained {
     pub results: Vec<SearchResult>,
     /// As in [`SearchReport::wholes`], for the shapes of this shard.
     pub wholes: Vec<SearchResult>,
-}
-
-/// What is known of a search for signatures in all shards.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct ShardedSearch {
-    /// How results are ordered.
-    pub rank_by: SearchRank,
-    /// Shapes in all shards.
-    pub n_shapes: usize,
-    /// Shapes whose signatures were compared.
-    pub measured: usize,
-    /// Share of the ten nearest signatures that such searches find.
-    pub recall: f64,
-    /// The [threshold](index::class_threshold) of all shards, if signatures were searched.
-    pub threshold: Option<UnknownThreshold>,
 }
 
 impl ShapeSearch {

@@ -70,12 +70,13 @@ pub fn geodesic_spectrum(
     let middle = &triangle * inverse * triangle.transpose();
     let spectrum = symmetric_eigenvalues(&((&middle + middle.transpose()) * 0.5))?;
     let offset = 0.5 * (unit.ln() - 0.5 * area.ln());
-    let values = magnitudes(spectrum, offset).ok_or(DescriptorError::NoExtent { n_points: p })?;
+    let values =
+        magnitudes(spectrum, EIGENVALUES, offset).ok_or(DescriptorError::NoExtent { n_points: p })?;
     Ok(Signature { kind: SignatureKind::GeodesicSpectrum, values })
 }
 
-/// The logarithms of the largest magnitudes of eigenvalues, in descending order, plus `offset`; `None` if all are zero.
-pub(super) fn magnitudes(mut spectrum: Vec<f64>, offset: f64) -> Option<Vec<f64>> {
+/// The logarithms of the `n` largest magnitudes of eigenvalues, in descending order, plus `offset`; `None` if all are zero.
+pub(super) fn magnitudes(mut spectrum: Vec<f64>, n: usize, offset: f64) -> Option<Vec<f64>> {
     spectrum.iter_mut().for_each(|value| *value = value.abs());
     spectrum.sort_by(|a, b| b.total_cmp(a));
     let largest = spectrum.first().copied().filter(|value| *value > 0.0)?;
@@ -83,7 +84,7 @@ pub(super) fn magnitudes(mut spectrum: Vec<f64>, offset: f64) -> Option<Vec<f64>
         let share = spectrum.get(i).map_or(0.0, |value| value / largest).max(LEAST);
         (share * largest).ln() + offset
     };
-    Some((0..EIGENVALUES).map(value).collect())
+    Some((0..n).map(value).collect())
 }
 
 /// The half of the eigenvalues of largest magnitude, without those that are rounding errors.

@@ -32,7 +32,7 @@ pub enum SignatureKind {
 const TABLE: [(&str, usize); SignatureKind::ALL.len()] = [
     ("moments", 13),
     ("d2", 8),
-    ("form-spectrum", 24),
+    ("form-spectrum", 16),
     ("geodesic-spectrum", 24),
     ("shape-dna", 20),
     ("heat-kernel", 32),
