@@ -102,10 +102,6 @@ pub fn smallest_eigenpairs(
         if process.is_exhausted() {
             return Ok(pairs(&operator, &process, &ritz, m));
         }
-        if std::env::var_os("EIG").is_some() {
-            let worst = (0..m + SPARE).map(|j| ritz.residual(j)).fold(0.0, f64::max);
-            eprintln!("n {n} m {m} dim {} worst {worst:e}", process.dim());
-        }
         if !schedule.is_done(process.dim(), &ritz) {
             continue;
         }
