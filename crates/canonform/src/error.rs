@@ -294,7 +294,10 @@ from_stage! {
     NmdsError => Nmds:
         NmdsError::Exceeded(limit) => limit,
         NmdsError::Linalg(LinalgError::Exceeded(limit)) => limit;
-    DescriptorError => Descriptor: DescriptorError::Linalg(LinalgError::Exceeded(limit)) => limit;
+    DescriptorError => Descriptor:
+        DescriptorError::Linalg(LinalgError::Exceeded(limit)) => limit,
+        DescriptorError::Nmds(NmdsError::Exceeded(limit)) => limit,
+        DescriptorError::Nmds(NmdsError::Linalg(LinalgError::Exceeded(limit))) => limit;
 }
 
 impl From<CollectionError> for Error {

@@ -40,4 +40,7 @@ pub enum DescriptorError {
     /// A decomposition failed.
     #[error(transparent)]
     Linalg(#[from] linalg::LinalgError),
+    /// Distances were not embedded.
+    #[error(transparent)]
+    Nmds(#[from] nmds::NmdsError),
 }

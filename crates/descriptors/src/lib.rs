@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! nmds::Embedding -> CanonicalForm -> PreparedForm -> align_forms -> FormAlignment
-//! CanonicalForm -> FormViews, another way to compare forms
-//! CanonicalForm, linalg::LandmarkDistances, LaplaceSpectrum -> Signature -> ShapeMetric::fuse
+//! linalg::LandmarkDistances -> SampledForm, a form of many dimensions
+//! CanonicalForm, SampledForm, linalg::LandmarkDistances, LaplaceSpectrum -> Signature -> ShapeMetric::fuse
 //! fused vector, form -> PreparedShape -> ShapePair (alignments, each found once) -> ShapeDistance
 //! ```
 //!
@@ -19,11 +19,11 @@ mod metric;
 mod nearest;
 mod partial;
 mod prepared;
+mod sampled_form;
 mod shape_pair;
 mod signature;
 mod spectrum;
 mod spread;
-mod views;
 
 pub use align::{FormAlignment, Reflections, align_forms, align_near_forms, alignments};
 pub use alignment::Alignment;
@@ -34,10 +34,10 @@ pub use metric::{FormDistance, ShapeDistance, ShapeMetric};
 pub use nearest::NearestPoints;
 pub use partial::{DiscAreas, PartDiscAreas, PartDistance};
 pub use prepared::PreparedForm;
+pub use sampled_form::SampledForm;
 pub use shape_pair::{PreparedShape, ShapePair};
 pub use signature::{
-    Signature, SignatureKind, d2_histogram, form_spectrum, geodesic_spectrum, heat_kernel_signature,
-    moment_signature, rigid_signature, shape_dna, wave_kernel_signature, wave_kernels,
+    Signature, SignatureKind, d2_histogram, geodesic_spectrum, heat_kernel_signature, moment_signature,
+    rigid_signature, shape_dna, wave_kernel_signature, wave_kernels,
 };
 pub use spectrum::LaplaceSpectrum;
-pub use views::FormViews;

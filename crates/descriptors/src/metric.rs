@@ -34,7 +34,7 @@ pub enum FormDistance {
 const CALIBRATION: [(SignatureKind, f64, f64); SignatureKind::ALL.len()] = [
     (SignatureKind::Moments, 0.115, 0.0),
     (SignatureKind::D2, 0.067, 0.0),
-    (SignatureKind::FormSpectrum, 0.181, 0.0),
+    (SignatureKind::FormSpectrum, 0.144, 0.0),
     (SignatureKind::GeodesicSpectrum, 0.237, 0.07),
     (SignatureKind::ShapeDna, 0.084, 0.248),
     (SignatureKind::HeatKernel, 0.191, 0.204),
@@ -121,7 +121,7 @@ impl ShapeDistance {
 
 impl ShapeMetric {
     /// Version of the calibration and of the signatures. Fused vectors of different versions cannot be compared.
-    pub const VERSION: u32 = 4;
+    pub const VERSION: u32 = 5;
 
     /// The boundary between two poses of one body and two bodies of one class.
     ///

@@ -37,21 +37,31 @@ fn farthest(points: impl Iterator<Item = (usize, f64)>) -> (usize, f64) {
 }
 
 /// Chooses up to `n` of the points, the one farthest from the origin first; fewer if points coincide.
+pub(crate) fn spread(points: &[Point3<f64>], n: usize) -> Spread {
+    let sq_distance = |i: usize, j: usize| (points[i] - points[j]).norm_squared();
+    spread_by(points.iter().map(|p| p.coords.norm_squared()), sq_distance, n)
+}
+
+/// Chooses up to `n` points by the squares of their distances from the origin and from each other.
 ///
 /// A new sample takes points from cells only whose own sample is less than twice as far away as their farthest member, so
 /// that each point is looked at a few times.
-pub(crate) fn spread(points: &[Point3<f64>], n: usize) -> Spread {
-    let sq_distance = |i: usize, j: usize| (points[i] - points[j]).norm_squared();
-    let from_origin: Vec<f64> = points.iter().map(|p| p.coords.norm_squared()).collect();
-    let whole = Cell::new((0..points.len()).collect(), &from_origin);
-    let mut nearest = vec![0; points.len()];
-    if n == 0 || points.is_empty() {
+pub(crate) fn spread_by(
+    from_origin: impl Iterator<Item = f64>,
+    sq_distance: impl Fn(usize, usize) -> f64,
+    n: usize,
+) -> Spread {
+    let from_origin: Vec<f64> = from_origin.collect();
+    let n_points = from_origin.len();
+    let whole = Cell::new((0..n_points).collect(), &from_origin);
+    let mut nearest = vec![0; n_points];
+    if n == 0 || n_points == 0 {
         return Spread { samples: Vec::new(), nearest, covering: whole.farthest.1.max(0.0).sqrt() };
     }
-    let mut samples = vec![if whole.farthest.0 < points.len() { whole.farthest.0 } else { 0 }];
-    let mut gaps: Vec<f64> = (0..points.len()).map(|i| sq_distance(i, samples[0])).collect();
+    let mut samples = vec![if whole.farthest.0 < n_points { whole.farthest.0 } else { 0 }];
+    let mut gaps: Vec<f64> = (0..n_points).map(|i| sq_distance(i, samples[0])).collect();
     let mut cells = vec![Cell::new(whole.members, &gaps)];
-    while samples.len() < n.min(points.len()) {
+    while samples.len() < n.min(n_points) {
         let (next, widest) = farthest(cells.iter().map(|cell| cell.farthest));
         if widest.is_nan() || widest <= 0.0 {
             break;

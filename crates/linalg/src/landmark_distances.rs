@@ -122,6 +122,19 @@ impl LandmarkDistances {
         self.columns.rows(range)
     }
 
+    /// The distances from all landmarks to some of the points, `points.len()` x n.
+    ///
+    /// # Errors
+    /// [`LinalgError::File`].
+    pub fn at(&self, points: &[usize]) -> Result<Matrix, LinalgError> {
+        let mut found = Matrix::zeros(points.len(), self.n_landmarks());
+        for (landmark, mut at_points) in found.column_iter_mut().enumerate() {
+            let column = self.column(landmark)?;
+            at_points.iter_mut().zip(points).for_each(|(d, &i)| *d = column[i]);
+        }
+        Ok(found)
+    }
+
     /// Ranges of rows that a pass over all rows reads one at a time. They depend on the number of points only.
     #[must_use]
     pub fn blocks(&self) -> Vec<Range<usize>> {
@@ -159,6 +172,7 @@ mod tests {
         assert_eq!(s[(0, 1)], s[(1, 0)]);
         assert!((s[(0, 1)] - 0.5 * (4.0 + 2.2 * 2.2)).abs() < 1e-15);
         assert_eq!(d.column(1).unwrap()[..], [2.2, 1.0, 0.0]);
+        assert_eq!(d.at(&[2, 1, 2]).unwrap().column(0).as_slice(), [2.0, 1.0, 2.0]);
     }
 
     #[test]

@@ -81,7 +81,11 @@ struct LandmarkPairs<'a> {
 
 impl LandmarkPairs<'_> {
     fn weight(&self, distance: f64) -> f64 {
-        if self.power == 0.0 { 1.0 } else { distance.powf(-self.power) }
+        match self.power {
+            0.0 => 1.0,
+            1.0 => 1.0 / distance,
+            power => distance.powf(-power),
+        }
     }
 
     /// Moves all points, the columns of `points`.

@@ -1,8 +1,8 @@
 //! Signatures depend little on pose and triangulation, distinguish bodies, and exist for any mesh.
 
 use canonform::{DescribeOptions, ShapeDescription, describe, rerank};
-use datasets::{ArticulatedOptions, Damage, Family, articulated_shape};
-use descriptors::{FormViews, ShapeMetric, SignatureKind};
+use datasets::{ArticulatedOptions, Family, articulated_shape};
+use descriptors::{ShapeMetric, SignatureKind};
 use rayon::prelude::*;
 use retrieval::Candidate;
 
@@ -33,31 +33,6 @@ fn every_signature_separates_bodies_more_than_poses_and_triangulations() {
             found.iter().sum::<f64>() / found.len() as f64
         };
         assert!(mean(false) > 2.0 * mean(true), "{}: {} {}", kind.name(), mean(true), mean(false));
-    }
-}
-
-#[test]
-fn views_of_forms_separate_bodies_more_than_poses_and_triangulations() {
-    let shapes = described();
-    let views: Vec<FormViews> = shapes.iter().map(|shape| FormViews::new(&shape.form)).collect();
-    let mean = |same: bool| {
-        let pairs = (0..9).flat_map(|i| (0..i).map(move |j| (i, j)));
-        let pairs = pairs.filter(|(i, j)| (i / 3 == j / 3) == same);
-        let found: Vec<f64> = pairs.map(|(i, j)| views[i].distance(&views[j])).collect();
-        found.iter().sum::<f64>() / found.len() as f64
-    };
-    let [poses, bodies] = [true, false].map(mean);
-    assert!(bodies > 2.0 * poses, "poses {poses}, bodies {bodies}");
-    // Other triangles change less than another pose.
-    let mesh = articulated_shape(Family::Cat, 2, &ArticulatedOptions::default()).unwrap().mesh;
-    let of = |damage: Option<Damage>| {
-        let changed = damage.map_or_else(|| mesh.clone(), |damage| damage.apply(&mesh, 5));
-        FormViews::new(&describe(&surface(&changed), &DescribeOptions::default(), &()).unwrap().form)
-    };
-    let own = of(None);
-    for damage in [Damage::Remesh, Damage::Subdivide(1), Damage::Mirror, Damage::Scale] {
-        let distance = own.distance(&of(Some(damage)));
-        assert!(distance < poses, "{damage}: {distance}, poses {poses}");
     }
 }
 

@@ -2,8 +2,8 @@
 
 use base::Observer;
 use descriptors::{
-    CanonicalForm, DescriptorError, DiscAreas, LaplaceSpectrum, Normalization, PreparedShape, ShapeMetric,
-    Signature, SignatureKind, d2_histogram, form_spectrum, geodesic_spectrum, heat_kernel_signature,
+    CanonicalForm, DescriptorError, DiscAreas, LaplaceSpectrum, Normalization, PreparedShape, SampledForm,
+    ShapeMetric, Signature, SignatureKind, d2_histogram, geodesic_spectrum, heat_kernel_signature,
     moment_signature, rigid_signature, shape_dna, wave_kernel_signature,
 };
 use mesh::{RepairReport, Shortcut};
@@ -21,6 +21,9 @@ const BYTES_PER_VERTEX: usize = 5000;
 /// [simplified](Surface::simplified), so that cost grows slowly from there on. A built-in cat of 500,000 vertices is then 0.12
 /// from one of 28,000 in the combined distance, where subdivision changes 0.14; other shapes are several units apart.
 const MOST_VERTICES: usize = 30_000;
+
+/// Points whose distances [`d2_histogram`] counts. Eight bins need no more of them.
+const PAIRED_POINTS: usize = 250;
 
 /// Everything that an index keeps of a shape.
 #[derive(Debug, Clone, PartialEq)]
@@ -156,8 +159,9 @@ impl MeasuredSurface {
         observer.budget().check()?;
         let signatures = vec![
             moment_signature(&form),
-            d2_histogram(&reduced),
-            form_spectrum(&reduced)?,
+            d2_histogram(&reduced.reduced(PAIRED_POINTS)),
+            SampledForm::by_least_squares(&embedded.distances, &spectrum.masses, observer)?
+                .spectrum(spectrum.area.sqrt())?,
             geodesic_spectrum(&embedded.distances, &spectrum.masses, spectrum.area)?,
             shape_dna(&spectrum),
             heat_kernel_signature(&spectrum),
@@ -194,6 +198,12 @@ impl ShapeDescription {
     /// [`Error::Descriptor`].
     pub fn prepare(&self) -> Result<PreparedShape, Error> {
         Ok(PreparedShape::new(self.fused.clone(), &self.form, Some(self.area))?)
+    }
+
+    /// The spectrum of the form, with the precision of an index.
+    pub(crate) fn form_spectrum(&self) -> Vec<f32> {
+        let spectrum = self.signature(SignatureKind::FormSpectrum);
+        spectrum.map_or_else(Vec::new, |spectrum| spectrum.values.iter().map(|value| *value as f32).collect())
     }
 
     /// The signature of one kind.

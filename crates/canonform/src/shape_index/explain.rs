@@ -105,6 +105,7 @@ impl ShapeSearch {
         for part in components(whole, query.name, self.describe_options(), budget)? {
             let known = KnownQuery {
                 shape: part.description.prepare()?,
+                form_spectrum: part.description.form_spectrum(),
                 name: &part.name,
                 content: None,
                 geometry: Some(HeldGeometry::Borrowed(part.geometry)),

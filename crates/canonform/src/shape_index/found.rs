@@ -49,8 +49,8 @@ pub struct SearchResult {
     /// What results are ordered by if the query is taken as a part.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub as_part: Option<PartRank>,
-    /// What results are ordered by if they are ranked by forms alone: the distance by [`descriptors::form_spectrum`], in units of
-    /// two poses of one body.
+    /// What results are ordered by if they are ranked by forms alone: the distance by [`descriptors::SampledForm::spectrum`], in
+    /// units of two poses of one body.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub form_distance: Option<f64>,
     /// How the query and the shape are related: by descriptions and, if results are explained, by files and meshes. The

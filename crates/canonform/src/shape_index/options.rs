@@ -36,7 +36,7 @@ pub enum SearchRank {
     /// By how well the query fits as a part of the shape. Compares the query with every shape of the index, which must store
     /// disc areas, and needs the mesh or the surface of the query.
     Part,
-    /// By canonical forms alone ([`descriptors::form_spectrum`]). Compares the query with every shape of the index.
+    /// By canonical forms alone ([`descriptors::SampledForm::spectrum`]). Compares the query with every shape of the index.
     Forms,
 }
 

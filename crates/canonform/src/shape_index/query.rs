@@ -67,6 +67,8 @@ pub(super) struct KnownQuery<'a> {
     pub(super) content: Option<ContentHash>,
     /// If results are explained.
     pub(super) geometry: Option<HeldGeometry<'a>>,
+    /// The spectrum of its form, with the precision of an index.
+    pub(super) form_spectrum: Vec<f32>,
     /// If results are ordered by how the query fits as a part.
     pub(super) part: Option<PartDiscAreas>,
     pub(super) complete: Completeness,

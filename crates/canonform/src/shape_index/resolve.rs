@@ -28,6 +28,7 @@ impl ShapeSearch {
                 let description = describe(&surface, self.describe_options(), observer)?;
                 Ok(KnownQuery {
                     shape: description.prepare()?,
+                    form_spectrum: description.form_spectrum(),
                     name,
                     content,
                     geometry: explains
@@ -42,6 +43,7 @@ impl ShapeSearch {
                 self.index().expect_options(&description.options.text())?;
                 Ok(KnownQuery {
                     shape: description.prepare()?,
+                    form_spectrum: description.form_spectrum(),
                     name,
                     content,
                     geometry: geometry.filter(|_| explains).map(HeldGeometry::Borrowed),
@@ -56,6 +58,7 @@ impl ShapeSearch {
                 let part = || part_of(&Surface::new(&self.mesh(id)?, repair, observer)?);
                 Ok(KnownQuery {
                     shape: self.prepared(id)?,
+                    form_spectrum: self.form_spectrum(id)?,
                     name: id,
                     content: Some(entry.content),
                     geometry: geometry.map(|geometry| HeldGeometry::Owned(Box::new(geometry))),

@@ -7,8 +7,7 @@ use std::time::Instant;
 use base::{Budget, Observer};
 use collection::Storage;
 use descriptors::{
-    CanonicalForm, FormAlignment, PartDiscAreas, PartDistance, PreparedShape, ShapeMetric, ShapePair,
-    SignatureKind, form_spectrum,
+    FormAlignment, PartDiscAreas, PartDistance, PreparedShape, ShapeMetric, ShapePair, SignatureKind,
 };
 use index::{Found, FoundOnGraph, Index, RankedShape, SearchMode, ShapeEntry};
 use mesh::TriMesh;
@@ -324,11 +323,10 @@ impl ShapeSearch {
         if rank == SearchRank::Part && part.is_none() {
             return Err(Error::NoPart);
         }
-        let form = spectrum_of(query.shape.form())?;
         let measured = |id: &str| match part {
             Some(part) => self.fit(part, id),
             None => {
-                let distance = self.form_distance(&form, id)?;
+                let distance = self.form_distance(&query.form_spectrum, id)?;
                 Ok((distance, Order { form_distance: Some(distance), ..Order::default() }))
             }
         };
@@ -347,13 +345,15 @@ impl ShapeSearch {
     }
 
     /// The distance from the spectrum of a form, in units of two poses of one body.
-    fn form_distance(&self, form: &[f32], id: &str) -> Result<f64, Error> {
-        let kind = SignatureKind::FormSpectrum;
-        // Indexes that were built before this signature lack it.
-        let stored = self.index.vectors(id)?.signatures.into_iter().find(|(name, _)| name == kind.name());
-        let other =
-            stored.map_or_else(|| spectrum_of(self.prepared(id)?.form()), |(_, values)| Ok(values))?;
-        Ok(ShapeMetric::fused(form, &other) / ShapeMetric::unit(kind))
+    fn form_distance(&self, spectrum: &[f32], id: &str) -> Result<f64, Error> {
+        let distance = ShapeMetric::fused(spectrum, &self.form_spectrum(id)?);
+        Ok(distance / ShapeMetric::unit(SignatureKind::FormSpectrum))
+    }
+
+    pub(super) fn form_spectrum(&self, id: &str) -> Result<Vec<f32>, Error> {
+        let mut signatures = self.index.vectors(id)?.signatures.into_iter();
+        let found = signatures.find(|(name, _)| name == SignatureKind::FormSpectrum.name());
+        Ok(found.map_or_else(Vec::new, |(_, values)| values))
     }
 
     /// How well a part fits into a shape.
@@ -419,11 +419,6 @@ pub(super) struct Shortlist {
     pub(super) orders: Option<Vec<(f64, Order)>>,
     /// About the search for signatures.
     pub(super) search: Found,
-}
-
-/// The spectrum of a form with the precision of an index.
-fn spectrum_of(form: &CanonicalForm) -> Result<Vec<f32>, Error> {
-    Ok(form_spectrum(form)?.values.iter().map(|value| *value as f32).collect())
 }
 
 #[cfg(test)]

@@ -34,6 +34,8 @@ pub struct PackedQuery {
     pub fused: Vec<f32>,
     /// The [hash](crate::content_hash) of its file.
     pub content: Option<ContentHash>,
+    /// The spectrum of its form, which results by forms alone are ordered by.
+    form_spectrum: Vec<f32>,
     /// What its fit as a part is measured by, if results are ordered by it.
     pub part: Option<PartDiscAreas>,
     /// The options it was described with, as indexes state them.
@@ -60,7 +62,8 @@ impl PackedQuery {
     pub fn of(description: &ShapeDescription, name: &str) -> Self {
         let ShapeDescription { options, form, fused, area, .. } = description;
         let complete = Completeness::of(description);
-        Self::of_form(form, (name, fused, &options.text()), Some(*area), complete)
+        let form_spectrum = description.form_spectrum();
+        Self { form_spectrum, ..Self::of_form(form, (name, fused, &options.text()), Some(*area), complete) }
     }
 
     fn of_form(
@@ -73,6 +76,7 @@ impl PackedQuery {
             name: name.to_owned(),
             fused: fused.to_vec(),
             content: None,
+            form_spectrum: Vec::new(),
             part: None,
             options: options.to_owned(),
             points: form.points().iter().map(|p| (*p).into()).collect(),
@@ -108,6 +112,7 @@ impl PackedQuery {
         });
         Ok(KnownQuery {
             shape: PreparedShape::new(self.fused.clone(), &form, self.area)?,
+            form_spectrum: self.form_spectrum.clone(),
             name: &self.name,
             content: self.content.filter(|_| self.component.is_none()),
             geometry: geometry.map(HeldGeometry::Borrowed),
@@ -172,12 +177,16 @@ impl ShapeSearch {
         observer: &dyn Observer,
     ) -> Result<PackedQuery, Error> {
         let unexplained = SearchOptions { explain: Explain::No, ..options.clone() };
-        let KnownQuery { shape, content, part, complete, .. } =
+        let KnownQuery { shape, form_spectrum, content, part, complete, .. } =
             self.resolved(Query::Id(id), &unexplained, observer)?;
         let about = (id, shape.fused(), self.index().options());
         let area = self.index().entry(id)?.fact(AREA);
-        let packed =
-            PackedQuery { content, part, ..PackedQuery::of_form(shape.form(), about, area, complete) };
+        let packed = PackedQuery {
+            form_spectrum,
+            content,
+            part,
+            ..PackedQuery::of_form(shape.form(), about, area, complete)
+        };
         let mesh = (options.explain == Explain::Kind).then(|| self.mesh(id).ok()).flatten();
         Ok(if let Some(mesh) = mesh { packed.with_mesh(&mesh) } else { packed })
     }

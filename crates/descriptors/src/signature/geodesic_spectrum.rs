@@ -71,12 +71,12 @@ pub fn geodesic_spectrum(
     let spectrum = symmetric_eigenvalues(&((&middle + middle.transpose()) * 0.5))?;
     let offset = 0.5 * (unit.ln() - 0.5 * area.ln());
     let values =
-        magnitudes(spectrum, EIGENVALUES, offset).ok_or(DescriptorError::NoExtent { n_points: p })?;
+        log_magnitudes(spectrum, EIGENVALUES, offset).ok_or(DescriptorError::NoExtent { n_points: p })?;
     Ok(Signature { kind: SignatureKind::GeodesicSpectrum, values })
 }
 
 /// The logarithms of the `n` largest magnitudes of eigenvalues, in descending order, plus `offset`; `None` if all are zero.
-pub(super) fn magnitudes(mut spectrum: Vec<f64>, n: usize, offset: f64) -> Option<Vec<f64>> {
+pub(crate) fn log_magnitudes(mut spectrum: Vec<f64>, n: usize, offset: f64) -> Option<Vec<f64>> {
     spectrum.iter_mut().for_each(|value| *value = value.abs());
     spectrum.sort_by(|a, b| b.total_cmp(a));
     let largest = spectrum.first().copied().filter(|value| *value > 0.0)?;

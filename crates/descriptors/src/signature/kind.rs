@@ -14,7 +14,7 @@ pub enum SignatureKind {
     Moments,
     /// [`d2_histogram`](crate::d2_histogram).
     D2,
-    /// [`form_spectrum`](crate::form_spectrum).
+    /// [`SampledForm::spectrum`](crate::SampledForm::spectrum).
     FormSpectrum,
     /// [`geodesic_spectrum`](crate::geodesic_spectrum).
     GeodesicSpectrum,
@@ -32,7 +32,7 @@ pub enum SignatureKind {
 const TABLE: [(&str, usize); SignatureKind::ALL.len()] = [
     ("moments", 13),
     ("d2", 8),
-    ("form-spectrum", 16),
+    ("form-spectrum", 24),
     ("geodesic-spectrum", 24),
     ("shape-dna", 20),
     ("heat-kernel", 32),

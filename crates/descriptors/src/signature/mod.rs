@@ -17,8 +17,9 @@ mod rigid;
 mod spectral;
 
 pub use geodesic_spectrum::geodesic_spectrum;
+pub(crate) use geodesic_spectrum::log_magnitudes;
 pub use kind::{Signature, SignatureKind};
-pub use of_form::{d2_histogram, form_spectrum, moment_signature};
+pub use of_form::{d2_histogram, moment_signature};
 pub use rigid::rigid_signature;
 pub use spectral::wave_kernels;
 pub use spectral::{heat_kernel_signature, shape_dna, wave_kernel_signature};

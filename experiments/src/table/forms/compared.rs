@@ -5,8 +5,7 @@ use std::time::Instant;
 use anyhow::Result;
 use canonform::form_alignments;
 use descriptors::{
-    CanonicalForm, FormViews, LaplaceSpectrum, Normalization, PreparedForm, Signature, form_spectrum,
-    moment_signature, shape_dna,
+    CanonicalForm, LaplaceSpectrum, Normalization, PreparedForm, Signature, moment_signature, shape_dna,
 };
 use linalg::DistanceMatrix;
 use rayon::prelude::*;
@@ -18,11 +17,9 @@ use crate::sweep::mean;
 /// A way to compare forms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum FormComparison {
-    /// [`FormViews`].
-    Views,
     /// The distance of aligned forms.
     Aligned,
-    /// The spectrum of straight distances.
+    /// The spectrum of straight distances: [`descriptors::SampledForm::spectrum`].
     Spectrum,
     /// The spectrum of the surface of the form.
     Surface,
@@ -31,12 +28,15 @@ pub(super) enum FormComparison {
 }
 
 impl FormComparison {
-    pub(super) const ALL: [Self; 5] =
-        [Self::Views, Self::Aligned, Self::Spectrum, Self::Surface, Self::Moments];
+    pub(super) const ALL: [Self; 4] = [Self::Aligned, Self::Spectrum, Self::Surface, Self::Moments];
+
+    /// Whether forms of any number of dimensions can be compared in this way.
+    pub(super) fn any_dimension(self) -> bool {
+        self == Self::Spectrum
+    }
 
     pub(super) fn name(self) -> &'static str {
         match self {
-            Self::Views => "views",
             Self::Aligned => "alignment",
             Self::Spectrum => "spectrum",
             Self::Surface => "surface",
@@ -47,21 +47,17 @@ impl FormComparison {
     /// The distances between all forms, and the mean seconds of a signature.
     pub(super) fn distances(self, made: &[MadeForm], context: &Context<'_>) -> Result<(DistanceMatrix, f64)> {
         match self {
-            Self::Views => {
-                let (views, seconds) = each(made, |made| Ok(FormViews::new(&made.form)))?;
-                Ok((between(&views, FormViews::distance)?, seconds))
-            }
             Self::Aligned => {
-                let unit = |made: &MadeForm| made.form.normalized(Normalization::UnitArea);
-                let (_, seconds) = each(made, |made| Ok(PreparedForm::new(&unit(made))?))?;
-                let forms: Vec<CanonicalForm> = made.iter().map(|made| made.form.clone()).collect();
+                let unit = |made: &MadeForm| Ok(made.solid()?.form.normalized(Normalization::UnitArea));
+                let (_, seconds) = each(made, |made| Ok(PreparedForm::new(&unit(made)?)?))?;
+                let forms: Vec<CanonicalForm> = made.iter().map(unit).collect::<Result<_>>()?;
                 Ok((form_alignments(&forms, Normalization::UnitArea, context.observer)?.distances, seconds))
             }
-            Self::Spectrum => by_signature(made, |made| Ok(form_spectrum(&made.form)?)),
+            Self::Spectrum => by_signature(made, |made| Ok(made.sampled.spectrum(made.unit)?)),
             Self::Surface => by_signature(made, |made| {
-                Ok(shape_dna(&LaplaceSpectrum::describing(&made.mesh.intrinsic(), &())?))
+                Ok(shape_dna(&LaplaceSpectrum::describing(&made.solid()?.mesh.intrinsic(), &())?))
             }),
-            Self::Moments => by_signature(made, |made| Ok(moment_signature(&made.form))),
+            Self::Moments => by_signature(made, |made| Ok(moment_signature(&made.solid()?.form))),
         }
     }
 }
@@ -71,7 +67,8 @@ fn by_signature(
     signature: impl Fn(&MadeForm) -> Result<Signature> + Sync,
 ) -> Result<(DistanceMatrix, f64)> {
     let (signatures, seconds) = each(made, signature)?;
-    Ok((between(&signatures, Signature::distance)?, seconds))
+    let distance = |i: usize, j: usize| signatures[i].distance(&signatures[j]);
+    Ok((DistanceMatrix::from_pairs(signatures.len(), distance)?, seconds))
 }
 
 /// A value of every form, and the mean seconds that one takes.
@@ -83,8 +80,4 @@ fn each<T: Send>(made: &[MadeForm], work: impl Fn(&MadeForm) -> Result<T> + Sync
     let found = made.par_iter().map(one).collect::<Result<Vec<_>>>()?;
     let seconds = mean(found.iter().map(|(_, seconds)| *seconds));
     Ok((found.into_iter().map(|(value, _)| value).collect(), seconds))
-}
-
-fn between<T>(all: &[T], distance: impl Fn(&T, &T) -> f64) -> Result<DistanceMatrix> {
-    Ok(DistanceMatrix::from_pairs(all.len(), |i, j| distance(&all[i], &all[j]))?)
 }

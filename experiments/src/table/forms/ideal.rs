@@ -44,8 +44,10 @@ impl IdealAlignments {
         let placed =
             shapes.par_iter().map(|shape| built_in(shape, context.seed)).collect::<Result<Vec<_>>>()?;
         let unit = |form: &CanonicalForm| form.normalized(Normalization::UnitArea);
-        let wholes: Vec<CanonicalForm> = made.iter().map(|made| unit(&made.whole)).collect();
-        let forms: Vec<CanonicalForm> = made.iter().map(|made| unit(&made.form)).collect();
+        let wholes: Vec<CanonicalForm> =
+            made.iter().map(|made| Ok(unit(&made.solid()?.whole))).collect::<Result<_>>()?;
+        let forms: Vec<CanonicalForm> =
+            made.iter().map(|made| Ok(unit(&made.solid()?.form))).collect::<Result<_>>()?;
         let prepared: Vec<PreparedForm> = forms.iter().map(PreparedForm::new).collect::<Result<_, _>>()?;
         let n = shapes.len();
         let all = (0..n).flat_map(|i| (0..i).map(move |j| [i, j]));

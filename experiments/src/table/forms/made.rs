@@ -2,11 +2,11 @@
 
 use anyhow::{Context as _, Result};
 use canonform::{EmbedMethod, Embedded, FormOptions, Samples, Surface, embed};
-use descriptors::CanonicalForm;
-use linalg::LandmarkDistances;
+use descriptors::{CanonicalForm, SampledForm};
+use linalg::{LandmarkDistances, Matrix};
 use mesh::TriMesh;
 use nmds::{
-    Bandwidth, Embedding, KernelPcaOptions, LandmarkSmacofOptions, NystromOptions, SmacofOptions, kernel_pca,
+    Bandwidth, KernelPcaOptions, LandmarkSmacofOptions, NystromOptions, SmacofOptions, kernel_pca,
     landmark_mds, landmark_smacof, nystrom,
 };
 
@@ -18,6 +18,9 @@ use crate::sweep::{half, timed};
 /// Points of a form that are compared, as many as an index stores.
 const POINTS: usize = 1000;
 
+/// The spread of a form of unit area: the median of built-in creatures. It scales forms without a unit of length.
+const USUAL_SPREAD: f64 = 0.43;
+
 /// A surface with the distances from its samples, which all methods share.
 pub(super) struct ShapeDistances {
     surface: Surface,
@@ -28,23 +31,43 @@ pub(super) struct ShapeDistances {
 
 /// A form by one of the methods.
 pub(super) struct MadeForm {
+    /// In all its dimensions.
+    pub(super) sampled: SampledForm,
+    /// The unit of length that gives the surface unit area.
+    pub(super) unit: f64,
+    /// If it has three dimensions.
+    solid: Option<SolidForm>,
+    /// Seconds from the surface to the form.
+    pub(super) seconds: f64,
+}
+
+/// A form of three dimensions.
+pub(super) struct SolidForm {
     /// At all vertices.
     pub(super) whole: CanonicalForm,
     /// At the points that are compared.
     pub(super) form: CanonicalForm,
     /// With the triangles of the surface.
     pub(super) mesh: TriMesh,
-    /// Seconds from the surface to the form.
-    pub(super) seconds: f64,
+}
+
+impl MadeForm {
+    /// # Errors
+    /// If the form has more than three dimensions.
+    pub(super) fn solid(&self) -> Result<&SolidForm> {
+        self.solid.as_ref().context("a form of three dimensions")
+    }
 }
 
 /// A method that makes forms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum FormMaker {
+pub(crate) enum FormMaker {
     /// The paper's.
     Nmds,
     /// The surface bent towards it.
     BentNmds,
+    /// The paper's, in many dimensions.
+    ManyNmds,
     /// With more samples.
     MoreSamples,
     /// Classical scaling of the samples.
@@ -53,10 +76,14 @@ pub(super) enum FormMaker {
     LeastSquares,
     /// Least squares, weighted by the inverse distance.
     Sammon,
+    /// The same in many dimensions, by which an index ranks forms.
+    ManySammon,
     /// The paper's baseline.
     KernelPca,
     /// The surface bent towards it.
     BentKernelPca,
+    /// The baseline in many dimensions.
+    ManyKernelPca,
     /// Classical scaling of all pairs of vertices.
     Classical,
     /// Least squares of all pairs of vertices.
@@ -86,15 +113,18 @@ impl ShapeDistances {
 }
 
 impl FormMaker {
-    pub(super) const ALL: [Self; 10] = [
+    pub(super) const ALL: [Self; 13] = [
         Self::Nmds,
         Self::BentNmds,
+        Self::ManyNmds,
         Self::MoreSamples,
         Self::Landmark,
         Self::LeastSquares,
         Self::Sammon,
+        Self::ManySammon,
         Self::KernelPca,
         Self::BentKernelPca,
+        Self::ManyKernelPca,
         Self::Classical,
         Self::Smacof,
     ];
@@ -103,12 +133,15 @@ impl FormMaker {
         match self {
             Self::Nmds => "NMDS",
             Self::BentNmds => "NMDS with features",
+            Self::ManyNmds => "NMDS, 16 dimensions",
             Self::MoreSamples => "NMDS, more samples",
             Self::Landmark => "landmark MDS",
             Self::LeastSquares => "least squares",
             Self::Sammon => "Sammon",
+            Self::ManySammon => "Sammon, 16 dimensions",
             Self::KernelPca => "KPCA-Nystrom",
             Self::BentKernelPca => "KPCA with features",
+            Self::ManyKernelPca => "KPCA-Nystrom, 16 dimensions",
             Self::Classical => "classical scaling",
             Self::Smacof => "SMACOF of all pairs",
         }
@@ -116,6 +149,16 @@ impl FormMaker {
 
     pub(super) fn needs_all_pairs(self) -> bool {
         matches!(self, Self::Classical | Self::Smacof)
+    }
+
+    /// Whether its forms have more than three dimensions.
+    pub(super) fn has_many_dimensions(self) -> bool {
+        matches!(self, Self::ManyNmds | Self::ManySammon | Self::ManyKernelPca)
+    }
+
+    /// Whether its forms are in the components of a kernel, which have no unit of length.
+    fn is_of_kernel(self) -> bool {
+        matches!(self, Self::KernelPca | Self::BentKernelPca | Self::ManyKernelPca)
     }
 
     /// The forms of all shapes, by the given numbers of samples, usual and more.
@@ -128,54 +171,111 @@ impl FormMaker {
     ) -> Result<Vec<MadeForm>> {
         map(shapes, self.name(), context.observer, |shape| {
             let own = shapes.iter().position(|other| other.name == shape.name);
-            let known = own.and_then(|i| distances.get(i)).context("a shape of the collection")?;
-            let (whole, seconds) = self.form(known, samples)?;
-            let mesh = whole.to_mesh(known.surface.mesh());
-            Ok(MadeForm { form: whole.reduced(POINTS), whole, mesh, seconds })
+            self.form(own.and_then(|i| distances.get(i)).context("a shape of the collection")?, samples)
         })
     }
 
-    fn form(self, shape: &ShapeDistances, [usual, more]: [usize; 2]) -> Result<(CanonicalForm, f64)> {
+    fn form(self, shape: &ShapeDistances, [usual, more]: [usize; 2]) -> Result<MadeForm> {
         let n = if self == Self::MoreSamples { more } else { usual };
-        if self.needs_all_pairs() {
-            let method = match self {
-                Self::Smacof => {
-                    EmbedMethod::Smacof { regularization: half(n), descent: SmacofOptions::default() }
-                }
-                _ => EmbedMethod::Classical,
-            };
-            let options = FormOptions { method, samples: Samples::Count(n), ..FormOptions::default() };
-            let (embedded, seconds) = timed(|| embed(&shape.surface, &options, &()))?;
-            return Ok((embedded.form(&shape.surface)?, seconds));
-        }
         let (distances, measuring) = shape.first(n)?;
-        let (embedding, seconds) = timed(|| self.embedding(&distances, &shape.surface))?;
-        let form = CanonicalForm::new(&embedding, shape.surface.mesh())?;
-        let has_unit = !matches!(self, Self::KernelPca | Self::BentKernelPca);
-        let form = if has_unit { form } else { form.without_unit() };
-        let (form, bending) = match self {
-            Self::BentNmds | Self::BentKernelPca => timed(|| form.with_features(shape.surface.mesh(), &()))?,
-            _ => (form, 0.0),
+        if self.has_many_dimensions() {
+            let ((sampled, unit), seconds) =
+                timed(|| self.of_many_dimensions(&distances, shape.surface.mesh()))?;
+            return Ok(MadeForm { sampled, unit, solid: None, seconds: measuring + seconds });
+        }
+        let measuring = if self.needs_all_pairs() { 0.0 } else { measuring };
+        let masses = shape.surface.mesh().vertex_areas();
+        let (coords, seconds) = timed(|| self.coords(shape, &distances, &masses))?;
+        let unit = self.unit(&coords, shape.surface.mesh());
+        let points = coords.row_iter().map(|x| [x[0], x[1], x[2]].into()).collect();
+        let whole = CanonicalForm::from_points(points, masses.clone())?;
+        let area = (!self.is_of_kernel()).then_some(unit * unit);
+        let whole = CanonicalForm::from_parts(whole.points().to_vec(), whole.weights().to_vec(), area)?;
+        let (whole, bending) = match self {
+            Self::BentNmds | Self::BentKernelPca => timed(|| whole.with_features(shape.surface.mesh(), &()))?,
+            _ => (whole, 0.0),
         };
-        Ok((form, measuring + seconds + bending))
+        let unit = whole.area().map_or(unit, f64::sqrt);
+        let coords = Matrix::from_fn(masses.len(), DIM, |i, k| whole.points()[i][k]);
+        Ok(MadeForm {
+            sampled: SampledForm::new(&coords, &masses)?,
+            unit,
+            seconds: measuring + seconds + bending,
+            solid: Some(SolidForm {
+                form: whole.reduced(POINTS),
+                mesh: whole.to_mesh(shape.surface.mesh()),
+                whole,
+            }),
+        })
     }
 
-    fn embedding(self, distances: &LandmarkDistances, surface: &Surface) -> Result<Embedding> {
+    /// A form of many dimensions, and the unit of length that gives the surface unit area.
+    pub(crate) fn of_many_dimensions(
+        self,
+        distances: &LandmarkDistances,
+        mesh: &TriMesh,
+    ) -> Result<(SampledForm, f64)> {
+        let masses = mesh.vertex_areas();
+        let coords = match self {
+            Self::ManySammon => {
+                let form = SampledForm::by_least_squares(distances, &masses, &())?;
+                return Ok((form, mesh.root_of_area()));
+            }
+            Self::ManyKernelPca => by_kernel(distances, SampledForm::DIM)?,
+            _ => {
+                let options = NystromOptions { dim: SampledForm::DIM, ..NystromOptions::default() };
+                nystrom(distances, &options)?.coords
+            }
+        };
+        Ok((SampledForm::new(&coords, &masses)?, self.unit(&coords, mesh)))
+    }
+
+    /// The unit of length that gives the surface unit area.
+    fn unit(self, coords: &Matrix, mesh: &TriMesh) -> f64 {
+        match self.is_of_kernel() {
+            true => spread(coords, &mesh.vertex_areas()) / USUAL_SPREAD,
+            false => mesh.root_of_area(),
+        }
+    }
+
+    fn coords(self, shape: &ShapeDistances, distances: &LandmarkDistances, masses: &[f64]) -> Result<Matrix> {
         let usual = || nystrom(distances, &NystromOptions::default());
         let by_least_squares = |power| {
             let options = LandmarkSmacofOptions { power, ..LandmarkSmacofOptions::default() };
-            let masses = surface.mesh().vertex_areas();
-            landmark_smacof(&usual()?.coords, distances, &masses, &options, &())
+            landmark_smacof(&usual()?.coords, distances, masses, &options, &())
+        };
+        let of_all_pairs = |method| {
+            let samples = Samples::Count(distances.n_landmarks());
+            embed(&shape.surface, &FormOptions { method, samples, ..FormOptions::default() }, &())
         };
         Ok(match self {
-            Self::Landmark => landmark_mds(distances, DIM)?,
-            Self::LeastSquares => by_least_squares(0.0)?,
-            Self::Sammon => by_least_squares(1.0)?,
-            Self::KernelPca | Self::BentKernelPca => {
-                let rank = Some(distances.n_landmarks().div_ceil(2));
-                kernel_pca(distances, &KernelPcaOptions { bandwidth: Bandwidth::Mean, rank, dim: DIM })?
+            Self::Landmark => landmark_mds(distances, DIM)?.coords,
+            Self::LeastSquares => by_least_squares(0.0)?.coords,
+            Self::Sammon => by_least_squares(1.0)?.coords,
+            Self::KernelPca | Self::BentKernelPca => by_kernel(distances, DIM)?,
+            Self::Classical => of_all_pairs(EmbedMethod::Classical)?.embedding.coords,
+            Self::Smacof => {
+                let regularization = half(distances.n_landmarks());
+                let descent = SmacofOptions::default();
+                of_all_pairs(EmbedMethod::Smacof { regularization, descent })?.embedding.coords
             }
-            _ => usual()?,
+            _ => usual()?.coords,
         })
     }
+}
+
+fn by_kernel(distances: &LandmarkDistances, dim: usize) -> Result<Matrix> {
+    let rank = Some(distances.n_landmarks().div_ceil(2));
+    Ok(kernel_pca(distances, &KernelPcaOptions { bandwidth: Bandwidth::Mean, rank, dim })?.coords)
+}
+
+/// Root of the mean squared distance from the centroid.
+fn spread(coords: &Matrix, masses: &[f64]) -> f64 {
+    let total: f64 = masses.iter().sum();
+    let of = |x: nalgebra::DVectorView<'_, f64>| {
+        let weighted = || x.iter().zip(masses);
+        let mean = weighted().map(|(x, m)| x * m).sum::<f64>() / total;
+        weighted().map(|(x, m)| m * (x - mean).powi(2)).sum::<f64>() / total
+    };
+    coords.column_iter().map(of).sum::<f64>().sqrt()
 }

@@ -21,7 +21,8 @@ use serde::Deserialize;
 
 use self::compared::FormComparison;
 use self::ideal::IdealAlignments;
-use self::made::{FormMaker, MadeForm, ShapeDistances};
+pub(crate) use self::made::FormMaker;
+use self::made::{MadeForm, ShapeDistances};
 use crate::collection::LabeledSurface;
 use crate::context::Context;
 use crate::experiment::Experiment;
@@ -63,12 +64,12 @@ impl Experiment for FormsOptions {
         for maker in FormMaker::ALL.into_iter().filter(|maker| is_few || !maker.needs_all_pairs()) {
             let made = maker.forms(&shapes, &distances, [self.samples, self.more_samples], context)?;
             for comparison in FormComparison::ALL {
-                let is_left_out = comparison == FormComparison::Aligned && shapes.len() > self.aligned;
-                if !is_left_out {
+                let is_slow = comparison == FormComparison::Aligned && shapes.len() > self.aligned;
+                if !is_slow && (comparison.any_dimension() || !maker.has_many_dimensions()) {
                     rows.push(FormScores::new(maker, comparison, &made, &labels, context)?);
                 }
             }
-            if context.collection.is_built_in() {
+            if context.collection.is_built_in() && !maker.has_many_dimensions() {
                 ideals.push((maker, IdealAlignments::measure(&shapes, &made, context)?));
             }
         }

@@ -1,0 +1,186 @@
+//! Canonical forms of any number of dimensions, at a few points.
+
+use base::Observer;
+use linalg::{LandmarkDistances, Matrix, symmetric_eigenvalues};
+use nmds::{LandmarkSmacofOptions, landmark_mds, landmark_smacof};
+
+use crate::error::DescriptorError;
+use crate::signature::{Signature, SignatureKind, log_magnitudes};
+use crate::spread::spread_by;
+
+/// Points of a form.
+const POINTS: usize = 250;
+
+/// How fast the kernel falls with the distance, in units of the root of the area. .15 to .3 are alike; square roots of distances
+/// instead tell bodies apart less well.
+const RANGE: f64 = 0.2;
+
+/// How distances are fitted: Sammon's weights, and few steps, since more of them serve no collection.
+const FIT: LandmarkSmacofOptions = LandmarkSmacofOptions { power: 1.0, steps: 10 };
+
+/// A canonical form of any number of dimensions, at evenly spread points.
+///
+/// Three dimensions are for the eye. Most surfaces need more of them before straight lines equal surface distances (Elad and Kimmel
+/// 2003, `elad2003` in `REFERENCES.bib`).
+#[derive(Debug, Clone, PartialEq)]
+pub struct SampledForm {
+    /// The points, k x m.
+    points: Matrix,
+    /// The share of the surface around each of the m points.
+    shares: Vec<f64>,
+}
+
+impl SampledForm {
+    /// Dimensions of a form by least squares.
+    ///
+    /// Chosen, as all numbers of this module, on two built-in collections: 240 shapes of 48 bodies that differ as adults do, and
+    /// 336 creatures of 84 bodies. With 3, 8, 12, 16 and 20 dimensions they have an mAP of .41, .66, .68, .69 and .69, and of
+    /// .92, .97, .98, .98 and .98.
+    pub const DIM: usize = 16;
+
+    /// The form with the given coordinates, p x k, of points with the given masses, at 250 of them.
+    ///
+    /// # Errors
+    /// [`DescriptorError::SizeMismatch`] unless there is one mass per point; [`DescriptorError::NoExtent`] if all masses are
+    /// zero or all points coincide.
+    pub fn new(coords: &Matrix, masses: &[f64]) -> Result<Self, DescriptorError> {
+        let (samples, shares) = evenly_spread(coords, masses)?;
+        Ok(Self { points: coords.select_rows(&samples).transpose(), shares })
+    }
+
+    /// The form of [`DIM`](Self::DIM) dimensions by least squares: [`landmark_mds`], then [`landmark_smacof`] of 250 points and all
+    /// landmarks, with the weights of Sammon's mapping. `masses` are the areas around the p points.
+    ///
+    /// Classical scaling fits squared distances, of which the longest count most. Least squares fit distances, and their
+    /// spectrum tells bodies apart better than that of the distances themselves.
+    ///
+    /// Cost: `O(p n)` to place p points by n landmarks, and 10 steps of `O(n)` for each of the 250 points.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new); [`DescriptorError::Nmds`] and [`DescriptorError::Linalg`], also if the observer's budget is exceeded.
+    pub fn by_least_squares(
+        distances: &LandmarkDistances,
+        masses: &[f64],
+        observer: &dyn Observer,
+    ) -> Result<Self, DescriptorError> {
+        let n = distances.n_landmarks();
+        let start = landmark_mds(distances, Self::DIM.min(n.saturating_sub(1)))?.coords;
+        let (samples, shares) = evenly_spread(&start, masses)?;
+        let all: Vec<usize> = distances.landmarks().iter().chain(&samples).copied().collect();
+        let weights: Vec<f64> =
+            std::iter::repeat_n(1.0 / n as f64, n).chain(shares.iter().copied()).collect();
+        let few = LandmarkDistances::new((0..n).collect(), distances.at(&all)?)?;
+        let fitted = landmark_smacof(&start.select_rows(&all), &few, &weights, &FIT, observer)?;
+        Ok(Self { points: fitted.coords.rows(n, samples.len()).transpose(), shares })
+    }
+
+    /// The spectrum of the straight distances, what compares forms alone.
+    ///
+    /// With `a` the shares of the area of the points `x` and `u` the `unit`, the root of the area of the surface, it has the
+    /// 24 largest eigenvalues of the matrix `√a_i exp(-|x_i - x_j| / .2 u) √a_j`, by their logarithms. The exponential lets near
+    /// points count, as far ones change more when limbs bend.
+    ///
+    /// * Invariant to bending, mirror images, scale, and motions of the form; changes with the triangulation and the choice of
+    ///   points.
+    /// * Cost: 6 ms for the eigenvalues.
+    ///
+    /// # Errors
+    /// [`DescriptorError::Linalg`] if the eigenvalues are not found; [`DescriptorError::NoExtent`].
+    pub fn spectrum(&self, unit: f64) -> Result<Signature, DescriptorError> {
+        let (kind, n_points) = (SignatureKind::FormSpectrum, self.shares.len());
+        let kernel = |i: usize, j: usize| {
+            let distance = sq_distance(&self.points, i, j).sqrt();
+            (self.shares[i] * self.shares[j]).sqrt() * (-distance / (RANGE * unit)).exp()
+        };
+        let values = symmetric_eigenvalues(&Matrix::from_fn(n_points, n_points, kernel))?;
+        let values = log_magnitudes(values, kind.n_values(), 0.0);
+        Ok(Signature { kind, values: values.ok_or(DescriptorError::NoExtent { n_points })? })
+    }
+}
+
+/// Evenly spread rows of coordinates, each with the share of the mass that is nearest to it.
+fn evenly_spread(coords: &Matrix, masses: &[f64]) -> Result<(Vec<usize>, Vec<f64>), DescriptorError> {
+    let (n_points, total) = (coords.nrows(), masses.iter().sum::<f64>());
+    if masses.len() != n_points {
+        return Err(DescriptorError::SizeMismatch { n_points, n_vertices: masses.len() });
+    }
+    if !(total > 0.0 && total.is_finite()) {
+        return Err(DescriptorError::NoExtent { n_points });
+    }
+    let points = coords.transpose();
+    let from_origin = points.column_iter().map(|x| x.norm_squared());
+    let spread = spread_by(from_origin, |i, j| sq_distance(&points, i, j), POINTS);
+    let mut shares = vec![0.0; spread.samples.len()];
+    spread.nearest.iter().zip(masses).for_each(|(&owner, mass)| shares[owner] += mass / total);
+    Ok((spread.samples, shares))
+}
+
+/// The squared distance between two columns.
+fn sq_distance(points: &Matrix, i: usize, j: usize) -> f64 {
+    let (dim, all) = (points.nrows(), points.as_slice());
+    let [a, b] = [i, j].map(|i| &all[i * dim..(i + 1) * dim]);
+    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LANDMARKS: usize = 40;
+
+    /// Points in a box of five dimensions, denser towards one corner.
+    fn cloud() -> Matrix {
+        let wave =
+            |i: usize, j: usize| (0.5 + 0.5 * (f64::from(((i + 1) * (7 * j + 11)) as u32)).sin()).powf(1.5);
+        Matrix::from_fn(400, 5, |i, j| wave(i, j) * [2.0, 1.0, 0.7, 0.5, 0.3][j])
+    }
+
+    fn distances(points: &Matrix) -> LandmarkDistances {
+        let between = |i: usize, j: usize| (points.row(i) - points.row(j)).norm();
+        let columns = Matrix::from_fn(points.nrows(), LANDMARKS, between);
+        LandmarkDistances::new((0..LANDMARKS).collect(), columns).unwrap()
+    }
+
+    fn masses() -> Vec<f64> {
+        (0..400).map(|i| 1.0 + f64::from(i % 7)).collect()
+    }
+
+    #[test]
+    fn straight_distances_have_the_spectrum_of_their_points() {
+        let form = SampledForm::by_least_squares(&distances(&cloud()), &masses(), &()).unwrap();
+        let direct =
+            SampledForm::new(&landmark_mds(&distances(&cloud()), 5).unwrap().coords, &masses()).unwrap();
+        let gap = form.spectrum(1.0).unwrap().distance(&direct.spectrum(1.0).unwrap());
+        assert!(gap < 1e-6, "{gap}");
+    }
+
+    #[test]
+    fn scale_motions_and_mirror_images_change_no_spectrum() {
+        let own = SampledForm::new(&cloud(), &masses()).unwrap();
+        let (sine, cosine) = 0.7f64.sin_cos();
+        let mut turn = Matrix::identity(5, 5) * -3.0;
+        turn[(0, 0)] = 3.0 * cosine;
+        turn[(0, 3)] = 3.0 * sine;
+        turn[(3, 0)] = -3.0 * sine;
+        turn[(3, 3)] = 3.0 * cosine;
+        let moved = SampledForm::new(&(cloud() * turn), &masses()).unwrap();
+        let gap = own.spectrum(0.5).unwrap().distance(&moved.spectrum(1.5).unwrap());
+        assert!(gap < 1e-9, "{gap}");
+        assert!(own.spectrum(0.5).unwrap().distance(&own.spectrum(0.6).unwrap()) > 0.1);
+    }
+
+    #[test]
+    fn the_spectrum_of_two_points_is_that_of_their_matrix() {
+        let form = SampledForm::new(&Matrix::from_row_slice(2, 1, &[-1.0, 1.0]), &[1.0, 1.0]).unwrap();
+        let values = form.spectrum(2.0 / RANGE).unwrap().values;
+        let expected = [0.5 * (1.0 + (-1f64).exp()), 0.5 * (1.0 - (-1f64).exp())];
+        assert!(values.iter().zip(expected).all(|(value, e)| (value - e.ln()).abs() < 1e-12), "{values:?}");
+    }
+
+    #[test]
+    fn what_has_no_extent_is_refused() {
+        let fault = SampledForm::new(&cloud(), &[1.0]).unwrap_err();
+        assert_eq!(fault, DescriptorError::SizeMismatch { n_points: 400, n_vertices: 1 });
+        assert_eq!(SampledForm::new(&cloud(), &[0.0; 400]), Err(DescriptorError::NoExtent { n_points: 400 }));
+    }
+}
