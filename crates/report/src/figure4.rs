@@ -13,7 +13,7 @@ use crate::results::{Figure4Panel, Figure4Results, Scale};
 use crate::table::{Cell, SCORES, Table, scores_caption};
 
 /// What each scale is called in titles, in captions and in file names.
-const SCALES: [(Scale, &str, &str, [&str; 2]); 2] = [
+const SCALES: [(Scale, &str, &str, [&str; 2]); 3] = [
     (
         Scale::Raw,
         "original size",
@@ -25,6 +25,12 @@ const SCALES: [(Scale, &str, &str, [&str; 2]); 2] = [
         "normalised size",
         "forms scaled to the same size",
         ["-maps-normalized", "-matrices-normalized"],
+    ),
+    (
+        Scale::Spectrum,
+        "16 dimensions",
+        "forms of 16 dimensions, by their spectra of straight distances, size ignored",
+        ["-maps-spectrum", "-matrices-spectrum"],
     ),
 ];
 

@@ -16,7 +16,7 @@ use crate::error::ReportError;
 use crate::figure4::shown;
 use crate::render::{Background, Coloring, RenderOptions, render};
 use crate::results::{
-    Figure1Results, Figure4Results, Record, SHAPES_FILE, Scale, ShapesRecord, ShownShape, read,
+    Figure1Results, Figure4Panel, Figure4Results, Record, SHAPES_FILE, Scale, ShapesRecord, ShownShape, read,
 };
 
 /// Width and height of a thumbnail in pixels, twice those on the card.
@@ -63,7 +63,7 @@ pub(super) fn gallery(record: &Figure1Results, shapes: Option<&ShapesRecord>) ->
 
 fn data(record: &Figure4Results, shapes: Option<&ShapesRecord>) -> Result<Value, ReportError> {
     let classes = Classes::of(record.labels.iter().map(String::as_str));
-    let panels = record.panels.iter().map(|panel| {
+    let panels = aligned(record).map(|panel| {
         let shown = shown(record, panel);
         json!({
             "method": panel.method,
@@ -85,6 +85,11 @@ fn data(record: &Figure4Results, shapes: Option<&ShapesRecord>) -> Result<Value,
         "motions": shapes.map_or(&[][..], |shapes| &shapes.motions),
         "thumbnails": thumbnails,
     }))
+}
+
+/// The panels whose forms have three dimensions.
+fn aligned(record: &Figure4Results) -> impl Iterator<Item = &Figure4Panel> {
+    record.panels.iter().filter(|panel| panel.scale != Scale::Spectrum)
 }
 
 /// Images of all shapes and their forms, as data URLs.
@@ -113,7 +118,7 @@ fn live(record: &Record<Figure4Results>, shapes: Option<&ShapesRecord>) -> Strin
     let Record { provenance, results: record, .. } = record;
     let names: Vec<(String, &str)> =
         record.names.iter().enumerate().map(|(i, name)| (i.to_string(), name.as_str())).collect();
-    let methods = Classes::of(record.panels.iter().map(|panel| panel.method.as_str()));
+    let methods = Classes::of(aligned(record).map(|panel| panel.method.as_str()));
     let methods: Vec<(&str, &str)> = methods.names().iter().map(|method| (*method, *method)).collect();
     let has = |scale: Scale| record.panels.iter().any(|panel| panel.scale == scale);
     let mut scales = vec![(Scale::Raw, "original"), (Scale::Normalized, "ignored")];

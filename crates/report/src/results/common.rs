@@ -105,7 +105,7 @@ impl ExpectationOutcome {
     }
 }
 
-/// Whether shapes keep their size when they are compared.
+/// Whether shapes keep their size when they are compared, and by what.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Scale {
@@ -113,6 +113,8 @@ pub enum Scale {
     Raw,
     /// All scaled to the same size.
     Normalized,
+    /// All scaled to the same size, in many dimensions, by the spectrum of straight distances instead of alignment.
+    Spectrum,
 }
 
 impl Scale {
@@ -122,6 +124,7 @@ impl Scale {
         match self {
             Self::Raw => "raw",
             Self::Normalized => "normalized",
+            Self::Spectrum => "spectrum",
         }
     }
 
@@ -131,6 +134,7 @@ impl Scale {
         match self {
             Self::Raw => "form units",
             Self::Normalized => "form size = 1",
+            Self::Spectrum => "logarithms",
         }
     }
 }
