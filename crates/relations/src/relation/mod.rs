@@ -95,12 +95,8 @@ impl Relation {
         let mut changes = Vec::new();
         let (kind, confidence) = if same_shape > 0.5 {
             because.units = UnitChange::of(scale, SIZE_OF_SURFACES);
-            if scale.max(1.0 / scale) > ShapeMetric::SIZE_OF_POSES {
-                changes.push(Change::Scaled);
-            }
-            if handedness == Handedness::Mirrored {
-                changes.push(Change::Mirrored);
-            }
+            let tolerance = ShapeMetric::SIZE_OF_POSES.ln();
+            changes = of_meshes::of_similarity(scale, tolerance, handedness == Handedness::Mirrored);
             (RelationKind::OtherPose, same_shape)
         } else if same_class > 0.5 {
             (RelationKind::SameClass, same_class - same_shape)
