@@ -8,7 +8,6 @@ use nalgebra::{Point3, Vector3};
 use serde::Serialize;
 use surface::VertexId;
 
-use super::exact::Similarity;
 use super::geometry::{MeshGeometry, sorted};
 use super::parts::Side;
 use super::units::UnitChange;
@@ -59,9 +58,9 @@ pub(super) fn piece_of(whole: &MeshGeometry, piece: &MeshGeometry) -> Option<Fou
         let scale = piece.size / (factor * whole.size);
         let left = scale * scale;
         let is_possible = left <= MOST_LEFT && (factor == 1.0 || left >= LEAST_LEFT);
-        let search = PieceSearch::new(whole, piece, scale, factor).filter(|_| is_possible)?;
-        let shared = search.candidates().into_iter().find_map(|motion| search.shared(&motion));
-        shared.map(|_| FoundPiece { left, factor })
+        let search = if is_possible { PieceSearch::new(whole, piece, scale, factor)? } else { return None };
+        let is_found = search.candidates().iter().any(|motion| search.shares_faces(motion));
+        is_found.then_some(FoundPiece { left, factor })
     };
     std::iter::once(1.0).chain(UnitChange::factors()).find_map(found)
 }
@@ -113,14 +112,14 @@ impl<'a> PieceSearch<'a> {
         motions
     }
 
-    /// The motion made precise, if enough faces of the piece are faces of the whole.
-    fn shared(&self, motion: &Alignment) -> Option<Similarity> {
+    /// Whether enough faces of the piece are faces of the whole, once the motion is made precise.
+    fn shares_faces(&self, motion: &Alignment) -> bool {
         let off = 30.0 * self.tolerance;
         let is_near = |p: &Point3<f64>| self.vertices.nearest(&motion.apply(p)).1 <= off * off;
         let step = (self.points.len() / PROBES).max(1);
         let probes = || self.points.iter().step_by(step);
         if (probes().filter(|p| is_near(p)).count() as f64) < LEAST_SHARED * probes().count() as f64 {
-            return None;
+            return false;
         }
         let pairs: Vec<_> = self
             .points
@@ -128,7 +127,7 @@ impl<'a> PieceSearch<'a> {
             .filter(|p| is_near(p))
             .map(|p| (*p, self.whole.mesh.positions[self.vertices.nearest(&motion.apply(p)).0]))
             .collect();
-        let precise = Similarity { motion: Alignment::fit(&pairs, false)?, scale: 1.0 };
+        let Some(precise) = Alignment::fit(&pairs, false) else { return false };
         let partner = |p: &Point3<f64>| {
             let (i, sq) = self.vertices.nearest(&precise.apply(p));
             (sq <= self.tolerance * self.tolerance).then(|| VertexId::from(i))
@@ -140,9 +139,7 @@ impl<'a> PieceSearch<'a> {
             _ => false,
         };
         let n_shared = self.piece.mesh.faces.iter().filter(is_shared).count();
-        let is_enough =
-            n_shared >= LEAST_FACES && n_shared as f64 >= LEAST_SHARED * self.piece.n_faces() as f64;
-        is_enough.then_some(precise)
+        n_shared >= LEAST_FACES && n_shared as f64 >= LEAST_SHARED * self.piece.n_faces() as f64
     }
 }
 

@@ -59,7 +59,7 @@ impl TriangleTree {
     pub fn new(mesh: &TriMesh) -> Self {
         let placed = |f: usize| {
             let corners = mesh.triangle(f);
-            Some(Placed { corners, normal: normal(&corners).try_normalize(0.0)?, face: f as u32 })
+            Some(Placed { corners, normal: mesh.area_vector(f).try_normalize(0.0)?, face: f as u32 })
         };
         let triangles: Vec<_> = (0..mesh.n_faces()).filter_map(placed).collect();
         let mut tree = Self { nodes: Vec::with_capacity(triangles.len() / 2 + 1), triangles };
@@ -138,10 +138,6 @@ impl Node {
         let beyond = |i: usize| (self.low[i] - p[i]).max(p[i] - self.high[i]).max(0.0);
         (0..3).map(|i| beyond(i).powi(2)).sum()
     }
-}
-
-fn normal([a, b, c]: &[Point3<f64>; 3]) -> Vector3<f64> {
-    (b - a).cross(&(c - a))
 }
 
 /// The point of a triangle nearest to `p` (Ericson 2005, section 5.1.5, `ericson2005` in `REFERENCES.bib`).

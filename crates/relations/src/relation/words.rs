@@ -3,11 +3,12 @@
 use std::fmt::{self, Display, Formatter};
 
 use descriptors::ShapeMetric;
+use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 
 use super::cut::CutPiece;
 use super::in_space::SurfaceGap;
-use super::numbers::{in_words, percent, significant};
+use super::numbers::{in_digits, in_words, percent};
 use super::parts::{Parts, Side};
 use super::variant::Difference;
 use super::{Basis, Because, Change, Relation, RelationKind};
@@ -121,7 +122,9 @@ impl Relation {
                 Change::Decimated => write!(f, "decimated to {} of the vertices", percent(share))?,
                 Change::Subdivided => write!(f, "subdivided to {share:.1} times the vertices")?,
                 Change::Remeshed if self.because.vertex_gap.is_some() => f.write_str("with other faces")?,
-                Change::Remeshed if (share - 1.0).abs() < 0.005 => f.write_str("remeshed")?,
+                Change::Remeshed if self.because.parts.is_some() || (share - 1.0).abs() < 0.005 => {
+                    f.write_str("remeshed")?;
+                }
                 Change::Remeshed => write!(f, "remeshed with {share:.2} times the vertices")?,
                 Change::Posed => f.write_str(self.pose())?,
                 Change::Cut => f.write_str("cut")?,
@@ -143,7 +146,7 @@ impl Relation {
     }
 
     fn write_scale(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        write!(f, "scaled by {}", significant(self.because.scale))?;
+        write!(f, "scaled by {}", in_digits(5, self.because.scale))?;
         match self.because.units {
             Some(units) => write!(f, " ({units})"),
             None => Ok(()),
@@ -177,21 +180,8 @@ impl Relation {
                 in_words(components)
             )?,
         }
-        if self.has(Change::Scaled) {
-            // From the first to the second, whichever is the whole.
-            f.write_str(", ")?;
-            self.write_scale(f)?;
-        }
-        if self.has(Change::Mirrored) {
-            f.write_str(", mirrored")?;
-        }
-        if self.has(Change::Remeshed) {
-            f.write_str(", remeshed")?;
-        }
-        match self.has(Change::Posed) {
-            true => write!(f, ", {}", self.pose()),
-            false => Ok(()),
-        }
+        // From the first to the second, whichever is the whole.
+        self.write_changes(f, ", ")
     }
 }
 
@@ -209,17 +199,7 @@ fn list(differences: &[Difference]) -> String {
     }
 }
 
-/// A relation with its words, as it is written.
-#[derive(Serialize)]
-struct RelationRecord<'a> {
-    kind: RelationKind,
-    confidence: f64,
-    changes: &'a [Change],
-    text: String,
-    brief: String,
-    because: BecauseRecord<'a>,
-}
-
+/// Everything that a relation is told from, with its words.
 #[derive(Serialize)]
 struct BecauseRecord<'a> {
     text: String,
@@ -229,9 +209,14 @@ struct BecauseRecord<'a> {
 
 impl Serialize for Relation {
     fn serialize<S: Serializer>(&self, out: S) -> Result<S::Ok, S::Error> {
-        let Self { kind, confidence, changes, because, .. } = self;
-        let (text, because) = (self.to_string(), BecauseRecord { text: self.reason(), because });
-        let brief = self.in_brief();
-        RelationRecord { kind: *kind, confidence: *confidence, changes, text, brief, because }.serialize(out)
+        let mut record = out.serialize_struct("Relation", 6)?;
+        record.serialize_field("kind", &self.kind)?;
+        record.serialize_field("confidence", &self.confidence)?;
+        record.serialize_field("changes", &self.changes)?;
+        record.serialize_field("text", &self.to_string())?;
+        record.serialize_field("brief", &self.in_brief())?;
+        let because = BecauseRecord { text: self.reason(), because: &self.because };
+        record.serialize_field("because", &because)?;
+        record.end()
     }
 }
