@@ -41,11 +41,8 @@ impl<S: Borrow<Surface>> MappedSurface<S> {
         drop(solver);
         let spectrum = LaplaceSpectrum::new(repaired.intrinsic(), options.mapping.eigenfunctions, observer)?;
         let SpreadSamples { samples, nearest, .. } = spread;
-        let shape = MapShape::new(&form, repaired.mesh(), spectrum, embedded.distances, samples, &nearest)?;
-        let shape = match from_cut {
-            Some(from_cut) => shape.with_cut(&from_cut),
-            None => shape,
-        };
+        let shape = MapShape::new(&form, repaired.mesh(), spectrum, embedded.distances, samples, nearest)?;
+        let shape = shape.with_cut(from_cut);
         Ok(Self { shape, seconds: start.elapsed().as_secs_f64(), surface })
     }
 

@@ -50,11 +50,11 @@ fn mean_curvature(outward: &TriMesh) -> DVector<f64> {
 
 /// One less the correlation of the curvatures of corresponding points: 0 for isometries that do not turn inside out.
 /// `partners` names a point of the second list for each of the first, as far as they go.
-pub(super) fn mismatch(x: &[f64], y: &[f64], partners: &[u32]) -> f64 {
+pub(super) fn mismatch(x: &[f64], y: &[f64], partners: &[usize]) -> f64 {
     let n = partners.len();
     let centred = |values: DVector<f64>| values.add_scalar(-values.mean());
     let x = centred(DVector::from_column_slice(&x[..n]));
-    let y = centred(DVector::from_iterator(n, partners.iter().map(|&i| y[i as usize])));
+    let y = centred(DVector::from_iterator(n, partners.iter().map(|&i| y[i])));
     let scale = x.norm() * y.norm();
     if scale > 0.0 { 1.0 - x.dot(&y) / scale } else { 1.0 }
 }

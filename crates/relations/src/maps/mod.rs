@@ -16,7 +16,6 @@ mod network;
 mod operators;
 mod orientation;
 mod part;
-mod part_of_whole;
 mod points;
 mod search;
 mod shape;
@@ -25,9 +24,8 @@ mod whole_or_part;
 
 pub use known::KnownMap;
 pub use network::{ConsistentMaps, CycleReport, all_pairs, consistent_maps};
-pub use part_of_whole::PartOfWhole;
 pub use points::{MapElements, mapped_points};
 pub use search::{MapOptions, map_wholes};
 pub use shape::MapShape;
-pub use surface_map::{MapKind, SurfaceMap};
+pub use surface_map::{MapKind, PartOfWhole, SurfaceMap};
 pub use whole_or_part::map_surfaces;

@@ -50,13 +50,9 @@ pub fn map_surfaces(
 /// The surface that may be a part of the other; `None` if neither has a boundary and is much smaller.
 fn possible_part(a: &MapShape, b: &MapShape) -> Option<Side> {
     let share = (a.size / b.size).powi(2);
-    let is_part =
-        |shape: &MapShape, share: f64| shape.from_cut.is_some() && share > SHARES[0] && share < SHARES[1];
-    if is_part(a, share) {
-        Some(Side::First)
-    } else if is_part(b, 1.0 / share) {
-        Some(Side::Second)
-    } else {
-        None
-    }
+    let sides = [(Side::First, a, share), (Side::Second, b, 1.0 / share)];
+    let part = sides
+        .into_iter()
+        .find(|(_, shape, share)| shape.from_cut.is_some() && *share > SHARES[0] && *share < SHARES[1]);
+    part.map(|(side, ..)| side)
 }

@@ -2,6 +2,8 @@
 
 use linalg::Matrix;
 
+use super::super::nearest_rows::first_of;
+use super::super::shape::MapShape;
 use super::sides::Sides;
 use descriptors::DescriptorError;
 
@@ -63,18 +65,11 @@ pub(super) fn placements(
             for (y, alone) in alone.iter().enumerate() {
                 let losses = placed.images.iter().zip(&known);
                 let losses = losses.map(|(z, known)| known.loss(sides.in_whole[(y, *z)], MOST));
-                longer.push((placed.score + losses.sum::<f64>() / (EXPECTED * EXPECTED) + alone, h, y));
+                let score = placed.score + losses.sum::<f64>() / (EXPECTED * EXPECTED) + alone;
+                longer.push((score, (h, y)));
             }
         }
-        let by_score = |a: &(f64, usize, usize), b: &(f64, usize, usize)| {
-            a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2)))
-        };
-        if longer.len() > MANY {
-            longer.select_nth_unstable_by(MANY, by_score);
-            longer.truncate(MANY);
-        }
-        longer.sort_unstable_by(by_score);
-        let longer = longer.into_iter().map(|(score, h, y)| {
+        let longer = first_of(longer, MANY).into_iter().map(|(score, (h, y))| {
             let images = found[h].images.iter().copied().chain([y]).collect();
             Placement { images, score }
         });
@@ -146,13 +141,8 @@ fn alone(sides: &Sides<'_>, chosen: &[usize]) -> Result<Vec<Vec<f64>>, Descripto
 
 /// Logarithms of the areas of discs around landmarks, a column for each, over the area of the whole. `scale` is the length of
 /// one at unit area of the shape.
-fn areas(
-    shape: &super::super::shape::MapShape,
-    scale: f64,
-    landmarks: &[usize],
-) -> Result<Matrix, DescriptorError> {
-    let all: Vec<usize> = (0..shape.n_vertices()).collect();
-    let distances = shape.distances_to(&all)?;
+fn areas(shape: &MapShape, scale: f64, landmarks: &[usize]) -> Result<Matrix, DescriptorError> {
+    let distances = shape.all_distances()?;
     let mut found = Matrix::zeros(RADII.len(), landmarks.len());
     for (i, l) in landmarks.iter().enumerate() {
         for (r, radius) in RADII.iter().enumerate() {

@@ -5,13 +5,12 @@ use linalg::{LinalgError, Matrix};
 use nalgebra::Cholesky;
 use rayon::prelude::*;
 
-use super::super::known::{KnownMap, RESPECTED};
+use super::super::known::{CLEARLY_WORSE, KnownMap, RESPECTED};
 use super::super::local::vertex_confidence;
 use super::super::orientation::agreement;
-use super::super::part_of_whole::PartOfWhole;
-use super::super::search::{CLEARLY_WORSE, MapOptions, in_order, kind_of, mirrored_samples};
+use super::super::search::{MapOptions, mirrored_samples, odds};
 use super::super::shape::MapShape;
-use super::super::surface_map::{MapKind, SurfaceMap};
+use super::super::surface_map::{MapKind, PartOfWhole, SurfaceMap};
 use super::landmarks::placements;
 use super::places::{Changes, Fineness, Places, placed, placed_again};
 use super::sides::Sides;
@@ -93,7 +92,7 @@ impl Candidate {
     }
 
     fn kind(&self) -> MapKind {
-        kind_of(self.agreement)
+        MapKind::of(self.agreement)
     }
 }
 
@@ -127,7 +126,7 @@ pub(in crate::maps) fn part_maps(
             let of_kind = found.iter().filter(|found| found.kind() == kind);
             of_kind.min_by(|a, b| a.score().total_cmp(&b.score()))
         });
-        let image = |y: &usize| mirror.get(*y).map_or(*y, |image| *image as usize);
+        let image = |y: &usize| mirror.get(*y).copied().unwrap_or(*y);
         let composed: Vec<Candidate> = best
             .into_iter()
             .flatten()
@@ -141,7 +140,7 @@ pub(in crate::maps) fn part_maps(
     }
     found.sort_by(|a, b| a.score().total_cmp(&b.score()));
     let mut maps = Vec::new();
-    for kind in [MapKind::Direct, MapKind::Mirrored, MapKind::Unoriented] {
+    for kind in MapKind::ALL {
         if kind == MapKind::Unoriented && !maps.is_empty() {
             break;
         }
@@ -162,20 +161,14 @@ pub(in crate::maps) fn part_maps(
         finer.sort_by(|a, b| a.score().total_cmp(&b.score()));
         maps.extend(best(&sides, &finer, side)?);
     }
-    known.nearest_first(&mut maps, if side == Side::First { whole } else { part })?;
-    let mut maps = in_order(maps);
-    maps.iter_mut().for_each(|map| known.kept_by(map));
-    Ok(maps)
+    known.finished(maps, if side == Side::First { whole } else { part })
 }
 
 /// The first of some maps in the order of their scores, refined; with the next one if that is nearly as good.
 fn best(sides: &Sides<'_>, found: &[Candidate], side: Side) -> Result<Option<SurfaceMap>, DescriptorError> {
     let Some((best, others)) = found.split_first() else { return Ok(None) };
     let rival = others.iter().find(|other| gap(sides, &best.places, &other.places) > SAME);
-    let alone = rival.map_or(1.0, |rival| {
-        let boundary = Boundary { at: rival.score().max(f64::MIN_POSITIVE), steepness: STEEPNESS };
-        boundary.probability(best.score())
-    });
+    let alone = odds(best.score(), rival.map(Candidate::score), STEEPNESS);
     let confidence = alone * DOUBTFUL.probability(best.changes.distances);
     let mut map = refined(sides, best, confidence, side)?;
     if let Some(rival) = rival.filter(|_| confidence < SurfaceMap::CERTAIN) {
@@ -202,7 +195,11 @@ fn refined(
     let Coverage { covered, partners, matched } = onto_part(sides, &images)?;
     let functional =
         functional(sides, &fine.places, FUNCTIONS, usize::MAX).unwrap_or_else(|| Matrix::zeros(0, 0));
-    let vertex_confidence = confidences(sides, side, &images, &partners)?;
+    let (part, whole) = (sides.part, sides.whole);
+    let vertex_confidence = match side {
+        Side::First => vertex_confidence([part, whole], [sides.scale(), 1.0], &images)?,
+        Side::Second => vertex_confidence([whole, part], [1.0, sides.scale()], &partners)?,
+    };
     let id = |v: usize| VertexId::from(v);
     let onto_whole: Vec<_> = images.iter().map(|w| Some(id(*w))).collect();
     let onto_part = partners.iter().zip(&matched).map(|(v, matched)| matched.then(|| id(*v))).collect();
@@ -226,54 +223,32 @@ fn refined(
     })
 }
 
-/// The confidence of each vertex of the first surface, by its distances in the unit of the whole.
-fn confidences(
-    sides: &Sides<'_>,
-    side: Side,
-    images: &[usize],
-    partners: &[usize],
-) -> Result<Vec<f64>, DescriptorError> {
-    let (part, whole) = (sides.part, sides.whole);
-    let in_part = |vertices: &[usize]| Ok::<_, DescriptorError>(part.distances_to(vertices)? * sides.scale());
-    let all = |shape: &MapShape| (0..shape.n_vertices()).collect::<Vec<usize>>();
-    Ok(match side {
-        Side::First => {
-            vertex_confidence(&in_part(&all(part))?, part.landmarks(), &whole.distances_to(images)?)
-        }
-        Side::Second => {
-            vertex_confidence(&whole.distances_to(&all(whole))?, whole.landmarks(), &in_part(partners)?)
-        }
-    })
+/// Eigenfunctions at the samples of the part, and functions of the whole, pulled back: the first `n` eigenfunctions of the whole
+/// in the first `k` of the part, by least squares over the samples.
+fn pulled_back(sides: &Sides<'_>, places: &[usize], [k, n]: [usize; 2]) -> Option<Matrix> {
+    let k = k.min(sides.part.spectrum.vectors.ncols()).min(places.len() / 3).max(1);
+    let own = sides.part.spectrum.vectors.columns(0, k).select_rows(&sides.xs[..places.len()]);
+    let images: Vec<usize> = places.iter().map(|y| sides.ys[*y]).collect();
+    let pulled = sides.whole.spectrum.vectors.columns(0, n).select_rows(&images);
+    Some(Cholesky::new(own.tr_mul(&own))?.solve(&own.tr_mul(&pulled)))
 }
 
-/// The map of the first `n` eigenfunctions of the whole to those of the part with eigenvalues as low, at most `most`, by least
-/// squares over the samples.
+/// The map of the first `n` eigenfunctions of the whole to those of the part with eigenvalues as low, at most `most`.
 fn functional(sides: &Sides<'_>, places: &[usize], n: usize, most: usize) -> Option<Matrix> {
-    let n = n.min(sides.whole.vectors.ncols());
+    let n = n.min(sides.whole.spectrum.values.len());
     // Eigenvalues at unit area; those of the part in the unit of the whole are larger.
     let last = sides.whole.spectrum.values[n - 1] * sides.scale().powi(2);
     let k = sides.part.spectrum.values.iter().filter(|value| **value <= last).count();
-    let k = k.min(most).min(places.len() / 3).max(1);
-    let own = sides.part.vectors.select_rows(&sides.xs[..places.len()]).columns(0, k).into_owned();
-    let images: Vec<usize> = places.iter().map(|y| sides.ys[*y]).collect();
-    let pulled = sides.whole.vectors.select_rows(&images).columns(0, n).into_owned();
-    Some(Cholesky::new(own.tr_mul(&own))?.solve(&own.tr_mul(&pulled)))
+    pulled_back(sides, places, [k.min(most), n])
 }
 
 /// How far a map preserves orientation.
 fn orientation(sides: &Sides<'_>, places: &[usize]) -> Option<f64> {
     let (oriented, forms) = (sides.part.oriented.as_ref()?, sides.whole.area_forms.as_ref()?);
     let [n, k] = ORIENTED;
-    let n = n.min(sides.whole.vectors.ncols());
-    let k = k.min(sides.part.vectors.ncols()).min(places.len() / 3).max(1);
-    let own = sides.part.vectors.columns(0, k);
-    let at = own.select_rows(&sides.xs[..places.len()]);
-    let images: Vec<usize> = places.iter().map(|y| sides.ys[*y]).collect();
-    let pulled = sides.whole.vectors.select_rows(&images).columns(0, n).into_owned();
-    let map = Cholesky::new(at.tr_mul(&at))?.solve(&at.tr_mul(&pulled));
-    let pulled = oriented.area_forms(&(own * map), &sides.xs[..places.len()]);
-    let places: Vec<u32> = places.iter().map(|y| *y as u32).collect();
-    Some(agreement(&pulled, forms, &places))
+    let map = pulled_back(sides, places, [k, n.min(sides.whole.spectrum.values.len())])?;
+    let pulled = sides.part.spectrum.vectors.columns(0, map.nrows()) * map;
+    Some(agreement(&oriented.area_forms(&pulled, &sides.xs[..places.len()]), forms, places))
 }
 
 /// How far the map of functions is from one of a part, whose rows are orthonormal: `|C C' - I|² / k`.
