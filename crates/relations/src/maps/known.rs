@@ -55,15 +55,14 @@ impl KnownMap {
         self.initial.iter().enumerate().filter_map(|(x, y)| Some([VertexId::from(x), (*y)?]))
     }
 
-    /// Maps of samples that are fitted to the landmarks and functions, alone and together with what surfaces have in common.
-    pub(super) fn fitted_starts(&self, pair: &SampledPair, [a, b]: [&MapShape; 2]) -> Vec<TwoWayMap> {
+    /// Maps of functions that are fitted to the landmarks and functions, alone and together with what surfaces have in common.
+    pub(super) fn fitted(&self, [a, b]: [&MapShape; 2]) -> Vec<Matrix> {
         let known = [(a, 0), (b, 1)].map(|(shape, side)| self.operators(shape, side));
         let [Some(on_a), Some(on_b)] = known else { return Vec::new() };
         let both = a.operators.iter().zip(&b.operators).map(|(x, y)| [x.and(&on_a), y.and(&on_b)]);
-        let all: Vec<[Operators; 2]> = both.collect();
-        let all = all.iter().map(|[x, y]| [x, y]).chain([[&on_a, &on_b]]);
-        let fits = all.flat_map(|[x, y]| [1.0, -1.0].into_iter().flat_map(move |sign| fitted(x, y, sign)));
-        fits.map(|forth| FunctionalMaps::of_one(&forth).sample_maps(pair)).collect()
+        let mut all: Vec<[Operators; 2]> = both.collect();
+        all.push([on_a, on_b]);
+        all.iter().flat_map(|[x, y]| [1.0, -1.0].into_iter().flat_map(|sign| fitted(x, y, sign))).collect()
     }
 
     /// The functions known on one side: heat that was placed at the landmarks, and those that were given.

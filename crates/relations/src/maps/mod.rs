@@ -25,7 +25,7 @@ mod whole_or_part;
 pub use known::KnownMap;
 pub use network::{ConsistentMaps, CycleReport, all_pairs, consistent_maps};
 pub use points::{MapElements, mapped_points};
-pub use search::{MapOptions, map_wholes};
+pub use search::map_wholes;
 pub use shape::MapShape;
 pub use surface_map::{MapKind, PartOfWhole, SurfaceMap};
 pub use whole_or_part::map_surfaces;

@@ -160,11 +160,6 @@ impl MapShape {
         self.landmarks().iter().map(|&x| map[x]).collect()
     }
 
-    /// The mean distance of the landmarks from their images, at unit area.
-    pub(super) fn moved(&self, images: &[usize]) -> Result<f64, DescriptorError> {
-        Ok(self.distances_to(images)?.diagonal().mean())
-    }
-
     /// Distances from all landmarks to some vertices, one row for each landmark, at unit area.
     pub(super) fn distances_to(&self, vertices: &[usize]) -> Result<Matrix, DescriptorError> {
         let mut found = Matrix::zeros(self.distances.n_landmarks(), vertices.len());

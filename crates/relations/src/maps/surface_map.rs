@@ -99,9 +99,10 @@ impl SurfaceMap {
         forth: &[usize],
         back: &[usize],
     ) -> Result<Self, DescriptorError> {
+        let (to_back, to_images) = (a.distances_to(back)?, b.distances_to(&a.landmark_images(forth))?);
         Ok(Self {
             kind: MapKind::Unoriented,
-            distortion: codistortion([a, b], &a.landmark_images(forth), back)?,
+            distortion: codistortion(&to_back, &to_images),
             agreement: None,
             confidence: 1.0,
             vertices: forth.iter().map(|y| VertexId::from(*y)).collect(),
@@ -113,15 +114,10 @@ impl SurfaceMap {
     }
 }
 
-/// The mean of `|d(x_i, g y_j) - d(f x_i, y_j)|` over landmarks; `forth` and `back` are the images of the landmarks.
-pub(super) fn codistortion(
-    [a, b]: [&MapShape; 2],
-    forth: &[usize],
-    back: &[usize],
-) -> Result<f64, DescriptorError> {
-    let on_a = a.distances_to(back)?;
-    let on_b = b.distances_to(forth)?;
+/// The mean of `|d(x_i, g y_j) - d(f x_i, y_j)|` over landmarks, from the distances on the first and on the second surface
+/// from its landmarks to the images of those of the other one.
+pub(super) fn codistortion(on_a: &Matrix, on_b: &Matrix) -> f64 {
     let gaps = (0..on_a.nrows()).flat_map(|i| (0..on_a.ncols()).map(move |j| (i, j)));
     let sum: f64 = gaps.map(|(i, j)| (on_a[(i, j)] - on_b[(j, i)]).abs()).sum();
-    Ok(sum / on_a.len().max(1) as f64)
+    sum / on_a.len().max(1) as f64
 }

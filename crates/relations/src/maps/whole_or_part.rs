@@ -4,7 +4,7 @@ use base::Observer;
 
 use super::known::KnownMap;
 use super::part::part_maps;
-use super::search::{MapOptions, map_wholes};
+use super::search::map_wholes;
 use super::shape::MapShape;
 use super::surface_map::SurfaceMap;
 use crate::relation::Side;
@@ -36,13 +36,13 @@ pub fn map_surfaces(
     a: &MapShape,
     b: &MapShape,
     known: &KnownMap,
-    options: &MapOptions,
+    eigenfunctions: usize,
     observer: &dyn Observer,
 ) -> Result<Vec<SurfaceMap>, DescriptorError> {
-    let of_wholes = map_wholes(a, b, known, options, observer)?;
+    let of_wholes = map_wholes(a, b, known, eigenfunctions, observer)?;
     let Some(side) = possible_part(a, b).filter(|_| known.functions.is_none()) else { return Ok(of_wholes) };
     let [part, whole] = if side == Side::First { [a, b] } else { [b, a] };
-    let of_part = part_maps(part, whole, side, known, options, observer)?;
+    let of_part = part_maps(part, whole, side, known, observer)?;
     let least = |maps: &[SurfaceMap]| maps.iter().map(|map| map.distortion).fold(f64::INFINITY, f64::min);
     Ok(if least(&of_part) < least(&of_wholes) { of_part } else { of_wholes })
 }

@@ -8,29 +8,27 @@ use rayon::prelude::*;
 use super::super::known::{CLEARLY_WORSE, KnownMap, RESPECTED};
 use super::super::local::vertex_confidence;
 use super::super::orientation::agreement;
-use super::super::search::{MapOptions, mirrored_samples, odds};
+use super::super::search::{mirrored_samples, odds};
 use super::super::shape::MapShape;
 use super::super::surface_map::{MapKind, PartOfWhole, SurfaceMap};
 use super::landmarks::placements;
-use super::places::{Changes, Fineness, Places, placed, placed_again};
+use super::places::{Fineness, Places, change_of_curvature, change_of_distances, placed, placed_again};
 use super::sides::Sides;
 use super::vertices::{Coverage, all_vertices, onto_part};
 use crate::relation::Side;
 use descriptors::{Boundary, DescriptorError};
 use surface::VertexId;
 
-/// Placements of landmarks that are extended to samples, the samples, and the landmarks by which they are placed. Conventions of
-/// time.
+/// Placements of landmarks that are extended to samples, and how finely. Conventions of time.
 const SKETCHES: usize = 24;
-const SKETCHED: Fineness = Fineness { xs: 150, ys: 400 };
-const SKETCH_ANCHORS: usize = 40;
+const SKETCHED: Fineness = Fineness { xs: 150, ys: 400, anchors: 40, times: 2 };
 
 /// The best sketches of each orientation are compared again with more samples: as many as there is time for.
 const COMPARED: usize = 4;
-const FINER: Fineness = Fineness { xs: 400, ys: usize::MAX };
+const FINER: Fineness = Fineness { xs: 400, ys: usize::MAX, anchors: usize::MAX, times: 3 };
 
 /// All samples.
-const FINE: Fineness = Fineness { xs: usize::MAX, ys: usize::MAX };
+const FINE: Fineness = Fineness { xs: usize::MAX, times: 1, ..FINER };
 
 /// Conventions: eigenfunctions of the whole whose area forms tell the orientation, and of the part in which they are smoothed.
 const ORIENTED: [usize; 2] = [13, 30];
@@ -61,34 +59,29 @@ const DEFECT: f64 = 0.01;
 struct Candidate {
     places: Places,
     agreement: Option<f64>,
-    changes: Changes,
-    defect: f64,
-    /// How far it takes known points from their partners on average, beyond what is [respected](RESPECTED).
-    miss: f64,
-    start: Start,
-}
-
-/// Where a map comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Start {
-    Placements,
-    /// The initial map: another one must be [clearly better](CLEARLY_WORSE).
-    Initial,
+    /// The mean change of distances.
+    distortion: f64,
+    /// Lower is better.
+    score: f64,
+    /// What its score was divided by: more than 1 for the initial map, so that another one must be
+    /// [clearly better](CLEARLY_WORSE).
+    favour: f64,
 }
 
 impl Candidate {
-    fn new(sides: &Sides<'_>, places: Places, start: Start) -> Self {
-        let agreement = orientation(sides, &places);
-        let defect = defect(sides, &places);
+    fn new(sides: &Sides<'_>, places: Places, favour: f64) -> Self {
+        let distortion = change_of_distances(sides, &places);
+        let curvature = change_of_curvature(sides, &places);
+        // How far it takes known points from their partners on average, beyond what is respected.
         let miss = (sides.miss(&places) - RESPECTED).max(0.0);
-        Self { agreement, changes: Changes::of(sides, &places), places, defect, miss, start }
+        let score = distortion + CURVATURE * curvature + DEFECT * defect(sides, &places) + miss;
+        let agreement = orientation(sides, &places);
+        Self { agreement, distortion, score: score / favour, places, favour }
     }
 
-    /// Lower is better.
-    fn score(&self) -> f64 {
-        let Changes { distances, curvature } = self.changes;
-        let score = distances + CURVATURE * curvature + DEFECT * self.defect + self.miss;
-        if self.start == Start::Initial { score / CLEARLY_WORSE } else { score }
+    /// From the places of some samples, refined.
+    fn refined(sides: &Sides<'_>, places: &[usize], fineness: Fineness, favour: f64) -> Self {
+        Self::new(sides, placed_again(sides, places, fineness), favour)
     }
 
     fn kind(&self) -> MapKind {
@@ -103,42 +96,32 @@ pub(in crate::maps) fn part_maps(
     whole: &MapShape,
     side: Side,
     known: &KnownMap,
-    options: &MapOptions,
     observer: &dyn Observer,
 ) -> Result<Vec<SurfaceMap>, DescriptorError> {
     let budget = observer.budget();
     let onto_whole = |[x, y]: [VertexId; 2]| if side == Side::First { [x, y] } else { [y, x] };
     let pairs: Vec<[VertexId; 2]> = known.landmarks.iter().copied().map(onto_whole).collect();
     let Some(sides) = Sides::new(part, whole, &pairs)? else { return Ok(Vec::new()) };
-    let (chosen, starts) = placements(&sides, SKETCHES)?;
+    let starts = placements(&sides, SKETCHES)?;
     budget.check().map_err(LinalgError::from)?;
-    let sketch = |places: Places, start: Start| {
-        let again = |places: Places| placed_again(&sides, &places, SKETCH_ANCHORS, SKETCHED);
-        Candidate::new(&sides, (0..2).fold(places, |places, _| again(places)), start)
-    };
-    let start = |images: &Vec<usize>| {
-        let anchors: Vec<(usize, usize)> = chosen.iter().copied().zip(images.iter().copied()).collect();
-        sketch(placed(&sides, &anchors, SKETCHED), Start::Placements)
-    };
-    let mut found: Vec<Candidate> = starts.par_iter().map(|found| start(&found.images)).collect();
-    if let Some(mirror) = mirrored_samples(whole, options, &budget)? {
+    let sketch = |places: &[usize], favour: f64| Candidate::refined(&sides, places, SKETCHED, favour);
+    let start = |anchors: &Vec<(usize, usize)>| sketch(&placed(&sides, anchors, SKETCHED), 1.0);
+    let mut found: Vec<Candidate> = starts.par_iter().map(start).collect();
+    if let Some(mirror) = mirrored_samples(whole, &budget)? {
         let best = [MapKind::Direct, MapKind::Mirrored].map(|kind| {
             let of_kind = found.iter().filter(|found| found.kind() == kind);
-            of_kind.min_by(|a, b| a.score().total_cmp(&b.score()))
+            of_kind.min_by(|a, b| a.score.total_cmp(&b.score))
         });
         let image = |y: &usize| mirror.get(*y).copied().unwrap_or(*y);
-        let composed: Vec<Candidate> = best
-            .into_iter()
-            .flatten()
-            .map(|best| sketch(best.places.iter().map(image).collect(), Start::Placements))
-            .collect();
+        let composed = |best: &Candidate| sketch(&best.places.iter().map(image).collect::<Vec<_>>(), 1.0);
+        let composed: Vec<Candidate> = best.into_iter().flatten().map(composed).collect();
         found.extend(composed);
     }
     let initial = sides.anchors(known.initial_pairs().map(onto_whole));
     if !initial.is_empty() {
-        found.push(sketch(placed(&sides, &initial, SKETCHED), Start::Initial));
+        found.push(sketch(&placed(&sides, &initial, SKETCHED), CLEARLY_WORSE));
     }
-    found.sort_by(|a, b| a.score().total_cmp(&b.score()));
+    found.sort_by(|a, b| a.score.total_cmp(&b.score));
     let mut maps = Vec::new();
     for kind in MapKind::ALL {
         if kind == MapKind::Unoriented && !maps.is_empty() {
@@ -152,13 +135,9 @@ pub(in crate::maps) fn part_maps(
                 different.push(sketch);
             }
         }
-        let finer = |sketch: &&Candidate| {
-            let again = |places: Places| placed_again(&sides, &places, usize::MAX, FINER);
-            let places = (0..3).fold(sketch.places.clone(), |places, _| again(places));
-            Candidate::new(&sides, places, sketch.start)
-        };
+        let finer = |sketch: &&Candidate| Candidate::refined(&sides, &sketch.places, FINER, sketch.favour);
         let mut finer: Vec<Candidate> = different.iter().map(finer).collect();
-        finer.sort_by(|a, b| a.score().total_cmp(&b.score()));
+        finer.sort_by(|a, b| a.score.total_cmp(&b.score));
         maps.extend(best(&sides, &finer, side)?);
     }
     known.finished(maps, if side == Side::First { whole } else { part })
@@ -168,8 +147,8 @@ pub(in crate::maps) fn part_maps(
 fn best(sides: &Sides<'_>, found: &[Candidate], side: Side) -> Result<Option<SurfaceMap>, DescriptorError> {
     let Some((best, others)) = found.split_first() else { return Ok(None) };
     let rival = others.iter().find(|other| gap(sides, &best.places, &other.places) > SAME);
-    let alone = odds(best.score(), rival.map(Candidate::score), STEEPNESS);
-    let confidence = alone * DOUBTFUL.probability(best.changes.distances);
+    let alone = odds(best.score, rival.map(|rival| rival.score), STEEPNESS);
+    let confidence = alone * DOUBTFUL.probability(best.distortion);
     let mut map = refined(sides, best, confidence, side)?;
     if let Some(rival) = rival.filter(|_| confidence < SurfaceMap::CERTAIN) {
         map.alternative = Some(Box::new(refined(sides, rival, 1.0 - confidence, side)?));
@@ -188,8 +167,7 @@ fn refined(
     confidence: f64,
     side: Side,
 ) -> Result<SurfaceMap, DescriptorError> {
-    let places = placed_again(sides, &sketch.places, usize::MAX, FINE);
-    let fine = Candidate::new(sides, places, sketch.start);
+    let fine = Candidate::refined(sides, &sketch.places, FINE, sketch.favour);
     let agreement = if fine.kind() == sketch.kind() { fine.agreement } else { sketch.agreement };
     let images = all_vertices(sides, &fine.places)?;
     let Coverage { covered, partners, matched } = onto_part(sides, &images)?;
@@ -212,7 +190,7 @@ fn refined(
     };
     Ok(SurfaceMap {
         kind: sketch.kind(),
-        distortion: fine.changes.distances,
+        distortion: fine.distortion,
         agreement,
         confidence,
         vertices: vertices.into_iter().map(id).collect(),
