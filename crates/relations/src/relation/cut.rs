@@ -89,11 +89,10 @@ impl<'a> PieceSearch<'a> {
     /// Motions that take a face of the piece to one of the whole with the same sides. The largest faces are tried: they say
     /// most precisely how the piece lies.
     fn candidates(&self) -> Vec<Alignment> {
-        let of_whole: Vec<[usize; 3]> =
-            self.whole.mesh.faces.iter().map(|f| f.map(VertexId::index)).collect();
-        let position = |v: usize| self.whole.mesh.positions[v];
-        let ordered: Vec<[usize; 3]> = of_whole.into_iter().map(|face| by_sides(face, position)).collect();
-        let all_sides: Vec<Point3<f64>> = ordered.iter().map(|face| sides(*face, position)).collect();
+        let positions = &self.whole.mesh.positions;
+        let ordered = self.whole.mesh.faces.iter().map(|face| by_sides(*face, positions));
+        let ordered: Vec<[usize; 3]> = ordered.collect();
+        let all_sides: Vec<Point3<f64>> = ordered.iter().map(|face| sides(*face, positions)).collect();
         let Ok(near) = NearestPoints::new(all_sides) else { return Vec::new() };
         let areas: Vec<f64> = self.piece.mesh.face_areas().collect();
         let mut order: Vec<usize> = (0..areas.len()).collect();
@@ -102,10 +101,10 @@ impl<'a> PieceSearch<'a> {
         let mut motions = vec![Alignment::about_origin(nalgebra::Matrix3::identity())];
         motions[0].translation = self.in_place;
         for f in order.into_iter().step_by(step).take(TRIED) {
-            let own = by_sides(self.piece.mesh.faces[f].map(VertexId::index), |v| self.points[v]);
-            let wanted = sides(own, |v| self.points[v]);
+            let own = by_sides(self.piece.mesh.faces[f], &self.points);
+            let wanted = sides(own, &self.points);
             for g in near.near(&wanted, 3.0 * self.tolerance, CANDIDATES) {
-                let pairs = [0, 1, 2].map(|i| (self.points[own[i]], position(ordered[g][i])));
+                let pairs = [0, 1, 2].map(|i| (self.points[own[i]], positions[ordered[g][i]]));
                 motions.extend(Alignment::fit(&pairs, false));
             }
         }
@@ -144,16 +143,17 @@ impl<'a> PieceSearch<'a> {
 }
 
 /// The corners of a face, each opposite a side, the shortest side first.
-fn by_sides(face: [usize; 3], position: impl Fn(usize) -> Point3<f64>) -> [usize; 3] {
-    let side = |i: usize| (position(face[(i + 1) % 3]) - position(face[(i + 2) % 3])).norm();
+fn by_sides(face: [VertexId; 3], positions: &[Point3<f64>]) -> [usize; 3] {
+    let face = face.map(VertexId::index);
+    let lengths = sides(face, positions);
     let mut order = [0, 1, 2];
-    order.sort_by(|&i, &j| side(i).total_cmp(&side(j)));
+    order.sort_by(|&i, &j| lengths[i].total_cmp(&lengths[j]));
     order.map(|i| face[i])
 }
 
 /// The lengths of the sides opposite its corners.
-fn sides([a, b, c]: [usize; 3], position: impl Fn(usize) -> Point3<f64>) -> Point3<f64> {
-    let length = |p: usize, q: usize| (position(p) - position(q)).norm();
+fn sides([a, b, c]: [usize; 3], positions: &[Point3<f64>]) -> Point3<f64> {
+    let length = |p: usize, q: usize| (positions[p] - positions[q]).norm();
     Point3::new(length(b, c), length(c, a), length(a, b))
 }
 
