@@ -46,6 +46,12 @@ fn confidence(on_a: &Matrix, landmarks: &[usize], on_b: &Matrix) -> Vec<f64> {
     (0..on_a.ncols()).into_par_iter().map(one).collect()
 }
 
+/// How far points are apart from others at least, on average: from their distances to the same landmarks, a column for each.
+pub(super) fn mean_gap(points: &Matrix, others: &Matrix) -> f64 {
+    let gaps = points.column_iter().zip(others.column_iter()).map(|(p, q)| least_distance(p, q));
+    gaps.sum::<f64>() / points.ncols() as f64
+}
+
 /// The least possible distance of two points, from their distances to the same landmarks.
 pub(super) fn least_distance(p: DVectorView<'_, f64>, q: DVectorView<'_, f64>) -> f64 {
     p.iter().zip(&q).map(|(p, q)| (p - q).abs()).fold(0.0, f64::max)

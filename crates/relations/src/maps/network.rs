@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::functional_map::{FunctionalMaps, Placed, TwoWayMap, coefficients};
+use super::local::mean_gap;
 use super::shape::MapShape;
 use super::surface_map::{MapKind, SurfaceMap};
 use descriptors::DescriptorError;
@@ -185,8 +186,7 @@ impl<'a> Network<'a> {
         let mut best = (f64::INFINITY, &maps[0]);
         for map in maps.iter().flat_map(|map| std::iter::once(map).chain(map.alternative.as_deref())) {
             let images: Vec<usize> = a.landmarks().iter().map(|&x| map.vertices[x].index()).collect();
-            let gaps = b.distances_to(&images)? - &expected;
-            let gap = gaps.column_iter().map(|column| column.amax()).sum::<f64>() / images.len() as f64;
+            let gap = mean_gap(&b.distances_to(&images)?, &expected);
             if gap < best.0 {
                 best = (gap, map);
             }

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::curvature::mismatch;
 use super::functional_map::{FunctionalMaps, Placed, SampledPair, TwoWayMap, schedule, zoom_out};
 use super::known::{CLEARLY_WORSE, KnownMap};
+use super::local::mean_gap;
 use super::operators::{FITTED, fitted};
 use super::orientation::{FUNCTIONS as FORMS, agreement};
 use super::shape::{MapShape, Mirrors};
@@ -82,12 +83,9 @@ impl Candidate {
         MapKind::of(self.agreement)
     }
 
-    /// Whether two maps are nearly the same: the distance of two points is at least the difference of their distances from
-    /// any landmark.
+    /// Whether two maps are nearly the same.
     fn is_same(&self, other: &Self) -> bool {
-        let gaps =
-            self.to_images.column_iter().zip(other.to_images.column_iter()).map(|(x, y)| (x - y).amax());
-        gaps.sum::<f64>() < SAME * self.to_images.ncols() as f64
+        mean_gap(&self.to_images, &other.to_images) < SAME
     }
 
     /// Whether it agrees less than maps that are [no mixtures](least_agreement).

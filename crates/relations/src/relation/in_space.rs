@@ -144,9 +144,8 @@ fn mirror_planes(geometry: &MeshGeometry) -> Vec<Similarity> {
     let mut normals: Vec<Vector3<f64>> =
         axes.column_iter().map(|axis| axis.into_owned()).chain(main.iter().copied()).collect();
     for (i, d) in main.iter().enumerate() {
-        normals
-            .extend(main[..i].iter().flat_map(|e| [d + e, d - e]).filter_map(|sum| sum.try_normalize(1e-3)));
-        normals.extend(main[..i].iter().filter_map(|e| d.cross(e).try_normalize(1e-3)));
+        let between = main[..i].iter().flat_map(|e| [d + e, d - e, d.cross(e)]);
+        normals.extend(between.filter_map(|normal| normal.try_normalize(1e-3)));
     }
     let reflection = |n: Vector3<f64>| Similarity {
         motion: Alignment::about_origin(Matrix3::identity() - 2.0 * n * n.transpose()),
@@ -372,9 +371,7 @@ fn tangent_step(contacts: &[Contact], damping: f64) -> Option<Similarity> {
         right += row * (to - from).dot(normal);
     }
     let scale = matrix.trace().max(f64::MIN_POSITIVE);
-    for i in 0..7 {
-        matrix[(i, i)] += damping * scale;
-    }
+    matrix += SMatrix::identity() * (damping * scale);
     let step = matrix.cholesky()?.solve(&right);
     let rotation = Rotation3::new(Vector3::new(step[0], step[1], step[2]));
     let motion = Alignment {
