@@ -137,9 +137,9 @@ pub(super) fn zoom_out(
 ) -> (TwoWayMap, FunctionalMaps) {
     let mut maps = start;
     let mut functional = FunctionalMaps::new(pair, &maps, counts[0]);
-    for &k in counts {
-        functional = FunctionalMaps::new(pair, &maps, k);
+    for &k in &counts[1..] {
         maps = functional.sample_maps(pair);
+        functional = FunctionalMaps::new(pair, &maps, k);
     }
-    (maps, functional)
+    (functional.sample_maps(pair), functional)
 }

@@ -3,15 +3,13 @@
 use linalg::Matrix;
 use surface::VertexId;
 
+use super::curvature::smoothed;
 use super::functional_map::{FunctionalMaps, SampledPair, TwoWayMap};
 use super::nearest_rows::nearest_rows;
 use super::operators::{Operators, fitted};
 use super::shape::MapShape;
 use super::surface_map::SurfaceMap;
 use descriptors::DescriptorError;
-
-/// Times of heat that is placed at landmarks, at unit area. A convention: those by which the curvature is smoothed.
-const TIMES: [f64; 3] = [0.001, 0.003, 0.01];
 
 /// Maps that take every landmark within this of its partner respect them, as a share of the square root of the area. A safety
 /// limit: two maps that are as far apart on average are one.
@@ -68,18 +66,13 @@ impl KnownMap {
     /// The functions known on one side: heat that was placed at the landmarks, and those that were given.
     fn operators(&self, shape: &MapShape, side: usize) -> Option<Operators> {
         let spectrum = &shape.spectrum;
-        let mut columns = Vec::new();
-        for pair in &self.landmarks {
+        let heat = |pair: &[VertexId; 2]| {
             let at = spectrum.vectors.row(pair[side].index()).transpose();
-            for time in TIMES {
-                let left = at.zip_map(&nalgebra::DVector::from_column_slice(&spectrum.values), |v, value| {
-                    v * (-time * value).exp()
-                });
-                columns.push(&spectrum.vectors * left);
-            }
-        }
+            smoothed(&at, &spectrum.values, &spectrum.vectors, 1.0)
+        };
+        let heat: Vec<Matrix> = self.landmarks.iter().map(heat).collect();
         let given = self.functions.iter().flat_map(|both| both[side].column_iter());
-        columns.extend(given.map(|column| column.into_owned()));
+        let columns: Vec<_> = heat.iter().flat_map(|heat| heat.column_iter()).chain(given).collect();
         let functions = (!columns.is_empty()).then(|| Matrix::from_columns(&columns))?;
         Some(Operators::new(spectrum, functions, shape.oriented.as_ref()))
     }

@@ -267,7 +267,6 @@ fn composed(one: MapKind, other: MapKind) -> MapKind {
 struct Tree {
     /// The pairs, each with the end that was joined before, and the other one.
     joined: Vec<(usize, [usize; 2])>,
-    n: usize,
 }
 
 impl Tree {
@@ -284,15 +283,13 @@ impl Tree {
             is_in[edge[1]] = true;
             joined.push((next, edge));
         }
-        Self { joined, n }
+        Self { joined }
     }
 
     /// The surfaces on the way from one to another.
     fn way(&self, from: usize, to: usize) -> Vec<usize> {
-        let before = |at: &usize| {
-            let edges = self.joined.iter().map(|(_, edge)| edge);
-            edges.into_iter().find(|[_, after]| after == at).map(|[before, _]| *before)
-        };
+        let edge = |at: &usize| self.joined.iter().find(|(_, [_, after])| after == at);
+        let before = |at: &usize| edge(at).map(|(_, [before, _])| *before);
         let up = |at: usize| std::iter::successors(Some(at), before).collect::<Vec<_>>();
         let (mut there, mut back) = (up(from), up(to));
         let mut last = None;
@@ -305,7 +302,7 @@ impl Tree {
 
     /// The kind of the maps from surface 0 to every surface.
     fn kinds(&self, kind: impl Fn(usize) -> MapKind) -> Vec<MapKind> {
-        let mut kinds = vec![MapKind::Direct; self.n];
+        let mut kinds = vec![MapKind::Direct; self.joined.len() + 1];
         for (pair, [before, after]) in &self.joined {
             kinds[*after] = composed(kinds[*before], kind(*pair));
         }
