@@ -27,8 +27,6 @@ mod words;
 use base::ContentHash;
 use descriptors::{ShapeDistance, ShapeMetric};
 
-use of_meshes::of_similarity;
-
 pub use because::{Basis, Because};
 pub use cut::CutPiece;
 pub use geometry::MeshGeometry;
@@ -97,7 +95,7 @@ impl Relation {
         let (kind, confidence, changes) = if same_shape > 0.5 {
             because.units = UnitChange::of(scale, SIZE_OF_SURFACES);
             let tolerance = ShapeMetric::SIZE_OF_POSES.ln();
-            let changes = of_similarity(scale, tolerance, handedness == Handedness::Mirrored);
+            let changes = Change::of_similarity(scale, tolerance, handedness == Handedness::Mirrored);
             (RelationKind::OtherPose, same_shape, changes)
         } else if same_class > 0.5 {
             (RelationKind::SameClass, same_class - same_shape, Vec::new())

@@ -97,7 +97,7 @@ impl Relation {
         }
         // A surface that is its own mirror image is not another one for being mirrored, only its triangles are.
         let is_turned = reflected && is_symmetric(b);
-        changes.extend(of_similarity(scale, SIZE_OF_VERTICES, reflected && !is_turned));
+        changes.extend(Change::of_similarity(scale, SIZE_OF_VERTICES, reflected && !is_turned));
         changes.extend((is_turned || !same.same_faces).then_some(Change::Remeshed));
         let kind = match changes.last() {
             Some(Change::Scaled) => RelationKind::Scaled,
@@ -114,7 +114,7 @@ impl Relation {
         let PartCopy { scale, mirrored, gap, confidence } = copy;
         let scale = if parts.whole == Side::Second { scale } else { 1.0 / scale };
         let tolerance = if gap.is_none() { SIZE_OF_VERTICES } else { SIZE_OF_SURFACES };
-        let mut changes = of_similarity(scale, tolerance, mirrored);
+        let mut changes = Change::of_similarity(scale, tolerance, mirrored);
         changes.extend(gap.map(|_| Change::Remeshed));
         let all = parts.found == parts.components && parts.found > 1;
         let kind = if all { RelationKind::Copies } else { RelationKind::PartOf };
@@ -134,7 +134,7 @@ impl Relation {
             return self.with_differences([a, b], Some(gap.rms));
         }
         let scale = map.scale * b.size / a.size;
-        let mut changes = of_similarity(scale, SIZE_OF_SURFACES, map.motion.reflected);
+        let mut changes = Change::of_similarity(scale, SIZE_OF_SURFACES, map.motion.reflected);
         let kind = if change == Change::Noisy { RelationKind::Noisy } else { RelationKind::Remeshed };
         changes.push(change);
         // One of the two has noise, and the other has not.
@@ -152,7 +152,7 @@ impl Relation {
         if let Some((whole, FoundPiece { left, factor })) = piece {
             self.because.cut = Some(CutPiece { whole, left });
             let scale = if whole == Side::First { factor } else { 1.0 / factor };
-            let mut changes = of_similarity(scale, SIZE_OF_VERTICES, false);
+            let mut changes = Change::of_similarity(scale, SIZE_OF_VERTICES, false);
             changes.push(Change::Cut);
             return self.found(RelationKind::PartOf, CUT, changes, scale, SIZE_OF_VERTICES);
         }
@@ -167,11 +167,4 @@ impl Relation {
         }
         self
     }
-}
-
-/// Changes of a size, told by a tolerance, and by a reflection.
-pub(super) fn of_similarity(scale: f64, tolerance: f64, mirrored: bool) -> Vec<Change> {
-    let is_resized = scale.ln().abs() > tolerance;
-    let changes = [(is_resized, Change::Scaled), (mirrored, Change::Mirrored)];
-    changes.into_iter().filter_map(|(is_changed, change)| is_changed.then_some(change)).collect()
 }
