@@ -185,7 +185,7 @@ pub(crate) fn map_basis<'py>(py: Python<'py>, surface: &Surface, settings: &str)
     let settings = Settings::parse(settings)?;
     let options = settings.correspond(surface.inner.repair)?;
     let spectrum = run(py, &settings.budget()?, None, |observer| {
-        Ok(surface.matched(&options, observer)?.shape.spectrum())
+        Ok(surface.matched(&options, observer)?.shape.spectrum().clone())
     })?;
     let inner = &surface.inner;
     let map = &inner.repaired.input_to_repaired;

@@ -116,7 +116,7 @@ impl Settings {
     pub(crate) fn correspond(&self, repair: RepairOptions) -> PyResult<CorrespondOptions> {
         let mut options = CorrespondOptions { form: self.form(repair)?, ..CorrespondOptions::default() };
         if let Some(count) = self.options.get("eigenfunctions") {
-            options.mapping.eigenfunctions = count;
+            options.eigenfunctions = count;
         }
         Ok(options)
     }

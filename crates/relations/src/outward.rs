@@ -16,14 +16,10 @@ const TOLERATED: f64 = 0.01;
 
 /// The signed volume of a mesh over that of a ball of the same area.
 fn volume(mesh: &TriMesh) -> f64 {
-    let centre = mesh.positions.iter().fold(Vector3::zeros(), |sum, p| sum + p.coords)
-        / mesh.n_vertices().max(1) as f64;
-    let volume: f64 = (0..mesh.n_faces())
-        .map(|f| {
-            let [a, b, c] = mesh.triangle(f).map(|p| p.coords - centre);
-            a.dot(&b.cross(&c)) / 6.0
-        })
-        .sum();
+    let sum: Vector3<f64> = mesh.positions.iter().map(|p| p.coords).sum();
+    let centre = sum / mesh.n_vertices().max(1) as f64;
+    let positions = mesh.positions.iter().map(|p| p - centre).collect();
+    let volume = TriMesh { positions, faces: mesh.faces.clone() }.signed_volume();
     volume / (mesh.area().powf(1.5) / (6.0 * std::f64::consts::PI.sqrt()))
 }
 

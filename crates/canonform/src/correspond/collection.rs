@@ -63,7 +63,7 @@ pub fn correspond_all<S: Borrow<Surface>>(
     observer.begin("maps", pairs.len());
     let mut found = Vec::with_capacity(pairs.len());
     for &[i, j] in &pairs {
-        let maps = map_wholes(shapes[i], shapes[j], &options.known, &options.mapping, observer)?;
+        let maps = map_wholes(shapes[i], shapes[j], &options.known, options.eigenfunctions, observer)?;
         if maps.is_empty() {
             return Err(Error::UnusableMap(format!(
                 "there is no map between the surfaces {i} and {j}, counted from 0; leave one of them out"

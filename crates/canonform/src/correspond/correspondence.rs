@@ -94,7 +94,7 @@ pub fn correspond<S: Borrow<Surface>>(
     let start = Instant::now();
     let surfaces = [a.surface(), b.surface()];
     let known = known::repaired(&options.known, surfaces)?;
-    let found = map_surfaces(&a.shape, &b.shape, &known, &options.mapping, observer)?;
+    let found = map_surfaces(&a.shape, &b.shape, &known, options.eigenfunctions, observer)?;
     let maps = found.into_iter().map(|map| VertexMap::new(map, surfaces, &options.known.landmarks));
     Ok(Correspondence { maps: maps.collect(), seconds: start.elapsed().as_secs_f64() })
 }

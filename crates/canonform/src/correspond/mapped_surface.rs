@@ -39,13 +39,10 @@ impl<S: Borrow<Surface>> MappedSurface<S> {
         let spread = SpreadSamples::new(solver.as_ref(), &embedded.distances, options.spread)?;
         let from_cut = from_cut(repaired, solver.as_ref())?;
         drop(solver);
-        let spectrum = LaplaceSpectrum::new(repaired.intrinsic(), options.mapping.eigenfunctions, observer)?;
+        let spectrum = LaplaceSpectrum::new(repaired.intrinsic(), options.eigenfunctions, observer)?;
         let SpreadSamples { samples, nearest, .. } = spread;
-        let shape = MapShape::new(&form, repaired.mesh(), spectrum, embedded.distances, samples, &nearest)?;
-        let shape = match from_cut {
-            Some(from_cut) => shape.with_cut(&from_cut),
-            None => shape,
-        };
+        let shape = MapShape::new(&form, repaired.mesh(), spectrum, embedded.distances, samples, nearest)?;
+        let shape = shape.with_cut(from_cut);
         Ok(Self { shape, seconds: start.elapsed().as_secs_f64(), surface })
     }
 

@@ -7,7 +7,7 @@ use surface::{EdgeId, Topology};
 
 use descriptors::LaplaceSpectrum;
 
-/// Times of heat by which the curvature is smoothed, at unit area. A convention: bumps of 3 to 10 % of the square root of the
+/// Times of heat by which a function is smoothed, at unit area. A convention: bumps of 3 to 10 % of the square root of the
 /// area are left.
 const TIMES: [f64; 3] = [0.001, 0.003, 0.01];
 
@@ -17,13 +17,14 @@ pub(super) fn bends(outward: &TriMesh, spectrum: &LaplaceSpectrum) -> DVector<f6
     spectrum.vectors.transpose() * mean_curvature(outward)
 }
 
-/// The mean curvature at some points, smoothed by heat: a row for each point, a column for each time. `values` are eigenvalues
-/// and `vectors` the eigenfunctions at these points; times are those at unit area, times `factor`.
-pub(super) fn smoothed(bends: &DVector<f64>, values: &[f64], vectors: &Matrix, factor: f64) -> Matrix {
+/// A function at some points, such as the mean curvature, smoothed by heat: a row for each point, a column for each time.
+/// `coefficients` are those of the function in the eigenfunctions, `values` the eigenvalues and `vectors` the eigenfunctions at
+/// these points; times are those at unit area, times `factor`.
+pub(super) fn smoothed(coefficients: &DVector<f64>, values: &[f64], vectors: &Matrix, factor: f64) -> Matrix {
     let mut found = Matrix::zeros(vectors.nrows(), TIMES.len());
     for (mut column, time) in found.column_iter_mut().zip(TIMES) {
         let left = values.iter().map(|value| (-time * factor * value).exp());
-        let left = DVector::from_iterator(bends.len(), left).component_mul(bends);
+        let left = DVector::from_iterator(coefficients.len(), left).component_mul(coefficients);
         column.copy_from(&(vectors * left));
     }
     found
@@ -50,11 +51,11 @@ fn mean_curvature(outward: &TriMesh) -> DVector<f64> {
 
 /// One less the correlation of the curvatures of corresponding points: 0 for isometries that do not turn inside out.
 /// `partners` names a point of the second list for each of the first, as far as they go.
-pub(super) fn mismatch(x: &[f64], y: &[f64], partners: &[u32]) -> f64 {
+pub(super) fn mismatch(x: &[f64], y: &[f64], partners: &[usize]) -> f64 {
     let n = partners.len();
     let centred = |values: DVector<f64>| values.add_scalar(-values.mean());
     let x = centred(DVector::from_column_slice(&x[..n]));
-    let y = centred(DVector::from_iterator(n, partners.iter().map(|&i| y[i as usize])));
+    let y = centred(DVector::from_iterator(n, partners.iter().map(|&i| y[i])));
     let scale = x.norm() * y.norm();
     if scale > 0.0 { 1.0 - x.dot(&y) / scale } else { 1.0 }
 }

@@ -5,18 +5,18 @@ use nalgebra::Cholesky;
 
 use super::nearest_rows::nearest_rows;
 
-/// A map of the samples of a surface to those of another, and one back: positions in the lists of samples.
+/// A map of points of a surface to those of another, and one back: positions in the lists of samples, or vertices.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct SampleMaps {
-    pub(super) forth: Vec<u32>,
-    pub(super) back: Vec<u32>,
+pub(super) struct TwoWayMap {
+    pub(super) forth: Vec<usize>,
+    pub(super) back: Vec<usize>,
 }
 
 /// Eigenfunctions at the samples of two surfaces, evenly spread, one row for each sample.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct SampledPair<'a> {
-    pub(super) a: &'a Matrix,
-    pub(super) b: &'a Matrix,
+#[derive(Debug)]
+pub(super) struct SampledPair {
+    pub(super) a: Matrix,
+    pub(super) b: Matrix,
 }
 
 /// The maps of functions that follow from maps of points, with `k` eigenfunctions on each side.
@@ -53,12 +53,11 @@ pub(super) fn coefficients(eigenfunctions: &Matrix, functions: &Matrix) -> Matri
 
 impl FunctionalMaps {
     /// The maps of functions by least squares over the samples.
-    pub(super) fn new(pair: SampledPair<'_>, maps: &SampleMaps, k: usize) -> Self {
-        let one = |own: &Matrix, other: &Matrix, map: &[u32]| {
-            let pulled = Matrix::from_fn(map.len(), k, |i, j| other[(map[i] as usize, j)]);
-            coefficients(own, &pulled)
+    pub(super) fn new(pair: &SampledPair, maps: &TwoWayMap, k: usize) -> Self {
+        let one = |own: &Matrix, other: &Matrix, map: &[usize]| {
+            coefficients(own, &other.columns(0, k).select_rows(map))
         };
-        Self { forth: one(pair.a, pair.b, &maps.forth), back: one(pair.b, pair.a, &maps.back) }
+        Self { forth: one(&pair.a, &pair.b, &maps.forth), back: one(&pair.b, &pair.a, &maps.back) }
     }
 
     /// Number of eigenfunctions.
@@ -98,9 +97,9 @@ impl FunctionalMaps {
     }
 
     /// The maps of samples that follow.
-    pub(super) fn sample_maps(&self, pair: SampledPair<'_>) -> SampleMaps {
-        let [forth, back] = nearest_rows(&self.places_a(pair.a), &self.places_b(pair.b));
-        SampleMaps { forth, back }
+    pub(super) fn sample_maps(&self, pair: &SampledPair) -> TwoWayMap {
+        let [forth, back] = nearest_rows(&self.places_a(&pair.a), &self.places_b(&pair.b));
+        TwoWayMap { forth, back }
     }
 
     /// These maps, followed by others.
@@ -132,15 +131,15 @@ pub(super) fn schedule(first: usize, last: usize) -> Vec<usize> {
 /// Refines maps by taking in eigenfunctions of higher and higher frequency (ZoomOut, `melzi2019` in `REFERENCES.bib`).
 /// Returns the maps, and the maps of functions that they follow from.
 pub(super) fn zoom_out(
-    pair: SampledPair<'_>,
-    start: SampleMaps,
+    pair: &SampledPair,
+    start: TwoWayMap,
     counts: &[usize],
-) -> (SampleMaps, FunctionalMaps) {
+) -> (TwoWayMap, FunctionalMaps) {
     let mut maps = start;
     let mut functional = FunctionalMaps::new(pair, &maps, counts[0]);
-    for &k in counts {
-        functional = FunctionalMaps::new(pair, &maps, k);
+    for &k in &counts[1..] {
         maps = functional.sample_maps(pair);
+        functional = FunctionalMaps::new(pair, &maps, k);
     }
-    (maps, functional)
+    (functional.sample_maps(pair), functional)
 }

@@ -4,9 +4,23 @@ use linalg::Matrix;
 use nalgebra::DVectorView;
 use rayon::prelude::*;
 
+use super::shape::MapShape;
+use descriptors::DescriptorError;
+
 /// Landmarks near a vertex whose distances are compared. A convention: with 100 landmarks they are within a fifth of the square
 /// root of the area or so.
 const NEAR: usize = 6;
+
+/// The [confidence] of every vertex of the first surface in a map that takes it to an image. `units` are the lengths of one at
+/// unit area of the surfaces, in the same unit.
+pub(super) fn vertex_confidence(
+    [a, b]: [&MapShape; 2],
+    units: [f64; 2],
+    images: &[usize],
+) -> Result<Vec<f64>, DescriptorError> {
+    let (on_a, on_b) = (a.all_distances()? * units[0], b.distances_to(images)? * units[1]);
+    Ok(confidence(&on_a, a.landmarks(), &on_b))
+}
 
 /// A confidence for every vertex of the first surface, from 0 to 1: one less the relative change of its distances to the
 /// nearest landmarks, `1 - Σ|d_B - d_A| / Σ d_A`, at least 0.
@@ -18,21 +32,28 @@ const NEAR: usize = 6;
 ///   these landmarks;
 /// * `on_b` has the distances of the landmarks of the second surface to the images of these vertices. Two images are at
 ///   least as far apart as their distances to any landmark differ; the largest difference stands for their distance.
-pub(super) fn vertex_confidence(on_a: &Matrix, landmarks: &[usize], on_b: &Matrix) -> Vec<f64> {
+fn confidence(on_a: &Matrix, landmarks: &[usize], on_b: &Matrix) -> Vec<f64> {
     let one = |x: usize| {
         let from_x = on_a.column(x);
         let mut near: Vec<usize> = (0..landmarks.len()).filter(|l| landmarks[*l] != x).collect();
         near.sort_unstable_by(|k, l| from_x[*k].total_cmp(&from_x[*l]).then(k.cmp(l)));
         near.truncate(NEAR);
-        let change = |l: &usize| (gap(on_b.column(x), on_b.column(landmarks[*l])) - from_x[*l]).abs();
+        let change =
+            |l: &usize| (least_distance(on_b.column(x), on_b.column(landmarks[*l])) - from_x[*l]).abs();
         let [changes, all] = [near.iter().map(change).sum(), near.iter().map(|l| from_x[*l]).sum::<f64>()];
         if all > 0.0 { f64::max(1.0 - changes / all, 0.0) } else { 1.0 }
     };
     (0..on_a.ncols()).into_par_iter().map(one).collect()
 }
 
+/// How far points are apart from others at least, on average: from their distances to the same landmarks, a column for each.
+pub(super) fn mean_gap(points: &Matrix, others: &Matrix) -> f64 {
+    let gaps = points.column_iter().zip(others.column_iter()).map(|(p, q)| least_distance(p, q));
+    gaps.sum::<f64>() / points.ncols() as f64
+}
+
 /// The least possible distance of two points, from their distances to the same landmarks.
-fn gap(p: DVectorView<'_, f64>, q: DVectorView<'_, f64>) -> f64 {
+pub(super) fn least_distance(p: DVectorView<'_, f64>, q: DVectorView<'_, f64>) -> f64 {
     p.iter().zip(&q).map(|(p, q)| (p - q).abs()).fold(0.0, f64::max)
 }
 
@@ -56,7 +77,7 @@ mod tests {
         let some: Vec<_> = landmarks.iter().map(|l| points[*l]).collect();
         // Landmarks of the plane around all images.
         let marks: Vec<_> = sheet(12).iter().map(|p| p * 6.0 - nalgebra::Vector2::new(2.0, 2.0)).collect();
-        vertex_confidence(&distances(&some, &points), &landmarks, &distances(&marks, &images))
+        confidence(&distances(&some, &points), &landmarks, &distances(&marks, &images))
     }
 
     #[test]

@@ -7,13 +7,13 @@ use rayon::prelude::*;
 const BLOCK: usize = 128;
 
 /// For each row of a block the nearest row of `y`, and for each row of `y` the nearest of the block with half of its gap.
-type NearestOfBlock = (Vec<u32>, Vec<(u32, f64)>);
+type NearestOfBlock = (Vec<usize>, Vec<(usize, f64)>);
 
 /// For every row of `x` the nearest row of `y`, and for every row of `y` the nearest of `x`; the first in case of a tie.
 ///
 /// By products of blocks of the matrices: in tens of dimensions no search tree is faster. Cost `O(m n d)`; parallel, and
 /// independent of the number of threads.
-pub(super) fn nearest_rows(x: &Matrix, y: &Matrix) -> [Vec<u32>; 2] {
+pub(super) fn nearest_rows(x: &Matrix, y: &Matrix) -> [Vec<usize>; 2] {
     let [of_x, of_y] = [x, y].map(half_squares);
     let starts: Vec<usize> = (0..x.nrows()).step_by(BLOCK).collect();
     let blocks: Vec<NearestOfBlock> = starts
@@ -23,8 +23,8 @@ pub(super) fn nearest_rows(x: &Matrix, y: &Matrix) -> [Vec<u32>; 2] {
             let products = y * x.rows_range(rows.clone()).transpose();
             let mut to_x = vec![(0, f64::INFINITY); y.nrows()];
             let mut to_y = Vec::with_capacity(rows.len());
-            for (i, column) in (start as u32..).zip(products.column_iter()) {
-                let half = of_x[i as usize];
+            for (i, column) in (start..).zip(products.column_iter()) {
+                let half = of_x[i];
                 for (best, dot) in to_x.iter_mut().zip(column.iter()) {
                     if half - dot < best.1 {
                         *best = (i, half - dot);
@@ -56,7 +56,7 @@ pub(super) struct Cells<'a> {
     /// The row in the middle of each cell.
     pub(super) centres: &'a [usize],
     /// The rows of each cell.
-    pub(super) members: &'a [Vec<u32>],
+    pub(super) members: &'a [Vec<usize>],
 }
 
 /// Cells searched for each row.
@@ -67,36 +67,26 @@ impl Cells<'_> {
     /// the first, in case of a tie.
     ///
     /// Cost `O(m c d)` for `c` centres; parallel, and independent of the number of threads.
-    pub(super) fn nearest(&self, x: &Matrix) -> Vec<u32> {
+    pub(super) fn nearest(&self, x: &Matrix) -> Vec<usize> {
         let centres = self.rows.select_rows(self.centres).select_columns(self.coarse);
         let of_centres = half_squares(&centres);
         // Rows next to each other in memory.
         let (sources, targets) = (x.transpose(), self.rows.transpose());
         let coarse = sources.select_rows(self.coarse);
         let starts: Vec<usize> = (0..x.nrows()).step_by(BLOCK).collect();
-        let blocks: Vec<Vec<u32>> = starts
+        let blocks: Vec<Vec<usize>> = starts
             .into_par_iter()
             .map(|start| {
                 let rows = start..(start + BLOCK).min(x.nrows());
                 let products = &centres * coarse.columns_range(rows.clone());
                 let one = |(i, column): (usize, nalgebra::DVectorView<'_, f64>)| {
-                    let mut order: Vec<(f64, u32)> = column
-                        .iter()
-                        .zip(&of_centres)
-                        .zip(0..)
-                        .map(|((dot, half), cell)| (half - dot, cell))
-                        .collect();
-                    let by_gap = |a: &(f64, u32), b: &(f64, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
-                    if order.len() > PROBED {
-                        order.select_nth_unstable_by(PROBED - 1, by_gap);
-                        order.truncate(PROBED);
-                    }
-                    order.sort_unstable_by(by_gap);
+                    let gaps = column.iter().zip(&of_centres).map(|(dot, half)| half - dot);
+                    let order = first_of(gaps.zip(0..).collect(), PROBED);
                     let source = sources.column(i);
-                    let members = order.iter().flat_map(|(_, cell)| &self.members[*cell as usize]);
+                    let members = order.iter().flat_map(|(_, cell): &(f64, usize)| &self.members[*cell]);
                     let mut best = (f64::INFINITY, 0);
                     for &v in members {
-                        let gap = sq_distance(source.as_slice(), targets.column(v as usize).as_slice());
+                        let gap = sq_distance(source.as_slice(), targets.column(v).as_slice());
                         if gap < best.0 {
                             best = (gap, v);
                         }
@@ -108,6 +98,17 @@ impl Cells<'_> {
             .collect();
         blocks.concat()
     }
+}
+
+/// The first `n` items by their numbers, and by what follows them where these are equal, in order.
+pub(super) fn first_of<T: Ord>(mut items: Vec<(f64, T)>, n: usize) -> Vec<(f64, T)> {
+    let by_number = |a: &(f64, T), b: &(f64, T)| a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1));
+    if items.len() > n {
+        items.select_nth_unstable_by(n, by_number);
+        items.truncate(n);
+    }
+    items.sort_unstable_by(by_number);
+    items
 }
 
 fn sq_distance(a: &[f64], b: &[f64]) -> f64 {
@@ -133,9 +134,9 @@ fn half_squares(x: &Matrix) -> Vec<f64> {
 }
 
 /// The first position of the least value, and the value.
-fn least(values: impl Iterator<Item = f64>) -> (u32, f64) {
+fn least(values: impl Iterator<Item = f64>) -> (usize, f64) {
     let mut best = (0, f64::INFINITY);
-    for (i, value) in (0..).zip(values) {
+    for (i, value) in values.enumerate() {
         if value < best.1 {
             best = (i, value);
         }
@@ -151,7 +152,7 @@ mod tests {
         Matrix::from_fn(n, d, |i, j| (seed + 1.7 * i as f64 + 0.3 * (i * j) as f64).sin())
     }
 
-    fn by_hand(x: &Matrix, y: &Matrix) -> Vec<u32> {
+    fn by_hand(x: &Matrix, y: &Matrix) -> Vec<usize> {
         let gap = |i: usize, j: usize| (x.row(i) - y.row(j)).norm_squared();
         (0..x.nrows()).map(|i| least((0..y.nrows()).map(|j| gap(i, j))).0).collect()
     }
@@ -172,7 +173,7 @@ mod tests {
             })
         };
         let (x, y) = (curve(230, 0.3), curve(400, 0.0));
-        let members: Vec<Vec<u32>> = (0..40).map(|c| (10 * c..10 * c + 10).collect()).collect();
+        let members: Vec<Vec<usize>> = (0..40).map(|c| (10 * c..10 * c + 10).collect()).collect();
         let centres: Vec<usize> = (0..40).map(|c| 10 * c + 5).collect();
         let cells = Cells { rows: &y, coarse: &[0, 1], centres: &centres, members: &members };
         assert_eq!(cells.nearest(&x), by_hand(&x, &y));

@@ -4,12 +4,9 @@ use base::Observer;
 use linalg::{LinalgError, Matrix, pseudo_inverse, symmetric_eigen};
 use rayon::prelude::*;
 use serde::Serialize;
-use surface::VertexId;
 
-use super::functional_map::{FunctionalMaps, Placed, coefficients};
-use super::local::vertex_confidence;
-use super::nearest_rows::Cells;
-use super::search::codistortion;
+use super::functional_map::{FunctionalMaps, Placed, TwoWayMap, coefficients};
+use super::local::mean_gap;
 use super::shape::MapShape;
 use super::surface_map::{MapKind, SurfaceMap};
 use descriptors::DescriptorError;
@@ -77,7 +74,7 @@ pub fn consistent_maps(
     assert!(found.iter().all(|maps| !maps.is_empty()), "every pair has a map");
     assert!(found.iter().flatten().all(|map| map.part.is_none()), "maps of wholes");
     let network = Network { shapes, pairs: &pairs };
-    let first: Vec<Both> = network.both(|pair| &found[pair][0]);
+    let first: Vec<TwoWayMap> = network.both(|pair| &found[pair][0]);
     check()?;
     let before = network.cycles(&first)?;
     let costs: Vec<f64> = (0..pairs.len()).map(|p| before.least(pairs[p]) + found[p][0].distortion).collect();
@@ -88,16 +85,12 @@ pub fn consistent_maps(
     check()?;
     let common = network.common_functions(&links, &chosen)?;
     check()?;
-    let placed: Vec<Matrix> =
-        shapes.iter().zip(&common).map(|(shape, y)| shape.vectors.columns(0, y.nrows()) * y).collect();
-    let nearest = |i: usize, j: usize| {
-        let (rows, shape) = (&placed[j], shapes[j]);
-        let coarse: Vec<usize> = (0..rows.ncols()).collect();
-        let cells = Cells { rows, coarse: &coarse, centres: &shape.samples, members: &shape.cells };
-        cells.nearest(&placed[i])
-    };
-    let joined: Vec<Both> =
-        pairs.par_iter().map(|&[i, j]| Both { forth: nearest(i, j), back: nearest(j, i) }).collect();
+    let placed = |(shape, y): (&&MapShape, &Matrix)| shape.spectrum.vectors.columns(0, y.nrows()) * y;
+    let placed: Vec<Matrix> = shapes.iter().zip(&common).map(placed).collect();
+    let coarse: Vec<usize> = (0..placed[0].ncols()).collect();
+    let nearest = |i: usize, j: usize| shapes[j].nearest_vertices(&placed[j], &coarse, &placed[i]);
+    let joined: Vec<TwoWayMap> =
+        pairs.par_iter().map(|&[i, j]| TwoWayMap { forth: nearest(i, j), back: nearest(j, i) }).collect();
     let after = network.cycles(&joined)?;
     let kinds = tree.kinds(|pair| found[pair][0].kind);
     let map = |p: usize| network.map(p, &joined[p], &chosen[p], &common, &kinds);
@@ -106,12 +99,6 @@ pub fn consistent_maps(
         agreed: chosen.iter().map(|choice| choice.is_first && choice.agrees).collect(),
         cycles: CycleReport { n_cycles: before.errors.len(), before: before.mean(), after: after.mean() },
     })
-}
-
-/// A map of all vertices, and one back.
-struct Both {
-    forth: Vec<u32>,
-    back: Vec<u32>,
 }
 
 /// The map that a pair takes.
@@ -146,36 +133,35 @@ struct Network<'a> {
 }
 
 impl<'a> Network<'a> {
-    fn both(&self, map: impl Sync + Fn(usize) -> &'a SurfaceMap) -> Vec<Both> {
+    fn both(&self, map: impl Sync + Fn(usize) -> &'a SurfaceMap) -> Vec<TwoWayMap> {
         let one = |(p, &[i, j]): (usize, &[usize; 2])| {
             let (a, b, found) = (self.shapes[i], self.shapes[j], map(p));
             let Placed { on_a, on_b, coarse } =
-                FunctionalMaps::of_one(&found.functional).placed([&a.vectors, &b.vectors]);
-            let near_a = Cells { rows: &on_a, coarse: &coarse, centres: &a.samples, members: &a.cells };
-            let back = near_a.nearest(&on_b);
-            Both { forth: found.vertices.iter().map(|v| v.0).collect(), back }
+                FunctionalMaps::of_one(&found.functional).placed([&a.spectrum.vectors, &b.spectrum.vectors]);
+            let forth = found.vertices.iter().map(|v| v.index()).collect();
+            TwoWayMap { forth, back: a.nearest_vertices(&on_a, &coarse, &on_b) }
         };
         self.pairs.par_iter().enumerate().map(one).collect()
     }
 
     /// The map from one surface to another.
-    fn hop<'b>(&self, maps: &'b [Both], from: usize, to: usize) -> &'b [u32] {
+    fn hop<'b>(&self, maps: &'b [TwoWayMap], from: usize, to: usize) -> &'b [usize] {
         let pair = [from.min(to), from.max(to)];
         let at = self.pairs.iter().position(|other| *other == pair).unwrap_or_default();
         if from < to { &maps[at].forth } else { &maps[at].back }
     }
 
     /// Where the landmarks of the first surface of a way end.
-    fn images(&self, maps: &[Both], way: &[usize]) -> Vec<usize> {
+    fn images(&self, maps: &[TwoWayMap], way: &[usize]) -> Vec<usize> {
         let mut at = self.shapes[way[0]].landmarks().to_vec();
         for step in way.windows(2) {
             let map = self.hop(maps, step[0], step[1]);
-            at.iter_mut().for_each(|v| *v = map[*v] as usize);
+            at.iter_mut().for_each(|v| *v = map[*v]);
         }
         at
     }
 
-    fn cycles(&self, maps: &[Both]) -> Result<Cycles, DescriptorError> {
+    fn cycles(&self, maps: &[TwoWayMap]) -> Result<Cycles, DescriptorError> {
         let n = self.shapes.len();
         let all = (0..n).flat_map(|i| (i + 1..n).flat_map(move |j| (j + 1..n).map(move |k| [i, j, k])));
         let error = |cycle: [usize; 3]| {
@@ -190,7 +176,7 @@ impl<'a> Network<'a> {
     fn choose<'b>(
         &self,
         tree: &Tree,
-        first: &[Both],
+        first: &[TwoWayMap],
         maps: &'b [SurfaceMap],
         pair: usize,
     ) -> Result<Choice<'b>, DescriptorError> {
@@ -200,8 +186,7 @@ impl<'a> Network<'a> {
         let mut best = (f64::INFINITY, &maps[0]);
         for map in maps.iter().flat_map(|map| std::iter::once(map).chain(map.alternative.as_deref())) {
             let images: Vec<usize> = a.landmarks().iter().map(|&x| map.vertices[x].index()).collect();
-            let gaps = b.distances_to(&images)? - &expected;
-            let gap = gaps.column_iter().map(|column| column.amax()).sum::<f64>() / images.len() as f64;
+            let gap = mean_gap(&b.distances_to(&images)?, &expected);
             if gap < best.0 {
                 best = (gap, map);
             }
@@ -213,7 +198,7 @@ impl<'a> Network<'a> {
     /// The coefficients, for each surface, of functions that all maps take to each other as well as possible.
     fn common_functions(
         &self,
-        links: &[Both],
+        links: &[TwoWayMap],
         chosen: &[Choice<'_>],
     ) -> Result<Vec<Matrix>, DescriptorError> {
         let n = self.shapes.len();
@@ -222,8 +207,8 @@ impl<'a> Network<'a> {
         let one = |from: usize, to: usize| {
             let (own, other) = (self.shapes[from], self.shapes[to]);
             let map = self.hop(links, from, to);
-            let images: Vec<usize> = own.samples.iter().map(|&x| map[x] as usize).collect();
-            coefficients(&own.at_samples, &other.vectors.columns(0, k).select_rows(&images))
+            let images: Vec<usize> = own.samples.iter().map(|&x| map[x]).collect();
+            coefficients(&own.at_samples, &other.spectrum.vectors.columns(0, k).select_rows(&images))
         };
         let maps: Vec<[Matrix; 2]> = self.pairs.par_iter().map(|&[i, j]| [one(i, j), one(j, i)]).collect();
         let mut sum = Matrix::zeros(n * k, n * k);
@@ -252,32 +237,19 @@ impl<'a> Network<'a> {
     fn map(
         &self,
         pair: usize,
-        both: &Both,
+        both: &TwoWayMap,
         choice: &Choice<'_>,
         common: &[Matrix],
         kinds: &[MapKind],
     ) -> Result<SurfaceMap, DescriptorError> {
         let [i, j] = self.pairs[pair];
         let (a, b) = (self.shapes[i], self.shapes[j]);
-        let images = |map: &[u32], of: &MapShape| -> Vec<usize> {
-            of.landmarks().iter().map(|&x| map[x] as usize).collect()
-        };
-        let all: Vec<usize> = (0..a.n_vertices()).collect();
-        let forth: Vec<usize> = both.forth.iter().map(|y| *y as usize).collect();
         Ok(SurfaceMap {
             kind: composed(kinds[i], kinds[j]),
-            distortion: codistortion(a, b, &images(&both.forth, a), &images(&both.back, b))?,
             agreement: choice.map.agreement.filter(|_| choice.agrees),
             confidence: choice.map.confidence,
-            vertex_confidence: vertex_confidence(
-                &a.distances_to(&all)?,
-                a.landmarks(),
-                &b.distances_to(&forth)?,
-            ),
-            vertices: both.forth.iter().copied().map(VertexId).collect(),
             functional: &common[i] * pseudo_inverse(&common[j])?,
-            alternative: None,
-            part: None,
+            ..SurfaceMap::of_vertices([a, b], &both.forth, &b.landmark_images(&both.back))?
         })
     }
 }
@@ -295,7 +267,6 @@ fn composed(one: MapKind, other: MapKind) -> MapKind {
 struct Tree {
     /// The pairs, each with the end that was joined before, and the other one.
     joined: Vec<(usize, [usize; 2])>,
-    n: usize,
 }
 
 impl Tree {
@@ -305,27 +276,21 @@ impl Tree {
         is_in[0] = true;
         let mut joined = Vec::new();
         for _ in 1..n {
-            let border = (0..pairs.len()).filter(|p| pairs[*p].map(|i| is_in[i]).iter().any(|x| *x));
-            let border = border.filter(|p| !pairs[*p].iter().all(|i| is_in[*i]));
+            let border = (0..pairs.len()).filter(|p| is_in[pairs[*p][0]] != is_in[pairs[*p][1]]);
             let Some(next) = border.min_by(|p, q| costs[*p].total_cmp(&costs[*q])) else { break };
             let [i, j] = pairs[next];
             let edge = if is_in[i] { [i, j] } else { [j, i] };
             is_in[edge[1]] = true;
             joined.push((next, edge));
         }
-        Self { joined, n }
+        Self { joined }
     }
 
     /// The surfaces on the way from one to another.
     fn way(&self, from: usize, to: usize) -> Vec<usize> {
-        let up = |mut at: usize| {
-            let mut way = vec![at];
-            while let Some((_, [before, _])) = self.joined.iter().find(|(_, [_, after])| *after == at) {
-                at = *before;
-                way.push(at);
-            }
-            way
-        };
+        let edge = |at: &usize| self.joined.iter().find(|(_, [_, after])| after == at);
+        let before = |at: &usize| edge(at).map(|(_, [before, _])| *before);
+        let up = |at: usize| std::iter::successors(Some(at), before).collect::<Vec<_>>();
         let (mut there, mut back) = (up(from), up(to));
         let mut last = None;
         while there.last().is_some() && there.last() == back.last() {
@@ -337,7 +302,7 @@ impl Tree {
 
     /// The kind of the maps from surface 0 to every surface.
     fn kinds(&self, kind: impl Fn(usize) -> MapKind) -> Vec<MapKind> {
-        let mut kinds = vec![MapKind::Direct; self.n];
+        let mut kinds = vec![MapKind::Direct; self.joined.len() + 1];
         for (pair, [before, after]) in &self.joined {
             kinds[*after] = composed(kinds[*before], kind(*pair));
         }

@@ -63,9 +63,7 @@ impl Operators {
             area_forms: of_mean_norm_1(area_forms),
         }
     }
-}
 
-impl Operators {
     /// All functions of both, with their operators.
     pub(super) fn and(&self, other: &Self) -> Self {
         let joined = |x: &[Matrix], y: &[Matrix]| x.iter().chain(y).cloned().collect();

@@ -36,9 +36,7 @@ impl Oriented {
         sums.iter_mut().zip(&self.densities).for_each(|(sum, density)| *sum *= density);
         sums
     }
-}
 
-impl Oriented {
     /// The area forms `df ∧ dg` of all pairs of the first functions, without the constant one in column 0: a row for each of
     /// some vertices, which differ, and a column for each pair.
     pub(super) fn area_forms(&self, functions: &Matrix, vertices: &[usize]) -> Matrix {
@@ -71,11 +69,11 @@ impl Oriented {
 /// the map. This is the correlation of both over pairs of corresponding vertices: `pulled` has the forms of functions of the
 /// second surface, pulled back, at vertices of the first, and `forms` those of the functions themselves at vertices of the
 /// second, of which `partners` names a row for each row of `pulled`.
-pub(super) fn agreement(pulled: &Matrix, forms: &Matrix, partners: &[u32]) -> f64 {
+pub(super) fn agreement(pulled: &Matrix, forms: &Matrix, partners: &[usize]) -> f64 {
     let (mut both, mut sq_a, mut sq_b) = (0.0, 0.0, 0.0);
     for j in 0..pulled.ncols().min(forms.ncols()) {
         for (x, &row) in pulled.column(j).iter().zip(partners) {
-            let y = forms[(row as usize, j)];
+            let y = forms[(row, j)];
             both += x * y;
             sq_a += x * x;
             sq_b += y * y;

@@ -5,7 +5,6 @@ use rayon::prelude::*;
 use surface::{FaceId, SurfacePoint, Topology, VertexId};
 
 use super::functional_map::{FunctionalMaps, Placed};
-use super::nearest_rows::Cells;
 use super::shape::MapShape;
 use crate::relation::Side;
 
@@ -42,14 +41,14 @@ pub fn mapped_points(
     elements: MapElements<'_>,
     target: &Topology,
 ) -> Vec<SurfacePoint> {
-    let Placed { on_a, on_b, coarse } = FunctionalMaps::of_one(functional).placed([&a.vectors, &b.vectors]);
+    let Placed { on_a, on_b, coarse } =
+        FunctionalMaps::of_one(functional).placed([&a.spectrum.vectors, &b.spectrum.vectors]);
     let (own, other, shape) = match of {
         Side::First => (on_a, on_b, b),
         Side::Second => (on_b, on_a, a),
     };
-    let cells = Cells { rows: &other, coarse: &coarse, centres: &shape.samples, members: &shape.cells };
-    let nearest = cells.nearest(&own);
-    let start = |v: usize| VertexId(nearest[v]);
+    let nearest = shape.nearest_vertices(&other, &coarse, &own);
+    let start = |v: usize| VertexId::from(nearest[v]);
     let (queries, starts): (Matrix, Vec<Vec<VertexId>>) = match elements {
         MapElements::Vertices => (own, (0..nearest.len()).map(|v| vec![start(v)]).collect()),
         MapElements::Faces(faces) => {

@@ -3,40 +3,18 @@
 use base::{Budget, Observer};
 use linalg::{LinalgError, Matrix};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
-use surface::VertexId;
 
 use super::curvature::mismatch;
-use super::functional_map::{FunctionalMaps, Placed, SampleMaps, SampledPair, schedule, zoom_out};
-use super::known::KnownMap;
-use super::local::vertex_confidence;
-use super::nearest_rows::Cells;
+use super::functional_map::{FunctionalMaps, Placed, SampledPair, TwoWayMap, schedule, zoom_out};
+use super::known::{CLEARLY_WORSE, KnownMap};
+use super::local::mean_gap;
 use super::operators::{FITTED, fitted};
 use super::orientation::{FUNCTIONS as FORMS, agreement};
 use super::shape::{MapShape, Mirrors};
-use super::surface_map::{MapKind, SurfaceMap};
-use descriptors::Alignment;
-use descriptors::Boundary;
-use descriptors::DescriptorError;
-use descriptors::alignments;
-
-/// How surfaces are mapped.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct MapOptions {
-    /// Most eigenfunctions of each surface. Default: 150.
-    pub eigenfunctions: usize,
-}
-
-impl Default for MapOptions {
-    fn default() -> Self {
-        Self { eigenfunctions: 150 }
-    }
-}
+use super::surface_map::{MapKind, SurfaceMap, codistortion};
+use descriptors::{Alignment, Boundary, DescriptorError, NearestPoints, alignments};
 
 // `experiments run matching` measures the maps that follow from these limits.
-
-/// Maps agree with an orientation beyond this. A safety limit: it is near 1 or -1 for smooth maps, and 0 for random ones.
-const AGREEMENT: f64 = 0.1;
 
 /// Samples by which all starts are refined a little, and eigenfunctions of their last step: enough to tell which are the same.
 const ROUGH: usize = 200;
@@ -85,14 +63,11 @@ const STEEPNESS: f64 = 3.4;
 /// The most confidence in a mixture: as likely wrong as right. A convention.
 const OF_MIXTURE: f64 = 0.5;
 
-/// The direct map comes second if its distortion is more than this multiple of the mirrored one's. A convention.
-pub(super) const CLEARLY_WORSE: f64 = 1.5;
-
 /// A map of functions and of samples, with what ranks it among others.
 struct Candidate {
     functional: FunctionalMaps,
-    /// Vertices of the second surface: the images of the landmarks of the first.
-    images: Vec<usize>,
+    /// Distances from the landmarks of the second surface to the images of those of the first, a column for each.
+    to_images: Matrix,
     distortion: f64,
     agreement: Option<f64>,
     /// Lower is better: the distortion of distances, times the distance of the maps of functions from orthogonal ones,
@@ -105,7 +80,12 @@ struct Candidate {
 
 impl Candidate {
     fn kind(&self) -> MapKind {
-        kind_of(self.agreement)
+        MapKind::of(self.agreement)
+    }
+
+    /// Whether two maps are nearly the same.
+    fn is_same(&self, other: &Self) -> bool {
+        mean_gap(&self.to_images, &other.to_images) < SAME
     }
 
     /// Whether it agrees less than maps that are [no mixtures](least_agreement).
@@ -118,15 +98,6 @@ impl Candidate {
 fn least_agreement(found: &[Candidate]) -> f64 {
     let agreements = found.iter().filter_map(|found| found.agreement);
     agreements.map(|agreement| agreement.abs() - LOST).fold(PURE, f64::max)
-}
-
-/// The kind of a map of some agreement.
-pub(super) fn kind_of(agreement: Option<f64>) -> MapKind {
-    match agreement {
-        Some(value) if value > AGREEMENT => MapKind::Direct,
-        Some(value) if value < -AGREEMENT => MapKind::Mirrored,
-        _ => MapKind::Unoriented,
-    }
 }
 
 /// The best maps of the first surface to the second, one for each orientation: the direct one first, unless it distorts
@@ -146,7 +117,7 @@ pub(super) fn kind_of(agreement: Option<f64>) -> MapKind {
 ///
 /// What is `known` of the map enters all of it: landmarks, as heat that is placed at them, and functions are fitted, too; maps
 /// that do not respect the landmarks are dropped; and an initial map is one more start, which comes out unless another map is
-/// clearly better.
+/// clearly better. At most `eigenfunctions` of each surface are used.
 ///
 /// # Errors
 /// [`DescriptorError::Linalg`], also if the budget of the observer is exceeded.
@@ -154,14 +125,14 @@ pub fn map_wholes(
     a: &MapShape,
     b: &MapShape,
     known: &KnownMap,
-    options: &MapOptions,
+    eigenfunctions: usize,
     observer: &dyn Observer,
 ) -> Result<Vec<SurfaceMap>, DescriptorError> {
     let budget = observer.budget();
-    let search = MapSearch { a, b, known, options, budget: &budget };
+    let search = MapSearch { a, b, known, eigenfunctions, budget: &budget };
     let mut sketches = search.sketches()?;
     let mut maps = Vec::new();
-    for sought in [MapKind::Direct, MapKind::Mirrored, MapKind::Unoriented] {
+    for sought in MapKind::ALL {
         if sought == MapKind::Unoriented && !maps.is_empty() {
             break;
         }
@@ -170,32 +141,39 @@ pub fn map_wholes(
         maps.extend(search.best(of_kind)?);
     }
     known.without_mixtures(&mut maps);
-    known.nearest_first(&mut maps, b)?;
-    let mut maps = in_order(maps);
-    maps.iter_mut().for_each(|map| known.kept_by(map));
-    Ok(maps)
-}
-
-/// The direct map first, unless it distorts distances clearly more.
-pub(super) fn in_order(mut maps: Vec<SurfaceMap>) -> Vec<SurfaceMap> {
-    if let [direct, mirrored] = &maps[..]
-        && mirrored.distortion * CLEARLY_WORSE < direct.distortion
-    {
-        maps.reverse();
-    }
-    maps
+    known.finished(maps, b)
 }
 
 /// The images of the first samples of a surface under its best mirror, if it has one.
 pub(super) fn mirrored_samples(
     shape: &MapShape,
-    options: &MapOptions,
     budget: &Budget,
-) -> Result<Option<Vec<u32>>, DescriptorError> {
-    let search = MapSearch { a: shape, b: shape, known: &KnownMap::default(), options, budget };
-    let [a, b] = search.rows(SKETCHED);
-    let pair = SampledPair { a: &a, b: &b };
-    Ok(search.mirrors(shape)?.sides.as_ref().map(|mirror| mirror.sample_maps(pair).forth))
+) -> Result<Option<Vec<usize>>, DescriptorError> {
+    let pair = first_samples([shape, shape], SKETCHED);
+    Ok(mirrors(shape, budget)?.sides.as_ref().map(|mirror| mirror.sample_maps(&pair).forth))
+}
+
+/// The maps of a surface to itself that reverse its orientation and change distances little.
+fn mirrors<'a>(shape: &'a MapShape, budget: &Budget) -> Result<&'a Mirrors, DescriptorError> {
+    if let Some(known) = shape.mirrors.get() {
+        return Ok(known);
+    }
+    let known = &KnownMap::default();
+    let search = MapSearch { a: shape, b: shape, known, eigenfunctions: SKETCH_FUNCTIONS, budget };
+    let mut starts = search.starts(&[-1.0])?;
+    starts.retain(|start| start.kind() == MapKind::Mirrored);
+    let mut found = search.sketched(starts.iter().map(|start| &start.functional))?;
+    found.retain(|found| found.kind() == MapKind::Mirrored && found.distortion < SYMMETRIC);
+    let least = least_agreement(&found);
+    found.retain(|found| !found.is_mixture(least));
+    let mut found = distinct(found);
+    found.truncate(MIRRORS);
+    // The mean distance of the landmarks from their images.
+    let moved = |found: &Candidate| found.to_images.diagonal().mean();
+    let sides = found.iter().position(|found| moved(found) > THICK).map(|i| found.remove(i).functional);
+    let others = found.into_iter().map(|found| found.functional).collect();
+    // If another thread was faster, it found the same.
+    Ok(shape.mirrors.get_or_init(|| Mirrors { sides, others }))
 }
 
 /// A search with its options.
@@ -204,7 +182,8 @@ struct MapSearch<'a> {
     a: &'a MapShape,
     b: &'a MapShape,
     known: &'a KnownMap,
-    options: &'a MapOptions,
+    /// Most of each surface.
+    eigenfunctions: usize,
     budget: &'a Budget,
 }
 
@@ -213,11 +192,10 @@ impl MapSearch<'_> {
     fn sketches(&self) -> Result<Vec<Candidate>, DescriptorError> {
         let starts = self.starts(&[1.0, -1.0])?;
         let found = self.sketched(starts.iter().map(|start| &start.functional))?;
-        let mut found = self.with_mirrored(self.distinct(found)?)?;
-        let [rows_a, rows_b] = self.rows(SKETCHED);
-        let pair = SampledPair { a: &rows_a, b: &rows_b };
-        if let Some((start, k)) = self.known.initial_start(pair, [self.a, self.b], SKETCH_FUNCTIONS) {
-            let initial = self.zoomed(vec![start], [k, SKETCH_FUNCTIONS])?.into_iter();
+        let mut found = self.with_mirrored(distinct(found))?;
+        let pair = first_samples([self.a, self.b], SKETCHED);
+        if let Some((start, k)) = self.known.initial_start(&pair, [self.a, self.b], SKETCH_FUNCTIONS) {
+            let initial = self.zoomed(&pair, vec![start], [k, SKETCH_FUNCTIONS])?.into_iter();
             found.extend(initial.map(|found| Candidate { score: found.score / CLEARLY_WORSE, ..found }));
         }
         self.respecting(found)
@@ -231,46 +209,33 @@ impl MapSearch<'_> {
         }
         let maps: Vec<&FunctionalMaps> = found.iter().map(|found| &found.functional).collect();
         let respected = self.known.respected(&maps, [self.a, self.b])?;
-        let kinds = [MapKind::Direct, MapKind::Mirrored, MapKind::Unoriented];
-        let price = kinds.map(|kind| {
-            let of_kind = || found.iter().zip(&respected).filter(|(found, _)| found.kind() == kind);
-            let least = |scores: &mut dyn Iterator<Item = f64>| scores.fold(f64::INFINITY, f64::min);
-            let any = least(&mut of_kind().map(|(found, _)| found.score));
-            let best =
-                least(&mut of_kind().filter(|(_, respected)| **respected).map(|(found, _)| found.score));
-            best.max(f64::MIN_POSITIVE) / any.max(f64::MIN_POSITIVE)
-        });
+        let all: Vec<(Candidate, bool)> = found.into_iter().zip(respected).collect();
         // Infinite for an orientation without such a map; not a number for one without any.
+        let price = MapKind::ALL.map(|kind| {
+            let of_kind = || all.iter().filter(|(found, _)| found.kind() == kind);
+            let least = |scores: &mut dyn Iterator<Item = f64>| {
+                scores.fold(f64::INFINITY, f64::min).max(f64::MIN_POSITIVE)
+            };
+            let any = least(&mut of_kind().map(|(found, _)| found.score));
+            least(&mut of_kind().filter(|(_, respected)| *respected).map(|(found, _)| found.score)) / any
+        });
         let least = price.into_iter().fold(f64::INFINITY, f64::min);
-        let is_kept =
-            |kind| kinds.iter().zip(price).any(|(k, price)| *k == kind && price <= CLEARLY_WORSE * least);
-        let all = found.into_iter().zip(respected);
-        Ok(all
-            .filter(|(found, respected)| *respected && is_kept(found.kind()))
-            .map(|(found, _)| found)
-            .collect())
+        let is_kept = |kind| price[kind as usize] <= CLEARLY_WORSE * least;
+        let kept = all.into_iter().filter(|(found, respected)| *respected && is_kept(found.kind()));
+        Ok(kept.map(|(found, _)| found).collect())
     }
 
     /// Different maps that are fitted with these signs, or follow from alignments of the forms.
     fn starts(&self, signs: &[f64]) -> Result<Vec<Candidate>, DescriptorError> {
         let (a, b) = (self.a, self.b);
-        let [rows_a, rows_b] = self.rows(ROUGH);
-        let pair = SampledPair { a: &rows_a, b: &rows_b };
-        let fits = signs.iter().flat_map(|sign| fitted_starts(pair, [a, b], *sign));
-        let fits = fits.chain(self.known.fitted_starts(pair, [a, b])).collect();
-        let aligned = alignments(&a.form, &b.form);
-        let mut aligned: Vec<_> =
-            aligned.iter().map(|motion| nearest_samples(a, b, motion, rows_a.nrows())).collect();
-        aligned.dedup();
-        let mut found = self.zoomed(fits, [FITTED, ROUGH_FUNCTIONS])?;
-        found.extend(self.zoomed(aligned, [FIRST, ROUGH_FUNCTIONS])?);
-        self.distinct(found)
-    }
-
-    /// Eigenfunctions at the first samples of both surfaces.
-    fn rows(&self, n: usize) -> [Matrix; 2] {
-        let n = n.min(self.a.samples.len()).min(self.b.samples.len());
-        [self.a, self.b].map(|shape| shape.at_samples.rows(0, n).into_owned())
+        let pair = first_samples([a, b], ROUGH);
+        let operators = || a.operators.iter().zip(&b.operators);
+        let fits = signs.iter().flat_map(|sign| operators().flat_map(|(x, y)| fitted(x, y, *sign)));
+        let fits = fits.chain(self.known.fitted([a, b]));
+        let fits = fits.map(|forth| FunctionalMaps::of_one(&forth).sample_maps(&pair)).collect();
+        let mut found = self.zoomed(&pair, fits, [FITTED, ROUGH_FUNCTIONS])?;
+        found.extend(self.zoomed(&pair, aligned(a, b, pair.a.nrows())?, [FIRST, ROUGH_FUNCTIONS])?);
+        Ok(distinct(found))
     }
 
     /// The sketches that follow from maps of functions.
@@ -278,41 +243,22 @@ impl MapSearch<'_> {
         &self,
         starts: impl Iterator<Item = &'m FunctionalMaps>,
     ) -> Result<Vec<Candidate>, DescriptorError> {
-        let [rows_a, rows_b] = self.rows(SKETCHED);
-        let pair = SampledPair { a: &rows_a, b: &rows_b };
-        let starts = starts.map(|start| start.sample_maps(pair)).collect();
-        self.zoomed(starts, [FITTED, SKETCH_FUNCTIONS])
-    }
-
-    /// The best maps of each orientation that are not the same; those of none only if there are no others.
-    fn distinct(&self, mut found: Vec<Candidate>) -> Result<Vec<Candidate>, DescriptorError> {
-        if found.iter().any(|found| found.kind() != MapKind::Unoriented) {
-            found.retain(|found| found.kind() != MapKind::Unoriented);
-        }
-        found.sort_by(|x, y| x.score.total_cmp(&y.score));
-        let mut kept: Vec<Candidate> = Vec::new();
-        for next in found {
-            let of_kind: Vec<&Candidate> = kept.iter().filter(|other| other.kind() == next.kind()).collect();
-            let known = of_kind.iter().map(|other| self.is_same(&next, other));
-            let known = known.collect::<Result<Vec<bool>, _>>()?;
-            if known.len() < SKETCHES && !known.contains(&true) {
-                kept.push(next);
-            }
-        }
-        Ok(kept)
+        let pair = first_samples([self.a, self.b], SKETCHED);
+        let starts = starts.map(|start| start.sample_maps(&pair)).collect();
+        self.zoomed(&pair, starts, [FITTED, SKETCH_FUNCTIONS])
     }
 
     /// These maps and those that differ from them by a mirror of a surface, if there is one. A map and the one that differs by
     /// left and right stand and fall together: each has the score of both. Other mirrors only lead to more maps, since a right
     /// map and a wrong one may differ by front and back.
     fn with_mirrored(&self, mut found: Vec<Candidate>) -> Result<Vec<Candidate>, DescriptorError> {
-        let mirrors = [self.mirrors(self.a)?, self.mirrors(self.b)?];
+        let mirrors = [mirrors(self.a, self.budget)?, mirrors(self.b, self.budget)?];
         let others = mirrors.map(|of| &of.others[..]);
         let turned: Vec<_> = found.iter().flat_map(|one| mirrored(one, others)).collect();
         found.extend(self.sketched(turned.iter())?);
         let sides = mirrors.map(|of| of.sides.as_slice());
         let mut all = Vec::new();
-        for one in self.distinct(found)? {
+        for one in distinct(found) {
             let others: Vec<_> = mirrored(&one, sides).collect();
             let mut others = self.sketched(others.iter())?;
             others.retain(|other| other.kind() != one.kind());
@@ -324,31 +270,6 @@ impl MapSearch<'_> {
         Ok(all)
     }
 
-    /// The maps of a surface to itself that reverse its orientation and change distances little.
-    fn mirrors<'s>(&self, shape: &'s MapShape) -> Result<&'s Mirrors, DescriptorError> {
-        if let Some(known) = shape.mirrors.get() {
-            return Ok(known);
-        }
-        // Whatever the options of this search, since others use them too.
-        let options = MapOptions { eigenfunctions: SKETCH_FUNCTIONS };
-        let nothing = KnownMap::default();
-        let search =
-            MapSearch { a: shape, b: shape, known: &nothing, options: &options, budget: self.budget };
-        let mut starts = search.starts(&[-1.0])?;
-        starts.retain(|start| start.kind() == MapKind::Mirrored);
-        let mut found = search.sketched(starts.iter().map(|start| &start.functional))?;
-        found.retain(|found| found.kind() == MapKind::Mirrored && found.distortion < SYMMETRIC);
-        let least = least_agreement(&found);
-        found.retain(|found| !found.is_mixture(least));
-        let mut found = search.distinct(found)?;
-        found.truncate(MIRRORS);
-        let moved = found.iter().map(|found| shape.moved(&found.images)).collect::<Result<Vec<_>, _>>()?;
-        let sides = moved.iter().position(|moved| *moved > THICK).map(|i| found.remove(i).functional);
-        let others = found.into_iter().map(|found| found.functional).collect();
-        // If another thread was faster, it found the same.
-        Ok(shape.mirrors.get_or_init(|| Mirrors { sides, others }))
-    }
-
     /// The best map of candidates of one kind, refined on all samples and eigenfunctions.
     fn best(&self, mut found: Vec<Candidate>) -> Result<Option<SurfaceMap>, DescriptorError> {
         let least = least_agreement(&found);
@@ -356,16 +277,8 @@ impl MapSearch<'_> {
         found.sort_by(|x, y| is_mixture(x).cmp(&is_mixture(y)).then(x.score.total_cmp(&y.score)));
         let Some(best) = found.first() else { return Ok(None) };
         let mut rivals = found.iter().filter(|other| is_mixture(best) || !is_mixture(other));
-        let rival = rivals.find_map(|other| match self.is_same(best, other) {
-            Ok(true) => None,
-            Ok(false) => Some(Ok(other)),
-            Err(error) => Some(Err(error)),
-        });
-        let rival = rival.transpose()?;
-        let confidence = rival.map_or(1.0, |rival| {
-            let boundary = Boundary { at: rival.score.max(f64::MIN_POSITIVE), steepness: STEEPNESS };
-            boundary.probability(best.score)
-        });
+        let rival = rivals.find(|other| !best.is_same(other));
+        let confidence = odds(best.score, rival.map(|rival| rival.score), STEEPNESS);
         let confidence = if is_mixture(best) { confidence.min(OF_MIXTURE) } else { confidence };
         let mut map = self.refined(best, confidence)?;
         if let Some(rival) = rival.filter(|_| confidence < SurfaceMap::CERTAIN) {
@@ -374,49 +287,66 @@ impl MapSearch<'_> {
         Ok(Some(map))
     }
 
-    /// Whether two maps are nearly the same: the distance of two points is at least the difference of their distances from
-    /// any landmark.
-    fn is_same(&self, x: &Candidate, y: &Candidate) -> Result<bool, DescriptorError> {
-        let [x, y] = [self.b.distances_to(&x.images)?, self.b.distances_to(&y.images)?];
-        let gaps = x.column_iter().zip(y.column_iter()).map(|(x, y)| (x - y).amax());
-        Ok(gaps.sum::<f64>() < SAME * x.ncols() as f64)
-    }
-
     /// A map on all samples and eigenfunctions, and then on all vertices.
     fn refined(&self, sketch: &Candidate, confidence: f64) -> Result<SurfaceMap, DescriptorError> {
-        let all = SampledPair { a: &self.a.at_samples, b: &self.b.at_samples };
-        let start = sketch.functional.sample_maps(all);
-        let refined = self.zoomed(vec![start], [SKETCH_FUNCTIONS, self.options.eigenfunctions])?;
+        let all = SampledPair { a: self.a.at_samples.clone(), b: self.b.at_samples.clone() };
+        let start = sketch.functional.sample_maps(&all);
+        let refined = self.zoomed(&all, vec![start], [SKETCH_FUNCTIONS, self.eigenfunctions])?;
         // Refinement may mix two maps, where the sketch is right.
         let agrees = |found: &Candidate| match (sketch.agreement, found.agreement) {
             (Some(before), Some(after)) => after * before.signum() > before.abs() - LOST,
             _ => true,
         };
-        match refined.iter().find(|found| agrees(found)) {
-            Some(found) => found.on_all_vertices(self.a, self.b, confidence),
-            None => sketch.on_all_vertices(self.a, self.b, confidence),
-        }
+        let found = refined.iter().find(|found| agrees(found)).unwrap_or(sketch);
+        Ok(SurfaceMap { confidence, ..found.on_all_vertices(self.a, self.b)? })
     }
 
-    /// Refines maps of the first samples, from some eigenfunctions to more.
-    fn zoomed(&self, starts: Vec<SampleMaps>, ends: [usize; 2]) -> Result<Vec<Candidate>, DescriptorError> {
-        let (a, b) = (self.a, self.b);
-        // A map of all samples is one of all on both sides, which may differ in number.
-        let lengths = starts.first().map_or([0; 2], |start| [start.forth.len(), start.back.len()]);
-        let n = lengths[0].min(lengths[1]);
-        let known = a.vectors.ncols().min(b.vectors.ncols()).min((n / 4).max(1));
-        let [first, last] = ends.map(|k| k.min(known).min(self.options.eigenfunctions.max(1)));
+    /// Refines maps of samples, from some eigenfunctions to more.
+    fn zoomed(
+        &self,
+        pair: &SampledPair,
+        starts: Vec<TwoWayMap>,
+        ends: [usize; 2],
+    ) -> Result<Vec<Candidate>, DescriptorError> {
+        let n = pair.a.nrows().min(pair.b.nrows());
+        let known = pair.a.ncols().min(pair.b.ncols()).min((n / 4).max(1));
+        let [first, last] = ends.map(|k| k.min(known).min(self.eigenfunctions.max(1)));
         let counts = schedule(first, last);
-        let rows = |shape: &MapShape, n: usize| shape.at_samples.rows(0, n).into_owned();
-        let (rows_a, rows_b) = (rows(a, lengths[0]), rows(b, lengths[1]));
-        let pair = SampledPair { a: &rows_a, b: &rows_b };
-        let one = |start: SampleMaps| {
+        let one = |start: TwoWayMap| {
             self.budget.check().map_err(LinalgError::from)?;
             let (maps, functional) = zoom_out(pair, start, &counts);
-            Candidate::new(a, b, maps, functional)
+            Candidate::new([self.a, self.b], &maps, functional)
         };
         starts.into_par_iter().map(one).collect()
     }
+}
+
+/// How likely a map is the right one, and not its rival: the odds are the ratio of their scores to a power.
+pub(super) fn odds(score: f64, rival: Option<f64>, steepness: f64) -> f64 {
+    rival.map_or(1.0, |rival| Boundary { at: rival.max(f64::MIN_POSITIVE), steepness }.probability(score))
+}
+
+/// The best maps of each orientation that are not the same; those of none only if there are no others.
+fn distinct(mut found: Vec<Candidate>) -> Vec<Candidate> {
+    if found.iter().any(|found| found.kind() != MapKind::Unoriented) {
+        found.retain(|found| found.kind() != MapKind::Unoriented);
+    }
+    found.sort_by(|x, y| x.score.total_cmp(&y.score));
+    let mut kept: Vec<Candidate> = Vec::new();
+    for next in found {
+        let of_kind = || kept.iter().filter(|other| other.kind() == next.kind());
+        if of_kind().count() < SKETCHES && !of_kind().any(|other| next.is_same(other)) {
+            kept.push(next);
+        }
+    }
+    kept
+}
+
+/// Eigenfunctions at the first samples of both surfaces.
+fn first_samples(shapes: [&MapShape; 2], n: usize) -> SampledPair {
+    let n = shapes.iter().fold(n, |n, shape| n.min(shape.samples.len()));
+    let [a, b] = shapes.map(|shape| shape.at_samples.rows(0, n).into_owned());
+    SampledPair { a, b }
 }
 
 /// A map, before or after mirrors of the surfaces.
@@ -428,40 +358,38 @@ fn mirrored<'m>(
     before.chain(of_b.iter().map(|mirror| one.functional.then(mirror)))
 }
 
-/// Maps of the first samples that follow from fitted maps of functions.
-fn fitted_starts(pair: SampledPair<'_>, [a, b]: [&MapShape; 2], sign: f64) -> Vec<SampleMaps> {
-    let fitted = a.operators.iter().zip(&b.operators).flat_map(|(x, y)| fitted(x, y, sign));
-    fitted.map(|forth| FunctionalMaps::of_one(&forth).sample_maps(pair)).collect()
-}
-
-/// Maps each of the first samples to the nearest one in the aligned forms.
-fn nearest_samples(a: &MapShape, b: &MapShape, motion: &Alignment, n: usize) -> SampleMaps {
-    let back = motion.inverse();
+/// Different maps of the first samples to the nearest ones in aligned forms.
+fn aligned(a: &MapShape, b: &MapShape, n: usize) -> Result<Vec<TwoWayMap>, DescriptorError> {
     // The first samples are evenly spread, too; a partner further down the list stands for one that is not far away.
-    let near = |from: &MapShape, to: &MapShape, motion: &Alignment| -> Vec<u32> {
-        let of = |p: &nalgebra::Point3<f64>| {
-            let q = motion.apply(p);
-            let gaps = to.points[..n].iter().map(|r| (r - q).norm_squared());
-            (0..).zip(gaps).min_by(|x, y| x.1.total_cmp(&y.1)).map_or(0, |(i, _)| i)
-        };
-        from.points[..n].iter().map(of).collect()
+    let places = |shape: &MapShape| {
+        NearestPoints::new(shape.samples[..n].iter().map(|&v| shape.form.points()[v]).collect())
     };
-    SampleMaps { forth: near(a, b, motion), back: near(b, a, &back) }
+    let (on_a, on_b) = (places(a)?, places(b)?);
+    let near = |from: &NearestPoints, to: &NearestPoints, motion: &Alignment| {
+        from.points().iter().map(|p| to.nearest(&motion.apply(p)).0).collect()
+    };
+    let mut found: Vec<TwoWayMap> = alignments(&a.form, &b.form)
+        .iter()
+        .map(|motion| TwoWayMap {
+            forth: near(&on_a, &on_b, motion),
+            back: near(&on_b, &on_a, &motion.inverse()),
+        })
+        .collect();
+    found.dedup();
+    Ok(found)
 }
 
 impl Candidate {
     fn new(
-        a: &MapShape,
-        b: &MapShape,
-        maps: SampleMaps,
+        [a, b]: [&MapShape; 2],
+        maps: &TwoWayMap,
         functional: FunctionalMaps,
     ) -> Result<Self, DescriptorError> {
-        let [n_a, n_b] = [a, b].map(|shape| shape.landmarks().len());
-        let image = |map: &[u32], shape: &MapShape, n: usize| -> Vec<usize> {
-            map.iter().take(n).map(|&i| shape.samples[i as usize]).collect()
+        let images = |from: &MapShape, map: &[usize], to: &MapShape| -> Vec<usize> {
+            map.iter().take(from.landmarks().len()).map(|&i| to.samples[i]).collect()
         };
-        let (forth, back) = (image(&maps.forth, b, n_a), image(&maps.back, a, n_b));
-        let distortion = codistortion(a, b, &forth, &back)?;
+        let to_images = b.distances_to(&images(a, &maps.forth, b))?;
+        let distortion = codistortion(&a.distances_to(&images(b, &maps.back, a))?, &to_images);
         let agreement = orientation(a, b, &functional, &maps.forth);
         let missing = agreement.map_or(1.0, |agreement| (1.0 - agreement.abs()).max(FULL));
         let mismatch = match (&a.curvature, &b.curvature) {
@@ -470,59 +398,27 @@ impl Candidate {
             _ => 1.0,
         };
         let score = distortion * functional.defect() * missing * mismatch;
-        Ok(Self { functional, images: forth, distortion, agreement, score })
+        Ok(Self { functional, to_images, distortion, agreement, score })
     }
 
-    fn on_all_vertices(
-        &self,
-        a: &MapShape,
-        b: &MapShape,
-        confidence: f64,
-    ) -> Result<SurfaceMap, DescriptorError> {
-        let Placed { on_a, on_b, coarse } = self.functional.placed([&a.vectors, &b.vectors]);
-        let near_b = Cells { rows: &on_b, coarse: &coarse, centres: &b.samples, members: &b.cells };
-        let near_a = Cells { rows: &on_a, coarse: &coarse, centres: &a.samples, members: &a.cells };
-        let forth = near_b.nearest(&on_a);
-        let back = near_a.nearest(&on_b.select_rows(b.landmarks()));
-        let images: Vec<usize> = a.landmarks().iter().map(|&x| forth[x] as usize).collect();
-        let on_b = b.distances_to(&forth.iter().map(|y| *y as usize).collect::<Vec<_>>())?;
-        let all: Vec<usize> = (0..a.n_vertices()).collect();
-        let vertex_confidence = vertex_confidence(&a.distances_to(&all)?, a.landmarks(), &on_b);
-        let back: Vec<usize> = back.into_iter().map(|x| x as usize).collect();
-        let distortion = codistortion(a, b, &images, &back)?;
-        let vertices = forth.into_iter().map(VertexId).collect();
+    fn on_all_vertices(&self, a: &MapShape, b: &MapShape) -> Result<SurfaceMap, DescriptorError> {
+        let Placed { on_a, on_b, coarse } =
+            self.functional.placed([&a.spectrum.vectors, &b.spectrum.vectors]);
+        let forth = b.nearest_vertices(&on_b, &coarse, &on_a);
+        let back = a.nearest_vertices(&on_a, &coarse, &on_b.select_rows(b.landmarks()));
         Ok(SurfaceMap {
             kind: self.kind(),
-            distortion,
             agreement: self.agreement,
-            confidence,
-            vertices,
-            vertex_confidence,
             functional: self.functional.forth.clone(),
-            alternative: None,
-            part: None,
+            ..SurfaceMap::of_vertices([a, b], &forth, &back)?
         })
     }
 }
 
-/// The mean of `|d(x_i, g y_j) - d(f x_i, y_j)|` over landmarks; `forth` and `back` are the images of the landmarks.
-pub(super) fn codistortion(
-    a: &MapShape,
-    b: &MapShape,
-    forth: &[usize],
-    back: &[usize],
-) -> Result<f64, DescriptorError> {
-    let on_a = a.distances_to(back)?;
-    let on_b = b.distances_to(forth)?;
-    let gaps = (0..on_a.nrows()).flat_map(|i| (0..on_a.ncols()).map(move |j| (i, j)));
-    let sum: f64 = gaps.map(|(i, j)| (on_a[(i, j)] - on_b[(j, i)]).abs()).sum();
-    Ok(sum / on_a.len().max(1) as f64)
-}
-
 /// How far a map of samples preserves orientation.
-fn orientation(a: &MapShape, b: &MapShape, functional: &FunctionalMaps, partners: &[u32]) -> Option<f64> {
+fn orientation(a: &MapShape, b: &MapShape, functional: &FunctionalMaps, partners: &[usize]) -> Option<f64> {
     let (oriented, forms) = (a.oriented.as_ref()?, b.area_forms.as_ref()?);
     let k = functional.k();
-    let pulled: Matrix = a.vectors.columns(0, k) * functional.forth.columns(0, k.min(FORMS + 1));
+    let pulled: Matrix = a.spectrum.vectors.columns(0, k) * functional.forth.columns(0, k.min(FORMS + 1));
     Some(agreement(&oriented.area_forms(&pulled, &a.samples[..partners.len()]), forms, partners))
 }

@@ -8,14 +8,13 @@ use nalgebra::{DVector, Point3};
 
 use super::curvature::{bends, smoothed};
 use super::functional_map::FunctionalMaps;
+use super::nearest_rows::Cells;
 use super::operators::Operators;
 use super::orientation::Oriented;
 use crate::outward::outward;
-use descriptors::DescriptorError;
-use descriptors::LaplaceSpectrum;
-use descriptors::PreparedForm;
-use descriptors::wave_kernels;
-use descriptors::{CanonicalForm, Normalization};
+use descriptors::{
+    CanonicalForm, DescriptorError, LaplaceSpectrum, Normalization, PreparedForm, wave_kernels,
+};
 
 /// One in so many wave kernels takes part in fitted maps: neighbours are nearly the same. As `ren2018` in `REFERENCES.bib`.
 const KERNELS: usize = 5;
@@ -24,16 +23,13 @@ const KERNELS: usize = 5;
 #[derive(Debug)]
 pub struct MapShape {
     pub(super) form: PreparedForm,
-    /// The form at the samples, in its principal axes.
-    pub(super) points: Vec<Point3<f64>>,
-    /// Eigenfunctions at the vertices.
-    pub(super) vectors: Matrix,
-    /// The rest of the spectrum, without its eigenfunctions.
     pub(super) spectrum: LaplaceSpectrum,
     /// Vertices spread evenly over the surface; the landmarks first.
     pub(super) samples: Vec<usize>,
+    /// For every vertex, the position in the list of samples of the nearest one.
+    pub(super) nearest: Vec<usize>,
     /// The vertices nearest to each sample.
-    pub(super) cells: Vec<Vec<u32>>,
+    pub(super) cells: Vec<Vec<usize>>,
     /// Eigenfunctions at the samples.
     pub(super) at_samples: Matrix,
     /// What maps of functions are fitted to: with the curvature, which knows inside from outside, if the surface has an
@@ -82,10 +78,10 @@ impl MapShape {
     pub fn new(
         form: &CanonicalForm,
         mesh: &TriMesh,
-        mut spectrum: LaplaceSpectrum,
+        spectrum: LaplaceSpectrum,
         distances: LandmarkDistances,
         samples: Vec<usize>,
-        nearest: &[usize],
+        nearest: Vec<usize>,
     ) -> Result<Self, DescriptorError> {
         let n_vertices = mesh.n_vertices();
         for n_points in [form.points().len(), spectrum.masses.len(), distances.n_points(), nearest.len()] {
@@ -95,9 +91,8 @@ impl MapShape {
         }
         assert!(samples.starts_with(distances.landmarks()), "samples begin with the landmarks");
         let form = PreparedForm::new(&form.normalized(Normalization::UnitArea))?;
-        let at: Vec<Point3<f64>> = samples.iter().map(|&v| form.points()[v]).collect();
         let mut cells = vec![Vec::new(); samples.len()];
-        for (vertex, &sample) in (0..).zip(nearest) {
+        for (vertex, &sample) in nearest.iter().enumerate() {
             cells[sample].push(vertex);
         }
         let oriented = Oriented::new(mesh, &spectrum.masses);
@@ -109,7 +104,6 @@ impl MapShape {
         Ok(Self {
             bends,
             from_cut: None,
-            points: at,
             at_samples: spectrum.vectors.select_rows(&samples),
             area_forms: oriented.as_ref().map(|oriented| oriented.area_forms(&spectrum.vectors, &samples)),
             mirrors: OnceLock::new(),
@@ -117,44 +111,38 @@ impl MapShape {
             operators,
             curvature,
             size: spectrum.area.sqrt(),
-            vectors: std::mem::replace(&mut spectrum.vectors, Matrix::zeros(0, 0)),
             spectrum,
             form,
             samples,
+            nearest,
             cells,
             distances,
         })
     }
 
     /// The surface as a possible part of another one that was cut off at its boundary: `from_cut` is the distance of each
-    /// vertex from it, in mesh units.
+    /// vertex from it, in mesh units; `None` without a boundary.
     ///
     /// # Panics
     /// Unless there is one distance for each vertex.
     #[must_use]
-    pub fn with_cut(mut self, from_cut: &[f64]) -> Self {
-        assert_eq!(from_cut.len(), self.n_vertices(), "one distance for each vertex");
-        self.from_cut = Some(from_cut.iter().map(|d| d / self.size).collect());
+    pub fn with_cut(mut self, from_cut: Option<Vec<f64>>) -> Self {
+        let of_vertices = |from_cut: Vec<f64>| {
+            assert_eq!(from_cut.len(), self.n_vertices(), "one distance for each vertex");
+            from_cut.iter().map(|d| d / self.size).collect()
+        };
+        self.from_cut = from_cut.map(of_vertices);
         self
     }
 
     /// Number of vertices.
     pub fn n_vertices(&self) -> usize {
-        self.vectors.nrows()
+        self.nearest.len()
     }
 
-    /// For every vertex, the position in the list of samples of the one whose cell has it.
-    pub(super) fn sample_of_vertices(&self) -> Vec<usize> {
-        let mut found = vec![0; self.n_vertices()];
-        for (sample, cell) in self.cells.iter().enumerate() {
-            cell.iter().for_each(|v| found[*v as usize] = sample);
-        }
-        found
-    }
-
-    /// The eigenvalues and eigenfunctions in which maps of functions are written. Copies them.
-    pub fn spectrum(&self) -> LaplaceSpectrum {
-        LaplaceSpectrum { vectors: self.vectors.clone(), ..self.spectrum.clone() }
+    /// The eigenvalues and eigenfunctions in which maps of functions are written.
+    pub fn spectrum(&self) -> &LaplaceSpectrum {
+        &self.spectrum
     }
 
     /// The form of all vertices in its principal axes, at unit area.
@@ -167,9 +155,9 @@ impl MapShape {
         self.distances.landmarks()
     }
 
-    /// The mean distance of the landmarks from their images, at unit area.
-    pub(super) fn moved(&self, images: &[usize]) -> Result<f64, DescriptorError> {
-        Ok(self.distances_to(images)?.diagonal().mean())
+    /// The images of the landmarks under a map of all vertices.
+    pub(super) fn landmark_images(&self, map: &[usize]) -> Vec<usize> {
+        self.landmarks().iter().map(|&x| map[x]).collect()
     }
 
     /// Distances from all landmarks to some vertices, one row for each landmark, at unit area.
@@ -180,6 +168,17 @@ impl MapShape {
             vertices.iter().enumerate().for_each(|(j, &v)| found[(i, j)] = column[v] / self.size);
         }
         Ok(found)
+    }
+
+    /// The same to all vertices.
+    pub(super) fn all_distances(&self) -> Result<Matrix, DescriptorError> {
+        self.distances_to(&(0..self.n_vertices()).collect::<Vec<_>>())
+    }
+
+    /// The nearest vertex to each of some places. `rows` are the places of all vertices, and `coarse` the columns by which the
+    /// nearest cells are found.
+    pub(super) fn nearest_vertices(&self, rows: &Matrix, coarse: &[usize], places: &Matrix) -> Vec<usize> {
+        Cells { rows, coarse, centres: &self.samples, members: &self.cells }.nearest(places)
     }
 }
 

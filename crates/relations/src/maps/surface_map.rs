@@ -4,7 +4,25 @@ use linalg::Matrix;
 use serde::Serialize;
 use surface::VertexId;
 
-use super::part_of_whole::PartOfWhole;
+use super::local::vertex_confidence;
+use super::shape::MapShape;
+use crate::relation::Side;
+use descriptors::DescriptorError;
+
+/// Which of two mapped surfaces is a part of the other.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PartOfWhole {
+    /// The surface that is a part.
+    pub part: Side,
+    /// The share of the area of the whole that has partners.
+    pub covered: f64,
+    /// For each vertex of the first surface and of the second, its partner on the other, if it has one. All of the part have.
+    #[serde(skip)]
+    pub partners: [Vec<Option<VertexId>>; 2],
+}
+
+/// Maps agree with an orientation beyond this. A safety limit: it is near 1 or -1 for smooth maps, and 0 for random ones.
+const AGREEMENT: f64 = 0.1;
 
 /// How a map treats the orientation of the surfaces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -19,6 +37,18 @@ pub enum MapKind {
 }
 
 impl MapKind {
+    /// All kinds.
+    pub(super) const ALL: [Self; 3] = [Self::Direct, Self::Mirrored, Self::Unoriented];
+
+    /// The kind of a map of some agreement.
+    pub(super) fn of(agreement: Option<f64>) -> Self {
+        match agreement {
+            Some(value) if value > AGREEMENT => Self::Direct,
+            Some(value) if value < -AGREEMENT => Self::Mirrored,
+            _ => Self::Unoriented,
+        }
+    }
+
     /// The name on the command line and in records.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -62,4 +92,32 @@ pub struct SurfaceMap {
 impl SurfaceMap {
     /// Maps of at least this confidence are certain: the next best one is so much worse that it is not refined. A convention.
     pub const CERTAIN: f64 = 0.7;
+
+    /// A map of wholes by the images of all vertices, and of the landmarks of the second surface; nothing else is known of it.
+    pub(super) fn of_vertices(
+        [a, b]: [&MapShape; 2],
+        forth: &[usize],
+        back: &[usize],
+    ) -> Result<Self, DescriptorError> {
+        let (to_back, to_images) = (a.distances_to(back)?, b.distances_to(&a.landmark_images(forth))?);
+        Ok(Self {
+            kind: MapKind::Unoriented,
+            distortion: codistortion(&to_back, &to_images),
+            agreement: None,
+            confidence: 1.0,
+            vertices: forth.iter().map(|y| VertexId::from(*y)).collect(),
+            vertex_confidence: vertex_confidence([a, b], [1.0; 2], forth)?,
+            functional: Matrix::zeros(0, 0),
+            alternative: None,
+            part: None,
+        })
+    }
+}
+
+/// The mean of `|d(x_i, g y_j) - d(f x_i, y_j)|` over landmarks, from the distances on the first and on the second surface
+/// from its landmarks to the images of those of the other one.
+pub(super) fn codistortion(on_a: &Matrix, on_b: &Matrix) -> f64 {
+    let gaps = (0..on_a.nrows()).flat_map(|i| (0..on_a.ncols()).map(move |j| (i, j)));
+    let sum: f64 = gaps.map(|(i, j)| (on_a[(i, j)] - on_b[(j, i)]).abs()).sum();
+    sum / on_a.len().max(1) as f64
 }

@@ -4,7 +4,7 @@ use base::Observer;
 
 use super::known::KnownMap;
 use super::part::part_maps;
-use super::search::{MapOptions, map_wholes};
+use super::search::map_wholes;
 use super::shape::MapShape;
 use super::surface_map::SurfaceMap;
 use crate::relation::Side;
@@ -36,13 +36,13 @@ pub fn map_surfaces(
     a: &MapShape,
     b: &MapShape,
     known: &KnownMap,
-    options: &MapOptions,
+    eigenfunctions: usize,
     observer: &dyn Observer,
 ) -> Result<Vec<SurfaceMap>, DescriptorError> {
-    let of_wholes = map_wholes(a, b, known, options, observer)?;
+    let of_wholes = map_wholes(a, b, known, eigenfunctions, observer)?;
     let Some(side) = possible_part(a, b).filter(|_| known.functions.is_none()) else { return Ok(of_wholes) };
     let [part, whole] = if side == Side::First { [a, b] } else { [b, a] };
-    let of_part = part_maps(part, whole, side, known, options, observer)?;
+    let of_part = part_maps(part, whole, side, known, observer)?;
     let least = |maps: &[SurfaceMap]| maps.iter().map(|map| map.distortion).fold(f64::INFINITY, f64::min);
     Ok(if least(&of_part) < least(&of_wholes) { of_part } else { of_wholes })
 }
@@ -50,13 +50,9 @@ pub fn map_surfaces(
 /// The surface that may be a part of the other; `None` if neither has a boundary and is much smaller.
 fn possible_part(a: &MapShape, b: &MapShape) -> Option<Side> {
     let share = (a.size / b.size).powi(2);
-    let is_part =
-        |shape: &MapShape, share: f64| shape.from_cut.is_some() && share > SHARES[0] && share < SHARES[1];
-    if is_part(a, share) {
-        Some(Side::First)
-    } else if is_part(b, 1.0 / share) {
-        Some(Side::Second)
-    } else {
-        None
-    }
+    let sides = [(Side::First, a, share), (Side::Second, b, 1.0 / share)];
+    let part = sides
+        .into_iter()
+        .find(|(_, shape, share)| shape.from_cut.is_some() && *share > SHARES[0] && *share < SHARES[1]);
+    part.map(|(side, ..)| side)
 }

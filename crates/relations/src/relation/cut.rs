@@ -8,7 +8,6 @@ use nalgebra::{Point3, Vector3};
 use serde::Serialize;
 use surface::VertexId;
 
-use super::exact::Similarity;
 use super::geometry::{MeshGeometry, sorted};
 use super::parts::Side;
 use super::units::UnitChange;
@@ -59,9 +58,9 @@ pub(super) fn piece_of(whole: &MeshGeometry, piece: &MeshGeometry) -> Option<Fou
         let scale = piece.size / (factor * whole.size);
         let left = scale * scale;
         let is_possible = left <= MOST_LEFT && (factor == 1.0 || left >= LEAST_LEFT);
-        let search = PieceSearch::new(whole, piece, scale, factor).filter(|_| is_possible)?;
-        let shared = search.candidates().into_iter().find_map(|motion| search.shared(&motion));
-        shared.map(|_| FoundPiece { left, factor })
+        let search = if is_possible { PieceSearch::new(whole, piece, scale, factor)? } else { return None };
+        let is_found = search.candidates().iter().any(|motion| search.shares_faces(motion));
+        is_found.then_some(FoundPiece { left, factor })
     };
     std::iter::once(1.0).chain(UnitChange::factors()).find_map(found)
 }
@@ -90,11 +89,10 @@ impl<'a> PieceSearch<'a> {
     /// Motions that take a face of the piece to one of the whole with the same sides. The largest faces are tried: they say
     /// most precisely how the piece lies.
     fn candidates(&self) -> Vec<Alignment> {
-        let of_whole: Vec<[usize; 3]> =
-            self.whole.mesh.faces.iter().map(|f| f.map(VertexId::index)).collect();
-        let position = |v: usize| self.whole.mesh.positions[v];
-        let ordered: Vec<[usize; 3]> = of_whole.into_iter().map(|face| by_sides(face, position)).collect();
-        let all_sides: Vec<Point3<f64>> = ordered.iter().map(|face| sides(*face, position)).collect();
+        let positions = &self.whole.mesh.positions;
+        let ordered = self.whole.mesh.faces.iter().map(|face| by_sides(*face, positions));
+        let ordered: Vec<[usize; 3]> = ordered.collect();
+        let all_sides: Vec<Point3<f64>> = ordered.iter().map(|face| sides(*face, positions)).collect();
         let Ok(near) = NearestPoints::new(all_sides) else { return Vec::new() };
         let areas: Vec<f64> = self.piece.mesh.face_areas().collect();
         let mut order: Vec<usize> = (0..areas.len()).collect();
@@ -103,24 +101,24 @@ impl<'a> PieceSearch<'a> {
         let mut motions = vec![Alignment::about_origin(nalgebra::Matrix3::identity())];
         motions[0].translation = self.in_place;
         for f in order.into_iter().step_by(step).take(TRIED) {
-            let own = by_sides(self.piece.mesh.faces[f].map(VertexId::index), |v| self.points[v]);
-            let wanted = sides(own, |v| self.points[v]);
+            let own = by_sides(self.piece.mesh.faces[f], &self.points);
+            let wanted = sides(own, &self.points);
             for g in near.near(&wanted, 3.0 * self.tolerance, CANDIDATES) {
-                let pairs = [0, 1, 2].map(|i| (self.points[own[i]], position(ordered[g][i])));
+                let pairs = [0, 1, 2].map(|i| (self.points[own[i]], positions[ordered[g][i]]));
                 motions.extend(Alignment::fit(&pairs, false));
             }
         }
         motions
     }
 
-    /// The motion made precise, if enough faces of the piece are faces of the whole.
-    fn shared(&self, motion: &Alignment) -> Option<Similarity> {
+    /// Whether enough faces of the piece are faces of the whole, once the motion is made precise.
+    fn shares_faces(&self, motion: &Alignment) -> bool {
         let off = 30.0 * self.tolerance;
         let is_near = |p: &Point3<f64>| self.vertices.nearest(&motion.apply(p)).1 <= off * off;
         let step = (self.points.len() / PROBES).max(1);
         let probes = || self.points.iter().step_by(step);
         if (probes().filter(|p| is_near(p)).count() as f64) < LEAST_SHARED * probes().count() as f64 {
-            return None;
+            return false;
         }
         let pairs: Vec<_> = self
             .points
@@ -128,7 +126,7 @@ impl<'a> PieceSearch<'a> {
             .filter(|p| is_near(p))
             .map(|p| (*p, self.whole.mesh.positions[self.vertices.nearest(&motion.apply(p)).0]))
             .collect();
-        let precise = Similarity { motion: Alignment::fit(&pairs, false)?, scale: 1.0 };
+        let Some(precise) = Alignment::fit(&pairs, false) else { return false };
         let partner = |p: &Point3<f64>| {
             let (i, sq) = self.vertices.nearest(&precise.apply(p));
             (sq <= self.tolerance * self.tolerance).then(|| VertexId::from(i))
@@ -140,23 +138,22 @@ impl<'a> PieceSearch<'a> {
             _ => false,
         };
         let n_shared = self.piece.mesh.faces.iter().filter(is_shared).count();
-        let is_enough =
-            n_shared >= LEAST_FACES && n_shared as f64 >= LEAST_SHARED * self.piece.n_faces() as f64;
-        is_enough.then_some(precise)
+        n_shared >= LEAST_FACES && n_shared as f64 >= LEAST_SHARED * self.piece.n_faces() as f64
     }
 }
 
 /// The corners of a face, each opposite a side, the shortest side first.
-fn by_sides(face: [usize; 3], position: impl Fn(usize) -> Point3<f64>) -> [usize; 3] {
-    let side = |i: usize| (position(face[(i + 1) % 3]) - position(face[(i + 2) % 3])).norm();
+fn by_sides(face: [VertexId; 3], positions: &[Point3<f64>]) -> [usize; 3] {
+    let face = face.map(VertexId::index);
+    let lengths = sides(face, positions);
     let mut order = [0, 1, 2];
-    order.sort_by(|&i, &j| side(i).total_cmp(&side(j)));
+    order.sort_by(|&i, &j| lengths[i].total_cmp(&lengths[j]));
     order.map(|i| face[i])
 }
 
 /// The lengths of the sides opposite its corners.
-fn sides([a, b, c]: [usize; 3], position: impl Fn(usize) -> Point3<f64>) -> Point3<f64> {
-    let length = |p: usize, q: usize| (position(p) - position(q)).norm();
+fn sides([a, b, c]: [usize; 3], positions: &[Point3<f64>]) -> Point3<f64> {
+    let length = |p: usize, q: usize| (positions[p] - positions[q]).norm();
     Point3::new(length(b, c), length(c, a), length(a, b))
 }
 

@@ -4,6 +4,7 @@ use std::collections::HashSet;
 
 use descriptors::{Alignment, NearestPoints};
 use nalgebra::{Matrix3, Point3, Vector3};
+use surface::VertexId;
 
 use super::geometry::{MeshGeometry, sorted};
 
@@ -26,15 +27,10 @@ const LEAST_LEVER: f64 = 0.1;
 /// Vertices of two meshes that coincide after a similarity.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct SameVertices {
-    /// The orthogonal part of the map from the first to the second.
-    pub(super) rotation: Matrix3<f64>,
-    pub(super) mirrored: bool,
-    /// The vertex of the second for every vertex of the first.
-    pub(super) partners: Vec<usize>,
+    /// Takes the first mesh onto the second, both at unit area, about their centroids.
+    pub(super) map: Similarity,
     /// The largest distance between partners, relative to the size.
     pub(super) gap: f64,
-    /// Size of the second relative to the first, both at unit area.
-    pub(super) scale: f64,
     /// Whether the faces are the same too, apart from their orientation.
     pub(super) same_faces: bool,
 }
@@ -45,25 +41,24 @@ pub(super) fn same_vertices(a: &MeshGeometry, b: &MeshGeometry) -> Option<SameVe
     if a.n_vertices() != b.n_vertices() {
         return None;
     }
-    let tolerance = a.rounding + b.rounding;
-    let search = VertexSearch::new(a, b, tolerance)?;
-    let mut fallback: Option<SameVertices> = None;
-    for reflected in [false, true] {
-        let found = search.run(reflected);
-        match found {
-            Some(found) if found.same_faces => return Some(found),
-            Some(found) => fallback = fallback.or(Some(found)),
-            None => (),
-        }
+    let search = VertexSearch::new(a, b, a.rounding + b.rounding)?;
+    preferred([false, true].into_iter().filter_map(|reflected| search.run(reflected)))
+}
+
+/// The first map with the same faces, else the first one.
+fn preferred(mut found: impl Iterator<Item = SameVertices>) -> Option<SameVertices> {
+    let first = found.next()?;
+    if first.same_faces {
+        return Some(first);
     }
-    fallback
+    Some(found.find(|other| other.same_faces).unwrap_or(first))
 }
 
 struct VertexSearch<'a> {
     geometries: [&'a MeshGeometry; 2],
     tolerance: f64,
     nearest: NearestPoints,
-    faces: HashSet<[surface::VertexId; 3]>,
+    faces: HashSet<[VertexId; 3]>,
     /// Two vertices of the first mesh, and the vertices of the second at the same distance from the centroid.
     base: [Point3<f64>; 2],
     images: [Vec<Point3<f64>>; 2],
@@ -120,67 +115,66 @@ impl<'a> VertexSearch<'a> {
         })
     }
 
-    /// The first map with the same faces, else the first one.
+    /// The map with or without a reflection.
     fn run(&self, reflected: bool) -> Option<SameVertices> {
         let [p1, p2] = self.base;
         let apart = (p1 - p2).norm();
-        let (mut n_pairs, mut n_checked) = (0, 0);
-        let mut fallback = None;
-        for q1 in &self.images[0] {
-            for q2 in &self.images[1] {
-                n_pairs += 1;
-                if n_pairs > MOST_PAIRS || n_checked > MOST_CHECKED {
-                    return fallback;
-                }
-                if ((q1 - q2).norm() - apart).abs() > 4.0 * self.tolerance {
-                    continue;
-                }
-                let Some(rotation) = from_frames([&p1, &p2], [q1, q2], reflected) else { continue };
-                let motion = Alignment::about_origin(rotation);
-                let off = LEVERAGE * self.tolerance;
-                let is_near = |p: &Point3<f64>| self.nearest.nearest(&motion.apply(p)).1 <= off * off;
-                if !self.probes.iter().all(is_near) {
-                    continue;
-                }
-                n_checked += 1;
-                match self.checked(&motion, off) {
-                    Some(found) if found.same_faces => return Some(found),
-                    Some(found) => fallback = fallback.or(Some(found)),
-                    None => (),
-                }
-            }
-        }
-        fallback
+        let pairs = self.images[0].iter().flat_map(|q1| self.images[1].iter().map(move |q2| [*q1, *q2]));
+        let is_apart = |[q1, q2]: &[Point3<f64>; 2]| ((q1 - q2).norm() - apart).abs() <= 4.0 * self.tolerance;
+        let directions = |[p, q]: [Point3<f64>; 2]| Some([p.coords.try_normalize(0.0)?, q.coords]);
+        let from = directions(self.base)?;
+        let motion = |to| of_frames(from, directions(to)?, reflected);
+        let off = LEVERAGE * self.tolerance;
+        let is_near = |motion: &Alignment| {
+            self.probes.iter().all(|p| self.nearest.nearest(&motion.apply(p)).1 <= off * off)
+        };
+        let motions = pairs.take(MOST_PAIRS).filter(is_apart).filter_map(motion).filter(is_near);
+        preferred(motions.take(MOST_CHECKED).filter_map(|motion| self.checked(motion, off)))
     }
 
     /// The vertices as partners under a motion that is off by at most `off`, which is made precise.
-    fn checked(&self, motion: &Alignment, off: f64) -> Option<SameVertices> {
-        let [p, q] = self.geometries.map(|geometry| &geometry.mesh.positions);
-        let mut is_taken = vec![false; q.len()];
-        let mut partners = Vec::with_capacity(p.len());
-        for point in p {
-            let (i, sq) = self.nearest.nearest(&motion.apply(point));
-            if sq > off * off || std::mem::replace(&mut is_taken[i], true) {
-                return None;
-            }
-            partners.push(i);
-        }
-        let pairs: Vec<_> = p.iter().zip(&partners).map(|(p, &i)| (*p, q[i])).collect();
-        let Similarity { motion, scale } = Similarity::fit(&pairs, motion.reflected)?;
-        let gaps = pairs.iter().map(|(x, y)| (motion.apply(&(x * scale)) - y).norm());
-        let gap = gaps.fold(0.0, f64::max);
+    fn checked(&self, motion: Alignment, off: f64) -> Option<SameVertices> {
+        let [a, b] = self.geometries;
+        let rough = Similarity { motion, scale: 1.0 };
+        let Fitted { map, gap, partners } = Fitted::new(&a.mesh.positions, &self.nearest, &rough, off)?;
         if gap > self.tolerance {
             return None;
         }
-        let mapped = self.geometries[0]
-            .mesh
-            .faces
-            .iter()
-            .map(|face| sorted(face.map(|v| surface::VertexId::from(partners[v.index()]))));
-        let same_faces = self.geometries[0].n_faces() == self.geometries[1].n_faces()
-            && mapped.into_iter().all(|face| self.faces.contains(&face));
-        let (rotation, mirrored) = (motion.rotation, motion.reflected);
-        Some(SameVertices { rotation, mirrored, partners, gap, scale, same_faces })
+        let image = |face: &[VertexId; 3]| sorted(face.map(|v| VertexId::from(partners[v.index()])));
+        let same_faces =
+            a.n_faces() == b.n_faces() && a.mesh.faces.iter().all(|face| self.faces.contains(&image(face)));
+        let motion = Alignment::about_origin(map.motion.rotation);
+        Some(SameVertices { map: Similarity { motion, ..map }, gap, same_faces })
+    }
+}
+
+/// Points that lie nearly on others, each on one of its own.
+pub(super) struct Fitted {
+    /// The map that takes them there best.
+    pub(super) map: Similarity,
+    /// How far they stay apart at most.
+    pub(super) gap: f64,
+    partners: Vec<usize>,
+}
+
+impl Fitted {
+    /// Of the points that are nearest under a rough map. `None` if one is farther than `off`, or the nearest one of two.
+    pub(super) fn new(
+        points: &[Point3<f64>],
+        others: &NearestPoints,
+        rough: &Similarity,
+        off: f64,
+    ) -> Option<Self> {
+        let mut is_taken = vec![false; others.points().len()];
+        let partner = |p: &Point3<f64>| {
+            let (i, sq) = others.nearest(&rough.apply(p));
+            (sq <= off * off && !std::mem::replace(&mut is_taken[i], true)).then_some(i)
+        };
+        let partners: Vec<usize> = points.iter().map(partner).collect::<Option<_>>()?;
+        let pairs: Vec<_> = points.iter().zip(&partners).map(|(p, &i)| (*p, others.points()[i])).collect();
+        let map = Similarity::fit(&pairs, rough.motion.reflected)?;
+        let gap = pairs.iter().map(|(p, q)| (map.apply(p) - q).norm()).fold(0.0, f64::max);
+        Some(Self { map, gap, partners })
     }
 }
 
@@ -217,21 +211,40 @@ impl Similarity {
     pub(super) fn apply(&self, p: &Point3<f64>) -> Point3<f64> {
         self.motion.apply(&(p * self.scale))
     }
+
+    /// This map after another one.
+    pub(super) fn after(&self, first: &Self) -> Self {
+        let turned = self.motion.rotation * first.motion.translation;
+        let translation = turned * self.scale + self.motion.translation;
+        let motion = Alignment { translation, ..self.motion.after(&first.motion) };
+        Self { motion, scale: first.scale * self.scale }
+    }
+
+    /// The map back.
+    pub(super) fn inverse(&self) -> Self {
+        // y = R s x + t, so x = R^T (y - t) / s.
+        let back = self.motion.inverse();
+        let motion = Alignment { translation: back.translation / self.scale, ..back };
+        Self { motion, scale: 1.0 / self.scale }
+    }
 }
 
-/// The orthogonal matrix that takes the plane through the origin and two points to that of two others.
-fn from_frames(from: [&Point3<f64>; 2], to: [&Point3<f64>; 2], reflected: bool) -> Option<Matrix3<f64>> {
-    let frame = |[p, q]: [&Point3<f64>; 2]| {
-        let x = p.coords.try_normalize(0.0)?;
-        let z = x.cross(&q.coords).try_normalize(1e-9)?;
+/// The turn about the origin that takes the plane of two vectors to that of two others, and the first, of length 1, to the
+/// first.
+pub(super) fn of_frames(
+    from: [Vector3<f64>; 2],
+    to: [Vector3<f64>; 2],
+    reflected: bool,
+) -> Option<Alignment> {
+    let frame = |[x, y]: [Vector3<f64>; 2]| {
+        let z = x.cross(&y).try_normalize(1e-9)?;
         Some(Matrix3::from_columns(&[x, z.cross(&x), z]))
     };
     let (from, mut to) = (frame(from)?, frame(to)?);
     if reflected {
-        let normal = -to.column(2);
-        to.set_column(2, &normal);
+        to.column_mut(2).neg_mut();
     }
-    Some(to * from.transpose())
+    Some(Alignment::about_origin(to * from.transpose()))
 }
 
 #[cfg(test)]
@@ -256,7 +269,7 @@ mod tests {
                 .faces
                 .iter()
                 .rev()
-                .map(|face| face.map(|v| surface::VertexId::from(n - 1 - v.index())))
+                .map(|face| face.map(|v| VertexId::from(n - 1 - v.index())))
                 .collect(),
         }
     }
@@ -271,12 +284,12 @@ mod tests {
         let symmetric = [shapes::icosphere(3), shapes::cube(4), shapes::tetrahedron(2)];
         for mesh in symmetric.iter().chain([&lopsided_torus()]) {
             let same = found(mesh, &moved(mesh, 25.4, 1.0)).unwrap();
-            assert!(same.same_faces && !same.mirrored && same.gap < 1e-6, "{same:?}");
-            assert!((same.scale - 1.0).abs() < 1e-6, "at unit area: {}", same.scale);
+            assert!(same.same_faces && !same.map.motion.reflected && same.gap < 1e-6, "{same:?}");
+            assert!((same.map.scale - 1.0).abs() < 1e-6, "at unit area: {}", same.map.scale);
         }
         let mirrored = found(&lopsided_torus(), &moved(&lopsided_torus(), 1.0, -1.0)).unwrap();
-        assert!(mirrored.same_faces && mirrored.mirrored);
-        assert!(mirrored.rotation.determinant() < 0.0);
+        assert!(mirrored.same_faces && mirrored.map.motion.reflected);
+        assert!(mirrored.map.motion.rotation.determinant() < 0.0);
     }
 
     #[test]
@@ -290,7 +303,7 @@ mod tests {
         let whole = flipped.clone();
         let [first, second] = [whole.faces[0], whole.faces[1]];
         let shared: Vec<_> = first.into_iter().filter(|v| second.contains(v)).collect();
-        let apart = |face: [surface::VertexId; 3]| face.into_iter().find(|v| !shared.contains(v)).unwrap();
+        let apart = |face: [VertexId; 3]| face.into_iter().find(|v| !shared.contains(v)).unwrap();
         for (i, end) in shared.iter().enumerate() {
             flipped.faces[i] = [apart(first), *end, apart(second)];
         }

@@ -7,7 +7,7 @@ use base::ContentHash;
 use descriptors::{CanonicalForm, PreparedForm};
 use mesh::{SmoothRegions, TriMesh, is_noisy};
 use nalgebra::Point3;
-use surface::{VertexId, components_of_faces};
+use surface::{Components, VertexId, components_of_faces};
 
 use super::triangles::TriangleTree;
 
@@ -56,9 +56,7 @@ pub struct MeshGeometry {
     pub(super) spreads: [f64; 3],
     /// The largest coordinate in the file, in mesh units.
     farthest: f64,
-    /// The component of every vertex.
-    labels: Vec<usize>,
-    n_components: usize,
+    components: Components,
     samples: OnceLock<Vec<Point3<f64>>>,
     tree: OnceLock<TriangleTree>,
     form: OnceLock<Option<PreparedForm>>,
@@ -87,7 +85,6 @@ impl MeshGeometry {
         mesh.positions.iter_mut().for_each(|p| *p -= centroid);
         let mut spreads: [f64; 3] = covariance.symmetric_eigenvalues().map(|x| x.max(0.0).sqrt()).into();
         spreads.sort_by(|a, b| b.total_cmp(a));
-        let components = components_of_faces(mesh.n_vertices(), &mesh.faces);
         Some(Self {
             content: None,
             size,
@@ -95,8 +92,7 @@ impl MeshGeometry {
             rounding: (ROUNDING * farthest / size).min(MOST_ROUNDING),
             spreads,
             farthest,
-            labels: components.labels.iter().map(|label| label.map_or(0, |label| label as usize)).collect(),
-            n_components: components.count,
+            components: components_of_faces(mesh.n_vertices(), &mesh.faces),
             mesh,
             samples: OnceLock::new(),
             tree: OnceLock::new(),
@@ -122,7 +118,7 @@ impl MeshGeometry {
     /// Number of connected components.
     #[must_use]
     pub fn n_components(&self) -> usize {
-        self.n_components
+        self.components.count
     }
 
     /// The square root of the area, in mesh units.
@@ -187,18 +183,19 @@ impl MeshGeometry {
     /// The components with enough area as geometries of their own, largest first; none if there is only one.
     pub(super) fn parts(&self) -> &[Self] {
         self.parts.get_or_init(|| {
-            if self.n_components < 2 {
+            if self.n_components() < 2 {
                 return Vec::new();
             }
-            let mut parts = vec![TriMesh::default(); self.n_components];
+            let mut parts = vec![TriMesh::default(); self.n_components()];
             let mut number = Vec::with_capacity(self.n_vertices());
-            for (p, &label) in self.mesh.positions.iter().zip(&self.labels) {
-                number.push(VertexId::from(parts[label].n_vertices()));
-                parts[label].positions.push(self.centre + p.coords * self.size);
+            for (v, p) in self.mesh.positions.iter().enumerate() {
+                let part = &mut parts[self.components.of(VertexId::from(v))];
+                number.push(VertexId::from(part.n_vertices()));
+                part.positions.push(self.centre + p.coords * self.size);
             }
-            let mut areas = vec![0.0; self.n_components];
+            let mut areas = vec![0.0; parts.len()];
             for (face, area) in self.mesh.faces.iter().zip(self.mesh.face_areas()) {
-                let label = self.labels[face[0].index()];
+                let label = self.components.of(face[0]);
                 parts[label].faces.push(face.map(|v| number[v.index()]));
                 areas[label] += area;
             }

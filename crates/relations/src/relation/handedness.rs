@@ -2,7 +2,7 @@
 
 use descriptors::{Alignment, CanonicalForm, DescriptorError, NearestPoints, Reflections, ShapePair};
 use mesh::TriMesh;
-use nalgebra::{Point3, Vector3};
+use nalgebra::Vector3;
 use serde::Serialize;
 
 use crate::outward::outward;
@@ -38,29 +38,20 @@ const DECISIVE: f64 = 1.25;
 /// of one body are about 0.03 apart (`cargo run --release -p experiments -- units`), so that smaller differences say nothing.
 const EXCESS: f64 = 0.02;
 
-/// The points of a form at unit area, with the faces of the surface turned so that normals point outwards.
-struct OutwardForm {
-    points: Vec<Point3<f64>>,
-    weights: Vec<f64>,
+/// A form at unit area, with the faces of the surface turned so that normals point outwards.
+struct OutwardForm<'a> {
     mesh: TriMesh,
+    weights: &'a [f64],
 }
 
-impl OutwardForm {
-    /// `None` if the surface does not enclose a volume.
-    fn new(points: Vec<Point3<f64>>, weights: &[f64], mesh: &TriMesh) -> Option<Self> {
-        Some(Self { points, weights: weights.to_vec(), mesh: outward(mesh)? })
+/// Normals at the vertices, not normalised.
+fn normals(mesh: &TriMesh) -> Vec<Vector3<f64>> {
+    let mut normals = vec![Vector3::zeros(); mesh.n_vertices()];
+    for (f, face) in mesh.faces.iter().enumerate() {
+        let normal = mesh.area_vector(f);
+        face.iter().for_each(|v| normals[v.index()] += normal);
     }
-
-    /// Normals at moved points, not normalised.
-    fn normals(&self, points: Vec<Point3<f64>>) -> Vec<Vector3<f64>> {
-        let moved = TriMesh { positions: points, faces: self.mesh.faces.clone() };
-        let mut normals = vec![Vector3::zeros(); moved.n_vertices()];
-        for (f, face) in moved.faces.iter().enumerate() {
-            let normal = moved.area_vector(f);
-            face.iter().for_each(|v| normals[v.index()] += normal);
-        }
-        normals
-    }
+    normals
 }
 
 /// How far the outsides of two forms agree under a motion of the first onto the second: the mean cosine between
@@ -68,19 +59,23 @@ impl OutwardForm {
 ///
 /// Faces move with their points, so a motion with a reflection reverses normals: this tests whether the map from
 /// surface to surface preserves orientation, not whether the motion does.
-fn agreement(a: &OutwardForm, nearest: &NearestPoints, others: &[Vector3<f64>], motion: &Alignment) -> f64 {
-    let moved: Vec<_> = a.points.iter().map(|p| motion.apply(p)).collect();
-    let normals = a.normals(moved.clone());
-    let points = moved.iter().zip(&a.weights).zip(&normals);
-    let (sum, total) = points.fold((0.0, 0.0), |(sum, total), ((point, weight), normal)| {
+fn agreement(
+    a: &OutwardForm<'_>,
+    nearest: &NearestPoints,
+    others: &[Vector3<f64>],
+    motion: &Alignment,
+) -> f64 {
+    let positions = a.mesh.positions.iter().map(|p| motion.apply(p)).collect();
+    let moved = TriMesh { positions, faces: a.mesh.faces.clone() };
+    let (mut sum, mut total) = (0.0, 0.0);
+    for ((point, weight), normal) in moved.positions.iter().zip(a.weights).zip(normals(&moved)) {
         let other = others[nearest.nearest(point).0];
         let lengths = normal.norm() * other.norm();
         if lengths > 0.0 {
-            (sum + weight * normal.dot(&other) / lengths, total + weight)
-        } else {
-            (sum, total)
+            sum += weight * normal.dot(&other) / lengths;
+            total += weight;
         }
-    });
+    }
     if total > 0.0 { sum / total } else { 0.0 }
 }
 
@@ -103,10 +98,11 @@ pub fn handedness(
     }
     let [a, b] = [0, 1].map(|i| {
         let (form, mesh) = surfaces[i];
-        OutwardForm::new(pair.shapes[i].at_unit_area(form), form.weights(), mesh)
+        let mesh = TriMesh { positions: pair.shapes[i].at_unit_area(form), ..outward(mesh)? };
+        Some(OutwardForm { mesh, weights: form.weights() })
     });
     let (Some(a), Some(b)) = (a, b) else { return Ok(Handedness::Unknown) };
-    let (nearest, others) = (NearestPoints::new(b.points.clone())?, b.normals(b.points.clone()));
+    let (nearest, others) = (NearestPoints::new(b.mesh.positions.clone())?, normals(&b.mesh));
     // The least distance of a map that preserves, and of one that reverses orientation.
     let (mut preserving, mut reversing) = (f64::INFINITY, f64::INFINITY);
     for reflections in [Reflections::Forbid, Reflections::Require] {

@@ -1,10 +1,12 @@
 //! How far two surfaces are apart in space, after the best motion, reflection and change of size.
 
 use descriptors::{Alignment, FormAlignment, Reflections, align_forms};
-use nalgebra::{Matrix3, Point3, Rotation3, SMatrix, SVector, Unit, UnitQuaternion, Vector3};
+use nalgebra::{
+    Matrix3, Point3, Rotation3, SMatrix, SVector, SymmetricEigen, U3, Unit, UnitQuaternion, Vector3,
+};
 use serde::Serialize;
 
-use super::exact::Similarity;
+use super::exact::{Similarity, of_frames};
 use super::geometry::MeshGeometry;
 
 /// Surfaces of one spread whose spreads along a principal axis differ by more than this are not aligned: they are farther apart
@@ -71,11 +73,17 @@ pub struct SurfaceGap {
 /// Two surfaces laid over each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Aligned {
-    /// Takes the first surface, at unit area, onto the second, at unit area.
+    /// Takes the first surface, at unit area, onto the second, at unit area. With a reflection only if the surfaces fit
+    /// decisively better.
     pub(super) map: Similarity,
     pub(super) gap: SurfaceGap,
-    /// Whether the surfaces fit decisively better with a reflection.
-    pub(super) mirrored: bool,
+}
+
+impl Aligned {
+    /// By a map.
+    pub(super) fn by(a: &MeshGeometry, b: &MeshGeometry, map: Similarity) -> Option<Self> {
+        gap(a, b, &map, usize::MAX).map(|gap| Self { map, gap })
+    }
 }
 
 /// Aligns two surfaces in space; `None` if their extents differ too much to be one surface.
@@ -92,23 +100,13 @@ pub(super) fn aligned(a: &MeshGeometry, b: &MeshGeometry) -> Option<Aligned> {
         |start: FormAlignment, is_worth: bool| if is_worth { best(a, b, &start.alignment) } else { None };
     let proper_found = found(proper, worth(proper, reflected));
     // No reflection is decisively better than a map that is as good as refinement ends.
-    let is_found = proper_found.as_ref().is_some_and(|(_, gap)| gap.rms <= EXCESS);
+    let is_found = proper_found.is_some_and(|found| found.gap.rms <= EXCESS);
     let reflected_found = found(reflected, !is_found && worth(reflected, proper));
-    let ((map, gap), mirrored) = match (proper_found, reflected_found) {
-        (Some(proper), Some(reflected)) if is_decisive(&reflected.1, &proper.1) => {
-            match unmirrored(a, b, &reflected) {
-                Some(turned) => (turned, false),
-                None => (reflected, true),
-            }
-        }
-        (Some(proper), _) => (proper, false),
-        (None, Some(reflected)) => match unmirrored(a, b, &reflected) {
-            Some(turned) => (turned, false),
-            None => (reflected, true),
-        },
-        (None, None) => return None,
-    };
-    Some(Aligned { map, gap, mirrored })
+    match (proper_found, reflected_found) {
+        (Some(proper), Some(reflected)) if !is_decisive(&reflected.gap, &proper.gap) => Some(proper),
+        (_, Some(reflected)) => Some(unmirrored(a, b, &reflected).unwrap_or(reflected)),
+        (proper, None) => proper,
+    }
 }
 
 /// Whether one map is better than another by more than the limits of refinement.
@@ -117,16 +115,11 @@ fn is_decisive(better: &SurfaceGap, worse: &SurfaceGap) -> bool {
 }
 
 /// The map without a reflection that is as good as one with a reflection, if the surface is its own mirror image.
-fn unmirrored(
-    a: &MeshGeometry,
-    b: &MeshGeometry,
-    (map, apart): &(Similarity, SurfaceGap),
-) -> Option<(Similarity, SurfaceGap)> {
-    let after = |mirror: Alignment| Similarity { motion: mirror.after(&map.motion), scale: map.scale };
-    nearest_starts(a, b, mirror_planes(b).into_iter().map(after)).into_iter().find_map(|start| {
-        let (found, _) = refined(a, b, start);
-        let distance = gap(a, b, &found, usize::MAX)?;
-        (!is_decisive(apart, &distance)).then_some((found, distance))
+fn unmirrored(a: &MeshGeometry, b: &MeshGeometry, mirrored: &Aligned) -> Option<Aligned> {
+    let starts = mirror_planes(b).into_iter().map(|mirror| mirror.after(&mirrored.map));
+    nearest_starts(a, b, starts).into_iter().find_map(|start| {
+        let found = Aligned::by(a, b, refined(a, b, start).0)?;
+        (!is_decisive(&mirrored.gap, &found.gap)).then_some(found)
     })
 }
 
@@ -134,44 +127,43 @@ fn unmirrored(
 pub(super) fn is_symmetric(geometry: &MeshGeometry) -> bool {
     let zero = SurfaceGap { rms: 0.0, max: 0.0 };
     // A reflection of the surface, undone by itself, is a map without a reflection.
-    let is_image = |mirror: Alignment| {
-        let map = Similarity { motion: mirror, scale: 1.0 };
-        let near = gap(geometry, geometry, &map, RANKING).is_some_and(|gap| gap.rms < CLOSE);
-        near && gap(geometry, geometry, &refined(geometry, geometry, map).0, usize::MAX)
-            .is_some_and(|gap| !is_decisive(&zero, &gap))
+    let is_image = |mirror: Similarity| {
+        let near = gap(geometry, geometry, &mirror, RANKING).is_some_and(|gap| gap.rms < CLOSE);
+        near && Aligned::by(geometry, geometry, refined(geometry, geometry, mirror).0)
+            .is_some_and(|found| !is_decisive(&zero, &found.gap))
     };
     mirror_planes(geometry).into_iter().any(is_image)
 }
 
 /// Reflections in planes through the centroid that may leave a surface as it is: across its principal axes, and across its
 /// planes and axes and halfway between them.
-fn mirror_planes(geometry: &MeshGeometry) -> Vec<Alignment> {
-    let covariance: Matrix3<f64> = geometry.samples().iter().map(|p| p.coords * p.coords.transpose()).sum();
-    let axes = covariance.symmetric_eigen().eigenvectors;
+fn mirror_planes(geometry: &MeshGeometry) -> Vec<Similarity> {
+    let axes = principal_axes(geometry).eigenvectors;
     let directions = geometry.regions().directions();
     let main: Vec<Vector3<f64>> = directions.iter().take(MOST_DIRECTIONS).map(|(d, _)| *d).collect();
     let mut normals: Vec<Vector3<f64>> =
         axes.column_iter().map(|axis| axis.into_owned()).chain(main.iter().copied()).collect();
     for (i, d) in main.iter().enumerate() {
-        normals
-            .extend(main[..i].iter().flat_map(|e| [d + e, d - e]).filter_map(|sum| sum.try_normalize(1e-3)));
-        normals.extend(main[..i].iter().filter_map(|e| d.cross(e).try_normalize(1e-3)));
+        let between = main[..i].iter().flat_map(|e| [d + e, d - e, d.cross(e)]);
+        normals.extend(between.filter_map(|normal| normal.try_normalize(1e-3)));
     }
-    let reflection = |n: Vector3<f64>| Alignment::about_origin(Matrix3::identity() - 2.0 * n * n.transpose());
+    let reflection = |n: Vector3<f64>| Similarity {
+        motion: Alignment::about_origin(Matrix3::identity() - 2.0 * n * n.transpose()),
+        scale: 1.0,
+    };
     normals.into_iter().map(reflection).collect()
 }
 
 /// The best alignment from a motion between the forms, with a reflection if and only if that has one.
-fn best(a: &MeshGeometry, b: &MeshGeometry, start: &Alignment) -> Option<(Similarity, SurfaceGap)> {
+fn best(a: &MeshGeometry, b: &MeshGeometry, start: &Alignment) -> Option<Aligned> {
     // The forms have unit spread.
     let scaled = |motion: Alignment| {
         let translation = motion.translation * b.spread();
         Similarity { motion: Alignment { translation, ..motion }, scale: b.spread() / a.spread() }
     };
-    let (found, _) = refined(a, b, scaled(*start));
-    let mut best = (found, gap(a, b, &found, usize::MAX)?);
+    let mut best = Aligned::by(a, b, refined(a, b, scaled(*start)).0)?;
     let is_mechanical = a.is_mechanical() && b.is_mechanical();
-    if best.1.rms < if is_mechanical { SEATED } else { CLOSE } {
+    if best.gap.rms < if is_mechanical { SEATED } else { CLOSE } {
         return Some(best);
     }
     let mut turned = turned_starts(a, b, start);
@@ -179,15 +171,15 @@ fn best(a: &MeshGeometry, b: &MeshGeometry, start: &Alignment) -> Option<(Simila
         turned.extend(framed_starts(a, b, start.reflected));
     }
     for start in nearest_starts(a, b, turned.into_iter().map(scaled)) {
-        let (found, rms) = refined(a, b, start);
-        if rms > PROMISING * best.1.rms {
+        let (map, rms) = refined(a, b, start);
+        if rms > PROMISING * best.gap.rms {
             continue;
         }
-        let distance = gap(a, b, &found, usize::MAX)?;
-        if distance.rms < best.1.rms {
-            best = (found, distance);
+        let found = Aligned::by(a, b, map)?;
+        if found.gap.rms < best.gap.rms {
+            best = found;
         }
-        if best.1.rms < SEATED {
+        if best.gap.rms < SEATED {
             break;
         }
     }
@@ -227,33 +219,23 @@ fn equal_axes(a: &MeshGeometry, b: &MeshGeometry) -> [bool; 2] {
 /// Motions that take the two main directions of planes and axes of one part to two of the other.
 fn framed_starts(a: &MeshGeometry, b: &MeshGeometry, reflected: bool) -> Vec<Alignment> {
     let [of_a, of_b] = [a, b].map(|part| part.regions().directions());
+    let is_across = |x: &Vector3<f64>, y: &Vector3<f64>| x.cross(y).norm() > ACROSS;
     let Some(&(first, area)) = of_a.first() else { return Vec::new() };
-    let Some(&(second, other_area)) = of_a.iter().find(|(d, _)| d.cross(&first).norm() > ACROSS) else {
+    let Some(&(second, other_area)) = of_a.iter().find(|(d, _)| is_across(d, &first)) else {
         return Vec::new();
     };
-    let frame = |x: Vector3<f64>, y: Vector3<f64>| {
-        let z = x.cross(&y).normalize();
-        Matrix3::from_columns(&[x, z.cross(&x), z])
-    };
-    let from = frame(first, second);
-    let flip = if reflected { -1.0 } else { 1.0 };
     let alike = |x: f64, y: f64| (x - y).abs() < ALIKE;
     let main = || of_b.iter().take(MOST_DIRECTIONS);
     let pairs = main().flat_map(|x| main().map(move |y| (*x, *y)));
     let fitting = pairs.filter(|((x, area_x), (y, area_y))| {
-        let is_across = x.cross(y).norm() > ACROSS;
-        is_across
+        is_across(x, y)
             && alike(*area_x, area)
             && alike(*area_y, other_area)
             && alike(0.5 * x.dot(y).abs(), 0.5 * first.dot(&second).abs())
     });
     fitting
-        .flat_map(|((x, _), (y, _))| [(x, y), (x, -y), (-x, y), (-x, -y)])
-        .map(|(x, y)| {
-            let mut to = frame(x, y);
-            to.column_mut(2).scale_mut(flip);
-            Alignment::about_origin(to * from.transpose())
-        })
+        .flat_map(|((x, _), (y, _))| [[x, y], [x, -y], [-x, y], [-x, -y]])
+        .filter_map(|to| of_frames([first, second], to, reflected))
         .collect()
 }
 
@@ -281,11 +263,15 @@ fn orientation(i: usize) -> Rotation3<f64> {
     UnitQuaternion::from_quaternion(quaternion).to_rotation_matrix()
 }
 
+/// The principal axes of the samples.
+fn principal_axes(geometry: &MeshGeometry) -> SymmetricEigen<f64, U3> {
+    let samples = geometry.samples().iter();
+    samples.map(|p| p.coords * p.coords.transpose()).sum::<Matrix3<f64>>().symmetric_eigen()
+}
+
 /// The principal axis with the largest (0) or smallest (2) spread.
 fn principal_axis(geometry: &MeshGeometry, place: usize) -> Option<Unit<Vector3<f64>>> {
-    let samples = geometry.samples();
-    let covariance: Matrix3<f64> = samples.iter().map(|p| p.coords * p.coords.transpose()).sum();
-    let eigen = covariance.symmetric_eigen();
+    let eigen = principal_axes(geometry);
     let at = if place == 0 { eigen.eigenvalues.imax() } else { eigen.eigenvalues.imin() };
     Unit::try_new(eigen.eigenvectors.column(at).into_owned(), 0.0)
 }
@@ -327,7 +313,7 @@ fn contacts<'a>(
 }
 
 /// The distance under a map, by at least `n` samples of either surface.
-pub(super) fn gap(a: &MeshGeometry, b: &MeshGeometry, map: &Similarity, n: usize) -> Option<SurfaceGap> {
+fn gap(a: &MeshGeometry, b: &MeshGeometry, map: &Similarity, n: usize) -> Option<SurfaceGap> {
     let squares = contacts(a, b, map, n).map(|contact| contact.sq_distance());
     let (n, sum, max) = squares.fold((0, 0.0, 0.0), |(n, sum, max), sq| (n + 1, sum + sq, f64::max(max, sq)));
     (n > 0).then(|| SurfaceGap { rms: (sum / f64::from(n)).sqrt(), max: max.sqrt() })
@@ -346,15 +332,7 @@ fn refined(a: &MeshGeometry, b: &MeshGeometry, start: Similarity) -> (Similarity
     for _ in 0..STEPS {
         let before = error(&found);
         let Some(step) = tangent_step(&found, damping) else { break };
-        let next = Similarity {
-            motion: Alignment {
-                rotation: step.motion.rotation * map.motion.rotation,
-                translation: step.motion.rotation * map.motion.translation * step.scale
-                    + step.motion.translation,
-                reflected: map.motion.reflected,
-            },
-            scale: map.scale * step.scale,
-        };
+        let next = step.after(&map);
         let after: Vec<Contact> = contacts(a, b, &next, REFINING).collect();
         let reached = error(&after);
         if reached < before {
@@ -393,9 +371,7 @@ fn tangent_step(contacts: &[Contact], damping: f64) -> Option<Similarity> {
         right += row * (to - from).dot(normal);
     }
     let scale = matrix.trace().max(f64::MIN_POSITIVE);
-    for i in 0..7 {
-        matrix[(i, i)] += damping * scale;
-    }
+    matrix += SMatrix::identity() * (damping * scale);
     let step = matrix.cholesky()?.solve(&right);
     let rotation = Rotation3::new(Vector3::new(step[0], step[1], step[2]));
     let motion = Alignment {
@@ -444,7 +420,7 @@ mod tests {
             let other = changed(&shapes::subdivide(&mesh), 25.4, flip);
             let found = aligned(&geometry(&mesh), &geometry(&other)).unwrap();
             assert!(found.gap.max < 1e-4, "{found:?}");
-            assert_eq!(found.mirrored, mirrored);
+            assert_eq!(found.map.motion.reflected, mirrored);
             assert!((found.map.scale - 1.0).abs() < 1e-4, "{}", found.map.scale);
         }
     }
@@ -461,7 +437,7 @@ mod tests {
             let other = changed(&shapes::subdivide(&mesh), 1.0, 1.0);
             let found = aligned(&geometry(&mesh), &geometry(&other)).unwrap();
             assert!(found.gap.rms < 1e-3, "{found:?}");
-            assert!(!found.mirrored, "its own mirror image");
+            assert!(!found.map.motion.reflected, "its own mirror image");
         }
     }
 

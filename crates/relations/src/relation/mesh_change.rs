@@ -18,51 +18,20 @@ const KEPT: f64 = 0.05;
 /// this. A safety limit: it is 0 for noise and 1 for a smooth deformation.
 const INDEPENDENT: f64 = 0.5;
 
-/// What happened to the triangles of a surface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum MeshChange {
-    /// The same faces, and displacements that do not depend on those of neighbours.
-    Noisy,
-    /// The same faces, and displacements that do.
-    Deformed,
-    /// Fewer vertices.
-    Decimated,
-    /// The same vertices and more.
-    Subdivided,
-    /// Other triangles.
-    Remeshed,
-}
-
-impl MeshChange {
-    /// The change between two triangulations of one surface; `map` takes the first onto the second.
-    pub(super) fn of([a, b]: [&MeshGeometry; 2], map: &Similarity) -> Self {
-        if a.n_vertices() == b.n_vertices() && a.mesh.faces == b.mesh.faces {
-            let is_noise = displacements([a, b]).is_some_and(|coherence| coherence < INDEPENDENT);
-            return if is_noise { Self::Noisy } else { Self::Deformed };
-        }
-        let ratio = b.n_vertices() as f64 / a.n_vertices() as f64;
-        if ratio < 1.0 - AS_MANY {
-            Self::Decimated
-        } else if ratio > 1.0 + AS_MANY && has_vertices(b, a, map) {
-            Self::Subdivided
-        } else {
-            Self::Remeshed
-        }
+/// What happened to the triangles of a surface; `map` takes the first mesh onto the second. Of meshes with the same faces it is
+/// [`Change::Noisy`] if displacements do not depend on those of neighbours, else [`Change::Posed`].
+pub(super) fn mesh_change([a, b]: [&MeshGeometry; 2], map: &Similarity) -> Change {
+    if a.n_vertices() == b.n_vertices() && a.mesh.faces == b.mesh.faces {
+        let is_noise = displacements([a, b]).is_some_and(|coherence| coherence < INDEPENDENT);
+        return if is_noise { Change::Noisy } else { Change::Posed };
     }
-
-    /// The change of the triangles, if any.
-    pub(super) fn triangles(self) -> Option<Change> {
-        match self {
-            Self::Noisy | Self::Deformed => None,
-            Self::Decimated => Some(Change::Decimated),
-            Self::Subdivided => Some(Change::Subdivided),
-            Self::Remeshed => Some(Change::Remeshed),
-        }
-    }
-
-    /// Whether one of the two meshes has noise, and the other has not.
-    pub(super) fn has_noise(self, [a, b]: [&MeshGeometry; 2]) -> bool {
-        self == Self::Noisy || a.is_noisy() != b.is_noisy()
+    let ratio = b.n_vertices() as f64 / a.n_vertices() as f64;
+    if ratio < 1.0 - AS_MANY {
+        Change::Decimated
+    } else if ratio > 1.0 + AS_MANY && has_vertices(b, a, map) {
+        Change::Subdivided
+    } else {
+        Change::Remeshed
     }
 }
 

@@ -1,10 +1,9 @@
 //! Two meshes laid over each other in space.
 
-use descriptors::Alignment;
 use mesh::TriMesh;
-use nalgebra::{Point3, Vector3};
+use nalgebra::Point3;
 
-use super::exact::{Similarity, same_vertices};
+use super::exact::same_vertices;
 use super::geometry::MeshGeometry;
 use super::in_space::aligned;
 use super::triangles::TriangleTree;
@@ -40,11 +39,7 @@ impl Relation {
         if self.kind >= RelationKind::Copies && self.kind != RelationKind::Variant {
             return None;
         }
-        let exact = same_vertices(a, b).map(|same| {
-            let translation = Vector3::zeros();
-            let motion = Alignment { rotation: same.rotation, translation, reflected: same.mirrored };
-            Similarity { motion, scale: same.scale }
-        });
+        let exact = same_vertices(a, b).map(|same| same.map);
         let map = exact.or_else(|| aligned(a, b).map(|found| found.map))?;
         // The map leads to the second mesh at unit area.
         let size = a.size / map.scale;
@@ -68,7 +63,7 @@ fn gaps(from: &TriMesh, to: &TriMesh) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use descriptors::ShapeDistance;
-    use nalgebra::Rotation3;
+    use nalgebra::{Rotation3, Vector3};
 
     use super::*;
     use crate::relation::Handedness;

@@ -92,20 +92,15 @@ impl Relation {
     pub fn by_distance(distance: ShapeDistance, scale: f64, handedness: Handedness) -> Self {
         let mut because = Because { scale, handedness, ..Because::by_distance(distance) };
         let (same_shape, same_class) = (because.same_shape, because.same_class);
-        let mut changes = Vec::new();
-        let (kind, confidence) = if same_shape > 0.5 {
+        let (kind, confidence, changes) = if same_shape > 0.5 {
             because.units = UnitChange::of(scale, SIZE_OF_SURFACES);
-            if scale.max(1.0 / scale) > ShapeMetric::SIZE_OF_POSES {
-                changes.push(Change::Scaled);
-            }
-            if handedness == Handedness::Mirrored {
-                changes.push(Change::Mirrored);
-            }
-            (RelationKind::OtherPose, same_shape)
+            let tolerance = ShapeMetric::SIZE_OF_POSES.ln();
+            let changes = Change::of_similarity(scale, tolerance, handedness == Handedness::Mirrored);
+            (RelationKind::OtherPose, same_shape, changes)
         } else if same_class > 0.5 {
-            (RelationKind::SameClass, same_class - same_shape)
+            (RelationKind::SameClass, same_class - same_shape, Vec::new())
         } else {
-            (RelationKind::Different, 1.0 - same_class)
+            (RelationKind::Different, 1.0 - same_class, Vec::new())
         };
         let names = ["the first", "the second"].map(str::to_owned);
         Self { kind, changes, confidence, because, names }

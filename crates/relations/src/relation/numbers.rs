@@ -11,18 +11,14 @@ pub(super) fn percent(share: f64) -> String {
     }
 }
 
-/// A number with five significant digits and no zeros at the end.
-pub(super) fn significant(x: f64) -> String {
-    in_digits(5, x)
-}
-
 /// A number with four significant digits and no zeros at the end.
 #[must_use]
 pub fn in_four_digits(x: f64) -> String {
     in_digits(4, x)
 }
 
-fn in_digits(n: u32, x: f64) -> String {
+/// A number with so many significant digits and no zeros at the end.
+pub(super) fn in_digits(n: u32, x: f64) -> String {
     let digits =
         (f64::from(n) - 1.0 - x.abs().max(f64::MIN_POSITIVE).log10().floor()).clamp(0.0, 9.0) as usize;
     let text = format!("{x:.digits$}");
@@ -46,7 +42,7 @@ mod tests {
 
     #[test]
     fn numbers_are_short() {
-        let shown = [25.4, 1000.0, 0.001, 1.0 / 25.4, 2.0 / 3.0, 123_456.7].map(significant);
+        let shown = [25.4, 1000.0, 0.001, 1.0 / 25.4, 2.0 / 3.0, 123_456.7].map(|x| in_digits(5, x));
         assert_eq!(shown, ["25.4", "1000", "0.001", "0.03937", "0.66667", "123457"]);
         assert_eq!([0.5, 0.0312, 0.0025].map(percent), ["50 %", "3.1 %", "0.25 %"]);
         assert_eq!([0, 6, 13].map(in_words), ["no", "six", "13"]);

@@ -1,11 +1,13 @@
 //! The relation of two meshes.
 
+use descriptors::Alignment;
+
 use super::cut::{CutPiece, FoundPiece, piece_of};
 use super::exact::{SameVertices, same_vertices};
 use super::geometry::MeshGeometry;
 use super::in_space::{Aligned, aligned, is_symmetric};
-use super::mesh_change::MeshChange;
-use super::parts::{Occurrences, Parts, Side, occurrences};
+use super::mesh_change::mesh_change;
+use super::parts::{PartCopy, Parts, Side, occurrences};
 use super::same_surface::{is_one_surface, same_surface};
 use super::units::UnitChange;
 use super::variant::differences;
@@ -52,27 +54,39 @@ impl Relation {
         {
             return found.with_same_vertices(&same, [a, b]);
         }
-        let (whole, copies) = match (occurrences(a, b), occurrences(b, a)) {
-            (Some(copies), _) => (Side::Second, copies),
-            (None, Some(copies)) => (Side::First, copies),
-            (None, None) => return found.with_surfaces([a, b]),
-        };
-        found.with_parts(whole, copies)
+        let sides = [(Side::Second, a, b), (Side::First, b, a)];
+        let copies = sides.into_iter().find_map(|(whole, mesh, of)| {
+            let (found, copy) = occurrences(mesh, of)?;
+            Some((Parts { whole, found, components: of.parts().len() }, copy))
+        });
+        match copies {
+            Some((parts, copy)) => found.with_parts(parts, copy),
+            None => found.with_surfaces([a, b]),
+        }
     }
 
-    /// The relation of this kind, with everything that changed.
-    fn found(mut self, kind: RelationKind, confidence: f64, changes: Vec<Change>, scale: f64) -> Self {
+    /// The relation of this kind, with everything that changed; `tolerance` is that of the scale.
+    fn found(
+        mut self,
+        kind: RelationKind,
+        confidence: f64,
+        changes: Vec<Change>,
+        scale: f64,
+        tolerance: f64,
+    ) -> Self {
         self.because.scale = scale;
+        self.because.units = UnitChange::of(scale, tolerance);
         Self { kind, confidence, changes, ..self }
     }
 
     /// Of meshes whose vertices are the same.
     fn with_same_vertices(mut self, same: &SameVertices, [a, b]: [&MeshGeometry; 2]) -> Self {
-        let scale = same.scale * b.size / a.size;
+        let Alignment { rotation, reflected, .. } = same.map.motion;
+        let scale = same.map.scale * b.size / a.size;
         let mut changes = Vec::new();
-        if !same.mirrored {
-            let angle = nalgebra::Rotation3::from_matrix_unchecked(same.rotation).angle();
-            let shift = b.centre.coords - same.rotation * a.centre.coords * scale;
+        if !reflected {
+            let angle = nalgebra::Rotation3::from_matrix_unchecked(rotation).angle();
+            let shift = b.centre.coords - rotation * a.centre.coords * scale;
             if shift.norm() > SIZE_OF_VERTICES * b.size {
                 changes.push(Change::Moved);
             }
@@ -81,94 +95,66 @@ impl Relation {
             }
             self.because.rotation = Some(angle.to_degrees());
         }
-        let mut kind = RelationKind::IdenticalGeometry;
-        if scale.ln().abs() > SIZE_OF_VERTICES {
-            changes.push(Change::Scaled);
-            kind = RelationKind::Scaled;
-        }
         // A surface that is its own mirror image is not another one for being mirrored, only its triangles are.
-        let is_turned = same.mirrored && is_symmetric(b);
-        if same.mirrored && !is_turned {
-            changes.push(Change::Mirrored);
-            kind = RelationKind::Mirrored;
-        }
-        if is_turned || !same.same_faces {
-            changes.push(Change::Remeshed);
-            kind = RelationKind::Remeshed;
-        }
+        let is_turned = reflected && is_symmetric(b);
+        changes.extend(Change::of_similarity(scale, SIZE_OF_VERTICES, reflected && !is_turned));
+        changes.extend((is_turned || !same.same_faces).then_some(Change::Remeshed));
+        let kind = match changes.last() {
+            Some(Change::Scaled) => RelationKind::Scaled,
+            Some(Change::Mirrored) => RelationKind::Mirrored,
+            Some(Change::Remeshed) => RelationKind::Remeshed,
+            _ => RelationKind::IdenticalGeometry,
+        };
         self.because.vertex_gap = Some(same.gap);
-        self.because.units = UnitChange::of(scale, SIZE_OF_VERTICES);
-        self.found(kind, 1.0, changes, scale)
+        self.found(kind, 1.0, changes, scale, SIZE_OF_VERTICES)
     }
 
-    /// Of meshes of which one, `whole`, has the other as a component.
-    fn with_parts(mut self, whole: Side, found: Occurrences) -> Self {
-        let scale = if whole == Side::Second { found.scale } else { 1.0 / found.scale };
-        let is_resized =
-            scale.ln().abs() > if found.same_vertices { SIZE_OF_VERTICES } else { SIZE_OF_SURFACES };
-        let mut changes = Vec::new();
-        if is_resized {
-            changes.push(Change::Scaled);
-        }
-        if found.mirrored {
-            changes.push(Change::Mirrored);
-        }
-        if !found.same_vertices {
-            changes.push(Change::Remeshed);
-        }
-        let all = found.found == found.components && found.found > 1;
+    /// Of meshes of which one has the other as a component.
+    fn with_parts(mut self, parts: Parts, copy: PartCopy) -> Self {
+        let PartCopy { scale, mirrored, gap, confidence } = copy;
+        let scale = if parts.whole == Side::Second { scale } else { 1.0 / scale };
+        let tolerance = if gap.is_none() { SIZE_OF_VERTICES } else { SIZE_OF_SURFACES };
+        let mut changes = Change::of_similarity(scale, tolerance, mirrored);
+        changes.extend(gap.map(|_| Change::Remeshed));
+        let all = parts.found == parts.components && parts.found > 1;
         let kind = if all { RelationKind::Copies } else { RelationKind::PartOf };
-        self.because.units = UnitChange::of(scale, SIZE_OF_SURFACES);
-        self.because.surface_gap = found.gap;
-        self.because.parts = Some(Parts { whole, found: found.found, components: found.components });
-        self.found(kind, found.confidence, changes, scale)
+        self.because.surface_gap = gap;
+        self.because.parts = Some(parts);
+        self.found(kind, confidence, changes, scale, tolerance)
     }
 
     /// Of meshes with different vertices: one surface, variants of one part, or what their distance says.
     fn with_surfaces(mut self, [a, b]: [&MeshGeometry; 2]) -> Self {
         let Some(aligned) = aligned(a, b) else { return self.with_differences([a, b], None) };
-        let Aligned { map, gap, mirrored } = aligned;
-        let change = MeshChange::of([a, b], &map);
+        let Aligned { map, gap } = aligned;
+        let change = mesh_change([a, b], &map);
         let probability = same_surface(&aligned, [a, b], change);
         self.because.surface_gap = Some(gap);
-        if probability < 0.5 || change == MeshChange::Deformed {
+        if probability < 0.5 || change == Change::Posed {
             return self.with_differences([a, b], Some(gap.rms));
         }
         let scale = map.scale * b.size / a.size;
-        let mut changes = Vec::new();
-        if scale.ln().abs() > SIZE_OF_SURFACES {
-            changes.push(Change::Scaled);
-        }
-        if mirrored {
-            changes.push(Change::Mirrored);
-        }
-        changes.extend(change.triangles());
-        let kind = if changes.iter().any(|change| *change >= Change::Decimated) {
-            RelationKind::Remeshed
-        } else {
-            RelationKind::Noisy
-        };
-        if change.has_noise([a, b]) {
+        let mut changes = Change::of_similarity(scale, SIZE_OF_SURFACES, map.motion.reflected);
+        let kind = if change == Change::Noisy { RelationKind::Noisy } else { RelationKind::Remeshed };
+        changes.push(change);
+        // One of the two has noise, and the other has not.
+        if change != Change::Noisy && a.is_noisy() != b.is_noisy() {
             changes.push(Change::Noisy);
         }
-        self.because.units = UnitChange::of(scale, SIZE_OF_SURFACES);
-        self.found(kind, probability, changes, scale)
+        self.found(kind, probability, changes, scale, SIZE_OF_SURFACES)
     }
 
     /// Of meshes that are not one surface. Parts of machines do not bend, so they are variants of one part, or other parts.
     fn with_differences(mut self, meshes: [&MeshGeometry; 2], rms: Option<f64>) -> Self {
         let [a, b] = meshes;
-        let cuts = [(Side::First, piece_of(a, b)), (Side::Second, piece_of(b, a))];
-        if let Some((whole, found)) = cuts.into_iter().find_map(|(whole, found)| Some((whole, found?))) {
-            let FoundPiece { left, factor } = found;
+        let sides = [(Side::First, a, b), (Side::Second, b, a)];
+        let piece = sides.into_iter().find_map(|(whole, of, piece)| Some((whole, piece_of(of, piece)?)));
+        if let Some((whole, FoundPiece { left, factor })) = piece {
             self.because.cut = Some(CutPiece { whole, left });
             let scale = if whole == Side::First { factor } else { 1.0 / factor };
-            let mut changes = vec![Change::Cut];
-            if factor != 1.0 {
-                changes.insert(0, Change::Scaled);
-                self.because.units = UnitChange::of(scale, SIZE_OF_VERTICES);
-            }
-            return self.found(RelationKind::PartOf, CUT, changes, scale);
+            let mut changes = Change::of_similarity(scale, SIZE_OF_VERTICES, false);
+            changes.push(Change::Cut);
+            return self.found(RelationKind::PartOf, CUT, changes, scale, SIZE_OF_VERTICES);
         }
         if let Some(differences) = differences(meshes, rms) {
             self.because.differences = differences;

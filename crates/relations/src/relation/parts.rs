@@ -6,7 +6,7 @@ use super::SIZE_OF_SURFACES;
 use super::exact::{SameVertices, same_vertices};
 use super::geometry::MeshGeometry;
 use super::in_space::{Aligned, SurfaceGap, aligned};
-use super::mesh_change::MeshChange;
+use super::mesh_change::mesh_change;
 use super::same_surface::same_surface;
 
 /// Most different components that are aligned with a mesh.
@@ -33,33 +33,21 @@ pub struct Parts {
     pub components: usize,
 }
 
-/// The occurrences of a mesh among the components of another.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Occurrences {
-    pub(super) found: usize,
-    pub(super) components: usize,
-    /// Size of the copies over that of the mesh.
+/// A component that is a copy of a mesh, or the worst of several.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PartCopy {
+    /// Size of the copy over that of the mesh.
     pub(super) scale: f64,
     pub(super) mirrored: bool,
-    /// How far the worst copy is apart, unless all have the same vertices.
+    /// How far the surfaces are apart, unless they have the same vertices.
     pub(super) gap: Option<SurfaceGap>,
-    pub(super) same_vertices: bool,
-    /// Probability that the least certain copy is one.
+    /// Probability that it is a copy.
     pub(super) confidence: f64,
 }
 
-/// One component beside the mesh that it may be a copy of.
-#[derive(Debug, Clone, Copy)]
-struct PartCopy {
-    scale: f64,
-    mirrored: bool,
-    gap: Option<SurfaceGap>,
-    confidence: f64,
-}
-
-/// Searches the components of `whole` for copies of a connected mesh, of one size. `None` if there are none, or if `whole` has
-/// one component.
-pub(super) fn occurrences(mesh: &MeshGeometry, whole: &MeshGeometry) -> Option<Occurrences> {
+/// The number of copies of a connected mesh, of one size, among the components of `whole`, and what is true of all of them.
+/// `None` if there are none, or if `whole` has one component.
+pub(super) fn occurrences(mesh: &MeshGeometry, whole: &MeshGeometry) -> Option<(usize, PartCopy)> {
     let parts = whole.parts();
     if mesh.n_components() > 1 || parts.is_empty() {
         return None;
@@ -72,7 +60,7 @@ pub(super) fn occurrences(mesh: &MeshGeometry, whole: &MeshGeometry) -> Option<O
             let same = same_vertices(kind, part).filter(|same| same.same_faces)?;
             Some(copy.map(|copy| PartCopy {
                 scale: copy.scale * part.size / kind.size,
-                mirrored: copy.mirrored != same.mirrored,
+                mirrored: copy.mirrored != same.map.motion.reflected,
                 ..copy
             }))
         });
@@ -96,26 +84,26 @@ pub(super) fn occurrences(mesh: &MeshGeometry, whole: &MeshGeometry) -> Option<O
         .map(alike)
         .max_by(|x, y| x.len().cmp(&y.len()).then(y[0].scale.total_cmp(&x[0].scale)))?;
     let gaps = found.iter().filter_map(|copy| copy.gap);
-    Some(Occurrences {
-        found: found.len(),
-        components: parts.len(),
+    let worst = PartCopy {
         scale: found[0].scale,
         mirrored: found.iter().all(|copy| copy.mirrored),
         gap: gaps.max_by(|x, y| x.rms.total_cmp(&y.rms)),
-        same_vertices: found.iter().all(|copy| copy.gap.is_none()),
         confidence: found.iter().map(|copy| copy.confidence).fold(1.0, f64::min),
-    })
+    };
+    Some((found.len(), worst))
 }
 
 fn copy_of(mesh: &MeshGeometry, part: &MeshGeometry, align: bool) -> Option<PartCopy> {
     let sizes = part.size / mesh.size;
-    if let Some(SameVertices { mirrored, scale, .. }) = same_vertices(mesh, part) {
-        return Some(PartCopy { scale: scale * sizes, mirrored, gap: None, confidence: 1.0 });
+    if let Some(SameVertices { map, .. }) = same_vertices(mesh, part) {
+        let (scale, mirrored) = (map.scale * sizes, map.motion.reflected);
+        return Some(PartCopy { scale, mirrored, gap: None, confidence: 1.0 });
     }
     let aligned = if align { aligned(mesh, part)? } else { return None };
-    let Aligned { map, gap, mirrored } = aligned;
-    let confidence = same_surface(&aligned, [mesh, part], MeshChange::of([mesh, part], &map));
-    (confidence > 0.5).then_some(PartCopy { scale: map.scale * sizes, mirrored, gap: Some(gap), confidence })
+    let Aligned { map, gap } = aligned;
+    let confidence = same_surface(&aligned, [mesh, part], mesh_change([mesh, part], &map));
+    let (scale, mirrored) = (map.scale * sizes, map.motion.reflected);
+    (confidence > 0.5).then_some(PartCopy { scale, mirrored, gap: Some(gap), confidence })
 }
 
 impl MeshGeometry {
@@ -127,7 +115,8 @@ impl MeshGeometry {
         for part in self.parts() {
             let is_copy = |kind: &Self| {
                 (part.size / kind.size).ln().abs() < SIZE_OF_SURFACES
-                    && same_vertices(kind, part).is_some_and(|same| same.same_faces && !same.mirrored)
+                    && same_vertices(kind, part)
+                        .is_some_and(|same| same.same_faces && !same.map.motion.reflected)
             };
             match kinds.iter_mut().find(|(kind, _)| is_copy(kind)) {
                 Some((_, copies)) => *copies += 1,

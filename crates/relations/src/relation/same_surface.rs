@@ -3,14 +3,14 @@
 //! Two triangulations of one surface differ by the error of flat triangles: at most the height of the arcs that stand over
 //! them. What else differs is a difference of the surfaces, and one that is measured anywhere is enough.
 
-use descriptors::{Alignment, Boundary, NearestPoints};
+use descriptors::{Boundary, NearestPoints};
 use nalgebra::Point3;
 use surface::Topology;
 
-use super::exact::{SameVertices, Similarity};
+use super::Change;
+use super::exact::{Fitted, SameVertices, Similarity};
 use super::geometry::MeshGeometry;
-use super::in_space::{Aligned, gap};
-use super::mesh_change::MeshChange;
+use super::in_space::Aligned;
 
 /// What is allowed in copies of one organic surface besides the error of flat triangles, root mean square, relative to the
 /// size. Measured on the built-in families with 200 to 10,000 vertices (`cargo test -p tests --test laws -- matches
@@ -57,7 +57,7 @@ const MOST_PROBES: usize = 12_000;
 const MOST_CERTAIN: f64 = 0.99;
 
 /// The probability that surfaces this far apart are one surface.
-pub(super) fn same_surface(aligned: &Aligned, meshes: [&MeshGeometry; 2], change: MeshChange) -> f64 {
+pub(super) fn same_surface(aligned: &Aligned, meshes: [&MeshGeometry; 2], change: Change) -> f64 {
     let probability = match meshes.map(MeshGeometry::is_mechanical) {
         [true, true] => same_part(aligned, meshes),
         _ => same_body(aligned, meshes, change),
@@ -66,12 +66,12 @@ pub(super) fn same_surface(aligned: &Aligned, meshes: [&MeshGeometry; 2], change
 }
 
 /// Organic surfaces: the root mean square decides, unless the largest distance is out of proportion.
-fn same_body(aligned: &Aligned, meshes: [&MeshGeometry; 2], change: MeshChange) -> f64 {
+fn same_body(aligned: &Aligned, meshes: [&MeshGeometry; 2], change: Change) -> f64 {
     let fewest = meshes.map(MeshGeometry::n_vertices).into_iter().min().unwrap_or(1).max(1);
     let chords: f64 = meshes.map(rms_chord_error).iter().sum();
     let flatness = f64::min(CHORDS * chords, FLATNESS / fewest as f64);
     let at = match change {
-        MeshChange::Noisy => MOST_NOISE,
+        Change::Noisy => MOST_NOISE,
         _ if meshes.iter().any(|mesh| mesh.is_noisy()) => ALLOWED + ALLOWED_NOISE + flatness,
         _ => ALLOWED + flatness,
     };
@@ -80,13 +80,9 @@ fn same_body(aligned: &Aligned, meshes: [&MeshGeometry; 2], change: MeshChange) 
 }
 
 /// Whether the faces between the same vertices make up one surface.
-pub(super) fn is_one_surface(same: &SameVertices, [a, b]: [&MeshGeometry; 2]) -> bool {
-    let motion = Alignment::about_origin(same.rotation);
-    let map = Similarity { motion, scale: same.scale };
-    gap(a, b, &map, usize::MAX).is_some_and(|gap| {
-        let aligned = Aligned { map, gap, mirrored: same.mirrored };
-        same_surface(&aligned, [a, b], MeshChange::Remeshed) > 0.5
-    })
+pub(super) fn is_one_surface(same: &SameVertices, meshes: [&MeshGeometry; 2]) -> bool {
+    let [a, b] = meshes;
+    Aligned::by(a, b, same.map).is_some_and(|aligned| same_surface(&aligned, meshes, Change::Remeshed) > 0.5)
 }
 
 pub(super) fn rms_chord_error(mesh: &MeshGeometry) -> f64 {
@@ -101,8 +97,7 @@ fn same_part(aligned: &Aligned, [a, b]: [&MeshGeometry; 2]) -> f64 {
     if matches!(handles, [Some(x), Some(y)] if x != y) {
         return 0.0;
     }
-    let back = inverse(&aligned.map);
-    let worst = worst([a, b], &aligned.map).max(worst([b, a], &back));
+    let worst = worst([a, b], &aligned.map).max(worst([b, a], &aligned.map.inverse()));
     SAME_PART.probability(worst.max(displaced(aligned, [a, b]).unwrap_or(0.0)))
 }
 
@@ -113,17 +108,8 @@ fn displaced(aligned: &Aligned, [a, b]: [&MeshGeometry; 2]) -> Option<f64> {
         return None;
     }
     let nearest = NearestPoints::new(b.mesh.positions.clone()).ok()?;
-    let partner: Vec<usize> =
-        a.mesh.positions.iter().map(|p| nearest.nearest(&aligned.map.apply(p)).0).collect();
-    let mut is_taken = vec![false; b.n_vertices()];
-    if partner.iter().any(|&v| std::mem::replace(&mut is_taken[v], true)) {
-        return None;
-    }
-    let pairs: Vec<_> =
-        a.mesh.positions.iter().zip(&partner).map(|(p, &v)| (*p, b.mesh.positions[v])).collect();
     // A part that is round may be aligned at another angle than its vertices.
-    let map = Similarity::fit(&pairs, aligned.mirrored)?;
-    let gap = pairs.iter().map(|(p, q)| (map.apply(p) - q).norm()).fold(0.0, f64::max);
+    let Fitted { gap, .. } = Fitted::new(&a.mesh.positions, &nearest, &aligned.map, f64::INFINITY)?;
     Some(gap / (EXACT + a.rounding + b.rounding))
 }
 
@@ -159,14 +145,4 @@ pub(super) fn euler_characteristic_if_closed(geometry: &MeshGeometry) -> Option<
     let is_closed = edges.map(surface::EdgeId::from).all(|edge| topology.edge_corners(edge).len() == 2);
     is_closed
         .then(|| geometry.n_vertices() as isize - topology.n_edges() as isize + geometry.n_faces() as isize)
-}
-
-/// The map back.
-fn inverse(map: &Similarity) -> Similarity {
-    // y = R s x + t, so x = R^T (y - t) / s.
-    let back = map.motion.inverse();
-    Similarity {
-        motion: Alignment { translation: back.translation / map.scale, ..back },
-        scale: 1.0 / map.scale,
-    }
 }

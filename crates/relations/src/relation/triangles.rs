@@ -6,9 +6,6 @@ use nalgebra::{Point3, Vector3};
 /// Most triangles in a leaf of the tree.
 const LEAF: usize = 4;
 
-/// Most nodes that wait while a tree is searched, one more than its depth: a leaf has half of the triangles of its parent.
-const DEPTH: usize = 64;
-
 /// Squared distances are rounded by less than this share.
 const ROUNDING: f64 = 1e-9;
 
@@ -59,7 +56,7 @@ impl TriangleTree {
     pub fn new(mesh: &TriMesh) -> Self {
         let placed = |f: usize| {
             let corners = mesh.triangle(f);
-            Some(Placed { corners, normal: normal(&corners).try_normalize(0.0)?, face: f as u32 })
+            Some(Placed { corners, normal: mesh.area_vector(f).try_normalize(0.0)?, face: f as u32 })
         };
         let triangles: Vec<_> = (0..mesh.n_faces()).filter_map(placed).collect();
         let mut tree = Self { nodes: Vec::with_capacity(triangles.len() / 2 + 1), triangles };
@@ -91,46 +88,48 @@ impl TriangleTree {
     /// The point of the surface that is nearest to `query`; `None` for a surface without area.
     #[must_use]
     pub fn nearest(&self, query: &Point3<f64>) -> Option<NearestOnSurface> {
-        let mut best: Option<(Point3<f64>, usize, f64)> = None;
-        let mut pending = [(0, 0.0); DEPTH];
-        let mut n_pending = usize::from(!self.nodes.is_empty());
-        while n_pending > 0 {
-            n_pending -= 1;
-            let (index, bound) = pending[n_pending];
-            if best.is_some_and(|best| bound >= best.2) {
-                continue;
-            }
-            let node = &self.nodes[index];
-            match &node.content {
-                NodeContent::Triangles(range) => {
-                    for i in range.clone() {
-                        let Placed { corners, normal, .. } = &self.triangles[i];
-                        // A triangle is no nearer than its plane.
-                        let height = normal.dot(&(query - corners[0]));
-                        if best.is_some_and(|best| height * height > best.2 * (1.0 + ROUNDING)) {
-                            continue;
-                        }
-                        let point = nearest_of_triangle(query, corners);
-                        let sq = (point - query).norm_squared();
-                        if best.is_none_or(|best| sq < best.2) {
-                            best = Some((point, i, sq));
-                        }
+        let mut best = Best { sq_distance: f64::INFINITY, point: Point3::origin(), triangle: 0 };
+        self.search(self.nodes.first()?, query, &mut best);
+        let Best { sq_distance, point, triangle } = best;
+        let Placed { normal, face, .. } = self.triangles[triangle];
+        Some(NearestOnSurface { point, normal, sq_distance, face: face as usize })
+    }
+
+    fn search(&self, node: &Node, query: &Point3<f64>, best: &mut Best) {
+        match &node.content {
+            NodeContent::Triangles(range) => {
+                for triangle in range.clone() {
+                    let Placed { corners, normal, .. } = &self.triangles[triangle];
+                    // A triangle is no nearer than its plane.
+                    let height = normal.dot(&(query - corners[0]));
+                    if height * height > best.sq_distance * (1.0 + ROUNDING) {
+                        continue;
+                    }
+                    let point = nearest_of_triangle(query, corners);
+                    let sq_distance = (point - query).norm_squared();
+                    if sq_distance < best.sq_distance {
+                        *best = Best { sq_distance, point, triangle };
                     }
                 }
-                NodeContent::Children(children) => {
-                    let [a, b] = children.map(|child| (child, self.nodes[child].sq_distance(query)));
-                    // The nearer one is searched first.
-                    let order = if a.1 < b.1 { [b, a] } else { [a, b] };
-                    pending[n_pending..n_pending + 2].copy_from_slice(&order);
-                    n_pending += 2;
+            }
+            NodeContent::Children(children) => {
+                let [a, b] = children.map(|child| (&self.nodes[child], self.nodes[child].sq_distance(query)));
+                // The nearer one is searched first.
+                for (child, bound) in if a.1 < b.1 { [a, b] } else { [b, a] } {
+                    if bound < best.sq_distance {
+                        self.search(child, query, best);
+                    }
                 }
             }
         }
-        best.map(|(point, i, sq_distance)| {
-            let Placed { normal, face, .. } = self.triangles[i];
-            NearestOnSurface { point, normal, sq_distance, face: face as usize }
-        })
     }
+}
+
+/// The nearest point so far.
+struct Best {
+    sq_distance: f64,
+    point: Point3<f64>,
+    triangle: usize,
 }
 
 impl Node {
@@ -138,10 +137,6 @@ impl Node {
         let beyond = |i: usize| (self.low[i] - p[i]).max(p[i] - self.high[i]).max(0.0);
         (0..3).map(|i| beyond(i).powi(2)).sum()
     }
-}
-
-fn normal([a, b, c]: &[Point3<f64>; 3]) -> Vector3<f64> {
-    (b - a).cross(&(c - a))
 }
 
 /// The point of a triangle nearest to `p` (Ericson 2005, section 5.1.5, `ericson2005` in `REFERENCES.bib`).

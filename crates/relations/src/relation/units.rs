@@ -29,9 +29,17 @@ pub struct UnitChange {
 }
 
 impl UnitChange {
-    /// By how much numbers grow with every change of unit, in both directions.
+    /// Every change of unit, in both directions, and by how much numbers grow.
+    fn all() -> impl Iterator<Item = (Self, f64)> {
+        let both = |&(from, to, factor): &(&'static str, &'static str, f64)| {
+            [(Self { from, to }, factor), (Self { from: to, to: from }, 1.0 / factor)]
+        };
+        UNITS.iter().flat_map(both)
+    }
+
+    /// By how much numbers grow with every change of unit.
     pub(super) fn factors() -> impl Iterator<Item = f64> {
-        UNITS.iter().flat_map(|(.., factor)| [*factor, 1.0 / factor])
+        Self::all().map(|(_, factor)| factor)
     }
 
     /// The change of unit that multiplies sizes by `scale`, up to a relative error.
@@ -45,12 +53,7 @@ impl UnitChange {
     /// ```
     #[must_use]
     pub fn of(scale: f64, tolerance: f64) -> Option<Self> {
-        let is = |factor: f64| (scale / factor).ln().abs() <= tolerance;
-        UNITS.iter().find_map(|&(from, to, factor)| match () {
-            () if is(factor) => Some(Self { from, to }),
-            () if is(1.0 / factor) => Some(Self { from: to, to: from }),
-            () => None,
-        })
+        Self::all().find(|(_, factor)| (scale / factor).ln().abs() <= tolerance).map(|(change, _)| change)
     }
 }
 

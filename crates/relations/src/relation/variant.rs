@@ -173,28 +173,23 @@ pub(super) fn differences([a, b]: [&MeshGeometry; 2], rms: Option<f64>) -> Optio
     let tolerance = EQUAL_LENGTH * f64::max(a.size, b.size);
     let differs = |x: f64, y: f64| (x - y).abs() > tolerance + EQUAL * f64::max(x, y);
     let mut found = Vec::new();
-    let mut compare = |what: Dimension, x: f64, y: f64| {
-        if differs(x, y) {
-            found.push(Difference { what, first: x, second: y });
+    // Of as many on either side.
+    let mut compare = |what: Dimension, x: &[f64], y: &[f64]| {
+        if x.len() == y.len() {
+            let pairs = x.iter().copied().zip(y.iter().copied()).filter(|(x, y)| differs(*x, *y));
+            found.extend(pairs.map(|(first, second)| Difference { what, first, second }));
         }
     };
-    let same_build = a.n_regions == b.n_regions;
+    compare(Dimension::HoleDiameter, &a.holes, &b.holes);
+    compare(Dimension::Diameter, &a.bosses, &b.bosses);
+    for (i, what) in [Dimension::Length, Dimension::Width, Dimension::Height].into_iter().enumerate() {
+        compare(what, &a.extents[i..=i], &b.extents[i..=i]);
+    }
+    compare(Dimension::Step, &a.steps, &b.steps);
+    let is_extent = |x: f64| a.extents.iter().chain(&b.extents).any(|y| !differs(x, *y));
+    found.retain(|d| d.what != Dimension::Step || !(is_extent(d.first) || is_extent(d.second)));
     let same_holes = a.holes.len() == b.holes.len();
-    let pairs = |x: &[f64], y: &[f64]| x.iter().copied().zip(y.iter().copied()).collect::<Vec<_>>();
-    if same_holes {
-        pairs(&a.holes, &b.holes).into_iter().for_each(|(x, y)| compare(Dimension::HoleDiameter, x, y));
-    }
-    if a.bosses.len() == b.bosses.len() {
-        pairs(&a.bosses, &b.bosses).into_iter().for_each(|(x, y)| compare(Dimension::Diameter, x, y));
-    }
-    let names = [Dimension::Length, Dimension::Width, Dimension::Height];
-    names.into_iter().zip(pairs(&a.extents, &b.extents)).for_each(|(what, (x, y))| compare(what, x, y));
-    if a.steps.len() == b.steps.len() {
-        let extents: Vec<f64> = a.extents.iter().chain(&b.extents).copied().collect();
-        let is_extent = |x: f64| extents.iter().any(|&y| !differs(x, y));
-        let steps = pairs(&a.steps, &b.steps).into_iter().filter(|(x, y)| !is_extent(*x) && !is_extent(*y));
-        steps.for_each(|(x, y)| compare(Dimension::Step, x, y));
-    }
+    let same_build = a.n_regions == b.n_regions;
     let far = |d: &Difference| {
         let most = if d.what >= Dimension::Length && d.what <= Dimension::Height {
             MOST_EXTENT

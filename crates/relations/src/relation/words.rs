@@ -3,11 +3,12 @@
 use std::fmt::{self, Display, Formatter};
 
 use descriptors::ShapeMetric;
+use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 
 use super::cut::CutPiece;
 use super::in_space::SurfaceGap;
-use super::numbers::{in_words, percent, significant};
+use super::numbers::{in_digits, in_words, percent};
 use super::parts::{Parts, Side};
 use super::variant::Difference;
 use super::{Basis, Because, Change, Relation, RelationKind};
@@ -23,8 +24,8 @@ impl Display for Relation {
                 write!(f, "{b} has the same geometry as {a}")
             }
             (RelationKind::OtherPose, _) => {
-                write!(f, "{b} is {probably}{a} {}", self.pose())?;
-                self.write_changes(f, ", ")
+                let changes = self.with_changes(self.pose().to_owned());
+                write!(f, "{b} is {probably}{a} {changes}")
             }
             (RelationKind::SameClass, _) if !probably.is_empty() && perhaps_same => {
                 write!(f, "{b} is of the same class as {a}, and perhaps {a} in another pose")
@@ -33,15 +34,14 @@ impl Display for Relation {
                 write!(f, "{b} is {probably}of the same class as {a}, but another shape")
             }
             (RelationKind::Different, _) => write!(f, "{b} is {probably}another kind of shape than {a}"),
-            (RelationKind::Copies | RelationKind::PartOf, Some(parts)) => self.write_parts(f, parts),
-            (RelationKind::PartOf, None) => self.write_cut(f),
+            (RelationKind::Copies | RelationKind::PartOf, Some(parts)) => {
+                f.write_str(&self.with_changes(self.parts_in_words(parts)))
+            }
+            (RelationKind::PartOf, None) => f.write_str(&self.with_changes(self.cut_in_words())),
             (RelationKind::Variant, _) => {
                 write!(f, "{b} is {probably}a variant of {a}: {}", list(&self.because.differences))
             }
-            _ => {
-                write!(f, "{b} is {probably}{a}")?;
-                self.write_changes(f, " ")
-            }
+            _ => write!(f, "{b} is {probably}{a} {}", self.changes_in_words().join(", ")),
         }
     }
 }
@@ -105,33 +105,35 @@ impl Relation {
         if self.confidence < ShapeMetric::CERTAIN { "probably " } else { "" }
     }
 
-    /// The changes, the first after `start`, which is left out if there are none.
-    fn write_changes(&self, f: &mut Formatter<'_>, start: &str) -> fmt::Result {
-        let mut separator = start;
-        for change in &self.changes {
-            f.write_str(separator)?;
-            separator = ", ";
-            let vertices = self.because.vertices.unwrap_or([1, 1]).map(|n| n.max(1) as f64);
-            let share = vertices[1] / vertices[0];
-            match change {
-                Change::Moved => f.write_str("moved")?,
-                Change::Rotated => write!(f, "rotated by {:.1}°", self.because.rotation.unwrap_or_default())?,
-                Change::Scaled => self.write_scale(f)?,
-                Change::Mirrored => f.write_str("mirrored")?,
-                Change::Decimated => write!(f, "decimated to {} of the vertices", percent(share))?,
-                Change::Subdivided => write!(f, "subdivided to {share:.1} times the vertices")?,
-                Change::Remeshed if self.because.vertex_gap.is_some() => f.write_str("with other faces")?,
-                Change::Remeshed if (share - 1.0).abs() < 0.005 => f.write_str("remeshed")?,
-                Change::Remeshed => write!(f, "remeshed with {share:.2} times the vertices")?,
-                Change::Posed => f.write_str(self.pose())?,
-                Change::Cut => f.write_str("cut")?,
-                Change::Noisy => {
-                    let gap = self.because.surface_gap.map_or(0.0, |gap| gap.rms);
-                    write!(f, "with noise of {} of the size", percent(gap))?;
-                }
+    /// What was said, and all changes.
+    fn with_changes(&self, said: String) -> String {
+        [vec![said], self.changes_in_words()].concat().join(", ")
+    }
+
+    /// All changes but a cut, of which the sentence is.
+    fn changes_in_words(&self) -> Vec<String> {
+        let vertices = self.because.vertices.unwrap_or([1, 1]).map(|n| n.max(1) as f64);
+        let share = vertices[1] / vertices[0];
+        let in_words = |change: &Change| match change {
+            Change::Moved => "moved".to_owned(),
+            Change::Rotated => format!("rotated by {:.1}°", self.because.rotation.unwrap_or_default()),
+            Change::Scaled => self.scale_in_words(),
+            Change::Mirrored => "mirrored".to_owned(),
+            Change::Decimated => format!("decimated to {} of the vertices", percent(share)),
+            Change::Subdivided => format!("subdivided to {share:.1} times the vertices"),
+            Change::Remeshed if self.because.vertex_gap.is_some() => "with other faces".to_owned(),
+            Change::Remeshed if self.because.parts.is_some() || (share - 1.0).abs() < 0.005 => {
+                "remeshed".to_owned()
             }
-        }
-        Ok(())
+            Change::Remeshed => format!("remeshed with {share:.2} times the vertices"),
+            Change::Posed => self.pose().to_owned(),
+            Change::Cut => "cut".to_owned(),
+            Change::Noisy => {
+                let gap = self.because.surface_gap.map_or(0.0, |gap| gap.rms);
+                format!("with noise of {} of the size", percent(gap))
+            }
+        };
+        self.changes.iter().filter(|change| **change != Change::Cut).map(in_words).collect()
     }
 
     /// Without meshes the pose is unknown.
@@ -142,55 +144,34 @@ impl Relation {
         }
     }
 
-    fn write_scale(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        write!(f, "scaled by {}", significant(self.because.scale))?;
-        match self.because.units {
-            Some(units) => write!(f, " ({units})"),
-            None => Ok(()),
-        }
+    /// From the first to the second, whichever is the whole.
+    fn scale_in_words(&self) -> String {
+        let scale = in_digits(5, self.because.scale);
+        self.because
+            .units
+            .map_or_else(|| format!("scaled by {scale}"), |units| format!("scaled by {scale} ({units})"))
     }
 
-    fn write_cut(&self, f: &mut Formatter<'_>) -> fmt::Result {
+    /// The part and the whole.
+    fn part_and_whole(&self, whole: Side) -> [&str; 2] {
         let [a, b] = &self.names;
+        if whole == Side::Second { [a, b] } else { [b, a] }
+    }
+
+    fn cut_in_words(&self) -> String {
         let CutPiece { whole, left } =
             self.because.cut.unwrap_or(CutPiece { whole: Side::Second, left: 1.0 });
-        let (part, whole) = if whole == Side::Second { (a, b) } else { (b, a) };
-        write!(f, "{part} is a piece of {whole}: {} of its surface", percent(left))?;
-        if self.has(Change::Scaled) {
-            f.write_str(", ")?;
-            self.write_scale(f)?;
-        }
-        Ok(())
+        let [part, whole] = self.part_and_whole(whole);
+        format!("{part} is a piece of {whole}: {} of its surface", percent(left))
     }
 
-    fn write_parts(&self, f: &mut Formatter<'_>, parts: Parts) -> fmt::Result {
-        let [a, b] = &self.names;
-        let (part, whole) = if parts.whole == Side::Second { (a, b) } else { (b, a) };
-        let Parts { found, components, .. } = parts;
+    fn parts_in_words(&self, Parts { whole, found, components }: Parts) -> String {
+        let [part, whole] = self.part_and_whole(whole);
+        let [copies, all] = [found, components].map(in_words);
         match (self.kind, found) {
-            (RelationKind::Copies, _) => write!(f, "{whole} is {} copies of {part}", in_words(found))?,
-            (_, 1) => write!(f, "{part} is part of {whole}, one of its {} components", in_words(components))?,
-            _ => write!(
-                f,
-                "{whole} has {} copies of {part} among its {} components",
-                in_words(found),
-                in_words(components)
-            )?,
-        }
-        if self.has(Change::Scaled) {
-            // From the first to the second, whichever is the whole.
-            f.write_str(", ")?;
-            self.write_scale(f)?;
-        }
-        if self.has(Change::Mirrored) {
-            f.write_str(", mirrored")?;
-        }
-        if self.has(Change::Remeshed) {
-            f.write_str(", remeshed")?;
-        }
-        match self.has(Change::Posed) {
-            true => write!(f, ", {}", self.pose()),
-            false => Ok(()),
+            (RelationKind::Copies, _) => format!("{whole} is {copies} copies of {part}"),
+            (_, 1) => format!("{part} is part of {whole}, one of its {all} components"),
+            _ => format!("{whole} has {copies} copies of {part} among its {all} components"),
         }
     }
 }
@@ -209,17 +190,7 @@ fn list(differences: &[Difference]) -> String {
     }
 }
 
-/// A relation with its words, as it is written.
-#[derive(Serialize)]
-struct RelationRecord<'a> {
-    kind: RelationKind,
-    confidence: f64,
-    changes: &'a [Change],
-    text: String,
-    brief: String,
-    because: BecauseRecord<'a>,
-}
-
+/// Everything that a relation is told from, with its words.
 #[derive(Serialize)]
 struct BecauseRecord<'a> {
     text: String,
@@ -229,9 +200,14 @@ struct BecauseRecord<'a> {
 
 impl Serialize for Relation {
     fn serialize<S: Serializer>(&self, out: S) -> Result<S::Ok, S::Error> {
-        let Self { kind, confidence, changes, because, .. } = self;
-        let (text, because) = (self.to_string(), BecauseRecord { text: self.reason(), because });
-        let brief = self.in_brief();
-        RelationRecord { kind: *kind, confidence: *confidence, changes, text, brief, because }.serialize(out)
+        let mut record = out.serialize_struct("Relation", 6)?;
+        record.serialize_field("kind", &self.kind)?;
+        record.serialize_field("confidence", &self.confidence)?;
+        record.serialize_field("changes", &self.changes)?;
+        record.serialize_field("text", &self.to_string())?;
+        record.serialize_field("brief", &self.in_brief())?;
+        let because = BecauseRecord { text: self.reason(), because: &self.because };
+        record.serialize_field("because", &because)?;
+        record.end()
     }
 }

@@ -21,7 +21,7 @@ use crate::input::expand;
 pub(crate) fn match_meshes(args: &MatchArgs, common: &Common) -> Result<ExitCode> {
     let mut options = CorrespondOptions { form: args.form.options(common)?, ..CorrespondOptions::default() };
     if let Some(most) = args.form.settings.given.get("eigenfunctions") {
-        options.mapping.eigenfunctions = most;
+        options.eigenfunctions = most;
     }
     let shapes = expand(&args.meshes)?;
     match &shapes[..] {

@@ -2,6 +2,8 @@
 
 use linalg::Matrix;
 
+use super::super::nearest_rows::first_of;
+use super::super::shape::MapShape;
 use super::sides::Sides;
 use descriptors::DescriptorError;
 
@@ -36,53 +38,41 @@ const WIDTH: usize = 300;
 const APART: f64 = 0.12;
 
 /// Places of the landmarks of a part.
-#[derive(Debug, Clone)]
-pub(super) struct Placement {
+struct Placement {
     /// A landmark of the whole for each of the chosen ones of the part.
-    pub(super) images: Vec<usize>,
+    images: Vec<usize>,
+    /// What speaks against it.
     score: f64,
 }
 
-/// Landmarks of the part, far from each other and from the cut, and possible places for them, the best first and no two alike.
+/// Landmarks of the part, far from each other and from the cut, with possible places for them, the best first and no two alike.
 ///
 /// Landmark after landmark goes to all of the whole; what keeps distances, curvatures and areas of discs best is kept.
-pub(super) fn placements(
-    sides: &Sides<'_>,
-    n: usize,
-) -> Result<(Vec<usize>, Vec<Placement>), DescriptorError> {
+pub(super) fn placements(sides: &Sides<'_>, n: usize) -> Result<Vec<Vec<(usize, usize)>>, DescriptorError> {
     let chosen = chosen(sides);
-    let alone = alone(sides, &chosen)?;
-    let [_, n_whole] = sides.n_landmarks();
-    let Some(first) = alone.first() else { return Ok((chosen, Vec::new())) };
-    let mut found: Vec<Placement> =
-        (0..n_whole).map(|y| Placement { images: vec![y], score: first[y] }).collect();
-    for (k, alone) in alone.iter().enumerate().skip(1) {
+    if chosen.is_empty() {
+        return Ok(Vec::new());
+    }
+    let mut found = vec![Placement { images: Vec::new(), score: 0.0 }];
+    for (k, alone) in alone(sides, &chosen)?.iter().enumerate() {
         let known: Vec<_> = (0..k).map(|j| sides.known(chosen[j], chosen[k])).collect();
         let mut longer = Vec::new();
         for (h, placed) in found.iter().enumerate() {
             for (y, alone) in alone.iter().enumerate() {
                 let losses = placed.images.iter().zip(&known);
                 let losses = losses.map(|(z, known)| known.loss(sides.in_whole[(y, *z)], MOST));
-                longer.push((placed.score + losses.sum::<f64>() / (EXPECTED * EXPECTED) + alone, h, y));
+                longer.push((placed.score + losses.sum::<f64>() / (EXPECTED * EXPECTED) + alone, (h, y)));
             }
         }
-        let by_score = |a: &(f64, usize, usize), b: &(f64, usize, usize)| {
-            a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2)))
-        };
-        if longer.len() > MANY {
-            longer.select_nth_unstable_by(MANY, by_score);
-            longer.truncate(MANY);
-        }
-        longer.sort_unstable_by(by_score);
-        let longer = longer.into_iter().map(|(score, h, y)| {
+        let longer = first_of(longer, MANY).into_iter().map(|(score, (h, y))| {
             let images = found[h].images.iter().copied().chain([y]).collect();
             Placement { images, score }
         });
         let longer: Vec<Placement> = longer.collect();
         found = if k < FEW { longer } else { apart(sides, longer, WIDTH) };
     }
-    let found = apart(sides, found, n);
-    Ok((chosen, found))
+    let anchors = |placed: Placement| chosen.iter().copied().zip(placed.images).collect();
+    Ok(apart(sides, found, n).into_iter().map(anchors).collect())
 }
 
 /// The first `n` that differ.
@@ -146,13 +136,8 @@ fn alone(sides: &Sides<'_>, chosen: &[usize]) -> Result<Vec<Vec<f64>>, Descripto
 
 /// Logarithms of the areas of discs around landmarks, a column for each, over the area of the whole. `scale` is the length of
 /// one at unit area of the shape.
-fn areas(
-    shape: &super::super::shape::MapShape,
-    scale: f64,
-    landmarks: &[usize],
-) -> Result<Matrix, DescriptorError> {
-    let all: Vec<usize> = (0..shape.n_vertices()).collect();
-    let distances = shape.distances_to(&all)?;
+fn areas(shape: &MapShape, scale: f64, landmarks: &[usize]) -> Result<Matrix, DescriptorError> {
+    let distances = shape.all_distances()?;
     let mut found = Matrix::zeros(RADII.len(), landmarks.len());
     for (i, l) in landmarks.iter().enumerate() {
         for (r, radius) in RADII.iter().enumerate() {

@@ -13,11 +13,15 @@ const MOST: f64 = 0.3;
 /// Samples of the part, as many as are placed: positions among the samples of the whole.
 pub(super) type Places = Vec<usize>;
 
-/// How finely points are placed: the numbers of samples of the part and of the whole.
+/// How finely points are placed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fineness {
+    /// Samples of the part and of the whole.
     pub(super) xs: usize,
     pub(super) ys: usize,
+    /// Landmarks of the part by which all samples are placed again, and how often.
+    pub(super) anchors: usize,
+    pub(super) times: usize,
 }
 
 /// The place of each sample whose distances from the anchors fit best. `anchors` are landmarks of the part with their places.
@@ -27,6 +31,16 @@ pub(super) fn placed(sides: &Sides<'_>, anchors: &[(usize, usize)], fineness: Fi
         (0..losses.len()).min_by(|y, z| losses[*y].total_cmp(&losses[*z])).unwrap_or(0)
     };
     (0..fineness.xs.min(sides.xs.len())).into_par_iter().map(one).collect()
+}
+
+/// Places by those of the first landmarks, again and again.
+pub(super) fn placed_again(sides: &Sides<'_>, places: &[usize], fineness: Fineness) -> Places {
+    let again = |places: Places, _| {
+        let n = fineness.anchors.min(sides.n_landmarks()[0]).min(places.len());
+        let anchors: Vec<(usize, usize)> = (0..n).map(|l| (l, places[l])).collect();
+        placed(sides, &anchors, fineness)
+    };
+    (0..fineness.times).fold(places.to_vec(), again)
 }
 
 fn losses(sides: &Sides<'_>, anchors: &[(usize, usize)], x: usize, n: usize) -> Vec<f64> {
@@ -40,33 +54,19 @@ fn losses(sides: &Sides<'_>, anchors: &[(usize, usize)], x: usize, n: usize) -> 
     sums
 }
 
-/// Places with all of the first `n` landmarks as anchors.
-pub(super) fn placed_again(sides: &Sides<'_>, places: &[usize], n: usize, fineness: Fineness) -> Places {
-    let n = n.min(sides.n_landmarks()[0]).min(places.len());
-    let anchors: Vec<(usize, usize)> = (0..n).map(|l| (l, places[l])).collect();
-    placed(sides, &anchors, fineness)
+/// The mean change of the distances between landmarks and samples.
+pub(super) fn change_of_distances(sides: &Sides<'_>, places: &[usize]) -> f64 {
+    let n = sides.n_landmarks()[0].min(places.len());
+    let change = |l: usize, x: usize| {
+        let found = sides.in_whole[(places[x], places[l])];
+        (found - sides.in_part[(l, x)]).abs().min(MOST)
+    };
+    let changes = (0..n).flat_map(|l| (0..places.len()).map(move |x| change(l, x)));
+    changes.sum::<f64>() / (n * places.len()).max(1) as f64
 }
 
-/// How a map changes a part.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Changes {
-    /// The mean change of the distances between landmarks and samples.
-    pub(super) distances: f64,
-    /// The mean squared difference of curvatures, in units of their variance.
-    pub(super) curvature: f64,
-}
-
-impl Changes {
-    pub(super) fn of(sides: &Sides<'_>, places: &[usize]) -> Self {
-        let n = sides.n_landmarks()[0].min(places.len());
-        let change = |l: usize, x: usize| {
-            let found = sides.in_whole[(places[x], places[l])];
-            (found - sides.in_part[(l, x)]).abs().min(MOST)
-        };
-        let changes = (0..n).flat_map(|l| (0..places.len()).map(move |x| (l, x)));
-        let distances: f64 = changes.map(|(l, x)| change(l, x)).sum();
-        let curvature: f64 = places.iter().enumerate().map(|(x, y)| sides.curvature_gap(x, *y)).sum();
-        let each = |sum: f64, n: usize| sum / n.max(1) as f64;
-        Self { distances: each(distances, n * places.len()), curvature: each(curvature, places.len()) }
-    }
+/// The mean squared difference of curvatures, in units of their variance.
+pub(super) fn change_of_curvature(sides: &Sides<'_>, places: &[usize]) -> f64 {
+    let changes = places.iter().enumerate().map(|(x, y)| sides.curvature_gap(x, *y));
+    changes.sum::<f64>() / places.len().max(1) as f64
 }

@@ -5,33 +5,30 @@ use linalg::{LinalgError, Matrix};
 use nalgebra::Cholesky;
 use rayon::prelude::*;
 
-use super::super::known::{KnownMap, RESPECTED};
+use super::super::known::{CLEARLY_WORSE, KnownMap, RESPECTED};
 use super::super::local::vertex_confidence;
 use super::super::orientation::agreement;
-use super::super::part_of_whole::PartOfWhole;
-use super::super::search::{CLEARLY_WORSE, MapOptions, in_order, kind_of, mirrored_samples};
+use super::super::search::{mirrored_samples, odds};
 use super::super::shape::MapShape;
-use super::super::surface_map::{MapKind, SurfaceMap};
+use super::super::surface_map::{MapKind, PartOfWhole, SurfaceMap};
 use super::landmarks::placements;
-use super::places::{Changes, Fineness, Places, placed, placed_again};
+use super::places::{Fineness, Places, change_of_curvature, change_of_distances, placed, placed_again};
 use super::sides::Sides;
 use super::vertices::{Coverage, all_vertices, onto_part};
 use crate::relation::Side;
 use descriptors::{Boundary, DescriptorError};
 use surface::VertexId;
 
-/// Placements of landmarks that are extended to samples, the samples, and the landmarks by which they are placed. Conventions of
-/// time.
+/// Placements of landmarks that are extended to samples, and how finely. Conventions of time.
 const SKETCHES: usize = 24;
-const SKETCHED: Fineness = Fineness { xs: 150, ys: 400 };
-const SKETCH_ANCHORS: usize = 40;
+const SKETCHED: Fineness = Fineness { xs: 150, ys: 400, anchors: 40, times: 2 };
 
 /// The best sketches of each orientation are compared again with more samples: as many as there is time for.
 const COMPARED: usize = 4;
-const FINER: Fineness = Fineness { xs: 400, ys: usize::MAX };
+const FINER: Fineness = Fineness { xs: 400, ys: usize::MAX, anchors: usize::MAX, times: 3 };
 
 /// All samples.
-const FINE: Fineness = Fineness { xs: usize::MAX, ys: usize::MAX };
+const FINE: Fineness = Fineness { xs: usize::MAX, times: 1, ..FINER };
 
 /// Conventions: eigenfunctions of the whole whose area forms tell the orientation, and of the part in which they are smoothed.
 const ORIENTED: [usize; 2] = [13, 30];
@@ -62,38 +59,33 @@ const DEFECT: f64 = 0.01;
 struct Candidate {
     places: Places,
     agreement: Option<f64>,
-    changes: Changes,
-    defect: f64,
-    /// How far it takes known points from their partners on average, beyond what is [respected](RESPECTED).
-    miss: f64,
-    start: Start,
-}
-
-/// Where a map comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Start {
-    Placements,
-    /// The initial map: another one must be [clearly better](CLEARLY_WORSE).
-    Initial,
+    /// The mean change of distances.
+    distortion: f64,
+    /// Lower is better.
+    score: f64,
+    /// What its score was divided by: more than 1 for the initial map, so that another one must be
+    /// [clearly better](CLEARLY_WORSE).
+    favour: f64,
 }
 
 impl Candidate {
-    fn new(sides: &Sides<'_>, places: Places, start: Start) -> Self {
-        let agreement = orientation(sides, &places);
-        let defect = defect(sides, &places);
+    fn new(sides: &Sides<'_>, places: Places, favour: f64) -> Self {
+        let distortion = change_of_distances(sides, &places);
+        let curvature = change_of_curvature(sides, &places);
+        // How far it takes known points from their partners on average, beyond what is respected.
         let miss = (sides.miss(&places) - RESPECTED).max(0.0);
-        Self { agreement, changes: Changes::of(sides, &places), places, defect, miss, start }
+        let score = distortion + CURVATURE * curvature + DEFECT * defect(sides, &places) + miss;
+        let agreement = orientation(sides, &places);
+        Self { agreement, distortion, score: score / favour, places, favour }
     }
 
-    /// Lower is better.
-    fn score(&self) -> f64 {
-        let Changes { distances, curvature } = self.changes;
-        let score = distances + CURVATURE * curvature + DEFECT * self.defect + self.miss;
-        if self.start == Start::Initial { score / CLEARLY_WORSE } else { score }
+    /// From the places of some samples, refined.
+    fn refined(sides: &Sides<'_>, places: &[usize], fineness: Fineness, favour: f64) -> Self {
+        Self::new(sides, placed_again(sides, places, fineness), favour)
     }
 
     fn kind(&self) -> MapKind {
-        kind_of(self.agreement)
+        MapKind::of(self.agreement)
     }
 }
 
@@ -104,44 +96,34 @@ pub(in crate::maps) fn part_maps(
     whole: &MapShape,
     side: Side,
     known: &KnownMap,
-    options: &MapOptions,
     observer: &dyn Observer,
 ) -> Result<Vec<SurfaceMap>, DescriptorError> {
     let budget = observer.budget();
     let onto_whole = |[x, y]: [VertexId; 2]| if side == Side::First { [x, y] } else { [y, x] };
     let pairs: Vec<[VertexId; 2]> = known.landmarks.iter().copied().map(onto_whole).collect();
     let Some(sides) = Sides::new(part, whole, &pairs)? else { return Ok(Vec::new()) };
-    let (chosen, starts) = placements(&sides, SKETCHES)?;
+    let starts = placements(&sides, SKETCHES)?;
     budget.check().map_err(LinalgError::from)?;
-    let sketch = |places: Places, start: Start| {
-        let again = |places: Places| placed_again(&sides, &places, SKETCH_ANCHORS, SKETCHED);
-        Candidate::new(&sides, (0..2).fold(places, |places, _| again(places)), start)
-    };
-    let start = |images: &Vec<usize>| {
-        let anchors: Vec<(usize, usize)> = chosen.iter().copied().zip(images.iter().copied()).collect();
-        sketch(placed(&sides, &anchors, SKETCHED), Start::Placements)
-    };
-    let mut found: Vec<Candidate> = starts.par_iter().map(|found| start(&found.images)).collect();
-    if let Some(mirror) = mirrored_samples(whole, options, &budget)? {
+    let sketch = |places: &[usize], favour: f64| Candidate::refined(&sides, places, SKETCHED, favour);
+    let start = |anchors: &Vec<(usize, usize)>| sketch(&placed(&sides, anchors, SKETCHED), 1.0);
+    let mut found: Vec<Candidate> = starts.par_iter().map(start).collect();
+    if let Some(mirror) = mirrored_samples(whole, &budget)? {
         let best = [MapKind::Direct, MapKind::Mirrored].map(|kind| {
             let of_kind = found.iter().filter(|found| found.kind() == kind);
-            of_kind.min_by(|a, b| a.score().total_cmp(&b.score()))
+            of_kind.min_by(|a, b| a.score.total_cmp(&b.score))
         });
-        let image = |y: &usize| mirror.get(*y).map_or(*y, |image| *image as usize);
-        let composed: Vec<Candidate> = best
-            .into_iter()
-            .flatten()
-            .map(|best| sketch(best.places.iter().map(image).collect(), Start::Placements))
-            .collect();
+        let image = |y: &usize| mirror.get(*y).copied().unwrap_or(*y);
+        let composed = |best: &Candidate| sketch(&best.places.iter().map(image).collect::<Vec<_>>(), 1.0);
+        let composed: Vec<Candidate> = best.into_iter().flatten().map(composed).collect();
         found.extend(composed);
     }
     let initial = sides.anchors(known.initial_pairs().map(onto_whole));
     if !initial.is_empty() {
-        found.push(sketch(placed(&sides, &initial, SKETCHED), Start::Initial));
+        found.push(sketch(&placed(&sides, &initial, SKETCHED), CLEARLY_WORSE));
     }
-    found.sort_by(|a, b| a.score().total_cmp(&b.score()));
+    found.sort_by(|a, b| a.score.total_cmp(&b.score));
     let mut maps = Vec::new();
-    for kind in [MapKind::Direct, MapKind::Mirrored, MapKind::Unoriented] {
+    for kind in MapKind::ALL {
         if kind == MapKind::Unoriented && !maps.is_empty() {
             break;
         }
@@ -153,30 +135,20 @@ pub(in crate::maps) fn part_maps(
                 different.push(sketch);
             }
         }
-        let finer = |sketch: &&Candidate| {
-            let again = |places: Places| placed_again(&sides, &places, usize::MAX, FINER);
-            let places = (0..3).fold(sketch.places.clone(), |places, _| again(places));
-            Candidate::new(&sides, places, sketch.start)
-        };
+        let finer = |sketch: &&Candidate| Candidate::refined(&sides, &sketch.places, FINER, sketch.favour);
         let mut finer: Vec<Candidate> = different.iter().map(finer).collect();
-        finer.sort_by(|a, b| a.score().total_cmp(&b.score()));
+        finer.sort_by(|a, b| a.score.total_cmp(&b.score));
         maps.extend(best(&sides, &finer, side)?);
     }
-    known.nearest_first(&mut maps, if side == Side::First { whole } else { part })?;
-    let mut maps = in_order(maps);
-    maps.iter_mut().for_each(|map| known.kept_by(map));
-    Ok(maps)
+    known.finished(maps, if side == Side::First { whole } else { part })
 }
 
 /// The first of some maps in the order of their scores, refined; with the next one if that is nearly as good.
 fn best(sides: &Sides<'_>, found: &[Candidate], side: Side) -> Result<Option<SurfaceMap>, DescriptorError> {
     let Some((best, others)) = found.split_first() else { return Ok(None) };
     let rival = others.iter().find(|other| gap(sides, &best.places, &other.places) > SAME);
-    let alone = rival.map_or(1.0, |rival| {
-        let boundary = Boundary { at: rival.score().max(f64::MIN_POSITIVE), steepness: STEEPNESS };
-        boundary.probability(best.score())
-    });
-    let confidence = alone * DOUBTFUL.probability(best.changes.distances);
+    let alone = odds(best.score, rival.map(|rival| rival.score), STEEPNESS);
+    let confidence = alone * DOUBTFUL.probability(best.distortion);
     let mut map = refined(sides, best, confidence, side)?;
     if let Some(rival) = rival.filter(|_| confidence < SurfaceMap::CERTAIN) {
         map.alternative = Some(Box::new(refined(sides, rival, 1.0 - confidence, side)?));
@@ -195,14 +167,17 @@ fn refined(
     confidence: f64,
     side: Side,
 ) -> Result<SurfaceMap, DescriptorError> {
-    let places = placed_again(sides, &sketch.places, usize::MAX, FINE);
-    let fine = Candidate::new(sides, places, sketch.start);
+    let fine = Candidate::refined(sides, &sketch.places, FINE, sketch.favour);
     let agreement = if fine.kind() == sketch.kind() { fine.agreement } else { sketch.agreement };
     let images = all_vertices(sides, &fine.places)?;
     let Coverage { covered, partners, matched } = onto_part(sides, &images)?;
     let functional =
         functional(sides, &fine.places, FUNCTIONS, usize::MAX).unwrap_or_else(|| Matrix::zeros(0, 0));
-    let vertex_confidence = confidences(sides, side, &images, &partners)?;
+    let (part, whole) = (sides.part, sides.whole);
+    let vertex_confidence = match side {
+        Side::First => vertex_confidence([part, whole], [sides.scale(), 1.0], &images)?,
+        Side::Second => vertex_confidence([whole, part], [1.0, sides.scale()], &partners)?,
+    };
     let id = |v: usize| VertexId::from(v);
     let onto_whole: Vec<_> = images.iter().map(|w| Some(id(*w))).collect();
     let onto_part = partners.iter().zip(&matched).map(|(v, matched)| matched.then(|| id(*v))).collect();
@@ -215,7 +190,7 @@ fn refined(
     };
     Ok(SurfaceMap {
         kind: sketch.kind(),
-        distortion: fine.changes.distances,
+        distortion: fine.distortion,
         agreement,
         confidence,
         vertices: vertices.into_iter().map(id).collect(),
@@ -226,54 +201,32 @@ fn refined(
     })
 }
 
-/// The confidence of each vertex of the first surface, by its distances in the unit of the whole.
-fn confidences(
-    sides: &Sides<'_>,
-    side: Side,
-    images: &[usize],
-    partners: &[usize],
-) -> Result<Vec<f64>, DescriptorError> {
-    let (part, whole) = (sides.part, sides.whole);
-    let in_part = |vertices: &[usize]| Ok::<_, DescriptorError>(part.distances_to(vertices)? * sides.scale());
-    let all = |shape: &MapShape| (0..shape.n_vertices()).collect::<Vec<usize>>();
-    Ok(match side {
-        Side::First => {
-            vertex_confidence(&in_part(&all(part))?, part.landmarks(), &whole.distances_to(images)?)
-        }
-        Side::Second => {
-            vertex_confidence(&whole.distances_to(&all(whole))?, whole.landmarks(), &in_part(partners)?)
-        }
-    })
+/// Eigenfunctions at the samples of the part, and functions of the whole, pulled back: the first `n` eigenfunctions of the whole
+/// in the first `k` of the part, by least squares over the samples.
+fn pulled_back(sides: &Sides<'_>, places: &[usize], [k, n]: [usize; 2]) -> Option<Matrix> {
+    let k = k.min(sides.part.spectrum.vectors.ncols()).min(places.len() / 3).max(1);
+    let own = sides.part.spectrum.vectors.columns(0, k).select_rows(&sides.xs[..places.len()]);
+    let images: Vec<usize> = places.iter().map(|y| sides.ys[*y]).collect();
+    let pulled = sides.whole.spectrum.vectors.columns(0, n).select_rows(&images);
+    Some(Cholesky::new(own.tr_mul(&own))?.solve(&own.tr_mul(&pulled)))
 }
 
-/// The map of the first `n` eigenfunctions of the whole to those of the part with eigenvalues as low, at most `most`, by least
-/// squares over the samples.
+/// The map of the first `n` eigenfunctions of the whole to those of the part with eigenvalues as low, at most `most`.
 fn functional(sides: &Sides<'_>, places: &[usize], n: usize, most: usize) -> Option<Matrix> {
-    let n = n.min(sides.whole.vectors.ncols());
+    let n = n.min(sides.whole.spectrum.values.len());
     // Eigenvalues at unit area; those of the part in the unit of the whole are larger.
     let last = sides.whole.spectrum.values[n - 1] * sides.scale().powi(2);
     let k = sides.part.spectrum.values.iter().filter(|value| **value <= last).count();
-    let k = k.min(most).min(places.len() / 3).max(1);
-    let own = sides.part.vectors.select_rows(&sides.xs[..places.len()]).columns(0, k).into_owned();
-    let images: Vec<usize> = places.iter().map(|y| sides.ys[*y]).collect();
-    let pulled = sides.whole.vectors.select_rows(&images).columns(0, n).into_owned();
-    Some(Cholesky::new(own.tr_mul(&own))?.solve(&own.tr_mul(&pulled)))
+    pulled_back(sides, places, [k.min(most), n])
 }
 
 /// How far a map preserves orientation.
 fn orientation(sides: &Sides<'_>, places: &[usize]) -> Option<f64> {
     let (oriented, forms) = (sides.part.oriented.as_ref()?, sides.whole.area_forms.as_ref()?);
     let [n, k] = ORIENTED;
-    let n = n.min(sides.whole.vectors.ncols());
-    let k = k.min(sides.part.vectors.ncols()).min(places.len() / 3).max(1);
-    let own = sides.part.vectors.columns(0, k);
-    let at = own.select_rows(&sides.xs[..places.len()]);
-    let images: Vec<usize> = places.iter().map(|y| sides.ys[*y]).collect();
-    let pulled = sides.whole.vectors.select_rows(&images).columns(0, n).into_owned();
-    let map = Cholesky::new(at.tr_mul(&at))?.solve(&at.tr_mul(&pulled));
-    let pulled = oriented.area_forms(&(own * map), &sides.xs[..places.len()]);
-    let places: Vec<u32> = places.iter().map(|y| *y as u32).collect();
-    Some(agreement(&pulled, forms, &places))
+    let map = pulled_back(sides, places, [k, n.min(sides.whole.spectrum.values.len())])?;
+    let pulled = sides.part.spectrum.vectors.columns(0, map.nrows()) * map;
+    Some(agreement(&oriented.area_forms(&pulled, &sides.xs[..places.len()]), forms, places))
 }
 
 /// How far the map of functions is from one of a part, whose rows are orthonormal: `|C C' - I|² / k`.

@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 
 use linalg::Matrix;
+use nalgebra::DVector;
 use rayon::prelude::*;
 
 use super::super::curvature::smoothed;
 use super::super::shape::MapShape;
-use descriptors::DescriptorError;
+use descriptors::{DescriptorError, LaplaceSpectrum};
 use surface::VertexId;
 
 /// Differences of curvature count if a point is so far from the cut, for each time of smoothing. Heat of the three times reaches
@@ -46,14 +47,12 @@ impl Known {
 pub(super) struct Sides<'a> {
     pub(super) part: &'a MapShape,
     pub(super) whole: &'a MapShape,
-    /// The sample nearest to every vertex of the part and of the whole: positions in the lists of samples.
-    nearest: [Vec<usize>; 2],
     /// Corresponding samples that are known: positions in both lists of samples.
     known: Vec<[usize; 2]>,
     /// Vertices of the part; its landmarks first.
-    pub(super) xs: Vec<usize>,
+    pub(super) xs: &'a [usize],
     /// Vertices of the whole; its landmarks first.
-    pub(super) ys: Vec<usize>,
+    pub(super) ys: &'a [usize],
     /// Distances in the part from landmarks (rows) to samples.
     pub(super) in_part: Matrix,
     /// The distances of all vertices of the part from the cut.
@@ -75,21 +74,20 @@ impl<'a> Sides<'a> {
         let Some(from_cut) = &part.from_cut else { return Ok(None) };
         let scale = part.size / whole.size;
         let from_cut = from_cut.iter().map(|d| d * scale).collect();
-        let (xs, ys) = (part.samples.clone(), whole.samples.clone());
-        let in_part = part.distances_to(&xs)? * scale;
-        let to_samples = whole.distances_to(&ys)?;
+        let (xs, ys) = (&part.samples[..], &whole.samples[..]);
+        let in_part = part.distances_to(xs)? * scale;
+        let to_samples = whole.distances_to(ys)?;
         let in_whole = between(&to_samples, &to_samples);
-        let curvatures = curvatures(part, whole, [&xs, &ys]);
-        let nearest = [part, whole].map(MapShape::sample_of_vertices);
+        let curvatures = curvatures(part, whole, [xs, ys]);
         let mut sides =
-            Self { part, whole, nearest, known: Vec::new(), xs, ys, in_part, from_cut, in_whole, curvatures };
+            Self { part, whole, known: Vec::new(), xs, ys, in_part, from_cut, in_whole, curvatures };
         sides.known = sides.sampled(pairs.iter().copied()).collect();
         Ok(Some(sides))
     }
 
     /// Corresponding samples: those nearest to vertices of the part and of the whole.
     fn sampled(&self, pairs: impl Iterator<Item = [VertexId; 2]>) -> impl Iterator<Item = [usize; 2]> {
-        pairs.map(|[x, y]| [self.nearest[0][x.index()], self.nearest[1][y.index()]])
+        pairs.map(|[x, y]| [self.part.nearest[x.index()], self.whole.nearest[y.index()]])
     }
 
     /// The landmarks of the part near which a vertex has a known partner, each with a sample near one of them.
@@ -171,12 +169,13 @@ fn curvatures(part: &MapShape, whole: &MapShape, [xs, ys]: [&[usize]; 2]) -> [Ma
         return [Matrix::zeros(xs.len(), 0), Matrix::zeros(ys.len(), 0)];
     };
     // Curvature is a length per area, and heat spreads in the unit of the whole.
-    let scale = part.size / whole.size;
-    let unit = |shape: &MapShape| whole.size / (shape.size * shape.size);
-    let mut on_part =
-        smoothed(of_part, &part.spectrum.values, &part.vectors.select_rows(xs), scale.powi(-2)) * unit(part);
-    let mut on_whole =
-        smoothed(of_whole, &whole.spectrum.values, &whole.vectors.select_rows(ys), 1.0) * unit(whole);
+    let at = |shape: &MapShape, bends: &DVector<f64>, vertices: &[usize]| {
+        let LaplaceSpectrum { values, vectors, .. } = &shape.spectrum;
+        let factor = (shape.size / whole.size).powi(-2);
+        let unit = whole.size / (shape.size * shape.size);
+        smoothed(bends, values, &vectors.select_rows(vertices), factor) * unit
+    };
+    let (mut on_part, mut on_whole) = (at(part, of_part, xs), at(whole, of_whole, ys));
     for (mut p, mut q) in on_part.column_iter_mut().zip(on_whole.column_iter_mut()) {
         let deviation = q.variance().sqrt().max(f64::MIN_POSITIVE);
         p /= deviation;
