@@ -3,29 +3,8 @@
 use std::collections::HashSet;
 use std::f64::consts::{PI, TAU};
 
-use crate::ids::{CornerId, VertexId};
+use crate::ids::CornerId;
 use crate::topology::Topology;
-
-/// The part of a corner table that walks around vertices need.
-pub trait CornerTable {
-    /// The vertex in a corner.
-    fn corner_vertex(&self, corner: CornerId) -> VertexId;
-
-    /// The corner opposite the same side in the neighbouring face; `None` if a fan ends there.
-    fn opposite(&self, corner: CornerId) -> Option<CornerId>;
-}
-
-impl CornerTable for Topology {
-    #[inline]
-    fn corner_vertex(&self, corner: CornerId) -> VertexId {
-        self.corner_vertex(corner)
-    }
-
-    #[inline]
-    fn opposite(&self, corner: CornerId) -> Option<CornerId> {
-        self.opposite(corner)
-    }
-}
 
 /// Which of the two sides of a face at a vertex comes first in a fan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -140,19 +119,19 @@ impl OneRing {
     ///
     /// The first open fan starts at the first corner that can start one; a closed one with a forward corner.
     /// Allocates only to grow.
-    pub fn collect(&mut self, table: &impl CornerTable, corners: &[CornerId]) {
+    pub fn collect(&mut self, topology: &Topology, corners: &[CornerId]) {
         self.corners.clear();
         self.fans.clear();
         let at = |winding| move |corner: &CornerId| FanCorner { corner: *corner, winding };
         let Some(first) = corners.first().map(at(Winding::Forward)) else { return };
-        if self.walk(table, first) && self.corners.len() == corners.len() {
+        if self.walk(topology, first) && self.corners.len() == corners.len() {
             self.fans.push((corners.len(), true));
             return;
         }
         self.corners.clear();
         self.known.clear();
         let sides = corners.iter().flat_map(|c| [Winding::Forward, Winding::Backward].map(|w| at(w)(c)));
-        let begins_fan = |side: &FanCorner| table.opposite(side.opposite_first()).is_none();
+        let begins_fan = |side: &FanCorner| topology.opposite(side.opposite_first()).is_none();
         // All that is left after the open fans is closed.
         for start in sides.filter(begins_fan).chain(corners.iter().map(at(Winding::Forward))) {
             if self.corners.len() == corners.len() {
@@ -164,7 +143,7 @@ impl OneRing {
             };
             if !is_known {
                 let n_before = self.corners.len();
-                let is_closed = self.walk(table, start);
+                let is_closed = self.walk(topology, start);
                 self.fans.push((self.corners.len(), is_closed));
                 if corners.len() > FEW {
                     self.known.extend(self.corners[n_before..].iter().map(|known| known.corner));
@@ -175,14 +154,14 @@ impl OneRing {
 
     /// Appends the fan that begins with `start`; returns whether it is closed.
     #[inline]
-    fn walk(&mut self, table: &impl CornerTable, start: FanCorner) -> bool {
-        let vertex = table.corner_vertex(start.corner);
+    fn walk(&mut self, topology: &Topology, start: FanCorner) -> bool {
+        let vertex = topology.corner_vertex(start.corner);
         let mut here = start;
         loop {
             self.corners.push(here);
-            let Some(far) = table.opposite(here.opposite_last()) else { return false };
+            let Some(far) = topology.opposite(here.opposite_last()) else { return false };
             let next = far.next();
-            here = if table.corner_vertex(next) == vertex {
+            here = if topology.corner_vertex(next) == vertex {
                 FanCorner { corner: next, winding: Winding::Forward }
             } else {
                 FanCorner { corner: far.prev(), winding: Winding::Backward }
@@ -277,6 +256,7 @@ mod tests {
     use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
     use super::*;
+    use crate::ids::VertexId;
 
     /// The fans around vertex 0: the vertices at the ends of the sides, in order.
     fn fans(faces: &[[u32; 3]]) -> (OneRing, Vec<Vec<u32>>) {
