@@ -106,17 +106,17 @@ pub fn read_file(path: &Path, source: &dyn FileSource, limits: &ReadLimits) -> R
     let open = |file: &PathBuf, check: CheckStart| {
         if file != path && !source.holds(file) {
             let partner = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            let (what, remedy) = match format.companions {
-                Some(_) => (
+            let fault = match format.companions {
+                Some(_) => Fault::unsupported(
                     format!("its data is in {partner}, which is missing"),
                     "put both files into the same folder",
                 ),
-                None => (
+                None => Fault::unsupported(
                     format!("its other half {partner} is missing"),
                     "put both files of the pair into the same folder",
                 ),
             };
-            return Err(Fault::Unsupported { what, remedy }.whole().in_file(path));
+            return Err(fault.whole().in_file(path));
         }
         load(source, file, check)
     };
@@ -160,21 +160,17 @@ pub fn read_from(
     limits: &ReadLimits,
 ) -> Result<MeshFile, MeshError> {
     let of_several = |what: String| {
-        let remedy = "name one of its files, or convert it to PLY or GLB";
-        Fault::Unsupported { what, remedy }.whole().in_file(name)
+        Fault::unsupported(what, "name one of its files, or convert it to PLY or GLB").whole().in_file(name)
     };
     let [check] = format.check_start else {
-        return Err(of_several(format!(
-            "{} consists of two files and cannot be read from a stream",
-            format.name
-        )));
+        let what = format!("{} consists of two files and cannot be read from a stream", format.name);
+        return Err(of_several(what));
     };
     let bytes = load_stream(name, stream, *check, limits.max_bytes)?;
     let companions = format.companions.map_or(Ok(Vec::new()), |companions| companions(&bytes));
     if let Some(companion) = companions.map_err(|fault| fault.in_file(name))?.first() {
-        return Err(of_several(format!(
-            "its data is in another file, `{companion}`, which cannot be read from a stream"
-        )));
+        let what = format!("its data is in another file, `{companion}`, which cannot be read from a stream");
+        return Err(of_several(what));
     }
     (format.parse)(&[&bytes], limits).map_err(|fault| fault.in_file(name))
 }

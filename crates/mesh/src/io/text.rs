@@ -69,17 +69,14 @@ impl<'a> Line<'a> {
 
     /// The fault that this line is not what the format requires.
     pub(super) fn expected(self, expected: &'static str) -> Located {
-        Fault::Syntax { expected, found: excerpt(self.text) }.in_line(self.number)
+        Fault::syntax(expected, excerpt(self.text)).in_line(self.number)
     }
 }
 
 /// Refuses the start of a text file that holds zero bytes, as binary data and files with holes do.
 pub(super) fn check_is_text(start: &[u8], expected: &'static str) -> Result<(), Located> {
     match start.iter().position(|byte| *byte == 0) {
-        Some(at) => {
-            Err(Fault::WrongFormat { expected, found: "it is not text but has zero bytes".into() }
-                .at_byte(at))
-        }
+        Some(at) => Err(Fault::wrong_format(expected, "it is not text but has zero bytes").at_byte(at)),
         None => Ok(()),
     }
 }

@@ -20,7 +20,7 @@ use nalgebra::Point3;
 
 use crate::error::{Content, Located, MeshError};
 use crate::io::facts::MeshFile;
-use crate::io::field::VertexField;
+use crate::io::field::WrittenField;
 use crate::io::limits::ReadLimits;
 use crate::io::name::{extension, inflated, is_gzip, with_extension};
 use crate::io::source::{CheckStart, FileSource};
@@ -28,7 +28,7 @@ use crate::tri_mesh::TriMesh;
 
 type Parse = fn(&[&[u8]], &ReadLimits) -> Result<MeshFile, Located>;
 type Companions = fn(&[u8]) -> Result<Vec<String>, Located>;
-type WriteMesh = fn(&mut dyn Write, &TriMesh, Option<&VertexField<'_>>) -> io::Result<()>;
+type WriteMesh = fn(&mut dyn Write, &TriMesh, WrittenField<'_>) -> io::Result<()>;
 type WriteLines = fn(&mut dyn Write, &[Vec<Point3<f64>>]) -> io::Result<()>;
 
 /// A mesh file format; [`FORMATS`] lists them.

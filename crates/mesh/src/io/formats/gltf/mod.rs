@@ -19,6 +19,7 @@ use crate::error::{Fault, Located};
 use crate::io::facts::{FileFacts, LengthUnit, MeshFile};
 use crate::io::limits::ReadLimits;
 use crate::io::polygons::finish;
+use crate::io::text::excerpt;
 use accessors::Accessors;
 use container::{Buffers, split_binary};
 use schema::Root;
@@ -94,12 +95,11 @@ fn parse_json(json: &[u8], start: usize) -> Result<Root, Located> {
     if json.trim_ascii().is_empty() {
         return Err(Fault::Empty.whole());
     }
-    serde_json::from_slice(json).map_err(|fault| {
-        let expected = "the JSON of glTF 2.0";
-        let found = Fault::Syntax { expected, found: fault.to_string() };
+    serde_json::from_slice(json).map_err(|error| {
+        let fault = Fault::syntax("the JSON of glTF 2.0", error.to_string());
         match start {
-            0 => found.in_line(fault.line()),
-            start => found.at_byte(start),
+            0 => fault.in_line(error.line()),
+            start => fault.at_byte(start),
         }
     })
 }
@@ -114,23 +114,20 @@ fn read(
     check_extensions(root)?;
     let buffers = Buffers::new(root, chunk, &files[1..])?;
     let n_bytes = files.iter().map(|file| file.len() as u64).sum();
-    let found = scene::read(root, &Accessors::new(root, &buffers, n_bytes), n_bytes, limits)?;
+    let (mesh, instances) = scene::read(&Accessors { root, buffers, n_bytes }, limits)?;
     let facts = FileFacts {
         unit: Some(LengthUnit::Meter),
-        instances: Some(found.instances),
+        instances: Some(instances),
         ignored: scene::ignored(root),
     };
-    Ok(MeshFile { facts, ..finish(found.positions, found.faces, limits)? })
+    Ok(MeshFile { facts, ..finish(mesh, limits)? })
 }
 
 fn check_version(root: &Root) -> Result<(), Located> {
     let version = root.asset.min_version.as_ref().unwrap_or(&root.asset.version);
     if version.split('.').next() != Some("2") {
-        return Err(Fault::Unsupported {
-            what: format!("this is glTF {}", super::super::text::excerpt(version.as_bytes())),
-            remedy: "export it as glTF 2.0",
-        }
-        .whole());
+        let what = format!("this is glTF {}", excerpt(version.as_bytes()));
+        return Err(Fault::unsupported(what, "export it as glTF 2.0").whole());
     }
     Ok(())
 }
@@ -142,19 +139,16 @@ fn check_extensions(root: &Root) -> Result<(), Located> {
         let is_fatal = root.extensions_required.iter().any(|used| used == name)
             || name == "EXT_mesh_gpu_instancing" && used.clone().any(|used| used == name);
         if is_fatal {
-            return Err(Fault::Unsupported { what: what.into(), remedy }.whole());
+            return Err(Fault::unsupported(what, remedy).whole());
         }
     }
     let is_harmless = |name: &String| HARMLESS.iter().any(|prefix| name.starts_with(prefix));
     match root.extensions_required.iter().find(|name| !is_harmless(name)) {
-        Some(name) => Err(Fault::Unsupported {
-            what: format!(
-                "it requires the extension {}, which is not supported",
-                super::super::text::excerpt(name.as_bytes())
-            ),
-            remedy: "export it without this extension",
+        Some(name) => {
+            let what =
+                format!("it requires the extension {}, which is not supported", excerpt(name.as_bytes()));
+            Err(Fault::unsupported(what, "export it without this extension").whole())
         }
-        .whole()),
         None => Ok(()),
     }
 }

@@ -1,6 +1,5 @@
 //! The surface in a MATLAB file.
 
-use nalgebra::Point3;
 use surface::VertexId;
 
 use super::container::{
@@ -9,8 +8,9 @@ use super::container::{
 use crate::error::{Fault, Located};
 use crate::io::facts::MeshFile;
 use crate::io::limits::ReadLimits;
-use crate::io::polygons::finish;
+use crate::io::polygons::{finish, finite};
 use crate::io::text::excerpt;
+use crate::tri_mesh::TriMesh;
 
 /// The fields of the struct.
 const FIELDS: [&str; 4] = ["X", "Y", "Z", "TRIV"];
@@ -50,8 +50,7 @@ pub(in crate::io::formats) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Res
         let end = begin + length as usize;
         let Some(data) = bytes.get(begin..end) else {
             let found = (bytes.len() - begin) as u64;
-            let items = "bytes of a variable".into();
-            return Err(Fault::Truncated { items, promised: u64::from(length), found }.at_byte(at));
+            return Err(Fault::truncated("bytes of a variable", u64::from(length), found).at_byte(at));
         };
         let (content, fault);
         let mut variable = elements(data, begin, cut_short());
@@ -75,11 +74,8 @@ pub(in crate::io::formats) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Res
         (false, 0) => seen.join(", "),
         (false, more) => format!("{} and {more} more", seen.join(", ")),
     };
-    Err(Fault::Unsupported {
-        what: format!("the file has no struct with the fields X Y Z TRIV (its variables: {seen})"),
-        remedy: "save one, as `surface.X = ...; save(file, 'surface', '-v7')`",
-    }
-    .whole())
+    let what = format!("the file has no struct with the fields X Y Z TRIV (its variables: {seen})");
+    Err(Fault::unsupported(what, "save one, as `surface.X = ...; save(file, 'surface', '-v7')`").whole())
 }
 
 /// A variable of the file.
@@ -167,8 +163,7 @@ impl Matrix {
         let promised = rows as u64 * columns as u64;
         let found = u64::from(tag.length) / scalar.size() as u64;
         if promised != found {
-            return Err(Fault::Truncated { items: "numbers of a matrix".into(), promised, found }
-                .at_byte(elements.start));
+            return Err(Fault::truncated("numbers of a matrix", promised, found).at_byte(elements.start));
         }
         // TRIV has one row per face; X, Y and Z have one row or one column.
         let fault = |fault: Fault| fault.at_byte(elements.start);
@@ -185,7 +180,7 @@ impl Matrix {
 
 impl Surface {
     fn into_mesh(self, at: usize, limits: &ReadLimits) -> Result<MeshFile, Located> {
-        let syntax = |expected, found: String| Fault::Syntax { expected, found }.at_byte(at);
+        let syntax = |expected, found: String| Fault::syntax(expected, found).at_byte(at);
         let [Some(x), Some(y), Some(z), Some(triv)] = self.fields else {
             return Err(syntax("a matrix in each of the fields X Y Z TRIV", "an empty field".into()));
         };
@@ -199,22 +194,17 @@ impl Surface {
         }
         limits.check(n as u64, triv.rows as u64).map_err(|fault| fault.at_byte(at))?;
         let mut positions = Vec::with_capacity(n);
-        for (i, ((&x, &y), &z)) in x.values.iter().zip(&y.values).zip(&z.values).enumerate() {
-            if let Some(value) = [x, y, z].into_iter().find(|x| !x.is_finite()) {
-                return Err(Fault::NonFinite { vertex: i as u64 + 1, value }.at_byte(at));
-            }
-            positions.push(Point3::new(x, y, z));
+        for (i, ((x, y), z)) in x.values.iter().zip(&y.values).zip(&z.values).enumerate() {
+            positions.push(finite([*x, *y, *z], i + 1).map_err(|fault| fault.at_byte(at))?);
         }
-        let vertex = |value: f64| {
-            if value.fract() == 0.0 && (1.0..=n as f64).contains(&value) {
-                return Ok(VertexId(value as u32 - 1));
-            }
-            Err(Fault::IndexOutOfRange { index: value.to_string(), first: 1, last: n as u64 }.at_byte(at))
+        let vertex = |value: f64| match value.fract() == 0.0 && (1.0..=n as f64).contains(&value) {
+            true => Ok(VertexId(value as u32 - 1)),
+            false => Err(Fault::no_vertex(value.to_string(), 1, n as u64).at_byte(at)),
         };
         let corner = |face: usize, slot: usize| vertex(triv.values[slot * triv.rows + face]);
         let faces = (0..if triv.values.is_empty() { 0 } else { triv.rows })
             .map(|face| Ok([corner(face, 0)?, corner(face, 1)?, corner(face, 2)?]))
             .collect::<Result<_, Located>>()?;
-        finish(positions, faces, limits)
+        finish(TriMesh { positions, faces }, limits)
     }
 }
