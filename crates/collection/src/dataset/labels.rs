@@ -123,7 +123,7 @@ fn is_mesh_named(key: &str, name: &str) -> bool {
 }
 
 /// A path separated by `/`.
-pub(super) fn joined(path: &Path) -> String {
+pub(crate) fn joined(path: &Path) -> String {
     path.iter().map(|part| part.to_string_lossy()).collect::<Vec<_>>().join("/")
 }
 
