@@ -9,5 +9,5 @@ mod observer;
 pub mod terminal;
 
 pub use budget::{Budget, Exceeded, Meter};
-pub use content::ContentHash;
+pub use content::{ContentHash, ContentHasher};
 pub use observer::Observer;
