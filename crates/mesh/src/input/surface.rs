@@ -122,7 +122,7 @@ impl Surface {
         if self.mesh().n_vertices() <= n_vertices {
             return Ok(None);
         }
-        let found = collapse_edges(self.mesh(), n_vertices, |error, _, _| error, &observer.budget())?;
+        let found = collapse_edges(self.mesh(), n_vertices, &|error, _, _| error, &observer.budget())?;
         // Repaired meshes have no vertices without faces.
         let Some(vertex_of) = found.vertex_of.into_iter().collect::<Option<Vec<VertexId>>>() else {
             return Ok(None);

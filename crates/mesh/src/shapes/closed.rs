@@ -6,7 +6,7 @@ use nalgebra::Point3;
 use surface::VertexId;
 
 use super::flat::triangles;
-use super::subdivision::subdivide;
+use super::subdivide;
 use crate::tri_mesh::TriMesh;
 
 fn from_arrays(positions: &[[f64; 3]], faces: &[[u32; 3]]) -> TriMesh {
