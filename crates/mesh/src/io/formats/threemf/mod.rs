@@ -67,8 +67,7 @@ impl Parts {
 
     fn object(&self, (part, id): Key) -> Result<&Object, Located> {
         self.models[part]
-            .objects
-            .get(&id)
+            .object(id)
             .ok_or_else(|| Fault::syntax("the id of an object that exists", format!("object {id}")).whole())
     }
 }
@@ -95,9 +94,9 @@ fn assemble(file: &Parts, n_bytes: u64, limits: &ReadLimits) -> Result<MeshFile,
     let mut items: Vec<(Key, Placement)> =
         root.items.iter().map(|item| (file.key(item, 0), item.place)).collect();
     if items.is_empty() {
-        let components = root.objects.values().flat_map(|object| &object.components);
+        let components = root.objects.iter().flat_map(|object| &object.components);
         let of_others: Vec<Key> = components.map(|component| file.key(component, 0)).collect();
-        let tops = root.in_order().into_iter().map(|object| (0, object.id));
+        let tops = root.objects.iter().map(|object| (0, object.id));
         items = tops.filter(|key| !of_others.contains(key)).map(|key| (key, None)).collect();
     }
     let mut whole = Size::default();

@@ -21,7 +21,9 @@ const KNOWN: [&str; 6] =
 /// One model part.
 pub(super) struct Model {
     pub(super) unit: LengthUnit,
-    pub(super) objects: HashMap<u64, Object>,
+    pub(super) objects: Vec<Object>,
+    /// Where the objects are in the list, by their ids.
+    numbers: HashMap<u64, usize>,
     pub(super) items: Vec<Reference>,
 }
 
@@ -29,8 +31,6 @@ pub(super) struct Model {
 #[derive(Default)]
 pub(super) struct Object {
     pub(super) id: u64,
-    /// Its place among the objects.
-    pub(super) order: usize,
     pub(super) mesh: TriMesh,
     pub(super) components: Vec<Reference>,
 }
@@ -44,16 +44,13 @@ pub(super) struct Reference {
 }
 
 impl Model {
-    /// The objects in their order.
-    pub(super) fn in_order(&self) -> Vec<&Object> {
-        let mut objects: Vec<&Object> = self.objects.values().collect();
-        objects.sort_by_key(|object| object.order);
-        objects
+    pub(super) fn object(&self, id: u64) -> Option<&Object> {
+        self.numbers.get(&id).map(|number| &self.objects[*number])
     }
 
     /// Names of other parts, in order of appearance.
     pub(super) fn parts(&self) -> impl Iterator<Item = &str> {
-        let components = self.in_order().into_iter().flat_map(|object| &object.components);
+        let components = self.objects.iter().flat_map(|object| &object.components);
         self.items.iter().chain(components).filter_map(|reference| reference.part.as_deref())
     }
 }
@@ -94,20 +91,9 @@ impl Cursor<'_> {
     }
 }
 
-/// What encloses an element. Elements of extensions may have the same names elsewhere.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Inside {
-    Nothing,
-    Model,
-    Resources,
-    Object,
-    Mesh,
-    Vertices,
-    Triangles,
-    Components,
-    Build,
-    Other,
-}
+/// The elements that lead to what is read. Elements of extensions may have the same names elsewhere.
+const ELEMENTS: &str =
+    "vertex triangle component item model resources object mesh vertices triangles components build";
 
 /// Parses a part.
 pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<Model, Located> {
@@ -122,13 +108,18 @@ pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<Model, Located>
     let mut parser = Parser {
         cursor: Cursor { bytes: text.as_bytes(), at: 0 },
         limits,
-        model: Model { unit: LengthUnit::Millimeter, objects: HashMap::new(), items: Vec::new() },
+        model: Model {
+            unit: LengthUnit::Millimeter,
+            objects: Vec::new(),
+            numbers: HashMap::new(),
+            items: Vec::new(),
+        },
         object: Object::default(),
+        path: Vec::new(),
         prefix: String::new(),
         n_vertices: 0,
         n_faces: 0,
     };
-    let mut path = vec![Inside::Nothing];
     loop {
         parser.cursor.at = reader.buffer_position() as usize;
         let event = reader.read_event().map_err(|fault| {
@@ -136,16 +127,10 @@ pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<Model, Located>
             parser.cursor.syntax("XML", &fault.to_string())
         })?;
         match event {
-            Event::Start(element) => {
-                let outer = *path.last().unwrap_or(&Inside::Nothing);
-                path.push(parser.start(&element, outer)?);
-                if path.len() > 1000 {
-                    return Err(parser.cursor.syntax("a model", "elements nested more than 1000 deep"));
-                }
-            }
-            Event::End(_) if path.pop() == Some(Inside::Object) => parser.end_object()?,
+            Event::Start(element) => parser.start(&element)?,
+            Event::End(_) => parser.end()?,
             Event::DocType(_) => return Err(parser.cursor.syntax("a model", "<!DOCTYPE")),
-            Event::Eof if path.len() > 1 => {
+            Event::Eof if !parser.path.is_empty() => {
                 return Err(parser.cursor.locate(Fault::cut_short("the end of the model")));
             }
             Event::Eof => return Ok(parser.model),
@@ -160,6 +145,8 @@ struct Parser<'a> {
     model: Model,
     /// The object whose content is read.
     object: Object,
+    /// The names of the open elements; empty for those that are not read.
+    path: Vec<&'static str>,
     /// The prefix of the core elements, with its colon.
     prefix: String,
     n_vertices: u64,
@@ -167,48 +154,37 @@ struct Parser<'a> {
 }
 
 impl Parser<'_> {
-    /// Handles the beginning of an element, and says where its content is.
-    fn start(&mut self, element: &BytesStart<'_>, outer: Inside) -> Result<Inside, Located> {
+    /// Handles the beginning of an element.
+    fn start(&mut self, element: &BytesStart<'_>) -> Result<(), Located> {
         let name = element.name();
-        if outer == Inside::Nothing {
+        if self.path.is_empty() {
             if name.local_name().as_ref() != "model" {
                 return Err(self.cursor.syntax("the element `model`", name.as_ref()));
             }
             self.prefix = name.prefix().map_or_else(String::new, |prefix| format!("{}:", prefix.as_ref()));
-            self.model(element)?;
-            return Ok(Inside::Model);
         }
-        let Some(local) = name.as_ref().strip_prefix(self.prefix.as_str()) else { return Ok(Inside::Other) };
-        Ok(match (outer, local) {
-            (Inside::Model, "resources") => Inside::Resources,
-            (Inside::Model, "build") => Inside::Build,
-            (Inside::Resources, "object") => {
+        let local = name.as_ref().strip_prefix(self.prefix.as_str());
+        self.path.push(ELEMENTS.split(' ').find(|known| Some(*known) == local).unwrap_or_default());
+        match self.path[..] {
+            ["model"] => self.model(element),
+            ["model", "resources", "object"] => {
                 let id = Attributes::of(element, &self.cursor)?.id("id")?;
-                self.object = Object { id, order: self.model.objects.len(), ..Object::default() };
-                Inside::Object
+                self.object = Object { id, ..Object::default() };
+                Ok(())
             }
-            (Inside::Object, "mesh") => Inside::Mesh,
-            (Inside::Object, "components") => Inside::Components,
-            (Inside::Mesh, "vertices") => Inside::Vertices,
-            (Inside::Mesh, "triangles") => Inside::Triangles,
-            (Inside::Vertices, "vertex") => {
-                self.vertex(element)?;
-                Inside::Other
-            }
-            (Inside::Triangles, "triangle") => {
-                self.triangle(element)?;
-                Inside::Other
-            }
-            (Inside::Components, "component") => {
+            ["model", "resources", "object", "mesh", "vertices", "vertex"] => self.vertex(element),
+            ["model", "resources", "object", "mesh", "triangles", "triangle"] => self.triangle(element),
+            ["model", "resources", "object", "components", "component"] => {
                 self.object.components.push(Attributes::of(element, &self.cursor)?.reference()?);
-                Inside::Other
+                Ok(())
             }
-            (Inside::Build, "item") => {
+            ["model", "build", "item"] => {
                 self.model.items.push(Attributes::of(element, &self.cursor)?.reference()?);
-                Inside::Other
+                Ok(())
             }
-            _ => Inside::Other,
-        })
+            _ if self.path.len() < 1000 => Ok(()),
+            _ => Err(self.cursor.syntax("a model", "elements nested more than 1000 deep")),
+        }
     }
 
     fn model(&mut self, element: &BytesStart<'_>) -> Result<(), Located> {
@@ -219,21 +195,19 @@ impl Parser<'_> {
                 self.cursor.syntax("a unit: micron, millimeter, centimeter, inch, foot or meter", unit)
             })?;
         }
-        for prefix in attributes.find("requiredextensions").unwrap_or_default().split_ascii_whitespace() {
-            let namespace = attributes.find(&format!("xmlns:{prefix}")).unwrap_or(prefix);
-            if !KNOWN.iter().any(|known| namespace.contains(known)) {
-                let name = namespace.rsplit("/3dmanufacturing/").next().unwrap_or(namespace);
-                let what = match namespace.contains("/securecontent/") {
-                    true => "its content is encrypted".to_owned(),
-                    false => {
-                        let name = excerpt(name.as_bytes());
-                        format!("it requires the extension {name}, which is not supported")
-                    }
-                };
-                return Err(self.cursor.locate(Fault::unsupported(what, "export it without this extension")));
+        let required = attributes.find("requiredextensions").unwrap_or_default().split_ascii_whitespace();
+        let mut namespaces =
+            required.map(|prefix| attributes.find(&format!("xmlns:{prefix}")).unwrap_or(prefix));
+        let is_unknown = |namespace: &&str| !KNOWN.iter().any(|known| namespace.contains(known));
+        let Some(namespace) = namespaces.find(is_unknown) else { return Ok(()) };
+        let name = namespace.rsplit("/3dmanufacturing/").next().unwrap_or(namespace);
+        let what = match namespace.contains("/securecontent/") {
+            true => "its content is encrypted".to_owned(),
+            false => {
+                format!("it requires the extension {}, which is not supported", excerpt(name.as_bytes()))
             }
-        }
-        Ok(())
+        };
+        Err(self.cursor.locate(Fault::unsupported(what, "export it without this extension")))
     }
 
     fn vertex(&mut self, element: &BytesStart<'_>) -> Result<(), Located> {
@@ -265,13 +239,20 @@ impl Parser<'_> {
         self.limits.check(0, self.n_faces).map_err(at)
     }
 
-    fn end_object(&mut self) -> Result<(), Located> {
+    /// Handles the end of an element.
+    fn end(&mut self) -> Result<(), Located> {
+        let is_object = self.path == ["model", "resources", "object"];
+        self.path.pop();
+        if !is_object {
+            return Ok(());
+        }
         let object = std::mem::take(&mut self.object);
         let id = object.id;
-        match self.model.objects.insert(id, object) {
-            None => Ok(()),
-            Some(_) => Err(self.cursor.syntax("objects with different ids", &format!("id {id} twice"))),
+        if self.model.numbers.insert(id, self.model.objects.len()).is_some() {
+            return Err(self.cursor.syntax("objects with different ids", &format!("id {id} twice")));
         }
+        self.model.objects.push(object);
+        Ok(())
     }
 }
 
