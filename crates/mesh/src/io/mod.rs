@@ -66,8 +66,8 @@ pub fn files_in(path: &Path, source: &dyn FileSource) -> Vec<PathBuf> {
     let Ok(format) = Format::of(path) else { return vec![path.to_owned()] };
     let mut files = format.files(path, source);
     // A file that cannot be read is reported when it is.
-    if let (Some(companions), [check]) = (format.companions, format.check_start)
-        && let Ok(content) = load(source, path, *check)
+    if let Some(companions) = format.companions
+        && let Ok(content) = load(source, path, format.check_start)
     {
         let names = companions(&content).unwrap_or_default();
         files.extend(names.iter().map(|name| path.with_file_name(name)));
@@ -120,7 +120,7 @@ pub fn read_file(path: &Path, source: &dyn FileSource, limits: &ReadLimits) -> R
         }
         load(source, file, check)
     };
-    let loaded = paths.iter().zip(format.check_start).map(|(file, check)| open(file, *check));
+    let loaded = paths.iter().map(|file| open(file, format.check_start));
     let mut contents = loaded.collect::<Result<Vec<Cow<'_, [u8]>>, _>>()?;
     if let (Some(companions), Some(content)) = (format.companions, contents.first()) {
         for name in companions(content).map_err(|fault| fault.in_file(path))? {
@@ -162,11 +162,11 @@ pub fn read_from(
     let of_several = |what: String| {
         Fault::unsupported(what, "name one of its files, or convert it to PLY or GLB").whole().in_file(name)
     };
-    let [check] = format.check_start else {
+    if format.extensions.len() > 1 {
         let what = format!("{} consists of two files and cannot be read from a stream", format.name);
         return Err(of_several(what));
-    };
-    let bytes = load_stream(name, stream, *check, limits.max_bytes)?;
+    }
+    let bytes = load_stream(name, stream, format.check_start, limits.max_bytes)?;
     let companions = format.companions.map_or(Ok(Vec::new()), |companions| companions(&bytes));
     if let Some(companion) = companions.map_err(|fault| fault.in_file(name))?.first() {
         let what = format!("its data is in another file, `{companion}`, which cannot be read from a stream");

@@ -4,6 +4,7 @@ use std::io::{self, Write};
 use std::str::FromStr;
 
 use nalgebra::Point3;
+use surface::VertexId;
 
 use crate::error::{Fault, Located};
 
@@ -101,6 +102,22 @@ pub(super) fn parse_integer(token: &[u8]) -> Option<i64> {
         let value: f64 = parse_number(token)?;
         (value.fract() == 0.0 && value.abs() < 9e15).then_some(value as i64)
     })
+}
+
+/// The next word of a line as a vertex, counted from `first`.
+pub(super) fn parse_vertex<'a>(
+    line: Line<'a>,
+    tokens: &mut impl Iterator<Item = &'a [u8]>,
+    [first, n_vertices]: [u64; 2],
+    expected: &'static str,
+) -> Result<VertexId, Located> {
+    let token = tokens.next().ok_or_else(|| line.expected(expected))?;
+    let index = parse_integer(token).ok_or_else(|| line.expected(expected))?;
+    let vertex = index.checked_sub_unsigned(first).and_then(|vertex| u64::try_from(vertex).ok());
+    match vertex.filter(|vertex| *vertex < n_vertices) {
+        Some(vertex) => Ok(VertexId(vertex as u32)),
+        None => Err(Fault::no_vertex(excerpt(token), first, n_vertices).in_line(line.number)),
+    }
 }
 
 /// The first three words of a line as a position; `vertex` only appears in messages.

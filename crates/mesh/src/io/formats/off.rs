@@ -9,7 +9,7 @@ use crate::io::facts::MeshFile;
 use crate::io::field::WrittenField;
 use crate::io::limits::ReadLimits;
 use crate::io::polygons::{finish, push_polygon};
-use crate::io::text::{Line, Lines, check_is_text, excerpt, parse_integer, parse_position};
+use crate::io::text::{Line, Lines, check_is_text, excerpt, parse_integer, parse_position, parse_vertex};
 use crate::tri_mesh::TriMesh;
 
 /// The fewest bytes of a vertex, `0 0 0` and a line end, and of a face, `3 0 1 2` and a line end.
@@ -102,17 +102,12 @@ fn parse_counts(line: Line<'_>) -> Result<(u64, u64), Located> {
 
 /// Reads the corners of one face into `corners`; colours may follow and are ignored.
 fn parse_corners(line: Line<'_>, n_vertices: u64, corners: &mut Vec<VertexId>) -> Result<(), Located> {
-    let expected = || line.expected("a number of corners and that many vertices");
+    let expected = "a number of corners and that many vertices";
     let mut tokens = line.tokens();
-    let n_corners = tokens.next().and_then(parse_integer).filter(|n| *n >= 0).ok_or_else(expected)?;
+    let n_corners = tokens.next().and_then(parse_integer).filter(|n| *n >= 0);
     corners.clear();
-    for _ in 0..n_corners {
-        let token = tokens.next().ok_or_else(expected)?;
-        let index = parse_integer(token).ok_or_else(expected)?;
-        if !(0..n_vertices as i64).contains(&index) {
-            return Err(Fault::no_vertex(excerpt(token), 0, n_vertices).in_line(line.number));
-        }
-        corners.push(VertexId(index as u32));
+    for _ in 0..n_corners.ok_or_else(|| line.expected(expected))? {
+        corners.push(parse_vertex(line, &mut tokens, [0, n_vertices], expected)?);
     }
     Ok(())
 }

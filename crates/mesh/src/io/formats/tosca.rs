@@ -10,7 +10,7 @@ use crate::io::facts::MeshFile;
 use crate::io::field::WrittenField;
 use crate::io::limits::ReadLimits;
 use crate::io::polygons::finish;
-use crate::io::text::{Lines, check_is_text, excerpt, parse_integer, parse_position, write_position};
+use crate::io::text::{Lines, check_is_text, parse_position, parse_vertex, write_position};
 use crate::tri_mesh::TriMesh;
 
 /// The fewest bytes of a line: three digits, two separators, a line end.
@@ -49,19 +49,14 @@ fn parse_positions(bytes: &[u8], limits: &ReadLimits) -> Result<Vec<Point3<f64>>
 fn parse_faces(bytes: &[u8], n_vertices: usize, limits: &ReadLimits) -> Result<Vec<[VertexId; 3]>, Located> {
     let mut faces = Vec::with_capacity(bytes.len() / (2 * SHORTEST_LINE));
     for line in Lines::new(bytes) {
-        let expected = || line.expected("three vertices, counted from one");
+        let expected = "three vertices, counted from one";
         let mut tokens = line.tokens();
         let mut face = [VertexId(0); 3];
         for corner in &mut face {
-            let token = tokens.next().ok_or_else(expected)?;
-            let index = parse_integer(token).ok_or_else(expected)?;
-            if !(1..=n_vertices as i64).contains(&index) {
-                return Err(Fault::no_vertex(excerpt(token), 1, n_vertices as u64).in_line(line.number));
-            }
-            *corner = VertexId((index - 1) as u32);
+            *corner = parse_vertex(line, &mut tokens, [1, n_vertices as u64], expected)?;
         }
         if tokens.next().is_some() {
-            return Err(expected());
+            return Err(line.expected(expected));
         }
         faces.push(face);
         limits.check(0, faces.len() as u64).map_err(|fault| fault.in_line(line.number))?;

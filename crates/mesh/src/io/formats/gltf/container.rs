@@ -60,8 +60,8 @@ fn wrong(expected: &'static str, start: &[u8]) -> Located {
     Fault::wrong_format(expected, format!("it begins with `{}`", excerpt(start))).whole()
 }
 
-/// The JSON of a GLB file, the byte at which it begins, and the binary chunk if there is one.
-type Parts<'a> = (&'a [u8], usize, Option<&'a [u8]>);
+/// The JSON of a file, the byte at which it begins, and the binary chunk if there is one.
+pub(super) type Parts<'a> = (&'a [u8], usize, Option<&'a [u8]>);
 
 /// Splits a GLB file.
 pub(super) fn split_binary(bytes: &[u8]) -> Result<Parts<'_>, Located> {

@@ -21,7 +21,7 @@ use crate::io::limits::ReadLimits;
 use crate::io::polygons::finish;
 use crate::io::text::excerpt;
 use accessors::Accessors;
-use container::{Buffers, split_binary};
+use container::{Buffers, Parts, split_binary};
 use schema::Root;
 
 pub(super) use container::{check_binary_start, check_start};
@@ -78,15 +78,12 @@ pub(super) fn companions_of_binary(bytes: &[u8]) -> Result<Vec<String>, Located>
 
 /// Reads a `.gltf` file, followed by its companions.
 pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
-    let root = parse_json(files[0], 0)?;
-    read(&root, None, files, limits)
+    read((files[0], 0, None), files, limits)
 }
 
 /// Reads a `.glb` file, followed by its companions.
 pub(super) fn parse_binary(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
-    let (json, start, chunk) = split_binary(files[0])?;
-    let root = parse_json(json, start)?;
-    read(&root, chunk, files, limits)
+    read(split_binary(files[0])?, files, limits)
 }
 
 /// Parses the description of the scene, which begins at byte `start` of the file.
@@ -104,12 +101,8 @@ fn parse_json(json: &[u8], start: usize) -> Result<Root, Located> {
     })
 }
 
-fn read(
-    root: &Root,
-    chunk: Option<&[u8]>,
-    files: &[&[u8]],
-    limits: &ReadLimits,
-) -> Result<MeshFile, Located> {
+fn read((json, start, chunk): Parts<'_>, files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
+    let root = &parse_json(json, start)?;
     check_version(root)?;
     check_extensions(root)?;
     let buffers = Buffers::new(root, chunk, &files[1..])?;
