@@ -100,7 +100,7 @@ fn words(topology: &Topology) -> Option<Vec<u64>> {
     }
     // Every boundary is one more face.
     let mut rims = DisjointSets::new(topology.n_vertices());
-    for edge in edges().filter(|edge| topology.edge_corners(*edge).len() == 1) {
+    for edge in topology.boundary_edges() {
         let [a, b] = topology.edges()[edge.index()];
         rims.union(a.0, b.0);
     }

@@ -3,7 +3,8 @@
 use std::collections::HashSet;
 use std::f64::consts::{PI, TAU};
 
-use crate::ids::CornerId;
+use crate::disjoint_sets::DisjointSets;
+use crate::ids::{CornerId, EdgeId};
 use crate::topology::Topology;
 
 /// Which of the two sides of a face at a vertex comes first in a fan.
@@ -182,6 +183,22 @@ impl OneRing {
         })
     }
 
+    /// The fans as sets of those with common edges of more than two faces, except for edges that are to be `left_out`.
+    #[must_use]
+    pub fn joined(&self, topology: &Topology, left_out: impl Fn(EdgeId) -> bool) -> DisjointSets {
+        let mut ends: Vec<(EdgeId, u32)> = Vec::new();
+        for (i, fan) in (0..).zip(self.fans()).filter(|(_, fan)| !fan.is_closed) {
+            let edges = fan.ends().map(|corner| topology.opposite_edge(corner));
+            ends.extend(edges.into_iter().filter(|edge| !left_out(*edge)).map(|edge| (edge, i)));
+        }
+        ends.sort_unstable();
+        let mut sets = DisjointSets::new(self.fans.len());
+        for pair in ends.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
+            sets.union(pair[0].1, pair[1].1);
+        }
+        sets
+    }
+
     /// Whether there is a single fan and it is closed.
     #[must_use]
     pub fn is_closed(&self) -> bool {
@@ -235,12 +252,6 @@ impl AngleSum {
         let sign = if is_below { -1.0 } else { 1.0 };
         (self.x, self.y) = (sign * x, sign * y);
         self.half_turns += f64::from(u8::from(is_below));
-    }
-
-    /// The sum, in radians.
-    #[must_use]
-    pub fn radians(self) -> f64 {
-        self.half_turns * PI + self.y.atan2(self.x)
     }
 
     /// Whether the sum exceeds a number of half turns by more than a small angle, given by its tangent.
@@ -311,6 +322,10 @@ mod tests {
         sum
     }
 
+    fn radians(sum: AngleSum) -> f64 {
+        sum.half_turns * PI + sum.y.atan2(sum.x)
+    }
+
     #[test]
     fn angles_add_up_beyond_any_number_of_turns() {
         for angle in [0.0, 1e-9, 1.0, FRAC_PI_2, 2.5, 3.0, PI] {
@@ -319,7 +334,7 @@ mod tests {
                 let sizes = (0..n).map(|i| [1e200, 1e-200][i % 2]);
                 let found = sum(sizes.map(|size: f64| [size * angle.sin(), size * angle.cos()]));
                 let expected = n as f64 * angle;
-                let gap = (found.radians() - expected).abs();
+                let gap = (radians(found) - expected).abs();
                 assert!(gap < 1e-13 * (1.0 + expected), "{n} times {angle}: {found:?}");
                 for half_turns in 0..5 {
                     let by = expected - f64::from(half_turns) * PI;
@@ -329,6 +344,6 @@ mod tests {
                 }
             }
         }
-        assert_eq!(sum([[0.0, 0.0], [1.0, 1.0], [0.0, 0.0]].into_iter()).radians(), FRAC_PI_4);
+        assert_eq!(radians(sum([[0.0, 0.0], [1.0, 1.0], [0.0, 0.0]].into_iter())), FRAC_PI_4);
     }
 }
