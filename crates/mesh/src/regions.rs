@@ -231,7 +231,8 @@ fn flats(mesh: &TriMesh, topology: &Topology) -> (Vec<Flat>, Vec<usize>) {
     let (total, unit) = (mesh.area(), mesh.root_of_area());
     let [near, sliver] = [IN_PLANE * unit, IN_PLANE * total];
     let mut order: Vec<usize> = (0..mesh.n_faces()).collect();
-    order.sort_by(|&f, &g| vectors[g].norm_squared().total_cmp(&vectors[f].norm_squared()).then(f.cmp(&g)));
+    let sq_area = |f: usize| vectors[f].norm_squared();
+    order.sort_unstable_by(|&f, &g| sq_area(g).total_cmp(&sq_area(f)).then(f.cmp(&g)));
     let mut of_face = vec![NONE; mesh.n_faces()];
     let mut flats = Vec::new();
     for seed in order {

@@ -14,7 +14,7 @@ use std::collections::HashMap;
 use base::Observer;
 use nalgebra::Point3;
 use serde::Serialize;
-use surface::{VertexId, power_of_two_below};
+use surface::VertexId;
 
 use crate::coincidence::position_key;
 use crate::error::{FEWEST_POINTS, MeshError};
@@ -120,7 +120,7 @@ pub fn triangulate_points(
     let budget = observer.budget();
     check_finite(points)?;
     let cloud = TriMesh { positions: points.to_vec(), faces: Vec::new() };
-    let unit = power_of_two_below(cloud.size());
+    let unit = cloud.unit();
     let (distinct, of_point) = without_copies(points, unit);
     if distinct.len() < FEWEST_POINTS {
         return Err(MeshError::Unusable(format!(

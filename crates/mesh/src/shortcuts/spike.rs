@@ -23,8 +23,8 @@ pub(super) fn flattened(mesh: &TriMesh, topology: &Topology, v: VertexId, limit:
         only.corners.iter().map(|c| at(topology.corner_vertex(c.opposite_last()))).collect();
     let median = |lengths: &mut dyn Iterator<Item = f64>| {
         let mut lengths: Vec<f64> = lengths.collect();
-        lengths.sort_by(f64::total_cmp);
-        lengths[lengths.len() / 2]
+        let middle = lengths.len() / 2;
+        *lengths.select_nth_unstable_by(middle, f64::total_cmp).1
     };
     let spoke = median(&mut around.iter().map(|p| (p - at(v)).norm()));
     let rim = median(&mut around.iter().zip(around.iter().cycle().skip(1)).map(|(p, q)| (p - q).norm()));
