@@ -29,15 +29,10 @@ pub(super) fn open(file: File) -> Result<Archive, Fault> {
         let entry = directory.entry(at).map_err(damaged)?;
         // Many programs write UTF-8 without saying so.
         let raw = entry.name_raw();
-        let name = match std::str::from_utf8(raw) {
-            Ok(name) => name.to_owned(),
-            Err(_) => match entry.name() {
-                Ok(name) => name.into_owned(),
-                Err(_) => {
-                    archive.skip(&String::from_utf8_lossy(raw), SkipKind::NotUtf8);
-                    continue;
-                }
-            },
+        let name = std::str::from_utf8(raw).map(str::to_owned).or_else(|_| entry.name().map(Into::into));
+        let Ok(name) = name else {
+            archive.skip(&String::from_utf8_lossy(raw), SkipKind::NotUtf8);
+            continue;
         };
         if entry.is_symlink() {
             archive.skip(&name, SkipKind::Special);
