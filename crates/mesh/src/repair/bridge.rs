@@ -177,7 +177,7 @@ impl GroupTree {
             }
             let own = self.groups[item.id as usize];
             let sq_radius = f64::from_bits(nearest[own as usize].0);
-            self.nearest_outside(&item.position.into(), own, sq_radius, &mut found);
+            self.nearest_outside(&item.position, own, sq_radius, &mut found);
             for &(sq_length, other) in &found {
                 let candidate = (sq_length.to_bits(), [item.id.min(other), item.id.max(other)]);
                 for group in [own, self.groups[other as usize]] {
