@@ -8,7 +8,7 @@
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
 
-use base::{Budget, Exceeded};
+use base::{Budget, Exceeded, SplitMix};
 
 use crate::disjoint_sets::DisjointSets;
 use crate::ids::{EdgeId, VertexId};
@@ -158,12 +158,11 @@ fn words(topology: &Topology) -> Option<Vec<u64>> {
     let mut tree = DisjointSets::new(topology.n_vertices());
     let mut words = vec![0; n_edges];
     let mut at_node = vec![0u64; n_nodes];
-    let mut n_loops = 0;
+    let mut random = SplitMix(0);
     for edge in edges().filter(|edge| !is_crossed[edge.index()]) {
         let [a, b] = topology.edges()[edge.index()];
         if !tree.union(a.0, b.0) {
-            let word = random_word(n_loops);
-            n_loops += 1;
+            let word = random.bits();
             words[edge.index()] = word;
             sides[edge.index()].into_iter().for_each(|node| at_node[node as usize] ^= word);
         }
@@ -176,14 +175,6 @@ fn words(topology: &Topology) -> Option<Vec<u64>> {
         }
     }
     Some(words)
-}
-
-/// A word of 64 random bits that depends on `i` alone (splitmix64).
-fn random_word(i: u64) -> u64 {
-    let mut z = (i + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
 }
 
 /// Shortest paths along edges from one vertex, with the words along them.

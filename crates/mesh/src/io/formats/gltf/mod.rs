@@ -41,20 +41,15 @@ const HARMLESS: [&str; 10] = [
     "KHR_mesh_quantization",
 ];
 
-/// Extensions that hide or multiply geometry, and what to do about each.
-const REFUSED: [(&str, &str, &str); 4] = [
+/// Extensions that hide or multiply geometry, by the ends of their names, and what to do about each.
+const REFUSED: [(&str, &str, &str); 3] = [
     (
         "KHR_draco_mesh_compression",
         "its meshes are compressed by Draco",
         "decompress them, for example with `gltf-transform copy in.glb out.glb`, or export without compression",
     ),
     (
-        "EXT_meshopt_compression",
-        "its meshes are compressed by meshopt",
-        "decompress them, for example with `gltf-transform copy in.glb out.glb`, or run gltfpack without -c",
-    ),
-    (
-        "KHR_meshopt_compression",
+        "_meshopt_compression",
         "its meshes are compressed by meshopt",
         "decompress them, for example with `gltf-transform copy in.glb out.glb`, or run gltfpack without -c",
     ),
@@ -129,7 +124,7 @@ fn check_extensions(root: &Root) -> Result<(), Located> {
     let used = root.extensions_required.iter().chain(&root.extensions_used);
     for (name, what, remedy) in REFUSED {
         // Compression that is not required has a fallback, which is read.
-        let is_fatal = root.extensions_required.iter().any(|used| used == name)
+        let is_fatal = root.extensions_required.iter().any(|used| used.ends_with(name))
             || name == "EXT_mesh_gpu_instancing" && used.clone().any(|used| used == name);
         if is_fatal {
             return Err(Fault::unsupported(what, remedy).whole());
