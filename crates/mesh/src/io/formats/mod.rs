@@ -183,16 +183,16 @@ impl Format {
     pub(super) fn files(&self, path: &Path, source: &dyn FileSource) -> Vec<PathBuf> {
         let given = inflated(path).extension().unwrap_or_default().to_string_lossy().into_owned();
         let prefers_upper = given.chars().all(|c| c.is_ascii_uppercase());
-        let companion = |extension: &str| {
-            let cases = [extension.to_owned(), extension.to_ascii_uppercase()];
-            let cases = cases.map(|extension| with_extension(path, &extension));
-            let [preferred, other] = if prefers_upper { [1, 0] } else { [0, 1] };
-            let takes_other = source.holds(&cases[other]) && !source.holds(&cases[preferred]);
-            cases[if takes_other { other } else { preferred }].clone()
-        };
-        let file = |extension: &&str| match given.eq_ignore_ascii_case(extension) {
-            true => path.to_path_buf(),
-            false => companion(extension),
+        let file = |extension: &&str| {
+            if given.eq_ignore_ascii_case(extension) {
+                return path.to_owned();
+            }
+            let mut cases = [extension.to_string(), extension.to_ascii_uppercase()];
+            if prefers_upper {
+                cases.reverse();
+            }
+            let [preferred, other] = cases.map(|extension| with_extension(path, &extension));
+            if source.holds(&other) && !source.holds(&preferred) { other } else { preferred }
         };
         self.extensions.iter().map(file).collect()
     }
