@@ -149,7 +149,8 @@ impl Surface {
     /// The vertices on boundaries, and the length of all, in mesh units.
     pub fn boundary_vertices(&self) -> (Vec<VertexId>, f64) {
         let (vertices, lengths): (Vec<_>, Vec<f64>) = boundaries(self.intrinsic()).into_iter().unzip();
-        (vertices.concat(), lengths.iter().sum())
+        // The sum of nothing would be minus zero.
+        (vertices.concat(), lengths.iter().fold(0.0, |sum, length| sum + length))
     }
 
     /// The shortcuts that were cut to [prepare](Self::for_description) the surface; none before.
