@@ -1,10 +1,9 @@
 //! The faces around a vertex, in order.
 
-use std::collections::HashSet;
 use std::f64::consts::{PI, TAU};
 
 use crate::disjoint_sets::DisjointSets;
-use crate::ids::{CornerId, EdgeId};
+use crate::ids::{CornerId, EdgeId, VertexId};
 use crate::topology::Topology;
 
 /// Which of the two sides of a face at a vertex comes first in a fan.
@@ -93,13 +92,13 @@ pub enum VertexKind {
 /// let topology = Topology::new(4, faces.to_vec());
 /// let mut ring = OneRing::default();
 ///
-/// ring.collect(&topology, topology.vertex_corners(VertexId(0)));
+/// ring.collect(&topology, VertexId(0));
 /// let fan = ring.fans().next().unwrap();
 /// let neighbours = fan.corners.iter().map(|c| topology.corner_vertex(c.opposite_last()));
 /// assert_eq!(neighbours.collect::<Vec<_>>(), [1, 2, 3].map(VertexId));
 /// assert!(fan.is_closed);
 ///
-/// ring.collect(&topology, topology.vertex_corners(VertexId(1)));
+/// ring.collect(&topology, VertexId(1));
 /// let fan = ring.fans().next().unwrap();
 /// assert_eq!((fan.corners.len(), fan.is_closed), (2, false));
 /// ```
@@ -108,19 +107,18 @@ pub struct OneRing {
     corners: Vec<FanCorner>,
     /// Where each fan ends, and whether it is closed.
     fans: Vec<(usize, bool)>,
-    /// The corners of all fans so far, while a vertex with many of them is collected.
-    known: HashSet<CornerId>,
+    /// Whether each corner of the vertex is in a fan.
+    is_known: Vec<bool>,
 }
 
-/// Up to this many corners, searching all of them is faster than hashing.
-const FEW: usize = 32;
-
 impl OneRing {
-    /// Replaces the fans by those of the vertex with the given corners, in linear time.
+    /// Replaces the fans by those of a vertex. Linear time, or `O(n log n)` in the number of corners where there is more than
+    /// one fan.
     ///
     /// The first open fan starts at the first corner that can start one; a closed one with a forward corner.
     /// Allocates only to grow.
-    pub fn collect(&mut self, topology: &Topology, corners: &[CornerId]) {
+    pub fn collect(&mut self, topology: &Topology, vertex: VertexId) {
+        let corners = topology.vertex_corners(vertex);
         self.corners.clear();
         self.fans.clear();
         let at = |winding| move |corner: &CornerId| FanCorner { corner: *corner, winding };
@@ -130,7 +128,10 @@ impl OneRing {
             return;
         }
         self.corners.clear();
-        self.known.clear();
+        self.is_known.clear();
+        self.is_known.resize(corners.len(), false);
+        // The corners of a vertex ascend.
+        let place = |corner: CornerId| corners.partition_point(|other| *other < corner);
         let sides = corners.iter().flat_map(|c| [Winding::Forward, Winding::Backward].map(|w| at(w)(c)));
         let begins_fan = |side: &FanCorner| topology.opposite(side.opposite_first()).is_none();
         // All that is left after the open fans is closed.
@@ -138,16 +139,12 @@ impl OneRing {
             if self.corners.len() == corners.len() {
                 break;
             }
-            let is_known = match corners.len() {
-                0..=FEW => self.corners.iter().any(|known| known.corner == start.corner),
-                _ => self.known.contains(&start.corner),
-            };
-            if !is_known {
+            if !self.is_known[place(start.corner)] {
                 let n_before = self.corners.len();
                 let is_closed = self.walk(topology, start);
                 self.fans.push((self.corners.len(), is_closed));
-                if corners.len() > FEW {
-                    self.known.extend(self.corners[n_before..].iter().map(|known| known.corner));
+                for known in &self.corners[n_before..] {
+                    self.is_known[place(known.corner)] = true;
                 }
             }
         }
@@ -267,13 +264,12 @@ mod tests {
     use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
     use super::*;
-    use crate::ids::VertexId;
 
     /// The fans around vertex 0: the vertices at the ends of the sides, in order.
     fn fans(faces: &[[u32; 3]]) -> (OneRing, Vec<Vec<u32>>) {
         let topology = Topology::new(9, faces.iter().map(|f| f.map(VertexId)).collect());
         let mut ring = OneRing::default();
-        ring.collect(&topology, topology.vertex_corners(VertexId(0)));
+        ring.collect(&topology, VertexId(0));
         let vertex = |corner| topology.corner_vertex(corner).0;
         let ends = |fan: Fan| {
             let firsts = fan.corners.iter().map(|c| vertex(c.opposite_last()));

@@ -79,7 +79,7 @@ fn with_copies(mesh: &TriMesh, faces: &[[VertexId; 3]], origins: &[VertexId], ke
 
 /// The corners at a vertex, by the parts of the surface that have only this vertex, or welded edges, in common.
 fn sheets(topology: &Topology, ring: &mut OneRing, v: VertexId) -> Vec<Vec<CornerId>> {
-    ring.collect(topology, topology.vertex_corners(v));
+    ring.collect(topology, v);
     if ring.fans().nth(1).is_none() {
         return Vec::new();
     }

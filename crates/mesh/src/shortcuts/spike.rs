@@ -10,9 +10,8 @@ use crate::tri_mesh::TriMesh;
 /// The mean of the neighbours of an inner vertex, if its median edge is more than `limit` times as long as the radius of a
 /// regular polygon with the median edge around it.
 pub(super) fn flattened(mesh: &TriMesh, topology: &Topology, v: VertexId, limit: f64) -> Option<Point3<f64>> {
-    let corners = topology.vertex_corners(v);
     let mut ring = OneRing::default();
-    ring.collect(topology, corners);
+    ring.collect(topology, v);
     let mut fans = ring.fans();
     let only = fans.next().filter(|fan| fan.is_closed)?;
     if fans.next().is_some() {

@@ -11,7 +11,7 @@ impl MeshReport {
         let mut boundary = DisjointSets::new(topology.n_edges());
         let mut ring = OneRing::default();
         for vertex in (0..topology.n_vertices()).map(VertexId::from) {
-            ring.collect(topology, topology.vertex_corners(vertex));
+            ring.collect(topology, vertex);
             for fan in ring.fans().filter(|fan| !fan.is_closed) {
                 let [first, last] = fan.ends().map(|corner| topology.opposite_edge(corner));
                 if [first, last].iter().all(|edge| topology.edge_corners(*edge).len() == 1) {
