@@ -3,7 +3,6 @@
 use std::fmt;
 use std::fs::File;
 use std::io::{self, Read};
-use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
@@ -17,12 +16,9 @@ impl ContentHash {
     /// Hashes several pieces of bytes in order, including where each of them ends.
     #[must_use]
     pub fn of<B: AsRef<[u8]>>(pieces: &[B]) -> Self {
-        let mut hash = Sha256::new();
-        for piece in pieces.iter().map(AsRef::as_ref) {
-            hash.update((piece.len() as u64).to_le_bytes());
-            hash.update(piece);
-        }
-        Self(hash.finalize().into())
+        let mut hasher = ContentHasher::default();
+        pieces.iter().for_each(|piece| hasher.add(piece.as_ref()));
+        hasher.finish()
     }
 
     /// Its first 64 bits.
@@ -30,35 +26,43 @@ impl ContentHash {
     pub fn start(&self) -> u64 {
         self.0.iter().take(8).fold(0, |bits, byte| bits << 8 | u64::from(*byte))
     }
+}
 
-    /// The same hash of the content of files, without holding it in memory.
+/// Makes a [`ContentHash`] of one piece after the other.
+#[derive(Debug, Default)]
+pub struct ContentHasher(Sha256);
+
+impl ContentHasher {
+    /// Adds a piece.
+    pub fn add(&mut self, piece: &[u8]) {
+        self.0.update((piece.len() as u64).to_le_bytes());
+        self.0.update(piece);
+    }
+
+    /// Adds the content of a file as a piece, without holding it in memory.
     ///
     /// # Errors
-    /// The path and the error of the first file that cannot be read, or that changes meanwhile.
-    pub fn of_files<'a>(
-        files: impl Iterator<Item = (&'a Path, &'a mut File)>,
-    ) -> Result<Self, (PathBuf, io::Error)> {
-        let mut hash = Sha256::new();
+    /// If the file cannot be read, or changes meanwhile.
+    pub fn add_file(&mut self, file: &mut File) -> io::Result<()> {
+        let mut left = file.metadata()?.len();
+        self.0.update(left.to_le_bytes());
         let mut buffer = vec![0; 1 << 16];
-        for (path, file) in files {
-            let mut add = || {
-                let length = file.metadata()?.len();
-                hash.update(length.to_le_bytes());
-                let mut left = length;
-                loop {
-                    match file.read(&mut buffer)? {
-                        0 if left == 0 => return Ok(()),
-                        n if n > 0 && n as u64 <= left => {
-                            hash.update(&buffer[..n]);
-                            left -= n as u64;
-                        }
-                        _ => return Err(io::Error::other("the file changed while it was read")),
-                    }
+        loop {
+            match file.read(&mut buffer)? {
+                0 if left == 0 => return Ok(()),
+                n if n > 0 && n as u64 <= left => {
+                    self.0.update(&buffer[..n]);
+                    left -= n as u64;
                 }
-            };
-            add().map_err(|error| (path.to_owned(), error))?;
+                _ => return Err(io::Error::other("the file changed while it was read")),
+            }
         }
-        Ok(Self(hash.finalize().into()))
+    }
+
+    /// The hash of all pieces.
+    #[must_use]
+    pub fn finish(self) -> ContentHash {
+        ContentHash(self.0.finalize().into())
     }
 }
 
@@ -100,8 +104,9 @@ mod tests {
             std::io::Write::write_all(file, piece).unwrap();
             std::io::Seek::rewind(file).unwrap();
         }
-        let found = ContentHash::of_files(files.iter_mut().map(|file| (Path::new("x"), file))).unwrap();
-        assert_eq!(found, ContentHash::of(&pieces));
+        let mut hasher = ContentHasher::default();
+        files.iter_mut().for_each(|file| hasher.add_file(file).unwrap());
+        assert_eq!(hasher.finish(), ContentHash::of(&pieces));
     }
 
     #[test]

@@ -5,9 +5,11 @@ mod budget;
 mod content;
 pub mod files;
 mod observer;
+mod random;
 #[cfg(feature = "terminal")]
 pub mod terminal;
 
 pub use budget::{Budget, Exceeded, Meter};
-pub use content::ContentHash;
+pub use content::{ContentHash, ContentHasher};
 pub use observer::Observer;
+pub use random::SplitMix;

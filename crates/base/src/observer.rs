@@ -10,26 +10,18 @@ pub trait Observer: Sync {
     }
 
     /// A stage of `total` steps begins; the previous one has ended.
-    fn begin(&self, stage: &str, total: usize);
+    fn begin(&self, _stage: &str, _total: usize) {}
 
     /// A step of the current stage is done.
-    fn step(&self);
+    fn step(&self) {}
 }
 
 /// Ignores progress.
-impl Observer for () {
-    fn begin(&self, _: &str, _: usize) {}
-
-    fn step(&self) {}
-}
+impl Observer for () {}
 
 /// Limits without progress.
 impl Observer for Budget {
     fn budget(&self) -> Budget {
         self.clone()
     }
-
-    fn begin(&self, _: &str, _: usize) {}
-
-    fn step(&self) {}
 }

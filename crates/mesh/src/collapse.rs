@@ -78,7 +78,7 @@ impl Quadric {
 type QueuedEdge = (u64, [u32; 2], [u32; 2]);
 
 /// A mesh under collapse. Dead faces have no vertices in `faces_at`.
-struct Collapse<C> {
+struct Collapse<'a> {
     positions: Vec<Point3<f64>>,
     faces: Vec<[VertexId; 3]>,
     /// The living faces at every vertex; empty at a dead one.
@@ -89,7 +89,7 @@ struct Collapse<C> {
     /// How often a vertex has changed; older entries of the queue are void.
     changes: Vec<u32>,
     queue: BinaryHeap<Reverse<QueuedEdge>>,
-    cost: C,
+    cost: &'a dyn Fn(f64, f64, [usize; 2]) -> f64,
 }
 
 /// Collapses edges, those of least `cost` first, until `n_vertices` vertices are left or no edge can be collapsed.
@@ -103,7 +103,7 @@ struct Collapse<C> {
 /// use base::Budget;
 ///
 /// let fine = shapes::icosphere(4);
-/// let coarse = collapse_edges(&fine, 500, |error, _, _| error, &Budget::unlimited())?;
+/// let coarse = collapse_edges(&fine, 500, &|error, _, _| error, &Budget::unlimited())?;
 /// assert_eq!(coarse.mesh.n_vertices(), 500);
 /// assert!((coarse.mesh.area() / fine.area() - 1.0).abs() < 0.01);
 /// # Ok::<(), base::Exceeded>(())
@@ -114,7 +114,7 @@ struct Collapse<C> {
 pub fn collapse_edges(
     mesh: &TriMesh,
     n_vertices: usize,
-    cost: impl Fn(f64, f64, [usize; 2]) -> f64,
+    cost: &dyn Fn(f64, f64, [usize; 2]) -> f64,
     budget: &Budget,
 ) -> Result<CollapsedMesh, Exceeded> {
     let mut meter = budget.meter();
@@ -132,8 +132,8 @@ pub fn collapse_edges(
     Ok(work.finished())
 }
 
-impl<C: Fn(f64, f64, [usize; 2]) -> f64> Collapse<C> {
-    fn new(mesh: TriMesh, cost: C) -> Self {
+impl<'a> Collapse<'a> {
+    fn new(mesh: TriMesh, cost: &'a dyn Fn(f64, f64, [usize; 2]) -> f64) -> Self {
         let n = mesh.n_vertices();
         let mut faces_at = vec![Vec::new(); n];
         for (f, face) in mesh.faces.iter().enumerate() {
@@ -159,25 +159,18 @@ impl<C: Fn(f64, f64, [usize; 2]) -> f64> Collapse<C> {
     }
 
     fn finished(self) -> CollapsedMesh {
-        let mut number = vec![None; self.positions.len()];
-        let mut positions = Vec::new();
-        for (v, faces) in self.faces_at.iter().enumerate().filter(|(_, faces)| !faces.is_empty()) {
-            number[v] = Some(VertexId::from(positions.len()));
-            positions.push(self.positions[v]);
-            debug_assert!(faces.iter().all(|&f| self.faces[f as usize].contains(&VertexId::from(v))));
-        }
+        let mut is_alive = vec![false; self.faces.len()];
+        self.faces_at.iter().flatten().for_each(|&f| is_alive[f as usize] = true);
+        let faces =
+            self.faces.into_iter().zip(is_alive).filter_map(|(face, is_alive)| is_alive.then_some(face));
+        let (mesh, number) = TriMesh { positions: self.positions, faces: faces.collect() }.compacted();
         let last = |mut v: u32| {
             while self.merged_into[v as usize] != v {
                 v = self.merged_into[v as usize];
             }
             v as usize
         };
-        let vertex_of: Vec<_> = (0..self.positions.len() as u32).map(|v| number[last(v)]).collect();
-        let mut alive = vec![false; self.faces.len()];
-        self.faces_at.iter().flatten().for_each(|&f| alive[f as usize] = true);
-        let left = self.faces.iter().zip(alive).filter(|(_, alive)| *alive).map(|(face, _)| *face);
-        let renumbered = |face: [VertexId; 3]| face.map(|v| number[v.index()].unwrap_or(v));
-        CollapsedMesh { mesh: TriMesh { positions, faces: left.map(renumbered).collect() }, vertex_of }
+        CollapsedMesh { mesh, vertex_of: (0..number.len() as u32).map(|v| number[last(v)]).collect() }
     }
 
     /// Adds the plane of a face to its vertices, and upright planes along its boundary edges.

@@ -289,6 +289,36 @@ impl Located {
 }
 
 impl Fault {
+    /// Text or data that the format does not allow here.
+    pub fn syntax(expected: &'static str, found: impl Into<String>) -> Self {
+        Self::Syntax { expected, found: found.into() }
+    }
+
+    /// A feature of the format that the reader does not support.
+    pub fn unsupported(what: impl Into<String>, remedy: &'static str) -> Self {
+        Self::Unsupported { what: what.into(), remedy }
+    }
+
+    /// Content of another format.
+    pub(crate) fn wrong_format(expected: &'static str, found: impl Into<String>) -> Self {
+        Self::WrongFormat { expected, found: found.into() }
+    }
+
+    /// A file that ends early.
+    pub(crate) fn cut_short(expected: impl Into<String>) -> Self {
+        Self::CutShort { expected: expected.into() }
+    }
+
+    /// Less in the file than its header promises.
+    pub fn truncated(items: impl Into<String>, promised: u64, found: u64) -> Self {
+        Self::Truncated { items: items.into(), promised, found }
+    }
+
+    /// A face that refers to none of the vertices, which are counted from `first`.
+    pub(crate) fn no_vertex(index: String, first: u64, n_vertices: u64) -> Self {
+        Self::IndexOutOfRange { index, first, last: first.saturating_add(n_vertices).saturating_sub(1) }
+    }
+
     /// The fault of the file as a whole.
     pub(crate) fn whole(self) -> Located {
         self.at(Place::File)
@@ -302,6 +332,11 @@ impl Fault {
     /// The fault at a byte, counted from zero.
     pub(crate) fn at_byte(self, byte: usize) -> Located {
         self.at(Place::Byte(byte as u64))
+    }
+
+    /// The fault in a numbered part of the file.
+    pub(crate) fn in_part(self, kind: &'static str, number: usize) -> Located {
+        self.at(Place::Part(kind, number))
     }
 
     /// The fault at a place in the first file.

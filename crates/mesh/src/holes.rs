@@ -1,7 +1,7 @@
 //! Closing small holes.
 
 use nalgebra::{Point3, Vector3};
-use surface::{EdgeId, Topology, VertexId};
+use surface::{Topology, VertexId};
 
 use crate::orientation::orient_consistently;
 use crate::refine::Refined;
@@ -63,13 +63,11 @@ fn holes(mesh: &TriMesh) -> Vec<Vec<VertexId>> {
     let topology = Topology::new(mesh.n_vertices(), mesh.faces.clone());
     let mut next = vec![None; mesh.n_vertices()];
     let mut n_sides = vec![0; mesh.n_vertices()];
-    for edge in (0..topology.n_edges()).map(EdgeId::from) {
-        if let [corner] = topology.edge_corners(edge) {
-            let [a, b] = [corner.next(), corner.next().next()].map(|c| topology.corner_vertex(c));
-            next[a.index()] = Some(b);
-            n_sides[a.index()] += 1;
-            n_sides[b.index()] += 1;
-        }
+    for edge in topology.boundary_edges() {
+        let [a, b] = topology.edge_ends(topology.edge_corners(edge)[0]);
+        next[a.index()] = Some(b);
+        n_sides[a.index()] += 1;
+        n_sides[b.index()] += 1;
     }
     let mut is_seen = vec![false; mesh.n_vertices()];
     let mut holes = Vec::new();

@@ -1,6 +1,6 @@
 //! The orientation of faces.
 
-use surface::{CornerId, FaceId, Topology, VertexId};
+use surface::{CornerId, FaceId, Topology};
 
 use crate::face_set::is_degenerate;
 use crate::tri_mesh::TriMesh;
@@ -18,15 +18,10 @@ pub(crate) struct Orientation {
     pub(crate) closed: Vec<bool>,
 }
 
-/// Whether the two faces at the edge opposite `corner` traverse it in the same direction, that is, are
-/// oriented inconsistently.
+/// Whether two faces traverse the edge opposite a corner of each in the same direction, that is, are oriented
+/// inconsistently.
 pub(crate) fn runs_against(topology: &Topology, corner: CornerId, twin: CornerId) -> bool {
-    start_of_opposite_edge(topology, corner) == start_of_opposite_edge(topology, twin)
-}
-
-/// The vertex at which a face starts to traverse the edge opposite one of its corners.
-fn start_of_opposite_edge(topology: &Topology, corner: CornerId) -> VertexId {
-    topology.corner_vertex(corner.next())
+    topology.edge_ends(corner) == topology.edge_ends(twin)
 }
 
 impl Orientation {
@@ -107,15 +102,16 @@ pub fn orient_consistently(mesh: &mut TriMesh) -> usize {
     for (turn, &p) in turned.iter_mut().zip(&patch) {
         *turn ^= inside_out(p as usize);
     }
-    let to_turn = proper.iter().zip(&turned).filter(|(_, turn)| **turn);
-    to_turn.fold(0, |count, (&f, _)| {
-        mesh.faces[f].swap(1, 2);
-        count + 1
-    })
+    let to_turn: Vec<usize> =
+        proper.into_iter().zip(turned).filter_map(|(f, turn)| turn.then_some(f)).collect();
+    to_turn.iter().for_each(|&f| mesh.faces[f].swap(1, 2));
+    to_turn.len()
 }
 
 #[cfg(test)]
 mod tests {
+    use surface::VertexId;
+
     use super::*;
     use crate::shapes;
 

@@ -8,6 +8,7 @@
 use nalgebra::{Matrix2, Matrix3, Point3, Unit, Vector2, Vector3};
 use surface::{DisjointSets, EdgeId, Topology};
 
+use crate::orientation::runs_against;
 use crate::tri_mesh::TriMesh;
 
 /// Triangles with vertices this near to a plane, relative to the square root of the area, lie in it. A tolerance: the rounding of coordinates in files.
@@ -230,7 +231,8 @@ fn flats(mesh: &TriMesh, topology: &Topology) -> (Vec<Flat>, Vec<usize>) {
     let (total, unit) = (mesh.area(), mesh.root_of_area());
     let [near, sliver] = [IN_PLANE * unit, IN_PLANE * total];
     let mut order: Vec<usize> = (0..mesh.n_faces()).collect();
-    order.sort_by(|&f, &g| vectors[g].norm_squared().total_cmp(&vectors[f].norm_squared()).then(f.cmp(&g)));
+    let sq_area = |f: usize| vectors[f].norm_squared();
+    order.sort_unstable_by(|&f, &g| sq_area(g).total_cmp(&sq_area(f)).then(f.cmp(&g)));
     let mut of_face = vec![NONE; mesh.n_faces()];
     let mut flats = Vec::new();
     for seed in order {
@@ -272,18 +274,12 @@ fn creases(mesh: &TriMesh, topology: &Topology, flats: &[Flat], of_face: &[usize
         let flats_of = [a, b].map(|corner| of_face[corner.face().index()]);
         let [f, g] = flats_of.map(|flat| &flats[flat]);
         // Both may be oriented alike or not.
-        let sign = if is_consistent(topology, [a, b]) { 1.0 } else { -1.0 };
+        let sign = if runs_against(topology, a, b) { -1.0 } else { 1.0 };
         let turn = f.normal.cross(&g.normal).norm().atan2(sign * f.normal.dot(&g.normal));
         let ends = topology.edges()[e].map(|v| mesh.positions[v.index()]);
         (flats_of[0] != flats_of[1]).then_some(Crease { flats: flats_of, ends, turn })
     });
     edges.collect()
-}
-
-/// Whether two faces run along their common edge in opposite directions.
-fn is_consistent(topology: &Topology, corners: [surface::CornerId; 2]) -> bool {
-    let [p, q] = corners.map(|corner| topology.edge_ends(corner));
-    p[0] == q[1]
 }
 
 /// How far a curved surface may be from every face: the height of the arcs over the flats whose normals turn at their

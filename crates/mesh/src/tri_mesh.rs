@@ -81,16 +81,21 @@ impl TriMesh {
     /// The mesh without vertices that no face names; the others keep their order.
     #[must_use]
     pub fn without_unused_vertices(&self) -> Self {
+        self.compacted().0
+    }
+
+    /// The mesh without vertices that no face names, and the number there of every other vertex.
+    pub(crate) fn compacted(&self) -> (Self, Vec<Option<VertexId>>) {
         let mut is_used = vec![false; self.n_vertices()];
         self.faces.iter().flatten().for_each(|v| is_used[v.index()] = true);
         let mut positions = Vec::new();
-        let mut number = vec![VertexId(0); self.n_vertices()];
+        let mut number = vec![None; self.n_vertices()];
         for v in (0..self.n_vertices()).filter(|&v| is_used[v]) {
-            number[v] = VertexId::from(positions.len());
+            number[v] = Some(VertexId::from(positions.len()));
             positions.push(self.positions[v]);
         }
-        let faces = self.faces.iter().map(|face| face.map(|v| number[v.index()])).collect();
-        Self { positions, faces }
+        let renumbered = |face: &[VertexId; 3]| face.map(|v| number[v.index()].unwrap_or(v));
+        (Self { positions, faces: self.faces.iter().map(renumbered).collect() }, number)
     }
 
     /// The volume that a closed surface encloses, in cubed mesh units; negative if its faces are turned inward.

@@ -8,10 +8,11 @@
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
 
-use base::{Budget, Exceeded};
+use base::{Budget, Exceeded, SplitMix};
 
 use crate::disjoint_sets::DisjointSets;
 use crate::ids::{EdgeId, VertexId};
+use crate::rows::Rows;
 use crate::topology::Topology;
 
 /// Most edges that two spanning trees may leave: surfaces with more handles have them by design, and they would cost much time.
@@ -100,17 +101,19 @@ fn words(topology: &Topology) -> Option<Vec<u64>> {
     }
     // Every boundary is one more face.
     let mut rims = DisjointSets::new(topology.n_vertices());
-    for edge in edges().filter(|edge| topology.edge_corners(*edge).len() == 1) {
+    for edge in topology.boundary_edges() {
         let [a, b] = topology.edges()[edge.index()];
         rims.union(a.0, b.0);
     }
-    let mut sides = |edge: EdgeId| match topology.edge_corners(edge) {
-        [a, b] => [a.index() / 3, b.index() / 3],
+    // The faces on both sides of every edge.
+    let sides = edges().map(|edge| match topology.edge_corners(edge) {
+        [a, b] => [a.face().0, b.face().0],
         corners => {
-            let rim = n_faces + rims.find(topology.edges()[edge.index()][0].0) as usize;
-            [corners.first().map_or(rim, |corner| corner.index() / 3), rim]
+            let rim = n_faces as u32 + rims.find(topology.edges()[edge.index()][0].0);
+            [corners.first().map_or(rim, |corner| corner.face().0), rim]
         }
-    };
+    });
+    let sides: Vec<[u32; 2]> = sides.collect();
     // How many edges are left does not depend on the trees.
     let n_nodes = n_faces + topology.n_vertices();
     let mut tree = DisjointSets::new(topology.n_vertices());
@@ -118,34 +121,31 @@ fn words(topology: &Topology) -> Option<Vec<u64>> {
     let n_left = edges()
         .filter(|edge| {
             let [a, b] = topology.edges()[edge.index()];
-            let [f, g] = sides(*edge);
-            !tree.union(a.0, b.0) && !dual.union(f as u32, g as u32)
+            let [f, g] = sides[edge.index()];
+            !tree.union(a.0, b.0) && !dual.union(f, g)
         })
         .count();
     if n_left == 0 || n_left > MOST_LEFT {
         return None;
     }
     // A tree of the faces by breadth keeps the loops of faces short, from which paths are searched.
-    let mut links: Vec<Vec<(u32, EdgeId)>> = vec![Vec::new(); n_nodes];
-    for edge in edges() {
-        let [f, g] = sides(edge);
-        links[f].push((g as u32, edge));
-        links[g].push((f as u32, edge));
-    }
-    let mut order = Vec::with_capacity(links.len());
-    let mut parent: Vec<Option<(u32, EdgeId)>> = vec![None; links.len()];
-    let mut is_seen = vec![false; links.len()];
-    for root in 0..links.len() {
-        if links[root].is_empty() || std::mem::replace(&mut is_seen[root], true) {
+    let both = |edge: EdgeId| {
+        let [f, g] = sides[edge.index()];
+        [(f as usize, (g, edge)), (g as usize, (f, edge))]
+    };
+    let links = Rows::collect(n_nodes, edges().flat_map(both));
+    let mut order = Vec::with_capacity(n_nodes);
+    let mut parent: Vec<Option<(u32, EdgeId)>> = vec![None; n_nodes];
+    let mut is_seen = vec![false; n_nodes];
+    for root in 0..n_nodes {
+        if links.row(root).is_empty() || std::mem::replace(&mut is_seen[root], true) {
             continue;
         }
-        let first = order.len();
+        let mut next = order.len();
         order.push(root);
-        let mut next = first;
-        while next < order.len() {
-            let node = order[next];
+        while let Some(&node) = order.get(next) {
             next += 1;
-            for &(other, edge) in &links[node] {
+            for &(other, edge) in links.row(node) {
                 if !std::mem::replace(&mut is_seen[other as usize], true) {
                     parent[other as usize] = Some((node as u32, edge));
                     order.push(other as usize);
@@ -158,14 +158,13 @@ fn words(topology: &Topology) -> Option<Vec<u64>> {
     let mut tree = DisjointSets::new(topology.n_vertices());
     let mut words = vec![0; n_edges];
     let mut at_node = vec![0u64; n_nodes];
-    let mut n_loops = 0;
+    let mut random = SplitMix(0);
     for edge in edges().filter(|edge| !is_crossed[edge.index()]) {
         let [a, b] = topology.edges()[edge.index()];
         if !tree.union(a.0, b.0) {
-            let word = random_word(n_loops);
-            n_loops += 1;
+            let word = random.bits();
             words[edge.index()] = word;
-            sides(edge).into_iter().for_each(|node| at_node[node] ^= word);
+            sides[edge.index()].into_iter().for_each(|node| at_node[node as usize] ^= word);
         }
     }
     // Each edge between faces of the tree is crossed by the loops with one end below it.
@@ -176,14 +175,6 @@ fn words(topology: &Topology) -> Option<Vec<u64>> {
         }
     }
     Some(words)
-}
-
-/// A word of 64 random bits that depends on `i` alone (splitmix64).
-fn random_word(i: u64) -> u64 {
-    let mut z = (i + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
 }
 
 /// Shortest paths along edges from one vertex, with the words along them.

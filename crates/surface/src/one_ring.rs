@@ -1,31 +1,10 @@
 //! The faces around a vertex, in order.
 
-use std::collections::HashSet;
 use std::f64::consts::{PI, TAU};
 
-use crate::ids::{CornerId, VertexId};
+use crate::disjoint_sets::DisjointSets;
+use crate::ids::{CornerId, EdgeId, VertexId};
 use crate::topology::Topology;
-
-/// The part of a corner table that walks around vertices need.
-pub trait CornerTable {
-    /// The vertex in a corner.
-    fn corner_vertex(&self, corner: CornerId) -> VertexId;
-
-    /// The corner opposite the same side in the neighbouring face; `None` if a fan ends there.
-    fn opposite(&self, corner: CornerId) -> Option<CornerId>;
-}
-
-impl CornerTable for Topology {
-    #[inline]
-    fn corner_vertex(&self, corner: CornerId) -> VertexId {
-        self.corner_vertex(corner)
-    }
-
-    #[inline]
-    fn opposite(&self, corner: CornerId) -> Option<CornerId> {
-        self.opposite(corner)
-    }
-}
 
 /// Which of the two sides of a face at a vertex comes first in a fan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -113,13 +92,13 @@ pub enum VertexKind {
 /// let topology = Topology::new(4, faces.to_vec());
 /// let mut ring = OneRing::default();
 ///
-/// ring.collect(&topology, topology.vertex_corners(VertexId(0)));
+/// ring.collect(&topology, VertexId(0));
 /// let fan = ring.fans().next().unwrap();
 /// let neighbours = fan.corners.iter().map(|c| topology.corner_vertex(c.opposite_last()));
 /// assert_eq!(neighbours.collect::<Vec<_>>(), [1, 2, 3].map(VertexId));
 /// assert!(fan.is_closed);
 ///
-/// ring.collect(&topology, topology.vertex_corners(VertexId(1)));
+/// ring.collect(&topology, VertexId(1));
 /// let fan = ring.fans().next().unwrap();
 /// assert_eq!((fan.corners.len(), fan.is_closed), (2, false));
 /// ```
@@ -128,46 +107,44 @@ pub struct OneRing {
     corners: Vec<FanCorner>,
     /// Where each fan ends, and whether it is closed.
     fans: Vec<(usize, bool)>,
-    /// The corners of all fans so far, while a vertex with many of them is collected.
-    known: HashSet<CornerId>,
+    /// Whether each corner of the vertex is in a fan.
+    is_known: Vec<bool>,
 }
 
-/// Up to this many corners, searching all of them is faster than hashing.
-const FEW: usize = 32;
-
 impl OneRing {
-    /// Replaces the fans by those of the vertex with the given corners, in linear time.
+    /// Replaces the fans by those of a vertex. Linear time, or `O(n log n)` in the number of corners where there is more than
+    /// one fan.
     ///
     /// The first open fan starts at the first corner that can start one; a closed one with a forward corner.
     /// Allocates only to grow.
-    pub fn collect(&mut self, table: &impl CornerTable, corners: &[CornerId]) {
+    pub fn collect(&mut self, topology: &Topology, vertex: VertexId) {
+        let corners = topology.vertex_corners(vertex);
         self.corners.clear();
         self.fans.clear();
         let at = |winding| move |corner: &CornerId| FanCorner { corner: *corner, winding };
         let Some(first) = corners.first().map(at(Winding::Forward)) else { return };
-        if self.walk(table, first) && self.corners.len() == corners.len() {
+        if self.walk(topology, first) && self.corners.len() == corners.len() {
             self.fans.push((corners.len(), true));
             return;
         }
         self.corners.clear();
-        self.known.clear();
+        self.is_known.clear();
+        self.is_known.resize(corners.len(), false);
+        // The corners of a vertex ascend.
+        let place = |corner: CornerId| corners.partition_point(|other| *other < corner);
         let sides = corners.iter().flat_map(|c| [Winding::Forward, Winding::Backward].map(|w| at(w)(c)));
-        let begins_fan = |side: &FanCorner| table.opposite(side.opposite_first()).is_none();
+        let begins_fan = |side: &FanCorner| topology.opposite(side.opposite_first()).is_none();
         // All that is left after the open fans is closed.
         for start in sides.filter(begins_fan).chain(corners.iter().map(at(Winding::Forward))) {
             if self.corners.len() == corners.len() {
                 break;
             }
-            let is_known = match corners.len() {
-                0..=FEW => self.corners.iter().any(|known| known.corner == start.corner),
-                _ => self.known.contains(&start.corner),
-            };
-            if !is_known {
+            if !self.is_known[place(start.corner)] {
                 let n_before = self.corners.len();
-                let is_closed = self.walk(table, start);
+                let is_closed = self.walk(topology, start);
                 self.fans.push((self.corners.len(), is_closed));
-                if corners.len() > FEW {
-                    self.known.extend(self.corners[n_before..].iter().map(|known| known.corner));
+                for known in &self.corners[n_before..] {
+                    self.is_known[place(known.corner)] = true;
                 }
             }
         }
@@ -175,14 +152,14 @@ impl OneRing {
 
     /// Appends the fan that begins with `start`; returns whether it is closed.
     #[inline]
-    fn walk(&mut self, table: &impl CornerTable, start: FanCorner) -> bool {
-        let vertex = table.corner_vertex(start.corner);
+    fn walk(&mut self, topology: &Topology, start: FanCorner) -> bool {
+        let vertex = topology.corner_vertex(start.corner);
         let mut here = start;
         loop {
             self.corners.push(here);
-            let Some(far) = table.opposite(here.opposite_last()) else { return false };
+            let Some(far) = topology.opposite(here.opposite_last()) else { return false };
             let next = far.next();
-            here = if table.corner_vertex(next) == vertex {
+            here = if topology.corner_vertex(next) == vertex {
                 FanCorner { corner: next, winding: Winding::Forward }
             } else {
                 FanCorner { corner: far.prev(), winding: Winding::Backward }
@@ -201,6 +178,22 @@ impl OneRing {
             start = end;
             Fan { corners, is_closed }
         })
+    }
+
+    /// The fans as sets of those with common edges of more than two faces, except for edges that are to be `left_out`.
+    #[must_use]
+    pub fn joined(&self, topology: &Topology, left_out: impl Fn(EdgeId) -> bool) -> DisjointSets {
+        let mut ends: Vec<(EdgeId, u32)> = Vec::new();
+        for (i, fan) in (0..).zip(self.fans()).filter(|(_, fan)| !fan.is_closed) {
+            let edges = fan.ends().map(|corner| topology.opposite_edge(corner));
+            ends.extend(edges.into_iter().filter(|edge| !left_out(*edge)).map(|edge| (edge, i)));
+        }
+        ends.sort_unstable();
+        let mut sets = DisjointSets::new(self.fans.len());
+        for pair in ends.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
+            sets.union(pair[0].1, pair[1].1);
+        }
+        sets
     }
 
     /// Whether there is a single fan and it is closed.
@@ -258,12 +251,6 @@ impl AngleSum {
         self.half_turns += f64::from(u8::from(is_below));
     }
 
-    /// The sum, in radians.
-    #[must_use]
-    pub fn radians(self) -> f64 {
-        self.half_turns * PI + self.y.atan2(self.x)
-    }
-
     /// Whether the sum exceeds a number of half turns by more than a small angle, given by its tangent.
     #[must_use]
     pub fn exceeds(self, half_turns: u8, excess: f64) -> bool {
@@ -282,7 +269,7 @@ mod tests {
     fn fans(faces: &[[u32; 3]]) -> (OneRing, Vec<Vec<u32>>) {
         let topology = Topology::new(9, faces.iter().map(|f| f.map(VertexId)).collect());
         let mut ring = OneRing::default();
-        ring.collect(&topology, topology.vertex_corners(VertexId(0)));
+        ring.collect(&topology, VertexId(0));
         let vertex = |corner| topology.corner_vertex(corner).0;
         let ends = |fan: Fan| {
             let firsts = fan.corners.iter().map(|c| vertex(c.opposite_last()));
@@ -331,6 +318,10 @@ mod tests {
         sum
     }
 
+    fn radians(sum: AngleSum) -> f64 {
+        sum.half_turns * PI + sum.y.atan2(sum.x)
+    }
+
     #[test]
     fn angles_add_up_beyond_any_number_of_turns() {
         for angle in [0.0, 1e-9, 1.0, FRAC_PI_2, 2.5, 3.0, PI] {
@@ -339,7 +330,7 @@ mod tests {
                 let sizes = (0..n).map(|i| [1e200, 1e-200][i % 2]);
                 let found = sum(sizes.map(|size: f64| [size * angle.sin(), size * angle.cos()]));
                 let expected = n as f64 * angle;
-                let gap = (found.radians() - expected).abs();
+                let gap = (radians(found) - expected).abs();
                 assert!(gap < 1e-13 * (1.0 + expected), "{n} times {angle}: {found:?}");
                 for half_turns in 0..5 {
                     let by = expected - f64::from(half_turns) * PI;
@@ -349,6 +340,6 @@ mod tests {
                 }
             }
         }
-        assert_eq!(sum([[0.0, 0.0], [1.0, 1.0], [0.0, 0.0]].into_iter()).radians(), FRAC_PI_4);
+        assert_eq!(radians(sum([[0.0, 0.0], [1.0, 1.0], [0.0, 0.0]].into_iter())), FRAC_PI_4);
     }
 }

@@ -71,18 +71,23 @@ struct Side {
 }
 
 impl EdgeBlock {
-    fn of(vertices: Range<usize>, faces: &[[VertexId; 3]], vertex_corners: &Rows<CornerId>) -> Self {
-        let n_corners =
-            vertex_corners.range(vertices.end - 1).end - vertex_corners.range(vertices.start).start;
+    fn with_capacity(n_vertices: usize, n_edges: usize, n_corners: usize) -> Self {
         let mut block = Self {
-            edges: Vec::with_capacity(n_corners / 2 + 1),
-            first_edge: Vec::with_capacity(vertices.len() + 1),
-            ends: Vec::with_capacity(n_corners / 2 + 2),
+            edges: Vec::with_capacity(n_edges),
+            first_edge: Vec::with_capacity(n_vertices + 1),
+            ends: Vec::with_capacity(n_edges + 1),
             corners: Vec::with_capacity(n_corners),
             has_duplicate_faces: false,
         };
         block.first_edge.push(0);
         block.ends.push(0);
+        block
+    }
+
+    fn of(vertices: Range<usize>, faces: &[[VertexId; 3]], vertex_corners: &Rows<CornerId>) -> Self {
+        let n_corners =
+            vertex_corners.range(vertices.end - 1).end - vertex_corners.range(vertices.start).start;
+        let mut block = Self::with_capacity(vertices.len(), n_corners / 2 + 1, n_corners);
         // The sides of all vertices, collected without a branch, so that many faces are read at once.
         let none = Side { upper: VertexId(0), corner: CornerId(0), apex: VertexId(0) };
         let (mut sides, mut n_sides) = (vec![none; 2 * n_corners + 1], 0);
@@ -116,15 +121,11 @@ impl EdgeBlock {
     /// The edges of blocks of vertices that follow each other.
     fn concat(blocks: Vec<Self>) -> Self {
         let total = |count: fn(&Self) -> usize| blocks.iter().map(count).sum::<usize>();
-        let mut all = Self {
-            edges: Vec::with_capacity(total(|block| block.edges.len())),
-            first_edge: Vec::with_capacity(total(|block| block.first_edge.len()) + 1),
-            ends: Vec::with_capacity(total(|block| block.ends.len()) + 1),
-            corners: Vec::with_capacity(total(|block| block.corners.len())),
-            has_duplicate_faces: false,
-        };
-        all.first_edge.push(0);
-        all.ends.push(0);
+        let mut all = Self::with_capacity(
+            total(|block| block.first_edge.len()),
+            total(|block| block.edges.len()),
+            total(|block| block.corners.len()),
+        );
         for block in blocks {
             let (n_edges, n_corners) = (all.edges.len() as u32, all.corners.len() as u32);
             all.first_edge.extend(block.first_edge[1..].iter().map(|edge| n_edges + edge));
@@ -233,6 +234,11 @@ impl Topology {
     #[must_use]
     pub fn edges(&self) -> &[[VertexId; 2]] {
         &self.edges
+    }
+
+    /// The edges of one face, in ascending order.
+    pub fn boundary_edges(&self) -> impl Iterator<Item = EdgeId> {
+        (0..self.n_edges()).map(EdgeId::from).filter(|edge| self.edge_corners(*edge).len() == 1)
     }
 
     /// The edges from a vertex to higher ones, in ascending order.

@@ -4,7 +4,6 @@ use rayon::prelude::*;
 
 use crate::ids::{CornerId, FaceId, VertexId};
 use crate::intrinsic::{IntrinsicMesh, Link};
-use crate::one_ring::CornerTable;
 use crate::triangle::{Triangle, double_area};
 use crate::waiting_sides::WaitingSides;
 
@@ -25,7 +24,7 @@ const BLOCK: usize = 1024;
 /// A side may be free, as at the boundary, and glued triangles may have opposite orientations. Flipping a side
 /// changes neither the surface nor its distances.
 ///
-/// **Invariant.** [`opposite`](CornerTable::opposite) joins sides of equal length between the same vertices, and is
+/// **Invariant.** [`opposite`](Self::opposite) joins sides of equal length between the same vertices, and is
 /// its own inverse.
 ///
 /// ```
@@ -138,6 +137,21 @@ impl Triangulation {
     #[inline]
     fn neighbour(&self, side: CornerId) -> u32 {
         self.triangles[side.face().index()].opposite[side.slot()]
+    }
+
+    /// The corner opposite the same side in the neighbouring triangle; `None` if the side is free.
+    #[inline]
+    #[must_use]
+    pub fn opposite(&self, corner: CornerId) -> Option<CornerId> {
+        let far = self.neighbour(corner);
+        (far != NONE).then_some(CornerId(far))
+    }
+
+    /// The vertex in a corner.
+    #[inline]
+    #[must_use]
+    pub fn corner_vertex(&self, corner: CornerId) -> VertexId {
+        self.triangles[corner.face().index()].vertices[corner.slot()]
     }
 
     /// The triangles.
@@ -307,39 +321,18 @@ pub struct VertexCorners {
     pub n_free: u32,
 }
 
-/// A triangle at a vertex, as a walk around the vertex passes it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sector {
-    /// The vertex at the far end of the last side.
-    pub end: VertexId,
-    /// The length of the first side at the vertex.
-    pub first: f64,
-    /// The length of the last.
-    pub last: f64,
-    /// The length of the side opposite the vertex.
-    pub third: f64,
-}
-
 impl Triangulation {
-    /// Visits the triangles around the vertex in a corner, from that corner on, in the order of a
-    /// [fan](crate::OneRing) that begins with its forward side. Returns their number if they are back at the corner, and
-    /// zero if they end at a free side.
+    /// The number of triangles around the vertex in a corner, glued side to side until they are back at the corner; zero if
+    /// they end at a free side.
     #[inline]
-    pub fn walk_around(&self, start: CornerId, mut visit: impl FnMut(Sector)) -> usize {
-        let (mut corner, mut is_forward, mut n) = (start, true, 0);
+    #[must_use]
+    pub fn n_around(&self, start: CornerId) -> usize {
         let vertex = self.corner_vertex(start);
+        let (mut corner, mut is_forward, mut n) = (start, true, 0);
         loop {
-            let triangle = &self.triangles[corner.face().index()];
-            let [next, prev] = [corner.next().slot(), corner.prev().slot()];
-            let [from, to] = if is_forward { [next, prev] } else { [prev, next] };
-            let GluedTriangle { vertices, lengths, opposite } = triangle;
-            let third = lengths[corner.slot()];
-            visit(Sector { end: vertices[to], first: lengths[to], last: lengths[from], third });
             n += 1;
-            if opposite[from] == NONE {
-                return 0;
-            }
-            let far = CornerId(opposite[from]);
+            let side = if is_forward { corner.next() } else { corner.prev() };
+            let Some(far) = self.opposite(side) else { return 0 };
             is_forward = self.corner_vertex(far.next()) == vertex;
             corner = if is_forward { far.next() } else { far.prev() };
             if corner == start {
@@ -368,19 +361,6 @@ impl Triangulation {
             }
         }
         around
-    }
-}
-
-impl CornerTable for Triangulation {
-    #[inline]
-    fn corner_vertex(&self, corner: CornerId) -> VertexId {
-        self.triangles[corner.face().index()].vertices[corner.slot()]
-    }
-
-    #[inline]
-    fn opposite(&self, corner: CornerId) -> Option<CornerId> {
-        let far = self.neighbour(corner);
-        (far != NONE).then_some(CornerId(far))
     }
 }
 

@@ -10,7 +10,7 @@ const SURPLUS: usize = 6;
 
 /// Collapses edges by quadric error until `n_vertices` vertices are left.
 pub(super) fn decimated(mesh: &TriMesh, n_vertices: usize) -> TriMesh {
-    collapsed(mesh, n_vertices, |error, _, _| error)
+    collapsed(mesh, n_vertices, &|error, _, _| error)
 }
 
 /// Triangulates a mesh anew, with the given share of its vertices: splits its faces into many and collapses short edges, in
@@ -22,10 +22,10 @@ pub(super) fn remeshed(mesh: &TriMesh, share: f64, stream: &mut Stream) -> TriMe
         fine = shapes::subdivide(&fine);
     }
     let factors: Vec<f64> = (0..fine.n_vertices()).map(|_| stream.uniform(0.7, 1.4)).collect();
-    collapsed(&fine, n_vertices, |_, sq_length, [a, b]| sq_length * factors[a] * factors[b])
+    collapsed(&fine, n_vertices, &|_, sq_length, [a, b]| sq_length * factors[a] * factors[b])
 }
 
-fn collapsed(mesh: &TriMesh, n_vertices: usize, cost: impl Fn(f64, f64, [usize; 2]) -> f64) -> TriMesh {
+fn collapsed(mesh: &TriMesh, n_vertices: usize, cost: &dyn Fn(f64, f64, [usize; 2]) -> f64) -> TriMesh {
     match collapse_edges(mesh, n_vertices, cost, &Budget::unlimited()) {
         Ok(found) => found.mesh,
         Err(_) => unreachable!("the budget is unlimited"),

@@ -130,7 +130,7 @@ pub(super) fn contact(mesh: &TriMesh, n: u32, stream: &mut Stream) -> TriMesh {
 /// The neighbours of an inner vertex in the order of its faces; `None` at a boundary, or where faces are turned over.
 fn rim(topology: &Topology, v: VertexId) -> Option<Vec<VertexId>> {
     let mut ring = OneRing::default();
-    ring.collect(topology, topology.vertex_corners(v));
+    ring.collect(topology, v);
     let mut fans = ring.fans();
     let fan = fans.next().filter(|fan| fan.is_closed)?;
     let follows = fan.corners.iter().all(|c| c.winding == surface::Winding::Forward);

@@ -8,7 +8,6 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tempfile::{NamedTempFile, TempDir};
 
-use super::durable::{folder_of, sync_folder};
 use super::error::FileError;
 use super::identity::is_at;
 
@@ -68,14 +67,43 @@ pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     write_atomically(path, |out| out.write_all(bytes))
 }
 
+/// A temporary file or folder on the list. It is removed on drop.
+#[derive(Debug)]
+struct Unfinished<T> {
+    /// `None` once it is published or dropped.
+    inner: Option<T>,
+    path: PathBuf,
+}
+
+impl<T> Unfinished<T> {
+    /// `list` is the locked list.
+    fn new(inner: T, path: PathBuf, list: &mut Vec<PathBuf>) -> Self {
+        list.push(path.clone());
+        Self { inner: Some(inner), path }
+    }
+
+    /// Takes it from the list, and does something with it before another one is created, renamed or removed.
+    fn finish<R>(&mut self, last: impl FnOnce(T) -> R) -> Option<R> {
+        let inner = self.inner.take()?;
+        let mut list = unfinished();
+        list.retain(|path| *path != self.path);
+        Some(last(inner))
+    }
+}
+
+impl<T> Drop for Unfinished<T> {
+    fn drop(&mut self) {
+        self.finish(drop);
+    }
+}
+
 /// A complete file that has not replaced its destination yet.
 ///
 /// Several files that belong together are all written as pending files before the first is published, so that a
 /// failure leaves the previous versions untouched.
 #[derive(Debug)]
 pub struct Pending<'a> {
-    /// `None` once it is published or dropped.
-    file: Option<NamedTempFile>,
+    file: Unfinished<NamedTempFile>,
     path: &'a Path,
 }
 
@@ -96,21 +124,15 @@ impl<'a> Pending<'a> {
     }
 
     /// Writes a file in any order; nothing remains after an error.
-    ///
-    /// # Errors
-    /// [`FileError`] with the path.
-    pub fn fill(
-        path: &'a Path,
-        content: impl FnOnce(&mut File) -> io::Result<()>,
-    ) -> Result<Self, FileError> {
+    fn fill(path: &'a Path, content: impl FnOnce(&mut File) -> io::Result<()>) -> Result<Self, FileError> {
         let written = || {
-            let mut pending = Self { file: Some(new_file_in(folder_of(path))?), path };
-            if let Some(file) = &mut pending.file {
+            let mut file = new_file_in(folder_of(path))?;
+            if let Some(file) = &mut file.inner {
                 content(file.as_file_mut())?;
                 // Otherwise a power failure after the rename could leave the new name with incomplete content.
                 file.as_file().sync_all()?;
             }
-            Ok(pending)
+            Ok(Self { file, path })
         };
         written().map_err(|source| FileError::write(path, source))
     }
@@ -121,13 +143,22 @@ impl<'a> Pending<'a> {
     /// # Errors
     /// [`FileError`] with the path.
     pub fn publish(mut self) -> Result<(), FileError> {
-        let Some(file) = self.file.take() else { return Ok(()) };
-        {
-            let mut paths = unfinished();
-            forget(&mut paths, file.path());
-            file.persist(self.path).map_err(|e| FileError::write(self.path, e.error))?;
-        }
-        sync_folder(self.path).map_err(|source| FileError::write(self.path, source))
+        let renamed = self.file.finish(|file| file.persist(self.path).map(drop).map_err(|fault| fault.error));
+        let published = renamed.unwrap_or(Ok(())).and_then(|()| sync_folder(self.path));
+        published.map_err(|source| FileError::write(self.path, source))
+    }
+}
+
+/// The folder that holds a file.
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// Flushes the folder of a file, and with it the name of the file, to disk.
+fn sync_folder(path: &Path) -> io::Result<()> {
+    match cfg!(unix) {
+        true => File::open(folder_of(path))?.sync_all(),
+        false => Ok(()),
     }
 }
 
@@ -143,10 +174,7 @@ pub fn nameless_in(folder: &Path) -> Result<File, FileError> {
 
 /// A folder for files that only this process reads. It is removed on drop and by [`abandon_unfinished`].
 #[derive(Debug)]
-pub struct Scratch {
-    /// `None` once it is dropped.
-    folder: Option<TempDir>,
-}
+pub struct Scratch(Unfinished<TempDir>);
 
 impl Scratch {
     /// Creates an empty folder among the temporary files of the system.
@@ -154,45 +182,21 @@ impl Scratch {
     /// # Errors
     /// [`FileError`] with the path of the folder for temporary files.
     pub fn new() -> Result<Self, FileError> {
-        let mut paths = unfinished();
+        let mut list = unfinished();
         let folder = tempfile::tempdir().map_err(|source| FileError::write(&std::env::temp_dir(), source))?;
-        paths.push(folder.path().to_owned());
-        Ok(Self { folder: Some(folder) })
+        let path = folder.path().to_owned();
+        Ok(Self(Unfinished::new(folder, path, &mut list)))
     }
 
     /// A file name in the folder.
     #[must_use]
     pub fn file(&self, name: &str) -> PathBuf {
-        self.folder.as_ref().map_or_else(PathBuf::new, |folder| folder.path().join(name))
+        self.0.path.join(name)
     }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        if let Some(folder) = self.folder.take() {
-            let mut paths = unfinished();
-            forget(&mut paths, folder.path());
-            drop(folder);
-        }
-    }
-}
-
-impl Drop for Pending<'_> {
-    fn drop(&mut self) {
-        if let Some(file) = self.file.take() {
-            let mut paths = unfinished();
-            forget(&mut paths, file.path());
-            drop(file);
-        }
-    }
-}
-
-fn forget(paths: &mut Vec<PathBuf>, path: &Path) {
-    paths.retain(|unfinished| unfinished != path);
 }
 
 /// A temporary file with the permissions of an ordinary new file, locked as long as it is open.
-fn new_file_in(folder: &Path) -> io::Result<NamedTempFile> {
+fn new_file_in(folder: &Path) -> io::Result<Unfinished<NamedTempFile>> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(PREFIX);
     #[cfg(unix)]
@@ -201,15 +205,15 @@ fn new_file_in(folder: &Path) -> io::Result<NamedTempFile> {
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
     remove_leftovers(folder);
-    let mut paths = unfinished();
+    let mut list = unfinished();
     loop {
         let file = builder.tempfile_in(folder)?;
         // Where files cannot be locked, leftovers are not removed either.
         let is_locked = file.as_file().lock().is_ok();
         // Another program may have taken the file for a leftover before it was locked.
         if !is_locked || is_at(file.as_file(), file.path()) {
-            paths.push(file.path().to_owned());
-            return Ok(file);
+            let path = file.path().to_owned();
+            return Ok(Unfinished::new(file, path, &mut list));
         }
     }
 }

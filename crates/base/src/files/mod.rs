@@ -13,13 +13,11 @@
 //! ```
 
 mod atomic;
-mod durable;
 mod error;
 mod identity;
 
 pub use atomic::{
     Pending, Scratch, abandon_unfinished, fill_atomically, nameless_in, write_atomically, write_bytes,
 };
-pub use durable::rename_durably;
 pub use error::{Action, FileError};
 pub use identity::{FileId, has_other_names, is_at, is_same_file};

@@ -14,14 +14,9 @@ use crate::error::CollectionError;
 #[derive(Debug, Clone, PartialEq)]
 pub struct LabelFile {
     path: PathBuf,
-    labels: HashMap<String, LabelLine>,
+    /// The number of the line and the label, by the name of the shape.
+    labels: HashMap<String, (usize, String)>,
     in_order: Vec<String>,
-}
-
-#[derive(Debug, Clone, PartialEq)]
-struct LabelLine {
-    number: usize,
-    label: String,
 }
 
 /// A line of a label file that names no shape.
@@ -51,8 +46,7 @@ impl LabelFile {
             }
             match line.split(',').map(str::trim).collect::<Vec<_>>()[..] {
                 [name, label] if !name.is_empty() && !label.is_empty() => {
-                    let line = LabelLine { number: number + 1, label: label.to_owned() };
-                    labels.insert(joined(Path::new(name)), line);
+                    labels.insert(joined(Path::new(name)), (number + 1, label.to_owned()));
                     in_order.push(label.to_owned());
                 }
                 [label] if !has_names => in_order.push(label.to_owned()),
@@ -78,8 +72,8 @@ impl LabelFile {
 
     /// The label of a shape, if the file names it: as `scan.001`, or with the extension of its mesh as `scan.001.off`.
     pub fn label(&self, name: &str, mesh: Option<&Path>) -> Option<&str> {
-        let key = self.key(name, mesh)?;
-        self.labels.get(key).map(|line| line.label.as_str())
+        let (_, label) = self.labels.get(self.key(name, mesh)?)?;
+        Some(label)
     }
 
     /// How the file names a shape.
@@ -100,7 +94,7 @@ impl LabelFile {
             shapes.iter().filter_map(|shape| self.key(&shape.name, Some(&shape.path))).collect();
         let unused = self.labels.iter().filter(|(name, _)| !used.contains(name.as_str()));
         let mut lines: Vec<UnusedLabel> =
-            unused.map(|(name, line)| UnusedLabel { line: line.number, name: name.clone() }).collect();
+            unused.map(|(name, (line, _))| UnusedLabel { line: *line, name: name.clone() }).collect();
         lines.sort_by_key(|unused| unused.line);
         lines
     }
@@ -123,7 +117,7 @@ fn is_mesh_named(key: &str, name: &str) -> bool {
 }
 
 /// A path separated by `/`.
-pub(super) fn joined(path: &Path) -> String {
+pub(crate) fn joined(path: &Path) -> String {
     path.iter().map(|part| part.to_string_lossy()).collect::<Vec<_>>().join("/")
 }
 

@@ -11,9 +11,10 @@ use std::path::{Path, PathBuf};
 use mesh::io::{extension, files_in, is_mesh_path, mesh_files, without_extension};
 
 use crate::error::CollectionError;
-use crate::storage::{Container, ListedPath, Storage, open_archive, read_list};
-use labels::joined;
+use crate::storage::{Container, Storage, open_archive, read_list};
 use walk::Walk;
+
+pub(crate) use labels::joined;
 
 pub use classes::{LabelOrigin, LabelSource, drop_single_class, label_of, label_shapes, n_classes};
 pub use labels::{LabelFile, UnusedLabel};
@@ -52,17 +53,13 @@ impl Dataset {
             Some(Container::Zip | Container::Tar | Container::Parquet) => Found::in_archive(path)?,
             Some(Container::Folder) | None => Found::in_folder(path)?,
         };
-        let mut shapes: Vec<ShapeFile> = found
-            .meshes
-            .into_iter()
-            .map(|mesh| {
-                let name =
-                    joined(&without_extension(mesh.path.strip_prefix(&found.root).unwrap_or(&mesh.path)));
-                ShapeFile { label: mesh.label.unwrap_or_default(), name, path: mesh.path }
-            })
-            .collect();
+        let mut shapes = found.shapes;
         if shapes.is_empty() {
             return Err(CollectionError::NoShapes { path: path.to_owned() });
+        }
+        for shape in &mut shapes {
+            let below = shape.path.strip_prefix(&found.root).unwrap_or(&shape.path);
+            shape.name = joined(&without_extension(below));
         }
         shapes.sort_by(|a, b| {
             natural_key(&a.name).cmp(&natural_key(&b.name)).then_with(|| a.path.cmp(&b.path))
@@ -76,21 +73,19 @@ impl Dataset {
 struct Found {
     /// The folder that names are relative to.
     root: PathBuf,
-    meshes: Vec<FoundMesh>,
+    shapes: Vec<ShapeFile>,
     skipped: Vec<Skipped>,
 }
 
-struct FoundMesh {
-    path: PathBuf,
-    /// Its class, if the dataset states one.
-    label: Option<String>,
+fn nameless(path: PathBuf, label: String) -> ShapeFile {
+    ShapeFile { name: String::new(), label, path }
 }
 
 impl Found {
     fn in_folder(folder: &Path) -> Result<Self, CollectionError> {
         let Walk { meshes, skipped, .. } = Walk::below(folder)?;
-        let meshes = meshes.into_iter().map(|path| FoundMesh { path, label: None }).collect();
-        Ok(Self { root: folder.to_owned(), meshes, skipped })
+        let shapes = meshes.into_iter().map(|path| nameless(path, String::new())).collect();
+        Ok(Self { root: folder.to_owned(), shapes, skipped })
     }
 
     fn in_archive(path: &Path) -> Result<Self, CollectionError> {
@@ -98,40 +93,40 @@ impl Found {
         let skip = |name: &str, kind| Skipped { path: path.join(name), kind };
         let mut skipped: Vec<Skipped> =
             archive.skipped.iter().map(|(name, kind)| skip(name, kind.clone())).collect();
-        let mut meshes = Vec::new();
+        let mut shapes = Vec::new();
         for (name, member) in archive.members() {
             let below = Path::new(name);
             if is_mesh_path(below) {
-                meshes.push(FoundMesh { path: path.join(below), label: member.label.clone() });
+                shapes.push(nameless(path.join(below), member.label.clone()));
             } else if files_in(&path.join(below), &Storage).len() < 2 {
                 skipped.push(skip(name, SkipKind::Extension(extension(below))));
             }
         }
         skipped.sort_by(|a, b| a.path.cmp(&b.path));
-        Ok(Self { root: common_folder(&meshes, path), meshes, skipped })
+        Ok(Self { root: common_folder(&shapes, path), shapes, skipped })
     }
 
     fn in_list(list: &Path) -> Result<Self, CollectionError> {
-        let (mut meshes, mut skipped) = (Vec::new(), Vec::new());
+        let (mut shapes, mut skipped) = (Vec::new(), Vec::new());
         let mut seen = HashSet::new();
-        for ListedPath { path, line } in read_list(list)? {
+        for (path, line) in read_list(list)? {
             if !is_mesh_path(&path) {
                 let what = format!("{} is not a mesh; a mesh is {}", path.display(), mesh_files());
                 return Err(CollectionError::BadLine { path: list.to_owned(), line, what });
             }
             match seen.insert(path.clone()) {
-                true => meshes.push(FoundMesh { path, label: None }),
+                true => shapes.push(nameless(path, String::new())),
                 false => skipped.push(Skipped { path, kind: SkipKind::Repeated }),
             }
         }
         let folder = list.parent().unwrap_or(Path::new(""));
-        Ok(Self { root: common_folder(&meshes, folder), meshes, skipped })
+        Ok(Self { root: common_folder(&shapes, folder), shapes, skipped })
     }
 }
 
 /// The innermost folder that contains all meshes.
-fn common_folder(meshes: &[FoundMesh], otherwise: &Path) -> PathBuf {
-    let mut folders = meshes.iter().filter_map(|mesh| mesh.path.parent());
+fn common_folder(shapes: &[ShapeFile], otherwise: &Path) -> PathBuf {
+    let mut folders = shapes.iter().filter_map(|shape| shape.path.parent());
     let Some(mut common) = folders.next() else { return otherwise.to_owned() };
     for folder in folders {
         while !folder.starts_with(common) {

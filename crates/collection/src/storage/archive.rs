@@ -5,6 +5,7 @@ use std::fs::File;
 use std::io::{self, Read, Seek, Write};
 use std::path::{Component, Path};
 
+use base::files::{FileError, nameless_in};
 use mesh::io::inflated_limit;
 use mesh::{Fault, MeshError};
 
@@ -17,14 +18,14 @@ use crate::dataset::SkipKind;
 pub(crate) struct Member {
     /// Bytes after decompression.
     pub(crate) size: u64,
-    /// Its class, if the archive states one.
-    pub(crate) label: Option<String>,
+    /// Its class; empty if the archive states none.
+    pub(crate) label: String,
     /// Where it is: the number of a zip entry, or the first byte.
     pub(super) at: u64,
 }
 
 /// An opened archive.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Archive {
     members: BTreeMap<String, Member>,
     /// Names of what is no member, with the reason.
@@ -33,10 +34,8 @@ pub(crate) struct Archive {
 }
 
 /// Where the bytes of members are.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) enum Data {
-    #[default]
-    Nowhere,
     Entries(Box<dyn Entries>),
     /// As they are, one after the other.
     Plain(Window),
@@ -50,7 +49,7 @@ pub(super) trait Entries: std::fmt::Debug + Send + Sync {
 
 impl Archive {
     pub(super) fn of(data: Data) -> Self {
-        Self { data, ..Self::default() }
+        Self { members: BTreeMap::new(), skipped: Vec::new(), data }
     }
 
     /// Adds a member. A later one of the same name takes its place, as when an archive is unpacked.
@@ -79,32 +78,24 @@ impl Archive {
     }
 
     /// The content of a member; `path` names it in messages.
-    pub(super) fn read(&self, name: &str, path: &Path) -> Result<Vec<u8>, MeshError> {
+    pub(crate) fn read(&self, name: &str, path: &Path) -> Result<Vec<u8>, MeshError> {
         self.read_at_most(name, path, u64::MAX)
     }
 
     /// As [`read`](Self::read), or an error if the member has more bytes.
     pub(super) fn read_at_most(&self, name: &str, path: &Path, most: u64) -> Result<Vec<u8>, MeshError> {
-        let member = self.member(name).ok_or_else(|| {
-            MeshError::Io(base::files::FileError::read(
-                path,
-                io::Error::new(io::ErrorKind::NotFound, "the archive has no such member"),
-            ))
-        })?;
-        match &self.data {
-            Data::Nowhere => Ok(Vec::new()),
-            Data::Entries(entries) => entries.read(member, most).map_err(|what| fault(path, what)),
-            Data::Plain(window) => {
-                let mut bytes = Vec::new();
-                let read = window.part(member.at, member.size).read_to_end(&mut bytes);
-                match read.map_err(|source| base::files::FileError::read(path, source))? as u64 {
-                    n if n == member.size => Ok(bytes),
-                    found => {
-                        let items = "bytes".to_owned();
-                        Err(fault(path, Fault::Truncated { items, promised: member.size, found }))
-                    }
-                }
-            }
+        let cannot_read = |source| MeshError::Io(FileError::read(path, source));
+        let missing = || io::Error::new(io::ErrorKind::NotFound, "the archive has no such member");
+        let member = self.member(name).ok_or_else(|| cannot_read(missing()))?;
+        let window = match &self.data {
+            Data::Entries(entries) => return entries.read(member, most).map_err(|what| fault(path, what)),
+            Data::Plain(window) => window,
+        };
+        let mut bytes = Vec::new();
+        window.part(member.at, member.size).read_to_end(&mut bytes).map_err(cannot_read)?;
+        match bytes.len() as u64 {
+            found if found < member.size => Err(fault(path, Fault::truncated("bytes", member.size, found))),
+            _ => Ok(bytes),
         }
     }
 }
@@ -134,8 +125,7 @@ pub(super) struct Spool {
 impl Spool {
     /// `size` is that of the compressed file; no more than `most` bytes are kept.
     pub(super) fn new(size: u64, most: u64) -> Result<Self, Fault> {
-        let file =
-            base::files::nameless_in(&std::env::temp_dir()).map_err(|error| cannot_keep(&error.source))?;
+        let file = nameless_in(&std::env::temp_dir()).map_err(|error| cannot_keep(&error.source))?;
         Ok(Self { file, n_bytes: 0, limit: inflated_limit(size).min(most) })
     }
 
@@ -157,10 +147,10 @@ impl Spool {
 }
 
 fn cannot_keep(error: &io::Error) -> Fault {
-    Fault::Unsupported {
-        what: format!("its decompressed data cannot be kept in a temporary file: {error}"),
-        remedy: "free space, set TMPDIR to another folder, or unpack the archive",
-    }
+    Fault::unsupported(
+        format!("its decompressed data cannot be kept in a temporary file: {error}"),
+        "free space, set TMPDIR to another folder, or unpack the archive",
+    )
 }
 
 #[cfg(test)]

@@ -31,7 +31,7 @@ static OPEN: LazyLock<Mutex<VecDeque<(Key, Slot)>>> = LazyLock::new(Mutex::defau
 const MOST: usize = 16;
 
 /// Opens an archive, or finds it open.
-pub(super) fn open(path: &Path) -> Result<Arc<Archive>, MeshError> {
+pub(crate) fn open(path: &Path) -> Result<Arc<Archive>, MeshError> {
     let cannot_read = |source| MeshError::Io(FileError::read(path, source));
     let about = std::fs::metadata(path).map_err(cannot_read)?;
     let id = FileId::of(path).map_err(cannot_read)?;
@@ -45,19 +45,16 @@ pub(super) fn open(path: &Path) -> Result<Arc<Archive>, MeshError> {
         open.truncate(MOST);
         slot
     };
-    if slot.get().is_none() {
-        // Outside of the slot, since the error of the system may go away.
-        let file = File::open(path).map_err(cannot_read)?;
-        let container = Container::by_name(path).unwrap_or(Container::Zip);
-        return slot
-            .get_or_init(|| members(path, file, container, u64::MAX).map(Arc::new))
-            .clone()
-            .map_err(|what| fault(path, what));
-    }
-    match slot.get() {
-        Some(archive) => archive.clone().map_err(|what| fault(path, what)),
-        None => Err(fault(path, Fault::Empty)),
-    }
+    let archive = match slot.get() {
+        Some(known) => known,
+        None => {
+            // Outside of the slot, since the error of the system may go away.
+            let file = File::open(path).map_err(cannot_read)?;
+            let container = Container::by_name(path).unwrap_or(Container::Zip);
+            slot.get_or_init(|| members(path, file, container, u64::MAX).map(Arc::new))
+        }
+    };
+    archive.clone().map_err(|what| fault(path, what))
 }
 
 /// Reads the names of all members. Compression of the whole hides at most so many bytes.

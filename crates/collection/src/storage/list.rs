@@ -6,17 +6,9 @@ use base::files::FileError;
 
 use crate::error::CollectionError;
 
-/// A line of a list.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct ListedPath {
-    /// The file, relative to the current folder.
-    pub(crate) path: PathBuf,
-    /// Its line, counted from one.
-    pub(crate) line: usize,
-}
-
 /// Reads a list: one path a line, relative to the folder of the list. Empty lines and lines that begin with `#` are skipped.
-pub(super) fn read(list: &Path) -> Result<Vec<ListedPath>, CollectionError> {
+/// Returns the paths, relative to the current folder, and their lines, counted from one.
+pub(crate) fn read(list: &Path) -> Result<Vec<(PathBuf, usize)>, CollectionError> {
     let text = std::fs::read_to_string(list).map_err(|source| FileError::read(list, source))?;
     let folder = list.parent().unwrap_or(Path::new(""));
     let lines = text.lines().enumerate().map(|(number, line)| (number + 1, line.trim()));
@@ -25,7 +17,7 @@ pub(super) fn read(list: &Path) -> Result<Vec<ListedPath>, CollectionError> {
         .map(|(line, text)| {
             let path = tidy(&folder.join(text));
             match path.is_dir() {
-                false => Ok(ListedPath { path, line }),
+                false => Ok((path, line)),
                 true => {
                     let what = format!("{text} is a folder; a list names meshes, one a line");
                     Err(CollectionError::BadLine { path: list.to_owned(), line, what })

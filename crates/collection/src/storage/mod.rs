@@ -16,14 +16,15 @@ mod zip;
 
 use std::path::{Path, PathBuf};
 
+use base::files::FileError;
 use mesh::io::{Disk, FileSource, MeshFile, Opened, ReadLimits};
 use mesh::{Fault, MeshError, TriMesh};
 
 use crate::error::CollectionError;
-pub(crate) use archive::Archive;
+pub(crate) use cache::open as open_archive;
 pub(crate) use container::Container;
 use container::fault;
-pub(crate) use list::ListedPath;
+pub(crate) use list::read as read_list;
 pub use single::{is_archive_name, single_mesh};
 
 /// Whether a path leads to a dataset: a folder, an archive (`.zip`, `.tar`, `.tar.gz`, `.tgz`), a `.parquet` file with a
@@ -40,14 +41,14 @@ pub struct Storage;
 impl FileSource for Storage {
     fn holds(&self, path: &Path) -> bool {
         path.exists()
-            || member_of(path).is_some_and(|(archive, member)| {
-                cache::open(&archive).is_ok_and(|archive| archive.member(&member).is_some())
+            || member_of(path).is_some_and(|(archive, name)| {
+                open_archive(&archive).is_ok_and(|archive| archive.member(&name).is_some())
             })
     }
 
     fn open(&self, path: &Path) -> Result<Opened<'_>, MeshError> {
         if let Some((archive, name)) = member_of(path) {
-            return Ok(Opened::Bytes(cache::open(&archive)?.read(&name, path)?.into()));
+            return Ok(Opened::Bytes(open_archive(&archive)?.read(&name, path)?.into()));
         }
         Disk.open(path)
     }
@@ -58,12 +59,10 @@ impl Storage {
     pub fn n_bytes(self, path: &Path) -> Result<u64, CollectionError> {
         match member_of(path) {
             Some((archive, name)) => {
-                let archive = cache::open(&archive)?;
+                let archive = open_archive(&archive)?;
                 Ok(archive.member(&name).map_or(0, |member| member.size))
             }
-            None => Ok(std::fs::metadata(path)
-                .map_err(|source| base::files::FileError::read(path, source))?
-                .len()),
+            None => Ok(std::fs::metadata(path).map_err(|source| FileError::read(path, source))?.len()),
         }
     }
 }
@@ -105,21 +104,10 @@ pub fn read_mesh(path: &Path) -> Result<TriMesh, CollectionError> {
 /// [`CollectionError::Mesh`].
 pub fn read_mesh_file(path: &Path, limits: &ReadLimits) -> Result<MeshFile, CollectionError> {
     if Container::of(path).is_some_and(Container::is_archive) {
-        let what = "this is an archive of meshes".to_owned();
         let remedy = "name one of them, such as meshes.zip/cat0.off";
-        return Err(fault(path, Fault::Unsupported { what, remedy }).into());
+        return Err(fault(path, Fault::unsupported("this is an archive of meshes", remedy)).into());
     }
     Ok(mesh::io::read_file(path, &Storage, limits)?)
-}
-
-/// The members of an archive.
-pub(crate) fn open_archive(path: &Path) -> Result<std::sync::Arc<Archive>, CollectionError> {
-    Ok(cache::open(path)?)
-}
-
-/// The paths in a list.
-pub(crate) fn read_list(path: &Path) -> Result<Vec<ListedPath>, CollectionError> {
-    list::read(path)
 }
 
 #[cfg(test)]

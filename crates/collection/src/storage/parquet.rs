@@ -33,10 +33,8 @@ struct Columns {
 
 pub(super) fn open(file: File) -> Result<Archive, Fault> {
     // The library has assertions about what a file states; those that are known are checked before.
-    catch_unwind(AssertUnwindSafe(|| read(file))).unwrap_or_else(|_| {
-        let found = "data that contradicts itself".to_owned();
-        Err(Fault::Syntax { expected: "an intact Parquet file", found })
-    })
+    catch_unwind(AssertUnwindSafe(|| read(file)))
+        .unwrap_or_else(|_| Err(Fault::syntax("an intact Parquet file", "data that contradicts itself")))
 }
 
 fn read(file: File) -> Result<Archive, Fault> {
@@ -65,8 +63,8 @@ fn read(file: File) -> Result<Archive, Fault> {
             let id = text(&ids, row).unwrap_or_else(|| format!("row{}", rows.len()));
             let name = named(id, text(&formats, row).as_deref(), rows.len())?;
             let at = spool.append(bytes)?;
-            let member = Member { size: bytes.len() as u64, label: text(&labels, row), at };
-            rows.push((name, member));
+            let label = text(&labels, row).unwrap_or_default();
+            rows.push((name, Member { size: bytes.len() as u64, label, at }));
             row += 1;
             Ok(())
         })?;
@@ -74,7 +72,7 @@ fn read(file: File) -> Result<Archive, Fault> {
     let mut archive = Archive::of(Data::Plain(spool.finish()?));
     for (name, member) in rows {
         if archive.member(&name).is_some() {
-            return Err(Fault::Syntax { expected: "a different id in every row", found: name });
+            return Err(Fault::syntax("a different id in every row", name));
         }
         archive.add(&name, member);
     }
@@ -83,22 +81,21 @@ fn read(file: File) -> Result<Archive, Fault> {
 
 /// The name of a row as a file: its id, with the format as its extension.
 fn named(id: String, format: Option<&str>, row: usize) -> Result<String, Fault> {
-    let known = |format: &str| Format::named(format.trim_start_matches('.').trim_end_matches(".gz"));
-    match format {
-        Some(format) => match known(format) {
-            Some(_) if mesh::io::extension(id.as_ref()) == format.trim_start_matches('.') => Ok(id),
-            Some(_) => Ok(format!("{id}.{}", format.trim_start_matches('.'))),
-            None => Err(Fault::Syntax {
-                expected: "the extension of a mesh, such as ply, in the column `format`",
-                found: format!("{format} in row {row}"),
-            }),
-        },
-        None if Format::of(id.as_ref()).is_ok() => Ok(id),
-        None => Err(Fault::Syntax {
-            expected: "a column `format`, or ids with the extension of a mesh",
-            found: format!("{id} in row {row}"),
-        }),
+    let Some(stated) = format else {
+        return match Format::of(id.as_ref()) {
+            Ok(_) => Ok(id),
+            Err(_) => {
+                let expected = "a column `format`, or ids with the extension of a mesh";
+                Err(Fault::syntax(expected, format!("{id} in row {row}")))
+            }
+        };
+    };
+    let extension = stated.trim_start_matches('.');
+    if Format::named(extension.trim_end_matches(".gz")).is_none() {
+        let expected = "the extension of a mesh, such as ply, in the column `format`";
+        return Err(Fault::syntax(expected, format!("{stated} in row {row}")));
     }
+    Ok(if mesh::io::extension(id.as_ref()) == extension { id } else { format!("{id}.{extension}") })
 }
 
 impl Columns {
@@ -117,18 +114,13 @@ impl Columns {
         let is_text = |kind| matches!(kind, Physical::BYTE_ARRAY | Physical::INT32 | Physical::INT64);
         let bytes = find(&BYTES, &is_bytes).ok_or_else(|| {
             let names: Vec<&str> = schema.columns().iter().map(|column| column.name()).collect();
-            Fault::Syntax {
-                expected: "a column `bytes` with the contents of mesh files, beside `id`, `label` and `format`",
-                found: names.join(", "),
-            }
+            Fault::syntax(
+                "a column `bytes` with the contents of mesh files, beside `id`, `label` and `format`",
+                names.join(", "),
+            )
         })?;
-        let columns = Self {
-            bytes,
-            id: find(&IDS, &is_text),
-            label: find(&LABELS, &is_text),
-            format: find(&FORMATS, &is_bytes),
-        };
-        Ok(columns)
+        let [id, label] = [&IDS[..], &LABELS].map(|names| find(names, &is_text));
+        Ok(Self { bytes, id, label, format: find(&FORMATS, &is_bytes) })
     }
 }
 
@@ -137,10 +129,10 @@ fn texts(group: &dyn RowGroupReader, column: usize) -> Result<Vec<Option<String>
     let mut texts = Vec::new();
     each(group, column, |value| {
         let text = value.map(|bytes| String::from_utf8(bytes.to_vec()));
-        texts.push(text.transpose().map_err(|error| {
-            let found = String::from_utf8_lossy(error.as_bytes()).into_owned();
-            Fault::Syntax { expected: "text in UTF-8", found }
-        })?);
+        texts
+            .push(text.transpose().map_err(|error| {
+                Fault::syntax("text in UTF-8", String::from_utf8_lossy(error.as_bytes()))
+            })?);
         Ok(())
     })?;
     Ok(texts)
@@ -155,8 +147,7 @@ fn each(
     let about = group.metadata().column(column);
     let start = about.dictionary_page_offset().unwrap_or_else(|| about.data_page_offset());
     if start < 0 || about.compressed_size() < 0 {
-        let found = "a column at a negative place".to_owned();
-        return Err(Fault::Syntax { expected: "an intact Parquet file", found });
+        return Err(Fault::syntax("an intact Parquet file", "a column at a negative place"));
     }
     match group.get_column_reader(column).map_err(damaged)? {
         reader @ ColumnReader::ByteArrayColumnReader(_) => {
@@ -168,10 +159,7 @@ fn each(
         reader @ ColumnReader::Int64ColumnReader(_) => {
             each_of::<Int64Type>(reader, group, column, |value| value.to_string().into_bytes(), take)
         }
-        _ => Err(Fault::Syntax {
-            expected: "a column of bytes, text or integers",
-            found: "another type".into(),
-        }),
+        _ => Err(Fault::syntax("a column of bytes, text or integers", "another type")),
     }
 }
 
@@ -203,14 +191,14 @@ fn each_of<T: DataType>(
 }
 
 fn damaged(error: ParquetError) -> Fault {
-    let unsupported = |what: &str| Fault::Unsupported {
-        what: format!("it uses a feature of Parquet that is not supported: {what}"),
-        remedy: "write it with Snappy compression or none",
+    let unsupported = |what: &str| {
+        let what = format!("it uses a feature of Parquet that is not supported: {what}");
+        Fault::unsupported(what, "write it with Snappy compression or none")
     };
     match error {
         // Compression by a library that was left out.
         ParquetError::General(what) if what.contains("Disabled feature") => unsupported(&what),
         ParquetError::NYI(what) => unsupported(&what),
-        other => Fault::Syntax { expected: "an intact Parquet file", found: other.to_string() },
+        other => Fault::syntax("an intact Parquet file", other.to_string()),
     }
 }

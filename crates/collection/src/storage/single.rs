@@ -10,6 +10,7 @@ use mesh::io::{FileSource, Opened, files_in, is_mesh_path};
 use super::archive::Archive;
 use super::cache::members;
 use super::container::{Container, fault};
+use crate::dataset::joined;
 use crate::error::CollectionError;
 
 /// Whether a name is that of an archive: `.zip`, `.tar`, `.tar.gz` or `.tgz`.
@@ -37,12 +38,10 @@ pub fn single_mesh(name: &Path, bytes: &[u8], most: u64) -> Result<Vec<(PathBuf,
     let source = Members { archive: &archive, name, most };
     let mesh = Path::new(mesh);
     let folder = mesh.parent().unwrap_or(Path::new(""));
-    let files = files_in(mesh, &source).into_iter().filter(|file| source.holds(file));
-    let read = |file: PathBuf| {
-        let content = source.content(&file)?;
-        Ok((file.strip_prefix(folder).unwrap_or(&file).to_owned(), content))
-    };
-    let mut files = files.map(read).collect::<Result<Vec<_>, MeshError>>()?;
+    let mut files = Vec::new();
+    for file in files_in(mesh, &source).into_iter().filter(|file| source.holds(file)) {
+        files.push((file.strip_prefix(folder).unwrap_or(&file).to_owned(), source.content(&file)?));
+    }
     files.sort_by_key(|(file, _)| !is_mesh_path(file));
     Ok(files)
 }
@@ -56,15 +55,13 @@ struct Members<'a> {
 
 impl Members<'_> {
     fn content(&self, path: &Path) -> Result<Vec<u8>, MeshError> {
-        let member = path.iter().map(|part| part.to_string_lossy()).collect::<Vec<_>>().join("/");
-        self.archive.read_at_most(&member, &self.name.join(path), self.most)
+        self.archive.read_at_most(&joined(path), &self.name.join(path), self.most)
     }
 }
 
 impl FileSource for Members<'_> {
     fn holds(&self, path: &Path) -> bool {
-        let member = path.iter().map(|part| part.to_string_lossy()).collect::<Vec<_>>().join("/");
-        self.archive.member(&member).is_some()
+        self.archive.member(&joined(path)).is_some()
     }
 
     fn open(&self, path: &Path) -> Result<Opened<'_>, MeshError> {

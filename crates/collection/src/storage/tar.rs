@@ -1,7 +1,7 @@
 //! Tar archives, compressed by gzip or not.
 
 use std::fs::File;
-use std::io::Read;
+use std::io::{self, Read};
 use std::path::Path;
 
 use flate2::read::MultiGzDecoder;
@@ -13,8 +13,7 @@ use super::window::Window;
 use crate::dataset::SkipKind;
 
 pub(super) fn open(path: &Path, file: File, most: u64) -> Result<Archive, Fault> {
-    let damaged =
-        |error: std::io::Error| Fault::Syntax { expected: "an intact tar archive", found: error.to_string() };
+    let damaged = |error: io::Error| Fault::syntax("an intact tar archive", error.to_string());
     let window = Window::whole(file).map_err(damaged)?;
     if window.len() == 0 {
         return Err(Fault::Empty);
@@ -33,7 +32,8 @@ pub(super) fn open(path: &Path, file: File, most: u64) -> Result<Archive, Fault>
                     archive.skip(&name, SkipKind::NotUtf8);
                     continue;
                 }
-                let member = Member { size: entry.size(), label: None, at: entry.raw_file_position() };
+                let member =
+                    Member { size: entry.size(), label: String::new(), at: entry.raw_file_position() };
                 archive.add(&name, member);
             }
             EntryType::Directory | EntryType::XGlobalHeader => {}
@@ -54,9 +54,7 @@ fn inflated(window: Window, most: u64) -> Result<Window, Fault> {
             Ok(n) => {
                 spool.append(&buffer[..n])?;
             }
-            Err(error) => {
-                return Err(Fault::Syntax { expected: "compressed data", found: error.to_string() });
-            }
+            Err(error) => return Err(Fault::syntax("compressed data", error.to_string())),
         }
     }
 }

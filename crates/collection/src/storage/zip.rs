@@ -17,8 +17,8 @@ use crate::dataset::SkipKind;
 pub(super) struct Zip(ZipArchive<Window>);
 
 pub(super) fn open(file: File) -> Result<Archive, Fault> {
-    let window = Window::whole(file)
-        .map_err(|error| Fault::Syntax { expected: "a file that can be read", found: error.to_string() })?;
+    let window =
+        Window::whole(file).map_err(|error| Fault::syntax("a file that can be read", error.to_string()))?;
     if window.len() == 0 {
         return Err(Fault::Empty);
     }
@@ -29,20 +29,15 @@ pub(super) fn open(file: File) -> Result<Archive, Fault> {
         let entry = directory.entry(at).map_err(damaged)?;
         // Many programs write UTF-8 without saying so.
         let raw = entry.name_raw();
-        let name = match std::str::from_utf8(raw) {
-            Ok(name) => name.to_owned(),
-            Err(_) => match entry.name() {
-                Ok(name) => name.into_owned(),
-                Err(_) => {
-                    archive.skip(&String::from_utf8_lossy(raw), SkipKind::NotUtf8);
-                    continue;
-                }
-            },
+        let name = std::str::from_utf8(raw).map(str::to_owned).or_else(|_| entry.name().map(Into::into));
+        let Ok(name) = name else {
+            archive.skip(&String::from_utf8_lossy(raw), SkipKind::NotUtf8);
+            continue;
         };
         if entry.is_symlink() {
             archive.skip(&name, SkipKind::Special);
         } else if !entry.is_dir() {
-            archive.add(&name, Member { size: entry.size(), label: None, at: at as u64 });
+            archive.add(&name, Member { size: entry.size(), label: String::new(), at: at as u64 });
         }
     }
     Ok(archive)
@@ -55,10 +50,8 @@ impl Entries for Zip {
         let at = member.at as usize;
         let entry = archive.by_index_data(at).map_err(damaged)?;
         if entry.encrypted() {
-            return Err(Fault::Unsupported {
-                what: "this member is encrypted".into(),
-                remedy: "unpack the archive with its password, or store it without one",
-            });
+            let remedy = "unpack the archive with its password, or store it without one";
+            return Err(Fault::unsupported("this member is encrypted", remedy));
         }
         // The stated sizes may be wrong.
         let limit = inflated_limit(entry.compressed_size()).min(most);
@@ -67,7 +60,7 @@ impl Entries for Zip {
         entry
             .take(limit.saturating_add(1))
             .read_to_end(&mut bytes)
-            .map_err(|error| Fault::Syntax { expected: "compressed data", found: error.to_string() })?;
+            .map_err(|error| Fault::syntax("compressed data", error.to_string()))?;
         match bytes.len() as u64 > limit {
             true => Err(Fault::Inflates { limit }),
             false => Ok(bytes),
@@ -77,10 +70,10 @@ impl Entries for Zip {
 
 fn damaged(error: ZipError) -> Fault {
     match error {
-        ZipError::UnsupportedArchive(_) | ZipError::CompressionMethodNotSupported(_) => Fault::Unsupported {
-            what: error.to_string(),
-            remedy: "unpack the archive, or create it with Deflate compression",
-        },
-        other => Fault::Syntax { expected: "an intact zip archive", found: other.to_string() },
+        ZipError::UnsupportedArchive(_) | ZipError::CompressionMethodNotSupported(_) => {
+            let remedy = "unpack the archive, or create it with Deflate compression";
+            Fault::unsupported(error.to_string(), remedy)
+        }
+        other => Fault::syntax("an intact zip archive", other.to_string()),
     }
 }

@@ -34,8 +34,7 @@ impl Fans {
         let mut fans = Self { sectors: Rows::default(), kinds: Vec::with_capacity(n_vertices) };
         let mut ring = OneRing::default();
         for vertex in (0..n_vertices).map(VertexId::from) {
-            let corners = topology.vertex_corners(vertex);
-            ring.collect(topology, corners);
+            ring.collect(topology, vertex);
             let mut angle = 0.0;
             let sector = |corner: &FanCorner| {
                 let start = angle;

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use rayon::prelude::*;
 use surface::{
-    AngleSum, CornerId, CornerTable, FaceId, Link, Rows, Triangulation, VertexCorners, VertexId, double_area,
+    AngleSum, CornerId, FaceId, Link, Rows, Triangulation, VertexCorners, VertexId, double_area,
     scalar_product,
 };
 
@@ -294,7 +294,7 @@ fn kinds(
         }
         let VertexCorners { first, n_corners, n_free } = surroundings[order[v] as usize];
         let is_closed = n_corners > 0 && n_free == 0;
-        let is_inside = is_closed && triangulation.walk_around(first, |_| {}) == n_corners as usize;
+        let is_inside = is_closed && triangulation.n_around(first) == n_corners as usize;
         let has_fans = n_free > 2 || (is_closed && !is_inside);
         Kind { may_bend: angle.exceeds(if is_inside { 2 } else { 1 }, EXCESS), has_fans }
     };

@@ -129,7 +129,7 @@ impl TangentPlane {
     fn at_vertex(mesh: &IntrinsicMesh, vertex: VertexId) -> Self {
         let topology = mesh.topology();
         let mut ring = OneRing::default();
-        ring.collect(topology, topology.vertex_corners(vertex));
+        ring.collect(topology, vertex);
         let (mut sheets, mut sides, mut total) = (Vec::new(), Vec::new(), 0.0);
         let mut orientation = (CornerId(u32::MAX), 1.0);
         for corner in ring.fans().flat_map(|fan| fan.corners) {

@@ -1,5 +1,7 @@
 //! A block Lanczos process with full orthogonalisation.
 
+use base::SplitMix;
+
 use super::operator::ShiftInverse;
 use super::strips::Strips;
 use crate::{LinalgError, Matrix, SymmetricEigen, symmetric_eigen};
@@ -89,7 +91,7 @@ impl<'a> Lanczos<'a> {
     /// that are orthogonal to the start.
     pub(super) fn add_random(&mut self, count: usize) {
         let n = self.operator.n_rows();
-        let random = Matrix::from_fn(n, count, |_, _| self.random.next());
+        let random = Matrix::from_fn(n, count, |_, _| self.random.uniform());
         let mut fresh = self.operator.apply(&random);
         let lengths = self.lengths(&fresh);
         self.orthonormalise(&mut fresh, &lengths);
@@ -221,20 +223,5 @@ impl Ritz {
     pub(super) fn residual(&self, j: usize) -> f64 {
         let theta = self.eigen.values[j];
         if theta > 0.0 { self.outside.column(j).norm() / theta } else { f64::INFINITY }
-    }
-}
-
-/// Pseudo-random numbers (SplitMix64; Steele, Lea and Flood 2014).
-#[derive(Debug)]
-struct SplitMix(u64);
-
-impl SplitMix {
-    /// Uniform in [-1, 1).
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 }

@@ -13,17 +13,16 @@ pub(super) fn longest_boundary(mesh: &IntrinsicMesh) -> f64 {
 pub(super) fn boundaries(mesh: &IntrinsicMesh) -> Vec<(Vec<VertexId>, f64)> {
     let topology = mesh.topology();
     let mut joined = DisjointSets::new(mesh.n_vertices());
-    let edges = topology.edges().iter().zip(mesh.edge_lengths()).enumerate();
-    let boundary = edges.filter(|(edge, _)| topology.edge_corners((*edge).into()).len() == 1);
-    let boundary: Vec<_> = boundary.map(|(_, (ends, length))| (*ends, *length)).collect();
-    for ([a, b], _) in &boundary {
+    for edge in topology.boundary_edges() {
+        let [a, b] = topology.edges()[edge.index()];
         joined.union(a.0, b.0);
     }
     let mut found: BTreeMap<u32, (Vec<VertexId>, f64)> = BTreeMap::new();
-    for (ends, length) in &boundary {
+    for edge in topology.boundary_edges() {
+        let ends = topology.edges()[edge.index()];
         let (vertices, sum) = found.entry(joined.find(ends[0].0)).or_default();
         vertices.extend(ends);
-        *sum += length;
+        *sum += mesh.length(edge);
     }
     let mut found: Vec<_> = found.into_values().collect();
     for (vertices, _) in &mut found {

@@ -92,21 +92,11 @@ impl InputPoint {
 }
 
 fn parse(text: &str) -> Option<InputPoint> {
-    let (element, place) = match text.split_once('@') {
-        Some((element, place)) => (element, Some(place)),
-        None => (text, None),
-    };
+    let mut parts = text.splitn(2, '@');
+    let (element, place) = (parts.next()?, parts.next());
     if let Some(face) = element.strip_prefix('f') {
-        let mut weights = [1.0; 3];
-        if let Some(place) = place {
-            let mut parts = place.split(':');
-            for weight in &mut weights {
-                *weight = parts.next()?.parse().ok()?;
-            }
-            if parts.next().is_some() {
-                return None;
-            }
-        }
+        let weights = place.unwrap_or("1:1:1").split(':').map(|weight| weight.parse().ok());
+        let weights: [f64; 3] = weights.collect::<Option<Vec<f64>>>()?.try_into().ok()?;
         let sum: f64 = weights.iter().sum();
         let is_inside = weights.iter().all(|w| *w >= 0.0) && sum > 0.0 && sum.is_finite();
         let face = FaceId(face.parse().ok()?);

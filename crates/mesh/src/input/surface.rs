@@ -86,7 +86,6 @@ impl Surface {
                 false => Some(Changes { to_repaired, to_input: self.input_vertex }),
             };
         let map = InputMap {
-            repair: self.repair,
             report: self.repaired.report,
             input_faces: self.input_faces,
             changes,
@@ -122,7 +121,7 @@ impl Surface {
         if self.mesh().n_vertices() <= n_vertices {
             return Ok(None);
         }
-        let found = collapse_edges(self.mesh(), n_vertices, |error, _, _| error, &observer.budget())?;
+        let found = collapse_edges(self.mesh(), n_vertices, &|error, _, _| error, &observer.budget())?;
         // Repaired meshes have no vertices without faces.
         let Some(vertex_of) = found.vertex_of.into_iter().collect::<Option<Vec<VertexId>>>() else {
             return Ok(None);
@@ -149,13 +148,9 @@ impl Surface {
 
     /// The vertices on boundaries, and the length of all, in mesh units.
     pub fn boundary_vertices(&self) -> (Vec<VertexId>, f64) {
-        boundaries(self.intrinsic()).into_iter().fold(
-            (Vec::new(), 0.0),
-            |(mut all, sum), (vertices, length)| {
-                all.extend(vertices);
-                (all, sum + length)
-            },
-        )
+        let (vertices, lengths): (Vec<_>, Vec<f64>) = boundaries(self.intrinsic()).into_iter().unzip();
+        // The sum of nothing would be minus zero.
+        (vertices.concat(), lengths.iter().fold(0.0, |sum, length| sum + length))
     }
 
     /// The shortcuts that were cut to [prepare](Self::for_description) the surface; none before.
@@ -234,13 +229,9 @@ impl Surface {
 /// The relation of the vertices of a repaired mesh to those of the input, without the mesh.
 #[derive(Debug, Clone)]
 pub struct InputMap {
-    /// How the mesh was repaired.
-    pub repair: RepairOptions,
     /// What was repaired.
     pub report: RepairReport,
-    /// The faces of the input, or those of the surface through its points if it has none, in the vertex numbers of the
-    /// input.
-    pub input_faces: Vec<[VertexId; 3]>,
+    input_faces: Vec<[VertexId; 3]>,
     /// The vertices that the repair changed; `None` if it kept them all.
     changes: Option<Changes>,
     /// Seconds to read the file; zero for a mesh in memory.

@@ -13,6 +13,9 @@ pub struct VertexField<'a> {
     pub colors: &'a [[u8; 3]],
 }
 
+/// The field that is written with a mesh, if there is one.
+pub(super) type WrittenField<'a> = Option<&'a VertexField<'a>>;
+
 /// A scalar field read from a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ScalarField {

@@ -66,8 +66,8 @@ pub fn files_in(path: &Path, source: &dyn FileSource) -> Vec<PathBuf> {
     let Ok(format) = Format::of(path) else { return vec![path.to_owned()] };
     let mut files = format.files(path, source);
     // A file that cannot be read is reported when it is.
-    if let (Some(companions), [check]) = (format.companions, format.check_start)
-        && let Ok(content) = load(source, path, *check)
+    if let Some(companions) = format.companions
+        && let Ok(content) = load(source, path, format.check_start)
     {
         let names = companions(&content).unwrap_or_default();
         files.extend(names.iter().map(|name| path.with_file_name(name)));
@@ -106,21 +106,21 @@ pub fn read_file(path: &Path, source: &dyn FileSource, limits: &ReadLimits) -> R
     let open = |file: &PathBuf, check: CheckStart| {
         if file != path && !source.holds(file) {
             let partner = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            let (what, remedy) = match format.companions {
-                Some(_) => (
+            let fault = match format.companions {
+                Some(_) => Fault::unsupported(
                     format!("its data is in {partner}, which is missing"),
                     "put both files into the same folder",
                 ),
-                None => (
+                None => Fault::unsupported(
                     format!("its other half {partner} is missing"),
                     "put both files of the pair into the same folder",
                 ),
             };
-            return Err(Fault::Unsupported { what, remedy }.whole().in_file(path));
+            return Err(fault.whole().in_file(path));
         }
         load(source, file, check)
     };
-    let loaded = paths.iter().zip(format.check_start).map(|(file, check)| open(file, *check));
+    let loaded = paths.iter().map(|file| open(file, format.check_start));
     let mut contents = loaded.collect::<Result<Vec<Cow<'_, [u8]>>, _>>()?;
     if let (Some(companions), Some(content)) = (format.companions, contents.first()) {
         for name in companions(content).map_err(|fault| fault.in_file(path))? {
@@ -160,21 +160,17 @@ pub fn read_from(
     limits: &ReadLimits,
 ) -> Result<MeshFile, MeshError> {
     let of_several = |what: String| {
-        let remedy = "name one of its files, or convert it to PLY or GLB";
-        Fault::Unsupported { what, remedy }.whole().in_file(name)
+        Fault::unsupported(what, "name one of its files, or convert it to PLY or GLB").whole().in_file(name)
     };
-    let [check] = format.check_start else {
-        return Err(of_several(format!(
-            "{} consists of two files and cannot be read from a stream",
-            format.name
-        )));
-    };
-    let bytes = load_stream(name, stream, *check, limits.max_bytes)?;
+    if format.extensions.len() > 1 {
+        let what = format!("{} consists of two files and cannot be read from a stream", format.name);
+        return Err(of_several(what));
+    }
+    let bytes = load_stream(name, stream, format.check_start, limits.max_bytes)?;
     let companions = format.companions.map_or(Ok(Vec::new()), |companions| companions(&bytes));
     if let Some(companion) = companions.map_err(|fault| fault.in_file(name))?.first() {
-        return Err(of_several(format!(
-            "its data is in another file, `{companion}`, which cannot be read from a stream"
-        )));
+        let what = format!("its data is in another file, `{companion}`, which cannot be read from a stream");
+        return Err(of_several(what));
     }
     (format.parse)(&[&bytes], limits).map_err(|fault| fault.in_file(name))
 }

@@ -44,33 +44,48 @@ fn prefers_second_diagonal(positions: &[Point3<f64>], quad: [VertexId; 4]) -> bo
     }
 }
 
-/// Appends a copy of a mesh, moved by an affine map. Where it mirrors, corners change their order.
-pub(super) fn append_placed(
-    vertices: &[Point3<f64>],
-    triangles: &[[u32; 3]],
-    place: Option<&Matrix4<f64>>,
-    positions: &mut Vec<Point3<f64>>,
-    faces: &mut Vec<[VertexId; 3]>,
-) -> Result<(), Fault> {
-    let start = positions.len() as u32;
-    let Some(place) = place else {
-        positions.extend_from_slice(vertices);
-        faces.extend(triangles.iter().map(|face| face.map(|v| VertexId(v + start))));
-        return Ok(());
-    };
-    let (linear, shift) =
-        (place.fixed_view::<3, 3>(0, 0).into_owned(), place.fixed_view::<3, 1>(0, 3).into_owned());
-    for (vertex, p) in vertices.iter().enumerate() {
-        let moved = Point3::from(linear * p.coords + shift);
-        if let Some(&value) = moved.iter().find(|x| !x.is_finite()) {
-            return Err(Fault::NonFinite { vertex: vertex as u64, value });
-        }
-        positions.push(moved);
+/// A position whose coordinates are numbers; `vertex` only appears in messages.
+pub(super) fn finite(position: impl Into<Point3<f64>>, vertex: usize) -> Result<Point3<f64>, Fault> {
+    let position = position.into();
+    match position.iter().find(|x| !x.is_finite()) {
+        Some(&value) => Err(Fault::NonFinite { vertex: vertex as u64, value }),
+        None => Ok(position),
     }
-    let mirrors = linear.determinant() < 0.0;
-    faces.extend(triangles.iter().map(|&[a, b, c]| {
+}
+
+/// The place of a copy of a mesh, as an affine map; `None` if it stays where it is.
+pub(super) type Placement = Option<Matrix4<f64>>;
+
+/// The place that a map moves a mesh to.
+pub(super) fn placed_by(map: Matrix4<f64>) -> Placement {
+    (map != Matrix4::identity()).then_some(map)
+}
+
+/// The place of what has a place within something that is placed itself.
+pub(super) fn placed_within(above: Placement, own: Placement) -> Placement {
+    match (above, own) {
+        (Some(above), Some(own)) => Some(above * own),
+        (above, own) => above.or(own),
+    }
+}
+
+/// Appends a copy of a mesh. Where its place mirrors it, corners change their order.
+pub(super) fn append_placed(whole: &mut TriMesh, part: &TriMesh, place: Placement) -> Result<(), Fault> {
+    let start = whole.n_vertices() as u32;
+    let mut mirrors = false;
+    if let Some(place) = place {
+        let (linear, shift) =
+            (place.fixed_view::<3, 3>(0, 0).into_owned(), place.fixed_view::<3, 1>(0, 3).into_owned());
+        mirrors = linear.determinant() < 0.0;
+        for (vertex, p) in part.positions.iter().enumerate() {
+            whole.positions.push(finite(linear * p.coords + shift, vertex)?);
+        }
+    } else {
+        whole.positions.extend_from_slice(&part.positions);
+    }
+    whole.faces.extend(part.faces.iter().map(|&[a, b, c]| {
         let face = if mirrors { [a, c, b] } else { [a, b, c] };
-        face.map(|v| VertexId(v + start))
+        face.map(|v| VertexId(v.0 + start))
     }));
     Ok(())
 }
@@ -83,27 +98,24 @@ const COPIES_RATIO: u64 = 64;
 /// Refuses a small file in which copies of meshes add up to a huge one.
 pub(super) fn check_copies(items: u64, n_bytes: u64) -> Result<(), Fault> {
     match COPIES.max(n_bytes.saturating_mul(COPIES_RATIO)) {
-        limit if items > limit => Err(Fault::Unsupported {
-            what: format!(
+        limit if items > limit => Err(Fault::unsupported(
+            format!(
                 "its copies of meshes add up to more than {limit} vertices and faces, out of proportion to the file"
             ),
-            remedy: "the file is damaged or malicious: if it is neither, export a single copy",
-        }),
+            "the file is damaged or malicious: if it is neither, export a single copy",
+        )),
         _ => Ok(()),
     }
 }
 
 /// The file of a mesh, if that has a face or enough vertices for a point cloud, and is within the limits.
-pub(super) fn finish(
-    positions: Vec<Point3<f64>>,
-    faces: Vec<[VertexId; 3]>,
-    limits: &ReadLimits,
-) -> Result<MeshFile, Located> {
-    if faces.is_empty() && positions.len() < FEWEST_POINTS {
-        return Err(Fault::NoFaces { n_vertices: positions.len() }.whole());
+pub(super) fn finish(mesh: TriMesh, limits: &ReadLimits) -> Result<MeshFile, Located> {
+    let (n_vertices, n_faces) = (mesh.n_vertices(), mesh.n_faces());
+    if n_faces == 0 && n_vertices < FEWEST_POINTS {
+        return Err(Fault::NoFaces { n_vertices }.whole());
     }
-    limits.check(positions.len() as u64, faces.len() as u64).map_err(Fault::whole)?;
-    Ok(MeshFile { mesh: TriMesh { positions, faces }, ..MeshFile::default() })
+    limits.check(n_vertices as u64, n_faces as u64).map_err(Fault::whole)?;
+    Ok(MeshFile { mesh, ..MeshFile::default() })
 }
 
 #[cfg(test)]

@@ -171,7 +171,7 @@ fn read_gzip(
     };
     let fault = match read_checked(path, &mut MultiGzDecoder::new(stream), check, None, limit) {
         Err(MeshError::Io(fault)) if is_damage(fault.source.kind()) => {
-            Fault::Syntax { expected: "compressed data", found: fault.source.to_string() }
+            Fault::syntax("compressed data", fault.source.to_string())
         }
         Err(MeshError::File { fault: Fault::OverLimit { items: "bytes", limit }, .. }) => {
             Fault::Inflates { limit }

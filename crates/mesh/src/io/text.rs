@@ -4,6 +4,7 @@ use std::io::{self, Write};
 use std::str::FromStr;
 
 use nalgebra::Point3;
+use surface::VertexId;
 
 use crate::error::{Fault, Located};
 
@@ -69,17 +70,14 @@ impl<'a> Line<'a> {
 
     /// The fault that this line is not what the format requires.
     pub(super) fn expected(self, expected: &'static str) -> Located {
-        Fault::Syntax { expected, found: excerpt(self.text) }.in_line(self.number)
+        Fault::syntax(expected, excerpt(self.text)).in_line(self.number)
     }
 }
 
 /// Refuses the start of a text file that holds zero bytes, as binary data and files with holes do.
 pub(super) fn check_is_text(start: &[u8], expected: &'static str) -> Result<(), Located> {
     match start.iter().position(|byte| *byte == 0) {
-        Some(at) => {
-            Err(Fault::WrongFormat { expected, found: "it is not text but has zero bytes".into() }
-                .at_byte(at))
-        }
+        Some(at) => Err(Fault::wrong_format(expected, "it is not text but has zero bytes").at_byte(at)),
         None => Ok(()),
     }
 }
@@ -104,6 +102,22 @@ pub(super) fn parse_integer(token: &[u8]) -> Option<i64> {
         let value: f64 = parse_number(token)?;
         (value.fract() == 0.0 && value.abs() < 9e15).then_some(value as i64)
     })
+}
+
+/// The next word of a line as a vertex, counted from `first`.
+pub(super) fn parse_vertex<'a>(
+    line: Line<'a>,
+    tokens: &mut impl Iterator<Item = &'a [u8]>,
+    [first, n_vertices]: [u64; 2],
+    expected: &'static str,
+) -> Result<VertexId, Located> {
+    let token = tokens.next().ok_or_else(|| line.expected(expected))?;
+    let index = parse_integer(token).ok_or_else(|| line.expected(expected))?;
+    let vertex = index.checked_sub_unsigned(first).and_then(|vertex| u64::try_from(vertex).ok());
+    match vertex.filter(|vertex| *vertex < n_vertices) {
+        Some(vertex) => Ok(VertexId(vertex as u32)),
+        None => Err(Fault::no_vertex(excerpt(token), first, n_vertices).in_line(line.number)),
+    }
 }
 
 /// The first three words of a line as a position; `vertex` only appears in messages.

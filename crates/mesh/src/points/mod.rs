@@ -14,7 +14,7 @@ use std::collections::HashMap;
 use base::Observer;
 use nalgebra::Point3;
 use serde::Serialize;
-use surface::{VertexId, power_of_two_below};
+use surface::VertexId;
 
 use crate::coincidence::position_key;
 use crate::error::{FEWEST_POINTS, MeshError};
@@ -59,26 +59,19 @@ impl PointsReport {
     /// One line for people.
     #[must_use]
     pub fn summary(&self) -> String {
-        let smoothed = match self.neighbors {
-            0 => String::new(),
-            _ => format!(
-                ", after smoothing noise of {:.3e} ({:.1} times the spacing)",
-                self.noise,
-                self.noise / self.spacing
-            ),
-        };
-        let replaced = match self.replaced_points {
-            0 => String::new(),
-            n => format!("; the nearest vertex stands for {n} of them"),
-        };
-        let outliers = match self.outliers {
-            0 => String::new(),
-            n => format!("; {n} far from the others left out"),
-        };
-        format!(
-            "{} points without faces joined by {} faces{smoothed}{replaced}{outliers}",
-            self.n_points, self.n_faces
-        )
+        let mut text = format!("{} points without faces joined by {} faces", self.n_points, self.n_faces);
+        if self.neighbors > 0 {
+            let of_spacing = self.noise / self.spacing;
+            text +=
+                &format!(", after smoothing noise of {:.3e} ({of_spacing:.1} times the spacing)", self.noise);
+        }
+        if self.replaced_points > 0 {
+            text += &format!("; the nearest vertex stands for {} of them", self.replaced_points);
+        }
+        if self.outliers > 0 {
+            text += &format!("; {} far from the others left out", self.outliers);
+        }
+        text
     }
 }
 
@@ -120,7 +113,7 @@ pub fn triangulate_points(
     let budget = observer.budget();
     check_finite(points)?;
     let cloud = TriMesh { positions: points.to_vec(), faces: Vec::new() };
-    let unit = power_of_two_below(cloud.size());
+    let unit = cloud.unit();
     let (distinct, of_point) = without_copies(points, unit);
     if distinct.len() < FEWEST_POINTS {
         return Err(MeshError::Unusable(format!(

@@ -26,7 +26,7 @@ impl Neighbors {
         let place: [f64; 3] = place.coords.into();
         let hits = tree.query(&place).nearest_n::<SquaredEuclidean<f64>>(k).execute();
         let mut found: Vec<(u32, f64)> = hits.iter().map(|hit| (hit.item, hit.distance)).collect();
-        found.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+        found.sort_unstable_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
         found
     }
 }

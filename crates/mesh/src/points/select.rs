@@ -1,6 +1,6 @@
 //! The triangles that points agree on.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::f64::consts::{PI, TAU};
 
 use super::star::{Proposal, Stars};
@@ -18,12 +18,14 @@ const ROUNDING: f64 = 1e-9;
 /// with the smaller circle.
 pub(super) fn agreed(stars: &Stars) -> Vec<[u32; 3]> {
     let mut proposals = stars.proposals.clone();
-    proposals.sort_by(|a, b| a.face.cmp(&b.face).then(a.radius.total_cmp(&b.radius)));
+    proposals.sort_unstable_by(|a, b| a.face.cmp(&b.face).then(a.radius.total_cmp(&b.radius)));
     let mut counted: Vec<(usize, Proposal)> = Vec::with_capacity(proposals.len() / 3);
     for group in proposals.chunk_by(|a, b| a.face == b.face) {
         counted.push((group.len(), group[0]));
     }
-    counted.sort_by(|(n, a), (m, b)| m.cmp(n).then(a.radius.total_cmp(&b.radius)).then(a.face.cmp(&b.face)));
+    counted.sort_unstable_by(|(n, a), (m, b)| {
+        m.cmp(n).then(a.radius.total_cmp(&b.radius)).then(a.face.cmp(&b.face))
+    });
     let mut sectors = Sectors { stars, taken: vec![Vec::new(); stars.points.len()] };
     let mut faces: Vec<[u32; 3]> = counted
         .iter()
@@ -75,7 +77,7 @@ fn close_gaps(faces: &mut Vec<[u32; 3]>, sectors: &mut Sectors<'_>) {
     // A gap of n sides needs n - 2 faces. Each cuts off a corner of the boundary.
     for _ in 0..LARGEST_GAP {
         let mut ears = ears(faces, sectors.stars);
-        ears.sort_by(|(a, f), (b, g)| a.total_cmp(b).then(f.cmp(g)));
+        ears.sort_unstable_by(|(a, f), (b, g)| a.total_cmp(b).then(f.cmp(g)));
         let before = faces.len();
         for (_, ear) in ears {
             if sectors.take(ear) {
@@ -101,17 +103,17 @@ fn ears(faces: &[[u32; 3]], stars: &Stars) -> Vec<(f64, [u32; 3])> {
         next.entry(b).or_default().push(a);
     }
     let length = |a: u32, b: u32| (stars.points[a as usize] - stars.points[b as usize]).norm();
-    let mut ears = Vec::new();
+    let (mut ears, mut known) = (Vec::new(), HashSet::new());
     for gap in gaps(&next) {
         for i in 0..gap.len() {
             let [a, b, c] = [gap[i], gap[(i + 1) % gap.len()], gap[(i + 2) % gap.len()]];
             let mut ear = [a, b, c];
             ear.sort_unstable();
-            ears.push((length(a, c), ear));
+            if known.insert(ear) {
+                ears.push((length(a, c), ear));
+            }
         }
     }
-    ears.sort_by_key(|(_, face)| *face);
-    ears.dedup_by(|(_, f), (_, g)| f == g);
     ears
 }
 

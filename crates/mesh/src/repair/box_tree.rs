@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 
 /// The most points in a leaf of the tree.
 const LEAF: usize = 8;
@@ -16,14 +16,14 @@ pub(super) struct BoxTree {
 /// A point in the tree and its number.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Item {
-    pub(super) position: [f64; 3],
+    pub(super) position: Point3<f64>,
     pub(super) id: u32,
 }
 
 #[derive(Debug, Clone)]
 pub(super) struct Node {
-    low: [f64; 3],
-    high: [f64; 3],
+    low: Point3<f64>,
+    high: Point3<f64>,
     pub(super) items: Range<usize>,
     /// The two children; `None` for a leaf.
     pub(super) children: Option<[usize; 2]>,
@@ -32,7 +32,7 @@ pub(super) struct Node {
 impl BoxTree {
     /// The tree over points, each with a number. `O(n log n)`.
     pub(super) fn new(points: impl Iterator<Item = (Point3<f64>, u32)>) -> Self {
-        let items: Vec<Item> = points.map(|(p, id)| Item { position: [p.x, p.y, p.z], id }).collect();
+        let items: Vec<Item> = points.map(|(position, id)| Item { position, id }).collect();
         let all = 0..items.len();
         let mut tree = Self { items, nodes: Vec::new() };
         tree.grow(all);
@@ -41,13 +41,10 @@ impl BoxTree {
 
     /// Adds the node over a range of items and all below it; returns its index.
     fn grow(&mut self, range: Range<usize>) -> usize {
-        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for item in &self.items[range.clone()] {
-            for axis in 0..3 {
-                low[axis] = low[axis].min(item.position[axis]);
-                high[axis] = high[axis].max(item.position[axis]);
-            }
-        }
+        let nothing = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]].map(Point3::from);
+        let around =
+            |[low, high]: [Point3<f64>; 2], item: &Item| [low.inf(&item.position), high.sup(&item.position)];
+        let [low, high] = self.items[range.clone()].iter().fold(nothing, around);
         let index = self.nodes.len();
         self.nodes.push(Node { low, high, items: range.clone(), children: None });
         if range.len() > LEAF {
@@ -67,7 +64,7 @@ impl BoxTree {
     /// numbers in ascending order. `skips` excludes points, `prunes` nodes by their index.
     pub(super) fn nearest(
         &self,
-        position: &Point3<f64>,
+        at: &Point3<f64>,
         sq_radius: f64,
         k: usize,
         skips: impl Fn(u32) -> bool,
@@ -75,7 +72,6 @@ impl BoxTree {
         found: &mut Vec<(f64, u32)>,
     ) {
         found.clear();
-        let at = [position.x, position.y, position.z];
         let mut pending = vec![0];
         while let Some(index) = pending.pop() {
             let node = &self.nodes[index];
@@ -91,7 +87,7 @@ impl BoxTree {
                 }
                 None => {
                     for item in &self.items[node.items.clone()] {
-                        let sq = sq_norm([0, 1, 2].map(|axis| item.position[axis] - at[axis]));
+                        let sq = (item.position - at).norm_squared();
                         let candidate = (sq, item.id);
                         if sq > sq_radius || skips(item.id) {
                             continue;
@@ -111,15 +107,9 @@ impl BoxTree {
 impl Node {
     /// Squared distance to a point. Never larger than that of a point in the box, even with rounding, since every step
     /// is monotonic.
-    fn sq_gap_to(&self, point: [f64; 3]) -> f64 {
-        sq_norm(
-            [0, 1, 2].map(|axis| (self.low[axis] - point[axis]).max(point[axis] - self.high[axis]).max(0.0)),
-        )
+    fn sq_gap_to(&self, point: &Point3<f64>) -> f64 {
+        (self.low - point).sup(&(point - self.high)).sup(&Vector3::zeros()).norm_squared()
     }
-}
-
-fn sq_norm([x, y, z]: [f64; 3]) -> f64 {
-    x * x + y * y + z * z
 }
 
 #[cfg(test)]

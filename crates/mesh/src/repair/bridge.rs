@@ -10,7 +10,7 @@
 
 use base::{Budget, Exceeded};
 use nalgebra::Point3;
-use surface::{DisjointSets, EdgeId, Link, Topology, VertexId};
+use surface::{DisjointSets, Link, Topology, VertexId};
 
 use super::box_tree::BoxTree;
 use crate::coincidence::coincident_pairs;
@@ -57,10 +57,9 @@ fn shortest_links(positions: &[Point3<f64>], labels: &[u32], budget: &Budget) ->
         budget.check()?;
         tree.assign_groups(|v| groups.find(labels[v as usize]));
         let mut nearest = tree.nearest_of_groups(n_components, budget)?;
-        nearest.retain(|candidate| candidate.sq_length.is_finite());
-        nearest.sort_unstable_by(Candidate::order);
+        nearest.sort_unstable();
         let before = links.len();
-        for Candidate { ends, .. } in nearest {
+        for (_, ends) in nearest.into_iter().filter(|candidate| *candidate != NONE) {
             let [a, b] = ends.map(|v| labels[v as usize]);
             if groups.union(a, b) {
                 links.push(link(positions, ends));
@@ -81,13 +80,12 @@ fn near_links(
     budget: &Budget,
 ) -> Result<Vec<Link>, Exceeded> {
     let mut edges = vec![(0.0, 0u32); positions.len()];
-    for (e, ends) in topology.edges().iter().enumerate() {
-        if topology.edge_corners(EdgeId::from(e)).len() == 1 {
-            let length = (positions[ends[1].index()] - positions[ends[0].index()]).norm();
-            for end in ends {
-                let (sum, count) = &mut edges[end.index()];
-                (*sum, *count) = (*sum + length, *count + 1);
-            }
+    for edge in topology.boundary_edges() {
+        let [a, b] = topology.edges()[edge.index()].map(VertexId::index);
+        let length = (positions[b] - positions[a]).norm();
+        for end in [a, b] {
+            edges[end].0 += length;
+            edges[end].1 += 1;
         }
     }
     let boundary: Vec<u32> = (0..positions.len() as u32).filter(|&v| edges[v as usize].1 > 0).collect();
@@ -124,27 +122,12 @@ fn link(positions: &[Point3<f64>], ends: [u32; 2]) -> Link {
     Link { ends: ends.map(VertexId), length: (q - p).norm() }
 }
 
-/// A possible link, its lower end first.
-#[derive(Debug, Clone, Copy)]
-struct Candidate {
-    sq_length: f64,
-    ends: [u32; 2],
-}
+/// A possible link: the bits of its squared length, which are ordered as nonnegative numbers are, and its ends, the lower
+/// first. Shorter links come first, then those with lower ends. In a total order, equal lengths cannot create a cycle.
+type Candidate = (u64, [u32; 2]);
 
-impl Candidate {
-    const NONE: Self = Self { sq_length: f64::INFINITY, ends: [u32::MAX; 2] };
-
-    /// Shorter links first, then those with lower ends. In a total order, equal lengths cannot create a cycle.
-    fn order(&self, other: &Self) -> std::cmp::Ordering {
-        self.sq_length.total_cmp(&other.sq_length).then(self.ends.cmp(&other.ends))
-    }
-
-    fn improve(&mut self, other: Self) {
-        if other.order(self).is_lt() {
-            *self = other;
-        }
-    }
-}
+/// No link, behind all others.
+const NONE: Candidate = (f64::INFINITY.to_bits(), [u32::MAX; 2]);
 
 /// A tree whose points belong to groups of components.
 struct GroupTree {
@@ -186,19 +169,20 @@ impl GroupTree {
 
     /// The shortest link from every group to another.
     fn nearest_of_groups(&self, n_groups: usize, budget: &Budget) -> Result<Vec<Candidate>, Exceeded> {
-        let mut nearest = vec![Candidate::NONE; n_groups];
+        let mut nearest = vec![NONE; n_groups];
         let mut found = Vec::new();
         for (i, item) in self.boxes.items.iter().enumerate() {
             if i % BATCH == 0 {
                 budget.check()?;
             }
             let own = self.groups[item.id as usize];
-            let sq_radius = nearest[own as usize].sq_length;
-            self.nearest_outside(&item.position.into(), own, sq_radius, &mut found);
+            let sq_radius = f64::from_bits(nearest[own as usize].0);
+            self.nearest_outside(&item.position, own, sq_radius, &mut found);
             for &(sq_length, other) in &found {
-                let candidate = Candidate { sq_length, ends: [item.id.min(other), item.id.max(other)] };
-                nearest[own as usize].improve(candidate);
-                nearest[self.groups[other as usize] as usize].improve(candidate);
+                let candidate = (sq_length.to_bits(), [item.id.min(other), item.id.max(other)]);
+                for group in [own, self.groups[other as usize]] {
+                    nearest[group as usize] = nearest[group as usize].min(candidate);
+                }
             }
         }
         Ok(nearest)
@@ -229,17 +213,17 @@ mod tests {
         for a in 0..positions.len() {
             for b in (a + 1..positions.len()).filter(|&b| labels[a] != labels[b]) {
                 let d = positions[b] - positions[a];
-                all.push(Candidate { sq_length: d.norm_squared(), ends: [a as u32, b as u32] });
+                all.push((d.norm_squared().to_bits(), [a as u32, b as u32]));
             }
         }
-        all.sort_by(Candidate::order);
+        all.sort_unstable();
         let mut sets = DisjointSets::new(labels.len());
         let mut links: Vec<Link> = all
             .into_iter()
-            .filter(|c| sets.union(labels[c.ends[0] as usize], labels[c.ends[1] as usize]))
-            .map(|c| {
-                let [p, q] = c.ends.map(|v| positions[v as usize]);
-                Link { ends: c.ends.map(VertexId), length: (q - p).norm() }
+            .filter(|(_, ends)| sets.union(labels[ends[0] as usize], labels[ends[1] as usize]))
+            .map(|(_, ends)| {
+                let [p, q] = ends.map(|v| positions[v as usize]);
+                Link { ends: ends.map(VertexId), length: (q - p).norm() }
             })
             .collect();
         links.sort_by_key(|link| link.ends);

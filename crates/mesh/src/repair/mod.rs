@@ -105,23 +105,25 @@ pub fn repair(
         ComponentPolicy::Largest => Some(largest(&scaled, surface.topology(), &components, &mut report)),
         ComponentPolicy::Error => return Err(disconnected(&components)),
     };
-    let compact = Compact::of(mesh, &mut merged, &components, kept);
-    compact.report_dropped(&mut merged, &components, &mut report);
+    let (sources, input_to_repaired) = renumbered(&mut merged, &components, kept);
+    report_dropped(&input_to_repaired, &mut merged, &components, &mut report);
     let faces = surface.topology().faces();
-    let renumbered = faces.iter().filter_map(|face| {
-        let [a, b, c] = face.map(|v| compact.input_to_repaired[v.index()]);
+    let left = faces.iter().filter_map(|face| {
+        let [a, b, c] = face.map(|v| input_to_repaired[v.index()]);
         Some([a?, b?, c?])
     });
-    let mut repaired = TriMesh { faces: renumbered.collect(), positions: compact.positions };
+    let positions = sources.iter().map(|v| mesh.positions[v.index()]).collect();
+    let mut repaired = TriMesh { faces: left.collect(), positions };
     report.dropped_component_faces = faces.len() - repaired.n_faces();
 
     let mut links = Vec::new();
     if options.components == ComponentPolicy::Bridge && components.count > 1 {
-        let positions = compact.sources.iter().map(|v| scaled[v.index()]).collect::<Vec<_>>();
+        let positions: Vec<Point3<f64>> = sources.iter().map(|v| scaled[v.index()]).collect();
+        let labels: Vec<u32> = sources.iter().map(|v| components.of(*v) as u32).collect();
         let topology = Topology::new(positions.len(), repaired.faces.clone());
-        links = bridge::links(&positions, &topology, &compact.labels, &budget)?;
+        links = bridge::links(&positions, &topology, &labels, &budget)?;
         links.iter_mut().for_each(|link| link.length *= unit);
-        let in_input = |link: &Link| Link { ends: link.ends.map(|v| compact.sources[v.index()]), ..*link };
+        let in_input = |link: &Link| Link { ends: link.ends.map(|v| sources[v.index()]), ..*link };
         report.bridges = links.iter().map(in_input).collect();
         report.bridge_length = links.iter().map(|link| link.length).sum();
     }
@@ -131,7 +133,7 @@ pub fn repair(
     (report.output_vertices, report.output_faces) = (repaired.n_vertices(), repaired.n_faces());
     let is_unchanged = repaired.n_vertices() == mesh.n_vertices() && report.flipped_faces == 0;
     let intrinsic = if is_unchanged { surface } else { repaired.intrinsic() }.with_links(links);
-    Ok(Repaired { mesh: repaired, intrinsic, input_to_repaired: compact.input_to_repaired, report })
+    Ok(Repaired { mesh: repaired, intrinsic, input_to_repaired, report })
 }
 
 /// The surface of the faces, without degenerate and duplicate ones, after welding.
@@ -261,51 +263,40 @@ fn largest(
     largest as u32
 }
 
-/// The remaining vertices, renumbered in the order of the input.
-struct Compact {
-    positions: Vec<Point3<f64>>,
-    /// The component of each.
-    labels: Vec<u32>,
-    /// The input vertex of each.
-    sources: Vec<VertexId>,
-    input_to_repaired: Vec<Option<VertexId>>,
+/// The vertices with a face, in the order of the input, if `kept` is given only those of that component; and for every input
+/// vertex its number among them.
+fn renumbered(
+    merged: &mut DisjointSets,
+    components: &Components,
+    kept: Option<u32>,
+) -> (Vec<VertexId>, Vec<Option<VertexId>>) {
+    let mut sources = Vec::with_capacity(merged.len());
+    let mut number = vec![None; merged.len()];
+    for v in 0..merged.len() {
+        // The lowest vertex of a merged set represents it, so it was visited before.
+        let source = merged.find(v as u32) as usize;
+        if source != v {
+            number[v] = number[source];
+        } else if components.labels[v].is_some_and(|label| kept.is_none_or(|kept| kept == label)) {
+            number[v] = Some(VertexId::from(sources.len()));
+            sources.push(VertexId::from(v));
+        }
+    }
+    (sources, number)
 }
 
-impl Compact {
-    /// Keeps the vertices with a face; if `kept` is given, only those of that component.
-    fn of(mesh: &TriMesh, merged: &mut DisjointSets, components: &Components, kept: Option<u32>) -> Self {
-        let n = mesh.n_vertices();
-        let mut compact = Self {
-            positions: Vec::with_capacity(n),
-            labels: Vec::with_capacity(n),
-            sources: Vec::with_capacity(n),
-            input_to_repaired: vec![None; mesh.n_vertices()],
-        };
-        for v in 0..mesh.n_vertices() {
-            // The lowest vertex of a merged set represents it, so it was visited before.
-            let source = merged.find(v as u32) as usize;
-            if source != v {
-                compact.input_to_repaired[v] = compact.input_to_repaired[source];
-                continue;
-            }
-            if let Some(label) = components.labels[v].filter(|label| kept.is_none_or(|k| k == *label)) {
-                compact.input_to_repaired[v] = Some(VertexId::from(compact.positions.len()));
-                compact.positions.push(mesh.positions[v]);
-                compact.labels.push(label);
-                compact.sources.push(VertexId::from(v));
-            }
-        }
-        compact
-    }
-
-    /// Adds the dropped vertices to the report.
-    fn report_dropped(&self, merged: &mut DisjointSets, components: &Components, report: &mut RepairReport) {
-        for v in (0..self.input_to_repaired.len()).filter(|&v| self.input_to_repaired[v].is_none()) {
-            report.dropped_vertices.push(VertexId::from(v));
-            match components.labels[merged.find(v as u32) as usize] {
-                Some(_) => report.dropped_component_vertices += 1,
-                None => report.unreferenced_vertices += 1,
-            }
+/// Adds the dropped vertices to the report.
+fn report_dropped(
+    input_to_repaired: &[Option<VertexId>],
+    merged: &mut DisjointSets,
+    components: &Components,
+    report: &mut RepairReport,
+) {
+    for v in (0..input_to_repaired.len()).filter(|&v| input_to_repaired[v].is_none()) {
+        report.dropped_vertices.push(VertexId::from(v));
+        match components.labels[merged.find(v as u32) as usize] {
+            Some(_) => report.dropped_component_vertices += 1,
+            None => report.unreferenced_vertices += 1,
         }
     }
 }

@@ -48,10 +48,7 @@ pub(super) fn weld(
     if policy == Weld::All {
         return coincident(unite(coincident_pairs(positions, 0..n_vertices as u32)));
     }
-    let edges: Vec<EdgeId> = (0..topology.n_edges())
-        .map(EdgeId::from)
-        .filter(|edge| topology.edge_corners(*edge).len() == 1)
-        .collect();
+    let edges: Vec<EdgeId> = topology.boundary_edges().collect();
     let mut boundary: Vec<u32> =
         edges.iter().flat_map(|edge| topology.edges()[edge.index()]).map(|v| v.0).collect();
     boundary.sort_unstable();
@@ -75,6 +72,12 @@ struct Pair {
     ends: [u32; 2],
 }
 
+impl Pair {
+    fn new([p, q]: [u32; 2], gap: f64, tolerance: f64) -> Self {
+        Self { gap, tolerance, ends: [p.min(q), p.max(q)] }
+    }
+}
+
 /// The pairs of boundary vertices within a tolerance.
 fn vertex_pairs(positions: &[Point3<f64>], boundary: &[u32], tolerance: f64) -> Vec<Pair> {
     let tree = BoxTree::new(boundary.iter().map(|&v| (positions[v as usize], v)));
@@ -82,11 +85,7 @@ fn vertex_pairs(positions: &[Point3<f64>], boundary: &[u32], tolerance: f64) -> 
     for &v in boundary {
         let at = &positions[v as usize];
         tree.nearest(at, tolerance * tolerance, CANDIDATES, |other| other == v, |_| false, &mut found);
-        pairs.extend(found.iter().map(|&(sq, other)| Pair {
-            gap: sq.sqrt(),
-            tolerance,
-            ends: [v.min(other), v.max(other)],
-        }));
+        pairs.extend(found.iter().map(|&(sq, other)| Pair::new([v, other], sq.sqrt(), tolerance)));
     }
     pairs
 }
@@ -125,11 +124,7 @@ fn seam_pairs(positions: &[Point3<f64>], topology: &Topology, edges: &[EdgeId]) 
             let best = matches[usize::from(crossed < same)];
             if same.min(crossed) <= tolerance {
                 let both = best.into_iter().zip(gaps(best)).filter(|([p, q], _)| p != q);
-                pairs.extend(both.map(|([p, q], gap)| Pair {
-                    gap,
-                    tolerance,
-                    ends: [p.min(q).0, p.max(q).0],
-                }));
+                pairs.extend(both.map(|([p, q], gap)| Pair::new([p.0, q.0], gap, tolerance)));
             }
         }
     }

@@ -6,7 +6,7 @@ use nalgebra::Point3;
 use surface::VertexId;
 
 use super::flat::triangles;
-use super::subdivision::subdivide;
+use super::subdivide;
 use crate::tri_mesh::TriMesh;
 
 fn from_arrays(positions: &[[f64; 3]], faces: &[[u32; 3]]) -> TriMesh {
@@ -42,20 +42,15 @@ pub fn cube(level: u32) -> TriMesh {
 #[must_use]
 pub fn icosphere(level: u32) -> TriMesh {
     let g = (1.0 + 5f64.sqrt()) / 2.0;
-    let corners = [
-        [-1.0, g, 0.0],
-        [1.0, g, 0.0],
-        [-1.0, -g, 0.0],
-        [1.0, -g, 0.0],
-        [0.0, -1.0, g],
-        [0.0, 1.0, g],
-        [0.0, -1.0, -g],
-        [0.0, 1.0, -g],
-        [g, 0.0, -1.0],
-        [g, 0.0, 1.0],
-        [-g, 0.0, -1.0],
-        [-g, 0.0, 1.0],
-    ];
+    // Three rectangles at right angles, with sides in the golden ratio.
+    let rectangle = [[-1.0, g, 0.0], [1.0, g, 0.0], [-1.0, -g, 0.0], [1.0, -g, 0.0]];
+    let turned = |turns: usize| {
+        rectangle.map(|mut corner| {
+            corner.rotate_right(turns);
+            corner
+        })
+    };
+    let corners = [turned(0), turned(1), turned(2)].concat();
     #[rustfmt::skip]
     let faces = [
         [0, 11, 5], [0, 5, 1], [0, 1, 7], [0, 7, 10], [0, 10, 11],

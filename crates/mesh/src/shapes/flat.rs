@@ -1,5 +1,6 @@
 //! Flat sheets, and sheets folded along a mesh line.
 
+use base::SplitMix;
 use nalgebra::Point3;
 use surface::VertexId;
 
@@ -40,11 +41,11 @@ pub fn sheared_grid(nx: usize, ny: usize, step: f64, shear: f64) -> TriMesh {
 #[must_use]
 pub fn jittered_grid(nx: usize, ny: usize, step: f64, jitter: f64, seed: u64) -> TriMesh {
     let mut mesh = grid(nx, ny, step);
-    let mut state = seed;
+    let mut random = SplitMix(seed);
     for (j, i) in (1..ny - 1).flat_map(|j| (1..nx - 1).map(move |i| (j, i))) {
         let p = &mut mesh.positions[j * nx + i];
-        p.x += step * jitter * uniform(&mut state);
-        p.y += step * jitter * uniform(&mut state);
+        p.x += step * jitter * random.uniform();
+        p.y += step * jitter * random.uniform();
     }
     mesh
 }
@@ -56,15 +57,6 @@ pub(super) fn triangles(nx: usize, ny: usize, vertex: impl Fn(usize, usize) -> u
         [vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)].map(VertexId::from)
     };
     (0..nx * ny).map(quad).flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect()
-}
-
-/// The next number in [-1, 1) of a splitmix64 stream.
-fn uniform(state: &mut u64) -> f64 {
-    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let mut z = *state;
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
 }
 
 /// Rotates everything beyond the line `x = crease, z = 0` around that line by `angle` radians.

@@ -16,14 +16,13 @@
 
 mod closed;
 mod flat;
-mod subdivision;
 
 pub use closed::{cube, cylinder, icosphere, lopsided_torus, tetrahedron, torus};
 pub use flat::{fold, folded_sheet, grid, jittered_grid, sheared_grid};
-pub use subdivision::subdivide;
 
 use surface::VertexId;
 
+use crate::refine::refine;
 use crate::tri_mesh::TriMesh;
 
 /// Joins copies of all meshes, in order, into one mesh of several components.
@@ -36,4 +35,37 @@ pub fn disjoint(parts: &[TriMesh]) -> TriMesh {
         whole.faces.extend(part.faces.iter().map(|f| f.map(|v| VertexId(v.0 + shift))));
     }
     whole
+}
+
+/// Splits every face into four at the midpoints of its edges, without changing the surface.
+///
+/// The old vertices come first, unchanged, then one per edge in the order of [`surface::Topology::edges`]. Face `f` becomes
+/// the faces `4 f .. 4 f + 4`, the one in the middle last.
+///
+/// # Panics
+/// If a face has a repeated vertex or one that does not exist, see [`surface::Topology::new`].
+#[must_use]
+pub fn subdivide(mesh: &TriMesh) -> TriMesh {
+    // There are at most three edges per face, and a second round would add more.
+    refine(mesh, -1.0, mesh.n_vertices() + 3 * mesh.n_faces()).mesh
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::validate;
+
+    #[test]
+    fn subdivision_keeps_area_orientation_and_vertices_and_halves_edges() {
+        let coarse = torus(7, 5, 2.0, 0.6);
+        let fine = subdivide(&coarse);
+        let (before, after) = (validate(&coarse), validate(&fine));
+        assert_eq!(fine.n_faces(), 4 * coarse.n_faces());
+        assert_eq!(fine.n_vertices(), coarse.n_vertices() + before.n_edges);
+        assert_eq!(fine.positions[..coarse.n_vertices()], coarse.positions);
+        assert!((after.area - before.area).abs() < 1e-12 * before.area);
+        assert_eq!((after.genus, after.inconsistent_edges), (Some(1), 0));
+        let longest = |m: &TriMesh| m.intrinsic().edge_lengths().iter().fold(0.0, |a, b| f64::max(a, *b));
+        assert!((longest(&fine) - 0.5 * longest(&coarse)).abs() < 1e-12);
+    }
 }

@@ -1,6 +1,6 @@
 //! Narrow handles.
 
-use std::collections::BTreeSet;
+use std::collections::HashSet;
 
 use base::{Budget, Exceeded};
 use surface::{CornerId, DisjointSets, SurfaceLoop, Topology, VertexId, short_loops};
@@ -59,23 +59,22 @@ fn cut_along(
     topology: &Topology,
     around: &[VertexId],
 ) -> Option<(Refined, [Vec<VertexId>; 2])> {
-    let sides: BTreeSet<[VertexId; 2]> = (0..around.len())
+    let sides: HashSet<[VertexId; 2]> = (0..around.len())
         .map(|i| {
             let (a, b) = (around[i], around[(i + 1) % around.len()]);
             [a.min(b), a.max(b)]
         })
         .collect();
     // Corners at the loop, numbered.
-    let corners: Vec<CornerId> = around.iter().flat_map(|v| topology.vertex_corners(*v)).copied().collect();
-    let mut sorted = corners.clone();
-    sorted.sort_unstable();
-    let number = |corner: CornerId| sorted.binary_search(&corner).ok().map(|i| i as u32);
-    let mut sets = DisjointSets::new(sorted.len());
-    for &corner in &sorted {
+    let mut corners: Vec<CornerId> =
+        around.iter().flat_map(|v| topology.vertex_corners(*v)).copied().collect();
+    corners.sort_unstable();
+    let number = |corner: CornerId| corners.binary_search(&corner).ok().map(|i| i as u32);
+    let mut sets = DisjointSets::new(corners.len());
+    for &corner in &corners {
         let v = topology.corner_vertex(corner);
-        for side in [corner.next(), corner.prev()] {
-            // The side opposite `side` runs from `corner` to the third corner.
-            let third = if side == corner.next() { corner.prev() } else { corner.next() };
+        // The side opposite one of the two others runs from `corner` to the third corner.
+        for (side, third) in [(corner.next(), corner.prev()), (corner.prev(), corner.next())] {
             let w = topology.corner_vertex(third);
             if sides.contains(&[v.min(w), v.max(w)]) {
                 // Both ends of an edge of the loop are on the same side within a face.
@@ -88,15 +87,14 @@ fn cut_along(
             }
         }
     }
-    let root = sets.find(0);
-    let is_other: Vec<bool> = (0..sorted.len() as u32).map(|i| sets.find(i) != root).collect();
-    let roots: BTreeSet<u32> = (0..sorted.len() as u32).map(|i| sets.find(i)).collect();
-    if roots.len() != 2 {
+    let roots: Vec<u32> = (0..corners.len() as u32).map(|i| sets.find(i)).collect();
+    let other = *roots.iter().find(|root| **root != roots[0])?;
+    if roots.iter().any(|root| *root != roots[0] && *root != other) {
         return None;
     }
     let n = mesh.n_vertices();
     let mut cut = mesh.clone();
-    for (&corner, _) in sorted.iter().zip(&is_other).filter(|(_, other)| **other) {
+    for (&corner, _) in corners.iter().zip(&roots).filter(|(_, root)| **root == other) {
         let v = topology.corner_vertex(corner);
         let place = around.iter().position(|x| *x == v)?;
         cut.faces[corner.face().index()][corner.slot()] = VertexId::from(n + place);

@@ -79,24 +79,14 @@ fn with_copies(mesh: &TriMesh, faces: &[[VertexId; 3]], origins: &[VertexId], ke
 
 /// The corners at a vertex, by the parts of the surface that have only this vertex, or welded edges, in common.
 fn sheets(topology: &Topology, ring: &mut OneRing, v: VertexId) -> Vec<Vec<CornerId>> {
-    ring.collect(topology, topology.vertex_corners(v));
-    let fans: Vec<_> = ring.fans().collect();
-    if fans.len() < 2 {
+    ring.collect(topology, v);
+    if ring.fans().nth(1).is_none() {
         return Vec::new();
     }
     // Fans with a common edge of three faces are one part. Two surfaces that were welded along an edge have four there.
-    let mut ends: Vec<(EdgeId, u32)> = Vec::new();
-    for (i, fan) in (0..).zip(&fans).filter(|(_, fan)| !fan.is_closed) {
-        let edges = fan.ends().map(|corner| topology.opposite_edge(corner));
-        ends.extend(edges.into_iter().filter(|edge| !is_weld(topology, *edge)).map(|edge| (edge, i)));
-    }
-    ends.sort_unstable();
-    let mut sets = DisjointSets::new(fans.len());
-    for pair in ends.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
-        sets.union(pair[0].1, pair[1].1);
-    }
+    let mut sets = ring.joined(topology, |edge| is_weld(topology, edge));
     let mut sheets: Vec<(u32, Vec<CornerId>)> = Vec::new();
-    for (i, fan) in (0..).zip(&fans) {
+    for (i, fan) in (0..).zip(ring.fans()) {
         let set = sets.find(i);
         let corners = fan.corners.iter().map(|corner| corner.corner);
         match sheets.iter_mut().find(|(known, _)| *known == set) {

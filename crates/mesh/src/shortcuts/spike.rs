@@ -10,9 +10,8 @@ use crate::tri_mesh::TriMesh;
 /// The mean of the neighbours of an inner vertex, if its median edge is more than `limit` times as long as the radius of a
 /// regular polygon with the median edge around it.
 pub(super) fn flattened(mesh: &TriMesh, topology: &Topology, v: VertexId, limit: f64) -> Option<Point3<f64>> {
-    let corners = topology.vertex_corners(v);
     let mut ring = OneRing::default();
-    ring.collect(topology, corners);
+    ring.collect(topology, v);
     let mut fans = ring.fans();
     let only = fans.next().filter(|fan| fan.is_closed)?;
     if fans.next().is_some() {
@@ -23,8 +22,8 @@ pub(super) fn flattened(mesh: &TriMesh, topology: &Topology, v: VertexId, limit:
         only.corners.iter().map(|c| at(topology.corner_vertex(c.opposite_last()))).collect();
     let median = |lengths: &mut dyn Iterator<Item = f64>| {
         let mut lengths: Vec<f64> = lengths.collect();
-        lengths.sort_by(f64::total_cmp);
-        lengths[lengths.len() / 2]
+        let middle = lengths.len() / 2;
+        *lengths.select_nth_unstable_by(middle, f64::total_cmp).1
     };
     let spoke = median(&mut around.iter().map(|p| (p - at(v)).norm()));
     let rim = median(&mut around.iter().zip(around.iter().cycle().skip(1)).map(|(p, q)| (p - q).norm()));

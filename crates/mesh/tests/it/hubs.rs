@@ -27,7 +27,7 @@ fn prepare(mesh: &TriMesh, options: &RepairOptions) -> MeshReport {
     let topology = intrinsic.topology();
     let mut ring = OneRing::default();
     for vertex in (0..topology.n_vertices()).map(VertexId::from) {
-        ring.collect(topology, topology.vertex_corners(vertex));
+        ring.collect(topology, vertex);
         let n_corners: usize = ring.fans().map(|fan| fan.corners.len()).sum();
         assert_eq!(n_corners, topology.vertex_corners(vertex).len());
     }

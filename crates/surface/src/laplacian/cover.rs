@@ -39,7 +39,6 @@ mod tests {
     use mesh::shapes;
 
     use super::*;
-    use crate::one_ring::CornerTable;
     use crate::testing::intrinsic;
     use crate::topology::Topology;
     use crate::triangulation::Loops;

@@ -1,12 +1,14 @@
 //! LAS, point clouds of laser scanners (ASPRS, LAS 1.0 to 1.4).
 
+#[cfg(test)]
 use nalgebra::Point3;
 
 use crate::error::{Fault, Located};
 use crate::io::binary::{ByteOrder, Scalar};
 use crate::io::facts::MeshFile;
 use crate::io::limits::ReadLimits;
-use crate::io::polygons::finish;
+use crate::io::polygons::{finish, finite};
+use crate::tri_mesh::TriMesh;
 
 /// Bytes of the header that all versions have.
 const HEADER: usize = 227;
@@ -19,8 +21,7 @@ pub(super) fn check_start(start: &[u8], size: Option<u64>) -> Result<(), Located
     match start.trim_ascii() {
         [] => Err(Fault::Empty.whole()),
         _ if !start.starts_with(b"LASF") => {
-            let found = "it does not begin with `LASF`".into();
-            Err(Fault::WrongFormat { expected: "a LAS file", found }.whole())
+            Err(Fault::wrong_format("a LAS file", "it does not begin with `LASF`").whole())
         }
         _ => Header::parse(start)?.check(size),
     }
@@ -40,14 +41,11 @@ impl Header {
     fn parse(bytes: &[u8]) -> Result<Self, Located> {
         if bytes.len() < HEADER {
             let expected = format!("the rest of a header of {HEADER} bytes");
-            return Err(Fault::CutShort { expected }.at_byte(bytes.len()));
+            return Err(Fault::cut_short(expected).at_byte(bytes.len()));
         }
         if bytes[104] & 0x80 != 0 {
-            return Err(Fault::Unsupported {
-                what: "compressed points (LAZ)".into(),
-                remedy: "decompress the file to LAS, for example with `pdal translate`",
-            }
-            .at_byte(104));
+            let remedy = "decompress the file to LAS, for example with `pdal translate`";
+            return Err(Fault::unsupported("compressed points (LAZ)", remedy).at_byte(104));
         }
         let integer = |at, scalar| number(bytes, at, scalar) as u64;
         let promised = match (bytes[25], integer(107, Scalar::U32)) {
@@ -68,12 +66,10 @@ impl Header {
         let &Self { start, length, promised, .. } = self;
         if length < COORDINATES as u64 {
             let found = format!("{length} bytes");
-            return Err(Fault::Syntax { expected: "records of at least 12 bytes", found }.at_byte(105));
+            return Err(Fault::syntax("records of at least 12 bytes", found).at_byte(105));
         }
         match size.map(|size| size.saturating_sub(start) / length) {
-            Some(found) if found < promised => {
-                Err(Fault::Truncated { items: "points".into(), promised, found }.whole())
-            }
+            Some(found) if found < promised => Err(Fault::truncated("points", promised, found).whole()),
             _ => Ok(()),
         }
     }
@@ -94,13 +90,10 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
     for point in 0..header.promised {
         let at = (header.start + point * header.length) as usize;
         let coordinate = |i| number(bytes, at + 4 * i, Scalar::I32) * header.scale[i] + header.offset[i];
-        let position = Point3::from([0, 1, 2].map(coordinate));
-        if let Some(&value) = position.iter().find(|x| !x.is_finite()) {
-            return Err(Fault::NonFinite { vertex: point, value }.at_byte(at));
-        }
-        positions.push(position);
+        let position = finite([0, 1, 2].map(coordinate), point as usize);
+        positions.push(position.map_err(|fault| fault.at_byte(at))?);
     }
-    finish(positions, Vec::new(), limits)
+    finish(TriMesh { positions, faces: Vec::new() }, limits)
 }
 
 /// A file of points at multiples of 1e-4, of version 1.2 or 1.4.
@@ -132,7 +125,7 @@ pub(super) fn sample(points: &[Point3<f64>], minor: u8) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{TriMesh, shapes};
+    use crate::shapes;
 
     fn parse(bytes: &[u8]) -> Result<TriMesh, Fault> {
         let file = super::parse(&[bytes], &ReadLimits::default());

@@ -20,7 +20,7 @@ use nalgebra::Point3;
 
 use crate::error::{Content, Located, MeshError};
 use crate::io::facts::MeshFile;
-use crate::io::field::VertexField;
+use crate::io::field::WrittenField;
 use crate::io::limits::ReadLimits;
 use crate::io::name::{extension, inflated, is_gzip, with_extension};
 use crate::io::source::{CheckStart, FileSource};
@@ -28,7 +28,7 @@ use crate::tri_mesh::TriMesh;
 
 type Parse = fn(&[&[u8]], &ReadLimits) -> Result<MeshFile, Located>;
 type Companions = fn(&[u8]) -> Result<Vec<String>, Located>;
-type WriteMesh = fn(&mut dyn Write, &TriMesh, Option<&VertexField<'_>>) -> io::Result<()>;
+type WriteMesh = fn(&mut dyn Write, &TriMesh, WrittenField<'_>) -> io::Result<()>;
 type WriteLines = fn(&mut dyn Write, &[Vec<Point3<f64>>]) -> io::Result<()>;
 
 /// A mesh file format; [`FORMATS`] lists them.
@@ -40,8 +40,8 @@ pub struct Format {
     /// two, the first one stands for the pair.
     pub extensions: &'static [&'static str],
     pub(super) precision: Precision,
-    /// Checks of the starts of the files, in the order of `extensions`.
-    pub(super) check_start: &'static [CheckStart],
+    /// Checks the start of each file.
+    pub(super) check_start: CheckStart,
     /// Names, relative to the file, of further files that its content refers to.
     pub(super) companions: Option<Companions>,
     /// Parses the contents of [`files`](Self::files), followed by those of its companions.
@@ -67,55 +67,52 @@ pub static FORMATS: [Format; 12] = [
     Format {
         write: &[off::write],
         has_fields: true,
-        ..read_only("OFF", &["off"], &[off::check_start], off::parse)
+        ..read_only("OFF", &["off"], off::check_start, off::parse)
     },
     Format {
         write: &[obj::write],
         has_fields: true,
         write_lines: Some(obj::write_lines),
-        ..read_only("OBJ", &["obj"], &[obj::check_start], obj::parse)
+        ..read_only("OBJ", &["obj"], obj::check_start, obj::parse)
     },
     Format {
         write: &[ply::write],
         has_fields: true,
         write_lines: Some(ply::write_lines),
-        ..read_only("PLY", &["ply"], &[ply::check_start], ply::parse)
+        ..read_only("PLY", &["ply"], ply::check_start, ply::parse)
     },
     Format {
         precision: Precision::Single,
         write: &[stl::write],
-        ..read_only("STL", &["stl"], &[stl::check_start], stl::parse)
+        ..read_only("STL", &["stl"], stl::check_start, stl::parse)
     },
-    read_only("MATLAB", &["mat"], &[mat::check_start], mat::parse),
+    read_only("MATLAB", &["mat"], mat::check_start, mat::parse),
     Format {
         write: &[tosca::write_positions, tosca::write_faces],
-        ..read_only("TOSCA", &["vert", "tri"], &[tosca::check_start, tosca::check_start], tosca::parse)
+        ..read_only("TOSCA", &["vert", "tri"], tosca::check_start, tosca::parse)
     },
     Format {
         precision: Precision::Single,
         companions: Some(gltf::companions_of_binary),
         write: &[gltf::write],
-        ..read_only("GLB", &["glb"], &[gltf::check_binary_start], gltf::parse_binary)
+        ..read_only("GLB", &["glb"], gltf::check_binary_start, gltf::parse_binary)
     },
     Format {
         precision: Precision::Single,
         companions: Some(gltf::companions),
-        ..read_only("glTF", &["gltf"], &[gltf::check_start], gltf::parse)
+        ..read_only("glTF", &["gltf"], gltf::check_start, gltf::parse)
     },
-    Format {
-        write: &[threemf::write],
-        ..read_only("3MF", &["3mf"], &[threemf::check_start], threemf::parse)
-    },
-    read_only("XYZ", &["xyz"], &[xyz::check_start], xyz::parse),
-    read_only("PTS", &["pts"], &[xyz::check_start], xyz::parse),
-    read_only("LAS", &["las"], &[las::check_start], las::parse),
+    Format { write: &[threemf::write], ..read_only("3MF", &["3mf"], threemf::check_start, threemf::parse) },
+    read_only("XYZ", &["xyz"], xyz::check_start, xyz::parse),
+    read_only("PTS", &["pts"], xyz::check_start, xyz::parse),
+    read_only("LAS", &["las"], las::check_start, las::parse),
 ];
 
 /// A format with 64-bit coordinates that cannot be written.
 const fn read_only(
     name: &'static str,
     extensions: &'static [&'static str],
-    check_start: &'static [CheckStart],
+    check_start: CheckStart,
     parse: Parse,
 ) -> Format {
     let precision = Precision::Double;
@@ -186,16 +183,16 @@ impl Format {
     pub(super) fn files(&self, path: &Path, source: &dyn FileSource) -> Vec<PathBuf> {
         let given = inflated(path).extension().unwrap_or_default().to_string_lossy().into_owned();
         let prefers_upper = given.chars().all(|c| c.is_ascii_uppercase());
-        let companion = |extension: &str| {
-            let cases = [extension.to_owned(), extension.to_ascii_uppercase()];
-            let cases = cases.map(|extension| with_extension(path, &extension));
-            let [preferred, other] = if prefers_upper { [1, 0] } else { [0, 1] };
-            let takes_other = source.holds(&cases[other]) && !source.holds(&cases[preferred]);
-            cases[if takes_other { other } else { preferred }].clone()
-        };
-        let file = |extension: &&str| match given.eq_ignore_ascii_case(extension) {
-            true => path.to_path_buf(),
-            false => companion(extension),
+        let file = |extension: &&str| {
+            if given.eq_ignore_ascii_case(extension) {
+                return path.to_owned();
+            }
+            let mut cases = [extension.to_string(), extension.to_ascii_uppercase()];
+            if prefers_upper {
+                cases.reverse();
+            }
+            let [preferred, other] = cases.map(|extension| with_extension(path, &extension));
+            if source.holds(&other) && !source.holds(&preferred) { other } else { preferred }
         };
         self.extensions.iter().map(file).collect()
     }
@@ -236,7 +233,6 @@ mod tests {
         all.sort_unstable();
         assert!(all.windows(2).all(|pair| pair[0] != pair[1]), "{all:?}");
         for format in &FORMATS {
-            assert_eq!(format.check_start.len(), format.extensions.len());
             assert!(format.write.is_empty() || format.write.len() == format.extensions.len());
             assert!(format.extensions.iter().all(|e| **e == e.to_ascii_lowercase()));
         }

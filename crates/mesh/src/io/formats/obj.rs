@@ -8,9 +8,9 @@ use tobj::{LoadError, LoadOptions, Model};
 
 use crate::error::{Fault, Located, Place};
 use crate::io::facts::MeshFile;
-use crate::io::field::VertexField;
+use crate::io::field::WrittenField;
 use crate::io::limits::ReadLimits;
-use crate::io::polygons::{finish, push_polygon};
+use crate::io::polygons::{finish, finite, push_polygon};
 use crate::io::text::{Line, Lines, check_is_text, excerpt, parse_number, write_position};
 use crate::tri_mesh::TriMesh;
 
@@ -46,11 +46,9 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
         let line = statements(bytes).filter(|(is_vertex, _)| *is_vertex == of_vertex).nth(number);
         fault.at(line.map_or(Place::File, |(_, line)| Place::Line(line.number)))
     };
-    let positions: Vec<Point3<f64>> = mesh.positions.as_chunks().0.iter().map(|p| Point3::from(*p)).collect();
-    for (vertex, p) in positions.iter().enumerate() {
-        if let Some(&value) = p.iter().find(|x| !x.is_finite()) {
-            return Err(in_statement(true, vertex, Fault::NonFinite { vertex: vertex as u64 + 1, value }));
-        }
+    let mut positions = Vec::with_capacity(n_vertices);
+    for (vertex, p) in mesh.positions.as_chunks::<3>().0.iter().enumerate() {
+        positions.push(finite(*p, vertex + 1).map_err(|fault| in_statement(true, vertex, fault))?);
     }
     let corners: Vec<VertexId> = mesh.indices.into_iter().map(VertexId).collect();
     let mut rest = corners.get(n_vertices..).unwrap_or_default();
@@ -66,7 +64,7 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
             .map_err(|fault| in_statement(false, number, fault))?;
         rest = others;
     }
-    finish(positions, faces, limits)
+    finish(TriMesh { positions, faces }, limits)
 }
 
 /// The `v` and `f` lines, and whether each is a `v` line.
@@ -112,15 +110,14 @@ fn locate(fault: LoadError, bytes: &[u8], read: &[u8], n_vertices: usize) -> Loc
                 let index = corner.split(|b| *b == b'/').next().and_then(parse_number::<i64>).unwrap_or(0);
                 let vertex = if index < 0 { n_before.saturating_add(index) } else { index - 1 };
                 if !(0..n_vertices as i64).contains(&vertex) {
-                    let (index, last) = (excerpt(corner), n_vertices as u64);
-                    return Fault::IndexOutOfRange { index, first: 1, last }.in_line(line.number);
+                    return Fault::no_vertex(excerpt(corner), 1, n_vertices as u64).in_line(line.number);
                 }
             }
         }
     }
     let number = read.iter().filter(|byte| **byte == b'\n').count();
     let Some((is_vertex, line)) = statements(bytes).nth(number.saturating_sub(1)) else {
-        return Fault::Syntax { expected: "an OBJ file", found: fault.to_string() }.whole();
+        return Fault::syntax("an OBJ file", fault.to_string()).whole();
     };
     line.expected(match fault {
         LoadError::ScalingByZeroError => "a weight other than zero",
@@ -131,7 +128,7 @@ fn locate(fault: LoadError, bytes: &[u8], read: &[u8], n_vertices: usize) -> Loc
 
 /// Writes OBJ; coordinates read back bit for bit. A colour follows the position of its vertex; the format has no place for
 /// values.
-pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh, field: Option<&VertexField<'_>>) -> io::Result<()> {
+pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh, field: WrittenField<'_>) -> io::Result<()> {
     for (v, p) in mesh.positions.iter().enumerate() {
         write!(out, "v {:?} {:?} {:?}", p.x, p.y, p.z)?;
         if let Some(field) = field {

@@ -6,10 +6,10 @@ use surface::VertexId;
 
 use crate::error::{Fault, Located};
 use crate::io::facts::MeshFile;
-use crate::io::field::VertexField;
+use crate::io::field::WrittenField;
 use crate::io::limits::ReadLimits;
 use crate::io::polygons::{finish, push_polygon};
-use crate::io::text::{Line, Lines, check_is_text, excerpt, parse_integer, parse_position};
+use crate::io::text::{Line, Lines, check_is_text, excerpt, parse_integer, parse_position, parse_vertex};
 use crate::tri_mesh::TriMesh;
 
 /// The fewest bytes of a vertex, `0 0 0` and a line end, and of a face, `3 0 1 2` and a line end.
@@ -31,9 +31,9 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
     let mut lines = Lines::new(bytes);
     let header = lines.next().ok_or_else(|| Fault::Empty.whole())?;
     let counts = match after_keyword(header)? {
-        [] => lines.next().ok_or_else(|| {
-            Fault::CutShort { expected: "the counts of vertices and faces".into() }.in_line(lines.number())
-        })?,
+        [] => lines
+            .next()
+            .ok_or_else(|| Fault::cut_short("the counts of vertices and faces").in_line(lines.number()))?,
         rest => Line { text: rest, ..header },
     };
     let (n_vertices, n_faces) = parse_counts(counts)?;
@@ -54,11 +54,11 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
     if let Some(line) = lines.next() {
         return Err(Fault::Leftover { items: "faces", promised: n_faces }.in_line(line.number));
     }
-    finish(positions, faces, limits)
+    finish(TriMesh { positions, faces }, limits)
 }
 
 fn truncated(lines: &Lines<'_>, items: &str, promised: u64, found: u64) -> Located {
-    Fault::Truncated { items: items.into(), promised, found }.in_line(lines.number())
+    Fault::truncated(items, promised, found).in_line(lines.number())
 }
 
 /// The rest of the header line after the keyword: nothing, or the counts, even without a space between.
@@ -66,7 +66,7 @@ fn after_keyword(header: Line<'_>) -> Result<&[u8], Located> {
     let text = header.text;
     let not_off = || {
         let found = format!("it begins with `{}`", excerpt(text));
-        Fault::WrongFormat { expected: "an OFF file", found }.in_line(header.number)
+        Fault::wrong_format("an OFF file", found).in_line(header.number)
     };
     let at = text.windows(3).take(6).position(|w| w.eq_ignore_ascii_case(b"OFF")).ok_or_else(not_off)?;
     let (mut prefix, rest) = (&text[..at], text[at + 3..].trim_ascii());
@@ -75,22 +75,16 @@ fn after_keyword(header: Line<'_>) -> Result<&[u8], Located> {
     while let Some(found) = parts.iter().position(|part| prefix.starts_with(part)) {
         prefix = &prefix[parts.remove(found).len()..];
     }
+    let unsupported = |what, remedy| Err(Fault::unsupported(what, remedy).in_line(header.number));
     if matches!(prefix, b"4" | b"n" | b"4n") {
-        return Err(Fault::Unsupported {
-            what: "vertices of four or more dimensions".into(),
-            remedy: "project them to three and save as OFF",
-        }
-        .in_line(header.number));
+        let remedy = "project them to three and save as OFF";
+        return unsupported("vertices of four or more dimensions", remedy);
     }
     if !prefix.is_empty() {
         return Err(not_off());
     }
     if rest.starts_with(b"BINARY") {
-        return Err(Fault::Unsupported {
-            what: "a binary OFF file".into(),
-            remedy: "save it as text OFF or as binary PLY",
-        }
-        .in_line(header.number));
+        return unsupported("a binary OFF file", "save it as text OFF or as binary PLY");
     }
     Ok(rest)
 }
@@ -108,24 +102,18 @@ fn parse_counts(line: Line<'_>) -> Result<(u64, u64), Located> {
 
 /// Reads the corners of one face into `corners`; colours may follow and are ignored.
 fn parse_corners(line: Line<'_>, n_vertices: u64, corners: &mut Vec<VertexId>) -> Result<(), Located> {
-    let expected = || line.expected("a number of corners and that many vertices");
+    let expected = "a number of corners and that many vertices";
     let mut tokens = line.tokens();
-    let n_corners = tokens.next().and_then(parse_integer).filter(|n| *n >= 0).ok_or_else(expected)?;
+    let n_corners = tokens.next().and_then(parse_integer).filter(|n| *n >= 0);
     corners.clear();
-    for _ in 0..n_corners {
-        let token = tokens.next().ok_or_else(expected)?;
-        let index = parse_integer(token).ok_or_else(expected)?;
-        if !(0..n_vertices as i64).contains(&index) {
-            let last = n_vertices.saturating_sub(1);
-            return Err(Fault::IndexOutOfRange { index: excerpt(token), first: 0, last }.in_line(line.number));
-        }
-        corners.push(VertexId(index as u32));
+    for _ in 0..n_corners.ok_or_else(|| line.expected(expected))? {
+        corners.push(parse_vertex(line, &mut tokens, [0, n_vertices], expected)?);
     }
     Ok(())
 }
 
 /// Writes OFF; coordinates read back bit for bit. With a colour per vertex it is COFF, which has no place for values.
-pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh, field: Option<&VertexField<'_>>) -> io::Result<()> {
+pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh, field: WrittenField<'_>) -> io::Result<()> {
     let keyword = if field.is_some() { "COFF" } else { "OFF" };
     writeln!(out, "{keyword}\n{} {} 0", mesh.n_vertices(), mesh.n_faces())?;
     for (v, p) in mesh.positions.iter().enumerate() {

@@ -9,9 +9,9 @@ use surface::VertexId;
 use crate::coincidence::position_key;
 use crate::error::{Fault, Located};
 use crate::io::facts::MeshFile;
-use crate::io::field::VertexField;
+use crate::io::field::WrittenField;
 use crate::io::limits::ReadLimits;
-use crate::io::polygons::finish;
+use crate::io::polygons::{finish, finite};
 use crate::io::text::{Line, Lines, check_is_text, excerpt, parse_number};
 use crate::tri_mesh::TriMesh;
 
@@ -49,7 +49,7 @@ fn size_of(n: u64) -> u64 {
 
 fn truncated(promised: u64, size: u64) -> Located {
     let found = size.saturating_sub(PREFIX as u64) / TRIANGLE as u64;
-    Fault::Truncated { items: "triangles".into(), promised, found }.whole()
+    Fault::truncated("triangles", promised, found).whole()
 }
 
 /// Reads STL. The format stores three corners per triangle; corners in the same position become one vertex,
@@ -68,7 +68,7 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
     }
     let Some(promised) = promised else {
         let found = format!("{} bytes beginning with `{}`", bytes.len(), excerpt(text));
-        return Err(Fault::WrongFormat { expected: "an STL file", found }.whole());
+        return Err(Fault::wrong_format("an STL file", found).whole());
     };
     if size > Some(bytes.len() as u64) {
         return Err(truncated(promised, bytes.len() as u64));
@@ -123,7 +123,7 @@ fn begins_with(text: &[u8], keyword: &str) -> bool {
 }
 
 fn cut_short(lines: &Lines<'_>) -> Located {
-    Fault::CutShort { expected: "`endsolid`".into() }.in_line(lines.number())
+    Fault::cut_short("`endsolid`").in_line(lines.number())
 }
 
 fn next_line<'a>(lines: &mut Lines<'a>) -> Result<Line<'a>, Located> {
@@ -167,10 +167,7 @@ impl Soup {
 
     /// Adds the next corner.
     fn push(&mut self, corner: [f32; 3], limits: &ReadLimits) -> Result<(), Fault> {
-        let p = Point3::from(corner.map(f64::from));
-        if let Some(&value) = p.iter().find(|x| !x.is_finite()) {
-            return Err(Fault::NonFinite { vertex: self.corners.len() as u64, value });
-        }
+        let p = finite(corner.map(f64::from), self.corners.len())?;
         self.corners.push(*self.numbers.entry(position_key(&p)).or_insert_with(|| {
             self.positions.push(p);
             VertexId::from(self.positions.len() - 1)
@@ -179,12 +176,12 @@ impl Soup {
     }
 
     fn into_mesh(self, limits: &ReadLimits) -> Result<MeshFile, Located> {
-        finish(self.positions, self.corners.as_chunks().0.to_vec(), limits)
+        finish(TriMesh { positions: self.positions, faces: self.corners.as_chunks().0.to_vec() }, limits)
     }
 }
 
 /// Writes binary STL. Rounds coordinates to 32 bits; vertex numbers and unused vertices are lost.
-pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh, _: Option<&VertexField<'_>>) -> io::Result<()> {
+pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh, _: WrittenField<'_>) -> io::Result<()> {
     out.write_all(&[0; HEADER])?;
     out.write_all(&(mesh.n_faces() as u32).to_le_bytes())?;
     for f in 0..mesh.n_faces() {

@@ -7,10 +7,10 @@ use surface::VertexId;
 
 use crate::error::{Fault, Located};
 use crate::io::facts::MeshFile;
-use crate::io::field::VertexField;
+use crate::io::field::WrittenField;
 use crate::io::limits::ReadLimits;
 use crate::io::polygons::finish;
-use crate::io::text::{Lines, check_is_text, excerpt, parse_integer, parse_position, write_position};
+use crate::io::text::{Lines, check_is_text, parse_position, parse_vertex, write_position};
 use crate::tri_mesh::TriMesh;
 
 /// The fewest bytes of a line: three digits, two separators, a line end.
@@ -25,7 +25,7 @@ pub(super) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
 pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
     let positions = parse_positions(files[0], limits)?;
     let faces = parse_faces(files[1], positions.len(), limits).map_err(|fault| fault.of_file(1))?;
-    finish(positions, faces, limits).map_err(|fault| fault.of_file(1))
+    finish(TriMesh { positions, faces }, limits).map_err(|fault| fault.of_file(1))
 }
 
 /// Reads three coordinates per line.
@@ -49,20 +49,14 @@ fn parse_positions(bytes: &[u8], limits: &ReadLimits) -> Result<Vec<Point3<f64>>
 fn parse_faces(bytes: &[u8], n_vertices: usize, limits: &ReadLimits) -> Result<Vec<[VertexId; 3]>, Located> {
     let mut faces = Vec::with_capacity(bytes.len() / (2 * SHORTEST_LINE));
     for line in Lines::new(bytes) {
-        let expected = || line.expected("three vertices, counted from one");
+        let expected = "three vertices, counted from one";
         let mut tokens = line.tokens();
         let mut face = [VertexId(0); 3];
         for corner in &mut face {
-            let token = tokens.next().ok_or_else(expected)?;
-            let index = parse_integer(token).ok_or_else(expected)?;
-            if !(1..=n_vertices as i64).contains(&index) {
-                let (index, last) = (excerpt(token), n_vertices as u64);
-                return Err(Fault::IndexOutOfRange { index, first: 1, last }.in_line(line.number));
-            }
-            *corner = VertexId((index - 1) as u32);
+            *corner = parse_vertex(line, &mut tokens, [1, n_vertices as u64], expected)?;
         }
         if tokens.next().is_some() {
-            return Err(expected());
+            return Err(line.expected(expected));
         }
         faces.push(face);
         limits.check(0, faces.len() as u64).map_err(|fault| fault.in_line(line.number))?;
@@ -74,20 +68,12 @@ fn parse_faces(bytes: &[u8], n_vertices: usize, limits: &ReadLimits) -> Result<V
 }
 
 /// Writes the `.vert` half; coordinates read back bit for bit.
-pub(super) fn write_positions(
-    out: &mut dyn Write,
-    mesh: &TriMesh,
-    _: Option<&VertexField<'_>>,
-) -> io::Result<()> {
+pub(super) fn write_positions(out: &mut dyn Write, mesh: &TriMesh, _: WrittenField<'_>) -> io::Result<()> {
     mesh.positions.iter().try_for_each(|p| write_position(out, "", p))
 }
 
 /// Writes the `.tri` half.
-pub(super) fn write_faces(
-    out: &mut dyn Write,
-    mesh: &TriMesh,
-    _: Option<&VertexField<'_>>,
-) -> io::Result<()> {
+pub(super) fn write_faces(out: &mut dyn Write, mesh: &TriMesh, _: WrittenField<'_>) -> io::Result<()> {
     mesh.faces.iter().try_for_each(|face| {
         let [a, b, c] = face.map(|v| u64::from(v.0) + 1);
         writeln!(out, "{a} {b} {c}")

@@ -5,6 +5,7 @@ use crate::io::facts::MeshFile;
 use crate::io::limits::ReadLimits;
 use crate::io::polygons::finish;
 use crate::io::text::{Line, Lines, check_is_text, parse_number, parse_position};
+use crate::tri_mesh::TriMesh;
 
 /// The fewest bytes of a line: three digits, two separators, a line end.
 const SHORTEST_LINE: usize = 6;
@@ -39,11 +40,9 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
     }
     let found = positions.len() as u64;
     match promised {
-        Some(promised) if promised > found => {
-            Err(Fault::Truncated { items: "points".into(), promised, found }.whole())
-        }
+        Some(promised) if promised > found => Err(Fault::truncated("points", promised, found).whole()),
         Some(promised) if promised < found => Err(Fault::Leftover { items: "points", promised }.whole()),
-        _ => finish(positions, Vec::new(), limits),
+        _ => finish(TriMesh { positions, faces: Vec::new() }, limits),
     }
 }
 

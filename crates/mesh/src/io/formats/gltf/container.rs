@@ -18,11 +18,10 @@ pub(in crate::io::formats) fn check_start(start: &[u8], _: Option<u64>) -> Resul
     let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start).trim_ascii_start();
     match text.first() {
         None | Some(b'{') => check_is_text(start, "a glTF file"),
-        Some(_) if start.starts_with(MAGIC) => Err(Fault::WrongFormat {
-            expected: "a glTF file as text",
-            found: "it begins like a binary one, whose extension is .glb".into(),
+        Some(_) if start.starts_with(MAGIC) => {
+            let found = "it begins like a binary one, whose extension is .glb";
+            Err(Fault::wrong_format("a glTF file as text", found).whole())
         }
-        .whole()),
         Some(_) => Err(wrong("a glTF file", text)),
     }
 }
@@ -38,35 +37,31 @@ pub(in crate::io::formats) fn check_binary_start(start: &[u8], size: Option<u64>
     let word =
         |at: usize| start.get(at..).and_then(<[u8]>::first_chunk).map(|word| u32::from_le_bytes(*word));
     let (Some(version), Some(length)) = (word(4), word(8)) else {
-        return Err(Fault::CutShort { expected: "the header".into() }.at_byte(start.len()));
+        return Err(Fault::cut_short("the header").at_byte(start.len()));
     };
     if version != 2 {
-        return Err(Fault::Unsupported {
-            what: format!("this is version {version} of GLB"),
-            remedy: "export it as glTF 2.0",
-        }
-        .at_byte(4));
+        let what = format!("this is version {version} of GLB");
+        return Err(Fault::unsupported(what, "export it as glTF 2.0").at_byte(4));
     }
     let least = (HEADER + CHUNK_HEADER) as u64;
     match size {
         _ if u64::from(length) < least => {
             let found = format!("{length} bytes in the header");
-            Err(Fault::Syntax { expected: "the length of a GLB file, which is not empty", found }.at_byte(8))
+            Err(Fault::syntax("the length of a GLB file, which is not empty", found).at_byte(8))
         }
         Some(size) if size < u64::from(length) => {
-            let promised = u64::from(length);
-            Err(Fault::Truncated { items: "bytes".into(), promised, found: size }.at_byte(8))
+            Err(Fault::truncated("bytes", u64::from(length), size).at_byte(8))
         }
         _ => Ok(()),
     }
 }
 
 fn wrong(expected: &'static str, start: &[u8]) -> Located {
-    Fault::WrongFormat { expected, found: format!("it begins with `{}`", excerpt(start)) }.whole()
+    Fault::wrong_format(expected, format!("it begins with `{}`", excerpt(start))).whole()
 }
 
-/// The JSON of a GLB file, the byte at which it begins, and the binary chunk if there is one.
-type Parts<'a> = (&'a [u8], usize, Option<&'a [u8]>);
+/// The JSON of a file, the byte at which it begins, and the binary chunk if there is one.
+pub(super) type Parts<'a> = (&'a [u8], usize, Option<&'a [u8]>);
 
 /// Splits a GLB file.
 pub(super) fn split_binary(bytes: &[u8]) -> Result<Parts<'_>, Located> {
@@ -75,7 +70,7 @@ pub(super) fn split_binary(bytes: &[u8]) -> Result<Parts<'_>, Located> {
     // Bytes after the stated length belong to nobody.
     let bytes = &bytes[..(length as usize).clamp(HEADER, bytes.len())];
     let Some((b"JSON", json, mut at)) = chunk(bytes, HEADER)? else {
-        return Err(Fault::CutShort { expected: "the JSON chunk".into() }.at_byte(HEADER));
+        return Err(Fault::cut_short("the JSON chunk").at_byte(HEADER));
     };
     while let Some((kind, data, next)) = chunk(bytes, at)? {
         if kind == b"BIN\0" {
@@ -97,10 +92,9 @@ fn chunk(bytes: &[u8], at: usize) -> Result<Chunk<'_>, Located> {
     };
     let (Some(length), Some(kind)) = (header.first_chunk(), header.last_chunk()) else { return Ok(None) };
     let length = u32::from_le_bytes(*length) as usize;
-    let data = rest.get(..length).ok_or_else(|| {
-        let (promised, found) = (length as u64, rest.len() as u64);
-        Fault::Truncated { items: "bytes of a chunk".into(), promised, found }.at_byte(at)
-    })?;
+    let data = rest
+        .get(..length)
+        .ok_or_else(|| Fault::truncated("bytes of a chunk", length as u64, rest.len() as u64).at_byte(at))?;
     Ok(Some((kind, data, at + CHUNK_HEADER + length)))
 }
 
@@ -109,8 +103,7 @@ pub(super) fn companions(root: &Root) -> Result<Vec<String>, Located> {
     let mut names = Vec::new();
     for (number, buffer) in root.buffers.iter().enumerate() {
         if let Some(uri) = buffer.uri.as_deref().filter(|uri| !is_data(uri)) {
-            let name =
-                local_name(uri).map_err(|fault| fault.at(crate::error::Place::Part("buffer", number)))?;
+            let name = local_name(uri).map_err(|fault| fault.in_part("buffer", number))?;
             if !names.contains(&name) {
                 names.push(name);
             }
@@ -125,9 +118,11 @@ fn is_data(uri: &str) -> bool {
 
 /// The name of a file below the folder of the glTF file.
 fn local_name(uri: &str) -> Result<String, Fault> {
-    let outside = || Fault::Unsupported {
-        what: format!("its data is in `{}`, which is not a file in its own folder", excerpt(uri.as_bytes())),
-        remedy: "put both files into one folder and name the data by its file name, or export a .glb file",
+    let outside = || {
+        Fault::unsupported(
+            format!("its data is in `{}`, which is not a file in its own folder", excerpt(uri.as_bytes())),
+            "put both files into one folder and name the data by its file name, or export a .glb file",
+        )
     };
     let name = percent_decoded(uri).ok_or_else(outside)?;
     let is_strange = |c: char| c.is_control() || matches!(c, '\\' | ':');
@@ -140,18 +135,13 @@ fn local_name(uri: &str) -> Result<String, Fault> {
 
 /// A text in which `%20` stands for a space.
 fn percent_decoded(text: &str) -> Option<String> {
-    let mut bytes = Vec::with_capacity(text.len());
-    let mut rest = text.as_bytes();
-    while let Some((first, tail)) = rest.split_first() {
-        rest = tail;
-        match first {
-            b'%' => {
-                let digits = tail.get(..2).filter(|digits| digits.iter().all(u8::is_ascii_hexdigit))?;
-                bytes.push(u8::from_str_radix(std::str::from_utf8(digits).ok()?, 16).ok()?);
-                rest = &tail[2..];
-            }
-            byte => bytes.push(*byte),
-        }
+    let mut parts = text.split('%');
+    let mut bytes = parts.next()?.as_bytes().to_vec();
+    for part in parts {
+        let (digits, rest) = part.split_at_checked(2)?;
+        let is_byte = digits.bytes().all(|digit| digit.is_ascii_hexdigit());
+        bytes.push(u8::from_str_radix(digits, 16).ok().filter(|_| is_byte)?);
+        bytes.extend(rest.bytes());
     }
     String::from_utf8(bytes).ok()
 }
@@ -165,7 +155,7 @@ impl<'a> Buffers<'a> {
         let names = companions(root)?;
         let mut buffers = Vec::with_capacity(root.buffers.len());
         for (number, buffer) in root.buffers.iter().enumerate() {
-            let at = |fault: Fault| fault.at(crate::error::Place::Part("buffer", number));
+            let at = |fault: Fault| fault.in_part("buffer", number);
             buffers.push(match buffer.uri.as_deref() {
                 None if number == 0 => chunk.map(Cow::from),
                 None => None,
@@ -182,27 +172,21 @@ impl<'a> Buffers<'a> {
 
     /// The bytes of a view and its stride.
     pub(super) fn view(&self, root: &Root, index: Index) -> Result<(&[u8], Option<usize>), Located> {
-        let at = |fault: Fault| fault.at(crate::error::Place::Part("buffer view", index));
-        let view = root
-            .buffer_views
-            .get(index)
-            .ok_or_else(|| missing("buffer view", index, root.buffer_views.len()))?;
+        let at = |fault: Fault| fault.in_part("buffer view", index);
+        let (views, buffers) = (&root.buffer_views, &self.0);
+        let view = views.get(index).ok_or_else(|| missing("buffer view", index, views.len()))?;
         let buffer = view.buffer;
-        let Some(slot) = self.0.get(buffer) else {
-            return Err(missing("buffer", buffer, self.0.len()));
-        };
+        let slot = buffers.get(buffer).ok_or_else(|| missing("buffer", buffer, buffers.len()))?;
         let bytes = slot.as_deref().ok_or_else(|| {
-            at(Fault::Unsupported {
-                what: format!("buffer {buffer} has no data, as in compressed files"),
-                remedy: "export it without compression",
-            })
+            let what = format!("buffer {buffer} has no data, as in compressed files");
+            at(Fault::unsupported(what, "export it without compression"))
         })?;
         let start = view.byte_offset.unwrap_or(0);
         let end = start.checked_add(view.byte_length);
         let range = end.and_then(|end| Some(usize::try_from(start).ok()?..usize::try_from(end).ok()?));
         let data = range.and_then(|range| bytes.get(range)).ok_or_else(|| {
-            let (promised, found) = (end.unwrap_or(u64::MAX), bytes.len() as u64);
-            at(Fault::Truncated { items: format!("bytes in buffer {buffer}"), promised, found })
+            let items = format!("bytes in buffer {buffer}");
+            at(Fault::truncated(items, end.unwrap_or(u64::MAX), bytes.len() as u64))
         })?;
         Ok((data, view.byte_stride.filter(|stride| *stride > 0)))
     }
@@ -210,13 +194,12 @@ impl<'a> Buffers<'a> {
 
 /// The fault that a part of the file refers to another that does not exist.
 pub(super) fn missing(kind: &'static str, number: usize, count: usize) -> Located {
-    let found = format!("{kind} {number} of {count}");
-    Fault::Syntax { expected: "the number of a part that exists", found }.whole()
+    Fault::syntax("the number of a part that exists", format!("{kind} {number} of {count}")).whole()
 }
 
 /// The data in a data URI.
 fn decoded(uri: &str) -> Result<Vec<u8>, Fault> {
-    let wrong = |found: String| Fault::Syntax { expected: "a data URI in base64", found };
+    let wrong = |found: String| Fault::syntax("a data URI in base64", found);
     let (head, data) = uri.split_once(',').ok_or_else(|| wrong(excerpt(uri.as_bytes())))?;
     if !head.to_ascii_lowercase().ends_with(";base64") {
         return Err(wrong(excerpt(head.as_bytes())));

@@ -19,8 +19,9 @@ use crate::error::{Fault, Located};
 use crate::io::facts::{FileFacts, LengthUnit, MeshFile};
 use crate::io::limits::ReadLimits;
 use crate::io::polygons::finish;
+use crate::io::text::excerpt;
 use accessors::Accessors;
-use container::{Buffers, split_binary};
+use container::{Buffers, Parts, split_binary};
 use schema::Root;
 
 pub(super) use container::{check_binary_start, check_start};
@@ -40,20 +41,15 @@ const HARMLESS: [&str; 10] = [
     "KHR_mesh_quantization",
 ];
 
-/// Extensions that hide or multiply geometry, and what to do about each.
-const REFUSED: [(&str, &str, &str); 4] = [
+/// Extensions that hide or multiply geometry, by the ends of their names, and what to do about each.
+const REFUSED: [(&str, &str, &str); 3] = [
     (
         "KHR_draco_mesh_compression",
         "its meshes are compressed by Draco",
         "decompress them, for example with `gltf-transform copy in.glb out.glb`, or export without compression",
     ),
     (
-        "EXT_meshopt_compression",
-        "its meshes are compressed by meshopt",
-        "decompress them, for example with `gltf-transform copy in.glb out.glb`, or run gltfpack without -c",
-    ),
-    (
-        "KHR_meshopt_compression",
+        "_meshopt_compression",
         "its meshes are compressed by meshopt",
         "decompress them, for example with `gltf-transform copy in.glb out.glb`, or run gltfpack without -c",
     ),
@@ -77,15 +73,12 @@ pub(super) fn companions_of_binary(bytes: &[u8]) -> Result<Vec<String>, Located>
 
 /// Reads a `.gltf` file, followed by its companions.
 pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
-    let root = parse_json(files[0], 0)?;
-    read(&root, None, files, limits)
+    read((files[0], 0, None), files, limits)
 }
 
 /// Reads a `.glb` file, followed by its companions.
 pub(super) fn parse_binary(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
-    let (json, start, chunk) = split_binary(files[0])?;
-    let root = parse_json(json, start)?;
-    read(&root, chunk, files, limits)
+    read(split_binary(files[0])?, files, limits)
 }
 
 /// Parses the description of the scene, which begins at byte `start` of the file.
@@ -94,43 +87,35 @@ fn parse_json(json: &[u8], start: usize) -> Result<Root, Located> {
     if json.trim_ascii().is_empty() {
         return Err(Fault::Empty.whole());
     }
-    serde_json::from_slice(json).map_err(|fault| {
-        let expected = "the JSON of glTF 2.0";
-        let found = Fault::Syntax { expected, found: fault.to_string() };
+    serde_json::from_slice(json).map_err(|error| {
+        let fault = Fault::syntax("the JSON of glTF 2.0", error.to_string());
         match start {
-            0 => found.in_line(fault.line()),
-            start => found.at_byte(start),
+            0 => fault.in_line(error.line()),
+            start => fault.at_byte(start),
         }
     })
 }
 
-fn read(
-    root: &Root,
-    chunk: Option<&[u8]>,
-    files: &[&[u8]],
-    limits: &ReadLimits,
-) -> Result<MeshFile, Located> {
+fn read((json, start, chunk): Parts<'_>, files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
+    let root = &parse_json(json, start)?;
     check_version(root)?;
     check_extensions(root)?;
     let buffers = Buffers::new(root, chunk, &files[1..])?;
     let n_bytes = files.iter().map(|file| file.len() as u64).sum();
-    let found = scene::read(root, &Accessors::new(root, &buffers, n_bytes), n_bytes, limits)?;
+    let (mesh, instances) = scene::read(&Accessors { root, buffers, n_bytes }, limits)?;
     let facts = FileFacts {
         unit: Some(LengthUnit::Meter),
-        instances: Some(found.instances),
+        instances: Some(instances),
         ignored: scene::ignored(root),
     };
-    Ok(MeshFile { facts, ..finish(found.positions, found.faces, limits)? })
+    Ok(MeshFile { facts, ..finish(mesh, limits)? })
 }
 
 fn check_version(root: &Root) -> Result<(), Located> {
     let version = root.asset.min_version.as_ref().unwrap_or(&root.asset.version);
     if version.split('.').next() != Some("2") {
-        return Err(Fault::Unsupported {
-            what: format!("this is glTF {}", super::super::text::excerpt(version.as_bytes())),
-            remedy: "export it as glTF 2.0",
-        }
-        .whole());
+        let what = format!("this is glTF {}", excerpt(version.as_bytes()));
+        return Err(Fault::unsupported(what, "export it as glTF 2.0").whole());
     }
     Ok(())
 }
@@ -139,22 +124,19 @@ fn check_extensions(root: &Root) -> Result<(), Located> {
     let used = root.extensions_required.iter().chain(&root.extensions_used);
     for (name, what, remedy) in REFUSED {
         // Compression that is not required has a fallback, which is read.
-        let is_fatal = root.extensions_required.iter().any(|used| used == name)
+        let is_fatal = root.extensions_required.iter().any(|used| used.ends_with(name))
             || name == "EXT_mesh_gpu_instancing" && used.clone().any(|used| used == name);
         if is_fatal {
-            return Err(Fault::Unsupported { what: what.into(), remedy }.whole());
+            return Err(Fault::unsupported(what, remedy).whole());
         }
     }
     let is_harmless = |name: &String| HARMLESS.iter().any(|prefix| name.starts_with(prefix));
     match root.extensions_required.iter().find(|name| !is_harmless(name)) {
-        Some(name) => Err(Fault::Unsupported {
-            what: format!(
-                "it requires the extension {}, which is not supported",
-                super::super::text::excerpt(name.as_bytes())
-            ),
-            remedy: "export it without this extension",
+        Some(name) => {
+            let what =
+                format!("it requires the extension {}, which is not supported", excerpt(name.as_bytes()));
+            Err(Fault::unsupported(what, "export it without this extension").whole())
         }
-        .whole()),
         None => Ok(()),
     }
 }

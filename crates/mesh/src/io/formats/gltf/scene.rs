@@ -1,61 +1,44 @@
 //! From the nodes of a scene to one mesh.
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
-use nalgebra::{Matrix4, Point3, Quaternion, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix4, Quaternion, Translation3, UnitQuaternion, Vector3};
 use surface::VertexId;
 
 use super::accessors::Accessors;
 use super::container::missing;
 use super::schema::{Index, Mesh, Mode, Node, Primitive, Root};
-use crate::error::{Fault, Located, Place};
+use crate::error::{Fault, Located};
 use crate::io::limits::ReadLimits;
-use crate::io::polygons::{append_placed, check_copies};
+use crate::io::polygons::{Placement, append_placed, check_copies, placed_by, placed_within};
+use crate::tri_mesh::TriMesh;
 
-/// What a scene consists of.
-#[derive(Default)]
-pub(super) struct Scene {
-    pub(super) positions: Vec<Point3<f64>>,
-    pub(super) faces: Vec<[VertexId; 3]>,
-    /// Nodes with a mesh.
-    pub(super) instances: usize,
-}
-
-/// Puts the instances of the default scene together.
-pub(super) fn read(
-    root: &Root,
-    accessors: &Accessors<'_>,
-    n_bytes: u64,
-    limits: &ReadLimits,
-) -> Result<Scene, Located> {
-    let mut scene = Scene::default();
-    let mut meshes = Meshes { root, accessors, known: HashMap::new(), n_bytes, limits };
+/// Puts the instances of the default scene together; also returns their number.
+pub(super) fn read(accessors: &Accessors<'_>, limits: &ReadLimits) -> Result<(TriMesh, usize), Located> {
+    let root = accessors.root;
+    let mut scene =
+        Scene { whole: TriMesh::default(), instances: 0, meshes: HashMap::new(), accessors, limits };
     if root.nodes.is_empty() {
-        for number in 0..root.meshes.len() {
-            meshes.append(number, None, &mut scene)?;
-        }
-        return Ok(scene);
+        (0..root.meshes.len()).try_for_each(|number| scene.append(number, None))?;
+        return Ok((scene.whole, scene.instances));
     }
     let mut visited = vec![false; root.nodes.len()];
-    let mut open: Vec<(Index, Option<Matrix4<f64>>)> = Vec::new();
+    let mut open: Vec<(Index, Placement)> = Vec::new();
     open.extend(roots(root)?.into_iter().rev().map(|node| (node, None)));
     while let Some((number, above)) = open.pop() {
         let node = root.nodes.get(number).ok_or_else(|| missing("node", number, root.nodes.len()))?;
         if std::mem::replace(&mut visited[number], true) {
-            let found = "a node with several parents, or among its own children".to_owned();
-            return Err(Fault::Syntax { expected: "a tree of nodes", found }.at(Place::Part("node", number)));
+            let found = "a node with several parents, or among its own children";
+            return Err(Fault::syntax("a tree of nodes", found).in_part("node", number));
         }
-        let here = match (above, transform(node)) {
-            (Some(above), Some(own)) => Some(above * own),
-            (above, own) => above.or(own),
-        };
+        let here = placed_within(above, transform(node));
         if let Some(mesh) = node.mesh {
-            let place = if node.skin.is_some() { None } else { here };
-            meshes.append(mesh, place, &mut scene)?;
+            scene.append(mesh, here.filter(|_| node.skin.is_none()))?;
         }
         open.extend(node.children.iter().rev().map(|child| (*child, here)));
     }
-    Ok(scene)
+    Ok((scene.whole, scene.instances))
 }
 
 /// The nodes at the top of the default scene, else of the first; of a file without scenes, all that are not children.
@@ -78,10 +61,9 @@ fn roots(root: &Root) -> Result<Vec<Index>, Located> {
 }
 
 /// The transform of a node; `None` if it changes nothing.
-fn transform(node: &Node) -> Option<Matrix4<f64>> {
+fn transform(node: &Node) -> Placement {
     if let Some(matrix) = node.matrix {
-        let matrix = Matrix4::from_column_slice(&matrix.map(f64::from));
-        return (matrix != Matrix4::identity()).then_some(matrix);
+        return placed_by(Matrix4::from_column_slice(&matrix.map(f64::from)));
     }
     if node.translation.is_none() && node.rotation.is_none() && node.scale.is_none() {
         return None;
@@ -94,8 +76,7 @@ fn transform(node: &Node) -> Option<Matrix4<f64>> {
         [0.0, 0.0, 0.0] => Matrix4::identity(),
         _ => UnitQuaternion::from_quaternion(Quaternion::new(w, i, j, k)).to_homogeneous(),
     };
-    let matrix = Translation3::new(x, y, z).to_homogeneous() * turn * Matrix4::new_nonuniform_scaling(&scale);
-    (matrix != Matrix4::identity()).then_some(matrix)
+    placed_by(Translation3::new(x, y, z).to_homogeneous() * turn * Matrix4::new_nonuniform_scaling(&scale))
 }
 
 /// What has to do with the shape and is ignored.
@@ -119,94 +100,78 @@ fn is_of_faces(mode: Mode) -> bool {
     matches!(mode, Mode::Triangles | Mode::Strip | Mode::Fan)
 }
 
-/// The vertices and faces of a mesh before it is placed.
-#[derive(Default)]
-struct Shape {
-    positions: Vec<Point3<f64>>,
-    faces: Vec<[u32; 3]>,
-}
-
-/// The meshes of the file, each decoded once.
-struct Meshes<'a> {
-    root: &'a Root,
+/// The scene so far.
+struct Scene<'a> {
+    whole: TriMesh,
+    /// Nodes with a mesh.
+    instances: usize,
+    /// The meshes of the file, each decoded once.
+    meshes: HashMap<Index, TriMesh>,
     accessors: &'a Accessors<'a>,
-    known: HashMap<usize, Shape>,
-    n_bytes: u64,
     limits: &'a ReadLimits,
 }
 
-impl Meshes<'_> {
+impl Scene<'_> {
     /// Appends an instance of a mesh.
-    fn append(
-        &mut self,
-        number: Index,
-        place: Option<Matrix4<f64>>,
-        scene: &mut Scene,
-    ) -> Result<(), Located> {
-        let at = |fault: Fault| fault.at(Place::Part("mesh", number));
-        if !self.known.contains_key(&number) {
-            let mesh = self
-                .root
-                .meshes
-                .get(number)
-                .ok_or_else(|| missing("mesh", number, self.root.meshes.len()))?;
-            let shape = self.decode(mesh)?;
-            self.known.insert(number, shape);
-        }
-        let Some(shape) = self.known.get(&number) else { return Ok(()) };
-        let vertices = (scene.positions.len() + shape.positions.len()) as u64;
-        let faces = (scene.faces.len() + shape.faces.len()) as u64;
-        self.limits.check(vertices, faces).map_err(at)?;
-        if scene.instances > 0 {
-            check_copies(vertices + faces, self.n_bytes).map_err(at)?;
-        }
-        append_placed(&shape.positions, &shape.faces, place.as_ref(), &mut scene.positions, &mut scene.faces)
-            .map_err(at)?;
-        scene.instances += 1;
-        Ok(())
-    }
-
-    fn decode(&self, mesh: &Mesh) -> Result<Shape, Located> {
-        let mut shape = Shape::default();
-        let mut starts: HashMap<usize, (usize, usize)> = HashMap::new();
-        for primitive in &mesh.primitives {
-            let mode = primitive.mode;
-            if let Mode::Unknown = mode {
-                let found = "another number".to_owned();
-                return Err(Fault::Syntax { expected: "the mode of a primitive, 0 to 6", found }.whole());
+    fn append(&mut self, number: Index, place: Placement) -> Result<(), Located> {
+        let at = |fault: Fault| fault.in_part("mesh", number);
+        let part = match self.meshes.entry(number) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(new) => {
+                let meshes = &self.accessors.root.meshes;
+                let mesh = meshes.get(number).ok_or_else(|| missing("mesh", number, meshes.len()))?;
+                new.insert(decode(mesh, self.accessors, self.limits)?)
             }
-            let position = primitive.attributes.get("POSITION").copied();
-            let Some(position) = position.filter(|_| is_of_faces(mode)) else { continue };
-            let (start, count) = match starts.get(&position) {
-                Some(known) => *known,
-                None => {
-                    let start = shape.positions.len();
-                    let count = self.accessors.len(position)?;
-                    let at = Place::Part("accessor", position);
-                    let whole = (start as u64).saturating_add(count);
-                    self.limits.check(whole, 0).map_err(|fault| fault.at(at))?;
-                    shape.positions.extend(self.accessors.positions(position)?.into_iter().map(Point3::from));
-                    let count = shape.positions.len() - start;
-                    starts.insert(position, (start, count));
-                    (start, count)
-                }
-            };
-            let (corners, at) = match primitive.indices {
-                Some(index) => (self.accessors.indices(index, count)?, Place::Part("accessor", index)),
-                None => ((0..count as u32).collect(), Place::Part("accessor", position)),
-            };
-            push_faces(mode, &corners, start as u32, &mut shape.faces).map_err(|fault| fault.at(at))?;
-            let (vertices, faces) = (shape.positions.len() as u64, shape.faces.len() as u64);
-            self.limits.check(vertices, faces).map_err(|fault| fault.at(at))?;
-            check_copies(faces, self.n_bytes).map_err(|fault| fault.at(at))?;
+        };
+        let n_vertices = (self.whole.n_vertices() + part.n_vertices()) as u64;
+        let n_faces = (self.whole.n_faces() + part.n_faces()) as u64;
+        self.limits.check(n_vertices, n_faces).map_err(at)?;
+        if self.instances > 0 {
+            check_copies(n_vertices + n_faces, self.accessors.n_bytes).map_err(at)?;
         }
-        Ok(shape)
+        self.instances += 1;
+        append_placed(&mut self.whole, part, place).map_err(at)
     }
 }
 
+/// The vertices and faces of a mesh before it is placed.
+fn decode(mesh: &Mesh, accessors: &Accessors<'_>, limits: &ReadLimits) -> Result<TriMesh, Located> {
+    let mut shape = TriMesh::default();
+    // Where the vertices of an accessor begin, and their number.
+    let mut known: HashMap<Index, (usize, usize)> = HashMap::new();
+    for primitive in &mesh.primitives {
+        let mode = primitive.mode;
+        if let Mode::Unknown = mode {
+            return Err(Fault::syntax("the mode of a primitive, 0 to 6", "another number").whole());
+        }
+        let position = primitive.attributes.get("POSITION").copied();
+        let Some(position) = position.filter(|_| is_of_faces(mode)) else { continue };
+        let (start, count) = match known.entry(position) {
+            Entry::Occupied(known) => *known.get(),
+            Entry::Vacant(new) => {
+                let start = shape.n_vertices();
+                let whole = (start as u64).saturating_add(accessors.len(position)?);
+                limits.check(whole, 0).map_err(|fault| fault.in_part("accessor", position))?;
+                shape.positions.extend(accessors.positions(position)?);
+                *new.insert((start, shape.n_vertices() - start))
+            }
+        };
+        let corners = match primitive.indices {
+            Some(index) => accessors.indices(index, count)?,
+            None => (0..count as u32).collect(),
+        };
+        let at = |fault: Fault| fault.in_part("accessor", primitive.indices.unwrap_or(position));
+        push_faces(mode, &corners, start as u32, &mut shape.faces).map_err(at)?;
+        let (n_vertices, n_faces) = (shape.n_vertices() as u64, shape.n_faces() as u64);
+        limits.check(n_vertices, n_faces).map_err(at)?;
+        check_copies(n_faces, accessors.n_bytes).map_err(at)?;
+    }
+    Ok(shape)
+}
+
 /// Appends the triangles of a list, a strip or a fan. Triangles that only join pieces of a strip are left out.
-fn push_faces(mode: Mode, corners: &[u32], start: u32, faces: &mut Vec<[u32; 3]>) -> Result<(), Fault> {
-    let mut push = |face: [u32; 3]| faces.push(face.map(|v| v + start));
+fn push_faces(mode: Mode, corners: &[u32], start: u32, faces: &mut Vec<[VertexId; 3]>) -> Result<(), Fault> {
+    let mut push = |face: [u32; 3]| faces.push(face.map(|v| VertexId(v + start)));
     match mode {
         Mode::Strip => {
             for (i, triple) in corners.windows(3).enumerate() {
@@ -225,7 +190,7 @@ fn push_faces(mode: Mode, corners: &[u32], start: u32, faces: &mut Vec<[u32; 3]>
             let (triples, rest) = corners.as_chunks();
             if !rest.is_empty() {
                 let found = format!("{} indices", corners.len());
-                return Err(Fault::Syntax { expected: "three indices for each triangle", found });
+                return Err(Fault::syntax("three indices for each triangle", found));
             }
             triples.iter().for_each(|triple| push(*triple));
         }

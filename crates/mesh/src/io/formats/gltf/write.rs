@@ -2,15 +2,11 @@
 
 use std::io::{self, Write};
 
-use crate::io::field::VertexField;
+use crate::io::field::WrittenField;
 use crate::tri_mesh::TriMesh;
 
 /// Writes a GLB file with one mesh. Rounds coordinates to 32 bits; every vertex keeps its number.
-pub(in crate::io::formats) fn write(
-    out: &mut dyn Write,
-    mesh: &TriMesh,
-    _: Option<&VertexField<'_>>,
-) -> io::Result<()> {
+pub(crate) fn write(out: &mut dyn Write, mesh: &TriMesh, _: WrittenField<'_>) -> io::Result<()> {
     let (n_vertices, n_corners) = (mesh.n_vertices() as u64, 3 * mesh.n_faces() as u64);
     let (position_bytes, index_bytes) = (12 * n_vertices, 4 * n_corners);
     let data = position_bytes + index_bytes;

@@ -34,13 +34,9 @@ pub(super) struct Elements<'a> {
 
 /// Reads the header of the file.
 pub(super) fn parse_header(bytes: &[u8]) -> Result<ByteOrder, Located> {
-    let wrong = |found: &str| Fault::WrongFormat { expected: "a MATLAB 5 file", found: found.into() }.whole();
+    let wrong = |found: &str| Fault::wrong_format("a MATLAB 5 file", found).whole();
     if bytes.starts_with(b"MATLAB 7.3") || bytes.starts_with(b"\x89HDF") {
-        return Err(Fault::Unsupported {
-            what: "this is a MATLAB 7.3 file".into(),
-            remedy: "save it with `save -v7`",
-        }
-        .whole());
+        return Err(Fault::unsupported("this is a MATLAB 7.3 file", "save it with `save -v7`").whole());
     }
     if bytes.trim_ascii().is_empty() {
         return Err(Fault::Empty.whole());
@@ -55,7 +51,7 @@ pub(super) fn parse_header(bytes: &[u8]) -> Result<ByteOrder, Located> {
 
 /// The fault of data that ends too early.
 pub(super) fn cut_short() -> Fault {
-    Fault::CutShort { expected: "the rest of an element".into() }
+    Fault::cut_short("the rest of an element")
 }
 
 /// Decompresses at most `limit` bytes; also returns why there are no more.
@@ -63,9 +59,7 @@ pub(super) fn inflated(data: &[u8], limit: u64) -> (Vec<u8>, Fault) {
     let mut bytes = Vec::new();
     let read = ZlibDecoder::new(data).take(limit).read_to_end(&mut bytes);
     let end = match read {
-        Err(e) if e.kind() != io::ErrorKind::UnexpectedEof => {
-            Fault::Syntax { expected: "compressed data", found: e.to_string() }
-        }
+        Err(e) if e.kind() != io::ErrorKind::UnexpectedEof => Fault::syntax("compressed data", e.to_string()),
         _ if bytes.len() as u64 == limit => Fault::Inflates { limit },
         _ => cut_short(),
     };
@@ -106,7 +100,7 @@ impl<'a> Elements<'a> {
 
     /// The fault that `expected` is missing here.
     pub(super) fn broken(&self, expected: &'static str) -> Located {
-        Fault::Syntax { expected, found: "other data".into() }.at_byte(self.start)
+        Fault::syntax(expected, "other data").at_byte(self.start)
     }
 
     fn take(&mut self, length: usize) -> Result<&'a [u8], Located> {

@@ -1,6 +1,5 @@
 //! The surface in a MATLAB file.
 
-use nalgebra::Point3;
 use surface::VertexId;
 
 use super::container::{
@@ -9,8 +8,9 @@ use super::container::{
 use crate::error::{Fault, Located};
 use crate::io::facts::MeshFile;
 use crate::io::limits::ReadLimits;
-use crate::io::polygons::finish;
+use crate::io::polygons::{finish, finite};
 use crate::io::text::excerpt;
+use crate::tri_mesh::TriMesh;
 
 /// The fields of the struct.
 const FIELDS: [&str; 4] = ["X", "Y", "Z", "TRIV"];
@@ -42,7 +42,7 @@ pub(in crate::io::formats) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Res
     let order = parse_header(bytes)?;
     let limit = SMALL_FILE + INFLATION * bytes.len() as u64;
     let mut at = HEADER;
-    let (mut seen, mut n_more) = (Vec::new(), 0);
+    let mut seen = Vec::new();
     while at < bytes.len() {
         let elements = |rest, start, end| Elements { rest, order, start, end };
         let Tag { kind, length, .. } = elements(&bytes[at..], at, cut_short()).tag()?;
@@ -50,8 +50,7 @@ pub(in crate::io::formats) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Res
         let end = begin + length as usize;
         let Some(data) = bytes.get(begin..end) else {
             let found = (bytes.len() - begin) as u64;
-            let items = "bytes of a variable".into();
-            return Err(Fault::Truncated { items, promised: u64::from(length), found }.at_byte(at));
+            return Err(Fault::truncated("bytes of a variable", u64::from(length), found).at_byte(at));
         };
         let (content, fault);
         let mut variable = elements(data, begin, cut_short());
@@ -63,28 +62,25 @@ pub(in crate::io::formats) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Res
         }
         if kind == MATRIX {
             match Variable::parse(variable, limits)? {
-                Variable::Surface(surface) => return surface.into_mesh(begin, limits),
-                Variable::Other(name) if seen.len() < NAMED => seen.push(name),
-                Variable::Other(_) => n_more += 1,
+                Variable::Surface(fields) => return mesh_of(fields, begin, limits),
+                Variable::Other(name) => seen.push(name),
             }
         }
         at = end;
     }
-    let seen = match (seen.is_empty(), n_more) {
-        (true, _) => "none".to_owned(),
-        (false, 0) => seen.join(", "),
-        (false, more) => format!("{} and {more} more", seen.join(", ")),
+    let seen = match seen.split_at_checked(NAMED) {
+        _ if seen.is_empty() => "none".to_owned(),
+        Some((named, more @ [_, ..])) => format!("{} and {} more", named.join(", "), more.len()),
+        _ => seen.join(", "),
     };
-    Err(Fault::Unsupported {
-        what: format!("the file has no struct with the fields X Y Z TRIV (its variables: {seen})"),
-        remedy: "save one, as `surface.X = ...; save(file, 'surface', '-v7')`",
-    }
-    .whole())
+    let what = format!("the file has no struct with the fields X Y Z TRIV (its variables: {seen})");
+    Err(Fault::unsupported(what, "save one, as `surface.X = ...; save(file, 'surface', '-v7')`").whole())
 }
 
 /// A variable of the file.
 enum Variable {
-    Surface(Surface),
+    /// The fields of a surface.
+    Surface(Fields),
     /// Anything else: its name.
     Other(String),
 }
@@ -96,10 +92,8 @@ struct Matrix {
     values: Vec<f64>,
 }
 
-#[derive(Default)]
-struct Surface {
-    fields: [Option<Matrix>; 4],
-}
+/// Those of the fields of a surface that are there.
+type Fields = [Option<Matrix>; 4];
 
 /// The beginning of every matrix.
 struct MatrixHead {
@@ -136,18 +130,16 @@ impl Variable {
         if !FIELDS.iter().all(|field| names.iter().any(|name| name == field.as_bytes())) {
             return Ok(Self::Other(head.name));
         }
-        let mut surface = Surface::default();
+        let mut fields = Fields::default();
         for name in names {
             let tag = elements.tag()?;
             match FIELDS.iter().position(|field| name == field.as_bytes()) {
-                Some(i) if tag.kind == MATRIX => {
-                    surface.fields[i] = Some(Matrix::parse(&mut elements, limits)?)
-                }
+                Some(i) if tag.kind == MATRIX => fields[i] = Some(Matrix::parse(&mut elements, limits)?),
                 Some(_) => return Err(elements.broken("a matrix in each field of the surface")),
                 None => drop(elements.data(tag)?),
             }
         }
-        Ok(Self::Surface(surface))
+        Ok(Self::Surface(fields))
     }
 }
 
@@ -167,8 +159,7 @@ impl Matrix {
         let promised = rows as u64 * columns as u64;
         let found = u64::from(tag.length) / scalar.size() as u64;
         if promised != found {
-            return Err(Fault::Truncated { items: "numbers of a matrix".into(), promised, found }
-                .at_byte(elements.start));
+            return Err(Fault::truncated("numbers of a matrix", promised, found).at_byte(elements.start));
         }
         // TRIV has one row per face; X, Y and Z have one row or one column.
         let fault = |fault: Fault| fault.at_byte(elements.start);
@@ -183,38 +174,31 @@ impl Matrix {
     }
 }
 
-impl Surface {
-    fn into_mesh(self, at: usize, limits: &ReadLimits) -> Result<MeshFile, Located> {
-        let syntax = |expected, found: String| Fault::Syntax { expected, found }.at_byte(at);
-        let [Some(x), Some(y), Some(z), Some(triv)] = self.fields else {
-            return Err(syntax("a matrix in each of the fields X Y Z TRIV", "an empty field".into()));
-        };
-        let n = x.values.len();
-        if [&x, &y, &z].iter().any(|m| m.values.len() != n || m.rows.min(m.columns) > 1) {
-            let found = [x, y, z].map(|m| format!("{} x {}", m.rows, m.columns)).join(", ");
-            return Err(syntax("columns X Y Z of equal length", found));
-        }
-        if triv.columns != 3 && !triv.values.is_empty() {
-            return Err(syntax("three columns in TRIV", format!("{} x {}", triv.rows, triv.columns)));
-        }
-        limits.check(n as u64, triv.rows as u64).map_err(|fault| fault.at_byte(at))?;
-        let mut positions = Vec::with_capacity(n);
-        for (i, ((&x, &y), &z)) in x.values.iter().zip(&y.values).zip(&z.values).enumerate() {
-            if let Some(value) = [x, y, z].into_iter().find(|x| !x.is_finite()) {
-                return Err(Fault::NonFinite { vertex: i as u64 + 1, value }.at_byte(at));
-            }
-            positions.push(Point3::new(x, y, z));
-        }
-        let vertex = |value: f64| {
-            if value.fract() == 0.0 && (1.0..=n as f64).contains(&value) {
-                return Ok(VertexId(value as u32 - 1));
-            }
-            Err(Fault::IndexOutOfRange { index: value.to_string(), first: 1, last: n as u64 }.at_byte(at))
-        };
-        let corner = |face: usize, slot: usize| vertex(triv.values[slot * triv.rows + face]);
-        let faces = (0..if triv.values.is_empty() { 0 } else { triv.rows })
-            .map(|face| Ok([corner(face, 0)?, corner(face, 1)?, corner(face, 2)?]))
-            .collect::<Result<_, Located>>()?;
-        finish(positions, faces, limits)
+fn mesh_of(fields: Fields, at: usize, limits: &ReadLimits) -> Result<MeshFile, Located> {
+    let syntax = |expected, found: String| Fault::syntax(expected, found).at_byte(at);
+    let [Some(x), Some(y), Some(z), Some(triv)] = fields else {
+        return Err(syntax("a matrix in each of the fields X Y Z TRIV", "an empty field".into()));
+    };
+    let n = x.values.len();
+    if [&x, &y, &z].iter().any(|m| m.values.len() != n || m.rows.min(m.columns) > 1) {
+        let found = [x, y, z].map(|m| format!("{} x {}", m.rows, m.columns)).join(", ");
+        return Err(syntax("columns X Y Z of equal length", found));
     }
+    if triv.columns != 3 && !triv.values.is_empty() {
+        return Err(syntax("three columns in TRIV", format!("{} x {}", triv.rows, triv.columns)));
+    }
+    limits.check(n as u64, triv.rows as u64).map_err(|fault| fault.at_byte(at))?;
+    let mut positions = Vec::with_capacity(n);
+    for (i, ((x, y), z)) in x.values.iter().zip(&y.values).zip(&z.values).enumerate() {
+        positions.push(finite([*x, *y, *z], i + 1).map_err(|fault| fault.at_byte(at))?);
+    }
+    let vertex = |value: f64| match value.fract() == 0.0 && (1.0..=n as f64).contains(&value) {
+        true => Ok(VertexId(value as u32 - 1)),
+        false => Err(Fault::no_vertex(value.to_string(), 1, n as u64).at_byte(at)),
+    };
+    let corner = |face: usize, slot: usize| vertex(triv.values[slot * triv.rows + face]);
+    let faces = (0..if triv.values.is_empty() { 0 } else { triv.rows })
+        .map(|face| Ok([corner(face, 0)?, corner(face, 1)?, corner(face, 2)?]))
+        .collect::<Result<_, Located>>()?;
+    finish(TriMesh { positions, faces }, limits)
 }

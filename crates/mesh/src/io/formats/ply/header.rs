@@ -72,15 +72,14 @@ impl Header {
                 _ => return Err(unexpected()),
             }
         }
-        let expected = "the rest of the header, to `end_header`".into();
-        Err(Fault::CutShort { expected }.in_line(lines.number()))
+        Err(Fault::cut_short("the rest of the header, to `end_header`").in_line(lines.number()))
     }
 
     /// Rejects a header that does not declare a mesh or that promises more than `payload` bytes can hold,
     /// before anything is read or reserved.
     pub(super) fn check(&self, payload: usize, limits: &ReadLimits) -> Result<(), Fault> {
         let remedy = "export the mesh with vertices `x y z`, then faces `vertex_indices`";
-        let unsupported = |what: &str| Err(Fault::Unsupported { what: what.into(), remedy });
+        let unsupported = |what: &str| Err(Fault::unsupported(what, remedy));
         let position_of = |name: &str| self.elements.iter().position(|element| element.name == name);
         let Some(vertex_at) = position_of("vertex") else {
             return unsupported("the header declares no element `vertex`");
@@ -114,8 +113,7 @@ impl Header {
             }
             let found = room / shortest;
             if element.count > found {
-                let items = format!("rows of `{}`", element.name);
-                return Err(Fault::Truncated { items, promised: element.count, found });
+                return Err(Fault::truncated(format!("rows of `{}`", element.name), element.count, found));
             }
             room -= element.count * shortest;
         }

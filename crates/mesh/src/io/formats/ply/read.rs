@@ -9,8 +9,9 @@ use crate::io::binary::{ByteOrder, Scalar};
 use crate::io::facts::MeshFile;
 use crate::io::field::ScalarField;
 use crate::io::limits::ReadLimits;
-use crate::io::polygons::{finish, push_polygon};
+use crate::io::polygons::{finish, finite, push_polygon};
 use crate::io::text::{Lines, check_is_text, excerpt, parse_integer, parse_number};
+use crate::tri_mesh::TriMesh;
 
 const FORMAT: &str = "a PLY file";
 /// The last line of the header.
@@ -29,8 +30,7 @@ fn check_first_line(lines: &mut Lines<'_>) -> Result<(), Located> {
         None => Err(Fault::Empty.whole()),
         Some(first) if first.text == b"ply" => Ok(()),
         Some(first) => {
-            let found = format!("it begins with `{}`", excerpt(first.text));
-            Err(Fault::WrongFormat { expected: FORMAT, found }.whole())
+            Err(Fault::wrong_format(FORMAT, format!("it begins with `{}`", excerpt(first.text))).whole())
         }
     }
 }
@@ -66,10 +66,7 @@ pub(crate) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
                             values.push(x);
                         }
                     })?;
-                    if let Some(&value) = p.iter().find(|x| !x.is_finite()) {
-                        return Err(Fault::NonFinite { vertex: row, value }.at(place));
-                    }
-                    positions.push(p);
+                    positions.push(finite(p, row as usize).map_err(|fault| fault.at(place))?);
                 }
                 field = carrier.map(|i| ScalarField { name: element.properties[i].name.clone(), values });
             }
@@ -88,10 +85,8 @@ pub(crate) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
                         }
                     })?;
                     if let Some(index) = outside {
-                        let last = positions.len().saturating_sub(1) as u64;
-                        return Err(
-                            Fault::IndexOutOfRange { index: index.to_string(), first: 0, last }.at(place)
-                        );
+                        let n = positions.len() as u64;
+                        return Err(Fault::no_vertex(index.to_string(), 0, n).at(place));
                     }
                     push_polygon(&positions, &corners, &mut faces, limits)
                         .map_err(|fault| fault.at(place))?;
@@ -108,7 +103,7 @@ pub(crate) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
         let promised = header.elements.iter().map(|element| element.count).sum();
         return Err(Fault::Leftover { items: "elements", promised }.at(place));
     }
-    Ok(MeshFile { field, ..finish(positions, faces, limits)? })
+    Ok(MeshFile { field, ..finish(TriMesh { positions, faces }, limits)? })
 }
 
 /// What follows the header.
@@ -121,11 +116,7 @@ impl Body<'_> {
     /// Reads the next row and gives each of its numbers to `take`, with the index of its property; returns
     /// the place of the row.
     fn row(&mut self, element: &Element, row: u64, take: impl FnMut(usize, f64)) -> Result<Place, Located> {
-        let truncated = || Fault::Truncated {
-            items: format!("rows of `{}`", element.name),
-            promised: element.count,
-            found: row,
-        };
+        let truncated = || Fault::truncated(format!("rows of `{}`", element.name), element.count, row);
         match self {
             Self::Ascii(lines) => {
                 let line = lines.next().ok_or_else(|| truncated().in_line(lines.number()))?;

@@ -4,14 +4,14 @@ use std::io::{self, Write};
 
 use nalgebra::Point3;
 
-use crate::io::field::VertexField;
+use crate::io::field::WrittenField;
 use crate::tri_mesh::TriMesh;
 
 const FACE_PROPERTIES: &str = "property list uchar uint vertex_indices\n";
 const FIELD_COLORS: &str = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
 
 /// Writes a mesh, perhaps with a value and a colour per vertex; coordinates read back bit for bit.
-pub(crate) fn write(out: &mut dyn Write, mesh: &TriMesh, field: Option<&VertexField<'_>>) -> io::Result<()> {
+pub(crate) fn write(out: &mut dyn Write, mesh: &TriMesh, field: WrittenField<'_>) -> io::Result<()> {
     let properties = field.map(|field| format!("property double {}\n{FIELD_COLORS}", field.name));
     let properties = properties.unwrap_or_default();
     write_header(out, mesh.n_vertices(), &properties, "face", mesh.n_faces(), FACE_PROPERTIES)?;

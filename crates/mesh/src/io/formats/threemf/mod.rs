@@ -12,13 +12,11 @@ mod write;
 
 use std::collections::HashMap;
 
-use nalgebra::{Matrix4, Point3};
-use surface::VertexId;
-
-use crate::error::{Fault, Located, Place};
+use crate::error::{Fault, Located};
 use crate::io::facts::{FileFacts, MeshFile};
 use crate::io::limits::ReadLimits;
-use crate::io::polygons::{append_placed, check_copies, finish};
+use crate::io::polygons::{Placement, append_placed, check_copies, finish, placed_within};
+use crate::tri_mesh::TriMesh;
 use model::{Model, Object, Reference};
 use package::Package;
 
@@ -68,10 +66,9 @@ impl Parts {
     }
 
     fn object(&self, (part, id): Key) -> Result<&Object, Located> {
-        self.models[part].objects.get(&id).ok_or_else(|| {
-            let found = format!("object {id}");
-            Fault::Syntax { expected: "the id of an object that exists", found }.whole()
-        })
+        self.models[part]
+            .object(id)
+            .ok_or_else(|| Fault::syntax("the id of an object that exists", format!("object {id}")).whole())
     }
 }
 
@@ -94,19 +91,13 @@ impl Size {
 fn assemble(file: &Parts, n_bytes: u64, limits: &ReadLimits) -> Result<MeshFile, Located> {
     let mut sizes = HashMap::new();
     let root = &file.models[0];
-    let mut items: Vec<(Key, Option<Matrix4<f64>>)> =
+    let mut items: Vec<(Key, Placement)> =
         root.items.iter().map(|item| (file.key(item, 0), item.place)).collect();
     if items.is_empty() {
-        let of_others: Vec<Key> = root
-            .objects
-            .values()
-            .flat_map(|o| &o.components)
-            .map(|component| file.key(component, 0))
-            .collect();
-        let mut tops: Vec<&Object> =
-            root.objects.values().filter(|object| !of_others.contains(&(0, object.id))).collect();
-        tops.sort_by_key(|object| object.order);
-        items = tops.into_iter().map(|object| ((0, object.id), None)).collect();
+        let components = root.objects.iter().flat_map(|object| &object.components);
+        let of_others: Vec<Key> = components.map(|component| file.key(component, 0)).collect();
+        let tops = root.objects.iter().map(|object| (0, object.id));
+        items = tops.filter(|key| !of_others.contains(key)).map(|key| (key, None)).collect();
     }
     let mut whole = Size::default();
     for (key, _) in &items {
@@ -116,17 +107,16 @@ fn assemble(file: &Parts, n_bytes: u64, limits: &ReadLimits) -> Result<MeshFile,
     if whole.meshes > 1 {
         check_copies(whole.vertices.saturating_add(whole.faces), n_bytes).map_err(Fault::whole)?;
     }
-    let mut built = Built {
+    let mut mesh = TriMesh {
         positions: Vec::with_capacity(whole.vertices as usize),
         faces: Vec::with_capacity(whole.faces as usize),
-        sizes,
     };
     for (key, place) in items {
-        built.append(file, key, place)?;
+        append(&mut mesh, file, key, place, &sizes)?;
     }
     let facts =
         FileFacts { unit: Some(root.unit), instances: Some(whole.meshes as usize), ignored: Vec::new() };
-    Ok(MeshFile { facts, ..finish(built.positions, built.faces, limits)? })
+    Ok(MeshFile { facts, ..finish(mesh, limits)? })
 }
 
 /// The size of an object with its components, which must be a tree.
@@ -137,12 +127,11 @@ fn measure(file: &Parts, key: Key, depth: usize, known: &mut HashMap<Key, Size>)
     if depth > DEEPEST {
         let what =
             format!("object {} has components more than {DEEPEST} deep, or is its own component", key.1);
-        return Err(Fault::Unsupported { what, remedy: "export it as a single mesh" }.whole());
+        return Err(Fault::unsupported(what, "export it as a single mesh").whole());
     }
     let object = file.object(key)?;
-    let n = |count: usize| count as u64;
-    let own = (n(object.positions.len()), n(object.faces.len()));
-    let mut size = Size { vertices: own.0, faces: own.1, meshes: u64::from(own.0 > 0) };
+    let (vertices, faces) = (object.mesh.n_vertices() as u64, object.mesh.n_faces() as u64);
+    let mut size = Size { vertices, faces, meshes: u64::from(vertices > 0) };
     for component in &object.components {
         size.add(measure(file, file.key(component, key.0), depth + 1, known)?);
     }
@@ -150,32 +139,23 @@ fn measure(file: &Parts, key: Key, depth: usize, known: &mut HashMap<Key, Size>)
     Ok(size)
 }
 
-/// The mesh so far.
-struct Built {
-    positions: Vec<Point3<f64>>,
-    faces: Vec<[VertexId; 3]>,
-    sizes: HashMap<Key, Size>,
-}
-
-impl Built {
-    /// Appends an object with its components.
-    fn append(&mut self, file: &Parts, key: Key, place: Option<Matrix4<f64>>) -> Result<(), Located> {
-        // Without meshes there is nothing to visit, however many components there are.
-        if self.sizes.get(&key).is_none_or(|size| size.meshes == 0) {
-            return Ok(());
-        }
-        let object = file.object(key)?;
-        append_placed(&object.positions, &object.faces, place.as_ref(), &mut self.positions, &mut self.faces)
-            .map_err(|fault| fault.at(Place::Part("object", key.1 as usize)))?;
-        for component in &object.components {
-            let here = match (place, component.place) {
-                (Some(above), Some(own)) => Some(above * own),
-                (above, own) => above.or(own),
-            };
-            self.append(file, file.key(component, key.0), here)?;
-        }
-        Ok(())
+/// Appends an object with its components.
+fn append(
+    mesh: &mut TriMesh,
+    file: &Parts,
+    key: Key,
+    place: Placement,
+    sizes: &HashMap<Key, Size>,
+) -> Result<(), Located> {
+    // Without meshes there is nothing to visit, however many components there are.
+    if sizes.get(&key).is_none_or(|size| size.meshes == 0) {
+        return Ok(());
     }
+    let object = file.object(key)?;
+    append_placed(mesh, &object.mesh, place).map_err(|fault| fault.in_part("object", key.1 as usize))?;
+    object.components.iter().try_for_each(|component| {
+        append(mesh, file, file.key(component, key.0), placed_within(place, component.place), sizes)
+    })
 }
 
 #[cfg(test)]

@@ -2,14 +2,17 @@
 
 use std::collections::HashMap;
 
-use nalgebra::{Matrix4, Point3};
+use nalgebra::Matrix4;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::reader::Reader;
+use surface::VertexId;
 
 use crate::error::{Fault, Located};
 use crate::io::facts::LengthUnit;
 use crate::io::limits::ReadLimits;
+use crate::io::polygons::{Placement, finite, placed_by};
 use crate::io::text::{excerpt, parse_integer, parse_number};
+use crate::tri_mesh::TriMesh;
 
 /// Required extensions that this reader knows or that change no positions, by the end of their namespaces.
 const KNOWN: [&str; 6] =
@@ -18,7 +21,9 @@ const KNOWN: [&str; 6] =
 /// One model part.
 pub(super) struct Model {
     pub(super) unit: LengthUnit,
-    pub(super) objects: HashMap<u64, Object>,
+    pub(super) objects: Vec<Object>,
+    /// Where the objects are in the list, by their ids.
+    numbers: HashMap<u64, usize>,
     pub(super) items: Vec<Reference>,
 }
 
@@ -26,10 +31,7 @@ pub(super) struct Model {
 #[derive(Default)]
 pub(super) struct Object {
     pub(super) id: u64,
-    /// Its place among the objects.
-    pub(super) order: usize,
-    pub(super) positions: Vec<Point3<f64>>,
-    pub(super) faces: Vec<[u32; 3]>,
+    pub(super) mesh: TriMesh,
     pub(super) components: Vec<Reference>,
 }
 
@@ -38,16 +40,17 @@ pub(super) struct Reference {
     /// The other part that has the object, if it is not the same.
     pub(super) part: Option<String>,
     pub(super) object: u64,
-    /// `None` if it stays where it is.
-    pub(super) place: Option<Matrix4<f64>>,
+    pub(super) place: Placement,
 }
 
 impl Model {
+    pub(super) fn object(&self, id: u64) -> Option<&Object> {
+        self.numbers.get(&id).map(|number| &self.objects[*number])
+    }
+
     /// Names of other parts, in order of appearance.
     pub(super) fn parts(&self) -> impl Iterator<Item = &str> {
-        let mut objects: Vec<&Object> = self.objects.values().collect();
-        objects.sort_by_key(|object| object.order);
-        let components = objects.into_iter().flat_map(|object| &object.components);
+        let components = self.objects.iter().flat_map(|object| &object.components);
         self.items.iter().chain(components).filter_map(|reference| reference.part.as_deref())
     }
 }
@@ -66,7 +69,7 @@ impl Cursor<'_> {
     }
 
     fn syntax(&self, expected: &'static str, found: &str) -> Located {
-        self.locate(Fault::Syntax { expected, found: excerpt(found.as_bytes()) })
+        self.locate(Fault::syntax(expected, excerpt(found.as_bytes())))
     }
 
     /// Three attributes of an element, if it has them all.
@@ -88,67 +91,47 @@ impl Cursor<'_> {
     }
 }
 
-/// What encloses an element. Elements of extensions may have the same names elsewhere.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Inside {
-    Nothing,
-    Model,
-    Resources,
-    Object,
-    Mesh,
-    Vertices,
-    Triangles,
-    Components,
-    Build,
-    Other,
-}
+/// The elements that lead to what is read. Elements of extensions may have the same names elsewhere.
+const ELEMENTS: &str =
+    "vertex triangle component item model resources object mesh vertices triangles components build";
 
 /// Parses a part.
 pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<Model, Located> {
     if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
-        let what = "the model is encoded as UTF-16".into();
-        return Err(Fault::Unsupported { what, remedy: "save it with another program, as UTF-8" }.whole());
+        let what = "the model is encoded as UTF-16";
+        return Err(Fault::unsupported(what, "save it with another program, as UTF-8").whole());
     }
-    let text =
-        std::str::from_utf8(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)).map_err(|fault| {
-            let found = "other bytes".to_owned();
-            Fault::Syntax { expected: "text in UTF-8", found }.at_byte(fault.valid_up_to())
-        })?;
+    let text = std::str::from_utf8(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes))
+        .map_err(|fault| Fault::syntax("text in UTF-8", "other bytes").at_byte(fault.valid_up_to()))?;
     let mut reader = Reader::from_str(text);
     reader.config_mut().expand_empty_elements = true;
-    let mut cursor = Cursor { bytes: text.as_bytes(), at: 0 };
     let mut parser = Parser {
-        model: Model { unit: LengthUnit::Millimeter, objects: HashMap::new(), items: Vec::new() },
-        object: None,
-        prefix: String::new(),
+        cursor: Cursor { bytes: text.as_bytes(), at: 0 },
         limits,
+        model: Model {
+            unit: LengthUnit::Millimeter,
+            objects: Vec::new(),
+            numbers: HashMap::new(),
+            items: Vec::new(),
+        },
+        object: Object::default(),
+        path: Vec::new(),
+        prefix: String::new(),
         n_vertices: 0,
         n_faces: 0,
     };
-    let mut path = vec![Inside::Nothing];
     loop {
-        cursor.at = reader.buffer_position() as usize;
+        parser.cursor.at = reader.buffer_position() as usize;
         let event = reader.read_event().map_err(|fault| {
-            cursor.at = reader.error_position() as usize;
-            cursor.syntax("XML", &fault.to_string())
+            parser.cursor.at = reader.error_position() as usize;
+            parser.cursor.syntax("XML", &fault.to_string())
         })?;
         match event {
-            Event::Start(element) => {
-                let outer = *path.last().unwrap_or(&Inside::Nothing);
-                path.push(parser.start(&element, outer, &cursor)?);
-                if path.len() > 1000 {
-                    return Err(cursor.syntax("a model", "elements nested more than 1000 deep"));
-                }
-            }
-            Event::End(_) => {
-                let inner = path.pop();
-                if inner == Some(Inside::Object) {
-                    parser.end_object(&cursor)?;
-                }
-            }
-            Event::DocType(_) => return Err(cursor.syntax("a model", "<!DOCTYPE")),
-            Event::Eof if path.len() > 1 => {
-                return Err(cursor.locate(Fault::CutShort { expected: "the end of the model".into() }));
+            Event::Start(element) => parser.start(&element)?,
+            Event::End(_) => parser.end()?,
+            Event::DocType(_) => return Err(parser.cursor.syntax("a model", "<!DOCTYPE")),
+            Event::Eof if !parser.path.is_empty() => {
+                return Err(parser.cursor.locate(Fault::cut_short("the end of the model")));
             }
             Event::Eof => return Ok(parser.model),
             _ => {}
@@ -157,132 +140,119 @@ pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<Model, Located>
 }
 
 struct Parser<'a> {
+    cursor: Cursor<'a>,
+    limits: &'a ReadLimits,
     model: Model,
-    object: Option<Object>,
+    /// The object whose content is read.
+    object: Object,
+    /// The names of the open elements; empty for those that are not read.
+    path: Vec<&'static str>,
     /// The prefix of the core elements, with its colon.
     prefix: String,
-    limits: &'a ReadLimits,
     n_vertices: u64,
     n_faces: u64,
 }
 
 impl Parser<'_> {
-    /// Handles the beginning of an element, and says where its content is.
-    fn start(
-        &mut self,
-        element: &BytesStart<'_>,
-        outer: Inside,
-        cursor: &Cursor<'_>,
-    ) -> Result<Inside, Located> {
+    /// Handles the beginning of an element.
+    fn start(&mut self, element: &BytesStart<'_>) -> Result<(), Located> {
         let name = element.name();
-        if outer == Inside::Nothing {
+        if self.path.is_empty() {
             if name.local_name().as_ref() != "model" {
-                return Err(cursor.syntax("the element `model`", name.as_ref()));
+                return Err(self.cursor.syntax("the element `model`", name.as_ref()));
             }
             self.prefix = name.prefix().map_or_else(String::new, |prefix| format!("{}:", prefix.as_ref()));
-            return self.model(element, cursor);
         }
-        let Some(local) = name.as_ref().strip_prefix(self.prefix.as_str()) else { return Ok(Inside::Other) };
-        Ok(match (outer, local) {
-            (Inside::Model, "resources") => Inside::Resources,
-            (Inside::Model, "build") => Inside::Build,
-            (Inside::Resources, "object") => {
-                let attributes = Attributes::of(element, cursor)?;
-                let order = self.model.objects.len();
-                let id = attributes.id("id")?;
-                self.object = Some(Object { id, order, ..Object::default() });
-                Inside::Object
+        let local = name.as_ref().strip_prefix(self.prefix.as_str());
+        self.path.push(ELEMENTS.split(' ').find(|known| Some(*known) == local).unwrap_or_default());
+        match self.path[..] {
+            ["model"] => self.model(element),
+            ["model", "resources", "object"] => {
+                let id = Attributes::of(element, &self.cursor)?.id("id")?;
+                self.object = Object { id, ..Object::default() };
+                Ok(())
             }
-            (Inside::Object, "mesh") => Inside::Mesh,
-            (Inside::Object, "components") => Inside::Components,
-            (Inside::Mesh, "vertices") => Inside::Vertices,
-            (Inside::Mesh, "triangles") => Inside::Triangles,
-            (Inside::Vertices, "vertex") => {
-                self.vertex(element, cursor)?;
-                Inside::Other
+            ["model", "resources", "object", "mesh", "vertices", "vertex"] => self.vertex(element),
+            ["model", "resources", "object", "mesh", "triangles", "triangle"] => self.triangle(element),
+            ["model", "resources", "object", "components", "component"] => {
+                self.object.components.push(Attributes::of(element, &self.cursor)?.reference()?);
+                Ok(())
             }
-            (Inside::Triangles, "triangle") => {
-                self.triangle(element, cursor)?;
-                Inside::Other
+            ["model", "build", "item"] => {
+                self.model.items.push(Attributes::of(element, &self.cursor)?.reference()?);
+                Ok(())
             }
-            (Inside::Components, "component") => {
-                let reference = Attributes::of(element, cursor)?.reference()?;
-                if let Some(object) = &mut self.object {
-                    object.components.push(reference);
-                }
-                Inside::Other
-            }
-            (Inside::Build, "item") => {
-                let reference = Attributes::of(element, cursor)?.reference()?;
-                self.model.items.push(reference);
-                Inside::Other
-            }
-            _ => Inside::Other,
-        })
+            _ if self.path.len() < 1000 => Ok(()),
+            _ => Err(self.cursor.syntax("a model", "elements nested more than 1000 deep")),
+        }
     }
 
-    fn model(&mut self, element: &BytesStart<'_>, cursor: &Cursor<'_>) -> Result<Inside, Located> {
-        let attributes = Attributes::of(element, cursor)?;
+    fn model(&mut self, element: &BytesStart<'_>) -> Result<(), Located> {
+        let attributes = Attributes::of(element, &self.cursor)?;
         if let Some(unit) = attributes.find("unit") {
             let named = LengthUnit::ALL.into_iter().find(|known| known.name() == unit.trim());
             self.model.unit = named.ok_or_else(|| {
-                cursor.syntax("a unit: micron, millimeter, centimeter, inch, foot or meter", unit)
+                self.cursor.syntax("a unit: micron, millimeter, centimeter, inch, foot or meter", unit)
             })?;
         }
-        for prefix in attributes.find("requiredextensions").unwrap_or_default().split_ascii_whitespace() {
-            let namespace = attributes.find(&format!("xmlns:{prefix}")).unwrap_or(prefix);
-            if !KNOWN.iter().any(|known| namespace.contains(known)) {
-                let what = match namespace.contains("/securecontent/") {
-                    true => "its content is encrypted".to_owned(),
-                    false => format!(
-                        "it requires the extension {}, which is not supported",
-                        excerpt(namespace.rsplit("/3dmanufacturing/").next().unwrap_or(namespace).as_bytes())
-                    ),
-                };
-                return Err(
-                    cursor.locate(Fault::Unsupported { what, remedy: "export it without this extension" })
-                );
+        let required = attributes.find("requiredextensions").unwrap_or_default().split_ascii_whitespace();
+        let mut namespaces =
+            required.map(|prefix| attributes.find(&format!("xmlns:{prefix}")).unwrap_or(prefix));
+        let is_unknown = |namespace: &&str| !KNOWN.iter().any(|known| namespace.contains(known));
+        let Some(namespace) = namespaces.find(is_unknown) else { return Ok(()) };
+        let name = namespace.rsplit("/3dmanufacturing/").next().unwrap_or(namespace);
+        let what = match namespace.contains("/securecontent/") {
+            true => "its content is encrypted".to_owned(),
+            false => {
+                format!("it requires the extension {}, which is not supported", excerpt(name.as_bytes()))
             }
-        }
-        Ok(Inside::Model)
+        };
+        Err(self.cursor.locate(Fault::unsupported(what, "export it without this extension")))
     }
 
-    fn vertex(&mut self, element: &BytesStart<'_>, cursor: &Cursor<'_>) -> Result<(), Located> {
-        let Some(object) = &mut self.object else { return Ok(()) };
-        let position: [f64; 3] = cursor
+    fn vertex(&mut self, element: &BytesStart<'_>) -> Result<(), Located> {
+        let at = |fault| self.cursor.locate(fault);
+        let position: [f64; 3] = self
+            .cursor
             .numbers(element, ["x", "y", "z"], parse_number)?
-            .ok_or_else(|| cursor.syntax("the coordinates x, y and z as numbers", element.as_ref()))?;
-        if let Some(&value) = position.iter().find(|x| !x.is_finite()) {
-            return Err(cursor.locate(Fault::NonFinite { vertex: object.positions.len() as u64, value }));
-        }
-        object.positions.push(position.into());
+            .ok_or_else(|| self.cursor.syntax("the coordinates x, y and z as numbers", element.as_ref()))?;
+        let positions = &mut self.object.mesh.positions;
+        positions.push(finite(position, positions.len()).map_err(at)?);
         self.n_vertices += 1;
-        self.limits.check(self.n_vertices, 0).map_err(|fault| cursor.locate(fault))
+        self.limits.check(self.n_vertices, 0).map_err(at)
     }
 
-    fn triangle(&mut self, element: &BytesStart<'_>, cursor: &Cursor<'_>) -> Result<(), Located> {
-        let Some(object) = &mut self.object else { return Ok(()) };
-        let face = cursor
+    fn triangle(&mut self, element: &BytesStart<'_>) -> Result<(), Located> {
+        let at = |fault| self.cursor.locate(fault);
+        let face = self
+            .cursor
             .numbers(element, ["v1", "v2", "v3"], parse_integer)?
-            .ok_or_else(|| cursor.syntax("the vertices v1, v2 and v3 as numbers", element.as_ref()))?;
+            .ok_or_else(|| self.cursor.syntax("the vertices v1, v2 and v3 as numbers", element.as_ref()))?;
         // Triangles come after all vertices of their object.
-        let n = object.positions.len() as i64;
-        if let Some(index) = face.into_iter().find(|v| !(0..n).contains(v)) {
-            let (index, last) = (index.to_string(), (n as u64).saturating_sub(1));
-            return Err(cursor.locate(Fault::IndexOutOfRange { index, first: 0, last }));
+        let mesh = &mut self.object.mesh;
+        let n = mesh.n_vertices() as u64;
+        if let Some(index) = face.into_iter().find(|v| !(0..n as i64).contains(v)) {
+            return Err(at(Fault::no_vertex(index.to_string(), 0, n)));
         }
-        object.faces.push(face.map(|v| v as u32));
+        mesh.faces.push(face.map(|v| VertexId(v as u32)));
         self.n_faces += 1;
-        self.limits.check(0, self.n_faces).map_err(|fault| cursor.locate(fault))
+        self.limits.check(0, self.n_faces).map_err(at)
     }
 
-    fn end_object(&mut self, cursor: &Cursor<'_>) -> Result<(), Located> {
-        let Some(object) = self.object.take() else { return Ok(()) };
-        let id = object.id;
-        match self.model.objects.insert(id, object) {
-            None => Ok(()),
-            Some(_) => Err(cursor.syntax("objects with different ids", &format!("id {id} twice"))),
+    /// Handles the end of an element.
+    fn end(&mut self) -> Result<(), Located> {
+        let is_object = self.path == ["model", "resources", "object"];
+        self.path.pop();
+        if !is_object {
+            return Ok(());
         }
+        let object = std::mem::take(&mut self.object);
+        let id = object.id;
+        if self.model.numbers.insert(id, self.model.objects.len()).is_some() {
+            return Err(self.cursor.syntax("objects with different ids", &format!("id {id} twice")));
+        }
+        self.model.objects.push(object);
+        Ok(())
     }
 }
 
@@ -334,6 +304,6 @@ impl<'a> Attributes<'a> {
             m[2], m[5], m[8], m[11],
             0.0, 0.0, 0.0, 1.0,
         );
-        Ok(Reference { part, object, place: (place != Matrix4::identity()).then_some(place) })
+        Ok(Reference { part, object, place: placed_by(place) })
     }
 }

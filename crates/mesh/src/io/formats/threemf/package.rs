@@ -23,14 +23,13 @@ pub(in crate::io::formats) fn check_start(start: &[u8], _: Option<u64>) -> Resul
     match start {
         [b'P', b'K', 3 | 5, ..] => Ok(()),
         _ if start.trim_ascii().is_empty() => Err(Fault::Empty.whole()),
-        [0xd0, 0xcf, 0x11, 0xe0, ..] => Err(Fault::Unsupported {
-            what: "this file is protected by a password".into(),
-            remedy: "save it without protection",
+        [0xd0, 0xcf, 0x11, 0xe0, ..] => {
+            let what = "this file is protected by a password";
+            Err(Fault::unsupported(what, "save it without protection").whole())
         }
-        .whole()),
         _ => {
             let found = format!("it begins with `{}`", excerpt(start));
-            Err(Fault::WrongFormat { expected: "a 3MF file, which is a zip archive", found }.whole())
+            Err(Fault::wrong_format("a 3MF file, which is a zip archive", found).whole())
         }
     }
 }
@@ -60,10 +59,7 @@ impl<'a> Package<'a> {
         let name = stated.unwrap_or_else(|| USUAL.to_owned());
         match self.find(&name) {
             Some(_) => Ok(name),
-            None => {
-                let found = format!("a zip archive without {name}");
-                Err(Fault::WrongFormat { expected: "a 3MF file", found }.whole())
-            }
+            None => Err(Fault::wrong_format("a 3MF file", format!("a zip archive without {name}")).whole()),
         }
     }
 
@@ -79,16 +75,16 @@ impl<'a> Package<'a> {
     pub(super) fn read(&mut self, name: &str) -> Result<Vec<u8>, Located> {
         let Some(number) = self.find(name) else {
             let found = format!("no part {name}");
-            return Err(Fault::Syntax { expected: "all parts that the file refers to", found }.whole());
+            return Err(Fault::syntax("all parts that the file refers to", found).whole());
         };
-        let of_member = |fault: Located| fault.of_member(name);
-        let part = self.archive.by_index(number).map_err(damaged).map_err(of_member)?;
+        let in_part = |fault: Located| fault.of_member(name);
+        let part = self.archive.by_index(number).map_err(damaged).map_err(in_part)?;
         let mut content = Vec::new();
-        part.take(self.budget.saturating_add(1)).read_to_end(&mut content).map_err(|fault| {
-            of_member(Fault::Syntax { expected: "compressed data", found: fault.to_string() }.whole())
-        })?;
+        part.take(self.budget.saturating_add(1))
+            .read_to_end(&mut content)
+            .map_err(|fault| in_part(Fault::syntax("compressed data", fault.to_string()).whole()))?;
         let left = self.budget.checked_sub(content.len() as u64);
-        self.budget = left.ok_or_else(|| of_member(Fault::Inflates { limit: self.limit }.whole()))?;
+        self.budget = left.ok_or_else(|| in_part(Fault::Inflates { limit: self.limit }.whole()))?;
         Ok(content)
     }
 }
@@ -97,12 +93,10 @@ impl<'a> Package<'a> {
 fn target(relationships: &[u8]) -> Option<String> {
     let mut reader = Reader::from_reader(relationships);
     loop {
-        let (Event::Start(element) | Event::Empty(element)) = (match reader.read_event().ok()? {
+        let element = match reader.read_event().ok()? {
             Event::Eof => return None,
-            event @ (Event::Start(_) | Event::Empty(_)) => event,
+            Event::Start(element) | Event::Empty(element) => element,
             _ => continue,
-        }) else {
-            continue;
         };
         let (mut kind, mut target) = (None, None);
         for attribute in element.attributes().with_checks(false).flatten() {
@@ -121,12 +115,12 @@ fn target(relationships: &[u8]) -> Option<String> {
 }
 
 fn damaged(fault: ZipError) -> Located {
-    match fault {
-        ZipError::UnsupportedArchive(_) | ZipError::CompressionMethodNotSupported(_) => Fault::Unsupported {
-            what: fault.to_string(),
-            remedy: "save it again with Deflate compression and without a password",
-        }
-        .whole(),
-        other => Fault::Syntax { expected: "an intact zip archive", found: other.to_string() }.whole(),
-    }
+    let fault = match fault {
+        ZipError::UnsupportedArchive(_) | ZipError::CompressionMethodNotSupported(_) => Fault::unsupported(
+            fault.to_string(),
+            "save it again with Deflate compression and without a password",
+        ),
+        other => Fault::syntax("an intact zip archive", other.to_string()),
+    };
+    fault.whole()
 }

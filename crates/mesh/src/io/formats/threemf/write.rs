@@ -5,7 +5,7 @@ use std::io::{self, Cursor, Write};
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
-use crate::io::field::VertexField;
+use crate::io::field::WrittenField;
 use crate::tri_mesh::TriMesh;
 
 const TYPES: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
@@ -17,11 +17,7 @@ const RELATIONSHIPS: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 "#;
 
 /// Writes a 3MF file with one object in millimetres, the default unit; coordinates read back bit for bit.
-pub(in crate::io::formats) fn write(
-    out: &mut dyn Write,
-    mesh: &TriMesh,
-    _: Option<&VertexField<'_>>,
-) -> io::Result<()> {
+pub(crate) fn write(out: &mut dyn Write, mesh: &TriMesh, _: WrittenField<'_>) -> io::Result<()> {
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
     let options = SimpleFileOptions::default().large_file(mesh.n_vertices() + mesh.n_faces() > 1 << 24);
     for (name, content) in [("[Content_Types].xml", TYPES), ("_rels/.rels", RELATIONSHIPS)] {
