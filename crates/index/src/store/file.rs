@@ -325,23 +325,22 @@ pub(crate) fn write_forged(path: &Path, records: Vec<Record>) {
     write_into(&mut File::create(path).unwrap(), records.into_iter().map(Ok)).unwrap();
 }
 
-/// The records of a segment.
+/// The records of a segment, from a key on.
 struct Cursor<'a> {
     stored: &'a StoredFile,
     segment: &'a Segment,
+    from: Vec<u8>,
     /// The block that comes next.
     next: usize,
     block: Vec<u8>,
     at: usize,
-    /// The first key, then the last one.
-    last: Vec<u8>,
-    is_first: bool,
+    last: Option<Vec<u8>>,
 }
 
 impl<'a> Cursor<'a> {
     fn new(stored: &'a StoredFile, segment: &'a Segment, from: &[u8]) -> Self {
         let next = segment.block_of(from).unwrap_or(0);
-        Self { stored, segment, next, block: Vec::new(), at: 0, last: from.to_vec(), is_first: true }
+        Self { stored, segment, from: from.to_vec(), next, block: Vec::new(), at: 0, last: None }
     }
 
     fn advance(&mut self) -> Result<Option<Record>, IndexError> {
@@ -352,19 +351,16 @@ impl<'a> Cursor<'a> {
                 }
                 (self.block, self.at) = (self.stored.block(self.segment, self.next)?, 0);
                 self.next += 1;
-                continue;
             }
             let StoredRecord { key, value, end } = self.stored.record(&self.block, self.at)?;
             self.at = end;
-            if key < self.last.as_slice() || !self.is_first && key == self.last.as_slice() {
-                match self.is_first {
-                    true => continue,
-                    false => return Err(IndexError::damaged(&self.stored.path, "its keys are out of order")),
-                }
+            if self.last.as_deref().is_some_and(|last| key <= last) {
+                return Err(IndexError::damaged(&self.stored.path, "its keys are out of order"));
             }
-            self.is_first = false;
-            self.last = key.to_vec();
-            return Ok(Some((key.to_vec(), value.map(<[u8]>::to_vec))));
+            if key >= self.from.as_slice() {
+                self.last = Some(key.to_vec());
+                return Ok(Some((key.to_vec(), value.map(<[u8]>::to_vec))));
+            }
         }
     }
 }
