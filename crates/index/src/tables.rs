@@ -2,8 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::shape::ShapeKey;
 use crate::store::{Changes, Floats, Table, View};
-use crate::vectors::{CellsHeader, Links, NodeKey, Trial, TrialKey};
+use crate::vectors::{CellsHeader, Links, Trial};
 use crate::{IndexError, Shape, ShapeEntry, ShapeVectors};
 
 use crate::derived::Part;
@@ -17,9 +18,9 @@ pub(crate) static CENTROIDS: Table<[u32; 2], Floats> = Table::new(2, "centres of
 /// Cell and number of a part -> shapes of the cell.
 pub(crate) static CELLS: Table<[u32; 2], Part> = Table::new(3, "a part of a cell");
 /// Shapes that calibrate searches.
-pub(crate) static TRIALS: Table<TrialKey, Trial> = Table::new(4, "a trial");
+pub(crate) static TRIALS: Table<ShapeKey, Trial> = Table::new(4, "a trial");
 /// The graph of nearest neighbours.
-pub(crate) static GRAPH: Table<NodeKey, Node> = Table::new(5, "a list of neighbours");
+pub(crate) static GRAPH: Table<ShapeKey, Node> = Table::new(5, "a list of neighbours");
 /// Shape -> its entry.
 pub(crate) static ENTRIES: Table<str, ShapeEntry> = Table::new(6, "an entry");
 /// Shape -> its fused vector.
@@ -95,19 +96,19 @@ pub(crate) fn entries(view: View<'_>) -> Result<Vec<(String, ShapeEntry)>, Index
 }
 
 /// The list of a shape; `None` if it is not in the graph.
-pub(crate) fn node(view: View<'_>, key: NodeKey) -> Result<Option<Node>, IndexError> {
+pub(crate) fn node(view: View<'_>, key: ShapeKey) -> Result<Option<Node>, IndexError> {
     view.get(&GRAPH, &key)?.map(|node| sound(view, key, node)).transpose()
 }
 
 /// The lists of all shapes.
-pub(crate) fn nodes(view: View<'_>) -> impl Iterator<Item = Result<(NodeKey, Node), IndexError>> + '_ {
+pub(crate) fn nodes(view: View<'_>) -> impl Iterator<Item = Result<(ShapeKey, Node), IndexError>> + '_ {
     view.rows(&GRAPH, &[]).map(move |row| {
         let (key, node) = row?;
         Ok((key, sound(view, key, node)?))
     })
 }
 
-fn sound(view: View<'_>, key: NodeKey, node: Node) -> Result<Node, IndexError> {
+fn sound(view: View<'_>, key: ShapeKey, node: Node) -> Result<Node, IndexError> {
     match node.links.are_sound(key) {
         true => Ok(node),
         false => Err(view.damaged(format!("the neighbours of `{}` contradict each other", node.id))),

@@ -10,9 +10,7 @@ use crate::tables::{CELLS, ENTRIES, FUSED};
 use crate::vectors::{Rows, padded};
 
 /// A shape as cells hold it: its padded vector and its class.
-pub(super) type Held = (Vec<f32>, String);
-
-pub(super) fn held(view: View<'_>, id: &str, dim: usize) -> Result<Option<Held>, IndexError> {
+pub(super) fn held(view: View<'_>, id: &str, dim: usize) -> Result<Option<(Vec<f32>, String)>, IndexError> {
     let (Some(Floats(mut fused)), Some(entry)) = (view.get(&FUSED, id)?, view.get(&ENTRIES, id)?) else {
         return Ok(None);
     };
@@ -52,16 +50,15 @@ impl<'a> Cells<'a> {
 
     /// Removes the shapes of these names, and the names of those that were there.
     pub(super) fn remove(&mut self, cell: u32, names: &mut HashSet<&str>) -> Result<(), IndexError> {
-        let n = padded(self.heads.header.dim);
         let Loaded { parts, changed } = self.load(cell)?;
         for (i, part) in parts {
             if !part.ids.iter().any(|id| names.contains(id)) {
                 continue;
             }
             let mut rest = Part::default();
-            for (row, (id, class)) in part.ids.iter().zip(part.classes.iter()).enumerate() {
+            for (id, class, row) in part.shapes() {
                 if !names.remove(id) {
-                    rest.push(id, class, &part.rows()[row * n..][..n]);
+                    rest.push(id, class, row);
                 }
             }
             *part = rest;

@@ -20,6 +20,13 @@ impl Part {
         &self.rows.0
     }
 
+    /// Names, classes and padded vectors.
+    pub(crate) fn shapes(&self) -> impl Iterator<Item = (&str, &str, &[f32])> {
+        let n = self.rows.0.len() / self.ids.len().max(1);
+        let rows = self.rows.0.chunks(n.max(1));
+        self.ids.iter().zip(self.classes.iter()).zip(rows).map(|((id, class), row)| (id, class, row))
+    }
+
     pub(crate) fn in_cell<'a>(&'a self, cell: &'a u32) -> Rows<'a> {
         let cells = std::slice::from_ref(cell);
         Rows { rows: self.rows(), ids: &self.ids, classes: &self.classes, cells }

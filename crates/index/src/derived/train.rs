@@ -6,11 +6,10 @@ use base::Observer;
 
 use super::cells::{all_shapes, rows_in_part};
 use crate::IndexError;
+use crate::shape::{ShapeKey, shape_key};
 use crate::store::{Changes, Floats, Record, View};
 use crate::tables::{ABOUT, About, CELLS, CENTROIDS, CLASSES, GRAPH, Node, TRIALS};
-use crate::vectors::{
-    CellsHeader, Centroids, Divided, Links, NodeKey, Rows, Trials, divided, n_cells, node_key, padded,
-};
+use crate::vectors::{CellsHeader, Centroids, Divided, Links, Rows, Trials, divided, n_cells, padded};
 
 use super::Part;
 
@@ -24,7 +23,7 @@ pub(crate) struct Trained {
     trials: Trials,
     links: Vec<Links>,
     /// The keys of shapes in ascending order, and their places.
-    keys: Vec<(NodeKey, usize)>,
+    keys: Vec<(ShapeKey, usize)>,
     about: About,
 }
 
@@ -40,14 +39,13 @@ pub(crate) fn trained(view: View<'_>, options: &str, observer: &dyn Observer) ->
     cells.sort_unstable();
     let trials = Trials::of(Rows { cells: &cells, ..shapes.in_cell(&0) }, n_cells);
     let header = header(dim, n_rows, n_rows, &centroids, &trials);
-    let keys: Vec<NodeKey> = shapes.ids.iter().map(node_key).collect();
+    let keys: Vec<ShapeKey> = shapes.ids.iter().map(shape_key).collect();
     let starts: Vec<usize> =
         (0..=n_cells as u32).map(|cell| cells.partition_point(|other| *other < cell)).collect();
-    let reach = header.reach;
-    let all = Divided { rows: shapes.rows(), n, keys: &keys, starts: &starts, centroids: &centroids, reach };
+    let all = Divided { rows: shapes.rows(), starts: &starts, centroids: &centroids, reach: header.reach };
     observer.begin("linking neighbours", n_rows);
-    let links = all.links(observer);
-    let mut keys: Vec<(NodeKey, usize)> = keys.into_iter().zip(0..).collect();
+    let links = all.links(&keys, observer);
+    let mut keys: Vec<(ShapeKey, usize)> = keys.into_iter().zip(0..).collect();
     keys.sort_unstable();
     let about = About { options: options.to_owned(), cells: header };
     Ok(Trained { shapes, n, starts, centroids, trials, links, keys, about })

@@ -5,9 +5,9 @@ use std::collections::HashMap;
 use retrieval::{GraphNeighbor, LINKS, Neighbor, graph_rank};
 
 use super::{Found, SearchMode, distance};
+use crate::shape::{ShapeKey, shape_key};
 use crate::store::View;
 use crate::tables::{FUSED, node};
-use crate::vectors::{NodeKey, node_key};
 use crate::{Index, IndexError};
 
 /// A shape found on the graph.
@@ -52,7 +52,7 @@ impl Index {
             .shapes
             .drain(..)
             .map(|near| {
-                let index = walk.known.number(node_key(&near.id));
+                let index = walk.known.number(shape_key(&near.id));
                 walk.known.ids[index] = Some(near.id);
                 Neighbor { index, distance: near.distance }
             })
@@ -80,13 +80,13 @@ impl Index {
 /// Shapes by the order in which a walk meets them.
 #[derive(Default)]
 struct Names {
-    numbers: HashMap<NodeKey, usize>,
-    keys: Vec<NodeKey>,
+    numbers: HashMap<ShapeKey, usize>,
+    keys: Vec<ShapeKey>,
     ids: Vec<Option<String>>,
 }
 
 impl Names {
-    fn number(&mut self, key: NodeKey) -> usize {
+    fn number(&mut self, key: ShapeKey) -> usize {
         *self.numbers.entry(key).or_insert_with(|| {
             self.keys.push(key);
             self.ids.push(None);

@@ -6,7 +6,7 @@ mod threshold;
 
 use crate::tables::FUSED;
 use crate::texts::Texts;
-use crate::vectors::{CellsHeader, NEIGHBORS, Nearest, Reach, nearest_cells, padded, scan};
+use crate::vectors::{CellsHeader, NEIGHBORS, Reach, padded, scan, search_cells};
 use crate::{Index, IndexError};
 use retrieval::UnknownThreshold;
 
@@ -91,18 +91,15 @@ impl Index {
     pub fn nearest(&self, query: &[f32], k: usize, mode: SearchMode) -> Result<Found, IndexError> {
         let (heads, view) = (self.heads()?, self.view());
         let row = padded_query(query, &heads.header)?;
-        let (mut nearest, mut ids) = (Nearest::new(k.max(NEIGHBORS)), Texts::default());
-        let reach = mode.reach(&heads.header);
-        for cell in nearest_cells(&row, &heads.centroids, reach.probes) {
-            if !reach.includes(&cell, nearest.bound()) {
-                continue;
-            }
-            for part in heads.parts(view, cell.cell) {
+        let (mut ids, reach) = (Texts::default(), mode.reach(&heads.header));
+        let nearest = search_cells(&row, &heads.centroids, reach, k.max(NEIGHBORS), |cell, nearest| {
+            for part in heads.parts(view, cell) {
                 let (_, part) = part?;
-                scan(&row, ids.len() as u32, part.rows(), &mut nearest);
+                scan(&row, ids.len() as u32, part.rows(), nearest);
                 ids.extend(&part.ids);
             }
-        }
+            Ok::<_, IndexError>(())
+        })?;
         let mut shapes = Vec::with_capacity(k.min(self.len()));
         for hit in nearest.into_hits() {
             let id = ids.get(hit.slot as usize);

@@ -83,11 +83,6 @@ pub(crate) struct Reach {
 impl Reach {
     /// Everything.
     pub(crate) const ALL: Self = Self { probes: u32::MAX as usize, margin: f32::INFINITY };
-
-    /// Whether to scan a cell, where the neighbour that decides has this squared distance.
-    pub(crate) fn includes(&self, cell: &NearCell, sq: f32) -> bool {
-        cell.border <= 0.0 || cell.border <= self.margin * sq.sqrt()
-    }
 }
 
 /// A cell near a query.
@@ -115,6 +110,23 @@ pub(crate) fn nearest_cells(query: &[f32], centroids: &Centroids, most: usize) -
         if apart[0] > 0.0 { 0.5 * (hit.sq - first.sq) / apart[0].sqrt() } else { 0.0 }
     };
     order.iter().map(|hit| NearCell { cell: hit.slot, border: border(hit) }).collect()
+}
+
+/// The `k` nearest in the cells within `reach`, each of which `scan` offers to what was found so far.
+pub(crate) fn search_cells<E>(
+    query: &[f32],
+    centroids: &Centroids,
+    reach: Reach,
+    k: usize,
+    mut scan: impl FnMut(u32, &mut Nearest) -> Result<(), E>,
+) -> Result<Nearest, E> {
+    let mut nearest = Nearest::new(k);
+    for near in nearest_cells(query, centroids, reach.probes) {
+        if near.border <= 0.0 || near.border <= reach.margin * nearest.bound().sqrt() {
+            scan(near.cell, &mut nearest)?;
+        }
+    }
+    Ok(nearest)
 }
 
 /// Offers `rows`, numbered from `first`, to `nearest`.
@@ -176,15 +188,13 @@ mod tests {
         for query in queries.chunks(16) {
             let mut truth = Nearest::new(10);
             scan(query, 0, rows, &mut truth);
-            let mut nearest = Nearest::new(10);
-            for cell in nearest_cells(query, &centroids, reach.probes) {
-                if reach.includes(&cell, nearest.bound()) {
-                    scanned += 1;
-                    for i in (0..6000).filter(|i| of_row[*i] == cell.cell) {
-                        scan(query, i as u32, &rows[i * 16..][..16], &mut nearest);
-                    }
+            let Ok(nearest) = search_cells(query, &centroids, reach, 10, |cell, nearest| {
+                scanned += 1;
+                for i in (0..6000).filter(|i| of_row[*i] == cell) {
+                    scan(query, i as u32, &rows[i * 16..][..16], nearest);
                 }
-            }
+                Ok::<_, std::convert::Infallible>(())
+            });
             let [truth, nearest] = [truth, nearest].map(|hits| hits.into_hits().collect::<Vec<_>>());
             wanted += truth.len();
             found += truth.iter().filter(|hit| nearest.contains(hit)).count();

@@ -15,8 +15,8 @@ use serde::{Deserialize, Serialize};
 use super::cells::{Reach, nearest_cells};
 use super::kernels::sq_distances_into;
 use super::kmeans::Centroids;
+use crate::shape::{ShapeKey, shape_key};
 use crate::texts::Texts;
-use base::ContentHash;
 
 /// Number of trials among all shapes, and among those with a class.
 const TRIALS: usize = 512;
@@ -37,19 +37,11 @@ const CHUNK: usize = 256;
 const GROUP: usize = 16;
 const BLOCK: usize = 1024;
 
-/// The place of a name in the order that decides about trials.
-pub(crate) type TrialKey = [u32; 2];
-
-fn trial_key(id: &str) -> TrialKey {
-    let hash = ContentHash::of(&[id]).start();
-    [(hash >> 32) as u32, hash as u32]
-}
-
 /// The key of a shape, and whether it has a class.
-type SampleKey = (TrialKey, bool);
+type SampleKey = (ShapeKey, bool);
 
 fn sample_key((id, class): (&str, &str)) -> SampleKey {
-    (trial_key(id), !class.is_empty())
+    (shape_key(id), !class.is_empty())
 }
 
 /// A shape near a trial.
@@ -121,8 +113,8 @@ impl Trial {
     }
 
     /// Its place among the trials.
-    pub(crate) fn key(&self) -> TrialKey {
-        trial_key(&self.id)
+    pub(crate) fn key(&self) -> ShapeKey {
+        shape_key(&self.id)
     }
 
     /// Whether its vector and its cells can be those of an index.
@@ -177,11 +169,12 @@ impl Trial {
         }
     }
 
-    /// Forgets a shape.
-    fn part(&mut self, id: &str) {
-        self.near.retain(|near| near.id != id);
-        let is_it = |known: &Option<(f32, String)>| known.as_ref().is_some_and(|(_, known)| known == id);
-        self.is_stale |= is_it(&self.own) || is_it(&self.foreign);
+    /// Forgets shapes.
+    fn part(&mut self, gone: &HashSet<&str>) {
+        self.near.retain(|near| !gone.contains(near.id.as_str()));
+        let is_gone =
+            |known: &Option<(f32, String)>| known.as_ref().is_some_and(|(_, id)| gone.contains(id.as_str()));
+        self.is_stale |= is_gone(&self.own) || is_gone(&self.foreign);
         self.is_stale |= self.near.len() < NEIGHBORS && self.reach.is_finite() && self.reach > 0.0;
     }
 
@@ -218,21 +211,16 @@ impl Trial {
 #[derive(Debug, Clone, Copy)]
 struct Sample {
     /// The last key among all.
-    all: TrialKey,
+    all: ShapeKey,
     /// The last key among those with a class.
-    labelled: TrialKey,
+    labelled: ShapeKey,
 }
 
 impl Sample {
-    /// From names and classes; an empty class is none.
-    fn of<'a>(shapes: impl Iterator<Item = (&'a str, &'a str)>) -> Self {
-        Self::among(shapes.map(sample_key).collect())
-    }
-
-    fn among(mut keys: Vec<SampleKey>) -> Self {
+    fn of(mut keys: Vec<SampleKey>) -> Self {
         keys.sort_unstable();
         let last =
-            |keys: &mut dyn Iterator<Item = &SampleKey>| keys.take(TRIALS).last().map_or([0; 2], |key| key.0);
+            |keys: &mut dyn Iterator<Item = &SampleKey>| keys.take(TRIALS).last().map_or(0, |key| key.0);
         Self {
             all: last(&mut keys.iter()),
             labelled: last(&mut keys.iter().filter(|(_, labelled)| *labelled)),
@@ -240,8 +228,14 @@ impl Sample {
     }
 
     fn holds(&self, id: &str, class: &str) -> bool {
-        let key = trial_key(id);
+        let key = shape_key(id);
         key <= self.all || !class.is_empty() && key <= self.labelled
+    }
+
+    /// Those of these shapes that are trials, which have met no shape.
+    fn trials<'a>(&'a self, shapes: Rows<'a>, n_cells: usize) -> impl Iterator<Item = Trial> + 'a {
+        let held = shapes.pairs().enumerate().filter(|(_, (id, class))| self.holds(id, class));
+        held.map(move |(i, (id, class))| Trial::new(id, class, shapes.row(i), n_cells))
     }
 }
 
@@ -250,14 +244,6 @@ impl Sample {
 pub(crate) struct Trials {
     pub(crate) all: Vec<Trial>,
     n_cells: usize,
-}
-
-/// A shape before and after a change: its padded vector, class and cell.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Change {
-    pub(crate) id: String,
-    pub(crate) was_there: bool,
-    pub(crate) now: Option<(Vec<f32>, String, u32)>,
 }
 
 impl Trials {
@@ -285,78 +271,49 @@ impl Trials {
     ) -> Result<Self, E> {
         let mut keys: Vec<SampleKey> = Vec::new();
         everything(&mut |shapes| keys.extend(shapes.pairs().map(sample_key)))?;
-        let sample = Sample::among(keys);
+        let sample = Sample::of(keys);
         let mut trials = Self::stored(Vec::new(), n_cells);
-        everything(&mut |shapes| {
-            let of = shapes.pairs().enumerate().filter(|(_, (id, class))| sample.holds(id, class));
-            trials.all.extend(of.map(|(i, (id, class))| Trial::new(id, class, shapes.row(i), n_cells)));
-        })?;
+        everything(&mut |shapes| trials.all.extend(sample.trials(shapes, n_cells)))?;
         trials.all.sort_by_key(Trial::key);
         everything(&mut |shapes| meet_all(&mut trials.all.iter_mut().collect::<Vec<_>>(), shapes))?;
         trials.all.iter_mut().for_each(|trial| trial.is_stale = false);
         Ok(trials)
     }
 
-    /// Takes changes into account. `everything` lists all shapes of the changed index in some number of pieces. It is
-    /// called only if the changes do not tell enough: rarely, if the index is large.
+    /// Takes into account which shapes are gone, and which have come, some of them under the same names. `everything` lists
+    /// all shapes of the changed index in some number of pieces. It is called only if the changes do not tell enough: rarely,
+    /// if the index is large.
     pub(crate) fn change<E>(
         &mut self,
-        changes: &[Change],
+        gone: &Texts,
+        come: Rows<'_>,
         mut everything: impl FnMut(&mut dyn FnMut(Rows<'_>)) -> Result<(), E>,
     ) -> Result<(), E> {
-        let changed: HashMap<&str, &Change> =
-            changes.iter().map(|change| (change.id.as_str(), change)).collect();
+        let gone: HashSet<&str> = gone.iter().collect();
+        let classes: HashMap<&str, &str> = come.pairs().collect();
         // A trial that is gone makes room for a shape that is not among the trials, unless all shapes are.
-        let is_sample = self.all.len() >= TRIALS;
-        let makes_room = |trial: &Trial| match changed.get(trial.id.as_str()) {
-            Some(Change { now: Some((_, class, _)), .. }) => class.is_empty() && !trial.class.is_empty(),
-            Some(_) => true,
-            None => false,
+        let makes_room = |trial: &Trial| match classes.get(trial.id.as_str()) {
+            Some(class) => class.is_empty() && !trial.class.is_empty(),
+            None => gone.contains(trial.id.as_str()),
         };
-        let makes_room = is_sample && self.all.iter().any(makes_room);
-        self.all.retain(|trial| !changed.contains_key(trial.id.as_str()));
-        let come = || changes.iter().filter_map(|change| Some((change.id.as_str(), change.now.as_ref()?)));
-        let rows: Vec<f32> = come().flat_map(|(_, (row, ..))| row).copied().collect();
-        let ids = come().map(|(id, _)| id).collect();
-        let classes = come().map(|(_, (_, class, _))| class).collect();
-        let cells: Vec<u32> = come().map(|(_, (.., cell))| *cell).collect();
-        let new = Rows { rows: &rows, ids: &ids, classes: &classes, cells: &cells };
-        self.all.par_iter_mut().for_each(|trial| {
-            changes.iter().filter(|change| change.was_there).for_each(|change| trial.part(&change.id));
-            trial.meet(new, 0..cells.len());
-        });
-        let sample = if makes_room {
-            let mut keys: Vec<(String, String)> = Vec::new();
-            everything(&mut |shapes| {
-                keys.extend(shapes.pairs().map(|(id, class)| (id.to_owned(), class.to_owned())));
-            })?;
-            Sample::of(keys.iter().map(|(id, class)| (id.as_str(), class.as_str())))
-        } else {
-            Sample::of(
-                self.all.iter().map(|trial| (trial.id.as_str(), trial.class.as_str())).chain(new.pairs()),
-            )
-        };
-        self.all.retain(|trial| sample.holds(&trial.id, &trial.class));
-        let (known, n_cells) = (self.all.len(), self.n_cells);
-        let is_trial = |(_, (id, class)): &(usize, (&str, &str))| sample.holds(id, class);
-        let trial = |(i, (id, class)): (usize, (&str, &str))| Trial::new(id, class, new.row(i), n_cells);
-        self.all.extend(new.pairs().enumerate().filter(is_trial).map(trial));
-        if makes_room {
-            let present: HashSet<String> = self.all.iter().map(|trial| trial.id.clone()).collect();
-            everything(&mut |shapes| {
-                let new = shapes
-                    .pairs()
-                    .enumerate()
-                    .filter(|(_, (id, class))| sample.holds(id, class) && !present.contains(*id));
-                self.all.extend(new.map(|(i, (id, class))| Trial::new(id, class, shapes.row(i), n_cells)));
-            })?;
+        if self.all.len() >= TRIALS && self.all.iter().any(makes_room) {
+            *self = Self::in_pieces(self.n_cells, everything)?;
+            return Ok(());
         }
-        debug_assert!(self.all[known..].iter().all(|trial| trial.is_stale));
+        self.all.retain(|trial| !gone.contains(trial.id.as_str()));
+        self.all.par_iter_mut().for_each(|trial| {
+            trial.part(&gone);
+            trial.meet(come, 0..come.ids.len());
+        });
+        let known = self.all.iter().map(|trial| (trial.id.as_str(), trial.class.as_str()));
+        let sample = Sample::of(known.chain(come.pairs()).map(sample_key).collect());
+        self.all.retain(|trial| sample.holds(&trial.id, &trial.class));
+        self.all.extend(sample.trials(come, self.n_cells));
         self.all.sort_by_key(Trial::key);
         let mut stale: Vec<&mut Trial> = self.all.iter_mut().filter(|trial| trial.is_stale).collect();
         if !stale.is_empty() {
             for trial in &mut stale {
-                **trial = Trial::new(&trial.id, &trial.class, &trial.row, n_cells);
+                **trial = Trial::new(&trial.id, &trial.class, &trial.row, self.n_cells);
             }
             everything(&mut |shapes| meet_all(&mut stale, shapes))?;
             stale.into_iter().for_each(|trial| trial.is_stale = false);
@@ -494,20 +451,15 @@ mod tests {
                     present.iter().copied().filter(|i| (i * 7 + step).is_multiple_of(60)).collect();
                 present.retain(|i| !gone.contains(i));
                 present.extend(new.clone());
-                let change = |i: usize, now: bool| Change {
-                    id: format!("s{i}"),
-                    was_there: !now,
-                    now: now.then(|| (all[i * 16..][..16].to_vec(), class(i), i as u32 % 7)),
-                };
-                let changes: Vec<Change> =
-                    gone.iter().map(|i| change(*i, false)).chain(new.map(|i| change(i, true))).collect();
+                let gone = gone.iter().map(|i| format!("s{i}")).collect();
+                let new = Shapes::of(new, &all);
                 let now = Shapes::of(present.iter().copied(), &all);
                 let everything = |visit: &mut dyn FnMut(Rows<'_>)| {
                     asked += 1;
                     visit(now.rows());
                     Ok::<(), ()>(())
                 };
-                trials.change(&changes, everything).unwrap();
+                trials.change(&gone, new.rows(), everything).unwrap();
                 assert_same(&trials, &Trials::of(now.rows(), n_cells));
             }
             assert!(asked > 0);
@@ -519,10 +471,9 @@ mod tests {
         let all = noise(2000, 16, 3);
         let mut trials = Trials::of(Shapes::of(0..1999, &all).rows(), 1);
         let before = trials.clone();
-        let outside = (0..).map(|i| format!("x{i}")).find(|id| trial_key(id) > [u32::MAX - 1000, 0]);
-        let now = Some((all[1999 * 16..].to_vec(), "c1".to_owned(), 0));
-        let change = Change { id: outside.unwrap_or_default(), was_there: false, now };
-        trials.change(&[change], |_| Err("nothing else is needed")).unwrap();
+        let outside = (0..).map(|i| format!("x{i}")).find(|id| shape_key(id) > u64::MAX - (1000 << 32));
+        let come = Shapes { ids: outside.iter().collect(), ..Shapes::of(1999..2000, &all) };
+        trials.change(&Texts::default(), come.rows(), |_| Err("nothing else is needed")).unwrap();
         assert_eq!(trials.all.len(), before.all.len());
     }
 
