@@ -1,29 +1,19 @@
 //! The schema of a table as Arrow states it, in the metadata of a Parquet file. Parquet has no lists of fixed length, and databases
 //! of vectors (Lance, Polars) ask for them.
 
-use std::borrow::Cow;
-
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+
+use super::columns::{Column, Content};
 
 /// The key of the metadata.
 pub(super) const KEY: &str = "ARROW:schema";
 
-/// The type of a column.
-pub(super) enum Kind {
-    Text,
-    Double,
-    /// 32-bit numbers.
-    List,
-    /// So many 32-bit numbers.
-    FixedList(usize),
-}
-
-/// The value of the metadata for columns by name, and whether rows may lack them.
-pub(super) fn schema<'a>(columns: impl Iterator<Item = (Cow<'a, str>, bool, Kind)>) -> String {
+/// The value of the metadata for these columns.
+pub(super) fn schema(columns: &[Column]) -> String {
     use Value::{Byte, Short, Table, Tables};
 
-    let fields = columns.map(|(name, is_optional, kind)| field(&name, is_optional, &kind)).collect();
+    let fields = columns.iter().map(field).collect();
     // Message.fbs: version 5, whose header is a schema.
     let message = Table(vec![(0, Short(4)), (1, Byte(1)), (2, Table(vec![(1, Tables(fields))]))]);
     let mut bytes = vec![0; 4];
@@ -34,29 +24,30 @@ pub(super) fn schema<'a>(columns: impl Iterator<Item = (Cow<'a, str>, bool, Kind
     STANDARD.encode([&[0xff; 4], &length, bytes.as_slice()].concat())
 }
 
-/// Field and Type of Schema.fbs.
-fn field(name: &str, is_optional: bool, kind: &Kind) -> Value {
+/// Field and Type of Schema.fbs. Only fused vectors are of one length in every index.
+fn field(column: &Column) -> Value {
     use Value::{Byte, Int, Short, Table, Tables, Text};
 
     let float = |precision| Table(vec![(0, Short(precision))]);
-    let (number, about) = match kind {
-        Kind::Text => (5, Table(Vec::new())),
-        Kind::Double => (3, float(2)),
-        Kind::List => (12, Table(Vec::new())),
-        Kind::FixedList(length) => (16, Table(vec![(0, Int(*length as u32))])),
+    let (number, about) = match &column.content {
+        Content::Text(..) => (5, Table(Vec::new())),
+        Content::Fact(_) => (3, float(2)),
+        Content::Floats(extents) if column.name == "fused" && extents[0] > 0 => {
+            (16, Table(vec![(0, Int(extents[0] as u32))]))
+        }
+        Content::Floats(_) => (12, Table(Vec::new())),
     };
     let element = || {
         let name = Text("element".to_owned());
         Table(vec![(0, name), (1, Byte(0)), (2, Byte(3)), (3, float(1)), (5, Tables(Vec::new()))])
     };
-    let children = match kind {
-        Kind::Text | Kind::Double => Vec::new(),
-        Kind::List | Kind::FixedList(_) => vec![element()],
+    let children = match column.content {
+        Content::Text(..) | Content::Fact(_) => Vec::new(),
+        Content::Floats(_) => vec![element()],
     };
-    let name = Text(name.to_owned());
     Table(vec![
-        (0, name),
-        (1, Byte(is_optional.into())),
+        (0, Text(column.name.clone())),
+        (1, Byte(column.is_optional().into())),
         (2, Byte(number)),
         (3, about),
         (5, Tables(children)),
