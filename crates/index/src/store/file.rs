@@ -78,17 +78,9 @@ impl State {
                 return Err(no_head(file, &head, path));
             }
             let slots = SLOTS.map(|at| Self::of_slot(&head[at..][..SLOT]));
-            for found in slots.iter().flatten().map(|(version, _)| *version) {
-                let (path, supported) = (path.to_owned(), FORMAT_VERSION);
-                match found.cmp(&supported) {
-                    std::cmp::Ordering::Less => {
-                        return Err(IndexError::PastVersion { path, found, supported });
-                    }
-                    std::cmp::Ordering::Equal => {}
-                    std::cmp::Ordering::Greater => {
-                        return Err(IndexError::FutureVersion { path, found, supported });
-                    }
-                }
+            let mut versions = slots.iter().flatten().map(|(version, _)| *version);
+            if let Some(found) = versions.find(|version| *version != FORMAT_VERSION) {
+                return Err(IndexError::other_version(path, found));
             }
             let is_rest_zero =
                 SLOTS.iter().all(|at| head[at + SLOT..at + HEAD / 2].iter().all(|byte| *byte == 0));
@@ -118,7 +110,7 @@ fn no_head(file: &mut File, head: &[u8], path: &Path) -> IndexError {
     let tail = file.seek(SeekFrom::End(-(MAGIC.len() as i64)));
     let is_format_1 = head.starts_with(b"redb") && tail.is_ok_and(|_| file.read_to_end(&mut end).is_ok());
     if is_format_1 && end == MAGIC {
-        return IndexError::PastVersion { path: path.to_owned(), found: 1, supported: FORMAT_VERSION };
+        return IndexError::other_version(path, 1);
     }
     let is_start = head.len() >= 4 && MAGIC.starts_with(&head[..head.len().min(MAGIC.len())]);
     match is_start {
