@@ -277,9 +277,9 @@ pub fn build_index(
     let nothing_new =
         report.described + report.renamed + gone.len() == 0 && !report.resumed && !report.replaced_damaged;
     // A shard without shapes is complete, and `merge_indexes` takes it.
-    let is_useless = options.shard.is_none() && writer.is_empty() && !report.failed.is_empty();
+    let is_useless = options.shard.is_none() && writer.n_shapes()? == 0 && !report.failed.is_empty();
     if nothing_new && path.exists() || is_useless {
-        report.n_shapes = writer.len();
+        report.n_shapes = writer.n_shapes()?;
         writer.discard()?;
     } else {
         report.n_shapes = writer.finish(observer)?.len();
