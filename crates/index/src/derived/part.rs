@@ -1,5 +1,7 @@
 //! Shapes of one cell, as they are stored.
 
+use std::ops::Range;
+
 use serde::{Deserialize, Serialize};
 
 use crate::store::Floats;
@@ -56,6 +58,15 @@ impl Part {
                 to = from;
             }
         }
+    }
+
+    /// Some of the shapes.
+    pub(super) fn slice(&self, range: Range<usize>) -> Self {
+        let mut some = Self::default();
+        for i in range {
+            some.push(self.ids.get(i), self.classes.get(i), self.in_cell(&0).row(i));
+        }
+        some
     }
 
     pub(super) fn push(&mut self, id: &str, class: &str, row: &[f32]) {

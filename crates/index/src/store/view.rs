@@ -9,7 +9,7 @@ use serde::de::DeserializeOwned;
 use super::codec::{decode, encode};
 use super::file::StoredFile;
 use super::log::Log;
-use super::records::{Changes, Rows, Run, run_of};
+use super::records::{Changes, Record, Rows, Run, run_of};
 use crate::IndexError;
 
 /// Keys of one kind. The order of keys is that of their bytes.
@@ -79,17 +79,25 @@ impl<K: Key + ?Sized, V: Serialize + DeserializeOwned> Table<K, V> {
         bytes
     }
 
-    /// Puts a value, or removes it.
+    /// A key with its value; no value removes it.
     ///
     /// # Errors
     /// [`IndexError::Codec`].
-    pub(crate) fn put(&self, changes: &mut Changes, key: &K, value: Option<&V>) -> Result<(), IndexError> {
+    pub(crate) fn record(&self, key: &K, value: Option<&V>) -> Result<Record, IndexError> {
         let key = self.key(key);
         let bytes = value.map(encode).transpose().map_err(|reason| {
             let id = String::from_utf8_lossy(&key[1..]).into_owned();
             IndexError::Codec { id, reason }
         })?;
-        changes.insert(key, bytes);
+        Ok((key, bytes))
+    }
+
+    /// Puts a value, or removes it.
+    ///
+    /// # Errors
+    /// As of [`record`](Self::record).
+    pub(crate) fn put(&self, changes: &mut Changes, key: &K, value: Option<&V>) -> Result<(), IndexError> {
+        changes.extend([self.record(key, value)?]);
         Ok(())
     }
 }

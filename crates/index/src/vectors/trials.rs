@@ -86,7 +86,7 @@ pub(crate) struct Rows<'a> {
 
 impl<'a> Rows<'a> {
     /// The vector of a shape.
-    fn row(self, i: usize) -> &'a [f32] {
+    pub(crate) fn row(self, i: usize) -> &'a [f32] {
         let n = self.rows.len() / self.ids.len();
         &self.rows[i * n..][..n]
     }
