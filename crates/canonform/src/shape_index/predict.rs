@@ -6,7 +6,7 @@ use relations::Relation;
 use retrieval::{Neighbor, Tally, UnknownThreshold, vote};
 use serde::{Deserialize, Serialize};
 
-use super::found::{PartRank, SearchResult};
+use super::found::{OrderedBy, SearchResult};
 use super::record::{DROPPED as DROPPED_AREA, SHORTCUTS};
 use crate::form::ShapeDescription;
 
@@ -153,7 +153,7 @@ pub(super) fn predicted(
     threshold: Option<UnknownThreshold>,
     query: Completeness,
 ) -> Prediction {
-    let as_part = results.first().and_then(|result| result.as_part);
+    let as_part = results.first().and_then(part_distance);
     let class_below = as_part.map_or(ShapeMetric::SAME_CLASS.at, |_| PartDistance::SAME_CLASS);
     let threshold = threshold.map(|threshold| threshold.distance);
     // Shapes without a class have no vote.
@@ -163,8 +163,8 @@ pub(super) fn predicted(
     classes.dedup();
     let class_of = |i: usize| classes.partition_point(|class| *class < results[i].label.as_str());
     let reach = |result: &SearchResult| {
-        if let Some(fit) = result.as_part {
-            return fit.part_distance / class_below;
+        if let Some(distance) = part_distance(result) {
+            return distance / class_below;
         }
         let combined = result.relation.because.distance.combined / class_below;
         threshold.map_or(combined, |threshold| combined.min(result.fused / threshold))
@@ -208,8 +208,16 @@ pub(super) fn predicted(
     found
 }
 
+/// How well the query fits as a part, if results are ordered by that.
+fn part_distance(result: &SearchResult) -> Option<f64> {
+    match result.order {
+        Some(OrderedBy::Part { part_distance, .. }) => Some(part_distance),
+        _ => None,
+    }
+}
+
 impl Prediction {
-    fn in_words(&self, signs: &[String], as_part: Option<PartRank>) -> String {
+    fn in_words(&self, signs: &[String], as_part: Option<f64>) -> String {
         if let Some(label) = &self.label {
             return self.vote_in_words(label);
         }
@@ -226,10 +234,10 @@ impl Prediction {
             "" => "without a class".to_owned(),
             label => format!("of the class {label}"),
         };
-        if let Some(fit) = as_part {
+        if let Some(distance) = as_part {
             return format!(
-                "unknown. The query fits best as a part of {} {class}, at part distance {:.3}; parts of shapes of one class are below {:.3}",
-                nearest.id, fit.part_distance, self.class_below
+                "unknown. The query fits best as a part of {} {class}, at part distance {distance:.3}; parts of shapes of one class are below {:.3}",
+                nearest.id, self.class_below
             );
         }
         let mut words = format!(
@@ -284,9 +292,7 @@ mod tests {
             path: String::new(),
             distance,
             fused: distance,
-            on_graph: None,
-            as_part: None,
-            form_distance: None,
+            order: None,
             relation: Relation::by_distance(shape, 1.0, Handedness::Unknown),
             comparison: None,
         }
@@ -352,7 +358,7 @@ mod tests {
     fn parts_vote_by_how_well_they_fit() {
         let fit = |mut result: SearchResult, times: f64| {
             let part_distance = times * PartDistance::SAME_CLASS;
-            result.as_part = Some(PartRank { part_distance, part_share: 0.7 });
+            result.order = Some(OrderedBy::Part { part_distance, part_share: 0.7 });
             result
         };
         let shapes = results(&[("cat", 9.0), ("dog", 9.0)]);
