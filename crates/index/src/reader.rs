@@ -106,7 +106,7 @@ impl Index {
 
     /// The classes and the number of shapes in each. Shapes without a class do not count.
     pub fn classes(&self) -> Result<BTreeMap<String, u64>, IndexError> {
-        self.view().rows(&CLASSES, &[]).collect()
+        CLASSES.rows(self.view(), &[]).collect()
     }
 
     fn missing(&self, id: &str) -> IndexError {
@@ -115,17 +115,17 @@ impl Index {
 
     /// Whether there is a shape of this name.
     pub fn contains(&self, id: &str) -> Result<bool, IndexError> {
-        Ok(self.view().get(&ENTRIES, id)?.is_some())
+        Ok(ENTRIES.get(self.view(), id)?.is_some())
     }
 
     /// The entry of a shape, or [`IndexError::NoSuchShape`].
     pub fn entry(&self, id: &str) -> Result<ShapeEntry, IndexError> {
-        self.view().get(&ENTRIES, id)?.ok_or_else(|| self.missing(id))
+        ENTRIES.get(self.view(), id)?.ok_or_else(|| self.missing(id))
     }
 
     /// The vectors of a shape, or [`IndexError::NoSuchShape`].
     pub fn vectors(&self, id: &str) -> Result<ShapeVectors, IndexError> {
-        let (body, fused) = (self.view().get(&BODIES, id)?, self.view().get(&FUSED, id)?);
+        let (body, fused) = (BODIES.get(self.view(), id)?, FUSED.get(self.view(), id)?);
         let (body, fused) = body.zip(fused).ok_or_else(|| self.missing(id))?;
         Ok(body.with(fused.0))
     }
@@ -134,8 +134,8 @@ impl Index {
     /// time.
     pub fn each<E: From<IndexError>>(&self, mut visit: impl FnMut(Shape) -> Result<(), E>) -> Result<(), E> {
         let view = self.view();
-        let (mut fused, mut bodies) = (view.rows(&FUSED, &[]), view.rows(&BODIES, &[]));
-        for row in view.rows(&ENTRIES, &[]) {
+        let (mut fused, mut bodies) = (FUSED.rows(view, &[]), BODIES.rows(view, &[]));
+        for row in ENTRIES.rows(view, &[]) {
             let (id, entry) = row?;
             let fused = fused.next().transpose()?.filter(|(known, _)| *known == id);
             let body = bodies.next().transpose()?.filter(|(known, _)| *known == id);
@@ -153,7 +153,7 @@ impl Index {
     /// The fused vectors of all shapes, one after the other in ascending order of names.
     pub fn fused_vectors(&self) -> Result<Vec<f32>, IndexError> {
         let mut all = Vec::new();
-        for row in self.view().rows(&FUSED, &[]) {
+        for row in FUSED.rows(self.view(), &[]) {
             all.extend(row?.1.0);
         }
         Ok(all)

@@ -92,17 +92,17 @@ pub(crate) fn remove_shape(changes: &mut Changes, id: &str) -> Result<(), IndexE
 
 /// All names and entries.
 pub(crate) fn entries(view: View<'_>) -> Result<Vec<(String, ShapeEntry)>, IndexError> {
-    view.rows(&ENTRIES, &[]).collect()
+    ENTRIES.rows(view, &[]).collect()
 }
 
 /// The list of a shape; `None` if it is not in the graph.
 pub(crate) fn node(view: View<'_>, key: ShapeKey) -> Result<Option<Node>, IndexError> {
-    view.get(&GRAPH, &key)?.map(|node| sound(view, key, node)).transpose()
+    GRAPH.get(view, &key)?.map(|node| sound(view, key, node)).transpose()
 }
 
 /// The lists of all shapes.
 pub(crate) fn nodes(view: View<'_>) -> impl Iterator<Item = Result<(ShapeKey, Node), IndexError>> + '_ {
-    view.rows(&GRAPH, &[]).map(move |row| {
+    GRAPH.rows(view, &[]).map(move |row| {
         let (key, node) = row?;
         Ok((key, sound(view, key, node)?))
     })

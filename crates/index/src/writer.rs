@@ -156,7 +156,7 @@ impl IndexWriter {
 
     /// Learns the length of the vectors so far, and whether the shapes can be counted.
     fn read_start(&mut self) -> Result<(), IndexError> {
-        let first = self.view().rows(&FUSED, &[]).next().transpose()?;
+        let first = FUSED.rows(self.view(), &[]).next().transpose()?;
         self.length = first.map(|(_, fused)| fused.0.len());
         self.n_shapes().map(drop)
     }
@@ -186,7 +186,7 @@ impl IndexWriter {
     /// Number of shapes so far.
     pub fn n_shapes(&self) -> Result<usize, IndexError> {
         let mut n_shapes = self.base.as_ref().map_or(0, Index::len);
-        for (id, is_there) in self.view().changed(&ENTRIES) {
+        for (id, is_there) in ENTRIES.changed(self.view()) {
             let was_there = self.base.as_ref().map_or(Ok(false), |base| base.contains(&id))?;
             n_shapes = n_shapes + usize::from(is_there) - usize::from(was_there);
         }
@@ -195,7 +195,7 @@ impl IndexWriter {
 
     /// The entry of a shape, if it is there.
     pub fn entry(&self, id: &str) -> Result<Option<ShapeEntry>, IndexError> {
-        self.view().get(&ENTRIES, id)
+        ENTRIES.get(self.view(), id)
     }
 
     /// The names and entries of all shapes so far, in ascending order of names.

@@ -34,7 +34,7 @@ mod vote;
 pub use bootstrap::{BootstrapOptions, ScoreIntervals, bootstrap};
 pub use clustering::silhouette;
 pub use error::RetrievalError;
-pub use evaluation::{Evaluation, GraphEvaluation, RankBy, evaluate, evaluate_ranked};
+pub use evaluation::{Evaluation, RankBy, RankingEvaluation, evaluate, evaluate_ranked};
 pub use graph::{Graph, GraphNeighbor, GraphRankings, LINKS, graph_rank};
 pub use labels::Labels;
 pub use ranking::{Neighbor, Rankings, rank, rank_row};

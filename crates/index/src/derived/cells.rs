@@ -26,7 +26,7 @@ impl Heads {
         let header = about(view)?.cells;
         let n = padded(header.dim);
         let mut rows = Vec::with_capacity(header.n_cells * n);
-        for part in view.rows(&CENTROIDS, &[]) {
+        for part in CENTROIDS.rows(view, &[]) {
             rows.extend(part?.1.0);
         }
         match rows.len() == header.n_cells * n {
@@ -42,7 +42,7 @@ impl Heads {
         cell: u32,
     ) -> impl Iterator<Item = Result<(u32, Part), IndexError>> + use<'a> {
         let n = padded(self.header.dim);
-        view.rows(&CELLS, &cell.to_be_bytes()).map(move |row| {
+        CELLS.rows(view, &cell.to_be_bytes()).map(move |row| {
             let ([_, number], part) = row?;
             let n_ids = part.ids.len();
             match part.classes.len() == n_ids && part.rows.0.len() == n_ids * n {
@@ -62,14 +62,14 @@ impl Heads {
                 false => Err(view.damaged("a trial contradicts itself")),
             }
         };
-        let all = view.rows(&TRIALS, &[]).map(checked).collect::<Result<_, _>>()?;
+        let all = TRIALS.rows(view, &[]).map(checked).collect::<Result<_, _>>()?;
         Ok(Trials::stored(all, n_cells))
     }
 }
 
 /// What holds for the whole index. Sizes are checked: what they promise must fit into the file.
 pub(crate) fn about(view: View<'_>) -> Result<About, IndexError> {
-    let about = view.get(&ABOUT, "")?.ok_or_else(|| view.damaged("its head is missing"))?;
+    let about = ABOUT.get(view, "")?.ok_or_else(|| view.damaged("its head is missing"))?;
     let CellsHeader { dim, n, n_cells, .. } = about.cells;
     check_length(view, dim)?;
     let rows = (n_cells as u64).saturating_add(n as u64);
@@ -92,9 +92,9 @@ fn check_length(view: View<'_>, dim: usize) -> Result<(), IndexError> {
 /// All shapes in ascending order of their names, and the length of a vector without padding; 1 if there are none.
 pub(crate) fn all_shapes(view: View<'_>) -> Result<(Part, usize), IndexError> {
     let mut part = Part::default();
-    let mut entries = view.rows(&ENTRIES, &[]);
+    let mut entries = ENTRIES.rows(view, &[]);
     let mut dim = None;
-    for row in view.rows(&FUSED, &[]) {
+    for row in FUSED.rows(view, &[]) {
         let (id, Floats(fused)) = row?;
         let dim = *dim.get_or_insert(fused.len());
         check_length(view, dim)?;

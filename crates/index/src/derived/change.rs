@@ -20,7 +20,7 @@ pub(crate) fn changes(
     n_shapes: usize,
     dim: usize,
 ) -> Result<Option<Changes>, IndexError> {
-    let (before, heads, changed) = (base.view(), base.heads()?, view.changed(&ENTRIES));
+    let (before, heads, changed) = (base.view(), base.heads()?, ENTRIES.changed(view));
     let is_little = 2 * changed.len() <= n_shapes.max(64);
     if !is_little || !heads.header.serves(n_shapes, dim) {
         return Ok(None);
@@ -61,7 +61,7 @@ pub(crate) fn changes(
         TRIALS.put(&mut changes, gone, None)?;
     }
     for (class, change) in classes.into_iter().filter(|(_, change)| *change != 0) {
-        let count = before.get(&CLASSES, &class)?.unwrap_or(0).saturating_add_signed(change);
+        let count = CLASSES.get(before, &class)?.unwrap_or(0).saturating_add_signed(change);
         CLASSES.put(&mut changes, &class, Some(&count).filter(|count| **count > 0))?;
     }
     cells.put(&mut changes)?;

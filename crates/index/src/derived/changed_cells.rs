@@ -11,7 +11,7 @@ use crate::vectors::{Rows, padded};
 
 /// A shape as cells hold it: its padded vector and its class.
 pub(super) fn held(view: View<'_>, id: &str, dim: usize) -> Result<Option<(Vec<f32>, String)>, IndexError> {
-    let (Some(Floats(mut fused)), Some(entry)) = (view.get(&FUSED, id)?, view.get(&ENTRIES, id)?) else {
+    let (Some(Floats(mut fused)), Some(entry)) = (FUSED.get(view, id)?, ENTRIES.get(view, id)?) else {
         return Ok(None);
     };
     if fused.len() != dim {

@@ -121,7 +121,7 @@ impl retrieval::Graph for Walk<'_> {
     /// Infinite for a shape that is gone: its list named no shape.
     fn distance(&mut self, shape: usize) -> Result<f64, IndexError> {
         let Some(id) = &self.known.ids[shape] else { return Ok(f64::INFINITY) };
-        let vector = self.view.get(&FUSED, id.as_str())?;
+        let vector = FUSED.get(self.view, id.as_str())?;
         Ok(vector.map_or(f64::INFINITY, |vector| distance(self.query, &vector.0)))
     }
 }

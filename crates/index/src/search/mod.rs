@@ -103,8 +103,7 @@ impl Index {
         let mut shapes = Vec::with_capacity(k.min(self.len()));
         for hit in nearest.into_hits() {
             let id = ids.get(hit.slot as usize);
-            let vector =
-                view.get(&FUSED, id)?.ok_or_else(|| view.damaged(format!("`{id}` has no vector")))?;
+            let vector = FUSED.get(view, id)?.ok_or_else(|| view.damaged(format!("`{id}` has no vector")))?;
             shapes.push(NearShape { distance: distance(query, &vector.0), id: id.to_owned() });
         }
         Ok(Found::new(shapes, k, ids.len(), &heads.header, mode))
