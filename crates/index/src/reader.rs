@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 use crate::derived::{Heads, about};
-use crate::store::{FORMAT_VERSION, Floats, StoredFile, View};
+use crate::store::{Floats, StoredFile, View};
 use crate::tables::{BODIES, CLASSES, ENTRIES, FUSED, entries};
 use crate::{IndexError, Shape, ShapeEntry, ShapeVectors};
 
@@ -90,12 +90,6 @@ impl Index {
     #[must_use]
     pub fn fingerprint(&self) -> u64 {
         self.stored.fingerprint()
-    }
-
-    /// Version of the format of the file.
-    #[must_use]
-    pub fn format(&self) -> u32 {
-        FORMAT_VERSION
     }
 
     /// Size in bytes.

@@ -63,7 +63,7 @@ impl Heads {
             }
         };
         let all = TRIALS.rows(view, &[]).map(checked).collect::<Result<_, _>>()?;
-        Ok(Trials::stored(all, n_cells))
+        Ok(Trials { all, n_cells })
     }
 }
 

@@ -2,17 +2,16 @@
 
 mod graph;
 mod searcher;
-mod threshold;
 
+use crate::derived::all_shapes;
 use crate::tables::FUSED;
 use crate::texts::Texts;
-use crate::vectors::{CellsHeader, NEIGHBORS, Reach, padded, scan, search_cells};
+use crate::vectors::{CellsHeader, NEIGHBORS, Reach, Trials, padded, scan, search_cells};
 use crate::{Index, IndexError};
 use retrieval::UnknownThreshold;
 
 pub use graph::{FoundOnGraph, RankedShape};
 pub use searcher::Searcher;
-pub use threshold::class_threshold;
 
 /// How thoroughly to search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -127,4 +126,22 @@ fn padded_query(query: &[f32], header: &CellsHeader) -> Result<Vec<f32>, IndexEr
     let mut row = query.to_vec();
     row.resize(padded(header.dim), 0.0);
     Ok(row)
+}
+
+/// The [threshold](Found::threshold) of the index that would hold the shapes of all of these, which have different names
+/// and were described with the same options. Holds the vectors of one index at a time in memory.
+///
+/// # Errors
+/// [`IndexError::Io`], [`IndexError::Damaged`].
+pub fn class_threshold(indexes: &[Index]) -> Result<Option<UnknownThreshold>, IndexError> {
+    let trials = Trials::in_pieces(1, |visit| {
+        for index in indexes {
+            let (shapes, _) = all_shapes(index.view())?;
+            if shapes.ids.len() > 0 {
+                visit(shapes.in_cell(&0));
+            }
+        }
+        Ok::<_, IndexError>(())
+    })?;
+    Ok(trials.threshold())
 }

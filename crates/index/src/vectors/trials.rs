@@ -125,47 +125,46 @@ impl Trial {
     /// Meets some of these shapes, which it has not met before.
     fn meet(&mut self, shapes: Rows<'_>, range: Range<usize>) {
         let n = self.row.len();
-        let first = range.start;
-        let is_labelled = !self.class.is_empty();
-        let least = |known: &Option<(f32, String)>| known.as_ref().map_or(f32::INFINITY, |(sq, _)| *sq);
         let mut sqs = [0.0; CHUNK];
-        for (chunk, rows) in shapes.rows[range.start * n..range.end * n].chunks(CHUNK * n).enumerate() {
-            let sqs = &mut sqs[..rows.len() / n];
-            sq_distances_into(&self.row, rows, sqs);
-            let mut bound = self.reach.max(least(&self.own)).max(least(&self.foreign));
-            if !is_labelled {
-                bound = self.reach;
-            }
-            for (i, sq) in (first + chunk * CHUNK..).zip(sqs.iter().copied()) {
-                if sq > bound {
-                    continue;
-                }
-                let id = shapes.ids.get(i);
-                if id == self.id {
-                    continue;
-                }
-                if sq < self.reach {
+        for start in range.clone().step_by(CHUNK) {
+            let end = range.end.min(start + CHUNK);
+            let sqs = &mut sqs[..end - start];
+            sq_distances_into(&self.row, &shapes.rows[start * n..end * n], sqs);
+            let mut bound = self.bound();
+            for (i, sq) in (start..).zip(sqs.iter().copied()) {
+                if sq <= bound && shapes.ids.get(i) != self.id {
                     let cell = shapes.cells[i % shapes.cells.len()];
-                    self.keep(Near { sq, cell, id: id.to_owned() });
-                }
-                let class = shapes.classes.get(i);
-                if is_labelled && !class.is_empty() {
-                    let place = if class == self.class { &mut self.own } else { &mut self.foreign };
-                    if place.as_ref().is_none_or(|(least, known)| (sq, id) < (*least, known.as_str())) {
-                        *place = Some((sq, id.to_owned()));
-                    }
-                    bound = self.reach.max(least(&self.own)).max(least(&self.foreign));
+                    self.keep(sq, cell, shapes.ids.get(i), shapes.classes.get(i));
+                    bound = self.bound();
                 }
             }
         }
     }
 
-    fn keep(&mut self, near: Near) {
-        let at = self.near.partition_point(|known| (known.sq, &known.id) < (near.sq, &near.id));
-        self.near.insert(at, near);
-        if self.near.len() > KEPT {
-            self.near.truncate(KEPT);
-            self.reach = self.near.last().map_or(self.reach, |last| last.sq);
+    /// Shapes beyond this squared distance change nothing.
+    fn bound(&self) -> f32 {
+        let least = |known: &Option<(f32, String)>| known.as_ref().map_or(f32::INFINITY, |(sq, _)| *sq);
+        match self.class.is_empty() {
+            true => self.reach,
+            false => self.reach.max(least(&self.own)).max(least(&self.foreign)),
+        }
+    }
+
+    /// Keeps a shape if it is among the nearest.
+    fn keep(&mut self, sq: f32, cell: u32, id: &str, class: &str) {
+        if !self.class.is_empty() && !class.is_empty() {
+            let place = if class == self.class { &mut self.own } else { &mut self.foreign };
+            if place.as_ref().is_none_or(|(least, known)| (sq, id) < (*least, known)) {
+                *place = Some((sq, id.to_owned()));
+            }
+        }
+        if sq < self.reach {
+            let at = self.near.partition_point(|known| (known.sq, known.id.as_str()) < (sq, id));
+            self.near.insert(at, Near { sq, cell, id: id.to_owned() });
+            if self.near.len() > KEPT {
+                self.near.truncate(KEPT);
+                self.reach = self.near.last().map_or(self.reach, |last| last.sq);
+            }
         }
     }
 
@@ -208,60 +207,27 @@ impl Trial {
 }
 
 /// Which shapes are trials: those whose keys come first, among all shapes and among those with a class.
-#[derive(Debug, Clone, Copy)]
-struct Sample {
-    /// The last key among all.
-    all: ShapeKey,
-    /// The last key among those with a class.
-    labelled: ShapeKey,
-}
-
-impl Sample {
-    fn of(mut keys: Vec<SampleKey>) -> Self {
-        keys.sort_unstable();
-        let last =
-            |keys: &mut dyn Iterator<Item = &SampleKey>| keys.take(TRIALS).last().map_or(0, |key| key.0);
-        Self {
-            all: last(&mut keys.iter()),
-            labelled: last(&mut keys.iter().filter(|(_, labelled)| *labelled)),
-        }
-    }
-
-    fn holds(&self, id: &str, class: &str) -> bool {
-        let key = shape_key(id);
-        key <= self.all || !class.is_empty() && key <= self.labelled
-    }
-
-    /// Those of these shapes that are trials, which have met no shape.
-    fn trials<'a>(&'a self, shapes: Rows<'a>, n_cells: usize) -> impl Iterator<Item = Trial> + 'a {
-        let held = shapes.pairs().enumerate().filter(|(_, (id, class))| self.holds(id, class));
-        held.map(move |(i, (id, class))| Trial::new(id, class, shapes.row(i), n_cells))
-    }
+fn sample(mut keys: Vec<SampleKey>) -> HashSet<ShapeKey> {
+    keys.sort_unstable();
+    let labelled = keys.iter().filter(|(_, labelled)| *labelled).take(TRIALS);
+    keys.iter().take(TRIALS).chain(labelled).map(|(key, _)| *key).collect()
 }
 
 /// All trials of an index, in the order of their keys.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Trials {
     pub(crate) all: Vec<Trial>,
-    n_cells: usize,
+    pub(crate) n_cells: usize,
 }
 
 impl Trials {
-    /// Trials of an index as it stores them.
-    pub(crate) fn stored(all: Vec<Trial>, n_cells: usize) -> Self {
-        Self { all, n_cells }
-    }
-
     /// Trials of an index that holds `shapes` in `n_cells` cells.
     pub(crate) fn of(shapes: Rows<'_>, n_cells: usize) -> Self {
-        let once = Self::in_pieces(n_cells, |visit| {
+        let Ok(trials) = Self::in_pieces(n_cells, |visit| {
             visit(shapes);
             Ok::<_, Infallible>(())
         });
-        match once {
-            Ok(trials) => trials,
-            Err(never) => match never {},
-        }
+        trials
     }
 
     /// The same of shapes that `everything` lists in some number of pieces, whenever it is called.
@@ -271,13 +237,22 @@ impl Trials {
     ) -> Result<Self, E> {
         let mut keys: Vec<SampleKey> = Vec::new();
         everything(&mut |shapes| keys.extend(shapes.pairs().map(sample_key)))?;
-        let sample = Sample::of(keys);
-        let mut trials = Self::stored(Vec::new(), n_cells);
-        everything(&mut |shapes| trials.all.extend(sample.trials(shapes, n_cells)))?;
+        let sample = sample(keys);
+        let mut trials = Self { all: Vec::new(), n_cells };
+        everything(&mut |shapes| trials.begin(shapes, &sample))?;
         trials.all.sort_by_key(Trial::key);
         everything(&mut |shapes| meet_all(&mut trials.all.iter_mut().collect::<Vec<_>>(), shapes))?;
         trials.all.iter_mut().for_each(|trial| trial.is_stale = false);
         Ok(trials)
+    }
+
+    /// Adds those of these shapes that are in the sample, as trials that have met no shape.
+    fn begin(&mut self, shapes: Rows<'_>, sample: &HashSet<ShapeKey>) {
+        for (i, (id, class)) in shapes.pairs().enumerate() {
+            if sample.contains(&shape_key(id)) {
+                self.all.push(Trial::new(id, class, shapes.row(i), self.n_cells));
+            }
+        }
     }
 
     /// Takes into account which shapes are gone, and which have come, some of them under the same names. `everything` lists
@@ -306,9 +281,9 @@ impl Trials {
             trial.meet(come, 0..come.ids.len());
         });
         let known = self.all.iter().map(|trial| (trial.id.as_str(), trial.class.as_str()));
-        let sample = Sample::of(known.chain(come.pairs()).map(sample_key).collect());
-        self.all.retain(|trial| sample.holds(&trial.id, &trial.class));
-        self.all.extend(sample.trials(come, self.n_cells));
+        let sample = sample(known.chain(come.pairs()).map(sample_key).collect());
+        self.all.retain(|trial| sample.contains(&trial.key()));
+        self.begin(come, &sample);
         self.all.sort_by_key(Trial::key);
         let mut stale: Vec<&mut Trial> = self.all.iter_mut().filter(|trial| trial.is_stale).collect();
         if !stale.is_empty() {
@@ -342,8 +317,9 @@ impl Trials {
         }
         // Rarely is a neighbour in a cell farther than this.
         const USUAL: usize = 64;
-        let found = self.calibrated_among(centroids, USUAL.min(self.n_cells));
-        found.or_else(|| self.calibrated_among(centroids, self.n_cells)).unwrap_or((Reach::ALL, 1.0))
+        let choices = [USUAL.min(self.n_cells), self.n_cells];
+        let found = choices.into_iter().find_map(|most| self.calibrated_among(centroids, most));
+        found.unwrap_or((Reach::ALL, 1.0))
     }
 
     /// The same, if as few as `most` cells are enough.
