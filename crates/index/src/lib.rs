@@ -44,7 +44,7 @@
 //!
 //! | module | contents |
 //! |---|---|
-//! | `texts`, `shape` | names, the record of one shape |
+//! | `texts`, `floats`, `shape` | names, numbers, the record of one shape |
 //! | `vectors` | nearest vectors in memory: kernels, k-means, cells, the graph of nearest neighbours, calibration, the threshold of unknown classes. Knows no file |
 //! | `store` | a sorted map in a file, a log of changes, and views of both. Knows no shapes |
 //! | `tables`, `derived` | the tables of an index, and those that follow from its shapes |
@@ -55,6 +55,7 @@
 mod derived;
 mod error;
 mod export;
+mod floats;
 mod reader;
 mod search;
 mod shape;

@@ -5,7 +5,8 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 use crate::derived::{Heads, about};
-use crate::store::{Floats, StoredFile, View};
+use crate::floats::Floats;
+use crate::store::{StoredFile, View};
 use crate::tables::{BODIES, CLASSES, ENTRIES, FUSED, entries};
 use crate::{IndexError, Shape, ShapeEntry, ShapeVectors};
 

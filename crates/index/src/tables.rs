@@ -2,12 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::floats::Floats;
 use crate::shape::ShapeKey;
-use crate::store::{Changes, Floats, Table, View};
-use crate::vectors::{CellsHeader, Links, Trial};
+use crate::store::{Changes, Table, View};
+use crate::vectors::{CellsHeader, Links, Part, Trial};
 use crate::{IndexError, Shape, ShapeEntry, ShapeVectors};
-
-use crate::derived::Part;
 
 /// About the whole index, under the empty key.
 pub(crate) static ABOUT: Table<str, About> = Table::new(0, "the head of the index");

@@ -3,10 +3,10 @@
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
-use crate::derived::{Part, all_shapes};
+use crate::derived::all_shapes;
 use crate::shape::{ShapeKey, shape_key};
 use crate::tables::nodes;
-use crate::vectors::{Divided, Links, Reach, Rows, Trials};
+use crate::vectors::{Divided, Links, Part, Reach, Trials};
 use crate::{Index, IndexError, Shape};
 
 /// The result of [`verify`].
@@ -80,8 +80,7 @@ fn check_cells(index: &Index, shapes: &Part, dim: usize) -> Result<Vec<String>, 
     }
     faults.extend(missing.keys().map(|id| format!("`{id}` is in no cell")));
     if faults.is_empty() {
-        let all = Rows { cells: &cells, ..shapes.in_cell(&0) };
-        let fresh = Trials::of(all, heads.header.n_cells);
+        let fresh = Trials::of(shapes, &cells, heads.header.n_cells);
         if heads.header.n != shapes.ids.len() || !heads.trials(view)?.agree(&fresh) {
             faults.push("its trials are not those of its shapes".to_owned());
         }

@@ -1,10 +1,10 @@
 //! Vectors divided into cells, as stored.
 
-use super::part::Part;
 use crate::IndexError;
-use crate::store::{Floats, LIMIT, View};
+use crate::floats::Floats;
+use crate::store::{LIMIT, View};
 use crate::tables::{ABOUT, About, CELLS, CENTROIDS, ENTRIES, FUSED, TRIALS};
-use crate::vectors::{CellsHeader, Centroids, Trial, Trials, padded};
+use crate::vectors::{CellsHeader, Centroids, Part, Trial, Trials, padded};
 
 /// Bytes of vectors in one part of a cell, so that a change writes little.
 const PART: usize = 56 << 10;
@@ -110,22 +110,5 @@ pub(crate) fn all_shapes(view: View<'_>) -> Result<(Part, usize), IndexError> {
     match entries.next().transpose()? {
         None => Ok((part, dim.unwrap_or(1))),
         Some((id, _)) => Err(view.damaged(format!("`{id}` has no vector"))),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn shapes_are_sorted_in_place() {
-        let mut part = Part::default();
-        (0..7).for_each(|i| part.push(&i.to_string(), &format!("c{i}"), &[i as f32, 0.5]));
-        let order = [3, 1, 0, 6, 5, 4, 2];
-        part.sort(&order, 2);
-        for (i, from) in order.into_iter().enumerate() {
-            assert_eq!((part.ids.get(i), part.classes.get(i)), (&*from.to_string(), &*format!("c{from}")));
-            assert_eq!(part.rows()[2 * i..][..2], [from as f32, 0.5]);
-        }
     }
 }

@@ -4,12 +4,11 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::change_graph::follow;
 use super::changed_cells::{Cells, held};
-use super::part::Part;
 use super::train::header;
 use crate::shape::ShapeKey;
 use crate::store::{Changes, View};
 use crate::tables::{ABOUT, About, CLASSES, ENTRIES, GRAPH, TRIALS};
-use crate::vectors::{Rows, Trial, nearest_cells};
+use crate::vectors::{Part, Trial, nearest_cells};
 use crate::{Index, IndexError};
 
 /// What changes in the tables that follow from the shapes, of which there are `n_shapes` now, when those of `base` become
@@ -51,7 +50,7 @@ pub(crate) fn changes(
     let mut trials = heads.trials(before)?;
     let mut known: HashMap<ShapeKey, Trial> =
         trials.all.iter().map(|trial| (trial.key(), trial.clone())).collect();
-    trials.change(&gone.ids, Rows { cells: &to, ..come.in_cell(&0) }, |visit| cells.each(visit))?;
+    trials.change(&gone.ids, &come, &to, |visit| cells.each(visit))?;
     for trial in &trials.all {
         if known.remove(&trial.key()).as_ref() != Some(trial) {
             TRIALS.put(&mut changes, &trial.key(), Some(trial))?;

@@ -12,12 +12,11 @@ use rayon::prelude::*;
 use retrieval::LINKS;
 
 use super::changed_cells::{Cells, held};
-use super::part::Part;
 use crate::IndexError;
 use crate::shape::{ShapeKey, shape_key};
 use crate::store::View;
 use crate::tables::{Node, node, nodes};
-use crate::vectors::{Link, Links, scan, search_cells, sq_distances_into};
+use crate::vectors::{Link, Links, Part, scan, search_cells, sq_distances_into};
 
 /// Shapes near a change whose lists are looked at, if searches are not exact.
 const AROUND: usize = 128;
@@ -121,8 +120,8 @@ impl<'a> Field<'a> {
             return Ok(loaded);
         }
         let (mut rows, mut keys) = (Vec::new(), Vec::new());
-        self.cells.each_of(cell, &mut |shapes| {
-            rows.extend_from_slice(shapes.rows);
+        self.cells.each_of(cell, &mut |shapes, _| {
+            rows.extend_from_slice(shapes.rows());
             keys.extend(shapes.ids.iter().map(shape_key));
         })?;
         Ok(place.get_or_init(|| Loaded { rows, keys }))

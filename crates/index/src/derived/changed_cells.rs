@@ -3,11 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 use super::cells::{Heads, rows_in_part};
-use super::part::Part;
 use crate::IndexError;
-use crate::store::{Changes, Floats, View};
+use crate::floats::Floats;
+use crate::store::{Changes, View};
 use crate::tables::{CELLS, ENTRIES, FUSED};
-use crate::vectors::{Rows, padded};
+use crate::vectors::{Part, Visit, padded};
 
 /// A shape as cells hold it: its padded vector and its class.
 pub(super) fn held(view: View<'_>, id: &str, dim: usize) -> Result<Option<(Vec<f32>, String)>, IndexError> {
@@ -81,17 +81,17 @@ impl<'a> Cells<'a> {
     }
 
     /// Visits all shapes as they are after the changes.
-    pub(super) fn each(&self, visit: &mut dyn FnMut(Rows<'_>)) -> Result<(), IndexError> {
+    pub(super) fn each(&self, visit: &mut Visit<'_>) -> Result<(), IndexError> {
         (0..self.heads.header.n_cells as u32).try_for_each(|cell| self.each_of(cell, visit))
     }
 
     /// Visits the shapes of a cell as they are after the changes.
-    pub(super) fn each_of(&self, cell: u32, visit: &mut dyn FnMut(Rows<'_>)) -> Result<(), IndexError> {
+    pub(super) fn each_of(&self, cell: u32, visit: &mut Visit<'_>) -> Result<(), IndexError> {
         match self.loaded.get(&cell) {
-            Some(loaded) => loaded.parts.values().for_each(|part| visit(part.in_cell(&cell))),
+            Some(loaded) => loaded.parts.values().for_each(|part| visit(part, &[cell])),
             None => {
                 for part in self.heads.parts(self.view, cell) {
-                    visit(part?.1.in_cell(&cell));
+                    visit(&part?.1, &[cell]);
                 }
             }
         }

@@ -6,12 +6,11 @@ use base::Observer;
 
 use super::cells::{all_shapes, rows_in_part};
 use crate::IndexError;
+use crate::floats::Floats;
 use crate::shape::{ShapeKey, shape_key};
-use crate::store::{Floats, Record, View};
+use crate::store::{Record, View};
 use crate::tables::{ABOUT, About, CELLS, CENTROIDS, CLASSES, GRAPH, Node, TRIALS};
-use crate::vectors::{CellsHeader, Centroids, Divided, Links, Rows, Trials, divided, n_cells, padded};
-
-use super::Part;
+use crate::vectors::{CellsHeader, Centroids, Divided, Links, Part, Trials, divided, n_cells, padded};
 
 /// Everything that follows from the shapes of an index.
 pub(crate) struct Trained {
@@ -36,7 +35,7 @@ pub(crate) fn trained(view: View<'_>, options: &str, observer: &dyn Observer) ->
     order.sort_by_key(|i| cells[*i]);
     shapes.sort(&order, n);
     cells.sort_unstable();
-    let trials = Trials::of(Rows { cells: &cells, ..shapes.in_cell(&0) }, n_cells);
+    let trials = Trials::of(&shapes, &cells, n_cells);
     let header = header(dim, n_rows, n_rows, &centroids, &trials);
     let keys: Vec<ShapeKey> = shapes.ids.iter().map(shape_key).collect();
     let starts: Vec<usize> =

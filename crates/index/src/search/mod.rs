@@ -138,7 +138,7 @@ pub fn class_threshold(indexes: &[Index]) -> Result<Option<UnknownThreshold>, In
         for index in indexes {
             let (shapes, _) = all_shapes(index.view())?;
             if shapes.ids.len() > 0 {
-                visit(shapes.in_cell(&0));
+                visit(&shapes, &[0]);
             }
         }
         Ok::<_, IndexError>(())

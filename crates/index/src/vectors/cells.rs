@@ -141,10 +141,10 @@ pub(crate) fn scan(query: &[f32], first: u32, rows: &[f32], nearest: &mut Neares
 
 #[cfg(test)]
 mod tests {
+    use super::super::part::Part;
     use super::super::testing::{clustered, noise};
-    use super::super::trials::{Rows, Trials};
+    use super::super::trials::Trials;
     use super::*;
-    use crate::texts::Texts;
 
     #[test]
     fn few_vectors_form_one_cell() {
@@ -179,9 +179,9 @@ mod tests {
         let (all, _) = clustered(6200, 300, 16, 0.3);
         let (rows, queries) = all.split_at(6000 * 16);
         let (centroids, of_row) = divided(rows, 16, 80);
-        let ids: Texts = (0..6000).map(|i| i.to_string()).collect();
-        let classes: Texts = (0..6000).map(|_| "").collect();
-        let trials = Trials::of(Rows { rows, ids: &ids, classes: &classes, cells: &of_row }, 80);
+        let mut shapes = Part::default();
+        rows.chunks(16).enumerate().for_each(|(i, row)| shapes.push(&i.to_string(), "", row));
+        let trials = Trials::of(&shapes, &of_row, 80);
         let (reach, recall) = trials.calibrated(&centroids);
         assert!(recall >= 0.99, "{recall} with {reach:?}");
         let (mut found, mut wanted, mut scanned) = (0, 0, 0);

@@ -18,6 +18,7 @@ mod graph;
 pub(crate) mod kernels;
 mod kmeans;
 mod nearest;
+mod part;
 #[cfg(test)]
 mod testing;
 mod trials;
@@ -27,4 +28,5 @@ pub(crate) use graph::{Divided, Link, Links};
 pub(crate) use kernels::{padded, sq_distances_into};
 pub(crate) use kmeans::Centroids;
 pub(crate) use nearest::{Hit, Nearest};
-pub(crate) use trials::{NEIGHBORS, Rows, Trial, Trials};
+pub(crate) use part::Part;
+pub(crate) use trials::{NEIGHBORS, Trial, Trials, Visit};

@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 use super::cells::{Reach, nearest_cells};
 use super::kernels::sq_distances_into;
 use super::kmeans::Centroids;
+use super::part::Part;
 use crate::shape::{ShapeKey, shape_key};
 use crate::texts::Texts;
 
@@ -40,7 +41,7 @@ const BLOCK: usize = 1024;
 /// The key of a shape, and whether it has a class.
 type SampleKey = (ShapeKey, bool);
 
-fn sample_key((id, class): (&str, &str)) -> SampleKey {
+fn sample_key(id: &str, class: &str) -> SampleKey {
     (shape_key(id), !class.is_empty())
 }
 
@@ -73,29 +74,8 @@ pub(crate) struct Trial {
     is_stale: bool,
 }
 
-/// Shapes that a trial meets.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Rows<'a> {
-    /// Padded vectors.
-    pub(crate) rows: &'a [f32],
-    pub(crate) ids: &'a Texts,
-    pub(crate) classes: &'a Texts,
-    /// The cell of all of them, or of each.
-    pub(crate) cells: &'a [u32],
-}
-
-impl<'a> Rows<'a> {
-    /// The vector of a shape.
-    pub(crate) fn row(self, i: usize) -> &'a [f32] {
-        let n = self.rows.len() / self.ids.len();
-        &self.rows[i * n..][..n]
-    }
-
-    /// Names and classes.
-    fn pairs(self) -> impl Iterator<Item = (&'a str, &'a str)> {
-        self.ids.iter().zip(self.classes.iter())
-    }
-}
+/// Called with shapes and the cell of all of them, or of each.
+pub(crate) type Visit<'a> = dyn FnMut(&Part, &[u32]) + 'a;
 
 impl Trial {
     /// A trial that has met no shape. In an index of one cell it keeps no neighbours.
@@ -123,17 +103,17 @@ impl Trial {
     }
 
     /// Meets some of these shapes, which it has not met before.
-    fn meet(&mut self, shapes: Rows<'_>, range: Range<usize>) {
+    fn meet(&mut self, shapes: &Part, cells: &[u32], range: Range<usize>) {
         let n = self.row.len();
         let mut sqs = [0.0; CHUNK];
         for start in range.clone().step_by(CHUNK) {
             let end = range.end.min(start + CHUNK);
             let sqs = &mut sqs[..end - start];
-            sq_distances_into(&self.row, &shapes.rows[start * n..end * n], sqs);
+            sq_distances_into(&self.row, &shapes.rows()[start * n..end * n], sqs);
             let mut bound = self.bound();
             for (i, sq) in (start..).zip(sqs.iter().copied()) {
                 if sq <= bound && shapes.ids.get(i) != self.id {
-                    let cell = shapes.cells[i % shapes.cells.len()];
+                    let cell = cells[i % cells.len()];
                     self.keep(sq, cell, shapes.ids.get(i), shapes.classes.get(i));
                     bound = self.bound();
                 }
@@ -222,9 +202,9 @@ pub(crate) struct Trials {
 
 impl Trials {
     /// Trials of an index that holds `shapes` in `n_cells` cells.
-    pub(crate) fn of(shapes: Rows<'_>, n_cells: usize) -> Self {
+    pub(crate) fn of(shapes: &Part, cells: &[u32], n_cells: usize) -> Self {
         let Ok(trials) = Self::in_pieces(n_cells, |visit| {
-            visit(shapes);
+            visit(shapes, cells);
             Ok::<_, Infallible>(())
         });
         trials
@@ -233,26 +213,26 @@ impl Trials {
     /// The same of shapes that `everything` lists in some number of pieces, whenever it is called.
     pub(crate) fn in_pieces<E>(
         n_cells: usize,
-        mut everything: impl FnMut(&mut dyn FnMut(Rows<'_>)) -> Result<(), E>,
+        mut everything: impl FnMut(&mut Visit<'_>) -> Result<(), E>,
     ) -> Result<Self, E> {
         let mut keys: Vec<SampleKey> = Vec::new();
-        everything(&mut |shapes| keys.extend(shapes.pairs().map(sample_key)))?;
+        everything(&mut |shapes, _| {
+            keys.extend(shapes.shapes().map(|(id, class, _)| sample_key(id, class)))
+        })?;
         let sample = sample(keys);
         let mut trials = Self { all: Vec::new(), n_cells };
-        everything(&mut |shapes| trials.begin(shapes, &sample))?;
+        everything(&mut |shapes, _| trials.begin(shapes, &sample))?;
         trials.all.sort_by_key(Trial::key);
-        everything(&mut |shapes| meet_all(&mut trials.all.iter_mut().collect::<Vec<_>>(), shapes))?;
+        let mut all: Vec<&mut Trial> = trials.all.iter_mut().collect();
+        everything(&mut |shapes, cells| meet_all(&mut all, shapes, cells))?;
         trials.all.iter_mut().for_each(|trial| trial.is_stale = false);
         Ok(trials)
     }
 
     /// Adds those of these shapes that are in the sample, as trials that have met no shape.
-    fn begin(&mut self, shapes: Rows<'_>, sample: &HashSet<ShapeKey>) {
-        for (i, (id, class)) in shapes.pairs().enumerate() {
-            if sample.contains(&shape_key(id)) {
-                self.all.push(Trial::new(id, class, shapes.row(i), self.n_cells));
-            }
-        }
+    fn begin(&mut self, shapes: &Part, sample: &HashSet<ShapeKey>) {
+        let held = shapes.shapes().filter(|(id, ..)| sample.contains(&shape_key(id)));
+        self.all.extend(held.map(|(id, class, row)| Trial::new(id, class, row, self.n_cells)));
     }
 
     /// Takes into account which shapes are gone, and which have come, some of them under the same names. `everything` lists
@@ -261,11 +241,12 @@ impl Trials {
     pub(crate) fn change<E>(
         &mut self,
         gone: &Texts,
-        come: Rows<'_>,
-        mut everything: impl FnMut(&mut dyn FnMut(Rows<'_>)) -> Result<(), E>,
+        come: &Part,
+        cells: &[u32],
+        mut everything: impl FnMut(&mut Visit<'_>) -> Result<(), E>,
     ) -> Result<(), E> {
         let gone: HashSet<&str> = gone.iter().collect();
-        let classes: HashMap<&str, &str> = come.pairs().collect();
+        let classes: HashMap<&str, &str> = come.ids.iter().zip(come.classes.iter()).collect();
         // A trial that is gone makes room for a shape that is not among the trials, unless all shapes are.
         let makes_room = |trial: &Trial| match classes.get(trial.id.as_str()) {
             Some(class) => class.is_empty() && !trial.class.is_empty(),
@@ -278,10 +259,11 @@ impl Trials {
         self.all.retain(|trial| !gone.contains(trial.id.as_str()));
         self.all.par_iter_mut().for_each(|trial| {
             trial.part(&gone);
-            trial.meet(come, 0..come.ids.len());
+            trial.meet(come, cells, 0..come.ids.len());
         });
-        let known = self.all.iter().map(|trial| (trial.id.as_str(), trial.class.as_str()));
-        let sample = sample(known.chain(come.pairs()).map(sample_key).collect());
+        let known = self.all.iter().map(|trial| sample_key(&trial.id, &trial.class));
+        let new = come.shapes().map(|(id, class, _)| sample_key(id, class));
+        let sample = sample(known.chain(new).collect());
         self.all.retain(|trial| sample.contains(&trial.key()));
         self.begin(come, &sample);
         self.all.sort_by_key(Trial::key);
@@ -290,7 +272,7 @@ impl Trials {
             for trial in &mut stale {
                 **trial = Trial::new(&trial.id, &trial.class, &trial.row, self.n_cells);
             }
-            everything(&mut |shapes| meet_all(&mut stale, shapes))?;
+            everything(&mut |shapes, cells| meet_all(&mut stale, shapes, cells))?;
             stale.into_iter().for_each(|trial| trial.is_stale = false);
         }
         Ok(())
@@ -360,12 +342,12 @@ impl Trials {
 }
 
 /// Lets trials meet all of these shapes, a group of trials and a block of shapes at a time.
-fn meet_all(trials: &mut [&mut Trial], shapes: Rows<'_>) {
+fn meet_all(trials: &mut [&mut Trial], shapes: &Part, cells: &[u32]) {
     let n_shapes = shapes.ids.len();
     trials.par_chunks_mut(GROUP).for_each(|group| {
         for first in (0..n_shapes).step_by(BLOCK) {
             for trial in &mut *group {
-                trial.meet(shapes, first..(first + BLOCK).min(n_shapes));
+                trial.meet(shapes, cells, first..(first + BLOCK).min(n_shapes));
             }
         }
     });
@@ -376,27 +358,18 @@ mod tests {
     use super::super::testing::{clustered, noise};
     use super::*;
 
-    /// Shapes with names, classes and cells, all derived from their numbers.
-    struct Shapes {
-        rows: Vec<f32>,
-        ids: Texts,
-        classes: Texts,
-        cells: Vec<u32>,
+    /// Shapes with names and classes, and their cells, all derived from their numbers.
+    fn shapes(numbers: impl Iterator<Item = usize>, all: &[f32]) -> (Part, Vec<u32>) {
+        let (mut shapes, mut cells) = (Part::default(), Vec::new());
+        for i in numbers {
+            shapes.push(&format!("s{i}"), &class(i), &all[i * 16..][..16]);
+            cells.push(i as u32 % 7);
+        }
+        (shapes, cells)
     }
 
-    impl Shapes {
-        fn of(numbers: impl Iterator<Item = usize> + Clone, all: &[f32]) -> Self {
-            Self {
-                rows: numbers.clone().flat_map(|i| &all[i * 16..][..16]).copied().collect(),
-                ids: numbers.clone().map(|i| format!("s{i}")).collect(),
-                classes: numbers.clone().map(class).collect(),
-                cells: numbers.map(|i| i as u32 % 7).collect(),
-            }
-        }
-
-        fn rows(&self) -> Rows<'_> {
-            Rows { rows: &self.rows, ids: &self.ids, classes: &self.classes, cells: &self.cells }
-        }
+    fn trials((shapes, cells): &(Part, Vec<u32>), n_cells: usize) -> Trials {
+        Trials::of(shapes, cells, n_cells)
     }
 
     fn class(i: usize) -> String {
@@ -417,7 +390,7 @@ mod tests {
     fn changes_lead_where_a_new_start_leads() {
         let all = clustered(3000, 40, 16, 0.2).0;
         for n_cells in [1, 7] {
-            let mut trials = Trials::of(Shapes::of(0..300, &all).rows(), n_cells);
+            let mut changed = trials(&shapes(0..300, &all), n_cells);
             let mut present: Vec<usize> = (0..300).collect();
             let mut asked = 0;
             // Grows beyond the number of trials, and shrinks again.
@@ -428,15 +401,15 @@ mod tests {
                 present.retain(|i| !gone.contains(i));
                 present.extend(new.clone());
                 let gone = gone.iter().map(|i| format!("s{i}")).collect();
-                let new = Shapes::of(new, &all);
-                let now = Shapes::of(present.iter().copied(), &all);
-                let everything = |visit: &mut dyn FnMut(Rows<'_>)| {
+                let (come, cells) = shapes(new, &all);
+                let now = shapes(present.iter().copied(), &all);
+                let everything = |visit: &mut Visit<'_>| {
                     asked += 1;
-                    visit(now.rows());
+                    visit(&now.0, &now.1);
                     Ok::<(), ()>(())
                 };
-                trials.change(&gone, new.rows(), everything).unwrap();
-                assert_same(&trials, &Trials::of(now.rows(), n_cells));
+                changed.change(&gone, &come, &cells, everything).unwrap();
+                assert_same(&changed, &trials(&now, n_cells));
             }
             assert!(asked > 0);
         }
@@ -445,34 +418,35 @@ mod tests {
     #[test]
     fn an_addition_that_is_no_trial_measures_trials_only() {
         let all = noise(2000, 16, 3);
-        let mut trials = Trials::of(Shapes::of(0..1999, &all).rows(), 1);
-        let before = trials.clone();
+        let mut changed = trials(&shapes(0..1999, &all), 1);
+        let before = changed.clone();
         let outside = (0..).map(|i| format!("x{i}")).find(|id| shape_key(id) > u64::MAX - (1000 << 32));
-        let come = Shapes { ids: outside.iter().collect(), ..Shapes::of(1999..2000, &all) };
-        trials.change(&Texts::default(), come.rows(), |_| Err("nothing else is needed")).unwrap();
-        assert_eq!(trials.all.len(), before.all.len());
+        let mut come = Part::default();
+        come.push(&outside.unwrap_or_default(), "c1", &all[1999 * 16..]);
+        changed.change(&Texts::default(), &come, &[0], |_| Err("nothing else is needed")).unwrap();
+        assert_eq!(changed.all.len(), before.all.len());
     }
 
     #[test]
     fn pieces_give_the_trials_of_the_whole() {
         let all = noise(900, 16, 5);
-        let whole = Shapes::of(0..900, &all);
-        let pieces = [Shapes::of(0..10, &all), Shapes::of(10..700, &all), Shapes::of(700..900, &all)];
+        let pieces = [0..10, 10..700, 700..900].map(|range| shapes(range, &all));
         let found = Trials::in_pieces(7, |visit| {
-            pieces.iter().for_each(|piece| visit(piece.rows()));
+            pieces.iter().for_each(|(shapes, cells)| visit(shapes, cells));
             Ok::<_, Infallible>(())
         });
-        assert_eq!(found, Ok(Trials::of(whole.rows(), 7)));
+        assert_eq!(found, Ok(trials(&shapes(0..900, &all), 7)));
     }
 
     #[test]
     fn matches_the_threshold_from_all_pairs() {
         let positions = [0.0f32, 1.0, 2.5, 10.0, 11.0, 30.0];
-        let rows: Vec<f32> = positions.iter().flat_map(|x| [&[*x][..], &[0.0; 15]].concat()).collect();
-        let ids: Texts = (0..6).map(|i| i.to_string()).collect();
         let threshold = |classes: [&str; 6]| {
-            let classes = classes.iter().collect();
-            Trials::of(Rows { rows: &rows, ids: &ids, classes: &classes, cells: &[0] }, 1).threshold()
+            let mut shapes = Part::default();
+            for (i, (x, class)) in positions.iter().zip(classes).enumerate() {
+                shapes.push(&i.to_string(), class, &[&[*x][..], &[0.0; 15]].concat());
+            }
+            Trials::of(&shapes, &[0], 1).threshold()
         };
         // Own: 1, 1, 1.5, 1, 1; foreign: 10, 9, 7.5, 7.5, 8.5, 19.
         let expected = UnknownThreshold { distance: 4.5, missed: 0.0, mistaken: 0.0 };
