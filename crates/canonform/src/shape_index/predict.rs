@@ -3,7 +3,7 @@
 use descriptors::{PartDistance, ShapeMetric};
 use index::ShapeEntry;
 use relations::Relation;
-use retrieval::{Neighbor, Tally, UnknownThreshold, vote};
+use retrieval::{Labels, Neighbor, Tally, UnknownThreshold, vote};
 use serde::{Deserialize, Serialize};
 
 use super::found::{OrderedBy, SearchResult};
@@ -156,12 +156,8 @@ pub(super) fn predicted(
     let as_part = results.first().and_then(part_distance);
     let class_below = as_part.map_or(ShapeMetric::SAME_CLASS.at, |_| PartDistance::SAME_CLASS);
     let threshold = threshold.map(|threshold| threshold.distance);
-    // Shapes without a class have no vote.
-    let labelled = || results.iter().enumerate().filter(|(_, result)| !result.label.is_empty());
-    let mut classes: Vec<&str> = labelled().map(|(_, result)| result.label.as_str()).collect();
-    classes.sort_unstable();
-    classes.dedup();
-    let class_of = |i: usize| classes.partition_point(|class| *class < results[i].label.as_str());
+    let labels = Labels::new(&results.iter().map(|result| &result.label).collect::<Vec<_>>());
+    let label = |class: usize| labels.classes()[class].clone();
     let reach = |result: &SearchResult| {
         if let Some(distance) = part_distance(result) {
             return distance / class_below;
@@ -169,11 +165,12 @@ pub(super) fn predicted(
         let combined = result.relation.because.distance.combined / class_below;
         threshold.map_or(combined, |threshold| combined.min(result.fused / threshold))
     };
+    // Shapes without a class have no vote.
+    let labelled = results.iter().enumerate().filter(|(_, result)| !result.label.is_empty());
     let neighbors: Vec<_> =
-        labelled().map(|(index, result)| Neighbor { index, distance: reach(result) }).collect();
-    let vote = vote(&neighbors, class_of, VOTERS, Some(1.0));
-    let of_class =
-        |of: &Tally| ClassVotes { label: classes[of.class].to_owned(), votes: of.votes, share: of.share };
+        labelled.map(|(index, result)| Neighbor { index, distance: reach(result) }).collect();
+    let vote = vote(&neighbors, |i| labels.class(i), VOTERS, Some(1.0));
+    let of_class = |of: &Tally| ClassVotes { label: label(of.class), votes: of.votes, share: of.share };
     let tally = vote.tally.iter().map(of_class).collect();
     let nearest = results.first().map(|result| NearestShape {
         id: result.id.clone(),
@@ -184,12 +181,12 @@ pub(super) fn predicted(
     let unknown = match (vote.class, &nearest) {
         (Some(_), _) => None,
         (None, None) => Some(Unknown::EmptyIndex),
-        (None, Some(_)) if classes.is_empty() => Some(Unknown::Unlabelled),
+        (None, Some(_)) if neighbors.is_empty() => Some(Unknown::Unlabelled),
         (None, Some(_)) if signs.is_empty() || as_part.is_some() => Some(Unknown::NothingNear),
         (None, Some(_)) => Some(Unknown::Partial),
     };
     let mut found = Prediction {
-        label: vote.class.map(|class| classes[class].to_owned()),
+        label: vote.class.map(label),
         votes: vote.votes,
         voters: vote.voters,
         confidence: vote.confidence,
