@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 use crate::derived::{Heads, about};
 use crate::floats::Floats;
 use crate::store::{StoredFile, View};
-use crate::tables::{BODIES, CLASSES, ENTRIES, FUSED, entries};
+use crate::tables::{BODIES, CLASSES, ENTRIES, FUSED};
 use crate::{IndexError, Shape, ShapeEntry, ShapeVectors};
 
 /// A finished index, open for reading.
@@ -156,6 +156,6 @@ impl Index {
 
     /// All names and entries, in ascending order of names.
     pub fn entries(&self) -> Result<Vec<(String, ShapeEntry)>, IndexError> {
-        entries(self.view())
+        ENTRIES.rows(self.view(), &[]).collect()
     }
 }

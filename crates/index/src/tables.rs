@@ -89,11 +89,6 @@ pub(crate) fn remove_shape(changes: &mut Changes, id: &str) -> Result<(), IndexE
     BODIES.put(changes, id, None)
 }
 
-/// All names and entries.
-pub(crate) fn entries(view: View<'_>) -> Result<Vec<(String, ShapeEntry)>, IndexError> {
-    ENTRIES.rows(view, &[]).collect()
-}
-
 /// The list of a shape; `None` if it is not in the graph.
 pub(crate) fn node(view: View<'_>, key: ShapeKey) -> Result<Option<Node>, IndexError> {
     GRAPH.get(view, &key)?.map(|node| sound(view, key, node)).transpose()

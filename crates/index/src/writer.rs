@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::derived::{changes, trained};
 use crate::store::{Changes, Log, Record, StoredFile, View, decode, encode};
-use crate::tables::{ENTRIES, FUSED, SHAPES, entries, put_shape, remove_shape};
+use crate::tables::{ENTRIES, FUSED, SHAPES, put_shape, remove_shape};
 use crate::{Index, IndexError, Shape, ShapeEntry};
 
 /// The job of a writer. An interrupted job can be resumed by the same kind of job.
@@ -200,7 +200,7 @@ impl IndexWriter {
 
     /// The names and entries of all shapes so far, in ascending order of names.
     pub fn entries(&self) -> Result<Vec<(String, ShapeEntry)>, IndexError> {
-        entries(self.view())
+        ENTRIES.rows(self.view(), &[]).collect()
     }
 
     /// Stores shapes, replacing those of the same names. Either all of them are on disk when it returns, or none.

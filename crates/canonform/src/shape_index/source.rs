@@ -160,6 +160,8 @@ impl Inputs<'_> {
     pub(super) fn list(&self, home: &Home, is_class: impl Fn(&str) -> bool) -> Result<Listing, Error> {
         let (mut shapes, mut stored, mut skipped) = (Vec::new(), Vec::new(), Vec::new());
         let (mut seen, mut single) = (HashSet::new(), Vec::new());
+        // What cannot be found is reported when it is read.
+        let mut is_repeated = |path: &Path| FileId::of(path).is_ok_and(|id| !seen.insert(id));
         let mut skip = |path: &Path, kind| skipped.push(Skipped { path: path.to_owned(), kind });
         for path in self.paths {
             if is_dataset(path) {
@@ -167,12 +169,11 @@ impl Inputs<'_> {
                 let dataset = Dataset::read(path, self.labels)?;
                 dataset.skipped.into_iter().for_each(|it| skip(&it.path, it.kind));
                 for shape in dataset.shapes {
-                    match FileId::of(&shape.path).map(|id| seen.insert(id)) {
-                        Ok(false) => skip(&shape.path, SkipKind::Repeated),
-                        _ => {
-                            stored.push(root.text(&shape.path));
-                            shapes.push(shape);
-                        }
+                    if is_repeated(&shape.path) {
+                        skip(&shape.path, SkipKind::Repeated);
+                    } else {
+                        stored.push(root.text(&shape.path));
+                        shapes.push(shape);
                     }
                 }
                 continue;
@@ -182,16 +183,13 @@ impl Inputs<'_> {
                 skip(path, SkipKind::NotUtf8);
                 continue;
             };
-            match FileId::of(path).map(|id| seen.insert(id)) {
-                Ok(false) => skip(path, SkipKind::Repeated),
-                // What cannot be found is reported when it is read.
-                _ => {
-                    stored.push(home.file_text(path));
-                    single.push(shapes.len());
-                    let label = String::new();
-                    shapes.push(ShapeFile { label, name: name.to_owned(), path: path.clone() });
-                }
+            if is_repeated(path) {
+                skip(path, SkipKind::Repeated);
+                continue;
             }
+            stored.push(home.file_text(path));
+            single.push(shapes.len());
+            shapes.push(ShapeFile { label: String::new(), name: name.to_owned(), path: path.clone() });
         }
         self.label_single(&mut shapes, &single, &is_class);
         if let Some(label) = self.label {

@@ -125,10 +125,8 @@ pub(crate) struct StoredFile {
     path: PathBuf,
     file: Mutex<File>,
     state: State,
-    /// From the first one on, also those that were taken in by later ones.
+    /// The last one first, also those that were taken in by later ones.
     segments: Vec<Segment>,
-    /// Those that count, the last one first.
-    counting: Vec<usize>,
 }
 
 impl StoredFile {
@@ -150,26 +148,20 @@ impl StoredFile {
         let file = Mutex::new(file);
         let changed = || IndexError::damaged(path, "its lists of blocks changed");
         let (mut segments, mut end, mut sum) = (Vec::<Segment>::new(), state.end, state.sum);
+        let mut below = end;
         while end > HEAD as u64 {
-            let segment = Segment::read(&file, end).map_err(cannot_read)?.ok_or_else(changed)?;
-            if segment.sum != sum {
-                return Err(changed());
+            let segment = Segment::read(&file, end).map_err(cannot_read)?;
+            let mut segment = segment.filter(|segment| segment.sum == sum).ok_or_else(changed)?;
+            if segment.end == below {
+                (segment.counts, below) = (true, segment.below);
             }
             (end, sum) = (segment.start, segment.before);
             segments.push(segment);
         }
-        segments.reverse();
-        let (mut counting, mut below) = (Vec::new(), state.end);
-        for (i, segment) in segments.iter().enumerate().rev() {
-            if segment.end == below {
-                counting.push(i);
-                below = segment.below;
-            }
-        }
         if (end, sum, below) != (HEAD as u64, 0, HEAD as u64) || segments.is_empty() {
             return Err(changed());
         }
-        Ok(Self { path: path.to_owned(), file, state, segments, counting })
+        Ok(Self { path: path.to_owned(), file, state, segments })
     }
 
     pub(crate) fn path(&self) -> &Path {
@@ -188,7 +180,7 @@ impl StoredFile {
 
     /// The value of a key.
     pub(super) fn get(&self, key: &[u8]) -> Result<Option<Vec<u8>>, IndexError> {
-        for segment in self.counting.iter().map(|i| &self.segments[*i]) {
+        for segment in self.segments.iter().filter(|segment| segment.counts) {
             let Some(block) = segment.block_of(key) else { continue };
             let (bytes, mut at) = (self.block(segment, block)?, 0);
             while at < bytes.len() {
@@ -204,8 +196,8 @@ impl StoredFile {
 
     /// The segments that count as runs from a key on, the last one first.
     pub(super) fn runs<'a>(&'a self, from: &[u8]) -> impl Iterator<Item = Run<'a>> {
-        let from = from.to_vec();
-        self.counting.iter().map(move |i| Box::new(Cursor::new(self, &self.segments[*i], &from)) as Run<'a>)
+        let (from, counting) = (from.to_vec(), self.segments.iter().filter(|segment| segment.counts));
+        counting.map(move |segment| Box::new(Cursor::new(self, segment, &from)) as Run<'a>)
     }
 
     /// Reads a block.
@@ -248,11 +240,11 @@ impl StoredFile {
     /// # Errors
     /// [`IndexError::Io`]; then the file is as it was.
     pub(crate) fn append(&self, changes: Vec<Run<'_>>, mut n_bytes: u64) -> Result<bool, IndexError> {
-        let first = &self.segments[0];
+        let Some((first, later)) = self.segments.split_last() else { return Ok(false) };
         // As much as half of the first segment, so that the time to write the file anew is proportional to the changes.
         let room = (first.n_bytes() / 2).saturating_sub(self.state.end - first.end);
         let (mut taken, mut below) = (changes, self.state.end);
-        for segment in self.counting.iter().filter(|i| **i > 0).map(|i| &self.segments[*i]) {
+        for segment in later.iter().filter(|segment| segment.counts) {
             if segment.n_bytes() > 2 * n_bytes {
                 break;
             }
