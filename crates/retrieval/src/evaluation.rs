@@ -166,7 +166,6 @@ fn knn_predict(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mean_scores;
     use crate::ranking::line;
 
     fn two_clusters(gap: f64) -> (DistanceMatrix, Labels) {
@@ -212,7 +211,7 @@ mod tests {
         assert_eq!(Evaluation { intervals: None, ..plain }, evaluate(&matrix, &labels, 1).unwrap());
         let graph = both.graph.clone().unwrap();
         let rankings = GraphRankings::new(&matrix);
-        assert_eq!(graph.mean, mean_scores(&rankings, &labels, Averaging::Micro).unwrap());
+        assert_eq!(graph.mean, QueryScores::new(&rankings, &labels).unwrap().mean(&labels, Averaging::Micro));
         assert_eq!(graph.confusion.iter().flatten().sum::<usize>(), 9);
         let json = serde_json::to_value(&both).unwrap();
         assert_eq!((&json["graph"]["map"], &json["map"]), (&graph.mean.map.into(), &both.mean.map.into()));

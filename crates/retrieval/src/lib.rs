@@ -39,6 +39,6 @@ pub use graph::{Graph, GraphNeighbor, GraphRankings, LINKS, graph_rank};
 pub use labels::Labels;
 pub use ranking::{Neighbor, Rankings, rank, rank_row};
 pub use refinement::{Candidate, Refinement, refine_nearest};
-pub use scores::{Averaging, QueryScores, Scores, mean_scores, precision_recall};
+pub use scores::{Averaging, QueryScores, Scores, precision_recall};
 pub use splits::{SplitAccuracy, SplitOptions, split_accuracy};
 pub use vote::{Tally, UnknownThreshold, Vote, vote};

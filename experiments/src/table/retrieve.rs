@@ -17,7 +17,7 @@ use report::results::{
 };
 use retrieval::{
     Averaging, BootstrapOptions, GraphRankings, Labels, Neighbor, QueryScores, Rankings, Scores,
-    SplitOptions, UnknownThreshold, bootstrap, mean_scores, precision_recall, rank, split_accuracy, vote,
+    SplitOptions, UnknownThreshold, bootstrap, precision_recall, rank, split_accuracy, vote,
 };
 use serde::Deserialize;
 
@@ -222,9 +222,9 @@ impl RetrievalOptions {
             // Without one of two classes there is nothing to distinguish.
             let (rest, rest_labels) = without(distances, labels, class)?;
             if rest_labels.classes().len() > 1
-                && let Ok(rest) = mean_scores(&rest, &rest_labels, Averaging::Micro)
+                && let Ok(scores) = QueryScores::new(&rest, &rest_labels)
             {
-                held_out_map = held_out_map.min(rest.map);
+                held_out_map = held_out_map.min(scores.mean(&rest_labels, Averaging::Micro).map);
             }
         }
         Ok(RetrievalRow {

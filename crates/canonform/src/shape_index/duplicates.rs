@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use base::Observer;
 use descriptors::{ShapeDistance, ShapeMetric};
-use index::{SearchMode, ShapeEntry, ShapeVectors};
+use index::{SearchMode, ShapeEntry};
 use rayon::prelude::*;
 use relations::{Handedness, MeshGeometry, Relation, RelationKind, SurfaceInvariants};
 use serde::Serialize;
@@ -123,7 +123,7 @@ impl DuplicateReport {
 struct Candidate {
     id: String,
     entry: ShapeEntry,
-    vectors: ShapeVectors,
+    fused: Vec<f32>,
     /// Of its mesh, if that was read: it is near another shape, and unchanged.
     invariants: Option<SurfaceInvariants>,
 }
@@ -184,12 +184,11 @@ pub fn find_duplicates(
 }
 
 fn candidates(search: &ShapeSearch) -> Result<Vec<Candidate>, Error> {
-    let entries = search.index().entries()?;
-    let read = |(id, entry): (String, ShapeEntry)| {
-        let vectors = search.index().vectors(&id)?;
-        Ok(Candidate { id, entry, vectors, invariants: None })
-    };
-    entries.into_par_iter().map(read).collect()
+    let (entries, fused) = (search.index().entries()?, search.index().fused_vectors()?);
+    let n = fused.len() / entries.len().max(1);
+    let vectors = fused.chunks(n.max(1)).map(<[f32]>::to_vec);
+    let shapes = entries.into_iter().zip(vectors);
+    Ok(shapes.map(|((id, entry), fused)| Candidate { id, entry, fused, invariants: None }).collect())
 }
 
 /// Reads the meshes of some shapes for their invariants, and does not keep them.
@@ -218,7 +217,7 @@ fn pairs_of(cluster: &[usize]) -> impl Iterator<Item = Pair> {
 
 impl Candidate {
     fn distance(&self, other: &Self) -> f64 {
-        ShapeMetric::robust(&self.vectors.fused, &other.vectors.fused)
+        ShapeMetric::robust(&self.fused, &other.fused)
     }
 
     /// Whether their meshes, or their files, may be one.
@@ -245,7 +244,7 @@ fn near_pairs(
     observer.begin("searching", candidates.len());
     let near = |(i, candidate): (usize, &Candidate)| {
         budget.check()?;
-        let found = search.index().nearest(&candidate.vectors.fused, NEIGHBOURS + 1, SearchMode::Auto)?;
+        let found = search.index().nearest(&candidate.fused, NEIGHBOURS + 1, SearchMode::Auto)?;
         observer.step();
         let others = found.shapes.into_iter().filter_map(|shape| number.get(shape.id.as_str()).copied());
         let near = others.filter(|&j| i != j && candidate.distance(&candidates[j]) < NEAR);

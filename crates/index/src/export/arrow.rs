@@ -11,11 +11,11 @@ pub(super) const KEY: &str = "ARROW:schema";
 
 /// The value of the metadata for these columns.
 pub(super) fn schema(columns: &[Column]) -> String {
-    use Value::{Byte, Short, Table, Tables};
+    use Value::{Number, Table, Tables};
 
     let fields = columns.iter().map(field).collect();
     // Message.fbs: version 5, whose header is a schema.
-    let message = Table(vec![(0, Short(4)), (1, Byte(1)), (2, Table(vec![(1, Tables(fields))]))]);
+    let message = Table(vec![(0, Number(4)), (1, Number(1)), (2, Table(vec![(1, Tables(fields))]))]);
     let mut bytes = vec![0; 4];
     let at = message.write(&mut bytes);
     bytes[..4].copy_from_slice(&at.to_le_bytes());
@@ -26,20 +26,20 @@ pub(super) fn schema(columns: &[Column]) -> String {
 
 /// Field and Type of Schema.fbs. Only fused vectors are of one length in every index.
 fn field(column: &Column) -> Value {
-    use Value::{Byte, Int, Short, Table, Tables, Text};
+    use Value::{Number, Table, Tables, Text};
 
-    let float = |precision| Table(vec![(0, Short(precision))]);
+    let float = |precision| Table(vec![(0, Number(precision))]);
     let (number, about) = match &column.content {
         Content::Text(..) => (5, Table(Vec::new())),
         Content::Fact(_) => (3, float(2)),
         Content::Floats(extents) if column.name == "fused" && extents[0] > 0 => {
-            (16, Table(vec![(0, Int(extents[0] as u32))]))
+            (16, Table(vec![(0, Number(extents[0] as u32))]))
         }
         Content::Floats(_) => (12, Table(Vec::new())),
     };
     let element = || {
         let name = Text("element".to_owned());
-        Table(vec![(0, name), (1, Byte(0)), (2, Byte(3)), (3, float(1)), (5, Tables(Vec::new()))])
+        Table(vec![(0, name), (1, Number(0)), (2, Number(3)), (3, float(1)), (5, Tables(Vec::new()))])
     };
     let children = match column.content {
         Content::Text(..) | Content::Fact(_) => Vec::new(),
@@ -47,8 +47,8 @@ fn field(column: &Column) -> Value {
     };
     Table(vec![
         (0, Text(column.name.clone())),
-        (1, Byte(column.is_optional().into())),
-        (2, Byte(number)),
+        (1, Number(column.is_optional().into())),
+        (2, Number(number)),
         (3, about),
         (5, Tables(children)),
     ])
@@ -56,9 +56,8 @@ fn field(column: &Column) -> Value {
 
 /// What a FlatBuffer holds.
 enum Value {
-    Byte(u8),
-    Short(u16),
-    Int(u32),
+    /// Of one, two or four bytes: the first come first.
+    Number(u32),
     Text(String),
     /// Fields by their numbers, ascending.
     Table(Vec<(usize, Value)>),
@@ -70,7 +69,7 @@ impl Value {
     fn write(&self, out: &mut Vec<u8>) -> u32 {
         out.resize(out.len().next_multiple_of(4), 0);
         let (places, at): (Vec<(usize, &Self)>, usize) = match self {
-            Self::Byte(_) | Self::Short(_) | Self::Int(_) => (Vec::new(), out.len()),
+            Self::Number(_) => (Vec::new(), out.len()),
             Self::Text(text) => {
                 let at = out.len();
                 out.extend((text.len() as u32).to_le_bytes());
@@ -100,9 +99,7 @@ impl Value {
         out.resize(out.len() + 4 * places.len(), 0);
         for (place, value) in places {
             let written = match value {
-                Self::Byte(x) => u32::from(*x),
-                Self::Short(x) => u32::from(*x),
-                Self::Int(x) => *x,
+                Self::Number(x) => *x,
                 _ => value.write(out) - place as u32,
             };
             out[place..place + 4].copy_from_slice(&written.to_le_bytes());
