@@ -159,7 +159,7 @@ fn knn_predict(
     k: usize,
 ) -> Result<usize, RetrievalError> {
     let available = rankings.n_points() - 1;
-    let winner = vote(&rankings.ranking(query), |i| labels.class(i), k, None).class;
+    let winner = vote(&rankings.ranking(query), |i| labels.class(i), k, None).class();
     winner.ok_or(RetrievalError::BadNeighborCount { k, available })
 }
 

@@ -178,7 +178,7 @@ pub(super) fn predicted(
         relation: result.relation.clone(),
     });
     let signs = query.signs();
-    let unknown = match (vote.class, &nearest) {
+    let unknown = match (vote.class(), &nearest) {
         (Some(_), _) => None,
         (None, None) => Some(Unknown::EmptyIndex),
         (None, Some(_)) if neighbors.is_empty() => Some(Unknown::Unlabelled),
@@ -186,10 +186,10 @@ pub(super) fn predicted(
         (None, Some(_)) => Some(Unknown::Partial),
     };
     let mut found = Prediction {
-        label: vote.class.map(label),
-        votes: vote.votes,
+        label: vote.class().map(label),
+        votes: vote.tally.first().map_or(0, |winner| winner.votes),
         voters: vote.voters,
-        confidence: vote.confidence,
+        confidence: vote.tally.first().map_or(0.0, |winner| winner.share),
         threshold,
         class_below,
         tally,

@@ -39,11 +39,6 @@ impl Shard {
             false => Err(Error::NoSuchShard { shard: index, n_shards: count }),
         }
     }
-
-    /// Whether the shard holds the item at this place of the collection, counted from 1.
-    fn holds(self, place: usize) -> bool {
-        place % self.count == self.index
-    }
 }
 
 impl FromStr for Shard {
@@ -237,8 +232,8 @@ fn full_extension(path: &Path) -> Option<String> {
 /// The shapes of a shard.
 pub(super) fn share<T>(shapes: Vec<T>, shard: Option<Shard>) -> Vec<T> {
     let Some(shard) = shard else { return shapes };
-    let in_share = |(i, shape): (usize, T)| shard.holds(i + 1).then_some(shape);
-    shapes.into_iter().enumerate().filter_map(in_share).collect()
+    let held = shapes.into_iter().zip(1..).filter(|(_, place)| place % shard.count == shard.index);
+    held.map(|(shape, _)| shape).collect()
 }
 
 /// A mesh file and the hash of its content, or the error of reading it.
