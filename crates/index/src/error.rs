@@ -3,7 +3,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::store::FORMAT_VERSION;
+/// Version of the file format, which an error about another one states.
+pub const FORMAT_VERSION: u32 = 4;
 
 /// Errors of an index.
 #[derive(Debug, thiserror::Error)]

@@ -70,11 +70,10 @@ mod writer;
 mod tests;
 
 pub use base::ContentHash;
-pub use error::IndexError;
+pub use error::{FORMAT_VERSION, IndexError};
 pub use export::{ExportError, ExportFormat, csv_field};
 pub use reader::Index;
 pub use search::{Found, FoundOnGraph, NearShape, RankedShape, SearchMode, Searcher, class_threshold};
 pub use shape::{Shape, ShapeEntry, ShapeVectors};
-pub use store::FORMAT_VERSION;
 pub use verify::{Verification, verify};
 pub use writer::{IndexWriter, Job, damaged_path, work_path};

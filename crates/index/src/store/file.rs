@@ -25,9 +25,7 @@ use std::time::Duration;
 use super::records::{Record, Rows, Run, StoredRecord, read_at, record_at, u32_at, u64_at};
 use super::segment::{Segment, SegmentWriter};
 use crate::IndexError;
-
-/// Version of the file format.
-pub const FORMAT_VERSION: u32 = 4;
+use crate::error::FORMAT_VERSION;
 
 /// Bytes before the first segment.
 const HEAD: usize = 4096;

@@ -17,7 +17,6 @@ mod segment;
 mod view;
 
 pub(crate) use codec::{LIMIT, decode, encode};
-pub use file::FORMAT_VERSION;
 pub(crate) use file::StoredFile;
 #[cfg(test)]
 pub(crate) use file::write_forged;
