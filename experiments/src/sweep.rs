@@ -8,7 +8,7 @@ use anyhow::Result;
 use linalg::DistanceMatrix;
 use nmds::Regularization;
 use report::results::{Axis, AxisScale, CurvesPanel, Series, SeriesPoint};
-use retrieval::{Averaging, Labels, Scores, mean_scores};
+use retrieval::{Averaging, Labels, QueryScores, Scores};
 
 pub(crate) type MeasuredNumbers = BTreeMap<String, f64>;
 
@@ -53,7 +53,7 @@ pub(crate) fn named(s: &Scores) -> [(&'static str, f64); 6] {
 pub(crate) fn best_e(labels: &Labels) -> Result<f64> {
     let apart = |i: usize, j: usize| f64::from(u8::from(labels.class(i) != labels.class(j)));
     let ideal = DistanceMatrix::from_pairs(labels.n_points(), apart)?;
-    Ok(mean_scores(&ideal, labels, Averaging::Micro)?.e)
+    Ok(QueryScores::new(&ideal, labels)?.mean(labels, Averaging::Micro).e)
 }
 
 /// The low-rank regularisation that keeps half of `n` eigenpairs.

@@ -123,8 +123,8 @@ pub use retrieval::RankBy;
 pub use shape_index::{
     BuildOptions, BuildReport, ClassVotes, ComponentResult, DescribedQuery, Dropped, DuplicateFile,
     DuplicateGroup, DuplicateMember, DuplicateOptions, DuplicateReport, Elsewhere, EvaluateOptions, Explain,
-    Failure, FailureReason, GraphRank, Inputs, Measure, MergeReport, NearestShape, PackedQuery,
-    PairwiseDistance, PartRank, Prediction, Query, Ranked, Reranked, SearchOptions, SearchRank, SearchReport,
+    Failure, FailureReason, Inputs, Measure, MergeReport, NearestShape, OrderedBy, PackedQuery,
+    PairwiseDistance, Prediction, Query, Ranked, Reranked, SearchOptions, SearchRank, SearchReport,
     SearchResult, SearchSeconds, ShapeLimits, ShapeSearch, Shard, ShardExplained, ShardMatch, ShardMatches,
     ShardedSearch, Unknown, add_to_index, build_index, evaluate_index, evaluate_matrix, export_index,
     find_duplicates, indexed_shapes, merge_indexes, merge_matches, mesh_path, remove_from_index, rerank,

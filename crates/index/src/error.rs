@@ -3,6 +3,9 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+/// Version of the file format, which an error about another one states.
+pub const FORMAT_VERSION: u32 = 4;
+
 /// Errors of an index.
 #[derive(Debug, thiserror::Error)]
 pub enum IndexError {
@@ -21,7 +24,7 @@ pub enum IndexError {
     Foreign(PathBuf),
     /// A newer version of the program wrote the file.
     #[error(
-        "{path} is an index of format {found}; this program reads format {supported}: use a newer version",
+        "{path} is an index of format {found}; this program reads format {FORMAT_VERSION}: use a newer version",
         path = path.display()
     )]
     FutureVersion {
@@ -29,12 +32,10 @@ pub enum IndexError {
         path: PathBuf,
         /// Its format version.
         found: u32,
-        /// The format version that this program reads.
-        supported: u32,
     },
     /// An older version of the program wrote the file.
     #[error(
-        "{path} is an index of format {found}; this program reads format {supported}",
+        "{path} is an index of format {found}; this program reads format {FORMAT_VERSION}",
         path = path.display()
     )]
     PastVersion {
@@ -42,8 +43,6 @@ pub enum IndexError {
         path: PathBuf,
         /// Its format version.
         found: u32,
-        /// The format version that this program reads.
-        supported: u32,
     },
     /// The content differs from what was written.
     #[error("{path} is damaged: {what}", path = path.display())]
@@ -133,6 +132,15 @@ impl IndexError {
         match error.downcast::<Self>() {
             Ok(error) => error,
             Err(source) => Self::Io { action: "write", path: path.to_owned(), source },
+        }
+    }
+
+    /// A file of another format version.
+    pub(crate) fn other_version(path: &Path, found: u32) -> Self {
+        let path = path.to_owned();
+        match found < FORMAT_VERSION {
+            true => Self::PastVersion { path, found },
+            false => Self::FutureVersion { path, found },
         }
     }
 

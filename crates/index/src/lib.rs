@@ -44,7 +44,7 @@
 //!
 //! | module | contents |
 //! |---|---|
-//! | `texts`, `shape` | names, the record of one shape |
+//! | `texts`, `floats`, `shape` | names, numbers, the record of one shape |
 //! | `vectors` | nearest vectors in memory: kernels, k-means, cells, the graph of nearest neighbours, calibration, the threshold of unknown classes. Knows no file |
 //! | `store` | a sorted map in a file, a log of changes, and views of both. Knows no shapes |
 //! | `tables`, `derived` | the tables of an index, and those that follow from its shapes |
@@ -55,6 +55,7 @@
 mod derived;
 mod error;
 mod export;
+mod floats;
 mod reader;
 mod search;
 mod shape;
@@ -69,11 +70,10 @@ mod writer;
 mod tests;
 
 pub use base::ContentHash;
-pub use error::IndexError;
+pub use error::{FORMAT_VERSION, IndexError};
 pub use export::{ExportError, ExportFormat, csv_field};
 pub use reader::Index;
 pub use search::{Found, FoundOnGraph, NearShape, RankedShape, SearchMode, Searcher, class_threshold};
 pub use shape::{Shape, ShapeEntry, ShapeVectors};
-pub use store::FORMAT_VERSION;
 pub use verify::{Verification, verify};
 pub use writer::{IndexWriter, Job, damaged_path, work_path};

@@ -5,8 +5,9 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 use crate::derived::{Heads, about};
-use crate::store::{FORMAT_VERSION, Floats, StoredFile, View};
-use crate::tables::{BODIES, CLASSES, ENTRIES, FUSED, entries};
+use crate::floats::Floats;
+use crate::store::{StoredFile, View};
+use crate::tables::{BODIES, CLASSES, ENTRIES, FUSED};
 use crate::{IndexError, Shape, ShapeEntry, ShapeVectors};
 
 /// A finished index, open for reading.
@@ -92,12 +93,6 @@ impl Index {
         self.stored.fingerprint()
     }
 
-    /// Version of the format of the file.
-    #[must_use]
-    pub fn format(&self) -> u32 {
-        FORMAT_VERSION
-    }
-
     /// Size in bytes.
     #[must_use]
     pub fn n_bytes(&self) -> u64 {
@@ -106,7 +101,7 @@ impl Index {
 
     /// The classes and the number of shapes in each. Shapes without a class do not count.
     pub fn classes(&self) -> Result<BTreeMap<String, u64>, IndexError> {
-        self.view().rows(&CLASSES, &[]).collect()
+        CLASSES.rows(self.view(), &[]).collect()
     }
 
     fn missing(&self, id: &str) -> IndexError {
@@ -115,17 +110,17 @@ impl Index {
 
     /// Whether there is a shape of this name.
     pub fn contains(&self, id: &str) -> Result<bool, IndexError> {
-        Ok(self.view().get(&ENTRIES, id)?.is_some())
+        Ok(ENTRIES.get(self.view(), id)?.is_some())
     }
 
     /// The entry of a shape, or [`IndexError::NoSuchShape`].
     pub fn entry(&self, id: &str) -> Result<ShapeEntry, IndexError> {
-        self.view().get(&ENTRIES, id)?.ok_or_else(|| self.missing(id))
+        ENTRIES.get(self.view(), id)?.ok_or_else(|| self.missing(id))
     }
 
     /// The vectors of a shape, or [`IndexError::NoSuchShape`].
     pub fn vectors(&self, id: &str) -> Result<ShapeVectors, IndexError> {
-        let (body, fused) = (self.view().get(&BODIES, id)?, self.view().get(&FUSED, id)?);
+        let (body, fused) = (BODIES.get(self.view(), id)?, FUSED.get(self.view(), id)?);
         let (body, fused) = body.zip(fused).ok_or_else(|| self.missing(id))?;
         Ok(body.with(fused.0))
     }
@@ -134,8 +129,8 @@ impl Index {
     /// time.
     pub fn each<E: From<IndexError>>(&self, mut visit: impl FnMut(Shape) -> Result<(), E>) -> Result<(), E> {
         let view = self.view();
-        let (mut fused, mut bodies) = (view.rows(&FUSED, &[]), view.rows(&BODIES, &[]));
-        for row in view.rows(&ENTRIES, &[]) {
+        let (mut fused, mut bodies) = (FUSED.rows(view, &[]), BODIES.rows(view, &[]));
+        for row in ENTRIES.rows(view, &[]) {
             let (id, entry) = row?;
             let fused = fused.next().transpose()?.filter(|(known, _)| *known == id);
             let body = bodies.next().transpose()?.filter(|(known, _)| *known == id);
@@ -153,7 +148,7 @@ impl Index {
     /// The fused vectors of all shapes, one after the other in ascending order of names.
     pub fn fused_vectors(&self) -> Result<Vec<f32>, IndexError> {
         let mut all = Vec::new();
-        for row in self.view().rows(&FUSED, &[]) {
+        for row in FUSED.rows(self.view(), &[]) {
             all.extend(row?.1.0);
         }
         Ok(all)
@@ -161,6 +156,6 @@ impl Index {
 
     /// All names and entries, in ascending order of names.
     pub fn entries(&self) -> Result<Vec<(String, ShapeEntry)>, IndexError> {
-        entries(self.view())
+        ENTRIES.rows(self.view(), &[]).collect()
     }
 }

@@ -50,3 +50,10 @@ pub struct Shape {
     /// Its vectors.
     pub vectors: ShapeVectors,
 }
+
+/// Stands for a shape in the graph and among the trials: the first 64 bits of the hash of its name.
+pub(crate) type ShapeKey = u64;
+
+pub(crate) fn shape_key(id: &str) -> ShapeKey {
+    ContentHash::of(&[id]).start()
+}

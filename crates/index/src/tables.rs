@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::store::{Changes, Floats, Table, View};
-use crate::vectors::{CellsHeader, Links, NodeKey, Trial, TrialKey};
+use crate::floats::Floats;
+use crate::shape::ShapeKey;
+use crate::store::{Changes, Table, View};
+use crate::vectors::{CellsHeader, Links, Part, Trial};
 use crate::{IndexError, Shape, ShapeEntry, ShapeVectors};
-
-use crate::derived::Part;
 
 /// About the whole index, under the empty key.
 pub(crate) static ABOUT: Table<str, About> = Table::new(0, "the head of the index");
@@ -17,9 +17,9 @@ pub(crate) static CENTROIDS: Table<[u32; 2], Floats> = Table::new(2, "centres of
 /// Cell and number of a part -> shapes of the cell.
 pub(crate) static CELLS: Table<[u32; 2], Part> = Table::new(3, "a part of a cell");
 /// Shapes that calibrate searches.
-pub(crate) static TRIALS: Table<TrialKey, Trial> = Table::new(4, "a trial");
+pub(crate) static TRIALS: Table<ShapeKey, Trial> = Table::new(4, "a trial");
 /// The graph of nearest neighbours.
-pub(crate) static GRAPH: Table<NodeKey, Node> = Table::new(5, "a list of neighbours");
+pub(crate) static GRAPH: Table<ShapeKey, Node> = Table::new(5, "a list of neighbours");
 /// Shape -> its entry.
 pub(crate) static ENTRIES: Table<str, ShapeEntry> = Table::new(6, "an entry");
 /// Shape -> its fused vector.
@@ -89,25 +89,20 @@ pub(crate) fn remove_shape(changes: &mut Changes, id: &str) -> Result<(), IndexE
     BODIES.put(changes, id, None)
 }
 
-/// All names and entries.
-pub(crate) fn entries(view: View<'_>) -> Result<Vec<(String, ShapeEntry)>, IndexError> {
-    view.rows(&ENTRIES, &[]).collect()
-}
-
 /// The list of a shape; `None` if it is not in the graph.
-pub(crate) fn node(view: View<'_>, key: NodeKey) -> Result<Option<Node>, IndexError> {
-    view.get(&GRAPH, &key)?.map(|node| sound(view, key, node)).transpose()
+pub(crate) fn node(view: View<'_>, key: ShapeKey) -> Result<Option<Node>, IndexError> {
+    GRAPH.get(view, &key)?.map(|node| sound(view, key, node)).transpose()
 }
 
 /// The lists of all shapes.
-pub(crate) fn nodes(view: View<'_>) -> impl Iterator<Item = Result<(NodeKey, Node), IndexError>> + '_ {
-    view.rows(&GRAPH, &[]).map(move |row| {
+pub(crate) fn nodes(view: View<'_>) -> impl Iterator<Item = Result<(ShapeKey, Node), IndexError>> + '_ {
+    GRAPH.rows(view, &[]).map(move |row| {
         let (key, node) = row?;
         Ok((key, sound(view, key, node)?))
     })
 }
 
-fn sound(view: View<'_>, key: NodeKey, node: Node) -> Result<Node, IndexError> {
+fn sound(view: View<'_>, key: ShapeKey, node: Node) -> Result<Node, IndexError> {
     match node.links.are_sound(key) {
         true => Ok(node),
         false => Err(view.damaged(format!("the neighbours of `{}` contradict each other", node.id))),

@@ -3,9 +3,10 @@
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
-use crate::derived::{Part, all_shapes};
+use crate::derived::all_shapes;
+use crate::shape::{ShapeKey, shape_key};
 use crate::tables::nodes;
-use crate::vectors::{Divided, Links, NodeKey, Reach, Rows, Trials, node_key, padded};
+use crate::vectors::{Divided, Links, Part, Reach, Trials};
 use crate::{Index, IndexError, Shape};
 
 /// The result of [`verify`].
@@ -34,7 +35,7 @@ pub fn verify(path: &Path) -> Result<Verification, IndexError> {
     let derived = all_shapes(index.view()).and_then(|(shapes, dim)| {
         let cells = check_cells(&index, &shapes, dim)?;
         found.faults.extend(cells);
-        check_graph(&index, &shapes, dim)
+        check_graph(&index, &shapes)
     });
     found.faults.extend([shapes, derived].into_iter().filter_map(|result| Some(result.err()?.to_string())));
     Ok(found)
@@ -58,34 +59,28 @@ fn check_shapes(index: &Index, n_shapes: &mut usize) -> Result<(), IndexError> {
 
 /// Compares the cells with the shapes. Returns the differences.
 fn check_cells(index: &Index, shapes: &Part, dim: usize) -> Result<Vec<String>, IndexError> {
-    let n = padded(dim);
     let (heads, view) = (index.heads()?, index.view());
-    let places: HashMap<&str, usize> = shapes.ids.iter().zip(0..).collect();
     let mut faults = Vec::new();
     let mut cells = vec![u32::MAX; shapes.ids.len()];
     if shapes.ids.len() > 0 && heads.header.dim != dim {
         return Err(view.damaged(format!("its cells hold vectors of {} numbers", heads.header.dim)));
     }
+    let numbered = shapes.shapes().zip(0..);
+    let mut missing: BTreeMap<&str, (usize, &str, &[f32])> =
+        numbered.map(|((id, class, row), place)| (id, (place, class, row))).collect();
     for cell in 0..heads.header.n_cells as u32 {
         for part in heads.parts(view, cell) {
-            let (_, part) = part?;
-            for (i, (id, class)) in part.ids.iter().zip(part.classes.iter()).enumerate() {
-                let place = places.get(id).filter(|place| {
-                    let (row, known) = (&part.rows()[i * n..][..n], &shapes.rows()[**place * n..][..n]);
-                    cells[**place] == u32::MAX && class == shapes.classes.get(**place) && row == known
-                });
-                match place {
-                    Some(place) => cells[*place] = cell,
-                    None => faults.push(format!("`{id}` in cell {cell} is not a shape")),
+            for (id, class, row) in part?.1.shapes() {
+                match missing.remove(id) {
+                    Some((place, known, of)) if (known, of) == (class, row) => cells[place] = cell,
+                    _ => faults.push(format!("`{id}` in cell {cell} is not a shape")),
                 }
             }
         }
     }
-    let unseen = cells.iter().zip(shapes.ids.iter()).filter(|(cell, _)| **cell == u32::MAX);
-    faults.extend(unseen.map(|(_, id)| format!("`{id}` is in no cell")));
+    faults.extend(missing.keys().map(|id| format!("`{id}` is in no cell")));
     if faults.is_empty() {
-        let all = Rows { cells: &cells, ..shapes.in_cell(&0) };
-        let fresh = Trials::of(all, heads.header.n_cells);
+        let fresh = Trials::of(shapes, &cells, heads.header.n_cells);
         if heads.header.n != shapes.ids.len() || !heads.trials(view)?.agree(&fresh) {
             faults.push("its trials are not those of its shapes".to_owned());
         }
@@ -97,10 +92,10 @@ fn check_cells(index: &Index, shapes: &Part, dim: usize) -> Result<Vec<String>, 
 const CHECKED: usize = 512;
 
 /// Checks that the graph holds all shapes and no others. If searches are exact, finds the neighbours of some shapes again.
-fn check_graph(index: &Index, shapes: &Part, dim: usize) -> Result<(), IndexError> {
-    let (view, n) = (index.view(), padded(dim));
-    let keys: Vec<NodeKey> = shapes.ids.iter().map(node_key).collect();
-    let mut places: HashMap<NodeKey, usize> = keys.iter().copied().zip(0..).collect();
+fn check_graph(index: &Index, shapes: &Part) -> Result<(), IndexError> {
+    let view = index.view();
+    let keys: Vec<ShapeKey> = shapes.ids.iter().map(shape_key).collect();
+    let mut places: HashMap<ShapeKey, usize> = keys.iter().copied().zip(0..).collect();
     let mut first: Vec<(usize, Links)> = Vec::new();
     for row in nodes(view) {
         let (key, node) = row?;
@@ -114,23 +109,17 @@ fn check_graph(index: &Index, shapes: &Part, dim: usize) -> Result<(), IndexErro
     if let Some(missing) = places.values().min() {
         return Err(view.damaged(format!("`{}` is not in its graph", shapes.ids.get(*missing))));
     }
-    let heads = index.heads()?;
-    if heads.header.is_exact() {
-        let starts = [0, keys.len()];
-        let all = Divided {
-            rows: shapes.rows(),
-            n,
-            keys: &keys,
-            starts: &starts,
-            centroids: &heads.centroids,
-            reach: Reach::ALL,
-        };
-        for (place, links) in first {
-            if !links.agrees(&all.links_of(place)) {
-                return Err(view
-                    .damaged(format!("the neighbours of `{}` are not the nearest", shapes.ids.get(place))));
-            }
+    let (heads, starts) = (index.heads()?, [0, keys.len()]);
+    if !heads.header.is_exact() {
+        return Ok(());
+    }
+    let centroids = &heads.centroids;
+    let all = Divided { rows: shapes.rows(), starts: &starts, centroids, reach: Reach::ALL };
+    match first.iter().find(|(place, links)| !links.agrees(&all.links_of(&keys, *place))) {
+        None => Ok(()),
+        Some((place, _)) => {
+            let id = shapes.ids.get(*place);
+            Err(view.damaged(format!("the neighbours of `{id}` are not the nearest")))
         }
     }
-    Ok(())
 }

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::derived::{changes, trained};
 use crate::store::{Changes, Log, Record, StoredFile, View, decode, encode};
-use crate::tables::{ENTRIES, FUSED, SHAPES, entries, put_shape, remove_shape};
+use crate::tables::{ENTRIES, FUSED, SHAPES, put_shape, remove_shape};
 use crate::{Index, IndexError, Shape, ShapeEntry};
 
 /// The job of a writer. An interrupted job can be resumed by the same kind of job.
@@ -84,7 +84,6 @@ pub struct IndexWriter {
     /// The index that the log changes; a merge changes none.
     base: Option<Index>,
     options: String,
-    n_shapes: usize,
     /// Length of the vectors, once there is one.
     length: Option<usize>,
     resumed: bool,
@@ -136,14 +135,13 @@ impl IndexWriter {
         };
         let base = base.filter(|_| job != Job::Merge);
         let path = path.to_owned();
-        let mut writer =
-            Self { path, log, base, options, n_shapes: 0, length: None, resumed, replaces_damaged };
-        match writer.count() {
+        let mut writer = Self { path, log, base, options, length: None, resumed, replaces_damaged };
+        match writer.read_start() {
             Ok(()) => {}
             // Not every byte is checked when an index is opened.
             Err(IndexError::Damaged { .. }) if job.starts_over() => {
                 (writer.base, writer.replaces_damaged) = (None, true);
-                writer.count()?;
+                writer.read_start()?;
             }
             Err(fault) => {
                 // A job that has not begun leaves nothing to resume, so that a damaged index can be built again.
@@ -156,16 +154,11 @@ impl IndexWriter {
         Ok(writer)
     }
 
-    /// Counts the shapes so far, and the numbers of their vectors.
-    fn count(&mut self) -> Result<(), IndexError> {
-        self.n_shapes = self.base.as_ref().map_or(0, Index::len);
-        for (id, is_there) in self.view().changed(&ENTRIES) {
-            let was_there = self.base.as_ref().map_or(Ok(false), |base| base.contains(&id))?;
-            self.n_shapes = self.n_shapes + usize::from(is_there) - usize::from(was_there);
-        }
-        let first = self.view().rows(&FUSED, &[]).next().transpose()?;
+    /// Learns the length of the vectors so far, and whether the shapes can be counted.
+    fn read_start(&mut self) -> Result<(), IndexError> {
+        let first = FUSED.rows(self.view(), &[]).next().transpose()?;
         self.length = first.map(|(_, fused)| fused.0.len());
-        Ok(())
+        self.n_shapes().map(drop)
     }
 
     fn view(&self) -> View<'_> {
@@ -191,25 +184,23 @@ impl IndexWriter {
     }
 
     /// Number of shapes so far.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.n_shapes
-    }
-
-    /// Whether there are no shapes so far.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.n_shapes == 0
+    pub fn n_shapes(&self) -> Result<usize, IndexError> {
+        let mut n_shapes = self.base.as_ref().map_or(0, Index::len);
+        for (id, is_there) in ENTRIES.changed(self.view()) {
+            let was_there = self.base.as_ref().map_or(Ok(false), |base| base.contains(&id))?;
+            n_shapes = n_shapes + usize::from(is_there) - usize::from(was_there);
+        }
+        Ok(n_shapes)
     }
 
     /// The entry of a shape, if it is there.
     pub fn entry(&self, id: &str) -> Result<Option<ShapeEntry>, IndexError> {
-        self.view().get(&ENTRIES, id)
+        ENTRIES.get(self.view(), id)
     }
 
     /// The names and entries of all shapes so far, in ascending order of names.
     pub fn entries(&self) -> Result<Vec<(String, ShapeEntry)>, IndexError> {
-        entries(self.view())
+        ENTRIES.rows(self.view(), &[]).collect()
     }
 
     /// Stores shapes, replacing those of the same names. Either all of them are on disk when it returns, or none.
@@ -229,25 +220,8 @@ impl IndexWriter {
             }
             put_shape(&mut changes, shape)?;
         }
-        self.change(&changes, shapes.iter().map(|shape| shape.id.as_str()), true)?;
+        self.log.append(&changes)?;
         self.length = length;
-        Ok(())
-    }
-
-    /// Logs changes of these shapes, which are there, or are not, afterwards.
-    fn change<'a>(
-        &mut self,
-        changes: &Changes,
-        ids: impl Iterator<Item = &'a str>,
-        is_there: bool,
-    ) -> Result<(), IndexError> {
-        let ids: std::collections::BTreeSet<&str> = ids.collect();
-        let mut before = 0;
-        for id in &ids {
-            before += usize::from(self.entry(id)?.is_some());
-        }
-        self.log.append(changes)?;
-        self.n_shapes = self.n_shapes - before + if is_there { ids.len() } else { 0 };
         Ok(())
     }
 
@@ -274,7 +248,7 @@ impl IndexWriter {
             self.expect(id)?;
             remove_shape(&mut changes, id)?;
         }
-        self.change(&changes, ids.iter().map(String::as_str), false)
+        self.log.append(&changes)
     }
 
     fn expect(&self, id: &str) -> Result<(), IndexError> {
@@ -293,7 +267,7 @@ impl IndexWriter {
         let view = self.view();
         let dim = self.length.unwrap_or(1);
         let followed = match &self.base {
-            Some(base) => changes(view, base, self.n_shapes, dim)?,
+            Some(base) => changes(view, base, self.n_shapes()?, dim)?,
             None => None,
         };
         match followed {

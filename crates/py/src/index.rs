@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use canonform::descriptors::DescriptorError;
-use canonform::index::{ExportFormat, IndexError, SearchMode, ShapeEntry};
+use canonform::index::{ExportFormat, FORMAT_VERSION, IndexError, SearchMode, ShapeEntry};
 use canonform::mesh::RepairOptions;
 use canonform::{
     BuildOptions, DescribeOptions, DescribedQuery, DuplicateOptions, Elsewhere, Error, EvaluateOptions,
@@ -324,7 +324,7 @@ impl Index {
     fn info(&self) -> PyResult<String> {
         let index = self.search.index();
         let classes = index.classes().map_err(|fault| to_python(&fault.into()))?;
-        let (format, n_shapes, n_bytes) = (index.format(), index.len(), index.n_bytes());
+        let (format, n_shapes, n_bytes) = (FORMAT_VERSION, index.len(), index.n_bytes());
         let unlabelled = n_shapes as u64 - classes.values().sum::<u64>();
         let options = self.search.describe_options();
         Ok(json(&Info { format, n_shapes, n_bytes, options, classes, unlabelled }))

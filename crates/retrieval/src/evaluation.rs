@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     Averaging, BootstrapOptions, GraphRankings, Labels, QueryScores, Rankings, RetrievalError,
-    ScoreIntervals, Scores, bootstrap, mean_scores, silhouette, vote,
+    ScoreIntervals, Scores, bootstrap, silhouette, vote,
 };
 
 /// How shapes are ordered.
@@ -56,12 +56,12 @@ pub struct Evaluation {
     pub intervals: Option<ScoreIntervals>,
     /// The same scores of the ranking on the neighbour graph; all others are those of the ranking by distance.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub graph: Option<GraphEvaluation>,
+    pub graph: Option<RankingEvaluation>,
 }
 
-/// Scores of the ranking on the neighbour graph, which uses the rest of the collection without its classes.
+/// Scores of a ranking. That on the neighbour graph uses the rest of the collection without its classes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct GraphEvaluation {
+pub struct RankingEvaluation {
     /// Mean retrieval scores over the queries; in JSON keys of this object.
     #[serde(flatten)]
     pub mean: Scores,
@@ -100,19 +100,8 @@ pub fn evaluate(
     labels: &Labels,
     knn_k: usize,
 ) -> Result<Evaluation, RetrievalError> {
-    let mean = mean_scores(distances, labels, Averaging::Micro)?;
-    let (confusion, knn_accuracy) = classified(distances, labels, knn_k)?;
-    Ok(Evaluation {
-        n: distances.n_points(),
-        classes: labels.classes().to_vec(),
-        mean,
-        knn_accuracy,
-        knn_k,
-        confusion,
-        silhouette: silhouette(distances, labels),
-        intervals: None,
-        graph: None,
-    })
+    let scored = evaluate_ranked(distances, labels, knn_k, RankBy::Plain)?;
+    Ok(Evaluation { intervals: None, ..scored })
 }
 
 /// As [`evaluate`], with confidence intervals, and with the scores of the neighbour graph beside those of the distances if
@@ -126,34 +115,40 @@ pub fn evaluate_ranked(
     knn_k: usize,
     rank_by: RankBy,
 ) -> Result<Evaluation, RetrievalError> {
-    let plain =
-        Evaluation { intervals: Some(scored(distances, labels)?.1), ..evaluate(distances, labels, knn_k)? };
-    if rank_by == RankBy::Plain {
-        return Ok(plain);
+    let plain = RankingEvaluation::of(distances, labels, knn_k)?;
+    let graph = match rank_by {
+        RankBy::Plain => None,
+        RankBy::Graph => Some(RankingEvaluation::of(&GraphRankings::new(distances), labels, knn_k)?),
+    };
+    Ok(Evaluation {
+        n: distances.n_points(),
+        classes: labels.classes().to_vec(),
+        mean: plain.mean,
+        knn_accuracy: plain.knn_accuracy,
+        knn_k,
+        confusion: plain.confusion,
+        silhouette: silhouette(distances, labels),
+        intervals: Some(plain.intervals),
+        graph,
+    })
+}
+
+impl RankingEvaluation {
+    /// Classifies each shape whose class has more than two members by the first `knn_k` of all others.
+    fn of(rankings: &impl Rankings, labels: &Labels, knn_k: usize) -> Result<Self, RetrievalError> {
+        let scores = QueryScores::new(rankings, labels)?;
+        let intervals = bootstrap(&scores, labels, Averaging::Micro, &BootstrapOptions::default())?;
+        let n_classes = labels.classes().len();
+        let mut confusion = vec![vec![0; n_classes]; n_classes];
+        let mut correct = 0;
+        for (query, _) in &scores.of {
+            let (class, found) = (labels.class(*query), knn_predict(rankings, labels, *query, knn_k)?);
+            confusion[class][found] += 1;
+            correct += usize::from(class == found);
+        }
+        let knn_accuracy = correct as f64 / scores.of.len() as f64;
+        Ok(Self { mean: scores.mean(labels, Averaging::Micro), knn_accuracy, confusion, intervals })
     }
-    let rankings = GraphRankings::new(distances);
-    let (mean, intervals) = scored(&rankings, labels)?;
-    let (confusion, knn_accuracy) = classified(&rankings, labels, knn_k)?;
-    Ok(Evaluation { graph: Some(GraphEvaluation { mean, knn_accuracy, confusion, intervals }), ..plain })
-}
-
-/// Mean scores over queries and their intervals.
-fn scored(rankings: &impl Rankings, labels: &Labels) -> Result<(Scores, ScoreIntervals), RetrievalError> {
-    let scores = QueryScores::new(rankings, labels)?;
-    let intervals = bootstrap(&scores, labels, Averaging::Micro, &BootstrapOptions::default())?;
-    Ok((scores.mean(labels, Averaging::Micro), intervals))
-}
-
-/// The confusion matrix of the leave-one-out vote and its accuracy.
-fn classified(
-    rankings: &impl Rankings,
-    labels: &Labels,
-    knn_k: usize,
-) -> Result<(Vec<Vec<usize>>, f64), RetrievalError> {
-    let confusion = confusion_matrix(rankings, labels, knn_k)?;
-    let correct: usize = confusion.iter().enumerate().map(|(class, row)| row[class]).sum();
-    let n_queries: usize = confusion.iter().flatten().sum();
-    Ok((confusion, correct as f64 / n_queries as f64))
 }
 
 /// The most frequent class among the `k` first other shapes; ties go to the class of the first of them.
@@ -164,23 +159,8 @@ fn knn_predict(
     k: usize,
 ) -> Result<usize, RetrievalError> {
     let available = rankings.n_points() - 1;
-    let winner = vote(&rankings.ranking(query), |i| labels.class(i), k, None).class;
+    let winner = vote(&rankings.ranking(query), |i| labels.class(i), k, None).class();
     winner.ok_or(RetrievalError::BadNeighborCount { k, available })
-}
-
-/// `matrix[true class][predicted class]`: classifies each shape whose class has more than two members by the first `k` of
-/// all others.
-fn confusion_matrix(
-    rankings: &impl Rankings,
-    labels: &Labels,
-    k: usize,
-) -> Result<Vec<Vec<usize>>, RetrievalError> {
-    let n_classes = labels.classes().len();
-    let mut matrix = vec![vec![0; n_classes]; n_classes];
-    for i in (0..labels.n_points()).filter(|&i| labels.is_query(i)) {
-        matrix[labels.class(i)][knn_predict(rankings, labels, i, k)?] += 1;
-    }
-    Ok(matrix)
 }
 
 #[cfg(test)]
@@ -231,7 +211,7 @@ mod tests {
         assert_eq!(Evaluation { intervals: None, ..plain }, evaluate(&matrix, &labels, 1).unwrap());
         let graph = both.graph.clone().unwrap();
         let rankings = GraphRankings::new(&matrix);
-        assert_eq!(graph.mean, mean_scores(&rankings, &labels, Averaging::Micro).unwrap());
+        assert_eq!(graph.mean, QueryScores::new(&rankings, &labels).unwrap().mean(&labels, Averaging::Micro));
         assert_eq!(graph.confusion.iter().flatten().sum::<usize>(), 9);
         let json = serde_json::to_value(&both).unwrap();
         assert_eq!((&json["graph"]["map"], &json["map"]), (&graph.mean.map.into(), &both.mean.map.into()));

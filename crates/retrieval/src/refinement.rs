@@ -14,10 +14,10 @@ pub struct Candidate {
 }
 
 /// The nearest shapes, and the work done to find them.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Refinement {
-    /// At most k shapes, nearest first; ties by index.
-    pub nearest: Vec<Neighbor>,
+#[derive(Debug, Clone, PartialEq)]
+pub struct Refinement<T> {
+    /// At most k shapes, nearest first; ties by index. With each is what its evaluation found beside the distance.
+    pub nearest: Vec<(Neighbor, T)>,
     /// Number of candidates whose distance was evaluated.
     pub evaluated: usize,
     /// Number of evaluations that were abandoned because the candidate was farther than the k nearest so far.
@@ -31,8 +31,8 @@ const BATCH: usize = 8;
 /// 1998, `seidl1998` in `REFERENCES.bib`).
 ///
 /// `candidates` are in ascending order of their bounds. The search ends at the first candidate whose bound exceeds
-/// the k-th smallest distance so far. `distance(candidate, limit)` returns the distance, or `None` if it exceeds
-/// `limit`.
+/// the k-th smallest distance so far. `distance(candidate, limit)` returns the distance and anything else that was found
+/// with it, or `None` if it exceeds `limit`.
 ///
 /// * Exact if the bounds are true lower bounds and `None` is only returned above the limit.
 /// * Evaluates candidates in parallel batches of fixed size, so the evaluated set does not depend on the number of
@@ -40,19 +40,19 @@ const BATCH: usize = 8;
 ///
 /// # Errors
 /// The first error of `distance` in the order of the candidates.
-pub fn refine_nearest<E: Send>(
+pub fn refine_nearest<T: Send, E: Send>(
     candidates: impl IntoIterator<Item = Candidate>,
     k: usize,
-    distance: impl Fn(Candidate, f64) -> Result<Option<f64>, E> + Sync,
-) -> Result<Refinement, E> {
-    let mut found = Refinement::default();
+    distance: impl Fn(Candidate, f64) -> Result<Option<(f64, T)>, E> + Sync,
+) -> Result<Refinement<T>, E> {
+    let mut found = Refinement { nearest: Vec::new(), evaluated: 0, abandoned: 0 };
     let mut candidates = candidates.into_iter().peekable();
     if k == 0 {
         return Ok(found);
     }
     loop {
         let limit = match found.nearest.get(k - 1) {
-            Some(last) => last.distance,
+            Some((last, _)) => last.distance,
             None => f64::INFINITY,
         };
         let mut batch = Vec::with_capacity(BATCH);
@@ -69,11 +69,13 @@ pub fn refine_nearest<E: Send>(
         found.evaluated += batch.len();
         for (candidate, distance) in batch.iter().zip(distances) {
             match distance {
-                Some(distance) => found.nearest.push(Neighbor { index: candidate.index, distance }),
+                Some((distance, with)) => {
+                    found.nearest.push((Neighbor { index: candidate.index, distance }, with));
+                }
                 None => found.abandoned += 1,
             }
         }
-        found.nearest.sort_by(Neighbor::cmp);
+        found.nearest.sort_by(|(a, _), (b, _)| a.cmp(b));
         found.nearest.truncate(k);
     }
     Ok(found)
@@ -103,12 +105,15 @@ mod tests {
             (0..points.len()).map(|index| Neighbor { index, distance: true_distance(index) }).collect();
         all.sort_by(Neighbor::cmp);
         for k in [1, 3, 10, 200, 500] {
-            let whole = refine_nearest::<()>(candidates(&points), k, |c, _| Ok(Some(true_distance(c.index))));
-            let abandoning = refine_nearest::<()>(candidates(&points), k, |c, limit| {
-                Ok(Some(true_distance(c.index)).filter(|d| *d <= limit))
+            let whole = refine_nearest::<_, ()>(candidates(&points), k, |c, _| {
+                Ok(Some((true_distance(c.index), c.index)))
+            });
+            let abandoning = refine_nearest::<_, ()>(candidates(&points), k, |c, limit| {
+                Ok(Some((true_distance(c.index), c.index)).filter(|(d, _)| *d <= limit))
             });
             let (whole, abandoning) = (whole.unwrap(), abandoning.unwrap());
-            assert_eq!(whole.nearest, all[..k.min(all.len())]);
+            let expected = all.iter().take(k).map(|near| (*near, near.index));
+            assert!(whole.nearest.iter().copied().eq(expected));
             assert_eq!(abandoning.nearest, whole.nearest);
             assert_eq!((whole.abandoned, abandoning.evaluated), (0, whole.evaluated));
             assert!(k >= 200 || whole.evaluated < 200, "{k}: {}", whole.evaluated);
@@ -117,10 +122,10 @@ mod tests {
 
     #[test]
     fn zero_neighbours_need_no_evaluation_and_errors_are_returned() {
-        let none = refine_nearest::<()>(candidates(&points()), 0, |_, _| Ok(None)).unwrap();
-        assert_eq!(none, Refinement::default());
-        assert_eq!(refine_nearest(candidates(&points()), 3, |c, _| Err(c.bound)).unwrap_err(), {
-            candidates(&points())[0].bound
-        });
+        let none = refine_nearest::<(), ()>(candidates(&points()), 0, |_, _| Ok(None)).unwrap();
+        assert_eq!(none, Refinement { nearest: Vec::new(), evaluated: 0, abandoned: 0 });
+        let first = candidates(&points())[0].bound;
+        let failed = refine_nearest::<(), _>(candidates(&points()), 3, |c, _| Err(c.bound));
+        assert_eq!(failed.unwrap_err(), first);
     }
 }

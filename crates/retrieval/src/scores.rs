@@ -111,18 +111,6 @@ impl QueryScores {
     }
 }
 
-/// The mean scores of a labelled collection, in the conventions of [`evaluate`](crate::evaluate).
-///
-/// # Errors
-/// [`RetrievalError::LabelCount`], [`RetrievalError::NothingToScore`].
-pub fn mean_scores(
-    rankings: &impl Rankings,
-    labels: &Labels,
-    averaging: Averaging,
-) -> Result<Scores, RetrievalError> {
-    Ok(QueryScores::new(rankings, labels)?.mean(labels, averaging))
-}
-
 /// Mean interpolated precision at `n` recalls spread evenly from 0 to 1: the precision of a query at a recall is
 /// its largest precision at that or any higher recall.
 ///
@@ -201,6 +189,15 @@ mod tests {
 
     use super::*;
     use crate::rank;
+
+    fn mean_scores(
+        distances: &DistanceMatrix,
+        labels: &Labels,
+        averaging: Averaging,
+    ) -> Result<Scores, RetrievalError> {
+        Ok(QueryScores::new(distances, labels)?.mean(labels, averaging))
+    }
+
     use crate::ranking::line;
 
     /// Class `a` of four on the left; class `b` of three on the right, one of them among `a`.

@@ -73,16 +73,18 @@ impl UnknownThreshold {
 /// The outcome of a vote on the class of a shape.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Vote {
-    /// The winning class; `None` if no neighbour is near enough.
-    pub class: Option<usize>,
-    /// Weighted share of the votes for that class, in 0..=1.
-    pub confidence: f64,
-    /// Number of votes for that class.
-    pub votes: usize,
     /// Number of neighbours that voted.
     pub voters: usize,
     /// The votes for every class, the winner first, then by share.
     pub tally: Vec<Tally>,
+}
+
+impl Vote {
+    /// The winning class; `None` if no neighbour is near enough.
+    #[must_use]
+    pub fn class(&self) -> Option<usize> {
+        self.tally.first().map(|winner| winner.class)
+    }
 }
 
 /// The votes for one class.
@@ -131,14 +133,7 @@ pub fn vote(neighbors: &[Neighbor], class_of: impl Fn(usize) -> usize, k: usize,
     }
     // The first of equals is the nearest; rounding absorbs differences between sums taken in another order.
     tally.sort_by_key(|of| std::cmp::Reverse((of.share * 1e12).round() as i64));
-    let winner = tally.first();
-    Vote {
-        class: winner.map(|winner| winner.class),
-        confidence: winner.map_or(0.0, |winner| winner.share),
-        votes: winner.map_or(0, |winner| winner.votes),
-        voters: voters.len(),
-        tally,
-    }
+    Vote { voters: voters.len(), tally }
 }
 
 #[cfg(test)]
@@ -175,11 +170,11 @@ mod tests {
         let class = |i: usize| usize::from(i > 0);
         let near = neighbors(&[0.1, 0.9, 0.95]);
         let plain = vote(&near, class, 3, None);
-        assert_eq!((plain.class, plain.votes, plain.voters), (Some(1), 2, 3));
-        assert!((plain.confidence - 2.0 / 3.0).abs() < 1e-15);
+        assert_eq!((plain.class(), plain.tally[0].votes, plain.voters), (Some(1), 2, 3));
+        assert!((plain.tally[0].share - 2.0 / 3.0).abs() < 1e-15);
         let weighted = vote(&near, class, 3, Some(1.0));
-        assert_eq!((weighted.class, weighted.votes), (Some(0), 1));
-        assert!(weighted.confidence > 0.9);
+        assert_eq!((weighted.class(), weighted.tally[0].votes), (Some(0), 1));
+        assert!(weighted.tally[0].share > 0.9);
         let tally: Vec<_> = weighted.tally.iter().map(|of| (of.class, of.votes)).collect();
         assert_eq!(tally, [(0, 1), (1, 2)], "the winner comes first");
     }
@@ -187,9 +182,9 @@ mod tests {
     #[test]
     fn distant_neighbours_have_no_vote_and_the_nearest_breaks_a_tie() {
         let far = vote(&neighbors(&[2.0, 3.0]), |i| i, 2, Some(1.0));
-        assert_eq!(far, Vote { class: None, confidence: 0.0, votes: 0, voters: 0, tally: Vec::new() });
-        assert_eq!(vote(&neighbors(&[2.0, 3.0]), |i| 7 - i, 2, None).class, Some(7));
-        assert_eq!(vote(&neighbors(&[0.0, 0.0]), |i| i, 2, Some(0.0)).class, Some(0));
-        assert_eq!(vote(&[], |i| i, 3, None).class, None);
+        assert_eq!(far, Vote { voters: 0, tally: Vec::new() });
+        assert_eq!(vote(&neighbors(&[2.0, 3.0]), |i| 7 - i, 2, None).class(), Some(7));
+        assert_eq!(vote(&neighbors(&[0.0, 0.0]), |i| i, 2, Some(0.0)).class(), Some(0));
+        assert_eq!(vote(&[], |i| i, 3, None).class(), None);
     }
 }

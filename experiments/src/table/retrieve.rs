@@ -17,7 +17,7 @@ use report::results::{
 };
 use retrieval::{
     Averaging, BootstrapOptions, GraphRankings, Labels, Neighbor, QueryScores, Rankings, Scores,
-    SplitOptions, UnknownThreshold, bootstrap, mean_scores, precision_recall, rank, split_accuracy, vote,
+    SplitOptions, UnknownThreshold, bootstrap, precision_recall, rank, split_accuracy, vote,
 };
 use serde::Deserialize;
 
@@ -188,7 +188,7 @@ impl RetrievalOptions {
         let intervals = |averaging| bootstrap(&scores, labels, averaging, &BootstrapOptions::default());
         let (mut right, mut all) = (0, 0);
         for query in (0..labels.n_points()).filter(|i| labels.is_query(*i)) {
-            let found = vote(&rankings.0[query], |i| labels.class(i), self.voters, None).class;
+            let found = vote(&rankings.0[query], |i| labels.class(i), self.voters, None).class();
             right += usize::from(found == Some(labels.class(query)));
             all += 1;
         }
@@ -222,9 +222,9 @@ impl RetrievalOptions {
             // Without one of two classes there is nothing to distinguish.
             let (rest, rest_labels) = without(distances, labels, class)?;
             if rest_labels.classes().len() > 1
-                && let Ok(rest) = mean_scores(&rest, &rest_labels, Averaging::Micro)
+                && let Ok(scores) = QueryScores::new(&rest, &rest_labels)
             {
-                held_out_map = held_out_map.min(rest.map);
+                held_out_map = held_out_map.min(scores.mean(&rest_labels, Averaging::Micro).map);
             }
         }
         Ok(RetrievalRow {
@@ -255,7 +255,7 @@ impl RetrievalOptions {
         let mut confusion = vec![vec![0; classes.len() + 1]; classes.len()];
         for i in 0..labels.n_points() {
             let ranking = rank(distances, i);
-            let found = vote(&ranking, |i| labels.class(i), voters, limit).class;
+            let found = vote(&ranking, |i| labels.class(i), voters, limit).class();
             confusion[labels.class(i)][found.unwrap_or(classes.len())] += 1;
             if found != Some(labels.class(i)) {
                 let nearest = ranking.first();

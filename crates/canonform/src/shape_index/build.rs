@@ -195,22 +195,42 @@ impl BuildReport {
         self.failed.push(Failure { id, path, reason, error, remedy: fault.remedy() });
     }
 
-    /// Lists the shapes in the index whose repair dropped a part of the surface.
-    pub(super) fn list_dropped<'a>(
+    /// Notes a shape of the index at `path` if its repair dropped a part of the surface.
+    fn note_dropped(&mut self, path: &Path, id: &str, entry: &ShapeEntry) {
+        if let Some(dropped_area_share) = entry.fact(DROPPED).filter(|share| *share > 0.0) {
+            let path = mesh_path(path, &entry.path);
+            self.dropped.push(Dropped { id: id.to_owned(), path, dropped_area_share });
+        }
+    }
+
+    /// Completes the report if an index holds just these files, and nothing that has to be removed. Returns whether it does.
+    fn is_current(
         &mut self,
-        index: &Path,
-        ids: impl Iterator<Item = &'a String>,
-        entry: impl Fn(&str) -> Result<Option<ShapeEntry>, IndexError>,
-    ) -> Result<(), IndexError> {
-        for id in ids {
-            let Some(entry) = entry(id)? else { continue };
-            if let Some(dropped_area_share) = entry.fact(DROPPED).filter(|share| *share > 0.0) {
-                let path = mesh_path(index, &entry.path);
-                self.dropped.push(Dropped { id: id.clone(), path, dropped_area_share });
+        index: &Index,
+        files: &[Hashed],
+        root: &Root<'_>,
+        elsewhere: Elsewhere,
+    ) -> Result<bool, IndexError> {
+        let mut others: HashMap<String, ShapeEntry> = index.entries()?.into_iter().collect();
+        let mut found = Self::default();
+        for (listed, hash) in files {
+            match (others.remove(&listed.file.name), hash) {
+                (Some(entry), Ok(hash)) if entry.content == *hash && same_source(&entry, listed) => {
+                    found.note_dropped(index.path(), &listed.file.name, &entry);
+                }
+                _ => return Ok(false),
             }
         }
+        let stays = |(id, entry): (&String, &ShapeEntry)| {
+            elsewhere == Elsewhere::Keep && !root.brought(id, &entry.path)
+        };
+        if !others.iter().all(stays) {
+            return Ok(false);
+        }
+        self.dropped = found.dropped;
         self.dropped.sort_by(|a, b| a.id.cmp(&b.id));
-        Ok(())
+        (self.n_shapes, self.unchanged, self.elsewhere) = (index.len(), files.len(), others.len());
+        Ok(true)
     }
 }
 
@@ -249,9 +269,10 @@ pub fn build_index(
     let mut report = BuildReport::of(&listing);
     let hashed = hash_all(listing.shapes, observer);
     if let Some(index) = existing
-        && let Some(report) = current_report(&index, &hashed, &root, options.elsewhere, report.clone())?
+        && report.is_current(&index, &hashed, &root, options.elsewhere)?
     {
-        return Ok(BuildReport { seconds: start.elapsed().as_secs_f64(), ..report });
+        report.seconds = start.elapsed().as_secs_f64();
+        return Ok(report);
     }
     let text = options.describe.text();
     let mut writer = IndexWriter::open(path, Job::Build, Some(&text))?;
@@ -277,9 +298,9 @@ pub fn build_index(
     let nothing_new =
         report.described + report.renamed + gone.len() == 0 && !report.resumed && !report.replaced_damaged;
     // A shard without shapes is complete, and `merge_indexes` takes it.
-    let is_useless = options.shard.is_none() && writer.is_empty() && !report.failed.is_empty();
+    let is_useless = options.shard.is_none() && writer.n_shapes()? == 0 && !report.failed.is_empty();
     if nothing_new && path.exists() || is_useless {
-        report.n_shapes = writer.len();
+        report.n_shapes = writer.n_shapes()?;
         writer.discard()?;
     } else {
         report.n_shapes = writer.finish(observer)?.len();
@@ -308,10 +329,11 @@ pub fn unchanged_index(
     if !listing.shapes.iter().all(is_known) {
         return Ok(None);
     }
-    let report = BuildReport::of(&listing);
+    let mut report = BuildReport::of(&listing);
     let hashed = hash_all(listing.shapes, observer);
-    let current = current_report(&index, &hashed, &root, options.elsewhere, report)?;
-    Ok(current.map(|report| BuildReport { seconds: start.elapsed().as_secs_f64(), ..report }))
+    let is_current = report.is_current(&index, &hashed, &root, options.elsewhere)?;
+    report.seconds = start.elapsed().as_secs_f64();
+    Ok(is_current.then_some(report))
 }
 
 /// The index at a path, unless it cannot be read or a run was interrupted, and the meshes that it should hold.
@@ -337,21 +359,6 @@ fn index_and_listing(
     Ok((existing.filter(|_| !work_path(path).exists()), listing))
 }
 
-/// The whole report, if the index holds just these files.
-fn current_report(
-    index: &Index,
-    hashed: &[Hashed],
-    root: &Root<'_>,
-    elsewhere: Elsewhere,
-    mut report: BuildReport,
-) -> Result<Option<BuildReport>, Error> {
-    let Some(others) = is_current(index, hashed, root, elsewhere)? else { return Ok(None) };
-    let ids = hashed.iter().map(|(listed, _)| &listed.file.name);
-    report.list_dropped(index.path(), ids, |id| index.entry(id).map(Some))?;
-    (report.n_shapes, report.unchanged, report.elsewhere) = (index.len(), hashed.len(), others);
-    Ok(Some(report))
-}
-
 /// The shapes that [`build_index`] finds in a folder, with the names and classes that they get, without reading any mesh.
 ///
 /// # Errors
@@ -364,27 +371,6 @@ pub fn indexed_shapes(
     let home = Home::of(path)?;
     let listing = Listing::of_folder(&Root::new(folder, &home)?, labels)?;
     Ok(listing.shapes.into_iter().map(|listed| listed.file).collect())
-}
-
-/// Whether an index already holds these files, and nothing that has to be removed. Returns the number of its other shapes.
-fn is_current(
-    index: &Index,
-    files: &[Hashed],
-    root: &Root<'_>,
-    elsewhere: Elsewhere,
-) -> Result<Option<usize>, IndexError> {
-    let mut entries: HashMap<String, ShapeEntry> = index.entries()?.into_iter().collect();
-    for (listed, hash) in files {
-        let Ok(hash) = hash else { return Ok(None) };
-        match entries.remove(&listed.file.name) {
-            Some(entry) if entry.content == *hash && same_source(&entry, listed) => {}
-            _ => return Ok(None),
-        }
-    }
-    let others = entries.len();
-    let stays =
-        |(id, entry): (&String, &ShapeEntry)| elsewhere == Elsewhere::Keep && !root.brought(id, &entry.path);
-    Ok(entries.iter().all(stays).then_some(others))
 }
 
 /// Puts new and changed files into the index. Returns the names of all files that are in it afterwards.
@@ -408,12 +394,15 @@ pub(super) fn fill(
             }
         };
         match writer.entry(&listed.file.name)? {
-            Some(entry) if entry.content == content => {
-                kept.insert(listed.file.name.clone());
+            Some(known) if known.content == content => {
+                let is_renamed = !same_source(&known, &listed);
+                let Listed { file, stored } = listed;
+                let entry = ShapeEntry { label: file.label, path: stored, ..known };
                 report.unchanged += 1;
-                if !same_source(&entry, &listed) {
-                    let Listed { file, stored } = listed;
-                    renamed.push((file.name, ShapeEntry { label: file.label, path: stored, ..entry }));
+                report.note_dropped(writer.path(), &file.name, &entry);
+                kept.insert(file.name.clone());
+                if is_renamed {
+                    renamed.push((file.name, entry));
                 }
             }
             _ => wanted.push((listed, content)),
@@ -437,12 +426,15 @@ pub(super) fn fill(
         });
         stored.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     })?;
-    report.described = described.stored.len();
-    kept.extend(described.stored);
-    let mut failed = described.failed;
+    let Outcome { stored, mut failed } = described;
+    report.described = stored.len();
+    for (id, entry) in stored {
+        report.note_dropped(writer.path(), &id, &entry);
+        kept.insert(id);
+    }
+    report.dropped.sort_by(|a, b| a.id.cmp(&b.id));
     failed.sort_by_key(|(place, _)| *place);
     failed.iter().for_each(|(place, fault)| report.fail(&wanted[*place].0, fault));
-    report.list_dropped(writer.path(), kept.iter(), |id| writer.entry(id))?;
     Ok(kept)
 }
 
@@ -468,7 +460,7 @@ fn describe_file(
 /// Shapes that were described, and meshes that failed.
 #[derive(Default)]
 struct Outcome {
-    stored: Vec<String>,
+    stored: Vec<(String, ShapeEntry)>,
     failed: Vec<(usize, Error)>,
 }
 
@@ -495,7 +487,7 @@ fn store(
             writer.put(&shapes)?;
         }
         (0..shapes.len() + n_failed).for_each(|_| observer.step());
-        described.stored.extend(shapes.into_iter().map(|shape| shape.id));
+        described.stored.extend(shapes.into_iter().map(|shape| (shape.id, shape.entry)));
     }
     Ok(described)
 }

@@ -66,17 +66,11 @@ pub fn add_to_index(
 /// # Errors
 /// [`Error::Index`] if one of the names is unknown; nothing is removed then.
 pub fn remove_from_index(path: &Path, ids: &[String]) -> Result<usize, Error> {
-    let index = Index::open(path)?;
-    for id in ids {
-        if !index.contains(id)? {
-            return Err(IndexError::NoSuchShape { path: path.to_owned(), id: id.clone() }.into());
-        }
-    }
-    let mut unique = ids.to_vec();
-    unique.sort();
-    unique.dedup();
     let mut writer = IndexWriter::open(path, Job::Remove, None)?;
-    writer.remove(&unique)?;
+    if let Err(fault) = writer.remove(ids) {
+        writer.discard()?;
+        return Err(fault.into());
+    }
     Ok(writer.finish(&())?.len())
 }
 

@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use base::Observer;
 use descriptors::{ShapeDistance, ShapeMetric};
-use index::{SearchMode, ShapeEntry, ShapeVectors};
+use index::{SearchMode, ShapeEntry};
 use rayon::prelude::*;
 use relations::{Handedness, MeshGeometry, Relation, RelationKind, SurfaceInvariants};
 use serde::Serialize;
@@ -123,12 +123,12 @@ impl DuplicateReport {
 struct Candidate {
     id: String,
     entry: ShapeEntry,
-    vectors: ShapeVectors,
+    fused: Vec<f32>,
     /// Of its mesh, if that was read: it is near another shape, and unchanged.
     invariants: Option<SurfaceInvariants>,
 }
 
-/// Two shapes by their numbers, the lower one first.
+/// Two shapes by their numbers.
 type Pair = (usize, usize);
 
 /// Finds the duplicates of an index. Signatures choose which meshes are compared, and their geometry decides: every member
@@ -161,48 +161,34 @@ pub fn find_duplicates(
 ) -> Result<DuplicateReport, Error> {
     let start = Instant::now();
     let mut candidates = candidates(search)?;
-    let near = near_pairs(search, &candidates, observer)?;
-    let clusters = clusters(candidates.len(), near.keys().copied());
-    let to_read: Vec<usize> = clusters.concat();
+    let near = clusters(candidates.len(), near_pairs(search, &candidates, observer)?);
+    let to_read: Vec<usize> = near.concat();
     read_invariants(search, &mut candidates, &to_read, observer)?;
-    // Copies of copies need not be near themselves.
-    let pairs = clusters.iter().flat_map(|cluster| pairs_of(cluster));
-    let clusters = self::clusters(
-        candidates.len(),
-        pairs.filter(|&(i, j)| candidates[i].may_be(&candidates[j], options)),
-    );
     let unread = to_read.into_iter().filter(|&i| candidates[i].invariants.is_none());
     let mut unread: Vec<String> = unread.map(|i| candidates[i].id.clone()).collect();
+    unread.sort();
+    // Copies of copies need not be near themselves.
+    let pairs = near.iter().flat_map(|cluster| pairs_of(cluster));
+    let pairs = pairs.filter(|&(i, j)| candidates[i].may_be(&candidates[j], options));
+    let clusters = clusters(candidates.len(), pairs);
     observer.begin("comparing", clusters.iter().map(Vec::len).sum());
     let found = clusters
         .par_iter()
-        .map(|cluster| Cluster::read(search, &candidates, cluster).groups(&near, options, observer))
+        .map(|cluster| groups(&kept_first(search, &candidates, cluster), options, observer))
         .collect::<Result<Vec<_>, Error>>()?;
-    let mut report = DuplicateReport {
-        n_shapes: candidates.len(),
-        n_compared: 0,
-        groups: Vec::new(),
-        unread: Vec::new(),
-        seconds: 0.0,
-    };
-    for (groups, n_compared) in found {
-        report.groups.extend(groups);
-        report.n_compared += n_compared;
-    }
-    unread.sort();
-    report.unread = unread;
-    report.groups.sort_by(|a, b| b.members.len().cmp(&a.members.len()).then(a.keeper.id.cmp(&b.keeper.id)));
-    report.seconds = start.elapsed().as_secs_f64();
-    Ok(report)
+    let n_compared = found.iter().map(|(_, n_compared)| n_compared).sum();
+    let mut groups: Vec<DuplicateGroup> = found.into_iter().flat_map(|(groups, _)| groups).collect();
+    groups.sort_by(|a, b| b.members.len().cmp(&a.members.len()).then(a.keeper.id.cmp(&b.keeper.id)));
+    let (n_shapes, seconds) = (candidates.len(), start.elapsed().as_secs_f64());
+    Ok(DuplicateReport { n_shapes, n_compared, groups, unread, seconds })
 }
 
 fn candidates(search: &ShapeSearch) -> Result<Vec<Candidate>, Error> {
-    let entries = search.index().entries()?;
-    let read = |(id, entry): (String, ShapeEntry)| {
-        let vectors = search.index().vectors(&id)?;
-        Ok(Candidate { id, entry, vectors, invariants: None })
-    };
-    entries.into_par_iter().map(read).collect()
+    let (entries, fused) = (search.index().entries()?, search.index().fused_vectors()?);
+    let n = fused.len() / entries.len().max(1);
+    let vectors = fused.chunks(n.max(1)).map(<[f32]>::to_vec);
+    let shapes = entries.into_iter().zip(vectors);
+    Ok(shapes.map(|((id, entry), fused)| Candidate { id, entry, fused, invariants: None }).collect())
 }
 
 /// Reads the meshes of some shapes for their invariants, and does not keep them.
@@ -230,6 +216,10 @@ fn pairs_of(cluster: &[usize]) -> impl Iterator<Item = Pair> {
 }
 
 impl Candidate {
+    fn distance(&self, other: &Self) -> f64 {
+        ShapeMetric::robust(&self.fused, &other.fused)
+    }
+
     /// Whether their meshes, or their files, may be one.
     fn may_be(&self, other: &Self, options: &DuplicateOptions) -> bool {
         // Parts and variants have other invariants than what they are compared with.
@@ -242,43 +232,37 @@ impl Candidate {
     }
 }
 
-/// Pairs of equal content, and of shapes whose vectors are near: the first is the lower number.
+/// Pairs of equal content, and of shapes whose vectors are near.
 fn near_pairs(
     search: &ShapeSearch,
     candidates: &[Candidate],
     observer: &dyn Observer,
-) -> Result<BTreeMap<Pair, f64>, Error> {
+) -> Result<Vec<Pair>, Error> {
     let budget = observer.budget();
     let number: HashMap<&str, usize> =
         candidates.iter().enumerate().map(|(i, candidate)| (candidate.id.as_str(), i)).collect();
     observer.begin("searching", candidates.len());
     let near = |(i, candidate): (usize, &Candidate)| {
         budget.check()?;
-        let found = search.index().nearest(&candidate.vectors.fused, NEIGHBOURS + 1, SearchMode::Auto)?;
+        let found = search.index().nearest(&candidate.fused, NEIGHBOURS + 1, SearchMode::Auto)?;
         observer.step();
         let others = found.shapes.into_iter().filter_map(|shape| number.get(shape.id.as_str()).copied());
-        let pair = |j: usize| {
-            let distance = ShapeMetric::robust(&candidate.vectors.fused, &candidates[j].vectors.fused);
-            (i != j && distance < NEAR).then_some(((i.min(j), i.max(j)), distance))
-        };
-        Ok::<_, Error>(others.filter_map(pair).collect::<Vec<_>>())
+        let near = others.filter(|&j| i != j && candidate.distance(&candidates[j]) < NEAR);
+        Ok::<_, Error>(near.map(|j| (i, j)).collect::<Vec<_>>())
     };
     let found = candidates.par_iter().enumerate().map(near).collect::<Result<Vec<_>, Error>>()?;
-    let mut pairs: BTreeMap<Pair, f64> = found.into_iter().flatten().collect();
+    let mut pairs = found.concat();
     let mut first: HashMap<_, usize> = HashMap::new();
     for (i, candidate) in candidates.iter().enumerate() {
-        let earlier = *first.entry(candidate.entry.content).or_insert(i);
-        if earlier != i {
-            pairs.insert((earlier, i), 0.0);
-        }
+        pairs.push((*first.entry(candidate.entry.content).or_insert(i), i));
     }
     Ok(pairs)
 }
 
 /// Shapes that pairs connect.
-fn clusters(n: usize, pairs: impl Iterator<Item = Pair>) -> Vec<Vec<usize>> {
+fn clusters(n: usize, pairs: impl IntoIterator<Item = Pair>) -> Vec<Vec<usize>> {
     let mut sets = DisjointSets::new(n);
-    pairs.for_each(|(i, j)| {
+    pairs.into_iter().for_each(|(i, j)| {
         sets.union(i as u32, j as u32);
     });
     let mut members: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
@@ -286,116 +270,99 @@ fn clusters(n: usize, pairs: impl Iterator<Item = Pair>) -> Vec<Vec<usize>> {
     members.into_values().filter(|members| members.len() > 1).collect()
 }
 
-/// Shapes that may be copies of each other, with their meshes.
-struct Cluster<'a> {
-    /// In the order in which they are kept.
-    shapes: Vec<ClusterShape<'a>>,
-}
-
+/// A shape that may be a copy of others, with its mesh.
 struct ClusterShape<'a> {
-    number: usize,
     candidate: &'a Candidate,
     geometry: Option<MeshGeometry>,
     file: DuplicateFile,
 }
 
-/// The groups of a cluster, and the number of meshes that were compared.
-type Found = (Vec<DuplicateGroup>, usize);
-
-impl<'a> Cluster<'a> {
-    fn read(search: &ShapeSearch, candidates: &'a [Candidate], numbers: &[usize]) -> Self {
-        let mut shapes: Vec<ClusterShape<'a>> = numbers
-            .par_iter()
-            .map(|&number| {
-                let candidate = &candidates[number];
-                let geometry = search.geometry(&candidate.id, &candidate.entry);
-                let path = mesh_path(search.index().path(), &candidate.entry.path);
-                let facts = std::fs::metadata(&path).ok();
-                let since_1970 =
-                    |time: std::time::SystemTime| time.duration_since(std::time::UNIX_EPOCH).ok();
-                let modified = facts.as_ref().and_then(|facts| since_1970(facts.modified().ok()?));
-                let file = DuplicateFile {
-                    id: candidate.id.clone(),
-                    bytes: facts.map(|facts| facts.len()),
-                    modified: modified.map(|time| time.as_secs()),
-                    size: geometry.as_ref().and_then(|geometry| {
-                        let [low, high] = geometry.to_mesh().bounds()?;
-                        Some((high - low).into())
-                    }),
-                    vertices: geometry.as_ref().map(MeshGeometry::n_vertices),
-                    path,
-                };
-                ClusterShape { number, candidate, geometry, file }
-            })
-            .collect();
-        // The finest mesh, at the size of most, then the oldest file, then the shortest path.
-        let sizes: Vec<f64> =
-            shapes.iter().filter_map(|shape| Some(shape.geometry.as_ref()?.size())).collect();
-        let n_alike = |shape: &ClusterShape<'_>| {
-            let size = shape.geometry.as_ref().map_or(f64::NAN, MeshGeometry::size);
-            sizes.iter().filter(|other| (size / **other).ln().abs() < SAME_SIZE).count()
+impl<'a> ClusterShape<'a> {
+    fn read(search: &ShapeSearch, candidate: &'a Candidate) -> Self {
+        let geometry = search.geometry(&candidate.id, &candidate.entry);
+        let path = mesh_path(search.index().path(), &candidate.entry.path);
+        let facts = std::fs::metadata(&path).ok();
+        let modified = facts.as_ref().and_then(|facts| facts.modified().ok());
+        let since_1970 = modified.and_then(|time| time.duration_since(std::time::UNIX_EPOCH).ok());
+        let file = DuplicateFile {
+            id: candidate.id.clone(),
+            bytes: facts.map(|facts| facts.len()),
+            modified: since_1970.map(|time| time.as_secs()),
+            size: geometry.as_ref().and_then(|geometry| {
+                let [low, high] = geometry.to_mesh().bounds()?;
+                Some((high - low).into())
+            }),
+            vertices: geometry.as_ref().map(MeshGeometry::n_vertices),
+            path,
         };
-        shapes.sort_by_cached_key(|shape| {
-            let file = &shape.file;
-            let path = file.path.as_os_str().len();
-            (Reverse(file.vertices), Reverse(n_alike(shape)), file.modified, path, file.id.clone())
-        });
-        Self { shapes }
-    }
-
-    /// Takes the first shape that is left as a keeper, and what is proved to be the same, until none is left.
-    fn groups(
-        self,
-        near: &BTreeMap<Pair, f64>,
-        options: &DuplicateOptions,
-        observer: &dyn Observer,
-    ) -> Result<Found, Error> {
-        let budget = observer.budget();
-        let mut n_compared = 0;
-        let mut left: Vec<&ClusterShape<'_>> = self.shapes.iter().collect();
-        let mut groups = Vec::new();
-        while let Some((keeper, others)) = left.split_first() {
-            let mut rest = Vec::new();
-            let mut members = Vec::new();
-            let relate = |other: &&ClusterShape<'_>| {
-                budget.check()?;
-                let may_be = keeper.candidate.may_be(other.candidate, options);
-                Ok(if may_be { related(keeper, other, near) } else { None })
-            };
-            let relations = others.par_iter().map(relate).collect::<Result<Vec<_>, Error>>()?;
-            for (&other, relation) in others.iter().zip(relations) {
-                n_compared += usize::from(relation.is_some());
-                let is_one = |told: &Relation| {
-                    options.kinds.contains(&told.kind) && told.confidence >= options.min_confidence
-                };
-                match relation.filter(is_one) {
-                    Some(relation) => members.push(DuplicateMember { file: other.file.clone(), relation }),
-                    None => rest.push(other),
-                }
-            }
-            (0..=members.len()).for_each(|_| observer.step());
-            if !members.is_empty() {
-                members.sort_by(|a, b| a.relation.kind.cmp(&b.relation.kind).then(a.file.id.cmp(&b.file.id)));
-                let why = why(&keeper.file, &members);
-                groups.push(DuplicateGroup { keeper: keeper.file.clone(), why, members });
-            }
-            left = rest;
-        }
-        Ok((groups, n_compared))
+        Self { candidate, geometry, file }
     }
 }
 
-/// How a shape is related to a keeper; `None` if a mesh cannot be read.
-fn related(
-    keeper: &ClusterShape<'_>,
-    other: &ClusterShape<'_>,
-    near: &BTreeMap<Pair, f64>,
-) -> Option<Relation> {
-    let contents = [keeper, other].map(|shape| Some(shape.candidate.entry.content));
-    let pair = (keeper.number.min(other.number), keeper.number.max(other.number));
-    let fused = near.get(&pair).copied().unwrap_or_else(|| {
-        ShapeMetric::robust(&keeper.candidate.vectors.fused, &other.candidate.vectors.fused)
+/// The shapes of a cluster in the order in which they are kept: the finest mesh, at the size of most, then the oldest file,
+/// then the shortest path.
+fn kept_first<'a>(
+    search: &ShapeSearch,
+    candidates: &'a [Candidate],
+    cluster: &[usize],
+) -> Vec<ClusterShape<'a>> {
+    let read = |&number: &usize| ClusterShape::read(search, &candidates[number]);
+    let mut shapes: Vec<ClusterShape<'a>> = cluster.par_iter().map(read).collect();
+    let sizes: Vec<f64> = shapes.iter().filter_map(|shape| Some(shape.geometry.as_ref()?.size())).collect();
+    let n_alike = |shape: &ClusterShape<'_>| {
+        let size = shape.geometry.as_ref().map_or(f64::NAN, MeshGeometry::size);
+        sizes.iter().filter(|other| (size / **other).ln().abs() < SAME_SIZE).count()
+    };
+    shapes.sort_by_cached_key(|shape| {
+        let file = &shape.file;
+        let path = file.path.as_os_str().len();
+        (Reverse(file.vertices), Reverse(n_alike(shape)), file.modified, path, file.id.clone())
     });
+    shapes
+}
+
+/// Takes the first shape that is left as a keeper, and what is proved to be the same, until none is left. Returns the number of
+/// meshes that were compared, too.
+fn groups(
+    shapes: &[ClusterShape<'_>],
+    options: &DuplicateOptions,
+    observer: &dyn Observer,
+) -> Result<(Vec<DuplicateGroup>, usize), Error> {
+    let budget = observer.budget();
+    let (mut groups, mut n_compared) = (Vec::new(), 0);
+    let mut left: Vec<&ClusterShape<'_>> = shapes.iter().collect();
+    while let Some((keeper, others)) = left.split_first() {
+        let relate = |other: &&ClusterShape<'_>| {
+            budget.check()?;
+            let may_be = keeper.candidate.may_be(other.candidate, options);
+            Ok(if may_be { related(keeper, other) } else { None })
+        };
+        let relations = others.par_iter().map(relate).collect::<Result<Vec<_>, Error>>()?;
+        n_compared += relations.iter().flatten().count();
+        let is_one =
+            |told: &Relation| options.kinds.contains(&told.kind) && told.confidence >= options.min_confidence;
+        let (mut rest, mut members) = (Vec::new(), Vec::new());
+        for (&other, relation) in others.iter().zip(relations) {
+            match relation.filter(is_one) {
+                Some(relation) => members.push(DuplicateMember { file: other.file.clone(), relation }),
+                None => rest.push(other),
+            }
+        }
+        (0..=members.len()).for_each(|_| observer.step());
+        if !members.is_empty() {
+            members.sort_by(|a, b| a.relation.kind.cmp(&b.relation.kind).then(a.file.id.cmp(&b.file.id)));
+            let why = why(&keeper.file, &members);
+            groups.push(DuplicateGroup { keeper: keeper.file.clone(), why, members });
+        }
+        left = rest;
+    }
+    Ok((groups, n_compared))
+}
+
+/// How a shape is related to a keeper; `None` if a mesh cannot be read.
+fn related(keeper: &ClusterShape<'_>, other: &ClusterShape<'_>) -> Option<Relation> {
+    let contents = [keeper, other].map(|shape| Some(shape.candidate.entry.content));
+    let fused = keeper.candidate.distance(other.candidate);
     let distance = ShapeDistance { fused, combined: fused };
     let by_distance = Relation::by_distance(distance, 1.0, Handedness::Unknown)
         .named(&keeper.file.id, &other.file.id)

@@ -7,7 +7,8 @@ use base::files::FileError;
 use descriptors::{DescriptorError, ShapeMetric, SignatureKind};
 use index::{Index, IndexError};
 use linalg::DistanceMatrix;
-use retrieval::{Evaluation, Labels, RankBy, evaluate_ranked, pairwise_distances};
+use rayon::prelude::*;
+use retrieval::{Evaluation, Labels, RankBy, evaluate_ranked};
 
 use crate::error::Error;
 use base::Observer;
@@ -99,8 +100,15 @@ pub fn evaluate_index(
     })?;
     let n = names.len();
     observer.begin("distances", n * n.saturating_sub(1) / 2);
-    let distance = |i: usize, j: usize| Ok::<_, Error>(ShapeMetric::fused(&rows[i], &rows[j]));
-    let distances = pairwise_distances(n, distance, || observer.step())?;
+    let later = |i: usize| -> Vec<f64> {
+        let distance = |other: &Vec<f32>| {
+            observer.step();
+            ShapeMetric::fused(&rows[i], other)
+        };
+        rows[i + 1..].iter().map(distance).collect()
+    };
+    let later: Vec<Vec<f64>> = (0..n).into_par_iter().map(later).collect();
+    let distances = DistanceMatrix::from_pairs(n, |i, j| later[i][j - i - 1])?;
     Ok(evaluate_ranked(&distances, &Labels::new(&names), knn_k, rank_by)?)
 }
 

@@ -5,16 +5,16 @@ use descriptors::{ShapeDistance, ShapeMetric};
 use index::ShapeEntry;
 
 use super::components::described;
-use super::found::{ComponentResult, SearchResult, StoredComponent};
+use super::found::{ComponentResult, SearchResult, ShardMatch};
 use super::options::{SearchOptions, SearchRank};
 use super::predict::Completeness;
-use super::query::{HeldGeometry, KnownQuery};
+use super::query::KnownQuery;
 use super::record::{COMPONENTS, OTHER_COMPONENTS};
 use super::search::ShapeSearch;
 use super::source::read_unchanged;
 use crate::error::Error;
 use crate::form::{DescribeOptions, ShapeDescription};
-use relations::{Handedness, MeshGeometry, Relation, RelationKind};
+use relations::{MeshGeometry, Relation, RelationKind};
 
 /// Most different components of a query that are searched for, the largest by area.
 const MOST_SEARCHED: usize = 12;
@@ -77,8 +77,7 @@ impl ShapeSearch {
         let wanted = |geometry: &&MeshGeometry| {
             known.kind != RelationKind::IdenticalFile && (!is_far || several(geometry))
         };
-        let pair =
-            query.geometry.as_deref().filter(wanted).and_then(|a| Some((a, self.geometry(id, &entry)?)));
+        let pair = query.geometry.filter(wanted).and_then(|a| Some((a, self.geometry(id, &entry)?)));
         Ok(match &pair {
             Some((a, b)) => known.by_meshes([a, b]),
             None => known,
@@ -98,7 +97,7 @@ impl ShapeSearch {
         options: &SearchOptions,
         budget: &Budget,
     ) -> Result<Vec<ComponentResult>, Error> {
-        let Some(whole) = query.geometry.as_deref() else { return Ok(Vec::new()) };
+        let Some(whole) = query.geometry else { return Ok(Vec::new()) };
         // The nearest one is wanted.
         let options = SearchOptions { k: 1, rank_by: SearchRank::Plain, ..options.clone() };
         let mut found = Vec::new();
@@ -108,7 +107,7 @@ impl ShapeSearch {
                 form_spectrum: part.description.form_spectrum(),
                 name: &part.name,
                 content: None,
-                geometry: Some(HeldGeometry::Borrowed(part.geometry)),
+                geometry: Some(part.geometry),
                 part: None,
                 complete: Completeness::default(),
             };
@@ -126,15 +125,14 @@ impl ShapeSearch {
     ) -> Result<Vec<SearchResult>, Error> {
         let asked = ShapeMetric::without_size(query.shape.fused());
         // Components have no forms in the index, so signatures decide.
-        let distance = |stored: &StoredComponent| {
-            let known = ShapeMetric::without_size(&stored.fused);
+        let distance = |fused: &[f32]| {
+            let known = ShapeMetric::without_size(fused);
             let combined = ShapeMetric::robust(asked, known);
             ShapeDistance { fused: ShapeMetric::fused(asked, known), combined }
         };
-        let mut near: Vec<(ShapeDistance, &str)> = self
-            .stored_components()?
-            .iter()
-            .map(|stored| (distance(stored), stored.id.as_str()))
+        let stored = self.stored_components()?.iter();
+        let mut near: Vec<(ShapeDistance, &str)> = stored
+            .map(|(id, fused)| (distance(fused), id.as_str()))
             .filter(|(distance, _)| distance.combined < ShapeMetric::SAME_SHAPE.at)
             .collect();
         near.sort_by(|x, y| x.0.combined.total_cmp(&y.0.combined).then(x.1.cmp(y.1)));
@@ -146,36 +144,33 @@ impl ShapeSearch {
             }
             let entry = self.index().entry(id)?;
             let n_components = entry.fact(COMPONENTS).unwrap_or(2.0) as usize;
-            let relation = Relation::by_distance(distance, 1.0, Handedness::Unknown).named(query.name, id);
-            wholes.push(SearchResult {
-                rank: wholes.len() + 1,
+            let found = ShardMatch {
                 id: id.to_owned(),
                 label: entry.label,
                 path: entry.path,
                 distance: distance.combined,
                 fused: distance.fused,
-                on_graph: None,
-                as_part: None,
-                form_distance: None,
-                relation: self.related(query, id, relation)?.to_component(n_components),
-                comparison: None,
-            });
+                shape_distance: distance,
+                scale: 1.0,
+                order: None,
+            };
+            let found = found.into_result(wholes.len() + 1, query.name);
+            let relation = self.related(query, id, found.relation)?.to_component(n_components);
+            wholes.push(SearchResult { relation, ..found });
         }
         Ok(wholes)
     }
 
-    /// The components of all shapes, but the largest of each; read once.
-    fn stored_components(&self) -> Result<&[StoredComponent], Error> {
+    /// The shape and the fused vector of every component, but the largest of each shape; read once.
+    fn stored_components(&self) -> Result<&[(String, Vec<f32>)], Error> {
         if let Some(known) = self.components.get() {
             return Ok(known);
         }
         let mut stored = Vec::new();
         for (id, entry) in self.index().entries()? {
             if entry.fact(OTHER_COMPONENTS).is_some() {
-                let vectors = self.index().vectors(&id)?;
-                stored.extend(
-                    vectors.components.into_iter().map(|fused| StoredComponent { id: id.clone(), fused }),
-                );
+                let components = self.index().vectors(&id)?.components;
+                stored.extend(components.into_iter().map(|fused| (id.clone(), fused)));
             }
         }
         Ok(self.components.get_or_init(|| stored))

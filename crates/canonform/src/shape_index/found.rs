@@ -8,23 +8,42 @@ use serde::{Deserialize, Serialize};
 use crate::compare::Comparison;
 use relations::{Handedness, Relation};
 
-/// The place of a shape in a ranking on the graph.
+/// What a result is ordered by, unless it is its distance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct GraphRank {
-    /// Rank distance, from 0 to 1: by fused distance and by neighbours in common, see [`retrieval::graph_rank`].
-    pub rank_distance: f64,
-    /// Its rank by fused distance, counted from 1; `None` if it is found through its neighbours only.
-    pub plain_rank: Option<usize>,
+#[serde(untagged)]
+pub enum OrderedBy {
+    /// Its place on the graph.
+    Graph {
+        /// Rank distance, from 0 to 1: by fused distance and by neighbours in common, see [`retrieval::graph_rank`].
+        rank_distance: f64,
+        /// Its rank by fused distance, counted from 1; `None` if it is found through its neighbours only.
+        plain_rank: Option<usize>,
+    },
+    /// How well the query fits into it as a part.
+    Part {
+        /// Root mean square of the differences of logarithms of disc areas that no missing part explains; 0 if all fit. See
+        /// [`descriptors::PartDiscAreas`].
+        part_distance: f64,
+        /// The share of the area of the shape that the query has if it fits best.
+        part_share: f64,
+    },
+    /// How much the forms alone differ.
+    Forms {
+        /// The distance by [`descriptors::SampledForm::spectrum`], in units of two poses of one body.
+        form_distance: f64,
+    },
 }
 
-/// How well a query fits into a shape as a part of it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct PartRank {
-    /// Root mean square of the differences of logarithms of disc areas that no missing part explains; 0 if all fit. See
-    /// [`descriptors::PartDiscAreas`].
-    pub part_distance: f64,
-    /// The share of the area of the shape that the query has if it fits best.
-    pub part_share: f64,
+impl OrderedBy {
+    /// The number by which results ascend.
+    #[must_use]
+    pub fn distance(&self) -> f64 {
+        match *self {
+            Self::Graph { rank_distance, .. } => rank_distance,
+            Self::Part { part_distance, .. } => part_distance,
+            Self::Forms { form_distance } => form_distance,
+        }
+    }
 }
 
 /// A shape that was found.
@@ -43,30 +62,15 @@ pub struct SearchResult {
     pub distance: f64,
     /// Fused distance, by signatures alone.
     pub fused: f64,
-    /// What results are ordered by if they are ranked on the graph.
-    #[serde(flatten, skip_serializing_if = "Option::is_none")]
-    pub on_graph: Option<GraphRank>,
-    /// What results are ordered by if the query is taken as a part.
-    #[serde(flatten, skip_serializing_if = "Option::is_none")]
-    pub as_part: Option<PartRank>,
-    /// What results are ordered by if they are ranked by forms alone: the distance by [`descriptors::SampledForm::spectrum`], in
-    /// units of two poses of one body.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub form_distance: Option<f64>,
+    /// What results are ordered by if they are not ranked plainly.
+    #[serde(flatten)]
+    pub order: Option<OrderedBy>,
     /// How the query and the shape are related: by descriptions and, if results are explained, by files and meshes. The
     /// handedness is unknown.
     pub relation: Relation,
     /// The numbers of the comparison with the query, if results are explained.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub comparison: Option<Comparison>,
-}
-
-/// What a result is ordered by, other than its distance.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub(super) struct Order {
-    pub(super) on_graph: Option<GraphRank>,
-    pub(super) as_part: Option<PartRank>,
-    pub(super) form_distance: Option<f64>,
 }
 
 /// A shape of a shard, compared with a query.
@@ -87,7 +91,7 @@ pub struct ShardMatch {
     pub shape_distance: ShapeDistance,
     /// Size of the shape over that of the query.
     pub scale: f64,
-    pub(super) order: Order,
+    pub(super) order: Option<OrderedBy>,
 }
 
 /// What a [`ShapeDistance`] is sent as.
@@ -101,11 +105,7 @@ struct BothDistances {
 impl ShardMatch {
     /// The order in which one index would have met shapes of several.
     pub(super) fn cmp(&self, other: &Self) -> Ordering {
-        let key = |x: &Self| match x.order {
-            Order { as_part: Some(part), .. } => [part.part_distance, 0.0],
-            Order { form_distance: Some(distance), .. } => [distance, 0.0],
-            _ => [x.distance, x.fused],
-        };
+        let key = |x: &Self| x.order.map_or([x.distance, x.fused], |order| [order.distance(), 0.0]);
         let numbers = key(self).into_iter().zip(key(other)).map(|(a, b)| a.total_cmp(&b));
         numbers.fold(Ordering::Equal, Ordering::then).then_with(|| self.id.cmp(&other.id))
     }
@@ -114,20 +114,7 @@ impl ShardMatch {
     pub(super) fn into_result(self, rank: usize, query: &str) -> SearchResult {
         let Self { id, label, path, distance, fused, shape_distance, scale, order } = self;
         let relation = Relation::by_distance(shape_distance, scale, Handedness::Unknown).named(query, &id);
-        let Order { on_graph, as_part, form_distance } = order;
-        SearchResult {
-            rank,
-            id,
-            label,
-            path,
-            distance,
-            fused,
-            on_graph,
-            as_part,
-            form_distance,
-            relation,
-            comparison: None,
-        }
+        SearchResult { rank, id, label, path, distance, fused, order, relation, comparison: None }
     }
 }
 
@@ -142,11 +129,4 @@ pub struct ComponentResult {
     pub n_vertices: usize,
     /// The nearest shape of the index, and how it is related.
     pub nearest: Option<SearchResult>,
-}
-
-/// A component of an indexed shape, but the largest.
-#[derive(Debug)]
-pub(super) struct StoredComponent {
-    pub(super) id: String,
-    pub(super) fused: Vec<f32>,
 }

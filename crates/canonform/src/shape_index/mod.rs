@@ -39,7 +39,7 @@ pub use duplicates::{
 };
 pub use evaluate::{EvaluateOptions, Measure, evaluate_index, evaluate_matrix};
 pub use export::export_index;
-pub use found::{ComponentResult, GraphRank, PartRank, SearchResult, ShardMatch};
+pub use found::{ComponentResult, OrderedBy, SearchResult, ShardMatch};
 pub use options::{Explain, SearchOptions, SearchRank};
 pub use place::mesh_path;
 pub use predict::{ClassVotes, NearestShape, Prediction, Unknown};

@@ -3,10 +3,10 @@
 use descriptors::{PartDistance, ShapeMetric};
 use index::ShapeEntry;
 use relations::Relation;
-use retrieval::{Neighbor, Tally, UnknownThreshold, vote};
+use retrieval::{Labels, Neighbor, Tally, UnknownThreshold, vote};
 use serde::{Deserialize, Serialize};
 
-use super::found::{PartRank, SearchResult};
+use super::found::{OrderedBy, SearchResult};
 use super::record::{DROPPED as DROPPED_AREA, SHORTCUTS};
 use crate::form::ShapeDescription;
 
@@ -153,27 +153,24 @@ pub(super) fn predicted(
     threshold: Option<UnknownThreshold>,
     query: Completeness,
 ) -> Prediction {
-    let as_part = results.first().and_then(|result| result.as_part);
+    let as_part = results.first().and_then(part_distance);
     let class_below = as_part.map_or(ShapeMetric::SAME_CLASS.at, |_| PartDistance::SAME_CLASS);
     let threshold = threshold.map(|threshold| threshold.distance);
-    // Shapes without a class have no vote.
-    let labelled = || results.iter().enumerate().filter(|(_, result)| !result.label.is_empty());
-    let mut classes: Vec<&str> = labelled().map(|(_, result)| result.label.as_str()).collect();
-    classes.sort_unstable();
-    classes.dedup();
-    let class_of = |i: usize| classes.partition_point(|class| *class < results[i].label.as_str());
+    let labels = Labels::new(&results.iter().map(|result| &result.label).collect::<Vec<_>>());
+    let label = |class: usize| labels.classes()[class].clone();
     let reach = |result: &SearchResult| {
-        if let Some(fit) = result.as_part {
-            return fit.part_distance / class_below;
+        if let Some(distance) = part_distance(result) {
+            return distance / class_below;
         }
         let combined = result.relation.because.distance.combined / class_below;
         threshold.map_or(combined, |threshold| combined.min(result.fused / threshold))
     };
+    // Shapes without a class have no vote.
+    let labelled = results.iter().enumerate().filter(|(_, result)| !result.label.is_empty());
     let neighbors: Vec<_> =
-        labelled().map(|(index, result)| Neighbor { index, distance: reach(result) }).collect();
-    let vote = vote(&neighbors, class_of, VOTERS, Some(1.0));
-    let of_class =
-        |of: &Tally| ClassVotes { label: classes[of.class].to_owned(), votes: of.votes, share: of.share };
+        labelled.map(|(index, result)| Neighbor { index, distance: reach(result) }).collect();
+    let vote = vote(&neighbors, |i| labels.class(i), VOTERS, Some(1.0));
+    let of_class = |of: &Tally| ClassVotes { label: label(of.class), votes: of.votes, share: of.share };
     let tally = vote.tally.iter().map(of_class).collect();
     let nearest = results.first().map(|result| NearestShape {
         id: result.id.clone(),
@@ -181,18 +178,18 @@ pub(super) fn predicted(
         relation: result.relation.clone(),
     });
     let signs = query.signs();
-    let unknown = match (vote.class, &nearest) {
+    let unknown = match (vote.class(), &nearest) {
         (Some(_), _) => None,
         (None, None) => Some(Unknown::EmptyIndex),
-        (None, Some(_)) if classes.is_empty() => Some(Unknown::Unlabelled),
+        (None, Some(_)) if neighbors.is_empty() => Some(Unknown::Unlabelled),
         (None, Some(_)) if signs.is_empty() || as_part.is_some() => Some(Unknown::NothingNear),
         (None, Some(_)) => Some(Unknown::Partial),
     };
     let mut found = Prediction {
-        label: vote.class.map(|class| classes[class].to_owned()),
-        votes: vote.votes,
+        label: vote.class().map(label),
+        votes: vote.tally.first().map_or(0, |winner| winner.votes),
         voters: vote.voters,
-        confidence: vote.confidence,
+        confidence: vote.tally.first().map_or(0.0, |winner| winner.share),
         threshold,
         class_below,
         tally,
@@ -208,8 +205,16 @@ pub(super) fn predicted(
     found
 }
 
+/// How well the query fits as a part, if results are ordered by that.
+fn part_distance(result: &SearchResult) -> Option<f64> {
+    match result.order {
+        Some(OrderedBy::Part { part_distance, .. }) => Some(part_distance),
+        _ => None,
+    }
+}
+
 impl Prediction {
-    fn in_words(&self, signs: &[String], as_part: Option<PartRank>) -> String {
+    fn in_words(&self, signs: &[String], as_part: Option<f64>) -> String {
         if let Some(label) = &self.label {
             return self.vote_in_words(label);
         }
@@ -226,10 +231,10 @@ impl Prediction {
             "" => "without a class".to_owned(),
             label => format!("of the class {label}"),
         };
-        if let Some(fit) = as_part {
+        if let Some(distance) = as_part {
             return format!(
-                "unknown. The query fits best as a part of {} {class}, at part distance {:.3}; parts of shapes of one class are below {:.3}",
-                nearest.id, fit.part_distance, self.class_below
+                "unknown. The query fits best as a part of {} {class}, at part distance {distance:.3}; parts of shapes of one class are below {:.3}",
+                nearest.id, self.class_below
             );
         }
         let mut words = format!(
@@ -284,9 +289,7 @@ mod tests {
             path: String::new(),
             distance,
             fused: distance,
-            on_graph: None,
-            as_part: None,
-            form_distance: None,
+            order: None,
             relation: Relation::by_distance(shape, 1.0, Handedness::Unknown),
             comparison: None,
         }
@@ -352,7 +355,7 @@ mod tests {
     fn parts_vote_by_how_well_they_fit() {
         let fit = |mut result: SearchResult, times: f64| {
             let part_distance = times * PartDistance::SAME_CLASS;
-            result.as_part = Some(PartRank { part_distance, part_share: 0.7 });
+            result.order = Some(OrderedBy::Part { part_distance, part_share: 0.7 });
             result
         };
         let shapes = results(&[("cat", 9.0), ("dog", 9.0)]);

@@ -1,7 +1,5 @@
 //! What is searched for, and what is known of it.
 
-use std::ops::Deref;
-
 use base::ContentHash;
 use descriptors::{PartDiscAreas, PreparedShape};
 use mesh::{Surface, TriMesh};
@@ -66,27 +64,10 @@ pub(super) struct KnownQuery<'a> {
     pub(super) name: &'a str,
     pub(super) content: Option<ContentHash>,
     /// If results are explained.
-    pub(super) geometry: Option<HeldGeometry<'a>>,
+    pub(super) geometry: Option<&'a MeshGeometry>,
     /// The spectrum of its form, with the precision of an index.
     pub(super) form_spectrum: Vec<f32>,
     /// If results are ordered by how the query fits as a part.
     pub(super) part: Option<PartDiscAreas>,
     pub(super) complete: Completeness,
-}
-
-/// A geometry of the caller, or one that was made for the search.
-pub(super) enum HeldGeometry<'a> {
-    Owned(Box<MeshGeometry>),
-    Borrowed(&'a MeshGeometry),
-}
-
-impl Deref for HeldGeometry<'_> {
-    type Target = MeshGeometry;
-
-    fn deref(&self) -> &MeshGeometry {
-        match self {
-            Self::Owned(geometry) => geometry,
-            Self::Borrowed(geometry) => geometry,
-        }
-    }
 }

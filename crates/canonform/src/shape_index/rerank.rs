@@ -1,8 +1,6 @@
 //! Nearest shapes in two stages: by fused signatures, then by aligned forms.
 
 use std::borrow::Borrow;
-use std::collections::HashMap;
-use std::sync::{Mutex, PoisonError};
 
 use descriptors::{
     FormAlignment, FormDistance, PreparedShape, ShapeDistance, ShapeMetric, ShapePair, align_near_forms,
@@ -55,7 +53,6 @@ pub fn rerank<S: Borrow<PreparedShape>>(
     k: usize,
     shape: impl Fn(usize) -> Result<S, Error> + Sync,
 ) -> Result<Reranked, Error> {
-    let found = Mutex::new(HashMap::new());
     let refined = refine_nearest(candidates, k, |candidate, limit| {
         let shape = shape(candidate.index)?;
         let shape: &PreparedShape = shape.borrow();
@@ -68,12 +65,10 @@ pub fn rerank<S: Borrow<PreparedShape>>(
         let distance = ShapeMetric::combined(robust, alignment.rms);
         let (index, shape_distance, scale) = (candidate.index, pair.distance(), pair.scale());
         let ranked = Ranked { index, distance, fused, shape_distance, scale, alignment };
-        found.lock().unwrap_or_else(PoisonError::into_inner).insert(index, ranked);
-        Ok::<_, Error>(Some(distance))
+        Ok::<_, Error>(Some((distance, ranked)))
     })?;
-    let found = found.into_inner().unwrap_or_else(PoisonError::into_inner);
-    let ranked = refined.nearest.iter().filter_map(|near| found.get(&near.index).copied());
-    Ok(Reranked { nearest: ranked.collect(), aligned: refined.evaluated, abandoned: refined.abandoned })
+    let nearest = refined.nearest.into_iter().map(|(_, ranked)| ranked).collect();
+    Ok(Reranked { nearest, aligned: refined.evaluated, abandoned: refined.abandoned })
 }
 
 #[cfg(test)]

@@ -17,7 +17,7 @@ use retrieval::Candidate;
 use retrieval::UnknownThreshold;
 use serde::{Deserialize, Serialize};
 
-use super::found::{ComponentResult, GraphRank, Order, PartRank, SearchResult, ShardMatch, StoredComponent};
+use super::found::{ComponentResult, OrderedBy, SearchResult, ShardMatch};
 use super::options::{Explain, SearchOptions, SearchRank};
 use super::predict::{Completeness, Prediction, VOTERS, predicted};
 use super::query::{KnownQuery, Query};
@@ -138,7 +138,7 @@ pub struct ShapeSearch {
     index: Index,
     describe: DescribeOptions,
     /// Filled by the first explained search.
-    pub(super) components: OnceLock<Vec<StoredComponent>>,
+    pub(super) components: OnceLock<Vec<(String, Vec<f32>)>>,
 }
 
 impl ShapeSearch {
@@ -220,7 +220,8 @@ impl ShapeSearch {
     ) -> Result<SearchReport, Error> {
         let start = Instant::now();
         let budget = observer.budget();
-        let known = self.resolved(query, options, observer)?;
+        let mut made = None;
+        let known = self.resolved(query, options, &mut made, observer)?;
         let describe = start.elapsed().as_secs_f64();
         let mut report = self.nearest(&known, options, &budget)?;
         report.seconds.describe = describe;
@@ -290,8 +291,7 @@ impl ShapeSearch {
         wanted: usize,
         mode: SearchMode,
     ) -> Result<Shortlist, Error> {
-        let n_candidates = n_candidates(wanted);
-        let mut search = self.index.nearest(fused, n_candidates, mode)?;
+        let mut search = self.index.nearest(fused, n_candidates(wanted), mode)?;
         let ids = std::mem::take(&mut search.shapes).into_iter().map(|near| near.id).collect();
         Ok(Shortlist { ids, orders: None, search })
     }
@@ -300,13 +300,12 @@ impl ShapeSearch {
     /// would take too long.
     fn on_graph(&self, fused: &[f32], wanted: usize, mode: SearchMode) -> Result<Shortlist, Error> {
         let FoundOnGraph { shapes, search, .. } = self.index.nearest_on_graph(fused, wanted, mode)?;
-        let order = |near: &RankedShape| {
-            let RankedShape { rank_distance, plain_rank, .. } = *near;
-            let on_graph = Some(GraphRank { rank_distance, plain_rank });
-            (rank_distance, Order { on_graph, ..Order::default() })
+        let order = |near: RankedShape| {
+            let RankedShape { id, rank_distance, plain_rank, .. } = near;
+            (id, OrderedBy::Graph { rank_distance, plain_rank })
         };
-        let orders = Some(shapes.iter().map(order).collect());
-        Ok(Shortlist { ids: shapes.into_iter().map(|near| near.id).collect(), orders, search })
+        let (ids, orders): (_, Vec<_>) = shapes.into_iter().map(order).unzip();
+        Ok(Shortlist { ids, orders: Some(orders), search })
     }
 
     /// The first of some shapes by a distance that is measured from each of them: how well the query fits as a part, or how
@@ -325,10 +324,7 @@ impl ShapeSearch {
         }
         let measured = |id: &str| match part {
             Some(part) => self.fit(part, id),
-            None => {
-                let distance = self.form_distance(&query.form_spectrum, id)?;
-                Ok((distance, Order { form_distance: Some(distance), ..Order::default() }))
-            }
+            None => self.form_distance(&query.form_spectrum, id),
         };
         let n_shapes = ids.len();
         let one = |id: String| {
@@ -336,7 +332,7 @@ impl ShapeSearch {
             Ok((measured(&id)?, id))
         };
         let mut found = ids.into_par_iter().map(one).collect::<Result<Vec<_>, Error>>()?;
-        found.sort_by(|((a, _), x), ((b, _), y)| a.total_cmp(b).then_with(|| x.cmp(y)));
+        found.sort_by(|(a, x), (b, y)| a.distance().total_cmp(&b.distance()).then_with(|| x.cmp(y)));
         found.truncate(wanted);
         let (orders, ids): (Vec<_>, _) = found.into_iter().unzip();
         let search =
@@ -345,9 +341,9 @@ impl ShapeSearch {
     }
 
     /// The distance from the spectrum of a form, in units of two poses of one body.
-    fn form_distance(&self, spectrum: &[f32], id: &str) -> Result<f64, Error> {
+    fn form_distance(&self, spectrum: &[f32], id: &str) -> Result<OrderedBy, Error> {
         let distance = ShapeMetric::fused(spectrum, &self.form_spectrum(id)?);
-        Ok(distance / ShapeMetric::unit(SignatureKind::FormSpectrum))
+        Ok(OrderedBy::Forms { form_distance: distance / ShapeMetric::unit(SignatureKind::FormSpectrum) })
     }
 
     pub(super) fn form_spectrum(&self, id: &str) -> Result<Vec<f32>, Error> {
@@ -357,12 +353,11 @@ impl ShapeSearch {
     }
 
     /// How well a part fits into a shape.
-    fn fit(&self, part: &PartDiscAreas, id: &str) -> Result<(f64, Order), Error> {
+    fn fit(&self, part: &PartDiscAreas, id: &str) -> Result<OrderedBy, Error> {
         let areas = disc_areas(&self.index.vectors(id)?);
         let missing = || Error::NoDiscAreas { path: self.index.path().to_owned(), id: id.to_owned() };
         let PartDistance { distance, share } = part.distance(&areas.ok_or_else(missing)?);
-        let as_part = Some(PartRank { part_distance: distance, part_share: share });
-        Ok((distance, Order { as_part, ..Order::default() }))
+        Ok(OrderedBy::Part { part_distance: distance, part_share: share })
     }
 
     /// Aligns the forms of a shortlist: of as many as are needed for the `wanted` nearest by combined distance, or of all of
@@ -371,44 +366,31 @@ impl ShapeSearch {
         &self,
         query: &PreparedShape,
         ids: &[String],
-        orders: Option<&[(f64, Order)]>,
+        orders: Option<&[OrderedBy]>,
         wanted: usize,
         budget: &Budget,
     ) -> Result<(Vec<(ShardMatch, FormAlignment)>, usize), Error> {
-        let n = if orders.is_some() { ids.len() } else { wanted };
-        let Reranked { mut nearest, aligned, .. } = self.reranked(query, ids, n, budget)?;
-        if orders.is_some() {
-            nearest.sort_by_key(|ranked| ranked.index);
-        }
-        let found = nearest.into_iter().map(|ranked| {
-            let Ranked { index, distance, fused, shape_distance, scale, alignment } = ranked;
-            let (id, order) = (ids[index].clone(), orders.map(|all| all[index].1));
-            let ShapeEntry { label, path, .. } = self.index.entry(&id)?;
-            let order = order.unwrap_or_default();
-            Ok((ShardMatch { id, label, path, distance, fused, shape_distance, scale, order }, alignment))
-        });
-        Ok((found.collect::<Result<_, Error>>()?, aligned))
-    }
-
-    /// The `n` of these shapes that are nearest by combined distance.
-    pub(super) fn reranked(
-        &self,
-        query: &PreparedShape,
-        ids: &[String],
-        n: usize,
-        budget: &Budget,
-    ) -> Result<Reranked, Error> {
         let candidate = |(index, id): (usize, &String)| {
             let fused = self.index.vectors(id)?.fused;
             Ok(Candidate { index, bound: ShapeMetric::robust(query.fused(), &fused) })
         };
         let mut candidates = ids.iter().enumerate().map(candidate).collect::<Result<Vec<_>, Error>>()?;
         candidates.sort_by(|a, b| a.bound.total_cmp(&b.bound).then(a.index.cmp(&b.index)));
-        let shape = |i: usize| {
+        let n = if orders.is_some() { ids.len() } else { wanted };
+        let Reranked { mut nearest, aligned, .. } = rerank(query, candidates, n, |i| {
             budget.check()?;
             self.prepared(&ids[i])
-        };
-        rerank(query, candidates, n, shape)
+        })?;
+        if orders.is_some() {
+            nearest.sort_by_key(|ranked| ranked.index);
+        }
+        let found = nearest.into_iter().map(|ranked| {
+            let Ranked { index, distance, fused, shape_distance, scale, alignment } = ranked;
+            let (id, order) = (ids[index].clone(), orders.map(|all| all[index]));
+            let ShapeEntry { label, path, .. } = self.index.entry(&id)?;
+            Ok((ShardMatch { id, label, path, distance, fused, shape_distance, scale, order }, alignment))
+        });
+        Ok((found.collect::<Result<_, Error>>()?, aligned))
     }
 }
 
@@ -416,7 +398,7 @@ impl ShapeSearch {
 pub(super) struct Shortlist {
     pub(super) ids: Vec<String>,
     /// What they are ordered by, if not by combined distance.
-    pub(super) orders: Option<Vec<(f64, Order)>>,
+    pub(super) orders: Option<Vec<OrderedBy>>,
     /// About the search for signatures.
     pub(super) search: Found,
 }
@@ -510,7 +492,7 @@ mod tests {
         let options = SearchOptions { rank_by: SearchRank::Forms, ..SearchOptions::default() };
         let by_name = search.search(Query::Id("ring0"), &options, &()).unwrap();
         assert_eq!((by_name.rank_by, by_name.results.len(), by_name.measured), (SearchRank::Forms, 4, 4));
-        let distance = |found: &SearchResult| found.form_distance.unwrap();
+        let distance = |found: &SearchResult| found.order.unwrap().distance();
         assert!(by_name.results.windows(2).all(|pair| distance(&pair[0]) <= distance(&pair[1])));
         assert!(by_name.results[0].id == "ring0" && distance(&by_name.results[0]) == 0.0);
         assert_eq!(by_name.results[1].id, "ring1");
@@ -522,7 +504,7 @@ mod tests {
         // Which of the points of a ring are taken is left to rounding, so it is less than two poses apart, but not zero.
         assert!(nearest.id == "ring0" && distance(nearest) < 0.8, "{}: {}", nearest.id, distance(nearest));
         let plain = search.search(Query::Id("ring0"), &SearchOptions::default(), &()).unwrap();
-        assert!(plain.results.iter().all(|found| found.form_distance.is_none()));
+        assert!(plain.results.iter().all(|found| found.order.is_none()));
     }
 
     #[test]
@@ -533,16 +515,16 @@ mod tests {
         let graph = search.search(Query::Id("ring0"), &options, &()).unwrap();
         assert_eq!((plain.rank_by, graph.rank_by), (SearchRank::Plain, SearchRank::Graph));
         assert_eq!((graph.results.len(), graph.results[0].id.as_str()), (4, "ring0"));
-        let order = |found: &SearchResult| found.on_graph.unwrap().rank_distance;
+        let order = |found: &SearchResult| found.order.unwrap().distance();
         assert!(graph.results.windows(2).all(|pair| order(&pair[0]) <= order(&pair[1])));
-        assert_eq!(graph.results[0].on_graph.unwrap().plain_rank, Some(1));
+        assert!(matches!(graph.results[0].order, Some(OrderedBy::Graph { plain_rank: Some(1), .. })));
         for found in &graph.results {
             let same = plain.results.iter().find(|other| other.id == found.id).unwrap();
             assert_eq!(
                 (same.distance, same.fused, &same.relation),
                 (found.distance, found.fused, &found.relation)
             );
-            assert_eq!(same.on_graph, None);
+            assert_eq!(same.order, None);
         }
         let json = serde_json::to_value(&graph).unwrap();
         assert_eq!(json["rank_by"], "graph");
@@ -564,21 +546,25 @@ mod tests {
             (found.rank_by, found.results[0].id.as_str(), found.measured),
             (options.rank_by, "ring1", 4)
         );
-        let fit = |found: &SearchResult| found.as_part.unwrap().part_distance;
+        let fit = |found: &SearchResult| found.order.unwrap().distance();
+        let share = |found: &SearchResult| match found.order {
+            Some(OrderedBy::Part { part_share, .. }) => part_share,
+            other => panic!("{other:?}"),
+        };
         assert!(found.results.windows(2).all(|pair| fit(&pair[0]) <= fit(&pair[1])));
-        let share = found.results[0].as_part.unwrap().part_share;
-        assert!((0.5..0.9).contains(&share), "{share}");
+        let of_ring = share(&found.results[0]);
+        assert!((0.5..0.9).contains(&of_ring), "{of_ring}");
         let json = serde_json::to_value(&found).unwrap();
         assert!(json["rank_by"] == "part" && json["results"][0]["part_distance"].is_number());
         // As a whole, it is another shape.
         let plain = search.search(Query::from(&part), &SearchOptions::default(), &()).unwrap();
         assert!(
             !plain.results[0].relation.because.distance.may_be_same_class()
-                && plain.results[0].as_part.is_none()
+                && plain.results[0].order.is_none()
         );
         // A shape of the index is read again, and a description is not enough.
         let itself = search.search(Query::Id("box0"), &options, &()).unwrap();
-        assert!(itself.results[0].id == "box0" && itself.results[0].as_part.unwrap().part_share == 1.0);
+        assert!(itself.results[0].id == "box0" && share(&itself.results[0]) == 1.0);
         fs::remove_file(folder.path().join("box0.tri")).unwrap();
         assert!(matches!(search.search(Query::Id("box0"), &options, &()), Err(Error::MeshGone { .. })));
         let surface = Surface::new(&part, &Default::default(), &()).unwrap();

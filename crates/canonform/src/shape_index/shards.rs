@@ -5,7 +5,7 @@
 //!             -> for the results, if they are explained: explain_matches
 //! ```
 
-use base::{Budget, ContentHash, Observer};
+use base::{ContentHash, Observer};
 use descriptors::{CanonicalForm, PartDiscAreas, PreparedShape};
 use index::SearchMode;
 use mesh::TriMesh;
@@ -16,10 +16,10 @@ use serde::{Deserialize, Serialize};
 use surface::VertexId;
 
 use super::explain::components;
-use super::found::{ComponentResult, SearchResult, ShardMatch};
+use super::found::{ComponentResult, OrderedBy, SearchResult, ShardMatch};
 use super::options::{Explain, SearchOptions, SearchRank};
 use super::predict::Completeness;
-use super::query::{HeldGeometry, KnownQuery, Query};
+use super::query::{KnownQuery, Query};
 use super::record::AREA;
 use super::search::{SearchReport, ShapeSearch, ShardedSearch, Shortlist, n_candidates, n_wanted};
 use crate::error::Error;
@@ -115,7 +115,7 @@ impl PackedQuery {
             form_spectrum: self.form_spectrum.clone(),
             name: &self.name,
             content: self.content.filter(|_| self.component.is_none()),
-            geometry: geometry.map(HeldGeometry::Borrowed),
+            geometry,
             part: self.part.clone(),
             complete: self.complete,
         })
@@ -178,7 +178,7 @@ impl ShapeSearch {
     ) -> Result<PackedQuery, Error> {
         let unexplained = SearchOptions { explain: Explain::No, ..options.clone() };
         let KnownQuery { shape, form_spectrum, content, part, complete, .. } =
-            self.resolved(Query::Id(id), &unexplained, observer)?;
+            self.resolved(Query::Id(id), &unexplained, &mut None, observer)?;
         let about = (id, shape.fused(), self.index().options());
         let area = self.index().entry(id)?.fact(AREA);
         let packed = PackedQuery {
@@ -210,7 +210,7 @@ impl ShapeSearch {
         }
         let Shortlist { ids, orders, .. } =
             self.by_all(&query.known(None)?, rank_by, self.ids()?, n, &observer.budget())?;
-        Ok(orders.into_iter().flatten().map(|(distance, _)| distance).zip(ids).collect())
+        Ok(orders.iter().flatten().map(OrderedBy::distance).zip(ids).collect())
     }
 
     /// The `wanted` best of some shapes of this index. Names that the index does not hold are left out: their shapes were removed
@@ -227,20 +227,18 @@ impl ShapeSearch {
         observer: &dyn Observer,
     ) -> Result<ShardMatches, Error> {
         self.index().expect_options(&query.options)?;
-        let mut ids = ids.to_vec();
-        for place in (0..ids.len()).rev() {
-            if !self.index().contains(&ids[place])? {
-                ids.remove(place);
+        let mut held = Vec::with_capacity(ids.len());
+        for id in ids {
+            if self.index().contains(id)? {
+                held.push(id.clone());
             }
         }
-        let (known, budget): (_, Budget) = (query.known(None)?, observer.budget());
-        let orders = match rank_by {
-            SearchRank::Plain | SearchRank::Graph => None,
+        let (known, budget) = (query.known(None)?, observer.budget());
+        let (ids, orders) = match rank_by {
+            SearchRank::Plain | SearchRank::Graph => (held, None),
             _ => {
-                let Shortlist { ids: ordered, orders, .. } =
-                    self.by_all(&known, rank_by, std::mem::take(&mut ids), wanted, &budget)?;
-                ids = ordered;
-                orders
+                let Shortlist { ids, orders, .. } = self.by_all(&known, rank_by, held, wanted, &budget)?;
+                (ids, orders)
             }
         };
         let (found, aligned) = self.aligned(&known.shape, &ids, orders.as_deref(), wanted, &budget)?;

@@ -39,11 +39,6 @@ impl Shard {
             false => Err(Error::NoSuchShard { shard: index, n_shards: count }),
         }
     }
-
-    /// Whether the shard holds the item at this place of the collection, counted from 1.
-    fn holds(self, place: usize) -> bool {
-        place % self.count == self.index
-    }
 }
 
 impl FromStr for Shard {
@@ -160,6 +155,8 @@ impl Inputs<'_> {
     pub(super) fn list(&self, home: &Home, is_class: impl Fn(&str) -> bool) -> Result<Listing, Error> {
         let (mut shapes, mut stored, mut skipped) = (Vec::new(), Vec::new(), Vec::new());
         let (mut seen, mut single) = (HashSet::new(), Vec::new());
+        // What cannot be found is reported when it is read.
+        let mut is_repeated = |path: &Path| FileId::of(path).is_ok_and(|id| !seen.insert(id));
         let mut skip = |path: &Path, kind| skipped.push(Skipped { path: path.to_owned(), kind });
         for path in self.paths {
             if is_dataset(path) {
@@ -167,12 +164,11 @@ impl Inputs<'_> {
                 let dataset = Dataset::read(path, self.labels)?;
                 dataset.skipped.into_iter().for_each(|it| skip(&it.path, it.kind));
                 for shape in dataset.shapes {
-                    match FileId::of(&shape.path).map(|id| seen.insert(id)) {
-                        Ok(false) => skip(&shape.path, SkipKind::Repeated),
-                        _ => {
-                            stored.push(root.text(&shape.path));
-                            shapes.push(shape);
-                        }
+                    if is_repeated(&shape.path) {
+                        skip(&shape.path, SkipKind::Repeated);
+                    } else {
+                        stored.push(root.text(&shape.path));
+                        shapes.push(shape);
                     }
                 }
                 continue;
@@ -182,16 +178,13 @@ impl Inputs<'_> {
                 skip(path, SkipKind::NotUtf8);
                 continue;
             };
-            match FileId::of(path).map(|id| seen.insert(id)) {
-                Ok(false) => skip(path, SkipKind::Repeated),
-                // What cannot be found is reported when it is read.
-                _ => {
-                    stored.push(home.file_text(path));
-                    single.push(shapes.len());
-                    let label = String::new();
-                    shapes.push(ShapeFile { label, name: name.to_owned(), path: path.clone() });
-                }
+            if is_repeated(path) {
+                skip(path, SkipKind::Repeated);
+                continue;
             }
+            stored.push(home.file_text(path));
+            single.push(shapes.len());
+            shapes.push(ShapeFile { label: String::new(), name: name.to_owned(), path: path.clone() });
         }
         self.label_single(&mut shapes, &single, &is_class);
         if let Some(label) = self.label {
@@ -239,8 +232,8 @@ fn full_extension(path: &Path) -> Option<String> {
 /// The shapes of a shard.
 pub(super) fn share<T>(shapes: Vec<T>, shard: Option<Shard>) -> Vec<T> {
     let Some(shard) = shard else { return shapes };
-    let in_share = |(i, shape): (usize, T)| shard.holds(i + 1).then_some(shape);
-    shapes.into_iter().enumerate().filter_map(in_share).collect()
+    let held = shapes.into_iter().zip(1..).filter(|(_, place)| place % shard.count == shard.index);
+    held.map(|(shape, _)| shape).collect()
 }
 
 /// A mesh file and the hash of its content, or the error of reading it.

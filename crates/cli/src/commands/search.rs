@@ -7,8 +7,8 @@ use anyhow::{Result, anyhow};
 use canonform::index::SearchMode;
 use canonform::mesh::io::without_extension;
 use canonform::{
-    ComponentResult, Explain, Prediction, Relation, SearchOptions, SearchRank, SearchReport, ShapeSearch,
-    Unknown, content_hash, is_dataset, list_shapes, mesh_path,
+    ComponentResult, Explain, OrderedBy, Prediction, Relation, SearchOptions, SearchRank, SearchReport,
+    ShapeSearch, Unknown, content_hash, is_dataset, list_shapes, mesh_path,
 };
 use serde::Serialize;
 
@@ -222,16 +222,17 @@ fn table(report: &SearchReport) -> comfy_table::Table {
             format!("{:.4}", result.distance),
             result.relation.in_brief(),
         ];
-        if let Some(found) = result.on_graph {
-            let plain = found.plain_rank.map_or_else(|| "-".to_owned(), |rank| rank.to_string());
-            row.splice(3..3, [format!("{:.4}", found.rank_distance), plain]);
-        }
-        if let Some(found) = result.as_part {
-            let share = format!("{:.0} %", 100.0 * found.part_share);
-            row.splice(3..3, [format!("{:.4}", found.part_distance), share]);
-        }
-        if let Some(distance) = result.form_distance {
-            row.insert(3, format!("{distance:.4}"));
+        match result.order {
+            None => {}
+            Some(OrderedBy::Graph { rank_distance, plain_rank }) => {
+                let plain = plain_rank.map_or_else(|| "-".to_owned(), |rank| rank.to_string());
+                drop(row.splice(3..3, [format!("{rank_distance:.4}"), plain]));
+            }
+            Some(OrderedBy::Part { part_distance, part_share }) => {
+                let share = format!("{:.0} %", 100.0 * part_share);
+                drop(row.splice(3..3, [format!("{part_distance:.4}"), share]));
+            }
+            Some(OrderedBy::Forms { form_distance }) => row.insert(3, format!("{form_distance:.4}")),
         }
         if !has_classes {
             row.remove(2);

@@ -34,7 +34,7 @@ fn kept(place: &Workplace, index: &str) -> usize {
     fs::copy(work, work_path(&look)).unwrap();
     let options = Index::open(&place.path("whole")).unwrap().options().to_owned();
     let writer = IndexWriter::open(&look, Job::Build, Some(&options)).unwrap();
-    let n = writer.len();
+    let n = writer.n_shapes().unwrap();
     writer.discard().unwrap();
     n
 }

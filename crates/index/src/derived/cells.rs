@@ -1,10 +1,10 @@
 //! Vectors divided into cells, as stored.
 
-use super::part::Part;
 use crate::IndexError;
-use crate::store::{Floats, LIMIT, View};
+use crate::floats::Floats;
+use crate::store::{LIMIT, View};
 use crate::tables::{ABOUT, About, CELLS, CENTROIDS, ENTRIES, FUSED, TRIALS};
-use crate::vectors::{CellsHeader, Centroids, Trial, Trials, padded};
+use crate::vectors::{CellsHeader, Centroids, Part, Trial, Trials, padded};
 
 /// Bytes of vectors in one part of a cell, so that a change writes little.
 const PART: usize = 56 << 10;
@@ -26,7 +26,7 @@ impl Heads {
         let header = about(view)?.cells;
         let n = padded(header.dim);
         let mut rows = Vec::with_capacity(header.n_cells * n);
-        for part in view.rows(&CENTROIDS, &[]) {
+        for part in CENTROIDS.rows(view, &[]) {
             rows.extend(part?.1.0);
         }
         match rows.len() == header.n_cells * n {
@@ -42,7 +42,7 @@ impl Heads {
         cell: u32,
     ) -> impl Iterator<Item = Result<(u32, Part), IndexError>> + use<'a> {
         let n = padded(self.header.dim);
-        view.rows(&CELLS, &cell.to_be_bytes()).map(move |row| {
+        CELLS.rows(view, &cell.to_be_bytes()).map(move |row| {
             let ([_, number], part) = row?;
             let n_ids = part.ids.len();
             match part.classes.len() == n_ids && part.rows.0.len() == n_ids * n {
@@ -62,14 +62,14 @@ impl Heads {
                 false => Err(view.damaged("a trial contradicts itself")),
             }
         };
-        let all = view.rows(&TRIALS, &[]).map(checked).collect::<Result<_, _>>()?;
-        Ok(Trials::stored(all, n_cells))
+        let all = TRIALS.rows(view, &[]).map(checked).collect::<Result<_, _>>()?;
+        Ok(Trials { all, n_cells })
     }
 }
 
 /// What holds for the whole index. Sizes are checked: what they promise must fit into the file.
 pub(crate) fn about(view: View<'_>) -> Result<About, IndexError> {
-    let about = view.get(&ABOUT, "")?.ok_or_else(|| view.damaged("its head is missing"))?;
+    let about = ABOUT.get(view, "")?.ok_or_else(|| view.damaged("its head is missing"))?;
     let CellsHeader { dim, n, n_cells, .. } = about.cells;
     check_length(view, dim)?;
     let rows = (n_cells as u64).saturating_add(n as u64);
@@ -92,9 +92,9 @@ fn check_length(view: View<'_>, dim: usize) -> Result<(), IndexError> {
 /// All shapes in ascending order of their names, and the length of a vector without padding; 1 if there are none.
 pub(crate) fn all_shapes(view: View<'_>) -> Result<(Part, usize), IndexError> {
     let mut part = Part::default();
-    let mut entries = view.rows(&ENTRIES, &[]);
+    let mut entries = ENTRIES.rows(view, &[]);
     let mut dim = None;
-    for row in view.rows(&FUSED, &[]) {
+    for row in FUSED.rows(view, &[]) {
         let (id, Floats(fused)) = row?;
         let dim = *dim.get_or_insert(fused.len());
         check_length(view, dim)?;
@@ -110,22 +110,5 @@ pub(crate) fn all_shapes(view: View<'_>) -> Result<(Part, usize), IndexError> {
     match entries.next().transpose()? {
         None => Ok((part, dim.unwrap_or(1))),
         Some((id, _)) => Err(view.damaged(format!("`{id}` has no vector"))),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn shapes_are_sorted_in_place() {
-        let mut part = Part::default();
-        (0..7).for_each(|i| part.push(&i.to_string(), &format!("c{i}"), &[i as f32, 0.5]));
-        let order = [3, 1, 0, 6, 5, 4, 2];
-        part.sort(&order, 2);
-        for (i, from) in order.into_iter().enumerate() {
-            assert_eq!((part.ids.get(i), part.classes.get(i)), (&*from.to_string(), &*format!("c{from}")));
-            assert_eq!(part.rows()[2 * i..][..2], [from as f32, 0.5]);
-        }
     }
 }

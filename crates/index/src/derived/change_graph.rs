@@ -5,86 +5,72 @@
 //! the changes, so the graph is that of a new start. In a larger index those of the shapes nearest to a change are; others
 //! may miss a shape that came, or still name one that is gone, which is then skipped.
 
-use std::collections::btree_map::{BTreeMap, Entry};
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::OnceLock;
 
 use rayon::prelude::*;
 use retrieval::LINKS;
 
-use super::changed_cells::{Cells, Held, held};
+use super::changed_cells::{Cells, held};
 use crate::IndexError;
+use crate::shape::{ShapeKey, shape_key};
 use crate::store::View;
 use crate::tables::{Node, node, nodes};
-use crate::vectors::{Link, Links, Nearest, NodeKey, nearest_cells, node_key, sq_distances_into};
+use crate::vectors::{Link, Links, Part, scan, search_cells, sq_distances_into};
 
 /// Shapes near a change whose lists are looked at, if searches are not exact.
 const AROUND: usize = 128;
 
-/// The lists that change: `None` for a shape that is gone.
-type Lists = BTreeMap<NodeKey, Option<Node>>;
-
-/// The changes of the graph that follow from shapes that are `gone` from, or have `come` into, the cells.
+/// The changes of the graph that follow from shapes that are `gone` from, or have `come` into, the cells: `None` for a shape
+/// that is gone.
 pub(super) fn follow(
     view: View<'_>,
     cells: &Cells<'_>,
-    gone: &[(String, Held)],
-    come: &[(String, Held)],
-) -> Result<Lists, IndexError> {
+    gone: &Part,
+    come: &Part,
+) -> Result<BTreeMap<ShapeKey, Option<Node>>, IndexError> {
+    let (mut before, mut now) = (by_key(gone), by_key(come));
     // A change of the class moves nothing.
-    let rows = |shapes: &[(String, Held)]| -> HashMap<NodeKey, (String, Vec<f32>)> {
-        shapes.iter().map(|(id, (row, _))| (node_key(id), (id.clone(), row.clone()))).collect()
-    };
-    let (mut before, mut now) = (rows(gone), rows(come));
-    let stays: Vec<NodeKey> =
-        before.iter().filter(|(key, shape)| now.get(key) == Some(shape)).map(|(key, _)| *key).collect();
-    for key in stays {
+    let stays = before.iter().filter(|(key, shape)| now.get(key) == Some(shape));
+    for key in stays.map(|(key, _)| *key).collect::<Vec<_>>() {
         before.remove(&key);
         now.remove(&key);
     }
     let field = Field::new(cells);
-    let is_exact = cells.heads.header.is_exact();
-    let known: HashMap<NodeKey, Node> =
-        if is_exact { nodes(view).collect::<Result<_, _>>()? } else { HashMap::new() };
-    // Lists that name a shape that is gone.
-    let mut stale: Vec<NodeKey> = if is_exact {
-        known.keys().copied().collect()
+    let near = |(key, (_, row)): (&ShapeKey, &(&str, &[f32]))| Ok((*key, field.near(row, AROUND)?));
+    // The lists that a change may reach, and those that each shape may enter that has come.
+    let known: HashMap<ShapeKey, Node>;
+    let mut entered: Vec<(ShapeKey, Vec<Link>)>;
+    if cells.heads.header.is_exact() {
+        known = nodes(view).collect::<Result<_, _>>()?;
+        let bound = |key| known.get(key).map_or(f32::NEG_INFINITY, |node| node.links.bound());
+        let bounds: Vec<f32> = field.cell(0)?.keys.iter().map(bound).collect();
+        let within = now.par_iter().map(|(key, (_, row))| Ok((*key, field.within(row, &bounds)?)));
+        entered = within.collect::<Result<_, IndexError>>()?;
     } else {
-        let around = before.par_iter().map(|(_, (_, row))| field.near(row, AROUND));
-        let around = around.collect::<Result<Vec<_>, _>>()?;
-        around.into_iter().flatten().map(|link| link.key).collect::<HashSet<_>>().into_iter().collect()
-    };
-    stale.retain(|key| !before.contains_key(key) && !now.contains_key(key));
+        entered = now.par_iter().map(near).collect::<Result<_, IndexError>>()?;
+        let left = before.par_iter().map(near).collect::<Result<Vec<_>, IndexError>>()?;
+        let around = entered.iter().chain(&left).flat_map(|(_, links)| links);
+        let around: HashSet<ShapeKey> = around.map(|link| link.key).collect();
+        let nodes = around.into_iter().filter_map(|key| Some(node(view, key).transpose()?.map(|n| (key, n))));
+        known = nodes.collect::<Result<_, _>>()?;
+    }
+    // Made again: the lists that name a shape that is gone, and those of shapes that have come.
     let mut again = Vec::new();
-    for key in stale {
-        let node = if is_exact { known.get(&key).cloned() } else { node(view, key)? };
-        let Some(node) = node else { continue };
-        if node.links.0.iter().any(|link| before.contains_key(&link.key)) {
+    for (key, node) in &known {
+        let is_stale = node.links.0.iter().any(|link| before.contains_key(&link.key));
+        if is_stale && !before.contains_key(key) && !now.contains_key(key) {
             let held = held(view, &node.id, cells.heads.header.dim)?;
             let missing = || view.damaged(format!("`{}` is in its graph but has no vector", node.id));
-            again.push((key, node.id.clone(), held.ok_or_else(missing)?.0));
+            again.push((*key, node.id.as_str(), held.ok_or_else(missing)?.0));
         }
     }
-    again.extend(now.iter().map(|(key, (id, row))| (*key, id.clone(), row.clone())));
+    again.extend(now.iter().map(|(key, (id, row))| (*key, *id, row.to_vec())));
     let made = again.par_iter().map(|(key, id, row)| {
         let links = Links::of(*key, field.near(row, LINKS + 1)?.into_iter());
-        Ok((*key, Node { id: id.clone(), links }))
+        Ok((*key, Node { id: (*id).to_owned(), links }))
     });
-    let mut lists: BTreeMap<NodeKey, Node> = made.collect::<Result<_, IndexError>>()?;
-    // Lists that a shape enters that has come.
-    let bound = |key: &NodeKey| match known.get(key) {
-        Some(node) if !lists.contains_key(key) => node.links.bound(),
-        _ => f32::NEG_INFINITY,
-    };
-    let bounds = if is_exact { Some(field.bounds(&bound)?) } else { None };
-    let entered = now.par_iter().map(|(key, (_, row))| {
-        let found = match &bounds {
-            Some(bounds) => field.within(row, bounds)?,
-            None => field.near(row, AROUND)?,
-        };
-        Ok((*key, found))
-    });
-    let mut entered = entered.collect::<Result<Vec<(NodeKey, Vec<Link>)>, IndexError>>()?;
+    let mut lists: BTreeMap<ShapeKey, Node> = made.collect::<Result<_, IndexError>>()?;
     entered.sort_unstable_by_key(|(key, _)| *key);
     for (key, found) in entered {
         for Link { sq, key: other } in found {
@@ -92,21 +78,22 @@ pub(super) fn follow(
             if other == key || now.contains_key(&other) {
                 continue;
             }
-            let node = match lists.entry(other) {
-                Entry::Occupied(place) => place.into_mut(),
-                Entry::Vacant(place) => {
-                    let node = if is_exact { known.get(&other).cloned() } else { node(view, other)? };
-                    match node {
-                        Some(node) if sq <= node.links.bound() => place.insert(node),
-                        _ => continue,
-                    }
-                }
-            };
-            node.links.offer(Link { sq, key });
+            if !lists.contains_key(&other) {
+                let wider = known.get(&other).filter(|node| sq <= node.links.bound());
+                lists.extend(wider.map(|node| (other, node.clone())));
+            }
+            if let Some(node) = lists.get_mut(&other) {
+                node.links.offer(Link { sq, key });
+            }
         }
     }
     let gone = before.into_keys().filter(|key| !now.contains_key(key)).map(|key| (key, None));
     Ok(lists.into_iter().map(|(key, node)| (key, Some(node))).chain(gone).collect())
+}
+
+/// Names and vectors of shapes.
+fn by_key(shapes: &Part) -> HashMap<ShapeKey, (&str, &[f32])> {
+    shapes.shapes().map(|(id, _, row)| (shape_key(id), (id, row))).collect()
 }
 
 /// The shapes of cells after the changes, read when they are needed.
@@ -118,7 +105,7 @@ struct Field<'a> {
 /// The shapes of a cell.
 struct Loaded {
     rows: Vec<f32>,
-    keys: Vec<NodeKey>,
+    keys: Vec<ShapeKey>,
 }
 
 impl<'a> Field<'a> {
@@ -133,30 +120,23 @@ impl<'a> Field<'a> {
             return Ok(loaded);
         }
         let (mut rows, mut keys) = (Vec::new(), Vec::new());
-        self.cells.each_of(cell, &mut |shapes| {
-            rows.extend_from_slice(shapes.rows);
-            keys.extend(shapes.ids.iter().map(node_key));
+        self.cells.each_of(cell, &mut |shapes, _| {
+            rows.extend_from_slice(shapes.rows());
+            keys.extend(shapes.ids.iter().map(shape_key));
         })?;
         Ok(place.get_or_init(|| Loaded { rows, keys }))
     }
 
     /// The nearest shapes, as a search finds them, in any order.
     fn near(&self, row: &[f32], k: usize) -> Result<Vec<Link>, IndexError> {
-        let reach = self.cells.heads.header.reach;
-        let (mut nearest, mut keys) = (Nearest::new(k), Vec::new());
-        for cell in nearest_cells(row, &self.cells.heads.centroids, reach.probes) {
-            if reach.includes(&cell, nearest.bound()) {
-                let loaded = self.cell(cell.cell)?;
-                crate::vectors::scan(row, keys.len() as u32, &loaded.rows, &mut nearest);
-                keys.extend_from_slice(&loaded.keys);
-            }
-        }
+        let (heads, mut keys) = (self.cells.heads, Vec::new());
+        let nearest = search_cells(row, &heads.centroids, heads.header.reach, k, |cell, nearest| {
+            let loaded = self.cell(cell)?;
+            scan(row, keys.len() as u32, &loaded.rows, nearest);
+            keys.extend_from_slice(&loaded.keys);
+            Ok::<_, IndexError>(())
+        })?;
         Ok(nearest.into_hits().map(|hit| Link { sq: hit.sq, key: keys[hit.slot as usize] }).collect())
-    }
-
-    /// The bound of every shape of the only cell.
-    fn bounds(&self, bound: &dyn Fn(&NodeKey) -> f32) -> Result<Vec<f32>, IndexError> {
-        Ok(self.cell(0)?.keys.iter().map(bound).collect())
     }
 
     /// The shapes of the only cell within their bounds.

@@ -3,17 +3,15 @@
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 use super::cells::{Heads, rows_in_part};
-use super::part::Part;
 use crate::IndexError;
-use crate::store::{Changes, Floats, View};
+use crate::floats::Floats;
+use crate::store::{Changes, View};
 use crate::tables::{CELLS, ENTRIES, FUSED};
-use crate::vectors::{Rows, padded};
+use crate::vectors::{Part, Visit, padded};
 
 /// A shape as cells hold it: its padded vector and its class.
-pub(super) type Held = (Vec<f32>, String);
-
-pub(super) fn held(view: View<'_>, id: &str, dim: usize) -> Result<Option<Held>, IndexError> {
-    let (Some(Floats(mut fused)), Some(entry)) = (view.get(&FUSED, id)?, view.get(&ENTRIES, id)?) else {
+pub(super) fn held(view: View<'_>, id: &str, dim: usize) -> Result<Option<(Vec<f32>, String)>, IndexError> {
+    let (Some(Floats(mut fused)), Some(entry)) = (FUSED.get(view, id)?, ENTRIES.get(view, id)?) else {
         return Ok(None);
     };
     if fused.len() != dim {
@@ -52,16 +50,15 @@ impl<'a> Cells<'a> {
 
     /// Removes the shapes of these names, and the names of those that were there.
     pub(super) fn remove(&mut self, cell: u32, names: &mut HashSet<&str>) -> Result<(), IndexError> {
-        let n = padded(self.heads.header.dim);
         let Loaded { parts, changed } = self.load(cell)?;
         for (i, part) in parts {
             if !part.ids.iter().any(|id| names.contains(id)) {
                 continue;
             }
             let mut rest = Part::default();
-            for (row, (id, class)) in part.ids.iter().zip(part.classes.iter()).enumerate() {
+            for (id, class, row) in part.shapes() {
                 if !names.remove(id) {
-                    rest.push(id, class, &part.rows()[row * n..][..n]);
+                    rest.push(id, class, row);
                 }
             }
             *part = rest;
@@ -84,17 +81,17 @@ impl<'a> Cells<'a> {
     }
 
     /// Visits all shapes as they are after the changes.
-    pub(super) fn each(&self, visit: &mut dyn FnMut(Rows<'_>)) -> Result<(), IndexError> {
+    pub(super) fn each(&self, visit: &mut Visit<'_>) -> Result<(), IndexError> {
         (0..self.heads.header.n_cells as u32).try_for_each(|cell| self.each_of(cell, visit))
     }
 
     /// Visits the shapes of a cell as they are after the changes.
-    pub(super) fn each_of(&self, cell: u32, visit: &mut dyn FnMut(Rows<'_>)) -> Result<(), IndexError> {
+    pub(super) fn each_of(&self, cell: u32, visit: &mut Visit<'_>) -> Result<(), IndexError> {
         match self.loaded.get(&cell) {
-            Some(loaded) => loaded.parts.values().for_each(|part| visit(part.in_cell(&cell))),
+            Some(loaded) => loaded.parts.values().for_each(|part| visit(part, &[cell])),
             None => {
                 for part in self.heads.parts(self.view, cell) {
-                    visit(part?.1.in_cell(&cell));
+                    visit(&part?.1, &[cell]);
                 }
             }
         }

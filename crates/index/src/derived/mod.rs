@@ -5,10 +5,8 @@ mod cells;
 mod change;
 mod change_graph;
 mod changed_cells;
-mod part;
 mod train;
 
 pub(crate) use cells::{Heads, about, all_shapes};
 pub(crate) use change::changes;
-pub(crate) use part::Part;
 pub(crate) use train::trained;

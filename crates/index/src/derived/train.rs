@@ -6,25 +6,22 @@ use base::Observer;
 
 use super::cells::{all_shapes, rows_in_part};
 use crate::IndexError;
-use crate::store::{Changes, Floats, Record, View};
+use crate::floats::Floats;
+use crate::shape::{ShapeKey, shape_key};
+use crate::store::{Record, View};
 use crate::tables::{ABOUT, About, CELLS, CENTROIDS, CLASSES, GRAPH, Node, TRIALS};
-use crate::vectors::{
-    CellsHeader, Centroids, Divided, Links, NodeKey, Rows, Trials, divided, n_cells, node_key, padded,
-};
-
-use super::Part;
+use crate::vectors::{CellsHeader, Centroids, Divided, Links, Part, Trials, divided, n_cells, padded};
 
 /// Everything that follows from the shapes of an index.
 pub(crate) struct Trained {
     /// The shapes, cell after cell.
     shapes: Part,
-    n: usize,
     starts: Vec<usize>,
     centroids: Centroids,
     trials: Trials,
     links: Vec<Links>,
     /// The keys of shapes in ascending order, and their places.
-    keys: Vec<(NodeKey, usize)>,
+    keys: Vec<(ShapeKey, usize)>,
     about: About,
 }
 
@@ -38,19 +35,18 @@ pub(crate) fn trained(view: View<'_>, options: &str, observer: &dyn Observer) ->
     order.sort_by_key(|i| cells[*i]);
     shapes.sort(&order, n);
     cells.sort_unstable();
-    let trials = Trials::of(Rows { cells: &cells, ..shapes.in_cell(&0) }, n_cells);
+    let trials = Trials::of(&shapes, &cells, n_cells);
     let header = header(dim, n_rows, n_rows, &centroids, &trials);
-    let keys: Vec<NodeKey> = shapes.ids.iter().map(node_key).collect();
+    let keys: Vec<ShapeKey> = shapes.ids.iter().map(shape_key).collect();
     let starts: Vec<usize> =
         (0..=n_cells as u32).map(|cell| cells.partition_point(|other| *other < cell)).collect();
-    let reach = header.reach;
-    let all = Divided { rows: shapes.rows(), n, keys: &keys, starts: &starts, centroids: &centroids, reach };
+    let all = Divided { rows: shapes.rows(), starts: &starts, centroids: &centroids, reach: header.reach };
     observer.begin("linking neighbours", n_rows);
-    let links = all.links(observer);
-    let mut keys: Vec<(NodeKey, usize)> = keys.into_iter().zip(0..).collect();
+    let links = all.links(&keys, observer);
+    let mut keys: Vec<(ShapeKey, usize)> = keys.into_iter().zip(0..).collect();
     keys.sort_unstable();
     let about = About { options: options.to_owned(), cells: header };
-    Ok(Trained { shapes, n, starts, centroids, trials, links, keys, about })
+    Ok(Trained { shapes, starts, centroids, trials, links, keys, about })
 }
 
 /// What is known about cells that hold `n` vectors.
@@ -69,57 +65,28 @@ pub(super) fn header(
 impl Trained {
     /// All of it, in ascending order of keys. Cells and lists are encoded as they are asked for.
     pub(crate) fn records(&self) -> impl Iterator<Item = Result<Record, IndexError>> + '_ {
-        let heads = std::iter::once_with(|| self.heads());
-        let cells = (0..self.starts.len() - 1).map(|cell| self.cell(cell));
-        let trials = std::iter::once_with(|| {
-            let mut changes = Changes::new();
-            for trial in &self.trials.all {
-                TRIALS.put(&mut changes, &trial.key(), Some(trial))?;
-            }
-            Ok(changes)
-        });
-        let nodes = self.keys.iter().map(|(key, place)| {
-            let node = Node { id: self.shapes.ids.get(*place).to_owned(), links: self.links[*place].clone() };
-            let mut changes = Changes::new();
-            GRAPH.put(&mut changes, key, Some(&node))?;
-            Ok(changes)
-        });
-        heads.chain(cells).chain(trials).chain(nodes).flat_map(|changes: Result<Changes, _>| {
-            let (changes, error) = match changes {
-                Ok(changes) => (changes, None),
-                Err(error) => (Changes::new(), Some(Err(error))),
-            };
-            changes.into_iter().map(Ok).chain(error)
-        })
-    }
-
-    fn heads(&self) -> Result<Changes, IndexError> {
-        let mut changes = Changes::new();
-        ABOUT.put(&mut changes, "", Some(&self.about))?;
-        let mut classes = BTreeMap::new();
-        for class in self.shapes.classes.iter().filter(|class| !class.is_empty()) {
+        let Self { shapes, starts, centroids, trials, links, keys, about } = self;
+        let n_rows = rows_in_part(centroids.n);
+        let about = std::iter::once_with(|| ABOUT.record("", Some(about)));
+        let mut classes: BTreeMap<&str, u64> = BTreeMap::new();
+        for class in shapes.classes.iter().filter(|class| !class.is_empty()) {
             *classes.entry(class).or_insert(0) += 1;
         }
-        for (class, count) in &classes {
-            CLASSES.put(&mut changes, class, Some(count))?;
-        }
-        for (i, rows) in self.centroids.rows.chunks(rows_in_part(self.n) * self.n).enumerate() {
-            CENTROIDS.put(&mut changes, &[i as u32, 0], Some(&Floats(rows.to_vec())))?;
-        }
-        Ok(changes)
-    }
-
-    fn cell(&self, cell: usize) -> Result<Changes, IndexError> {
-        let mut changes = Changes::new();
-        let rows: Vec<usize> = (self.starts[cell]..self.starts[cell + 1]).collect();
-        for (i, of_part) in rows.chunks(rows_in_part(self.n)).enumerate() {
-            let mut part = Part::default();
-            for row in of_part {
-                let vector = &self.shapes.rows()[row * self.n..][..self.n];
-                part.push(self.shapes.ids.get(*row), self.shapes.classes.get(*row), vector);
-            }
-            CELLS.put(&mut changes, &[cell as u32, i as u32], Some(&part))?;
-        }
-        Ok(changes)
+        let classes = classes.into_iter().map(|(class, count)| CLASSES.record(class, Some(&count)));
+        let centres = centroids.rows.chunks(n_rows * centroids.n).zip(0..);
+        let centres = centres.map(|(rows, i)| CENTROIDS.record(&[i, 0], Some(&Floats(rows.to_vec()))));
+        let cells = starts.windows(2).zip(0..).flat_map(move |(ends, cell)| {
+            let parts = (ends[0]..ends[1]).step_by(n_rows).zip(0..);
+            parts.map(move |(first, i)| {
+                let part = shapes.slice(first..(first + n_rows).min(ends[1]));
+                CELLS.record(&[cell, i], Some(&part))
+            })
+        });
+        let trials = trials.all.iter().map(|trial| TRIALS.record(&trial.key(), Some(trial)));
+        let nodes = keys.iter().map(|(key, place)| {
+            let node = Node { id: shapes.ids.get(*place).to_owned(), links: links[*place].clone() };
+            GRAPH.record(key, Some(&node))
+        });
+        about.chain(classes).chain(centres).chain(cells).chain(trials).chain(nodes)
     }
 }

@@ -1,31 +1,21 @@
 //! The schema of a table as Arrow states it, in the metadata of a Parquet file. Parquet has no lists of fixed length, and databases
 //! of vectors (Lance, Polars) ask for them.
 
-use std::borrow::Cow;
-
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+
+use super::columns::{Column, Content};
 
 /// The key of the metadata.
 pub(super) const KEY: &str = "ARROW:schema";
 
-/// The type of a column.
-pub(super) enum Kind {
-    Text,
-    Double,
-    /// 32-bit numbers.
-    List,
-    /// So many 32-bit numbers.
-    FixedList(usize),
-}
+/// The value of the metadata for these columns.
+pub(super) fn schema(columns: &[Column]) -> String {
+    use Value::{Number, Table, Tables};
 
-/// The value of the metadata for columns by name, and whether rows may lack them.
-pub(super) fn schema<'a>(columns: impl Iterator<Item = (Cow<'a, str>, bool, Kind)>) -> String {
-    use Value::{Byte, Short, Table, Tables};
-
-    let fields = columns.map(|(name, is_optional, kind)| field(&name, is_optional, &kind)).collect();
+    let fields = columns.iter().map(field).collect();
     // Message.fbs: version 5, whose header is a schema.
-    let message = Table(vec![(0, Short(4)), (1, Byte(1)), (2, Table(vec![(1, Tables(fields))]))]);
+    let message = Table(vec![(0, Number(4)), (1, Number(1)), (2, Table(vec![(1, Tables(fields))]))]);
     let mut bytes = vec![0; 4];
     let at = message.write(&mut bytes);
     bytes[..4].copy_from_slice(&at.to_le_bytes());
@@ -34,30 +24,31 @@ pub(super) fn schema<'a>(columns: impl Iterator<Item = (Cow<'a, str>, bool, Kind
     STANDARD.encode([&[0xff; 4], &length, bytes.as_slice()].concat())
 }
 
-/// Field and Type of Schema.fbs.
-fn field(name: &str, is_optional: bool, kind: &Kind) -> Value {
-    use Value::{Byte, Int, Short, Table, Tables, Text};
+/// Field and Type of Schema.fbs. Only fused vectors are of one length in every index.
+fn field(column: &Column) -> Value {
+    use Value::{Number, Table, Tables, Text};
 
-    let float = |precision| Table(vec![(0, Short(precision))]);
-    let (number, about) = match kind {
-        Kind::Text => (5, Table(Vec::new())),
-        Kind::Double => (3, float(2)),
-        Kind::List => (12, Table(Vec::new())),
-        Kind::FixedList(length) => (16, Table(vec![(0, Int(*length as u32))])),
+    let float = |precision| Table(vec![(0, Number(precision))]);
+    let (number, about) = match &column.content {
+        Content::Text(..) => (5, Table(Vec::new())),
+        Content::Fact(_) => (3, float(2)),
+        Content::Floats(extents) if column.name == "fused" && extents[0] > 0 => {
+            (16, Table(vec![(0, Number(extents[0] as u32))]))
+        }
+        Content::Floats(_) => (12, Table(Vec::new())),
     };
     let element = || {
         let name = Text("element".to_owned());
-        Table(vec![(0, name), (1, Byte(0)), (2, Byte(3)), (3, float(1)), (5, Tables(Vec::new()))])
+        Table(vec![(0, name), (1, Number(0)), (2, Number(3)), (3, float(1)), (5, Tables(Vec::new()))])
     };
-    let children = match kind {
-        Kind::Text | Kind::Double => Vec::new(),
-        Kind::List | Kind::FixedList(_) => vec![element()],
+    let children = match column.content {
+        Content::Text(..) | Content::Fact(_) => Vec::new(),
+        Content::Floats(_) => vec![element()],
     };
-    let name = Text(name.to_owned());
     Table(vec![
-        (0, name),
-        (1, Byte(is_optional.into())),
-        (2, Byte(number)),
+        (0, Text(column.name.clone())),
+        (1, Number(column.is_optional().into())),
+        (2, Number(number)),
         (3, about),
         (5, Tables(children)),
     ])
@@ -65,9 +56,8 @@ fn field(name: &str, is_optional: bool, kind: &Kind) -> Value {
 
 /// What a FlatBuffer holds.
 enum Value {
-    Byte(u8),
-    Short(u16),
-    Int(u32),
+    /// Of one, two or four bytes: the first come first.
+    Number(u32),
     Text(String),
     /// Fields by their numbers, ascending.
     Table(Vec<(usize, Value)>),
@@ -79,7 +69,7 @@ impl Value {
     fn write(&self, out: &mut Vec<u8>) -> u32 {
         out.resize(out.len().next_multiple_of(4), 0);
         let (places, at): (Vec<(usize, &Self)>, usize) = match self {
-            Self::Byte(_) | Self::Short(_) | Self::Int(_) => (Vec::new(), out.len()),
+            Self::Number(_) => (Vec::new(), out.len()),
             Self::Text(text) => {
                 let at = out.len();
                 out.extend((text.len() as u32).to_le_bytes());
@@ -109,9 +99,7 @@ impl Value {
         out.resize(out.len() + 4 * places.len(), 0);
         for (place, value) in places {
             let written = match value {
-                Self::Byte(x) => u32::from(*x),
-                Self::Short(x) => u32::from(*x),
-                Self::Int(x) => *x,
+                Self::Number(x) => *x,
                 _ => value.write(out) - place as u32,
             };
             out[place..place + 4].copy_from_slice(&written.to_le_bytes());

@@ -4,41 +4,41 @@ use std::borrow::Cow;
 
 use crate::{Index, IndexError, Shape};
 
-/// A column by its name.
+/// A column.
 #[derive(Debug)]
-pub(super) enum Column {
-    /// Texts of at most so many characters.
-    Text(&'static str, usize),
-    /// Facts.
+pub(super) struct Column {
+    pub(super) name: String,
+    pub(super) content: Content,
+}
+
+/// What a column holds.
+#[derive(Debug)]
+pub(super) enum Content {
+    /// A text of at most so many characters.
+    Text(TextOf, usize),
+    /// The fact of this name.
     Fact(String),
     /// Numbers, at most so many in each dimension.
-    Floats(String, Vec<usize>),
+    Floats(Vec<usize>),
 }
 
-/// The names of the columns of texts.
-const TEXTS: [&str; 4] = ["id", "label", "path", "content"];
+/// The text of a shape in a column.
+pub(super) type TextOf = fn(&Shape) -> String;
 
-/// The texts of a shape, in the order of their columns.
-fn texts(shape: &Shape) -> [String; 4] {
-    let entry = &shape.entry;
-    [shape.id.clone(), entry.label.clone(), entry.path.clone(), entry.content.to_string()]
-}
-
-/// The text of a shape in the column of this name.
-pub(super) fn text_of(shape: &Shape, name: &str) -> String {
-    TEXTS
-        .into_iter()
-        .zip(texts(shape))
-        .find(|(known, _)| *known == name)
-        .map_or_else(String::new, |found| found.1)
-}
+/// The columns of texts.
+const TEXTS: [(&str, TextOf); 4] = [
+    ("id", |shape| shape.id.clone()),
+    ("label", |shape| shape.entry.label.clone()),
+    ("path", |shape| shape.entry.path.clone()),
+    ("content", |shape| shape.entry.content.to_string()),
+];
 
 /// Numbers of a shape in a column.
-pub(super) struct Floats<'a> {
+struct Floats<'a> {
     name: Cow<'static, str>,
     /// Their number in each dimension.
     extents: Vec<usize>,
-    pub(super) values: Cow<'a, [f32]>,
+    values: Cow<'a, [f32]>,
 }
 
 /// All numbers of a shape but its facts.
@@ -66,19 +66,26 @@ fn floats(shape: &Shape) -> Vec<Floats<'_>> {
     found
 }
 
-/// The numbers of a shape in the column of this name; `None` if it lacks them.
-pub(super) fn floats_of<'a>(shape: &'a Shape, name: &str) -> Option<Cow<'a, [f32]>> {
-    floats(shape).into_iter().find(|known| known.name == name).map(|found| found.values)
+impl Column {
+    /// Whether shapes may lack it. Other numbers are empty then.
+    pub(super) fn is_optional(&self) -> bool {
+        matches!(self.content, Content::Fact(_)) || self.name.starts_with("signature_")
+    }
+
+    /// The numbers of a shape; `None` if it lacks them.
+    pub(super) fn floats<'a>(&self, shape: &'a Shape) -> Option<Cow<'a, [f32]>> {
+        floats(shape).into_iter().find(|known| known.name == self.name).map(|found| found.values)
+    }
 }
 
 /// The columns of the shapes of an index: texts, facts and numbers, each in order of first appearance.
 pub(super) fn columns(index: &Index) -> Result<Vec<Column>, IndexError> {
-    let mut longest = TEXTS.map(|name| (name, 0));
+    let mut longest = [0; TEXTS.len()];
     let mut facts: Vec<String> = Vec::new();
     let mut numbers: Vec<(String, Vec<usize>)> = Vec::new();
     index.each(|shape| {
-        for ((_, longest), text) in longest.iter_mut().zip(texts(&shape)) {
-            *longest = (*longest).max(text.chars().count());
+        for (longest, (_, text)) in longest.iter_mut().zip(TEXTS) {
+            *longest = (*longest).max(text(&shape).chars().count());
         }
         for (name, _) in &shape.entry.facts {
             if !facts.contains(name) {
@@ -93,7 +100,9 @@ pub(super) fn columns(index: &Index) -> Result<Vec<Column>, IndexError> {
         }
         Ok::<(), IndexError>(())
     })?;
-    let texts = longest.into_iter().map(|(name, longest)| Column::Text(name, longest));
-    let numbers = numbers.into_iter().map(|(name, extents)| Column::Floats(name, extents));
-    Ok(texts.chain(facts.into_iter().map(Column::Fact)).chain(numbers).collect())
+    let texts = TEXTS.into_iter().zip(longest);
+    let texts = texts.map(|((name, text), longest)| (name.to_owned(), Content::Text(text, longest)));
+    let facts = facts.into_iter().map(|name| (format!("fact_{name}"), Content::Fact(name)));
+    let numbers = numbers.into_iter().map(|(name, extents)| (name, Content::Floats(extents)));
+    Ok(texts.chain(facts).chain(numbers).map(|(name, content)| Column { name, content }).collect())
 }

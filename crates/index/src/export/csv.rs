@@ -1,43 +1,36 @@
 //! Comma-separated values: what fits into a spreadsheet.
 
-use std::io::{self, Write};
+use std::io::Write;
 
-use super::columns::{Column, columns, text_of};
+use super::columns::{Column, Content, columns};
 use super::error::ExportError;
 use crate::{Index, Shape};
 
 pub(super) fn write(index: &Index, out: &mut dyn Write) -> Result<(), ExportError> {
     let columns = columns(index)?;
-    let mut head: Vec<String> = Vec::new();
-    for column in &columns {
-        match column {
-            Column::Text(name, _) => head.push((*name).to_owned()),
-            Column::Fact(name) => head.push(csv_field(&format!("fact_{name}"))),
-            Column::Floats(name, extents) if name == "fused" => {
-                head.extend((0..extents[0]).map(|i| format!("fused_{i}")));
-            }
-            Column::Floats(..) => {}
+    let head = columns.iter().flat_map(|column| match &column.content {
+        Content::Text(..) | Content::Fact(_) => vec![csv_field(&column.name)],
+        Content::Floats(extents) if column.name == "fused" => {
+            (0..extents[0]).map(|i| format!("fused_{i}")).collect()
         }
-    }
-    writeln!(out, "{}", head.join(","))?;
-    index.each(|shape| row(out, &columns, &shape).map_err(ExportError::from))
+        Content::Floats(_) => Vec::new(),
+    });
+    writeln!(out, "{}", head.collect::<Vec<_>>().join(","))?;
+    index.each(|shape| {
+        let cells: Vec<String> = columns.iter().flat_map(|column| cells(column, &shape)).collect();
+        Ok(writeln!(out, "{}", cells.join(","))?)
+    })
 }
 
-fn row(out: &mut dyn Write, columns: &[Column], shape: &Shape) -> io::Result<()> {
-    let mut cells: Vec<String> = Vec::new();
-    for column in columns {
-        match column {
-            Column::Text(name, _) => cells.push(csv_field(&text_of(shape, name))),
-            Column::Fact(name) => {
-                cells.push(shape.entry.fact(name).map_or_else(String::new, |x| x.to_string()))
-            }
-            Column::Floats(name, _) if name == "fused" => {
-                cells.extend(shape.vectors.fused.iter().map(f32::to_string));
-            }
-            Column::Floats(..) => {}
+fn cells(column: &Column, shape: &Shape) -> Vec<String> {
+    match &column.content {
+        Content::Text(text, _) => vec![csv_field(&text(shape))],
+        Content::Fact(name) => vec![shape.entry.fact(name).map_or_else(String::new, |x| x.to_string())],
+        Content::Floats(_) if column.name == "fused" => {
+            shape.vectors.fused.iter().map(f32::to_string).collect()
         }
+        Content::Floats(_) => Vec::new(),
     }
-    writeln!(out, "{}", cells.join(","))
 }
 
 /// A field of comma-separated values (RFC 4180), in quotes where it must be.

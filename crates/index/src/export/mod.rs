@@ -12,6 +12,7 @@ mod tests;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 
+use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
 use crate::{Index, Shape};
@@ -29,18 +30,24 @@ struct Head<'a> {
 }
 
 /// Each further line.
-#[derive(Serialize)]
-struct Line<'a> {
-    id: &'a str,
-    label: &'a str,
-    path: &'a str,
-    content: String,
-    facts: Named<'a, f64>,
-    fused: &'a [f32],
-    signatures: Named<'a, Vec<f32>>,
-    form: &'a [[f32; 4]],
-    disc_areas: &'a [f32],
-    components: &'a [Vec<f32>],
+struct Line<'a>(&'a Shape);
+
+impl Serialize for Line<'_> {
+    fn serialize<S: Serializer>(&self, out: S) -> Result<S::Ok, S::Error> {
+        let Shape { id, entry, vectors } = self.0;
+        let mut line = out.serialize_map(None)?;
+        line.serialize_entry("id", id)?;
+        line.serialize_entry("label", &entry.label)?;
+        line.serialize_entry("path", &entry.path)?;
+        line.serialize_entry("content", &entry.content.to_string())?;
+        line.serialize_entry("facts", &Named(&entry.facts))?;
+        line.serialize_entry("fused", &vectors.fused)?;
+        line.serialize_entry("signatures", &Named(&vectors.signatures))?;
+        line.serialize_entry("form", &vectors.form)?;
+        line.serialize_entry("disc_areas", &vectors.disc_areas)?;
+        line.serialize_entry("components", &vectors.components)?;
+        line.end()
+    }
 }
 
 /// Pairs serialised as an object, in order.
@@ -126,23 +133,7 @@ impl Index {
         let head =
             Head { format: "canonform-index", version: 2, options: self.options(), shapes: self.len() };
         write_line(out, &head)?;
-        self.each(|shape| write_line(out, &line(&shape)).map_err(ExportError::from))
-    }
-}
-
-fn line(shape: &Shape) -> Line<'_> {
-    let Shape { id, entry, vectors } = shape;
-    Line {
-        id,
-        label: &entry.label,
-        path: &entry.path,
-        content: entry.content.to_string(),
-        facts: Named(&entry.facts),
-        fused: &vectors.fused,
-        signatures: Named(&vectors.signatures),
-        form: &vectors.form,
-        disc_areas: &vectors.disc_areas,
-        components: &vectors.components,
+        self.each(|shape| write_line(out, &Line(&shape)).map_err(ExportError::from))
     }
 }
 

@@ -7,7 +7,7 @@ use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
-use super::columns::{Column, columns, floats_of, text_of};
+use super::columns::{Content, columns};
 use super::error::ExportError;
 use crate::Index;
 
@@ -18,22 +18,21 @@ pub(super) fn write(index: &Index, file: &mut File) -> Result<(), ExportError> {
     archive.begin("options", &format!("<U{longest}"), &[], 4 * longest)?;
     archive.put(&text(options, longest))?;
     for column in columns(index)? {
-        match column {
-            Column::Text(name, longest) => {
-                let longest = longest.max(1);
-                archive.begin(name, &format!("<U{longest}"), &[n], 4 * longest)?;
-                index.each(|shape| archive.put(&text(&text_of(&shape, name), longest)))?;
+        match &column.content {
+            Content::Text(of, longest) => {
+                let longest = (*longest).max(1);
+                archive.begin(&column.name, &format!("<U{longest}"), &[n], 4 * longest)?;
+                index.each(|shape| archive.put(&text(&of(&shape), longest)))?;
             }
-            Column::Fact(fact) => {
-                archive.begin(&format!("fact_{fact}"), "<f8", &[n], 8)?;
-                index
-                    .each(|shape| archive.put(&shape.entry.fact(&fact).unwrap_or(f64::NAN).to_le_bytes()))?;
+            Content::Fact(fact) => {
+                archive.begin(&column.name, "<f8", &[n], 8)?;
+                index.each(|shape| archive.put(&shape.entry.fact(fact).unwrap_or(f64::NAN).to_le_bytes()))?;
             }
-            Column::Floats(name, extents) => {
-                archive.begin(&name, "<f4", &[&[n], extents.as_slice()].concat(), 4)?;
+            Content::Floats(extents) => {
+                archive.begin(&column.name, "<f4", &[&[n], extents.as_slice()].concat(), 4)?;
                 let length = extents.iter().product();
                 index.each(|shape| {
-                    let mut values = floats_of(&shape, &name).unwrap_or_default().into_owned();
+                    let mut values = column.floats(&shape).unwrap_or_default().into_owned();
                     values.resize(length, f32::NAN);
                     archive.put(&values.into_iter().flat_map(f32::to_le_bytes).collect::<Vec<_>>())
                 })?;

@@ -1,6 +1,5 @@
 //! Parquet, which databases and data frames read.
 
-use std::borrow::Cow;
 use std::fs::File;
 use std::io;
 use std::sync::Arc;
@@ -13,8 +12,8 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::{ColumnPath, Type, TypePtr};
 
-use super::arrow::{self, Kind};
-use super::columns::{Column, columns, floats_of, text_of};
+use super::arrow;
+use super::columns::{Column, Content, columns};
 use super::error::ExportError;
 use crate::{Index, Shape};
 
@@ -25,13 +24,13 @@ pub(super) fn write(index: &Index, file: &mut File) -> Result<(), ExportError> {
     let columns = columns(index)?;
     let schema = schema(&columns).map_err(failed)?;
     let options = KeyValue::new("canonform.options".to_owned(), index.options().to_owned());
-    let kinds = KeyValue::new(arrow::KEY.to_owned(), arrow::schema(columns.iter().map(kind)));
-    let mut properties = WriterProperties::builder()
+    let kinds = KeyValue::new(arrow::KEY.to_owned(), arrow::schema(&columns));
+    let properties = WriterProperties::builder()
         .set_compression(Compression::SNAPPY)
         // Numbers hardly repeat.
         .set_dictionary_enabled(false)
+        .set_column_dictionary_enabled(ColumnPath::from("label"), true)
         .set_key_value_metadata(Some(vec![options, kinds]));
-    properties = properties.set_column_dictionary_enabled(ColumnPath::from("label"), true);
     let mut writer = SerializedFileWriter::new(file, schema, Arc::new(properties.build())).map_err(failed)?;
     let mut rows: Vec<Shape> = Vec::with_capacity(GROUP);
     index.each(|shape| {
@@ -50,63 +49,34 @@ pub(super) fn write(index: &Index, file: &mut File) -> Result<(), ExportError> {
 }
 
 fn schema(columns: &[Column]) -> Result<TypePtr, ParquetError> {
-    let text = |name: &str| {
-        let column = Type::primitive_type_builder(name, Physical::BYTE_ARRAY)
-            .with_repetition(Repetition::REQUIRED)
-            .with_converted_type(ConvertedType::UTF8)
-            .with_logical_type(Some(LogicalType::String));
-        column.build().map(Arc::new)
-    };
-    let double = |name: &str| {
-        let column = Type::primitive_type_builder(name, Physical::DOUBLE);
-        column.with_repetition(Repetition::OPTIONAL).build().map(Arc::new)
-    };
-    let list = |name: &str, repetition| {
-        let element = Type::primitive_type_builder("element", Physical::FLOAT);
-        let element = Arc::new(element.with_repetition(Repetition::REQUIRED).build()?);
-        let inner = Type::group_type_builder("list").with_repetition(Repetition::REPEATED);
-        let inner = Arc::new(inner.with_fields(vec![element]).build()?);
-        let column = Type::group_type_builder(name)
-            .with_repetition(repetition)
-            .with_converted_type(ConvertedType::LIST)
-            .with_logical_type(Some(LogicalType::List));
-        column.with_fields(vec![inner]).build().map(Arc::new)
-    };
-    let field = |column: &Column| match column {
-        Column::Text(name, _) => text(name),
-        Column::Fact(_) => double(&name_of(column)),
-        Column::Floats(name, _) => {
-            list(name, if is_signature(name) { Repetition::OPTIONAL } else { Repetition::REQUIRED })
-        }
-    };
-    let fields = columns.iter().map(field).collect::<Result<_, _>>()?;
+    let fields = columns.iter().map(|column| field(column).map(Arc::new)).collect::<Result<_, _>>()?;
     Type::group_type_builder("shapes").with_fields(fields).build().map(Arc::new)
 }
 
-fn name_of(column: &Column) -> Cow<'_, str> {
-    match column {
-        Column::Text(name, _) => Cow::Borrowed(name),
-        Column::Fact(name) => Cow::Owned(format!("fact_{name}")),
-        Column::Floats(name, _) => Cow::Borrowed(name),
+fn field(column: &Column) -> Result<Type, ParquetError> {
+    let name = column.name.as_str();
+    let repetition = if column.is_optional() { Repetition::OPTIONAL } else { Repetition::REQUIRED };
+    match &column.content {
+        Content::Text(..) => Type::primitive_type_builder(name, Physical::BYTE_ARRAY)
+            .with_repetition(repetition)
+            .with_logical_type(Some(LogicalType::String))
+            .build(),
+        Content::Fact(_) => {
+            Type::primitive_type_builder(name, Physical::DOUBLE).with_repetition(repetition).build()
+        }
+        Content::Floats(_) => {
+            let element = Type::primitive_type_builder("element", Physical::FLOAT);
+            let element = Arc::new(element.with_repetition(Repetition::REQUIRED).build()?);
+            let inner = Type::group_type_builder("list").with_repetition(Repetition::REPEATED);
+            let inner = Arc::new(inner.with_fields(vec![element]).build()?);
+            Type::group_type_builder(name)
+                .with_repetition(repetition)
+                .with_converted_type(ConvertedType::LIST)
+                .with_logical_type(Some(LogicalType::List))
+                .with_fields(vec![inner])
+                .build()
+        }
     }
-}
-
-/// The name of a column, whether shapes may lack it, and its type. Only fused vectors are of one length in every index.
-fn kind(column: &Column) -> (Cow<'_, str>, bool, Kind) {
-    let (is_optional, kind) = match column {
-        Column::Text(..) => (false, Kind::Text),
-        Column::Fact(_) => (true, Kind::Double),
-        Column::Floats(name, extents) => match extents[..] {
-            [length] if name == "fused" && length > 0 => (false, Kind::FixedList(length)),
-            _ => (is_signature(name), Kind::List),
-        },
-    };
-    (name_of(column), is_optional, kind)
-}
-
-/// Whether shapes may lack this column. Others are empty then.
-fn is_signature(name: &str) -> bool {
-    name.starts_with("signature_")
 }
 
 fn write_group(
@@ -116,21 +86,19 @@ fn write_group(
 ) -> Result<(), ExportError> {
     let mut group = writer.next_row_group().map_err(failed)?;
     for column in columns {
-        match column {
-            Column::Text(name, _) => {
+        match &column.content {
+            Content::Text(text, _) => {
                 let values: Vec<ByteArray> =
-                    rows.iter().map(|shape| text_of(shape, name).into_bytes().into()).collect();
+                    rows.iter().map(|shape| text(shape).into_bytes().into()).collect();
                 put::<ByteArrayType>(&mut group, &values, None, None)?;
             }
-            Column::Fact(name) => {
+            Content::Fact(name) => {
                 let found: Vec<Option<f64>> = rows.iter().map(|shape| shape.entry.fact(name)).collect();
                 let levels: Vec<i16> = found.iter().map(|value| i16::from(value.is_some())).collect();
                 let values: Vec<f64> = found.into_iter().flatten().collect();
                 put::<DoubleType>(&mut group, &values, Some(&levels), None)?;
             }
-            Column::Floats(name, _) => {
-                lists(&mut group, rows.iter().map(|shape| floats_of(shape, name)), is_signature(name))?;
-            }
+            Content::Floats(_) => lists(&mut group, column, rows)?,
         }
     }
     group.close().map_err(failed)?;
@@ -139,14 +107,14 @@ fn write_group(
 
 /// Writes a column of lists. Definition levels count what is there (a list that may be missing, an element), repetition
 /// levels are 0 where a list begins.
-fn lists<'a>(
+fn lists(
     group: &mut SerializedRowGroupWriter<'_, &mut File>,
-    rows: impl Iterator<Item = Option<Cow<'a, [f32]>>>,
-    is_optional: bool,
+    column: &Column,
+    rows: &[Shape],
 ) -> Result<(), ExportError> {
     let (mut values, mut definitions, mut repetitions) = (Vec::new(), Vec::new(), Vec::new());
-    let of_empty = i16::from(is_optional);
-    for row in rows {
+    let of_empty = i16::from(column.is_optional());
+    for row in rows.iter().map(|shape| column.floats(shape)) {
         let is_there = row.is_some();
         match row.unwrap_or_default().as_ref() {
             [] => {

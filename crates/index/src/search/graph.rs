@@ -5,9 +5,9 @@ use std::collections::HashMap;
 use retrieval::{GraphNeighbor, LINKS, Neighbor, graph_rank};
 
 use super::{Found, SearchMode, distance};
+use crate::shape::{ShapeKey, shape_key};
 use crate::store::View;
 use crate::tables::{FUSED, node};
-use crate::vectors::{NodeKey, node_key};
 use crate::{Index, IndexError};
 
 /// A shape found on the graph.
@@ -47,23 +47,23 @@ impl Index {
         mode: SearchMode,
     ) -> Result<FoundOnGraph, IndexError> {
         let mut search = self.nearest(query, k.max(LINKS), mode)?;
-        let mut walk = Walk { view: self.view(), query, known: Names::default(), n_lists: 0 };
-        let nearest: Vec<Neighbor> = search
-            .shapes
-            .drain(..)
+        let mut walk =
+            Walk { view: self.view(), query, numbers: HashMap::new(), met: Vec::new(), n_lists: 0 };
+        let nearest: Vec<Neighbor> = std::mem::take(&mut search.shapes)
+            .into_iter()
             .map(|near| {
-                let index = walk.known.number(node_key(&near.id));
-                walk.known.ids[index] = Some(near.id);
+                let index = walk.number(shape_key(&near.id));
+                walk.met[index].1 = Some(near.id);
                 Neighbor { index, distance: near.distance }
             })
             .collect();
         let ranked = graph_rank(usize::MAX, &nearest, &mut walk)?;
-        let Walk { known, n_lists, .. } = walk;
+        let Walk { mut met, n_lists, .. } = walk;
         let shape = |found: GraphNeighbor| {
             let GraphNeighbor { index, distance, rank_distance } = found;
             // The nearest were numbered first.
             let plain_rank = (index < nearest.len()).then_some(index + 1);
-            Some(RankedShape { id: known.ids[index].clone()?, distance, rank_distance, plain_rank })
+            Some(RankedShape { id: met[index].1.take()?, distance, rank_distance, plain_rank })
         };
         // A neighbour without a name is gone.
         let mut shapes: Vec<RankedShape> =
@@ -77,30 +77,24 @@ impl Index {
     }
 }
 
-/// Shapes by the order in which a walk meets them.
-#[derive(Default)]
-struct Names {
-    numbers: HashMap<NodeKey, usize>,
-    keys: Vec<NodeKey>,
-    ids: Vec<Option<String>>,
-}
-
-impl Names {
-    fn number(&mut self, key: NodeKey) -> usize {
-        *self.numbers.entry(key).or_insert_with(|| {
-            self.keys.push(key);
-            self.ids.push(None);
-            self.keys.len() - 1
-        })
-    }
-}
-
 /// The part of the graph around a query.
 struct Walk<'a> {
     view: View<'a>,
     query: &'a [f32],
-    known: Names,
+    /// The numbers of shapes, in the order in which they are met.
+    numbers: HashMap<ShapeKey, usize>,
+    /// Their names, as far as they are known.
+    met: Vec<(ShapeKey, Option<String>)>,
     n_lists: usize,
+}
+
+impl Walk<'_> {
+    fn number(&mut self, key: ShapeKey) -> usize {
+        *self.numbers.entry(key).or_insert_with(|| {
+            self.met.push((key, None));
+            self.met.len() - 1
+        })
+    }
 }
 
 impl retrieval::Graph for Walk<'_> {
@@ -108,20 +102,18 @@ impl retrieval::Graph for Walk<'_> {
 
     fn links(&mut self, shape: usize) -> Result<Vec<Neighbor>, IndexError> {
         self.n_lists += 1;
-        let Some(node) = node(self.view, self.known.keys[shape])? else { return Ok(Vec::new()) };
-        let of = |link: crate::vectors::Link, known: &mut Names| Neighbor {
-            index: known.number(link.key),
-            distance: f64::from(link.sq).sqrt(),
-        };
-        let links = node.links.0.into_iter().map(|link| of(link, &mut self.known)).collect();
-        self.known.ids[shape].get_or_insert(node.id);
-        Ok(links)
+        let Some(node) = node(self.view, self.met[shape].0)? else { return Ok(Vec::new()) };
+        self.met[shape].1.get_or_insert(node.id);
+        let links = node.links.0.into_iter();
+        Ok(links
+            .map(|link| Neighbor { index: self.number(link.key), distance: f64::from(link.sq).sqrt() })
+            .collect())
     }
 
     /// Infinite for a shape that is gone: its list named no shape.
     fn distance(&mut self, shape: usize) -> Result<f64, IndexError> {
-        let Some(id) = &self.known.ids[shape] else { return Ok(f64::INFINITY) };
-        let vector = self.view.get(&FUSED, id.as_str())?;
+        let Some(id) = &self.met[shape].1 else { return Ok(f64::INFINITY) };
+        let vector = FUSED.get(self.view, id.as_str())?;
         Ok(vector.map_or(f64::INFINITY, |vector| distance(self.query, &vector.0)))
     }
 }

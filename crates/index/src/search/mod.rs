@@ -2,17 +2,16 @@
 
 mod graph;
 mod searcher;
-mod threshold;
 
+use crate::derived::all_shapes;
 use crate::tables::FUSED;
 use crate::texts::Texts;
-use crate::vectors::{CellsHeader, NEIGHBORS, Nearest, Reach, nearest_cells, padded, scan};
+use crate::vectors::{CellsHeader, NEIGHBORS, Reach, Trials, padded, scan, search_cells};
 use crate::{Index, IndexError};
 use retrieval::UnknownThreshold;
 
 pub use graph::{FoundOnGraph, RankedShape};
 pub use searcher::Searcher;
-pub use threshold::class_threshold;
 
 /// How thoroughly to search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -91,23 +90,19 @@ impl Index {
     pub fn nearest(&self, query: &[f32], k: usize, mode: SearchMode) -> Result<Found, IndexError> {
         let (heads, view) = (self.heads()?, self.view());
         let row = padded_query(query, &heads.header)?;
-        let (mut nearest, mut ids) = (Nearest::new(k.max(NEIGHBORS)), Texts::default());
-        let reach = mode.reach(&heads.header);
-        for cell in nearest_cells(&row, &heads.centroids, reach.probes) {
-            if !reach.includes(&cell, nearest.bound()) {
-                continue;
-            }
-            for part in heads.parts(view, cell.cell) {
+        let (mut ids, reach) = (Texts::default(), mode.reach(&heads.header));
+        let nearest = search_cells(&row, &heads.centroids, reach, k.max(NEIGHBORS), |cell, nearest| {
+            for part in heads.parts(view, cell) {
                 let (_, part) = part?;
-                scan(&row, ids.len() as u32, part.rows(), &mut nearest);
+                scan(&row, ids.len() as u32, part.rows(), nearest);
                 ids.extend(&part.ids);
             }
-        }
+            Ok::<_, IndexError>(())
+        })?;
         let mut shapes = Vec::with_capacity(k.min(self.len()));
         for hit in nearest.into_hits() {
             let id = ids.get(hit.slot as usize);
-            let vector =
-                view.get(&FUSED, id)?.ok_or_else(|| view.damaged(format!("`{id}` has no vector")))?;
+            let vector = FUSED.get(view, id)?.ok_or_else(|| view.damaged(format!("`{id}` has no vector")))?;
             shapes.push(NearShape { distance: distance(query, &vector.0), id: id.to_owned() });
         }
         Ok(Found::new(shapes, k, ids.len(), &heads.header, mode))
@@ -131,4 +126,22 @@ fn padded_query(query: &[f32], header: &CellsHeader) -> Result<Vec<f32>, IndexEr
     let mut row = query.to_vec();
     row.resize(padded(header.dim), 0.0);
     Ok(row)
+}
+
+/// The [threshold](Found::threshold) of the index that would hold the shapes of all of these, which have different names
+/// and were described with the same options. Holds the vectors of one index at a time in memory.
+///
+/// # Errors
+/// [`IndexError::Io`], [`IndexError::Damaged`].
+pub fn class_threshold(indexes: &[Index]) -> Result<Option<UnknownThreshold>, IndexError> {
+    let trials = Trials::in_pieces(1, |visit| {
+        for index in indexes {
+            let (shapes, _) = all_shapes(index.view())?;
+            if shapes.ids.len() > 0 {
+                visit(&shapes, &[0]);
+            }
+        }
+        Ok::<_, IndexError>(())
+    })?;
+    Ok(trials.threshold())
 }

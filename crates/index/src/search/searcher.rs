@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::{Found, NearShape, SearchMode, distance, padded_query};
 use crate::texts::Texts;
-use crate::vectors::{CellsHeader, Centroids, Hit, NEIGHBORS, Nearest, Reach, nearest_cells, padded, scan};
+use crate::vectors::{CellsHeader, Centroids, Divided, Hit, NEIGHBORS, Nearest, Reach, padded, scan};
 use crate::{Index, IndexError};
 
 /// Rows in one parallel task.
@@ -66,16 +66,8 @@ impl Searcher {
                 .reduce(start, Nearest::join);
             (nearest, self.ids.len())
         } else {
-            let (mut nearest, mut n_measured) = (Nearest::new(k_least), 0);
-            for cell in nearest_cells(&row, &self.centroids, reach.probes) {
-                if !reach.includes(&cell, nearest.bound()) {
-                    continue;
-                }
-                let [start, end] = [0, 1].map(|i| self.starts[cell.cell as usize + i]);
-                n_measured += end - start;
-                scan(&row, start as u32, &self.rows[start * n..end * n], &mut nearest);
-            }
-            (nearest, n_measured)
+            let (rows, starts, centroids) = (&self.rows, &self.starts, &self.centroids);
+            Divided { rows, starts, centroids, reach }.near(&row, k_least)
         };
         let shape = |Hit { slot, .. }: Hit| {
             let slot = slot as usize;

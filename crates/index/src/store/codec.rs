@@ -2,8 +2,8 @@
 //!
 //! The size is checked before decoding, so forged lengths reserve no memory, and decoding must consume all bytes.
 
-use serde::de::{DeserializeOwned, Visitor};
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 /// The largest size of one value: 64 MiB.
 pub(crate) const LIMIT: usize = 64 << 20;
@@ -37,42 +37,10 @@ pub(crate) fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, String> {
     }
 }
 
-/// Numbers stored as one block of little-endian bytes.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct Floats(pub(crate) Vec<f32>);
-
-impl Serialize for Floats {
-    fn serialize<S: Serializer>(&self, out: S) -> Result<S::Ok, S::Error> {
-        let bytes: Vec<u8> = self.0.iter().flat_map(|x| x.to_le_bytes()).collect();
-        out.serialize_bytes(&bytes)
-    }
-}
-
-impl<'de> Deserialize<'de> for Floats {
-    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        struct Bytes;
-        impl Visitor<'_> for Bytes {
-            type Value = Floats;
-
-            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                f.write_str("four bytes per number")
-            }
-
-            fn visit_bytes<E: serde::de::Error>(self, bytes: &[u8]) -> Result<Floats, E> {
-                let (numbers, rest) = bytes.as_chunks::<4>();
-                match rest {
-                    [] => Ok(Floats(numbers.iter().map(|b| f32::from_le_bytes(*b)).collect())),
-                    _ => Err(E::invalid_length(bytes.len(), &self)),
-                }
-            }
-        }
-        from.deserialize_bytes(Bytes)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::floats::Floats;
 
     #[test]
     fn values_round_trip_bit_for_bit() {

@@ -25,9 +25,7 @@ use std::time::Duration;
 use super::records::{Record, Rows, Run, StoredRecord, read_at, record_at, u32_at, u64_at};
 use super::segment::{Segment, SegmentWriter};
 use crate::IndexError;
-
-/// Version of the file format.
-pub const FORMAT_VERSION: u32 = 4;
+use crate::error::FORMAT_VERSION;
 
 /// Bytes before the first segment.
 const HEAD: usize = 4096;
@@ -78,17 +76,9 @@ impl State {
                 return Err(no_head(file, &head, path));
             }
             let slots = SLOTS.map(|at| Self::of_slot(&head[at..][..SLOT]));
-            for found in slots.iter().flatten().map(|(version, _)| *version) {
-                let (path, supported) = (path.to_owned(), FORMAT_VERSION);
-                match found.cmp(&supported) {
-                    std::cmp::Ordering::Less => {
-                        return Err(IndexError::PastVersion { path, found, supported });
-                    }
-                    std::cmp::Ordering::Equal => {}
-                    std::cmp::Ordering::Greater => {
-                        return Err(IndexError::FutureVersion { path, found, supported });
-                    }
-                }
+            let mut versions = slots.iter().flatten().map(|(version, _)| *version);
+            if let Some(found) = versions.find(|version| *version != FORMAT_VERSION) {
+                return Err(IndexError::other_version(path, found));
             }
             let is_rest_zero =
                 SLOTS.iter().all(|at| head[at + SLOT..at + HEAD / 2].iter().all(|byte| *byte == 0));
@@ -118,7 +108,7 @@ fn no_head(file: &mut File, head: &[u8], path: &Path) -> IndexError {
     let tail = file.seek(SeekFrom::End(-(MAGIC.len() as i64)));
     let is_format_1 = head.starts_with(b"redb") && tail.is_ok_and(|_| file.read_to_end(&mut end).is_ok());
     if is_format_1 && end == MAGIC {
-        return IndexError::PastVersion { path: path.to_owned(), found: 1, supported: FORMAT_VERSION };
+        return IndexError::other_version(path, 1);
     }
     let is_start = head.len() >= 4 && MAGIC.starts_with(&head[..head.len().min(MAGIC.len())]);
     match is_start {
@@ -133,10 +123,8 @@ pub(crate) struct StoredFile {
     path: PathBuf,
     file: Mutex<File>,
     state: State,
-    /// From the first one on, also those that were taken in by later ones.
+    /// The last one first, also those that were taken in by later ones.
     segments: Vec<Segment>,
-    /// Those that count, the last one first.
-    counting: Vec<usize>,
 }
 
 impl StoredFile {
@@ -158,26 +146,20 @@ impl StoredFile {
         let file = Mutex::new(file);
         let changed = || IndexError::damaged(path, "its lists of blocks changed");
         let (mut segments, mut end, mut sum) = (Vec::<Segment>::new(), state.end, state.sum);
+        let mut below = end;
         while end > HEAD as u64 {
-            let segment = Segment::read(&file, end).map_err(cannot_read)?.ok_or_else(changed)?;
-            if segment.sum != sum {
-                return Err(changed());
+            let segment = Segment::read(&file, end).map_err(cannot_read)?;
+            let mut segment = segment.filter(|segment| segment.sum == sum).ok_or_else(changed)?;
+            if segment.end == below {
+                (segment.counts, below) = (true, segment.below);
             }
             (end, sum) = (segment.start, segment.before);
             segments.push(segment);
         }
-        segments.reverse();
-        let (mut counting, mut below) = (Vec::new(), state.end);
-        for (i, segment) in segments.iter().enumerate().rev() {
-            if segment.end == below {
-                counting.push(i);
-                below = segment.below;
-            }
-        }
         if (end, sum, below) != (HEAD as u64, 0, HEAD as u64) || segments.is_empty() {
             return Err(changed());
         }
-        Ok(Self { path: path.to_owned(), file, state, segments, counting })
+        Ok(Self { path: path.to_owned(), file, state, segments })
     }
 
     pub(crate) fn path(&self) -> &Path {
@@ -196,7 +178,7 @@ impl StoredFile {
 
     /// The value of a key.
     pub(super) fn get(&self, key: &[u8]) -> Result<Option<Vec<u8>>, IndexError> {
-        for segment in self.counting.iter().map(|i| &self.segments[*i]) {
+        for segment in self.segments.iter().filter(|segment| segment.counts) {
             let Some(block) = segment.block_of(key) else { continue };
             let (bytes, mut at) = (self.block(segment, block)?, 0);
             while at < bytes.len() {
@@ -212,8 +194,8 @@ impl StoredFile {
 
     /// The segments that count as runs from a key on, the last one first.
     pub(super) fn runs<'a>(&'a self, from: &[u8]) -> impl Iterator<Item = Run<'a>> {
-        let from = from.to_vec();
-        self.counting.iter().map(move |i| Box::new(Cursor::new(self, &self.segments[*i], &from)) as Run<'a>)
+        let (from, counting) = (from.to_vec(), self.segments.iter().filter(|segment| segment.counts));
+        counting.map(move |segment| Box::new(Cursor::new(self, segment, &from)) as Run<'a>)
     }
 
     /// Reads a block.
@@ -256,11 +238,11 @@ impl StoredFile {
     /// # Errors
     /// [`IndexError::Io`]; then the file is as it was.
     pub(crate) fn append(&self, changes: Vec<Run<'_>>, mut n_bytes: u64) -> Result<bool, IndexError> {
-        let first = &self.segments[0];
+        let Some((first, later)) = self.segments.split_last() else { return Ok(false) };
         // As much as half of the first segment, so that the time to write the file anew is proportional to the changes.
         let room = (first.n_bytes() / 2).saturating_sub(self.state.end - first.end);
         let (mut taken, mut below) = (changes, self.state.end);
-        for segment in self.counting.iter().filter(|i| **i > 0).map(|i| &self.segments[*i]) {
+        for segment in later.iter().filter(|segment| segment.counts) {
             if segment.n_bytes() > 2 * n_bytes {
                 break;
             }
@@ -325,23 +307,22 @@ pub(crate) fn write_forged(path: &Path, records: Vec<Record>) {
     write_into(&mut File::create(path).unwrap(), records.into_iter().map(Ok)).unwrap();
 }
 
-/// The records of a segment.
+/// The records of a segment, from a key on.
 struct Cursor<'a> {
     stored: &'a StoredFile,
     segment: &'a Segment,
+    from: Vec<u8>,
     /// The block that comes next.
     next: usize,
     block: Vec<u8>,
     at: usize,
-    /// The first key, then the last one.
-    last: Vec<u8>,
-    is_first: bool,
+    last: Option<Vec<u8>>,
 }
 
 impl<'a> Cursor<'a> {
     fn new(stored: &'a StoredFile, segment: &'a Segment, from: &[u8]) -> Self {
         let next = segment.block_of(from).unwrap_or(0);
-        Self { stored, segment, next, block: Vec::new(), at: 0, last: from.to_vec(), is_first: true }
+        Self { stored, segment, from: from.to_vec(), next, block: Vec::new(), at: 0, last: None }
     }
 
     fn advance(&mut self) -> Result<Option<Record>, IndexError> {
@@ -352,19 +333,16 @@ impl<'a> Cursor<'a> {
                 }
                 (self.block, self.at) = (self.stored.block(self.segment, self.next)?, 0);
                 self.next += 1;
-                continue;
             }
             let StoredRecord { key, value, end } = self.stored.record(&self.block, self.at)?;
             self.at = end;
-            if key < self.last.as_slice() || !self.is_first && key == self.last.as_slice() {
-                match self.is_first {
-                    true => continue,
-                    false => return Err(IndexError::damaged(&self.stored.path, "its keys are out of order")),
-                }
+            if self.last.as_deref().is_some_and(|last| key <= last) {
+                return Err(IndexError::damaged(&self.stored.path, "its keys are out of order"));
             }
-            self.is_first = false;
-            self.last = key.to_vec();
-            return Ok(Some((key.to_vec(), value.map(<[u8]>::to_vec))));
+            if key >= self.from.as_slice() {
+                self.last = Some(key.to_vec());
+                return Ok(Some((key.to_vec(), value.map(<[u8]>::to_vec))));
+            }
         }
     }
 }

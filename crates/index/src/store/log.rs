@@ -12,21 +12,15 @@
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
-use super::records::{Changes, Record, Run, StoredRecord, lock, push, read_at, record_at, u32_at, u64_at};
+use super::records::{Changes, Run, StoredRecord, lock, push, read_at, record_at, u32_at, u64_at};
 use crate::IndexError;
 
 const MAGIC: [u8; 16] = *b"canonform work 2";
 const FRAME: usize = 12;
-
-/// Where a value is in the file.
-#[derive(Debug, Clone, Copy)]
-struct Place {
-    at: u64,
-    length: usize,
-}
 
 /// What a writer has changed. Its file is locked by the writer.
 #[derive(Debug)]
@@ -36,7 +30,8 @@ pub(crate) struct Log {
     end: u64,
     /// What its first frame holds.
     job: Vec<u8>,
-    values: BTreeMap<Vec<u8>, Option<Place>>,
+    /// Where the value of each changed key is in the file.
+    values: BTreeMap<Vec<u8>, Option<Range<u64>>>,
 }
 
 impl Log {
@@ -116,7 +111,7 @@ impl Log {
     fn learn(&mut self, start: u64, records: &[u8]) {
         let mut at = 0;
         while let Some(StoredRecord { key, value, end }) = record_at(records, at) {
-            let place = |value: &[u8]| Place { at: start + (end - value.len()) as u64, length: value.len() };
+            let place = |value: &[u8]| start + (end - value.len()) as u64..start + end as u64;
             self.values.insert(key.to_vec(), value.map(place));
             at = end;
         }
@@ -151,8 +146,7 @@ impl Log {
 
     /// The value of a key: `None` if it has not changed, `Some(None)` if it was removed.
     pub(super) fn get(&self, key: &[u8]) -> Result<Option<Option<Vec<u8>>>, IndexError> {
-        let read = |place: &Option<Place>| place.map(|place| self.read(place)).transpose();
-        self.values.get(key).map(read).transpose()
+        self.values.get(key).map(|place| self.read(place)).transpose()
     }
 
     /// The changed keys that begin with `prefix`, and whether they have a value.
@@ -164,15 +158,14 @@ impl Log {
 
     /// All changes from a key on.
     pub(super) fn run<'a>(&'a self, from: &[u8]) -> Run<'a> {
-        let read = move |(key, place): (&Vec<u8>, &Option<Place>)| -> Result<Record, IndexError> {
-            Ok((key.clone(), place.map(|place| self.read(place)).transpose()?))
-        };
+        let read = |(key, place): (&Vec<u8>, &_)| Ok((key.clone(), self.read(place)?));
         Box::new(self.values.range(from.to_vec()..).map(read))
     }
 
-    fn read(&self, place: Place) -> Result<Vec<u8>, IndexError> {
-        let mut bytes = vec![0; place.length];
-        read_at(&self.file, place.at, &mut bytes).map_err(IndexError::io("read", &self.path))?;
-        Ok(bytes)
+    fn read(&self, place: &Option<Range<u64>>) -> Result<Option<Vec<u8>>, IndexError> {
+        let Some(place) = place else { return Ok(None) };
+        let mut bytes = vec![0; (place.end - place.start) as usize];
+        read_at(&self.file, place.start, &mut bytes).map_err(IndexError::io("read", &self.path))?;
+        Ok(Some(bytes))
     }
 }

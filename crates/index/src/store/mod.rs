@@ -16,8 +16,7 @@ mod records;
 mod segment;
 mod view;
 
-pub(crate) use codec::{Floats, LIMIT, decode, encode};
-pub use file::FORMAT_VERSION;
+pub(crate) use codec::{LIMIT, decode, encode};
 pub(crate) use file::StoredFile;
 #[cfg(test)]
 pub(crate) use file::write_forged;

@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
+use std::iter::Peekable;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::IndexError;
@@ -74,29 +75,11 @@ pub(super) fn read_at(file: &Mutex<File>, at: u64, out: &mut [u8]) -> io::Result
 pub(super) type Run<'a> = Box<dyn Iterator<Item = Result<Record, IndexError>> + 'a>;
 
 /// Several runs as one. Of records with the same key, that of the first run counts.
-pub(crate) struct Rows<'a> {
-    runs: Vec<(Option<Record>, Run<'a>)>,
-    /// An error that was met while a run was advanced.
-    error: Option<IndexError>,
-}
+pub(crate) struct Rows<'a>(Vec<Peekable<Run<'a>>>);
 
 impl<'a> Rows<'a> {
     pub(super) fn of(runs: Vec<Run<'a>>) -> Self {
-        let mut rows = Self { runs: runs.into_iter().map(|run| (None, run)).collect(), error: None };
-        (0..rows.runs.len()).for_each(|i| drop(rows.advance(i)));
-        rows
-    }
-
-    /// Takes the next record of a run.
-    fn advance(&mut self, i: usize) -> Option<Record> {
-        let (next, run) = &mut self.runs[i];
-        match run.next().transpose() {
-            Ok(record) => std::mem::replace(next, record),
-            Err(error) => {
-                self.error.get_or_insert(error);
-                next.take()
-            }
-        }
+        Self(runs.into_iter().map(Iterator::peekable).collect())
     }
 }
 
@@ -104,20 +87,19 @@ impl Iterator for Rows<'_> {
     type Item = Result<Record, IndexError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        if let Some(error) = self.error.take() {
-            self.runs.clear();
-            return Some(Err(error));
+        if let Some(error) = self.0.iter_mut().find_map(|run| run.next_if(Result::is_err)) {
+            self.0.clear();
+            return Some(error);
         }
-        let key = |next: &(Option<Record>, Run<'_>)| next.0.as_ref().map(|(key, _)| key.clone());
-        let least = self.runs.iter().filter_map(key).min()?;
+        let keys = self.0.iter_mut().filter_map(|run| run.peek()?.as_ref().ok());
+        let least = keys.map(|(key, _)| key).min()?.clone();
+        let is_least = |record: &Self::Item| record.as_ref().is_ok_and(|(key, _)| *key == least);
         let mut found = None;
-        for i in 0..self.runs.len() {
-            if self.runs[i].0.as_ref().is_some_and(|(key, _)| *key == least) {
-                let record = self.advance(i);
-                found = found.or(record);
-            }
+        for run in &mut self.0 {
+            let record = run.next_if(is_least);
+            found = found.or(record);
         }
-        found.map(Ok)
+        found
     }
 }
 

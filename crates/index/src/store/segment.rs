@@ -103,6 +103,8 @@ pub(super) struct Segment {
     /// Checksums of its footer and of the one before.
     pub(super) sum: u32,
     pub(super) before: u32,
+    /// Whether it counts: no later one has taken it in.
+    pub(super) counts: bool,
     list: Vec<u8>,
     pub(super) blocks: Vec<Block>,
 }
@@ -122,7 +124,7 @@ impl Segment {
         let mut list = vec![0; n_list as usize];
         read_at(file, list_at, &mut list)?;
         let blocks = blocks(&list, start, list_at).filter(|_| crc32fast::hash(&list) == list_sum);
-        Ok(blocks.map(|blocks| Self { start, end, below, sum, before, list, blocks }))
+        Ok(blocks.map(|blocks| Self { start, end, below, sum, before, counts: false, list, blocks }))
     }
 
     pub(super) fn n_bytes(&self) -> u64 {

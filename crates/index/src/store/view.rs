@@ -9,7 +9,7 @@ use serde::de::DeserializeOwned;
 use super::codec::{decode, encode};
 use super::file::StoredFile;
 use super::log::Log;
-use super::records::{Changes, Rows, Run, run_of};
+use super::records::{Changes, Record, Rows, Run, run_of};
 use crate::IndexError;
 
 /// Keys of one kind. The order of keys is that of their bytes.
@@ -79,18 +79,67 @@ impl<K: Key + ?Sized, V: Serialize + DeserializeOwned> Table<K, V> {
         bytes
     }
 
-    /// Puts a value, or removes it.
+    /// A key with its value; no value removes it.
     ///
     /// # Errors
     /// [`IndexError::Codec`].
-    pub(crate) fn put(&self, changes: &mut Changes, key: &K, value: Option<&V>) -> Result<(), IndexError> {
+    pub(crate) fn record(&self, key: &K, value: Option<&V>) -> Result<Record, IndexError> {
         let key = self.key(key);
         let bytes = value.map(encode).transpose().map_err(|reason| {
             let id = String::from_utf8_lossy(&key[1..]).into_owned();
             IndexError::Codec { id, reason }
         })?;
-        changes.insert(key, bytes);
+        Ok((key, bytes))
+    }
+
+    /// Puts a value, or removes it.
+    ///
+    /// # Errors
+    /// As of [`record`](Self::record).
+    pub(crate) fn put(&self, changes: &mut Changes, key: &K, value: Option<&V>) -> Result<(), IndexError> {
+        changes.extend([self.record(key, value)?]);
         Ok(())
+    }
+
+    pub(crate) fn get(&self, view: View<'_>, key: &K) -> Result<Option<V>, IndexError> {
+        let bytes = view.get(&self.key(key))?;
+        bytes.map(|bytes| self.decoded(view, &bytes)).transpose()
+    }
+
+    /// The rows whose keys begin with `prefix`, in ascending order.
+    pub(crate) fn rows<'a>(
+        &'a self,
+        view: View<'a>,
+        prefix: &[u8],
+    ) -> impl Iterator<Item = Result<(K::Owned, V), IndexError>> + use<'a, K, V> {
+        let prefix = [&[self.tag], prefix].concat();
+        let records = view.records(&prefix);
+        let is_inside = move |record: &Result<Record, _>| {
+            record.as_ref().map_or(true, |(key, _)| key.starts_with(&prefix))
+        };
+        records.take_while(is_inside).filter_map(move |record| self.row(view, record).transpose())
+    }
+
+    /// A record as a row; `None` if its key is removed.
+    fn row(
+        &self,
+        view: View<'_>,
+        record: Result<Record, IndexError>,
+    ) -> Result<Option<(K::Owned, V)>, IndexError> {
+        let (key, Some(value)) = record? else { return Ok(None) };
+        let key = K::read(&key[1..]).ok_or_else(|| view.damaged(format!("{} has no key", self.what)))?;
+        Ok(Some((key, self.decoded(view, &value)?)))
+    }
+
+    fn decoded(&self, view: View<'_>, bytes: &[u8]) -> Result<V, IndexError> {
+        decode(bytes).map_err(|error| view.damaged(format!("{}: {error}", self.what)))
+    }
+
+    /// The keys that the log has changed, and whether they have a value.
+    pub(crate) fn changed(&self, view: View<'_>) -> Vec<(K::Owned, bool)> {
+        let prefix = [self.tag];
+        let keys = view.log.into_iter().flat_map(|log| log.keys(&prefix));
+        keys.filter_map(|(key, is_there)| Some((K::read(&key[1..])?, is_there))).collect()
     }
 }
 
@@ -120,47 +169,11 @@ impl<'a> View<'a> {
         IndexError::damaged(self.path, what)
     }
 
-    fn decoded<K: ?Sized, V: DeserializeOwned>(
-        &self,
-        table: &Table<K, V>,
-        bytes: &[u8],
-    ) -> Result<V, IndexError> {
-        decode(bytes).map_err(|error| self.damaged(format!("{}: {error}", table.what)))
-    }
-
-    pub(crate) fn get<K: Key + ?Sized, V: Serialize + DeserializeOwned>(
-        &self,
-        table: &Table<K, V>,
-        key: &K,
-    ) -> Result<Option<V>, IndexError> {
-        let key = table.key(key);
-        let bytes = match self.log.map_or(Ok(None), |log| log.get(&key))? {
-            Some(changed) => changed,
-            None => self.file.map_or(Ok(None), |file| file.get(&key))?,
-        };
-        bytes.map(|bytes| self.decoded(table, &bytes)).transpose()
-    }
-
-    /// The rows of a table whose keys begin with `prefix`, in ascending order.
-    pub(crate) fn rows<K: Key + ?Sized, V: Serialize + DeserializeOwned>(
-        self,
-        table: &'a Table<K, V>,
-        prefix: &[u8],
-    ) -> impl Iterator<Item = Result<(K::Owned, V), IndexError>> + use<'a, K, V> {
-        let prefix = [&[table.tag], prefix].concat();
-        let rows = self.records(&prefix);
-        let is_inside = move |row: &Result<(Vec<u8>, _), _>| {
-            row.as_ref().map_or(true, |(key, _)| key.starts_with(&prefix))
-        };
-        rows.take_while(is_inside).filter_map(move |row| match row {
-            Err(error) => Some(Err(error)),
-            Ok((_, None)) => None,
-            Ok((key, Some(value))) => {
-                let key =
-                    K::read(&key[1..]).ok_or_else(|| self.damaged(format!("{} has no key", table.what)));
-                Some(key.and_then(|key| Ok((key, self.decoded(table, &value)?))))
-            }
-        })
+    fn get(&self, key: &[u8]) -> Result<Option<Vec<u8>>, IndexError> {
+        match self.log.map_or(Ok(None), |log| log.get(key))? {
+            Some(changed) => Ok(changed),
+            None => self.file.map_or(Ok(None), |file| file.get(key)),
+        }
     }
 
     /// The runs of everything from a key on, what counts more first.
@@ -187,15 +200,5 @@ impl<'a> View<'a> {
         let n_bytes = n_changes as u64 + self.log.map_or(0, Log::n_bytes);
         let runs = std::iter::once(run_of(changes, &[])).chain(self.log.map(|log| log.run(&[]))).collect();
         file.append(runs, n_bytes)
-    }
-
-    /// The keys of a table that the log has changed, and whether they have a value.
-    pub(crate) fn changed<K: Key + ?Sized, V: Serialize + DeserializeOwned>(
-        self,
-        table: &Table<K, V>,
-    ) -> Vec<(K::Owned, bool)> {
-        let prefix = [table.tag];
-        let keys = self.log.into_iter().flat_map(|log| log.keys(&prefix));
-        keys.filter_map(|(key, is_there)| Some((K::read(&key[1..])?, is_there))).collect()
     }
 }

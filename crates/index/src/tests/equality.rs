@@ -53,7 +53,7 @@ fn removing_a_missing_shape_removes_nothing() {
     let mut writer = IndexWriter::open(&path, Job::Remove, None).unwrap();
     let error = writer.remove(&[shape(1).id, "cat9".to_owned()]).unwrap_err();
     assert!(error.to_string().contains("`cat9`"), "{error}");
-    assert_eq!(writer.len(), 4);
+    assert_eq!(writer.n_shapes().unwrap(), 4);
     writer.discard().unwrap();
     assert_eq!(folder.names(), ["a"]);
 }

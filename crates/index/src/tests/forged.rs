@@ -135,7 +135,7 @@ fn a_forged_file_is_an_error_or_an_index() {
 fn a_forged_count_reserves_no_memory() {
     let folder = Folder::new();
     let index = Index::open(&folder.index("a", 20)).unwrap();
-    let about = index.view().get(&ABOUT, "").unwrap().unwrap();
+    let about = ABOUT.get(index.view(), "").unwrap().unwrap();
     let records: Vec<_> = index.view().records(&[]).map(Result::unwrap).collect();
     for (dim, n, n_cells) in [
         (usize::MAX - 3, 20, 1),

@@ -83,11 +83,6 @@ pub(crate) struct Reach {
 impl Reach {
     /// Everything.
     pub(crate) const ALL: Self = Self { probes: u32::MAX as usize, margin: f32::INFINITY };
-
-    /// Whether to scan a cell, where the neighbour that decides has this squared distance.
-    pub(crate) fn includes(&self, cell: &NearCell, sq: f32) -> bool {
-        cell.border <= 0.0 || cell.border <= self.margin * sq.sqrt()
-    }
 }
 
 /// A cell near a query.
@@ -117,6 +112,23 @@ pub(crate) fn nearest_cells(query: &[f32], centroids: &Centroids, most: usize) -
     order.iter().map(|hit| NearCell { cell: hit.slot, border: border(hit) }).collect()
 }
 
+/// The `k` nearest in the cells within `reach`, each of which `scan` offers to what was found so far.
+pub(crate) fn search_cells<E>(
+    query: &[f32],
+    centroids: &Centroids,
+    reach: Reach,
+    k: usize,
+    mut scan: impl FnMut(u32, &mut Nearest) -> Result<(), E>,
+) -> Result<Nearest, E> {
+    let mut nearest = Nearest::new(k);
+    for near in nearest_cells(query, centroids, reach.probes) {
+        if near.border <= 0.0 || near.border <= reach.margin * nearest.bound().sqrt() {
+            scan(near.cell, &mut nearest)?;
+        }
+    }
+    Ok(nearest)
+}
+
 /// Offers `rows`, numbered from `first`, to `nearest`.
 pub(crate) fn scan(query: &[f32], first: u32, rows: &[f32], nearest: &mut Nearest) {
     let mut sqs = [0.0; CHUNK];
@@ -129,10 +141,10 @@ pub(crate) fn scan(query: &[f32], first: u32, rows: &[f32], nearest: &mut Neares
 
 #[cfg(test)]
 mod tests {
+    use super::super::part::Part;
     use super::super::testing::{clustered, noise};
-    use super::super::trials::{Rows, Trials};
+    use super::super::trials::Trials;
     use super::*;
-    use crate::texts::Texts;
 
     #[test]
     fn few_vectors_form_one_cell() {
@@ -167,24 +179,22 @@ mod tests {
         let (all, _) = clustered(6200, 300, 16, 0.3);
         let (rows, queries) = all.split_at(6000 * 16);
         let (centroids, of_row) = divided(rows, 16, 80);
-        let ids: Texts = (0..6000).map(|i| i.to_string()).collect();
-        let classes: Texts = (0..6000).map(|_| "").collect();
-        let trials = Trials::of(Rows { rows, ids: &ids, classes: &classes, cells: &of_row }, 80);
+        let mut shapes = Part::default();
+        rows.chunks(16).enumerate().for_each(|(i, row)| shapes.push(&i.to_string(), "", row));
+        let trials = Trials::of(&shapes, &of_row, 80);
         let (reach, recall) = trials.calibrated(&centroids);
         assert!(recall >= 0.99, "{recall} with {reach:?}");
         let (mut found, mut wanted, mut scanned) = (0, 0, 0);
         for query in queries.chunks(16) {
             let mut truth = Nearest::new(10);
             scan(query, 0, rows, &mut truth);
-            let mut nearest = Nearest::new(10);
-            for cell in nearest_cells(query, &centroids, reach.probes) {
-                if reach.includes(&cell, nearest.bound()) {
-                    scanned += 1;
-                    for i in (0..6000).filter(|i| of_row[*i] == cell.cell) {
-                        scan(query, i as u32, &rows[i * 16..][..16], &mut nearest);
-                    }
+            let Ok(nearest) = search_cells(query, &centroids, reach, 10, |cell, nearest| {
+                scanned += 1;
+                for i in (0..6000).filter(|i| of_row[*i] == cell) {
+                    scan(query, i as u32, &rows[i * 16..][..16], nearest);
                 }
-            }
+                Ok::<_, std::convert::Infallible>(())
+            });
             let [truth, nearest] = [truth, nearest].map(|hits| hits.into_hits().collect::<Vec<_>>());
             wanted += truth.len();
             found += truth.iter().filter(|hit| nearest.contains(hit)).count();

@@ -3,33 +3,28 @@
 //! Lists are ordered by squared distance, ties by key. A key is a hash of a name, so lists depend on the shapes alone.
 //! Each pair has one squared distance on one machine, in either direction; another machine may round it differently.
 
+use std::convert::Infallible;
+
 use base::Observer;
 use rayon::prelude::*;
 use retrieval::LINKS;
 use serde::{Deserialize, Serialize};
 
-use super::cells::{Reach, nearest_cells, scan};
+use super::cells::{Reach, scan, search_cells};
 use super::kmeans::Centroids;
-use super::nearest::{Hit, Nearest};
-use base::ContentHash;
+use super::nearest::Nearest;
+use crate::shape::ShapeKey;
 
 /// Shapes whose lists are made together, and shapes that they meet while both are in the cache.
 const GROUP: usize = 16;
 const BLOCK: usize = 1024;
-
-/// The name of a shape in the graph: the first 64 bits of the hash of its name.
-pub(crate) type NodeKey = u64;
-
-pub(crate) fn node_key(id: &str) -> NodeKey {
-    ContentHash::of(&[id]).start()
-}
 
 /// A neighbour of a shape.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Link {
     /// Squared distance.
     pub(crate) sq: f32,
-    pub(crate) key: NodeKey,
+    pub(crate) key: ShapeKey,
 }
 
 impl Link {
@@ -44,7 +39,7 @@ pub(crate) struct Links(pub(crate) Vec<Link>);
 
 impl Links {
     /// The nearest of these shapes, without the shape itself.
-    pub(crate) fn of(own: NodeKey, found: impl Iterator<Item = Link>) -> Self {
+    pub(crate) fn of(own: ShapeKey, found: impl Iterator<Item = Link>) -> Self {
         let mut links: Vec<Link> = found.filter(|link| link.key != own).collect();
         links.sort_unstable_by(Link::cmp);
         links.truncate(LINKS);
@@ -52,7 +47,7 @@ impl Links {
     }
 
     /// Whether they can be the neighbours of this shape.
-    pub(crate) fn are_sound(&self, own: NodeKey) -> bool {
+    pub(crate) fn are_sound(&self, own: ShapeKey) -> bool {
         let is_link = |link: &Link| link.key != own && link.sq >= 0.0 && link.sq.is_finite();
         self.0.len() <= LINKS && self.0.iter().all(is_link) && self.0.is_sorted_by(|a, b| a.cmp(b).is_lt())
     }
@@ -79,14 +74,11 @@ impl Links {
     }
 }
 
-/// Shapes in memory, cell after cell.
+/// Vectors in memory, cell after cell.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Divided<'a> {
     /// Padded vectors.
     pub(crate) rows: &'a [f32],
-    /// Length of a padded vector.
-    pub(crate) n: usize,
-    pub(crate) keys: &'a [NodeKey],
     /// The start of each cell, and the end of the last one.
     pub(crate) starts: &'a [usize],
     pub(crate) centroids: &'a Centroids,
@@ -94,42 +86,36 @@ pub(crate) struct Divided<'a> {
 }
 
 impl Divided<'_> {
-    /// The lists of all shapes, in their order. A step is a list.
-    pub(crate) fn links(&self, observer: &dyn Observer) -> Vec<Links> {
-        let groups = self.keys.par_chunks(GROUP).enumerate();
+    /// The lists of all shapes, in the order of their keys. A step is a list.
+    pub(crate) fn links(&self, keys: &[ShapeKey], observer: &dyn Observer) -> Vec<Links> {
+        let groups = keys.par_chunks(GROUP).enumerate();
         groups
-            .flat_map_iter(|(group, keys)| {
+            .flat_map_iter(|(group, own)| {
                 let first = group * GROUP;
                 let found = match self.starts.len() {
-                    2 => self.all_near(first, keys.len()),
-                    _ => (first..first + keys.len()).map(|i| self.near(i)).collect(),
+                    2 => self.all_near(first, own.len()),
+                    _ => (first..first + own.len()).map(|i| self.near_row(i)).collect(),
                 };
-                keys.iter().for_each(|_| observer.step());
-                found.into_iter().zip(keys).map(|(hits, key)| self.listed(*key, hits)).collect::<Vec<_>>()
+                own.iter().for_each(|_| observer.step());
+                found.into_iter().zip(own).map(|(hits, own)| listed(keys, *own, hits)).collect::<Vec<_>>()
             })
             .collect()
     }
 
     /// The list of one shape.
-    pub(crate) fn links_of(&self, i: usize) -> Links {
-        self.listed(self.keys[i], self.near(i))
-    }
-
-    fn listed(&self, own: NodeKey, hits: Nearest) -> Links {
-        Links::of(
-            own,
-            hits.into_hits().map(|hit: Hit| Link { sq: hit.sq, key: self.keys[hit.slot as usize] }),
-        )
+    pub(crate) fn links_of(&self, keys: &[ShapeKey], i: usize) -> Links {
+        listed(keys, keys[i], self.near_row(i))
     }
 
     fn row(&self, i: usize) -> &[f32] {
-        &self.rows[i * self.n..][..self.n]
+        let n = self.centroids.n;
+        &self.rows[i * n..][..n]
     }
 
     /// Measures everything, for some shapes together.
     fn all_near(&self, first: usize, count: usize) -> Vec<Nearest> {
         let mut found = vec![Nearest::new(LINKS + 1); count];
-        for (block, rows) in self.rows.chunks(BLOCK * self.n).enumerate() {
+        for (block, rows) in self.rows.chunks(BLOCK * self.centroids.n).enumerate() {
             for (i, nearest) in found.iter_mut().enumerate() {
                 scan(self.row(first + i), (block * BLOCK) as u32, rows, nearest);
             }
@@ -137,42 +123,46 @@ impl Divided<'_> {
         found
     }
 
-    /// Measures what a search would.
-    fn near(&self, i: usize) -> Nearest {
-        let (row, mut nearest) = (self.row(i), Nearest::new(LINKS + 1));
-        for cell in nearest_cells(row, self.centroids, self.reach.probes) {
-            if self.reach.includes(&cell, nearest.bound()) {
-                let [start, end] = [0, 1].map(|next| self.starts[cell.cell as usize + next]);
-                scan(row, start as u32, &self.rows[start * self.n..end * self.n], &mut nearest);
-            }
-        }
-        nearest
+    fn near_row(&self, i: usize) -> Nearest {
+        self.near(self.row(i), LINKS + 1).0
     }
+
+    /// Searches for a padded vector. Returns the number of vectors that were measured, too.
+    pub(crate) fn near(&self, row: &[f32], k: usize) -> (Nearest, usize) {
+        let (n, mut n_measured) = (row.len(), 0);
+        let Ok(nearest) = search_cells(row, self.centroids, self.reach, k, |cell, nearest| {
+            let [start, end] = [0, 1].map(|next| self.starts[cell as usize + next]);
+            n_measured += end - start;
+            scan(row, start as u32, &self.rows[start * n..end * n], nearest);
+            Ok::<_, Infallible>(())
+        });
+        (nearest, n_measured)
+    }
+}
+
+fn listed(keys: &[ShapeKey], own: ShapeKey, hits: Nearest) -> Links {
+    Links::of(own, hits.into_hits().map(|hit| Link { sq: hit.sq, key: keys[hit.slot as usize] }))
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::testing::noise;
     use super::*;
+    use crate::shape::shape_key;
 
-    fn all<'a>(
-        rows: &'a [f32],
-        keys: &'a [NodeKey],
-        centroids: &'a Centroids,
-        starts: &'a [usize],
-    ) -> Divided<'a> {
-        Divided { rows, n: 16, keys, starts, centroids, reach: Reach::ALL }
+    fn all<'a>(rows: &'a [f32], centroids: &'a Centroids, starts: &'a [usize]) -> Divided<'a> {
+        Divided { rows, starts, centroids, reach: Reach::ALL }
     }
 
     #[test]
     fn lists_hold_the_nearest_others_and_do_not_depend_on_cells() {
         let n = 300;
         let rows = noise(n, 16, 4);
-        let keys: Vec<NodeKey> = (0..n).map(|i| node_key(&i.to_string())).collect();
+        let keys: Vec<ShapeKey> = (0..n).map(|i| shape_key(&i.to_string())).collect();
         let one = Centroids::new(vec![0.0; 16], 16);
-        let whole = all(&rows, &keys, &one, &[0, n]).links(&());
+        let whole = all(&rows, &one, &[0, n]).links(&keys, &());
         let two = Centroids::new([vec![0.1; 16], vec![-0.1; 16]].concat(), 16);
-        assert_eq!(all(&rows, &keys, &two, &[0, 120, n]).links(&()), whole);
+        assert_eq!(all(&rows, &two, &[0, 120, n]).links(&keys, &()), whole);
         for (i, links) in whole.iter().enumerate() {
             let sq = |j: usize| -> f32 {
                 let [a, b] = [i, j].map(|i| &rows[16 * i..][..16]);

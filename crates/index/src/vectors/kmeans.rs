@@ -15,7 +15,7 @@ const ROUNDS: usize = 12;
 pub(crate) struct Centroids {
     pub(crate) rows: Vec<f32>,
     /// Length of a row.
-    n: usize,
+    pub(crate) n: usize,
 }
 
 impl Centroids {

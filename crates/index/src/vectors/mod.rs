@@ -18,13 +18,15 @@ mod graph;
 pub(crate) mod kernels;
 mod kmeans;
 mod nearest;
+mod part;
 #[cfg(test)]
 mod testing;
 mod trials;
 
-pub(crate) use cells::{CellsHeader, Reach, divided, n_cells, nearest_cells, scan};
-pub(crate) use graph::{Divided, Link, Links, NodeKey, node_key};
+pub(crate) use cells::{CellsHeader, Reach, divided, n_cells, nearest_cells, scan, search_cells};
+pub(crate) use graph::{Divided, Link, Links};
 pub(crate) use kernels::{padded, sq_distances_into};
 pub(crate) use kmeans::Centroids;
 pub(crate) use nearest::{Hit, Nearest};
-pub(crate) use trials::{Change, NEIGHBORS, Rows, Trial, TrialKey, Trials};
+pub(crate) use part::Part;
+pub(crate) use trials::{NEIGHBORS, Trial, Trials, Visit};

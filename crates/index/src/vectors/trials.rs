@@ -15,8 +15,9 @@ use serde::{Deserialize, Serialize};
 use super::cells::{Reach, nearest_cells};
 use super::kernels::sq_distances_into;
 use super::kmeans::Centroids;
+use super::part::Part;
+use crate::shape::{ShapeKey, shape_key};
 use crate::texts::Texts;
-use base::ContentHash;
 
 /// Number of trials among all shapes, and among those with a class.
 const TRIALS: usize = 512;
@@ -37,19 +38,11 @@ const CHUNK: usize = 256;
 const GROUP: usize = 16;
 const BLOCK: usize = 1024;
 
-/// The place of a name in the order that decides about trials.
-pub(crate) type TrialKey = [u32; 2];
-
-fn trial_key(id: &str) -> TrialKey {
-    let hash = ContentHash::of(&[id]).start();
-    [(hash >> 32) as u32, hash as u32]
-}
-
 /// The key of a shape, and whether it has a class.
-type SampleKey = (TrialKey, bool);
+type SampleKey = (ShapeKey, bool);
 
-fn sample_key((id, class): (&str, &str)) -> SampleKey {
-    (trial_key(id), !class.is_empty())
+fn sample_key(id: &str, class: &str) -> SampleKey {
+    (shape_key(id), !class.is_empty())
 }
 
 /// A shape near a trial.
@@ -81,29 +74,8 @@ pub(crate) struct Trial {
     is_stale: bool,
 }
 
-/// Shapes that a trial meets.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Rows<'a> {
-    /// Padded vectors.
-    pub(crate) rows: &'a [f32],
-    pub(crate) ids: &'a Texts,
-    pub(crate) classes: &'a Texts,
-    /// The cell of all of them, or of each.
-    pub(crate) cells: &'a [u32],
-}
-
-impl<'a> Rows<'a> {
-    /// The vector of a shape.
-    fn row(self, i: usize) -> &'a [f32] {
-        let n = self.rows.len() / self.ids.len();
-        &self.rows[i * n..][..n]
-    }
-
-    /// Names and classes.
-    fn pairs(self) -> impl Iterator<Item = (&'a str, &'a str)> {
-        self.ids.iter().zip(self.classes.iter())
-    }
-}
+/// Called with shapes and the cell of all of them, or of each.
+pub(crate) type Visit<'a> = dyn FnMut(&Part, &[u32]) + 'a;
 
 impl Trial {
     /// A trial that has met no shape. In an index of one cell it keeps no neighbours.
@@ -121,8 +93,8 @@ impl Trial {
     }
 
     /// Its place among the trials.
-    pub(crate) fn key(&self) -> TrialKey {
-        trial_key(&self.id)
+    pub(crate) fn key(&self) -> ShapeKey {
+        shape_key(&self.id)
     }
 
     /// Whether its vector and its cells can be those of an index.
@@ -131,57 +103,57 @@ impl Trial {
     }
 
     /// Meets some of these shapes, which it has not met before.
-    fn meet(&mut self, shapes: Rows<'_>, range: Range<usize>) {
+    fn meet(&mut self, shapes: &Part, cells: &[u32], range: Range<usize>) {
         let n = self.row.len();
-        let first = range.start;
-        let is_labelled = !self.class.is_empty();
-        let least = |known: &Option<(f32, String)>| known.as_ref().map_or(f32::INFINITY, |(sq, _)| *sq);
         let mut sqs = [0.0; CHUNK];
-        for (chunk, rows) in shapes.rows[range.start * n..range.end * n].chunks(CHUNK * n).enumerate() {
-            let sqs = &mut sqs[..rows.len() / n];
-            sq_distances_into(&self.row, rows, sqs);
-            let mut bound = self.reach.max(least(&self.own)).max(least(&self.foreign));
-            if !is_labelled {
-                bound = self.reach;
-            }
-            for (i, sq) in (first + chunk * CHUNK..).zip(sqs.iter().copied()) {
-                if sq > bound {
-                    continue;
-                }
-                let id = shapes.ids.get(i);
-                if id == self.id {
-                    continue;
-                }
-                if sq < self.reach {
-                    let cell = shapes.cells[i % shapes.cells.len()];
-                    self.keep(Near { sq, cell, id: id.to_owned() });
-                }
-                let class = shapes.classes.get(i);
-                if is_labelled && !class.is_empty() {
-                    let place = if class == self.class { &mut self.own } else { &mut self.foreign };
-                    if place.as_ref().is_none_or(|(least, known)| (sq, id) < (*least, known.as_str())) {
-                        *place = Some((sq, id.to_owned()));
-                    }
-                    bound = self.reach.max(least(&self.own)).max(least(&self.foreign));
+        for start in range.clone().step_by(CHUNK) {
+            let end = range.end.min(start + CHUNK);
+            let sqs = &mut sqs[..end - start];
+            sq_distances_into(&self.row, &shapes.rows()[start * n..end * n], sqs);
+            let mut bound = self.bound();
+            for (i, sq) in (start..).zip(sqs.iter().copied()) {
+                if sq <= bound && shapes.ids.get(i) != self.id {
+                    let cell = cells[i % cells.len()];
+                    self.keep(sq, cell, shapes.ids.get(i), shapes.classes.get(i));
+                    bound = self.bound();
                 }
             }
         }
     }
 
-    fn keep(&mut self, near: Near) {
-        let at = self.near.partition_point(|known| (known.sq, &known.id) < (near.sq, &near.id));
-        self.near.insert(at, near);
-        if self.near.len() > KEPT {
-            self.near.truncate(KEPT);
-            self.reach = self.near.last().map_or(self.reach, |last| last.sq);
+    /// Shapes beyond this squared distance change nothing.
+    fn bound(&self) -> f32 {
+        let least = |known: &Option<(f32, String)>| known.as_ref().map_or(f32::INFINITY, |(sq, _)| *sq);
+        match self.class.is_empty() {
+            true => self.reach,
+            false => self.reach.max(least(&self.own)).max(least(&self.foreign)),
         }
     }
 
-    /// Forgets a shape.
-    fn part(&mut self, id: &str) {
-        self.near.retain(|near| near.id != id);
-        let is_it = |known: &Option<(f32, String)>| known.as_ref().is_some_and(|(_, known)| known == id);
-        self.is_stale |= is_it(&self.own) || is_it(&self.foreign);
+    /// Keeps a shape if it is among the nearest.
+    fn keep(&mut self, sq: f32, cell: u32, id: &str, class: &str) {
+        if !self.class.is_empty() && !class.is_empty() {
+            let place = if class == self.class { &mut self.own } else { &mut self.foreign };
+            if place.as_ref().is_none_or(|(least, known)| (sq, id) < (*least, known)) {
+                *place = Some((sq, id.to_owned()));
+            }
+        }
+        if sq < self.reach {
+            let at = self.near.partition_point(|known| (known.sq, known.id.as_str()) < (sq, id));
+            self.near.insert(at, Near { sq, cell, id: id.to_owned() });
+            if self.near.len() > KEPT {
+                self.near.truncate(KEPT);
+                self.reach = self.near.last().map_or(self.reach, |last| last.sq);
+            }
+        }
+    }
+
+    /// Forgets shapes.
+    fn part(&mut self, gone: &HashSet<&str>) {
+        self.near.retain(|near| !gone.contains(near.id.as_str()));
+        let is_gone =
+            |known: &Option<(f32, String)>| known.as_ref().is_some_and(|(_, id)| gone.contains(id.as_str()));
+        self.is_stale |= is_gone(&self.own) || is_gone(&self.foreign);
         self.is_stale |= self.near.len() < NEIGHBORS && self.reach.is_finite() && self.reach > 0.0;
     }
 
@@ -215,150 +187,92 @@ impl Trial {
 }
 
 /// Which shapes are trials: those whose keys come first, among all shapes and among those with a class.
-#[derive(Debug, Clone, Copy)]
-struct Sample {
-    /// The last key among all.
-    all: TrialKey,
-    /// The last key among those with a class.
-    labelled: TrialKey,
-}
-
-impl Sample {
-    /// From names and classes; an empty class is none.
-    fn of<'a>(shapes: impl Iterator<Item = (&'a str, &'a str)>) -> Self {
-        Self::among(shapes.map(sample_key).collect())
-    }
-
-    fn among(mut keys: Vec<SampleKey>) -> Self {
-        keys.sort_unstable();
-        let last =
-            |keys: &mut dyn Iterator<Item = &SampleKey>| keys.take(TRIALS).last().map_or([0; 2], |key| key.0);
-        Self {
-            all: last(&mut keys.iter()),
-            labelled: last(&mut keys.iter().filter(|(_, labelled)| *labelled)),
-        }
-    }
-
-    fn holds(&self, id: &str, class: &str) -> bool {
-        let key = trial_key(id);
-        key <= self.all || !class.is_empty() && key <= self.labelled
-    }
+fn sample(mut keys: Vec<SampleKey>) -> HashSet<ShapeKey> {
+    keys.sort_unstable();
+    let labelled = keys.iter().filter(|(_, labelled)| *labelled).take(TRIALS);
+    keys.iter().take(TRIALS).chain(labelled).map(|(key, _)| *key).collect()
 }
 
 /// All trials of an index, in the order of their keys.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Trials {
     pub(crate) all: Vec<Trial>,
-    n_cells: usize,
-}
-
-/// A shape before and after a change: its padded vector, class and cell.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Change {
-    pub(crate) id: String,
-    pub(crate) was_there: bool,
-    pub(crate) now: Option<(Vec<f32>, String, u32)>,
+    pub(crate) n_cells: usize,
 }
 
 impl Trials {
-    /// Trials of an index as it stores them.
-    pub(crate) fn stored(all: Vec<Trial>, n_cells: usize) -> Self {
-        Self { all, n_cells }
-    }
-
     /// Trials of an index that holds `shapes` in `n_cells` cells.
-    pub(crate) fn of(shapes: Rows<'_>, n_cells: usize) -> Self {
-        let once = Self::in_pieces(n_cells, |visit| {
-            visit(shapes);
+    pub(crate) fn of(shapes: &Part, cells: &[u32], n_cells: usize) -> Self {
+        let Ok(trials) = Self::in_pieces(n_cells, |visit| {
+            visit(shapes, cells);
             Ok::<_, Infallible>(())
         });
-        match once {
-            Ok(trials) => trials,
-            Err(never) => match never {},
-        }
+        trials
     }
 
     /// The same of shapes that `everything` lists in some number of pieces, whenever it is called.
     pub(crate) fn in_pieces<E>(
         n_cells: usize,
-        mut everything: impl FnMut(&mut dyn FnMut(Rows<'_>)) -> Result<(), E>,
+        mut everything: impl FnMut(&mut Visit<'_>) -> Result<(), E>,
     ) -> Result<Self, E> {
         let mut keys: Vec<SampleKey> = Vec::new();
-        everything(&mut |shapes| keys.extend(shapes.pairs().map(sample_key)))?;
-        let sample = Sample::among(keys);
-        let mut trials = Self::stored(Vec::new(), n_cells);
-        everything(&mut |shapes| {
-            let of = shapes.pairs().enumerate().filter(|(_, (id, class))| sample.holds(id, class));
-            trials.all.extend(of.map(|(i, (id, class))| Trial::new(id, class, shapes.row(i), n_cells)));
+        everything(&mut |shapes, _| {
+            keys.extend(shapes.shapes().map(|(id, class, _)| sample_key(id, class)))
         })?;
+        let sample = sample(keys);
+        let mut trials = Self { all: Vec::new(), n_cells };
+        everything(&mut |shapes, _| trials.begin(shapes, &sample))?;
         trials.all.sort_by_key(Trial::key);
-        everything(&mut |shapes| meet_all(&mut trials.all.iter_mut().collect::<Vec<_>>(), shapes))?;
+        let mut all: Vec<&mut Trial> = trials.all.iter_mut().collect();
+        everything(&mut |shapes, cells| meet_all(&mut all, shapes, cells))?;
         trials.all.iter_mut().for_each(|trial| trial.is_stale = false);
         Ok(trials)
     }
 
-    /// Takes changes into account. `everything` lists all shapes of the changed index in some number of pieces. It is
-    /// called only if the changes do not tell enough: rarely, if the index is large.
+    /// Adds those of these shapes that are in the sample, as trials that have met no shape.
+    fn begin(&mut self, shapes: &Part, sample: &HashSet<ShapeKey>) {
+        let held = shapes.shapes().filter(|(id, ..)| sample.contains(&shape_key(id)));
+        self.all.extend(held.map(|(id, class, row)| Trial::new(id, class, row, self.n_cells)));
+    }
+
+    /// Takes into account which shapes are gone, and which have come, some of them under the same names. `everything` lists
+    /// all shapes of the changed index in some number of pieces. It is called only if the changes do not tell enough: rarely,
+    /// if the index is large.
     pub(crate) fn change<E>(
         &mut self,
-        changes: &[Change],
-        mut everything: impl FnMut(&mut dyn FnMut(Rows<'_>)) -> Result<(), E>,
+        gone: &Texts,
+        come: &Part,
+        cells: &[u32],
+        mut everything: impl FnMut(&mut Visit<'_>) -> Result<(), E>,
     ) -> Result<(), E> {
-        let changed: HashMap<&str, &Change> =
-            changes.iter().map(|change| (change.id.as_str(), change)).collect();
+        let gone: HashSet<&str> = gone.iter().collect();
+        let classes: HashMap<&str, &str> = come.ids.iter().zip(come.classes.iter()).collect();
         // A trial that is gone makes room for a shape that is not among the trials, unless all shapes are.
-        let is_sample = self.all.len() >= TRIALS;
-        let makes_room = |trial: &Trial| match changed.get(trial.id.as_str()) {
-            Some(Change { now: Some((_, class, _)), .. }) => class.is_empty() && !trial.class.is_empty(),
-            Some(_) => true,
-            None => false,
+        let makes_room = |trial: &Trial| match classes.get(trial.id.as_str()) {
+            Some(class) => class.is_empty() && !trial.class.is_empty(),
+            None => gone.contains(trial.id.as_str()),
         };
-        let makes_room = is_sample && self.all.iter().any(makes_room);
-        self.all.retain(|trial| !changed.contains_key(trial.id.as_str()));
-        let come = || changes.iter().filter_map(|change| Some((change.id.as_str(), change.now.as_ref()?)));
-        let rows: Vec<f32> = come().flat_map(|(_, (row, ..))| row).copied().collect();
-        let ids = come().map(|(id, _)| id).collect();
-        let classes = come().map(|(_, (_, class, _))| class).collect();
-        let cells: Vec<u32> = come().map(|(_, (.., cell))| *cell).collect();
-        let new = Rows { rows: &rows, ids: &ids, classes: &classes, cells: &cells };
-        self.all.par_iter_mut().for_each(|trial| {
-            changes.iter().filter(|change| change.was_there).for_each(|change| trial.part(&change.id));
-            trial.meet(new, 0..cells.len());
-        });
-        let sample = if makes_room {
-            let mut keys: Vec<(String, String)> = Vec::new();
-            everything(&mut |shapes| {
-                keys.extend(shapes.pairs().map(|(id, class)| (id.to_owned(), class.to_owned())));
-            })?;
-            Sample::of(keys.iter().map(|(id, class)| (id.as_str(), class.as_str())))
-        } else {
-            Sample::of(
-                self.all.iter().map(|trial| (trial.id.as_str(), trial.class.as_str())).chain(new.pairs()),
-            )
-        };
-        self.all.retain(|trial| sample.holds(&trial.id, &trial.class));
-        let (known, n_cells) = (self.all.len(), self.n_cells);
-        let is_trial = |(_, (id, class)): &(usize, (&str, &str))| sample.holds(id, class);
-        let trial = |(i, (id, class)): (usize, (&str, &str))| Trial::new(id, class, new.row(i), n_cells);
-        self.all.extend(new.pairs().enumerate().filter(is_trial).map(trial));
-        if makes_room {
-            let present: HashSet<String> = self.all.iter().map(|trial| trial.id.clone()).collect();
-            everything(&mut |shapes| {
-                let new = shapes
-                    .pairs()
-                    .enumerate()
-                    .filter(|(_, (id, class))| sample.holds(id, class) && !present.contains(*id));
-                self.all.extend(new.map(|(i, (id, class))| Trial::new(id, class, shapes.row(i), n_cells)));
-            })?;
+        if self.all.len() >= TRIALS && self.all.iter().any(makes_room) {
+            *self = Self::in_pieces(self.n_cells, everything)?;
+            return Ok(());
         }
-        debug_assert!(self.all[known..].iter().all(|trial| trial.is_stale));
+        self.all.retain(|trial| !gone.contains(trial.id.as_str()));
+        self.all.par_iter_mut().for_each(|trial| {
+            trial.part(&gone);
+            trial.meet(come, cells, 0..come.ids.len());
+        });
+        let known = self.all.iter().map(|trial| sample_key(&trial.id, &trial.class));
+        let new = come.shapes().map(|(id, class, _)| sample_key(id, class));
+        let sample = sample(known.chain(new).collect());
+        self.all.retain(|trial| sample.contains(&trial.key()));
+        self.begin(come, &sample);
         self.all.sort_by_key(Trial::key);
         let mut stale: Vec<&mut Trial> = self.all.iter_mut().filter(|trial| trial.is_stale).collect();
         if !stale.is_empty() {
             for trial in &mut stale {
-                **trial = Trial::new(&trial.id, &trial.class, &trial.row, n_cells);
+                **trial = Trial::new(&trial.id, &trial.class, &trial.row, self.n_cells);
             }
-            everything(&mut |shapes| meet_all(&mut stale, shapes))?;
+            everything(&mut |shapes, cells| meet_all(&mut stale, shapes, cells))?;
             stale.into_iter().for_each(|trial| trial.is_stale = false);
         }
         Ok(())
@@ -385,8 +299,9 @@ impl Trials {
         }
         // Rarely is a neighbour in a cell farther than this.
         const USUAL: usize = 64;
-        let found = self.calibrated_among(centroids, USUAL.min(self.n_cells));
-        found.or_else(|| self.calibrated_among(centroids, self.n_cells)).unwrap_or((Reach::ALL, 1.0))
+        let choices = [USUAL.min(self.n_cells), self.n_cells];
+        let found = choices.into_iter().find_map(|most| self.calibrated_among(centroids, most));
+        found.unwrap_or((Reach::ALL, 1.0))
     }
 
     /// The same, if as few as `most` cells are enough.
@@ -427,12 +342,12 @@ impl Trials {
 }
 
 /// Lets trials meet all of these shapes, a group of trials and a block of shapes at a time.
-fn meet_all(trials: &mut [&mut Trial], shapes: Rows<'_>) {
+fn meet_all(trials: &mut [&mut Trial], shapes: &Part, cells: &[u32]) {
     let n_shapes = shapes.ids.len();
     trials.par_chunks_mut(GROUP).for_each(|group| {
         for first in (0..n_shapes).step_by(BLOCK) {
             for trial in &mut *group {
-                trial.meet(shapes, first..(first + BLOCK).min(n_shapes));
+                trial.meet(shapes, cells, first..(first + BLOCK).min(n_shapes));
             }
         }
     });
@@ -443,27 +358,18 @@ mod tests {
     use super::super::testing::{clustered, noise};
     use super::*;
 
-    /// Shapes with names, classes and cells, all derived from their numbers.
-    struct Shapes {
-        rows: Vec<f32>,
-        ids: Texts,
-        classes: Texts,
-        cells: Vec<u32>,
+    /// Shapes with names and classes, and their cells, all derived from their numbers.
+    fn shapes(numbers: impl Iterator<Item = usize>, all: &[f32]) -> (Part, Vec<u32>) {
+        let (mut shapes, mut cells) = (Part::default(), Vec::new());
+        for i in numbers {
+            shapes.push(&format!("s{i}"), &class(i), &all[i * 16..][..16]);
+            cells.push(i as u32 % 7);
+        }
+        (shapes, cells)
     }
 
-    impl Shapes {
-        fn of(numbers: impl Iterator<Item = usize> + Clone, all: &[f32]) -> Self {
-            Self {
-                rows: numbers.clone().flat_map(|i| &all[i * 16..][..16]).copied().collect(),
-                ids: numbers.clone().map(|i| format!("s{i}")).collect(),
-                classes: numbers.clone().map(class).collect(),
-                cells: numbers.map(|i| i as u32 % 7).collect(),
-            }
-        }
-
-        fn rows(&self) -> Rows<'_> {
-            Rows { rows: &self.rows, ids: &self.ids, classes: &self.classes, cells: &self.cells }
-        }
+    fn trials((shapes, cells): &(Part, Vec<u32>), n_cells: usize) -> Trials {
+        Trials::of(shapes, cells, n_cells)
     }
 
     fn class(i: usize) -> String {
@@ -484,7 +390,7 @@ mod tests {
     fn changes_lead_where_a_new_start_leads() {
         let all = clustered(3000, 40, 16, 0.2).0;
         for n_cells in [1, 7] {
-            let mut trials = Trials::of(Shapes::of(0..300, &all).rows(), n_cells);
+            let mut changed = trials(&shapes(0..300, &all), n_cells);
             let mut present: Vec<usize> = (0..300).collect();
             let mut asked = 0;
             // Grows beyond the number of trials, and shrinks again.
@@ -494,21 +400,16 @@ mod tests {
                     present.iter().copied().filter(|i| (i * 7 + step).is_multiple_of(60)).collect();
                 present.retain(|i| !gone.contains(i));
                 present.extend(new.clone());
-                let change = |i: usize, now: bool| Change {
-                    id: format!("s{i}"),
-                    was_there: !now,
-                    now: now.then(|| (all[i * 16..][..16].to_vec(), class(i), i as u32 % 7)),
-                };
-                let changes: Vec<Change> =
-                    gone.iter().map(|i| change(*i, false)).chain(new.map(|i| change(i, true))).collect();
-                let now = Shapes::of(present.iter().copied(), &all);
-                let everything = |visit: &mut dyn FnMut(Rows<'_>)| {
+                let gone = gone.iter().map(|i| format!("s{i}")).collect();
+                let (come, cells) = shapes(new, &all);
+                let now = shapes(present.iter().copied(), &all);
+                let everything = |visit: &mut Visit<'_>| {
                     asked += 1;
-                    visit(now.rows());
+                    visit(&now.0, &now.1);
                     Ok::<(), ()>(())
                 };
-                trials.change(&changes, everything).unwrap();
-                assert_same(&trials, &Trials::of(now.rows(), n_cells));
+                changed.change(&gone, &come, &cells, everything).unwrap();
+                assert_same(&changed, &trials(&now, n_cells));
             }
             assert!(asked > 0);
         }
@@ -517,35 +418,35 @@ mod tests {
     #[test]
     fn an_addition_that_is_no_trial_measures_trials_only() {
         let all = noise(2000, 16, 3);
-        let mut trials = Trials::of(Shapes::of(0..1999, &all).rows(), 1);
-        let before = trials.clone();
-        let outside = (0..).map(|i| format!("x{i}")).find(|id| trial_key(id) > [u32::MAX - 1000, 0]);
-        let now = Some((all[1999 * 16..].to_vec(), "c1".to_owned(), 0));
-        let change = Change { id: outside.unwrap_or_default(), was_there: false, now };
-        trials.change(&[change], |_| Err("nothing else is needed")).unwrap();
-        assert_eq!(trials.all.len(), before.all.len());
+        let mut changed = trials(&shapes(0..1999, &all), 1);
+        let before = changed.clone();
+        let outside = (0..).map(|i| format!("x{i}")).find(|id| shape_key(id) > u64::MAX - (1000 << 32));
+        let mut come = Part::default();
+        come.push(&outside.unwrap_or_default(), "c1", &all[1999 * 16..]);
+        changed.change(&Texts::default(), &come, &[0], |_| Err("nothing else is needed")).unwrap();
+        assert_eq!(changed.all.len(), before.all.len());
     }
 
     #[test]
     fn pieces_give_the_trials_of_the_whole() {
         let all = noise(900, 16, 5);
-        let whole = Shapes::of(0..900, &all);
-        let pieces = [Shapes::of(0..10, &all), Shapes::of(10..700, &all), Shapes::of(700..900, &all)];
+        let pieces = [0..10, 10..700, 700..900].map(|range| shapes(range, &all));
         let found = Trials::in_pieces(7, |visit| {
-            pieces.iter().for_each(|piece| visit(piece.rows()));
+            pieces.iter().for_each(|(shapes, cells)| visit(shapes, cells));
             Ok::<_, Infallible>(())
         });
-        assert_eq!(found, Ok(Trials::of(whole.rows(), 7)));
+        assert_eq!(found, Ok(trials(&shapes(0..900, &all), 7)));
     }
 
     #[test]
     fn matches_the_threshold_from_all_pairs() {
         let positions = [0.0f32, 1.0, 2.5, 10.0, 11.0, 30.0];
-        let rows: Vec<f32> = positions.iter().flat_map(|x| [&[*x][..], &[0.0; 15]].concat()).collect();
-        let ids: Texts = (0..6).map(|i| i.to_string()).collect();
         let threshold = |classes: [&str; 6]| {
-            let classes = classes.iter().collect();
-            Trials::of(Rows { rows: &rows, ids: &ids, classes: &classes, cells: &[0] }, 1).threshold()
+            let mut shapes = Part::default();
+            for (i, (x, class)) in positions.iter().zip(classes).enumerate() {
+                shapes.push(&i.to_string(), class, &[&[*x][..], &[0.0; 15]].concat());
+            }
+            Trials::of(&shapes, &[0], 1).threshold()
         };
         // Own: 1, 1, 1.5, 1, 1; foreign: 10, 9, 7.5, 7.5, 8.5, 19.
         let expected = UnknownThreshold { distance: 4.5, missed: 0.0, mistaken: 0.0 };

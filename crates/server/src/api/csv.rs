@@ -1,7 +1,7 @@
 //! Results as CSV (RFC 4180).
 
 use canonform::index::csv_field;
-use canonform::{SearchRank, SearchReport};
+use canonform::{OrderedBy, SearchRank, SearchReport};
 
 /// One line per result, under a header.
 pub(super) fn of(query: &str, report: &SearchReport) -> String {
@@ -16,10 +16,12 @@ pub(super) fn of(query: &str, report: &SearchReport) -> String {
         let (rank, distance, fused) =
             (found.rank.to_string(), found.distance.to_string(), found.fused.to_string());
         let fields = [query, &rank, &found.id, &found.label, &found.path, &distance, &fused];
-        let on_graph = found.on_graph.into_iter().map(|order| order.rank_distance);
-        let as_part = found.as_part.into_iter().flat_map(|fit| [fit.part_distance, fit.part_share]);
-        let order: Vec<String> =
-            on_graph.chain(as_part).chain(found.form_distance).map(|number| number.to_string()).collect();
+        let order = match found.order {
+            None => Vec::new(),
+            Some(OrderedBy::Part { part_distance, part_share }) => vec![part_distance, part_share],
+            Some(order) => vec![order.distance()],
+        };
+        let order: Vec<String> = order.iter().map(f64::to_string).collect();
         let fields: Vec<String> =
             fields.into_iter().chain(order.iter().map(String::as_str)).map(csv_field).collect();
         text += &(fields.join(",") + "\r\n");

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
-use canonform::index::{ExportFormat, Index, Verification, work_path};
+use canonform::index::{ExportFormat, FORMAT_VERSION, Index, Verification, work_path};
 use canonform::{Remedy, export_index};
 use serde::Serialize;
 
@@ -61,7 +61,7 @@ pub(super) fn info(path: &Path, common: &Common) -> Result<ExitCode> {
     }
     let json = InfoJson {
         index: path.to_owned(),
-        format: index.format(),
+        format: FORMAT_VERSION,
         n_shapes: index.len(),
         n_bytes: index.n_bytes(),
         options: serde_json::from_str(index.options()).unwrap_or_else(|_| index.options().into()),
