@@ -1,7 +1,7 @@
 //! Canonical forms of any number of dimensions, at a few points.
 
 use base::Observer;
-use linalg::{LandmarkDistances, Matrix, symmetric_eigenvalues};
+use linalg::{LandmarkDistances, Matrix, sq_distance, symmetric_eigenvalues};
 use nmds::{LandmarkSmacofOptions, landmark_mds, landmark_smacof};
 
 use crate::error::DescriptorError;
@@ -88,8 +88,9 @@ impl SampledForm {
     /// [`DescriptorError::Linalg`] if the eigenvalues are not found; [`DescriptorError::NoExtent`].
     pub fn spectrum(&self, unit: f64) -> Result<Signature, DescriptorError> {
         let (kind, n_points) = (SignatureKind::FormSpectrum, self.shares.len());
+        let at = |i| column(&self.points, i);
         let kernel = |i: usize, j: usize| {
-            let distance = sq_distance(&self.points, i, j).sqrt();
+            let distance = sq_distance(at(i), at(j)).sqrt();
             (self.shares[i] * self.shares[j]).sqrt() * (-distance / (RANGE * unit)).exp()
         };
         let values = symmetric_eigenvalues(&Matrix::from_fn(n_points, n_points, kernel))?;
@@ -109,17 +110,15 @@ fn evenly_spread(coords: &Matrix, masses: &[f64]) -> Result<(Vec<usize>, Vec<f64
     }
     let points = coords.transpose();
     let from_origin = points.column_iter().map(|x| x.norm_squared());
-    let spread = spread_by(from_origin, |i, j| sq_distance(&points, i, j), POINTS);
+    let at = |i| column(&points, i);
+    let spread = spread_by(from_origin, |i, j| sq_distance(at(i), at(j)), POINTS);
     let mut shares = vec![0.0; spread.samples.len()];
     spread.nearest.iter().zip(masses).for_each(|(&owner, mass)| shares[owner] += mass / total);
     Ok((spread.samples, shares))
 }
 
-/// The squared distance between two columns.
-fn sq_distance(points: &Matrix, i: usize, j: usize) -> f64 {
-    let (dim, all) = (points.nrows(), points.as_slice());
-    let [a, b] = [i, j].map(|i| &all[i * dim..(i + 1) * dim]);
-    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
+fn column(points: &Matrix, i: usize) -> &[f64] {
+    &points.as_slice()[i * points.nrows()..][..points.nrows()]
 }
 
 #[cfg(test)]

@@ -33,3 +33,18 @@ pub use sparse::SparseSymmetric;
 
 /// A dense matrix of `f64`, column by column.
 pub type Matrix = nalgebra::DMatrix<f64>;
+
+/// The squared distance of two points, over the coordinates that both have.
+#[must_use]
+pub fn sq_distance(a: &[f64], b: &[f64]) -> f64 {
+    // Four sums, which vector instructions can take at once.
+    let mut sums = [0.0; 4];
+    let ((a, rest_a), (b, rest_b)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
+    for (a, b) in a.iter().zip(b) {
+        for ((sum, a), b) in sums.iter_mut().zip(a).zip(b) {
+            *sum += (a - b) * (a - b);
+        }
+    }
+    let rest: f64 = rest_a.iter().zip(rest_b).map(|(a, b)| (a - b) * (a - b)).sum();
+    sums.iter().sum::<f64>() + rest
+}

@@ -1,7 +1,7 @@
 //! SMACOF of the distances from landmarks.
 
 use base::Observer;
-use linalg::{LandmarkDistances, Matrix};
+use linalg::{LandmarkDistances, Matrix, sq_distance};
 use rayon::prelude::*;
 
 use crate::squares::{check_dim, check_extent, check_points};
@@ -121,10 +121,10 @@ fn pulled<'a>(point: &mut [f64], others: impl Iterator<Item = (&'a [f64], f64, f
     let mut sums = vec![0.0; point.len()];
     let mut total = 0.0;
     for (other, distance, weight) in others.filter(|(_, distance, _)| *distance > 0.0) {
-        let sq: f64 = point.iter().zip(other).map(|(a, b)| (a - b) * (a - b)).sum();
-        let stretch = if sq > 0.0 { distance / sq.sqrt() } else { 0.0 };
+        let sq = sq_distance(point, other);
+        let pull = if sq > 0.0 { weight * distance / sq.sqrt() } else { 0.0 };
         for (sum, (a, b)) in sums.iter_mut().zip(point.iter().zip(other)) {
-            *sum += weight * (b + stretch * (a - b));
+            *sum += weight * b + pull * (a - b);
         }
         total += weight;
     }

@@ -38,7 +38,7 @@ impl GeneralizedEigen {
     pub const ACCURATE: f64 = 1e-9;
 
     /// A tolerance for what averages over eigenfunctions. The errors of eigenvalues are its square.
-    pub const AVERAGED: f64 = 1e-4;
+    pub const AVERAGED: f64 = 1e-2;
 }
 
 /// The `m` smallest eigenpairs of `W x = lambda M x` (fewer if there are no more), with `W` sparse and positive

@@ -1,6 +1,6 @@
 //! Nearest rows of matrices with many columns.
 
-use linalg::Matrix;
+use linalg::{Matrix, sq_distance};
 use rayon::prelude::*;
 
 /// Rows of the first matrix multiplied at a time. The result does not depend on it.
@@ -109,19 +109,6 @@ pub(super) fn first_of<T: Ord>(mut items: Vec<(f64, T)>, n: usize) -> Vec<(f64, 
     }
     items.sort_unstable_by(by_number);
     items
-}
-
-fn sq_distance(a: &[f64], b: &[f64]) -> f64 {
-    // Four sums, which vector instructions can take at once.
-    let mut sums = [0.0; 4];
-    let (mut a, mut b) = (a.chunks_exact(4), b.chunks_exact(4));
-    for (a, b) in (&mut a).zip(&mut b) {
-        for ((sum, a), b) in sums.iter_mut().zip(a).zip(b) {
-            *sum += (a - b) * (a - b);
-        }
-    }
-    let rest = a.remainder().iter().zip(b.remainder()).map(|(a, b)| (a - b) * (a - b));
-    sums[0] + sums[1] + sums[2] + sums[3] + rest.sum::<f64>()
 }
 
 /// Half of the squared length of every row.
