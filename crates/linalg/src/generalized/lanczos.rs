@@ -75,7 +75,7 @@ impl<'a> Lanczos<'a> {
         if let Some([_, coupling]) = self.blocks.last() {
             image -= &self.last * coupling.transpose();
         }
-        let within = block.transpose() * self.operator.weighted(&image);
+        let within = block.tr_mul(&self.operator.weighted(&image));
         let within = (&within + within.transpose()) * 0.5;
         image -= &block * &within;
         self.last = block;
@@ -115,7 +115,7 @@ impl<'a> Lanczos<'a> {
             let before = self.lengths(w);
             let weighted = self.operator.weighted(w);
             self.basis.add_combinations(w, &self.basis.products(&weighted), -1.0);
-            *w -= &self.next * (self.next.transpose() * weighted);
+            *w -= &self.next * (self.next.tr_mul(&weighted));
             let (factor, left) = self.gram_schmidt(w, &lengths);
             r = factor * r;
             let cancelled = left.iter().zip(&before).any(|(left, before)| *left < CANCELLED * before);

@@ -42,17 +42,18 @@ impl Strips {
     /// The products `V' W` with the columns of a matrix.
     pub(super) fn products(&self, w: &Matrix) -> Matrix {
         let (n, m) = (self.n_columns, w.ncols());
+        // `W' V`, since only the first factor is copied where its rows are not contiguous.
         let parts: Vec<Matrix> = (0..self.strips.len())
             .into_par_iter()
             .map(|s| {
-                let mut part = Matrix::zeros(n, m);
-                let out = MatMut::from_column_major_slice_mut(part.as_mut_slice(), n, m);
+                let mut part = Matrix::zeros(m, n);
+                let out = MatMut::from_column_major_slice_mut(part.as_mut_slice(), m, n);
                 let rows = view(w).subrows(s * ROWS, self.height(s));
-                matmul(out, Accum::Replace, self.strip(s).transpose(), rows, 1.0, Par::Seq);
+                matmul(out, Accum::Replace, rows.transpose(), self.strip(s), 1.0, Par::Seq);
                 part
             })
             .collect();
-        parts.iter().fold(Matrix::zeros(n, m), |sum, part| sum + part)
+        parts.iter().fold(Matrix::zeros(m, n), |sum, part| sum + part).transpose()
     }
 
     /// The combinations `V H`.
