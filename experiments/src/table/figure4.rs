@@ -57,10 +57,15 @@ impl Experiment for Figure4Options {
         let labels = context.collection.labels();
         let classes = Labels::new(&labels);
         let (mut panels, mut formed, mut moved) = (Vec::new(), Vec::new(), Vec::new());
+        let mut distances = Vec::new();
         for (method, options) in &methods {
             let made = map(&context.collection.all(), options.method.name(), context.observer, |shape| {
-                Formed::new(shape, &embed(&shape.surface, options, &())?)
+                let embedded = embed(&shape.surface, options, &())?;
+                Ok((Formed::new(shape, &embedded)?, embedded.distances))
             })?;
+            let (made, of_method): (Vec<_>, _) = made.into_iter().unzip();
+            // Those of both methods are the same.
+            distances = of_method;
             let forms: Vec<CanonicalForm> = made.iter().map(|made| made.form.clone()).collect();
             let scales = [(Scale::Raw, Normalization::Raw), (Scale::Normalized, Normalization::UnitArea)];
             for (scale, normalization) in scales {
@@ -71,11 +76,12 @@ impl Experiment for Figure4Options {
             formed.push(made);
         }
         for (maker, name) in MANY {
-            let spectra = map(&context.collection.all(), name, context.observer, |shape| {
-                let distances = embed(&shape.surface, &methods[0].1, &())?.distances;
-                let (form, unit) = maker.of_many_dimensions(&distances, shape.surface.mesh())?;
-                Ok(form.spectrum(unit)?)
-            })?;
+            let spectra =
+                context.collection.all().into_par_iter().zip(&distances).map(|(shape, distances)| {
+                    let (form, unit) = maker.of_many_dimensions(distances, shape.surface.mesh())?;
+                    Ok(form.spectrum(unit)?)
+                });
+            let spectra = spectra.collect::<Result<Vec<_>>>()?;
             let between = |i: usize, j: usize| spectra[i].distance(&spectra[j]);
             let distances = DistanceMatrix::from_pairs(spectra.len(), between)?;
             panels.push(self.panel(name, Scale::Spectrum, &distances, &classes)?);
