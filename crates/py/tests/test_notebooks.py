@@ -75,7 +75,7 @@ def test_a_notebook_runs_and_holds_what_it_shows(path: Path, tmp_path: Path, mon
     monkeypatch.setenv("IPYTHONDIR", str(tmp_path / "ipython"))
     monkeypatch.setenv("MPLBACKEND", "module://matplotlib_inline.backend_inline")
     stored, notebook = (nbformat.read(path, as_version=4) for _ in range(2))
-    nbclient.NotebookClient(notebook, timeout=600, resources={"metadata": {"path": tmp_path}}).execute()
+    nbclient.NotebookClient(notebook, timeout=600, coalesce_streams=True, resources={"metadata": {"path": tmp_path}}).execute()
     outputs = [output for cell in code_of(notebook) for output in cell.outputs]
     assert outputs and not [output for output in outputs if output.output_type == "stream" and output.name == "stderr"]
     if "CANONFORM_WRITE_DOCS" in os.environ:
