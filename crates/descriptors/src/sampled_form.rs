@@ -54,7 +54,7 @@ impl SampledForm {
     /// Classical scaling fits squared distances, of which the longest count most. Least squares fit distances, and their
     /// spectrum tells bodies apart better than that of the distances themselves.
     ///
-    /// Cost: `O(p n)` to place p points by n landmarks, and 10 steps of `O(n)` for each of the 250 points.
+    /// Cost: `O(p n)` to place p points by n landmarks, and 10 steps of `O(n)` for each of them and of the 250 points.
     ///
     /// # Errors
     /// As [`new`](Self::new); [`DescriptorError::Nmds`] and [`DescriptorError::Linalg`], also if the observer's budget is exceeded.

@@ -5,11 +5,12 @@ use std::str::FromStr;
 
 use base::files::FileError;
 use descriptors::{DescriptorError, ShapeMetric, SignatureKind};
-use index::{Index, IndexError};
+use index::Index;
 use linalg::DistanceMatrix;
 use rayon::prelude::*;
 use retrieval::{Evaluation, Labels, RankBy, evaluate_ranked};
 
+use super::record::signature;
 use crate::error::Error;
 use base::Observer;
 use collection::{CollectionError, LabelSource, label_of};
@@ -86,15 +87,7 @@ pub fn evaluate_index(
         names.push(label);
         rows.push(match measure {
             Measure::Fused => shape.vectors.fused,
-            Measure::Signature(kind) => {
-                let mut signatures = shape.vectors.signatures.into_iter();
-                let found = signatures.find(|(name, _)| name == kind.name());
-                let missing = || IndexError::Damaged {
-                    path: path.to_owned(),
-                    what: format!("`{}` has no {} signature", shape.id, kind.name()),
-                };
-                found.ok_or_else(missing)?.1
-            }
+            Measure::Signature(kind) => signature(shape.vectors, kind, &shape.id, path)?,
         });
         Ok::<(), Error>(())
     })?;

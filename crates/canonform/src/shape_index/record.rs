@@ -1,8 +1,10 @@
 //! A description as an index stores it.
 
+use std::path::Path;
+
 use base::ContentHash;
-use descriptors::{CanonicalForm, DiscAreas, PreparedShape};
-use index::{Index, Shape, ShapeEntry, ShapeVectors};
+use descriptors::{CanonicalForm, DiscAreas, PreparedShape, SignatureKind};
+use index::{Index, IndexError, Shape, ShapeEntry, ShapeVectors};
 use nalgebra::Point3;
 use surface::unit_for;
 
@@ -89,6 +91,24 @@ pub(super) fn shape(listed: &Listed, content: ContentHash, described: Described)
 /// The areas of geodesic discs of an indexed shape; `None` if they are not stored.
 pub(super) fn disc_areas(vectors: &ShapeVectors) -> Option<DiscAreas> {
     DiscAreas::from_numbers(&vectors.disc_areas).filter(|_| !vectors.disc_areas.is_empty())
+}
+
+/// The signature of a kind of an indexed shape.
+///
+/// # Errors
+/// [`IndexError::Damaged`] if it is not stored.
+pub(super) fn signature(
+    vectors: ShapeVectors,
+    kind: SignatureKind,
+    id: &str,
+    path: &Path,
+) -> Result<Vec<f32>, IndexError> {
+    let found = vectors.signatures.into_iter().find(|(name, _)| name == kind.name());
+    let missing = || IndexError::Damaged {
+        path: path.to_owned(),
+        what: format!("`{id}` has no {} signature", kind.name()),
+    };
+    Ok(found.ok_or_else(missing)?.1)
 }
 
 /// A described mesh file.

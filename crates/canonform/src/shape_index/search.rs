@@ -21,7 +21,7 @@ use super::found::{ComponentResult, OrderedBy, SearchResult, ShardMatch};
 use super::options::{Explain, SearchOptions, SearchRank};
 use super::predict::{Completeness, Prediction, VOTERS, predicted};
 use super::query::{KnownQuery, Query};
-use super::record::{disc_areas, options_of, prepared};
+use super::record::{disc_areas, options_of, prepared, signature};
 use super::rerank::{Ranked, Reranked, rerank};
 use super::source::read_unchanged;
 use crate::compare::compare;
@@ -347,9 +347,7 @@ impl ShapeSearch {
     }
 
     pub(super) fn form_spectrum(&self, id: &str) -> Result<Vec<f32>, Error> {
-        let mut signatures = self.index.vectors(id)?.signatures.into_iter();
-        let found = signatures.find(|(name, _)| name == SignatureKind::FormSpectrum.name());
-        Ok(found.map_or_else(Vec::new, |(_, values)| values))
+        Ok(signature(self.index.vectors(id)?, SignatureKind::FormSpectrum, id, self.index.path())?)
     }
 
     /// How well a part fits into a shape.

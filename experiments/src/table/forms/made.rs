@@ -6,7 +6,7 @@ use descriptors::{CanonicalForm, SampledForm};
 use linalg::{LandmarkDistances, Matrix};
 use mesh::TriMesh;
 use nmds::{
-    Bandwidth, KernelPcaOptions, LandmarkSmacofOptions, NystromOptions, SmacofOptions, kernel_pca,
+    Bandwidth, Embedding, KernelPcaOptions, LandmarkSmacofOptions, NystromOptions, SmacofOptions, kernel_pca,
     landmark_mds, landmark_smacof, nystrom,
 };
 
@@ -184,15 +184,14 @@ impl FormMaker {
             return Ok(MadeForm { sampled, unit, solid: None, seconds: measuring + seconds });
         }
         let measuring = if self.needs_all_pairs() { 0.0 } else { measuring };
-        let masses = shape.surface.mesh().vertex_areas();
-        let (coords, seconds) = timed(|| self.coords(shape, &distances, &masses))?;
-        let unit = self.unit(&coords, shape.surface.mesh());
-        let points = coords.row_iter().map(|x| [x[0], x[1], x[2]].into()).collect();
-        let whole = CanonicalForm::from_points(points, masses.clone())?;
-        let area = (!self.is_of_kernel()).then_some(unit * unit);
-        let whole = CanonicalForm::from_parts(whole.points().to_vec(), whole.weights().to_vec(), area)?;
+        let mesh = shape.surface.mesh();
+        let masses = mesh.vertex_areas();
+        let (embedding, seconds) = timed(|| self.embedding(shape, &distances, &masses))?;
+        let unit = self.unit(&embedding.coords, mesh);
+        let whole = CanonicalForm::new(&embedding, mesh)?;
+        let whole = if self.is_of_kernel() { whole.without_unit() } else { whole };
         let (whole, bending) = match self {
-            Self::BentNmds | Self::BentKernelPca => timed(|| whole.with_features(shape.surface.mesh(), &()))?,
+            Self::BentNmds | Self::BentKernelPca => timed(|| whole.with_features(mesh, &()))?,
             _ => (whole, 0.0),
         };
         let unit = whole.area().map_or(unit, f64::sqrt);
@@ -201,11 +200,7 @@ impl FormMaker {
             sampled: SampledForm::new(&coords, &masses)?,
             unit,
             seconds: measuring + seconds + bending,
-            solid: Some(SolidForm {
-                form: whole.reduced(POINTS),
-                mesh: whole.to_mesh(shape.surface.mesh()),
-                whole,
-            }),
+            solid: Some(SolidForm { form: whole.reduced(POINTS), mesh: whole.to_mesh(mesh), whole }),
         })
     }
 
@@ -221,7 +216,7 @@ impl FormMaker {
                 let form = SampledForm::by_least_squares(distances, &masses, &())?;
                 return Ok((form, mesh.root_of_area()));
             }
-            Self::ManyKernelPca => by_kernel(distances, SampledForm::DIM)?,
+            Self::ManyKernelPca => by_kernel(distances, SampledForm::DIM)?.coords,
             _ => {
                 let options = NystromOptions { dim: SampledForm::DIM, ..NystromOptions::default() };
                 nystrom(distances, &options)?.coords
@@ -238,7 +233,12 @@ impl FormMaker {
         }
     }
 
-    fn coords(self, shape: &ShapeDistances, distances: &LandmarkDistances, masses: &[f64]) -> Result<Matrix> {
+    fn embedding(
+        self,
+        shape: &ShapeDistances,
+        distances: &LandmarkDistances,
+        masses: &[f64],
+    ) -> Result<Embedding> {
         let usual = || nystrom(distances, &NystromOptions::default());
         let by_least_squares = |power| {
             let options = LandmarkSmacofOptions { power, ..LandmarkSmacofOptions::default() };
@@ -249,24 +249,24 @@ impl FormMaker {
             embed(&shape.surface, &FormOptions { method, samples, ..FormOptions::default() }, &())
         };
         Ok(match self {
-            Self::Landmark => landmark_mds(distances, DIM)?.coords,
-            Self::LeastSquares => by_least_squares(0.0)?.coords,
-            Self::Sammon => by_least_squares(1.0)?.coords,
+            Self::Landmark => landmark_mds(distances, DIM)?,
+            Self::LeastSquares => by_least_squares(0.0)?,
+            Self::Sammon => by_least_squares(1.0)?,
             Self::KernelPca | Self::BentKernelPca => by_kernel(distances, DIM)?,
-            Self::Classical => of_all_pairs(EmbedMethod::Classical)?.embedding.coords,
+            Self::Classical => of_all_pairs(EmbedMethod::Classical)?.embedding,
             Self::Smacof => {
                 let regularization = half(distances.n_landmarks());
                 let descent = SmacofOptions::default();
-                of_all_pairs(EmbedMethod::Smacof { regularization, descent })?.embedding.coords
+                of_all_pairs(EmbedMethod::Smacof { regularization, descent })?.embedding
             }
-            _ => usual()?.coords,
+            _ => usual()?,
         })
     }
 }
 
-fn by_kernel(distances: &LandmarkDistances, dim: usize) -> Result<Matrix> {
+fn by_kernel(distances: &LandmarkDistances, dim: usize) -> Result<Embedding> {
     let rank = Some(distances.n_landmarks().div_ceil(2));
-    Ok(kernel_pca(distances, &KernelPcaOptions { bandwidth: Bandwidth::Mean, rank, dim })?.coords)
+    Ok(kernel_pca(distances, &KernelPcaOptions { bandwidth: Bandwidth::Mean, rank, dim })?)
 }
 
 /// Root of the mean squared distance from the centroid.
