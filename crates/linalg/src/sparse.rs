@@ -83,37 +83,6 @@ impl SparseSymmetric {
         (0..self.order()).map(|j| self.values[self.column_starts[j]]).collect()
     }
 
-    /// The block of each row: the connected components of the graph of off-diagonal entries, zero or not. Blocks are
-    /// numbered in the order of their first rows.
-    #[must_use]
-    pub fn blocks(&self) -> Vec<usize> {
-        // Union-find with path halving; the root of a tree is its first row.
-        let mut parent: Vec<usize> = (0..self.order()).collect();
-        let root = |parent: &mut Vec<usize>, mut row: usize| {
-            while parent[row] != row {
-                parent[row] = parent[parent[row]];
-                row = parent[row];
-            }
-            row
-        };
-        for (i, j, _) in self.entries() {
-            let [a, b] = [root(&mut parent, i), root(&mut parent, j)];
-            parent[a.max(b)] = a.min(b);
-        }
-        let mut blocks: Vec<usize> = Vec::with_capacity(self.order());
-        let mut count = 0;
-        for row in 0..self.order() {
-            let first = root(&mut parent, row);
-            if first == row {
-                blocks.push(count);
-                count += 1;
-            } else {
-                blocks.push(blocks[first]);
-            }
-        }
-        blocks
-    }
-
     /// Adds one number to each diagonal entry.
     ///
     /// # Panics
@@ -187,12 +156,6 @@ mod tests {
         let mut y = [f64::NAN; 3];
         a.apply(&[1.0, 10.0, 100.0], &mut y);
         assert_eq!(y, [1.0 - 10.0 + 200.0, -1.0 + 60.0, 2.0 + 300.0]);
-    }
-
-    #[test]
-    fn blocks_are_connected_components() {
-        let a = SparseSymmetric::from_entries(6, [(5, 1, 2.0), (3, 2, 0.0), (1, 3, -1.0)]);
-        assert_eq!(a.blocks(), [0, 1, 1, 1, 2, 1]);
     }
 
     #[test]

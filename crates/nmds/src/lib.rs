@@ -10,7 +10,6 @@
 //! | [`nystrom`] | distances from n samples to all p points | Shamai, Aflalo, Zibulevsky and Kimmel 2015 |
 //! | [`landmark_mds`] | the same | de Silva and Tenenbaum 2002 |
 //! | [`kernel_pca`] | the same | Liu, Jain and Zhang 2006 |
-//! | [`fmds`] | the same, and a Laplacian | Shamai et al. 2015 |
 //! | [`spectral`] | distances between n samples, and eigenpairs of a Laplacian | Aflalo and Kimmel 2013 |
 //! | [`classical`], [`classical_full`] | all p x p distances | Torgerson 1952 |
 //! | [`OutOfSample`] | distances from further points to the n samples of [`nystrom`] | Bengio et al. 2003 |
@@ -24,7 +23,6 @@ mod classical;
 mod embedding;
 mod error;
 mod estimate;
-mod fmds;
 mod kernel_pca;
 mod landmark;
 mod landmark_metric;
@@ -46,7 +44,6 @@ pub use classical::{classical, classical_full};
 pub use embedding::Embedding;
 pub use error::NmdsError;
 pub use estimate::{RowSample, StressEstimate, estimate_stress, sample_rows};
-pub use fmds::fmds;
 pub use kernel_pca::{Bandwidth, KernelPcaOptions, kernel_pca};
 pub use landmark::landmark_mds;
 pub use landmark_metric::{

@@ -2,9 +2,7 @@
 
 use linalg::{LandmarkDistances, Matrix, thin_qr};
 
-use crate::squares::{
-    center_columns, check_dim, check_extent, check_points, solve_saddle_point, symmetrized,
-};
+use crate::squares::{center_columns, check_dim, check_extent, check_points, symmetrized};
 use crate::{Embedding, NmdsError};
 
 /// The smallest eigenpairs of a Laplacian, `W Φ = A Φ Λ`.
@@ -134,6 +132,18 @@ fn smoothest(at_samples: &Matrix, values: &[f64], mu: f64) -> Option<Matrix> {
 fn least_squares(at_samples: &Matrix) -> Option<Matrix> {
     let (q, r) = thin_qr(at_samples);
     r.solve_upper_triangular(&q.transpose())
+}
+
+/// The blocks `X` and `Y` of the solution of `[A N; N' 0] [X; Y] = [I; 0]`; `None` if the system is singular.
+fn solve_saddle_point(a: &Matrix, null: &Matrix) -> Option<[Matrix; 2]> {
+    let (n, m) = null.shape();
+    let mut system = Matrix::zeros(n + m, n + m);
+    system.view_mut((0, 0), (n, n)).copy_from(a);
+    system.view_mut((0, n), (n, m)).copy_from(null);
+    system.view_mut((n, 0), (m, n)).copy_from(&null.transpose());
+    let solution = system.lu().solve(&Matrix::identity(n + m, n))?;
+    let is_finite = solution.iter().all(|x| x.is_finite());
+    is_finite.then(|| [solution.rows(0, n).into_owned(), solution.rows(n, m).into_owned()])
 }
 
 #[cfg(test)]

@@ -60,15 +60,3 @@ pub(crate) fn center_columns(columns: &mut Matrix) {
         column.add_scalar_mut(-mean);
     }
 }
-
-/// The blocks `X` and `Y` of the solution of `[A N; N' 0] [X; Y] = [I; 0]`; `None` if the system is singular.
-pub(crate) fn solve_saddle_point(a: &Matrix, null: &Matrix) -> Option<[Matrix; 2]> {
-    let (n, m) = null.shape();
-    let mut system = Matrix::zeros(n + m, n + m);
-    system.view_mut((0, 0), (n, n)).copy_from(a);
-    system.view_mut((0, n), (n, m)).copy_from(null);
-    system.view_mut((n, 0), (m, n)).copy_from(&null.transpose());
-    let solution = system.lu().solve(&Matrix::identity(n + m, n))?;
-    let is_finite = solution.iter().all(|x| x.is_finite());
-    is_finite.then(|| [solution.rows(0, n).into_owned(), solution.rows(n, m).into_owned()])
-}

@@ -60,7 +60,6 @@ def everything(cats: list[Shape], tmp_path_factory: pytest.TempPathFactory) -> d
         "nystrom": canonform.Nystrom(rank=9),
         "landmark": canonform.Landmark(sampling="random"),
         "spectral": canonform.Spectral(mu=5.0),
-        "fmds": canonform.Fmds(first=3),
         "kernel": canonform.KernelPca(sigma="median"),
         "smacof": canonform.Smacof(max_iterations=5),
         "view": a.view(),
@@ -83,7 +82,7 @@ def test_everything_goes_through_a_process_pool(everything: dict[str, Any]) -> N
         assert type(found[name]) is type(value), name
         assert repr(found[name]) == repr(value), name
     by_value = ["pairs", "pair", "path", "shape", "result", "entry", "report", "basis", "nearest", "mapped", "edge point"]
-    methods = ["face point", "marching", "nystrom", "landmark", "spectral", "fmds", "kernel", "smacof"]
+    methods = ["face point", "marching", "nystrom", "landmark", "spectral", "kernel", "smacof"]
     for name in [*by_value, *methods]:
         assert found[name] == everything[name], name
     surface, again = everything["surface"], found["surface"]

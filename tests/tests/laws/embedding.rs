@@ -181,7 +181,7 @@ fn methods() -> Vec<EmbedMethod> {
     let kernel = [Bandwidth::Mean, Bandwidth::Median, Bandwidth::Max]
         .map(|bandwidth| EmbedMethod::KernelPca { rank: None, bandwidth });
     let spectral = EmbedMethod::Spectral { eigenvectors: 60, mu: SpectralOptions::default().mu };
-    let others = [EmbedMethod::Classical, EmbedMethod::Landmark, spectral, EmbedMethod::Fmds, smacof];
+    let others = [EmbedMethod::Classical, EmbedMethod::Landmark, spectral, smacof];
     nystrom.into_iter().chain(kernel).chain(others).collect()
 }
 

@@ -36,7 +36,6 @@ fn an_embedding_does_not_depend_on_threads() {
         (EmbedMethod::default(), Samples::AUTO, StressChoice::Estimate),
         (EmbedMethod::Classical, Samples::AUTO, StressChoice::Exact),
         (EmbedMethod::spectral(), Samples::AUTO, StressChoice::Estimate),
-        (EmbedMethod::Fmds, Samples::Count(20), StressChoice::Estimate),
     ] {
         let options = FormOptions { method, samples, ..FormOptions::default() };
         let [one, two, five] = on_each_pool(|| facts(&measured(&mesh, &options, stress)));

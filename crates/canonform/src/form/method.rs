@@ -1,15 +1,14 @@
 //! Embedding methods: one entry here makes a method available to every program.
 
 use descriptors::LaplaceSpectrum;
-use linalg::{DistanceMatrix, LandmarkDistances, SparseSymmetric};
+use linalg::{DistanceMatrix, LandmarkDistances};
 use nmds::{
     Bandwidth, Embedding, KernelPcaOptions, NystromOptions, Regularization, SampleSearch, SmacofOptions,
-    SmacofReport, SpectralBasis, SpectralOptions, classical, fmds, kernel_pca, landmark_mds, nystrom, smacof,
+    SmacofReport, SpectralBasis, SpectralOptions, classical, kernel_pca, landmark_mds, nystrom, smacof,
     spectral,
 };
 use serde::{Deserialize, Serialize};
 use surface::IntrinsicMesh;
-use surface::laplacian::Laplacian;
 
 use super::as_text;
 use super::distances::{EmbedByRank, Measurement, Sampled};
@@ -36,8 +35,6 @@ pub enum EmbedMethod {
         #[serde(with = "as_text")]
         mu: f64,
     },
-    /// Fast multidimensional scaling: columns of distances, smooth on the surface beyond the samples.
-    Fmds,
     /// Kernel PCA with the Nystrom method, the paper's baseline.
     #[serde(rename = "kpca")]
     KernelPca {
@@ -66,13 +63,12 @@ impl Default for EmbedMethod {
 
 impl EmbedMethod {
     /// Every method, each with its default options.
-    pub fn all() -> [Self; 7] {
+    pub fn all() -> [Self; 6] {
         let regularization = Regularization::default();
         [
             Self::Nystrom { regularization },
             Self::Landmark,
             Self::spectral(),
-            Self::Fmds,
             Self::KernelPca { rank: None, bandwidth: Bandwidth::default() },
             Self::Classical,
             Self::Smacof { regularization, descent: SmacofOptions::default() },
@@ -103,7 +99,6 @@ impl EmbedMethod {
             Self::Spectral { .. } => {
                 ("spectral", "Spectral scaling: distances between samples, in eigenfunctions of the surface")
             }
-            Self::Fmds => ("fmds", "Fast MDS: distances from samples, smooth on the surface in between"),
             Self::KernelPca { .. } => ("kpca", "Kernel PCA with the Nystrom method"),
             Self::Classical => ("mds", "Classical multidimensional scaling of all pairs"),
             Self::Smacof { .. } => ("smacof", "SMACOF on all pairs, started from the result of nmds"),
@@ -146,7 +141,7 @@ impl EmbedMethod {
 
     /// Whether the method needs the surface besides distances.
     pub(super) fn needs_surface(&self) -> bool {
-        matches!(self, Self::Spectral { .. } | Self::Fmds)
+        matches!(self, Self::Spectral { .. })
     }
 
     /// Measures the distances that the method needs and embeds in `dim` dimensions.
@@ -173,13 +168,6 @@ impl EmbedMethod {
                     LaplaceSpectrum::new(surface, eigenvectors, &budget)?;
                 let basis = SpectralBasis { values: &values, vectors: &vectors, masses: &masses };
                 let embed = |d: &_, _| spectral(d, &basis, &SpectralOptions { mu, dim });
-                sampled(measurement.sampled(&of_one_rank(dim, &embed))?)
-            }
-            Self::Fmds => {
-                let laplacian = Laplacian::new(surface());
-                let (p, masses) = (laplacian.n_vertices(), laplacian.masses());
-                let stiffness = SparseSymmetric::from_entries(p, laplacian.stiffness_entries());
-                let embed = |d: &_, _| fmds(d, &stiffness, &masses, dim, &budget);
                 sampled(measurement.sampled(&of_one_rank(dim, &embed))?)
             }
             Self::KernelPca { rank, bandwidth } => {

@@ -156,7 +156,7 @@ impl Settings {
                 self.apply("iterations", &mut descent.max_iterations);
                 self.apply("tolerance", &mut descent.tolerance);
             }
-            EmbedMethod::Classical | EmbedMethod::Landmark | EmbedMethod::Fmds => {}
+            EmbedMethod::Classical | EmbedMethod::Landmark => {}
         }
         let usual = FormOptions::default();
         let first_sample = self.get("first_sample").map(|v| FirstSample::Vertex(VertexId(v)));

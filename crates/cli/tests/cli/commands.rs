@@ -200,7 +200,6 @@ fn embed_accepts_all_methods_and_samplings() {
         ("--method nmds --regularization cur --rank 9", ["nmds", "cur", ""]),
         ("--method landmark", ["landmark", "", "3"]),
         ("--method spectral --eigenvectors 60 --mu inf", ["spectral", "", "30"]),
-        ("--method fmds", ["fmds", "", "30"]),
         ("--method mds", ["mds", "", ""]),
         ("--method smacof --rank 9 --iterations 4 --tolerance 0", ["smacof", "low-rank", "9"]),
     ] {
@@ -468,7 +467,7 @@ fn methods_compares_every_method() {
     assert_keys(&json, "n_vertices n_embedded dim geodesic methods best repair");
     let methods = json["methods"].as_array().unwrap();
     let name = |m: &serde_json::Value| m["method"].as_str().unwrap().to_owned();
-    for wanted in ["nmds", "landmark", "spectral", "fmds", "kpca", "mds", "smacof"] {
+    for wanted in ["nmds", "landmark", "spectral", "kpca", "mds", "smacof"] {
         assert!(methods.iter().any(|m| name(m) == wanted), "{wanted}");
     }
     for method in methods.iter().filter(|m| m["error"].is_null()) {

@@ -105,7 +105,6 @@ fn errors_name_options_that_do_not_apply_together() {
         ("--tolerance nan --method smacof", ["ring.off", "tolerance", "not NaN; 1e-6"]),
         ("--mu=-1 --method spectral", ["ring.off", "mu", "must be positive (it may be infinite), not -1"]),
         ("--eigenvectors 3 --method spectral", ["ring.off", "3 dimensions", "1 to 2"]),
-        ("--method fmds -n 2", ["ring.off", "3 dimensions", "1 to 2"]),
         ("--method landmark -n 3", ["ring.off", "3 dimensions", "1 to 2"]),
     ] {
         let options: Vec<&str> = options.split(' ').collect();

@@ -23,7 +23,7 @@ use Law::{Classical, Exact, Length, Unordered};
 
 type Method = (&'static str, fn(&Problem, usize) -> Result<Embedding, NmdsError>, &'static [Law]);
 
-const METHODS: [Method; 15] = [
+const METHODS: [Method; 14] = [
     ("classical", |p, k| classical(&p.all, k, &()), &[Exact, Classical, Length, Unordered]),
     ("full", |p, k| classical_full(&p.all, k), &[Exact, Classical, Length, Unordered]),
     ("SMACOF", smacof_from_classical, &[Exact, Length, Unordered]),
@@ -40,7 +40,6 @@ const METHODS: [Method; 15] = [
         |p, dim| kernel_pca(&p.samples, &KernelPcaOptions { dim, ..Default::default() }),
         &[Unordered],
     ),
-    ("FMDS", |p, k| fmds(&p.samples, &p.stiffness, &p.masses, k, &()), &[Classical, Length, Unordered]),
     ("spectral", |p, k| with_weight(p, k, f64::INFINITY), &[Classical, Length, Unordered]),
     ("spectral, mu 10", |p, k| with_weight(p, k, 10.0), &[Length, Unordered]),
 ];

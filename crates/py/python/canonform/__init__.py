@@ -32,7 +32,7 @@ from ._field import DistanceField, PairDistance, PairDistances
 from ._form import Form
 from ._index import Index, Result, SearchResults, ShapeEntry
 from ._match import MapCollection, MappedPoints, Match, SurfaceMap, match, match_all
-from ._methods import FastMarching, Fmds, KernelPca, Landmark, Nystrom, Smacof, Spectral
+from ._methods import FastMarching, KernelPca, Landmark, Nystrom, Smacof, Spectral
 from ._operators import ClosestPoints, EdgePoint, Eigenbasis, FacePoint
 from ._surface import Path, RepairReport, Surface, distance_methods, embedding_methods, signature_kinds
 from ._view import SurfaceView
@@ -53,7 +53,6 @@ __all__ = [
     "Eigenbasis",
     "FacePoint",
     "FastMarching",
-    "Fmds",
     "Form",
     "Index",
     "KernelPca",

@@ -134,19 +134,6 @@ class Spectral(_Sampled):
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
-class Fmds(_Sampled):
-    """`method="fmds"` with options: distances from landmarks, smooth on the surface in between.
-
-    Attributes
-    ----------
-    sampling, first
-        How landmarks are chosen, see `Nystrom`.
-    """
-
-    _name = "fmds"
-
-
-@dataclass(frozen=True, kw_only=True, repr=False)
 class KernelPca(_Sampled):
     """`method="kpca"` with options: kernel PCA with the Nystrom method.
 
@@ -186,7 +173,7 @@ class Smacof(_Regularized):
     tolerance: float = 1e-6
 
 
-Embedding: TypeAlias = EmbeddingName | Nystrom | Landmark | Spectral | Fmds | KernelPca | Smacof
+Embedding: TypeAlias = EmbeddingName | Nystrom | Landmark | Spectral | KernelPca | Smacof
 """How distances become coordinates."""
 
 Geodesic: TypeAlias = DistanceName | FastMarching

@@ -18,7 +18,7 @@ Progress: TypeAlias = bool | Callable[[str, int, int], None]
 
 # The names that Rust knows; a test compares them.
 DistanceName: TypeAlias = Literal["fast-marching", "exact", "heat", "dijkstra", "bfs"]
-EmbeddingName: TypeAlias = Literal["nmds", "landmark", "spectral", "fmds", "kpca", "mds", "smacof"]
+EmbeddingName: TypeAlias = Literal["nmds", "landmark", "spectral", "kpca", "mds", "smacof"]
 Update: TypeAlias = Literal["virtual-source", "planar"]
 Obtuse: TypeAlias = Literal["flip", "unfold", "ignore"]
 Sampling: TypeAlias = Literal["farthest", "random", "min-variance", "max-variance"]

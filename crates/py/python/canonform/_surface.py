@@ -403,8 +403,8 @@ class Surface(Constant):
             Number of landmarks, vertices from which distances are measured; or "auto" to take them until twice as many reduced the
             stress by less than 1 %, at most 640.
         method
-            How distances become coordinates, one of `embedding_methods()`: "nmds", "landmark", "spectral", "fmds", "kpca", "mds",
-            "smacof"; or one of `Nystrom`, `Landmark`, `Spectral`, `Fmds`, `KernelPca`, `Smacof` with options.
+            How distances become coordinates, one of `embedding_methods()`: "nmds", "landmark", "spectral", "kpca", "mds",
+            "smacof"; or one of `Nystrom`, `Landmark`, `Spectral`, `KernelPca`, `Smacof` with options.
         n_components
             Dimensions of the embedding.
         geodesic
