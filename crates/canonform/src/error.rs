@@ -121,11 +121,6 @@ pub enum Error {
         /// The least value allowed.
         least: usize,
     },
-    /// A target of the stress where forms have to be comparable.
-    #[error(
-        "a description cannot have a target of the stress, since forms of different accuracy are hard to compare"
-    )]
-    TargetOfDescription,
     /// A search for the number of samples by a method whose coordinates are no lengths.
     #[error("how many samples {method} needs cannot be measured, since its coordinates are no lengths")]
     NoStress {
@@ -348,7 +343,7 @@ impl Error {
             Self::Geodesic(GeodesicError::NotFactorised { .. }) => Remedy::UseFastMarching,
             Self::Geodesic(GeodesicError::NoWay { .. }) | Self::NoPath { .. } => Remedy::RaiseMaxDistance,
             Self::AllPairsTooLarge { .. } => Remedy::UseNystrom,
-            Self::TargetOfDescription | Self::NoStress { .. } => Remedy::GiveSamples,
+            Self::NoStress { .. } => Remedy::GiveSamples,
             Self::MemoryTooSmall { .. }
             | Self::EmbeddingTooLarge { .. }
             | Self::Exceeded(Exceeded::Memory { .. }) => Remedy::RaiseMemory,

@@ -111,8 +111,8 @@ pub use fields::{
 pub use form::{
     DISTANCES_LIMIT, DescentReport, DescribeOptions, EmbedMethod, EmbedReport, Embedded, FormOptions,
     MeasuredSurface, MethodFacts, MethodReport, MethodsReport, Samples, SamplesReport, SecondsReport,
-    ShapeDescription, StressChoice, StressKind, StressOptions, StressReport, TargetVerdict, compare_methods,
-    describe, describe_part, embed, embed_again, embed_and_measure, embed_and_release, embed_finer, settings,
+    ShapeDescription, StressChoice, StressKind, StressOptions, StressReport, compare_methods, describe,
+    describe_part, embed, embed_again, embed_and_measure, embed_and_release, embed_finer, settings,
 };
 pub use input::{AllPairs, Asymmetry, PathPoint, SurfacePath, distance_rows, read_surface};
 pub use relations::{

@@ -62,7 +62,7 @@ fn every_embedding_is_cancellable() {
 fn every_solver_is_cancellable_in_an_embedding_and_its_stress() {
     let surface = torus(24);
     for geodesic in Method::all() {
-        let options = FormOptions { geodesic, samples: Samples::AUTO, ..FormOptions::default() };
+        let options = FormOptions { geodesic, samples: Samples::Auto, ..FormOptions::default() };
         assert_cancellable(geodesic.name(), |budget| {
             let embedded = embed_and_measure(&surface, &options, &StressOptions::default(), budget)?;
             Ok(embedded.report.stress)

@@ -55,7 +55,7 @@ pub use nystrom::{NystromOptions, nystrom, nystrom_extended};
 pub use out_of_sample::OutOfSample;
 pub use reconstruction::{Reconstruction, ReconstructionError, sample_eigenvalues};
 pub use regularization::{Regularization, RpiAlpha};
-pub use sample_search::{SampleGoal, SampleSearch, SampleStep, SampleStop, SampleTrial};
+pub use sample_search::{SampleSearch, SampleStep, SampleStop, SampleTrial};
 pub use smacof::{SmacofOptions, SmacofReport, SmacofStop, smacof};
 pub use spectral::{SpectralBasis, SpectralOptions, spectral};
 pub use stress::{DistanceRows, Stress, normalized_stress, paper_stress, stress};

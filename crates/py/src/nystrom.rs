@@ -2,8 +2,7 @@
 
 use canonform::linalg::{LandmarkDistances, Matrix};
 use canonform::nmds::{
-    self, Embedding, NmdsError, NystromOptions, OutOfSample, Regularization, SampleGoal, SampleStep,
-    nystrom_extended,
+    self, Embedding, NystromOptions, OutOfSample, Regularization, SampleStep, nystrom_extended,
 };
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -55,52 +54,57 @@ impl Extension {
     }
 }
 
-/// What a search needs next: `n` samples, the distances from some rows, or nothing.
-type Step = (&'static str, Vec<usize>);
-
-fn step(next: SampleStep) -> Step {
-    match next {
-        SampleStep::Samples(n) => ("samples", vec![n]),
-        SampleStep::Rows(rows) => ("rows", rows),
-        SampleStep::Done(_) => ("done", Vec::new()),
-    }
-}
-
 /// Finds how many landmarks are enough; Python measures the distances.
 #[pyclass(module = "canonform._canonform")]
 pub(crate) struct SampleSearch {
     search: nmds::SampleSearch,
     options: NystromOptions,
-    goal: SampleGoal,
 }
 
-impl SampleSearch {
-    /// Embeddings with the default rank, or with other ranks.
-    fn embedded(&self, distances: &LandmarkDistances, others: bool) -> Result<Vec<Embedding>, NmdsError> {
-        let others = if others { self.options.other_ranks(distances.n_landmarks()) } else { Vec::new() };
-        let with = |rank| NystromOptions {
-            regularization: Regularization::LowRank { rank: Some(rank) },
-            ..self.options.clone()
-        };
-        let all = std::iter::once(self.options.clone()).chain(others.into_iter().map(with));
-        all.map(|options| nmds::nystrom(distances, &options)).collect()
+/// The next number of samples; none at the end.
+fn next(step: SampleStep) -> Option<usize> {
+    match step {
+        SampleStep::Samples(n) => Some(n),
+        SampleStep::Done(_) => None,
     }
+}
+
+/// The number of landmarks that a search begins with.
+#[pyfunction]
+pub(crate) fn first_landmarks(settings: &str) -> PyResult<usize> {
+    Ok(Settings::parse(settings)?.nystrom()?.first_samples())
 }
 
 #[pymethods]
 impl SampleSearch {
+    /// Embeds by the distances from the first landmarks, one column each.
     #[new]
-    fn new(settings: &str, limit: usize, seed: u64) -> PyResult<Self> {
-        let (options, goal) = Settings::parse(settings)?.nystrom()?;
-        Ok(Self {
-            search: nmds::SampleSearch::new(goal, options.first_samples(), limit, seed),
-            options,
-            goal,
+    fn new(
+        py: Python<'_>,
+        settings: &str,
+        columns: PyReadonlyArray2<'_, f64>,
+        landmarks: Vec<usize>,
+        limit: usize,
+        seed: u64,
+    ) -> PyResult<Self> {
+        let options = Settings::parse(settings)?.nystrom()?;
+        let columns = matrix_of(&columns);
+        run_alone(py, None, |_| {
+            let distances = LandmarkDistances::new(landmarks, columns)?;
+            let first = nmds::nystrom(&distances, &options)?;
+            Ok(Self { search: nmds::SampleSearch::new(&distances, first, limit, seed)?, options })
         })
     }
 
-    fn start(&self) -> Step {
-        step(self.search.start())
+    /// The points whose distances are needed to start.
+    fn rows(&self) -> Vec<usize> {
+        self.search.rows()
+    }
+
+    /// Takes the distances from the rows, one column each.
+    fn start(&mut self, py: Python<'_>, columns: PyReadonlyArray2<'_, f64>) -> PyResult<Option<usize>> {
+        let columns = matrix_of(&columns);
+        run_alone(py, None, |_| Ok(next(self.search.start(&columns)?)))
     }
 
     /// Embeds by the distances from landmarks, one column each.
@@ -109,27 +113,16 @@ impl SampleSearch {
         py: Python<'_>,
         columns: PyReadonlyArray2<'_, f64>,
         landmarks: Vec<usize>,
-    ) -> PyResult<Step> {
+    ) -> PyResult<Option<usize>> {
         let columns = matrix_of(&columns);
         run_alone(py, None, |_| {
             let distances = LandmarkDistances::new(landmarks, columns)?;
-            let candidates = self.embedded(&distances, self.goal != SampleGoal::Settled)?;
-            Ok(step(self.search.offer(&distances, candidates)?))
+            let embedding = nmds::nystrom(&distances, &self.options)?;
+            Ok(next(self.search.offer(&distances, embedding)?))
         })
     }
 
-    /// Takes the distances from rows, one column each.
-    fn supply(
-        &mut self,
-        py: Python<'_>,
-        rows: Vec<usize>,
-        columns: PyReadonlyArray2<'_, f64>,
-    ) -> PyResult<Step> {
-        let columns = matrix_of(&columns);
-        run_alone(py, None, |_| Ok(step(self.search.supply(&rows, &columns)?)))
-    }
-
-    /// The rank of the embedding found, for the last landmarks that were offered.
+    /// The best rank for the last landmarks that were offered; none if the regularisation has none to choose.
     fn rank(
         &mut self,
         py: Python<'_>,
@@ -138,13 +131,17 @@ impl SampleSearch {
     ) -> PyResult<Option<usize>> {
         let columns = matrix_of(&columns);
         run_alone(py, None, |_| {
-            if self.goal == SampleGoal::Settled {
-                let others = self.embedded(&LandmarkDistances::new(landmarks, columns)?, true)?;
-                self.search.compare(others)?;
-            }
+            let distances = LandmarkDistances::new(landmarks, columns)?;
+            let with = |rank| NystromOptions {
+                regularization: Regularization::LowRank { rank: Some(rank) },
+                ..self.options.clone()
+            };
+            let ranks = self.options.other_ranks(distances.n_landmarks()).into_iter();
+            let others =
+                ranks.map(|rank| nmds::nystrom(&distances, &with(rank))).collect::<Result<_, _>>()?;
+            self.search.compare(others)?;
             let is_free = matches!(self.options.regularization, Regularization::LowRank { .. });
-            let found = self.search.trials().last().map(|trial| trial.rank);
-            Ok(found.filter(|_| is_free))
+            Ok(self.search.trials().last().map(|trial| trial.rank).filter(|_| is_free))
         })
     }
 }
@@ -157,7 +154,7 @@ pub(crate) fn nystrom<'py>(
     landmarks: Vec<usize>,
     settings: &str,
 ) -> PyResult<Embedded<'py>> {
-    let (options, _) = Settings::parse(settings)?.nystrom()?;
+    let options = Settings::parse(settings)?.nystrom()?;
     let columns = matrix_of(&columns);
     let (embedding, extension) = run_alone(py, None, |_| {
         Ok(nystrom_extended(&LandmarkDistances::new(landmarks, columns)?, &options)?)

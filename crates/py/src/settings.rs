@@ -3,7 +3,7 @@
 use canonform::descriptors::SignatureKind;
 use canonform::geodesics::Method;
 use canonform::mesh::RepairOptions;
-use canonform::nmds::{NystromOptions, SampleGoal};
+use canonform::nmds::NystromOptions;
 use canonform::settings::{Named, NoEffect, OptionGroup, OptionSpec, SCHEMA};
 use canonform::{
     Budget, CorrespondOptions, DescribeOptions, EmbedMethod, FormOptions, ShapeLimits, StressOptions,
@@ -93,11 +93,10 @@ impl Settings {
         Ok(self.describe(repair)?.form)
     }
 
-    /// How NMDS inverts the matrix of the samples, and when there are enough of them.
-    pub(crate) fn nystrom(&self) -> PyResult<(NystromOptions, SampleGoal)> {
-        let FormOptions { method, dim, samples, .. } = self.form(RepairOptions::default())?;
-        let options = NystromOptions { regularization: method.regularization().unwrap_or_default(), dim };
-        Ok((options, samples.goal().unwrap_or_default()))
+    /// How NMDS inverts the matrix of the samples.
+    pub(crate) fn nystrom(&self) -> PyResult<NystromOptions> {
+        let FormOptions { method, dim, .. } = self.form(RepairOptions::default())?;
+        Ok(NystromOptions { regularization: method.regularization().unwrap_or_default(), dim })
     }
 
     /// How shapes are described.

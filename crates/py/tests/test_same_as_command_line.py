@@ -67,7 +67,6 @@ def test_paths(program: Program, meshes: list[Path], tmp_path: Path) -> None:
             {"n_landmarks": 40, "method": Nystrom(rank=9), "geodesic": "heat"},
         ),
         (["-n", "auto", "--seed", "2"], {"n_landmarks": "auto", "seed": 2}),
-        (["-n", "auto", "--target-stress", "0.2"], {"n_landmarks": "auto", "target_stress": 0.2}),
         (["-n", "30", "--method", "smacof", "--iterations", "5"], {"n_landmarks": 30, "method": Smacof(max_iterations=5)}),
         (["--method", "spectral", "-n", "30", "--mu", "inf"], {"method": Spectral(mu=float("inf")), "n_landmarks": 30}),
         (["--method", "kpca", "-n", "30", "--sigma", "median"], {"method": KernelPca(sigma="median"), "n_landmarks": 30}),

@@ -122,10 +122,9 @@ fn files_below(folder: &std::path::Path, extension: &str) -> Vec<std::path::Path
 }
 
 /// The names of options that are also words of commands or of reports.
-const WORDS: [&str; 20] = [
+const WORDS: [&str; 19] = [
     "method",
     "samples",
-    "target_stress",
     "dim",
     "geodesic",
     "update",

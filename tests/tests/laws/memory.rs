@@ -29,14 +29,14 @@ fn a_form_does_not_depend_on_memory() {
         for (samples, sampling) in [
             (Samples::Count(150), Sampling::Farthest),
             (Samples::Count(150), Sampling::Random),
-            (Samples::AUTO, Sampling::Farthest),
+            (Samples::Auto, Sampling::Farthest),
         ] {
             let options = FormOptions { method: method.clone(), samples, sampling, ..FormOptions::default() };
             let usual = embed_and_measure(&surface, &options, &stress, &()).unwrap();
             for threads in [1, 2] {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
                 // Enough for all but the distances.
-                let bytes = if samples == Samples::AUTO { 28_000_000 } else { 2_600_000 };
+                let bytes = if samples == Samples::Auto { 28_000_000 } else { 2_600_000 };
                 let lean = || {
                     let budget = Budget::unlimited().with_memory(bytes).with_spill(folder.path().to_owned());
                     embed_and_release(surface.clone(), &options, &stress, &budget).unwrap().0

@@ -33,9 +33,9 @@ fn an_embedding_does_not_depend_on_threads() {
     let mesh = body(Family::Centaur);
     for (method, samples, stress) in [
         (EmbedMethod::default(), Samples::Count(100), StressChoice::Exact),
-        (EmbedMethod::default(), Samples::AUTO, StressChoice::Estimate),
-        (EmbedMethod::Classical, Samples::AUTO, StressChoice::Exact),
-        (EmbedMethod::spectral(), Samples::AUTO, StressChoice::Estimate),
+        (EmbedMethod::default(), Samples::Auto, StressChoice::Estimate),
+        (EmbedMethod::Classical, Samples::Auto, StressChoice::Exact),
+        (EmbedMethod::spectral(), Samples::Auto, StressChoice::Estimate),
     ] {
         let options = FormOptions { method, samples, ..FormOptions::default() };
         let [one, two, five] = on_each_pool(|| facts(&measured(&mesh, &options, stress)));

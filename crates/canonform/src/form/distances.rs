@@ -8,12 +8,12 @@ use std::time::Instant;
 use base::{Budget, Exceeded};
 use geodesics::{DistanceSolver, FirstSample, PrunedSolver, Sampler, Sampling, Source};
 use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
-use nmds::{Embedding, NmdsError, SampleGoal, SampleSearch, SampleStep};
+use nmds::{Embedding, NmdsError, SampleSearch, SampleStep};
 use serde::{Deserialize, Serialize};
 use surface::VertexId;
 
 use super::plan::{Plan, check_memory};
-use super::samples_report::SamplesReport;
+use super::report::SamplesReport;
 use crate::error::Error;
 use base::Observer;
 
@@ -30,40 +30,15 @@ pub enum Samples {
     /// This many.
     Count(usize),
     /// As many as needed, at most 640: see [`SampleSearch`].
-    Auto {
-        /// The most [normalised stress](nmds::normalized_stress) that is wanted. By default, samples are enough when twice as
-        /// many reduced the [stress of the paper](nmds::paper_stress) by less than 1 %.
-        target_stress: Option<f64>,
-    },
+    Auto,
 }
 
 impl Samples {
-    /// As many as needed, without a target.
-    pub const AUTO: Self = Self::Auto { target_stress: None };
-
     /// The number, or `auto` if it is not fixed.
     pub(super) fn count_or(self, auto: usize) -> usize {
         match self {
             Self::Count(n) => n,
-            Self::Auto { .. } => auto,
-        }
-    }
-
-    /// The target of a search, if there is one.
-    pub fn target_stress(self) -> Option<f64> {
-        match self {
-            Self::Auto { target_stress } => target_stress,
-            Self::Count(_) => None,
-        }
-    }
-
-    /// When a search ends; `None` for a fixed number.
-    pub fn goal(self) -> Option<SampleGoal> {
-        match self {
-            Self::Count(_) => None,
-            Self::Auto { target_stress } => {
-                Some(target_stress.map_or(SampleGoal::Settled, SampleGoal::Stress))
-            }
+            Self::Auto => auto,
         }
     }
 }
@@ -78,7 +53,7 @@ impl fmt::Display for Samples {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Count(n) => n.fmt(f),
-            Self::Auto { .. } => f.write_str("auto"),
+            Self::Auto => f.write_str("auto"),
         }
     }
 }
@@ -88,31 +63,26 @@ impl FromStr for Samples {
 
     fn from_str(text: &str) -> Result<Self, String> {
         match text.parse() {
-            _ if text == "auto" => Ok(Self::AUTO),
+            _ if text == "auto" => Ok(Self::Auto),
             Ok(0) | Err(_) => Err(format!("`{text}` is neither a positive number nor `auto`")),
             Ok(n) => Ok(Self::Count(n)),
         }
     }
 }
 
-/// [`Samples`] as they are stored: `100`, `"auto"` or `{"target-stress":0.02}`.
+/// [`Samples`] as they are stored: `100` or `"auto"`.
 #[derive(Serialize, Deserialize)]
 #[serde(untagged)]
 enum Stored {
     Count(usize),
     Text(String),
-    Target {
-        #[serde(rename = "target-stress")]
-        target_stress: f64,
-    },
 }
 
 impl From<Samples> for Stored {
     fn from(samples: Samples) -> Self {
         match samples {
             Samples::Count(n) => Self::Count(n),
-            Samples::Auto { target_stress: None } => Self::Text(samples.to_string()),
-            Samples::Auto { target_stress: Some(target_stress) } => Self::Target { target_stress },
+            Samples::Auto => Self::Text(samples.to_string()),
         }
     }
 }
@@ -124,14 +94,13 @@ impl TryFrom<Stored> for Samples {
         match stored {
             Stored::Count(n) => n.to_string().parse(),
             Stored::Text(text) => text.parse(),
-            Stored::Target { target_stress } => Ok(Self::Auto { target_stress: Some(target_stress) }),
         }
     }
 }
 
 /// The memory of an embedding by distances from samples.
 pub(super) fn plan(n_vertices: usize, samples: Samples) -> Plan {
-    let held_out = samples.goal().map_or(0, |goal| SampleSearch::most_rows(goal, n_vertices));
+    let held_out = if samples == Samples::Auto { SampleSearch::ROWS } else { 0 };
     Plan::new(n_vertices, samples.count_or(AUTO_LAST)).with_held_out(held_out)
 }
 
@@ -185,10 +154,10 @@ impl Measurement<'_> {
             let store = plan(solver.n_vertices(), self.samples).store(&self.budget)?;
             self.timed(|_| sampler.move_to(store))?;
         }
-        if let Some(goal) = self.samples.goal() {
-            return self.enough(&mut sampler, goal, method);
-        }
-        let n = self.samples.count_or(DEFAULT_COUNT);
+        let n = match self.samples {
+            Samples::Count(n) => n,
+            Samples::Auto => return self.enough(&mut sampler, method),
+        };
         self.extend(&mut sampler, n)?;
         let distances = self.timed(|_| sampler.into_distances(n))?;
         self.budget.check()?;
@@ -201,44 +170,35 @@ impl Measurement<'_> {
     fn enough(
         &mut self,
         sampler: &mut Sampler,
-        goal: SampleGoal,
         method: &Sampled<'_>,
     ) -> Result<(Embedding, LandmarkDistances), Error> {
-        let limit = AUTO_LAST.min(self.solver.n_vertices());
-        let mut search = SampleSearch::new(goal, method.first_samples, limit, self.seed);
-        let (mut step, mut taken) = (search.start(), None);
-        let (stop, distances) = loop {
+        let p = self.solver.n_vertices();
+        let limit = AUTO_LAST.min(p);
+        let mut distances = self.take(sampler, method.first_samples.min(limit))?;
+        let first = (method.embed)(&distances, None)?;
+        let mut search = SampleSearch::new(&distances, first, limit, self.seed)?;
+        let rows: Vec<VertexId> = search.rows().into_iter().map(VertexId::from).collect();
+        check_memory(p, rows.len(), &self.budget)?;
+        let columns = self.timed(|m| m.solver.distance_columns(&rows))?;
+        let mut step = search.start(&columns)?;
+        let stop = loop {
             self.budget.check()?;
-            step = match (step, &taken) {
-                (SampleStep::Samples(n), _) => {
-                    let distances = taken.insert(self.take(sampler, n)?);
-                    let mut candidates = vec![(method.embed)(distances, None)?];
-                    if goal != SampleGoal::Settled {
-                        candidates.extend(method.others(distances)?);
-                    }
-                    search.offer(distances, candidates)?
+            match step {
+                SampleStep::Samples(n) => {
+                    distances = self.take(sampler, n)?;
+                    step = search.offer(&distances, (method.embed)(&distances, None)?)?;
                 }
-                (SampleStep::Rows(rows), _) => {
-                    check_memory(self.solver.n_vertices(), rows.len(), &self.budget)?;
-                    let sources: Vec<VertexId> = rows.iter().copied().map(VertexId::from).collect();
-                    let columns = self.timed(|m| m.solver.distance_columns(&sources))?;
-                    search.supply(&rows, &columns)?
-                }
-                (SampleStep::Done(stop), Some(distances)) => {
-                    if goal == SampleGoal::Settled {
-                        search.compare(method.others(distances)?)?;
-                    }
-                    let Some(distances) = taken.take() else { unreachable!("some were offered") };
-                    break (stop, distances);
-                }
-                (SampleStep::Done(_), None) => unreachable!("a search begins with samples"),
-            };
+                SampleStep::Done(stop) => break stop,
+            }
         };
-        self.search = Some(SamplesReport::new(&search, self.samples.target_stress(), stop));
-        match search.into_embedding() {
-            Some(embedding) => Ok((embedding, distances)),
-            None => unreachable!("an embedding was offered"),
-        }
+        search.compare(method.others(&distances)?)?;
+        self.search = Some(SamplesReport {
+            stop,
+            sufficient: search.sufficient(),
+            rows: rows.len(),
+            tried: search.trials().to_vec(),
+        });
+        Ok((search.into_embedding(), distances))
     }
 
     /// Takes samples until there are `n`, or as many as there are vertices.

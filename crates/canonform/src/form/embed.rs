@@ -10,7 +10,7 @@ use mesh::RepairReport;
 use nmds::{Embedding, OutOfSample};
 use surface::{IntrinsicMesh, VertexId};
 
-use super::distances::{KnownColumns, Measurement, plan};
+use super::distances::{KnownColumns, Measurement, Samples, plan};
 use super::method::Outcome;
 use super::options::FormOptions;
 use super::report::{EmbedReport, SecondsReport};
@@ -200,7 +200,7 @@ fn run(
 ) -> Result<Embedded, Error> {
     let start = Instant::now();
     let budget = observer.budget();
-    if !options.method.has_unit() && options.samples.goal().is_some() {
+    if !options.method.has_unit() && options.samples == Samples::Auto {
         return Err(Error::NoStress { method: options.method.name() });
     }
     if options.method.streams() {
@@ -248,11 +248,10 @@ fn run(
         }
     };
     drop(all);
-    let auto = search.map(|search| search.judged(stress_report.as_ref()));
     let [embedding_seconds, stress_seconds] = [elapsed - geodesics, start.elapsed().as_secs_f64()];
     let seconds = origin.seconds(geodesics, embedding_seconds, stress_seconds);
     let report = EmbedReport {
-        auto,
+        auto: search,
         descent: descent.map(Into::into),
         ..origin.facts(&options, &embedding, &distances)
     };

@@ -105,13 +105,9 @@ struct Provenance {
 
 impl DescribeOptions {
     /// # Errors
-    /// [`DescriptorError::NotThreeDimensional`]; [`Error::BadDescription`] names an option that is too small;
-    /// [`Error::TargetOfDescription`], since forms that are as coarse as a target allows differ for other reasons than shape.
+    /// [`DescriptorError::NotThreeDimensional`]; [`Error::BadDescription`] names an option that is too small.
     pub fn validate(&self) -> Result<(), Error> {
         self.form.validate()?;
-        if self.form.samples.target_stress().is_some() {
-            return Err(Error::TargetOfDescription);
-        }
         let samples = self.form.samples.count_or(usize::MAX);
         for (option, value, least) in [("samples", samples, 8), ("points", self.points, 4)] {
             if value < least {
@@ -178,9 +174,8 @@ mod tests {
         let of = |method| FormOptions { method, ..usual.clone() };
         let others = [
             FormOptions { geodesic: Method::Heat(HeatOptions { time: 0.3 }), ..usual.clone() },
-            FormOptions { samples: Samples::AUTO, ..usual.clone() },
-            FormOptions { samples: Samples::AUTO, seed: 5, ..usual.clone() },
-            FormOptions { samples: Samples::Auto { target_stress: Some(0.02) }, ..usual.clone() },
+            FormOptions { samples: Samples::Auto, ..usual.clone() },
+            FormOptions { samples: Samples::Auto, seed: 5, ..usual.clone() },
             FormOptions { first_sample: FirstSample::Vertex(VertexId(17)), ..usual.clone() },
             FormOptions { sampling: Sampling::Incremental(Variance::Least), seed: 3, ..usual.clone() },
             of(EmbedMethod::low_rank(30)),
@@ -206,22 +201,18 @@ mod tests {
         texts.sort();
         texts.dedup();
         // Three times the default: as a method, as a solver and as a sampling without a seed.
-        assert_eq!(texts.len(), 7 + 5 + 4 + 11 - 2);
+        assert_eq!(texts.len(), 6 + 5 + 4 + 10 - 2);
     }
 
     #[test]
-    fn samples_are_stored_as_numbers_words_and_targets() {
+    fn samples_are_stored_as_numbers_or_words() {
         let read = |text: &str| serde_json::from_str::<Samples>(text).ok();
-        for (samples, text) in [
-            (Samples::Count(20), "20"),
-            (Samples::AUTO, "\"auto\""),
-            (Samples::Auto { target_stress: Some(0.02) }, "{\"target-stress\":0.02}"),
-        ] {
+        for (samples, text) in [(Samples::Count(20), "20"), (Samples::Auto, "\"auto\"")] {
             assert_eq!(serde_json::to_string(&samples).unwrap(), text);
             assert_eq!(read(text), Some(samples));
         }
         assert_eq!(read("\"20\""), Some(Samples::Count(20)), "a number as text");
-        for text in ["0", "-3", "\"many\"", "{}", "null"] {
+        for text in ["0", "-3", "\"many\"", "{}", "{\"target-stress\":0.02}", "null"] {
             assert_eq!(read(text), None, "{text}");
         }
     }
@@ -230,9 +221,6 @@ mod tests {
     fn options_that_make_no_form_are_refused() {
         let of = |form| DescribeOptions { form, ..DescribeOptions::default() };
         let flat = of(FormOptions { dim: 2, ..FormOptions::default() });
-        let coarse =
-            of(FormOptions { samples: Samples::Auto { target_stress: Some(0.1) }, ..FormOptions::default() });
-        assert!(matches!(coarse.validate(), Err(Error::TargetOfDescription)));
         let fault = flat.validate().unwrap_err();
         assert!(matches!(fault, Error::Descriptor(DescriptorError::NotThreeDimensional { dim: 2 })));
         for (options, name) in [

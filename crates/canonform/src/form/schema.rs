@@ -25,8 +25,6 @@ pub enum OptionGroup {
     Marching,
     /// How meshes are repaired.
     Repair,
-    /// When the search for a number of samples ends.
-    Target,
     /// How the stress is found.
     Stress,
     /// What is kept of a form.
@@ -70,19 +68,10 @@ pub trait Named: Sized {
 }
 
 /// Every option. Commands list them in this order.
-pub static SCHEMA: [OptionSpec; 24] = [
+pub static SCHEMA: [OptionSpec; 23] = [
     named::<EmbedMethod>(OptionGroup::Method, "method", "nmds", "How to turn distances into coordinates"),
     parsed::<Samples>(OptionGroup::Form, "samples", "SAMPLES|auto", "100", "Number of samples, or `auto` to take as many as needed")
         .called("n_landmarks"),
-    parsed::<f64>(
-        OptionGroup::Target,
-        "target_stress",
-        "S",
-        "",
-        "Take samples until the normalised stress, estimated from held-out distances, is at most this; needs {samples} auto",
-    )
-    .checked(check_stress)
-    .of(|m| m.is_sampled() && m.has_unit() && !matches!(m, EmbedMethod::Smacof { .. })),
     parsed::<usize>(OptionGroup::Form, "dim", "K", "3", "Dimensions of the embedding").called("n_components"),
     named::<Method>(OptionGroup::Form, "geodesic", "fast-marching", "How to measure distances"),
     named::<Update>(OptionGroup::Marching, "update", "virtual-source", "Local solver").seldom(),
@@ -254,12 +243,6 @@ fn check_name<T: Named>(text: &str) -> Result<(), String> {
     T::named(text).map(drop).ok_or_else(|| format!("use {}", names().join(", ")))
 }
 
-/// Accepts a stress that an embedding can reach.
-fn check_stress(text: &str) -> Result<(), String> {
-    let target = text.parse().ok().filter(|target: &f64| *target > 0.0 && target.is_finite());
-    target.map(drop).ok_or_else(|| format!("`{text}` is not a stress; give a positive number, such as 0.05"))
-}
-
 impl OptionSpec {
     /// The same option, for some methods only.
     const fn of(self, applies: fn(&EmbedMethod) -> bool) -> Self {
@@ -274,11 +257,6 @@ impl OptionSpec {
     /// The same option, which few users need.
     const fn seldom(self) -> Self {
         Self { is_seldom: true, ..self }
-    }
-
-    /// The same option with another check of its values.
-    const fn checked(self, check: fn(&str) -> Result<(), String>) -> Self {
-        Self { check, ..self }
     }
 
     /// The option of this name.

@@ -9,7 +9,6 @@ use mesh::{Orient, RepairOptions};
 use nmds::Regularization;
 use surface::VertexId;
 
-use super::distances::Samples;
 use super::method::EmbedMethod;
 use super::options::{DescribeOptions, FormOptions};
 
@@ -163,7 +162,7 @@ impl Settings {
         Ok(FormOptions {
             repair: self.repair(),
             geodesic: self.distances(self.chosen("geodesic").unwrap_or_default()),
-            samples: self.samples()?,
+            samples: self.get("samples").unwrap_or_default(),
             sampling: self.chosen("sampling").unwrap_or_default(),
             first_sample: first_sample.unwrap_or(FirstSample::Farthest),
             method,
@@ -190,21 +189,6 @@ impl Settings {
     fn apply<T: FromStr>(&self, name: &str, value: &mut T) {
         if let Some(given) = self.get(name) {
             *value = given;
-        }
-    }
-
-    /// The number of samples with the target, if there is one.
-    fn samples(&self) -> Result<Samples, NoEffect> {
-        let samples = self.get("samples").unwrap_or_default();
-        match (self.get("target_stress"), samples) {
-            (None, samples) => Ok(samples),
-            (target_stress, Samples::Auto { .. }) => Ok(Samples::Auto { target_stress }),
-            (Some(_), Samples::Count(_)) => Err(NoEffect {
-                setting: "target_stress",
-                beside: "samples",
-                value: "N",
-                instead: vec!["auto"],
-            }),
         }
     }
 
@@ -245,6 +229,7 @@ impl Settings {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Samples;
 
     /// Names and values of settings.
     type Given<'a> = &'a [(&'a str, &'a str)];
@@ -308,8 +293,7 @@ mod tests {
     #[test]
     fn settings_reach_the_options_that_they_belong_to() {
         assert_eq!(Settings::default().describe().unwrap(), DescribeOptions::default());
-        let reached = of(&[("samples", "auto"), ("target_stress", "0.1")]).form().unwrap();
-        assert_eq!(reached.samples, Samples::Auto { target_stress: Some(0.1) });
+        assert_eq!(of(&[("samples", "auto")]).form().unwrap().samples, Samples::Auto);
         assert_eq!(of(&[("stress", "skip")]).chosen("stress"), Some(crate::StressChoice::Skip));
         let metric = of(&[("distance", "hausdorff95")]).chosen("distance");
         assert_ne!(metric, Some(descriptors::ShapeMetric::default().distance));
@@ -324,7 +308,6 @@ mod tests {
             ("weld", "-1", "distance in mesh units"),
             ("alpha", "ten", "neither a number nor `paper`"),
             ("sigma", "wide", "`mean`"),
-            ("target_stress", "0", "give a positive number"),
             ("samples", "0", "`auto`"),
             ("rank", "1.5", "invalid digit"),
             ("colour", "3", "no option colour"),
@@ -336,16 +319,11 @@ mod tests {
 
     #[test]
     fn settings_without_effect_are_refused_with_what_would_use_them() {
-        let cases: [(Given<'_>, [&str; 3]); 6] = [
+        let cases: [(Given<'_>, [&str; 3]); 4] = [
             (&[("mu", "5")], ["mu", "method", "spectral"]),
             (&[("alpha", "paper")], ["alpha", "regularization", "rpi"]),
             (&[("rank", "5"), ("regularization", "none")], ["rank", "regularization", "low-rank"]),
             (&[("first_sample", "1"), ("method", "mds")], ["first_sample", "method", "nmds"]),
-            (&[("target_stress", "0.1")], ["target_stress", "samples", "auto"]),
-            (
-                &[("target_stress", "0.1"), ("samples", "auto"), ("method", "mds")],
-                ["target_stress", "method", "nmds"],
-            ),
         ];
         for (given, [setting, beside, instead]) in cases {
             let fault = of(given).form().unwrap_err();

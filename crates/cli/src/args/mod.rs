@@ -145,17 +145,16 @@ Stress, with the distances d_ij between p vertices along the surface and the coo
   stress             ||Z Z' + 1/2 J E J||_F / p, with E_ij = d_ij^2 and J = I - 1/p: the paper's, in squared mesh units
   normalised stress  sqrt(sum (d_ij - |z_i - z_j|)^2 / sum d_ij^2): the relative error of the distances, without a unit
 
-Number of samples: with -n auto, until twice as many reduced the stress by less than 1 %; with --target-stress, until the
-normalised stress is within the target. The choice is made on distances from points that are no samples; the stress and its
-interval are then estimated from others, so the choice does not bias them. If the normalised stress settles above the
-target, the form is written and the exit code is 1.
+Number of samples: with -n auto, until twice as many reduced the stress by less than 1 %. The choice is made on distances
+from points that are no samples; the stress and its interval are then estimated from others, so the choice does not bias
+them.
 
 Several meshes: each form is written to FOLDER/NAME.EXT. A mesh that cannot be embedded is reported and does not
 stop the others; the exit code is then 2.
 
 Examples:
   canonform embed cat.off -o form.ply
-  canonform embed cat.off -n auto --target-stress 0.08 -o form.ply
+  canonform embed cat.off -n auto -o form.ply
   canonform embed cat.off dog.ply 'scans/*.obj' -o forms/ --output-format npy
   canonform embed cats.zip -o forms/
   canonform embed fine.off --extend coarse.off -o fine.ply

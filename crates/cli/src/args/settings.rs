@@ -34,7 +34,7 @@ groups! {
     OfDistances: Marching;
     OfForm: Form Marching;
     OfMaps: Form Marching Maps;
-    OfEmbedding: Method Form Marching Target Stress;
+    OfEmbedding: Method Form Marching Stress;
     OfComparison: Method Form Marching Comparison;
     OfDescription: Method Form Marching Description;
 }

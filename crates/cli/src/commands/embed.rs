@@ -10,8 +10,8 @@ use canonform::mesh::io::{extension, or_list};
 use canonform::nmds::SampleStop;
 use canonform::surface::VertexId;
 use canonform::{
-    Budget, EmbedMethod, EmbedReport, FormOptions, InputMap, InputPoint, SamplesReport, ShapeFile,
-    StressKind, StressOptions, StressReport, Surface, embed_and_measure, embed_and_release, embed_finer,
+    Budget, EmbedMethod, EmbedReport, FormOptions, InputMap, InputPoint, ShapeFile, StressKind,
+    StressOptions, StressReport, Surface, embed_and_measure, embed_and_release, embed_finer,
 };
 use serde::Serialize;
 
@@ -112,15 +112,8 @@ fn one(
     };
     drop(bars);
     warn(&mesh.display().to_string(), &report);
-    let reached = target_reached([&report]);
     let json = EmbedJson { report, points, features: args.features, output: output.name() };
-    let done = output.report(common, &json, |json| answer(json).text(common))?;
-    Ok(if reached { done } else { ExitCode::from(1) })
-}
-
-/// Whether no form has missed its target.
-fn target_reached<'a>(reports: impl IntoIterator<Item = &'a EmbedReport>) -> bool {
-    !reports.into_iter().any(|report| report.auto.as_ref().is_some_and(SamplesReport::is_missed))
+    output.report(common, &json, |json| answer(json).text(common))
 }
 
 /// The limits of an embedding, one of `n_at_once`. Distances that do not fit into memory are kept in a file beside the form.
@@ -209,8 +202,7 @@ fn batch(
         json.shapes.push(ShapeJson { name, label, path, result });
     }
     report(common, &json, |json| batch_table(json, &args.output))?;
-    let reached = target_reached(json.shapes.iter().map(|shape| &shape.result.report));
-    Ok(if json.failed.is_empty() && !reached { ExitCode::from(1) } else { exit_code(json.failed.is_empty()) })
+    Ok(exit_code(json.failed.is_empty()))
 }
 
 /// Refuses a form whose file cannot hold this many dimensions, before any work is done.
@@ -241,31 +233,8 @@ fn write(output: &Path, map: &InputMap, coords: &Matrix) -> Result<()> {
     Ok(canonform::mesh::io::write(output, &map.with_positions(position))?)
 }
 
-/// Warns about dimensions without a positive eigenvalue, and about a target that was missed.
+/// Warns about dimensions without a positive eigenvalue.
 fn warn(name: &str, report: &EmbedReport) {
-    if let Some((search, target)) =
-        report.auto.as_ref().and_then(|search| Some((search, search.target_stress?)))
-        && search.is_missed()
-    {
-        let found = report.stress.as_ref().map(|stress| (stress.normalized, "")).or_else(|| {
-            let last = search.tried.last()?;
-            Some((last.normalized, " as far as the search could tell"))
-        });
-        let (stress, how) = found.unwrap_or((f64::NAN, ""));
-        let why = match search.stop {
-            SampleStop::Target => {
-                "the search ended at its estimate of the stress, which was too low; take a lower target"
-            }
-            SampleStop::Settled => {
-                "more samples do not reduce it; --method smacof with a number of samples fits distances better"
-            }
-            SampleStop::AllPoints => "all vertices are samples",
-            SampleStop::Limit => "the search ended at the most samples it may take",
-        };
-        base::terminal::note(&format!(
-            "{name}: the normalised stress is {stress:.4}{how}, above the target {target}: {why}"
-        ));
-    }
     if report.empty_dimensions > 0 {
         base::terminal::note(&format!(
             "{name}: {} of {} dimensions have no positive eigenvalue and are zero; take more samples with -n",
@@ -305,11 +274,10 @@ fn normalized_or_none(report: &EmbedReport) -> String {
 fn samples_text(report: &EmbedReport) -> String {
     let numbers = format!("{}, {}", report.n_samples, report.rank);
     let Some(search) = &report.auto else { return numbers };
-    let why = match (search.stop, search.target_stress) {
-        (SampleStop::Target, Some(target)) => format!("to reach {target}"),
-        (SampleStop::Settled | SampleStop::Target, _) => format!("{} are within 1 %", search.sufficient),
-        (SampleStop::AllPoints, _) => "all vertices".to_owned(),
-        (SampleStop::Limit, _) => "the most that are taken".to_owned(),
+    let why = match search.stop {
+        SampleStop::Settled => format!("{} are within 1 %", search.sufficient),
+        SampleStop::AllPoints => "all vertices".to_owned(),
+        SampleStop::Limit => "the most that are taken".to_owned(),
     };
     format!("{numbers} ({why}; chosen on {} rows)", search.rows)
 }

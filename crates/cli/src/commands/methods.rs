@@ -53,7 +53,7 @@ fn announce(
     let one = start.elapsed().as_secs_f64();
     let samples = match options.samples {
         Samples::Count(n) => n.min(p),
-        Samples::Auto { .. } => p.min(MOST_AUTO),
+        Samples::Auto => p.min(MOST_AUTO),
     };
     let fits = p.saturating_mul(p).saturating_mul(size_of::<f64>()) <= DISTANCES_LIMIT;
     let runs = |options: &FormOptions| match options.method.is_sampled() {

@@ -387,7 +387,6 @@ class Surface(Constant):
         method: Embedding = "nmds",
         n_components: int = 3,
         geodesic: Geodesic = "fast-marching",
-        target_stress: float | None = None,
         stress: StressChoice = "auto",
         seed: int = 0,
         reuse: Form | None = None,
@@ -409,9 +408,6 @@ class Surface(Constant):
             Dimensions of the embedding.
         geodesic
             How distances are measured, as in `distances`.
-        target_stress
-            With n_landmarks="auto", take landmarks until the normalised stress, estimated from held-out distances, is at most this.
-            `report["auto"]` says whether that was reached.
         stress
             From which distances the stress is found: "exact" measures those between all pairs of vertices, "estimate" those of 100
             vertices to all others, "skip" none. "auto" is exact where the method measures all pairs anyway;

@@ -62,9 +62,6 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         Number of eigenvalues that "low-rank" keeps. By default half the landmarks, at least n_components + 4.
     alpha : float or "paper", default=None
         How strongly "rpi" damps small eigenvalues.
-    target_stress : float, default=None
-        With n_landmarks="auto": take landmarks until the normalised stress, the relative error of the distances, is at most this on
-        distances that the embedding does not know.
     random_state : int, RandomState or None, default=None
         For `sampling="random"`, and for the distances that n_landmarks="auto" looks at. Elsewhere in canonform a whole number, `seed`.
     warm_start : bool, default=False
@@ -117,7 +114,6 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         regularization: Regularization = "low-rank",
         rank: int | None = None,
         alpha: float | Literal["paper"] | None = None,
-        target_stress: float | None = None,
         random_state: Any = None,
         warm_start: bool = False,
     ) -> None:
@@ -129,7 +125,6 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         self.regularization = regularization
         self.rank = rank
         self.alpha = alpha
-        self.target_stress = target_stress
         self.random_state = random_state
         self.warm_start = warm_start
 
@@ -147,8 +142,6 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
             n_landmarks, rank = self._searched(X, taken)
         elif isinstance(self.n_landmarks, str) or not self.n_landmarks >= 1:
             raise ValueError(f"n_landmarks={self.n_landmarks!r} is not possible: give a positive number, or 'auto'")
-        elif self.target_stress is not None:
-            raise ValueError(f"target_stress has no effect with n_landmarks={self.n_landmarks}; leave it out, or use n_landmarks='auto'")
         else:
             n_landmarks = int(self.n_landmarks)
         landmarks, columns = taken.first(n_landmarks)
@@ -223,17 +216,15 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
     def _searched(self, X: Any, taken: _Landmarks) -> tuple[int, int | None]:
         """Takes landmarks until they are enough; their number, and the best rank for them."""
         seed = int(check_random_state(self.random_state).randint(2**31 - 1)) if self.random_state is not None else 0
-        settings = encoded(**self._settings(), n_landmarks="auto", target_stress=self.target_stress)
-        search = _canonform.SampleSearch(settings, min(_MOST_LANDMARKS, len(X)), seed)
-        landmarks, columns = taken.first(0)
-        step, numbers = search.start()
-        while step != "done":
-            if step == "samples":
-                landmarks, columns = taken.first(numbers[0])
-                step, numbers = search.offer(columns, landmarks.tolist())
-            else:
-                rows = np.stack([self._measure(X, i) for i in numbers], axis=1)
-                step, numbers = search.supply(numbers, np.asarray(rows, dtype=np.float64))
+        settings = encoded(**self._settings())
+        limit = min(_MOST_LANDMARKS, len(X))
+        landmarks, columns = taken.first(min(_canonform.first_landmarks(settings), limit))
+        search = _canonform.SampleSearch(settings, columns, landmarks.tolist(), limit, seed)
+        rows = np.stack([self._measure(X, i) for i in search.rows()], axis=1)
+        n = search.start(np.asarray(rows, dtype=np.float64))
+        while n is not None:
+            landmarks, columns = taken.first(n)
+            n = search.offer(columns, landmarks.tolist())
         return len(landmarks), search.rank(columns, landmarks.tolist())
 
     @property
