@@ -2,7 +2,7 @@
 
 use linalg::{LandmarkDistances, Matrix, symmetric_eigen, thin_qr};
 
-use crate::squares::{center_columns, check_extent};
+use crate::squares::{center_columns, check_extent, n_significant};
 use crate::{Embedding, NmdsError, NystromOptions, Regularization};
 
 /// The width `sigma` of the Gaussian kernel `exp(-d^2 / (2 sigma^2))`.
@@ -105,9 +105,13 @@ pub fn kernel_pca(distances: &LandmarkDistances, options: &KernelPcaOptions) -> 
     for (mut column, value) in columns.column_iter_mut().zip(&kept.values) {
         column /= value.sqrt();
     }
+    let squares =
+        kept.values.iter().zip(columns.column_iter()).map(|(value, column)| [*value, column.norm_squared()]);
+    let rank = n_significant(&kept.values, squares, block.nrows(), columns.nrows());
+    let mut columns = columns.resize_horizontally(rank, 0.0);
     center_columns(&mut columns);
     let (q, w) = thin_qr(&columns);
-    Embedding::from_factors(q, &(&w * w.transpose()), options.dim, 1.0, leading.len())
+    Embedding::from_factors(q, &(&w * w.transpose()), options.dim, 1.0, rank)
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use linalg::{LandmarkDistances, symmetric_eigen};
 
 use crate::embedding::negative_mass;
 use crate::passes::product;
-use crate::squares::{center_columns, check_dim, check_extent, symmetrized};
+use crate::squares::{center_columns, check_dim, check_extent, n_significant, symmetrized};
 use crate::{Embedding, NmdsError};
 
 /// Landmark MDS: embeds the n landmarks by classical scaling and places all points by their distances from them.
@@ -44,8 +44,13 @@ pub fn landmark_mds(distances: &LandmarkDistances, dim: usize) -> Result<Embeddi
     for (mut axis, value) in axes.column_iter_mut().zip(&kept.values) {
         axis /= value.sqrt();
     }
-    let coords = product(distances, unit, means.as_slice(), &axes.resize_horizontally(dim, 0.0))?;
-    let embedding = Embedding::along_principal_axes(coords, unit, positive.len())?;
+    let mut coords = product(distances, unit, means.as_slice(), &axes.resize_horizontally(dim, 0.0))?;
+    center_columns(&mut coords);
+    let squares =
+        kept.values.iter().zip(coords.column_iter()).map(|(value, column)| [*value, column.norm_squared()]);
+    let rank = n_significant(&kept.values, squares, n, distances.n_points());
+    coords.columns_mut(rank, dim - rank).fill(0.0);
+    let embedding = Embedding::along_principal_axes(coords, unit, rank)?;
     Ok(Embedding { negative_mass: negative_mass(&eigen.values), ..embedding })
 }
 

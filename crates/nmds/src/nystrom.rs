@@ -4,7 +4,7 @@ use linalg::{LandmarkDistances, Matrix, SymmetricEigen, symmetric_eigen};
 
 use crate::out_of_sample::OutOfSample;
 use crate::passes::{product, sq_means, triangle};
-use crate::squares::{check_dim, check_extent, symmetrized};
+use crate::squares::{check_dim, check_extent, rounding, symmetrized};
 use crate::{Embedding, NmdsError, Regularization, SampleSearch};
 
 /// Options of [`nystrom`].
@@ -80,8 +80,8 @@ impl NystromOptions {
 ///   rows, and needs `O(p k + n^2)` memory besides them; they may be in a file.
 /// * Exact for Euclidean distances in `R^d` if `n1 >= d + 2`.
 /// * Independent of the unit of length, except for [`RpiAlpha::Paper`](crate::RpiAlpha::Paper).
-/// * Drops eigenvalues of `S` below rounding error, even if the rank includes them, and negative eigenvalues of the
-///   result, whose share it reports. Never returns NaN.
+/// * Drops eigenvalues of `S` below rounding error, even if the rank includes them: with [`Regularization::LowRank`], that of
+///   coordinates of 32 bits. Drops negative eigenvalues of the result, whose share it reports. Never returns NaN.
 ///
 /// **Deviation**: "the n1 largest eigenvalues of S" are those of largest *magnitude*. `S` has one large positive
 /// eigenvalue, and the negative ones carry the geometry; in algebraic order the stress stays near four times the
@@ -120,13 +120,17 @@ pub fn nystrom_extended(
     distances: &LandmarkDistances,
     options: &NystromOptions,
 ) -> Result<(Embedding, OutOfSample), NmdsError> {
-    let rank = options.validate(distances.n_landmarks())?;
     let unit = check_extent(distances.max(), distances.n_points())?;
+    let rank = options.validate(distances.n_landmarks())?;
     let block = distances.sq_block() / (unit * unit);
     let inverse = options.regularization.pseudo_inverse(&block, unit, rank)?;
 
     let means = sq_means(distances, unit)?;
     let w = triangle(distances, unit, &means, inverse.basis.as_ref())?;
+    let (inverse, w) = match options.regularization {
+        Regularization::LowRank { .. } => inverse.without_rounding(w, distances.n_points()),
+        _ => (inverse, w),
+    };
     let core = symmetrized(inverse.core) * -0.5;
     let inner = symmetrized(&w * &core * w.transpose());
     let (axes, values) = principal_axes(&(core * w.transpose()), &inner, options.dim)?;
@@ -142,14 +146,14 @@ pub fn nystrom_extended(
 
 /// The axes `A` for which `X A = Q U`, and all eigenvalues, descending, for `X = Q W`, `inner = W C W' = U L U'` and
 /// `half = C W'`: from `U = inner U L⁻¹` follows `A = half U L⁻¹`, without `Q` and without an inverse of `W`, which may be
-/// singular. An axis whose eigenvalue is not above rounding error is zero.
+/// singular. An eigenvalue that is not above [rounding] is zero, and so is its axis.
 fn principal_axes(half: &Matrix, inner: &Matrix, dim: usize) -> Result<(Matrix, Vec<f64>), NmdsError> {
-    let SymmetricEigen { values, vectors } = symmetric_eigen(inner)?;
-    let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
-    let floor = values.len() as f64 * f64::EPSILON * largest;
+    let SymmetricEigen { mut values, vectors } = symmetric_eigen(inner)?;
+    let floor = rounding(&values, values.len());
     let mut axes = (half * vectors.columns(0, dim.min(values.len()))).resize_horizontally(dim, 0.0);
-    for (mut axis, value) in axes.column_iter_mut().zip(&values) {
-        axis *= if *value > floor { 1.0 / value } else { 0.0 };
+    for (mut axis, value) in axes.column_iter_mut().zip(&mut values) {
+        *value = if value.abs() > floor { *value } else { 0.0 };
+        axis *= if *value > 0.0 { 1.0 / *value } else { 0.0 };
     }
     Ok((axes, values))
 }

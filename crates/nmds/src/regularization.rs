@@ -3,6 +3,7 @@
 use linalg::{Matrix, SymmetricEigen, pseudo_inverse, symmetric_eigen};
 
 use crate::NmdsError;
+use crate::squares::n_significant;
 
 /// How the pseudo-inverse `S⁺` in the Nystrom approximation `Ê = R S⁺ R'` is regularised: small eigenvalues of `S` are
 /// mostly noise, and their reciprocals are large.
@@ -188,6 +189,20 @@ pub(crate) struct PseudoInverse {
 }
 
 impl PseudoInverse {
+    /// The pseudo-inverse without the eigenpairs that are [rounding](n_significant), and what is left of `w`, the triangular factor
+    /// of the centred `R T` for `p` points. At least one pair stays.
+    pub(crate) fn without_rounding(self, w: Matrix, p: usize) -> (Self, Matrix) {
+        let Some(basis) = &self.basis else { return (self, w) };
+        let inverses = self.core.diagonal();
+        let values: Vec<f64> = inverses.iter().map(|x| if *x == 0.0 { 0.0 } else { 1.0 / x }).collect();
+        let squares =
+            values.iter().zip(w.column_iter()).map(|(value, column)| [value * value, column.norm_squared()]);
+        let rank = n_significant(&values, squares, basis.nrows(), p).max(1);
+        let core = self.core.view((0, 0), (rank, rank)).into_owned();
+        let w = w.view((0, 0), (rank.min(w.nrows()), rank)).into_owned();
+        (Self { basis: Some(basis.columns(0, rank).into_owned()), core, rank }, w)
+    }
+
     /// `R T` for a matrix `R` with n columns.
     pub(crate) fn apply(&self, columns: Matrix) -> Matrix {
         match &self.basis {

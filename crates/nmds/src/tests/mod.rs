@@ -18,30 +18,32 @@ enum Law {
     Length,
     /// Does not depend on the order of the samples.
     Unordered,
+    /// Does not amplify errors of distances between flat points.
+    Stable,
 }
-use Law::{Classical, Exact, Length, Unordered};
+use Law::{Classical, Exact, Length, Stable, Unordered};
 
 type Method = (&'static str, fn(&Problem, usize) -> Result<Embedding, NmdsError>, &'static [Law]);
 
 const METHODS: [Method; 14] = [
-    ("classical", |p, k| classical(&p.all, k, &()), &[Exact, Classical, Length, Unordered]),
-    ("full", |p, k| classical_full(&p.all, k), &[Exact, Classical, Length, Unordered]),
-    ("SMACOF", smacof_from_classical, &[Exact, Length, Unordered]),
-    ("NMDS", |p, k| nmds(p, k, Regularization::LowRank { rank: None }), &[Exact, Length, Unordered]),
+    ("classical", |p, k| classical(&p.all, k, &()), &[Exact, Classical, Length, Unordered, Stable]),
+    ("full", |p, k| classical_full(&p.all, k), &[Exact, Classical, Length, Unordered, Stable]),
+    ("SMACOF", smacof_from_classical, &[Exact, Length, Unordered, Stable]),
+    ("NMDS", |p, k| nmds(p, k, Regularization::LowRank { rank: None }), &[Exact, Length, Unordered, Stable]),
     ("NMDS, all pairs", |p, k| nmds(p, k, Regularization::None), &[Exact, Classical, Length, Unordered]),
-    ("NMDS, RPI 1e-8", |p, k| nmds(p, k, rpi(1e-8)), &[Length, Unordered]),
-    ("NMDS, RPI 1e-10", |p, k| nmds(p, k, rpi(1e-10)), &[Length, Unordered]),
+    ("NMDS, RPI 1e-8", |p, k| nmds(p, k, rpi(1e-8)), &[Length, Unordered, Stable]),
+    ("NMDS, RPI 1e-10", |p, k| nmds(p, k, rpi(1e-10)), &[Length, Unordered, Stable]),
     ("NMDS, RPI 1e-30", |p, k| nmds(p, k, rpi(1e-30)), &[Classical, Length, Unordered]),
     ("NMDS, CUR", |p, k| nmds(p, k, Regularization::Cur { rank: None }), &[Exact, Length]),
     ("NMDS, full CUR", full_cur, &[Exact, Classical, Length, Unordered]),
-    ("landmark", |p, k| landmark_mds(&p.samples, k), &[Exact, Classical, Length, Unordered]),
+    ("landmark", |p, k| landmark_mds(&p.samples, k), &[Exact, Classical, Length, Unordered, Stable]),
     (
         "kernel PCA",
         |p, dim| kernel_pca(&p.samples, &KernelPcaOptions { dim, ..Default::default() }),
-        &[Unordered],
+        &[Unordered, Stable],
     ),
-    ("spectral", |p, k| with_weight(p, k, f64::INFINITY), &[Classical, Length, Unordered]),
-    ("spectral, mu 10", |p, k| with_weight(p, k, 10.0), &[Length, Unordered]),
+    ("spectral", |p, k| with_weight(p, k, f64::INFINITY), &[Classical, Length, Unordered, Stable]),
+    ("spectral, mu 10", |p, k| with_weight(p, k, 10.0), &[Length, Unordered, Stable]),
 ];
 
 fn nmds(problem: &Problem, dim: usize, regularization: Regularization) -> Result<Embedding, NmdsError> {
@@ -239,6 +241,61 @@ fn points_on_a_line_have_empty_dimensions_and_finite_coordinates() {
         if laws.contains(&Exact) {
             assert!(embedding.coords.columns(1, 2).amax() < 1e-6, "{name}");
             assert!((embedding.coords.column(0).max() - 14.5).abs() < 1e-9, "{name}");
+        }
+    }
+}
+
+/// Points of a flat shape as those of a mesh: the first ones, far from each other, are samples.
+fn flat_points() -> [(&'static str, Vec<[f64; 2]>); 4] {
+    let grid = |n: usize, m: usize, size: [f64; 2]| -> Vec<[f64; 2]> {
+        let at = |i: usize, n: usize| i as f64 / (n - 1) as f64;
+        let all: Vec<[f64; 2]> =
+            (0..n * m).map(|k| [size[0] * at(k / m, n), size[1] * at(k % m, m)]).collect();
+        let corner = |k: usize| (k * 37) % (n * m);
+        (0..n * m).map(|k| all[corner(k)]).collect()
+    };
+    let disc =
+        grid(15, 15, [1.0, 1.0]).into_iter().filter(|[x, y]| (x - 0.5).hypot(y - 0.5) <= 0.5).collect();
+    [
+        ("square", grid(12, 12, [1.0, 1.0])),
+        ("plate", grid(18, 11, [2.0, 1.0])),
+        ("strip", grid(50, 2, [1.0, 1e-6])),
+        ("disc", disc),
+    ]
+}
+
+#[test]
+fn errors_of_distances_between_flat_points_are_not_amplified() {
+    for (shape, points) in flat_points() {
+        let p = points.len();
+        let exact = |i: usize, j: usize| {
+            let ([a, b], [c, d]) = (points[i], points[j]);
+            (a - c).hypot(b - d)
+        };
+        // Alike between all points, or smaller between samples, which are far from each other.
+        for (size, among_samples) in [(1e-13, 1.0), (1e-10, 1.0), (1e-7, 1.0), (1e-9, 1e-4), (1e-7, 1e-4)] {
+            let noisy = |i: usize, j: usize| {
+                let (i, j) = (i.min(j), i.max(j));
+                let error = ((1 + i) as f64 * 12.9898 + (1 + j) as f64 * 78.233).sin() * 43758.5453;
+                let share = if j < 30 { among_samples } else { 1.0 };
+                exact(i, j) * (1.0 + size * share * (2.0 * (error - error.floor()) - 1.0))
+            };
+            let [base, changed] = [Problem::new(p, 30, &exact), Problem::new(p, 30, &noisy)];
+            let lengths = Matrix::from_row_slice(p, p, base.all.as_slice());
+            for (name, embed, laws) in METHODS.into_iter().filter(|(_, _, laws)| laws.contains(&Stable)) {
+                let found = embed(&changed, 3).unwrap();
+                let other = embed(&base, 3).unwrap();
+                let expected = match laws.contains(&Exact) {
+                    true => lengths.clone(),
+                    false => embedded(&other, &range(p)),
+                };
+                let gap = gap(&embedded(&found, &range(p)), &expected);
+                // A height of the root of the error is within it.
+                assert!(
+                    gap < 3e-3,
+                    "{name}, {shape} with errors of {size:e}, {among_samples:e} of it at samples: {gap:e}"
+                );
+            }
         }
     }
 }

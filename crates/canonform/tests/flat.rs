@@ -1,0 +1,178 @@
+//! Flat surfaces: rounding of coordinates changes neither forms nor descriptions.
+
+use canonform::descriptors::{ShapeMetric, ShapePair, SignatureKind};
+use canonform::mesh::{TriMesh, shapes};
+use canonform::surface::VertexId;
+use canonform::{
+    DescribeOptions, EmbedMethod, FormOptions, Samples, StressChoice, StressOptions, Surface, describe,
+    embed_and_measure,
+};
+use nalgebra::{Point3, Rotation3, Vector3};
+
+/// Numbers in 0..1.
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((mixed ^ (mixed >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.next()
+    }
+}
+
+fn moved(mesh: &TriMesh, motion: impl Fn(&Point3<f64>) -> Point3<f64>) -> TriMesh {
+    TriMesh { positions: mesh.positions.iter().map(motion).collect(), faces: mesh.faces.clone() }
+}
+
+/// A sheet of n x m squares, each cut along either diagonal.
+fn sheet(n: usize, m: usize, size: [f64; 2], alternates: bool) -> TriMesh {
+    let at = |i: usize, j: usize| VertexId::from(i * (m + 1) + j);
+    let step = [size[0] / n as f64, size[1] / m as f64];
+    let vertices = (0..=n).flat_map(|i| (0..=m).map(move |j| (i, j)));
+    let positions = vertices.map(|(i, j)| Point3::new(step[0] * i as f64, step[1] * j as f64, 0.0)).collect();
+    let squares = (0..n).flat_map(|i| (0..m).map(move |j| (i, j)));
+    let faces = squares.flat_map(|(i, j)| {
+        let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+        if alternates && (i + j) % 2 == 1 { [[a, b, d], [b, c, d]] } else { [[a, b, c], [a, c, d]] }
+    });
+    TriMesh { positions, faces: faces.collect() }
+}
+
+fn disc(n_rings: usize, n_around: usize) -> TriMesh {
+    let at = |ring: usize, k: usize| VertexId::from(1 + (ring - 1) * n_around + k % n_around);
+    let mut mesh = TriMesh { positions: vec![Point3::origin()], faces: Vec::new() };
+    for ring in 1..=n_rings {
+        for k in 0..n_around {
+            let (sine, cosine) = (std::f64::consts::TAU * k as f64 / n_around as f64).sin_cos();
+            mesh.positions.push(Point3::new(cosine, sine, 0.0) * (ring as f64 / n_rings as f64));
+            match ring {
+                1 => mesh.faces.push([VertexId(0), at(1, k), at(1, k + 1)]),
+                _ => mesh.faces.extend([
+                    [at(ring - 1, k), at(ring, k), at(ring, k + 1)],
+                    [at(ring - 1, k), at(ring, k + 1), at(ring - 1, k + 1)],
+                ]),
+            }
+        }
+    }
+    mesh
+}
+
+/// Surfaces that are flat up to bending, and mats and rods that nearly are.
+fn flat(numbers: &mut Numbers) -> Vec<(String, TriMesh)> {
+    let mut found = Vec::new();
+    for i in 0..12 {
+        let [n, m] = [0; 2].map(|_| numbers.between(8.0, 40.0) as usize);
+        let height = [10.0, 10.0, 5.0, 20.0][i % 4];
+        let plate = sheet(n, m, [10.0, height], i % 3 == 1);
+        found.push((format!("plate {n} x {m}, {height} high"), plate));
+    }
+    found.push(("square".into(), sheet(20, 20, [10.0, 10.0], false)));
+    found.push(("strip".into(), sheet(60, 2, [10.0, 0.3], false)));
+    found.push(("disc".into(), disc(12, 36)));
+    found.push(("bent plate".into(), shapes::fold(&shapes::grid(21, 17, 0.1), 0.8, 1.2)));
+    for period in [2.5, 8.0] {
+        let wave = |x: f64| (std::f64::consts::TAU * x / period).sin();
+        let mat = moved(&sheet(40, 40, [40.0, 40.0], false), |p| {
+            Point3::new(p.x, p.y, 0.3 * wave(p.x) * wave(p.y))
+        });
+        found.push((format!("mat of period {period}"), mat));
+    }
+    for (n_around, radius) in [(6, 0.02), (12, 0.1), (8, 0.005)] {
+        found.push((format!("rod of radius {radius}"), shapes::cylinder(n_around, 40, radius, 10.0)));
+    }
+    found
+}
+
+/// The surface elsewhere, as a file of 32 bits has it.
+fn rounded(mesh: &TriMesh, numbers: &mut Numbers) -> TriMesh {
+    let turn = Rotation3::from_euler_angles(numbers.next() * 6.0, numbers.next() * 3.0, numbers.next() * 6.0);
+    let scale = [1.0, 25.4, 0.001][(3.0 * numbers.next()) as usize];
+    let far = [0.0, 10.0, 100.0][(3.0 * numbers.next()) as usize];
+    let shift = Vector3::from_fn(|_, _| numbers.between(-far, far)) * scale;
+    moved(mesh, |p| (turn * (p * scale) + shift).map(|x| f64::from(x as f32)))
+}
+
+/// The surface with errors of 1e-7 of its size.
+fn noisy(mesh: &TriMesh, numbers: &mut Numbers) -> TriMesh {
+    let size = 1e-7 * mesh.positions.iter().fold(0.0f64, |size, p| size.max(p.coords.norm()));
+    let mut changed = mesh.clone();
+    changed
+        .positions
+        .iter_mut()
+        .flat_map(|p| p.iter_mut())
+        .for_each(|x| *x += size * numbers.between(-1.0, 1.0));
+    changed
+}
+
+#[test]
+fn rounding_and_noise_change_no_description_of_a_flat_surface() {
+    let mut numbers = Numbers(7);
+    let mut largest = 0.0f64;
+    for (name, mesh) in flat(&mut numbers) {
+        let described = |mesh: &TriMesh| {
+            let surface = Surface::new(mesh, &Default::default(), &()).unwrap();
+            describe(&surface, &DescribeOptions::default(), &()).unwrap()
+        };
+        let base = described(&mesh);
+        let copies = [("rounded", rounded(&mesh, &mut numbers)), ("noisy", noisy(&mesh, &mut numbers))];
+        for (change, copy) in copies {
+            let copy = described(&copy);
+            let shapes = [base.prepare().unwrap(), copy.prepare().unwrap()];
+            let distance = ShapePair::new(ShapeMetric::default(), [&shapes[0], &shapes[1]]).distance();
+            let kind = SignatureKind::FormSpectrum;
+            let [a, b] = [&base, &copy].map(|described| described.signature(kind).unwrap());
+            let spectrum = a.distance(b) / ShapeMetric::unit(kind);
+            println!("{name}, {change}: {:.3}, spectrum of the form {spectrum:.3}", distance.combined);
+            largest = largest.max(distance.combined);
+        }
+    }
+    assert!(largest < 0.3, "{largest}");
+}
+
+#[test]
+fn every_method_embeds_every_flat_surface_that_was_rounded() {
+    let mut numbers = Numbers(11);
+    let mut meshes = vec![
+        ("strip 1e-6".to_owned(), sheet(20, 1, [1.0, 1e-6], false)),
+        ("strips 1e-6".to_owned(), sheet(20, 3, [1.0, 1e-6], false)),
+    ];
+    for n in [12, 20] {
+        let mut plate = sheet(n, n, [100.0, 100.0], false);
+        for p in plate.positions.iter_mut().filter(|p| [p.x, p.y].iter().all(|x| *x > 0.0 && *x < 100.0)) {
+            *p += Vector3::new(numbers.next() - 0.5, numbers.next() - 0.5, 0.0) * (50.0 / n as f64);
+        }
+        meshes.push((format!("irregular plate {n}"), rounded(&plate, &mut numbers)));
+    }
+    let regular = [("plate", sheet(20, 14, [10.0, 7.0], true)), ("disc", disc(8, 24))];
+    for (name, mesh) in regular {
+        meshes.push((name.to_owned(), rounded(&mesh, &mut numbers)));
+        meshes.push((format!("noisy {name}"), noisy(&mesh, &mut numbers)));
+    }
+    for (name, mesh) in meshes {
+        let surface = Surface::new(&mesh, &Default::default(), &()).unwrap();
+        for method in EmbedMethod::all().into_iter().filter(EmbedMethod::has_unit) {
+            for n in [10, 30] {
+                // The straight lines of a disc in polar coordinates are not those of its mesh.
+                let geodesic = canonform::geodesics::Method::Exact;
+                let options = FormOptions {
+                    method: method.clone(),
+                    samples: Samples::Count(n),
+                    geodesic,
+                    ..FormOptions::default()
+                };
+                let stress = StressOptions { choice: StressChoice::Exact, ..StressOptions::default() };
+                let found = embed_and_measure(&surface, &options, &stress, &()).unwrap().report;
+                let error = found.stress.unwrap().normalized;
+                println!("{} of {name} from {n} samples: {error:.1e}", found.method);
+                // Spectral scaling is exact nowhere, and poor with few samples.
+                let limit = if found.method == "spectral" { 0.5 } else { 1e-3 };
+                assert!(error < limit, "{} of {name} from {n} samples: {error:e}", found.method);
+            }
+        }
+    }
+}
