@@ -59,9 +59,9 @@ pub(super) fn components<'a>(
 }
 
 impl ShapeSearch {
-    /// How a query and a shape are related, once their files and meshes are known, too. The file of the shape is read again if it is
-    /// unchanged; otherwise the relation is [by descriptions](crate::Basis::Descriptions). Files of shapes that are certainly
-    /// different are read only if one of the two has several components, and may be part of the other.
+    /// How a query and a shape are related, once their files and meshes are known, too: as [`compare_meshes`](crate::compare_meshes)
+    /// says. The file of the shape is read again if it is unchanged; otherwise the relation is
+    /// [by descriptions](crate::Basis::Descriptions).
     pub(super) fn related(
         &self,
         query: &KnownQuery<'_>,
@@ -70,14 +70,8 @@ impl ShapeSearch {
     ) -> Result<Relation, Error> {
         let entry = self.index().entry(id)?;
         let known = by_distance.by_files([query.content, Some(entry.content)]);
-        let is_far = known.because.distance.is_different();
-        let several = |geometry: &MeshGeometry| {
-            geometry.n_components() > 1 || entry.fact(COMPONENTS).is_some_and(|n| n > 1.0)
-        };
-        let wanted = |geometry: &&MeshGeometry| {
-            known.kind != RelationKind::IdenticalFile && (!is_far || several(geometry))
-        };
-        let pair = query.geometry.filter(wanted).and_then(|a| Some((a, self.geometry(id, &entry)?)));
+        let wanted = query.geometry.filter(|_| known.kind != RelationKind::IdenticalFile);
+        let pair = wanted.and_then(|a| Some((a, self.geometry(id, &entry)?)));
         Ok(match &pair {
             Some((a, b)) => known.by_meshes([a, b]),
             None => known,

@@ -1,0 +1,64 @@
+//! A search says of every result what a comparison of the two meshes says.
+
+use canonform::mesh::{TriMesh, shapes};
+use canonform::{
+    BuildOptions, ComparedMesh, DescribeOptions, Explain, FormOptions, Query, SearchOptions, ShapeSearch,
+    Surface, build_index, compare_meshes,
+};
+use nalgebra::Vector3;
+
+fn moved(mesh: &TriMesh, motion: impl Fn(nalgebra::Point3<f64>) -> nalgebra::Point3<f64>) -> TriMesh {
+    TriMesh { positions: mesh.positions.iter().map(|p| motion(*p)).collect(), faces: mesh.faces.clone() }
+}
+
+#[test]
+fn relations_of_a_search_are_those_of_a_comparison() {
+    let folder = tempfile::tempdir().unwrap();
+    let (plate, ring) = (shapes::grid(21, 17, 0.5), shapes::torus(24, 12, 2.0, 0.6));
+    let wave = |x: f64| (1.3 * x).sin();
+    let mat = moved(&plate, |p| nalgebra::Point3::new(p.x, p.y, 0.2 * wave(p.x) * wave(p.y)));
+    let far = Vector3::new(1234.567, 1234.567, 1234.567);
+    // Its triangles are those of the ring, which it is far from by descriptions.
+    let mut arc = ring.clone();
+    arc.faces.truncate(ring.faces.len() / 3);
+    let meshes = [
+        ("plate", plate.clone()),
+        ("plate-rounded", moved(&plate, |p| (p + far).map(|x| f64::from(x as f32)))),
+        ("mat", mat.clone()),
+        ("mat-moved", moved(&mat, |p| (p + far).map(|x| f64::from(x as f32)))),
+        ("ring", ring.clone()),
+        ("arc", arc),
+        ("ring-large", moved(&ring, |p| p * 25.4)),
+        ("ball", shapes::icosphere(3)),
+        ("both", shapes::disjoint(&[moved(&ring, |p| p + far), shapes::icosphere(3)])),
+    ];
+    for (name, mesh) in &meshes {
+        canonform::mesh::io::write(&folder.path().join(format!("{name}.off")), mesh).unwrap();
+    }
+    let path = folder.path().join("all.canonform");
+    build_index(folder.path(), &path, &BuildOptions::new(&DescribeOptions::default()), &()).unwrap();
+    let search = ShapeSearch::open(&path).unwrap();
+    let compared = |mesh: &TriMesh| {
+        let surface = Surface::new(mesh, &Default::default(), &()).unwrap();
+        ComparedMesh::new(mesh, None, surface, &FormOptions::default(), &()).unwrap()
+    };
+    let sides: Vec<_> = meshes.iter().map(|(name, _)| compared(&search.mesh(name).unwrap())).collect();
+    let options = SearchOptions { k: meshes.len(), explain: Explain::Kind, ..SearchOptions::default() };
+    let mut n_pairs = 0;
+    for (query, a) in meshes.iter().zip(&sides) {
+        let mesh = search.mesh(query.0).unwrap();
+        for found in search.search(Query::from(&mesh), &options, &()).unwrap().results {
+            let b = meshes.iter().position(|(name, _)| *name == found.id).unwrap();
+            let expected =
+                compare_meshes(Default::default(), [a.compared(), sides[b].compared()]).unwrap().relation;
+            let pair = format!("{} and {}: {}, {expected}", query.0, found.id, found.relation);
+            assert_eq!(
+                (found.relation.kind, &found.relation.changes),
+                (expected.kind, &expected.changes),
+                "{pair}"
+            );
+            n_pairs += 1;
+        }
+    }
+    assert_eq!(n_pairs, meshes.len() * meshes.len());
+}
