@@ -12,6 +12,13 @@ use crate::{Refined, cut_shortcuts, fill_holes, refine, without_noise};
 /// median, and by 0.14 with 0.03, which costs 1.6 times as much; other shapes are several units apart.
 const LONGEST: f64 = 0.04;
 
+/// The same for meshes of fewer vertices than [`FEW`], which splitting edges in halves would otherwise refine to 2,000 vertices: a
+/// square with its diagonals has edges of both lengths.
+const LONGEST_OF_FEW: f64 = LONGEST * std::f64::consts::SQRT_2;
+
+/// Meshes of fewer vertices are blocks rather than bodies.
+const FEW: usize = 100;
+
 /// Longest boundary of a hole that is closed, relative to the square root of the area. A round hole of this length has 8 %
 /// of the area; those of scans have jagged boundaries, or reach around limbs. The rim of a cup is longer.
 const LONGEST_HOLE: f64 = 1.0;
@@ -63,7 +70,8 @@ impl Surface {
             return Ok(self.clone());
         }
         let filled = fill_holes(mesh, longest_hole * size);
-        let fine = refine(&filled.mesh, LONGEST * size, mesh.n_vertices() + MOST);
+        let longest = if mesh.n_vertices() < FEW { LONGEST_OF_FEW } else { LONGEST };
+        let fine = refine(&filled.mesh, longest * size, mesh.n_vertices() + MOST);
         let Refined { mesh, origins } = opened.refined.then(filled).then(fine);
         Ok(match smooth.is_some() || !origins.is_empty() {
             true => self.with_mesh(mesh, &origins, opened.shortcuts),
