@@ -135,7 +135,8 @@ pub enum Error {
     },
     /// A surface that an embedding is not of.
     #[error(
-        "the embedding has {n_points} points and the surface {n_vertices} vertices; they do not belong together"
+        "the embedding is of another surface: it has {n_points} points and this surface {n_vertices} vertices, or distances \
+         between them differ"
     )]
     OtherSurface {
         /// Vertices of the surface after its repair.
@@ -226,7 +227,6 @@ pub enum Error {
 
 /// What a user can do about an [`Error`]. A program words it in terms of its own interface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Remedy {
     /// Keep the largest component of the mesh, or bridge its components.
     KeepLargestOrBridge,

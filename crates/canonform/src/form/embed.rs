@@ -106,7 +106,8 @@ pub fn embed_and_measure(
 /// ```
 ///
 /// # Errors
-/// [`Error::OtherSurface`] if the earlier embedding has another number of vertices, and as [`embed`].
+/// [`Error::OtherSurface`] if the earlier embedding has another number of vertices, or other distances between them, and as
+/// [`embed`].
 pub fn embed_again(
     surface: &Surface,
     earlier: &Embedded,
@@ -159,6 +160,25 @@ pub fn embed_and_release(
     let embedded = run(Cow::Owned(intrinsic), &origin, options, first, None, stress, observer)?;
     drop(origin);
     Ok((embedded, map))
+}
+
+/// Distances on one surface differ by less than this share of the largest: what compilers and processors change.
+const SAME_DISTANCES: f64 = 1e-9;
+
+/// Refuses distances that were measured on another surface, by those from the first landmark.
+///
+/// # Errors
+/// [`Error::OtherSurface`].
+fn check_distances(solver: &dyn DistanceSolver, known: &LandmarkDistances) -> Result<(), Error> {
+    let Some(&first) = known.landmarks().first() else { return Ok(()) };
+    let (n_vertices, n_points) = (solver.n_vertices(), known.n_points());
+    let mut column = solver.budget().vector(n_vertices)?;
+    solver.distances_into(VertexId::from(first), &mut column)?;
+    let (known, most) = (known.column(0)?, SAME_DISTANCES * known.max());
+    match column.iter().zip(known.iter()).all(|(a, b)| (a - b).abs() <= most) {
+        true => Ok(()),
+        false => Err(Error::OtherSurface { n_vertices, n_points }),
+    }
 }
 
 /// The first sample, as a vertex of the repaired mesh.
@@ -214,6 +234,9 @@ fn run(
         }
         surface => (options.geodesic.prepare(&surface, observer)?, Some(surface)),
     };
+    if let Some(known) = known {
+        check_distances(solver.as_ref(), known)?;
+    }
     let solver = Observed { solver: solver.as_ref(), observer };
     let reused = known.map(|known| KnownColumns { solver: &solver, known });
     let mut measurement = Measurement {

@@ -262,8 +262,12 @@ mod tests {
             assert_eq!(more.report.stress, all.report.stress);
         }
         let few = embed(&surface, &FormOptions::default(), &()).unwrap();
-        let fault = embed_again(&other, &few, &FormOptions::default(), &stress, &()).unwrap_err();
-        assert!(matches!(fault, Error::OtherSurface { .. }));
+        let mut bent = lopsided_torus();
+        bent.positions[7] += nalgebra::Vector3::repeat(0.05);
+        for other in [other, self::surface(&bent)] {
+            let fault = embed_again(&other, &few, &FormOptions::default(), &stress, &()).unwrap_err();
+            assert!(matches!(fault, Error::OtherSurface { .. }));
+        }
     }
 
     #[test]
