@@ -32,7 +32,6 @@ fn words(remedy: Remedy) -> &'static str {
         Remedy::BuildFieldAgain => "build it again with `canonform field build`",
         Remedy::ListShapes => "`canonform index list` names its shapes",
         Remedy::EvaluateShard => "evaluate one shard at a time",
-        _ => "see `canonform --help`",
     }
 }
 

@@ -75,7 +75,13 @@ impl Exception {
                 Self::Point
             }
             Error::Field(_) => Self::File,
-            Error::BadDescription { .. } | Error::NoSuchShard { .. } | Error::UnusableMap(_) => Self::Option,
+            Error::BadDescription { .. }
+            | Error::NoSuchShard { .. }
+            | Error::UnusableMap(_)
+            | Error::NoStress { .. }
+            | Error::NoExtension { .. }
+            | Error::OtherSurface { .. }
+            | Error::NotThere { .. } => Self::Option,
             Error::Descriptor(DescriptorError::UnknownSignature { .. }) => Self::Option,
             Error::Index(IndexError::NoSuchShape { .. }) => Self::NoSuchShape,
             Error::Index(IndexError::Io { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => {
@@ -113,6 +119,7 @@ fn words(remedy: Remedy) -> &'static str {
         Remedy::UseThreeDimensions => "leave out n_components=",
         Remedy::UseFastMarching => "use geodesic=\"fast-marching\"",
         Remedy::UseNystrom => "use method=\"nmds\", which needs only a few columns",
+        Remedy::GiveSamples => "give a number of landmarks, such as n_landmarks=100",
         Remedy::RaiseMemory => "raise memory=",
         Remedy::RaiseTimeLimit => "raise timeout=",
         Remedy::RaiseMaxDistance => "choose another target, or raise max_distance=",
@@ -126,7 +133,6 @@ fn words(remedy: Remedy) -> &'static str {
         Remedy::BuildFieldAgain => "build it again with Surface.distance_field",
         Remedy::ListShapes => "Index.shapes() names its shapes",
         Remedy::EvaluateShard => "evaluate one shard at a time",
-        _ => "see the documentation",
     }
 }
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 
+import canonform
 import numpy as np
 import pytest
 
@@ -133,6 +134,9 @@ def test_fewer_landmarks_are_taken_if_points_repeat() -> None:
     ("parameters", "words"),
     [
         ({"n_landmarks": 0}, "n_landmarks=0"),
+        ({"n_landmarks": 2.5}, "n_landmarks=2.5 is not possible: give a whole number"),
+        ({"n_landmarks": True}, "n_landmarks=True"),
+        ({"n_components": True}, "n_components=true"),
         ({"n_landmarks": "many"}, "or 'auto'"),
         ({"sampling": "best"}, "'farthest' or 'random'"),
         ({"regularization": "magic"}, 'use "low-rank"'),
@@ -144,9 +148,25 @@ def test_fewer_landmarks_are_taken_if_points_repeat() -> None:
     ],
 )
 def test_errors_say_what_to_do(parameters: dict, words: str) -> None:
-    with pytest.raises(ValueError) as raised:
+    with pytest.raises(canonform.CanonformError) as raised:
         NystromMDS(**parameters).fit(points(50, 4))
-    assert words in str(raised.value), str(raised.value)
+    assert isinstance(raised.value, ValueError) and words in str(raised.value), str(raised.value)
+
+
+@pytest.mark.parametrize("n_landmarks", [100, "auto"])
+@pytest.mark.parametrize(
+    ("X", "words"),
+    [
+        (np.ones((50, 4)), "50 points coincide"),
+        (np.ma.masked_greater(points(50, 4), 0.5), "masked"),
+        (np.full((50, 4), np.nan), "NaN"),
+        (np.ones((1, 4)), "minimum of 2"),
+    ],
+)
+def test_points_without_a_shape_are_refused(X: np.ndarray, words: str, n_landmarks: int | str) -> None:
+    with pytest.raises(canonform.CanonformError) as raised:
+        NystromMDS(n_landmarks=n_landmarks).fit(X)
+    assert isinstance(raised.value, ValueError) and words in str(raised.value), str(raised.value)
 
 
 def test_unreachable_points_are_refused() -> None:

@@ -223,6 +223,25 @@ def test_settings_reach_the_library(cat: Shape) -> None:
         (lambda s: s.canonical_form(rank=9), OptionError, "use method=Nystrom(rank=...)"),
         (lambda s: s.eigenbasis(k=9), OptionError, "use n_eigenfunctions="),
         (lambda s: s.distances(-1), PointError, "-1 is not a vertex"),
+        (lambda s: s.distances([]), PointError, "no sources"),
+        (lambda s: s.distances(np.zeros(81, dtype=bool)), PointError, "no sources"),
+        (lambda s: s.distances(np.ma.array([1, 2], mask=[True, False])), OptionError, "masked"),
+        (lambda s: s.distances(0, max_distance=-1), OptionError, "max_distance=-1 is not possible: give a number, 0 or more"),
+        (lambda s: s.distances_many([0], max_distance=np.nan), OptionError, "max_distance=nan"),
+        (lambda s: s.distances(0, max_distance=True), OptionError, "max_distance=True"),
+        (lambda s: s.hks(times=[-1]), OptionError, "times=[-1] is not possible: give finite numbers larger than 0"),
+        (lambda s: s.hks(times=0), OptionError, "larger than 0"),
+        (lambda s: s.hks(times=[1, np.nan]), OptionError, "finite"),
+        (lambda s: s.hks(times=[np.inf]), OptionError, "finite"),
+        (lambda s: s.hks(times=[]), OptionError, "times=[]"),
+        (lambda s: s.wks(energies=[np.nan]), OptionError, "energies"),
+        (lambda s: s.wks(n_energies=2.5), OptionError, "n_energies=2.5"),
+        (lambda s: s.eigenbasis(True), OptionError, "n_eigenfunctions=True"),
+        (lambda s: s.canonical_form(2.5), OptionError, "n_landmarks=2.5"),
+        (lambda s: s.canonical_form(True), OptionError, "n_landmarks="),
+        (lambda s: s.canonical_form(seed=1.5), OptionError, "seed=1.5"),
+        (lambda s: Surface(np.ma.masked_greater(s.vertices, 0.5), s.faces), MeshError, "masked"),
+        (lambda s: s.gradient(np.ma.masked_greater(s.vertices[:, 0], 0.5)), OptionError, "masked"),
         (lambda s: s.distances(81), PointError, "vertex 81 does not exist; the mesh has 128 faces and 81 vertices"),
         (lambda s: s.distances("x"), PointError, "write 17 for a vertex"),
         (lambda s: s.path(0, "0-80"), PointError, "edge 0-80 does not exist"),
@@ -300,6 +319,9 @@ def test_samples_are_taken_until_they_are_enough_and_reused(cat: Shape) -> None:
     assert auto["stop"] == "settled" and 2 * auto["sufficient"] <= len(form.landmarks)
     more = surface.canonical_form(n_landmarks=30, reuse=form)
     np.testing.assert_array_equal(more.points, surface.canonical_form(n_landmarks=30).points)
+    other = Surface(surface.vertices * [1, 1, 1.5], surface.faces)
+    with pytest.raises(canonform.CanonformError, match="another surface"):
+        other.canonical_form(n_landmarks=30, reuse=form)
 
 
 def test_unaligned_arrays_are_read(square: Surface) -> None:

@@ -96,6 +96,8 @@ def _open3d(mesh: Any) -> tuple[Any, Any] | None:
 
 
 def _array(values: Any, name: str) -> NDArray[Any]:
+    if np.ma.is_masked(values):
+        raise MeshError(f"{name} has masked values; fill them in, or leave them out")
     try:
         return np.asarray(values)
     except ValueError as fault:

@@ -178,4 +178,4 @@ def _vertex(vertex: Any) -> int:
 
 
 def _share(tolerance: float | None) -> float | None:
-    return None if tolerance is None else number("tolerance", tolerance)
+    return None if tolerance is None else number("tolerance", tolerance, 0)

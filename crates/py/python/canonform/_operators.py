@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ._arrays import Floats, Ints
-from ._settings import renamed, whole
+from ._settings import numbers, renamed, whole
 from ._stored import ByValue
 from .errors import OptionError
 
@@ -151,8 +151,7 @@ class Eigenbasis(ByValue):
         if times is None:
             first, last = (float(4 * np.log(10) / value) for value in curved[[-1, 0]])
             times = np.geomspace(first, last, whole("n_times", n_times, 1))
-        at = np.atleast_1d(np.asarray(times, dtype=np.float64))
-        return self._spread(np.exp(-np.multiply.outer(self.values, at)))
+        return self._spread(np.exp(-np.multiply.outer(self.values, numbers("times", times, 0))))
 
     @renamed(n="n_energies=")
     def wks(self, energies: ArrayLike | None = None, *, n_energies: int = 16) -> Floats:
@@ -162,10 +161,8 @@ class Eigenbasis(ByValue):
         """
         curved = self._curved()
         low, high = np.log(curved[[0, -1]])
-        width = 7 * (high - low) / (whole("n_energies", n_energies, 1) if energies is None else max(np.size(energies), 1))
-        if energies is None:
-            energies = np.linspace(low, high, n_energies)
-        at = np.atleast_1d(np.asarray(energies, dtype=np.float64))
+        at = np.linspace(low, high, whole("n_energies", n_energies, 1)) if energies is None else numbers("energies", energies)
+        width = 7 * (high - low) / len(at)
         # The constant functions say nothing.
         logarithms = np.log(np.where(self._is_curved, self.values, 1.0))
         exponents = -0.5 * ((at[None, :] - logarithms[:, None]) / (width or 1.0)) ** 2

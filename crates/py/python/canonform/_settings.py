@@ -10,6 +10,7 @@ from functools import wraps
 from typing import Any, Literal, ParamSpec, TypeAlias, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .errors import OptionError
 
@@ -87,14 +88,33 @@ def word(name: str, value: Any) -> str:
     return value
 
 
-def number(name: str, value: Any) -> float:
+def number(name: str, value: Any, least: float = -math.inf) -> float:
     """The number that an argument must be."""
     try:
-        found = float(value)
+        found = math.nan if isinstance(value, (bool, np.bool_, np.ma.MaskedArray)) else float(value)
     except (TypeError, ValueError):
         found = math.nan
-    if math.isnan(found):
-        raise OptionError(f"{name}={value!r} is not possible: give a number")
+    if math.isnan(found) or found < least:
+        raise OptionError(f"{name}={value!r} is not possible: give a number" + (f", {least:g} or more" if least > -math.inf else ""))
+    return found
+
+
+def unmasked(name: str, values: Any) -> Any:
+    """The values, unless some of them are masked: other functions would take what is under the mask."""
+    if np.ma.is_masked(values):
+        raise OptionError(f"{name} has masked values; fill them in, or leave them out")
+    return values
+
+
+def numbers(name: str, values: Any, least: float = -math.inf) -> NDArray[np.float64]:
+    """The finite numbers that an argument must be, one or several, larger than the least one."""
+    try:
+        found = np.atleast_1d(np.asarray(unmasked(name, values), dtype=np.float64))
+    except (TypeError, ValueError):
+        found = np.empty(0)
+    if found.ndim != 1 or not found.size or not np.isfinite(found).all() or found.min() <= least:
+        kind = "finite numbers" if least == -math.inf else f"finite numbers larger than {least:g}"
+        raise OptionError(f"{name}={values!r} is not possible: give {kind}")
     return found
 
 

@@ -34,6 +34,7 @@ from ._settings import (
     renamed,
     shown,
     some_whole,
+    unmasked,
     whole,
     word,
 )
@@ -286,7 +287,10 @@ class Surface(Constant):
         PointError
             If the mesh has no such point, or the repair dropped it.
         """
-        return self._inner.distances(_several(sources, self.n_vertices), way_of(geodesic), number("max_distance", max_distance))
+        points = _several(sources, self.n_vertices)
+        if not points:
+            raise PointError("there are no sources; give at least one point")
+        return self._inner.distances(points, way_of(geodesic), number("max_distance", max_distance, 0))
 
     @_of_distances
     def distances_many(
@@ -303,7 +307,7 @@ class Surface(Constant):
         """
         with shown(progress) as report:
             return self._inner.distances_many(
-                _several(sources, self.n_vertices), way_of(geodesic), number("max_distance", max_distance), report
+                _several(sources, self.n_vertices), way_of(geodesic), number("max_distance", max_distance, 0), report
             )
 
     @overload
@@ -535,9 +539,7 @@ class Surface(Constant):
 
         NaN on a face without area.
         """
-        array = np.asarray(values, dtype=np.float64)
-        if array.shape != (self.n_vertices,):
-            raise OptionError(f"values must be one number for each of the {self.n_vertices} vertices, not of shape {array.shape}")
+        array = self._one_per_vertex(values)
         corners = self.vertices[self.faces]
         opposite = np.roll(corners, 1, axis=1) - np.roll(corners, -1, axis=1)
         sides = np.cross(self._face_vectors[:, None, :], opposite)
@@ -619,7 +621,7 @@ class Surface(Constant):
     def _one_per_vertex(self, values: ArrayLike) -> Floats:
         if np.shape(values) != (self.n_vertices,):
             raise OptionError(f"values must be one number for each of the {self.n_vertices} vertices, not of shape {np.shape(values)}")
-        return straight(values, dtype=np.float64)
+        return straight(unmasked("values", values), dtype=np.float64)
 
     def __repr__(self) -> str:
         name = f"{self._name!r}, " if self._name else ""
@@ -648,6 +650,7 @@ def _several(points: Any, n_vertices: int) -> list[Any]:
         return [points]
     if isinstance(points, (float, np.floating)):
         raise PointError(f"{points} is not a point; vertices have whole numbers")
+    unmasked("sources", points)
     array = np.asarray(points) if isinstance(points, np.ndarray) or _is_mask(points) else None
     if array is not None and array.dtype == bool:
         if array.shape != (n_vertices,):

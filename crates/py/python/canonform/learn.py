@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -10,7 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _canonform
 from ._arrays import Floats, Ints
-from ._settings import Landmarks, Regularization, encoded
+from ._settings import Landmarks, Regularization, encoded, unmasked, whole
+from .errors import CanonformError, OptionError
 
 try:
     from sklearn.base import BaseEstimator, ClassNamePrefixFeaturesOutMixin, TransformerMixin
@@ -29,6 +31,17 @@ _MOST_LANDMARKS = 640
 """As many as n_landmarks="auto" takes, as on surfaces."""
 
 Metric: TypeAlias = str | Callable[[Any, Any], ArrayLike]
+
+
+@contextmanager
+def _refused() -> Iterator[None]:
+    """Every error is a `CanonformError`, those of scikit-learn too."""
+    try:
+        yield
+    except CanonformError:
+        raise
+    except ValueError as fault:
+        raise OptionError(str(fault)) from fault
 
 
 class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimator):  # type: ignore[misc]
@@ -128,22 +141,23 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         self.random_state = random_state
         self.warm_start = warm_start
 
+    @_refused()
     def fit(self, X: Any, y: object = None) -> NystromMDS:
         """Choose landmarks and embed the points X. y is ignored."""
         X = self._points(X, reset=True)
         n = len(X)
         if n < 2:
-            raise ValueError(f"a metric space of 1 sample has no extent, and X has {n} sample(s); give at least 2")
+            raise OptionError(f"a metric space of 1 sample has no extent, and X has {n} sample(s); give at least 2")
         known: _Landmarks | None = getattr(self, "_taken", None) if self.warm_start else None
         taken = known if known is not None and known.continues(self, X) else _Landmarks(self, X)
         self._taken = taken if self.warm_start else None
         rank = self.rank
         if self.n_landmarks == "auto":
             n_landmarks, rank = self._searched(X, taken)
-        elif isinstance(self.n_landmarks, str) or not self.n_landmarks >= 1:
-            raise ValueError(f"n_landmarks={self.n_landmarks!r} is not possible: give a positive number, or 'auto'")
+        elif isinstance(self.n_landmarks, str):
+            raise OptionError(f"n_landmarks={self.n_landmarks!r} is not possible: give a positive number, or 'auto'")
         else:
-            n_landmarks = int(self.n_landmarks)
+            n_landmarks = whole("n_landmarks", self.n_landmarks, 1)
         landmarks, columns = taken.first(n_landmarks)
         found = _canonform.nystrom(columns, landmarks.tolist(), encoded(**{**self._settings(), "rank": rank}))
         self.embedding_, self.eigenvalues_, self.negative_mass_, self.rank_, self._extension = found
@@ -162,6 +176,10 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         Points of the fit get their coordinates in `embedding_`, up to rounding.
         """
         check_is_fitted(self)
+        return self._placed(X)
+
+    @_refused()
+    def _placed(self, X: Any) -> Floats:
         n_landmarks = len(self.landmarks_)
         if self.metric == "precomputed":
             given = np.shape(X)
@@ -178,6 +196,7 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
 
     def _points(self, X: Any, *, reset: bool) -> Any:
         """The points, checked if they are numbers."""
+        unmasked("X", X)
         if callable(self.metric):
             if reset:
                 array = np.asarray(X) if isinstance(X, np.ndarray) else None
@@ -185,10 +204,10 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
             return X
         X = validate_data(self, X, dtype=np.float64, reset=reset, ensure_min_samples=2 if reset else 1)
         if reset and self.metric == "precomputed" and X.shape[0] != X.shape[1]:
-            raise ValueError(f"metric='precomputed' needs the distances between all pairs, a square matrix; X has shape {X.shape}")
+            raise OptionError(f"metric='precomputed' needs the distances between all pairs, a square matrix; X has shape {X.shape}")
         if reset and self.metric == "precomputed" and not np.allclose(X, X.T, rtol=0, atol=1e-6 * np.abs(X).max(initial=0)):
             i, j = np.unravel_index(np.abs(X - X.T).argmax(), X.shape)
-            raise ValueError(
+            raise OptionError(
                 f"metric='precomputed' needs a symmetric matrix, but X[{i}, {j}] is {X[i, j]:.6g} and X[{j}, {i}] is {X[j, i]:.6g}; "
                 "pass (X + X.T) / 2 for the mean of both"
             )
@@ -200,7 +219,7 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         if callable(self.metric):
             column = np.asarray(self.metric(a, X, **parameters), dtype=np.float64)
             if column.shape != (len(X),):
-                raise ValueError(f"metric(a, X) must return {len(X)} distances, one for each point of X; got shape {column.shape}")
+                raise OptionError(f"metric(a, X) must return {len(X)} distances, one for each point of X; got shape {column.shape}")
             return column
         distances: Floats = pairwise_distances(X, np.asarray(a)[None], metric=self.metric, **parameters)[:, 0]
         return distances
@@ -247,7 +266,7 @@ class _Landmarks:
 
     def __init__(self, estimator: NystromMDS, X: Any) -> None:
         if estimator.sampling not in ("farthest", "random"):
-            raise ValueError(f"sampling={estimator.sampling!r} is not possible: use 'farthest' or 'random'")
+            raise OptionError(f"sampling={estimator.sampling!r} is not possible: use 'farthest' or 'random'")
         n = len(X)
         self._sampling = estimator.sampling
         self._measure: Callable[[int], Floats] = lambda i: estimator._measure(X, i)
