@@ -3,21 +3,16 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use lru::LruCache;
-
 /// Values by name; the least recently used one is dropped first.
 pub(crate) struct Cache<V> {
-    entries: Mutex<Entries<V>>,
+    /// The least recently used one first.
+    entries: Mutex<Vec<Entry<V>>>,
     limit: usize,
-    lifetime: Option<Duration>,
-}
-
-struct Entries<V> {
-    known: LruCache<String, Entry<V>>,
-    bytes: usize,
+    lifetime: Duration,
 }
 
 struct Entry<V> {
+    name: String,
     value: V,
     bytes: usize,
     since: Instant,
@@ -26,48 +21,39 @@ struct Entry<V> {
 impl<V: Clone> Cache<V> {
     /// Keeps up to `limit` bytes, and the last value whatever its size.
     pub(crate) fn new(limit: usize) -> Self {
-        Self {
-            entries: Mutex::new(Entries { known: LruCache::unbounded(), bytes: 0 }),
-            limit,
-            lifetime: None,
-        }
+        Self { entries: Mutex::default(), limit, lifetime: Duration::MAX }
     }
 
     /// Drops values older than this.
     pub(crate) fn with_lifetime(self, lifetime: Duration) -> Self {
-        Self { lifetime: Some(lifetime), ..self }
+        Self { lifetime, ..self }
     }
 
     pub(crate) fn get(&self, name: &str) -> Option<V> {
-        let mut entries = self.lock();
-        self.drop_old(&mut entries);
-        entries.known.get(name).map(|entry| entry.value.clone())
+        let mut entries = self.young();
+        let place = entries.iter().position(|entry| entry.name == name)?;
+        entries[place..].rotate_left(1);
+        entries.last().map(|entry| entry.value.clone())
     }
 
     pub(crate) fn put(&self, name: String, value: V, bytes: usize) {
-        let mut entries = self.lock();
-        self.drop_old(&mut entries);
-        let entry = Entry { value, bytes, since: Instant::now() };
-        let replaced = entries.known.put(name, entry).map_or(0, |entry| entry.bytes);
-        entries.bytes = entries.bytes + bytes - replaced;
-        while entries.bytes > self.limit && entries.known.len() > 1 {
-            let Some((_, oldest)) = entries.known.pop_lru() else { break };
-            entries.bytes -= oldest.bytes;
-        }
+        let mut entries = self.young();
+        entries.retain(|entry| entry.name != name);
+        let mut left = self.limit.saturating_sub(bytes);
+        let too_much = entries.iter().rposition(|entry| {
+            let rest = left.checked_sub(entry.bytes);
+            left = rest.unwrap_or(0);
+            rest.is_none()
+        });
+        entries.drain(..too_much.map_or(0, |last| last + 1));
+        entries.push(Entry { name, value, bytes, since: Instant::now() });
     }
 
-    fn drop_old(&self, entries: &mut Entries<V>) {
-        let Some(lifetime) = self.lifetime else { return };
-        let old = entries.known.iter().filter(|(_, entry)| entry.since.elapsed() >= lifetime);
-        let old: Vec<String> = old.map(|(name, _)| name.clone()).collect();
-        for name in old {
-            entries.bytes -= entries.known.pop(&name).map_or(0, |entry| entry.bytes);
-        }
-    }
-
-    /// A poisoned lock is harmless: no method panics between two changes.
-    fn lock(&self) -> MutexGuard<'_, Entries<V>> {
-        self.entries.lock().unwrap_or_else(PoisonError::into_inner)
+    /// The entries, without old ones. A poisoned lock is harmless: no method panics between two changes.
+    fn young(&self) -> MutexGuard<'_, Vec<Entry<V>>> {
+        let mut entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
+        entries.retain(|entry| entry.since.elapsed() < self.lifetime);
+        entries
     }
 }
 
@@ -76,11 +62,13 @@ mod tests {
     use super::*;
 
     fn kept(cache: &Cache<u8>) -> String {
-        ["a", "b", "c", "d"].into_iter().filter(|name| cache.lock().known.contains(*name)).collect()
+        let mut names: Vec<_> = cache.young().iter().map(|entry| entry.name.clone()).collect();
+        names.sort();
+        names.concat()
     }
 
     fn bytes(cache: &Cache<u8>) -> usize {
-        cache.lock().bytes
+        cache.young().iter().map(|entry| entry.bytes).sum()
     }
 
     #[test]

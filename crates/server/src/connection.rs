@@ -1,9 +1,6 @@
 //! One connection: its bytes are counted, and it ends when its client is too slow.
 
-use std::io;
-use std::pin::Pin;
 use std::sync::Arc;
-use std::task::{Context, Poll};
 use std::time::Duration;
 
 use axum::extract::Request;
@@ -14,8 +11,8 @@ use hyper::service::{Service, service_fn};
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::server::graceful::Watcher;
 use hyper_util::service::TowerToHyperService;
-use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::TcpStream;
+use tokio_util::io::{InspectReader, InspectWriter};
 
 use crate::pace::{Pace, Phase};
 use crate::places::Place;
@@ -42,11 +39,16 @@ pub(crate) async fn serve(
             router.call(request)
         })
     };
+    let counted = |pace: &Arc<Pace>| {
+        let pace = pace.clone();
+        move |moved: &[u8]| pace.moved(moved.len())
+    };
+    let stream = InspectWriter::new(InspectReader::new(stream, counted(&pace)), counted(&pace));
     let connection = http1::Builder::new()
         .timer(TokioTimer::new())
         .header_read_timeout(idle_time)
         .max_buf_size(BUFFER)
-        .serve_connection(TokioIo::new(Counted { stream, pace: pace.clone() }), requests);
+        .serve_connection(TokioIo::new(stream), requests);
     let served = std::pin::pin!(watcher.watch(connection));
     let slow = std::pin::pin!(async {
         let (lost, late) =
@@ -62,64 +64,4 @@ pub(crate) async fn serve(
 /// The account of the connection of a request.
 pub(crate) fn pace_of(request: &Request) -> Option<Arc<Pace>> {
     request.extensions().get::<Arc<Pace>>().cloned()
-}
-
-/// A stream that tells its account how many bytes move.
-struct Counted {
-    stream: TcpStream,
-    pace: Arc<Pace>,
-}
-
-impl Counted {
-    fn count(&self, moved: Poll<io::Result<usize>>) -> Poll<io::Result<usize>> {
-        if let Poll::Ready(Ok(bytes)) = moved {
-            self.pace.moved(bytes);
-        }
-        moved
-    }
-}
-
-impl AsyncRead for Counted {
-    fn poll_read(
-        mut self: Pin<&mut Self>,
-        context: &mut Context<'_>,
-        buffer: &mut ReadBuf<'_>,
-    ) -> Poll<io::Result<()>> {
-        let before = buffer.filled().len();
-        let read = Pin::new(&mut self.stream).poll_read(context, buffer);
-        self.pace.moved(buffer.filled().len() - before);
-        read
-    }
-}
-
-impl AsyncWrite for Counted {
-    fn poll_write(
-        mut self: Pin<&mut Self>,
-        context: &mut Context<'_>,
-        bytes: &[u8],
-    ) -> Poll<io::Result<usize>> {
-        let written = Pin::new(&mut self.stream).poll_write(context, bytes);
-        self.count(written)
-    }
-
-    fn poll_write_vectored(
-        mut self: Pin<&mut Self>,
-        context: &mut Context<'_>,
-        pieces: &[io::IoSlice<'_>],
-    ) -> Poll<io::Result<usize>> {
-        let written = Pin::new(&mut self.stream).poll_write_vectored(context, pieces);
-        self.count(written)
-    }
-
-    fn is_write_vectored(&self) -> bool {
-        self.stream.is_write_vectored()
-    }
-
-    fn poll_flush(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
-        Pin::new(&mut self.stream).poll_flush(context)
-    }
-
-    fn poll_shutdown(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
-        Pin::new(&mut self.stream).poll_shutdown(context)
-    }
 }

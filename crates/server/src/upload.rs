@@ -6,13 +6,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::task::{Context, Poll};
 use std::time::Duration;
 
-use axum::body::{BodyDataStream, Bytes};
-use axum::extract::Request;
+use axum::body::{Body, BodyDataStream, Bytes};
+use axum::extract::multipart::MultipartError;
+use axum::extract::{DefaultBodyLimit, FromRequest, Multipart, Request};
 use axum::http::{StatusCode, header};
 use canonform::mesh::io::mesh_files;
 use futures_util::future::{Either, select};
 use futures_util::{Stream, StreamExt};
-use multer::{Multipart, parse_boundary};
 
 use crate::error::ApiError;
 use crate::options::ServeOptions;
@@ -63,21 +63,15 @@ pub(crate) async fn receive(
     options: &ServeOptions,
 ) -> Result<Upload, ApiError> {
     let announced = announced(&request);
-    let headers = request.headers();
-    let text = |name| headers.get(name).and_then(|value: &header::HeaderValue| value.to_str().ok());
-    let boundary = text(header::CONTENT_TYPE).and_then(|kind| parse_boundary(kind).ok());
-    let body = Body(Arc::new(Mutex::new(request.into_body().into_data_stream())));
+    let (head, body) = request.into_parts();
+    let body = Shared(Arc::new(Mutex::new(body.into_data_stream())));
+    let mut request = Request::from_parts(head, Body::from_stream(body.clone()));
+    DefaultBodyLimit::max(options.max_upload + FRAME).apply(&mut request);
     let received = async {
         if announced > options.max_upload + FRAME {
             return Err(ApiError::upload_too_large(options.max_upload));
         }
-        let boundary = boundary.ok_or_else(|| {
-            ApiError::new(StatusCode::UNSUPPORTED_MEDIA_TYPE, "the request is not a form with a file")
-                .with_remedy(form_remedy())
-        })?;
-        let metered = Metered { body: body.clone(), left: options.max_upload + FRAME };
-        let form = Multipart::new(metered, boundary);
-        let form = pin!(read(form, options));
+        let form = pin!(read(request, options));
         let slow = pin!(pace.exceeds(options.idle_time, &[Phase::Receiving]));
         let late = pin!(tokio::time::sleep(options.upload_time));
         let lost = pin!(place.lost());
@@ -92,45 +86,37 @@ pub(crate) async fn receive(
     pace.begin(Phase::Working);
     place.keep();
     if received.is_err() {
-        tokio::spawn(body.drain());
+        tokio::spawn(drained(body));
     }
     received
 }
 
-/// Reads and drops the body of a request that is rejected without reading it.
-pub(crate) fn drain(request: Request) {
-    let body = Body(Arc::new(Mutex::new(request.into_body().into_data_stream())));
-    tokio::spawn(body.drain());
-}
-
-async fn read(mut form: Multipart<'static>, options: &ServeOptions) -> Result<Upload, ApiError> {
+async fn read(request: Request, options: &ServeOptions) -> Result<Upload, ApiError> {
+    let mut form = Multipart::from_request(request, &()).await.map_err(|_| {
+        ApiError::new(StatusCode::UNSUPPORTED_MEDIA_TYPE, "the request is not a form with a file")
+            .with_remedy(form_remedy())
+    })?;
+    let faulty = |fault: MultipartError| match fault.status() {
+        StatusCode::PAYLOAD_TOO_LARGE => ApiError::upload_too_large(options.max_upload),
+        _ => ApiError::bad_request(format!("the form cannot be read: {}", fault.body_text()))
+            .with_remedy(form_remedy()),
+    };
     let mut upload = Upload::default();
-    let mut n_parts = 0;
-    while let Some(mut part) = understood(form.next_field().await, options)? {
-        n_parts += 1;
-        if n_parts > MOST_PARTS {
+    while let Some(part) = form.next_field().await.map_err(faulty)? {
+        if upload.files.len() + upload.fields.len() == MOST_PARTS {
             return Err(ApiError::bad_request(format!("the form has more than {MOST_PARTS} parts")));
         }
-        let file = part.file_name().map(clean_name);
-        let mut content = Vec::new();
-        while let Some(chunk) = understood(part.chunk().await, options)? {
-            let limit = if file.is_some() { options.max_upload } else { LONGEST_FIELD };
-            if content.len() + chunk.len() > limit {
-                return Err(match file {
-                    Some(_) => ApiError::upload_too_large(options.max_upload),
-                    None => ApiError::bad_request(format!("a field of the form has more than {limit} bytes")),
-                });
-            }
-            content.extend_from_slice(&chunk);
-        }
+        let (name, file) = (part.name().unwrap_or_default().to_owned(), part.file_name().map(clean_name));
+        let content = part.bytes().await.map_err(faulty)?;
         match file {
             // Browsers send this if no file was chosen.
-            Some(name) if name.as_os_str().is_empty() && content.is_empty() => {}
-            Some(name) => upload.files.push((name, content)),
-            None => {
-                let name = part.name().unwrap_or_default().to_owned();
-                upload.fields.push((name, String::from_utf8_lossy(&content).trim().to_owned()));
+            Some(file) if file.as_os_str().is_empty() && content.is_empty() => {}
+            Some(file) => upload.files.push((file, content.into())),
+            None if content.len() > LONGEST_FIELD => {
+                let error = format!("a field of the form has more than {LONGEST_FIELD} bytes");
+                return Err(ApiError::bad_request(error));
             }
+            None => upload.fields.push((name, String::from_utf8_lossy(&content).trim().to_owned())),
         }
     }
     Ok(upload)
@@ -138,18 +124,6 @@ async fn read(mut form: Multipart<'static>, options: &ServeOptions) -> Result<Up
 
 fn form_remedy() -> String {
     format!("send multipart/form-data with one mesh: {}", mesh_files())
-}
-
-/// A piece of a form, or an error for the client.
-fn understood<T>(piece: Result<T, multer::Error>, options: &ServeOptions) -> Result<T, ApiError> {
-    piece.map_err(|fault| match fault {
-        multer::Error::StreamReadFailed(fault) if fault.is::<TooLong>() => {
-            ApiError::upload_too_large(options.max_upload)
-        }
-        fault => {
-            ApiError::bad_request(format!("the form cannot be read: {fault}")).with_remedy(form_remedy())
-        }
-    })
 }
 
 /// A file name without folders and control characters; only the end of a long one.
@@ -160,11 +134,11 @@ fn clean_name(name: &str) -> PathBuf {
     name.chars().skip(skipped).map(clean).collect::<String>().into()
 }
 
-/// The body of a request, shared by its reader and [`drain`](Self::drain).
+/// The body of a request, shared by its reader and [`drained`].
 #[derive(Clone)]
-struct Body(Arc<Mutex<BodyDataStream>>);
+struct Shared(Arc<Mutex<BodyDataStream>>);
 
-impl Stream for Body {
+impl Stream for Shared {
     type Item = Result<Bytes, axum::Error>;
 
     fn poll_next(self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Option<Self::Item>> {
@@ -172,52 +146,25 @@ impl Stream for Body {
     }
 }
 
-impl Body {
-    /// Reads on for a while and drops everything: many clients read the response only after they have sent everything,
-    /// and not at all if the connection breaks before.
-    async fn drain(mut self) {
-        let mut left = REFUSED_BYTES;
-        let draining = async {
-            while let Some(Ok(piece)) = self.next().await {
-                left = left.saturating_sub(piece.len());
-                if left == 0 {
-                    break;
-                }
-            }
-        };
-        // Both outcomes are fine.
-        let _ = tokio::time::timeout(REFUSED_TIME, draining).await;
-    }
+/// Reads and drops the body of a request that is rejected without reading it.
+pub(crate) fn drain(request: Request) {
+    tokio::spawn(drained(request.into_body().into_data_stream()));
 }
 
-/// A body that ends with [`TooLong`] beyond a limit.
-struct Metered {
-    body: Body,
-    left: usize,
-}
-
-#[derive(Debug, thiserror::Error)]
-#[error("the body is too long")]
-struct TooLong;
-
-impl Stream for Metered {
-    type Item = Result<Bytes, Box<dyn std::error::Error + Send + Sync>>;
-
-    fn poll_next(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Option<Self::Item>> {
-        let piece = match Pin::new(&mut self.body).poll_next(context) {
-            Poll::Ready(Some(Ok(piece))) => piece,
-            Poll::Ready(Some(Err(fault))) => return Poll::Ready(Some(Err(fault.into()))),
-            Poll::Ready(None) => return Poll::Ready(None),
-            Poll::Pending => return Poll::Pending,
-        };
-        Poll::Ready(Some(match self.left.checked_sub(piece.len()) {
-            Some(left) => {
-                self.left = left;
-                Ok(piece)
+/// Reads on for a while and drops everything: many clients read the response only after they have sent everything, and
+/// not at all if the connection breaks before.
+async fn drained(mut body: impl Stream<Item = Result<Bytes, axum::Error>> + Unpin) {
+    let mut left = REFUSED_BYTES;
+    let draining = async {
+        while let Some(Ok(piece)) = body.next().await {
+            left = left.saturating_sub(piece.len());
+            if left == 0 {
+                break;
             }
-            None => Err(TooLong.into()),
-        }))
-    }
+        }
+    };
+    // Both outcomes are fine.
+    let _ = tokio::time::timeout(REFUSED_TIME, draining).await;
 }
 
 #[cfg(test)]
