@@ -33,28 +33,25 @@ pub enum ServerError {
 }
 
 /// An error response: `{"error", "remedy"?}`.
-#[derive(Debug)]
-pub(crate) struct ApiError {
-    status: StatusCode,
-    body: Body,
-    /// In seconds.
-    retry_after: Option<u32>,
-}
-
 #[derive(Debug, Serialize)]
-struct Body {
+pub(crate) struct ApiError {
+    #[serde(skip)]
+    status: StatusCode,
     error: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     remedy: Option<String>,
+    /// In seconds.
+    #[serde(skip)]
+    retry_after: Option<u32>,
 }
 
 impl ApiError {
     pub(crate) fn new(status: StatusCode, error: impl Into<String>) -> Self {
-        Self { status, body: Body { error: error.into(), remedy: None }, retry_after: None }
+        Self { status, error: error.into(), remedy: None, retry_after: None }
     }
 
     pub(crate) fn with_remedy(mut self, remedy: impl Into<String>) -> Self {
-        self.body.remedy = Some(remedy.into());
+        self.remedy = Some(remedy.into());
         self
     }
 
@@ -120,7 +117,7 @@ impl ApiError {
             _ if status == StatusCode::PAYLOAD_TOO_LARGE => Some("raise the vertex limit of the server"),
             fault => remedy(fault),
         };
-        Self { status, body: Body { error, remedy: remedy.map(str::to_owned) }, retry_after: None }
+        Self { status, error, remedy: remedy.map(str::to_owned), retry_after: None }
     }
 
     /// An error of an uploaded mesh, worded as on the command line and with the name of the file.
@@ -145,7 +142,7 @@ impl ApiError {
 
     /// What is wrong.
     pub(crate) fn text(&self) -> &str {
-        &self.body.error
+        &self.error
     }
 
     #[cfg(test)]
@@ -154,8 +151,8 @@ impl ApiError {
     }
 }
 
-/// Errors of indexed shapes. Where the index and its meshes lie on this machine is nobody's business, so messages with
-/// paths are replaced.
+/// Errors of indexed shapes. Clients must not learn where the index and its meshes lie on this machine, so messages
+/// with paths are replaced.
 impl From<Error> for ApiError {
     fn from(fault: Error) -> Self {
         let (status, text) = match &fault {
@@ -165,6 +162,10 @@ impl From<Error> for ApiError {
             Error::MeshGone { id, .. } => (StatusCode::NOT_FOUND, format!("cannot read the mesh of `{id}`")),
             Error::MeshChanged { id, .. } => {
                 (StatusCode::GONE, format!("the mesh of `{id}` has changed since it was indexed"))
+            }
+            Error::NoDiscAreas { id, .. } => {
+                let text = format!("the index does not store what ranking as a part needs to know of `{id}`");
+                (StatusCode::UNPROCESSABLE_ENTITY, text)
             }
             Error::Exceeded(exceeded) => return Self::exceeded(*exceeded),
             _ => {
@@ -179,7 +180,7 @@ impl From<Error> for ApiError {
 /// What to do about an error, in words that do not depend on a program.
 fn remedy(fault: &Error) -> Option<&'static str> {
     Some(match fault.remedy()? {
-        Remedy::KeepLargestOrBridge | Remedy::BridgeComponents => {
+        Remedy::KeepLargestOrBridge | Remedy::BridgeComponents | Remedy::BridgeOrWeld => {
             "join the components of the mesh, or keep only the largest one"
         }
         Remedy::RestoreMesh => {
@@ -187,17 +188,41 @@ fn remedy(fault: &Error) -> Option<&'static str> {
         }
         Remedy::BuildIndexAgain => "build the index again",
         Remedy::BuildIndexAnew => "build the index in a new file",
+        Remedy::UseThreeDimensions => "build the index with forms of three dimensions",
+        Remedy::UseFastMarching => "build the index with distances by fast marching",
         Remedy::UseNystrom => "simplify the mesh, or build the index with NMDS, which needs less memory",
-        _ => return None,
+        Remedy::RaiseMemory => "simplify the mesh",
+        Remedy::RaiseTimeLimit => "simplify the mesh, or raise the time limit of the server",
+        Remedy::ListShapes => "/api/shapes lists the shapes of the index",
+        // No request leads to these.
+        Remedy::GiveSamples
+        | Remedy::RaiseMaxDistance
+        | Remedy::GiveLabels
+        | Remedy::ReplaceShape
+        | Remedy::BuildFieldAgain
+        | Remedy::EvaluateShard => return None,
     })
 }
 
 impl IntoResponse for ApiError {
     fn into_response(self) -> Response {
-        let mut response = (self.status, Json(self.body)).into_response();
+        let mut response = (self.status, Json(&self)).into_response();
         if let Some(seconds) = self.retry_after {
             response.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from(seconds));
         }
         response
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_index_without_disc_areas_is_no_bug_and_its_place_is_not_told() {
+        let fault = Error::NoDiscAreas { path: "/home/ada/all.canonform".into(), id: "cat0".to_owned() };
+        let answer = ApiError::from(fault);
+        assert_eq!((answer.status(), answer.remedy.as_deref()), (422, Some("build the index in a new file")));
+        assert!(answer.text().contains("`cat0`") && !answer.text().contains("ada"), "{}", answer.text());
     }
 }
