@@ -12,9 +12,9 @@ use canonform::{
 
 use crate::cache::Cache;
 use crate::collection::{Collection, Served};
+use crate::cost;
 use crate::duplicates::Duplicates;
 use crate::error::ApiError;
-use crate::load::VERTEX_BYTES;
 use crate::measured::Measured;
 use crate::options::ServeOptions;
 use crate::places::Places;
@@ -52,6 +52,10 @@ impl Query {
     ) -> Self {
         let measured = Arc::new(measured);
         Self { name, content, options: description.options.text(), measured, description }
+    }
+
+    pub(crate) fn n_vertices(&self) -> u64 {
+        self.measured.surface.mesh().n_vertices() as u64
     }
 
     /// Searches the collection with it.
@@ -108,12 +112,12 @@ impl App {
         Ok(measured)
     }
 
-    /// The size of the mesh of a shape, for [`Work::run`]: nothing if it need not be measured.
-    pub(crate) fn cost(&self, collection: &Collection, id: &str) -> usize {
-        let Some(shape) = collection.shape(id) else { return 0 };
+    /// What [`indexed`](Self::indexed) costs, in seconds: nothing if the shape is in the cache.
+    pub(crate) fn cost(&self, collection: &Collection, id: &str) -> f64 {
+        let Some(shape) = collection.shape(id) else { return 0.0 };
         let key = measured_key(&shape.content, collection.search.index().options());
-        let bytes = shape.vertices.unwrap_or(0).saturating_mul(VERTEX_BYTES);
-        if self.measured.get(&key).is_some() { 0 } else { usize::try_from(bytes).unwrap_or(usize::MAX) }
+        let is_known = self.measured.get(&key).is_some();
+        if is_known { 0.0 } else { collection.n_vertices(id) as f64 * cost::MEASURED_VERTEX }
     }
 
     /// The address of an upload: part of the hash of its names and contents.

@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, PoisonError, RwLock};
 use std::time::SystemTime;
 
-use canonform::ContentHash;
-use canonform::{Error, ShapeSearch};
+use canonform::{ContentHash, Error, SearchOptions, ShapeSearch};
 use serde::Serialize;
+
+use crate::cost;
 
 /// An open index and the list of its shapes. Requests that began with it finish with it.
 pub(crate) struct Collection {
@@ -71,6 +72,18 @@ impl Collection {
         self.shapes.get(place)
     }
 
+    /// Vertices of a shape, or zero.
+    pub(crate) fn n_vertices(&self, id: &str) -> u64 {
+        self.shape(id).and_then(|shape| shape.vertices).unwrap_or(0)
+    }
+
+    /// What a search with a described query of so many vertices costs.
+    pub(crate) fn search_cost(&self, options: &SearchOptions, vertices: u64) -> f64 {
+        let all: u64 = self.shapes.iter().filter_map(|shape| shape.vertices).sum();
+        let n = self.shapes.len();
+        cost::of_search(options, n, all / n.max(1) as u64, vertices)
+    }
+
     /// Up to `n` shapes of as many classes as possible.
     pub(crate) fn sample(&self, n: usize) -> Vec<&ShapeSummary> {
         let n_classes = self.classes.len();
@@ -86,8 +99,8 @@ impl Collection {
         places.into_iter().map(|place| &self.shapes[place]).collect()
     }
 
-    /// A path as clients may see it: relative to the folder of the index, or only the name of the file. Where the index
-    /// lies on this machine is nobody's business.
+    /// A path as clients may see it: relative to the folder of the index, or only the name of the file. Clients must
+    /// not learn where the index lies on this machine.
     pub(crate) fn public_path(&self, path: &str) -> String {
         let given = Path::new(path);
         if given.is_relative() {
@@ -124,32 +137,26 @@ struct Now {
     state: FileState,
 }
 
-/// Differs when a file was replaced or written to.
-#[derive(Debug, Clone, PartialEq, Eq)]
-struct Identity {
-    file: Option<(u64, u64)>,
-    length: u64,
-    modified: Option<SystemTime>,
-}
+/// Differs when a file was replaced or written to: its device and number where the system has them, its length, and the
+/// time of its last change.
+type Identity = (Option<(u64, u64)>, u64, Option<SystemTime>);
 
-impl Identity {
-    fn of(path: &Path) -> Option<Self> {
-        let about = std::fs::metadata(path).ok()?;
-        #[cfg(unix)]
-        let file = {
-            use std::os::unix::fs::MetadataExt;
-            Some((about.dev(), about.ino()))
-        };
-        #[cfg(not(unix))]
-        let file = None;
-        Some(Self { file, length: about.len(), modified: about.modified().ok() })
-    }
+fn identity(path: &Path) -> Option<Identity> {
+    let about = std::fs::metadata(path).ok()?;
+    #[cfg(unix)]
+    let file = {
+        use std::os::unix::fs::MetadataExt;
+        Some((about.dev(), about.ino()))
+    };
+    #[cfg(not(unix))]
+    let file = None;
+    Some((file, about.len(), about.modified().ok()))
 }
 
 impl Served {
     pub(crate) fn open(path: &Path) -> Result<Self, Error> {
         // Taken first: a file that is replaced in between is opened again.
-        let seen = Identity::of(path);
+        let seen = identity(path);
         let collection = Arc::new(Collection::open(path)?);
         let now = Now { collection, seen, state: FileState::Current };
         Ok(Self { path: path.to_owned(), now: RwLock::new(now) })
@@ -166,7 +173,7 @@ impl Served {
 
     /// Opens the file if it has changed. An error leaves the old index in service and is printed once.
     pub(crate) fn refresh(&self) {
-        let found = Identity::of(&self.path);
+        let found = identity(&self.path);
         if self.read(|now| now.seen == found) {
             return;
         }

@@ -14,6 +14,7 @@ mod app;
 mod cache;
 mod collection;
 mod connection;
+mod cost;
 mod duplicates;
 mod error;
 mod formats;

@@ -4,17 +4,11 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Seconds of a job apart from its mesh: searching, aligning, writing the response.
+/// Seconds that every job takes, with nothing to measure or to compare.
 const BASE: f64 = 0.1;
 
-/// Seconds per byte of a mesh before any job is done: 22 s for a text file of 14 MB with 193,600 vertices, one core.
-const PER_BYTE: f64 = 1.6e-6;
-
-/// Measured times may differ from that by these factors; beyond them a mesh is unusual, not the machine.
+/// Measured times may differ from [costs](crate::cost) by these factors; beyond them a mesh is unusual, not the machine.
 const FACTORS: [f64; 2] = [0.1, 4.0];
-
-/// Bytes of a text file per vertex.
-pub(crate) const VERTEX_BYTES: u64 = 70;
 
 /// The number of jobs that the estimate is a median of.
 const REMEMBERED: usize = 15;
@@ -22,8 +16,8 @@ const REMEMBERED: usize = 15;
 /// The share of the time limit that may be promised: estimates are not exact.
 const MARGIN: f64 = 0.75;
 
-/// Smaller meshes say little about the time per byte.
-const TELLING: usize = 200_000;
+/// Jobs of a smaller cost say little about the machine.
+const TELLING: f64 = 0.3;
 
 /// Jobs that take longer, in seconds, are long: one place is always left for the others.
 const SHORT: f64 = 2.0;
@@ -40,7 +34,7 @@ pub(crate) struct Load {
 struct State {
     /// Seconds of all accepted jobs, by length.
     seconds: [f64; 2],
-    /// Measured seconds per byte, newest last.
+    /// Measured seconds per second of cost, newest last.
     measured: VecDeque<f64>,
 }
 
@@ -57,7 +51,7 @@ pub(crate) struct Accepted {
     load: Arc<Load>,
     pub(crate) length: Length,
     seconds: f64,
-    bytes: usize,
+    cost: f64,
 }
 
 impl Load {
@@ -66,29 +60,29 @@ impl Load {
         Arc::new(Self { places, state: Mutex::default() })
     }
 
-    /// Accepts a job on a mesh of this size, unless the jobs before it leave too little of the time limit. Without any
+    /// Accepts a job of this cost, unless the jobs before it leave too little of the time limit. Without any
     /// before it, it is accepted: the estimate may be wrong.
     ///
     /// # Errors
     /// The seconds after which the jobs before it are done.
-    pub(crate) fn accept(self: &Arc<Self>, bytes: usize, limit: Duration) -> Result<Accepted, u32> {
+    pub(crate) fn accept(self: &Arc<Self>, cost: f64, limit: Duration) -> Result<Accepted, u32> {
         let mut state = self.lock();
-        let (length, seconds) = self.check(&state, bytes, limit)?;
+        let (length, seconds) = self.check(&state, cost, limit)?;
         state.seconds[length as usize] += seconds;
         drop(state);
-        Ok(Accepted { load: self.clone(), length, seconds, bytes })
+        Ok(Accepted { load: self.clone(), length, seconds, cost })
     }
 
     /// Whether a job would be accepted now.
     ///
     /// # Errors
     /// As [`accept`](Self::accept).
-    pub(crate) fn would_accept(&self, bytes: usize, limit: Duration) -> Result<(), u32> {
-        self.check(&self.lock(), bytes, limit).map(drop)
+    pub(crate) fn would_accept(&self, cost: f64, limit: Duration) -> Result<(), u32> {
+        self.check(&self.lock(), cost, limit).map(drop)
     }
 
-    fn check(&self, state: &State, bytes: usize, limit: Duration) -> Result<(Length, f64), u32> {
-        let seconds = BASE + bytes as f64 * state.per_byte();
+    fn check(&self, state: &State, cost: f64, limit: Duration) -> Result<(Length, f64), u32> {
+        let seconds = BASE + cost * state.factor();
         let length = if seconds <= SHORT { Length::Short } else { Length::Long };
         let before = state.seconds[length as usize] / self.places[length as usize] as f64;
         match before > 0.0 && before + seconds > MARGIN * limit.as_secs_f64() {
@@ -104,23 +98,23 @@ impl Load {
 }
 
 impl State {
-    /// The median of the last jobs: a few unusual meshes do not change it.
-    fn per_byte(&self) -> f64 {
+    /// How much longer than their costs jobs take here. The median of the last jobs: a few unusual meshes do not change it.
+    fn factor(&self) -> f64 {
         let mut sorted: Vec<f64> = self.measured.iter().copied().collect();
         sorted.sort_by(f64::total_cmp);
-        sorted.get(sorted.len() / 2).copied().unwrap_or(PER_BYTE)
+        sorted.get(sorted.len() / 2).copied().unwrap_or(1.0)
     }
 }
 
 impl Accepted {
     /// Learns from a job that was begun then and has ended, finished or not.
     pub(crate) fn ended(&self, begun: Instant) {
-        if self.bytes < TELLING {
+        if self.cost < TELLING {
             return;
         }
-        let per_byte = (begun.elapsed().as_secs_f64() - BASE) / self.bytes as f64;
+        let factor = (begun.elapsed().as_secs_f64() - BASE) / self.cost;
         let measured = &mut self.load.lock().measured;
-        measured.push_back(per_byte.clamp(FACTORS[0] * PER_BYTE, FACTORS[1] * PER_BYTE));
+        measured.push_back(factor.clamp(FACTORS[0], FACTORS[1]));
         if measured.len() > REMEMBERED {
             measured.pop_front();
         }
@@ -141,8 +135,7 @@ mod tests {
 
     const LIMIT: Duration = Duration::from_secs(60);
 
-    /// 22 seconds, before anything is measured.
-    const LARGE: usize = 13_600_000;
+    const LARGE: f64 = 22.0;
 
     #[test]
     fn jobs_that_cannot_be_done_in_time_are_refused_at_once() {
@@ -152,7 +145,7 @@ mod tests {
         let wait = load.accept(LARGE, LIMIT).unwrap_err();
         assert!((30..=60).contains(&wait), "{wait}");
         assert_eq!(load.would_accept(LARGE, LIMIT), Err(wait));
-        let short = load.accept(100_000, LIMIT).unwrap();
+        let short = load.accept(0.2, LIMIT).unwrap();
         assert_eq!((accepted[0].length, short.length), (Length::Long, Length::Short));
         drop((accepted, short));
         assert_eq!(load.lock().seconds, [0.0, 0.0]);
@@ -161,7 +154,7 @@ mod tests {
     #[test]
     fn a_job_is_never_refused_on_an_idle_server() {
         let load = Load::new(2, 1);
-        let huge = load.accept(1 << 30, LIMIT).unwrap();
+        let huge = load.accept(2000.0, LIMIT).unwrap();
         assert!(load.accept(LARGE, LIMIT).is_err());
         drop(huge);
         load.accept(LARGE, LIMIT).unwrap();
@@ -170,17 +163,17 @@ mod tests {
     #[test]
     fn estimates_follow_the_machine_and_not_a_few_unusual_meshes() {
         let load = Load::new(2, 1);
-        let per_byte = |load: &Load| load.lock().per_byte();
+        let factor = |load: &Load| load.lock().factor();
         let ended = |seconds: f64| {
-            let job = load.accept(1_000_000, LIMIT).unwrap();
+            let job = load.accept(1.6, LIMIT).unwrap();
             job.ended(Instant::now().checked_sub(Duration::from_secs_f64(seconds)).unwrap());
         };
-        let is_half_a_second = || (per_byte(&load) - 0.5e-6).abs() < 0.05e-6;
-        (0..8).for_each(|_| ended(BASE + 0.5));
-        assert!(is_half_a_second(), "{}", per_byte(&load));
+        let is_half = || (factor(&load) - 0.5).abs() < 0.05;
+        (0..8).for_each(|_| ended(BASE + 0.8));
+        assert!(is_half(), "{}", factor(&load));
         (0..7).for_each(|_| ended(60.0));
-        assert!(is_half_a_second(), "{}", per_byte(&load));
+        assert!(is_half(), "{}", factor(&load));
         (0..15).for_each(|_| ended(60.0));
-        assert_eq!(per_byte(&load), FACTORS[1] * PER_BYTE);
+        assert_eq!(factor(&load), FACTORS[1]);
     }
 }

@@ -48,22 +48,22 @@ impl Work {
         }
     }
 
-    /// Rejects an upload of this many bytes before it is received if it could not be answered in time.
-    pub(crate) fn expect(&self, bytes: usize) -> Result<(), ApiError> {
-        self.load.would_accept(bytes, self.time_limit).map_err(ApiError::busy)
+    /// Rejects a job of this [cost](crate::cost) before it is received if it could not be done in time.
+    pub(crate) fn expect(&self, cost: f64) -> Result<(), ApiError> {
+        self.load.would_accept(cost, self.time_limit).map_err(ApiError::busy)
     }
 
-    /// Runs `job` on a thread of its own when its turn comes; `bytes` is the size of its mesh. After the time limit, and
+    /// Runs `job` of this [cost](crate::cost) on a thread of its own when its turn comes. After the time limit, and
     /// when the client has gone, the job is cancelled. It counts until it ends; `held` is dropped then.
     pub(crate) async fn run<T: Send + 'static>(
         &self,
-        bytes: usize,
+        cost: f64,
         held: Option<Place>,
         job: impl FnOnce(&Budget) -> Result<T, ApiError> + Send + 'static,
     ) -> Result<T, ApiError> {
         let busy = |_| ApiError::busy(RETRY_AFTER);
         let place = self.waiting.clone().try_acquire_owned().map_err(busy)?;
-        let accepted = self.load.accept(bytes, self.time_limit).map_err(ApiError::busy)?;
+        let accepted = self.load.accept(cost, self.time_limit).map_err(ApiError::busy)?;
         let budget = Budget::unlimited().with_time(self.time_limit);
         // Dropped at the time limit, and with the connection of a client that has gone.
         let _cancel = CancelOnDrop(budget.clone());
@@ -96,8 +96,7 @@ mod tests {
     use crate::pace::Pace;
     use crate::places::Places;
 
-    /// The size of a mesh that takes long.
-    const LONG: usize = 10_000_000;
+    const LONG: f64 = 16.0;
 
     fn runtime() -> tokio::runtime::Runtime {
         tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_time().build().unwrap()
@@ -111,9 +110,9 @@ mod tests {
         Ok(())
     }
 
-    async fn until_done(work: &Work, bytes: usize) {
+    async fn until_done(work: &Work, cost: f64) {
         let ends = async {
-            while work.run(bytes, None, |_| Ok(())).await.is_err() {
+            while work.run(cost, None, |_| Ok(())).await.is_err() {
                 tokio::time::sleep(Duration::from_millis(10)).await;
             }
         };
@@ -131,7 +130,7 @@ mod tests {
         let work = Work::new(&options);
         let (finish, finished) = mpsc::channel::<()>();
         runtime().block_on(async {
-            let late = work.run(0, None, move |budget| {
+            let late = work.run(0.0, None, move |budget| {
                 obedient(budget)?;
                 // It notices, and still takes its time.
                 let _ = finished.recv();
@@ -139,9 +138,9 @@ mod tests {
             });
             assert_eq!(late.await.unwrap_err().status(), 503);
             // The thread is still busy: a request that waits gets no turn.
-            assert_eq!(work.run(0, None, |_| Ok(())).await.unwrap_err().status(), 503);
+            assert_eq!(work.run(0.0, None, |_| Ok(())).await.unwrap_err().status(), 503);
             finish.send(()).unwrap();
-            until_done(&work, 0).await;
+            until_done(&work, 0.0).await;
         });
     }
 
@@ -149,9 +148,9 @@ mod tests {
     fn a_job_whose_client_has_gone_is_cancelled() {
         let work = Work::new(&ServeOptions { jobs: 1, queue: 0, ..ServeOptions::default() });
         runtime().block_on(async {
-            let gone = work.run(0, None, obedient);
+            let gone = work.run(0.0, None, obedient);
             assert!(tokio::time::timeout(Duration::from_millis(50), gone).await.is_err());
-            until_done(&work, 0).await;
+            until_done(&work, 0.0).await;
         });
     }
 
@@ -167,7 +166,7 @@ mod tests {
                 .collect();
             tokio::time::sleep(Duration::from_millis(50)).await;
             for _ in 0..10 {
-                work.run(1000, None, |_| Ok(())).await.unwrap();
+                work.run(0.0, None, |_| Ok(())).await.unwrap();
             }
             long.iter().for_each(tokio::task::JoinHandle::abort);
             until_done(&work, LONG).await;
@@ -179,10 +178,10 @@ mod tests {
         let work = Work::new(&ServeOptions { jobs: 1, queue: 0, ..ServeOptions::default() });
         runtime().block_on(async {
             for _ in 0..3 {
-                let fault = work.run::<()>(0, None, |_| panic!("for the test")).await.unwrap_err();
+                let fault = work.run::<()>(0.0, None, |_| panic!("for the test")).await.unwrap_err();
                 assert_eq!(fault.status(), 500);
             }
-            assert_eq!(work.run(0, None, |_| Ok(7)).await.unwrap(), 7);
+            assert_eq!(work.run(0.0, None, |_| Ok(7)).await.unwrap(), 7);
         });
     }
 
@@ -193,7 +192,7 @@ mod tests {
         runtime().block_on(async {
             let place = places.try_enter(&pace).unwrap();
             assert!(places.try_enter(&pace).is_none());
-            work.run(0, Some(place), |_| Ok(())).await.unwrap();
+            work.run(0.0, Some(place), |_| Ok(())).await.unwrap();
             drop(places.try_enter(&pace).unwrap());
         });
     }

@@ -13,6 +13,7 @@ use super::answer::{Params, Written};
 use super::shapes::is_missing;
 use crate::app::App;
 use crate::collection::Collection;
+use crate::cost;
 use crate::error::ApiError;
 use crate::measured::{Measured, in_space, overlaid};
 
@@ -29,15 +30,20 @@ pub(super) struct CompareParams {
 }
 
 impl CompareParams {
-    /// Answers in a job, which costs as much as both meshes.
+    /// Answers in a job, which costs `each` for every vertex once both meshes are measured.
     pub(super) async fn answered<T: Serialize + 'static>(
         self,
         app: &Arc<App>,
+        each: f64,
         answer: fn(&App, &Collection, Self, &Budget) -> Result<T, ApiError>,
     ) -> Result<Written, ApiError> {
         let (shared, collection) = (app.clone(), app.served.collection());
         let ids = self.a.iter().chain([&self.b]);
-        let cost = ids.map(|id| app.cost(&collection, id)).fold(0, usize::saturating_add);
+        let measuring: f64 = ids.clone().map(|id| app.cost(&collection, id)).sum();
+        let uploaded = self.query.as_ref().and_then(|query| app.kept(&collection, query));
+        let uploaded = uploaded.map_or(0, |query| query.n_vertices());
+        let vertices = uploaded + ids.map(|id| collection.n_vertices(id)).sum::<u64>();
+        let cost = measuring + vertices as f64 * each;
         let job = move |budget: &Budget| Written::new(&answer(&shared, &collection, self, budget)?);
         app.work.run(cost, None, job).await
     }
@@ -100,7 +106,7 @@ pub(super) async fn compare(
     State(app): State<Arc<App>>,
     Params(params): Params<CompareParams>,
 ) -> Result<Written, ApiError> {
-    params.answered(&app, answer).await
+    params.answered(&app, cost::COMPARED_VERTEX, answer).await
 }
 
 fn answer(

@@ -11,6 +11,7 @@ use super::answer::{Params, Written};
 use super::compare::CompareParams;
 use crate::app::App;
 use crate::collection::Collection;
+use crate::cost;
 use crate::error::ApiError;
 
 #[derive(Serialize)]
@@ -28,7 +29,7 @@ pub(super) async fn matching(
     State(app): State<Arc<App>>,
     Params(params): Params<CompareParams>,
 ) -> Result<Written, ApiError> {
-    params.answered(&app, answer).await
+    params.answered(&app, cost::MATCHED_VERTEX, answer).await
 }
 
 fn answer(

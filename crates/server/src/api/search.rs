@@ -21,12 +21,16 @@ use super::shapes::{is_missing, points};
 use crate::app::{App, Query};
 use crate::collection::Collection;
 use crate::connection::pace_of;
+use crate::cost;
 use crate::error::ApiError;
 use crate::measured::Measured;
 use crate::upload::{Upload, announced, drain, receive};
 
 /// Maximum number of results.
 const MOST_FOUND: usize = 100;
+
+/// Bytes of a text file per vertex.
+const VERTEX_BYTES: usize = 70;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]
@@ -166,7 +170,7 @@ pub(super) async fn search(
     if params.shape.is_some() || params.query.is_some() {
         return again(app, params).await;
     }
-    if let Err(busy) = app.work.expect(announced(&request)) {
+    if let Err(busy) = app.work.expect(announced(&request) as f64 * cost::UPLOADED_BYTE) {
         drain(request);
         return Err(busy);
     }
@@ -178,8 +182,10 @@ pub(super) async fn search(
     let upload = receive(request, &place, &pace, &app.options).await?;
     let wanted = params.with_fields(&upload)?.wanted()?;
     let (shared, bytes) = (app.clone(), upload.bytes());
+    let vertices = (bytes / VERTEX_BYTES) as u64;
+    let searching = app.served.collection().search_cost(&wanted.options, vertices);
     let answer = move |budget: &Budget| with_upload(&shared, upload, &wanted, budget)?.written(&wanted);
-    app.work.run(bytes, Some(place), answer).await
+    app.work.run(bytes as f64 * cost::UPLOADED_BYTE + searching, Some(place), answer).await
 }
 
 /// Searches with a shape of the index or an earlier upload.
@@ -195,21 +201,23 @@ async fn again(app: Arc<App>, params: SearchParams) -> Result<Written, ApiError>
     let (shared, collection) = (app.clone(), app.served.collection());
     match (params.shape, params.query) {
         (Some(id), None) => {
-            let cost = if wanted.geometry { app.cost(&collection, &id) } else { 0 };
+            let measuring = if wanted.geometry { app.cost(&collection, &id) } else { 0.0 };
+            let searching = collection.search_cost(&wanted.options, collection.n_vertices(&id));
             let answer = move |budget: &Budget| {
                 with_shape(&shared, &collection, id, &wanted, budget)?.written(&wanted)
             };
-            app.work.run(cost, None, answer).await
+            app.work.run(measuring + searching, None, answer).await
         }
         (None, Some(address)) => {
             let query = app.query(&collection, &address)?;
+            let cost = collection.search_cost(&wanted.options, query.n_vertices());
             let answer = move |budget: &Budget| {
                 let report = query.search(&collection, &wanted.options, budget)?;
                 let answer = Answer::new(&collection, query.name.clone(), report);
                 let answer = answer.with_measured(&query.measured, wanted.geometry);
                 Answer { query_id: Some(address), ..answer }.written(&wanted)
             };
-            app.work.run(0, None, answer).await
+            app.work.run(cost, None, answer).await
         }
         _ => Err(ApiError::bad_request("give either a shape with `shape` or an upload with `query`")),
     }

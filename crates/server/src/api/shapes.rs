@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 use super::answer::{Id, Params, Written, is_known, tag, tagged};
 use crate::app::App;
 use crate::collection::{Collection, ShapeSummary};
+use crate::cost;
 use crate::error::ApiError;
 use crate::measured::dots;
 
@@ -134,6 +135,7 @@ pub(super) async fn thumbnail(
             return Ok(tagged(tag, PNG, Some(picture)));
         }
     }
+    let cost = collection.n_vertices(&id) as f64 * cost::DRAWN_VERTEX;
     let drawing = move |budget: &Budget| match collection.search.mesh(&id) {
         Ok(mesh) => {
             let picture = draw(&mesh, View::default(), budget)?;
@@ -147,7 +149,7 @@ pub(super) async fn thumbnail(
         }
         Err(fault) => Err(fault.into()),
     };
-    app.work.run(0, None, drawing).await
+    app.work.run(cost, None, drawing).await
 }
 
 fn draw(mesh: &TriMesh, view: View, budget: &Budget) -> Result<Bytes, ApiError> {

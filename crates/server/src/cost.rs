@@ -1,0 +1,105 @@
+//! What jobs will take, in seconds on two cores.
+//!
+//! Measured with generated cats of 3,400 and 30,000 vertices and an index of 144 shapes. The [load](crate::load) learns how
+//! much faster or slower its machine is.
+
+use canonform::{Explain, SearchOptions, SearchRank};
+
+/// To measure and describe an upload: 22 s for a text file of 14 MB with 193,600 vertices, one core.
+pub(crate) const UPLOADED_BYTE: f64 = 1.6e-6;
+
+/// To read and measure a shape of the index: 1.1 s for 30,000 vertices.
+pub(crate) const MEASURED_VERTEX: f64 = 4e-5;
+
+/// To align two forms of 1,000 points: 0.7 s for 144 of them.
+const ALIGNED_FORM: f64 = 5e-3;
+
+/// To see how well a part fits into a shape: 0.45 s for 144 shapes.
+const FITTED_SHAPE: f64 = 3e-3;
+
+/// To compare the spectrum of a form with that of a shape: 6 ms for 144 shapes.
+const COMPARED_SPECTRUM: f64 = 4e-5;
+
+/// To read a result and align it in space: 0.05 s for 3,400 vertices.
+const EXPLAINED_VERTEX: f64 = 1.5e-5;
+
+/// To overlay two measured meshes: 0.05 s for 6,800 vertices.
+pub(crate) const COMPARED_VERTEX: f64 = 8e-6;
+
+/// To match two measured meshes: 2.8 s for 6,800 vertices, 19 s for 60,000.
+pub(crate) const MATCHED_VERTEX: f64 = 4e-4;
+
+/// To read and draw a mesh: 0.17 s for 30,000 vertices.
+pub(crate) const DRAWN_VERTEX: f64 = 5e-6;
+
+/// Most forms that are aligned for each result.
+const CANDIDATES: usize = 4;
+
+/// A search with a described query of so many vertices, among shapes of a mean size. A result is assumed to be as large as
+/// the larger of both.
+pub(crate) fn of_search(options: &SearchOptions, n_shapes: usize, mean: u64, vertices: u64) -> f64 {
+    let measured = vertices as f64 * MEASURED_VERTEX;
+    let ranked = match options.rank_by {
+        SearchRank::Plain | SearchRank::Graph => 0.0,
+        SearchRank::Part => measured + n_shapes as f64 * FITTED_SHAPE,
+        SearchRank::Forms => n_shapes as f64 * COMPARED_SPECTRUM,
+    };
+    let aligned = n_shapes.min(CANDIDATES * options.k) as f64 * ALIGNED_FORM;
+    let explained = match options.explain {
+        Explain::No => 0.0,
+        Explain::Kind => {
+            let result = ALIGNED_FORM + vertices.max(mean) as f64 * EXPLAINED_VERTEX;
+            // The components of the query are measured, too.
+            measured + n_shapes.min(options.k) as f64 * result
+        }
+    };
+    ranked + aligned + explained
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::load::{Length, Load};
+
+    #[test]
+    fn long_rankings_and_matches_are_long_jobs() {
+        use Explain::{Kind, No};
+        use SearchRank::{Forms, Graph, Part, Plain};
+        let length = |cost: f64| {
+            let accepted = Load::new(2, 1).accept(cost, std::time::Duration::from_secs(60));
+            accepted.unwrap().length
+        };
+        for (rank_by, explain, k, n_shapes, vertices, expected) in [
+            (Plain, No, 10, 100_000, 3000, Length::Short),
+            (Plain, No, 100, 100_000, 3000, Length::Long),
+            (Plain, No, 100, 50, 3000, Length::Short),
+            (Graph, No, 10, 100_000, 3000, Length::Short),
+            (Part, No, 10, 100, 3000, Length::Short),
+            (Part, No, 10, 1000, 3000, Length::Long),
+            (Part, No, 10, 10, 60_000, Length::Long),
+            (Forms, No, 10, 1000, 3000, Length::Short),
+            (Forms, No, 10, 100_000, 3000, Length::Long),
+            (Plain, Kind, 10, 100_000, 3000, Length::Short),
+            (Plain, Kind, 24, 100_000, 30_000, Length::Long),
+            (Plain, Kind, 24, 2, 3000, Length::Short),
+        ] {
+            let options = SearchOptions { rank_by, explain, k, ..SearchOptions::default() };
+            let cost = of_search(&options, n_shapes, 3000, vertices);
+            assert_eq!(length(cost), expected, "{options:?}, {n_shapes} shapes, {vertices} vertices");
+        }
+        let of_large = of_search(&SearchOptions { explain: Kind, ..Default::default() }, 100, 100_000, 3000);
+        assert_eq!(length(of_large), Length::Long, "the shapes are large");
+        for (n, each, expected) in [
+            (300, MATCHED_VERTEX, Length::Short),
+            (6800, MATCHED_VERTEX, Length::Long),
+            (6800, COMPARED_VERTEX, Length::Short),
+            (400_000, COMPARED_VERTEX, Length::Long),
+            (30_000, DRAWN_VERTEX, Length::Short),
+            (600_000, DRAWN_VERTEX, Length::Long),
+            (100_000, UPLOADED_BYTE, Length::Short),
+            (2_000_000, UPLOADED_BYTE, Length::Long),
+        ] {
+            assert_eq!(length(f64::from(n) * each), expected, "{n} of {each} s");
+        }
+    }
+}
