@@ -1,11 +1,11 @@
-//! Middleware of every request: checks of host and origin, security headers, panics.
+//! Middleware: who may ask for what, security headers, panics.
 
 use std::net::IpAddr;
 use std::panic::AssertUnwindSafe;
 use std::sync::Arc;
 
 use axum::extract::{Request, State};
-use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, Uri, header};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, Uri, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use futures_util::FutureExt;
@@ -13,7 +13,11 @@ use futures_util::FutureExt;
 use crate::app::App;
 use crate::connection::pace_of;
 use crate::error::ApiError;
+use crate::options::ServeOptions;
 use crate::pace::Phase;
+use crate::upload::drain;
+
+const SEC_FETCH_SITE: HeaderName = HeaderName::from_static("sec-fetch-site");
 
 /// Headers of every response. Plotly inserts style rules and renders its drawings to images.
 const HEADERS: [(HeaderName, &str); 5] = [
@@ -28,17 +32,20 @@ const HEADERS: [(HeaderName, &str); 5] = [
     (HeaderName::from_static("cross-origin-resource-policy"), "same-origin"),
 ];
 
-/// Rejects requests for other servers, turns panics into responses, and adds the headers.
+/// Refuses requests for other servers, turns panics into responses, and adds the headers.
 pub(crate) async fn guard(State(app): State<Arc<App>>, request: Request, next: Next) -> Response {
     let pace = pace_of(&request);
     let begin = |phase| pace.iter().for_each(|pace| pace.begin(phase));
     begin(Phase::Working);
-    let mut response = match check(&app, request.method(), request.uri(), request.headers()) {
+    let mut response = match check(&app, request.uri(), request.headers()) {
         Ok(()) => {
             let answer = AssertUnwindSafe(next.run(request)).catch_unwind().await;
             answer.unwrap_or_else(|_| ApiError::internal().into_response())
         }
-        Err(refused) => refused.into_response(),
+        Err(refused) => {
+            drain(request);
+            refused.into_response()
+        }
     };
     begin(Phase::Waiting);
     let headers = response.headers_mut();
@@ -50,42 +57,66 @@ pub(crate) async fn guard(State(app): State<Arc<App>>, request: Request, next: N
     response
 }
 
-fn check(app: &App, method: &Method, uri: &Uri, headers: &HeaderMap) -> Result<(), ApiError> {
-    // With several values, another program on the way may read another one.
-    let single = |name: HeaderName| {
-        let mut values = headers.get_all(&name).iter();
-        let value = values.next().and_then(|value| value.to_str().ok());
-        match values.next() {
-            Some(_) => Err(ApiError::bad_request(format!("the request has several `{name}` headers"))),
-            None => Ok(value),
+/// Refuses what a page elsewhere asks for, whatever the method: it cannot read answers, but every one of them costs work.
+/// Browsers say where a request comes from in `Sec-Fetch-Site`. Old ones, and all on plain HTTP from another machine, send
+/// only `Origin`, whose scheme says nothing behind a proxy. Other programs send neither.
+pub(crate) async fn refuse_foreign_pages(request: Request, next: Next) -> Result<Response, ApiError> {
+    let headers = request.headers();
+    let is_own = match (single(headers, &SEC_FETCH_SITE)?, single(headers, &header::ORIGIN)?) {
+        (Some(site), _) => matches!(site, "same-origin" | "none"),
+        (None, Some(origin)) => {
+            let host = single(headers, &header::HOST)?.unwrap_or_default();
+            origin.split_once("://").is_some_and(|(_, from)| from.eq_ignore_ascii_case(host))
         }
+        (None, None) => true,
     };
-    let host = single(header::HOST)?;
+    if is_own {
+        return Ok(next.run(request).await);
+    }
+    drain(request);
+    Err(ApiError::new(StatusCode::FORBIDDEN, "cross-origin requests are not allowed")
+        .with_remedy("send the request from a page of this server, or from a program that is not a browser"))
+}
+
+/// The value of a header. With several, another program on the way may read another one.
+fn single<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Result<Option<&'a str>, ApiError> {
+    let mut values = headers.get_all(name).iter();
+    match (values.next(), values.next()) {
+        (_, Some(_)) => Err(ApiError::bad_request(format!("the request has several `{name}` headers"))),
+        (value, None) => Ok(value.map(|value| value.to_str().unwrap_or_default())),
+    }
+}
+
+fn check(app: &App, uri: &Uri, headers: &HeaderMap) -> Result<(), ApiError> {
+    let host = single(headers, &header::HOST)?;
     let host = host.ok_or_else(|| ApiError::bad_request("the request has no Host header"))?;
     if uri.authority().is_some_and(|authority| authority.as_str() != host) {
         return Err(ApiError::bad_request("the address of the request and its Host header differ"));
     }
     // A page elsewhere can resolve its own name to this machine (DNS rebinding), but not change the Host header.
-    if app.options.listen.ip().is_loopback() && !is_loopback(host) {
+    let ServeOptions { listen, public_host, .. } = &app.options;
+    let name = without_port(host);
+    let is_public = public_host.as_ref().is_some_and(|public| public.eq_ignore_ascii_case(name));
+    if listen.ip().is_loopback() && !is_loopback(name) && !is_public {
         let error = format!("this server is not `{}`", host.chars().take(100).collect::<String>());
-        return Err(ApiError::new(StatusCode::MISDIRECTED_REQUEST, error)
-            .with_remedy("open it as localhost, or let the server listen on the address that others use"));
-    }
-    let origin = single(header::ORIGIN)?;
-    let foreign = origin.is_some_and(|origin| origin.strip_prefix("http://") != Some(host));
-    if foreign && method != Method::GET && method != Method::HEAD {
-        return Err(ApiError::new(StatusCode::FORBIDDEN, "cross-origin requests are not allowed"));
+        return Err(ApiError::new(StatusCode::MISDIRECTED_REQUEST, error).with_remedy(
+            "open it as localhost, let the server listen on the address that others use, or tell it the host name of its proxy",
+        ));
     }
     Ok(())
 }
 
-/// Whether a host, with or without a port, is a loopback name or address.
-fn is_loopback(host: &str) -> bool {
+/// A host without its port.
+fn without_port(host: &str) -> &str {
     let is_port = |port: &str| port.bytes().all(|digit| digit.is_ascii_digit());
-    let name = match host.rsplit_once(':') {
+    match host.rsplit_once(':') {
         Some((name, port)) if is_port(port) && !name.ends_with(':') => name,
         _ => host,
-    };
+    }
+}
+
+/// Whether a host without a port is a loopback name or address.
+fn is_loopback(name: &str) -> bool {
     let address = name.strip_prefix('[').and_then(|name| name.strip_suffix(']')).unwrap_or(name);
     name.eq_ignore_ascii_case("localhost")
         || address.parse().is_ok_and(|address: IpAddr| address.is_loopback())
@@ -100,7 +131,7 @@ mod tests {
         for host in
             ["localhost", "LOCALHOST:7878", "127.0.0.1", "127.0.0.1:1", "127.1.2.3:80", "[::1]:7878", "[::1]"]
         {
-            assert!(is_loopback(host), "{host}");
+            assert!(is_loopback(without_port(host)), "{host}");
         }
         for host in [
             "",
@@ -111,7 +142,7 @@ mod tests {
             "10.0.0.1",
             "[::2]:1",
         ] {
-            assert!(!is_loopback(host), "{host}");
+            assert!(!is_loopback(without_port(host)), "{host}");
         }
     }
 }

@@ -14,6 +14,9 @@ pub(crate) const STACK: usize = 8 << 20;
 pub struct ServeOptions {
     /// The address; port 0 takes a free port. Default: `127.0.0.1:7878`, which other machines cannot reach.
     pub listen: SocketAddr,
+    /// The name under which a reverse proxy passes requests on, without a port. A server that listens on a loopback address
+    /// answers no other name but those of this machine. Default: none.
+    pub public_host: Option<String>,
     /// Maximum number of bytes in a request. Default: 64 MB.
     pub max_upload: usize,
     /// Maximum number of vertices of a mesh; it may have four times as many faces. Default: 200,000.
@@ -55,6 +58,7 @@ impl Default for ServeOptions {
     fn default() -> Self {
         Self {
             listen: SocketAddr::from((Ipv4Addr::LOCALHOST, 7878)),
+            public_host: None,
             max_upload: 64_000_000,
             max_vertices: 200_000,
             max_uploads: 16,

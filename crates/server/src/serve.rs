@@ -6,14 +6,14 @@ use std::pin::pin;
 use std::sync::Arc;
 use std::time::Duration;
 
-use axum::middleware::from_fn_with_state;
+use axum::middleware::{from_fn, from_fn_with_state};
 use futures_util::future::{Either, select};
 use hyper_util::server::graceful::GracefulShutdown;
 use tokio::sync::watch;
 
 use crate::app::App;
 use crate::error::ServerError;
-use crate::guard::guard;
+use crate::guard::{guard, refuse_foreign_pages};
 use crate::options::{STACK, ServeOptions};
 use crate::pace::Pace;
 use crate::places::Places;
@@ -99,7 +99,9 @@ impl Server {
     async fn serve(self) -> Result<(), ServerError> {
         let listener = tokio::net::TcpListener::from_std(self.listener).map_err(ServerError::Runtime)?;
         let (app, mut stop) = (self.app, self.stop.1);
+        // Pages elsewhere may link to the pages here, which begin no work before their own scripts ask for it.
         let router = api::router()
+            .layer(from_fn(refuse_foreign_pages))
             .merge(page::router())
             .layer(from_fn_with_state(app.clone(), guard))
             .with_state(app.clone());

@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use ureq::Agent;
 
 /// Headless, without a sandbox (containers do not provide one), with WebGL in software, and without network access of its
-/// own: only names of this machine are resolved.
+/// own: only names of this machine are resolved, and those of examples, which lead to it.
 const ARGUMENTS: [&str; 13] = [
     "--headless=new",
     "--no-sandbox",
@@ -24,7 +24,7 @@ const ARGUMENTS: [&str; 13] = [
     "--enable-unsafe-swiftshader",
     "--force-device-scale-factor=1",
     "--window-size=1280,900",
-    "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1, EXCLUDE localhost",
+    "--host-resolver-rules=MAP *.example.org 127.0.0.1, MAP * ~NOTFOUND, EXCLUDE 127.0.0.1, EXCLUDE localhost",
 ];
 
 /// A browser window of a chromedriver of its own, both closed when dropped.
@@ -73,6 +73,7 @@ impl Session {
         let arguments: Vec<&str> = ARGUMENTS.into_iter().chain([profile.as_str()]).collect();
         let capabilities = json!({
             "browserName": "chrome",
+            "acceptInsecureCerts": true,
             "goog:chromeOptions": {
                 "binary": browser,
                 "args": arguments,

@@ -15,6 +15,9 @@ pub(crate) struct ServeArgs {
     /// meshes
     #[arg(long, value_name = "ADDRESS:PORT", default_value_t = ServeOptions::default().listen)]
     pub(crate) listen: SocketAddr,
+    /// The host name that a reverse proxy passes on, such as shapes.example.org
+    #[arg(long, value_name = "NAME", value_parser = host_name)]
+    pub(crate) public_host: Option<String>,
     /// Largest upload, in megabytes
     #[arg(long, value_name = "MB", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=2000))]
     pub(crate) max_upload: u32,
@@ -33,11 +36,30 @@ impl ServeArgs {
     pub(crate) fn options(&self) -> ServeOptions {
         ServeOptions {
             listen: self.listen,
+            public_host: self.public_host.clone(),
             max_upload: self.max_upload as usize * 1_000_000,
             max_vertices: self.max_vertices,
             time_limit: Duration::from_secs(self.time_limit),
             jobs: self.jobs,
             ..ServeOptions::default()
+        }
+    }
+}
+
+fn host_name(text: &str) -> Result<String, &'static str> {
+    let is_name = !text.is_empty() && !text.contains(['/', ':']);
+    is_name.then(|| text.to_owned()).ok_or("give the name alone, without https:// and without a port")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_host_name_is_not_an_address() {
+        assert_eq!(host_name("shapes.example.org").as_deref(), Ok("shapes.example.org"));
+        for wrong in ["", "https://shapes.example.org", "shapes.example.org:443", "shapes.example.org/"] {
+            assert!(host_name(wrong).unwrap_err().contains("without https://"), "{wrong}");
         }
     }
 }

@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use canonform::mesh::shapes;
 use canonform_server::ServeOptions;
+use datasets::{ArticulatedOptions, Family, articulated_shape};
 
 use crate::client::{ask, connect, form, upload, upload_head};
 use crate::running::options;
@@ -105,15 +106,127 @@ fn requests_for_other_servers_are_rejected() {
     assert_eq!(status("GET", "/healthz", &[twice[1], twice[0]]), 400);
     assert_eq!(status("GET", "http://evil.example/healthz", &[("Host", &host)]), 400);
     assert_eq!(status("GET", &format!("http://{host}/healthz"), &[("Host", &host)]), 200);
-    let search = "/api/search?shape=ring0";
-    let own = format!("http://127.0.0.1:{port}");
-    assert_eq!(status("POST", search, &[("Origin", &own)]), 200);
-    assert_eq!(status("POST", search, &[("Origin", &own), ("Origin", "http://evil.example")]), 400);
-    for origin in
-        ["http://evil.example", "null", "https://127.0.0.1", &format!("http://127.0.0.1:{}", port ^ 1)]
-    {
-        assert_eq!(status("POST", search, &[("Origin", origin)]), 403, "{origin}");
+    // Headers of a proxy are those of anybody.
+    for header in ["X-Forwarded-Host", "Forwarded", "X-Real-IP"] {
+        let asked = [("Host", "evil.example"), (header, "localhost")];
+        assert_eq!(status("GET", "/healthz", &asked), 421, "{header}");
     }
+}
+
+#[test]
+fn a_proxy_may_pass_on_its_name_if_it_is_told() {
+    let told = ServeOptions { public_host: Some("shapes.example.org".to_owned()), ..options() };
+    for (options, expected) in [(told, 200), (options(), 421)] {
+        let server = Served::start(options);
+        let status =
+            |host: &str| ask(server.address, "GET", "/healthz", &[("Host", host)], b"").unwrap().status;
+        for host in ["shapes.example.org", "Shapes.Example.ORG", "shapes.example.org:8443"] {
+            assert_eq!(status(host), expected, "{host}");
+        }
+        for host in ["evil.example", "shapes.example.org.evil.example", "x.shapes.example.org", "example.org"]
+        {
+            assert_eq!(status(host), 421, "{host}");
+        }
+        assert_eq!(status("localhost"), 200);
+    }
+}
+
+#[test]
+fn only_own_pages_and_programs_may_ask() {
+    let server = Served::start(options());
+    let host = server.address.to_string();
+    let [http, https] = ["http", "https"].map(|scheme| format!("{scheme}://{host}"));
+    let other_port = format!("http://127.0.0.1:{}", server.address.port() ^ 1);
+    let own = [&*http, &*https];
+    let foreign = ["http://evil.example", "https://127.0.0.1", "null", "", &*other_port];
+    let work = [
+        ("GET", "/api/search?shape=ring0&geometry=false"),
+        ("POST", "/api/search?shape=ring0&geometry=false"),
+        ("GET", "/api/compare?a=none&b=ring1"),
+        ("GET", "/api/match?a=none&b=ring1"),
+        ("GET", "/api/duplicates"),
+        ("GET", "/api/shapes"),
+        ("GET", "/api/shapes/ring0/mesh"),
+        ("GET", "/api/shapes/ring0/form"),
+        ("GET", "/api/shapes/ring0/thumbnail"),
+        ("GET", "/api/openapi.json"),
+        ("GET", "/healthz"),
+    ];
+    let described =
+        crate::schema::Description(ask(server.address, "GET", "/api/openapi.json", &[], b"").unwrap().json());
+    for path in described.0["paths"].as_object().unwrap().keys() {
+        let path = path.replace("{id}", "ring0");
+        assert!(
+            work.iter().any(|(_, target)| target.split('?').next() == Some(&*path)),
+            "{path} is not tried"
+        );
+    }
+    let origins = [None].into_iter().chain(own.iter().chain(&foreign).map(Some));
+    for origin in origins {
+        for site in
+            [None, Some("same-origin"), Some("none"), Some("same-site"), Some("cross-site"), Some("?")]
+        {
+            let headers: Vec<(&str, &str)> = [("Sec-Fetch-Site", site), ("Origin", origin.copied())]
+                .into_iter()
+                .filter_map(|(name, value)| Some((name, value?)))
+                .collect();
+            let status = |method, target| ask(server.address, method, target, &headers, b"").unwrap().status;
+            let is_allowed = match (site, origin) {
+                (Some(site), _) => ["same-origin", "none"].contains(&site),
+                (None, Some(origin)) => own.contains(origin),
+                (None, None) => true,
+            };
+            for (method, target) in work {
+                let status = status(method, target);
+                let expected: &[u16] = match is_allowed {
+                    // A pair without its first shape costs nothing.
+                    true if target.contains("a=none") => &[404],
+                    true => &[200, 202],
+                    false => &[403],
+                };
+                assert!(expected.contains(&status), "{method} {target} {headers:?}: {status}");
+            }
+            // A link may lead here.
+            for target in ["/", "/?shape=ring0", "/duplicates", "/assets/app.js"] {
+                assert_eq!(status("GET", target), 200, "{target} {headers:?}");
+            }
+        }
+    }
+    for twice in [("Origin", &*http), ("Sec-Fetch-Site", "same-origin")] {
+        let headers = [twice, (twice.0, "http://evil.example")];
+        assert_eq!(ask(server.address, "GET", "/api/shapes", &headers, b"").unwrap().status, 400);
+    }
+}
+
+#[test]
+fn matches_leave_a_place_to_searches() {
+    let check = Duration::from_millis(50);
+    let server = Served::start_apart(ServeOptions { jobs: 2, index_check: check, ..options() });
+    let poses = [0, 1].map(|pose| {
+        let options = ArticulatedOptions { n_vertices: 2600, ..ArticulatedOptions::default() };
+        articulated_shape(Family::Cat, pose, &options).unwrap().mesh
+    });
+    for (i, mesh) in poses.iter().enumerate() {
+        canonform::mesh::io::write(&server.mesh(&format!("cat{i}")), mesh).unwrap();
+    }
+    server.rebuild();
+    let get = |target: &str| ask(server.address, "GET", target, &[], b"").unwrap();
+    // Both are in the cache now.
+    for target in ["/api/shapes/cat0/mesh", "/api/shapes/cat1/mesh"] {
+        let start = std::time::Instant::now();
+        while get(target).status != 200 {
+            assert!(start.elapsed() < Duration::from_secs(30), "the index is not opened again");
+            std::thread::sleep(check);
+        }
+    }
+    let address = server.address;
+    let matches = [0; 2].map(|_| {
+        std::thread::spawn(move || ask(address, "GET", "/api/match?a=cat0&b=cat1", &[], b"").unwrap().status)
+    });
+    std::thread::sleep(Duration::from_millis(200));
+    assert_eq!(get("/api/search?shape=ring0&geometry=false").status, 200);
+    assert!(matches.iter().all(|matching| !matching.is_finished()), "the search waited for a match");
+    assert_eq!(matches.map(|matching| matching.join().unwrap()), [200, 200]);
 }
 
 #[test]

@@ -17,6 +17,8 @@ mod limits;
 #[cfg(test)]
 mod page;
 #[cfg(test)]
+mod proxy;
+#[cfg(test)]
 mod running;
 #[cfg(test)]
 mod schema;

@@ -1,0 +1,228 @@
+//! Behind the reverse proxy of the guide: nginx with TLS and a password.
+//!
+//! Skipped without nginx, openssl or curl, unless `CANONFORM_PROXY` is `required`.
+
+use std::fs;
+use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use browser::Browser;
+use canonform_server::ServeOptions;
+use tempfile::TempDir;
+
+use crate::running::options;
+use crate::support::Served;
+
+const NAME: &str = "shapes.example.org";
+const USER: &str = "ada:secret";
+
+/// The block of code of the guide that is marked with this language.
+fn recipe(language: &str) -> String {
+    let page =
+        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/server.md")).unwrap();
+    let (_, block) = page.split_once(&format!("```{language}\n")).unwrap();
+    block.split("```").next().unwrap().to_owned()
+}
+
+/// The output of a program that must succeed.
+fn run(program: &str, arguments: &[&str]) -> String {
+    let done = Command::new(program).args(arguments).output().unwrap();
+    let error = String::from_utf8_lossy(&done.stderr);
+    assert!(done.status.success(), "{program} {arguments:?}: {error}");
+    String::from_utf8(done.stdout).unwrap().trim().to_owned()
+}
+
+/// nginx with the recipe of the guide, in a folder of its own.
+struct Proxy {
+    process: Child,
+    folder: TempDir,
+    port: u16,
+}
+
+impl Drop for Proxy {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+impl Proxy {
+    /// Only ports and files differ from the recipe.
+    fn start(server: SocketAddr) -> Option<Self> {
+        let programs = [("nginx", "-v"), ("openssl", "version"), ("curl", "--version")];
+        let missing = programs.into_iter().find_map(|(program, version)| {
+            let asked =
+                Command::new(program).arg(version).stdout(Stdio::null()).stderr(Stdio::null()).status();
+            asked.is_err().then_some(program)
+        });
+        if let Some(program) = missing {
+            let is_required = std::env::var("CANONFORM_PROXY").is_ok_and(|value| value == "required");
+            assert!(
+                !is_required,
+                "{program} is not installed (on Debian: apt-get install nginx-light openssl curl)"
+            );
+            println!("skipped: {program} is not installed");
+            return None;
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name).display().to_string();
+        let (key, certificate) = (path("shapes.key"), path("shapes.pem"));
+        let subject = [format!("/CN={NAME}"), format!("subjectAltName=DNS:{NAME}")];
+        let [common, alternative] = &subject;
+        run(
+            "openssl",
+            &[
+                "req",
+                "-x509",
+                "-newkey",
+                "rsa:2048",
+                "-nodes",
+                "-days",
+                "1",
+                "-keyout",
+                &key,
+                "-out",
+                &certificate,
+                "-subj",
+                common,
+                "-addext",
+                alternative,
+            ],
+        );
+        let (user, password) = USER.split_once(':').unwrap();
+        let hash = run("openssl", &["passwd", "-apr1", password]);
+        fs::write(path("shapes.users"), format!("{user}:{hash}\n")).unwrap();
+        let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+        let mut recipe = recipe("nginx");
+        for (given, here) in [
+            ("listen 443", format!("listen 127.0.0.1:{port}")),
+            ("/etc/nginx", folder.path().display().to_string()),
+            ("127.0.0.1:7878", server.to_string()),
+        ] {
+            assert!(recipe.contains(given), "{given}");
+            recipe = recipe.replace(given, &here);
+        }
+        let temporary: String = ["client_body", "proxy", "fastcgi", "uwsgi", "scgi"]
+            .map(|kind| format!("{kind}_temp_path {};\n", path(kind)))
+            .concat();
+        let configuration = format!(
+            "daemon off;\nmaster_process off;\npid {};\nevents {{}}\nhttp {{\naccess_log off;\n{temporary}{recipe}}}\n",
+            path("pid")
+        );
+        fs::write(path("nginx.conf"), configuration).unwrap();
+        let log = fs::File::create(path("log")).unwrap();
+        let mut command = Command::new("nginx");
+        command.args(["-p", &path(""), "-c", &path("nginx.conf"), "-e", "stderr"]).stderr(log);
+        let process = command.spawn().unwrap();
+        let proxy = Self { process, folder, port };
+        let start = Instant::now();
+        while TcpStream::connect(("127.0.0.1", port)).is_err() {
+            let log = || fs::read_to_string(proxy.folder.path().join("log"));
+            assert!(start.elapsed() < Duration::from_secs(20), "nginx does not start: {:?}", log());
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        Some(proxy)
+    }
+
+    fn address(&self) -> String {
+        format!("{NAME}:{}", self.port)
+    }
+
+    /// Asks as curl does: the status and the body. The certificate must be that of the host.
+    fn curl(&self, host: &str, target: &str, arguments: &[&str]) -> (u16, String) {
+        let path = |name: &str| self.folder.path().join(name).display().to_string();
+        let address = format!("https://{host}:{}{target}", self.port);
+        let resolve = format!("{host}:{}:127.0.0.1", self.port);
+        let (certificate, body) = (path("shapes.pem"), path("body"));
+        let mut all = vec!["-sS", "--noproxy", "*", "--cacert", &certificate, "--resolve", &resolve];
+        all.extend(["-o", &body, "-w", "%{http_code}"]);
+        all.extend(arguments);
+        all.push(&address);
+        let status = run("curl", &all).parse().unwrap();
+        (status, fs::read_to_string(body).unwrap())
+    }
+}
+
+/// As the guide says to start it.
+fn behind() -> ServeOptions {
+    let page =
+        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/server.md")).unwrap();
+    assert!(page.contains(&format!("--public-host {NAME}\n")));
+    ServeOptions { public_host: Some(NAME.to_owned()), ..options() }
+}
+
+#[test]
+fn the_proxy_of_the_guide_passes_requests_on() {
+    let server = Served::start(behind());
+    let Some(proxy) = Proxy::start(server.address) else { return };
+    let ask =
+        |target: &str, arguments: &[&str]| proxy.curl(NAME, target, &[&["-u", USER][..], arguments].concat());
+    assert_eq!(proxy.curl(NAME, "/", &[]).0, 401, "without the password");
+    let (status, page) = ask("/", &[]);
+    assert!(status == 200 && page.contains("<title>canonform"), "{page}");
+    assert_eq!(ask("/healthz", &[]).0, 200);
+
+    // An upload beyond the usual limit of nginx.
+    let file = proxy.folder.path().join("ring.off");
+    let mesh = fs::read_to_string(server.mesh("ring0")).unwrap();
+    let comments = format!("# {}\n", "x".repeat(98)).repeat(30_000);
+    fs::write(&file, mesh.replacen('\n', &format!("\n{comments}"), 1)).unwrap();
+    let form = format!("mesh=@{}", file.display());
+    let upload = |headers: &[&str]| {
+        let headers = headers.iter().flat_map(|header| ["-H", *header]);
+        let arguments: Vec<&str> = ["-F", &form, "-F", "geometry=false"].into_iter().chain(headers).collect();
+        ask("/api/search", &arguments)
+    };
+    let own = format!("Origin: https://{}", proxy.address());
+    let (own, same, cross) = (&*own, "Sec-Fetch-Site: same-origin", "Sec-Fetch-Site: cross-site");
+    for headers in [&[][..], &[own], &[same], &[own, same]] {
+        let (status, answer) = upload(headers);
+        assert_eq!(status, 200, "{headers:?}: {answer}");
+        let answer: serde_json::Value = serde_json::from_str(&answer).unwrap();
+        assert_eq!(answer["results"][0]["id"], "ring0");
+    }
+    for header in ["Origin: https://evil.example", "Origin: null", cross] {
+        let (status, answer) = upload(&[header]);
+        assert_eq!(status, 403, "{header}: {answer}");
+    }
+    for target in ["/api/duplicates", "/api/match?a=box0&b=box1", "/api/search?shape=ring0"] {
+        assert_eq!(ask(target, &["-H", cross]).0, 403, "{target}");
+        assert!([200, 202].contains(&ask(target, &["-H", same]).0), "{target}");
+    }
+    // Another name that leads to the proxy, with its certificate accepted.
+    assert_eq!(proxy.curl("evil.example", "/healthz", &["-k", "-u", USER]).0, 421);
+}
+
+#[test]
+fn the_proxy_of_the_guide_allows_what_the_server_allows() {
+    let recipe = recipe("nginx");
+    let number = |name: &str, unit: char| -> u64 {
+        let (_, rest) = recipe.split_once(name).unwrap();
+        rest.split(unit).next().unwrap().trim().parse().unwrap()
+    };
+    let options = ServeOptions::default();
+    // nginx counts in powers of two, and the form around the file needs some space.
+    assert!(number("client_max_body_size", 'm') << 20 > options.max_upload as u64 + (1 << 20));
+    assert!(number("proxy_read_timeout", 's') > options.time_limit.as_secs() + 10);
+}
+
+#[test]
+fn the_page_works_behind_the_proxy_of_the_guide() {
+    let server = Served::start(behind());
+    let Some(proxy) = Proxy::start(server.address) else { return };
+    let Some(browser) = Browser::start() else { return };
+    // The browser keeps the password for the addresses without it.
+    for user in [&format!("{USER}@"), ""] {
+        browser.open(&format!("https://{user}{}/", proxy.address())).unwrap();
+    }
+    browser.wait_for("document.querySelectorAll('#shapes .tile').length === 7").unwrap();
+    browser.upload("#file", &[&server.mesh("ring0")]).unwrap();
+    browser.wait_for("document.querySelector('#answer').dataset.state === 'ready'").unwrap();
+    let label = browser.eval("return document.querySelector('#predicted').dataset.label").unwrap();
+    assert_eq!(label, "ring");
+    browser.open(&format!("https://{}/duplicates", proxy.address())).unwrap();
+    browser.wait_for("document.querySelector('#duplicates').dataset.state === 'ready'").unwrap();
+    assert_eq!(browser.console().unwrap(), []);
+}
