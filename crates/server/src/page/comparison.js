@@ -12,8 +12,14 @@ function extent({ positions }) {
   return Math.max(...ends.map(([low, high]) => high - low));
 }
 
-// Gaps below this share of the extent are rounding, and have the colour of zero.
-const ROUNDING = 1e-3;
+// Gaps below this share of the extent come from rounded coordinates in files, and have the colour of zero.
+const ROUNDING = 1e-5;
+
+// The largest gap between two meshes, and the end of the scale of colours; no gap if it is rounding.
+export function gapOf([first], { max }) {
+  const rounding = ROUNDING * extent(first);
+  return max < rounding ? { largest: 0, scale: rounding } : { largest: max, scale: max };
+}
 
 // Views are created once and then updated: browsers limit the number of WebGL scenes.
 export const views = {};
@@ -75,15 +81,14 @@ export class Comparison {
     const inSpace = Boolean(meshes);
     overlay.dataset.shown = inSpace ? 'meshes' : 'forms';
     byId('shown-both').textContent = inSpace ? 'both meshes' : 'both forms';
-    const most = inSpace ? gap.max : Math.max(residual[0].max, residual[1].max);
-    const isRounding = inSpace && most < ROUNDING * extent(meshes[0]) * ROUNDING;
+    const most = inSpace ? gapOf(meshes, gap).largest : Math.max(residual[0].max, residual[1].max);
     const shown = inSpace
       ? 'The picture shows the meshes, aligned in space at the size of the first. Colour is the gap between them: '
       : 'The picture shows the canonical forms, aligned, since the meshes are not one rigid body. Colour is the distance between them: ';
     // Names keep their letters.
     byId('overlay-kind').textContent = `${relation.text} (${Math.round(100 * relation.confidence)} % certain).`;
     byId('overlay-kind').dataset.kind = relation.kind;
-    byId('overlay-facts').textContent = `${sentence(relation.because.text)} ${shown}${isRounding ? 'there is none' : `at most ${number(most)}`}.`;
+    byId('overlay-facts').textContent = `${sentence(relation.because.text)} ${shown}${inSpace && most === 0 ? 'there is none' : `at most ${number(most)}`}.`;
     byId('shown-first').textContent = answer.a;
     byId('shown-second').textContent = answer.b;
     this.answer = answer;
@@ -97,8 +102,7 @@ export class Comparison {
     const { meshes, gap, forms, residual, a, b } = this.answer;
     const [first, second] = meshes ?? forms;
     const shown = document.querySelector('input[name=shown]:checked').value;
-    const most = meshes ? Math.max(gap.max, ROUNDING * extent(first)) : Math.max(residual[0].max, residual[1].max);
-    const range = [0, most];
+    const range = [0, meshes ? gapOf(meshes, gap).scale : Math.max(residual[0].max, residual[1].max)];
     const shell = { ...second, values: undefined, color: '#8fa3b8' };
     const [surfaces, opacity] = {
       both: [[first, shell], [1, 0.35]],

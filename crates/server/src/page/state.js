@@ -4,10 +4,13 @@
 //   /?shape=ID             a search with a shape of the index
 //   /?query=ADDRESS        a search with an upload, while the server keeps it
 //   &hit=ID                one of the results, overlaid with the query
-//   &k=N &exact=true &rank=graph|part  how to search
+//   &k=N &exact=true &rank=RANK  how to search; the list #rank has all ranks
 //   &filter=TEXT           the shapes listed beside the results
 
 export const USUAL_K = 12;
+
+// The first is the usual one.
+const RANKS = [...document.querySelectorAll('#rank option')].map(({ value }) => value);
 
 export function read() {
   const given = new URLSearchParams(location.search);
@@ -18,7 +21,7 @@ export function read() {
     hit: given.get('hit'),
     k: k >= 1 && k <= 100 ? k : USUAL_K,
     exact: given.get('exact') === 'true',
-    rank: ['graph', 'part'].includes(given.get('rank')) ? given.get('rank') : 'plain',
+    rank: RANKS.includes(given.get('rank')) ? given.get('rank') : RANKS[0],
     filter: given.get('filter') ?? '',
   };
 }
@@ -30,7 +33,7 @@ export function address({ shape, query, hit, k, exact, rank, filter }) {
   if (hit) params.set('hit', hit);
   if (k && k !== USUAL_K) params.set('k', k);
   if (exact) params.set('exact', 'true');
-  if (rank && rank !== 'plain') params.set('rank', rank);
+  if (rank && rank !== RANKS[0]) params.set('rank', rank);
   if (filter) params.set('filter', filter);
   const text = params.toString();
   return text ? `/?${text}` : '/';
@@ -41,7 +44,7 @@ export function searched({ shape, query, k, exact, rank }) {
   const params = new URLSearchParams(shape ? { shape } : { query });
   params.set('k', k);
   if (exact) params.set('exact', 'true');
-  if (rank && rank !== 'plain') params.set('rank', rank);
+  if (rank && rank !== RANKS[0]) params.set('rank', rank);
   return params;
 }
 

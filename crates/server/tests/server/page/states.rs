@@ -86,21 +86,82 @@ fn options_filters_and_downloads_follow_the_address() {
     page.browser.eval("history.back()").unwrap();
     page.wait_for("!document.querySelector('#exact').checked");
     page.answered();
-    page.browser
-        .eval("const r = document.querySelector('#rank'); r.value = 'graph'; r.dispatchEvent(new Event('change'))")
-        .unwrap();
-    page.wait_for(
-        "[...document.querySelectorAll('#results .tile')].every(tile => tile.title.includes('rank distance'))",
-    );
-    assert_eq!(page.address(), "/?shape=cat0&k=6&rank=graph&filter=cent");
-    page.browser.eval("history.back()").unwrap();
-    page.wait_for("document.querySelector('#rank').value === 'plain'");
-    page.answered();
     let table = page.eval("fetch(document.querySelector('#as-csv').href).then(found => found.text())");
     assert_eq!(table.as_str().unwrap().lines().count(), 7, "{table}");
     let json = page.eval("fetch(document.querySelector('#as-json').href).then(found => found.json())");
     assert_eq!((json["results"].as_array().unwrap().len(), &json["mesh"]), (6, &serde_json::Value::Null));
     page.assert_sound();
+}
+
+#[test]
+fn every_order_that_is_offered_can_be_had() {
+    let Some(page) = Page::open(1280, 900) else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let offered = page.eval("[...document.querySelectorAll('#rank option')].map(option => option.value)");
+    let offered: Vec<&str> = offered.as_array().unwrap().iter().map(|rank| rank.as_str().unwrap()).collect();
+    assert_eq!(offered, ["plain", "graph", "part", "forms"]);
+    let is_ranked = |rank: &str| {
+        page.answered();
+        let asked = "fetch(document.querySelector('#as-json').href).then(found => found.json())";
+        assert_eq!(page.eval(asked)["rank_by"], rank);
+        assert_eq!(page.eval("document.querySelector('#rank').value"), rank);
+        let address = page.address();
+        assert_eq!(address.contains(&format!("rank={rank}")), rank != offered[0], "{address}");
+    };
+    for rank in &offered {
+        page.go("/?shape=cat0&k=6");
+        page.answered();
+        let choose = format!(
+            "const list = document.querySelector('#rank'); list.value = '{rank}'; list.dispatchEvent(new Event('change'))"
+        );
+        page.browser.eval(&choose).unwrap();
+        is_ranked(rank);
+        let order = match *rank {
+            "plain" => "",
+            "graph" => "rank distance",
+            "part" => "part distance",
+            _ => "form distance",
+        };
+        page.wait_for(&format!(
+            "[...document.querySelectorAll('#results .tile')].every(tile => tile.title.includes('{order}'))"
+        ));
+        // The address is enough, and an upload is ranked in the same way.
+        page.browser.eval("location.reload()").unwrap();
+        is_ranked(rank);
+        let name = format!("{rank}.off");
+        page.browser.upload("#file", &[&file(&folder, &name, Family::Cat)]).unwrap();
+        page.wait_for(&format!("document.querySelector('#query-name').textContent === '{name}'"));
+        is_ranked(rank);
+    }
+    page.assert_sound();
+}
+
+#[test]
+fn a_gap_of_rounding_is_none_in_words_and_in_colours() {
+    let Some(page) = Page::open(1280, 900) else { return };
+    let gap = |of_rounding: f64| {
+        let found = page.eval(&format!(
+            "(async () => {{
+                 const {{ gapOf }} = await import('/assets/comparison.js');
+                 const mesh = await (await fetch('/api/shapes/cat0/mesh')).json();
+                 const {{ scale }} = gapOf([mesh], {{ max: 0 }});
+                 const gap = gapOf([mesh], {{ max: {of_rounding} * scale }});
+                 return [scale, gap.largest / scale, gap.scale / scale];
+             }})()"
+        ));
+        [0, 1, 2].map(|i| found[i].as_f64().unwrap())
+    };
+    let [rounding, largest, scale] = gap(0.9);
+    assert_eq!([largest, scale], [0.0, 1.0]);
+    let [_, largest, scale] = gap(1.5);
+    assert!((largest - 1.5).abs() < 1e-9 && (scale - 1.5).abs() < 1e-9, "{largest}, {scale}");
+    let mesh = super::support::body(Family::Cat, 0).mesh;
+    let extent = |axis: usize| {
+        let of_axis = || mesh.positions.iter().map(|p| p[axis]);
+        of_axis().fold(f64::MIN, f64::max) - of_axis().fold(f64::MAX, f64::min)
+    };
+    let extent = (0..3).map(extent).fold(0.0, f64::max);
+    assert!((rounding / extent / 1e-5 - 1.0).abs() < 1e-3, "{rounding} of {extent}");
 }
 
 #[test]
