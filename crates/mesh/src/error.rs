@@ -74,6 +74,11 @@ pub enum MeshError {
 fn unknown_extension(extension: &str) -> String {
     match extension {
         "" => "the file name has no extension".into(),
+        "las" | "laz" => {
+            format!(
+                "unknown mesh format `.{extension}`, which `pdal translate in.{extension} out.ply` converts"
+            )
+        }
         _ => format!("unknown mesh format `.{extension}`"),
     }
 }

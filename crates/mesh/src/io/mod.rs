@@ -1,5 +1,5 @@
 //! Mesh files: OFF, OBJ, PLY, STL, MATLAB `.mat`, TOSCA's `.vert`/`.tri` pairs, glTF, GLB and 3MF. Point clouds: the same
-//! without faces, XYZ, PTS and LAS.
+//! without faces, XYZ and PTS.
 //!
 //! The extension determines the format, in upper or lower case; [`FORMATS`] is the table of them. Any file may be
 //! compressed, as `cat.obj.gz`. Vertices keep the order of the file, whether a face uses them or not. Polygons are

@@ -1,7 +1,6 @@
 //! The mesh formats, one module each, and the table of their names, extensions and abilities.
 
 mod gltf;
-mod las;
 mod mat;
 #[cfg(test)]
 mod mutation_tests;
@@ -63,7 +62,7 @@ pub(super) enum Precision {
 }
 
 /// All formats that can be read.
-pub static FORMATS: [Format; 12] = [
+pub static FORMATS: [Format; 11] = [
     Format {
         write: &[off::write],
         has_fields: true,
@@ -105,7 +104,6 @@ pub static FORMATS: [Format; 12] = [
     Format { write: &[threemf::write], ..read_only("3MF", &["3mf"], threemf::check_start, threemf::parse) },
     read_only("XYZ", &["xyz"], xyz::check_start, xyz::parse),
     read_only("PTS", &["pts"], xyz::check_start, xyz::parse),
-    read_only("LAS", &["las"], las::check_start, las::parse),
 ];
 
 /// A format with 64-bit coordinates that cannot be written.
@@ -248,7 +246,7 @@ mod tests {
         assert_eq!(or_list(writable(Content::Mesh)), ".off, .obj, .ply, .stl, .vert, .glb or .3mf");
         assert_eq!(
             mesh_files(),
-            "a .off, .obj, .ply, .stl, .mat, .glb, .gltf, .3mf, .xyz, .pts or .las file, or a .vert with its .tri"
+            "a .off, .obj, .ply, .stl, .mat, .glb, .gltf, .3mf, .xyz or .pts file, or a .vert with its .tri"
         );
     }
 }

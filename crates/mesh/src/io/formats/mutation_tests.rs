@@ -83,10 +83,6 @@ fn samples() -> Vec<Sample> {
         let (name, files) = (extension.to_owned(), vec![text.into_bytes()]);
         samples.push(Sample { name, format: named(extension), files, damaged: 0, wrap: None });
     }
-    for minor in [2, 4] {
-        let (name, files) = (format!("las 1.{minor}"), vec![super::las::sample(&mesh.positions, minor)]);
-        samples.push(Sample { name, format: named("las"), files, damaged: 0, wrap: None });
-    }
     let wrap: Wrap = super::threemf::package_of;
     let files = vec![super::threemf::model_of(&mesh).into_bytes()];
     samples.push(Sample {
