@@ -82,6 +82,7 @@ fn notes(json: &Json, args: &ConvertArgs) {
     for what in &json.file.ignored {
         base::terminal::note(&format!("{name}: ignored {what}"));
     }
+    json.file.notes.iter().for_each(|note| base::terminal::note(&format!("{name}: {note}")));
     let is_3mf =
         canonform::mesh::io::extension(&json.output) == "3mf" || args.output_format.as_deref() == Some("3mf");
     let kept = is_3mf && json.file.unit == Some(canonform::mesh::io::LengthUnit::Millimeter);

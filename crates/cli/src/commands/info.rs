@@ -95,6 +95,7 @@ fn answer(info: &MeshInfo) -> Answer {
     if !info.file.ignored.is_empty() {
         facts.push(("ignored", info.file.ignored.join(", ")));
     }
+    facts.extend(info.file.notes.iter().map(|note| ("uncertain", note.clone())));
     let mut details = facts_of(mesh);
     let FileFacts { unit, instances, .. } = &info.file;
     details.extend(unit.map(|unit| ("unit of length", unit.name().to_owned())));

@@ -25,6 +25,8 @@ pub struct FileFacts {
     pub instances: Option<usize>,
     /// What was ignored although it has to do with the shape, in words.
     pub ignored: Vec<&'static str>,
+    /// What is uncertain about the surface, in words.
+    pub notes: Vec<String>,
 }
 
 /// A unit of length.

@@ -3,9 +3,8 @@
 //!
 //! The extension determines the format, in upper or lower case; [`FORMATS`] is the table of them. Any file may be
 //! compressed, as `cat.obj.gz`. Vertices keep the order of the file, whether a face uses them or not. Polygons are
-//! triangulated: quadrilaterals along the better diagonal, larger ones as fans, so split concave polygons of five or more
-//! corners beforehand. A file of vertices without faces is a point cloud. Other content is ignored. A file that cannot be read faithfully is a [`MeshError`] that names the
-//! file, the place, the fault and a remedy. Readers never panic and reserve no more memory than the size of the file
+//! triangulated in their plane, convex or not. A file of vertices without faces is a point cloud. Other content is
+//! ignored. A file that cannot be read faithfully is a [`MeshError`] that names the file, the place, the fault and a remedy. Readers never panic and reserve no more memory than the size of the file
 //! justifies.
 //!
 //! A file of several meshes, as glTF and 3MF files are, becomes one mesh: the vertices of all instances, one after the
@@ -18,6 +17,7 @@ mod formats;
 mod limits;
 mod name;
 mod polygons;
+mod single;
 mod source;
 mod text;
 
@@ -225,7 +225,8 @@ fn pending(
 /// Writes a mesh in the format of the extension; the file appears complete or not at all.
 ///
 /// OFF, OBJ, PLY, 3MF and the `.vert`/`.tri` pair (both files under either name) read back bit for bit. STL and GLB round
-/// coordinates to 32 bits, and STL has no vertex numbers. A name that ends in `.gz` makes a compressed file.
+/// coordinates to 32 bits, and STL has no vertex numbers. GLB moves a mesh that would collapse to the origin and states
+/// its place. A name that ends in `.gz` makes a compressed file.
 ///
 /// # Errors
 /// [`MeshError::Io`] if the file cannot be written, [`MeshError::UnknownFormat`] for an unknown extension, and
@@ -234,8 +235,8 @@ pub fn write(path: &Path, mesh: &TriMesh) -> Result<(), MeshError> {
     let format = Format::for_writing(path, Content::Mesh)?;
     // What `read` would refuse.
     check_input(mesh)?;
-    if format.precision == Precision::Single {
-        check_single_precision(mesh, format)?;
+    if let Precision::Single { moved } = format.precision {
+        check_single_precision(mesh, moved, format)?;
     }
     let paths = format.files(path, &Disk);
     let written =
@@ -244,18 +245,26 @@ pub fn write(path: &Path, mesh: &TriMesh) -> Result<(), MeshError> {
     Ok(pending.into_iter().try_for_each(Pending::publish)?)
 }
 
-fn check_single_precision(mesh: &TriMesh, format: &Format) -> Result<(), MeshError> {
+/// Refuses coordinates that 32 bits cannot hold, and a surface whose faces they make points or lines.
+fn check_single_precision(mesh: &TriMesh, moved: bool, format: &Format) -> Result<(), MeshError> {
+    let unusable = |what: String, remedy: &str| {
+        let name = format.name;
+        Err(MeshError::Unusable(format!(
+            "{what} the 32-bit floats of {name}; {remedy} or use another format"
+        )))
+    };
     let overflows = |x: &&f64| !(**x as f32).is_finite();
     for (vertex, p) in mesh.positions.iter().enumerate() {
         if let Some(&value) = p.iter().find(overflows) {
-            return Err(MeshError::Unusable(format!(
-                "vertex {vertex} has the coordinate {value:e}, beyond the 32-bit floats of {}; \
-                 scale the mesh down or use another format",
-                format.name
-            )));
+            let what = format!("vertex {vertex} has the coordinate {value:e}, beyond");
+            return unusable(what, "scale the mesh down");
         }
     }
-    Ok(())
+    let origin = if moved { single::origin(mesh) } else { Point3::origin() };
+    match single::merged_face(mesh, &origin) {
+        None => Ok(()),
+        Some(face) => unusable(format!("corners of face {face} coincide in"), "move the mesh to the origin"),
+    }
 }
 
 /// Writes a mesh with a scalar field: as PLY with the property [`VertexField::name`] (double) and the colours

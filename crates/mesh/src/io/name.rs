@@ -49,6 +49,20 @@ pub(super) fn with_extension(path: &Path, extension: &str) -> PathBuf {
     name.into()
 }
 
+/// The path that a reference inside a file stands for: `./my%20data.bin` is `my data.bin`.
+pub(super) fn referred(text: &str) -> Option<String> {
+    let mut parts = text.split('%');
+    let mut bytes = parts.next()?.as_bytes().to_vec();
+    for part in parts {
+        let (digits, rest) = part.split_at_checked(2)?;
+        let is_byte = digits.bytes().all(|digit| digit.is_ascii_hexdigit());
+        bytes.push(u8::from_str_radix(digits, 16).ok().filter(|_| is_byte)?);
+        bytes.extend(rest.bytes());
+    }
+    let path = String::from_utf8(bytes).ok()?;
+    Some(path.split('/').filter(|part| *part != ".").collect::<Vec<_>>().join("/"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -197,13 +197,15 @@ fn read_checked(
     check(&bytes, if is_whole { Some(bytes.len() as u64) } else { size })
         .map_err(|fault| fault.in_file(path))?;
     if !is_whole {
-        let rest = size.unwrap_or(0).min(max_bytes).saturating_sub(START);
-        let room = usize::try_from(rest).unwrap_or(usize::MAX);
+        let room = size.unwrap_or(0).min(max_bytes).saturating_sub(START);
+        let room = usize::try_from(room).unwrap_or(usize::MAX);
         bytes.try_reserve_exact(room).map_err(|_| cannot_read(io::ErrorKind::OutOfMemory.into()))?;
-        stream.take(max_bytes.saturating_sub(START)).read_to_end(&mut bytes).map_err(cannot_read)?;
-        if bytes.len() as u64 == max_bytes && stream.read(&mut [0]).map_err(cannot_read)? > 0 {
-            return Err(Fault::OverLimit { items: "bytes", limit: max_bytes }.whole().in_file(path));
-        }
+        // One byte more than is allowed shows that there are too many.
+        let rest = max_bytes.saturating_add(1).saturating_sub(START);
+        stream.take(rest).read_to_end(&mut bytes).map_err(cannot_read)?;
     }
-    Ok(bytes)
+    match bytes.len() as u64 > max_bytes {
+        true => Err(Fault::OverLimit { items: "bytes", limit: max_bytes }.whole().in_file(path)),
+        false => Ok(bytes),
+    }
 }

@@ -24,7 +24,7 @@ pub(super) struct Line<'a> {
 }
 
 impl<'a> Lines<'a> {
-    /// The lines of `bytes`; `#` begins a comment.
+    /// The lines of `bytes`.
     pub(super) fn new(bytes: &'a [u8]) -> Self {
         Self { rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), number: 0 }
     }
@@ -45,21 +45,24 @@ impl<'a> Iterator for Lines<'a> {
 
     fn next(&mut self) -> Option<Line<'a>> {
         while !self.rest.is_empty() {
-            let end_of_text = self.rest.iter().position(|b| matches!(b, b'\n' | b'\r' | b'#'));
-            let (text, mut tail) = self.rest.split_at(end_of_text.unwrap_or(self.rest.len()));
-            if tail.first() == Some(&b'#') {
-                let end_of_line = tail.iter().position(|b| matches!(b, b'\n' | b'\r'));
-                tail = &tail[end_of_line.unwrap_or(tail.len())..];
-            }
+            let is_end = |b: &u8| matches!(b, b'\n' | b'\r');
+            let end = self.rest.iter().position(is_end).unwrap_or(self.rest.len());
+            let (text, tail) = self.rest.split_at(end);
             self.rest = tail.strip_prefix(b"\r\n").or_else(|| tail.get(1..)).unwrap_or_default();
             self.number += 1;
-            let text = text.trim_ascii();
+            let text = without_comment(text).trim_ascii();
             if !text.is_empty() {
                 return Some(Line { number: self.number, text });
             }
         }
         None
     }
+}
+
+/// A comment begins at a `#` that begins a word: within a word, as in the `1.#QNAN` of older C libraries, it is no comment.
+fn without_comment(text: &[u8]) -> &[u8] {
+    let begins_word = |at: &usize| text[*at] == b'#' && (*at == 0 || text[at - 1].is_ascii_whitespace());
+    &text[..(0..text.len()).find(begins_word).unwrap_or(text.len())]
 }
 
 impl<'a> Line<'a> {
@@ -74,11 +77,78 @@ impl<'a> Line<'a> {
     }
 }
 
-/// Refuses the start of a text file that holds zero bytes, as binary data and files with holes do.
+/// Words of a text one after the other, within a line or across lines.
+#[derive(Debug, Clone)]
+pub(super) struct Words<'a> {
+    pub(super) lines: Lines<'a>,
+    /// The line of the last word.
+    pub(super) line: Line<'a>,
+    /// What is left of it.
+    rest: &'a [u8],
+    /// Whether words of the next line follow those of a line.
+    crosses_lines: bool,
+}
+
+impl<'a> Words<'a> {
+    pub(super) fn new(lines: Lines<'a>, crosses_lines: bool) -> Self {
+        let line = Line { number: lines.number(), text: &[] };
+        Self { lines, line, rest: &[], crosses_lines }
+    }
+
+    /// Begins a row: in the next line, or right after the last word if words cross lines. `None` at the end of the text.
+    pub(super) fn row(&mut self) -> Option<Line<'a>> {
+        if !self.crosses_lines || self.rest.is_empty() {
+            self.line = self.lines.next()?;
+            self.rest = self.line.text;
+        }
+        Some(self.line)
+    }
+
+    /// Whether the line has more words.
+    pub(super) fn rest_of_line(&self) -> bool {
+        !self.rest.is_empty()
+    }
+
+    /// Whether the rest of the line begins with these words, in upper or lower case.
+    pub(super) fn rest_begins_with(&self, phrase: &[&str]) -> bool {
+        let mut rest = Line { text: self.rest, ..self.line }.tokens();
+        phrase.iter().all(|word| rest.next().is_some_and(|found| found.eq_ignore_ascii_case(word.as_bytes())))
+    }
+}
+
+impl<'a> Iterator for Words<'a> {
+    type Item = &'a [u8];
+
+    fn next(&mut self) -> Option<&'a [u8]> {
+        if self.rest.is_empty() && self.crosses_lines {
+            self.row()?;
+        }
+        let end = self.rest.iter().position(u8::is_ascii_whitespace).unwrap_or(self.rest.len());
+        let (word, rest) = self.rest.split_at(end);
+        self.rest = rest.trim_ascii_start();
+        (!word.is_empty()).then_some(word)
+    }
+}
+
+/// Refuses the start of a text file that is encoded as UTF-16 or holds zero bytes, as binary data and files with holes do.
 pub(super) fn check_is_text(start: &[u8], expected: &'static str) -> Result<(), Located> {
+    check_is_not_utf16(start)?;
     match start.iter().position(|byte| *byte == 0) {
         Some(at) => Err(Fault::wrong_format(expected, "it is not text but has zero bytes").at_byte(at)),
         None => Ok(()),
+    }
+}
+
+/// Refuses text in UTF-16: it begins with a byte order mark, or every other byte is zero.
+pub(super) fn check_is_not_utf16(start: &[u8]) -> Result<(), Located> {
+    let is_utf16 = match *start {
+        [0xff, 0xfe, _, 0, ..] | [0xfe, 0xff, 0, _, ..] => true,
+        [a, 0, b, 0, ..] | [0, a, 0, b, ..] => a > 0 && b > 0,
+        _ => false,
+    };
+    match is_utf16 {
+        true => Err(Fault::unsupported("the text is encoded as UTF-16", "save it as UTF-8").whole()),
+        false => Ok(()),
     }
 }
 

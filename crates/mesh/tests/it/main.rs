@@ -3,6 +3,7 @@
 // Helper functions are test code too, which clippy cannot see.
 #![allow(clippy::unwrap_used)]
 
+mod corpus;
 mod files;
 mod foreign;
 mod hubs;

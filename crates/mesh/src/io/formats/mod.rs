@@ -55,8 +55,8 @@ pub struct Format {
 /// How a format stores coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Precision {
-    /// Rounded to 32 bits.
-    Single,
+    /// Rounded to 32 bits, perhaps after moving the mesh to its [origin](crate::io::single::origin).
+    Single { moved: bool },
     /// Such that 64-bit numbers read back bit for bit.
     Double,
 }
@@ -81,7 +81,7 @@ pub static FORMATS: [Format; 11] = [
         ..read_only("PLY", &["ply"], ply::check_start, ply::parse)
     },
     Format {
-        precision: Precision::Single,
+        precision: Precision::Single { moved: false },
         write: &[stl::write],
         ..read_only("STL", &["stl"], stl::check_start, stl::parse)
     },
@@ -91,13 +91,12 @@ pub static FORMATS: [Format; 11] = [
         ..read_only("TOSCA", &["vert", "tri"], tosca::check_start, tosca::parse)
     },
     Format {
-        precision: Precision::Single,
+        precision: Precision::Single { moved: true },
         companions: Some(gltf::companions_of_binary),
         write: &[gltf::write],
         ..read_only("GLB", &["glb"], gltf::check_binary_start, gltf::parse_binary)
     },
     Format {
-        precision: Precision::Single,
         companions: Some(gltf::companions),
         ..read_only("glTF", &["gltf"], gltf::check_start, gltf::parse)
     },

@@ -6,11 +6,11 @@ use nalgebra::Point3;
 use surface::VertexId;
 use tobj::{LoadError, LoadOptions, Model};
 
-use crate::error::{Fault, Located, Place};
+use crate::error::{Fault, Located};
 use crate::io::facts::MeshFile;
 use crate::io::field::WrittenField;
 use crate::io::limits::ReadLimits;
-use crate::io::polygons::{finish, finite, push_polygon};
+use crate::io::polygons::{Polygons, finite};
 use crate::io::text::{Line, Lines, check_is_text, excerpt, parse_number, write_position};
 use crate::tri_mesh::TriMesh;
 
@@ -31,7 +31,8 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
     if Lines::new(bytes).next().is_none() {
         return Err(Fault::Empty.whole());
     }
-    let (text, n_vertices) = plain_statements(bytes, limits)?;
+    let Statements { text, lines: [of_vertices, of_faces] } = Statements::of(bytes, limits)?;
+    let n_vertices = of_vertices.len();
     let all: Vec<String> = (1..=n_vertices).map(|vertex| vertex.to_string()).collect();
     let all = format!("f {}\n", all.join(" "));
     let mut source = all.as_bytes().chain(text.as_slice());
@@ -39,89 +40,90 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
     let options = LoadOptions { single_index: false, triangulate: false, ..LoadOptions::default() };
     let loaded = tobj::load_obj_buf(&mut source, &options, |_| Err(LoadError::OpenFileFailed));
     let n_read = text.len() - source.get_ref().1.len();
-    let (models, _) = loaded.map_err(|fault| locate(fault, bytes, &text[..n_read], n_vertices))?;
+    let (models, _) = loaded.map_err(|fault| locate(fault, &text, n_read, [&of_vertices, &of_faces]))?;
     let Some(Model { mesh, .. }) = models.into_iter().next() else { return Err(Fault::Empty.whole()) };
 
-    let in_statement = |of_vertex: bool, number: usize, fault: Fault| {
-        let line = statements(bytes).filter(|(is_vertex, _)| *is_vertex == of_vertex).nth(number);
-        fault.at(line.map_or(Place::File, |(_, line)| Place::Line(line.number)))
-    };
     let mut positions = Vec::with_capacity(n_vertices);
-    for (vertex, p) in mesh.positions.as_chunks::<3>().0.iter().enumerate() {
-        positions.push(finite(*p, vertex + 1).map_err(|fault| in_statement(true, vertex, fault))?);
+    for ((p, line), vertex) in mesh.positions.as_chunks::<3>().0.iter().zip(&of_vertices).zip(1..) {
+        positions.push(finite(*p, vertex).map_err(|fault| fault.in_line(*line))?);
     }
     let corners: Vec<VertexId> = mesh.indices.into_iter().map(VertexId).collect();
     let mut rest = corners.get(n_vertices..).unwrap_or_default();
     // No arities mean triangles.
     let arities = mesh.face_arities.iter().skip(1).copied().chain(std::iter::repeat(3));
-    let mut faces = Vec::new();
-    for (number, arity) in arities.enumerate() {
-        let Some((polygon, others)) = rest.split_at_checked(arity as usize).filter(|_| !rest.is_empty())
-        else {
-            break;
-        };
-        push_polygon(&positions, polygon, &mut faces, limits)
-            .map_err(|fault| in_statement(false, number, fault))?;
+    let mut polygons = Polygons::with_room_for(of_faces.len());
+    for (line, arity) in of_faces.iter().zip(arities) {
+        let Some((polygon, others)) = rest.split_at_checked(arity as usize) else { break };
+        polygons.push(&positions, polygon, limits).map_err(|fault| fault.in_line(*line))?;
         rest = others;
     }
-    finish(TriMesh { positions, faces }, limits)
+    polygons.finish(positions, limits)
 }
 
-/// The `v` and `f` lines, and whether each is a `v` line.
-fn statements(bytes: &[u8]) -> impl Iterator<Item = (bool, Line<'_>)> {
-    Lines::new(bytes).filter_map(|line| match line.tokens().next() {
-        Some(b"v") => Some((true, line)),
-        Some(b"f") => Some((false, line)),
-        _ => None,
-    })
+/// The `v` and `f` statements of a file, one in each line, without what tobj would refuse: comments, line ends behind `\`,
+/// and colours, which it wants for all vertices or none.
+#[derive(Default)]
+struct Statements {
+    text: Vec<u8>,
+    /// The lines of the file with the `v` and the `f` statements.
+    lines: [Vec<usize>; 2],
 }
 
-/// The statements without what tobj would refuse: comments, and colours, which it wants for all vertices or none; and the
-/// number of vertices.
-fn plain_statements(bytes: &[u8], limits: &ReadLimits) -> Result<(Vec<u8>, usize), Located> {
-    let mut text = Vec::with_capacity(bytes.len());
-    let (mut n_vertices, mut n_faces) = (0, 0);
-    for (is_vertex, line) in statements(bytes) {
-        let n_words = line.tokens().count();
-        let kept = match (is_vertex, n_words) {
-            (true, 5) | (false, 4..) => n_words,
-            (true, _) => 4,
-            (false, _) => return Err(Fault::TooFewCorners { corners: n_words - 1 }.in_line(line.number)),
-        };
-        *(if is_vertex { &mut n_vertices } else { &mut n_faces }) += 1;
-        limits.check(n_vertices, n_faces).map_err(|fault| fault.in_line(line.number))?;
-        for word in line.tokens().take(kept) {
-            text.extend_from_slice(word);
-            text.push(b' ');
+impl Statements {
+    fn of(bytes: &[u8], limits: &ReadLimits) -> Result<Self, Located> {
+        let mut statements = Self::default();
+        let mut lines = Lines::new(bytes);
+        let mut words = Vec::new();
+        while let Some(line) = lines.next() {
+            words.clear();
+            words.extend(line.tokens());
+            // A line that ends with `\` continues in the next one.
+            while words.pop_if(|word| *word == b"\\").is_some() {
+                words.extend(lines.next().into_iter().flat_map(Line::tokens));
+            }
+            let (kind, kept) = match (words.first(), words.len()) {
+                (Some(&b"v"), 5) => (0, 5),
+                (Some(&b"v"), _) => (0, 4),
+                (Some(&b"f"), n @ 4..) => (1, n),
+                (Some(&b"f"), n) => return Err(Fault::TooFewCorners { corners: n - 1 }.in_line(line.number)),
+                _ => continue,
+            };
+            statements.lines[kind].push(line.number);
+            let [n_vertices, n_faces] = statements.lines.each_ref().map(|lines| lines.len() as u64);
+            limits.check(n_vertices, n_faces).map_err(|fault| fault.in_line(line.number))?;
+            for word in words.iter().take(kept) {
+                statements.text.extend_from_slice(word);
+                statements.text.push(b' ');
+            }
+            statements.text.push(b'\n');
         }
-        text.push(b'\n');
+        Ok(statements)
     }
-    Ok((text, n_vertices as usize))
 }
 
-/// The fault that tobj found, in the last line of what it has read; that of a face that refers to a missing vertex is
+/// Places a fault that tobj found in the last statement of what it has read; a face that refers to a missing vertex is
 /// somewhere before.
-fn locate(fault: LoadError, bytes: &[u8], read: &[u8], n_vertices: usize) -> Located {
-    if fault == LoadError::FaceVertexOutOfBounds {
-        let mut n_before = 0;
-        for (is_vertex, line) in statements(bytes) {
-            n_before += i64::from(is_vertex);
-            for corner in line.tokens().skip(1).filter(|_| !is_vertex) {
-                let index = corner.split(|b| *b == b'/').next().and_then(parse_number::<i64>).unwrap_or(0);
-                let vertex = if index < 0 { n_before.saturating_add(index) } else { index - 1 };
-                if !(0..n_vertices as i64).contains(&vertex) {
-                    return Fault::no_vertex(excerpt(corner), 1, n_vertices as u64).in_line(line.number);
-                }
+fn locate(fault: LoadError, text: &[u8], n_read: usize, lines: [&[usize]; 2]) -> Located {
+    let n_vertices = lines[0].len();
+    let mut counts = [0; 2];
+    let mut last = Line { number: 0, text: b"" };
+    for statement in Lines::new(&text[..n_read]) {
+        let kind = usize::from(statement.text[0] == b'f');
+        last = Line { number: lines[kind].get(counts[kind]).copied().unwrap_or(0), ..statement };
+        counts[kind] += 1;
+        let corners =
+            statement.tokens().skip(1).filter(|_| kind == 1 && fault == LoadError::FaceVertexOutOfBounds);
+        for corner in corners {
+            let index = corner.split(|b| *b == b'/').next().and_then(parse_number::<i64>).unwrap_or(0);
+            let vertex = if index < 0 { (counts[0] as i64).saturating_add(index) } else { index - 1 };
+            if !(0..n_vertices as i64).contains(&vertex) {
+                return Fault::no_vertex(excerpt(corner), 1, n_vertices as u64).in_line(last.number);
             }
         }
     }
-    let number = read.iter().filter(|byte| **byte == b'\n').count();
-    let Some((is_vertex, line)) = statements(bytes).nth(number.saturating_sub(1)) else {
-        return Fault::syntax("an OBJ file", fault.to_string()).whole();
-    };
-    line.expected(match fault {
+    last.expected(match fault {
         LoadError::ScalingByZeroError => "a weight other than zero",
-        _ if is_vertex => "three coordinates",
+        _ if last.text.starts_with(b"v") => "three coordinates",
         _ => "a face such as `f 1 2 3` or `f 1/1/1 2/2/2 3/3/3`",
     })
 }
@@ -162,6 +164,7 @@ pub(super) fn write_lines(out: &mut dyn Write, lines: &[Vec<Point3<f64>>]) -> io
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::Place;
 
     fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
         super::parse(&[bytes], &ReadLimits::default()).map(|file| file.mesh)
@@ -201,7 +204,7 @@ mod tests {
             "mtllib none.mtl\no first\n{FOUR}g a\nusemtl red\nf 4 3 2\ng b c\ns off\nl 1 2\np 1\n\
              usemtl blue\nf 2 1 3\no second\nv 1 1 1\nv 2 2 2 # comment\nf 3 5 6 4 2\n"
         );
-        let expected = [[3, 2, 1], [1, 0, 2], [2, 4, 5], [2, 5, 3], [2, 3, 1]];
+        let expected = [[3, 2, 1], [1, 0, 2], [3, 1, 2], [3, 2, 4], [3, 4, 5]];
         assert_eq!(faces(&text), expected);
         assert_eq!(faces(&text.replace('\n', "\r\n")), expected);
     }

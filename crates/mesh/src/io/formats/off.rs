@@ -8,8 +8,11 @@ use crate::error::{Fault, Located};
 use crate::io::facts::MeshFile;
 use crate::io::field::WrittenField;
 use crate::io::limits::ReadLimits;
-use crate::io::polygons::{finish, push_polygon};
-use crate::io::text::{Line, Lines, check_is_text, excerpt, parse_integer, parse_position, parse_vertex};
+use crate::io::polygons::Polygons;
+use crate::io::text::{
+    Line, Lines, Words, check_is_not_utf16, check_is_text, excerpt, parse_integer, parse_position,
+    parse_vertex,
+};
 use crate::tri_mesh::TriMesh;
 
 /// The fewest bytes of a vertex, `0 0 0` and a line end, and of a face, `3 0 1 2` and a line end.
@@ -18,6 +21,7 @@ const SHORTEST_FACE: usize = 8;
 
 /// Checks the keyword, and that text follows.
 pub(super) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
+    check_is_not_utf16(start)?;
     if let Some(header) = Lines::new(start).next() {
         after_keyword(header)?;
     }
@@ -28,6 +32,11 @@ pub(super) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
 /// follow the position of a vertex, are ignored.
 pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
     let bytes = files[0];
+    parse_lines(bytes, limits).or_else(|fault| parse_words(bytes, limits).ok_or(fault))
+}
+
+/// Reads a file with a line for each vertex and each face.
+fn parse_lines(bytes: &[u8], limits: &ReadLimits) -> Result<MeshFile, Located> {
     let mut lines = Lines::new(bytes);
     let header = lines.next().ok_or_else(|| Fault::Empty.whole())?;
     let counts = match after_keyword(header)? {
@@ -38,27 +47,48 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
     };
     let (n_vertices, n_faces) = parse_counts(counts)?;
     limits.check(n_vertices, n_faces).map_err(|fault| fault.in_line(counts.number))?;
-
-    let mut positions = Vec::with_capacity((n_vertices as usize).min(lines.remaining() / SHORTEST_VERTEX));
-    for found in 0..n_vertices {
-        let line = lines.next().ok_or_else(|| truncated(&lines, "vertices", n_vertices, found))?;
-        positions.push(parse_position(line, &mut line.tokens(), found as usize)?);
-    }
-    let mut faces = Vec::with_capacity((n_faces as usize).min(lines.remaining() / SHORTEST_FACE));
-    let mut corners = Vec::new();
-    for found in 0..n_faces {
-        let line = lines.next().ok_or_else(|| truncated(&lines, "faces", n_faces, found))?;
-        parse_corners(line, n_vertices, &mut corners)?;
-        push_polygon(&positions, &corners, &mut faces, limits).map_err(|fault| fault.in_line(line.number))?;
-    }
-    if let Some(line) = lines.next() {
-        return Err(Fault::Leftover { items: "faces", promised: n_faces }.in_line(line.number));
-    }
-    finish(TriMesh { positions, faces }, limits)
+    parse_rows(Words::new(lines, false), n_vertices, n_faces, limits)
 }
 
-fn truncated(lines: &Lines<'_>, items: &str, promised: u64, found: u64) -> Located {
-    Fault::truncated(items, promised, found).in_line(lines.number())
+/// Reads a file whose lines end elsewhere. Without colours and normals, words alone tell where a vertex and a face end.
+fn parse_words(bytes: &[u8], limits: &ReadLimits) -> Option<MeshFile> {
+    let mut words = Words::new(Lines::new(bytes), true);
+    words.next().filter(|keyword| keyword.eq_ignore_ascii_case(b"OFF"))?;
+    let mut count = || u64::try_from(parse_integer(words.next()?)?).ok();
+    let [n_vertices, n_faces, _] = [count()?, count()?, count()?];
+    limits.check(n_vertices, n_faces).ok()?;
+    parse_rows(words, n_vertices, n_faces, limits).ok()
+}
+
+/// Reads the vertices and the faces that the header promises.
+fn parse_rows(
+    mut words: Words<'_>,
+    n_vertices: u64,
+    n_faces: u64,
+    limits: &ReadLimits,
+) -> Result<MeshFile, Located> {
+    let room = words.lines.remaining();
+    let mut positions = Vec::with_capacity((n_vertices as usize).min(room / SHORTEST_VERTEX));
+    for found in 0..n_vertices {
+        let line = words.row().ok_or_else(|| truncated(&words, "vertices", n_vertices, found))?;
+        positions.push(parse_position(line, &mut words, found as usize)?);
+    }
+    let room = words.lines.remaining();
+    let mut polygons = Polygons::with_room_for((n_faces as usize).min(room / SHORTEST_FACE));
+    let mut corners = Vec::new();
+    for found in 0..n_faces {
+        let line = words.row().ok_or_else(|| truncated(&words, "faces", n_faces, found))?;
+        parse_corners(line, &mut words, n_vertices, &mut corners)?;
+        polygons.push(&positions, &corners, limits).map_err(|fault| fault.in_line(line.number))?;
+    }
+    if let Some(line) = words.row() {
+        return Err(Fault::Leftover { items: "faces", promised: n_faces }.in_line(line.number));
+    }
+    polygons.finish(positions, limits)
+}
+
+fn truncated(words: &Words<'_>, items: &str, promised: u64, found: u64) -> Located {
+    Fault::truncated(items, promised, found).in_line(words.lines.number())
 }
 
 /// The rest of the header line after the keyword: nothing, or the counts, even without a space between.
@@ -101,13 +131,17 @@ fn parse_counts(line: Line<'_>) -> Result<(u64, u64), Located> {
 }
 
 /// Reads the corners of one face into `corners`; colours may follow and are ignored.
-fn parse_corners(line: Line<'_>, n_vertices: u64, corners: &mut Vec<VertexId>) -> Result<(), Located> {
+fn parse_corners<'a>(
+    line: Line<'a>,
+    words: &mut Words<'a>,
+    n_vertices: u64,
+    corners: &mut Vec<VertexId>,
+) -> Result<(), Located> {
     let expected = "a number of corners and that many vertices";
-    let mut tokens = line.tokens();
-    let n_corners = tokens.next().and_then(parse_integer).filter(|n| *n >= 0);
+    let n_corners = words.next().and_then(parse_integer).filter(|n| *n >= 0);
     corners.clear();
     for _ in 0..n_corners.ok_or_else(|| line.expected(expected))? {
-        corners.push(parse_vertex(line, &mut tokens, [0, n_vertices], expected)?);
+        corners.push(parse_vertex(line, words, [0, n_vertices], expected)?);
     }
     Ok(())
 }

@@ -12,7 +12,7 @@ use crate::io::facts::MeshFile;
 use crate::io::field::WrittenField;
 use crate::io::limits::ReadLimits;
 use crate::io::polygons::{finish, finite};
-use crate::io::text::{Line, Lines, check_is_text, excerpt, parse_number};
+use crate::io::text::{Lines, Words, check_is_not_utf16, check_is_text, excerpt, parse_number};
 use crate::tri_mesh::TriMesh;
 
 /// Bytes of a binary file: 80 of free text, the 32-bit number of triangles, then per triangle its normal, its
@@ -21,59 +21,47 @@ const HEADER: usize = 80;
 const PREFIX: usize = HEADER + 4;
 const TRIANGLE: usize = 50;
 
-/// Checks that a binary file can hold what its header promises, and that any other is text.
+/// Checks the length of a binary file against its header, and that any other is text.
 pub(super) fn check_start(start: &[u8], size: Option<u64>) -> Result<(), Located> {
-    let promised = promised(start);
-    let is_solid = begins_with(start.trim_ascii_start(), "solid");
-    match (promised, size) {
-        (Some(promised), Some(size)) if is_solid && size != size_of(promised) => {
-            check_is_text(start, "a text or a binary STL file")
-        }
-        (Some(0), _) if !is_solid => Err(Fault::NoFaces { n_vertices: 0 }.whole()),
-        (Some(promised), Some(size)) if !is_solid && size < size_of(promised) => {
-            Err(truncated(promised, size))
-        }
+    let Some(promised) = promised(start, size)? else {
+        return check_is_text(start, "an STL file");
+    };
+    let found = size.map(|size| (size - PREFIX as u64) / TRIANGLE as u64);
+    match found {
+        Some(found) if found < promised => Err(Fault::truncated("triangles", promised, found).whole()),
+        Some(found) if found > promised => Err(Fault::Leftover { items: "triangles", promised }.whole()),
+        _ if promised == 0 => Err(Fault::NoFaces { n_vertices: 0 }.whole()),
         _ => Ok(()),
     }
 }
 
-/// The number of triangles that the header of a binary file promises.
-fn promised(bytes: &[u8]) -> Option<u64> {
-    bytes.get(HEADER..).and_then(<[u8]>::first_chunk).map(|&n| u64::from(u32::from_le_bytes(n)))
-}
-
-/// Bytes of a binary file of `n` triangles.
-fn size_of(n: u64) -> u64 {
-    PREFIX as u64 + TRIANGLE as u64 * n
-}
-
-fn truncated(promised: u64, size: u64) -> Located {
-    let found = size.saturating_sub(PREFIX as u64) / TRIANGLE as u64;
-    Fault::truncated("triangles", promised, found).whole()
+/// The number of triangles that the header of a binary file promises; `None` for text.
+///
+/// A file that has the length its header promises is binary, whatever it begins with. Any other is binary if a byte of its
+/// header is zero: no byte of a text is, and one of every number below 2^24 is.
+fn promised(start: &[u8], size: Option<u64>) -> Result<Option<u64>, Located> {
+    let Some(&number) = start.get(HEADER..).and_then(<[u8]>::first_chunk) else { return Ok(None) };
+    let promised = u64::from(u32::from_le_bytes(number));
+    if size == Some(PREFIX as u64 + TRIANGLE as u64 * promised) {
+        return Ok(Some(promised));
+    }
+    check_is_not_utf16(start)?;
+    Ok(start[..PREFIX].contains(&0).then_some(promised))
 }
 
 /// Reads STL. The format stores three corners per triangle; corners in the same position become one vertex,
 /// numbered in the order of first appearance.
 pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
     let bytes = files[0];
-    let text = bytes.trim_ascii_start();
-    if text.is_empty() {
+    if bytes.trim_ascii().is_empty() {
         return Err(Fault::Empty.whole());
     }
-    let promised = promised(bytes);
-    let size = promised.map(size_of);
-    // The free text of a binary file may begin with "solid" too.
-    if begins_with(text, "solid") && size != Some(bytes.len() as u64) {
-        return parse_ascii(bytes, limits);
+    let size = Some(bytes.len() as u64);
+    check_start(bytes.get(..bytes.len().min(PREFIX)).unwrap_or(bytes), size)?;
+    match promised(bytes, size)? {
+        Some(promised) => parse_binary(bytes, promised, limits),
+        None => parse_text(bytes, limits),
     }
-    let Some(promised) = promised else {
-        let found = format!("{} bytes beginning with `{}`", bytes.len(), excerpt(text));
-        return Err(Fault::wrong_format("an STL file", found).whole());
-    };
-    if size > Some(bytes.len() as u64) {
-        return Err(truncated(promised, bytes.len() as u64));
-    }
-    parse_binary(bytes, promised, limits)
 }
 
 fn parse_binary(bytes: &[u8], n_triangles: u64, limits: &ReadLimits) -> Result<MeshFile, Located> {
@@ -89,66 +77,80 @@ fn parse_binary(bytes: &[u8], n_triangles: u64, limits: &ReadLimits) -> Result<M
     soup.into_mesh(limits)
 }
 
-fn parse_ascii(bytes: &[u8], limits: &ReadLimits) -> Result<MeshFile, Located> {
+/// Reads the words of a text, on whichever lines they are.
+fn parse_text(bytes: &[u8], limits: &ReadLimits) -> Result<MeshFile, Located> {
     let mut soup = Soup::default();
-    let mut lines = Lines::new(bytes);
-    let mut is_open = true;
-    while let Some(line) = lines.next() {
-        if begins_with(line.text, "solid") {
-            is_open = true;
-        } else if begins_with(line.text, "endsolid") || begins_with(line.text, "end solid") {
-            is_open = false;
-        } else if begins_with(line.text, "facet") {
-            limits.check(0, soup.n_triangles() + 1).map_err(|fault| fault.in_line(line.number))?;
-            expect(&mut lines, "`outer loop`")?;
-            for _ in 0..3 {
-                let line = next_line(&mut lines)?;
-                let corner = parse_corner(line)?;
-                soup.push(corner, limits).map_err(|fault| fault.in_line(line.number))?;
+    let mut words = Words::new(Lines::new(bytes), true);
+    // `None` before the first solid.
+    let mut is_open = None;
+    while let Some(word) = words.next() {
+        let line = words.line;
+        match &word.to_ascii_lowercase()[..] {
+            b"solid" => is_open = Some(true),
+            b"endsolid" => is_open = Some(false),
+            b"end" if words.rest_begins_with(&["solid"]) => is_open = Some(false),
+            b"facet" => {
+                is_open = Some(true);
+                limits.check(0, soup.n_triangles() + 1).map_err(|fault| fault.in_line(line.number))?;
+                parse_facet(&mut words, &mut soup, limits)?;
+                continue;
             }
-            expect(&mut lines, "`endloop`")?;
-            expect(&mut lines, "`endfacet`")?;
-        } else {
-            return Err(line.expected("`facet` or `endsolid`"));
+            _ if is_open.is_some() => return Err(line.expected("`facet` or `endsolid`")),
+            _ => {
+                let found = format!("it begins with `{}`", excerpt(line.text));
+                return Err(Fault::wrong_format("an STL file", found).whole());
+            }
+        }
+        // The name of the solid: the rest of the line, or what comes before a facet in it.
+        while words.rest_of_line() && !words.rest_begins_with(&["facet", "normal"]) {
+            words.next();
         }
     }
-    if is_open {
-        return Err(cut_short(&lines));
+    match is_open {
+        None => Err(Fault::Empty.whole()),
+        Some(true) => Err(cut_short(&words)),
+        Some(false) => soup.into_mesh(limits),
     }
-    soup.into_mesh(limits)
 }
 
-fn begins_with(text: &[u8], keyword: &str) -> bool {
-    text.get(..keyword.len()).is_some_and(|begin| begin.eq_ignore_ascii_case(keyword.as_bytes()))
+/// Reads what follows `facet`.
+fn parse_facet(words: &mut Words<'_>, soup: &mut Soup, limits: &ReadLimits) -> Result<(), Located> {
+    // `normal` and its three numbers, or some of them.
+    let mut skipped = 0;
+    while !next_word(words)?.eq_ignore_ascii_case(b"outer") {
+        skipped += 1;
+        if skipped > 4 {
+            return Err(words.line.expected("`outer loop`"));
+        }
+    }
+    expect(words, b"loop", "`outer loop`")?;
+    for _ in 0..3 {
+        let expected = "`vertex` and three coordinates";
+        expect(words, b"vertex", expected)?;
+        let mut corner = [0.0; 3];
+        for x in &mut corner {
+            *x = parse_number(next_word(words)?).ok_or_else(|| words.line.expected(expected))?;
+        }
+        soup.push(corner, limits).map_err(|fault| fault.in_line(words.line.number))?;
+    }
+    expect(words, b"endloop", "`endloop`")?;
+    expect(words, b"endfacet", "`endfacet`")
 }
 
-fn cut_short(lines: &Lines<'_>) -> Located {
-    Fault::cut_short("`endsolid`").in_line(lines.number())
+fn cut_short(words: &Words<'_>) -> Located {
+    Fault::cut_short("`endsolid`").in_line(words.line.number)
 }
 
-fn next_line<'a>(lines: &mut Lines<'a>) -> Result<Line<'a>, Located> {
-    lines.next().ok_or_else(|| cut_short(lines))
+fn next_word<'a>(words: &mut Words<'a>) -> Result<&'a [u8], Located> {
+    words.next().ok_or_else(|| cut_short(words))
 }
 
-/// Skips a line that consists of these words, in upper or lower case.
-fn expect(lines: &mut Lines<'_>, words: &'static str) -> Result<(), Located> {
-    let line = next_line(lines)?;
-    let found = line.tokens().map(<[u8]>::to_ascii_lowercase);
-    match found.eq(words.trim_matches('`').as_bytes().split(|&b| b == b' ')) {
+/// Takes a word in upper or lower case.
+fn expect(words: &mut Words<'_>, word: &[u8], expected: &'static str) -> Result<(), Located> {
+    match next_word(words)?.eq_ignore_ascii_case(word) {
         true => Ok(()),
-        false => Err(line.expected(words)),
+        false => Err(words.line.expected(expected)),
     }
-}
-
-fn parse_corner(line: Line<'_>) -> Result<[f32; 3], Located> {
-    let expected = || line.expected("`vertex` and three coordinates");
-    let mut tokens = line.tokens();
-    let is_vertex = tokens.next().is_some_and(|word| word.eq_ignore_ascii_case(b"vertex"));
-    let mut corner = [0.0; 3];
-    for x in &mut corner {
-        *x = tokens.next().and_then(parse_number).ok_or_else(expected)?;
-    }
-    if is_vertex && tokens.next().is_none() { Ok(corner) } else { Err(expected()) }
 }
 
 /// Triangles whose corners are merged by position.

@@ -17,7 +17,7 @@ pub(super) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
 
 /// Reads three coordinates per line, separated by blanks, commas or semicolons. What follows them (intensity, colour,
 /// normal) is ignored, and so is a first line of names, such as `//X Y Z`. A line with a single integer, as `.pts` files
-/// begin with, promises so many points.
+/// begin with, promises so many points. Between blanks or semicolons, a comma may mark decimals, as in `1,5 2,5 3,5`.
 pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
     let bytes = files[0];
     let mut positions = Vec::with_capacity(bytes.len() / (4 * SHORTEST_LINE));
@@ -32,7 +32,11 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
             promised = Some(promised.unwrap_or(0).saturating_add(count));
             continue;
         }
-        positions.push(parse_position(line, &mut numbers(line), positions.len() + 1)?);
+        let marks_decimals = commas_mark_decimals(line)?;
+        let point = |b: &u8| if marks_decimals && *b == b',' { b'.' } else { *b };
+        let text: Vec<u8> = line.text.iter().map(point).collect();
+        let mut words = text.split(is_separator).filter(|word| !word.is_empty());
+        positions.push(parse_position(line, &mut words, positions.len() + 1)?);
         limits.check(positions.len() as u64, 0).map_err(|fault| fault.in_line(line.number))?;
     }
     if is_first {
@@ -46,9 +50,50 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
     }
 }
 
+fn is_separator(b: &u8) -> bool {
+    b.is_ascii_whitespace() || matches!(b, b',' | b';')
+}
+
 fn numbers(line: Line<'_>) -> impl Iterator<Item = &[u8]> {
-    let is_separator = |b: &u8| b.is_ascii_whitespace() || matches!(b, b',' | b';');
     line.text.split(is_separator).filter(|token| !token.is_empty())
+}
+
+/// Whether commas mark decimals in a line, as they may between blanks or semicolons: `1,5 2,5 3,5`. A fault if they may as
+/// well separate numbers, or thousands.
+fn commas_mark_decimals(line: Line<'_>) -> Result<bool, Located> {
+    if !line.text.contains(&b',') {
+        return Ok(false);
+    }
+    let is_plain_separator = |b: &u8| *b != b',' && is_separator(b);
+    let words = line.text.split(is_plain_separator).filter(|word| !word.is_empty());
+    let words: Vec<&[u8]> = words.take(3).collect();
+    let is_within_number = |before: &[u8], behind: &[u8]| {
+        let n_digits = behind.iter().take_while(|b| b.is_ascii_digit()).count();
+        let unsigned = before.strip_prefix(b"-").or_else(|| before.strip_prefix(b"+")).unwrap_or(before);
+        unsigned.iter().all(u8::is_ascii_digit)
+            && n_digits > 0
+            && (n_digits == 3 || behind.get(n_digits) != Some(&b'.'))
+    };
+    // Of each word, the number of its commas, and of those that may be within a number.
+    let counts = words.iter().map(|word| {
+        let parts: Vec<&[u8]> = word.split(|b| *b == b',').collect();
+        let within =
+            parts.windows(2).filter(|pair| !pair[0].is_empty() && is_within_number(pair[0], pair[1]));
+        (parts.len() - 1, within.count())
+    });
+    let counts: Vec<(usize, usize)> = counts.collect();
+    if words.len() == 1 || counts.iter().all(|(_, n_within)| *n_within == 0) {
+        return Ok(false);
+    }
+    let has_point = words.iter().any(|word| word.contains(&b'.'));
+    match words.len() == 3 && !has_point && counts.iter().all(|count| matches!(count, (0, 0) | (1, 1))) {
+        true => Ok(true),
+        false => {
+            let what = "commas may separate numbers here, or mark decimals";
+            let remedy = "write decimals with points, or separate numbers by blanks or semicolons alone";
+            Err(Fault::unsupported(what, remedy).in_line(line.number))
+        }
+    }
 }
 
 /// The number of points that a line promises.

@@ -7,7 +7,8 @@ use base64::engine::general_purpose::STANDARD;
 
 use super::schema::{Index, Root};
 use crate::error::{Fault, Located};
-use crate::io::text::{check_is_text, excerpt};
+use crate::io::name::referred;
+use crate::io::text::{check_is_not_utf16, check_is_text, excerpt};
 
 const MAGIC: &[u8] = b"glTF";
 const HEADER: usize = 12;
@@ -15,6 +16,7 @@ const CHUNK_HEADER: usize = 8;
 
 /// Checks that a file is text that begins like JSON.
 pub(in crate::io::formats) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
+    check_is_not_utf16(start)?;
     let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start).trim_ascii_start();
     match text.first() {
         None | Some(b'{') => check_is_text(start, "a glTF file"),
@@ -124,26 +126,13 @@ fn local_name(uri: &str) -> Result<String, Fault> {
             "put both files into one folder and name the data by its file name, or export a .glb file",
         )
     };
-    let name = percent_decoded(uri).ok_or_else(outside)?;
+    let name = referred(uri).ok_or_else(outside)?;
     let is_strange = |c: char| c.is_control() || matches!(c, '\\' | ':');
-    let is_part = |part: &str| !matches!(part, "" | "." | "..");
+    let is_part = |part: &str| !matches!(part, "" | "..");
     match !name.contains(is_strange) && name.split('/').all(is_part) {
         true => Ok(name),
         false => Err(outside()),
     }
-}
-
-/// A text in which `%20` stands for a space.
-fn percent_decoded(text: &str) -> Option<String> {
-    let mut parts = text.split('%');
-    let mut bytes = parts.next()?.as_bytes().to_vec();
-    for part in parts {
-        let (digits, rest) = part.split_at_checked(2)?;
-        let is_byte = digits.bytes().all(|digit| digit.is_ascii_hexdigit());
-        bytes.push(u8::from_str_radix(digits, 16).ok().filter(|_| is_byte)?);
-        bytes.extend(rest.bytes());
-    }
-    String::from_utf8(bytes).ok()
 }
 
 /// The data of all buffers.

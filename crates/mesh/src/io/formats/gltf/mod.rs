@@ -28,10 +28,11 @@ pub(super) use container::{check_binary_start, check_start};
 pub(super) use write::write;
 
 /// Extensions that a file may require although this reader does not know them: they change no positions.
-const HARMLESS: [&str; 10] = [
+const HARMLESS: [&str; 11] = [
     "KHR_materials_",
     "KHR_texture_",
     "KHR_lights_",
+    "KHR_node_",
     "KHR_animation_",
     "KHR_xmp",
     "EXT_texture_",
@@ -107,6 +108,7 @@ fn read((json, start, chunk): Parts<'_>, files: &[&[u8]], limits: &ReadLimits) -
         unit: Some(LengthUnit::Meter),
         instances: Some(instances),
         ignored: scene::ignored(root),
+        ..FileFacts::default()
     };
     Ok(MeshFile { facts, ..finish(mesh, limits)? })
 }

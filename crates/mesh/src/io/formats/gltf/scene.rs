@@ -32,6 +32,9 @@ pub(super) fn read(accessors: &Accessors<'_>, limits: &ReadLimits) -> Result<(Tr
             let found = "a node with several parents, or among its own children";
             return Err(Fault::syntax("a tree of nodes", found).in_part("node", number));
         }
+        if node.is_hidden() {
+            continue;
+        }
         let here = placed_within(above, transform(node));
         if let Some(mesh) = node.mesh {
             scene.append(mesh, here.filter(|_| node.skin.is_none()))?;
@@ -89,6 +92,7 @@ pub(super) fn ignored(root: &Root) -> Vec<&'static str> {
         is_used(root.nodes.iter().any(|node| node.skin.is_some()), "skins: meshes are in their bind pose"),
         is_used(primitives().any(|p| !p.targets.is_empty()), "morph targets"),
         is_used(!root.animations.is_empty(), "animations"),
+        is_used(root.nodes.iter().any(Node::is_hidden), "hidden nodes"),
         is_used(primitives().any(no_faces), "points and lines"),
     ]
     .into_iter()

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 use serde::de::IgnoredAny;
+use serde_json::Value;
 
 use crate::io::binary::Scalar;
 
@@ -144,6 +145,15 @@ pub(super) struct Node {
     pub(super) translation: Option<[f32; 3]>,
     pub(super) rotation: Option<[f32; 4]>,
     pub(super) scale: Option<[f32; 3]>,
+    #[serde(default)]
+    extensions: Value,
+}
+
+impl Node {
+    /// Whether the file hides the node and those below it.
+    pub(super) fn is_hidden(&self) -> bool {
+        self.extensions.pointer("/KHR_node_visibility/visible") == Some(&Value::Bool(false))
+    }
 }
 
 #[derive(Deserialize)]

@@ -9,9 +9,8 @@ use crate::io::binary::{ByteOrder, Scalar};
 use crate::io::facts::MeshFile;
 use crate::io::field::ScalarField;
 use crate::io::limits::ReadLimits;
-use crate::io::polygons::{finish, finite, push_polygon};
-use crate::io::text::{Lines, check_is_text, excerpt, parse_integer, parse_number};
-use crate::tri_mesh::TriMesh;
+use crate::io::polygons::{Polygons, finite};
+use crate::io::text::{Lines, check_is_not_utf16, check_is_text, excerpt, parse_integer, parse_number};
 
 const FORMAT: &str = "a PLY file";
 /// The last line of the header.
@@ -19,6 +18,7 @@ const END: &[u8] = b"end_header";
 
 /// Checks the first line, and that the header is text.
 pub(crate) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
+    check_is_not_utf16(start)?;
     check_first_line(&mut Lines::new(start))?;
     let end = start.windows(END.len()).position(|window| window == END).unwrap_or(start.len());
     check_is_text(&start[..end], FORMAT)
@@ -48,7 +48,7 @@ pub(crate) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
         Encoding::Ascii => Body::Ascii(lines),
         Encoding::Binary(order) => Body::Binary { bytes, at: bytes.len() - lines.remaining(), order },
     };
-    let (mut positions, mut faces, mut corners) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut positions, mut polygons, mut corners) = (Vec::new(), Polygons::default(), Vec::new());
     for element in &header.elements {
         match element.name.as_str() {
             "vertex" => {
@@ -56,9 +56,10 @@ pub(crate) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
                 let axes: Vec<Option<usize>> = element.properties.iter().map(|p| p.axis()).collect();
                 let carrier = element.properties.iter().position(|p| p.is_field());
                 let mut values = Vec::new();
+                let is_needed = |property: usize| axes[property].is_some();
                 for row in 0..element.count {
                     let mut p = Point3::origin();
-                    let place = body.row(element, row, |property, x| {
+                    let place = body.row(element, row, is_needed, |property, x| {
                         if let Some(axis) = axes[property] {
                             p[axis] = x;
                         }
@@ -71,13 +72,14 @@ pub(crate) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
                 field = carrier.map(|i| ScalarField { name: element.properties[i].name.clone(), values });
             }
             "face" => {
-                faces.reserve_exact(element.count as usize);
+                polygons = Polygons::with_room_for(element.count as usize);
                 let list = element.corner_list();
                 for row in 0..element.count {
                     let mut outside = None;
                     corners.clear();
-                    let place = body.row(element, row, |property, index| {
-                        if Some(property) != list {
+                    let is_needed = |property| Some(property) == list;
+                    let place = body.row(element, row, is_needed, |property, index| {
+                        if !is_needed(property) {
                         } else if (0.0..positions.len() as f64).contains(&index) {
                             corners.push(VertexId(index as u32));
                         } else {
@@ -88,13 +90,12 @@ pub(crate) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
                         let n = positions.len() as u64;
                         return Err(Fault::no_vertex(index.to_string(), 0, n).at(place));
                     }
-                    push_polygon(&positions, &corners, &mut faces, limits)
-                        .map_err(|fault| fault.at(place))?;
+                    polygons.push(&positions, &corners, limits).map_err(|fault| fault.at(place))?;
                 }
             }
             _ => {
                 for row in 0..element.count {
-                    body.row(element, row, |_, _| ())?;
+                    body.row(element, row, |_| false, |_, _| ())?;
                 }
             }
         }
@@ -103,7 +104,7 @@ pub(crate) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
         let promised = header.elements.iter().map(|element| element.count).sum();
         return Err(Fault::Leftover { items: "elements", promised }.at(place));
     }
-    Ok(MeshFile { field, ..finish(TriMesh { positions, faces }, limits)? })
+    Ok(MeshFile { field, ..polygons.finish(positions, limits)? })
 }
 
 /// What follows the header.
@@ -114,20 +115,31 @@ enum Body<'a> {
 
 impl Body<'_> {
     /// Reads the next row and gives each of its numbers to `take`, with the index of its property; returns
-    /// the place of the row.
-    fn row(&mut self, element: &Element, row: u64, take: impl FnMut(usize, f64)) -> Result<Place, Located> {
+    /// the place of the row. Words of properties that are not needed may be no numbers: they are given as NaN.
+    fn row(
+        &mut self,
+        element: &Element,
+        row: u64,
+        is_needed: impl Fn(usize) -> bool,
+        take: impl FnMut(usize, f64),
+    ) -> Result<Place, Located> {
         let truncated = || Fault::truncated(format!("rows of `{}`", element.name), element.count, row);
         match self {
             Self::Ascii(lines) => {
                 let line = lines.next().ok_or_else(|| truncated().in_line(lines.number()))?;
                 let mut tokens = line.tokens();
-                read_row(element, |scalar| parse_scalar(scalar, tokens.next()?), take)
+                let next = |scalar, property: Option<usize>| {
+                    let token = tokens.next()?;
+                    parse_scalar(scalar, token)
+                        .or_else(|| (!property.is_none_or(&is_needed)).then_some(f64::NAN))
+                };
+                read_row(element, next, take)
                     .ok_or_else(|| line.expected("a row as the header declares it"))?;
                 Ok(Place::Line(line.number))
             }
             Self::Binary { bytes, at, order } => {
                 let place = Place::Byte(*at as u64);
-                let next = |scalar: Scalar| {
+                let next = |scalar: Scalar, _| {
                     let x = scalar.decode(*order, bytes.get(*at..)?)?;
                     *at += scalar.size();
                     Some(x)
@@ -149,19 +161,20 @@ impl Body<'_> {
     }
 }
 
-/// Reads a row, number by number; `None` if one is missing or malformed.
+/// Reads a row, number by number; `None` if one is missing or malformed. `next` learns the property that a number belongs
+/// to, `None` for the length of a list.
 fn read_row(
     element: &Element,
-    mut next: impl FnMut(Scalar) -> Option<f64>,
+    mut next: impl FnMut(Scalar, Option<usize>) -> Option<f64>,
     mut take: impl FnMut(usize, f64),
 ) -> Option<()> {
     for (i, property) in element.properties.iter().enumerate() {
         let n = match property.length {
             None => 1,
-            Some(length) => Some(next(length)?).filter(|n| *n >= 0.0 && n.fract() == 0.0)? as u64,
+            Some(length) => Some(next(length, None)?).filter(|n| *n >= 0.0 && n.fract() == 0.0)? as u64,
         };
         for _ in 0..n {
-            take(i, next(property.item)?);
+            take(i, next(property.item, Some(i))?);
         }
     }
     Some(())

@@ -18,7 +18,7 @@ use crate::io::limits::ReadLimits;
 use crate::io::polygons::{Placement, append_placed, check_copies, finish, placed_within};
 use crate::tri_mesh::TriMesh;
 use model::{Model, Object, Reference};
-use package::Package;
+use package::{Package, canonical};
 
 pub(super) use package::check_start;
 pub(super) use write::write;
@@ -32,7 +32,7 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
     let mut package = Package::open(bytes)?;
     let mut file = Parts { models: Vec::new(), numbers: HashMap::new() };
     let root = package.root()?;
-    file.numbers.insert(root.to_ascii_lowercase(), 0);
+    file.numbers.insert(canonical(&root), 0);
     let mut waiting = vec![root];
     // Objects may be in other parts of the package.
     while let Some(name) = waiting.get(file.models.len()).cloned() {
@@ -40,7 +40,7 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
         let model = model::parse(&content, limits).map_err(|fault| fault.of_member(&name))?;
         for other in model.parts() {
             let next = file.numbers.len();
-            if *file.numbers.entry(other.to_ascii_lowercase()).or_insert(next) == next {
+            if *file.numbers.entry(canonical(other)).or_insert(next) == next {
                 waiting.push(other.to_owned());
             }
         }
@@ -52,7 +52,7 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
 /// The models of all parts.
 struct Parts {
     models: Vec<Model>,
-    /// Their numbers by name in lower case.
+    /// Their numbers by canonical name.
     numbers: HashMap<String, usize>,
 }
 
@@ -61,7 +61,7 @@ type Key = (usize, u64);
 
 impl Parts {
     fn key(&self, reference: &Reference, part: usize) -> Key {
-        let other = reference.part.as_ref().and_then(|name| self.numbers.get(&name.to_ascii_lowercase()));
+        let other = reference.part.as_ref().and_then(|name| self.numbers.get(&canonical(name)));
         (other.copied().unwrap_or(part), reference.object)
     }
 
@@ -114,8 +114,15 @@ fn assemble(file: &Parts, n_bytes: u64, limits: &ReadLimits) -> Result<MeshFile,
     for (key, place) in items {
         append(&mut mesh, file, key, place, &sizes)?;
     }
-    let facts =
-        FileFacts { unit: Some(root.unit), instances: Some(whole.meshes as usize), ignored: Vec::new() };
+    let has_supports = file.models.iter().flat_map(|model| &model.objects).any(|object| object.is_support);
+    let has_beams = file.models.iter().any(|model| model.has_beams);
+    let ignored = [(has_supports, "supports"), (has_beams, "beam lattices")];
+    let facts = FileFacts {
+        unit: Some(root.unit),
+        instances: Some(whole.meshes as usize),
+        ignored: ignored.into_iter().filter(|(is_there, _)| *is_there).map(|(_, what)| what).collect(),
+        ..FileFacts::default()
+    };
     Ok(MeshFile { facts, ..finish(mesh, limits)? })
 }
 
@@ -130,10 +137,13 @@ fn measure(file: &Parts, key: Key, depth: usize, known: &mut HashMap<Key, Size>)
         return Err(Fault::unsupported(what, "export it as a single mesh").whole());
     }
     let object = file.object(key)?;
-    let (vertices, faces) = (object.mesh.n_vertices() as u64, object.mesh.n_faces() as u64);
-    let mut size = Size { vertices, faces, meshes: u64::from(vertices > 0) };
-    for component in &object.components {
-        size.add(measure(file, file.key(component, key.0), depth + 1, known)?);
+    let mut size = Size::default();
+    if !object.is_support {
+        let (vertices, faces) = (object.mesh.n_vertices() as u64, object.mesh.n_faces() as u64);
+        size = Size { vertices, faces, meshes: u64::from(vertices > 0) };
+        for component in &object.components {
+            size.add(measure(file, file.key(component, key.0), depth + 1, known)?);
+        }
     }
     known.insert(key, size);
     Ok(size)
@@ -147,7 +157,7 @@ fn append(
     place: Placement,
     sizes: &HashMap<Key, Size>,
 ) -> Result<(), Located> {
-    // Without meshes there is nothing to visit, however many components there are.
+    // Without meshes, or as a support, there is nothing to visit, however many components there are.
     if sizes.get(&key).is_none_or(|size| size.meshes == 0) {
         return Ok(());
     }

@@ -1,8 +1,10 @@
 //! A model part: the unit, objects and the build.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 
 use nalgebra::Matrix4;
+use quick_xml::events::attributes::Attribute;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::reader::Reader;
 use surface::VertexId;
@@ -11,7 +13,7 @@ use crate::error::{Fault, Located};
 use crate::io::facts::LengthUnit;
 use crate::io::limits::ReadLimits;
 use crate::io::polygons::{Placement, finite, placed_by};
-use crate::io::text::{excerpt, parse_integer, parse_number};
+use crate::io::text::{check_is_not_utf16, excerpt, parse_integer, parse_number};
 use crate::tri_mesh::TriMesh;
 
 /// Required extensions that this reader knows or that change no positions, by the end of their namespaces.
@@ -25,12 +27,16 @@ pub(super) struct Model {
     /// Where the objects are in the list, by their ids.
     numbers: HashMap<u64, usize>,
     pub(super) items: Vec<Reference>,
+    /// Whether an object has beams, which are not read.
+    pub(super) has_beams: bool,
 }
 
 /// A mesh, or other objects put together.
 #[derive(Default)]
 pub(super) struct Object {
     pub(super) id: u64,
+    /// Whether it only supports others while they are printed.
+    pub(super) is_support: bool,
     pub(super) mesh: TriMesh,
     pub(super) components: Vec<Reference>,
 }
@@ -72,6 +78,13 @@ impl Cursor<'_> {
         self.locate(Fault::syntax(expected, excerpt(found.as_bytes())))
     }
 
+    /// The value of an attribute, in which `&amp;` stands for `&`.
+    fn value<'a>(&self, attribute: &Attribute<'a>) -> Result<Cow<'a, str>, Located> {
+        attribute
+            .normalized_value(quick_xml::XmlVersion::Explicit1_0)
+            .map_err(|fault| self.syntax("an attribute", &fault.to_string()))
+    }
+
     /// Three attributes of an element, if it has them all.
     fn numbers<T: Copy>(
         &self,
@@ -83,7 +96,7 @@ impl Cursor<'_> {
         for attribute in element.attributes().with_checks(false) {
             let attribute = attribute.map_err(|fault| self.syntax("an attribute", &fault.to_string()))?;
             if let Some(slot) = names.iter().position(|name| *name == attribute.key.as_ref()) {
-                found[slot] = parse(attribute.value.trim().as_bytes());
+                found[slot] = parse(self.value(&attribute)?.trim().as_bytes());
             }
         }
         let [a, b, c] = found;
@@ -97,10 +110,7 @@ const ELEMENTS: &str =
 
 /// Parses a part.
 pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<Model, Located> {
-    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
-        let what = "the model is encoded as UTF-16";
-        return Err(Fault::unsupported(what, "save it with another program, as UTF-8").whole());
-    }
+    check_is_not_utf16(bytes)?;
     let text = std::str::from_utf8(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes))
         .map_err(|fault| Fault::syntax("text in UTF-8", "other bytes").at_byte(fault.valid_up_to()))?;
     let mut reader = Reader::from_str(text);
@@ -113,6 +123,7 @@ pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<Model, Located>
             objects: Vec::new(),
             numbers: HashMap::new(),
             items: Vec::new(),
+            has_beams: false,
         },
         object: Object::default(),
         path: Vec::new(),
@@ -163,13 +174,15 @@ impl Parser<'_> {
             }
             self.prefix = name.prefix().map_or_else(String::new, |prefix| format!("{}:", prefix.as_ref()));
         }
+        self.model.has_beams |= name.local_name().as_ref() == "beamlattice";
         let local = name.as_ref().strip_prefix(self.prefix.as_str());
         self.path.push(ELEMENTS.split(' ').find(|known| Some(*known) == local).unwrap_or_default());
         match self.path[..] {
             ["model"] => self.model(element),
             ["model", "resources", "object"] => {
-                let id = Attributes::of(element, &self.cursor)?.id("id")?;
-                self.object = Object { id, ..Object::default() };
+                let attributes = Attributes::of(element, &self.cursor)?;
+                let is_support = matches!(attributes.find("type"), Some("support" | "solidsupport"));
+                self.object = Object { id: attributes.id("id")?, is_support, ..Object::default() };
                 Ok(())
             }
             ["model", "resources", "object", "mesh", "vertices", "vertex"] => self.vertex(element),
@@ -267,7 +280,7 @@ impl<'a> Attributes<'a> {
         let mut attributes = element.attributes();
         let pairs = attributes.with_checks(false).map(|attribute| {
             let attribute = attribute.map_err(|fault| cursor.syntax("an attribute", &fault.to_string()))?;
-            Ok((attribute.key.as_ref().to_owned(), attribute.value.into_owned()))
+            Ok((attribute.key.as_ref().to_owned(), cursor.value(&attribute)?.into_owned()))
         });
         Ok(Self { pairs: pairs.collect::<Result<_, Located>>()?, cursor })
     }

@@ -8,6 +8,7 @@ use zip::ZipArchive;
 use zip::result::ZipError;
 
 use crate::error::{Fault, Located};
+use crate::io::name::referred;
 use crate::io::source::inflated_limit;
 use crate::io::text::excerpt;
 
@@ -63,11 +64,11 @@ impl<'a> Package<'a> {
         }
     }
 
-    /// Number of a part. Names are the same in upper and lower case.
+    /// Number of a part.
     fn find(&self, name: &str) -> Option<usize> {
         self.archive.index_for_name(name).or_else(|| {
-            let mut names = self.archive.file_names();
-            names.position(|other| other.is_ok_and(|other| other.eq_ignore_ascii_case(name)))
+            let (name, mut names) = (canonical(name), self.archive.file_names());
+            names.position(|other| other.is_ok_and(|other| canonical(&other) == name))
         })
     }
 
@@ -89,6 +90,12 @@ impl<'a> Package<'a> {
     }
 }
 
+/// A name as parts are told apart by: absolute, without escapes, and in lower case.
+pub(super) fn canonical(name: &str) -> String {
+    let name = referred(name).unwrap_or_else(|| name.to_owned());
+    name.trim_start_matches('/').to_ascii_lowercase()
+}
+
 /// The target of the relationship to the model.
 fn target(relationships: &[u8]) -> Option<String> {
     let mut reader = Reader::from_reader(relationships);
@@ -101,8 +108,8 @@ fn target(relationships: &[u8]) -> Option<String> {
         let (mut kind, mut target) = (None, None);
         for attribute in element.attributes().with_checks(false).flatten() {
             match attribute.key.local_name().as_ref() {
-                "Type" => kind = Some(attribute.value.clone()),
-                "Target" => target = Some(attribute.value.clone()),
+                "Type" => kind = attribute.normalized_value(quick_xml::XmlVersion::Explicit1_0).ok(),
+                "Target" => target = attribute.normalized_value(quick_xml::XmlVersion::Explicit1_0).ok(),
                 _ => {}
             }
         }
