@@ -11,7 +11,7 @@ triangles of both: `remeshed` and `noisy` say how surely. Exit code 0 with dupli
 Examples:
   canonform duplicates models/
   canonform duplicates shapes.canonform --csv duplicates.csv --html duplicates.html
-  canonform duplicates models/ --kinds file,geometry --script move.sh";
+  canonform duplicates models/ --kinds file,geometry";
 
 #[derive(Debug, Args)]
 #[command(after_help = NOTES)]
@@ -25,9 +25,6 @@ pub(crate) struct DuplicatesArgs {
     /// Write a page with pictures
     #[arg(long, value_name = "FILE.html")]
     pub(crate) html: Option<PathBuf>,
-    /// Write a shell script that moves all files but those to keep into the folder `duplicates`
-    #[arg(long, value_name = "FILE.sh")]
-    pub(crate) script: Option<PathBuf>,
     /// What counts as a duplicate
     #[arg(
         long,

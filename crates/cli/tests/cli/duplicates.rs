@@ -41,7 +41,7 @@ fn collection() -> Workplace {
 fn files_of_one_shape_are_one_group_and_nothing_is_changed() {
     let place = collection();
     let before = fs::read_dir(place.path("models")).unwrap().count();
-    let found = place.json("duplicates models --csv found.csv --html found.html --script move.sh");
+    let found = place.json("duplicates models --csv found.csv --html found.html");
     assert_eq!(found["n_shapes"], 7);
     assert_eq!(found["groups"].as_array().unwrap().len(), 1, "{found}");
     let group = &found["groups"][0];
@@ -56,21 +56,15 @@ fn files_of_one_shape_are_one_group_and_nothing_is_changed() {
     assert!(members.iter().all(|member| member["relation"]["confidence"].as_f64().unwrap() < 1.0));
     assert_eq!(fs::read_to_string(place.path("found.csv")).unwrap().lines().count(), 7);
     assert_eq!(fs::read_to_string(place.path("found.html")).unwrap().matches("<img").count(), 6);
-    // Other triangles are not moved without a look.
-    let script = fs::read_to_string(place.path("move.sh")).unwrap();
-    assert!(
-        script.contains("# mv -n -- 'models/turned and moved.ply'") && !script.contains("\nmv "),
-        "{script}"
-    );
     assert_eq!(fs::read_dir(place.path("models")).unwrap().count(), before);
 }
 
 #[test]
-fn copies_of_files_and_of_geometry_are_certain_and_moved_by_the_script() {
+fn copies_of_files_and_of_geometry_are_certain() {
     let place = collection();
     fs::remove_file(place.path("models/finer.off")).unwrap();
     place.done("index build models -o all.canonform");
-    let found = place.json("duplicates all.canonform --script move.sh");
+    let found = place.json("duplicates all.canonform");
     let members = found["groups"][0]["members"].as_array().unwrap();
     let told: Vec<_> = members
         .iter()
@@ -80,8 +74,6 @@ fn copies_of_files_and_of_geometry_are_certain_and_moved_by_the_script() {
         .collect();
     let kinds = ["identical-file", "identical-geometry", "scaled", "mirrored"];
     assert_eq!(told, kinds.map(|kind| (kind, Some(1.0))));
-    let script = fs::read_to_string(place.path("move.sh")).unwrap();
-    assert_eq!(script.lines().filter(|line| line.starts_with("mv ")).count(), 2, "{script}");
     assert_eq!(place.run("duplicates all.canonform --kinds noisy").code, 1);
     place.refused("duplicates none.canonform", &["none.canonform"]);
     let text = place.done("duplicates all.canonform").out;

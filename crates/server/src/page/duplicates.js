@@ -5,7 +5,7 @@
 //
 // Stable names, for tests and other scripts:
 //   #duplicates           data-state: `busy`, `ready` or `failed`; #told #progress #error #retry
-//   #which #suggest #clear #as-csv #as-script #marked  groups to show, marks of all, downloads, what is marked
+//   #which #suggest #clear #as-csv #marked  groups to show, marks of all, the download, what is marked
 //   #groups li.group[data-id of the keeper]  with ul.tiles of button.tile[data-id][data-kind], aria-pressed while compared
 //     button.mark[data-mark=keep|spare], aria-pressed; #more shows further groups
 //   #overlay #other       the comparison of comparison.js, in the group of its shapes; the file on its left
@@ -155,7 +155,6 @@ function showMarks() {
   }
   byId('marked').textContent = words.join(' ');
   byId('marked').dataset.lost = lost.length;
-  byId('as-script').disabled = spare.length === 0 || lost.length > 0;
 }
 
 function suggest(mark) {
@@ -235,6 +234,5 @@ byId('suggest').addEventListener('click', () => suggest((file) => {
 }));
 byId('clear').addEventListener('click', () => suggest(() => undefined));
 byId('as-csv').addEventListener('click', () => download('duplicates.csv', marks.csv(report.groups)));
-byId('as-script').addEventListener('click', () => download('move.sh', marks.script(report.groups)));
 byId('retry').addEventListener('click', search);
 await search();

@@ -34,26 +34,15 @@ export class Marks {
   }
 
   csv(groups) {
-    const cell = (value) => (/[",\r\n]/.test(value) ? `"${value.replaceAll('"', '""')}"` : value);
+    // An apostrophe keeps a spreadsheet from taking a name for a formula.
+    const plain = (value) => (/^[=+\-@\t\r\n＝＋－＠]/.test(value) ? `'${value}` : value);
+    const quoted = (value) => (/[",;\t\r\n]/.test(value) ? `"${value.replaceAll('"', '""')}"` : value);
+    const cell = (value) => quoted(plain(value));
     const line = (...cells) => `${cells.map((value) => cell(String(value ?? ''))).join(',')}\r\n`;
     const lines = groups.flatMap((group, i) => filesOf(group).map((file) => {
       const { kind, confidence, text } = file.relation ?? {};
       return line(i + 1, this.of(file), file.id, file.path, kind, confidence, text ?? file.why, file.bytes, file.modified);
     }));
     return line('group', 'mark', 'id', 'path', 'kind', 'confidence', 'relation', 'bytes', 'modified') + lines.join('');
-  }
-
-  // A shell script; between single quotes, a shell takes every character as it is.
-  script(groups) {
-    const quoted = (path) => `'${path.replaceAll("'", "'\\''")}'`;
-    const moves = groups.flatMap(filesOf).filter((file) => this.of(file) === 'spare').map(({ path }) => `move ${quoted(path)}\n`);
-    return `#!/bin/sh
-# Moves the files that were marked as spare into the folder \`duplicates\`. Read it first; run it in the folder of the index.
-set -eu
-mkdir -p duplicates
-move() {
-  if [ -e "$1" ]; then mv -n -- "$1" duplicates/; else echo "not here: $1" >&2; fi
-}
-${moves.join('')}`;
   }
 }

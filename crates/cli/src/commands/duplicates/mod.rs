@@ -1,7 +1,6 @@
 //! `canonform duplicates`.
 
 mod page;
-mod script;
 mod words;
 
 use std::path::{Path, PathBuf};
@@ -22,7 +21,7 @@ use crate::output::{check_folder, print, print_json};
 
 /// Finds the files of an index or a dataset that hold one shape.
 pub(crate) fn duplicates(args: &DuplicatesArgs, common: &Common) -> Result<ExitCode> {
-    for path in [&args.csv, &args.html, &args.script].into_iter().flatten() {
+    for path in [&args.csv, &args.html].into_iter().flatten() {
         check_folder(path)?;
     }
     let bars = Bars::new(common.quiet);
@@ -41,9 +40,6 @@ pub(crate) fn duplicates(args: &DuplicatesArgs, common: &Common) -> Result<ExitC
     }
     if let Some(path) = &args.html {
         write_bytes(path, page::page(&report, &search)?.as_bytes())?;
-    }
-    if let Some(path) = &args.script {
-        write_bytes(path, script::script(&report).as_bytes())?;
     }
     if common.json {
         print_json(&report)?;
