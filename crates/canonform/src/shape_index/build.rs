@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::time::Instant;
 
@@ -14,11 +15,13 @@ use serde::{Serialize, Serializer};
 use super::components::other_components;
 use super::place::{Home, Root, mesh_path};
 use super::record::{DROPPED, Described, same_source, shape};
-use super::source::{Hashed, Listed, Listing, ShapeLimits, Shard, hash_all, share};
+use super::source::{Hashed, Listed, Listing, ShapeLimits, Shard, full_extension, hash_all, share};
 use crate::error::{Error, Remedy};
 use crate::form::{DescribeOptions, describe};
 use base::Observer;
-use collection::{LabelOrigin, LabelSource, ShapeFile, UnusedLabel, count_skipped, n_classes};
+use collection::{
+    LabelOrigin, LabelSource, ShapeFile, SkipKind, Skipped, UnusedLabel, count_skipped, n_classes,
+};
 use mesh::Surface;
 
 /// Most shapes written to disk in one transaction.
@@ -127,12 +130,16 @@ pub struct BuildReport {
     pub n_shapes: usize,
     /// Shapes that were described.
     pub described: usize,
+    /// Those of them whose files have the bytes of another file, and so its description.
+    pub copies: usize,
     /// Shapes with unchanged content, from the index or from an interrupted run.
     pub unchanged: usize,
     /// Shapes whose path or class changed.
     pub renamed: usize,
     /// Shapes removed because their files are gone from the folder or cannot be described any more.
     pub removed: usize,
+    /// Shapes kept although their files cannot be read now: the file, its folder, or a link to it.
+    pub unreadable: Vec<String>,
     /// Shapes kept although they did not come from the folder; [`Elsewhere::Prune`] removes them.
     pub elsewhere: usize,
     /// Shapes removed by [`Elsewhere::Prune`].
@@ -208,8 +215,7 @@ impl BuildReport {
         &mut self,
         index: &Index,
         files: &[Hashed],
-        root: &Root<'_>,
-        elsewhere: Elsewhere,
+        missing: &Missing<'_>,
     ) -> Result<bool, IndexError> {
         let mut others: HashMap<String, ShapeEntry> = index.entries()?.into_iter().collect();
         let mut found = Self::default();
@@ -221,21 +227,58 @@ impl BuildReport {
                 _ => return Ok(false),
             }
         }
-        let stays = |(id, entry): (&String, &ShapeEntry)| {
-            elsewhere == Elsewhere::Keep && !root.brought(id, &entry.path)
-        };
-        if !others.iter().all(stays) {
-            return Ok(false);
+        for (id, entry) in others {
+            if !missing.stays(id, &entry, &mut found) {
+                return Ok(false);
+            }
         }
-        self.dropped = found.dropped;
-        self.dropped.sort_by(|a, b| a.id.cmp(&b.id));
-        (self.n_shapes, self.unchanged, self.elsewhere) = (index.len(), files.len(), others.len());
+        let BuildReport { mut dropped, mut unreadable, elsewhere, .. } = found;
+        dropped.sort_by(|a, b| a.id.cmp(&b.id));
+        unreadable.sort();
+        (self.n_shapes, self.unchanged) = (index.len(), files.len());
+        (self.dropped, self.unreadable, self.elsewhere) = (dropped, unreadable, elsewhere);
         Ok(true)
     }
 }
 
+/// Decides what becomes of shapes of an index whose files were not found.
+struct Missing<'a> {
+    root: &'a Root<'a>,
+    elsewhere: Elsewhere,
+    /// Paths, as the index states them, at and below which nothing can be read now.
+    unreadable: Vec<String>,
+    /// Names of files that were found and cannot be read.
+    unread: HashSet<String>,
+}
+
+impl<'a> Missing<'a> {
+    fn new(root: &'a Root<'a>, elsewhere: Elsewhere, skipped: &[Skipped]) -> Self {
+        let is_unreadable =
+            |skipped: &&Skipped| matches!(skipped.kind, SkipKind::Unreadable | SkipKind::BrokenLink);
+        let unreadable = skipped.iter().filter(is_unreadable).map(|skipped| root.text(&skipped.path));
+        Self { root, elsewhere, unreadable: unreadable.collect(), unread: HashSet::new() }
+    }
+
+    /// Whether a shape stays; counts what becomes of it. A file that cannot be read is not gone.
+    fn stays(&self, id: String, entry: &ShapeEntry, report: &mut BuildReport) -> bool {
+        let is_below = |place: &String| Path::new(&entry.path).starts_with(place);
+        if self.unread.contains(&id) || self.unreadable.iter().any(is_below) {
+            report.unreadable.push(id);
+            return true;
+        }
+        let (count, stays) = match (self.root.brought(&id, &entry.path), self.elsewhere) {
+            (true, _) => (&mut report.removed, false),
+            (false, Elsewhere::Prune) => (&mut report.pruned, false),
+            (false, Elsewhere::Keep) => (&mut report.elsewhere, true),
+        };
+        *count += 1;
+        stays
+    }
+}
+
 /// Makes `path` the index of the meshes in `folder`: describes new and changed meshes, removes shapes of the folder whose
-/// files are gone, and keeps the rest. Shapes that were added from elsewhere stay, unless the options say otherwise.
+/// files are gone, and keeps the rest: also those whose files or folders cannot be read now. Shapes that were added from
+/// elsewhere stay, unless the options say otherwise. Files of the same bytes are described once.
 ///
 /// Every described shape is on disk before `observer` counts it, and the next run resumes an interrupted one.
 /// Meshes that cannot be described are reported and left out; if there are no others, no index is written, except for a
@@ -268,8 +311,9 @@ pub fn build_index(
     let (existing, listing) = index_and_listing(&root, path, options)?;
     let mut report = BuildReport::of(&listing);
     let hashed = hash_all(listing.shapes, observer);
+    let mut missing = Missing::new(&root, options.elsewhere, &listing.skipped);
     if let Some(index) = existing
-        && report.is_current(&index, &hashed, &root, options.elsewhere)?
+        && report.is_current(&index, &hashed, &missing)?
     {
         report.seconds = start.elapsed().as_secs_f64();
         return Ok(report);
@@ -278,21 +322,17 @@ pub fn build_index(
     let mut writer = IndexWriter::open(path, Job::Build, Some(&text))?;
     report.resumed = writer.is_resumed();
     report.replaced_damaged = writer.replaces_damaged();
+    let unread = hashed.iter().filter(|(_, hash)| hash.is_err());
+    missing.unread = unread.map(|(listed, _)| listed.file.name.clone()).collect();
     let kept = fill(&mut writer, hashed, options.describe, options.limits, &mut report, observer)?;
     let mut gone = Vec::new();
     for (id, entry) in writer.entries()? {
         if kept.contains(&id) {
             continue;
         }
-        match (root.brought(&id, &entry.path), options.elsewhere) {
-            (true, _) => report.removed += 1,
-            (false, Elsewhere::Prune) => report.pruned += 1,
-            (false, Elsewhere::Keep) => {
-                report.elsewhere += 1;
-                continue;
-            }
+        if !missing.stays(id.clone(), &entry, &mut report) {
+            gone.push(id);
         }
-        gone.push(id);
     }
     writer.remove(&gone)?;
     let nothing_new =
@@ -331,7 +371,8 @@ pub fn unchanged_index(
     }
     let mut report = BuildReport::of(&listing);
     let hashed = hash_all(listing.shapes, observer);
-    let is_current = report.is_current(&index, &hashed, &root, options.elsewhere)?;
+    let missing = Missing::new(&root, options.elsewhere, &listing.skipped);
+    let is_current = report.is_current(&index, &hashed, &missing)?;
     report.seconds = start.elapsed().as_secs_f64();
     Ok(is_current.then_some(report))
 }
@@ -412,6 +453,15 @@ pub(super) fn fill(
     if !renamed.is_empty() {
         writer.set_entries(&renamed)?;
     }
+    // The extension decides how bytes are read.
+    let mut equal: BTreeMap<_, Vec<usize>> = BTreeMap::new();
+    for (place, (listed, content)) in wanted.iter().enumerate() {
+        let key = (*content, full_extension(&listed.file.path));
+        equal.entry(key).or_default().push(place);
+    }
+    let mut equal: Vec<Vec<usize>> = equal.into_values().collect();
+    equal.sort();
+    let copies = AtomicUsize::new(0);
     observer.begin("describing", wanted.len());
     let whole = observer.budget();
     let (send, receive) = sync_channel(WAITING);
@@ -419,15 +469,27 @@ pub(super) fn fill(
         // Describing stays on this thread, and so on the thread pool of the caller.
         let stored = scope.spawn(|| store(writer, receive, observer));
         // Sending fails only if the writer has failed; the error stops the loop.
-        let _ = wanted.par_iter().enumerate().try_for_each_with(send, |send, (place, (listed, content))| {
-            let described = describe_file(&listed.file.path, options, limits, whole.clone())
-                .map(|described| shape(listed, *content, described));
-            send.send((place, described)).map_err(drop)
+        let _ = equal.par_iter().try_for_each_with(send, |send, places| {
+            let mut known: Option<Shape> = None;
+            places.iter().try_for_each(|&place| {
+                let (listed, content) = &wanted[place];
+                let described = match &known {
+                    Some(shape) => Ok(renamed_shape(shape, listed)),
+                    None => describe_file(&listed.file.path, options, limits, whole.clone())
+                        .map(|described| shape(listed, *content, described)),
+                };
+                match (&described, &known) {
+                    (Ok(_), Some(_)) => drop(copies.fetch_add(1, Ordering::Relaxed)),
+                    (Ok(shape), None) if places.len() > 1 => known = Some(shape.clone()),
+                    _ => {}
+                }
+                send.send((place, described)).map_err(drop)
+            })
         });
         stored.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     })?;
     let Outcome { stored, mut failed } = described;
-    report.described = stored.len();
+    (report.described, report.copies) = (stored.len(), copies.into_inner());
     for (id, entry) in stored {
         report.note_dropped(writer.path(), &id, &entry);
         kept.insert(id);
@@ -436,6 +498,13 @@ pub(super) fn fill(
     failed.sort_by_key(|(place, _)| *place);
     failed.iter().for_each(|(place, fault)| report.fail(&wanted[*place].0, fault));
     Ok(kept)
+}
+
+/// The same shape in another file.
+fn renamed_shape(known: &Shape, listed: &Listed) -> Shape {
+    let Listed { file, stored } = listed;
+    let entry = ShapeEntry { label: file.label.clone(), path: stored.clone(), ..known.entry.clone() };
+    Shape { id: file.name.clone(), entry, vectors: known.vectors.clone() }
 }
 
 /// Describes a mesh within limits.

@@ -223,7 +223,7 @@ pub(super) fn name_apart(shapes: &mut [ShapeFile]) {
 }
 
 /// The extension of a mesh, that of a compressed one with `.gz`.
-fn full_extension(path: &Path) -> Option<String> {
+pub(super) fn full_extension(path: &Path) -> Option<String> {
     let stem = without_extension(path).file_name()?.to_string_lossy().into_owned();
     let name = path.file_name()?.to_string_lossy();
     Some(name.strip_prefix(&stem)?.strip_prefix('.')?.to_owned())
