@@ -45,7 +45,9 @@ impl Portal {
 impl StripPath {
     pub(super) fn length(&self, mesh: &IntrinsicMesh) -> f64 {
         let ends = self.nodes.iter().zip(self.nodes.iter().skip(1));
-        self.sections.iter().zip(ends).map(|(section, (a, b))| section.length(mesh, *a, *b)).sum()
+        let lengths = self.sections.iter().zip(ends).map(|(section, (a, b))| section.length(mesh, *a, *b));
+        // The sum of no numbers would be -0.
+        lengths.fold(0.0, |sum, length| sum + length)
     }
 }
 
@@ -59,7 +61,7 @@ impl PathSection {
                 let straight = |(stop, face): (SurfacePoint, &FaceId)| {
                     segment(mesh, *face, std::mem::replace(&mut here, stop), stop)
                 };
-                stops.zip(&strip.faces).map(straight).sum()
+                stops.zip(&strip.faces).map(straight).fold(0.0, |sum, length| sum + length)
             }
         }
     }
