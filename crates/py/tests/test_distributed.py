@@ -81,6 +81,25 @@ def test_a_finished_batch_is_not_described_again(client: Client, collection: Pat
     assert third.build_report["described"] >= 1
 
 
+def test_what_else_is_in_the_folder_of_the_shards_stays(client: Client, collection: Path, tmp_path: Path) -> None:
+    single = Index.build(collection, tmp_path / "single.canonform")
+    folder = tmp_path / "my results"
+    folder.mkdir()
+    own = {name: f"my {name}" for name in ("thesis.txt", "labels.csv", "meshes.txt", "mine.canonform")}
+    for name, text in own.items():
+        (folder / name).write_text(text)
+    paths = sorted(collection.glob("*.off"))
+    labels = {path.stem: path.stem.rstrip("0123456789") for path in paths}
+    for keep in (True, False):
+        index = build_index(
+            paths, client, tmp_path / f"{keep}.canonform", labels=labels, n_batches=3, shards=folder, keep_shards=keep
+        )
+        assert list(index) == list(single) and index.build_report is not None
+        assert {name: (folder / name).read_text() for name in own} == own
+        shards = {path.name for path in folder.iterdir()} - set(own)
+        assert len(shards) == (index.build_report["batches"] if keep else 0), shards
+
+
 def test_a_lost_worker_costs_its_batch_only(own_client: Client, collection: Path, tmp_path: Path) -> None:
     single = Index.build(collection, tmp_path / "single.canonform")
     shards = tmp_path / "shards"

@@ -28,6 +28,7 @@ import shutil
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import lru_cache
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -121,9 +122,9 @@ def build_index(
     retries
         How often a batch that raised an exception is tried again.
     shards
-        The folder of the small indexes; by default `out` with the ending `.shards`. Workers must see it.
+        The folder of the small indexes; by default `out` with the ending `.shards`. Workers must see it. Other files in it stay.
     keep_shards
-        Whether to keep that folder when all is done, so that the next run describes only batches that have changed.
+        Whether to keep these indexes when all is done, so that the next run describes only batches that have changed.
 
     Raises
     ------
@@ -142,14 +143,37 @@ def build_index(
             index.build_report = {key: known[key] for key in ("n_shapes", "described", "unchanged", "failed")} | {"batches": 0}
             return index
     _dask()
+    is_new = not os.path.exists(place)
     os.makedirs(place, exist_ok=True)
-    # Workers do not see temporary files of the client, so lists of meshes and labels are kept beside the shards.
-    with _label_file(labels) as given, _dataset(meshes, place) as (dataset, name):
+    try:
+        # Workers do not see temporary files of the client, so lists of meshes and labels are beside the shards.
+        with TemporaryDirectory(prefix="canonform-", dir=place) as lists:
+            return _build_index(meshes, client, out, labels, settings, n_batches, retries, place, lists, keep_shards, progress)
+    finally:
+        # A folder that holds anything else stays.
+        if (is_new or shards is None) and not os.listdir(place):
+            os.rmdir(place)
+
+
+def _build_index(
+    meshes: Any,
+    client: Client,
+    out: str,
+    labels: Any,
+    settings: str,
+    n_batches: int | None,
+    retries: int,
+    place: str,
+    lists: str,
+    keep_shards: bool,
+    progress: Progress,
+) -> Index:
+    with _label_file(labels) as given, _dataset(meshes, lists) as (dataset, name):
         dataset, label_file = os.path.abspath(dataset), None
         if given in ("folders", "names", "none"):
             label_file = given
         elif given is not None:
-            label_file = os.path.join(place, "labels.csv")
+            label_file = os.path.join(lists, "labels.csv")
             shutil.copyfile(given, label_file)
         found = _canonform.list_folder(dataset, out, label_file)
     threads = sum(client.nthreads().values()) or 1
@@ -186,7 +210,8 @@ def build_index(
         "batches": len(batches),
     }
     if not keep_shards:
-        shutil.rmtree(place)
+        for path in written:
+            os.remove(path)
     return index
 
 
