@@ -8,8 +8,10 @@ mod observer;
 mod random;
 #[cfg(feature = "terminal")]
 pub mod terminal;
+mod text;
 
 pub use budget::{Budget, Exceeded, Meter};
 pub use content::{ContentHash, ContentHasher};
 pub use observer::Observer;
 pub use random::SplitMix;
+pub use text::{one_line, printable, printable_json};

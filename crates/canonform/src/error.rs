@@ -200,6 +200,14 @@ pub enum Error {
     /// What is known of a map does not fit the meshes.
     #[error("{0}")]
     UnusableMap(String),
+    /// A folder that files cannot be moved into, or a journal by which they cannot be put back.
+    #[error("{path}: {what}", path = path.display())]
+    Move {
+        /// The folder or the journal.
+        path: PathBuf,
+        /// What is wrong, and what to do.
+        what: &'static str,
+    },
     /// A folder or a text file that cannot be read.
     #[error(transparent)]
     File(#[from] FileError),

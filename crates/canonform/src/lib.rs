@@ -91,7 +91,7 @@ mod input;
 mod shape_index;
 
 pub use ::mesh::{BadPoint, InputMap, InputPoint, PointError, Surface};
-pub use base::{Budget, ContentHash, Exceeded, Observer};
+pub use base::{Budget, ContentHash, Exceeded, Observer, one_line};
 pub use collection::{
     Dataset, LabelFile, LabelOrigin, LabelSource, ShapeFile, SkipKind, Skipped, Storage, UnusedLabel,
     content_hash, is_archive_name, is_dataset, label_of, list_shapes, read_mesh, read_mesh_file, single_mesh,
@@ -123,12 +123,12 @@ pub use retrieval::RankBy;
 pub use shape_index::{
     BuildOptions, BuildReport, ClassVotes, ComponentResult, DescribedQuery, Dropped, DuplicateFile,
     DuplicateGroup, DuplicateMember, DuplicateOptions, DuplicateReport, Elsewhere, EvaluateOptions, Explain,
-    Failure, FailureReason, Inputs, Measure, MergeReport, NearestShape, OrderedBy, PackedQuery,
-    PairwiseDistance, Prediction, Query, Ranked, Reranked, SearchOptions, SearchRank, SearchReport,
-    SearchResult, SearchSeconds, ShapeLimits, ShapeSearch, Shard, ShardExplained, ShardMatch, ShardMatches,
-    ShardedSearch, Unknown, add_to_index, build_index, evaluate_index, evaluate_matrix, export_index,
-    find_duplicates, indexed_shapes, merge_indexes, merge_matches, mesh_path, remove_from_index, rerank,
-    unchanged_index,
+    Failure, FailureReason, Inputs, Measure, MergeReport, MoveReport, NearestShape, NotMoved, OrderedBy,
+    PackedQuery, PairwiseDistance, Prediction, Query, Ranked, Reranked, SearchOptions, SearchRank,
+    SearchReport, SearchResult, SearchSeconds, ShapeLimits, ShapeSearch, Shard, ShardExplained, ShardMatch,
+    ShardMatches, ShardedSearch, Unknown, add_to_index, build_index, check_place, evaluate_index,
+    evaluate_matrix, export_index, find_duplicates, indexed_shapes, merge_indexes, merge_matches, mesh_path,
+    move_duplicates, remove_from_index, rerank, unchanged_index, undo_moves,
 };
 pub use {
     collection, descriptors, fields, geodesics, index, linalg, mesh, nmds, relations, retrieval, surface,

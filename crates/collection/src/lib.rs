@@ -20,8 +20,8 @@ mod storage;
 
 pub use content::{content_hash, content_of};
 pub use dataset::{
-    Dataset, LabelFile, LabelOrigin, LabelSource, ShapeFile, SkipKind, Skipped, UnusedLabel, count_skipped,
-    drop_single_class, label_of, label_shapes, list_shapes, n_classes,
+    Dataset, LabelFile, LabelOrigin, LabelSource, MOVES, ShapeFile, SkipKind, Skipped, UnusedLabel,
+    count_skipped, drop_single_class, label_of, label_shapes, list_shapes, n_classes,
 };
 pub use error::CollectionError;
 pub use storage::{Storage, is_archive_name, is_dataset, member_of, read_mesh, read_mesh_file, single_mesh};

@@ -9,7 +9,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use tempfile::{NamedTempFile, TempDir};
 
 use super::error::FileError;
-use super::identity::is_at;
+use super::identity::{FileId, is_at};
 
 /// How the names of temporary files begin.
 const PREFIX: &str = ".unfinished-";
@@ -18,8 +18,27 @@ const PREFIX: &str = ".unfinished-";
 /// list is always accurate.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
+/// How often a folder is removed in which other threads still write.
+const ATTEMPTS: usize = 100;
+
 fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Files that must not be replaced.
+static INPUTS: Mutex<Option<HashSet<FileId>>> = Mutex::new(None);
+
+/// Keeps a file from being replaced by this process: a result must not take the place of what it was made from, whatever
+/// name leads there.
+pub fn keep_input(path: &Path) {
+    INPUTS.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert_default().extend(FileId::of(path));
+}
+
+/// Whether a path leads to a file that [must not be replaced](keep_input).
+#[must_use]
+pub fn is_input(path: &Path) -> bool {
+    let inputs = INPUTS.lock().unwrap_or_else(PoisonError::into_inner);
+    inputs.as_ref().is_some_and(|inputs| FileId::of(path).is_ok_and(|id| inputs.contains(&id)))
 }
 
 /// Removes all temporary files, as the last action of an interrupted program before it exits.
@@ -28,8 +47,9 @@ fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
 pub fn abandon_unfinished() {
     let paths = unfinished();
     for path in paths.iter() {
-        // Nothing more can be done if removal fails.
-        let _ = fs::remove_file(path).or_else(|_| fs::remove_dir_all(path));
+        // A thread may add files to a folder while it is emptied. Nothing more can be done if removal fails.
+        let remove = || fs::remove_file(path).or_else(|_| fs::remove_dir_all(path));
+        let _ = (0..ATTEMPTS).any(|_| remove().is_ok() || !path.exists());
     }
     std::mem::forget(paths);
 }
@@ -126,6 +146,9 @@ impl<'a> Pending<'a> {
     /// Writes a file in any order; nothing remains after an error.
     fn fill(path: &'a Path, content: impl FnOnce(&mut File) -> io::Result<()>) -> Result<Self, FileError> {
         let written = || {
+            if is_input(path) {
+                return Err(io::Error::new(io::ErrorKind::ResourceBusy, "it is one of the inputs"));
+            }
             let mut file = new_file_in(folder_of(path))?;
             if let Some(file) = &mut file.inner {
                 content(file.as_file_mut())?;
@@ -155,7 +178,10 @@ fn folder_of(path: &Path) -> &Path {
 }
 
 /// Flushes the folder of a file, and with it the name of the file, to disk.
-fn sync_folder(path: &Path) -> io::Result<()> {
+///
+/// # Errors
+/// That of the system.
+pub fn sync_folder(path: &Path) -> io::Result<()> {
     match cfg!(unix) {
         true => File::open(folder_of(path))?.sync_all(),
         false => Ok(()),
@@ -183,7 +209,10 @@ impl Scratch {
     /// [`FileError`] with the path of the folder for temporary files.
     pub fn new() -> Result<Self, FileError> {
         let mut list = unfinished();
-        let folder = tempfile::tempdir().map_err(|source| FileError::write(&std::env::temp_dir(), source))?;
+        let place = std::env::temp_dir();
+        // Without links, so that `..` below it leads back.
+        let folder = place.canonicalize().and_then(tempfile::tempdir_in);
+        let folder = folder.map_err(|source| FileError::write(&place, source))?;
         let path = folder.path().to_owned();
         Ok(Self(Unfinished::new(folder, path, &mut list)))
     }
@@ -281,6 +310,20 @@ mod tests {
         let error = write_bytes(&path, b"x").unwrap_err();
         assert!(error.to_string().starts_with("cannot write ") && error.to_string().contains("record.json"));
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "the temporary file is gone");
+    }
+
+    #[test]
+    fn an_input_is_not_replaced_by_any_of_its_names() {
+        let folder = tempfile::tempdir().unwrap();
+        let [input, link] = ["mesh.off", "link.off"].map(|name| folder.path().join(name));
+        fs::write(&input, "input").unwrap();
+        fs::hard_link(&input, &link).unwrap();
+        keep_input(&input);
+        for name in [&input, &link, &folder.path().join("./mesh.off")] {
+            let error = write_bytes(name, b"x").unwrap_err().to_string();
+            assert!(error.contains("it is one of the inputs; choose another name"), "{error}");
+        }
+        assert_eq!(fs::read(&input).unwrap(), b"input");
     }
 
     #[test]

@@ -1,12 +1,12 @@
 //! Errors of the file system.
 
 use std::fmt;
-use std::io;
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 /// A file that could not be read or written.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot {action} {path}: {source}; check that the path exists and its permissions allow it")]
+#[error("cannot {action} {path}: {source}; {}", advice(source))]
 pub struct FileError {
     /// The failed action.
     pub action: Action,
@@ -31,6 +31,15 @@ impl fmt::Display for Action {
             Self::Read => "read",
             Self::Write => "write",
         })
+    }
+}
+
+/// What to do about an error of the system.
+fn advice(source: &io::Error) -> &'static str {
+    match source.kind() {
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "free some space",
+        ErrorKind::ResourceBusy => "choose another name for the result",
+        _ => "check that the path exists and its permissions allow it",
     }
 }
 

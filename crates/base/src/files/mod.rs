@@ -17,7 +17,8 @@ mod error;
 mod identity;
 
 pub use atomic::{
-    Pending, Scratch, abandon_unfinished, fill_atomically, nameless_in, write_atomically, write_bytes,
+    Pending, Scratch, abandon_unfinished, fill_atomically, is_input, keep_input, nameless_in, sync_folder,
+    write_atomically, write_bytes,
 };
 pub use error::{Action, FileError};
 pub use identity::{FileId, has_other_names, is_at, is_same_file};

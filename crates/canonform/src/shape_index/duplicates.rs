@@ -7,7 +7,7 @@
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, HashMap};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use base::Observer;
@@ -18,7 +18,7 @@ use relations::{Handedness, MeshGeometry, Relation, RelationKind, SurfaceInvaria
 use serde::Serialize;
 use surface::DisjointSets;
 
-use super::place::mesh_path;
+use super::place::{Home, mesh_path};
 use super::search::ShapeSearch;
 use crate::error::Error;
 
@@ -72,6 +72,9 @@ pub struct DuplicateFile {
     pub size: Option<[f64; 3]>,
     /// Number of vertices in different positions.
     pub vertices: Option<usize>,
+    /// Whether it is found through a link, or has several names (hard links): nothing is spared without it.
+    #[serde(skip)]
+    pub is_linked: bool,
 }
 
 /// A file that is the shape of the keeper of its group.
@@ -111,12 +114,18 @@ pub struct DuplicateReport {
 }
 
 impl DuplicateReport {
-    /// Bytes of all files but the keepers.
+    /// Bytes of all files but the keepers. Links do not count: their files have other names.
     #[must_use]
     pub fn spare_bytes(&self) -> u64 {
         let members = self.groups.iter().flat_map(|group| &group.members);
-        members.filter_map(|member| member.file.bytes).sum()
+        members.filter(|member| !member.file.is_linked).filter_map(|member| member.file.bytes).sum()
     }
+}
+
+/// Whether a path is a file that is no link of either kind.
+pub(super) fn has_one_name(path: &Path) -> bool {
+    std::fs::symlink_metadata(path).is_ok_and(|about| about.is_file())
+        && std::fs::File::open(path).is_ok_and(|file| !base::files::has_other_names(&file))
 }
 
 /// A shape with its numbers.
@@ -284,8 +293,11 @@ impl<'a> ClusterShape<'a> {
         let facts = std::fs::metadata(&path).ok();
         let modified = facts.as_ref().and_then(|facts| facts.modified().ok());
         let since_1970 = modified.and_then(|time| time.duration_since(std::time::UNIX_EPOCH).ok());
+        // The folders of a file have no links if its path without them is the one that is known.
+        let is_own = |home: Home| has_one_name(&path) && home.file_text(&path) == candidate.entry.path;
         let file = DuplicateFile {
             id: candidate.id.clone(),
+            is_linked: !Home::of(search.index().path()).is_ok_and(is_own),
             bytes: facts.map(|facts| facts.len()),
             modified: since_1970.map(|time| time.as_secs()),
             size: geometry.as_ref().and_then(|geometry| {
@@ -299,8 +311,8 @@ impl<'a> ClusterShape<'a> {
     }
 }
 
-/// The shapes of a cluster in the order in which they are kept: the finest mesh, at the size of most, then the oldest file,
-/// then the shortest path.
+/// The shapes of a cluster in the order in which they are kept: the finest mesh, at the size of most, then a file before a
+/// link, then the oldest file, then the shortest path.
 fn kept_first<'a>(
     search: &ShapeSearch,
     candidates: &'a [Candidate],
@@ -316,7 +328,14 @@ fn kept_first<'a>(
     shapes.sort_by_cached_key(|shape| {
         let file = &shape.file;
         let path = file.path.as_os_str().len();
-        (Reverse(file.vertices), Reverse(n_alike(shape)), file.modified, path, file.id.clone())
+        (
+            Reverse(file.vertices),
+            Reverse(n_alike(shape)),
+            file.is_linked,
+            file.modified,
+            path,
+            file.id.clone(),
+        )
     });
     shapes
 }

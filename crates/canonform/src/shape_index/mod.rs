@@ -17,6 +17,7 @@ mod evaluate;
 mod explain;
 mod export;
 mod found;
+mod moves;
 mod options;
 mod place;
 mod predict;
@@ -40,6 +41,7 @@ pub use duplicates::{
 pub use evaluate::{EvaluateOptions, Measure, evaluate_index, evaluate_matrix};
 pub use export::export_index;
 pub use found::{ComponentResult, OrderedBy, SearchResult, ShardMatch};
+pub use moves::{MoveReport, NotMoved, check_place, move_duplicates, undo_moves};
 pub use options::{Explain, SearchOptions, SearchRank};
 pub use place::mesh_path;
 pub use predict::{ClassVotes, NearestShape, Prediction, Unknown};

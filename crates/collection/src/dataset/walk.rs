@@ -37,13 +37,18 @@ pub enum SkipKind {
     BrokenLink,
     /// A sub-folder that cannot be read.
     Unreadable,
+    /// A sub-folder that duplicates were moved into.
+    MovedAway,
 }
 
+/// The file in a folder that duplicates were moved into. Such a folder is no part of the collection around it.
+pub const MOVES: &str = "canonform-moved.jsonl";
+
 impl SkipKind {
-    /// Whether users expect it: files that are not meshes.
+    /// Whether users expect it: files that are not meshes, and what they moved.
     #[must_use]
     pub fn is_expected(&self) -> bool {
-        matches!(self, Self::Extension(_))
+        matches!(self, Self::Extension(_) | Self::MovedAway)
     }
 }
 
@@ -58,6 +63,7 @@ impl fmt::Display for SkipKind {
             Self::Repeated => f.write_str("link to something found already"),
             Self::BrokenLink => f.write_str("broken link"),
             Self::Unreadable => f.write_str("unreadable folder"),
+            Self::MovedAway => f.write_str("folder of moved duplicates"),
         }
     }
 }
@@ -145,6 +151,9 @@ impl Walk {
         }
         if path.file_name().is_some_and(|name| name.to_str().is_none()) {
             return self.skip(path, SkipKind::NotUtf8);
+        }
+        if path.join(MOVES).exists() {
+            return self.skip(path, SkipKind::MovedAway);
         }
         match FileId::of(&path).map(|id| self.seen.insert(id)) {
             Err(_) => self.skip(path, SkipKind::BrokenLink),

@@ -1,0 +1,211 @@
+//! Moving duplicates out of a folder, and back.
+//!
+//! Every move is a line of a journal, on the disk before the first file of its mesh moves. So whatever interrupts the work,
+//! the journal leads back.
+
+mod companions;
+mod journal;
+
+use std::fs;
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+
+use base::ContentHash;
+use base::files::FileError;
+use collection::{MOVES, content_hash, member_of};
+use relations::RelationKind;
+use serde::Serialize;
+
+use self::companions::{Below, files_of_mesh};
+use self::journal::{Journal, Line};
+use super::duplicates::{DuplicateMember, DuplicateReport, has_one_name};
+use crate::error::Error;
+
+/// What was moved, there or back, and what was not.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct MoveReport {
+    /// Where the files were, and where they are now: all files of a mesh, one mesh after the other.
+    pub moved: Vec<[PathBuf; 2]>,
+    /// What stays where it is.
+    pub not_moved: Vec<NotMoved>,
+    /// The file by which [`undo_moves`] puts everything back; `None` if there is nothing to put back.
+    pub journal: Option<PathBuf>,
+}
+
+/// A file that was not moved.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct NotMoved {
+    /// The file.
+    pub path: PathBuf,
+    /// Why, as the end of a sentence.
+    pub why: String,
+}
+
+/// Refuses a place for the duplicates of a folder, before the folder is searched: it must be new, empty, or of earlier moves, so
+/// that nothing else is hidden in it. Takes back a mesh of which an interrupted program has moved a part.
+///
+/// # Errors
+/// [`Error::Move`], [`Error::File`].
+pub fn check_place(folder: &Path, place: &Path) -> Result<(), Error> {
+    let refused = |what| Err(Error::Move { path: place.to_owned(), what });
+    let root = folder.canonicalize().map_err(|source| FileError::read(folder, source))?;
+    if root.to_str().is_none() {
+        return refused("the name of a folder around the meshes is not UTF-8; rename it");
+    }
+    match place.canonicalize() {
+        Ok(real) if root.starts_with(&real) => refused("the meshes are in this folder; name another one"),
+        Ok(real) if real.join(MOVES).exists() => Journal::start(&real).map(drop),
+        Ok(real) => match fs::read_dir(real).map_err(|source| FileError::read(place, source))?.next() {
+            None => Ok(()),
+            Some(_) => refused("the folder holds other files; name a new one, or one of earlier moves"),
+        },
+        Err(fault) if fault.kind() == ErrorKind::NotFound => Ok(()),
+        Err(source) => Err(FileError::read(place, source).into()),
+    }
+}
+
+/// Moves the duplicates of a report that are proved to have the bytes, or the vertices and faces, of the file to keep. They go
+/// from `folder` into `place`, below which they keep their folders and names, with all files of their meshes. Nothing is
+/// overwritten; links and what they lead to stay. Collections around `place` leave it out from then on.
+///
+/// # Errors
+/// Those of [`check_place`]; [`Error::Move`] if `place` is in use or on another file system; [`Error::File`]. What was moved
+/// before stays in the journal.
+pub fn move_duplicates(report: &DuplicateReport, folder: &Path, place: &Path) -> Result<MoveReport, Error> {
+    check_place(folder, place)?;
+    let root = folder.canonicalize().map_err(|source| FileError::read(folder, source))?;
+    let below = Below::of(&root);
+    let (mut moves, mut journal) = (MoveReport::default(), None);
+    for (keeper, member) in
+        report.groups.iter().flat_map(|group| group.members.iter().map(|m| (&group.keeper, m)))
+    {
+        let files = match files_to_move(member, &keeper.path, &root, &below) {
+            Ok(files) => files,
+            Err(why) => {
+                moves.not_moved.push(NotMoved { path: member.file.path.clone(), why });
+                continue;
+            }
+        };
+        let journal = match &mut journal {
+            Some(journal) => journal,
+            none => none.insert(Journal::start(place)?),
+        };
+        let line = journal.line(files, &root);
+        journal.append(&line)?;
+        moves.journal = Some(journal.path.clone());
+        if let Err(source) = line.there(&journal.folder, &mut moves) {
+            line.back(&journal.folder, &mut MoveReport::default());
+            journal.take_back()?;
+            let (path, what) =
+                (place.to_owned(), "the folder is on another file system; name one on that of the meshes");
+            return Err(match source.kind() {
+                ErrorKind::CrossesDevices => Error::Move { path, what },
+                _ => FileError::write(&member.file.path, source).into(),
+            });
+        }
+    }
+    Ok(moves)
+}
+
+/// Puts files back that [`move_duplicates`] has moved, the last first, as its journal says. What cannot be put back stays in the
+/// journal.
+///
+/// # Errors
+/// [`Error::Move`] if the journal is damaged or in use; [`Error::File`].
+pub fn undo_moves(journal: &Path) -> Result<MoveReport, Error> {
+    let mut journal = Journal::open(journal, false)?;
+    let mut moves = MoveReport::default();
+    let mut lines = std::mem::take(&mut journal.lines);
+    lines.reverse();
+    lines.retain(|line| !line.back(&journal.folder, &mut moves));
+    lines.reverse();
+    moves.journal = journal.finish(&lines)?;
+    Ok(moves)
+}
+
+/// The files of a member, or why they stay.
+fn files_to_move(
+    member: &DuplicateMember,
+    keeper: &Path,
+    root: &Path,
+    below: &Below,
+) -> Result<Vec<PathBuf>, String> {
+    let path = member.file.path.as_path();
+    if !matches!(member.relation.kind, RelationKind::IdenticalFile | RelationKind::IdenticalGeometry) {
+        return Err("it is not proved to have the vertices and faces of the file to keep".into());
+    }
+    if member_of(path).is_some() {
+        return Err("it is in an archive".into());
+    }
+    let files = files_of_mesh(path);
+    for file in &files {
+        // A path without links below the root is its own canonical path.
+        if !file.starts_with(root) || !file.canonicalize().is_ok_and(|real| real == *file) {
+            return Err("it is a link, or not below the folder".into());
+        }
+        if let Some(link) = below.links.get(file) {
+            return Err(format!("the link {} leads to it", link.display()));
+        }
+        if !has_one_name(file) {
+            return Err("it has several names (hard links), so moving it spares nothing".into());
+        }
+    }
+    let is_known = |(path, hash): (&Path, Option<ContentHash>)| {
+        hash.is_some_and(|hash| content_hash(path).is_ok_and(|found| found == hash))
+    };
+    if ![keeper, path].into_iter().zip(member.relation.because.content).all(is_known) {
+        return Err("it, or the file to keep, has changed since they were compared".into());
+    }
+    match below.other_user(&files, root) {
+        Some(user) => Err(format!("{} needs a file of it", user.display())),
+        None => Ok(files),
+    }
+}
+
+impl Line {
+    /// Moves the files of a line to where it says.
+    fn there(&self, folder: &Path, report: &mut MoveReport) -> io::Result<()> {
+        let n_before = report.moved.len();
+        for (from, to) in &self.files {
+            let to = folder.join(to);
+            move_file(from, &to).inspect_err(|_| report.moved.truncate(n_before))?;
+            report.moved.push([from.clone(), to]);
+        }
+        Ok(())
+    }
+
+    /// Puts the files of a line back, those that were moved. Returns whether nothing is left to do.
+    fn back(&self, folder: &Path, report: &mut MoveReport) -> bool {
+        let mut is_done = true;
+        for (from, to) in self.files.iter().rev() {
+            let to = folder.join(to);
+            let size = |path: &Path| fs::symlink_metadata(path).ok().map(|about| about.len());
+            // What is empty holds a name, where a move was interrupted.
+            let why = match (size(from), size(&to)) {
+                (Some(_), None) => continue,
+                (Some(_), Some(0)) => fs::remove_file(&to).err().map(|fault| fault.to_string()),
+                (Some(0), Some(_)) => fs::rename(&to, from).err().map(|fault| fault.to_string()),
+                (None, Some(_)) => move_file(&to, from).err().map(|fault| fault.to_string()),
+                (Some(_), Some(_)) => Some(format!("another file is now {}", from.display())),
+                (None, None) => {
+                    report.not_moved.push(NotMoved { path: to, why: "it is gone".into() });
+                    continue;
+                }
+            };
+            is_done &= why.is_none();
+            match why {
+                None => report.moved.push([to, from.clone()]),
+                Some(why) => report.not_moved.push(NotMoved { path: to, why }),
+            }
+        }
+        is_done
+    }
+}
+
+/// Gives a file a new name, which nothing else has.
+fn move_file(from: &Path, to: &Path) -> io::Result<()> {
+    to.parent().map_or(Ok(()), fs::create_dir_all)?;
+    // An empty file holds the name, so that the file takes no place but its own.
+    fs::File::create_new(to)?;
+    fs::rename(from, to).inspect_err(|_| drop(fs::remove_file(to)))
+}

@@ -1,0 +1,422 @@
+//! Collections on the disk: what becomes of files that are copies, move, or cannot be read.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::UNIX_EPOCH;
+
+use canonform::index::Index;
+use canonform::mesh::{TriMesh, io, shapes};
+use canonform::{
+    BuildOptions, BuildReport, DescribeOptions, DuplicateOptions, DuplicateReport, MoveReport, ShapeSearch,
+    build_index, check_place, find_duplicates, move_duplicates, undo_moves,
+};
+
+/// Names that a shell, a spreadsheet, a terminal or a browser may obey.
+const HOSTILE: [&str; 12] = [
+    "c\ntouch pwned #.off",
+    "it's \"$(touch pwned)\" `touch pwned`;&|<>*?.off",
+    "-rf --help.off",
+    "#comment.off",
+    "tab\there\r.off",
+    "\u{1b}[2J\u{9b}31m\u{7}\u{85}.off",
+    "\u{202e}ffo.tac\u{2066}.off",
+    "ünïcödé 日本.off",
+    " blank at both ends .off",
+    "=cmd|' /C calc'!A0.off",
+    "\\back\\slash\\n%20.off",
+    "..off",
+];
+
+fn ball() -> TriMesh {
+    shapes::icosphere(1)
+}
+
+fn build(folder: &Path, index: &Path) -> BuildReport {
+    build_index(folder, index, &BuildOptions::new(&DescribeOptions::default()), &()).unwrap()
+}
+
+fn duplicates(folder: &Path) -> DuplicateReport {
+    let place = tempfile::tempdir().unwrap();
+    let index = place.path().canonicalize().unwrap().join("all.canonform");
+    build(folder, &index);
+    find_duplicates(&ShapeSearch::open(&index).unwrap(), &DuplicateOptions::default(), &()).unwrap()
+}
+
+fn moved(folder: &Path, place: &Path) -> MoveReport {
+    check_place(folder, place).unwrap();
+    move_duplicates(&duplicates(folder), folder, place).unwrap()
+}
+
+/// All files below a folder, links by where they lead.
+fn tree(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    for entry in fs::read_dir(folder).unwrap().map(Result::unwrap) {
+        let (path, kind) = (entry.path(), entry.file_type().unwrap());
+        let below = PathBuf::from(entry.file_name());
+        if kind.is_dir() {
+            found.extend(tree(&path).into_iter().map(|(name, bytes)| (below.join(name), bytes)));
+        } else if kind.is_symlink() {
+            found.insert(below, fs::read_link(&path).unwrap().into_os_string().into_encoded_bytes());
+        } else {
+            found.insert(below, fs::read(&path).unwrap());
+        }
+    }
+    found
+}
+
+fn written(folder: &Path, names: &[&str]) {
+    for name in names {
+        let path = folder.join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        io::write(&path, &ball()).unwrap();
+        for file in io::files_of(&path) {
+            // Files of one age are kept in the order of their names.
+            fs::File::options().write(true).open(file).unwrap().set_modified(UNIX_EPOCH).unwrap();
+        }
+    }
+}
+
+fn reasons(report: &MoveReport) -> BTreeMap<String, String> {
+    let name = |path: &Path| path.file_name().unwrap().to_str().unwrap().to_owned();
+    report.not_moved.iter().map(|stays| (name(&stays.path), stays.why.clone())).collect()
+}
+
+#[test]
+fn files_of_any_name_move_and_come_back_and_a_second_run_moves_nothing() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path().join("models");
+    written(&folder, &HOSTILE);
+    let before = tree(&folder);
+    // Below the collection, where it must not be taken for a part of it.
+    let away = folder.join("away\nfrom here");
+    let report = moved(&folder, &away);
+    assert_eq!(
+        (report.moved.len(), report.not_moved.len()),
+        (HOSTILE.len() - 1, 0),
+        "{:?}",
+        report.not_moved
+    );
+    let journal = fs::read_to_string(report.journal.as_ref().unwrap()).unwrap();
+    assert_eq!(journal.lines().count(), HOSTILE.len() - 1, "one line a mesh");
+    assert!(!journal.contains(|c: char| c.is_ascii_control() && c != '\n'));
+    let after = tree(&folder);
+    assert_eq!(after.len(), before.len() + 1, "nothing is lost");
+    for [from, to] in &report.moved {
+        assert!(
+            !from.exists() && to.strip_prefix(&report.journal.as_ref().unwrap().parent().unwrap()).is_ok()
+        );
+    }
+    assert_eq!(duplicates(&folder).groups, []);
+    assert_eq!(moved(&folder, &away), MoveReport::default());
+    assert!(tree(&folder) == after);
+    let undone = undo_moves(report.journal.as_ref().unwrap()).unwrap();
+    assert_eq!((undone.moved.len(), undone.not_moved.len()), (HOSTILE.len() - 1, 0));
+    assert!(undone.journal.is_none() && !away.exists());
+    assert!(tree(&folder) == before);
+}
+
+#[test]
+fn equal_names_stay_apart_and_nothing_is_overwritten() {
+    let place = tempfile::tempdir().unwrap();
+    let (folder, away) = (place.path().join("models"), place.path().join("away"));
+    let names = ["x/part.off", "y/part.off", "z/part.off"];
+    written(&folder, &names);
+    let before = tree(&folder);
+    assert_eq!(moved(&folder, &away).moved.len(), 2);
+    let first = tree(&away);
+    // The same names once more.
+    for name in names.iter().filter(|name| !folder.join(name).exists()) {
+        written(&folder, &[name]);
+    }
+    let again = moved(&folder, &away);
+    assert_eq!(again.moved.len(), 2);
+    let second = tree(&away);
+    assert_eq!(second.len(), 5);
+    assert!(
+        first
+            .keys()
+            .filter(|name| name.extension().unwrap() == "off")
+            .all(|name| second[name] == first[name])
+    );
+    // The first moves cannot be undone, since their places were taken again by the second ones, which come back first.
+    let undone = undo_moves(again.journal.as_ref().unwrap()).unwrap();
+    assert_eq!((undone.moved.len(), undone.not_moved.len()), (2, 2));
+    assert!(undone.not_moved.iter().all(|stays| stays.why.starts_with("another file is now")));
+    assert!(tree(&folder) == before);
+    assert_eq!(tree(&away).len(), 3, "the journal keeps what is left");
+}
+
+#[cfg(unix)]
+#[test]
+fn links_and_what_they_lead_to_stay() {
+    use std::os::unix::fs::symlink;
+    let place = tempfile::tempdir().unwrap();
+    let (folder, master) = (place.path().join("models"), place.path().join("master"));
+    written(&folder, &["a.off", "linked.off", "hard.off", "free longer name.off"]);
+    written(&master, &["precious.off", "other/far.off"]);
+    symlink("../master/precious.off", folder.join("out.off")).unwrap();
+    symlink("../master/other", folder.join("far")).unwrap();
+    symlink("linked.off", folder.join("alias.off")).unwrap();
+    fs::hard_link(folder.join("hard.off"), folder.join("hard too.off")).unwrap();
+    let (outside, before) = (tree(&master), tree(&folder));
+    let found = duplicates(&folder);
+    // Neither links nor second names are space to spare.
+    let keeper = &found.groups[0].keeper.id;
+    let own = ["a", "linked", "free longer name"].iter().filter(|id| *id != keeper).count() as u64;
+    assert_eq!(found.spare_bytes(), own * fs::metadata(folder.join("a.off")).unwrap().len());
+    let report = move_duplicates(&found, &folder, &place.path().join("away")).unwrap();
+    let why = reasons(&report);
+    assert!(why["out.off"].starts_with("it is a link"));
+    assert!(why["far.off"].starts_with("it is a link"));
+    assert!(why["hard.off"].starts_with("it has several names"));
+    assert!(why["hard too.off"].starts_with("it has several names"));
+    assert!(!report.moved.is_empty());
+    assert!(tree(&master) == outside);
+    for name in ["linked.off", "alias.off", "out.off"] {
+        assert!(io::read(&folder.join(name)).is_ok(), "{name}");
+    }
+    undo_moves(report.journal.as_ref().unwrap()).unwrap();
+    assert!(tree(&folder) == before);
+}
+
+/// A glTF file of a ring and its buffer; both the buffer and a picture are other files.
+fn gltf(buffer: &str, picture: &str) -> (String, Vec<u8>) {
+    let ring = shapes::torus(12, 8, 2.0, 0.7);
+    let corners = ring.positions.iter().flat_map(|p| [p.x, p.y, p.z]).flat_map(|x| (x as f32).to_le_bytes());
+    let faces = ring.faces.iter().flatten().flat_map(|v| v.0.to_le_bytes());
+    let bytes: Vec<u8> = corners.chain(faces).collect();
+    let (n, n_corners, n_faces) = (bytes.len(), 12 * ring.n_vertices(), 12 * ring.n_faces());
+    let text = format!(
+        r#"{{"asset":{{"version":"2.0"}},"buffers":[{{"uri":"{buffer}","byteLength":{n}}}],"images":[{{"uri":"{picture}"}}],
+        "bufferViews":[{{"buffer":0,"byteLength":{n_corners}}},{{"buffer":0,"byteOffset":{n_corners},"byteLength":{n_faces}}}],
+        "accessors":[{{"bufferView":0,"componentType":5126,"count":{},"type":"VEC3"}},
+        {{"bufferView":1,"componentType":5125,"count":{},"type":"SCALAR"}}],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"indices":1}}]}}],"nodes":[{{"mesh":0}}],"scenes":[{{"nodes":[0]}}],"scene":0}}"#,
+        ring.n_vertices(),
+        3 * ring.n_faces()
+    );
+    (text, bytes)
+}
+
+#[test]
+fn all_files_of_a_mesh_move_together_and_what_another_needs_stays() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path().join("models");
+    let at = |name: &str| folder.join(name);
+    written(&folder, &["pair/a.vert", "pair/bb.vert", "obj/a.obj", "obj/bb.obj"]);
+    // Copies of an OBJ file with materials of their own, one of them in a folder below.
+    for (name, materials) in [("a", "a.mtl"), ("bb", "sub/my bb.mtl")] {
+        let text = fs::read_to_string(at(&format!("obj/{name}.obj"))).unwrap();
+        fs::write(at(&format!("obj/{name}.obj")), format!("mtllib {materials}\n{text}")).unwrap();
+        let path = at(&format!("obj/{materials}"));
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, format!("newmtl m\nmap_Kd -s 1 1 1 {name} skin.png\n")).unwrap();
+    }
+    fs::write(at("obj/a skin.png"), "a").unwrap();
+    fs::write(at("obj/sub/bb skin.png"), "bb").unwrap();
+    for name in ["own/a", "own/bb", "shared/a", "shared/bb"] {
+        fs::create_dir_all(at(name).parent().unwrap()).unwrap();
+        let (buffer, picture) = match name.split_once('/').unwrap() {
+            ("own", stem) => (format!("{stem}.bin"), format!("my%20{stem}.png")),
+            _ => ("all.bin".to_owned(), "all.png".to_owned()),
+        };
+        let (text, bytes) = gltf(&buffer, &picture);
+        fs::write(at(&format!("{name}.gltf")), text).unwrap();
+        fs::write(at(name).with_file_name(buffer), bytes).unwrap();
+        fs::write(at(name).with_file_name(picture.replace("%20", " ")), name).unwrap();
+    }
+    let before = tree(&folder);
+    let report = moved(&folder, &place.path().join("away"));
+    let away: Vec<String> =
+        tree(&place.path().join("away")).into_keys().map(|path| path.to_str().unwrap().to_owned()).collect();
+    let kept = tree(&folder);
+    // Whichever of two is kept, the files of the other are all there.
+    for files in [
+        ["pair/a.vert", "pair/a.tri"].as_slice(),
+        &["pair/bb.vert", "pair/bb.tri"],
+        &["obj/a.obj", "obj/a.mtl", "obj/a skin.png"],
+        &["obj/bb.obj", "obj/sub/my bb.mtl", "obj/sub/bb skin.png"],
+        &["own/a.gltf", "own/a.bin", "own/my a.png"],
+        &["own/bb.gltf", "own/bb.bin", "own/my bb.png"],
+        &["shared/a.gltf", "shared/bb.gltf", "shared/all.bin", "shared/all.png"],
+    ] {
+        let n_moved = files.iter().filter(|name| away.iter().any(|moved| moved == *name)).count();
+        let n_kept = files.iter().filter(|name| kept.contains_key(Path::new(name))).count();
+        assert!([(0, files.len()), (files.len(), 0)].contains(&(n_moved, n_kept)), "{files:?}: {away:?}");
+    }
+    assert!(
+        away.iter().any(|name| name.ends_with(".tri")) && away.iter().any(|name| name.ends_with("skin.png"))
+    );
+    assert!(
+        away.iter().any(|name| name.starts_with("own/my "))
+            && !away.iter().any(|name| name.starts_with("shared"))
+    );
+    assert!(reasons(&report).values().any(|why| why.ends_with("needs a file of it")));
+    for [_, to] in report.moved.iter().filter(|[_, to]| io::is_mesh_path(to)) {
+        assert!(io::read(to).is_ok(), "{}", to.display());
+    }
+    undo_moves(report.journal.as_ref().unwrap()).unwrap();
+    assert!(tree(&folder) == before);
+}
+
+/// A pair that was moved, and its journal.
+fn moved_pair(place: &Path) -> (PathBuf, PathBuf, [[PathBuf; 2]; 2], PathBuf) {
+    let (folder, away) = (place.join("models"), place.join("away"));
+    written(&folder, &["a.vert", "bb.vert"]);
+    let report = moved(&folder, &away);
+    (folder, away, report.moved.clone().try_into().unwrap(), report.journal.unwrap())
+}
+
+#[test]
+fn whatever_interrupts_a_move_it_can_be_undone_or_resumed() {
+    // What an interruption leaves: the journal says what was to be done, and a part of it is done.
+    let states: [fn(&[[PathBuf; 2]; 2]); 4] = [
+        |_| {},
+        |[_, [from, to]]| fs::rename(to, from).unwrap(),
+        |[_, [from, to]]| {
+            fs::rename(to, from).unwrap();
+            fs::write(to, "").unwrap();
+        },
+        |moves| moves.iter().for_each(|[from, to]| fs::rename(to, from).unwrap()),
+    ];
+    for (n, state) in states.iter().enumerate() {
+        for is_resumed in [false, true] {
+            let place = tempfile::tempdir().unwrap();
+            let (folder, away, moves, journal) = moved_pair(place.path());
+            state(&moves);
+            // A line that was cut: its mesh has not moved.
+            let lines = fs::read_to_string(&journal).unwrap();
+            fs::write(&journal, format!("{lines}{{\"files\":[[\"/x")).unwrap();
+            if is_resumed {
+                moved(&folder, &away);
+                assert_eq!(tree(&folder).len(), 2, "state {n}");
+                assert_eq!(duplicates(&folder).groups, []);
+                assert!(moves.iter().all(|[from, to]| !from.exists() && to.exists()), "state {n}");
+            }
+            let undone = undo_moves(&journal).unwrap();
+            assert_eq!(undone.not_moved, [], "state {n}");
+            assert!(undone.journal.is_none() && !away.exists());
+            assert_eq!(tree(&folder).len(), 4, "state {n}");
+            assert!(moves.iter().all(|[from, _]| fs::metadata(from).unwrap().len() > 0), "state {n}");
+        }
+    }
+}
+
+#[test]
+fn undoing_overwrites_nothing_and_keeps_what_is_left_in_the_journal() {
+    let place = tempfile::tempdir().unwrap();
+    let (_, _, moves, journal) = moved_pair(place.path());
+    fs::write(&moves[0][0], "a new file").unwrap();
+    let undone = undo_moves(&journal).unwrap();
+    assert_eq!((undone.moved.len(), undone.journal.as_ref()), (1, Some(&journal)));
+    assert!(undone.not_moved[0].why.starts_with("another file is now"));
+    assert_eq!(fs::read_to_string(&moves[0][0]).unwrap(), "a new file");
+    fs::remove_file(&moves[0][0]).unwrap();
+    fs::remove_file(&moves[0][1]).unwrap();
+    let rest = undo_moves(&journal).unwrap();
+    assert_eq!((rest.not_moved[0].why.as_str(), rest.journal), ("it is gone", None));
+    // Whatever is no journal stays as it is.
+    for text in ["", "mine", "{\"x\":1}\n", "{\"files\":[", "mine\nand mine"] {
+        let path = place.path().join("mine.jsonl");
+        fs::write(&path, text).unwrap();
+        assert!(undo_moves(&path).unwrap_err().to_string().contains("no journal"), "{text}");
+        assert_eq!(fs::read_to_string(&path).unwrap(), text);
+    }
+}
+
+#[test]
+fn places_that_hold_or_hide_something_are_refused() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path().join("models");
+    written(&folder, &["a.off", "bb.off", "sub/c.ply"]);
+    let found = duplicates(&folder);
+    let before = tree(place.path());
+    for (away, what) in [
+        ("models", "the meshes are in this folder"),
+        ("models/sub", "holds other files"),
+        (".", "the meshes"),
+    ] {
+        let error = move_duplicates(&found, &folder, &place.path().join(away)).unwrap_err().to_string();
+        assert!(error.contains(what), "{away}: {error}");
+    }
+    // What changed since it was compared stays.
+    let member = &found.groups[0].members[0].file.path;
+    fs::write(member, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n").unwrap();
+    let report = move_duplicates(&found, &folder, &place.path().join("away")).unwrap();
+    assert!(reasons(&report)[member.file_name().unwrap().to_str().unwrap()].contains("has changed"));
+    assert!(tree(place.path()).len() >= before.len());
+}
+
+#[test]
+fn files_of_equal_bytes_are_described_once() {
+    let place = tempfile::tempdir().unwrap();
+    let (folder, path) = (place.path().join("models"), place.path().join("all.canonform"));
+    written(&folder, &["a.off", "b/a.off", "c.off", "d.ply"]);
+    io::write(&folder.join("ring.off"), &shapes::torus(12, 8, 2.0, 0.7)).unwrap();
+    // The same bytes, read as another format.
+    fs::copy(folder.join("a.off"), folder.join("e.obj")).unwrap();
+    for name in ["broken.off", "broken too.off"] {
+        fs::write(folder.join(name), "OFF\n3 1 0\n0 0 0\n").unwrap();
+    }
+    let report = build(&folder, &path);
+    assert_eq!((report.n_shapes, report.described, report.copies), (5, 5, 2), "{:?}", report.failed);
+    // Each failure names its own file.
+    assert_eq!(report.failed.len(), 3);
+    for failure in &report.failed {
+        assert!(failure.error.contains(failure.path.to_str().unwrap()), "{}", failure.error);
+    }
+    let index = Index::open(&path).unwrap();
+    let [a, b, c] = ["a", "b/a", "c"].map(|id| index.vectors(id).unwrap());
+    assert!(a == b && a == c);
+    assert_eq!(index.entry("b/a").unwrap().path, "models/b/a.off");
+    fs::copy(folder.join("a.off"), folder.join("f.off")).unwrap();
+    assert_eq!(build(&folder, &path).n_shapes, 6);
+}
+
+#[cfg(unix)]
+#[test]
+fn what_cannot_be_read_now_is_kept_and_what_is_gone_is_removed() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    let place = tempfile::tempdir().unwrap();
+    let at = |name: &str| place.path().join(name);
+    let (folder, path) = (at("models"), at("all.canonform"));
+    written(
+        place.path(),
+        &["share/far.off", "store.off", "models/here.off", "models/gone.off", "models/pair.vert"],
+    );
+    written(place.path(), &["models/closed/inner.off", "models/lost/inner.off"]);
+    symlink("../share", folder.join("share")).unwrap();
+    symlink("../store.off", folder.join("link.off")).unwrap();
+    assert_eq!(build(&folder, &path).n_shapes, 7);
+    // A share and a file that links lead to are away, half of a pair cannot be opened, and two files are really gone.
+    fs::rename(at("share"), at("share away")).unwrap();
+    fs::rename(at("store.off"), at("store away.off")).unwrap();
+    fs::rename(folder.join("pair.tri"), at("half.tri")).unwrap();
+    fs::create_dir(folder.join("pair.tri")).unwrap();
+    fs::remove_file(folder.join("gone.off")).unwrap();
+    fs::remove_dir_all(folder.join("lost")).unwrap();
+    let closed = folder.join("closed");
+    fs::set_permissions(&closed, fs::Permissions::from_mode(0)).unwrap();
+    // Nothing is closed to the superuser.
+    let is_closed = fs::read_dir(&closed).is_err();
+    for removed in [2, 0] {
+        let report = build(&folder, &path);
+        let mut kept = vec!["link", "pair", "share/far"];
+        if is_closed {
+            kept.insert(0, "closed/inner");
+        }
+        assert_eq!(
+            (report.n_shapes, report.removed, report.unreadable),
+            (5, removed, kept.into_iter().map(str::to_owned).collect())
+        );
+    }
+    fs::set_permissions(&closed, fs::Permissions::from_mode(0o755)).unwrap();
+    fs::remove_dir(folder.join("pair.tri")).unwrap();
+    fs::rename(at("half.tri"), folder.join("pair.tri")).unwrap();
+    fs::rename(at("share away"), at("share")).unwrap();
+    fs::remove_file(folder.join("link.off")).unwrap();
+    let report = build(&folder, &path);
+    assert_eq!((report.n_shapes, report.described, report.removed), (4, 0, 1));
+    assert_eq!(report.unreadable, [String::new(); 0]);
+}
