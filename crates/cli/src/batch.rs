@@ -1,16 +1,17 @@
 //! One result for each of several meshes.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
+use base::files::is_input;
 use base::terminal::Bars;
 use canonform::ShapeFile;
 use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::args::Common;
-use crate::input::{expand, is_stream};
+use crate::input::{expand, is_stream, keep_inputs};
 
 /// A mesh without a result.
 #[derive(Serialize)]
@@ -100,13 +101,12 @@ impl Results<'_> {
         if folder.exists() && !folder.is_dir() {
             bail!("{} is a file; with several meshes, -o names a folder", folder.display());
         }
-        let inputs: HashSet<PathBuf> =
-            shapes.iter().filter_map(|shape| shape.path.canonicalize().ok()).collect();
+        shapes.iter().for_each(|shape| keep_inputs(&shape.path));
         let outputs: Vec<PathBuf> =
             shapes.iter().map(|shape| folder.join(format!("{}.{extension}", shape.name))).collect();
         let mut first = HashMap::new();
         for (shape, output) in shapes.iter().zip(&outputs) {
-            if output.canonicalize().is_ok_and(|output| inputs.contains(&output)) {
+            if is_input(output) {
                 let output = output.display();
                 bail!("{output}: the result would overwrite a mesh; choose another folder with -o");
             }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
-use canonform::mesh::io::{Content, Format, VertexField, extension, is_gzip, or_list};
+use canonform::mesh::io::{Content, Format, VertexField, extension, files_of, is_gzip, or_list};
 use canonform::mesh::{MeshError, TriMesh};
 use npyz::WriterBuilder;
 use report::color::{Rgb, color_scale};
@@ -43,14 +43,13 @@ pub(crate) fn decimal_bytes(bytes: u128) -> String {
 
 /// Prints one JSON object to standard output.
 pub(crate) fn print_json(value: &impl Serialize) -> Result<()> {
-    let mut out = io::stdout().lock();
-    serde_json::to_writer(&mut out, value).map_err(std::io::Error::from)?;
-    Ok(writeln!(out)?)
+    let text = serde_json::to_string(value)?;
+    Ok(writeln!(io::stdout().lock(), "{}", base::printable_json(&text))?)
 }
 
 /// Prints text to standard output, without codes that a terminal would obey.
 pub(crate) fn print(text: &str) -> Result<()> {
-    Ok(writeln!(io::stdout().lock(), "{}", base::terminal::printable(text))?)
+    Ok(writeln!(io::stdout().lock(), "{}", base::printable(text))?)
 }
 
 /// A name and a value.
@@ -69,16 +68,18 @@ impl Answer {
         if common.details {
             self.facts.append(&mut self.details);
         }
+        let sentence = base::one_line(&self.sentence);
         match self.facts.is_empty() {
-            true => self.sentence,
-            false => format!("{}\n{}", self.sentence, facts(&self.facts)),
+            true => sentence.into_owned(),
+            false => format!("{sentence}\n{}", facts(&self.facts)),
         }
     }
 }
 
-/// A result file in a sentence.
+/// A file in a sentence, without codes that a terminal would obey.
 pub(crate) fn shown(path: &Path) -> String {
-    if is_stream(path) { "standard output".to_owned() } else { path.display().to_string() }
+    let name = path.to_string_lossy();
+    if is_stream(path) { "standard output".to_owned() } else { base::one_line(&name).into_owned() }
 }
 
 /// A number with a noun in the singular or, with an `s`, in the plural.
@@ -89,15 +90,20 @@ pub(crate) fn count(n: usize, noun: &str) -> String {
 /// A table of two columns: names and values.
 pub(crate) fn facts(rows: &[(&str, String)]) -> String {
     let width = rows.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
-    let line = |(name, value): &(&str, String)| format!("  {name:<width$}  {value}");
+    let line = |(name, value): &(&str, String)| format!("  {name:<width$}  {}", base::one_line(value));
     rows.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
 /// An empty table without lines between its cells.
-pub(crate) fn table_of<H: Into<comfy_table::Row>>(header: H) -> comfy_table::Table {
+pub(crate) fn table_of(header: impl IntoIterator<Item = impl AsRef<str>>) -> comfy_table::Table {
     let mut table = comfy_table::Table::new();
-    table.load_style(comfy_table::presets::NOTHING).set_header(header);
+    table.load_style(comfy_table::presets::NOTHING).set_header(row_of(header));
     table
+}
+
+/// A row of a table, each cell on one line.
+pub(crate) fn row_of(cells: impl IntoIterator<Item = impl AsRef<str>>) -> Vec<String> {
+    cells.into_iter().map(|cell| base::one_line(cell.as_ref()).into_owned()).collect()
 }
 
 /// Writes rows of equal length as a little-endian float64 NumPy array.
@@ -163,7 +169,7 @@ impl Output {
     ) -> Result<Self> {
         if !is_stream(path) {
             let format = check_format(path, what, formats)?;
-            check_folder(path)?;
+            check_output(path)?;
             return Ok(Self { path: path.to_owned(), format, scratch: None });
         }
         if common.json {
@@ -210,7 +216,7 @@ impl Output {
             return report(common, result, table);
         }
         self.copy_to_stdout()?;
-        base::terminal::note(&table(result));
+        table(result).lines().for_each(base::terminal::note);
         Ok(ExitCode::SUCCESS)
     }
 
@@ -232,14 +238,24 @@ pub(crate) fn check_format(path: &Path, what: &str, formats: &[&str]) -> Result<
     if is_gzip(path) && !is_mesh(&format) {
         bail!("{}: {what} cannot be written compressed; leave out .gz", path.display());
     }
+    if path.is_dir() {
+        bail!(
+            "cannot write {}: it is a folder; name a file for {what}, such as {}",
+            path.display(),
+            path.join(format!("name.{}", formats[0])).display()
+        );
+    }
     if !formats.contains(&format.as_str()) {
         bail!("{}: unsupported format for {what}; use {}", path.display(), or_list(formats.iter().copied()));
     }
     Ok(format)
 }
 
-/// Refuses an output file in a folder that does not exist, before any work is done.
-pub(crate) fn check_folder(path: &Path) -> Result<()> {
+/// Refuses an output file that would take the place of an input, or in a folder that does not exist, before any work is done.
+pub(crate) fn check_output(path: &Path) -> Result<()> {
+    if files_of(path).iter().any(|file| base::files::is_input(file)) {
+        bail!("{}: the result would overwrite an input; choose another name for it", path.display());
+    }
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
             bail!(

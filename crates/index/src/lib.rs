@@ -71,7 +71,7 @@ mod tests;
 
 pub use base::ContentHash;
 pub use error::{FORMAT_VERSION, IndexError};
-pub use export::{ExportError, ExportFormat, csv_field};
+pub use export::{ExportError, ExportFormat, csv_field, text_cell};
 pub use reader::Index;
 pub use search::{Found, FoundOnGraph, NearShape, RankedShape, SearchMode, Searcher, class_threshold};
 pub use shape::{Shape, ShapeEntry, ShapeVectors};

@@ -54,7 +54,9 @@ impl Exception {
             static MODULE: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
             let import = || Ok::<_, PyErr>(py.import("canonform.errors")?.unbind());
             let raised = MODULE.get_or_try_init(py, import).and_then(|module| {
-                Ok(PyErr::from_value(module.bind(py).getattr(self.name())?.call1((message,))?))
+                Ok(PyErr::from_value(
+                    module.bind(py).getattr(self.name())?.call1((base::printable(message),))?,
+                ))
             });
             raised.unwrap_or_else(|fault| fault)
         })

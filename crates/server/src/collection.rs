@@ -189,6 +189,8 @@ impl Served {
                 FileState::Current
             }
             Some(Err(error)) => {
+                let error = error.to_string();
+                let error = canonform::one_line(&error);
                 eprintln!("the index has changed and cannot be opened; the old one is used: {error}");
                 FileState::Unreadable
             }

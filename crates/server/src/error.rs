@@ -169,7 +169,7 @@ impl From<Error> for ApiError {
             }
             Error::Exceeded(exceeded) => return Self::exceeded(*exceeded),
             _ => {
-                eprintln!("error: {fault}");
+                eprintln!("error: {}", canonform::one_line(&fault.to_string()));
                 return Self::internal();
             }
         };

@@ -5,7 +5,6 @@
 mod memory;
 mod notes;
 mod progress;
-mod text;
 
 use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError};
@@ -15,7 +14,6 @@ use anyhow::{Context, Result};
 pub use memory::{memory_limit, with_peak_bytes};
 pub use notes::{error, is_quiet, note, set_quiet};
 pub use progress::Bars;
-pub use text::printable;
 
 /// Called on the first interruption instead of exiting.
 static ON_INTERRUPTION: Mutex<Option<Box<dyn FnOnce() + Send>>> = Mutex::new(None);

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::text::printable;
+use crate::one_line;
 
 static QUIET: AtomicBool = AtomicBool::new(false);
 
@@ -32,5 +32,5 @@ pub fn error(text: &str) {
 
 /// Standard error may be closed: that is no reason to stop, and `eprintln` would panic.
 pub(crate) fn write_line(text: &str) {
-    let _ = writeln!(std::io::stderr().lock(), "{}", printable(text));
+    let _ = writeln!(std::io::stderr().lock(), "{}", one_line(text));
 }

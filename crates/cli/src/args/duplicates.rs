@@ -2,63 +2,70 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use canonform::RelationKind;
+use clap::Args;
+use clap::builder::TypedValueParser;
+
+use super::settings::one_of;
 
 const NOTES: &str = "\
 Nothing is ever deleted. Every member of a group is compared with the file that is suggested to be kept, by the
 triangles of both: `remeshed` and `noisy` say how surely. Exit code 0 with duplicates, 1 without.
 
+--move-to moves copies of a file or of its geometry, with all files of their meshes, into FOLDER, which scans leave out from
+then on. Links, what they lead to, files with several names and members of archives stay. A cell of the CSV that a spreadsheet
+would take for a formula begins with an apostrophe.
+
 Examples:
   canonform duplicates models/
   canonform duplicates shapes.canonform --csv duplicates.csv --html duplicates.html
-  canonform duplicates models/ --kinds file,geometry";
+  canonform duplicates models/ --move-to duplicates/
+  canonform duplicates --undo duplicates/canonform-moved.jsonl";
 
 #[derive(Debug, Args)]
 #[command(after_help = NOTES)]
 pub(crate) struct DuplicatesArgs {
     /// An index, or a dataset, which is described first
-    #[arg(value_name = "INDEX|DIR")]
-    pub(crate) input: PathBuf,
+    #[arg(value_name = "INDEX|DIR", required_unless_present = "undo")]
+    pub(crate) input: Option<PathBuf>,
     /// Write one line per file
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) csv: Option<PathBuf>,
     /// Write a page with pictures
     #[arg(long, value_name = "FILE.html")]
     pub(crate) html: Option<PathBuf>,
+    /// Move proved copies out of DIR into this folder, and write there how to put them back
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) move_to: Option<PathBuf>,
+    /// Put back what --move-to has moved
+    #[arg(long, value_name = "JOURNAL", conflicts_with_all = ["input", "csv", "html", "move_to"])]
+    pub(crate) undo: Option<PathBuf>,
     /// What counts as a duplicate
     #[arg(
         long,
         value_name = "KIND,...",
+        value_parser = kinds(),
         value_delimiter = ',',
         default_value = "file,geometry,scaled,mirrored,noisy,remeshed"
     )]
-    pub(crate) kinds: Vec<KindArg>,
+    pub(crate) kinds: Vec<RelationKind>,
     /// The least confidence, 0 to 1
     #[arg(long, value_name = "P", default_value_t = 0.9)]
     pub(crate) min_confidence: f64,
 }
 
-/// A kind of relation.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum KindArg {
-    /// The same bytes
-    File,
-    /// The same vertices and faces
-    Geometry,
-    /// The same geometry at another size
-    Scaled,
-    /// The mirror image
-    Mirrored,
-    /// The same faces with noise
-    Noisy,
-    /// The same surface with other triangles
-    Remeshed,
-    /// Several copies in one file
-    Copies,
-    /// A component or a piece
-    Part,
-    /// The same part with another hole, thickness, length or detail
-    Variant,
-    /// The same shape in another pose
-    Pose,
+/// Kinds of relations by name.
+fn kinds() -> impl TypedValueParser<Value = RelationKind> {
+    one_of(vec![
+        ("file", "The same bytes", RelationKind::IdenticalFile),
+        ("geometry", "The same vertices and faces", RelationKind::IdenticalGeometry),
+        ("scaled", "The same geometry at another size", RelationKind::Scaled),
+        ("mirrored", "The mirror image", RelationKind::Mirrored),
+        ("noisy", "The same faces with noise", RelationKind::Noisy),
+        ("remeshed", "The same surface with other triangles", RelationKind::Remeshed),
+        ("copies", "Several copies in one file", RelationKind::Copies),
+        ("part", "A component or a piece", RelationKind::PartOf),
+        ("variant", "The same part with another hole, thickness, length or detail", RelationKind::Variant),
+        ("pose", "The same shape in another pose", RelationKind::OtherPose),
+    ])
 }

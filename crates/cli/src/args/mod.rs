@@ -11,7 +11,7 @@ mod serve;
 mod settings;
 mod shared;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use canonform::descriptors::{Boundary, ShapeMetric};
 use canonform::geodesics::Method;
@@ -19,12 +19,14 @@ use canonform::mesh::io::{Content, mesh_files, or_list, writable};
 use canonform::settings::Named;
 use canonform::{InputPoint, StressChoice};
 use clap::builder::TypedValueParser;
-use clap::{Arg, ArgAction, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
+use clap::{Arg, ArgAction, Args, CommandFactory, FromArgMatches, Id, Parser, Subcommand};
 use clap_complete::Shell;
+
+use crate::input::keep_inputs;
 
 use self::settings::{FormArgs, OfComparison, OfEmbedding, OfForm, distance_method, one_of};
 
-pub(crate) use duplicates::{DuplicatesArgs, KindArg};
+pub(crate) use duplicates::DuplicatesArgs;
 pub(crate) use field::{FieldBuildArgs, FieldCommand, FieldQueryArgs};
 pub(crate) use generate::{FamilyArg, GenerateArgs};
 pub(crate) use geodesic::GeodesicArgs;
@@ -64,10 +66,34 @@ fn with_help(command: clap::Command) -> clap::Command {
     names.into_iter().fold(command, |command, name| command.mut_subcommand(name, with_help))
 }
 
-/// Parses the command line, or prints help or an error and ends the program.
+/// Options and arguments that name what a command writes, or changes.
+const WRITTEN: [&str; 9] =
+    ["output", "csv", "html", "residual_mesh", "functional", "index", "inputs", "move_to", "undo"];
+
+/// Parses the command line, or prints help or an error and ends the program. All other files that it names are inputs, which
+/// no result may replace.
 pub(crate) fn parsed() -> Arguments {
-    let arguments = Arguments::from_arg_matches(&program().get_matches());
-    arguments.unwrap_or_else(|fault| fault.format(&mut program()).exit())
+    let matches = program().try_get_matches().unwrap_or_else(|fault| exit(&fault));
+    let mut command = Some(&matches);
+    while let Some(inner) = command {
+        let given = inner.ids().map(Id::as_str).filter(|id| !WRITTEN.contains(id));
+        let values = given.filter_map(|id| inner.try_get_raw(id).ok().flatten()).flatten();
+        values.map(Path::new).filter(|path| path.is_file()).for_each(keep_inputs);
+        command = inner.subcommand().map(|(_, inner)| inner);
+    }
+    Arguments::from_arg_matches(&matches).unwrap_or_else(|fault| exit(&fault.format(&mut program())))
+}
+
+/// Prints help to standard output, or an error to standard error, which may quote a name.
+fn exit(fault: &clap::Error) -> ! {
+    let text = fault.render().to_string();
+    let printable = base::printable(&text);
+    if !fault.use_stderr() || printable == text {
+        fault.exit();
+    }
+    // Standard error may be closed.
+    let _ = std::io::Write::write_all(&mut std::io::stderr(), printable.as_bytes());
+    std::process::exit(fault.exit_code());
 }
 
 /// What commands read.

@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use crate::args::{Common, CompareArgs, PairArgs};
 use crate::input::{file_name, is_stream, read_pair};
-use crate::output::{check_folder, check_format, facts, report, write_colored};
+use crate::output::{check_format, check_output, facts, report, write_colored};
 
 #[derive(Serialize)]
 struct CompareJson {
@@ -52,7 +52,7 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
     options.validate()?;
     if let Some(path) = &args.residual_mesh {
         check_format(path, "a coloured mesh", &writable(Content::Field).collect::<Vec<_>>())?;
-        check_folder(path)?;
+        check_output(path)?;
     }
     let [a, b] =
         read_pair(&args.pair, &args.form.repair, &args.limits, common, |path, mesh, surface, bars| {
@@ -110,7 +110,7 @@ fn text(json: &CompareJson, name_a: &str, details: bool) -> String {
             ));
         }
     }
-    let mut text = format!("{relation}.\n{}", facts(&rows));
+    let mut text = format!("{}.\n{}", base::one_line(&relation.to_string()), facts(&rows));
     if details {
         let residual = format!("median {median:.6}, maximum {max:.6} (at vertex {vertex}), mesh units");
         text = format!("{text}\n\n{}", facts(&detailed(json, residual)));

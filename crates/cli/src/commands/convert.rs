@@ -115,7 +115,7 @@ fn batch(args: &ConvertArgs, common: &Common) -> Result<ExitCode> {
     let failed = failed.into_iter().map(|failure| Failure { name: None, ..failure }).collect();
     let json = BatchJson { meshes, failed };
     report(common, &json, |json| {
-        format!("{} meshes in {}, {} failed", json.meshes.len(), args.output.display(), json.failed.len())
+        format!("{} meshes in {}, {} failed", json.meshes.len(), shown(&args.output), json.failed.len())
     })?;
     Ok(exit_code(json.failed.is_empty()))
 }

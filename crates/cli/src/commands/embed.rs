@@ -18,7 +18,7 @@ use serde::Serialize;
 use crate::args::{Common, EmbedArgs, FORM_FORMATS, LimitArgs};
 use crate::batch::{Batch, Failure, Order, Results, create_folder_of};
 use crate::input::{is_single, is_stream, named, print_repair, read_both, read_surface};
-use crate::output::{Answer, Output, exit_code, fill_npy, report, shown, table_of};
+use crate::output::{Answer, Output, exit_code, fill_npy, report, row_of, shown, table_of};
 use base::terminal::Bars;
 
 #[derive(Serialize)]
@@ -341,7 +341,7 @@ fn batch_table(json: &BatchJson, folder: &Path) -> String {
     let mut table = table_of(header);
     for shape in &json.shapes {
         let r = &shape.result.report;
-        table.add_row([
+        table.add_row(row_of([
             shape.name.clone(),
             shape.label.clone(),
             r.n_embedded.to_string(),
@@ -349,8 +349,8 @@ fn batch_table(json: &BatchJson, folder: &Path) -> String {
             stress_text(r),
             normalized_or_none(r),
             format!("{:.3}", r.seconds.total),
-        ]);
+        ]));
     }
-    let counts = format!("{} forms in {}, {} failed", json.shapes.len(), folder.display(), json.failed.len());
+    let counts = format!("{} forms in {}, {} failed", json.shapes.len(), shown(folder), json.failed.len());
     format!("{table}\n{counts}")
 }

@@ -10,7 +10,7 @@ use canonform::{EvaluateOptions, LabelSource, evaluate_index, evaluate_matrix};
 
 use crate::args::{Common, EvaluateArgs};
 use crate::input::named;
-use crate::output::{Answer, Fact, facts, report, table_of};
+use crate::output::{Answer, Fact, facts, report, row_of, table_of};
 
 /// Scores an index or a matrix.
 pub(crate) fn evaluate(args: &EvaluateArgs, common: &Common) -> Result<ExitCode> {
@@ -46,7 +46,7 @@ fn column(mean: &Scores, intervals: Option<&ScoreIntervals>) -> [(&'static str, 
 fn confusion(title: &str, classes: &[String], counts: &[Vec<usize>]) -> comfy_table::Table {
     let mut table = table_of([title].into_iter().chain(classes.iter().map(String::as_str)));
     for (class, row) in classes.iter().zip(counts) {
-        table.add_row([class.clone()].into_iter().chain(row.iter().map(usize::to_string)));
+        table.add_row(row_of([class.clone()].into_iter().chain(row.iter().map(usize::to_string))));
     }
     table
 }

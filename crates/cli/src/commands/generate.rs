@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::args::{Common, FamilyArg, GenerateArgs};
-use crate::output::report;
+use crate::output::{report, shown};
 
 #[derive(Serialize)]
 struct GenerateJson {
@@ -70,9 +70,9 @@ pub(crate) fn generate(args: &GenerateArgs, common: &Common) -> Result<ExitCode>
     bar.finish_and_clear();
     report(common, &json, |json| {
         if args.family == FamilyArg::Parts {
-            return format!("{} mechanical parts in {}", json.shapes.len(), json.output.display());
+            return format!("{} mechanical parts in {}", json.shapes.len(), shown(&json.output));
         }
-        let (folder, n_vertices) = (json.output.display(), args.vertices);
+        let (folder, n_vertices) = (shown(&json.output), args.vertices);
         let classes = if json.n_classes == 1 { "class" } else { "classes" };
         format!(
             "{} shapes of {} {classes} with {n_vertices} vertices each in {folder}",

@@ -17,7 +17,7 @@ use crate::args::{Common, Place, RenderArgs};
 use crate::batch::{Batch, Failure, Order, Results, create_folder_of};
 use crate::field::read_field;
 use crate::input::{file_name, is_single, named, print_repair, read_file};
-use crate::output::{Output, exit_code, facts, report};
+use crate::output::{Output, exit_code, facts, report, shown};
 
 #[derive(Serialize)]
 struct RenderJson {
@@ -74,7 +74,7 @@ pub(crate) fn draw(args: &RenderArgs, common: &Common) -> Result<ExitCode> {
     let failed = failed.into_iter().map(|failure| Failure { name: None, ..failure }).collect();
     let json = BatchJson { pictures: done.into_iter().map(|(_, picture)| picture).collect(), failed };
     report(common, &json, |json| {
-        let folder = args.output.display();
+        let folder = shown(&args.output);
         format!("{} pictures in {folder}, {} failed", json.pictures.len(), json.failed.len())
     })?;
     Ok(exit_code(json.failed.is_empty()))

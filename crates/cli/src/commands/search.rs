@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Result, anyhow};
+use base::one_line;
 use canonform::index::SearchMode;
 use canonform::mesh::io::without_extension;
 use canonform::{
@@ -14,7 +15,7 @@ use serde::Serialize;
 
 use crate::args::{Common, SearchArgs};
 use crate::input::{file_name, is_stream, is_there, named, read_mesh};
-use crate::output::{count, exit_code, print, print_json, table_of};
+use crate::output::{count, exit_code, print, print_json, row_of, table_of};
 
 #[derive(Serialize)]
 struct Answer {
@@ -159,7 +160,7 @@ fn meant(given: &Path, index: &ShapeSearch) -> Option<String> {
 
 /// The shapes found and the class; with `details`, how each shape is related and what the search did.
 fn text(query: String, report: &SearchReport, details: bool) -> String {
-    let mut text = format!("{query}\n{}\n", table(report));
+    let mut text = format!("{}\n{}\n", one_line(&query), table(report));
     text += match report.rank_by {
         SearchRank::Plain => "",
         SearchRank::Graph => {
@@ -172,7 +173,8 @@ fn text(query: String, report: &SearchReport, details: bool) -> String {
     };
     if details {
         for result in &report.results {
-            text += &format!("  {}. {} ({})\n", result.rank, explained(&result.relation), result.path);
+            let path = one_line(&result.path);
+            text += &format!("  {}. {} ({path})\n", result.rank, explained(&result.relation));
         }
     }
     text.extend(report.components.iter().map(component));
@@ -196,8 +198,8 @@ fn text(query: String, report: &SearchReport, details: bool) -> String {
 fn class(predicted: &Prediction) -> String {
     match (predicted.unknown, &predicted.warning) {
         (Some(Unknown::Unlabelled), None) => String::new(),
-        (Some(Unknown::Unlabelled), Some(warning)) => format!("  {warning}\n"),
-        _ => format!("  class: {}\n", predicted.explanation),
+        (Some(Unknown::Unlabelled), Some(warning)) => format!("  {}\n", one_line(warning)),
+        _ => format!("  class: {}\n", one_line(&predicted.explanation)),
     }
 }
 
@@ -237,14 +239,15 @@ fn table(report: &SearchReport) -> comfy_table::Table {
         if !has_classes {
             row.remove(2);
         }
-        table.add_row(row);
+        table.add_row(row_of(row));
     }
     table
 }
 
 /// A relation in a sentence, how certain it is, and why.
 fn explained(relation: &Relation) -> String {
-    format!("{relation}, {:.0} % certain: {}", 100.0 * relation.confidence, relation.reason())
+    let text = format!("{relation}, {:.0} % certain: {}", 100.0 * relation.confidence, relation.reason());
+    one_line(&text).into_owned()
 }
 
 /// What a component of the query is, as a line.

@@ -2,7 +2,7 @@
 //!
 //! `cluster` (the scripts in `examples/cluster`), `collections` (folders and indexes as people keep them), `commands` (what
 //! each prints), `dropped` (lost surfaces), `forms` (files), `errors`, `field` (all pairs in little memory), `generate`, `geodesic` (sources, paths,
-//! all pairs), `guide` (the commands of the user guide), `index` (building, changing, searching), `killed` (interruptions, full disks), `matching` (maps between meshes), `render` (pictures), `serve`, `storage` (archives, lists, conversion,
+//! all pairs), `guide` (the commands of the user guide), `hostile` (names that others obey), `index` (building, changing, searching), `killed` (interruptions, full disks), `matching` (maps between meshes), `render` (pictures), `serve`, `storage` (archives, lists, conversion,
 //! exports), `streams` (standard input and
 //! output, several meshes, limits), `zoo` (broken meshes).
 
@@ -29,6 +29,8 @@ mod generate;
 mod geodesic;
 #[cfg(test)]
 mod guide;
+#[cfg(test)]
+mod hostile;
 #[cfg(test)]
 mod index;
 #[cfg(test)]

@@ -42,6 +42,16 @@ pub fn csv_field(text: &str) -> String {
     }
 }
 
+/// A field of text in a table for people: what a spreadsheet would take for a formula begins with an apostrophe. An export that
+/// programs read says names as they are.
+#[must_use]
+pub fn text_cell(text: &str) -> String {
+    let is_formula = text.starts_with(['=', '+', '-', '@', '\t', '\r', '\n', '＝', '＋', '－', '＠']);
+    let field = csv_field(&format!("{}{text}", if is_formula { "'" } else { "" }));
+    // Some spreadsheets separate fields by semicolons or tabs.
+    if field.contains([';', '\t']) && !field.starts_with('"') { format!("\"{field}\"") } else { field }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -51,7 +61,18 @@ mod tests {
         for (field, expected) in
             [("cat 1", "cat 1"), ("a,b", "\"a,b\""), ("\"", "\"\"\"\""), ("a\nb", "\"a\nb\"")]
         {
-            assert_eq!(csv_field(field), expected);
+            assert_eq!((csv_field(field), text_cell(field)), (expected.to_owned(), expected.to_owned()));
+        }
+        for (text, expected) in [
+            ("=cmd|' /C calc'!A0", "'=cmd|' /C calc'!A0"),
+            ("-1+1", "'-1+1"),
+            ("@SUM(1,2)", "\"'@SUM(1,2)\""),
+            ("\t=1", "\"'\t=1\""),
+            ("a;=1", "\"a;=1\""),
+            ("＝1", "'＝1"),
+        ] {
+            assert_eq!(text_cell(text), expected);
+            assert!(!csv_field(text).starts_with(['\'']), "an export says names as they are");
         }
     }
 }

@@ -17,7 +17,7 @@ use serde::{Serialize, Serializer};
 
 use crate::{Index, Shape};
 
-pub use csv::csv_field;
+pub use csv::{csv_field, text_cell};
 pub use error::ExportError;
 
 /// The first line of an export.

@@ -1,6 +1,6 @@
 //! Results as CSV (RFC 4180).
 
-use canonform::index::csv_field;
+use canonform::index::text_cell;
 use canonform::{OrderedBy, SearchRank, SearchReport};
 
 /// One line per result, under a header.
@@ -15,15 +15,14 @@ pub(super) fn of(query: &str, report: &SearchReport) -> String {
     for found in &report.results {
         let (rank, distance, fused) =
             (found.rank.to_string(), found.distance.to_string(), found.fused.to_string());
-        let fields = [query, &rank, &found.id, &found.label, &found.path, &distance, &fused];
+        let [query, id, label, path] = [query, &found.id, &found.label, &found.path].map(text_cell);
+        let mut fields = vec![query, rank, id, label, path, distance, fused];
         let order = match found.order {
             None => Vec::new(),
             Some(OrderedBy::Part { part_distance, part_share }) => vec![part_distance, part_share],
             Some(order) => vec![order.distance()],
         };
-        let order: Vec<String> = order.iter().map(f64::to_string).collect();
-        let fields: Vec<String> =
-            fields.into_iter().chain(order.iter().map(String::as_str)).map(csv_field).collect();
+        fields.extend(order.iter().map(f64::to_string));
         text += &(fields.join(",") + "\r\n");
     }
     text

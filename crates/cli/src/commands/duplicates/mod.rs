@@ -6,93 +6,91 @@ mod words;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::Result;
-use base::files::write_bytes;
+use anyhow::{Result, bail};
+use base::files::{Scratch, write_bytes};
 use base::terminal::Bars;
-use canonform::index::csv_field;
+use canonform::index::text_cell;
 use canonform::{
     BuildOptions, DescribeOptions, DuplicateFile, DuplicateGroup, DuplicateOptions, DuplicateReport,
-    RelationKind, ShapeSearch, build_index, find_duplicates, is_dataset,
+    MoveReport, ShapeSearch, build_index, check_place, find_duplicates, is_dataset, move_duplicates,
+    undo_moves,
 };
+use serde::Serialize;
 
-use self::words::text;
-use crate::args::{Common, DuplicatesArgs, KindArg};
-use crate::output::{check_folder, print, print_json};
+use self::words::{moved, text};
+use crate::args::{Common, DuplicatesArgs};
+use crate::output::{check_output, exit_code, report};
 
-/// Finds the files of an index or a dataset that hold one shape.
+#[derive(Serialize)]
+struct Json {
+    #[serde(flatten)]
+    found: DuplicateReport,
+    #[serde(flatten)]
+    moves: Option<MoveReport>,
+}
+
+/// Finds the files of an index or a dataset that hold one shape, and moves them if asked to.
 pub(crate) fn duplicates(args: &DuplicatesArgs, common: &Common) -> Result<ExitCode> {
+    if let Some(journal) = &args.undo {
+        let undone = undo_moves(journal)?;
+        report(common, &undone, moved)?;
+        return Ok(exit_code(undone.journal.is_none()));
+    }
+    let input = args.input.as_deref().unwrap_or(Path::new("."));
     for path in [&args.csv, &args.html].into_iter().flatten() {
-        check_folder(path)?;
+        check_output(path)?;
+    }
+    let is_dataset = is_dataset(input);
+    if let Some(place) = &args.move_to {
+        if !is_dataset {
+            bail!("{}: files are moved out of a folder; name that of the meshes", input.display());
+        }
+        check_place(input, place)?;
     }
     let bars = Bars::new(common.quiet);
-    let described = is_dataset(&args.input).then(|| Described::build(&args.input, &bars)).transpose()?;
-    let search = ShapeSearch::open(described.as_ref().map_or(args.input.as_path(), |index| &index.path))?;
-    let kinds = args.kinds.iter().map(|kind| kind_of(*kind)).collect();
-    let options = DuplicateOptions { kinds, min_confidence: args.min_confidence };
-    let mut report = find_duplicates(&search, &options, &bars)?;
+    let scratch = is_dataset.then(Scratch::new).transpose()?;
+    let search = match &scratch {
+        Some(scratch) => ShapeSearch::open(&described(input, scratch, &bars)?)?,
+        None => ShapeSearch::open(input)?,
+    };
+    let options = DuplicateOptions { kinds: args.kinds.clone(), min_confidence: args.min_confidence };
+    let mut found = find_duplicates(&search, &options, &bars)?;
     bars.finish();
-    report.groups.iter_mut().for_each(|group| {
+    if let Some(path) = &args.html {
+        write_bytes(path, page::page(&found, &search)?.as_bytes())?;
+    }
+    let whole = found.clone();
+    for group in &mut found.groups {
         let members = group.members.iter_mut().map(|member| &mut member.file);
         members.chain([&mut group.keeper]).for_each(|file| file.path = short(&file.path));
-    });
+    }
     if let Some(path) = &args.csv {
-        write_bytes(path, csv(&report).as_bytes())?;
+        write_bytes(path, csv(&found).as_bytes())?;
     }
-    if let Some(path) = &args.html {
-        write_bytes(path, page::page(&report, &search)?.as_bytes())?;
-    }
-    if common.json {
-        print_json(&report)?;
-    } else {
-        print(&text(&report))?;
-    }
-    Ok(if report.groups.is_empty() { ExitCode::from(1) } else { ExitCode::SUCCESS })
+    // What can be spared is known before it is moved.
+    let told = text(&found);
+    let moves = args.move_to.as_ref().map(|place| move_duplicates(&whole, input, place)).transpose()?;
+    let json = Json { found, moves };
+    report(common, &json, |json| {
+        told + &json.moves.as_ref().map(|moves| format!("\n\n{}", moved(moves))).unwrap_or_default()
+    })?;
+    Ok(if json.found.groups.is_empty() { ExitCode::from(1) } else { ExitCode::SUCCESS })
 }
 
-/// The index of a dataset, which is removed in the end.
-struct Described {
-    path: PathBuf,
-}
-
-impl Described {
-    fn build(dataset: &Path, bars: &Bars) -> Result<Self> {
-        let name = format!("canonform-duplicates-{}.canonform", std::process::id());
-        let index = Self { path: std::env::temp_dir().join(name) };
-        let describe = DescribeOptions::default();
-        let built = build_index(dataset, &index.path, &BuildOptions::new(&describe), bars)?;
-        for failure in &built.failed {
-            base::terminal::note(&format!("left out {}: {}", failure.path.display(), failure.error));
-        }
-        Ok(index)
+/// Builds the index of a dataset.
+fn described(dataset: &Path, scratch: &Scratch, bars: &Bars) -> Result<PathBuf> {
+    let (index, describe) = (scratch.file("all.canonform"), DescribeOptions::default());
+    let built = build_index(dataset, &index, &BuildOptions::new(&describe), bars)?;
+    for failure in &built.failed {
+        base::terminal::note(&format!("left out {}: {}", failure.path.display(), failure.error));
     }
+    Ok(index)
 }
 
-impl Drop for Described {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_file(&self.path);
-    }
-}
-
-fn kind_of(kind: KindArg) -> RelationKind {
-    match kind {
-        KindArg::File => RelationKind::IdenticalFile,
-        KindArg::Geometry => RelationKind::IdenticalGeometry,
-        KindArg::Scaled => RelationKind::Scaled,
-        KindArg::Mirrored => RelationKind::Mirrored,
-        KindArg::Noisy => RelationKind::Noisy,
-        KindArg::Remeshed => RelationKind::Remeshed,
-        KindArg::Copies => RelationKind::Copies,
-        KindArg::Part => RelationKind::PartOf,
-        KindArg::Variant => RelationKind::Variant,
-        KindArg::Pose => RelationKind::OtherPose,
-    }
-}
-
-/// The path below the current folder, if it lies there.
+/// The path below the current folder, if it lies there. A link is not followed: its own name is meant.
 fn short(path: &Path) -> PathBuf {
-    let Ok(whole) = path.canonicalize() else { return path.to_owned() };
     let here = std::env::current_dir().and_then(|here| here.canonicalize());
-    here.ok().and_then(|here| whole.strip_prefix(here).ok().map(Path::to_owned)).unwrap_or(whole)
+    here.ok().and_then(|here| path.strip_prefix(here).ok().map(Path::to_owned)).unwrap_or(path.to_owned())
 }
 
 /// One line per file, keepers first.
@@ -101,19 +99,10 @@ fn csv(report: &DuplicateReport) -> String {
     for (i, DuplicateGroup { keeper, why, members }) in report.groups.iter().enumerate() {
         let mut line = |role: &str, file: &DuplicateFile, kind: &str, confidence: &str, words: &str| {
             let number = |value: Option<u64>| value.map(|value| value.to_string()).unwrap_or_default();
-            let path = file.path.display().to_string();
-            let cells = [
-                (i + 1).to_string(),
-                role.to_owned(),
-                csv_field(&file.id),
-                csv_field(&path),
-                kind.to_owned(),
-                confidence.to_owned(),
-                csv_field(words),
-                number(file.bytes),
-                number(file.modified),
-            ];
-            text += &format!("{}\n", cells.join(","));
+            let (id, path) = (text_cell(&file.id), text_cell(&file.path.display().to_string()));
+            let (words, bytes, modified) = (text_cell(words), number(file.bytes), number(file.modified));
+            let group = i + 1;
+            text += &format!("{group},{role},{id},{path},{kind},{confidence},{words},{bytes},{modified}\n");
         };
         line("keep", keeper, "", "", why);
         for member in members {

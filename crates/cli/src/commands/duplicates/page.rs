@@ -6,6 +6,7 @@ use report::page::escape;
 use report::render::{RenderOptions, render};
 
 use super::words::{facts, text};
+use crate::output::shown;
 
 const HEAD: &str = "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
 <meta name=\"viewport\" content=\"width=device-width\">\n\
@@ -22,13 +23,12 @@ pub(super) fn page(report: &DuplicateReport, search: &ShapeSearch) -> Result<Str
         format!("{HEAD}<h1>Duplicates</h1>\n<p>{}</p>\n", escape(text(report).lines().next().unwrap_or("")));
     for group in &report.groups {
         page += "<section>\n";
-        let keep =
-            format!("<span class=\"keep\">keep {}</span>", escape(&group.keeper.path.display().to_string()));
+        let keep = format!("<span class=\"keep\">keep {}</span>", escape(&shown(&group.keeper.path)));
         page += &card(&group.keeper, &keep, &group.why, search)?;
         for member in &group.members {
             let told = &member.relation;
             let words = format!("{}, confidence {:.2}", told, told.confidence);
-            page += &card(&member.file, &escape(&member.file.path.display().to_string()), &words, search)?;
+            page += &card(&member.file, &escape(&shown(&member.file.path)), &words, search)?;
         }
         page += "</section>\n";
     }
@@ -40,13 +40,13 @@ fn card(file: &DuplicateFile, title: &str, words: &str, search: &ShapeSearch) ->
         Ok(mesh) => {
             let options = RenderOptions { width: 480, height: 384, crease: 40.0, ..RenderOptions::default() };
             let address = render(&mesh, &options, &())?.to_data_url()?;
-            format!("<img src=\"{address}\" alt=\"{}\">", escape(&file.id))
+            format!("<img src=\"{address}\" alt=\"{}\">", escape(&base::one_line(&file.id)))
         }
         Err(_) => String::new(),
     };
     Ok(format!(
         "<figure>{picture}<figcaption>{title}<small>{}</small><small>{}</small></figcaption></figure>\n",
-        escape(words),
+        escape(&base::one_line(words)),
         escape(&facts(file))
     ))
 }

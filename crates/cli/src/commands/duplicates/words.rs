@@ -1,9 +1,11 @@
 //! Duplicates in words.
 
 use canonform::relations::in_four_digits;
-use canonform::{DuplicateFile, DuplicateGroup, DuplicateReport};
+use canonform::{DuplicateFile, DuplicateGroup, DuplicateReport, MoveReport};
 
-use crate::output::{count, decimal_bytes};
+use base::one_line;
+
+use crate::output::{count, decimal_bytes, shown};
 
 /// Size of the file, lengths of its box, and the day of its last change.
 pub(super) fn facts(file: &DuplicateFile) -> String {
@@ -29,18 +31,37 @@ pub(super) fn text(report: &DuplicateReport) -> String {
         )
     };
     for DuplicateGroup { keeper, why, members } in &report.groups {
-        text += &format!("\nkeep {} ({why}; {})\n", keeper.path.display(), facts(keeper));
+        text += &format!("\nkeep {} ({why}; {})\n", shown(&keeper.path), facts(keeper));
         for member in members {
             let told = &member.relation;
-            text += &format!("  {told} (confidence {:.2}; {})\n", told.confidence, facts(&member.file));
+            let words = told.to_string();
+            let words = one_line(&words);
+            text += &format!("  {words} (confidence {:.2}; {})\n", told.confidence, facts(&member.file));
         }
     }
     if !report.unread.is_empty() {
         text += &format!(
             "\n{} could not be read, or changed since the index was built: {}\n",
             count(report.unread.len(), "file"),
-            report.unread.join(", ")
+            one_line(&report.unread.join(", "))
         );
     }
     text.trim_end().to_owned()
+}
+
+/// What was moved, and what was not.
+pub(super) fn moved(moves: &MoveReport) -> String {
+    let MoveReport { moved, not_moved, journal } = moves;
+    let mut lines = vec![format!("{} moved", count(moved.len(), "file"))];
+    lines.extend(moved.iter().map(|[from, to]| format!("  {} is now {}", shown(from), shown(to))));
+    let why = |why: &str| one_line(why).into_owned();
+    lines.extend(
+        not_moved.iter().map(|stays| {
+            format!("  {}: not moved, since {}", shown(&stays.path), why(&stays.why.to_string()))
+        }),
+    );
+    if let Some(journal) = journal {
+        lines.push(format!("canonform duplicates --undo {} puts them back", shown(journal)));
+    }
+    lines.join("\n")
 }

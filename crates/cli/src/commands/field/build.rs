@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use crate::args::{Common, FieldBuildArgs};
 use crate::input::{named, read_surface};
-use crate::output::{Answer, check_folder, report};
+use crate::output::{Answer, check_output, report};
 
 #[derive(Serialize)]
 struct BuildJson {
@@ -33,7 +33,7 @@ struct Seconds {
 
 /// Builds, writes and reports a field.
 pub(super) fn build(args: &FieldBuildArgs, common: &Common) -> Result<ExitCode> {
-    check_folder(&args.output)?;
+    check_output(&args.output)?;
     let surface = read_surface(&args.mesh, &args.repair, common)?;
     let method = args.marching.distances(args.method);
     let options = FieldOptions { method, landmarks: args.landmarks, rank: args.rank };

@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use crate::args::{Common, FieldQueryArgs};
 use crate::input::named;
-use crate::output::{check_folder, check_format, report, write_npy};
+use crate::output::{check_format, check_output, report, write_npy};
 use crate::pairs;
 
 #[derive(Serialize)]
@@ -41,7 +41,7 @@ struct Seconds {
 pub(super) fn query(args: &FieldQueryArgs, common: &Common) -> Result<ExitCode> {
     if let Some(output) = &args.output {
         check_format(output, "distances", &["csv", "npy"])?;
-        check_folder(output)?;
+        check_output(output)?;
     }
     let start = Instant::now();
     let field = DistanceField::open(&args.field).map_err(canonform::Error::from)?;

@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use crate::args::{AddArgs, BuildArgs, Common, MAX_DROPPED};
 use crate::input::{check_dropped, is_named};
-use crate::output::{Answer, Fact, check_folder, count, exit_code, report};
+use crate::output::{Answer, Fact, check_output, count, exit_code, report, shown};
 use crate::remedy::with_remedy;
 
 #[derive(Serialize)]
@@ -25,7 +25,7 @@ struct Json<T: Serialize> {
 }
 
 pub(super) fn build(args: &BuildArgs, common: &Common) -> Result<ExitCode> {
-    check_folder(&args.output)?;
+    check_output(&args.output)?;
     let labels = args.labels.as_deref().map(LabelSource::read).transpose()?;
     let describe = args.describe.describe_options(common)?;
     let options = BuildOptions {
@@ -104,6 +104,10 @@ fn notes(index: &Path, built: &BuildReport, labels: Option<&LabelSource>) -> Vec
     if skipped.len() > MOST_NAMED {
         notes.push(format!("warning: skipped {} more", skipped.len() - MOST_NAMED));
     }
+    let kept = &built.unreadable;
+    notes.extend(
+        kept.iter().take(MOST_NAMED).map(|id| format!("warning: kept {id}, which cannot be read now")),
+    );
     if built.elsewhere > 0 {
         let n = built.elsewhere;
         notes.push(format!(
@@ -166,7 +170,9 @@ fn answer(index: &Path, report: &BuildReport, max_dropped: f64) -> Answer {
     }
     let rare = [
         ("renamed", report.renamed),
+        ("copies of other files", report.copies),
         ("removed", report.removed),
+        ("kept although unreadable", report.unreadable.len()),
         ("pruned", report.pruned),
         ("from elsewhere", report.elsewhere),
         ("unlabelled", report.unlabelled),
@@ -208,17 +214,17 @@ pub(super) fn remove(index: &Path, ids: &[String], common: &Common) -> Result<Ex
     ids.dedup();
     let json = Json { index: index.to_owned(), report: RemoveReport { n_shapes, removed: ids.len() } };
     report(common, &json, |json| {
-        format!("{} removed, {n_shapes} shapes in {}", json.report.removed, json.index.display())
+        format!("{} removed, {n_shapes} shapes in {}", json.report.removed, shown(&json.index))
     })
 }
 
 pub(super) fn merge(inputs: &[PathBuf], output: &Path, common: &Common) -> Result<ExitCode> {
-    check_folder(output)?;
+    check_output(output)?;
     let merged = merge_indexes(inputs, output, &Bars::new(common.quiet))?;
     report(common, &Json { index: output.to_owned(), report: merged }, |json| {
         let MergeReport { n_shapes, repeated } = json.report;
         let twice =
             if repeated > 0 { format!(", {repeated} of them in more than one index") } else { String::new() };
-        format!("{n_shapes} shapes in {}{twice}", json.index.display())
+        format!("{n_shapes} shapes in {}{twice}", shown(&json.index))
     })
 }

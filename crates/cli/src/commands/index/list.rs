@@ -9,7 +9,7 @@ use canonform::mesh_path;
 use serde::Serialize;
 
 use crate::args::{Common, ListArgs};
-use crate::output::{report, table_of};
+use crate::output::{report, row_of, shown, table_of};
 
 #[derive(Serialize)]
 struct Json {
@@ -52,8 +52,8 @@ fn table(json: &Json) -> String {
     for shape in &json.shapes {
         let class = if shape.label.is_empty() { "-" } else { &shape.label };
         let vertices = shape.vertices.map_or_else(|| "-".to_owned(), |n| n.to_string());
-        table.add_row([&shape.id, class, &vertices, &shape.path]);
+        table.add_row(row_of([&shape.id, class, &vertices, &shape.path]));
     }
-    let counts = format!("{} of {} shapes in {}", json.shapes.len(), json.n_shapes, json.index.display());
+    let counts = format!("{} of {} shapes in {}", json.shapes.len(), json.n_shapes, shown(&json.index));
     format!("{table}\n  {counts}")
 }

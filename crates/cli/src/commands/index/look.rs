@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use crate::args::Common;
 use crate::input::is_stream;
-use crate::output::{Answer, Output, count, exit_code, print, print_json, report};
+use crate::output::{Answer, Output, count, exit_code, print, print_json, report, shown};
 use crate::remedy::with_remedy;
 
 #[derive(Serialize)]
@@ -26,7 +26,7 @@ struct VerifyJson<'a> {
 
 pub(super) fn verify(index: &Path, common: &Common) -> Result<ExitCode> {
     let Verification { n_shapes, n_bytes, faults } = &canonform::index::verify(index)?;
-    let (sound, name) = (faults.is_empty(), index.display());
+    let (sound, name) = (faults.is_empty(), shown(index));
     if common.json {
         print_json(&VerifyJson { index, sound, n_shapes: *n_shapes, n_bytes: *n_bytes, faults })?;
     } else if sound {

@@ -12,7 +12,7 @@ use serde::Serialize;
 use super::files::{SecondsJson, write_table};
 use crate::args::{Common, MatchArgs};
 use crate::input::{named, read_reported};
-use crate::output::{report, table_of};
+use crate::output::{report, row_of, table_of};
 
 #[derive(Serialize)]
 struct CollectionJson {
@@ -119,11 +119,11 @@ fn check(shapes: &[ShapeFile], args: &MatchArgs) -> Result<()> {
 }
 
 fn table(json: &CollectionJson) -> String {
-    let mut table = table_of(vec!["a", "b", "map", "distortion", "confidence", "alone"]);
+    let mut table = table_of(["a", "b", "map", "distortion", "confidence", "alone"]);
     for PairJson { a, b, map, agreed, .. } in &json.pairs {
         let (distortion, confidence) = (format!("{:.4}", map.distortion), format!("{:.2}", map.confidence));
         let alone = if *agreed { "agreed" } else { "replaced" };
-        table.add_row(vec![a.as_str(), b, map.kind.name(), &distortion, &confidence, alone]);
+        table.add_row(row_of([a.as_str(), b, map.kind.name(), &distortion, &confidence, alone]));
     }
     let CycleReport { n_cycles, before, after } = json.cycles;
     format!(

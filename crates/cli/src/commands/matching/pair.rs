@@ -17,7 +17,7 @@ use super::known;
 use super::transfer::{Transferred, read_transfer};
 use crate::args::{Common, MAP_FORMATS, MatchArgs, PairArgs};
 use crate::input::read_pair;
-use crate::output::{check_folder, check_format, facts, report};
+use crate::output::{check_format, check_output, facts, report};
 
 #[derive(Serialize)]
 struct MatchJson {
@@ -62,13 +62,20 @@ pub(super) fn match_pair(
 ) -> Result<ExitCode> {
     let format = match &args.output {
         Some(path) => {
-            check_folder(path)?;
+            for path in [
+                path.clone(),
+                beside(path, "source"),
+                beside(path, "alternative"),
+                path.with_extension("png"),
+            ] {
+                check_output(&path)?;
+            }
             Some(check_format(path, "a map", &MAP_FORMATS)?)
         }
         None => None,
     };
     if let Some(path) = &args.functional {
-        check_folder(path)?;
+        check_output(path)?;
         check_format(path, "a functional map", &["npy"])?;
     }
     if args.output_format.is_some() {
