@@ -1,4 +1,4 @@
-//! Generated datasets of labelled shapes, and a zoo of broken meshes ([`broken_meshes`]).
+//! Generated datasets of labelled shapes.
 //!
 //! `ArticulatedOptions` -> **datasets** -> `LabeledShape` (`mesh::TriMesh`, name, class) -> `experiments`
 //!
@@ -24,7 +24,6 @@
 //! Nothing here depends on distances, embeddings or the algorithms that will use the shapes.
 
 mod articulated;
-mod broken;
 mod cases;
 mod clearance;
 mod corner_table;
@@ -48,7 +47,6 @@ pub use articulated::{
     ArticulatedOptions, Family, LabeledShape, RestedShape, articulated, articulated_at_rest,
     articulated_body, articulated_shape,
 };
-pub use broken::{BrokenFile, broken_meshes};
 pub use creature::{CreatureOptions, creature, creature_family, creature_plans, creatures};
 pub use damage::{Damage, DamageKind, WeldPair};
 pub use error::DatasetError;

@@ -1,16 +1,15 @@
 //! The file of a broken mesh.
 
-use mesh::{TriMesh, shapes};
+use canonform::mesh::{TriMesh, shapes};
 
 /// The file of a broken mesh.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct BrokenFile {
+pub(super) struct BrokenFile {
     /// Its name, with the extension of its format.
-    pub name: &'static str,
+    pub(super) name: &'static str,
     /// What is wrong with it.
-    pub defect: &'static str,
+    pub(super) defect: &'static str,
     /// Its content.
-    pub content: Vec<u8>,
+    pub(super) content: Vec<u8>,
 }
 
 /// Broken surfaces, as files.

@@ -2,13 +2,26 @@
 //!
 //! `CANONFORM_WRITE_DOCS=1 cargo test -p canonform-cli --test cli zoo` writes the table again.
 
+mod defects;
+mod file;
+mod files;
+mod numbers;
+
 use std::fs;
 use std::path::Path;
 
-use datasets::broken_meshes;
 use serde_json::Value;
 
+use self::file::BrokenFile;
 use crate::support::{Outcome, Workplace, one_object};
+
+/// All broken meshes, in the order of the table: damaged files, defects of the surface, limits of numbers.
+fn broken_meshes() -> Vec<BrokenFile> {
+    let mut all = files::damaged();
+    all.extend(defects::defective());
+    all.extend(numbers::extreme());
+    all
+}
 
 /// The columns of the table. The exit codes are those of `embed -n 20` and `geodesic --source 0`, with the message of an error.
 const HEAD: &str =
@@ -54,6 +67,17 @@ fn repaired(outcome: &Outcome, name: &str) -> String {
     let lines = outcome.err.lines().filter_map(|line| line.strip_prefix(&format!("{name}: ")));
     let lines: Vec<&str> = lines.filter(|line| !line.contains("no positive eigenvalue")).collect();
     if lines.is_empty() { "-".to_owned() } else { lines.join("; ") }
+}
+
+#[test]
+fn names_and_contents_are_unique() {
+    let zoo = broken_meshes();
+    for (i, a) in zoo.iter().enumerate() {
+        assert!(a.name.contains('.') && !a.defect.is_empty(), "{}", a.name);
+        for b in &zoo[..i] {
+            assert!(a.name != b.name && a.content != b.content, "{} and {}", a.name, b.name);
+        }
+    }
 }
 
 #[test]
@@ -105,7 +129,11 @@ fn the_table_of_broken_meshes_is_true() {
     }
     let committed = fs::read_to_string(&path).unwrap_or_default();
     for (line, (expected, actual)) in committed.lines().zip(table.lines()).enumerate() {
-        assert_eq!(expected, actual, "broken-meshes.tsv, line {}: write it again, see zoo.rs", line + 1);
+        assert_eq!(expected, actual, "broken-meshes.tsv, line {}: write it again, see zoo/mod.rs", line + 1);
     }
-    assert_eq!(committed.lines().count(), table.lines().count(), "broken-meshes.tsv lacks rows, see zoo.rs");
+    assert_eq!(
+        committed.lines().count(),
+        table.lines().count(),
+        "broken-meshes.tsv lacks rows, see zoo/mod.rs"
+    );
 }

@@ -1,6 +1,6 @@
 //! Surfaces whose coordinates are at the limits of what numbers hold.
 
-use mesh::{TriMesh, shapes};
+use canonform::mesh::{TriMesh, shapes};
 use nalgebra::{Point3, Vector3};
 
 use super::file::{BrokenFile, BrokenSurfaces, ball};

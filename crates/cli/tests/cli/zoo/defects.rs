@@ -1,8 +1,8 @@
 //! Surfaces with defects of connectivity.
 
-use mesh::{TriMesh, shapes};
+use canonform::mesh::{TriMesh, shapes};
+use canonform::surface::VertexId;
 use nalgebra::{Point3, Vector3};
-use surface::VertexId;
 
 use super::file::{BrokenFile, BrokenSurfaces, ball};
 
