@@ -156,8 +156,6 @@ fn remedy(source: &io::Error) -> &'static str {
         Kind::StorageFull | Kind::QuotaExceeded | Kind::FileTooLarge => {
             "; free some space and run it again, finished work is kept"
         }
-        Kind::PermissionDenied | Kind::ReadOnlyFilesystem => "; choose a writable place",
-        Kind::NotFound => "; check the path",
-        _ => "",
+        _ => base::files::remedy(source),
     }
 }
