@@ -7,8 +7,8 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use base::files::FileError;
-use flate2::read::MultiGzDecoder;
 
+use super::gzip::GzipReader;
 use super::name;
 use crate::error::{Fault, Located, MeshError};
 
@@ -169,7 +169,7 @@ fn read_gzip(
             io::ErrorKind::InvalidInput | io::ErrorKind::InvalidData | io::ErrorKind::UnexpectedEof
         )
     };
-    let fault = match read_checked(path, &mut MultiGzDecoder::new(stream), check, None, limit) {
+    let fault = match read_checked(path, &mut GzipReader::new(stream), check, None, limit) {
         Err(MeshError::Io(fault)) if is_damage(fault.source.kind()) => {
             Fault::syntax("compressed data", fault.source.to_string())
         }
