@@ -1,42 +1,54 @@
 //! Fields: one value per vertex, read from files.
 
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{self, BufReader};
 use std::path::Path;
 
 use anyhow::{Context, Result, bail};
-use npyz::{NpyFile, Order};
+use base::files::FileError;
+use canonform::collection::Table;
+use npyz::{Deserialize, NpyFile, Order};
 
 use crate::output::check_format;
 
 /// Reads one row of a field of `n_vertices` values. `row` counts from 0; it may be left out if there is only one.
 pub(crate) fn read_field(path: &Path, row: Option<usize>, n_vertices: usize) -> Result<Vec<f64>> {
-    let format = check_format(path, "a field", &["npy", "csv"])?;
-    let read = if format == "npy" { read_npy(path) } else { read_csv(path) };
-    let rows = read.with_context(|| path.display().to_string())?;
-    choose(rows, row, n_vertices).with_context(|| path.display().to_string())
+    let (n_columns, values) = match check_format(path, "a field", &["npy", "csv"])?.as_str() {
+        "npy" => read_numbers(path)?,
+        _ => Table::read(path)?.numbers()?,
+    };
+    choose(n_columns, values, row, n_vertices).with_context(|| path.display().to_string())
 }
 
 /// Reads a NumPy array of numbers: the number of its columns, and its rows, one after the other.
 pub(crate) fn read_numbers(path: &Path) -> Result<(usize, Vec<f64>)> {
-    let Rows { n_columns, values } = read_npy(path)?;
-    Ok((n_columns, values))
+    let (n_columns, numbers) = read_array(path)?;
+    Ok((n_columns, numbers.reals()))
 }
 
-/// Whether the numbers of a NumPy array are whole by their type.
-pub(crate) fn is_whole(path: &Path) -> Result<bool> {
-    let kind = NpyFile::new(BufReader::new(File::open(path)?))?.dtype().descr();
-    Ok(!kind.contains('f'))
+/// The numbers of an array by their type.
+pub(crate) enum Numbers {
+    Whole(Vec<i64>),
+    Real(Vec<f64>),
 }
 
-/// Rows of equal length, one after the other.
-struct Rows {
-    n_columns: usize,
-    values: Vec<f64>,
+impl Numbers {
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Self::Whole(numbers) => numbers.len(),
+            Self::Real(numbers) => numbers.len(),
+        }
+    }
+
+    pub(crate) fn reals(self) -> Vec<f64> {
+        match self {
+            Self::Whole(numbers) => numbers.into_iter().map(|number| number as f64).collect(),
+            Self::Real(numbers) => numbers,
+        }
+    }
 }
 
-fn choose(rows: Rows, row: Option<usize>, n_vertices: usize) -> Result<Vec<f64>> {
-    let Rows { n_columns, values } = rows;
+fn choose(n_columns: usize, values: Vec<f64>, row: Option<usize>, n_vertices: usize) -> Result<Vec<f64>> {
     // One value per line is one row.
     let is_column = n_columns == 1 && values.len() == n_vertices;
     let n_columns = if is_column { values.len() } else { n_columns };
@@ -55,55 +67,57 @@ fn choose(rows: Rows, row: Option<usize>, n_vertices: usize) -> Result<Vec<f64>>
     }
 }
 
-fn read_npy(path: &Path) -> Result<Rows> {
-    let open =
-        || -> Result<NpyFile<BufReader<File>>> { Ok(NpyFile::new(BufReader::new(File::open(path)?))?) };
-    let header = open()?;
-    let (shape, order, kind) = (header.shape().to_vec(), header.order(), header.dtype().descr());
-    let n_columns = match shape[..] {
+/// As [`read_numbers`]; whole numbers of 64 bits keep all of their digits.
+pub(crate) fn read_array(path: &Path) -> Result<(usize, Numbers)> {
+    let header = open(path)?;
+    let n_columns = match header.shape()[..] {
         [n] | [_, n] => usize::try_from(n)?,
-        _ => bail!("the array has {} dimensions; use one or two", shape.len()),
+        _ => bail!("{}: the array has {} dimensions; use one or two", path.display(), header.shape().len()),
     };
     // npyz does not convert numbers: try each type.
-    let values = open()?
-        .try_data::<f64>()
-        .ok()
-        .map(|data| data.collect::<Result<Vec<f64>, _>>())
-        .or_else(|| Some(open().ok()?.try_data::<f32>().ok()?.map(|x| x.map(f64::from)).collect()))
-        .or_else(|| Some(open().ok()?.try_data::<i64>().ok()?.map(|x| x.map(|x| x as f64)).collect()))
-        .or_else(|| Some(open().ok()?.try_data::<i32>().ok()?.map(|x| x.map(f64::from)).collect()))
-        .or_else(|| Some(open().ok()?.try_data::<u8>().ok()?.map(|x| x.map(f64::from)).collect()));
-    let Some(values) = values else {
-        bail!("unsupported array type {kind}; use numbers such as '<f8' (float64)");
-    };
-    let values = values?;
-    let n_rows = values.len().checked_div(n_columns).unwrap_or(0);
-    let values = match order {
-        Order::C => values,
-        Order::Fortran => (0..n_rows)
-            .flat_map(|i| (0..n_columns).map(move |j| (i, j)))
-            .map(|(i, j)| values[j * n_rows + i])
-            .collect(),
-    };
-    Ok(Rows { n_columns, values })
+    let reals = [numbers_of::<f64, _>, numbers_of::<f32, _>];
+    let wholes = [
+        numbers_of::<i64, _>,
+        numbers_of::<i32, _>,
+        numbers_of::<i16, _>,
+        numbers_of::<i8, _>,
+        numbers_of::<u32, _>,
+        numbers_of::<u16, _>,
+        numbers_of::<u8, _>,
+    ];
+    let real = || reals.iter().find_map(|read| read(path, n_columns).transpose());
+    let whole = || wholes.iter().find_map(|read| read(path, n_columns).transpose());
+    let numbers = real().map(|real| real.map(Numbers::Real));
+    match numbers.or_else(|| whole().map(|whole| whole.map(Numbers::Whole))) {
+        Some(numbers) => Ok((n_columns, numbers?)),
+        None => bail!(
+            "{}: unsupported array type {}; use numbers such as '<f8' (float64)",
+            path.display(),
+            header.dtype().descr()
+        ),
+    }
 }
 
-fn read_csv(path: &Path) -> Result<Rows> {
-    let text = std::fs::read_to_string(path)?;
-    let (mut values, mut n_columns) = (Vec::new(), None);
-    for (number, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
-        let before = values.len();
-        for part in line.split(',') {
-            let part = part.trim();
-            values.push(
-                part.parse().with_context(|| format!("line {}: `{part}` is not a number", number + 1))?,
-            );
+fn open(path: &Path) -> Result<NpyFile<BufReader<File>>, FileError> {
+    let file = File::open(path).and_then(|file| NpyFile::new(BufReader::new(file)));
+    file.map_err(|source| FileError::read(path, source))
+}
+
+/// The rows of an array, if its elements are of type `T`.
+fn numbers_of<T: Deserialize, U: From<T> + Copy>(
+    path: &Path,
+    n_columns: usize,
+) -> Result<Option<Vec<U>>, FileError> {
+    let file = open(path)?;
+    let order = file.order();
+    let Ok(data) = file.try_data::<T>() else { return Ok(None) };
+    let values: io::Result<Vec<U>> = data.map(|value| value.map(U::from)).collect();
+    let values = values.map_err(|source| FileError::read(path, source))?;
+    let n_rows = values.len().checked_div(n_columns).unwrap_or(0);
+    Ok(Some(match order {
+        Order::C => values,
+        Order::Fortran => {
+            (0..values.len()).map(|at| values[at % n_columns * n_rows + at / n_columns]).collect()
         }
-        let found = values.len() - before;
-        let expected = *n_columns.get_or_insert(found);
-        if found != expected {
-            bail!("line {} has {found} values, but the first line has {expected}", number + 1);
-        }
-    }
-    Ok(Rows { n_columns: n_columns.unwrap_or(0), values })
+    }))
 }

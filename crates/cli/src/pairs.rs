@@ -4,6 +4,7 @@ use std::io::Read;
 use std::path::Path;
 
 use anyhow::{Context, Result, bail};
+use canonform::collection::{Row, Table};
 use canonform::surface::VertexId;
 
 use crate::field::read_numbers;
@@ -18,36 +19,36 @@ pub(crate) fn read(path: &Path) -> Result<Vec<[VertexId; 2]>> {
 /// Reads pairs of vertex numbers, each with its place in the file.
 pub(crate) fn read_numbered(path: &Path) -> Result<Vec<(String, [VertexId; 2])>> {
     if is_stream(path) {
-        let mut text = String::new();
-        std::io::stdin().lock().read_to_string(&mut text)?;
-        return of_text(&text).context("standard input");
+        let mut content = Vec::new();
+        std::io::stdin().lock().read_to_end(&mut content)?;
+        return of_table(&Table::parse(content, Path::new("standard input"))?);
     }
-    let read = match check_format(path, "pairs", &["csv", "txt", "npy"])?.as_str() {
-        "npy" => of_array(path),
-        _ => std::fs::read_to_string(path).map_err(Into::into).and_then(|text| of_text(&text)),
-    };
-    read.with_context(|| path.display().to_string())
+    match check_format(path, "pairs", &["csv", "txt", "npy"])?.as_str() {
+        "npy" => {
+            let (n_columns, numbers) = read_numbers(path)?;
+            of_array(n_columns, &numbers).with_context(|| path.display().to_string())
+        }
+        _ => of_table(&Table::read(path)?),
+    }
 }
 
 /// Two numbers in every line. The first line may have names instead.
-fn of_text(text: &str) -> Result<Vec<(String, [VertexId; 2])>> {
-    let mut pairs = Vec::new();
-    for (number, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
-        let words: Vec<&str> =
-            line.split([',', ';', ' ', '\t']).map(str::trim).filter(|word| !word.is_empty()).collect();
-        let vertices: Option<Vec<u32>> = words.iter().map(|word| word.parse().ok()).collect();
-        let place = format!("line {}", number + 1);
-        match vertices.as_deref() {
-            Some(&[a, b]) => pairs.push((place, [a, b].map(VertexId))),
-            None if number == 0 && words.iter().all(|word| word.starts_with(char::is_alphabetic)) => {}
-            _ => bail!("{place}: `{}` is not a pair of vertex numbers, such as 17,42", line.trim()),
-        }
-    }
-    Ok(pairs)
+fn of_table(table: &Table) -> Result<Vec<(String, [VertexId; 2])>> {
+    let pair = |row: Row<'_>| {
+        // Also separated by blanks.
+        let words =
+            || row.cells().flat_map(|cell| cell.split([',', ';', ' ', '\t'])).filter(|word| !word.is_empty());
+        let vertices: Option<Vec<u32>> = words().map(|word| word.parse().ok()).collect();
+        let [a, b] = vertices.and_then(|vertices| vertices.try_into().ok()).ok_or_else(|| {
+            let found = words().collect::<Vec<_>>().join(",");
+            row.fault(format!("`{found}` is not a pair of vertex numbers, counted from 0, such as 17,42"))
+        })?;
+        Ok((format!("line {}", row.line), [a, b].map(VertexId)))
+    };
+    table.body()?.map(pair).collect()
 }
 
-fn of_array(path: &Path) -> Result<Vec<(String, [VertexId; 2])>> {
-    let (n_columns, numbers) = read_numbers(path)?;
+fn of_array(n_columns: usize, numbers: &[f64]) -> Result<Vec<(String, [VertexId; 2])>> {
     if n_columns != 2 {
         bail!("the array has {n_columns} columns; a pair has 2");
     }
@@ -65,15 +66,22 @@ fn of_array(path: &Path) -> Result<Vec<(String, [VertexId; 2])>> {
 mod tests {
     use super::*;
 
+    fn of_text(text: &str) -> Result<Vec<(String, [VertexId; 2])>> {
+        of_table(&Table::parse(text.into(), Path::new("pairs.csv"))?)
+    }
+
     #[test]
     fn pairs_are_read_with_and_without_a_line_of_names() {
         let expected = vec![[17, 42].map(VertexId), [0, 3].map(VertexId)];
-        for text in ["17,42\n0,3", "a,b\n17, 42\n\n0\t3\n", "17 42\n0;3\n"] {
+        for text in ["17,42\n0,3", "a,b\n17, 42\n\n0\t3\n", "17 42\n0;3\n", "\u{feff}a;b\n17;42\n0;3"] {
             let found: Vec<_> = of_text(text).unwrap().into_iter().map(|(_, pair)| pair).collect();
             assert_eq!(found, expected, "{text}");
         }
         for text in ["17", "1,2,3", "0,1\na,b", "-1,2", "1.5,2"] {
             assert!(of_text(text).unwrap_err().to_string().contains("is not a pair"), "{text}");
+        }
+        for text in ["", "a,b\n"] {
+            assert!(of_text(text).unwrap_err().to_string().contains("no rows"), "{text}");
         }
     }
 }

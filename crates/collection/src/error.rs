@@ -25,6 +25,22 @@ pub enum CollectionError {
         /// What is wrong and what is expected.
         what: String,
     },
+    /// A file of labels that names none of the shapes.
+    #[error(
+        "{path}: none of its lines names a shape: line {line} has `{name}`, and the first shape is `{shape}`; write a name \
+         and a label in every line",
+        path = path.display()
+    )]
+    NoLabelFits {
+        /// The file.
+        path: PathBuf,
+        /// Its first line with a label.
+        line: usize,
+        /// How that line begins.
+        name: String,
+        /// The name of the first shape.
+        shape: String,
+    },
     /// An archive of another number of meshes where one is wanted.
     #[error("{path}: the archive holds {n_meshes} meshes; give one that holds one mesh, or a mesh", path = path.display())]
     NotOneMesh {

@@ -17,6 +17,7 @@ mod content;
 mod dataset;
 mod error;
 mod storage;
+mod table;
 
 pub use content::{content_hash, content_of};
 pub use dataset::{
@@ -25,3 +26,4 @@ pub use dataset::{
 };
 pub use error::CollectionError;
 pub use storage::{Storage, is_archive_name, is_dataset, member_of, read_mesh, read_mesh_file, single_mesh};
+pub use table::{Row, Table};

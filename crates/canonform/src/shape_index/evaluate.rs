@@ -3,7 +3,6 @@
 use std::path::Path;
 use std::str::FromStr;
 
-use base::files::FileError;
 use descriptors::{DescriptorError, ShapeMetric, SignatureKind};
 use index::Index;
 use linalg::DistanceMatrix;
@@ -13,7 +12,7 @@ use retrieval::{Evaluation, Labels, RankBy, evaluate_ranked};
 use super::record::signature;
 use crate::error::Error;
 use base::Observer;
-use collection::{CollectionError, LabelSource, label_of};
+use collection::{CollectionError, LabelSource, Row, Table, label_of};
 
 /// Most shapes evaluated at once: their matrix takes 800 MB.
 const MOST: usize = 10_000;
@@ -75,6 +74,7 @@ pub fn evaluate_index(
         return Err(Error::TooManyShapes { n_shapes: n, limit: MOST });
     }
     let (mut names, mut rows) = (Vec::with_capacity(n), Vec::with_capacity(n));
+    let mut unlabelled = None;
     index.each(|shape| {
         let label = match labels {
             Some(source) => source.label(&shape.id, Some(Path::new(&shape.entry.path))),
@@ -82,6 +82,7 @@ pub fn evaluate_index(
         };
         // Nothing can be said about shapes without a class.
         if label.is_empty() {
+            unlabelled.get_or_insert(shape.id);
             return Ok(());
         }
         names.push(label);
@@ -92,6 +93,9 @@ pub fn evaluate_index(
         Ok::<(), Error>(())
     })?;
     let n = names.len();
+    if let (0, Some(LabelSource::File(file)), Some(id)) = (n, labels, unlabelled) {
+        return Err(file.fits_none(&id).into());
+    }
     observer.begin("distances", n * n.saturating_sub(1) / 2);
     let later = |i: usize| -> Vec<f64> {
         let distance = |other: &Vec<f32>| {
@@ -105,7 +109,7 @@ pub fn evaluate_index(
     Ok(evaluate_ranked(&distances, &Labels::new(&names), knn_k, rank_by)?)
 }
 
-/// Scores a matrix of distances: lines of numbers separated by commas, optionally below a line of names.
+/// Scores a matrix of distances: a [`Table`] of numbers, optionally below a line of names.
 ///
 /// Classes come from the labels of the options, by name or, if the matrix has no names, by the order of its lines; without
 /// labels they come from the names. Both directions of a pair are averaged.
@@ -127,11 +131,18 @@ pub fn evaluate_index(
 /// [`Error::Collection`], [`Error::NoNames`], [`Error::Retrieval`].
 pub fn evaluate_matrix(path: &Path, options: &EvaluateOptions<'_>) -> Result<Evaluation, Error> {
     let EvaluateOptions { labels, knn_k, rank_by, .. } = *options;
-    let text = std::fs::read_to_string(path).map_err(|source| FileError::read(path, source))?;
-    let Matrix { names, rows } = Matrix::parse(&text, path)?;
+    let Matrix { names, rows } = Matrix::of(&Table::read(path)?)?;
     let classes: Vec<String> = match (labels, names) {
         (None, Some(names)) => names.iter().map(|name| label_of(name)).collect(),
-        (Some(source), Some(names)) => names.iter().map(|name| source.label(name, None)).collect(),
+        (Some(source), Some(names)) => {
+            let classes: Vec<String> = names.iter().map(|name| source.label(name, None)).collect();
+            match (source.file(), names.first()) {
+                (Some(file), Some(first)) if classes.iter().all(String::is_empty) => {
+                    return Err(file.fits_none(first).into());
+                }
+                _ => classes,
+            }
+        }
         (Some(LabelSource::File(file)), None) => file.in_order().to_vec(),
         (_, None) => return Err(Error::NoNames { path: path.to_owned() }),
     };
@@ -159,44 +170,36 @@ struct Matrix {
 }
 
 impl Matrix {
-    fn parse(text: &str, path: &Path) -> Result<Self, CollectionError> {
-        let bad = |line: usize, what: String| CollectionError::BadLine { path: path.to_owned(), line, what };
-        let lines = text.lines().enumerate().map(|(i, line)| (i + 1, line.trim()));
-        let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#')).peekable();
-        let fields =
-            |line: &str| line.split(',').map(|field| field.trim().trim_matches('"').to_owned()).collect();
-        let is_number = |field: &str| field.trim().trim_matches('"').parse::<f64>().is_ok();
-        let head: Option<Vec<String>> =
-            lines.next_if(|(_, line)| !line.split(',').skip(1).all(is_number)).map(|(_, line)| fields(line));
-        let mut rows: Vec<Vec<f64>> = Vec::new();
-        let mut firsts = Vec::new();
-        let mut last = 1;
-        for (number, line) in lines {
-            last = number;
-            let mut fields: Vec<String> = fields(line);
-            if fields.first().is_some_and(|first| !is_number(first)) {
-                firsts.push(fields.remove(0));
-            }
-            let row = fields.iter().map(|field| match field.parse::<f64>() {
-                Ok(distance) if distance.is_finite() && distance >= 0.0 => Ok(distance),
-                _ => Err(bad(number, format!("`{field}` is not a distance; write a nonnegative number"))),
-            });
-            rows.push(row.collect::<Result<_, _>>()?);
+    fn of(table: &Table) -> Result<Self, CollectionError> {
+        let mut lines = table.rows().peekable();
+        let is_head = |row: &Row<'_>| !row.cells().skip(1).all(|cell| row.number(cell).is_some());
+        let head = lines.next_if(is_head);
+        let (mut rows, mut firsts, mut places) = (Vec::<Vec<f64>>::new(), Vec::new(), Vec::new());
+        for row in lines {
+            let mut cells = row.cells().peekable();
+            firsts.extend(cells.next_if(|first| row.number(first).is_none()).map(str::to_owned));
+            let distance = |cell: &str| match row.number(cell) {
+                Some(distance) if distance.is_finite() && distance >= 0.0 => Ok(distance),
+                _ => Err(row.fault(format!("`{cell}` is not a distance; write a nonnegative number"))),
+            };
+            rows.push(cells.map(distance).collect::<Result<_, _>>()?);
+            places.push(row.line);
         }
         let n = rows.len();
         if n == 0 {
-            return Err(bad(last, "no numbers; write one line of distances per shape".to_owned()));
+            return Err(table.fault(1, "no numbers; write one line of distances per shape"));
         }
         if let Some(i) = rows.iter().position(|row| row.len() != n) {
             let what = format!("row {} of {n} has {} distances, not {n}", i + 1, rows[i].len());
-            return Err(bad(last, what));
+            return Err(table.fault(places[i], what));
         }
         let names = match (head, firsts.len()) {
             // Row names have a corner field above them.
-            (Some(mut head), _) if head.len() == n + 1 => Some(head.split_off(1)),
-            (Some(head), _) if head.len() == n => Some(head),
+            (Some(head), _) if [n, n + 1].contains(&head.n_cells()) => {
+                Some(head.cells().skip(head.n_cells() - n).map(str::to_owned).collect())
+            }
             (Some(head), _) => {
-                return Err(bad(1, format!("{} names for {n} rows of distances", head.len())));
+                return Err(head.fault(format!("{} names for {n} rows of distances", head.n_cells())));
             }
             (None, count) if count == n => Some(firsts),
             (None, _) => None,
@@ -210,7 +213,8 @@ mod tests {
     use super::*;
 
     fn parse(text: &str) -> Result<Matrix, String> {
-        Matrix::parse(text, Path::new("m.csv")).map_err(|fault| fault.to_string())
+        let table = Table::parse(text.into(), Path::new("m.csv"));
+        table.and_then(|table| Matrix::of(&table)).map_err(|fault| fault.to_string())
     }
 
     #[test]
@@ -222,6 +226,9 @@ mod tests {
             ("a1,b1\n0,1.5\n2.5,0\n", Some(["a1", "b1"])),
             (",a1,b1\na1,0,1.5\nb1,2.5,0\n", Some(["a1", "b1"])),
             ("a1,0,1.5\nb1,2.5,0\n", Some(["a1", "b1"])),
+            ("\u{feff}a1,0,1.5\nb1,2.5,0\n", Some(["a1", "b1"])),
+            ("\u{feff}0,1.5\n2.5,0\n", None),
+            (";a1;b1\na1;0;1,5\nb1;2,5;0\n", Some(["a1", "b1"])),
         ] {
             let found = parse(text).unwrap_or_else(|fault| panic!("{text}: {fault}"));
             assert_eq!(found.rows, rows, "{text}");
@@ -232,7 +239,8 @@ mod tests {
     #[test]
     fn malformed_matrices_are_refused() {
         for (text, words) in [
-            ("", "no numbers"),
+            ("", "no rows"),
+            ("a,b\n", "no numbers"),
             ("0,1\n1,0,2\n", "row 2 of 2 has 3"),
             ("a,b,c,d\n0,1\n1,0\n", "4 names for 2"),
             ("0,1\n-1,0\n", "line 2: `-1`"),

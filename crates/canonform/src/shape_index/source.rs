@@ -128,7 +128,13 @@ impl Listing {
     pub(super) fn of_folder(root: &Root<'_>, labels: Option<&LabelSource>) -> Result<Self, Error> {
         let Dataset { shapes, labelled_by, skipped } = Dataset::read(root.given(), labels)?;
         let stored = shapes.iter().map(|shape| root.text(&shape.path)).collect();
-        let listing = Self::new(shapes, stored, skipped, labels, |_| false);
+        let listing = Self::new(shapes, stored, skipped, labels, |_| false)?;
+        let is_unlabelled = |listed: &Listed| listed.file.label.is_empty();
+        if let (Some(file), [first, ..]) = (labels.and_then(LabelSource::file), &listing.shapes[..])
+            && listing.shapes.iter().all(is_unlabelled)
+        {
+            return Err(file.fits_none(&first.file.name).into());
+        }
         let labelled_by = if listing.single_class.is_some() { LabelOrigin::None } else { labelled_by };
         Ok(Self { labelled_by: Some(labelled_by), ..listing })
     }
@@ -139,13 +145,13 @@ impl Listing {
         skipped: Vec<Skipped>,
         labels: Option<&LabelSource>,
         is_class: impl Fn(&str) -> bool,
-    ) -> Self {
+    ) -> Result<Self, Error> {
         let single_class = labels.is_none().then(|| drop_single_class(&mut shapes, is_class)).flatten();
         let file = labels.and_then(LabelSource::file);
-        let unused_labels = file.map_or_else(Vec::new, |file| file.unused(&shapes));
+        let unused_labels = file.map(|file| file.unused(&shapes)).transpose()?.unwrap_or_default();
         name_apart(&mut shapes);
         let listed = shapes.into_iter().zip(stored).map(|(file, stored)| Listed { file, stored });
-        Self { shapes: listed.collect(), skipped, single_class, labelled_by: None, unused_labels }
+        Ok(Self { shapes: listed.collect(), skipped, single_class, labelled_by: None, unused_labels })
     }
 }
 
@@ -192,7 +198,7 @@ impl Inputs<'_> {
         }
         // A class that was asked for is one.
         let is_class = |label: &str| self.label == Some(label) || is_class(label);
-        Ok(Listing::new(shapes, stored, skipped, self.labels, is_class))
+        Listing::new(shapes, stored, skipped, self.labels, is_class)
     }
 
     /// Labels the files at these places, which belong to no dataset, together.

@@ -3,12 +3,12 @@
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use base::files::FileError;
 use mesh::io::{is_mesh_path, without_extension};
 use serde::Serialize;
 
 use super::shape_file::ShapeFile;
 use crate::error::CollectionError;
+use crate::table::Table;
 
 /// Labels from a file of lines `name,label`.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,30 +29,36 @@ pub struct UnusedLabel {
 }
 
 impl LabelFile {
-    /// Reads a label file. Names are those of [`ShapeFile`], with or without the extension of the mesh; empty lines, lines
-    /// that begin with `#` and a header `name,label` are skipped. A file of labels without names labels the rows of a
-    /// matrix in their order. The file need not name all shapes.
+    /// Reads a label file, a [`Table`]. Names are those of [`ShapeFile`], with or without the extension of the mesh; a header
+    /// such as `name,label` is skipped. A file of labels without names labels the rows of a matrix in their order. The file
+    /// need not name all shapes.
     ///
     /// # Errors
     /// [`CollectionError::File`] and [`CollectionError::BadLine`].
     pub fn read(path: &Path) -> Result<Self, CollectionError> {
-        let text = std::fs::read_to_string(path).map_err(|source| FileError::read(path, source))?;
+        let table = Table::read(path)?;
         let (mut labels, mut in_order) = (HashMap::new(), Vec::new());
-        let has_names = text.contains(',');
-        for (number, line) in text.lines().enumerate() {
-            let line = line.trim();
-            if line.is_empty() || line.starts_with('#') || (number == 0 && line == "name,label") {
-                continue;
+        let has_names = table.rows().any(|row| row.n_cells() > 1);
+        for (number, row) in table.rows().enumerate() {
+            let mut cells: Vec<&str> = row.cells().collect();
+            // Spreadsheets fill short rows up.
+            while cells.len() > 2 && cells.last() == Some(&"") {
+                cells.pop();
             }
-            match line.split(',').map(str::trim).collect::<Vec<_>>()[..] {
+            match cells[..] {
+                [name, label] if number == 0 && is_header(name, label) => {}
                 [name, label] if !name.is_empty() && !label.is_empty() => {
-                    labels.insert(joined(Path::new(name)), (number + 1, label.to_owned()));
+                    let known = labels.insert(joined(Path::new(name)), (row.line, label.to_owned()));
+                    if let Some((line, other)) = known.filter(|(_, other)| other != label) {
+                        let what = format!("`{name}` has the label `{other}` in line {line}; give it one");
+                        return Err(row.fault(what));
+                    }
                     in_order.push(label.to_owned());
                 }
                 [label] if !has_names => in_order.push(label.to_owned()),
                 _ => {
-                    let what = format!("expected `name,label`, found `{line}`");
-                    return Err(CollectionError::BadLine { path: path.to_owned(), line: number + 1, what });
+                    let found = cells.join(",");
+                    return Err(row.fault(format!("expected `name,label`, found `{found}`")));
                 }
             }
         }
@@ -89,15 +95,36 @@ impl LabelFile {
     }
 
     /// The lines that name none of these shapes, in their order.
-    pub fn unused(&self, shapes: &[ShapeFile]) -> Vec<UnusedLabel> {
+    ///
+    /// # Errors
+    /// [`CollectionError::NoLabelFits`] if the lines have labels only.
+    pub fn unused(&self, shapes: &[ShapeFile]) -> Result<Vec<UnusedLabel>, CollectionError> {
         let used: HashSet<&str> =
             shapes.iter().filter_map(|shape| self.key(&shape.name, Some(&shape.path))).collect();
         let unused = self.labels.iter().filter(|(name, _)| !used.contains(name.as_str()));
         let mut lines: Vec<UnusedLabel> =
             unused.map(|(name, (line, _))| UnusedLabel { line: *line, name: name.clone() }).collect();
         lines.sort_by_key(|unused| unused.line);
-        lines
+        match shapes {
+            [shape, ..] if self.labels.is_empty() => Err(self.fits_none(&shape.name)),
+            _ => Ok(lines),
+        }
     }
+
+    /// The error that no line names a shape, such as this one.
+    #[must_use]
+    pub fn fits_none(&self, shape: &str) -> CollectionError {
+        let first = self.labels.iter().map(|(name, (line, _))| (*line, name)).min();
+        let (line, name) = first.or(self.in_order.first().map(|label| (1, label))).unzip();
+        let (line, name) = (line.unwrap_or(1), name.cloned().unwrap_or_default());
+        CollectionError::NoLabelFits { path: self.path.clone(), line, name, shape: shape.to_owned() }
+    }
+}
+
+/// Whether the first line of a file names its columns.
+fn is_header(name: &str, label: &str) -> bool {
+    let is = |word: &str, known: &[&str]| known.iter().any(|known| word.eq_ignore_ascii_case(known));
+    is(name, &["name", "id", "file", "shape"]) && is(label, &["label", "class"])
 }
 
 /// The extension of a mesh: `off`, or for a compressed file both `off.gz` and `off`.
@@ -145,8 +172,48 @@ mod tests {
             label: String::new(),
             path: format!("{name}.off").into(),
         };
-        let unused = labels.unused(&["scan.001", "sub/x", "y"].map(shape));
+        let unused = labels.unused(&["scan.001", "sub/x", "y"].map(shape)).unwrap();
         let unused: Vec<_> = unused.iter().map(|unused| (unused.line, unused.name.as_str())).collect();
         assert_eq!(unused, [(3, "scan.002.off"), (4, "scan.7")]);
+        let fault = labels.fits_none("cat1").to_string();
+        assert!(
+            fault.contains("labels.csv: none of its lines names a shape: line 2 has `scan.001`"),
+            "{fault}"
+        );
+        assert!(fault.contains("the first shape is `cat1`"), "{fault}");
+    }
+
+    #[test]
+    fn label_files_of_spreadsheets_are_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("labels.csv");
+        let read = |text: &str| {
+            std::fs::write(&path, text).unwrap();
+            LabelFile::read(&path).map_err(|fault| fault.to_string())
+        };
+        for text in [
+            "cat0,cat\n\"cats, old\",pet\n",
+            "\u{feff}cat0,cat\r\n\"cats, old\",pet\r\n",
+            "Name;Label\ncat0;cat\ncats, old;pet\n",
+            "\u{feff}id\tClass\ncat0\tcat\ncats, old\tpet\n",
+            "name,label,\ncat0,cat,\n\"cats, old\",pet,,\n",
+        ] {
+            let labels = read(text).unwrap();
+            let found = ["cat0", "cats, old"].map(|name| labels.label(name, None));
+            assert_eq!((found, labels.in_order().len()), ([Some("cat"), Some("pet")], 2), "{text:?}");
+        }
+        for (text, what) in [
+            ("cat0;cat\ncat1\n", "line 2: expected `name,label`, found `cat1`"),
+            ("cat0,cat,dog\n", "line 1: expected `name,label`"),
+            ("cat0,\n", "line 1: expected `name,label`"),
+            ("cat0,cat\ncat0,dog\n", "line 2: `cat0` has the label `cat` in line 1"),
+            ("\u{feff}\n", "no rows"),
+        ] {
+            let fault = read(text).unwrap_err();
+            assert!(fault.contains(what), "{text:?}: {fault}");
+        }
+        // Labels without names are those of the rows of a matrix, not of shapes.
+        let labels = read("cat\ndog\n").unwrap();
+        assert!(labels.fits_none("cat0").to_string().contains("line 1 has `cat`"));
     }
 }

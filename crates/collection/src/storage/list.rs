@@ -5,15 +5,14 @@ use std::path::{Component, Path, PathBuf};
 use base::files::FileError;
 
 use crate::error::CollectionError;
+use crate::table::{decode, lines};
 
 /// Reads a list: one path a line, relative to the folder of the list. Empty lines and lines that begin with `#` are skipped.
 /// Returns the paths, relative to the current folder, and their lines, counted from one.
 pub(crate) fn read(list: &Path) -> Result<Vec<(PathBuf, usize)>, CollectionError> {
-    let text = std::fs::read_to_string(list).map_err(|source| FileError::read(list, source))?;
+    let text = decode(std::fs::read(list).map_err(|source| FileError::read(list, source))?, list)?;
     let folder = list.parent().unwrap_or(Path::new(""));
-    let lines = text.lines().enumerate().map(|(number, line)| (number + 1, line.trim()));
-    let lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
-    lines
+    lines(&text)
         .map(|(line, text)| {
             let path = tidy(&folder.join(text));
             match path.is_dir() {

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, bail};
+use canonform::collection::Table;
 use canonform::surface::VertexId;
 use canonform::{KnownMap, Surface};
 
@@ -14,15 +15,14 @@ use crate::pairs;
 /// What the options say of the map between two surfaces.
 pub(super) fn read(args: &MatchArgs, surfaces: [&Surface; 2]) -> Result<KnownMap> {
     let landmarks = args.landmarks.as_deref().map(|path| landmarks(path, surfaces)).transpose()?;
-    let initial = args.initial.as_deref().map(|path| {
-        let read = match check_format(path, "a map", &["npy", "csv"])?.as_str() {
-            "npy" => of_array(path),
-            _ => std::fs::read_to_string(path)
-                .map_err(Into::into)
-                .and_then(|text| of_text(&text, surfaces[0].n_input_vertices())),
-        };
-        read.with_context(|| path.display().to_string())
-    });
+    let initial =
+        args.initial.as_deref().map(|path| match check_format(path, "a map", &["npy", "csv"])?.as_str() {
+            "npy" => {
+                let (n_columns, numbers) = read_numbers(path)?;
+                of_array(n_columns, &numbers).with_context(|| path.display().to_string())
+            }
+            _ => of_table(&Table::read(path)?, surfaces[0].n_input_vertices()),
+        });
     Ok(KnownMap {
         landmarks: landmarks.unwrap_or_default(),
         initial: initial.transpose()?.unwrap_or_default(),
@@ -42,8 +42,7 @@ fn landmarks(path: &Path, surfaces: [&Surface; 2]) -> Result<Vec<[VertexId; 2]>>
     Ok(pairs.into_iter().map(|(_, pair)| pair).collect())
 }
 
-fn of_array(path: &Path) -> Result<Vec<Option<VertexId>>> {
-    let (n_columns, numbers) = read_numbers(path)?;
+fn of_array(n_columns: usize, numbers: &[f64]) -> Result<Vec<Option<VertexId>>> {
     if n_columns != 1 && n_columns != numbers.len() {
         bail!("the array has {n_columns} columns; a map has one number for each vertex of the first mesh");
     }
@@ -55,24 +54,19 @@ fn of_array(path: &Path) -> Result<Vec<Option<VertexId>>> {
 }
 
 /// Lines of a map as it is written, `vertex,match`, or one number in every line.
-fn of_text(text: &str, n_vertices: usize) -> Result<Vec<Option<VertexId>>> {
+fn of_table(table: &Table, n_vertices: usize) -> Result<Vec<Option<VertexId>>> {
     let mut found = vec![None; n_vertices];
-    let mut next = 0;
-    for (number, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
-        let words: Vec<&str> = line.split(',').map(str::trim).collect();
-        if number == 0 && words.iter().all(|word| word.starts_with(char::is_alphabetic)) {
-            continue;
-        }
-        let mut read = || -> Result<()> {
+    for (next, row) in table.body()?.enumerate() {
+        let words: Vec<&str> = row.cells().collect();
+        let read = || -> Result<_> {
             let (vertex, image) = of_line(&words, next)?;
-            match found.get_mut(vertex) {
-                Some(place) => *place = image,
-                None => bail!("vertex {vertex} does not exist; the first mesh has {n_vertices} vertices"),
+            match vertex < n_vertices {
+                true => Ok((vertex, image)),
+                false => bail!("vertex {vertex} does not exist; the first mesh has {n_vertices} vertices"),
             }
-            Ok(())
         };
-        read().with_context(|| format!("line {}", number + 1))?;
-        next += 1;
+        let (vertex, image) = read().map_err(|fault| row.fault(base::terminal::message(&fault)))?;
+        found[vertex] = image;
     }
     Ok(found)
 }
@@ -107,23 +101,29 @@ fn partner(number: f64) -> Result<Option<VertexId>> {
 mod tests {
     use super::*;
 
+    fn of_text(text: &str, n_vertices: usize) -> Result<Vec<Option<VertexId>>> {
+        of_table(&Table::parse(text.into(), Path::new("map.csv"))?, n_vertices)
+    }
+
     #[test]
     fn maps_are_read_as_they_are_written() {
         let expected = [Some(VertexId(4)), None, Some(VertexId(0))];
-        for text in
-            ["vertex,match,confidence\n0,4,0.9\n1,-1,0\n2,0,1\n", "2,0\n0,4", "4\n-1\n0\n", "match\n4\n-1\n0"]
-        {
+        for text in [
+            "vertex,match,confidence\n0,4,0.9\n1,-1,0\n2,0,1\n",
+            "\u{feff}vertex;match;confidence\n0;4;0,9\n1;-1;0\n2;0;1\n",
+            "2,0\n0,4",
+            "4\n-1\n0\n",
+            "match\n4\n-1\n0",
+        ] {
             assert_eq!(of_text(text, 3).unwrap(), expected, "{text}");
         }
-        for (text, what) in
-            [("0,1\n7,2", "line 2: vertex 7"), ("x", "line"), ("0,1.5", "line 1"), ("-2", "line 1")]
-        {
-            let found = of_text(text, 3);
-            match text {
-                // A line of names.
-                "x" => assert_eq!(found.unwrap(), [None; 3]),
-                _ => assert!(format!("{:#}", found.unwrap_err()).contains(what), "{text}"),
-            }
+        for (text, what) in [
+            ("0,1\n7,2", "line 2: vertex 7"),
+            ("x", "line 1: there are no rows"),
+            ("0,1.5", "line 1"),
+            ("-2", "line 1"),
+        ] {
+            assert!(format!("{:#}", of_text(text, 3).unwrap_err()).contains(what), "{text}");
         }
     }
 }

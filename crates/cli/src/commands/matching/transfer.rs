@@ -4,13 +4,14 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
+use canonform::collection::Table;
 use canonform::linalg::Matrix;
 use canonform::{Side, VertexMap};
 use report::color::{Rgb, class_color, color_scale, perceptual};
 use serde::Serialize;
 
 use super::files::{MappedFile, picture, write_colored, write_whole};
-use crate::field::{is_whole, read_numbers};
+use crate::field::{Numbers, read_array};
 use crate::output::{check_format, write_npy};
 
 /// The elements of a mesh that have rows.
@@ -61,65 +62,50 @@ impl fmt::Display for Transferred {
 
 /// Reads one row for each vertex or each face of a mesh.
 pub(super) fn read_transfer(path: &Path, side: &MappedFile) -> Result<Transfer> {
-    let read = || -> Result<Transfer> {
-        let content = match check_format(path, "values", &["npy", "csv"])?.as_str() {
-            "npy" => of_array(path)?,
-            _ => of_text(&std::fs::read_to_string(path)?)?,
-        };
-        let n = match &content {
-            Content::Values(values) => values.nrows(),
-            Content::Labels(labels) => labels.len(),
-        };
-        let [n_vertices, n_faces] = [side.mesh.n_vertices(), side.mesh.n_faces()];
-        let elements = match n {
-            _ if n == n_vertices => Elements::Vertices,
-            _ if n == n_faces => Elements::Faces,
-            _ => bail!(
-                "{n} rows, but the first mesh has {n_vertices} vertices and {n_faces} faces; give one row for each vertex or \
-                 for each face"
-            ),
-        };
-        Ok(Transfer { elements, content })
+    let content = match check_format(path, "values", &["npy", "csv"])?.as_str() {
+        "npy" => of_array(path)?,
+        _ => of_table(&Table::read(path)?)?,
     };
-    read().with_context(|| path.display().to_string())
+    let n = match &content {
+        Content::Values(values) => values.nrows(),
+        Content::Labels(labels) => labels.len(),
+    };
+    let [n_vertices, n_faces] = [side.mesh.n_vertices(), side.mesh.n_faces()];
+    let elements = match n {
+        _ if n == n_vertices => Elements::Vertices,
+        _ if n == n_faces => Elements::Faces,
+        _ => bail!(
+            "{}: {n} rows, but the first mesh has {n_vertices} vertices and {n_faces} faces; give one row for each \
+             vertex or for each face",
+            path.display()
+        ),
+    };
+    Ok(Transfer { elements, content })
 }
 
 fn of_array(path: &Path) -> Result<Content> {
-    let (n_columns, numbers) = read_numbers(path)?;
+    let (n_columns, numbers) = read_array(path)?;
     // An array of one dimension, or one row as `canonform geodesic` writes it, is a column.
     let n_columns = if n_columns == numbers.len() { 1 } else { n_columns };
-    Ok(match is_whole(path)? && n_columns == 1 {
-        true => Content::Labels(numbers.iter().map(|number| (*number as i64).to_string()).collect()),
-        false => {
-            Content::Values(Matrix::from_row_slice(numbers.len() / n_columns.max(1), n_columns, &numbers))
+    let n_rows = numbers.len().checked_div(n_columns).unwrap_or(0);
+    Ok(match numbers {
+        Numbers::Whole(numbers) if n_columns == 1 => {
+            Content::Labels(numbers.iter().map(i64::to_string).collect())
         }
+        numbers => Content::Values(Matrix::from_row_slice(n_rows, n_columns, &numbers.reals())),
     })
 }
 
-fn of_text(text: &str) -> Result<Content> {
-    let lines = text.lines().map(str::trim).enumerate().filter(|(_, line)| !line.is_empty());
-    let rows: Vec<(usize, Vec<&str>)> =
-        lines.map(|(number, line)| (number + 1, line.split(',').map(str::trim).collect())).collect();
-    let n_columns = rows.first().map_or(0, |(_, row)| row.len());
+fn of_table(table: &Table) -> Result<Content> {
     let is_label = |word: &str| word.parse::<i64>().is_ok() || word.parse::<f64>().is_err();
-    if rows.iter().all(|(_, row)| row.len() == 1 && is_label(row[0])) {
-        return Ok(Content::Labels(rows.iter().map(|(_, row)| row[0].to_owned()).collect()));
+    if table.rows().all(|row| row.n_cells() == 1 && row.cells().all(is_label)) {
+        return Ok(Content::Labels(
+            table.rows().flat_map(|row| row.cells().map(str::to_owned).collect::<Vec<_>>()).collect(),
+        ));
     }
-    let mut values = Vec::new();
-    for (number, row) in &rows {
-        if row.len() != n_columns {
-            bail!(
-                "line {number} has {} values, but the first line has {n_columns}; give as many in every line",
-                row.len()
-            );
-        }
-        for word in row {
-            values.push(word.parse::<f64>().with_context(|| {
-                format!("line {number}: `{word}` is not a number; labels are one word in every line")
-            })?);
-        }
-    }
-    let (n_rows, n_columns) = if rows.len() == 1 { (n_columns, 1) } else { (rows.len(), n_columns) };
+    let (n_columns, values) = table.numbers()?;
+    let n_rows = values.len() / n_columns.max(1);
+    let (n_rows, n_columns) = if n_rows == 1 { (n_columns, 1) } else { (n_rows, n_columns) };
     Ok(Content::Values(Matrix::from_row_slice(n_rows, n_columns, &values)))
 }
 
@@ -235,6 +221,10 @@ impl Carried {
 mod tests {
     use super::*;
 
+    fn of_text(text: &str) -> Result<Content> {
+        of_table(&Table::parse(text.into(), Path::new("rows.csv"))?)
+    }
+
     #[test]
     fn words_and_whole_numbers_are_labels() {
         let labels = |words: &[&str]| Content::Labels(words.iter().map(|word| (*word).to_owned()).collect());
@@ -246,7 +236,7 @@ mod tests {
             Content::Values(Matrix::from_row_slice(2, 2, &[0.0, 1.0, 1.0, 0.0]))
         );
         for (text, what) in
-            [("1.5\near", "line 2: `ear`"), ("1,2\n3", "line 2 has 1"), ("a,b", "line 1: `a`")]
+            [("1.5\near", "line 2: `ear`"), ("1,2\n3", "line 2: found 1"), ("a,b\nc,d", "line 2: `c`")]
         {
             assert!(of_text(text).unwrap_err().to_string().contains(what), "{text}");
         }
