@@ -233,7 +233,7 @@ pub enum Error {
     },
 }
 
-/// What a user can do about an [`Error`]. A program words it in terms of its own interface.
+/// What a user can do about an [`Error`]. A program words it in terms of its own interface, and has to word every one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Remedy {
     /// Keep the largest component of the mesh, or bridge its components.
@@ -272,6 +272,8 @@ pub enum Remedy {
     ListShapes,
     /// Evaluate a part of the collection, such as one shard.
     EvaluateShard,
+    /// Name one mesh of the archive.
+    NameMember,
 }
 
 /// Errors of the stages. A limit that was exceeded is [`Error::Exceeded`] at every depth.
@@ -366,6 +368,7 @@ impl Error {
             Self::NoDiscAreas { .. } => Remedy::BuildIndexAnew,
             Self::Field(_) => Remedy::BuildFieldAgain,
             Self::TooManyShapes { .. } => Remedy::EvaluateShard,
+            Self::Collection(CollectionError::NotOneMesh { n_meshes: 2.., .. }) => Remedy::NameMember,
             _ => return None,
         })
     }

@@ -7,6 +7,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use base::terminal::Bars;
+use canonform::collection::mesh_at;
 use canonform::mesh::io::{
     FORMATS, FileSource, Format, MeshFile, ReadLimits, files_in, is_mesh_path, or_list, without_extension,
 };
@@ -68,7 +69,7 @@ pub(crate) fn read_mesh(path: &Path, common: &Common) -> Result<TriMesh> {
 /// As [`read_mesh`], with what else the file says.
 pub(crate) fn read_file(path: &Path, common: &Common) -> Result<MeshFile> {
     if !is_stream(path) {
-        return Ok(read_mesh_file(path, &ReadLimits::default())?);
+        return Ok(read_mesh_file(path, &ReadLimits::default()).map_err(canonform::Error::from)?);
     }
     let Some(format) = common.stream_format() else {
         bail!("standard input has no file name: pass its format, such as --format ply");
@@ -148,9 +149,13 @@ pub(crate) fn expand(arguments: &[PathBuf]) -> Result<Vec<ShapeFile>> {
         match argument.to_str().filter(|text| text.contains(['*', '?', '['])) {
             _ if is_dataset(argument) => shapes.extend(list_shapes(argument, None)?),
             Some(pattern) if !is_there(argument) => {
-                let found =
-                    glob::glob(pattern).with_context(|| format!("`{pattern}` is not a valid pattern"))?;
-                let found: Vec<PathBuf> = found.flatten().filter(|path| is_mesh_path(path)).collect();
+                // As in shells, `*` stands for no leading dot.
+                let options = glob::MatchOptions { require_literal_leading_dot: true, ..Default::default() };
+                let found = glob::glob_with(pattern, options)
+                    .with_context(|| format!("`{pattern}` is not a valid pattern"))?
+                    .collect::<Result<Vec<_>, _>>()
+                    .with_context(|| format!("cannot look for {pattern}"))?;
+                let found: Vec<PathBuf> = found.into_iter().filter(|path| is_mesh_path(path)).collect();
                 if found.is_empty() {
                     bail!(
                         "{pattern}: no mesh matches this pattern; a mesh is {}",
@@ -165,10 +170,17 @@ pub(crate) fn expand(arguments: &[PathBuf]) -> Result<Vec<ShapeFile>> {
     Ok(shapes)
 }
 
-/// Whether arguments name exactly one mesh, whose results are not part of a list.
-pub(crate) fn is_single(arguments: &[PathBuf]) -> bool {
-    let is_file = |path: &PathBuf| is_there(path) || !path.to_string_lossy().contains(['*', '?', '[']);
-    matches!(arguments, [path] if !is_dataset(path) && is_file(path))
+/// Whether arguments name exactly one mesh, whose result is the file `output` and not part of a list.
+pub(crate) fn is_single(arguments: &[PathBuf], output: &Path) -> bool {
+    let [path] = arguments else { return false };
+    match is_dataset(path) {
+        // The result of an archive of one mesh may also go to a folder.
+        true => {
+            let is_file = is_stream(output) || output.extension().is_some() && !output.is_dir();
+            is_file && mesh_at(path).is_ok_and(|mesh| mesh != *path)
+        }
+        false => is_there(path) || !path.to_string_lossy().contains(['*', '?', '[']),
+    }
 }
 
 fn single(path: PathBuf) -> ShapeFile {

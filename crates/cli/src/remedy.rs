@@ -1,6 +1,6 @@
 //! Error messages with advice in terms of the command line. No other place words a remedy as options.
 
-use std::io::ErrorKind;
+use std::io::{self, ErrorKind};
 
 use canonform::Remedy;
 use server::ServerError;
@@ -32,6 +32,7 @@ fn words(remedy: Remedy) -> &'static str {
         Remedy::BuildFieldAgain => "build it again with `canonform field build`",
         Remedy::ListShapes => "`canonform index list` names its shapes",
         Remedy::EvaluateShard => "evaluate one shard at a time",
+        Remedy::NameMember => "name one of them, as ARCHIVE/NAME",
     }
 }
 
@@ -49,6 +50,9 @@ fn advice(cause: &(dyn std::error::Error + 'static)) -> Option<&'static str> {
     if let Some(fault) = cause.downcast_ref() {
         return Remedy::of_index(fault).map(words);
     }
+    if let Some(fault) = cause.downcast_ref::<io::Error>() {
+        return base::files::remedy(fault).strip_prefix("; ");
+    }
     let fault = match cause.downcast_ref() {
         Some(ServerError::Index(fault)) => Some(fault),
         _ => cause.downcast_ref::<canonform::Error>(),
@@ -63,7 +67,9 @@ pub(crate) fn with_remedy(message: String, remedy: Option<Remedy>) -> String {
 
 /// The message of an error with its remedy.
 pub(crate) fn message(error: &anyhow::Error) -> String {
-    with_advice(base::terminal::message(error), error.chain().find_map(advice))
+    let message = base::terminal::message(error);
+    let advice = error.chain().find_map(advice).filter(|advice| !message.contains(advice));
+    with_advice(message, advice)
 }
 
 fn with_advice(message: String, advice: Option<&str>) -> String {

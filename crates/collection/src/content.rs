@@ -9,7 +9,7 @@ use base::{ContentHash, ContentHasher};
 use mesh::io::ReadLimits;
 
 use crate::error::CollectionError;
-use crate::storage::{Storage, member_of, open_archive};
+use crate::storage::{Storage, member_of, mesh_at, open_archive};
 
 /// The hash of the files of a mesh, by which an index recognises them. A member of an archive has the hash of the same file
 /// outside.
@@ -18,7 +18,7 @@ use crate::storage::{Storage, member_of, open_archive};
 /// [`CollectionError`] if a file cannot be read.
 pub fn content_hash(path: &Path) -> Result<ContentHash, CollectionError> {
     let mut hasher = ContentHasher::default();
-    for path in &mesh::io::files_in(path, &Storage) {
+    for path in &mesh::io::files_in(&mesh_at(path)?, &Storage) {
         match member_of(path) {
             Some(_) => hasher.add(&content_of(path)?),
             None => {

@@ -42,12 +42,33 @@ pub enum CollectionError {
         shape: String,
     },
     /// An archive of another number of meshes where one is wanted.
-    #[error("{path}: the archive holds {n_meshes} meshes; give one that holds one mesh, or a mesh", path = path.display())]
+    #[error("{path}: the archive holds {n_meshes} meshes{}, not one", such_as(first), path = path.display())]
     NotOneMesh {
         /// The archive.
         path: PathBuf,
         /// Its meshes.
         n_meshes: usize,
+        /// The names of the first few of them.
+        first: Vec<String>,
+    },
+    /// An archive or a compressed file of a kind that is not read.
+    #[error(
+        "{path}: this kind of archive is not read; unpack it, or pack its files as .zip, .tar or .tar.gz",
+        path = path.display()
+    )]
+    UnreadArchive {
+        /// The archive.
+        path: PathBuf,
+    },
+    /// A file that is no dataset.
+    #[error(
+        "{path}: this file is not a dataset; a dataset is a folder, a .zip, .tar or .tar.gz archive, a .parquet file, or a \
+         .txt or .list file with a path in every line",
+        path = path.display()
+    )]
+    NotADataset {
+        /// The file.
+        path: PathBuf,
     },
     /// A folder, an archive or a list without meshes.
     #[error(
@@ -60,4 +81,11 @@ pub enum CollectionError {
         /// The folder.
         path: PathBuf,
     },
+}
+
+fn such_as(names: &[String]) -> String {
+    match names {
+        [] => String::new(),
+        _ => format!(", such as {}", names.join(", ")),
+    }
 }

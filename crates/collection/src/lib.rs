@@ -25,5 +25,7 @@ pub use dataset::{
     count_skipped, drop_single_class, label_of, label_shapes, list_shapes, n_classes,
 };
 pub use error::CollectionError;
-pub use storage::{Storage, is_archive_name, is_dataset, member_of, read_mesh, read_mesh_file, single_mesh};
+pub use storage::{
+    Storage, is_archive_name, is_dataset, member_of, mesh_at, read_mesh, read_mesh_file, single_mesh,
+};
 pub use table::{Row, Table};

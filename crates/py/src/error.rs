@@ -135,6 +135,7 @@ fn words(remedy: Remedy) -> &'static str {
         Remedy::BuildFieldAgain => "build it again with Surface.distance_field",
         Remedy::ListShapes => "Index.shapes() names its shapes",
         Remedy::EvaluateShard => "evaluate one shard at a time",
+        Remedy::NameMember => "name one of them, as \"ARCHIVE/NAME\"",
     }
 }
 

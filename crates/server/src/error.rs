@@ -191,6 +191,7 @@ fn remedy(fault: &Error) -> Option<&'static str> {
         Remedy::UseThreeDimensions => "build the index with forms of three dimensions",
         Remedy::UseFastMarching => "build the index with distances by fast marching",
         Remedy::UseNystrom => "simplify the mesh, or build the index with NMDS, which needs less memory",
+        Remedy::NameMember => "send one mesh, or an archive of one",
         Remedy::RaiseMemory => "simplify the mesh",
         Remedy::RaiseTimeLimit => "simplify the mesh, or raise the time limit of the server",
         Remedy::ListShapes => "/api/shapes lists the shapes of the index",

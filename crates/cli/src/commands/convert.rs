@@ -35,7 +35,7 @@ struct BatchJson {
 /// Converts one mesh, or each of several.
 pub(crate) fn convert(args: &ConvertArgs, common: &Common) -> Result<ExitCode> {
     let inputs = std::slice::from_ref(&args.input);
-    if is_single(inputs) { one(args, common) } else { batch(args, common) }
+    if is_single(inputs, &args.output) { one(args, common) } else { batch(args, common) }
 }
 
 fn one(args: &ConvertArgs, common: &Common) -> Result<ExitCode> {

@@ -68,7 +68,7 @@ pub(crate) fn embed(args: &EmbedArgs, common: &Common) -> Result<ExitCode> {
         bail!("--features bends the mesh in 3 dimensions; leave out --dim");
     }
     match &args.meshes[..] {
-        [mesh] if is_single(&args.meshes) => one(mesh, args, &options, &stress, common),
+        [mesh] if is_single(&args.meshes, &args.output) => one(mesh, args, &options, &stress, common),
         _ if args.extend.is_some() || !args.at.is_empty() => {
             bail!("--at and --extend are about one mesh; give one")
         }

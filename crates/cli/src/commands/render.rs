@@ -53,7 +53,7 @@ struct BatchJson {
 
 /// Draws one mesh, or each of several.
 pub(crate) fn draw(args: &RenderArgs, common: &Common) -> Result<ExitCode> {
-    if let ([mesh], true) = (&args.meshes[..], is_single(&args.meshes)) {
+    if let ([mesh], true) = (&args.meshes[..], is_single(&args.meshes, &args.output)) {
         let output = Output::new(&args.output, "a picture", &["png"], None, common)?;
         let mut json = draw_one(
             mesh,

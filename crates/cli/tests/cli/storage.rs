@@ -121,7 +121,53 @@ fn every_command_reads_members_and_compressed_files() {
     let all = place.json("info meshes.tar.gz list.txt meshes");
     assert_eq!(all["meshes"].as_array().unwrap().len(), 12);
     place.refused("info meshes.zip/meshes/ring/none.off", &["none.off", "no such member"]);
-    place.refused("geodesic meshes.zip --source 0 -o x.npy", &["meshes.zip", "archive", "name one of them"]);
+    for command in ["geodesic meshes.zip --source 0 -o x.npy", "compare ring0.off.gz meshes.zip"] {
+        let words = ["meshes.zip: the archive holds 4 meshes", "meshes/ball/ball0.off", "name one of them"];
+        place.refused(command, &words);
+    }
+    fs::write(place.path("meshes.tar.xz"), "x").unwrap();
+    for command in ["info meshes.tar.xz", "index build meshes.tar.xz -o i"] {
+        place.refused(command, &["meshes.tar.xz", "pack its files as .zip"]);
+    }
+}
+
+#[test]
+fn an_archive_of_one_mesh_is_that_mesh_for_every_command() {
+    let place = Workplace::new();
+    place.add("ring.off", &ring());
+    let mut zip = ZipWriter::new(fs::File::create(place.path("one.zip")).unwrap());
+    for (name, content) in
+        [("s/ring.off", fs::read(place.path("ring.off")).unwrap()), ("s/notes.md", b"a".to_vec())]
+    {
+        zip.start_file(name, SimpleFileOptions::default()).unwrap();
+        zip.write_all(&content).unwrap();
+    }
+    zip.finish().unwrap();
+    for (command, output) in [
+        ("geodesic MESH --source 0", ".npy"),
+        ("embed MESH -n 20", ".npy"),
+        ("convert MESH", ".ply"),
+        ("render MESH --size 64x64", ".png"),
+        ("field build MESH --landmarks 10", ".field"),
+        ("match MESH ring.off -n 20", ".npy"),
+    ] {
+        let [plain, archived] = ["ring.off", "one.zip"].map(|mesh| {
+            let output = format!("{}{output}", &mesh[..3]);
+            let option = if command.starts_with("convert") { "" } else { " -o" };
+            place.done(format!("{}{option} {output}", command.replace("MESH", mesh)).as_str());
+            fs::read(place.path(&output)).unwrap()
+        });
+        assert!(plain == archived, "{command}");
+    }
+    assert_eq!(place.json("info one.zip")["meshes"][0]["mesh"]["n_vertices"], 160);
+    let relation = place.json("compare one.zip ring.off -n 20");
+    assert_eq!(relation["relation"]["kind"], "same-file", "{relation}");
+    place.done("methods one.zip -n 20");
+    place.done(&[&["index", "build", "one.zip", "-o", "i"], &BUILD[..]].concat());
+    assert_eq!(place.json("search i one.zip")["queries"][0]["results"][0]["distance"], 0.0);
+    // A folder still takes the results of an archive, however many there are.
+    place.done("embed one.zip -n 20 -o forms --output-format npy");
+    assert!(place.path("forms/ring.npy").exists());
 }
 
 #[test]

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use mesh::io::{extension, files_in, is_mesh_path, mesh_files, without_extension};
 
 use crate::error::CollectionError;
-use crate::storage::{Container, Storage, open_archive, read_list};
+use crate::storage::{Container, Storage, is_unread_archive, open_archive, read_list};
 use walk::Walk;
 
 pub(crate) use labels::joined;
@@ -20,6 +20,7 @@ pub use classes::{LabelOrigin, LabelSource, drop_single_class, label_of, label_s
 pub use labels::{LabelFile, UnusedLabel};
 pub use shape_file::ShapeFile;
 pub use walk::{MOVES, SkipKind, Skipped};
+pub(crate) use walk::is_apple_double;
 
 /// What a folder, an archive or a list holds.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -46,11 +47,16 @@ impl Dataset {
     /// two meshes each and none lies in another; else the leading letters of file names, if at least two share them.
     ///
     /// # Errors
-    /// [`CollectionError::File`] and [`CollectionError::Mesh`] if it cannot be read, [`CollectionError::BadLine`], [`CollectionError::NoShapes`].
+    /// [`CollectionError::File`] and [`CollectionError::Mesh`] if it cannot be read, [`CollectionError::NotADataset`],
+    /// [`CollectionError::UnreadArchive`], [`CollectionError::BadLine`], [`CollectionError::NoShapes`].
     pub fn read(path: &Path, labels: Option<&LabelSource>) -> Result<Self, CollectionError> {
         let found = match Container::of(path) {
             Some(Container::List) => Found::in_list(path)?,
             Some(Container::Zip | Container::Tar | Container::Parquet) => Found::in_archive(path)?,
+            None if is_unread_archive(path) => {
+                return Err(CollectionError::UnreadArchive { path: path.to_owned() });
+            }
+            None if path.is_file() => return Err(CollectionError::NotADataset { path: path.to_owned() }),
             Some(Container::Folder) | None => Found::in_folder(path)?,
         };
         let mut shapes = found.shapes;

@@ -33,6 +33,8 @@ pub enum SkipKind {
     UnsafeName,
     /// A link to a file or a folder that is found without it, or a second line of a list for the same file.
     Repeated,
+    /// What macOS stores beside a file, under its name after `._`.
+    AppleDouble,
     /// A link that leads nowhere.
     BrokenLink,
     /// A sub-folder that cannot be read.
@@ -48,7 +50,7 @@ impl SkipKind {
     /// Whether users expect it: files that are not meshes, and what they moved.
     #[must_use]
     pub fn is_expected(&self) -> bool {
-        matches!(self, Self::Extension(_) | Self::MovedAway)
+        matches!(self, Self::Extension(_) | Self::AppleDouble | Self::MovedAway)
     }
 }
 
@@ -61,6 +63,7 @@ impl fmt::Display for SkipKind {
             Self::NotUtf8 => f.write_str("name is not UTF-8"),
             Self::UnsafeName => f.write_str("name leads out of the archive"),
             Self::Repeated => f.write_str("link to something found already"),
+            Self::AppleDouble => f.write_str("._ file of macOS"),
             Self::BrokenLink => f.write_str("broken link"),
             Self::Unreadable => f.write_str("unreadable folder"),
             Self::MovedAway => f.write_str("folder of moved duplicates"),
@@ -137,6 +140,9 @@ impl Walk {
 
     /// Sorts a file or folder in.
     fn take(&mut self, path: PathBuf, kind: fs::FileType) {
+        if kind.is_file() && is_apple_double(&path) {
+            return self.skip(path, SkipKind::AppleDouble);
+        }
         let is_mesh = kind.is_file() && is_mesh_path(&path);
         if !kind.is_dir() && !is_mesh {
             return match kind.is_file() {
@@ -162,6 +168,11 @@ impl Walk {
             Ok(_) => self.folders.push(path),
         }
     }
+}
+
+/// Whether a name is that of what macOS stores beside a file, such as `._cat.off` beside `cat.off`.
+pub(crate) fn is_apple_double(path: &Path) -> bool {
+    path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b"._"))
 }
 
 /// Hard links are files of their own.

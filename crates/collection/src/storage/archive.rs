@@ -6,12 +6,13 @@ use std::io::{self, Read, Seek, Write};
 use std::path::{Component, Path};
 
 use base::files::{FileError, nameless_in};
-use mesh::io::inflated_limit;
+use mesh::io::{inflated_limit, is_mesh_path};
 use mesh::{Fault, MeshError};
 
 use super::container::fault;
 use super::window::Window;
-use crate::dataset::SkipKind;
+use crate::dataset::{SkipKind, is_apple_double};
+use crate::error::CollectionError;
 
 /// A file in an archive.
 #[derive(Debug, Clone, Default)]
@@ -23,6 +24,9 @@ pub(crate) struct Member {
     /// Where it is: the number of a zip entry, or the first byte.
     pub(super) at: u64,
 }
+
+/// Most members that an error lists.
+const MOST_NAMED: usize = 3;
 
 /// An opened archive.
 #[derive(Debug)]
@@ -55,8 +59,7 @@ impl Archive {
     /// Adds a member. A later one of the same name takes its place, as when an archive is unpacked.
     pub(super) fn add(&mut self, name: &str, member: Member) {
         match safe_name(name) {
-            // What macOS stores beside every file.
-            Some(name) if name.starts_with("__MACOSX/") => {}
+            Some(name) if is_apple_double(Path::new(&name)) => self.skip(&name, SkipKind::AppleDouble),
             Some(name) => {
                 self.members.insert(name, member);
             }
@@ -68,8 +71,23 @@ impl Archive {
         self.skipped.push((name.to_owned(), kind));
     }
 
+    /// The member of this name, also if it is spelled as `./name`.
     pub(crate) fn member(&self, name: &str) -> Option<&Member> {
-        self.members.get(name)
+        self.members.get(name).or_else(|| self.members.get(&safe_name(name)?))
+    }
+
+    /// The name of the only mesh; `path` is that of the archive.
+    pub(super) fn only_mesh(&self, path: &Path) -> Result<&str, CollectionError> {
+        let meshes: Vec<&str> =
+            self.members.keys().map(String::as_str).filter(|name| is_mesh_path(Path::new(name))).collect();
+        match meshes[..] {
+            [mesh] => Ok(mesh),
+            _ => Err(CollectionError::NotOneMesh {
+                path: path.to_owned(),
+                n_meshes: meshes.len(),
+                first: meshes.iter().take(MOST_NAMED).map(|name| (*name).to_owned()).collect(),
+            }),
+        }
     }
 
     /// All members in the order of their names.

@@ -41,6 +41,12 @@ impl Container {
     }
 }
 
+/// Whether a file is compressed in a way that is not read.
+pub(crate) fn is_unread_archive(path: &Path) -> bool {
+    let known = ["7z", "bz2", "lz", "lz4", "lzma", "rar", "tbz", "tbz2", "txz", "tzst", "xz", "z", "zst"];
+    path.is_file() && known.contains(&extension(path).as_str())
+}
+
 /// The error that a file cannot be read faithfully.
 pub(super) fn fault(path: &Path, fault: Fault) -> MeshError {
     MeshError::File { path: path.to_owned(), place: Place::File, fault }

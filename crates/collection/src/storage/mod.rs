@@ -18,14 +18,13 @@ use std::path::{Path, PathBuf};
 
 use base::files::FileError;
 use mesh::io::{Disk, FileSource, MeshFile, Opened, ReadLimits};
-use mesh::{Fault, MeshError, TriMesh};
+use mesh::{MeshError, TriMesh};
 
 use crate::error::CollectionError;
 pub(crate) use cache::open as open_archive;
-pub(crate) use container::Container;
-use container::fault;
+pub(crate) use container::{Container, is_unread_archive};
 pub(crate) use list::read as read_list;
-pub use single::{is_archive_name, single_mesh};
+pub use single::{is_archive_name, mesh_at, single_mesh};
 
 /// Whether a path leads to a dataset: a folder, an archive (`.zip`, `.tar`, `.tar.gz`, `.tgz`), a `.parquet` file with a
 /// column of bytes, or a list of paths (`.txt`, `.list`).
@@ -82,7 +81,8 @@ pub fn member_of(path: &Path) -> Option<(PathBuf, String)> {
     None
 }
 
-/// Reads a mesh, which may be compressed (`cat.obj.gz`) or the member of an archive (`cats.zip/cat0.off`).
+/// Reads a mesh, which may be compressed (`cat.obj.gz`), the member of an archive (`cats.zip/cat0.off`), or the only mesh of an
+/// archive (`cat.zip`).
 ///
 /// ```
 /// let folder = tempfile::tempdir()?;
@@ -93,7 +93,7 @@ pub fn member_of(path: &Path) -> Option<(PathBuf, String)> {
 /// ```
 ///
 /// # Errors
-/// [`CollectionError::Mesh`].
+/// [`CollectionError::Mesh`], [`CollectionError::NotOneMesh`], [`CollectionError::UnreadArchive`].
 pub fn read_mesh(path: &Path) -> Result<TriMesh, CollectionError> {
     Ok(read_mesh_file(path, &ReadLimits::default())?.mesh)
 }
@@ -101,13 +101,12 @@ pub fn read_mesh(path: &Path) -> Result<TriMesh, CollectionError> {
 /// As [`read_mesh`], with what else the file says, such as the unit of length.
 ///
 /// # Errors
-/// [`CollectionError::Mesh`].
+/// As [`read_mesh`].
 pub fn read_mesh_file(path: &Path, limits: &ReadLimits) -> Result<MeshFile, CollectionError> {
-    if Container::of(path).is_some_and(Container::is_archive) {
-        let remedy = "name one of them, such as meshes.zip/cat0.off";
-        return Err(fault(path, Fault::unsupported("this is an archive of meshes", remedy)).into());
+    match is_unread_archive(path) {
+        true => Err(CollectionError::UnreadArchive { path: path.to_owned() }),
+        false => Ok(mesh::io::read_file(&mesh_at(path)?, &Storage, limits)?),
     }
-    Ok(mesh::io::read_file(path, &Storage, limits)?)
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! The mesh of an archive that holds one.
 
+use std::borrow::Cow;
 use std::io::{Seek, Write};
 use std::path::{Path, PathBuf};
 
@@ -8,7 +9,7 @@ use mesh::MeshError;
 use mesh::io::{FileSource, Opened, files_in, is_mesh_path};
 
 use super::archive::Archive;
-use super::cache::members;
+use super::cache::{members, open as open_archive};
 use super::container::{Container, fault};
 use crate::dataset::joined;
 use crate::error::CollectionError;
@@ -17,6 +18,17 @@ use crate::error::CollectionError;
 #[must_use]
 pub fn is_archive_name(name: &Path) -> bool {
     matches!(Container::by_name(name), Some(Container::Zip | Container::Tar))
+}
+
+/// The mesh that a path stands for: that of an archive which holds one, else what is at the path.
+///
+/// # Errors
+/// [`CollectionError::NotOneMesh`], and [`CollectionError::Mesh`] if an archive cannot be read.
+pub fn mesh_at(path: &Path) -> Result<Cow<'_, Path>, CollectionError> {
+    match Container::of(path).is_some_and(Container::is_archive) {
+        true => Ok(path.join(open_archive(path)?.only_mesh(path)?).into()),
+        false => Ok(path.into()),
+    }
 }
 
 /// The files of the only mesh in an archive in memory, that of the mesh first; names are relative to its folder. No file may
@@ -30,11 +42,7 @@ pub fn single_mesh(name: &Path, bytes: &[u8], most: u64) -> Result<Vec<(PathBuf,
     file.write_all(bytes).and_then(|()| file.rewind()).map_err(kept)?;
     let container = Container::by_name(name).unwrap_or(Container::Zip);
     let archive = members(name, file, container, most).map_err(|what| fault(name, what))?;
-    let meshes: Vec<&str> =
-        archive.members().map(|(member, _)| member).filter(|m| is_mesh_path(Path::new(m))).collect();
-    let [mesh] = meshes[..] else {
-        return Err(CollectionError::NotOneMesh { path: name.to_owned(), n_meshes: meshes.len() });
-    };
+    let mesh = archive.only_mesh(name)?;
     let source = Members { archive: &archive, name, most };
     let mesh = Path::new(mesh);
     let folder = mesh.parent().unwrap_or(Path::new(""));

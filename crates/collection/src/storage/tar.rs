@@ -4,8 +4,8 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use flate2::read::MultiGzDecoder;
 use mesh::Fault;
+use mesh::io::GzipReader;
 use tar::EntryType;
 
 use super::archive::{Archive, Data, Member, Spool};
@@ -26,15 +26,25 @@ pub(super) fn open(path: &Path, file: File, most: u64) -> Result<Archive, Fault>
         let entry = entry.map_err(damaged)?;
         let bytes = entry.path_bytes();
         let name = String::from_utf8_lossy(&bytes);
-        match entry.header().entry_type() {
+        let kind = entry.header().entry_type();
+        match kind {
+            EntryType::Regular | EntryType::Continuous | EntryType::Link
+                if std::str::from_utf8(&bytes).is_err() =>
+            {
+                archive.skip(&name, SkipKind::NotUtf8);
+            }
             EntryType::Regular | EntryType::Continuous => {
-                if std::str::from_utf8(&bytes).is_err() {
-                    archive.skip(&name, SkipKind::NotUtf8);
-                    continue;
-                }
                 let member =
                     Member { size: entry.size(), label: String::new(), at: entry.raw_file_position() };
                 archive.add(&name, member);
+            }
+            // Another name of a file before it.
+            EntryType::Link => {
+                let target = entry.link_name_bytes().unwrap_or_default();
+                match archive.member(&String::from_utf8_lossy(&target)).cloned() {
+                    Some(member) => archive.add(&name, member),
+                    None => archive.skip(&name, SkipKind::BrokenLink),
+                }
             }
             EntryType::Directory | EntryType::XGlobalHeader => {}
             _ => archive.skip(&name, SkipKind::Special),
@@ -46,7 +56,7 @@ pub(super) fn open(path: &Path, file: File, most: u64) -> Result<Archive, Fault>
 /// Decompresses everything, at most so many bytes.
 fn inflated(window: Window, most: u64) -> Result<Window, Fault> {
     let mut spool = Spool::new(window.len(), most)?;
-    let mut stream = MultiGzDecoder::new(window);
+    let mut stream = GzipReader::new(window);
     let mut buffer = vec![0; 1 << 16];
     loop {
         match stream.read(&mut buffer) {

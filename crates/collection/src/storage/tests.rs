@@ -149,10 +149,139 @@ fn an_archive_is_the_dataset_that_it_was_made_from() {
         assert!(missing.contains("cat11.off") && missing.contains("no such member"), "{missing}");
         let archive = read_mesh(&path).unwrap_err().to_string();
         assert!(
-            archive.contains("unknown mesh format") || archive.contains("this is an archive"),
+            archive.contains("holds 4 meshes, such as all/cat/cat10.off, all/cat/cat9.ply.gz"),
             "{archive}"
         );
     }
+}
+
+#[test]
+fn an_archive_of_one_mesh_is_that_mesh() {
+    let place = folder();
+    let files = &contents()[3..];
+    let files = [files, &[other_half()]].concat();
+    let tar = tar_of(&files);
+    for (name, bytes) in [("a.zip", zip_of(&files)), ("a.tar", tar.clone()), ("a.tar.gz", gzip_of(&tar))] {
+        let path = place.path().join(name);
+        fs::write(&path, bytes).unwrap();
+        let member = path.join("all/dog/dog1.vert");
+        assert_eq!(mesh_at(&path).unwrap(), member);
+        assert_eq!(mesh_at(&member).unwrap(), member);
+        assert_eq!(read_mesh(&path).unwrap(), shapes::cube(2), "{name}");
+        assert_eq!(content_hash(&path).unwrap(), content_hash(&member).unwrap(), "{name}");
+    }
+    let path = place.path().join("none.zip");
+    fs::write(&path, zip_of(&[("README.md", b"meshes".to_vec())])).unwrap();
+    assert!(read_mesh(&path).unwrap_err().to_string().contains("holds 0 meshes, not one"));
+}
+
+#[test]
+fn files_of_macos_are_skipped_everywhere() {
+    let place = folder();
+    let cube = bytes_of(&shapes::cube(0), "off");
+    let double = b"\0\x05\x16\x07\0\x02\0\0Mac OS X        ".to_vec();
+    let files = [("s/cat0.off", cube), ("s/._cat0.off", double.clone()), ("s/._notes.txt", double)];
+    for (name, content) in &files {
+        let path = place.path().join("plain").join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, content).unwrap();
+    }
+    let names = |files: &[(&'static str, Vec<u8>)]| {
+        let within =
+            |name: &'static str| name.strip_prefix("s/._").map(|rest| format!("__MACOSX/s/._{rest}"));
+        files.iter().map(|(name, _)| within(name).unwrap_or(name.to_string())).collect::<Vec<_>>()
+    };
+    let apart = names(&files);
+    let apart: Vec<(&str, Vec<u8>)> =
+        apart.iter().zip(&files).map(|(name, (_, content))| (name.as_str(), content.clone())).collect();
+    for (name, bytes) in [("a.zip", zip_of(&apart)), ("a.tar", tar_of(&files))] {
+        fs::write(place.path().join(name), bytes).unwrap();
+    }
+    for name in ["plain/s", "a.zip", "a.tar"] {
+        let dataset = Dataset::read(&place.path().join(name), None).unwrap();
+        assert_eq!(dataset.shapes.len(), 1, "{name}");
+        assert_eq!(count_skipped(&dataset.skipped)["._ file of macOS"], 2, "{name}");
+        assert!(dataset.skipped.iter().all(|skipped| skipped.kind.is_expected()), "{name}");
+    }
+}
+
+#[test]
+fn a_hard_link_in_a_tar_is_the_file_it_names() {
+    let place = folder();
+    let mut archive = ::tar::Builder::new(Vec::new());
+    let cube = bytes_of(&shapes::cube(1), "off");
+    let mut header = ::tar::Header::new_gnu();
+    header.set_size(cube.len() as u64);
+    archive.append_data(&mut header, "s/cat0.off", &cube[..]).unwrap();
+    for (name, target) in
+        [("s/same.off", "s/cat0.off"), ("s/again.off", "./s/same.off"), ("s/lost.off", "s/gone.off")]
+    {
+        let mut header = ::tar::Header::new_gnu();
+        header.set_entry_type(::tar::EntryType::Link);
+        header.set_size(0);
+        archive.append_link(&mut header, name, target).unwrap();
+    }
+    let path = place.path().join("a.tar");
+    fs::write(&path, archive.into_inner().unwrap()).unwrap();
+    let dataset = Dataset::read(&path, None).unwrap();
+    let names: Vec<_> = dataset.shapes.iter().map(|shape| shape.name.as_str()).collect();
+    assert_eq!(names, ["again", "cat0", "same"]);
+    for shape in &dataset.shapes {
+        assert_eq!(read_mesh(&shape.path).unwrap(), shapes::cube(1));
+    }
+    assert_eq!(
+        dataset.skipped.iter().map(|skipped| &skipped.kind).collect::<Vec<_>>(),
+        [&SkipKind::BrokenLink]
+    );
+}
+
+#[test]
+fn compressed_files_may_be_filled_up_with_zeros() {
+    let place = folder();
+    let off = bytes_of(&shapes::icosphere(1), "off");
+    for (name, bytes) in
+        [("a.tar.gz", gzip_of(&tar_of(&[("a.off", off.clone())]))), ("a.off.gz", gzip_of(&off))]
+    {
+        let path = place.path().join(name);
+        fs::write(&path, [bytes, vec![0; 512]].concat()).unwrap();
+        assert_eq!(read_mesh(&path).unwrap(), shapes::icosphere(1), "{name}");
+    }
+}
+
+#[test]
+fn other_archives_and_files_are_no_datasets() {
+    let place = folder();
+    for (name, words) in [
+        ("a.tar.bz2", "pack its files as .zip, .tar or .tar.gz"),
+        ("a.tar.xz", ".zip"),
+        ("a.7z", ".zip"),
+        ("a.RAR", ".zip"),
+        ("a.off", "a dataset is a folder, a .zip"),
+        ("a.docx", "a dataset is a folder"),
+    ] {
+        let path = place.path().join(name);
+        fs::write(&path, "x").unwrap();
+        let error = Dataset::read(&path, None).unwrap_err().to_string();
+        assert!(error.contains(name) && error.contains(words), "{error}");
+        if !words.contains("dataset") {
+            assert!(read_mesh(&path).unwrap_err().to_string().contains(words), "{name}");
+        }
+    }
+}
+
+#[test]
+fn lists_may_have_byte_order_marks_and_no_other_encoding() {
+    let place = folder();
+    for name in ["a,1.off", "b;2.off"] {
+        fs::write(place.path().join(name), bytes_of(&shapes::cube(0), "off")).unwrap();
+    }
+    let list = place.path().join("list.txt");
+    fs::write(&list, "\u{feff}a,1.off\r\n# more\r\nb;2.off\r\n").unwrap();
+    assert_eq!(list_shapes(&list, None).unwrap().len(), 2);
+    let utf16: Vec<u8> = "\u{feff}a,1.off\r\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+    fs::write(&list, utf16).unwrap();
+    let error = list_shapes(&list, None).unwrap_err().to_string();
+    assert!(error.contains("list.txt") && error.ends_with("save the file as UTF-8"), "{error}");
 }
 
 #[test]
