@@ -7,7 +7,7 @@ use canonform::geodesics::Method;
 use clap::{Args, Subcommand};
 
 use super::settings::{OfDistances, RepairArgs, SettingArgs, distance_method};
-use super::shared::LimitArgs;
+use super::shared::{LimitArgs, counted};
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum FieldCommand {
@@ -79,13 +79,13 @@ pub(crate) struct FieldQueryArgs {
     #[arg(long, value_name = "FILE", required_unless_present = "source")]
     pub(crate) pairs: Option<PathBuf>,
     /// Vertices; the distances from each to all vertices
-    #[arg(long, value_name = "V[,V...]", value_delimiter = ',', conflicts_with = "pairs")]
+    #[arg(long, value_name = "V[,V...]", value_delimiter = ',', value_parser = counted::<u32>, conflicts_with = "pairs")]
     pub(crate) source: Vec<u32>,
     /// Only the K vertices nearest to each source, exactly
     #[arg(long, value_name = "K", requires = "source")]
     pub(crate) nearest: Option<usize>,
     /// Finish a pair by exact propagation if its interval is wider than this share of the distance; `none` finishes no pair
-    #[arg(long, allow_negative_numbers = true, value_name = "SHARE|none", value_parser = tolerance, default_value = "0.05")]
+    #[arg(long, value_name = "SHARE|none", value_parser = tolerance, default_value = "0.05")]
     pub(crate) tolerance: Finish,
     /// Write the answers to a file instead of printing them: .csv, or .npy with the columns a, b, distance, lower, upper
     #[arg(short, long, value_name = "FILE")]

@@ -59,7 +59,15 @@ fn with_help(command: clap::Command) -> clap::Command {
     let usual = Arg::new("help").short('h').long("help").action(ArgAction::HelpShort);
     let all = Arg::new("help_all").long("help-all").action(ArgAction::HelpLong);
     let names: Vec<String> = command.get_subcommands().map(|inner| inner.get_name().to_owned()).collect();
+    // The parser of a value says what is wrong with `--source -1`; clap would take it for an unknown flag.
+    let takes_minus = |arg: Arg| match (arg.is_positional(), arg.get_value_delimiter()) {
+        (true, _) => arg,
+        _ if !arg.get_action().takes_values() => arg,
+        (false, None) => arg.allow_negative_numbers(true),
+        (false, Some(_)) => arg.allow_hyphen_values(true),
+    };
     let command = command
+        .mut_args(takes_minus)
         .disable_help_flag(true)
         .arg(usual.help("Print this help").display_order(990))
         .arg(all.help("Print help with all options, their values, and notes").display_order(991));
@@ -99,7 +107,7 @@ fn exit(fault: &clap::Error) -> ! {
 /// What commands read.
 fn inputs_help() -> String {
     format!(
-        "A mesh is {}; compressed, as cat.obj.gz; or a member of an archive, as cats.zip/cat0.off.\n\
+        "A mesh is {}; compressed, as cat.obj.gz; a member of an archive, as cats.zip/cat0.off; or an archive of one mesh.\n\
          A dataset is a folder, a .zip, .tar or .tar.gz archive, a .parquet file with the columns id, label, format and bytes, \
          or a .txt file with a path in every line.",
         mesh_files()

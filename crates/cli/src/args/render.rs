@@ -9,7 +9,7 @@ use report::color::ColorMap;
 use report::render::{Background, View};
 
 use super::settings::RepairArgs;
-use super::shared::LimitArgs;
+use super::shared::{LimitArgs, counted};
 
 /// How views and fields are written.
 const NOTES: &str = "\
@@ -63,7 +63,7 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "FIELD")]
     pub(crate) field: Option<PathBuf>,
     /// Row of the field, counted from 0; required if it has several
-    #[arg(long, hide_short_help = true, value_name = "ROW", requires = "field")]
+    #[arg(long, hide_short_help = true, value_name = "ROW", value_parser = counted::<usize>, requires = "field")]
     pub(crate) row: Option<usize>,
     /// Colour by the distance from the nearest of these points, by fast marching; write points as for `canonform
     /// geodesic`

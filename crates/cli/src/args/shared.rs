@@ -1,5 +1,6 @@
 //! Options that several commands share.
 
+use std::str::FromStr;
 use std::time::Duration;
 
 use base::Budget;
@@ -44,6 +45,11 @@ impl Common {
     pub(crate) fn format_of_output(&self, reads_stream: bool) -> Option<&str> {
         self.format.as_deref().filter(|_| !reads_stream || self.input_format.is_some())
     }
+}
+
+/// Reads the number of a vertex or a row.
+pub(super) fn counted<T: FromStr>(text: &str) -> Result<T, String> {
+    text.parse().map_err(|_| format!("`{text}` is not a whole number, counted from 0"))
 }
 
 /// More threads than this do not help on any machine, and starting them may fail.

@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use canonform::mesh::shapes;
+
 use crate::support::{Workplace, broken_ring, one_object, ring};
 
 /// An intact mesh, and a broken one with a very short name.
@@ -35,6 +37,62 @@ fn errors_name_files_that_are_not_meshes() {
         place.refused(command, &["void", "no mesh found"]);
     }
     assert_eq!(place.names(), before);
+}
+
+#[test]
+fn negative_numbers_are_errors_of_the_value() {
+    let place = place();
+    place.done("field build ring.off --landmarks 10 -o x.field");
+    for (command, words) in [
+        ("geodesic ring.off -o d.npy --source -1", "counted from 0"),
+        ("geodesic ring.off -o d.npy --source -1,2", "counted from 0"),
+        ("geodesic ring.off -o d.ply --source 0 --path-to -1", "counted from 0"),
+        ("geodesic ring.off -o d.npy --source 0 --max-distance -1", "`-1` is not a distance"),
+        ("field query x.field --source -1", "counted from 0"),
+        ("embed ring.off -o f.npy --at -1", "counted from 0"),
+        ("render ring.off -o p.png --distance-from -1", "counted from 0"),
+        ("render ring.off -o p.png --field f.csv --row -1", "counted from 0"),
+        ("embed ring.off -o f.npy -n -5", "-5"),
+        ("info ring.off --weld -1", "-1"),
+    ] {
+        let outcome = place.run(command);
+        assert_eq!(outcome.code, 2, "{command}");
+        assert!(outcome.err.contains(words) && !outcome.err.contains("tip"), "{command}: {}", outcome.err);
+    }
+}
+
+#[test]
+fn tables_of_spreadsheets_are_read_by_every_command() {
+    let place = place();
+    place.add("s/a0.off", &ring());
+    place.add("s/b0.off", &shapes::icosphere(2));
+    let utf16: Vec<u8> = "\u{feff}0,1\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let row = |i: usize| (0..6).map(|j| if i / 3 == j / 3 { "0,5;" } else { "9;" }).collect::<String>();
+    let rows: Vec<String> = (0..6).map(|i| row(i).trim_end_matches(';').to_owned()).collect();
+    let matrix = format!("\u{feff}a1;a2;a3;b1;b2;b3\n{}\n", rows.join("\n"));
+    for (name, text) in [
+        ("pairs.csv", "\u{feff}a;b\n0;1\n"),
+        ("labels.csv", "\u{feff}Name;Label\na0;x\nb0.off;y\n"),
+        ("matrix.csv", &matrix),
+        ("list.txt", "\u{feff}s/a0.off\r\ns/b0.off\r\n"),
+        ("none.csv", "c0,x\n"),
+        ("names.csv", "a,b\n"),
+    ] {
+        fs::write(place.path(name), text).unwrap();
+    }
+    fs::write(place.path("utf16.csv"), &utf16).unwrap();
+    place.done("field build ring.off --landmarks 10 -o x.field");
+    assert_eq!(place.json("field query x.field --pairs pairs.csv")["pairs"][0]["b"], 1);
+    assert_eq!(place.json("index build s --labels labels.csv -o i -n 20")["n_classes"], 2);
+    assert_eq!(place.json("evaluate matrix.csv")["classes"], 2);
+    assert_eq!(place.json("info list.txt")["meshes"].as_array().unwrap().len(), 2);
+    for command in ["index build s --labels none.csv -o j -n 20", "evaluate i --labels none.csv"] {
+        place.refused(command, &["none.csv: none of its lines names a shape: line 1 has `c0`", "`a0`"]);
+    }
+    place.refused("field query x.field --pairs names.csv", &["names.csv, line 1", "no rows"]);
+    for command in ["field query x.field --pairs utf16.csv", "evaluate utf16.csv"] {
+        place.refused(command, &["utf16.csv", "UTF-16", "save the file as UTF-8"]);
+    }
 }
 
 #[test]

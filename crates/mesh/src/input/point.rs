@@ -36,7 +36,7 @@ pub enum InputPoint {
 /// Text that is not a point of a mesh.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "`{text}` is not a point of a mesh; write 17 for a vertex, 17-42@0.3 for a point on an edge (at 0.3 of the \
+    "`{text}` is not a point of a mesh; write 17 for a vertex (counted from 0), 17-42@0.3 for a point on an edge (at 0.3 of the \
      length from 17 to 42), or f8@2:1:1 for a point of a face with these weights of its corners"
 )]
 pub struct BadPoint {
