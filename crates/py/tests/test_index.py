@@ -90,8 +90,10 @@ def test_labels_come_from_a_mapping_or_a_file(collection: Path, tmp_path: Path) 
     assert Index.build(collection, tmp_path / "j.canonform", labels=file).info()["classes"]["x"] == 1
     none = Index.build(collection, tmp_path / "n.canonform", labels="none")
     assert none.info()["unlabelled"] == 9 and none.build_report is not None and none.build_report["labels_from"] == "none"
-    with pytest.raises(OptionError, match="comma"):
-        Index.build(collection, tmp_path / "k.canonform", labels={"a": "b,c"})
+    quoted = Index.build(collection, tmp_path / "q.canonform", labels={"cat0": 'a; "b", c'})
+    assert quoted.info()["classes"] == {'a; "b", c': 1}
+    with pytest.raises(OptionError, match="line break"):
+        Index.build(collection, tmp_path / "k.canonform", labels={"a": "b\nc"})
 
 
 def test_shards_merge_to_the_whole(index: Index, collection: Path, tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import os
 import warnings
@@ -677,11 +678,16 @@ def _label_file(labels: Mapping[str, str] | AnyPath | None) -> Iterator[str | No
     if labels is None or isinstance(labels, (str, os.PathLike)):
         yield None if labels is None else os.fspath(labels)
         return
+    if not labels:
+        yield "none"
+        return
     with TemporaryDirectory() as folder:
         path = os.path.join(folder, "labels.csv")
         with open(path, "w", encoding="utf-8", newline="") as file:
+            rows = csv.writer(file, quoting=csv.QUOTE_ALL)
+            rows.writerow(["name", "label"])
             for name, label in labels.items():
-                if any(c in f"{name}{label}" for c in ',\n\r"'):
-                    raise OptionError(f"labels={{{name!r}: {label!r}}} is not possible: a comma or quote in a name or class")
-                file.write(f"{name},{label}\n")
+                if any(c in f"{name}{label}" for c in "\n\r"):
+                    raise OptionError(f"labels={{{name!r}: {label!r}}} is not possible: a line break in a name or class")
+                rows.writerow([name, label])
         yield path
