@@ -43,7 +43,6 @@ mod heap;
 mod heat;
 mod method;
 mod observed;
-mod oracle;
 mod path;
 mod plane;
 mod prefetch;
@@ -61,7 +60,6 @@ pub use fast_marching::{FastMarching, FastMarchingOptions, ObtuseTreatment, Upda
 pub use heat::{HeatMethod, HeatOptions};
 pub use method::Method;
 pub use observed::Observed;
-pub use oracle::DistanceOracle;
 pub use path::{GeodesicPath, PathTracer, log_map};
 pub use sampling::{FirstSample, Sampler, Sampling, SpreadSamples, Variance, farthest_point_sampling};
 pub use solver::{DistanceSolver, PrunedSolver};
