@@ -24,7 +24,6 @@ mod testing;
 mod topology;
 mod triangle;
 mod triangulation;
-mod waiting_sides;
 
 pub use components::{Components, components_of, components_of_faces, components_with_links};
 pub use disjoint_sets::DisjointSets;
