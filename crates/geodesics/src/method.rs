@@ -1,5 +1,7 @@
 //! The choice of a solver.
 
+use std::borrow::Cow;
+
 use base::Observer;
 use surface::IntrinsicMesh;
 
@@ -78,48 +80,27 @@ impl Method {
         }
     }
 
-    /// Prepares a surface. The solver keeps to the budget of the observer, as its preparation does.
+    /// Prepares a surface. The solver keeps to the budget of the observer, as its preparation does. The memory of a
+    /// surface that is given away is free before that of fast marching is needed.
     ///
     /// # Errors
     /// [`GeodesicError::Exceeded`] and those of [`HeatMethod::new`]; the other methods accept any surface.
-    pub fn prepare(
+    pub fn prepare<'a>(
         self,
-        mesh: &IntrinsicMesh,
+        mesh: impl Into<Cow<'a, IntrinsicMesh>>,
         observer: &dyn Observer,
     ) -> Result<Box<dyn DistanceSolver>, GeodesicError> {
-        let budget = observer.budget();
+        let (mesh, budget) = (mesh.into(), observer.budget());
         budget.check()?;
         let solver: Box<dyn DistanceSolver> = match self {
             Self::FastMarching(options) => Box::new(FastMarching::new(mesh, options, observer)),
-            Self::Heat(options) => Box::new(HeatMethod::new(mesh, options, observer)?),
-            Self::Exact => Box::new(Exact::new(mesh, observer)),
-            Self::Dijkstra => Box::new(Dijkstra::new(mesh, observer)),
-            Self::BreadthFirst => Box::new(BreadthFirst::new(mesh, observer)),
+            Self::Heat(options) => Box::new(HeatMethod::new(&mesh, options, observer)?),
+            Self::Exact => Box::new(Exact::new(&mesh, observer)),
+            Self::Dijkstra => Box::new(Dijkstra::new(&mesh, observer)),
+            Self::BreadthFirst => Box::new(BreadthFirst::new(&mesh, observer)),
         };
         budget.check()?;
         Ok(solver)
-    }
-
-    /// Prepares a surface as [`prepare`](Self::prepare) does. Solvers that do not keep the surface free its memory as
-    /// early as they can.
-    ///
-    /// # Errors
-    /// As [`prepare`](Self::prepare).
-    pub fn prepare_owned(
-        self,
-        mesh: IntrinsicMesh,
-        observer: &dyn Observer,
-    ) -> Result<Box<dyn DistanceSolver>, GeodesicError> {
-        match self {
-            Self::FastMarching(options) => {
-                let budget = observer.budget();
-                budget.check()?;
-                let solver = FastMarching::from_owned(mesh, options, observer);
-                budget.check()?;
-                Ok(Box::new(solver))
-            }
-            _ => self.prepare(&mesh, observer),
-        }
     }
 }
 

@@ -1,5 +1,7 @@
 //! Intrinsic geometry: connectivity and edge lengths, no coordinates.
 
+use std::borrow::Cow;
+
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -27,6 +29,18 @@ pub struct IntrinsicMesh {
     topology: Topology,
     edge_lengths: Vec<f64>,
     links: Vec<Link>,
+}
+
+impl<'a> From<&'a IntrinsicMesh> for Cow<'a, IntrinsicMesh> {
+    fn from(mesh: &'a IntrinsicMesh) -> Self {
+        Cow::Borrowed(mesh)
+    }
+}
+
+impl From<IntrinsicMesh> for Cow<'_, IntrinsicMesh> {
+    fn from(mesh: IntrinsicMesh) -> Self {
+        Cow::Owned(mesh)
+    }
 }
 
 /// Number of edges that one thread measures at a time.

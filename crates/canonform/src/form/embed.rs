@@ -230,9 +230,9 @@ fn run(
     let against = stress.against.filter(|other| measures && *other != options.geodesic);
     let (solver, surface) = match surface {
         Cow::Owned(surface) if against.is_none() && !options.method.needs_surface() => {
-            (options.geodesic.prepare_owned(surface, observer)?, None)
+            (options.geodesic.prepare(surface, observer)?, None)
         }
-        surface => (options.geodesic.prepare(&surface, observer)?, Some(surface)),
+        surface => (options.geodesic.prepare(surface.as_ref(), observer)?, Some(surface)),
     };
     if let Some(known) = known {
         check_distances(solver.as_ref(), known)?;

@@ -154,19 +154,15 @@ enum LocalSolver {
 }
 
 impl FastMarching {
-    /// Prepares a surface. The solver keeps to the budget of the observer.
+    /// Prepares a surface. The solver keeps to the budget of the observer. The memory of a surface that is given away is
+    /// free before that of the solver is needed.
     #[must_use]
-    pub fn new(mesh: &IntrinsicMesh, options: FastMarchingOptions, observer: &dyn Observer) -> Self {
-        Self::of(Cow::Borrowed(mesh), options, observer)
-    }
-
-    /// As [`new`](Self::new), with a surface whose memory is free before that of the solver is needed.
-    #[must_use]
-    pub fn from_owned(mesh: IntrinsicMesh, options: FastMarchingOptions, observer: &dyn Observer) -> Self {
-        Self::of(Cow::Owned(mesh), options, observer)
-    }
-
-    fn of(owned: Cow<'_, IntrinsicMesh>, options: FastMarchingOptions, observer: &dyn Observer) -> Self {
+    pub fn new<'a>(
+        mesh: impl Into<Cow<'a, IntrinsicMesh>>,
+        options: FastMarchingOptions,
+        observer: &dyn Observer,
+    ) -> Self {
+        let owned = mesh.into();
         // Otherwise products of lengths would vanish or overflow.
         let unit = owned.unit();
         let owned = if unit == 1.0 { owned } else { Cow::Owned(owned.in_units_of(unit)) };
