@@ -73,10 +73,10 @@ impl Components {
         Self { count: count as usize, labels }
     }
 
-    /// The component of a vertex that is in one.
+    /// The component of a vertex; `None` if it is in none.
     #[must_use]
-    pub fn of(&self, vertex: VertexId) -> usize {
-        self.labels[vertex.index()].map_or(0, |label| label as usize)
+    pub fn of(&self, vertex: VertexId) -> Option<usize> {
+        self.labels[vertex.index()].map(|label| label as usize)
     }
 
     /// The lowest vertex of every component.

@@ -48,10 +48,12 @@ pub(super) fn largest_piece(rest: TriMesh) -> TriMesh {
     let pieces = components_of_faces(rest.n_vertices(), &rest.faces);
     let mut areas = vec![0.0; pieces.count];
     for f in 0..rest.n_faces() {
-        areas[pieces.of(rest.faces[f][0])] += rest.area_vector(f).norm();
+        if let Some(piece) = pieces.of(rest.faces[f][0]) {
+            areas[piece] += rest.area_vector(f).norm();
+        }
     }
     let largest = (0..pieces.count).max_by(|a, b| areas[*a].total_cmp(&areas[*b]));
-    let faces = rest.faces.iter().filter(|face| Some(pieces.of(face[0])) == largest).copied().collect();
+    let faces = rest.faces.iter().filter(|face| pieces.of(face[0]) == largest).copied().collect();
     TriMesh { positions: rest.positions, faces }.without_unused_vertices()
 }
 

@@ -231,10 +231,12 @@ impl HeatMethod {
         let component = |v| self.components.of(VertexId::from(v));
         let mut shifts = vec![Shift::default(); self.components.count];
         for (v, straight) in out.iter().enumerate().filter(|(_, straight)| straight.is_finite()) {
-            shifts[component(v)].add(potential(v), *straight);
+            if let Some(component) = component(v) {
+                shifts[component].add(potential(v), *straight);
+            }
         }
         for (v, distance) in out.iter_mut().enumerate() {
-            if let Some(shift) = shifts[component(v)].mean() {
+            if let Some(shift) = component(v).and_then(|component| shifts[component].mean()) {
                 *distance = self.unit * distance.min((potential(v) - shift).max(0.0));
             }
         }
@@ -345,8 +347,9 @@ fn extent(
         let sources: Vec<Source> = farthest.iter().map(|v| Source::vertex(*v)).collect();
         graph.solve_into(&sources, f64::INFINITY, &mut distances)?;
         for v in (0..distances.len()).map(VertexId::from) {
-            let best = &mut farthest[components.of(v)];
-            if distances[v.index()] > distances[best.index()] {
+            if let Some(best) = components.of(v).map(|component| &mut farthest[component])
+                && distances[v.index()] > distances[best.index()]
+            {
                 *best = v;
             }
         }

@@ -119,7 +119,7 @@ pub fn repair(
     let mut links = Vec::new();
     if options.components == ComponentPolicy::Bridge && components.count > 1 {
         let positions: Vec<Point3<f64>> = sources.iter().map(|v| scaled[v.index()]).collect();
-        let labels: Vec<u32> = sources.iter().map(|v| components.of(*v) as u32).collect();
+        let labels: Vec<u32> = sources.iter().filter_map(|v| components.labels[v.index()]).collect();
         let topology = Topology::new(positions.len(), repaired.faces.clone());
         links = bridge::links(&positions, &topology, &labels, &budget)?;
         links.iter_mut().for_each(|link| link.length *= unit);
@@ -254,7 +254,9 @@ fn largest(
     let mut areas = vec![0.0; components.count];
     for face in topology.faces() {
         let [a, b, c] = face.map(|v| positions[v.index()]);
-        areas[components.of(face[0])] += (b - a).cross(&(c - a)).norm() / 2.0;
+        if let Some(component) = components.of(face[0]) {
+            areas[component] += (b - a).cross(&(c - a)).norm() / 2.0;
+        }
     }
     let largest = (1..areas.len()).fold(0, |best, i| if areas[i] > areas[best] { i } else { best });
     let total: f64 = areas.iter().sum();

@@ -33,11 +33,14 @@ pub(super) fn cut(mesh: &TriMesh, detour: f64) -> CutSurface {
     }
     // A vertex stays shared where it connects what is otherwise not connected.
     let pieces = components_of_faces(n + origins.len(), &faces);
-    let piece = |v: VertexId| pieces.of(v) as u32;
-    let mut connected = DisjointSets::new(pieces.count.max(1));
-    let copies = origins.iter().enumerate().map(|(i, origin)| (*origin, VertexId::from(n + i)));
-    let separate: Vec<bool> =
-        copies.map(|(origin, copy)| !connected.union(piece(origin), piece(copy))).collect();
+    let mut connected = DisjointSets::new(pieces.count);
+    let copies = origins.iter().enumerate().map(|(i, origin)| [*origin, VertexId::from(n + i)]);
+    let separate: Vec<bool> = copies
+        .map(|ends| match ends.map(|v| pieces.labels[v.index()]) {
+            [Some(a), Some(b)] => !connected.union(a, b),
+            _ => true,
+        })
+        .collect();
     let mut split = with_copies(mesh, &faces, &origins, &separate);
     // And where its parts meet nearby; a vertex that was pulled out of its surface is not far for that reason.
     put_back(&mut split, n);

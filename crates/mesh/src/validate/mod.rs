@@ -119,7 +119,7 @@ pub fn validate(mesh: &TriMesh) -> MeshReport {
     let topology = Topology::new(n_vertices, faces);
     let components = components_of(&topology);
     let mut component_faces = vec![0; components.count];
-    topology.faces().iter().for_each(|f| component_faces[components.of(f[0])] += 1);
+    topology.faces().iter().filter_map(|f| components.of(f[0])).for_each(|c| component_faces[c] += 1);
     let orientation = Orientation::of(&topology);
     let n_used = components.labels.iter().flatten().count();
     let mut report = MeshReport {

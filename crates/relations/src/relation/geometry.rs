@@ -189,13 +189,18 @@ impl MeshGeometry {
             let mut parts = vec![TriMesh::default(); self.n_components()];
             let mut number = Vec::with_capacity(self.n_vertices());
             for (v, p) in self.mesh.positions.iter().enumerate() {
-                let part = &mut parts[self.components.of(VertexId::from(v))];
+                // No face has the number of a vertex without faces.
+                let component = self.components.of(VertexId::from(v));
+                let Some(part) = component.map(|component| &mut parts[component]) else {
+                    number.push(VertexId(u32::MAX));
+                    continue;
+                };
                 number.push(VertexId::from(part.n_vertices()));
                 part.positions.push(self.centre + p.coords * self.size);
             }
             let mut areas = vec![0.0; parts.len()];
             for (face, area) in self.mesh.faces.iter().zip(self.mesh.face_areas()) {
-                let label = self.components.of(face[0]);
+                let Some(label) = self.components.of(face[0]) else { continue };
                 parts[label].faces.push(face.map(|v| number[v.index()]));
                 areas[label] += area;
             }
