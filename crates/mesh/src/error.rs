@@ -3,6 +3,8 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use surface::Topology;
+
 /// Fewest different points that can become a surface.
 pub(crate) const FEWEST_POINTS: usize = 12;
 
@@ -54,6 +56,19 @@ pub enum MeshError {
     /// A mesh or field that cannot be written to a file or repaired: the message says why, where, and what to do.
     #[error("{0}")]
     Unusable(String),
+
+    /// More vertices or faces than a mesh may have.
+    #[error(
+        "the mesh has {n_vertices} vertices and {n_faces} faces, but at most {} and {} are supported; simplify it",
+        Topology::MAX_VERTICES,
+        Topology::MAX_FACES
+    )]
+    TooLarge {
+        /// Its vertices.
+        n_vertices: usize,
+        /// Its faces.
+        n_faces: usize,
+    },
 
     /// A limit on time or memory, or a cancellation.
     #[error(transparent)]

@@ -1,15 +1,15 @@
 //! Faces that are out of range, degenerate or duplicate.
 
 use nalgebra::Point3;
-use surface::VertexId;
+use surface::{Topology, VertexId};
 
 use crate::error::MeshError;
 use crate::tri_mesh::TriMesh;
 
-/// Returns an error if a face refers to a vertex that does not exist or a coordinate is not finite. The
-/// meshes that readers return pass.
+/// Returns an error if the mesh is too large, a face refers to a vertex that does not exist or a coordinate is not finite.
 pub(crate) fn check_input(mesh: &TriMesh) -> Result<(), MeshError> {
     let n_vertices = mesh.n_vertices();
+    check_counts(n_vertices, mesh.n_faces())?;
     for (face, corners) in mesh.faces.iter().enumerate() {
         if let Some(&vertex) = corners.iter().find(|v| v.index() >= n_vertices) {
             return Err(MeshError::Unusable(format!(
@@ -19,6 +19,14 @@ pub(crate) fn check_input(mesh: &TriMesh) -> Result<(), MeshError> {
         }
     }
     check_finite(&mesh.positions)
+}
+
+/// Returns an error if there are more vertices or faces than a mesh may have.
+fn check_counts(n_vertices: usize, n_faces: usize) -> Result<(), MeshError> {
+    match n_vertices > Topology::MAX_VERTICES || n_faces > Topology::MAX_FACES {
+        true => Err(MeshError::TooLarge { n_vertices, n_faces }),
+        false => Ok(()),
+    }
 }
 
 /// Returns an error if a coordinate is not finite.
@@ -71,6 +79,16 @@ fn duplicates(faces: &[[VertexId; 3]]) -> Vec<bool> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn meshes_are_limited_to_numbers_that_leave_two_bits_for_flags() {
+        assert!(check_counts(Topology::MAX_VERTICES, Topology::MAX_FACES).is_ok());
+        for [n_vertices, n_faces] in [[1 << 30, 1], [3, (1 << 30) / 3 + 1], [usize::MAX; 2]] {
+            let error = check_counts(n_vertices, n_faces).unwrap_err();
+            assert!(matches!(error, MeshError::TooLarge { .. }), "{error}");
+        }
+        assert!(3 * Topology::MAX_FACES < 1 << 30);
+    }
 
     #[test]
     fn the_first_of_equal_faces_is_not_a_duplicate() {

@@ -45,6 +45,9 @@ pub struct Topology {
     has_duplicate_faces: bool,
 }
 
+/// Vertices and corners of a mesh are fewer: solvers keep flags beside their numbers, in the upper two of 32 bits.
+const LIMIT: usize = 1 << 30;
+
 /// Number of vertices whose edges one thread collects at a time.
 const BLOCK: usize = 512;
 
@@ -152,12 +155,22 @@ fn has_repeated_apex(around: &[Side]) -> bool {
 }
 
 impl Topology {
+    /// The largest number of faces of a mesh.
+    pub const MAX_FACES: usize = (LIMIT - 1) / 3;
+    /// The largest number of vertices of a mesh.
+    pub const MAX_VERTICES: usize = LIMIT - 1;
+
     /// Builds the connectivity of `faces` over `n_vertices` vertices, in linear time and in parallel.
     ///
     /// # Panics
-    /// If a face has a vertex twice (`mesh::repair` removes such faces) or out of range (readers reject such files).
+    /// If a face has a vertex twice (`mesh::repair` removes such faces) or out of range (readers reject such files), or there
+    /// are more vertices or faces than a mesh may have (`mesh::repair` rejects such meshes).
     #[must_use]
     pub fn new(n_vertices: usize, faces: Vec<[VertexId; 3]>) -> Self {
+        assert!(
+            n_vertices <= Self::MAX_VERTICES && faces.len() <= Self::MAX_FACES,
+            "too many faces or vertices"
+        );
         for [a, b, c] in &faces {
             assert!(a != b && b != c && c != a, "degenerate face {a} {b} {c}: repair the mesh first");
             assert!(a.max(b).max(c).index() < n_vertices, "face {a} {b} {c} is out of range");
