@@ -49,6 +49,12 @@ pub enum Exceeded {
         /// The limit.
         limit: Duration,
     },
+    /// It took more steps than any ordinary input needs.
+    #[error("not finished within {limit} steps; the surface has needles or slivers: remesh it")]
+    Steps {
+        /// The limit.
+        limit: usize,
+    },
     /// It needs more memory than allowed.
     #[error("{needed} bytes of memory are needed and {limit} are allowed")]
     Memory {

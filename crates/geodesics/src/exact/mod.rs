@@ -27,6 +27,8 @@ mod window;
 #[cfg(test)]
 mod tests;
 
+use std::sync::Arc;
+
 use base::{Budget, Exceeded, Observer};
 use surface::IntrinsicMesh;
 
@@ -64,8 +66,8 @@ use propagation::ExactScratch;
 ///   to `1e-12` of its longest edge. Successive faces that have a side without length may hide a path; repair drops
 ///   such faces.
 /// * **Guarantees.** Every distance is the length of a path, up to rounding; symmetric, and at most that along edges.
-///   Infinite exactly where no edge or link leads. The number of windows is limited; no known surface comes near. Those
-///   that wait at once keep to the memory of the budget divided by the number of threads, or to 1 GiB.
+///   Infinite exactly where no edge or link leads. More windows than any known surface needs are an error
+///   ([`Exceeded::Steps`]). Those that wait at once keep to the memory of the budget divided by the number of threads, or to 1 GiB.
 /// * **Cost.** At worst `O(p^2)`, in practice near `O(p^1.2)`, linear on flat parts; about 400 bytes per vertex.
 ///
 /// Mitchell, Mount and Papadimitriou 1987 (`mitchell1987`). Splitting windows at one apex only is from Xin and Wang
@@ -83,10 +85,10 @@ use propagation::ExactScratch;
 /// assert!((solver.distances(VertexId(0))?[7] - 5f64.sqrt()).abs() < 1e-12);
 /// # Ok::<(), canonform_geodesics::GeodesicError>(())
 /// ```
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Exact {
-    surface: PreparedSurface,
-    scratch: Pool<ExactScratch>,
+    surface: Arc<PreparedSurface>,
+    scratch: Arc<Pool<ExactScratch>>,
     budget: Budget,
 }
 
@@ -94,7 +96,14 @@ impl Exact {
     /// Prepares a surface. The solver keeps to the budget of the observer.
     #[must_use]
     pub fn new(mesh: &IntrinsicMesh, observer: &dyn Observer) -> Self {
-        Self { surface: PreparedSurface::new(mesh), scratch: Pool::default(), budget: observer.budget() }
+        let surface = Arc::new(PreparedSurface::new(mesh));
+        Self { surface, scratch: Arc::default(), budget: observer.budget() }
+    }
+
+    /// The same solver with the budget of another observer.
+    #[must_use]
+    pub fn observed_by(&self, observer: &dyn Observer) -> Self {
+        Self { budget: observer.budget(), ..self.clone() }
     }
 }
 

@@ -48,10 +48,22 @@ pub(super) fn run<'a>(
     sources: &[Source],
     limits: &Budget,
 ) -> Result<&'a WindowFront, Exceeded> {
+    let most = BUDGET_PER_FACE.saturating_mul(surface.faces.all.len());
+    run_within(most, surface, scratch, max_distance, sources, limits)
+}
+
+/// The same with at most so many windows.
+fn run_within<'a>(
+    most: usize,
+    surface: &PreparedSurface,
+    scratch: &'a mut ExactScratch,
+    max_distance: f64,
+    sources: &[Source],
+    limits: &Budget,
+) -> Result<&'a WindowFront, Exceeded> {
     let ExactScratch { front, arrived, left, right } = scratch;
     front.reset(surface.n_vertices(), 3 * surface.faces.all.len(), limits);
-    let budget = BUDGET_PER_FACE.saturating_mul(surface.faces.all.len());
-    let mut emission = Emission { surface, front, budget };
+    let mut emission = Emission { surface, front, steps_left: Some(most) };
     sources.iter().for_each(|source| emission.start_at(source));
     let max_distance = max_distance * (1.0 + LIMIT_SLACK);
     let mut propagation = Propagation { emission, left, right, max_distance, meter: limits.meter() };
@@ -62,6 +74,10 @@ pub(super) fn run<'a>(
         }
         result?;
         limits.check()?;
+        // Without the windows beyond, distances may be too long.
+        if propagation.emission.steps_left.is_none() {
+            return Err(Exceeded::Steps { limit: most });
+        }
         if !propagation.relax_edges() {
             break;
         }
@@ -131,7 +147,7 @@ impl Propagation<'_> {
 
     /// Propagates the windows at the base of a corner across its face.
     fn enter_face(&mut self, corner: CornerId, windows: &mut Vec<PathWindow>) {
-        let Emission { surface, front, budget } = &mut self.emission;
+        let Emission { surface, front, steps_left } = &mut self.emission;
         let frame = FaceFrame::new(&surface.faces, corner);
         let [a, b, c] = frame.vertices;
         let ends = [front.distance(a), front.distance(b)];
@@ -139,10 +155,10 @@ impl Propagation<'_> {
             windows.retain(|window| window.least_distance() <= self.max_distance);
         }
         trim(windows, frame.base, ends);
-        if windows.len() > *budget {
+        *steps_left = steps_left.and_then(|left| left.checked_sub(windows.len()));
+        if steps_left.is_none() {
             return;
         }
-        *budget -= windows.len();
 
         let through = |[sin, cos]: [f64; 2]| Arrival::Through { corner, sin, cos };
         front.reach(c, ends[0] + frame.sides[0], through([0.0, 1.0]));
@@ -259,5 +275,37 @@ impl Propagation<'_> {
                 }
             });
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use mesh::shapes;
+    use surface::VertexId;
+
+    use super::*;
+
+    #[test]
+    fn a_run_that_lacks_windows_is_an_error() {
+        let surface = PreparedSurface::new(&shapes::torus(12, 8, 2.0, 0.7).intrinsic());
+        let source = [Source::vertex(VertexId(5))];
+        let run = |most| {
+            let mut scratch = ExactScratch::default();
+            let limits = Budget::unlimited();
+            let front = run_within(most, &surface, &mut scratch, f64::INFINITY, &source, &limits)?;
+            Ok::<Vec<f64>, Exceeded>((0..96).map(|v| front.distance(v)).collect())
+        };
+        let whole = run(usize::MAX).unwrap();
+        let mut n_errors = 0;
+        for most in 0..2_000 {
+            match run(most) {
+                Ok(found) => assert_eq!(found, whole),
+                Err(error) => {
+                    assert_eq!(error, Exceeded::Steps { limit: most });
+                    n_errors += 1;
+                }
+            }
+        }
+        assert!((100..2_000).contains(&n_errors), "{n_errors}");
     }
 }

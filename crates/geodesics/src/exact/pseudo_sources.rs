@@ -19,8 +19,8 @@ const ON_EDGE: f64 = 1e-12;
 pub(super) struct Emission<'a> {
     pub(super) surface: &'a PreparedSurface,
     pub(super) front: &'a mut WindowFront,
-    /// How many windows may still be emitted or propagated.
-    pub(super) budget: usize,
+    /// How many windows may still be emitted or propagated; `None` once there were more.
+    pub(super) steps_left: Option<usize>,
 }
 
 impl Emission<'_> {
@@ -153,10 +153,13 @@ impl Emission<'_> {
 
     /// Delivers a window on the base of a corner, given from inside its face, to the faces beyond.
     fn emit_over_base(&mut self, corner: CornerId, frame: &FaceFrame, window: PathWindow) {
-        if window.end <= window.start || self.budget == 0 {
+        if window.end <= window.start {
             return;
         }
-        self.budget -= 1;
+        self.steps_left = self.steps_left.and_then(|left| left.checked_sub(1));
+        if self.steps_left.is_none() {
+            return;
+        }
         let [a, b, _] = frame.vertices;
         let beyond = self.surface.face(corner).beyond[corner.slot()];
         self.surface.faces.for_each_facing(beyond, |facing| {

@@ -13,7 +13,12 @@ use crate::{Dijkstra, DistanceSolver, Source, SurfacePoint};
 fn assert_sane(mesh: &IntrinsicMesh) {
     let (solver, dijkstra) = (Exact::new(mesh, &()), Dijkstra::new(mesh, &()));
     for v in (0..mesh.n_vertices()).map(VertexId::from) {
-        for (found, along_edges) in solver.distances(v).unwrap().iter().zip(dijkstra.distances(v).unwrap()) {
+        let found = match solver.distances(v) {
+            // Lengths of no surface in space may need any number of windows.
+            Err(base::Exceeded::Steps { .. }) => continue,
+            found => found.unwrap(),
+        };
+        for (found, along_edges) in found.iter().zip(dijkstra.distances(v).unwrap()) {
             assert!(*found >= 0.0, "{found}");
             assert!(*found <= along_edges * (1.0 + 1e-12), "{found} {along_edges}");
             assert_eq!(found.is_finite(), along_edges.is_finite());
