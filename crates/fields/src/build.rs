@@ -1,6 +1,6 @@
 //! Building a field.
 
-use std::sync::OnceLock;
+use std::sync::Mutex;
 
 use geodesics::{DistanceSolver, FirstSample, Method, Observed, Sampling};
 use linalg::{LandmarkDistances, Matrix};
@@ -83,7 +83,7 @@ impl DistanceField {
             landmarks: distances.landmarks().iter().map(|&v| VertexId::from(v)).collect(),
             surface: mesh.clone(),
             map: VertexMap::new(&surface.repaired.input_to_repaired, mesh.n_vertices()),
-            exact: OnceLock::new(),
+            exact: Mutex::default(),
         })
     }
 }

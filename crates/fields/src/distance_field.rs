@@ -1,8 +1,9 @@
 //! What a distance field holds.
 
-use std::sync::OnceLock;
+use std::sync::{Mutex, PoisonError};
 
-use geodesics::{DistanceSolver, GeodesicError, Method};
+use base::{Exceeded, Observer};
+use geodesics::{Exact, GeodesicError, Method};
 use mesh::RepairOptions;
 use nmds::LandmarkMetric;
 use serde::{Deserialize, Serialize};
@@ -56,7 +57,7 @@ pub struct DistanceField {
     pub(crate) surface: IntrinsicMesh,
     pub(crate) map: VertexMap,
     /// Prepared when the first pair is finished.
-    pub(crate) exact: OnceLock<Box<dyn DistanceSolver>>,
+    pub(crate) exact: Mutex<Option<Exact>>,
 }
 
 /// How the columns of a field were measured.
@@ -189,15 +190,13 @@ impl DistanceField {
         }
     }
 
-    /// The exact solver of the surface.
-    pub(crate) fn exact(&self) -> Result<&dyn DistanceSolver, FieldError> {
-        if self.exact.get().is_none() {
-            // Another thread may have been faster.
-            let _ = self.exact.set(Method::Exact.prepare(&self.surface, &())?);
-        }
-        match self.exact.get() {
-            Some(solver) => Ok(solver.as_ref()),
-            None => unreachable!("it has just been set"),
-        }
+    /// The exact solver of the surface, with the budget of a query.
+    pub(crate) fn exact(&self, observer: &dyn Observer) -> Result<Exact, Exceeded> {
+        // Other queries wait while one prepares it.
+        let mut exact = self.exact.lock().unwrap_or_else(PoisonError::into_inner);
+        observer.budget().check()?;
+        let solver = exact.get_or_insert_with(|| Exact::new(&self.surface, observer)).observed_by(observer);
+        observer.budget().check()?;
+        Ok(solver)
     }
 }

@@ -15,7 +15,7 @@
 //! memory, and then every number that others refer to.
 
 use std::path::Path;
-use std::sync::OnceLock;
+use std::sync::Mutex;
 
 use base::files::FileError;
 use nmds::{BoundsParts, ColumnError, FactorParts, LandmarkBounds, LandmarkMetric, SqDistanceFactors};
@@ -309,7 +309,7 @@ impl Parts<'_> {
             landmarks,
             surface: IntrinsicMesh::new(topology, edges).with_links(links),
             map: VertexMap { n_input, to_repaired: (n_mapped > 0).then_some(map) },
-            exact: OnceLock::new(),
+            exact: Mutex::default(),
         })
     }
 

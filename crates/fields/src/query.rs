@@ -1,6 +1,6 @@
 //! Questions to a field.
 
-use geodesics::Source;
+use geodesics::{DistanceSolver, Source};
 use nmds::PairEstimate;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -248,9 +248,8 @@ impl DistanceField {
         distances: &mut Vec<f64>,
         observer: &dyn Observer,
     ) -> Result<(), FieldError> {
-        observer.budget().check()?;
         distances.resize(self.surface.n_vertices(), f64::INFINITY);
         let limit = radius * (1.0 + ROUNDING);
-        Ok(self.exact()?.solve_into(&[Source::vertex(source)], limit, distances)?)
+        Ok(self.exact(observer)?.solve_into(&[Source::vertex(source)], limit, distances)?)
     }
 }

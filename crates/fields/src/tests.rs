@@ -343,3 +343,20 @@ fn impossible_options_are_refused() {
     let pair = all.pair(VertexId(0), VertexId(40)).unwrap();
     assert!(pair.upper - pair.lower < 1e-3 * pair.distance);
 }
+
+#[test]
+fn every_query_keeps_to_a_budget_of_its_own() {
+    let field = built(&shapes::torus(40, 20, 2.0, 0.7), &FieldOptions { landmarks: 4, ..Default::default() });
+    let source = VertexId(3);
+    // The first query prepares the exact solver, which the next ones share.
+    let small = base::Budget::unlimited().with_memory(1 << 10);
+    for _ in 0..2 {
+        let over = field.row(source, Finish::Beyond(0.0), &small).unwrap_err();
+        assert!(matches!(over, FieldError::Exceeded(base::Exceeded::Memory { .. })), "{over}");
+        assert!(field.row(source, Finish::Beyond(0.0), &()).is_ok());
+    }
+    let late = base::Budget::unlimited();
+    late.cancel();
+    let over = field.nearest(source, 3, &late).unwrap_err();
+    assert!(matches!(over, FieldError::Exceeded(base::Exceeded::Cancelled)), "{over}");
+}
