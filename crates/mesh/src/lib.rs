@@ -62,7 +62,7 @@ pub use orientation::orient_consistently;
 pub use points::{PointsReport, TriangulatedPoints, triangulate_points};
 pub use refine::{Refined, refine};
 pub use regions::{RegionShape, SmoothRegion, SmoothRegions};
-pub use repair::{ComponentPolicy, Orient, RepairOptions, RepairReport, Repaired, Weld, repair};
+pub use repair::{ComponentPolicy, FacePart, Orient, RepairOptions, RepairReport, Repaired, Weld, repair};
 pub use shortcuts::{CutSurface, Shortcut, ShortcutKind, cut_shortcuts};
 pub use tri_mesh::TriMesh;
 pub use validate::{MeshReport, validate};

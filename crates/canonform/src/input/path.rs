@@ -33,17 +33,17 @@ impl SurfacePath {
     /// # Errors
     /// [`Error::NoPath`], and [`Error::Geodesic`] if the point belongs to another surface.
     pub fn trace(surface: &Surface, tracer: &PathTracer, target: SurfacePoint) -> Result<Self, Error> {
-        let path = tracer.path_to(target).map_err(|fault| match fault {
-            GeodesicError::NoWay { point } => {
-                Error::NoPath { target: surface.input_point(point).to_string() }
+        let path = match tracer.path_to(target) {
+            Err(GeodesicError::NoWay { point }) => {
+                return Err(Error::NoPath { target: surface.input_point(point)?.to_string() });
             }
-            fault => fault.into(),
-        })?;
+            path => path?,
+        };
         let mut points: Vec<PathPoint> = Vec::with_capacity(path.points.len());
         for point in path.points {
             let position = surface.position(point);
             let step = points.last().map_or(0.0, |last| last.distance + (position - last.position).norm());
-            points.push(PathPoint { at: surface.input_point(point), position, distance: step });
+            points.push(PathPoint { at: surface.input_point(point)?, position, distance: step });
         }
         Ok(Self { points, length: path.length })
     }

@@ -1,10 +1,20 @@
 //! Points of the input on the repaired surface, and back.
 
-use ::surface::{EdgeId, FaceId, SurfacePoint, VertexId};
-use nalgebra::Point3;
+use ::surface::{FaceId, SurfacePoint, VertexId};
+use nalgebra::{Point3, Vector3};
 
 use super::point::{InputPoint, PointError};
 use super::surface::Surface;
+
+/// Barycentric coordinates below this are rounding: the point lies on the edge.
+const ON_EDGE: f64 = 1e-12;
+
+/// Barycentric coordinates of a point that is in the face up to rounding.
+fn within(weights: [f64; 3]) -> [f64; 3] {
+    let weights = weights.map(|weight| if weight > ON_EDGE { weight } else { 0.0 });
+    let sum: f64 = weights.iter().sum();
+    weights.map(|weight| weight / sum)
+}
 
 impl Surface {
     /// The point of the repaired surface that a point of the input became.
@@ -19,11 +29,16 @@ impl Surface {
             InputPoint::Edge { ends, t } => {
                 let is_edge = |f: &&[VertexId; 3]| ends.iter().all(|end| f.contains(end));
                 let [start, end] = [self.repaired_vertex(ends[0])?, self.repaired_vertex(ends[1])?];
-                match self.intrinsic().topology().edge_between(start, end) {
-                    Some(edge) => Ok(SurfacePoint::Edge { edge, t: if start < end { t } else { 1.0 - t } }),
-                    None if self.input_faces.iter().any(|f| is_edge(&f)) => Err(dropped),
-                    None => Err(self.no_such(*point)),
+                if let Some(edge) = self.intrinsic().topology().edge_between(start, end) {
+                    return Ok(SurfacePoint::Edge { edge, t: if start < end { t } else { 1.0 - t } });
                 }
+                let face = self.input_faces.iter().find(is_edge).ok_or_else(|| self.no_such(*point))?;
+                let weight = |v: &VertexId| match ends.iter().position(|end| end == v) {
+                    Some(0) => 1.0 - t,
+                    Some(_) => t,
+                    None => 0.0,
+                };
+                self.in_face(*face, face.each_ref().map(weight)).ok_or(dropped)
             }
             InputPoint::Face { face, weights } => {
                 let vertices = self.input_faces.get(face.index()).ok_or_else(|| self.no_such(*point))?;
@@ -34,44 +49,97 @@ impl Surface {
 
     /// A point of the face between three input vertices, unless the repair dropped the face.
     fn in_face(&self, vertices: [VertexId; 3], weights: [f64; 3]) -> Option<SurfacePoint> {
+        let [a, b, c] = vertices.map(|v| self.repaired_vertex(v).ok());
+        let (corners, sum) = ([a?, b?, c?], weights.iter().sum::<f64>());
+        let weights = weights.map(|weight| weight / sum);
+        self.between(corners, weights).or_else(|| {
+            // The part of a face that was split in which the point lies deepest.
+            let at = corners.iter().zip(weights).map(|(v, w)| self.mesh().positions[v.index()].coords * w);
+            let point = Point3::from(at.sum::<Vector3<f64>>());
+            let is_whole = |face: &[VertexId; 3]| face.iter().all(|v| corners.contains(v));
+            let parts = self.repaired.parts.iter().filter(|[_, whole]| is_whole(whole));
+            let weighted = parts.map(|[part, _]| (*part, self.weights(*part, point)));
+            let depth = |weights: &[f64; 3]| weights.iter().copied().fold(f64::INFINITY, f64::min);
+            let (part, weights) = weighted.max_by(|a, b| depth(&a.1).total_cmp(&depth(&b.1)))?;
+            self.between(part, within(weights))
+        })
+    }
+
+    /// The point with these weights of the corners of a face, if there is one between these vertices.
+    fn between(&self, corners: [VertexId; 3], weights: [f64; 3]) -> Option<SurfacePoint> {
         let topology = self.intrinsic().topology();
-        let corners = vertices.map(|v| self.repaired_vertex(v).ok());
-        let corner = topology.vertex_corners(corners[0]?).iter().find(|corner| {
-            let face = topology.faces()[corner.face().index()];
-            corners.iter().all(|v| v.is_some_and(|v| face.contains(&v)))
-        })?;
-        let sum: f64 = weights.iter().sum();
-        let weight = |vertex: VertexId| {
-            corners.iter().zip(weights).find(|(v, _)| **v == Some(vertex)).map_or(0.0, |(_, w)| w / sum)
-        };
         // The repair may have welded two corners, or reversed the face.
-        let face = topology.faces()[corner.face().index()];
-        let is_whole = face.iter().all(|v| corners.contains(&Some(*v)));
-        is_whole.then(|| SurfacePoint::Face { face: corner.face(), barycentric: face.map(weight) })
+        let is_same = |face: &[VertexId; 3]| {
+            corners.iter().all(|v| face.contains(v)) && face.iter().all(|v| corners.contains(v))
+        };
+        let around = topology.vertex_corners(corners[0]).iter().map(|corner| corner.face());
+        let face = around.into_iter().find(|face| is_same(&topology.faces()[face.index()]))?;
+        let weight = |v: VertexId| corners.iter().position(|corner| *corner == v).map_or(0.0, |i| weights[i]);
+        Some(SurfacePoint::Face { face, barycentric: topology.faces()[face.index()].map(weight) })
+    }
+
+    /// The barycentric coordinates of a point in the plane of a face, negative outside.
+    fn weights(&self, corners: [VertexId; 3], point: Point3<f64>) -> [f64; 3] {
+        let [a, b, c] = corners.map(|v| self.mesh().positions[v.index()]);
+        let unit = self.mesh().unit();
+        let area = |p: Point3<f64>, q: Point3<f64>, r: Point3<f64>| ((q - p) / unit).cross(&((r - p) / unit));
+        let whole = area(a, b, c);
+        [area(point, b, c), area(a, point, c), area(a, b, point)]
+            .map(|part| part.dot(&whole) / whole.norm_squared())
     }
 
     /// A point of the repaired surface, in the numbers of the input.
-    pub fn input_point(&self, point: SurfacePoint) -> InputPoint {
-        let ends =
-            |edge: EdgeId| self.intrinsic().topology().edges()[edge.index()].map(|v| self.input_vertex(v));
-        match point {
-            SurfacePoint::Vertex(vertex) => InputPoint::Vertex(self.input_vertex(vertex)),
-            SurfacePoint::Edge { edge, t } => InputPoint::Edge { ends: ends(edge), t },
-            SurfacePoint::Face { face, barycentric } => {
-                let vertices = self.intrinsic().topology().faces()[face.index()];
-                let to_repaired = |v: VertexId| self.repaired.input_to_repaired[v.index()];
-                let slot = |v: VertexId| vertices.iter().position(|w| to_repaired(v) == Some(*w));
-                let faces = self.input_faces.iter().map(|input| input.map(slot)).enumerate();
-                let mut found = faces.filter_map(|(i, [a, b, c])| Some((i, [a?, b?, c?])));
-                match found.find(|(_, [a, b, c])| a != b && b != c && c != a) {
-                    Some((i, slots)) => InputPoint::Face {
-                        face: FaceId::from(i),
-                        weights: slots.map(|slot| barycentric[slot]),
-                    },
-                    None => unreachable!("the repair adds no faces"),
+    ///
+    /// # Errors
+    /// [`PointError::OtherFaces`] on edges and faces of a surface that was [prepared](Self::for_description) or simplified.
+    pub fn input_point(&self, point: SurfacePoint) -> Result<InputPoint, PointError> {
+        let topology = self.intrinsic().topology();
+        let other = PointError::OtherFaces { point };
+        let whole = |face: FaceId| {
+            let mut part = topology.faces()[face.index()];
+            part.sort_unstable();
+            let parts = &self.repaired.parts;
+            Some(parts[parts.binary_search_by_key(&part, |[part, _]| *part).ok()?][1])
+        };
+        let (face, barycentric) = match point {
+            SurfacePoint::Vertex(vertex) => return Ok(InputPoint::Vertex(self.input_vertex(vertex))),
+            _ if self.is_prepared() => return Err(other),
+            SurfacePoint::Edge { edge, t } => {
+                let ends = topology.edges()[edge.index()];
+                let faces = topology.edge_corners(edge).iter().map(|corner| corner.face());
+                // It may be new: between parts of one face, or between two faces that were split along it.
+                let is_old =
+                    |face: FaceId| whole(face).is_none_or(|f| ends.iter().all(|end| f.contains(end)));
+                if faces.clone().any(is_old) {
+                    return Ok(InputPoint::Edge { ends: ends.map(|v| self.input_vertex(v)), t });
                 }
+                let face = faces.clone().next().ok_or(other)?;
+                let weight = |v: VertexId| {
+                    if v == ends[0] {
+                        1.0 - t
+                    } else if v == ends[1] {
+                        t
+                    } else {
+                        0.0
+                    }
+                };
+                (face, topology.faces()[face.index()].map(weight))
             }
-        }
+            SurfacePoint::Face { face, barycentric } => (face, barycentric),
+        };
+        let (vertices, barycentric) = match whole(face) {
+            None => (topology.faces()[face.index()], barycentric),
+            Some(corners) => {
+                let point = self.position(SurfacePoint::Face { face, barycentric });
+                (corners, within(self.weights(corners, point)))
+            }
+        };
+        let to_repaired = |v: VertexId| self.repaired.input_to_repaired[v.index()];
+        let slot = |v: VertexId| vertices.iter().position(|w| to_repaired(v) == Some(*w));
+        let faces = self.input_faces.iter().map(|input| input.map(slot)).enumerate();
+        let mut found = faces.filter_map(|(i, [a, b, c])| Some((i, [a?, b?, c?])));
+        let (i, slots) = found.find(|(_, [a, b, c])| a != b && b != c && c != a).ok_or(other)?;
+        Ok(InputPoint::Face { face: FaceId::from(i), weights: slots.map(|slot| barycentric[slot]) })
     }
 
     /// The position of a point of the repaired surface.
@@ -132,7 +200,7 @@ mod tests {
                 let found = surface.locate(&point(&text)).unwrap();
                 assert!((surface.position(found).coords - expected).norm() < 1e-14, "{text}");
                 // Welded twins have one name, so compare positions.
-                let again = surface.locate(&surface.input_point(found)).unwrap();
+                let again = surface.locate(&surface.input_point(found).unwrap()).unwrap();
                 assert!((surface.position(again).coords - expected).norm() < 1e-14, "{text}");
             }
         }

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use ::surface::{FaceId, VertexId};
+use ::surface::{FaceId, SurfacePoint, VertexId};
 use serde::{Serialize, Serializer};
 
 /// A point of the input mesh, written as
@@ -69,6 +69,14 @@ pub enum PointError {
     Dropped {
         /// The point.
         point: InputPoint,
+    },
+    /// A point of a surface whose faces are not those of the input, since it was prepared for a description or simplified.
+    #[error(
+        "{point} is on no face of the input: the surface has other faces; measure on the repaired surface"
+    )]
+    OtherFaces {
+        /// The point.
+        point: SurfacePoint,
     },
 }
 

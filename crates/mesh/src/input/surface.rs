@@ -136,7 +136,8 @@ impl Surface {
         let to_input = |vertex: &Option<VertexId>| vertex.map(|v| vertex_of[v.index()]);
         let input_to_repaired = self.repaired.input_to_repaired.iter().map(to_input).collect();
         let report = self.repaired.report.clone();
-        let repaired = Repaired { mesh: found.mesh, intrinsic, input_to_repaired, report };
+        let parts = Vec::new();
+        let repaired = Repaired { mesh: found.mesh, intrinsic, input_to_repaired, parts, report };
         let open_boundary = Some(self.longest_boundary());
         Ok(Some((Self { repaired, input_vertex, open_boundary, ..self.clone() }, vertex_of)))
     }
@@ -151,6 +152,11 @@ impl Surface {
         let (vertices, lengths): (Vec<_>, Vec<f64>) = boundaries(self.intrinsic()).into_iter().unzip();
         // The sum of nothing would be minus zero.
         (vertices.concat(), lengths.iter().fold(0.0, |sum, length| sum + length))
+    }
+
+    /// Whether this is the copy of a surface with other faces.
+    pub(super) fn is_prepared(&self) -> bool {
+        self.open_boundary.is_some()
     }
 
     /// The shortcuts that were cut to [prepare](Self::for_description) the surface; none before.

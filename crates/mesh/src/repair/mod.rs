@@ -4,10 +4,13 @@ mod box_tree;
 mod bridge;
 mod options;
 mod report;
+mod t_junctions;
 mod weld;
 
 pub use options::{ComponentPolicy, Orient, RepairOptions, Weld};
 pub use report::RepairReport;
+
+use std::collections::HashMap;
 
 use base::{Budget, Exceeded, Observer};
 use nalgebra::Point3;
@@ -29,9 +32,15 @@ pub struct Repaired {
     pub intrinsic: IntrinsicMesh,
     /// For each input vertex, its vertex in `mesh`, which merged vertices share; `None` if it was dropped.
     pub input_to_repaired: Vec<Option<VertexId>>,
+    /// The faces that were split at T-junctions: every part, and the face of the input that it is a part of, by their
+    /// vertices in `mesh`.
+    pub parts: Vec<FacePart>,
     /// All changes.
     pub report: RepairReport,
 }
+
+/// A part of a face that was split, and the face.
+pub type FacePart = [[VertexId; 3]; 2];
 
 /// Supported sizes of a mesh, in mesh units: the squares of its edges must be neither zero nor infinite.
 const SIZES: std::ops::RangeInclusive<f64> = 1e-151..=1e152;
@@ -86,6 +95,11 @@ pub fn repair(
     };
     let mut merged = DisjointSets::new(mesh.n_vertices());
     let surface = welded(mesh, &scaled, unit, options.weld, &mut merged, &mut report, &budget)?;
+    let mut parents = HashMap::new();
+    let surface = match options.weld {
+        Weld::None => surface,
+        _ => without_t_junctions(mesh, &scaled, surface, &mut parents, &mut report, &budget)?,
+    };
     if surface.topology().n_faces() == 0 {
         let degenerate = report.degenerate_faces + report.zero_length_faces;
         return Err(MeshError::Unusable(format!(
@@ -112,6 +126,7 @@ pub fn repair(
         let [a, b, c] = face.map(|v| input_to_repaired[v.index()]);
         Some([a?, b?, c?])
     });
+    let parts = parts(faces, &parents, &input_to_repaired);
     let positions = sources.iter().map(|v| mesh.positions[v.index()]).collect();
     let mut repaired = TriMesh { faces: left.collect(), positions };
     report.dropped_component_faces = faces.len() - repaired.n_faces();
@@ -133,7 +148,51 @@ pub fn repair(
     (report.output_vertices, report.output_faces) = (repaired.n_vertices(), repaired.n_faces());
     let is_unchanged = repaired.n_vertices() == mesh.n_vertices() && report.flipped_faces == 0;
     let intrinsic = if is_unchanged { surface } else { repaired.intrinsic() }.with_links(links);
-    Ok(Repaired { mesh: repaired, intrinsic, input_to_repaired, report })
+    Ok(Repaired { mesh: repaired, intrinsic, input_to_repaired, parts, report })
+}
+
+/// The surface with faces split at the vertices that lie on their boundary edges.
+fn without_t_junctions(
+    mesh: &TriMesh,
+    scaled: &[Point3<f64>],
+    mut surface: IntrinsicMesh,
+    parents: &mut HashMap<[VertexId; 3], [VertexId; 3]>,
+    report: &mut RepairReport,
+    budget: &Budget,
+) -> Result<IntrinsicMesh, Exceeded> {
+    let mut faces = Vec::new();
+    for _ in 0..MAX_PASSES {
+        budget.check()?;
+        let n_joined = t_junctions::close(scaled, surface.topology(), &mut faces, parents);
+        if n_joined == 0 {
+            break;
+        }
+        report.t_junctions += n_joined;
+        surface = without_duplicates(mesh, std::mem::take(&mut faces), report);
+    }
+    Ok(surface)
+}
+
+/// The parts among faces and the faces that they are parts of, by the vertices of the repaired mesh.
+fn parts(
+    faces: &[[VertexId; 3]],
+    parents: &HashMap<[VertexId; 3], [VertexId; 3]>,
+    number: &[Option<VertexId>],
+) -> Vec<FacePart> {
+    if parents.is_empty() {
+        return Vec::new();
+    }
+    let renumbered = |face: [VertexId; 3]| {
+        let [a, b, c] = face.map(|v| number[v.index()]);
+        Some([a?, b?, c?])
+    };
+    let part = |face: &[VertexId; 3]| {
+        let parent = parents.get(&t_junctions::sorted(*face))?;
+        Some([t_junctions::sorted(renumbered(*face)?), renumbered(*parent)?])
+    };
+    let mut found: Vec<FacePart> = faces.iter().filter_map(part).collect();
+    found.sort_unstable();
+    found
 }
 
 /// The surface of the faces, without degenerate and duplicate ones, after welding.

@@ -38,6 +38,8 @@ pub struct RepairReport {
     pub weld_tolerance: f64,
     /// Vertices merged into an earlier one at the other end of an edge of length zero.
     pub collapsed_vertices: usize,
+    /// Vertices on an edge of a face beside them, which was split there.
+    pub t_junctions: usize,
     /// Vertices dropped because no remaining face uses them.
     pub unreferenced_vertices: usize,
     /// Faces flipped.
@@ -82,6 +84,7 @@ impl RepairReport {
             (self.welded_vertices, VERTICES, "merged with another in the same position"),
             (self.collapsed_vertices, VERTICES, "merged across an edge of length zero"),
             (self.zero_length_faces, FACES, "with two corners in the same position removed"),
+            (self.t_junctions, VERTICES, "on an edge joined to its face (T-junctions)"),
             (self.unreferenced_vertices, VERTICES, "without a face dropped"),
             (self.flipped_faces, FACES, "flipped"),
         ];

@@ -88,6 +88,14 @@ fn sheets(topology: &Topology, ring: &mut OneRing, v: VertexId) -> Vec<Vec<Corne
     }
     // Fans with a common edge of three faces are one part. Two surfaces that were welded along an edge have four there.
     let mut sets = ring.joined(topology, |edge| is_weld(topology, edge));
+    // Parts that end there at a boundary are the two sides of a crack.
+    let is_cut = |corner: CornerId| topology.edge_corners(topology.opposite_edge(corner)).len() == 1;
+    let mut crack: Option<u32> = None;
+    for (i, fan) in (0..).zip(ring.fans()) {
+        if !fan.is_closed && fan.ends().into_iter().any(is_cut) {
+            sets.union(*crack.get_or_insert(i), i);
+        }
+    }
     let mut sheets: Vec<(u32, Vec<CornerId>)> = Vec::new();
     for (i, fan) in (0..).zip(ring.fans()) {
         let set = sets.find(i);

@@ -9,3 +9,4 @@ mod foreign;
 mod hubs;
 mod real_data;
 mod repair;
+mod t_junctions;

@@ -1,0 +1,115 @@
+//! Closing T-junctions: vertices that lie on an edge of the face beside them.
+
+use std::collections::HashMap;
+
+use nalgebra::Point3;
+use surface::{CornerId, EdgeId, Rows, Topology, VertexId};
+
+use super::weld::SEAM_TOLERANCE;
+
+/// Rounding of coordinates, as a share of the farthest: many programs write six digits.
+const ROUNDING: f64 = 1e-5;
+
+/// Vertices of more boundary edges are left alone: comparing all of them would take quadratic time.
+const MOST_BESIDE: usize = 64;
+
+/// Splits faces at the vertices that lie on one of their boundary edges, up to rounding, and appends the parts of each to
+/// the faces; returns the number of vertices joined to an edge.
+///
+/// Such an edge and the edges beside it leave a vertex in the same direction. The chain of boundary edges from there is
+/// followed as long as it stays on the edge, so that nothing is joined to an edge that it merely touches. Where the chain has
+/// gaps itself, later passes go on. `parents` has for every part, with its vertices in order, the face that it was first a
+/// part of.
+pub(super) fn close(
+    positions: &[Point3<f64>],
+    topology: &Topology,
+    faces: &mut Vec<[VertexId; 3]>,
+    parents: &mut HashMap<[VertexId; 3], [VertexId; 3]>,
+) -> usize {
+    let edges: Vec<EdgeId> = topology.boundary_edges().collect();
+    if edges.is_empty() {
+        return 0;
+    }
+    let ends = edges.iter().map(|edge| topology.edges()[edge.index()]);
+    let both = ends.flat_map(|[a, b]| [(a.index(), b), (b.index(), a)]);
+    let boundary = Boundary { positions, beside: Rows::collect(positions.len(), both) };
+    faces.clear();
+    faces.extend(topology.faces());
+    let mut n_joined = 0;
+    for edge in edges {
+        let corner = topology.edge_corners(edge)[0];
+        let face = corner.face().index();
+        // One edge of a face at a time.
+        if faces[face] != topology.faces()[face] {
+            continue;
+        }
+        let inner = boundary.vertices_on(topology, corner);
+        n_joined += inner.len();
+        if !inner.is_empty() {
+            let (apex, [start, end]) = (topology.corner_vertex(corner), topology.edge_ends(corner));
+            let parent = parents.get(&sorted(faces[face])).copied().unwrap_or(faces[face]);
+            let chain = [&[start], &inner[..], &[end]].concat();
+            let mut parts = chain.windows(2).map(|pair| [apex, pair[0], pair[1]]);
+            faces[face] = parts.next().unwrap_or(faces[face]);
+            parents.insert(sorted(faces[face]), parent);
+            for part in parts {
+                parents.insert(sorted(part), parent);
+                faces.push(part);
+            }
+        }
+    }
+    n_joined
+}
+
+pub(super) fn sorted(mut face: [VertexId; 3]) -> [VertexId; 3] {
+    face.sort_unstable();
+    face
+}
+
+struct Boundary<'a> {
+    positions: &'a [Point3<f64>],
+    /// The other ends of the boundary edges at every vertex.
+    beside: Rows<VertexId>,
+}
+
+impl Boundary<'_> {
+    /// The vertices inside the edge opposite a corner that chains of boundary edges from its ends lead to, in order.
+    fn vertices_on(&self, topology: &Topology, corner: CornerId) -> Vec<VertexId> {
+        let at = |v: VertexId| self.positions[v.index()];
+        let (apex, [start, end]) = (topology.corner_vertex(corner), topology.edge_ends(corner));
+        let sides = [at(end) - at(start), at(apex) - at(start), at(apex) - at(end)];
+        let shortest = sides.iter().map(|side| side.norm()).fold(f64::INFINITY, f64::min);
+        let farthest = [start, end, apex].map(|v| at(v).coords.amax()).into_iter().fold(0.0, f64::max);
+        let tolerance = f64::min(ROUNDING * farthest, SEAM_TOLERANCE * shortest);
+        let length = sides[0].norm();
+        let along = sides[0] / length;
+        // The part of a face without area could not be told from one beside it.
+        if sides[1].cross(&along).norm() <= tolerance {
+            return Vec::new();
+        }
+        // How far along the edge a vertex on it is.
+        let place = |v: VertexId| {
+            let from_start = at(v) - at(start);
+            let along_edge = from_start.dot(&along);
+            let is_on = (from_start - along * along_edge).norm() <= tolerance;
+            (is_on && along_edge > tolerance && along_edge < length - tolerance).then_some(along_edge)
+        };
+        let mut found: Vec<(f64, VertexId)> = Vec::new();
+        for (first, sign) in [(start, 1.0), (end, -1.0)] {
+            let (mut here, mut reached) = (first, if sign > 0.0 { 0.0 } else { length });
+            loop {
+                let beside = self.beside.row(here.index());
+                let few = &beside[..if beside.len() <= MOST_BESIDE { beside.len() } else { 0 }];
+                let onward = few.iter().filter_map(|v| Some((place(*v)?, *v)));
+                let onward = onward.filter(|(to, _)| sign * (to - reached) > tolerance);
+                let Some(next) = onward.min_by(|a, b| (sign * a.0).total_cmp(&(sign * b.0))) else { break };
+                (reached, here) = next;
+                found.push(next);
+            }
+        }
+        found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        // Coincident vertices that were not welded are not joined either.
+        found.dedup_by(|next, before| next.0 - before.0 <= tolerance);
+        found.into_iter().map(|(_, v)| v).collect()
+    }
+}
