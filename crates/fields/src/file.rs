@@ -40,7 +40,7 @@ const CUT: FieldFault = FieldFault::Damaged("it has been cut");
 const DROPPED: u32 = u32::MAX;
 
 /// The sizes of all parts.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct Counts {
     text: usize,
     /// Vertices of the input.
@@ -61,51 +61,21 @@ struct Counts {
 impl Counts {
     const N: usize = 11;
 
-    fn in_order(&self) -> [usize; Self::N] {
-        let Self { text, n_input, n_vertices, n_faces, n_edges, n_links, n_landmarks, .. } = *self;
-        let Self { n_exact, rank, n_positive, n_mapped, .. } = *self;
+    /// In the order of the file.
+    fn in_order(&mut self) -> [&mut usize; Self::N] {
         [
-            text,
-            n_input,
-            n_vertices,
-            n_faces,
-            n_edges,
-            n_links,
-            n_landmarks,
-            n_exact,
-            rank,
-            n_positive,
-            n_mapped,
+            &mut self.text,
+            &mut self.n_input,
+            &mut self.n_vertices,
+            &mut self.n_faces,
+            &mut self.n_edges,
+            &mut self.n_links,
+            &mut self.n_landmarks,
+            &mut self.n_exact,
+            &mut self.rank,
+            &mut self.n_positive,
+            &mut self.n_mapped,
         ]
-    }
-
-    fn from_order(counts: [usize; Self::N]) -> Self {
-        let [
-            text,
-            n_input,
-            n_vertices,
-            n_faces,
-            n_edges,
-            n_links,
-            n_landmarks,
-            n_exact,
-            rank,
-            n_positive,
-            n_mapped,
-        ] = counts;
-        Self {
-            text,
-            n_input,
-            n_vertices,
-            n_faces,
-            n_edges,
-            n_links,
-            n_landmarks,
-            n_exact,
-            rank,
-            n_positive,
-            n_mapped,
-        }
     }
 
     /// The length of the file, in bytes.
@@ -172,12 +142,12 @@ impl DistanceField {
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let text = self.text();
-        let counts = self.counts(text.len());
+        let mut counts = self.counts(text.len());
         let (bounds, factors) = (self.metric.bounds().parts(), self.metric.factors().parts());
         let mut out = Vec::with_capacity(self.n_bytes());
         out.extend_from_slice(MAGIC);
         out.extend(VERSION.to_le_bytes());
-        out.extend(counts.in_order().into_iter().flat_map(|count| (count as u32).to_le_bytes()));
+        out.extend(counts.in_order().into_iter().flat_map(|count| (*count as u32).to_le_bytes()));
         let lengths = [bounds.quantum, bounds.error.over, bounds.error.under, factors.quantum];
         out.extend(lengths.into_iter().flat_map(f64::to_le_bytes));
         out.extend_from_slice(text.as_bytes());
@@ -212,11 +182,10 @@ impl DistanceField {
         if crc32fast::hash(content) != u32::from_le_bytes(*sum) {
             return Err(Damaged("its checksum is wrong"));
         }
-        let mut counts = [0; Counts::N];
-        for count in &mut counts {
+        let mut counts = Counts::default();
+        for count in counts.in_order() {
             *count = u32::from_le_bytes(*take(&mut rest).ok_or(CUT)?) as usize;
         }
-        let counts = Counts::from_order(counts);
         if counts.n_bytes() != bytes.len() as u64 {
             return Err(Damaged("its length is wrong"));
         }
@@ -262,6 +231,9 @@ impl Parts<'_> {
         if faces.iter().any(|&[a, b, c]| a == b || b == c || c == a || ![a, b, c].into_iter().all(is_vertex))
         {
             return Err("a face is impossible");
+        }
+        if n_vertices > Topology::MAX_VERTICES || n_faces > Topology::MAX_FACES {
+            return Err("it has more vertices or faces than a mesh may have");
         }
         let topology = Topology::new(n_vertices, faces);
         if topology.n_edges() != n_edges {
