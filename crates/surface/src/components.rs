@@ -3,7 +3,6 @@
 use crate::disjoint_sets::DisjointSets;
 use crate::ids::VertexId;
 use crate::intrinsic::IntrinsicMesh;
-use crate::topology::Topology;
 
 /// The connected components of a mesh.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -28,20 +27,6 @@ pub fn components_of_faces(n_vertices: usize, faces: &[[VertexId; 3]]) -> Compon
         }
     }
     Components::of_sets(sets, |v| has_face[v])
-}
-
-/// The components of connected faces: those of [`components_of_faces`], in less time.
-#[must_use]
-pub fn components_of(topology: &Topology) -> Components {
-    let n_vertices = topology.n_vertices();
-    let mut sets = DisjointSets::new(n_vertices);
-    for vertex in (0..n_vertices as u32).map(VertexId) {
-        let mut root = sets.find(vertex.0);
-        for [_, upper] in topology.edges_above(vertex) {
-            root = sets.attach(root, upper.0);
-        }
-    }
-    Components::of_sets(sets, |v| !topology.vertex_corners(VertexId(v as u32)).is_empty())
 }
 
 /// The components along edges and links; a vertex without either is a component of its own.
@@ -96,6 +81,7 @@ impl Components {
 mod tests {
     use super::*;
     use crate::intrinsic::Link;
+    use crate::topology::Topology;
 
     fn labels(components: &Components) -> Vec<i64> {
         components.labels.iter().map(|label| label.map_or(-1, i64::from)).collect()
@@ -108,7 +94,6 @@ mod tests {
         let found = components_of_faces(10, topology.faces());
         assert_eq!((found.count, labels(&found)), (2, vec![-1, 0, 0, 0, 1, 1, 1, -1, 0, 0]));
         assert_eq!(found.lowest_vertices(), [1, 4].map(VertexId));
-        assert_eq!(components_of(&topology), found);
 
         let lengths = vec![1.0; topology.n_edges()];
         let link = Link { ends: [0, 6].map(VertexId), length: 1.0 };
@@ -121,19 +106,5 @@ mod tests {
     fn a_mesh_without_faces_has_no_component() {
         let found = components_of_faces(3, &[]);
         assert_eq!((found.count, found.labels), (0, vec![None; 3]));
-    }
-
-    #[test]
-    fn components_do_not_depend_on_the_order_of_vertices() {
-        for seed in 0..40u32 {
-            // Strips of faces over vertices in a disorder that depends on the seed.
-            let n = 60;
-            let shuffled = |v: u32| VertexId((v * (2 * seed + 7) + seed) % 61 % n);
-            let faces = (0..n - 2).filter(|v| v % 13 != 12 && v % 13 != 11);
-            let faces: Vec<_> = faces.map(|v| [v, v + 1, v + 2].map(shuffled)).collect();
-            let faces: Vec<_> = faces.into_iter().filter(|[a, b, c]| a != b && b != c && c != a).collect();
-            let topology = Topology::new(n as usize, faces.clone());
-            assert_eq!(components_of(&topology), components_of_faces(n as usize, &faces), "{seed}");
-        }
     }
 }

@@ -32,20 +32,6 @@ impl DisjointSets {
         a != b
     }
 
-    /// Joins the set of `root`, which represents it, with that of a higher member; returns what represents both.
-    #[inline]
-    pub(crate) fn attach(&mut self, root: u32, item: u32) -> u32 {
-        let parent = self.parent[item as usize];
-        if parent == root {
-            return root;
-        }
-        let other = if parent == item { item } else { self.find(item) };
-        let lower = root.min(other);
-        self.parent[root.max(other) as usize] = lower;
-        self.parent[item as usize] = lower;
-        lower
-    }
-
     /// Number of members.
     #[must_use]
     #[expect(clippy::len_without_is_empty, reason = "the number of members is fixed")]

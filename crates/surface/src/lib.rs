@@ -25,7 +25,7 @@ mod topology;
 mod triangle;
 mod triangulation;
 
-pub use components::{Components, components_of, components_of_faces, components_with_links};
+pub use components::{Components, components_of_faces, components_with_links};
 pub use disjoint_sets::DisjointSets;
 pub use ids::{CornerId, EdgeId, FaceId, VertexId};
 pub use intrinsic::{IntrinsicMesh, Link, power_of_two_below, unit_for};

@@ -14,7 +14,9 @@ use std::collections::HashMap;
 
 use base::{Budget, Exceeded, Observer};
 use nalgebra::Point3;
-use surface::{Components, DisjointSets, FaceId, IntrinsicMesh, Link, Topology, VertexId, components_of};
+use surface::{
+    Components, DisjointSets, FaceId, IntrinsicMesh, Link, Topology, VertexId, components_of_faces,
+};
 
 use crate::error::MeshError;
 use crate::face_set::{check_input, remove_degenerate, remove_duplicates};
@@ -111,7 +113,7 @@ pub fn repair(
 
     budget.check()?;
     report.coordinate_rounding = coordinate_rounding(&scaled, &surface, unit);
-    let components = components_of(surface.topology());
+    let components = components_of_faces(mesh.n_vertices(), surface.topology().faces());
     report.components = components.count;
     let kept = match options.components {
         _ if components.count == 1 => None,

@@ -4,7 +4,7 @@ mod fans;
 
 use nalgebra::Point3;
 use serde::Serialize;
-use surface::{EdgeId, Topology, VertexId, components_of};
+use surface::{EdgeId, Topology, VertexId, components_of_faces};
 
 use crate::coincidence::coincident_pairs;
 use crate::face_set::{remove_degenerate, remove_duplicates};
@@ -117,7 +117,7 @@ pub fn validate(mesh: &TriMesh) -> MeshReport {
     mesh.faces.iter().flatten().for_each(|v| referenced[v.index()] = true);
     let n_faces = faces.len();
     let topology = Topology::new(n_vertices, faces);
-    let components = components_of(&topology);
+    let components = components_of_faces(topology.n_vertices(), topology.faces());
     let mut component_faces = vec![0; components.count];
     topology.faces().iter().filter_map(|f| components.of(f[0])).for_each(|c| component_faces[c] += 1);
     let orientation = Orientation::of(&topology);
