@@ -138,24 +138,6 @@ impl WindowFront {
         self.append(list, windows);
     }
 
-    /// As [`deliver`](Self::deliver), but may exchange the memory of `windows` instead of copying it.
-    #[inline]
-    pub(super) fn deliver_all(&mut self, corner: CornerId, ends: [u32; 2], windows: &mut Vec<PathWindow>) {
-        self.work += windows.len();
-        let list = match self.list_at[corner.index()] {
-            NONE => self.open(corner, ends),
-            list => list,
-        };
-        let before = &mut self.lists[list as usize].windows;
-        // Both are in order, and one comes before the other except for overlaps.
-        if before.first().is_none_or(|first| windows.first().is_some_and(|window| window.start < first.start))
-        {
-            self.memory.held = self.memory.held + windows.capacity() - before.capacity();
-            std::mem::swap(before, windows);
-        }
-        self.append(list, windows.iter().copied());
-    }
-
     /// Adds windows to a list, unless there is no memory for them.
     #[inline]
     fn append(&mut self, list: u32, windows: impl ExactSizeIterator<Item = PathWindow>) {

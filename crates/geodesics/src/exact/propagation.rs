@@ -5,7 +5,7 @@ use surface::{CornerId, VertexKind};
 
 use super::apex::{Apex, Passes};
 use super::envelope::trim;
-use super::faces::{Along, Facing, next};
+use super::faces::{Along, next};
 use super::frame::{FaceFrame, Until};
 use super::front::{Arrival, WindowFront};
 use super::prepared::PreparedSurface;
@@ -262,12 +262,7 @@ impl Propagation<'_> {
             if windows.is_empty() {
                 continue;
             }
-            let (faces, beyond) = (&surface.faces, frame.beyond[side]);
-            if let Some(Facing { corner, along: Along::Opposite }) = faces.only_facing(beyond) {
-                front.deliver_all(corner, ends, windows);
-                continue;
-            }
-            faces.for_each_facing(beyond, |facing| match facing.along {
+            surface.faces.for_each_facing(frame.beyond[side], |facing| match facing.along {
                 Along::Opposite => front.deliver(facing.corner, ends, windows.iter().copied()),
                 Along::Same => {
                     let mirrored = windows.iter().rev().map(|w| w.mirrored(frame.sides[side]));
