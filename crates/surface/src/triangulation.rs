@@ -249,9 +249,11 @@ impl Triangulation {
         }
         let diagonal = upper.apex_to_apex(lower);
         let quad = Quad { far, is_reversed, above, below, diagonal };
+        // Two flat triangles become flat ones, whose long sides lead on to others. Their sum falls, so that this ends.
         let has_area = quad.halves().iter().all(|sides| double_area(*sides) > 0.0);
         let [c, d] = [corner, far].map(|apex| self.corner_vertex(apex));
-        (has_area && (loops == Loops::Allowed || c != d)).then_some(quad)
+        let may_flip = (has_area || diagonal < above[0]) && (loops == Loops::Allowed || c != d);
+        may_flip.then_some(quad)
     }
 
     /// Replaces a side by the other diagonal, the side opposite slot 0 of both triangles.

@@ -8,6 +8,7 @@ use surface::{
     scalar_product,
 };
 
+use super::window::COLLINEAR;
 use crate::graph::ranks;
 use crate::plane::{self, PlanePoint};
 
@@ -108,8 +109,16 @@ pub(crate) struct Triangles {
 /// Width of the buckets, as a share of the mean edge length. It affects time only, which `make bench-peers` measures.
 const BUCKET_WIDTH: f64 = 0.3;
 
-/// Excess of a total angle, in radians, up to which it counts as rounding.
-const EXCESS: f64 = 5e-9;
+/// Excess of a total angle, in radians, up to which it counts as rounding: lengths leave the angles of flat triangles open by
+/// about the square root of their rounding, and a path that does not bend there is too short by the square of this.
+const EXCESS: f64 = 1e-6;
+
+/// Least height of a triangle over its longest side, in lengths of that side: beyond what counts as
+/// [collinear](super::window::COLLINEAR).
+const LEAST_HEIGHT: f64 = 8.0 * COLLINEAR;
+
+/// The most that this may turn its shortest side, in radians.
+const LEAST_SLOPE: f64 = 1e-6;
 
 /// Edges of more triangles are hubs.
 const MOST_AROUND: usize = 8;
@@ -125,7 +134,6 @@ impl Triangles {
         mean_edge_length: f64,
     ) -> Self {
         let n = order.len();
-        assert!(n < IS_IRREGULAR as usize, "more vertices than fit into 30 bits");
         let rank = ranks(&order);
         let glued = triangulation.triangles();
         // Triangles follow their first vertices.
@@ -159,10 +167,9 @@ impl Triangles {
                 let mut vertices =
                     [0, 1, 2].map(|slot| rank[triangulation.corner_vertex(corner(slot)).index()]);
                 vertices[0] |= if is_irregular { IS_IRREGULAR } else { 0 };
-                let apex = plane::apex([lengths[2], lengths[1], lengths[0]]);
                 MarchTriangle {
                     lengths,
-                    apex: if lengths[2] > 0.0 { apex } else { [lengths[1], 0.0] },
+                    apex: apex(lengths),
                     across: [0, 1, 2].map(|slot| renamed(across(corner(slot)))),
                     vertices,
                 }
@@ -244,6 +251,17 @@ impl Triangles {
         let (triangle, [next, prev]) = (self.at(corner / 3), around(corner as usize % 3));
         [(triangle.vertex(next), triangle.lengths[prev]), (triangle.vertex(prev), triangle.lengths[next])]
     }
+}
+
+/// The apex over the shortest side, the last. Where a flat triangle could not be flipped away, it is lifted a little, so that
+/// rays from the apex cross the longest side.
+fn apex([right, left, base]: [f64; 3]) -> PlanePoint {
+    if base <= 0.0 {
+        return [left, 0.0];
+    }
+    let [x, y] = plane::apex([base, left, right]);
+    let longest = f64::max(left, right);
+    [x, y.max(longest * f64::min(LEAST_HEIGHT * longest / base, LEAST_SLOPE))]
 }
 
 /// The next corner opposite the same edge, for edges of more than two triangles, which are free sides with the same

@@ -11,6 +11,9 @@ use crate::fast_marching::Stencil;
 use crate::plane::{PlanePoint, between, distance};
 use surface::SurfacePoint;
 
+/// A point whose distances from the ends of an edge exceed its length by no more than this share is on it: rounding.
+const ON_BASE: f64 = 1e-12;
+
 /// Where a step ends.
 #[derive(Debug, Clone, Copy)]
 enum StepEnd {
@@ -136,12 +139,15 @@ fn distance_through(here: PlanePoint, base: [PlanePoint; 2], [at_a, at_b]: [f64;
     let (length, side) = (distance(a, b), distance(a, here));
     let above = Triangle::from_sides([length, side, distance(b, here)]);
     let stencil = Stencil { base: length, side, dot: above.x * length, cross: above.y * length };
+    let below = Triangle::from_sides([length, at_a, at_b]);
     let total = stencil.point_source(at_a, at_b);
     if !total.is_finite() {
-        return None;
+        // The point may be on the base itself, as the apex of a face without area behind it is.
+        let is_on_base = at_a + at_b <= length * (1.0 + ON_BASE) && (0.0..=length).contains(&below.x);
+        let t = below.x / length;
+        return is_on_base.then(|| (distance(here, between(a, b, t)), t));
     }
     // The crossing divides the line as the heights of its ends above and below the base do.
-    let below = Triangle::from_sides([length, at_a, at_b]);
     let height = above.y + below.y;
     let t = if height > 0.0 { (below.x * above.y + above.x * below.y) / (height * length) } else { 0.5 };
     let crossing = between(a, b, t.clamp(0.0, 1.0));

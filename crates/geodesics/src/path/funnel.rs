@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use surface::{IntrinsicMesh, VertexId};
 
 use super::strip::{Gate, Laid, PathSection, Portal, Strip};
-use crate::plane::{PlanePoint, cross, sub};
+use crate::plane::{PlanePoint, cross, dot, sub};
 use surface::SurfacePoint;
 
 /// A path that crosses an edge within this share of its length from a vertex goes through the vertex: the difference is
@@ -148,18 +148,20 @@ fn bends(laid: &Laid) -> Vec<Touch> {
             End::Left => (left, right, 1.0),
             End::Right => (right, left, -1.0),
         };
-        let turns_left =
-            |a: PlanePoint, b: PlanePoint, c: PlanePoint| sign * cross(sub(b, a), sub(c, b)) > 0.0;
+        let turn = |a: PlanePoint, b: PlanePoint, c: PlanePoint| sign * cross(sub(b, a), sub(c, b));
         while let Some(&last) = own.back() {
             let before = own.len().checked_sub(2).map_or(apex, |i| own[i]);
-            if turns_left(reached[before].at, reached[last].at, at) {
+            if turn(reached[before].at, reached[last].at, at) > 0.0 {
                 break;
             }
             own.pop_back();
         }
         if own.is_empty() {
             while let Some(&first) = other.front() {
-                if turns_left(reached[apex].at, reached[first].at, at) {
+                let (from, corner) = (reached[apex].at, reached[first].at);
+                let turn = turn(from, corner, at);
+                // From a point of the gate itself, as in a face without area, its ends lie in opposite directions.
+                if turn > 0.0 || (turn == 0.0 && dot(sub(corner, from), sub(at, corner)) < 0.0) {
                     break;
                 }
                 apex = first;

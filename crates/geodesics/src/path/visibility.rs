@@ -8,7 +8,7 @@ use surface::{EdgeId, FaceId, VertexId};
 use super::field::PathField;
 use super::plane::{Flat, faces_around};
 use super::strip::{Gate, Portal, Strip};
-use crate::plane::{GateSide, PlanePoint, between, beyond, cross, distance, sub};
+use crate::plane::{GateSide, PlanePoint, between, beyond, cross, distance, dot, sub};
 use surface::SurfacePoint;
 
 /// Share of a length within which two are the same up to rounding.
@@ -100,7 +100,9 @@ impl SightSearch<'_> {
             for corner in face.corners() {
                 // Counter-clockwise, so that the first end is on the right from inside.
                 let [right, left] = topology.edge_ends(corner).map(|v| (v, at(v)));
-                if cross(right.1, left.1) > 0.0 {
+                // From the apex of a flat face, they lie in opposite directions.
+                let turn = cross(right.1, left.1);
+                if turn > 0.0 || (turn == 0.0 && dot(right.1, left.1) < 0.0) {
                     let edge = topology.opposite_edge(corner);
                     let gate = Gate { left, right };
                     self.send(Rays { before: None, face, edge, gate, left: left.1, right: right.1 });
@@ -171,10 +173,10 @@ impl SightSearch<'_> {
     fn send(&mut self, rays: Rays) {
         let Gate { left, right } = rays.gate;
         // Where the outermost rays cross the edge.
-        let [p, q] = [rays.left, rays.right].map(|ray| {
+        let [p, q] = [(rays.left, 0.0), (rays.right, 1.0)].map(|(ray, end)| {
             let (a, b) = (cross(ray, left.1), cross(ray, right.1));
             let share = a / (a - b);
-            between(left.1, right.1, if share.is_nan() { 0.5 } else { share.clamp(0.0, 1.0) })
+            between(left.1, right.1, if share.is_nan() { end } else { share.clamp(0.0, 1.0) })
         });
         // The length of a path over the edge decreases towards the farther end.
         let over = |(vertex, at): (VertexId, PlanePoint), far: PlanePoint| {

@@ -7,4 +7,5 @@ mod budgets;
 mod every_method;
 mod hubs;
 mod properties;
+mod slivers;
 mod support;
