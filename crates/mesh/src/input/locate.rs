@@ -9,6 +9,11 @@ use super::surface::Surface;
 /// Barycentric coordinates below this are rounding: the point lies on the edge.
 const ON_EDGE: f64 = 1e-12;
 
+/// The weight of a vertex at the point of an edge.
+fn weight(v: VertexId, [start, end]: [VertexId; 2], t: f64) -> f64 {
+    if v == start { 1.0 - t } else { f64::from(u8::from(v == end)) * t }
+}
+
 /// Barycentric coordinates of a point that is in the face up to rounding.
 fn within(weights: [f64; 3]) -> [f64; 3] {
     let weights = weights.map(|weight| if weight > ON_EDGE { weight } else { 0.0 });
@@ -33,12 +38,7 @@ impl Surface {
                     return Ok(SurfacePoint::Edge { edge, t: if start < end { t } else { 1.0 - t } });
                 }
                 let face = self.input_faces.iter().find(is_edge).ok_or_else(|| self.no_such(*point))?;
-                let weight = |v: &VertexId| match ends.iter().position(|end| end == v) {
-                    Some(0) => 1.0 - t,
-                    Some(_) => t,
-                    None => 0.0,
-                };
-                self.in_face(*face, face.each_ref().map(weight)).ok_or(dropped)
+                self.in_face(*face, face.map(|v| weight(v, ends, t))).ok_or(dropped)
             }
             InputPoint::Face { face, weights } => {
                 let vertices = self.input_faces.get(face.index()).ok_or_else(|| self.no_such(*point))?;
@@ -114,16 +114,7 @@ impl Surface {
                     return Ok(InputPoint::Edge { ends: ends.map(|v| self.input_vertex(v)), t });
                 }
                 let face = faces.clone().next().ok_or(other)?;
-                let weight = |v: VertexId| {
-                    if v == ends[0] {
-                        1.0 - t
-                    } else if v == ends[1] {
-                        t
-                    } else {
-                        0.0
-                    }
-                };
-                (face, topology.faces()[face.index()].map(weight))
+                (face, topology.faces()[face.index()].map(|v| weight(v, ends, t)))
             }
             SurfacePoint::Face { face, barycentric } => (face, barycentric),
         };
