@@ -18,6 +18,9 @@ use crate::output::{Answer, Output, count, shown};
 /// Most paths that are printed without `--details`.
 const MOST_PATHS: usize = 4;
 
+/// Share by which rounding in faces without area may make a path longer than its distance.
+const ROUNDING: f64 = 1e-6;
+
 #[derive(Serialize)]
 struct PathsJson {
     method: &'static str,
@@ -103,7 +106,9 @@ fn answer(json: &PathsJson) -> Answer {
     let outputs: Vec<String> = json.outputs.iter().map(|path| shown(path)).collect();
     let path = |path: &PathFacts| {
         let ends = format!("{} to {}", spelled(&[path.source]), spelled(&[path.target]));
-        ("path", format!("{ends}: length {:.6}, {} points", path.length, path.n_points))
+        let shortest = path.distance.filter(|d| json.method == "exact" && path.length > d * (1.0 + ROUNDING));
+        let note = shortest.map_or_else(String::new, |d| format!(", not shortest: {d:.6} are possible"));
+        ("path", format!("{ends}: length {:.6}, {} points{note}", path.length, path.n_points))
     };
     let milliseconds = |seconds: f64| format!("{:.2} ms", 1e3 * seconds);
     let (first, others) = json.paths.split_at(json.paths.len().min(MOST_PATHS));
