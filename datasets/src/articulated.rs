@@ -215,7 +215,7 @@ pub fn articulated_at_rest(
 }
 
 /// Poses that have streams of random numbers of their own for every body.
-const POSES_PER_BODY: usize = 1 << 20;
+pub(crate) const POSES_PER_BODY: usize = 1 << 20;
 
 fn shape(
     family: Family,

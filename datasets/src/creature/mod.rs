@@ -12,12 +12,12 @@ use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 use surface::VertexId;
 
-use crate::articulated::{ArticulatedOptions, LabeledShape, posed_skeleton, scale};
+use crate::articulated::{ArticulatedOptions, LabeledShape, POSES_PER_BODY, posed_skeleton, scale};
 use crate::clearance::entanglement;
 use crate::error::DatasetError;
 use crate::extract::{Lattice, RawSurface, extract};
 use crate::model::BodyModel;
-use crate::pose::{Pose, PosedSkeleton, turn};
+use crate::pose::{Build, Pose, PosedSkeleton, turn};
 use crate::shape::{genus, posed_positions, rest_surface, shuffled};
 use crate::skeleton::{JointId, Skeleton};
 use crate::stream::{Purpose, Stream};
@@ -93,7 +93,10 @@ pub fn creature_family(family: usize, options: &CreatureOptions) -> Result<Vec<L
     validate(options)?;
     let budget = Budget::unlimited();
     let model = model(family, options, &budget)?;
-    (0..options.n_poses).into_par_iter().map(|pose| shape(family, &model, pose, options, &budget)).collect()
+    (0..options.n_poses)
+        .into_par_iter()
+        .map(|pose| shape(family, &model, [0, pose], options, &budget))
+        .collect()
 }
 
 /// Generates one creature, the same as in [`creatures`]; poses beyond the number in the options are further variations.
@@ -106,9 +109,24 @@ pub fn creature(
     options: &CreatureOptions,
     observer: &dyn Observer,
 ) -> Result<LabeledShape, DatasetError> {
+    creature_body(family, 0, pose, options, observer)
+}
+
+/// Generates a creature with other lengths and girths of trunk and limbs, as [`articulated_body`](crate::articulated_body) does.
+/// Body 0 is that of [`creatures`].
+///
+/// # Errors
+/// As [`creature`].
+pub fn creature_body(
+    family: usize,
+    body: usize,
+    pose: usize,
+    options: &CreatureOptions,
+    observer: &dyn Observer,
+) -> Result<LabeledShape, DatasetError> {
     validate(options)?;
     let budget = observer.budget();
-    shape(family, &model(family, options, &budget)?, pose, options, &budget)
+    shape(family, &model(family, options, &budget)?, [body, pose], options, &budget)
 }
 
 /// The names of the body plans, in the order of the families; they are the labels of the first ones.
@@ -200,17 +218,25 @@ fn random_pose(skeleton: &Skeleton, stream: &mut Stream) -> Pose {
 fn shape(
     family: usize,
     model: &BodyModel,
-    pose: usize,
+    [body, pose]: [usize; 2],
     options: &CreatureOptions,
     budget: &Budget,
 ) -> Result<LabeledShape, DatasetError> {
     let label = label(family);
-    let name = format!("{label}{pose}");
-    let stream = |purpose| Stream::of_creature(options.seed, family, pose, purpose);
-    let surface = rest_surface(model, options.n_vertices, &mut stream(Purpose::Lattice), budget)?
+    let name = match body {
+        0 => format!("{label}{pose}"),
+        _ => format!("{label}-body{body}-pose{pose}"),
+    };
+    let stream = |number, purpose| Stream::of_creature(options.seed, family, number, purpose);
+    let stream_of_pose = |purpose| stream(body * POSES_PER_BODY + pose, purpose);
+    let surface = rest_surface(model, options.n_vertices, &mut stream_of_pose(Purpose::Lattice), budget)?
         .ok_or_else(|| no_surface(name.clone(), options))?;
-    let posed = posed_skeleton(model, pose, &mut stream(Purpose::Pose));
+    let mut posed = posed_skeleton(model, pose, &mut stream_of_pose(Purpose::Pose));
+    if body > 0 {
+        posed =
+            posed.built(&Build::random(&model.skeleton, &mut stream(body * POSES_PER_BODY, Purpose::Build)));
+    }
     let positions = posed_positions(&surface, &posed, scale(model));
-    let mesh = shuffled(&surface, &positions, &mut stream(Purpose::Numbering));
+    let mesh = shuffled(&surface, &positions, &mut stream_of_pose(Purpose::Numbering));
     Ok(LabeledShape { name, label, mesh })
 }
