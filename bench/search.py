@@ -7,7 +7,7 @@ Synthetic signatures imitate those of shapes: families, classes of different siz
 a curved manifold of few dimensions, with noise. Queries are such signatures that are not in the index. Each solver
 runs in its own process and answers one query at a time on one thread (exact scans use all threads). Rounds are
 interleaved, so that other load on the machine affects all solvers alike. Peers use the cheapest setting that reaches
-the recall on these queries; canonform calibrates its own while building, on signatures of the index.
+the recall on these queries; canonform measures all signatures.
 """
 import gc
 import json
@@ -26,7 +26,7 @@ K = 10
 RECALL = 0.99
 WARMING = 500
 ADDED = 20
-NOTES = "canonform: signatures measured per query; ms to open, to load, to store the shapes"
+NOTES = "canonform: ms to open, to load, to store the shapes"
 ADDITION = "canonform, one shape added: ms, kB appended"
 
 
@@ -154,7 +154,7 @@ class Peer:
 
 
 class Ours:
-    """`vectors serve`, which searches in memory, in the file, or by an exact scan."""
+    """`vectors serve`, which measures all signatures."""
 
     def __init__(self, program, index, queries):
         self.process = subprocess.Popen([program, "serve", index, queries], stdin=subprocess.PIPE,
@@ -165,7 +165,6 @@ class Ours:
         self.process.stdin.write(f"{source} {K} {first} {count}\n")
         self.process.stdin.flush()
         answer = json.loads(self.process.stdout.readline())
-        self.measured = answer["measured"]
         return answer["seconds"], answer["found"]
 
     def memory(self):
@@ -203,8 +202,6 @@ def measure(program, folder, n, dim, width, n_queries, rounds):
         if peer is not exact:
             peer.tune(truth)
     solvers = {
-        "canonform, in memory": lambda *span: ours.ask("memory", *span),
-        "canonform, from the file": lambda *span: ours.ask("file", *span),
         "canonform, exact scan (all threads)": lambda *span: ours.ask("scan", *span),
         **{name: peer.ask for name, peer in peers.items()},
     }
@@ -217,8 +214,6 @@ def measure(program, folder, n, dim, width, n_queries, rounds):
             spent, ids = ask(int(span[0]), count)
             seconds[name] += spent
             found[name] += [(int(span[0]) + i, row) for i, row in enumerate(ids)]
-    ours.ask("memory", WARMING, 200)
-    measured = ours.measured
     cells = {}
     for name in solvers:
         hit = recall([row for _, row in found[name]], [truth[i] for i, _ in found[name]])
@@ -228,11 +223,10 @@ def measure(program, folder, n, dim, width, n_queries, rounds):
             setting = "" if peer is exact else f" ({'ef' if 'hnsw' in name else 'nprobe'} {peer.setting})"
             build, memory = f"{peer.build:.1f}", f"{peer.memory()}{setting}"
         else:
-            memory = f"file of {size:.0f}" if "file" in name else ours.memory()
+            memory = f"{ours.memory()}, file of {size:.0f}"
             build = f"{built['finished']:.1f}"
         cells[name] = f"{hit:.4f}, {p50:.3f}, {p99:.3f}, {build}, {memory}"
-    cells[NOTES] = (f"{measured:,.0f}, {1e3 * ours.ready['opened']:.1f}, {1e3 * ours.ready['loaded']:.0f}, "
-                    f"{1e3 * built['stored']:.0f}")
+    cells[NOTES] = f"{1e3 * ours.ready['opened']:.1f}, {1e3 * ours.ready['loaded']:.0f}, {1e3 * built['stored']:.0f}"
     for process in [ours, *peers.values()]:
         process.end()
     added = answer([program, "add", queries_path, index, str(ADDED)])

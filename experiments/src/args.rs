@@ -37,7 +37,7 @@ pub(crate) enum ExperimentCommand {
         #[arg(long, value_name = "PAGE.md")]
         markdown: Option<PathBuf>,
     },
-    /// Measure how poses and triangulations of the built-in shapes change every signature
+    /// Measure the numbers of the metric on built-in shapes: units, weights, and the boundaries of shapes and classes
     Units {
         /// Number of seeds of the built-in dataset, from 1 on; 30 shapes each
         #[arg(long, default_value_t = 5, value_name = "N")]

@@ -4,12 +4,18 @@ use std::fmt;
 use std::str::FromStr;
 
 use datasets::{
-    ArticulatedOptions, CreatureOptions, DatasetError, Family, LabeledShape, articulated, articulated_body,
-    creatures,
+    ArticulatedOptions, CreatureOptions, Damage, DatasetError, Family, LabeledShape, articulated,
+    articulated_body, creatures,
 };
+use mesh::TriMesh;
 use rayon::prelude::*;
 
 use crate::parts::parts;
+
+/// A mesh with so many of its vertices.
+pub(crate) fn coarse(mesh: &TriMesh, n_vertices: usize) -> TriMesh {
+    Damage::Decimate(n_vertices as f64 / mesh.n_vertices() as f64).apply(mesh, 0)
+}
 
 /// Built-in families.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,8 +32,14 @@ pub(crate) enum Families {
 }
 
 impl Families {
-    /// Generates the shapes.
+    /// Generates the shapes; meshes with fewer vertices than the families are made of are simplified.
     pub(crate) fn generate(self, seed: u64, n_vertices: usize) -> Result<Vec<LabeledShape>, DatasetError> {
+        let least = ArticulatedOptions::MIN_VERTICES;
+        if n_vertices < least && !matches!(self, Self::Parts(..)) {
+            let mut shapes = self.generate(seed, least)?;
+            shapes.par_iter_mut().for_each(|shape| shape.mesh = coarse(&shape.mesh, n_vertices));
+            return Ok(shapes);
+        }
         match self {
             Self::Articulated => articulated(&ArticulatedOptions { seed, n_vertices }),
             Self::Bodies(n_bodies, n_poses) => {

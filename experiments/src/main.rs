@@ -7,11 +7,11 @@
 
 mod args;
 mod bound;
+mod boundaries;
 mod coarse;
 mod collection;
 mod config;
 mod context;
-mod described;
 mod experiment;
 mod families;
 mod gallery;
@@ -26,7 +26,6 @@ mod specimen;
 mod surfaces;
 mod sweep;
 mod table;
-mod thresholds;
 mod units;
 
 use std::process::ExitCode;

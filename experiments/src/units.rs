@@ -5,15 +5,14 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use base::terminal::Bars;
-use canonform::{Observer, Surface};
+use canonform::{DescribeOptions, Observer, ShapeDescription, Surface, describe};
 use datasets::{ArticulatedOptions, Family, LabeledShape, articulated};
-use descriptors::{FormDistance, ShapeMetric, ShapePair, SignatureKind, rigid_signature};
+use descriptors::{PreparedShape, ShapeMetric, ShapePair, SignatureKind, rigid_signature};
 use linalg::Matrix;
 use rayon::prelude::*;
 
-use crate::described::DescribedBody;
+use crate::boundaries;
 use crate::parts::parts;
-use crate::thresholds::{self, relatives};
 
 /// Vertices of the shapes of each seed, in turn, since collections mix resolutions.
 const VERTICES: [usize; 5] = [3400, 1500, 8000, 2500, 5000];
@@ -22,78 +21,70 @@ const VERTICES: [usize; 5] = [3400, 1500, 8000, 2500, 5000];
 const PARTS: usize = 110;
 const COPIES: usize = 4;
 
+/// A built-in shape with its description.
+struct DescribedBody {
+    label: String,
+    seed: u64,
+    description: ShapeDescription,
+    shape: PreparedShape,
+}
+
+impl DescribedBody {
+    fn new(shape: &LabeledShape, seed: u64) -> Result<Self> {
+        let options = DescribeOptions::default();
+        let description = describe(&Surface::new(&shape.mesh, &options.form.repair, &())?, &options, &())?;
+        let prepared = description.prepare()?;
+        Ok(Self { label: shape.label.clone(), seed, description, shape: prepared })
+    }
+}
+
 /// `experiments units`: for every signature and for aligned forms, the root mean square distance between two shapes of
 /// one built-in family with poses and triangulations of their own, and the ratio of the mean squared distance between
-/// families to its square, next to the values in use; the same ratio of bodies of one family, which tells what a signature adds;
-/// then the boundaries of verdicts.
+/// families to its square, next to the values in use; then the boundaries of shapes and classes.
 pub(crate) fn units(seeds: usize, quiet: bool) -> Result<ExitCode> {
     let bars = Bars::new(quiet);
-    let (mut shapes, mut others) = (Vec::new(), Vec::new());
+    let mut shapes = Vec::new();
     bars.begin("describing", 0);
     for seed in 1..=seeds {
         let options =
             ArticulatedOptions { seed: seed as u64, n_vertices: VERTICES[(seed - 1) % VERTICES.len()] };
-        let one = |shape: &LabeledShape| DescribedBody::new(shape, options.seed, 0);
+        let one = |shape: &LabeledShape| DescribedBody::new(shape, options.seed);
         shapes.extend(articulated(&options)?.par_iter().map(one).collect::<Result<Vec<_>>>()?);
-        others.extend(relatives(&options)?);
     }
     let (within, between): (Vec<BodyPair<'_>>, Vec<BodyPair<'_>>) = shapes
         .iter()
         .enumerate()
         .flat_map(|(i, a)| shapes[..i].iter().map(move |b| (a, b)))
         .partition(|(a, b)| a.label == b.label);
-    bars.finish();
-    // Two bodies of one family, with their own poses.
-    let bodies: Vec<BodyPair<'_>> = shapes
-        .iter()
-        .flat_map(|a| others.iter().map(move |b| (a, b)))
-        .filter(|(a, b)| a.label == b.label && a.seed == b.seed)
-        .collect();
     let mut parts = Vec::new();
-    for kind in SignatureKind::ALL.into_iter().filter(|kind| *kind != SignatureKind::Rigid) {
+    for kind in SignatureKind::INTRINSIC {
         let distance = |(a, b): &BodyPair<'_>| {
             let of = |shape: &DescribedBody| shape.description.signature(kind).cloned();
             of(a).zip(of(b)).map_or(f64::NAN, |(a, b)| a.distance(&b))
         };
         let means = [&within, &between].map(|pairs| mean_square(pairs.iter().map(distance)));
-        let bodies = mean_square(bodies.iter().map(distance)) / means[0];
         let in_use = [ShapeMetric::unit(kind), ShapeMetric::weight(kind)];
-        parts.push((kind.name(), means, bodies, components(&shapes, kind), in_use));
+        parts.push((kind.name(), means, components(&shapes, kind), in_use));
     }
     let separation = |[within, between]: [f64; 2]| between / within;
     let weighted = parts.iter().filter(|(.., [_, weight])| *weight > 0.0);
-    let total: f64 = weighted.map(|(_, means, _, components, _)| separation(*means) * components).sum();
-    for (name, distance) in
-        [("aligned forms", FormDistance::NearestNeighborRms), ("hausdorff95", FormDistance::Hausdorff95)]
-    {
-        let mut means = [0.0; 2];
-        for (mean, pairs) in means.iter_mut().zip([&within, &between]) {
-            // Alignment takes long.
-            let close: Vec<_> = pairs.iter().filter(|(a, b)| a.seed == 1 && b.seed == 1).collect();
-            let distances: Vec<f64> = close
-                .par_iter()
-                .map(|(a, b)| {
-                    ShapePair::new(ShapeMetric { distance }, [&a.shape, &b.shape]).best().distance(distance)
-                })
-                .collect();
-            *mean = mean_square(distances.into_iter());
-        }
-        parts.push((
-            name,
-            means,
-            f64::NAN,
-            1.0,
-            [ShapeMetric::form_unit(distance), ShapeMetric::FORM_WEIGHT],
-        ));
-    }
+    let total: f64 = weighted.map(|(_, means, components, _)| separation(*means) * components).sum();
+    let means = [&within, &between].map(|pairs| {
+        // Alignment takes long.
+        let close: Vec<_> = pairs.iter().filter(|(a, b)| a.seed == 1 && b.seed == 1).collect();
+        let rms = |(a, b): &&BodyPair<'_>| ShapePair::new([&a.shape, &b.shape]).best().rms;
+        mean_square(close.par_iter().map(rms).collect::<Vec<f64>>().into_iter())
+    });
+    parts.push(("aligned forms", means, 1.0, [ShapeMetric::FORM_UNIT, ShapeMetric::FORM_WEIGHT]));
+    bars.finish();
     let mut out = std::io::stdout().lock();
-    writeln!(out, "{:<18}    unit  separation  of bodies  components  weight   in use: unit  weight", "")?;
-    for (name, means, bodies, components, [used_unit, used_weight]) in parts {
+    writeln!(out, "{:<18}    unit  separation  components  weight   in use: unit  weight", "")?;
+    for (name, means, components, [used_unit, used_weight]) in parts {
         let (unit, separation) = (means[0].sqrt(), separation(means));
         let weight = separation * components / total;
         writeln!(
             out,
-            "{name:<18} {unit:>7.4} {separation:>11.1} {bodies:>10.1} {components:>11.1} {weight:>7.4} {used_unit:>14.4} {used_weight:>7.4}"
+            "{name:<18} {unit:>7.4} {separation:>11.1} {components:>11.1} {weight:>7.4} {used_unit:>14.4} {used_weight:>7.4}"
         )?;
     }
     let [copies, family] = rigid()?;
@@ -101,10 +92,9 @@ pub(crate) fn units(seeds: usize, quiet: bool) -> Result<ExitCode> {
     let wanted = (ShapeMetric::SAME_SHAPE.at * copies / family).powi(2);
     writeln!(
         out,
-        "rigid signature of parts: copies {copies:.4}, one family {family:.4}; weight {wanted:.5}; in use {unit}, {weight}"
+        "rigid signature of parts: copies {copies:.4}, one family {family:.4}; weight {wanted:.5}; in use {unit}, {weight}\n"
     )?;
-    shapes.extend(others);
-    thresholds::print(&shapes, &mut out)?;
+    boundaries::print(&bars, &mut out)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -130,10 +120,11 @@ fn components(shapes: &[DescribedBody], kind: SignatureKind) -> f64 {
 fn rigid() -> Result<[f64; 2]> {
     let described = |shape: &LabeledShape| -> Result<_> {
         let surface = Surface::new(&shape.mesh, &Default::default(), &())?.for_description(&())?;
-        Ok((shape.label.clone(), rigid_signature(surface.mesh())))
+        Ok(rigid_signature(surface.mesh()).map(|signature| (shape.label.clone(), signature)))
     };
     let shapes = parts(0, PARTS, COPIES);
-    let found = shapes.par_iter().map(described).collect::<Result<Vec<_>>>()?;
+    let found: Vec<_> =
+        shapes.par_iter().map(described).collect::<Result<Vec<_>>>()?.into_iter().flatten().collect();
     // Names of parts begin with their family.
     let family = |label: &str| label.split('-').next().map(str::to_owned);
     let rms = |of: &dyn Fn(&str, &str) -> bool| {

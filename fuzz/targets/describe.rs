@@ -2,7 +2,7 @@
 
 #![no_main]
 
-use canonform::descriptors::{ShapeMetric, ShapePair};
+use canonform::descriptors::ShapePair;
 use canonform::{DescribeOptions, Surface, compare, describe};
 use canonform_fuzz::{Limited, mesh_of, single_threaded};
 use libfuzzer_sys::fuzz_target;
@@ -14,7 +14,7 @@ fuzz_target!(init: single_threaded(), |data: &[u8]| {
     let Ok(description) = describe(&surface, &options, &Limited::start()) else { return };
     assert!(description.fused.iter().all(|x| x.is_finite()), "a signature is not finite");
     let Ok(shape) = description.prepare() else { return };
-    let pair = ShapePair::new(ShapeMetric::default(), [&shape, &shape]);
+    let pair = ShapePair::new([&shape, &shape]);
     assert!(pair.distance().combined < 1e-3, "a shape differs from itself by {:?}", pair.distance());
     let _ = compare(&pair);
 });

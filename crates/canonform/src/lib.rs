@@ -5,7 +5,7 @@
 //! form*, does not depend on the pose, and rigid alignment compares it with other forms.
 //!
 //! ```
-//! use canonform::descriptors::{ShapeMetric, ShapePair};
+//! use canonform::descriptors::ShapePair;
 //! use canonform::{DescribeOptions, Surface, describe, mesh::shapes};
 //!
 //! // A flat sheet and the same sheet, folded.
@@ -18,7 +18,7 @@
 //!     let surface = Surface::new(mesh, &options.form.repair, &())?;
 //!     shapes.push(describe(&surface, &options, &())?.prepare()?);
 //! }
-//! let distance = ShapePair::new(ShapeMetric::default(), [&shapes[0], &shapes[1]]).distance();
+//! let distance = ShapePair::new([&shapes[0], &shapes[1]]).distance();
 //! assert!(distance.is_same_shape());
 //! # Ok::<(), canonform::Error>(())
 //! ```
@@ -126,7 +126,7 @@ pub use shape_index::{
     Failure, FailureReason, Inputs, Measure, MergeReport, MoveReport, NearestShape, NotMoved, OrderedBy,
     PackedQuery, PairwiseDistance, Prediction, Query, Ranked, Reranked, SearchOptions, SearchRank,
     SearchReport, SearchResult, SearchSeconds, ShapeLimits, ShapeSearch, Shard, ShardExplained, ShardMatch,
-    ShardMatches, ShardedSearch, Unknown, add_to_index, build_index, check_place, evaluate_index,
+    ShardMatches, ShardedSearch, Unknown, add_to_index, bounds, build_index, check_place, evaluate_index,
     evaluate_matrix, export_index, find_duplicates, indexed_shapes, merge_indexes, merge_matches, mesh_path,
     move_duplicates, remove_from_index, rerank, unchanged_index, undo_moves,
 };

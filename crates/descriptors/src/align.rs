@@ -3,7 +3,6 @@
 use nalgebra::{Matrix3, Point3};
 
 use crate::alignment::Alignment;
-use crate::metric::FormDistance;
 use crate::prepared::{Detail, PreparedForm};
 
 /// Whether an alignment may reflect.
@@ -22,20 +21,9 @@ pub enum Reflections {
 pub struct FormAlignment {
     /// Takes the first form, in its own coordinates, onto the second.
     pub alignment: Alignment,
-    /// [`FormDistance::NearestNeighborRms`] of the aligned forms, in their unit. The alignment minimises it.
+    /// Root mean square distance from the samples of either form to the nearest points of the other, in their unit. The
+    /// alignment minimises it.
     pub rms: f64,
-    /// [`FormDistance::Hausdorff95`] of the aligned forms, in their unit.
-    pub hausdorff95: f64,
-}
-
-impl FormAlignment {
-    /// One of the distances between the aligned forms.
-    pub fn distance(&self, kind: FormDistance) -> f64 {
-        match kind {
-            FormDistance::NearestNeighborRms => self.rms,
-            FormDistance::Hausdorff95 => self.hausdorff95,
-        }
-    }
 }
 
 /// Axes whose spreads differ by less than this factor in both forms may be exchanged, since their order is arbitrary. A
@@ -66,8 +54,7 @@ const ROUGH: Stage = Stage { n_samples: 100, among: Detail::Samples, steps: 20 }
 /// For the very best.
 const FINE: Stage = Stage { n_samples: usize::MAX, among: Detail::Points, steps: 30 };
 
-/// An error on the coarse sample beyond this multiple of the limit, or of the best hypothesis, will not come below it. A
-/// safety limit, see [`align_near_forms`].
+/// An error on the coarse sample beyond this multiple of the best hypothesis will not come below it. A safety limit.
 const HOPELESS: f64 = 2.0;
 
 /// A step that reduces the error by less than this share is the last. A tolerance.
@@ -100,20 +87,12 @@ pub fn align_forms(a: &PreparedForm, b: &PreparedForm, reflections: Reflections)
     refined_fully(a, b, refined_roughly(a, b, reflections).1)
 }
 
-/// Aligns two forms as [`align_forms`] does, with or without a reflection, or returns `None` once the root mean square
-/// distance turns out to be larger than `limit`.
-///
-/// * Nothing is aligned if the [lower bound](PreparedForm::least_distance) of the distance is larger.
-/// * The alignment stops if after its second stage the error on a coarse sample is more than twice the limit. This
-///   is a heuristic: the last stage hardly moves a form any more, and on the built-in dataset no neighbour is lost.
+/// Aligns two forms as [`align_forms`] does, with or without a reflection, or returns `None` if the root mean square distance
+/// is larger than `limit`. Nothing is aligned if the [lower bound](PreparedForm::least_distance) of the distance is larger.
 #[must_use]
 pub fn align_near_forms(a: &PreparedForm, b: &PreparedForm, limit: f64) -> Option<FormAlignment> {
-    if a.least_distance(b) > limit {
-        return None;
-    }
-    let (error, start) = refined_roughly(a, b, Reflections::Allow);
-    let found = (error <= HOPELESS * limit).then(|| refined_fully(a, b, start));
-    found.filter(|found| found.rms <= limit)
+    let may_be_near = a.least_distance(b) <= limit;
+    may_be_near.then(|| align_forms(a, b, Reflections::Allow)).filter(|found| found.rms <= limit)
 }
 
 /// The best hypothesis after all stages but the last, and its error.
@@ -164,7 +143,6 @@ fn refined_fully(a: &PreparedForm, b: &PreparedForm, start: Alignment) -> FormAl
     FormAlignment {
         alignment: b.to_principal.inverse().after(&motion).after(&a.to_principal),
         rms: (0.5 * (mean_square(from_a) + mean_square(from_b))).sqrt(),
-        hausdorff95: sq_quantile95(from_a).max(sq_quantile95(from_b)).sqrt(),
     }
 }
 
@@ -255,13 +233,6 @@ fn mean_square(pairs: &[Pair]) -> f64 {
     pairs.iter().map(|pair| pair.2).sum::<f64>() / pairs.len().max(1) as f64
 }
 
-/// The squared distance that 95 % of the pairs do not exceed.
-fn sq_quantile95(pairs: &[Pair]) -> f64 {
-    let mut squares: Vec<f64> = pairs.iter().map(|pair| pair.2).collect();
-    let rank = (squares.len() as f64 * 0.95).ceil() as usize - 1;
-    *squares.select_nth_unstable_by(rank, f64::total_cmp).1
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -302,7 +273,6 @@ mod tests {
         for mirror in [1.0, -1.0] {
             let found =
                 align_forms(&prepared(&points), &prepared(&turned(&points, mirror)), Reflections::Allow);
-            assert!(found.hausdorff95 < 1e-10, "{}", found.hausdorff95);
             assert_eq!(found.alignment.reflected, mirror < 0.0);
             let (a, b) = (
                 CanonicalForm::from_points(points.clone(), vec![1.0; 600]).unwrap(),

@@ -4,7 +4,7 @@
 //! nmds::Embedding -> CanonicalForm -> PreparedForm -> align_forms -> FormAlignment
 //! linalg::LandmarkDistances -> SampledForm, a form of many dimensions
 //! CanonicalForm, SampledForm, linalg::LandmarkDistances, LaplaceSpectrum -> Signature -> ShapeMetric::fuse
-//! fused vector, form -> PreparedShape -> ShapePair (alignments, each found once) -> ShapeDistance
+//! fused vector, form, rigid signature -> PreparedShape -> ShapePair (alignments, each found once) -> ShapeDistance
 //! ```
 //!
 //! Knows nothing of files or indexes.
@@ -12,6 +12,7 @@
 mod align;
 mod alignment;
 mod boundary;
+mod calibration;
 mod canonical_form;
 mod error;
 mod features;
@@ -30,14 +31,14 @@ pub use alignment::Alignment;
 pub use boundary::Boundary;
 pub use canonical_form::{CanonicalForm, Normalization};
 pub use error::DescriptorError;
-pub use metric::{FormDistance, ShapeDistance, ShapeMetric};
+pub use metric::{ShapeDistance, ShapeMetric};
 pub use nearest::NearestPoints;
 pub use partial::{DiscAreas, PartDiscAreas, PartDistance};
 pub use prepared::PreparedForm;
 pub use sampled_form::SampledForm;
 pub use shape_pair::{PreparedShape, ShapePair};
 pub use signature::{
-    Signature, SignatureKind, d2_histogram, geodesic_spectrum, heat_kernel_signature, moment_signature,
-    rigid_signature, shape_dna, wave_kernel_signature, wave_kernels,
+    Signature, SignatureKind, geodesic_spectrum, heat_kernel_signature, rigid_signature, shape_dna,
+    wave_kernel_signature, wave_kernels,
 };
 pub use spectrum::LaplaceSpectrum;

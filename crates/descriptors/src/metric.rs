@@ -3,53 +3,8 @@
 use serde::Serialize;
 
 use crate::boundary::Boundary;
+use crate::calibration;
 use crate::signature::{Signature, SignatureKind};
-
-/// A distance between two aligned forms.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum FormDistance {
-    /// Root mean square distance from the samples of either form to the nearest points of the other.
-    #[default]
-    NearestNeighborRms,
-    /// The distance that 95 % of the samples of either form do not exceed, the larger of the two directions: a
-    /// Hausdorff distance that tolerates a few outliers.
-    Hausdorff95,
-}
-
-/// Unit and weight of every signature.
-///
-/// The unit is the root mean square distance between two poses of one body, each triangulated on its own.
-///
-/// The weight is the separation of the signature times its number of components, divided by the sum of these products
-/// over all signatures. The separation is the mean squared distance between two families over that between two poses
-/// of one family, as in Fisher's discriminant. The number of components is `tr(C)² / tr(C²)` with `C` the covariance of
-/// the values within families: poses move the signature in that many independent ways, so that squared distances
-/// would grow with it if the values were whitened.
-///
-/// Signatures of the form have no weight and are no part of fused vectors: two bodies of one family differ in them hardly more
-/// than two poses of one body.
-///
-/// All but those of the rigid signature (see [`RIGID`]) were measured on the built-in articulated families, in meshes of 1,500
-/// to 8,000 vertices, and on nothing else. `cargo run --release -p experiments -- units` measures them again.
-const CALIBRATION: [(SignatureKind, f64, f64); SignatureKind::ALL.len()] = [
-    (SignatureKind::Moments, 0.115, 0.0),
-    (SignatureKind::D2, 0.067, 0.0),
-    (SignatureKind::FormSpectrum, 0.144, 0.0),
-    (SignatureKind::GeodesicSpectrum, 0.237, 0.07),
-    (SignatureKind::ShapeDna, 0.084, 0.248),
-    (SignatureKind::HeatKernel, 0.191, 0.204),
-    (SignatureKind::WaveKernel, 0.254, 0.478),
-    (SignatureKind::Rigid, RIGID[0], RIGID[1]),
-];
-
-/// Unit and weight of the rigid signature, which comes last and on top of the others, whose weights sum to one: it is zero for
-/// surfaces that bend.
-///
-/// The unit is the root mean square distance between copies of a mechanical part. With the weight, parts of one family are by
-/// this signature as far apart, root mean square, as the [boundary](ShapeMetric::SAME_SHAPE) of two bodies of one class.
-/// Measured on 110 generated parts with four copies each (`cargo run --release -p experiments -- units`), on which copies are
-/// .0014 apart and parts of one family .0274.
-const RIGID: [f64; 2] = [0.0014, 0.0045];
 
 /// Two values of fused vectors that differ by more standard deviations between poses count less, see
 /// [`ShapeMetric::robust`].
@@ -66,15 +21,12 @@ const OUTLYING: f64 = 4.0;
 /// | `s` | difference of the [size coordinates](Self::size_coordinate), where size counts |
 /// | `f`, `u_f`, `w_f` | root mean square distance of the aligned forms of unit area, its unit and weight |
 ///
-/// The *fused* distance is `√(Σ_k w_k (d_k / u_k)² + s²)`, the Euclidean distance of two [fused](Self::fuse) vectors. An index is
-/// searched by it. The *robust* distance is the same with [Huber's](Self::robust) loss of every value, so that a few
-/// values that a weld or a hole changes count less; it is never larger. The *combined* distance is
-/// `√(robust² + w_f (f / u_f)²)`. Two poses of one body are about one apart by each.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct ShapeMetric {
-    /// The distance between aligned forms that is reported. The combined distance always takes the root mean square.
-    pub distance: FormDistance,
-}
+/// The *fused* distance is `√(Σ_k w_k (d_k / u_k)² + s²)`, the Euclidean distance of two [fused](Self::fuse) vectors. The
+/// *robust* distance is the same with [Huber's](Self::robust) loss of every value, so that a few values that a weld or a
+/// hole changes count less; it is never larger, but for the [rigid part](Self::rigid) between two surfaces that do not bend.
+/// The *combined* distance is `√(robust² + w_f (f / u_f)²)`. Two poses of one body are about one apart by each.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ShapeMetric;
 
 /// How far apart two shapes are, regardless of size.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -88,10 +40,10 @@ pub struct ShapeDistance {
 }
 
 impl ShapeDistance {
-    /// Probability that both are one shape. One shape is of one class, so it is at most that of one class.
+    /// Probability that both are one shape: that of one class, times that of one shape among those of one class.
     #[must_use]
     pub fn same_shape(&self) -> f64 {
-        ShapeMetric::SAME_SHAPE.probability(self.combined).min(self.same_class())
+        ShapeMetric::SAME_SHAPE.probability(self.combined) * self.same_class()
     }
 
     /// Probability that both are of one class.
@@ -103,7 +55,7 @@ impl ShapeDistance {
     /// Whether the shapes are certainly one shape.
     #[must_use]
     pub fn is_same_shape(&self) -> bool {
-        self.combined < ShapeMetric::SAME_SHAPE.gap()[0]
+        self.same_shape() >= Boundary::CERTAIN
     }
 
     /// Whether the shapes are at least as likely of one class as not. Neighbours as near as this vote on the class of a query.
@@ -121,26 +73,20 @@ impl ShapeDistance {
 
 impl ShapeMetric {
     /// Version of the calibration and of the signatures. Fused vectors of different versions cannot be compared.
-    pub const VERSION: u32 = 5;
+    pub const VERSION: u32 = 6;
 
-    /// The boundary between two poses of one body and two bodies of one class.
+    /// The boundary between two poses of one body and two bodies of one class, both being equally frequent: a logistic
+    /// regression on the logarithm of the combined distance.
     ///
-    /// Fisher's linear discriminant of the logarithms of combined distances, poses and bodies being equally frequent. The
-    /// bodies are those of `datasets::articulated_body`: lengths of trunk and limbs differ by 4 % and girths by 9 % (one
-    /// standard deviation), as among adults. Two poses are at most 1.87 apart, with a median of 0.92; two bodies at
-    /// least 0.78, with a median of 1.95. So a shape cannot always be told from another of its class.
-    ///
-    /// Probabilities hold for bodies and poses that vary as much as those. Measured on the built-in families as the units of
-    /// signatures (`cargo run --release -p experiments -- units`), and on nothing else.
-    pub const SAME_SHAPE: Boundary = Boundary { at: 1.313, steepness: 8.64 };
+    /// Bodies of one class differ as adults do: lengths of trunk and limbs by 4 % and girths by 9 % (one standard deviation).
+    /// They are families of the 28 plans of creatures, none of which decided about units and weights, in meshes of 250, 1,000
+    /// and 5,000 vertices; two meshes may be of different resolutions. Bodies of a worm or a ring are no farther apart than
+    /// their poses, so that hardly any distance is certain. `docs/decisions/014-metric.md` shows how often it is right.
+    pub const SAME_SHAPE: Boundary = calibration::SAME_SHAPE;
 
-    /// The boundary between two bodies of one class and two classes: the geometric mean of the distance that 1 % of pairs
-    /// of poses exceed and the one below which 1 % of the pairs from two families are. 95 % of two bodies of one family
-    /// are nearer than 2.84, two families are at least 4.77 apart.
-    ///
-    /// The steepness is Fisher's with the variance of bodies for both, since three families say little about the
-    /// variance among families. Measured as [`SAME_SHAPE`](Self::SAME_SHAPE).
-    pub const SAME_CLASS: Boundary = Boundary { at: 2.874, steepness: 20.07 };
+    /// The boundary between one class and two classes, both being equally frequent; of one class, one body and two bodies are
+    /// equally frequent. Measured as [`SAME_SHAPE`](Self::SAME_SHAPE).
+    pub const SAME_CLASS: Boundary = calibration::SAME_CLASS;
 
     /// Sizes of poses and scans of one body differ by less than this factor, so that such sizes count as equal. It is also the
     /// unit of differences in size. A convention: poses and scans of one body may well differ by 5 %.
@@ -152,44 +98,38 @@ impl ShapeMetric {
     /// Points of every form that are aligned with the nearest points of another form.
     pub const ALIGNED_POINTS: usize = 400;
 
-    /// Number of values of a fused vector that bending does not change, which come first.
-    const INTRINSIC_LENGTH: usize = Self::FUSED_LENGTH - SignatureKind::Rigid.n_values();
-
     /// Length of a fused vector without the size.
     pub const FUSED_LENGTH: usize = {
         let mut sum = 0;
         let mut i = 0;
-        while i < CALIBRATION.len() {
-            if CALIBRATION[i].2 > 0.0 {
-                sum += CALIBRATION[i].0.n_values();
-            }
+        while i < calibration::FUSED.len() {
+            sum += calibration::FUSED[i].0.n_values();
             i += 1;
         }
         sum
     };
 
-    /// Weight of the distance between aligned forms, relative to the weights of the signatures, which sum to one. It was
-    /// measured as they were; a distance has one component.
-    pub const FORM_WEIGHT: f64 = 0.0095;
+    /// Weight of the distance between aligned forms, relative to the weights of the signatures, which sum to one.
+    pub const FORM_WEIGHT: f64 = calibration::FORM[1];
 
-    /// Root mean square distance between two poses of one body by this signature: see the table in the source.
+    /// Root mean square distance between the aligned forms, at unit area, of two poses of one body.
+    pub const FORM_UNIT: f64 = calibration::FORM[0];
+
+    /// Root mean square distance between two poses of one body by this signature; of the rigid one, between copies of a part.
     pub fn unit(kind: SignatureKind) -> f64 {
-        CALIBRATION[kind as usize].1
+        match kind {
+            SignatureKind::FormSpectrum => calibration::FORM_SPECTRUM,
+            SignatureKind::Rigid => calibration::RIGID[0],
+            _ => fused_entry(kind).map_or(f64::NAN, |(_, unit, _)| unit),
+        }
     }
 
     /// The weight of this signature. All weights but that of the rigid signature sum to one. Signatures without weight are no
-    /// part of fused vectors.
+    /// part of fused vectors, nor is the rigid one.
     pub fn weight(kind: SignatureKind) -> f64 {
-        CALIBRATION[kind as usize].2
-    }
-
-    /// Root mean square, over pairs of poses of one body, of the distance between their aligned forms of unit area.
-    /// Measured as the units of signatures; the separation of families is 14.5 by the root mean square and 14.9 by the
-    /// Hausdorff distance.
-    pub fn form_unit(distance: FormDistance) -> f64 {
-        match distance {
-            FormDistance::NearestNeighborRms => 0.027,
-            FormDistance::Hausdorff95 => 0.0548,
+        match kind {
+            SignatureKind::Rigid => calibration::RIGID[1],
+            _ => fused_entry(kind).map_or(0.0, |(.., weight)| weight),
         }
     }
 
@@ -199,10 +139,10 @@ impl ShapeMetric {
         0.5 * area.max(f64::MIN_POSITIVE).ln() / Self::SIZE_OF_POSES.ln()
     }
 
-    /// All signatures with a weight, in their order, as one vector whose Euclidean distance is the fused distance. With an
+    /// All signatures with a weight but the rigid one, as one vector whose Euclidean distance is the fused distance. With an
     /// `area` size counts too. Values are rounded to 32 bits: half the memory to scan, and an error far below the noise.
     pub fn fuse(signatures: &[Signature], area: Option<f64>) -> Vec<f32> {
-        let weighted = signatures.iter().filter(|signature| Self::weight(signature.kind) > 0.0);
+        let weighted = signatures.iter().filter(|signature| fused_entry(signature.kind).is_some());
         let parts = weighted.flat_map(|signature| {
             let factor = Self::weight(signature.kind).sqrt() / Self::unit(signature.kind);
             signature.values.iter().map(move |value| (value * factor) as f32)
@@ -231,28 +171,27 @@ impl ShapeMetric {
     /// The fused distance with Huber's loss (Huber 1964, `huber1964` in `REFERENCES.bib`): differences of two values beyond
     /// four standard deviations count linearly, as if their loss went on along its tangent. Size is not limited.
     ///
-    /// Two poses of one body are about one apart, so the standard deviation of a value is `1 / √n` with `n` the
-    /// number of values that bending does not change. A weld changes some values by many standard deviations and most
-    /// others little; between two poses, hardly any value is beyond the limit, so that little changes.
-    ///
-    /// The values of the rigid signature count if neither surface bends.
+    /// By its unit, the squared distance of two poses by a signature of `m` values and weight `w` is `w` in the mean, so the
+    /// standard deviation of one of its values is `√(w / m)`. A weld changes some values by many standard deviations and
+    /// most others little; between two poses, hardly any value is beyond the limit, so that little changes.
     pub fn robust(a: &[f32], b: &[f32]) -> f64 {
-        let limit = OUTLYING / (Self::INTRINSIC_LENGTH as f64).sqrt();
-        let bends = [a, b].iter().any(|values| Self::bends(values));
-        let loss = |(i, (a, b)): (usize, (&f32, &f32))| {
-            let change = f64::from(a - b).abs();
-            match i {
-                _ if (Self::INTRINSIC_LENGTH..Self::FUSED_LENGTH).contains(&i) && bends => 0.0,
-                _ if i < Self::FUSED_LENGTH && change > limit => limit * (2.0 * change - limit),
-                _ => change * change,
-            }
-        };
-        a.iter().zip(b).enumerate().map(loss).sum::<f64>().sqrt()
+        let (mut sum, mut rest) = (0.0, [a, b]);
+        for (kind, _, weight) in calibration::FUSED {
+            let n = kind.n_values().min(rest[0].len()).min(rest[1].len());
+            let [(a, after_a), (b, after_b)] = rest.map(|values| values.split_at(n));
+            sum += huber(a, b, 1.0, limit(kind, weight));
+            rest = [after_a, after_b];
+        }
+        (sum + huber(rest[0], rest[1], 1.0, f64::INFINITY)).sqrt()
     }
 
-    /// Whether the surface of a fused vector bends, so that it has no rigid signature.
-    fn bends(fused: &[f32]) -> bool {
-        fused.iter().take(Self::FUSED_LENGTH).skip(Self::INTRINSIC_LENGTH).all(|value| *value == 0.0)
+    /// The part of the robust distance that rigid signatures add: 0 unless both shapes have one, since nothing is known of how
+    /// a surface that bends would look. Bending moves the shape of a surface in space farther than another class, so it is at most
+    /// the [boundary](Self::SAME_SHAPE) of two shapes: parts that differ in space are two, but may be of one class.
+    pub fn rigid(a: &[f32], b: &[f32]) -> f64 {
+        let [unit, weight] = calibration::RIGID;
+        let limit = limit(SignatureKind::Rigid, weight);
+        huber(a, b, weight.sqrt() / unit, limit).sqrt().min(Self::SAME_SHAPE.at)
     }
 
     /// The combined distance, from a robust distance and the root mean square distance of the aligned forms of unit area.
@@ -266,23 +205,52 @@ impl ShapeMetric {
     }
 
     fn form_part(form_rms: f64) -> f64 {
-        form_rms / Self::form_unit(FormDistance::NearestNeighborRms) * Self::FORM_WEIGHT.sqrt()
+        form_rms / Self::FORM_UNIT * Self::FORM_WEIGHT.sqrt()
     }
 
     /// The distance between aligned forms at which the combined distance reaches `limit`; 0 if the robust distance alone
-    /// is larger. For a distance other than the root mean square it is the one as many units large.
-    pub fn form_limit(robust: f64, limit: f64, distance: FormDistance) -> f64 {
+    /// is larger.
+    pub fn form_limit(robust: f64, limit: f64) -> f64 {
         // Rounding must not exclude a shape exactly at the limit.
         const SLACK: f64 = 1.0 + 1e-9;
         let left = (limit.powi(2) - robust.powi(2)).max(0.0).sqrt();
-        left * Self::form_unit(distance) / Self::FORM_WEIGHT.sqrt() * SLACK
+        left * Self::FORM_UNIT / Self::FORM_WEIGHT.sqrt() * SLACK
     }
 
-    /// The reported distance between aligned forms below which shapes with this robust distance
+    /// The distance between aligned forms below which shapes with this robust distance
     /// [may be of one class](ShapeDistance::may_be_same_class); 0 if their signatures alone are too far apart.
-    pub fn same_below(&self, robust: f64) -> f64 {
-        Self::form_limit(robust, Self::SAME_CLASS.at, self.distance)
+    pub fn same_below(robust: f64) -> f64 {
+        Self::form_limit(robust, Self::SAME_CLASS.at)
     }
+}
+
+fn fused_entry(kind: SignatureKind) -> Option<(SignatureKind, f64, f64)> {
+    calibration::FUSED.into_iter().find(|(known, ..)| *known == kind)
+}
+
+/// The difference of two values of a signature from which on it counts linearly.
+fn limit(kind: SignatureKind, weight: f64) -> f64 {
+    OUTLYING * (weight / kind.n_values() as f64).sqrt()
+}
+
+/// Sums that processors add up together.
+const LANES: usize = 4;
+
+/// The sum of Huber's losses of differences times `factor`. The order of summation does not depend on the processor.
+fn huber(a: &[f32], b: &[f32], factor: f64, limit: f64) -> f64 {
+    let loss = |(x, y): (&f32, &f32)| {
+        let change = f64::from(x - y).abs() * factor;
+        let inside = change.min(limit);
+        inside * (2.0 * change - inside)
+    };
+    let ((a, rest_a), (b, rest_b)) = (a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
+    let mut sums = [0.0; LANES];
+    for (a, b) in a.iter().zip(b) {
+        for ((sum, x), y) in sums.iter_mut().zip(a).zip(b) {
+            *sum += loss((x, y));
+        }
+    }
+    sums.into_iter().sum::<f64>() + rest_a.iter().zip(rest_b).map(loss).sum::<f64>()
 }
 
 #[cfg(test)]
@@ -290,33 +258,43 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_table_lists_every_signature_and_weights_sum_to_one() {
-        assert!(SignatureKind::ALL.into_iter().eq(CALIBRATION.map(|(kind, ..)| kind)));
-        assert_eq!(SignatureKind::ALL.last(), Some(&SignatureKind::Rigid));
-        let total: f64 = SignatureKind::ALL.into_iter().map(ShapeMetric::weight).sum();
-        assert!((total - RIGID[1] - 1.0).abs() < 1e-9);
+    fn weights_sum_to_one() {
+        let total: f64 = SignatureKind::INTRINSIC.into_iter().map(ShapeMetric::weight).sum();
+        assert!((total - 1.0).abs() < 1e-9);
+        assert!(SignatureKind::ALL.into_iter().all(|kind| ShapeMetric::unit(kind) > 0.0));
     }
 
     #[test]
-    fn outlying_values_count_linearly() {
-        let limit = OUTLYING / (ShapeMetric::INTRINSIC_LENGTH as f64).sqrt();
-        let at = |change: f64| ShapeMetric::robust(&[0.0, 1.0], &[change as f32, 1.0]);
-        assert!((at(0.5 * limit) / (0.5 * limit) - 1.0).abs() < 1e-6, "small changes count fully");
-        for times in [2.0, 5.0, 20.0] {
-            let expected = limit * (2.0 * times - 1.0f64).sqrt();
-            assert!((at(times * limit) / expected - 1.0).abs() < 1e-6, "{times}");
+    fn values_beyond_four_deviations_of_their_kind_count_linearly() {
+        let mut start = 0;
+        for (kind, _, weight) in calibration::FUSED {
+            let limit = 4.0 * (weight / kind.n_values() as f64).sqrt();
+            let at = |change: f64| {
+                let mut vector = vec![0.0f32; ShapeMetric::FUSED_LENGTH];
+                let other = vector.clone();
+                vector[start] = change as f32;
+                ShapeMetric::robust(&vector, &other)
+            };
+            assert!((at(0.99 * limit) / (0.99 * limit) - 1.0).abs() < 1e-6, "small changes count fully");
+            for times in [2.0, 5.0, 20.0] {
+                let expected = limit * (2.0 * times - 1.0f64).sqrt();
+                assert!((at(times * limit) / expected - 1.0).abs() < 1e-6, "{times}");
+            }
+            start += kind.n_values();
         }
-        let many = |change: f32| [vec![0.0; ShapeMetric::FUSED_LENGTH], vec![change]].concat();
-        assert!((ShapeMetric::robust(&many(0.0), &many(7.0)) - 7.0).abs() < 1e-12, "size is not limited");
+        let sized = |size: f32| [vec![0.0; ShapeMetric::FUSED_LENGTH], vec![size]].concat();
+        assert!((ShapeMetric::robust(&sized(0.0), &sized(7.0)) - 7.0).abs() < 1e-12, "size is not limited");
     }
 
     #[test]
-    fn space_counts_between_surfaces_that_do_not_bend() {
-        let vector = |rigid: f32| [vec![0.0; ShapeMetric::INTRINSIC_LENGTH], vec![rigid; 27]].concat();
-        let robust = |a: f32, b: f32| ShapeMetric::robust(&vector(a), &vector(b));
-        assert!((robust(0.2, 0.3) - ShapeMetric::fused(&vector(0.2), &vector(0.3))).abs() < 1e-6);
-        assert!(robust(0.2, 0.3) > 0.05);
-        assert_eq!((robust(0.2, 0.0), robust(0.0, 0.0)), (0.0, 0.0));
+    fn space_only_separates_two_surfaces_that_do_not_bend() {
+        let rigid = |change: f32| vec![0.3 + change; SignatureKind::Rigid.n_values()];
+        assert_eq!(ShapeMetric::rigid(&rigid(0.0), &rigid(0.0)), 0.0);
+        assert_eq!((ShapeMetric::rigid(&rigid(0.0), &[]), ShapeMetric::rigid(&[], &[])), (0.0, 0.0));
+        // Copies are a small part of the unit of two poses apart, and no parts are farther than two shapes.
+        let copies = (0.0014f64.powi(2) / 27.0).sqrt() as f32;
+        assert!((0.03..0.1).contains(&ShapeMetric::rigid(&rigid(0.0), &rigid(copies))));
+        assert_eq!(ShapeMetric::rigid(&rigid(0.0), &rigid(9.0)), ShapeMetric::SAME_SHAPE.at);
     }
 
     #[test]
@@ -347,17 +325,12 @@ mod tests {
 
     #[test]
     fn a_form_at_the_limit_has_the_distance_at_which_classes_become_as_likely() {
-        let metric = ShapeMetric::default();
         let at = ShapeMetric::SAME_CLASS.at;
         for fused in [0.0, 0.3 * at, 0.85 * at] {
-            let limit = metric.same_below(fused);
+            let limit = ShapeMetric::same_below(fused);
             assert!(ShapeMetric::combined(fused, limit * 1.001) > at);
             assert!(ShapeMetric::combined(fused, limit * 0.999) < at);
         }
-        assert_eq!(metric.same_below(1.15 * at), 0.0);
-        let ratio =
-            ShapeMetric { distance: FormDistance::Hausdorff95 }.same_below(1.0) / metric.same_below(1.0);
-        let units = [FormDistance::Hausdorff95, FormDistance::NearestNeighborRms].map(ShapeMetric::form_unit);
-        assert!((ratio - units[0] / units[1]).abs() < 1e-12);
+        assert_eq!(ShapeMetric::same_below(1.15 * at), 0.0);
     }
 }

@@ -10,11 +10,12 @@ use crate::error::DescriptorError;
 use crate::metric::{ShapeDistance, ShapeMetric};
 use crate::prepared::PreparedForm;
 
-/// A shape prepared for comparison: its fused vector, and its form rounded to the 32 bits that an index stores, so that a
+/// A shape prepared for comparison: its fused vector, its rigid signature if it has one, and its form rounded to the 32 bits that an index stores, so that a
 /// shape compares in the same way before and after it is stored.
 #[derive(Debug)]
 pub struct PreparedShape {
     fused: Vec<f32>,
+    rigid: Vec<f32>,
     form: CanonicalForm,
     area: Option<f64>,
     unit: PreparedForm,
@@ -32,7 +33,24 @@ impl PreparedShape {
         let weights = form.weights().iter().map(|w| rounded(*w)).collect();
         let form = CanonicalForm::from_parts(points, weights, form.area().and(area))?;
         let unit = form.normalized(Normalization::UnitArea);
-        Ok(Self { fused, unit: PreparedForm::new(&unit)?, form, area })
+        Ok(Self { fused, rigid: Vec::new(), unit: PreparedForm::new(&unit)?, form, area })
+    }
+
+    /// The shape with the values of its [rigid signature](crate::rigid_signature); none if its surface may bend.
+    #[must_use]
+    pub fn with_rigid(self, rigid: Vec<f32>) -> Self {
+        Self { rigid, ..self }
+    }
+
+    /// The values of its rigid signature, if it has one.
+    pub fn rigid(&self) -> &[f32] {
+        &self.rigid
+    }
+
+    /// The robust distance, with the [rigid part](ShapeMetric::rigid). [`ShapeMetric::robust`] of the fused vectors is a lower
+    /// bound.
+    pub fn robust(&self, other: &Self) -> f64 {
+        ShapeMetric::robust(&self.fused, &other.fused).hypot(ShapeMetric::rigid(&self.rigid, &other.rigid))
     }
 
     /// All signatures as one vector.
@@ -66,8 +84,6 @@ impl PreparedShape {
 /// most once, and only when it is needed.
 #[derive(Debug)]
 pub struct ShapePair<'a> {
-    /// The metric that compares the shapes.
-    pub metric: ShapeMetric,
     /// The two shapes.
     pub shapes: [&'a PreparedShape; 2],
     best: OnceCell<FormAlignment>,
@@ -76,9 +92,9 @@ pub struct ShapePair<'a> {
 
 impl<'a> ShapePair<'a> {
     /// Two shapes, not yet aligned.
-    pub fn new(metric: ShapeMetric, shapes: [&'a PreparedShape; 2]) -> Self {
+    pub fn new(shapes: [&'a PreparedShape; 2]) -> Self {
         let [best, other_handed] = Default::default();
-        Self { metric, shapes, best, other_handed }
+        Self { shapes, best, other_handed }
     }
 
     /// The pair with a [best](Self::best) alignment that is known already.
@@ -123,7 +139,8 @@ impl<'a> ShapePair<'a> {
     /// How far apart the shapes are, regardless of size.
     pub fn distance(&self) -> ShapeDistance {
         let [a, b] = self.shapes.map(|shape| ShapeMetric::without_size(&shape.fused));
-        let combined = ShapeMetric::combined(ShapeMetric::robust(a, b), self.best().rms);
+        let rigid = ShapeMetric::rigid(&self.shapes[0].rigid, &self.shapes[1].rigid);
+        let combined = ShapeMetric::combined(ShapeMetric::robust(a, b).hypot(rigid), self.best().rms);
         ShapeDistance { fused: ShapeMetric::fused(a, b), combined }
     }
 
@@ -153,9 +170,8 @@ mod tests {
 
     #[test]
     fn the_better_handed_alignment_is_the_best_one() {
-        let metric = ShapeMetric::default();
         let (left, right) = (spiral(4.0, 1.0, 1.0), spiral(4.0, -1.0, 3.0));
-        let pair = ShapePair::new(metric, [&left, &right]);
+        let pair = ShapePair::new([&left, &right]);
         let best = pair.best();
         assert!(best.rms < 1e-6 && best.alignment.reflected && (pair.scale() - 3.0).abs() < 1e-12);
         assert_eq!(pair.best_with(Reflections::Require), best);
@@ -167,10 +183,9 @@ mod tests {
 
     #[test]
     fn a_known_alignment_is_not_searched_again() {
-        let metric = ShapeMetric::default();
         let (a, b) = (spiral(4.0, 1.0, 1.0), spiral(5.0, 1.0, 1.0));
-        let known = FormAlignment { rms: 0.5, ..ShapePair::new(metric, [&a, &b]).best() };
-        let pair = ShapePair::new(metric, [&a, &b]).with_best(known);
+        let known = FormAlignment { rms: 0.5, ..ShapePair::new([&a, &b]).best() };
+        let pair = ShapePair::new([&a, &b]).with_best(known);
         assert_eq!(pair.best(), known);
         let robust = ShapeMetric::robust(a.fused(), b.fused());
         assert_eq!(
@@ -181,10 +196,9 @@ mod tests {
 
     #[test]
     fn storing_a_form_changes_no_comparison() {
-        let metric = ShapeMetric::default();
         let (a, b) = (spiral(4.0, 1.0, 1.0), spiral(5.0, 1.0, 2.0));
         let stored = PreparedShape::new(b.fused.clone(), &b.form, b.area).unwrap();
-        let best = |b| ShapePair::new(metric, [&a, b]).best();
+        let best = |b| ShapePair::new([&a, b]).best();
         assert_eq!(best(&b), best(&stored));
     }
 }

@@ -3,8 +3,8 @@
 //! ```text
 //! vectors build BASE.npy INDEX           builds an index and prints the seconds taken
 //! vectors add QUERIES.npy INDEX COUNT    adds the first rows one by one; prints the seconds and the bytes of each addition
-//! vectors serve INDEX QUERIES.npy        for each input line `memory|file|scan|graph K FIRST COUNT`, prints
-//!                                        {"seconds": [..], "found": [[..], ..]}; `graph` ranks on the graph, from the file
+//! vectors serve INDEX QUERIES.npy        for each input line `scan|graph K FIRST COUNT`, prints
+//!                                        {"seconds": [..], "found": [[..], ..]}
 //! ```
 //!
 //! Arrays are little-endian float32 in C order.
@@ -12,14 +12,9 @@
 use std::error::Error;
 use std::io::{BufRead, Write};
 use std::path::Path;
-use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use base::Observer;
-use canonform_index::{
-    ContentHash, Found, Index, IndexWriter, Job, NearShape, SearchMode, Searcher, Shape, ShapeEntry,
-    ShapeVectors,
-};
+use canonform_index::{ContentHash, Index, IndexWriter, Job, Shape, ShapeEntry, ShapeVectors};
 use serde_json::json;
 
 /// Shapes in one transaction.
@@ -81,38 +76,10 @@ fn build(base: &Path, path: &Path) -> Result<(), Box<dyn Error>> {
     let stored = start.elapsed().as_secs_f64();
     drop(shapes);
     drop(rows);
-    let graph = GraphTime::default();
-    writer.finish(&graph)?;
+    writer.finish(&())?;
     let finished = start.elapsed().as_secs_f64() - stored;
-    let graph = graph.seconds();
-    println!(
-        "{}",
-        json!({ "stored": stored, "finished": finished, "graph": graph, "megabytes": peak_memory() })
-    );
+    println!("{}", json!({ "stored": stored, "finished": finished, "megabytes": peak_memory() }));
     Ok(())
-}
-
-/// When the search for the neighbours of all shapes began, and its last step.
-#[derive(Default)]
-struct GraphTime(Mutex<Option<[Instant; 2]>>);
-
-impl GraphTime {
-    fn seconds(&self) -> f64 {
-        let times = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        times.map_or(0.0, |[begin, end]| (end - begin).as_secs_f64())
-    }
-}
-
-impl Observer for GraphTime {
-    fn begin(&self, _: &str, _: usize) {
-        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some([Instant::now(); 2]);
-    }
-
-    fn step(&self) {
-        if let Some([_, end]) = self.0.lock().unwrap_or_else(PoisonError::into_inner).as_mut() {
-            *end = Instant::now();
-        }
-    }
 }
 
 fn serve(path: &Path, queries: &Path) -> Result<(), Box<dyn Error>> {
@@ -120,47 +87,26 @@ fn serve(path: &Path, queries: &Path) -> Result<(), Box<dyn Error>> {
     let start = Instant::now();
     let index = Index::open(path)?;
     let opened = start.elapsed().as_secs_f64();
-    let searcher = Searcher::load(&index)?;
+    index.vector_table()?;
     let loaded = start.elapsed().as_secs_f64();
-    let about = searcher.nearest(&queries[..dim], 1, SearchMode::Auto)?;
-    let ready =
-        json!({ "opened": opened, "loaded": loaded, "recall": about.recall, "megabytes": peak_memory() });
-    println!("{ready}");
+    println!("{}", json!({ "opened": opened, "loaded": loaded, "megabytes": peak_memory() }));
     std::io::stdout().flush()?;
     for line in std::io::stdin().lock().lines() {
         let line = line?;
         let words: Vec<&str> = line.split_whitespace().collect();
         let [from, k, first, count] = words[..] else { return Err(format!("`{line}`?").into()) };
         let (k, first, count): (usize, usize, usize) = (k.parse()?, first.parse()?, count.parse()?);
-        let (mut seconds, mut found, mut measured, mut lists) = (Vec::new(), Vec::new(), 0, 0);
+        let (mut seconds, mut found) = (Vec::new(), Vec::new());
         for query in queries[first * dim..(first + count) * dim].chunks_exact(dim) {
             let start = Instant::now();
-            let answer: Found = match from {
-                "graph" => {
-                    let on_graph = index.nearest_on_graph(query, k, SearchMode::Auto)?;
-                    let near = on_graph.shapes.into_iter();
-                    let shapes =
-                        near.map(|near| NearShape { id: near.id, distance: near.distance }).collect();
-                    lists += on_graph.n_lists;
-                    Found { shapes, ..on_graph.search }
-                }
-                "memory" => searcher.nearest(query, k, SearchMode::Auto)?,
-                "scan" => searcher.nearest(query, k, SearchMode::Exact)?,
-                _ => index.nearest(query, k, SearchMode::Auto)?,
+            let ids: Vec<String> = match from {
+                "graph" => index.nearest_on_graph(query, k)?.into_iter().map(|near| near.id).collect(),
+                _ => index.nearest(query, k)?.into_iter().map(|near| near.id).collect(),
             };
             seconds.push(start.elapsed().as_secs_f64());
-            measured += answer.n_measured;
-            found.push(answer.shapes.iter().map(|near| near.id.parse()).collect::<Result<Vec<u32>, _>>()?);
+            found.push(ids.iter().map(|id| id.parse()).collect::<Result<Vec<u32>, _>>()?);
         }
-        println!(
-            "{}",
-            json!({
-                "seconds": seconds,
-                "found": found,
-                "measured": measured as f64 / count as f64,
-                "lists": lists as f64 / count as f64,
-            })
-        );
+        println!("{}", json!({ "seconds": seconds, "found": found }));
         std::io::stdout().flush()?;
     }
     Ok(())

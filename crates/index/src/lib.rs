@@ -1,7 +1,7 @@
 //! A durable index: shapes in one file, found by name or by nearest vectors.
 //!
 //! ```text
-//! Shape -> IndexWriter -> NAME.work -> finish -> NAME -> Index -> Searcher | each | verify | export
+//! Shape -> IndexWriter -> NAME.work -> finish -> NAME -> Index -> nearest | each | verify | export
 //! ```
 //!
 //! An index is a sorted map from keys to values. Its file holds the map as it was written first, followed by what additions
@@ -13,7 +13,7 @@
 //! Vectors come from outside; the index does not know what they describe.
 //!
 //! ```
-//! use canonform_index::{ContentHash, Index, IndexWriter, Job, SearchMode, Searcher};
+//! use canonform_index::{ContentHash, Index, IndexWriter, Job};
 //! use canonform_index::{Shape, ShapeEntry, ShapeVectors};
 //!
 //! # let folder = tempfile::tempdir().unwrap();
@@ -34,9 +34,7 @@
 //!
 //! let index = Index::open(&path)?;
 //! assert_eq!((index.len(), index.entry("cat0")?.path.as_str()), (2, "cat0.off"));
-//! let found = index.nearest(&[4.0, 0.0], 1, SearchMode::Auto)?; // in the file
-//! assert_eq!(found.shapes[0].id, "dog0");
-//! assert_eq!(found, Searcher::load(&index)?.nearest(&[4.0, 0.0], 1, SearchMode::Auto)?); // in memory
+//! assert_eq!(index.nearest(&[4.0, 0.0], 1)?[0].id, "dog0");
 //! # Ok::<(), canonform_index::IndexError>(())
 //! ```
 //!
@@ -45,11 +43,11 @@
 //! | module | contents |
 //! |---|---|
 //! | `texts`, `floats`, `shape` | names, numbers, the record of one shape |
-//! | `vectors` | nearest vectors in memory: kernels, k-means, cells, the graph of nearest neighbours, calibration, the threshold of unknown classes. Knows no file |
+//! | `vectors` | all vectors in memory: the nearest, and the threshold of unknown classes. Knows no file |
 //! | `store` | a sorted map in a file, a log of changes, and views of both. Knows no shapes |
 //! | `tables`, `derived` | the tables of an index, and those that follow from its shapes |
 //! | `reader`, `writer` | [`Index`], [`IndexWriter`] |
-//! | `search` | [`Index::nearest`], [`Index::nearest_on_graph`], [`Searcher`], [`class_threshold`] |
+//! | `search` | [`Index::nearest`], [`Index::nearest_on_graph`], [`class_threshold`] |
 //! | `verify`, `export` | [`verify`], [`Index::export`], [`Index::export_as`] |
 
 mod derived;
@@ -73,7 +71,8 @@ pub use base::ContentHash;
 pub use error::{FORMAT_VERSION, IndexError};
 pub use export::{ExportError, ExportFormat, csv_field, text_cell};
 pub use reader::Index;
-pub use search::{Found, FoundOnGraph, NearShape, RankedShape, SearchMode, Searcher, class_threshold};
+pub use search::{NearShape, RankedShape, class_threshold};
 pub use shape::{Shape, ShapeEntry, ShapeVectors};
+pub use vectors::VectorTable;
 pub use verify::{Verification, verify};
 pub use writer::{IndexWriter, Job, damaged_path, work_path};

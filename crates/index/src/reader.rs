@@ -4,11 +4,13 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::OnceLock;
 
-use crate::derived::{Heads, about};
+use retrieval::UnknownThreshold;
+
+use crate::derived::{about, vectors};
 use crate::floats::Floats;
 use crate::store::{StoredFile, View};
-use crate::tables::{BODIES, CLASSES, ENTRIES, FUSED};
-use crate::{IndexError, Shape, ShapeEntry, ShapeVectors};
+use crate::tables::{About, BODIES, CLASSES, ENTRIES, FUSED};
+use crate::{IndexError, Shape, ShapeEntry, ShapeVectors, VectorTable};
 
 /// A finished index, open for reading.
 ///
@@ -18,9 +20,10 @@ use crate::{IndexError, Shape, ShapeEntry, ShapeVectors};
 pub struct Index {
     options: String,
     n_shapes: usize,
+    threshold: Option<UnknownThreshold>,
     pub(crate) stored: StoredFile,
     /// Read with the first search.
-    heads: OnceLock<Heads>,
+    vectors: OnceLock<VectorTable>,
 }
 
 impl Index {
@@ -32,20 +35,31 @@ impl Index {
     pub fn open(path: &Path) -> Result<Self, IndexError> {
         let stored = StoredFile::open(path)?;
         let about = about(View::of_file(&stored))?;
-        Ok(Self { options: about.options, n_shapes: about.cells.n, stored, heads: OnceLock::new() })
+        let About { options, n: n_shapes, threshold, .. } = about;
+        Ok(Self { options, n_shapes, threshold, stored, vectors: OnceLock::new() })
     }
 
     pub(crate) fn view(&self) -> View<'_> {
         View::of_file(&self.stored)
     }
 
-    /// What a search needs before it reads cells.
-    pub(crate) fn heads(&self) -> Result<&Heads, IndexError> {
-        if let Some(heads) = self.heads.get() {
-            return Ok(heads);
+    /// The fused vectors of all shapes, which stay in memory: `4 d` bytes and the name of each shape.
+    pub fn vector_table(&self) -> Result<&VectorTable, IndexError> {
+        if let Some(vectors) = self.vectors.get() {
+            return Ok(vectors);
         }
-        let heads = Heads::read(self.view())?;
-        Ok(self.heads.get_or_init(|| heads))
+        let vectors = vectors(self.view())?;
+        if vectors.len() != self.n_shapes {
+            return Err(self.view().damaged("the number of its vectors is wrong"));
+        }
+        Ok(self.vectors.get_or_init(|| vectors))
+    }
+
+    /// A query whose nearest shape is farther belongs to no class of the index; `None` if the classes are too small to
+    /// tell. From at most 512 of the shapes when the index was finished.
+    #[must_use]
+    pub fn threshold(&self) -> Option<UnknownThreshold> {
+        self.threshold
     }
 
     /// The file.
@@ -143,15 +157,6 @@ impl Index {
             true => Err(view.damaged("there are vectors without an entry").into()),
             false => Ok(()),
         }
-    }
-
-    /// The fused vectors of all shapes, one after the other in ascending order of names.
-    pub fn fused_vectors(&self) -> Result<Vec<f32>, IndexError> {
-        let mut all = Vec::new();
-        for row in FUSED.rows(self.view(), &[]) {
-            all.extend(row?.1.0);
-        }
-        Ok(all)
     }
 
     /// All names and entries, in ascending order of names.

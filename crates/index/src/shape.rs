@@ -51,7 +51,7 @@ pub struct Shape {
     pub vectors: ShapeVectors,
 }
 
-/// Stands for a shape in the graph and among the trials: the first 64 bits of the hash of its name.
+/// Orders shapes at random: the first 64 bits of the hash of a name.
 pub(crate) type ShapeKey = u64;
 
 pub(crate) fn shape_key(id: &str) -> ShapeKey {

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use base::Observer;
 use serde::{Deserialize, Serialize};
 
-use crate::derived::{changes, trained};
-use crate::store::{Changes, Log, Record, StoredFile, View, decode, encode};
-use crate::tables::{ENTRIES, FUSED, SHAPES, put_shape, remove_shape};
+use crate::derived::derived;
+use crate::store::{Changes, Log, StoredFile, View, decode, encode};
+use crate::tables::{ENTRIES, FUSED, put_shape, remove_shape};
 use crate::{Index, IndexError, Shape, ShapeEntry};
 
 /// The job of a writer. An interrupted job can be resumed by the same kind of job.
@@ -258,36 +258,23 @@ impl IndexWriter {
         }
     }
 
-    /// Finishes the index: appends what is new to it, or replaces it. For a large index, finding the neighbours of all
-    /// shapes takes minutes.
+    /// Finishes the index: appends what is new to it, or replaces it.
     ///
     /// # Errors
     /// [`IndexError::Io`]; then the index is unchanged, and the work is kept.
     pub fn finish(self, observer: &dyn Observer) -> Result<Index, IndexError> {
+        observer.begin("counting classes", 0);
         let view = self.view();
-        let dim = self.length.unwrap_or(1);
-        let followed = match &self.base {
-            Some(base) => changes(view, base, self.n_shapes()?, dim)?,
-            None => None,
-        };
-        match followed {
-            Some(changes) if view.append(&changes)? => {}
-            Some(changes) => self.replace(view.records_with(&changes))?,
-            None => {
-                let derived = trained(view, &self.options, observer)?;
-                self.replace(derived.records().chain(view.records(&SHAPES)))?;
+        let changes = derived(view, &self.options)?;
+        if !view.append(&changes)? {
+            if self.replaces_damaged {
+                keep_damaged(&self.path)?;
             }
+            StoredFile::write(&self.path, view.records_with(&changes))?;
         }
         let index = Index::open(&self.path)?;
         self.discard()?;
         Ok(index)
-    }
-
-    fn replace(&self, records: impl Iterator<Item = Result<Record, IndexError>>) -> Result<(), IndexError> {
-        if self.replaces_damaged {
-            keep_damaged(&self.path)?;
-        }
-        StoredFile::write(&self.path, records)
     }
 
     /// Discards the work. The index stays unchanged.

@@ -1,7 +1,7 @@
 //! Alignment and comparison of two shapes.
 
 use canonform::compare_meshes;
-use canonform::descriptors::{FormAlignment, Reflections, ShapeMetric, align_forms};
+use canonform::descriptors::{FormAlignment, Reflections, align_forms};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
@@ -36,11 +36,6 @@ impl Alignment {
     fn rms(&self) -> f64 {
         self.0.rms
     }
-
-    #[getter]
-    fn hausdorff95(&self) -> f64 {
-        self.0.hausdorff95
-    }
 }
 
 /// Aligns two forms in mesh units.
@@ -62,11 +57,10 @@ pub(crate) fn compare<'py>(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(String, Bound<'py, PyArray1<f64>>)> {
     let settings = Settings::parse(settings)?;
-    let metric = ShapeMetric { distance: settings.chosen("distance") };
     let [of_a, of_b] = [settings.form(a.inner.repair)?, settings.form(b.inner.repair)?];
     let (found, residuals) = run(py, &settings.budget()?, progress.as_ref(), |observer| {
         let sides = [a.compared(&of_a, observer)?, b.compared(&of_b, observer)?];
-        let mut found = compare_meshes(metric, [sides[0].compared(), sides[1].compared()])?;
+        let mut found = compare_meshes([sides[0].compared(), sides[1].compared()])?;
         found.relation = found.relation.named(&names[0], &names[1]);
         let residuals = a.inner.in_input_order(&found.overlay.residuals[0], f64::NAN);
         Ok((found, residuals))

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use canonform::descriptors::DescriptorError;
-use canonform::index::{ExportFormat, FORMAT_VERSION, IndexError, SearchMode, ShapeEntry};
+use canonform::index::{ExportFormat, FORMAT_VERSION, IndexError, ShapeEntry};
 use canonform::mesh::RepairOptions;
 use canonform::{
     BuildOptions, DescribeOptions, DescribedQuery, DuplicateOptions, Elsewhere, Error, EvaluateOptions,
@@ -62,10 +62,9 @@ fn rank_by<T: FromStr<Err = String>>(rank: &str) -> PyResult<T> {
     })
 }
 
-fn search_options(k: usize, rank: &str, explain: bool, exact: bool) -> PyResult<SearchOptions> {
-    let mode = if exact { SearchMode::Exact } else { SearchMode::Auto };
+fn search_options(k: usize, rank: &str, explain: bool) -> PyResult<SearchOptions> {
     let explain = if explain { Explain::Kind } else { Explain::No };
-    Ok(SearchOptions { k, mode, explain, rank_by: rank_by(rank)? })
+    Ok(SearchOptions { k, explain, rank_by: rank_by(rank)? })
 }
 
 /// Where classes come from: a word, or a label file.
@@ -196,7 +195,6 @@ impl Index {
     }
 
     /// Finds the shapes nearest to a surface, a mesh file or a shape of the index; returns the report as JSON.
-    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn search(
         &self,
         py: Python<'_>,
@@ -205,9 +203,8 @@ impl Index {
         k: usize,
         rank: &str,
         explain: bool,
-        exact: bool,
     ) -> PyResult<String> {
-        let options = search_options(k, rank, explain, exact)?;
+        let options = search_options(k, rank, explain)?;
         let (surface, path) = match &query {
             Wanted::Surface(surface) => (Some(surface.get()), PathBuf::new()),
             Wanted::Text(path) => (None, path.clone()),
@@ -249,16 +246,15 @@ impl Index {
         py: Python<'_>,
         vector: PyReadonlyArray1<'_, f32>,
         k: usize,
-        exact: bool,
     ) -> PyResult<Vec<(String, f64)>> {
-        let (vector, mode) = (vector.as_slice()?, if exact { SearchMode::Exact } else { SearchMode::Auto });
-        let found = run_alone(py, None, |_| Ok(self.search.index().nearest(vector, k, mode)?))?;
-        Ok(found.shapes.into_iter().map(|shape| (shape.id, shape.distance)).collect())
+        let vector = vector.as_slice()?;
+        let found = run_alone(py, None, |_| Ok(self.search.index().nearest(vector, k)?))?;
+        Ok(found.into_iter().map(|shape| (shape.id, shape.distance)).collect())
     }
 
     /// A shape as a query for other indexes, as JSON.
     fn pack(&self, py: Python<'_>, id: &str, rank: &str, explain: bool) -> PyResult<String> {
-        let options = search_options(0, rank, explain, false)?;
+        let options = search_options(0, rank, explain)?;
         Ok(json(&run_alone(py, None, |observer| self.search.pack(id, &options, observer))?))
     }
 
@@ -476,8 +472,8 @@ pub(crate) fn pack_components(py: Python<'_>, query: &str) -> PyResult<Vec<(Stri
 
 /// How many candidates a search for `k` results has, and how many results each shard gives.
 #[pyfunction]
-pub(crate) fn shortlist(k: usize, n_shapes: usize, rank: &str) -> PyResult<[usize; 2]> {
-    Ok(PackedQuery::shortlist(k, n_shapes, rank_by(rank)?))
+pub(crate) fn shortlist(k: usize, n_shapes: usize) -> [usize; 2] {
+    PackedQuery::shortlist(k, n_shapes)
 }
 
 /// The answer to a search in shards, from what they found; all as JSON.

@@ -93,15 +93,13 @@ cat.signature("shape-dna")
 cat.signature("shapedna")  # wrong
 cat.laplacian(kind="cotangents")  # wrong
 cat.mass(kind="lumped")  # wrong
-canonform.compare(cat, "dog.off", distance="hausdorff95")
-canonform.compare(cat, "dog.off", distance="hausdorff")  # wrong
 canonform.match(cat, cat, geodesic="fmm")  # wrong
 canonform.match(cat, cat).best.transfer([1.0], to="c")  # wrong
 index = canonform.Index.build("meshes", "i.canonform", method="landmark")
 canonform.Index.build("meshes", "i.canonform", method="pca")  # wrong
 index.search(cat, rank="graph")
 index.search(cat, rank="best")  # wrong
-index.evaluate(by="moments")
+index.evaluate(by="shape-dna")
 index.evaluate(by="moment")  # wrong
 index.distances(kind="forms")  # wrong
 index.duplicates(kinds=["scaled"])
@@ -129,7 +127,6 @@ def test_literals_are_what_rust_reports(tmp_path: Path) -> None:
         "regularization": _settings.Regularization,
         "stress": _settings.StressChoice,
         "components": _settings.Components,
-        "distance": _settings.FormDistance,
     }
     assert {name: list(get_args(literal)) for name, literal in literals.items()} == stated
     assert list(get_args(_settings.SignatureKind)) == ["fused", *canonform.signature_kinds()]

@@ -257,7 +257,7 @@ def test_settings_reach_the_library(cat: Shape) -> None:
         (lambda s: s.canonical_form(memory="1K"), canonform.errors.MemoryLimitError, "raise memory="),
         (lambda s: s.canonical_form(memory="much"), OptionError, '"2G"'),
         (lambda s: s.canonical_form(method=Landmark(first=500)), PointError, "vertex 500"),
-        (lambda s: s.signature("magic"), OptionError, '"fused", "moments"'),
+        (lambda s: s.signature("magic"), OptionError, '"fused", "form-spectrum"'),
         (lambda s: canonform.read("nowhere.off"), MissingFileError, "nowhere.off"),
         (lambda s: canonform.read(__file__), MeshError, "unknown mesh format"),
         (lambda s: Surface(grid()[0], grid()[1], components="all"), OptionError, "components="),

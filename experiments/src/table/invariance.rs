@@ -5,12 +5,13 @@
 //! relation to the undamaged shape is right.
 
 use anyhow::{Context as _, Result};
-use canonform::{Handedness, MeshGeometry, Relation, RelationKind, ShapeDescription, describe, rerank};
+use canonform::{
+    Handedness, MeshGeometry, Relation, RelationKind, ShapeDescription, bounds, describe, rerank,
+};
 use datasets::Damage;
-use descriptors::{FormDistance, ShapeMetric, ShapePair, SignatureKind};
+use descriptors::{ShapeMetric, ShapePair, SignatureKind};
 use mesh::{SmoothRegions, TriMesh};
 use report::results::{InvarianceResults, InvarianceRow, SignatureChange};
-use retrieval::Candidate;
 use serde::Deserialize;
 
 use crate::context::Context;
@@ -87,14 +88,12 @@ impl Experiment for InvarianceOptions {
                 let surface = query.damaged(damage)?;
                 let damaged = describe(&surface, &gallery.options, &())?;
                 let shape = damaged.prepare()?;
-                let bound = |index: usize| ShapeMetric::robust(shape.fused(), prepared[index].fused());
-                let mut candidates: Vec<_> =
-                    (0..prepared.len()).map(|index| Candidate { index, bound: bound(index) }).collect();
-                candidates.sort_by(|a, b| a.bound.total_cmp(&b.bound));
+                // As a search in an index does.
+                let candidates = bounds(shape.fused(), prepared.len(), |i| prepared[i].fused());
                 let nearest = rerank(&shape, candidates, 2, |i| Ok(&prepared[i]))?.nearest;
                 let first = nearest.first().context("the collection has shapes")?;
                 let mut others = nearest.iter().filter(|near| near.index != query.own);
-                let pair = ShapePair::new(ShapeMetric::default(), [&shape, &prepared[query.own]]);
+                let pair = ShapePair::new([&shape, &prepared[query.own]]);
                 let mesh = damage.apply(query.shape.surface.mesh(), query.seed);
                 let geometries =
                     [query.shape.surface.mesh(), &mesh].map(|mesh| MeshGeometry::new(mesh, None));
@@ -110,7 +109,7 @@ impl Experiment for InvarianceOptions {
                     is_told,
                     name: query.shape.name.clone(),
                     changes: changes(&gallery.described[query.own], &damaged),
-                    form: pair.best().rms / ShapeMetric::form_unit(FormDistance::NearestNeighborRms),
+                    form: pair.best().rms / ShapeMetric::FORM_UNIT,
                     combined: pair.distance().combined,
                     is_top1: gallery.is_right(query, first.index),
                     is_top1_of_others: others.next().is_some_and(|near| gallery.is_right(query, near.index)),
@@ -160,7 +159,7 @@ fn row(damage: Damage, found: &[DamagedShape]) -> InvarianceRow {
     InvarianceRow {
         damage: damage.to_string(),
         keeps_surface: damage.keeps_surface(),
-        signatures: SignatureKind::ALL.into_iter().enumerate().map(change).collect(),
+        signatures: SignatureKind::INTRINSIC.into_iter().enumerate().map(change).collect(),
         form: median_of(&|f| f.form),
         combined: median_of(&|f| f.combined),
         largest: farthest.map_or(0.0, |f| f.combined),

@@ -9,7 +9,7 @@ use std::io::Write;
 
 use anyhow::Result;
 use canonform::{ShapeDescription, form_alignments};
-use descriptors::{CanonicalForm, FormDistance, Normalization, ShapeMetric, SignatureKind};
+use descriptors::{CanonicalForm, Normalization, ShapeMetric, SignatureKind};
 use linalg::DistanceMatrix;
 use rayon::prelude::*;
 use report::results::{
@@ -147,7 +147,7 @@ impl RetrievalOptions {
         let form = if aligns { Some(aligned(Normalization::UnitArea)?) } else { None };
         let size_of = |i: usize| ShapeMetric::size_coordinate(shapes[i].area);
         let size = |i: usize, j: usize| size_of(i) - size_of(j);
-        let unit = ShapeMetric::form_unit(FormDistance::NearestNeighborRms);
+        let unit = ShapeMetric::FORM_UNIT;
         let mut found = Vec::new();
         for scale in [Scale::Normalized, Scale::Raw] {
             let area = |shape: &ShapeDescription| Some(shape.area).filter(|_| scale == Scale::Raw);
@@ -168,6 +168,10 @@ impl RetrievalOptions {
                     Some(if scale == Scale::Raw { ShapeMetric::with_size(own, shape.area) } else { own })
                 };
                 let signatures: Vec<_> = shapes.iter().filter_map(signature).collect();
+                // Only mechanical parts have a rigid one.
+                if signatures.len() < n {
+                    continue;
+                }
                 add(kind.name(), all(&|i, j| signatures[i].distance(&signatures[j]))?);
             }
             if scale == Scale::Raw && aligns {

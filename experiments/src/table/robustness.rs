@@ -9,7 +9,7 @@
 use anyhow::{Context as _, Result};
 use canonform::{ShapeDescription, describe};
 use datasets::DamageKind;
-use descriptors::{FormDistance, PreparedShape, ShapeMetric, ShapePair, SignatureKind};
+use descriptors::{PreparedShape, ShapeMetric, ShapePair, SignatureKind};
 use report::results::{CurvesPanel, Series};
 use serde::Deserialize;
 
@@ -91,7 +91,7 @@ fn scores(
         let scores = gallery.scores(query, distance);
         found.push((method, [scores.nn, scores.map]));
     };
-    for kind in SignatureKind::ALL {
+    for kind in SignatureKind::INTRINSIC {
         let signature = description.signature(kind).context("a signature of every kind")?;
         add(kind.name(), &|i| {
             gallery.described[i].signature(kind).map_or(f64::NAN, |s| signature.distance(s))
@@ -101,8 +101,8 @@ fn scores(
     add(FUSED, &|i| ShapeMetric::fused(shape.fused(), prepared[i].fused()));
     if aligned {
         let pairs = prepared.iter().map(|other| {
-            let pair = ShapePair::new(ShapeMetric::default(), [&shape, other]);
-            (pair.best().distance(FormDistance::NearestNeighborRms), pair.distance().combined)
+            let pair = ShapePair::new([&shape, other]);
+            (pair.best().rms, pair.distance().combined)
         });
         let pairs: Vec<(f64, f64)> = pairs.collect();
         add(FORMS, &|i| pairs[i].0);

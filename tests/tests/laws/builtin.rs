@@ -44,8 +44,8 @@ fn distances_distinguish_poses_from_families() {
     let distances: Vec<_> = pairs
         .par_iter()
         .map(|&(i, j)| {
-            let pair = ShapePair::new(ShapeMetric::default(), [&described[i], &described[j]]);
-            let back = ShapePair::new(ShapeMetric::default(), [&described[j], &described[i]]);
+            let pair = ShapePair::new([&described[i], &described[j]]);
+            let back = ShapePair::new([&described[j], &described[i]]);
             let [there, back] = [pair, back].map(|pair| pair.distance());
             let name = format!("{} {}", shapes[i].name, shapes[j].name);
             assert!((there.combined / back.combined - 1.0).abs() < 0.01, "{name}: {there:?} {back:?}");

@@ -36,10 +36,10 @@ fn change_of(kind: SignatureKind, [a, b]: [&ShapeDescription; 2]) -> f64 {
 
 /// The largest change of a signature other than the spectrum of the form, and the combined distance.
 fn change(a: &ShapeDescription, b: &ShapeDescription) -> (f64, f64) {
-    let kinds = SignatureKind::ALL.into_iter().filter(|kind| *kind != SignatureKind::FormSpectrum);
+    let kinds = SignatureKind::INTRINSIC.into_iter().filter(|kind| *kind != SignatureKind::FormSpectrum);
     let largest = kinds.map(|kind| change_of(kind, [a, b])).fold(0.0, f64::max);
     let shapes = [a, b].map(|shape| shape.prepare().unwrap());
-    (largest, ShapePair::new(ShapeMetric::default(), [&shapes[0], &shapes[1]]).distance().combined)
+    (largest, ShapePair::new([&shapes[0], &shapes[1]]).distance().combined)
 }
 
 /// A shape of the built-in families with any number of vertices.

@@ -15,6 +15,7 @@
 //! | `invariance` | signatures of subdivided, simplified, remeshed, noisy and moved shapes |
 //! | `fields` | distance fields against exact distances |
 //! | `matches` | how a changed mesh is related to the original |
+//! | `nearest` | what a search finds |
 //! | `part_maps` | dense maps between a part and a whole |
 //! | `samples` | how many samples are enough, and the interval of the stress after that choice |
 //! | `isometry` | invariance to folding, motions, renumbering and units |
@@ -54,6 +55,8 @@ mod marching;
 #[cfg(test)]
 mod matches;
 mod memory;
+#[cfg(test)]
+mod nearest;
 #[cfg(test)]
 mod one_of_each;
 #[cfg(test)]

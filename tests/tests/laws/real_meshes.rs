@@ -148,7 +148,7 @@ fn distances_distinguish_poses_from_animals() {
         (0..shapes.len()).flat_map(|i| (i + 1..shapes.len()).map(move |j| (i, j))).collect();
     let distance = |&(i, j): &(usize, usize)| {
         let pair = [&described[i], &described[j]];
-        let aligned = ShapePair::new(ShapeMetric::default(), pair);
+        let aligned = ShapePair::new(pair);
         let fused = ShapeMetric::fused(pair[0].fused(), pair[1].fused());
         // The robust loss shortens large distances, so the ratio is one of squared losses.
         let euclidean = ShapeMetric::combined(fused, aligned.best().rms);

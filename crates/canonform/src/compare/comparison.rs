@@ -1,8 +1,7 @@
 //! The numbers of two shapes side by side.
 
 use descriptors::{
-    Alignment, CanonicalForm, FormAlignment, NearestPoints, Reflections, ShapeDistance, ShapeMetric,
-    ShapePair,
+    Alignment, CanonicalForm, NearestPoints, Reflections, ShapeDistance, ShapeMetric, ShapePair,
 };
 use nalgebra::Point3;
 use serde::Serialize;
@@ -38,16 +37,15 @@ impl Comparison {
     /// Compares the forms of a pair; `distance` is the one that the shapes are related by.
     pub(crate) fn new(pair: &ShapePair<'_>, distance: ShapeDistance) -> Result<Self, Error> {
         let (best, proper, raw) = (pair.best(), pair.best_with(Reflections::Forbid), pair.align_raw()?);
-        let shown = |found: FormAlignment| found.distance(pair.metric.distance);
         let Alignment { rotation, translation, reflected } = raw.alignment;
         Ok(Self {
-            distance: shown(raw),
-            normalized_distance: shown(best),
-            same_below: pair.metric.same_below(ShapeMetric::robust_part(distance.combined, best.rms)),
+            distance: raw.rms,
+            normalized_distance: best.rms,
+            same_below: ShapeMetric::same_below(ShapeMetric::robust_part(distance.combined, best.rms)),
             shape_distance: distance,
             scale: pair.scale(),
             reflected,
-            unreflected_distance: shown(proper).max(shown(best)),
+            unreflected_distance: proper.rms.max(best.rms),
             rotation: [0, 1, 2].map(|i| [0, 1, 2].map(|j| rotation[(i, j)])),
             translation: translation.into(),
         })
@@ -57,7 +55,7 @@ impl Comparison {
 /// Compares the shapes of a pair, without their surfaces.
 ///
 /// ```
-/// use canonform::descriptors::{ShapeMetric, ShapePair};
+/// use canonform::descriptors::ShapePair;
 /// use canonform::{DescribeOptions, Surface, compare, describe, mesh::shapes};
 ///
 /// let sheet = shapes::grid(21, 17, 0.1);
@@ -65,9 +63,9 @@ impl Comparison {
 ///     let surface = Surface::new(mesh, &Default::default(), &())?;
 ///     describe(&surface, &DescribeOptions::default(), &())?.prepare()
 /// });
-/// let (metric, flat) = (ShapeMetric::default(), flat?);
-/// assert!(compare(&ShapePair::new(metric, [&flat, &folded?]))?.shape_distance.is_same_shape());
-/// assert!(compare(&ShapePair::new(metric, [&flat, &ball?]))?.shape_distance.is_different());
+/// let flat = flat?;
+/// assert!(compare(&ShapePair::new([&flat, &folded?]))?.shape_distance.is_same_shape());
+/// assert!(compare(&ShapePair::new([&flat, &ball?]))?.shape_distance.is_different());
 /// # Ok::<(), canonform::Error>(())
 /// ```
 ///

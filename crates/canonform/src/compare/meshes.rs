@@ -3,7 +3,7 @@
 use std::borrow::Borrow;
 
 use base::{ContentHash, Observer};
-use descriptors::{CanonicalForm, PreparedShape, ShapeMetric, ShapePair};
+use descriptors::{CanonicalForm, PreparedShape, ShapePair};
 use mesh::{Surface, TriMesh};
 use relations::{Handedness, MeshGeometry, Relation, handedness};
 use serde::Serialize;
@@ -52,8 +52,10 @@ impl<S: Borrow<Surface>> ComparedMesh<S> {
         }
         let description = describe(repaired, &usual, observer)?;
         let (fused, area) = (description.fused.clone(), Some(description.area));
+        let described = description.prepare()?;
         let shape = PreparedShape::new(fused, &form.reduced(usual.points), area)?;
-        Ok(Self { geometry, form, shape, usual: Some(description.prepare()?), surface })
+        let shape = shape.with_rigid(described.rigid().to_vec());
+        Ok(Self { geometry, form, shape, usual: Some(described), surface })
     }
 
     /// The repaired mesh.
@@ -113,7 +115,6 @@ pub struct MeshComparison {
 /// depend on the options that their forms were made with. What is not known of a mesh is not compared.
 ///
 /// ```
-/// use canonform::descriptors::ShapeMetric;
 /// use canonform::{ComparedMesh, FormOptions, RelationKind, Surface, compare_meshes, mesh::shapes};
 ///
 /// let flat = shapes::grid(21, 17, 0.1);
@@ -123,18 +124,17 @@ pub struct MeshComparison {
 ///     let surface = Surface::new(mesh, &Default::default(), &())?;
 ///     sides.push(ComparedMesh::new(mesh, None, surface, &FormOptions::default(), &())?);
 /// }
-/// let found = compare_meshes(ShapeMetric::default(), [sides[0].compared(), sides[1].compared()])?;
+/// let found = compare_meshes([sides[0].compared(), sides[1].compared()])?;
 /// assert_eq!(found.relation.kind, RelationKind::OtherPose);
 /// # Ok::<(), canonform::Error>(())
 /// ```
 ///
 /// # Errors
 /// [`Error::Descriptor`].
-pub fn compare_meshes(metric: ShapeMetric, [a, b]: [Compared<'_>; 2]) -> Result<MeshComparison, Error> {
-    let pair = ShapePair::new(metric, [a.shape, b.shape]);
+pub fn compare_meshes([a, b]: [Compared<'_>; 2]) -> Result<MeshComparison, Error> {
+    let pair = ShapePair::new([a.shape, b.shape]);
     let is_usual = std::ptr::eq(a.shape, a.usual) && std::ptr::eq(b.shape, b.usual);
-    let distance =
-        if is_usual { pair.distance() } else { ShapePair::new(metric, [a.usual, b.usual]).distance() };
+    let distance = if is_usual { pair.distance() } else { ShapePair::new([a.usual, b.usual]).distance() };
     let (handedness, triangulation) = match (a.surface, b.surface) {
         (Some(of_a), Some(of_b)) => {
             let same =
@@ -161,7 +161,7 @@ pub fn compare_meshes(metric: ShapeMetric, [a, b]: [Compared<'_>; 2]) -> Result<
 
 #[cfg(test)]
 mod tests {
-    use descriptors::{FormDistance, Normalization, ShapeDistance};
+    use descriptors::{Normalization, ShapeDistance};
     use mesh::shapes;
     use nalgebra::Point3;
     use relations::{Change, RelationKind};
@@ -199,7 +199,7 @@ mod tests {
     }
 
     /// Two meshes by their shapes and surfaces alone.
-    fn compared_by(metric: ShapeMetric, options: &DescribeOptions, meshes: [&TriMesh; 2]) -> MeshComparison {
+    fn compared_by(options: &DescribeOptions, meshes: [&TriMesh; 2]) -> MeshComparison {
         let all = meshes.map(|mesh| described(mesh, options));
         let sides = all.each_ref().map(|Described { surface, form, shape }| Compared {
             shape,
@@ -209,15 +209,15 @@ mod tests {
             geometry: None,
             content: None,
         });
-        let found = compare_meshes(metric, sides).unwrap();
+        let found = compare_meshes(sides).unwrap();
         // The same numbers without the surfaces.
-        let pair = ShapePair::new(metric, [&all[0].shape, &all[1].shape]);
+        let pair = ShapePair::new([&all[0].shape, &all[1].shape]);
         assert_eq!(compare(&pair).unwrap(), found.comparison);
         found
     }
 
     fn compared(a: &TriMesh, b: &TriMesh) -> MeshComparison {
-        compared_by(ShapeMetric::default(), &DescribeOptions::default(), [a, b])
+        compared_by(&DescribeOptions::default(), [a, b])
     }
 
     fn scaled(mesh: &TriMesh, factor: f64) -> TriMesh {
@@ -264,22 +264,10 @@ mod tests {
             assert_eq!(normalized_distance < same_below, kind != RelationKind::Different);
             // Forms that fit do not make one shape if signatures are far apart.
             let [a, b] = [&hand, other].map(|mesh| described(mesh, &DescribeOptions::default()));
-            let pair = ShapePair::new(ShapeMetric::default(), [&a.shape, &b.shape]);
+            let pair = ShapePair::new([&a.shape, &b.shape]);
             let apart = ShapeDistance { fused: 9.0, combined: 9.0 };
             assert_eq!(Comparison::new(&pair, apart).unwrap().same_below, 0.0);
         }
-    }
-
-    #[test]
-    fn the_distance_shown_does_not_change_the_relation_and_has_its_own_threshold() {
-        let (a, b) = (four_arms([1.0, 1.7, 2.6, 3.5]), four_arms([1.0, 1.6, 2.6, 3.4]));
-        let [rms, hausdorff] = [FormDistance::NearestNeighborRms, FormDistance::Hausdorff95]
-            .map(|distance| compared_by(ShapeMetric { distance }, &DescribeOptions::default(), [&a, &b]));
-        assert_eq!(rms.relation, hausdorff.relation);
-        let (rms, hausdorff) = (rms.comparison, hausdorff.comparison);
-        assert_eq!(rms.rotation, hausdorff.rotation);
-        assert!(hausdorff.normalized_distance > rms.normalized_distance);
-        assert!(hausdorff.same_below > rms.same_below);
     }
 
     #[test]
@@ -289,7 +277,7 @@ mod tests {
         let large = scaled(&small, 4.0);
         for size in [Normalization::UnitArea, Normalization::Raw] {
             let options = DescribeOptions { size, ..DescribeOptions::default() };
-            let found = compared_by(ShapeMetric::default(), &options, [&small, &large]);
+            let found = compared_by(&options, [&small, &large]);
             assert!(found.comparison.shape_distance.combined < 0.01, "{found:?}");
             assert!(found.relation.has(Change::Scaled), "{found:?}");
         }
@@ -301,7 +289,7 @@ mod tests {
         let form = FormOptions { method, ..FormOptions::default() };
         let options = DescribeOptions { form, ..DescribeOptions::default() };
         let hand = four_arms([1.0, 1.7, 2.6, 3.5]);
-        let found = compared_by(ShapeMetric::default(), &options, [&hand, &scaled(&hand, 2.0)]);
+        let found = compared_by(&options, [&hand, &scaled(&hand, 2.0)]);
         assert!(found.relation.has(Change::Scaled));
         let found = found.comparison;
         assert_eq!(found.distance, found.normalized_distance);

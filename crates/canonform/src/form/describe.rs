@@ -3,8 +3,8 @@
 use base::Observer;
 use descriptors::{
     CanonicalForm, DescriptorError, DiscAreas, LaplaceSpectrum, Normalization, PreparedShape, SampledForm,
-    ShapeMetric, Signature, SignatureKind, d2_histogram, geodesic_spectrum, heat_kernel_signature,
-    moment_signature, rigid_signature, shape_dna, wave_kernel_signature,
+    ShapeMetric, Signature, SignatureKind, geodesic_spectrum, heat_kernel_signature, rigid_signature,
+    shape_dna, wave_kernel_signature,
 };
 use mesh::{RepairReport, Shortcut};
 
@@ -22,9 +22,6 @@ const BYTES_PER_VERTEX: usize = 5000;
 /// from one of 28,000 in the combined distance, where subdivision changes 0.14; other shapes are several units apart.
 const MOST_VERTICES: usize = 30_000;
 
-/// Points whose distances [`d2_histogram`] counts. Eight bins need no more of them.
-const PAIRED_POINTS: usize = 250;
-
 /// Everything that an index keeps of a shape.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShapeDescription {
@@ -32,11 +29,12 @@ pub struct ShapeDescription {
     pub options: DescribeOptions,
     /// The canonical form at evenly spread points, in mesh units, with the area of the surface.
     pub form: CanonicalForm,
-    /// One signature of every kind, in the order of [`SignatureKind::ALL`], without size.
+    /// Signatures in the order of [`SignatureKind::ALL`], without size: one of every kind, but a rigid one only if the surface does
+    /// not bend.
     pub signatures: Vec<Signature>,
     /// The areas of geodesic discs, which parts of the shape are compared with.
     pub disc_areas: DiscAreas,
-    /// All signatures as one vector, with the size if it counts. An index searches by it.
+    /// All signatures that bending does not change as one vector, with the size if it counts. An index searches by it.
     pub fused: Vec<f32>,
     /// Area of the surface, in squared mesh units.
     pub area: f64,
@@ -57,7 +55,7 @@ pub struct ShapeDescription {
 ///
 /// let surface = Surface::new(&shapes::torus(24, 12, 2.0, 0.7), &Default::default(), &())?;
 /// let description = describe(&surface, &DescribeOptions::default(), &())?;
-/// assert_eq!(description.signatures.len(), 8);
+/// assert_eq!(description.signatures.len(), 5);
 /// assert!(description.diameter > 6.0 && description.area > 50.0);
 /// # Ok::<(), canonform::Error>(())
 /// ```
@@ -157,17 +155,15 @@ impl MeasuredSurface {
         let reduced = form.reduced(options.points);
         let spectrum = LaplaceSpectrum::describing(prepared.intrinsic(), observer)?;
         observer.budget().check()?;
-        let signatures = vec![
-            moment_signature(&form),
-            d2_histogram(&reduced.reduced(PAIRED_POINTS)),
+        let mut signatures = vec![
             SampledForm::by_least_squares(&embedded.distances, &spectrum.masses, observer)?
                 .spectrum(spectrum.area.sqrt())?,
             geodesic_spectrum(&embedded.distances, &spectrum.masses, spectrum.area)?,
             shape_dna(&spectrum),
             heat_kernel_signature(&spectrum),
             wave_kernel_signature(&spectrum),
-            rigid_signature(prepared.mesh()),
         ];
+        signatures.extend(rigid_signature(prepared.mesh()));
         let area = match options.size {
             Normalization::Raw => Some(spectrum.area),
             Normalization::UnitArea => None,
@@ -197,13 +193,19 @@ impl ShapeDescription {
     /// # Errors
     /// [`Error::Descriptor`].
     pub fn prepare(&self) -> Result<PreparedShape, Error> {
-        Ok(PreparedShape::new(self.fused.clone(), &self.form, Some(self.area))?)
+        let shape = PreparedShape::new(self.fused.clone(), &self.form, Some(self.area))?;
+        Ok(shape.with_rigid(self.rounded(SignatureKind::Rigid)))
     }
 
     /// The spectrum of the form, with the precision of an index.
     pub(crate) fn form_spectrum(&self) -> Vec<f32> {
-        let spectrum = self.signature(SignatureKind::FormSpectrum);
-        spectrum.map_or_else(Vec::new, |spectrum| spectrum.values.iter().map(|value| *value as f32).collect())
+        self.rounded(SignatureKind::FormSpectrum)
+    }
+
+    /// The values of a signature, with the precision of an index; none if there is no such signature.
+    pub(crate) fn rounded(&self, kind: SignatureKind) -> Vec<f32> {
+        let values = self.signature(kind).into_iter().flat_map(|signature| &signature.values);
+        values.map(|value| *value as f32).collect()
     }
 
     /// The signature of one kind.

@@ -5,7 +5,6 @@
 use std::fmt::Display;
 use std::str::FromStr;
 
-use descriptors::FormDistance;
 use geodesics::{Method, ObtuseTreatment, Sampling, Update};
 use mesh::{ComponentPolicy, Weld};
 use nmds::{Bandwidth, Regularization, RpiAlpha};
@@ -29,8 +28,6 @@ pub enum OptionGroup {
     Stress,
     /// What is kept of a form.
     Description,
-    /// How forms are compared.
-    Comparison,
     /// How surfaces are mapped.
     Maps,
 }
@@ -68,7 +65,7 @@ pub trait Named: Sized {
 }
 
 /// Every option. Commands list them in this order.
-pub static SCHEMA: [OptionSpec; 23] = [
+pub static SCHEMA: [OptionSpec; 22] = [
     named::<EmbedMethod>(OptionGroup::Method, "method", "nmds", "How to turn distances into coordinates"),
     parsed::<Samples>(OptionGroup::Form, "samples", "SAMPLES|auto", "100", "Number of samples, or `auto` to take as many as needed")
         .called("n_landmarks"),
@@ -185,7 +182,6 @@ pub static SCHEMA: [OptionSpec; 23] = [
         "",
         "Distinguish shapes by size: all meshes have the same unit of length",
     ),
-    named::<FormDistance>(OptionGroup::Comparison, "distance", "nn-rms", "Distance between aligned forms"),
     parsed::<usize>(
         OptionGroup::Maps,
         "eigenfunctions",
@@ -384,15 +380,6 @@ impl Named for StressChoice {
             ("exact", "From the distances between all pairs of vertices", Self::Exact),
             ("estimate", "From the distances of 100 vertices to all others", Self::Estimate),
             ("skip", "Not at all", Self::Skip),
-        ]
-    }
-}
-
-impl Named for FormDistance {
-    fn table() -> Vec<(&'static str, &'static str, Self)> {
-        vec![
-            ("nn-rms", "Root mean square of nearest-neighbour distances", Self::NearestNeighborRms),
-            ("hausdorff95", "Hausdorff distance without the farthest 5 % of points", Self::Hausdorff95),
         ]
     }
 }

@@ -295,8 +295,6 @@ mod tests {
         assert_eq!(Settings::default().describe().unwrap(), DescribeOptions::default());
         assert_eq!(of(&[("samples", "auto")]).form().unwrap().samples, Samples::Auto);
         assert_eq!(of(&[("stress", "skip")]).chosen("stress"), Some(crate::StressChoice::Skip));
-        let metric = of(&[("distance", "hausdorff95")]).chosen("distance");
-        assert_ne!(metric, Some(descriptors::ShapeMetric::default().distance));
         let first = of(&[("first_sample", "7")]).form().unwrap();
         assert_eq!(first.first_sample, FirstSample::Vertex(VertexId(7)));
     }

@@ -47,9 +47,7 @@ impl ShapeSearch {
             budget.check()?;
             let (a, b) = (&rows[i], &columns[j]);
             Ok(match kind {
-                PairwiseDistance::Combined => {
-                    ShapePair::new(ShapeMetric::default(), [a, b]).distance().combined
-                }
+                PairwiseDistance::Combined => ShapePair::new([a, b]).distance().combined,
                 PairwiseDistance::Fused => ShapeMetric::fused(a.fused(), b.fused()),
             })
         };

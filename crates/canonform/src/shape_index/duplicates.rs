@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use base::Observer;
 use descriptors::{ShapeDistance, ShapeMetric};
-use index::{SearchMode, ShapeEntry};
+use index::ShapeEntry;
 use rayon::prelude::*;
 use relations::{Handedness, MeshGeometry, Relation, RelationKind, SurfaceInvariants};
 use serde::Serialize;
@@ -25,7 +25,7 @@ use crate::error::Error;
 /// Nearest shapes of each shape whose meshes are compared. A shape with more copies is still found by theirs.
 const NEIGHBOURS: usize = 16;
 
-/// Copies have fused vectors that are nearer than this: noise, decimation and arcs move them. Two classes are farther apart
+/// Copies have vectors that are nearer than this: noise, decimation and arcs move them. Two classes are farther apart
 /// on most pairs of the built-in families. A safety limit: the meshes decide.
 const NEAR: f64 = 4.0;
 
@@ -170,7 +170,7 @@ pub fn find_duplicates(
 ) -> Result<DuplicateReport, Error> {
     let start = Instant::now();
     let mut candidates = candidates(search)?;
-    let near = clusters(candidates.len(), near_pairs(search, &candidates, observer)?);
+    let near = clusters(candidates.len(), near_pairs(&candidates, observer)?);
     let to_read: Vec<usize> = near.concat();
     read_invariants(search, &mut candidates, &to_read, observer)?;
     let unread = to_read.into_iter().filter(|&i| candidates[i].invariants.is_none());
@@ -193,11 +193,11 @@ pub fn find_duplicates(
 }
 
 fn candidates(search: &ShapeSearch) -> Result<Vec<Candidate>, Error> {
-    let (entries, fused) = (search.index().entries()?, search.index().fused_vectors()?);
-    let n = fused.len() / entries.len().max(1);
-    let vectors = fused.chunks(n.max(1)).map(<[f32]>::to_vec);
-    let shapes = entries.into_iter().zip(vectors);
-    Ok(shapes.map(|((id, entry), fused)| Candidate { id, entry, fused, invariants: None }).collect())
+    let (entries, vectors) = (search.index().entries()?, search.index().vector_table()?);
+    let shapes = entries.into_iter().enumerate();
+    let candidate =
+        |(i, (id, entry))| Candidate { id, entry, fused: vectors.vector(i).to_vec(), invariants: None };
+    Ok(shapes.map(candidate).collect())
 }
 
 /// Reads the meshes of some shapes for their invariants, and does not keep them.
@@ -242,24 +242,21 @@ impl Candidate {
 }
 
 /// Pairs of equal content, and of shapes whose vectors are near.
-fn near_pairs(
-    search: &ShapeSearch,
-    candidates: &[Candidate],
-    observer: &dyn Observer,
-) -> Result<Vec<Pair>, Error> {
+fn near_pairs(candidates: &[Candidate], observer: &dyn Observer) -> Result<Vec<Pair>, Error> {
     let budget = observer.budget();
-    let number: HashMap<&str, usize> =
-        candidates.iter().enumerate().map(|(i, candidate)| (candidate.id.as_str(), i)).collect();
     observer.begin("searching", candidates.len());
-    let near = |(i, candidate): (usize, &Candidate)| {
+    let near = |i: usize| {
         budget.check()?;
-        let found = search.index().nearest(&candidate.fused, NEIGHBOURS + 1, SearchMode::Auto)?;
+        let others = (0..candidates.len()).filter(|j| *j != i);
+        let mut near: Vec<(f64, usize)> = others
+            .map(|j| (candidates[i].distance(&candidates[j]), j))
+            .filter(|(distance, _)| *distance < NEAR)
+            .collect();
+        near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         observer.step();
-        let others = found.shapes.into_iter().filter_map(|shape| number.get(shape.id.as_str()).copied());
-        let near = others.filter(|&j| i != j && candidate.distance(&candidates[j]) < NEAR);
-        Ok::<_, Error>(near.map(|j| (i, j)).collect::<Vec<_>>())
+        Ok::<_, Error>(near.into_iter().take(NEIGHBOURS).map(|(_, j)| (i, j)).collect::<Vec<_>>())
     };
-    let found = candidates.par_iter().enumerate().map(near).collect::<Result<Vec<_>, Error>>()?;
+    let found = (0..candidates.len()).into_par_iter().map(near).collect::<Result<Vec<_>, Error>>()?;
     let mut pairs = found.concat();
     let mut first: HashMap<_, usize> = HashMap::new();
     for (i, candidate) in candidates.iter().enumerate() {

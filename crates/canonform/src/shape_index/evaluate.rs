@@ -9,7 +9,7 @@ use linalg::DistanceMatrix;
 use rayon::prelude::*;
 use retrieval::{Evaluation, Labels, RankBy, evaluate_ranked};
 
-use super::record::signature;
+use super::record::{lacks, signature};
 use crate::error::Error;
 use base::Observer;
 use collection::{CollectionError, LabelSource, Row, Table, label_of};
@@ -20,7 +20,7 @@ const MOST: usize = 10_000;
 /// The vectors that distances are measured between.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Measure {
-    /// Fused signatures, by which an index is searched.
+    /// Fused signatures, which bound the distance that an index is searched by.
     #[default]
     Fused,
     /// Signatures of one kind.
@@ -80,9 +80,13 @@ pub fn evaluate_index(
             Some(source) => source.label(&shape.id, Some(Path::new(&shape.entry.path))),
             None => shape.entry.label,
         };
-        // Nothing can be said about shapes without a class.
+        // Nothing can be said about shapes without a class, nor by the rigid signature about those that may bend.
         if label.is_empty() {
             unlabelled.get_or_insert(shape.id);
+            return Ok(());
+        }
+        if measure == Measure::Signature(SignatureKind::Rigid) && lacks(&shape.vectors, SignatureKind::Rigid)
+        {
             return Ok(());
         }
         names.push(label);

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! files -> content hash -> unchanged? -> describe -> index::IndexWriter -> index::Index
-//! Query -> Index::nearest (fused signatures) -> rerank (aligned forms) -> vote
+//! Query -> bounds (robust distances of all vectors) -> rerank (aligned forms) -> vote
 //!                  -> Index::nearest_on_graph -> aligned forms of the results -> vote
 //! PackedQuery -> ShapeSearch::shortlist and match_shapes of every shard -> merge_matches -> vote
 //! mesh -> describe_part -> disc areas of all shapes -> aligned forms of the results -> vote
@@ -46,7 +46,7 @@ pub use options::{Explain, SearchOptions, SearchRank};
 pub use place::mesh_path;
 pub use predict::{ClassVotes, NearestShape, Prediction, Unknown};
 pub use query::{DescribedQuery, Query};
-pub use rerank::{Ranked, Reranked, rerank};
+pub use rerank::{Ranked, Reranked, bounds, rerank};
 pub use search::{SearchReport, SearchSeconds, ShapeSearch, ShardedSearch};
 pub use shards::{PackedQuery, ShardExplained, ShardMatches, merge_matches};
 pub use source::{Inputs, ShapeLimits, Shard};

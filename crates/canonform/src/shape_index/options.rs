@@ -2,7 +2,6 @@
 
 use std::str::FromStr;
 
-use index::SearchMode;
 use serde::{Deserialize, Serialize};
 
 /// How an index is searched.
@@ -10,8 +9,6 @@ use serde::{Deserialize, Serialize};
 pub struct SearchOptions {
     /// Number of results. Default: 10.
     pub k: usize,
-    /// How signatures are searched. Default: [`SearchMode::Auto`].
-    pub mode: SearchMode,
     /// Whether every result is compared with the query in detail. Default: no.
     pub explain: Explain,
     /// How results are ordered. Default: [`SearchRank::Plain`], by combined distance.
@@ -20,7 +17,7 @@ pub struct SearchOptions {
 
 impl Default for SearchOptions {
     fn default() -> Self {
-        Self { k: 10, mode: SearchMode::Auto, explain: Explain::No, rank_by: SearchRank::Plain }
+        Self { k: 10, explain: Explain::No, rank_by: SearchRank::Plain }
     }
 }
 
@@ -31,7 +28,7 @@ pub enum SearchRank {
     /// By combined distance.
     #[default]
     Plain,
-    /// By distance and by neighbours in common; needs the graph of the index.
+    /// By distance and by neighbours in common.
     Graph,
     /// By how well the query fits as a part of the shape. Compares the query with every shape of the index, which must store
     /// disc areas, and needs the mesh or the surface of the query.

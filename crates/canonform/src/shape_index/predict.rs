@@ -143,7 +143,7 @@ impl Completeness {
     }
 }
 
-/// The vote of the first results.
+/// The vote of the first [`VOTERS`] results, so that it does not depend on their number.
 ///
 /// A result at combined distance `d` and fused distance `f` votes if `r = min(d / c, f / t)` is below 1, with `c` the
 /// boundary of a class and `t` the width of the classes of the index; its weight is `(1 - r²)²`. If the query is
@@ -153,6 +153,7 @@ pub(super) fn predicted(
     threshold: Option<UnknownThreshold>,
     query: Completeness,
 ) -> Prediction {
+    let results = &results[..results.len().min(VOTERS)];
     let as_part = results.first().and_then(part_distance);
     let class_below = as_part.map_or(ShapeMetric::SAME_CLASS.at, |_| PartDistance::SAME_CLASS);
     let threshold = threshold.map(|threshold| threshold.distance);

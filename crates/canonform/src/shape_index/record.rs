@@ -93,6 +93,11 @@ pub(super) fn disc_areas(vectors: &ShapeVectors) -> Option<DiscAreas> {
     DiscAreas::from_numbers(&vectors.disc_areas).filter(|_| !vectors.disc_areas.is_empty())
 }
 
+/// Whether a shape is stored without the signature of a kind.
+pub(super) fn lacks(vectors: &ShapeVectors, kind: SignatureKind) -> bool {
+    vectors.signatures.iter().all(|(name, _)| name != kind.name())
+}
+
 /// The signature of a kind of an indexed shape.
 ///
 /// # Errors
@@ -131,5 +136,7 @@ pub(super) fn prepared(
     let area = entry.fact(AREA);
     let form_area = area.filter(|_| options.form.method.has_unit());
     let form = CanonicalForm::from_parts(points.collect(), weights, form_area)?;
-    Ok(PreparedShape::new(vectors.fused, &form, area)?)
+    let rigid = vectors.signatures.into_iter().find(|(name, _)| name == SignatureKind::Rigid.name());
+    let shape = PreparedShape::new(vectors.fused, &form, area)?;
+    Ok(shape.with_rigid(rigid.map_or_else(Vec::new, |(_, values)| values)))
 }

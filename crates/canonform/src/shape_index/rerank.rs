@@ -1,10 +1,9 @@
-//! Nearest shapes in two stages: by fused signatures, then by aligned forms.
+//! Nearest shapes by combined distance: bounded by signatures, then by aligned forms.
 
 use std::borrow::Borrow;
 
-use descriptors::{
-    FormAlignment, FormDistance, PreparedShape, ShapeDistance, ShapeMetric, ShapePair, align_near_forms,
-};
+use descriptors::{FormAlignment, PreparedShape, ShapeDistance, ShapeMetric, ShapePair, align_near_forms};
+use rayon::prelude::*;
 use retrieval::{Candidate, refine_nearest};
 
 use crate::error::Error;
@@ -37,13 +36,23 @@ pub struct Reranked {
     pub abandoned: usize,
 }
 
+/// Lower bounds of the combined distances from a query to all of some fused vectors, in ascending order: the robust distances.
+pub fn bounds<'v>(query: &[f32], n: usize, vector: impl Fn(usize) -> &'v [f32] + Sync) -> Vec<Candidate> {
+    let bound = |index| Candidate { index, bound: ShapeMetric::robust(query, vector(index)) };
+    let mut all: Vec<Candidate> = (0..n).into_par_iter().with_min_len(TASK).map(bound).collect();
+    all.par_sort_unstable_by(|a, b| a.bound.total_cmp(&b.bound).then(a.index.cmp(&b.index)));
+    all
+}
+
+/// Vectors in one parallel task.
+const TASK: usize = 256;
+
 /// The `k` candidates nearest to a query by [combined](ShapeMetric::combined) distance. Candidates come in ascending
-/// order of their bounds, which are lower bounds of the [robust](ShapeMetric::robust) distance. `shape` gives the shape of a
-/// candidate.
+/// order of their [bounds]. `shape` gives the shape of a candidate.
 ///
-/// Forms are aligned only until the robust distance alone rules out the remaining candidates, and an alignment is
-/// abandoned when it cannot come near enough, see [`align_near_forms`]. Apart from that heuristic the result is that
-/// of aligning all candidates. Alignments run in parallel; the result does not depend on the number of threads.
+/// Forms are aligned only until the bound alone rules out the remaining candidates, so that the result is that of aligning all:
+/// the `k` nearest are the first of any larger number of nearest. Alignments run in parallel; the result does not depend on
+/// the number of threads.
 ///
 /// # Errors
 /// Those of `shape`.
@@ -56,13 +65,13 @@ pub fn rerank<S: Borrow<PreparedShape>>(
     let refined = refine_nearest(candidates, k, |candidate, limit| {
         let shape = shape(candidate.index)?;
         let shape: &PreparedShape = shape.borrow();
-        let [fused, robust] =
-            [ShapeMetric::fused, ShapeMetric::robust].map(|distance| distance(query.fused(), shape.fused()));
-        let left = ShapeMetric::form_limit(robust, limit, FormDistance::NearestNeighborRms);
+        let robust = query.robust(shape);
+        let left = ShapeMetric::form_limit(robust, limit);
         let (a, b) = (query.prepared_form(), shape.prepared_form());
         let Some(alignment) = align_near_forms(a, b, left) else { return Ok(None) };
-        let pair = ShapePair::new(ShapeMetric::default(), [query, shape]).with_best(alignment);
+        let pair = ShapePair::new([query, shape]).with_best(alignment);
         let distance = ShapeMetric::combined(robust, alignment.rms);
+        let fused = ShapeMetric::fused(query.fused(), shape.fused());
         let (index, shape_distance, scale) = (candidate.index, pair.distance(), pair.scale());
         let ranked = Ranked { index, distance, fused, shape_distance, scale, alignment };
         Ok::<_, Error>(Some((distance, ranked)))
@@ -99,12 +108,10 @@ mod tests {
                 let asked = spiral(turns(query), 0.0);
                 let fused = |i: usize| ShapeMetric::fused(asked.fused(), shapes[i].fused());
                 let robust = |i: usize| ShapeMetric::robust(asked.fused(), shapes[i].fused());
-                let mut candidates: Vec<_> =
-                    (0..30).map(|index| Candidate { index, bound: robust(index) }).collect();
-                candidates.sort_by(|a, b| a.bound.total_cmp(&b.bound));
+                let candidates = bounds(asked.fused(), 30, |i| shapes[i].fused());
                 let mut all: Vec<_> = (0..30)
                     .map(|index| {
-                        let pair = ShapePair::new(ShapeMetric::default(), [&asked, &shapes[index]]);
+                        let pair = ShapePair::new([&asked, &shapes[index]]);
                         let (fused, alignment) = (fused(index), pair.best());
                         let distance = ShapeMetric::combined(robust(index), alignment.rms);
                         let (shape_distance, scale) = (pair.distance(), pair.scale());

@@ -9,12 +9,11 @@ use collection::Storage;
 use descriptors::{
     FormAlignment, PartDiscAreas, PartDistance, PreparedShape, ShapeMetric, ShapePair, SignatureKind,
 };
-use index::{Found, FoundOnGraph, Index, RankedShape, SearchMode, ShapeEntry};
+use index::{Index, RankedShape, ShapeEntry};
 use mesh::TriMesh;
 use mesh::io::FileSource;
 use rayon::prelude::*;
-use retrieval::Candidate;
-use retrieval::UnknownThreshold;
+use retrieval::{Candidate, UnknownThreshold};
 use serde::{Deserialize, Serialize};
 
 use super::found::{ComponentResult, OrderedBy, SearchResult, ShardMatch};
@@ -22,26 +21,15 @@ use super::options::{Explain, SearchOptions, SearchRank};
 use super::predict::{Completeness, Prediction, VOTERS, predicted};
 use super::query::{KnownQuery, Query};
 use super::record::{disc_areas, options_of, prepared, signature};
-use super::rerank::{Ranked, Reranked, rerank};
+use super::rerank::{Ranked, Reranked, bounds, rerank};
 use super::source::read_unchanged;
 use crate::compare::compare;
 use crate::error::Error;
 use crate::form::DescribeOptions;
 
-/// Most forms that are aligned for each result.
-const CANDIDATES: usize = 4;
-
-/// Forms that may be aligned, however few results are wanted.
-const LEAST_CANDIDATES: usize = 40;
-
 /// Results that are looked for if so many are requested: those that vote are among them.
 pub(super) fn n_wanted(k: usize, n_shapes: usize) -> usize {
     k.max(VOTERS).min(n_shapes)
-}
-
-/// Shapes whose signatures are nearest that are candidates for so many results.
-pub(super) fn n_candidates(wanted: usize) -> usize {
-    CANDIDATES.saturating_mul(wanted).max(LEAST_CANDIDATES)
 }
 
 /// The answer to a search.
@@ -66,7 +54,7 @@ pub struct SearchReport {
     pub measured: usize,
     /// Shapes whose alignment was begun.
     pub aligned: usize,
-    /// Share of the ten nearest signatures that searches in this index find: 1 if the search is exact.
+    /// Expected share of the nearest shapes that are found: 1, unless the vectors of many indexes are coded.
     pub recall: f64,
     /// Wall-clock seconds.
     pub seconds: SearchSeconds,
@@ -185,8 +173,9 @@ impl ShapeSearch {
         given.to_str().filter(|id| !Storage.holds(given) && self.index.contains(id).unwrap_or(false))
     }
 
-    /// Finds the shapes nearest to a query: candidates by fused signatures, ordered as the options say by aligned forms, by
-    /// their places on the graph of nearest neighbours, as wholes of which the query is a part, or by forms alone.
+    /// Finds the shapes nearest to a query, ordered as the options say: by combined distance, by their places on the graph of
+    /// nearest neighbours, as wholes of which the query is a part, or by forms alone. The results for a number of results are
+    /// the first of those for a larger one, and the class does not depend on it.
     ///
     /// ```
     /// use canonform::{BuildOptions, DescribeOptions, Query, SearchOptions, ShapeSearch, build_index, mesh};
@@ -241,17 +230,17 @@ impl ShapeSearch {
     ) -> Result<SearchReport, Error> {
         let start = Instant::now();
         let wanted = n_wanted(options.k, self.index.len());
-        let fused = query.shape.fused();
         let shortlist = match options.rank_by {
-            SearchRank::Plain => self.by_distance(fused, wanted, options.mode)?,
-            SearchRank::Graph => self.on_graph(fused, wanted, options.mode)?,
-            rank => self.by_all(query, rank, self.ids()?, wanted, budget)?,
+            SearchRank::Plain => self.by_distance(query)?,
+            SearchRank::Graph => Shortlist::ordered(self.on_graph(query.shape.fused(), wanted)?),
+            rank => Shortlist::ordered(self.by_all(query, rank, self.ids()?, wanted, budget)?),
         };
-        let (found, aligned) =
-            self.aligned(&query.shape, &shortlist.ids, shortlist.orders.as_deref(), wanted, budget)?;
+        let (found, aligned) = self.aligned(&query.shape, shortlist, wanted, budget)?;
         let (matches, alignments): (Vec<_>, Vec<_>) = found.into_iter().unzip();
-        let Found { n_shapes, n_measured: measured, recall, threshold, .. } = shortlist.search;
-        let about = ShardedSearch { rank_by: options.rank_by, n_shapes, measured, recall, threshold };
+        let (rank_by, n_shapes) = (options.rank_by, self.index.len());
+        let by_signatures = matches!(rank_by, SearchRank::Plain | SearchRank::Graph);
+        let threshold = self.index.threshold().filter(|_| by_signatures);
+        let about = ShardedSearch { rank_by, n_shapes, measured: n_shapes, recall: 1.0, threshold };
         let mut report = SearchReport::of((query.name, query.complete), matches, about, options.k);
         report.aligned = aligned;
         if options.explain == Explain::Kind {
@@ -272,7 +261,7 @@ impl ShapeSearch {
     ) -> Result<(), Error> {
         budget.check()?;
         let shape = self.prepared(&result.id)?;
-        let pair = ShapePair::new(ShapeMetric::default(), [&query.shape, &shape]);
+        let pair = ShapePair::new([&query.shape, &shape]);
         let pair = if let Some(best) = best { pair.with_best(best) } else { pair };
         result.comparison = Some(compare(&pair)?);
         result.relation = self.related(query, &result.id, result.relation.clone())?;
@@ -284,28 +273,21 @@ impl ShapeSearch {
         Ok(self.index.entries()?.into_iter().map(|(id, _)| id).collect())
     }
 
-    /// The shapes whose signatures are nearest.
-    pub(super) fn by_distance(
-        &self,
-        fused: &[f32],
-        wanted: usize,
-        mode: SearchMode,
-    ) -> Result<Shortlist, Error> {
-        let mut search = self.index.nearest(fused, n_candidates(wanted), mode)?;
-        let ids = std::mem::take(&mut search.shapes).into_iter().map(|near| near.id).collect();
-        Ok(Shortlist { ids, orders: None, search })
+    /// All shapes, those first that may be nearest.
+    pub(super) fn by_distance(&self, query: &KnownQuery<'_>) -> Result<Shortlist<'_>, Error> {
+        let all = self.index.vector_table()?;
+        let candidates = bounds(query.shape.fused(), all.len(), |i| all.vector(i));
+        Ok(Shortlist { candidates, id: Box::new(|i| all.id(i).to_owned()), orders: None })
     }
 
     /// The first shapes by rank distance. The graph knows fused distances only, because aligning the forms of all pairs
     /// would take too long.
-    fn on_graph(&self, fused: &[f32], wanted: usize, mode: SearchMode) -> Result<Shortlist, Error> {
-        let FoundOnGraph { shapes, search, .. } = self.index.nearest_on_graph(fused, wanted, mode)?;
+    fn on_graph(&self, fused: &[f32], wanted: usize) -> Result<Vec<OrderedShape>, Error> {
         let order = |near: RankedShape| {
             let RankedShape { id, rank_distance, plain_rank, .. } = near;
             (id, OrderedBy::Graph { rank_distance, plain_rank })
         };
-        let (ids, orders): (_, Vec<_>) = shapes.into_iter().map(order).unzip();
-        Ok(Shortlist { ids, orders: Some(orders), search })
+        Ok(self.index.nearest_on_graph(fused, wanted)?.into_iter().map(order).collect())
     }
 
     /// The first of some shapes by a distance that is measured from each of them: how well the query fits as a part, or how
@@ -317,7 +299,7 @@ impl ShapeSearch {
         ids: Vec<String>,
         wanted: usize,
         budget: &Budget,
-    ) -> Result<Shortlist, Error> {
+    ) -> Result<Vec<OrderedShape>, Error> {
         let part = query.part.as_ref().filter(|_| rank == SearchRank::Part);
         if rank == SearchRank::Part && part.is_none() {
             return Err(Error::NoPart);
@@ -326,7 +308,6 @@ impl ShapeSearch {
             Some(part) => self.fit(part, id),
             None => self.form_distance(&query.form_spectrum, id),
         };
-        let n_shapes = ids.len();
         let one = |id: String| {
             budget.check()?;
             Ok((measured(&id)?, id))
@@ -334,10 +315,7 @@ impl ShapeSearch {
         let mut found = ids.into_par_iter().map(one).collect::<Result<Vec<_>, Error>>()?;
         found.sort_by(|(a, x), (b, y)| a.distance().total_cmp(&b.distance()).then_with(|| x.cmp(y)));
         found.truncate(wanted);
-        let (orders, ids): (Vec<_>, _) = found.into_iter().unzip();
-        let search =
-            Found { shapes: Vec::new(), n_measured: n_shapes, n_shapes, recall: 1.0, threshold: None };
-        Ok(Shortlist { ids, orders: Some(orders), search })
+        Ok(found.into_iter().map(|(order, id)| (id, order)).collect())
     }
 
     /// The distance from the spectrum of a form, in units of two poses of one body.
@@ -363,28 +341,22 @@ impl ShapeSearch {
     pub(super) fn aligned(
         &self,
         query: &PreparedShape,
-        ids: &[String],
-        orders: Option<&[OrderedBy]>,
+        shortlist: Shortlist<'_>,
         wanted: usize,
         budget: &Budget,
     ) -> Result<(Vec<(ShardMatch, FormAlignment)>, usize), Error> {
-        let candidate = |(index, id): (usize, &String)| {
-            let fused = self.index.vectors(id)?.fused;
-            Ok(Candidate { index, bound: ShapeMetric::robust(query.fused(), &fused) })
-        };
-        let mut candidates = ids.iter().enumerate().map(candidate).collect::<Result<Vec<_>, Error>>()?;
-        candidates.sort_by(|a, b| a.bound.total_cmp(&b.bound).then(a.index.cmp(&b.index)));
-        let n = if orders.is_some() { ids.len() } else { wanted };
+        let Shortlist { candidates, id, orders } = shortlist;
+        let n = if orders.is_some() { candidates.len() } else { wanted };
         let Reranked { mut nearest, aligned, .. } = rerank(query, candidates, n, |i| {
             budget.check()?;
-            self.prepared(&ids[i])
+            self.prepared(&id(i))
         })?;
         if orders.is_some() {
             nearest.sort_by_key(|ranked| ranked.index);
         }
         let found = nearest.into_iter().map(|ranked| {
             let Ranked { index, distance, fused, shape_distance, scale, alignment } = ranked;
-            let (id, order) = (ids[index].clone(), orders.map(|all| all[index]));
+            let (id, order) = (id(index), orders.as_ref().map(|all| all[index]));
             let ShapeEntry { label, path, .. } = self.index.entry(&id)?;
             Ok((ShardMatch { id, label, path, distance, fused, shape_distance, scale, order }, alignment))
         });
@@ -392,13 +364,26 @@ impl ShapeSearch {
     }
 }
 
+/// The name of a shape and what it is ordered by.
+pub(super) type OrderedShape = (String, OrderedBy);
+
 /// Shapes that may be results.
-pub(super) struct Shortlist {
-    pub(super) ids: Vec<String>,
+pub(super) struct Shortlist<'a> {
+    /// In ascending order of lower bounds of their combined distances.
+    pub(super) candidates: Vec<Candidate>,
+    /// The name of each.
+    pub(super) id: Box<dyn Fn(usize) -> String + Sync + 'a>,
     /// What they are ordered by, if not by combined distance.
     pub(super) orders: Option<Vec<OrderedBy>>,
-    /// About the search for signatures.
-    pub(super) search: Found,
+}
+
+impl Shortlist<'static> {
+    /// Shapes in their order, all of which are results.
+    pub(super) fn ordered(shapes: Vec<OrderedShape>) -> Self {
+        let (ids, orders): (Vec<String>, _) = shapes.into_iter().unzip();
+        let candidates = (0..ids.len()).map(|index| Candidate { index, bound: 0.0 }).collect();
+        Self { candidates, id: Box::new(move |i| ids[i].clone()), orders: Some(orders) }
+    }
 }
 
 #[cfg(test)]
@@ -465,7 +450,7 @@ mod tests {
             for result in &by_mesh.results {
                 let other = search.prepared(&result.id).unwrap();
                 let query = described.prepare().unwrap();
-                let direct = compare(&ShapePair::new(ShapeMetric::default(), [&query, &other])).unwrap();
+                let direct = compare(&ShapePair::new([&query, &other])).unwrap();
                 assert_eq!(result.comparison.as_ref(), Some(&direct));
                 assert_eq!(result.relation.because.distance, direct.shape_distance);
                 assert_eq!(result.distance, direct.shape_distance.combined);

@@ -6,8 +6,7 @@
 //! ```
 
 use base::{ContentHash, Observer};
-use descriptors::{CanonicalForm, PartDiscAreas, PreparedShape};
-use index::SearchMode;
+use descriptors::{CanonicalForm, PartDiscAreas, PreparedShape, SignatureKind};
 use mesh::TriMesh;
 use nalgebra::Point3;
 use rayon::prelude::*;
@@ -16,12 +15,13 @@ use serde::{Deserialize, Serialize};
 use surface::VertexId;
 
 use super::explain::components;
-use super::found::{ComponentResult, OrderedBy, SearchResult, ShardMatch};
+use super::found::{ComponentResult, SearchResult, ShardMatch};
 use super::options::{Explain, SearchOptions, SearchRank};
 use super::predict::Completeness;
 use super::query::{KnownQuery, Query};
 use super::record::AREA;
-use super::search::{SearchReport, ShapeSearch, ShardedSearch, Shortlist, n_candidates, n_wanted};
+use super::rerank::bounds;
+use super::search::{SearchReport, ShapeSearch, ShardedSearch, Shortlist, n_wanted};
 use crate::error::Error;
 use crate::form::{DescribeOptions, ShapeDescription};
 
@@ -32,6 +32,8 @@ pub struct PackedQuery {
     pub name: String,
     /// Its fused vector.
     pub fused: Vec<f32>,
+    /// Its rigid signature, if it has one.
+    rigid: Vec<f32>,
     /// The [hash](crate::content_hash) of its file.
     pub content: Option<ContentHash>,
     /// The spectrum of its form, which results by forms alone are ordered by.
@@ -63,7 +65,9 @@ impl PackedQuery {
         let ShapeDescription { options, form, fused, area, .. } = description;
         let complete = Completeness::of(description);
         let form_spectrum = description.form_spectrum();
-        Self { form_spectrum, ..Self::of_form(form, (name, fused, &options.text()), Some(*area), complete) }
+        let rigid = description.rounded(SignatureKind::Rigid);
+        let packed = Self::of_form(form, (name, fused, &options.text()), Some(*area), complete);
+        Self { form_spectrum, rigid, ..packed }
     }
 
     fn of_form(
@@ -75,6 +79,7 @@ impl PackedQuery {
         Self {
             name: name.to_owned(),
             fused: fused.to_vec(),
+            rigid: Vec::new(),
             content: None,
             form_spectrum: Vec::new(),
             part: None,
@@ -111,7 +116,7 @@ impl PackedQuery {
             None => whole,
         });
         Ok(KnownQuery {
-            shape: PreparedShape::new(self.fused.clone(), &form, self.area)?,
+            shape: PreparedShape::new(self.fused.clone(), &form, self.area)?.with_rigid(self.rigid.clone()),
             form_spectrum: self.form_spectrum.clone(),
             name: &self.name,
             content: self.content.filter(|_| self.component.is_none()),
@@ -138,14 +143,18 @@ impl PackedQuery {
         Ok(packed.collect())
     }
 
-    /// How many of the first shapes of all shards are candidates for `k` results, and how many results each shard gives.
+    /// How many shapes with the nearest fused vectors are candidates for `k` results, where only vectors are searched, and how
+    /// many results each shard gives.
     #[must_use]
-    pub fn shortlist(k: usize, n_shapes: usize, rank_by: SearchRank) -> [usize; 2] {
+    pub fn shortlist(k: usize, n_shapes: usize) -> [usize; 2] {
         let wanted = n_wanted(k, n_shapes);
-        let plain = matches!(rank_by, SearchRank::Plain | SearchRank::Graph);
-        [if plain { n_candidates(wanted) } else { wanted }, wanted]
+        [CANDIDATES.saturating_mul(wanted).max(LEAST_CANDIDATES), wanted]
     }
 }
+
+/// Candidates for each result, and for any number of results.
+const CANDIDATES: usize = 4;
+const LEAST_CANDIDATES: usize = 40;
 
 /// What a shard found among its candidates.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -183,6 +192,7 @@ impl ShapeSearch {
         let area = self.index().entry(id)?.fact(AREA);
         let packed = PackedQuery {
             form_spectrum,
+            rigid: shape.rigid().to_vec(),
             content,
             part,
             ..PackedQuery::of_form(shape.form(), about, area, complete)
@@ -191,8 +201,8 @@ impl ShapeSearch {
         Ok(if let Some(mesh) = mesh { packed.with_mesh(&mesh) } else { packed })
     }
 
-    /// The first `n` shapes of this index in some order, and the distances that they are ordered by: of signatures, all of which
-    /// are compared, or as a part, or of forms alone. A graph of several indexes does not exist, so it stands for signatures.
+    /// The first `n` shapes of this index in some order, and the distances that they are ordered by: combined distances, or as
+    /// a part, or of forms alone. A graph of several indexes does not exist, so it stands for combined distances.
     ///
     /// # Errors
     /// As of [`ShapeSearch::search`].
@@ -204,13 +214,13 @@ impl ShapeSearch {
         observer: &dyn Observer,
     ) -> Result<Vec<(f64, String)>, Error> {
         self.index().expect_options(&query.options)?;
+        let (known, budget) = (query.known(None)?, observer.budget());
         if matches!(rank_by, SearchRank::Plain | SearchRank::Graph) {
-            let found = self.index().nearest(&query.fused, n, SearchMode::Exact)?;
-            return Ok(found.shapes.into_iter().map(|near| (near.distance, near.id)).collect());
+            let (found, _) = self.aligned(&known.shape, self.by_distance(&known)?, n, &budget)?;
+            return Ok(found.into_iter().map(|(near, _)| (near.distance, near.id)).collect());
         }
-        let Shortlist { ids, orders, .. } =
-            self.by_all(&query.known(None)?, rank_by, self.ids()?, n, &observer.budget())?;
-        Ok(orders.iter().flatten().map(OrderedBy::distance).zip(ids).collect())
+        let shapes = self.by_all(&known, rank_by, self.ids()?, n, &budget)?;
+        Ok(shapes.into_iter().map(|(id, order)| (order.distance(), id)).collect())
     }
 
     /// The `wanted` best of some shapes of this index. Names that the index does not hold are left out: their shapes were removed
@@ -234,14 +244,16 @@ impl ShapeSearch {
             }
         }
         let (known, budget) = (query.known(None)?, observer.budget());
-        let (ids, orders) = match rank_by {
-            SearchRank::Plain | SearchRank::Graph => (held, None),
-            _ => {
-                let Shortlist { ids, orders, .. } = self.by_all(&known, rank_by, held, wanted, &budget)?;
-                (ids, orders)
+        let shortlist = match rank_by {
+            SearchRank::Plain | SearchRank::Graph => {
+                let fused = held.iter().map(|id| Ok(self.index().vectors(id)?.fused));
+                let fused = fused.collect::<Result<Vec<_>, Error>>()?;
+                let candidates = bounds(known.shape.fused(), held.len(), |i| &fused[i]);
+                Shortlist { candidates, id: Box::new(move |i| held[i].clone()), orders: None }
             }
+            _ => Shortlist::ordered(self.by_all(&known, rank_by, held, wanted, &budget)?),
         };
-        let (found, aligned) = self.aligned(&known.shape, &ids, orders.as_deref(), wanted, &budget)?;
+        let (found, aligned) = self.aligned(&known.shape, shortlist, wanted, &budget)?;
         Ok(ShardMatches { nearest: found.into_iter().map(|(found, _)| found).collect(), aligned })
     }
 
@@ -273,7 +285,7 @@ impl ShapeSearch {
 
 /// The answer to a search in shards: the `k` best of what they found, and the class.
 ///
-/// It is the answer of one index with the shapes of all shards, if the candidates were those of that index.
+/// It is the answer of one index with the shapes of all shards, if every shard matched the first of its shortlist.
 #[must_use]
 pub fn merge_matches(
     query: &PackedQuery,
@@ -301,14 +313,14 @@ mod tests {
     /// The answer of some shards, all of which are asked for candidates.
     fn asked(shards: &[ShapeSearch], query: &PackedQuery, rank_by: SearchRank, k: usize) -> SearchReport {
         let n_shapes = shards.iter().map(|shard| shard.index().len()).sum();
-        let [n_candidates, wanted] = PackedQuery::shortlist(k, n_shapes, rank_by);
+        let [_, wanted] = PackedQuery::shortlist(k, n_shapes);
         let mut near = Vec::new();
         for (place, shard) in shards.iter().enumerate() {
-            let found = shard.shortlist(query, rank_by, n_candidates, &()).unwrap();
+            let found = shard.shortlist(query, rank_by, wanted, &()).unwrap();
             near.extend(found.into_iter().map(|(distance, id)| (distance, id, place)));
         }
         near.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1)));
-        near.truncate(n_candidates);
+        near.truncate(wanted);
         let matches = shards.iter().enumerate().map(|(place, shard)| {
             let of = near.iter().filter(|near| near.2 == place).map(|near| near.1.clone());
             // A name that the shard does not hold is left out.

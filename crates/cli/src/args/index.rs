@@ -166,8 +166,9 @@ pub(crate) struct SearchArgs {
     /// Say how every shape is related to the query, as `compare` does; reads the files of the shapes again
     #[arg(long)]
     pub(crate) explain: bool,
-    /// Compare the signatures of all shapes, even in a large index
-    #[arg(long)]
+    /// Accepted for older scripts: every search compares all shapes
+    #[arg(long, hide = true)]
+    #[expect(dead_code, reason = "every search is exact")]
     pub(crate) exact: bool,
     /// How to order results: `plain`, by distance; `graph`, by distance of signatures and by the neighbours that query
     /// and shape have in common; `part`, by how well the query fits as a part of the shape, for a mesh that was cut or
@@ -185,7 +186,7 @@ pub(crate) struct EvaluateArgs {
     /// [default: those of the index; for a matrix, from the names]
     #[arg(long, value_name = "SOURCE")]
     pub(crate) labels: Option<PathBuf>,
-    /// Signatures of an index to measure distances between: `fused`, `moments`, `d2`, `form-spectrum`, `geodesic-spectrum`,
+    /// Signatures of an index to measure distances between: `fused`, `form-spectrum`, `geodesic-spectrum`,
     /// `shape-dna`, `heat-kernel`, `wave-kernel` or `rigid`
     #[arg(long, value_name = "SIGNATURE", default_value = "fused")]
     pub(crate) by: Measure,

@@ -35,7 +35,7 @@ groups! {
     OfForm: Form Marching;
     OfMaps: Form Marching Maps;
     OfEmbedding: Method Form Marching Stress;
-    OfComparison: Method Form Marching Comparison;
+    OfComparison: Method Form Marching;
     OfDescription: Method Form Marching Description;
 }
 

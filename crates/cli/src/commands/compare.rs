@@ -59,8 +59,7 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
             let content = if is_stream(path) { None } else { Some(content_hash(path)?) };
             ComparedMesh::new(&mesh, content, surface, &options, bars)
         })?;
-    let mut found =
-        compare_meshes(ShapeMetric { distance: args.form.chosen("distance") }, [a.compared(), b.compared()])?;
+    let mut found = compare_meshes([a.compared(), b.compared()])?;
     if let Some(path) = &args.residual_mesh {
         write_colored(path, a.surface().mesh(), "residual", &found.overlay.residuals[0])?;
     }

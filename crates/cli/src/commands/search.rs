@@ -5,7 +5,6 @@ use std::process::ExitCode;
 
 use anyhow::{Result, anyhow};
 use base::one_line;
-use canonform::index::SearchMode;
 use canonform::mesh::io::without_extension;
 use canonform::{
     ComponentResult, Explain, OrderedBy, Prediction, Relation, SearchOptions, SearchRank, SearchReport,
@@ -93,7 +92,6 @@ pub(crate) fn search(args: &SearchArgs, common: &Common) -> Result<ExitCode> {
     let index = ShapeSearch::open(&args.index)?;
     let options = SearchOptions {
         k: args.k,
-        mode: if args.exact { SearchMode::Exact } else { SearchMode::Auto },
         explain: if args.explain { Explain::Kind } else { Explain::No },
         rank_by: args.rank,
     };

@@ -19,8 +19,8 @@ pub(crate) use labels::joined;
 pub use classes::{LabelOrigin, LabelSource, drop_single_class, label_of, label_shapes, n_classes};
 pub use labels::{LabelFile, UnusedLabel};
 pub use shape_file::ShapeFile;
-pub use walk::{MOVES, SkipKind, Skipped};
 pub(crate) use walk::is_apple_double;
+pub use walk::{MOVES, SkipKind, Skipped};
 
 /// What a folder, an archive or a list holds.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]

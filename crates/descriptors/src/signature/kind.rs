@@ -10,10 +10,6 @@ use crate::error::DescriptorError;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SignatureKind {
-    /// [`moment_signature`](crate::moment_signature).
-    Moments,
-    /// [`d2_histogram`](crate::d2_histogram).
-    D2,
     /// [`SampledForm::spectrum`](crate::SampledForm::spectrum).
     FormSpectrum,
     /// [`geodesic_spectrum`](crate::geodesic_spectrum).
@@ -30,8 +26,6 @@ pub enum SignatureKind {
 
 /// Name and number of values of every kind.
 const TABLE: [(&str, usize); SignatureKind::ALL.len()] = [
-    ("moments", 13),
-    ("d2", 8),
     ("form-spectrum", 24),
     ("geodesic-spectrum", 24),
     ("shape-dna", 20),
@@ -41,10 +35,8 @@ const TABLE: [(&str, usize); SignatureKind::ALL.len()] = [
 ];
 
 impl SignatureKind {
-    /// All kinds, in the order of a fused vector.
-    pub const ALL: [Self; 8] = [
-        Self::Moments,
-        Self::D2,
+    /// All kinds, in the order of descriptions. Every surface has all but the last.
+    pub const ALL: [Self; 6] = [
         Self::FormSpectrum,
         Self::GeodesicSpectrum,
         Self::ShapeDna,
@@ -52,6 +44,10 @@ impl SignatureKind {
         Self::WaveKernel,
         Self::Rigid,
     ];
+
+    /// The kinds that every surface has.
+    pub const INTRINSIC: [Self; 5] =
+        [Self::FormSpectrum, Self::GeodesicSpectrum, Self::ShapeDna, Self::HeatKernel, Self::WaveKernel];
 
     /// The name used on the command line and in records.
     pub const fn name(self) -> &'static str {

@@ -4,14 +4,13 @@
 //!
 //! * describe the surface scaled to unit area, so scale does not count;
 //! * depend on distances along the surface only, so bending, rigid motions, mirror images and the order of vertices
-//!   change nothing but rounding; bending changes the rigid signature, which only counts between surfaces that do not bend;
+//!   change nothing but rounding; bending changes the rigid signature, which only surfaces have that do not bend;
 //! * weight points by the area around them, so another triangulation changes them as little as it changes the
 //!   surface;
 //! * have a fixed length and no NaN.
 
 mod geodesic_spectrum;
 mod kind;
-mod of_form;
 mod quantiles;
 mod rigid;
 mod spectral;
@@ -19,7 +18,6 @@ mod spectral;
 pub use geodesic_spectrum::geodesic_spectrum;
 pub(crate) use geodesic_spectrum::log_magnitudes;
 pub use kind::{Signature, SignatureKind};
-pub use of_form::{d2_histogram, moment_signature};
 pub use rigid::rigid_signature;
 pub use spectral::wave_kernels;
 pub use spectral::{heat_kernel_signature, shape_dna, wave_kernel_signature};

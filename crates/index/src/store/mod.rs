@@ -21,5 +21,5 @@ pub(crate) use file::StoredFile;
 #[cfg(test)]
 pub(crate) use file::write_forged;
 pub(crate) use log::Log;
-pub(crate) use records::{Changes, Record};
+pub(crate) use records::Changes;
 pub(crate) use view::{Table, View};

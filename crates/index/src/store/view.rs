@@ -33,33 +33,6 @@ impl Key for str {
     }
 }
 
-impl Key for u64 {
-    type Owned = Self;
-
-    fn write(&self, out: &mut Vec<u8>) {
-        out.extend(self.to_be_bytes());
-    }
-
-    fn read(bytes: &[u8]) -> Option<Self> {
-        Some(Self::from_be_bytes(bytes.try_into().ok()?))
-    }
-}
-
-/// A pair of numbers, such as a cell and a part of it.
-impl Key for [u32; 2] {
-    type Owned = Self;
-
-    fn write(&self, out: &mut Vec<u8>) {
-        self.iter().for_each(|number| out.extend(number.to_be_bytes()));
-    }
-
-    fn read(bytes: &[u8]) -> Option<Self> {
-        let (numbers, rest) = bytes.as_chunks::<4>();
-        let [a, b] = *numbers else { return None };
-        rest.is_empty().then(|| [a, b].map(u32::from_be_bytes))
-    }
-}
-
 /// A part of the map: keys that begin with the same byte, and values of one type.
 pub(crate) struct Table<K: ?Sized, V> {
     tag: u8,

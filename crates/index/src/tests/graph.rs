@@ -3,13 +3,7 @@
 use retrieval::{Graph as _, LINKS, Neighbor, graph_rank};
 
 use super::{Folder, OPTIONS, shape};
-use crate::tables::{self, Node};
-use crate::{Index, IndexWriter, Job, SearchMode, Shape, ShapeVectors, verify};
-
-/// All shapes of the graph, in ascending order of keys.
-pub(super) fn nodes(index: &Index) -> Vec<(u64, Node)> {
-    tables::nodes(index.view()).collect::<Result<_, _>>().unwrap()
-}
+use crate::{Index, IndexWriter, Job, Shape, ShapeVectors, verify};
 
 #[test]
 fn an_index_finds_what_a_matrix_of_its_distances_finds() {
@@ -47,9 +41,9 @@ fn an_index_finds_what_a_matrix_of_its_distances_finds() {
         assert!(all.links(0).unwrap().len() == LINKS);
         let nearest = all.near(&query, usize::MAX);
         let expected = graph_rank(usize::MAX, &nearest, &mut all).unwrap();
-        let found = index.nearest_on_graph(&query, 10, SearchMode::Auto).unwrap();
-        assert_eq!((found.shapes.len(), found.search.n_shapes, found.search.shapes.len()), (10, 90, 0));
-        for (near, expected) in found.shapes.iter().zip(&expected) {
+        let found = index.nearest_on_graph(&query, 10).unwrap();
+        assert_eq!(found.len(), 10);
+        for (near, expected) in found.iter().zip(&expected) {
             assert_eq!(near.id, shape(expected.index).id);
             assert!((near.rank_distance - expected.rank_distance).abs() < 1e-5);
             assert!((near.distance - expected.distance).abs() < 1e-9);
@@ -63,17 +57,16 @@ fn an_index_finds_what_a_matrix_of_its_distances_finds() {
 fn few_shapes_equal_shapes_and_none_have_a_graph() {
     let folder = Folder::new();
     let none = Index::open(&folder.index("none", 0)).unwrap();
-    assert!(none.nearest_on_graph(&[1.0, 2.0], 3, SearchMode::Auto).unwrap().shapes.is_empty());
+    assert!(none.nearest_on_graph(&[1.0, 2.0], 3).unwrap().is_empty());
     let few = Index::open(&folder.index("few", 3)).unwrap();
-    assert!(nodes(&few).iter().all(|(_, node)| node.links.0.len() == 2));
-    assert_eq!(few.nearest_on_graph(&[0.0, 0.0, 0.1], 9, SearchMode::Auto).unwrap().shapes.len(), 3);
+    assert_eq!(few.nearest_on_graph(&[0.0, 0.0, 0.1], 9).unwrap().len(), 3);
     let path = folder.path("equal");
     let mut writer = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
     let vectors = ShapeVectors { fused: vec![1.0, 2.0], ..ShapeVectors::default() };
     let copies = (0..80).map(|i| Shape { vectors: vectors.clone(), ..shape(i) });
     writer.put(&copies.collect::<Vec<_>>()).unwrap();
     let index = writer.finish(&()).unwrap();
-    let found = index.nearest_on_graph(&[1.0, 2.0], 5, SearchMode::Auto).unwrap();
-    assert!(found.shapes.iter().all(|near| near.distance == 0.0 && near.rank_distance.is_finite()));
+    let found = index.nearest_on_graph(&[1.0, 2.0], 5).unwrap();
+    assert!(found.iter().all(|near| near.distance == 0.0 && near.rank_distance.is_finite()));
     assert_eq!(verify(&path).unwrap().faults, Vec::<String>::new());
 }

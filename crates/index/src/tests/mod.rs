@@ -11,9 +11,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
-use crate::{
-    ContentHash, Index, IndexWriter, Job, SearchMode, Searcher, Shape, ShapeEntry, ShapeVectors, verify,
-};
+use crate::{ContentHash, Index, IndexWriter, Job, Shape, ShapeEntry, ShapeVectors, verify};
 
 pub(crate) const OPTIONS: &str = "n=100";
 
@@ -104,31 +102,27 @@ fn shapes_round_trip() {
 }
 
 #[test]
-fn search_in_the_file_and_in_memory_finds_the_nearest() {
+fn a_search_finds_the_nearest() {
     let folder = Folder::new();
     let index = Index::open(&folder.index("a", 50)).unwrap();
-    let searcher = Searcher::load(&index).unwrap();
-    for mode in [SearchMode::Auto, SearchMode::Exact] {
-        for query in [shape(7).vectors.fused, vec![3.2, 0.0, 0.0]] {
-            let found = index.nearest(&query, 5, mode).unwrap();
-            assert_eq!(found, searcher.nearest(&query, 5, mode).unwrap());
-            assert_eq!((found.n_measured, found.n_shapes, found.recall), (50, 50, 1.0));
-            let mut expected: Vec<(f64, String)> = (0..50)
-                .map(|i| {
-                    let gaps =
-                        shape(i).vectors.fused.into_iter().zip(&query).map(|(x, y)| f64::from(x - y).powi(2));
-                    (gaps.sum::<f64>().sqrt(), shape(i).id)
-                })
-                .collect();
-            expected.sort_by(|a, b| a.partial_cmp(b).unwrap());
-            for (found, (distance, id)) in found.shapes.iter().zip(&expected) {
-                assert!(found.id == *id && (found.distance - distance).abs() < 1e-6);
-            }
+    for query in [shape(7).vectors.fused, vec![3.2, 0.0, 0.0]] {
+        let found = index.nearest(&query, 5).unwrap();
+        let mut expected: Vec<(f64, String)> = (0..50)
+            .map(|i| {
+                let gaps =
+                    shape(i).vectors.fused.into_iter().zip(&query).map(|(x, y)| f64::from(x - y).powi(2));
+                (gaps.sum::<f64>().sqrt(), shape(i).id)
+            })
+            .collect();
+        expected.sort_by(|a, b| a.partial_cmp(b).unwrap());
+        assert_eq!(found.len(), 5);
+        for (found, (distance, id)) in found.iter().zip(&expected) {
+            assert!(found.id == *id && (found.distance - distance).abs() < 1e-6);
         }
     }
-    assert_eq!(index.nearest(&shape(3).vectors.fused, 999, SearchMode::Auto).unwrap().shapes.len(), 50);
-    assert!(index.nearest(&[1.0], 5, SearchMode::Auto).unwrap_err().to_string().contains("the query"));
-    assert!(index.nearest(&[1.0, f32::NAN, 0.0], 5, SearchMode::Auto).is_err());
+    assert_eq!(index.nearest(&shape(3).vectors.fused, 999).unwrap().len(), 50);
+    assert!(index.nearest(&[1.0], 5).unwrap_err().to_string().contains("the query"));
+    assert!(index.nearest(&[1.0, f32::NAN, 0.0], 5).is_err());
 }
 
 #[test]
@@ -137,5 +131,5 @@ fn an_empty_index_finds_nothing() {
     let path = folder.index("empty", 0);
     let index = Index::open(&path).unwrap();
     assert!(index.is_empty() && verify(&path).unwrap().faults.is_empty());
-    assert!(index.nearest(&[1.0, 2.0], 5, SearchMode::Auto).unwrap().shapes.is_empty());
+    assert!(index.nearest(&[1.0, 2.0], 5).unwrap().is_empty());
 }

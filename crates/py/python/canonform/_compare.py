@@ -12,7 +12,7 @@ from . import _canonform, _html
 from ._arrays import Floats
 from ._form import Form
 from ._methods import Embedding, Geodesic, options_of
-from ._settings import OF_FORMS, FormDistance, Landmarks, Progress, RelationKind, renamed, shown
+from ._settings import OF_FORMS, Landmarks, Progress, RelationKind, renamed, shown
 from ._stored import Stored
 from ._surface import AnyMesh, Surface, surface_of
 
@@ -30,8 +30,6 @@ class Alignment(Stored):
         Whether the motion includes a reflection.
     rms
         Root mean square distance between nearest points of the aligned forms, in mesh units.
-    hausdorff95
-        Hausdorff distance without the farthest 5 % of points, in mesh units.
     """
 
     def __init__(self, inner: _canonform.Alignment) -> None:
@@ -39,7 +37,6 @@ class Alignment(Stored):
         self.translation: Floats = inner.translation()
         self.reflected: bool = inner.reflected
         self.rms: float = inner.rms
-        self.hausdorff95: float = inner.hausdorff95
 
     def apply(self, points: ArrayLike) -> Floats:
         """Moves points, shape (k, 3)."""
@@ -48,7 +45,7 @@ class Alignment(Stored):
 
     def __repr__(self) -> str:
         reflected = ", reflected" if self.reflected else ""
-        return f"Alignment(rms={self.rms:.6g}, hausdorff95={self.hausdorff95:.6g}{reflected})"
+        return f"Alignment(rms={self.rms:.6g}{reflected})"
 
 
 def align(a: Form | AnyMesh, b: Form | AnyMesh, *, reflections: bool = True) -> Alignment:
@@ -140,7 +137,6 @@ def compare(
     b: AnyMesh,
     *,
     names: tuple[str, str] | None = None,
-    distance: FormDistance = "nn-rms",
     n_landmarks: Landmarks = 100,
     method: Embedding = "nmds",
     geodesic: Geodesic = "fast-marching",
@@ -157,9 +153,8 @@ def compare(
     ----------
     names
         What the two are called in words; by default their file names.
-    distance
-        The distance of aligned forms that is stated: "nn-rms" or "hausdorff95". The relation does not depend on it, nor on the
-        other options, which are those of `Surface.canonical_form`.
+
+    The relation does not depend on the other options, which are those of `Surface.canonical_form`.
     """
     settings = options_of(**locals())
     a, b = surface_of(a), surface_of(b)

@@ -395,12 +395,12 @@ class Index(Stored):
         explain
             Say how each result is related to the query, as `compare` does; reads the mesh files of the results.
         exact
-            Compare the signatures of all shapes, even in a large index.
+            Accepted for older scripts: every search compares all shapes.
         """
         if not isinstance(query, (str, os.PathLike)):
             query = surface_of(query)
             name = query._name or "the query"
-            report = self._inner.search(query._inner, name, whole("k", k), word("rank", rank), explain, exact)
+            report = self._inner.search(query._inner, name, whole("k", k), word("rank", rank), explain)
             return SearchResults(json.loads(report), query, name, self)
         text = os.fspath(query)
         if not os.path.exists(text) and text not in self:
@@ -408,7 +408,7 @@ class Index(Stored):
 
             raise NoSuchShapeError(f"{text!r} is neither a file nor a shape of the index; Index.shapes() names its shapes")
         name = os.path.basename(text) if os.path.exists(text) else text
-        report = self._inner.search(text, name, whole("k", k), word("rank", rank), explain, exact)
+        report = self._inner.search(text, name, whole("k", k), word("rank", rank), explain)
         return SearchResults(json.loads(report), self._pictured(text), name, self)
 
     def _pictured(self, query: str) -> Surface | None:
@@ -475,7 +475,7 @@ class Index(Stored):
         array = np.asarray(vector)
         if array.ndim != 1 or array.dtype.kind not in "fiu":
             raise OptionError(f"vector must be an array of numbers of shape (d,), not {array.dtype} of shape {array.shape}")
-        return self._inner.nearest(straight(array, dtype=np.float32), whole("k", k), bool(exact))
+        return self._inner.nearest(straight(array, dtype=np.float32), whole("k", k))
 
     def distances(
         self,

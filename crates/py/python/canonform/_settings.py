@@ -28,10 +28,9 @@ Bandwidth: TypeAlias = Literal["mean", "median", "max"] | float
 StressChoice: TypeAlias = Literal["auto", "exact", "estimate", "skip"]
 Components: TypeAlias = Literal["largest", "bridge", "error"]
 Weld: TypeAlias = Literal["seams", "all", "none"] | float
-FormDistance: TypeAlias = Literal["nn-rms", "hausdorff95"]
 LaplacianKind: TypeAlias = Literal["intrinsic", "cotangent"]
 SignatureKind: TypeAlias = Literal[
-    "fused", "moments", "d2", "form-spectrum", "geodesic-spectrum", "shape-dna", "heat-kernel", "wave-kernel", "rigid"
+    "fused", "form-spectrum", "geodesic-spectrum", "shape-dna", "heat-kernel", "wave-kernel", "rigid"
 ]
 IndexDistance: TypeAlias = Literal["combined", "fused"]
 Ranking: TypeAlias = Literal["plain", "graph", "part", "forms"]

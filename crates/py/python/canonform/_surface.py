@@ -447,7 +447,7 @@ class Surface(Constant):
         ----------
         kind
             "fused" for all signatures as one vector, by which an index is searched: Euclidean distances between such vectors compare
-            shapes. Or one of "moments", "d2", "form-spectrum", "geodesic-spectrum", "shape-dna", "heat-kernel", "wave-kernel", "rigid".
+            shapes. Or one of "form-spectrum", "geodesic-spectrum", "shape-dna", "heat-kernel", "wave-kernel", "rigid".
         n_landmarks
             Number of landmarks of the form, see `canonical_form`.
         size

@@ -466,9 +466,9 @@ class _Search:
     def report(self, packed: str, k: int, rank: str, explain: bool) -> dict[str, Any]:
         """The report on a query, without its components."""
         n, facts = self.table.count_rows(), self.facts
-        n_candidates, wanted = _canonform.shortlist(k, n, rank)
+        n_candidates, wanted = _canonform.shortlist(k, n)
         candidates: dict[str, list[str]] = {}
-        for _, id, shard in self.near(packed, n_candidates, rank):
+        for _, id, shard in self.near(packed, n_candidates if rank == "plain" and not self.exact else wanted, rank):
             candidates.setdefault(shard, []).append(id)
             self.shards_of[id] = os.path.join(self.folder, shard)
         matches = self.ask("match_shapes", [(shard, packed, ids, rank, wanted) for shard, ids in candidates.items()])

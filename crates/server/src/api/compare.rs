@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use axum::extract::State;
 use canonform::ContentHash;
-use canonform::descriptors::{PreparedShape, ShapeMetric};
+use canonform::descriptors::PreparedShape;
 use canonform::{Budget, Compared, Error, MeshComparison, Residual, compare_meshes};
 use report::viewer::Geometry;
 use serde::{Deserialize, Serialize};
@@ -131,7 +131,7 @@ fn answer(
     budget.check().map_err(ApiError::exceeded)?;
     let [of_a, of_b] = [a.compared(), b.compared()];
     let dot = of_a.form.spread();
-    let mut found = compare_meshes(ShapeMetric::default(), [of_a, of_b])?;
+    let mut found = compare_meshes([of_a, of_b])?;
     found.relation = found.relation.named(&name, &params.b);
     let form = |i, side: &ComparedShape| overlaid(&found.overlay, i, side.measured.as_deref(), dot);
     let forms = [form(0, &a), form(1, &b)];

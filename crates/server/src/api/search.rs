@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use axum::extract::{Request, State};
-use canonform::index::{ContentHash, SearchMode};
+use canonform::index::ContentHash;
 use canonform::mesh::RepairReport;
 use canonform::mesh::io::{MemoryFile, ReadLimits, is_mesh_path, mesh_files, read_memory};
 use canonform::{
@@ -99,11 +99,10 @@ impl SearchParams {
             return Err(ApiError::bad_request(format!("k is {k}; use 1 to {MOST_FOUND}")));
         }
         let explain = if self.explain == Some(true) { Explain::Kind } else { Explain::No };
-        let mode = if self.exact == Some(true) { SearchMode::Exact } else { SearchMode::Auto };
         let format = self.format.unwrap_or(Format::Json);
         let geometry = format == Format::Json && self.geometry != Some(false);
         let rank_by = self.rank.unwrap_or_default();
-        Ok(Wanted { options: SearchOptions { k, explain, mode, rank_by }, geometry, format })
+        Ok(Wanted { options: SearchOptions { k, explain, rank_by }, geometry, format })
     }
 }
 

@@ -4,9 +4,7 @@ use std::time::Instant;
 
 use anyhow::Result;
 use canonform::form_alignments;
-use descriptors::{
-    CanonicalForm, LaplaceSpectrum, Normalization, PreparedForm, Signature, moment_signature, shape_dna,
-};
+use descriptors::{CanonicalForm, LaplaceSpectrum, Normalization, PreparedForm, Signature, shape_dna};
 use linalg::DistanceMatrix;
 use rayon::prelude::*;
 
@@ -23,12 +21,10 @@ pub(super) enum FormComparison {
     Spectrum,
     /// The spectrum of the surface of the form.
     Surface,
-    /// The moments of the form.
-    Moments,
 }
 
 impl FormComparison {
-    pub(super) const ALL: [Self; 4] = [Self::Aligned, Self::Spectrum, Self::Surface, Self::Moments];
+    pub(super) const ALL: [Self; 3] = [Self::Aligned, Self::Spectrum, Self::Surface];
 
     /// Whether forms of any number of dimensions can be compared in this way.
     pub(super) fn any_dimension(self) -> bool {
@@ -40,7 +36,6 @@ impl FormComparison {
             Self::Aligned => "alignment",
             Self::Spectrum => "spectrum",
             Self::Surface => "surface",
-            Self::Moments => "moments",
         }
     }
 
@@ -57,7 +52,6 @@ impl FormComparison {
             Self::Surface => by_signature(made, |made| {
                 Ok(shape_dna(&LaplaceSpectrum::describing(&made.solid()?.mesh.intrinsic(), &())?))
             }),
-            Self::Moments => by_signature(made, |made| Ok(moment_signature(&made.solid()?.form))),
         }
     }
 }

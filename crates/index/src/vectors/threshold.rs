@@ -1,0 +1,126 @@
+//! The distance beyond which a shape belongs to none of the classes of an index.
+
+use rayon::prelude::*;
+use retrieval::UnknownThreshold;
+
+use super::kernels::sq_distances_into;
+use super::table::VectorTable;
+use crate::shape::{ShapeKey, shape_key};
+use crate::texts::Texts;
+
+/// Shapes with a class whose nearest others are looked for, at most: those whose hashed names come first.
+const TRIALS: usize = 512;
+
+/// Trials, and vectors, that meet while both are in the cache.
+const GROUP: usize = 16;
+const BLOCK: usize = 1024;
+
+/// Called with the vectors and the classes of some shapes.
+type Visit<'a> = dyn FnMut(&VectorTable, &Texts) + 'a;
+
+/// A shape, and the least squared distances to others of its class and of other classes.
+struct Trial {
+    key: ShapeKey,
+    id: String,
+    class: String,
+    row: Vec<f32>,
+    own: f32,
+    foreign: f32,
+}
+
+impl Trial {
+    fn new(key: ShapeKey, i: usize, vectors: &VectorTable, classes: &Texts) -> Self {
+        let (id, class) = (vectors.id(i).to_owned(), classes.get(i).to_owned());
+        let row = vectors.padded(i).to_vec();
+        Self { key, id, class, row, own: f32::INFINITY, foreign: f32::INFINITY }
+    }
+
+    /// Compares it with some of the shapes.
+    fn meet(&mut self, shapes: std::ops::Range<usize>, vectors: &VectorTable, classes: &Texts) {
+        let mut sq = [0.0];
+        for i in shapes.filter(|i| !classes.get(*i).is_empty()) {
+            sq_distances_into(&self.row, vectors.padded(i), &mut sq);
+            let least = if classes.get(i) == self.class { &mut self.own } else { &mut self.foreign };
+            if sq[0] < *least && vectors.id(i) != self.id {
+                *least = sq[0];
+            }
+        }
+    }
+}
+
+/// The threshold of all shapes that `each` visits, in pieces; it is called twice.
+pub(crate) fn threshold<E>(
+    each: impl Fn(&mut Visit<'_>) -> Result<(), E>,
+) -> Result<Option<UnknownThreshold>, E> {
+    let mut trials: Vec<Trial> = Vec::new();
+    each(&mut |vectors, classes| {
+        let labelled = (0..vectors.len()).filter(|i| !classes.get(*i).is_empty());
+        let mut keys: Vec<(ShapeKey, usize)> = labelled.map(|i| (shape_key(vectors.id(i)), i)).collect();
+        keys.sort_unstable();
+        keys.truncate(TRIALS);
+        trials.extend(keys.into_iter().map(|(key, i)| Trial::new(key, i, vectors, classes)));
+        trials.sort_by_key(|trial| trial.key);
+        trials.truncate(TRIALS);
+    })?;
+    each(&mut |vectors, classes| {
+        trials.par_chunks_mut(GROUP).for_each(|group| {
+            for start in (0..vectors.len()).step_by(BLOCK) {
+                let shapes = start..(start + BLOCK).min(vectors.len());
+                group.iter_mut().for_each(|trial| trial.meet(shapes.clone(), vectors, classes));
+            }
+        });
+    })?;
+    let distances = |sq: fn(&Trial) -> f32| -> Vec<f64> {
+        trials.iter().map(|trial| f64::from(sq(trial)).sqrt()).collect()
+    };
+    Ok(UnknownThreshold::of(&distances(|trial| trial.own), &distances(|trial| trial.foreign)))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::convert::Infallible;
+
+    use super::super::testing::noise;
+    use super::*;
+
+    fn of_pieces(
+        pieces: &[std::ops::Range<usize>],
+        rows: &[f32],
+        class: impl Fn(usize) -> String,
+    ) -> Option<UnknownThreshold> {
+        let pieces: Vec<(VectorTable, Texts)> = pieces
+            .iter()
+            .map(|range| {
+                let mut table = VectorTable::default();
+                range.clone().for_each(|i| table.push(&i.to_string(), &rows[16 * i..][..16]));
+                (table, range.clone().map(&class).collect())
+            })
+            .collect();
+        let found = threshold(|visit| {
+            pieces.iter().for_each(|(vectors, classes)| visit(vectors, classes));
+            Ok::<_, Infallible>(())
+        });
+        found.unwrap()
+    }
+
+    #[test]
+    fn pieces_give_the_threshold_of_the_whole() {
+        let rows = noise(900, 16, 5);
+        let class = |i: usize| if i % 5 == 4 { String::new() } else { format!("c{}", i % 7) };
+        let whole = of_pieces(&[0..900], &rows, class);
+        assert!(whole.is_some());
+        assert_eq!(of_pieces(&[0..10, 10..700, 700..900], &rows, class), whole);
+    }
+
+    #[test]
+    fn matches_the_threshold_from_all_pairs() {
+        let positions = [0.0f32, 1.0, 2.5, 10.0, 11.0, 30.0];
+        let rows: Vec<f32> = positions.iter().flat_map(|x| [&[*x][..], &[0.0; 15]].concat()).collect();
+        let of = |classes: [&str; 6]| of_pieces(&[0..6], &rows, |i| classes[i].to_owned());
+        // Own: 1, 1, 1.5, 1, 1; foreign: 10, 9, 7.5, 7.5, 8.5, 19.
+        let expected = UnknownThreshold { distance: 4.5, missed: 0.0, mistaken: 0.0 };
+        assert_eq!(of(["a", "a", "a", "b", "b", "c"]), Some(expected));
+        assert_eq!(of(["a", "b", "c", "d", "e", "f"]), None);
+        assert_eq!(of([""; 6]), None);
+    }
+}
