@@ -1,0 +1,113 @@
+//! What a search finds depends on the shapes alone: not on how many results are wanted, nor on what counts as mechanical.
+
+use std::path::Path;
+
+use canonform::{
+    BuildOptions, DescribeOptions, PackedQuery, Query, SearchOptions, SearchRank, SearchReport, SearchResult,
+    ShapeSearch, ShardedSearch, build_index, merge_matches,
+};
+use datasets::{CreatureOptions, Damage, PartMesh, creatures, mechanical_parts};
+use descriptors::ShapePair;
+use mesh::TriMesh;
+use rayon::prelude::*;
+
+fn indexed(folder: &Path, shapes: &[(String, TriMesh)]) -> ShapeSearch {
+    let write = |(name, mesh): &(String, TriMesh)| mesh::io::write(&folder.join(format!("{name}.off")), mesh);
+    shapes.iter().try_for_each(write).unwrap();
+    let path = folder.join("all.canonform");
+    build_index(folder, &path, &BuildOptions::new(&DescribeOptions::default()), &()).unwrap();
+    ShapeSearch::open(&path).unwrap()
+}
+
+fn found(search: &ShapeSearch, id: &str, k: usize, rank_by: SearchRank) -> SearchReport {
+    search.search(Query::Id(id), &SearchOptions { k, rank_by, ..SearchOptions::default() }, &()).unwrap()
+}
+
+#[test]
+fn the_results_for_a_number_of_results_are_the_first_of_those_for_a_larger_one() {
+    let options = CreatureOptions { n_families: 28, n_poses: 2, n_vertices: 1000, ..Default::default() };
+    let shapes: Vec<(String, TriMesh)> = creatures(&options)
+        .unwrap()
+        .into_par_iter()
+        .map(|shape| (shape.name, Damage::Decimate(0.25).apply(&shape.mesh, 1)))
+        .collect();
+    let folder = tempfile::tempdir().unwrap();
+    let search = indexed(folder.path(), &shapes);
+    let n = shapes.len();
+    let prepared: Vec<_> = shapes.iter().map(|(id, _)| search.prepared(id).unwrap()).collect();
+    for query in [0, 9, 21, 34, 55] {
+        let id = &shapes[query].0;
+        for rank_by in [SearchRank::Plain, SearchRank::Graph, SearchRank::Forms] {
+            let all = found(&search, id, n, rank_by);
+            assert_eq!((all.results.len(), all.measured, all.recall), (n, n, 1.0));
+            for k in [1, 2, 3, 5, 8, 20, 41] {
+                let some = found(&search, id, k, rank_by);
+                assert_eq!(some.results, all.results[..k], "{id}, {rank_by:?}, {k}");
+                assert_eq!(some.predicted, all.predicted, "{id}, {rank_by:?}, {k}");
+            }
+        }
+        // The order is that of all distances.
+        let mut expected: Vec<(f64, &str)> = (0..n)
+            .into_par_iter()
+            .map(|i| {
+                let pair = ShapePair::new([&prepared[query], &prepared[i]]);
+                (pair.distance().combined, shapes[i].0.as_str())
+            })
+            .collect();
+        expected.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(b.1)));
+        let all = found(&search, id, n, SearchRank::Plain);
+        let key = |result: &SearchResult| (result.distance, result.id.clone());
+        let expected: Vec<(f64, String)> = expected.into_iter().map(|(d, id)| (d, id.to_owned())).collect();
+        assert_eq!(all.results.iter().map(key).collect::<Vec<_>>(), expected, "{id}");
+        // Other processes find the same.
+        let packed: PackedQuery = search.pack(id, &SearchOptions::default(), &()).unwrap();
+        for k in [1, 7] {
+            let [_, wanted] = PackedQuery::shortlist(k, n);
+            let near = search.shortlist(&packed, SearchRank::Plain, wanted, &()).unwrap();
+            let ids: Vec<String> = near.into_iter().map(|(_, id)| id).collect();
+            let matches = search.match_shapes(&packed, &ids, SearchRank::Plain, wanted, &()).unwrap();
+            let about = ShardedSearch {
+                rank_by: SearchRank::Plain,
+                n_shapes: n,
+                measured: n,
+                recall: 1.0,
+                threshold: search.index().threshold(),
+            };
+            let merged = merge_matches(&packed, vec![matches], about, k);
+            assert_eq!((&merged.results[..], &merged.predicted), (&all.results[..k], &all.predicted));
+        }
+    }
+}
+
+#[test]
+fn a_mechanical_part_is_next_to_its_noisy_copy_which_does_not_count_as_one() {
+    let parts = mechanical_parts(0, 16);
+    let mut shapes = Vec::new();
+    for (i, part) in parts.iter().enumerate() {
+        let mesh = mesh::refine(
+            &part.mesh(&PartMesh::default()),
+            part.mesh(&PartMesh::default()).root_of_area() / 12.0,
+            20_000,
+        )
+        .mesh;
+        shapes.push((format!("part{i:02}"), mesh.clone()));
+        shapes.push((format!("noisy{i:02}"), Damage::Noise(0.0005).apply(&mesh, 7)));
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let search = indexed(folder.path(), &shapes);
+    let has_rigid = |id: &str| !search.prepared(id).unwrap().rigid().is_empty();
+    let flipped: Vec<usize> = (0..parts.len())
+        .filter(|i| has_rigid(&format!("part{i:02}")) && !has_rigid(&format!("noisy{i:02}")))
+        .collect();
+    assert!(2 * flipped.len() > parts.len(), "{flipped:?}");
+    for i in flipped {
+        let report = found(&search, &format!("part{i:02}"), 2, SearchRank::Plain);
+        let next = &report.results[1];
+        assert!(
+            next.id == format!("noisy{i:02}") && next.distance < 1.5,
+            "part {i}: {} at {}",
+            next.id,
+            next.distance
+        );
+    }
+}
