@@ -22,6 +22,9 @@ const POSES: usize = 2;
 /// Pairs of two families whose forms are aligned, evenly drawn: that takes long.
 const PAIRS_OF_FAMILIES: usize = 12_000;
 
+/// Groups of plans; two of them are held out at a time.
+const FOLDS: usize = 7;
+
 /// How frequent pairs are: poses of one body, bodies of one family, two families.
 type Prior = [f64; 3];
 
@@ -31,19 +34,19 @@ const OF_SHAPES: Prior = [0.5, 0.5, 0.0];
 /// One class or two, equally frequent; of one class, one shape and two are equally frequent.
 const OF_CLASSES: Prior = [0.25, 0.25, 0.5];
 
-/// A shape of a family, and the half of the plans that it belongs to.
+/// A shape of a family, and the group of plans that it belongs to.
 struct Creature {
-    half: usize,
+    fold: usize,
     family: usize,
     body: usize,
     shape: PreparedShape,
 }
 
-/// Two creatures: which kind of pair they are, the halves of their plans, and how far apart they are.
+/// Two creatures: which kind of pair they are, the groups of their plans, and how far apart they are.
 #[derive(Debug, Clone, Copy)]
 struct CreaturePair {
     kind: usize,
-    halves: [usize; 2],
+    folds: [usize; 2],
     distance: ShapeDistance,
 }
 
@@ -58,7 +61,7 @@ fn described(n_plans: usize, number: usize) -> Result<Creature> {
     let mesh = if n_vertices < mesh.n_vertices() { coarse(&mesh, n_vertices) } else { mesh };
     let options = DescribeOptions::default();
     let description = describe(&Surface::new(&mesh, &options.form.repair, &())?, &options, &())?;
-    Ok(Creature { half: family % n_plans % 2, family, body, shape: description.prepare()? })
+    Ok(Creature { fold: family % n_plans % FOLDS, family, body, shape: description.prepare()? })
 }
 
 /// All pairs of one family, and some of two.
@@ -117,8 +120,8 @@ fn reliability(stated: &[(f64, bool, f64)]) -> Vec<[f64; 3]> {
     (0..10).map(bin).collect()
 }
 
-/// Prints the boundaries beside those in use, and how reliable they are: each half of the plans by the boundaries that the other
-/// half gives.
+/// Prints the boundaries beside those in use, and how reliable they are: for pairs of any two groups of plans, by the boundaries
+/// that the other groups give.
 pub(crate) fn print(observer: &dyn Observer, out: &mut impl Write) -> Result<()> {
     let n_plans = creature_plans().len();
     let n = n_plans * FAMILIES * BODIES * VERTICES.len() * POSES;
@@ -133,7 +136,7 @@ pub(crate) fn print(observer: &dyn Observer, out: &mut impl Write) -> Result<()>
     let measured = |(kind, a, b): &(usize, &Creature, &Creature)| {
         observer.step();
         let distance = ShapePair::new([&a.shape, &b.shape]).distance();
-        CreaturePair { kind: *kind, halves: [a.half, b.half], distance }
+        CreaturePair { kind: *kind, folds: [a.fold.min(b.fold), a.fold.max(b.fold)], distance }
     };
     let pairs: Vec<CreaturePair> = chosen.par_iter().map(measured).collect();
     let in_use = [("SAME_SHAPE", ShapeMetric::SAME_SHAPE), ("SAME_CLASS", ShapeMetric::SAME_CLASS)];
@@ -142,15 +145,14 @@ pub(crate) fn print(observer: &dyn Observer, out: &mut impl Write) -> Result<()>
         writeln!(out, "{name} at {at:.3}, steepness {steepness:.2}; in use {}, {}", used.at, used.steepness)?;
     }
     let mut stated: [Vec<(f64, bool, f64)>; 2] = Default::default();
-    for half in [0, 1] {
-        let of = |half| -> Vec<CreaturePair> {
-            pairs.iter().filter(|pair| pair.halves == [half; 2]).copied().collect()
-        };
-        let ([shape, class], held_out) = (both(&of(1 - half)), of(half));
-        for (pair, weight) in held_out.iter().zip(weights(&held_out, OF_CLASSES)) {
+    let all_weights = weights(&pairs, OF_CLASSES);
+    for held_out in (0..FOLDS).flat_map(|i| (i..FOLDS).map(move |j| [i, j])) {
+        let is_known = |pair: &&CreaturePair| pair.folds.iter().all(|fold| !held_out.contains(fold));
+        let [shape, class] = both(&pairs.iter().filter(is_known).copied().collect::<Vec<_>>());
+        for (pair, weight) in pairs.iter().zip(&all_weights).filter(|(pair, _)| pair.folds == held_out) {
             let p = class.probability(pair.distance.combined);
-            stated[0].push((shape.probability(pair.distance.combined) * p, pair.kind == 0, weight));
-            stated[1].push((p, pair.kind < 2, weight));
+            stated[0].push((shape.probability(pair.distance.combined) * p, pair.kind == 0, *weight));
+            stated[1].push((p, pair.kind < 2, *weight));
         }
     }
     writeln!(
@@ -176,7 +178,7 @@ mod tests {
                 let combined = 1.0 + 2.0 * f64::from(i % 200) / 200.0;
                 let is_one = f64::from(i / 200) / 200.0 < truth.probability(combined);
                 let distance = ShapeDistance { fused: combined, combined };
-                CreaturePair { kind: if is_one { 1 } else { 2 }, halves: [0; 2], distance }
+                CreaturePair { kind: if is_one { 1 } else { 2 }, folds: [0; 2], distance }
             })
             .collect();
         let ones = pairs.iter().filter(|pair| pair.kind == 1).count() as f64 / pairs.len() as f64;

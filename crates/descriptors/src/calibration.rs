@@ -33,8 +33,8 @@ pub(crate) const FORM: [f64; 2] = [0.027, 0.0095];
 ///
 /// The unit is the root mean square distance between copies of a mechanical part. With the weight, parts of one family are by
 /// this signature as far apart, root mean square, as [`SAME_SHAPE`]. Measured on 110 generated parts with four copies each,
-/// on which copies are .0014 apart and parts of one family .0274.
-pub(crate) const RIGID: [f64; 2] = [0.0014, 0.0033];
+/// on which copies are .0011 apart and parts of one family .0281.
+pub(crate) const RIGID: [f64; 2] = [0.0011, 0.0018];
 
 /// See [`ShapeMetric::SAME_SHAPE`](crate::ShapeMetric::SAME_SHAPE).
 pub(crate) const SAME_SHAPE: Boundary = Boundary { at: 1.126, steepness: 1.56 };

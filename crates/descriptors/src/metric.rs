@@ -292,8 +292,8 @@ mod tests {
         assert_eq!(ShapeMetric::rigid(&rigid(0.0), &rigid(0.0)), 0.0);
         assert_eq!((ShapeMetric::rigid(&rigid(0.0), &[]), ShapeMetric::rigid(&[], &[])), (0.0, 0.0));
         // Copies are a small part of the unit of two poses apart, and no parts are farther than two shapes.
-        let copies = (0.0014f64.powi(2) / 27.0).sqrt() as f32;
-        assert!((0.03..0.1).contains(&ShapeMetric::rigid(&rigid(0.0), &rigid(copies))));
+        let copies = (0.0011f64.powi(2) / 27.0).sqrt() as f32;
+        assert!((0.02..0.1).contains(&ShapeMetric::rigid(&rigid(0.0), &rigid(copies))));
         assert_eq!(ShapeMetric::rigid(&rigid(0.0), &rigid(9.0)), ShapeMetric::SAME_SHAPE.at);
     }
 

@@ -60,8 +60,9 @@ fn distances_distinguish_poses_from_families() {
         .collect();
     let poses: Vec<_> =
         distances.iter().filter(|(is_family, _)| *is_family).map(|(_, found)| found).collect();
-    let same = poses.iter().filter(|found| found.is_same_shape()).count();
-    println!("{same} of {} pairs of poses are certainly one shape", poses.len());
+    // Bodies of some plans differ less, so that poses are never certainly of one body by distance alone.
+    let same = poses.iter().filter(|found| found.same_shape() > 0.5).count();
+    println!("{same} of {} pairs of poses are rather one shape than two", poses.len());
     assert!(2 * same > poses.len(), "{same} of {}", poses.len());
 }
 
@@ -71,11 +72,10 @@ fn the_guide_lists_the_limits_of_the_combined_distance() {
         std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/guide/compare.md")).unwrap();
     let limits =
         |boundary: Boundary| [0.9, 0.1].map(|probability| format!("{:.2}", boundary.distance(probability)));
-    let ([shape, class], [near, far]) = (limits(ShapeMetric::SAME_SHAPE), limits(ShapeMetric::SAME_CLASS));
+    let ([shape, _], [near, far]) = (limits(ShapeMetric::SAME_SHAPE), limits(ShapeMetric::SAME_CLASS));
     for row in [
         format!("| below {shape} |"),
-        format!("| {shape} to {class} |"),
-        format!("| {class} to {near} |"),
+        format!("| {shape} to {near} |"),
         format!("| {near} to {far} |"),
         format!("| above {far} |"),
     ] {

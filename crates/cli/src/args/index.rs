@@ -168,7 +168,6 @@ pub(crate) struct SearchArgs {
     pub(crate) explain: bool,
     /// Accepted for older scripts: every search compares all shapes
     #[arg(long, hide = true)]
-    #[expect(dead_code, reason = "every search is exact")]
     pub(crate) exact: bool,
     /// How to order results: `plain`, by distance; `graph`, by distance of signatures and by the neighbours that query
     /// and shape have in common; `part`, by how well the query fits as a part of the shape, for a mesh that was cut or

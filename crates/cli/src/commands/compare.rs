@@ -4,10 +4,11 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use canonform::descriptors::ShapeMetric;
+use canonform::descriptors::{Boundary, ShapeMetric};
 use canonform::mesh::io::{Content, writable};
 use canonform::{
-    ComparedMesh, FaceAgreement, Handedness, MeshComparison, Residual, compare_meshes, content_hash,
+    ComparedMesh, FaceAgreement, Handedness, MeshComparison, RelationKind, Residual, compare_meshes,
+    content_hash,
 };
 use serde::Serialize;
 
@@ -68,7 +69,9 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
     let distance = found.comparison.shape_distance;
     let failed =
         args.threshold.map(|limit| found.comparison.normalized_distance > limit || distance.is_different());
-    let not_alike = args.exit_code.is_some_and(|least| distance.combined >= least.gap()[0]);
+    let relation = &found.relation;
+    let is_proved = relation.kind <= RelationKind::Remeshed && relation.confidence >= Boundary::CERTAIN;
+    let not_alike = args.exit_code.is_some_and(|least| !is_proved && distance.combined >= least.gap()[0]);
     let json = CompareJson {
         a: args.pair.a.clone(),
         b: args.pair.b.clone(),

@@ -165,7 +165,7 @@ mod tests {
 
     #[test]
     fn size_and_handedness_are_changes_of_one_shape_only() {
-        let (near, far) = (0.5, 30.0);
+        let (near, far) = (0.2, 30.0);
         for unclear in [Handedness::Same, Handedness::Either, Handedness::Unknown] {
             assert_eq!(at(near, 1.0, unclear).to_string(), "b is a in this or another pose");
             assert_eq!(
