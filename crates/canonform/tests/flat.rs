@@ -123,7 +123,7 @@ fn rounding_and_noise_change_no_description_of_a_flat_surface() {
         for (change, copy) in copies {
             let copy = described(&copy);
             let shapes = [base.prepare().unwrap(), copy.prepare().unwrap()];
-            let distance = ShapePair::new(ShapeMetric::default(), [&shapes[0], &shapes[1]]).distance();
+            let distance = ShapePair::new([&shapes[0], &shapes[1]]).distance();
             let kind = SignatureKind::FormSpectrum;
             let [a, b] = [&base, &copy].map(|described| described.signature(kind).unwrap());
             let spectrum = a.distance(b) / ShapeMetric::unit(kind);

@@ -335,7 +335,7 @@ fn help_mentions_every_option() {
             --path-to --all-pairs --memory 17-42@0.3 f8@2:1:1 --method -o fast-marching dijkstra bfs",
         ),
         ("embed", of(&[OptionGroup::Stress]), "-o -n --stress-against --timeout"),
-        ("compare", of(&[OptionGroup::Comparison]), "--threshold --exit-code same-class"),
+        ("compare", of(&[]), "--threshold --exit-code same-class"),
         (
             "render",
             vec![OptionGroup::Repair],
