@@ -49,8 +49,7 @@ fn relations_of_a_search_are_those_of_a_comparison() {
         let mesh = search.mesh(query.0).unwrap();
         for found in search.search(Query::from(&mesh), &options, &()).unwrap().results {
             let b = meshes.iter().position(|(name, _)| *name == found.id).unwrap();
-            let expected =
-                compare_meshes(Default::default(), [a.compared(), sides[b].compared()]).unwrap().relation;
+            let expected = compare_meshes([a.compared(), sides[b].compared()]).unwrap().relation;
             let pair = format!("{} and {}: {}, {expected}", query.0, found.id, found.relation);
             assert_eq!(
                 (found.relation.kind, &found.relation.changes),

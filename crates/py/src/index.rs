@@ -340,7 +340,10 @@ impl Index {
     /// The fused vectors of all shapes, in the order of `shapes`.
     fn vectors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let index = self.search.index();
-        let flat = run_alone(py, None, |_| Ok(index.fused_vectors()?))?;
+        let flat = run_alone(py, None, |_| {
+            let table = index.vector_table()?;
+            Ok((0..table.len()).flat_map(|i| table.vector(i).iter().copied()).collect::<Vec<f32>>())
+        })?;
         let length = flat.len().checked_div(index.len()).unwrap_or(0);
         flat.into_pyarray(py).reshape([index.len(), length])
     }
