@@ -41,8 +41,8 @@ impl<S: Borrow<Surface>> MappedSurface<S> {
         drop(solver);
         let spectrum = LaplaceSpectrum::new(repaired.intrinsic(), options.eigenfunctions, observer)?;
         let SpreadSamples { samples, nearest, .. } = spread;
-        let shape = MapShape::new(&form, repaired.mesh(), spectrum, embedded.distances, samples, nearest)?;
-        let shape = shape.with_cut(from_cut);
+        let (mesh, distances) = (repaired.mesh(), embedded.distances);
+        let shape = MapShape::new(&form, mesh, spectrum, distances, samples, nearest, from_cut)?;
         Ok(Self { shape, seconds: start.elapsed().as_secs_f64(), surface })
     }
 

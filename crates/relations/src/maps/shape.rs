@@ -68,6 +68,8 @@ impl MapShape {
     /// * `distances` are those from landmarks to all vertices. The landmarks are the first of `samples`, vertices spread
     ///   evenly over the surface; `nearest` is the position in `samples` of the one nearest to each vertex.
     /// * `mesh` gives the orientation: outwards if it encloses a volume, else as most faces turn.
+    /// * `from_cut` is the distance of each vertex from the boundary, in mesh units, where a cut may have left the surface of
+    ///   another one; `None` without a boundary.
     ///
     /// # Errors
     /// [`DescriptorError::SizeMismatch`] if the parts differ in their numbers of vertices; [`DescriptorError::NoExtent`];
@@ -82,9 +84,11 @@ impl MapShape {
         distances: LandmarkDistances,
         samples: Vec<usize>,
         nearest: Vec<usize>,
+        from_cut: Option<Vec<f64>>,
     ) -> Result<Self, DescriptorError> {
-        let n_vertices = mesh.n_vertices();
-        for n_points in [form.points().len(), spectrum.masses.len(), distances.n_points(), nearest.len()] {
+        let (n_vertices, size) = (mesh.n_vertices(), spectrum.area.sqrt());
+        let counts = [form.points().len(), spectrum.masses.len(), distances.n_points(), nearest.len()];
+        for n_points in counts.into_iter().chain(from_cut.as_ref().map(Vec::len)) {
             if n_points != n_vertices {
                 return Err(DescriptorError::SizeMismatch { n_points, n_vertices });
             }
@@ -103,14 +107,14 @@ impl MapShape {
         let operators = operators(curvatures, &spectrum, oriented.as_ref());
         Ok(Self {
             bends,
-            from_cut: None,
+            from_cut: from_cut.map(|from_cut| from_cut.iter().map(|d| d / size).collect()),
             at_samples: spectrum.vectors.select_rows(&samples),
             area_forms: oriented.as_ref().map(|oriented| oriented.area_forms(&spectrum.vectors, &samples)),
             mirrors: OnceLock::new(),
             oriented,
             operators,
             curvature,
-            size: spectrum.area.sqrt(),
+            size,
             spectrum,
             form,
             samples,
@@ -118,21 +122,6 @@ impl MapShape {
             cells,
             distances,
         })
-    }
-
-    /// The surface as a possible part of another one that was cut off at its boundary: `from_cut` is the distance of each
-    /// vertex from it, in mesh units; `None` without a boundary.
-    ///
-    /// # Panics
-    /// Unless there is one distance for each vertex.
-    #[must_use]
-    pub fn with_cut(mut self, from_cut: Option<Vec<f64>>) -> Self {
-        let of_vertices = |from_cut: Vec<f64>| {
-            assert_eq!(from_cut.len(), self.n_vertices(), "one distance for each vertex");
-            from_cut.iter().map(|d| d / self.size).collect()
-        };
-        self.from_cut = from_cut.map(of_vertices);
-        self
     }
 
     /// Number of vertices.
