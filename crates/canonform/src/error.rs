@@ -12,6 +12,7 @@ use index::IndexError;
 use linalg::LinalgError;
 use mesh::{InputPoint, MeshError, PointError};
 use nmds::NmdsError;
+use relations::LandmarkConflict;
 use retrieval::RetrievalError;
 use surface::VertexId;
 
@@ -207,6 +208,17 @@ pub enum Error {
         path: PathBuf,
         /// What is wrong, and what to do.
         what: &'static str,
+    },
+    /// Landmarks of a map that contradict each other.
+    #[error(
+        "the landmarks {},{} and {},{} contradict each other: {how}; correct or leave out one of them",
+        pairs[0][0], pairs[0][1], pairs[1][0], pairs[1][1]
+    )]
+    ContradictoryLandmarks {
+        /// The landmarks, a vertex of the first input and one of the second.
+        pairs: [[VertexId; 2]; 2],
+        /// Why.
+        how: LandmarkConflict,
     },
     /// A folder or a text file that cannot be read.
     #[error(transparent)]

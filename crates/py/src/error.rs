@@ -83,7 +83,8 @@ impl Exception {
             | Error::NoStress { .. }
             | Error::NoExtension { .. }
             | Error::OtherSurface { .. }
-            | Error::NotThere { .. } => Self::Option,
+            | Error::NotThere { .. }
+            | Error::ContradictoryLandmarks { .. } => Self::Option,
             Error::Descriptor(DescriptorError::UnknownSignature { .. }) => Self::Option,
             Error::Index(IndexError::NoSuchShape { .. }) => Self::NoSuchShape,
             Error::Index(IndexError::Io { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => {

@@ -97,6 +97,8 @@ def test_landmarks_initial_maps_and_descriptors(cats: list[Shape]) -> None:
     assert "direct" in [m.kind for m in canonform.match(a, b, descriptors=(side, there)).maps]
     with pytest.raises(PointError, match="5000"):
         canonform.match(a, b, landmarks=[(0, 5000)])
+    with pytest.raises(OptionError, match="3,1 and 3,900 contradict each other: they give one vertex two partners"):
+        canonform.match(a, b, landmarks=[(3, 1), (3, 900)])
     with pytest.raises(OptionError, match="pairs"):
         canonform.match(a, b, landmarks=[1, 2, 3])
     with pytest.raises(OptionError, match="3 rows"):

@@ -10,8 +10,8 @@ mod outward;
 mod relation;
 
 pub use maps::{
-    ConsistentMaps, CycleReport, KnownMap, MapElements, MapKind, MapShape, PartOfWhole, SurfaceMap,
-    all_pairs, consistent_maps, map_surfaces, map_wholes, mapped_points,
+    ConsistentMaps, CycleReport, KnownMap, LandmarkConflict, MapElements, MapError, MapKind, MapShape,
+    PartOfWhole, SurfaceMap, all_pairs, consistent_maps, map_surfaces, map_wholes, mapped_points,
 };
 pub use relation::{
     Basis, Because, Change, CutPiece, Difference, Dimension, Handedness, MeshGeometry, MeshOverlay,

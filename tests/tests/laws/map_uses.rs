@@ -1,6 +1,6 @@
 //! What maps are good for: known pairs, points inside faces, what they carry, and maps that agree.
 
-use canonform::relations::MapKind;
+use canonform::relations::{LandmarkConflict, MapKind};
 use canonform::{
     CorrespondOptions, Error, KnownMap, MappedSurface, Mapping, PointMap, Side, Surface, VertexMap,
     correspond, correspond_all,
@@ -159,6 +159,101 @@ fn landmarks_that_break_the_symmetry_leave_one_map() {
     let functions = Some(cats.each_ref().map(sideways));
     let found = with(KnownMap { functions, ..KnownMap::default() }, shapes);
     assert!(found.iter().any(|map| map.kind == MapKind::Direct));
+}
+
+/// The mean distance in space of the images from the true partners, as a share of the square root of the area.
+fn mean_miss(map: &VertexMap, truth: &[VertexId], target: &TriMesh) -> f64 {
+    let places = coordinates(target);
+    let rows = |partners: &mut dyn Iterator<Item = VertexId>| {
+        places.select_rows(&partners.map(VertexId::index).collect::<Vec<_>>())
+    };
+    let found = rows(&mut map.vertices.iter().map(|v| v.unwrap()));
+    gap(&found, &rows(&mut truth.iter().copied()), target)
+}
+
+#[test]
+fn true_landmarks_hold_for_the_whole_map_in_any_order() {
+    let turn = nalgebra::Rotation3::from_euler_angles(0.3, 2.0, -1.0);
+    // Without landmarks, most starts turn the second man back to front.
+    for (family, poses, n_vertices) in [(Family::Cat, [0, 4], 1000), (Family::David, [0, 5], 1500)] {
+        let options = ArticulatedOptions { n_vertices, ..ArticulatedOptions::default() };
+        let [a, mut b] = poses.map(|pose| articulated_at_rest(family, 0, pose, &options, &()).unwrap());
+        b.shape.mesh.positions.iter_mut().for_each(|p| *p = turn * *p);
+        let sides = [&a, &b].map(|rested| prepared(&rested.shape.mesh));
+        let truth = partners(&a, &b);
+        for start in [7, 101] {
+            let at = (0..5).map(|i| VertexId::from((start + i * n_vertices / 5) % n_vertices));
+            let mut landmarks: Vec<[VertexId; 2]> = at.map(|v| [v, truth[v.index()]]).collect();
+            let found = |landmarks: &[[VertexId; 2]]| {
+                with(KnownMap { landmarks: landmarks.to_vec(), ..KnownMap::default() }, sides.each_ref())
+            };
+            let maps = found(&landmarks);
+            let miss = mean_miss(&maps[0], &truth, &b.shape.mesh);
+            println!("{} {start}: {miss:.4}, confidence {:.2}", family.name(), maps[0].confidence);
+            assert!(maps[0].kind == MapKind::Direct && miss < 0.035, "{:?}: {miss}", maps[0].kind);
+            assert!(landmarks.iter().all(|[x, y]| maps[0].vertices[x.index()] == Some(*y)));
+            landmarks.reverse();
+            landmarks.push(landmarks[1]);
+            assert_eq!(found(&landmarks), maps);
+        }
+    }
+}
+
+#[test]
+fn contradictory_landmarks_are_refused_and_name_the_pair() {
+    let cats = [0, 4].map(cat);
+    let sides = cats.each_ref().map(|cat| prepared(&cat.shape.mesh));
+    let truth = partners(&cats[0], &cats[1]);
+    let refused = |landmarks: &[[VertexId; 2]]| {
+        let known = KnownMap { landmarks: landmarks.to_vec(), ..KnownMap::default() };
+        let options = CorrespondOptions { known, ..CorrespondOptions::default() };
+        match correspond(&sides[0], &sides[1], &options, &()) {
+            Err(Error::ContradictoryLandmarks { pairs, how }) => (pairs, how),
+            other => panic!("{landmarks:?}: {other:?}"),
+        }
+    };
+    let right = right_ends(&cats[0].rest);
+    let [front, back] = [right[0], right[1]].map(|v| [v, truth[v.index()]]);
+    let sorted = |mut pairs: [[VertexId; 2]; 2]| {
+        pairs.sort_unstable();
+        pairs
+    };
+    for shared in [[front[0], back[1]], [back[0], front[1]]] {
+        let (pairs, how) = refused(&[front, shared]);
+        assert_eq!((pairs, how), (sorted([front, shared]), LandmarkConflict::SharedVertex));
+    }
+    // Both ends of a leg go to one place.
+    let near = cats[1].shape.mesh.faces.iter().find(|face| face.contains(&front[1])).unwrap();
+    let next = *near.iter().find(|v| **v != front[1]).unwrap();
+    let (pairs, how) = refused(&[[back[0], next], front]);
+    assert_eq!(pairs, sorted([front, [back[0], next]]));
+    assert!(matches!(how, LandmarkConflict::Distance([a, b]) if a > 0.3 && b < 0.1), "{how:?}");
+    // One right leg goes to the right, and the other to the left.
+    let mirrored = NearestPoints::new(cats[1].rest.positions.clone()).unwrap();
+    let p = cats[0].rest.positions[back[0].index()];
+    let other = VertexId::from(mirrored.nearest(&nalgebra::Point3::new(-p.x, p.y, p.z)).0);
+    let (pairs, how) = refused(&[front, [back[0], other]]);
+    assert_eq!((pairs, how), (sorted([front, [back[0], other]]), LandmarkConflict::Orientation));
+}
+
+#[test]
+fn maps_that_miss_a_landmark_are_uncertain() {
+    let cats = [0, 4].map(cat);
+    let sides = cats.each_ref().map(|cat| prepared(&cat.shape.mesh));
+    let truth = partners(&cats[0], &cats[1]);
+    // A point of the plane of symmetry goes to one that is a third of the square root of the area away.
+    let rest = &cats[0].rest.positions;
+    let x = (0..rest.len()).min_by(|v, w| rest[*v].x.abs().total_cmp(&rest[*w].x.abs())).unwrap();
+    let solver = geodesics::Method::default().prepare(sides[1].surface().intrinsic(), &()).unwrap();
+    let from = solver.distances(truth[x]).unwrap();
+    let away = |v: &usize| (from[*v] / cats[1].shape.mesh.area().sqrt() - 0.33).abs();
+    let y = (0..from.len()).min_by(|v, w| away(v).total_cmp(&away(w))).unwrap();
+    let landmarks = vec![[x, y].map(VertexId::from)];
+    let maps = with(KnownMap { landmarks, ..KnownMap::default() }, sides.each_ref());
+    assert!(!maps.is_empty());
+    for map in maps {
+        assert!(!map.is_certain(), "{:?}: {}", map.kind, map.confidence);
+    }
 }
 
 #[test]

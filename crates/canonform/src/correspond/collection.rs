@@ -9,6 +9,7 @@ use relations::{ConsistentMaps, CycleReport, SurfaceMap, all_pairs, consistent_m
 use serde::Serialize;
 
 use super::correspondence::VertexMap;
+use super::known;
 use super::mapped_surface::MappedSurface;
 use super::options::CorrespondOptions;
 use crate::error::Error;
@@ -63,7 +64,8 @@ pub fn correspond_all<S: Borrow<Surface>>(
     observer.begin("maps", pairs.len());
     let mut found = Vec::with_capacity(pairs.len());
     for &[i, j] in &pairs {
-        let maps = map_wholes(shapes[i], shapes[j], &options.known, options.eigenfunctions, observer)?;
+        let maps = map_wholes(shapes[i], shapes[j], &options.known, options.eigenfunctions, observer)
+            .map_err(|fault| known::named(fault, &options.known.landmarks))?;
         if maps.is_empty() {
             return Err(Error::UnusableMap(format!(
                 "there is no map between the surfaces {i} and {j}, counted from 0; leave one of them out"

@@ -1,6 +1,7 @@
 //! The maps between two surfaces.
 
 use std::borrow::Borrow;
+use std::collections::BTreeSet;
 use std::time::Instant;
 
 use linalg::Matrix;
@@ -83,8 +84,8 @@ pub struct Correspondence {
 /// ```
 ///
 /// # Errors
-/// [`Error::Point`] and [`Error::UnusableMap`], if what is known of the map does not fit the meshes; [`Error::Descriptor`] and
-/// [`Error::Exceeded`].
+/// [`Error::Point`] and [`Error::UnusableMap`], if what is known of the map does not fit the meshes;
+/// [`Error::ContradictoryLandmarks`]; [`Error::Descriptor`] and [`Error::Exceeded`].
 pub fn correspond<S: Borrow<Surface>>(
     a: &MappedSurface<S>,
     b: &MappedSurface<S>,
@@ -93,9 +94,13 @@ pub fn correspond<S: Borrow<Surface>>(
 ) -> Result<Correspondence, Error> {
     let start = Instant::now();
     let surfaces = [a.surface(), b.surface()];
-    let known = known::repaired(&options.known, surfaces)?;
-    let found = map_surfaces(&a.shape, &b.shape, &known, options.eigenfunctions, observer)?;
-    let maps = found.into_iter().map(|map| VertexMap::new(map, surfaces, &options.known.landmarks));
+    // Sorted, so that their order does not matter.
+    let landmarks: BTreeSet<[VertexId; 2]> = options.known.landmarks.iter().copied().collect();
+    let landmarks: Vec<_> = landmarks.into_iter().collect();
+    let known = known::repaired(&options.known, &landmarks, surfaces)?;
+    let found = map_surfaces(&a.shape, &b.shape, &known, options.eigenfunctions, observer)
+        .map_err(|fault| known::named(fault, &landmarks))?;
+    let maps = found.into_iter().map(|map| VertexMap::new(map, surfaces, &landmarks));
     Ok(Correspondence { maps: maps.collect(), seconds: start.elapsed().as_secs_f64() })
 }
 

@@ -2,7 +2,7 @@
 
 use linalg::Matrix;
 use mesh::Surface;
-use relations::KnownMap;
+use relations::{KnownMap, MapError};
 use surface::VertexId;
 
 use crate::error::Error;
@@ -12,11 +12,15 @@ use crate::error::Error;
 /// # Errors
 /// [`Error::Point`] for a landmark that a surface does not have; [`Error::UnusableMap`] for an initial map or functions of the
 /// wrong length, or that are not finite.
-pub(super) fn repaired(known: &KnownMap, [a, b]: [&Surface; 2]) -> Result<KnownMap, Error> {
+pub(super) fn repaired(
+    known: &KnownMap,
+    landmarks: &[[VertexId; 2]],
+    [a, b]: [&Surface; 2],
+) -> Result<KnownMap, Error> {
     let pair = |[x, y]: &[VertexId; 2]| -> Result<[VertexId; 2], Error> {
         Ok([a.repaired_vertex(*x)?, b.repaired_vertex(*y)?])
     };
-    let landmarks = known.landmarks.iter().map(pair).collect::<Result<_, Error>>()?;
+    let landmarks = landmarks.iter().map(pair).collect::<Result<_, Error>>()?;
     let functions = match &known.functions {
         None => None,
         Some([f, g]) if f.ncols() != g.ncols() => {
@@ -28,6 +32,16 @@ pub(super) fn repaired(known: &KnownMap, [a, b]: [&Surface; 2]) -> Result<KnownM
         Some([f, g]) => Some([of_repaired(f, a)?, of_repaired(g, b)?]),
     };
     Ok(KnownMap { landmarks, initial: initial(&known.initial, [a, b])?, functions })
+}
+
+/// An error of a map, with landmarks as they were given.
+pub(super) fn named(fault: MapError, landmarks: &[[VertexId; 2]]) -> Error {
+    match fault {
+        MapError::Descriptor(fault) => fault.into(),
+        MapError::Contradiction { landmarks: at, how } => {
+            Error::ContradictoryLandmarks { pairs: at.map(|i| landmarks[i]), how }
+        }
+    }
 }
 
 fn initial(given: &[Option<VertexId>], [a, b]: [&Surface; 2]) -> Result<Vec<Option<VertexId>>, Error> {

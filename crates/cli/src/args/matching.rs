@@ -25,8 +25,8 @@ distortion  the mean change of distances under the map, as a share of the square
 agreement   how far the map keeps the orientation of the surface, from -1 to 1
 confidence  that this map is right, and not the next best of its kind; of a vertex: how well distances around it are kept
 
-Known pairs: --landmarks takes two columns, a vertex of A and one of B: 17,42. Maps that do not respect them are not returned, so
-one ear is enough to tell left from right. --initial takes a map as -o writes it, and refines it.
+Known pairs: --landmarks takes two columns, a vertex of A and one of B: 17,42. They choose the map, and
+contradictory ones are refused; one ear is enough to tell left from right. --initial takes a map as -o writes it, and refines it.
 
 Transfer: --transfer takes one row for each vertex or each face of A, .npy or .csv, and -o then holds the rows of B by the first map.
 Numbers with fractions, and several columns such as texture coordinates, are interpolated inside faces; whole numbers (an integer

@@ -93,6 +93,11 @@ fn landmarks_break_the_symmetry_and_an_initial_map_comes_out() {
         "match cat0.off cat1.off --landmarks pairs.csv",
         &["pairs.csv", "line 2", "4000", "counted from 0", "second mesh"],
     );
+    fs::write(place.path("pairs.csv"), "3,1\n3,900\n").unwrap();
+    place.refused(
+        "match cat0.off cat1.off --landmarks pairs.csv",
+        &["pairs.csv", "3,1 and 3,900", "two partners", "correct or leave out"],
+    );
     fs::write(place.path("pairs.csv"), "1,2\n3;x\n").unwrap();
     place.refused("match cat0.off cat1.off --landmarks pairs.csv", &["pairs.csv", "line 2", "17,42"]);
     fs::write(place.path("start.csv"), "1\n2\nx\n").unwrap();

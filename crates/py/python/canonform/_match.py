@@ -309,8 +309,8 @@ def match(
     Parameters
     ----------
     landmarks
-        Known pairs: rows of a vertex of `a` and one of `b`. Maps that do not respect them are not returned; those that do contain
-        them. One ear is enough to tell left from right.
+        Known pairs: rows of a vertex of `a` and one of `b`. They choose the map, which contains
+        them; contradictory ones are refused. One ear is enough to tell left from right.
     initial
         A map to start from: for each vertex of `a`, its partner on `b`, or -1. It is refined, and comes out unless another map is
         clearly better.

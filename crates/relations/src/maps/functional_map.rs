@@ -17,6 +17,15 @@ pub(super) struct TwoWayMap {
 pub(super) struct SampledPair {
     pub(super) a: Matrix,
     pub(super) b: Matrix,
+    /// Eigenfunctions at landmarks, which correspond row by row.
+    pub(super) landmarks: [Matrix; 2],
+}
+
+impl SampledPair {
+    pub(super) fn new(a: Matrix, b: Matrix) -> Self {
+        let landmarks = [&a, &b].map(|of| Matrix::zeros(0, of.ncols()));
+        Self { a, b, landmarks }
+    }
 }
 
 /// The maps of functions that follow from maps of points, with `k` eigenfunctions on each side.
@@ -54,10 +63,15 @@ pub(super) fn coefficients(eigenfunctions: &Matrix, functions: &Matrix) -> Matri
 impl FunctionalMaps {
     /// The maps of functions by least squares over the samples.
     pub(super) fn new(pair: &SampledPair, maps: &TwoWayMap, k: usize) -> Self {
-        let one = |own: &Matrix, other: &Matrix, map: &[usize]| {
-            coefficients(own, &other.columns(0, k).select_rows(map))
+        let [of_a, of_b] = &pair.landmarks;
+        let one = |own: &Matrix, other: &Matrix, map: &[usize], [x, y]: [&Matrix; 2]| {
+            let (own, other) = (own.columns(0, k).into_owned(), other.columns(0, k).select_rows(map));
+            coefficients(&below(own, &x.columns(0, k)), &below(other, &y.columns(0, k)))
         };
-        Self { forth: one(&pair.a, &pair.b, &maps.forth), back: one(&pair.b, &pair.a, &maps.back) }
+        Self {
+            forth: one(&pair.a, &pair.b, &maps.forth, [of_a, of_b]),
+            back: one(&pair.b, &pair.a, &maps.back, [of_b, of_a]),
+        }
     }
 
     /// Number of eigenfunctions.
@@ -108,6 +122,14 @@ impl FunctionalMaps {
         let product = |x: &Matrix, y: &Matrix| x.view((0, 0), (k, k)) * y.view((0, 0), (k, k));
         Self { forth: product(&self.forth, &next.forth), back: product(&next.back, &self.back) }
     }
+}
+
+/// The rows of both matrices.
+fn below(upper: Matrix, lower: &nalgebra::DMatrixView<'_, f64>) -> Matrix {
+    let n = upper.nrows();
+    let mut both = upper.resize_vertically(n + lower.nrows(), 0.0);
+    both.rows_mut(n, lower.nrows()).copy_from(lower);
+    both
 }
 
 /// The columns of both matrices.

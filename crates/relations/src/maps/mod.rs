@@ -8,6 +8,7 @@
 //! ```
 
 mod curvature;
+mod error;
 mod functional_map;
 mod known;
 mod local;
@@ -22,6 +23,7 @@ mod shape;
 mod surface_map;
 mod whole_or_part;
 
+pub use error::{LandmarkConflict, MapError};
 pub use known::KnownMap;
 pub use network::{ConsistentMaps, CycleReport, all_pairs, consistent_maps};
 pub use points::{MapElements, mapped_points};

@@ -5,8 +5,9 @@ use linalg::{LinalgError, Matrix};
 use rayon::prelude::*;
 
 use super::curvature::mismatch;
+use super::error::{LandmarkConflict, MapError};
 use super::functional_map::{FunctionalMaps, Placed, SampledPair, TwoWayMap, schedule, zoom_out};
-use super::known::{CLEARLY_WORSE, KnownMap};
+use super::known::{CLEARLY_WORSE, KnownMap, OUTLYING, RESPECTED, UNFIT};
 use super::local::mean_gap;
 use super::operators::{FITTED, fitted};
 use super::orientation::{FUNCTIONS as FORMS, agreement};
@@ -76,11 +77,19 @@ struct Candidate {
     /// belly is not bent as his back; a mixture of two maps keeps the orientation in some places only. Of two maps that differ
     /// by a mirror, the geometric mean: they are right together.
     score: f64,
+    /// How far it takes the landmarks from their partners, and how much that speaks against it.
+    misses: Vec<f64>,
+    penalty: f64,
 }
 
 impl Candidate {
     fn kind(&self) -> MapKind {
         MapKind::of(self.agreement)
+    }
+
+    /// What ranks it.
+    fn cost(&self) -> f64 {
+        self.score * self.penalty
     }
 
     /// Whether two maps are nearly the same.
@@ -115,19 +124,20 @@ fn least_agreement(found: &[Candidate]) -> f64 {
 /// Shapes that are alike under a mirror have two maps of small distortion; for others, one of the two has a large
 /// distortion. If a surface cannot be oriented, there is one map.
 ///
-/// What is `known` of the map enters all of it: landmarks, as heat that is placed at them, and functions are fitted, too; maps
-/// that do not respect the landmarks are dropped; and an initial map is one more start, which comes out unless another map is
+/// What is `known` of the map enters all of it: landmarks, as heat that is placed at them, and functions are fitted, too; how far
+/// maps miss the landmarks is part of their score, and the last fit is to them as well; and an initial map is one more start, which comes out unless another map is
 /// clearly better. At most `eigenfunctions` of each surface are used.
 ///
 /// # Errors
-/// [`DescriptorError::Linalg`], also if the budget of the observer is exceeded.
+/// [`MapError::Contradiction`] for landmarks of both orientations; [`MapError::Descriptor`], also if the budget of the observer
+/// is exceeded.
 pub fn map_wholes(
     a: &MapShape,
     b: &MapShape,
     known: &KnownMap,
     eigenfunctions: usize,
     observer: &dyn Observer,
-) -> Result<Vec<SurfaceMap>, DescriptorError> {
+) -> Result<Vec<SurfaceMap>, MapError> {
     let budget = observer.budget();
     let search = MapSearch { a, b, known, eigenfunctions, budget: &budget };
     let mut sketches = search.sketches()?;
@@ -140,8 +150,7 @@ pub fn map_wholes(
         sketches = others;
         maps.extend(search.best(of_kind)?);
     }
-    known.without_mixtures(&mut maps);
-    known.finished(maps, b)
+    Ok(known.finished(maps, b)?)
 }
 
 /// The images of the first samples of a surface under its best mirror, if it has one.
@@ -189,40 +198,55 @@ struct MapSearch<'a> {
 
 impl MapSearch<'_> {
     /// Maps of few samples and eigenfunctions from all starts, and those that differ from them by a mirror.
-    fn sketches(&self) -> Result<Vec<Candidate>, DescriptorError> {
-        let starts = self.starts(&[1.0, -1.0])?;
-        let found = self.sketched(starts.iter().map(|start| &start.functional))?;
+    fn sketches(&self) -> Result<Vec<Candidate>, MapError> {
+        let mut starts = self.starts(&[1.0, -1.0])?;
+        self.check_orientation(&starts)?;
+        starts.extend(self.refined_fits(self.known.fitted([self.a, self.b]).into_iter())?);
+        let found = self.sketched(distinct(starts).iter().map(|start| &start.functional))?;
         let mut found = self.with_mirrored(distinct(found))?;
         let pair = first_samples([self.a, self.b], SKETCHED);
         if let Some((start, k)) = self.known.initial_start(&pair, [self.a, self.b], SKETCH_FUNCTIONS) {
             let initial = self.zoomed(&pair, vec![start], [k, SKETCH_FUNCTIONS])?.into_iter();
             found.extend(initial.map(|found| Candidate { score: found.score / CLEARLY_WORSE, ..found }));
         }
-        self.respecting(found)
+        Ok(self.respecting(found))
     }
 
-    /// The maps that respect the landmarks. Of an orientation whose other maps are clearly better, only mixtures of two maps
-    /// respect them, and there is none.
-    fn respecting(&self, found: Vec<Candidate>) -> Result<Vec<Candidate>, DescriptorError> {
+    /// The maps of orientations that respect the landmarks: the best one is not clearly worse than that of the other.
+    fn respecting(&self, mut found: Vec<Candidate>) -> Vec<Candidate> {
         if self.known.landmarks.is_empty() {
-            return Ok(found);
+            return found;
         }
-        let maps: Vec<&FunctionalMaps> = found.iter().map(|found| &found.functional).collect();
-        let respected = self.known.respected(&maps, [self.a, self.b])?;
-        let all: Vec<(Candidate, bool)> = found.into_iter().zip(respected).collect();
-        // Infinite for an orientation without such a map; not a number for one without any.
-        let price = MapKind::ALL.map(|kind| {
-            let of_kind = || all.iter().filter(|(found, _)| found.kind() == kind);
-            let least = |scores: &mut dyn Iterator<Item = f64>| {
-                scores.fold(f64::INFINITY, f64::min).max(f64::MIN_POSITIVE)
-            };
-            let any = least(&mut of_kind().map(|(found, _)| found.score));
-            least(&mut of_kind().filter(|(_, respected)| *respected).map(|(found, _)| found.score)) / any
+        let costs = MapKind::ALL.map(|kind| {
+            let of_kind = found.iter().filter(|found| found.kind() == kind);
+            of_kind.map(Candidate::cost).fold(f64::MAX, f64::min)
         });
-        let least = price.into_iter().fold(f64::INFINITY, f64::min);
-        let is_kept = |kind| price[kind as usize] <= CLEARLY_WORSE * least;
-        let kept = all.into_iter().filter(|(found, respected)| *respected && is_kept(found.kind()));
-        Ok(kept.map(|(found, _)| found).collect())
+        let least = costs.into_iter().fold(f64::MAX, f64::min);
+        found.retain(|found| costs[found.kind() as usize] <= CLEARLY_WORSE * least);
+        found
+    }
+
+    /// Refuses landmarks of both orientations: maps that were found without them show it, the direct and the mirrored one that fit
+    /// most of them.
+    fn check_orientation(&self, found: &[Candidate]) -> Result<(), MapError> {
+        let best = |kind| {
+            let of_kind = found.iter().rev().filter(|found| found.kind() == kind && !found.is_mixture(PURE));
+            of_kind.max_by_key(|found| found.misses.iter().filter(|miss| **miss < RESPECTED).count())
+        };
+        let [Some(direct), Some(mirrored)] = [MapKind::Direct, MapKind::Mirrored].map(best) else {
+            return Ok(());
+        };
+        let all: Vec<[f64; 2]> = direct.misses.iter().zip(&mirrored.misses).map(|(x, y)| [*x, *y]).collect();
+        let fits = |miss: f64| miss < OUTLYING * RESPECTED;
+        let only = |i: usize| all.iter().position(|both| fits(both[i]) && both[1 - i] > UNFIT * RESPECTED);
+        match (only(0), only(1)) {
+            // Maps that are both wrong leave others.
+            (Some(i), Some(j)) if all.iter().all(|[x, y]| fits(x.min(*y))) => {
+                let (landmarks, how) = ([i.min(j), i.max(j)], LandmarkConflict::Orientation);
+                Err(MapError::Contradiction { landmarks, how })
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Different maps that are fitted with these signs, or follow from alignments of the forms.
@@ -231,11 +255,16 @@ impl MapSearch<'_> {
         let pair = first_samples([a, b], ROUGH);
         let operators = || a.operators.iter().zip(&b.operators);
         let fits = signs.iter().flat_map(|sign| operators().flat_map(|(x, y)| fitted(x, y, *sign)));
-        let fits = fits.chain(self.known.fitted([a, b]));
-        let fits = fits.map(|forth| FunctionalMaps::of_one(&forth).sample_maps(&pair)).collect();
-        let mut found = self.zoomed(&pair, fits, [FITTED, ROUGH_FUNCTIONS])?;
+        let mut found = self.refined_fits(fits)?;
         found.extend(self.zoomed(&pair, aligned(a, b, pair.a.nrows())?, [FIRST, ROUGH_FUNCTIONS])?);
         Ok(distinct(found))
+    }
+
+    /// Maps of few samples from maps of functions that were fitted in closed form.
+    fn refined_fits(&self, fits: impl Iterator<Item = Matrix>) -> Result<Vec<Candidate>, DescriptorError> {
+        let pair = first_samples([self.a, self.b], ROUGH);
+        let fits = fits.map(|forth| FunctionalMaps::of_one(&forth).sample_maps(&pair)).collect();
+        self.zoomed(&pair, fits, [FITTED, ROUGH_FUNCTIONS])
     }
 
     /// The sketches that follow from maps of functions.
@@ -274,22 +303,23 @@ impl MapSearch<'_> {
     fn best(&self, mut found: Vec<Candidate>) -> Result<Option<SurfaceMap>, DescriptorError> {
         let least = least_agreement(&found);
         let is_mixture = |found: &Candidate| found.is_mixture(least);
-        found.sort_by(|x, y| is_mixture(x).cmp(&is_mixture(y)).then(x.score.total_cmp(&y.score)));
+        found.sort_by(|x, y| is_mixture(x).cmp(&is_mixture(y)).then(x.cost().total_cmp(&y.cost())));
         let Some(best) = found.first() else { return Ok(None) };
         let mut rivals = found.iter().filter(|other| is_mixture(best) || !is_mixture(other));
         let rival = rivals.find(|other| !best.is_same(other));
-        let confidence = odds(best.score, rival.map(|rival| rival.score), STEEPNESS);
+        let confidence = odds(best.cost(), rival.map(Candidate::cost), STEEPNESS);
         let confidence = if is_mixture(best) { confidence.min(OF_MIXTURE) } else { confidence };
         let mut map = self.refined(best, confidence)?;
-        if let Some(rival) = rival.filter(|_| confidence < SurfaceMap::CERTAIN) {
-            map.alternative = Some(Box::new(self.refined(rival, 1.0 - confidence)?));
+        if let Some(rival) = rival.filter(|_| map.confidence < SurfaceMap::CERTAIN) {
+            map.alternative = Some(Box::new(self.refined(rival, 1.0 - map.confidence)?));
         }
         Ok(Some(map))
     }
 
     /// A map on all samples and eigenfunctions, and then on all vertices.
     fn refined(&self, sketch: &Candidate, confidence: f64) -> Result<SurfaceMap, DescriptorError> {
-        let all = SampledPair { a: self.a.at_samples.clone(), b: self.b.at_samples.clone() };
+        let shapes = [self.a, self.b];
+        let all = self.known.and_landmarks(first_samples(shapes, usize::MAX), shapes);
         let start = sketch.functional.sample_maps(&all);
         let refined = self.zoomed(&all, vec![start], [SKETCH_FUNCTIONS, self.eigenfunctions])?;
         // Refinement may mix two maps, where the sketch is right.
@@ -298,6 +328,7 @@ impl MapSearch<'_> {
             _ => true,
         };
         let found = refined.iter().find(|found| agrees(found)).unwrap_or(sketch);
+        let confidence = confidence * KnownMap::fit(&found.misses);
         Ok(SurfaceMap { confidence, ..found.on_all_vertices(self.a, self.b)? })
     }
 
@@ -315,7 +346,7 @@ impl MapSearch<'_> {
         let one = |start: TwoWayMap| {
             self.budget.check().map_err(LinalgError::from)?;
             let (maps, functional) = zoom_out(pair, start, &counts);
-            Candidate::new([self.a, self.b], &maps, functional)
+            Candidate::new([self.a, self.b], self.known, &maps, functional)
         };
         starts.into_par_iter().map(one).collect()
     }
@@ -331,7 +362,7 @@ fn distinct(mut found: Vec<Candidate>) -> Vec<Candidate> {
     if found.iter().any(|found| found.kind() != MapKind::Unoriented) {
         found.retain(|found| found.kind() != MapKind::Unoriented);
     }
-    found.sort_by(|x, y| x.score.total_cmp(&y.score));
+    found.sort_by(|x, y| x.cost().total_cmp(&y.cost()));
     let mut kept: Vec<Candidate> = Vec::new();
     for next in found {
         let of_kind = || kept.iter().filter(|other| other.kind() == next.kind());
@@ -346,7 +377,7 @@ fn distinct(mut found: Vec<Candidate>) -> Vec<Candidate> {
 fn first_samples(shapes: [&MapShape; 2], n: usize) -> SampledPair {
     let n = shapes.iter().fold(n, |n, shape| n.min(shape.samples.len()));
     let [a, b] = shapes.map(|shape| shape.at_samples.rows(0, n).into_owned());
-    SampledPair { a, b }
+    SampledPair::new(a, b)
 }
 
 /// A map, before or after mirrors of the surfaces.
@@ -382,6 +413,7 @@ fn aligned(a: &MapShape, b: &MapShape, n: usize) -> Result<Vec<TwoWayMap>, Descr
 impl Candidate {
     fn new(
         [a, b]: [&MapShape; 2],
+        known: &KnownMap,
         maps: &TwoWayMap,
         functional: FunctionalMaps,
     ) -> Result<Self, DescriptorError> {
@@ -398,7 +430,9 @@ impl Candidate {
             _ => 1.0,
         };
         let score = distortion * functional.defect() * missing * mismatch;
-        Ok(Self { functional, to_images, distortion, agreement, score })
+        let misses = known.misses(&functional, [a, b])?;
+        let penalty = KnownMap::penalty(&misses, STEEPNESS);
+        Ok(Self { functional, to_images, distortion, agreement, score, misses, penalty })
     }
 
     fn on_all_vertices(&self, a: &MapShape, b: &MapShape) -> Result<SurfaceMap, DescriptorError> {

@@ -2,13 +2,13 @@
 
 use base::Observer;
 
+use super::error::MapError;
 use super::known::KnownMap;
 use super::part::part_maps;
 use super::search::map_wholes;
 use super::shape::MapShape;
 use super::surface_map::SurfaceMap;
 use crate::relation::Side;
-use descriptors::DescriptorError;
 
 /// A surface with a boundary may be a part if its area is such a share of that of the other surface, both in the same unit. A
 /// larger one is mapped as a whole, and of a smaller one too little is known. Safety limits.
@@ -31,16 +31,18 @@ const SHARES: [f64; 2] = [0.25, 0.92];
 /// 3. Of each orientation, the map that keeps distances, curvature and the products of functions best is taken.
 ///
 /// # Errors
-/// [`DescriptorError::Linalg`], also if the budget of the observer is exceeded.
+/// [`MapError::Contradiction`]; [`MapError::Descriptor`], also if the budget of the observer is exceeded.
 pub fn map_surfaces(
     a: &MapShape,
     b: &MapShape,
     known: &KnownMap,
     eigenfunctions: usize,
     observer: &dyn Observer,
-) -> Result<Vec<SurfaceMap>, DescriptorError> {
+) -> Result<Vec<SurfaceMap>, MapError> {
+    let side = possible_part(a, b);
+    known.check([a, b], side)?;
     let of_wholes = map_wholes(a, b, known, eigenfunctions, observer)?;
-    let Some(side) = possible_part(a, b).filter(|_| known.functions.is_none()) else { return Ok(of_wholes) };
+    let Some(side) = side.filter(|_| known.functions.is_none()) else { return Ok(of_wholes) };
     let [part, whole] = if side == Side::First { [a, b] } else { [b, a] };
     let of_part = part_maps(part, whole, side, known, observer)?;
     let least = |maps: &[SurfaceMap]| maps.iter().map(|map| map.distortion).fold(f64::INFINITY, f64::min);

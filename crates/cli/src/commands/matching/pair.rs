@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use anyhow::{Result, bail};
 use base::terminal::Bars;
 use canonform::relations::PartOfWhole;
-use canonform::{CorrespondOptions, InputPoint, MappedSurface, PointMap, Side, VertexMap, correspond};
+use canonform::{CorrespondOptions, Error, InputPoint, MappedSurface, PointMap, Side, VertexMap, correspond};
 use serde::Serialize;
 
 use super::files::{
@@ -16,7 +16,7 @@ use super::files::{
 use super::known;
 use super::transfer::{Transferred, read_transfer};
 use crate::args::{Common, MAP_FORMATS, MatchArgs, PairArgs};
-use crate::input::read_pair;
+use crate::input::{named, read_pair};
 use crate::output::{check_format, check_output, facts, report};
 
 #[derive(Serialize)]
@@ -89,7 +89,11 @@ pub(super) fn match_pair(
     options.known = known::read(args, [a.mapped.surface(), b.mapped.surface()])?;
     let carried = args.transfer.as_deref().map(|path| read_transfer(path, &a)).transpose()?;
     let bars = Bars::with_budget(common.quiet, args.limits.budget());
-    let found = correspond(&a.mapped, &b.mapped, &options, &bars)?;
+    let found = correspond(&a.mapped, &b.mapped, &options, &bars);
+    let found = match (found, &args.landmarks) {
+        (Err(fault @ Error::ContradictoryLandmarks { .. }), Some(path)) => return Err(named(path, fault)),
+        (found, _) => found?,
+    };
     let sides = [&a, &b];
     let functional = match (&args.functional, found.maps.first()) {
         (Some(path), Some(map)) => Some(write_functional(path, map, sides)?),

@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::super::local::least_distance;
+use super::super::local::{between, least_distance};
 use super::super::nearest_rows::first_of;
-use super::sides::{Sides, between};
+use super::sides::Sides;
 use descriptors::DescriptorError;
 
 /// Cells of the whole in which a vertex is sought, around the place of its sample.
