@@ -161,7 +161,7 @@ fn an_archive_of_one_mesh_is_that_mesh_for_every_command() {
     }
     assert_eq!(place.json("info one.zip")["meshes"][0]["mesh"]["n_vertices"], 160);
     let relation = place.json("compare one.zip ring.off -n 20");
-    assert_eq!(relation["relation"]["kind"], "same-file", "{relation}");
+    assert_eq!(relation["relation"]["kind"], "identical-file", "{relation}");
     place.done("methods one.zip -n 20");
     place.done(&[&["index", "build", "one.zip", "-o", "i"], &BUILD[..]].concat());
     assert_eq!(place.json("search i one.zip")["queries"][0]["results"][0]["distance"], 0.0);
