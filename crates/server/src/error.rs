@@ -105,7 +105,7 @@ impl ApiError {
             Exceeded::Time { limit } => Self::too_slow(limit),
             // Nobody reads this: its client has gone, or got an answer at the time limit.
             Exceeded::Cancelled => Self::new(StatusCode::SERVICE_UNAVAILABLE, "the request was cancelled"),
-            Exceeded::Steps { .. } => Self::new(StatusCode::UNPROCESSABLE_ENTITY, &exceeded.to_string())
+            Exceeded::Steps { .. } => Self::new(StatusCode::UNPROCESSABLE_ENTITY, exceeded.to_string())
                 .with_remedy("simplify the mesh"),
             Exceeded::Memory { .. } | Exceeded::Allocation { .. } => {
                 Self::new(StatusCode::PAYLOAD_TOO_LARGE, "the mesh needs more memory than allowed")

@@ -29,7 +29,7 @@ pub fn remedy(source: &io::Error) -> &'static str {
         Kind::InvalidFilename => "; the name is too long or not allowed: choose another one",
         Kind::IsADirectory => "; this is a folder: give a file",
         Kind::NotADirectory => "; check the path: a part of it is a file, not a folder",
-        Kind::ResourceBusy => "; close the program that uses it, or choose another name for the result",
+        Kind::ResourceBusy => "; choose another name for the result, or close the program that uses it",
         Kind::OutOfMemory => "; close other programs, or use a smaller file",
         _ => "",
     }

@@ -44,7 +44,9 @@ mod tests {
 
     #[test]
     fn freed_memory_counts() {
-        let ((), bytes) = with_peak_bytes(|| drop(std::hint::black_box(vec![1_u8; 50 << 20])));
+        let run = || with_peak_bytes(|| drop(std::hint::black_box(vec![1_u8; 50 << 20]))).1;
+        // Tests beside this one allocate, too.
+        let bytes = (0..20).map(|_| run()).min().unwrap();
         assert!((50 << 20..60 << 20).contains(&bytes), "{bytes}");
     }
 }

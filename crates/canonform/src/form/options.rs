@@ -151,11 +151,11 @@ mod tests {
 
     #[test]
     fn default_options_have_a_fixed_text() {
-        let text = r#"{"description":5,"repair":{"components":"largest","weld":"seams","orient":"keep"},"samples":100,"points":1000,"size":"unit-area"}"#;
+        let text = r#"{"description":6,"repair":{"components":"largest","weld":"seams","orient":"keep"},"samples":100,"points":1000,"size":"unit-area"}"#;
         assert_eq!(DescribeOptions::default().text(), text);
         assert_eq!(DescribeOptions::from_text(text), Some(DescribeOptions::default()));
         for other in [
-            text.replace("\"description\":5", "\"description\":4"),
+            text.replace("\"description\":6", "\"description\":5"),
             text.replace("\"points\"", "\"colour\":3,\"points\""),
             text.replace("seams", "glue"),
             text.replace('}', ""),
