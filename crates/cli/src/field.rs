@@ -6,7 +6,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, bail};
 use base::files::FileError;
-use canonform::collection::Table;
+use canonform::collection::TextTable;
 use npyz::{Deserialize, NpyFile, Order};
 
 use crate::output::check_format;
@@ -15,7 +15,7 @@ use crate::output::check_format;
 pub(crate) fn read_field(path: &Path, row: Option<usize>, n_vertices: usize) -> Result<Vec<f64>> {
     let (n_columns, values) = match check_format(path, "a field", &["npy", "csv"])?.as_str() {
         "npy" => read_numbers(path)?,
-        _ => Table::read(path)?.numbers()?,
+        _ => TextTable::read(path)?.numbers()?,
     };
     choose(n_columns, values, row, n_vertices).with_context(|| path.display().to_string())
 }

@@ -4,7 +4,7 @@ use std::io::Read;
 use std::path::Path;
 
 use anyhow::{Context, Result, bail};
-use canonform::collection::{Row, Table};
+use canonform::collection::{Row, TextTable};
 use canonform::surface::VertexId;
 
 use crate::field::read_numbers;
@@ -21,19 +21,19 @@ pub(crate) fn read_numbered(path: &Path) -> Result<Vec<(String, [VertexId; 2])>>
     if is_stream(path) {
         let mut content = Vec::new();
         std::io::stdin().lock().read_to_end(&mut content)?;
-        return of_table(&Table::parse(content, Path::new("standard input"))?);
+        return of_table(&TextTable::parse(content, Path::new("standard input"))?);
     }
     match check_format(path, "pairs", &["csv", "txt", "npy"])?.as_str() {
         "npy" => {
             let (n_columns, numbers) = read_numbers(path)?;
             of_array(n_columns, &numbers).with_context(|| path.display().to_string())
         }
-        _ => of_table(&Table::read(path)?),
+        _ => of_table(&TextTable::read(path)?),
     }
 }
 
 /// Two numbers in every line. The first line may have names instead.
-fn of_table(table: &Table) -> Result<Vec<(String, [VertexId; 2])>> {
+fn of_table(table: &TextTable) -> Result<Vec<(String, [VertexId; 2])>> {
     let pair = |row: Row<'_>| {
         // Also separated by blanks.
         let words =
@@ -67,7 +67,7 @@ mod tests {
     use super::*;
 
     fn of_text(text: &str) -> Result<Vec<(String, [VertexId; 2])>> {
-        of_table(&Table::parse(text.into(), Path::new("pairs.csv"))?)
+        of_table(&TextTable::parse(text.into(), Path::new("pairs.csv"))?)
     }
 
     #[test]

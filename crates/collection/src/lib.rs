@@ -28,4 +28,4 @@ pub use error::CollectionError;
 pub use storage::{
     Storage, is_archive_name, is_dataset, member_of, mesh_at, read_mesh, read_mesh_file, single_mesh,
 };
-pub use table::{Row, Table};
+pub use table::{Row, TextTable};

@@ -16,29 +16,29 @@ const SEPARATORS: [u8; 3] = *b"\t;,";
 /// ```
 /// use std::path::Path;
 ///
-/// use canonform_collection::Table;
+/// use canonform_collection::TextTable;
 ///
-/// let table = Table::parse("width;height\n1,5;2\n".into(), Path::new("sizes.csv"))?;
+/// let table = TextTable::parse("width;height\n1,5;2\n".into(), Path::new("sizes.csv"))?;
 /// assert_eq!(table.numbers()?, (2, vec![1.5, 2.0]));
 /// # Ok::<(), canonform_collection::CollectionError>(())
 /// ```
 #[derive(Debug)]
-pub struct Table {
+pub struct TextTable {
     path: PathBuf,
     text: String,
     separator: u8,
 }
 
-/// A row of a [`Table`].
+/// A row of a [`TextTable`].
 #[derive(Debug)]
 pub struct Row<'a> {
-    table: &'a Table,
+    table: &'a TextTable,
     /// Its line in the file, counted from one.
     pub line: usize,
     cells: StringRecord,
 }
 
-impl Table {
+impl TextTable {
     /// # Errors
     /// [`CollectionError::File`], and those of [`parse`](Self::parse).
     pub fn read(path: &Path) -> Result<Self, CollectionError> {
@@ -196,8 +196,8 @@ pub(crate) fn decode(content: Vec<u8>, path: &Path) -> Result<String, Collection
 mod tests {
     use super::*;
 
-    fn table(text: &str) -> Result<Table, String> {
-        Table::parse(text.into(), Path::new("t.csv")).map_err(|fault| fault.to_string())
+    fn table(text: &str) -> Result<TextTable, String> {
+        TextTable::parse(text.into(), Path::new("t.csv")).map_err(|fault| fault.to_string())
     }
 
     fn cells(text: &str) -> Vec<(usize, Vec<String>)> {
@@ -256,10 +256,10 @@ mod tests {
         let utf16: Vec<u8> = "\u{feff}a,b".encode_utf16().flat_map(u16::to_le_bytes).collect();
         let utf16be: Vec<u8> = "\u{feff}a,b".encode_utf16().flat_map(u16::to_be_bytes).collect();
         for content in [utf16.clone(), utf16[2..].to_vec(), utf16be] {
-            let fault = Table::parse(content, Path::new("t.csv")).unwrap_err().to_string();
+            let fault = TextTable::parse(content, Path::new("t.csv")).unwrap_err().to_string();
             assert!(fault.contains("UTF-16") && fault.ends_with("save the file as UTF-8"), "{fault}");
         }
-        let fault = Table::parse(b"a,b\nc,\xe4".to_vec(), Path::new("t.csv")).unwrap_err().to_string();
+        let fault = TextTable::parse(b"a,b\nc,\xe4".to_vec(), Path::new("t.csv")).unwrap_err().to_string();
         assert!(fault.contains("t.csv, line 2") && fault.contains("save the file as UTF-8"), "{fault}");
         for (text, what) in [
             ("", "line 1: the table has no rows"),

@@ -12,7 +12,7 @@ use retrieval::{Evaluation, Labels, RankBy, evaluate_ranked};
 use super::record::{lacks, signature};
 use crate::error::Error;
 use base::Observer;
-use collection::{CollectionError, LabelSource, Row, Table, label_of};
+use collection::{CollectionError, LabelSource, Row, TextTable, label_of};
 
 /// Most shapes evaluated at once: their matrix takes 800 MB.
 const MOST: usize = 10_000;
@@ -113,7 +113,7 @@ pub fn evaluate_index(
     Ok(evaluate_ranked(&distances, &Labels::new(&names), knn_k, rank_by)?)
 }
 
-/// Scores a matrix of distances: a [`Table`] of numbers, optionally below a line of names.
+/// Scores a matrix of distances: a [`TextTable`] of numbers, optionally below a line of names.
 ///
 /// Classes come from the labels of the options, by name or, if the matrix has no names, by the order of its lines; without
 /// labels they come from the names. Both directions of a pair are averaged.
@@ -135,7 +135,7 @@ pub fn evaluate_index(
 /// [`Error::Collection`], [`Error::NoNames`], [`Error::Retrieval`].
 pub fn evaluate_matrix(path: &Path, options: &EvaluateOptions<'_>) -> Result<Evaluation, Error> {
     let EvaluateOptions { labels, knn_k, rank_by, .. } = *options;
-    let Matrix { names, rows } = Matrix::of(&Table::read(path)?)?;
+    let Matrix { names, rows } = Matrix::of(&TextTable::read(path)?)?;
     let classes: Vec<String> = match (labels, names) {
         (None, Some(names)) => names.iter().map(|name| label_of(name)).collect(),
         (Some(source), Some(names)) => {
@@ -174,7 +174,7 @@ struct Matrix {
 }
 
 impl Matrix {
-    fn of(table: &Table) -> Result<Self, CollectionError> {
+    fn of(table: &TextTable) -> Result<Self, CollectionError> {
         let mut lines = table.rows().peekable();
         let is_head = |row: &Row<'_>| !row.cells().skip(1).all(|cell| row.number(cell).is_some());
         let head = lines.next_if(is_head);
@@ -217,7 +217,7 @@ mod tests {
     use super::*;
 
     fn parse(text: &str) -> Result<Matrix, String> {
-        let table = Table::parse(text.into(), Path::new("m.csv"));
+        let table = TextTable::parse(text.into(), Path::new("m.csv"));
         table.and_then(|table| Matrix::of(&table)).map_err(|fault| fault.to_string())
     }
 

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::shape_file::ShapeFile;
 use crate::error::CollectionError;
-use crate::table::Table;
+use crate::table::TextTable;
 
 /// Labels from a file of lines `name,label`.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,14 +29,14 @@ pub struct UnusedLabel {
 }
 
 impl LabelFile {
-    /// Reads a label file, a [`Table`]. Names are those of [`ShapeFile`], with or without the extension of the mesh; a header
+    /// Reads a label file, a [`TextTable`]. Names are those of [`ShapeFile`], with or without the extension of the mesh; a header
     /// such as `name,label` is skipped. A file of labels without names labels the rows of a matrix in their order. The file
     /// need not name all shapes.
     ///
     /// # Errors
     /// [`CollectionError::File`] and [`CollectionError::BadLine`].
     pub fn read(path: &Path) -> Result<Self, CollectionError> {
-        let table = Table::read(path)?;
+        let table = TextTable::read(path)?;
         let (mut labels, mut in_order) = (HashMap::new(), Vec::new());
         let has_names = table.rows().any(|row| row.n_cells() > 1);
         for (number, row) in table.rows().enumerate() {

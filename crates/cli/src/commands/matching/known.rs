@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, bail};
-use canonform::collection::Table;
+use canonform::collection::TextTable;
 use canonform::surface::VertexId;
 use canonform::{KnownMap, Surface};
 
@@ -21,7 +21,7 @@ pub(super) fn read(args: &MatchArgs, surfaces: [&Surface; 2]) -> Result<KnownMap
                 let (n_columns, numbers) = read_numbers(path)?;
                 of_array(n_columns, &numbers).with_context(|| path.display().to_string())
             }
-            _ => of_table(&Table::read(path)?, surfaces[0].n_input_vertices()),
+            _ => of_table(&TextTable::read(path)?, surfaces[0].n_input_vertices()),
         });
     Ok(KnownMap {
         landmarks: landmarks.unwrap_or_default(),
@@ -54,7 +54,7 @@ fn of_array(n_columns: usize, numbers: &[f64]) -> Result<Vec<Option<VertexId>>> 
 }
 
 /// Lines of a map as it is written, `vertex,match`, or one number in every line.
-fn of_table(table: &Table, n_vertices: usize) -> Result<Vec<Option<VertexId>>> {
+fn of_table(table: &TextTable, n_vertices: usize) -> Result<Vec<Option<VertexId>>> {
     let mut found = vec![None; n_vertices];
     for (next, row) in table.body()?.enumerate() {
         let words: Vec<&str> = row.cells().collect();
@@ -102,7 +102,7 @@ mod tests {
     use super::*;
 
     fn of_text(text: &str, n_vertices: usize) -> Result<Vec<Option<VertexId>>> {
-        of_table(&Table::parse(text.into(), Path::new("map.csv"))?, n_vertices)
+        of_table(&TextTable::parse(text.into(), Path::new("map.csv"))?, n_vertices)
     }
 
     #[test]

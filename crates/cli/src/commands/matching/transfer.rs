@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
-use canonform::collection::Table;
+use canonform::collection::TextTable;
 use canonform::linalg::Matrix;
 use canonform::{Side, VertexMap};
 use report::color::{Rgb, class_color, color_scale, perceptual};
@@ -64,7 +64,7 @@ impl fmt::Display for Transferred {
 pub(super) fn read_transfer(path: &Path, side: &MappedFile) -> Result<Transfer> {
     let content = match check_format(path, "values", &["npy", "csv"])?.as_str() {
         "npy" => of_array(path)?,
-        _ => of_table(&Table::read(path)?)?,
+        _ => of_table(&TextTable::read(path)?)?,
     };
     let n = match &content {
         Content::Values(values) => values.nrows(),
@@ -96,7 +96,7 @@ fn of_array(path: &Path) -> Result<Content> {
     })
 }
 
-fn of_table(table: &Table) -> Result<Content> {
+fn of_table(table: &TextTable) -> Result<Content> {
     let is_label = |word: &str| word.parse::<i64>().is_ok() || word.parse::<f64>().is_err();
     if table.rows().all(|row| row.n_cells() == 1 && row.cells().all(is_label)) {
         return Ok(Content::Labels(
@@ -222,7 +222,7 @@ mod tests {
     use super::*;
 
     fn of_text(text: &str) -> Result<Content> {
-        of_table(&Table::parse(text.into(), Path::new("rows.csv"))?)
+        of_table(&TextTable::parse(text.into(), Path::new("rows.csv"))?)
     }
 
     #[test]
