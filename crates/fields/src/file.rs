@@ -227,7 +227,7 @@ impl Parts<'_> {
         let is_length = |length: f64| length.is_finite() && length >= 0.0;
 
         let faces: Vec<[VertexId; 3]> =
-            self.numbers(n_faces, |bytes: &[u8; 12]| three(bytes).map(VertexId))?;
+            self.numbers(n_faces, |bytes: &[u8; 12]| words::<12, 3>(bytes).map(VertexId))?;
         if faces.iter().any(|&[a, b, c]| a == b || b == c || c == a || ![a, b, c].into_iter().all(is_vertex))
         {
             return Err("a face is impossible");
@@ -241,7 +241,7 @@ impl Parts<'_> {
         }
         let edges = self.numbers(n_edges, |bytes| f64::from_le_bytes(*bytes))?;
         let links: Vec<Link> = self.numbers(n_links, |bytes: &[u8; 16]| {
-            let [a, b, low, high] = four(bytes);
+            let [a, b, low, high] = words(bytes);
             let length = f64::from_bits(u64::from(high) << 32 | u64::from(low));
             Link { ends: [a, b].map(VertexId), length }
         })?;
@@ -298,12 +298,7 @@ impl Parts<'_> {
     }
 }
 
-fn three(bytes: &[u8; 12]) -> [u32; 3] {
-    let words = bytes.as_chunks::<4>().0;
-    std::array::from_fn(|i| u32::from_le_bytes(words[i]))
-}
-
-fn four(bytes: &[u8; 16]) -> [u32; 4] {
+fn words<const B: usize, const N: usize>(bytes: &[u8; B]) -> [u32; N] {
     let words = bytes.as_chunks::<4>().0;
     std::array::from_fn(|i| u32::from_le_bytes(words[i]))
 }

@@ -206,7 +206,7 @@ impl Triangulation {
                 let (mut obtuse, mut n_obtuse) = (vec![CornerId(0); 3 * triangles.len() + 1], 0);
                 for corner in triangles.flat_map(|t| FaceId(t as u32).corners()) {
                     obtuse[n_obtuse] = corner;
-                    n_obtuse += usize::from(self.is_obtuse(corner));
+                    n_obtuse += usize::from(!is_acute(self.sides(corner)));
                 }
                 obtuse.truncate(n_obtuse);
                 obtuse.retain(|side| self.crossed(*side, loops).is_some());
@@ -214,12 +214,6 @@ impl Triangulation {
             })
             .collect();
         blocks.concat()
-    }
-
-    /// Whether a corner is wider than 90 degrees.
-    #[inline]
-    pub(crate) fn is_obtuse(&self, corner: CornerId) -> bool {
-        !is_acute(self.sides(corner))
     }
 
     /// The two triangles at a side, if it is not Delaunay and can be flipped.

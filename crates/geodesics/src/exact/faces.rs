@@ -81,20 +81,14 @@ impl Faces {
         &self.all[face.index()]
     }
 
-    /// The corner beyond a side, if there is exactly one.
-    #[inline]
-    pub(super) fn only_facing(&self, beyond: Beyond) -> Option<Facing> {
-        (beyond.0 & Beyond::LIST == 0).then(|| beyond.facing())
-    }
-
     /// Visits every corner beyond a side.
     #[inline]
     pub(super) fn for_each_facing(&self, beyond: Beyond, mut visit: impl FnMut(Facing)) {
-        match self.only_facing(beyond) {
-            Some(facing) => visit(facing),
-            None if beyond == Beyond::NOTHING => {}
-            None => {
-                self.non_manifold[(beyond.0 & !Beyond::LIST) as usize].iter().copied().for_each(visit);
+        match beyond {
+            Beyond::NOTHING => {}
+            Beyond(bits) if bits & Beyond::LIST == 0 => visit(beyond.facing()),
+            Beyond(bits) => {
+                self.non_manifold[(bits & !Beyond::LIST) as usize].iter().copied().for_each(visit)
             }
         }
     }

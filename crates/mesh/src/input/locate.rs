@@ -103,7 +103,7 @@ impl Surface {
         };
         let (face, barycentric) = match point {
             SurfacePoint::Vertex(vertex) => return Ok(InputPoint::Vertex(self.input_vertex(vertex))),
-            _ if self.is_prepared() => return Err(other),
+            _ if self.open_boundary.is_some() => return Err(other),
             SurfacePoint::Edge { edge, t } => {
                 let ends = topology.edges()[edge.index()];
                 let faces = topology.edge_corners(edge).iter().map(|corner| corner.face());

@@ -22,7 +22,7 @@ pub struct Surface {
     /// input.
     pub input_faces: Vec<[VertexId; 3]>,
     /// Length of the longest boundary of the surface of which this one is the prepared copy.
-    open_boundary: Option<f64>,
+    pub(super) open_boundary: Option<f64>,
     /// Shortcuts of the surface of which this one is the prepared copy. They are cut.
     shortcuts: Vec<Shortcut>,
     /// For every vertex of the repaired mesh, the first input vertex that was mapped to it.
@@ -152,11 +152,6 @@ impl Surface {
         let (vertices, lengths): (Vec<_>, Vec<f64>) = boundaries(self.intrinsic()).into_iter().unzip();
         // The sum of nothing would be minus zero.
         (vertices.concat(), lengths.iter().fold(0.0, |sum, length| sum + length))
-    }
-
-    /// Whether this is the copy of a surface with other faces.
-    pub(super) fn is_prepared(&self) -> bool {
-        self.open_boundary.is_some()
     }
 
     /// The shortcuts that were cut to [prepare](Self::for_description) the surface; none before.

@@ -18,6 +18,7 @@ use surface::{
     Components, DisjointSets, FaceId, IntrinsicMesh, Link, Topology, VertexId, components_of_faces,
 };
 
+use self::t_junctions::sorted;
 use crate::error::MeshError;
 use crate::face_set::{check_input, remove_degenerate, remove_duplicates};
 use crate::orientation::orient_consistently;
@@ -124,11 +125,14 @@ pub fn repair(
     let (sources, input_to_repaired) = renumbered(&mut merged, &components, kept);
     report_dropped(&input_to_repaired, &mut merged, &components, &mut report);
     let faces = surface.topology().faces();
-    let left = faces.iter().filter_map(|face| {
+    let kept = |face: &[VertexId; 3]| {
         let [a, b, c] = face.map(|v| input_to_repaired[v.index()]);
         Some([a?, b?, c?])
-    });
-    let parts = parts(faces, &parents, &input_to_repaired);
+    };
+    let left = faces.iter().filter_map(kept);
+    let part = |face: &[VertexId; 3]| Some([sorted(kept(face)?), kept(parents.get(&sorted(*face))?)?]);
+    let mut parts: Vec<FacePart> = faces.iter().filter_map(part).collect();
+    parts.sort_unstable();
     let positions = sources.iter().map(|v| mesh.positions[v.index()]).collect();
     let mut repaired = TriMesh { faces: left.collect(), positions };
     report.dropped_component_faces = faces.len() - repaired.n_faces();
@@ -173,28 +177,6 @@ fn without_t_junctions(
         surface = without_duplicates(mesh, std::mem::take(&mut faces), report);
     }
     Ok(surface)
-}
-
-/// The parts among faces and the faces that they are parts of, by the vertices of the repaired mesh.
-fn parts(
-    faces: &[[VertexId; 3]],
-    parents: &HashMap<[VertexId; 3], [VertexId; 3]>,
-    number: &[Option<VertexId>],
-) -> Vec<FacePart> {
-    if parents.is_empty() {
-        return Vec::new();
-    }
-    let renumbered = |face: [VertexId; 3]| {
-        let [a, b, c] = face.map(|v| number[v.index()]);
-        Some([a?, b?, c?])
-    };
-    let part = |face: &[VertexId; 3]| {
-        let parent = parents.get(&t_junctions::sorted(*face))?;
-        Some([t_junctions::sorted(renumbered(*face)?), renumbered(*parent)?])
-    };
-    let mut found: Vec<FacePart> = faces.iter().filter_map(part).collect();
-    found.sort_unstable();
-    found
 }
 
 /// The surface of the faces, without degenerate and duplicate ones, after welding.
