@@ -119,7 +119,7 @@ mod tests {
     #[test]
     fn bad_options_are_rejected() {
         let frozen = Method::Heat(HeatOptions { time: 0.0 });
-        let error = frozen.prepare(&icosphere(1).intrinsic(), &()).unwrap_err();
+        let error = frozen.prepare(icosphere(1).intrinsic(), &()).unwrap_err();
         assert_eq!(error, GeodesicError::BadHeatTime { time: 0.0 });
     }
 }

@@ -71,7 +71,7 @@ fn motions_scale_and_numbering_change_no_map() {
         assert!(share(&images(of_kind(&moved, kind)), |x| expected[x]) > 0.99);
         // Other samples: some vertices go to a neighbour.
         let other = images(of_kind(&renumbered, kind));
-        let solver = Method::default().prepare(&b.intrinsic(), &()).unwrap();
+        let solver = Method::default().prepare(b.intrinsic(), &()).unwrap();
         let gap = |x: usize| {
             solver.distances(VertexId::from(n - 1 - other[x])).unwrap()[expected[x]] / b.area().sqrt()
         };
@@ -121,7 +121,7 @@ fn rested(family: Family, pose: usize) -> RestedShape {
 
 /// The mean distance of images from true partners, as a share of the square root of the area.
 fn mean_error([a, b]: [&RestedShape; 2], map: &VertexMap) -> f64 {
-    let solver = Method::default().prepare(&b.shape.mesh.intrinsic(), &()).unwrap();
+    let solver = Method::default().prepare(b.shape.mesh.intrinsic(), &()).unwrap();
     let partners = NearestPoints::new(b.rest.positions.clone()).unwrap();
     let sign = if map.kind == MapKind::Mirrored { -1.0 } else { 1.0 };
     let image = images(map);

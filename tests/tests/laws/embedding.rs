@@ -27,7 +27,7 @@ fn straight_distances(points: &[nalgebra::Point3<f64>]) -> DistanceMatrix {
 #[test]
 fn all_points_as_samples_equal_classical_scaling() {
     let mesh = shapes::torus(14, 9, 2.0, 0.7);
-    let solver = marching().prepare(&mesh.intrinsic(), &()).unwrap();
+    let solver = marching().prepare(mesh.intrinsic(), &()).unwrap();
     let distances = solver.distance_matrix().unwrap();
     let p = distances.n_points();
     let all = landmark_columns(&distances, (0..p).collect());
@@ -43,7 +43,7 @@ fn all_points_as_samples_equal_classical_scaling() {
 #[test]
 fn more_samples_approach_the_optimal_stress_from_above() {
     let mesh = body(Family::Cat);
-    let solver = marching().prepare(&mesh.intrinsic(), &()).unwrap();
+    let solver = marching().prepare(mesh.intrinsic(), &()).unwrap();
     let distances = solver.distance_matrix().unwrap();
     let optimum = paper_stress(&classical(&distances, 3, &()).unwrap().coords, &distances).unwrap();
     let excess = |n: usize| {
@@ -89,7 +89,7 @@ fn intervals_of_the_estimated_stress_contain_the_exact_one_as_often_as_they_say(
     // Of the paper's stress and the normalised one.
     let (mut covered, mut drawn) = ([0; 2], 0);
     for (number, mesh) in meshes.enumerate() {
-        let solver = marching().prepare(&mesh.intrinsic(), &()).unwrap();
+        let solver = marching().prepare(mesh.intrinsic(), &()).unwrap();
         let distances = solver.distance_matrix().unwrap();
         for (n, m) in [(10, 3), (20, 4), (40, 8), (100, 20)] {
             let samples = farthest_point_sampling(solver.as_ref(), n, FirstSample::default()).unwrap();
@@ -216,7 +216,7 @@ fn no_method_depends_on_the_unit_of_length() {
 #[test]
 fn classical_scaling_has_the_lowest_stress_and_smacof_the_lowest_normalized_stress() {
     let mesh = body(Family::Cat);
-    let solver = marching().prepare(&mesh.intrinsic(), &()).unwrap();
+    let solver = marching().prepare(mesh.intrinsic(), &()).unwrap();
     let distances = solver.distance_matrix().unwrap();
     let coords = |method: EmbedMethod| {
         let options = FormOptions { method, ..FormOptions::default() };
@@ -237,7 +237,7 @@ fn classical_scaling_has_the_lowest_stress_and_smacof_the_lowest_normalized_stre
 #[test]
 fn the_best_rank_is_between_the_extremes_and_beats_cur() {
     let mesh = body(Family::Cat);
-    let solver = marching().prepare(&mesh.intrinsic(), &()).unwrap();
+    let solver = marching().prepare(mesh.intrinsic(), &()).unwrap();
     let distances = solver.distance_matrix().unwrap();
     let samples = farthest_point_sampling(solver.as_ref(), 60, FirstSample::default()).unwrap();
     let reconstruction = Reconstruction::new(&samples, &distances).unwrap();

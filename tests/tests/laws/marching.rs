@@ -14,7 +14,7 @@ use crate::support::{all_vertices, body, columns, marching};
 /// The largest error on a flat sheet, relative to the largest distance.
 fn error_on_plane(sheet: &TriMesh, source: usize, obtuse: ObtuseTreatment) -> f64 {
     let options = FastMarchingOptions { obtuse, ..Default::default() };
-    let solver = FastMarching::new(&sheet.intrinsic(), options, &());
+    let solver = FastMarching::new(sheet.intrinsic(), options, &());
     let found = solver.distances(VertexId::from(source)).unwrap();
     let straight: Vec<f64> = sheet.positions.iter().map(|p| (p - sheet.positions[source]).norm()).collect();
     crate::support::gap(&found, &straight)
@@ -91,7 +91,7 @@ fn errors_on_spheres(update: Update) -> Vec<f64> {
     let options = FastMarchingOptions { update, ..Default::default() };
     let error = |level| {
         let sphere = shapes::icosphere(level);
-        let found = FastMarching::new(&sphere.intrinsic(), options, &()).distances(VertexId(0)).unwrap();
+        let found = FastMarching::new(sphere.intrinsic(), options, &()).distances(VertexId(0)).unwrap();
         let axis = sphere.positions[0].coords;
         let arc = |v: usize| {
             axis.cross(&sphere.positions[v].coords).norm().atan2(axis.dot(&sphere.positions[v].coords))

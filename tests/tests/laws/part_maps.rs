@@ -54,7 +54,7 @@ impl Known {
     /// The mean distance on the other surface between images and true partners, over a unit of length.
     fn error(&self, other: &Self, map: &VertexMap, unit: f64) -> f64 {
         let sign = if map.kind == MapKind::Mirrored { -1.0 } else { 1.0 };
-        let solver = Method::default().prepare(&other.mesh.intrinsic(), &()).unwrap();
+        let solver = Method::default().prepare(other.mesh.intrinsic(), &()).unwrap();
         let matched = map.vertices.iter().enumerate().filter_map(|(x, y)| Some((x, (*y)?.index())));
         let error = |(x, y): (usize, usize)| {
             let (truth, _) = self.partner(other, x, sign);

@@ -79,7 +79,7 @@ pub(crate) fn marching() -> Method {
 
 /// Distances from some vertices of a mesh, one column each.
 pub(crate) fn columns(mesh: &TriMesh, method: Method, sources: &[VertexId]) -> Matrix {
-    method.prepare(&mesh.intrinsic(), &()).unwrap().distance_columns(sources).unwrap()
+    method.prepare(mesh.intrinsic(), &()).unwrap().distance_columns(sources).unwrap()
 }
 
 pub(crate) fn all_vertices(mesh: &TriMesh) -> Vec<VertexId> {

@@ -126,7 +126,7 @@ pub struct FastMarchingOptions {
 ///
 /// // A sheet of 9 x 5 vertices, one unit apart: distances in a plane are exact.
 /// let sheet = shapes::grid(9, 5, 1.0);
-/// let solver = FastMarching::new(&sheet.intrinsic(), FastMarchingOptions::default(), &());
+/// let solver = FastMarching::new(sheet.intrinsic(), FastMarchingOptions::default(), &());
 /// let distances = solver.distances(VertexId(0))?;
 /// assert!((distances[44] - 8f64.hypot(4.0)).abs() < 1e-12);
 /// # Ok::<(), canonform_geodesics::GeodesicError>(())

@@ -29,7 +29,7 @@ impl SpreadSamples {
     /// use canonform_geodesics::{FirstSample, Method, SpreadSamples, farthest_point_sampling};
     /// use mesh::shapes;
     ///
-    /// let solver = Method::default().prepare(&shapes::icosphere(3).intrinsic(), &())?;
+    /// let solver = Method::default().prepare(shapes::icosphere(3).intrinsic(), &())?;
     /// let few = farthest_point_sampling(solver.as_ref(), 10, FirstSample::default())?;
     /// let many = SpreadSamples::new(solver.as_ref(), &few, 100)?;
     /// assert_eq!(many.samples.len(), 100);
@@ -107,7 +107,7 @@ mod tests {
 
     #[test]
     fn there_are_at_least_the_landmarks_and_at_most_all_vertices() {
-        let solver = Method::default().prepare(&icosphere(1).intrinsic(), &()).unwrap();
+        let solver = Method::default().prepare(icosphere(1).intrinsic(), &()).unwrap();
         let few = farthest_point_sampling(solver.as_ref(), 5, FirstSample::default()).unwrap();
         let spread = |n| SpreadSamples::new(solver.as_ref(), &few, n).unwrap();
         assert_eq!(spread(2).samples, few.landmarks());

@@ -205,7 +205,7 @@ fn the_unit_of_length_changes_only_the_unit() {
         let with_unit = |unit: f64| {
             let lengths = surface.edge_lengths().iter().map(|length| length * unit).collect();
             let scaled = IntrinsicMesh::new(surface.topology().clone(), lengths);
-            method.prepare(&scaled, &()).unwrap().distances(VertexId(9)).unwrap()
+            method.prepare(scaled, &()).unwrap().distances(VertexId(9)).unwrap()
         };
         let plain = with_unit(1.0);
         let times = |unit: f64| plain.iter().map(|d| d * unit).collect::<Vec<f64>>();

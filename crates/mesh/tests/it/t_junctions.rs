@@ -66,7 +66,7 @@ fn n_between(mesh: &TriMesh, is_fine: impl Fn(usize) -> bool) -> usize {
 fn t_junctions_of_any_order_are_closed_and_no_vertex_is_added() {
     for mesh in surfaces() {
         let before = validate(&mesh);
-        for is_fine in [|f: usize| f % 3 == 0, |f: usize| f % 7 < 4, |f: usize| f > 20] {
+        for is_fine in [|f: usize| f.is_multiple_of(3), |f: usize| f % 7 < 4, |f: usize| f > 20] {
             for (fine, coarse) in [(1, 0), (2, 0), (3, 0), (4, 0), (5, 0), (2, 1), (3, 2), (5, 3)] {
                 let broken = split(&mesh, |f| if is_fine(f) { fine } else { coarse });
                 let repaired = repair(&broken, &RepairOptions::default(), &()).unwrap();
@@ -135,7 +135,7 @@ fn the_sides_of_a_crack_are_no_shortcut() {
 #[test]
 fn points_on_faces_that_were_split_keep_their_positions() {
     for (fine, coarse) in [(1, 0), (4, 0), (2, 1)] {
-        let mesh = split(&shapes::icosphere(1), |f| if f % 3 == 0 { fine } else { coarse });
+        let mesh = split(&shapes::icosphere(1), |f| if f.is_multiple_of(3) { fine } else { coarse });
         let surface = Surface::new(&mesh, &RepairOptions::default(), &()).unwrap();
         assert!(!surface.repaired.parts.is_empty());
         let at = |v: VertexId| mesh.positions[v.index()].coords;
