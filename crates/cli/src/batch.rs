@@ -10,8 +10,8 @@ use canonform::ShapeFile;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::args::Common;
-use crate::input::{expand, is_stream, keep_inputs};
+use crate::args::{Common, keep_inputs};
+use crate::input::{expand, is_stream};
 
 /// A mesh without a result.
 #[derive(Serialize)]

@@ -83,11 +83,6 @@ pub(crate) fn read_file(path: &Path, common: &Common) -> Result<MeshFile> {
     Ok(canonform::mesh::io::read_from(Path::new(STREAM), &mut stream, format, &ReadLimits::default())?)
 }
 
-/// Keeps the files of a mesh, or of whatever an argument names, from being replaced by a result.
-pub(crate) fn keep_inputs(path: &Path) {
-    files_in(path, &Storage).iter().for_each(|file| base::files::keep_input(file));
-}
-
 /// Whether there is a file of this name, or such a member of an archive.
 pub(crate) fn is_there(path: &Path) -> bool {
     is_stream(path) || Storage.holds(path)

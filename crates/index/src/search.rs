@@ -40,7 +40,7 @@ impl Index {
     }
 
     /// The `k` shapes whose rank distances from `query` are least, among its nearest shapes and their neighbours; ties by
-    /// distance and name. Measures all vectors once for every list of neighbours that is visited, at most about 600.
+    /// distance and name. Up to [`LINKS`] results are the first of one another; more look farther around. Measures all vectors once for every list of neighbours that is visited, at most about 600.
     ///
     /// # Errors
     /// Those of [`nearest`](Self::nearest).

@@ -83,7 +83,7 @@ mod tests {
             (Plain, Kind, 24, 100_000, 30_000, Length::Long),
             (Plain, Kind, 24, 2, 3000, Length::Short),
         ] {
-            let options = SearchOptions { rank_by, explain, k, ..SearchOptions::default() };
+            let options = SearchOptions { rank_by, explain, k };
             let cost = of_search(&options, n_shapes, 3000, vertices);
             assert_eq!(length(cost), expected, "{options:?}, {n_shapes} shapes, {vertices} vertices");
         }

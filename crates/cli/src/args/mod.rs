@@ -15,14 +15,12 @@ use std::path::{Path, PathBuf};
 
 use canonform::descriptors::{Boundary, ShapeMetric};
 use canonform::geodesics::Method;
-use canonform::mesh::io::{Content, mesh_files, or_list, writable};
+use canonform::mesh::io::{Content, files_in, mesh_files, or_list, writable};
 use canonform::settings::Named;
-use canonform::{InputPoint, StressChoice};
+use canonform::{InputPoint, Storage, StressChoice};
 use clap::builder::TypedValueParser;
 use clap::{Arg, ArgAction, Args, CommandFactory, FromArgMatches, Id, Parser, Subcommand};
 use clap_complete::Shell;
-
-use crate::input::keep_inputs;
 
 use self::settings::{FormArgs, OfComparison, OfEmbedding, OfForm, distance_method, one_of};
 
@@ -90,6 +88,11 @@ pub(crate) fn parsed() -> Arguments {
         command = inner.subcommand().map(|(_, inner)| inner);
     }
     Arguments::from_arg_matches(&matches).unwrap_or_else(|fault| exit(&fault.format(&mut program())))
+}
+
+/// Keeps the files of a mesh, or of whatever an argument names, from being replaced by a result.
+pub(crate) fn keep_inputs(path: &Path) {
+    files_in(path, &Storage).iter().for_each(|file| base::files::keep_input(file));
 }
 
 /// Prints help to standard output, or an error to standard error, which may quote a name.

@@ -1,14 +1,14 @@
 //! The journal of moves: one line of JSON for every mesh.
 
 use std::fs::{self, File, OpenOptions};
-use std::io::{ErrorKind, Read, Write};
+use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
 use base::files::{FileError, sync_folder, write_bytes};
 use collection::MOVES;
 use serde::{Deserialize, Serialize};
 
-use super::MoveReport;
+use super::report::{MoveReport, NotMoved};
 use crate::error::Error;
 
 /// How a line begins.
@@ -136,4 +136,52 @@ fn remove_empty(folder: &Path) {
     }
     // A folder that holds something cannot be removed.
     let _ = fs::remove_dir(folder);
+}
+
+impl Line {
+    /// Moves the files of a line to where it says.
+    pub(super) fn there(&self, folder: &Path, report: &mut MoveReport) -> io::Result<()> {
+        let n_before = report.moved.len();
+        for (from, to) in &self.files {
+            let to = folder.join(to);
+            move_file(from, &to).inspect_err(|_| report.moved.truncate(n_before))?;
+            report.moved.push([from.clone(), to]);
+        }
+        Ok(())
+    }
+
+    /// Puts the files of a line back, those that were moved. Returns whether nothing is left to do.
+    pub(super) fn back(&self, folder: &Path, report: &mut MoveReport) -> bool {
+        let mut is_done = true;
+        for (from, to) in self.files.iter().rev() {
+            let to = folder.join(to);
+            let size = |path: &Path| fs::symlink_metadata(path).ok().map(|about| about.len());
+            // What is empty holds a name, where a move was interrupted.
+            let why = match (size(from), size(&to)) {
+                (Some(_), None) => continue,
+                (Some(_), Some(0)) => fs::remove_file(&to).err().map(|fault| fault.to_string()),
+                (Some(0), Some(_)) => fs::rename(&to, from).err().map(|fault| fault.to_string()),
+                (None, Some(_)) => move_file(&to, from).err().map(|fault| fault.to_string()),
+                (Some(_), Some(_)) => Some(format!("another file is now {}", from.display())),
+                (None, None) => {
+                    report.not_moved.push(NotMoved { path: to, why: "it is gone".into() });
+                    continue;
+                }
+            };
+            is_done &= why.is_none();
+            match why {
+                None => report.moved.push([to, from.clone()]),
+                Some(why) => report.not_moved.push(NotMoved { path: to, why }),
+            }
+        }
+        is_done
+    }
+}
+
+/// Gives a file a new name, which nothing else has.
+fn move_file(from: &Path, to: &Path) -> io::Result<()> {
+    to.parent().map_or(Ok(()), fs::create_dir_all)?;
+    // An empty file holds the name, so that the file takes no place but its own.
+    fs::File::create_new(to)?;
+    fs::rename(from, to).inspect_err(|_| drop(fs::remove_file(to)))
 }

@@ -5,41 +5,23 @@
 
 mod companions;
 mod journal;
+mod report;
 
 use std::fs;
-use std::io::{self, ErrorKind};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use base::ContentHash;
 use base::files::FileError;
 use collection::{MOVES, content_hash, member_of};
 use relations::RelationKind;
-use serde::Serialize;
 
 use self::companions::{Below, files_of_mesh};
-use self::journal::{Journal, Line};
+use self::journal::Journal;
 use super::duplicates::{DuplicateMember, DuplicateReport, has_one_name};
 use crate::error::Error;
 
-/// What was moved, there or back, and what was not.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct MoveReport {
-    /// Where the files were, and where they are now: all files of a mesh, one mesh after the other.
-    pub moved: Vec<[PathBuf; 2]>,
-    /// What stays where it is.
-    pub not_moved: Vec<NotMoved>,
-    /// The file by which [`undo_moves`] puts everything back; `None` if there is nothing to put back.
-    pub journal: Option<PathBuf>,
-}
-
-/// A file that was not moved.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct NotMoved {
-    /// The file.
-    pub path: PathBuf,
-    /// Why, as the end of a sentence.
-    pub why: String,
-}
+pub use self::report::{MoveReport, NotMoved};
 
 /// Refuses a place for the duplicates of a folder, before the folder is searched: it must be new, empty, or of earlier moves, so
 /// that nothing else is hidden in it. Takes back a mesh of which an interrupted program has moved a part.
@@ -160,52 +142,4 @@ fn files_to_move(
         Some(user) => Err(format!("{} needs a file of it", user.display())),
         None => Ok(files),
     }
-}
-
-impl Line {
-    /// Moves the files of a line to where it says.
-    fn there(&self, folder: &Path, report: &mut MoveReport) -> io::Result<()> {
-        let n_before = report.moved.len();
-        for (from, to) in &self.files {
-            let to = folder.join(to);
-            move_file(from, &to).inspect_err(|_| report.moved.truncate(n_before))?;
-            report.moved.push([from.clone(), to]);
-        }
-        Ok(())
-    }
-
-    /// Puts the files of a line back, those that were moved. Returns whether nothing is left to do.
-    fn back(&self, folder: &Path, report: &mut MoveReport) -> bool {
-        let mut is_done = true;
-        for (from, to) in self.files.iter().rev() {
-            let to = folder.join(to);
-            let size = |path: &Path| fs::symlink_metadata(path).ok().map(|about| about.len());
-            // What is empty holds a name, where a move was interrupted.
-            let why = match (size(from), size(&to)) {
-                (Some(_), None) => continue,
-                (Some(_), Some(0)) => fs::remove_file(&to).err().map(|fault| fault.to_string()),
-                (Some(0), Some(_)) => fs::rename(&to, from).err().map(|fault| fault.to_string()),
-                (None, Some(_)) => move_file(&to, from).err().map(|fault| fault.to_string()),
-                (Some(_), Some(_)) => Some(format!("another file is now {}", from.display())),
-                (None, None) => {
-                    report.not_moved.push(NotMoved { path: to, why: "it is gone".into() });
-                    continue;
-                }
-            };
-            is_done &= why.is_none();
-            match why {
-                None => report.moved.push([to, from.clone()]),
-                Some(why) => report.not_moved.push(NotMoved { path: to, why }),
-            }
-        }
-        is_done
-    }
-}
-
-/// Gives a file a new name, which nothing else has.
-fn move_file(from: &Path, to: &Path) -> io::Result<()> {
-    to.parent().map_or(Ok(()), fs::create_dir_all)?;
-    // An empty file holds the name, so that the file takes no place but its own.
-    fs::File::create_new(to)?;
-    fs::rename(from, to).inspect_err(|_| drop(fs::remove_file(to)))
 }
