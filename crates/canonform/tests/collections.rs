@@ -106,7 +106,7 @@ fn files_of_any_name_move_and_come_back_and_a_second_run_moves_nothing() {
     assert_eq!(after.len(), before.len() + 1, "nothing is lost");
     for [from, to] in &report.moved {
         assert!(
-            !from.exists() && to.strip_prefix(&report.journal.as_ref().unwrap().parent().unwrap()).is_ok()
+            !from.exists() && to.strip_prefix(report.journal.as_ref().unwrap().parent().unwrap()).is_ok()
         );
     }
     assert_eq!(duplicates(&folder).groups, []);
@@ -399,7 +399,7 @@ fn what_cannot_be_read_now_is_kept_and_what_is_gone_is_removed() {
     fs::remove_file(folder.join("gone.off")).unwrap();
     fs::remove_dir_all(folder.join("lost")).unwrap();
     let closed = folder.join("closed");
-    fs::set_permissions(&closed, fs::Permissions::from_mode(0)).unwrap();
+    fs::set_permissions(&closed, fs::Permissions::from_mode(0o000)).unwrap();
     // Nothing is closed to the superuser.
     let is_closed = fs::read_dir(&closed).is_err();
     for removed in [2, 0] {
@@ -420,5 +420,5 @@ fn what_cannot_be_read_now_is_kept_and_what_is_gone_is_removed() {
     fs::remove_file(folder.join("link.off")).unwrap();
     let report = build(&folder, &path);
     assert_eq!((report.n_shapes, report.described, report.removed), (4, 0, 1));
-    assert_eq!(report.unreadable, [String::new(); 0]);
+    assert!(report.unreadable.is_empty());
 }
