@@ -11,7 +11,7 @@ pub struct MoveReport {
     pub moved: Vec<[PathBuf; 2]>,
     /// What stays where it is.
     pub not_moved: Vec<NotMoved>,
-    /// The file by which [`undo_moves`] puts everything back; `None` if there is nothing to put back.
+    /// The file by which [`undo_moves`](super::undo_moves) puts everything back; `None` if there is nothing to put back.
     pub journal: Option<PathBuf>,
 }
 
