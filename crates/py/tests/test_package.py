@@ -169,7 +169,7 @@ def test_keywords_are_the_options_of_the_library() -> None:
     options = {name for name, *_ in _canonform.options()[1]}
     keywords = set(inspect.signature(canonform.Surface.canonical_form).parameters)
     assert keywords - options == {"self", "reuse", "progress"}
-    of_maps_meshes_and_indexes = {"components", "weld", "n_points", "size", "distance", "max_vertices", "eigenfunctions"}
+    of_maps_meshes_and_indexes = {"components", "weld", "n_points", "size", "max_vertices", "eigenfunctions"}
     assert options - keywords == {"update", "obtuse"} | of_maps_meshes_and_indexes
     for call in (canonform.compare, canonform.Index.build):
         assert {"n_landmarks", "method", "geodesic", "seed"} <= set(inspect.signature(call).parameters)

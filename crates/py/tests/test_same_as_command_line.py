@@ -127,7 +127,7 @@ def test_comparisons(program: Program, meshes: list[Path]) -> None:
             if key == "residual":
                 assert np.max(found.residuals) == largest
         assert found.report == report
-        assert found.relation["because"]["same_shape"] > 0.9
+        assert found.relation["because"]["same_class"] > 0.9
 
 
 def test_indexes(program: Program, collection: Path, tmp_path: Path) -> None:
