@@ -53,7 +53,7 @@ fn other_jobs_and_other_options_are_not_mixed() {
     let error = IndexWriter::open(&path, Job::Build, Some("n=50")).unwrap_err().to_string();
     assert!(error.contains("other options") && error.contains("n=50"), "{error}");
     let error = IndexWriter::open(&folder.path("none"), Job::Add, None).unwrap_err().to_string();
-    assert!(error.contains("none") && error.contains("check the path"), "{error}");
+    assert!(error.contains("none") && error.contains("check that the path exists"), "{error}");
     assert_eq!(folder.names(), ["a"]);
 }
 

@@ -155,7 +155,8 @@ mod tests {
         let mut kinds = Vec::new();
         for i in 0..4000 {
             let next = at(f64::from(i) * 0.005, 1.0, Handedness::Unknown);
-            assert!(next.confidence > 0.45 && next.confidence <= 1.0, "{next:?}");
+            // Where one class begins to end, one shape is still possible, so that none of three kinds has half.
+            assert!(next.confidence > 0.4 && next.confidence <= 1.0, "{next:?}");
             if kinds.last() != Some(&next.kind) {
                 kinds.push(next.kind);
             }
