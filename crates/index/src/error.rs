@@ -4,7 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 /// Version of the file format, which an error about another one states.
-pub const FORMAT_VERSION: u32 = 5;
+pub const FORMAT_VERSION: u32 = 6;
 
 /// Errors of an index.
 #[derive(Debug, thiserror::Error)]
@@ -55,17 +55,6 @@ pub enum IndexError {
     /// Another program is writing the index.
     #[error("another program is writing {path}; wait until it ends, or choose another file", path = .0.display())]
     Busy(PathBuf),
-    /// A different job was interrupted and can be resumed.
-    #[error(
-        "an interrupted `{job}` is waiting in {work}: run it again to finish it, or delete that file to discard it",
-        work = work.display()
-    )]
-    Unfinished {
-        /// The interrupted job.
-        job: String,
-        /// The file that holds its work so far.
-        work: PathBuf,
-    },
     /// The index was made with other options, so its shapes cannot be compared with others.
     #[error(
         "{path} was made with other options ({found}) than these ({requested}); use the same, or another file",
@@ -111,28 +100,12 @@ pub enum IndexError {
         /// The name.
         id: String,
     },
-    /// A value cannot be stored.
-    #[error("shape `{id}` cannot be stored: {reason}")]
-    Codec {
-        /// The shape.
-        id: String,
-        /// Why.
-        reason: String,
-    },
 }
 
 impl IndexError {
     /// Turns an error of the operating system into one that names the file.
     pub(crate) fn io(action: &'static str, path: &Path) -> impl Fn(io::Error) -> Self + Copy {
         move |source| Self::Io { action, path: path.to_owned(), source }
-    }
-
-    /// An error met while `path` was written, which may be one of another file that was read meanwhile.
-    pub(crate) fn of_write(path: &Path, error: io::Error) -> Self {
-        match error.downcast::<Self>() {
-            Ok(error) => error,
-            Err(source) => Self::Io { action: "write", path: path.to_owned(), source },
-        }
     }
 
     /// A file of another format version.

@@ -1,40 +1,31 @@
-//! A durable index: shapes in one file, found by name or by nearest vectors.
+//! A durable index: shapes in one SQLite file, found by name or by nearest vectors.
 //!
 //! ```text
-//! Shape -> IndexWriter -> NAME.work -> finish -> NAME -> Index -> nearest | each | verify | export
+//! Shape -> IndexWriter -> commit, commit, ... finish -> NAME -> Index -> nearest | each | verify | export
 //! ```
 //!
-//! An index is a sorted map from keys to values. Its file holds the map as it was written first, followed by what additions
-//! and removals have changed; nothing that a reader uses is ever modified. A writer logs every `put` in a file next to the
-//! index, `NAME.work`. When it is done, it appends the changes to the index, or writes the index anew if they are many. So
-//! readers need no lock, an addition takes time in proportion to what is added, and an interrupted writer loses nothing
-//! that it has put. Each block has a checksum that is compared whenever the block is read.
+//! Everything that speaks SQL can read the file; the module `database` has the schema. A writer commits what it has every so
+//! often, so that an interrupted one loses nothing and goes on where it was. Readers keep the state that they opened.
+//! Every row has a checksum that is compared whenever it is read.
 //!
 //! Vectors come from outside; the index does not know what they describe.
 //!
 //! ```
-//! use canonform_index::{ContentHash, Index, IndexWriter, Job};
-//! use canonform_index::{Shape, ShapeEntry, ShapeVectors};
+//! use canonform_index::{Entry, Index, IndexWriter, Shape};
 //!
 //! # let folder = tempfile::tempdir().unwrap();
 //! let path = folder.path().join("animals.canonform");
-//! let shape = |id: &str, label: &str, vector: [f32; 2]| Shape {
-//!     id: id.to_owned(),
-//!     entry: ShapeEntry {
-//!         label: label.to_owned(),
-//!         path: format!("{id}.off"),
-//!         content: ContentHash::of(&[id]),
-//!         facts: vec![],
-//!     },
-//!     vectors: ShapeVectors { fused: vector.to_vec(), ..ShapeVectors::default() },
+//! let shape = |id: &str, label: &str, vector: [f32; 2]| {
+//!     let entry = Entry { id: id.into(), label: label.into(), path: format!("{id}.off"), ..Entry::default() };
+//!     Shape { entry, fused: vector.to_vec(), ..Shape::default() }
 //! };
-//! let mut writer = IndexWriter::open(&path, Job::Build, Some("how the vectors were made"))?;
+//! let mut writer = IndexWriter::build(&path, "how the vectors were made")?;
 //! writer.put(&[shape("cat0", "cat", [0.0, 0.1]), shape("dog0", "dog", [5.0, 0.2])])?;
 //! writer.finish(&())?;
 //!
 //! let index = Index::open(&path)?;
 //! assert_eq!((index.len(), index.entry("cat0")?.path.as_str()), (2, "cat0.off"));
-//! assert_eq!(index.nearest(&[4.0, 0.0], 1)?[0].id, "dog0");
+//! assert_eq!(index.nearest(&[4.0, 0.0], 1)?[0].0, "dog0");
 //! # Ok::<(), canonform_index::IndexError>(())
 //! ```
 //!
@@ -42,23 +33,19 @@
 //!
 //! | module | contents |
 //! |---|---|
-//! | `texts`, `floats`, `shape` | names, numbers, the record of one shape |
+//! | `shape`, `texts` | the record of one shape, many names |
 //! | `vectors` | all vectors in memory: the nearest, and the threshold of unknown classes. Knows no file |
-//! | `store` | a sorted map in a file, a log of changes, and views of both. Knows no shapes |
-//! | `tables`, `derived` | the tables of an index, and those that follow from its shapes |
+//! | `database` | the schema, and how the file is opened |
 //! | `reader`, `writer` | [`Index`], [`IndexWriter`] |
-//! | `search` | [`Index::nearest`], [`Index::nearest_on_graph`], [`class_threshold`] |
+//! | `search` | [`Index::nearest`], [`class_threshold`] |
 //! | `verify`, `export` | [`verify`], [`Index::export`], [`Index::export_as`] |
 
-mod derived;
+mod database;
 mod error;
 mod export;
-mod floats;
 mod reader;
 mod search;
 mod shape;
-mod store;
-mod tables;
 mod texts;
 mod vectors;
 mod verify;
@@ -68,11 +55,12 @@ mod writer;
 mod tests;
 
 pub use base::ContentHash;
+pub use database::damaged_path;
 pub use error::{FORMAT_VERSION, IndexError};
 pub use export::{ExportError, ExportFormat, csv_field, text_cell};
 pub use reader::Index;
-pub use search::{NearShape, RankedShape, class_threshold};
-pub use shape::{Shape, ShapeEntry, ShapeVectors};
+pub use search::class_threshold;
+pub use shape::{Entry, Facts, Shape};
 pub use vectors::VectorTable;
 pub use verify::{Verification, verify};
-pub use writer::{IndexWriter, Job, damaged_path, work_path};
+pub use writer::IndexWriter;

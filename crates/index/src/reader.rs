@@ -1,27 +1,27 @@
-//! Reading a finished index.
+//! Reading an index.
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::OnceLock;
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 use retrieval::UnknownThreshold;
 
-use crate::derived::{about, vectors};
-use crate::floats::Floats;
-use crate::store::{StoredFile, View};
-use crate::tables::{About, BODIES, CLASSES, ENTRIES, FUSED};
-use crate::{IndexError, Shape, ShapeEntry, ShapeVectors, VectorTable};
+use crate::database::{Database, EntryRow, Floats, Meta, checksum, log_path, to_bytes};
+use crate::{Entry, IndexError, Shape, VectorTable};
 
-/// A finished index, open for reading.
+/// An index, open for reading.
 ///
-/// It keeps the state it had when it was opened, whatever writers do. Every byte is checked before it is used: all
+/// It keeps the state it had when it was opened, whatever writers do. Every value is checked before it is used: all
 /// methods that read may return [`IndexError::Io`] and [`IndexError::Damaged`].
 #[derive(Debug)]
 pub struct Index {
+    database: Mutex<Database>,
+    path: std::path::PathBuf,
     options: String,
     n_shapes: usize,
+    change: u64,
+    is_finished: bool,
     threshold: Option<UnknownThreshold>,
-    pub(crate) stored: StoredFile,
     /// Read with the first search.
     vectors: OnceLock<VectorTable>,
 }
@@ -33,14 +33,26 @@ impl Index {
     /// [`IndexError::Foreign`], [`IndexError::FutureVersion`], [`IndexError::PastVersion`], [`IndexError::Damaged`],
     /// [`IndexError::Io`].
     pub fn open(path: &Path) -> Result<Self, IndexError> {
-        let stored = StoredFile::open(path)?;
-        let about = about(View::of_file(&stored))?;
-        let About { options, n: n_shapes, threshold, .. } = about;
-        Ok(Self { options, n_shapes, threshold, stored, vectors: OnceLock::new() })
+        let database = Database::read(path)?;
+        let missing = || database.damaged("it does not state how its shapes were described");
+        Ok(Self {
+            options: database.meta(Meta::Options)?.ok_or_else(missing)?,
+            n_shapes: usize::try_from(database.count(Meta::Shapes)?).unwrap_or(usize::MAX),
+            change: database.count(Meta::Change)?,
+            is_finished: database.meta(Meta::Unfinished)?.is_none(),
+            threshold: match database.meta(Meta::Threshold)? {
+                Some(text) => serde_json::from_str(&text).map_err(|fault| database.damaged(fault.to_string()))?,
+                None => None,
+            },
+            path: path.to_owned(),
+            database: Mutex::new(database),
+            vectors: OnceLock::new(),
+        })
     }
 
-    pub(crate) fn view(&self) -> View<'_> {
-        View::of_file(&self.stored)
+    /// A failed read leaves nothing behind, so that a poisoned lock is harmless.
+    pub(crate) fn database(&self) -> MutexGuard<'_, Database> {
+        self.database.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The fused vectors of all shapes, which stay in memory: `4 d` bytes and the name of each shape.
@@ -48,15 +60,13 @@ impl Index {
         if let Some(vectors) = self.vectors.get() {
             return Ok(vectors);
         }
-        let vectors = vectors(self.view())?;
-        if vectors.len() != self.n_shapes {
-            return Err(self.view().damaged("the number of its vectors is wrong"));
-        }
+        let vectors = vectors(&self.database())?;
+        self.expect_all(vectors.len())?;
         Ok(self.vectors.get_or_init(|| vectors))
     }
 
     /// A query whose nearest shape is farther belongs to no class of the index; `None` if the classes are too small to
-    /// tell. From at most 512 of the shapes when the index was finished.
+    /// tell, or the index is not finished. From at most 512 of the shapes when the index was finished.
     #[must_use]
     pub fn threshold(&self) -> Option<UnknownThreshold> {
         self.threshold
@@ -65,7 +75,7 @@ impl Index {
     /// The file.
     #[must_use]
     pub fn path(&self) -> &Path {
-        self.stored.path()
+        &self.path
     }
 
     /// The options its shapes were described with.
@@ -82,7 +92,7 @@ impl Index {
         match self.options == requested {
             true => Ok(()),
             false => Err(IndexError::OtherOptions {
-                path: self.path().to_owned(),
+                path: self.path.clone(),
                 found: self.options.clone(),
                 requested: requested.to_owned(),
             }),
@@ -101,66 +111,231 @@ impl Index {
         self.n_shapes == 0
     }
 
-    /// A number that changes with the content of the file.
+    /// Whether its writer finished it. One that was interrupted, or is at work, has put some of the shapes only.
     #[must_use]
-    pub fn fingerprint(&self) -> u64 {
-        self.stored.fingerprint()
+    pub fn is_finished(&self) -> bool {
+        self.is_finished
     }
 
-    /// Size in bytes.
+    /// The number of transactions that led to this state.
+    #[must_use]
+    pub fn change(&self) -> u64 {
+        self.change
+    }
+
+    /// Size in bytes, with what a writer has not copied into the file yet.
     #[must_use]
     pub fn n_bytes(&self) -> u64 {
-        self.stored.n_bytes()
+        let files = [self.path.clone(), log_path(&self.path)];
+        files.iter().filter_map(|file| Some(std::fs::metadata(file).ok()?.len())).sum()
     }
 
     /// The classes and the number of shapes in each. Shapes without a class do not count.
     pub fn classes(&self) -> Result<BTreeMap<String, u64>, IndexError> {
-        CLASSES.rows(self.view(), &[]).collect()
-    }
-
-    fn missing(&self, id: &str) -> IndexError {
-        IndexError::NoSuchShape { path: self.path().to_owned(), id: id.to_owned() }
+        let mut classes = BTreeMap::new();
+        let sql = "SELECT label, count(*) FROM shapes WHERE label <> '' GROUP BY label";
+        self.database().each(sql, [], |row| Ok((row.get(0)?, row.get(1)?)), |(label, n)| {
+            classes.insert(label, n);
+            Ok::<_, IndexError>(())
+        })?;
+        Ok(classes)
     }
 
     /// Whether there is a shape of this name.
     pub fn contains(&self, id: &str) -> Result<bool, IndexError> {
-        Ok(ENTRIES.get(self.view(), id)?.is_some())
+        Ok(find(&self.database(), id)?.is_some())
     }
 
-    /// The entry of a shape, or [`IndexError::NoSuchShape`].
-    pub fn entry(&self, id: &str) -> Result<ShapeEntry, IndexError> {
-        ENTRIES.get(self.view(), id)?.ok_or_else(|| self.missing(id))
+    /// What is known of a shape but its vectors, or [`IndexError::NoSuchShape`].
+    pub fn entry(&self, id: &str) -> Result<Entry, IndexError> {
+        Ok(find(&self.database(), id)?.ok_or_else(|| self.missing(id))?.entry)
     }
 
-    /// The vectors of a shape, or [`IndexError::NoSuchShape`].
-    pub fn vectors(&self, id: &str) -> Result<ShapeVectors, IndexError> {
-        let (body, fused) = (BODIES.get(self.view(), id)?, FUSED.get(self.view(), id)?);
-        let (body, fused) = body.zip(fused).ok_or_else(|| self.missing(id))?;
-        Ok(body.with(fused.0))
+    /// A shape, or [`IndexError::NoSuchShape`].
+    pub fn shape(&self, id: &str) -> Result<Shape, IndexError> {
+        let database = self.database();
+        let row = find(&database, id)?.ok_or_else(|| self.missing(id))?;
+        shape_of(&database, row)
     }
 
     /// Calls `visit` with each shape in ascending order of names, up to its first error. Holds one shape in memory at a
     /// time.
     pub fn each<E: From<IndexError>>(&self, mut visit: impl FnMut(Shape) -> Result<(), E>) -> Result<(), E> {
-        let view = self.view();
-        let (mut fused, mut bodies) = (FUSED.rows(view, &[]), BODIES.rows(view, &[]));
-        for row in ENTRIES.rows(view, &[]) {
-            let (id, entry) = row?;
-            let fused = fused.next().transpose()?.filter(|(known, _)| *known == id);
-            let body = bodies.next().transpose()?.filter(|(known, _)| *known == id);
-            let Some(((_, Floats(fused)), (_, body))) = fused.zip(body) else {
-                return Err(view.damaged(format!("`{id}` has no vectors")).into());
-            };
-            visit(Shape { id, entry, vectors: body.with(fused) })?;
+        let mut rows = Vec::with_capacity(self.n_shapes.min(1 << 20));
+        each_row(&self.database(), "ORDER BY id", [], |row| rows.push(row))?;
+        self.expect_all(rows.len())?;
+        for row in rows {
+            let shape = shape_of(&self.database(), row)?;
+            visit(shape)?;
         }
-        match fused.next().is_some() || bodies.next().is_some() {
-            true => Err(view.damaged("there are vectors without an entry").into()),
-            false => Ok(()),
+        Ok(())
+    }
+
+    /// All entries, in ascending order of names.
+    pub fn entries(&self) -> Result<Vec<Entry>, IndexError> {
+        let entries = entries(&self.database())?;
+        self.expect_all(entries.len())?;
+        Ok(entries)
+    }
+
+    /// The vector of one name of a shape, such as a signature; `None` if the shape has none.
+    pub fn vector(&self, id: &str, name: &str) -> Result<Option<Vec<f32>>, IndexError> {
+        let database = self.database();
+        let mut found = None;
+        let sql = "SELECT id, name, vector, checksum FROM vectors WHERE id = ? AND name = ?";
+        each_vector(&database, sql, (id, name), |_, _, vector| {
+            found = Some(vector);
+            Ok(())
+        })?;
+        Ok(found)
+    }
+
+    /// The names of shapes of several components, each with the fused vectors of its components but the largest.
+    pub fn components(&self) -> Result<Vec<(String, Vec<f32>)>, IndexError> {
+        let mut all = Vec::new();
+        let sql = "SELECT id, place, vector, checksum FROM components ORDER BY id, place";
+        each_component(&self.database(), sql, [], |id, vector| all.push((id, vector)))?;
+        Ok(all)
+    }
+
+    /// Checks that as many shapes were found as there are.
+    fn expect_all(&self, n: usize) -> Result<(), IndexError> {
+        match n == self.n_shapes {
+            true => Ok(()),
+            false => Err(self.damaged(format!("{n} of its {} shapes are there", self.n_shapes))),
         }
     }
 
-    /// All names and entries, in ascending order of names.
-    pub fn entries(&self) -> Result<Vec<(String, ShapeEntry)>, IndexError> {
-        ENTRIES.rows(self.view(), &[]).collect()
+    fn missing(&self, id: &str) -> IndexError {
+        IndexError::NoSuchShape { path: self.path.clone(), id: id.to_owned() }
+    }
+
+    pub(crate) fn damaged(&self, what: impl Into<String>) -> IndexError {
+        IndexError::damaged(&self.path, what)
+    }
+}
+
+/// The row of a shape, if it is there.
+pub(crate) fn find(database: &Database, id: &str) -> Result<Option<EntryRow>, IndexError> {
+    let mut found = None;
+    each_row(database, "WHERE id = ?", [id], |row| found = Some(row))?;
+    Ok(found)
+}
+
+/// All entries, in ascending order of names.
+pub(crate) fn entries(database: &Database) -> Result<Vec<Entry>, IndexError> {
+    let mut all = Vec::new();
+    each_row(database, "ORDER BY id", [], |row| all.push(row.entry))?;
+    Ok(all)
+}
+
+fn each_row(
+    database: &Database,
+    which: &str,
+    values: impl rusqlite::Params,
+    mut visit: impl FnMut(EntryRow),
+) -> Result<(), IndexError> {
+    let sql = format!("SELECT {} FROM shapes {which}", EntryRow::COLUMNS);
+    database.each(&sql, values, EntryRow::read, |row| {
+        visit(row.ok_or_else(|| database.damaged("the entry of a shape has changed"))?);
+        Ok(())
+    })
+}
+
+/// The fused vectors of all shapes.
+pub(crate) fn vectors(database: &Database) -> Result<VectorTable, IndexError> {
+    let mut table = VectorTable::default();
+    let read = |row: &rusqlite::Row<'_>| -> rusqlite::Result<(String, Floats, u32)> {
+        Ok((row.get(0)?, row.get(1)?, row.get(2)?))
+    };
+    database.each("SELECT id, vector, checksum FROM fused ORDER BY id", [], read, |(id, Floats(fused), sum)| {
+        if sum != checksum(&[&id, "fused"], &to_bytes(&fused)) {
+            return Err(database.damaged(format!("the fused vector of `{id}` has changed")));
+        }
+        if fused.is_empty() || !table.is_empty() && fused.len() != table.dim() {
+            let what = format!("the vector of `{id}` has {} numbers, not {}", fused.len(), table.dim());
+            return Err(database.damaged(what));
+        }
+        table.push(&id, &fused);
+        Ok(())
+    })?;
+    Ok(table)
+}
+
+/// Visits vectors with the names of their shapes and their own.
+fn each_vector(
+    database: &Database,
+    sql: &str,
+    values: impl rusqlite::Params,
+    mut visit: impl FnMut(String, String, Vec<f32>) -> Result<(), IndexError>,
+) -> Result<(), IndexError> {
+    let read = |row: &rusqlite::Row<'_>| -> rusqlite::Result<(String, String, Floats, u32)> {
+        Ok((row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?))
+    };
+    database.each(sql, values, read, |(id, name, Floats(vector), sum)| {
+        match sum == checksum(&[&id, &name], &to_bytes(&vector)) {
+            true => visit(id, name, vector),
+            false => Err(database.damaged(format!("the vector `{name}` of `{id}` has changed"))),
+        }
+    })
+}
+
+fn each_component(
+    database: &Database,
+    sql: &str,
+    values: impl rusqlite::Params,
+    mut visit: impl FnMut(String, Vec<f32>),
+) -> Result<(), IndexError> {
+    let read = |row: &rusqlite::Row<'_>| -> rusqlite::Result<(String, i64, Floats, u32)> {
+        Ok((row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?))
+    };
+    database.each(sql, values, read, |(id, place, Floats(vector), sum)| {
+        match sum == checksum(&[&id, &place.to_string()], &to_bytes(&vector)) {
+            true => {
+                visit(id, vector);
+                Ok(())
+            }
+            false => Err(database.damaged(format!("component {place} of `{id}` has changed"))),
+        }
+    })
+}
+
+/// The name of a signature among the vectors of a shape begins with this.
+pub(crate) const SIGNATURE: &str = "signature_";
+pub(crate) const FORM: &str = "form";
+pub(crate) const DISC_AREAS: &str = "disc_areas";
+
+/// A shape with its vectors.
+pub(crate) fn shape_of(database: &Database, row: EntryRow) -> Result<Shape, IndexError> {
+    let EntryRow { entry, vectors } = row;
+    let id = entry.id.clone();
+    let mut found = 0;
+    let mut shape = Shape { entry, ..Shape::default() };
+    // The fused vector comes first, and every shape has one.
+    let fused = "SELECT id, 'fused', vector, checksum FROM fused WHERE id = ?";
+    each_vector(database, fused, [&id], |_, _, vector| {
+        shape.fused = vector;
+        Ok(())
+    })?;
+    if shape.fused.is_empty() {
+        return Err(database.damaged(format!("`{id}` has no vector")));
+    }
+    let others = "SELECT id, name, vector, checksum FROM vectors WHERE id = ?";
+    each_vector(database, others, [&id], |_, name, vector| {
+        found += 1;
+        match (name.as_str(), name.strip_prefix(SIGNATURE)) {
+            (_, Some(signature)) => drop(shape.signatures.insert(signature.to_owned(), vector)),
+            (FORM, _) => shape.form = vector.as_chunks::<4>().0.to_vec(),
+            (DISC_AREAS, _) => shape.disc_areas = vector,
+            _ => return Err(database.damaged(format!("`{id}` has an unknown vector `{name}`"))),
+        }
+        Ok(())
+    })?;
+    let components = "SELECT id, place, vector, checksum FROM components WHERE id = ? ORDER BY place";
+    each_component(database, components, [&id], |_, vector| shape.components.push(vector))?;
+    found += shape.components.len() as u64;
+    match found == vectors {
+        true => Ok(shape),
+        false => Err(database.damaged(format!("`{id}` has {found} vectors, not {vectors}"))),
     }
 }

@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use crate::derived::{classes, counted};
 use crate::vectors::threshold;
 use crate::{Index, IndexError, Shape};
 
@@ -17,43 +16,69 @@ pub struct Verification {
     pub faults: Vec<String>,
 }
 
-/// Reads every byte, every shape and everything that follows from the shapes, and checks that they agree.
+/// Most defects of the structure that are named.
+const MAX_FAULTS: usize = 20;
+
+/// Checks the structure of the database, every value of every shape, and what follows from them.
 ///
 /// # Errors
 /// As [`Index::open`], if the file is not an index.
 pub fn verify(path: &Path) -> Result<Verification, IndexError> {
-    let index = Index::open(path)?;
+    let index = match Index::open(path) {
+        Err(IndexError::Damaged { what, .. }) => {
+            return Ok(Verification { n_shapes: 0, n_bytes: 0, faults: vec![what] });
+        }
+        opened => opened?,
+    };
     let mut found = Verification { n_shapes: 0, n_bytes: index.n_bytes(), faults: Vec::new() };
-    if let Err(error) = index.stored.check() {
-        found.faults.push(error.to_string());
-        return Ok(found);
+    match check(&index, &mut found.n_shapes) {
+        Ok(faults) => found.faults = faults,
+        Err(IndexError::Damaged { what, .. }) => found.faults.push(what),
+        Err(fault) => return Err(fault),
     }
-    found.faults.extend(check(&index, &mut found.n_shapes).err().map(|fault| fault.to_string()));
     Ok(found)
 }
 
-/// Reads all shapes, and checks what follows from them.
-fn check(index: &Index, n_shapes: &mut usize) -> Result<(), IndexError> {
+/// The defects of the structure; the first of values is an error.
+fn check(index: &Index, n_shapes: &mut usize) -> Result<Vec<String>, IndexError> {
+    let mut faults: Vec<String> = Vec::new();
+    let sql = format!("PRAGMA integrity_check({MAX_FAULTS})");
+    index.database().each(&sql, [], |row| row.get(0), |fault| {
+        faults.push(fault);
+        Ok::<_, IndexError>(())
+    })?;
+    if faults != ["ok"] {
+        return Ok(faults);
+    }
     index.each(|_: Shape| {
         *n_shapes += 1;
         Ok::<(), IndexError>(())
     })?;
-    let (view, vectors) = (index.view(), index.vector_table()?);
-    let classes = classes(view, vectors)?;
-    if index.classes()? != counted(&classes) {
-        return Err(view.damaged("its classes are counted wrong"));
+    if *n_shapes != index.len() {
+        return Err(index.damaged(format!("it holds {n_shapes} shapes, and states {}", index.len())));
     }
-    let fresh = threshold(|visit| {
-        visit(vectors, &classes);
-        Ok::<_, IndexError>(())
-    })?;
-    // Other processors round in another way.
-    let agree = match (index.threshold(), fresh) {
-        (Some(a), Some(b)) => (a.distance - b.distance).abs() <= 1e-3 * b.distance,
-        (a, b) => a.is_none() && b.is_none(),
-    };
-    match agree {
-        true => Ok(()),
-        false => Err(view.damaged("its threshold of unknown classes does not match its shapes")),
+    // Every row belongs to a shape.
+    for table in ["fused", "vectors", "components"] {
+        let sql = format!("SELECT id FROM {table} WHERE id NOT IN (SELECT id FROM shapes) LIMIT 1");
+        index.database().each(&sql, [], |row| row.get::<_, String>(0), |id| {
+            Err(index.damaged(format!("there are vectors of `{id}`, but no entry")))
+        })?;
     }
+    if index.is_finished() {
+        let (vectors, classes) = (index.vector_table()?, index.entries()?);
+        let classes = classes.into_iter().map(|entry| entry.label).collect();
+        let fresh = threshold(|visit| {
+            visit(vectors, &classes);
+            Ok::<_, IndexError>(())
+        })?;
+        // Other processors round in another way.
+        let agree = match (index.threshold(), fresh) {
+            (Some(a), Some(b)) => (a.distance - b.distance).abs() <= 1e-3 * b.distance,
+            (a, b) => a.is_none() && b.is_none(),
+        };
+        if !agree {
+            return Err(index.damaged("its threshold of unknown classes does not match its shapes"));
+        }
+    }
+    Ok(Vec::new())
 }

@@ -6,7 +6,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use tempfile::{NamedTempFile, TempDir};
+use tempfile::{PersistError, NamedTempFile, TempDir};
 
 use super::error::FileError;
 use super::identity::{FileId, is_at};
@@ -165,8 +165,23 @@ impl<'a> Pending<'a> {
     ///
     /// # Errors
     /// [`FileError`] with the path.
-    pub fn publish(mut self) -> Result<(), FileError> {
-        let renamed = self.file.finish(|file| file.persist(self.path).map(drop).map_err(|fault| fault.error));
+    pub fn publish(self) -> Result<(), FileError> {
+        self.publish_by(|file, path| file.persist(path))
+    }
+
+    /// As [`publish`](Self::publish), but an existing file stays and is an error.
+    ///
+    /// # Errors
+    /// [`FileError`] with the path.
+    pub fn publish_new(self) -> Result<(), FileError> {
+        self.publish_by(|file, path| file.persist_noclobber(path))
+    }
+
+    fn publish_by(
+        mut self,
+        rename: impl FnOnce(NamedTempFile, &Path) -> Result<File, PersistError>,
+    ) -> Result<(), FileError> {
+        let renamed = self.file.finish(|file| rename(file, self.path).map(drop).map_err(|fault| fault.error));
         let published = renamed.unwrap_or(Ok(())).and_then(|()| sync_folder(self.path));
         published.map_err(|source| FileError::write(self.path, source))
     }

@@ -2,107 +2,116 @@
 
 use std::borrow::Cow;
 
+use crate::reader::SIGNATURE;
 use crate::{Index, IndexError, Shape};
 
+/// What a shape has in a column.
+pub(super) enum Value<'a> {
+    Text(Cow<'a, str>),
+    Fact(f64),
+    /// Numbers, and how many there are in each dimension.
+    Floats(Cow<'a, [f32]>, Vec<usize>),
+}
+
+fn row(values: &[f32]) -> Value<'_> {
+    Value::Floats(values.into(), vec![values.len()])
+}
+
+/// Everything of a shape, by the names of columns.
+pub(super) fn values(shape: &Shape) -> Vec<(Cow<'static, str>, Value<'_>)> {
+    let entry = &shape.entry;
+    let mut all: Vec<(Cow<'static, str>, Value<'_>)> = vec![
+        ("id".into(), Value::Text((&entry.id).into())),
+        ("label".into(), Value::Text((&entry.label).into())),
+        ("path".into(), Value::Text((&entry.path).into())),
+        ("content".into(), Value::Text(entry.content.to_string().into())),
+    ];
+    all.extend(entry.facts.named().map(|(name, x)| (format!("fact_{name}").into(), Value::Fact(x))));
+    all.push(("fused".into(), row(&shape.fused)));
+    all.push(("form".into(), Value::Floats(shape.form.as_flattened().into(), vec![shape.form.len(), 4])));
+    if !shape.disc_areas.is_empty() {
+        all.push(("disc_areas".into(), row(&shape.disc_areas)));
+    }
+    if let Some(first) = shape.components.first() {
+        let extents = vec![shape.components.len(), first.len()];
+        all.push(("components".into(), Value::Floats(shape.components.concat().into(), extents)));
+    }
+    all.extend(shape.signatures.iter().map(|(name, values)| (format!("{SIGNATURE}{name}").into(), row(values))));
+    all
+}
+
 /// A column.
-#[derive(Debug)]
 pub(super) struct Column {
     pub(super) name: String,
-    pub(super) content: Content,
+    pub(super) kind: Kind,
 }
 
 /// What a column holds.
-#[derive(Debug)]
-pub(super) enum Content {
-    /// A text of at most so many characters.
-    Text(TextOf, usize),
-    /// The fact of this name.
-    Fact(String),
+pub(super) enum Kind {
+    /// Texts of at most so many characters.
+    Text(usize),
+    Fact,
     /// Numbers, at most so many in each dimension.
     Floats(Vec<usize>),
-}
-
-/// The text of a shape in a column.
-pub(super) type TextOf = fn(&Shape) -> String;
-
-/// The columns of texts.
-const TEXTS: [(&str, TextOf); 4] = [
-    ("id", |shape| shape.id.clone()),
-    ("label", |shape| shape.entry.label.clone()),
-    ("path", |shape| shape.entry.path.clone()),
-    ("content", |shape| shape.entry.content.to_string()),
-];
-
-/// Numbers of a shape in a column.
-struct Floats<'a> {
-    name: Cow<'static, str>,
-    /// Their number in each dimension.
-    extents: Vec<usize>,
-    values: Cow<'a, [f32]>,
-}
-
-/// All numbers of a shape but its facts.
-fn floats(shape: &Shape) -> Vec<Floats<'_>> {
-    let vectors = &shape.vectors;
-    let plain = |name: Cow<'static, str>, values| -> Floats<'_> {
-        let values: &[f32] = values;
-        Floats { name, extents: vec![values.len()], values: Cow::Borrowed(values) }
-    };
-    let form = Cow::Borrowed(vectors.form.as_flattened());
-    let mut found = vec![
-        plain("fused".into(), &vectors.fused),
-        Floats { name: "form".into(), extents: vec![vectors.form.len(), 4], values: form },
-    ];
-    if !vectors.disc_areas.is_empty() {
-        found.push(plain("disc_areas".into(), &vectors.disc_areas));
-    }
-    if let Some(first) = vectors.components.first() {
-        let extents = vec![vectors.components.len(), first.len()];
-        let values = Cow::Owned(vectors.components.concat());
-        found.push(Floats { name: "components".into(), extents, values });
-    }
-    let signatures = vectors.signatures.iter();
-    found.extend(signatures.map(|(name, values)| plain(format!("signature_{name}").into(), values)));
-    found
 }
 
 impl Column {
     /// Whether shapes may lack it. Other numbers are empty then.
     pub(super) fn is_optional(&self) -> bool {
-        matches!(self.content, Content::Fact(_)) || self.name.starts_with("signature_")
+        self.name.starts_with(SIGNATURE)
+    }
+
+    /// The text of a shape.
+    pub(super) fn text(&self, shape: &Shape) -> String {
+        match self.value(shape) {
+            Some(Value::Text(text)) => text.into_owned(),
+            _ => String::new(),
+        }
+    }
+
+    /// The number of a shape.
+    pub(super) fn fact(&self, shape: &Shape) -> f64 {
+        match self.value(shape) {
+            Some(Value::Fact(fact)) => fact,
+            _ => f64::NAN,
+        }
     }
 
     /// The numbers of a shape; `None` if it lacks them.
-    pub(super) fn floats<'a>(&self, shape: &'a Shape) -> Option<Cow<'a, [f32]>> {
-        floats(shape).into_iter().find(|known| known.name == self.name).map(|found| found.values)
+    pub(super) fn floats(&self, shape: &Shape) -> Option<Vec<f32>> {
+        match self.value(shape)? {
+            Value::Floats(values, _) => Some(values.into_owned()),
+            _ => None,
+        }
+    }
+
+    fn value<'a>(&self, shape: &'a Shape) -> Option<Value<'a>> {
+        values(shape).into_iter().find(|(name, _)| *name == self.name).map(|(_, value)| value)
     }
 }
 
-/// The columns of the shapes of an index: texts, facts and numbers, each in order of first appearance.
+/// The columns of the shapes of an index, in order of first appearance.
 pub(super) fn columns(index: &Index) -> Result<Vec<Column>, IndexError> {
-    let mut longest = [0; TEXTS.len()];
-    let mut facts: Vec<String> = Vec::new();
-    let mut numbers: Vec<(String, Vec<usize>)> = Vec::new();
+    let mut columns: Vec<Column> = Vec::new();
     index.each(|shape| {
-        for (longest, (_, text)) in longest.iter_mut().zip(TEXTS) {
-            *longest = (*longest).max(text(&shape).chars().count());
-        }
-        for (name, _) in &shape.entry.facts {
-            if !facts.contains(name) {
-                facts.push(name.clone());
-            }
-        }
-        for Floats { name, extents, .. } in floats(&shape) {
-            match numbers.iter_mut().find(|(known, _)| *known == name) {
-                Some((_, most)) => most.iter_mut().zip(extents).for_each(|(most, n)| *most = (*most).max(n)),
-                None => numbers.push((name.into_owned(), extents)),
+        for (name, value) in values(&shape) {
+            let kind = match value {
+                Value::Text(text) => Kind::Text(text.chars().count()),
+                Value::Fact(_) => Kind::Fact,
+                Value::Floats(_, extents) => Kind::Floats(extents),
+            };
+            match columns.iter_mut().find(|known| known.name == name) {
+                Some(known) => match (&mut known.kind, kind) {
+                    (Kind::Text(most), Kind::Text(n)) => *most = (*most).max(n),
+                    (Kind::Floats(most), Kind::Floats(extents)) => {
+                        most.iter_mut().zip(extents).for_each(|(most, n)| *most = (*most).max(n));
+                    }
+                    _ => {}
+                },
+                None => columns.push(Column { name: name.into_owned(), kind }),
             }
         }
         Ok::<(), IndexError>(())
     })?;
-    let texts = TEXTS.into_iter().zip(longest);
-    let texts = texts.map(|((name, text), longest)| (name.to_owned(), Content::Text(text, longest)));
-    let facts = facts.into_iter().map(|name| (format!("fact_{name}"), Content::Fact(name)));
-    let numbers = numbers.into_iter().map(|(name, extents)| (name, Content::Floats(extents)));
-    Ok(texts.chain(facts).chain(numbers).map(|(name, content)| Column { name, content }).collect())
+    Ok(columns)
 }

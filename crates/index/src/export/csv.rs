@@ -1,35 +1,34 @@
 //! Comma-separated values: what fits into a spreadsheet.
 
+use std::borrow::Cow;
 use std::io::Write;
 
-use super::columns::{Column, Content, columns};
+use super::columns::{Kind, Value, columns, values};
 use super::error::ExportError;
-use crate::{Index, Shape};
+use crate::Index;
 
 pub(super) fn write(index: &Index, out: &mut dyn Write) -> Result<(), ExportError> {
     let columns = columns(index)?;
-    let head = columns.iter().flat_map(|column| match &column.content {
-        Content::Text(..) | Content::Fact(_) => vec![csv_field(&column.name)],
-        Content::Floats(extents) if column.name == "fused" => {
+    let head = columns.iter().flat_map(|column| match &column.kind {
+        Kind::Text(_) | Kind::Fact => vec![csv_field(&column.name)],
+        Kind::Floats(extents) if column.name == "fused" => {
             (0..extents[0]).map(|i| format!("fused_{i}")).collect()
         }
-        Content::Floats(_) => Vec::new(),
+        Kind::Floats(_) => Vec::new(),
     });
     writeln!(out, "{}", head.collect::<Vec<_>>().join(","))?;
     index.each(|shape| {
-        let cells: Vec<String> = columns.iter().flat_map(|column| cells(column, &shape)).collect();
+        let cells: Vec<String> = values(&shape).into_iter().flat_map(cells).collect();
         Ok(writeln!(out, "{}", cells.join(","))?)
     })
 }
 
-fn cells(column: &Column, shape: &Shape) -> Vec<String> {
-    match &column.content {
-        Content::Text(text, _) => vec![csv_field(&text(shape))],
-        Content::Fact(name) => vec![shape.entry.fact(name).map_or_else(String::new, |x| x.to_string())],
-        Content::Floats(_) if column.name == "fused" => {
-            shape.vectors.fused.iter().map(f32::to_string).collect()
-        }
-        Content::Floats(_) => Vec::new(),
+fn cells((name, value): (Cow<'static, str>, Value<'_>)) -> Vec<String> {
+    match value {
+        Value::Text(text) => vec![csv_field(&text)],
+        Value::Fact(fact) => vec![fact.to_string()],
+        Value::Floats(numbers, _) if name == "fused" => numbers.iter().map(f32::to_string).collect(),
+        Value::Floats(..) => Vec::new(),
     }
 }
 

@@ -1,6 +1,5 @@
 //! Export of an index as files that do not depend on its history.
 
-mod arrow;
 mod columns;
 mod csv;
 mod error;
@@ -12,10 +11,9 @@ mod tests;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 
-use serde::ser::SerializeMap;
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
-use crate::{Index, Shape};
+use crate::Index;
 
 pub use csv::{csv_field, text_cell};
 pub use error::ExportError;
@@ -29,36 +27,6 @@ struct Head<'a> {
     shapes: usize,
 }
 
-/// Each further line.
-struct Line<'a>(&'a Shape);
-
-impl Serialize for Line<'_> {
-    fn serialize<S: Serializer>(&self, out: S) -> Result<S::Ok, S::Error> {
-        let Shape { id, entry, vectors } = self.0;
-        let mut line = out.serialize_map(None)?;
-        line.serialize_entry("id", id)?;
-        line.serialize_entry("label", &entry.label)?;
-        line.serialize_entry("path", &entry.path)?;
-        line.serialize_entry("content", &entry.content.to_string())?;
-        line.serialize_entry("facts", &Named(&entry.facts))?;
-        line.serialize_entry("fused", &vectors.fused)?;
-        line.serialize_entry("signatures", &Named(&vectors.signatures))?;
-        line.serialize_entry("form", &vectors.form)?;
-        line.serialize_entry("disc_areas", &vectors.disc_areas)?;
-        line.serialize_entry("components", &vectors.components)?;
-        line.end()
-    }
-}
-
-/// Pairs serialised as an object, in order.
-struct Named<'a, T>(&'a [(String, T)]);
-
-impl<T: Serialize> Serialize for Named<'_, T> {
-    fn serialize<S: Serializer>(&self, out: S) -> Result<S::Ok, S::Error> {
-        out.collect_map(self.0.iter().map(|(name, value)| (name, value)))
-    }
-}
-
 /// A file format for an index; [`Index::export_as`] writes it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ExportFormat {
@@ -66,7 +34,7 @@ pub enum ExportFormat {
     JsonLines,
     /// Everything, a row for every shape.
     ///
-    /// Columns: `id`, `label`, `path` and `content` (text); `fact_NAME` (double, null if a shape lacks it); `fused` and
+    /// Columns: `id`, `label`, `path` and `content` (text); `fact_NAME` (double); `fused` and
     /// `signature_NAME` (lists of float, null if a shape lacks it); `form` (a list of float: x, y, z and weight of each
     /// point); `disc_areas` and `components` (lists of float, one component after the other), if any shape has them. The
     /// metadata of the file has `canonform.options`.
@@ -131,9 +99,9 @@ impl Index {
     /// [`ExportError`].
     pub fn export(&self, out: &mut dyn Write) -> Result<(), ExportError> {
         let head =
-            Head { format: "canonform-index", version: 2, options: self.options(), shapes: self.len() };
+            Head { format: "canonform-index", version: 3, options: self.options(), shapes: self.len() };
         write_line(out, &head)?;
-        self.each(|shape| write_line(out, &Line(&shape)).map_err(ExportError::from))
+        self.each(|shape| write_line(out, &shape).map_err(ExportError::from))
     }
 }
 

@@ -7,9 +7,10 @@ use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
-use super::columns::{Content, columns};
+use super::columns::{Kind, columns};
 use super::error::ExportError;
 use crate::Index;
+use crate::database::to_bytes;
 
 pub(super) fn write(index: &Index, file: &mut File) -> Result<(), ExportError> {
     let mut archive = Archive { zip: ZipWriter::new(BufWriter::with_capacity(1 << 16, file)) };
@@ -18,23 +19,23 @@ pub(super) fn write(index: &Index, file: &mut File) -> Result<(), ExportError> {
     archive.begin("options", &format!("<U{longest}"), &[], 4 * longest)?;
     archive.put(&text(options, longest))?;
     for column in columns(index)? {
-        match &column.content {
-            Content::Text(of, longest) => {
+        match &column.kind {
+            Kind::Text(longest) => {
                 let longest = (*longest).max(1);
                 archive.begin(&column.name, &format!("<U{longest}"), &[n], 4 * longest)?;
-                index.each(|shape| archive.put(&text(&of(&shape), longest)))?;
+                index.each(|shape| archive.put(&text(&column.text(&shape), longest)))?;
             }
-            Content::Fact(fact) => {
+            Kind::Fact => {
                 archive.begin(&column.name, "<f8", &[n], 8)?;
-                index.each(|shape| archive.put(&shape.entry.fact(fact).unwrap_or(f64::NAN).to_le_bytes()))?;
+                index.each(|shape| archive.put(&column.fact(&shape).to_le_bytes()))?;
             }
-            Content::Floats(extents) => {
+            Kind::Floats(extents) => {
                 archive.begin(&column.name, "<f4", &[&[n], extents.as_slice()].concat(), 4)?;
                 let length = extents.iter().product();
                 index.each(|shape| {
-                    let mut values = column.floats(&shape).unwrap_or_default().into_owned();
+                    let mut values = column.floats(&shape).unwrap_or_default();
                     values.resize(length, f32::NAN);
-                    archive.put(&values.into_iter().flat_map(f32::to_le_bytes).collect::<Vec<_>>())
+                    archive.put(&to_bytes(&values))
                 })?;
             }
         }

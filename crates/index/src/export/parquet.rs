@@ -12,8 +12,7 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::{ColumnPath, Type, TypePtr};
 
-use super::arrow;
-use super::columns::{Column, Content, columns};
+use super::columns::{Column, Kind, columns};
 use super::error::ExportError;
 use crate::{Index, Shape};
 
@@ -24,13 +23,12 @@ pub(super) fn write(index: &Index, file: &mut File) -> Result<(), ExportError> {
     let columns = columns(index)?;
     let schema = schema(&columns).map_err(failed)?;
     let options = KeyValue::new("canonform.options".to_owned(), index.options().to_owned());
-    let kinds = KeyValue::new(arrow::KEY.to_owned(), arrow::schema(&columns));
     let properties = WriterProperties::builder()
         .set_compression(Compression::SNAPPY)
         // Numbers hardly repeat.
         .set_dictionary_enabled(false)
         .set_column_dictionary_enabled(ColumnPath::from("label"), true)
-        .set_key_value_metadata(Some(vec![options, kinds]));
+        .set_key_value_metadata(Some(vec![options]));
     let mut writer = SerializedFileWriter::new(file, schema, Arc::new(properties.build())).map_err(failed)?;
     let mut rows: Vec<Shape> = Vec::with_capacity(GROUP);
     index.each(|shape| {
@@ -56,15 +54,15 @@ fn schema(columns: &[Column]) -> Result<TypePtr, ParquetError> {
 fn field(column: &Column) -> Result<Type, ParquetError> {
     let name = column.name.as_str();
     let repetition = if column.is_optional() { Repetition::OPTIONAL } else { Repetition::REQUIRED };
-    match &column.content {
-        Content::Text(..) => Type::primitive_type_builder(name, Physical::BYTE_ARRAY)
+    match &column.kind {
+        Kind::Text(_) => Type::primitive_type_builder(name, Physical::BYTE_ARRAY)
             .with_repetition(repetition)
             .with_logical_type(Some(LogicalType::String))
             .build(),
-        Content::Fact(_) => {
+        Kind::Fact => {
             Type::primitive_type_builder(name, Physical::DOUBLE).with_repetition(repetition).build()
         }
-        Content::Floats(_) => {
+        Kind::Floats(_) => {
             let element = Type::primitive_type_builder("element", Physical::FLOAT);
             let element = Arc::new(element.with_repetition(Repetition::REQUIRED).build()?);
             let inner = Type::group_type_builder("list").with_repetition(Repetition::REPEATED);
@@ -86,19 +84,17 @@ fn write_group(
 ) -> Result<(), ExportError> {
     let mut group = writer.next_row_group().map_err(failed)?;
     for column in columns {
-        match &column.content {
-            Content::Text(text, _) => {
+        match &column.kind {
+            Kind::Text(_) => {
                 let values: Vec<ByteArray> =
-                    rows.iter().map(|shape| text(shape).into_bytes().into()).collect();
+                    rows.iter().map(|shape| column.text(shape).into_bytes().into()).collect();
                 put::<ByteArrayType>(&mut group, &values, None, None)?;
             }
-            Content::Fact(name) => {
-                let found: Vec<Option<f64>> = rows.iter().map(|shape| shape.entry.fact(name)).collect();
-                let levels: Vec<i16> = found.iter().map(|value| i16::from(value.is_some())).collect();
-                let values: Vec<f64> = found.into_iter().flatten().collect();
-                put::<DoubleType>(&mut group, &values, Some(&levels), None)?;
+            Kind::Fact => {
+                let values: Vec<f64> = rows.iter().map(|shape| column.fact(shape)).collect();
+                put::<DoubleType>(&mut group, &values, None, None)?;
             }
-            Content::Floats(_) => lists(&mut group, column, rows)?,
+            Kind::Floats(_) => lists(&mut group, column, rows)?,
         }
     }
     group.close().map_err(failed)?;
@@ -116,7 +112,7 @@ fn lists(
     let of_empty = i16::from(column.is_optional());
     for row in rows.iter().map(|shape| column.floats(shape)) {
         let is_there = row.is_some();
-        match row.unwrap_or_default().as_ref() {
+        match row.unwrap_or_default().as_slice() {
             [] => {
                 definitions.push(if is_there { of_empty } else { 0 });
                 repetitions.push(0);

@@ -18,18 +18,17 @@ fn exported(index: &Index, format: ExportFormat) -> File {
     file
 }
 
-/// An index in which one shape lacks a fact and a signature that another one has.
+/// An index in which one shape lacks a signature that another one has.
 fn uneven() -> (Folder, Index, Vec<Shape>) {
     let folder = Folder::new();
     let mut shapes: Vec<Shape> = (0..5).map(shape).collect();
-    shapes[1].entry.facts.push(("extra, \"fact\"".to_owned(), -0.25));
-    shapes[2].vectors.signatures.push(("extra".to_owned(), vec![1.5, -2.5]));
-    shapes[2].vectors.components = vec![vec![1.0, 2.0, 3.0]; 2];
+    shapes[2].signatures.insert("extra".to_owned(), vec![1.5, -2.5]);
+    shapes[2].components = vec![vec![1.0, 2.0, 3.0]; 2];
     shapes[3].entry.label = "a, \"b\" ä".to_owned();
     let path = folder.path("uneven");
     folder.fill(&path, &shapes);
     let index = Index::open(&path).unwrap();
-    shapes.sort_by(|a, b| a.id.cmp(&b.id));
+    shapes.sort_by(|a, b| a.entry.id.cmp(&b.entry.id));
     (folder, index, shapes)
 }
 
@@ -52,26 +51,25 @@ fn parquet_holds_everything() {
     let rows: Vec<Row> = reader.get_row_iter(None).unwrap().map(Result::unwrap).collect();
     assert_eq!(rows.len(), shapes.len());
     for (row, shape) in rows.iter().zip(&shapes) {
-        assert_eq!(row.get_string(0).unwrap(), &shape.id);
+        assert_eq!(row.get_string(0).unwrap(), &shape.entry.id);
         assert_eq!(row.get_string(1).unwrap(), &shape.entry.label);
         assert_eq!(row.get_string(2).unwrap(), &shape.entry.path);
         assert_eq!(row.get_string(3).unwrap(), &shape.entry.content.to_string());
         for (column, (name, field)) in row.get_column_iter().enumerate() {
             if let Some(fact) = name.strip_prefix("fact_") {
-                let found = row.get_double(column).ok();
-                assert_eq!(found, shape.entry.fact(fact), "{name}: {field}");
+                let facts = shape.entry.facts.named();
+                let (_, expected) = facts.iter().find(|(name, _)| *name == fact).unwrap();
+                assert_eq!(row.get_double(column).unwrap(), *expected, "{name}: {field}");
             } else if let Some(signature) = name.strip_prefix("signature_") {
-                let mut known = shape.vectors.signatures.iter();
-                let expected = known.find(|(name, _)| name == signature).map(|(_, values)| values.clone());
-                assert_eq!(floats(row, column), expected, "{name}");
+                assert_eq!(floats(row, column).as_ref(), shape.signatures.get(signature), "{name}");
             } else if name == "components" {
-                assert_eq!(floats(row, column).unwrap(), shape.vectors.components.concat());
+                assert_eq!(floats(row, column).unwrap(), shape.components.concat());
             } else if name == "disc_areas" {
-                assert_eq!(floats(row, column).unwrap(), shape.vectors.disc_areas);
+                assert_eq!(floats(row, column).unwrap(), shape.disc_areas);
             } else if name == "fused" {
-                assert_eq!(floats(row, column).unwrap(), shape.vectors.fused);
+                assert_eq!(floats(row, column).unwrap(), shape.fused);
             } else if name == "form" {
-                assert_eq!(floats(row, column).unwrap(), shape.vectors.form.as_flattened());
+                assert_eq!(floats(row, column).unwrap(), shape.form.as_flattened());
             }
         }
     }
@@ -88,9 +86,9 @@ fn npz_holds_everything() {
     };
     let fused = bytes("fused");
     let array = npyz::NpyFile::new(&fused[..]).unwrap();
-    assert_eq!(array.shape(), [shapes.len() as u64, shapes[0].vectors.fused.len() as u64]);
+    assert_eq!(array.shape(), [shapes.len() as u64, shapes[0].fused.len() as u64]);
     let values: Vec<f32> = array.into_vec().unwrap();
-    assert!(values.iter().eq(shapes.iter().flat_map(|shape| &shape.vectors.fused)));
+    assert!(values.iter().eq(shapes.iter().flat_map(|shape| &shape.fused)));
     let form = bytes("form");
     assert_eq!(npyz::NpyFile::new(&form[..]).unwrap().shape()[2], 4);
     let components = bytes("components");
@@ -103,7 +101,7 @@ fn npz_holds_everything() {
     assert!(String::from_utf8_lossy(&ids[..start]).contains("'descr': '<U") && start % 64 == 0);
     let characters: String =
         ids[start..].chunks(4).map(|character| char::from(character[0])).filter(|c| *c != '\0').collect();
-    assert_eq!(characters, shapes.iter().map(|shape| shape.id.as_str()).collect::<String>());
+    assert_eq!(characters, shapes.iter().map(|shape| shape.entry.id.as_str()).collect::<String>());
 }
 
 #[test]
@@ -113,14 +111,13 @@ fn csv_holds_what_search_compares() {
     exported(&index, ExportFormat::Csv).read_to_string(&mut text).unwrap();
     let lines: Vec<&str> = text.lines().collect();
     assert!(lines[0].starts_with("id,label,path,content,fact_"), "{}", lines[0]);
-    assert!(lines[0].contains("\"fact_extra, \"\"fact\"\"\""), "{}", lines[0]);
     assert_eq!(lines.len(), 1 + shapes.len());
     assert!(text.contains(",\"a, \"\"b\"\" ä\","));
-    let n = shapes[0].vectors.fused.len();
+    let n = shapes[0].fused.len();
     for (line, shape) in lines[1..].iter().zip(&shapes) {
         let mut last: Vec<f32> = line.rsplit(',').take(n).map(|x| x.parse().unwrap()).collect();
         last.reverse();
-        assert_eq!(last, shape.vectors.fused);
+        assert_eq!(last, shape.fused);
     }
 }
 

@@ -1,23 +1,23 @@
 //! The export depends on the shapes only.
 
-use super::{Folder, OPTIONS, export, shape};
-use crate::{Index, IndexError, IndexWriter, Job, verify};
+use super::{Folder, OPTIONS, export, faults, id, shape};
+use crate::{Index, IndexError, IndexWriter, Shape};
 
 #[test]
 fn order_batches_and_history_do_not_matter() {
     let folder = Folder::new();
     let whole = export(&folder.index("whole", 30));
     let path = folder.path("other");
-    let mut writer = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
+    let mut writer = IndexWriter::build(&path, OPTIONS).unwrap();
     for i in (0..30).rev().chain([5, 5, 40, 41]) {
         writer.put(&[shape(i)]).unwrap();
+        writer.commit().unwrap();
     }
     writer.finish(&()).unwrap();
     assert_ne!(export(&path), whole);
-    let mut writer = IndexWriter::open(&path, Job::Remove, None).unwrap();
-    writer.remove(&[shape(41).id, shape(40).id]).unwrap();
-    writer.finish(&()).unwrap();
+    folder.change(&path, &[], &[id(41), id(40)]);
     assert_eq!(export(&path), whole);
+    assert_eq!(Index::open(&path).unwrap().threshold(), Index::open(&folder.path("whole")).unwrap().threshold());
     // Each line is a JSON object; the first describes the index.
     let lines: Vec<serde_json::Value> = whole
         .split(|b| *b == b'\n')
@@ -28,32 +28,55 @@ fn order_batches_and_history_do_not_matter() {
     assert_eq!((&lines[0]["shapes"], &lines[0]["options"]), (&30.into(), &OPTIONS.into()));
     assert_eq!(lines[1]["id"], "class0/0000");
     assert_eq!(lines[1]["facts"]["area"], 0.0);
+    assert_eq!(serde_json::from_value::<Shape>(lines[1].clone()).unwrap(), shape(0));
+}
+
+#[test]
+fn equal_vectors_are_found_by_name_whatever_came_first() {
+    let folder = Folder::new();
+    let copies = |order: &mut dyn Iterator<Item = usize>, name| {
+        let path = folder.path(name);
+        folder.fill(&path, &[shape(50)]);
+        for i in order {
+            let mut copy = shape(3);
+            copy.entry.id = format!("copy{i:02}");
+            let mut writer = IndexWriter::open(&path).unwrap();
+            writer.put(&[copy]).unwrap();
+            writer.finish(&()).unwrap();
+        }
+        let found = Index::open(&path).unwrap().nearest(&shape(3).fused, 4).unwrap();
+        found.into_iter().map(|(id, _)| id).collect::<Vec<_>>()
+    };
+    let expected = ["copy00", "copy01", "copy02", "copy03"];
+    assert_eq!(copies(&mut (0..12), "a"), expected);
+    assert_eq!(copies(&mut (0..12).rev(), "b"), expected);
 }
 
 #[test]
 fn entries_change_without_vectors() {
     let folder = Folder::new();
     let path = folder.index("a", 4);
-    let mut writer = IndexWriter::open(&path, Job::Add, None).unwrap();
-    let mut entry = writer.entry(&shape(2).id).unwrap().unwrap();
+    let mut writer = IndexWriter::open(&path).unwrap();
+    let mut entry = writer.entry(&id(2)).unwrap().unwrap();
     entry.label = "dog".to_owned();
-    writer.set_entries(&[(shape(2).id, entry.clone())]).unwrap();
-    assert!(matches!(writer.set_entries(&[("no".to_owned(), entry)]), Err(IndexError::NoSuchShape { .. })));
+    writer.set_entries(std::slice::from_ref(&entry)).unwrap();
+    entry.id = "no".to_owned();
+    assert!(matches!(writer.set_entries(&[entry]), Err(IndexError::NoSuchShape { .. })));
     writer.finish(&()).unwrap();
     let index = Index::open(&path).unwrap();
-    assert_eq!(index.entry(&shape(2).id).unwrap().label, "dog");
-    assert_eq!(index.vectors(&shape(2).id).unwrap(), shape(2).vectors);
-    assert_eq!(verify(&path).unwrap().faults, Vec::<String>::new());
+    assert_eq!(index.entry(&id(2)).unwrap().label, "dog");
+    assert_eq!(index.shape(&id(2)).unwrap().form, shape(2).form);
+    assert_eq!(faults(&path), Vec::<String>::new());
 }
 
 #[test]
 fn removing_a_missing_shape_removes_nothing() {
     let folder = Folder::new();
     let path = folder.index("a", 4);
-    let mut writer = IndexWriter::open(&path, Job::Remove, None).unwrap();
-    let error = writer.remove(&[shape(1).id, "cat9".to_owned()]).unwrap_err();
+    let mut writer = IndexWriter::open(&path).unwrap();
+    let error = writer.remove(&[id(1), "cat9".to_owned()]).unwrap_err();
     assert!(error.to_string().contains("`cat9`"), "{error}");
-    assert_eq!(writer.n_shapes().unwrap(), 4);
     writer.discard().unwrap();
+    assert_eq!(Index::open(&path).unwrap().len(), 4);
     assert_eq!(folder.names(), ["a"]);
 }

@@ -3,15 +3,12 @@
 mod damage;
 mod durability;
 mod equality;
-mod forged;
-mod graph;
-mod growth;
 
 use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
-use crate::{ContentHash, Index, IndexWriter, Job, Shape, ShapeEntry, ShapeVectors, verify};
+use crate::{ContentHash, Entry, Facts, Index, IndexWriter, Shape, verify};
 
 pub(crate) const OPTIONS: &str = "n=100";
 
@@ -35,9 +32,9 @@ impl Folder {
         names
     }
 
-    /// Adds shapes to a finished index and removes others.
+    /// Adds shapes to an index and removes others.
     pub(crate) fn change(&self, path: &Path, added: &[usize], removed: &[String]) {
-        let mut writer = IndexWriter::open(path, Job::Add, None).unwrap();
+        let mut writer = IndexWriter::open(path).unwrap();
         writer.put(&added.iter().copied().map(shape).collect::<Vec<_>>()).unwrap();
         writer.remove(removed).unwrap();
         writer.finish(&()).unwrap();
@@ -52,7 +49,7 @@ impl Folder {
 
     /// Makes a finished index of these shapes.
     pub(crate) fn fill(&self, path: &Path, shapes: &[Shape]) {
-        let mut writer = IndexWriter::open(path, Job::Build, Some(OPTIONS)).unwrap();
+        let mut writer = IndexWriter::build(path, OPTIONS).unwrap();
         writer.put(shapes).unwrap();
         writer.finish(&()).unwrap();
     }
@@ -61,22 +58,27 @@ impl Folder {
 /// A shape all of whose properties depend on its number.
 pub(crate) fn shape(i: usize) -> Shape {
     let x = i as f32;
+    let facts = Facts { vertices: i as u64, area: 0.1 * i as f64, ..Facts::default() };
     Shape {
-        id: format!("class{}/{i:04}", i % 3),
-        entry: ShapeEntry {
+        entry: Entry {
+            id: format!("class{}/{i:04}", i % 3),
             label: format!("class{}", i % 3),
             path: format!("meshes/{i}.off"),
             content: ContentHash::of(&[i.to_le_bytes()]),
-            facts: vec![("area".to_owned(), 0.1 * i as f64), ("vertices".to_owned(), i as f64)],
+            facts,
         },
-        vectors: ShapeVectors {
-            fused: vec![x, (x * 0.7).sin(), 0.1],
-            signatures: vec![("moments".to_owned(), vec![x; 4]), ("spectrum".to_owned(), vec![0.5 * x; 3])],
-            disc_areas: vec![0.25 * x; 5],
-            components: vec![vec![x, 1.0, 2.0]; i % 3],
-            form: (0..40).map(|j| [x, j as f32, 0.1 + x * j as f32, 1.0]).collect(),
-        },
+        fused: vec![x, (x * 0.7).sin(), 0.1],
+        signatures: [("moments", vec![x; 4]), ("spectrum", vec![0.5 * x; 3])]
+            .map(|(name, values)| (name.to_owned(), values))
+            .into(),
+        disc_areas: vec![0.25 * x; 5],
+        components: vec![vec![x, 1.0, 2.0]; i % 3],
+        form: (0..40).map(|j| [x, j as f32, 0.1 + x * j as f32, 1.0]).collect(),
     }
+}
+
+pub(super) fn id(i: usize) -> String {
+    shape(i).entry.id
 }
 
 pub(super) fn export(path: &Path) -> Vec<u8> {
@@ -85,19 +87,25 @@ pub(super) fn export(path: &Path) -> Vec<u8> {
     bytes
 }
 
+pub(super) fn faults(path: &Path) -> Vec<String> {
+    verify(path).unwrap().faults
+}
+
 #[test]
 fn shapes_round_trip() {
     let folder = Folder::new();
     let index = Index::open(&folder.index("a", 20)).unwrap();
-    assert_eq!((index.len(), index.options()), (20, OPTIONS));
+    assert_eq!((index.len(), index.options(), index.is_finished()), (20, OPTIONS, true));
     for i in 0..20 {
-        let Shape { id, entry, vectors } = shape(i);
-        assert_eq!(index.entry(&id).unwrap(), entry);
-        assert_eq!(index.vectors(&id).unwrap(), vectors);
-        assert_eq!(entry.fact("vertices"), Some(i as f64));
+        assert_eq!(index.entry(&id(i)).unwrap(), shape(i).entry);
+        assert_eq!(index.shape(&id(i)).unwrap(), shape(i));
+        assert_eq!(index.vector(&id(i), "signature_moments").unwrap().unwrap(), [i as f32; 4]);
     }
-    let ids: Vec<String> = index.entries().unwrap().into_iter().map(|(id, _)| id).collect();
-    assert!(ids.is_sorted() && ids.len() == 20);
+    assert_eq!(index.vector(&id(1), "none").unwrap(), None);
+    assert_eq!(index.components().unwrap().len(), 6 + 2 * 6 + 1);
+    assert_eq!(index.classes().unwrap()["class1"], 7);
+    let entries = index.entries().unwrap();
+    assert!(entries.is_sorted_by_key(|entry| &entry.id) && entries.len() == 20);
     assert!(index.contains("class0/0000").unwrap() && !index.contains("class1/0000").unwrap());
 }
 
@@ -105,22 +113,21 @@ fn shapes_round_trip() {
 fn a_search_finds_the_nearest() {
     let folder = Folder::new();
     let index = Index::open(&folder.index("a", 50)).unwrap();
-    for query in [shape(7).vectors.fused, vec![3.2, 0.0, 0.0]] {
+    for query in [shape(7).fused, vec![3.2, 0.0, 0.0]] {
         let found = index.nearest(&query, 5).unwrap();
         let mut expected: Vec<(f64, String)> = (0..50)
             .map(|i| {
-                let gaps =
-                    shape(i).vectors.fused.into_iter().zip(&query).map(|(x, y)| f64::from(x - y).powi(2));
-                (gaps.sum::<f64>().sqrt(), shape(i).id)
+                let gaps = shape(i).fused.into_iter().zip(&query).map(|(x, y)| f64::from(x - y).powi(2));
+                (gaps.sum::<f64>().sqrt(), id(i))
             })
             .collect();
         expected.sort_by(|a, b| a.partial_cmp(b).unwrap());
         assert_eq!(found.len(), 5);
         for (found, (distance, id)) in found.iter().zip(&expected) {
-            assert!(found.id == *id && (found.distance - distance).abs() < 1e-6);
+            assert!(found.0 == *id && (found.1 - distance).abs() < 1e-6);
         }
     }
-    assert_eq!(index.nearest(&shape(3).vectors.fused, 999).unwrap().len(), 50);
+    assert_eq!(index.nearest(&shape(3).fused, 999).unwrap().len(), 50);
     assert!(index.nearest(&[1.0], 5).unwrap_err().to_string().contains("the query"));
     assert!(index.nearest(&[1.0, f32::NAN, 0.0], 5).is_err());
 }
@@ -130,6 +137,22 @@ fn an_empty_index_finds_nothing() {
     let folder = Folder::new();
     let path = folder.index("empty", 0);
     let index = Index::open(&path).unwrap();
-    assert!(index.is_empty() && verify(&path).unwrap().faults.is_empty());
+    assert!(index.is_empty() && faults(&path).is_empty());
     assert!(index.nearest(&[1.0, 2.0], 5).unwrap().is_empty());
+}
+
+/// What the guide shows works with any program that reads SQLite.
+#[test]
+fn the_file_answers_questions_in_sql() {
+    let folder = Folder::new();
+    let path = folder.index("a", 20);
+    let database = rusqlite::Connection::open(&path).unwrap();
+    let sql = "select label, count(*), sum(vertices) from shapes group by label order by label";
+    let mut statement = database.prepare(sql).unwrap();
+    let rows = statement.query_map([], |row| Ok((row.get(0)?, row.get(1)?, row.get(2)?))).unwrap();
+    let rows: Vec<(String, u64, u64)> = rows.map(Result::unwrap).collect();
+    assert_eq!(rows[1], ("class1".to_owned(), 7, (0..20).filter(|i| i % 3 == 1).sum()));
+    let bytes: Vec<u8> =
+        database.query_row("select vector from fused where id = ?", [id(7)], |row| row.get(0)).unwrap();
+    assert_eq!(bytes[..4], 7.0f32.to_le_bytes());
 }

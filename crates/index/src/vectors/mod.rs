@@ -10,5 +10,4 @@ mod testing;
 mod threshold;
 
 pub use table::VectorTable;
-pub(crate) use table::distance;
 pub(crate) use threshold::threshold;

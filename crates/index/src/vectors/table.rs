@@ -66,7 +66,8 @@ impl VectorTable {
     }
 
     /// The numbers and distances of the `k` vectors nearest to a query of this length; ties by number.
-    pub(crate) fn nearest(&self, query: &[f32], k: usize) -> Vec<(usize, f64)> {
+    #[must_use]
+    pub fn nearest(&self, query: &[f32], k: usize) -> Vec<(usize, f64)> {
         if self.is_empty() {
             return Vec::new();
         }
@@ -97,6 +98,6 @@ impl VectorTable {
 }
 
 /// Euclidean distance, summed in double precision in the order of the numbers.
-pub(crate) fn distance(a: &[f32], b: &[f32]) -> f64 {
+fn distance(a: &[f32], b: &[f32]) -> f64 {
     a.iter().zip(b).map(|(x, y)| (f64::from(*x) - f64::from(*y)).powi(2)).sum::<f64>().sqrt()
 }

@@ -5,7 +5,6 @@ use retrieval::UnknownThreshold;
 
 use super::kernels::sq_distances_into;
 use super::table::VectorTable;
-use crate::shape::{ShapeKey, shape_key};
 use crate::texts::Texts;
 
 /// Shapes with a class whose nearest others are looked for, at most: those whose hashed names come first.
@@ -14,6 +13,13 @@ const TRIALS: usize = 512;
 /// Trials, and vectors, that meet while both are in the cache.
 const GROUP: usize = 16;
 const BLOCK: usize = 1024;
+
+/// Orders shapes at random: the first 64 bits of the hash of a name.
+type ShapeKey = u64;
+
+fn shape_key(id: &str) -> ShapeKey {
+    base::ContentHash::of(&[id]).start()
+}
 
 /// Called with the vectors and the classes of some shapes.
 type Visit<'a> = dyn FnMut(&VectorTable, &Texts) + 'a;
