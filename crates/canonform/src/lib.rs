@@ -121,14 +121,13 @@ pub use relations::{
 };
 pub use retrieval::RankBy;
 pub use shape_index::{
-    BuildOptions, BuildReport, ClassVotes, ComponentResult, DescribedQuery, Dropped, DuplicateFile,
-    DuplicateGroup, DuplicateMember, DuplicateOptions, DuplicateReport, Elsewhere, EvaluateOptions, Explain,
-    Failure, FailureReason, Inputs, Measure, MergeReport, MoveReport, NearestShape, NotMoved, OrderedBy,
-    PackedQuery, PairwiseDistance, Prediction, Query, Ranked, Reranked, SearchOptions, SearchRank,
-    SearchReport, SearchResult, SearchSeconds, ShapeLimits, ShapeSearch, Shard, ShardExplained, ShardMatch,
-    ShardMatches, ShardedSearch, Unknown, add_to_index, bounds, build_index, check_place, evaluate_index,
-    evaluate_matrix, export_index, find_duplicates, indexed_shapes, merge_indexes, merge_matches, mesh_path,
-    move_duplicates, remove_from_index, rerank, unchanged_index, undo_moves,
+    Answer, BuildOptions, BuildReport, ClassVotes, ComponentResult, Dropped, DuplicateFile, DuplicateGroup,
+    DuplicateMember, DuplicateOptions, DuplicateReport, Elsewhere, EvaluateOptions, Explain, Failure,
+    FailureReason, Hit, Inputs, Measure, MergeReport, MoveReport, NearestShape, NotMoved, OrderedBy,
+    PairwiseDistance, Prediction, Query, Ranked, Reranked, SearchOptions, SearchRank, SearchSeconds,
+    ShapeLimits, ShapeSearch, Shard, Unknown, add_to_index, bounds, build_index, check_place, evaluate_index,
+    evaluate_matrix, export_index, find_duplicates, indexed_shapes, merge_answers, merge_indexes, mesh_path,
+    move_duplicates, n_candidates, n_results, remove_from_index, rerank, unchanged_index, undo_moves,
 };
 pub use {
     collection, descriptors, fields, geodesics, index, linalg, mesh, nmds, relations, retrieval, surface,

@@ -86,7 +86,7 @@ fn describing_searching_and_comparing_methods_are_cancellable() {
     build_index(folder.path(), &path, &build, &()).unwrap();
     let (search, query) = (ShapeSearch::open(&path).unwrap(), shapes::torus(23, 12, 2.0, 0.5));
     assert_cancellable("search", |budget| {
-        let report = search.search((&query).into(), &SearchOptions::default(), budget)?;
+        let report = search.search_mesh(&query, &SearchOptions::default(), budget)?;
         Ok(report
             .results
             .into_iter()
@@ -148,8 +148,7 @@ fn more_results_than_shapes_are_all_shapes() {
     build_index(folder.path(), &path, &BuildOptions::new(&describe), &()).unwrap();
     let search = ShapeSearch::open(&path).unwrap();
     for k in [100_000_000, usize::MAX] {
-        let found =
-            search.search((&mesh).into(), &SearchOptions { k, ..SearchOptions::default() }, &()).unwrap();
+        let found = search.search_mesh(&mesh, &SearchOptions { k, ..SearchOptions::default() }, &()).unwrap();
         assert_eq!(found.results.len(), 2);
     }
 }

@@ -2,8 +2,8 @@
 
 use canonform::mesh::{TriMesh, shapes};
 use canonform::{
-    BuildOptions, ComparedMesh, DescribeOptions, Explain, FormOptions, Query, SearchOptions, ShapeSearch,
-    Surface, build_index, compare_meshes,
+    BuildOptions, ComparedMesh, DescribeOptions, Explain, FormOptions, SearchOptions, ShapeSearch, Surface,
+    build_index, compare_meshes,
 };
 use nalgebra::Vector3;
 
@@ -47,7 +47,7 @@ fn relations_of_a_search_are_those_of_a_comparison() {
     let mut n_pairs = 0;
     for (query, a) in meshes.iter().zip(&sides) {
         let mesh = search.mesh(query.0).unwrap();
-        for found in search.search(Query::from(&mesh), &options, &()).unwrap().results {
+        for found in search.search_mesh(&mesh, &options, &()).unwrap().results {
             let b = meshes.iter().position(|(name, _)| *name == found.id).unwrap();
             let expected = compare_meshes([a.compared(), sides[b].compared()]).unwrap().relation;
             let pair = format!("{} and {}: {}, {expected}", query.0, found.id, found.relation);

@@ -19,10 +19,8 @@ fn an_index_is_built_and_searched_on_the_pool_of_the_caller() {
         io::write(&folder.path().join("ring1.off"), &ring).unwrap();
         let report = build_index(folder.path(), &index, &BuildOptions::new(&describe), &()).unwrap();
         assert_eq!(report.described, 2, "{report:?}");
-        let found = ShapeSearch::open(&index)
-            .unwrap()
-            .search((&ring).into(), &SearchOptions::default(), &())
-            .unwrap();
+        let found =
+            ShapeSearch::open(&index).unwrap().search_mesh(&ring, &SearchOptions::default(), &()).unwrap();
         found.results[0].id.clone()
     });
     assert_eq!(nearest, "ring1");

@@ -1,6 +1,6 @@
 //! The distance between two shapes. Everything that was calibrated for it is here.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::boundary::Boundary;
 use crate::calibration;
@@ -29,7 +29,7 @@ const OUTLYING: f64 = 4.0;
 pub struct ShapeMetric;
 
 /// How far apart two shapes are, regardless of size.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ShapeDistance {
     /// By signatures alone.
     #[serde(rename = "fused_distance")]

@@ -3,7 +3,7 @@
 //! ```text
 //! vectors build BASE.npy INDEX           builds an index and prints the seconds taken
 //! vectors add QUERIES.npy INDEX COUNT    adds the first rows one by one; prints the seconds and the bytes of each addition
-//! vectors serve INDEX QUERIES.npy        for each input line `scan|graph K FIRST COUNT`, prints
+//! vectors serve INDEX QUERIES.npy        for each input line `K FIRST COUNT`, prints
 //!                                        {"seconds": [..], "found": [[..], ..]}
 //! ```
 //!
@@ -14,7 +14,7 @@ use std::io::{BufRead, Write};
 use std::path::Path;
 use std::time::Instant;
 
-use canonform_index::{ContentHash, Index, IndexWriter, Job, Shape, ShapeEntry, ShapeVectors};
+use canonform_index::{Entry, Index, IndexWriter, Shape};
 use serde_json::json;
 
 /// Shapes in one transaction.
@@ -43,9 +43,7 @@ fn read(path: &Path) -> Result<(Vec<f32>, usize), Box<dyn Error>> {
 
 /// A shape of which only the vector matters.
 fn shape(id: String, row: &[f32]) -> Shape {
-    let content = ContentHash::of(&[&id]);
-    let entry = ShapeEntry { label: String::new(), path: String::new(), content, facts: Vec::new() };
-    Shape { id, entry, vectors: ShapeVectors { fused: row.to_vec(), ..Default::default() } }
+    Shape { entry: Entry { id, ..Entry::default() }, fused: row.to_vec(), ..Shape::default() }
 }
 
 fn add(queries: &Path, path: &Path, count: usize) -> Result<(), Box<dyn Error>> {
@@ -54,7 +52,7 @@ fn add(queries: &Path, path: &Path, count: usize) -> Result<(), Box<dyn Error>> 
     for (i, row) in rows.chunks_exact(dim).take(count).enumerate() {
         let before = std::fs::metadata(path)?.len();
         let start = Instant::now();
-        let mut writer = IndexWriter::open(path, Job::Add, None)?;
+        let mut writer = IndexWriter::open(path)?;
         writer.put(&[shape(format!("added{i:04}"), row)])?;
         writer.finish(&())?;
         seconds.push(start.elapsed().as_secs_f64());
@@ -67,11 +65,12 @@ fn add(queries: &Path, path: &Path, count: usize) -> Result<(), Box<dyn Error>> 
 fn build(base: &Path, path: &Path) -> Result<(), Box<dyn Error>> {
     let (rows, dim) = read(base)?;
     let start = Instant::now();
-    let mut writer = IndexWriter::open(path, Job::Build, Some("vectors"))?;
+    let mut writer = IndexWriter::build(path, "vectors")?;
     let shape = |(i, row): (usize, &[f32])| shape(format!("{i:08}"), row);
     let mut shapes = rows.chunks_exact(dim).enumerate().map(shape).peekable();
     while shapes.peek().is_some() {
         writer.put(&shapes.by_ref().take(BATCH).collect::<Vec<_>>())?;
+        writer.commit()?;
     }
     let stored = start.elapsed().as_secs_f64();
     drop(shapes);
@@ -94,17 +93,14 @@ fn serve(path: &Path, queries: &Path) -> Result<(), Box<dyn Error>> {
     for line in std::io::stdin().lock().lines() {
         let line = line?;
         let words: Vec<&str> = line.split_whitespace().collect();
-        let [from, k, first, count] = words[..] else { return Err(format!("`{line}`?").into()) };
+        let [k, first, count] = words[..] else { return Err(format!("`{line}`?").into()) };
         let (k, first, count): (usize, usize, usize) = (k.parse()?, first.parse()?, count.parse()?);
         let (mut seconds, mut found) = (Vec::new(), Vec::new());
         for query in queries[first * dim..(first + count) * dim].chunks_exact(dim) {
             let start = Instant::now();
-            let ids: Vec<String> = match from {
-                "graph" => index.nearest_on_graph(query, k)?.into_iter().map(|near| near.id).collect(),
-                _ => index.nearest(query, k)?.into_iter().map(|near| near.id).collect(),
-            };
+            let near = index.nearest(query, k)?;
             seconds.push(start.elapsed().as_secs_f64());
-            found.push(ids.iter().map(|id| id.parse()).collect::<Result<Vec<u32>, _>>()?);
+            found.push(near.iter().map(|(id, _)| id.parse()).collect::<Result<Vec<u32>, _>>()?);
         }
         println!("{}", json!({ "seconds": seconds, "found": found }));
         std::io::stdout().flush()?;

@@ -122,9 +122,8 @@ impl Database {
         if database.connection.is_readonly(rusqlite::MAIN_DB).unwrap_or(true) {
             return Err(cannot_write(ErrorKind::PermissionDenied.into()));
         }
-        database.execute(
-            "PRAGMA journal_mode = WAL; PRAGMA wal_autocheckpoint = 1; PRAGMA synchronous = FULL",
-        )?;
+        database
+            .execute("PRAGMA journal_mode = WAL; PRAGMA wal_autocheckpoint = 1; PRAGMA synchronous = FULL")?;
         database.begin_writing()?;
         Ok(database)
     }
@@ -242,7 +241,11 @@ impl IndexError {
     fn of_database(path: &Path, fault: rusqlite::Error) -> Self {
         let code = fault.sqlite_error().map_or(0, |error| error.extended_code);
         let text = fault.to_string();
-        let io = |action, kind| Self::Io { action, path: path.to_owned(), source: io::Error::new(kind, text.clone()) };
+        let io = |action, kind| Self::Io {
+            action,
+            path: path.to_owned(),
+            source: io::Error::new(kind, text.clone()),
+        };
         match code & 0xFF {
             ffi::SQLITE_BUSY | ffi::SQLITE_LOCKED => Self::Busy(path.to_owned()),
             ffi::SQLITE_NOTADB => no_database(path),
@@ -281,7 +284,9 @@ fn uri(path: &Path, query: &str) -> String {
     let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     for byte in absolute.as_os_str().as_encoded_bytes() {
         match byte {
-            b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'/' | b'-' | b'_' | b'.' | b':' => uri.push(char::from(*byte)),
+            b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'/' | b'-' | b'_' | b'.' | b':' => {
+                uri.push(char::from(*byte))
+            }
             b'\\' if cfg!(windows) => uri.push('/'),
             byte => uri += &format!("%{byte:02X}"),
         }
@@ -290,7 +295,8 @@ fn uri(path: &Path, query: &str) -> String {
 }
 
 /// The write-ahead log of an index, which is there while a program has it open.
-pub(crate) fn log_path(path: &Path) -> PathBuf {
+#[must_use]
+pub fn log_path(path: &Path) -> PathBuf {
     with_suffix(path, "-wal")
 }
 
@@ -344,7 +350,7 @@ pub(crate) struct EntryRow {
 
 impl EntryRow {
     pub(crate) const COLUMNS: &str = "id, label, path, content, vertices, faces, area, diameter, dropped_area_share, \
-         components, shortcuts, vectors, checksum";
+         components, shortcuts, longest_boundary, vectors, checksum";
 
     /// Reads a row; `None` if it is not what was written.
     pub(crate) fn read(row: &rusqlite::Row<'_>) -> rusqlite::Result<Option<Self>> {
@@ -357,10 +363,11 @@ impl EntryRow {
             dropped_area_share: row.get(8)?,
             components: row.get(9)?,
             shortcuts: row.get(10)?,
+            longest_boundary: row.get(11)?,
         };
         let entry = Entry { id: row.get(0)?, label: row.get(1)?, path: row.get(2)?, content, facts };
-        let read = Self { entry, vectors: row.get(11)? };
-        Ok((row.get::<_, u32>(12)? == read.checksum()).then_some(read))
+        let read = Self { entry, vectors: row.get(12)? };
+        Ok((row.get::<_, u32>(13)? == read.checksum()).then_some(read))
     }
 
     pub(crate) fn checksum(&self) -> u32 {

@@ -55,7 +55,7 @@ mod writer;
 mod tests;
 
 pub use base::ContentHash;
-pub use database::damaged_path;
+pub use database::{damaged_path, log_path};
 pub use error::{FORMAT_VERSION, IndexError};
 pub use export::{ExportError, ExportFormat, csv_field, text_cell};
 pub use reader::Index;

@@ -41,7 +41,9 @@ impl Index {
             change: database.count(Meta::Change)?,
             is_finished: database.meta(Meta::Unfinished)?.is_none(),
             threshold: match database.meta(Meta::Threshold)? {
-                Some(text) => serde_json::from_str(&text).map_err(|fault| database.damaged(fault.to_string()))?,
+                Some(text) => {
+                    serde_json::from_str(&text).map_err(|fault| database.damaged(fault.to_string()))?
+                }
                 None => None,
             },
             path: path.to_owned(),
@@ -134,10 +136,15 @@ impl Index {
     pub fn classes(&self) -> Result<BTreeMap<String, u64>, IndexError> {
         let mut classes = BTreeMap::new();
         let sql = "SELECT label, count(*) FROM shapes WHERE label <> '' GROUP BY label";
-        self.database().each(sql, [], |row| Ok((row.get(0)?, row.get(1)?)), |(label, n)| {
-            classes.insert(label, n);
-            Ok::<_, IndexError>(())
-        })?;
+        self.database().each(
+            sql,
+            [],
+            |row| Ok((row.get(0)?, row.get(1)?)),
+            |(label, n)| {
+                classes.insert(label, n);
+                Ok::<_, IndexError>(())
+            },
+        )?;
         Ok(classes)
     }
 
@@ -248,17 +255,22 @@ pub(crate) fn vectors(database: &Database) -> Result<VectorTable, IndexError> {
     let read = |row: &rusqlite::Row<'_>| -> rusqlite::Result<(String, Floats, u32)> {
         Ok((row.get(0)?, row.get(1)?, row.get(2)?))
     };
-    database.each("SELECT id, vector, checksum FROM fused ORDER BY id", [], read, |(id, Floats(fused), sum)| {
-        if sum != checksum(&[&id, "fused"], &to_bytes(&fused)) {
-            return Err(database.damaged(format!("the fused vector of `{id}` has changed")));
-        }
-        if fused.is_empty() || !table.is_empty() && fused.len() != table.dim() {
-            let what = format!("the vector of `{id}` has {} numbers, not {}", fused.len(), table.dim());
-            return Err(database.damaged(what));
-        }
-        table.push(&id, &fused);
-        Ok(())
-    })?;
+    database.each(
+        "SELECT id, vector, checksum FROM fused ORDER BY id",
+        [],
+        read,
+        |(id, Floats(fused), sum)| {
+            if sum != checksum(&[&id, "fused"], &to_bytes(&fused)) {
+                return Err(database.damaged(format!("the fused vector of `{id}` has changed")));
+            }
+            if fused.is_empty() || !table.is_empty() && fused.len() != table.dim() {
+                let what = format!("the vector of `{id}` has {} numbers, not {}", fused.len(), table.dim());
+                return Err(database.damaged(what));
+            }
+            table.push(&id, &fused);
+            Ok(())
+        },
+    )?;
     Ok(table)
 }
 

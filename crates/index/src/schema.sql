@@ -14,6 +14,7 @@ CREATE TABLE shapes (
     dropped_area_share REAL NOT NULL,
     components INTEGER NOT NULL,
     shortcuts  INTEGER NOT NULL,
+    longest_boundary REAL NOT NULL,
     vectors    INTEGER NOT NULL, -- its rows in vectors and components
     checksum   INTEGER NOT NULL
 ) STRICT, WITHOUT ROWID;

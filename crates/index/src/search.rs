@@ -19,7 +19,11 @@ impl Index {
             return Err(IndexError::OtherLength { id: name(), found: query.len(), expected: all.dim() });
         }
         match query.iter().all(|x| x.is_finite()) {
-            true => Ok(all.nearest(query, k).into_iter().map(|(i, distance)| (all.id(i).to_owned(), distance)).collect()),
+            true => Ok(all
+                .nearest(query, k)
+                .into_iter()
+                .map(|(i, distance)| (all.id(i).to_owned(), distance))
+                .collect()),
             false => Err(IndexError::BadVector(name())),
         }
     }

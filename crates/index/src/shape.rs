@@ -56,11 +56,13 @@ pub struct Facts {
     pub components: u64,
     /// Shortcuts that were cut.
     pub shortcuts: u64,
+    /// Length of the longest boundary before holes were closed, in mesh units; 0 for a closed surface.
+    pub longest_boundary: f64,
 }
 
 impl Facts {
     /// The facts by name, as exports call them.
-    pub(crate) fn named(&self) -> [(&'static str, f64); 7] {
+    pub(crate) fn named(&self) -> [(&'static str, f64); 8] {
         [
             ("vertices", self.vertices as f64),
             ("faces", self.faces as f64),
@@ -69,6 +71,7 @@ impl Facts {
             ("dropped_area_share", self.dropped_area_share),
             ("components", self.components as f64),
             ("shortcuts", self.shortcuts as f64),
+            ("longest_boundary", self.longest_boundary),
         ]
     }
 }

@@ -22,7 +22,6 @@ impl Texts {
         let start = i.checked_sub(1).map_or(0, |before| self.ends[before]);
         &self.text[start..self.ends[i]]
     }
-
 }
 
 impl<T: AsRef<str>> FromIterator<T> for Texts {

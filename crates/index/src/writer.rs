@@ -88,7 +88,11 @@ impl IndexWriter {
         let path = database.path.clone();
         match (options, &known) {
             (Some(requested), Some(found)) if requested != found => {
-                return Err(IndexError::OtherOptions { path, found: found.clone(), requested: requested.to_owned() });
+                return Err(IndexError::OtherOptions {
+                    path,
+                    found: found.clone(),
+                    requested: requested.to_owned(),
+                });
             }
             (Some(_), None) => database.set_meta(Meta::Options, options)?,
             (_, Some(_)) => {}
@@ -96,10 +100,15 @@ impl IndexWriter {
         }
         let n_shapes = database.count(Meta::Shapes)?;
         let mut length = None;
-        database.each("SELECT length(vector) FROM fused LIMIT 1", [], |row| row.get::<_, usize>(0), |bytes| {
-            length = Some(bytes / 4);
-            Ok::<_, IndexError>(())
-        })?;
+        database.each(
+            "SELECT length(vector) FROM fused LIMIT 1",
+            [],
+            |row| row.get::<_, usize>(0),
+            |bytes| {
+                length = Some(bytes / 4);
+                Ok::<_, IndexError>(())
+            },
+        )?;
         if (n_shapes == 0) != length.is_none() {
             return Err(database.damaged("the number of its shapes is wrong"));
         }
@@ -124,6 +133,12 @@ impl IndexWriter {
     #[must_use]
     pub fn is_resumed(&self) -> bool {
         self.resumed
+    }
+
+    /// Whether there was no index.
+    #[must_use]
+    pub fn is_new(&self) -> bool {
+        self.is_new
     }
 
     /// Number of shapes so far.
@@ -163,7 +178,8 @@ impl IndexWriter {
             let sum = checksum(&[id, "fused"], &fused);
             self.database.change("INSERT INTO fused VALUES (?, ?, ?)", (id, fused, sum))?;
             let mut vectors = 0;
-            let signatures = shape.signatures.iter().map(|(name, values)| (format!("{SIGNATURE}{name}"), &values[..]));
+            let signatures =
+                shape.signatures.iter().map(|(name, values)| (format!("{SIGNATURE}{name}"), &values[..]));
             let others = [(FORM, shape.form.as_flattened()), (DISC_AREAS, &shape.disc_areas)];
             let others = others.into_iter().filter(|(_, vector)| !vector.is_empty());
             for (name, vector) in others.map(|(name, vector)| (name.to_owned(), vector)).chain(signatures) {
@@ -175,7 +191,8 @@ impl IndexWriter {
             for (place, vector) in shape.components.iter().enumerate() {
                 let vector = to_bytes(vector);
                 let sum = checksum(&[id, &place.to_string()], &vector);
-                self.database.change("INSERT INTO components VALUES (?, ?, ?, ?)", (id, place, vector, sum))?;
+                self.database
+                    .change("INSERT INTO components VALUES (?, ?, ?, ?)", (id, place, vector, sum))?;
                 vectors += 1;
             }
             self.put_entry(EntryRow { entry: shape.entry.clone(), vectors })?;
@@ -198,7 +215,7 @@ impl IndexWriter {
     fn put_entry(&self, row: EntryRow) -> Result<(), IndexError> {
         let sum = row.checksum();
         let EntryRow { entry: Entry { id, label, path, content, facts }, vectors } = row;
-        let sql = "INSERT OR REPLACE INTO shapes VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
+        let sql = "INSERT OR REPLACE INTO shapes VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
         let content = content.to_string();
         let values = rusqlite::params![
             id,
@@ -212,6 +229,7 @@ impl IndexWriter {
             facts.dropped_area_share,
             facts.components,
             facts.shortcuts,
+            facts.longest_boundary,
             vectors,
             sum
         ];
@@ -231,7 +249,8 @@ impl IndexWriter {
 
     /// Removes all shapes.
     pub fn clear(&mut self) -> Result<(), IndexError> {
-        self.database.execute("DELETE FROM shapes; DELETE FROM fused; DELETE FROM vectors; DELETE FROM components")?;
+        self.database
+            .execute("DELETE FROM shapes; DELETE FROM fused; DELETE FROM vectors; DELETE FROM components")?;
         (self.n_shapes, self.length) = (0, None);
         Ok(())
     }

@@ -3,16 +3,16 @@
 use std::collections::{BTreeMap, HashSet};
 use std::path::PathBuf;
 use std::str::FromStr;
+use std::sync::Arc;
 
 use canonform::descriptors::DescriptorError;
-use canonform::index::{ExportFormat, FORMAT_VERSION, IndexError, ShapeEntry};
+use canonform::index::{Entry, ExportFormat, FORMAT_VERSION, IndexError};
 use canonform::mesh::RepairOptions;
 use canonform::{
-    BuildOptions, DescribeOptions, DescribedQuery, DuplicateOptions, Elsewhere, Error, EvaluateOptions,
-    Explain, Inputs, LabelSource, MeshGeometry, PackedQuery, PairwiseDistance, Query, SearchOptions,
-    SearchRank, ShapeFile, ShapeSearch, Shard, ShardMatches, ShardedSearch, add_to_index, build_index,
-    content_hash, evaluate_index, export_index, find_duplicates, indexed_shapes, mesh_path,
-    remove_from_index, unchanged_index,
+    Answer, BuildOptions, DescribeOptions, DuplicateOptions, Elsewhere, Error, EvaluateOptions, Explain,
+    Inputs, LabelSource, MeshGeometry, Observer, PairwiseDistance, Query, SearchOptions, SearchRank,
+    ShapeFile, ShapeSearch, Shard, add_to_index, build_index, content_hash, evaluate_index, export_index,
+    find_duplicates, indexed_shapes, mesh_path, remove_from_index, unchanged_index,
 };
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -53,7 +53,7 @@ enum Wanted<'py> {
 }
 
 /// Name, class, path, and numbers of vertices and faces of a shape.
-type Entry = (String, String, PathBuf, Option<f64>, Option<f64>);
+type ListedShape = (String, String, PathBuf, u64, u64);
 
 /// An order of results by its name.
 fn rank_by<T: FromStr<Err = String>>(rank: &str) -> PyResult<T> {
@@ -209,35 +209,22 @@ impl Index {
             Wanted::Surface(surface) => (Some(surface.get()), PathBuf::new()),
             Wanted::Text(path) => (None, path.clone()),
         };
-        let (search, describe) = (&self.search, self.search.describe_options());
-        let mut report = run_alone(py, None, |observer| {
-            if let Some(surface) = surface {
-                // A surface that was repaired in another way is repaired again.
-                let content = surface.content;
-                if surface.inner.repair != describe.form.repair {
-                    return search.search(
-                        Query::Mesh { mesh: &surface.mesh, name, content },
-                        &options,
-                        observer,
-                    );
-                }
-                let geometry = explain.then(|| MeshGeometry::new(&surface.mesh, content)).flatten();
-                let (description, surface) =
-                    (&*surface.described(describe, observer)?, Some(&*surface.inner));
-                let query =
-                    DescribedQuery { description, surface, geometry: geometry.as_ref(), name, content };
-                return search.search(Query::Described(query), &options, observer);
-            }
+        let search = &self.search;
+        let mut answer = run_alone(py, None, |observer| {
             // As on the command line, a file goes before a shape of the same name.
-            if let Some(id) = search.id_of(&path) {
-                return search.search(Query::Id(id), &options, observer);
-            }
-            let mesh = canonform::read_mesh(&path)?;
-            let content = explain.then(|| content_hash(&path)).transpose()?;
-            search.search(Query::Mesh { mesh: &mesh, name, content }, &options, observer)
+            let query = match (surface, search.id_of(&path)) {
+                (Some(surface), _) => query_of(surface, search.describe_options(), name, &options, observer)?,
+                (None, Some(id)) => search.query_of(id, &options, observer)?,
+                (None, None) => {
+                    let mesh = canonform::read_mesh(&path)?;
+                    let content = explain.then(|| content_hash(&path)).transpose()?;
+                    search.query(&mesh, (name, content), &options, observer)?
+                }
+            };
+            search.search(&query, &options, observer)
         })?;
-        report.place(|path| self.placed(path));
-        Ok(json(&report))
+        answer.place(|path| self.placed(path));
+        Ok(json(&answer))
     }
 
     /// Name and distance of the shapes whose signatures are nearest to a vector.
@@ -249,51 +236,31 @@ impl Index {
     ) -> PyResult<Vec<(String, f64)>> {
         let vector = vector.as_slice()?;
         let found = run_alone(py, None, |_| Ok(self.search.index().nearest(vector, k)?))?;
-        Ok(found.into_iter().map(|shape| (shape.id, shape.distance)).collect())
+        Ok(found)
     }
 
     /// A shape as a query for other indexes, as JSON.
-    fn pack(&self, py: Python<'_>, id: &str, rank: &str, explain: bool) -> PyResult<String> {
+    fn query_of(&self, py: Python<'_>, id: &str, rank: &str, explain: bool) -> PyResult<String> {
         let options = search_options(0, rank, explain)?;
-        Ok(json(&run_alone(py, None, |observer| self.search.pack(id, &options, observer))?))
+        Ok(json(&run_alone(py, None, |observer| self.search.query_of(id, &options, observer))?))
     }
 
-    /// The first shapes for a packed query, with what they are ordered by.
-    fn shortlist(&self, py: Python<'_>, query: &str, rank: &str, n: usize) -> PyResult<Vec<(f64, String)>> {
-        let (query, rank) = (unpacked(query)?, rank_by(rank)?);
-        run_alone(py, None, |observer| self.search.shortlist(&query, rank, n, observer))
-    }
-
-    /// The best of some shapes for a packed query, as JSON.
-    fn match_shapes(
+    /// The answer to a query of another process, among some shapes or all; both as JSON.
+    fn search_among(
         &self,
         py: Python<'_>,
         query: &str,
-        ids: Vec<String>,
+        ids: Option<Vec<String>>,
+        k: usize,
         rank: &str,
-        wanted: usize,
+        explain: bool,
     ) -> PyResult<String> {
-        let (query, rank) = (unpacked(query)?, rank_by(rank)?);
-        let mut found =
-            run_alone(py, None, |observer| self.search.match_shapes(&query, &ids, rank, wanted, observer))?;
-        found.nearest.iter_mut().for_each(|near| near.path = self.placed(&near.path));
-        Ok(json(&found))
-    }
-
-    /// What the meshes of this index tell about those of its matches that became results, as JSON.
-    fn explain(
-        &self,
-        py: Python<'_>,
-        query: &str,
-        found: &str,
-        results: HashSet<String>,
-    ) -> PyResult<String> {
-        let (query, mut found): (_, ShardMatches) = (unpacked(query)?, unpacked(found)?);
-        found.nearest.retain(|near| results.contains(&near.id));
-        let mut explained =
-            run_alone(py, None, |observer| self.search.explain_matches(&query, found.nearest, observer))?;
-        explained.wholes.iter_mut().for_each(|whole| whole.path = self.placed(&whole.path));
-        Ok(json(&explained))
+        let (query, options): (Query, _) = (unpacked(query)?, search_options(k, rank, explain)?);
+        let mut answer = run_alone(py, None, |observer| {
+            self.search.search_among(&query, ids.as_deref(), &options, observer)
+        })?;
+        answer.place(|path| self.placed(path));
+        Ok(json(&answer))
     }
 
     /// How its shapes were described, as the index states it.
@@ -327,11 +294,10 @@ impl Index {
     }
 
     /// Name, class, path and numbers of vertices and faces of all shapes.
-    fn shapes(&self, py: Python<'_>) -> PyResult<Vec<Entry>> {
+    fn shapes(&self, py: Python<'_>) -> PyResult<Vec<ListedShape>> {
         run_alone(py, None, |_| {
-            let listed = |(id, entry): (String, ShapeEntry)| {
-                let (vertices, faces) = (entry.fact("vertices"), entry.fact("faces"));
-                (id, entry.label, mesh_path(&self.path, &entry.path), vertices, faces)
+            let listed = |Entry { id, label, path, facts, .. }: Entry| {
+                (id, label, mesh_path(&self.path, &path), facts.vertices, facts.faces)
             };
             Ok(self.search.index().entries()?.into_iter().map(listed).collect())
         })
@@ -350,8 +316,8 @@ impl Index {
 
     /// The fused vector of one shape.
     fn vector<'py>(&self, py: Python<'py>, id: &str) -> PyResult<Bound<'py, PyArray1<f32>>> {
-        let vectors = self.search.index().vectors(id).map_err(|fault| to_python(&fault.into()))?;
-        Ok(vectors.fused.into_pyarray(py))
+        let shape = self.search.index().shape(id).map_err(|fault| to_python(&fault.into()))?;
+        Ok(shape.fused.into_pyarray(py))
     }
 
     /// Distances between some shapes and others, or between all pairs of some, one row for each of the first: combined, by
@@ -432,9 +398,36 @@ fn unpacked<T: DeserializeOwned>(text: &str) -> PyResult<T> {
     serde_json::from_str(text).map_err(|fault| Exception::Option.with(&format!("{text:.40}: {fault}")))
 }
 
+/// The query of a surface for indexes of these options.
+fn query_of(
+    surface: &Surface,
+    describe: &DescribeOptions,
+    name: &str,
+    options: &SearchOptions,
+    observer: &dyn Observer,
+) -> Result<Query, Error> {
+    // A surface that was repaired in another way is repaired again.
+    let again = match surface.inner.repair == describe.form.repair {
+        true => None,
+        false => Some(canonform::Surface::new(&surface.mesh, &describe.form.repair, observer)?),
+    };
+    let query = match &again {
+        Some(again) => Query::from(&canonform::describe(again, describe, observer)?),
+        None => Query::from(&*surface.described(describe, observer)?),
+    };
+    let mut query = query.named(name, surface.content);
+    if options.rank_by == SearchRank::Part {
+        query = query.as_part(again.as_ref().unwrap_or(&surface.inner), describe, observer)?;
+    }
+    if options.explain == Explain::Kind {
+        query.geometry = MeshGeometry::new(&surface.mesh, surface.content).map(Arc::new);
+    }
+    Ok(query)
+}
+
 /// A surface as a query for indexes of these options, as JSON.
 #[pyfunction]
-pub(crate) fn pack_surface(
+pub(crate) fn query_of_surface(
     py: Python<'_>,
     surface: Bound<'_, Surface>,
     options: &str,
@@ -444,48 +437,36 @@ pub(crate) fn pack_surface(
 ) -> PyResult<String> {
     let unknown = || Exception::Option.with(&format!("options {options:?} are not of this version"));
     let describe = DescribeOptions::from_text(options).ok_or_else(unknown)?;
-    let (surface, rank): (_, SearchRank) = (surface.get(), rank_by(rank)?);
-    let query = run_alone(py, None, |observer| {
-        // A surface that was repaired in another way is repaired again.
-        let again = match surface.inner.repair == describe.form.repair {
-            true => None,
-            false => Some(canonform::Surface::new(&surface.mesh, &describe.form.repair, observer)?),
-        };
-        let mut query = match &again {
-            Some(again) => PackedQuery::of(&canonform::describe(again, &describe, observer)?, name),
-            None => PackedQuery::of(&*surface.described(&describe, observer)?, name),
-        };
-        query.content = surface.content;
-        if rank == SearchRank::Part {
-            let repaired = again.as_ref().unwrap_or(&surface.inner);
-            query.part = Some(canonform::describe_part(repaired, &describe, observer)?);
-        }
-        Ok(if explain { query.with_mesh(&surface.mesh) } else { query })
-    })?;
+    let (surface, options) = (surface.get(), search_options(0, rank, explain)?);
+    let query = run_alone(py, None, |observer| query_of(surface, &describe, name, &options, observer))?;
     Ok(json(&query))
 }
 
-/// The components of a packed query: what is said of each, and the query for it; both as JSON.
+/// The components of a query: what is said of each, and the query for it; all as JSON.
 #[pyfunction]
-pub(crate) fn pack_components(py: Python<'_>, query: &str) -> PyResult<Vec<(String, String)>> {
-    let query: PackedQuery = unpacked(query)?;
+pub(crate) fn query_components(py: Python<'_>, query: &str) -> PyResult<Vec<(String, String)>> {
+    let query: Query = unpacked(query)?;
     let parts = run_alone(py, None, |observer| query.components(observer))?;
     Ok(parts.iter().map(|(found, query)| (json(found), json(query))).collect())
 }
 
-/// How many candidates a search for `k` results has, and how many results each shard gives.
+/// How many candidates a search for `k` results has where only vectors are searched, and how many results each shard gives.
 #[pyfunction]
-pub(crate) fn shortlist(k: usize, n_shapes: usize) -> [usize; 2] {
-    PackedQuery::shortlist(k, n_shapes)
+pub(crate) fn shortlist(k: usize) -> [usize; 2] {
+    [canonform::n_candidates(k), canonform::n_results(k)]
 }
 
-/// The answer to a search in shards, from what they found; all as JSON.
+/// The answer to a query in shards, from what they answer and the threshold of unknown classes; all as JSON.
 #[pyfunction]
-pub(crate) fn merge_matches(query: &str, shards: Vec<String>, search: &str, k: usize) -> PyResult<String> {
-    let query: PackedQuery = unpacked(query)?;
-    let shards = shards.iter().map(|found| unpacked(found)).collect::<PyResult<Vec<ShardMatches>>>()?;
-    let search: ShardedSearch = unpacked(search)?;
-    Ok(json(&canonform::merge_matches(&query, shards, search, k)))
+pub(crate) fn merge_answers(
+    query: &str,
+    answers: Vec<String>,
+    threshold: &str,
+    k: usize,
+) -> PyResult<String> {
+    let (query, threshold): (Query, _) = (unpacked(query)?, unpacked(threshold)?);
+    let answers = answers.iter().map(|answer| unpacked(answer)).collect::<PyResult<Vec<Answer>>>()?;
+    Ok(json(&canonform::merge_answers(&query, answers, threshold, k)))
 }
 
 /// The fused distance beyond which a shape is of no class of these indexes, as JSON.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use axum::body::Bytes;
 use axum::http::StatusCode;
 use canonform::{
-    Budget, ContentHash, DescribedQuery, Error, MeasuredSurface, MeshGeometry, SearchOptions, SearchReport,
+    Answer, Budget, ContentHash, Error, MeasuredSurface, MeshGeometry, SearchOptions, SearchRank,
     ShapeDescription, Surface,
 };
 
@@ -34,24 +34,20 @@ pub(crate) struct App {
 
 /// An upload that was searched for.
 pub(crate) struct Query {
-    pub(crate) name: String,
+    pub(crate) described: canonform::Query,
     pub(crate) measured: Arc<Measured>,
-    pub(crate) description: ShapeDescription,
-    /// Hash of its files.
-    pub(crate) content: ContentHash,
-    /// The options of the index that it was described with.
-    options: String,
 }
 
 impl Query {
     pub(crate) fn new(
-        name: String,
+        name: &str,
         content: ContentHash,
         measured: Measured,
-        description: ShapeDescription,
+        description: &ShapeDescription,
     ) -> Self {
-        let measured = Arc::new(measured);
-        Self { name, content, options: description.options.text(), measured, description }
+        let mut described = canonform::Query::from(description).named(name, Some(content));
+        described.geometry.clone_from(&measured.geometry);
+        Self { described, measured: Arc::new(measured) }
     }
 
     pub(crate) fn n_vertices(&self) -> u64 {
@@ -64,12 +60,16 @@ impl Query {
         collection: &Collection,
         options: &SearchOptions,
         budget: &Budget,
-    ) -> Result<SearchReport, Error> {
-        let geometry = self.measured.geometry.as_ref();
-        let (name, content) = (&*self.name, Some(self.content));
-        let (description, surface) = (&self.description, Some(&self.measured.surface));
-        let query = DescribedQuery { description, surface, geometry, name, content };
-        collection.search.search(canonform::Query::Described(query), options, budget)
+    ) -> Result<Answer, Error> {
+        let search = &collection.search;
+        match options.rank_by {
+            SearchRank::Part => {
+                let query = self.described.clone();
+                let query = query.as_part(&self.measured.surface, search.describe_options(), budget)?;
+                search.search(&query, options, budget)
+            }
+            _ => search.search(&self.described, options, budget),
+        }
     }
 }
 
@@ -106,7 +106,7 @@ impl App {
         budget.check()?;
         let surface = Surface::new(&mesh, &options.repair, budget)?;
         let embedded = MeasuredSurface::new(&surface, options, budget)?;
-        let geometry = MeshGeometry::new(&mesh, Some(content));
+        let geometry = MeshGeometry::new(&mesh, Some(content)).map(Arc::new);
         let measured = Arc::new(Measured::new(surface, geometry, &embedded)?);
         self.measured.put(key, measured.clone(), measured.bytes());
         Ok(measured)
@@ -136,7 +136,7 @@ impl App {
     /// A kept query, if it was described as the shapes of the index are.
     pub(crate) fn kept(&self, collection: &Collection, address: &str) -> Option<Arc<Query>> {
         let query = self.queries.get(address)?;
-        (query.options == collection.search.index().options()).then_some(query)
+        (query.described.options == collection.search.index().options()).then_some(query)
     }
 
     /// As [`kept`](Self::kept), or an error for the client.

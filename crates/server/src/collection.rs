@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, PoisonError, RwLock};
 use std::time::SystemTime;
 
+use canonform::index::{Entry, Facts, log_path};
 use canonform::{ContentHash, Error, SearchOptions, ShapeSearch};
 use serde::Serialize;
 
@@ -28,12 +29,12 @@ pub(crate) struct Collection {
 pub(crate) struct ShapeSummary {
     pub(crate) id: String,
     pub(crate) label: String,
-    pub(crate) vertices: Option<u64>,
-    faces: Option<u64>,
+    pub(crate) vertices: u64,
+    faces: u64,
     /// In squared mesh units.
-    area: Option<f64>,
+    area: f64,
     /// The largest surface distance from a sample, in mesh units.
-    diameter: Option<f64>,
+    diameter: f64,
     #[serde(skip)]
     pub(crate) content: ContentHash,
 }
@@ -41,25 +42,18 @@ pub(crate) struct ShapeSummary {
 impl Collection {
     fn open(path: &Path) -> Result<Self, Error> {
         let search = ShapeSearch::open(path)?;
-        let shapes = search.index().entries()?.into_iter().map(|(id, entry)| {
-            let count = |name| entry.fact(name).map(|count| count as u64);
-            ShapeSummary {
-                vertices: count("vertices"),
-                faces: count("faces"),
-                area: entry.fact("area"),
-                diameter: entry.fact("diameter"),
-                id,
-                content: entry.content,
-                label: entry.label,
-            }
-        });
+        let shapes =
+            search.index().entries()?.into_iter().map(|Entry { id, label, content, facts, .. }| {
+                let Facts { vertices, faces, area, diameter, .. } = facts;
+                ShapeSummary { id, label, vertices, faces, area, diameter, content }
+            });
         let shapes: Vec<ShapeSummary> = shapes.collect();
         let mut classes: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
         for (place, shape) in shapes.iter().enumerate() {
             classes.entry(&shape.label).or_default().push(place);
         }
         let classes = classes.into_values().collect();
-        let version = format!("{:016x}", search.index().fingerprint());
+        let version = format!("{:016x}", search.index().change());
         let absolute = std::path::absolute(path).ok();
         let folders = [absolute, path.canonicalize().ok()];
         let folders = folders.into_iter().flatten().filter_map(|file| Some(file.parent()?.to_owned()));
@@ -74,12 +68,12 @@ impl Collection {
 
     /// Vertices of a shape, or zero.
     pub(crate) fn n_vertices(&self, id: &str) -> u64 {
-        self.shape(id).and_then(|shape| shape.vertices).unwrap_or(0)
+        self.shape(id).map_or(0, |shape| shape.vertices)
     }
 
     /// What a search with a described query of so many vertices costs.
     pub(crate) fn search_cost(&self, options: &SearchOptions, vertices: u64) -> f64 {
-        let all: u64 = self.shapes.iter().filter_map(|shape| shape.vertices).sum();
+        let all: u64 = self.shapes.iter().map(|shape| shape.vertices).sum();
         let n = self.shapes.len();
         cost::of_search(options, n, all / n.max(1) as u64, vertices)
     }
@@ -137,20 +131,24 @@ struct Now {
     state: FileState,
 }
 
-/// Differs when a file was replaced or written to: its device and number where the system has them, its length, and the
-/// time of its last change.
-type Identity = (Option<(u64, u64)>, u64, Option<SystemTime>);
+/// Differs when an index was replaced or written to: for its file and its log, the device and number where the system has
+/// them, the length, and the time of the last change.
+type Identity = Vec<Option<(Option<(u64, u64)>, u64, Option<SystemTime>)>>;
 
 fn identity(path: &Path) -> Option<Identity> {
-    let about = std::fs::metadata(path).ok()?;
-    #[cfg(unix)]
-    let file = {
-        use std::os::unix::fs::MetadataExt;
-        Some((about.dev(), about.ino()))
+    let of_file = |path: &Path| {
+        let about = std::fs::metadata(path).ok()?;
+        #[cfg(unix)]
+        let file = {
+            use std::os::unix::fs::MetadataExt;
+            Some((about.dev(), about.ino()))
+        };
+        #[cfg(not(unix))]
+        let file = None;
+        Some((file, about.len(), about.modified().ok()))
     };
-    #[cfg(not(unix))]
-    let file = None;
-    Some((file, about.len(), about.modified().ok()))
+    let file = of_file(path)?;
+    Some(vec![Some(file), of_file(&log_path(path)).filter(|(_, length, _)| *length > 0)])
 }
 
 impl Served {

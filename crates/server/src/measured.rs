@@ -1,5 +1,7 @@
 //! A mesh with its form, as geometry for the browser.
 
+use std::sync::Arc;
+
 use canonform::descriptors::CanonicalForm;
 use canonform::mesh::TriMesh;
 use canonform::surface::VertexId;
@@ -23,7 +25,7 @@ const DOT: f64 = 0.025;
 pub(crate) struct Measured {
     pub(crate) surface: Surface,
     /// The mesh in space, with all its components; none for one without area.
-    pub(crate) geometry: Option<MeshGeometry>,
+    pub(crate) geometry: Option<Arc<MeshGeometry>>,
     pub(crate) form: CanonicalForm,
     /// Surface distance of every vertex from the first sample, in mesh units.
     distances: Vec<f64>,
@@ -33,7 +35,7 @@ impl Measured {
     /// The surface, with the form of its vertices from that of the [prepared](Surface::for_description) surface.
     pub(crate) fn new(
         surface: Surface,
-        geometry: Option<MeshGeometry>,
+        geometry: Option<Arc<MeshGeometry>>,
         embedded: &MeasuredSurface,
     ) -> Result<Self, Error> {
         let form = embedded.form_of(&surface)?;
@@ -44,7 +46,7 @@ impl Measured {
     /// Approximate size in memory.
     pub(crate) fn bytes(&self) -> usize {
         let mesh = self.surface.mesh();
-        let geometry = self.geometry.as_ref().map_or(0, MeshGeometry::n_bytes);
+        let geometry = self.geometry.as_ref().map_or(0, |geometry| geometry.n_bytes());
         VERTEX_BYTES * mesh.n_vertices() + FACE_BYTES * mesh.n_faces() + geometry
     }
 

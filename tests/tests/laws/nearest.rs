@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use canonform::{
-    BuildOptions, DescribeOptions, PackedQuery, Query, SearchOptions, SearchRank, SearchReport, SearchResult,
-    ShapeSearch, ShardedSearch, build_index, merge_matches,
+    Answer, BuildOptions, DescribeOptions, Hit, SearchOptions, SearchRank, ShapeSearch, build_index,
+    merge_answers, n_results,
 };
 use datasets::{CreatureOptions, Damage, PartMesh, creatures, mechanical_parts};
 use descriptors::{ShapeMetric, ShapePair};
@@ -19,8 +19,9 @@ fn indexed(folder: &Path, shapes: &[(String, TriMesh)]) -> ShapeSearch {
     ShapeSearch::open(&path).unwrap()
 }
 
-fn found(search: &ShapeSearch, id: &str, k: usize, rank_by: SearchRank) -> SearchReport {
-    search.search(Query::Id(id), &SearchOptions { k, rank_by, ..SearchOptions::default() }, &()).unwrap()
+fn found(search: &ShapeSearch, id: &str, k: usize, rank_by: SearchRank) -> Answer {
+    let options = SearchOptions { k, rank_by, ..SearchOptions::default() };
+    search.search(&search.query_of(id, &options, &()).unwrap(), &options, &()).unwrap()
 }
 
 #[test]
@@ -58,24 +59,15 @@ fn the_results_for_a_number_of_results_are_the_first_of_those_for_a_larger_one()
             .collect();
         expected.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(b.1)));
         let all = found(&search, id, n, SearchRank::Plain);
-        let key = |result: &SearchResult| (result.distance, result.id.clone());
+        let key = |hit: &Hit| (hit.distance, hit.id.clone());
         let expected: Vec<(f64, String)> = expected.into_iter().map(|(d, id)| (d, id.to_owned())).collect();
         assert_eq!(all.results.iter().map(key).collect::<Vec<_>>(), expected, "{id}");
         // Other processes find the same.
-        let packed: PackedQuery = search.pack(id, &SearchOptions::default(), &()).unwrap();
+        let query = search.query_of(id, &SearchOptions::default(), &()).unwrap();
         for k in [1, 7] {
-            let [_, wanted] = PackedQuery::shortlist(k, n);
-            let near = search.shortlist(&packed, SearchRank::Plain, wanted, &()).unwrap();
-            let ids: Vec<String> = near.into_iter().map(|(_, id)| id).collect();
-            let matches = search.match_shapes(&packed, &ids, SearchRank::Plain, wanted, &()).unwrap();
-            let about = ShardedSearch {
-                rank_by: SearchRank::Plain,
-                n_shapes: n,
-                measured: n,
-                recall: 1.0,
-                threshold: search.index().threshold(),
-            };
-            let merged = merge_matches(&packed, vec![matches], about, k);
+            let options = SearchOptions { k: n_results(k), ..SearchOptions::default() };
+            let answer = search.search_among(&query, None, &options, &()).unwrap();
+            let merged = merge_answers(&query, vec![answer], search.index().threshold(), k);
             assert_eq!((&merged.results[..], &merged.predicted), (&all.results[..k], &all.predicted));
         }
     }

@@ -197,11 +197,6 @@ impl ShapeDescription {
         Ok(shape.with_rigid(self.rounded(SignatureKind::Rigid)))
     }
 
-    /// The spectrum of the form, with the precision of an index.
-    pub(crate) fn form_spectrum(&self) -> Vec<f32> {
-        self.rounded(SignatureKind::FormSpectrum)
-    }
-
     /// The values of a signature, with the precision of an index; none if there is no such signature.
     pub(crate) fn rounded(&self, kind: SignatureKind) -> Vec<f32> {
         let values = self.signature(kind).into_iter().flat_map(|signature| &signature.values);

@@ -7,14 +7,14 @@ use std::sync::mpsc::{Receiver, sync_channel};
 use std::time::Instant;
 
 use base::{Budget, Exceeded};
-use index::{Index, IndexError, IndexWriter, Job, Shape, ShapeEntry, work_path};
+use index::{Entry, Index, IndexError, IndexWriter, Shape};
 use mesh::{Fault, MeshError};
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 
 use super::components::other_components;
 use super::place::{Home, Root, mesh_path};
-use super::record::{DROPPED, Described, same_source, shape};
+use super::record::same_source;
 use super::source::{Hashed, Listed, Listing, ShapeLimits, Shard, full_extension, hash_all, share};
 use crate::error::{Error, Remedy};
 use crate::form::{DescribeOptions, describe};
@@ -203,10 +203,11 @@ impl BuildReport {
     }
 
     /// Notes a shape of the index at `path` if its repair dropped a part of the surface.
-    fn note_dropped(&mut self, path: &Path, id: &str, entry: &ShapeEntry) {
-        if let Some(dropped_area_share) = entry.fact(DROPPED).filter(|share| *share > 0.0) {
+    fn note_dropped(&mut self, path: &Path, entry: &Entry) {
+        let dropped_area_share = entry.facts.dropped_area_share;
+        if dropped_area_share > 0.0 {
             let path = mesh_path(path, &entry.path);
-            self.dropped.push(Dropped { id: id.to_owned(), path, dropped_area_share });
+            self.dropped.push(Dropped { id: entry.id.clone(), path, dropped_area_share });
         }
     }
 
@@ -217,18 +218,18 @@ impl BuildReport {
         files: &[Hashed],
         missing: &Missing<'_>,
     ) -> Result<bool, IndexError> {
-        let mut others: HashMap<String, ShapeEntry> = index.entries()?.into_iter().collect();
+        let mut others = by_id(index.entries()?);
         let mut found = Self::default();
         for (listed, hash) in files {
             match (others.remove(&listed.file.name), hash) {
                 (Some(entry), Ok(hash)) if entry.content == *hash && same_source(&entry, listed) => {
-                    found.note_dropped(index.path(), &listed.file.name, &entry);
+                    found.note_dropped(index.path(), &entry);
                 }
                 _ => return Ok(false),
             }
         }
-        for (id, entry) in others {
-            if !missing.stays(id, &entry, &mut found) {
+        for entry in others.into_values() {
+            if !missing.stays(&entry, &mut found) {
                 return Ok(false);
             }
         }
@@ -260,13 +261,13 @@ impl<'a> Missing<'a> {
     }
 
     /// Whether a shape stays; counts what becomes of it. A file that cannot be read is not gone.
-    fn stays(&self, id: String, entry: &ShapeEntry, report: &mut BuildReport) -> bool {
+    fn stays(&self, entry: &Entry, report: &mut BuildReport) -> bool {
         let is_below = |place: &String| Path::new(&entry.path).starts_with(place);
-        if self.unread.contains(&id) || self.unreadable.iter().any(is_below) {
-            report.unreadable.push(id);
+        if self.unread.contains(&entry.id) || self.unreadable.iter().any(is_below) {
+            report.unreadable.push(entry.id.clone());
             return true;
         }
-        let (count, stays) = match (self.root.brought(&id, &entry.path), self.elsewhere) {
+        let (count, stays) = match (self.root.brought(&entry.id, &entry.path), self.elsewhere) {
             (true, _) => (&mut report.removed, false),
             (false, Elsewhere::Prune) => (&mut report.pruned, false),
             (false, Elsewhere::Keep) => (&mut report.elsewhere, true),
@@ -280,7 +281,8 @@ impl<'a> Missing<'a> {
 /// files are gone, and keeps the rest: also those whose files or folders cannot be read now. Shapes that were added from
 /// elsewhere stay, unless the options say otherwise. Files of the same bytes are described once.
 ///
-/// Every described shape is on disk before `observer` counts it, and the next run resumes an interrupted one.
+/// Every described shape is on disk before `observer` counts it, and the next run resumes an interrupted one; until then
+/// the index says that it is [not finished](Index::is_finished).
 /// Meshes that cannot be described are reported and left out; if there are no others, no index is written, except for a
 /// shard.
 ///
@@ -319,31 +321,28 @@ pub fn build_index(
         return Ok(report);
     }
     let text = options.describe.text();
-    let mut writer = IndexWriter::open(path, Job::Build, Some(&text))?;
+    let mut writer = IndexWriter::build(path, &text)?;
     report.resumed = writer.is_resumed();
-    report.replaced_damaged = writer.replaces_damaged();
+    report.replaced_damaged = writer.replaced_damaged();
     let unread = hashed.iter().filter(|(_, hash)| hash.is_err());
     missing.unread = unread.map(|(listed, _)| listed.file.name.clone()).collect();
     let kept = fill(&mut writer, hashed, options.describe, options.limits, &mut report, observer)?;
     let mut gone = Vec::new();
-    for (id, entry) in writer.entries()? {
-        if kept.contains(&id) {
-            continue;
-        }
-        if !missing.stays(id.clone(), &entry, &mut report) {
-            gone.push(id);
+    for entry in writer.entries()? {
+        if !kept.contains(&entry.id) && !missing.stays(&entry, &mut report) {
+            gone.push(entry.id);
         }
     }
     writer.remove(&gone)?;
     let nothing_new =
         report.described + report.renamed + gone.len() == 0 && !report.resumed && !report.replaced_damaged;
+    report.n_shapes = writer.n_shapes();
     // A shard without shapes is complete, and `merge_indexes` takes it.
-    let is_useless = options.shard.is_none() && writer.n_shapes()? == 0 && !report.failed.is_empty();
-    if nothing_new && path.exists() || is_useless {
-        report.n_shapes = writer.n_shapes()?;
+    let is_useless = options.shard.is_none() && report.n_shapes == 0 && !report.failed.is_empty();
+    if nothing_new && !writer.is_new() || is_useless {
         writer.discard()?;
     } else {
-        report.n_shapes = writer.finish(observer)?.len();
+        writer.finish(observer)?;
     }
     report.seconds = start.elapsed().as_secs_f64();
     Ok(report)
@@ -363,7 +362,7 @@ pub fn unchanged_index(
     let root = Root::new(folder, &home)?;
     let (Some(index), listing) = index_and_listing(&root, path, options)? else { return Ok(None) };
     // Without reading a mesh.
-    let entries: HashMap<String, ShapeEntry> = index.entries()?.into_iter().collect();
+    let entries = by_id(index.entries()?);
     let is_known =
         |listed: &Listed| entries.get(&listed.file.name).is_some_and(|entry| same_source(entry, listed));
     if !listing.shapes.iter().all(is_known) {
@@ -397,7 +396,11 @@ fn index_and_listing(
     if let Some(only) = options.only {
         listing.shapes.retain(|listed| only.contains(&listed.file.name));
     }
-    Ok((existing.filter(|_| !work_path(path).exists()), listing))
+    Ok((existing.filter(Index::is_finished), listing))
+}
+
+fn by_id(entries: Vec<Entry>) -> HashMap<String, Entry> {
+    entries.into_iter().map(|entry| (entry.id.clone(), entry)).collect()
 }
 
 /// The shapes that [`build_index`] finds in a folder, with the names and classes that they get, without reading any mesh.
@@ -424,7 +427,7 @@ pub(super) fn fill(
     observer: &dyn Observer,
 ) -> Result<HashSet<String>, Error> {
     let mut kept = HashSet::new();
-    let mut renamed: Vec<(String, ShapeEntry)> = Vec::new();
+    let mut renamed: Vec<Entry> = Vec::new();
     let mut wanted = Vec::new();
     for (listed, hash) in files {
         let content = match hash {
@@ -437,13 +440,12 @@ pub(super) fn fill(
         match writer.entry(&listed.file.name)? {
             Some(known) if known.content == content => {
                 let is_renamed = !same_source(&known, &listed);
-                let Listed { file, stored } = listed;
-                let entry = ShapeEntry { label: file.label, path: stored, ..known };
+                let entry = entry_of(&listed, known);
                 report.unchanged += 1;
-                report.note_dropped(writer.path(), &file.name, &entry);
-                kept.insert(file.name.clone());
+                report.note_dropped(writer.path(), &entry);
+                kept.insert(entry.id.clone());
                 if is_renamed {
-                    renamed.push((file.name, entry));
+                    renamed.push(entry);
                 }
             }
             _ => wanted.push((listed, content)),
@@ -474,10 +476,13 @@ pub(super) fn fill(
             places.iter().try_for_each(|&place| {
                 let (listed, content) = &wanted[place];
                 let described = match &known {
-                    Some(shape) => Ok(renamed_shape(shape, listed)),
-                    None => describe_file(&listed.file.path, options, limits, whole.clone())
-                        .map(|described| shape(listed, *content, described)),
+                    Some(shape) => Ok(shape.clone()),
+                    None => describe_file(&listed.file.path, options, limits, whole.clone()),
                 };
+                let described = described.map(|shape: Shape| {
+                    let entry = Entry { content: *content, ..shape.entry };
+                    Shape { entry: entry_of(listed, entry), ..shape }
+                });
                 match (&described, &known) {
                     (Ok(_), Some(_)) => drop(copies.fetch_add(1, Ordering::Relaxed)),
                     (Ok(shape), None) if places.len() > 1 => known = Some(shape.clone()),
@@ -490,9 +495,9 @@ pub(super) fn fill(
     })?;
     let Outcome { stored, mut failed } = described;
     (report.described, report.copies) = (stored.len(), copies.into_inner());
-    for (id, entry) in stored {
-        report.note_dropped(writer.path(), &id, &entry);
-        kept.insert(id);
+    for entry in stored {
+        report.note_dropped(writer.path(), &entry);
+        kept.insert(entry.id);
     }
     report.dropped.sort_by(|a, b| a.id.cmp(&b.id));
     failed.sort_by_key(|(place, _)| *place);
@@ -500,11 +505,10 @@ pub(super) fn fill(
     Ok(kept)
 }
 
-/// The same shape in another file.
-fn renamed_shape(known: &Shape, listed: &Listed) -> Shape {
+/// What is known of a shape as that of a file.
+fn entry_of(listed: &Listed, known: Entry) -> Entry {
     let Listed { file, stored } = listed;
-    let entry = ShapeEntry { label: file.label.clone(), path: stored.clone(), ..known.entry.clone() };
-    Shape { id: file.name.clone(), entry, vectors: known.vectors.clone() }
+    Entry { id: file.name.clone(), label: file.label.clone(), path: stored.clone(), ..known }
 }
 
 /// Describes a mesh within limits.
@@ -513,7 +517,7 @@ fn describe_file(
     options: &DescribeOptions,
     limits: ShapeLimits,
     whole: Budget,
-) -> Result<Described, Error> {
+) -> Result<Shape, Error> {
     let budget = limits.budget(whole);
     let mesh = limits.read(path, &budget)?;
     budget.check()?;
@@ -523,13 +527,13 @@ fn describe_file(
         _ => other_components(&mesh, options, &budget)?,
     };
     drop(mesh);
-    Ok(Described { shape: describe(&surface, options, &budget)?, components })
+    Ok(Shape { components, ..describe(&surface, options, &budget)?.shape() })
 }
 
 /// Shapes that were described, and meshes that failed.
 #[derive(Default)]
 struct Outcome {
-    stored: Vec<(String, ShapeEntry)>,
+    stored: Vec<Entry>,
     failed: Vec<(usize, Error)>,
 }
 
@@ -554,9 +558,10 @@ fn store(
         }
         if !shapes.is_empty() {
             writer.put(&shapes)?;
+            writer.commit()?;
         }
         (0..shapes.len() + n_failed).for_each(|_| observer.step());
-        described.stored.extend(shapes.into_iter().map(|shape| (shape.id, shape.entry)));
+        described.stored.extend(shapes.into_iter().map(|shape| shape.entry));
     }
     Ok(described)
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use index::{Index, IndexError, IndexWriter, Job, Shape, ShapeEntry};
+use index::{Entry, Index, IndexError, IndexWriter, Shape};
 use serde::Serialize;
 
 use super::build::{BuildReport, fill};
@@ -12,9 +12,6 @@ use super::record::options_of;
 use super::source::{Inputs, hash_all};
 use crate::error::Error;
 use base::Observer;
-
-/// Shapes copied in one transaction.
-const BATCH: usize = 256;
 
 /// Adds meshes to an index, described with its options. Shapes with the same name and content are kept. The next
 /// run resumes an interrupted one.
@@ -47,15 +44,15 @@ pub fn add_to_index(
             }
         }
     }
-    let before = index.len();
-    let mut writer = IndexWriter::open(path, Job::Add, None)?;
+    drop(index);
+    let mut writer = IndexWriter::open(path)?;
     report.resumed = writer.is_resumed();
     fill(&mut writer, hashed, &options, inputs.limits, &mut report, observer)?;
-    report.n_shapes = before;
+    report.n_shapes = writer.n_shapes();
     if report.described + report.renamed == 0 && !report.resumed {
         writer.discard()?;
     } else {
-        report.n_shapes = writer.finish(observer)?.len();
+        writer.finish(observer)?;
     }
     report.seconds = start.elapsed().as_secs_f64();
     Ok(report)
@@ -66,11 +63,8 @@ pub fn add_to_index(
 /// # Errors
 /// [`Error::Index`] if one of the names is unknown; nothing is removed then.
 pub fn remove_from_index(path: &Path, ids: &[String]) -> Result<usize, Error> {
-    let mut writer = IndexWriter::open(path, Job::Remove, None)?;
-    if let Err(fault) = writer.remove(ids) {
-        writer.discard()?;
-        return Err(fault.into());
-    }
+    let mut writer = IndexWriter::open(path)?;
+    writer.remove(ids)?;
     Ok(writer.finish(&())?.len())
 }
 
@@ -95,27 +89,25 @@ pub fn merge_indexes(inputs: &[PathBuf], path: &Path, observer: &dyn Observer) -
         index.expect_options(first.options())?;
     }
     let home = Home::of(path)?;
-    let mut writer = IndexWriter::open(path, Job::Merge, Some(first.options()))?;
+    let mut writer = IndexWriter::build(path, first.options())?;
+    writer.clear()?;
     let mut repeated = 0;
     observer.begin("merging", indexes.iter().map(Index::len).sum());
     for index in &indexes {
-        let mut batch: Vec<Shape> = Vec::new();
         index.each(|shape| {
             observer.step();
-            match writer.entry(&shape.id)? {
+            match writer.entry(&shape.entry.id)? {
                 None => {
-                    let stored = home.text_of(index.path(), &shape.entry.path);
-                    batch.push(Shape { entry: ShapeEntry { path: stored, ..shape.entry }, ..shape });
+                    let path = home.text_of(index.path(), &shape.entry.path);
+                    writer.put(&[Shape { entry: Entry { path, ..shape.entry }, ..shape }])?;
                 }
                 Some(entry) if entry.content == shape.entry.content => repeated += 1,
-                Some(_) => return Err(IndexError::Conflict { id: shape.id, path: index.path().to_owned() }),
-            }
-            if batch.len() >= BATCH {
-                writer.put(&std::mem::take(&mut batch))?;
+                Some(entry) => {
+                    return Err(IndexError::Conflict { id: entry.id, path: index.path().to_owned() });
+                }
             }
             Ok(())
         })?;
-        writer.put(&batch)?;
     }
     Ok(MergeReport { n_shapes: writer.finish(observer)?.len(), repeated })
 }

@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use base::Observer;
 use descriptors::{ShapeDistance, ShapeMetric};
-use index::ShapeEntry;
+use index::Entry;
 use rayon::prelude::*;
 use relations::{Handedness, MeshGeometry, Relation, RelationKind, SurfaceInvariants};
 use serde::Serialize;
@@ -130,8 +130,7 @@ pub(super) fn has_one_name(path: &Path) -> bool {
 
 /// A shape with its numbers.
 struct Candidate {
-    id: String,
-    entry: ShapeEntry,
+    entry: Entry,
     fused: Vec<f32>,
     /// Of its mesh, if that was read: it is near another shape, and unchanged.
     invariants: Option<SurfaceInvariants>,
@@ -174,7 +173,7 @@ pub fn find_duplicates(
     let to_read: Vec<usize> = near.concat();
     read_invariants(search, &mut candidates, &to_read, observer)?;
     let unread = to_read.into_iter().filter(|&i| candidates[i].invariants.is_none());
-    let mut unread: Vec<String> = unread.map(|i| candidates[i].id.clone()).collect();
+    let mut unread: Vec<String> = unread.map(|i| candidates[i].entry.id.clone()).collect();
     unread.sort();
     // Copies of copies need not be near themselves.
     let pairs = near.iter().flat_map(|cluster| pairs_of(cluster));
@@ -195,8 +194,7 @@ pub fn find_duplicates(
 fn candidates(search: &ShapeSearch) -> Result<Vec<Candidate>, Error> {
     let (entries, vectors) = (search.index().entries()?, search.index().vector_table()?);
     let shapes = entries.into_iter().enumerate();
-    let candidate =
-        |(i, (id, entry))| Candidate { id, entry, fused: vectors.vector(i).to_vec(), invariants: None };
+    let candidate = |(i, entry)| Candidate { entry, fused: vectors.vector(i).to_vec(), invariants: None };
     Ok(shapes.map(candidate).collect())
 }
 
@@ -211,7 +209,7 @@ fn read_invariants(
     observer.begin("reading", numbers.len());
     let read = |&i: &usize| {
         budget.check()?;
-        let geometry = search.geometry(&candidates[i].id, &candidates[i].entry);
+        let geometry = search.geometry(&candidates[i].entry);
         observer.step();
         Ok(geometry.map(|geometry| geometry.invariants()))
     };
@@ -285,7 +283,7 @@ struct ClusterShape<'a> {
 
 impl<'a> ClusterShape<'a> {
     fn read(search: &ShapeSearch, candidate: &'a Candidate) -> Self {
-        let geometry = search.geometry(&candidate.id, &candidate.entry);
+        let geometry = search.geometry(&candidate.entry);
         let path = mesh_path(search.index().path(), &candidate.entry.path);
         let facts = std::fs::metadata(&path).ok();
         let modified = facts.as_ref().and_then(|facts| facts.modified().ok());
@@ -293,7 +291,7 @@ impl<'a> ClusterShape<'a> {
         // The folders of a file have no links if its path without them is the one that is known.
         let is_own = |home: Home| has_one_name(&path) && home.file_text(&path) == candidate.entry.path;
         let file = DuplicateFile {
-            id: candidate.id.clone(),
+            id: candidate.entry.id.clone(),
             is_linked: !Home::of(search.index().path()).is_ok_and(is_own),
             bytes: facts.map(|facts| facts.len()),
             modified: since_1970.map(|time| time.as_secs()),

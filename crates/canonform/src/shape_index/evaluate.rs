@@ -4,12 +4,12 @@ use std::path::Path;
 use std::str::FromStr;
 
 use descriptors::{DescriptorError, ShapeMetric, SignatureKind};
-use index::Index;
+use index::{Entry, Index, Shape};
 use linalg::DistanceMatrix;
 use rayon::prelude::*;
 use retrieval::{Evaluation, Labels, RankBy, evaluate_ranked};
 
-use super::record::{lacks, signature};
+use super::record::missing_signature;
 use crate::error::Error;
 use base::Observer;
 use collection::{CollectionError, LabelSource, Row, TextTable, label_of};
@@ -76,24 +76,26 @@ pub fn evaluate_index(
     let (mut names, mut rows) = (Vec::with_capacity(n), Vec::with_capacity(n));
     let mut unlabelled = None;
     index.each(|shape| {
+        let Shape { entry: Entry { id, label, path: place, .. }, fused, mut signatures, .. } = shape;
         let label = match labels {
-            Some(source) => source.label(&shape.id, Some(Path::new(&shape.entry.path))),
-            None => shape.entry.label,
+            Some(source) => source.label(&id, Some(Path::new(&place))),
+            None => label,
         };
-        // Nothing can be said about shapes without a class, nor by the rigid signature about those that may bend.
         if label.is_empty() {
-            unlabelled.get_or_insert(shape.id);
+            unlabelled.get_or_insert(id);
             return Ok(());
         }
-        if measure == Measure::Signature(SignatureKind::Rigid) && lacks(&shape.vectors, SignatureKind::Rigid)
-        {
-            return Ok(());
-        }
+        let vector = match measure {
+            Measure::Fused => fused,
+            Measure::Signature(kind) => match signatures.remove(kind.name()) {
+                Some(signature) => signature,
+                // Nothing can be said by the rigid signature about shapes that may bend.
+                None if kind == SignatureKind::Rigid => return Ok(()),
+                None => return Err(missing_signature(path, &id, kind).into()),
+            },
+        };
         names.push(label);
-        rows.push(match measure {
-            Measure::Fused => shape.vectors.fused,
-            Measure::Signature(kind) => signature(shape.vectors, kind, &shape.id, path)?,
-        });
+        rows.push(vector);
         Ok::<(), Error>(())
     })?;
     let n = names.len();

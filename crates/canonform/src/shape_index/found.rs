@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use descriptors::ShapeDistance;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::compare::Comparison;
 use relations::{Handedness, Relation};
@@ -47,8 +47,8 @@ impl OrderedBy {
 }
 
 /// A shape that was found.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SearchResult {
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Hit {
     /// Counted from 1.
     pub rank: usize,
     /// Name of the shape.
@@ -66,55 +66,36 @@ pub struct SearchResult {
     #[serde(flatten)]
     pub order: Option<OrderedBy>,
     /// How the query and the shape are related: by descriptions and, if results are explained, by files and meshes. The
-    /// handedness is unknown.
+    /// handedness is unknown. What is read from JSON is by descriptions, and has to be [named](Relation::named).
+    #[serde(deserialize_with = "by_descriptions")]
     pub relation: Relation,
     /// The numbers of the comparison with the query, if results are explained.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(skip_deserializing, skip_serializing_if = "Option::is_none")]
     pub comparison: Option<Comparison>,
 }
 
-/// A shape of a shard, compared with a query.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ShardMatch {
-    /// Its name.
-    pub id: String,
-    /// Its class.
-    pub label: String,
-    /// The path of its mesh as its index states it.
-    pub path: String,
-    /// Combined distance from the query.
-    pub distance: f64,
-    /// Fused distance from the query.
-    pub fused: f64,
-    /// How far the shapes are apart, regardless of size.
-    #[serde(with = "BothDistances")]
-    pub shape_distance: ShapeDistance,
-    /// Size of the shape over that of the query.
-    pub scale: f64,
-    pub(super) order: Option<OrderedBy>,
+/// The relation by descriptions that a record of one states.
+fn by_descriptions<'de, D: Deserializer<'de>>(from: D) -> Result<Relation, D::Error> {
+    #[derive(Deserialize)]
+    struct Record {
+        because: Numbers,
+    }
+    #[derive(Deserialize)]
+    struct Numbers {
+        #[serde(flatten)]
+        distance: ShapeDistance,
+        scale: f64,
+    }
+    let Record { because: Numbers { distance, scale } } = Record::deserialize(from)?;
+    Ok(Relation::by_distance(distance, scale, Handedness::Unknown))
 }
 
-/// What a [`ShapeDistance`] is sent as.
-#[derive(Serialize, Deserialize)]
-#[serde(remote = "ShapeDistance")]
-struct BothDistances {
-    fused: f64,
-    combined: f64,
-}
-
-impl ShardMatch {
+impl Hit {
     /// The order in which one index would have met shapes of several.
     pub(super) fn cmp(&self, other: &Self) -> Ordering {
         let key = |x: &Self| x.order.map_or([x.distance, x.fused], |order| [order.distance(), 0.0]);
         let numbers = key(self).into_iter().zip(key(other)).map(|(a, b)| a.total_cmp(&b));
         numbers.fold(Ordering::Equal, Ordering::then).then_with(|| self.id.cmp(&other.id))
-    }
-
-    /// The result of a search for a query of this name.
-    pub(super) fn into_result(self, rank: usize, query: &str) -> SearchResult {
-        let Self { id, label, path, distance, fused, shape_distance, scale, order } = self;
-        let relation = Relation::by_distance(shape_distance, scale, Handedness::Unknown).named(query, &id);
-        SearchResult { rank, id, label, path, distance, fused, order, relation, comparison: None }
     }
 }
 
@@ -128,5 +109,5 @@ pub struct ComponentResult {
     /// Vertices of one copy.
     pub n_vertices: usize,
     /// The nearest shape of the index, and how it is related.
-    pub nearest: Option<SearchResult>,
+    pub nearest: Option<Hit>,
 }

@@ -1,11 +1,10 @@
 //! Collections of meshes as an index: building, changing, searching and scoring it.
 //!
 //! ```text
-//! files -> content hash -> unchanged? -> describe -> index::IndexWriter -> index::Index
-//! Query -> bounds (robust distances of all vectors) -> rerank (aligned forms) -> vote
-//!                  -> Index::nearest_on_graph -> aligned forms of the results -> vote
-//! PackedQuery -> ShapeSearch::shortlist and match_shapes of every shard -> merge_matches -> vote
-//! mesh -> describe_part -> disc areas of all shapes -> aligned forms of the results -> vote
+//! files -> content hash -> unchanged? -> describe -> Shape -> index::IndexWriter -> index::Index
+//! mesh -> describe -> Query -> bounds (robust distances of all vectors) -> rerank (aligned forms) -> vote -> Answer
+//!                           -> neighbour graph | disc areas | spectra of all shapes -> aligned forms of the results
+//! Query -> an Answer of every shard -> merge_answers -> Answer
 //! ```
 
 mod build;
@@ -17,6 +16,7 @@ mod evaluate;
 mod explain;
 mod export;
 mod found;
+mod merge;
 mod moves;
 mod options;
 mod place;
@@ -24,9 +24,7 @@ mod predict;
 mod query;
 mod record;
 mod rerank;
-mod resolve;
 mod search;
-mod shards;
 mod source;
 
 pub use build::{
@@ -40,13 +38,13 @@ pub use duplicates::{
 };
 pub use evaluate::{EvaluateOptions, Measure, evaluate_index, evaluate_matrix};
 pub use export::export_index;
-pub use found::{ComponentResult, OrderedBy, SearchResult, ShardMatch};
+pub use found::{ComponentResult, Hit, OrderedBy};
+pub use merge::{merge_answers, n_candidates, n_results};
 pub use moves::{MoveReport, NotMoved, check_place, move_duplicates, undo_moves};
 pub use options::{Explain, SearchOptions, SearchRank};
 pub use place::mesh_path;
 pub use predict::{ClassVotes, NearestShape, Prediction, Unknown};
-pub use query::{DescribedQuery, Query};
+pub use query::Query;
 pub use rerank::{Ranked, Reranked, bounds, rerank};
-pub use search::{SearchReport, SearchSeconds, ShapeSearch, ShardedSearch};
-pub use shards::{PackedQuery, ShardExplained, ShardMatches, merge_matches};
+pub use search::{Answer, SearchSeconds, ShapeSearch};
 pub use source::{Inputs, ShapeLimits, Shard};

@@ -37,6 +37,16 @@ pub enum SearchRank {
     Forms,
 }
 
+impl SearchRank {
+    /// Whether results are ordered by signatures first, as the threshold of unknown classes is measured.
+    pub(super) fn is_by_signatures(self) -> bool {
+        match self {
+            Self::Plain | Self::Graph => true,
+            Self::Part | Self::Forms => false,
+        }
+    }
+}
+
 impl FromStr for SearchRank {
     type Err = String;
 

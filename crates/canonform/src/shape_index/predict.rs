@@ -1,14 +1,12 @@
 //! The class that the nearest shapes suggest, or why there is none.
 
 use descriptors::{PartDistance, ShapeMetric};
-use index::ShapeEntry;
+use index::Facts;
 use relations::Relation;
 use retrieval::{Labels, Neighbor, Tally, UnknownThreshold, vote};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
-use super::found::{OrderedBy, SearchResult};
-use super::record::{DROPPED as DROPPED_AREA, SHORTCUTS};
-use crate::form::ShapeDescription;
+use super::found::{Hit, OrderedBy};
 
 /// Neighbours that vote on the class of a query.
 pub(super) const VOTERS: usize = 5;
@@ -24,7 +22,7 @@ const DROPPED: f64 = 0.01;
 const OPEN: f64 = 0.3;
 
 /// The class that the nearest shapes suggest.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Prediction {
     /// The class; `None` if no shape is near enough.
     pub label: Option<String>,
@@ -88,59 +86,29 @@ pub enum Unknown {
     Partial,
 }
 
-/// What makes a surface look like a part of one, or like a damaged one.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub(super) struct Completeness {
-    /// Share of the area that the repair dropped.
-    pub(super) dropped: f64,
-    /// Length of the longest boundary over the square root of the area.
-    pub(super) open: f64,
-    /// Places where distant parts of the surface were welded.
-    pub(super) shortcuts: usize,
+/// What makes a surface look like a part of one, in words.
+fn signs_of_a_part(facts: &Facts) -> Vec<String> {
+    let mut signs = Vec::new();
+    if facts.dropped_area_share > DROPPED {
+        signs.push(format!("{:.0} % of its surface is not used", 100.0 * facts.dropped_area_share));
+    }
+    let open = facts.longest_boundary / facts.area.sqrt();
+    if open > OPEN {
+        signs.push(format!("a boundary is {open:.1} times as long as the square root of its area"));
+    }
+    signs
 }
 
-impl Completeness {
-    pub(super) fn of(description: &ShapeDescription) -> Self {
-        Self {
-            dropped: description.repair.dropped_area_share,
-            open: description.longest_boundary / description.area.sqrt(),
-            shortcuts: description.shortcuts.len(),
-        }
-    }
-
-    /// What an index knows of a shape.
-    pub(super) fn of_entry(entry: &ShapeEntry) -> Self {
-        Self {
-            dropped: entry.fact(DROPPED_AREA).unwrap_or(0.0),
-            shortcuts: entry.fact(SHORTCUTS).unwrap_or(0.0) as usize,
-            ..Self::default()
-        }
-    }
-
-    /// The signs of a part, in words.
-    fn signs(self) -> Vec<String> {
-        let mut signs = Vec::new();
-        if self.dropped > DROPPED {
-            signs.push(format!("{:.0} % of its surface is not used", 100.0 * self.dropped));
-        }
-        if self.open > OPEN {
-            signs
-                .push(format!("a boundary is {:.1} times as long as the square root of its area", self.open));
-        }
-        signs
-    }
-
-    /// The warning that the query has shortcuts.
-    fn warning(self) -> Option<String> {
-        let places = match self.shortcuts {
-            0 => return None,
-            1 => "one place".to_owned(),
-            n => format!("{n} places"),
-        };
-        Some(format!(
-            "The query probably has a shortcut: distant parts of its surface are joined in {places}; it was compared as if they were separate"
-        ))
-    }
+/// The warning that a query has shortcuts, places where distant parts of the surface were welded.
+fn shortcut_warning(facts: &Facts) -> Option<String> {
+    let places = match facts.shortcuts {
+        0 => return None,
+        1 => "one place".to_owned(),
+        n => format!("{n} places"),
+    };
+    Some(format!(
+        "The query probably has a shortcut: distant parts of its surface are joined in {places}; it was compared as if they were separate"
+    ))
 }
 
 /// The vote of the first [`VOTERS`] results, so that it does not depend on their number.
@@ -148,18 +116,14 @@ impl Completeness {
 /// A result at combined distance `d` and fused distance `f` votes if `r = min(d / c, f / t)` is below 1, with `c` the
 /// boundary of a class and `t` the width of the classes of the index; its weight is `(1 - r²)²`. If the query is
 /// taken as a part, `r` is the part distance over that of parts of shapes of one class.
-pub(super) fn predicted(
-    results: &[SearchResult],
-    threshold: Option<UnknownThreshold>,
-    query: Completeness,
-) -> Prediction {
+pub(super) fn predicted(results: &[Hit], threshold: Option<UnknownThreshold>, query: &Facts) -> Prediction {
     let results = &results[..results.len().min(VOTERS)];
     let as_part = results.first().and_then(part_distance);
     let class_below = as_part.map_or(ShapeMetric::SAME_CLASS.at, |_| PartDistance::SAME_CLASS);
     let threshold = threshold.map(|threshold| threshold.distance);
     let labels = Labels::new(&results.iter().map(|result| &result.label).collect::<Vec<_>>());
     let label = |class: usize| labels.classes()[class].clone();
-    let reach = |result: &SearchResult| {
+    let reach = |result: &Hit| {
         if let Some(distance) = part_distance(result) {
             return distance / class_below;
         }
@@ -178,7 +142,7 @@ pub(super) fn predicted(
         label: result.label.clone(),
         relation: result.relation.clone(),
     });
-    let signs = query.signs();
+    let signs = signs_of_a_part(query);
     let unknown = match (vote.class(), &nearest) {
         (Some(_), _) => None,
         (None, None) => Some(Unknown::EmptyIndex),
@@ -197,7 +161,7 @@ pub(super) fn predicted(
         nearest,
         unknown,
         explanation: String::new(),
-        warning: query.warning(),
+        warning: shortcut_warning(query),
     };
     found.explanation = found.in_words(&signs, as_part);
     if let Some(warning) = &found.warning {
@@ -207,7 +171,7 @@ pub(super) fn predicted(
 }
 
 /// How well the query fits as a part, if results are ordered by that.
-fn part_distance(result: &SearchResult) -> Option<f64> {
+fn part_distance(result: &Hit) -> Option<f64> {
     match result.order {
         Some(OrderedBy::Part { part_distance, .. }) => Some(part_distance),
         _ => None,
@@ -281,9 +245,9 @@ mod tests {
 
     use super::*;
 
-    fn result(rank: usize, label: &str, distance: f64) -> SearchResult {
+    fn result(rank: usize, label: &str, distance: f64) -> Hit {
         let shape = ShapeDistance { fused: distance, combined: distance };
-        SearchResult {
+        Hit {
             rank,
             id: format!("{label}{rank}"),
             label: label.to_owned(),
@@ -296,7 +260,7 @@ mod tests {
         }
     }
 
-    fn results(found: &[(&str, f64)]) -> Vec<SearchResult> {
+    fn results(found: &[(&str, f64)]) -> Vec<Hit> {
         found.iter().enumerate().map(|(i, (label, distance))| result(i + 1, label, *distance)).collect()
     }
 
@@ -304,14 +268,16 @@ mod tests {
         Some(UnknownThreshold { distance, missed: 0.0, mistaken: 0.0 })
     }
 
-    const WHOLE: Completeness = Completeness { dropped: 0.0, open: 0.0, shortcuts: 0 };
+    fn facts() -> Facts {
+        Facts { area: 1.0, ..Facts::default() }
+    }
 
     #[test]
     fn a_shape_that_is_the_same_is_never_unknown() {
         let near = results(&[("cat", 0.9), ("cat", 1.0)]);
         // Narrow classes do not overrule the distance.
         for width in [None, threshold(0.2), threshold(9.0)] {
-            let found = predicted(&near, width, WHOLE);
+            let found = predicted(&near, width, &facts());
             assert_eq!((found.label.as_deref(), found.votes, found.unknown), (Some("cat"), 2, None));
             assert_eq!(found.explanation, format!("cat, by 2 of 2 votes, confidence {:.2}", 1.0));
         }
@@ -320,7 +286,7 @@ mod tests {
     #[test]
     fn unknown_names_the_nearest_shape_and_the_limit_it_missed() {
         let far = results(&[("cat", 9.25), ("dog", 9.5)]);
-        let found = predicted(&far, threshold(2.0), WHOLE);
+        let found = predicted(&far, threshold(2.0), &facts());
         assert_eq!((found.label.as_deref(), found.unknown), (None, Some(Unknown::NothingNear)));
         for words in
             ["cat1", "9.250", "another class", "up to 2.000 wide", &format!("{:.3}", found.class_below)]
@@ -329,10 +295,10 @@ mod tests {
         }
         assert_eq!(found.nearest.as_ref().map(|n| &n.relation), Some(&far[0].relation));
         // Classes of a collection may be wider than those of the metric.
-        let wide = predicted(&far, threshold(10.0), WHOLE);
+        let wide = predicted(&far, threshold(10.0), &facts());
         assert_eq!((wide.label.as_deref(), wide.voters), (Some("cat"), 2));
         assert!(wide.explanation.contains("up to 10.000 wide"), "{}", wide.explanation);
-        let empty = predicted(&[], None, WHOLE);
+        let empty = predicted(&[], None, &facts());
         assert_eq!((empty.unknown, empty.nearest), (Some(Unknown::EmptyIndex), None));
     }
 
@@ -340,31 +306,31 @@ mod tests {
     fn a_query_that_looks_like_a_part_is_said_to_be_one_only_if_nothing_is_near() {
         let far = results(&[("cat", 9.0)]);
         for (query, words) in [
-            (Completeness { dropped: 0.14, open: 0.0, shortcuts: 0 }, "14 % of its surface"),
-            (Completeness { dropped: 0.0, open: 1.25, shortcuts: 0 }, "1.2 times"),
+            (Facts { dropped_area_share: 0.14, ..facts() }, "14 % of its surface"),
+            (Facts { longest_boundary: 1.25, ..facts() }, "1.2 times"),
         ] {
-            let found = predicted(&far, None, query);
+            let found = predicted(&far, None, &query);
             assert_eq!(found.unknown, Some(Unknown::Partial));
             assert!(found.explanation.contains(words) && found.explanation.contains("ranking by parts"));
-            assert_eq!(predicted(&results(&[("cat", 0.5)]), None, query).unknown, None);
+            assert_eq!(predicted(&results(&[("cat", 0.5)]), None, &query).unknown, None);
         }
-        let small_holes = Completeness { dropped: 0.001, open: 0.05, shortcuts: 0 };
-        assert_eq!(predicted(&far, None, small_holes).unknown, Some(Unknown::NothingNear));
+        let small_holes = Facts { dropped_area_share: 0.001, longest_boundary: 0.05, ..facts() };
+        assert_eq!(predicted(&far, None, &small_holes).unknown, Some(Unknown::NothingNear));
     }
 
     #[test]
     fn parts_vote_by_how_well_they_fit() {
-        let fit = |mut result: SearchResult, times: f64| {
+        let fit = |mut result: Hit, times: f64| {
             let part_distance = times * PartDistance::SAME_CLASS;
             result.order = Some(OrderedBy::Part { part_distance, part_share: 0.7 });
             result
         };
         let shapes = results(&[("cat", 9.0), ("dog", 9.0)]);
         let fits = |cat, dog| vec![fit(shapes[0].clone(), cat), fit(shapes[1].clone(), dog)];
-        let open = Completeness { dropped: 0.0, open: 1.25, shortcuts: 0 };
-        let found = predicted(&fits(0.3, 1.2), None, open);
+        let open = Facts { longest_boundary: 1.25, ..facts() };
+        let found = predicted(&fits(0.3, 1.2), None, &open);
         assert_eq!((found.label.as_deref(), found.votes, found.unknown), (Some("cat"), 1, None));
-        let found = predicted(&fits(1.1, 1.2), None, open);
+        let found = predicted(&fits(1.1, 1.2), None, &open);
         assert_eq!(found.unknown, Some(Unknown::NothingNear));
         assert!(found.explanation.contains("fits best as a part of cat1"), "{}", found.explanation);
     }
@@ -372,7 +338,7 @@ mod tests {
     #[test]
     fn shortcuts_of_the_query_are_a_warning() {
         let near = results(&[("cat", 0.5)]);
-        let words = |shortcuts| predicted(&near, None, Completeness { shortcuts, ..WHOLE }).explanation;
+        let words = |shortcuts| predicted(&near, None, &Facts { shortcuts, ..facts() }).explanation;
         assert!(!words(0).contains("shortcut"));
         assert!(words(1).contains("probably has a shortcut") && words(1).contains("in one place"));
         assert!(words(3).contains("in 3 places"), "{}", words(3));
@@ -381,7 +347,7 @@ mod tests {
     #[test]
     fn a_split_vote_says_so() {
         let people = results(&[("david", 1.0), ("michael", 1.05), ("david", 1.1), ("michael", 1.1)]);
-        let found = predicted(&people, None, WHOLE);
+        let found = predicted(&people, None, &facts());
         assert_eq!(found.label.as_deref(), Some("david"));
         assert!(
             found.explanation.contains("the vote is split; other votes: michael 2"),

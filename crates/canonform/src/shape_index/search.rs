@@ -6,47 +6,47 @@ use std::time::Instant;
 
 use base::{Budget, Observer};
 use collection::Storage;
+use descriptors::DiscAreas;
 use descriptors::{
     FormAlignment, PartDiscAreas, PartDistance, PreparedShape, ShapeMetric, ShapePair, SignatureKind,
 };
-use index::{Index, RankedShape, ShapeEntry};
+use index::{Entry, Index, VectorTable};
 use mesh::TriMesh;
 use mesh::io::FileSource;
 use rayon::prelude::*;
-use retrieval::{Candidate, UnknownThreshold};
+use relations::{Handedness, Relation};
+use retrieval::{Candidate, LINKS, Neighbor, graph_rank};
 use serde::{Deserialize, Serialize};
 
-use super::found::{ComponentResult, OrderedBy, SearchResult, ShardMatch};
+use super::found::{ComponentResult, Hit, OrderedBy};
+use super::merge::n_results;
 use super::options::{Explain, SearchOptions, SearchRank};
-use super::predict::{Completeness, Prediction, VOTERS, predicted};
-use super::query::{KnownQuery, Query};
-use super::record::{disc_areas, options_of, prepared, signature};
+use super::predict::{Prediction, predicted};
+use super::query::Query;
+use super::record::{options_of, prepared};
 use super::rerank::{Ranked, Reranked, bounds, rerank};
 use super::source::read_unchanged;
 use crate::compare::compare;
 use crate::error::Error;
 use crate::form::DescribeOptions;
 
-/// Results that are looked for if so many are requested: those that vote are among them.
-pub(super) fn n_wanted(k: usize, n_shapes: usize) -> usize {
-    k.max(VOTERS).min(n_shapes)
-}
-
-/// The answer to a search.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SearchReport {
+/// The answer to a search. Read from JSON, it is one that can be [merged](crate::merge_answers): without its explanations and
+/// its class.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Answer {
     /// The best first, by what `rank_by` states.
-    pub results: Vec<SearchResult>,
+    pub results: Vec<Hit>,
     /// How results are ordered.
     pub rank_by: SearchRank,
     /// The components of a query that has several, if results are explained: what each of them is.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(skip_deserializing, skip_serializing_if = "Vec::is_empty")]
     pub components: Vec<ComponentResult>,
     /// Shapes of which the query is a component, but not the largest, if results are explained. Their distance is that by
     /// signatures.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub wholes: Vec<SearchResult>,
+    #[serde(skip_deserializing, skip_serializing_if = "Vec::is_empty")]
+    pub wholes: Vec<Hit>,
     /// The class.
+    #[serde(skip_deserializing)]
     pub predicted: Prediction,
     /// Shapes in the index.
     pub n_shapes: usize,
@@ -57,51 +57,11 @@ pub struct SearchReport {
     /// Expected share of the nearest shapes that are found: 1, unless the vectors of many indexes are coded.
     pub recall: f64,
     /// Wall-clock seconds.
+    #[serde(skip_deserializing)]
     pub seconds: SearchSeconds,
 }
 
-/// What is known of a search for signatures in all shards.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct ShardedSearch {
-    /// How results are ordered.
-    pub rank_by: SearchRank,
-    /// Shapes in all shards.
-    pub n_shapes: usize,
-    /// Shapes whose signatures were compared.
-    pub measured: usize,
-    /// Share of the ten nearest signatures that such searches find.
-    pub recall: f64,
-    /// The [threshold](index::class_threshold) of all shards, if signatures were searched.
-    pub threshold: Option<UnknownThreshold>,
-}
-
-impl SearchReport {
-    /// The answer to a query of this name, from the nearest shapes in their order.
-    pub(super) fn of(
-        (name, complete): (&str, Completeness),
-        nearest: Vec<ShardMatch>,
-        search: ShardedSearch,
-        k: usize,
-    ) -> Self {
-        let ShardedSearch { rank_by, n_shapes, measured, recall, threshold } = search;
-        let ranked = nearest.into_iter().enumerate();
-        let mut results: Vec<_> = ranked.map(|(i, found)| found.into_result(i + 1, name)).collect();
-        let predicted = predicted(&results, threshold, complete);
-        results.truncate(k);
-        Self {
-            results,
-            rank_by,
-            components: Vec::new(),
-            wholes: Vec::new(),
-            predicted,
-            n_shapes,
-            measured,
-            aligned: 0,
-            recall,
-            seconds: SearchSeconds::default(),
-        }
-    }
-
+impl Answer {
     /// Replaces the path of every shape that was found, which the index states as seen from its folder.
     pub fn place(&mut self, path: impl Fn(&str) -> String) {
         let components = self.components.iter_mut().filter_map(|part| part.nearest.as_mut());
@@ -155,7 +115,7 @@ impl ShapeSearch {
     /// # Errors
     /// [`Error::Index`].
     pub fn prepared(&self, id: &str) -> Result<PreparedShape, Error> {
-        prepared(&self.index.entry(id)?, self.index.vectors(id)?, &self.describe)
+        prepared(&self.index.shape(id)?, &self.describe)
     }
 
     /// Reads the mesh of a shape again.
@@ -164,7 +124,7 @@ impl ShapeSearch {
     /// [`Error::MeshGone`] and [`Error::MeshChanged`] unless the file still has the content that was indexed;
     /// [`Error::Index`], [`Error::Mesh`].
     pub fn mesh(&self, id: &str) -> Result<TriMesh, Error> {
-        read_unchanged(self.index.path(), id, &self.index.entry(id)?)
+        read_unchanged(self.index.path(), &self.index.entry(id)?)
     }
 
     /// The shape that a text names, unless there is a file of this name, which goes first.
@@ -178,7 +138,7 @@ impl ShapeSearch {
     /// the first of those for a larger one, and the class does not depend on it.
     ///
     /// ```
-    /// use canonform::{BuildOptions, DescribeOptions, Query, SearchOptions, ShapeSearch, build_index, mesh};
+    /// use canonform::{BuildOptions, DescribeOptions, SearchOptions, ShapeSearch, build_index, mesh};
     ///
     /// let folder = tempfile::tempdir()?;
     /// mesh::io::write(&folder.path().join("ball1.off"), &mesh::shapes::icosphere(2))?;
@@ -188,113 +148,169 @@ impl ShapeSearch {
     /// let options = BuildOptions::new(&describe);
     /// build_index(folder.path(), &index, &options, &())?;
     ///
-    /// let search = ShapeSearch::open(&index)?;
-    /// let ring = mesh::shapes::torus(22, 13, 1.0, 0.35);
-    /// let report = search.search(Query::from(&ring), &SearchOptions::default(), &())?;
-    /// assert_eq!((report.results[0].id.as_str(), report.results.len()), ("ring1", 2));
-    /// let itself = search.search(Query::Id("ball1"), &SearchOptions::default(), &())?;
+    /// let (search, options) = (ShapeSearch::open(&index)?, SearchOptions::default());
+    /// let answer = search.search_mesh(&mesh::shapes::torus(22, 13, 1.0, 0.35), &options, &())?;
+    /// assert_eq!((answer.results[0].id.as_str(), answer.results.len()), ("ring1", 2));
+    /// let itself = search.search(&search.query_of("ball1", &options, &())?, &options, &())?;
     /// assert_eq!(itself.results[0].id, "ball1");
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
     /// # Errors
-    /// [`Error::Index`], also for an unknown shape and for a description with other options than those of the index; those of
-    /// describing a mesh; [`Error::NoPart`] for a description without its surface that is ranked as a part;
-    /// [`Error::Exceeded`].
+    /// [`Error::Index`], also for a query that was described with other options than the shapes of the index;
+    /// [`Error::NoPart`] for a query that is ranked as a part and has none; [`Error::Exceeded`].
     pub fn search(
         &self,
-        query: Query<'_>,
+        query: &Query,
         options: &SearchOptions,
         observer: &dyn Observer,
-    ) -> Result<SearchReport, Error> {
-        let start = Instant::now();
-        let budget = observer.budget();
-        let mut made = None;
-        let known = self.resolved(query, options, &mut made, observer)?;
-        let describe = start.elapsed().as_secs_f64();
-        let mut report = self.nearest(&known, options, &budget)?;
-        report.seconds.describe = describe;
+    ) -> Result<Answer, Error> {
+        let mut answer = self.search_among(query, None, options, observer)?;
         if options.explain == Explain::Kind {
-            report.components = self.search_components(&known, options, &budget)?;
-            report.wholes = self.search_wholes(&known, &budget)?;
+            answer.components = self.search_components(query, options, observer)?;
         }
-        Ok(report)
+        Ok(answer)
     }
 
-    /// The nearest shapes and the class.
-    pub(super) fn nearest(
+    /// [Searches](Self::search) among some shapes only, and not for components. Names that the index does not hold are left
+    /// out: their shapes were removed meanwhile.
+    ///
+    /// # Errors
+    /// As of [`search`](Self::search).
+    pub fn search_among(
         &self,
-        query: &KnownQuery<'_>,
+        query: &Query,
+        ids: Option<&[String]>,
+        options: &SearchOptions,
+        observer: &dyn Observer,
+    ) -> Result<Answer, Error> {
+        let budget = observer.budget();
+        let shape = self.prepared_query(query)?;
+        let mut answer = self.nearest((query, &shape), ids, options, &budget)?;
+        if options.explain == Explain::Kind && !query.is_component {
+            answer.wholes = self.search_wholes((query, &shape), &budget)?;
+        }
+        Ok(answer)
+    }
+
+    /// The shape of a query, ready to be compared.
+    ///
+    /// # Errors
+    /// [`Error::Index`] if it was described with other options than the shapes of the index.
+    pub fn prepared_query(&self, query: &Query) -> Result<PreparedShape, Error> {
+        self.index.expect_options(&query.options)?;
+        prepared(&query.shape, &self.describe)
+    }
+
+    /// The nearest of all shapes or of some, and the class.
+    fn nearest(
+        &self,
+        (query, shape): (&Query, &PreparedShape),
+        ids: Option<&[String]>,
         options: &SearchOptions,
         budget: &Budget,
-    ) -> Result<SearchReport, Error> {
+    ) -> Result<Answer, Error> {
         let start = Instant::now();
-        let wanted = n_wanted(options.k, self.index.len());
-        let shortlist = match options.rank_by {
-            SearchRank::Plain => self.by_distance(query)?,
-            SearchRank::Graph => Shortlist::ordered(self.on_graph(query.shape.fused(), wanted)?),
-            rank => Shortlist::ordered(self.by_all(query, rank, self.ids()?, wanted, budget)?),
-        };
-        let (found, aligned) = self.aligned(&query.shape, shortlist, wanted, budget)?;
-        let (matches, alignments): (Vec<_>, Vec<_>) = found.into_iter().unzip();
         let (rank_by, n_shapes) = (options.rank_by, self.index.len());
-        let by_signatures = matches!(rank_by, SearchRank::Plain | SearchRank::Graph);
-        let threshold = self.index.threshold().filter(|_| by_signatures);
-        let about = ShardedSearch { rank_by, n_shapes, measured: n_shapes, recall: 1.0, threshold };
-        let mut report = SearchReport::of((query.name, query.complete), matches, about, options.k);
-        report.aligned = aligned;
+        let wanted = n_results(options.k).min(n_shapes);
+        let known = |ids: &[String]| -> Result<Vec<String>, Error> {
+            let held = ids.iter().filter_map(|id| match self.index.contains(id) {
+                Ok(held) => held.then(|| Ok(id.clone())),
+                Err(fault) => Some(Err(fault.into())),
+            });
+            held.collect()
+        };
+        let ids = ids.map(known).transpose()?;
+        let shortlist = match (rank_by, ids) {
+            (SearchRank::Plain | SearchRank::Graph, Some(ids)) => self.among(shape, ids)?,
+            (SearchRank::Plain, None) => self.by_distance(shape)?,
+            (SearchRank::Graph, None) => Shortlist::ordered(self.on_graph(shape.fused(), wanted)?),
+            (SearchRank::Part | SearchRank::Forms, ids) => {
+                let ids = match ids {
+                    Some(ids) => ids,
+                    None => self.index.entries()?.into_iter().map(|entry| entry.id).collect(),
+                };
+                Shortlist::ordered(self.by_all(query, rank_by, ids, wanted, budget)?)
+            }
+        };
+        let (found, aligned) = self.aligned((query, shape), shortlist, wanted, budget)?;
+        let (mut results, alignments): (Vec<Hit>, Vec<_>) = found.into_iter().unzip();
+        let threshold = self.index.threshold().filter(|_| rank_by.is_by_signatures());
+        let predicted = predicted(&results, threshold, &query.shape.entry.facts);
+        results.truncate(options.k);
         if options.explain == Explain::Kind {
-            let found = report.results.par_iter_mut().zip(alignments);
-            found.try_for_each(|(result, best)| self.explain(query, result, Some(best), budget))?;
+            let found = results.par_iter_mut().zip(alignments);
+            found.try_for_each(|(hit, best)| self.explain((query, shape), hit, best, budget))?;
         }
-        report.seconds.search = start.elapsed().as_secs_f64();
-        Ok(report)
+        let seconds = SearchSeconds { describe: query.seconds, search: start.elapsed().as_secs_f64() };
+        let (components, wholes) = (Vec::new(), Vec::new());
+        Ok(Answer {
+            results,
+            rank_by,
+            components,
+            wholes,
+            predicted,
+            n_shapes,
+            measured: n_shapes,
+            aligned,
+            recall: 1.0,
+            seconds,
+        })
     }
 
-    /// Adds what the files and meshes of a query and a result tell. `best` is the alignment of their forms, if it is known.
-    pub(super) fn explain(
+    /// Adds what the files and meshes of a query and a result tell. `best` is the alignment of their forms.
+    fn explain(
         &self,
-        query: &KnownQuery<'_>,
-        result: &mut SearchResult,
-        best: Option<FormAlignment>,
+        (query, shape): (&Query, &PreparedShape),
+        hit: &mut Hit,
+        best: FormAlignment,
         budget: &Budget,
     ) -> Result<(), Error> {
         budget.check()?;
-        let shape = self.prepared(&result.id)?;
-        let pair = ShapePair::new([&query.shape, &shape]);
-        let pair = if let Some(best) = best { pair.with_best(best) } else { pair };
-        result.comparison = Some(compare(&pair)?);
-        result.relation = self.related(query, &result.id, result.relation.clone())?;
+        let other = self.prepared(&hit.id)?;
+        hit.comparison = Some(compare(&ShapePair::new([shape, &other]).with_best(best))?);
+        hit.relation = self.related(query, &self.index.entry(&hit.id)?, hit.relation.clone())?;
         Ok(())
     }
 
-    /// The names of all shapes.
-    pub(super) fn ids(&self) -> Result<Vec<String>, Error> {
-        Ok(self.index.entries()?.into_iter().map(|(id, _)| id).collect())
-    }
-
     /// All shapes, those first that may be nearest.
-    pub(super) fn by_distance(&self, query: &KnownQuery<'_>) -> Result<Shortlist<'_>, Error> {
+    fn by_distance(&self, query: &PreparedShape) -> Result<Shortlist<'_>, Error> {
         let all = self.index.vector_table()?;
-        let candidates = bounds(query.shape.fused(), all.len(), |i| all.vector(i));
+        let candidates = bounds(query.fused(), all.len(), |i| all.vector(i));
         Ok(Shortlist { candidates, id: Box::new(|i| all.id(i).to_owned()), orders: None })
     }
 
-    /// The first shapes by rank distance. The graph knows fused distances only, because aligning the forms of all pairs
-    /// would take too long.
+    /// Some shapes, those first that may be nearest.
+    fn among(&self, query: &PreparedShape, ids: Vec<String>) -> Result<Shortlist<'static>, Error> {
+        let fused = ids.iter().map(|id| Ok(self.index.shape(id)?.fused));
+        let fused = fused.collect::<Result<Vec<_>, Error>>()?;
+        let candidates = bounds(query.fused(), ids.len(), |i| &fused[i]);
+        Ok(Shortlist { candidates, id: Box::new(move |i| ids[i].clone()), orders: None })
+    }
+
+    /// The first shapes by [rank distance](graph_rank), among the nearest and their neighbours. The graph knows fused distances
+    /// only, because aligning the forms of all pairs would take too long. Every list of neighbours is found when it is visited,
+    /// at most about 600 of them. Up to [`LINKS`] results are the first of one another; more look farther around.
     fn on_graph(&self, fused: &[f32], wanted: usize) -> Result<Vec<OrderedShape>, Error> {
-        let order = |near: RankedShape| {
-            let RankedShape { id, rank_distance, plain_rank, .. } = near;
-            (id, OrderedBy::Graph { rank_distance, plain_rank })
-        };
-        Ok(self.index.nearest_on_graph(fused, wanted)?.into_iter().map(order).collect())
+        let all = self.index.vector_table()?;
+        let neighbor = |(index, distance)| Neighbor { index, distance };
+        let nearest: Vec<Neighbor> =
+            all.nearest(fused, wanted.max(LINKS)).into_iter().map(neighbor).collect();
+        let Ok(mut ranked) = graph_rank(usize::MAX, &nearest, &mut NeighborGraph { all, query: fused });
+        ranked.truncate(wanted);
+        let ordered = ranked.into_iter().map(|found| {
+            let place = nearest.iter().position(|near| near.index == found.index);
+            let (rank_distance, plain_rank) = (found.rank_distance, place.map(|place| place + 1));
+            (all.id(found.index).to_owned(), OrderedBy::Graph { rank_distance, plain_rank })
+        });
+        Ok(ordered.collect())
     }
 
     /// The first of some shapes by a distance that is measured from each of them: how well the query fits as a part, or how
     /// much forms differ.
-    pub(super) fn by_all(
+    fn by_all(
         &self,
-        query: &KnownQuery<'_>,
+        query: &Query,
         rank: SearchRank,
         ids: Vec<String>,
         wanted: usize,
@@ -304,9 +320,11 @@ impl ShapeSearch {
         if rank == SearchRank::Part && part.is_none() {
             return Err(Error::NoPart);
         }
+        let spectrum = query.shape.signatures.get(SignatureKind::FormSpectrum.name());
+        let spectrum = spectrum.map_or(&[][..], Vec::as_slice);
         let measured = |id: &str| match part {
             Some(part) => self.fit(part, id),
-            None => self.form_distance(&query.form_spectrum, id),
+            None => self.form_distance(spectrum, id),
         };
         let one = |id: String| {
             budget.check()?;
@@ -320,17 +338,14 @@ impl ShapeSearch {
 
     /// The distance from the spectrum of a form, in units of two poses of one body.
     fn form_distance(&self, spectrum: &[f32], id: &str) -> Result<OrderedBy, Error> {
-        let distance = ShapeMetric::fused(spectrum, &self.form_spectrum(id)?);
+        let distance = ShapeMetric::fused(spectrum, &self.signature(id, SignatureKind::FormSpectrum)?);
         Ok(OrderedBy::Forms { form_distance: distance / ShapeMetric::unit(SignatureKind::FormSpectrum) })
-    }
-
-    pub(super) fn form_spectrum(&self, id: &str) -> Result<Vec<f32>, Error> {
-        Ok(signature(self.index.vectors(id)?, SignatureKind::FormSpectrum, id, self.index.path())?)
     }
 
     /// How well a part fits into a shape.
     fn fit(&self, part: &PartDiscAreas, id: &str) -> Result<OrderedBy, Error> {
-        let areas = disc_areas(&self.index.vectors(id)?);
+        let areas =
+            self.index.vector(id, "disc_areas")?.and_then(|numbers| DiscAreas::from_numbers(&numbers));
         let missing = || Error::NoDiscAreas { path: self.index.path().to_owned(), id: id.to_owned() };
         let PartDistance { distance, share } = part.distance(&areas.ok_or_else(missing)?);
         Ok(OrderedBy::Part { part_distance: distance, part_share: share })
@@ -338,51 +353,73 @@ impl ShapeSearch {
 
     /// Aligns the forms of a shortlist: of as many as are needed for the `wanted` nearest by combined distance, or of all of
     /// them for their relations if something else decides on their order. Returns how many alignments were begun, too.
-    pub(super) fn aligned(
+    fn aligned(
         &self,
-        query: &PreparedShape,
+        (query, shape): (&Query, &PreparedShape),
         shortlist: Shortlist<'_>,
         wanted: usize,
         budget: &Budget,
-    ) -> Result<(Vec<(ShardMatch, FormAlignment)>, usize), Error> {
+    ) -> Result<(Vec<(Hit, FormAlignment)>, usize), Error> {
         let Shortlist { candidates, id, orders } = shortlist;
         let n = if orders.is_some() { candidates.len() } else { wanted };
-        let Reranked { mut nearest, aligned, .. } = rerank(query, candidates, n, |i| {
+        let Reranked { mut nearest, aligned, .. } = rerank(shape, candidates, n, |i| {
             budget.check()?;
             self.prepared(&id(i))
         })?;
         if orders.is_some() {
             nearest.sort_by_key(|ranked| ranked.index);
         }
-        let found = nearest.into_iter().map(|ranked| {
+        let found = nearest.into_iter().zip(1..).map(|(ranked, rank)| {
             let Ranked { index, distance, fused, shape_distance, scale, alignment } = ranked;
-            let (id, order) = (id(index), orders.as_ref().map(|all| all[index]));
-            let ShapeEntry { label, path, .. } = self.index.entry(&id)?;
-            Ok((ShardMatch { id, label, path, distance, fused, shape_distance, scale, order }, alignment))
+            let Entry { id, label, path, .. } = self.index.entry(&id(index))?;
+            let relation = Relation::by_distance(shape_distance, scale, Handedness::Unknown);
+            let relation = relation.named(&query.name, &id);
+            let (order, comparison) = (orders.as_ref().map(|all| all[index]), None);
+            Ok((Hit { rank, id, label, path, distance, fused, order, relation, comparison }, alignment))
         });
         Ok((found.collect::<Result<_, Error>>()?, aligned))
     }
 }
 
 /// The name of a shape and what it is ordered by.
-pub(super) type OrderedShape = (String, OrderedBy);
+type OrderedShape = (String, OrderedBy);
 
 /// Shapes that may be results.
-pub(super) struct Shortlist<'a> {
+struct Shortlist<'a> {
     /// In ascending order of lower bounds of their combined distances.
-    pub(super) candidates: Vec<Candidate>,
+    candidates: Vec<Candidate>,
     /// The name of each.
-    pub(super) id: Box<dyn Fn(usize) -> String + Sync + 'a>,
+    id: Box<dyn Fn(usize) -> String + Sync + 'a>,
     /// What they are ordered by, if not by combined distance.
-    pub(super) orders: Option<Vec<OrderedBy>>,
+    orders: Option<Vec<OrderedBy>>,
 }
 
 impl Shortlist<'static> {
     /// Shapes in their order, all of which are results.
-    pub(super) fn ordered(shapes: Vec<OrderedShape>) -> Self {
+    fn ordered(shapes: Vec<OrderedShape>) -> Self {
         let (ids, orders): (Vec<String>, _) = shapes.into_iter().unzip();
         let candidates = (0..ids.len()).map(|index| Candidate { index, bound: 0.0 }).collect();
         Self { candidates, id: Box::new(move |i| ids[i].clone()), orders: Some(orders) }
+    }
+}
+
+/// The graph of nearest neighbours around a query.
+struct NeighborGraph<'a> {
+    all: &'a VectorTable,
+    query: &'a [f32],
+}
+
+impl retrieval::Graph for NeighborGraph<'_> {
+    type Error = std::convert::Infallible;
+
+    fn links(&mut self, shape: usize) -> Result<Vec<Neighbor>, Self::Error> {
+        let found = self.all.nearest(self.all.vector(shape), LINKS + 1).into_iter();
+        let found = found.filter(|(i, _)| *i != shape).take(LINKS);
+        Ok(found.map(|(index, distance)| Neighbor { index, distance }).collect())
+    }
+
+    fn distance(&mut self, shape: usize) -> Result<f64, Self::Error> {
+        Ok(ShapeMetric::fused(self.query, self.all.vector(shape)))
     }
 }
 
@@ -390,7 +427,8 @@ impl Shortlist<'static> {
 mod tests {
     use std::fs;
 
-    use index::{IndexError, IndexWriter, Job};
+    use base::ContentHash;
+    use index::{IndexError, IndexWriter};
     use mesh::{Surface, shapes};
     use surface::VertexId;
     use tempfile::TempDir;
@@ -419,6 +457,24 @@ mod tests {
         (folder, search)
     }
 
+    fn search_for(search: &ShapeSearch, mesh: &TriMesh, options: &SearchOptions) -> Answer {
+        search.search_mesh(mesh, options, &()).unwrap()
+    }
+
+    fn search_as(
+        search: &ShapeSearch,
+        mesh: &TriMesh,
+        name: (&str, Option<ContentHash>),
+        options: &SearchOptions,
+    ) -> Answer {
+        search.search(&search.query(mesh, name, options, &()).unwrap(), options, &()).unwrap()
+    }
+
+    /// What is found for a shape of the index.
+    fn search_by(search: &ShapeSearch, id: &str, options: &SearchOptions) -> Answer {
+        search.search(&search.query_of(id, options, &()).unwrap(), options, &()).unwrap()
+    }
+
     #[test]
     fn a_mesh_a_description_and_a_stored_shape_find_exactly_the_same() {
         let method = EmbedMethod::KernelPca { rank: None, bandwidth: Default::default() };
@@ -429,27 +485,27 @@ mod tests {
             assert_eq!(*search.describe_options(), describe_options);
             let options = SearchOptions { explain: Explain::Kind, ..SearchOptions::default() };
             let mesh = search.mesh("ring0").unwrap();
-            let by_mesh = search.search(Query::from(&mesh), &options, &()).unwrap();
-            let by_name = search.search(Query::Id("ring0"), &options, &()).unwrap();
+            let by_mesh = search_for(&search, &mesh, &options);
+            let by_name = search_by(&search, "ring0", &options);
             let surface = Surface::new(&mesh, &describe_options.form.repair, &()).unwrap();
             let described = describe(&surface, &describe_options, &()).unwrap();
-            let by_description = search.search(Query::from(&described), &options, &()).unwrap();
+            let by_description = search.search(&Query::from(&described), &options, &()).unwrap();
             assert!(by_mesh.results[0].id == "ring0" && by_mesh.results[0].distance < 1e-6);
-            let unexplained = |report: &SearchReport| {
+            let unexplained = |report: &Answer| {
                 let results = report.results.iter();
-                let numbers = |r: &SearchResult| (r.id.clone(), r.distance, r.fused, r.comparison.clone());
+                let numbers = |r: &Hit| (r.id.clone(), r.distance, r.fused, r.comparison.clone());
                 results.map(numbers).collect::<Vec<_>>()
             };
             assert_eq!(unexplained(&by_mesh), unexplained(&by_name));
             assert_eq!(unexplained(&by_mesh), unexplained(&by_description));
-            let kind = |report: &SearchReport| report.results[0].relation.kind;
+            let kind = |report: &Answer| report.results[0].relation.kind;
             assert_eq!(kind(&by_mesh), RelationKind::IdenticalGeometry);
             assert_eq!(kind(&by_name), RelationKind::IdenticalFile);
             assert_eq!(kind(&by_description), RelationKind::OtherPose, "only descriptions were compared");
             // The comparison of the two shapes says the same.
             for result in &by_mesh.results {
                 let other = search.prepared(&result.id).unwrap();
-                let query = described.prepare().unwrap();
+                let query = prepared(&described.shape(), &describe_options).unwrap();
                 let direct = compare(&ShapePair::new([&query, &other])).unwrap();
                 assert_eq!(result.comparison.as_ref(), Some(&direct));
                 assert_eq!(result.relation.because.distance, direct.shape_distance);
@@ -464,7 +520,7 @@ mod tests {
         let options = DescribeOptions { points: 500, ..DescribeOptions::default() };
         let surface = Surface::new(&shapes::icosphere(2), &Default::default(), &()).unwrap();
         let query = describe(&surface, &options, &()).unwrap();
-        let fault = search.search(Query::from(&query), &SearchOptions::default(), &()).unwrap_err();
+        let fault = search.search(&Query::from(&query), &SearchOptions::default(), &()).unwrap_err();
         assert!(matches!(fault, Error::Index(IndexError::OtherOptions { .. })));
         assert!(fault.to_string().contains("\"points\":500"), "{fault}");
     }
@@ -473,32 +529,32 @@ mod tests {
     fn forms_alone_rank_every_shape_and_a_mirror_image_is_the_same() {
         let (_folder, search) = indexed(&DescribeOptions::default());
         let options = SearchOptions { rank_by: SearchRank::Forms, ..SearchOptions::default() };
-        let by_name = search.search(Query::Id("ring0"), &options, &()).unwrap();
+        let by_name = search_by(&search, "ring0", &options);
         assert_eq!((by_name.rank_by, by_name.results.len(), by_name.measured), (SearchRank::Forms, 4, 4));
-        let distance = |found: &SearchResult| found.order.unwrap().distance();
+        let distance = |found: &Hit| found.order.unwrap().distance();
         assert!(by_name.results.windows(2).all(|pair| distance(&pair[0]) <= distance(&pair[1])));
         assert!(by_name.results[0].id == "ring0" && distance(&by_name.results[0]) == 0.0);
         assert_eq!(by_name.results[1].id, "ring1");
         let mut mirrored = search.mesh("ring0").unwrap();
         mirrored.positions.iter_mut().for_each(|p| (p.x, p.y) = (-3.0 * p.x, 3.0 * p.y));
         mirrored.positions.iter_mut().for_each(|p| p.z *= 3.0);
-        let by_mesh = search.search(Query::from(&mirrored), &options, &()).unwrap();
+        let by_mesh = search_for(&search, &mirrored, &options);
         let nearest = &by_mesh.results[0];
         // Which of the points of a ring are taken is left to rounding, so it is less than two poses apart, but not zero.
         assert!(nearest.id == "ring0" && distance(nearest) < 0.8, "{}: {}", nearest.id, distance(nearest));
-        let plain = search.search(Query::Id("ring0"), &SearchOptions::default(), &()).unwrap();
+        let plain = search_by(&search, "ring0", &SearchOptions::default());
         assert!(plain.results.iter().all(|found| found.order.is_none()));
     }
 
     #[test]
     fn the_graph_ranks_the_same_shapes_in_its_own_order() {
         let (_folder, search) = indexed(&DescribeOptions::default());
-        let plain = search.search(Query::Id("ring0"), &SearchOptions::default(), &()).unwrap();
+        let plain = search_by(&search, "ring0", &SearchOptions::default());
         let options = SearchOptions { rank_by: SearchRank::Graph, ..SearchOptions::default() };
-        let graph = search.search(Query::Id("ring0"), &options, &()).unwrap();
+        let graph = search_by(&search, "ring0", &options);
         assert_eq!((plain.rank_by, graph.rank_by), (SearchRank::Plain, SearchRank::Graph));
         assert_eq!((graph.results.len(), graph.results[0].id.as_str()), (4, "ring0"));
-        let order = |found: &SearchResult| found.order.unwrap().distance();
+        let order = |found: &Hit| found.order.unwrap().distance();
         assert!(graph.results.windows(2).all(|pair| order(&pair[0]) <= order(&pair[1])));
         assert!(matches!(graph.results[0].order, Some(OrderedBy::Graph { plain_rank: Some(1), .. })));
         for found in &graph.results {
@@ -524,13 +580,13 @@ mod tests {
         let x = |v: VertexId, part: &TriMesh| part.positions[v.index()].x;
         let kept = part.faces.iter().copied().filter(|face| face.iter().all(|v| x(*v, &part) < 1.0));
         part.faces = kept.collect();
-        let found = search.search(Query::from(&part), &options, &()).unwrap();
+        let found = search_for(&search, &part, &options);
         assert_eq!(
             (found.rank_by, found.results[0].id.as_str(), found.measured),
             (options.rank_by, "ring1", 4)
         );
-        let fit = |found: &SearchResult| found.order.unwrap().distance();
-        let share = |found: &SearchResult| match found.order {
+        let fit = |found: &Hit| found.order.unwrap().distance();
+        let share = |found: &Hit| match found.order {
             Some(OrderedBy::Part { part_share, .. }) => part_share,
             other => panic!("{other:?}"),
         };
@@ -540,19 +596,19 @@ mod tests {
         let json = serde_json::to_value(&found).unwrap();
         assert!(json["rank_by"] == "part" && json["results"][0]["part_distance"].is_number());
         // As a whole, it is another shape.
-        let plain = search.search(Query::from(&part), &SearchOptions::default(), &()).unwrap();
+        let plain = search_for(&search, &part, &SearchOptions::default());
         assert!(
             !plain.results[0].relation.because.distance.may_be_same_class()
                 && plain.results[0].order.is_none()
         );
         // A shape of the index is read again, and a description is not enough.
-        let itself = search.search(Query::Id("box0"), &options, &()).unwrap();
+        let itself = search_by(&search, "box0", &options);
         assert!(itself.results[0].id == "box0" && share(&itself.results[0]) == 1.0);
         fs::remove_file(folder.path().join("box0.tri")).unwrap();
-        assert!(matches!(search.search(Query::Id("box0"), &options, &()), Err(Error::MeshGone { .. })));
+        assert!(matches!(search.query_of("box0", &options, &()), Err(Error::MeshGone { .. })));
         let surface = Surface::new(&part, &Default::default(), &()).unwrap();
         let described = describe(&surface, search.describe_options(), &()).unwrap();
-        assert!(matches!(search.search(Query::from(&described), &options, &()), Err(Error::NoPart)));
+        assert!(matches!(search.search(&Query::from(&described), &options, &()), Err(Error::NoPart)));
     }
 
     #[test]
@@ -560,32 +616,34 @@ mod tests {
         let (_folder, search) = indexed(&DescribeOptions::default());
         let old = tempfile::tempdir().unwrap();
         let path = old.path().join("old.canonform");
-        let mut writer = IndexWriter::open(&path, Job::Build, Some(search.index().options())).unwrap();
+        let mut writer = IndexWriter::build(&path, search.index().options()).unwrap();
         search
             .index()
             .each(|mut shape| {
-                shape.vectors.disc_areas.clear();
+                shape.disc_areas.clear();
                 writer.put(&[shape])
             })
             .unwrap();
         writer.finish(&()).unwrap();
         let old = ShapeSearch::open(&path).unwrap();
         let options = SearchOptions { rank_by: SearchRank::Part, ..SearchOptions::default() };
-        let fault = old.search(Query::from(&shapes::icosphere(3)), &options, &()).unwrap_err();
+        let query = old.query(&shapes::icosphere(3), ("", None), &options, &()).unwrap();
+        let fault = old.search(&query, &options, &()).unwrap_err();
         assert!(
             matches!(fault, Error::NoDiscAreas { .. }) && fault.to_string().contains("disc areas"),
             "{fault}"
         );
         assert_eq!(fault.remedy(), Some(Remedy::BuildIndexAnew));
-        old.search(Query::from(&shapes::icosphere(3)), &SearchOptions::default(), &()).unwrap();
+        search_for(&old, &shapes::icosphere(3), &SearchOptions::default());
     }
 
     #[test]
     fn shapes_are_found_by_name() {
         let (_folder, search) = indexed(&DescribeOptions::default());
         let options = SearchOptions::default();
-        assert!(matches!(search.search(Query::Id("none"), &options, &()), Err(Error::Index(_))));
-        let names: Vec<String> = search.index().entries().unwrap().into_iter().map(|(id, _)| id).collect();
+        assert!(matches!(search.query_of("none", &options, &()), Err(Error::Index(_))));
+        let names: Vec<String> =
+            search.index().entries().unwrap().into_iter().map(|entry| entry.id).collect();
         assert_eq!(names, ["ball0", "box0", "ring0", "ring1"]);
         assert_eq!(search.index().entry("box0").unwrap().label, "box");
     }
@@ -611,7 +669,7 @@ mod tests {
         let options = SearchOptions { explain: Explain::Kind, ..SearchOptions::default() };
         let mut ring = search.mesh("ring0").unwrap();
         ring.positions.iter_mut().for_each(|p| *p /= 25.4);
-        let nearest = || search.search(Query::from(&ring), &options, &()).unwrap().results[0].clone();
+        let nearest = || search_for(&search, &ring, &options).results[0].clone();
         let found = nearest().relation;
         assert_eq!((found.kind, found.because.basis), (RelationKind::Scaled, Basis::Meshes));
         assert_eq!(found.to_string(), "ring0 is the query scaled by 25.4 (inches to millimetres)");
@@ -619,7 +677,7 @@ mod tests {
         let found = nearest().relation;
         assert_eq!((found.kind, found.because.basis), (RelationKind::OtherPose, Basis::Descriptions));
         assert!(found.reason().ends_with("the mesh was not compared"), "{}", found.reason());
-        let by_name = search.search(Query::Id("ring0"), &options, &()).unwrap();
+        let by_name = search_by(&search, "ring0", &options);
         assert_eq!(by_name.results[0].relation.kind, RelationKind::IdenticalFile);
     }
 
@@ -631,8 +689,7 @@ mod tests {
         let content = crate::content_hash(&path).unwrap();
         let ring = mesh::io::read(&path).unwrap();
         let explained = |mesh: &TriMesh, name: &str, content| {
-            let found = search.search(Query::Mesh { mesh, name, content }, &options, &()).unwrap();
-            found.results[0].relation.to_string()
+            search_as(&search, mesh, (name, content), &options).results[0].relation.to_string()
         };
         assert_eq!(explained(&ring, "a.off", Some(content)), "ring1 is the same file as a.off");
         let plate = |mut meshes: [TriMesh; 3]| {
@@ -647,9 +704,7 @@ mod tests {
         let (mut other, ball) = (search.mesh("ring0").unwrap(), search.mesh("ball0").unwrap());
         other.positions.iter_mut().for_each(|p| p.coords *= 3.0);
         let plate = plate([ball.clone(), other, ball]);
-        let report = search
-            .search(Query::Mesh { mesh: &plate, name: "plate.stl", content: None }, &options, &())
-            .unwrap();
+        let report = search_as(&search, &plate, ("plate.stl", None), &options);
         let found: Vec<_> =
             report.components.iter().map(|part| (part.copies, part.nearest.clone().unwrap())).collect();
         assert_eq!((found[0].0, found[0].1.id.as_str()), (1, "ring0"));
@@ -659,7 +714,7 @@ mod tests {
         let path = folder.path().join("all.canonform");
         build_index(folder.path(), &path, &BuildOptions::new(search.describe_options()), &()).unwrap();
         let again = ShapeSearch::open(&path).unwrap();
-        let wholes = again.search(Query::Id("ball0"), &options, &()).unwrap().wholes;
+        let wholes = search_by(&again, "ball0", &options).wholes;
         assert_eq!((wholes.len(), wholes[0].id.as_str()), (1, "plate7"));
         assert_eq!(
             wholes[0].relation.to_string(),
@@ -667,19 +722,13 @@ mod tests {
         );
         fs::remove_file(folder.path().join("plate7.off")).unwrap();
         assert_eq!(
-            again.search(Query::Id("ball0"), &options, &()).unwrap().wholes[0].relation.to_string(),
+            search_by(&again, "ball0", &options).wholes[0].relation.to_string(),
             "ball0 is part of plate7, one of its three components, in this or another pose"
         );
-        assert!(again.search(Query::Id("box0"), &options, &()).unwrap().wholes.is_empty());
+        assert!(search_by(&again, "box0", &options).wholes.is_empty());
 
         let kinds: Vec<_> = found.iter().map(|(_, result)| result.relation.kind).collect();
         assert_eq!(kinds, [RelationKind::Scaled, RelationKind::IdenticalGeometry]);
-        assert!(
-            search
-                .search(Query::Mesh { mesh: &plate, name: "", content: None }, &SearchOptions::default(), &())
-                .unwrap()
-                .components
-                .is_empty()
-        );
+        assert!(search_as(&search, &plate, ("", None), &SearchOptions::default()).components.is_empty());
     }
 }

@@ -8,7 +8,7 @@ use std::time::Duration;
 use base::Budget;
 use base::ContentHash;
 use base::files::FileId;
-use index::ShapeEntry;
+use index::Entry;
 use mesh::io::{MemoryFile, ReadLimits, without_extension};
 use mesh::{MeshError, TriMesh};
 use rayon::prelude::*;
@@ -259,16 +259,16 @@ pub(super) fn hash_all(shapes: Vec<Listed>, observer: &dyn Observer) -> Vec<Hash
 }
 
 /// Reads the mesh of an indexed shape, if the file still has the content that was indexed.
-pub(super) fn read_unchanged(index: &Path, id: &str, entry: &ShapeEntry) -> Result<TriMesh, Error> {
+pub(super) fn read_unchanged(index: &Path, entry: &Entry) -> Result<TriMesh, Error> {
     let path = mesh_path(index, &entry.path);
     let gone = |fault: CollectionError| match fault {
         CollectionError::File(fault) | CollectionError::Mesh(MeshError::Io(fault)) => {
-            let (id, path, source) = (id.to_owned(), path.clone(), fault.source);
+            let (id, path, source) = (entry.id.clone(), path.clone(), fault.source);
             Error::MeshGone { id, path, source }
         }
         other => other.into(),
     };
-    let changed = || Error::MeshChanged { id: id.to_owned(), path: path.clone() };
+    let changed = || Error::MeshChanged { id: entry.id.clone(), path: path.clone() };
     let files = mesh::io::files_in(&path, &Storage);
     // Hashing takes little memory, whatever the path of a foreign index leads to.
     if content_hash(&path).map_err(gone)? != entry.content {

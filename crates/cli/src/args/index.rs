@@ -12,8 +12,8 @@ use super::shared::LimitArgs;
 pub(crate) enum IndexCommand {
     /// Index every mesh of a folder, an archive or a list; describe only new and changed ones
     ///
-    /// An interrupted run keeps its finished work in INDEX.work; run the same command again to continue. Readers see
-    /// the old index until the new one is complete. Meshes that cannot be described are listed at the end, and the exit
+    /// Every described mesh is in the index at once: after an interruption, run the same command again to continue.
+    /// Searches beside it see a whole state. Meshes that cannot be described are listed at the end, and the exit
     /// code is then 2. Shapes of the folder whose files are gone are removed; shapes that came from elsewhere stay
     /// (see --prune). Links are followed, but nothing is indexed twice through them.
     Build(Box<BuildArgs>),

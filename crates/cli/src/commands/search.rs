@@ -7,7 +7,7 @@ use anyhow::{Result, anyhow};
 use base::one_line;
 use canonform::mesh::io::without_extension;
 use canonform::{
-    ComponentResult, Explain, OrderedBy, Prediction, Relation, SearchOptions, SearchRank, SearchReport,
+    Answer, ComponentResult, Explain, OrderedBy, Prediction, Relation, SearchOptions, SearchRank,
     ShapeSearch, Unknown, content_hash, is_dataset, list_shapes, mesh_path,
 };
 use serde::Serialize;
@@ -17,16 +17,16 @@ use crate::input::{file_name, is_stream, is_there, named, read_mesh};
 use crate::output::{count, exit_code, print, print_json, row_of, table_of};
 
 #[derive(Serialize)]
-struct Answer {
+struct Answered {
     query: String,
     #[serde(flatten)]
-    report: SearchReport,
+    answer: Answer,
 }
 
 /// All answers.
 #[derive(Serialize)]
 struct Json<'a> {
-    queries: &'a [Answer],
+    queries: &'a [Answered],
     failed: &'a [Failure],
 }
 
@@ -51,9 +51,9 @@ impl Query {
         }
     }
 
-    fn search(&self, index: &ShapeSearch, options: &SearchOptions, common: &Common) -> Result<SearchReport> {
+    fn search(&self, index: &ShapeSearch, options: &SearchOptions, common: &Common) -> Result<Answer> {
         match self {
-            Self::Indexed(id) => Ok(index.search(canonform::Query::Id(id), options, &())?),
+            Self::Indexed(id) => Ok(index.search(&index.query_of(id, options, &())?, options, &())?),
             Self::Mesh(path) => {
                 let mesh = read_mesh(path, common)?;
                 let search = || {
@@ -62,8 +62,8 @@ impl Query {
                         Explain::No => None,
                         Explain::Kind => Some(content_hash(path)?),
                     };
-                    let name = &file_name(path);
-                    index.search(canonform::Query::Mesh { mesh: &mesh, name, content }, options, &())
+                    let query = index.query(&mesh, (&file_name(path), content), options, &())?;
+                    index.search(&query, options, &())
                 };
                 search().map_err(|fault| named(path, fault))
             }
@@ -99,12 +99,12 @@ pub(crate) fn search(args: &SearchArgs, common: &Common) -> Result<ExitCode> {
     let (mut answers, mut failed) = (Vec::new(), Vec::new());
     for query in &queries {
         match query.search(&index, &options, common) {
-            Ok(mut report) => {
-                report.place(|path| mesh_path(&args.index, path).to_string_lossy().into_owned());
+            Ok(mut answer) => {
+                answer.place(|path| mesh_path(&args.index, path).to_string_lossy().into_owned());
                 if !common.json {
-                    print(&text(query.name(), &report, args.explain))?;
+                    print(&text(query.name(), &answer, args.explain))?;
                 }
-                answers.push(Answer { query: query.name(), report });
+                answers.push(Answered { query: query.name(), answer });
             }
             Err(fault) => {
                 let fault = match query {
@@ -124,7 +124,7 @@ pub(crate) fn search(args: &SearchArgs, common: &Common) -> Result<ExitCode> {
             }
         }
     }
-    let nothing = answers.iter().any(|answer| answer.report.n_shapes == 0);
+    let nothing = answers.iter().any(|answered| answered.answer.n_shapes == 0);
     let code = if failed.is_empty() && nothing { ExitCode::from(1) } else { exit_code(failed.is_empty()) };
     if common.json {
         print_json(&Json { queries: &answers, failed: &failed })?;
@@ -149,7 +149,7 @@ fn meant(given: &Path, index: &ShapeSearch) -> Option<String> {
     let wanted = without_extension(given).to_string_lossy().to_lowercase();
     let file_of = |name: &str| name.rsplit('/').next().unwrap_or_default().to_owned();
     let is_meant = |id: &String| file_of(&id.to_lowercase()) == file_of(&wanted);
-    let ids = index.index().entries().unwrap_or_default().into_iter().map(|(id, _)| id);
+    let ids = index.index().entries().unwrap_or_default().into_iter().map(|entry| entry.id);
     let ids: Vec<String> = ids.filter(is_meant).collect();
     let is_known = ids.iter().any(|id| Path::new(id) == given);
     let named: Vec<String> = ids.iter().take(MOST_SUGGESTED).map(|id| format!("`{id}`")).collect();
@@ -157,7 +157,7 @@ fn meant(given: &Path, index: &ShapeSearch) -> Option<String> {
 }
 
 /// The shapes found and the class; with `details`, how each shape is related and what the search did.
-fn text(query: String, report: &SearchReport, details: bool) -> String {
+fn text(query: String, report: &Answer, details: bool) -> String {
     let mut text = format!("{}\n{}\n", one_line(&query), table(report));
     text += match report.rank_by {
         SearchRank::Plain => "",
@@ -201,7 +201,7 @@ fn class(predicted: &Prediction) -> String {
     }
 }
 
-fn table(report: &SearchReport) -> comfy_table::Table {
+fn table(report: &Answer) -> comfy_table::Table {
     let has_classes = report.results.iter().any(|result| !result.label.is_empty());
     let mut head = vec!["", "shape", "class", "distance", "relation"];
     match report.rank_by {

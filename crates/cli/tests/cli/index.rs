@@ -211,7 +211,6 @@ fn shapes_are_added_and_removed() {
     let removed = place.json("index remove all.canonform ring7 extra ring7");
     assert_eq!((&removed["removed"], &removed["n_shapes"]), (&2.into(), &9.into()));
     assert_eq!(export(&place, "all.canonform"), whole);
-    assert!(!place.path("all.canonform.work").exists());
 }
 
 #[test]
@@ -235,7 +234,7 @@ fn failed_meshes_are_listed_and_left_out() {
     fs::write(place.path("broken/a.off"), "OFF\n").unwrap();
     let outcome = place.run("index build broken -o none");
     assert_eq!(outcome.code, 2);
-    assert!(!place.path("none").exists() && !place.path("none.work").exists());
+    assert!(!place.path("none").exists());
 }
 
 #[test]
@@ -372,8 +371,9 @@ fn errors_name_files_that_are_not_indexes_or_cannot_be_written() {
     place.refused("index build meshes -n 30 -o all.canonform", &["other options", "30", "20"]);
     place.refused("index build meshes -n 3 -o a", &["at least 8 samples", "3"]);
     place.refused("search all.canonform none.off", &["none.off"]);
-    fs::create_dir(place.path("all.canonform.work")).unwrap();
-    place.refused("index add all.canonform meshes", &["all.canonform.work", "cannot write"]);
+    fs::create_dir(place.path("folder")).unwrap();
+    place.refused("index build meshes -o folder", &["folder", "cannot write"]);
+    place.refused("index info folder", &["folder", "cannot read"]);
     assert_eq!(fs::read(place.path("all.canonform")).unwrap(), before);
     assert_eq!(fs::read_to_string(place.path("notes.txt")).unwrap(), "dear diary");
 }

@@ -36,7 +36,9 @@ pub(super) fn values(shape: &Shape) -> Vec<(Cow<'static, str>, Value<'_>)> {
         let extents = vec![shape.components.len(), first.len()];
         all.push(("components".into(), Value::Floats(shape.components.concat().into(), extents)));
     }
-    all.extend(shape.signatures.iter().map(|(name, values)| (format!("{SIGNATURE}{name}").into(), row(values))));
+    all.extend(
+        shape.signatures.iter().map(|(name, values)| (format!("{SIGNATURE}{name}").into(), row(values))),
+    );
     all
 }
 

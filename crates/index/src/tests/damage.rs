@@ -46,8 +46,10 @@ fn a_changed_byte_is_detected_and_never_returned() {
         fs::write(&copy, &changed).unwrap();
         let is_named = |error: &IndexError| {
             use IndexError as E;
-            matches!(error, E::Damaged { .. } | E::Foreign(_) | E::FutureVersion { .. } | E::PastVersion { .. })
-                || matches!(error, E::Io { .. } | E::NoSuchShape { .. })
+            matches!(
+                error,
+                E::Damaged { .. } | E::Foreign(_) | E::FutureVersion { .. } | E::PastVersion { .. }
+            ) || matches!(error, E::Io { .. } | E::NoSuchShape { .. })
         };
         n += 1;
         match verify(&copy) {
@@ -86,7 +88,10 @@ fn truncated_files_are_damaged() {
 #[test]
 fn other_files_are_never_overwritten() {
     let folder = Folder::new();
-    Connection::open(folder.path("photos")).unwrap().execute_batch("create table shapes(id); create table meta(x)").unwrap();
+    Connection::open(folder.path("photos"))
+        .unwrap()
+        .execute_batch("create table shapes(id); create table meta(x)")
+        .unwrap();
     let photos = fs::read(folder.path("photos")).unwrap();
     for (name, content) in
         [("notes.txt", &b"dear diary"[..]), ("empty", b""), ("long", &[b'x'; 9000]), ("photos", &photos)]

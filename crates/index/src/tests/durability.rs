@@ -40,7 +40,10 @@ fn an_index_has_one_writer_at_a_time() {
     let mut first = IndexWriter::open(&path).unwrap();
     let refused = || {
         let error = IndexWriter::open(&path).unwrap_err();
-        assert!(matches!(&error, IndexError::Busy(_)) && error.to_string().contains("another program"), "{error}");
+        assert!(
+            matches!(&error, IndexError::Busy(_)) && error.to_string().contains("another program"),
+            "{error}"
+        );
     };
     refused();
     first.put(&[shape(5)]).unwrap();
@@ -119,11 +122,14 @@ fn a_copy_into_the_file_that_is_cut_at_any_page_loses_nothing() {
     assert!(old != new && folder.names() == ["a"]);
     // Some of the pages are new, and the others still old.
     let copy = folder.path("b");
-    let page = |bytes: &[u8], i: usize| bytes[(16_384 * i).min(bytes.len())..(16_384 * (i + 1)).min(bytes.len())].to_vec();
+    let page = |bytes: &[u8], i: usize| {
+        bytes[(16_384 * i).min(bytes.len())..(16_384 * (i + 1)).min(bytes.len())].to_vec()
+    };
     let n_pages = new.len().div_ceil(16_384);
     for turn in 0..=n_pages {
         for is_new in [&|i: usize| i < turn, &|i: usize| i >= turn] as [&dyn Fn(usize) -> bool; 2] {
-            let mixed: Vec<u8> = (0..n_pages).flat_map(|i| page(if is_new(i) { &new } else { &old }, i)).collect();
+            let mixed: Vec<u8> =
+                (0..n_pages).flat_map(|i| page(if is_new(i) { &new } else { &old }, i)).collect();
             fs::write(&copy, mixed).unwrap();
             fs::write(with_suffix(&copy, "-wal"), &log).unwrap();
             assert!(export(&copy) == after, "{turn}");

@@ -399,10 +399,9 @@ def search(
     described = time.perf_counter()
     report = running.report(packed, whole("k", k), rank, explain)
     if explain:
-        components = _canonform.pack_components(packed)
         report["components"] = [
             json.loads(about) | {"nearest": next(iter(running.report(part, 1, "plain", explain)["results"]), None)}
-            for about, part in components
+            for about, part in _canonform.query_components(packed)
         ]
     report = {key: value for key, value in report.items() if value or key not in ("components", "wholes")}
     report["seconds"] = {"describe": described - start, "search": time.perf_counter() - described}
@@ -445,18 +444,14 @@ class _Search:
             found = self.table.to_table(columns=["shard"], filter=f"id = '{escaped}'")["shard"].to_pylist()
             if not found:
                 raise NoSuchShapeError(f"{name!r} is neither a file nor a shape of the table")
-            return self.ask("pack", [(found[0], name, rank, explain)])[0], None, name
+            return self.ask("query_of", [(found[0], name, rank, explain)])[0], None, name
         surface = Surface.read(name) if name else surface_of(query)
         name = os.path.basename(name) or surface._name or "the query"
-        return _canonform.pack_surface(surface._inner, self.facts.options, name, rank, explain), surface, name
+        return _canonform.query_of_surface(surface._inner, self.facts.options, name, rank, explain), surface, name
 
-    def near(self, packed: str, n: int, rank: str) -> list[_vectors.Near]:
-        """The first shapes of all indexes."""
-        if self.exact or rank != "plain":
-            shards = list(self.facts.shards)
-            lists = self.ask("shortlist", [(shard, packed, rank, n) for shard in shards])
-            return sorted((distance, id, shard) for shard, some in zip(shards, lists, strict=True) for distance, id in some)[:n]
-        row = _vectors.padded(self.table, np.array(json.loads(packed)["fused"], np.float32))
+    def near(self, packed: str, n: int) -> list[_vectors.Near]:
+        """The shapes with the nearest vectors of the table."""
+        row = _vectors.padded(self.table, np.array(json.loads(packed)["shape"]["fused"], np.float32))
         if self.client is None or self.table.count_rows() <= _vectors.ALONE:
             return _vectors.nearest(self.table, row, n, self.facts.probes)
         pieces = [(piece, row, n, self.facts.probes) for piece in _vectors.pieces(self.table)]
@@ -466,31 +461,37 @@ class _Search:
     def report(self, packed: str, k: int, rank: str, explain: bool) -> dict[str, Any]:
         """The report on a query, without its components."""
         n, facts = self.table.count_rows(), self.facts
-        n_candidates, wanted = _canonform.shortlist(k, n)
-        candidates: dict[str, list[str]] = {}
-        for _, id, shard in self.near(packed, n_candidates if rank == "plain" and not self.exact else wanted, rank):
-            candidates.setdefault(shard, []).append(id)
-            self.shards_of[id] = os.path.join(self.folder, shard)
-        matches = self.ask("match_shapes", [(shard, packed, ids, rank, wanted) for shard, ids in candidates.items()])
-        about = {"rank_by": rank, "n_shapes": n, "measured": n, "recall": 1.0, "threshold": facts.threshold if rank == "plain" else None}
+        n_candidates, wanted = _canonform.shortlist(k)
+        asked: dict[str, list[str] | None] = dict.fromkeys(facts.shards)
+        if rank == "plain" and not self.exact:
+            candidates: dict[str, list[str]] = {}
+            for _, id, shard in self.near(packed, n_candidates):
+                candidates.setdefault(shard, []).append(id)
+            asked = {**candidates}
+        answers = self.ask("search_among", [(shard, packed, ids, wanted, rank, False) for shard, ids in asked.items()])
+        report: dict[str, Any] = json.loads(_canonform.merge_answers(packed, answers, json.dumps(facts.threshold), k))
+        report |= {"n_shapes": n, "measured": n, "rank_by": rank}
         if facts.probes and rank == "plain" and not self.exact:
             loose = _vectors.unindexed(self.table)
-            about |= {"recall": facts.recall, "measured": loose + round((n - loose) * min(1, facts.probes / facts.partitions))}
-        report: dict[str, Any] = json.loads(_canonform.merge_matches(packed, matches, json.dumps(about), k))
+            report |= {"recall": facts.recall, "measured": loose + round((n - loose) * min(1, facts.probes / facts.partitions))}
+        results = {result["id"]: result for result in report["results"]}
+        held = {
+            shard: [result["id"] for result in json.loads(answer)["results"] if result["id"] in results]
+            for shard, answer in zip(asked, answers, strict=True)
+        }
+        self.shards_of |= {id: os.path.join(self.folder, shard) for shard, ids in held.items() for id in ids}
         if explain:
-            results = {result["id"]: result for result in report["results"]}
-            of = dict(zip(candidates, matches, strict=True))
-            asked = [(shard, packed, of.get(shard, _NO_MATCHES), set(results)) for shard in facts.shards | of]
-            explained = [json.loads(some) for some in self.ask("explain", asked)]
+            items = [(shard, packed, held.get(shard, []), len(held.get(shard, [])), rank, True) for shard in facts.shards | held]
+            explained = [json.loads(some) for some in self.ask("search_among", items)]
             for result in (result for some in explained for result in some["results"]):
                 results[result["id"]] |= {key: result[key] for key in ("relation", "comparison")}
-            wholes = sorted((whole for some in explained for whole in some["wholes"]), key=lambda found: (found["distance"], found["id"]))
+            wholes = (whole for some in explained for whole in some.get("wholes", []))
+            wholes = sorted(wholes, key=lambda found: (found["distance"], found["id"]))
             report["wholes"] = [whole | {"rank": place} for place, whole in enumerate(wholes[:_MOST_WHOLES], 1)]
         return report
 
 
 _MOST_WHOLES = 10
-_NO_MATCHES = '{"nearest": [], "aligned": 0}'
 
 
 def _mapped(

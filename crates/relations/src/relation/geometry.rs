@@ -103,6 +103,12 @@ impl MeshGeometry {
         })
     }
 
+    /// The hash of the file, if there is one.
+    #[must_use]
+    pub fn content(&self) -> Option<ContentHash> {
+        self.content
+    }
+
     /// Number of vertices in different positions.
     #[must_use]
     pub fn n_vertices(&self) -> usize {

@@ -76,13 +76,13 @@ struct ComparedShape {
     shape: PreparedShape,
     /// None if the mesh is missing.
     measured: Option<Arc<Measured>>,
-    content: ContentHash,
+    content: Option<ContentHash>,
 }
 
 impl ComparedShape {
     fn of_shape(app: &App, collection: &Collection, id: &str, budget: &Budget) -> Result<Self, Error> {
         let shape = collection.search.prepared(id)?;
-        let content = collection.search.index().entry(id)?.content;
+        let content = Some(collection.search.index().entry(id)?.content);
         match app.indexed(collection, id, budget) {
             Err(fault) if !is_missing(&fault) => Err(fault),
             measured => Ok(Self { shape, measured: measured.ok(), content }),
@@ -96,8 +96,8 @@ impl ComparedShape {
             usual: shape,
             form: measured.map_or(shape.form(), |measured| &measured.form),
             surface: measured.map(|measured| &measured.surface),
-            geometry: measured.and_then(|measured| measured.geometry.as_ref()),
-            content: Some(self.content),
+            geometry: measured.and_then(|measured| measured.geometry.as_deref()),
+            content: self.content,
         }
     }
 }
@@ -118,8 +118,12 @@ fn answer(
     let (name, a) = match (params.query, params.a) {
         (Some(query), None) => {
             let query = app.query(collection, &query)?;
-            let (shape, measured) = (query.description.prepare()?, Some(query.measured.clone()));
-            (query.name.clone(), ComparedShape { shape, measured, content: query.content })
+            let shape = collection.search.prepared_query(&query.described)?;
+            let measured = Some(query.measured.clone());
+            (
+                query.described.name.clone(),
+                ComparedShape { shape, measured, content: query.described.content },
+            )
         }
         (None, Some(id)) => {
             let side = ComparedShape::of_shape(app, collection, &id, budget)?;

@@ -1,10 +1,10 @@
 //! Results as CSV (RFC 4180).
 
 use canonform::index::text_cell;
-use canonform::{OrderedBy, SearchRank, SearchReport};
+use canonform::{Answer, OrderedBy, SearchRank};
 
 /// One line per result, under a header.
-pub(super) fn of(query: &str, report: &SearchReport) -> String {
+pub(super) fn of(query: &str, report: &Answer) -> String {
     let mut text = "query,rank,id,label,path,distance,signature_distance".to_owned();
     text += match report.rank_by {
         SearchRank::Plain => "\r\n",

@@ -41,7 +41,7 @@ fn answer(
     let (name, a) = match (params.query, params.a) {
         (Some(query), None) => {
             let query = app.query(collection, &query)?;
-            (query.name.clone(), query.measured.clone())
+            (query.described.name.clone(), query.measured.clone())
         }
         (None, Some(id)) => {
             let measured = app.indexed(collection, &id, budget)?;

@@ -9,8 +9,8 @@ use canonform::index::ContentHash;
 use canonform::mesh::RepairReport;
 use canonform::mesh::io::{MemoryFile, ReadLimits, is_mesh_path, mesh_files, read_memory};
 use canonform::{
-    Budget, Error, Explain, MeasuredSurface, MeshGeometry, SearchOptions, SearchRank, SearchReport,
-    SearchSeconds, Surface, is_archive_name, single_mesh,
+    Budget, Error, Explain, MeasuredSurface, MeshGeometry, SearchOptions, SearchRank, SearchSeconds, Surface,
+    is_archive_name, single_mesh,
 };
 use report::viewer::Geometry;
 use serde::{Deserialize, Serialize};
@@ -40,7 +40,6 @@ pub(super) struct SearchParams {
     /// The `query_id` of an earlier upload, instead of an upload.
     query: Option<String>,
     k: Option<usize>,
-    exact: Option<bool>,
     explain: Option<bool>,
     rank: Option<SearchRank>,
     geometry: Option<bool>,
@@ -72,7 +71,6 @@ impl SearchParams {
             let choice = || text.parse().map_err(|_| wrong("true or false"));
             match name.as_str() {
                 "k" => self.k = Some(text.parse().map_err(|_| wrong("a number"))?),
-                "exact" => self.exact = Some(choice()?),
                 "explain" => self.explain = Some(choice()?),
                 "rank" => self.rank = Some(text.parse().map_err(|_| wrong("plain, graph, part or forms"))?),
                 "geometry" => self.geometry = Some(choice()?),
@@ -85,7 +83,7 @@ impl SearchParams {
                 }
                 _ => {
                     let error = format!("the form has an unknown field `{name}`");
-                    let remedy = "send files, `k`, `exact`, `explain`, `rank`, `geometry` and `format`";
+                    let remedy = "send files, `k`, `explain`, `rank`, `geometry` and `format`";
                     return Err(ApiError::bad_request(error).with_remedy(remedy));
                 }
             }
@@ -108,11 +106,11 @@ impl SearchParams {
 
 /// The output of `canonform search --json`, and the geometry for the page.
 #[derive(Serialize)]
-struct Answer {
+struct Answered {
     /// Name of the file, or of the shape of the index.
     query: String,
     #[serde(flatten)]
-    report: SearchReport,
+    answer: canonform::Answer,
     /// Identifies this upload for later searches and comparisons; none for a shape of the index.
     query_id: Option<String>,
     /// None if the mesh of a shape of the index is missing.
@@ -125,13 +123,13 @@ struct Answer {
     form: Option<Geometry>,
 }
 
-impl Answer {
+impl Answered {
     /// Without geometry and repair. Paths are shown as clients may see them.
-    fn new(collection: &Collection, query: String, mut report: SearchReport) -> Self {
-        report.place(|path| collection.public_path(path));
+    fn new(collection: &Collection, query: String, mut answer: canonform::Answer) -> Self {
+        answer.place(|path| collection.public_path(path));
         Self {
             query,
-            report,
+            answer,
             query_id: None,
             repair: None,
             repaired: Vec::new(),
@@ -155,7 +153,7 @@ impl Answer {
     fn written(&self, wanted: &Wanted) -> Result<Written, ApiError> {
         match wanted.format {
             Format::Json => Written::new(self),
-            Format::Csv => Ok(Written::csv(csv::of(&self.query, &self.report))),
+            Format::Csv => Ok(Written::csv(csv::of(&self.query, &self.answer))),
         }
     }
 }
@@ -212,9 +210,9 @@ async fn again(app: Arc<App>, params: SearchParams) -> Result<Written, ApiError>
             let cost = collection.search_cost(&wanted.options, query.n_vertices());
             let answer = move |budget: &Budget| {
                 let report = query.search(&collection, &wanted.options, budget)?;
-                let answer = Answer::new(&collection, query.name.clone(), report);
+                let answer = Answered::new(&collection, query.described.name.clone(), report);
                 let answer = answer.with_measured(&query.measured, wanted.geometry);
-                Answer { query_id: Some(address), ..answer }.written(&wanted)
+                Answered { query_id: Some(address), ..answer }.written(&wanted)
             };
             app.work.run(cost, None, answer).await
         }
@@ -228,9 +226,10 @@ fn with_shape(
     id: String,
     wanted: &Wanted,
     budget: &Budget,
-) -> Result<Answer, ApiError> {
-    let report = collection.search.search(canonform::Query::Id(&id), &wanted.options, budget)?;
-    let answer = Answer::new(collection, id.clone(), report);
+) -> Result<Answered, ApiError> {
+    let query = collection.search.query_of(&id, &wanted.options, budget)?;
+    let report = collection.search.search(&query, &wanted.options, budget)?;
+    let answer = Answered::new(collection, id.clone(), report);
     if !wanted.geometry {
         return Ok(answer);
     }
@@ -238,13 +237,13 @@ fn with_shape(
         Ok(measured) => Ok(answer.with_measured(&measured, true)),
         Err(fault) if is_missing(&fault) => {
             let form = Some(points(collection, &id)?);
-            Ok(Answer { form, mesh_missing: Some(ApiError::from(fault).text().to_owned()), ..answer })
+            Ok(Answered { form, mesh_missing: Some(ApiError::from(fault).text().to_owned()), ..answer })
         }
         Err(fault) => Err(fault.into()),
     }
 }
 
-fn with_upload(app: &App, upload: Upload, wanted: &Wanted, budget: &Budget) -> Result<Answer, ApiError> {
+fn with_upload(app: &App, upload: Upload, wanted: &Wanted, budget: &Budget) -> Result<Answered, ApiError> {
     let Some(name) = upload.files.first().map(|(name, _)| name.clone()) else {
         let remedy = format!("send one mesh, {}; or name a shape of the index with ?shape=", mesh_files());
         return Err(ApiError::bad_request("the request has no file").with_remedy(remedy));
@@ -265,8 +264,9 @@ fn with_upload(app: &App, upload: Upload, wanted: &Wanted, budget: &Budget) -> R
     let describe = start.elapsed().as_secs_f64();
     let report = query.search(&collection, &wanted.options, budget)?;
     let seconds = SearchSeconds { describe, ..report.seconds };
-    let answer = Answer::new(&collection, query.name.clone(), SearchReport { seconds, ..report });
-    Ok(Answer { query_id: Some(address), ..answer.with_measured(&query.measured, wanted.geometry) })
+    let report = canonform::Answer { seconds, ..report };
+    let answer = Answered::new(&collection, query.described.name.clone(), report);
+    Ok(Answered { query_id: Some(address), ..answer.with_measured(&query.measured, wanted.geometry) })
 }
 
 /// The upload with the mesh of an archive instead of the archive.
@@ -293,9 +293,9 @@ fn measure(app: &App, collection: &Collection, upload: Upload, budget: &Budget) 
     let surface = Surface::new(&mesh, &describe.form.repair, budget)?;
     let embedded = MeasuredSurface::new(&surface, &describe.form, budget)?;
     let description = embedded.describe(describe, budget)?;
-    let geometry = MeshGeometry::new(&mesh, Some(content));
+    let geometry = MeshGeometry::new(&mesh, Some(content)).map(Arc::new);
     let measured = Measured::new(surface, geometry, &embedded)?;
-    Ok(Query::new(name, content, measured, description))
+    Ok(Query::new(&name, content, measured, &description))
 }
 
 /// The hash by which an index knows the files of a mesh: that of the mesh itself comes first.

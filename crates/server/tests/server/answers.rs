@@ -119,8 +119,9 @@ fn an_upload_gives_the_same_answer_as_the_library() {
     let server = Served::start(options());
     let mesh = shapes::torus(24, 12, 2.0, 0.7);
     let search = canonform::ShapeSearch::open(&server.folder.join(INDEX)).unwrap();
-    let query = canonform::Query::Mesh { mesh: &mesh, name: "q.off", content: None };
-    let report = search.search(query, &canonform::SearchOptions::default(), &()).unwrap();
+    let options = canonform::SearchOptions::default();
+    let query = search.query(&mesh, ("q.off", None), &options, &()).unwrap();
+    let report = search.search(&query, &options, &()).unwrap();
     let answer = upload(server.address, &[("q.off", &written("q.off", &mesh))], &[]).unwrap().json();
     let mut report = serde_json::to_value(&report).unwrap();
     for found in report["results"].as_array_mut().unwrap() {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Result;
-use canonform::index::{Index, ShapeEntry};
+use canonform::index::{Entry, Index};
 use canonform::mesh_path;
 use serde::Serialize;
 
@@ -25,8 +25,8 @@ struct Listed {
     /// Empty if it has none.
     label: String,
     path: String,
-    vertices: Option<f64>,
-    faces: Option<f64>,
+    vertices: u64,
+    faces: u64,
 }
 
 pub(super) fn list(args: &ListArgs, common: &Common) -> Result<ExitCode> {
@@ -34,24 +34,24 @@ pub(super) fn list(args: &ListArgs, common: &Common) -> Result<ExitCode> {
     let lists_all = args.label.is_empty() && !args.unlabelled;
     let is_listed =
         |label: &String| lists_all || args.label.contains(label) || args.unlabelled && label.is_empty();
-    let entries = index.entries()?.into_iter().filter(|(_, entry)| is_listed(&entry.label));
-    let shapes = entries.map(|(id, entry)| listed(&args.index, id, entry)).collect();
+    let entries = index.entries()?.into_iter().filter(|entry| is_listed(&entry.label));
+    let shapes = entries.map(|entry| listed(&args.index, entry)).collect();
     let json = Json { index: args.index.clone(), n_shapes: index.len(), shapes };
     let code = report(common, &json, table)?;
     Ok(if json.shapes.is_empty() { ExitCode::from(1) } else { code })
 }
 
-fn listed(index: &Path, id: String, entry: ShapeEntry) -> Listed {
-    let (vertices, faces) = (entry.fact("vertices"), entry.fact("faces"));
+fn listed(index: &Path, entry: Entry) -> Listed {
     let path = mesh_path(index, &entry.path).to_string_lossy().into_owned();
-    Listed { id, label: entry.label, path, vertices, faces }
+    let (vertices, faces) = (entry.facts.vertices, entry.facts.faces);
+    Listed { id: entry.id, label: entry.label, path, vertices, faces }
 }
 
 fn table(json: &Json) -> String {
     let mut table = table_of(["shape", "class", "vertices", "path"]);
     for shape in &json.shapes {
         let class = if shape.label.is_empty() { "-" } else { &shape.label };
-        let vertices = shape.vertices.map_or_else(|| "-".to_owned(), |n| n.to_string());
+        let vertices = shape.vertices.to_string();
         table.add_row(row_of([&shape.id, class, &vertices, &shape.path]));
     }
     let counts = format!("{} of {} shapes in {}", json.shapes.len(), json.n_shapes, shown(&json.index));

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
-use canonform::index::{ExportFormat, FORMAT_VERSION, Index, Verification, work_path};
+use canonform::index::{ExportFormat, FORMAT_VERSION, Index, Verification};
 use canonform::{Remedy, export_index};
 use serde::Serialize;
 
@@ -49,14 +49,14 @@ struct InfoJson {
     /// Shapes of each class; those without one have an empty key.
     classes: BTreeMap<String, usize>,
     unlabelled: usize,
-    /// The file with unfinished work, if there is one.
-    unfinished: Option<PathBuf>,
+    /// Whether its writer was interrupted, or is at work.
+    unfinished: bool,
 }
 
 pub(super) fn info(path: &Path, common: &Common) -> Result<ExitCode> {
     let index = Index::open(path)?;
     let mut classes = BTreeMap::new();
-    for (_, entry) in index.entries()? {
+    for entry in index.entries()? {
         *classes.entry(entry.label).or_insert(0) += 1;
     }
     let json = InfoJson {
@@ -67,7 +67,7 @@ pub(super) fn info(path: &Path, common: &Common) -> Result<ExitCode> {
         options: serde_json::from_str(index.options()).unwrap_or_else(|_| index.options().into()),
         unlabelled: classes.get("").copied().unwrap_or(0),
         classes,
-        unfinished: Some(work_path(path)).filter(|work| work.exists()),
+        unfinished: !index.is_finished(),
     };
     report(common, &json, |json| answer(json).text(common))
 }
@@ -85,8 +85,8 @@ fn answer(json: &InfoJson) -> Answer {
     if json.unlabelled > 0 {
         facts.push(("unlabelled", json.unlabelled.to_string()));
     }
-    if let Some(work) = &json.unfinished {
-        facts.push(("unfinished", format!("{}: run the interrupted command again", work.display())));
+    if json.unfinished {
+        facts.push(("unfinished", "run the interrupted command again, or wait until it ends".to_owned()));
     }
     Answer {
         sentence: format!("{index} holds {} of {n_classes} classes", count(n_shapes, "shape")),
@@ -107,7 +107,7 @@ pub(super) fn export(
     common: &Common,
 ) -> Result<ExitCode> {
     let output = output.unwrap_or(Path::new("-"));
-    if [index.to_owned(), work_path(index)].iter().any(|taken| base::files::is_same_file(taken, output)) {
+    if base::files::is_same_file(index, output) {
         bail!("{} is the index itself; choose another file with -o", output.display());
     }
     let formats = ExportFormat::ALL.map(ExportFormat::extension);

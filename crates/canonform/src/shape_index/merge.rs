@@ -1,0 +1,140 @@
+//! Searching several indexes as one: a query goes to each, and their answers are merged.
+
+use retrieval::UnknownThreshold;
+
+use super::found::Hit;
+use super::predict::{VOTERS, predicted};
+use super::query::Query;
+use super::search::Answer;
+
+/// The answer of one index that holds the shapes of several, from the answers of these to one query: its `k` best results and
+/// its class. `threshold` is that of [all of them](index::class_threshold).
+///
+/// Each must have been asked for [`n_results`] results at least. Explanations are not merged.
+#[must_use]
+pub fn merge_answers(
+    query: &Query,
+    answers: Vec<Answer>,
+    threshold: Option<UnknownThreshold>,
+    k: usize,
+) -> Answer {
+    let mut merged = Answer { recall: 1.0, ..Answer::default() };
+    for answer in answers {
+        merged.rank_by = answer.rank_by;
+        merged.n_shapes += answer.n_shapes;
+        merged.measured += answer.measured;
+        merged.aligned += answer.aligned;
+        merged.recall = merged.recall.min(answer.recall);
+        merged.results.extend(answer.results);
+    }
+    merged.results.sort_by(Hit::cmp);
+    merged.results.truncate(n_results(k));
+    for (hit, rank) in merged.results.iter_mut().zip(1..) {
+        hit.rank = rank;
+        hit.relation = hit.relation.clone().named(&query.name, &hit.id);
+    }
+    let threshold = threshold.filter(|_| merged.rank_by.is_by_signatures());
+    merged.predicted = predicted(&merged.results, threshold, &query.shape.entry.facts);
+    merged.results.truncate(k);
+    merged
+}
+
+/// How many results of each index are needed for the `k` best of all and the class: those that vote are among them.
+#[must_use]
+pub fn n_results(k: usize) -> usize {
+    k.max(VOTERS)
+}
+
+/// How many shapes with the nearest fused vectors are candidates for `k` results, where only vectors are searched.
+#[must_use]
+pub fn n_candidates(k: usize) -> usize {
+    n_results(k).saturating_mul(CANDIDATES).max(LEAST_CANDIDATES)
+}
+
+/// Candidates for each result, and for any number of results.
+const CANDIDATES: usize = 4;
+const LEAST_CANDIDATES: usize = 40;
+
+#[cfg(test)]
+mod tests {
+    use index::{Index, class_threshold};
+    use mesh::shapes;
+
+    use super::*;
+    use crate::form::DescribeOptions;
+    use crate::shape_index::{BuildOptions, SearchOptions, SearchRank, ShapeSearch, Shard, build_index};
+
+    /// The answer of some shards, as it is sent from other processes.
+    fn asked(shards: &[ShapeSearch], query: &Query, rank_by: SearchRank, k: usize) -> Answer {
+        let options = SearchOptions { k: n_results(k), rank_by, ..SearchOptions::default() };
+        let answers = shards.iter().map(|shard| {
+            let answer = shard.search(query, &options, &()).unwrap();
+            // Among its own results and a name that it does not hold, a shard finds the same.
+            let ids: Vec<String> =
+                answer.results.iter().map(|hit| hit.id.clone()).chain(["gone".to_owned()]).collect();
+            assert_eq!(shard.search_among(query, Some(&ids), &options, &()).unwrap().results, answer.results);
+            serde_json::from_str(&serde_json::to_string(&answer).unwrap()).unwrap()
+        });
+        let answers = answers.collect();
+        let indexes: Vec<Index> = shards.iter().map(|s| Index::open(s.index().path()).unwrap()).collect();
+        merge_answers(query, answers, class_threshold(&indexes).unwrap(), k)
+    }
+
+    #[test]
+    fn shards_answer_as_one_index() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        for (i, size) in [0.7, 0.75, 0.8].into_iter().enumerate() {
+            mesh::io::write(&at(&format!("ring{i}.off")), &shapes::torus(20, 10, 2.0, size)).unwrap();
+            mesh::io::write(&at(&format!("tube{i}.off")), &shapes::torus(30, 8, 4.0, size)).unwrap();
+        }
+        let describe_options = DescribeOptions::default();
+        let built = |name: &str, shard| {
+            let options = BuildOptions { shard, ..BuildOptions::new(&describe_options) };
+            build_index(folder.path(), &at(name), &options, &()).unwrap();
+            ShapeSearch::open(&at(name)).unwrap()
+        };
+        let whole = built("whole", None);
+        let shards = [1, 2].map(|i| built(&format!("part{i}"), Some(Shard::new(i, 2).unwrap())));
+        let mesh = shapes::torus(22, 13, 1.0, 0.36);
+        let usual = SearchOptions::default();
+        let queries = [
+            whole.query(&mesh, ("the query", None), &usual, &()).unwrap(),
+            whole.query_of("ring1", &usual, &()).unwrap(),
+        ];
+        for query in queries {
+            let sent: Query = serde_json::from_str(&serde_json::to_string(&query).unwrap()).unwrap();
+            assert_eq!((&sent.shape, &sent.name, &sent.options), (&query.shape, &query.name, &query.options));
+            for (k, rank_by) in [
+                (0, SearchRank::Plain),
+                (2, SearchRank::Plain),
+                (10, SearchRank::Plain),
+                (2, SearchRank::Forms),
+            ] {
+                let options = SearchOptions { k, rank_by, ..Default::default() };
+                let expected = whole.search(&query, &options, &()).unwrap();
+                let found = asked(&shards, &sent, rank_by, k);
+                let (aligned, seconds) = (expected.aligned, expected.seconds);
+                assert_eq!(Answer { aligned, seconds, ..found }, expected);
+            }
+        }
+    }
+
+    #[test]
+    fn a_mesh_in_space_is_sent_with_the_query() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("ring0.off");
+        mesh::io::write(&path, &shapes::torus(20, 10, 2.0, 0.7)).unwrap();
+        let index = folder.path().join("index");
+        build_index(folder.path(), &index, &BuildOptions::new(&DescribeOptions::default()), &()).unwrap();
+        let search = ShapeSearch::open(&index).unwrap();
+        let options = SearchOptions { explain: crate::Explain::Kind, ..SearchOptions::default() };
+        let mut mesh = mesh::io::read(&path).unwrap();
+        mesh.positions.iter_mut().for_each(|p| p.coords *= 25.4);
+        let query = search.query(&mesh, ("a.off", None), &options, &()).unwrap();
+        let sent: Query = serde_json::from_str(&serde_json::to_string(&query).unwrap()).unwrap();
+        let found = [query, sent].map(|query| search.search(&query, &options, &()).unwrap().results);
+        assert_eq!(found[0][0].relation.to_string(), found[1][0].relation.to_string());
+        assert_eq!(found[1][0].relation.kind, crate::RelationKind::Scaled);
+    }
+}
