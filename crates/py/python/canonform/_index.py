@@ -63,7 +63,7 @@ class ShapeEntry:
     path
         Its mesh file.
     n_vertices, n_faces
-        The size of its mesh; None if the index does not say.
+        The size of its mesh.
     """
 
     id: str

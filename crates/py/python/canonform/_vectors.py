@@ -340,6 +340,7 @@ def exact_neighbors(table: lance.LanceDataset, names: list[str], queries: Vector
 
 
 def stamp(path: str) -> tuple[int, int]:
-    """What changes when a file does."""
-    status = os.stat(path)
-    return status.st_size, status.st_mtime_ns
+    """What changes when an index does."""
+    log = path + "-wal"
+    files = [os.stat(file) for file in (path, log) if file == path or os.path.exists(file)]
+    return sum(file.st_size for file in files), max(file.st_mtime_ns for file in files if file.st_size > 0)
