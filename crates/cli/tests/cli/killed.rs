@@ -223,3 +223,62 @@ fn a_full_disk_is_reported_and_the_old_index_stays() {
     place.done(&build("whole"));
     assert_eq!(place.done("index export whole").out, whole);
 }
+
+/// Makes the system's calls that flush files fail: the one of number `FAIL_AT`, or all from there on if `FAIL_ON` is set.
+#[cfg(target_os = "linux")]
+const FAILING_SYNC: &str = r#"
+#include <errno.h>
+#include <stdlib.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+static int calls;
+static int fails(void) {
+    int at = atoi(getenv("FAIL_AT"));
+    calls++;
+    if (calls == at || (calls > at && getenv("FAIL_ON"))) { errno = EIO; return 1; }
+    return 0;
+}
+int fsync(int fd) { return fails() ? -1 : syscall(SYS_fsync, fd); }
+int fdatasync(int fd) { return fails() ? -1 : syscall(SYS_fdatasync, fd); }
+"#;
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_failing_fsync_loses_nothing() {
+    let place = collection();
+    let (source, library) = (place.path("sync.c"), place.path("sync.so"));
+    fs::write(&source, FAILING_SYNC).unwrap();
+    let compiled = Command::new("cc").args(["-shared", "-fPIC", "-o"]).args([&library, &source]).status();
+    assert!(compiled.is_ok_and(|status| status.success()), "the C compiler that SQLite needs");
+    place.done(&build("whole"));
+    place.add("meshes/t1.off", &body(1, 40));
+    let export = || place.done("index export all").out;
+    let renew = || fs::copy(place.path("whole"), place.path("all")).unwrap();
+    renew();
+    let before = export();
+    place.done(&build("all"));
+    let after = export();
+    assert_ne!(before, after);
+    let mut failures = 0;
+    for (at, goes_on) in (1..12).flat_map(|at| [(at, false), (at, true)]) {
+        renew();
+        let mut command = Command::new(program());
+        command.args(build("all")).current_dir(place.path("")).env("LD_PRELOAD", &library);
+        command.env("FAIL_AT", at.to_string());
+        if goes_on {
+            command.env("FAIL_ON", "1");
+        }
+        let output = command.output().unwrap();
+        let error = String::from_utf8(output.stderr).unwrap();
+        failures += u32::from(!output.status.success());
+        assert!(output.status.success() || error.contains("cannot write all"), "{at}: {error}");
+        place.done("index verify all");
+        let lines = |text: &str| text.lines().skip(1).map(str::to_owned).collect::<Vec<_>>();
+        let now = lines(&export());
+        assert!(lines(&before).iter().all(|line| now.contains(line)), "{at}: a shape is lost");
+        assert!(now.iter().all(|line| after.contains(line.as_str())), "{at}");
+        place.done(&build("all"));
+        assert_eq!(export(), after, "{at}");
+    }
+    assert!(failures > 4, "{failures}");
+}
