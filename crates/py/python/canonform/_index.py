@@ -377,9 +377,7 @@ class Index(Stored):
     def _reopen(self, report: dict[str, Any] | None) -> None:
         self._inner, self.build_report = _canonform.Index.open(self.path), report
 
-    def search(
-        self, query: AnyMesh, k: int = 10, *, rank: Ranking = "plain", explain: bool = False, exact: bool = False
-    ) -> SearchResults:
+    def search(self, query: AnyMesh, k: int = 10, *, rank: Ranking = "plain", explain: bool = False) -> SearchResults:
         """Find the shapes nearest to a query.
 
         Parameters
@@ -394,8 +392,6 @@ class Index(Stored):
             canonical forms alone.
         explain
             Say how each result is related to the query, as `compare` does; reads the mesh files of the results.
-        exact
-            Accepted for older scripts: every search compares all shapes.
         """
         if not isinstance(query, (str, os.PathLike)):
             query = surface_of(query)
@@ -470,7 +466,7 @@ class Index(Stored):
         """The fused signature of one shape."""
         return self._inner.vector(id)
 
-    def nearest(self, vector: ArrayLike, k: int = 10, *, exact: bool = False) -> list[tuple[str, float]]:
+    def nearest(self, vector: ArrayLike, k: int = 10) -> list[tuple[str, float]]:
         """The shapes whose signatures are nearest to a vector, such as `Surface.signature()`: names and distances, nearest first."""
         array = np.asarray(vector)
         if array.ndim != 1 or array.dtype.kind not in "fiu":
