@@ -3,7 +3,8 @@
 #     docker build -t canonform .
 #     docker run --rm -p 127.0.0.1:7878:7878 -v "$PWD/indexes:/data:ro" canonform
 #
-# The index is /data/shapes.canonform, its meshes lie beside it. Other commands: `docker run ... canonform compare a.off b.off`.
+# The index is /data/shapes.canonform, its meshes lie beside it. Stop the container while the index changes, or let the user
+# 65532 write the folder. Other commands: `docker run ... canonform compare a.off b.off`.
 
 FROM --platform=$BUILDPLATFORM rust:1.90-slim-bookworm AS build
 ARG BUILDARCH

@@ -75,7 +75,7 @@ bench-maps: build ## Compare dense maps with pyFM and write its section of docs/
 	target/peers/bin/pip install --quiet numpy scipy pyfmaps
 	target/peers/bin/python bench/maps.py
 
-bench-search: ## Compare search among a million vectors with hnswlib and faiss and write its section of docs/benchmarks.md (needs Python; takes half an hour)
+bench-search: ## Compare search among up to a million vectors with faiss and hnswlib and write its section of docs/benchmarks.md (needs Python; takes a quarter of an hour)
 	$(CARGO) build --release --locked -p canonform-index --example vectors
 	test -x target/peers/bin/python || python3 -m venv target/peers
 	target/peers/bin/pip install --quiet numpy hnswlib faiss-cpu

@@ -91,14 +91,12 @@ def search(vectors, program, folder, counts):
         index = os.path.join(folder, "vectors")
         built = answer([vectors, "build", base, index])
         ours = Ours(vectors, index, queries)
-        ours.ask("file", 0, QUERIES)
-        seconds = {source: np.array(ours.ask(source, 0, QUERIES)[0]) * 1e3 for source in ("memory", "file")}
-        measured, memory = ours.measured, ours.memory()
+        ours.ask(0, QUERIES)
+        ms, memory = np.array(ours.ask(0, QUERIES)[0]) * 1e3, ours.memory()
         ours.end()
         merge = processor_time([program, "index", "merge", index, "-q", "-o", index + ".merged"])[1]
         rows.append(dict(n=n, build_seconds=built["stored"] + built["finished"], size=os.path.getsize(index), memory=memory,
-                         measured=measured, merge=merge,
-                         **{f"{source}_ms": [np.median(ms), np.percentile(ms, 99)] for source, ms in seconds.items()}))
+                         merge=merge, ms=[np.median(ms), np.percentile(ms, 99)]))
         for path in (base, index, index + ".merged"):
             os.remove(path)
         print("searched", rows[-1], flush=True)
@@ -152,8 +150,7 @@ def section(args, described, stored, searched):
     per_vector = (searched[-1]["memory"] - searched[-2]["memory"]) / (n[-1] - n[-2]) * 1e6
     merge = power(n, [row["merge"] for row in searched], 1)
     at = lambda fit, x: fit[1] * x ** fit[0]
-    memory_latency = power(n, [row["memory_ms"][0] for row in searched], 0.5)
-    file_latency = power(n, [row["file_ms"][0] for row in searched], 0.5)
+    latency = power(n, [row["ms"][0] for row in searched], 1)
     mean_file = float(np.interp(np.log(sizes.mean()), np.log([r[0] for r in described]), [r[3] for r in described]))
     yield "## Plan for ten million shapes"
     yield (f"`make bench-capacity` on {machine()}, on generated shapes and synthetic signatures. The largest index had {n[-1]:,} "
@@ -166,11 +163,10 @@ def section(args, described, stored, searched):
     yield "*An index* of creatures with 1,000 vertices, all cores. A search aligns " + f"{digits(stored[-1][4])} forms."
     yield table(["shapes", "processor seconds per shape", "bytes per shape", "search ms"],
                 [(f"{c:,}", digits(b), f"{z / c:,.0f}", digits(1000 * s)) for c, b, z, s, _, _ in stored])
-    yield (f"*Signatures* of {DIM} numbers without forms, one thread, {QUERIES} other queries. Building includes the graph of "
-           "neighbours.")
-    yield table(["signatures", "file MB", "build s", "merge s", "memory MB", "in memory: p50, p99 ms", "from the file: p50, p99 ms"],
+    yield f"*Signatures* of {DIM} numbers without forms, all threads, {QUERIES} other queries."
+    yield table(["signatures", "file MB", "build s", "merge s", "memory MB", "p50, p99 ms"],
                 [(f"{r['n']:,}", digits(r["size"] / 1e6), digits(r["build_seconds"]), digits(r["merge"]), digits(r["memory"]),
-                  "{}, {}".format(*map(digits, r["memory_ms"])), "{}, {}".format(*map(digits, r["file_ms"])))
+                  "{}, {}".format(*map(digits, r["ms"])))
                  for r in searched])
     yield (f"*Ten million shapes*, simulated: sizes are log-normal with a median of {args.median:,} vertices and a standard deviation of "
            f"the logarithm of {args.sigma / 100:.1f}, at most {LARGEST:,} (mean {sizes.mean():,.0f}). Measure yours with "
@@ -184,9 +180,9 @@ def section(args, described, stored, searched):
         ("reading", "the file system", f"{1.024 * mean_file / (total / SHAPES):.1f} GB/s for 1,024 cores", "binary formats"),
         ("merging", "one process and disk", f"{at(merge, SHAPES) / 60:,.0f} minutes without forms, {per_shape * SHAPES / 1e9:,.0f} GB",
          "several indexes"),
-        ("search", "memory", f"{per_vector * SHAPES / 1e9:.0f} GB, {digits(at(memory_latency, SHAPES))} ms, and "
+        ("search", "memory", f"{per_vector * SHAPES / 1e9:.0f} GB, {digits(at(latency, SHAPES))} ms, and "
                              f"{1000 * stored[-1][3]:.0f} ms for alignment",
-         f"from the file: {digits(at(file_latency, SHAPES))} ms"),
+         "tables of coded vectors"),
         ("`evaluate`", "pairs", "the limit is 10,000 shapes", "a sample")])
     yield ("*Shards* of `--shard I/N` go to the worker, one core each, that is free first. Cells: hours until the end, efficiency, hours "
            "of the longest shard. Take ten to a hundred for each worker: a lost worker costs one shard at most.")

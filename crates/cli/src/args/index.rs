@@ -36,7 +36,7 @@ pub(crate) enum IndexCommand {
         #[arg(short, long, value_name = "INDEX")]
         output: PathBuf,
     },
-    /// Check every byte and every shape; exit with code 2 if the index is damaged
+    /// Check the structure and every value; exit with code 2 if the index is damaged
     Verify {
         /// The index
         index: PathBuf,

@@ -377,9 +377,7 @@ class Index(Stored):
     def _reopen(self, report: dict[str, Any] | None) -> None:
         self._inner, self.build_report = _canonform.Index.open(self.path), report
 
-    def search(
-        self, query: AnyMesh, k: int = 10, *, rank: Ranking = "plain", explain: bool = False, exact: bool = False
-    ) -> SearchResults:
+    def search(self, query: AnyMesh, k: int = 10, *, rank: Ranking = "plain", explain: bool = False) -> SearchResults:
         """Find the shapes nearest to a query.
 
         Parameters
@@ -394,8 +392,6 @@ class Index(Stored):
             canonical forms alone.
         explain
             Say how each result is related to the query, as `compare` does; reads the mesh files of the results.
-        exact
-            Accepted for older scripts: every search compares all shapes.
         """
         if not isinstance(query, (str, os.PathLike)):
             query = surface_of(query)
@@ -470,7 +466,7 @@ class Index(Stored):
         """The fused signature of one shape."""
         return self._inner.vector(id)
 
-    def nearest(self, vector: ArrayLike, k: int = 10, *, exact: bool = False) -> list[tuple[str, float]]:
+    def nearest(self, vector: ArrayLike, k: int = 10) -> list[tuple[str, float]]:
         """The shapes whose signatures are nearest to a vector, such as `Surface.signature()`: names and distances, nearest first."""
         array = np.asarray(vector)
         if array.ndim != 1 or array.dtype.kind not in "fiu":
@@ -584,3 +580,106 @@ def _warn_of_skipped(report: dict[str, Any]) -> None:
         )
 
 
+def _in_files(
+    meshes: Meshes, index: AnyPath, labels: Mapping[str, str] | AnyPath | None, *, replace: bool
+) -> tuple[AnyPath | list[AnyPath], Mapping[str, str] | AnyPath | None]:
+    """Paths of the meshes, and classes: those in memory are written to a folder beside the index."""
+    if isinstance(meshes, (str, os.PathLike)):
+        return meshes, labels
+    if not isinstance(meshes, Iterable):
+        raise OptionError(f"meshes={meshes!r} is not possible: give a folder, paths of mesh files, or meshes with names")
+    given: list[Any] = list(meshes.items()) if isinstance(meshes, Mapping) else list(meshes)
+    folder = f"{os.fspath(index)}.meshes"
+    paths: list[AnyPath] = []
+    known: dict[str, str] = {}
+    taken: set[str] = set()
+    for i, item in enumerate(given):
+        if isinstance(item, (str, os.PathLike)):
+            paths.append(item)
+            continue
+        name, mesh, label = _named(item, i)
+        if name in taken:
+            raise OptionError(f"two meshes have the name {name!r}")
+        taken.add(name)
+        if label:
+            known[name] = label
+        paths.append(_kept(arrays_of(mesh), os.path.join(folder, f"{name}.ply"), replace))
+    if known and labels is not None:
+        raise OptionError("labels= has no effect for meshes that come with a class; leave one of them out")
+    return paths, known or labels
+
+
+def _named(item: Any, i: int) -> tuple[str, AnyMesh, str]:
+    """Name, mesh and class of a mesh in memory, which has this place among others."""
+    name, mesh, label = "", item, ""
+    if isinstance(item, tuple) and item and isinstance(item[0], str):
+        if len(item) not in (2, 3):
+            raise OptionError(f"meshes[{i}] is not possible: give (name, mesh) or (name, mesh, class)")
+        name, mesh, label = (*item, "")[:3]
+    elif isinstance(item, Shape):
+        name, label = item.name, item.label
+    elif isinstance(item, Surface):
+        name = os.path.splitext(item._name)[0]
+    name = name or f"mesh{i}"
+    if name != name.strip() or name.startswith(".") or any(c in name for c in '/\\:\n\r\0'):
+        raise OptionError(f"the name {name!r} is not possible: it stands for a file of this name")
+    return name, mesh, label or ""
+
+
+def _kept(mesh: tuple[Floats, Ints], path: str, replace: bool) -> str:
+    """Writes a mesh for an index, unless it is there already."""
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    if os.path.exists(path) and not replace:
+        with TemporaryDirectory() as folder:
+            new = os.path.join(folder, "new.ply")
+            _canonform.write(*mesh, new)
+            with open(new, "rb") as one, open(path, "rb") as other:
+                if one.read() != other.read():
+                    raise ShapeIndexError(f"{path} has another mesh of this name; rename the new one, or pass replace=True")
+        return path
+    _canonform.write(*mesh, path)
+    return path
+
+
+@contextmanager
+def _dataset(meshes: AnyPath | Iterable[AnyPath], folder: str | None = None) -> Iterator[tuple[str, str]]:
+    """The path of a dataset, and what to call it: the one given, or a list file of the paths given.
+
+    The list is written to `folder`, which keeps it, or to a temporary one.
+    """
+    if isinstance(meshes, (str, os.PathLike)):
+        yield os.fspath(meshes), os.fspath(meshes)
+        return
+    paths = [os.path.abspath(path) for path in meshes]
+    for path in paths:
+        # A list has one path in each line, without the space around it.
+        if path != path.strip() or "\n" in path or "\r" in path:
+            raise OptionError(f"the path {path!r} is not possible in a list: it begins or ends with space, or has several lines")
+    if not paths:
+        raise OptionError("meshes=[] is not possible: give a folder, an archive, a list file, or paths of mesh files")
+    with TemporaryDirectory() as temporary:
+        name = os.path.join(folder or temporary, "meshes.txt")
+        with open(name, "w", encoding="utf-8") as file:
+            file.writelines(f"{path}\n" for path in paths)
+        yield name, f"{len(paths)} paths"
+
+
+@contextmanager
+def _label_file(labels: Mapping[str, str] | AnyPath | None) -> Iterator[str | None]:
+    """The word or file given, or a temporary file with the labels given."""
+    if labels is None or isinstance(labels, (str, os.PathLike)):
+        yield None if labels is None else os.fspath(labels)
+        return
+    if not labels:
+        yield "none"
+        return
+    with TemporaryDirectory() as folder:
+        path = os.path.join(folder, "labels.csv")
+        with open(path, "w", encoding="utf-8", newline="") as file:
+            rows = csv.writer(file, quoting=csv.QUOTE_ALL)
+            rows.writerow(["name", "label"])
+            for name, label in labels.items():
+                if any(c in f"{name}{label}" for c in "\n\r"):
+                    raise OptionError(f"labels={{{name!r}: {label!r}}} is not possible: a line break in a name or class")
+                rows.writerow([name, label])
+        yield path

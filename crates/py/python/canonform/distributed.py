@@ -485,8 +485,8 @@ class _Search:
             explained = [json.loads(some) for some in self.ask("search_among", items)]
             for result in (result for some in explained for result in some["results"]):
                 results[result["id"]] |= {key: result[key] for key in ("relation", "comparison")}
-            wholes = (whole for some in explained for whole in some.get("wholes", []))
-            wholes = sorted(wholes, key=lambda found: (found["distance"], found["id"]))
+            wholes = [whole for some in explained for whole in some.get("wholes", [])]
+            wholes.sort(key=lambda found: (found["distance"], found["id"]))
             report["wholes"] = [whole | {"rank": place} for place, whole in enumerate(wholes[:_MOST_WHOLES], 1)]
         return report
 

@@ -64,13 +64,12 @@ export class Answer {
   }
 
   // How the address says to search.
-  controls({ k, exact, rank }) {
+  controls({ k, rank }) {
     const select = byId('k');
     const isListed = (value) => [...select.options].some((option) => Number(option.value) === value);
     // A number that someone typed into the address.
     if (!isListed(k)) select.add(new Option(k, k));
     select.value = String(k ?? USUAL_K);
-    byId('exact').checked = exact;
     byId('rank').value = rank;
   }
 

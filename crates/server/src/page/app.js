@@ -18,7 +18,7 @@
 //     #start                 shown without a query
 //     #query-name #predicted[data-label] #facts #repaired (li: one line per repair)
 //     #mesh-view #form-view  viewers with linked cameras; data-state from viewer.js
-//     #k #rank #exact #as-csv #as-json  number and order of results, exact search, downloads
+//     #k #rank #as-csv #as-json  number and order of results, downloads
 //     #results-folder        the folder that all results have in common
 //     #results button.tile[data-id][data-label][data-distance][data-kind], aria-pressed on the one in the overlay
 //     #results[data-explained]  whether files and meshes were compared for the kinds; #components of the query
@@ -49,8 +49,8 @@ const shapes = new Shapes({
 const ask = new Ask({
   begin(name) { shown = null; answer.begin(name); shapes.mark(null); title(name); },
   answer(found) {
-    const { k, exact, rank, filter, hit, query } = read();
-    const state = { k, exact, rank, filter };
+    const { k, rank, filter, hit, query } = read();
+    const state = { k, rank, filter };
     if (found.query_id) Object.assign(state, { query: found.query_id });
     else Object.assign(state, { shape: found.query });
     // An upload gets its address here; the other searches have theirs.
@@ -108,12 +108,11 @@ function title(name) {
 addEventListener('popstate', follow);
 byId('k').addEventListener('change', () => go({ ...read(), k: Number(byId('k').value) }));
 byId('rank').addEventListener('change', () => go({ ...read(), rank: byId('rank').value }));
-byId('exact').addEventListener('change', () => go({ ...read(), exact: byId('exact').checked }));
 byId('home').addEventListener('click', (event) => {
   if (event.ctrlKey || event.metaKey || event.shiftKey) return;
   event.preventDefault();
-  const { k, exact, rank } = read();
-  go({ k, exact, rank });
+  const { k, rank } = read();
+  go({ k, rank });
 });
 byId('search-hit').addEventListener('click', () => go({ ...read(), shape: read().hit, query: null, hit: null }));
 byId('search-again').addEventListener('click', () => {

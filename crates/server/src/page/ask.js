@@ -41,7 +41,6 @@ export class Ask {
     const form = new FormData();
     for (const file of files) form.append('mesh', file, file.name);
     form.append('k', byId('k').value);
-    form.append('exact', String(byId('exact').checked));
     form.append('rank', byId('rank').value);
     const size = files.reduce((sum, file) => sum + file.size, 0);
     const name = files.map((file) => file.name).join(' and ');

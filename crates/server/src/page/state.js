@@ -4,7 +4,7 @@
 //   /?shape=ID             a search with a shape of the index
 //   /?query=ADDRESS        a search with an upload, while the server keeps it
 //   &hit=ID                one of the results, overlaid with the query
-//   &k=N &exact=true &rank=RANK  how to search; the list #rank has all ranks
+//   &k=N &rank=RANK       how to search; the list #rank has all ranks
 //   &filter=TEXT           the shapes listed beside the results
 
 export const USUAL_K = 12;
@@ -20,19 +20,17 @@ export function read() {
     query: given.get('query'),
     hit: given.get('hit'),
     k: k >= 1 && k <= 100 ? k : USUAL_K,
-    exact: given.get('exact') === 'true',
     rank: RANKS.includes(given.get('rank')) ? given.get('rank') : RANKS[0],
     filter: given.get('filter') ?? '',
   };
 }
 
-export function address({ shape, query, hit, k, exact, rank, filter }) {
+export function address({ shape, query, hit, k, rank, filter }) {
   const params = new URLSearchParams();
   if (shape) params.set('shape', shape);
   else if (query) params.set('query', query);
   if (hit) params.set('hit', hit);
   if (k && k !== USUAL_K) params.set('k', k);
-  if (exact) params.set('exact', 'true');
   if (rank && rank !== RANKS[0]) params.set('rank', rank);
   if (filter) params.set('filter', filter);
   const text = params.toString();
@@ -40,10 +38,9 @@ export function address({ shape, query, hit, k, exact, rank, filter }) {
 }
 
 // The parameters of a search in the JSON interface.
-export function searched({ shape, query, k, exact, rank }) {
+export function searched({ shape, query, k, rank }) {
   const params = new URLSearchParams(shape ? { shape } : { query });
   params.set('k', k);
-  if (exact) params.set('exact', 'true');
   if (rank && rank !== RANKS[0]) params.set('rank', rank);
   return params;
 }

@@ -80,12 +80,15 @@ fn options_filters_and_downloads_follow_the_address() {
         .unwrap();
     page.wait_for(&format!("{N_RESULTS} === 6"));
     assert_eq!(page.address(), "/?shape=cat0&k=6&filter=cent");
-    page.browser.click("#exact").unwrap();
-    page.wait_for("location.search.includes('exact=true')");
+    page.browser
+        .eval("const rank = document.querySelector('#rank'); rank.value = 'forms'; rank.dispatchEvent(new Event('change'))")
+        .unwrap();
+    page.wait_for("location.search.includes('rank=forms')");
     page.answered();
     page.browser.eval("history.back()").unwrap();
-    page.wait_for("!document.querySelector('#exact').checked");
+    page.wait_for("document.querySelector('#rank').value === 'plain'");
     page.answered();
+    assert_eq!(page.address(), "/?shape=cat0&k=6&filter=cent");
     let table = page.eval("fetch(document.querySelector('#as-csv').href).then(found => found.text())");
     assert_eq!(table.as_str().unwrap().lines().count(), 7, "{table}");
     let json = page.eval("fetch(document.querySelector('#as-json').href).then(found => found.json())");
