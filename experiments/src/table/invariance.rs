@@ -89,7 +89,7 @@ impl Experiment for InvarianceOptions {
                 let damaged = describe(&surface, &gallery.options, &())?;
                 let shape = damaged.prepare()?;
                 // As a search in an index does.
-                let candidates = bounds(shape.fused(), prepared.len(), |i| prepared[i].fused());
+                let candidates = bounds(shape.fused(), prepared.len(), &|i| prepared[i].fused());
                 let nearest = rerank(&shape, candidates, 2, |i| Ok(&prepared[i]))?.nearest;
                 let first = nearest.first().context("the collection has shapes")?;
                 let mut others = nearest.iter().filter(|near| near.index != query.own);

@@ -1,6 +1,8 @@
 //! Nearest shapes by combined distance: bounded by signatures, then by aligned forms.
 
 use std::borrow::Borrow;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
 use descriptors::{FormAlignment, PreparedShape, ShapeDistance, ShapeMetric, ShapePair, align_near_forms};
 use rayon::prelude::*;
@@ -37,11 +39,20 @@ pub struct Reranked {
 }
 
 /// Lower bounds of the combined distances from a query to all of some fused vectors, in ascending order: the robust distances.
-pub fn bounds<'v>(query: &[f32], n: usize, vector: impl Fn(usize) -> &'v [f32] + Sync) -> Vec<Candidate> {
-    let bound = |index| Candidate { index, bound: ShapeMetric::robust(query, vector(index)) };
-    let mut all: Vec<Candidate> = (0..n).into_par_iter().with_min_len(TASK).map(bound).collect();
-    all.par_sort_unstable_by(|a, b| a.bound.total_cmp(&b.bound).then(a.index.cmp(&b.index)));
-    all
+/// They are ordered as far as they are asked for.
+pub fn bounds<'v>(
+    query: &[f32],
+    n: usize,
+    vector: &(dyn Fn(usize) -> &'v [f32] + Sync),
+) -> impl Iterator<Item = Candidate> + Send + use<> {
+    // The bits of numbers that are not negative are in the order of the numbers.
+    let bound = |index| Reverse((ShapeMetric::robust(query, vector(index)).to_bits(), index));
+    let all: Vec<_> = (0..n).into_par_iter().with_min_len(TASK).map(bound).collect();
+    let mut left = BinaryHeap::from(all);
+    std::iter::from_fn(move || {
+        let Reverse((bits, index)) = left.pop()?;
+        Some(Candidate { index, bound: f64::from_bits(bits) })
+    })
 }
 
 /// Vectors in one parallel task.
@@ -108,7 +119,7 @@ mod tests {
                 let asked = spiral(turns(query), 0.0);
                 let fused = |i: usize| ShapeMetric::fused(asked.fused(), shapes[i].fused());
                 let robust = |i: usize| ShapeMetric::robust(asked.fused(), shapes[i].fused());
-                let candidates = bounds(asked.fused(), 30, |i| shapes[i].fused());
+                let candidates: Vec<_> = bounds(asked.fused(), 30, &|i| shapes[i].fused()).collect();
                 let mut all: Vec<_> = (0..30)
                     .map(|index| {
                         let pair = ShapePair::new([&asked, &shapes[index]]);

@@ -276,7 +276,7 @@ impl ShapeSearch {
     /// All shapes, those first that may be nearest.
     fn by_distance(&self, query: &PreparedShape) -> Result<Shortlist<'_>, Error> {
         let all = self.index.vector_table()?;
-        let candidates = bounds(query.fused(), all.len(), |i| all.vector(i));
+        let candidates = Box::new(bounds(query.fused(), all.len(), &|i| all.vector(i)));
         Ok(Shortlist { candidates, id: Box::new(|i| all.id(i).to_owned()), orders: None })
     }
 
@@ -284,7 +284,7 @@ impl ShapeSearch {
     fn among(&self, query: &PreparedShape, ids: Vec<String>) -> Result<Shortlist<'static>, Error> {
         let fused = ids.iter().map(|id| Ok(self.index.shape(id)?.fused));
         let fused = fused.collect::<Result<Vec<_>, Error>>()?;
-        let candidates = bounds(query.fused(), ids.len(), |i| &fused[i]);
+        let candidates = Box::new(bounds(query.fused(), ids.len(), &|i| &fused[i]));
         Ok(Shortlist { candidates, id: Box::new(move |i| ids[i].clone()), orders: None })
     }
 
@@ -361,7 +361,7 @@ impl ShapeSearch {
         budget: &Budget,
     ) -> Result<(Vec<(Hit, FormAlignment)>, usize), Error> {
         let Shortlist { candidates, id, orders } = shortlist;
-        let n = if orders.is_some() { candidates.len() } else { wanted };
+        let n = orders.as_ref().map_or(wanted, Vec::len);
         let Reranked { mut nearest, aligned, .. } = rerank(shape, candidates, n, |i| {
             budget.check()?;
             self.prepared(&id(i))
@@ -387,7 +387,7 @@ type OrderedShape = (String, OrderedBy);
 /// Shapes that may be results.
 struct Shortlist<'a> {
     /// In ascending order of lower bounds of their combined distances.
-    candidates: Vec<Candidate>,
+    candidates: Box<dyn Iterator<Item = Candidate> + Send>,
     /// The name of each.
     id: Box<dyn Fn(usize) -> String + Sync + 'a>,
     /// What they are ordered by, if not by combined distance.
@@ -398,7 +398,7 @@ impl Shortlist<'static> {
     /// Shapes in their order, all of which are results.
     fn ordered(shapes: Vec<OrderedShape>) -> Self {
         let (ids, orders): (Vec<String>, _) = shapes.into_iter().unzip();
-        let candidates = (0..ids.len()).map(|index| Candidate { index, bound: 0.0 }).collect();
+        let candidates = Box::new((0..ids.len()).map(|index| Candidate { index, bound: 0.0 }));
         Self { candidates, id: Box::new(move |i| ids[i].clone()), orders: Some(orders) }
     }
 }
