@@ -19,7 +19,6 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use base::files::{Pending, fill_atomically, has_other_names, is_input};
-use rusqlite::types::{FromSql, FromSqlResult, ValueRef};
 use rusqlite::{CachedStatement, Connection, OpenFlags, OptionalExtension, Params, ffi};
 
 use crate::error::FORMAT_VERSION;
@@ -317,17 +316,14 @@ pub(crate) fn to_bytes(vector: &[f32]) -> Vec<u8> {
     vector.iter().flat_map(|x| x.to_le_bytes()).collect()
 }
 
-/// A vector that was stored.
-pub(crate) struct Floats(pub(crate) Vec<f32>);
-
-impl FromSql for Floats {
-    fn column_result(value: ValueRef<'_>) -> FromSqlResult<Self> {
-        let (numbers, rest) = value.as_blob()?.as_chunks::<4>();
-        match rest {
-            [] => Ok(Self(numbers.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect())),
-            _ => Err(rusqlite::types::FromSqlError::InvalidType),
-        }
-    }
+/// A row `id, name, vector, checksum`: the two names, and the vector unless it has changed.
+pub(crate) fn vector_row(row: &rusqlite::Row<'_>) -> rusqlite::Result<(String, String, Option<Vec<f32>>)> {
+    let (id, name): (String, String) = (row.get(0)?, row.get(1)?);
+    let bytes = row.get_ref(2)?.as_blob()?;
+    let is_intact = row.get::<_, u32>(3)? == checksum(&[&id, &name], bytes);
+    let (numbers, rest) = bytes.as_chunks::<4>();
+    let vector = numbers.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
+    Ok((id, name, Some(vector).filter(|_| is_intact && rest.is_empty())))
 }
 
 /// The checksum of a row of texts and a vector. Each part ends where it is said to.

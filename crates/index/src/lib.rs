@@ -33,7 +33,7 @@
 //!
 //! | module | contents |
 //! |---|---|
-//! | `shape`, `texts` | the record of one shape, many names |
+//! | `shape` | the record of one shape |
 //! | `vectors` | all vectors in memory: the nearest, and the threshold of unknown classes. Knows no file |
 //! | `database` | the schema, and how the file is opened |
 //! | `reader`, `writer` | [`Index`], [`IndexWriter`] |
@@ -46,7 +46,6 @@ mod export;
 mod reader;
 mod search;
 mod shape;
-mod texts;
 mod vectors;
 mod verify;
 mod writer;

@@ -6,7 +6,7 @@ use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 use retrieval::UnknownThreshold;
 
-use crate::database::{Database, EntryRow, Floats, Meta, checksum, log_path, to_bytes};
+use crate::database::{Database, EntryRow, Meta, log_path, vector_row};
 use crate::{Entry, IndexError, Shape, VectorTable};
 
 /// An index, open for reading.
@@ -200,8 +200,11 @@ impl Index {
     /// The names of shapes of several components, each with the fused vectors of its components but the largest.
     pub fn components(&self) -> Result<Vec<(String, Vec<f32>)>, IndexError> {
         let mut all = Vec::new();
-        let sql = "SELECT id, place, vector, checksum FROM components ORDER BY id, place";
-        each_component(&self.database(), sql, [], |id, vector| all.push((id, vector)))?;
+        let sql = "SELECT id, CAST(place AS TEXT), vector, checksum FROM components ORDER BY id, place";
+        each_vector(&self.database(), sql, [], |id, _, vector| {
+            all.push((id, vector));
+            Ok(())
+        })?;
         Ok(all)
     }
 
@@ -252,25 +255,15 @@ fn each_row(
 /// The fused vectors of all shapes.
 pub(crate) fn vectors(database: &Database) -> Result<VectorTable, IndexError> {
     let mut table = VectorTable::default();
-    let read = |row: &rusqlite::Row<'_>| -> rusqlite::Result<(String, Floats, u32)> {
-        Ok((row.get(0)?, row.get(1)?, row.get(2)?))
-    };
-    database.each(
-        "SELECT id, vector, checksum FROM fused ORDER BY id",
-        [],
-        read,
-        |(id, Floats(fused), sum)| {
-            if sum != checksum(&[&id, "fused"], &to_bytes(&fused)) {
-                return Err(database.damaged(format!("the fused vector of `{id}` has changed")));
-            }
-            if fused.is_empty() || !table.is_empty() && fused.len() != table.dim() {
-                let what = format!("the vector of `{id}` has {} numbers, not {}", fused.len(), table.dim());
-                return Err(database.damaged(what));
-            }
-            table.push(&id, &fused);
-            Ok(())
-        },
-    )?;
+    let sql = "SELECT id, 'fused', vector, checksum FROM fused ORDER BY id";
+    each_vector(database, sql, [], |id, _, fused| {
+        if fused.is_empty() || !table.is_empty() && fused.len() != table.dim() {
+            let what = format!("the vector of `{id}` has {} numbers, not {}", fused.len(), table.dim());
+            return Err(database.damaged(what));
+        }
+        table.push(&id, &fused);
+        Ok(())
+    })?;
     Ok(table)
 }
 
@@ -281,34 +274,9 @@ fn each_vector(
     values: impl rusqlite::Params,
     mut visit: impl FnMut(String, String, Vec<f32>) -> Result<(), IndexError>,
 ) -> Result<(), IndexError> {
-    let read = |row: &rusqlite::Row<'_>| -> rusqlite::Result<(String, String, Floats, u32)> {
-        Ok((row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?))
-    };
-    database.each(sql, values, read, |(id, name, Floats(vector), sum)| {
-        match sum == checksum(&[&id, &name], &to_bytes(&vector)) {
-            true => visit(id, name, vector),
-            false => Err(database.damaged(format!("the vector `{name}` of `{id}` has changed"))),
-        }
-    })
-}
-
-fn each_component(
-    database: &Database,
-    sql: &str,
-    values: impl rusqlite::Params,
-    mut visit: impl FnMut(String, Vec<f32>),
-) -> Result<(), IndexError> {
-    let read = |row: &rusqlite::Row<'_>| -> rusqlite::Result<(String, i64, Floats, u32)> {
-        Ok((row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?))
-    };
-    database.each(sql, values, read, |(id, place, Floats(vector), sum)| {
-        match sum == checksum(&[&id, &place.to_string()], &to_bytes(&vector)) {
-            true => {
-                visit(id, vector);
-                Ok(())
-            }
-            false => Err(database.damaged(format!("component {place} of `{id}` has changed"))),
-        }
+    database.each(sql, values, vector_row, |(id, name, vector)| match vector {
+        Some(vector) => visit(id, name, vector),
+        None => Err(database.damaged(format!("the vector `{name}` of `{id}` has changed"))),
     })
 }
 
@@ -343,8 +311,12 @@ pub(crate) fn shape_of(database: &Database, row: EntryRow) -> Result<Shape, Inde
         }
         Ok(())
     })?;
-    let components = "SELECT id, place, vector, checksum FROM components WHERE id = ? ORDER BY place";
-    each_component(database, components, [&id], |_, vector| shape.components.push(vector))?;
+    let components =
+        "SELECT id, CAST(place AS TEXT), vector, checksum FROM components WHERE id = ? ORDER BY place";
+    each_vector(database, components, [&id], |_, _, vector| {
+        shape.components.push(vector);
+        Ok(())
+    })?;
     found += shape.components.len() as u64;
     match found == vectors {
         true => Ok(shape),

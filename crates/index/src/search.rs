@@ -37,7 +37,7 @@ impl Index {
 pub fn class_threshold(indexes: &[Index]) -> Result<Option<UnknownThreshold>, IndexError> {
     threshold(|visit| {
         indexes.iter().try_for_each(|index| {
-            let classes = index.entries()?.into_iter().map(|entry| entry.label).collect();
+            let classes: Vec<String> = index.entries()?.into_iter().map(|entry| entry.label).collect();
             visit(&vectors(&index.database())?, &classes);
             Ok(())
         })

@@ -74,7 +74,7 @@ fn check(index: &Index, n_shapes: &mut usize) -> Result<Vec<String>, IndexError>
     }
     if index.is_finished() {
         let (vectors, classes) = (index.vector_table()?, index.entries()?);
-        let classes = classes.into_iter().map(|entry| entry.label).collect();
+        let classes: Vec<String> = classes.into_iter().map(|entry| entry.label).collect();
         let fresh = threshold(|visit| {
             visit(vectors, &classes);
             Ok::<_, IndexError>(())

@@ -4,7 +4,6 @@ use rayon::prelude::*;
 
 use super::kernels::{padded, sq_distances_into};
 use super::nearest::Nearest;
-use crate::texts::Texts;
 
 /// Rows in one parallel task.
 const TASK: usize = 8192;
@@ -15,7 +14,7 @@ const CHUNK: usize = 256;
 /// The fused vectors of all shapes of an index, in ascending order of their names.
 #[derive(Debug, Default)]
 pub struct VectorTable {
-    ids: Texts,
+    ids: Vec<Box<str>>,
     dim: usize,
     /// Vectors with zeros behind them, which kernels need.
     rows: Vec<f32>,
@@ -25,7 +24,7 @@ impl VectorTable {
     /// Adds a vector. All have the same length.
     pub(crate) fn push(&mut self, id: &str, vector: &[f32]) {
         self.dim = vector.len();
-        self.ids.push(id);
+        self.ids.push(id.into());
         self.rows.extend_from_slice(vector);
         self.rows.resize(self.ids.len() * padded(self.dim), 0.0);
     }
@@ -51,7 +50,7 @@ impl VectorTable {
     /// The name of a shape.
     #[must_use]
     pub fn id(&self, i: usize) -> &str {
-        self.ids.get(i)
+        &self.ids[i]
     }
 
     /// The vector of a shape.

@@ -5,7 +5,6 @@ use retrieval::UnknownThreshold;
 
 use super::kernels::sq_distances_into;
 use super::table::VectorTable;
-use crate::texts::Texts;
 
 /// Shapes with a class whose nearest others are looked for, at most: those whose hashed names come first.
 const TRIALS: usize = 512;
@@ -22,7 +21,7 @@ fn shape_key(id: &str) -> ShapeKey {
 }
 
 /// Called with the vectors and the classes of some shapes.
-type Visit<'a> = dyn FnMut(&VectorTable, &Texts) + 'a;
+type Visit<'a> = dyn FnMut(&VectorTable, &[String]) + 'a;
 
 /// A shape, and the least squared distances to others of its class and of other classes.
 struct Trial {
@@ -35,18 +34,18 @@ struct Trial {
 }
 
 impl Trial {
-    fn new(key: ShapeKey, i: usize, vectors: &VectorTable, classes: &Texts) -> Self {
-        let (id, class) = (vectors.id(i).to_owned(), classes.get(i).to_owned());
+    fn new(key: ShapeKey, i: usize, vectors: &VectorTable, classes: &[String]) -> Self {
+        let (id, class) = (vectors.id(i).to_owned(), classes[i].clone());
         let row = vectors.padded(i).to_vec();
         Self { key, id, class, row, own: f32::INFINITY, foreign: f32::INFINITY }
     }
 
     /// Compares it with some of the shapes.
-    fn meet(&mut self, shapes: std::ops::Range<usize>, vectors: &VectorTable, classes: &Texts) {
+    fn meet(&mut self, shapes: std::ops::Range<usize>, vectors: &VectorTable, classes: &[String]) {
         let mut sq = [0.0];
-        for i in shapes.filter(|i| !classes.get(*i).is_empty()) {
+        for i in shapes.filter(|i| !classes[*i].is_empty()) {
             sq_distances_into(&self.row, vectors.padded(i), &mut sq);
-            let least = if classes.get(i) == self.class { &mut self.own } else { &mut self.foreign };
+            let least = if classes[i] == self.class { &mut self.own } else { &mut self.foreign };
             if sq[0] < *least && vectors.id(i) != self.id {
                 *least = sq[0];
             }
@@ -60,7 +59,7 @@ pub(crate) fn threshold<E>(
 ) -> Result<Option<UnknownThreshold>, E> {
     let mut trials: Vec<Trial> = Vec::new();
     each(&mut |vectors, classes| {
-        let labelled = (0..vectors.len()).filter(|i| !classes.get(*i).is_empty());
+        let labelled = (0..vectors.len()).filter(|i| !classes[*i].is_empty());
         let mut keys: Vec<(ShapeKey, usize)> = labelled.map(|i| (shape_key(vectors.id(i)), i)).collect();
         keys.sort_unstable();
         keys.truncate(TRIALS);
@@ -94,7 +93,7 @@ mod tests {
         rows: &[f32],
         class: impl Fn(usize) -> String,
     ) -> Option<UnknownThreshold> {
-        let pieces: Vec<(VectorTable, Texts)> = pieces
+        let pieces: Vec<(VectorTable, Vec<String>)> = pieces
             .iter()
             .map(|range| {
                 let mut table = VectorTable::default();
