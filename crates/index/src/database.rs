@@ -256,7 +256,10 @@ impl IndexError {
             ffi::SQLITE_IOERR => match code {
                 ffi::SQLITE_IOERR_READ | ffi::SQLITE_IOERR_SHORT_READ => io("read", ErrorKind::Other),
                 // A limit of the size of files, or a disk that fills up while a page is written.
-                ffi::SQLITE_IOERR_WRITE => io("write", ErrorKind::StorageFull),
+                ffi::SQLITE_IOERR_WRITE
+                | ffi::SQLITE_IOERR_TRUNCATE
+                | ffi::SQLITE_IOERR_SHMSIZE
+                | ffi::SQLITE_IOERR_SHMMAP => io("write", ErrorKind::StorageFull),
                 _ => io("write", ErrorKind::Other),
             },
             _ => Self::damaged(path, text),
