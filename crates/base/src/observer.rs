@@ -12,7 +12,7 @@ pub trait Observer: Sync {
     /// A stage of `total` steps begins; the previous one has ended.
     fn begin(&self, _stage: &str, _total: usize) {}
 
-    /// A step of the current stage is done.
+    /// A step of the current stage is done. Some steps may have to be done again: what is shown ends at the total.
     fn step(&self) {}
 }
 

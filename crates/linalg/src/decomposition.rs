@@ -107,27 +107,36 @@ pub fn triangular_factor(a: &Matrix) -> Matrix {
     from_faer(view(a).qr().thin_R())
 }
 
-/// The pseudo-inverse of a matrix. Singular values below `max(rows, columns) * 2.2e-16` of the largest count as zero.
+/// The singular value decomposition `A = U Σ V'`: `U`, the singular values above `max(rows, columns) * 2.2e-16` of the largest,
+/// descending, and `V`. What is not above counts as zero.
 ///
 /// Cost: `O(m n min(m, n))`.
 ///
 /// # Errors
 /// [`LinalgError::NotConverged`], also if an entry is not finite.
-pub fn pseudo_inverse(a: &Matrix) -> Result<Matrix, LinalgError> {
+pub fn thin_svd(a: &Matrix) -> Result<(Matrix, Vec<f64>, Matrix), LinalgError> {
     let n = a.nrows().max(a.ncols());
-    if a.is_empty() {
-        return Ok(a.transpose());
-    }
     if a.iter().any(|x| !x.is_finite()) {
         return Err(LinalgError::NotConverged(n));
     }
-    let svd = view(a).thin_svd().map_err(|_| LinalgError::NotConverged(n))?;
-    let (u, mut v) = (from_faer(svd.U()), from_faer(svd.V()));
-    let values = svd.S();
-    let floor = n as f64 * f64::EPSILON * values[0];
-    for (j, mut column) in v.column_iter_mut().enumerate() {
-        column *= if values[j] > floor { 1.0 / values[j] } else { 0.0 };
+    if a.is_empty() {
+        return Ok((Matrix::zeros(a.nrows(), 0), Vec::new(), Matrix::zeros(a.ncols(), 0)));
     }
+    let svd = view(a).thin_svd().map_err(|_| LinalgError::NotConverged(n))?;
+    let all: Vec<f64> = svd.S().column_vector().iter().copied().collect();
+    let floor = n as f64 * f64::EPSILON * all[0];
+    let values: Vec<f64> = all.into_iter().take_while(|value| *value > floor).collect();
+    let [u, v] = [svd.U(), svd.V()].map(|of| from_faer(of.subcols(0, values.len())));
+    Ok((u, values, v))
+}
+
+/// The pseudo-inverse of a matrix, by its [`thin_svd`].
+///
+/// # Errors
+/// As [`thin_svd`].
+pub fn pseudo_inverse(a: &Matrix) -> Result<Matrix, LinalgError> {
+    let (u, values, mut v) = thin_svd(a)?;
+    v.column_iter_mut().zip(values).for_each(|(mut column, value)| column /= value);
     Ok(v * u.transpose())
 }
 

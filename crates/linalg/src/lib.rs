@@ -21,7 +21,7 @@ mod sparse;
 pub use cholesky::{EliminationOrder, SparseCholesky};
 pub use column_store::{ColumnSlot, ColumnStore};
 pub use decomposition::{
-    SymmetricEigen, leading_sign, pseudo_inverse, symmetric_eigen, symmetric_eigenvalues, thin_qr,
+    SymmetricEigen, leading_sign, pseudo_inverse, symmetric_eigen, symmetric_eigenvalues, thin_qr, thin_svd,
     triangular_factor,
 };
 pub use distance_matrix::DistanceMatrix;

@@ -80,8 +80,8 @@ impl NystromOptions {
 ///   rows, and needs `O(p k + n^2)` memory besides them; they may be in a file.
 /// * Exact for Euclidean distances in `R^d` if `n1 >= d + 2`.
 /// * Independent of the unit of length, except for [`RpiAlpha::Paper`](crate::RpiAlpha::Paper).
-/// * Drops eigenvalues of `S` below rounding error, even if the rank includes them: with [`Regularization::LowRank`], that of
-///   coordinates of 32 bits. Drops negative eigenvalues of the result, whose share it reports. Never returns NaN.
+/// * Drops eigenvalues of `S` below the rounding error of coordinates of 32 bits, even if the rank includes them, unless the
+///   distances to all points confirm them. Drops negative eigenvalues of the result, whose share it reports. Never returns NaN.
 ///
 /// **Deviation**: "the n1 largest eigenvalues of S" are those of largest *magnitude*. `S` has one large positive
 /// eigenvalue, and the negative ones carry the geometry; in algebraic order the stress stays near four times the
@@ -126,20 +126,15 @@ pub fn nystrom_extended(
     let inverse = options.regularization.pseudo_inverse(&block, unit, rank)?;
 
     let means = sq_means(distances, unit)?;
-    let w = triangle(distances, unit, &means, inverse.basis.as_ref())?;
-    let (inverse, w) = match options.regularization {
-        Regularization::LowRank { .. } => inverse.without_rounding(w, distances.n_points()),
-        _ => (inverse, w),
-    };
-    let core = symmetrized(inverse.core) * -0.5;
+    let w = triangle(distances, unit, &means, Some(&inverse.basis))?;
+    let inverse = inverse.without_rounding(&w, distances);
+    let core = symmetrized(inverse.core()) * -0.5;
     let inner = symmetrized(&w * &core * w.transpose());
     let (axes, values) = principal_axes(&(core * w.transpose()), &inner, options.dim)?;
-    let mut axes = match &inverse.basis {
-        Some(basis) => basis * axes,
-        None => axes,
-    };
+    let mut axes = &inverse.basis * axes;
     let columns = product(distances, unit, &means, &axes)?;
-    let (embedding, factors) = Embedding::from_orthonormal_with_factors(columns, values, unit, inverse.rank);
+    let (embedding, factors) =
+        Embedding::from_orthonormal_with_factors(columns, values, unit, inverse.rank());
     axes.column_iter_mut().zip(factors).for_each(|(mut axis, factor)| axis *= factor);
     Ok((embedding, OutOfSample { unit, means, axes }))
 }

@@ -94,8 +94,8 @@ impl Reconstruction {
         let Squares { unit, columns, block } = &self.squares;
         let rank = regularization.rank(block.nrows(), 3)?;
         let inverse = regularization.pseudo_inverse(block, *unit, rank)?;
-        let projected = self.q.tr_mul(&inverse.apply(columns.clone()));
-        let approximated = &projected * &inverse.core * projected.transpose();
+        let projected = self.q.tr_mul(&(columns * &inverse.basis));
+        let approximated = &projected * inverse.core() * projected.transpose();
         let inside_sq = (&self.projected - approximated).norm_squared();
         Ok(self.error_of(self.outside_sq + self.mixed_sq + inside_sq))
     }

@@ -1,6 +1,6 @@
 //! Regularised inverses of the sample matrix.
 
-use linalg::{Matrix, SymmetricEigen, pseudo_inverse, symmetric_eigen};
+use linalg::{LandmarkDistances, Matrix, SymmetricEigen, symmetric_eigen, thin_svd};
 
 use crate::NmdsError;
 use crate::squares::n_significant;
@@ -23,7 +23,7 @@ pub enum Regularization {
         /// How strongly small eigenvalues are damped.
         alpha: RpiAlpha,
     },
-    /// Inverts all eigenvalues above rounding error: the plain Nystrom method.
+    /// Inverts all eigenvalues that are not rounding error: the plain Nystrom method.
     None,
     /// The CUR decomposition `Ê = C U R'`, with `C` the columns of the first `rank` samples and `U` the pseudo-inverse of
     /// their rows at the samples (eq. 9). It is not symmetric, so an embedding uses the mean of it and its transpose.
@@ -151,64 +151,65 @@ impl Regularization {
         rank: usize,
     ) -> Result<PseudoInverse, NmdsError> {
         if let Self::Cur { .. } = self {
+            let (right, values, left) = thin_svd(&sq_block.columns(0, rank).into_owned())?;
             let n = sq_block.nrows();
-            let mut core = Matrix::zeros(n, n);
-            core.rows_mut(0, rank).copy_from(&pseudo_inverse(&sq_block.columns(0, rank).into_owned())?);
-            return Ok(PseudoInverse { basis: None, core, rank });
+            let factors = [left.resize_vertically(n, 0.0), right];
+            let reciprocals = values.iter().map(|value| 1.0 / value).collect();
+            return Ok(PseudoInverse { basis: Matrix::identity(n, n), factors, values, reciprocals });
         }
-        let kept = by_magnitude(sq_block, rank)?;
-        let sigma_1 = kept.values[0].abs();
-        let reciprocal = |value: f64| match self {
+        let SymmetricEigen { values, vectors } = by_magnitude(sq_block, rank)?;
+        let sigma_1 = values[0].abs();
+        let reciprocal = |value: &f64| match self {
             // Samples coincide, or there is only one.
-            _ if value == 0.0 => 0.0,
+            _ if *value == 0.0 => 0.0,
             Self::Rpi { alpha } => {
                 let ratio = value / sigma_1;
                 ratio.powi(3) / (ratio.powi(4) + alpha.relative(sigma_1 * unit * unit)) / sigma_1
             }
             _ => 1.0 / value,
         };
-        let reciprocals: Vec<f64> = kept.values.iter().map(|value| reciprocal(*value)).collect();
-        let rank = reciprocals.len();
-        Ok(PseudoInverse {
-            basis: Some(kept.vectors),
-            core: Matrix::from_diagonal(&reciprocals.into()),
-            rank,
-        })
+        let reciprocals = values.iter().map(reciprocal).collect();
+        let factors = [(); 2].map(|()| Matrix::identity(values.len(), values.len()));
+        Ok(PseudoInverse { basis: vectors, factors, values, reciprocals })
     }
 }
 
-/// `S⁺ = T M T'`, so that `Ê = (R T) M (R T)'`.
+/// `S⁺ = T M T'` with the core `M = X D Y'`, so that `Ê = (R T) M (R T)'`.
 #[derive(Debug)]
 pub(crate) struct PseudoInverse {
-    /// `T`, n x m; `None` stands for the identity.
-    pub(crate) basis: Option<Matrix>,
-    /// `M`, m x m; symmetric except for CUR.
-    pub(crate) core: Matrix,
-    /// Number of eigenpairs or columns used.
-    pub(crate) rank: usize,
+    /// `T`, n x m.
+    pub(crate) basis: Matrix,
+    /// `X` and `Y`, m x r; the same, except for CUR.
+    factors: [Matrix; 2],
+    /// Eigenvalues or singular values, in descending order of magnitude, and the diagonal of `D`.
+    values: Vec<f64>,
+    reciprocals: Vec<f64>,
 }
 
 impl PseudoInverse {
-    /// The pseudo-inverse without the eigenpairs that are [rounding](n_significant), and what is left of `w`, the triangular factor
-    /// of the centred `R T` for `p` points. At least one pair stays.
-    pub(crate) fn without_rounding(self, w: Matrix, p: usize) -> (Self, Matrix) {
-        let Some(basis) = &self.basis else { return (self, w) };
-        let inverses = self.core.diagonal();
-        let values: Vec<f64> = inverses.iter().map(|x| if *x == 0.0 { 0.0 } else { 1.0 / x }).collect();
-        let squares =
-            values.iter().zip(w.column_iter()).map(|(value, column)| [value * value, column.norm_squared()]);
-        let rank = n_significant(&values, squares, basis.nrows(), p).max(1);
-        let core = self.core.view((0, 0), (rank, rank)).into_owned();
-        let w = w.view((0, 0), (rank.min(w.nrows()), rank)).into_owned();
-        (Self { basis: Some(basis.columns(0, rank).into_owned()), core, rank }, w)
+    /// The pseudo-inverse without the pairs that are [rounding](n_significant); `w` is the triangular factor of the centred `R T`.
+    /// At least one pair stays.
+    pub(crate) fn without_rounding(self, w: &Matrix, distances: &LandmarkDistances) -> Self {
+        let [x, y] = self.factors.each_ref().map(|factor| w * factor);
+        let everywhere = x.column_iter().zip(y.column_iter());
+        let everywhere = everywhere.map(|(x, y)| x.norm_squared().max(y.norm_squared()));
+        let squares = self.values.iter().zip(everywhere).map(|(value, sum)| [value * value, sum]);
+        let (n, p) = (distances.n_landmarks(), distances.n_points());
+        let rank = n_significant(&self.values, squares, n, p).max(1);
+        Self { reciprocals: self.reciprocals.into_iter().take(rank).collect(), ..self }
     }
 
-    /// `R T` for a matrix `R` with n columns.
-    pub(crate) fn apply(&self, columns: Matrix) -> Matrix {
-        match &self.basis {
-            Some(basis) => columns * basis,
-            None => columns,
-        }
+    /// Number of eigenpairs or singular values used.
+    pub(crate) fn rank(&self) -> usize {
+        self.reciprocals.len()
+    }
+
+    /// `M`, m x m; symmetric except for CUR.
+    pub(crate) fn core(&self) -> Matrix {
+        let [mut left, right] =
+            self.factors.each_ref().map(|factor| factor.columns(0, self.rank()).into_owned());
+        left.column_iter_mut().zip(&self.reciprocals).for_each(|(mut column, factor)| column *= *factor);
+        left * right.transpose()
     }
 }
 

@@ -109,7 +109,7 @@ impl Watched {
         if let Some(progress) = progress {
             let (stage, total) = self.stage.lock().unwrap_or_else(PoisonError::into_inner).clone();
             if total > 0 {
-                progress.call1(py, (stage, self.done.load(Ordering::Relaxed), total))?;
+                progress.call1(py, (stage, self.done.load(Ordering::Relaxed).min(total), total))?;
             }
         }
         Ok(())

@@ -75,7 +75,7 @@ impl Observer for Bars {
 
     fn step(&self) {
         if let Some(bar) = self.current.lock().unwrap_or_else(PoisonError::into_inner).as_ref() {
-            bar.inc(1);
+            bar.set_position((bar.position() + 1).min(bar.length().unwrap_or(u64::MAX)));
         }
     }
 }
@@ -146,7 +146,8 @@ mod tests {
         let bars = Bars::new(false);
         bars.begin("stage", 3);
         let weak = bars.current.lock().unwrap().as_ref().unwrap().downgrade();
-        assert!(unfinished(&weak).is_some());
+        (0..4).for_each(|_| bars.step());
+        assert!(line(&unfinished(&weak).unwrap()).starts_with("stage: 3 of 3, "));
         bars.finish();
         assert!(unfinished(&weak).is_none());
     }

@@ -227,7 +227,8 @@ impl Known<'_> {
             (Rows::Known(_), StressChoice::Auto) => None,
             (_, choice) => choice.n_rows(p, self.samples.n_landmarks(), self.searched),
         };
-        observer.begin("stress", n_rows.unwrap_or(p));
+        let to_solve = if matches!(rows, Rows::Known(_)) { 0 } else { n_rows.unwrap_or(p) };
+        observer.begin("stress", to_solve);
         let sample = |coords: &Matrix, unit: f64| {
             let drawn = |m| RowSample::by_landmarks(coords, self.samples, unit, m, options.seed);
             n_rows.map(drawn).transpose()

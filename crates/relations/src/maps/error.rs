@@ -3,30 +3,21 @@
 use descriptors::DescriptorError;
 
 /// Why two landmarks cannot both be right.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LandmarkConflict {
     /// They give one vertex two partners.
+    #[error("they give one vertex two partners")]
     SharedVertex,
     /// Their distances on both surfaces, as shares of the diameter.
+    #[error(
+        "they are {:.0} % of the diameter apart on the first surface, and {:.0} % on the second",
+        100.0 * .0[0], 100.0 * .0[1]
+    )]
     Distance([f64; 2]),
     /// One fits the direct map only, the other the mirrored one only.
+    #[error("one keeps left and right, the other exchanges them")]
     Orientation,
-}
-
-impl std::fmt::Display for LandmarkConflict {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::SharedVertex => write!(f, "they give one vertex two partners"),
-            Self::Distance([a, b]) => write!(
-                f,
-                "they are {:.0} % of the diameter apart on the first surface, and {:.0} % on the second",
-                100.0 * a,
-                100.0 * b
-            ),
-            Self::Orientation => write!(f, "one keeps left and right, the other exchanges them"),
-        }
-    }
 }
 
 /// Errors of maps.

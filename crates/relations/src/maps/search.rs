@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::curvature::mismatch;
 use super::error::{LandmarkConflict, MapError};
 use super::functional_map::{FunctionalMaps, Placed, SampledPair, TwoWayMap, schedule, zoom_out};
-use super::known::{CLEARLY_WORSE, KnownMap, OUTLYING, RESPECTED, UNFIT};
+use super::known::{CLEARLY_WORSE, DOUBTED, KnownMap, OUTLYING, RESPECTED, UNFIT};
 use super::local::mean_gap;
 use super::operators::{FITTED, fitted};
 use super::orientation::{FUNCTIONS as FORMS, agreement};
@@ -61,10 +61,8 @@ const FULL: f64 = 0.05;
 /// is where maps become [certain](SurfaceMap::CERTAIN).
 const STEEPNESS: f64 = 3.4;
 
-/// The most confidence in a mixture: as likely wrong as right. A convention.
-const OF_MIXTURE: f64 = 0.5;
-
 /// A map of functions and of samples, with what ranks it among others.
+#[derive(Clone)]
 struct Candidate {
     functional: FunctionalMaps,
     /// Distances from the landmarks of the second surface to the images of those of the first, a column for each.
@@ -308,16 +306,27 @@ impl MapSearch<'_> {
         let mut rivals = found.iter().filter(|other| is_mixture(best) || !is_mixture(other));
         let rival = rivals.find(|other| !best.is_same(other));
         let confidence = odds(best.cost(), rival.map(Candidate::cost), STEEPNESS);
-        let confidence = if is_mixture(best) { confidence.min(OF_MIXTURE) } else { confidence };
-        let mut map = self.refined(best, confidence)?;
-        if let Some(rival) = rival.filter(|_| map.confidence < SurfaceMap::CERTAIN) {
-            map.alternative = Some(Box::new(self.refined(rival, 1.0 - map.confidence)?));
+        let limit = if is_mixture(best) { DOUBTED } else { 1.0 };
+        let mut first = self.refined(best)?;
+        let mut confidence = KnownMap::doubted(confidence.min(limit), &first.misses);
+        let rival = rival.filter(|_| confidence < SurfaceMap::CERTAIN);
+        let mut rival = rival.map(|rival| self.refined(rival)).transpose()?;
+        // An initial map stands unless another one is clearly better, which the sketches tell.
+        let is_better =
+            |second: &&mut Candidate| self.known.initial.is_empty() && second.cost() < first.cost();
+        if let Some(second) = rival.as_mut().filter(is_better) {
+            std::mem::swap(&mut first, second);
+            confidence = confidence.min(DOUBTED);
+        }
+        let mut map = self.on_all_vertices(&first, confidence)?;
+        if let Some(second) = rival {
+            map.alternative = Some(Box::new(self.on_all_vertices(&second, 1.0 - confidence)?));
         }
         Ok(Some(map))
     }
 
-    /// A map on all samples and eigenfunctions, and then on all vertices.
-    fn refined(&self, sketch: &Candidate, confidence: f64) -> Result<SurfaceMap, DescriptorError> {
+    /// A map on all samples and eigenfunctions.
+    fn refined(&self, sketch: &Candidate) -> Result<Candidate, DescriptorError> {
         let shapes = [self.a, self.b];
         let all = self.known.and_landmarks(first_samples(shapes, usize::MAX), shapes);
         let start = sketch.functional.sample_maps(&all);
@@ -327,9 +336,23 @@ impl MapSearch<'_> {
             (Some(before), Some(after)) => after * before.signum() > before.abs() - LOST,
             _ => true,
         };
-        let found = refined.iter().find(|found| agrees(found)).unwrap_or(sketch);
-        let confidence = confidence * KnownMap::fit(&found.misses);
-        Ok(SurfaceMap { confidence, ..found.on_all_vertices(self.a, self.b)? })
+        Ok(refined.into_iter().find(agrees).unwrap_or_else(|| sketch.clone()))
+    }
+
+    /// A map on all vertices.
+    fn on_all_vertices(&self, found: &Candidate, confidence: f64) -> Result<SurfaceMap, DescriptorError> {
+        let (a, b) = (self.a, self.b);
+        let Placed { on_a, on_b, coarse } =
+            found.functional.placed([&a.spectrum.vectors, &b.spectrum.vectors]);
+        let forth = b.nearest_vertices(&on_b, &coarse, &on_a);
+        let back = a.nearest_vertices(&on_a, &coarse, &on_b.select_rows(b.landmarks()));
+        Ok(SurfaceMap {
+            kind: found.kind(),
+            agreement: found.agreement,
+            functional: found.functional.forth.clone(),
+            confidence,
+            ..SurfaceMap::of_vertices([a, b], &forth, &back)?
+        })
     }
 
     /// Refines maps of samples, from some eigenfunctions to more.
@@ -433,19 +456,6 @@ impl Candidate {
         let misses = known.misses(&functional, [a, b])?;
         let penalty = KnownMap::penalty(&misses, STEEPNESS);
         Ok(Self { functional, to_images, distortion, agreement, score, misses, penalty })
-    }
-
-    fn on_all_vertices(&self, a: &MapShape, b: &MapShape) -> Result<SurfaceMap, DescriptorError> {
-        let Placed { on_a, on_b, coarse } =
-            self.functional.placed([&a.spectrum.vectors, &b.spectrum.vectors]);
-        let forth = b.nearest_vertices(&on_b, &coarse, &on_a);
-        let back = a.nearest_vertices(&on_a, &coarse, &on_b.select_rows(b.landmarks()));
-        Ok(SurfaceMap {
-            kind: self.kind(),
-            agreement: self.agreement,
-            functional: self.functional.forth.clone(),
-            ..SurfaceMap::of_vertices([a, b], &forth, &back)?
-        })
     }
 }
 

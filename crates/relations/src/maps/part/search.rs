@@ -148,8 +148,8 @@ fn best(sides: &Sides<'_>, found: &[Candidate], side: Side) -> Result<Option<Sur
     let Some((best, others)) = found.split_first() else { return Ok(None) };
     let rival = others.iter().find(|other| gap(sides, &best.places, &other.places) > SAME);
     let alone = odds(best.score, rival.map(|rival| rival.score), STEEPNESS);
-    let fit = KnownMap::fit(&[sides.miss(&best.places)]);
-    let confidence = alone * DOUBTFUL.probability(best.distortion) * fit;
+    let confidence = alone * DOUBTFUL.probability(best.distortion);
+    let confidence = KnownMap::doubted(confidence, &[sides.miss(&best.places)]);
     let mut map = refined(sides, best, confidence, side)?;
     if let Some(rival) = rival.filter(|_| confidence < SurfaceMap::CERTAIN) {
         map.alternative = Some(Box::new(refined(sides, rival, 1.0 - confidence, side)?));
