@@ -37,7 +37,7 @@ pub(crate) const FORM: [f64; 2] = [0.027, 0.0095];
 pub(crate) const RIGID: [f64; 2] = [0.0011, 0.0018];
 
 /// See [`ShapeMetric::SAME_SHAPE`](crate::ShapeMetric::SAME_SHAPE).
-pub(crate) const SAME_SHAPE: Boundary = Boundary { at: 1.126, steepness: 1.56 };
+pub(crate) const SAME_SHAPE: Boundary = Boundary { at: 1.082, steepness: 8.92, range: [0.222, 0.874] };
 
 /// See [`ShapeMetric::SAME_CLASS`](crate::ShapeMetric::SAME_CLASS).
-pub(crate) const SAME_CLASS: Boundary = Boundary { at: 3.606, steepness: 12.78 };
+pub(crate) const SAME_CLASS: Boundary = Boundary { at: 3.706, steepness: 11.20, range: [0.0, 0.993] };

@@ -25,7 +25,7 @@ pub(super) const CLEARLY_WORSE: f64 = 1.5;
 pub(super) const OUTLYING: f64 = 2.0;
 
 /// A map that misses the landmarks by so much, as a mean square, is as likely wrong as right. A convention.
-const FIT: Boundary = Boundary { at: OUTLYING * RESPECTED, steepness: 4.0 };
+const FIT: Boundary = Boundary::new(OUTLYING * RESPECTED, 4.0);
 
 /// A landmark weighs as much as one in so many of the samples. A convention: as many landmarks are spread over a surface.
 const A_HUNDREDTH: f64 = 100.0;
