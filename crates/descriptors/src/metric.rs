@@ -76,12 +76,13 @@ impl ShapeMetric {
     pub const VERSION: u32 = 6;
 
     /// The boundary between two poses of one body and two bodies of one class, both being equally frequent: a logistic
-    /// regression on the logarithm of the combined distance.
+    /// regression on the logarithm of the combined distance, between two ends.
     ///
     /// Bodies of one class differ as adults do: lengths of trunk and limbs by 4 % and girths by 9 % (one standard deviation).
     /// They are families of the 28 plans of creatures, none of which decided about units and weights, in meshes of 250, 1,000
-    /// and 5,000 vertices; two meshes may be of different resolutions. Bodies of a worm or a ring are no farther apart than
-    /// their poses, so that hardly any distance is certain. `docs/decisions/014-metric.md` shows how often it is right.
+    /// and 5,000 vertices; two meshes may be of different resolutions. The ends are not 0 and 1: bodies of a worm or a ring are no
+    /// farther apart than their poses, and poses of a spider no nearer than its bodies. One more plan about which distance
+    /// says nothing is counted (rule of succession). `docs/decisions/014-metric.md` shows how often it is right.
     pub const SAME_SHAPE: Boundary = calibration::SAME_SHAPE;
 
     /// The boundary between one class and two classes, both being equally frequent; of one class, one body and two bodies are
