@@ -3,7 +3,7 @@
 
 use std::io::Write;
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use canonform::{DescribeOptions, Observer, Surface, describe};
 use datasets::{CreatureOptions, creature_body, creature_plans};
 use descriptors::{Boundary, PreparedShape, ShapeDistance, ShapeMetric, ShapePair};
@@ -14,16 +14,16 @@ use crate::families::coarse;
 /// Vertices of the meshes.
 const VERTICES: [usize; 3] = [250, 1000, 5000];
 
-/// Families of every plan, bodies of every family, and poses of every body at each number of vertices.
-const FAMILIES: usize = 3;
+/// Families of every plan, bodies of every family, and poses of every body.
+const FAMILIES: usize = 9;
 const BODIES: usize = 2;
 const POSES: usize = 2;
 
 /// Pairs of two families whose forms are aligned, evenly drawn: that takes long.
 const PAIRS_OF_FAMILIES: usize = 12_000;
 
-/// Groups of plans; two of them are held out at a time.
-const FOLDS: usize = 7;
+/// Steps of the fit, after which no printed digit changes any more.
+const STEPS: usize = 100;
 
 /// How frequent pairs are: poses of one body, bodies of one family, two families.
 type Prior = [f64; 3];
@@ -34,34 +34,36 @@ const OF_SHAPES: Prior = [0.5, 0.5, 0.0];
 /// One class or two, equally frequent; of one class, one shape and two are equally frequent.
 const OF_CLASSES: Prior = [0.25, 0.25, 0.5];
 
-/// A shape of a family, and the group of plans that it belongs to.
+/// A shape of a family of a plan.
 struct Creature {
-    fold: usize,
+    plan: usize,
     family: usize,
     body: usize,
     shape: PreparedShape,
 }
 
-/// Two creatures: which kind of pair they are, the groups of their plans, and how far apart they are.
+/// Two creatures: which kind of pair they are, their plans, and how far apart they are.
 #[derive(Debug, Clone, Copy)]
 struct CreaturePair {
     kind: usize,
-    folds: [usize; 2],
+    plans: [usize; 2],
     distance: ShapeDistance,
 }
 
 fn described(n_plans: usize, number: usize) -> Result<Creature> {
     let (pose, rest) = (number % POSES, number / POSES);
-    let (size, rest) = (rest % VERTICES.len(), rest / VERTICES.len());
     let (body, family) = (rest % BODIES, rest / BODIES);
-    let n_vertices = VERTICES[size];
+    // An orthogonal array: in the nine families of a plan, any two of the four shapes have every two resolutions once.
+    let (i, j) = (family / n_plans % 3, family / n_plans / 3);
+    let shape = body * POSES + pose;
+    let n_vertices = VERTICES[[i, j, i + j, i + 2 * j][shape] % VERTICES.len()];
     let options = CreatureOptions { seed: 2, n_vertices: n_vertices.max(1000), ..Default::default() };
-    // The rest pose is left out, and no pose is there at two resolutions.
-    let mesh = creature_body(family, body, 1 + size * POSES + pose, &options, &())?.mesh;
+    // The rest pose is left out, and no pose is there twice.
+    let mesh = creature_body(family, body, 1 + shape, &options, &())?.mesh;
     let mesh = if n_vertices < mesh.n_vertices() { coarse(&mesh, n_vertices) } else { mesh };
     let options = DescribeOptions::default();
     let description = describe(&Surface::new(&mesh, &options.form.repair, &())?, &options, &())?;
-    Ok(Creature { fold: family % n_plans % FOLDS, family, body, shape: description.prepare()? })
+    Ok(Creature { plan: family % n_plans, family, body, shape: description.prepare()? })
 }
 
 /// All pairs of one family, and some of two.
@@ -79,16 +81,22 @@ fn weights(pairs: &[CreaturePair], prior: Prior) -> Vec<f64> {
     pairs.iter().map(|pair| prior[pair.kind] / counts[pair.kind] as f64).collect()
 }
 
-/// The log-logistic boundary of greatest likelihood between kinds below `second` and the others, by Newton's method.
+/// The boundary of greatest likelihood between kinds below `second` and the others, by expectation maximization: a logarithm of
+/// the distance is on the near or the far side, by logistic regression, and on each side a share of pairs is of the kinds below.
 fn fitted(pairs: &[CreaturePair], prior: Prior, second: usize) -> Boundary {
     let weights = weights(pairs, prior);
-    let [mut a, mut b] = [0.0, -1.0];
-    for _ in 0..50 {
-        let (mut gradient, mut hessian) = ([0.0; 2], [0.0; 3]);
+    let ([mut a, mut b], [mut far, mut near]) = ([0.0, -1.0], [0.1, 0.9]);
+    for _ in 0..STEPS {
+        let (mut gradient, mut hessian, mut sides) = ([0.0; 2], [0.0; 3], [[0.0; 2]; 2]);
         for (pair, weight) in pairs.iter().zip(&weights) {
             let x = pair.distance.combined.ln();
             let p = 1.0 / (1.0 + (-a - b * x).exp());
-            let rest = weight * (f64::from(u8::from(pair.kind < second)) - p);
+            let kind = usize::from(pair.kind < second);
+            let [at_far, at_near] = [[1.0 - far, far], [1.0 - near, near]].map(|share| share[kind]);
+            let is_near = at_near * p / (at_near * p + at_far * (1.0 - p));
+            sides[0][kind] += weight * (1.0 - is_near);
+            sides[1][kind] += weight * is_near;
+            let rest = weight * (is_near - p);
             gradient = [gradient[0] + rest, gradient[1] + rest * x];
             let spread = weight * p * (1.0 - p);
             hessian = [hessian[0] + spread, hessian[1] + spread * x, hessian[2] + spread * x * x];
@@ -96,13 +104,25 @@ fn fitted(pairs: &[CreaturePair], prior: Prior, second: usize) -> Boundary {
         let determinant = hessian[0] * hessian[2] - hessian[1] * hessian[1];
         a += (hessian[2] * gradient[0] - hessian[1] * gradient[1]) / determinant;
         b += (hessian[0] * gradient[1] - hessian[1] * gradient[0]) / determinant;
+        [far, near] = sides.map(|[others, these]| these / (others + these));
     }
-    Boundary { at: (-a / b).exp(), steepness: -b }
+    let at = ((a - ((0.5 - far) / (near - 0.5)).ln()) / -b).exp();
+    Boundary { at, steepness: -b, range: [far, near] }
 }
 
-/// The boundaries of shapes and of classes.
+/// The boundaries of shapes and of classes. Of one plan more, which is not known, distances are taken to say nothing about shapes:
+/// the rule of succession.
 fn both(pairs: &[CreaturePair]) -> [Boundary; 2] {
-    [fitted(pairs, OF_SHAPES, 1), fitted(pairs, OF_CLASSES, 2)]
+    let n_plans = creature_plans().len() as f64;
+    let shape = fitted(pairs, OF_SHAPES, 1);
+    let range = shape.range.map(|share| (n_plans * share + 0.5) / (n_plans + 1.0));
+    [Boundary { range, ..shape }, fitted(pairs, OF_CLASSES, 2)]
+}
+
+/// As it is printed and used.
+fn rounded(Boundary { at, steepness, range }: Boundary) -> Boundary {
+    let [at, far, near] = [at, range[0], range[1]].map(|value| (1000.0 * value).round() / 1000.0);
+    Boundary { at, steepness: (100.0 * steepness).round() / 100.0, range: [far, near] }
 }
 
 /// In ten bins of the stated probabilities: the number of pairs, the mean of what is stated, and the share that is true.
@@ -120,11 +140,11 @@ fn reliability(stated: &[(f64, bool, f64)]) -> Vec<[f64; 3]> {
     (0..10).map(bin).collect()
 }
 
-/// Prints the boundaries beside those in use, and how reliable they are: for pairs of any two groups of plans, by the boundaries
-/// that the other groups give.
+/// Prints the boundaries beside those in use, and how reliable they are: for pairs of any two plans, by the boundaries that the
+/// other plans give.
 pub(crate) fn print(observer: &dyn Observer, out: &mut impl Write) -> Result<()> {
     let n_plans = creature_plans().len();
-    let n = n_plans * FAMILIES * BODIES * VERTICES.len() * POSES;
+    let n = n_plans * FAMILIES * BODIES * POSES;
     observer.begin("describing creatures", n);
     let one = |number| {
         observer.step();
@@ -136,24 +156,28 @@ pub(crate) fn print(observer: &dyn Observer, out: &mut impl Write) -> Result<()>
     let measured = |(kind, a, b): &(usize, &Creature, &Creature)| {
         observer.step();
         let distance = ShapePair::new([&a.shape, &b.shape]).distance();
-        CreaturePair { kind: *kind, folds: [a.fold.min(b.fold), a.fold.max(b.fold)], distance }
+        CreaturePair { kind: *kind, plans: [a.plan.min(b.plan), a.plan.max(b.plan)], distance }
     };
     let pairs: Vec<CreaturePair> = chosen.par_iter().map(measured).collect();
     let in_use = [("SAME_SHAPE", ShapeMetric::SAME_SHAPE), ("SAME_CLASS", ShapeMetric::SAME_CLASS)];
-    for (found, (name, used)) in both(&pairs).into_iter().zip(in_use) {
-        let Boundary { at, steepness } = found;
-        writeln!(out, "{name} at {at:.3}, steepness {steepness:.2}; in use {}, {}", used.at, used.steepness)?;
+    for (found, (name, used)) in both(&pairs).map(rounded).into_iter().zip(in_use) {
+        writeln!(out, "{name}: {found:?}; {}", if found == used { "in use" } else { "not the one in use" })?;
     }
+    let held_out: Vec<[usize; 2]> = (0..n_plans).flat_map(|i| (i..n_plans).map(move |j| [i, j])).collect();
+    observer.begin("holding out plans", held_out.len());
+    let without = |held_out: &[usize; 2]| {
+        observer.step();
+        let is_known = |pair: &&CreaturePair| pair.plans.iter().all(|plan| !held_out.contains(plan));
+        both(&pairs.iter().filter(is_known).copied().collect::<Vec<_>>())
+    };
+    let boundaries: Vec<[Boundary; 2]> = held_out.par_iter().map(without).collect();
     let mut stated: [Vec<(f64, bool, f64)>; 2] = Default::default();
-    let all_weights = weights(&pairs, OF_CLASSES);
-    for held_out in (0..FOLDS).flat_map(|i| (i..FOLDS).map(move |j| [i, j])) {
-        let is_known = |pair: &&CreaturePair| pair.folds.iter().all(|fold| !held_out.contains(fold));
-        let [shape, class] = both(&pairs.iter().filter(is_known).copied().collect::<Vec<_>>());
-        for (pair, weight) in pairs.iter().zip(&all_weights).filter(|(pair, _)| pair.folds == held_out) {
-            let p = class.probability(pair.distance.combined);
-            stated[0].push((shape.probability(pair.distance.combined) * p, pair.kind == 0, *weight));
-            stated[1].push((p, pair.kind < 2, *weight));
-        }
+    for (pair, weight) in pairs.iter().zip(weights(&pairs, OF_CLASSES)) {
+        let i =
+            held_out.iter().position(|plans| *plans == pair.plans).context("any two plans are held out")?;
+        let [shape, class] = boundaries[i].map(|boundary| boundary.probability(pair.distance.combined));
+        stated[0].push((shape * class, pair.kind == 0, weight));
+        stated[1].push((class, pair.kind < 2, weight));
     }
     writeln!(
         out,
@@ -172,18 +196,22 @@ mod tests {
 
     #[test]
     fn a_fit_finds_the_boundary_that_pairs_were_drawn_from() {
-        let truth = Boundary { at: 2.0, steepness: 5.0 };
+        let truth = Boundary { range: [0.2, 0.9], ..Boundary::new(2.0, 9.0) };
         let pairs: Vec<CreaturePair> = (0..40_000)
             .map(|i| {
                 let combined = 1.0 + 2.0 * f64::from(i % 200) / 200.0;
                 let is_one = f64::from(i / 200) / 200.0 < truth.probability(combined);
                 let distance = ShapeDistance { fused: combined, combined };
-                CreaturePair { kind: if is_one { 1 } else { 2 }, folds: [0; 2], distance }
+                CreaturePair { kind: if is_one { 1 } else { 2 }, plans: [0; 2], distance }
             })
             .collect();
         let ones = pairs.iter().filter(|pair| pair.kind == 1).count() as f64 / pairs.len() as f64;
         let found = fitted(&pairs, [0.0, ones, 1.0 - ones], 2);
-        assert!((found.at - 2.0).abs() < 0.02 && (found.steepness - 5.0).abs() < 0.1, "{found:?}");
+        assert!((found.at - 2.0).abs() < 0.02 && (found.steepness - 9.0).abs() < 0.2, "{found:?}");
+        assert!(
+            found.range.iter().zip(truth.range).all(|(found, truth)| (found - truth).abs() < 0.01),
+            "{found:?}"
+        );
         let stated: Vec<_> = pairs
             .iter()
             .map(|pair| (truth.probability(pair.distance.combined), pair.kind == 1, 1.0))

@@ -5,24 +5,36 @@
 pub struct Boundary {
     /// Where both are equally likely.
     pub at: f64,
-    /// How fast the odds change: they are `(at / d)^steepness` for the nearer answer at distance `d`.
+    /// How fast the odds change: by default, they are `(at / d)^steepness` for the nearer answer at distance `d`.
     pub steepness: f64,
+    /// Probabilities of the nearer answer infinitely far away, below ½, and at distance 0, above ½.
+    pub range: [f64; 2],
 }
 
 impl Boundary {
     /// An answer is certain if it is at least this probable; below, a relation is called probable. A convention.
     pub const CERTAIN: f64 = 0.9;
 
-    /// The probability of the nearer answer at a distance: 1 at distance 0, falling towards 0.
+    /// A boundary on either side of which any probability is reached.
     #[must_use]
-    pub fn probability(&self, distance: f64) -> f64 {
-        1.0 / (1.0 + (distance / self.at).powf(self.steepness))
+    pub const fn new(at: f64, steepness: f64) -> Self {
+        Self { at, steepness, range: [0.0, 1.0] }
     }
 
-    /// The distance at which the nearer answer has this probability.
+    /// The probability of the nearer answer at a distance. It falls from one end of the range to the other.
+    #[must_use]
+    pub fn probability(&self, distance: f64) -> f64 {
+        let [far, near] = self.range;
+        let odds = (distance / self.at).powf(self.steepness) * (near - 0.5) / (0.5 - far);
+        far + (near - far) / (1.0 + odds)
+    }
+
+    /// The distance at which the nearer answer has this probability: 0 or infinite if that is beyond the range.
     #[must_use]
     pub fn distance(&self, probability: f64) -> f64 {
-        self.at * (1.0 / probability - 1.0).powf(1.0 / self.steepness)
+        let [far, near] = self.range;
+        let odds = (near - probability).max(0.0) / (probability - far).max(0.0);
+        self.at * (odds * (0.5 - far) / (near - 0.5)).powf(1.0 / self.steepness)
     }
 
     /// The range of distances within which neither answer is [certain](Self::CERTAIN).
@@ -38,7 +50,7 @@ mod tests {
 
     #[test]
     fn a_boundary_gives_the_probability_of_each_distance() {
-        let boundary = Boundary { at: 2.0, steepness: 5.0 };
+        let boundary = Boundary::new(2.0, 5.0);
         assert_eq!(boundary.probability(0.0), 1.0);
         assert_eq!(boundary.probability(2.0), 0.5);
         assert_eq!(boundary.probability(f64::INFINITY), 0.0);
@@ -46,5 +58,14 @@ mod tests {
             assert!((boundary.probability(boundary.distance(probability)) - probability).abs() < 1e-12);
         }
         assert!(boundary.gap()[0] < 2.0 && boundary.gap()[1] > 2.0);
+    }
+
+    #[test]
+    fn what_no_distance_proves_is_never_certain() {
+        let boundary = Boundary { range: [0.2, 0.8], ..Boundary::new(2.0, 5.0) };
+        let ends = [0.0, 2.0, f64::INFINITY].map(|distance| boundary.probability(distance));
+        assert!(ends.iter().zip([0.8, 0.5, 0.2]).all(|(found, expected)| (found - expected).abs() < 1e-12));
+        assert!((boundary.probability(boundary.distance(0.7)) - 0.7).abs() < 1e-12);
+        assert_eq!(boundary.gap(), [0.0, f64::INFINITY]);
     }
 }

@@ -13,7 +13,7 @@ mod shared;
 
 use std::path::{Path, PathBuf};
 
-use canonform::descriptors::{Boundary, ShapeMetric};
+use canonform::RelationKind;
 use canonform::geodesics::Method;
 use canonform::mesh::io::{Content, files_in, mesh_files, or_list, writable};
 use canonform::settings::Named;
@@ -308,10 +308,10 @@ pub(crate) struct CompareArgs {
     /// Exit with code 1 if the distance at equal size exceeds this, or if the shapes are certainly of different classes
     #[arg(long, value_name = "D")]
     pub(crate) threshold: Option<f64>,
-    /// Exit with code 0 if the shapes are certainly at least this alike, and 1 if not: `same-shape` without a value
+    /// Exit with code 0 if the shapes are at least this alike, probably or certainly, and 1 if not: `same-shape` without a value
     #[arg(long, value_name = "KIND", num_args = 0..=1, require_equals = true, default_missing_value = "same-shape",
         value_parser = at_least())]
-    pub(crate) exit_code: Option<Boundary>,
+    pub(crate) exit_code: Option<&'static [RelationKind]>,
     /// Print all numbers: of the alignment, the residual, and what decided
     #[arg(long)]
     pub(crate) details: bool,
@@ -325,10 +325,12 @@ pub(crate) struct CompareArgs {
 pub(crate) const FORM_FORMATS: [(&str, &str); 4] =
     [("npy", "NumPy array"), ("ply", "Binary PLY mesh"), ("obj", "Wavefront mesh"), ("off", "OFF mesh")];
 
-fn at_least() -> impl TypedValueParser<Value = Boundary> {
-    one_of(vec![
-        ("same-shape", "One body in two poses, at any size, or its mirror image", ShapeMetric::SAME_SHAPE),
-        ("same-class", "One class, whether one shape or not", ShapeMetric::SAME_CLASS),
+/// Kinds besides those of one surface.
+fn at_least() -> impl TypedValueParser<Value = &'static [RelationKind]> {
+    use RelationKind::{OtherPose, SameClass, Variant};
+    one_of::<&[RelationKind]>(vec![
+        ("same-shape", "One body in two poses, at any size, or its mirror image", &[OtherPose]),
+        ("same-class", "One class, whether one shape or not", &[Variant, OtherPose, SameClass]),
     ])
 }
 

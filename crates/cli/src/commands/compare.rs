@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use canonform::descriptors::{Boundary, ShapeMetric};
+use canonform::descriptors::ShapeMetric;
 use canonform::mesh::io::{Content, writable};
 use canonform::{
     ComparedMesh, FaceAgreement, Handedness, MeshComparison, RelationKind, Residual, compare_meshes,
@@ -69,9 +69,9 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
     let distance = found.comparison.shape_distance;
     let failed =
         args.threshold.map(|limit| found.comparison.normalized_distance > limit || distance.is_different());
-    let relation = &found.relation;
-    let is_proved = relation.kind <= RelationKind::Remeshed && relation.confidence >= Boundary::CERTAIN;
-    let not_alike = args.exit_code.is_some_and(|least| !is_proved && distance.combined >= least.gap()[0]);
+    let kind = found.relation.kind;
+    let is_alike = |kinds: &[RelationKind]| kind <= RelationKind::Remeshed || kinds.contains(&kind);
+    let not_alike = args.exit_code.is_some_and(|kinds| !is_alike(kinds));
     let json = CompareJson {
         a: args.pair.a.clone(),
         b: args.pair.b.clone(),
@@ -91,9 +91,9 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
 /// The answer in one sentence, and what it rests on in a few lines.
 fn text(json: &CompareJson, name_a: &str, details: bool) -> String {
     let relation = &json.found.relation;
-    let ([shape, _], [_, class]) = (ShapeMetric::SAME_SHAPE.gap(), ShapeMetric::SAME_CLASS.gap());
+    let (shape, [_, class]) = (ShapeMetric::SAME_SHAPE.at, ShapeMetric::SAME_CLASS.gap());
     let distance = json.found.comparison.shape_distance.combined;
-    let limits = format!("one shape below {shape:.2}, another class above {class:.2}");
+    let limits = format!("probably one shape below {shape:.2}, another class above {class:.2}");
     let times = format!("{:.4}", relation.because.scale);
     let size =
         if times == "1.0000" { "the same".to_owned() } else { format!("{times} times that of {name_a}") };

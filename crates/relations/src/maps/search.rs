@@ -377,7 +377,7 @@ impl MapSearch<'_> {
 
 /// How likely a map is the right one, and not its rival: the odds are the ratio of their scores to a power.
 pub(super) fn odds(score: f64, rival: Option<f64>, steepness: f64) -> f64 {
-    rival.map_or(1.0, |rival| Boundary { at: rival.max(f64::MIN_POSITIVE), steepness }.probability(score))
+    rival.map_or(1.0, |rival| Boundary::new(rival.max(f64::MIN_POSITIVE), steepness).probability(score))
 }
 
 /// The best maps of each orientation that are not the same; those of none only if there are no others.

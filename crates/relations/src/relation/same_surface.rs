@@ -48,7 +48,7 @@ const EXACT: f64 = 4e-4;
 const ARCS: f64 = 1.5;
 
 /// Odds of a mechanical surface by its largest distance, in multiples of what is allowed. Chosen as [`EXACT`].
-const SAME_PART: Boundary = Boundary { at: 1.6, steepness: 8.0 };
+const SAME_PART: Boundary = Boundary::new(1.6, 8.0);
 
 /// Most probes of either surface.
 const MOST_PROBES: usize = 12_000;
@@ -76,7 +76,7 @@ fn same_body(aligned: &Aligned, meshes: [&MeshGeometry; 2], change: Change) -> f
         _ => ALLOWED + flatness,
     };
     let gap = aligned.gap;
-    Boundary { at, steepness: STEEPNESS }.probability(gap.rms.max(gap.max / LARGEST))
+    Boundary::new(at, STEEPNESS).probability(gap.rms.max(gap.max / LARGEST))
 }
 
 /// Whether the faces between the same vertices make up one surface.

@@ -94,10 +94,10 @@ impl Relation {
 
     /// The distance of the shapes, and what it is compared with.
     fn by_distance_in_words(&self) -> String {
-        let ([shape, _], [_, class]) = (ShapeMetric::SAME_SHAPE.gap(), ShapeMetric::SAME_CLASS.gap());
+        let (shape, [_, class]) = (ShapeMetric::SAME_SHAPE.at, ShapeMetric::SAME_CLASS.gap());
         let distance = self.because.distance.combined;
         format!(
-            "combined distance {distance:.3} (same shape below {shape:.3}, another class above {class:.3})"
+            "combined distance {distance:.3} (probably one shape below {shape:.3}, another class above {class:.3})"
         )
     }
 

@@ -48,7 +48,7 @@ const STEEPNESS: f64 = 2.5;
 
 /// Maps that change distances more than this are doubtful: right ones of built-in bodies change them by 0.014 to 0.032
 /// in 25 of 26 pairs.
-const DOUBTFUL: Boundary = Boundary { at: 0.045, steepness: 8.0 };
+const DOUBTFUL: Boundary = Boundary::new(0.045, 8.0);
 
 /// Weights of the mean difference of curvatures and of the [`defect`], beside 1 for the mean change of distances. Chosen on 14
 /// maps of built-in bodies, where with 0.2 instead of 0.1 one more is wrong; up to 0.02 instead of 0.01 none is.
