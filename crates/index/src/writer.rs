@@ -12,7 +12,8 @@ use crate::{Entry, Index, IndexError, Shape};
 /// The only writer of an index.
 ///
 /// Changes are made in a transaction: [`commit`](Self::commit) puts all since the last one on disk, or none. What was
-/// committed stays, whatever happens afterwards; so a program that is interrupted goes on where it was. All methods may
+/// committed stays, whatever happens afterwards; so a program that is interrupted goes on where it was. A writer that is dropped
+/// drops what it has not committed. All methods may
 /// return [`IndexError::Io`] and [`IndexError::Damaged`].
 ///
 /// ```
@@ -44,8 +45,18 @@ pub struct IndexWriter {
     replaced_damaged: bool,
     /// Whether there was no index.
     is_new: bool,
-    /// Whether anything was committed.
-    is_changed: bool,
+    /// Goes last, once the database is closed.
+    unwritten: Unwritten,
+}
+
+/// A new index to which nothing was committed. It goes with its writer.
+#[derive(Debug)]
+struct Unwritten(Option<PathBuf>);
+
+impl Drop for Unwritten {
+    fn drop(&mut self) {
+        self.0.iter().for_each(|path| drop(std::fs::remove_file(path)));
+    }
 }
 
 impl IndexWriter {
@@ -112,8 +123,8 @@ impl IndexWriter {
             return Err(database.damaged("the number of its shapes is wrong"));
         }
         let (is_new, resumed) = (known.is_none(), database.meta(Meta::Unfinished)?.is_some());
-        let (replaced_damaged, is_changed) = (false, false);
-        Ok(Self { database, n_shapes, length, resumed, replaced_damaged, is_new, is_changed })
+        let (replaced_damaged, unwritten) = (false, Unwritten(is_new.then_some(path)));
+        Ok(Self { database, n_shapes, length, resumed, replaced_damaged, is_new, unwritten })
     }
 
     /// The index.
@@ -240,10 +251,8 @@ impl IndexWriter {
     /// # Errors
     /// [`IndexError::NoSuchShape`].
     pub fn remove(&mut self, ids: &[String]) -> Result<(), IndexError> {
-        ids.iter().try_for_each(|id| {
-            self.expect(id)?;
-            self.delete(id)
-        })
+        ids.iter().try_for_each(|id| self.expect(id).map(drop))?;
+        ids.iter().try_for_each(|id| self.delete(id))
     }
 
     /// Removes all shapes.
@@ -290,7 +299,7 @@ impl IndexWriter {
         self.database.set_meta(Meta::Shapes, Some(&self.n_shapes.to_string()))?;
         self.database.set_meta(Meta::Threshold, threshold)?;
         self.database.execute("COMMIT")?;
-        self.is_changed = true;
+        self.unwritten.0 = None;
         Ok(())
     }
 
@@ -315,16 +324,5 @@ impl IndexWriter {
         let path = self.path().to_owned();
         drop(self);
         Index::open(&path)
-    }
-
-    /// Drops all changes since the last [`commit`](Self::commit). A new index to which nothing was committed goes.
-    pub fn discard(self) -> Result<(), IndexError> {
-        let path: PathBuf = self.path().to_owned();
-        let is_useless = self.is_new && !self.is_changed;
-        drop(self);
-        match is_useless {
-            true => std::fs::remove_file(&path).map_err(IndexError::io("remove", &path)),
-            false => Ok(()),
-        }
     }
 }

@@ -340,7 +340,7 @@ pub fn build_index(
     // A shard without shapes is complete, and `merge_indexes` takes it.
     let is_useless = options.shard.is_none() && report.n_shapes == 0 && !report.failed.is_empty();
     if nothing_new && !writer.is_new() || is_useless {
-        writer.discard()?;
+        drop(writer);
     } else {
         writer.finish(observer)?;
     }

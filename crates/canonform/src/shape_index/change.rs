@@ -50,7 +50,7 @@ pub fn add_to_index(
     fill(&mut writer, hashed, &options, inputs.limits, &mut report, observer)?;
     report.n_shapes = writer.n_shapes();
     if report.described + report.renamed == 0 && !report.resumed {
-        writer.discard()?;
+        drop(writer);
     } else {
         writer.finish(observer)?;
     }

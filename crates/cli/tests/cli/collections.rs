@@ -60,7 +60,7 @@ fn shapes_are_listed_by_class() {
     assert_keys(&all["shapes"][0], "id label path vertices faces");
     assert_eq!(
         (&all["shapes"][0]["path"], &all["shapes"][0]["vertices"]),
-        (&"meshes/ball0.off".into(), &162.0.into())
+        (&"meshes/ball0.off".into(), &162.into())
     );
     let some = place.json("index list all.canonform --label ring --unlabelled");
     assert_eq!(ids(&some), ["extra", "ring0", "ring1", "ring2"]);

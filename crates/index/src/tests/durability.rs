@@ -70,7 +70,7 @@ fn a_new_index_without_a_commit_leaves_nothing() {
     let folder = Folder::new();
     let mut writer = IndexWriter::build(&folder.path("a"), OPTIONS).unwrap();
     writer.put(&[shape(1)]).unwrap();
-    writer.discard().unwrap();
+    drop(writer);
     assert!(folder.names().is_empty());
 }
 
