@@ -10,8 +10,11 @@ use rusqlite::Connection;
 use super::{Folder, OPTIONS, export, faults, id, shape};
 use crate::{Index, IndexError, IndexWriter, Shape, damaged_path, verify};
 
+/// All shapes, and what a search finds.
+type Everything = (Vec<Shape>, Vec<(String, f64)>);
+
 /// Reads everything that an index holds.
-fn read_all(path: &Path) -> Result<(Vec<Shape>, Vec<(String, f64)>), IndexError> {
+fn read_all(path: &Path) -> Result<Everything, IndexError> {
     let index = Index::open(path)?;
     let mut shapes = Vec::new();
     index.each(|shape| {
