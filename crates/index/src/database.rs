@@ -19,6 +19,8 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use base::files::{Pending, fill_atomically, has_other_names, is_input};
+use rusqlite::config::DbConfig;
+use rusqlite::types::FromSql;
 use rusqlite::{CachedStatement, Connection, OpenFlags, OptionalExtension, Params, ffi};
 
 use crate::error::FORMAT_VERSION;
@@ -52,6 +54,8 @@ pub(crate) enum Meta {
     Threshold,
     /// A number that grows with every transaction.
     Change,
+    /// A random word for each writer whose changes may be in the log, that of the state before it first.
+    Writers,
 }
 
 impl Meta {
@@ -62,6 +66,7 @@ impl Meta {
             Self::Unfinished => "unfinished",
             Self::Threshold => "unknown_beyond",
             Self::Change => "change",
+            Self::Writers => "writers",
         }
     }
 }
@@ -80,6 +85,7 @@ impl Database {
         if about.is_dir() {
             return Err(IndexError::io("read", path)(ErrorKind::IsADirectory.into()));
         }
+        Self::expect_own_log(path)?;
         // Readers of a write-ahead log share memory in files beside it, and the last of them tidies up.
         let database = Self::open(path, "", OpenFlags::SQLITE_OPEN_READ_WRITE)?;
         match database.begin_reading() {
@@ -116,6 +122,7 @@ impl Database {
             copied.map_err(|fault| cannot_write(fault.source))?;
         }
         drop(file);
+        Self::expect_own_log(path)?;
         let database = Self::open(path, "", OpenFlags::SQLITE_OPEN_READ_WRITE)?;
         database.check_format()?;
         if database.connection.is_readonly(rusqlite::MAIN_DB).unwrap_or(true) {
@@ -124,7 +131,38 @@ impl Database {
         database
             .execute("PRAGMA journal_mode = WAL; PRAGMA wal_autocheckpoint = 1; PRAGMA synchronous = FULL")?;
         database.begin_writing()?;
+        let known = database.meta(Meta::Writers)?.unwrap_or_default();
+        let kept = if has_log(path) { &known } else { known.rsplit(' ').next().unwrap_or_default() };
+        let word: String = database.one("SELECT lower(hex(randomblob(8)))")?;
+        database.set_meta(Meta::Writers, Some(&format!("{kept} {word}")))?;
         Ok(database)
+    }
+
+    /// Checks that the log beside an index, if there is one, belongs to it. A file that took the place of another while a
+    /// program had that open would be read and written together with the changes of the other.
+    fn expect_own_log(path: &Path) -> Result<(), IndexError> {
+        let writers = |query: &str, flags| -> Result<String, IndexError> {
+            let database = Self::open(path, query, flags)?;
+            let keeps = DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE;
+            database.connection.set_db_config(keeps, true).map_err(|fault| database.fault(fault))?;
+            database.check_format()?;
+            Ok(database.meta(Meta::Writers)?.unwrap_or_default())
+        };
+        for is_last in [false, false, true] {
+            if !has_log(path) {
+                break;
+            }
+            let of_file = writers("?immutable=1", OpenFlags::SQLITE_OPEN_READ_ONLY);
+            let of_both = writers("", OpenFlags::SQLITE_OPEN_READ_WRITE)?;
+            match of_file {
+                Ok(words) if of_both.split(' ').any(|word| words.ends_with(word)) => break,
+                // Another program may just be copying the log into the file.
+                _ if !is_last => std::thread::sleep(WAIT / 20),
+                Ok(_) => return Err(IndexError::OtherLog(path.to_owned())),
+                Err(fault) => return Err(fault),
+            }
+        }
+        Ok(())
     }
 
     /// Makes an index without shapes, completely or not at all, unless there is a file.
@@ -133,8 +171,10 @@ impl Database {
             let mut blank = Connection::open_in_memory()?;
             blank.execute_batch(&format!(
                 "PRAGMA page_size = {PAGE}; PRAGMA application_id = {APPLICATION}; \
-                 PRAGMA user_version = {FORMAT_VERSION}; {}",
-                include_str!("schema.sql")
+                 PRAGMA user_version = {FORMAT_VERSION}; {}; \
+                 INSERT INTO meta VALUES ('{}', lower(hex(randomblob(8))))",
+                include_str!("schema.sql"),
+                Meta::Writers.name()
             ))?;
             Ok::<_, rusqlite::Error>(blank.serialize(rusqlite::MAIN_DB)?.to_vec())
         };
@@ -166,8 +206,8 @@ impl Database {
     }
 
     fn check_format(&self) -> Result<(), IndexError> {
-        let application = self.number("PRAGMA application_id")?;
-        let found = self.number("PRAGMA user_version")?;
+        let application: i64 = self.one("PRAGMA application_id")?;
+        let found: i64 = self.one("PRAGMA user_version")?;
         match application == APPLICATION {
             false => Err(IndexError::Foreign(self.path.clone())),
             true if found == i64::from(FORMAT_VERSION) => Ok(()),
@@ -175,7 +215,7 @@ impl Database {
         }
     }
 
-    fn number(&self, sql: &str) -> Result<i64, IndexError> {
+    fn one<T: FromSql>(&self, sql: &str) -> Result<T, IndexError> {
         self.connection.query_row(sql, [], |row| row.get(0)).map_err(|fault| self.fault(fault))
     }
 
@@ -300,6 +340,10 @@ fn uri(path: &Path, query: &str) -> String {
 #[must_use]
 pub fn log_path(path: &Path) -> PathBuf {
     with_suffix(path, "-wal")
+}
+
+fn has_log(path: &Path) -> bool {
+    std::fs::metadata(log_path(path)).is_ok_and(|about| about.len() > 0)
 }
 
 /// The file that keeps an index that could not be read after it was built again.

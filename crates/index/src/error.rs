@@ -52,6 +52,13 @@ pub enum IndexError {
         /// What is wrong with it.
         what: String,
     },
+    /// The file took the place of another one, whose changes are in the log beside it.
+    #[error(
+        "the changes in {log} belong to another file than {path}; if they are not needed, end the programs that use it and \
+         delete {log}",
+        path = .0.display(), log = crate::log_path(.0).display()
+    )]
+    OtherLog(PathBuf),
     /// Another program is writing the index.
     #[error("another program is writing {path}; wait until it ends, or choose another file", path = .0.display())]
     Busy(PathBuf),

@@ -1,8 +1,12 @@
 //! Describing the components of a mesh.
 
-use base::Budget;
+use std::sync::Arc;
+
+use base::{Budget, Observer};
 use mesh::TriMesh;
 
+use super::found::ComponentResult;
+use super::query::Query;
 use crate::error::Error;
 use crate::form::{DescribeOptions, ShapeDescription, describe};
 use mesh::Surface;
@@ -15,7 +19,7 @@ const MOST: usize = 8;
 const LEAST_SHARE: f64 = 0.01;
 
 /// A component, described as the shapes of an index are; `None` if it has no description.
-pub(super) fn described(
+fn described(
     component: &MeshGeometry,
     options: &DescribeOptions,
     budget: &Budget,
@@ -45,4 +49,48 @@ pub(super) fn other_components(
         vectors.extend(described(component, options, budget)?.map(|description| description.fused));
     }
     Ok(vectors)
+}
+
+/// Most different components of a query that are searched for, the largest by area.
+const MOST_SEARCHED: usize = 12;
+
+impl Query {
+    /// The different components of a query that comes with its mesh, as queries of their own. Results are to be found for each.
+    ///
+    /// # Errors
+    /// [`Error::Exceeded`].
+    pub fn components(&self, observer: &dyn Observer) -> Result<Vec<(ComponentResult, Self)>, Error> {
+        let whole = self.geometry.as_deref().filter(|_| !self.is_component);
+        match whole.zip(DescribeOptions::from_text(&self.options)) {
+            Some((whole, options)) => components(whole, &self.name, &options, &observer.budget()),
+            None => Ok(Vec::new()),
+        }
+    }
+}
+
+/// The different components of a query that has several, largest first, and what is said of each without a shape. One that
+/// cannot be described is left out.
+fn components(
+    whole: &MeshGeometry,
+    name: &str,
+    options: &DescribeOptions,
+    budget: &Budget,
+) -> Result<Vec<(ComponentResult, Query)>, Error> {
+    let mut found = Vec::new();
+    for (geometry, copies) in whole.different_components().into_iter().take(MOST_SEARCHED) {
+        budget.check()?;
+        let Some(description) = described(geometry, options, budget)? else { continue };
+        let name = match copies {
+            1 => format!("a component of {name}"),
+            _ => format!("each of {copies} components of {name}"),
+        };
+        let area_share = (geometry.size() / whole.size()).powi(2);
+        let about = ComponentResult { copies, area_share, n_vertices: geometry.n_vertices(), nearest: None };
+        let geometry = MeshGeometry::new(&geometry.to_mesh(), None).map(Arc::new);
+        found.push((
+            about,
+            Query { geometry, is_component: true, ..Query::from(&description).named(&name, None) },
+        ));
+    }
+    Ok(found)
 }

@@ -1,53 +1,19 @@
 //! How a query and a shape of an index are related, what its components are, and of what it is a component.
 
-use std::sync::Arc;
-
 use base::{Budget, Observer};
 use descriptors::{PreparedShape, ShapeDistance, ShapeMetric};
 use index::Entry;
 
-use super::components::described;
 use super::found::{ComponentResult, Hit};
 use super::options::{SearchOptions, SearchRank};
 use super::query::Query;
 use super::search::ShapeSearch;
 use super::source::read_unchanged;
 use crate::error::Error;
-use crate::form::DescribeOptions;
 use relations::{Handedness, MeshGeometry, Relation, RelationKind};
-
-/// Most different components of a query that are searched for, the largest by area.
-const MOST_SEARCHED: usize = 12;
 
 /// Most shapes of which a query is named as a component.
 const MOST_WHOLES: usize = 10;
-
-/// The different components of a query that has several, largest first, and what is said of each without a shape. One that
-/// cannot be described is left out.
-pub(super) fn components(
-    whole: &MeshGeometry,
-    name: &str,
-    options: &DescribeOptions,
-    budget: &Budget,
-) -> Result<Vec<(ComponentResult, Query)>, Error> {
-    let mut found = Vec::new();
-    for (geometry, copies) in whole.different_components().into_iter().take(MOST_SEARCHED) {
-        budget.check()?;
-        let Some(description) = described(geometry, options, budget)? else { continue };
-        let name = match copies {
-            1 => format!("a component of {name}"),
-            _ => format!("each of {copies} components of {name}"),
-        };
-        let area_share = (geometry.size() / whole.size()).powi(2);
-        let about = ComponentResult { copies, area_share, n_vertices: geometry.n_vertices(), nearest: None };
-        let geometry = MeshGeometry::new(&geometry.to_mesh(), None).map(Arc::new);
-        found.push((
-            about,
-            Query { geometry, is_component: true, ..Query::from(&description).named(&name, None) },
-        ));
-    }
-    Ok(found)
-}
 
 impl ShapeSearch {
     /// How a query and a shape are related, once their files and meshes are known, too: as [`compare_meshes`](crate::compare_meshes)

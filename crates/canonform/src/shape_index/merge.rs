@@ -3,7 +3,7 @@
 use retrieval::UnknownThreshold;
 
 use super::found::Hit;
-use super::predict::{VOTERS, predicted};
+use super::predict::{n_results, predicted};
 use super::query::Query;
 use super::search::Answer;
 
@@ -37,12 +37,6 @@ pub fn merge_answers(
     merged.predicted = predicted(&merged.results, threshold, &query.shape.entry.facts);
     merged.results.truncate(k);
     merged
-}
-
-/// How many results of each index are needed for the `k` best of all and the class: those that vote are among them.
-#[must_use]
-pub fn n_results(k: usize) -> usize {
-    k.max(VOTERS)
 }
 
 /// How many shapes with the nearest fused vectors are candidates for `k` results, where only vectors are searched.

@@ -7,6 +7,7 @@
 //! Query -> an Answer of every shard -> merge_answers -> Answer
 //! ```
 
+mod ask;
 mod build;
 mod change;
 mod components;
@@ -39,11 +40,11 @@ pub use duplicates::{
 pub use evaluate::{EvaluateOptions, Measure, evaluate_index, evaluate_matrix};
 pub use export::export_index;
 pub use found::{ComponentResult, Hit, OrderedBy};
-pub use merge::{merge_answers, n_candidates, n_results};
+pub use merge::{merge_answers, n_candidates};
 pub use moves::{MoveReport, NotMoved, check_place, move_duplicates, undo_moves};
 pub use options::{Explain, SearchOptions, SearchRank};
 pub use place::mesh_path;
-pub use predict::{ClassVotes, NearestShape, Prediction, Unknown};
+pub use predict::{ClassVotes, NearestShape, Prediction, Unknown, n_results};
 pub use query::Query;
 pub use rerank::{Ranked, Reranked, bounds, rerank};
 pub use search::{Answer, SearchSeconds, ShapeSearch};

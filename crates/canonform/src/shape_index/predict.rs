@@ -9,7 +9,13 @@ use serde::Serialize;
 use super::found::{Hit, OrderedBy};
 
 /// Neighbours that vote on the class of a query.
-pub(super) const VOTERS: usize = 5;
+const VOTERS: usize = 5;
+
+/// How many results of each index are needed for the `k` best of all and the class: those that vote are among them.
+#[must_use]
+pub fn n_results(k: usize) -> usize {
+    k.max(VOTERS)
+}
 
 /// A vote is split if the winner has less than this share of it.
 const CLEAR: f64 = 2.0 / 3.0;

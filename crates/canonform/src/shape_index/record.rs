@@ -7,7 +7,6 @@ use index::{Entry, Facts, Index, IndexError, Shape};
 use nalgebra::Point3;
 use surface::unit_for;
 
-use super::search::ShapeSearch;
 use super::source::Listed;
 use crate::error::Error;
 use crate::form::{DescribeOptions, ShapeDescription};
@@ -76,17 +75,6 @@ pub(super) fn prepared(shape: &Shape, options: &DescribeOptions) -> Result<Prepa
     let form = CanonicalForm::from_parts(points.collect(), weights, form_area)?;
     let prepared = PreparedShape::new(shape.fused.clone(), &form, Some(area))?;
     Ok(prepared.with_rigid(shape.signatures.get(SignatureKind::Rigid.name()).cloned().unwrap_or_default()))
-}
-
-impl ShapeSearch {
-    /// The signature of a kind of an indexed shape.
-    ///
-    /// # Errors
-    /// [`IndexError::Damaged`] if it is not stored.
-    pub(super) fn signature(&self, id: &str, kind: SignatureKind) -> Result<Vec<f32>, Error> {
-        let found = self.index().vector(id, &format!("signature_{}", kind.name()))?;
-        Ok(found.ok_or_else(|| missing_signature(self.index().path(), id, kind))?)
-    }
 }
 
 /// The error that a shape of an index has no signature of a kind.

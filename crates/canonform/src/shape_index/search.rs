@@ -19,11 +19,10 @@ use retrieval::{Candidate, LINKS, Neighbor, graph_rank};
 use serde::{Deserialize, Serialize};
 
 use super::found::{ComponentResult, Hit, OrderedBy};
-use super::merge::n_results;
 use super::options::{Explain, SearchOptions, SearchRank};
-use super::predict::{Prediction, predicted};
+use super::predict::{Prediction, n_results, predicted};
 use super::query::Query;
-use super::record::{options_of, prepared};
+use super::record::{missing_signature, options_of, prepared};
 use super::rerank::{Ranked, Reranked, bounds, rerank};
 use super::source::read_unchanged;
 use crate::compare::compare;
@@ -340,6 +339,15 @@ impl ShapeSearch {
     fn form_distance(&self, spectrum: &[f32], id: &str) -> Result<OrderedBy, Error> {
         let distance = ShapeMetric::fused(spectrum, &self.signature(id, SignatureKind::FormSpectrum)?);
         Ok(OrderedBy::Forms { form_distance: distance / ShapeMetric::unit(SignatureKind::FormSpectrum) })
+    }
+
+    /// The signature of a kind of an indexed shape.
+    ///
+    /// # Errors
+    /// [`IndexError::Damaged`] if it is not stored.
+    fn signature(&self, id: &str, kind: SignatureKind) -> Result<Vec<f32>, Error> {
+        let found = self.index().vector(id, &format!("signature_{}", kind.name()))?;
+        Ok(found.ok_or_else(|| missing_signature(self.index().path(), id, kind))?)
     }
 
     /// How well a part fits into a shape.

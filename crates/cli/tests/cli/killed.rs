@@ -210,14 +210,20 @@ fn a_full_disk_is_reported_and_the_old_index_stays() {
     let whole = place.done("index export whole").out;
     place.add("meshes/t1.off", &body(1, 40));
     let size = fs::metadata(place.path("whole")).unwrap().len() as usize / 512;
-    for blocks in [1, 70, size / 4, size / 2, size - 20] {
+    let mut failures = 0;
+    for blocks in [1, 20, 70, size / 4, size / 2, size - 20] {
         let (code, err) = run_limited(&place, blocks, &build("whole"));
-        assert_eq!(code, Some(2), "{blocks}: {err}");
-        assert!(err.contains("cannot write whole") && err.contains("free some space"), "{blocks}: {err}");
+        // What is committed may stay in the log, if only the file itself cannot grow.
+        if code != Some(0) {
+            assert_eq!(code, Some(2), "{blocks}: {err}");
+            assert!(err.contains("cannot write whole") && err.contains("free some space"), "{blocks}: {err}");
+            failures += 1;
+        }
         place.done("index verify whole");
         let now = place.done("index export whole").out;
         assert!(whole.lines().skip(1).all(|line| now.contains(line)), "{blocks}: a shape is lost");
     }
+    assert!(failures > 1, "{failures}");
     // Without the limit the build continues.
     place.done(&build("whole"));
     fs::remove_file(place.path("meshes/t1.off")).unwrap();

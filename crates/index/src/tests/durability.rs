@@ -109,6 +109,36 @@ fn a_transaction_that_is_cut_at_any_byte_is_there_or_not() {
 }
 
 #[test]
+fn a_log_of_another_file_is_noticed_and_changes_nothing() {
+    let folder = Folder::new();
+    let path = folder.index("a", 20);
+    let backup = fs::read(&path).unwrap();
+    folder.change(&path, &[20], &[]);
+    let reader = Index::open(&path).unwrap();
+    folder.change(&path, &[21, 22], &[]);
+    let whole = fs::read(&path).unwrap();
+    // While a program has the old file open, a backup, another index and something else take its place.
+    let other = fs::read(folder.index("b", 3)).unwrap();
+    for bytes in [&backup, &other] {
+        fs::remove_file(&path).unwrap();
+        fs::write(&path, bytes).unwrap();
+        for error in [Index::open(&path).unwrap_err(), IndexWriter::open(&path).unwrap_err()] {
+            assert!(
+                matches!(error, IndexError::OtherLog(_)) && error.to_string().contains("a-wal"),
+                "{error}"
+            );
+        }
+        assert!(fs::read(&path).unwrap() == *bytes);
+    }
+    fs::write(&path, b"not an index").unwrap();
+    assert!(matches!(Index::open(&path), Err(IndexError::Foreign(_))));
+    assert_eq!(fs::read(&path).unwrap(), b"not an index");
+    fs::write(&path, whole).unwrap();
+    assert_eq!(Index::open(&path).unwrap().len(), 23);
+    assert_eq!(reader.len(), 21);
+}
+
+#[test]
 fn a_copy_into_the_file_that_is_cut_at_any_page_loses_nothing() {
     let folder = Folder::new();
     let path = folder.index("a", 20);

@@ -1,0 +1,86 @@
+//! Queries made of meshes and of shapes of an index.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use base::{ContentHash, Observer};
+use mesh::{Surface, TriMesh};
+use relations::MeshGeometry;
+
+use super::options::{Explain, SearchOptions, SearchRank};
+use super::query::Query;
+use super::search::{Answer, ShapeSearch};
+use crate::error::Error;
+use crate::form::{describe, describe_part};
+
+impl ShapeSearch {
+    /// Describes a mesh as the shapes of the index are, with what a search with these options needs. `name` is what it is called
+    /// in words, `content` the [hash](crate::content_hash) of its file.
+    ///
+    /// # Errors
+    /// Those of describing a mesh.
+    pub fn query(
+        &self,
+        mesh: &TriMesh,
+        (name, content): (&str, Option<ContentHash>),
+        options: &SearchOptions,
+        observer: &dyn Observer,
+    ) -> Result<Query, Error> {
+        let start = Instant::now();
+        let describe_options = self.describe_options();
+        let surface = Surface::new(mesh, &describe_options.form.repair, observer)?;
+        let description = describe(&surface, describe_options, observer)?;
+        let mut query = Query::from(&description).named(name, content);
+        if options.rank_by == SearchRank::Part {
+            query = query.as_part(&surface, describe_options, observer)?;
+        }
+        if options.explain == Explain::Kind {
+            query.geometry = MeshGeometry::new(mesh, content).map(Arc::new);
+        }
+        query.seconds = start.elapsed().as_secs_f64();
+        Ok(query)
+    }
+
+    /// [Searches](Self::search) for a mesh.
+    ///
+    /// # Errors
+    /// As of [`query`](Self::query) and [`search`](Self::search).
+    pub fn search_mesh(
+        &self,
+        mesh: &TriMesh,
+        options: &SearchOptions,
+        observer: &dyn Observer,
+    ) -> Result<Answer, Error> {
+        self.search(&self.query(mesh, ("the query", None), options, observer)?, options, observer)
+    }
+
+    /// A shape of the index as a query, which finds itself. Its mesh is read if it is taken as a part, or if results are
+    /// explained; then it need not be there.
+    ///
+    /// # Errors
+    /// [`Error::Index`] for an unknown shape; for a part [`Error::MeshGone`] and [`Error::MeshChanged`].
+    pub fn query_of(
+        &self,
+        id: &str,
+        options: &SearchOptions,
+        observer: &dyn Observer,
+    ) -> Result<Query, Error> {
+        let shape = self.index().shape(id)?;
+        let describe_options = self.describe_options();
+        let part = || {
+            let surface = Surface::new(&self.mesh(id)?, &describe_options.form.repair, observer)?;
+            describe_part(&surface, describe_options, observer)
+        };
+        let explains = options.explain == Explain::Kind;
+        Ok(Query {
+            name: id.to_owned(),
+            content: Some(shape.entry.content),
+            part: (options.rank_by == SearchRank::Part).then(part).transpose()?,
+            geometry: explains.then(|| self.geometry(&shape.entry)).flatten().map(Arc::new),
+            options: self.index().options().to_owned(),
+            shape,
+            is_component: false,
+            seconds: 0.0,
+        })
+    }
+}
