@@ -156,6 +156,8 @@ impl Database {
             let of_both = writers("", OpenFlags::SQLITE_OPEN_READ_WRITE)?;
             match of_file {
                 Ok(words) if of_both.split(' ').any(|word| words.ends_with(word)) => break,
+                // A copy of the log into the file was interrupted, and goes on.
+                Err(IndexError::Damaged { .. }) => break,
                 // Another program may just be copying the log into the file.
                 _ if !is_last => std::thread::sleep(WAIT / 20),
                 Ok(_) => return Err(IndexError::OtherLog(path.to_owned())),

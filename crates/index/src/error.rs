@@ -54,9 +54,9 @@ pub enum IndexError {
     },
     /// The file took the place of another one, whose changes are in the log beside it.
     #[error(
-        "the changes in {log} belong to another file than {path}; if they are not needed, end the programs that use it and \
-         delete {log}",
-        path = .0.display(), log = crate::log_path(.0).display()
+        "the changes in {path}-wal belong to another file than {path}; if they are not needed, end the programs that use it \
+         and delete {path}-wal",
+        path = .0.display()
     )]
     OtherLog(PathBuf),
     /// Another program is writing the index.
