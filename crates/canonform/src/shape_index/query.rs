@@ -16,7 +16,8 @@ use crate::form::{DescribeOptions, ShapeDescription, describe_part};
 
 /// A described shape that is searched for, and what else is known of it. As JSON it can be sent to indexes on other machines.
 ///
-/// [`ShapeSearch::query`] makes one of a mesh, [`ShapeSearch::query_of`] one of a shape of the index.
+/// [`ShapeSearch::query`](crate::ShapeSearch::query) makes one of a mesh, and
+/// [`query_of`](crate::ShapeSearch::query_of) one of a shape of the index.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Query {
     /// What it is called in words.
