@@ -5,11 +5,9 @@ use std::sync::Arc;
 use base::{ContentHash, Observer};
 use descriptors::PartDiscAreas;
 use index::Shape;
-use mesh::{Surface, TriMesh};
-use nalgebra::Point3;
+use mesh::Surface;
 use relations::MeshGeometry;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use surface::VertexId;
 
 use crate::error::Error;
 use crate::form::{DescribeOptions, ShapeDescription, describe_part};
@@ -31,7 +29,7 @@ pub struct Query {
     /// What its fit as a part is measured by. Only with it can results be ordered by that.
     pub part: Option<PartDiscAreas>,
     /// The mesh in space, by which results are explained.
-    #[serde(serialize_with = "write_mesh", deserialize_with = "read_mesh")]
+    #[serde(serialize_with = "write_geometry", deserialize_with = "read_geometry")]
     pub geometry: Option<Arc<MeshGeometry>>,
     /// Whether it is a component of another query.
     pub(super) is_component: bool,
@@ -76,30 +74,10 @@ impl Query {
     }
 }
 
-/// What a geometry is sent as.
-#[derive(Serialize, Deserialize)]
-struct MeshRecord {
-    positions: Vec<[f64; 3]>,
-    faces: Vec<[VertexId; 3]>,
-    content: Option<ContentHash>,
+fn write_geometry<S: Serializer>(geometry: &Option<Arc<MeshGeometry>>, out: S) -> Result<S::Ok, S::Error> {
+    geometry.as_deref().serialize(out)
 }
 
-fn write_mesh<S: Serializer>(geometry: &Option<Arc<MeshGeometry>>, out: S) -> Result<S::Ok, S::Error> {
-    let record = geometry.as_ref().map(|geometry| {
-        let TriMesh { positions, faces } = geometry.to_mesh();
-        MeshRecord {
-            positions: positions.into_iter().map(Into::into).collect(),
-            faces,
-            content: geometry.content(),
-        }
-    });
-    record.serialize(out)
-}
-
-fn read_mesh<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Arc<MeshGeometry>>, D::Error> {
-    let record = Option::<MeshRecord>::deserialize(from)?;
-    Ok(record.and_then(|MeshRecord { positions, faces, content }| {
-        let positions = positions.into_iter().map(Point3::from).collect();
-        MeshGeometry::new(&TriMesh { positions, faces }, content).map(Arc::new)
-    }))
+fn read_geometry<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Arc<MeshGeometry>>, D::Error> {
+    Ok(Option::<MeshGeometry>::deserialize(from)?.map(Arc::new))
 }

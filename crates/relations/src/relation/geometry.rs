@@ -7,6 +7,8 @@ use base::ContentHash;
 use descriptors::{CanonicalForm, PreparedForm};
 use mesh::{SmoothRegions, TriMesh, is_noisy};
 use nalgebra::Point3;
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use surface::{Components, VertexId, components_of_faces};
 
 use super::triangles::TriangleTree;
@@ -65,6 +67,48 @@ pub struct MeshGeometry {
     parts: OnceLock<Vec<MeshGeometry>>,
 }
 
+/// What a geometry is sent as: all that is not found from it.
+#[derive(Serialize, Deserialize)]
+struct Record {
+    content: Option<ContentHash>,
+    positions: Vec<[f64; 3]>,
+    faces: Vec<[VertexId; 3]>,
+    size: f64,
+    centre: [f64; 3],
+    rounding: f64,
+    spreads: [f64; 3],
+    farthest: f64,
+}
+
+impl Serialize for MeshGeometry {
+    fn serialize<S: Serializer>(&self, out: S) -> Result<S::Ok, S::Error> {
+        let Self { content, mesh, size, centre, rounding, spreads, farthest, .. } = self;
+        let record = Record {
+            content: *content,
+            positions: mesh.positions.iter().map(|p| (*p).into()).collect(),
+            faces: mesh.faces.clone(),
+            size: *size,
+            centre: (*centre).into(),
+            rounding: *rounding,
+            spreads: *spreads,
+            farthest: *farthest,
+        };
+        record.serialize(out)
+    }
+}
+
+impl<'de> Deserialize<'de> for MeshGeometry {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let Record { content, positions, faces, size, centre, rounding, spreads, farthest } =
+            Record::deserialize(from)?;
+        if faces.iter().flatten().any(|v| v.index() >= positions.len()) {
+            return Err(D::Error::custom("a face has a vertex that is not there"));
+        }
+        let mesh = TriMesh { positions: positions.into_iter().map(Point3::from).collect(), faces };
+        Ok(Self { content, ..Self::of_parts(mesh, size, centre.into(), rounding, spreads, farthest) })
+    }
+}
+
 impl MeshGeometry {
     /// The geometry of a mesh, exactly as its file states it; `content` is the hash of the file, if there is one. `None` for
     /// a mesh without area, or with coordinates that are not finite.
@@ -85,11 +129,23 @@ impl MeshGeometry {
         mesh.positions.iter_mut().for_each(|p| *p -= centroid);
         let mut spreads: [f64; 3] = covariance.symmetric_eigenvalues().map(|x| x.max(0.0).sqrt()).into();
         spreads.sort_by(|a, b| b.total_cmp(a));
-        Some(Self {
+        let rounding = (ROUNDING * farthest / size).min(MOST_ROUNDING);
+        Some(Self::of_parts(mesh, size, origin + centroid * size, rounding, spreads, farthest))
+    }
+
+    fn of_parts(
+        mesh: TriMesh,
+        size: f64,
+        centre: Point3<f64>,
+        rounding: f64,
+        spreads: [f64; 3],
+        farthest: f64,
+    ) -> Self {
+        Self {
             content: None,
             size,
-            centre: origin + centroid * size,
-            rounding: (ROUNDING * farthest / size).min(MOST_ROUNDING),
+            centre,
+            rounding,
             spreads,
             farthest,
             components: components_of_faces(mesh.n_vertices(), &mesh.faces),
@@ -100,13 +156,7 @@ impl MeshGeometry {
             noisy: OnceLock::new(),
             regions: OnceLock::new(),
             parts: OnceLock::new(),
-        })
-    }
-
-    /// The hash of the file, if there is one.
-    #[must_use]
-    pub fn content(&self) -> Option<ContentHash> {
-        self.content
+        }
     }
 
     /// Number of vertices in different positions.
