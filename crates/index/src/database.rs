@@ -252,7 +252,7 @@ impl Database {
         text.parse().map_err(|_| self.damaged(format!("`{}` is `{text}`", of.name())))
     }
 
-    /// Visits the rows of a query. `what` names a row, and is given with its fault.
+    /// Visits the rows of a query, up to the first error of `visit`.
     pub(crate) fn each<T, E: From<IndexError>>(
         &self,
         sql: &str,

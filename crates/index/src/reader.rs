@@ -165,8 +165,8 @@ impl Index {
         shape_of(&database, row)
     }
 
-    /// Calls `visit` with each shape in ascending order of names, up to its first error. Holds one shape in memory at a
-    /// time.
+    /// Calls `visit` with each shape in ascending order of names, up to its first error. Holds the entries of all shapes and the
+    /// vectors of one in memory.
     pub fn each<E: From<IndexError>>(&self, mut visit: impl FnMut(Shape) -> Result<(), E>) -> Result<(), E> {
         let mut rows = Vec::with_capacity(self.n_shapes.min(1 << 20));
         each_row(&self.database(), "ORDER BY id", [], |row| rows.push(row))?;
