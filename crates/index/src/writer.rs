@@ -184,25 +184,27 @@ impl IndexWriter {
             }
             self.delete(id)?;
             self.n_shapes += 1;
-            let fused = to_bytes(fused);
-            let sum = checksum(&[id, "fused"], &fused);
-            self.database.change("INSERT INTO fused VALUES (?, ?, ?)", (id, fused, sum))?;
+            let row = |name: &str, vector: &[f32]| {
+                let bytes = to_bytes(vector);
+                let sum = checksum(&[id, name], &bytes);
+                (bytes, sum)
+            };
+            let (bytes, sum) = row("fused", fused);
+            self.database.change("INSERT INTO fused VALUES (?, ?, ?)", (id, bytes, sum))?;
             let mut vectors = 0;
-            let signatures =
-                shape.signatures.iter().map(|(name, values)| (format!("{SIGNATURE}{name}"), &values[..]));
+            let signatures = shape.signatures.iter();
+            let signatures = signatures.map(|(name, values)| (format!("{SIGNATURE}{name}"), &values[..]));
             let others = [(FORM, shape.form.as_flattened()), (DISC_AREAS, &shape.disc_areas)];
             let others = others.into_iter().filter(|(_, vector)| !vector.is_empty());
             for (name, vector) in others.map(|(name, vector)| (name.to_owned(), vector)).chain(signatures) {
-                let vector = to_bytes(vector);
-                let sum = checksum(&[id, &name], &vector);
-                self.database.change("INSERT INTO vectors VALUES (?, ?, ?, ?)", (id, name, vector, sum))?;
+                let (bytes, sum) = row(&name, vector);
+                self.database.change("INSERT INTO vectors VALUES (?, ?, ?, ?)", (id, name, bytes, sum))?;
                 vectors += 1;
             }
             for (place, vector) in shape.components.iter().enumerate() {
-                let vector = to_bytes(vector);
-                let sum = checksum(&[id, &place.to_string()], &vector);
+                let (bytes, sum) = row(&place.to_string(), vector);
                 self.database
-                    .change("INSERT INTO components VALUES (?, ?, ?, ?)", (id, place, vector, sum))?;
+                    .change("INSERT INTO components VALUES (?, ?, ?, ?)", (id, place, bytes, sum))?;
                 vectors += 1;
             }
             self.put_entry(EntryRow { entry: shape.entry.clone(), vectors })?;

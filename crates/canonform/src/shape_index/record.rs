@@ -35,7 +35,6 @@ impl ShapeDescription {
     /// The shape as an index stores it, with 32-bit numbers, and without a name.
     #[must_use]
     pub fn shape(&self) -> Shape {
-        let rounded = |values: &[f64]| values.iter().map(|x| *x as f32).collect::<Vec<f32>>();
         let unit = form_unit(self.area, &self.options);
         let points = self.form.points().iter().map(|p| p / unit).zip(self.form.weights());
         let signatures = self.signatures.iter();
@@ -54,7 +53,7 @@ impl ShapeDescription {
                 ..Entry::default()
             },
             fused: self.fused.clone(),
-            signatures: signatures.map(|s| (s.kind.name().to_owned(), rounded(&s.values))).collect(),
+            signatures: signatures.map(|s| (s.kind.name().to_owned(), self.rounded(s.kind))).collect(),
             form: points.map(|(p, w)| [p.x, p.y, p.z, *w].map(|x| x as f32)).collect(),
             disc_areas: self.disc_areas.to_numbers(),
             components: Vec::new(),
