@@ -63,7 +63,7 @@ fn described(n_plans: usize, number: usize) -> Result<Creature> {
     let mesh = if n_vertices < mesh.n_vertices() { coarse(&mesh, n_vertices) } else { mesh };
     let options = DescribeOptions::default();
     let description = describe(&Surface::new(&mesh, &options.form.repair, &())?, &options, &())?;
-    Ok(Creature { plan: family % n_plans, family, body, shape: description.prepare()? })
+    Ok(Creature { plan: family % n_plans, family, body, shape: options.prepare(&description)? })
 }
 
 /// All pairs of one family, and some of two.

@@ -1,7 +1,8 @@
 //! The described collection, and some of its shapes that are changed and searched for in it.
 
 use anyhow::{Context as _, Result};
-use canonform::{DescribeOptions, ShapeDescription, Surface, describe};
+use canonform::index::Shape;
+use canonform::{DescribeOptions, Surface, describe};
 use datasets::Damage;
 use descriptors::PreparedShape;
 use retrieval::{Labels, Scores, rank_row};
@@ -13,7 +14,7 @@ use crate::context::Context;
 pub(crate) struct Gallery<'a> {
     context: &'a Context<'a>,
     pub(crate) options: DescribeOptions,
-    pub(crate) described: Vec<ShapeDescription>,
+    pub(crate) described: Vec<Shape>,
     pub(crate) labels: Labels,
 }
 
@@ -37,7 +38,7 @@ impl<'a> Gallery<'a> {
 
     /// The collection, ready for comparisons.
     pub(crate) fn prepared(&self) -> Result<Vec<PreparedShape>> {
-        Ok(self.described.iter().map(ShapeDescription::prepare).collect::<Result<_, _>>()?)
+        Ok(self.described.iter().map(|shape| self.options.prepare(shape)).collect::<Result<_, _>>()?)
     }
 
     /// Calls `work` for up to `n` shapes of every class.

@@ -5,7 +5,8 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use base::terminal::Bars;
-use canonform::{DescribeOptions, Observer, ShapeDescription, Surface, describe};
+use canonform::index::Shape;
+use canonform::{DescribeOptions, Observer, Surface, describe, signature};
 use datasets::{ArticulatedOptions, Family, LabeledShape, articulated};
 use descriptors::{PreparedShape, ShapeMetric, ShapePair, SignatureKind, rigid_signature};
 use linalg::Matrix;
@@ -25,7 +26,7 @@ const COPIES: usize = 4;
 struct DescribedBody {
     label: String,
     seed: u64,
-    description: ShapeDescription,
+    description: Shape,
     shape: PreparedShape,
 }
 
@@ -33,7 +34,7 @@ impl DescribedBody {
     fn new(shape: &LabeledShape, seed: u64) -> Result<Self> {
         let options = DescribeOptions::default();
         let description = describe(&Surface::new(&shape.mesh, &options.form.repair, &())?, &options, &())?;
-        let prepared = description.prepare()?;
+        let prepared = options.prepare(&description)?;
         Ok(Self { label: shape.label.clone(), seed, description, shape: prepared })
     }
 }
@@ -59,7 +60,7 @@ pub(crate) fn units(seeds: usize, quiet: bool) -> Result<ExitCode> {
     let mut parts = Vec::new();
     for kind in SignatureKind::INTRINSIC {
         let distance = |(a, b): &BodyPair<'_>| {
-            let of = |shape: &DescribedBody| shape.description.signature(kind).cloned();
+            let of = |shape: &DescribedBody| signature(&shape.description, kind);
             of(a).zip(of(b)).map_or(f64::NAN, |(a, b)| a.distance(&b))
         };
         let means = [&within, &between].map(|pairs| mean_square(pairs.iter().map(distance)));
@@ -103,10 +104,10 @@ fn components(shapes: &[DescribedBody], kind: SignatureKind) -> f64 {
     let n_values = kind.n_values();
     let mut covariance = Matrix::zeros(n_values, n_values);
     for family in Family::all() {
-        let members: Vec<&[f64]> = shapes
+        let members: Vec<Vec<f64>> = shapes
             .iter()
             .filter(|shape| shape.label == family.name())
-            .filter_map(|shape| shape.description.signature(kind).map(|s| s.values.as_slice()))
+            .filter_map(|shape| signature(&shape.description, kind).map(|s| s.values))
             .collect();
         let mean = |i: usize| members.iter().map(|values| values[i]).sum::<f64>() / members.len() as f64;
         let means: Vec<f64> = (0..n_values).map(mean).collect();

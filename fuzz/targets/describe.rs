@@ -13,7 +13,7 @@ fuzz_target!(init: single_threaded(), |data: &[u8]| {
     let Ok(surface) = Surface::new(&mesh, &options.form.repair, &()) else { return };
     let Ok(description) = describe(&surface, &options, &Limited::start()) else { return };
     assert!(description.fused.iter().all(|x| x.is_finite()), "a signature is not finite");
-    let Ok(shape) = description.prepare() else { return };
+    let Ok(shape) = options.prepare(&description) else { return };
     let pair = ShapePair::new([&shape, &shape]);
     assert!(pair.distance().combined < 1e-3, "a shape differs from itself by {:?}", pair.distance());
     let _ = compare(&pair);

@@ -37,7 +37,7 @@
 //! 4. [`Embedded`]: coordinates by any [`EmbedMethod`], made by [`embed`] as [`FormOptions`] say. The options travel with
 //!    everything that is made from here on. [`embed_and_measure`] adds the stress.
 //! 5. [`descriptors::CanonicalForm`]: the embedded surface, weighted by area, in three dimensions.
-//! 6. [`ShapeDescription`]: form, signatures and facts, made by [`describe`]: all that an index stores of a shape.
+//! 6. [`Shape`]: form, signatures and facts, made by [`describe`]: all that an index stores of a shape.
 //! 7. [`descriptors::ShapePair`]: two descriptions and the alignments of their forms, each found once. All units, weights
 //!    and thresholds of its distance belong to [`descriptors::ShapeMetric`].
 //! 8. [`Relation`]: how the two are related, by that distance and, where they are at hand, by files and meshes.
@@ -111,9 +111,10 @@ pub use fields::{
 pub use form::{
     DISTANCES_LIMIT, DescentReport, DescribeOptions, EmbedMethod, EmbedReport, Embedded, FormOptions,
     MeasuredSurface, MethodFacts, MethodReport, MethodsReport, Samples, SamplesReport, SecondsReport,
-    ShapeDescription, StressChoice, StressKind, StressOptions, StressReport, compare_methods, describe,
-    describe_part, embed, embed_again, embed_and_measure, embed_and_release, embed_finer, settings,
+    StressChoice, StressKind, StressOptions, StressReport, compare_methods, describe, describe_part, embed,
+    embed_again, embed_and_measure, embed_and_release, embed_finer, settings, signature,
 };
+pub use index::Shape;
 pub use input::{AllPairs, Asymmetry, PathPoint, SurfacePath, distance_rows, read_surface};
 pub use relations::{
     Basis, Because, Change, Handedness, KnownMap, MeshGeometry, MeshOverlay, Parts, Relation, RelationKind,
@@ -121,13 +122,13 @@ pub use relations::{
 };
 pub use retrieval::RankBy;
 pub use shape_index::{
-    Answer, BuildOptions, BuildReport, ClassVotes, ComponentResult, Dropped, DuplicateFile, DuplicateGroup,
-    DuplicateMember, DuplicateOptions, DuplicateReport, Elsewhere, EvaluateOptions, Explain, Failure,
-    FailureReason, Hit, Inputs, Measure, MergeReport, MoveReport, NearestShape, NotMoved, OrderedBy,
-    PairwiseDistance, Prediction, Query, Ranked, Reranked, SearchOptions, SearchRank, SearchSeconds,
-    ShapeLimits, ShapeSearch, Shard, Unknown, add_to_index, bounds, build_index, check_place, evaluate_index,
-    evaluate_matrix, export_index, find_duplicates, indexed_shapes, merge_answers, merge_indexes, mesh_path,
-    move_duplicates, n_candidates, n_results, remove_from_index, rerank, unchanged_index, undo_moves,
+    Aligned, Answer, BuildOptions, BuildReport, ClassVotes, ComponentResult, Dropped, DuplicateFile,
+    DuplicateGroup, DuplicateMember, DuplicateOptions, DuplicateReport, Elsewhere, EvaluateOptions, Explain,
+    Failure, FailureReason, Hit, Inputs, Measure, MergeReport, MoveReport, NearestShape, NotMoved, OrderedBy,
+    PairwiseDistance, Prediction, Query, SearchOptions, SearchRank, SearchSeconds, ShapeLimits, ShapeSearch,
+    Shard, Unknown, add_to_index, bounds, build_index, check_place, evaluate_index, evaluate_matrix,
+    export_index, find_duplicates, indexed_shapes, merge_answers, merge_indexes, mesh_path, move_duplicates,
+    n_candidates, n_results, remove_from_index, rerank, unchanged_index, undo_moves,
 };
 pub use {
     collection, descriptors, fields, geodesics, index, linalg, mesh, nmds, relations, retrieval, surface,

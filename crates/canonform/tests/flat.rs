@@ -6,7 +6,7 @@ use canonform::nmds::Regularization;
 use canonform::surface::VertexId;
 use canonform::{
     DescribeOptions, EmbedMethod, FormOptions, Samples, StressChoice, StressOptions, Surface, describe,
-    embed_and_measure,
+    embed_and_measure, signature,
 };
 use nalgebra::{Point3, Rotation3, Vector3};
 
@@ -123,11 +123,11 @@ fn rounding_and_noise_change_no_description_of_a_flat_surface() {
         let copies = [("rounded", rounded(&mesh, &mut numbers)), ("noisy", noisy(&mesh, &mut numbers))];
         for (change, copy) in copies {
             let copy = described(&copy);
-            let shapes = [base.prepare().unwrap(), copy.prepare().unwrap()];
+            let shapes = [&base, &copy].map(|shape| DescribeOptions::default().prepare(shape).unwrap());
             let distance = ShapePair::new([&shapes[0], &shapes[1]]).distance();
             let kind = SignatureKind::FormSpectrum;
-            let [a, b] = [&base, &copy].map(|described| described.signature(kind).unwrap());
-            let spectrum = a.distance(b) / ShapeMetric::unit(kind);
+            let [a, b] = [&base, &copy].map(|described| signature(described, kind).unwrap());
+            let spectrum = a.distance(&b) / ShapeMetric::unit(kind);
             println!("{name}, {change}: {:.3}, spectrum of the form {spectrum:.3}", distance.combined);
             largest = largest.max(distance.combined);
         }

@@ -22,7 +22,7 @@ impl Index {
             true => Ok(all
                 .nearest(query, k)
                 .into_iter()
-                .map(|(i, distance)| (all.id(i).to_owned(), distance))
+                .map(|near| (all.id(near.index).to_owned(), near.distance))
                 .collect()),
             false => Err(IndexError::BadVector(name())),
         }

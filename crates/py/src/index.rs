@@ -3,16 +3,15 @@
 use std::collections::{BTreeMap, HashSet};
 use std::path::PathBuf;
 use std::str::FromStr;
-use std::sync::Arc;
 
 use canonform::descriptors::DescriptorError;
 use canonform::index::{Entry, ExportFormat, FORMAT_VERSION, IndexError};
 use canonform::mesh::RepairOptions;
 use canonform::{
     Answer, BuildOptions, DescribeOptions, DuplicateOptions, Elsewhere, Error, EvaluateOptions, Explain,
-    Inputs, LabelSource, MeshGeometry, Observer, PairwiseDistance, Query, SearchOptions, SearchRank,
-    ShapeFile, ShapeSearch, Shard, add_to_index, build_index, content_hash, evaluate_index, export_index,
-    find_duplicates, indexed_shapes, mesh_path, remove_from_index, unchanged_index,
+    Inputs, LabelSource, Observer, PairwiseDistance, Query, SearchOptions, ShapeFile, ShapeSearch, Shard,
+    add_to_index, build_index, content_hash, evaluate_index, export_index, find_duplicates, indexed_shapes,
+    mesh_path, remove_from_index, unchanged_index,
 };
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -411,18 +410,13 @@ fn query_of(
         true => None,
         false => Some(canonform::Surface::new(&surface.mesh, &describe.form.repair, observer)?),
     };
-    let query = match &again {
-        Some(again) => Query::from(&canonform::describe(again, describe, observer)?),
-        None => Query::from(&*surface.described(describe, observer)?),
+    let shape = match &again {
+        Some(again) => canonform::describe(again, describe, observer)?,
+        None => (*surface.described(describe, observer)?).clone(),
     };
-    let mut query = query.named(name, surface.content);
-    if options.rank_by == SearchRank::Part {
-        query = query.as_part(again.as_ref().unwrap_or(&surface.inner), describe, observer)?;
-    }
-    if options.explain == Explain::Kind {
-        query.geometry = MeshGeometry::new(&surface.mesh, surface.content).map(Arc::new);
-    }
-    Ok(query)
+    let repaired = again.as_ref().unwrap_or(&surface.inner);
+    let query = Query::new(shape, describe).named(name, surface.content);
+    query.with_mesh(&surface.mesh, repaired, (options, describe), observer)
 }
 
 /// A surface as a query for indexes of these options, as JSON.

@@ -11,8 +11,7 @@ use canonform::mesh::{RepairOptions, TriMesh};
 use canonform::surface::VertexId;
 use canonform::{
     ComparedMesh, CorrespondOptions, DescribeOptions, Error, FormOptions, InputPoint, MappedSurface,
-    Observer, ShapeDescription, SurfacePath, content_hash, distance_rows, embed_again, embed_and_measure,
-    embed_finer,
+    Observer, Shape, SurfacePath, content_hash, distance_rows, embed_again, embed_and_measure, embed_finer,
 };
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -93,7 +92,7 @@ pub(crate) struct Surface {
     /// Whether the repair left all vertices as they are, so that no values need to be reordered.
     unchanged: bool,
     solvers: Kept<Method, Prepared>,
-    descriptions: Kept<DescribeOptions, Arc<ShapeDescription>>,
+    descriptions: Kept<DescribeOptions, Arc<Shape>>,
     compared: Kept<FormOptions, Arc<Compared>>,
     matched: Kept<CorrespondOptions, Arc<Matched>>,
 }
@@ -172,7 +171,7 @@ impl Surface {
         &self,
         options: &DescribeOptions,
         observer: &dyn Observer,
-    ) -> Result<Arc<ShapeDescription>, Error> {
+    ) -> Result<Arc<Shape>, Error> {
         self.descriptions.or_make(options, || canonform::describe(&self.inner, options, observer))
     }
 
@@ -201,7 +200,7 @@ impl Surface {
         py: Python<'_>,
         settings: &str,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<Arc<ShapeDescription>> {
+    ) -> PyResult<Arc<Shape>> {
         let settings = Settings::parse(settings)?;
         let options = settings.describe(self.inner.repair)?;
         Ok(run(py, &settings.budget()?, progress.as_ref(), |observer| self.described(&options, observer))?)
@@ -439,7 +438,8 @@ impl Surface {
             Exception::Option.with(&format!("kind={kind:?} is not possible: use \"fused\", {known}"))
         })?;
         let described = self.description_of(py, settings, progress)?;
-        let values = described.signature(kind).map_or_else(Vec::new, |signature| signature.values.clone());
+        let values =
+            canonform::signature(&described, kind).map_or_else(Vec::new, |signature| signature.values);
         Ok(values.into_pyarray(py).into_any())
     }
 }

@@ -38,7 +38,7 @@ pub use evaluation::{Evaluation, RankBy, RankingEvaluation, evaluate, evaluate_r
 pub use graph::{Graph, GraphNeighbor, GraphRankings, LINKS, graph_rank};
 pub use labels::Labels;
 pub use ranking::{Neighbor, Rankings, rank, rank_row};
-pub use refinement::{Candidate, Refinement, refine_nearest};
+pub use refinement::{Refinement, refine_nearest};
 pub use scores::{Averaging, QueryScores, Scores, precision_recall};
 pub use splits::{SplitAccuracy, SplitOptions, split_accuracy};
 pub use vote::{Tally, UnknownThreshold, Vote, vote};

@@ -13,7 +13,8 @@ pub struct Neighbor {
 
 impl Neighbor {
     /// Orders by distance, ties by index.
-    pub(crate) fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+    #[must_use]
+    pub fn cmp(&self, other: &Self) -> std::cmp::Ordering {
         self.distance.total_cmp(&other.distance).then(self.index.cmp(&other.index))
     }
 }

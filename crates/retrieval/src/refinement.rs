@@ -4,15 +4,6 @@ use rayon::prelude::*;
 
 use crate::Neighbor;
 
-/// A shape that may be among the nearest, with a lower bound of its distance.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Candidate {
-    /// Index of the shape.
-    pub index: usize,
-    /// A lower bound of its distance.
-    pub bound: f64,
-}
-
 /// The nearest shapes, and the work done to find them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Refinement<T> {
@@ -30,7 +21,7 @@ const BATCH: usize = 8;
 /// The `k` candidates of smallest distance, evaluating as few distances as the bounds allow (Seidl and Kriegel
 /// 1998, `seidl1998` in `REFERENCES.bib`).
 ///
-/// `candidates` are in ascending order of their bounds. The search ends at the first candidate whose bound exceeds
+/// `candidates` have lower bounds for distances and are in ascending order of them. The search ends at the first candidate whose bound exceeds
 /// the k-th smallest distance so far. `distance(candidate, limit)` returns the distance and anything else that was found
 /// with it, or `None` if it exceeds `limit`.
 ///
@@ -41,9 +32,9 @@ const BATCH: usize = 8;
 /// # Errors
 /// The first error of `distance` in the order of the candidates.
 pub fn refine_nearest<T: Send, E: Send>(
-    candidates: impl IntoIterator<Item = Candidate>,
+    candidates: impl IntoIterator<Item = Neighbor>,
     k: usize,
-    distance: impl Fn(Candidate, f64) -> Result<Option<(f64, T)>, E> + Sync,
+    distance: impl Fn(Neighbor, f64) -> Result<Option<(f64, T)>, E> + Sync,
 ) -> Result<Refinement<T>, E> {
     let mut found = Refinement { nearest: Vec::new(), evaluated: 0, abandoned: 0 };
     let mut candidates = candidates.into_iter().peekable();
@@ -57,7 +48,7 @@ pub fn refine_nearest<T: Send, E: Send>(
         };
         let mut batch = Vec::with_capacity(BATCH);
         while batch.len() < BATCH
-            && let Some(next) = candidates.next_if(|candidate| candidate.bound <= limit)
+            && let Some(next) = candidates.next_if(|candidate| candidate.distance <= limit)
         {
             batch.push(next);
         }
@@ -90,10 +81,10 @@ mod tests {
         (0..200).map(f64::from).map(|i| [(i * 0.618).fract() * 9.0, (i * 0.414).fract() * 4.0]).collect()
     }
 
-    fn candidates(points: &[[f64; 2]]) -> Vec<Candidate> {
+    fn candidates(points: &[[f64; 2]]) -> Vec<Neighbor> {
         let mut all: Vec<_> =
-            points.iter().enumerate().map(|(index, p)| Candidate { index, bound: p[0] }).collect();
-        all.sort_by(|a, b| a.bound.total_cmp(&b.bound));
+            points.iter().enumerate().map(|(index, p)| Neighbor { index, distance: p[0] }).collect();
+        all.sort_by(Neighbor::cmp);
         all
     }
 
@@ -124,8 +115,8 @@ mod tests {
     fn zero_neighbours_need_no_evaluation_and_errors_are_returned() {
         let none = refine_nearest::<(), ()>(candidates(&points()), 0, |_, _| Ok(None)).unwrap();
         assert_eq!(none, Refinement { nearest: Vec::new(), evaluated: 0, abandoned: 0 });
-        let first = candidates(&points())[0].bound;
-        let failed = refine_nearest::<(), _>(candidates(&points()), 3, |c, _| Err(c.bound));
+        let first = candidates(&points())[0].distance;
+        let failed = refine_nearest::<(), _>(candidates(&points()), 3, |c, _| Err(c.distance));
         assert_eq!(failed.unwrap_err(), first);
     }
 }

@@ -6,8 +6,7 @@ use std::sync::Arc;
 use axum::body::Bytes;
 use axum::http::StatusCode;
 use canonform::{
-    Answer, Budget, ContentHash, Error, MeasuredSurface, MeshGeometry, SearchOptions, SearchRank,
-    ShapeDescription, Surface,
+    Answer, Budget, ContentHash, Error, MeasuredSurface, MeshGeometry, SearchOptions, SearchRank, Surface,
 };
 
 use crate::cache::Cache;
@@ -43,9 +42,9 @@ impl Query {
         name: &str,
         content: ContentHash,
         measured: Measured,
-        description: &ShapeDescription,
+        described: canonform::Query,
     ) -> Self {
-        let mut described = canonform::Query::from(description).named(name, Some(content));
+        let mut described = described.named(name, Some(content));
         described.geometry.clone_from(&measured.geometry);
         Self { described, measured: Arc::new(measured) }
     }

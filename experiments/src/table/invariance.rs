@@ -5,9 +5,8 @@
 //! relation to the undamaged shape is right.
 
 use anyhow::{Context as _, Result};
-use canonform::{
-    Handedness, MeshGeometry, Relation, RelationKind, ShapeDescription, bounds, describe, rerank,
-};
+use canonform::index::Shape;
+use canonform::{Handedness, MeshGeometry, Relation, RelationKind, bounds, describe, rerank, signature};
 use datasets::Damage;
 use descriptors::{ShapeMetric, ShapePair, SignatureKind};
 use mesh::{SmoothRegions, TriMesh};
@@ -87,12 +86,12 @@ impl Experiment for InvarianceOptions {
             let found = gallery.map(self.queries, &damage.to_string(), |query| {
                 let surface = query.damaged(damage)?;
                 let damaged = describe(&surface, &gallery.options, &())?;
-                let shape = damaged.prepare()?;
+                let shape = gallery.options.prepare(&damaged)?;
                 // As a search in an index does.
                 let candidates = bounds(shape.fused(), prepared.len(), &|i| prepared[i].fused());
                 let nearest = rerank(&shape, candidates, 2, |i| Ok(&prepared[i]))?.nearest;
-                let first = nearest.first().context("the collection has shapes")?;
-                let mut others = nearest.iter().filter(|near| near.index != query.own);
+                let (first, _) = nearest.first().context("the collection has shapes")?;
+                let mut others = nearest.iter().filter(|(near, _)| near.index != query.own);
                 let pair = ShapePair::new([&shape, &prepared[query.own]]);
                 let mesh = damage.apply(query.shape.surface.mesh(), query.seed);
                 let geometries =
@@ -112,7 +111,9 @@ impl Experiment for InvarianceOptions {
                     form: pair.best().rms / ShapeMetric::FORM_UNIT,
                     combined: pair.distance().combined,
                     is_top1: gallery.is_right(query, first.index),
-                    is_top1_of_others: others.next().is_some_and(|near| gallery.is_right(query, near.index)),
+                    is_top1_of_others: others
+                        .next()
+                        .is_some_and(|(near, _)| gallery.is_right(query, near.index)),
                     is_unknown: first.distance >= ShapeMetric::SAME_CLASS.at,
                 })
             })?;
@@ -136,11 +137,13 @@ impl Experiment for InvarianceOptions {
 }
 
 /// The change of every signature, relative to its length and in its unit.
-fn changes(before: &ShapeDescription, after: &ShapeDescription) -> Vec<[f64; 2]> {
-    let pairs = before.signatures.iter().zip(&after.signatures);
-    pairs
+fn changes(before: &Shape, after: &Shape) -> Vec<[f64; 2]> {
+    let pair = |kind| signature(before, kind).zip(signature(after, kind));
+    SignatureKind::INTRINSIC
+        .into_iter()
+        .filter_map(pair)
         .map(|(before, after)| {
-            let distance = before.distance(after);
+            let distance = before.distance(&after);
             let length = before.values.iter().map(|x| x * x).sum::<f64>().sqrt();
             [distance / length.max(f64::MIN_POSITIVE), distance / ShapeMetric::unit(before.kind)]
         })

@@ -5,10 +5,10 @@
 //! from the nearest other shape of the class and from the nearest shape of another class, and `CUT discs own below|other below`,
 //! the shares of them below the boundary of a class.
 
-use anyhow::Result;
+use anyhow::{Context as _, Result};
 use canonform::{describe, describe_part};
 use datasets::Damage;
-use descriptors::{PartDistance, ShapeMetric};
+use descriptors::{DiscAreas, PartDistance, ShapeMetric};
 use report::results::{CurvesPanel, Series};
 use retrieval::Scores;
 use serde::Deserialize;
@@ -53,6 +53,9 @@ impl Experiment for PartialOptions {
     fn run(&self, context: &Context<'_>) -> Result<()> {
         let gallery = Gallery::new(context)?;
         let wholes = &gallery.described;
+        let of_wholes = wholes.iter().map(|whole| DiscAreas::from_numbers(&whole.disc_areas));
+        let of_wholes: Vec<DiscAreas> =
+            of_wholes.collect::<Option<_>>().context("disc areas of every shape")?;
         let mut measured = MeasuredNumbers::new();
         let mut rows = Vec::new();
         for (kind, lost, damage) in cuts() {
@@ -61,7 +64,7 @@ impl Experiment for PartialOptions {
                 let part = query.damaged(damage)?;
                 let fused = describe(&part, &gallery.options, &())?.fused;
                 let discs = describe_part(&part, &gallery.options, &())?;
-                let distance = |i: usize| discs.distance(&wholes[i].disc_areas).distance;
+                let distance = |i: usize| discs.distance(&of_wholes[i]).distance;
                 let plain = gallery.scores(query, |i| ShapeMetric::robust(&fused, &wholes[i].fused));
                 let nearest = |is_own: bool| {
                     let others = (0..wholes.len()).filter(|i| *i != query.own);

@@ -8,7 +8,8 @@
 use std::io::Write;
 
 use anyhow::Result;
-use canonform::{ShapeDescription, form_alignments};
+use canonform::index::Shape;
+use canonform::{DescribeOptions, form_alignments, signature};
 use descriptors::{CanonicalForm, Normalization, ShapeMetric, SignatureKind};
 use linalg::DistanceMatrix;
 use rayon::prelude::*;
@@ -134,26 +135,31 @@ impl RetrievalOptions {
     fn distances(
         &self,
         context: &Context<'_>,
-        shapes: &[ShapeDescription],
+        shapes: &[Shape],
     ) -> Result<Vec<(String, Scale, DistanceMatrix)>> {
         let n = shapes.len();
         let all = |distance: &dyn Fn(usize, usize) -> f64| DistanceMatrix::from_pairs(n, distance);
-        let forms: Vec<CanonicalForm> = shapes.iter().map(|shape| shape.form.clone()).collect();
+        let forms: Vec<CanonicalForm> =
+            shapes.iter().map(|shape| DescribeOptions::default().form_of(shape)).collect::<Result<_, _>>()?;
         let aligned = |normalization| {
             let found = form_alignments(&forms, normalization, context.observer);
             found.map(|found| found.distances)
         };
         let aligns = n <= self.aligned;
         let form = if aligns { Some(aligned(Normalization::UnitArea)?) } else { None };
-        let size_of = |i: usize| ShapeMetric::size_coordinate(shapes[i].area);
+        let size_of = |i: usize| ShapeMetric::size_coordinate(shapes[i].entry.facts.area);
         let size = |i: usize, j: usize| size_of(i) - size_of(j);
         let unit = ShapeMetric::FORM_UNIT;
         let mut found = Vec::new();
         for scale in [Scale::Normalized, Scale::Raw] {
-            let area = |shape: &ShapeDescription| Some(shape.area).filter(|_| scale == Scale::Raw);
+            let area = |shape: &Shape| Some(shape.entry.facts.area).filter(|_| scale == Scale::Raw);
             let mut add = |method: &str, distances| found.push((method.to_owned(), scale, distances));
-            let vectors: Vec<_> =
-                shapes.iter().map(|shape| ShapeMetric::fuse(&shape.signatures, area(shape))).collect();
+            let fuse = |shape: &Shape| {
+                let signatures =
+                    SignatureKind::INTRINSIC.into_iter().filter_map(|kind| signature(shape, kind));
+                ShapeMetric::fuse(&signatures.collect::<Vec<_>>(), area(shape))
+            };
+            let vectors: Vec<_> = shapes.iter().map(fuse).collect();
             let fused = all(&|i, j| ShapeMetric::fused(&vectors[i], &vectors[j]))?;
             if let Some(form) = &form {
                 let robust = |i: usize, j: usize| ShapeMetric::robust(&vectors[i], &vectors[j]);
@@ -163,11 +169,11 @@ impl RetrievalOptions {
             }
             add("fused", fused);
             for kind in SignatureKind::ALL {
-                let signature = |shape: &ShapeDescription| {
-                    let own = shape.signature(kind)?.clone();
-                    Some(if scale == Scale::Raw { ShapeMetric::with_size(own, shape.area) } else { own })
+                let of = |shape: &Shape| {
+                    let own = signature(shape, kind)?;
+                    Some(area(shape).map_or(own.clone(), |area| ShapeMetric::with_size(own, area)))
                 };
-                let signatures: Vec<_> = shapes.iter().filter_map(signature).collect();
+                let signatures: Vec<_> = shapes.iter().filter_map(of).collect();
                 // Only mechanical parts have a rigid one.
                 if signatures.len() < n {
                     continue;

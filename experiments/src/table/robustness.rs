@@ -7,7 +7,8 @@
 //! welds.
 
 use anyhow::{Context as _, Result};
-use canonform::{ShapeDescription, describe};
+use canonform::index::Shape;
+use canonform::{describe, signature};
 use datasets::DamageKind;
 use descriptors::{PreparedShape, ShapeMetric, ShapePair, SignatureKind};
 use report::results::{CurvesPanel, Series};
@@ -41,7 +42,7 @@ impl Experiment for RobustnessOptions {
     fn run(&self, context: &Context<'_>) -> Result<()> {
         let gallery = Gallery::new(context)?;
         let prepared = gallery.prepared()?;
-        let alarms = share(&gallery.described, |shape| !shape.shortcuts.is_empty());
+        let alarms = share(&gallery.described, |shape| shape.entry.facts.shortcuts > 0);
         let mut measured = numbers([("false alarms", alarms)]);
         let undamaged = gallery.map(self.queries, "undamaged", |query| {
             scores(&gallery, &prepared, query, &gallery.described[query.own], true)
@@ -57,7 +58,7 @@ impl Experiment for RobustnessOptions {
                 let found = gallery.map(self.queries, &stage, |query| {
                     let damaged = describe(&query.damaged(kind.at(strength))?, &gallery.options, &())?;
                     let found = scores(&gallery, &prepared, query, &damaged, strength == ALIGNED_AT)?;
-                    Ok((found, damaged.shortcuts.len()))
+                    Ok((found, damaged.entry.facts.shortcuts))
                 })?;
                 let (found, cut): (Vec<_>, Vec<_>) = found.into_iter().unzip();
                 if matches!(kind, DamageKind::Weld | DamageKind::FarWeld | DamageKind::Contact) {
@@ -83,7 +84,7 @@ fn scores(
     gallery: &Gallery<'_>,
     prepared: &[PreparedShape],
     query: &GalleryQuery<'_>,
-    description: &ShapeDescription,
+    description: &Shape,
     aligned: bool,
 ) -> Result<MethodScores> {
     let mut found = Vec::new();
@@ -92,12 +93,10 @@ fn scores(
         found.push((method, [scores.nn, scores.map]));
     };
     for kind in SignatureKind::INTRINSIC {
-        let signature = description.signature(kind).context("a signature of every kind")?;
-        add(kind.name(), &|i| {
-            gallery.described[i].signature(kind).map_or(f64::NAN, |s| signature.distance(s))
-        });
+        let own = signature(description, kind).context("a signature of every kind")?;
+        add(kind.name(), &|i| signature(&gallery.described[i], kind).map_or(f64::NAN, |s| own.distance(&s)));
     }
-    let shape = description.prepare()?;
+    let shape = gallery.options.prepare(description)?;
     add(FUSED, &|i| ShapeMetric::fused(shape.fused(), prepared[i].fused()));
     if aligned {
         let pairs = prepared.iter().map(|other| {

@@ -36,7 +36,7 @@ fn distances_distinguish_poses_from_families() {
         .par_iter()
         .map(|shape| {
             let description = describe(&surface(&shape.mesh), &DescribeOptions::default(), &());
-            description.and_then(|description| description.prepare()).unwrap()
+            DescribeOptions::default().prepare(&description.unwrap()).unwrap()
         })
         .collect();
     let pairs: Vec<(usize, usize)> =

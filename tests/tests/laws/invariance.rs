@@ -1,6 +1,7 @@
 //! Signatures depend on the surface, not on its triangles.
 
-use canonform::{DescribeOptions, ShapeDescription, describe};
+use canonform::index::Shape;
+use canonform::{DescribeOptions, describe, signature};
 use datasets::{ArticulatedOptions, Damage, Family, articulated_shape};
 use descriptors::{ShapeMetric, ShapePair, SignatureKind};
 use mesh::TriMesh;
@@ -24,21 +25,21 @@ const SAME_SHAPE: f64 = 1.0;
 /// The same with 1,000 vertices. One class is certain up to 3.04.
 const SAME_COARSE_SHAPE: f64 = 2.45;
 
-fn described(mesh: &TriMesh) -> ShapeDescription {
+fn described(mesh: &TriMesh) -> Shape {
     describe(&surface(mesh), &DescribeOptions::default(), &()).unwrap()
 }
 
 /// The change of a signature in its unit.
-fn change_of(kind: SignatureKind, [a, b]: [&ShapeDescription; 2]) -> f64 {
-    let [a, b] = [a, b].map(|shape| shape.signature(kind).unwrap());
-    a.distance(b) / ShapeMetric::unit(kind)
+fn change_of(kind: SignatureKind, [a, b]: [&Shape; 2]) -> f64 {
+    let [a, b] = [a, b].map(|shape| signature(shape, kind).unwrap());
+    a.distance(&b) / ShapeMetric::unit(kind)
 }
 
 /// The largest change of a signature other than the spectrum of the form, and the combined distance.
-fn change(a: &ShapeDescription, b: &ShapeDescription) -> (f64, f64) {
+fn change(a: &Shape, b: &Shape) -> (f64, f64) {
     let kinds = SignatureKind::INTRINSIC.into_iter().filter(|kind| *kind != SignatureKind::FormSpectrum);
     let largest = kinds.map(|kind| change_of(kind, [a, b])).fold(0.0, f64::max);
-    let shapes = [a, b].map(|shape| shape.prepare().unwrap());
+    let shapes = [a, b].map(|shape| DescribeOptions::default().prepare(shape).unwrap());
     (largest, ShapePair::new([&shapes[0], &shapes[1]]).distance().combined)
 }
 

@@ -142,7 +142,11 @@ fn distances_distinguish_poses_from_animals() {
         shapes.into_iter().filter(|s| classes.contains(&s.label.as_str())).step_by(2).collect();
     let described: Vec<_> = shapes
         .par_iter()
-        .map(|s| describe(&read(&s.path), &DescribeOptions::default(), &()).unwrap().prepare().unwrap())
+        .map(|s| {
+            DescribeOptions::default()
+                .prepare(&describe(&read(&s.path), &DescribeOptions::default(), &()).unwrap())
+                .unwrap()
+        })
         .collect();
     let pairs: Vec<(usize, usize)> =
         (0..shapes.len()).flat_map(|i| (i + 1..shapes.len()).map(move |j| (i, j))).collect();

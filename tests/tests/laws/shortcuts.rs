@@ -1,6 +1,6 @@
 //! Laws of topological shortcuts: welds are found and cut, and clean shapes are left alone.
 
-use canonform::{DescribeOptions, ShapeDescription, describe};
+use canonform::{DescribeOptions, describe};
 use datasets::{CreatureOptions, DamageKind, creature_plans, creatures};
 use descriptors::ShapeMetric;
 use mesh::{TriMesh, cut_shortcuts};
@@ -35,9 +35,7 @@ fn clean_creatures_have_no_shortcuts_and_their_welds_are_found() {
 
 #[test]
 fn a_welded_shape_is_described_like_the_clean_one() {
-    let describe = |mesh: &TriMesh| -> ShapeDescription {
-        describe(&surface(mesh), &DescribeOptions::default(), &()).unwrap()
-    };
+    let describe = |mesh: &TriMesh| describe(&surface(mesh), &DescribeOptions::default(), &()).unwrap();
     bodies(1000).par_iter().step_by(9).enumerate().for_each(|(i, mesh)| {
         let clean = describe(mesh);
         for kind in [DamageKind::Weld, DamageKind::FarWeld] {

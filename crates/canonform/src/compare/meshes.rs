@@ -47,12 +47,12 @@ impl<S: Borrow<Surface>> ComparedMesh<S> {
         let measured = MeasuredSurface::new(repaired, options, observer)?;
         let form = measured.form_of(repaired)?;
         if *measured.options() == usual.form {
-            let shape = measured.describe(&usual, observer)?.prepare()?;
+            let shape = usual.prepare(&measured.describe(&usual, observer)?)?;
             return Ok(Self { surface, geometry, form, shape, usual: None });
         }
         let description = describe(repaired, &usual, observer)?;
-        let (fused, area) = (description.fused.clone(), Some(description.area));
-        let described = description.prepare()?;
+        let described = usual.prepare(&description)?;
+        let (fused, area) = (description.fused, Some(description.entry.facts.area));
         let shape = PreparedShape::new(fused, &form.reduced(usual.points), area)?;
         let shape = shape.with_rigid(described.rigid().to_vec());
         Ok(Self { geometry, form, shape, usual: Some(described), surface })
@@ -194,7 +194,7 @@ mod tests {
         let surface = Surface::new(mesh, &options.form.repair, &()).unwrap();
         let measured = MeasuredSurface::new(&surface, &options.form, &()).unwrap();
         let form = measured.form_of(&surface).unwrap();
-        let shape = measured.describe(options, &()).unwrap().prepare().unwrap();
+        let shape = options.prepare(&measured.describe(options, &()).unwrap()).unwrap();
         Described { surface, form, shape }
     }
 

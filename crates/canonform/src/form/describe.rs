@@ -1,4 +1,4 @@
-//! A shape without its mesh: form, signatures and facts.
+//! A shape without its mesh: form, signatures and facts, with the 32-bit numbers that an index stores.
 
 use base::Observer;
 use descriptors::{
@@ -6,13 +6,14 @@ use descriptors::{
     ShapeMetric, Signature, SignatureKind, geodesic_spectrum, heat_kernel_signature, rigid_signature,
     shape_dna, wave_kernel_signature,
 };
-use mesh::{RepairReport, Shortcut};
+use index::{Entry, Facts, Shape};
+use nalgebra::Point3;
 
 use super::embed::{Embedded, embed};
 use super::options::{DescribeOptions, FormOptions};
 use crate::error::Error;
 use mesh::Surface;
-use surface::VertexId;
+use surface::{VertexId, unit_for};
 
 /// What a description needs at its peak: 200 MB for 43,000 vertices, by the resident memory of `index build`.
 const BYTES_PER_VERTEX: usize = 5000;
@@ -22,46 +23,19 @@ const BYTES_PER_VERTEX: usize = 5000;
 /// from one of 28,000 in the combined distance, where subdivision changes 0.14; other shapes are several units apart.
 const MOST_VERTICES: usize = 30_000;
 
-/// Everything that an index keeps of a shape.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ShapeDescription {
-    /// How it was made.
-    pub options: DescribeOptions,
-    /// The canonical form at evenly spread points, in mesh units, with the area of the surface.
-    pub form: CanonicalForm,
-    /// Signatures in the order of [`SignatureKind::ALL`], without size: one of every kind, but a rigid one only if the surface does
-    /// not bend.
-    pub signatures: Vec<Signature>,
-    /// The areas of geodesic discs, which parts of the shape are compared with.
-    pub disc_areas: DiscAreas,
-    /// All signatures that bending does not change as one vector, with the size if it counts. An index searches by it.
-    pub fused: Vec<f32>,
-    /// Area of the surface, in squared mesh units.
-    pub area: f64,
-    /// The largest distance on the surface from one of the samples, in mesh units.
-    pub diameter: f64,
-    /// Length of the longest boundary before holes were closed, in mesh units; 0 for a closed surface.
-    pub longest_boundary: f64,
-    /// Shortcuts of the surface, where parts that touch were welded; it is described without them.
-    pub shortcuts: Vec<Shortcut>,
-    /// What was repaired, with the numbers of vertices and faces.
-    pub repair: RepairReport,
-}
-
-/// Describes a surface: one embedding, one Laplacian, all signatures.
+/// Describes a surface: one embedding, one Laplacian, all signatures. Nothing is known of its components.
 ///
 /// ```
 /// use canonform::{DescribeOptions, Surface, describe, mesh::shapes};
 ///
 /// let surface = Surface::new(&shapes::torus(24, 12, 2.0, 0.7), &Default::default(), &())?;
-/// let description = describe(&surface, &DescribeOptions::default(), &())?;
-/// assert_eq!(description.signatures.len(), 5);
-/// assert!(description.diameter > 6.0 && description.area > 50.0);
+/// let shape = describe(&surface, &DescribeOptions::default(), &())?;
+/// assert_eq!(shape.signatures.len(), 5);
+/// assert!(shape.entry.facts.diameter > 6.0 && shape.entry.facts.area > 50.0);
 /// # Ok::<(), canonform::Error>(())
 /// ```
 ///
-/// A surface that was repaired in another way than the options say keeps its repair, and the
-/// [options of the result](ShapeDescription::options) tell.
+/// A surface that was repaired in another way than the options say keeps its repair.
 ///
 /// # Errors
 /// [`Error::BadDescription`], [`Error::Exceeded`] and those of the stages: a mesh without area or without extent has no
@@ -70,7 +44,7 @@ pub fn describe(
     surface: &Surface,
     options: &DescribeOptions,
     observer: &dyn Observer,
-) -> Result<ShapeDescription, Error> {
+) -> Result<Shape, Error> {
     options.validate()?;
     MeasuredSurface::new(surface, &options.form, observer)?.describe(options, observer)
 }
@@ -143,16 +117,10 @@ impl MeasuredSurface {
     ///
     /// # Errors
     /// As [`describe`].
-    pub fn describe(
-        &self,
-        options: &DescribeOptions,
-        observer: &dyn Observer,
-    ) -> Result<ShapeDescription, Error> {
+    pub fn describe(&self, options: &DescribeOptions, observer: &dyn Observer) -> Result<Shape, Error> {
         let Self { prepared, embedded, .. } = self;
         let options = DescribeOptions { form: embedded.options.clone(), ..*options };
         options.validate()?;
-        let form = embedded.form(prepared)?;
-        let reduced = form.reduced(options.points);
         let spectrum = LaplaceSpectrum::describing(prepared.intrinsic(), observer)?;
         observer.budget().check()?;
         let mut signatures = vec![
@@ -172,59 +140,88 @@ impl MeasuredSurface {
         if fused.iter().any(|value| !value.is_finite()) {
             return Err(DescriptorError::NotFinite.into());
         }
-        Ok(ShapeDescription {
-            fused,
-            options,
-            form: reduced,
-            disc_areas: DiscAreas::new(&embedded.distances, &prepared.mesh().vertex_areas())?,
-            signatures,
+        let report = &prepared.repaired.report;
+        let facts = Facts {
+            vertices: report.input_vertices as u64,
+            faces: report.input_faces as u64,
             area: spectrum.area,
             diameter: embedded.distances.max(),
+            dropped_area_share: report.dropped_area_share,
+            components: report.components as u64,
+            shortcuts: prepared.shortcuts().len() as u64,
             longest_boundary: prepared.longest_boundary(),
-            shortcuts: prepared.shortcuts().to_vec(),
-            repair: prepared.repaired.report.clone(),
+        };
+        let form = embedded.form(prepared)?.reduced(options.points);
+        let unit = options.form_unit(facts.area);
+        let points = form.points().iter().map(|p| p / unit).zip(form.weights());
+        let rounded = |values: Vec<f64>| values.into_iter().map(|value| value as f32).collect();
+        Ok(Shape {
+            entry: Entry { facts, ..Entry::default() },
+            fused,
+            signatures: signatures
+                .into_iter()
+                .map(|s| (s.kind.name().to_owned(), rounded(s.values)))
+                .collect(),
+            form: points.map(|(p, w)| [p.x, p.y, p.z, *w].map(|x| x as f32)).collect(),
+            disc_areas: DiscAreas::new(&embedded.distances, &prepared.mesh().vertex_areas())?.to_numbers(),
+            components: Vec::new(),
         })
     }
 }
 
-impl ShapeDescription {
-    /// The shape, ready to be compared; exactly as an index would store it.
+impl DescribeOptions {
+    /// A shape that was described with these options, ready to be compared.
     ///
     /// # Errors
-    /// [`Error::Descriptor`].
-    pub fn prepare(&self) -> Result<PreparedShape, Error> {
-        let shape = PreparedShape::new(self.fused.clone(), &self.form, Some(self.area))?;
-        Ok(shape.with_rigid(self.rounded(SignatureKind::Rigid)))
+    /// [`Error::Descriptor`] if its form or its fused vector is none.
+    pub fn prepare(&self, shape: &Shape) -> Result<PreparedShape, Error> {
+        let area = Some(shape.entry.facts.area);
+        let prepared = PreparedShape::new(shape.fused.clone(), &self.form_of(shape)?, area)?;
+        Ok(prepared
+            .with_rigid(shape.signatures.get(SignatureKind::Rigid.name()).cloned().unwrap_or_default()))
     }
 
-    /// The values of a signature, with the precision of an index; none if there is no such signature.
-    pub(crate) fn rounded(&self, kind: SignatureKind) -> Vec<f32> {
-        let values = self.signature(kind).into_iter().flat_map(|signature| &signature.values);
-        values.map(|value| *value as f32).collect()
+    /// The canonical form of a shape that was described with these options, in mesh units.
+    ///
+    /// # Errors
+    /// [`Error::Descriptor`] if it is none.
+    pub fn form_of(&self, shape: &Shape) -> Result<CanonicalForm, Error> {
+        let area = shape.entry.facts.area;
+        let unit = self.form_unit(area);
+        let points = shape.form.iter().map(|[x, y, z, _]| Point3::new(*x, *y, *z).cast() * unit);
+        let weights = shape.form.iter().map(|[.., w]| f64::from(*w)).collect();
+        let form_area = self.form.method.has_unit().then_some(area);
+        Ok(CanonicalForm::from_parts(points.collect(), weights, form_area)?)
     }
 
-    /// The signature of one kind.
-    pub fn signature(&self, kind: SignatureKind) -> Option<&Signature> {
-        self.signatures.iter().find(|signature| signature.kind == kind)
+    /// The unit of the points of a form, in mesh units: 1 unless 32-bit numbers could not hold them.
+    fn form_unit(&self, area: f64) -> f64 {
+        if self.form.method.has_unit() { unit_for(area.sqrt()) } else { 1.0 }
     }
+}
+
+/// The signature of one kind, if a shape has it.
+#[must_use]
+pub fn signature(shape: &Shape, kind: SignatureKind) -> Option<Signature> {
+    let values = shape.signatures.get(kind.name())?;
+    Some(Signature { kind, values: values.iter().map(|value| f64::from(*value)).collect() })
 }
 
 #[cfg(test)]
 mod tests {
     use base::Budget;
     use geodesics::Method;
-    use mesh::{RepairOptions, TriMesh, Weld, shapes};
-    use nalgebra::Point3;
+    use mesh::{RepairOptions, TriMesh, shapes};
 
     use super::*;
     use crate::form::{EmbedMethod, FormOptions, Samples};
     use mesh::shapes::lopsided_torus;
 
-    fn described_by(mesh: &TriMesh, options: &DescribeOptions) -> ShapeDescription {
+    fn described_by(mesh: &TriMesh, options: &DescribeOptions) -> Shape {
         describe(&Surface::new(mesh, &options.form.repair, &()).unwrap(), options, &()).unwrap()
     }
 
-    fn described(mesh: &TriMesh) -> ShapeDescription {
+    fn described(mesh: &TriMesh) -> Shape {
         described_by(mesh, &DescribeOptions::default())
     }
 
@@ -244,28 +241,34 @@ mod tests {
         let (whole, pierced) = (described(&lopsided_torus()), described(&pierced));
         // The spectrum of the form depends on which of its points are taken, the others change less.
         assert!(gap(&whole, &pierced) < 0.4, "{}", gap(&whole, &pierced));
-        assert_eq!(whole.longest_boundary, 0.0);
-        assert!(pierced.longest_boundary > 0.5);
+        assert_eq!(whole.entry.facts.longest_boundary, 0.0);
+        assert!(pierced.entry.facts.longest_boundary > 0.5);
     }
 
     #[test]
     fn a_weld_of_two_distant_points_is_cut() {
         let mut welded = lopsided_torus();
         welded.faces.iter_mut().flatten().filter(|v| v.0 == 400).for_each(|v| *v = VertexId(5));
+        let surface = Surface::new(&welded, &Default::default(), &()).unwrap().for_description(&()).unwrap();
         let (whole, welded) = (described(&lopsided_torus()), described(&welded));
         assert!(gap(&whole, &welded) < 0.5, "{}", gap(&whole, &welded));
-        assert!(whole.shortcuts.is_empty());
-        let [shortcut] = welded.shortcuts[..] else { panic!("{:?}", welded.shortcuts) };
+        assert_eq!([&whole, &welded].map(|shape| shape.entry.facts.shortcuts), [0, 1]);
+        let [shortcut] = surface.shortcuts()[..] else { panic!("{:?}", surface.shortcuts()) };
         assert!(shortcut.vertex == VertexId(5) && shortcut.detour > 3.0, "{shortcut:?}");
     }
 
     /// Largest distance between two signatures of one kind, in units of the change by poses.
-    fn gap(a: &ShapeDescription, b: &ShapeDescription) -> f64 {
-        let parts = a.signatures.iter().zip(&b.signatures);
-        parts.map(|(a, b)| a.distance(b) / ShapeMetric::unit(a.kind)).fold(0.0, f64::max)
+    fn gap(a: &Shape, b: &Shape) -> f64 {
+        SignatureKind::INTRINSIC.into_iter().map(|kind| change(kind, a, b)).fold(0.0, f64::max)
     }
 
-    fn fused_distance(a: &ShapeDescription, b: &ShapeDescription) -> f64 {
+    /// The distance between two signatures of one kind, in its unit.
+    fn change(kind: SignatureKind, a: &Shape, b: &Shape) -> f64 {
+        let [a, b] = [a, b].map(|shape| signature(shape, kind).unwrap());
+        a.distance(&b) / ShapeMetric::unit(kind)
+    }
+
+    fn fused_distance(a: &Shape, b: &Shape) -> f64 {
         ShapeMetric::fused(&a.fused, &b.fused)
     }
 
@@ -301,13 +304,13 @@ mod tests {
     #[test]
     fn the_fused_distance_is_the_weighted_sum_of_the_parts() {
         let (a, b) = (described(&lopsided_torus()), described(&shapes::icosphere(3)));
-        let part = |(a, b): (&Signature, &Signature)| {
-            ShapeMetric::weight(a.kind) * (a.distance(b) / ShapeMetric::unit(a.kind)).powi(2)
-        };
-        let expected = a.signatures.iter().zip(&b.signatures).map(part).sum::<f64>().sqrt();
+        let part = |kind| ShapeMetric::weight(kind) * change(kind, &a, &b).powi(2);
+        let expected = SignatureKind::INTRINSIC.into_iter().map(part).sum::<f64>().sqrt();
         assert!((fused_distance(&a, &b) / expected - 1.0).abs() < 1e-5);
         assert_eq!(a.fused.len(), ShapeMetric::FUSED_LENGTH);
-        assert!(a.signatures.iter().all(|s| s.values.len() == s.kind.n_values()));
+        assert!(
+            SignatureKind::INTRINSIC.iter().all(|kind| a.signatures[kind.name()].len() == kind.n_values())
+        );
     }
 
     #[test]
@@ -319,8 +322,8 @@ mod tests {
         let [a, b] = [&small, &large].map(|mesh| described_by(mesh, &options));
         assert!((fused_distance(&a, &b) - 1.0).abs() < 1e-3, "5 % are a unit");
         assert!(fused_distance(&described(&small), &described(&large)) < 1e-3);
-        let dna = |d: &ShapeDescription| {
-            ShapeMetric::with_size(d.signature(SignatureKind::ShapeDna).unwrap().clone(), d.area)
+        let dna = |d: &Shape| {
+            ShapeMetric::with_size(signature(d, SignatureKind::ShapeDna).unwrap(), d.entry.facts.area)
         };
         assert!((dna(&a).distance(&dna(&b)) / ShapeMetric::unit(SignatureKind::ShapeDna) - 1.0).abs() < 1e-6);
     }
@@ -340,7 +343,7 @@ mod tests {
             let found = described(&mesh);
             assert!(found.fused.iter().all(|x| x.is_finite()), "{:?}", found.signatures);
             assert_eq!(found.fused.len(), ShapeMetric::FUSED_LENGTH);
-            found.prepare().unwrap();
+            DescribeOptions::default().prepare(&found).unwrap();
         }
     }
 
@@ -359,7 +362,7 @@ mod tests {
         let distance = fused_distance(whole, simple);
         println!("{n} vertices, simplified to a quarter: {distance:.4}");
         assert!(distance < 0.25, "{distance}");
-        assert_eq!(whole.repair, simple.repair);
+        assert_eq!(whole.entry.facts.vertices, simple.entry.facts.vertices);
         let [form, other] = [of_whole, of_simple].map(|measured| measured.form_of(&surface).unwrap());
         assert!(form.points().len() == n && other.points().len() == n);
         let ratio = other.spread() / form.spread();
@@ -378,9 +381,9 @@ mod tests {
             let description = describe(&surface, &options, &()).unwrap();
             let MeasuredSurface { prepared, embedded, .. } =
                 MeasuredSurface::new(&surface, &options.form, &()).unwrap();
-            let whole = embedded.form(&prepared).unwrap();
-            assert_eq!(whole.reduced(options.points), description.form);
-            assert_eq!(description.form.area().is_some(), options.form.method.has_unit());
+            let reduced = embedded.form(&prepared).unwrap().reduced(options.points);
+            let rounded = reduced.points().iter().map(|p| [p.x, p.y, p.z].map(|x| x as f32));
+            assert!(rounded.eq(description.form.iter().map(|[x, y, z, _]| [*x, *y, *z])));
             assert_eq!(embedded.distances.n_landmarks(), 60, "{}", options.form.method.name());
             assert!(description.fused.iter().all(|x| x.is_finite()));
         }
@@ -397,13 +400,5 @@ mod tests {
             embed(&surface, &options, &()).unwrap().distances.landmarks().to_vec()
         };
         assert_eq!(samples(EmbedMethod::Classical), samples(EmbedMethod::default()));
-    }
-
-    #[test]
-    fn the_repair_of_the_surface_is_part_of_the_options() {
-        let repair = RepairOptions { weld: Weld::All, ..RepairOptions::default() };
-        let surface = Surface::new(&lopsided_torus(), &repair, &()).unwrap();
-        let description = describe(&surface, &DescribeOptions::default(), &()).unwrap();
-        assert_eq!(description.options.form.repair, repair);
     }
 }

@@ -1,7 +1,7 @@
 //! The one road from a surface to its form and its description.
 //!
 //! ```text
-//! Surface -> Measurement (distances) -> EmbedMethod -> Embedded -> CanonicalForm, ShapeDescription
+//! Surface -> Measurement (distances) -> EmbedMethod -> Embedded -> CanonicalForm, index::Shape
 //! ```
 
 mod as_text;
@@ -19,7 +19,7 @@ pub mod settings;
 mod side_by_side;
 mod stress;
 
-pub use describe::{MeasuredSurface, ShapeDescription, describe};
+pub use describe::{MeasuredSurface, describe, signature};
 pub use distances::Samples;
 pub use embed::{Embedded, embed, embed_again, embed_and_measure, embed_and_release};
 pub use extend::embed_finer;

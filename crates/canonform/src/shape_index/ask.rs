@@ -5,7 +5,6 @@ use std::time::Instant;
 
 use base::{ContentHash, Observer};
 use mesh::{Surface, TriMesh};
-use relations::MeshGeometry;
 
 use super::options::{Explain, SearchOptions, SearchRank};
 use super::query::Query;
@@ -29,16 +28,10 @@ impl ShapeSearch {
         let start = Instant::now();
         let describe_options = self.describe_options();
         let surface = Surface::new(mesh, &describe_options.form.repair, observer)?;
-        let description = describe(&surface, describe_options, observer)?;
-        let mut query = Query::from(&description).named(name, content);
-        if options.rank_by == SearchRank::Part {
-            query = query.as_part(&surface, describe_options, observer)?;
-        }
-        if options.explain == Explain::Kind {
-            query.geometry = MeshGeometry::new(mesh, content).map(Arc::new);
-        }
-        query.seconds = start.elapsed().as_secs_f64();
-        Ok(query)
+        let query = Query::new(describe(&surface, describe_options, observer)?, describe_options);
+        let query =
+            query.named(name, content).with_mesh(mesh, &surface, (options, describe_options), observer)?;
+        Ok(Query { seconds: start.elapsed().as_secs_f64(), ..query })
     }
 
     /// [Searches](Self::search) for a mesh.
@@ -73,14 +66,9 @@ impl ShapeSearch {
         };
         let explains = options.explain == Explain::Kind;
         Ok(Query {
-            name: id.to_owned(),
-            content: Some(shape.entry.content),
             part: (options.rank_by == SearchRank::Part).then(part).transpose()?,
             geometry: explains.then(|| self.geometry(&shape.entry)).flatten().map(Arc::new),
-            options: self.index().options().to_owned(),
-            shape,
-            is_component: false,
-            seconds: 0.0,
+            ..Query::new(shape.clone(), describe_options).named(id, Some(shape.entry.content))
         })
     }
 }

@@ -527,7 +527,7 @@ fn describe_file(
         _ => other_components(&mesh, options, &budget)?,
     };
     drop(mesh);
-    Ok(Shape { components, ..describe(&surface, options, &budget)?.shape() })
+    Ok(Shape { components, ..describe(&surface, options, &budget)? })
 }
 
 /// Shapes that were described, and meshes that failed.

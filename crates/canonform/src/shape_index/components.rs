@@ -3,12 +3,13 @@
 use std::sync::Arc;
 
 use base::{Budget, Observer};
+use index::Shape;
 use mesh::TriMesh;
 
 use super::found::ComponentResult;
 use super::query::Query;
 use crate::error::Error;
-use crate::form::{DescribeOptions, ShapeDescription, describe};
+use crate::form::{DescribeOptions, describe};
 use mesh::Surface;
 use relations::MeshGeometry;
 
@@ -23,12 +24,12 @@ fn described(
     component: &MeshGeometry,
     options: &DescribeOptions,
     budget: &Budget,
-) -> Result<Option<ShapeDescription>, Error> {
+) -> Result<Option<Shape>, Error> {
     let found = Surface::new(&component.to_mesh(), &options.form.repair, budget)
         .map_err(Error::from)
         .and_then(|surface| describe(&surface, options, budget));
     match found {
-        Ok(description) => Ok(Some(description)),
+        Ok(shape) => Ok(Some(shape)),
         Err(fault @ Error::Exceeded(_)) => Err(fault),
         Err(_) => Ok(None),
     }
@@ -46,7 +47,7 @@ pub(super) fn other_components(
         if (component.size() / whole.size()).powi(2) < LEAST_SHARE {
             break;
         }
-        vectors.extend(described(component, options, budget)?.map(|description| description.fused));
+        vectors.extend(described(component, options, budget)?.map(|shape| shape.fused));
     }
     Ok(vectors)
 }
@@ -79,7 +80,7 @@ fn components(
     let mut found = Vec::new();
     for (geometry, copies) in whole.different_components().into_iter().take(MOST_SEARCHED) {
         budget.check()?;
-        let Some(description) = described(geometry, options, budget)? else { continue };
+        let Some(shape) = described(geometry, options, budget)? else { continue };
         let name = match copies {
             1 => format!("a component of {name}"),
             _ => format!("each of {copies} components of {name}"),
@@ -87,10 +88,8 @@ fn components(
         let area_share = (geometry.size() / whole.size()).powi(2);
         let about = ComponentResult { copies, area_share, n_vertices: geometry.n_vertices(), nearest: None };
         let geometry = MeshGeometry::new(&geometry.to_mesh(), None).map(Arc::new);
-        found.push((
-            about,
-            Query { geometry, is_component: true, ..Query::from(&description).named(&name, None) },
-        ));
+        let query = Query::new(shape, options).named(&name, None);
+        found.push((about, Query { geometry, is_component: true, ..query }));
     }
     Ok(found)
 }

@@ -46,6 +46,6 @@ pub use options::{Explain, SearchOptions, SearchRank};
 pub use place::mesh_path;
 pub use predict::{ClassVotes, NearestShape, Prediction, Unknown, n_results};
 pub use query::Query;
-pub use rerank::{Ranked, Reranked, bounds, rerank};
+pub use rerank::{Aligned, bounds, rerank};
 pub use search::{Answer, SearchSeconds, ShapeSearch};
 pub use source::{Inputs, ShapeLimits, Shard};

@@ -5,12 +5,13 @@ use std::sync::Arc;
 use base::{ContentHash, Observer};
 use descriptors::PartDiscAreas;
 use index::Shape;
-use mesh::Surface;
+use mesh::{Surface, TriMesh};
 use relations::MeshGeometry;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use super::options::{Explain, SearchOptions, SearchRank};
 use crate::error::Error;
-use crate::form::{DescribeOptions, ShapeDescription, describe_part};
+use crate::form::{DescribeOptions, describe_part};
 
 /// A described shape that is searched for, and what else is known of it. As JSON it can be sent to indexes on other machines.
 ///
@@ -38,12 +39,14 @@ pub struct Query {
     pub(super) seconds: f64,
 }
 
-impl From<&ShapeDescription> for Query {
-    fn from(description: &ShapeDescription) -> Self {
+impl Query {
+    /// A shape that was described with these options.
+    #[must_use]
+    pub fn new(shape: Shape, options: &DescribeOptions) -> Self {
         Self {
             name: "the query".to_owned(),
-            shape: description.shape(),
-            options: description.options.text(),
+            shape,
+            options: options.text(),
             content: None,
             part: None,
             geometry: None,
@@ -51,9 +54,7 @@ impl From<&ShapeDescription> for Query {
             seconds: 0.0,
         }
     }
-}
 
-impl Query {
     /// The query with a name, and with the hash of its file.
     #[must_use]
     pub fn named(self, name: &str, content: Option<ContentHash>) -> Self {
@@ -71,6 +72,26 @@ impl Query {
         observer: &dyn Observer,
     ) -> Result<Self, Error> {
         Ok(Self { part: Some(describe_part(surface, options, observer)?), ..self })
+    }
+
+    /// The query with what a search needs of its mesh and its repaired `surface`.
+    ///
+    /// # Errors
+    /// As of [`as_part`](Self::as_part).
+    pub fn with_mesh(
+        mut self,
+        mesh: &TriMesh,
+        surface: &Surface,
+        (search, describe): (&SearchOptions, &DescribeOptions),
+        observer: &dyn Observer,
+    ) -> Result<Self, Error> {
+        if search.rank_by == SearchRank::Part {
+            self = self.as_part(surface, describe, observer)?;
+        }
+        if search.explain == Explain::Kind {
+            self.geometry = MeshGeometry::new(mesh, self.content).map(Arc::new);
+        }
+        Ok(self)
     }
 }
 

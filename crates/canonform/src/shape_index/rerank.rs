@@ -6,18 +6,14 @@ use std::collections::BinaryHeap;
 
 use descriptors::{FormAlignment, PreparedShape, ShapeDistance, ShapeMetric, ShapePair, align_near_forms};
 use rayon::prelude::*;
-use retrieval::{Candidate, refine_nearest};
+use retrieval::{Neighbor, Refinement, refine_nearest};
 
 use crate::error::Error;
 
-/// A shape that was found.
+/// What the alignment of a candidate with the query has told.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ranked {
-    /// The candidate.
-    pub index: usize,
-    /// Combined distance from the query.
-    pub distance: f64,
-    /// Fused distance from the query, which may be larger.
+pub struct Aligned {
+    /// Fused distance from the query.
     pub fused: f64,
     /// How far the shapes are apart, regardless of size.
     pub shape_distance: ShapeDistance,
@@ -27,31 +23,20 @@ pub struct Ranked {
     pub alignment: FormAlignment,
 }
 
-/// The shapes nearest to a query.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Reranked {
-    /// Nearest first, ties by index.
-    pub nearest: Vec<Ranked>,
-    /// Candidates whose alignment was begun.
-    pub aligned: usize,
-    /// Candidates among them that turned out to be too far away before their alignment was finished.
-    pub abandoned: usize,
-}
-
 /// Lower bounds of the combined distances from a query to all of some fused vectors, in ascending order: the robust distances.
 /// They are ordered as far as they are asked for.
 pub fn bounds<'v>(
     query: &[f32],
     n: usize,
     vector: &(dyn Fn(usize) -> &'v [f32] + Sync),
-) -> impl Iterator<Item = Candidate> + Send + use<> {
+) -> impl Iterator<Item = Neighbor> + Send + use<> {
     // The bits of numbers that are not negative are in the order of the numbers.
     let bound = |index| Reverse((ShapeMetric::robust(query, vector(index)).to_bits(), index));
     let all: Vec<_> = (0..n).into_par_iter().with_min_len(TASK).map(bound).collect();
     let mut left = BinaryHeap::from(all);
     std::iter::from_fn(move || {
         let Reverse((bits, index)) = left.pop()?;
-        Some(Candidate { index, bound: f64::from_bits(bits) })
+        Some(Neighbor { index, distance: f64::from_bits(bits) })
     })
 }
 
@@ -69,11 +54,11 @@ const TASK: usize = 256;
 /// Those of `shape`.
 pub fn rerank<S: Borrow<PreparedShape>>(
     query: &PreparedShape,
-    candidates: impl IntoIterator<Item = Candidate>,
+    candidates: impl IntoIterator<Item = Neighbor>,
     k: usize,
     shape: impl Fn(usize) -> Result<S, Error> + Sync,
-) -> Result<Reranked, Error> {
-    let refined = refine_nearest(candidates, k, |candidate, limit| {
+) -> Result<Refinement<Aligned>, Error> {
+    refine_nearest(candidates, k, |candidate, limit| {
         let shape = shape(candidate.index)?;
         let shape: &PreparedShape = shape.borrow();
         let robust = query.robust(shape);
@@ -81,14 +66,10 @@ pub fn rerank<S: Borrow<PreparedShape>>(
         let (a, b) = (query.prepared_form(), shape.prepared_form());
         let Some(alignment) = align_near_forms(a, b, left) else { return Ok(None) };
         let pair = ShapePair::new([query, shape]).with_best(alignment);
-        let distance = ShapeMetric::combined(robust, alignment.rms);
         let fused = ShapeMetric::fused(query.fused(), shape.fused());
-        let (index, shape_distance, scale) = (candidate.index, pair.distance(), pair.scale());
-        let ranked = Ranked { index, distance, fused, shape_distance, scale, alignment };
-        Ok::<_, Error>(Some((distance, ranked)))
-    })?;
-    let nearest = refined.nearest.into_iter().map(|(_, ranked)| ranked).collect();
-    Ok(Reranked { nearest, aligned: refined.evaluated, abandoned: refined.abandoned })
+        let aligned = Aligned { fused, shape_distance: pair.distance(), scale: pair.scale(), alignment };
+        Ok(Some((ShapeMetric::combined(robust, alignment.rms), aligned)))
+    })
 }
 
 #[cfg(test)]
@@ -126,15 +107,15 @@ mod tests {
                         let (fused, alignment) = (fused(index), pair.best());
                         let distance = ShapeMetric::combined(robust(index), alignment.rms);
                         let (shape_distance, scale) = (pair.distance(), pair.scale());
-                        Ranked { index, distance, fused, shape_distance, scale, alignment }
+                        (Neighbor { index, distance }, Aligned { fused, shape_distance, scale, alignment })
                     })
                     .collect();
-                all.sort_by(|a, b| a.distance.total_cmp(&b.distance).then(a.index.cmp(&b.index)));
+                all.sort_by(|(a, _), (b, _)| a.distance.total_cmp(&b.distance).then(a.index.cmp(&b.index)));
                 for k in [1, 5, 30] {
                     let found = rerank(&asked, candidates.clone(), k, |i| Ok(&shapes[i])).unwrap();
                     assert_eq!(found.nearest, all[..k], "{query}, {k}");
                     assert!(k < 30 || found.abandoned == 0, "all are wanted");
-                    assert!(k == 30 || found.aligned - found.abandoned < 30);
+                    assert!(k == 30 || found.evaluated - found.abandoned < 30);
                 }
             }
         }

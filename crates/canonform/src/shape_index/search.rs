@@ -15,15 +15,15 @@ use mesh::TriMesh;
 use mesh::io::FileSource;
 use rayon::prelude::*;
 use relations::{Handedness, Relation};
-use retrieval::{Candidate, LINKS, Neighbor, graph_rank};
+use retrieval::{LINKS, Neighbor, graph_rank};
 use serde::{Deserialize, Serialize};
 
 use super::found::{ComponentResult, Hit, OrderedBy};
 use super::options::{Explain, SearchOptions, SearchRank};
 use super::predict::{Prediction, n_results, predicted};
 use super::query::Query;
-use super::record::{missing_signature, options_of, prepared};
-use super::rerank::{Ranked, Reranked, bounds, rerank};
+use super::record::{missing_signature, options_of};
+use super::rerank::{bounds, rerank};
 use super::source::read_unchanged;
 use crate::compare::compare;
 use crate::error::Error;
@@ -114,7 +114,7 @@ impl ShapeSearch {
     /// # Errors
     /// [`Error::Index`].
     pub fn prepared(&self, id: &str) -> Result<PreparedShape, Error> {
-        prepared(&self.index.shape(id)?, &self.describe)
+        self.describe.prepare(&self.index.shape(id)?)
     }
 
     /// Reads the mesh of a shape again.
@@ -198,7 +198,7 @@ impl ShapeSearch {
     /// [`Error::Index`] if it was described with other options than the shapes of the index.
     pub fn prepared_query(&self, query: &Query) -> Result<PreparedShape, Error> {
         self.index.expect_options(&query.options)?;
-        prepared(&query.shape, &self.describe)
+        self.describe.prepare(&query.shape)
     }
 
     /// The nearest of all shapes or of some, and the class.
@@ -292,9 +292,7 @@ impl ShapeSearch {
     /// at most about 600 of them. Up to [`LINKS`] results are the first of one another; more look farther around.
     fn on_graph(&self, fused: &[f32], wanted: usize) -> Result<Vec<OrderedShape>, Error> {
         let all = self.index.vector_table()?;
-        let neighbor = |(index, distance)| Neighbor { index, distance };
-        let nearest: Vec<Neighbor> =
-            all.nearest(fused, wanted.max(LINKS)).into_iter().map(neighbor).collect();
+        let nearest = all.nearest(fused, wanted.max(LINKS));
         let Ok(mut ranked) = graph_rank(usize::MAX, &nearest, &mut NeighborGraph { all, query: fused });
         ranked.truncate(wanted);
         let ordered = ranked.into_iter().map(|found| {
@@ -370,22 +368,23 @@ impl ShapeSearch {
     ) -> Result<(Vec<(Hit, FormAlignment)>, usize), Error> {
         let Shortlist { candidates, id, orders } = shortlist;
         let n = orders.as_ref().map_or(wanted, Vec::len);
-        let Reranked { mut nearest, aligned, .. } = rerank(shape, candidates, n, |i| {
+        let mut refined = rerank(shape, candidates, n, |i| {
             budget.check()?;
             self.prepared(&id(i))
         })?;
         if orders.is_some() {
-            nearest.sort_by_key(|ranked| ranked.index);
+            refined.nearest.sort_by_key(|(near, _)| near.index);
         }
-        let found = nearest.into_iter().zip(1..).map(|(ranked, rank)| {
-            let Ranked { index, distance, fused, shape_distance, scale, alignment } = ranked;
-            let Entry { id, label, path, .. } = self.index.entry(&id(index))?;
-            let relation = Relation::by_distance(shape_distance, scale, Handedness::Unknown);
-            let relation = relation.named(&query.name, &id);
-            let (order, comparison) = (orders.as_ref().map(|all| all[index]), None);
-            Ok((Hit { rank, id, label, path, distance, fused, order, relation, comparison }, alignment))
-        });
-        Ok((found.collect::<Result<_, Error>>()?, aligned))
+        let found =
+            refined.nearest.into_iter().zip(1..).map(|((Neighbor { index, distance }, found), rank)| {
+                let Entry { id, label, path, .. } = self.index.entry(&id(index))?;
+                let relation = Relation::by_distance(found.shape_distance, found.scale, Handedness::Unknown);
+                let relation = relation.named(&query.name, &id);
+                let (fused, order) = (found.fused, orders.as_ref().map(|all| all[index]));
+                let hit = Hit { rank, id, label, path, distance, fused, order, relation, comparison: None };
+                Ok((hit, found.alignment))
+            });
+        Ok((found.collect::<Result<_, Error>>()?, refined.evaluated))
     }
 }
 
@@ -395,7 +394,7 @@ type OrderedShape = (String, OrderedBy);
 /// Shapes that may be results.
 struct Shortlist<'a> {
     /// In ascending order of lower bounds of their combined distances.
-    candidates: Box<dyn Iterator<Item = Candidate> + Send>,
+    candidates: Box<dyn Iterator<Item = Neighbor> + Send>,
     /// The name of each.
     id: Box<dyn Fn(usize) -> String + Sync + 'a>,
     /// What they are ordered by, if not by combined distance.
@@ -406,7 +405,7 @@ impl Shortlist<'static> {
     /// Shapes in their order, all of which are results.
     fn ordered(shapes: Vec<OrderedShape>) -> Self {
         let (ids, orders): (Vec<String>, _) = shapes.into_iter().unzip();
-        let candidates = Box::new((0..ids.len()).map(|index| Candidate { index, bound: 0.0 }));
+        let candidates = Box::new((0..ids.len()).map(|index| Neighbor { index, distance: 0.0 }));
         Self { candidates, id: Box::new(move |i| ids[i].clone()), orders: Some(orders) }
     }
 }
@@ -422,8 +421,7 @@ impl retrieval::Graph for NeighborGraph<'_> {
 
     fn links(&mut self, shape: usize) -> Result<Vec<Neighbor>, Self::Error> {
         let found = self.all.nearest(self.all.vector(shape), LINKS + 1).into_iter();
-        let found = found.filter(|(i, _)| *i != shape).take(LINKS);
-        Ok(found.map(|(index, distance)| Neighbor { index, distance }).collect())
+        Ok(found.filter(|near| near.index != shape).take(LINKS).collect())
     }
 
     fn distance(&mut self, shape: usize) -> Result<f64, Self::Error> {
@@ -497,7 +495,8 @@ mod tests {
             let by_name = search_by(&search, "ring0", &options);
             let surface = Surface::new(&mesh, &describe_options.form.repair, &()).unwrap();
             let described = describe(&surface, &describe_options, &()).unwrap();
-            let by_description = search.search(&Query::from(&described), &options, &()).unwrap();
+            let by_description =
+                search.search(&Query::new(described.clone(), &describe_options), &options, &()).unwrap();
             assert!(by_mesh.results[0].id == "ring0" && by_mesh.results[0].distance < 1e-6);
             let unexplained = |report: &Answer| {
                 let results = report.results.iter();
@@ -513,7 +512,7 @@ mod tests {
             // The comparison of the two shapes says the same.
             for result in &by_mesh.results {
                 let other = search.prepared(&result.id).unwrap();
-                let query = prepared(&described.shape(), &describe_options).unwrap();
+                let query = describe_options.prepare(&described).unwrap();
                 let direct = compare(&ShapePair::new([&query, &other])).unwrap();
                 assert_eq!(result.comparison.as_ref(), Some(&direct));
                 assert_eq!(result.relation.because.distance, direct.shape_distance);
@@ -528,7 +527,7 @@ mod tests {
         let options = DescribeOptions { points: 500, ..DescribeOptions::default() };
         let surface = Surface::new(&shapes::icosphere(2), &Default::default(), &()).unwrap();
         let query = describe(&surface, &options, &()).unwrap();
-        let fault = search.search(&Query::from(&query), &SearchOptions::default(), &()).unwrap_err();
+        let fault = search.search(&Query::new(query, &options), &SearchOptions::default(), &()).unwrap_err();
         assert!(matches!(fault, Error::Index(IndexError::OtherOptions { .. })));
         assert!(fault.to_string().contains("\"points\":500"), "{fault}");
     }
@@ -615,8 +614,9 @@ mod tests {
         fs::remove_file(folder.path().join("box0.tri")).unwrap();
         assert!(matches!(search.query_of("box0", &options, &()), Err(Error::MeshGone { .. })));
         let surface = Surface::new(&part, &Default::default(), &()).unwrap();
-        let described = describe(&surface, search.describe_options(), &()).unwrap();
-        assert!(matches!(search.search(&Query::from(&described), &options, &()), Err(Error::NoPart)));
+        let shape = describe(&surface, search.describe_options(), &()).unwrap();
+        let query = Query::new(shape, search.describe_options());
+        assert!(matches!(search.search(&query, &options, &()), Err(Error::NoPart)));
     }
 
     #[test]

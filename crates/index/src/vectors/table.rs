@@ -1,6 +1,7 @@
 //! The fused vectors of all shapes.
 
 use rayon::prelude::*;
+use retrieval::Neighbor;
 
 use super::kernels::{padded, sq_distances_into};
 use super::nearest::Nearest;
@@ -66,7 +67,7 @@ impl VectorTable {
 
     /// The numbers and distances of the `k` vectors nearest to a query of this length; ties by number.
     #[must_use]
-    pub fn nearest(&self, query: &[f32], k: usize) -> Vec<(usize, f64)> {
+    pub fn nearest(&self, query: &[f32], k: usize) -> Vec<Neighbor> {
         if self.is_empty() {
             return Vec::new();
         }
@@ -86,11 +87,11 @@ impl VectorTable {
         let nearest = tasks.reduce(|| Nearest::new(k), Nearest::join);
         // Selected in single precision, sorted in double.
         let measured = |hit: super::nearest::Hit| {
-            let i = hit.slot as usize;
-            (i, distance(query, self.vector(i)))
+            let index = hit.slot as usize;
+            Neighbor { index, distance: distance(query, self.vector(index)) }
         };
-        let mut found: Vec<(usize, f64)> = nearest.into_hits().map(measured).collect();
-        found.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+        let mut found: Vec<Neighbor> = nearest.into_hits().map(measured).collect();
+        found.sort_by(Neighbor::cmp);
         found.truncate(k);
         found
     }

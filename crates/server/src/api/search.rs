@@ -292,10 +292,10 @@ fn measure(app: &App, collection: &Collection, upload: Upload, budget: &Budget) 
     let describe = collection.search.describe_options();
     let surface = Surface::new(&mesh, &describe.form.repair, budget)?;
     let embedded = MeasuredSurface::new(&surface, &describe.form, budget)?;
-    let description = embedded.describe(describe, budget)?;
+    let described = canonform::Query::new(embedded.describe(describe, budget)?, describe);
     let geometry = MeshGeometry::new(&mesh, Some(content)).map(Arc::new);
     let measured = Measured::new(surface, geometry, &embedded)?;
-    Ok(Query::new(&name, content, measured, &description))
+    Ok(Query::new(&name, content, measured, described))
 }
 
 /// The hash by which an index knows the files of a mesh: that of the mesh itself comes first.
