@@ -184,7 +184,7 @@ impl Umbrellas {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{refine, shapes};
+    use crate::shapes;
 
     /// A torus whose vertices are moved in all directions by about `amount`.
     fn noisy(amount: f64) -> TriMesh {
@@ -229,7 +229,7 @@ mod tests {
         tilted.positions.iter_mut().for_each(|p| *p = tilt * *p);
         let cube = shapes::cube(3);
         let torus = shapes::torus(20, 12, 2.0, 0.7);
-        let subdivided = refine(&torus, 0.0, 2 * torus.n_vertices() + torus.n_faces()).mesh;
+        let subdivided = shapes::subdivide(&torus);
         assert!(subdivided.n_vertices() > torus.n_vertices());
         let mut turned = torus.clone();
         turned.faces.iter_mut().step_by(3).for_each(|face| face.swap(0, 1));

@@ -97,8 +97,17 @@ impl Triangulation {
     /// The faces of a mesh, glued at edges of exactly two faces.
     #[must_use]
     pub fn new(mesh: &IntrinsicMesh) -> Self {
+        Self::glued_where(mesh, |_, _| true)
+    }
+
+    /// The same, but glued only where two opposite corners say so, whichever of them comes first.
+    #[must_use]
+    pub fn glued_where(mesh: &IntrinsicMesh, is_glued: impl Fn(CornerId, CornerId) -> bool + Sync) -> Self {
         let topology = mesh.topology();
-        let far = |corner| topology.opposite(corner).map_or(NONE, |far| far.0);
+        let far = |corner| {
+            let far = topology.opposite(corner).filter(|far| is_glued(corner.min(*far), corner.max(*far)));
+            far.map_or(NONE, |far| far.0)
+        };
         let triangle = |(f, vertices): (usize, &[VertexId; 3])| {
             let [a, b, c] = FaceId(f as u32).corners();
             let lengths = [mesh.opposite_length(a), mesh.opposite_length(b), mesh.opposite_length(c)];

@@ -20,9 +20,9 @@ mod flat;
 pub use closed::{cube, cylinder, icosphere, lopsided_torus, tetrahedron, torus};
 pub use flat::{fold, folded_sheet, grid, jittered_grid, sheared_grid};
 
-use surface::VertexId;
+use surface::{Topology, VertexId};
 
-use crate::refine::refine;
+use crate::refine::Refined;
 use crate::tri_mesh::TriMesh;
 
 /// Joins copies of all meshes, in order, into one mesh of several components.
@@ -46,8 +46,10 @@ pub fn disjoint(parts: &[TriMesh]) -> TriMesh {
 /// If a face has a repeated vertex or one that does not exist, see [`surface::Topology::new`].
 #[must_use]
 pub fn subdivide(mesh: &TriMesh) -> TriMesh {
-    // There are at most three edges per face, and a second round would add more.
-    refine(mesh, -1.0, mesh.n_vertices() + 3 * mesh.n_faces()).mesh
+    let topology = Topology::new(mesh.n_vertices(), mesh.faces.clone());
+    let mut refined = Refined { mesh: mesh.clone(), origins: Vec::new() };
+    refined.split(&topology, &(0..topology.n_edges()).collect::<Vec<_>>());
+    refined.mesh
 }
 
 #[cfg(test)]
