@@ -117,7 +117,7 @@ pub use form::{
 pub use index::Shape;
 pub use input::{AllPairs, Asymmetry, PathPoint, SurfacePath, distance_rows, read_surface};
 pub use relations::{
-    Basis, Because, Change, Handedness, KnownMap, MeshGeometry, MeshOverlay, Parts, Relation, RelationKind,
+    Basis, Change, Evidence, Handedness, KnownMap, MeshGeometry, MeshOverlay, Parts, Relation, RelationKind,
     Side, SurfaceGap, UnitChange,
 };
 pub use retrieval::RankBy;

@@ -14,7 +14,7 @@ pub use maps::{
     PartOfWhole, SurfaceMap, all_pairs, consistent_maps, map_surfaces, map_wholes, mapped_points,
 };
 pub use relation::{
-    Basis, Because, Change, CutPiece, Difference, Dimension, Handedness, MeshGeometry, MeshOverlay,
+    Basis, Change, CutPiece, Difference, Dimension, Evidence, Handedness, MeshGeometry, MeshOverlay,
     NearestOnSurface, Parts, Relation, RelationKind, Side, SurfaceGap, SurfaceInvariants, TriangleTree,
     UnitChange, handedness, in_four_digits,
 };

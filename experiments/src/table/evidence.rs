@@ -129,8 +129,8 @@ impl Truth {
         match self {
             Self::Same => is_one_surface(told),
             Self::OneChange => told.kind == RelationKind::Variant,
-            Self::Family => told.kind >= RelationKind::Variant,
-            Self::Other => told.kind > RelationKind::Variant,
+            Self::Family => told.kind == RelationKind::Variant || told.kind.is_by_distance(),
+            Self::Other => told.kind.is_by_distance(),
         }
     }
 }
@@ -141,7 +141,7 @@ fn is_count(name: &str) -> bool {
 }
 
 fn is_one_surface(told: &Relation) -> bool {
-    told.kind <= RelationKind::Remeshed
+    told.kind.is_one_surface()
 }
 
 fn geometry(mesh: &TriMesh) -> Option<MeshGeometry> {

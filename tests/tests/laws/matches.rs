@@ -87,9 +87,8 @@ fn scores(shapes: &[(String, TriMesh)], variants: &[Variant]) -> BTreeMap<String
         let score = scores.entry(label).or_default();
         score.all += 1;
         score.right += usize::from(is_right);
-        score.falsely_identical +=
-            usize::from(found.kind <= RelationKind::IdenticalGeometry && kind != found.kind);
-        if let Some(gap) = found.because.surface_gap {
+        score.falsely_identical += usize::from(found.kind.is_one_geometry() && kind != found.kind);
+        if let Some(gap) = found.evidence.surface_gap {
             score.gap = [score.gap[0].max(gap.rms), score.gap[1].max(gap.max)];
         }
         if !is_right {
@@ -148,7 +147,7 @@ fn two_poses_and_two_bodies_are_not_one_surface() {
         .collect();
     let mut gaps: Vec<_> = all
         .iter()
-        .filter_map(|(same_pose, found)| found.because.surface_gap.map(|gap| (gap.rms, gap.max, same_pose)))
+        .filter_map(|(same_pose, found)| found.evidence.surface_gap.map(|gap| (gap.rms, gap.max, same_pose)))
         .collect();
     gaps.sort_by(|a, b| a.0.total_cmp(&b.0));
     println!("{} pairs, {} aligned, nearest:", all.len(), gaps.len());
@@ -158,7 +157,7 @@ fn two_poses_and_two_bodies_are_not_one_surface() {
             if **same_pose { ", two bodies in one pose" } else { "" }
         );
     }
-    let wrong: Vec<_> = all.iter().filter(|(_, found)| found.kind < RelationKind::OtherPose).collect();
+    let wrong: Vec<_> = all.iter().filter(|(_, found)| !found.kind.is_by_distance()).collect();
     assert!(wrong.is_empty(), "{wrong:?}");
 }
 
@@ -185,8 +184,8 @@ fn every_change_of_a_tosca_shape_is_told() {
         let found = related(&geometry(&pair[0].1), &geometry(&pair[1].1)).named(&pair[0].0, &pair[1].0);
         // Two pairs of victorias have the same vertices in another order.
         let is_copy = same_positions(&pair[0].1, &pair[1].1);
-        assert_eq!(found.kind <= RelationKind::IdenticalGeometry, is_copy, "{found}");
-        (found.kind < RelationKind::OtherPose).then(|| format!("{found} ({})", found.reason()))
+        assert_eq!(found.kind.is_one_geometry(), is_copy, "{found}");
+        (!found.kind.is_by_distance()).then(|| format!("{found} ({})", found.reason()))
     });
     let one: Vec<_> = neighbours.collect::<Vec<_>>().into_iter().flatten().collect();
     println!(
@@ -231,7 +230,7 @@ fn copies_on_a_plate_are_counted() {
         );
         assert_eq!(found.has(Change::Remeshed), decimated);
         let back = related(&six, &single).named("plate", "cat");
-        assert_eq!(back.because.parts.unwrap().whole, Side::First);
+        assert_eq!(back.evidence.parts.unwrap().whole, Side::First);
         assert!(back.to_string().starts_with("plate is six copies of cat"), "{back}");
         let mixed: Vec<_> = copies(2).chain([at(other, 0.0, 30.0), ball.clone()]).collect();
         let mixed = geometry(&shapes::disjoint(&mixed));
@@ -244,7 +243,7 @@ fn copies_on_a_plate_are_counted() {
         let found = related(&geometry(other), &mixed).named("dog", "plate");
         assert_eq!(found.kind, RelationKind::PartOf);
         assert_eq!(found.to_string(), "dog is part of plate, one of its four components");
-        assert_eq!(related(&geometry(&shapes::torus(30, 20, 2.0, 0.5)), &mixed).because.parts, None);
+        assert_eq!(related(&geometry(&shapes::torus(30, 20, 2.0, 0.5)), &mixed).evidence.parts, None);
     }
 }
 
@@ -260,10 +259,10 @@ fn scale_and_rounding_of_files_do_not_hide_one_geometry() {
         let copy = TriMesh { positions: moved.positions.iter().map(rounded).collect(), faces: moved.faces };
         let found = related(&own, &geometry(&copy));
         assert_eq!(
-            (found.kind, found.because.units.map(|u| u.to_string()).as_deref()),
+            (found.kind, found.evidence.units.map(|u| u.to_string()).as_deref()),
             (RelationKind::Scaled, units)
         );
-        assert!((found.because.scale / scale - 1.0).abs() < 1e-6);
+        assert!((found.evidence.scale / scale - 1.0).abs() < 1e-6);
     }
     let folder = tempfile::tempdir().unwrap();
     for extension in ["off", "obj", "ply", "stl"] {

@@ -236,7 +236,7 @@ mod tests {
         other.faces.iter_mut().for_each(|face| face.swap(1, 2));
         let found = compared(&hand, &hand);
         assert_eq!((found.relation.changes.len(), found.triangulation), (0, Some(FaceAgreement::Same)));
-        assert_eq!(found.relation.because.handedness, Handedness::Same);
+        assert_eq!(found.relation.evidence.handedness, Handedness::Same);
         assert!(found.overlay.residuals.iter().flatten().all(|r| *r < 1e-4));
         for mirrored in [&other, &inside_out] {
             let found = compared(&hand, mirrored);
@@ -246,9 +246,9 @@ mod tests {
         assert_eq!(found.relation.changes, [Change::Scaled, Change::Mirrored]);
         assert_eq!(found.triangulation, Some(FaceAgreement::Other), "the faces are reversed");
         let ball = shapes::icosphere(3);
-        assert_eq!(compared(&ball, &ball).relation.because.handedness, Handedness::Either);
+        assert_eq!(compared(&ball, &ball).relation.evidence.handedness, Handedness::Either);
         let sheet = shapes::grid(12, 9, 0.1);
-        assert_eq!(compared(&sheet, &sheet).relation.because.handedness, Handedness::Unknown);
+        assert_eq!(compared(&sheet, &sheet).relation.evidence.handedness, Handedness::Unknown);
     }
 
     #[test]

@@ -230,7 +230,7 @@ impl Candidate {
     /// Whether their meshes, or their files, may be one.
     fn may_be(&self, other: &Self, options: &DuplicateOptions) -> bool {
         // Parts and variants have other invariants than what they are compared with.
-        let surfaces_only = options.kinds.iter().all(|kind| *kind <= RelationKind::Remeshed);
+        let surfaces_only = options.kinds.iter().all(|kind| kind.is_one_surface());
         self.entry.content == other.entry.content
             || match (&self.invariants, &other.invariants) {
                 (Some(a), Some(b)) => !surfaces_only || a.may_be_copy_of(b),
@@ -364,7 +364,10 @@ fn groups(
         }
         (0..=members.len()).for_each(|_| observer.step());
         if !members.is_empty() {
-            members.sort_by(|a, b| a.relation.kind.cmp(&b.relation.kind).then(a.file.id.cmp(&b.file.id)));
+            let place = |kind| RelationKind::ALL.iter().position(|known| *known == kind);
+            members.sort_by(|a, b| {
+                place(a.relation.kind).cmp(&place(b.relation.kind)).then_with(|| a.file.id.cmp(&b.file.id))
+            });
             let why = why(&keeper.file, &members);
             groups.push(DuplicateGroup { keeper: keeper.file.clone(), why, members });
         }

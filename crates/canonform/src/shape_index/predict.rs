@@ -133,7 +133,7 @@ pub(super) fn predicted(results: &[Hit], threshold: Option<UnknownThreshold>, qu
         if let Some(distance) = part_distance(result) {
             return distance / class_below;
         }
-        let combined = result.relation.because.distance.combined / class_below;
+        let combined = result.relation.evidence.distance.combined / class_below;
         threshold.map_or(combined, |threshold| combined.min(result.fused / threshold))
     };
     // Shapes without a class have no vote.
@@ -190,7 +190,7 @@ impl Prediction {
             return self.vote_in_words(label);
         }
         let Some(nearest) = &self.nearest else { return "unknown. The index is empty".to_owned() };
-        let distance = nearest.relation.because.distance.combined;
+        let distance = nearest.relation.evidence.distance.combined;
         let relation = nearest.relation.in_brief();
         if self.unknown == Some(Unknown::Unlabelled) {
             return format!(
@@ -234,7 +234,7 @@ impl Prediction {
             let split = if self.confidence < CLEAR { "; the vote is split" } else { "" };
             words += &format!("{split}; other votes: {}", others.join(", "));
         }
-        let may_be = |nearest: &NearestShape| nearest.relation.because.distance.may_be_same_class();
+        let may_be = |nearest: &NearestShape| nearest.relation.evidence.distance.may_be_same_class();
         if let (false, Some(threshold)) = (self.nearest.as_ref().is_some_and(may_be), self.threshold) {
             words += &format!(
                 "; no shape is near enough for one class elsewhere, but classes of this index are up to {threshold:.3} wide by signatures"

@@ -515,7 +515,7 @@ mod tests {
                 let query = describe_options.prepare(&described).unwrap();
                 let direct = compare(&ShapePair::new([&query, &other])).unwrap();
                 assert_eq!(result.comparison.as_ref(), Some(&direct));
-                assert_eq!(result.relation.because.distance, direct.shape_distance);
+                assert_eq!(result.relation.evidence.distance, direct.shape_distance);
                 assert_eq!(result.distance, direct.shape_distance.combined);
             }
         }
@@ -605,7 +605,7 @@ mod tests {
         // As a whole, it is another shape.
         let plain = search_for(&search, &part, &SearchOptions::default());
         assert!(
-            !plain.results[0].relation.because.distance.may_be_same_class()
+            !plain.results[0].relation.evidence.distance.may_be_same_class()
                 && plain.results[0].order.is_none()
         );
         // A shape of the index is read again, and a description is not enough.
@@ -679,11 +679,11 @@ mod tests {
         ring.positions.iter_mut().for_each(|p| *p /= 25.4);
         let nearest = || search_for(&search, &ring, &options).results[0].clone();
         let found = nearest().relation;
-        assert_eq!((found.kind, found.because.basis), (RelationKind::Scaled, Basis::Meshes));
+        assert_eq!((found.kind, found.evidence.basis), (RelationKind::Scaled, Basis::Meshes));
         assert_eq!(found.to_string(), "ring0 is the query scaled by 25.4 (inches to millimetres)");
         fs::remove_file(folder.path().join("ring0.off")).unwrap();
         let found = nearest().relation;
-        assert_eq!((found.kind, found.because.basis), (RelationKind::OtherPose, Basis::Descriptions));
+        assert_eq!((found.kind, found.evidence.basis), (RelationKind::OtherPose, Basis::Descriptions));
         assert!(found.reason().ends_with("the mesh was not compared"), "{}", found.reason());
         let by_name = search_by(&search, "ring0", &options);
         assert_eq!(by_name.results[0].relation.kind, RelationKind::IdenticalFile);

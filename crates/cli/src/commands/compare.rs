@@ -70,7 +70,7 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
     let failed =
         args.threshold.map(|limit| found.comparison.normalized_distance > limit || distance.is_different());
     let kind = found.relation.kind;
-    let is_alike = |kinds: &[RelationKind]| kind <= RelationKind::Remeshed || kinds.contains(&kind);
+    let is_alike = |kinds: &[RelationKind]| kind.is_one_surface() || kinds.contains(&kind);
     let not_alike = args.exit_code.is_some_and(|kinds| !is_alike(kinds));
     let json = CompareJson {
         a: args.pair.a.clone(),
@@ -94,7 +94,7 @@ fn text(json: &CompareJson, name_a: &str, details: bool) -> String {
     let (shape, [_, class]) = (ShapeMetric::SAME_SHAPE.at, ShapeMetric::SAME_CLASS.gap());
     let distance = json.found.comparison.shape_distance.combined;
     let limits = format!("probably one shape below {shape:.2}, another class above {class:.2}");
-    let times = format!("{:.4}", relation.because.scale);
+    let times = format!("{:.4}", relation.evidence.scale);
     let size =
         if times == "1.0000" { "the same".to_owned() } else { format!("{times} times that of {name_a}") };
     let mut rows = vec![
@@ -133,7 +133,7 @@ fn threshold(json: &CompareJson, limit: f64) -> String {
 /// Everything else that was measured.
 fn detailed(json: &CompareJson, residual: String) -> Vec<(&'static str, String)> {
     let (c, relation) = (&json.found.comparison, &json.found.relation);
-    let handedness = match relation.because.handedness {
+    let handedness = match relation.evidence.handedness {
         Handedness::Same => "no",
         Handedness::Mirrored => "yes",
         Handedness::Either => "either: the shape is its own mirror image",

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// How two meshes are related, by what changed least. The kinds are in descending order of what the meshes have in common.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+/// How two meshes are related, by what changed least.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RelationKind {
     /// The files have the same bytes.
@@ -33,6 +33,40 @@ pub enum RelationKind {
 }
 
 impl RelationKind {
+    /// All kinds, in descending order of what the meshes have in common.
+    pub const ALL: [Self; 12] = [
+        Self::IdenticalFile,
+        Self::IdenticalGeometry,
+        Self::Scaled,
+        Self::Mirrored,
+        Self::Noisy,
+        Self::Remeshed,
+        Self::Copies,
+        Self::PartOf,
+        Self::Variant,
+        Self::OtherPose,
+        Self::SameClass,
+        Self::Different,
+    ];
+
+    /// Whether both have the same vertices and faces at one size.
+    #[must_use]
+    pub fn is_one_geometry(self) -> bool {
+        matches!(self, Self::IdenticalFile | Self::IdenticalGeometry)
+    }
+
+    /// Whether both are one surface, at any size, mirrored or not.
+    #[must_use]
+    pub fn is_one_surface(self) -> bool {
+        self.is_one_geometry() || matches!(self, Self::Scaled | Self::Mirrored | Self::Noisy | Self::Remeshed)
+    }
+
+    /// Whether the distance of their shapes is all that says so.
+    #[must_use]
+    pub fn is_by_distance(self) -> bool {
+        matches!(self, Self::OtherPose | Self::SameClass | Self::Different)
+    }
+
     /// What the two have in common, in a few words.
     #[must_use]
     pub fn words(self) -> &'static str {
@@ -54,7 +88,7 @@ impl RelationKind {
 }
 
 /// A change from the first mesh to the second. Several can be combined.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Change {
     /// It lies elsewhere.

@@ -36,7 +36,7 @@ impl Relation {
     /// ```
     #[must_use]
     pub fn overlay(&self, [a, b]: [&MeshGeometry; 2]) -> Option<MeshOverlay> {
-        if self.kind >= RelationKind::Copies && self.kind != RelationKind::Variant {
+        if !(self.kind.is_one_surface() || self.kind == RelationKind::Variant) {
             return None;
         }
         let exact = same_vertices(a, b).map(|same| same.map);

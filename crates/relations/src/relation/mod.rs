@@ -5,8 +5,8 @@
 //! TriMesh -> MeshGeometry -> same vertices? components? one surface in space? -> Relation by meshes
 //! ```
 
-mod because;
 mod cut;
+mod evidence;
 mod exact;
 mod geometry;
 mod handedness;
@@ -27,8 +27,8 @@ mod words;
 use base::ContentHash;
 use descriptors::{ShapeDistance, ShapeMetric};
 
-pub use because::{Basis, Because};
 pub use cut::CutPiece;
+pub use evidence::{Basis, Evidence};
 pub use geometry::MeshGeometry;
 pub use handedness::{Handedness, handedness};
 pub use in_space::SurfaceGap;
@@ -70,7 +70,7 @@ pub struct Relation {
     /// Probability of the kind, 0 to 1.
     pub confidence: f64,
     /// What it is told from.
-    pub because: Because,
+    pub evidence: Evidence,
     /// What the two are called in words.
     names: [String; 2],
 }
@@ -90,11 +90,11 @@ impl Relation {
     /// ```
     #[must_use]
     pub fn by_distance(distance: ShapeDistance, scale: f64, handedness: Handedness) -> Self {
-        let mut because = Because { scale, handedness, ..Because::by_distance(distance) };
-        let (same_shape, same_class) = (because.same_shape, because.same_class);
+        let mut evidence = Evidence { scale, handedness, ..Evidence::by_distance(distance) };
+        let (same_shape, same_class) = (evidence.same_shape, evidence.same_class);
         let (another_shape, another_class) = (same_class - same_shape, 1.0 - same_class);
         let (kind, confidence, changes) = if same_shape >= another_shape.max(another_class) {
-            because.units = UnitChange::of(scale, SIZE_OF_SURFACES);
+            evidence.units = UnitChange::of(scale, SIZE_OF_SURFACES);
             let tolerance = ShapeMetric::SIZE_OF_POSES.ln();
             let changes = Change::of_similarity(scale, tolerance, handedness == Handedness::Mirrored);
             (RelationKind::OtherPose, same_shape, changes)
@@ -104,17 +104,17 @@ impl Relation {
             (RelationKind::Different, another_class, Vec::new())
         };
         let names = ["the first", "the second"].map(str::to_owned);
-        Self { kind, changes, confidence, because, names }
+        Self { kind, changes, confidence, evidence, names }
     }
 
     /// The relation once the hashes of the files are known, too.
     #[must_use]
     pub fn by_files(mut self, content: [Option<ContentHash>; 2]) -> Self {
-        self.because.content = content;
+        self.evidence.content = content;
         if matches!(content, [Some(a), Some(b)] if a == b) {
             (self.kind, self.confidence) = (RelationKind::IdenticalFile, 1.0);
             self.changes.clear();
-            self.because = Because { basis: Basis::Files, scale: 1.0, units: None, ..self.because };
+            self.evidence = Evidence { basis: Basis::Files, scale: 1.0, units: None, ..self.evidence };
         }
         self
     }
@@ -130,7 +130,7 @@ impl Relation {
     pub fn to_component(mut self, n_components: usize) -> Self {
         if self.kind != RelationKind::PartOf && self.kind != RelationKind::Copies {
             self.kind = RelationKind::PartOf;
-            self.because.parts = Some(Parts { whole: Side::Second, found: 1, components: n_components });
+            self.evidence.parts = Some(Parts { whole: Side::Second, found: 1, components: n_components });
             self.changes.push(Change::Posed);
         }
         self

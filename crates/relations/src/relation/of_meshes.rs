@@ -40,15 +40,15 @@ impl Relation {
     /// ```
     #[must_use]
     pub fn by_meshes(self, [a, b]: [&MeshGeometry; 2]) -> Self {
-        let [known_a, known_b] = self.because.content;
+        let [known_a, known_b] = self.evidence.content;
         let mut found = self.by_files([a.content.or(known_a), b.content.or(known_b)]);
-        found.because.vertices = Some([a.n_vertices(), b.n_vertices()]);
-        found.because.faces = Some([a.n_faces(), b.n_faces()]);
-        found.because.components = Some([a.n_components(), b.n_components()]);
+        found.evidence.vertices = Some([a.n_vertices(), b.n_vertices()]);
+        found.evidence.faces = Some([a.n_faces(), b.n_faces()]);
+        found.evidence.components = Some([a.n_components(), b.n_components()]);
         if found.kind == RelationKind::IdenticalFile {
             return found;
         }
-        found.because.basis = Basis::Meshes;
+        found.evidence.basis = Basis::Meshes;
         // Other faces between the same vertices may be another surface.
         if let Some(same) = same_vertices(a, b).filter(|same| same.same_faces || is_one_surface(same, [a, b]))
         {
@@ -74,8 +74,8 @@ impl Relation {
         scale: f64,
         tolerance: f64,
     ) -> Self {
-        self.because.scale = scale;
-        self.because.units = UnitChange::of(scale, tolerance);
+        self.evidence.scale = scale;
+        self.evidence.units = UnitChange::of(scale, tolerance);
         Self { kind, confidence, changes, ..self }
     }
 
@@ -93,7 +93,7 @@ impl Relation {
             if angle > SIZE_OF_VERTICES {
                 changes.push(Change::Rotated);
             }
-            self.because.rotation = Some(angle.to_degrees());
+            self.evidence.rotation = Some(angle.to_degrees());
         }
         // A surface that is its own mirror image is not another one for being mirrored, only its triangles are.
         let is_turned = reflected && is_symmetric(b);
@@ -105,7 +105,7 @@ impl Relation {
             Some(Change::Remeshed) => RelationKind::Remeshed,
             _ => RelationKind::IdenticalGeometry,
         };
-        self.because.vertex_gap = Some(same.gap);
+        self.evidence.vertex_gap = Some(same.gap);
         self.found(kind, 1.0, changes, scale, SIZE_OF_VERTICES)
     }
 
@@ -118,8 +118,8 @@ impl Relation {
         changes.extend(gap.map(|_| Change::Remeshed));
         let all = parts.found == parts.components && parts.found > 1;
         let kind = if all { RelationKind::Copies } else { RelationKind::PartOf };
-        self.because.surface_gap = gap;
-        self.because.parts = Some(parts);
+        self.evidence.surface_gap = gap;
+        self.evidence.parts = Some(parts);
         self.found(kind, confidence, changes, scale, tolerance)
     }
 
@@ -129,7 +129,7 @@ impl Relation {
         let Aligned { map, gap } = aligned;
         let change = mesh_change([a, b], &map);
         let probability = same_surface(&aligned, [a, b], change);
-        self.because.surface_gap = Some(gap);
+        self.evidence.surface_gap = Some(gap);
         if probability < 0.5 || change == Change::Posed {
             return self.with_differences([a, b], Some(gap.rms));
         }
@@ -150,20 +150,20 @@ impl Relation {
         let sides = [(Side::First, a, b), (Side::Second, b, a)];
         let piece = sides.into_iter().find_map(|(whole, of, piece)| Some((whole, piece_of(of, piece)?)));
         if let Some((whole, FoundPiece { left, factor })) = piece {
-            self.because.cut = Some(CutPiece { whole, left });
+            self.evidence.cut = Some(CutPiece { whole, left });
             let scale = if whole == Side::First { factor } else { 1.0 / factor };
             let mut changes = Change::of_similarity(scale, SIZE_OF_VERTICES, false);
             changes.push(Change::Cut);
             return self.found(RelationKind::PartOf, CUT, changes, scale, SIZE_OF_VERTICES);
         }
         if let Some(differences) = differences(meshes, rms) {
-            self.because.differences = differences;
+            self.evidence.differences = differences;
             self.changes.clear();
             return Self { kind: RelationKind::Variant, confidence: VARIANT, ..self };
         }
         if meshes.iter().any(|mesh| mesh.is_mechanical()) && self.kind == RelationKind::OtherPose {
             self.changes.clear();
-            return Self { kind: RelationKind::SameClass, confidence: self.because.same_class, ..self };
+            return Self { kind: RelationKind::SameClass, confidence: self.evidence.same_class, ..self };
         }
         self
     }

@@ -26,7 +26,7 @@ const MOST_EXTENT: f64 = 1.6;
 const NEAR: f64 = 0.012;
 
 /// What is measured of a part.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Dimension {
     /// Number of cylindrical holes.
@@ -191,10 +191,9 @@ pub(super) fn differences([a, b]: [&MeshGeometry; 2], rms: Option<f64>) -> Optio
     let same_holes = a.holes.len() == b.holes.len();
     let same_build = a.n_regions == b.n_regions;
     let far = |d: &Difference| {
-        let most = if d.what >= Dimension::Length && d.what <= Dimension::Height {
-            MOST_EXTENT
-        } else {
-            MOST_CHANGE
+        let most = match d.what {
+            Dimension::Length | Dimension::Width | Dimension::Height => MOST_EXTENT,
+            _ => MOST_CHANGE,
         };
         f64::max(d.first / d.second, d.second / d.first) > most
     };

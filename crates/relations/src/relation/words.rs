@@ -11,14 +11,14 @@ use super::in_space::SurfaceGap;
 use super::numbers::{in_digits, in_words, percent};
 use super::parts::{Parts, Side};
 use super::variant::Difference;
-use super::{Basis, Because, Change, Relation, RelationKind};
+use super::{Basis, Change, Evidence, Relation, RelationKind};
 
 impl Display for Relation {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let [a, b] = &self.names;
         let probably = self.probably();
-        let perhaps_same = self.because.same_shape > 1.0 - ShapeMetric::CERTAIN;
-        match (self.kind, self.because.parts) {
+        let perhaps_same = self.evidence.same_shape > 1.0 - ShapeMetric::CERTAIN;
+        match (self.kind, self.evidence.parts) {
             (RelationKind::IdenticalFile, _) => write!(f, "{b} is the same file as {a}"),
             (RelationKind::IdenticalGeometry, _) if self.changes.is_empty() => {
                 write!(f, "{b} has the same geometry as {a}")
@@ -39,7 +39,7 @@ impl Display for Relation {
             }
             (RelationKind::PartOf, None) => f.write_str(&self.with_changes(self.cut_in_words())),
             (RelationKind::Variant, _) => {
-                write!(f, "{b} is {probably}a variant of {a}: {}", list(&self.because.differences))
+                write!(f, "{b} is {probably}a variant of {a}: {}", list(&self.evidence.differences))
             }
             _ => write!(f, "{b} is {probably}{a} {}", self.changes_in_words().join(", ")),
         }
@@ -56,7 +56,7 @@ impl Relation {
     /// The numbers that decided.
     #[must_use]
     pub fn reason(&self) -> String {
-        let Because { vertex_gap, surface_gap, content, vertices, .. } = &self.because;
+        let Evidence { vertex_gap, surface_gap, content, vertices, .. } = &self.evidence;
         let vertices = match vertices {
             Some([a, b]) if a == b => format!("{a} vertices on both sides"),
             Some([a, b]) => format!("{a} and {b} vertices"),
@@ -81,11 +81,11 @@ impl Relation {
             (RelationKind::Copies | RelationKind::PartOf, None, None) => {
                 "the components have the same vertices once aligned in space".to_owned()
             }
-            (kind, None, Some(gap)) if kind <= RelationKind::PartOf => {
+            (kind, None, Some(gap)) if !(kind.is_by_distance() || kind == RelationKind::Variant) => {
                 format!("the surfaces are {} once aligned in space; {vertices}", apart(gap))
             }
             (_, None, Some(gap)) => format!("{shape}; in space, the surfaces are {}", apart(gap)),
-            (_, None, None) if self.because.basis == Basis::Descriptions => {
+            (_, None, None) if self.evidence.basis == Basis::Descriptions => {
                 format!("{shape}; the mesh was not compared")
             }
             (_, None, None) => format!("{shape}; in space, they are not one surface"),
@@ -95,7 +95,7 @@ impl Relation {
     /// The distance of the shapes, and what it is compared with.
     fn by_distance_in_words(&self) -> String {
         let (shape, [_, class]) = (ShapeMetric::SAME_SHAPE.at, ShapeMetric::SAME_CLASS.gap());
-        let distance = self.because.distance.combined;
+        let distance = self.evidence.distance.combined;
         format!(
             "combined distance {distance:.3} (probably one shape below {shape:.3}, another class above {class:.3})"
         )
@@ -112,24 +112,24 @@ impl Relation {
 
     /// All changes but a cut, of which the sentence is.
     fn changes_in_words(&self) -> Vec<String> {
-        let vertices = self.because.vertices.unwrap_or([1, 1]).map(|n| n.max(1) as f64);
+        let vertices = self.evidence.vertices.unwrap_or([1, 1]).map(|n| n.max(1) as f64);
         let share = vertices[1] / vertices[0];
         let in_words = |change: &Change| match change {
             Change::Moved => "moved".to_owned(),
-            Change::Rotated => format!("rotated by {:.1}°", self.because.rotation.unwrap_or_default()),
+            Change::Rotated => format!("rotated by {:.1}°", self.evidence.rotation.unwrap_or_default()),
             Change::Scaled => self.scale_in_words(),
             Change::Mirrored => "mirrored".to_owned(),
             Change::Decimated => format!("decimated to {} of the vertices", percent(share)),
             Change::Subdivided => format!("subdivided to {share:.1} times the vertices"),
-            Change::Remeshed if self.because.vertex_gap.is_some() => "with other faces".to_owned(),
-            Change::Remeshed if self.because.parts.is_some() || (share - 1.0).abs() < 0.005 => {
+            Change::Remeshed if self.evidence.vertex_gap.is_some() => "with other faces".to_owned(),
+            Change::Remeshed if self.evidence.parts.is_some() || (share - 1.0).abs() < 0.005 => {
                 "remeshed".to_owned()
             }
             Change::Remeshed => format!("remeshed with {share:.2} times the vertices"),
             Change::Posed => self.pose().to_owned(),
             Change::Cut => "cut".to_owned(),
             Change::Noisy => {
-                let gap = self.because.surface_gap.map_or(0.0, |gap| gap.rms);
+                let gap = self.evidence.surface_gap.map_or(0.0, |gap| gap.rms);
                 format!("with noise of {} of the size", percent(gap))
             }
         };
@@ -138,7 +138,7 @@ impl Relation {
 
     /// Without meshes the pose is unknown.
     fn pose(&self) -> &'static str {
-        match self.because.basis {
+        match self.evidence.basis {
             Basis::Descriptions => "in this or another pose",
             Basis::Files | Basis::Meshes => "in another pose",
         }
@@ -146,8 +146,8 @@ impl Relation {
 
     /// From the first to the second, whichever is the whole.
     fn scale_in_words(&self) -> String {
-        let scale = in_digits(5, self.because.scale);
-        self.because
+        let scale = in_digits(5, self.evidence.scale);
+        self.evidence
             .units
             .map_or_else(|| format!("scaled by {scale}"), |units| format!("scaled by {scale} ({units})"))
     }
@@ -160,7 +160,7 @@ impl Relation {
 
     fn cut_in_words(&self) -> String {
         let CutPiece { whole, left } =
-            self.because.cut.unwrap_or(CutPiece { whole: Side::Second, left: 1.0 });
+            self.evidence.cut.unwrap_or(CutPiece { whole: Side::Second, left: 1.0 });
         let [part, whole] = self.part_and_whole(whole);
         format!("{part} is a piece of {whole}: {} of its surface", percent(left))
     }
@@ -192,10 +192,10 @@ fn list(differences: &[Difference]) -> String {
 
 /// Everything that a relation is told from, with its words.
 #[derive(Serialize)]
-struct BecauseRecord<'a> {
+struct EvidenceRecord<'a> {
     text: String,
     #[serde(flatten)]
-    because: &'a Because,
+    evidence: &'a Evidence,
 }
 
 impl Serialize for Relation {
@@ -206,8 +206,8 @@ impl Serialize for Relation {
         record.serialize_field("changes", &self.changes)?;
         record.serialize_field("text", &self.to_string())?;
         record.serialize_field("brief", &self.in_brief())?;
-        let because = BecauseRecord { text: self.reason(), because: &self.because };
-        record.serialize_field("because", &because)?;
+        let evidence = EvidenceRecord { text: self.reason(), evidence: &self.evidence };
+        record.serialize_field("because", &evidence)?;
         record.end()
     }
 }

@@ -14,7 +14,6 @@ use std::path::{Path, PathBuf};
 use base::ContentHash;
 use base::files::FileError;
 use collection::{MOVES, content_hash, member_of};
-use relations::RelationKind;
 
 use self::companions::{Below, files_of_mesh};
 use self::journal::Journal;
@@ -113,7 +112,7 @@ fn files_to_move(
     below: &Below,
 ) -> Result<Vec<PathBuf>, String> {
     let path = member.file.path.as_path();
-    if !matches!(member.relation.kind, RelationKind::IdenticalFile | RelationKind::IdenticalGeometry) {
+    if !member.relation.kind.is_one_geometry() {
         return Err("it is not proved to have the vertices and faces of the file to keep".into());
     }
     if member_of(path).is_some() {
@@ -135,7 +134,7 @@ fn files_to_move(
     let is_known = |(path, hash): (&Path, Option<ContentHash>)| {
         hash.is_some_and(|hash| content_hash(path).is_ok_and(|found| found == hash))
     };
-    if ![keeper, path].into_iter().zip(member.relation.because.content).all(is_known) {
+    if ![keeper, path].into_iter().zip(member.relation.evidence.content).all(is_known) {
         return Err("it, or the file to keep, has changed since they were compared".into());
     }
     match below.other_user(&files, root) {

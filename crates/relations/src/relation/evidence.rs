@@ -25,7 +25,7 @@ pub enum Basis {
 
 /// Everything that a relation is told from.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Because {
+pub struct Evidence {
     /// What the relation is taken from.
     pub basis: Basis,
     /// How far the shapes are apart: of meshes with several components, the largest ones.
@@ -68,7 +68,7 @@ pub struct Because {
     pub differences: Vec<Difference>,
 }
 
-impl Because {
+impl Evidence {
     /// The distance of two shapes, and nothing else.
     pub(super) fn by_distance(distance: ShapeDistance) -> Self {
         Self {
