@@ -346,6 +346,7 @@ impl Remedy {
     pub fn of_index(fault: &IndexError) -> Option<Self> {
         match fault {
             IndexError::Damaged { .. } | IndexError::PastVersion { .. } => Some(Self::BuildIndexAgain),
+            IndexError::Foreign(_) => Some(Self::BuildIndexAnew),
             IndexError::NoSuchShape { .. } => Some(Self::ListShapes),
             _ => None,
         }

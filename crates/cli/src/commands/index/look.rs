@@ -47,17 +47,18 @@ struct InfoJson {
     n_bytes: u64,
     options: serde_json::Value,
     /// Shapes of each class; those without one have an empty key.
-    classes: BTreeMap<String, usize>,
-    unlabelled: usize,
+    classes: BTreeMap<String, u64>,
+    unlabelled: u64,
     /// Whether its writer was interrupted, or is at work.
     unfinished: bool,
 }
 
 pub(super) fn info(path: &Path, common: &Common) -> Result<ExitCode> {
     let index = Index::open(path)?;
-    let mut classes = BTreeMap::new();
-    for entry in index.entries()? {
-        *classes.entry(entry.label).or_insert(0) += 1;
+    let mut classes = index.classes()?;
+    let unlabelled = index.len() as u64 - classes.values().sum::<u64>();
+    if unlabelled > 0 {
+        classes.insert(String::new(), unlabelled);
     }
     let json = InfoJson {
         index: path.to_owned(),
@@ -65,7 +66,7 @@ pub(super) fn info(path: &Path, common: &Common) -> Result<ExitCode> {
         n_shapes: index.len(),
         n_bytes: index.n_bytes(),
         options: serde_json::from_str(index.options()).unwrap_or_else(|_| index.options().into()),
-        unlabelled: classes.get("").copied().unwrap_or(0),
+        unlabelled,
         classes,
         unfinished: !index.is_finished(),
     };
