@@ -186,6 +186,15 @@ impl ShapeMetric {
         (sum + huber(rest[0], rest[1], 1.0, f64::INFINITY)).sqrt()
     }
 
+    /// The difference of every value of a fused vector from which on it counts linearly in [`robust`](Self::robust); without the
+    /// size, which is not limited.
+    pub fn limits() -> Vec<f32> {
+        let of_kind = |(kind, _, weight): (SignatureKind, _, _)| {
+            std::iter::repeat_n(limit(kind, weight) as f32, kind.n_values())
+        };
+        calibration::FUSED.into_iter().flat_map(of_kind).collect()
+    }
+
     /// The part of the robust distance that rigid signatures add: 0 unless both shapes have one, since nothing is known of how
     /// a surface that bends would look. Bending moves the shape of a surface in space farther than another class, so it is at most
     /// the [boundary](Self::SAME_SHAPE) of two shapes: parts that differ in space are two, but may be of one class.

@@ -5,7 +5,7 @@
 //! relation to the undamaged shape is right.
 
 use anyhow::{Context as _, Result};
-use canonform::index::Shape;
+use canonform::index::{Shape, VectorTable};
 use canonform::{Handedness, MeshGeometry, Relation, RelationKind, bounds, describe, rerank, signature};
 use datasets::Damage;
 use descriptors::{ShapeMetric, ShapePair, SignatureKind};
@@ -81,14 +81,15 @@ impl Experiment for InvarianceOptions {
         let gallery = Gallery::new(context)?;
         let all = &context.collection.shapes;
         let prepared = gallery.prepared()?;
-        let mut rows = Vec::new();
+        let (mut vectors, mut rows) = (VectorTable::default(), Vec::new());
+        prepared.iter().for_each(|shape| vectors.push("", shape.fused()));
         for damage in DAMAGES {
             let found = gallery.map(self.queries, &damage.to_string(), |query| {
                 let surface = query.damaged(damage)?;
                 let damaged = describe(&surface, &gallery.options, &())?;
                 let shape = gallery.options.prepare(&damaged)?;
                 // As a search in an index does.
-                let candidates = bounds(shape.fused(), prepared.len(), &|i| prepared[i].fused());
+                let candidates = bounds(shape.fused(), &vectors);
                 let nearest = rerank(&shape, candidates, 2, |i| Ok(&prepared[i]))?.nearest;
                 let (first, _) = nearest.first().context("the collection has shapes")?;
                 let mut others = nearest.iter().filter(|(near, _)| near.index != query.own);

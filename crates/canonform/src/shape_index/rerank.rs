@@ -1,11 +1,9 @@
 //! Nearest shapes by combined distance: bounded by signatures, then by aligned forms.
 
 use std::borrow::Borrow;
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
 
 use descriptors::{FormAlignment, PreparedShape, ShapeDistance, ShapeMetric, ShapePair, align_near_forms};
-use rayon::prelude::*;
+use index::VectorTable;
 use retrieval::{Neighbor, Refinement, refine_nearest};
 
 use crate::error::Error;
@@ -25,23 +23,10 @@ pub struct Aligned {
 
 /// Lower bounds of the combined distances from a query to all of some fused vectors, in ascending order: the robust distances.
 /// They are ordered as far as they are asked for.
-pub fn bounds<'v>(
-    query: &[f32],
-    n: usize,
-    vector: &(dyn Fn(usize) -> &'v [f32] + Sync),
-) -> impl Iterator<Item = Neighbor> + Send + use<> {
-    // The bits of numbers that are not negative are in the order of the numbers.
-    let bound = |index| Reverse((ShapeMetric::robust(query, vector(index)).to_bits(), index));
-    let all: Vec<_> = (0..n).into_par_iter().with_min_len(TASK).map(bound).collect();
-    let mut left = BinaryHeap::from(all);
-    std::iter::from_fn(move || {
-        let Reverse((bits, index)) = left.pop()?;
-        Some(Neighbor { index, distance: f64::from_bits(bits) })
-    })
+pub fn bounds<'a>(query: &'a [f32], all: &'a VectorTable) -> impl Iterator<Item = Neighbor> + Send + 'a {
+    let robust = move |vector: &[f32]| ShapeMetric::robust(query, vector);
+    all.nearest_first(query, &ShapeMetric::limits(), robust)
 }
-
-/// Vectors in one parallel task.
-const TASK: usize = 256;
 
 /// The `k` candidates nearest to a query by [combined](ShapeMetric::combined) distance. Candidates come in ascending
 /// order of their [bounds]. `shape` gives the shape of a candidate.
@@ -90,6 +75,25 @@ mod tests {
     }
 
     #[test]
+    fn bounds_are_the_robust_distances_of_all_in_order() {
+        let random = |i: usize| ((i * 7919) % 1000) as f32 / 1000.0 - 0.5;
+        let vector = |n: usize| -> Vec<f32> {
+            // Some are equal, and in others values differ by far more than their limits.
+            let (n, far) = (n % 500, if n.is_multiple_of(7) { 50.0 } else { 0.1 });
+            (0..=ShapeMetric::FUSED_LENGTH).map(|i| far * random(n * 331 + i * 17)).collect()
+        };
+        let mut all = VectorTable::default();
+        (0..700).for_each(|n| all.push("", &vector(n)));
+        for query in [vector(3), vector(7), vec![0.0; ShapeMetric::FUSED_LENGTH + 1]] {
+            let robust = |i| ShapeMetric::robust(&query, all.vector(i));
+            let mut expected: Vec<_> =
+                (0..700).map(|index| Neighbor { index, distance: robust(index) }).collect();
+            expected.sort_by(Neighbor::cmp);
+            assert!(bounds(&query, &all).eq(expected));
+        }
+    }
+
+    #[test]
     fn reranking_finds_what_aligning_all_finds() {
         let turns = |i: usize| 1.0 + 0.2 * i as f64;
         for query in [0, 13] {
@@ -100,7 +104,9 @@ mod tests {
                 let asked = spiral(turns(query), 0.0);
                 let fused = |i: usize| ShapeMetric::fused(asked.fused(), shapes[i].fused());
                 let robust = |i: usize| ShapeMetric::robust(asked.fused(), shapes[i].fused());
-                let candidates: Vec<_> = bounds(asked.fused(), 30, &|i| shapes[i].fused()).collect();
+                let mut all = VectorTable::default();
+                shapes.iter().for_each(|shape| all.push("", shape.fused()));
+                let candidates: Vec<_> = bounds(asked.fused(), &all).collect();
                 let mut all: Vec<_> = (0..30)
                     .map(|index| {
                         let pair = ShapePair::new([&asked, &shapes[index]]);

@@ -273,17 +273,20 @@ impl ShapeSearch {
     }
 
     /// All shapes, those first that may be nearest.
-    fn by_distance(&self, query: &PreparedShape) -> Result<Shortlist<'_>, Error> {
+    fn by_distance<'a>(&'a self, query: &'a PreparedShape) -> Result<Shortlist<'a>, Error> {
         let all = self.index.vector_table()?;
-        let candidates = Box::new(bounds(query.fused(), all.len(), &|i| all.vector(i)));
+        let candidates = Box::new(bounds(query.fused(), all));
         Ok(Shortlist { candidates, id: Box::new(|i| all.id(i).to_owned()), orders: None })
     }
 
     /// Some shapes, those first that may be nearest.
     fn among(&self, query: &PreparedShape, ids: Vec<String>) -> Result<Shortlist<'static>, Error> {
-        let fused = ids.iter().map(|id| Ok(self.index.shape(id)?.fused));
-        let fused = fused.collect::<Result<Vec<_>, Error>>()?;
-        let candidates = Box::new(bounds(query.fused(), ids.len(), &|i| &fused[i]));
+        let mut some = VectorTable::default();
+        for id in &ids {
+            some.push(id, &self.index.shape(id)?.fused);
+        }
+        let candidates: Vec<_> = bounds(query.fused(), &some).collect();
+        let candidates = Box::new(candidates.into_iter());
         Ok(Shortlist { candidates, id: Box::new(move |i| ids[i].clone()), orders: None })
     }
 
@@ -394,7 +397,7 @@ type OrderedShape = (String, OrderedBy);
 /// Shapes that may be results.
 struct Shortlist<'a> {
     /// In ascending order of lower bounds of their combined distances.
-    candidates: Box<dyn Iterator<Item = Neighbor> + Send>,
+    candidates: Box<dyn Iterator<Item = Neighbor> + Send + 'a>,
     /// The name of each.
     id: Box<dyn Fn(usize) -> String + Sync + 'a>,
     /// What they are ordered by, if not by combined distance.

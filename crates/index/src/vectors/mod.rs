@@ -3,7 +3,6 @@
 //! **Invariant.** Nothing depends on the number of threads, nor on the order or the history of insertions.
 
 mod kernels;
-mod nearest;
 mod table;
 #[cfg(test)]
 mod testing;

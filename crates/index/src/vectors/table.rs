@@ -1,16 +1,30 @@
 //! The fused vectors of all shapes.
 
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
 use rayon::prelude::*;
 use retrieval::Neighbor;
 
-use super::kernels::{padded, sq_distances_into};
-use super::nearest::Nearest;
-
-/// Rows in one parallel task.
-const TASK: usize = 8192;
+use super::kernels::{least_loss, losses_into, padded};
 
 /// Rows measured together.
-const CHUNK: usize = 256;
+const BLOCK: usize = 256;
+
+/// Blocks in one parallel task, at least.
+const TASK: usize = 8;
+
+/// What is known of a distance. At the same distance blocks and rows come first, so that equals are all measured before the
+/// first of them is found.
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Known {
+    /// A lower bound for all rows of a block.
+    Block,
+    /// A lower bound for a row.
+    Row,
+    /// The distance of a row.
+    Distance,
+}
 
 /// The fused vectors of all shapes of an index, in ascending order of their names.
 #[derive(Debug, Default)]
@@ -23,7 +37,7 @@ pub struct VectorTable {
 
 impl VectorTable {
     /// Adds a vector. All have the same length.
-    pub(crate) fn push(&mut self, id: &str, vector: &[f32]) {
+    pub fn push(&mut self, id: &str, vector: &[f32]) {
         self.dim = vector.len();
         self.ids.push(id.into());
         self.rows.extend_from_slice(vector);
@@ -68,36 +82,93 @@ impl VectorTable {
     /// The numbers and distances of the `k` vectors nearest to a query of this length; ties by number.
     #[must_use]
     pub fn nearest(&self, query: &[f32], k: usize) -> Vec<Neighbor> {
-        if self.is_empty() {
-            return Vec::new();
-        }
+        self.nearest_first(query, &[], |vector| distance(query, vector)).take(k).collect()
+    }
+
+    /// The numbers and distances of all vectors, nearest first, ties by number; ordered as far as they are asked for.
+    /// `distance` is the root of the sum of Huber's losses of differences from a query of this length, in double
+    /// precision. It is asked for vectors that may be next: all are measured in single precision, which bounds it from below.
+    /// Without a limit differences count by their squares.
+    pub fn nearest_first<'t, D: Fn(&[f32]) -> f64 + 't>(
+        &'t self,
+        query: &[f32],
+        limits: &[f32],
+        distance: D,
+    ) -> impl Iterator<Item = Neighbor> + use<'t, D> {
         let n = padded(self.dim);
-        let mut row = query.to_vec();
-        row.resize(n, 0.0);
-        let tasks = self.rows.par_chunks(TASK * n).enumerate().map(|(task, rows)| {
-            let mut nearest = Nearest::new(k);
-            let mut sqs = [0.0; CHUNK];
-            for (i, rows) in rows.chunks(CHUNK * n).enumerate() {
-                let sqs = &mut sqs[..rows.len() / n];
-                sq_distances_into(&row, rows, sqs);
-                nearest.offer_all((task * TASK + i * CHUNK) as u32, sqs);
-            }
-            nearest
+        let [mut query, mut limits] = [query, limits].map(<[f32]>::to_vec);
+        query.resize(n, 0.0);
+        if !limits.is_empty() {
+            limits.resize(n, f32::INFINITY);
+        }
+        // The bits of numbers that are not negative are in the order of the numbers.
+        let at_least = move |sum: f32| least_loss(sum, n).sqrt().to_bits();
+        let mut sums = vec![0.0; self.len()];
+        let blocks = self.rows.par_chunks(BLOCK * n).zip(sums.par_chunks_mut(BLOCK)).with_min_len(TASK);
+        let bounds = blocks.enumerate().map(|(block, (rows, sums))| {
+            losses_into(&query, &limits, rows, sums);
+            // What is not finite bounds nothing.
+            let bound = |sum: &f32| if sum.is_finite() { *sum } else { 0.0 };
+            let least = sums.iter().map(bound).fold(f32::INFINITY, f32::min);
+            Reverse((at_least(least), Known::Block, block))
         });
-        let nearest = tasks.reduce(|| Nearest::new(k), Nearest::join);
-        // Selected in single precision, sorted in double.
-        let measured = |hit: super::nearest::Hit| {
-            let index = hit.slot as usize;
-            Neighbor { index, distance: distance(query, self.vector(index)) }
-        };
-        let mut found: Vec<Neighbor> = nearest.into_hits().map(measured).collect();
-        found.sort_by(Neighbor::cmp);
-        found.truncate(k);
-        found
+        let mut left = BinaryHeap::from(bounds.collect::<Vec<_>>());
+        std::iter::from_fn(move || {
+            loop {
+                let Reverse((bits, known, i)) = left.pop()?;
+                match known {
+                    Known::Block => {
+                        let rows = (i * BLOCK..self.len()).take(BLOCK);
+                        left.extend(rows.map(|row| Reverse((at_least(sums[row]), Known::Row, row))));
+                    }
+                    Known::Row => {
+                        let bits = distance(self.vector(i)).to_bits();
+                        left.push(Reverse((bits, Known::Distance, i)));
+                    }
+                    Known::Distance => return Some(Neighbor { index: i, distance: f64::from_bits(bits) }),
+                }
+            }
+        })
     }
 }
 
 /// Euclidean distance, summed in double precision in the order of the numbers.
 fn distance(a: &[f32], b: &[f32]) -> f64 {
     a.iter().zip(b).map(|(x, y)| (f64::from(*x) - f64::from(*y)).powi(2)).sum::<f64>().sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{huber, noise};
+    use super::*;
+
+    #[test]
+    fn vectors_come_in_the_order_of_their_distances_for_ties_and_outliers_too() {
+        const DIM: usize = 21;
+        let (mut rows, limits) = (noise(1500, DIM, 7), [0.1; DIM - 1]);
+        // Equal rows, in other blocks, and rows that differ by the last bits.
+        for i in (0..600).step_by(3) {
+            let copy = (1490 - 2 * i) * DIM;
+            rows.copy_within(i * DIM..(i + 1) * DIM, copy);
+            rows[copy] += f32::EPSILON * (i % 2) as f32;
+        }
+        for (i, outlier) in [1e12, -1e20, f32::MAX, -f32::MAX, 1e-42].into_iter().enumerate() {
+            (0..20).for_each(|n| rows[(67 * n + i) * DIM + n] = outlier);
+        }
+        let mut all = VectorTable::default();
+        rows.chunks(DIM).for_each(|row| all.push("", row));
+        for query in [0, 2, 3, 900].map(|i| all.vector(i)) {
+            for limits in [&limits[..], &[]] {
+                let distance = |vector: &[f32]| huber(query, vector, limits);
+                let neighbor = |index| Neighbor { index, distance: distance(all.vector(index)) };
+                let mut expected: Vec<_> = (0..all.len()).map(neighbor).collect();
+                expected.sort_by(Neighbor::cmp);
+                assert!(all.nearest_first(query, limits, distance).eq(expected.iter().copied()));
+                if limits.is_empty() {
+                    assert_eq!(all.nearest(query, 40), expected[..40]);
+                }
+            }
+        }
+        assert_eq!(VectorTable::default().nearest(&[], 3), []);
+    }
 }

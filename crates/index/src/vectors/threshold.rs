@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use retrieval::UnknownThreshold;
 
-use super::kernels::sq_distances_into;
+use super::kernels::losses_into;
 use super::table::VectorTable;
 
 /// Shapes with a class whose nearest others are looked for, at most: those whose hashed names come first.
@@ -44,7 +44,7 @@ impl Trial {
     fn meet(&mut self, shapes: std::ops::Range<usize>, vectors: &VectorTable, classes: &[String]) {
         let mut sq = [0.0];
         for i in shapes.filter(|i| !classes[*i].is_empty()) {
-            sq_distances_into(&self.row, vectors.padded(i), &mut sq);
+            losses_into(&self.row, &[], vectors.padded(i), &mut sq);
             let least = if classes[i] == self.class { &mut self.own } else { &mut self.foreign };
             if sq[0] < *least && vectors.id(i) != self.id {
                 *least = sq[0];
