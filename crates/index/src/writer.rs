@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use base::Observer;
 
 use crate::database::{Database, EntryRow, Meta, checksum, damaged_path, to_bytes, with_suffix};
-use crate::reader::{DISC_AREAS, FORM, SIGNATURE, entries, find, vectors};
+use crate::reader::{DISC_AREAS, FORM, SIGNATURE, classes, entries, find, vectors};
 use crate::vectors::threshold;
 use crate::{Entry, Index, IndexError, Shape};
 
@@ -312,7 +312,7 @@ impl IndexWriter {
     pub fn finish(mut self, observer: &dyn Observer) -> Result<Index, IndexError> {
         observer.begin("finding the threshold of unknown classes", 0);
         let vectors = vectors(&self.database)?;
-        let classes: Vec<String> = entries(&self.database)?.into_iter().map(|entry| entry.label).collect();
+        let classes = classes(&self.database)?;
         if classes.len() != vectors.len() || vectors.len() as u64 != self.n_shapes {
             return Err(self.database.damaged("the number of its shapes is wrong"));
         }

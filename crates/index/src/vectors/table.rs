@@ -2,6 +2,7 @@
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
+use std::ops::Range;
 
 use rayon::prelude::*;
 use retrieval::Neighbor;
@@ -71,12 +72,13 @@ impl VectorTable {
     /// The vector of a shape.
     #[must_use]
     pub fn vector(&self, i: usize) -> &[f32] {
-        &self.padded(i)[..self.dim]
+        &self.rows(i..i + 1)[..self.dim]
     }
 
-    pub(super) fn padded(&self, i: usize) -> &[f32] {
+    /// Padded rows.
+    pub(super) fn rows(&self, shapes: Range<usize>) -> &[f32] {
         let n = padded(self.dim);
-        &self.rows[i * n..][..n]
+        &self.rows[shapes.start * n..shapes.end * n]
     }
 
     /// The numbers and distances of the `k` vectors nearest to a query of this length; ties by number.

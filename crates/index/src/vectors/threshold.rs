@@ -1,5 +1,7 @@
 //! The distance beyond which a shape belongs to none of the classes of an index.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 use retrieval::UnknownThreshold;
 
@@ -36,18 +38,20 @@ struct Trial {
 impl Trial {
     fn new(key: ShapeKey, i: usize, vectors: &VectorTable, classes: &[String]) -> Self {
         let (id, class) = (vectors.id(i).to_owned(), classes[i].clone());
-        let row = vectors.padded(i).to_vec();
+        let row = vectors.rows(i..i + 1).to_vec();
         Self { key, id, class, row, own: f32::INFINITY, foreign: f32::INFINITY }
     }
 
-    /// Compares it with some of the shapes.
-    fn meet(&mut self, shapes: std::ops::Range<usize>, vectors: &VectorTable, classes: &[String]) {
-        let mut sq = [0.0];
-        for i in shapes.filter(|i| !classes[*i].is_empty()) {
-            losses_into(&self.row, &[], vectors.padded(i), &mut sq);
-            let least = if classes[i] == self.class { &mut self.own } else { &mut self.foreign };
-            if sq[0] < *least && vectors.id(i) != self.id {
-                *least = sq[0];
+    /// Compares it with some of the shapes, at most a block.
+    fn meet(&mut self, shapes: Range<usize>, vectors: &VectorTable, classes: &[String]) {
+        let mut sqs = [0.0; BLOCK];
+        let sqs = &mut sqs[..shapes.len()];
+        losses_into(&self.row, &[], vectors.rows(shapes.clone()), sqs);
+        for (i, sq) in shapes.zip(sqs) {
+            // The class of most does not matter, so that no names are compared.
+            if *sq < self.own.max(self.foreign) && !classes[i].is_empty() && vectors.id(i) != self.id {
+                let least = if classes[i] == self.class { &mut self.own } else { &mut self.foreign };
+                *least = least.min(*sq);
             }
         }
     }
