@@ -14,7 +14,7 @@ pub struct Neighbor {
 impl Neighbor {
     /// Orders by distance, ties by index.
     #[must_use]
-    pub fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+    pub fn by_distance(&self, other: &Self) -> std::cmp::Ordering {
         self.distance.total_cmp(&other.distance).then(self.index.cmp(&other.index))
     }
 }
@@ -63,7 +63,7 @@ pub fn rank(distances: &DistanceMatrix, query: usize) -> Vec<Neighbor> {
 pub fn rank_row(distances: &[f64], query: usize) -> Vec<Neighbor> {
     let others = distances.iter().enumerate().filter(|(index, _)| *index != query);
     let mut neighbors: Vec<_> = others.map(|(index, &distance)| Neighbor { index, distance }).collect();
-    neighbors.sort_by(Neighbor::cmp);
+    neighbors.sort_by(Neighbor::by_distance);
     neighbors
 }
 

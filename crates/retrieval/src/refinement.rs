@@ -66,7 +66,7 @@ pub fn refine_nearest<T: Send, E: Send>(
                 None => found.abandoned += 1,
             }
         }
-        found.nearest.sort_by(|(a, _), (b, _)| a.cmp(b));
+        found.nearest.sort_by(|(a, _), (b, _)| a.by_distance(b));
         found.nearest.truncate(k);
     }
     Ok(found)
@@ -84,7 +84,7 @@ mod tests {
     fn candidates(points: &[[f64; 2]]) -> Vec<Neighbor> {
         let mut all: Vec<_> =
             points.iter().enumerate().map(|(index, p)| Neighbor { index, distance: p[0] }).collect();
-        all.sort_by(Neighbor::cmp);
+        all.sort_by(Neighbor::by_distance);
         all
     }
 
@@ -94,7 +94,7 @@ mod tests {
         let true_distance = |i: usize| points[i][0].hypot(points[i][1]);
         let mut all: Vec<_> =
             (0..points.len()).map(|index| Neighbor { index, distance: true_distance(index) }).collect();
-        all.sort_by(Neighbor::cmp);
+        all.sort_by(Neighbor::by_distance);
         for k in [1, 3, 10, 200, 500] {
             let whole = refine_nearest::<_, ()>(candidates(&points), k, |c, _| {
                 Ok(Some((true_distance(c.index), c.index)))

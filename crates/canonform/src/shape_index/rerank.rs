@@ -88,7 +88,7 @@ mod tests {
             let robust = |i| ShapeMetric::robust(&query, all.vector(i));
             let mut expected: Vec<_> =
                 (0..700).map(|index| Neighbor { index, distance: robust(index) }).collect();
-            expected.sort_by(Neighbor::cmp);
+            expected.sort_by(Neighbor::by_distance);
             assert!(bounds(&query, &all).eq(expected));
         }
     }

@@ -164,7 +164,7 @@ mod tests {
                 let distance = |vector: &[f32]| huber(query, vector, limits);
                 let neighbor = |index| Neighbor { index, distance: distance(all.vector(index)) };
                 let mut expected: Vec<_> = (0..all.len()).map(neighbor).collect();
-                expected.sort_by(Neighbor::cmp);
+                expected.sort_by(Neighbor::by_distance);
                 assert!(all.nearest_first(query, limits, distance).eq(expected.iter().copied()));
                 if limits.is_empty() {
                     assert_eq!(all.nearest(query, 40), expected[..40]);
