@@ -123,8 +123,8 @@ pub use relations::{
 pub use retrieval::RankBy;
 pub use shape_index::{
     Aligned, Answer, BuildOptions, BuildReport, ClassVotes, ComponentResult, Dropped, DuplicateFile,
-    DuplicateGroup, DuplicateMember, DuplicateOptions, DuplicateReport, Elsewhere, EvaluateOptions, Explain,
-    Failure, FailureReason, Hit, Inputs, Measure, MergeReport, MoveReport, NearestShape, NotMoved, OrderedBy,
+    DuplicateGroup, DuplicateMember, DuplicateOptions, DuplicateReport, Elsewhere, EvaluateOptions, Failure,
+    FailureReason, Hit, Inputs, Measure, MergeReport, MoveReport, NearestShape, NotMoved, OrderedBy,
     PairwiseDistance, Prediction, Query, SearchOptions, SearchRank, SearchSeconds, ShapeLimits, ShapeSearch,
     Shard, Unknown, add_to_index, bounds, build_index, check_place, evaluate_index, evaluate_matrix,
     export_index, find_duplicates, indexed_shapes, merge_answers, merge_indexes, mesh_path, move_duplicates,

@@ -2,7 +2,7 @@
 
 use canonform::mesh::{TriMesh, shapes};
 use canonform::{
-    BuildOptions, ComparedMesh, DescribeOptions, Explain, FormOptions, SearchOptions, ShapeSearch, Surface,
+    BuildOptions, ComparedMesh, DescribeOptions, FormOptions, SearchOptions, ShapeSearch, Surface,
     build_index, compare_meshes,
 };
 use nalgebra::Vector3;
@@ -43,7 +43,7 @@ fn relations_of_a_search_are_those_of_a_comparison() {
         ComparedMesh::new(mesh, None, surface, &FormOptions::default(), &()).unwrap()
     };
     let sides: Vec<_> = meshes.iter().map(|(name, _)| compared(&search.mesh(name).unwrap())).collect();
-    let options = SearchOptions { k: meshes.len(), explain: Explain::Kind, ..SearchOptions::default() };
+    let options = SearchOptions { k: meshes.len(), explain: true, ..SearchOptions::default() };
     let mut n_pairs = 0;
     for (query, a) in meshes.iter().zip(&sides) {
         let mesh = search.mesh(query.0).unwrap();

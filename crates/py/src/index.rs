@@ -8,8 +8,8 @@ use canonform::descriptors::DescriptorError;
 use canonform::index::{Entry, ExportFormat, FORMAT_VERSION, IndexError};
 use canonform::mesh::RepairOptions;
 use canonform::{
-    Answer, BuildOptions, DescribeOptions, DuplicateOptions, Elsewhere, Error, EvaluateOptions, Explain,
-    Inputs, LabelSource, Observer, PairwiseDistance, Query, SearchOptions, ShapeFile, ShapeSearch, Shard,
+    Answer, BuildOptions, DescribeOptions, DuplicateOptions, Elsewhere, Error, EvaluateOptions, Inputs,
+    LabelSource, Observer, PairwiseDistance, Query, SearchOptions, ShapeFile, ShapeSearch, Shard,
     add_to_index, build_index, content_hash, evaluate_index, export_index, find_duplicates, indexed_shapes,
     mesh_path, remove_from_index, unchanged_index,
 };
@@ -62,7 +62,6 @@ fn rank_by<T: FromStr<Err = String>>(rank: &str) -> PyResult<T> {
 }
 
 fn search_options(k: usize, rank: &str, explain: bool) -> PyResult<SearchOptions> {
-    let explain = if explain { Explain::Kind } else { Explain::No };
     Ok(SearchOptions { k, explain, rank_by: rank_by(rank)? })
 }
 

@@ -3,7 +3,7 @@
 //! Measured with generated cats of 3,400 and 30,000 vertices and an index of 144 shapes. The [load](crate::load) learns how
 //! much faster or slower its machine is.
 
-use canonform::{Explain, SearchOptions, SearchRank};
+use canonform::{SearchOptions, SearchRank};
 
 /// To measure and describe an upload: 22 s for a text file of 14 MB with 193,600 vertices, one core.
 pub(crate) const UPLOADED_BYTE: f64 = 1.6e-6;
@@ -45,14 +45,9 @@ pub(crate) fn of_search(options: &SearchOptions, n_shapes: usize, mean: u64, ver
         SearchRank::Forms => n_shapes as f64 * COMPARED_SPECTRUM,
     };
     let aligned = n_shapes.min(CANDIDATES * options.k) as f64 * ALIGNED_FORM;
-    let explained = match options.explain {
-        Explain::No => 0.0,
-        Explain::Kind => {
-            let result = ALIGNED_FORM + vertices.max(mean) as f64 * EXPLAINED_VERTEX;
-            // The components of the query are measured, too.
-            measured + n_shapes.min(options.k) as f64 * result
-        }
-    };
+    let result = ALIGNED_FORM + vertices.max(mean) as f64 * EXPLAINED_VERTEX;
+    // The components of the query are measured, too.
+    let explained = if options.explain { measured + n_shapes.min(options.k) as f64 * result } else { 0.0 };
     ranked + aligned + explained
 }
 
@@ -63,31 +58,31 @@ mod tests {
 
     #[test]
     fn long_rankings_and_matches_are_long_jobs() {
-        use Explain::{Kind, No};
+        let (no, yes) = (false, true);
         use SearchRank::{Forms, Graph, Part, Plain};
         let length = |cost: f64| {
             let accepted = Load::new(2, 1).accept(cost, std::time::Duration::from_secs(60));
             accepted.unwrap().length
         };
         for (rank_by, explain, k, n_shapes, vertices, expected) in [
-            (Plain, No, 10, 100_000, 3000, Length::Short),
-            (Plain, No, 100, 100_000, 3000, Length::Long),
-            (Plain, No, 100, 50, 3000, Length::Short),
-            (Graph, No, 10, 100_000, 3000, Length::Short),
-            (Part, No, 10, 100, 3000, Length::Short),
-            (Part, No, 10, 1000, 3000, Length::Long),
-            (Part, No, 10, 10, 60_000, Length::Long),
-            (Forms, No, 10, 1000, 3000, Length::Short),
-            (Forms, No, 10, 100_000, 3000, Length::Long),
-            (Plain, Kind, 10, 100_000, 3000, Length::Short),
-            (Plain, Kind, 24, 100_000, 30_000, Length::Long),
-            (Plain, Kind, 24, 2, 3000, Length::Short),
+            (Plain, no, 10, 100_000, 3000, Length::Short),
+            (Plain, no, 100, 100_000, 3000, Length::Long),
+            (Plain, no, 100, 50, 3000, Length::Short),
+            (Graph, no, 10, 100_000, 3000, Length::Short),
+            (Part, no, 10, 100, 3000, Length::Short),
+            (Part, no, 10, 1000, 3000, Length::Long),
+            (Part, no, 10, 10, 60_000, Length::Long),
+            (Forms, no, 10, 1000, 3000, Length::Short),
+            (Forms, no, 10, 100_000, 3000, Length::Long),
+            (Plain, yes, 10, 100_000, 3000, Length::Short),
+            (Plain, yes, 24, 100_000, 30_000, Length::Long),
+            (Plain, yes, 24, 2, 3000, Length::Short),
         ] {
             let options = SearchOptions { rank_by, explain, k };
             let cost = of_search(&options, n_shapes, 3000, vertices);
             assert_eq!(length(cost), expected, "{options:?}, {n_shapes} shapes, {vertices} vertices");
         }
-        let of_large = of_search(&SearchOptions { explain: Kind, ..Default::default() }, 100, 100_000, 3000);
+        let of_large = of_search(&SearchOptions { explain: yes, ..Default::default() }, 100, 100_000, 3000);
         assert_eq!(length(of_large), Length::Long, "the shapes are large");
         for (n, each, expected) in [
             (300, MATCHED_VERTEX, Length::Short),

@@ -6,7 +6,7 @@ use std::time::Instant;
 use base::{ContentHash, Observer};
 use mesh::{Surface, TriMesh};
 
-use super::options::{Explain, SearchOptions, SearchRank};
+use super::options::{SearchOptions, SearchRank};
 use super::query::Query;
 use super::search::{Answer, ShapeSearch};
 use crate::error::Error;
@@ -64,7 +64,7 @@ impl ShapeSearch {
             let surface = Surface::new(&self.mesh(id)?, &describe_options.form.repair, observer)?;
             describe_part(&surface, describe_options, observer)
         };
-        let explains = options.explain == Explain::Kind;
+        let explains = options.explain;
         Ok(Query {
             part: (options.rank_by == SearchRank::Part).then(part).transpose()?,
             geometry: explains.then(|| self.geometry(&shape.entry)).flatten().map(Arc::new),

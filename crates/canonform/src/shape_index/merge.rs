@@ -122,7 +122,7 @@ mod tests {
         let index = folder.path().join("index");
         build_index(folder.path(), &index, &BuildOptions::new(&DescribeOptions::default()), &()).unwrap();
         let search = ShapeSearch::open(&index).unwrap();
-        let options = SearchOptions { explain: crate::Explain::Kind, ..SearchOptions::default() };
+        let options = SearchOptions { explain: true, ..SearchOptions::default() };
         let mut mesh = mesh::io::read(&path).unwrap();
         mesh.positions.iter_mut().for_each(|p| p.coords *= 25.4);
         let query = search.query(&mesh, ("a.off", None), &options, &()).unwrap();

@@ -42,7 +42,7 @@ pub use export::export_index;
 pub use found::{ComponentResult, Hit, OrderedBy};
 pub use merge::{merge_answers, n_candidates};
 pub use moves::{MoveReport, NotMoved, check_place, move_duplicates, undo_moves};
-pub use options::{Explain, SearchOptions, SearchRank};
+pub use options::{SearchOptions, SearchRank};
 pub use place::mesh_path;
 pub use predict::{ClassVotes, NearestShape, Prediction, Unknown, n_results};
 pub use query::Query;

@@ -9,15 +9,16 @@ use serde::{Deserialize, Serialize};
 pub struct SearchOptions {
     /// Number of results. Default: 10.
     pub k: usize,
-    /// Whether every result is compared with the query in detail. Default: no.
-    pub explain: Explain,
+    /// Whether every result is compared with the query by files and meshes, too, and with a
+    /// [`Comparison`](crate::Comparison). Default: no.
+    pub explain: bool,
     /// How results are ordered. Default: [`SearchRank::Plain`], by combined distance.
     pub rank_by: SearchRank,
 }
 
 impl Default for SearchOptions {
     fn default() -> Self {
-        Self { k: 10, explain: Explain::No, rank_by: SearchRank::Plain }
+        Self { k: 10, explain: false, rank_by: SearchRank::Plain }
     }
 }
 
@@ -59,14 +60,4 @@ impl FromStr for SearchRank {
             _ => Err("use `plain`, `graph`, `part` or `forms`".to_owned()),
         }
     }
-}
-
-/// Whether results are compared with the query in detail.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Explain {
-    /// No.
-    #[default]
-    No,
-    /// By files and meshes, too, and with a [`Comparison`](crate::Comparison) for each result.
-    Kind,
 }

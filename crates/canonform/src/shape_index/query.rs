@@ -9,7 +9,7 @@ use mesh::{Surface, TriMesh};
 use relations::MeshGeometry;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::options::{Explain, SearchOptions, SearchRank};
+use super::options::{SearchOptions, SearchRank};
 use crate::error::Error;
 use crate::form::{DescribeOptions, describe_part};
 
@@ -88,7 +88,7 @@ impl Query {
         if search.rank_by == SearchRank::Part {
             self = self.as_part(surface, describe, observer)?;
         }
-        if search.explain == Explain::Kind {
+        if search.explain {
             self.geometry = MeshGeometry::new(mesh, self.content).map(Arc::new);
         }
         Ok(self)

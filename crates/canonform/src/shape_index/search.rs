@@ -19,7 +19,7 @@ use retrieval::{LINKS, Neighbor, graph_rank};
 use serde::{Deserialize, Serialize};
 
 use super::found::{ComponentResult, Hit, OrderedBy};
-use super::options::{Explain, SearchOptions, SearchRank};
+use super::options::{SearchOptions, SearchRank};
 use super::predict::{Prediction, n_results, predicted};
 use super::query::Query;
 use super::record::{missing_signature, options_of};
@@ -165,7 +165,7 @@ impl ShapeSearch {
         observer: &dyn Observer,
     ) -> Result<Answer, Error> {
         let mut answer = self.search_among(query, None, options, observer)?;
-        if options.explain == Explain::Kind {
+        if options.explain {
             answer.components = self.search_components(query, options, observer)?;
         }
         Ok(answer)
@@ -186,7 +186,7 @@ impl ShapeSearch {
         let budget = observer.budget();
         let shape = self.prepared_query(query)?;
         let mut answer = self.nearest((query, &shape), ids, options, &budget)?;
-        if options.explain == Explain::Kind && !query.is_component {
+        if options.explain && !query.is_component {
             answer.wholes = self.search_wholes((query, &shape), &budget)?;
         }
         Ok(answer)
@@ -237,7 +237,7 @@ impl ShapeSearch {
         let threshold = self.index.threshold().filter(|_| rank_by.is_by_signatures());
         let predicted = predicted(&results, threshold, &query.shape.entry.facts);
         results.truncate(options.k);
-        if options.explain == Explain::Kind {
+        if options.explain {
             let found = results.par_iter_mut().zip(alignments);
             found.try_for_each(|(hit, best)| self.explain((query, shape), hit, best, budget))?;
         }
@@ -492,7 +492,7 @@ mod tests {
         for describe_options in [DescribeOptions::default(), kernel] {
             let (_folder, search) = indexed(&describe_options);
             assert_eq!(*search.describe_options(), describe_options);
-            let options = SearchOptions { explain: Explain::Kind, ..SearchOptions::default() };
+            let options = SearchOptions { explain: true, ..SearchOptions::default() };
             let mesh = search.mesh("ring0").unwrap();
             let by_mesh = search_for(&search, &mesh, &options);
             let by_name = search_by(&search, "ring0", &options);
@@ -677,7 +677,7 @@ mod tests {
     #[test]
     fn results_are_explained_by_meshes_where_their_files_are_unchanged() {
         let (folder, search) = indexed(&DescribeOptions::default());
-        let options = SearchOptions { explain: Explain::Kind, ..SearchOptions::default() };
+        let options = SearchOptions { explain: true, ..SearchOptions::default() };
         let mut ring = search.mesh("ring0").unwrap();
         ring.positions.iter_mut().for_each(|p| *p /= 25.4);
         let nearest = || search_for(&search, &ring, &options).results[0].clone();
@@ -695,7 +695,7 @@ mod tests {
     #[test]
     fn the_file_of_a_query_and_copies_on_a_plate_are_recognised() {
         let (folder, search) = indexed(&DescribeOptions::default());
-        let options = SearchOptions { explain: Explain::Kind, ..SearchOptions::default() };
+        let options = SearchOptions { explain: true, ..SearchOptions::default() };
         let path = folder.path().join("ring1.off");
         let content = crate::content_hash(&path).unwrap();
         let ring = mesh::io::read(&path).unwrap();

@@ -7,8 +7,8 @@ use anyhow::{Result, anyhow};
 use base::one_line;
 use canonform::mesh::io::without_extension;
 use canonform::{
-    Answer, ComponentResult, Explain, OrderedBy, Prediction, Relation, SearchOptions, SearchRank,
-    ShapeSearch, Unknown, content_hash, is_dataset, list_shapes, mesh_path,
+    Answer, ComponentResult, OrderedBy, Prediction, Relation, SearchOptions, SearchRank, ShapeSearch,
+    Unknown, content_hash, is_dataset, list_shapes, mesh_path,
 };
 use serde::Serialize;
 
@@ -57,11 +57,8 @@ impl Query {
             Self::Mesh(path) => {
                 let mesh = read_mesh(path, common)?;
                 let search = || {
-                    let content = match options.explain {
-                        _ if is_stream(path) => None,
-                        Explain::No => None,
-                        Explain::Kind => Some(content_hash(path)?),
-                    };
+                    let is_hashed = options.explain && !is_stream(path);
+                    let content = is_hashed.then(|| content_hash(path)).transpose()?;
                     let query = index.query(&mesh, (&file_name(path), content), options, &())?;
                     index.search(&query, options, &())
                 };
@@ -90,11 +87,7 @@ fn queries(args: &SearchArgs, index: &ShapeSearch) -> Result<Vec<Query>> {
 /// found for some.
 pub(crate) fn search(args: &SearchArgs, common: &Common) -> Result<ExitCode> {
     let index = ShapeSearch::open(&args.index)?;
-    let options = SearchOptions {
-        k: args.k,
-        explain: if args.explain { Explain::Kind } else { Explain::No },
-        rank_by: args.rank,
-    };
+    let options = SearchOptions { k: args.k, explain: args.explain, rank_by: args.rank };
     let queries = queries(args, &index)?;
     let (mut answers, mut failed) = (Vec::new(), Vec::new());
     for query in &queries {

@@ -9,7 +9,7 @@ use canonform::index::ContentHash;
 use canonform::mesh::RepairReport;
 use canonform::mesh::io::{MemoryFile, ReadLimits, is_mesh_path, mesh_files, read_memory};
 use canonform::{
-    Budget, Error, Explain, MeasuredSurface, MeshGeometry, SearchOptions, SearchRank, SearchSeconds, Surface,
+    Budget, Error, MeasuredSurface, MeshGeometry, SearchOptions, SearchRank, SearchSeconds, Surface,
     is_archive_name, single_mesh,
 };
 use report::viewer::Geometry;
@@ -96,7 +96,7 @@ impl SearchParams {
         if !(1..=MOST_FOUND).contains(&k) {
             return Err(ApiError::bad_request(format!("k is {k}; use 1 to {MOST_FOUND}")));
         }
-        let explain = if self.explain == Some(true) { Explain::Kind } else { Explain::No };
+        let explain = self.explain == Some(true);
         let format = self.format.unwrap_or(Format::Json);
         let geometry = format == Format::Json && self.geometry != Some(false);
         let rank_by = self.rank.unwrap_or_default();
