@@ -123,7 +123,7 @@ pub use relations::{
 pub use retrieval::RankBy;
 pub use shape_index::{
     Aligned, Answer, BuildOptions, BuildReport, ClassVotes, ComponentResult, Dropped, DuplicateFile,
-    DuplicateGroup, DuplicateMember, DuplicateOptions, DuplicateReport, Elsewhere, EvaluateOptions, Failure,
+    DuplicateGroup, DuplicateMember, DuplicateOptions, DuplicateReport, EvaluateOptions, Failure,
     FailureReason, Hit, Inputs, Measure, MergeReport, MoveReport, NearestShape, NotMoved, OrderedBy,
     PairwiseDistance, Prediction, Query, SearchOptions, SearchRank, SearchSeconds, ShapeLimits, ShapeSearch,
     Shard, Unknown, add_to_index, bounds, build_index, check_place, evaluate_index, evaluate_matrix,

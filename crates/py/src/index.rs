@@ -8,10 +8,10 @@ use canonform::descriptors::DescriptorError;
 use canonform::index::{Entry, ExportFormat, FORMAT_VERSION, IndexError};
 use canonform::mesh::RepairOptions;
 use canonform::{
-    Answer, BuildOptions, DescribeOptions, DuplicateOptions, Elsewhere, Error, EvaluateOptions, Inputs,
-    LabelSource, Observer, PairwiseDistance, Query, SearchOptions, ShapeFile, ShapeSearch, Shard,
-    add_to_index, build_index, content_hash, evaluate_index, export_index, find_duplicates, indexed_shapes,
-    mesh_path, remove_from_index, unchanged_index,
+    Answer, BuildOptions, DescribeOptions, DuplicateOptions, Error, EvaluateOptions, Inputs, LabelSource,
+    Observer, PairwiseDistance, Query, SearchOptions, ShapeFile, ShapeSearch, Shard, add_to_index,
+    build_index, content_hash, evaluate_index, export_index, find_duplicates, indexed_shapes, mesh_path,
+    remove_from_index, unchanged_index,
 };
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -110,7 +110,7 @@ impl Index {
             labels: labels.as_ref(),
             shard,
             only: only.as_ref(),
-            elsewhere: if prune { Elsewhere::Prune } else { Elsewhere::Keep },
+            prune,
             limits: settings.limits()?,
             ..BuildOptions::new(&describe)
         };
@@ -133,7 +133,7 @@ impl Index {
         let labels = labels_of(labels)?;
         let options = BuildOptions {
             labels: labels.as_ref(),
-            elsewhere: Elsewhere::Prune,
+            prune: true,
             limits: settings.limits()?,
             ..BuildOptions::new(&describe)
         };

@@ -24,7 +24,7 @@ pub struct ComparedMesh<S = Surface> {
     /// The shape with this form.
     pub shape: PreparedShape,
     /// The shape made with the options that the metric is calibrated for, if those differ.
-    usual: Option<PreparedShape>,
+    reference: Option<PreparedShape>,
 }
 
 impl<S: Borrow<Surface>> ComparedMesh<S> {
@@ -42,20 +42,20 @@ impl<S: Borrow<Surface>> ComparedMesh<S> {
         options.validate()?;
         let geometry = MeshGeometry::new(mesh, content);
         let repaired = surface.borrow();
-        let usual = FormOptions { repair: repaired.repair, ..FormOptions::default() };
-        let usual = DescribeOptions { form: usual, ..DescribeOptions::default() };
+        let reference = FormOptions { repair: repaired.repair, ..FormOptions::default() };
+        let reference = DescribeOptions { form: reference, ..DescribeOptions::default() };
         let measured = MeasuredSurface::new(repaired, options, observer)?;
         let form = measured.form_of(repaired)?;
-        if *measured.options() == usual.form {
-            let shape = usual.prepare(&measured.describe(&usual, observer)?)?;
-            return Ok(Self { surface, geometry, form, shape, usual: None });
+        if *measured.options() == reference.form {
+            let shape = reference.prepare(&measured.describe(&reference, observer)?)?;
+            return Ok(Self { surface, geometry, form, shape, reference: None });
         }
-        let description = describe(repaired, &usual, observer)?;
-        let described = usual.prepare(&description)?;
+        let description = describe(repaired, &reference, observer)?;
+        let described = reference.prepare(&description)?;
         let (fused, area) = (description.fused, Some(description.entry.facts.area));
-        let shape = PreparedShape::new(fused, &form.reduced(usual.points), area)?;
+        let shape = PreparedShape::new(fused, &form.reduced(reference.points), area)?;
         let shape = shape.with_rigid(described.rigid().to_vec());
-        Ok(Self { geometry, form, shape, usual: Some(described), surface })
+        Ok(Self { geometry, form, shape, reference: Some(described), surface })
     }
 
     /// The repaired mesh.
@@ -67,7 +67,7 @@ impl<S: Borrow<Surface>> ComparedMesh<S> {
     pub fn compared(&self) -> Compared<'_> {
         Compared {
             shape: &self.shape,
-            usual: self.usual.as_ref().unwrap_or(&self.shape),
+            reference: self.reference.as_ref().unwrap_or(&self.shape),
             form: &self.form,
             surface: Some(self.surface()),
             geometry: self.geometry.as_ref(),
@@ -82,7 +82,7 @@ pub struct Compared<'a> {
     /// The shape whose form is compared.
     pub shape: &'a PreparedShape,
     /// The same shape, made with the options that the metric is calibrated for: shapes are related by it, whatever the options.
-    pub usual: &'a PreparedShape,
+    pub reference: &'a PreparedShape,
     /// Its form: at all vertices of the surface if there is one.
     pub form: &'a CanonicalForm,
     /// Its repaired mesh.
@@ -133,8 +133,9 @@ pub struct MeshComparison {
 /// [`Error::Descriptor`].
 pub fn compare_meshes([a, b]: [Compared<'_>; 2]) -> Result<MeshComparison, Error> {
     let pair = ShapePair::new([a.shape, b.shape]);
-    let is_usual = std::ptr::eq(a.shape, a.usual) && std::ptr::eq(b.shape, b.usual);
-    let distance = if is_usual { pair.distance() } else { ShapePair::new([a.usual, b.usual]).distance() };
+    let is_reference = std::ptr::eq(a.shape, a.reference) && std::ptr::eq(b.shape, b.reference);
+    let distance =
+        if is_reference { pair.distance() } else { ShapePair::new([a.reference, b.reference]).distance() };
     let (handedness, triangulation) = match (a.surface, b.surface) {
         (Some(of_a), Some(of_b)) => {
             let same =
@@ -203,7 +204,7 @@ mod tests {
         let all = meshes.map(|mesh| described(mesh, options));
         let sides = all.each_ref().map(|Described { surface, form, shape }| Compared {
             shape,
-            usual: shape,
+            reference: shape,
             form,
             surface: Some(surface),
             geometry: None,

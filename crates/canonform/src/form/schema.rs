@@ -46,7 +46,7 @@ pub struct OptionSpec {
     /// Its default in words; empty for an option that is off by default.
     pub default: &'static str,
     /// Whether few users need it, so that help pages may leave it out.
-    pub is_seldom: bool,
+    pub is_advanced: bool,
     help: &'static str,
     names: fn() -> Vec<(&'static str, &'static str)>,
     check: fn(&str) -> Result<(), String>,
@@ -71,13 +71,13 @@ pub static SCHEMA: [OptionSpec; 22] = [
         .called("n_landmarks"),
     parsed::<usize>(OptionGroup::Form, "dim", "K", "3", "Dimensions of the embedding").called("n_components"),
     named::<Method>(OptionGroup::Form, "geodesic", "fast-marching", "How to measure distances"),
-    named::<Update>(OptionGroup::Marching, "update", "virtual-source", "Local solver").seldom(),
+    named::<Update>(OptionGroup::Marching, "update", "virtual-source", "Local solver").advanced(),
     named::<ObtuseTreatment>(
         OptionGroup::Marching,
         "obtuse",
         "flip",
         "What to do about angles wider than 90 degrees",
-    ).seldom(),
+    ).advanced(),
     named::<ComponentPolicy>(
         OptionGroup::Repair,
         "components",
@@ -101,9 +101,9 @@ pub static SCHEMA: [OptionSpec; 22] = [
         "half the samples, at least {dim} + 4",
         "Number of eigenpairs of the sample matrix to keep (of columns for cur)",
     )
-    .of(|m| m.regularization().is_some() || matches!(m, EmbedMethod::KernelPca { .. })).seldom(),
+    .of(|m| m.regularization().is_some() || matches!(m, EmbedMethod::KernelPca { .. })).advanced(),
     named::<Sampling>(OptionGroup::Method, "sampling", "farthest", "How to choose samples")
-        .of(EmbedMethod::is_sampled).seldom(),
+        .of(EmbedMethod::is_sampled).advanced(),
     parsed::<u32>(
         OptionGroup::Method,
         "first_sample",
@@ -112,14 +112,14 @@ pub static SCHEMA: [OptionSpec; 22] = [
         "First sample, a vertex of the input",
     )
     .called("first")
-    .of(EmbedMethod::is_sampled).seldom(),
+    .of(EmbedMethod::is_sampled).advanced(),
     named::<Regularization>(
         OptionGroup::Method,
         "regularization",
         "low-rank",
         "How nmds, and the start of smacof, regularise the inverse of the sample matrix",
     )
-    .of(is_regularized).seldom(),
+    .of(is_regularized).advanced(),
     parsed::<RpiAlpha>(
         OptionGroup::Method,
         "alpha",
@@ -128,7 +128,7 @@ pub static SCHEMA: [OptionSpec; 22] = [
         "For {regularization} rpi: alpha over the fourth power of the largest eigenvalue, or `paper` for the third \
          power of that eigenvalue, which depends on the unit of length",
     )
-    .of(is_regularized).seldom(),
+    .of(is_regularized).advanced(),
     parsed::<Bandwidth>(
         OptionGroup::Method,
         "sigma",
@@ -136,7 +136,7 @@ pub static SCHEMA: [OptionSpec; 22] = [
         "mean",
         "Kernel width of kpca, in mesh units or as a statistic of the measured distances",
     )
-    .of(|m| matches!(m, EmbedMethod::KernelPca { .. })).seldom(),
+    .of(|m| matches!(m, EmbedMethod::KernelPca { .. })).advanced(),
     parsed::<usize>(
         OptionGroup::Method,
         "eigenvectors",
@@ -145,7 +145,7 @@ pub static SCHEMA: [OptionSpec; 22] = [
         "Number of Laplace-Beltrami eigenfunctions for spectral",
     )
     .called("n_eigenfunctions")
-    .of(is_spectral).seldom(),
+    .of(is_spectral).advanced(),
     parsed::<f64>(
         OptionGroup::Method,
         "mu",
@@ -154,10 +154,10 @@ pub static SCHEMA: [OptionSpec; 22] = [
         "Weight of the distances against smoothness in spectral, for a surface of unit area; `inf` fits the \
          distances exactly",
     )
-    .of(is_spectral).seldom(),
+    .of(is_spectral).advanced(),
     parsed::<usize>(OptionGroup::Method, "iterations", "N", "300", "Maximum number of smacof steps")
         .called("max_iterations")
-        .of(is_smacof).seldom(),
+        .of(is_smacof).advanced(),
     parsed::<f64>(
         OptionGroup::Method,
         "tolerance",
@@ -165,7 +165,7 @@ pub static SCHEMA: [OptionSpec; 22] = [
         "1e-6",
         "Stop smacof when a step reduces the stress by less than this fraction",
     )
-    .of(is_smacof).seldom(),
+    .of(is_smacof).advanced(),
     named::<StressChoice>(OptionGroup::Stress, "stress", "auto", "How to find the stress; see below for its formulas"),
     parsed::<usize>(
         OptionGroup::Description,
@@ -204,7 +204,7 @@ const fn named<T: Named>(
         group,
         placeholder: "",
         default,
-        is_seldom: false,
+        is_advanced: false,
         help,
         names: || T::table().into_iter().map(|(name, help, _)| (name, help)).collect(),
         check: check_name::<T>,
@@ -226,7 +226,7 @@ const fn parsed<T: FromStr<Err: Display>>(
         group,
         placeholder,
         default,
-        is_seldom: false,
+        is_advanced: false,
         help,
         names: Vec::new,
         check: |text| text.parse::<T>().map(drop).map_err(|fault| fault.to_string()),
@@ -251,8 +251,8 @@ impl OptionSpec {
     }
 
     /// The same option, which few users need.
-    const fn seldom(self) -> Self {
-        Self { is_seldom: true, ..self }
+    const fn advanced(self) -> Self {
+        Self { is_advanced: true, ..self }
     }
 
     /// The option of this name.

@@ -41,8 +41,8 @@ pub struct BuildOptions<'a> {
     pub shard: Option<Shard>,
     /// The shapes to index, by name: part of them, as [`indexed_shapes`] names them. Default: all of them.
     pub only: Option<&'a HashSet<String>>,
-    /// What becomes of shapes of the index that did not come from the folder. Default: they are kept.
-    pub elsewhere: Elsewhere,
+    /// Whether shapes of the index that did not come from the folder are removed. Default: no.
+    pub prune: bool,
     /// What describing each shape may use. Default: no limits.
     pub limits: ShapeLimits,
 }
@@ -51,19 +51,8 @@ impl<'a> BuildOptions<'a> {
     /// The defaults.
     #[must_use]
     pub fn new(describe: &'a DescribeOptions) -> Self {
-        let (elsewhere, limits) = (Elsewhere::default(), ShapeLimits::default());
-        Self { describe, labels: None, shard: None, only: None, elsewhere, limits }
+        Self { describe, labels: None, shard: None, only: None, prune: false, limits: ShapeLimits::default() }
     }
-}
-
-/// What becomes of shapes of an index that did not come from the folder it is built from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Elsewhere {
-    /// They stay.
-    #[default]
-    Keep,
-    /// They are removed.
-    Prune,
 }
 
 /// A mesh that could not be described.
@@ -140,9 +129,9 @@ pub struct BuildReport {
     pub removed: usize,
     /// Shapes kept although their files cannot be read now: the file, its folder, or a link to it.
     pub unreadable: Vec<String>,
-    /// Shapes kept although they did not come from the folder; [`Elsewhere::Prune`] removes them.
+    /// Shapes kept although they did not come from the folder; [`prune`](BuildOptions::prune) removes them.
     pub elsewhere: usize,
-    /// Shapes removed by [`Elsewhere::Prune`].
+    /// Shapes removed by [`prune`](BuildOptions::prune).
     pub pruned: usize,
     /// Shapes of this run without a class.
     pub unlabelled: usize,
@@ -245,7 +234,7 @@ impl BuildReport {
 /// Decides what becomes of shapes of an index whose files were not found.
 struct Missing<'a> {
     root: &'a Root<'a>,
-    elsewhere: Elsewhere,
+    prune: bool,
     /// Paths, as the index states them, at and below which nothing can be read now.
     unreadable: Vec<String>,
     /// Names of files that were found and cannot be read.
@@ -253,11 +242,11 @@ struct Missing<'a> {
 }
 
 impl<'a> Missing<'a> {
-    fn new(root: &'a Root<'a>, elsewhere: Elsewhere, skipped: &[Skipped]) -> Self {
+    fn new(root: &'a Root<'a>, prune: bool, skipped: &[Skipped]) -> Self {
         let is_unreadable =
             |skipped: &&Skipped| matches!(skipped.kind, SkipKind::Unreadable | SkipKind::BrokenLink);
         let unreadable = skipped.iter().filter(is_unreadable).map(|skipped| root.text(&skipped.path));
-        Self { root, elsewhere, unreadable: unreadable.collect(), unread: HashSet::new() }
+        Self { root, prune, unreadable: unreadable.collect(), unread: HashSet::new() }
     }
 
     /// Whether a shape stays; counts what becomes of it. A file that cannot be read is not gone.
@@ -267,10 +256,10 @@ impl<'a> Missing<'a> {
             report.unreadable.push(entry.id.clone());
             return true;
         }
-        let (count, stays) = match (self.root.brought(&entry.id, &entry.path), self.elsewhere) {
+        let (count, stays) = match (self.root.contains_source(&entry.id, &entry.path), self.prune) {
             (true, _) => (&mut report.removed, false),
-            (false, Elsewhere::Prune) => (&mut report.pruned, false),
-            (false, Elsewhere::Keep) => (&mut report.elsewhere, true),
+            (false, true) => (&mut report.pruned, false),
+            (false, false) => (&mut report.elsewhere, true),
         };
         *count += 1;
         stays
@@ -313,7 +302,7 @@ pub fn build_index(
     let (existing, listing) = index_and_listing(&root, path, options)?;
     let mut report = BuildReport::of(&listing);
     let hashed = hash_all(listing.shapes, observer);
-    let mut missing = Missing::new(&root, options.elsewhere, &listing.skipped);
+    let mut missing = Missing::new(&root, options.prune, &listing.skipped);
     if let Some(index) = existing
         && report.is_current(&index, &hashed, &missing)?
     {
@@ -370,7 +359,7 @@ pub fn unchanged_index(
     }
     let mut report = BuildReport::of(&listing);
     let hashed = hash_all(listing.shapes, observer);
-    let missing = Missing::new(&root, options.elsewhere, &listing.skipped);
+    let missing = Missing::new(&root, options.prune, &listing.skipped);
     let is_current = report.is_current(&index, &hashed, &missing)?;
     report.seconds = start.elapsed().as_secs_f64();
     Ok(is_current.then_some(report))

@@ -29,8 +29,7 @@ mod search;
 mod source;
 
 pub use build::{
-    BuildOptions, BuildReport, Dropped, Elsewhere, Failure, FailureReason, build_index, indexed_shapes,
-    unchanged_index,
+    BuildOptions, BuildReport, Dropped, Failure, FailureReason, build_index, indexed_shapes, unchanged_index,
 };
 pub use change::{MergeReport, add_to_index, merge_indexes, remove_from_index};
 pub use distances::PairwiseDistance;

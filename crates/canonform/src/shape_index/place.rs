@@ -91,7 +91,7 @@ impl<'a> Root<'a> {
     }
 
     /// Whether a shape with this name and path came from this folder.
-    pub(super) fn brought(&self, id: &str, stored: &str) -> bool {
+    pub(super) fn contains_source(&self, id: &str, stored: &str) -> bool {
         // Earlier versions stored paths as they were given.
         [self.home.text(&self.canonical), slashed(self.given)].iter().any(|folder| {
             let below = match folder.as_str() {
@@ -183,8 +183,10 @@ mod tests {
                 let folder = at(folder);
                 let root = Root::new(&folder, &home).unwrap();
                 assert_eq!(root.text(&folder.join("sub/a.off")), text);
-                assert!(root.brought("sub/a", text) && root.brought("sub/a.off", text));
-                assert!(!root.brought("a", text) && !root.brought("sub/a", "../other/sub/a.off"));
+                assert!(root.contains_source("sub/a", text) && root.contains_source("sub/a.off", text));
+                assert!(
+                    !root.contains_source("a", text) && !root.contains_source("sub/a", "../other/sub/a.off")
+                );
             }
             assert_eq!(mesh_path(&at(index), text), at("data/meshes/sub/a.off"));
             assert_eq!(home.text_of(&at("work/other"), "../data/meshes/sub/a.off"), text);
@@ -197,7 +199,7 @@ mod tests {
         let index = place.path().join("i");
         let home = Home::of(&index).unwrap();
         let root = Root::new(place.path(), &home).unwrap();
-        assert!(root.brought("a", "a.off") && root.brought("b/a", "b/a.off"));
-        assert!(!root.brought("a", "../a.off") && !root.brought("a", "/a.off"));
+        assert!(root.contains_source("a", "a.off") && root.contains_source("b/a", "b/a.off"));
+        assert!(!root.contains_source("a", "../a.off") && !root.contains_source("a", "/a.off"));
     }
 }

@@ -75,7 +75,7 @@ fn arg(option: &'static OptionSpec) -> Arg {
     let arg = Arg::new(option.name)
         .long(option.name.replace('_', "-"))
         .help_heading(heading(option.group))
-        .hide_short_help(option.is_seldom);
+        .hide_short_help(option.is_advanced);
     let arg = match help.split_once("\n\n") {
         Some((first, _)) => arg.help(first.to_owned()).long_help(help),
         None => arg.help(help),

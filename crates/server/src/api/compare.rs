@@ -93,7 +93,7 @@ impl ComparedShape {
         let (shape, measured) = (&self.shape, self.measured.as_deref());
         Compared {
             shape,
-            usual: shape,
+            reference: shape,
             form: measured.map_or(shape.form(), |measured| &measured.form),
             surface: measured.map(|measured| &measured.surface),
             geometry: measured.and_then(|measured| measured.geometry.as_deref()),

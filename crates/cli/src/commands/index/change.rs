@@ -7,8 +7,8 @@ use anyhow::Result;
 use base::terminal::Bars;
 use canonform::index::damaged_path;
 use canonform::{
-    BuildOptions, BuildReport, Elsewhere, FailureReason, Inputs, LabelOrigin, LabelSource, MergeReport,
-    add_to_index, build_index, merge_indexes, remove_from_index,
+    BuildOptions, BuildReport, FailureReason, Inputs, LabelOrigin, LabelSource, MergeReport, add_to_index,
+    build_index, merge_indexes, remove_from_index,
 };
 use serde::Serialize;
 
@@ -31,7 +31,7 @@ pub(super) fn build(args: &BuildArgs, common: &Common) -> Result<ExitCode> {
     let options = BuildOptions {
         labels: labels.as_ref(),
         shard: args.shard,
-        elsewhere: if args.prune { Elsewhere::Prune } else { Elsewhere::Keep },
+        prune: args.prune,
         limits: args.limits.each(),
         ..BuildOptions::new(&describe)
     };
