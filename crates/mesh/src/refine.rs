@@ -50,39 +50,48 @@ const FLAT: f64 = 1e-5;
 /// If a face has a repeated vertex or one that does not exist, see [`Topology::new`].
 #[must_use]
 pub fn refine(mesh: &TriMesh, longest: f64, most: usize) -> Refined {
+    // Coordinates in this unit, a power of two, are exact, and their products do not overflow.
     let unit = mesh.unit();
-    let height = FLAT * mesh.root_of_area();
-    let mut refined = Refined { mesh: mesh.clone(), origins: Vec::new() };
-    loop {
-        let length = |mesh: &TriMesh, [a, b]: [VertexId; 2]| {
-            ((mesh.positions[a.index()] - mesh.positions[b.index()]) / unit).norm() * unit
-        };
-        let sides = |[a, b, c]: &[VertexId; 3]| [[*a, *b], [*b, *c], [*c, *a]];
-        if !refined.mesh.faces.iter().flat_map(sides).any(|side| length(&refined.mesh, side) > longest) {
-            return refined;
-        }
-        let planes = flip_in_planes(&mut refined.mesh, height);
-        let topology = planes.mesh.topology();
-        let edges = topology.edges().iter().enumerate();
-        let mut long: Vec<(f64, usize)> =
-            edges.map(|(e, ends)| (length(&refined.mesh, *ends), e)).filter(|(x, _)| *x > longest).collect();
-        long.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        let mut taken = Taken::new(0.5 * longest);
-        long.retain(|(_, e)| {
-            let [a, b] = topology.edges()[*e].map(|v| refined.mesh.positions[v.index()]);
-            let is_free = taken.is_free(&nalgebra::center(&a, &b));
-            is_free || !planes.is_inside[*e]
-        });
-        if long.is_empty() || refined.mesh.n_vertices() + long.len() > most {
-            return refined;
-        }
-        let mut edges: Vec<usize> = long.into_iter().map(|(_, e)| e).collect();
-        edges.sort_unstable();
-        refined.split(topology, &edges);
-    }
+    let in_units = |mesh: &TriMesh, unit: f64| TriMesh {
+        positions: mesh.positions.iter().map(|p| p / unit).collect(),
+        faces: mesh.faces.clone(),
+    };
+    let mut refined = Refined { mesh: in_units(mesh, unit), origins: Vec::new() };
+    refined.split_longer_than(longest / unit, most);
+    refined.mesh = in_units(&refined.mesh, 1.0 / unit);
+    refined.mesh.positions[..mesh.n_vertices()].clone_from_slice(&mesh.positions);
+    refined
 }
 
 impl Refined {
+    fn split_longer_than(&mut self, longest: f64, most: usize) {
+        let height = FLAT * self.mesh.root_of_area();
+        let length = |mesh: &TriMesh, [a, b]: [VertexId; 2]| {
+            (mesh.positions[a.index()] - mesh.positions[b.index()]).norm()
+        };
+        let sides = |[a, b, c]: &[VertexId; 3]| [[*a, *b], [*b, *c], [*c, *a]];
+        while self.mesh.faces.iter().flat_map(sides).any(|side| length(&self.mesh, side) > longest) {
+            let planes = flip_in_planes(&mut self.mesh, height);
+            let topology = planes.mesh.topology();
+            let edges = topology.edges().iter().enumerate();
+            let mut long: Vec<(f64, usize)> =
+                edges.map(|(e, ends)| (length(&self.mesh, *ends), e)).filter(|(x, _)| *x > longest).collect();
+            long.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+            let mut taken = Taken::new(0.5 * longest);
+            long.retain(|(_, e)| {
+                let [a, b] = topology.edges()[*e].map(|v| self.mesh.positions[v.index()]);
+                let is_free = taken.is_free(&nalgebra::center(&a, &b));
+                is_free || !planes.is_inside[*e]
+            });
+            if long.is_empty() || self.mesh.n_vertices() + long.len() > most {
+                break;
+            }
+            let mut edges: Vec<usize> = long.into_iter().map(|(_, e)| e).collect();
+            edges.sort_unstable();
+            self.split(topology, &edges);
+        }
+    }
+
     /// Splits some edges at their midpoints, in their order.
     pub(crate) fn split(&mut self, topology: &Topology, edges: &[usize]) {
         let TriMesh { positions, faces } = &mut self.mesh;
@@ -126,8 +135,17 @@ fn flip_in_planes(mesh: &mut TriMesh, height: f64) -> Planes {
     let before = mesh.intrinsic();
     let mut planes = Triangulation::glued_where(&before, |a, b| is_flat(mesh, before.topology(), [a, b]));
     planes.flip_to_delaunay(Loops::Forbidden);
-    mesh.faces = planes.triangles().iter().map(|triangle| triangle.vertices).collect();
-    let after = mesh.intrinsic();
+    let flipped = TriMesh {
+        faces: planes.triangles().iter().map(|triangle| triangle.vertices).collect(),
+        positions: mesh.positions.clone(),
+    };
+    let mut after = flipped.intrinsic();
+    // The two sides of a sheet must not become one where they are flipped to the same edge.
+    if after.topology().n_edges() == before.topology().n_edges() {
+        *mesh = flipped;
+    } else {
+        after = before;
+    }
     let topology = after.topology();
     let is_inside = |e: usize| match topology.edge_corners(EdgeId::from(e)) {
         [a, b] => is_flat(mesh, topology, [*a, *b]),
@@ -245,6 +263,17 @@ mod tests {
         // As many as equilateral triangles of half this length have, where needles would be cut into 4,000.
         let inside = mesh.n_vertices() - plate.n_vertices();
         assert!(inside < 1500, "{inside}");
+    }
+
+    #[test]
+    fn the_sides_of_a_flat_bag_stay_two() {
+        // A square of two sides with other diagonals, of which one is longer: flipped, both would have the shorter one.
+        let corners = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.2, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        let faces = [[0, 1, 2], [0, 2, 3], [1, 0, 3], [1, 3, 2]].map(|face| face.map(VertexId)).to_vec();
+        let bag = TriMesh { positions: corners.map(Point3::from).to_vec(), faces };
+        let after = validate(&refine(&bag, 0.3, usize::MAX).mesh);
+        assert!(after.n_vertices > 40 && after.max_edge_length <= 0.3);
+        assert_eq!((after.genus, after.non_manifold_edges), (validate(&bag).genus, 0));
     }
 
     #[test]
