@@ -101,8 +101,7 @@ pub use compare::{
     compare, compare_meshes, embedded_distances, form_alignments,
 };
 pub use correspond::{
-    CollectionMaps, CorrespondOptions, Correspondence, FacePoint, MappedSurface, Mapping, PairMap, PointMap,
-    VertexMap, correspond, correspond_all,
+    CorrespondOptions, Correspondence, FacePoint, MappedSurface, Mapping, PointMap, VertexMap, correspond,
 };
 pub use error::{Error, Remedy};
 pub use fields::{

@@ -45,7 +45,7 @@ mod _canonform {
         query_of_surface, shortlist,
     };
     #[pymodule_export]
-    use crate::matching::{map_basis, map_points, match_collection, match_surfaces};
+    use crate::matching::{map_basis, map_points, match_surfaces};
     #[pymodule_export]
     use crate::nystrom::{Extension, SampleSearch, first_landmarks, nystrom};
     #[pymodule_export]

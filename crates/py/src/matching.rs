@@ -2,9 +2,7 @@
 
 use canonform::linalg::Matrix;
 use canonform::surface::VertexId;
-use canonform::{
-    CorrespondOptions, KnownMap, Mapping, PointMap, Side, VertexMap, correspond, correspond_all,
-};
+use canonform::{CorrespondOptions, KnownMap, Mapping, PointMap, Side, VertexMap, correspond};
 use numpy::PyUntypedArrayMethods;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -108,29 +106,6 @@ pub(crate) fn match_surfaces<'py>(
     let n_colors = colors.len();
     let colors = colors.into_flattened().into_pyarray(py).reshape([n_colors, 3])?;
     Ok((json(&found), maps, colors))
-}
-
-/// The maps of all pairs of several surfaces as JSON, and the arrays of each.
-#[pyfunction]
-pub(crate) fn match_collection<'py>(
-    py: Python<'py>,
-    surfaces: Vec<PyRef<'py, Surface>>,
-    settings: &str,
-    progress: Option<Py<PyAny>>,
-) -> PyResult<(String, Vec<MapArrays<'py>>)> {
-    let settings = Settings::parse(settings)?;
-    let surfaces: Vec<&Surface> = surfaces.iter().map(|surface| &**surface).collect();
-    let options: Vec<CorrespondOptions> =
-        surfaces.iter().map(|surface| settings.correspond(surface.inner.repair)).collect::<PyResult<_>>()?;
-    let found = run(py, &settings.budget()?, progress.as_ref(), |observer| {
-        let sides =
-            surfaces.iter().zip(&options).map(|(surface, options)| surface.matched(options, observer));
-        let sides = sides.collect::<Result<Vec<_>, _>>()?;
-        let sides: Vec<_> = sides.iter().map(|side| &**side).collect();
-        correspond_all(&sides, &options.first().cloned().unwrap_or_default(), observer)
-    })?;
-    let maps = found.pairs.iter().map(|pair| arrays_of(py, &pair.map)).collect::<PyResult<_>>()?;
-    Ok((json(&found), maps))
 }
 
 /// The points inside the faces of the other surface that a map takes the vertices or faces of one side to: faces, corners and

@@ -53,7 +53,6 @@ def everything(cats: list[Shape], tmp_path_factory: pytest.TempPathFactory) -> d
         "nearest": a.closest_point([[0.0, 0.0, 0.0]]),
         "map": found.best,
         "mapped": found.best.points(),
-        "maps": canonform.match_all([a, b], n_eigenfunctions=40),
         "edge point": canonform.EdgePoint(3, 4, 0.25),
         "face point": canonform.FacePoint(8, (2.0, 1.0, 1.0)),
         "marching": canonform.FastMarching(update="planar"),

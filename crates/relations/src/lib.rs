@@ -10,8 +10,8 @@ mod outward;
 mod relation;
 
 pub use maps::{
-    ConsistentMaps, CycleReport, KnownMap, LandmarkConflict, MapElements, MapError, MapKind, MapShape,
-    PartOfWhole, SurfaceMap, all_pairs, consistent_maps, map_surfaces, map_wholes, mapped_points,
+    KnownMap, LandmarkConflict, MapElements, MapError, MapKind, MapShape, PartOfWhole, SurfaceMap,
+    map_surfaces, mapped_points,
 };
 pub use relation::{
     Basis, Change, CutPiece, Difference, Dimension, Evidence, Handedness, MeshGeometry, MeshOverlay,

@@ -1,9 +1,9 @@
-//! What maps are good for: known pairs, points inside faces, what they carry, and maps that agree.
+//! What maps are good for: known pairs, points inside faces, and what they carry.
 
 use canonform::relations::{LandmarkConflict, MapKind};
 use canonform::{
     CorrespondOptions, Error, KnownMap, MappedSurface, Mapping, PointMap, Side, Surface, VertexMap,
-    correspond, correspond_all,
+    correspond,
 };
 use datasets::{ArticulatedOptions, Family, RestedShape, articulated_at_rest};
 use descriptors::NearestPoints;
@@ -276,47 +276,6 @@ fn what_does_not_fit_the_meshes_is_refused() {
         let fault = refused(KnownMap { functions, ..KnownMap::default() }).to_string();
         assert!(fault.contains(what), "{fault}");
     }
-}
-
-#[test]
-fn maps_of_one_shape_close_to_cycles() {
-    let mesh = body(Family::Cat);
-    let side = prepared(&mesh);
-    let found = correspond_all(&[&side, &side, &side], &CorrespondOptions::default(), &()).unwrap();
-    assert_eq!(found.pairs.iter().map(|pair| [pair.a, pair.b]).collect::<Vec<_>>(), [[0, 1], [0, 2], [1, 2]]);
-    assert_eq!((found.cycles.n_cycles, found.cycles.before, found.cycles.after), (1, 0.0, 0.0));
-    for pair in &found.pairs {
-        let fixed = pair.map.vertices.iter().enumerate().filter(|(x, y)| **y == Some(VertexId::from(*x)));
-        assert_eq!(fixed.count(), mesh.n_vertices());
-        assert!(pair.agreed && pair.map.kind == MapKind::Direct);
-    }
-    let two = correspond_all(&[&side, &side], &CorrespondOptions::default(), &()).unwrap();
-    assert_eq!((two.pairs.len(), two.cycles.n_cycles), (1, 0));
-}
-
-#[test]
-fn maps_of_several_poses_agree_and_stay_right() {
-    let cats = [0, 2, 4, 6].map(cat);
-    let sides = cats.each_ref().map(|cat| prepared(&cat.shape.mesh));
-    let shapes: Vec<&MappedSurface> = sides.iter().collect();
-    let found = correspond_all(&shapes, &CorrespondOptions::default(), &()).unwrap();
-    println!("{:?}", found.cycles);
-    assert!(found.cycles.after < 0.8 * found.cycles.before);
-    let error = |map: &VertexMap, a: usize, b: usize| {
-        let images: Vec<usize> = map.vertices.iter().map(|v| v.unwrap().index()).collect();
-        let truth: Vec<usize> = partners(&cats[a], &cats[b]).into_iter().map(VertexId::index).collect();
-        let places = coordinates(&cats[b].shape.mesh);
-        gap(&places.select_rows(&images), &places.select_rows(&truth), &cats[b].shape.mesh)
-    };
-    let alone = |a: usize, b: usize| error(&with(KnownMap::default(), [shapes[a], shapes[b]])[0], a, b);
-    let (mut before, mut after) = (0.0, 0.0);
-    for pair in &found.pairs {
-        before += alone(pair.a, pair.b) / 6.0;
-        after += error(&pair.map, pair.a, pair.b) / 6.0;
-        assert_eq!(pair.map.kind, MapKind::Direct);
-    }
-    println!("mean error {before:.4} alone, {after:.4} together");
-    assert!(after < 1.1 * before, "{after}, alone {before}");
 }
 
 #[test]

@@ -106,7 +106,7 @@ pub fn correspond<S: Borrow<Surface>>(
 
 impl VertexMap {
     /// A map of the vertices of the repaired meshes as one of the inputs.
-    pub(super) fn new(map: SurfaceMap, [from, to]: [&Surface; 2], landmarks: &[[VertexId; 2]]) -> Self {
+    fn new(map: SurfaceMap, [from, to]: [&Surface; 2], landmarks: &[[VertexId; 2]]) -> Self {
         let in_input = |partners: &[Option<VertexId>], from: &Surface, to: &Surface| {
             let partners: Vec<_> = partners.iter().map(|v| v.map(|v| to.input_vertex(v))).collect();
             from.in_input_order(&partners, None)

@@ -1,13 +1,11 @@
 //! Dense maps between two surfaces.
 
-mod collection;
 mod correspondence;
 mod known;
 mod mapped_surface;
 mod options;
 mod point_map;
 
-pub use collection::{CollectionMaps, PairMap, correspond_all};
 pub use correspondence::{Correspondence, VertexMap, correspond};
 pub use mapped_surface::MappedSurface;
 pub use options::CorrespondOptions;

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use canonform::mesh::io::or_list;
 use clap::Args;
 
-use super::settings::{FormArgs, OfMaps, one_of};
+use super::PairArgs;
+use super::settings::{FormArgs, OfMaps};
 use super::shared::LimitArgs;
 
 /// What is written, and what the numbers mean.
@@ -32,23 +33,18 @@ Transfer: --transfer takes one row for each vertex or each face of A, .npy or .c
 Numbers with fractions, and several columns such as texture coordinates, are interpolated inside faces; whole numbers (an integer
 array, or a .csv of them) and words are labels, which go to the nearest. To transfer from B to A, exchange the meshes.
 
-Three or more meshes: all pairs are mapped, and the maps are made to agree: from A to B and on to C is the same as at once. -o is
-then a folder, with a file A-B.npy for each pair.
-
 Examples:
   canonform match cat0.off cat1.off -o map.npy
   canonform match cat0.off cat1.off -o b-in-a-colours.ply
   canonform match cat0.off cat1.off --landmarks pairs.csv --points -o map.csv
   canonform match cat0.off cat1.off --transfer parts-of-cat0.csv -o parts-of-cat1.csv
-  canonform match cat0.off cat1.off --functional c.npy --json
-  canonform match 'cats/*.off' -o maps/";
+  canonform match cat0.off cat1.off --functional c.npy --json";
 
 #[derive(Debug, Args)]
 #[command(after_long_help = MATCH_NOTES, after_help = "See `--help-all` for what is written, and for examples.")]
 pub(crate) struct MatchArgs {
-    /// Two meshes A and B, or `-` for standard input; or more of them, datasets or patterns, which are all mapped to each other
-    #[arg(required = true, value_name = "MESH")]
-    pub(crate) meshes: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) pair: PairArgs,
     #[arg(short, long, value_name = "MAP", help = match_help())]
     pub(crate) output: Option<PathBuf>,
     /// Known pairs of vertices, .csv or .npy: two columns, a vertex of A and one of B
@@ -66,9 +62,6 @@ pub(crate) struct MatchArgs {
     /// Write the functional map of the first map: .npy, with the eigenfunctions of both meshes in two files beside it
     #[arg(long, value_name = "C.npy")]
     pub(crate) functional: Option<PathBuf>,
-    /// File format of maps in a folder [default: npy]
-    #[arg(long, value_name = "EXT", value_parser = one_of(TABLE_FORMATS.map(|(name, help)| (name, help, name)).into()))]
-    pub(crate) output_format: Option<&'static str>,
     #[command(flatten)]
     pub(crate) form: FormArgs<OfMaps>,
     #[command(flatten)]
@@ -78,13 +71,6 @@ pub(crate) struct MatchArgs {
 /// Extensions of the files that maps are written to.
 pub(crate) const MAP_FORMATS: [&str; 4] = ["npy", "csv", "ply", "png"];
 
-/// Those without a picture.
-pub(crate) const TABLE_FORMATS: [(&str, &str); 2] =
-    [("npy", "NumPy array"), ("csv", "Text with a line of names")];
-
 fn match_help() -> String {
-    format!(
-        "Output file of the first map: {}; a second map is written beside it. With three or more meshes, a folder",
-        or_list(MAP_FORMATS)
-    )
+    format!("Output file of the first map: {}; a second map is written beside it", or_list(MAP_FORMATS))
 }

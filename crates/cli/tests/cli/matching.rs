@@ -185,28 +185,6 @@ fn points_and_functional_maps_are_written() {
 }
 
 #[test]
-fn several_meshes_are_mapped_to_each_other() {
-    let place = Workplace::new();
-    place.done("generate --family cat --poses 3 --vertices 1000 -o cats");
-    let json = place.json("match cats -o maps");
-    assert_keys(&json, "meshes pairs cycles seconds");
-    let pairs = json["pairs"].as_array().unwrap();
-    assert_eq!(pairs.len(), 3);
-    for pair in pairs {
-        assert_keys(pair, "a b kind distortion agreement confidence alternative agreed path");
-        assert!(pair["kind"] == "direct" && pair["agreed"] == true, "{pair}");
-    }
-    assert_eq!(pairs[2]["path"], "maps/cat1-cat2.npy");
-    assert_eq!(numbers(&place, "maps/cat1-cat2.npy").len(), 1000);
-    let cycles = &json["cycles"];
-    let [before, after] = ["before", "after"].map(|key| cycles[key].as_f64().unwrap());
-    assert!(cycles["n_cycles"] == 1 && after < before && before < 0.06, "{cycles}");
-    place.refused("match cats --points", &["--points", "two meshes", "3"]);
-    place.refused("match cats -o map.npy", &["map.npy", "folder"]);
-    place.refused("match cats/cat0.off", &["second"]);
-}
-
-#[test]
 fn dropped_vertices_have_no_partner_and_rows_keep_the_order_of_the_input() {
     let place = cats();
     let cat = canonform::mesh::io::read(&place.path("cat0.off")).unwrap();

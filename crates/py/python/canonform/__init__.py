@@ -31,7 +31,7 @@ from ._compare import Alignment, Comparison, align, compare
 from ._field import DistanceField, PairDistance, PairDistances
 from ._form import Form
 from ._index import Index, Result, SearchResults, ShapeEntry
-from ._match import MapCollection, MappedPoints, Match, SurfaceMap, match, match_all
+from ._match import MappedPoints, Match, SurfaceMap, match
 from ._methods import FastMarching, KernelPca, Landmark, Nystrom, Smacof, Spectral
 from ._operators import ClosestPoints, EdgePoint, Eigenbasis, FacePoint
 from ._surface import Path, RepairReport, Surface, distance_methods, embedding_methods, signature_kinds
@@ -57,7 +57,6 @@ __all__ = [
     "Index",
     "KernelPca",
     "Landmark",
-    "MapCollection",
     "MappedPoints",
     "Match",
     "Nystrom",
@@ -83,7 +82,6 @@ __all__ = [
     "embedding_methods",
     "errors",
     "match",
-    "match_all",
     "read",
     "set_threads",
     "signature_kinds",

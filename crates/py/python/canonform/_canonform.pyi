@@ -172,9 +172,6 @@ def match_surfaces(
     settings: str,
     progress: _Progress,
 ) -> tuple[str, list[list[_MapArrays | None]], _Colors]: ...
-def match_collection(
-    surfaces: list[Surface], settings: str, progress: _Progress
-) -> tuple[str, list[_MapArrays]]: ...
 def map_points(
     a: Surface,
     b: Surface,

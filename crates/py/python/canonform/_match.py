@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
@@ -359,70 +359,3 @@ def _functions(descriptors: tuple[ArrayLike, ArrayLike] | None) -> tuple[Floats,
         raise OptionError("descriptors must be two arrays, one for each surface, with one row for each vertex")
     f, g = (straight(array.reshape(len(array), -1)) for array in both)
     return f, g
-
-
-class MapCollection(Stored):
-    """The maps between several surfaces, which agree with each other: `maps[i, j]` is the one from surface i to surface j, i < j.
-
-    Attributes
-    ----------
-    pairs
-        The pairs (i, j).
-    replaced
-        Those of them whose map, found for these two alone, did not agree with the others.
-    n_cycles
-        Cycles of three surfaces.
-    cycles_before
-        How far points are from where they started after a cycle of the maps of pairs: the mean, as a share of the square root of
-        the area.
-    cycles_after
-        The same of the maps that agree.
-    seconds
-        The time of the search, after the surfaces were prepared.
-    """
-
-    def __init__(self, report: dict[str, Any], arrays: list[_Arrays], shapes: list[Surface], settings: str) -> None:
-        none = _pairs(None)
-        self.pairs: list[tuple[int, int]] = [(pair["a"], pair["b"]) for pair in report["pairs"]]
-        found = zip(report["pairs"], arrays, strict=True)
-        self._maps = [SurfaceMap(pair, [of], (shapes[pair["a"]], shapes[pair["b"]]), none, settings) for pair, of in found]
-        self.replaced = [(pair["a"], pair["b"]) for pair in report["pairs"] if not pair["agreed"]]
-        cycles = report["cycles"]
-        self.n_cycles: int = cycles["n_cycles"]
-        self.cycles_before: float = cycles["before"]
-        self.cycles_after: float = cycles["after"]
-        self.seconds: float = report["seconds"]
-
-    def __getitem__(self, pair: tuple[int, int]) -> SurfaceMap:
-        if pair not in self.pairs:
-            raise OptionError(f"there is no map {pair}; maps go from a surface to a later one, as {self.pairs[:1]}")
-        return self._maps[self.pairs.index(pair)]
-
-    def __len__(self) -> int:
-        return len(self.pairs)
-
-    def __repr__(self) -> str:
-        return f"MapCollection({len(self)} maps, cycles {self.cycles_before:.4f} before, {self.cycles_after:.4f} after)"
-
-
-@_of_maps
-def match_all(
-    shapes: Iterable[AnyMesh],
-    *,
-    n_eigenfunctions: int | None = None,
-    geodesic: Geodesic = "fast-marching",
-    timeout: float | None = None,
-    memory: int | str | None = None,
-    progress: Progress = False,
-) -> MapCollection:
-    """Map several surfaces to each other, so that the maps agree: from one to a second and on to a third is the same as at once.
-
-    All pairs are mapped as by `match`, but as wholes. Maps that disagree with the others, such as one that turns a man back to front, are replaced.
-    The parameters are those of `match`.
-    """
-    eigenfunctions = some_whole("n_eigenfunctions", n_eigenfunctions)
-    settings = options_of(eigenfunctions=eigenfunctions, geodesic=geodesic, timeout=timeout, memory=memory)
-    surfaces = [surface_of(shape) for shape in shapes]
-    with shown(progress) as report:
-        found, arrays = _canonform.match_collection([surface._inner for surface in surfaces], settings, report)
-    return MapCollection(json.loads(found), arrays, surfaces, settings)

@@ -13,7 +13,6 @@ mod functional_map;
 mod known;
 mod local;
 mod nearest_rows;
-mod network;
 mod operators;
 mod orientation;
 mod part;
@@ -25,9 +24,7 @@ mod whole_or_part;
 
 pub use error::{LandmarkConflict, MapError};
 pub use known::KnownMap;
-pub use network::{ConsistentMaps, CycleReport, all_pairs, consistent_maps};
 pub use points::{MapElements, mapped_points};
-pub use search::map_wholes;
 pub use shape::MapShape;
 pub use surface_map::{MapKind, PartOfWhole, SurfaceMap};
 pub use whole_or_part::map_surfaces;

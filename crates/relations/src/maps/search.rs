@@ -129,7 +129,7 @@ fn least_agreement(found: &[Candidate]) -> f64 {
 /// # Errors
 /// [`MapError::Contradiction`] for landmarks of both orientations; [`MapError::Descriptor`], also if the budget of the observer
 /// is exceeded.
-pub fn map_wholes(
+pub(super) fn map_wholes(
     a: &MapShape,
     b: &MapShape,
     known: &KnownMap,

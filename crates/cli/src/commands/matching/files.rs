@@ -36,11 +36,11 @@ pub(super) struct SecondsJson {
 }
 
 impl SecondsJson {
-    /// Of surfaces that were read and prepared, and then mapped in `matching` seconds.
-    pub(super) fn new<'a>(sides: impl Iterator<Item = &'a MappedSurface> + Clone, matching: f64) -> Self {
-        let surfaces = sides.clone().map(MappedSurface::surface);
-        let load = surfaces.map(|surface| surface.load_seconds + surface.repair_seconds).sum();
-        let prepare = sides.map(|side| side.seconds).sum();
+    /// Of meshes that were read and prepared, and then mapped in `matching` seconds.
+    pub(super) fn new(sides: [&MappedFile; 2], matching: f64) -> Self {
+        let surfaces = sides.map(|side| side.mapped.surface());
+        let load = surfaces.iter().map(|surface| surface.load_seconds + surface.repair_seconds).sum();
+        let prepare = sides.iter().map(|side| side.mapped.seconds).sum();
         Self { load, prepare, matching, total: load + prepare + matching }
     }
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{Result, bail};
+use anyhow::Result;
 use base::terminal::Bars;
 use canonform::relations::PartOfWhole;
 use canonform::{CorrespondOptions, Error, InputPoint, MappedSurface, PointMap, Side, VertexMap, correspond};
@@ -15,7 +15,7 @@ use super::files::{
 };
 use super::known;
 use super::transfer::{Transferred, read_transfer};
-use crate::args::{Common, MAP_FORMATS, MatchArgs, PairArgs};
+use crate::args::{Common, MAP_FORMATS, MatchArgs};
 use crate::input::{named, read_pair};
 use crate::output::{check_format, check_output, facts, report};
 
@@ -54,12 +54,11 @@ struct MapJson {
 }
 
 /// Maps the vertices of one mesh to those of another.
-pub(super) fn match_pair(
-    [a, b]: [&PathBuf; 2],
-    args: &MatchArgs,
-    common: &Common,
-    mut options: CorrespondOptions,
-) -> Result<ExitCode> {
+pub(crate) fn match_meshes(args: &MatchArgs, common: &Common) -> Result<ExitCode> {
+    let mut options = CorrespondOptions { form: args.form.options(common)?, ..CorrespondOptions::default() };
+    if let Some(most) = args.form.settings.given.get("eigenfunctions") {
+        options.eigenfunctions = most;
+    }
     let format = match &args.output {
         Some(path) => {
             for path in [
@@ -78,12 +77,8 @@ pub(super) fn match_pair(
         check_output(path)?;
         check_format(path, "a functional map", &["npy"])?;
     }
-    if args.output_format.is_some() {
-        bail!("--output-format is for three or more meshes; the name of -o says the format of one map");
-    }
-    let pair = PairArgs { a: a.clone(), b: b.clone() };
     let prepared = &options;
-    let [a, b] = read_pair(&pair, &args.form.repair, &args.limits, common, |_, mesh, surface, bars| {
+    let [a, b] = read_pair(&args.pair, &args.form.repair, &args.limits, common, |_, mesh, surface, bars| {
         Ok(MappedFile { mesh, mapped: MappedSurface::new(surface, prepared, bars)? })
     })?;
     options.known = known::read(args, [a.mapped.surface(), b.mapped.surface()])?;
@@ -111,15 +106,15 @@ pub(super) fn match_pair(
     let maps = found.maps.into_iter().enumerate();
     let maps = maps.map(|(i, map)| written(i, map, args.points, output, sides)).collect::<Result<_>>()?;
     let json = MatchJson {
-        a: pair.a,
-        b: pair.b,
+        a: args.pair.a.clone(),
+        b: args.pair.b.clone(),
         n_vertices: [a.mesh.n_vertices(), b.mesh.n_vertices()],
         maps,
         target,
         source,
         transfer,
         functional,
-        seconds: SecondsJson::new([&a.mapped, &b.mapped].into_iter(), found.seconds),
+        seconds: SecondsJson::new(sides, found.seconds),
     };
     report(common, &json, table)
 }
