@@ -10,9 +10,9 @@ use fields::FieldError;
 use geodesics::GeodesicError;
 use index::IndexError;
 use linalg::LinalgError;
+use maps::LandmarkConflict;
 use mesh::{InputPoint, MeshError, PointError};
 use nmds::NmdsError;
-use relations::LandmarkConflict;
 use retrieval::RetrievalError;
 use surface::VertexId;
 

@@ -103,6 +103,7 @@ pub use compare::{
 pub use correspond::{
     CorrespondOptions, Correspondence, FacePoint, MappedSurface, Mapping, PointMap, VertexMap, correspond,
 };
+pub use descriptors::Side;
 pub use error::{Error, Remedy};
 pub use fields::{
     DistanceField, FieldBounds, FieldFacts, FieldFault, FieldOptions, Finish, PairDistance, PairKind,
@@ -115,9 +116,10 @@ pub use form::{
 };
 pub use index::Shape;
 pub use input::{AllPairs, Asymmetry, PathPoint, SurfacePath, distance_rows, read_surface};
+pub use maps::{KnownMap, MapKind, MapParams, PartOfWhole};
 pub use relations::{
-    Basis, Change, Evidence, Handedness, KnownMap, MeshGeometry, MeshOverlay, Parts, Relation, RelationKind,
-    Side, SurfaceGap, UnitChange,
+    Basis, Change, Evidence, Handedness, MeshGeometry, MeshOverlay, Parts, Relation, RelationKind,
+    SurfaceGap, UnitChange,
 };
 pub use retrieval::RankBy;
 pub use shape_index::{
@@ -130,5 +132,6 @@ pub use shape_index::{
     n_candidates, n_results, remove_from_index, rerank, unchanged_index, undo_moves,
 };
 pub use {
-    collection, descriptors, fields, geodesics, index, linalg, mesh, nmds, relations, retrieval, surface,
+    collection, descriptors, fields, geodesics, index, linalg, maps, mesh, nmds, relations, retrieval,
+    surface,
 };

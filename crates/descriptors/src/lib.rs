@@ -36,7 +36,7 @@ pub use nearest::NearestPoints;
 pub use partial::{DiscAreas, PartDiscAreas, PartDistance};
 pub use prepared::PreparedForm;
 pub use sampled_form::SampledForm;
-pub use shape_pair::{PreparedShape, ShapePair};
+pub use shape_pair::{PreparedShape, ShapePair, Side};
 pub use signature::{
     Signature, SignatureKind, geodesic_spectrum, heat_kernel_signature, rigid_signature, shape_dna,
     wave_kernel_signature, wave_kernels,

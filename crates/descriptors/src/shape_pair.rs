@@ -3,6 +3,7 @@
 use std::cell::OnceCell;
 
 use nalgebra::Point3;
+use serde::Serialize;
 
 use crate::align::{FormAlignment, Reflections, align_forms};
 use crate::canonical_form::{CanonicalForm, Normalization};
@@ -78,6 +79,16 @@ impl PreparedShape {
     pub fn prepared_form(&self) -> &PreparedForm {
         &self.unit
     }
+}
+
+/// One of two shapes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Side {
+    /// The first shape.
+    First,
+    /// The second shape.
+    Second,
 }
 
 /// Two shapes and the ways the form of the first aligns with that of the second. Each alignment at unit area is found at

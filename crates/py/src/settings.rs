@@ -115,7 +115,7 @@ impl Settings {
     pub(crate) fn correspond(&self, repair: RepairOptions) -> PyResult<CorrespondOptions> {
         let mut options = CorrespondOptions { form: self.form(repair)?, ..CorrespondOptions::default() };
         if let Some(count) = self.options.get("eigenfunctions") {
-            options.eigenfunctions = count;
+            options.maps.eigenfunctions = count;
         }
         Ok(options)
     }

@@ -15,7 +15,7 @@ enum May {
 const EVERYWHERE: [&str; 1] = ["base"];
 
 /// All crates of the workspace, by folder name; packages are called `canonform-FOLDER`.
-const RULES: [(&str, May); 23] = [
+const RULES: [(&str, May); 24] = [
     ("base", May::Know(&[])),
     ("surface", May::Know(&[])),
     ("linalg", May::Know(&[])),
@@ -26,6 +26,7 @@ const RULES: [(&str, May); 23] = [
     ("retrieval", May::Know(&["linalg"])),
     ("collection", May::Know(&["mesh"])),
     ("fields", May::Know(&["mesh", "surface", "linalg", "geodesics", "nmds"])),
+    ("maps", May::Know(&["mesh", "surface", "linalg", "descriptors"])),
     ("relations", May::Know(&["mesh", "surface", "linalg", "descriptors"])),
     ("index", May::Know(&["retrieval"])),
     ("descriptors", May::Know(&["mesh", "surface", "linalg", "nmds"])),
@@ -42,6 +43,7 @@ const RULES: [(&str, May); 23] = [
             "descriptors",
             "collection",
             "fields",
+            "maps",
             "relations",
         ]),
     ),

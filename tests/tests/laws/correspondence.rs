@@ -1,6 +1,6 @@
 //! Dense maps between surfaces: exact cases, invariances, and known partners.
 
-use canonform::relations::MapKind;
+use canonform::MapKind;
 use canonform::{CorrespondOptions, Correspondence, MappedSurface, VertexMap, correspond};
 use datasets::{ArticulatedOptions, Family, RestedShape, articulated_at_rest};
 use descriptors::NearestPoints;

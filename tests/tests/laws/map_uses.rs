@@ -1,8 +1,8 @@
 //! What maps are good for: known pairs, points inside faces, and what they carry.
 
-use canonform::relations::{LandmarkConflict, MapKind};
+use canonform::maps::LandmarkConflict;
 use canonform::{
-    CorrespondOptions, Error, KnownMap, MappedSurface, Mapping, PointMap, Side, Surface, VertexMap,
+    CorrespondOptions, Error, KnownMap, MapKind, MappedSurface, Mapping, PointMap, Side, Surface, VertexMap,
     correspond,
 };
 use datasets::{ArticulatedOptions, Family, RestedShape, articulated_at_rest};

@@ -1,7 +1,8 @@
 //! Dense maps between a whole and what a cut has left of it.
 
-use canonform::relations::{MapKind, PartOfWhole, Side};
-use canonform::{CorrespondOptions, MappedSurface, PointMap, VertexMap, correspond};
+use canonform::{
+    CorrespondOptions, MapKind, MappedSurface, PartOfWhole, PointMap, Side, VertexMap, correspond,
+};
 use datasets::{ArticulatedOptions, Damage, Family, articulated_at_rest};
 use descriptors::NearestPoints;
 use geodesics::Method;

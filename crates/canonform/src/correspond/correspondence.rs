@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::time::Instant;
 
 use linalg::Matrix;
-use relations::{MapKind, PartOfWhole, SurfaceMap, map_surfaces};
+use maps::{MapKind, PartOfWhole, SurfaceMap, map_surfaces};
 use serde::Serialize;
 use surface::VertexId;
 
@@ -43,7 +43,7 @@ pub struct VertexMap {
     #[serde(skip)]
     pub vertex_confidence: Vec<f64>,
     /// The map of functions of the second surface to functions of the first: its columns are the coefficients of the
-    /// eigenfunctions of the second, pulled back, in those of the first. [`MapShape::spectrum`](relations::MapShape::spectrum)
+    /// eigenfunctions of the second, pulled back, in those of the first. [`MapShape::spectrum`](maps::MapShape::spectrum)
     /// has them. That of a part has fewer eigenfunctions of the part, and functions of the part are zero elsewhere.
     #[serde(skip)]
     pub functional: Matrix,
@@ -98,7 +98,7 @@ pub fn correspond<S: Borrow<Surface>>(
     let landmarks: BTreeSet<[VertexId; 2]> = options.known.landmarks.iter().copied().collect();
     let landmarks: Vec<_> = landmarks.into_iter().collect();
     let known = known::repaired(&options.known, &landmarks, surfaces)?;
-    let found = map_surfaces(&a.shape, &b.shape, &known, options.eigenfunctions, observer)
+    let found = map_surfaces(&a.shape, &b.shape, &known, &options.maps, observer)
         .map_err(|fault| known::named(fault, &landmarks))?;
     let maps = found.into_iter().map(|map| VertexMap::new(map, surfaces, &landmarks));
     Ok(Correspondence { maps: maps.collect(), seconds: start.elapsed().as_secs_f64() })

@@ -1,8 +1,8 @@
 //! What is known of a map, from the numbers of the inputs to those of the repaired meshes.
 
 use linalg::Matrix;
+use maps::{KnownMap, MapError};
 use mesh::Surface;
-use relations::{KnownMap, MapError};
 use surface::VertexId;
 
 use crate::error::Error;

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use descriptors::LaplaceSpectrum;
 use geodesics::{DistanceSolver, Source, SpreadSamples};
-use relations::MapShape;
+use maps::MapShape;
 
 use super::options::CorrespondOptions;
 use crate::error::Error;
@@ -39,7 +39,7 @@ impl<S: Borrow<Surface>> MappedSurface<S> {
         let spread = SpreadSamples::new(solver.as_ref(), &embedded.distances, options.spread)?;
         let from_cut = from_cut(repaired, solver.as_ref())?;
         drop(solver);
-        let spectrum = LaplaceSpectrum::new(repaired.intrinsic(), options.eigenfunctions, observer)?;
+        let spectrum = LaplaceSpectrum::new(repaired.intrinsic(), options.maps.eigenfunctions, observer)?;
         let SpreadSamples { samples, nearest, .. } = spread;
         let (mesh, distances) = (repaired.mesh(), embedded.distances);
         let shape = MapShape::new(&form, mesh, spectrum, distances, samples, nearest, from_cut)?;

@@ -4,9 +4,10 @@ use std::borrow::Borrow;
 use std::cmp::Reverse;
 use std::collections::HashMap;
 
+use descriptors::Side;
 use linalg::Matrix;
+use maps::{MapElements, mapped_points};
 use mesh::{InputPoint, Surface};
-use relations::{MapElements, Side, mapped_points};
 use surface::{FaceId, SurfacePoint, Topology, VertexId};
 
 use super::mapped_surface::MappedSurface;
@@ -55,7 +56,7 @@ pub struct Mapping<'a, S = Surface> {
 ///
 /// ```
 /// use canonform::linalg::Matrix;
-/// use canonform::relations::Side;
+/// use canonform::Side;
 /// use canonform::{CorrespondOptions, MappedSurface, Surface, correspond, mesh::shapes};
 ///
 /// let flat = shapes::grid(21, 17, 0.1);

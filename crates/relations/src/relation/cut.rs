@@ -3,13 +3,12 @@
 use std::collections::HashSet;
 use std::num::NonZero;
 
-use descriptors::{Alignment, NearestPoints};
+use descriptors::{Alignment, NearestPoints, Side};
 use nalgebra::{Point3, Vector3};
 use serde::Serialize;
 use surface::VertexId;
 
 use super::geometry::{MeshGeometry, sorted};
-use super::parts::Side;
 use super::units::UnitChange;
 
 /// The least share of the faces of a piece that are faces of the whole: cutting makes new ones along the cut only. A

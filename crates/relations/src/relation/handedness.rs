@@ -1,11 +1,9 @@
 //! Whether a surface is the mirror image of another.
 
 use descriptors::{Alignment, CanonicalForm, DescriptorError, NearestPoints, Reflections, ShapePair};
-use mesh::TriMesh;
+use mesh::{TriMesh, outward};
 use nalgebra::Vector3;
 use serde::Serialize;
-
-use crate::outward::outward;
 
 /// Whether the second surface is the mirror image of the first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]

@@ -25,7 +25,7 @@ mod variant;
 mod words;
 
 use base::ContentHash;
-use descriptors::{ShapeDistance, ShapeMetric};
+use descriptors::{ShapeDistance, ShapeMetric, Side};
 
 pub use cut::CutPiece;
 pub use evidence::{Basis, Evidence};
@@ -36,7 +36,7 @@ pub use invariants::SurfaceInvariants;
 pub use kind::{Change, RelationKind};
 pub use mesh_overlay::MeshOverlay;
 pub use numbers::in_four_digits;
-pub use parts::{Parts, Side};
+pub use parts::Parts;
 pub use triangles::{NearestOnSurface, TriangleTree};
 pub use units::UnitChange;
 pub use variant::{Difference, Dimension};

@@ -1,13 +1,13 @@
 //! The relation of two meshes.
 
-use descriptors::Alignment;
+use descriptors::{Alignment, Side};
 
 use super::cut::{CutPiece, FoundPiece, piece_of};
 use super::exact::{SameVertices, same_vertices};
 use super::geometry::MeshGeometry;
 use super::in_space::{Aligned, aligned, is_symmetric};
 use super::mesh_change::mesh_change;
-use super::parts::{PartCopy, Parts, Side, occurrences};
+use super::parts::{PartCopy, Parts, occurrences};
 use super::same_surface::{is_one_surface, same_surface};
 use super::units::UnitChange;
 use super::variant::differences;

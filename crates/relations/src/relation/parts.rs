@@ -1,5 +1,6 @@
 //! A mesh among the components of another.
 
+use descriptors::Side;
 use serde::Serialize;
 
 use super::SIZE_OF_SURFACES;
@@ -11,16 +12,6 @@ use super::same_surface::same_surface;
 
 /// Most different components that are aligned with a mesh.
 const MOST_ALIGNED: usize = 20;
-
-/// One of two meshes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Side {
-    /// The first mesh.
-    First,
-    /// The second mesh.
-    Second,
-}
 
 /// How often one mesh occurs among the components of the other.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

@@ -2,14 +2,14 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use descriptors::ShapeMetric;
+use descriptors::{ShapeMetric, Side};
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 
 use super::cut::CutPiece;
 use super::in_space::SurfaceGap;
 use super::numbers::{in_digits, in_words, percent};
-use super::parts::{Parts, Side};
+use super::parts::Parts;
 use super::variant::Difference;
 use super::{Basis, Change, Evidence, Relation, RelationKind};
 

@@ -1,7 +1,7 @@
 //! What a perfect alignment of the forms of one body would give.
 
 use anyhow::Result;
-use canonform::relations::MapKind;
+use canonform::MapKind;
 use descriptors::{Alignment, CanonicalForm, Normalization, PreparedForm, Reflections, align_forms};
 use nalgebra::Point3;
 use rayon::prelude::*;

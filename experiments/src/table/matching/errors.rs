@@ -1,7 +1,7 @@
 //! The errors of the maps of a pair.
 
 use anyhow::{Context as _, Result};
-use canonform::relations::MapKind;
+use canonform::MapKind;
 use canonform::{CorrespondOptions, Correspondence, VertexMap, correspond};
 use geodesics::{DistanceSolver, Method};
 use rayon::prelude::*;

@@ -89,7 +89,7 @@ impl Experiment for MatchingOptions {
         measure(ALL, &all, &mut measured);
         measured.insert("worst direct".to_owned(), worst);
         let mut provenance = context.provenance(&[]);
-        provenance.options["matching"] = serde_json::json!({ "eigenfunctions": options.eigenfunctions });
+        provenance.options["matching"] = serde_json::json!({ "eigenfunctions": options.maps.eigenfunctions });
         provenance.options["spread"] = options.spread.into();
         context.publish_curves(panels(&found), provenance, &measured)
     }

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::collections::HashSet;
 
 use anyhow::{Context as _, Result};
-use canonform::relations::MapKind;
+use canonform::MapKind;
 use canonform::{CorrespondOptions, MappedSurface, Surface};
 use datasets::{ArticulatedOptions, Damage, Family, RestedShape, articulated_at_rest};
 use descriptors::NearestPoints;

@@ -5,8 +5,9 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use base::terminal::Bars;
-use canonform::relations::PartOfWhole;
-use canonform::{CorrespondOptions, Error, InputPoint, MappedSurface, PointMap, Side, VertexMap, correspond};
+use canonform::{
+    CorrespondOptions, Error, InputPoint, MappedSurface, PartOfWhole, PointMap, Side, VertexMap, correspond,
+};
 use serde::Serialize;
 
 use super::files::{
@@ -57,7 +58,7 @@ struct MapJson {
 pub(crate) fn match_meshes(args: &MatchArgs, common: &Common) -> Result<ExitCode> {
     let mut options = CorrespondOptions { form: args.form.options(common)?, ..CorrespondOptions::default() };
     if let Some(most) = args.form.settings.given.get("eigenfunctions") {
-        options.eigenfunctions = most;
+        options.maps.eigenfunctions = most;
     }
     let format = match &args.output {
         Some(path) => {

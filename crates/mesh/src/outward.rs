@@ -1,10 +1,10 @@
 //! Faces that all turn the same way, outwards if there is an outside.
 
-use std::collections::HashMap;
-
-use mesh::{TriMesh, orient_consistently};
 use nalgebra::Vector3;
-use surface::VertexId;
+use surface::{EdgeId, Topology, VertexId};
+
+use crate::orientation::{orient_consistently, runs_against};
+use crate::tri_mesh::TriMesh;
 
 /// A surface encloses a volume if it is at least this share of the volume of a ball of the same area. A safety limit: a flat
 /// sheet encloses none.
@@ -35,33 +35,28 @@ fn turned_alike(mesh: &TriMesh) -> (TriMesh, f64) {
 }
 
 /// The mesh with its normals outwards; `None` if it does not enclose a volume.
-pub(crate) fn outward(mesh: &TriMesh) -> Option<TriMesh> {
+pub fn outward(mesh: &TriMesh) -> Option<TriMesh> {
     let (mesh, volume) = turned_alike(mesh);
     (volume.abs() >= LEAST_VOLUME).then_some(mesh)
 }
 
 /// The faces, turned alike: outwards if the mesh encloses a volume, else as most of them are. `None` if the surface cannot
 /// be oriented, such as a Moebius strip.
-pub(crate) fn oriented_faces(mesh: &TriMesh) -> Option<Vec<[VertexId; 3]>> {
+pub fn oriented_faces(mesh: &TriMesh) -> Option<Vec<[VertexId; 3]>> {
     let (mesh, _) = turned_alike(mesh);
-    // Times an edge is passed from its lower to its higher vertex, less the times in the other direction; and all times.
-    let mut passes: HashMap<[VertexId; 2], (i32, u32)> = HashMap::new();
-    for [a, b, c] in &mesh.faces {
-        for [v, w] in [[*a, *b], [*b, *c], [*c, *a]] {
-            let (balance, total) = passes.entry([v.min(w), v.max(w)]).or_default();
-            *balance += if v < w { 1 } else { -1 };
-            *total += 1;
-        }
-    }
-    let inner = passes.values().filter(|(_, total)| *total == 2).count();
-    let twisted = passes.values().filter(|(balance, total)| *total == 2 && *balance != 0).count();
-    (twisted as f64 <= TOLERATED * inner as f64).then_some(mesh.faces)
+    let topology = Topology::new(mesh.n_vertices(), mesh.faces);
+    let all = (0..topology.n_edges()).map(|e| topology.edge_corners(EdgeId::from(e)));
+    let inner = all.filter_map(|corners| <[_; 2]>::try_from(corners).ok());
+    let (n_twisted, n_inner) = inner.fold((0.0, 0.0), |(twisted, n), [a, b]| {
+        (twisted + f64::from(runs_against(&topology, a, b)), n + 1.0)
+    });
+    (n_twisted <= TOLERATED * n_inner).then(|| topology.faces().to_vec())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mesh::shapes;
+    use crate::shapes;
     use nalgebra::Point3;
 
     /// A strip of `n` squares, closed with or without a twist.

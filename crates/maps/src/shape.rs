@@ -3,18 +3,20 @@
 use std::sync::OnceLock;
 
 use linalg::{LandmarkDistances, Matrix};
-use mesh::TriMesh;
+use mesh::{TriMesh, outward};
 use nalgebra::{DVector, Point3};
 
-use super::curvature::{bends, smoothed};
-use super::functional_map::FunctionalMaps;
-use super::nearest_rows::Cells;
-use super::operators::Operators;
-use super::orientation::Oriented;
-use crate::outward::outward;
+use crate::curvature::{mean_curvature, smoothed};
+use crate::mirror::Mirrors;
+use crate::nearest_rows::Cells;
+use crate::operators::Operators;
+use crate::orientation::{Oriented, pairs};
 use descriptors::{
     CanonicalForm, DescriptorError, LaplaceSpectrum, Normalization, PreparedForm, wave_kernels,
 };
+
+/// Leading eigenfunctions of each surface by which the nearest samples of a vertex are found. A safety limit.
+const COARSE: usize = 40;
 
 /// One in so many wave kernels takes part in fitted maps: neighbours are nearly the same. As `ren2018` in `REFERENCES.bib`.
 const KERNELS: usize = 5;
@@ -22,43 +24,32 @@ const KERNELS: usize = 5;
 /// A surface with everything that maps to other surfaces are found by. Lengths are those of the surface at unit area.
 #[derive(Debug)]
 pub struct MapShape {
-    pub(super) form: PreparedForm,
-    pub(super) spectrum: LaplaceSpectrum,
+    pub(crate) form: PreparedForm,
+    pub(crate) spectrum: LaplaceSpectrum,
     /// Vertices spread evenly over the surface; the landmarks first.
-    pub(super) samples: Vec<usize>,
+    pub(crate) samples: Vec<usize>,
     /// For every vertex, the position in the list of samples of the nearest one.
-    pub(super) nearest: Vec<usize>,
+    pub(crate) nearest: Vec<usize>,
     /// The vertices nearest to each sample.
-    pub(super) cells: Vec<Vec<usize>>,
-    /// Eigenfunctions at the samples.
-    pub(super) at_samples: Matrix,
+    pub(crate) cells: Vec<Vec<usize>>,
     /// What maps of functions are fitted to: with the curvature, which knows inside from outside, if the surface has an
     /// inside; and with the wave kernels, too.
-    pub(super) operators: Vec<Operators>,
+    pub(crate) operators: Vec<Operators>,
     /// The curvature at the samples, smoothed least, if the surface has an inside.
-    pub(super) curvature: Option<Vec<f64>>,
+    pub(crate) curvature: Option<Vec<f64>>,
     distances: LandmarkDistances,
     /// The square root of the area, in mesh units.
-    pub(super) size: f64,
+    pub(crate) size: f64,
     /// `None` if the surface cannot be oriented.
-    pub(super) oriented: Option<Oriented>,
+    pub(crate) oriented: Option<Oriented>,
     /// Coefficients of the mean curvature in the eigenfunctions; `None` if the surface has no outside.
-    pub(super) bends: Option<DVector<f64>>,
+    pub(crate) mean_curvature: Option<DVector<f64>>,
     /// The distance of each vertex from the boundary, at unit area; `None` if there is no boundary.
-    pub(super) from_cut: Option<Vec<f64>>,
+    pub(crate) from_cut: Option<Vec<f64>>,
     /// The area forms of the first eigenfunctions at the samples, if it can.
-    pub(super) area_forms: Option<Matrix>,
+    pub(crate) area_forms: Option<Matrix>,
     /// Its mirrors, once they were sought.
-    pub(super) mirrors: OnceLock<Mirrors>,
-}
-
-/// Maps of a surface to itself that reverse its orientation and change distances little.
-#[derive(Debug)]
-pub(super) struct Mirrors {
-    /// The one that exchanges left and right.
-    pub(super) sides: Option<FunctionalMaps>,
-    /// Others, such as the one that exchanges front and back.
-    pub(super) others: Vec<FunctionalMaps>,
+    pub(crate) found_mirrors: OnceLock<Mirrors>,
 }
 
 impl MapShape {
@@ -100,17 +91,18 @@ impl MapShape {
             cells[sample].push(vertex);
         }
         let oriented = Oriented::new(mesh, &spectrum.masses);
-        let bends = outward(mesh).map(|outward| bends(&outward, &spectrum));
-        let curvatures =
-            bends.as_ref().map(|bends| smoothed(bends, &spectrum.values, &spectrum.vectors, 1.0));
+        let mean_curvature = outward(mesh).map(|outward| mean_curvature(&outward, &spectrum));
+        let smooth = |curvature| smoothed(curvature, &spectrum.values, &spectrum.vectors, 1.0);
+        let curvatures = mean_curvature.as_ref().map(smooth);
         let curvature = curvatures.as_ref().map(|columns| samples.iter().map(|&v| columns[(v, 0)]).collect());
         let operators = operators(curvatures, &spectrum, oriented.as_ref());
         Ok(Self {
-            bends,
+            mean_curvature,
             from_cut: from_cut.map(|from_cut| from_cut.iter().map(|d| d / size).collect()),
-            at_samples: spectrum.vectors.select_rows(&samples),
-            area_forms: oriented.as_ref().map(|oriented| oriented.area_forms(&spectrum.vectors, &samples)),
-            mirrors: OnceLock::new(),
+            area_forms: oriented
+                .as_ref()
+                .map(|oriented| oriented.area_forms(&spectrum.vectors, &pairs(&spectrum.vectors), &samples)),
+            found_mirrors: OnceLock::new(),
             oriented,
             operators,
             curvature,
@@ -140,17 +132,12 @@ impl MapShape {
     }
 
     /// The vertices from which distances are known.
-    pub(super) fn landmarks(&self) -> &[usize] {
+    pub(crate) fn landmarks(&self) -> &[usize] {
         self.distances.landmarks()
     }
 
-    /// The images of the landmarks under a map of all vertices.
-    pub(super) fn landmark_images(&self, map: &[usize]) -> Vec<usize> {
-        self.landmarks().iter().map(|&x| map[x]).collect()
-    }
-
     /// Distances from all landmarks to some vertices, one row for each landmark, at unit area.
-    pub(super) fn distances_to(&self, vertices: &[usize]) -> Result<Matrix, DescriptorError> {
+    pub(crate) fn distances_to(&self, vertices: &[usize]) -> Result<Matrix, DescriptorError> {
         let mut found = Matrix::zeros(self.distances.n_landmarks(), vertices.len());
         for i in 0..found.nrows() {
             let column = self.distances.column(i)?;
@@ -160,14 +147,15 @@ impl MapShape {
     }
 
     /// The same to all vertices.
-    pub(super) fn all_distances(&self) -> Result<Matrix, DescriptorError> {
+    pub(crate) fn all_distances(&self) -> Result<Matrix, DescriptorError> {
         self.distances_to(&(0..self.n_vertices()).collect::<Vec<_>>())
     }
 
-    /// The nearest vertex to each of some places. `rows` are the places of all vertices, and `coarse` the columns by which the
-    /// nearest cells are found.
-    pub(super) fn nearest_vertices(&self, rows: &Matrix, coarse: &[usize], places: &Matrix) -> Vec<usize> {
-        Cells { rows, coarse, centres: &self.samples, members: &self.cells }.nearest(places)
+    /// The nearest vertex to each of some places; `rows` are the places of all vertices by maps of functions.
+    pub(crate) fn nearest_vertices(&self, rows: &Matrix, places: &Matrix) -> Vec<usize> {
+        let k = rows.ncols() / 2;
+        let coarse: Vec<usize> = (0..k.min(COARSE)).flat_map(|j| [j, k + j]).collect();
+        Cells { rows, coarse: &coarse, centres: &self.samples, members: &self.cells }.nearest(places)
     }
 }
 

@@ -4,9 +4,9 @@ use linalg::Matrix;
 use rayon::prelude::*;
 use surface::{FaceId, SurfacePoint, Topology, VertexId};
 
-use super::functional_map::{FunctionalMaps, Placed};
-use super::shape::MapShape;
-use crate::relation::Side;
+use crate::functional::FunctionalMaps;
+use crate::shape::MapShape;
+use descriptors::Side;
 
 /// What is mapped of a surface.
 #[derive(Debug, Clone, Copy)]
@@ -41,13 +41,12 @@ pub fn mapped_points(
     elements: MapElements<'_>,
     target: &Topology,
 ) -> Vec<SurfacePoint> {
-    let Placed { on_a, on_b, coarse } =
-        FunctionalMaps::of_one(functional).placed([&a.spectrum.vectors, &b.spectrum.vectors]);
+    let [on_a, on_b] = FunctionalMaps::from(functional.clone()).placed([a, b]);
     let (own, other, shape) = match of {
         Side::First => (on_a, on_b, b),
         Side::Second => (on_b, on_a, a),
     };
-    let nearest = shape.nearest_vertices(&other, &coarse, &own);
+    let nearest = shape.nearest_vertices(&other, &own);
     let start = |v: usize| VertexId::from(nearest[v]);
     let (queries, starts): (Matrix, Vec<Vec<VertexId>>) = match elements {
         MapElements::Vertices => (own, (0..nearest.len()).map(|v| vec![start(v)]).collect()),

@@ -3,12 +3,12 @@
 use linalg::Matrix;
 use nalgebra::{Cholesky, DMatrix, DVector, DVectorView};
 
-use super::orientation::Oriented;
+use crate::orientation::Oriented;
 use descriptors::LaplaceSpectrum;
 
 /// Eigenfunctions of a fitted map. Refinement that starts with fewer may turn people back to front (`melzi2019` in
 /// `REFERENCES.bib`).
-pub(super) const FITTED: usize = 20;
+pub(crate) const FITTED: usize = 20;
 
 /// Weight of the values of functions, beside 1 for their products and area forms: as `nogneng2017` in `REFERENCES.bib`.
 const VALUES: f64 = 0.1;
@@ -17,12 +17,9 @@ const VALUES: f64 = 0.1;
 /// matching`), where most starts with weights from 10 to 100 are right.
 const EIGENVALUES: [f64; 2] = [10.0, 30.0];
 
-/// Added to the diagonal, for surfaces on which all functions are constant. A tolerance of rounding.
-const RIDGE: f64 = 1e-9;
-
 /// Functions of a surface, and operators that follow from them, in its first eigenfunctions.
 #[derive(Debug)]
-pub(super) struct Operators {
+pub(crate) struct Operators {
     /// Eigenvalues.
     values: DVector<f64>,
     /// The functions, a column each.
@@ -35,7 +32,7 @@ pub(super) struct Operators {
 
 impl Operators {
     /// From functions at all vertices, a column each.
-    pub(super) fn new(spectrum: &LaplaceSpectrum, functions: Matrix, oriented: Option<&Oriented>) -> Self {
+    pub(crate) fn new(spectrum: &LaplaceSpectrum, functions: Matrix, oriented: Option<&Oriented>) -> Self {
         let k = FITTED.min(spectrum.vectors.ncols());
         let basis = spectrum.vectors.columns(0, k);
         let mut weighted = basis.transpose();
@@ -47,32 +44,21 @@ impl Operators {
                 &basis.column_iter().map(|g| f.component_mul(&g)).collect::<Vec<_>>(),
             ))
         };
-        let area_form = |oriented: &Oriented, f: DVectorView<'_, f64>| {
-            let forms =
-                basis.column_iter().map(|g| DVector::from(oriented.area_form(f.as_slice(), g.as_slice())));
-            operator(Matrix::from_columns(&forms.collect::<Vec<_>>()))
-        };
         let products = functions.column_iter().map(product).collect();
+        let all: Vec<usize> = (0..basis.nrows()).collect();
+        let pairs: Vec<[usize; 2]> = (0..k).map(|j| [k, j]).collect();
+        let area_form = |oriented: &Oriented, f: DVectorView<'_, f64>| {
+            let columns: Vec<_> = basis.column_iter().chain([f]).collect();
+            operator(oriented.area_forms(&Matrix::from_columns(&columns), &pairs, &all))
+        };
+        let area_forms = oriented.into_iter();
         let area_forms =
-            oriented.into_iter().flat_map(|oriented| functions.column_iter().map(|f| area_form(oriented, f)));
-        let area_forms = area_forms.collect();
+            area_forms.flat_map(|oriented| functions.column_iter().map(|f| area_form(oriented, f))).collect();
         Self {
             values: DVector::from_column_slice(&spectrum.values[..k]),
             functions: &weighted * functions,
             products: of_mean_norm_1(products),
             area_forms: of_mean_norm_1(area_forms),
-        }
-    }
-
-    /// All functions of both, with their operators.
-    pub(super) fn and(&self, other: &Self) -> Self {
-        let joined = |x: &[Matrix], y: &[Matrix]| x.iter().chain(y).cloned().collect();
-        let columns: Vec<_> = self.functions.column_iter().chain(other.functions.column_iter()).collect();
-        Self {
-            values: self.values.clone(),
-            functions: Matrix::from_columns(&columns),
-            products: joined(&self.products, &other.products),
-            area_forms: joined(&self.area_forms, &other.area_forms),
         }
     }
 }
@@ -95,20 +81,27 @@ fn standardized(mut functions: Matrix, masses: &[f64]) -> Matrix {
     functions
 }
 
-/// The maps of functions of the second surface to functions of the first, `C`, that fit best: they take functions to each
-/// other, commute with the operators and with the Laplacians, and keep (`sign` 1) or reverse (-1) the orientation (Nogneng
-/// and Ovsjanikov 2017, Ren et al. 2018, `nogneng2017` and `ren2018` in `REFERENCES.bib`). Their nearest orthogonal matrices.
-pub(super) fn fitted(a: &Operators, b: &Operators, sign: f64) -> Vec<Matrix> {
+/// The maps of functions of the second surface to functions of the first, `C`, that fit pairs of operators best: they take
+/// functions to each other, commute with the operators and with the Laplacians, and keep (`sign` 1) or reverse (-1) the
+/// orientation (Nogneng and Ovsjanikov 2017, Ren et al. 2018, `nogneng2017` and `ren2018` in `REFERENCES.bib`). Their nearest
+/// orthogonal matrices.
+pub(crate) fn fitted(pairs: &[[&Operators; 2]], sign: f64) -> Vec<Matrix> {
+    let Some([a, b]) = pairs.first() else { return Vec::new() };
     let k = a.values.len().min(b.values.len());
     let top = |x: &Matrix| x.view((0, 0), (k, k)).into_owned();
     let one = DMatrix::<f64>::identity(k, k);
-    let [f, g] = [a, b].map(|of| of.functions.rows(0, k).into_owned());
-    // The normal equations of the columns of C, one after the other.
-    let mut matrix = (&g * g.transpose()).kronecker(&one) * VALUES + DMatrix::identity(k * k, k * k) * RIDGE;
-    let right = f * g.transpose() * VALUES;
-    let products = a.products.iter().zip(&b.products).map(|(x, y)| [top(x), top(y)]);
-    let area_forms = a.area_forms.iter().zip(&b.area_forms).map(|(x, y)| [top(x), top(y) * sign]);
-    matrix += commutators(k, products.chain(area_forms));
+    // The normal equations of the columns of C, one after the other; the diagonal is for surfaces on which all functions are
+    // constant.
+    let mut matrix = DMatrix::identity(k * k, k * k) * f64::EPSILON.sqrt();
+    let mut right = DMatrix::zeros(k, k);
+    for [a, b] in pairs {
+        let [f, g] = [a, b].map(|of| of.functions.rows(0, k).into_owned());
+        matrix += (&g * g.transpose()).kronecker(&one) * VALUES;
+        right += f * g.transpose() * VALUES;
+        let products = a.products.iter().zip(&b.products).map(|(x, y)| [top(x), top(y)]);
+        let area_forms = a.area_forms.iter().zip(&b.area_forms).map(|(x, y)| [top(x), top(y) * sign]);
+        matrix += commutators(k, products.chain(area_forms));
+    }
     let largest = a.values[k - 1].max(b.values[k - 1]).max(f64::MIN_POSITIVE);
     let [x, y] = [a, b].map(|of| DMatrix::from_diagonal(&(of.values.rows(0, k) / largest)));
     let of_values = commutators(k, [[x, y]]);

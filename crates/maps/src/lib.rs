@@ -2,29 +2,34 @@
 //!
 //! ```text
 //! form, spectrum, distances -> MapShape
-//! two of them -> maps of functions that fit, alignments of the forms -> maps of samples, refined
-//!             -> SurfaceMap, the best of each orientation
+//! two of them -> Start (fitted maps of functions, aligned forms) -> Sketch -> Scored -> Refined -> SurfaceMap, of each orientation
 //! one of them a part -> places of landmarks and samples by their distances -> SurfaceMap
 //! ```
 
 mod curvature;
 mod error;
-mod functional_map;
+mod functional;
 mod known;
 mod local;
+mod mirror;
 mod nearest_rows;
 mod operators;
 mod orientation;
+mod params;
 mod part;
 mod points;
+mod refine;
+mod score;
 mod search;
 mod shape;
+mod sketch;
+mod start;
 mod surface_map;
-mod whole_or_part;
 
 pub use error::{LandmarkConflict, MapError};
 pub use known::KnownMap;
+pub use params::MapParams;
 pub use points::{MapElements, mapped_points};
+pub use search::map_surfaces;
 pub use shape::MapShape;
 pub use surface_map::{MapKind, PartOfWhole, SurfaceMap};
-pub use whole_or_part::map_surfaces;

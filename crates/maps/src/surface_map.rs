@@ -1,13 +1,9 @@
 //! A map between two surfaces.
 
+use descriptors::Side;
 use linalg::Matrix;
 use serde::Serialize;
 use surface::VertexId;
-
-use super::local::vertex_confidence;
-use super::shape::MapShape;
-use crate::relation::Side;
-use descriptors::DescriptorError;
 
 /// Which of two mapped surfaces is a part of the other.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -38,16 +34,7 @@ pub enum MapKind {
 
 impl MapKind {
     /// All kinds.
-    pub(super) const ALL: [Self; 3] = [Self::Direct, Self::Mirrored, Self::Unoriented];
-
-    /// The kind of a map of some agreement.
-    pub(super) fn of(agreement: Option<f64>) -> Self {
-        match agreement {
-            Some(value) if value > AGREEMENT => Self::Direct,
-            Some(value) if value < -AGREEMENT => Self::Mirrored,
-            _ => Self::Unoriented,
-        }
-    }
+    pub(crate) const ALL: [Self; 3] = [Self::Direct, Self::Mirrored, Self::Unoriented];
 
     /// The name on the command line and in records.
     #[must_use]
@@ -59,6 +46,21 @@ impl MapKind {
         }
     }
 }
+
+/// The kind of a map of some agreement.
+impl From<Option<f64>> for MapKind {
+    fn from(agreement: Option<f64>) -> Self {
+        match agreement {
+            Some(value) if value > AGREEMENT => Self::Direct,
+            Some(value) if value < -AGREEMENT => Self::Mirrored,
+            _ => Self::Unoriented,
+        }
+    }
+}
+
+/// The most confidence in a map that misses a landmark, that mixes two maps, or whose rival is better after refinement: as likely
+/// wrong as right.
+pub(crate) const DOUBTED: f64 = 0.5;
 
 /// A map from the vertices of one surface to those of another.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,31 +94,11 @@ pub struct SurfaceMap {
 impl SurfaceMap {
     /// Maps of at least this confidence are certain: the next best one is so much worse that it is not refined. A convention.
     pub const CERTAIN: f64 = 0.7;
-
-    /// A map of wholes by the images of all vertices, and of the landmarks of the second surface; nothing else is known of it.
-    pub(super) fn of_vertices(
-        [a, b]: [&MapShape; 2],
-        forth: &[usize],
-        back: &[usize],
-    ) -> Result<Self, DescriptorError> {
-        let (to_back, to_images) = (a.distances_to(back)?, b.distances_to(&a.landmark_images(forth))?);
-        Ok(Self {
-            kind: MapKind::Unoriented,
-            distortion: codistortion(&to_back, &to_images),
-            agreement: None,
-            confidence: 1.0,
-            vertices: forth.iter().map(|y| VertexId::from(*y)).collect(),
-            vertex_confidence: vertex_confidence([a, b], [1.0; 2], forth)?,
-            functional: Matrix::zeros(0, 0),
-            alternative: None,
-            part: None,
-        })
-    }
 }
 
 /// The mean of `|d(x_i, g y_j) - d(f x_i, y_j)|` over landmarks, from the distances on the first and on the second surface
 /// from its landmarks to the images of those of the other one.
-pub(super) fn codistortion(on_a: &Matrix, on_b: &Matrix) -> f64 {
+pub(crate) fn codistortion(on_a: &Matrix, on_b: &Matrix) -> f64 {
     let gaps = (0..on_a.nrows()).flat_map(|i| (0..on_a.ncols()).map(move |j| (i, j)));
     let sum: f64 = gaps.map(|(i, j)| (on_a[(i, j)] - on_b[(j, i)]).abs()).sum();
     sum / on_a.len().max(1) as f64

@@ -9,18 +9,18 @@ use descriptors::LaplaceSpectrum;
 
 /// Times of heat by which a function is smoothed, at unit area. A convention: bumps of 3 to 10 % of the square root of the
 /// area are left.
-const TIMES: [f64; 3] = [0.001, 0.003, 0.01];
+pub(crate) const TIMES: [f64; 3] = [0.001, 0.003, 0.01];
 
 /// Coefficients of the mean curvature, positive where the surface bulges outwards, in the eigenfunctions. `outward` has its
 /// normals outwards.
-pub(super) fn bends(outward: &TriMesh, spectrum: &LaplaceSpectrum) -> DVector<f64> {
-    spectrum.vectors.transpose() * mean_curvature(outward)
+pub(crate) fn mean_curvature(outward: &TriMesh, spectrum: &LaplaceSpectrum) -> DVector<f64> {
+    spectrum.vectors.transpose() * integrated(outward)
 }
 
 /// A function at some points, such as the mean curvature, smoothed by heat: a row for each point, a column for each time.
 /// `coefficients` are those of the function in the eigenfunctions, `values` the eigenvalues and `vectors` the eigenfunctions at
 /// these points; times are those at unit area, times `factor`.
-pub(super) fn smoothed(coefficients: &DVector<f64>, values: &[f64], vectors: &Matrix, factor: f64) -> Matrix {
+pub(crate) fn smoothed(coefficients: &DVector<f64>, values: &[f64], vectors: &Matrix, factor: f64) -> Matrix {
     let mut found = Matrix::zeros(vectors.nrows(), TIMES.len());
     for (mut column, time) in found.column_iter_mut().zip(TIMES) {
         let left = values.iter().map(|value| (-time * factor * value).exp());
@@ -33,7 +33,7 @@ pub(super) fn smoothed(coefficients: &DVector<f64>, values: &[f64], vectors: &Ma
 /// The mean curvature, integrated around every vertex: half of the bend of each edge, which is its length times the angle
 /// between the normals of its faces, goes to either end (Cohen-Steiner and Morvan 2003, `cohensteiner2003` in
 /// `REFERENCES.bib`), up to a factor.
-fn mean_curvature(outward: &TriMesh) -> DVector<f64> {
+fn integrated(outward: &TriMesh) -> DVector<f64> {
     let topology = Topology::new(outward.n_vertices(), outward.faces.clone());
     let mut sums = DVector::zeros(outward.n_vertices());
     for (e, ends) in topology.edges().iter().enumerate() {
@@ -51,7 +51,7 @@ fn mean_curvature(outward: &TriMesh) -> DVector<f64> {
 
 /// One less the correlation of the curvatures of corresponding points: 0 for isometries that do not turn inside out.
 /// `partners` names a point of the second list for each of the first, as far as they go.
-pub(super) fn mismatch(x: &[f64], y: &[f64], partners: &[usize]) -> f64 {
+pub(crate) fn mismatch(x: &[f64], y: &[f64], partners: &[usize]) -> f64 {
     let n = partners.len();
     let centred = |values: DVector<f64>| values.add_scalar(-values.mean());
     let x = centred(DVector::from_column_slice(&x[..n]));
@@ -69,7 +69,7 @@ mod tests {
     fn a_ball_bulges_evenly_and_a_ring_bulges_outside() {
         let of = |mesh: &TriMesh| {
             let spectrum = LaplaceSpectrum::new(&mesh.intrinsic(), 60, &()).unwrap();
-            smoothed(&bends(mesh, &spectrum), &spectrum.values, &spectrum.vectors, 1.0)
+            smoothed(&mean_curvature(mesh, &spectrum), &spectrum.values, &spectrum.vectors, 1.0)
         };
         let ball = of(&shapes::icosphere(4));
         assert!(ball.min() > 0.0 && ball.max() < 1.05 * ball.min(), "{} to {}", ball.min(), ball.max());

@@ -4,16 +4,13 @@ use linalg::Matrix;
 use nalgebra::DVectorView;
 use rayon::prelude::*;
 
-use super::shape::MapShape;
+use crate::nearest_rows::PROBED;
+use crate::shape::MapShape;
 use descriptors::DescriptorError;
-
-/// Landmarks near a vertex whose distances are compared. A convention: with 100 landmarks they are within a fifth of the square
-/// root of the area or so.
-const NEAR: usize = 6;
 
 /// The [confidence] of every vertex of the first surface in a map that takes it to an image. `units` are the lengths of one at
 /// unit area of the surfaces, in the same unit.
-pub(super) fn vertex_confidence(
+pub(crate) fn vertex_confidence(
     [a, b]: [&MapShape; 2],
     units: [f64; 2],
     images: &[usize],
@@ -37,7 +34,7 @@ fn confidence(on_a: &Matrix, landmarks: &[usize], on_b: &Matrix) -> Vec<f64> {
         let from_x = on_a.column(x);
         let mut near: Vec<usize> = (0..landmarks.len()).filter(|l| landmarks[*l] != x).collect();
         near.sort_unstable_by(|k, l| from_x[*k].total_cmp(&from_x[*l]).then(k.cmp(l)));
-        near.truncate(NEAR);
+        near.truncate(PROBED);
         let change =
             |l: &usize| (least_distance(on_b.column(x), on_b.column(landmarks[*l])) - from_x[*l]).abs();
         let [changes, all] = [near.iter().map(change).sum(), near.iter().map(|l| from_x[*l]).sum::<f64>()];
@@ -47,14 +44,14 @@ fn confidence(on_a: &Matrix, landmarks: &[usize], on_b: &Matrix) -> Vec<f64> {
 }
 
 /// How far points are apart from others at least, on average: from their distances to the same landmarks, a column for each.
-pub(super) fn mean_gap(points: &Matrix, others: &Matrix) -> f64 {
+pub(crate) fn mean_gap(points: &Matrix, others: &Matrix) -> f64 {
     let gaps = points.column_iter().zip(others.column_iter()).map(|(p, q)| least_distance(p, q));
     gaps.sum::<f64>() / points.ncols() as f64
 }
 
 /// Distances between points from those to the same landmarks, a column for each point: the mean of what the triangle
 /// inequality allows at least and at most. With 100 landmarks on a built-in man it is 0.2 % of the square root of the area from the truth.
-pub(super) fn between(xs: &Matrix, ys: &Matrix) -> Matrix {
+pub(crate) fn between(xs: &Matrix, ys: &Matrix) -> Matrix {
     let n = xs.nrows();
     let column = |y: usize| -> Vec<f64> {
         let of_y = ys.column(y);
@@ -74,7 +71,7 @@ pub(super) fn between(xs: &Matrix, ys: &Matrix) -> Matrix {
 }
 
 /// The least possible distance of two points, from their distances to the same landmarks.
-pub(super) fn least_distance(p: DVectorView<'_, f64>, q: DVectorView<'_, f64>) -> f64 {
+pub(crate) fn least_distance(p: DVectorView<'_, f64>, q: DVectorView<'_, f64>) -> f64 {
     p.iter().zip(&q).map(|(p, q)| (p - q).abs()).fold(0.0, f64::max)
 }
 

@@ -1,44 +1,29 @@
 //! What is known of a map before it is searched for.
 
+use descriptors::{DescriptorError, Side};
 use linalg::Matrix;
 use surface::VertexId;
 
-use super::curvature::smoothed;
-use super::error::{LandmarkConflict, MapError};
-use super::functional_map::{FunctionalMaps, SampledPair, TwoWayMap};
-use super::local::{between, least_distance};
-use super::nearest_rows::nearest_rows;
-use super::operators::{Operators, fitted};
-use super::shape::MapShape;
-use super::surface_map::SurfaceMap;
-use crate::relation::Side;
-use descriptors::DescriptorError;
-
-/// Right maps take 95 % of the landmarks within this of their partners, as a share of the square root of the area. A safety
-/// limit: two maps that are as far apart on average are one.
-pub(super) const RESPECTED: f64 = 0.06;
-
-/// The direct map comes second if its distortion is more than this multiple of the mirrored one's. A convention.
-pub(super) const CLEARLY_WORSE: f64 = 1.5;
-
-/// A landmark that is missed by more than this multiple of [`RESPECTED`] may be false itself, so it speaks against a map no more than
-/// there, with odds of `exp(2 * 1.5²) = 90`: one of 90 landmarks is false. A convention.
-pub(super) const OUTLYING: f64 = 1.5;
-
-/// The most confidence in a map that misses a landmark by more, that mixes two maps, or whose rival is better after refinement: as
-/// likely wrong as right. A convention.
-pub(super) const DOUBTED: f64 = 0.5;
+use crate::curvature::smoothed;
+use crate::error::{LandmarkConflict, MapError};
+use crate::functional::{FunctionalMaps, SampledPair, TwoWayMap};
+use crate::local::{between, least_distance};
+use crate::nearest_rows::nearest_rows;
+use crate::operators::{Operators, fitted};
+use crate::params::MapParams;
+use crate::score::Scored;
+use crate::shape::MapShape;
+use crate::sketch::SAMPLES_A_FUNCTION;
+use crate::start::Start;
+use crate::surface_map::{MapKind, SurfaceMap};
 
 /// Distances of two landmarks may differ by this between the surfaces, as a share of the diameter. A safety limit: true landmarks
 /// of built-in men, cats and centaurs in two poses have 0.12 at most.
 const CHANGED: f64 = 0.3;
 
-/// A landmark that a map misses by more than this multiple of [`RESPECTED`] does not fit it. A safety limit: of the landmarks that
-/// fit the mirrored map as well, right maps of built-in men, cats and centaurs miss none by more than 1.3.
-pub(super) const UNFIT: f64 = 5.0;
-
-/// An initial map is refined from one function for so many of its pairs. A convention.
-const PAIRS_A_FUNCTION: usize = 4;
+/// A landmark that a map misses by more than this multiple of [`MapParams::same`] does not fit it. A safety limit: of the
+/// landmarks that fit the mirrored map as well, right maps of built-in men, cats and centaurs miss none by more than 1.3.
+const UNFIT: f64 = 5.0;
 
 /// What is known of a map from one surface to another, before the rest of it is searched for. By default, nothing.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -53,14 +38,8 @@ pub struct KnownMap {
 }
 
 impl KnownMap {
-    /// Whether nothing is known.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        *self == Self::default()
-    }
-
     /// The pairs of the initial map: a vertex of the first surface, and one of the second.
-    pub(super) fn initial_pairs(&self) -> impl Iterator<Item = [VertexId; 2]> {
+    pub(crate) fn initial_pairs(&self) -> impl Iterator<Item = [VertexId; 2]> {
         self.initial.iter().enumerate().filter_map(|(x, y)| Some([VertexId::from(x), (*y)?]))
     }
 
@@ -70,7 +49,7 @@ impl KnownMap {
 
     /// Refuses landmarks that give a vertex two partners, or whose distances differ too much. If a surface is possibly a `part` of
     /// the other in the same unit, paths in it may also be longer.
-    pub(super) fn check(&self, [a, b]: [&MapShape; 2], part: Option<Side>) -> Result<(), MapError> {
+    pub(crate) fn check(&self, [a, b]: [&MapShape; 2], part: Option<Side>) -> Result<(), MapError> {
         if self.landmarks.len() < 2 {
             return Ok(());
         }
@@ -83,9 +62,9 @@ impl KnownMap {
         let mut worst = (CHANGED * diameter, None);
         for (i, p) in self.landmarks.iter().enumerate() {
             for (j, q) in self.landmarks.iter().enumerate().skip(i + 1) {
+                let landmarks = [i, j];
                 if (p[0] == q[0]) != (p[1] == q[1]) {
-                    let how = LandmarkConflict::SharedVertex;
-                    return Err(MapError::Contradiction { landmarks: [i, j], how });
+                    return Err(MapError::Contradiction { landmarks, how: LandmarkConflict::SharedVertex });
                 }
                 let (x, y) = (on_a[(i, j)], on_b[(i, j)]);
                 let in_unit = y * b.size / a.size;
@@ -96,15 +75,52 @@ impl KnownMap {
                 };
                 if gap > worst.0 {
                     let how = LandmarkConflict::Distance([x / diameter, y / diameter]);
-                    worst = (gap, Some(MapError::Contradiction { landmarks: [i, j], how }));
+                    worst = (gap, Some(MapError::Contradiction { landmarks, how }));
                 }
             }
         }
         worst.1.map_or(Ok(()), Err)
     }
 
+    /// Refuses landmarks of both orientations: maps that were found without them show it, the direct and the mirrored one that fit
+    /// most of them.
+    pub(crate) fn check_orientation(&self, found: &[Scored], params: &MapParams) -> Result<(), MapError> {
+        let best = |kind| {
+            let of_kind =
+                found.iter().rev().filter(|found| found.kind() == kind && !found.is_mixture(params.pure));
+            of_kind.max_by_key(|found| found.misses.iter().filter(|miss| **miss < params.same).count())
+        };
+        let [Some(direct), Some(mirrored)] = [MapKind::Direct, MapKind::Mirrored].map(best) else {
+            return Ok(());
+        };
+        let all: Vec<[f64; 2]> = direct.misses.iter().zip(&mirrored.misses).map(|(x, y)| [*x, *y]).collect();
+        let fits = |miss: f64| miss < params.clearly * params.same;
+        let only = |i: usize| all.iter().position(|both| fits(both[i]) && both[1 - i] > UNFIT * params.same);
+        match (only(0), only(1)) {
+            // Maps that are both wrong leave others.
+            (Some(i), Some(j)) if all.iter().all(|[x, y]| fits(x.min(*y))) => {
+                let (landmarks, how) = ([i.min(j), i.max(j)], LandmarkConflict::Orientation);
+                Err(MapError::Contradiction { landmarks, how })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The maps of orientations that respect the landmarks: the best one is not clearly worse than that of the other.
+    pub(crate) fn respecting(&self, mut found: Vec<Scored>, params: &MapParams) -> Vec<Scored> {
+        if !self.landmarks.is_empty() {
+            let costs = MapKind::ALL.map(|kind| {
+                let of_kind = found.iter().filter(|found| found.kind() == kind);
+                of_kind.map(Scored::cost).fold(f64::MAX, f64::min)
+            });
+            let least = costs.into_iter().fold(f64::MAX, f64::min);
+            found.retain(|found| costs[found.kind() as usize] <= params.clearly * least);
+        }
+        found
+    }
+
     /// Samples and landmarks, which maps of functions take to each other.
-    pub(super) fn and_landmarks(&self, pair: SampledPair, shapes: [&MapShape; 2]) -> SampledPair {
+    pub(crate) fn and_landmarks(&self, pair: SampledPair, shapes: [&MapShape; 2]) -> SampledPair {
         // A landmark weighs as much as one of those of the form, which are spread over the surface.
         let weight = (pair.a.nrows() as f64 / shapes[0].landmarks().len() as f64).sqrt();
         let rows = |side: usize| shapes[side].spectrum.vectors.select_rows(&self.landmarks_on(side)) * weight;
@@ -112,13 +128,13 @@ impl KnownMap {
     }
 
     /// Maps of functions that are fitted to the landmarks and functions, alone and together with what surfaces have in common.
-    pub(super) fn fitted(&self, [a, b]: [&MapShape; 2]) -> Vec<Matrix> {
+    pub(crate) fn fitted(&self, [a, b]: [&MapShape; 2]) -> Vec<Matrix> {
         let known = [(a, 0), (b, 1)].map(|(shape, side)| self.operators(shape, side));
         let [Some(on_a), Some(on_b)] = known else { return Vec::new() };
-        let both = a.operators.iter().zip(&b.operators).map(|(x, y)| [x.and(&on_a), y.and(&on_b)]);
-        let mut all: Vec<[Operators; 2]> = both.collect();
-        all.push([on_a, on_b]);
-        all.iter().flat_map(|[x, y]| [1.0, -1.0].into_iter().flat_map(|sign| fitted(x, y, sign))).collect()
+        let own = [&on_a, &on_b];
+        let both = a.operators.iter().zip(&b.operators).map(|(x, y)| vec![[x, y], own]);
+        let all = both.chain([vec![own]]);
+        all.flat_map(|pairs| [1.0, -1.0].into_iter().flat_map(move |sign| fitted(&pairs, sign))).collect()
     }
 
     /// The functions known on one side: heat that was placed at the landmarks, and those that were given.
@@ -135,47 +151,28 @@ impl KnownMap {
         Some(Operators::new(spectrum, functions, shape.oriented.as_ref()))
     }
 
-    /// The maps of samples that follow from the initial map, and the number of eigenfunctions to refine it from.
-    pub(super) fn initial_start(
-        &self,
-        pair: &SampledPair,
-        [a, b]: [&MapShape; 2],
-        most: usize,
-    ) -> Option<(TwoWayMap, usize)> {
+    /// The start that follows from the initial map, to be refined to at most so many eigenfunctions.
+    pub(crate) fn start(&self, pair: &SampledPair, [a, b]: [&MapShape; 2], most: usize) -> Option<Start> {
         let partner = |&x: &usize| Some((x, self.initial.get(x).copied().flatten()?.index()));
         // Samples are spread evenly; all vertices, where few of them have partners.
         let mut pairs: Vec<(usize, usize)> = a.samples.iter().filter_map(partner).collect();
-        if pairs.len() < PAIRS_A_FUNCTION * most {
+        if pairs.len() < SAMPLES_A_FUNCTION * most {
             pairs = (0..self.initial.len()).filter_map(|x| partner(&x)).collect();
         }
-        let k = most.min(pairs.len() / PAIRS_A_FUNCTION).min(pair.a.ncols()).min(pair.b.ncols());
-        if k == 0 {
+        let first = most.min(pairs.len() / SAMPLES_A_FUNCTION).min(pair.a.ncols()).min(pair.b.ncols());
+        if first == 0 {
             return None;
         }
         let (xs, ys): (Vec<usize>, Vec<usize>) = pairs.into_iter().unzip();
         let rows = |shape: &MapShape, vertices: &[usize]| shape.spectrum.vectors.select_rows(vertices);
         let known = SampledPair::new(rows(a, &xs), rows(b, &ys));
         let all: Vec<usize> = (0..xs.len()).collect();
-        let functional = FunctionalMaps::new(&known, &TwoWayMap { forth: all.clone(), back: all }, k);
-        Some((functional.sample_maps(pair), k))
-    }
-
-    /// How much less likely a map is the right one by the landmarks, as a factor for its score with the odds that follow: misses are
-    /// as those of a normal distribution, but for outliers.
-    pub(super) fn penalty(misses: &[f64], steepness: f64) -> f64 {
-        let loss = |miss: &f64| 2.0 * (miss / RESPECTED).min(OUTLYING).powi(2);
-        // Finite for any number of landmarks.
-        (misses.iter().map(loss).sum::<f64>() / steepness).min(100.0).exp()
-    }
-
-    /// The confidence in a map that misses the landmarks by so much.
-    pub(super) fn doubted(confidence: f64, misses: &[f64]) -> f64 {
-        let misses_one = misses.iter().any(|miss| *miss > OUTLYING * RESPECTED);
-        if misses_one { confidence.min(DOUBTED) } else { confidence }
+        let functional = FunctionalMaps::new(&known, &TwoWayMap { forth: all.clone(), back: all }, first);
+        Some(Start { maps: functional.sample_maps(pair), first })
     }
 
     /// How far a map takes each landmark from its partner, as a share of the square root of the area.
-    pub(super) fn misses(
+    pub(crate) fn misses(
         &self,
         functional: &FunctionalMaps,
         [a, b]: [&MapShape; 2],
@@ -192,26 +189,27 @@ impl KnownMap {
     }
 
     /// The maps in their order, with the landmarks: the nearest to the initial map first, and the direct one, unless it distorts
-    /// distances clearly more. `target` is the surface on which distances from the initial map are measured.
-    pub(super) fn finished(
+    /// distances clearly more. Distances from the initial map are measured on the second surface, `b`.
+    pub(crate) fn finished(
         &self,
         mut maps: Vec<SurfaceMap>,
-        target: &MapShape,
+        b: &MapShape,
+        params: &MapParams,
     ) -> Result<Vec<SurfaceMap>, DescriptorError> {
-        let known: Vec<[usize; 2]> = self.initial_pairs().map(|pair| pair.map(VertexId::index)).collect();
-        let to = target.distances_to(&known.iter().map(|[_, y]| *y).collect::<Vec<_>>())?;
+        let (xs, ys): (Vec<usize>, Vec<usize>) =
+            self.initial_pairs().map(|pair| pair.map(VertexId::index).into()).unzip();
+        let to = b.distances_to(&ys)?;
         let gap = |map: &SurfaceMap| -> Result<f64, DescriptorError> {
-            let images: Vec<usize> = known.iter().map(|[x, _]| map.vertices[*x].index()).collect();
-            Ok((target.distances_to(&images)? - &to).abs().sum())
+            let images: Vec<usize> = xs.iter().map(|x| map.vertices[*x].index()).collect();
+            Ok((b.distances_to(&images)? - &to).abs().sum())
         };
-        let gaps: Vec<f64> = maps.iter().map(gap).collect::<Result<_, _>>()?;
-        if let [first, second] = gaps[..]
-            && second < first
+        if let [first, second] = &maps[..]
+            && gap(second)? < gap(first)?
         {
             maps.swap(0, 1);
         }
         if let [first, second] = &maps[..]
-            && second.distortion * CLEARLY_WORSE < first.distortion
+            && second.distortion * params.clearly < first.distortion
         {
             maps.swap(0, 1);
         }
