@@ -2,7 +2,7 @@
 
 use base::Observer;
 use linalg::{LandmarkDistances, Matrix, sq_distance, symmetric_eigenvalues};
-use nmds::{LandmarkSmacofOptions, landmark_mds, landmark_smacof};
+use nmds::{LandmarkPairs, SmacofOptions, landmark_mds, smacof};
 
 use crate::error::DescriptorError;
 use crate::signature::{Signature, SignatureKind, log_magnitudes};
@@ -15,8 +15,8 @@ const POINTS: usize = 250;
 /// instead tell bodies apart less well.
 const RANGE: f64 = 0.2;
 
-/// How distances are fitted: Sammon's weights, and few steps, since more of them serve no collection.
-const FIT: LandmarkSmacofOptions = LandmarkSmacofOptions { power: 1.0, steps: 10 };
+/// How distances are fitted: few steps, since more of them serve no collection.
+const FIT: SmacofOptions = SmacofOptions { max_iterations: 10, tolerance: 0.0 };
 
 /// A canonical form of any number of dimensions, at evenly spread points.
 ///
@@ -48,7 +48,7 @@ impl SampledForm {
         Ok(Self { points: coords.select_rows(&samples).transpose(), shares })
     }
 
-    /// The form of [`DIM`](Self::DIM) dimensions by least squares: [`landmark_mds`], then [`landmark_smacof`] of 250 points and all
+    /// The form of [`DIM`](Self::DIM) dimensions by least squares: [`landmark_mds`], then [`smacof`] of 250 points and all
     /// landmarks, with the weights of Sammon's mapping. `masses` are the areas around the p points.
     ///
     /// Classical scaling fits squared distances, of which the longest count most. Least squares fit distances, and their
@@ -70,7 +70,8 @@ impl SampledForm {
         let weights: Vec<f64> =
             std::iter::repeat_n(1.0 / n as f64, n).chain(shares.iter().copied()).collect();
         let few = LandmarkDistances::new((0..n).collect(), distances.at(&all)?)?;
-        let fitted = landmark_smacof(&start.select_rows(&all), &few, &weights, &FIT, observer)?;
+        let pairs = LandmarkPairs { landmarks: few.landmarks(), rows: &few, masses: &weights, power: 1.0 };
+        let (fitted, _) = smacof(&start.select_rows(&all), &pairs, &FIT, observer)?;
         Ok(Self { points: fitted.coords.rows(n, samples.len()).transpose(), shares })
     }
 

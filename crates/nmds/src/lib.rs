@@ -13,8 +13,7 @@
 //! | [`spectral`] | distances between n samples, and eigenpairs of a Laplacian | Aflalo and Kimmel 2013 |
 //! | [`classical`], [`classical_full`] | all p x p distances | Torgerson 1952 |
 //! | [`OutOfSample`] | distances from further points to the n samples of [`nystrom`] | Bengio et al. 2003 |
-//! | [`smacof`] | all p x p distances, and a start | de Leeuw 1977 |
-//! | [`landmark_smacof`] | distances from n samples to all p points, and a start | the same; Sammon 1969 |
+//! | [`smacof`] | distances from n samples to all p points, or all p x p distances, and a start | de Leeuw 1977; Sammon 1969 |
 //!
 //! [`SampleSearch`] finds how many samples are enough.
 //! [`LandmarkMetric`] approximates all pairs of distances from the same n columns, with bounds, instead of embedding them.
@@ -22,16 +21,15 @@
 mod classical;
 mod embedding;
 mod error;
-mod estimate;
 mod kernel_pca;
 mod landmark;
 mod landmark_metric;
-mod landmark_smacof;
 mod nystrom;
 mod out_of_sample;
 mod passes;
 mod reconstruction;
 mod regularization;
+mod row_sample;
 mod sample_search;
 mod smacof;
 mod spectral;
@@ -43,19 +41,18 @@ mod tests;
 pub use classical::{classical, classical_full};
 pub use embedding::Embedding;
 pub use error::NmdsError;
-pub use estimate::{RowSample, StressEstimate, estimate_stress, sample_rows};
 pub use kernel_pca::{Bandwidth, KernelPcaOptions, kernel_pca};
 pub use landmark::landmark_mds;
 pub use landmark_metric::{
     BoundsParts, ColumnError, FactorParts, Interval, LandmarkBounds, LandmarkMetric, PairEstimate,
     SqDistanceFactors,
 };
-pub use landmark_smacof::{LandmarkSmacofOptions, landmark_smacof};
 pub use nystrom::{NystromOptions, nystrom, nystrom_extended};
 pub use out_of_sample::OutOfSample;
 pub use reconstruction::{Reconstruction, ReconstructionError, sample_eigenvalues};
 pub use regularization::{Regularization, RpiAlpha};
+pub use row_sample::{RowSample, sample_rows};
 pub use sample_search::{SampleSearch, SampleStep, SampleStop, SampleTrial};
-pub use smacof::{SmacofOptions, SmacofReport, SmacofStop, smacof};
+pub use smacof::{LandmarkPairs, SmacofOptions, SmacofReport, SmacofStop, smacof};
 pub use spectral::{SpectralBasis, SpectralOptions, spectral};
-pub use stress::{DistanceRows, Stress, normalized_stress, paper_stress, stress};
+pub use stress::{DistanceRows, Stress, estimate_stress, normalized_stress, paper_stress, stress};

@@ -4,8 +4,9 @@ use std::collections::HashMap;
 
 use linalg::{LandmarkDistances, LinalgError, Matrix};
 
-use crate::estimate::{RowSample, StressEstimate, estimate_stress};
+use crate::row_sample::RowSample;
 use crate::squares::check_extent;
+use crate::stress::{Stress, estimate_stress};
 use crate::{DistanceRows, Embedding, NmdsError};
 
 /// Samples grow by this share at a time: finer steps embed more often, coarser ones overshoot.
@@ -206,7 +207,7 @@ impl SampleSearch {
 
     /// The stress of the last embedding.
     fn trial(&self) -> Result<SampleTrial, LinalgError> {
-        let StressEstimate { value, normalized, .. } = self.held_out.estimate(&self.embedding)?;
+        let Stress { value, normalized, .. } = self.held_out.estimate(&self.embedding)?;
         let stress = value * self.held_out.unit * self.held_out.unit;
         Ok(SampleTrial { n_samples: self.n_samples, rank: self.embedding.rank, stress, normalized })
     }
@@ -246,7 +247,7 @@ impl HeldOut {
     }
 
     /// The stress of an embedding, in units of `unit`.
-    fn estimate(&self, embedding: &Embedding) -> Result<StressEstimate, LinalgError> {
+    fn estimate(&self, embedding: &Embedding) -> Result<Stress, LinalgError> {
         estimate_stress(&(&embedding.coords / self.unit), self, &self.sample)
     }
 }

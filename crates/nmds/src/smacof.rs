@@ -1,11 +1,11 @@
 //! SMACOF: iterative minimisation of the metric stress.
 
 use base::{Budget, Observer};
-use linalg::{DistanceMatrix, Matrix, pseudo_inverse};
+use linalg::{Matrix, pseudo_inverse};
 use rayon::prelude::*;
 
 use crate::squares::{check_dim, check_extent, check_points};
-use crate::{Embedding, NmdsError};
+use crate::{DistanceRows, Embedding, NmdsError};
 
 /// Options of [`smacof`].
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -13,7 +13,8 @@ use crate::{Embedding, NmdsError};
 pub struct SmacofOptions {
     /// Maximum number of steps. Default: 300.
     pub max_iterations: usize,
-    /// Stops when a step lowers the raw stress by less than this share of it. Default: 1e-6.
+    /// Stops when a step lowers the raw stress by less than this share of it. 0 takes plain steps, without extrapolation, while
+    /// they lower it. Default: 1e-6.
     pub tolerance: f64,
 }
 
@@ -23,10 +24,24 @@ impl Default for SmacofOptions {
     }
 }
 
+/// The distances that [`smacof`] fits, and how much they count.
+#[derive(Clone, Copy)]
+pub struct LandmarkPairs<'a> {
+    /// n of the p points: their distances to all points are fitted. All points, for the distances of all pairs.
+    pub landmarks: &'a [usize],
+    /// The distances, of which the rows of landmarks are needed.
+    pub rows: &'a dyn DistanceRows,
+    /// The masses of the points.
+    pub masses: &'a [f64],
+    /// Weights of pairs are this power of the inverse distance: 0 weighs all alike, 1 is Sammon's mapping.
+    pub power: f64,
+}
+
 /// What happened in a run of [`smacof`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct SmacofReport {
-    /// Kruskal's stress `sqrt(sum (d_ij - |x_i - x_j|)^2 / sum d_ij^2)` of the start and after each step; never increases.
+    /// The stress relative to that of coinciding points, `sqrt(sum m_i w_is (d_is - |x_i - x_s|)^2 / sum m_i w_is d_is^2)`, of the
+    /// start and after each step; never increases. It is Kruskal's stress for all pairs and equal masses.
     pub normalized_stress: Vec<f64>,
     /// Why it stopped.
     pub stop: SmacofStop,
@@ -49,135 +64,89 @@ pub enum SmacofStop {
     IterationLimit,
 }
 
-/// SMACOF with equal weights: starts from the coordinates `start` (p x k) and minimises the raw stress
-/// `sum (d_ij - |x_i - x_j|)^2`.
+/// SMACOF: starts from the coordinates `start` (p x k) and lowers the raw stress `sum m_i w_is (d_is - |x_i - x_s|)^2` over all
+/// points `i` and landmarks `s`, with the masses `m` of the points and the weights `w = d^-power`.
 ///
-/// Each step is the Guttman transform `X <- B(X) X / p`, where `B_ij = -d_ij / |x_i - x_j|` (zero for coinciding points)
-/// and the rows of `B` sum to zero. It minimises a quadratic majorant of the stress, so the stress never increases.
-/// Every eighth step extrapolates from the previous ones instead (reduced rank extrapolation) and is rejected if it does
-/// not lower the stress. On real shapes this takes a quarter of the steps.
+/// Each step moves every other point to the minimum of a majorant of its own share of the stress,
+/// `x_i <- sum_s w_is (x_s + d_is u_is) / sum_s w_is` with `u_is` the unit vector from `x_s` to `x_i`, and then every landmark
+/// in turn by all points. If all points are landmarks and all pairs count alike, all points move at once (the Guttman transform).
+/// So the stress never increases. With a tolerance, every eighth step extrapolates from the previous ones
+/// instead (reduced rank extrapolation) and is rejected if it does not lower the stress. On real shapes this takes a quarter of the
+/// steps.
 ///
 /// * Finds a local minimum that depends on the start. Classical and Nystrom scaling are good starts. A dimension that is
 ///   zero in the start stays zero.
-/// * Fits distances, whereas classical scaling fits their squares: the paper's stress of the result is larger than that of
-///   classical scaling, and [`normalized_stress`](crate::normalized_stress) is smaller.
+/// * Fits distances, whereas classical and Nystrom scaling fit their squares: the paper's stress of the result is larger than
+///   that of classical scaling, [`normalized_stress`](crate::normalized_stress) is smaller, and small features count more.
+/// * Landmarks that are spread evenly serve nearly as well as all pairs.
 /// * The result is centred and rotated to its principal axes; `eigenvalues` are the k of `X' X`.
-/// * Cost: `O(p^2 k)` per step; `O(p k)` memory besides the distances. Does not depend on the number of threads.
+/// * Cost: `O(p n k)` per step; `O(p k)` memory besides the distances. Does not depend on the number of threads.
 ///
-/// After de Leeuw 1977 and Rosman et al. 2008 (`deleeuw1977`, `rosman2008` in `REFERENCES.bib`).
+/// After de Leeuw 1977, Sammon 1969 and Rosman et al. 2008 (`deleeuw1977`, `sammon1969`, `rosman2008` in `REFERENCES.bib`).
 ///
 /// # Errors
-/// [`NmdsError::PointMismatch`], [`NmdsError::BadDimension`], [`NmdsError::BadTolerance`],
-/// [`NmdsError::NoExtent`]; [`NmdsError::Linalg`] if a coordinate is not finite; [`NmdsError::Exceeded`] if the budget of
-/// the observer is, which is checked before every row of a step.
+/// [`NmdsError::PointMismatch`] unless there is a row and a mass for each point, [`NmdsError::BadDimension`],
+/// [`NmdsError::BadTolerance`], [`NmdsError::NoExtent`]; [`NmdsError::Linalg`] if a coordinate is not finite;
+/// [`NmdsError::Exceeded`] if the budget of the observer is, which is checked before every row of a step.
 ///
 /// ```
 /// # extern crate linalg as canonform_linalg;
 /// use canonform_linalg::DistanceMatrix;
-/// use canonform_nmds::{SmacofOptions, classical, smacof};
+/// use canonform_nmds::{LandmarkPairs, SmacofOptions, classical, smacof};
 ///
 /// // Distances along the arcs of a circle do not fit into the plane.
 /// let distances = DistanceMatrix::from_pairs(12, |i, j| (j - i).min(12 - (j - i)) as f64)?;
 /// let start = classical(&distances, 2, &())?.coords;
-/// let (_, report) = smacof(&start, &distances, &SmacofOptions::default(), &())?;
+/// let landmarks: Vec<usize> = (0..12).collect();
+/// let all = LandmarkPairs { landmarks: &landmarks, rows: &distances, masses: &[1.0; 12], power: 0.0 };
+/// let (_, report) = smacof(&start, &all, &SmacofOptions::default(), &())?;
 /// assert!(report.normalized_stress[report.iterations()] <= report.normalized_stress[0]);
 /// # Ok::<(), canonform_nmds::NmdsError>(())
 /// ```
 pub fn smacof(
     start: &Matrix,
-    distances: &DistanceMatrix,
+    pairs: &LandmarkPairs<'_>,
     options: &SmacofOptions,
     observer: &dyn Observer,
 ) -> Result<(Embedding, SmacofReport), NmdsError> {
-    let budget = &observer.budget();
     let (p, dim) = start.shape();
-    check_points(p, distances.n_points())?;
+    check_points(p, pairs.rows.n_points())?;
+    check_points(pairs.masses.len(), p)?;
     check_dim(dim, p)?;
     let tolerance = options.tolerance;
     if !(tolerance >= 0.0 && tolerance.is_finite()) {
         return Err(NmdsError::BadTolerance(tolerance));
     }
-    // A power of two: dividing by it is exact.
-    let unit = 2f64.powi(check_extent(distances.max(), p)?.log2().floor() as i32);
-    let target = SmacofTarget { distances, inverse_unit: 1.0 / unit, budget };
-    let total: f64 = distances.as_slice().iter().map(|d| (d * target.inverse_unit).powi(2)).sum();
-
-    let mut state = SmacofState::new(start / unit, &target)?;
-    let mut normalized_stress = vec![(state.stress / total).sqrt()];
-    let mut stop = SmacofStop::IterationLimit;
-    let mut history = vec![state.x.clone()];
+    let fit = Fit::new(pairs, observer.budget())?;
+    let mut x = start / fit.unit;
+    let (mut stress, mut next) = fit.around(&x)?;
+    let mut report =
+        SmacofReport { normalized_stress: vec![stress.sqrt()], stop: SmacofStop::IterationLimit };
+    let mut history = vec![x.clone()];
     for _ in 0..options.max_iterations {
-        if history.len() == CYCLE {
-            let extrapolated = SmacofState::new(extrapolate(&history)?, &target)?;
-            history.clear();
-            if extrapolated.stress < state.stress {
-                state = extrapolated;
-                normalized_stress.push((state.stress / total).sqrt());
-            }
-            history.push(state.x.clone());
-            continue;
-        }
-        let (lower, after) = target.guttman(&state.next)?;
-        let gain = state.stress - lower;
-        let settled = gain <= tolerance * state.stress;
+        let extrapolates = tolerance > 0.0 && history.len() == CYCLE;
+        let moved = match &next {
+            _ if extrapolates => extrapolated(&history)?,
+            Some(next) => next.clone(),
+            None => fit.step(&x)?,
+        };
+        let (lower, after) = fit.around(&moved)?;
+        let settled = !extrapolates && stress - lower <= tolerance * stress;
         // Rounding may increase it slightly.
-        if gain > 0.0 {
-            normalized_stress.push((lower / total).sqrt());
-            state = SmacofState { x: state.next, stress: lower, next: after };
-            history.push(state.x.clone());
+        if lower < stress {
+            (x, stress, next) = (moved, lower, after);
+            report.normalized_stress.push(stress.sqrt());
         }
         if settled {
-            stop = SmacofStop::Converged;
+            report.stop = SmacofStop::Converged;
             break;
         }
+        if extrapolates {
+            history.clear();
+        }
+        history.push(x.clone());
     }
-    let report = SmacofReport { normalized_stress, stop };
-    Ok((Embedding::along_principal_axes(state.x, unit, dim)?, report))
-}
-
-/// The distances to fit, in a unit near the largest.
-struct SmacofTarget<'a> {
-    distances: &'a DistanceMatrix,
-    inverse_unit: f64,
-    budget: &'a Budget,
-}
-
-impl SmacofTarget<'_> {
-    /// The raw stress of `x` (each pair counted twice) and its Guttman transform.
-    fn guttman(&self, x: &Matrix) -> Result<(f64, Matrix), NmdsError> {
-        let (p, dim) = x.shape();
-        let mut moved = vec![0.0; p * dim];
-        let stresses = moved
-            .par_chunks_mut(dim)
-            .enumerate()
-            .map_init(
-                || vec![0.0; p],
-                |ratios, (i, moved)| {
-                    self.budget.check()?;
-                    let stress = ratios_of_row(x, self.distances.row(i), self.inverse_unit, i, ratios);
-                    for (moved, column) in moved.iter_mut().zip(x.column_iter()) {
-                        *moved = pull(ratios, column.as_slice(), column[i]) / p as f64;
-                    }
-                    Ok(stress)
-                },
-            )
-            .collect::<Result<Vec<f64>, NmdsError>>()?;
-        Ok((stresses.iter().sum(), Matrix::from_row_slice(p, dim, &moved)))
-    }
-}
-
-/// Coordinates in that unit, their raw stress (each pair counted twice) and their Guttman transform.
-struct SmacofState {
-    x: Matrix,
-    stress: f64,
-    next: Matrix,
-}
-
-impl SmacofState {
-    fn new(x: Matrix, target: &SmacofTarget<'_>) -> Result<Self, NmdsError> {
-        let (stress, next) = target.guttman(&x)?;
-        Ok(Self { x, stress, next })
-    }
+    Ok((Embedding::along_principal_axes(x, fit.unit, dim)?, report))
 }
 
 /// Number of iterates to extrapolate from. More make extrapolations better but rarer.
@@ -185,7 +154,7 @@ const CYCLE: usize = 8;
 
 /// Reduced rank extrapolation: the weighted average of the iterates, with weights that sum to one, for which the
 /// weighted sum of their steps is smallest.
-fn extrapolate(iterates: &[Matrix]) -> Result<Matrix, NmdsError> {
+fn extrapolated(iterates: &[Matrix]) -> Result<Matrix, NmdsError> {
     let steps: Vec<Matrix> = iterates.windows(2).map(|pair| &pair[1] - &pair[0]).collect();
     let gram = Matrix::from_fn(steps.len(), steps.len(), |i, j| steps[i].dot(&steps[j]));
     let weights = pseudo_inverse(&gram)? * Matrix::from_element(steps.len(), 1, 1.0);
@@ -197,51 +166,171 @@ fn extrapolate(iterates: &[Matrix]) -> Result<Matrix, NmdsError> {
     Ok(average)
 }
 
-/// Partial sums of a row, so that the loops are not one chain of additions.
-const LANES: usize = 4;
-
-/// Writes `d_ij / |x_i - x_j|` (zero for coinciding points) for all `j`. Returns the sum of the squared differences
-/// `d_ij - |x_i - x_j|`. Distances are multiplied by `inverse_unit`.
-fn ratios_of_row(x: &Matrix, row: &[f64], inverse_unit: f64, i: usize, ratios: &mut [f64]) -> f64 {
-    ratios.fill(0.0);
-    for column in x.column_iter() {
-        let at = column[i];
-        for (sq, x) in ratios.iter_mut().zip(column.as_slice()) {
-            *sq += (x - at) * (x - at);
-        }
-    }
-    let mut sums = [0.0; LANES];
-    let one = |sum: &mut f64, ratio: &mut f64, d: &f64| {
-        let (d, length) = (d * inverse_unit, ratio.sqrt());
-        *sum += (d - length) * (d - length);
-        *ratio = if length > 0.0 { d / length } else { 0.0 };
-    };
-    let (mut ratios, mut row) = (ratios.chunks_exact_mut(LANES), row.chunks_exact(LANES));
-    for (ratios, row) in (&mut ratios).zip(&mut row) {
-        sums.iter_mut().zip(ratios).zip(row).for_each(|((sum, ratio), d)| one(sum, ratio, d));
-    }
-    let tail = ratios.into_remainder().iter_mut().zip(row.remainder());
-    sums.iter_mut().zip(tail).for_each(|(sum, (ratio, d))| one(sum, ratio, d));
-    sums.iter().sum()
+/// Distances in a unit near the largest, which have to be fitted.
+struct Fit<'a> {
+    pairs: &'a LandmarkPairs<'a>,
+    budget: Budget,
+    /// A power of two: dividing by it is exact.
+    unit: f64,
+    /// 1 for a landmark, 0 for another point.
+    is_landmark: Vec<f64>,
+    /// Whether all pairs of points are given, with equal weights.
+    is_uniform: bool,
+    /// The raw stress of coinciding points.
+    total: f64,
 }
 
-/// The sum of `r_j (at - x_j)`.
-fn pull(ratios: &[f64], column: &[f64], at: f64) -> f64 {
-    let mut sums = [0.0; LANES];
-    let (ratios, column) = (ratios.chunks_exact(LANES), column.chunks_exact(LANES));
-    let tail = ratios.remainder().iter().zip(column.remainder());
-    sums.iter_mut().zip(tail).for_each(|(sum, (r, x))| *sum += r * (at - x));
-    for (ratios, column) in ratios.zip(column) {
-        sums.iter_mut().zip(ratios).zip(column).for_each(|((sum, r), x)| *sum += r * (at - x));
+/// The pairs of one landmark.
+struct LandmarkRow {
+    distances: Vec<f64>,
+    /// Zero for a distance of zero, unless all pairs count alike.
+    weights: Matrix,
+    lengths: Vec<f64>,
+    /// How strongly points are pushed apart, `w d / |x - x_s|`: zero for points that coincide.
+    pushes: Vec<f64>,
+}
+
+impl<'a> Fit<'a> {
+    fn new(pairs: &'a LandmarkPairs<'a>, budget: Budget) -> Result<Self, NmdsError> {
+        let mut is_landmark = vec![0.0; pairs.masses.len()];
+        pairs.landmarks.iter().for_each(|&landmark| is_landmark[landmark] = 1.0);
+        let is_uniform = pairs.power == 0.0
+            && is_landmark.iter().all(|is| *is == 1.0)
+            && pairs.masses.windows(2).all(|pair| pair[0] == pair[1]);
+        let mut fit = Self { pairs, budget, unit: 1.0, is_landmark, is_uniform, total: 1.0 };
+        let largest = |row: &mut LandmarkRow, _| row.distances.iter().copied().fold(0.0, f64::max);
+        let origin = Matrix::zeros(pairs.masses.len(), 1);
+        let largest = fit.of_rows(&origin, largest)?.into_iter().fold(0.0, f64::max);
+        fit.unit = 2f64.powi(check_extent(largest, pairs.masses.len())?.log2().floor() as i32);
+        fit.total = fit.around(&origin)?.0;
+        Ok(fit)
     }
-    sums.iter().sum()
+
+    fn new_row(&self) -> LandmarkRow {
+        let p = self.pairs.masses.len();
+        let [distances, lengths, pushes] = [(); 3].map(|()| vec![0.0; p]);
+        LandmarkRow { distances, weights: Matrix::zeros(p, 1), lengths, pushes }
+    }
+
+    /// Fills the row of a landmark.
+    fn fill(&self, row: &mut LandmarkRow, x: &Matrix, landmark: usize) -> Result<(), NmdsError> {
+        self.budget.check()?;
+        let LandmarkRow { distances, weights, lengths, pushes } = row;
+        self.pairs.rows.row_into(landmark, distances)?;
+        let (scale, power) = (1.0 / self.unit, self.pairs.power);
+        distances.iter_mut().for_each(|d| *d *= scale);
+        let weight = |d: f64| match power {
+            0.0 => 1.0,
+            1.0 => 1.0 / d,
+            power => d.powf(-power),
+        };
+        weights
+            .iter_mut()
+            .zip(&*distances)
+            .for_each(|(w, d)| *w = if *d > 0.0 || power == 0.0 { weight(*d) } else { 0.0 });
+        lengths.fill(0.0);
+        for column in x.column_iter() {
+            let at = column[landmark];
+            lengths.iter_mut().zip(column.as_slice()).for_each(|(sq, x)| *sq += (x - at) * (x - at));
+        }
+        let pairs = distances.iter().zip(weights.as_slice()).zip(lengths);
+        for (push, ((d, w), length)) in pushes.iter_mut().zip(pairs) {
+            *length = length.sqrt();
+            *push = if *length > 0.0 { w * d / *length } else { 0.0 };
+        }
+        Ok(())
+    }
+
+    /// What the row of every landmark says.
+    fn of_rows<T: Send>(
+        &self,
+        x: &Matrix,
+        says: impl Fn(&mut LandmarkRow, usize) -> T + Sync,
+    ) -> Result<Vec<T>, NmdsError> {
+        let of_row = |row: &mut LandmarkRow, landmark: &usize| {
+            self.fill(row, x, *landmark)?;
+            Ok(says(row, *landmark))
+        };
+        self.pairs.landmarks.par_iter().map_init(|| self.new_row(), of_row).collect()
+    }
+
+    /// The raw stress relative to that of coinciding points, and the Guttman transform if all pairs count alike.
+    fn around(&self, x: &Matrix) -> Result<(f64, Option<Matrix>), NmdsError> {
+        let of_row = |row: &mut LandmarkRow, landmark| {
+            let gaps = row.distances.iter().zip(&row.lengths).map(|(d, length)| (d - length) * (d - length));
+            let stress: f64 = gaps
+                .zip(row.weights.as_slice())
+                .zip(self.pairs.masses)
+                .map(|((gap, w), m)| m * w * gap)
+                .sum();
+            (stress, self.is_uniform.then(|| self.pulled(row, x, landmark)))
+        };
+        let (stresses, moved): (Vec<f64>, Vec<_>) = self.of_rows(x, of_row)?.into_iter().unzip();
+        let moved: Option<Vec<Vec<f64>>> = moved.into_iter().collect();
+        let next = moved.map(|moved| {
+            let mut next = x.clone();
+            self.pairs.landmarks.iter().zip(moved).for_each(|(&i, to)| next.row_mut(i).copy_from_slice(&to));
+            next
+        });
+        Ok((stresses.iter().sum::<f64>() / self.total, next))
+    }
+
+    /// The points after a step.
+    fn step(&self, x: &Matrix) -> Result<Matrix, NmdsError> {
+        let (mut x, mut row) = (x.clone(), self.new_row());
+        if self.pairs.landmarks.len() < x.nrows() {
+            let (mut sums, mut totals) = (Matrix::zeros(x.nrows(), x.ncols()), vec![0.0; x.nrows()]);
+            for &landmark in self.pairs.landmarks {
+                self.fill(&mut row, &x, landmark)?;
+                let forces = || row.weights.as_slice().iter().zip(&row.pushes);
+                for (mut sum, column) in sums.column_iter_mut().zip(x.column_iter()) {
+                    let at = column[landmark];
+                    let pulled = sum.iter_mut().zip(column.as_slice()).zip(forces());
+                    pulled.for_each(|((sum, x), (w, push))| *sum += w * at + push * (x - at));
+                }
+                totals.iter_mut().zip(row.weights.as_slice()).for_each(|(total, w)| *total += w);
+            }
+            // Landmarks wait for their turn.
+            for i in (0..x.nrows()).filter(|&i| self.is_landmark[i] == 0.0 && totals[i] > 0.0) {
+                x.row_mut(i).copy_from(&(sums.row(i) / totals[i]));
+            }
+        }
+        for &landmark in self.pairs.landmarks {
+            self.fill(&mut row, &x, landmark)?;
+            // A landmark does not hold itself.
+            (row.weights[landmark], row.pushes[landmark]) = (0.0, 0.0);
+            let to = self.pulled(&mut row, &x, landmark);
+            x.row_mut(landmark).copy_from_slice(&to);
+        }
+        Ok(x)
+    }
+
+    /// Where all points pull a landmark. Overwrites the weights of its row.
+    fn pulled(&self, row: &mut LandmarkRow, x: &Matrix, landmark: usize) -> Vec<f64> {
+        let (masses, at) = (self.pairs.masses.iter().zip(&self.is_landmark), x.row(landmark));
+        let (mut total, mut pushed, own) = (0.0, 0.0, self.pairs.masses[landmark]);
+        for ((w, push), (mass, is_landmark)) in
+            row.weights.as_mut_slice().iter_mut().zip(&row.pushes).zip(masses)
+        {
+            // A pair of landmarks belongs to both of them.
+            let mass = mass + is_landmark * own;
+            (total, pushed) = (total + mass * *w, pushed + mass * push);
+            *w = mass * (*w - push);
+        }
+        if total == 0.0 {
+            return at.iter().copied().collect();
+        }
+        (0..at.len()).map(|k| (x.column(k).dot(&row.weights) + pushed * at[k]) / total).collect()
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use linalg::{DistanceMatrix, LandmarkDistances};
+
     use super::*;
-    use crate::tests::support::{Cloud, procrustes_free_gap};
-    use crate::{classical, normalized_stress};
+    use crate::tests::support::{Cloud, all_pairs, landmark_distances, procrustes_free_gap, scaled};
+    use crate::{NystromOptions, classical, normalized_stress, nystrom};
 
     /// Distances of a cloud raised to a power, and their classical scaling.
     fn problem(p: usize, power: f64) -> (DistanceMatrix, Matrix) {
@@ -251,12 +340,20 @@ mod tests {
         (distances, start)
     }
 
+    fn descended(
+        start: &Matrix,
+        distances: &DistanceMatrix,
+        options: &SmacofOptions,
+    ) -> (Embedding, SmacofReport) {
+        all_pairs(distances, |pairs| smacof(start, pairs, options, &())).unwrap()
+    }
+
     #[test]
     fn the_stress_never_increases_and_is_that_of_the_coordinates() {
         let (distances, start) = problem(120, 0.7);
         for tolerance in [0.0, 1e-5] {
             let options = SmacofOptions { tolerance, ..Default::default() };
-            let (embedding, report) = smacof(&start, &distances, &options, &()).unwrap();
+            let (embedding, report) = descended(&start, &distances, &options);
             let stress = &report.normalized_stress;
             assert!(stress.windows(2).all(|pair| pair[1] < pair[0]), "{stress:?}");
             assert!((stress[0] / normalized_stress(&start, &distances) - 1.0).abs() < 1e-9);
@@ -271,40 +368,74 @@ mod tests {
         let cloud = Cloud::new(90, 3, 52);
         let distances = DistanceMatrix::from_pairs(90, |i, j| cloud.distance(i, j)).unwrap();
         let start = classical(&distances, 3, &()).unwrap();
-        let (embedding, report) = smacof(&start.coords, &distances, &SmacofOptions::default(), &()).unwrap();
+        let (embedding, report) = descended(&start.coords, &distances, &SmacofOptions::default());
         assert!(procrustes_free_gap(&cloud, &embedding) < 1e-9);
         assert_eq!(report.stop, SmacofStop::Converged);
         let perturbed = start.coords.map_with_location(|i, j, x| x + 0.5 * ((7 * i + 3 * j) as f64).sin());
         let options = SmacofOptions { tolerance: 0.0, max_iterations: 2000 };
-        let (embedding, _) = smacof(&perturbed, &distances, &options, &()).unwrap();
+        let (embedding, _) = descended(&perturbed, &distances, &options);
         assert!(procrustes_free_gap(&cloud, &embedding) < 1e-6);
     }
 
     #[test]
-    fn a_step_is_the_guttman_transform() {
+    fn a_step_of_all_pairs_is_the_guttman_transform() {
         let (distances, start) = problem(30, 0.7);
-        let p = 30;
-        let mut b = Matrix::from_fn(p, p, |i, j| {
+        let mut b = Matrix::from_fn(30, 30, |i, j| {
             if i == j { 0.0 } else { -distances.get(i, j) / (start.row(i) - start.row(j)).norm() }
         });
-        for i in 0..p {
+        for i in 0..30 {
             b[(i, i)] = -b.row(i).sum();
         }
-        let expected = b * &start / p as f64;
-        let (stress, moved) =
-            SmacofTarget { distances: &distances, inverse_unit: 1.0, budget: &Budget::unlimited() }
-                .guttman(&start)
-                .unwrap();
-        assert!((moved - &expected).amax() < 1e-12);
-        let total: f64 = distances.as_slice().iter().map(|d| d * d).sum();
-        assert!(((stress / total).sqrt() / normalized_stress(&start, &distances) - 1.0).abs() < 1e-12);
+        let moved = all_pairs(&distances, |pairs| {
+            let fit = Fit::new(pairs, Budget::unlimited()).unwrap();
+            fit.around(&(&start / fit.unit)).unwrap().1.unwrap() * fit.unit
+        });
+        assert!((moved - b * &start / 30.0).amax() < 1e-12);
+    }
+
+    /// Points that are no landmarks move at once, and then landmarks in turn.
+    #[test]
+    fn a_step_of_landmarks_is_its_definition() {
+        let (distances, start) = problem(30, 0.7);
+        let masses: Vec<f64> = (0..30).map(|i| 1.0 + (i % 5) as f64).collect();
+        for (n, power) in [(30, 0.0), (30, 1.0), (8, 0.5)] {
+            let landmarks: Vec<usize> = (0..n).map(|s| (11 * s) % 30).collect();
+            let is_landmark = |i: usize| landmarks.contains(&i);
+            let moved = |x: &Matrix, i: usize| {
+                let (mut sum, mut total) = (x.row(i) * 0.0, 0.0);
+                for j in (0..30).filter(|&j| j != i && (is_landmark(i) || is_landmark(j))) {
+                    let (d, apart) = (distances.get(i, j), x.row(i) - x.row(j));
+                    let mass = match (is_landmark(i), is_landmark(j)) {
+                        (true, true) => masses[i] + masses[j],
+                        (true, false) => masses[j],
+                        (false, _) => masses[i],
+                    };
+                    let weight = mass * d.powf(-power);
+                    sum += (x.row(j) + &apart * (d / apart.norm())) * weight;
+                    total += weight;
+                }
+                sum / total
+            };
+            let mut expected = start.clone();
+            for i in (0..30).filter(|&i| !is_landmark(i)) {
+                expected.row_mut(i).copy_from(&moved(&start, i));
+            }
+            for &landmark in &landmarks {
+                let to = moved(&expected, landmark);
+                expected.row_mut(landmark).copy_from(&to);
+            }
+            let pairs = LandmarkPairs { landmarks: &landmarks, rows: &distances, masses: &masses, power };
+            let fit = Fit::new(&pairs, Budget::unlimited()).unwrap();
+            let found = fit.step(&(&start / fit.unit)).unwrap() * fit.unit;
+            assert!((found - expected).amax() < 1e-12, "{n} landmarks, power {power}");
+        }
     }
 
     #[test]
     fn the_iteration_limit_and_the_tolerance_stop_it() {
         let (distances, start) = problem(80, 0.7);
         let run = |max_iterations, tolerance| {
-            smacof(&start, &distances, &SmacofOptions { max_iterations, tolerance }, &()).unwrap().1
+            descended(&start, &distances, &SmacofOptions { max_iterations, tolerance }).1
         };
         let cut = run(5, 0.0);
         assert_eq!((cut.iterations(), cut.stop), (5, SmacofStop::IterationLimit));
@@ -321,21 +452,89 @@ mod tests {
         let row = start.row(0).into_owned();
         start.row_mut(1).copy_from(&row);
         start.column_mut(2).fill(0.0);
-        let (embedding, _) = smacof(&start, &distances, &SmacofOptions::default(), &()).unwrap();
+        let (embedding, _) = descended(&start, &distances, &SmacofOptions::default());
         assert!(embedding.coords.iter().all(|x| x.is_finite()));
         assert!(embedding.coords.column(2).amax() < 1e-9);
+    }
+
+    fn masses(p: usize) -> Vec<f64> {
+        (0..p).map(|i| 1.0 + (i % 5) as f64).collect()
+    }
+
+    /// Distances from 30 of 300 points of a cloud, raised to a power, and their Nystrom scaling.
+    fn of_landmarks(power: f64) -> (LandmarkDistances, Matrix) {
+        let cloud = Cloud::new(300, 4, 51);
+        let columns = Matrix::from_fn(300, 30, |i, j| cloud.distance(i, j).powf(power));
+        let distances = LandmarkDistances::new((0..30).collect(), columns).unwrap();
+        let start = nystrom(&distances, &NystromOptions::default()).unwrap().coords;
+        (distances, start)
+    }
+
+    fn fitted(start: &Matrix, rows: &LandmarkDistances, power: f64, steps: usize) -> (Embedding, f64) {
+        let masses = masses(rows.n_points());
+        let pairs = LandmarkPairs { landmarks: rows.landmarks(), rows, masses: &masses, power };
+        let options = SmacofOptions { max_iterations: steps, tolerance: 0.0 };
+        let (embedding, report) = smacof(start, &pairs, &options, &()).unwrap();
+        (embedding, report.normalized_stress[report.iterations()])
+    }
+
+    #[test]
+    fn distances_from_landmarks_in_space_stay_exact() {
+        let cloud = Cloud::new(200, 3, 7);
+        let distances = landmark_distances(&cloud, 20);
+        let start = nystrom(&distances, &NystromOptions::default()).unwrap().coords;
+        for power in [0.0, 1.0] {
+            assert!(procrustes_free_gap(&cloud, &fitted(&start, &distances, power, 20).0) < 1e-6);
+        }
+    }
+
+    #[test]
+    fn the_stress_of_landmarks_is_its_definition_and_never_increases() {
+        let (distances, start) = of_landmarks(0.7);
+        let (masses, columns) = (masses(300), distances.to_matrix().unwrap());
+        for power in [0.0, 1.0] {
+            let mut last = f64::INFINITY;
+            for steps in [0, 1, 2, 5, 20] {
+                let (found, stress) = fitted(&start, &distances, power, steps);
+                let sum = |term: &dyn Fn(usize, usize, f64) -> f64| -> f64 {
+                    let weighted = |i: usize, s: usize| match columns[(i, s)] {
+                        0.0 => 0.0,
+                        d => masses[i] * d.powf(-power) * term(i, s, d),
+                    };
+                    (0..300).map(|i| (0..30).map(|s| weighted(i, s)).sum::<f64>()).sum()
+                };
+                let gap = |i: usize, s: usize, d: f64| {
+                    (d - (found.coords.row(i) - found.coords.row(s)).norm()).powi(2)
+                };
+                let expected = (sum(&gap) / sum(&|_, _, d| d * d)).sqrt();
+                assert!((stress / expected - 1.0).abs() < 1e-9, "{power}, {steps}: {stress}, {expected}");
+                assert!(stress < last, "{power}, {steps}: {stress} after {last}");
+                last = stress;
+            }
+        }
+    }
+
+    #[test]
+    fn the_unit_of_length_does_not_matter() {
+        let (distances, start) = of_landmarks(0.7);
+        let one = fitted(&start, &distances, 1.0, 20).0;
+        let large = fitted(&(&start * 7.0), &scaled(&distances, 7.0), 1.0, 20).0;
+        assert!((large.coords / 7.0 - one.coords).amax() < 1e-9);
     }
 
     #[test]
     fn mismatched_arguments_are_rejected() {
         let (distances, start) = problem(20, 1.0);
-        let error = |start: &Matrix, tolerance| {
-            smacof(start, &distances, &SmacofOptions { tolerance, ..Default::default() }, &()).unwrap_err()
+        let error = |start: &Matrix, masses: &[f64], tolerance| {
+            let pairs = LandmarkPairs { landmarks: &[0, 7], rows: &distances, masses, power: 0.0 };
+            smacof(start, &pairs, &SmacofOptions { tolerance, ..Default::default() }, &()).unwrap_err()
         };
         let short = start.rows(0, 19).into_owned();
-        assert_eq!(error(&short, 1e-5), NmdsError::PointMismatch { given: 19, n_points: 20 });
+        let mismatch = NmdsError::PointMismatch { given: 19, n_points: 20 };
+        assert_eq!(error(&short, &[1.0; 19], 1e-5), mismatch);
+        assert_eq!(error(&start, &[1.0; 19], 1e-5), mismatch);
         let flat = Matrix::zeros(20, 0);
-        assert_eq!(error(&flat, 1e-5), NmdsError::BadDimension { dim: 0, limit: 20 });
-        assert_eq!(error(&start, -1.0), NmdsError::BadTolerance(-1.0));
+        assert_eq!(error(&flat, &[1.0; 20], 1e-5), NmdsError::BadDimension { dim: 0, limit: 20 });
+        assert_eq!(error(&start, &[1.0; 20], -1.0), NmdsError::BadTolerance(-1.0));
     }
 }

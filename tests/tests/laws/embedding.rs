@@ -95,7 +95,7 @@ fn intervals_of_the_estimated_stress_contain_the_exact_one_as_often_as_they_say(
             let samples = farthest_point_sampling(solver.as_ref(), n, FirstSample::default()).unwrap();
             let coords = nystrom(&samples, &NystromOptions::default()).unwrap().coords;
             let exact = stress(&coords, &distances).unwrap();
-            let exact = [exact.paper, exact.normalized];
+            let exact = [exact.value, exact.normalized];
             let runs = 100;
             let (mut here, mut width, mut error) = ([0; 2], [0.0; 2], [0.0; 2]);
             for seed in 0..runs {

@@ -46,7 +46,7 @@ fn intervals_after_a_search_contain_the_exact_stress_as_often_as_they_say() {
                 let exact = stress(&embedded.embedding.coords, &distances).unwrap();
                 let report = embedded.report.stress.unwrap();
                 let within = |[low, high]: [f64; 2], value| (low..=high).contains(&value);
-                [within(report.normalized_interval, exact.normalized), within(report.interval, exact.paper)]
+                [within(report.normalized_interval, exact.normalized), within(report.interval, exact.value)]
             };
             (0..4).map(of_seed).collect::<Vec<_>>()
         })

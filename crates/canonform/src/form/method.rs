@@ -3,9 +3,9 @@
 use descriptors::LaplaceSpectrum;
 use linalg::{DistanceMatrix, LandmarkDistances};
 use nmds::{
-    Bandwidth, Embedding, KernelPcaOptions, NystromOptions, Regularization, SampleSearch, SmacofOptions,
-    SmacofReport, SpectralBasis, SpectralOptions, classical, kernel_pca, landmark_mds, nystrom, smacof,
-    spectral,
+    Bandwidth, Embedding, KernelPcaOptions, LandmarkPairs, NystromOptions, Regularization, SampleSearch,
+    SmacofOptions, SmacofReport, SpectralBasis, SpectralOptions, classical, kernel_pca, landmark_mds,
+    nystrom, smacof, spectral,
 };
 use serde::{Deserialize, Serialize};
 use surface::IntrinsicMesh;
@@ -183,7 +183,10 @@ impl EmbedMethod {
             Self::Smacof { regularization, descent } => {
                 let (start, distances) = by_nystrom(regularization, dim, measurement)?;
                 let all = measurement.all_pairs()?;
-                let (embedding, report) = smacof(&start.coords, &all, &descent, &budget)?;
+                let (landmarks, masses): (Vec<usize>, Vec<f64>) =
+                    (0..all.n_points()).map(|i| (i, 1.0)).unzip();
+                let pairs = LandmarkPairs { landmarks: &landmarks, rows: &all, masses: &masses, power: 0.0 };
+                let (embedding, report) = smacof(&start.coords, &pairs, &descent, &budget)?;
                 let embedding = Embedding { rank: start.rank, ..embedding };
                 Outcome { embedding, distances, all: Some(all), descent: Some(report) }
             }

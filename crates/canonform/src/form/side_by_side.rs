@@ -11,7 +11,7 @@ use surface::VertexId;
 use super::embed::embed;
 use super::options::FormOptions;
 use super::plan::check_memory;
-use super::stress::{KnownRows, StressOptions, StressReport};
+use super::stress::{StressOptions, StressReport};
 use crate::error::Error;
 use base::Observer;
 use mesh::Surface;
@@ -86,8 +86,7 @@ pub fn compare_methods(
     watch: &dyn Fn(&mut dyn FnMut()) -> usize,
 ) -> Result<MethodsReport, Error> {
     let (reference, rows) = reference(surface, options.geodesic, stress, observer)?;
-    let of_rows = |rows: &Vec<usize>| RowSample::of_rows(rows.clone(), reference.n_points());
-    let sample = |_: &Matrix, _: f64| Ok(rows.as_ref().map(of_rows));
+    let sample = |_: &Matrix, _: f64| Ok(rows.clone());
     let (mut methods, mut first_error) = (Vec::new(), None);
     for (name, changed) in variants {
         let mut result = None;
@@ -137,8 +136,8 @@ pub fn compare_methods(
     })
 }
 
-/// The distances that the stress of all embeddings is measured against, and their rows unless they are all.
-type Reference = (Box<dyn DistanceRows>, Option<Vec<usize>>);
+/// The distances that the stress of all embeddings is measured against, and the rows that are used.
+type Reference = (Box<dyn DistanceRows>, RowSample);
 
 fn reference(
     surface: &Surface,
@@ -152,8 +151,8 @@ fn reference(
     check_memory(p, rows.as_ref().map_or(p, Vec::len), &budget)?;
     observer.begin("stress", 1);
     let solver = method.prepare(surface.intrinsic(), observer)?;
-    let Some(rows) = rows else { return Ok((Box::new(solver.distance_matrix()?), None)) };
+    let Some(rows) = rows else { return Ok((Box::new(solver.distance_matrix()?), RowSample::all(p))) };
     let sources: Vec<VertexId> = rows.iter().copied().map(VertexId::from).collect();
     let known = LandmarkDistances::new(rows.clone(), solver.distance_columns(&sources)?)?;
-    Ok((Box::new(KnownRows(known)), Some(rows)))
+    Ok((Box::new(known), RowSample::of_rows(rows, p)))
 }

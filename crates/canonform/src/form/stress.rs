@@ -1,10 +1,8 @@
 //! The stress of an embedding of a surface.
 
-use std::borrow::Borrow;
-
 use geodesics::{DistanceSolver, Method};
 use linalg::{DistanceMatrix, LandmarkDistances, LinalgError, Matrix};
-use nmds::{DistanceRows, RowSample, Stress, StressEstimate, estimate_stress, sample_rows, stress};
+use nmds::{DistanceRows, RowSample, Stress, estimate_stress, sample_rows};
 use serde::Serialize;
 use surface::{VertexId, unit_for};
 
@@ -111,12 +109,12 @@ pub enum StressKind {
     Estimated,
 }
 
-/// Draws rows for coordinates in the unit that it is given; `None` for all rows.
-type Draw<'a> = &'a dyn Fn(&Matrix, f64) -> Result<Option<RowSample>, LinalgError>;
+/// Draws rows for coordinates in the unit that it is given.
+type Draw<'a> = &'a dyn Fn(&Matrix, f64) -> Result<RowSample, LinalgError>;
 
 impl StressReport {
-    /// The stress of `coords` against distances by `method`: of all rows, or of those that `sample` takes for
-    /// coordinates in the unit that it is given.
+    /// The stress of `coords` against distances by `method`, of the rows that `sample` takes for coordinates in the unit that it
+    /// is given.
     pub(super) fn new(
         coords: &Matrix,
         distances: &dyn DistanceRows,
@@ -132,17 +130,12 @@ impl StressReport {
             let back = |value: f64| value * unit * unit;
             return Ok(Self { value: back(scaled.value), interval: scaled.interval.map(back), ..scaled });
         }
-        let (kind, found) = match sample(coords, 1.0)? {
-            None => {
-                let Stress { paper: value, normalized } = stress(coords, distances)?;
-                let (interval, normalized_interval) = ([value; 2], [normalized; 2]);
-                let n_rows = distances.n_points();
-                let all = StressEstimate { value, normalized, interval, normalized_interval, n_rows };
-                (StressKind::Exact, all)
-            }
-            Some(sample) => (StressKind::Estimated, estimate_stress(coords, distances, &sample)?),
+        let Stress { value, normalized, interval, normalized_interval, n_rows: rows } =
+            estimate_stress(coords, distances, &sample(coords, 1.0)?)?;
+        let kind = match rows == distances.n_points() {
+            true => StressKind::Exact,
+            false => StressKind::Estimated,
         };
-        let StressEstimate { value, normalized, interval, normalized_interval, n_rows: rows } = found;
         let (measure, geodesic) = ("paper_stress", method.name());
         Ok(Self { measure, geodesic, value, normalized, normalized_interval, kind, interval, rows })
     }
@@ -179,23 +172,6 @@ impl DistanceRows for SolvedRows<'_> {
     }
 }
 
-/// The rows of landmarks, looked up.
-pub(super) struct KnownRows<T>(pub(super) T);
-
-impl<T: Borrow<LandmarkDistances> + Sync> DistanceRows for KnownRows<T> {
-    fn n_points(&self) -> usize {
-        self.0.borrow().n_points()
-    }
-
-    fn row_into(&self, i: usize, out: &mut [f64]) -> Result<(), LinalgError> {
-        let known = self.0.borrow();
-        let landmark = known.landmarks().iter().position(|&l| l == i);
-        let landmark = landmark.unwrap_or_else(|| unreachable!("row {i} is not known"));
-        out.copy_from_slice(&known.column(landmark)?);
-        Ok(())
-    }
-}
-
 /// What is known of an embedding before its stress is measured.
 pub(super) struct Known<'a> {
     pub(super) coords: &'a Matrix,
@@ -229,9 +205,9 @@ impl Known<'_> {
         };
         let to_solve = if matches!(rows, Rows::Known(_)) { 0 } else { n_rows.unwrap_or(p) };
         observer.begin("stress", to_solve);
-        let sample = |coords: &Matrix, unit: f64| {
-            let drawn = |m| RowSample::by_landmarks(coords, self.samples, unit, m, options.seed);
-            n_rows.map(drawn).transpose()
+        let sample = |coords: &Matrix, unit: f64| match n_rows {
+            None => Ok(RowSample::all(p)),
+            Some(m) => RowSample::by_landmarks(coords, self.samples, unit, m, options.seed),
         };
         match rows {
             Rows::Solved(solver) => StressReport::new(self.coords, &SolvedRows(solver), &sample, method),

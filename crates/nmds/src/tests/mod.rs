@@ -5,7 +5,7 @@ pub(crate) mod support;
 use linalg::{DistanceMatrix, LandmarkDistances, Matrix, SparseSymmetric, leading_sign, smallest_eigenpairs};
 
 use crate::*;
-use support::Cloud;
+use support::{Cloud, all_pairs};
 
 /// Special laws that a method obeys.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,7 +72,8 @@ fn with_weight(problem: &Problem, dim: usize, mu: f64) -> Result<Embedding, Nmds
 
 fn smacof_from_classical(problem: &Problem, dim: usize) -> Result<Embedding, NmdsError> {
     let options = SmacofOptions { max_iterations: 10, tolerance: 0.0 };
-    Ok(smacof(&classical(&problem.all, dim, &())?.coords, &problem.all, &options, &())?.0)
+    let start = classical(&problem.all, dim, &())?.coords;
+    Ok(all_pairs(&problem.all, |pairs| smacof(&start, pairs, &options, &()))?.0)
 }
 
 /// Distances between p points and from some of them, and the Laplacian of a ring of springs through all points.

@@ -1,10 +1,10 @@
 //! Points with known coordinates, for the tests of this crate.
 
-use linalg::{LandmarkDistances, Matrix};
+use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use crate::Embedding;
+use crate::{Embedding, LandmarkPairs};
 
 /// Points drawn uniformly from a box with sides of different lengths, so that no two axes are equal.
 pub(crate) struct Cloud {
@@ -49,4 +49,11 @@ pub(crate) fn procrustes_free_gap(cloud: &Cloud, embedding: &Embedding) -> f64 {
 /// The same distances in another unit of length.
 pub(crate) fn scaled(distances: &LandmarkDistances, scale: f64) -> LandmarkDistances {
     LandmarkDistances::new(distances.landmarks().to_vec(), distances.to_matrix().unwrap() * scale).unwrap()
+}
+
+/// Gives `work` the pairs of all points, which count alike.
+pub(crate) fn all_pairs<T>(distances: &DistanceMatrix, work: impl FnOnce(&LandmarkPairs<'_>) -> T) -> T {
+    let landmarks: Vec<usize> = (0..distances.n_points()).collect();
+    let masses = vec![1.0; landmarks.len()];
+    work(&LandmarkPairs { landmarks: &landmarks, rows: distances, masses: &masses, power: 0.0 })
 }

@@ -6,8 +6,8 @@ use descriptors::{CanonicalForm, SampledForm};
 use linalg::{LandmarkDistances, Matrix};
 use mesh::TriMesh;
 use nmds::{
-    Bandwidth, Embedding, KernelPcaOptions, LandmarkSmacofOptions, NystromOptions, SmacofOptions, kernel_pca,
-    landmark_mds, landmark_smacof, nystrom,
+    Bandwidth, Embedding, KernelPcaOptions, LandmarkPairs, NystromOptions, SmacofOptions, kernel_pca,
+    landmark_mds, nystrom, smacof,
 };
 
 use crate::collection::{LabeledSurface, map};
@@ -241,8 +241,9 @@ impl FormMaker {
     ) -> Result<Embedding> {
         let usual = || nystrom(distances, &NystromOptions::default());
         let by_least_squares = |power| {
-            let options = LandmarkSmacofOptions { power, ..LandmarkSmacofOptions::default() };
-            landmark_smacof(&usual()?.coords, distances, masses, &options, &())
+            let pairs = LandmarkPairs { landmarks: distances.landmarks(), rows: distances, masses, power };
+            let options = SmacofOptions { max_iterations: 20, tolerance: 0.0 };
+            Ok::<_, anyhow::Error>(smacof(&usual()?.coords, &pairs, &options, &())?.0)
         };
         let of_all_pairs = |method| {
             let samples = Samples::Count(distances.n_landmarks());
