@@ -3,7 +3,9 @@
 #![no_main]
 
 use canonform::geodesics::Method;
-use canonform::{EmbedMethod, FormOptions, Samples, StressChoice, StressOptions, Surface, embed_and_measure};
+use canonform::{
+    EmbedMethod, EmbedOptions, FormOptions, Samples, StressChoice, StressOptions, Surface, embed,
+};
 use canonform_fuzz::{Limited, first_byte, mesh_of, single_threaded};
 use libfuzzer_sys::fuzz_target;
 use mesh::{ComponentPolicy, RepairOptions, Weld};
@@ -30,7 +32,7 @@ fuzz_target!(init: single_threaded(), |data: &[u8]| {
         ..FormOptions::default()
     };
     let stress = StressOptions { choice: StressChoice::Exact, ..StressOptions::default() };
-    if let Ok(embedded) = embed_and_measure(&surface, &options, &stress, &Limited::start()) {
+    if let Ok(embedded) = embed(&surface, EmbedOptions::from(&options).stress(stress), &Limited::start()) {
         assert_eq!(embedded.embedding.coords.nrows(), surface.mesh().n_vertices());
         assert!(embedded.embedding.coords.iter().all(|x| x.is_finite()), "a coordinate is not finite");
     }

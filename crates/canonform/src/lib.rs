@@ -35,7 +35,7 @@
 //! 3. Distances along the surface, by any [`geodesics::Method`], from samples or between [`AllPairs`] of vertices. A
 //!    [`DistanceField`] holds all pairs in little memory, with bounds.
 //! 4. [`Embedded`]: coordinates by any [`EmbedMethod`], made by [`embed`] as [`FormOptions`] say. The options travel with
-//!    everything that is made from here on. [`embed_and_measure`] adds the stress.
+//!    everything that is made from here on. [`EmbedOptions::stress`] adds the stress.
 //! 5. [`descriptors::CanonicalForm`]: the embedded surface, weighted by area, in three dimensions.
 //! 6. [`Shape`]: form, signatures and facts, made by [`describe`]: all that an index stores of a shape.
 //! 7. [`descriptors::ShapePair`]: two descriptions and the alignments of their forms, each found once. All units, weights
@@ -109,10 +109,10 @@ pub use fields::{
     DistanceField, FieldBounds, FieldFacts, FieldFault, FieldOptions, Finish, PairDistance, PairKind,
 };
 pub use form::{
-    DISTANCES_LIMIT, DescentReport, DescribeOptions, EmbedMethod, EmbedReport, Embedded, FormOptions,
-    MeasuredSurface, MethodFacts, MethodReport, MethodsReport, Samples, SamplesReport, SecondsReport,
+    DISTANCES_LIMIT, DescentReport, DescribeOptions, EmbedInput, EmbedMethod, EmbedOptions, EmbedReport,
+    Embedded, FormOptions, MeasuredSurface, MethodFacts, MethodReport, MethodsReport, Samples, SecondsReport,
     StressChoice, StressKind, StressOptions, StressReport, compare_methods, describe, describe_part, embed,
-    embed_again, embed_and_measure, embed_and_release, embed_finer, settings, signature,
+    settings, signature,
 };
 pub use index::Shape;
 pub use input::{AllPairs, Asymmetry, PathPoint, SurfacePath, distance_rows, read_surface};

@@ -7,9 +7,9 @@ use std::time::Duration;
 use canonform::geodesics::Method;
 use canonform::mesh::shapes;
 use canonform::{
-    Budget, BuildOptions, DescribeOptions, EmbedMethod, Error, Exceeded, FormOptions, Remedy, Samples,
-    SearchOptions, ShapeSearch, StressOptions, Surface, build_index, compare_methods, describe, embed,
-    embed_and_measure,
+    Budget, BuildOptions, DescribeOptions, EmbedMethod, EmbedOptions, Error, Exceeded, FormOptions, Remedy,
+    Samples, SearchOptions, ShapeSearch, StressOptions, Surface, build_index, compare_methods, describe,
+    embed,
 };
 
 /// Runs `work` with a budget that is cancelled after a delay, for some delays. The work must end with the expected result
@@ -64,7 +64,8 @@ fn every_solver_is_cancellable_in_an_embedding_and_its_stress() {
     for geodesic in Method::all() {
         let options = FormOptions { geodesic, samples: Samples::Auto, ..FormOptions::default() };
         assert_cancellable(geodesic.name(), |budget| {
-            let embedded = embed_and_measure(&surface, &options, &StressOptions::default(), budget)?;
+            let embedded =
+                embed(&surface, EmbedOptions::from(&options).stress(StressOptions::default()), budget)?;
             Ok(embedded.report.stress)
         });
     }

@@ -5,8 +5,8 @@ use canonform::mesh::{TriMesh, shapes};
 use canonform::nmds::Regularization;
 use canonform::surface::VertexId;
 use canonform::{
-    DescribeOptions, EmbedMethod, FormOptions, Samples, StressChoice, StressOptions, Surface, describe,
-    embed_and_measure, signature,
+    DescribeOptions, EmbedMethod, EmbedOptions, FormOptions, Samples, StressChoice, StressOptions, Surface,
+    describe, embed, signature,
 };
 use nalgebra::{Point3, Rotation3, Vector3};
 
@@ -168,7 +168,7 @@ fn every_method_embeds_every_flat_surface_that_was_rounded() {
                     ..FormOptions::default()
                 };
                 let stress = StressOptions { choice: StressChoice::Exact, ..StressOptions::default() };
-                let found = embed_and_measure(&surface, &options, &stress, &()).unwrap().report;
+                let found = embed(&surface, EmbedOptions::from(&options).stress(stress), &()).unwrap().report;
                 let error = found.stress.unwrap().normalized;
                 println!("{method:?} of {name} from {n} samples: {error:.1e}");
                 // Spectral scaling is exact nowhere, and poor with few samples.

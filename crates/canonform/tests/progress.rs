@@ -5,7 +5,7 @@
 use std::sync::Mutex;
 
 use canonform::mesh::shapes;
-use canonform::{EmbedMethod, FormOptions, Observer, Samples, StressOptions, Surface, embed_and_measure};
+use canonform::{EmbedMethod, EmbedOptions, FormOptions, Observer, Samples, StressOptions, Surface, embed};
 
 /// The stages: their names, totals and steps.
 #[derive(Default)]
@@ -31,7 +31,7 @@ fn every_stage_of_an_embedding_ends_at_its_total() {
             }
             let options = FormOptions { method: method.clone(), samples, ..FormOptions::default() };
             let stages = Stages::default();
-            embed_and_measure(&surface, &options, &StressOptions::default(), &stages).unwrap();
+            embed(&surface, EmbedOptions::from(&options).stress(StressOptions::default()), &stages).unwrap();
             for (stage, total, steps) in stages.0.into_inner().unwrap() {
                 println!("{} from {samples} samples, {stage}: {steps} of {total}", method.name());
                 match (stage.as_str(), samples) {

@@ -45,19 +45,23 @@ impl NystromOptions {
         }
     }
 
-    /// Ranks besides the default one that are worth trying for `n_landmarks` samples, since none is the best for all distances: the
-    /// least one that is safe, a quarter of the samples, and three quarters. None unless the regularisation is
-    /// [`Regularization::LowRank`] without a rank.
-    #[must_use]
-    pub fn other_ranks(&self, n_landmarks: usize) -> Vec<usize> {
-        let Regularization::LowRank { rank: None } = self.regularization else { return Vec::new() };
-        let (n, least) = (n_landmarks, (self.dim + 4).min(n_landmarks));
-        let usual = self.regularization.rank(n, self.dim).unwrap_or(n);
+    /// Embeddings with ranks besides the default one that are worth trying, since none is the best for all distances: the least one
+    /// that is safe, a quarter of the samples, and three quarters. None unless the regularisation is [`Regularization::LowRank`]
+    /// without a rank.
+    ///
+    /// # Errors
+    /// As [`nystrom`].
+    pub fn other_ranks(&self, distances: &LandmarkDistances) -> Result<Vec<Embedding>, NmdsError> {
+        let Regularization::LowRank { rank: None } = self.regularization else { return Ok(Vec::new()) };
+        let n = distances.n_landmarks();
+        let (usual, least) = (self.validate(n)?, (self.dim + 4).min(n));
         let mut ranks = vec![least, n / 4, n - n / 4];
         ranks.retain(|rank| *rank >= least && *rank != usual);
         ranks.sort_unstable();
         ranks.dedup();
-        ranks
+        let with =
+            |rank| Self { regularization: Regularization::LowRank { rank: Some(rank) }, dim: self.dim };
+        ranks.into_iter().map(|rank| nystrom(distances, &with(rank))).collect()
     }
 }
 
@@ -263,11 +267,18 @@ mod tests {
 
     #[test]
     fn other_ranks_are_tried_unless_one_is_given() {
-        assert_eq!(NystromOptions::default().other_ranks(40), [7, 10, 30]);
-        assert_eq!(NystromOptions::default().other_ranks(12), [9]);
-        assert_eq!(NystromOptions::default().other_ranks(4), [0; 0]);
-        assert_eq!(low_rank(6).other_ranks(40), [0; 0]);
-        assert_eq!(options(Regularization::None).other_ranks(40), [0; 0]);
+        let cloud = Cloud::new(60, 3, 5);
+        let ranks = |options: NystromOptions, n: usize| -> Vec<usize> {
+            let columns = Matrix::from_fn(60, n, |i, j| cloud.distance(i, j).powf(0.7));
+            let distances = LandmarkDistances::new((0..n).collect(), columns).unwrap();
+            let others = options.other_ranks(&distances).unwrap();
+            others.iter().map(|embedding| embedding.rank).collect()
+        };
+        assert_eq!(ranks(NystromOptions::default(), 40), [7, 10, 30]);
+        assert_eq!(ranks(NystromOptions::default(), 12), [9]);
+        assert_eq!(ranks(NystromOptions::default(), 4), [0; 0]);
+        assert_eq!(ranks(low_rank(6), 40), [0; 0]);
+        assert_eq!(ranks(options(Regularization::None), 40), [0; 0]);
         assert_eq!([NystromOptions::default(), low_rank(30)].map(|o| o.first_samples()), [8, 30]);
     }
 

@@ -1,14 +1,15 @@
 //! Embeddings of any points with distances.
 
+use std::sync::Arc;
+
 use canonform::linalg::{LandmarkDistances, Matrix};
-use canonform::nmds::{
-    self, Embedding, NystromOptions, OutOfSample, Regularization, SampleStep, nystrom_extended,
-};
+use canonform::nmds::{self, Embedding, OutOfSample, Regularization, nystrom_extended};
+use canonform::{Budget, Error};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::arrays;
-use crate::run::run_alone;
+use crate::run::{run_alone, run_calling};
 use crate::settings::Settings;
 
 /// An embedding, and what places further points in it.
@@ -54,96 +55,45 @@ impl Extension {
     }
 }
 
-/// Finds how many landmarks are enough; Python measures the distances.
-#[pyclass(module = "canonform._canonform")]
-pub(crate) struct SampleSearch {
-    search: nmds::SampleSearch,
-    options: NystromOptions,
-}
-
-/// The next number of samples; none at the end.
-fn next(step: SampleStep) -> Option<usize> {
-    match step {
-        SampleStep::Samples(n) => Some(n),
-        SampleStep::Done(_) => None,
-    }
-}
-
-/// The number of landmarks that a search begins with.
+/// Finds how many landmarks are enough, and the best rank for them; none if the regularisation has none to choose. `columns` gives
+/// the first landmarks of a number and their columns of distances, `rows` the columns of some points.
 #[pyfunction]
-pub(crate) fn first_landmarks(settings: &str) -> PyResult<usize> {
-    Ok(Settings::parse(settings)?.nystrom()?.first_samples())
-}
-
-#[pymethods]
-impl SampleSearch {
-    /// Embeds by the distances from the first landmarks, one column each.
-    #[new]
-    fn new(
-        py: Python<'_>,
-        settings: &str,
-        columns: PyReadonlyArray2<'_, f64>,
-        landmarks: Vec<usize>,
-        limit: usize,
-        seed: u64,
-    ) -> PyResult<Self> {
-        let options = Settings::parse(settings)?.nystrom()?;
-        let columns = matrix_of(&columns);
-        run_alone(py, None, |_| {
-            let distances = LandmarkDistances::new(landmarks, columns)?;
-            let first = nmds::nystrom(&distances, &options)?;
-            Ok(Self { search: nmds::SampleSearch::new(&distances, first, limit, seed)?, options })
-        })
-    }
-
-    /// The points whose distances are needed to start.
-    fn rows(&self) -> Vec<usize> {
-        self.search.rows()
-    }
-
-    /// Takes the distances from the rows, one column each.
-    fn start(&mut self, py: Python<'_>, columns: PyReadonlyArray2<'_, f64>) -> PyResult<Option<usize>> {
-        let columns = matrix_of(&columns);
-        run_alone(py, None, |_| Ok(next(self.search.start(&columns)?)))
-    }
-
-    /// Embeds by the distances from landmarks, one column each.
-    fn offer(
-        &mut self,
-        py: Python<'_>,
-        columns: PyReadonlyArray2<'_, f64>,
-        landmarks: Vec<usize>,
-    ) -> PyResult<Option<usize>> {
-        let columns = matrix_of(&columns);
-        run_alone(py, None, |_| {
-            let distances = LandmarkDistances::new(landmarks, columns)?;
-            let embedding = nmds::nystrom(&distances, &self.options)?;
-            Ok(next(self.search.offer(&distances, embedding)?))
-        })
-    }
-
-    /// The best rank for the last landmarks that were offered; none if the regularisation has none to choose.
-    fn rank(
-        &mut self,
-        py: Python<'_>,
-        columns: PyReadonlyArray2<'_, f64>,
-        landmarks: Vec<usize>,
-    ) -> PyResult<Option<usize>> {
-        let columns = matrix_of(&columns);
-        run_alone(py, None, |_| {
-            let distances = LandmarkDistances::new(landmarks, columns)?;
-            let with = |rank| NystromOptions {
-                regularization: Regularization::LowRank { rank: Some(rank) },
-                ..self.options.clone()
-            };
-            let ranks = self.options.other_ranks(distances.n_landmarks()).into_iter();
-            let others =
-                ranks.map(|rank| nmds::nystrom(&distances, &with(rank))).collect::<Result<_, _>>()?;
-            self.search.compare(others)?;
-            let is_free = matches!(self.options.regularization, Regularization::LowRank { .. });
-            Ok(self.search.trials().last().map(|trial| trial.rank).filter(|_| is_free))
-        })
-    }
+pub(crate) fn search_landmarks(
+    py: Python<'_>,
+    settings: &str,
+    columns: Py<PyAny>,
+    rows: Py<PyAny>,
+    limit: usize,
+    seed: u64,
+) -> PyResult<(usize, Option<usize>)> {
+    let options = Settings::parse(settings)?.nystrom()?;
+    let [columns, rows] = [columns, rows].map(Arc::new);
+    let found = run_calling(py, &Budget::unlimited(), None, |_, caller| {
+        let search = nmds::SampleSearch {
+            first: options.first_samples(),
+            limit,
+            seed,
+            embed: &|distances| nmds::nystrom(distances, &options),
+            otherwise: &|distances| options.other_ranks(distances),
+        };
+        let of_number = |n: usize| {
+            let columns = columns.clone();
+            let (landmarks, columns) = caller.call(move |py| {
+                let found = columns.call1(py, (n,))?;
+                let (landmarks, columns): (Vec<usize>, PyReadonlyArray2<'_, f64>) = found.extract(py)?;
+                Ok((landmarks, matrix_of(&columns)))
+            })?;
+            Ok::<_, Error>(LandmarkDistances::new(landmarks, columns)?)
+        };
+        let of_points = |points: &[usize]| {
+            let (rows, points) = (rows.clone(), points.to_vec());
+            caller.call(move |py| Ok(matrix_of(&rows.call1(py, (points,))?.extract(py)?)))
+        };
+        let (embedding, distances, _) = search.run(of_number, of_points)?;
+        Ok((distances.n_landmarks(), embedding.rank))
+    })?;
+    let is_free = matches!(options.regularization, Regularization::LowRank { .. });
+    Ok((found.0, is_free.then_some(found.1)))
 }
 
 /// Nystrom MDS from columns of distances, one for each landmark.

@@ -2,7 +2,7 @@
 //!
 //! Work runs on a pool of threads, while the calling thread waits for it. Only that thread can be the main thread of
 //! Python, which alone handles signals: it looks for them several times a second, and cancels the budget of the work when
-//! one raises an exception. Worker threads never touch Python.
+//! one raises an exception. Worker threads never touch Python: the waiting thread makes their calls.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
@@ -52,6 +52,43 @@ pub(crate) fn run<T: Send>(
     progress: Option<&Py<PyAny>>,
     work: impl FnOnce(&dyn Observer) -> Result<T, Error> + Send,
 ) -> Result<T, Stopped> {
+    run_calling(py, budget, progress, |observer, _| work(observer))
+}
+
+/// A call of Python.
+type Call = Box<dyn FnOnce(Python<'_>) -> PyResult<()> + Send>;
+
+/// What work tells the thread that waits for it.
+enum Message<T> {
+    Call(Call),
+    Done(Result<T, Error>),
+}
+
+/// Makes calls of Python for work.
+pub(crate) struct Caller<'a>(&'a dyn Fn(Call));
+
+impl Caller<'_> {
+    /// The result of a call. If it raises an exception, that ends the work.
+    pub(crate) fn call<T: Send + 'static>(
+        &self,
+        call: impl FnOnce(Python<'_>) -> PyResult<T> + Send + 'static,
+    ) -> Result<T, Error> {
+        let (send, receive) = channel();
+        (self.0)(Box::new(move |py| {
+            let _ = send.send(call(py)?);
+            Ok(())
+        }));
+        receive.recv().map_err(|_| Exceeded::Cancelled.into())
+    }
+}
+
+/// [`run`] for work that calls Python.
+pub(crate) fn run_calling<T: Send>(
+    py: Python<'_>,
+    budget: &Budget,
+    progress: Option<&Py<PyAny>>,
+    work: impl FnOnce(&dyn Observer, &Caller<'_>) -> Result<T, Error> + Send,
+) -> Result<T, Stopped> {
     let pool = pool().map_err(Stopped::Interrupted)?;
     let watched = Watched { budget: budget.clone(), stage: Mutex::default(), done: AtomicUsize::new(0) };
     let mut exception = None;
@@ -61,20 +98,22 @@ pub(crate) fn run<T: Send>(
             let (send, receive) = channel();
             scope.spawn(move |_| {
                 // The receiver waits until it has the result.
-                let _ = send.send(work(watched));
+                let tell = |message| drop(send.send(message));
+                let result = work(watched, &Caller(&|call| tell(Message::Call(call))));
+                tell(Message::Done(result));
             });
             loop {
-                match receive.recv_timeout(INTERVAL) {
-                    Ok(result) => return Some(result),
+                let raised = match receive.recv_timeout(INTERVAL) {
+                    Ok(Message::Done(result)) => return Some(result),
                     // The work has panicked, and the end of the scope passes that on.
                     Err(RecvTimeoutError::Disconnected) => return None,
-                    Err(RecvTimeoutError::Timeout) if exception.is_none() => {
-                        *exception = Python::attach(|py| watched.look(py, progress)).err();
-                        if exception.is_some() {
-                            watched.budget.cancel();
-                        }
-                    }
-                    Err(RecvTimeoutError::Timeout) => {}
+                    _ if exception.is_some() => continue,
+                    Ok(Message::Call(call)) => Python::attach(call),
+                    Err(RecvTimeoutError::Timeout) => Python::attach(|py| watched.look(py, progress)),
+                };
+                if let Err(raised) = raised {
+                    *exception = Some(raised);
+                    watched.budget.cancel();
                 }
             }
         })

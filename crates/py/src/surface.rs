@@ -10,8 +10,8 @@ use canonform::geodesics::{DistanceSolver, FirstSample, Method, PathTracer, Samp
 use canonform::mesh::{RepairOptions, TriMesh};
 use canonform::surface::VertexId;
 use canonform::{
-    ComparedMesh, CorrespondOptions, DescribeOptions, Error, FormOptions, InputPoint, MappedSurface,
-    Observer, Shape, SurfacePath, content_hash, distance_rows, embed_again, embed_and_measure, embed_finer,
+    ComparedMesh, CorrespondOptions, DescribeOptions, EmbedOptions, Error, FormOptions, InputPoint,
+    MappedSurface, Observer, Shape, SurfacePath, content_hash, distance_rows, embed,
 };
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -397,11 +397,14 @@ impl Surface {
     ) -> PyResult<Form> {
         let settings = Settings::parse(settings)?;
         let (options, stress) = (settings.form(self.inner.repair)?, settings.stress()?);
-        let earlier = reuse.as_ref().map(|form| &form.embedded);
-        let embedded = run(py, &settings.budget()?, progress.as_ref(), |observer| match earlier {
-            None => embed_and_measure(&self.inner, &options, &stress, observer),
-            Some(earlier) => embed_again(&self.inner, earlier, &options, &stress, observer),
-        })?;
+        let options = EmbedOptions::from(&options).stress(stress);
+        let options = match &reuse {
+            None => options,
+            Some(form) => options.reuse(&form.embedded),
+        };
+        let surface = &*self.inner;
+        let embedded =
+            run(py, &settings.budget()?, progress.as_ref(), |observer| embed(surface, options, observer))?;
         Ok(Form { surface: self.inner.clone(), embedded })
     }
 
@@ -416,7 +419,8 @@ impl Surface {
         let settings = Settings::parse(settings)?;
         let (stress, form) = (settings.stress()?, &*form);
         let embedded = run(py, &settings.budget()?, progress.as_ref(), |observer| {
-            embed_finer(&self.inner, &form.surface, &form.embedded, &stress, observer)
+            let options = EmbedOptions::finer(&self.inner, &form.surface, &form.embedded)?;
+            embed(&*self.inner, options.stress(stress), observer)
         })?;
         Ok(Form { surface: self.inner.clone(), embedded })
     }

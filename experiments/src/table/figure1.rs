@@ -3,7 +3,7 @@
 //! Measures `largest stress ratio`: the largest ratio of the stress to the squared spread of a form, which has no unit.
 
 use anyhow::Result;
-use canonform::{StressChoice, StressOptions, embed_and_measure};
+use canonform::{EmbedOptions, StressChoice, StressOptions, embed};
 use descriptors::CanonicalForm;
 use mesh::TriMesh;
 use report::results::{Figure1Results, Figure1Shape};
@@ -29,7 +29,7 @@ impl Experiment for Figure1Options {
         let stress = StressOptions { choice: StressChoice::Estimate, against: None, seed: context.seed };
         let shown = context.collection.first_of_each_class(Figure1Results::PAIRS);
         let embedded = map(&shown, "figure 1", context.observer, |shape| {
-            let embedded = embed_and_measure(&shape.surface, &options, &stress, &())?;
+            let embedded = embed(&shape.surface, EmbedOptions::from(&options).stress(stress), &())?;
             let form = embedded.form(&shape.surface)?;
             let stress = embedded.report.stress.map_or(f64::NAN, |stress| stress.value);
             Ok((form, stress))

@@ -1,8 +1,7 @@
 //! Distances that do not fit into memory are kept in a file, and results are the same bit for bit.
 
 use canonform::{
-    Budget, EmbedMethod, Embedded, FormOptions, Samples, StressChoice, StressOptions, embed_and_measure,
-    embed_and_release,
+    Budget, EmbedMethod, EmbedOptions, Embedded, FormOptions, Samples, StressChoice, StressOptions, embed,
 };
 use datasets::Family;
 use geodesics::{FirstSample, Sampler, Sampling};
@@ -32,14 +31,16 @@ fn a_form_does_not_depend_on_memory() {
             (Samples::Auto, Sampling::Farthest),
         ] {
             let options = FormOptions { method: method.clone(), samples, sampling, ..FormOptions::default() };
-            let usual = embed_and_measure(&surface, &options, &stress, &()).unwrap();
+            let measured = EmbedOptions::from(&options).stress(stress);
+            let usual = embed(&surface, measured.clone(), &()).unwrap();
             for threads in [1, 2] {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
                 // Enough for all but the distances.
                 let bytes = if samples == Samples::Auto { 28_000_000 } else { 2_600_000 };
                 let lean = || {
                     let budget = Budget::unlimited().with_memory(bytes).with_spill(folder.path().to_owned());
-                    embed_and_release(surface.clone(), &options, &stress, &budget).unwrap().0
+                    let (intrinsic, map) = surface.clone().into_parts();
+                    embed((intrinsic, &map), measured.clone(), &budget).unwrap()
                 };
                 let lean = pool.install(lean);
                 assert!(lean.distances.is_in_file() && !usual.distances.is_in_file());

@@ -1,6 +1,6 @@
 //! How many samples are enough: `-n auto` stops where it should, and says how sure it is.
 
-use canonform::{EmbedMethod, Embedded, FormOptions, Samples, StressOptions, Surface, embed_and_measure};
+use canonform::{EmbedMethod, EmbedOptions, Embedded, FormOptions, Samples, StressOptions, Surface, embed};
 use datasets::{CreatureOptions, Family, creature, creature_plans};
 use linalg::DistanceMatrix;
 use mesh::TriMesh;
@@ -30,7 +30,7 @@ fn auto(seed: u64) -> FormOptions {
 
 fn measured(surface: &Surface, options: &FormOptions) -> Embedded {
     let stress = StressOptions { seed: options.seed, ..StressOptions::default() };
-    embed_and_measure(surface, options, &stress, &()).unwrap()
+    embed(surface, EmbedOptions::from(options).stress(stress), &()).unwrap()
 }
 
 /// 25 bodies and 4 seeds; beyond 1,000 vertices, where the stress is estimated.

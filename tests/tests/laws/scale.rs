@@ -3,8 +3,8 @@
 
 use canonform::geodesics::{FirstSample, Method, Sampling};
 use canonform::{
-    DescribeOptions, EmbedMethod, Embedded, FormOptions, Samples, StressChoice, StressOptions, describe,
-    embed_and_measure, signature,
+    DescribeOptions, EmbedMethod, EmbedOptions, Embedded, FormOptions, Samples, StressChoice, StressOptions,
+    describe, embed, signature,
 };
 use descriptors::SignatureKind;
 use mesh::{TriMesh, shapes};
@@ -85,11 +85,12 @@ fn every_embedding_and_its_stress_scale() {
     for method in EmbedMethod::all() {
         let options = FormOptions { method, samples: Samples::Count(30), ..FormOptions::default() };
         let stress = StressOptions { choice: StressChoice::Exact, ..StressOptions::default() };
-        let embed = |mesh: &TriMesh| embed_and_measure(&surface(mesh), &options, &stress, &()).unwrap();
+        let measured =
+            |mesh: &TriMesh| embed(&surface(mesh), EmbedOptions::from(&options).stress(stress), &()).unwrap();
         let value = |embedded: &Embedded| embedded.report.stress.as_ref().map_or(0.0, |stress| stress.value);
-        let expected = embed(&mesh);
+        let expected = measured(&mesh);
         for factor in factors() {
-            let found = embed(&scaled(&mesh, factor));
+            let found = measured(&scaled(&mesh, factor));
             let (is_exact, name) = (is_power_of_two(factor), options.method.name());
             assert_eq!(found.report.rank, expected.report.rank, "{name} x {factor}");
             assert_eq!(found.report.samples, expected.report.samples, "{name} x {factor}");

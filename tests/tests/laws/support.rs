@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use canonform::{
-    Embedded, FormOptions, StressChoice, StressOptions, Surface, embed, embed_and_measure, embedded_distances,
+    EmbedOptions, Embedded, FormOptions, StressChoice, StressOptions, Surface, embed, embedded_distances,
 };
 use cargo_metadata::{Metadata, MetadataCommand};
 use datasets::{ArticulatedOptions, Family, articulated_shape};
@@ -64,7 +64,7 @@ pub(crate) fn embedded(mesh: &TriMesh, options: &FormOptions) -> Embedded {
 
 pub(crate) fn measured(mesh: &TriMesh, options: &FormOptions, choice: StressChoice) -> Embedded {
     let stress = StressOptions { choice, ..StressOptions::default() };
-    embed_and_measure(&surface(mesh), options, &stress, &()).unwrap()
+    embed(&surface(mesh), EmbedOptions::from(options).stress(stress), &()).unwrap()
 }
 
 /// All distances between the embedded points of a mesh.

@@ -1,6 +1,7 @@
 //! Measuring the distances that an embedding method needs.
 
 use std::borrow::Cow;
+use std::cell::Cell;
 use std::fmt;
 use std::str::FromStr;
 use std::time::Instant;
@@ -8,12 +9,12 @@ use std::time::Instant;
 use base::{Budget, Exceeded};
 use geodesics::{DistanceSolver, FirstSample, PrunedSolver, Sampler, Sampling, Source};
 use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
-use nmds::{Embedding, NmdsError, SampleSearch, SampleStep};
+use nmds::{EmbedOtherwise, EmbedSamples, SampleSearch};
 use serde::{Deserialize, Serialize};
 use surface::VertexId;
 
+use super::method::Outcome;
 use super::plan::{Plan, check_memory};
-use super::report::SamplesReport;
 use crate::error::Error;
 use base::Observer;
 
@@ -118,123 +119,87 @@ pub(super) struct Measurement<'a> {
     /// Whether the method reads distances in blocks, so that they may be in a file.
     pub(super) streams: bool,
     /// Seconds spent on distances so far.
-    pub(super) seconds: f64,
-    /// How the number of samples was found, if it was not given.
-    pub(super) search: Option<SamplesReport>,
-}
-
-/// Embeds by distances, with a rank of the sample matrix if there is one.
-pub(super) type EmbedByRank<'a> =
-    dyn Fn(&LandmarkDistances, Option<usize>) -> Result<Embedding, NmdsError> + 'a;
-
-/// An embedding by distances from samples.
-pub(super) struct Sampled<'a> {
-    /// Embeds; with this rank of the sample matrix if one is given, else as the options say.
-    pub(super) embed: &'a EmbedByRank<'a>,
-    /// Other ranks worth trying for a number of samples; none if the options say the rank, or there is none.
-    pub(super) other_ranks: &'a dyn Fn(usize) -> Vec<usize>,
-    /// The number of samples that a search begins with.
-    pub(super) first_samples: usize,
-}
-
-impl Sampled<'_> {
-    fn others(&self, distances: &LandmarkDistances) -> Result<Vec<Embedding>, NmdsError> {
-        let ranks = (self.other_ranks)(distances.n_landmarks());
-        ranks.into_iter().map(|rank| (self.embed)(distances, Some(rank))).collect()
-    }
+    pub(super) seconds: Cell<f64>,
 }
 
 impl Measurement<'_> {
-    /// Takes samples and embeds by the distances from them.
-    pub(super) fn sampled(&mut self, method: &Sampled<'_>) -> Result<(Embedding, LandmarkDistances), Error> {
-        let (solver, sampling) = (self.solver, self.sampling);
+    /// Takes samples and embeds by the distances from them. A search for their number begins with `first` of them and compares its
+    /// result with those of `otherwise`.
+    pub(super) fn sampled(
+        &self,
+        first: usize,
+        embed: &EmbedSamples<'_>,
+        otherwise: &EmbedOtherwise<'_>,
+    ) -> Result<Outcome, Error> {
         self.observer.begin("distances", self.samples.count_or(AUTO_LAST));
-        let mut sampler = self.timed(|m| sampling.start(solver, m.first, m.seed))?;
+        let mut sampler = self.timed(|| self.sampling.start(self.solver, self.first, self.seed))?;
         if self.streams && self.budget.spill().is_some() {
-            let store = plan(solver.n_vertices(), self.samples).store(&self.budget)?;
-            self.timed(|_| sampler.move_to(store))?;
+            let store = plan(self.solver.n_vertices(), self.samples).store(&self.budget)?;
+            self.timed(|| sampler.move_to(store))?;
         }
-        let n = match self.samples {
-            Samples::Count(n) => n,
-            Samples::Auto => return self.enough(&mut sampler, method),
-        };
-        self.extend(&mut sampler, n)?;
-        let distances = self.timed(|_| sampler.into_distances(n))?;
-        self.budget.check()?;
-        let embedding = (method.embed)(&distances, None)?;
-        self.budget.check()?;
-        Ok((embedding, distances))
-    }
-
-    /// Takes samples until they are enough.
-    fn enough(
-        &mut self,
-        sampler: &mut Sampler,
-        method: &Sampled<'_>,
-    ) -> Result<(Embedding, LandmarkDistances), Error> {
-        let p = self.solver.n_vertices();
-        let limit = AUTO_LAST.min(p);
-        let mut distances = self.take(sampler, method.first_samples.min(limit))?;
-        let first = (method.embed)(&distances, None)?;
-        let mut search = SampleSearch::new(&distances, first, limit, self.seed)?;
-        let rows: Vec<VertexId> = search.rows().into_iter().map(VertexId::from).collect();
-        check_memory(p, rows.len(), &self.budget)?;
-        let columns = self.timed(|m| m.solver.distance_columns(&rows))?;
-        let mut step = search.start(&columns)?;
-        let stop = loop {
-            self.budget.check()?;
-            match step {
-                SampleStep::Samples(n) => {
-                    distances = self.take(sampler, n)?;
-                    step = search.offer(&distances, (method.embed)(&distances, None)?)?;
-                }
-                SampleStep::Done(stop) => break stop,
+        let (embedding, distances, search) = match self.samples {
+            Samples::Count(n) => {
+                self.extend(&mut sampler, n)?;
+                let distances = self.timed(|| sampler.into_distances(n))?;
+                self.budget.check()?;
+                (embed(&distances)?, distances, None)
+            }
+            Samples::Auto => {
+                let search = SampleSearch { first, limit: AUTO_LAST, seed: self.seed, embed, otherwise };
+                let columns = |n| {
+                    self.budget.check()?;
+                    self.take(&mut sampler, n)
+                };
+                let rows = |rows: &[usize]| self.columns(rows);
+                let (embedding, distances, report) = search.run(columns, rows)?;
+                (embedding, distances, Some(report))
             }
         };
-        search.compare(method.others(&distances)?)?;
-        self.search = Some(SamplesReport {
-            stop,
-            sufficient: search.sufficient(),
-            rows: rows.len(),
-            tried: search.trials().to_vec(),
-        });
-        Ok((search.into_embedding(), distances))
+        self.budget.check()?;
+        Ok(Outcome { embedding, distances, search, all: None, descent: None })
     }
 
     /// Takes samples until there are `n`, or as many as there are vertices.
-    fn extend(&mut self, sampler: &mut Sampler, n: usize) -> Result<(), Error> {
+    fn extend(&self, sampler: &mut Sampler, n: usize) -> Result<(), Error> {
         if !self.streams || self.budget.spill().is_none() {
             let p = self.solver.n_vertices();
             check_memory(p, n.min(p), &self.budget)?;
         }
-        Ok(self.timed(|_| sampler.extend_to(n))?)
+        Ok(self.timed(|| sampler.extend_to(n))?)
     }
 
-    fn take(&mut self, sampler: &mut Sampler, n: usize) -> Result<LandmarkDistances, Error> {
+    fn take(&self, sampler: &mut Sampler, n: usize) -> Result<LandmarkDistances, Error> {
         self.extend(sampler, n)?;
-        Ok(self.timed(|_| sampler.distances(n))?)
+        Ok(self.timed(|| sampler.distances(n))?)
+    }
+
+    /// The distances from some vertices, one column each.
+    pub(super) fn columns(&self, vertices: &[usize]) -> Result<Matrix, Error> {
+        check_memory(self.solver.n_vertices(), vertices.len(), &self.budget)?;
+        let sources: Vec<VertexId> = vertices.iter().copied().map(VertexId::from).collect();
+        Ok(self.timed(|| self.solver.distance_columns(&sources))?)
     }
 
     /// The distances between all pairs of vertices.
-    pub(super) fn all_pairs(&mut self) -> Result<DistanceMatrix, Error> {
+    pub(super) fn all_pairs(&self) -> Result<DistanceMatrix, Error> {
         let p = self.solver.n_vertices();
         check_memory(p, p, &self.budget)?;
         self.observer.begin("distances", p);
-        self.timed(|m| Ok(m.solver.distance_matrix()?))
+        Ok(self.timed(|| self.solver.distance_matrix())?)
     }
 
     /// The columns of `all` that belong to samples, as a method with samples would take them.
-    pub(super) fn columns_of(&mut self, all: &DistanceMatrix) -> Result<LandmarkDistances, Error> {
+    pub(super) fn columns_of(&self, all: &DistanceMatrix) -> Result<LandmarkDistances, Error> {
         let known = KnownDistances(all);
         let mut sampler = self.sampling.start(&known, self.first, self.seed)?;
         self.take(&mut sampler, self.samples.count_or(DEFAULT_COUNT))
     }
 
     /// Counts the time of `work` as time spent on distances.
-    fn timed<T, E>(&mut self, work: impl FnOnce(&Self) -> Result<T, E>) -> Result<T, E> {
+    fn timed<T>(&self, work: impl FnOnce() -> T) -> T {
         let start = Instant::now();
-        let result = work(self);
-        self.seconds += start.elapsed().as_secs_f64();
+        let result = work();
+        self.seconds.set(self.seconds.get() + start.elapsed().as_secs_f64());
         result
     }
 }
@@ -303,19 +268,19 @@ impl DistanceSolver for KnownColumns<'_> {
     }
 
     fn distance_columns(&self, sources: &[VertexId]) -> Result<Matrix, Exceeded> {
-        let known: Vec<_> = sources.iter().map(|&source| self.column(source)).collect();
-        let unknown = sources.iter().zip(&known).filter(|(_, known)| known.is_none());
-        let measured =
-            self.solver.distance_columns(&unknown.map(|(source, _)| *source).collect::<Vec<_>>())?;
-        let mut measured = measured.column_iter();
-        let mut columns = self.budget().vector(self.n_vertices().saturating_mul(sources.len()))?;
-        for (place, known) in columns.chunks_exact_mut(self.n_vertices().max(1)).zip(&known) {
-            match (known, known.is_none().then(|| measured.next()).flatten()) {
-                (Some(known), _) => place.copy_from_slice(known),
-                (None, Some(column)) => place.copy_from_slice(column.as_slice()),
-                (None, None) => unreachable!("every source is measured or known"),
+        let p = self.n_vertices();
+        let mut columns =
+            Matrix::from_vec(p, sources.len(), self.budget().vector(p.saturating_mul(sources.len()))?);
+        let mut unknown = Vec::new();
+        for (i, &source) in sources.iter().enumerate() {
+            match self.column(source) {
+                Some(known) => columns.column_mut(i).copy_from_slice(&known),
+                None => unknown.push(i),
             }
         }
-        Ok(Matrix::from_vec(self.n_vertices(), sources.len(), columns))
+        let measured = unknown.iter().map(|&i| sources[i]).collect::<Vec<_>>();
+        let measured = self.solver.distance_columns(&measured)?;
+        unknown.iter().zip(measured.column_iter()).for_each(|(&i, column)| columns.set_column(i, &column));
+        Ok(columns)
     }
 }

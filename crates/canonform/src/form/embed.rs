@@ -3,21 +3,21 @@
 use std::borrow::Cow;
 use std::time::Instant;
 
+use base::Observer;
 use descriptors::CanonicalForm;
 use geodesics::{DistanceSolver, FirstSample, Observed};
 use linalg::LandmarkDistances;
-use mesh::RepairReport;
+use mesh::{InputMap, PointError, RepairOptions, RepairReport, Surface};
 use nmds::{Embedding, OutOfSample};
 use surface::{IntrinsicMesh, VertexId};
 
 use super::distances::{KnownColumns, Measurement, Samples, plan};
+use super::extend::Coarser;
 use super::method::Outcome;
 use super::options::FormOptions;
 use super::report::{EmbedReport, SecondsReport};
 use super::stress::{Known, Rows, StressChoice, StressOptions};
 use crate::error::Error;
-use base::Observer;
-use mesh::{InputMap, Surface};
 
 /// An embedded surface.
 #[derive(Debug, Clone)]
@@ -45,15 +45,140 @@ impl Embedded {
     }
 }
 
+/// What [`embed`] embeds: a [`Surface`], or the parts of one, [without its mesh](Surface::into_parts), which needs less memory.
+pub struct EmbedInput<'a> {
+    intrinsic: Cow<'a, IntrinsicMesh>,
+    repair: RepairOptions,
+    report: &'a RepairReport,
+    /// The input vertex of a vertex of the repaired mesh, and the reverse.
+    input_vertex: Box<dyn Fn(VertexId) -> VertexId + 'a>,
+    repaired_vertex: Box<dyn Fn(VertexId) -> Result<VertexId, PointError> + 'a>,
+    load_seconds: f64,
+    repair_seconds: f64,
+}
+
+impl<'a> From<&'a Surface> for EmbedInput<'a> {
+    fn from(surface: &'a Surface) -> Self {
+        Self {
+            intrinsic: Cow::Borrowed(surface.intrinsic()),
+            repair: surface.repair,
+            report: &surface.repaired.report,
+            input_vertex: Box::new(|v| surface.input_vertex(v)),
+            repaired_vertex: Box::new(|v| surface.repaired_vertex(v)),
+            load_seconds: surface.load_seconds,
+            repair_seconds: surface.repair_seconds,
+        }
+    }
+}
+
+impl<'a> From<(IntrinsicMesh, &'a InputMap)> for EmbedInput<'a> {
+    fn from((intrinsic, map): (IntrinsicMesh, &'a InputMap)) -> Self {
+        Self {
+            intrinsic: Cow::Owned(intrinsic),
+            repair: map.repair,
+            report: &map.report,
+            input_vertex: Box::new(|v| map.input_vertex(v)),
+            repaired_vertex: Box::new(|v| map.repaired_vertex(v)),
+            load_seconds: map.load_seconds,
+            repair_seconds: map.repair_seconds,
+        }
+    }
+}
+
+/// How [`embed`] embeds: the options of the form, whether the stress is measured, and what is known. Made from [`FormOptions`].
+#[derive(Debug, Clone)]
+pub struct EmbedOptions<'a> {
+    /// How the form is made.
+    pub form: &'a FormOptions,
+    /// How the stress of the result is measured. Default: not.
+    pub stress: StressOptions,
+    earlier: Earlier<'a>,
+}
+
+/// An earlier embedding.
+#[derive(Debug, Clone)]
+enum Earlier<'a> {
+    None,
+    /// Of the same surface.
+    Same(&'a Embedded),
+    /// Of a coarser mesh.
+    Coarser(Coarser<'a>),
+}
+
+impl<'a> From<&'a FormOptions> for EmbedOptions<'a> {
+    fn from(form: &'a FormOptions) -> Self {
+        let stress = StressOptions { choice: StressChoice::Skip, ..StressOptions::default() };
+        Self { form, stress, earlier: Earlier::None }
+    }
+}
+
+impl<'a> EmbedOptions<'a> {
+    /// Measures the stress of the result.
+    #[must_use]
+    pub fn stress(self, stress: StressOptions) -> Self {
+        Self { stress, ..self }
+    }
+
+    /// Looks up the distances that an earlier embedding of the same surface has measured: to take more samples, or to try another
+    /// method or rank on the same ones. The result is the same, bit for bit.
+    ///
+    /// ```
+    /// use canonform::{EmbedOptions, FormOptions, Samples, Surface, embed, mesh::shapes};
+    ///
+    /// let surface = Surface::new(&shapes::torus(24, 12, 2.0, 0.7), &Default::default(), &())?;
+    /// let few = FormOptions { samples: Samples::Count(20), ..FormOptions::default() };
+    /// let many = FormOptions { samples: Samples::Count(50), ..few.clone() };
+    /// let first = embed(&surface, &few, &())?;
+    ///
+    /// // Measures the distances from 30 samples, not from 50.
+    /// let more = embed(&surface, EmbedOptions::from(&many).reuse(&first), &())?;
+    /// assert_eq!(more.embedding, embed(&surface, &many, &())?.embedding);
+    /// # Ok::<(), canonform::Error>(())
+    /// ```
+    #[must_use]
+    pub fn reuse(self, earlier: &'a Embedded) -> Self {
+        Self { earlier: Earlier::Same(earlier), ..self }
+    }
+
+    /// Embeds `fine`, a finer mesh of the surface `coarse`, in the coordinates of its `form`: measures distances from the samples of
+    /// the form and places all vertices by them. Levels of one surface then have forms that lie on top of each other.
+    ///
+    /// A sample is found on the finer mesh as the vertex nearest to its position, which must not be farther than a mean edge of
+    /// the coarser mesh: both meshes are in the same place.
+    ///
+    /// ```
+    /// use canonform::{EmbedOptions, FormOptions, Surface, embed, mesh::shapes};
+    ///
+    /// let [coarse, fine] = [3, 4].map(|level| Surface::new(&shapes::icosphere(level), &Default::default(), &()));
+    /// let (coarse, fine) = (coarse?, fine?);
+    /// let form = embed(&coarse, &FormOptions::default(), &())?;
+    /// let finer = embed(&fine, EmbedOptions::finer(&fine, &coarse, &form)?, &())?;
+    /// assert_eq!(finer.embedding.n_points(), 2562);
+    /// // The first vertices are those of the coarser sphere.
+    /// let gap = finer.embedding.coords.rows(0, 642) - &form.embedding.coords;
+    /// assert!(gap.amax() < 0.02);
+    /// # Ok::<(), canonform::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::NotThere`] if a sample has no vertex of the finer mesh near it, [`Error::NoExtension`], and
+    /// [`Error::OtherSurface`] if `form` is not of `coarse`.
+    pub fn finer(fine: &Surface, coarse: &Surface, form: &'a Embedded) -> Result<Self, Error> {
+        let earlier = Earlier::Coarser(Coarser::new(fine, coarse, form)?);
+        Ok(Self { earlier, ..Self::from(&form.options) })
+    }
+}
+
 /// Embeds a surface: measures distances and turns them into coordinates. All forms are made here.
 ///
 /// `observer` counts every run of the distance solver as a step. The result does not depend on the number of
 /// threads. A surface that was repaired in another way than the options say keeps its repair, and the
 /// [options of the result](Embedded::options) tell. The [budget](Observer::budget) of the observer limits the work; a
-/// [`Budget`](base::Budget) is itself an observer.
+/// [`Budget`](base::Budget) is itself an observer. If it limits memory and names a folder for temporary files, distances that do
+/// not fit are kept in a file there, by methods that can read them in blocks: NMDS and landmark MDS.
 ///
 /// ```
-/// use canonform::{FormOptions, Samples, Surface, embed, mesh::shapes};
+/// use canonform::{EmbedOptions, FormOptions, Samples, StressOptions, Surface, embed, mesh::shapes};
 ///
 /// let surface = Surface::new(&shapes::torus(24, 12, 2.0, 0.7), &Default::default(), &())?;
 /// let options = FormOptions { samples: Samples::Count(40), ..FormOptions::default() };
@@ -61,105 +186,26 @@ impl Embedded {
 /// assert_eq!(embedded.embedding.coords.shape(), (288, 3));
 /// let form = embedded.form(&surface)?;
 /// assert_eq!(form.points().len(), 288);
+///
+/// // In less memory, since the mesh is dropped, and with the stress.
+/// let (intrinsic, map) = surface.into_parts();
+/// let options = EmbedOptions::from(&options).stress(StressOptions::default());
+/// let lean = embed((intrinsic, &map), options, &())?;
+/// assert_eq!(lean.embedding, embedded.embedding);
+/// assert!(lean.report.stress.is_some());
 /// # Ok::<(), canonform::Error>(())
 /// ```
 ///
 /// # Errors
-/// [`Error::AllPairsTooLarge`], [`Error::Point`] for the first sample, [`Error::NoStress`],
+/// [`Error::AllPairsTooLarge`], [`Error::EmbeddingTooLarge`], [`Error::Point`] for the first sample, [`Error::NoStress`],
+/// [`Error::OtherSurface`] if an earlier embedding has another number of vertices, or other distances between them,
 /// [`Error::Exceeded`], and the errors of the stages.
-pub fn embed(surface: &Surface, options: &FormOptions, observer: &dyn Observer) -> Result<Embedded, Error> {
-    let skip = StressOptions { choice: StressChoice::Skip, ..StressOptions::default() };
-    embed_and_measure(surface, options, &skip, observer)
-}
-
-/// Embeds a surface as [`embed`] does and measures the stress of the result.
-///
-/// # Errors
-/// As [`embed`].
-pub fn embed_and_measure(
-    surface: &Surface,
-    options: &FormOptions,
-    stress: &StressOptions,
+pub fn embed<'a, 'b>(
+    surface: impl Into<EmbedInput<'a>>,
+    options: impl Into<EmbedOptions<'b>>,
     observer: &dyn Observer,
 ) -> Result<Embedded, Error> {
-    let options = FormOptions { repair: surface.repair, ..options.clone() }.normalized();
-    let first = first_sample(surface, &options)?;
-    run(Cow::Borrowed(surface.intrinsic()), &Origin::of(surface), options, first, None, stress, observer)
-}
-
-/// Embeds a surface as [`embed_and_measure`] does, and looks up the distances that an earlier embedding of the same surface has
-/// measured: to take more samples, or to try another method or rank on the same ones. The result is the same, bit for bit.
-///
-/// ```
-/// use canonform::{FormOptions, Samples, StressOptions, Surface, embed_again, embed_and_measure, mesh::shapes};
-///
-/// let surface = Surface::new(&shapes::torus(24, 12, 2.0, 0.7), &Default::default(), &())?;
-/// let few = FormOptions { samples: Samples::Count(20), ..FormOptions::default() };
-/// let many = FormOptions { samples: Samples::Count(50), ..few.clone() };
-/// let stress = StressOptions::default();
-/// let first = embed_and_measure(&surface, &few, &stress, &())?;
-///
-/// // Measures the distances from 30 samples, not from 50.
-/// let more = embed_again(&surface, &first, &many, &stress, &())?;
-/// assert_eq!(more.embedding, embed_and_measure(&surface, &many, &stress, &())?.embedding);
-/// # Ok::<(), canonform::Error>(())
-/// ```
-///
-/// # Errors
-/// [`Error::OtherSurface`] if the earlier embedding has another number of vertices, or other distances between them, and as
-/// [`embed`].
-pub fn embed_again(
-    surface: &Surface,
-    earlier: &Embedded,
-    options: &FormOptions,
-    stress: &StressOptions,
-    observer: &dyn Observer,
-) -> Result<Embedded, Error> {
-    earlier.check_surface(surface)?;
-    let options = FormOptions { repair: surface.repair, ..options.clone() }.normalized();
-    let first = first_sample(surface, &options)?;
-    let known = (options.geodesic == earlier.options.geodesic).then_some(&earlier.distances);
-    run(Cow::Borrowed(surface.intrinsic()), &Origin::of(surface), options, first, known, stress, observer)
-}
-
-/// Embeds a surface as [`embed_and_measure`] does, in less memory: the mesh is dropped before distances are measured. The
-/// result is the same.
-///
-/// If the [budget](Observer::budget) limits memory and names a folder for temporary files, distances that do not fit are
-/// kept in a file there, by methods that can read them in blocks: NMDS and landmark MDS.
-///
-/// ```
-/// use canonform::{FormOptions, StressOptions, Surface, embed_and_measure, embed_and_release, mesh::shapes};
-///
-/// let surface = Surface::new(&shapes::torus(40, 20, 2.0, 0.7), &Default::default(), &())?;
-/// let (options, stress) = (FormOptions::default(), StressOptions::default());
-/// let usual = embed_and_measure(&surface, &options, &stress, &())?;
-/// let (lean, map) = embed_and_release(surface, &options, &stress, &())?;
-/// assert_eq!(lean.embedding, usual.embedding);
-/// assert_eq!(map.n_input_vertices(), 800);
-/// # Ok::<(), canonform::Error>(())
-/// ```
-///
-/// # Errors
-/// As [`embed`], and [`Error::EmbeddingTooLarge`].
-pub fn embed_and_release(
-    surface: Surface,
-    options: &FormOptions,
-    stress: &StressOptions,
-    observer: &dyn Observer,
-) -> Result<(Embedded, InputMap), Error> {
-    let options = FormOptions { repair: surface.repair, ..options.clone() }.normalized();
-    let first = first_sample(&surface, &options)?;
-    let (intrinsic, map) = surface.into_parts();
-    let origin = Origin {
-        report: &map.report,
-        input_vertex: Box::new(|v| map.input_vertex(v)),
-        load_seconds: map.load_seconds,
-        repair_seconds: map.repair_seconds,
-    };
-    let embedded = run(Cow::Owned(intrinsic), &origin, options, first, None, stress, observer)?;
-    drop(origin);
-    Ok((embedded, map))
+    run(surface.into(), options.into(), observer)
 }
 
 /// Distances on one surface differ by less than this share of the largest: what compilers and processors change.
@@ -181,45 +227,19 @@ fn check_distances(solver: &dyn DistanceSolver, known: &LandmarkDistances) -> Re
     }
 }
 
-/// The first sample, as a vertex of the repaired mesh.
-fn first_sample(surface: &Surface, options: &FormOptions) -> Result<FirstSample, Error> {
-    Ok(match options.first_sample {
-        FirstSample::Farthest => FirstSample::Farthest,
-        FirstSample::Vertex(input) => FirstSample::Vertex(surface.repaired_vertex(input)?),
-    })
-}
-
-/// What the report tells of the input.
-pub(super) struct Origin<'a> {
-    report: &'a RepairReport,
-    /// The input vertex of a vertex of the repaired mesh.
-    input_vertex: Box<dyn Fn(VertexId) -> VertexId + 'a>,
-    load_seconds: f64,
-    repair_seconds: f64,
-}
-
-impl<'a> Origin<'a> {
-    pub(super) fn of(surface: &'a Surface) -> Self {
-        Self {
-            report: &surface.repaired.report,
-            input_vertex: Box::new(|v| surface.input_vertex(v)),
-            load_seconds: surface.load_seconds,
-            repair_seconds: surface.repair_seconds,
-        }
-    }
-}
-
 fn run(
-    surface: Cow<'_, IntrinsicMesh>,
-    origin: &Origin<'_>,
-    options: FormOptions,
-    first: FirstSample,
-    known: Option<&LandmarkDistances>,
-    stress: &StressOptions,
+    input: EmbedInput<'_>,
+    EmbedOptions { form, stress, earlier }: EmbedOptions<'_>,
     observer: &dyn Observer,
 ) -> Result<Embedded, Error> {
     let start = Instant::now();
     let budget = observer.budget();
+    let EmbedInput { intrinsic: surface, repair, report, input_vertex, repaired_vertex, .. } = input;
+    let options = FormOptions { repair, ..form.clone() }.normalized();
+    let first = match options.first_sample {
+        FirstSample::Farthest => FirstSample::Farthest,
+        FirstSample::Vertex(input) => FirstSample::Vertex(repaired_vertex(input)?),
+    };
     if !options.method.has_unit() && options.samples == Samples::Auto {
         return Err(Error::NoStress { method: options.method.name() });
     }
@@ -234,12 +254,19 @@ fn run(
         }
         surface => (options.geodesic.prepare(surface.as_ref(), observer)?, Some(surface)),
     };
+    let known = match &earlier {
+        Earlier::Same(earlier) => {
+            earlier.check_points(solver.n_vertices())?;
+            Some(&earlier.distances).filter(|_| options.geodesic == earlier.options.geodesic)
+        }
+        Earlier::None | Earlier::Coarser(_) => None,
+    };
     if let Some(known) = known {
         check_distances(solver.as_ref(), known)?;
     }
     let solver = Observed { solver: solver.as_ref(), observer };
     let reused = known.map(|known| KnownColumns { solver: &solver, known });
-    let mut measurement = Measurement {
+    let measurement = Measurement {
         solver: reused.as_ref().map_or(&solver as &dyn DistanceSolver, |reused| reused),
         samples: options.samples,
         sampling: options.sampling,
@@ -248,85 +275,60 @@ fn run(
         observer,
         budget: budget.clone(),
         streams: options.method.streams(),
-        seconds: start.elapsed().as_secs_f64(),
-        search: None,
+        seconds: start.elapsed().as_secs_f64().into(),
     };
-    let Outcome { embedding, distances, all, descent } =
-        options.method.run(surface.as_deref(), options.dim, &mut measurement)?;
-    let (elapsed, geodesics) = (start.elapsed().as_secs_f64(), measurement.seconds);
-    let search = measurement.search.take();
+    let (outcome, extension) = match earlier {
+        Earlier::Coarser(coarser) => (coarser.place(&measurement)?, Some(coarser.extension)),
+        _ => (options.method.run(surface.as_deref(), options.dim, &measurement)?, None),
+    };
+    let Outcome { embedding, distances, search, all, descent } = outcome;
+    let (elapsed, geodesics) = (start.elapsed().as_secs_f64(), measurement.seconds.get());
 
     let start = Instant::now();
-    let known = Known { coords: &embedding.coords, samples: &distances, searched: search.is_some() };
+    let known =
+        Known { coords: &embedding.coords, samples: &distances, searched: options.samples == Samples::Auto };
     let stress_report = match (against, surface.as_deref()) {
         _ if !measures => None,
         (Some(other), Some(surface)) => {
             let solver = other.prepare(surface, observer)?;
             let solver = Observed { solver: solver.as_ref(), observer };
-            Some(known.stress(Rows::Solved(&solver), other, stress, observer)?)
+            Some(known.stress(Rows::Solved(&solver), other, &stress, observer)?)
         }
         _ => {
             let rows = all.as_ref().map_or(Rows::Solved(&solver), Rows::Known);
-            Some(known.stress(rows, options.geodesic, stress, observer)?)
+            Some(known.stress(rows, options.geodesic, &stress, observer)?)
         }
     };
     drop(all);
-    let [embedding_seconds, stress_seconds] = [elapsed - geodesics, start.elapsed().as_secs_f64()];
-    let seconds = origin.seconds(geodesics, embedding_seconds, stress_seconds);
+    let is_sampled = options.method.is_sampled();
+    let samples = if is_sampled { distances.landmarks() } else { &[] };
     let report = EmbedReport {
+        method: options.method.name(),
+        geodesic: options.geodesic.name(),
+        sampling: is_sampled.then(|| options.sampling.name()),
+        regularization: options.method.regularization().map(|chosen| chosen.name()),
+        n_vertices: report.input_vertices,
+        n_faces: report.input_faces,
+        n_embedded: embedding.n_points(),
+        n_samples: if is_sampled { samples.len() } else { embedding.n_points() },
+        rank: embedding.rank,
+        dim: embedding.dim(),
+        samples: samples.iter().map(|&v| input_vertex(VertexId::from(v)).0).collect(),
+        eigenvalues: embedding.eigenvalues.clone(),
+        negative_mass: embedding.negative_mass,
+        empty_dimensions: embedding.dim() - embedding.positive_dims(),
         auto: search,
+        stress: stress_report,
         descent: descent.map(Into::into),
-        ..origin.facts(&options, &embedding, &distances)
-    };
-    let report = EmbedReport { stress: stress_report, seconds, ..report };
-    Ok(Embedded { options, embedding, distances, report, extension: None })
-}
-
-impl Origin<'_> {
-    /// Wall-clock seconds of the stages.
-    pub(super) fn seconds(&self, geodesics: f64, embedding: f64, stress: f64) -> SecondsReport {
-        let [load, repair] = [self.load_seconds, self.repair_seconds];
-        SecondsReport {
-            load,
-            repair,
+        seconds: SecondsReport {
+            load: input.load_seconds,
+            repair: input.repair_seconds,
             geodesics,
-            embedding,
-            stress,
-            total: load + repair + geodesics + embedding,
-        }
-    }
-
-    /// The report on an embedding, without what was measured on the way.
-    pub(super) fn facts(
-        &self,
-        options: &FormOptions,
-        embedding: &Embedding,
-        distances: &LandmarkDistances,
-    ) -> EmbedReport {
-        let samples = match options.method.is_sampled() {
-            true => distances.landmarks(),
-            false => &[],
-        };
-        EmbedReport {
-            method: options.method.name(),
-            geodesic: options.geodesic.name(),
-            sampling: options.method.is_sampled().then(|| options.sampling.name()),
-            regularization: options.method.regularization().map(|chosen| chosen.name()),
-            n_vertices: self.report.input_vertices,
-            n_faces: self.report.input_faces,
-            n_embedded: embedding.n_points(),
-            n_samples: if options.method.is_sampled() { samples.len() } else { embedding.n_points() },
-            rank: embedding.rank,
-            dim: embedding.dim(),
-            samples: samples.iter().map(|&v| (self.input_vertex)(VertexId::from(v)).0).collect(),
-            eigenvalues: embedding.eigenvalues.clone(),
-            negative_mass: embedding.negative_mass,
-            empty_dimensions: embedding.dim() - embedding.positive_dims(),
-            auto: None,
-            stress: None,
-            descent: None,
-            seconds: SecondsReport::default(),
-            repair: self.report.clone(),
-        }
-    }
+            embedding: elapsed - geodesics,
+            stress: start.elapsed().as_secs_f64(),
+            total: input.load_seconds + input.repair_seconds + elapsed,
+        },
+        repair: report.clone(),
+    };
+    Ok(Embedded { options, embedding, distances, report, extension })
 }

@@ -1,28 +1,23 @@
 //! Further points in an embedding: points of the same surface, and finer meshes of it.
 
-use std::time::Instant;
-
-use geodesics::{DistanceSolver, Observed, SurfacePoint};
+use geodesics::SurfacePoint;
 use linalg::{LandmarkDistances, Matrix};
+use mesh::{InputPoint, Surface};
 use nmds::{Embedding, NystromOptions, OutOfSample, Regularization, nystrom_extended};
 use surface::VertexId;
 
-use super::embed::{Embedded, Origin};
-use super::method::EmbedMethod;
-use super::plan::check_memory;
-use super::report::EmbedReport;
-use super::stress::{Known, Rows, StressChoice, StressOptions};
+use super::distances::Measurement;
+use super::embed::Embedded;
+use super::method::{EmbedMethod, Outcome};
 use crate::error::Error;
-use base::Observer;
-use mesh::{InputPoint, Surface};
 
 impl Embedded {
-    /// Refuses a surface that the embedding is not of.
+    /// Refuses a surface of another number of vertices than the embedding is of.
     ///
     /// # Errors
     /// [`Error::OtherSurface`].
-    pub(super) fn check_surface(&self, surface: &Surface) -> Result<(), Error> {
-        let (n_vertices, n_points) = (surface.mesh().n_vertices(), self.embedding.n_points());
+    pub(super) fn check_points(&self, n_vertices: usize) -> Result<(), Error> {
+        let n_points = self.embedding.n_points();
         if n_vertices == n_points { Ok(()) } else { Err(Error::OtherSurface { n_vertices, n_points }) }
     }
 
@@ -67,7 +62,7 @@ impl Embedded {
     /// # Errors
     /// [`Error::NoExtension`], [`Error::OtherSurface`], [`Error::Point`].
     pub fn place(&self, surface: &Surface, points: &[InputPoint]) -> Result<Matrix, Error> {
-        self.check_surface(surface)?;
+        self.check_points(surface.mesh().n_vertices())?;
         let located = points.iter().map(|point| surface.locate(point)).collect::<Result<Vec<_>, _>>()?;
         let OutOfSample { unit, axes, .. } = self.extension()?;
         let shift = axes.row_sum() / (unit * unit);
@@ -112,64 +107,32 @@ fn moment(surface: &Surface, point: SurfacePoint, corners: &[(VertexId, f64)]) -
     }
 }
 
-/// Embeds a finer mesh of a surface in the coordinates of a coarser one: measures distances from the samples of the coarser form
-/// and places all vertices by them. Levels of one surface then have forms that lie on top of each other.
-///
-/// A sample is found on the finer mesh as the vertex nearest to its position, which must not be farther than a mean edge of the
-/// coarser mesh: both meshes are in the same place. `stress` is measured on the finer mesh.
-///
-/// ```
-/// use canonform::{FormOptions, StressOptions, Surface, embed, embed_finer, mesh::shapes};
-///
-/// let [coarse, fine] = [3, 4].map(|level| Surface::new(&shapes::icosphere(level), &Default::default(), &()));
-/// let (coarse, fine) = (coarse?, fine?);
-/// let form = embed(&coarse, &FormOptions::default(), &())?;
-/// let finer = embed_finer(&fine, &coarse, &form, &StressOptions::default(), &())?;
-/// assert_eq!(finer.embedding.n_points(), 2562);
-/// // The first vertices are those of the coarser sphere.
-/// let gap = finer.embedding.coords.rows(0, 642) - &form.embedding.coords;
-/// assert!(gap.amax() < 0.02);
-/// # Ok::<(), canonform::Error>(())
-/// ```
-///
-/// # Errors
-/// [`Error::NotThere`] if a sample has no vertex of the finer mesh near it, [`Error::NoExtension`], [`Error::OtherSurface`] if
-/// `form` is not of `coarse`, and as [`embed`](crate::embed).
-pub fn embed_finer(
-    fine: &Surface,
-    coarse: &Surface,
-    form: &Embedded,
-    stress: &StressOptions,
-    observer: &dyn Observer,
-) -> Result<Embedded, Error> {
-    let start = Instant::now();
-    form.check_surface(coarse)?;
-    let extension = form.extension()?;
-    let samples = samples_on(fine, coarse, form)?;
-    let (budget, geodesic, p) = (observer.budget(), form.options.geodesic, fine.mesh().n_vertices());
-    check_memory(p, samples.len(), &budget)?;
-    observer.begin("distances", samples.len());
-    let solver = geodesic.prepare(fine.intrinsic(), observer)?;
-    let solver = Observed { solver: solver.as_ref(), observer };
-    let sources: Vec<VertexId> = samples.iter().copied().map(VertexId::from).collect();
-    let columns = solver.distance_columns(&sources)?;
-    let distances = LandmarkDistances::new(samples, columns)?;
-    let geodesics = start.elapsed().as_secs_f64();
+/// The form of a coarser mesh, in whose coordinates a finer one is embedded.
+#[derive(Debug, Clone)]
+pub(super) struct Coarser<'a> {
+    form: &'a Embedded,
+    /// The samples of the form, as vertices of the finer mesh.
+    samples: Vec<usize>,
+    pub(super) extension: OutOfSample,
+}
 
-    let coords = extension.place(&distances.to_matrix()?)?;
-    let embedding = Embedding { coords, ..form.embedding.clone() };
-    let elapsed = start.elapsed().as_secs_f64();
-    let known =
-        Known { coords: &embedding.coords, samples: &distances, searched: form.report.auto.is_some() };
-    let stress = match stress.choice {
-        StressChoice::Skip => None,
-        _ => Some(known.stress(Rows::Solved(&solver), geodesic, stress, observer)?),
-    };
-    let origin = Origin::of(fine);
-    let seconds = origin.seconds(geodesics, elapsed - geodesics, start.elapsed().as_secs_f64() - elapsed);
-    let report = origin.facts(&form.options, &embedding, &distances);
-    let report = EmbedReport { stress, seconds, ..report };
-    Ok(Embedded { options: form.options.clone(), embedding, distances, report, extension: Some(extension) })
+impl<'a> Coarser<'a> {
+    /// # Errors
+    /// [`Error::NotThere`], [`Error::NoExtension`], [`Error::OtherSurface`].
+    pub(super) fn new(fine: &Surface, coarse: &Surface, form: &'a Embedded) -> Result<Self, Error> {
+        form.check_points(coarse.mesh().n_vertices())?;
+        let extension = form.extension()?;
+        Ok(Self { form, samples: samples_on(fine, coarse, form)?, extension })
+    }
+
+    /// Measures distances from the samples and places all vertices.
+    pub(super) fn place(&self, measurement: &Measurement<'_>) -> Result<Outcome, Error> {
+        measurement.observer.begin("distances", self.samples.len());
+        let distances = LandmarkDistances::new(self.samples.clone(), measurement.columns(&self.samples)?)?;
+        let coords = self.extension.place(&distances.to_matrix()?)?;
+        let embedding = Embedding { coords, ..self.form.embedding.clone() };
+        Ok(Outcome { embedding, distances, search: None, all: None, descent: None })
+    }
 }
 
 /// The vertices of a finer mesh that are nearest to the samples of a form.
@@ -197,7 +160,7 @@ mod tests {
     use mesh::shapes;
 
     use super::*;
-    use crate::form::{FormOptions, Samples, embed, embed_again, embed_and_measure};
+    use crate::form::{EmbedOptions, FormOptions, Samples, StressOptions, embed};
     use mesh::shapes::lopsided_torus;
 
     fn surface(mesh: &mesh::TriMesh) -> Surface {
@@ -250,22 +213,24 @@ mod tests {
     #[test]
     fn more_samples_are_added_without_measuring_the_first_again() {
         let [surface, other] = [lopsided_torus(), shapes::icosphere(2)].map(|mesh| surface(&mesh));
-        let stress = StressOptions::default();
         for sampling in Sampling::ALL {
             let of =
                 |n| FormOptions { samples: Samples::Count(n), sampling, seed: 3, ..FormOptions::default() };
-            let few = embed_and_measure(&surface, &of(20), &stress, &()).unwrap();
-            let all = embed_and_measure(&surface, &of(45), &stress, &()).unwrap();
-            let more = embed_again(&surface, &few, &of(45), &stress, &()).unwrap();
+            let (few, many) = (of(20), of(45));
+            let few = embed(&surface, &few, &()).unwrap();
+            let many = EmbedOptions::from(&many).stress(StressOptions::default());
+            let all = embed(&surface, many.clone(), &()).unwrap();
+            let more = embed(&surface, many.reuse(&few), &()).unwrap();
             assert_eq!(more.embedding, all.embedding, "{sampling:?}");
             assert_eq!(more.distances, all.distances, "{sampling:?}");
-            assert_eq!(more.report.stress, all.report.stress);
+            assert!(more.report.stress.is_some() && more.report.stress == all.report.stress);
         }
+        let usual = FormOptions::default();
         let few = embed(&surface, &FormOptions::default(), &()).unwrap();
         let mut bent = lopsided_torus();
         bent.positions[7] += nalgebra::Vector3::repeat(0.05);
         for other in [other, self::surface(&bent)] {
-            let fault = embed_again(&other, &few, &FormOptions::default(), &stress, &()).unwrap_err();
+            let fault = embed(&other, EmbedOptions::from(&usual).reuse(&few), &()).unwrap_err();
             assert!(matches!(fault, Error::OtherSurface { .. }));
         }
     }
@@ -277,7 +242,8 @@ mod tests {
         let mut moved = shapes::icosphere(3);
         moved.positions.iter_mut().for_each(|p| p.x += 1.0);
         let finer = |fine: &Surface, form: &Embedded| {
-            embed_finer(fine, &coarse, form, &StressOptions::default(), &())
+            let options = EmbedOptions::finer(fine, &coarse, form)?;
+            embed(fine, options.stress(StressOptions::default()), &())
         };
         assert!(matches!(finer(&surface(&moved), &form), Err(Error::NotThere { .. })));
         let options = FormOptions { method: EmbedMethod::Landmark, ..FormOptions::default() };
@@ -287,8 +253,9 @@ mod tests {
         let placed = found.place(&fine, &["300".parse().unwrap()]).unwrap();
         assert!((placed.row(0) - found.embedding.coords.row(300)).norm() < 1e-12);
         let found = found.report;
-        let direct =
-            embed_and_measure(&fine, &FormOptions::default(), &StressOptions::default(), &()).unwrap();
+        let usual = FormOptions::default();
+        let direct = EmbedOptions::from(&usual).stress(StressOptions::default());
+        let direct = embed(&fine, direct, &()).unwrap();
         let [found, direct] =
             [found.stress.unwrap(), direct.report.stress.unwrap()].map(|stress| stress.value);
         assert!((found / direct - 1.0).abs() < 0.02, "{found} {direct}");

@@ -3,15 +3,15 @@
 use descriptors::LaplaceSpectrum;
 use linalg::{DistanceMatrix, LandmarkDistances};
 use nmds::{
-    Bandwidth, Embedding, KernelPcaOptions, LandmarkPairs, NystromOptions, Regularization, SampleSearch,
-    SmacofOptions, SmacofReport, SpectralBasis, SpectralOptions, classical, kernel_pca, landmark_mds,
-    nystrom, smacof, spectral,
+    Bandwidth, EmbedSamples, Embedding, KernelPcaOptions, LandmarkPairs, NystromOptions, Regularization,
+    SampleSearch, SamplesReport, SmacofOptions, SmacofReport, SpectralBasis, SpectralOptions, classical,
+    kernel_pca, landmark_mds, nystrom, smacof, spectral,
 };
 use serde::{Deserialize, Serialize};
 use surface::IntrinsicMesh;
 
 use super::as_text;
-use super::distances::{EmbedByRank, Measurement, Sampled};
+use super::distances::Measurement;
 use super::plan::check_memory;
 use crate::error::Error;
 
@@ -152,14 +152,21 @@ impl EmbedMethod {
         &self,
         surface: Option<&IntrinsicMesh>,
         dim: usize,
-        measurement: &mut Measurement<'_>,
+        measurement: &Measurement<'_>,
     ) -> Result<Outcome, Error> {
         let budget = measurement.budget.clone();
-        let sampled = |(embedding, distances)| Outcome { embedding, distances, all: None, descent: None };
+        let by_nystrom = |regularization| {
+            let options = NystromOptions { regularization, dim };
+            let embed = |distances: &_| nystrom(distances, &options);
+            measurement.sampled(options.first_samples(), &embed, &|distances| options.other_ranks(distances))
+        };
+        let sampled = |embed: &EmbedSamples<'_>| {
+            measurement.sampled(SampleSearch::first(dim), embed, &|_| Ok(Vec::new()))
+        };
         let surface = || surface.unwrap_or_else(|| unreachable!("{} needs the surface", self.name()));
-        Ok(match *self {
-            Self::Nystrom { regularization } => sampled(by_nystrom(regularization, dim, measurement)?),
-            Self::Landmark => sampled(measurement.sampled(&of_one_rank(dim, &|d, _| landmark_mds(d, dim)))?),
+        match *self {
+            Self::Nystrom { regularization } => by_nystrom(regularization),
+            Self::Landmark => sampled(&|distances| landmark_mds(distances, dim)),
             Self::Spectral { eigenvectors, mu } => {
                 let surface = surface();
                 let p = surface.n_vertices();
@@ -167,52 +174,29 @@ impl EmbedMethod {
                 let LaplaceSpectrum { values, vectors, masses, .. } =
                     LaplaceSpectrum::new(surface, eigenvectors, &budget)?;
                 let basis = SpectralBasis { values: &values, vectors: &vectors, masses: &masses };
-                let embed = |d: &_, _| spectral(d, &basis, &SpectralOptions { mu, dim });
-                sampled(measurement.sampled(&of_one_rank(dim, &embed))?)
+                sampled(&|distances| spectral(distances, &basis, &SpectralOptions { mu, dim }))
             }
             Self::KernelPca { rank, bandwidth } => {
-                let embed = |d: &_, _| kernel_pca(d, &KernelPcaOptions { bandwidth, rank, dim });
-                sampled(measurement.sampled(&of_one_rank(dim, &embed))?)
+                sampled(&|distances| kernel_pca(distances, &KernelPcaOptions { bandwidth, rank, dim }))
             }
             Self::Classical => {
                 let all = measurement.all_pairs()?;
                 let embedding = classical(&all, dim, &budget)?;
                 let distances = measurement.columns_of(&all)?;
-                Outcome { embedding, distances, all: Some(all), descent: None }
+                Ok(Outcome { embedding, distances, search: None, all: Some(all), descent: None })
             }
             Self::Smacof { regularization, descent } => {
-                let (start, distances) = by_nystrom(regularization, dim, measurement)?;
+                let start = by_nystrom(regularization)?;
                 let all = measurement.all_pairs()?;
                 let (landmarks, masses): (Vec<usize>, Vec<f64>) =
                     (0..all.n_points()).map(|i| (i, 1.0)).unzip();
                 let pairs = LandmarkPairs { landmarks: &landmarks, rows: &all, masses: &masses, power: 0.0 };
-                let (embedding, report) = smacof(&start.coords, &pairs, &descent, &budget)?;
-                let embedding = Embedding { rank: start.rank, ..embedding };
-                Outcome { embedding, distances, all: Some(all), descent: Some(report) }
+                let (embedding, report) = smacof(&start.embedding.coords, &pairs, &descent, &budget)?;
+                let embedding = Embedding { rank: start.embedding.rank, ..embedding };
+                Ok(Outcome { embedding, all: Some(all), descent: Some(report), ..start })
             }
-        })
+        }
     }
-}
-
-/// A method without a rank, or with one that its options fix.
-fn of_one_rank<'a>(dim: usize, embed: &'a EmbedByRank<'a>) -> Sampled<'a> {
-    Sampled { embed, other_ranks: &|_| Vec::new(), first_samples: SampleSearch::first(dim) }
-}
-
-/// NMDS, with the best rank if the number of samples is searched for and no rank is given.
-fn by_nystrom(
-    regularization: Regularization,
-    dim: usize,
-    measurement: &mut Measurement<'_>,
-) -> Result<(Embedding, LandmarkDistances), Error> {
-    let options = NystromOptions { regularization, dim };
-    let with = |rank: Option<usize>| match rank {
-        None => options.clone(),
-        rank => NystromOptions { regularization: Regularization::LowRank { rank }, dim },
-    };
-    let embed = |distances: &LandmarkDistances, rank| nystrom(distances, &with(rank));
-    let (other_ranks, first_samples) = (&|n| options.other_ranks(n), options.first_samples());
-    measurement.sampled(&Sampled { embed: &embed, other_ranks, first_samples })
 }
 
 /// The result of a method.
@@ -220,6 +204,8 @@ pub(super) struct Outcome {
     pub(super) embedding: Embedding,
     /// Distances from the samples to all vertices; from as many of them for a method without samples.
     pub(super) distances: LandmarkDistances,
+    /// How the number of samples was found, if it was not given.
+    pub(super) search: Option<SamplesReport>,
     /// Distances between all vertices, if the method has measured them.
     pub(super) all: Option<DistanceMatrix>,
     pub(super) descent: Option<SmacofReport>,

@@ -21,12 +21,11 @@ mod stress;
 
 pub use describe::{MeasuredSurface, describe, signature};
 pub use distances::Samples;
-pub use embed::{Embedded, embed, embed_again, embed_and_measure, embed_and_release};
-pub use extend::embed_finer;
+pub use embed::{EmbedInput, EmbedOptions, Embedded, embed};
 pub use method::EmbedMethod;
 pub use options::{DescribeOptions, FormOptions};
 pub use part::describe_part;
 pub use plan::DISTANCES_LIMIT;
-pub use report::{DescentReport, EmbedReport, SamplesReport, SecondsReport};
+pub use report::{DescentReport, EmbedReport, SecondsReport};
 pub use side_by_side::{MethodFacts, MethodReport, MethodsReport, compare_methods};
 pub use stress::{StressChoice, StressKind, StressOptions, StressReport};

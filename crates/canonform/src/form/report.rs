@@ -1,7 +1,7 @@
 //! Facts about an embedding.
 
 use mesh::RepairReport;
-use nmds::{SampleStop, SampleTrial, SmacofReport, SmacofStop};
+use nmds::{SamplesReport, SmacofReport, SmacofStop};
 use serde::Serialize;
 
 use super::stress::StressReport;
@@ -47,19 +47,6 @@ pub struct EmbedReport {
     pub seconds: SecondsReport,
     /// What was repaired.
     pub repair: RepairReport,
-}
-
-/// How the number of samples was found.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SamplesReport {
-    /// Why no more samples were taken.
-    pub stop: SampleStop,
-    /// The least number of samples tried whose stress is within 1 % of that of the result.
-    pub sufficient: usize,
-    /// Rows of distances that the choice was made on. They are not those that the stress of the result is estimated from.
-    pub rows: usize,
-    /// What was tried.
-    pub tried: Vec<SampleTrial>,
 }
 
 /// Facts about a run of SMACOF.

@@ -10,8 +10,8 @@ use canonform::mesh::io::{extension, or_list};
 use canonform::nmds::SampleStop;
 use canonform::surface::VertexId;
 use canonform::{
-    Budget, EmbedMethod, EmbedReport, FormOptions, InputMap, InputPoint, ShapeFile, StressKind,
-    StressOptions, StressReport, Surface, embed_and_measure, embed_and_release, embed_finer,
+    Budget, EmbedMethod, EmbedOptions, EmbedReport, InputMap, InputPoint, ShapeFile, StressKind,
+    StressOptions, StressReport, Surface,
 };
 use serde::Serialize;
 
@@ -67,38 +67,33 @@ pub(crate) fn embed(args: &EmbedArgs, common: &Common) -> Result<ExitCode> {
     if args.features && options.dim != 3 {
         bail!("--features bends the mesh in 3 dimensions; leave out --dim");
     }
+    let options = EmbedOptions::from(&options).stress(stress);
     match &args.meshes[..] {
-        [mesh] if is_single(&args.meshes, &args.output) => one(mesh, args, &options, &stress, common),
+        [mesh] if is_single(&args.meshes, &args.output) => one(mesh, args, &options, common),
         _ if args.extend.is_some() || !args.at.is_empty() => {
             bail!("--at and --extend are about one mesh; give one")
         }
-        _ => batch(args, &options, &stress, common),
+        _ => batch(args, &options, common),
     }
 }
 
-fn one(
-    mesh: &Path,
-    args: &EmbedArgs,
-    options: &FormOptions,
-    stress: &StressOptions,
-    common: &Common,
-) -> Result<ExitCode> {
+fn one(mesh: &Path, args: &EmbedArgs, options: &EmbedOptions<'_>, common: &Common) -> Result<ExitCode> {
     let formats = FORM_FORMATS.map(|(extension, _)| extension);
     let output = Output::new(&args.output, "a form", &formats, Some(output_format(args, common)?), common)?;
-    check_dim(output.path(), options.dim)?;
+    check_dim(output.path(), options.form.dim)?;
     let surface = read_surface(mesh, &args.form.repair, common)?;
     let bars = Bars::with_budget(common.quiet, budget(args, output.path(), 1));
     let (report, points) = match (&args.extend, &args.at[..]) {
-        (None, []) => {
-            (embed_and_write(mesh, surface, output.path(), args, options, stress, &bars)?, Vec::new())
-        }
+        (None, []) => (embed_and_write(mesh, surface, output.path(), args, options, &bars)?, Vec::new()),
         (coarser, at) => {
             let embedded = match coarser {
-                None => embed_and_measure(&surface, options, stress, &bars),
+                None => canonform::embed(&surface, options.clone(), &bars),
                 Some(coarser) => {
                     let coarser = read_surface(coarser, &args.form.repair, common)?;
-                    canonform::embed(&coarser, options, &bars)
-                        .and_then(|form| embed_finer(&surface, &coarser, &form, stress, &bars))
+                    canonform::embed(&coarser, options.form, &bars).and_then(|form| {
+                        let finer = EmbedOptions::finer(&surface, &coarser, &form)?;
+                        canonform::embed(&surface, finer.stress(options.stress), &bars)
+                    })
                 }
             };
             let embedded = embedded.map_err(|fault| named(mesh, fault))?;
@@ -132,34 +127,38 @@ fn embed_and_write(
     mut surface: Surface,
     output: &Path,
     args: &EmbedArgs,
-    options: &FormOptions,
-    stress: &StressOptions,
+    options: &EmbedOptions<'_>,
     bars: &Bars,
 ) -> Result<EmbedReport> {
     if extension(output) == "npy" {
         // Only meshes need them.
         surface.input_faces = Vec::new();
     }
-    let embedded = if args.features {
-        bent(surface, options, stress, bars)
-    } else {
-        embed_and_release(surface, options, stress, bars)
-            .map(|(embedded, map)| (embedded.embedding.coords, map, embedded.report))
-    };
+    let embedded = if args.features { bent(surface, options, bars) } else { lean(surface, options, bars) };
     let (coords, map, report) = embedded.map_err(|fault| named(mesh, fault))?;
     create_folder_of(output)?;
     write(output, &map, &coords)?;
     Ok(report)
 }
 
+/// The form, without keeping the mesh in memory.
+fn lean(
+    surface: Surface,
+    options: &EmbedOptions<'_>,
+    bars: &Bars,
+) -> Result<(Matrix, InputMap, EmbedReport), canonform::Error> {
+    let (intrinsic, map) = surface.into_parts();
+    let embedded = canonform::embed((intrinsic, &map), options.clone(), bars)?;
+    Ok((embedded.embedding.coords, map, embedded.report))
+}
+
 /// The surface bent into its form.
 fn bent(
     surface: Surface,
-    options: &FormOptions,
-    stress: &StressOptions,
+    options: &EmbedOptions<'_>,
     bars: &Bars,
 ) -> Result<(Matrix, InputMap, EmbedReport), canonform::Error> {
-    let embedded = embed_and_measure(&surface, options, stress, bars)?;
+    let embedded = canonform::embed(&surface, options.clone(), bars)?;
     let form = embedded.form(&surface)?.with_features(surface.mesh(), bars)?;
     let coords = Matrix::from_fn(form.points().len(), 3, |i, axis| form.points()[i][axis]);
     Ok((coords, surface.into_parts().1, embedded.report))
@@ -179,20 +178,15 @@ fn output_format(args: &EmbedArgs, common: &Common) -> Result<&'static str> {
 }
 
 /// Embeds meshes in parallel. Failures are listed at the end and do not stop the rest.
-fn batch(
-    args: &EmbedArgs,
-    options: &FormOptions,
-    stress: &StressOptions,
-    common: &Common,
-) -> Result<ExitCode> {
+fn batch(args: &EmbedArgs, options: &EmbedOptions<'_>, common: &Common) -> Result<ExitCode> {
     let extension = output_format(args, common)?;
-    check_dim(Path::new(&format!("form.{extension}")), options.dim)?;
+    check_dim(Path::new(&format!("form.{extension}")), options.form.dim)?;
     let (arguments, folder, order) = (&args.meshes, &args.output, Order::InParallel);
     let results = Results { what: "forms", arguments, folder, extension, order };
     let Batch { done, failed } = results.make(common, |shape, output| {
         let (_, surface) = read_both(&shape.path, &args.form.repair, common)?;
         let bars = Bars::with_budget(true, budget(args, output, rayon::current_num_threads()));
-        let report = embed_and_write(&shape.path, surface, output, args, options, stress, &bars)?;
+        let report = embed_and_write(&shape.path, surface, output, args, options, &bars)?;
         Ok(EmbedJson { report, points: Vec::new(), features: args.features, output: output.to_owned() })
     })?;
     let mut json = BatchJson { shapes: Vec::new(), failed };
@@ -220,7 +214,7 @@ fn write(output: &Path, map: &InputMap, coords: &Matrix) -> Result<()> {
         return fill_npy(output, shape, |file| {
             let mut out = BufWriter::with_capacity(1 << 16, file);
             for vertex in 0..map.n_input_vertices() {
-                let vertex = map.repaired_vertex(VertexId::from(vertex));
+                let vertex = map.repaired_vertex(VertexId::from(vertex)).ok();
                 for column in coords.column_iter() {
                     let value = vertex.map_or(f64::NAN, |v| column[v.index()]);
                     out.write_all(&value.to_le_bytes())?;

@@ -86,6 +86,7 @@ impl Surface {
                 false => Some(Changes { to_repaired, to_input: self.input_vertex }),
             };
         let map = InputMap {
+            repair: self.repair,
             report: self.repaired.report,
             input_faces: self.input_faces,
             changes,
@@ -230,6 +231,8 @@ impl Surface {
 /// The relation of the vertices of a repaired mesh to those of the input, without the mesh.
 #[derive(Debug, Clone)]
 pub struct InputMap {
+    /// How the mesh was repaired.
+    pub repair: RepairOptions,
     /// What was repaired.
     pub report: RepairReport,
     input_faces: Vec<[VertexId; 3]>,
@@ -256,13 +259,17 @@ impl InputMap {
         self.report.input_vertices
     }
 
-    /// The vertex of the repaired mesh that an input vertex became; `None` if it was dropped.
+    /// The vertex of the repaired mesh that an input vertex became; see [`Surface::repaired_vertex`].
     ///
-    /// # Panics
-    /// If the input has no such vertex.
-    pub fn repaired_vertex(&self, input: VertexId) -> Option<VertexId> {
-        assert!(input.index() < self.n_input_vertices(), "vertex {input} of {}", self.n_input_vertices());
-        self.changes.as_ref().map_or(Some(input), |changes| changes.to_repaired[input.index()])
+    /// # Errors
+    /// [`PointError::NoSuchPoint`] and [`PointError::Dropped`].
+    pub fn repaired_vertex(&self, input: VertexId) -> Result<VertexId, PointError> {
+        let (point, n_vertices) = (InputPoint::Vertex(input), self.n_input_vertices());
+        if input.index() >= n_vertices {
+            return Err(PointError::NoSuchPoint { point, n_vertices, n_faces: self.input_faces.len() });
+        }
+        let found = self.changes.as_ref().map_or(Some(input), |changes| changes.to_repaired[input.index()]);
+        found.ok_or(PointError::Dropped { point })
     }
 
     /// The first input vertex that was mapped to this vertex of the repaired mesh.
@@ -273,7 +280,12 @@ impl InputMap {
     /// The faces of the input with a new position for every vertex of the repaired mesh; see
     /// [`Surface::with_positions`].
     pub fn with_positions(&self, position: impl Fn(VertexId) -> Point3<f64>) -> TriMesh {
-        with_positions(self.n_input_vertices(), &|v| self.repaired_vertex(v), &self.input_faces, position)
+        with_positions(
+            self.n_input_vertices(),
+            &|v| self.repaired_vertex(v).ok(),
+            &self.input_faces,
+            position,
+        )
     }
 }
 

@@ -237,14 +237,15 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         seed = int(check_random_state(self.random_state).randint(2**31 - 1)) if self.random_state is not None else 0
         settings = encoded(**self._settings())
         limit = min(_MOST_LANDMARKS, len(X))
-        landmarks, columns = taken.first(min(_canonform.first_landmarks(settings), limit))
-        search = _canonform.SampleSearch(settings, columns, landmarks.tolist(), limit, seed)
-        rows = np.stack([self._measure(X, i) for i in search.rows()], axis=1)
-        n = search.start(np.asarray(rows, dtype=np.float64))
-        while n is not None:
+
+        def columns(n: int) -> tuple[list[int], Floats]:
             landmarks, columns = taken.first(n)
-            n = search.offer(columns, landmarks.tolist())
-        return len(landmarks), search.rank(columns, landmarks.tolist())
+            return landmarks.tolist(), columns
+
+        def rows(points: list[int]) -> Floats:
+            return np.stack([self._measure(X, i) for i in points], axis=1).astype(np.float64)
+
+        return _canonform.search_landmarks(settings, columns, rows, limit, seed)
 
     @property
     def _n_features_out(self) -> int:
