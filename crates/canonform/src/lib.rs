@@ -109,8 +109,8 @@ pub use fields::{
     DistanceField, FieldBounds, FieldFacts, FieldFault, FieldOptions, Finish, PairDistance, PairKind,
 };
 pub use form::{
-    DISTANCES_LIMIT, DescentReport, DescribeOptions, EmbedInput, EmbedMethod, EmbedOptions, EmbedReport,
-    Embedded, FormOptions, MeasuredSurface, MethodFacts, MethodReport, MethodsReport, Samples, SecondsReport,
+    DISTANCES_LIMIT, DescribeOptions, EmbedInput, EmbedMethod, EmbedOptions, EmbedReport, Embedded,
+    FormOptions, MeasuredSurface, MethodFacts, MethodReport, MethodsReport, Samples, SecondsReport,
     StressChoice, StressKind, StressOptions, StressReport, compare_methods, describe, describe_part, embed,
     settings, signature,
 };

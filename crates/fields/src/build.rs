@@ -4,11 +4,11 @@ use std::sync::Mutex;
 
 use geodesics::{DistanceSolver, FirstSample, Method, Observed, Sampling};
 use linalg::{LandmarkDistances, Matrix};
-use nmds::{ColumnError, LandmarkMetric};
 use surface::VertexId;
 
 use crate::distance_field::{DistanceField, Provenance, VertexMap};
 use crate::error::FieldError;
+use crate::metric::{ColumnError, LandmarkMetric};
 use base::Observer;
 use mesh::Surface;
 

@@ -5,16 +5,17 @@ use std::sync::{Mutex, PoisonError};
 use base::{Exceeded, Observer};
 use geodesics::{Exact, GeodesicError, Method};
 use mesh::RepairOptions;
-use nmds::LandmarkMetric;
 use serde::{Deserialize, Serialize};
 use surface::{IntrinsicMesh, VertexId};
 
 use crate::error::FieldError;
+use crate::metric::LandmarkMetric;
 
 /// The distances between all pairs of vertices of a surface, in a few hundred bytes per vertex instead of eight bytes per
 /// pair.
 ///
-/// Every answer is an estimate and an interval that holds the true distance, see [`LandmarkMetric`]. With columns by
+/// Every answer is an estimate, the Nystrom approximation of [`nmds::low_rank_factor`], and an interval that holds the true
+/// distance by the triangle inequality with every landmark (`goldberg2005` in `REFERENCES.bib`). With columns by
 /// [`Method::Exact`] the intervals are [certified](FieldBounds::Certified). With other methods they are widened by the error of
 /// the method, [measured](FieldBounds::Measured) on this surface.
 ///
@@ -135,13 +136,13 @@ impl DistanceField {
 
     /// Facts about the field.
     pub fn facts(&self) -> FieldFacts {
-        let parts = self.metric.bounds().parts();
+        let tables = self.metric.tables();
         FieldFacts {
             method: self.provenance.method.name(),
             bounds: self.bounds(),
             n_vertices: self.n_vertices(),
-            n_landmarks: parts.n_landmarks,
-            rank: self.metric.factors().parts().rank,
+            n_landmarks: tables.n_landmarks,
+            rank: tables.rank,
             covering_radius: self.metric.covering_radius(),
             bytes: self.n_bytes(),
         }
@@ -149,13 +150,13 @@ impl DistanceField {
 
     /// What its intervals rest on.
     pub fn bounds(&self) -> FieldBounds {
-        let parts = self.metric.bounds().parts();
-        match parts.n_exact == parts.n_landmarks {
+        let tables = self.metric.tables();
+        match tables.n_exact == tables.n_landmarks {
             true => FieldBounds::Certified,
             false => FieldBounds::Measured {
-                over: parts.error.over,
-                under: parts.error.under,
-                exact_columns: parts.n_exact,
+                over: tables.error.over,
+                under: tables.error.under,
+                exact_columns: tables.n_exact,
             },
         }
     }

@@ -18,12 +18,12 @@ use std::path::Path;
 use std::sync::Mutex;
 
 use base::files::FileError;
-use nmds::{BoundsParts, ColumnError, FactorParts, LandmarkBounds, LandmarkMetric, SqDistanceFactors};
 use surface::{IntrinsicMesh, Link, Topology, VertexId};
 
 use crate::distance_field::{DistanceField, VertexMap};
 use crate::error::FieldError;
 use crate::fault::FieldFault;
+use crate::metric::{ColumnError, LandmarkMetric, Tables};
 
 const MAGIC: &[u8; 8] = b"canonfld";
 
@@ -121,7 +121,7 @@ impl DistanceField {
     }
 
     fn counts(&self, text: usize) -> Counts {
-        let (bounds, factors) = (self.metric.bounds().parts(), self.metric.factors().parts());
+        let tables = self.metric.tables();
         let topology = self.surface.topology();
         Counts {
             text,
@@ -130,10 +130,10 @@ impl DistanceField {
             n_faces: topology.n_faces(),
             n_edges: topology.n_edges(),
             n_links: self.surface.links().len(),
-            n_landmarks: bounds.n_landmarks,
-            n_exact: bounds.n_exact,
-            rank: factors.rank,
-            n_positive: factors.n_positive,
+            n_landmarks: tables.n_landmarks,
+            n_exact: tables.n_exact,
+            rank: tables.rank,
+            n_positive: tables.n_positive,
             n_mapped: self.map.to_repaired.as_ref().map_or(0, Vec::len),
         }
     }
@@ -143,12 +143,12 @@ impl DistanceField {
     pub fn to_bytes(&self) -> Vec<u8> {
         let text = self.text();
         let mut counts = self.counts(text.len());
-        let (bounds, factors) = (self.metric.bounds().parts(), self.metric.factors().parts());
+        let tables = self.metric.tables();
         let mut out = Vec::with_capacity(self.n_bytes());
         out.extend_from_slice(MAGIC);
         out.extend(VERSION.to_le_bytes());
         out.extend(counts.in_order().into_iter().flat_map(|count| (*count as u32).to_le_bytes()));
-        let lengths = [bounds.quantum, bounds.error.over, bounds.error.under, factors.quantum];
+        let lengths = [tables.quantum, tables.error.over, tables.error.under, tables.factor_quantum];
         out.extend(lengths.into_iter().flat_map(f64::to_le_bytes));
         out.extend_from_slice(text.as_bytes());
         let vertex = |v: VertexId| v.0.to_le_bytes();
@@ -161,8 +161,8 @@ impl DistanceField {
         let map = self.map.to_repaired.iter().flatten();
         out.extend(map.flat_map(|to| vertex(to.unwrap_or(VertexId(DROPPED)))));
         out.extend(self.landmarks.iter().copied().flat_map(vertex));
-        out.extend(bounds.codes.iter().flat_map(|code| code.to_le_bytes()));
-        out.extend(factors.codes.iter().flat_map(|code| code.to_le_bytes()));
+        out.extend(tables.codes.iter().flat_map(|code| code.to_le_bytes()));
+        out.extend(tables.factor.iter().flat_map(|code| code.to_le_bytes()));
         out.extend(crc32fast::hash(&out).to_le_bytes());
         out
     }
@@ -267,17 +267,14 @@ impl Parts<'_> {
         }
         let [quantum, over, under, factor_quantum] = self.lengths;
         let codes = self.numbers(n_vertices * n_landmarks, |bytes| u16::from_le_bytes(*bytes))?;
+        let factor = self.numbers(n_vertices * rank, |bytes| i16::from_le_bytes(*bytes))?;
         let error = ColumnError { over, under };
-        let bounds = LandmarkBounds::of_parts(BoundsParts { n_landmarks, n_exact, error, quantum, codes });
-        let codes = self.numbers(n_vertices * rank, |bytes| i16::from_le_bytes(*bytes))?;
-        let factors =
-            SqDistanceFactors::of_parts(FactorParts { rank, n_positive, quantum: factor_quantum, codes });
-        let (Some(bounds), Some(factors)) = (bounds, factors) else {
-            return Err("its tables are impossible");
-        };
+        let tables =
+            Tables { n_landmarks, n_exact, error, quantum, codes, rank, n_positive, factor_quantum, factor };
+        let metric = LandmarkMetric::of(tables).ok_or("its tables are impossible")?;
         Ok(DistanceField {
             provenance,
-            metric: LandmarkMetric::of_parts(bounds, factors),
+            metric,
             landmarks,
             surface: IntrinsicMesh::new(topology, edges).with_links(links),
             map: VertexMap { n_input, to_repaired: (n_mapped > 0).then_some(map) },

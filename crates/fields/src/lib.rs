@@ -1,6 +1,6 @@
 //! All pairs of distances in little memory, with bounds.
 //!
-//! `distance_field` (what a field holds), `build` (from a surface), `query` (pairs, rows, nearest vertices), `file` (the
+//! `distance_field` (what a field holds), `metric` (what landmarks say about a pair), `build` (from a surface), `query` (pairs, rows, nearest vertices), `file` (the
 //! format) and `fault` (what is wrong with a file).
 
 mod build;
@@ -8,6 +8,7 @@ mod distance_field;
 mod error;
 mod fault;
 mod file;
+mod metric;
 mod query;
 #[cfg(test)]
 mod tests;

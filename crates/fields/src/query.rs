@@ -1,13 +1,13 @@
 //! Questions to a field.
 
 use geodesics::{DistanceSolver, Source};
-use nmds::PairEstimate;
 use rayon::prelude::*;
 use serde::Serialize;
 use surface::VertexId;
 
 use crate::distance_field::DistanceField;
 use crate::error::FieldError;
+use crate::metric::PairEstimate;
 use base::Observer;
 
 /// Which pairs are finished by exact propagation.
@@ -217,8 +217,7 @@ impl DistanceField {
             return Ok(Vec::new());
         }
         // At least k vertices are no farther than the k-th smallest upper bound.
-        let upper =
-            |(_, to): &(VertexId, VertexId)| self.metric.bounds().interval(from.index(), to.index()).upper;
+        let upper = |(_, to): &(VertexId, VertexId)| self.metric.intervals(from.index(), to.index()).1.upper;
         let mut uppers: Vec<f64> = others.par_iter().with_min_len(1024).map(upper).collect();
         let (_, radius, _) = uppers.select_nth_unstable_by(k - 1, f64::total_cmp);
         let mut distances = Vec::new();

@@ -16,14 +16,13 @@
 //! | [`smacof`] | distances from n samples to all p points, or all p x p distances, and a start | de Leeuw 1977; Sammon 1969 |
 //!
 //! [`SampleSearch`] finds how many samples are enough.
-//! [`LandmarkMetric`] approximates all pairs of distances from the same n columns, with bounds, instead of embedding them.
+//! [`low_rank_factor`] approximates all pairs of squared distances from the same n columns instead of embedding them.
 
 mod classical;
 mod embedding;
 mod error;
 mod kernel_pca;
 mod landmark;
-mod landmark_metric;
 mod nystrom;
 mod out_of_sample;
 mod passes;
@@ -43,13 +42,9 @@ pub use embedding::Embedding;
 pub use error::NmdsError;
 pub use kernel_pca::{Bandwidth, KernelPcaOptions, kernel_pca};
 pub use landmark::landmark_mds;
-pub use landmark_metric::{
-    BoundsParts, ColumnError, FactorParts, Interval, LandmarkBounds, LandmarkMetric, PairEstimate,
-    SqDistanceFactors,
-};
 pub use nystrom::{NystromOptions, nystrom, nystrom_extended};
 pub use out_of_sample::OutOfSample;
-pub use reconstruction::{Reconstruction, ReconstructionError, sample_eigenvalues};
+pub use reconstruction::{Reconstruction, ReconstructionError, low_rank_factor, sample_eigenvalues};
 pub use regularization::{Regularization, RpiAlpha};
 pub use row_sample::{RowSample, sample_rows};
 pub use sample_search::{EmbedOtherwise, EmbedSamples, SampleSearch, SampleStop, SampleTrial, SamplesReport};

@@ -3,8 +3,9 @@
 use linalg::{LandmarkDistances, LinalgError, Matrix, thin_qr};
 use rayon::prelude::*;
 
+use crate::passes::product;
 use crate::regularization::by_magnitude;
-use crate::squares::{Squares, check_points};
+use crate::squares::{Squares, check_extent, check_points};
 use crate::{DistanceRows, NmdsError, Regularization};
 
 /// The error of an approximation `Ê` of the matrix `E` of all squared distances.
@@ -141,6 +142,37 @@ pub fn sample_eigenvalues(distances: &LandmarkDistances) -> Result<Vec<f64>, Nmd
     Ok(kept.values.iter().map(|value| value * unit * unit).collect())
 }
 
+/// The factor `Z` (p x rank) of the Nystrom approximation of all squared distances, `Ê = R V Λ⁻¹ V' R' = Z S Z'`, in the unit of the
+/// distances, and how many of its columns, the first, have positive signs.
+///
+/// | paper | here | shape | meaning |
+/// |---|---|---|---|
+/// | `R` | `distances`, squared | p x n | the samples' columns |
+/// | `V Λ V'` | | n x rank | the eigenpairs of largest magnitude of the rows of `R` at the samples |
+/// | | `Z = R V abs(Λ)^(-1/2)` | p x rank | the factor |
+/// | | `S` | rank | the signs of the eigenvalues, as a diagonal |
+///
+/// Without dropped eigenpairs the approximation would be exact at samples. It is best, however, with about half of them: the small
+/// eigenvalues are those that the samples do not determine. There are fewer than `rank` if others are rounding. Cost: `O(p n rank)`.
+///
+/// # Errors
+/// [`NmdsError::BadRank`] unless `rank` is in 1..=n; [`NmdsError::NoExtent`]; [`NmdsError::Linalg`].
+pub fn low_rank_factor(distances: &LandmarkDistances, rank: usize) -> Result<(Matrix, usize), NmdsError> {
+    let n = distances.n_landmarks();
+    let rank = Regularization::LowRank { rank: Some(rank) }.rank(n, 3)?;
+    let unit = check_extent(distances.max(), distances.n_points())?;
+    let eigen = by_magnitude(&(distances.sq_block() / (unit * unit)), rank)?;
+    let (positive, negative): (Vec<_>, Vec<_>) =
+        (0..eigen.values.len()).partition(|&i| eigen.values[i] >= 0.0);
+    let n_positive = positive.len();
+    let eigen = eigen.select(&[positive, negative].concat());
+    let mut basis = eigen.vectors;
+    for (mut column, value) in basis.column_iter_mut().zip(&eigen.values) {
+        column *= if *value == 0.0 { 0.0 } else { unit / value.abs().sqrt() };
+    }
+    Ok((product(distances, unit, &vec![0.0; n], &basis)?, n_positive))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -252,6 +284,23 @@ mod tests {
             pool.install(|| Reconstruction::new(&columns, &all).unwrap().error(low_rank(6)).unwrap())
         };
         assert_eq!(with(1), with(4));
+    }
+
+    #[test]
+    fn the_factor_is_exact_at_samples_if_no_eigenpair_is_dropped() {
+        let (all, columns) = problem(80, 20, 0.7);
+        let (z, n_positive) = low_rank_factor(&columns, 20).unwrap();
+        let signs = Matrix::from_fn(20, 20, |i, j| match i == j {
+            true if i < n_positive => 1.0,
+            true => -1.0,
+            false => 0.0,
+        });
+        let approximated = &z * signs * z.transpose();
+        let largest = columns.max().powi(2);
+        for (i, j) in (0..20).flat_map(|i| (0..80).map(move |j| (i, j))) {
+            let gap = approximated[(i, j)] - all.get(i, j).powi(2);
+            assert!(gap.abs() < 1e-9 * largest, "{i} {j}: {gap}");
+        }
     }
 
     #[test]

@@ -38,25 +38,20 @@ pub struct LandmarkPairs<'a> {
 }
 
 /// What happened in a run of [`smacof`].
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct SmacofReport {
+    /// Number of steps that lowered the stress.
+    pub iterations: usize,
+    /// Why it stopped.
+    pub stop: SmacofStop,
     /// The stress relative to that of coinciding points, `sqrt(sum m_i w_is (d_is - |x_i - x_s|)^2 / sum m_i w_is d_is^2)`, of the
     /// start and after each step; never increases. It is Kruskal's stress for all pairs and equal masses.
     pub normalized_stress: Vec<f64>,
-    /// Why it stopped.
-    pub stop: SmacofStop,
-}
-
-impl SmacofReport {
-    /// Number of steps that lowered the stress.
-    #[must_use]
-    pub fn iterations(&self) -> usize {
-        self.normalized_stress.len() - 1
-    }
 }
 
 /// Why [`smacof`] stopped.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum SmacofStop {
     /// The stress fell by less than the tolerance.
     Converged,
@@ -100,7 +95,7 @@ pub enum SmacofStop {
 /// let landmarks: Vec<usize> = (0..12).collect();
 /// let all = LandmarkPairs { landmarks: &landmarks, rows: &distances, masses: &[1.0; 12], power: 0.0 };
 /// let (_, report) = smacof(&start, &all, &SmacofOptions::default(), &())?;
-/// assert!(report.normalized_stress[report.iterations()] <= report.normalized_stress[0]);
+/// assert!(report.normalized_stress[report.iterations] <= report.normalized_stress[0]);
 /// # Ok::<(), canonform_nmds::NmdsError>(())
 /// ```
 pub fn smacof(
@@ -120,8 +115,7 @@ pub fn smacof(
     let fit = Fit::new(pairs, observer.budget())?;
     let mut x = start / fit.unit;
     let (mut stress, mut next) = fit.around(&x)?;
-    let mut report =
-        SmacofReport { normalized_stress: vec![stress.sqrt()], stop: SmacofStop::IterationLimit };
+    let (mut stop, mut normalized_stress) = (SmacofStop::IterationLimit, vec![stress.sqrt()]);
     let mut history = vec![x.clone()];
     for _ in 0..options.max_iterations {
         let extrapolates = tolerance > 0.0 && history.len() == CYCLE;
@@ -135,10 +129,10 @@ pub fn smacof(
         // Rounding may increase it slightly.
         if lower < stress {
             (x, stress, next) = (moved, lower, after);
-            report.normalized_stress.push(stress.sqrt());
+            normalized_stress.push(stress.sqrt());
         }
         if settled {
-            report.stop = SmacofStop::Converged;
+            stop = SmacofStop::Converged;
             break;
         }
         if extrapolates {
@@ -146,6 +140,7 @@ pub fn smacof(
         }
         history.push(x.clone());
     }
+    let report = SmacofReport { iterations: normalized_stress.len() - 1, stop, normalized_stress };
     Ok((Embedding::along_principal_axes(x, fit.unit, dim)?, report))
 }
 
@@ -217,26 +212,22 @@ impl<'a> Fit<'a> {
         self.budget.check()?;
         let LandmarkRow { distances, weights, lengths, pushes } = row;
         self.pairs.rows.row_into(landmark, distances)?;
-        let (scale, power) = (1.0 / self.unit, self.pairs.power);
-        distances.iter_mut().for_each(|d| *d *= scale);
-        let weight = |d: f64| match power {
-            0.0 => 1.0,
-            1.0 => 1.0 / d,
-            power => d.powf(-power),
-        };
-        weights
-            .iter_mut()
-            .zip(&*distances)
-            .for_each(|(w, d)| *w = if *d > 0.0 || power == 0.0 { weight(*d) } else { 0.0 });
         lengths.fill(0.0);
         for column in x.column_iter() {
             let at = column[landmark];
             lengths.iter_mut().zip(column.as_slice()).for_each(|(sq, x)| *sq += (x - at) * (x - at));
         }
-        let pairs = distances.iter().zip(weights.as_slice()).zip(lengths);
-        for (push, ((d, w), length)) in pushes.iter_mut().zip(pairs) {
-            *length = length.sqrt();
-            *push = if *length > 0.0 { w * d / *length } else { 0.0 };
+        let (scale, power) = (1.0 / self.unit, self.pairs.power);
+        let pairs = distances.iter_mut().zip(weights.iter_mut()).zip(lengths).zip(pushes);
+        for (((d, w), length), push) in pairs {
+            (*d, *length) = (*d * scale, length.sqrt());
+            *w = match power {
+                0.0 => 1.0,
+                _ if *d == 0.0 => 0.0,
+                1.0 => 1.0 / *d,
+                power => d.powf(-power),
+            };
+            *push = if *length > 0.0 { *w * *d / *length } else { 0.0 };
         }
         Ok(())
     }
@@ -263,16 +254,16 @@ impl<'a> Fit<'a> {
                 .zip(self.pairs.masses)
                 .map(|((gap, w), m)| m * w * gap)
                 .sum();
-            (stress, self.is_uniform.then(|| self.pulled(row, x, landmark)))
+            (stress, if self.is_uniform { self.pulled(row, x, landmark) } else { Vec::new() })
         };
-        let (stresses, moved): (Vec<f64>, Vec<_>) = self.of_rows(x, of_row)?.into_iter().unzip();
-        let moved: Option<Vec<Vec<f64>>> = moved.into_iter().collect();
-        let next = moved.map(|moved| {
+        let rows = self.of_rows(x, of_row)?;
+        let next = self.is_uniform.then(|| {
             let mut next = x.clone();
-            self.pairs.landmarks.iter().zip(moved).for_each(|(&i, to)| next.row_mut(i).copy_from_slice(&to));
+            let moved = self.pairs.landmarks.iter().zip(&rows);
+            moved.for_each(|(&landmark, (_, to))| next.row_mut(landmark).copy_from_slice(to));
             next
         });
-        Ok((stresses.iter().sum::<f64>() / self.total, next))
+        Ok((rows.iter().map(|(stress, _)| stress).sum::<f64>() / self.total, next))
     }
 
     /// The points after a step.
@@ -357,7 +348,7 @@ mod tests {
             let stress = &report.normalized_stress;
             assert!(stress.windows(2).all(|pair| pair[1] < pair[0]), "{stress:?}");
             assert!((stress[0] / normalized_stress(&start, &distances) - 1.0).abs() < 1e-9);
-            let last = stress[report.iterations()];
+            let last = stress[report.iterations];
             assert!((last / normalized_stress(&embedding.coords, &distances) - 1.0).abs() < 1e-9);
             assert!(last < 0.9 * stress[0]);
         }
@@ -438,12 +429,12 @@ mod tests {
             descended(&start, &distances, &SmacofOptions { max_iterations, tolerance }).1
         };
         let cut = run(5, 0.0);
-        assert_eq!((cut.iterations(), cut.stop), (5, SmacofStop::IterationLimit));
+        assert_eq!((cut.iterations, cut.stop), (5, SmacofStop::IterationLimit));
         let none = run(0, 0.0);
-        assert_eq!((none.iterations(), none.stop), (0, SmacofStop::IterationLimit));
+        assert_eq!((none.iterations, none.stop), (0, SmacofStop::IterationLimit));
         let (rough, fine) = (run(10_000, 1e-3), run(10_000, 1e-7));
         assert_eq!([rough.stop, fine.stop], [SmacofStop::Converged; 2]);
-        assert!(rough.iterations() < fine.iterations());
+        assert!(rough.iterations < fine.iterations);
     }
 
     #[test]
@@ -475,7 +466,7 @@ mod tests {
         let pairs = LandmarkPairs { landmarks: rows.landmarks(), rows, masses: &masses, power };
         let options = SmacofOptions { max_iterations: steps, tolerance: 0.0 };
         let (embedding, report) = smacof(start, &pairs, &options, &()).unwrap();
-        (embedding, report.normalized_stress[report.iterations()])
+        (embedding, report.normalized_stress[report.iterations])
     }
 
     #[test]

@@ -319,7 +319,7 @@ fn run(
         empty_dimensions: embedding.dim() - embedding.positive_dims(),
         auto: search,
         stress: stress_report,
-        descent: descent.map(Into::into),
+        descent,
         seconds: SecondsReport {
             load: input.load_seconds,
             repair: input.repair_seconds,

@@ -26,6 +26,6 @@ pub use method::EmbedMethod;
 pub use options::{DescribeOptions, FormOptions};
 pub use part::describe_part;
 pub use plan::DISTANCES_LIMIT;
-pub use report::{DescentReport, EmbedReport, SecondsReport};
+pub use report::{EmbedReport, SecondsReport};
 pub use side_by_side::{MethodFacts, MethodReport, MethodsReport, compare_methods};
 pub use stress::{StressChoice, StressKind, StressOptions, StressReport};

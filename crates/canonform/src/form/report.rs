@@ -1,7 +1,7 @@
 //! Facts about an embedding.
 
 use mesh::RepairReport;
-use nmds::{SamplesReport, SmacofReport, SmacofStop};
+use nmds::{SamplesReport, SmacofReport};
 use serde::Serialize;
 
 use super::stress::StressReport;
@@ -42,32 +42,11 @@ pub struct EmbedReport {
     /// How the number of samples was found; `None` if it was given.
     pub auto: Option<SamplesReport>,
     /// How SMACOF reduced the stress.
-    pub descent: Option<DescentReport>,
+    pub descent: Option<SmacofReport>,
     /// Wall-clock seconds.
     pub seconds: SecondsReport,
     /// What was repaired.
     pub repair: RepairReport,
-}
-
-/// Facts about a run of SMACOF.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct DescentReport {
-    /// Number of steps.
-    pub iterations: usize,
-    /// `converged` or `iteration-limit`.
-    pub stop: &'static str,
-    /// Kruskal's stress at the start and after every step; it never increases.
-    pub normalized_stress: Vec<f64>,
-}
-
-impl From<SmacofReport> for DescentReport {
-    fn from(report: SmacofReport) -> Self {
-        let stop = match report.stop {
-            SmacofStop::Converged => "converged",
-            SmacofStop::IterationLimit => "iteration-limit",
-        };
-        Self { iterations: report.iterations(), stop, normalized_stress: report.normalized_stress }
-    }
 }
 
 /// Wall-clock seconds of the stages of an embedding.

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use anyhow::{Result, bail};
 use canonform::linalg::Matrix;
 use canonform::mesh::io::{extension, or_list};
-use canonform::nmds::SampleStop;
+use canonform::nmds::{SampleStop, SmacofStop};
 use canonform::surface::VertexId;
 use canonform::{
     Budget, EmbedMethod, EmbedOptions, EmbedReport, InputMap, InputPoint, ShapeFile, StressKind,
@@ -280,10 +280,13 @@ fn samples_text(report: &EmbedReport) -> String {
 fn method_text(report: &EmbedReport) -> String {
     let regularization = report.regularization.map_or(String::new(), |name| format!(" ({name})"));
     let sampling = report.sampling.map_or(String::new(), |name| format!(", {name} samples"));
-    let descent = report
-        .descent
-        .as_ref()
-        .map_or(String::new(), |descent| format!(", {} steps ({})", descent.iterations, descent.stop));
+    let descent = report.descent.as_ref().map_or(String::new(), |descent| {
+        let stop = match descent.stop {
+            SmacofStop::Converged => "converged",
+            SmacofStop::IterationLimit => "iteration-limit",
+        };
+        format!(", {} steps ({stop})", descent.iterations)
+    });
     format!("{}{regularization} on {} distances{sampling}{descent}", report.method, report.geodesic)
 }
 
