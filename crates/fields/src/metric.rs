@@ -169,8 +169,8 @@ impl LandmarkMetric {
             && n_exact <= n
             && rank > 0
             && n_positive <= rank
-            && tables.codes.len() % n == 0
-            && tables.factor.len() % rank == 0
+            && tables.codes.len().is_multiple_of(n)
+            && tables.factor.len().is_multiple_of(rank)
             && tables.codes.len() / n == tables.factor.len() / rank
             && [error.over, error.under, factor_quantum].into_iter().all(is_length)
             && quantum > 0.0

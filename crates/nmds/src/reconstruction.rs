@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use crate::passes::product;
 use crate::regularization::by_magnitude;
-use crate::squares::{Squares, check_extent, check_points};
+use crate::squares::{check_extent, check_points};
 use crate::{DistanceRows, NmdsError, Regularization};
 
 /// The error of an approximation `Ê` of the matrix `E` of all squared distances.
@@ -37,7 +37,11 @@ pub struct ReconstructionError {
 /// * `rows` and `distances` may come from different solvers, for example an approximation from hop counts.
 #[derive(Debug)]
 pub struct Reconstruction {
-    squares: Squares,
+    /// The largest distance: squares are in units of `unit²`, so that results do not depend on the unit of length.
+    unit: f64,
+    /// `R`, p x n, and its rows at the samples, n x n.
+    columns: Matrix,
+    block: Matrix,
     q: Matrix,
     /// `A`, n x n.
     projected: Matrix,
@@ -58,9 +62,9 @@ impl Reconstruction {
     pub fn new(distances: &LandmarkDistances, rows: &dyn DistanceRows) -> Result<Self, NmdsError> {
         let p = rows.n_points();
         check_points(distances.n_points(), p)?;
-        let squares = Squares::new(distances)?;
-        let unit = squares.unit;
-        let (q, _) = thin_qr(&squares.columns);
+        let unit = check_extent(distances.max(), p)?;
+        let columns = distances.to_matrix()?.map(|d| (d / unit).powi(2));
+        let (q, _) = thin_qr(&columns);
         // Row i of E Q, which is column i of Q' E.
         let blocks = by_blocks(rows, unit, |_, block| (block.norm_squared(), block * &q))?;
         let mut image = Matrix::zeros(p, q.ncols());
@@ -77,7 +81,8 @@ impl Reconstruction {
             (block - within).norm_squared()
         })?;
         let outside_sq = outside.iter().sum();
-        Ok(Self { squares, projected, norm_sq, outside_sq, mixed_sq, q })
+        let block = distances.sq_block() / (unit * unit);
+        Ok(Self { unit, columns, block, projected, norm_sq, outside_sq, mixed_sq, q })
     }
 
     /// The error of `RR⁺E` (eq. 5), which requires all of `E`: the reference in Fig. 6.
@@ -92,19 +97,18 @@ impl Reconstruction {
     /// # Errors
     /// [`NmdsError::BadRank`], [`NmdsError::BadAlpha`], [`NmdsError::Linalg`].
     pub fn error(&self, regularization: Regularization) -> Result<ReconstructionError, NmdsError> {
-        let Squares { unit, columns, block } = &self.squares;
-        let rank = regularization.rank(block.nrows(), 3)?;
-        let inverse = regularization.pseudo_inverse(block, *unit, rank)?;
-        let projected = self.q.tr_mul(&(columns * &inverse.basis));
+        let rank = regularization.rank(self.block.nrows(), 3)?;
+        let inverse = regularization.pseudo_inverse(&self.block, self.unit, rank)?;
+        let projected = self.q.tr_mul(&(&self.columns * &inverse.basis));
         let approximated = &projected * inverse.core() * projected.transpose();
         let inside_sq = (&self.projected - approximated).norm_squared();
         Ok(self.error_of(self.outside_sq + self.mixed_sq + inside_sq))
     }
 
     fn error_of(&self, sum_sq: f64) -> ReconstructionError {
-        let p = self.squares.columns.nrows() as f64;
+        let p = self.columns.nrows() as f64;
         let relative = if self.norm_sq > 0.0 { (sum_sq / self.norm_sq).sqrt() } else { 0.0 };
-        ReconstructionError { relative, mean_square: sum_sq * self.squares.unit.powi(4) / (p * p) }
+        ReconstructionError { relative, mean_square: sum_sq * self.unit.powi(4) / (p * p) }
     }
 }
 

@@ -135,7 +135,10 @@ impl SampleSearch<'_> {
         let mut distances = columns(asked)?;
         let mut embedding = (self.embed)(&distances)?;
         let unit = check_extent(distances.max(), distances.n_points())?;
-        let sample = self.held_out(&embedding, &distances, unit)?;
+        // Other rows than those of a certificate with the same seed.
+        let seed = self.seed ^ 0x9e37_79b9_7f4a_7c15;
+        let sample = RowSample::by_landmarks(&(&embedding.coords / unit), &distances, unit, Self::ROWS, seed)
+            .map_err(NmdsError::from)?;
         let held_out = rows(&sample.rows())? / unit;
         let held_out = LandmarkDistances::new(sample.rows(), held_out).map_err(NmdsError::from)?;
         let stress = |embedding: &Embedding| -> Result<Stress, NmdsError> {
@@ -173,18 +176,6 @@ impl SampleSearch<'_> {
         tried.iter_mut().for_each(|trial| trial.stress *= unit * unit);
         let report = SamplesReport { stop, sufficient, rows: held_out.n_landmarks(), tried };
         Ok((embedding, distances, report))
-    }
-
-    /// The rows that are held out, in units of `unit`.
-    fn held_out(
-        &self,
-        embedding: &Embedding,
-        distances: &LandmarkDistances,
-        unit: f64,
-    ) -> Result<RowSample, NmdsError> {
-        // Other rows than those of a certificate with the same seed.
-        let seed = self.seed ^ 0x9e37_79b9_7f4a_7c15;
-        Ok(RowSample::by_landmarks(&(&embedding.coords / unit), distances, unit, Self::ROWS, seed)?)
     }
 }
 

@@ -1,31 +1,8 @@
 //! What the embeddings from squared distances have in common.
 
-use linalg::{LandmarkDistances, Matrix};
+use linalg::Matrix;
 
 use crate::NmdsError;
-
-/// Squared distances relative to the square of the largest distance, so that results do not depend on the unit of
-/// length.
-#[derive(Debug)]
-pub(crate) struct Squares {
-    /// The largest distance.
-    pub(crate) unit: f64,
-    /// From the landmarks to all points, p x n.
-    pub(crate) columns: Matrix,
-    /// Between the landmarks, n x n, symmetric.
-    pub(crate) block: Matrix,
-}
-
-impl Squares {
-    /// # Errors
-    /// [`NmdsError::NoExtent`], [`NmdsError::Linalg`].
-    pub(crate) fn new(distances: &LandmarkDistances) -> Result<Self, NmdsError> {
-        let unit = check_extent(distances.max(), distances.n_points())?;
-        let mut columns = distances.to_matrix()?;
-        columns.apply(|d| *d = (*d / unit).powi(2));
-        Ok(Self { unit, columns, block: distances.sq_block() / (unit * unit) })
-    }
-}
 
 /// Returns the largest distance if it is positive.
 ///

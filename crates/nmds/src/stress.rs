@@ -91,14 +91,13 @@ pub fn stress(coords: &Matrix, rows: &dyn DistanceRows) -> Result<Stress, Linalg
 /// Residuals of a row that are held at once.
 const PART: usize = 1 << 13;
 
-/// Sums over a row of residuals `D_ij = d_ij^2 - |z_i - z_j|^2`, or their means over several rows.
-#[derive(Debug, Clone, Copy, Default)]
+/// Sums over a row of residuals `D_ij = d_ij^2 - |z_i - z_j|^2`.
+#[derive(Debug, Default)]
 struct RowSums {
     /// The mean square of the residuals.
     square: f64,
-    /// The mean of the residuals, and its square.
+    /// The mean of the residuals.
     mean: f64,
-    sq_mean: f64,
     /// `sum (d_ij - |z_i - z_j|)^2`.
     difference: f64,
     /// `sum d_ij^2`.
@@ -131,14 +130,7 @@ impl RowSums {
             sums.square += part.iter().map(|r| r * r).sum::<f64>() / n;
             sums.mean += part.iter().sum::<f64>() / n;
         }
-        Self { sq_mean: sums.mean * sums.mean, ..sums }
-    }
-
-    fn times(self, weight: f64) -> Self {
-        let Self { square, mean, sq_mean, difference, total } = self;
-        let [square, mean, sq_mean, difference, total] =
-            [square, mean, sq_mean, difference, total].map(|sum| weight * sum);
-        Self { square, mean, sq_mean, difference, total }
+        sums
     }
 }
 
@@ -173,22 +165,25 @@ pub fn estimate_stress(
     let sums = different.par_iter().map_init(|| vec![0.0; rows.n_points()], of_row);
     let sums = sums.collect::<Result<Vec<_>, LinalgError>>()?;
     let drawn = sample.rows.iter().zip(&sample.weights);
-    let drawn = drawn.filter_map(|(row, w)| Some(sums[different.binary_search(row).ok()?].times(*w)));
-    let drawn: Vec<RowSums> = drawn.collect();
+    let drawn = drawn.filter_map(|(row, w)| Some((*w, &sums[different.binary_search(row).ok()?])));
+    let drawn: Vec<(f64, &RowSums)> = drawn.collect();
 
     let m = drawn.len();
-    let mean = |number: &dyn Fn(&RowSums) -> f64| drawn.iter().map(number).sum::<f64>() / m.max(1) as f64;
+    let over_drawn = |number: &dyn Fn(f64, &RowSums) -> f64| {
+        drawn.iter().map(|(weight, row)| number(*weight, row)).sum::<f64>() / m.max(1) as f64
+    };
+    let mean = |number: &dyn Fn(&RowSums) -> f64| over_drawn(&|weight, row| weight * number(row));
     // The variance of a mean over the sample.
     let variance = |number: &dyn Fn(&RowSums) -> f64| {
         let centre = mean(number);
-        let squares = mean(&|row| (number(row) - centre).powi(2));
+        let squares = over_drawn(&|weight, row| (weight * number(row) - centre).powi(2));
         squares / m.saturating_sub(1).max(1) as f64 * sample.correction
     };
     let centre = mean(&|row| row.mean);
     // The square of a mean is too large by the variance of the mean.
     let excess = variance(&|row| row.mean);
-    let quadruple = mean(&|row| row.square - 2.0 * row.sq_mean) + centre * centre - excess;
-    let quadruple_variance = variance(&|row| row.square - 2.0 * row.sq_mean + 2.0 * centre * row.mean);
+    let quadruple = mean(&|row| row.square - 2.0 * row.mean * row.mean) + centre * centre - excess;
+    let quadruple_variance = variance(&|row| row.square - 2.0 * (row.mean - centre) * row.mean);
     let total = mean(&|row| row.total);
     let per_total = if total > 0.0 { 1.0 / total } else { 0.0 };
     let ratio = mean(&|row| row.difference) * per_total;
