@@ -239,8 +239,8 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         limit = min(_MOST_LANDMARKS, len(X))
 
         def columns(n: int) -> tuple[list[int], Floats]:
-            landmarks, columns = taken.first(n)
-            return landmarks.tolist(), columns
+            landmarks, found = taken.first(n)
+            return landmarks.tolist(), found
 
         def rows(points: list[int]) -> Floats:
             return np.stack([self._measure(X, i) for i in points], axis=1).astype(np.float64)
