@@ -139,7 +139,7 @@ pub(crate) enum Command {
     /// Shapes are compared by their combined distance, by signatures and aligned canonical forms. The certainty is a probability,
     /// measured on poses and bodies of the built-in shapes.
     Compare(CompareArgs),
-    /// Map the vertices of a mesh to those of another one, or several meshes to each other
+    /// Map the vertices of a mesh to those of another one
     Match(MatchArgs),
     /// Convert a mesh, or every mesh of a folder or an archive, to another file format
     Convert(ConvertArgs),
