@@ -4,7 +4,6 @@ use linalg::Matrix;
 use nalgebra::Cholesky;
 
 use crate::nearest_rows::nearest_rows;
-use crate::shape::MapShape;
 
 /// A map of points of a surface to those of another, and one back: positions in the lists of samples, or vertices.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -88,9 +87,9 @@ impl FunctionalMaps {
         beside(own * self.forth.transpose(), own.into_owned())
     }
 
-    /// Places of all vertices of both surfaces.
-    pub(crate) fn placed(&self, [a, b]: [&MapShape; 2]) -> [Matrix; 2] {
-        [self.places_a(&a.spectrum.vectors), self.places_b(&b.spectrum.vectors)]
+    /// Places of all vertices of both surfaces, by their eigenfunctions.
+    pub(crate) fn placed(&self, [a, b]: [&Matrix; 2]) -> [Matrix; 2] {
+        [self.places_a(a), self.places_b(b)]
     }
 
     /// The maps of samples that follow.

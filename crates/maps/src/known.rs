@@ -11,19 +11,14 @@ use crate::local::{between, least_distance};
 use crate::nearest_rows::nearest_rows;
 use crate::operators::{Operators, fitted};
 use crate::params::MapParams;
-use crate::score::Scored;
 use crate::shape::MapShape;
 use crate::sketch::SAMPLES_A_FUNCTION;
 use crate::start::Start;
-use crate::surface_map::{MapKind, SurfaceMap};
+use crate::surface_map::SurfaceMap;
 
 /// Distances of two landmarks may differ by this between the surfaces, as a share of the diameter. A safety limit: true landmarks
 /// of built-in men, cats and centaurs in two poses have 0.12 at most.
 const CHANGED: f64 = 0.3;
-
-/// A landmark that a map misses by more than this multiple of [`MapParams::same`] does not fit it. A safety limit: of the
-/// landmarks that fit the mirrored map as well, right maps of built-in men, cats and centaurs miss none by more than 1.3.
-const UNFIT: f64 = 5.0;
 
 /// What is known of a map from one surface to another, before the rest of it is searched for. By default, nothing.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -80,43 +75,6 @@ impl KnownMap {
             }
         }
         worst.1.map_or(Ok(()), Err)
-    }
-
-    /// Refuses landmarks of both orientations: maps that were found without them show it, the direct and the mirrored one that fit
-    /// most of them.
-    pub(crate) fn check_orientation(&self, found: &[Scored], params: &MapParams) -> Result<(), MapError> {
-        let best = |kind| {
-            let of_kind =
-                found.iter().rev().filter(|found| found.kind() == kind && !found.is_mixture(params.pure));
-            of_kind.max_by_key(|found| found.misses.iter().filter(|miss| **miss < params.same).count())
-        };
-        let [Some(direct), Some(mirrored)] = [MapKind::Direct, MapKind::Mirrored].map(best) else {
-            return Ok(());
-        };
-        let all: Vec<[f64; 2]> = direct.misses.iter().zip(&mirrored.misses).map(|(x, y)| [*x, *y]).collect();
-        let fits = |miss: f64| miss < params.clearly * params.same;
-        let only = |i: usize| all.iter().position(|both| fits(both[i]) && both[1 - i] > UNFIT * params.same);
-        match (only(0), only(1)) {
-            // Maps that are both wrong leave others.
-            (Some(i), Some(j)) if all.iter().all(|[x, y]| fits(x.min(*y))) => {
-                let (landmarks, how) = ([i.min(j), i.max(j)], LandmarkConflict::Orientation);
-                Err(MapError::Contradiction { landmarks, how })
-            }
-            _ => Ok(()),
-        }
-    }
-
-    /// The maps of orientations that respect the landmarks: the best one is not clearly worse than that of the other.
-    pub(crate) fn respecting(&self, mut found: Vec<Scored>, params: &MapParams) -> Vec<Scored> {
-        if !self.landmarks.is_empty() {
-            let costs = MapKind::ALL.map(|kind| {
-                let of_kind = found.iter().filter(|found| found.kind() == kind);
-                of_kind.map(Scored::cost).fold(f64::MAX, f64::min)
-            });
-            let least = costs.into_iter().fold(f64::MAX, f64::min);
-            found.retain(|found| costs[found.kind() as usize] <= params.clearly * least);
-        }
-        found
     }
 
     /// Samples and landmarks, which maps of functions take to each other.

@@ -25,11 +25,12 @@ mod shape;
 mod sketch;
 mod start;
 mod surface_map;
+mod surfaces;
 
 pub use error::{LandmarkConflict, MapError};
 pub use known::KnownMap;
 pub use params::MapParams;
 pub use points::{MapElements, mapped_points};
-pub use search::map_surfaces;
 pub use shape::MapShape;
 pub use surface_map::{MapKind, PartOfWhole, SurfaceMap};
+pub use surfaces::map_surfaces;

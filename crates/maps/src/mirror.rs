@@ -3,23 +3,12 @@
 use base::Budget;
 use descriptors::DescriptorError;
 
-use crate::functional::FunctionalMaps;
 use crate::known::KnownMap;
 use crate::params::MapParams;
 use crate::score::Scored;
 use crate::search::MapSearch;
-use crate::shape::MapShape;
+use crate::shape::{MapShape, Mirrors};
 use crate::surface_map::MapKind;
-
-/// Maps of a surface to itself that reverse its orientation and change distances little: people are nearly alike from left to
-/// right, and from back to front.
-#[derive(Debug)]
-pub(crate) struct Mirrors {
-    /// The one that exchanges left and right.
-    pub(crate) sides: Option<FunctionalMaps>,
-    /// Another one, which may exchange front and back.
-    pub(crate) others: Vec<FunctionalMaps>,
-}
 
 impl MapShape {
     /// The mirrors of the surface, which are sought once, with the default parameters.
@@ -47,13 +36,4 @@ impl MapShape {
         // If another thread was faster, it found the same.
         Ok(self.found_mirrors.get_or_init(|| Mirrors { sides, others }))
     }
-}
-
-/// A map, before or after mirrors of the surfaces.
-pub(crate) fn mirrored<'m>(
-    one: &'m Scored,
-    [of_a, of_b]: [&'m [FunctionalMaps]; 2],
-) -> impl Iterator<Item = FunctionalMaps> + 'm {
-    let before = of_a.iter().map(|mirror| mirror.then(&one.functional));
-    before.chain(of_b.iter().map(|mirror| one.functional.then(mirror)))
 }

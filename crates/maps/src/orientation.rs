@@ -3,10 +3,8 @@
 use linalg::Matrix;
 use mesh::{TriMesh, oriented_faces};
 
-use crate::shape::MapShape;
-
 /// Eigenfunctions whose area forms are compared.
-const FUNCTIONS: usize = 12;
+pub(crate) const FUNCTIONS: usize = 12;
 
 /// An oriented surface: faces that all turn the same way.
 #[derive(Debug)]
@@ -52,27 +50,4 @@ impl Oriented {
 /// All pairs of the first functions but the constant one, which is the first.
 pub(crate) fn pairs(functions: &Matrix) -> Vec<[usize; 2]> {
     (2..functions.ncols().min(FUNCTIONS + 1)).flat_map(|j| (1..j).map(move |i| [i, j])).collect()
-}
-
-/// How far a map preserves orientation, from -1 for one that reverses it to 1; `None` if a surface cannot be oriented.
-///
-/// The pull-back of the area form `df ∧ dg` of two functions is the area form of the functions pulled back, times the sign of
-/// the map. This is the correlation of both over pairs of corresponding samples: `map` takes eigenfunctions of the second surface to
-/// functions of the first, and `partners` names a sample of the second for each of the first ones.
-pub(crate) fn agreement([a, b]: [&MapShape; 2], map: &Matrix, partners: &[usize]) -> Option<f64> {
-    let (oriented, forms) = (a.oriented.as_ref()?, b.area_forms.as_ref()?);
-    let own = a.spectrum.vectors.columns(0, map.nrows());
-    let pulled: Matrix = own * map.columns(0, map.ncols().min(FUNCTIONS + 1));
-    let pulled = oriented.area_forms(&pulled, &pairs(&pulled), &a.samples[..partners.len()]);
-    let (mut both, mut sq_a, mut sq_b) = (0.0, 0.0, 0.0);
-    for (pulled, forms) in pulled.column_iter().zip(forms.column_iter()) {
-        for (x, &row) in pulled.iter().zip(partners) {
-            let y = forms[row];
-            both += x * y;
-            sq_a += x * x;
-            sq_b += y * y;
-        }
-    }
-    let scale = (sq_a * sq_b).sqrt();
-    Some(if scale > 0.0 { both / scale } else { 0.0 })
 }

@@ -41,7 +41,8 @@ pub fn mapped_points(
     elements: MapElements<'_>,
     target: &Topology,
 ) -> Vec<SurfacePoint> {
-    let [on_a, on_b] = FunctionalMaps::from(functional.clone()).placed([a, b]);
+    let [on_a, on_b] =
+        FunctionalMaps::from(functional.clone()).placed([&a.spectrum.vectors, &b.spectrum.vectors]);
     let (own, other, shape) = match of {
         Side::First => (on_a, on_b, b),
         Side::Second => (on_b, on_a, a),

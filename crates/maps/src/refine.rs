@@ -77,7 +77,7 @@ fn on_all_vertices(
     [a, b]: [&MapShape; 2],
     confidence: f64,
 ) -> Result<SurfaceMap, DescriptorError> {
-    let [on_a, on_b] = found.functional.placed([a, b]);
+    let [on_a, on_b] = found.functional.placed([&a.spectrum.vectors, &b.spectrum.vectors]);
     let vertices = b.nearest_vertices(&on_b, &on_a);
     let back = a.nearest_vertices(&on_a, &on_b.select_rows(b.landmarks()));
     let to_images = b.distances_to(&a.landmarks().iter().map(|&x| vertices[x]).collect::<Vec<_>>())?;

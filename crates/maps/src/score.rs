@@ -4,14 +4,18 @@ use descriptors::DescriptorError;
 use linalg::Matrix;
 
 use crate::curvature::mismatch;
+use crate::error::{LandmarkConflict, MapError};
 use crate::functional::FunctionalMaps;
 use crate::known::KnownMap;
 use crate::local::mean_gap;
-use crate::orientation::agreement;
 use crate::params::MapParams;
 use crate::shape::MapShape;
 use crate::sketch::Sketch;
 use crate::surface_map::{MapKind, codistortion};
+
+/// A landmark that a map misses by more than this multiple of [`MapParams::same`] does not fit it. A safety limit: of the
+/// landmarks that fit the mirrored map as well, right maps of built-in men, cats and centaurs miss none by more than 1.3.
+const UNFIT: f64 = 5.0;
 
 /// A map of functions and of samples, with what ranks it among others.
 #[derive(Clone)]
@@ -44,7 +48,7 @@ impl Scored {
         };
         let to_images = b.distances_to(&images(a, &maps.forth, b))?;
         let distortion = codistortion(&a.distances_to(&images(b, &maps.back, a))?, &to_images);
-        let agreement = agreement([a, b], &functional.forth, &maps.forth);
+        let agreement = a.agreement(b, &functional.forth, &maps.forth);
         // Agreements nearer to 1 than refinement changes them are as good as 1.
         let missing = agreement.map_or(1.0, |agreement| (1.0 - agreement.abs()).max(0.5 * params.lost));
         let mismatch = match (&a.curvature, &b.curvature) {
@@ -118,5 +122,44 @@ impl MapParams {
     /// How likely a map is the right one, and not its rival: the odds are the ratio of their scores to a power.
     pub(crate) fn odds(&self, score: f64, rival: Option<f64>) -> f64 {
         rival.map_or(1.0, |rival| 1.0 / (1.0 + (score / rival.max(f64::MIN_POSITIVE)).powf(self.steepness)))
+    }
+}
+
+impl KnownMap {
+    /// Refuses landmarks of both orientations: maps that were found without them show it, the direct and the mirrored one that fit
+    /// most of them.
+    pub(crate) fn check_orientation(&self, found: &[Scored], params: &MapParams) -> Result<(), MapError> {
+        let best = |kind| {
+            let of_kind =
+                found.iter().rev().filter(|found| found.kind() == kind && !found.is_mixture(params.pure));
+            of_kind.max_by_key(|found| found.misses.iter().filter(|miss| **miss < params.same).count())
+        };
+        let [Some(direct), Some(mirrored)] = [MapKind::Direct, MapKind::Mirrored].map(best) else {
+            return Ok(());
+        };
+        let all: Vec<[f64; 2]> = direct.misses.iter().zip(&mirrored.misses).map(|(x, y)| [*x, *y]).collect();
+        let fits = |miss: f64| miss < params.clearly * params.same;
+        let only = |i: usize| all.iter().position(|both| fits(both[i]) && both[1 - i] > UNFIT * params.same);
+        match (only(0), only(1)) {
+            // Maps that are both wrong leave others.
+            (Some(i), Some(j)) if all.iter().all(|[x, y]| fits(x.min(*y))) => {
+                let (landmarks, how) = ([i.min(j), i.max(j)], LandmarkConflict::Orientation);
+                Err(MapError::Contradiction { landmarks, how })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The maps of orientations that respect the landmarks: the best one is not clearly worse than that of the other.
+    pub(crate) fn respecting(&self, mut found: Vec<Scored>, params: &MapParams) -> Vec<Scored> {
+        if !self.landmarks.is_empty() {
+            let costs = MapKind::ALL.map(|kind| {
+                let of_kind = found.iter().filter(|found| found.kind() == kind);
+                of_kind.map(Scored::cost).fold(f64::MAX, f64::min)
+            });
+            let least = costs.into_iter().fold(f64::MAX, f64::min);
+            found.retain(|found| costs[found.kind() as usize] <= params.clearly * least);
+        }
+        found
     }
 }

@@ -7,10 +7,10 @@ use mesh::{TriMesh, outward};
 use nalgebra::{DVector, Point3};
 
 use crate::curvature::{mean_curvature, smoothed};
-use crate::mirror::Mirrors;
+use crate::functional::FunctionalMaps;
 use crate::nearest_rows::Cells;
 use crate::operators::Operators;
-use crate::orientation::{Oriented, pairs};
+use crate::orientation::{FUNCTIONS, Oriented, pairs};
 use descriptors::{
     CanonicalForm, DescriptorError, LaplaceSpectrum, Normalization, PreparedForm, wave_kernels,
 };
@@ -50,6 +50,16 @@ pub struct MapShape {
     pub(crate) area_forms: Option<Matrix>,
     /// Its mirrors, once they were sought.
     pub(crate) found_mirrors: OnceLock<Mirrors>,
+}
+
+/// Maps of a surface to itself that reverse its orientation and change distances little: people are nearly alike from left to
+/// right, and from back to front.
+#[derive(Debug)]
+pub(crate) struct Mirrors {
+    /// The one that exchanges left and right.
+    pub(crate) sides: Option<FunctionalMaps>,
+    /// Another one, which may exchange front and back.
+    pub(crate) others: Vec<FunctionalMaps>,
 }
 
 impl MapShape {
@@ -156,6 +166,29 @@ impl MapShape {
         let k = rows.ncols() / 2;
         let coarse: Vec<usize> = (0..k.min(COARSE)).flat_map(|j| [j, k + j]).collect();
         Cells { rows, coarse: &coarse, centres: &self.samples, members: &self.cells }.nearest(places)
+    }
+
+    /// How far a map preserves orientation, from -1 for one that reverses it to 1; `None` if a surface cannot be oriented.
+    ///
+    /// The pull-back of the area form `df ∧ dg` of two functions is the area form of the functions pulled back, times the sign of
+    /// the map. This is the correlation of both over pairs of corresponding samples: `map` takes eigenfunctions of the second surface to
+    /// functions of the first, and `partners` names a sample of the second for each of the first ones.
+    pub(crate) fn agreement(&self, other: &Self, map: &Matrix, partners: &[usize]) -> Option<f64> {
+        let (oriented, forms) = (self.oriented.as_ref()?, other.area_forms.as_ref()?);
+        let own = self.spectrum.vectors.columns(0, map.nrows());
+        let pulled: Matrix = own * map.columns(0, map.ncols().min(FUNCTIONS + 1));
+        let pulled = oriented.area_forms(&pulled, &pairs(&pulled), &self.samples[..partners.len()]);
+        let (mut both, mut sq_a, mut sq_b) = (0.0, 0.0, 0.0);
+        for (pulled, forms) in pulled.column_iter().zip(forms.column_iter()) {
+            for (x, &row) in pulled.iter().zip(partners) {
+                let y = forms[row];
+                both += x * y;
+                sq_a += x * x;
+                sq_b += y * y;
+            }
+        }
+        let scale = (sq_a * sq_b).sqrt();
+        Some(if scale > 0.0 { both / scale } else { 0.0 })
     }
 }
 

@@ -40,7 +40,7 @@ const FLAT: f64 = 1e-5;
 /// more than `most` vertices. The surface stays the same; any mesh with usable faces will do, including edges of more
 /// than two faces.
 ///
-/// Before every round, edges inside of a plane are flipped until its triangles are Delaunay, and of midpoints inside of
+/// Before every round, edges inside of a plane are flipped until triangles with long edges are Delaunay, and of midpoints inside of
 /// planes only those are taken that are half of `longest` apart. So needles, which make up the planes of parts of machines,
 /// become well-shaped triangles, and new vertices are spread evenly.
 ///
@@ -69,9 +69,15 @@ impl Refined {
         let length = |mesh: &TriMesh, [a, b]: [VertexId; 2]| {
             (mesh.positions[a.index()] - mesh.positions[b.index()]).norm()
         };
-        let sides = |[a, b, c]: &[VertexId; 3]| [[*a, *b], [*b, *c], [*c, *a]];
-        while self.mesh.faces.iter().flat_map(sides).any(|side| length(&self.mesh, side) > longest) {
-            let planes = flip_in_planes(&mut self.mesh, height);
+        loop {
+            let is_long = |[a, b, c]: &[VertexId; 3]| {
+                [[*a, *b], [*b, *c], [*c, *a]].into_iter().any(|side| length(&self.mesh, side) > longest)
+            };
+            let long: Vec<bool> = self.mesh.faces.iter().map(is_long).collect();
+            if !long.contains(&true) {
+                break;
+            }
+            let planes = flip_in_planes(&mut self.mesh, height, &long);
             let topology = planes.mesh.topology();
             let edges = topology.edges().iter().enumerate();
             let mut long: Vec<(f64, usize)> =
@@ -119,8 +125,9 @@ struct Planes {
     is_inside: Vec<bool>,
 }
 
-/// Flips edges between faces of one plane until they are Delaunay; `height` is how far vertices may be from it.
-fn flip_in_planes(mesh: &mut TriMesh, height: f64) -> Planes {
+/// Flips edges between faces of one plane, one of them with a `long` edge, until they are Delaunay. Vertices may be as far as
+/// `height` from it.
+fn flip_in_planes(mesh: &mut TriMesh, height: f64, long: &[bool]) -> Planes {
     let is_flat = |mesh: &TriMesh, topology: &Topology, [a, b]: [CornerId; 2]| {
         let normal = |corner: CornerId| mesh.area_vector(corner.face().index()).normalize();
         let apex = |corner: CornerId| mesh.positions[topology.corner_vertex(corner).index()];
@@ -133,7 +140,9 @@ fn flip_in_planes(mesh: &mut TriMesh, height: f64) -> Planes {
             && is_near(&normals[1], apex(a))
     };
     let before = mesh.intrinsic();
-    let mut planes = Triangulation::glued_where(&before, |a, b| is_flat(mesh, before.topology(), [a, b]));
+    let mut planes = Triangulation::glued_where(&before, |a, b| {
+        [a, b].iter().any(|corner| long[corner.face().index()]) && is_flat(mesh, before.topology(), [a, b])
+    });
     planes.flip_to_delaunay(Loops::Forbidden);
     let flipped = TriMesh {
         faces: planes.triangles().iter().map(|triangle| triangle.vertices).collect(),

@@ -9,7 +9,8 @@ use descriptors::{
 use index::{Entry, Facts, Shape};
 use nalgebra::Point3;
 
-use super::embed::{Embedded, embed};
+use super::embed::embed;
+use super::embedded::Embedded;
 use super::options::{DescribeOptions, FormOptions};
 use crate::error::Error;
 use mesh::Surface;

@@ -13,7 +13,7 @@ use nmds::{EmbedOtherwise, EmbedSamples, SampleSearch};
 use serde::{Deserialize, Serialize};
 use surface::VertexId;
 
-use super::method::Outcome;
+use super::outcome::Outcome;
 use super::plan::{Plan, check_memory};
 use crate::error::Error;
 use base::Observer;

@@ -4,46 +4,19 @@ use std::borrow::Cow;
 use std::time::Instant;
 
 use base::Observer;
-use descriptors::CanonicalForm;
 use geodesics::{DistanceSolver, FirstSample, Observed};
 use linalg::LandmarkDistances;
 use mesh::{InputMap, PointError, RepairOptions, RepairReport, Surface};
-use nmds::{Embedding, OutOfSample};
 use surface::{IntrinsicMesh, VertexId};
 
 use super::distances::{KnownColumns, Measurement, Samples, plan};
+use super::embedded::Embedded;
 use super::extend::Coarser;
-use super::method::Outcome;
 use super::options::FormOptions;
+use super::outcome::Outcome;
 use super::report::{EmbedReport, SecondsReport};
 use super::stress::{Known, Rows, StressChoice, StressOptions};
 use crate::error::Error;
-
-/// An embedded surface.
-#[derive(Debug, Clone)]
-pub struct Embedded {
-    /// How it was made.
-    pub options: FormOptions,
-    /// Coordinates of the vertices of the repaired mesh.
-    pub embedding: Embedding,
-    /// Distances from the samples to all vertices, in mesh units. A method without samples keeps the columns of as many.
-    pub distances: LandmarkDistances,
-    /// Facts about the run.
-    pub report: EmbedReport,
-    /// What placed the points, if the coordinates are those of a coarser mesh.
-    pub(super) extension: Option<OutOfSample>,
-}
-
-impl Embedded {
-    /// The canonical form: the embedded surface, weighted by the areas of the mesh.
-    ///
-    /// # Errors
-    /// [`Error::Descriptor`] when the embedding is not three-dimensional or all points coincide.
-    pub fn form(&self, surface: &Surface) -> Result<CanonicalForm, Error> {
-        let form = CanonicalForm::new(&self.embedding, surface.mesh())?;
-        Ok(if self.options.method.has_unit() { form } else { form.without_unit() })
-    }
-}
 
 /// What [`embed`] embeds: a [`Surface`], or the parts of one, [without its mesh](Surface::into_parts), which needs less memory.
 pub struct EmbedInput<'a> {

@@ -7,8 +7,9 @@ use nmds::{Embedding, NystromOptions, OutOfSample, Regularization, nystrom_exten
 use surface::VertexId;
 
 use super::distances::Measurement;
-use super::embed::Embedded;
-use super::method::{EmbedMethod, Outcome};
+use super::embedded::Embedded;
+use super::method::EmbedMethod;
+use super::outcome::Outcome;
 use crate::error::Error;
 
 impl Embedded {

@@ -1,17 +1,17 @@
 //! Embedding methods: one entry here makes a method available to every program.
 
 use descriptors::LaplaceSpectrum;
-use linalg::{DistanceMatrix, LandmarkDistances};
 use nmds::{
     Bandwidth, EmbedSamples, Embedding, KernelPcaOptions, LandmarkPairs, NystromOptions, Regularization,
-    SampleSearch, SamplesReport, SmacofOptions, SmacofReport, SpectralBasis, SpectralOptions, classical,
-    kernel_pca, landmark_mds, nystrom, smacof, spectral,
+    SampleSearch, SmacofOptions, SpectralBasis, SpectralOptions, classical, kernel_pca, landmark_mds,
+    nystrom, smacof, spectral,
 };
 use serde::{Deserialize, Serialize};
 use surface::IntrinsicMesh;
 
 use super::as_text;
 use super::distances::Measurement;
+use super::outcome::Outcome;
 use super::plan::check_memory;
 use crate::error::Error;
 
@@ -197,18 +197,6 @@ impl EmbedMethod {
             }
         }
     }
-}
-
-/// The result of a method.
-pub(super) struct Outcome {
-    pub(super) embedding: Embedding,
-    /// Distances from the samples to all vertices; from as many of them for a method without samples.
-    pub(super) distances: LandmarkDistances,
-    /// How the number of samples was found, if it was not given.
-    pub(super) search: Option<SamplesReport>,
-    /// Distances between all vertices, if the method has measured them.
-    pub(super) all: Option<DistanceMatrix>,
-    pub(super) descent: Option<SmacofReport>,
 }
 
 #[cfg(test)]

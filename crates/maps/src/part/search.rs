@@ -11,7 +11,6 @@ use super::places::{Fineness, Places, change_of_curvature, change_of_distances, 
 use super::sides::Sides;
 use super::vertices::{Coverage, all_vertices, onto_part};
 use crate::local::vertex_confidence;
-use crate::orientation::agreement;
 use crate::params::MapParams;
 use crate::search::MapSearch;
 use crate::sketch::SAMPLES_A_FUNCTION;
@@ -62,7 +61,7 @@ impl ScoredPlaces {
         let functional = functional(sides, &places);
         let defect = functional.as_ref().map_or(1.0, |map| defect(sides, map));
         let score = distortion + CURVATURE * curvature + DEFECT * defect + miss;
-        let agreement = functional.and_then(|map| agreement([sides.part, sides.whole], &map, &places));
+        let agreement = functional.and_then(|map| sides.part.agreement(sides.whole, &map, &places));
         Self { agreement, distortion, score: score / favour, places, favour }
     }
 
