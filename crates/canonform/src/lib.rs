@@ -16,7 +16,7 @@
 //! let mut shapes = Vec::new();
 //! for mesh in [&flat, &folded] {
 //!     let surface = Surface::new(mesh, &options.form.repair, &())?;
-//!     shapes.push(describe(&surface, &options, &())?.prepare()?);
+//!     shapes.push(options.prepare(&describe(&surface, &options, &())?)?);
 //! }
 //! let distance = ShapePair::new([&shapes[0], &shapes[1]]).distance();
 //! assert!(distance.is_same_shape());

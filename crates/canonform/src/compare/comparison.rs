@@ -61,7 +61,8 @@ impl Comparison {
 /// let sheet = shapes::grid(21, 17, 0.1);
 /// let [flat, folded, ball] = [&sheet, &shapes::fold(&sheet, 0.8, 1.2), &shapes::icosphere(3)].map(|mesh| {
 ///     let surface = Surface::new(mesh, &Default::default(), &())?;
-///     describe(&surface, &DescribeOptions::default(), &())?.prepare()
+///     let options = DescribeOptions::default();
+///     options.prepare(&describe(&surface, &options, &())?)
 /// });
 /// let flat = flat?;
 /// assert!(compare(&ShapePair::new([&flat, &folded?]))?.shape_distance.is_same_shape());

@@ -13,6 +13,7 @@ use mesh::Surface;
 /// holes do not count.
 ///
 /// ```
+/// use canonform::descriptors::DiscAreas;
 /// use canonform::{DescribeOptions, Surface, describe, describe_part, mesh::shapes};
 ///
 /// let options = DescribeOptions::default();
@@ -23,7 +24,8 @@ use mesh::Surface;
 /// let part = describe_part(&Surface::new(&half, &Default::default(), &())?, &options, &())?;
 /// let distance = |mesh| {
 ///     let whole = describe(&Surface::new(mesh, &Default::default(), &())?, &options, &())?;
-///     Ok::<_, canonform::Error>(part.distance(&whole.disc_areas))
+///     let areas = DiscAreas::from_numbers(&whole.disc_areas).expect("numbers of all landmarks");
+///     Ok::<_, canonform::Error>(part.distance(&areas))
 /// };
 /// let (of_ball, of_ring) = (distance(&ball)?, distance(&ring)?);
 /// assert!(of_ball.distance < of_ring.distance && of_ball.share == 0.5, "{of_ball:?}, {of_ring:?}");
