@@ -229,7 +229,7 @@ mod tests {
 
     #[test]
     fn mirror_images_differ_from_resized_and_from_equal_shapes() {
-        let hand = four_arms([1.0, 1.7, 2.6, 3.5]);
+        let hand = four_arms([1.0, 2.0, 3.4, 5.0]);
         // Reflected as by a mirror: positions, and faces so that normals still point outwards.
         let mut other = hand.clone();
         other.positions.iter_mut().for_each(|p| p.x = -p.x);
