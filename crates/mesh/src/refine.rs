@@ -143,17 +143,15 @@ fn flip_in_planes(mesh: &mut TriMesh, height: f64, long: &[bool]) -> Planes {
     let mut planes = Triangulation::glued_where(&before, |a, b| {
         [a, b].iter().any(|corner| long[corner.face().index()]) && is_flat(mesh, before.topology(), [a, b])
     });
-    planes.flip_to_delaunay(Loops::Forbidden);
-    let flipped = TriMesh {
-        faces: planes.triangles().iter().map(|triangle| triangle.vertices).collect(),
-        positions: mesh.positions.clone(),
-    };
-    let mut after = flipped.intrinsic();
-    // The two sides of a sheet must not become one where they are flipped to the same edge.
-    if after.topology().n_edges() == before.topology().n_edges() {
-        *mesh = flipped;
-    } else {
-        after = before;
+    let mut after = before;
+    if !planes.flip_to_delaunay(Loops::Forbidden).is_empty() {
+        let faces = planes.triangles().iter().map(|triangle| triangle.vertices).collect();
+        let flipped = TriMesh { positions: mesh.positions.clone(), faces };
+        let intrinsic = flipped.intrinsic();
+        // The two sides of a sheet must not become one where they are flipped to the same edge.
+        if intrinsic.topology().n_edges() == after.topology().n_edges() {
+            (*mesh, after) = (flipped, intrinsic);
+        }
     }
     let topology = after.topology();
     let is_inside = |e: usize| match topology.edge_corners(EdgeId::from(e)) {

@@ -58,31 +58,30 @@ mod tests {
 
     #[test]
     fn long_rankings_and_matches_are_long_jobs() {
-        let (no, yes) = (false, true);
         use SearchRank::{Forms, Graph, Part, Plain};
         let length = |cost: f64| {
             let accepted = Load::new(2, 1).accept(cost, std::time::Duration::from_secs(60));
             accepted.unwrap().length
         };
         for (rank_by, explain, k, n_shapes, vertices, expected) in [
-            (Plain, no, 10, 100_000, 3000, Length::Short),
-            (Plain, no, 100, 100_000, 3000, Length::Long),
-            (Plain, no, 100, 50, 3000, Length::Short),
-            (Graph, no, 10, 100_000, 3000, Length::Short),
-            (Part, no, 10, 100, 3000, Length::Short),
-            (Part, no, 10, 1000, 3000, Length::Long),
-            (Part, no, 10, 10, 60_000, Length::Long),
-            (Forms, no, 10, 1000, 3000, Length::Short),
-            (Forms, no, 10, 100_000, 3000, Length::Long),
-            (Plain, yes, 10, 100_000, 3000, Length::Short),
-            (Plain, yes, 24, 100_000, 30_000, Length::Long),
-            (Plain, yes, 24, 2, 3000, Length::Short),
+            (Plain, false, 10, 100_000, 3000, Length::Short),
+            (Plain, false, 100, 100_000, 3000, Length::Long),
+            (Plain, false, 100, 50, 3000, Length::Short),
+            (Graph, false, 10, 100_000, 3000, Length::Short),
+            (Part, false, 10, 100, 3000, Length::Short),
+            (Part, false, 10, 1000, 3000, Length::Long),
+            (Part, false, 10, 10, 60_000, Length::Long),
+            (Forms, false, 10, 1000, 3000, Length::Short),
+            (Forms, false, 10, 100_000, 3000, Length::Long),
+            (Plain, true, 10, 100_000, 3000, Length::Short),
+            (Plain, true, 24, 100_000, 30_000, Length::Long),
+            (Plain, true, 24, 2, 3000, Length::Short),
         ] {
             let options = SearchOptions { rank_by, explain, k };
             let cost = of_search(&options, n_shapes, 3000, vertices);
             assert_eq!(length(cost), expected, "{options:?}, {n_shapes} shapes, {vertices} vertices");
         }
-        let of_large = of_search(&SearchOptions { explain: yes, ..Default::default() }, 100, 100_000, 3000);
+        let of_large = of_search(&SearchOptions { explain: true, ..Default::default() }, 100, 100_000, 3000);
         assert_eq!(length(of_large), Length::Long, "the shapes are large");
         for (n, each, expected) in [
             (300, MATCHED_VERTEX, Length::Short),

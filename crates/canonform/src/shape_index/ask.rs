@@ -64,11 +64,9 @@ impl ShapeSearch {
             let surface = Surface::new(&self.mesh(id)?, &describe_options.form.repair, observer)?;
             describe_part(&surface, describe_options, observer)
         };
-        let explains = options.explain;
-        Ok(Query {
-            part: (options.rank_by == SearchRank::Part).then(part).transpose()?,
-            geometry: explains.then(|| self.geometry(&shape.entry)).flatten().map(Arc::new),
-            ..Query::new(shape.clone(), describe_options).named(id, Some(shape.entry.content))
-        })
+        let part = (options.rank_by == SearchRank::Part).then(part).transpose()?;
+        let geometry = options.explain.then(|| self.geometry(&shape.entry)).flatten().map(Arc::new);
+        let content = Some(shape.entry.content);
+        Ok(Query { part, geometry, ..Query::new(shape, describe_options).named(id, content) })
     }
 }
