@@ -2,13 +2,14 @@
 
 use anyhow::{Result, bail};
 use canonform::{Embedded, FormOptions};
-use descriptors::{Alignment, CanonicalForm, Normalization, PreparedForm, Reflections, align_forms};
+use descriptors::{CanonicalForm, Normalization};
 use geodesics::DistanceSolver;
 use linalg::Matrix;
 use mesh::{TriMesh, orient_consistently};
 use nalgebra::Point3;
 use report::results::{Motions, Scale, ShownForm, ShownShape};
 use report::viewer::Geometry;
+use rigid::{PointSet, Reflections, Similarity, align_points};
 use surface::VertexId;
 
 use crate::coarse::coarse;
@@ -31,12 +32,12 @@ pub(crate) fn oriented(mesh: &TriMesh) -> TriMesh {
 pub(crate) fn aligned(
     form: &CanonicalForm,
     shape: &TriMesh,
-    first: &mut Option<PreparedForm>,
+    first: &mut Option<PointSet>,
 ) -> Result<TriMesh> {
     let mut surface = form.to_mesh(shape);
-    let prepared = PreparedForm::new(form)?;
+    let prepared = form.prepared()?;
     if let Some(target) = first {
-        let motion = align_forms(&prepared, target, Reflections::Allow).alignment;
+        let motion = align_points(&prepared, target, Reflections::Allow).map;
         surface.positions.iter_mut().for_each(|p| *p = motion.apply(p));
     } else {
         *first = Some(prepared);
@@ -54,7 +55,7 @@ pub(crate) struct Formed {
     pub(crate) form: CanonicalForm,
     /// Vertices of the repaired mesh.
     samples: Vec<VertexId>,
-    turn: Alignment,
+    turn: Similarity,
 }
 
 impl Formed {
@@ -89,13 +90,13 @@ impl Formed {
 }
 
 /// The rotation or reflection about the origin that brings points closest to those of the shape.
-fn turned_like(points: &[Point3<f64>], shape: &[Point3<f64>]) -> Alignment {
+fn turned_like(points: &[Point3<f64>], shape: &[Point3<f64>]) -> Similarity {
     let pairs: Vec<_> = points.iter().copied().zip(shape.iter().copied()).collect();
     let off =
-        |motion: &Alignment| pairs.iter().map(|(p, q)| (motion.apply(p) - q).norm_squared()).sum::<f64>();
-    let fits = [false, true].into_iter().filter_map(|reflected| Alignment::fit(&pairs, reflected));
+        |motion: &Similarity| pairs.iter().map(|(p, q)| (motion.apply(p) - q).norm_squared()).sum::<f64>();
+    let fits = [false, true].into_iter().filter_map(|reflected| Similarity::fit_motion(&pairs, reflected));
     let best = fits.min_by(|a, b| off(a).total_cmp(&off(b)));
-    Alignment::about_origin(best.map_or_else(nalgebra::Matrix3::identity, |motion| motion.rotation))
+    Similarity::about_origin(best.map_or_else(nalgebra::Matrix3::identity, |motion| motion.rotation))
 }
 
 /// A shape with its forms by several methods, at no more than `limit` vertices.
@@ -125,7 +126,7 @@ pub(crate) fn shown(
 }
 
 /// The motions between forms, for forms turned as they are shown.
-pub(crate) fn motions(method: &str, scale: Scale, forms: &[Formed], alignments: &[Alignment]) -> Motions {
+pub(crate) fn motions(method: &str, scale: Scale, forms: &[Formed], alignments: &[Similarity]) -> Motions {
     let pairs = (0..forms.len()).flat_map(|i| (i + 1..forms.len()).map(move |j| (i, j)));
     let shown = pairs.zip(alignments).flat_map(|((i, j), alignment)| {
         let motion = forms[j].turn.after(&alignment.after(&forms[i].turn.inverse()));

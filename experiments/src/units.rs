@@ -73,7 +73,7 @@ pub(crate) fn units(seeds: usize, quiet: bool) -> Result<ExitCode> {
     let means = [&within, &between].map(|pairs| {
         // Alignment takes long.
         let close: Vec<_> = pairs.iter().filter(|(a, b)| a.seed == 1 && b.seed == 1).collect();
-        let rms = |(a, b): &&BodyPair<'_>| ShapePair::new([&a.shape, &b.shape]).best().rms;
+        let rms = |(a, b): &&BodyPair<'_>| ShapePair::new([&a.shape, &b.shape]).best().gap.rms;
         mean_square(close.par_iter().map(rms).collect::<Vec<f64>>().into_iter())
     });
     parts.push(("aligned forms", means, 1.0, [ShapeMetric::FORM_UNIT, ShapeMetric::FORM_WEIGHT]));

@@ -118,10 +118,10 @@ pub use index::Shape;
 pub use input::{AllPairs, Asymmetry, PathPoint, SurfacePath, distance_rows, read_surface};
 pub use maps::{KnownMap, MapKind, MapParams, PartOfWhole};
 pub use relations::{
-    Basis, Change, Evidence, Handedness, MeshGeometry, MeshOverlay, Parts, Relation, RelationKind,
-    SurfaceGap, UnitChange,
+    Basis, Change, Evidence, MeshGeometry, MeshOverlay, Parts, Relation, RelationKind, UnitChange,
 };
 pub use retrieval::RankBy;
+pub use rigid::Handedness;
 pub use shape_index::{
     Aligned, Answer, BuildOptions, BuildReport, ClassVotes, ComponentResult, Dropped, DuplicateFile,
     DuplicateGroup, DuplicateMember, DuplicateOptions, DuplicateReport, EvaluateOptions, Failure,
@@ -132,6 +132,6 @@ pub use shape_index::{
     n_candidates, n_results, remove_from_index, rerank, unchanged_index, undo_moves,
 };
 pub use {
-    collection, descriptors, fields, geodesics, index, linalg, maps, mesh, nmds, relations, retrieval,
+    collection, descriptors, fields, geodesics, index, linalg, maps, mesh, nmds, relations, retrieval, rigid,
     surface,
 };

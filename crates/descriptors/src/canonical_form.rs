@@ -1,13 +1,13 @@
 //! Canonical forms.
 
 use mesh::TriMesh;
-use nalgebra::{Matrix3, Point3, Vector3};
+use nalgebra::{Point3, Vector3};
 use nmds::Embedding;
 use serde::{Deserialize, Serialize};
 use surface::VertexId;
 
 use crate::error::DescriptorError;
-use crate::spread::spread as spread_evenly;
+use rigid::{PointSet, farthest_points};
 
 /// How forms of different size are compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -99,7 +99,7 @@ impl CanonicalForm {
     /// coordinates; any leading part of the points is evenly spread too. Cost `O(p n)`.
     #[must_use]
     pub fn reduced(&self, n: usize) -> Self {
-        let spread = spread_evenly(&self.points, n);
+        let spread = farthest_points(&self.points, n);
         let mut weights = vec![0.0; spread.samples.len()];
         spread.nearest.iter().zip(&self.weights).for_each(|(&owner, w)| weights[owner] += w);
         let points = spread.samples.iter().map(|&i| self.points[i]).collect();
@@ -141,19 +141,12 @@ impl CanonicalForm {
         spread(&self.points, &self.weights)
     }
 
-    /// The rotation into principal axes, with the directions of largest, second largest and smallest spread as rows,
-    /// and the spread along each, a length. The signs of axes, and the order of axes with equal spreads, are
-    /// arbitrary.
-    pub(crate) fn principal_axes(&self) -> (Matrix3<f64>, [f64; 3]) {
-        let mut covariance = Matrix3::zeros();
-        for (p, w) in self.points.iter().zip(&self.weights) {
-            covariance += p.coords * p.coords.transpose() * *w;
-        }
-        let eigen = covariance.symmetric_eigen();
-        let mut order = [0, 1, 2];
-        order.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]));
-        let axes = Matrix3::from_columns(&order.map(|i| eigen.eigenvectors.column(i).into_owned()));
-        (axes.transpose(), order.map(|i| eigen.eigenvalues[i].max(0.0).sqrt()))
+    /// Its points, ready to be aligned. Area-weighted principal axes do not depend on the triangulation.
+    ///
+    /// # Errors
+    /// [`DescriptorError::NoExtent`].
+    pub fn prepared(&self) -> Result<PointSet, DescriptorError> {
+        Ok(PointSet::new(&self.points, &self.weights)?)
     }
 
     /// The form, scaled as `normalization` says.

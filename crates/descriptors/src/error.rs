@@ -44,3 +44,9 @@ pub enum DescriptorError {
     #[error(transparent)]
     Nmds(#[from] nmds::NmdsError),
 }
+
+impl From<rigid::NoExtent> for DescriptorError {
+    fn from(rigid::NoExtent { n_points }: rigid::NoExtent) -> Self {
+        Self::NoExtent { n_points }
+    }
+}

@@ -8,9 +8,9 @@ use rayon::prelude::*;
 use surface::Rows;
 use surface::laplacian::Laplacian;
 
-use crate::alignment::nearest_rotation;
 use crate::canonical_form::CanonicalForm;
 use crate::error::DescriptorError;
+use rigid::nearest_rotation;
 
 /// Weight of the distance from the form, against the bending of a surface of unit area. Chosen on 120 built-in shapes of 24
 /// bodies: with .1, .3, 1, 3, 10 and 30 the spectrum of the bent surface has an mAP of .797, .800, .799, .798, .765 and .693.
@@ -221,7 +221,7 @@ mod tests {
             let again = moved.with_features(&mesh, &()).unwrap();
             // The surface is not mirrored with its form.
             let pairs: Vec<_> = bent.points().iter().copied().zip(again.points().iter().copied()).collect();
-            let fit = crate::Alignment::fit(&pairs, false).unwrap();
+            let fit = rigid::Similarity::fit_motion(&pairs, false).unwrap();
             let error = pairs.iter().map(|(x, y)| (fit.apply(x) - y).norm()).fold(0.0, f64::max);
             assert!(error < 1e-6 * mesh.size(), "{error}");
         }

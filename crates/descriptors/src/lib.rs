@@ -1,7 +1,7 @@
-//! Canonical forms, their alignment, signatures, and the distance between two shapes.
+//! Canonical forms, signatures, and the distance between two shapes.
 //!
 //! ```text
-//! nmds::Embedding -> CanonicalForm -> PreparedForm -> align_forms -> FormAlignment
+//! nmds::Embedding -> CanonicalForm -> rigid::PointSet
 //! linalg::LandmarkDistances -> SampledForm, a form of many dimensions
 //! CanonicalForm, SampledForm, linalg::LandmarkDistances, LaplaceSpectrum -> Signature -> ShapeMetric::fuse
 //! fused vector, form, rigid signature -> PreparedShape -> ShapePair (alignments, each found once) -> ShapeDistance
@@ -9,32 +9,23 @@
 //!
 //! Knows nothing of files or indexes.
 
-mod align;
-mod alignment;
 mod boundary;
 mod calibration;
 mod canonical_form;
 mod error;
 mod features;
 mod metric;
-mod nearest;
 mod partial;
-mod prepared;
 mod sampled_form;
 mod shape_pair;
 mod signature;
 mod spectrum;
-mod spread;
 
-pub use align::{FormAlignment, Reflections, align_forms, align_near_forms, alignments};
-pub use alignment::Alignment;
 pub use boundary::Boundary;
 pub use canonical_form::{CanonicalForm, Normalization};
 pub use error::DescriptorError;
 pub use metric::{ShapeDistance, ShapeMetric};
-pub use nearest::NearestPoints;
 pub use partial::{DiscAreas, PartDiscAreas, PartDistance};
-pub use prepared::PreparedForm;
 pub use sampled_form::SampledForm;
 pub use shape_pair::{PreparedShape, ShapePair, Side};
 pub use signature::{

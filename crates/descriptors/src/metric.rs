@@ -96,9 +96,6 @@ impl ShapeMetric {
     /// An answer is [certain](Boundary::CERTAIN) if it is at least this probable.
     pub const CERTAIN: f64 = Boundary::CERTAIN;
 
-    /// Points of every form that are aligned with the nearest points of another form.
-    pub const ALIGNED_POINTS: usize = 400;
-
     /// Length of a fused vector without the size.
     pub const FUSED_LENGTH: usize = {
         let mut sum = 0;

@@ -6,7 +6,7 @@ use nmds::{LandmarkPairs, SmacofOptions, landmark_mds, smacof};
 
 use crate::error::DescriptorError;
 use crate::signature::{Signature, SignatureKind, log_magnitudes};
-use crate::spread::spread_by;
+use rigid::farthest_points_by;
 
 /// Points of a form.
 const POINTS: usize = 250;
@@ -112,7 +112,7 @@ fn evenly_spread(coords: &Matrix, masses: &[f64]) -> Result<(Vec<usize>, Vec<f64
     let points = coords.transpose();
     let from_origin = points.column_iter().map(|x| x.norm_squared());
     let at = |i| column(&points, i);
-    let spread = spread_by(from_origin, |i, j| sq_distance(at(i), at(j)), POINTS);
+    let spread = farthest_points_by(from_origin, |i, j| sq_distance(at(i), at(j)), POINTS);
     let mut shares = vec![0.0; spread.samples.len()];
     spread.nearest.iter().zip(masses).for_each(|(&owner, mass)| shares[owner] += mass / total);
     Ok((spread.samples, shares))

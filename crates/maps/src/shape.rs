@@ -5,15 +5,14 @@ use std::sync::OnceLock;
 use linalg::{LandmarkDistances, Matrix};
 use mesh::{TriMesh, outward};
 use nalgebra::{DVector, Point3};
+use rigid::PointSet;
 
 use crate::curvature::{mean_curvature, smoothed};
 use crate::functional::FunctionalMaps;
 use crate::nearest_rows::Cells;
 use crate::operators::Operators;
 use crate::orientation::{FUNCTIONS, Oriented, pairs};
-use descriptors::{
-    CanonicalForm, DescriptorError, LaplaceSpectrum, Normalization, PreparedForm, wave_kernels,
-};
+use descriptors::{CanonicalForm, DescriptorError, LaplaceSpectrum, Normalization, wave_kernels};
 
 /// Leading eigenfunctions of each surface by which the nearest samples of a vertex are found. A safety limit.
 const COARSE: usize = 40;
@@ -24,7 +23,7 @@ const KERNELS: usize = 5;
 /// A surface with everything that maps to other surfaces are found by. Lengths are those of the surface at unit area.
 #[derive(Debug)]
 pub struct MapShape {
-    pub(crate) form: PreparedForm,
+    pub(crate) form: PointSet,
     pub(crate) spectrum: LaplaceSpectrum,
     /// Vertices spread evenly over the surface; the landmarks first.
     pub(crate) samples: Vec<usize>,
@@ -95,7 +94,7 @@ impl MapShape {
             }
         }
         assert!(samples.starts_with(distances.landmarks()), "samples begin with the landmarks");
-        let form = PreparedForm::new(&form.normalized(Normalization::UnitArea))?;
+        let form = form.normalized(Normalization::UnitArea).prepared()?;
         let mut cells = vec![Vec::new(); samples.len()];
         for (vertex, &sample) in nearest.iter().enumerate() {
             cells[sample].push(vertex);

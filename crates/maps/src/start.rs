@@ -1,6 +1,7 @@
 //! Where the search for maps starts.
 
-use descriptors::{Alignment, DescriptorError, NearestPoints, alignments};
+use descriptors::DescriptorError;
+use rigid::{NearestPoints, Similarity, alignments};
 
 use crate::functional::{FunctionalMaps, SampledPair, TwoWayMap};
 use crate::operators::FITTED;
@@ -29,7 +30,7 @@ impl Start {
             NearestPoints::new(shape.samples[..n].iter().map(|&v| shape.form.points()[v]).collect())
         };
         let (on_a, on_b) = (places(a)?, places(b)?);
-        let near = |from: &NearestPoints, to: &NearestPoints, motion: &Alignment| {
+        let near = |from: &NearestPoints, to: &NearestPoints, motion: &Similarity| {
             from.points().iter().map(|p| to.nearest(&motion.apply(p)).0).collect()
         };
         let mut found: Vec<TwoWayMap> = alignments(&a.form, &b.form)

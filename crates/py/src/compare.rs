@@ -1,7 +1,7 @@
 //! Alignment and comparison of two shapes.
 
 use canonform::compare_meshes;
-use canonform::descriptors::{FormAlignment, Reflections, align_forms};
+use canonform::rigid::{self, Reflections, align_points};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
@@ -14,27 +14,27 @@ use crate::surface::Surface;
 
 /// The rigid motion that takes one form onto another.
 #[pyclass(frozen, module = "canonform._canonform")]
-pub(crate) struct Alignment(FormAlignment);
+pub(crate) struct Alignment(rigid::Alignment);
 
 #[pymethods]
 impl Alignment {
     fn rotation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let rotation = self.0.alignment.rotation.transpose();
+        let rotation = self.0.map.rotation.transpose();
         arrays::matrix(py, rotation.as_slice().to_vec(), [3, 3])
     }
 
     fn translation<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        arrays::vector(py, self.0.alignment.translation.as_slice().to_vec())
+        arrays::vector(py, self.0.map.translation.as_slice().to_vec())
     }
 
     #[getter]
     fn reflected(&self) -> bool {
-        self.0.alignment.reflected
+        self.0.map.reflected
     }
 
     #[getter]
     fn rms(&self) -> f64 {
-        self.0.rms
+        self.0.gap.rms
     }
 }
 
@@ -42,7 +42,7 @@ impl Alignment {
 #[pyfunction]
 pub(crate) fn align(py: Python<'_>, a: &Form, b: &Form, reflections: bool) -> PyResult<Alignment> {
     let reflections = if reflections { Reflections::Allow } else { Reflections::Forbid };
-    run_alone(py, None, |_| Ok(Alignment(align_forms(&a.prepared()?, &b.prepared()?, reflections))))
+    run_alone(py, None, |_| Ok(Alignment(align_points(&a.prepared()?, &b.prepared()?, reflections))))
 }
 
 /// The comparison of two surfaces as the JSON of `canonform compare`, and the residuals of the vertices of both repaired

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use canonform::Embedded;
-use canonform::descriptors::{CanonicalForm, PreparedForm};
+use canonform::descriptors::CanonicalForm;
 use canonform::mesh::TriMesh;
+use canonform::rigid::PointSet;
 use canonform::surface::VertexId;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -30,8 +31,8 @@ impl Form {
     }
 
     /// The form, ready to be aligned.
-    pub(crate) fn prepared(&self) -> Result<PreparedForm, canonform::Error> {
-        Ok(PreparedForm::new(&self.weighted()?)?)
+    pub(crate) fn prepared(&self) -> Result<PointSet, canonform::Error> {
+        Ok(self.weighted()?.prepared()?)
     }
 
     /// The faces of the input with the coordinates of the form, if there are three.

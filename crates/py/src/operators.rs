@@ -2,7 +2,7 @@
 
 use canonform::descriptors::LaplaceSpectrum;
 use canonform::geodesics::Method;
-use canonform::relations::TriangleTree;
+use canonform::rigid::TriangleTree;
 use canonform::surface::laplacian::{Element, Laplacian};
 use canonform::surface::{Triangle, VertexId};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2};

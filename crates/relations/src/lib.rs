@@ -7,7 +7,6 @@
 mod relation;
 
 pub use relation::{
-    Basis, Change, CutPiece, Difference, Dimension, Evidence, Handedness, MeshGeometry, MeshOverlay,
-    NearestOnSurface, Parts, Relation, RelationKind, SurfaceGap, SurfaceInvariants, TriangleTree, UnitChange,
-    handedness, in_four_digits,
+    Basis, Change, CutPiece, Difference, Dimension, Evidence, MeshGeometry, MeshOverlay, Parts, Relation,
+    RelationKind, SurfaceInvariants, UnitChange, in_four_digits,
 };

@@ -109,7 +109,7 @@ impl Experiment for InvarianceOptions {
                     is_told,
                     name: query.shape.name.clone(),
                     changes: changes(&gallery.described[query.own], &damaged),
-                    form: pair.best().rms / ShapeMetric::FORM_UNIT,
+                    form: pair.best().gap.rms / ShapeMetric::FORM_UNIT,
                     combined: pair.distance().combined,
                     is_top1: gallery.is_right(query, first.index),
                     is_top1_of_others: others

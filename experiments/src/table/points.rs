@@ -14,11 +14,12 @@ use std::fmt;
 use anyhow::Result;
 use canonform::{Surface, describe};
 use datasets::{ScannedPoint, scan};
-use descriptors::{NearestPoints, ShapeMetric};
+use descriptors::ShapeMetric;
 use geodesics::{Method, Source, SurfacePoint};
 use mesh::TriMesh;
 use nalgebra::Point3;
 use report::results::{CurvesPanel, Series};
+use rigid::NearestPoints;
 use serde::Deserialize;
 use surface::VertexId;
 

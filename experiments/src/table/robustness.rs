@@ -101,7 +101,7 @@ fn scores(
     if aligned {
         let pairs = prepared.iter().map(|other| {
             let pair = ShapePair::new([&shape, other]);
-            (pair.best().rms, pair.distance().combined)
+            (pair.best().gap.rms, pair.distance().combined)
         });
         let pairs: Vec<(f64, f64)> = pairs.collect();
         add(FORMS, &|i| pairs[i].0);

@@ -15,7 +15,7 @@ enum May {
 const EVERYWHERE: [&str; 1] = ["base"];
 
 /// All crates of the workspace, by folder name; packages are called `canonform-FOLDER`.
-const RULES: [(&str, May); 24] = [
+const RULES: [(&str, May); 25] = [
     ("base", May::Know(&[])),
     ("surface", May::Know(&[])),
     ("linalg", May::Know(&[])),
@@ -26,10 +26,11 @@ const RULES: [(&str, May); 24] = [
     ("retrieval", May::Know(&["linalg"])),
     ("collection", May::Know(&["mesh"])),
     ("fields", May::Know(&["mesh", "surface", "linalg", "geodesics", "nmds"])),
-    ("maps", May::Know(&["mesh", "surface", "linalg", "descriptors"])),
-    ("relations", May::Know(&["mesh", "surface", "linalg", "descriptors"])),
+    ("rigid", May::Know(&["mesh", "surface"])),
+    ("maps", May::Know(&["mesh", "surface", "linalg", "rigid", "descriptors"])),
+    ("relations", May::Know(&["mesh", "surface", "linalg", "rigid", "descriptors"])),
     ("index", May::Know(&["retrieval"])),
-    ("descriptors", May::Know(&["mesh", "surface", "linalg", "nmds"])),
+    ("descriptors", May::Know(&["mesh", "surface", "linalg", "rigid", "nmds"])),
     (
         "canonform",
         May::Know(&[
@@ -45,6 +46,7 @@ const RULES: [(&str, May); 24] = [
             "fields",
             "maps",
             "relations",
+            "rigid",
         ]),
     ),
     ("report", May::Know(&["mesh", "surface", "retrieval", "linalg"])),

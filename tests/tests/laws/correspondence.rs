@@ -3,10 +3,10 @@
 use canonform::MapKind;
 use canonform::{CorrespondOptions, Correspondence, MappedSurface, VertexMap, correspond};
 use datasets::{ArticulatedOptions, Family, RestedShape, articulated_at_rest};
-use descriptors::NearestPoints;
 use geodesics::Method;
 use mesh::{TriMesh, shapes};
 use nalgebra::{Point3, Rotation3};
+use rigid::NearestPoints;
 use surface::VertexId;
 
 use crate::support::{body, surface};

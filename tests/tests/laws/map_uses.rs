@@ -6,9 +6,9 @@ use canonform::{
     correspond,
 };
 use datasets::{ArticulatedOptions, Family, RestedShape, articulated_at_rest};
-use descriptors::NearestPoints;
 use linalg::Matrix;
 use mesh::{TriMesh, refine, shapes};
+use rigid::NearestPoints;
 use surface::VertexId;
 
 use crate::support::{body, surface};

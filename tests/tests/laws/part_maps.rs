@@ -4,10 +4,10 @@ use canonform::{
     CorrespondOptions, MapKind, MappedSurface, PartOfWhole, PointMap, Side, VertexMap, correspond,
 };
 use datasets::{ArticulatedOptions, Damage, Family, articulated_at_rest};
-use descriptors::NearestPoints;
 use geodesics::Method;
 use mesh::TriMesh;
 use nalgebra::Point3;
+use rigid::NearestPoints;
 use surface::VertexId;
 
 use crate::support::surface;

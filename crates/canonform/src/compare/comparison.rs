@@ -1,9 +1,8 @@
 //! The numbers of two shapes side by side.
 
-use descriptors::{
-    Alignment, CanonicalForm, NearestPoints, Reflections, ShapeDistance, ShapeMetric, ShapePair,
-};
+use descriptors::{CanonicalForm, DescriptorError, ShapeDistance, ShapeMetric, ShapePair};
 use nalgebra::Point3;
+use rigid::{NearestPoints, Reflections, Similarity};
 use serde::Serialize;
 
 use crate::error::Error;
@@ -37,15 +36,15 @@ impl Comparison {
     /// Compares the forms of a pair; `distance` is the one that the shapes are related by.
     pub(crate) fn new(pair: &ShapePair<'_>, distance: ShapeDistance) -> Result<Self, Error> {
         let (best, proper, raw) = (pair.best(), pair.best_with(Reflections::Forbid), pair.align_raw()?);
-        let Alignment { rotation, translation, reflected } = raw.alignment;
+        let Similarity { rotation, translation, reflected, .. } = raw.map;
         Ok(Self {
-            distance: raw.rms,
-            normalized_distance: best.rms,
-            same_below: ShapeMetric::same_below(ShapeMetric::robust_part(distance.combined, best.rms)),
+            distance: raw.gap.rms,
+            normalized_distance: best.gap.rms,
+            same_below: ShapeMetric::same_below(ShapeMetric::robust_part(distance.combined, best.gap.rms)),
             shape_distance: distance,
             scale: pair.scale(),
             reflected,
-            unreflected_distance: proper.rms.max(best.rms),
+            unreflected_distance: proper.gap.rms.max(best.gap.rms),
             rotation: [0, 1, 2].map(|i| [0, 1, 2].map(|j| rotation[(i, j)])),
             translation: translation.into(),
         })
@@ -114,10 +113,11 @@ impl Overlay {
     /// # Errors
     /// [`Error::Descriptor`].
     pub fn new(pair: &ShapePair<'_>, forms: [&CanonicalForm; 2]) -> Result<Self, Error> {
-        let (motion, [a, b]) = (pair.best().alignment, pair.shapes);
+        let (motion, [a, b]) = (pair.best().map, pair.shapes);
         let size = a.size();
+        let nearest = |points| NearestPoints::new(points).map_err(DescriptorError::from);
         let moved = a.at_unit_area(forms[0]).iter().map(|p| motion.apply(p)).collect();
-        let (a, b) = (NearestPoints::new(moved)?, NearestPoints::new(b.at_unit_area(forms[1]))?);
+        let (a, b) = (nearest(moved)?, nearest(b.at_unit_area(forms[1]))?);
         let residuals = |from: &NearestPoints, to: &NearestPoints| {
             from.points().iter().map(|p| to.nearest(p).1.sqrt() * size).collect()
         };

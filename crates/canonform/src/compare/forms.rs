@@ -1,8 +1,9 @@
 //! Distances between the forms of a collection.
 
-use descriptors::{Alignment, CanonicalForm, Normalization, PreparedForm, Reflections, align_forms};
+use descriptors::{CanonicalForm, Normalization};
 use linalg::{DistanceMatrix, Matrix};
 use rayon::prelude::*;
+use rigid::{Reflections, Similarity, align_points};
 
 use crate::error::Error;
 use base::Observer;
@@ -13,7 +14,7 @@ pub struct FormAlignments {
     /// Root mean square distances between the aligned forms.
     pub distances: DistanceMatrix,
     /// For every pair `i < j`, row by row, the motion that takes form `i` onto form `j`, both scaled as was chosen.
-    pub alignments: Vec<Alignment>,
+    pub alignments: Vec<Similarity>,
 }
 
 /// Aligns all pairs of forms, in parallel. `observer` counts every pair as a step.
@@ -39,20 +40,20 @@ pub fn form_alignments(
     normalization: Normalization,
     observer: &dyn Observer,
 ) -> Result<FormAlignments, Error> {
-    let prepare = |form: &CanonicalForm| PreparedForm::new(&form.normalized(normalization));
+    let prepare = |form: &CanonicalForm| form.normalized(normalization).prepared();
     let forms: Vec<_> = forms.par_iter().map(prepare).collect::<Result<_, _>>()?;
     let n = forms.len();
     let pairs: Vec<(usize, usize)> = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j))).collect();
     observer.begin("alignment", pairs.len());
     let one = |&(i, j): &(usize, usize)| {
-        let found = align_forms(&forms[i], &forms[j], Reflections::Allow);
+        let found = align_points(&forms[i], &forms[j], Reflections::Allow);
         observer.step();
         found
     };
     let found: Vec<_> = pairs.par_iter().map(one).collect();
     let mut next = found.iter();
-    let distances = DistanceMatrix::from_pairs(n, |_, _| next.next().map_or(f64::NAN, |m| m.rms))?;
-    Ok(FormAlignments { distances, alignments: found.iter().map(|m| m.alignment).collect() })
+    let distances = DistanceMatrix::from_pairs(n, |_, _| next.next().map_or(f64::NAN, |m| m.gap.rms))?;
+    Ok(FormAlignments { distances, alignments: found.iter().map(|m| m.map).collect() })
 }
 
 /// Straight-line distances between the points of an embedding.

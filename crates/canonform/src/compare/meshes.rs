@@ -5,7 +5,8 @@ use std::borrow::Borrow;
 use base::{ContentHash, Observer};
 use descriptors::{CanonicalForm, PreparedShape, ShapePair};
 use mesh::{Surface, TriMesh};
-use relations::{Handedness, MeshGeometry, Relation, handedness};
+use relations::{MeshGeometry, Relation};
+use rigid::Handedness;
 use serde::Serialize;
 
 use super::comparison::{Comparison, FaceAgreement, Overlay, Residual};
@@ -141,7 +142,7 @@ pub fn compare_meshes([a, b]: [Compared<'_>; 2]) -> Result<MeshComparison, Error
             let same =
                 of_a.input_faces == of_b.input_faces && of_a.n_input_vertices() == of_b.n_input_vertices();
             let triangulation = if same { FaceAgreement::Same } else { FaceAgreement::Other };
-            (handedness(&pair, [(a.form, of_a.mesh()), (b.form, of_b.mesh())])?, Some(triangulation))
+            (pair.handedness([(a.form, of_a.mesh()), (b.form, of_b.mesh())])?, Some(triangulation))
         }
         _ => (Handedness::Unknown, None),
     };

@@ -14,7 +14,8 @@ use base::Observer;
 use descriptors::{ShapeDistance, ShapeMetric};
 use index::Entry;
 use rayon::prelude::*;
-use relations::{Handedness, MeshGeometry, Relation, RelationKind, SurfaceInvariants};
+use relations::{MeshGeometry, Relation, RelationKind, SurfaceInvariants};
+use rigid::Handedness;
 use serde::Serialize;
 use surface::DisjointSets;
 

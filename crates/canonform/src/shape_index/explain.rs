@@ -10,7 +10,8 @@ use super::query::Query;
 use super::search::ShapeSearch;
 use super::source::read_unchanged;
 use crate::error::Error;
-use relations::{Handedness, MeshGeometry, Relation, RelationKind};
+use relations::{MeshGeometry, Relation, RelationKind};
+use rigid::Handedness;
 
 /// Most shapes of which a query is named as a component.
 const MOST_WHOLES: usize = 10;

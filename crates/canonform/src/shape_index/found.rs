@@ -6,7 +6,8 @@ use descriptors::ShapeDistance;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::compare::Comparison;
-use relations::{Handedness, Relation};
+use relations::Relation;
+use rigid::Handedness;
 
 /// What a result is ordered by, unless it is its distance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -247,7 +247,7 @@ impl Prediction {
 #[cfg(test)]
 mod tests {
     use descriptors::ShapeDistance;
-    use relations::Handedness;
+    use rigid::Handedness;
 
     use super::*;
 

@@ -2,9 +2,10 @@
 
 use std::borrow::Borrow;
 
-use descriptors::{FormAlignment, PreparedShape, ShapeDistance, ShapeMetric, ShapePair, align_near_forms};
+use descriptors::{PreparedShape, ShapeDistance, ShapeMetric, ShapePair};
 use index::VectorTable;
 use retrieval::{Neighbor, Refinement, refine_nearest};
+use rigid::{Alignment, align_near_points};
 
 use crate::error::Error;
 
@@ -18,7 +19,7 @@ pub struct Aligned {
     /// Size of the shape over that of the query.
     pub scale: f64,
     /// How the form of the query, at unit area, aligns with that of the shape.
-    pub alignment: FormAlignment,
+    pub alignment: Alignment,
 }
 
 /// Lower bounds of the combined distances from a query to all of some fused vectors, in ascending order: the robust distances.
@@ -49,11 +50,11 @@ pub fn rerank<S: Borrow<PreparedShape>>(
         let robust = query.robust(shape);
         let left = ShapeMetric::form_limit(robust, limit);
         let (a, b) = (query.prepared_form(), shape.prepared_form());
-        let Some(alignment) = align_near_forms(a, b, left) else { return Ok(None) };
+        let Some(alignment) = align_near_points(a, b, left) else { return Ok(None) };
         let pair = ShapePair::new([query, shape]).with_best(alignment);
         let fused = ShapeMetric::fused(query.fused(), shape.fused());
         let aligned = Aligned { fused, shape_distance: pair.distance(), scale: pair.scale(), alignment };
-        Ok(Some((ShapeMetric::combined(robust, alignment.rms), aligned)))
+        Ok(Some((ShapeMetric::combined(robust, alignment.gap.rms), aligned)))
     })
 }
 
@@ -111,7 +112,7 @@ mod tests {
                     .map(|index| {
                         let pair = ShapePair::new([&asked, &shapes[index]]);
                         let (fused, alignment) = (fused(index), pair.best());
-                        let distance = ShapeMetric::combined(robust(index), alignment.rms);
+                        let distance = ShapeMetric::combined(robust(index), alignment.gap.rms);
                         let (shape_distance, scale) = (pair.distance(), pair.scale());
                         (Neighbor { index, distance }, Aligned { fused, shape_distance, scale, alignment })
                     })

@@ -7,15 +7,14 @@ use std::time::Instant;
 use base::{Budget, Observer};
 use collection::Storage;
 use descriptors::DiscAreas;
-use descriptors::{
-    FormAlignment, PartDiscAreas, PartDistance, PreparedShape, ShapeMetric, ShapePair, SignatureKind,
-};
+use descriptors::{PartDiscAreas, PartDistance, PreparedShape, ShapeMetric, ShapePair, SignatureKind};
 use index::{Entry, Index, VectorTable};
 use mesh::TriMesh;
 use mesh::io::FileSource;
 use rayon::prelude::*;
-use relations::{Handedness, Relation};
+use relations::Relation;
 use retrieval::{LINKS, Neighbor, graph_rank};
+use rigid::{Alignment, Handedness};
 use serde::{Deserialize, Serialize};
 
 use super::found::{ComponentResult, Hit, OrderedBy};
@@ -262,7 +261,7 @@ impl ShapeSearch {
         &self,
         (query, shape): (&Query, &PreparedShape),
         hit: &mut Hit,
-        best: FormAlignment,
+        best: Alignment,
         budget: &Budget,
     ) -> Result<(), Error> {
         budget.check()?;
@@ -368,7 +367,7 @@ impl ShapeSearch {
         shortlist: Shortlist<'_>,
         wanted: usize,
         budget: &Budget,
-    ) -> Result<(Vec<(Hit, FormAlignment)>, usize), Error> {
+    ) -> Result<(Vec<(Hit, Alignment)>, usize), Error> {
         let Shortlist { candidates, id, orders } = shortlist;
         let n = orders.as_ref().map_or(wanted, Vec::len);
         let mut refined = rerank(shape, candidates, n, |i| {

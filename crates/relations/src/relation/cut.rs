@@ -3,8 +3,9 @@
 use std::collections::HashSet;
 use std::num::NonZero;
 
-use descriptors::{Alignment, NearestPoints, Side};
+use descriptors::Side;
 use nalgebra::{Point3, Vector3};
+use rigid::{NearestPoints, Similarity};
 use serde::Serialize;
 use surface::VertexId;
 
@@ -54,7 +55,7 @@ pub(super) fn piece_of(whole: &MeshGeometry, piece: &MeshGeometry) -> Option<Fou
         return None;
     }
     let found = |factor: f64| {
-        let scale = piece.size / (factor * whole.size);
+        let scale = piece.size() / (factor * whole.size());
         let left = scale * scale;
         let is_possible = left <= MOST_LEFT && (factor == 1.0 || left >= LEAST_LEFT);
         let search = if is_possible { PieceSearch::new(whole, piece, scale, factor)? } else { return None };
@@ -77,41 +78,41 @@ struct PieceSearch<'a> {
 
 impl<'a> PieceSearch<'a> {
     fn new(whole: &'a MeshGeometry, piece: &'a MeshGeometry, scale: f64, factor: f64) -> Option<Self> {
-        let points = piece.mesh.positions.iter().map(|p| p * scale).collect();
-        let vertices = NearestPoints::new(whole.mesh.positions.clone()).ok()?;
-        let tolerance = 4.0 * (whole.rounding + piece.rounding * scale);
+        let points = piece.mesh().positions.iter().map(|p| p * scale).collect();
+        let vertices = NearestPoints::new(whole.mesh().positions.clone()).ok()?;
+        let tolerance = 4.0 * (whole.rounding() + piece.rounding() * scale);
         // A piece that stayed in place has its own centre.
-        let in_place = (piece.centre.coords / factor - whole.centre.coords) / whole.size;
+        let in_place =
+            (piece.surface.center().coords / factor - whole.surface.center().coords) / whole.size();
         Some(Self { whole, piece, points, vertices, tolerance, in_place })
     }
 
     /// Motions that take a face of the piece to one of the whole with the same sides. The largest faces are tried: they say
     /// most precisely how the piece lies.
-    fn candidates(&self) -> Vec<Alignment> {
-        let positions = &self.whole.mesh.positions;
-        let ordered = self.whole.mesh.faces.iter().map(|face| by_sides(*face, positions));
+    fn candidates(&self) -> Vec<Similarity> {
+        let positions = &self.whole.mesh().positions;
+        let ordered = self.whole.mesh().faces.iter().map(|face| by_sides(*face, positions));
         let ordered: Vec<[usize; 3]> = ordered.collect();
         let all_sides: Vec<Point3<f64>> = ordered.iter().map(|face| sides(*face, positions)).collect();
         let Ok(near) = NearestPoints::new(all_sides) else { return Vec::new() };
-        let areas: Vec<f64> = self.piece.mesh.face_areas().collect();
+        let areas: Vec<f64> = self.piece.mesh().face_areas().collect();
         let mut order: Vec<usize> = (0..areas.len()).collect();
         order.sort_by(|&f, &g| areas[g].total_cmp(&areas[f]).then(f.cmp(&g)));
         let step = (order.len() / (2 * TRIED)).max(1);
-        let mut motions = vec![Alignment::about_origin(nalgebra::Matrix3::identity())];
-        motions[0].translation = self.in_place;
+        let mut motions = vec![Similarity { translation: self.in_place, ..Similarity::identity() }];
         for f in order.into_iter().step_by(step).take(TRIED) {
-            let own = by_sides(self.piece.mesh.faces[f], &self.points);
+            let own = by_sides(self.piece.mesh().faces[f], &self.points);
             let wanted = sides(own, &self.points);
             for g in near.near(&wanted, 3.0 * self.tolerance, CANDIDATES) {
                 let pairs = [0, 1, 2].map(|i| (self.points[own[i]], positions[ordered[g][i]]));
-                motions.extend(Alignment::fit(&pairs, false));
+                motions.extend(Similarity::fit_motion(&pairs, false));
             }
         }
         motions
     }
 
     /// Whether enough faces of the piece are faces of the whole, once the motion is made precise.
-    fn shares_faces(&self, motion: &Alignment) -> bool {
+    fn shares_faces(&self, motion: &Similarity) -> bool {
         let off = 30.0 * self.tolerance;
         let is_near = |p: &Point3<f64>| self.vertices.nearest(&motion.apply(p)).1 <= off * off;
         let step = (self.points.len() / PROBES).max(1);
@@ -123,20 +124,21 @@ impl<'a> PieceSearch<'a> {
             .points
             .iter()
             .filter(|p| is_near(p))
-            .map(|p| (*p, self.whole.mesh.positions[self.vertices.nearest(&motion.apply(p)).0]))
+            .map(|p| (*p, self.whole.mesh().positions[self.vertices.nearest(&motion.apply(p)).0]))
             .collect();
-        let Some(precise) = Alignment::fit(&pairs, false) else { return false };
+        let Some(precise) = Similarity::fit_motion(&pairs, false) else { return false };
         let partner = |p: &Point3<f64>| {
             let (i, sq) = self.vertices.nearest(&precise.apply(p));
             (sq <= self.tolerance * self.tolerance).then(|| VertexId::from(i))
         };
         let partners: Vec<Option<VertexId>> = self.points.iter().map(partner).collect();
-        let known: HashSet<[VertexId; 3]> = self.whole.mesh.faces.iter().map(|face| sorted(*face)).collect();
+        let known: HashSet<[VertexId; 3]> =
+            self.whole.mesh().faces.iter().map(|face| sorted(*face)).collect();
         let is_shared = |face: &&[VertexId; 3]| match face.map(|v| partners[v.index()]) {
             [Some(a), Some(b), Some(c)] => known.contains(&sorted([a, b, c])),
             _ => false,
         };
-        let n_shared = self.piece.mesh.faces.iter().filter(is_shared).count();
+        let n_shared = self.piece.mesh().faces.iter().filter(is_shared).count();
         n_shared >= LEAST_FACES && n_shared as f64 >= LEAST_SHARED * self.piece.n_faces() as f64
     }
 }

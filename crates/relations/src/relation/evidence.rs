@@ -2,11 +2,10 @@
 
 use base::ContentHash;
 use descriptors::ShapeDistance;
+use rigid::{Gap, Handedness};
 use serde::{Serialize, Serializer};
 
 use super::cut::CutPiece;
-use super::handedness::Handedness;
-use super::in_space::SurfaceGap;
 use super::parts::Parts;
 use super::units::UnitChange;
 use super::variant::Difference;
@@ -57,7 +56,7 @@ pub struct Evidence {
     /// area.
     pub vertex_gap: Option<f64>,
     /// How far the surfaces are apart in space.
-    pub surface_gap: Option<SurfaceGap>,
+    pub surface_gap: Option<Gap>,
     /// How often one mesh occurs among the components of the other.
     pub parts: Option<Parts>,
     /// What was cut out of what.

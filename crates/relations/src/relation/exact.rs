@@ -2,8 +2,8 @@
 
 use std::collections::HashSet;
 
-use descriptors::{Alignment, NearestPoints};
-use nalgebra::{Matrix3, Point3, Vector3};
+use nalgebra::{Point3, Vector3};
+use rigid::{NearestPoints, Similarity};
 use surface::VertexId;
 
 use super::geometry::{MeshGeometry, sorted};
@@ -41,7 +41,7 @@ pub(super) fn same_vertices(a: &MeshGeometry, b: &MeshGeometry) -> Option<SameVe
     if a.n_vertices() != b.n_vertices() {
         return None;
     }
-    let search = VertexSearch::new(a, b, a.rounding + b.rounding)?;
+    let search = VertexSearch::new(a, b, a.rounding() + b.rounding())?;
     preferred([false, true].into_iter().filter_map(|reflected| search.run(reflected)))
 }
 
@@ -68,7 +68,7 @@ struct VertexSearch<'a> {
 impl<'a> VertexSearch<'a> {
     /// `None` if distances from the centroids differ.
     fn new(a: &'a MeshGeometry, b: &'a MeshGeometry, tolerance: f64) -> Option<Self> {
-        let (p, q) = (&a.mesh.positions, &b.mesh.positions);
+        let (p, q) = (&a.mesh().positions, &b.mesh().positions);
         // The centroid is off by rounding too.
         let slack = 2.0 * tolerance;
         let by_radius = |points: &[Point3<f64>]| {
@@ -108,7 +108,7 @@ impl<'a> VertexSearch<'a> {
             geometries: [a, b],
             tolerance,
             nearest: NearestPoints::new(q.clone()).ok()?,
-            faces: b.mesh.faces.iter().map(|face| sorted(*face)).collect(),
+            faces: b.mesh().faces.iter().map(|face| sorted(*face)).collect(),
             base: [p[first], p[second]],
             images,
             probes: p.iter().step_by(step).copied().collect(),
@@ -123,9 +123,9 @@ impl<'a> VertexSearch<'a> {
         let is_apart = |[q1, q2]: &[Point3<f64>; 2]| ((q1 - q2).norm() - apart).abs() <= 4.0 * self.tolerance;
         let directions = |[p, q]: [Point3<f64>; 2]| Some([p.coords.try_normalize(0.0)?, q.coords]);
         let from = directions(self.base)?;
-        let motion = |to| of_frames(from, directions(to)?, reflected);
+        let motion = |to| Similarity::between_frames(from, directions(to)?, reflected);
         let off = LEVERAGE * self.tolerance;
-        let is_near = |motion: &Alignment| {
+        let is_near = |motion: &Similarity| {
             self.probes.iter().all(|p| self.nearest.nearest(&motion.apply(p)).1 <= off * off)
         };
         let motions = pairs.take(MOST_PAIRS).filter(is_apart).filter_map(motion).filter(is_near);
@@ -133,18 +133,17 @@ impl<'a> VertexSearch<'a> {
     }
 
     /// The vertices as partners under a motion that is off by at most `off`, which is made precise.
-    fn checked(&self, motion: Alignment, off: f64) -> Option<SameVertices> {
+    fn checked(&self, rough: Similarity, off: f64) -> Option<SameVertices> {
         let [a, b] = self.geometries;
-        let rough = Similarity { motion, scale: 1.0 };
-        let Fitted { map, gap, partners } = Fitted::new(&a.mesh.positions, &self.nearest, &rough, off)?;
+        let Fitted { map, gap, partners } = Fitted::new(&a.mesh().positions, &self.nearest, &rough, off)?;
         if gap > self.tolerance {
             return None;
         }
         let image = |face: &[VertexId; 3]| sorted(face.map(|v| VertexId::from(partners[v.index()])));
         let same_faces =
-            a.n_faces() == b.n_faces() && a.mesh.faces.iter().all(|face| self.faces.contains(&image(face)));
-        let motion = Alignment::about_origin(map.motion.rotation);
-        Some(SameVertices { map: Similarity { motion, ..map }, gap, same_faces })
+            a.n_faces() == b.n_faces() && a.mesh().faces.iter().all(|face| self.faces.contains(&image(face)));
+        let map = Similarity { translation: Vector3::zeros(), ..map };
+        Some(SameVertices { map, gap, same_faces })
     }
 }
 
@@ -172,79 +171,10 @@ impl Fitted {
         };
         let partners: Vec<usize> = points.iter().map(partner).collect::<Option<_>>()?;
         let pairs: Vec<_> = points.iter().zip(&partners).map(|(p, &i)| (*p, others.points()[i])).collect();
-        let map = Similarity::fit(&pairs, rough.motion.reflected)?;
+        let map = Similarity::fit_scaled(&pairs, rough.reflected)?;
         let gap = pairs.iter().map(|(p, q)| (map.apply(p) - q).norm()).fold(0.0, f64::max);
         Some(Self { map, gap, partners })
     }
-}
-
-/// The map `x -> rotation (scale x) + translation`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Similarity {
-    pub(super) motion: Alignment,
-    pub(super) scale: f64,
-}
-
-impl Similarity {
-    /// The map that minimises the squared distances of pairs (Umeyama 1991, `umeyama1991` in `REFERENCES.bib`).
-    pub(super) fn fit(pairs: &[(Point3<f64>, Point3<f64>)], reflected: bool) -> Option<Self> {
-        let motion = Alignment::fit(pairs, reflected)?;
-        let n = pairs.len() as f64;
-        let (x, y) = pairs
-            .iter()
-            .fold((Vector3::zeros(), Vector3::zeros()), |(x, y), (p, q)| (x + p.coords, y + q.coords));
-        let (x, y) = (x / n, y / n);
-        let (mut product, mut square) = (0.0, 0.0);
-        for (p, q) in pairs {
-            let p = p.coords - x;
-            product += (motion.rotation * p).dot(&(q.coords - y));
-            square += p.norm_squared();
-        }
-        let scale = product / square;
-        if !(scale > 0.0 && scale.is_finite()) {
-            return None;
-        }
-        let motion = Alignment { translation: y - motion.rotation * x * scale, ..motion };
-        Some(Self { motion, scale })
-    }
-
-    pub(super) fn apply(&self, p: &Point3<f64>) -> Point3<f64> {
-        self.motion.apply(&(p * self.scale))
-    }
-
-    /// This map after another one.
-    pub(super) fn after(&self, first: &Self) -> Self {
-        let turned = self.motion.rotation * first.motion.translation;
-        let translation = turned * self.scale + self.motion.translation;
-        let motion = Alignment { translation, ..self.motion.after(&first.motion) };
-        Self { motion, scale: first.scale * self.scale }
-    }
-
-    /// The map back.
-    pub(super) fn inverse(&self) -> Self {
-        // y = R s x + t, so x = R^T (y - t) / s.
-        let back = self.motion.inverse();
-        let motion = Alignment { translation: back.translation / self.scale, ..back };
-        Self { motion, scale: 1.0 / self.scale }
-    }
-}
-
-/// The turn about the origin that takes the plane of two vectors to that of two others, and the first, of length 1, to the
-/// first.
-pub(super) fn of_frames(
-    from: [Vector3<f64>; 2],
-    to: [Vector3<f64>; 2],
-    reflected: bool,
-) -> Option<Alignment> {
-    let frame = |[x, y]: [Vector3<f64>; 2]| {
-        let z = x.cross(&y).try_normalize(1e-9)?;
-        Some(Matrix3::from_columns(&[x, z.cross(&x), z]))
-    };
-    let (from, mut to) = (frame(from)?, frame(to)?);
-    if reflected {
-        to.column_mut(2).neg_mut();
-    }
-    Some(Alignment::about_origin(to * from.transpose()))
 }
 
 #[cfg(test)]
@@ -284,12 +214,12 @@ mod tests {
         let symmetric = [shapes::icosphere(3), shapes::cube(4), shapes::tetrahedron(2)];
         for mesh in symmetric.iter().chain([&lopsided_torus()]) {
             let same = found(mesh, &moved(mesh, 25.4, 1.0)).unwrap();
-            assert!(same.same_faces && !same.map.motion.reflected && same.gap < 1e-6, "{same:?}");
+            assert!(same.same_faces && !same.map.reflected && same.gap < 1e-6, "{same:?}");
             assert!((same.map.scale - 1.0).abs() < 1e-6, "at unit area: {}", same.map.scale);
         }
         let mirrored = found(&lopsided_torus(), &moved(&lopsided_torus(), 1.0, -1.0)).unwrap();
-        assert!(mirrored.same_faces && mirrored.map.motion.reflected);
-        assert!(mirrored.map.motion.rotation.determinant() < 0.0);
+        assert!(mirrored.same_faces && mirrored.map.reflected);
+        assert!(mirrored.map.rotation.determinant() < 0.0);
     }
 
     #[test]

@@ -4,17 +4,12 @@ use std::collections::HashMap;
 use std::sync::OnceLock;
 
 use base::ContentHash;
-use descriptors::{CanonicalForm, PreparedForm};
 use mesh::{SmoothRegions, TriMesh, is_noisy};
 use nalgebra::Point3;
+use rigid::{RigidSurface, TriangleTree};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use surface::{Components, VertexId, components_of_faces};
-
-use super::triangles::TriangleTree;
-
-/// Points of a surface that look for their nearest points when two surfaces are aligned.
-const SAMPLES: usize = 2000;
 
 /// How coarsely files round coordinates, relative to the largest coordinate: text with six digits, twice. Numbers of 32 bits
 /// are finer. A tolerance of rounding.
@@ -47,23 +42,11 @@ pub struct MeshGeometry {
     /// Hash of the file.
     pub(super) content: Option<ContentHash>,
     /// Without degenerate and duplicate faces and unused vertices.
-    pub(super) mesh: TriMesh,
-    /// The square root of the area, in mesh units.
-    pub(super) size: f64,
-    /// The centroid of the surface, in mesh units.
-    pub(super) centre: Point3<f64>,
-    /// How far vertices may be apart because files round them, relative to the size.
-    pub(super) rounding: f64,
-    /// Root mean square distance of the surface from its centroid along its principal axes, descending.
-    pub(super) spreads: [f64; 3],
+    pub(super) surface: RigidSurface,
     /// The largest coordinate in the file, in mesh units.
     farthest: f64,
     components: Components,
-    samples: OnceLock<Vec<Point3<f64>>>,
-    tree: OnceLock<TriangleTree>,
-    form: OnceLock<Option<PreparedForm>>,
     noisy: OnceLock<bool>,
-    regions: OnceLock<SmoothRegions>,
     parts: OnceLock<Vec<MeshGeometry>>,
 }
 
@@ -74,23 +57,21 @@ struct Record {
     positions: Vec<[f64; 3]>,
     faces: Vec<[VertexId; 3]>,
     size: f64,
-    centre: [f64; 3],
-    rounding: f64,
-    spreads: [f64; 3],
+    center: [f64; 3],
+    axis_std: [f64; 3],
     farthest: f64,
 }
 
 impl Serialize for MeshGeometry {
     fn serialize<S: Serializer>(&self, out: S) -> Result<S::Ok, S::Error> {
-        let Self { content, mesh, size, centre, rounding, spreads, farthest, .. } = self;
+        let Self { content, surface, farthest, .. } = self;
         let record = Record {
             content: *content,
-            positions: mesh.positions.iter().map(|p| (*p).into()).collect(),
-            faces: mesh.faces.clone(),
-            size: *size,
-            centre: (*centre).into(),
-            rounding: *rounding,
-            spreads: *spreads,
+            positions: surface.mesh().positions.iter().map(|p| (*p).into()).collect(),
+            faces: surface.mesh().faces.clone(),
+            size: surface.size(),
+            center: surface.center().into(),
+            axis_std: surface.axis_std(),
             farthest: *farthest,
         };
         record.serialize(out)
@@ -99,13 +80,14 @@ impl Serialize for MeshGeometry {
 
 impl<'de> Deserialize<'de> for MeshGeometry {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        let Record { content, positions, faces, size, centre, rounding, spreads, farthest } =
+        let Record { content, positions, faces, size, center, axis_std, farthest } =
             Record::deserialize(from)?;
         if faces.iter().flatten().any(|v| v.index() >= positions.len()) {
             return Err(D::Error::custom("a face has a vertex that is not there"));
         }
         let mesh = TriMesh { positions: positions.into_iter().map(Point3::from).collect(), faces };
-        Ok(Self { content, ..Self::of_parts(mesh, size, centre.into(), rounding, spreads, farthest) })
+        let surface = RigidSurface::from_parts(mesh, size, center.into(), axis_std);
+        Ok(Self { content, ..Self::from_surface(surface, farthest) })
     }
 }
 
@@ -115,60 +97,36 @@ impl MeshGeometry {
     #[must_use]
     pub fn new(mesh: &TriMesh, content: Option<ContentHash>) -> Option<Self> {
         let farthest = mesh.positions.iter().map(|p| p.coords.amax()).fold(0.0, f64::max);
-        Some(Self { content, ..Self::of_welded(welded(mesh), farthest)? })
+        let surface = RigidSurface::new(welded(mesh)).filter(|_| farthest.is_finite())?;
+        Some(Self { content, ..Self::from_surface(surface, farthest) })
     }
 
-    fn of_welded(mut mesh: TriMesh, farthest: f64) -> Option<Self> {
-        let size = mesh.root_of_area();
-        if !(size > 0.0 && size.is_finite() && farthest.is_finite()) {
-            return None;
-        }
-        let origin = mesh.bounds()?[0];
-        mesh.positions.iter_mut().for_each(|p| *p = Point3::from((*p - origin) / size));
-        let (centroid, covariance) = mesh.moments();
-        mesh.positions.iter_mut().for_each(|p| *p -= centroid);
-        let mut spreads: [f64; 3] = covariance.symmetric_eigenvalues().map(|x| x.max(0.0).sqrt()).into();
-        spreads.sort_by(|a, b| b.total_cmp(a));
-        let rounding = (ROUNDING * farthest / size).min(MOST_ROUNDING);
-        Some(Self::of_parts(mesh, size, origin + centroid * size, rounding, spreads, farthest))
+    fn from_surface(surface: RigidSurface, farthest: f64) -> Self {
+        let components = components_of_faces(surface.mesh().n_vertices(), &surface.mesh().faces);
+        let (noisy, parts) = Default::default();
+        Self { content: None, surface, farthest, components, noisy, parts }
     }
 
-    fn of_parts(
-        mesh: TriMesh,
-        size: f64,
-        centre: Point3<f64>,
-        rounding: f64,
-        spreads: [f64; 3],
-        farthest: f64,
-    ) -> Self {
-        Self {
-            content: None,
-            size,
-            centre,
-            rounding,
-            spreads,
-            farthest,
-            components: components_of_faces(mesh.n_vertices(), &mesh.faces),
-            mesh,
-            samples: OnceLock::new(),
-            tree: OnceLock::new(),
-            form: OnceLock::new(),
-            noisy: OnceLock::new(),
-            regions: OnceLock::new(),
-            parts: OnceLock::new(),
-        }
+    /// How far vertices may be apart because files round them, relative to the size.
+    pub(super) fn rounding(&self) -> f64 {
+        (ROUNDING * self.farthest / self.size()).min(MOST_ROUNDING)
+    }
+
+    /// The mesh at unit area, about its centroid.
+    pub(super) fn mesh(&self) -> &TriMesh {
+        self.surface.mesh()
     }
 
     /// Number of vertices in different positions.
     #[must_use]
     pub fn n_vertices(&self) -> usize {
-        self.mesh.n_vertices()
+        self.mesh().n_vertices()
     }
 
     /// Number of faces, without degenerate and duplicate ones.
     #[must_use]
     pub fn n_faces(&self) -> usize {
-        self.mesh.n_faces()
+        self.mesh().n_faces()
     }
 
     /// Number of connected components.
@@ -180,14 +138,17 @@ impl MeshGeometry {
     /// The square root of the area, in mesh units.
     #[must_use]
     pub fn size(&self) -> f64 {
-        self.size
+        self.surface.size()
     }
 
     /// The mesh in its own units and place, without repeated positions, degenerate and duplicate faces and unused vertices.
     #[must_use]
     pub fn to_mesh(&self) -> TriMesh {
-        let positions = self.mesh.positions.iter().map(|p| self.centre + p.coords * self.size).collect();
-        TriMesh { positions, faces: self.mesh.faces.clone() }
+        let place = |p: &Point3<f64>| self.surface.center() + p.coords * self.size();
+        TriMesh {
+            positions: self.mesh().positions.iter().map(place).collect(),
+            faces: self.mesh().faces.clone(),
+        }
     }
 
     /// Approximate size in memory.
@@ -197,43 +158,23 @@ impl MeshGeometry {
         100 * self.n_vertices() + 250 * self.n_faces()
     }
 
-    /// Evenly spread points of the surface.
-    pub(super) fn samples(&self) -> &[Point3<f64>] {
-        self.samples.get_or_init(|| sampled(&self.mesh, SAMPLES))
-    }
-
     pub(super) fn tree(&self) -> &TriangleTree {
-        self.tree.get_or_init(|| TriangleTree::new(&self.mesh))
-    }
-
-    /// Root mean square distance of the surface from its centroid, relative to the size. Noise changes it less than the size.
-    pub(super) fn spread(&self) -> f64 {
-        self.spreads.iter().map(|x| x * x).sum::<f64>().sqrt()
-    }
-
-    /// The samples as a form of unit spread, ready to be aligned.
-    pub(super) fn form(&self) -> Option<&PreparedForm> {
-        let prepare = || {
-            let points: Vec<_> = self.samples().iter().map(|p| p / self.spread()).collect();
-            let weights = vec![1.0 / points.len() as f64; points.len()];
-            PreparedForm::new(&CanonicalForm::from_parts(points, weights, Some(1.0)).ok()?).ok()
-        };
-        self.form.get_or_init(prepare).as_ref()
+        self.surface.tree()
     }
 
     /// The smooth pieces between sharp edges.
     pub(super) fn regions(&self) -> &SmoothRegions {
-        self.regions.get_or_init(|| SmoothRegions::of(&self.mesh))
+        self.surface.regions()
     }
 
     /// Whether planes and cylinders with sharp edges between them make up the surface, as in parts of machines.
     pub(super) fn is_mechanical(&self) -> bool {
-        self.regions().is_mechanical
+        self.surface.is_mechanical()
     }
 
     /// Whether vertices have noise that is independent of their neighbours'.
     pub(super) fn is_noisy(&self) -> bool {
-        *self.noisy.get_or_init(|| is_noisy(&self.mesh))
+        *self.noisy.get_or_init(|| is_noisy(self.mesh()))
     }
 
     /// The components with enough area as geometries of their own, largest first; none if there is only one.
@@ -244,7 +185,7 @@ impl MeshGeometry {
             }
             let mut parts = vec![TriMesh::default(); self.n_components()];
             let mut number = Vec::with_capacity(self.n_vertices());
-            for (v, p) in self.mesh.positions.iter().enumerate() {
+            for (v, p) in self.mesh().positions.iter().enumerate() {
                 // No face has the number of a vertex without faces.
                 let component = self.components.of(VertexId::from(v));
                 let Some(part) = component.map(|component| &mut parts[component]) else {
@@ -252,17 +193,20 @@ impl MeshGeometry {
                     continue;
                 };
                 number.push(VertexId::from(part.n_vertices()));
-                part.positions.push(self.centre + p.coords * self.size);
+                part.positions.push(self.surface.center() + p.coords * self.size());
             }
             let mut areas = vec![0.0; parts.len()];
-            for (face, area) in self.mesh.faces.iter().zip(self.mesh.face_areas()) {
+            for (face, area) in self.mesh().faces.iter().zip(self.mesh().face_areas()) {
                 let Some(label) = self.components.of(face[0]) else { continue };
                 parts[label].faces.push(face.map(|v| number[v.index()]));
                 areas[label] += area;
             }
             let mut order: Vec<usize> = (0..areas.len()).filter(|&i| areas[i] >= LEAST_COMPONENT).collect();
             order.sort_by(|&i, &j| areas[j].total_cmp(&areas[i]).then(i.cmp(&j)));
-            let part = |&i: &usize| Self::of_welded(std::mem::take(&mut parts[i]), self.farthest);
+            let part = |&i: &usize| {
+                let surface = RigidSurface::new(std::mem::take(&mut parts[i]))?;
+                Some(Self::from_surface(surface, self.farthest))
+            };
             order.iter().take(MOST_COMPONENTS).filter_map(part).collect()
         })
     }
@@ -291,31 +235,9 @@ pub(super) fn sorted(mut face: [VertexId; 3]) -> [VertexId; 3] {
     face
 }
 
-/// Points of a surface, one in each of `n` pieces of equal area.
-fn sampled(mesh: &TriMesh, n: usize) -> Vec<Point3<f64>> {
-    // Steps of a sequence whose leading points fill a square evenly (Roberts' generalised golden ratio).
-    const STEPS: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
-    let total: f64 = mesh.face_areas().sum();
-    let mut points = Vec::with_capacity(n);
-    let mut sum = 0.0;
-    for (f, area) in mesh.face_areas().enumerate() {
-        sum += area / total;
-        while points.len() < n && (points.len() as f64 + 0.5) / (n as f64) < sum {
-            let [mut u, mut v] = STEPS.map(|step| (0.5 + step * points.len() as f64).fract());
-            if u + v > 1.0 {
-                (u, v) = (1.0 - u, 1.0 - v);
-            }
-            let [a, b, c] = mesh.triangle(f);
-            points.push(a + (b - a) * u + (c - a) * v);
-        }
-    }
-    points
-}
-
 #[cfg(test)]
 mod tests {
     use mesh::shapes;
-    use nalgebra::Vector3;
 
     use super::*;
 
@@ -328,23 +250,8 @@ mod tests {
         };
         let [a, b] = [&ball, &soup].map(|mesh| MeshGeometry::new(mesh, None).unwrap());
         assert_eq!((a.n_vertices(), a.n_faces()), (b.n_vertices(), b.n_faces()));
-        assert!((a.size - b.size).abs() < 1e-12);
+        assert!((a.size() - b.size()).abs() < 1e-12);
         assert!(MeshGeometry::new(&TriMesh::default(), None).is_none());
-    }
-
-    #[test]
-    fn geometries_are_centred_at_unit_area() {
-        let mut torus = shapes::torus(40, 20, 2.0, 0.7);
-        torus.positions.iter_mut().for_each(|p| *p = *p * 25.4 + Vector3::new(300.0, -7.0, 20.0));
-        let geometry = MeshGeometry::new(&torus, None).unwrap();
-        assert!((geometry.mesh.area() - 1.0).abs() < 1e-12);
-        assert!((geometry.centre - Point3::new(300.0, -7.0, 20.0)).norm() < 1e-9);
-        assert!(geometry.mesh.moments().0.norm() < 1e-12);
-        let samples = geometry.samples();
-        assert_eq!(samples.len(), SAMPLES);
-        let mean = samples.iter().fold(Vector3::zeros(), |sum, p| sum + p.coords) / SAMPLES as f64;
-        assert!(mean.norm() < 0.01, "{mean}");
-        assert!(samples.iter().all(|p| geometry.tree().nearest(p).unwrap().sq_distance < 1e-24));
     }
 
     #[test]
@@ -357,7 +264,7 @@ mod tests {
         let parts = geometry.parts();
         assert_eq!((geometry.n_components(), parts.len()), (3, 3));
         assert_eq!(parts[0].n_vertices(), shapes::icosphere(2).n_vertices(), "the largest area first");
-        assert!((parts[1].size / shapes::cube(1).root_of_area() - 1.0).abs() < 1e-9);
+        assert!((parts[1].size() / shapes::cube(1).root_of_area() - 1.0).abs() < 1e-9);
         assert!(parts[0].parts().is_empty());
     }
 }

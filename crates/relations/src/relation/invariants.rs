@@ -58,10 +58,10 @@ impl MeshGeometry {
     /// Its invariants.
     #[must_use]
     pub fn invariants(&self) -> SurfaceInvariants {
-        let volume = |euler| (self.mesh.signed_volume().abs(), euler);
+        let volume = |euler| (self.mesh().signed_volume().abs(), euler);
         SurfaceInvariants {
             n_vertices: self.n_vertices(),
-            spreads: self.spreads,
+            spreads: self.surface.axis_std(),
             closed: euler_characteristic_if_closed(self).map(volume),
             chords: self.is_mechanical().then(|| rms_chord_error(self)),
         }

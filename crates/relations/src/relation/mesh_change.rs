@@ -1,10 +1,9 @@
 //! How the triangles of one surface changed.
 
-use descriptors::NearestPoints;
+use rigid::{NearestPoints, Similarity};
 use surface::{Topology, VertexId};
 
 use super::Change;
-use super::exact::Similarity;
 use super::geometry::MeshGeometry;
 
 /// Meshes with numbers of vertices that differ by less than this share have about as many vertices. A convention.
@@ -21,7 +20,7 @@ const INDEPENDENT: f64 = 0.5;
 /// What happened to the triangles of a surface; `map` takes the first mesh onto the second. Of meshes with the same faces it is
 /// [`Change::Noisy`] if displacements do not depend on those of neighbours, else [`Change::Posed`].
 pub(super) fn mesh_change([a, b]: [&MeshGeometry; 2], map: &Similarity) -> Change {
-    if a.n_vertices() == b.n_vertices() && a.mesh.faces == b.mesh.faces {
+    if a.n_vertices() == b.n_vertices() && a.mesh().faces == b.mesh().faces {
         let is_noise = displacements([a, b]).is_some_and(|coherence| coherence < INDEPENDENT);
         return if is_noise { Change::Noisy } else { Change::Posed };
     }
@@ -37,15 +36,15 @@ pub(super) fn mesh_change([a, b]: [&MeshGeometry; 2], map: &Similarity) -> Chang
 
 /// The correlation of the displacements of vertices along edges, in meshes with the same faces.
 fn displacements([a, b]: [&MeshGeometry; 2]) -> Option<f64> {
-    let pairs: Vec<_> = a.mesh.positions.iter().copied().zip(b.mesh.positions.iter().copied()).collect();
+    let pairs: Vec<_> = a.mesh().positions.iter().copied().zip(b.mesh().positions.iter().copied()).collect();
     let fits = [false, true].map(|reflected| {
-        let map = Similarity::fit(&pairs, reflected)?;
+        let map = Similarity::fit_scaled(&pairs, reflected)?;
         let moved: Vec<_> = pairs.iter().map(|(p, q)| map.apply(p) - q).collect();
         let square: f64 = moved.iter().map(|d| d.norm_squared()).sum();
         Some((square, moved))
     });
     let (_, moved) = fits.into_iter().flatten().min_by(|x, y| x.0.total_cmp(&y.0))?;
-    let topology = Topology::new(a.n_vertices(), a.mesh.faces.clone());
+    let topology = Topology::new(a.n_vertices(), a.mesh().faces.clone());
     let (mut product, mut square) = (0.0, 0.0);
     for [v, w] in topology.edges().iter().map(|edge| edge.map(VertexId::index)) {
         product += moved[v].dot(&moved[w]);
@@ -56,10 +55,10 @@ fn displacements([a, b]: [&MeshGeometry; 2]) -> Option<f64> {
 
 /// Whether nearly all vertices of `coarse` are vertices of `fine`; `map` takes the first onto the second.
 fn has_vertices(fine: &MeshGeometry, coarse: &MeshGeometry, map: &Similarity) -> bool {
-    let Ok(nearest) = NearestPoints::new(fine.mesh.positions.clone()) else { return false };
+    let Ok(nearest) = NearestPoints::new(fine.mesh().positions.clone()) else { return false };
     // About the side of equilateral triangles of unit area in total.
     let edge = (2.3 / fine.n_faces() as f64).sqrt();
     let is_kept = |p: &nalgebra::Point3<f64>| nearest.nearest(&map.apply(p)).1 < (KEPT * edge).powi(2);
-    let kept = coarse.mesh.positions.iter().filter(|p| is_kept(p)).count();
+    let kept = coarse.mesh().positions.iter().filter(|p| is_kept(p)).count();
     kept as f64 > 0.95 * coarse.n_vertices() as f64
 }

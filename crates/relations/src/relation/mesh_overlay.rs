@@ -2,11 +2,10 @@
 
 use mesh::TriMesh;
 use nalgebra::Point3;
+use rigid::{TriangleTree, align_surfaces};
 
 use super::exact::same_vertices;
 use super::geometry::MeshGeometry;
-use super::in_space::aligned;
-use super::triangles::TriangleTree;
 use super::{Relation, RelationKind};
 
 /// Two meshes laid over each other by the best motion, reflection and change of size, at the size of the first and in its
@@ -23,9 +22,10 @@ impl Relation {
     /// The meshes laid over each other, if they are alike as rigid bodies: one surface, at any size or mirrored, or variants of a part.
     ///
     /// ```
-    /// use canonform_relations::{Handedness, MeshGeometry, Relation};
+    /// use canonform_relations::{MeshGeometry, Relation};
     /// use descriptors::ShapeDistance;
     /// use mesh::shapes;
+    /// use rigid::Handedness;
     ///
     /// let (ring, ball) = (shapes::torus(24, 12, 2.0, 0.7), shapes::icosphere(2));
     /// let [a, b, c] = [&ring, &shapes::subdivide(&ring), &ball].map(|mesh| MeshGeometry::new(mesh, None).unwrap());
@@ -40,14 +40,14 @@ impl Relation {
             return None;
         }
         let exact = same_vertices(a, b).map(|same| same.map);
-        let map = exact.or_else(|| aligned(a, b).map(|found| found.map))?;
+        let map = exact.or_else(|| align_surfaces(&a.surface, &b.surface).map(|found| found.map))?;
         // The map leads to the second mesh at unit area.
-        let size = a.size / map.scale;
+        let size = a.size() / map.scale;
         let laid = |mesh: &TriMesh, place: &dyn Fn(&Point3<f64>) -> Point3<f64>| TriMesh {
             positions: mesh.positions.iter().map(|p| place(p) * size).collect(),
             faces: mesh.faces.clone(),
         };
-        let meshes = [laid(&a.mesh, &|p| map.apply(p)), laid(&b.mesh, &|p| *p)];
+        let meshes = [laid(a.mesh(), &|p| map.apply(p)), laid(b.mesh(), &|p| *p)];
         let gaps = [(0, 1), (1, 0)].map(|(from, to)| gaps(&meshes[from], &meshes[to]));
         Some(MeshOverlay { meshes, gaps })
     }
@@ -64,9 +64,9 @@ fn gaps(from: &TriMesh, to: &TriMesh) -> Vec<f64> {
 mod tests {
     use descriptors::ShapeDistance;
     use nalgebra::{Rotation3, Vector3};
+    use rigid::Handedness;
 
     use super::*;
-    use crate::relation::Handedness;
     use mesh::shapes::lopsided_torus;
 
     fn related(a: &MeshGeometry, b: &MeshGeometry) -> Relation {
@@ -90,9 +90,9 @@ mod tests {
                 let [a, b] = [&mesh, other].map(|mesh| MeshGeometry::new(mesh, None).unwrap());
                 let found = related(&a, &b).overlay([&a, &b]).unwrap();
                 let most = found.gaps.iter().flatten().copied().fold(0.0, f64::max);
-                assert!(most < 1e-3 * a.size, "{scale} {flip}: {most}");
+                assert!(most < 1e-3 * a.size(), "{scale} {flip}: {most}");
                 for laid in &found.meshes {
-                    assert!((laid.root_of_area() / a.size - 1.0).abs() < 1e-3);
+                    assert!((laid.root_of_area() / a.size() - 1.0).abs() < 1e-3);
                 }
             }
         }

@@ -9,8 +9,6 @@ mod cut;
 mod evidence;
 mod exact;
 mod geometry;
-mod handedness;
-mod in_space;
 mod invariants;
 mod kind;
 mod mesh_change;
@@ -19,25 +17,22 @@ mod numbers;
 mod of_meshes;
 mod parts;
 mod same_surface;
-mod triangles;
 mod units;
 mod variant;
 mod words;
 
 use base::ContentHash;
 use descriptors::{ShapeDistance, ShapeMetric, Side};
+use rigid::Handedness;
 
 pub use cut::CutPiece;
 pub use evidence::{Basis, Evidence};
 pub use geometry::MeshGeometry;
-pub use handedness::{Handedness, handedness};
-pub use in_space::SurfaceGap;
 pub use invariants::SurfaceInvariants;
 pub use kind::{Change, RelationKind};
 pub use mesh_overlay::MeshOverlay;
 pub use numbers::in_four_digits;
 pub use parts::Parts;
-pub use triangles::{NearestOnSurface, TriangleTree};
 pub use units::UnitChange;
 pub use variant::{Difference, Dimension};
 
@@ -80,7 +75,8 @@ impl Relation {
     /// first.
     ///
     /// ```
-    /// use canonform_relations::{Handedness, Relation, RelationKind};
+    /// use canonform_relations::{Relation, RelationKind};
+    /// use rigid::Handedness;
     ///
     /// # use descriptors::ShapeDistance;
     /// let at = |d| Relation::by_distance(ShapeDistance { fused: d, combined: d }, 1.0, Handedness::Unknown);

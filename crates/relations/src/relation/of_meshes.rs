@@ -1,11 +1,11 @@
 //! The relation of two meshes.
 
-use descriptors::{Alignment, Side};
+use descriptors::Side;
+use rigid::{Alignment, Similarity, align_surfaces, is_symmetric};
 
 use super::cut::{CutPiece, FoundPiece, piece_of};
 use super::exact::{SameVertices, same_vertices};
 use super::geometry::MeshGeometry;
-use super::in_space::{Aligned, aligned, is_symmetric};
 use super::mesh_change::mesh_change;
 use super::parts::{PartCopy, Parts, occurrences};
 use super::same_surface::{is_one_surface, same_surface};
@@ -24,9 +24,10 @@ impl Relation {
     /// The relation once both meshes are known, too.
     ///
     /// ```
-    /// use canonform_relations::{Handedness, MeshGeometry, Relation, RelationKind};
+    /// use canonform_relations::{MeshGeometry, Relation, RelationKind};
     /// use descriptors::ShapeDistance;
     /// use mesh::shapes;
+    /// use rigid::Handedness;
     ///
     /// let ring = shapes::torus(24, 12, 2.0, 0.7);
     /// let mut inches = ring.clone();
@@ -81,13 +82,13 @@ impl Relation {
 
     /// Of meshes whose vertices are the same.
     fn with_same_vertices(mut self, same: &SameVertices, [a, b]: [&MeshGeometry; 2]) -> Self {
-        let Alignment { rotation, reflected, .. } = same.map.motion;
-        let scale = same.map.scale * b.size / a.size;
+        let Similarity { rotation, reflected, scale, .. } = same.map;
+        let scale = scale * b.size() / a.size();
         let mut changes = Vec::new();
         if !reflected {
             let angle = nalgebra::Rotation3::from_matrix_unchecked(rotation).angle();
-            let shift = b.centre.coords - rotation * a.centre.coords * scale;
-            if shift.norm() > SIZE_OF_VERTICES * b.size {
+            let shift = b.surface.center().coords - rotation * a.surface.center().coords * scale;
+            if shift.norm() > SIZE_OF_VERTICES * b.size() {
                 changes.push(Change::Moved);
             }
             if angle > SIZE_OF_VERTICES {
@@ -96,7 +97,7 @@ impl Relation {
             self.evidence.rotation = Some(angle.to_degrees());
         }
         // A surface that is its own mirror image is not another one for being mirrored, only its triangles are.
-        let is_turned = reflected && is_symmetric(b);
+        let is_turned = reflected && is_symmetric(&b.surface);
         changes.extend(Change::of_similarity(scale, SIZE_OF_VERTICES, reflected && !is_turned));
         changes.extend((is_turned || !same.same_faces).then_some(Change::Remeshed));
         let kind = match changes.last() {
@@ -125,16 +126,18 @@ impl Relation {
 
     /// Of meshes with different vertices: one surface, variants of one part, or what their distance says.
     fn with_surfaces(mut self, [a, b]: [&MeshGeometry; 2]) -> Self {
-        let Some(aligned) = aligned(a, b) else { return self.with_differences([a, b], None) };
-        let Aligned { map, gap } = aligned;
+        let Some(aligned) = align_surfaces(&a.surface, &b.surface) else {
+            return self.with_differences([a, b], None);
+        };
+        let Alignment { map, gap } = aligned;
         let change = mesh_change([a, b], &map);
         let probability = same_surface(&aligned, [a, b], change);
         self.evidence.surface_gap = Some(gap);
         if probability < 0.5 || change == Change::Posed {
             return self.with_differences([a, b], Some(gap.rms));
         }
-        let scale = map.scale * b.size / a.size;
-        let mut changes = Change::of_similarity(scale, SIZE_OF_SURFACES, map.motion.reflected);
+        let scale = map.scale * b.size() / a.size();
+        let mut changes = Change::of_similarity(scale, SIZE_OF_SURFACES, map.reflected);
         let kind = if change == Change::Noisy { RelationKind::Noisy } else { RelationKind::Remeshed };
         changes.push(change);
         // One of the two has noise, and the other has not.

@@ -1,12 +1,12 @@
 //! A mesh among the components of another.
 
 use descriptors::Side;
+use rigid::{Alignment, Gap, align_surfaces};
 use serde::Serialize;
 
 use super::SIZE_OF_SURFACES;
 use super::exact::{SameVertices, same_vertices};
 use super::geometry::MeshGeometry;
-use super::in_space::{Aligned, SurfaceGap, aligned};
 use super::mesh_change::mesh_change;
 use super::same_surface::same_surface;
 
@@ -31,7 +31,7 @@ pub(super) struct PartCopy {
     pub(super) scale: f64,
     pub(super) mirrored: bool,
     /// How far the surfaces are apart, unless they have the same vertices.
-    pub(super) gap: Option<SurfaceGap>,
+    pub(super) gap: Option<Gap>,
     /// Probability that it is a copy.
     pub(super) confidence: f64,
 }
@@ -50,8 +50,8 @@ pub(super) fn occurrences(mesh: &MeshGeometry, whole: &MeshGeometry) -> Option<(
         let known = kinds.iter().find_map(|(kind, copy)| {
             let same = same_vertices(kind, part).filter(|same| same.same_faces)?;
             Some(copy.map(|copy| PartCopy {
-                scale: copy.scale * part.size / kind.size,
-                mirrored: copy.mirrored != same.map.motion.reflected,
+                scale: copy.scale * part.size() / kind.size(),
+                mirrored: copy.mirrored != same.map.reflected,
                 ..copy
             }))
         });
@@ -85,15 +85,15 @@ pub(super) fn occurrences(mesh: &MeshGeometry, whole: &MeshGeometry) -> Option<(
 }
 
 fn copy_of(mesh: &MeshGeometry, part: &MeshGeometry, align: bool) -> Option<PartCopy> {
-    let sizes = part.size / mesh.size;
+    let sizes = part.size() / mesh.size();
     if let Some(SameVertices { map, .. }) = same_vertices(mesh, part) {
-        let (scale, mirrored) = (map.scale * sizes, map.motion.reflected);
+        let (scale, mirrored) = (map.scale * sizes, map.reflected);
         return Some(PartCopy { scale, mirrored, gap: None, confidence: 1.0 });
     }
-    let aligned = if align { aligned(mesh, part)? } else { return None };
-    let Aligned { map, gap } = aligned;
+    let aligned = if align { align_surfaces(&mesh.surface, &part.surface)? } else { return None };
+    let Alignment { map, gap } = aligned;
     let confidence = same_surface(&aligned, [mesh, part], mesh_change([mesh, part], &map));
-    let (scale, mirrored) = (map.scale * sizes, map.motion.reflected);
+    let (scale, mirrored) = (map.scale * sizes, map.reflected);
     (confidence > 0.5).then_some(PartCopy { scale, mirrored, gap: Some(gap), confidence })
 }
 
@@ -105,9 +105,8 @@ impl MeshGeometry {
         let mut kinds: Vec<(&Self, usize)> = Vec::new();
         for part in self.parts() {
             let is_copy = |kind: &Self| {
-                (part.size / kind.size).ln().abs() < SIZE_OF_SURFACES
-                    && same_vertices(kind, part)
-                        .is_some_and(|same| same.same_faces && !same.map.motion.reflected)
+                (part.size() / kind.size()).ln().abs() < SIZE_OF_SURFACES
+                    && same_vertices(kind, part).is_some_and(|same| same.same_faces && !same.map.reflected)
             };
             match kinds.iter_mut().find(|(kind, _)| is_copy(kind)) {
                 Some((_, copies)) => *copies += 1,

@@ -3,14 +3,14 @@
 //! Two triangulations of one surface differ by the error of flat triangles: at most the height of the arcs that stand over
 //! them. What else differs is a difference of the surfaces, and one that is measured anywhere is enough.
 
-use descriptors::{Boundary, NearestPoints};
+use descriptors::Boundary;
 use nalgebra::Point3;
+use rigid::{Alignment, NearestPoints, Similarity};
 use surface::Topology;
 
 use super::Change;
-use super::exact::{Fitted, SameVertices, Similarity};
+use super::exact::{Fitted, SameVertices};
 use super::geometry::MeshGeometry;
-use super::in_space::Aligned;
 
 /// What is allowed in copies of one organic surface besides the error of flat triangles, root mean square, relative to the
 /// size. Measured on the built-in families with 200 to 10,000 vertices (`cargo test -p tests --test laws -- matches
@@ -57,7 +57,7 @@ const MOST_PROBES: usize = 12_000;
 const MOST_CERTAIN: f64 = 0.99;
 
 /// The probability that surfaces this far apart are one surface.
-pub(super) fn same_surface(aligned: &Aligned, meshes: [&MeshGeometry; 2], change: Change) -> f64 {
+pub(super) fn same_surface(aligned: &Alignment, meshes: [&MeshGeometry; 2], change: Change) -> f64 {
     let probability = match meshes.map(MeshGeometry::is_mechanical) {
         [true, true] => same_part(aligned, meshes),
         _ => same_body(aligned, meshes, change),
@@ -66,7 +66,7 @@ pub(super) fn same_surface(aligned: &Aligned, meshes: [&MeshGeometry; 2], change
 }
 
 /// Organic surfaces: the root mean square decides, unless the largest distance is out of proportion.
-fn same_body(aligned: &Aligned, meshes: [&MeshGeometry; 2], change: Change) -> f64 {
+fn same_body(aligned: &Alignment, meshes: [&MeshGeometry; 2], change: Change) -> f64 {
     let fewest = meshes.map(MeshGeometry::n_vertices).into_iter().min().unwrap_or(1).max(1);
     let chords: f64 = meshes.map(rms_chord_error).iter().sum();
     let flatness = f64::min(CHORDS * chords, FLATNESS / fewest as f64);
@@ -82,17 +82,18 @@ fn same_body(aligned: &Aligned, meshes: [&MeshGeometry; 2], change: Change) -> f
 /// Whether the faces between the same vertices make up one surface.
 pub(super) fn is_one_surface(same: &SameVertices, meshes: [&MeshGeometry; 2]) -> bool {
     let [a, b] = meshes;
-    Aligned::by(a, b, same.map).is_some_and(|aligned| same_surface(&aligned, meshes, Change::Remeshed) > 0.5)
+    Alignment::by_map(&a.surface, &b.surface, same.map)
+        .is_some_and(|aligned| same_surface(&aligned, meshes, Change::Remeshed) > 0.5)
 }
 
 pub(super) fn rms_chord_error(mesh: &MeshGeometry) -> f64 {
     let errors = mesh.regions().chord_errors.iter();
-    mesh.mesh.face_areas().zip(errors).map(|(area, error)| area * error * error).sum::<f64>().sqrt()
+    mesh.mesh().face_areas().zip(errors).map(|(area, error)| area * error * error).sum::<f64>().sqrt()
 }
 
 /// Mechanical surfaces: no point of either may be farther from the other than arcs and rounding explain, and closed ones
 /// have equally many handles.
-fn same_part(aligned: &Aligned, [a, b]: [&MeshGeometry; 2]) -> f64 {
+fn same_part(aligned: &Alignment, [a, b]: [&MeshGeometry; 2]) -> f64 {
     let handles = [a, b].map(euler_characteristic_if_closed);
     if matches!(handles, [Some(x), Some(y)] if x != y) {
         return 0.0;
@@ -103,14 +104,14 @@ fn same_part(aligned: &Aligned, [a, b]: [&MeshGeometry; 2]) -> f64 {
 
 /// How far the vertices of one triangulation are apart, in multiples of what is allowed: they lie on the surface, so arcs do not
 /// explain it. `None` unless every vertex has a nearest one of its own, as in two triangulations of one kind.
-fn displaced(aligned: &Aligned, [a, b]: [&MeshGeometry; 2]) -> Option<f64> {
+fn displaced(aligned: &Alignment, [a, b]: [&MeshGeometry; 2]) -> Option<f64> {
     if a.n_vertices() != b.n_vertices() || a.n_faces() != b.n_faces() {
         return None;
     }
-    let nearest = NearestPoints::new(b.mesh.positions.clone()).ok()?;
+    let nearest = NearestPoints::new(b.mesh().positions.clone()).ok()?;
     // A part that is round may be aligned at another angle than its vertices.
-    let Fitted { gap, .. } = Fitted::new(&a.mesh.positions, &nearest, &aligned.map, f64::INFINITY)?;
-    Some(gap / (EXACT + a.rounding + b.rounding))
+    let Fitted { gap, .. } = Fitted::new(&a.mesh().positions, &nearest, &aligned.map, f64::INFINITY)?;
+    Some(gap / (EXACT + a.rounding() + b.rounding()))
 }
 
 /// The largest distance from points of one surface to the other, in multiples of what is allowed there.
@@ -119,7 +120,7 @@ fn worst([a, b]: [&MeshGeometry; 2], map: &Similarity) -> f64 {
     let probe = |(p, face): (Point3<f64>, usize)| {
         let near = b.tree().nearest(&map.apply(&p))?;
         let allowed =
-            EXACT + a.rounding + b.rounding + ARCS * (errors_a[face] * map.scale + errors_b[near.face]);
+            EXACT + a.rounding() + b.rounding() + ARCS * (errors_a[face] * map.scale + errors_b[near.face]);
         Some(near.sq_distance.sqrt() / allowed)
     };
     probes(a).into_iter().filter_map(probe).fold(0.0, f64::max)
@@ -130,7 +131,7 @@ fn worst([a, b]: [&MeshGeometry; 2], map: &Similarity) -> f64 {
 fn probes(geometry: &MeshGeometry) -> Vec<(Point3<f64>, usize)> {
     let step = (7 * geometry.n_faces()).div_ceil(MOST_PROBES);
     let of_face = |f: usize| {
-        let [a, b, c] = geometry.mesh.triangle(f);
+        let [a, b, c] = geometry.mesh().triangle(f);
         let centre = nalgebra::center(&nalgebra::center(&a, &b), &c);
         [a, b, c, nalgebra::center(&a, &b), nalgebra::center(&b, &c), nalgebra::center(&c, &a), centre]
             .map(|p| (p, f))
@@ -140,7 +141,7 @@ fn probes(geometry: &MeshGeometry) -> Vec<(Point3<f64>, usize)> {
 
 /// Vertices less edges plus faces, if every edge has two faces.
 pub(super) fn euler_characteristic_if_closed(geometry: &MeshGeometry) -> Option<isize> {
-    let topology = Topology::new(geometry.n_vertices(), geometry.mesh.faces.clone());
+    let topology = Topology::new(geometry.n_vertices(), geometry.mesh().faces.clone());
     let edges = 0..topology.n_edges();
     let is_closed = edges.map(surface::EdgeId::from).all(|edge| topology.edge_corners(edge).len() == 2);
     is_closed

@@ -108,27 +108,27 @@ impl Dimensions {
             steps: Vec::new(),
             volume: None,
             euler: euler_characteristic_if_closed(part),
-            size: part.size,
+            size: part.size(),
         };
         for region in &regions {
             match region.shape {
                 RegionShape::Plane { .. } => found.n_regions[0] += 1,
                 RegionShape::Cylinder { radius, is_hole: true, .. } => {
-                    found.holes.push(2.0 * radius * part.size)
+                    found.holes.push(2.0 * radius * part.size())
                 }
                 RegionShape::Cylinder { radius, .. } => {
                     found.n_regions[1] += 1;
-                    found.bosses.push(2.0 * radius * part.size);
+                    found.bosses.push(2.0 * radius * part.size());
                 }
                 RegionShape::Curved => found.n_regions[2] += 1,
             }
         }
         [&mut found.holes, &mut found.bosses].into_iter().for_each(|all| all.sort_by(f64::total_cmp));
-        found.volume = found.euler.map(|_| part.mesh.signed_volume().abs() * part.size.powi(3));
+        found.volume = found.euler.map(|_| part.mesh().signed_volume().abs() * part.size().powi(3));
         let directions: Vec<Vector3<f64>> = part.regions().directions().into_iter().map(|(d, _)| d).collect();
-        found.steps = directions.iter().flat_map(|d| steps(&regions, d)).map(|x| x * part.size).collect();
+        found.steps = directions.iter().flat_map(|d| steps(&regions, d)).map(|x| x * part.size()).collect();
         found.steps.sort_by(f64::total_cmp);
-        found.extents = extents(part, &directions).map(|x| x * part.size);
+        found.extents = extents(part, &directions).map(|x| x * part.size());
         found
     }
 }
@@ -155,7 +155,7 @@ fn extents(part: &MeshGeometry, directions: &[Vector3<f64>]) -> [f64; 3] {
     let second = across.unwrap_or_else(|| first.cross(&Vector3::ith(first.iamin(), 1.0)).normalize());
     let frame = [first, second, first.cross(&second)];
     let along = |d: &Vector3<f64>| {
-        let values = || part.mesh.positions.iter().map(|p| p.coords.dot(d));
+        let values = || part.mesh().positions.iter().map(|p| p.coords.dot(d));
         values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
     };
     let mut extents = frame.each_ref().map(along);

@@ -3,11 +3,11 @@
 use std::fmt::{self, Display, Formatter};
 
 use descriptors::{ShapeMetric, Side};
+use rigid::Gap;
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 
 use super::cut::CutPiece;
-use super::in_space::SurfaceGap;
 use super::numbers::{in_digits, in_words, percent};
 use super::parts::Parts;
 use super::variant::Difference;
@@ -176,7 +176,7 @@ impl Relation {
     }
 }
 
-fn apart(gap: &SurfaceGap) -> String {
+fn apart(gap: &Gap) -> String {
     format!("{} of the size apart (root mean square; at most {})", percent(gap.rms), percent(gap.max))
 }
 

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use anyhow::Result;
 use canonform::form_alignments;
-use descriptors::{CanonicalForm, LaplaceSpectrum, Normalization, PreparedForm, Signature, shape_dna};
+use descriptors::{CanonicalForm, LaplaceSpectrum, Normalization, Signature, shape_dna};
 use linalg::DistanceMatrix;
 use rayon::prelude::*;
 
@@ -44,7 +44,7 @@ impl FormComparison {
         match self {
             Self::Aligned => {
                 let unit = |made: &MadeForm| Ok(made.solid()?.form.normalized(Normalization::UnitArea));
-                let (_, seconds) = each(made, |made| Ok(PreparedForm::new(&unit(made)?)?))?;
+                let (_, seconds) = each(made, |made| Ok(unit(made)?.prepared()?))?;
                 let forms: Vec<CanonicalForm> = made.iter().map(unit).collect::<Result<_>>()?;
                 Ok((form_alignments(&forms, Normalization::UnitArea, context.observer)?.distances, seconds))
             }

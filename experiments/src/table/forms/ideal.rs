@@ -2,10 +2,11 @@
 
 use anyhow::Result;
 use canonform::MapKind;
-use descriptors::{Alignment, CanonicalForm, Normalization, PreparedForm, Reflections, align_forms};
+use descriptors::{CanonicalForm, Normalization};
 use nalgebra::Point3;
 use rayon::prelude::*;
 use report::results::{RecordedTable, TableEntry};
+use rigid::{PointSet, Reflections, Similarity, align_points};
 
 use super::made::{FormMaker, MadeForm};
 use crate::collection::LabeledSurface;
@@ -48,7 +49,7 @@ impl IdealAlignments {
             made.iter().map(|made| Ok(unit(&made.solid()?.whole))).collect::<Result<_>>()?;
         let forms: Vec<CanonicalForm> =
             made.iter().map(|made| Ok(unit(&made.solid()?.form))).collect::<Result<_>>()?;
-        let prepared: Vec<PreparedForm> = forms.iter().map(PreparedForm::new).collect::<Result<_, _>>()?;
+        let prepared: Vec<PointSet> = forms.iter().map(CanonicalForm::prepared).collect::<Result<_, _>>()?;
         let n = shapes.len();
         let all = (0..n).flat_map(|i| (0..i).map(move |j| [i, j]));
         let (within, between): (Vec<_>, Vec<_>) =
@@ -57,21 +58,22 @@ impl IdealAlignments {
             let step = pairs.len().div_ceil(PAIRS).max(1);
             pairs.into_iter().step_by(step).collect()
         };
-        let found = |[i, j]: [usize; 2]| align_forms(&prepared[i], &prepared[j], Reflections::Allow);
+        let found = |[i, j]: [usize; 2]| align_points(&prepared[i], &prepared[j], Reflections::Allow);
         let one = |&[i, j]: &[usize; 2]| {
             let n = shapes[i].surface.mesh().n_vertices();
             let pairs = partners(n, [&wholes[i], &wholes[j]], [&placed[i], &placed[j]]);
-            let fits = [false, true].into_iter().filter_map(|reflected| Alignment::fit(&pairs, reflected));
+            let fits =
+                [false, true].into_iter().filter_map(|reflected| Similarity::fit_motion(&pairs, reflected));
             let fits = fits.map(|fit| (misfit(&pairs, &fit), fit));
             let (partners, fit) = fits.min_by(|a, b| a.0.total_cmp(&b.0))?;
             let found = found([i, j]);
-            let turn = fit.rotation.transpose() * found.alignment.rotation;
-            let angle = (fit.reflected == found.alignment.reflected)
+            let turn = fit.rotation.transpose() * found.map.rotation;
+            let angle = (fit.reflected == found.map.reflected)
                 .then(|| (0.5 * (turn.trace() - 1.0)).clamp(-1.0, 1.0).acos().to_degrees());
-            Some((partners, nearest(&forms[i], &forms[j], &fit), found.rms, angle))
+            Some((partners, nearest(&forms[i], &forms[j], &fit), found.gap.rms, angle))
         };
         let within: Vec<_> = some(within).par_iter().filter_map(one).collect();
-        let between: Vec<f64> = some(between).par_iter().map(|pair| found(*pair).rms).collect();
+        let between: Vec<f64> = some(between).par_iter().map(|pair| found(*pair).gap.rms).collect();
         Ok(Self {
             partners: mean(within.iter().map(|pair| pair.0)),
             ideal: mean(within.iter().map(|pair| pair.1)),
@@ -105,12 +107,12 @@ fn partners(
     (0..n).step_by(STRIDE).filter_map(partner).collect()
 }
 
-fn misfit(pairs: &[(Point3<f64>, Point3<f64>)], fit: &Alignment) -> f64 {
+fn misfit(pairs: &[(Point3<f64>, Point3<f64>)], fit: &Similarity) -> f64 {
     mean(pairs.iter().map(|(x, y)| (fit.apply(x) - y).norm_squared())).sqrt()
 }
 
 /// The distance of forms at unit area once aligned, in both directions.
-fn nearest(a: &CanonicalForm, b: &CanonicalForm, fit: &Alignment) -> f64 {
+fn nearest(a: &CanonicalForm, b: &CanonicalForm, fit: &Similarity) -> f64 {
     let moved: Vec<Point3<f64>> = a.points().iter().map(|p| fit.apply(p)).collect();
     let one_way = |from: &[Point3<f64>], to: &[Point3<f64>]| {
         let least = |p: &Point3<f64>| to.iter().map(|q| (p - q).norm_squared()).fold(f64::INFINITY, f64::min);

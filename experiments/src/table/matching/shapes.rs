@@ -7,9 +7,9 @@ use anyhow::{Context as _, Result};
 use canonform::MapKind;
 use canonform::{CorrespondOptions, MappedSurface, Surface};
 use datasets::{ArticulatedOptions, Damage, Family, RestedShape, articulated_at_rest};
-use descriptors::NearestPoints;
 use mesh::TriMesh;
 use nalgebra::Point3;
+use rigid::NearestPoints;
 use surface::VertexId;
 
 use crate::collection::{LabeledSurface, Setting, SurfaceCollection};

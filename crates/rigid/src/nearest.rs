@@ -5,7 +5,13 @@ use std::num::NonZero;
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use nalgebra::Point3;
 
-use crate::error::DescriptorError;
+/// Points that cannot be searched or aligned.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("all {n_points} points coincide or are not finite")]
+pub struct NoExtent {
+    /// Number of points.
+    pub n_points: usize,
+}
 
 /// Points with a search tree.
 pub struct NearestPoints {
@@ -21,11 +27,11 @@ impl std::fmt::Debug for NearestPoints {
 
 impl NearestPoints {
     /// # Errors
-    /// [`DescriptorError::NoExtent`] if there are no points or a coordinate is not finite.
-    pub fn new(points: Vec<Point3<f64>>) -> Result<Self, DescriptorError> {
+    /// [`NoExtent`] if there are no points or a coordinate is not finite.
+    pub fn new(points: Vec<Point3<f64>>) -> Result<Self, NoExtent> {
         let coordinates: Vec<[f64; 3]> = points.iter().map(|p| p.coords.into()).collect();
-        let tree = ImmutableKdTree::new_from_slice(&coordinates)
-            .map_err(|_| DescriptorError::NoExtent { n_points: points.len() })?;
+        let tree =
+            ImmutableKdTree::new_from_slice(&coordinates).map_err(|_| NoExtent { n_points: points.len() })?;
         Ok(Self { points, tree })
     }
 

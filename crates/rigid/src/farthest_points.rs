@@ -1,15 +1,16 @@
-//! Points spread evenly over a form.
+//! Farthest point sampling in space.
 
 use nalgebra::Point3;
 
-/// Farthest point sampling in space.
-pub(crate) struct Spread {
+/// Points that are spread evenly over others.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FarthestPoints {
     /// The samples, farthest first: any leading part of them is evenly spread too.
-    pub(crate) samples: Vec<usize>,
+    pub samples: Vec<usize>,
     /// For every point, the position in `samples` of the nearest one, the first in case of a tie.
-    pub(crate) nearest: Vec<usize>,
+    pub nearest: Vec<usize>,
     /// No point is farther from the nearest sample.
-    pub(crate) covering: f64,
+    pub covering: f64,
 }
 
 /// The points whose nearest sample is the same.
@@ -37,26 +38,28 @@ fn farthest(points: impl Iterator<Item = (usize, f64)>) -> (usize, f64) {
 }
 
 /// Chooses up to `n` of the points, the one farthest from the origin first; fewer if points coincide.
-pub(crate) fn spread(points: &[Point3<f64>], n: usize) -> Spread {
+#[must_use]
+pub fn farthest_points(points: &[Point3<f64>], n: usize) -> FarthestPoints {
     let sq_distance = |i: usize, j: usize| (points[i] - points[j]).norm_squared();
-    spread_by(points.iter().map(|p| p.coords.norm_squared()), sq_distance, n)
+    farthest_points_by(points.iter().map(|p| p.coords.norm_squared()), sq_distance, n)
 }
 
 /// Chooses up to `n` points by the squares of their distances from the origin and from each other.
 ///
 /// A new sample takes points from cells only whose own sample is less than twice as far away as their farthest member, so
 /// that each point is looked at a few times.
-pub(crate) fn spread_by(
+#[must_use]
+pub fn farthest_points_by(
     from_origin: impl Iterator<Item = f64>,
     sq_distance: impl Fn(usize, usize) -> f64,
     n: usize,
-) -> Spread {
+) -> FarthestPoints {
     let from_origin: Vec<f64> = from_origin.collect();
     let n_points = from_origin.len();
     let whole = Cell::new((0..n_points).collect(), &from_origin);
     let mut nearest = vec![0; n_points];
     if n == 0 || n_points == 0 {
-        return Spread { samples: Vec::new(), nearest, covering: whole.farthest.1.max(0.0).sqrt() };
+        return FarthestPoints { samples: Vec::new(), nearest, covering: whole.farthest.1.max(0.0).sqrt() };
     }
     let mut samples = vec![if whole.farthest.0 < n_points { whole.farthest.0 } else { 0 }];
     let mut gaps: Vec<f64> = (0..n_points).map(|i| sq_distance(i, samples[0])).collect();
@@ -91,7 +94,7 @@ pub(crate) fn spread_by(
         samples.push(next);
     }
     let covering = gaps.iter().copied().fold(0.0, f64::max).sqrt();
-    Spread { samples, nearest, covering }
+    FarthestPoints { samples, nearest, covering }
 }
 
 #[cfg(test)]
@@ -106,7 +109,7 @@ mod tests {
         // Ties, and points that coincide.
         points.extend((0..64).map(|i| Point3::new(f64::from(i / 16), f64::from(i % 4), 0.5)));
         points.extend_from_within(..30);
-        let found = spread(&points, 400);
+        let found = farthest_points(&points, 400);
         let mut gaps = vec![f64::INFINITY; points.len()];
         for (k, sample) in found.samples.iter().enumerate() {
             let widest = gaps.iter().copied().fold(0.0, f64::max);
@@ -120,7 +123,7 @@ mod tests {
         for (i, (gap, nearest)) in gaps.iter().zip(&found.nearest).enumerate() {
             assert_eq!((points[i] - points[found.samples[*nearest]]).norm_squared(), *gap);
         }
-        assert_eq!(spread(&points, 10_000).samples.len(), points.len() - 30 - 48);
-        assert!(spread(&[], 5).samples.is_empty());
+        assert_eq!(farthest_points(&points, 10_000).samples.len(), points.len() - 30 - 48);
+        assert!(farthest_points(&[], 5).samples.is_empty());
     }
 }

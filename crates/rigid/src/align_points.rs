@@ -1,0 +1,275 @@
+//! Rigid alignment of two point sets, and the distance between them.
+
+use nalgebra::{Point3, Vector3};
+
+use crate::icp::{Alignment, Body, Effort, Towards, refine};
+use crate::nearest::NearestPoints;
+use crate::point_set::PointSet;
+use crate::similarity::Similarity;
+use crate::starts::axis_motions;
+
+/// Whether an alignment may reflect.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reflections {
+    /// It may: distances determine a form only up to reflection.
+    Allow,
+    /// It must not.
+    Forbid,
+    /// It must.
+    Require,
+}
+
+/// For all starts: enough steps to rank them, since their order before the first step says little about the order at the
+/// end. Limits of effort, as are the other two.
+const SKETCH: Effort = Effort { samples: 50, steps: 4, towards: Towards::Points };
+
+/// For the best [`REFINED`] starts.
+const ROUGH: Effort = Effort { samples: 100, steps: 20, towards: Towards::Points };
+
+/// For the very best.
+const FINE: Effort = Effort { samples: usize::MAX, steps: 30, towards: Towards::Points };
+
+const REFINED: usize = 8;
+
+/// A start whose sketch is beyond this multiple of the best refined error will not come below it. A safety limit.
+const ABANDON_FACTOR: f64 = 2.0;
+
+/// A point set of which some points are searched.
+struct View<'a> {
+    samples: &'a [Point3<f64>],
+    searched: &'a NearestPoints,
+}
+
+impl Body for View<'_> {
+    fn samples(&self) -> &[Point3<f64>] {
+        self.samples
+    }
+
+    #[inline]
+    fn nearest(&self, query: &Point3<f64>) -> Option<(Point3<f64>, Vector3<f64>)> {
+        Some((self.searched.points()[self.searched.nearest(query).0], Vector3::zeros()))
+    }
+}
+
+/// Two sets, either by its samples alone or by all points.
+fn views<'a>(sets: [&'a PointSet; 2], searched: fn(&PointSet) -> &NearestPoints) -> [View<'a>; 2] {
+    sets.map(|set| View { samples: set.samples().points(), searched: searched(set) })
+}
+
+/// Aligns two point sets rigidly and measures the distance between them.
+///
+/// * The principal axes of both are brought onto each other under all signs, and with near-equal axes exchanged: 8 to 48 starts,
+///   half of them without reflections, ranked by a few steps on a coarse sample.
+/// * The best starts are refined on a coarse sample by iterative closest points, and the best of these on all
+///   samples. Pairs are taken in both directions, so neither set is favored; samples are spread evenly and count the
+///   same, so the density of points does not matter; each step solves Kabsch's problem and keeps the handedness of its
+///   start.
+/// * The distance is symmetric up to the local minimum in which the refinement ends.
+///
+/// ```
+/// use canonform_rigid::{PointSet, Reflections, align_points};
+/// use nalgebra::Point3;
+///
+/// let spiral = |turn: f64| {
+///     let at = |i: i32| Point3::new(f64::from(i - 50), (turn + 0.1 * f64::from(i)).sin(), (turn + 0.1 * f64::from(i)).cos());
+///     PointSet::new(&(0..=100).map(at).collect::<Vec<_>>(), &[1.0 / 101.0; 101])
+/// };
+/// let found = align_points(&spiral(0.0)?, &spiral(2.0)?, Reflections::Allow);
+/// assert!(found.gap.rms < 0.1, "one is the other, turned about its axis");
+/// # Ok::<(), canonform_rigid::NoExtent>(())
+/// ```
+#[must_use]
+pub fn align_points(a: &PointSet, b: &PointSet, reflections: Reflections) -> Alignment {
+    let mut best = (f64::INFINITY, Similarity::identity());
+    let [rough_a, rough_b] = views([a, b], PointSet::samples);
+    for (error, start) in sketched(a, b, reflections) {
+        if error > ABANDON_FACTOR * best.0 {
+            break;
+        }
+        let (motion, rms) = refine(&rough_a, &rough_b, start, ROUGH);
+        if rms < best.0 {
+            best = (rms, motion);
+        }
+    }
+    let [fine_a, fine_b] = views([a, b], PointSet::all);
+    let (motion, _) = refine(&fine_a, &fine_b, best.1, FINE);
+    let Some(found) = Alignment::by(&fine_a, &fine_b, motion) else { unreachable!("sets have points") };
+    Alignment { map: b.to_principal.inverse().after(&motion).after(&a.to_principal), ..found }
+}
+
+/// Aligns two sets as [`align_points`] does, with or without a reflection, or returns `None` if the root mean square distance
+/// is larger than `limit`. Nothing is aligned if the [lower bound](PointSet::least_distance) of the distance is larger.
+#[must_use]
+pub fn align_near_points(a: &PointSet, b: &PointSet, limit: f64) -> Option<Alignment> {
+    let may_be_near = a.least_distance(b) <= limit;
+    may_be_near.then(|| align_points(a, b, Reflections::Allow)).filter(|found| found.gap.rms <= limit)
+}
+
+/// Motions of the principal axes of the first set to those of the second, the best of each handedness, after all stages
+/// but the last; by ascending error.
+#[must_use]
+pub fn alignments(a: &PointSet, b: &PointSet) -> Vec<Similarity> {
+    let sketched = [Reflections::Forbid, Reflections::Require].into_iter().flat_map(|by| sketched(a, b, by));
+    refine_all(a, b, sketched.map(|(_, motion)| motion), ROUGH)
+        .into_iter()
+        .map(|(_, motion)| motion)
+        .collect()
+}
+
+/// The best starts after a few steps, by ascending error.
+fn sketched(a: &PointSet, b: &PointSet, reflections: Reflections) -> Vec<(f64, Similarity)> {
+    // Principal axes may be left-handed: then a motion between them reflects if the motion in space does not.
+    let flipped = a.to_principal.reflected != b.to_principal.reflected;
+    let is_allowed = |motion: &Similarity| match reflections {
+        Reflections::Allow => true,
+        Reflections::Forbid => motion.reflected == flipped,
+        Reflections::Require => motion.reflected != flipped,
+    };
+    let starts = axis_motions(a.axis_std, b.axis_std).into_iter().filter(is_allowed);
+    let mut found = refine_all(a, b, starts, SKETCH);
+    found.truncate(REFINED);
+    found
+}
+
+/// All starts, refined, by ascending error.
+fn refine_all(
+    a: &PointSet,
+    b: &PointSet,
+    starts: impl Iterator<Item = Similarity>,
+    effort: Effort,
+) -> Vec<(f64, Similarity)> {
+    let [a, b] = views([a, b], PointSet::samples);
+    let refined = starts.map(|start| refine(&a, &b, start, effort));
+    let mut found: Vec<_> = refined.map(|(motion, rms)| (rms, motion)).collect();
+    found.sort_by(|x, y| x.0.total_cmp(&y.0));
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Rotation3;
+
+    /// A figure of three arms without symmetry.
+    fn figure(n: usize, bend: f64) -> Vec<Point3<f64>> {
+        (0..n)
+            .map(|i| {
+                let t = i as f64 / n as f64;
+                let (arm, s) = ((t * 3.0).floor(), (t * 3.0).fract());
+                match arm as usize {
+                    0 => Point3::new(6.0 * s, bend * s * s, 0.3 * (9.0 * s).sin()),
+                    1 => Point3::new(-2.0 * s, 3.0 * s, 0.2 * s),
+                    _ => Point3::new(0.5 * s, -1.5 * s * s, 1.6 * s),
+                }
+            })
+            .collect()
+    }
+
+    /// About their centroid.
+    fn centered(points: &[Point3<f64>]) -> Vec<Point3<f64>> {
+        let mean = points.iter().map(|p| p.coords).sum::<Vector3<f64>>() / points.len() as f64;
+        points.iter().map(|p| p - mean).collect()
+    }
+
+    fn prepared(points: &[Point3<f64>]) -> PointSet {
+        PointSet::new(&centered(points), &vec![1.0 / points.len() as f64; points.len()]).unwrap()
+    }
+
+    fn turned(points: &[Point3<f64>], mirror: f64) -> Vec<Point3<f64>> {
+        let turn = Rotation3::from_euler_angles(1.0, 0.4, -2.0);
+        points
+            .iter()
+            .map(|p| turn * Point3::new(p.x, p.y, mirror * p.z) + Vector3::new(3.0, 1.0, 0.0))
+            .collect()
+    }
+
+    #[test]
+    fn a_moved_set_has_distance_zero_and_its_motion_is_found() {
+        let points = figure(600, 1.0);
+        for mirror in [1.0, -1.0] {
+            let found =
+                align_points(&prepared(&points), &prepared(&turned(&points, mirror)), Reflections::Allow);
+            assert_eq!(found.map.reflected, mirror < 0.0);
+            let (a, b) = (centered(&points), centered(&turned(&points, mirror)));
+            let gap = a.iter().zip(&b).map(|(p, q)| (found.map.apply(p) - q).norm());
+            assert!(gap.fold(0.0, f64::max) < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_mirror_image_differs_if_reflections_are_forbidden() {
+        let points = figure(600, 1.0);
+        let by = |reflections, other: &PointSet| align_points(&prepared(&points), other, reflections);
+        // Whatever the handedness of the principal axes.
+        for axis in 0..3 {
+            let mut signs = Vector3::repeat(1.0);
+            signs[axis] = -1.0;
+            let mirrored: Vec<_> =
+                points.iter().map(|p| Point3::from(p.coords.component_mul(&signs))).collect();
+            let found = by(Reflections::Forbid, &prepared(&mirrored));
+            assert!(found.gap.rms > 0.05 && !found.map.reflected, "{axis}");
+            let found = by(Reflections::Require, &prepared(&mirrored));
+            assert!(found.gap.rms < 1e-9 && found.map.reflected, "{axis}");
+        }
+        let same = by(Reflections::Require, &prepared(&points));
+        assert!(same.gap.rms > 0.05 && same.map.reflected);
+    }
+
+    #[test]
+    fn the_distance_is_symmetric_and_grows_with_the_difference() {
+        let base = prepared(&figure(600, 1.0));
+        let mut last = 0.0;
+        for bend in [1.5, 2.5, 4.0] {
+            let other = prepared(&figure(500, bend));
+            let there = align_points(&base, &other, Reflections::Allow);
+            let back = align_points(&other, &base, Reflections::Allow);
+            assert!(
+                (there.gap.rms - back.gap.rms).abs() < 0.02 * there.gap.rms,
+                "{} {}",
+                there.gap.rms,
+                back.gap.rms
+            );
+            assert!(there.gap.rms > last);
+            last = there.gap.rms;
+        }
+    }
+
+    #[test]
+    fn the_lower_bound_holds_and_far_pairs_are_abandoned() {
+        let forms: Vec<_> = [0.2, 1.0, 2.5, 4.0, 9.0].map(|bend| prepared(&figure(500, bend))).into();
+        let mut bounded = 0;
+        for (a, b) in forms.iter().flat_map(|a| forms.iter().map(move |b| (a, b))) {
+            let whole = align_points(a, b, Reflections::Allow);
+            let least = a.least_distance(b);
+            assert!(least <= whole.gap.rms + 1e-12, "{least} {}", whole.gap.rms);
+            assert_eq!(least, b.least_distance(a));
+            bounded += usize::from(least > 0.1 * whole.gap.rms);
+            let within = |limit| align_near_points(a, b, limit);
+            assert_eq!(within(f64::INFINITY), Some(whole));
+            assert_eq!(within(whole.gap.rms), Some(whole), "at the limit");
+            assert_eq!(within(0.9 * whole.gap.rms - 1e-9), None);
+        }
+        assert!(bounded > 0, "the bound is not trivial");
+    }
+
+    #[test]
+    fn near_equal_axes_are_exchanged() {
+        // Two crosses whose longer arm is not the same one: the heads at the ends of the arms only meet if axes
+        // are exchanged.
+        let cross = |along: f64, across: f64| -> Vec<Point3<f64>> {
+            (0..300)
+                .flat_map(|i| {
+                    let s = f64::from(i) / 150.0 - 1.0;
+                    let head = if s > 0.9 { 0.8 } else { 0.0 };
+                    [Point3::new(along * s, 0.0, head), Point3::new(0.0, across * s, 0.0)]
+                })
+                .collect()
+        };
+        let distance = |across: f64| {
+            align_points(&prepared(&cross(4.0, across)), &prepared(&cross(across, 4.0)), Reflections::Allow)
+                .gap
+                .rms
+        };
+        assert!(distance(4.4) < 0.7 * distance(5.0), "spreads that differ by 10 % and by 25 %");
+    }
+}

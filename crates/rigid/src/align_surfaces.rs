@@ -1,0 +1,215 @@
+//! Alignment of two surfaces in space, by the best motion, reflection and change of size.
+
+use crate::align_points::{Reflections, align_points};
+use crate::handedness::is_decisive;
+use crate::icp::{Alignment, Effort, Gap, Towards, contacts, refine};
+use crate::rigid_surface::RigidSurface;
+use crate::similarity::Similarity;
+use crate::starts::{equal_axes, framed_starts, mirrors, turned_starts};
+
+/// Surfaces of one size whose deviations along a principal axis differ by more than this share of their rms radius are not
+/// aligned: they are farther apart than any copy of a surface (`cargo test -p tests --test laws matches`).
+const MAX_DEVIATION: f64 = 0.05;
+
+/// A limit of effort.
+const FINE: Effort = Effort { samples: 400, steps: 30, towards: Towards::Planes };
+
+/// Turned starts are tried unless the surfaces are nearer than this, relative to the size. A safety limit: other bodies are at
+/// least 0.0045 apart (`cargo test -p tests --test laws matches`).
+const CLOSE: f64 = 0.003;
+
+/// Mechanical parts that are nearer than this are aligned: their planes coincide. A tolerance of rounding.
+const COINCIDENT_RMS: f64 = 1e-5;
+
+/// The least difference of two root mean square distances that tells: those at which the refinement of copies ends.
+const RESOLUTION: f64 = 1e-4;
+
+/// Turned starts are ranked by so many samples, and so many of them are refined. Limits of effort.
+const RANKING: usize = 60;
+const RANKED: usize = 4;
+
+/// An alignment of the samples is refined unless the other handedness is better by this factor, and one that is refined counts
+/// unless the best is better by it. A safety limit: it saves time.
+const REFINE_WITHIN: f64 = 1.6;
+
+/// Aligns two surfaces in space; `None` if their extents differ too much to be one surface. The map takes the first surface, at
+/// unit area, onto the second, at unit area: with a reflection only if the surfaces fit decisively better.
+#[must_use]
+pub fn align_surfaces(a: &RigidSurface, b: &RigidSurface) -> Option<Alignment> {
+    let [axes_a, axes_b] = [a, b].map(|surface| surface.axis_std().map(|x| x / surface.rms_radius()));
+    if axes_a.iter().zip(&axes_b).any(|(x, y)| (x - y).abs() > MAX_DEVIATION) {
+        return None;
+    }
+    let start = |by| Some(align_points(a.points()?, b.points()?, by));
+    let [proper, reflected] = [start(Reflections::Forbid)?, start(Reflections::Require)?];
+    let turnable = equal_axes(a.axis_std(), b.axis_std()) != [false; 2];
+    let found = |mine: Alignment, other: Alignment| {
+        let is_worth = turnable || mine.gap.rms < REFINE_WITHIN * other.gap.rms;
+        if is_worth { best(a, b, &mine.map) } else { None }
+    };
+    let proper_found = found(proper, reflected);
+    // No reflection is decisively better than a map that is as good as refinement ends.
+    let is_found = proper_found.is_some_and(|found| found.gap.rms <= RESOLUTION);
+    let reflected_found = if is_found { None } else { found(reflected, proper) };
+    match (proper_found, reflected_found) {
+        (Some(proper), Some(reflected)) if !is_better(&reflected, &proper) => Some(proper),
+        (_, Some(reflected)) => Some(unmirrored(a, b, &reflected).unwrap_or(reflected)),
+        (proper, None) => proper,
+    }
+}
+
+fn is_better(better: &Alignment, worse: &Alignment) -> bool {
+    is_decisive(better.gap.rms, worse.gap.rms, RESOLUTION)
+}
+
+/// The alignment without a reflection that is as good as one with a reflection, if the surface is its own mirror image.
+fn unmirrored(a: &RigidSurface, b: &RigidSurface, mirrored: &Alignment) -> Option<Alignment> {
+    nearest_starts(a, b, mirrors(b).map(|mirror| mirror.after(&mirrored.map))).into_iter().find_map(|start| {
+        let found = Alignment::by(a, b, refine(a, b, start, FINE).0)?;
+        (!is_better(mirrored, &found)).then_some(found)
+    })
+}
+
+/// Whether a surface is its own mirror image.
+#[must_use]
+pub fn is_symmetric(surface: &RigidSurface) -> bool {
+    let itself = Alignment { map: Similarity::identity(), gap: Gap { rms: 0.0, max: 0.0 } };
+    let is_near = |mirror: &Similarity| {
+        let squares = contacts(surface, surface, mirror, RANKING).map(|contact| contact.sq_distance());
+        squares.sum::<f64>() < 2.0 * RANKING as f64 * CLOSE * CLOSE
+    };
+    mirrors(surface).filter(is_near).any(|mirror| {
+        let found = Alignment::by(surface, surface, refine(surface, surface, mirror, FINE).0);
+        found.is_some_and(|found| !is_better(&itself, &found))
+    })
+}
+
+/// The best alignment from a motion between the samples, with a reflection if and only if that has one.
+fn best(a: &RigidSurface, b: &RigidSurface, start: &Similarity) -> Option<Alignment> {
+    // The samples have unit rms radius.
+    let [radius_a, radius_b] = [a, b].map(RigidSurface::rms_radius);
+    let scaled = |motion: Similarity| Similarity {
+        translation: motion.translation * radius_b,
+        scale: radius_b / radius_a,
+        ..motion
+    };
+    let mut best = Alignment::by(a, b, refine(a, b, scaled(*start), FINE).0)?;
+    let is_mechanical = a.is_mechanical() && b.is_mechanical();
+    if best.gap.rms < if is_mechanical { COINCIDENT_RMS } else { CLOSE } {
+        return Some(best);
+    }
+    let equal = equal_axes(a.axis_std(), b.axis_std());
+    let mut turned = turned_starts(equal, &b.principal_axes()?, start);
+    if is_mechanical {
+        turned.extend(framed_starts(a, b, start.reflected));
+    }
+    for start in nearest_starts(a, b, turned.into_iter().map(scaled)) {
+        let (map, rms) = refine(a, b, start, FINE);
+        if rms > REFINE_WITHIN * best.gap.rms {
+            continue;
+        }
+        let found = Alignment::by(a, b, map)?;
+        if found.gap.rms < best.gap.rms {
+            best = found;
+        }
+        if best.gap.rms < COINCIDENT_RMS {
+            break;
+        }
+    }
+    Some(best)
+}
+
+/// The [`RANKED`] starts that bring few samples nearest to the other surface, in this order.
+fn nearest_starts(
+    a: &RigidSurface,
+    b: &RigidSurface,
+    starts: impl Iterator<Item = Similarity>,
+) -> Vec<Similarity> {
+    let mut ranked: Vec<(f64, Similarity)> = Vec::with_capacity(RANKED + 1);
+    for start in starts {
+        let most = ranked.get(RANKED - 1).map_or(f64::INFINITY, |last| last.0);
+        let mut sum = 0.0;
+        // The sum only grows, so most starts are left early.
+        let is_near = contacts(a, b, &start, RANKING).all(|contact| {
+            sum += contact.sq_distance();
+            sum < most
+        });
+        if is_near {
+            ranked.insert(ranked.partition_point(|other| other.0 <= sum), (sum, start));
+            ranked.truncate(RANKED);
+        }
+    }
+    ranked.into_iter().map(|(_, start)| start).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use mesh::{TriMesh, shapes};
+    use nalgebra::{Point3, Rotation3, Vector3};
+
+    use super::*;
+
+    fn surface(mesh: &TriMesh) -> RigidSurface {
+        RigidSurface::new(mesh.clone()).unwrap()
+    }
+
+    fn changed(mesh: &TriMesh, scale: f64, flip: f64) -> TriMesh {
+        let turn = Rotation3::from_euler_angles(0.3, 2.0, -1.0);
+        let to =
+            |p: &Point3<f64>| turn * Point3::new(flip * p.x, p.y, p.z) * scale + Vector3::new(5.0, 2.0, 3.0);
+        TriMesh { positions: mesh.positions.iter().map(to).collect(), faces: mesh.faces.clone() }
+    }
+
+    /// A ball with arms of different lengths.
+    fn hand() -> TriMesh {
+        let mut mesh = shapes::icosphere(4);
+        let arms = [([1.0, 1.0, 1.0], 1.0), ([1.0, -1.0, -1.0], 1.6), ([-1.0, 1.0, -1.0], 2.3)];
+        for p in &mut mesh.positions {
+            let direction = p.coords;
+            for (towards, length) in arms {
+                let cosine = direction.dot(&Vector3::from(towards)) / 3f64.sqrt();
+                p.coords += direction * length * (-(1.0 - cosine) * 12.0).exp();
+            }
+        }
+        mesh
+    }
+
+    #[test]
+    fn subdivided_and_moved_surfaces_coincide() {
+        let mesh = hand();
+        for (flip, mirrored) in [(1.0, false), (-1.0, true)] {
+            let other = changed(&shapes::subdivide(&mesh), 25.4, flip);
+            let found = align_surfaces(&surface(&mesh), &surface(&other)).unwrap();
+            assert!(found.gap.max < 1e-4, "{found:?}");
+            assert_eq!(found.map.reflected, mirrored);
+            assert!((found.map.scale - 1.0).abs() < 1e-4, "{}", found.map.scale);
+        }
+    }
+
+    #[test]
+    fn bodies_with_equal_axes_are_aligned() {
+        // A cube, and a ring with three knobs.
+        let mut ring = shapes::torus(60, 20, 2.0, 0.5);
+        for p in &mut ring.positions {
+            let angle = p.y.atan2(p.x);
+            p.coords *= 1.0 + 0.3 * ((3.0 * angle).cos() - 1.0).exp();
+        }
+        for mesh in [shapes::cube(5), ring] {
+            let other = changed(&shapes::subdivide(&mesh), 1.0, 1.0);
+            let found = align_surfaces(&surface(&mesh), &surface(&other)).unwrap();
+            assert!(found.gap.rms < 1e-3, "{found:?}");
+            assert!(!found.map.reflected, "its own mirror image");
+        }
+    }
+
+    #[test]
+    fn other_surfaces_are_apart() {
+        let (mesh, mut bent) = (hand(), hand());
+        for p in &mut bent.positions {
+            p.x += 0.25 * p.y * p.y;
+        }
+        let found = align_surfaces(&surface(&mesh), &surface(&bent)).unwrap();
+        assert!(found.gap.rms > 0.01, "{found:?}");
+        assert_eq!(align_surfaces(&surface(&mesh), &surface(&shapes::icosphere(3))), None);
+    }
+}

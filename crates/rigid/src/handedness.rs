@@ -1,0 +1,142 @@
+//! Whether a body is the mirror image of another.
+
+use mesh::{TriMesh, outward};
+use nalgebra::{Point3, Vector3};
+use serde::Serialize;
+
+use crate::icp::Alignment;
+use crate::nearest::{NearestPoints, NoExtent};
+use crate::similarity::Similarity;
+
+/// Whether the second body is the mirror image of the first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Handedness {
+    /// It is not.
+    Same,
+    /// It is.
+    Mirrored,
+    /// Both fit, as for a body whose left and right are alike.
+    Either,
+    /// Unknown: a surface does not enclose a volume, or the bodies do not fit well enough to compare normals.
+    #[default]
+    Unknown,
+}
+
+/// One of two maps fits and the other does not if its distance is larger by this factor. A safety limit.
+const DECISIVE: f64 = 1.25;
+
+/// Normals agree, or disagree, if their mean agreement is beyond this. A safety limit: it is 1 for a perfect map, -1 for the
+/// mirrored one, and about 0 if nothing corresponds.
+const AGREEMENT: f64 = 0.2;
+
+/// Whether a map with this root mean square distance fits and another does not: whether its distance is larger by more than
+/// [`DECISIVE`] and by more than what distances are uncertain by. The only place where a reflection is decided.
+pub(crate) fn is_decisive(better: f64, worse: f64, uncertainty: f64) -> bool {
+    worse > (DECISIVE * better).hypot(uncertainty)
+}
+
+/// Points of a surface that encloses a volume, with the faces between them and the share of the surface around each.
+#[derive(Debug)]
+pub struct OrientedPoints<'a> {
+    mesh: TriMesh,
+    weights: &'a [f64],
+}
+
+impl<'a> OrientedPoints<'a> {
+    /// The vertices of `mesh` at other `points`, with its faces turned so that normals point outwards. `None` of a surface that
+    /// encloses no volume.
+    #[must_use]
+    pub fn new(mesh: &TriMesh, points: Vec<Point3<f64>>, weights: &'a [f64]) -> Option<Self> {
+        Some(Self { mesh: TriMesh { positions: points, ..outward(mesh)? }, weights })
+    }
+
+    /// How far the outsides of two bodies agree under a motion of the first onto the second: the mean cosine between
+    /// normals at nearest points, weighted by area, from -1 to 1. `others` are the normals of the second.
+    ///
+    /// Faces move with their points, so a motion with a reflection reverses normals: this tests whether the map from
+    /// surface to surface preserves orientation, not whether the motion does.
+    fn agreement(&self, nearest: &NearestPoints, others: &[Vector3<f64>], motion: &Similarity) -> f64 {
+        let positions = self.mesh.positions.iter().map(|p| motion.apply(p)).collect();
+        let moved = TriMesh { positions, faces: self.mesh.faces.clone() };
+        let (mut sum, mut total) = (0.0, 0.0);
+        for ((point, weight), normal) in moved.positions.iter().zip(self.weights).zip(normals(&moved)) {
+            let other = others[nearest.nearest(point).0];
+            let lengths = normal.norm() * other.norm();
+            if lengths > 0.0 {
+                sum += weight * normal.dot(&other) / lengths;
+                total += weight;
+            }
+        }
+        if total > 0.0 { sum / total } else { 0.0 }
+    }
+}
+
+/// Normals at the vertices, not normalized.
+fn normals(mesh: &TriMesh) -> Vec<Vector3<f64>> {
+    let mut normals = vec![Vector3::zeros(); mesh.n_vertices()];
+    for (f, face) in mesh.faces.iter().enumerate() {
+        let normal = mesh.area_vector(f);
+        face.iter().for_each(|v| normals[v.index()] += normal);
+    }
+    normals
+}
+
+impl Handedness {
+    /// Whether the second body is the mirror image of the first, from the best alignments without and with a reflection, whose
+    /// distances are uncertain by `uncertainty`.
+    ///
+    /// Distances on a surface and on its mirror image are the same, and the signs of principal axes are arbitrary, so
+    /// canonical forms do not tell. But an alignment maps one surface to the other, by nearest points, and the alignment that
+    /// maps outside to outside fits a body, the other one its mirror image. This takes surfaces that enclose a volume, and
+    /// bodies whose left differs from their right.
+    ///
+    /// # Errors
+    /// [`NoExtent`].
+    pub fn from_alignments(
+        alignments: [Alignment; 2],
+        [a, b]: [&OrientedPoints<'_>; 2],
+        uncertainty: f64,
+    ) -> Result<Self, NoExtent> {
+        let (nearest, others) = (NearestPoints::new(b.mesh.positions.clone())?, normals(&b.mesh));
+        // The least distance of a map that preserves, and of one that reverses orientation.
+        let (mut preserving, mut reversing) = (f64::INFINITY, f64::INFINITY);
+        for Alignment { map, gap } in alignments {
+            let agreement = a.agreement(&nearest, &others, &map);
+            if agreement > AGREEMENT {
+                preserving = preserving.min(gap.rms);
+            } else if agreement < -AGREEMENT {
+                reversing = reversing.min(gap.rms);
+            }
+        }
+        Ok(Self::from_maps([preserving, reversing], uncertainty))
+    }
+
+    /// From the root mean square distances of the best maps that preserve and that reverse orientation, infinite if there is
+    /// none.
+    fn from_maps([preserving, reversing]: [f64; 2], uncertainty: f64) -> Self {
+        match preserving.is_finite() || reversing.is_finite() {
+            false => Self::Unknown,
+            _ if is_decisive(preserving, reversing, uncertainty) => Self::Same,
+            _ if is_decisive(reversing, preserving, uncertainty) => Self::Mirrored,
+            _ => Self::Either,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_handedness_follows_the_decisively_better_map() {
+        let of = |distances| Handedness::from_maps(distances, 0.02);
+        let none = f64::INFINITY;
+        for worse in [0.06, none] {
+            assert_eq!(of([0.02, worse]), Handedness::Same);
+            assert_eq!(of([worse, 0.02]), Handedness::Mirrored);
+        }
+        assert_eq!(of([0.021, 0.02]), Handedness::Either);
+        assert_eq!(of([none, none]), Handedness::Unknown);
+    }
+}

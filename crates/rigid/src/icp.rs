@@ -1,0 +1,166 @@
+//! Iterative closest points.
+
+use nalgebra::{Point3, Rotation3, SMatrix, SVector, Vector3};
+use serde::Serialize;
+
+use crate::rigid_surface::RigidSurface;
+use crate::similarity::Similarity;
+
+/// A step that reduces the mean square distance by less than this share is the last. A tolerance.
+const LEAST_GAIN: f64 = 2e-3;
+
+/// The damping of steps in shares of the trace (Levenberg and Marquardt): a step that is too long is made again, shorter. Limits
+/// of effort.
+const MIN_DAMPING: f64 = 1e-9;
+const MAX_DAMPING: f64 = 1e-2;
+
+/// How far two bodies are apart.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Gap {
+    /// Root mean square distance from points of either body to the other.
+    pub rms: f64,
+    /// The largest of these distances.
+    pub max: f64,
+}
+
+/// Two bodies laid over each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Alignment {
+    /// Takes the first body onto the second.
+    pub map: Similarity,
+    /// How far they stay apart, in the unit of the second.
+    pub gap: Gap,
+}
+
+/// What is aligned: samples, which look for their nearest points on another body.
+pub(crate) trait Body {
+    /// Points of the body, of which any leading part is spread evenly.
+    fn samples(&self) -> &[Point3<f64>];
+
+    /// The nearest point of the body, and the unit normal there; no normal of a body of points.
+    fn nearest(&self, query: &Point3<f64>) -> Option<(Point3<f64>, Vector3<f64>)>;
+}
+
+/// A point of the first body under a map, the point of the second that is as near as can be, and the normal there.
+pub(crate) struct Contact {
+    from: Point3<f64>,
+    to: Point3<f64>,
+    normal: Vector3<f64>,
+}
+
+impl Contact {
+    pub(crate) fn sq_distance(&self) -> f64 {
+        (self.from - self.to).norm_squared()
+    }
+}
+
+/// Nearest points in both directions, so that neither body is favored, of the first `n` samples under a map.
+pub(crate) fn contacts<'a, B: Body>(
+    a: &'a B,
+    b: &'a B,
+    map: &'a Similarity,
+    n: usize,
+) -> impl Iterator<Item = Contact> + 'a {
+    let there = a.samples().iter().take(n).filter_map(move |p| {
+        let from = map.apply(p);
+        let (to, normal) = b.nearest(&from)?;
+        Some(Contact { from, to, normal })
+    });
+    let back = map.inverse();
+    let here = b.samples().iter().take(n).filter_map(move |q| {
+        let (from, normal) = a.nearest(&back.apply(q))?;
+        Some(Contact { from: map.apply(&from), to: *q, normal: map.rotation * normal })
+    });
+    there.chain(here)
+}
+
+impl Alignment {
+    /// Two surfaces under a map of the first, at unit area, onto the second; `None` of surfaces without area.
+    #[must_use]
+    pub fn by_map(a: &RigidSurface, b: &RigidSurface, map: Similarity) -> Option<Self> {
+        Self::by(a, b, map)
+    }
+
+    /// By a map, measured at all samples. `None` of bodies without points.
+    pub(crate) fn by<B: Body>(a: &B, b: &B, map: Similarity) -> Option<Self> {
+        let squares = contacts(a, b, &map, usize::MAX).map(|contact| contact.sq_distance());
+        let (n, sum, max) =
+            squares.fold((0, 0.0, 0.0), |(n, sum, max), sq| (n + 1, sum + sq, f64::max(max, sq)));
+        let gap = Gap { rms: (sum / f64::from(n)).sqrt(), max: max.sqrt() };
+        (n > 0).then_some(Self { map, gap })
+    }
+}
+
+/// The effort of a refinement, and what it brings together.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Effort {
+    /// Samples of either body that look for their nearest points.
+    pub(crate) samples: usize,
+    /// Most steps.
+    pub(crate) steps: usize,
+    pub(crate) towards: Towards,
+}
+
+/// What a step of a refinement minimizes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Towards {
+    /// Distances from the nearest points, by a motion (Besl and McKay 1992, `besl1992` in `REFERENCES.bib`).
+    Points,
+    /// Distances from the tangent planes at the nearest points, by a motion and a change of size (Chen and Medioni 1992,
+    /// `chen1992` in `REFERENCES.bib`).
+    Planes,
+}
+
+/// Refines a map, which keeps its handedness. Returns the root mean square distance of the samples, too.
+pub(crate) fn refine<B: Body>(a: &B, b: &B, start: Similarity, effort: Effort) -> (Similarity, f64) {
+    let found = |map: &Similarity| contacts(a, b, map, effort.samples).collect::<Vec<_>>();
+    let mean_square =
+        |all: &[Contact]| all.iter().map(Contact::sq_distance).sum::<f64>() / all.len().max(1) as f64;
+    let (mut map, mut near) = (start, found(&start));
+    let mut error = mean_square(&near);
+    let mut damping = MIN_DAMPING;
+    for _ in 0..effort.steps {
+        let step = match effort.towards {
+            Towards::Points => {
+                let pairs: Vec<_> = near.iter().map(|contact| (contact.from, contact.to)).collect();
+                Similarity::fit_motion(&pairs, false)
+            }
+            Towards::Planes => tangent_step(&near, damping),
+        };
+        let Some(next) = step.map(|step| step.after(&map)) else { break };
+        let after = found(&next);
+        let reached = mean_square(&after);
+        let is_last = reached >= error * (1.0 - LEAST_GAIN);
+        if reached < error {
+            (map, near, error) = (next, after, reached);
+            damping = f64::max(0.1 * damping, MIN_DAMPING);
+        }
+        match effort.towards {
+            _ if !is_last => {}
+            Towards::Planes if reached > error && damping < MAX_DAMPING => damping *= 100.0,
+            Towards::Points | Towards::Planes => break,
+        }
+    }
+    (map, error.sqrt())
+}
+
+/// The small similarity that brings points nearest to the tangent planes of their partners; `damping` shortens it.
+fn tangent_step(contacts: &[Contact], damping: f64) -> Option<Similarity> {
+    let mut matrix = SMatrix::<f64, 7, 7>::zeros();
+    let mut right = SVector::<f64, 7>::zeros();
+    for Contact { from, to, normal } in contacts {
+        let mut row = SVector::<f64, 7>::zeros();
+        row.fixed_rows_mut::<3>(0).copy_from(&from.coords.cross(normal));
+        row.fixed_rows_mut::<3>(3).copy_from(normal);
+        row[6] = from.coords.dot(normal);
+        matrix += row * row.transpose();
+        right += row * (to - from).dot(normal);
+    }
+    matrix += SMatrix::identity() * (damping * matrix.trace().max(f64::MIN_POSITIVE));
+    let step = matrix.cholesky()?.solve(&right);
+    let turn = Rotation3::new(step.fixed_rows::<3>(0).into_owned());
+    // A linear step by more is no small one.
+    let scale = step[6].clamp(-0.2, 0.2).exp();
+    let translation = step.fixed_rows::<3>(3).into_owned();
+    Some(Similarity { translation, scale, ..Similarity::about_origin(turn.into_inner()) })
+}
