@@ -2,10 +2,10 @@
 //!
 //! `geodesics` -> **[`LandmarkDistances`], [`DistanceMatrix`]** -> `nmds`, `retrieval`
 //!
-//! The only crate that names a linear-algebra backend. Public types are nalgebra's. Decompositions of large matrices
+//! The only crate that names a linear-algebra backend. Public types are nalgebra's. Decompositions of dense matrices
 //! are faer's, run sequentially so that results do not depend on the number of threads. [`SparseCholesky`] solves
 //! sparse positive definite systems for many right-hand sides; [`smallest_eigenpairs`] and [`largest_eigenpairs`] find
-//! a few eigenpairs of large matrices. Knows nothing of meshes.
+//! a few eigenpairs of large ones, both by block [`Lanczos`](lanczos) processes. Knows nothing of meshes.
 
 mod cholesky;
 mod column_store;
@@ -13,8 +13,9 @@ mod decomposition;
 mod distance_matrix;
 mod error;
 mod generalized;
-mod krylov;
+mod lanczos;
 mod landmark_distances;
+mod largest;
 mod panels;
 mod sparse;
 
@@ -27,8 +28,8 @@ pub use decomposition::{
 pub use distance_matrix::DistanceMatrix;
 pub use error::LinalgError;
 pub use generalized::{GeneralizedEigen, smallest_eigenpairs};
-pub use krylov::{SymmetricOperator, largest_eigenpairs};
 pub use landmark_distances::LandmarkDistances;
+pub use largest::{SymmetricOperator, largest_eigenpairs};
 pub use sparse::SparseSymmetric;
 
 /// A dense matrix of `f64`, column by column.

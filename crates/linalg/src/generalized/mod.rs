@@ -1,15 +1,13 @@
 //! The smallest eigenpairs of a pencil of a sparse and a diagonal matrix.
 
 mod inertia;
-mod lanczos;
 mod operator;
-mod strips;
 
 use base::{Budget, Observer};
 
 use self::inertia::n_negative;
-use self::lanczos::{Lanczos, Ritz};
 use self::operator::{ShiftInverse, shifted};
+use crate::lanczos::{Lanczos, Ritz};
 use crate::{EliminationOrder, LinalgError, Matrix, SparseSymmetric, leading_sign};
 
 /// Additional pairs to find, so that the count can be checked in a gap above the requested ones.

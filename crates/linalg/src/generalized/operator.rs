@@ -2,6 +2,7 @@
 
 use base::Budget;
 
+use crate::lanczos::Operator;
 use crate::{EliminationOrder, LinalgError, Matrix, SparseCholesky, SparseSymmetric};
 
 /// `C = (W + s M)^-1 s M` with diagonal `M`, for vectors with rows in elimination order.
@@ -46,38 +47,18 @@ impl ShiftInverse {
     pub(super) fn unshifted(&self, theta: f64) -> f64 {
         self.shift * (1.0 / theta - 1.0)
     }
+}
 
-    pub(super) fn n_rows(&self) -> usize {
+impl Operator for ShiftInverse {
+    fn n_rows(&self) -> usize {
         self.masses.len()
     }
 
-    /// `s M W`.
-    pub(super) fn weighted(&self, columns: &Matrix) -> Matrix {
-        let mut result = columns.clone();
-        for mut column in result.column_iter_mut() {
-            column.iter_mut().zip(&self.masses).for_each(|(x, m)| *x *= m);
-        }
-        result
+    fn masses(&self) -> Option<&[f64]> {
+        Some(&self.masses)
     }
 
-    /// `x' s M y`.
-    pub(super) fn inner(&self, x: &[f64], y: &[f64]) -> f64 {
-        // Eight independent chains of additions.
-        let mut sums = [0.0; 8];
-        let chunks =
-            x.as_chunks::<8>().0.iter().zip(y.as_chunks::<8>().0).zip(self.masses.as_chunks::<8>().0);
-        for ((x, y), m) in chunks {
-            for (sum, ((x, y), m)) in sums.iter_mut().zip(x.iter().zip(y).zip(m)) {
-                *sum += x * y * m;
-            }
-        }
-        let done = x.len() / 8 * 8;
-        let tail = x[done..].iter().zip(&y[done..]).zip(&self.masses[done..]).map(|((x, y), m)| x * y * m);
-        sums.iter().sum::<f64>() + tail.sum::<f64>()
-    }
-
-    /// Applies the operator to each column.
-    pub(super) fn apply(&self, columns: &Matrix) -> Matrix {
+    fn apply(&self, columns: &Matrix) -> Matrix {
         let mut result = self.weighted(columns);
         self.factor.solve_ordered_columns(result.as_mut_slice());
         result

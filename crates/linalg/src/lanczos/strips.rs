@@ -14,7 +14,7 @@ const ROWS: usize = 512;
 /// Vectors of n rows, divided into strips of [`ROWS`] rows that are stored column by column: vectors can be appended in
 /// place, and strips processed in parallel.
 #[derive(Debug)]
-pub(super) struct Strips {
+pub(crate) struct Strips {
     n_rows: usize,
     n_columns: usize,
     strips: Vec<Vec<f64>>,
@@ -22,17 +22,17 @@ pub(super) struct Strips {
 
 impl Strips {
     /// An empty set of vectors of `n_rows` rows.
-    pub(super) fn new(n_rows: usize) -> Self {
+    pub(crate) fn new(n_rows: usize) -> Self {
         Self { n_rows, n_columns: 0, strips: vec![Vec::new(); n_rows.div_ceil(ROWS)] }
     }
 
     /// Number of vectors.
-    pub(super) fn n_columns(&self) -> usize {
+    pub(crate) fn n_columns(&self) -> usize {
         self.n_columns
     }
 
     /// Appends the columns of a matrix.
-    pub(super) fn append(&mut self, columns: &Matrix) {
+    pub(crate) fn append(&mut self, columns: &Matrix) {
         for column in columns.as_slice().chunks_exact(self.n_rows) {
             self.strips.iter_mut().zip(column.chunks(ROWS)).for_each(|(strip, rows)| strip.extend(rows));
         }
@@ -40,7 +40,7 @@ impl Strips {
     }
 
     /// The products `V' W` with the columns of a matrix.
-    pub(super) fn products(&self, w: &Matrix) -> Matrix {
+    pub(crate) fn products(&self, w: &Matrix) -> Matrix {
         let (n, m) = (self.n_columns, w.ncols());
         // `W' V`, since only the first factor is copied where its rows are not contiguous.
         let parts: Vec<Matrix> = (0..self.strips.len())
@@ -57,14 +57,14 @@ impl Strips {
     }
 
     /// The combinations `V H`.
-    pub(super) fn combine(&self, h: &Matrix) -> Matrix {
+    pub(crate) fn combine(&self, h: &Matrix) -> Matrix {
         let mut w = Matrix::zeros(self.n_rows, h.ncols());
         self.add_combinations(&mut w, h, 1.0);
         w
     }
 
     /// Adds `factor` times the combinations `V H` to the columns of a matrix.
-    pub(super) fn add_combinations(&self, w: &mut Matrix, h: &Matrix, factor: f64) {
+    pub(crate) fn add_combinations(&self, w: &mut Matrix, h: &Matrix, factor: f64) {
         let m = w.ncols();
         let mut rest = MatMut::from_column_major_slice_mut(w.as_mut_slice(), self.n_rows, m);
         let mut outs = Vec::with_capacity(self.strips.len());

@@ -1,9 +1,10 @@
 //! A block Lanczos process with full orthogonalisation.
 
+mod strips;
+
 use base::SplitMix;
 
-use super::operator::ShiftInverse;
-use super::strips::Strips;
+use self::strips::Strips;
 use crate::{LinalgError, Matrix, SymmetricEigen, symmetric_eigen};
 
 /// Vectors in the first block. A block of this size finds as many copies of a multiple eigenvalue at once. Larger blocks
@@ -16,6 +17,39 @@ const ROUNDING: f64 = 1e-13;
 /// A vector that orthogonalisation reduces below this share of its length has lost a digit to rounding and is
 /// orthogonalised again.
 const CANCELLED: f64 = 0.1;
+
+/// An operator `C` that is symmetric in the inner product `x' M y` of diagonal masses.
+pub(crate) trait Operator: std::fmt::Debug {
+    fn n_rows(&self) -> usize;
+
+    /// The diagonal of `M`; `None` if it is the identity.
+    fn masses(&self) -> Option<&[f64]>;
+
+    /// `C W`.
+    fn apply(&self, columns: &Matrix) -> Matrix;
+
+    /// `M W`.
+    fn weighted(&self, columns: &Matrix) -> Matrix {
+        let mut result = columns.clone();
+        if let Some(masses) = self.masses() {
+            for mut column in result.column_iter_mut() {
+                column.iter_mut().zip(masses).for_each(|(x, m)| *x *= m);
+            }
+        }
+        result
+    }
+}
+
+/// `x' M y`, in eight independent chains of additions.
+fn inner(masses: Option<&[f64]>, x: &[f64], y: &[f64]) -> f64 {
+    let mut sums = [0.0; 8];
+    let done = x.len() / 8 * 8;
+    let product = |i: usize| x[i] * y[i] * masses.map_or(1.0, |masses| masses[i]);
+    for start in (0..done).step_by(8) {
+        sums.iter_mut().enumerate().for_each(|(lane, sum)| *sum += product(start + lane));
+    }
+    sums.iter().sum::<f64>() + (done..x.len()).map(product).sum::<f64>()
+}
 
 /// A block Lanczos process for the largest eigenvalues of an operator `C` that is symmetric in the inner product
 /// `x' M y` of its masses.
@@ -32,8 +66,8 @@ const CANCELLED: f64 = 0.1;
 /// Blocks may grow: a vector of `X` that is not in `C X_k` has a zero row in `B`. They shrink when directions are
 /// exhausted, and are empty once the basis spans the whole space.
 #[derive(Debug)]
-pub(super) struct Lanczos<'a> {
-    operator: &'a ShiftInverse,
+pub(crate) struct Lanczos<'a> {
+    operator: &'a dyn Operator,
     basis: Strips,
     /// For each block `X_k` of the basis, `X_k' M C X_k` and its coupling `B` to the next block.
     blocks: Vec<[Matrix; 2]>,
@@ -45,7 +79,7 @@ pub(super) struct Lanczos<'a> {
 
 impl<'a> Lanczos<'a> {
     /// A process that starts from a fixed set of random vectors.
-    pub(super) fn new(operator: &'a ShiftInverse) -> Self {
+    pub(crate) fn new(operator: &'a dyn Operator) -> Self {
         let n = operator.n_rows();
         let none = || Matrix::zeros(n, 0);
         let random = SplitMix(0x9e37_79b9_7f4a_7c15);
@@ -56,17 +90,17 @@ impl<'a> Lanczos<'a> {
     }
 
     /// Number of vectors in the basis.
-    pub(super) fn dim(&self) -> usize {
+    pub(crate) fn dim(&self) -> usize {
         self.basis.n_columns()
     }
 
     /// Whether the basis spans the whole space.
-    pub(super) fn is_exhausted(&self) -> bool {
+    pub(crate) fn is_exhausted(&self) -> bool {
         self.next.ncols() == 0
     }
 
     /// Takes the next block into the basis.
-    pub(super) fn step(&mut self) {
+    pub(crate) fn step(&mut self) {
         let block = std::mem::replace(&mut self.next, Matrix::zeros(self.operator.n_rows(), 0));
         self.basis.append(&block);
         let mut image = self.operator.apply(&block);
@@ -89,7 +123,7 @@ impl<'a> Lanczos<'a> {
 
     /// Adds up to `count` random vectors to the next block (fewer if there are no more directions), to find eigenvectors
     /// that are orthogonal to the start.
-    pub(super) fn add_random(&mut self, count: usize) {
+    pub(crate) fn add_random(&mut self, count: usize) {
         let n = self.operator.n_rows();
         let random = Matrix::from_fn(n, count, |_, _| self.random.uniform());
         let mut fresh = self.operator.apply(&random);
@@ -139,12 +173,12 @@ impl<'a> Lanczos<'a> {
             let column = &mut rest[..n];
             for _ in 0..2 {
                 for (i, other) in done[..kept * n].chunks_exact(n).enumerate() {
-                    let share = self.operator.inner(other, column);
+                    let share = self.inner(other, column);
                     column.iter_mut().zip(other).for_each(|(x, y)| *x -= share * y);
                     r[(i, j)] += share;
                 }
             }
-            let length = self.operator.inner(column, column).sqrt();
+            let length = self.inner(column, column).sqrt();
             left.push(length);
             if length > ROUNDING * lengths[j] {
                 column.iter_mut().for_each(|x| *x /= length);
@@ -157,9 +191,13 @@ impl<'a> Lanczos<'a> {
         (r.rows(0, kept).into_owned(), left)
     }
 
+    fn inner(&self, x: &[f64], y: &[f64]) -> f64 {
+        inner(self.operator.masses(), x, y)
+    }
+
     /// The M-norm of each column.
     fn lengths(&self, w: &Matrix) -> Vec<f64> {
-        w.column_iter().map(|x| self.operator.inner(x.as_slice(), x.as_slice()).sqrt()).collect()
+        w.column_iter().map(|x| self.inner(x.as_slice(), x.as_slice()).sqrt()).collect()
     }
 
     /// The matrix `T`.
@@ -184,9 +222,12 @@ impl<'a> Lanczos<'a> {
     ///
     /// # Errors
     /// [`LinalgError::NotConverged`].
-    pub(super) fn ritz(&self) -> Result<Ritz, LinalgError> {
-        let eigen = symmetric_eigen(&self.projected())?;
+    pub(crate) fn ritz(&self) -> Result<Ritz, LinalgError> {
         let dim = self.dim();
+        let eigen = match dim {
+            0 => SymmetricEigen { values: Vec::new(), vectors: Matrix::zeros(0, 0) },
+            _ => symmetric_eigen(&self.projected())?,
+        };
         let outside = match self.blocks.last() {
             Some([within, coupling]) => {
                 let width = within.ncols();
@@ -198,13 +239,15 @@ impl<'a> Lanczos<'a> {
     }
 
     /// The M-orthonormal vectors `C V y / theta` of the first `m` pairs of `T`: a step of inverse iteration on `V y`
-    /// without extra cost, since `C V y = theta V y + X B E' y`.
-    pub(super) fn vectors(&self, ritz: &Ritz, m: usize) -> Matrix {
+    /// without extra cost for positive `theta`, since `C V y = theta V y + X B E' y`.
+    pub(crate) fn vectors(&self, ritz: &Ritz, m: usize) -> Matrix {
         let mut result = self.basis.combine(&ritz.eigen.vectors.columns(0, m).into_owned());
         for (j, mut vector) in result.column_iter_mut().enumerate() {
             let theta = ritz.eigen.values[j];
-            vector += &self.next * ritz.outside.column(j) / theta;
-            vector /= 1.0f64.hypot(ritz.residual(j));
+            if theta > 0.0 {
+                vector += &self.next * ritz.outside.column(j) / theta;
+                vector /= 1.0f64.hypot(ritz.residual(j));
+            }
         }
         result
     }
@@ -212,16 +255,21 @@ impl<'a> Lanczos<'a> {
 
 /// The eigenpairs of `T`, largest first.
 #[derive(Debug)]
-pub(super) struct Ritz {
-    pub(super) eigen: SymmetricEigen,
+pub(crate) struct Ritz {
+    pub(crate) eigen: SymmetricEigen,
     /// `B E' y` for each eigenvector `y` of `T`.
     outside: Matrix,
 }
 
 impl Ritz {
-    /// `|C x - theta x| / theta` of pair `j`, with `x = V y`.
-    pub(super) fn residual(&self, j: usize) -> f64 {
+    /// `|C x - theta x|` of pair `j`, with `x = V y`.
+    pub(crate) fn absolute_residual(&self, j: usize) -> f64 {
+        self.outside.column(j).norm()
+    }
+
+    /// The same over `theta`; infinite unless that is positive.
+    pub(crate) fn residual(&self, j: usize) -> f64 {
         let theta = self.eigen.values[j];
-        if theta > 0.0 { self.outside.column(j).norm() / theta } else { f64::INFINITY }
+        if theta > 0.0 { self.absolute_residual(j) / theta } else { f64::INFINITY }
     }
 }
