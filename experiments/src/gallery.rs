@@ -71,6 +71,6 @@ impl<'a> Gallery<'a> {
 impl GalleryQuery<'_> {
     pub(crate) fn damaged(&self, damage: Damage) -> Result<Surface> {
         let mesh = damage.apply(self.shape.surface.mesh(), self.seed);
-        Ok(Surface::new(&mesh, &self.shape.surface.repair, &())?)
+        Ok(Surface::new(&mesh, &self.shape.surface.input.repair, &())?)
     }
 }

@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let rows = embedded.embedding.coords.transpose();
         std::fs::write(form, rows.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>())?;
         let seconds = &embedded.report.seconds;
-        let parts = (surface.repair_seconds, seconds.geodesics, seconds.embedding);
+        let parts = (surface.input.repair_seconds, seconds.geodesics, seconds.embedding);
         println!(
             r#"{{"total": {total}, "repair": {}, "geodesics": {}, "embedding": {}}}"#,
             parts.0, parts.1, parts.2

@@ -96,7 +96,7 @@ pub(crate) fn read_surface(path: &Path, repair: &RepairArgs, common: &Common) ->
 /// As [`read_surface`], with the mesh as [`read_both`] returns it.
 pub(crate) fn read_reported(path: &Path, repair: &RepairArgs, common: &Common) -> Result<(TriMesh, Surface)> {
     let (mesh, surface) = read_both(path, repair, common)?;
-    print_repair(&file_name(path), &surface.repaired.report, repair);
+    print_repair(&file_name(path), &surface.input.report, repair);
     Ok((mesh, surface))
 }
 
@@ -131,7 +131,7 @@ pub(crate) fn read_both(path: &Path, repair: &RepairArgs, common: &Common) -> Re
     let load_seconds = start.elapsed().as_secs_f64();
     let mut surface =
         Surface::new(&mesh, &repair.options(), &()).map_err(|fault| named(path, fault.into()))?;
-    surface.load_seconds = load_seconds;
+    surface.input.load_seconds = load_seconds;
     Ok((surface.shown(mesh), surface))
 }
 

@@ -6,7 +6,7 @@ use geodesics::{DistanceSolver, FirstSample, Method, Observed, Sampling};
 use linalg::{LandmarkDistances, Matrix};
 use surface::VertexId;
 
-use crate::distance_field::{DistanceField, Provenance, VertexMap};
+use crate::distance_field::{DistanceField, Provenance};
 use crate::error::FieldError;
 use crate::metric::{ColumnError, LandmarkMetric};
 use base::Observer;
@@ -78,11 +78,11 @@ impl DistanceField {
         let rank = options.rank.unwrap_or(distances.n_landmarks().div_ceil(2));
         let metric = LandmarkMetric::new(&distances, n_exact, error, rank)?;
         Ok(Self {
-            provenance: Provenance { method: options.method, repair: surface.repair },
+            provenance: Provenance { method: options.method, repair: surface.input.repair },
             metric,
             landmarks: distances.landmarks().iter().map(|&v| VertexId::from(v)).collect(),
             surface: mesh.clone(),
-            map: VertexMap::new(&surface.repaired.input_to_repaired, mesh.n_vertices()),
+            remap: surface.input.remap.clone(),
             exact: Mutex::default(),
         })
     }

@@ -4,7 +4,7 @@ use std::sync::{Mutex, PoisonError};
 
 use base::{Exceeded, Observer};
 use geodesics::{Exact, GeodesicError, Method};
-use mesh::RepairOptions;
+use mesh::{Remap, RepairOptions};
 use serde::{Deserialize, Serialize};
 use surface::{IntrinsicMesh, VertexId};
 
@@ -56,7 +56,8 @@ pub struct DistanceField {
     /// Vertices of the repaired mesh.
     pub(crate) landmarks: Vec<VertexId>,
     pub(crate) surface: IntrinsicMesh,
-    pub(crate) map: VertexMap,
+    /// From the vertices of the input to those of the repaired mesh.
+    pub(crate) remap: Remap,
     /// Prepared when the first pair is finished.
     pub(crate) exact: Mutex<Option<Exact>>,
 }
@@ -67,29 +68,6 @@ pub struct DistanceField {
 pub(crate) struct Provenance {
     pub(crate) method: Method,
     pub(crate) repair: RepairOptions,
-}
-
-/// The vertices of the input on the repaired mesh.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct VertexMap {
-    pub(crate) n_input: usize,
-    /// For each input vertex, its vertex in the repaired mesh; `None` if the repair dropped it. None at all if the repair kept
-    /// every vertex.
-    pub(crate) to_repaired: Option<Vec<Option<VertexId>>>,
-}
-
-impl VertexMap {
-    pub(crate) fn new(to_repaired: &[Option<VertexId>], n_repaired: usize) -> Self {
-        let stays = |(input, vertex): (usize, &Option<VertexId>)| *vertex == Some(VertexId::from(input));
-        let n_input = to_repaired.len();
-        let is_identity = n_input == n_repaired && to_repaired.iter().enumerate().all(stays);
-        Self { n_input, to_repaired: (!is_identity).then(|| to_repaired.to_vec()) }
-    }
-
-    /// The vertex of the repaired mesh; `None` if it was dropped.
-    pub(crate) fn get(&self, input: VertexId) -> Option<VertexId> {
-        self.to_repaired.as_ref().map_or(Some(input), |map| map[input.index()])
-    }
 }
 
 /// What the intervals of a field rest on.
@@ -131,7 +109,7 @@ pub struct FieldFacts {
 impl DistanceField {
     /// Number of vertices of the input.
     pub fn n_vertices(&self) -> usize {
-        self.map.n_input
+        self.remap.n_old()
     }
 
     /// Facts about the field.
@@ -173,20 +151,13 @@ impl DistanceField {
 
     /// The landmarks: vertices of the input.
     pub fn landmarks(&self) -> Vec<VertexId> {
-        let Some(map) = &self.map.to_repaired else { return self.landmarks.clone() };
-        let mut first = vec![None; self.surface.n_vertices()];
-        for (input, vertex) in map.iter().enumerate().rev() {
-            if let Some(vertex) = vertex {
-                first[vertex.index()] = Some(VertexId::from(input));
-            }
-        }
-        self.landmarks.iter().filter_map(|landmark| first[landmark.index()]).collect()
+        self.landmarks.iter().map(|landmark| self.remap.to_old(*landmark)).collect()
     }
 
     /// The vertex of the repaired mesh that an input vertex became; `None` if it was dropped.
     pub(crate) fn repaired(&self, input: VertexId) -> Result<Option<VertexId>, FieldError> {
         match input.index() < self.n_vertices() {
-            true => Ok(self.map.get(input)),
+            true => Ok(self.remap.to_new(input)),
             false => Err(GeodesicError::NoSuchVertex { vertex: input, n_vertices: self.n_vertices() }.into()),
         }
     }

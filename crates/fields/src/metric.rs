@@ -3,6 +3,7 @@
 use linalg::LandmarkDistances;
 use nmds::{NmdsError, low_rank_factor};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 /// A closed interval of distances.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,7 +26,7 @@ impl Interval {
 }
 
 /// The error of computed distances: `computed - over <= true <= computed + under`.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ColumnError {
     /// The most that a computed distance is too long, in the unit of the distances.
     pub(crate) over: f64,

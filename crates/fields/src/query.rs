@@ -185,7 +185,7 @@ impl DistanceField {
             let mut distances = Vec::new();
             self.propagate(from, radius, &mut distances, observer)?;
             for (vertex, answer) in row.iter_mut().enumerate() {
-                if let Some(to) = self.map.get(VertexId::from(vertex))
+                if let Some(to) = self.remap.to_new(VertexId::from(vertex))
                     && distances[to.index()].is_finite()
                 {
                     *answer = PairDistance::exact([answer.a, answer.b], distances[to.index()]);
@@ -210,7 +210,7 @@ impl DistanceField {
         let others: Vec<(VertexId, VertexId)> = (0..self.n_vertices())
             .map(VertexId::from)
             .filter(|input| *input != source)
-            .filter_map(|input| Some((input, self.map.get(input)?)))
+            .filter_map(|input| Some((input, self.remap.to_new(input)?)))
             .collect();
         let k = k.min(others.len());
         if k == 0 {

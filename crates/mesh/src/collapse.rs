@@ -7,7 +7,8 @@ use ::surface::VertexId;
 use base::{Budget, Exceeded};
 use nalgebra::{Matrix3, Point3, Vector3};
 
-use crate::TriMesh;
+use crate::remap::{Remap, Remapped};
+use crate::tri_mesh::TriMesh;
 
 /// Weight of the planes that hold boundaries in place, relative to those of faces.
 const BOUNDARY: f64 = 10.0;
@@ -17,15 +18,6 @@ const LEAST_COSINE: f64 = 0.2;
 
 /// Operations that a collapse counts for in the meter of a budget.
 const OPERATIONS: usize = 256;
-
-/// A mesh with fewer vertices, and where those of the original went.
-#[derive(Debug, Clone, PartialEq)]
-pub struct CollapsedMesh {
-    /// The mesh.
-    pub mesh: TriMesh,
-    /// For each vertex of the original, the vertex that it was merged into; `None` if it had no face.
-    pub vertex_of: Vec<Option<VertexId>>,
-}
 
 /// A sum of weighted squared distances from planes, `x' A x + 2 b' x + c`.
 #[derive(Debug, Clone, Copy)]
@@ -116,7 +108,7 @@ pub fn collapse_edges(
     n_vertices: usize,
     cost: &dyn Fn(f64, f64, [usize; 2]) -> f64,
     budget: &Budget,
-) -> Result<CollapsedMesh, Exceeded> {
+) -> Result<Remapped, Exceeded> {
     let mut meter = budget.meter();
     let mut work = Collapse::new(mesh.clone(), cost);
     let mut n_left = work.faces_at.iter().filter(|faces| !faces.is_empty()).count();
@@ -158,7 +150,7 @@ impl<'a> Collapse<'a> {
         work
     }
 
-    fn finished(self) -> CollapsedMesh {
+    fn finished(self) -> Remapped {
         let mut is_alive = vec![false; self.faces.len()];
         self.faces_at.iter().flatten().for_each(|&f| is_alive[f as usize] = true);
         let faces =
@@ -170,7 +162,8 @@ impl<'a> Collapse<'a> {
             }
             v as usize
         };
-        CollapsedMesh { mesh, vertex_of: (0..number.len() as u32).map(|v| number[last(v)]).collect() }
+        let to_new = (0..number.len() as u32).map(|v| number[last(v)]).collect();
+        Remapped { remap: Remap::new(to_new, mesh.n_vertices()), mesh }
     }
 
     /// Adds the plane of a face to its vertices, and upright planes along its boundary edges.

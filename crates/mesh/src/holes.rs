@@ -4,11 +4,11 @@ use nalgebra::{Point3, Vector3};
 use surface::{Topology, VertexId};
 
 use crate::orientation::orient_consistently;
-use crate::refine::Refined;
+use crate::remap::Remapped;
 use crate::tri_mesh::TriMesh;
 
 /// Closes the holes whose boundary is at most `longest` long, in mesh units: each gets a vertex in the middle of its
-/// boundary, joined to it by triangles. `origins` are vertices of the boundaries.
+/// boundary, joined to it by triangles. It comes from a vertex of the boundary.
 ///
 /// A hole is a closed loop of edges with one face. Loops that touch each other in a vertex are left open.
 ///
@@ -22,22 +22,22 @@ use crate::tri_mesh::TriMesh;
 /// ball.faces.truncate(ball.faces.len() - 4);
 /// assert_eq!(validate(&ball).n_boundary_loops, 1);
 /// assert_eq!(validate(&fill_holes(&ball, 1.0).mesh).n_boundary_loops, 0);
-/// assert!(fill_holes(&ball, 0.1).origins.is_empty());
+/// assert!(fill_holes(&ball, 0.1).remap.is_identity());
 /// ```
 #[must_use]
-pub fn fill_holes(mesh: &TriMesh, longest: f64) -> Refined {
+pub fn fill_holes(mesh: &TriMesh, longest: f64) -> Remapped {
     let mut oriented = mesh.clone();
     orient_consistently(&mut oriented);
-    let mut filled = Refined { mesh: mesh.clone(), origins: Vec::new() };
+    let (mut filled, mut origins) = (mesh.clone(), Vec::new());
     for hole in holes(&oriented) {
         let Some(middle) = middle_within(mesh, &hole, longest) else { continue };
-        let center = VertexId::from(filled.mesh.n_vertices());
-        filled.mesh.positions.push(middle);
-        filled.origins.push(hole[0]);
+        let center = VertexId::from(filled.n_vertices());
+        filled.positions.push(middle);
+        origins.push(hole[0]);
         // Against the direction in which the faces outside run.
-        filled.mesh.faces.extend(sides(&hole).map(|[a, b]| [b, a, center]));
+        filled.faces.extend(sides(&hole).map(|[a, b]| [b, a, center]));
     }
-    filled
+    Remapped::extended(filled, origins)
 }
 
 /// The sides of a closed loop.
@@ -112,7 +112,7 @@ mod tests {
         assert_eq!((report.n_boundary_loops, report.flipped_faces), (0, 0), "{report:?}");
         assert_eq!(filled.mesh.positions[..mesh.n_vertices()], mesh.positions);
         assert_eq!(filled.mesh.faces[..mesh.n_faces()], mesh.faces);
-        assert_eq!((filled.origins.len(), filled.mesh.n_vertices()), (3, mesh.n_vertices() + 3));
+        assert_eq!((filled.remap.origins().len(), filled.mesh.n_vertices()), (3, mesh.n_vertices() + 3));
         let whole = shapes::torus(40, 20, 2.0, 0.7).area();
         assert!((filled.mesh.area() / whole - 1.0).abs() < 0.002 && mesh.area() < 0.99 * whole);
     }
@@ -120,15 +120,15 @@ mod tests {
     #[test]
     fn large_holes_and_touching_ones_stay() {
         let sheet = shapes::grid(5, 5, 1.0);
-        assert!(fill_holes(&sheet, 15.9).origins.is_empty());
-        assert_eq!(fill_holes(&sheet, 16.1).origins.len(), 1);
+        assert!(fill_holes(&sheet, 15.9).remap.is_identity());
+        assert_eq!(fill_holes(&sheet, 16.1).remap.origins().len(), 1);
         let mut touching = shapes::grid(6, 6, 1.0);
         touching.faces.retain(|face| {
             let corner = face.iter().map(|v| v.0).min().unwrap();
             ![7, 14].contains(&corner)
         });
-        assert!(fill_holes(&touching, 6.0).origins.is_empty());
-        assert!(fill_holes(&shapes::torus(8, 8, 2.0, 0.7), 100.0).origins.is_empty());
+        assert!(fill_holes(&touching, 6.0).remap.is_identity());
+        assert!(fill_holes(&shapes::torus(8, 8, 2.0, 0.7), 100.0).remap.is_identity());
     }
 
     #[test]
@@ -141,7 +141,7 @@ mod tests {
         turned.faces.iter_mut().step_by(5).for_each(|face| face.swap(0, 2));
         for other in [fine, turned] {
             let found = fill_holes(&other, 3.0);
-            assert_eq!(found.origins.len(), 1);
+            assert_eq!(found.remap.origins().len(), 1);
             let gap = found.mesh.positions.last().unwrap() - expected.mesh.positions.last().unwrap();
             assert!(gap.norm() < 1e-12);
         }

@@ -5,39 +5,15 @@ use std::collections::HashMap;
 use nalgebra::{Point3, Vector3};
 use surface::{CornerId, EdgeId, FaceId, IntrinsicMesh, Loops, Topology, Triangulation, VertexId};
 
+use crate::remap::Remapped;
 use crate::tri_mesh::TriMesh;
-
-/// A mesh with new vertices.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Refined {
-    /// The mesh. The old vertices come first, unchanged.
-    pub mesh: TriMesh,
-    /// For every new vertex, an old vertex near it: at an end of the edge that was split, or on the boundary of the hole that
-    /// was closed.
-    pub origins: Vec<VertexId>,
-}
-
-impl Refined {
-    /// What `next` made of this mesh: its origins are then vertices of the first mesh.
-    #[must_use]
-    pub fn then(self, next: Self) -> Self {
-        let n_old = self.mesh.n_vertices() - self.origins.len();
-        let new: Vec<VertexId> = next.origins.iter().map(|&v| origin(v, n_old, &self.origins)).collect();
-        Self { mesh: next.mesh, origins: [self.origins, new].concat() }
-    }
-}
-
-/// The old vertex near a vertex: itself if it is old.
-fn origin(v: VertexId, n_old: usize, origins: &[VertexId]) -> VertexId {
-    v.index().checked_sub(n_old).map_or(v, |i| origins[i])
-}
 
 /// A vertex is in the plane of a face if it is nearer to it than this, relative to the root of the area: files round
 /// coordinates to six digits.
 const FLAT: f64 = 1e-5;
 
 /// Splits edges longer than `longest` at their midpoints, in rounds, until there are none or the next round would give
-/// more than `most` vertices. The surface stays the same; any mesh with usable faces will do, including edges of more
+/// more than `most` vertices. New vertices come from an end of the edge that was split. The surface stays the same; any mesh with usable faces will do, including edges of more
 /// than two faces.
 ///
 /// Before every round, edges inside of a plane are flipped until triangles with long edges are Delaunay, and of midpoints inside of
@@ -49,21 +25,32 @@ const FLAT: f64 = 1e-5;
 /// # Panics
 /// If a face has a repeated vertex or one that does not exist, see [`Topology::new`].
 #[must_use]
-pub fn refine(mesh: &TriMesh, longest: f64, most: usize) -> Refined {
+pub fn refine(mesh: &TriMesh, longest: f64, most: usize) -> Remapped {
     // Coordinates in this unit, a power of two, are exact, and their products do not overflow.
     let unit = mesh.unit();
     let in_units = |mesh: &TriMesh, unit: f64| TriMesh {
         positions: mesh.positions.iter().map(|p| p / unit).collect(),
         faces: mesh.faces.clone(),
     };
-    let mut refined = Refined { mesh: in_units(mesh, unit), origins: Vec::new() };
-    refined.split_longer_than(longest / unit, most);
-    refined.mesh = in_units(&refined.mesh, 1.0 / unit);
-    refined.mesh.positions[..mesh.n_vertices()].clone_from_slice(&mesh.positions);
-    refined
+    let mut splits = Splits::new(in_units(mesh, unit));
+    splits.split_longer_than(longest / unit, most);
+    let mut refined = in_units(&splits.mesh, 1.0 / unit);
+    refined.positions[..mesh.n_vertices()].clone_from_slice(&mesh.positions);
+    Remapped::extended(refined, splits.origins)
 }
 
-impl Refined {
+/// A mesh in the making, and an old vertex near each of the new ones behind the old ones.
+pub(crate) struct Splits {
+    pub(crate) mesh: TriMesh,
+    n_old: usize,
+    origins: Vec<VertexId>,
+}
+
+impl Splits {
+    pub(crate) fn new(mesh: TriMesh) -> Self {
+        Self { n_old: mesh.n_vertices(), mesh, origins: Vec::new() }
+    }
+
     fn split_longer_than(&mut self, longest: f64, most: usize) {
         let height = FLAT * self.mesh.root_of_area();
         let length = |mesh: &TriMesh, [a, b]: [VertexId; 2]| {
@@ -101,13 +88,12 @@ impl Refined {
     /// Splits some edges at their midpoints, in their order.
     pub(crate) fn split(&mut self, topology: &Topology, edges: &[usize]) {
         let TriMesh { positions, faces } = &mut self.mesh;
-        let n_old = positions.len() - self.origins.len();
         let mut middle = vec![None; topology.n_edges()];
         for &e in edges {
             let [a, b] = topology.edges()[e];
             middle[e] = Some(VertexId::from(positions.len()));
             positions.push(nalgebra::center(&positions[a.index()], &positions[b.index()]));
-            self.origins.push(origin(a, n_old, &self.origins));
+            self.origins.push(a.index().checked_sub(self.n_old).map_or(a, |i| self.origins[i]));
         }
         let mut finer = Vec::with_capacity(2 * faces.len());
         for (f, face) in faces.iter().enumerate() {
@@ -231,7 +217,7 @@ mod tests {
         for mesh in [shapes::tetrahedron(0), shapes::grid(4, 3, 1.0), shapes::torus(17, 6, 2.0, 0.6)] {
             let before = validate(&mesh);
             let longest = 0.17 * before.max_edge_length;
-            let Refined { mesh: fine, origins } = refine(&mesh, longest, usize::MAX);
+            let Remapped { mesh: fine, remap } = refine(&mesh, longest, usize::MAX);
             let after = validate(&fine);
             assert!(after.max_edge_length <= longest && after.n_vertices > 8 * before.n_vertices / 2);
             assert!((after.area / before.area - 1.0).abs() < 1e-12);
@@ -241,8 +227,8 @@ mod tests {
                 (0, 0, 0)
             );
             assert_eq!(fine.positions[..mesh.n_vertices()], mesh.positions);
-            assert_eq!(origins.len(), fine.n_vertices() - mesh.n_vertices());
-            assert!(origins.iter().all(|v| v.index() < mesh.n_vertices()));
+            assert_eq!((remap.n_old(), remap.n_new()), (mesh.n_vertices(), fine.n_vertices()));
+            assert!(remap.origins().iter().all(|v| v.index() < mesh.n_vertices()));
         }
     }
 
@@ -262,7 +248,7 @@ mod tests {
         });
         let plate = TriMesh { positions, faces: faces.collect() };
         let longest = 0.1;
-        let Refined { mesh, .. } = refine(&plate, longest, usize::MAX);
+        let Remapped { mesh, .. } = refine(&plate, longest, usize::MAX);
         let (before, after) = (validate(&plate), validate(&mesh));
         assert!(after.max_edge_length <= longest && (after.area / before.area - 1.0).abs() < 1e-12);
         assert_eq!((after.genus, after.n_boundary_loops), (before.genus, before.n_boundary_loops));

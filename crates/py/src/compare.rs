@@ -57,7 +57,7 @@ pub(crate) fn compare<'py>(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(String, Bound<'py, PyArray1<f64>>)> {
     let settings = Settings::parse(settings)?;
-    let [of_a, of_b] = [settings.form(a.inner.repair)?, settings.form(b.inner.repair)?];
+    let [of_a, of_b] = [settings.form(a.inner.input.repair)?, settings.form(b.inner.input.repair)?];
     let (found, residuals) = run(py, &settings.budget()?, progress.as_ref(), |observer| {
         let sides = [a.compared(&of_a, observer)?, b.compared(&of_b, observer)?];
         let mut found = compare_meshes([sides[0].compared(), sides[1].compared()])?;

@@ -43,7 +43,7 @@ impl Form {
             return Err(Exception::Embedding.with(&message));
         }
         let points: Vec<_> = coords.row_iter().map(|row| [row[0], row[1], row[2]].into()).collect();
-        Ok(self.surface.with_positions(&points))
+        Ok(self.surface.input.with_positions(|v| points[v.index()]))
     }
 }
 
@@ -52,9 +52,9 @@ impl Form {
     /// Coordinates in the order of the input, NaN for vertices that the repair dropped.
     fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let coords = &self.embedded.embedding.coords;
-        let map = &self.surface.repaired.input_to_repaired;
-        let rows = map.iter().map(|vertex| vertex.map(VertexId::index));
-        arrays::matrix(py, arrays::picked_rows(coords, rows), [map.len(), coords.ncols()])
+        let rows = self.surface.input.remap.all_to_new().map(|vertex| vertex.map(VertexId::index));
+        let shape = [rows.len(), coords.ncols()];
+        arrays::matrix(py, arrays::picked_rows(coords, rows), shape)
     }
 
     /// Coordinates of the surface bent into its form, in the order of the input.
@@ -70,7 +70,7 @@ impl Form {
 
     /// The faces of the input.
     fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
-        arrays::faces(py, &self.surface.input_faces)
+        arrays::faces(py, &self.surface.input.faces)
     }
 
     fn eigenvalues<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {

@@ -405,7 +405,7 @@ fn query_of(
     observer: &dyn Observer,
 ) -> Result<Query, Error> {
     // A surface that was repaired in another way is repaired again.
-    let again = match surface.inner.repair == describe.form.repair {
+    let again = match surface.inner.input.repair == describe.form.repair {
         true => None,
         false => Some(canonform::Surface::new(&surface.mesh, &describe.form.repair, observer)?),
     };

@@ -89,7 +89,8 @@ pub(crate) fn match_surfaces<'py>(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Maps<'py>> {
     let settings = Settings::parse(settings)?;
-    let [of_a, of_b] = [settings.correspond(a.inner.repair)?, settings.correspond(b.inner.repair)?];
+    let [of_a, of_b] =
+        [settings.correspond(a.inner.input.repair)?, settings.correspond(b.inner.input.repair)?];
     let known = known(&landmarks, initial, functions)?;
     let (found, colors) = run(py, &settings.budget()?, progress.as_ref(), |observer| {
         let sides = [a.matched(&of_a, observer)?, b.matched(&of_b, observer)?];
@@ -124,7 +125,8 @@ pub(crate) fn map_points<'py>(
     settings: &str,
 ) -> PyResult<Points<'py>> {
     let settings = Settings::parse(settings)?;
-    let [of_a, of_b] = [settings.correspond(a.inner.repair)?, settings.correspond(b.inner.repair)?];
+    let [of_a, of_b] =
+        [settings.correspond(a.inner.input.repair)?, settings.correspond(b.inner.input.repair)?];
     let (functional, landmarks) = (matrix_of(&functional)?, pairs_of(&landmarks)?);
     let partners = match &partners {
         Some([a, b]) => Some([partners_of(a)?, partners_of(b)?]),
@@ -158,17 +160,17 @@ pub(crate) fn map_points<'py>(
 #[pyfunction]
 pub(crate) fn map_basis<'py>(py: Python<'py>, surface: &Surface, settings: &str) -> PyResult<Basis<'py>> {
     let settings = Settings::parse(settings)?;
-    let options = settings.correspond(surface.inner.repair)?;
+    let options = settings.correspond(surface.inner.input.repair)?;
     let spectrum = run(py, &settings.budget()?, None, |observer| {
         Ok(surface.matched(&options, observer)?.shape.spectrum().clone())
     })?;
     let inner = &surface.inner;
-    let map = &inner.repaired.input_to_repaired;
+    let map = inner.input.remap.all_to_new();
     let mut masses = vec![0.0; map.len()];
     spectrum.masses.iter().enumerate().for_each(|(v, mass)| {
         masses[inner.input_vertex(VertexId::from(v)).index()] = *mass;
     });
-    let rows = arrays::picked_rows(&spectrum.vectors, map.iter().map(|vertex| vertex.map(VertexId::index)));
     let shape = [map.len(), spectrum.vectors.ncols()];
+    let rows = arrays::picked_rows(&spectrum.vectors, map.map(|vertex| vertex.map(VertexId::index)));
     Ok((arrays::vector(py, spectrum.values), arrays::matrix(py, rows, shape)?, arrays::vector(py, masses)))
 }

@@ -100,10 +100,9 @@ pub(crate) fn eigenbasis<'py>(
     })?;
     let LaplaceSpectrum { values, vectors, area, .. } = spectrum;
     let values = values.iter().map(|value| value / area).collect();
-    let map = &inner.repaired.input_to_repaired;
+    let map = inner.input.remap.all_to_new();
     let shape = [map.len(), vectors.ncols()];
-    let rows =
-        arrays::picked_rows(&(vectors / area.sqrt()), map.iter().map(|vertex| vertex.map(VertexId::index)));
+    let rows = arrays::picked_rows(&(vectors / area.sqrt()), map.map(|vertex| vertex.map(VertexId::index)));
     Ok((arrays::vector(py, values), arrays::matrix(py, rows, shape)?))
 }
 
@@ -117,7 +116,7 @@ pub(crate) fn closest_points<'py>(
     let queries = points.as_slice()?.as_chunks::<3>().0;
     let mesh = canonform::mesh::TriMesh {
         positions: surface.mesh.positions.clone(),
-        faces: surface.inner.input_faces.clone(),
+        faces: surface.inner.input.faces.clone(),
     };
     let found = run_alone(py, None, |_| {
         let tree = TriangleTree::new(&mesh);
@@ -151,7 +150,7 @@ pub(crate) fn log_map<'py>(
         solver.solve_into(&sources, f64::INFINITY, &mut distances)?;
         Ok(canonform::geodesics::log_map(inner.intrinsic(), &sources[0], &distances, observer)?)
     })?;
-    let of_input = inner.repaired.input_to_repaired.iter();
+    let of_input = inner.input.remap.all_to_new();
     let rows = of_input.flat_map(|vertex| vertex.map_or([f64::NAN; 2], |vertex| map[vertex.index()]));
     arrays::matrix(py, rows.collect(), [inner.n_input_vertices(), 2])
 }

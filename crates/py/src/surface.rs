@@ -99,9 +99,7 @@ pub(crate) struct Surface {
 
 impl Surface {
     pub(crate) fn of(mesh: TriMesh, inner: canonform::Surface, content: Option<ContentHash>) -> Self {
-        let map = &inner.repaired.input_to_repaired;
-        let stays = |(input, vertex): (usize, &Option<VertexId>)| *vertex == Some(VertexId::from(input));
-        let unchanged = inner.mesh().n_vertices() == map.len() && map.iter().enumerate().all(stays);
+        let unchanged = inner.input.remap.is_identity();
         let (solvers, descriptions, compared, matched) = Default::default();
         Self { mesh, inner: Arc::new(inner), content, unchanged, solvers, descriptions, compared, matched }
     }
@@ -202,7 +200,7 @@ impl Surface {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Arc<Shape>> {
         let settings = Settings::parse(settings)?;
-        let options = settings.describe(self.inner.repair)?;
+        let options = settings.describe(self.inner.input.repair)?;
         Ok(run(py, &settings.budget()?, progress.as_ref(), |observer| self.described(&options, observer))?)
     }
 }
@@ -243,7 +241,7 @@ impl Surface {
     fn state<'py>(&self, py: Python<'py>) -> PyResult<State<'py>> {
         let mesh = &self.mesh;
         let (vertices, faces) = (arrays::positions(py, &mesh.positions)?, arrays::faces(py, &mesh.faces)?);
-        Ok((vertices, faces, json(&self.inner.repair), self.content.map(|hash| hash.to_string())))
+        Ok((vertices, faces, json(&self.inner.input.repair), self.content.map(|hash| hash.to_string())))
     }
 
     /// The surface of which [`state`](Self::state) is the state.
@@ -269,7 +267,7 @@ impl Surface {
 
     #[getter]
     fn n_faces(&self) -> usize {
-        self.inner.input_faces.len()
+        self.inner.input.faces.len()
     }
 
     #[getter]
@@ -282,12 +280,12 @@ impl Surface {
     }
 
     fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
-        arrays::faces(py, &self.inner.input_faces)
+        arrays::faces(py, &self.inner.input.faces)
     }
 
     /// The report on the repair, as JSON, and in words.
     fn repair_report(&self) -> (String, Vec<String>) {
-        let report = &self.inner.repaired.report;
+        let report = &self.inner.input.report;
         (json(report), report.summary())
     }
 
@@ -396,7 +394,7 @@ impl Surface {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Form> {
         let settings = Settings::parse(settings)?;
-        let (options, stress) = (settings.form(self.inner.repair)?, settings.stress()?);
+        let (options, stress) = (settings.form(self.inner.input.repair)?, settings.stress()?);
         let options = EmbedOptions::from(&options).stress(stress);
         let options = match &reuse {
             None => options,

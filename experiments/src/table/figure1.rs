@@ -45,7 +45,7 @@ impl Experiment for Figure1Options {
                 n_vertices: shape.surface.mesh().n_vertices(),
                 n_faces: shape.surface.mesh().n_faces(),
                 stress: *stress,
-                repair: shape.surface.repaired.report.summary(),
+                repair: shape.surface.input.report.summary(),
             })
             .collect();
         let worst = embedded.iter().map(|(form, stress)| stress / form.spread().powi(2)).fold(0.0, f64::max);

@@ -155,7 +155,7 @@ impl<'a> ScannedCloud<'a> {
         let scanned = scan(mesh, n, noise.deviation(mesh), seed);
         let positions = scanned.iter().map(|point| point.position).collect();
         let points = TriMesh { positions, faces: Vec::new() };
-        let surface = Surface::new(&points, &shape.surface.repair, &())?;
+        let surface = Surface::new(&points, &shape.surface.input.repair, &())?;
         Ok(Self { shape, scanned, surface })
     }
 

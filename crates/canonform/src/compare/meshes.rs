@@ -43,7 +43,7 @@ impl<S: Borrow<Surface>> ComparedMesh<S> {
         options.validate()?;
         let geometry = MeshGeometry::new(mesh, content);
         let repaired = surface.borrow();
-        let reference = FormOptions { repair: repaired.repair, ..FormOptions::default() };
+        let reference = FormOptions { repair: repaired.input.repair, ..FormOptions::default() };
         let reference = DescribeOptions { form: reference, ..DescribeOptions::default() };
         let measured = MeasuredSurface::new(repaired, options, observer)?;
         let form = measured.form_of(repaired)?;
@@ -140,7 +140,7 @@ pub fn compare_meshes([a, b]: [Compared<'_>; 2]) -> Result<MeshComparison, Error
     let (handedness, triangulation) = match (a.surface, b.surface) {
         (Some(of_a), Some(of_b)) => {
             let same =
-                of_a.input_faces == of_b.input_faces && of_a.n_input_vertices() == of_b.n_input_vertices();
+                of_a.input.faces == of_b.input.faces && of_a.n_input_vertices() == of_b.n_input_vertices();
             let triangulation = if same { FaceAgreement::Same } else { FaceAgreement::Other };
             (pair.handedness([(a.form, of_a.mesh()), (b.form, of_b.mesh())])?, Some(triangulation))
         }

@@ -50,7 +50,7 @@ fn initial(given: &[Option<VertexId>], [a, b]: [&Surface; 2]) -> Result<Vec<Opti
     }
     check_rows("the initial map", given.len(), a)?;
     let mut found = vec![None; a.mesh().n_vertices()];
-    for (vertex, partner) in a.repaired.input_to_repaired.iter().zip(given) {
+    for (vertex, partner) in a.input.remap.all_to_new().zip(given) {
         if let (Some(vertex), Some(partner)) = (vertex, partner) {
             // A partner that the repair dropped is as good as none; one that the mesh does not have is a mistake.
             match b.repaired_vertex(*partner) {

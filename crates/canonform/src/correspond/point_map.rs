@@ -165,14 +165,14 @@ impl<S: Borrow<Surface>> Mapping<'_, S> {
             let topology = other.intrinsic().topology();
             let point =
                 |[a, b, c]: &[VertexId; 3]| face_among([partner(*a)?, partner(*b)?, partner(*c)?], topology);
-            let points: Vec<_> = own.input_faces.iter().map(point).collect();
+            let points: Vec<_> = own.input.faces.iter().map(point).collect();
             return PointMap { points: in_faces(&points, other) };
         }
         let repaired = |face: &[VertexId; 3]| -> Option<[VertexId; 3]> {
             let [a, b, c] = face.map(|v| own.repaired_vertex(v).ok());
             Some([a?, b?, c?])
         };
-        let faces: Vec<_> = own.input_faces.iter().map(repaired).collect();
+        let faces: Vec<_> = own.input.faces.iter().map(repaired).collect();
         let known: Vec<_> = faces.iter().flatten().copied().collect();
         let found = self.mapped(of, MapElements::Faces(&known));
         let mut found = in_faces(&all(found), other).into_iter();
@@ -213,19 +213,19 @@ fn face_among(vertices: [VertexId; 3], topology: &Topology) -> Option<SurfacePoi
 /// nearest corner.
 fn in_faces(points: &[Option<SurfacePoint>], surface: &Surface) -> Vec<Option<FacePoint>> {
     let topology = surface.intrinsic().topology();
-    let to_repaired = &surface.repaired.input_to_repaired;
+    let to_repaired = |v: VertexId| surface.input.remap.to_new(v);
     let mut faces: HashMap<[VertexId; 3], usize> = HashMap::new();
     let mut around: Vec<Option<usize>> = vec![None; topology.n_vertices()];
-    for (i, face) in surface.input_faces.iter().enumerate() {
-        let [Some(a), Some(b), Some(c)] = face.map(|v| to_repaired[v.index()]) else { continue };
+    for (i, face) in surface.input.faces.iter().enumerate() {
+        let [Some(a), Some(b), Some(c)] = face.map(to_repaired) else { continue };
         let mut key = [a, b, c];
         key.sort_unstable();
         faces.entry(key).or_insert(i);
         key.iter().for_each(|v| around[v.index()] = around[v.index()].or(Some(i)));
     }
     let in_face = |i: usize, weight: &dyn Fn(VertexId) -> f64| {
-        let corners = surface.input_faces[i];
-        let weights = corners.map(|v| to_repaired[v.index()].map_or(0.0, weight));
+        let corners = surface.input.faces[i];
+        let weights = corners.map(|v| to_repaired(v).map_or(0.0, weight));
         FacePoint { face: FaceId::from(i), corners, weights }
     };
     let at_vertex = |v: VertexId| {

@@ -13,7 +13,7 @@ use super::embed::embed;
 use super::embedded::Embedded;
 use super::options::{DescribeOptions, FormOptions};
 use crate::error::Error;
-use mesh::Surface;
+use mesh::{Remap, Surface};
 use surface::{VertexId, unit_for};
 
 /// What a description needs at its peak: 200 MB for 43,000 vertices, by the resident memory of `index build`.
@@ -57,8 +57,8 @@ pub struct MeasuredSurface {
     /// The prepared surface.
     prepared: Surface,
     embedded: Embedded,
-    /// For each vertex of the repaired mesh, one of the prepared surface. They are the first ones unless it was simplified.
-    vertices: Vec<VertexId>,
+    /// From the vertices of the surface to those of the prepared one. They are the first ones unless it was simplified.
+    remap: Remap,
 }
 
 impl MeasuredSurface {
@@ -76,18 +76,17 @@ impl MeasuredSurface {
         options: &FormOptions,
         observer: &dyn Observer,
     ) -> Result<Self, Error> {
-        let simplified = surface.simplified(most_vertices, observer)?;
-        let (prepared, vertices) = match simplified {
-            Some((simple, vertices)) => (simple.for_description(observer)?, vertices),
+        let (prepared, remap) = match surface.simplified(most_vertices, observer)? {
+            Some((simple, remap)) => (simple.for_description(observer)?, remap),
             None => {
-                let vertices = (0..surface.mesh().n_vertices()).map(VertexId::from);
-                (surface.for_description(observer)?, vertices.collect())
+                let kept = Remap::extended(surface.mesh().n_vertices(), Vec::new());
+                (surface.for_description(observer)?, kept)
             }
         };
         let needed = prepared.mesh().n_vertices().saturating_mul(BYTES_PER_VERTEX);
         observer.budget().check_memory(needed)?;
         let embedded = embed(&prepared, options, observer)?;
-        Ok(Self { prepared, embedded, vertices })
+        Ok(Self { prepared, embedded, remap })
     }
 
     /// How the surface was embedded.
@@ -101,7 +100,8 @@ impl MeasuredSurface {
     /// # Errors
     /// [`Error::Descriptor`] unless the form has three dimensions.
     pub fn form_of(&self, surface: &Surface) -> Result<CanonicalForm, Error> {
-        Ok(self.embedded.form(&self.prepared)?.at(&self.vertices, surface.mesh().vertex_areas())?)
+        let vertices: Vec<VertexId> = self.remap.all_to_new().flatten().collect();
+        Ok(self.embedded.form(&self.prepared)?.at(&vertices, surface.mesh().vertex_areas())?)
     }
 
     /// Distances of the vertices of the repaired mesh from the first sample, in mesh units.
@@ -110,7 +110,7 @@ impl MeasuredSurface {
     /// [`Error::Linalg`] if distances are in a file that cannot be read.
     pub fn distances_from_first(&self) -> Result<Vec<f64>, Error> {
         let all = self.embedded.distances.column(0)?;
-        Ok(self.vertices.iter().map(|v| all[v.index()]).collect())
+        Ok(self.remap.all_to_new().flatten().map(|v| all[v.index()]).collect())
     }
 
     /// The description. The form options are those of the embedding; `options` says how many points are kept and whether size
@@ -141,7 +141,7 @@ impl MeasuredSurface {
         if fused.iter().any(|value| !value.is_finite()) {
             return Err(DescriptorError::NotFinite.into());
         }
-        let report = &prepared.repaired.report;
+        let report = &prepared.input.report;
         let facts = Facts {
             vertices: report.input_vertices as u64,
             faces: report.input_faces as u64,

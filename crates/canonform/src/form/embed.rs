@@ -6,7 +6,7 @@ use std::time::Instant;
 use base::Observer;
 use geodesics::{DistanceSolver, FirstSample, Observed};
 use linalg::LandmarkDistances;
-use mesh::{InputMap, PointError, RepairOptions, RepairReport, Surface};
+use mesh::{InputMap, Surface};
 use surface::{IntrinsicMesh, VertexId};
 
 use super::distances::{KnownColumns, Measurement, Samples, plan};
@@ -21,40 +21,18 @@ use crate::error::Error;
 /// What [`embed`] embeds: a [`Surface`], or the parts of one, [without its mesh](Surface::into_parts), which needs less memory.
 pub struct EmbedInput<'a> {
     intrinsic: Cow<'a, IntrinsicMesh>,
-    repair: RepairOptions,
-    report: &'a RepairReport,
-    /// The input vertex of a vertex of the repaired mesh, and the reverse.
-    input_vertex: Box<dyn Fn(VertexId) -> VertexId + 'a>,
-    repaired_vertex: Box<dyn Fn(VertexId) -> Result<VertexId, PointError> + 'a>,
-    load_seconds: f64,
-    repair_seconds: f64,
+    map: &'a InputMap,
 }
 
 impl<'a> From<&'a Surface> for EmbedInput<'a> {
     fn from(surface: &'a Surface) -> Self {
-        Self {
-            intrinsic: Cow::Borrowed(surface.intrinsic()),
-            repair: surface.repair,
-            report: &surface.repaired.report,
-            input_vertex: Box::new(|v| surface.input_vertex(v)),
-            repaired_vertex: Box::new(|v| surface.repaired_vertex(v)),
-            load_seconds: surface.load_seconds,
-            repair_seconds: surface.repair_seconds,
-        }
+        Self { intrinsic: Cow::Borrowed(surface.intrinsic()), map: &surface.input }
     }
 }
 
 impl<'a> From<(IntrinsicMesh, &'a InputMap)> for EmbedInput<'a> {
     fn from((intrinsic, map): (IntrinsicMesh, &'a InputMap)) -> Self {
-        Self {
-            intrinsic: Cow::Owned(intrinsic),
-            repair: map.repair,
-            report: &map.report,
-            input_vertex: Box::new(|v| map.input_vertex(v)),
-            repaired_vertex: Box::new(|v| map.repaired_vertex(v)),
-            load_seconds: map.load_seconds,
-            repair_seconds: map.repair_seconds,
-        }
+        Self { intrinsic: Cow::Owned(intrinsic), map }
     }
 }
 
@@ -201,17 +179,16 @@ fn check_distances(solver: &dyn DistanceSolver, known: &LandmarkDistances) -> Re
 }
 
 fn run(
-    input: EmbedInput<'_>,
+    EmbedInput { intrinsic: surface, map }: EmbedInput<'_>,
     EmbedOptions { form, stress, earlier }: EmbedOptions<'_>,
     observer: &dyn Observer,
 ) -> Result<Embedded, Error> {
     let start = Instant::now();
     let budget = observer.budget();
-    let EmbedInput { intrinsic: surface, repair, report, input_vertex, repaired_vertex, .. } = input;
-    let options = FormOptions { repair, ..form.clone() }.normalized();
+    let options = FormOptions { repair: map.repair, ..form.clone() }.normalized();
     let first = match options.first_sample {
         FirstSample::Farthest => FirstSample::Farthest,
-        FirstSample::Vertex(input) => FirstSample::Vertex(repaired_vertex(input)?),
+        FirstSample::Vertex(input) => FirstSample::Vertex(map.repaired_vertex(input)?),
     };
     if !options.method.has_unit() && options.samples == Samples::Auto {
         return Err(Error::NoStress { method: options.method.name() });
@@ -280,13 +257,13 @@ fn run(
         geodesic: options.geodesic.name(),
         sampling: is_sampled.then(|| options.sampling.name()),
         regularization: options.method.regularization().map(|chosen| chosen.name()),
-        n_vertices: report.input_vertices,
-        n_faces: report.input_faces,
+        n_vertices: map.report.input_vertices,
+        n_faces: map.report.input_faces,
         n_embedded: embedding.n_points(),
         n_samples: if is_sampled { samples.len() } else { embedding.n_points() },
         rank: embedding.rank,
         dim: embedding.dim(),
-        samples: samples.iter().map(|&v| input_vertex(VertexId::from(v)).0).collect(),
+        samples: samples.iter().map(|&v| map.remap.to_old(VertexId::from(v)).0).collect(),
         eigenvalues: embedding.eigenvalues.clone(),
         negative_mass: embedding.negative_mass,
         empty_dimensions: embedding.dim() - embedding.positive_dims(),
@@ -294,14 +271,14 @@ fn run(
         stress: stress_report,
         descent,
         seconds: SecondsReport {
-            load: input.load_seconds,
-            repair: input.repair_seconds,
+            load: map.load_seconds,
+            repair: map.repair_seconds,
             geodesics,
             embedding: elapsed - geodesics,
             stress: start.elapsed().as_secs_f64(),
-            total: input.load_seconds + input.repair_seconds + elapsed,
+            total: map.load_seconds + map.repair_seconds + elapsed,
         },
-        repair: report.clone(),
+        repair: map.report.clone(),
     };
     Ok(Embedded { options, embedding, distances, report, extension })
 }

@@ -132,7 +132,7 @@ pub fn compare_methods(
         geodesic: options.geodesic.name(),
         methods,
         best,
-        repair: surface.repaired.report.clone(),
+        repair: surface.input.report.clone(),
     })
 }
 

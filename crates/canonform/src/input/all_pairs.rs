@@ -129,7 +129,7 @@ impl<'a> AllPairs<'a> {
     /// Solves the rows of the input vertices from `first` on.
     fn solve(&self, first: usize, rows: &mut [f64], observer: &dyn Observer) -> Result<(), Exceeded> {
         let p = self.n_vertices();
-        let to_repaired = &self.surface.repaired.input_to_repaired;
+        let to_repaired: Vec<Option<VertexId>> = self.surface.input.remap.all_to_new().collect();
         for (i, rows) in rows.chunks_mut(self.batch * p).enumerate() {
             let start = first + i * self.batch;
             let wanted = &to_repaired[start..start + rows.len() / p];
@@ -140,7 +140,7 @@ impl<'a> AllPairs<'a> {
             for (row, source) in rows.chunks_exact_mut(p).zip(wanted) {
                 let column = source.and_then(|source| sources.binary_search(&source).ok());
                 let column = column.map(|column| columns.column(column));
-                for (distance, vertex) in row.iter_mut().zip(to_repaired) {
+                for (distance, vertex) in row.iter_mut().zip(&to_repaired) {
                     *distance = match (&column, vertex) {
                         (Some(column), Some(vertex)) => column[vertex.index()],
                         _ => f64::INFINITY,

@@ -35,6 +35,6 @@ pub fn read_surface(
     let mesh = read_mesh_file(path, limits)?.mesh;
     let load_seconds = start.elapsed().as_secs_f64();
     let mut surface = Surface::new(&mesh, options, observer)?;
-    surface.load_seconds = load_seconds;
+    surface.input.load_seconds = load_seconds;
     Ok(surface)
 }

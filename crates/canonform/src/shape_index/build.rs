@@ -511,7 +511,7 @@ fn describe_file(
     let mesh = limits.read(path, &budget)?;
     budget.check()?;
     let surface = Surface::new(&mesh, &options.form.repair, &budget)?;
-    let components = match surface.repaired.report.components {
+    let components = match surface.input.report.components {
         0 | 1 => Vec::new(),
         _ => other_components(&mesh, options, &budget)?,
     };

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
-use canonform::Surface;
 use canonform::mesh::RepairReport;
 use canonform::mesh::io::{Content, FileFacts, Format, MeshFile, or_list, writable};
 use serde::Serialize;
@@ -63,8 +62,8 @@ fn write(input: &Path, output: &Path, args: &ConvertArgs, common: &Common) -> Re
     let (mesh, repair) = match args.repair || mesh.faces.is_empty() {
         false => (mesh, None),
         true => {
-            let surface = Surface::new(&mesh, &args.repair_options.options(), &());
-            let repaired = surface.map_err(|fault| named(input, fault.into()))?.repaired;
+            let repaired = canonform::mesh::repair(&mesh, &args.repair_options.options(), &());
+            let repaired = repaired.map_err(|fault| named(input, fault.into()))?;
             (repaired.mesh, Some(repaired.report))
         }
     };

@@ -132,7 +132,7 @@ fn embed_and_write(
 ) -> Result<EmbedReport> {
     if extension(output) == "npy" {
         // Only meshes need them.
-        surface.input_faces = Vec::new();
+        surface.input.faces = Vec::new();
     }
     let embedded = if args.features { bent(surface, options, bars) } else { lean(surface, options, bars) };
     let (coords, map, report) = embedded.map_err(|fault| named(mesh, fault))?;
@@ -210,11 +210,11 @@ fn check_dim(output: &Path, dim: usize) -> Result<()> {
 /// Writes the form: an array with one row per input vertex, or a mesh with the faces of the repaired input.
 fn write(output: &Path, map: &InputMap, coords: &Matrix) -> Result<()> {
     if extension(output) == "npy" {
-        let shape = [map.n_input_vertices(), coords.ncols()];
+        let shape = [map.remap.n_old(), coords.ncols()];
         return fill_npy(output, shape, |file| {
             let mut out = BufWriter::with_capacity(1 << 16, file);
-            for vertex in 0..map.n_input_vertices() {
-                let vertex = map.repaired_vertex(VertexId::from(vertex)).ok();
+            for vertex in 0..map.remap.n_old() {
+                let vertex = map.remap.to_new(VertexId::from(vertex));
                 for column in coords.column_iter() {
                     let value = vertex.map_or(f64::NAN, |v| column[v.index()]);
                     out.write_all(&value.to_le_bytes())?;

@@ -43,10 +43,8 @@ pub(crate) fn info(args: &InfoArgs, common: &Common) -> Result<ExitCode> {
             let repaired =
                 repair(&mesh, &args.repair.options(), &()).map_err(|fault| named(&path, fault.into()))?;
             let mut shortcuts = cut_shortcuts(&repaired.mesh, &())?.shortcuts;
-            // The first vertex of the input that was mapped to that of the repaired mesh.
             for shortcut in &mut shortcuts {
-                let place = repaired.input_to_repaired.iter().position(|v| *v == Some(shortcut.vertex));
-                shortcut.vertex = place.map_or(shortcut.vertex, Into::into);
+                shortcut.vertex = repaired.remap.to_old(shortcut.vertex);
             }
             let mesh = if mesh.faces.is_empty() { &repaired.mesh } else { &mesh };
             Ok((facts, validate(mesh), is_noisy(&repaired.mesh), shortcuts, repaired.report))

@@ -95,7 +95,7 @@ fn draw_one(
     let surface = is_measured.then(|| Surface::new(&mesh, &args.repair.options(), &())).transpose();
     let surface = surface.map_err(|fault| named(path, fault.into()))?;
     if let Some(surface) = &surface {
-        print_repair(&file_name(path), &surface.repaired.report, &args.repair);
+        print_repair(&file_name(path), &surface.input.report, &args.repair);
     }
     let field = field(path, args, &mesh, carried, surface.as_ref())?;
     let drawn = match &surface {
@@ -124,7 +124,7 @@ fn draw_one(
             name: field.name,
         }),
         seconds: start.elapsed().as_secs_f64(),
-        repair: surface.map(|surface| surface.repaired.report),
+        repair: surface.map(|surface| surface.input.report),
     })
 }
 
@@ -181,7 +181,7 @@ fn form(surface: &Surface, bars: &Bars, common: &Common) -> Result<TriMesh, cano
     let points: Vec<_> =
         embedded.embedding.coords.row_iter().map(|row| [row[0], row[1], row[2]].into()).collect();
     let positions = surface.in_input_order(&points, [f64::NAN; 3].into());
-    Ok(TriMesh { positions, faces: surface.input_faces.clone() })
+    Ok(TriMesh { positions, faces: surface.input.faces.clone() })
 }
 
 fn options(args: &RenderArgs, field: Option<&ScalarField>) -> RenderOptions {

@@ -3,7 +3,7 @@
 use base::{Budget, Exceeded, Observer};
 
 use super::surface::Surface;
-use crate::{Refined, cut_shortcuts, fill_holes, refine, without_noise};
+use crate::{cut_shortcuts, fill_holes, refine, without_noise};
 
 /// Longest edge, relative to the square root of the area. Equilateral triangles of this size have about 720 vertices.
 ///
@@ -63,8 +63,8 @@ impl Surface {
 
     fn prepared(&self, longest_hole: f64, budget: &Budget) -> Result<Self, Exceeded> {
         let opened = cut_shortcuts(self.mesh(), budget)?;
-        let smooth = without_noise(&opened.refined.mesh);
-        let mesh = smooth.as_ref().unwrap_or(&opened.refined.mesh);
+        let smooth = without_noise(&opened.cut.mesh);
+        let mesh = smooth.as_ref().unwrap_or(&opened.cut.mesh);
         let size = mesh.root_of_area();
         if size.is_nan() || size <= 0.0 {
             return Ok(self.clone());
@@ -72,9 +72,9 @@ impl Surface {
         let filled = fill_holes(mesh, longest_hole * size);
         let longest = if mesh.n_vertices() < FEW { LONGEST_OF_FEW } else { LONGEST };
         let fine = refine(&filled.mesh, longest * size, mesh.n_vertices() + MOST);
-        let Refined { mesh, origins } = opened.refined.then(filled).then(fine);
-        Ok(match smooth.is_some() || !origins.is_empty() {
-            true => self.with_mesh(mesh, &origins, opened.shortcuts),
+        let made = opened.cut.then(filled).then(fine);
+        Ok(match smooth.is_some() || !made.remap.is_identity() {
+            true => self.with_mesh(made, opened.shortcuts),
             false => self.clone(),
         })
     }

@@ -37,11 +37,12 @@ impl Surface {
                 if let Some(edge) = self.intrinsic().topology().edge_between(start, end) {
                     return Ok(SurfacePoint::Edge { edge, t: if start < end { t } else { 1.0 - t } });
                 }
-                let face = self.input_faces.iter().find(is_edge).ok_or_else(|| self.no_such(*point))?;
+                let face = self.input.faces.iter().find(is_edge).ok_or_else(|| self.input.no_such(*point))?;
                 self.in_face(*face, face.map(|v| weight(v, ends, t))).ok_or(dropped)
             }
             InputPoint::Face { face, weights } => {
-                let vertices = self.input_faces.get(face.index()).ok_or_else(|| self.no_such(*point))?;
+                let vertices =
+                    self.input.faces.get(face.index()).ok_or_else(|| self.input.no_such(*point))?;
                 self.in_face(*vertices, weights).ok_or(dropped)
             }
         }
@@ -57,7 +58,7 @@ impl Surface {
             let at = corners.iter().zip(weights).map(|(v, w)| self.mesh().positions[v.index()].coords * w);
             let point = Point3::from(at.sum::<Vector3<f64>>());
             let is_whole = |face: &[VertexId; 3]| face.iter().all(|v| corners.contains(v));
-            let parts = self.repaired.parts.iter().filter(|[_, whole]| is_whole(whole));
+            let parts = self.parts.iter().filter(|[_, whole]| is_whole(whole));
             let weighted = parts.map(|[part, _]| (*part, self.weights(*part, point)));
             let depth = |weights: &[f64; 3]| weights.iter().copied().fold(f64::INFINITY, f64::min);
             let (part, weights) = weighted.max_by(|a, b| depth(&a.1).total_cmp(&depth(&b.1)))?;
@@ -98,7 +99,7 @@ impl Surface {
         let whole = |face: FaceId| {
             let mut part = topology.faces()[face.index()];
             part.sort_unstable();
-            let parts = &self.repaired.parts;
+            let parts = &self.parts;
             Some(parts[parts.binary_search_by_key(&part, |[part, _]| *part).ok()?][1])
         };
         let (face, barycentric) = match point {
@@ -125,9 +126,8 @@ impl Surface {
                 (corners, within(self.weights(corners, point)))
             }
         };
-        let to_repaired = |v: VertexId| self.repaired.input_to_repaired[v.index()];
-        let slot = |v: VertexId| vertices.iter().position(|w| to_repaired(v) == Some(*w));
-        let faces = self.input_faces.iter().map(|input| input.map(slot)).enumerate();
+        let slot = |v: VertexId| vertices.iter().position(|w| self.input.remap.to_new(v) == Some(*w));
+        let faces = self.input.faces.iter().map(|input| input.map(slot)).enumerate();
         let mut found = faces.filter_map(|(i, [a, b, c])| Some((i, [a?, b?, c?])));
         let (i, slots) = found.find(|(_, [a, b, c])| a != b && b != c && c != a).ok_or(other)?;
         Ok(InputPoint::Face { face: FaceId::from(i), weights: slots.map(|slot| barycentric[slot]) })

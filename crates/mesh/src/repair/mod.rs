@@ -23,6 +23,7 @@ use crate::error::MeshError;
 use crate::face_set::{check_input, remove_degenerate, remove_duplicates};
 use crate::orientation::orient_consistently;
 use crate::points::triangulate_points;
+use crate::remap::Remap;
 use crate::tri_mesh::TriMesh;
 
 /// A repaired mesh and its relation to the input.
@@ -33,8 +34,8 @@ pub struct Repaired {
     pub mesh: TriMesh,
     /// Its intrinsic geometry. With [`ComponentPolicy::Bridge`] it has straight links between components.
     pub intrinsic: IntrinsicMesh,
-    /// For each input vertex, its vertex in `mesh`, which merged vertices share; `None` if it was dropped.
-    pub input_to_repaired: Vec<Option<VertexId>>,
+    /// From the vertices of the input to those of `mesh`, which merged vertices share.
+    pub remap: Remap,
     /// The faces that were split at T-junctions: every part, and the face of the input that it is a part of, by their
     /// vertices in `mesh`.
     pub parts: Vec<FacePart>,
@@ -76,7 +77,7 @@ const MAX_PASSES: usize = 16;
 /// let repaired = repair(&two_components, &RepairOptions::default(), &())?;
 /// assert_eq!(repaired.mesh, shapes::icosphere(3));
 /// assert_eq!(repaired.report.dropped_component_vertices, 8);
-/// assert_eq!(repaired.input_to_repaired.last(), Some(&None));
+/// assert_eq!(repaired.remap.all_to_new().last(), Some(None));
 /// # Ok::<(), canonform_mesh::MeshError>(())
 /// ```
 pub fn repair(
@@ -154,7 +155,8 @@ pub fn repair(
     (report.output_vertices, report.output_faces) = (repaired.n_vertices(), repaired.n_faces());
     let is_unchanged = repaired.n_vertices() == mesh.n_vertices() && report.flipped_faces == 0;
     let intrinsic = if is_unchanged { surface } else { repaired.intrinsic() }.with_links(links);
-    Ok(Repaired { mesh: repaired, intrinsic, input_to_repaired, parts, report })
+    let remap = Remap::new(input_to_repaired, repaired.n_vertices());
+    Ok(Repaired { mesh: repaired, intrinsic, remap, parts, report })
 }
 
 /// The surface with faces split at the vertices that lie on their boundary edges.
@@ -225,7 +227,7 @@ fn surface_of_points(
 ) -> Result<Repaired, MeshError> {
     let found = triangulate_points(&cloud.positions, observer)?;
     let mut repaired = repair(&found.mesh, options, observer)?;
-    let (to_repaired, report) = (&mut repaired.input_to_repaired, &mut repaired.report);
+    let (mut to_repaired, report) = (repaired.remap.all_to_new().collect::<Vec<_>>(), &mut repaired.report);
     for (point, vertex) in found.vertex.iter().enumerate() {
         if let Some(vertex) = vertex.filter(|v| v.index() != point) {
             to_repaired[point] = to_repaired[vertex.index()];
@@ -236,6 +238,7 @@ fn surface_of_points(
     report.dropped_vertices.retain(|v| to_repaired[v.index()].is_none());
     report.input_faces = 0;
     report.points = Some(found.report);
+    repaired.remap = Remap::new(to_repaired, repaired.mesh.n_vertices());
     Ok(repaired)
 }
 

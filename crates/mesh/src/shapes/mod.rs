@@ -22,7 +22,7 @@ pub use flat::{fold, folded_sheet, grid, jittered_grid, sheared_grid};
 
 use surface::{Topology, VertexId};
 
-use crate::refine::Refined;
+use crate::refine::Splits;
 use crate::tri_mesh::TriMesh;
 
 /// Joins copies of all meshes, in order, into one mesh of several components.
@@ -47,9 +47,9 @@ pub fn disjoint(parts: &[TriMesh]) -> TriMesh {
 #[must_use]
 pub fn subdivide(mesh: &TriMesh) -> TriMesh {
     let topology = Topology::new(mesh.n_vertices(), mesh.faces.clone());
-    let mut refined = Refined { mesh: mesh.clone(), origins: Vec::new() };
-    refined.split(&topology, &(0..topology.n_edges()).collect::<Vec<_>>());
-    refined.mesh
+    let mut splits = Splits::new(mesh.clone());
+    splits.split(&topology, &(0..topology.n_edges()).collect::<Vec<_>>());
+    splits.mesh
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use surface::{CornerId, DisjointSets, SurfaceLoop, Topology, VertexId, short_loo
 
 use super::shortcut::{Shortcut, ShortcutKind};
 use crate::edge_graph::EdgeGraph;
-use crate::refine::Refined;
+use crate::remap::Remapped;
 use crate::tri_mesh::TriMesh;
 
 /// Least area within the girth of a handle on either side of its narrowest loop, relative to the square of the girth. A tube
@@ -23,7 +23,7 @@ pub(super) fn cut(
     girth: f64,
     detour: f64,
     budget: &Budget,
-) -> Result<Option<(Refined, Shortcut)>, Exceeded> {
+) -> Result<Option<(Remapped, Shortcut)>, Exceeded> {
     let topology = Topology::new(mesh.n_vertices(), mesh.faces.clone());
     let length = |[a, b]: &[VertexId; 2]| (mesh.positions[a.index()] - mesh.positions[b.index()]).norm();
     let lengths: Vec<f64> = topology.edges().iter().map(length).collect();
@@ -37,7 +37,7 @@ fn opened(
     topology: &Topology,
     around: &SurfaceLoop,
     least: f64,
-) -> Option<(Refined, Shortcut)> {
+) -> Option<(Remapped, Shortcut)> {
     let (cut, sides) = cut_along(mesh, topology, &around.vertices)?;
     let areas = cut.mesh.vertex_areas();
     let mut graph = EdgeGraph::of(&cut.mesh);
@@ -58,7 +58,7 @@ fn cut_along(
     mesh: &TriMesh,
     topology: &Topology,
     around: &[VertexId],
-) -> Option<(Refined, [Vec<VertexId>; 2])> {
+) -> Option<(Remapped, [Vec<VertexId>; 2])> {
     let sides: HashSet<[VertexId; 2]> = (0..around.len())
         .map(|i| {
             let (a, b) = (around[i], around[(i + 1) % around.len()]);
@@ -101,7 +101,7 @@ fn cut_along(
     }
     cut.positions.extend(around.iter().map(|v| mesh.positions[v.index()]));
     let copies = (0..around.len()).map(|i| VertexId::from(n + i)).collect();
-    Some((Refined { mesh: cut, origins: around.to_vec() }, [around.to_vec(), copies]))
+    Some((Remapped::extended(cut, around.to_vec()), [around.to_vec(), copies]))
 }
 
 #[cfg(test)]
@@ -109,7 +109,7 @@ mod tests {
     use super::*;
     use crate::{cut_shortcuts, fill_holes, shapes, validate};
 
-    fn narrow(mesh: &TriMesh, girth: f64, detour: f64) -> Option<(Refined, Shortcut)> {
+    fn narrow(mesh: &TriMesh, girth: f64, detour: f64) -> Option<(Remapped, Shortcut)> {
         cut(mesh, girth, detour, &Budget::unlimited()).unwrap()
     }
 
@@ -160,10 +160,10 @@ mod tests {
         let [shortcut] = opened.shortcuts[..] else { panic!("{:?}", opened.shortcuts) };
         assert_eq!(shortcut.kind, ShortcutKind::Handle);
         assert!(shortcut.girth < 0.8 && shortcut.detour > 2.5, "{shortcut:?}");
-        let filled = fill_holes(&opened.refined.mesh, 1.0).mesh;
+        let filled = fill_holes(&opened.cut.mesh, 1.0).mesh;
         let report = validate(&filled);
         assert_eq!((report.genus, report.n_boundary_edges, report.n_components), (Some(0), 0, 1));
-        assert_eq!(opened.refined.mesh.positions[..mesh.n_vertices()], mesh.positions);
+        assert_eq!(opened.cut.mesh.positions[..mesh.n_vertices()], mesh.positions);
         // It is wider than that, and its sides are nearer.
         assert!(narrow(&mesh, 0.2, 0.0).is_none() && narrow(&mesh, 1.0, 9.0).is_none());
     }
@@ -177,7 +177,7 @@ mod tests {
             (shapes::icosphere(3), 100.0),
         ] {
             assert_eq!(narrow(&mesh, girth, 0.0), None);
-            assert_eq!(cut_shortcuts(&mesh, &()).unwrap().refined.mesh, mesh);
+            assert_eq!(cut_shortcuts(&mesh, &()).unwrap().cut.mesh, mesh);
         }
     }
 }

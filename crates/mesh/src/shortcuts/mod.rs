@@ -49,7 +49,7 @@ pub use shortcut::{CutSurface, Shortcut, ShortcutKind};
 /// let opened = cut_shortcuts(&ball, &())?;
 /// assert_eq!(opened.shortcuts.len(), 1);
 /// assert!(opened.shortcuts[0].detour > 2.5);
-/// assert_eq!(validate(&opened.refined.mesh).non_manifold_vertices, 0);
+/// assert_eq!(validate(&opened.cut.mesh).non_manifold_vertices, 0);
 /// # Ok::<(), base::Exceeded>(())
 /// ```
 pub fn cut_shortcuts(mesh: &TriMesh, observer: &dyn Observer) -> Result<CutSurface, Exceeded> {
@@ -59,13 +59,12 @@ pub fn cut_shortcuts(mesh: &TriMesh, observer: &dyn Observer) -> Result<CutSurfa
     // The holes of a part that is made of planes and cylinders are meant. Few surfaces have handles, so that only theirs are
     // looked at.
     let is_mechanical = OnceCell::new();
-    while let Some((cut, shortcut)) = handle::cut(&opened.refined.mesh, GIRTH * size, DETOUR * size, &budget)?
-    {
+    while let Some((next, shortcut)) = handle::cut(&opened.cut.mesh, GIRTH * size, DETOUR * size, &budget)? {
         if *is_mechanical.get_or_init(|| SmoothRegions::of(mesh).is_mechanical) {
             break;
         }
         let n_cut = opened.shortcuts.len() + 1;
-        opened.refined = opened.refined.then(cut);
+        opened.cut = opened.cut.then(next);
         opened.shortcuts.push(shortcut);
         if n_cut >= MOST {
             break;

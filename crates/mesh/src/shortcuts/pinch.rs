@@ -6,7 +6,7 @@ use surface::{CornerId, DisjointSets, EdgeId, OneRing, Topology, VertexId, compo
 use super::shortcut::{CutSurface, MOST, Shortcut, ShortcutKind};
 use super::spike::flattened;
 use crate::edge_graph::EdgeGraph;
-use crate::refine::Refined;
+use crate::remap::Remapped;
 use crate::tri_mesh::TriMesh;
 
 /// Greatest height of a vertex of a cut that stays where it is, see [`flattened`]. Of the vertices of creatures
@@ -29,7 +29,7 @@ pub(super) fn cut(mesh: &TriMesh, detour: f64) -> CutSurface {
         }
     }
     if origins.is_empty() {
-        return CutSurface { refined: Refined { mesh: mesh.clone(), origins }, shortcuts: Vec::new() };
+        return CutSurface { cut: Remapped::unchanged(mesh.clone()), shortcuts: Vec::new() };
     }
     // A vertex stays shared where it connects what is otherwise not connected.
     let pieces = components_of_faces(n + origins.len(), &faces);
@@ -48,18 +48,18 @@ pub(super) fn cut(mesh: &TriMesh, detour: f64) -> CutSurface {
     let copy = |i: usize| VertexId::from(n + i);
     let is_far =
         |(i, origin): (usize, &VertexId)| graph.between(&[*origin], &[copy(i)], detour).is_infinite();
-    let mut far: Vec<bool> = split.origins.iter().enumerate().map(is_far).collect();
+    let mut far: Vec<bool> = split.remap.origins().iter().enumerate().map(is_far).collect();
     if far.iter().filter(|far| **far).count() > MOST {
         far.fill(false);
     }
-    let mut refined = with_copies(mesh, &split.mesh.faces, &split.origins, &far);
-    put_back(&mut refined, n);
-    let shortcuts = shortcuts(&refined, n);
-    CutSurface { refined, shortcuts }
+    let mut cut = with_copies(mesh, &split.mesh.faces, split.remap.origins(), &far);
+    put_back(&mut cut, n);
+    let shortcuts = shortcuts(&cut, n);
+    CutSurface { cut, shortcuts }
 }
 
 /// The mesh with those copies of vertices that are `kept`; in `faces`, copies follow the vertices of the mesh.
-fn with_copies(mesh: &TriMesh, faces: &[[VertexId; 3]], origins: &[VertexId], kept: &[bool]) -> Refined {
+fn with_copies(mesh: &TriMesh, faces: &[[VertexId; 3]], origins: &[VertexId], kept: &[bool]) -> Remapped {
     let n = mesh.n_vertices();
     let mut left = Vec::new();
     let number: Vec<VertexId> = origins
@@ -77,7 +77,7 @@ fn with_copies(mesh: &TriMesh, faces: &[[VertexId; 3]], origins: &[VertexId], ke
     let copies = left.iter().map(|origin| mesh.positions[origin.index()]);
     let positions = mesh.positions.iter().copied().chain(copies).collect();
     let faces = faces.iter().map(|face| face.map(renumbered)).collect();
-    Refined { mesh: TriMesh { positions, faces }, origins: left }
+    Remapped::extended(TriMesh { positions, faces }, left)
 }
 
 /// The corners at a vertex, by the parts of the surface that have only this vertex, or welded edges, in common.
@@ -115,12 +115,12 @@ fn is_weld(topology: &Topology, edge: EdgeId) -> bool {
     corners.len() == 4 && corners.iter().filter(forward).count() == 2
 }
 
-fn shortcuts(refined: &Refined, n: usize) -> Vec<Shortcut> {
-    if refined.origins.is_empty() {
+fn shortcuts(cut: &Remapped, n: usize) -> Vec<Shortcut> {
+    if cut.remap.is_identity() {
         return Vec::new();
     }
-    let mut graph = EdgeGraph::of(&refined.mesh);
-    let copies = refined.origins.iter().enumerate().map(|(i, &vertex)| {
+    let mut graph = EdgeGraph::of(&cut.mesh);
+    let copies = cut.remap.origins().iter().enumerate().map(|(i, &vertex)| {
         let detour = graph.between(&[VertexId::from(n + i)], &[vertex], f64::INFINITY);
         Shortcut { kind: ShortcutKind::Pinch, vertex, girth: 0.0, detour }
     });
@@ -128,19 +128,19 @@ fn shortcuts(refined: &Refined, n: usize) -> Vec<Shortcut> {
 }
 
 /// Moves vertices of cuts back into their surfaces if they stick out.
-fn put_back(refined: &mut Refined, n: usize) {
-    let mut cut: Vec<VertexId> = (0..refined.origins.len()).map(|i| VertexId::from(n + i)).collect();
-    cut.extend(&refined.origins);
+fn put_back(split: &mut Remapped, n: usize) {
+    let mut cut: Vec<VertexId> = (0..split.remap.origins().len()).map(|i| VertexId::from(n + i)).collect();
+    cut.extend(split.remap.origins());
     cut.sort_unstable();
     cut.dedup();
     if cut.is_empty() {
         return;
     }
-    let topology = Topology::new(refined.mesh.n_vertices(), refined.mesh.faces.clone());
+    let topology = Topology::new(split.mesh.n_vertices(), split.mesh.faces.clone());
     let moved: Vec<(VertexId, Point3<f64>)> =
-        cut.into_iter().filter_map(|v| Some((v, flattened(&refined.mesh, &topology, v, PULLED)?))).collect();
+        cut.into_iter().filter_map(|v| Some((v, flattened(&split.mesh, &topology, v, PULLED)?))).collect();
     for (v, position) in moved {
-        refined.mesh.positions[v.index()] = position;
+        split.mesh.positions[v.index()] = position;
     }
 }
 
@@ -167,8 +167,8 @@ mod tests {
         let [shortcut] = opened.shortcuts[..] else { panic!("{:?}", opened.shortcuts) };
         assert_eq!((shortcut.kind, shortcut.vertex), (ShortcutKind::Pinch, ends[0]));
         assert!((shortcut.detour - 1.57).abs() < 1.0, "{}", shortcut.detour);
-        assert!(cut(&welded(ball.clone(), ends), 2.0).refined.mesh == welded(ball.clone(), ends));
-        let mesh = opened.refined.mesh;
+        assert!(cut(&welded(ball.clone(), ends), 2.0).cut.mesh == welded(ball.clone(), ends));
+        let mesh = opened.cut.mesh;
         let report = validate(&mesh);
         assert_eq!((report.non_manifold_vertices, report.genus), (0, Some(0)));
         assert_eq!((report.n_boundary_edges, report.n_components), (0, 1));
@@ -184,12 +184,12 @@ mod tests {
         let once = welded(two.clone(), [VertexId(3), VertexId::from(n + 5)]);
         let opened = cut(&once, 0.5);
         assert!(opened.shortcuts.is_empty());
-        assert_eq!(opened.refined.mesh, once);
+        assert_eq!(opened.cut.mesh, once);
         // A second shared vertex is a shortcut.
         let twice = welded(once, [VertexId(100), VertexId::from(n + 70)]);
         let opened = cut(&twice, 0.5);
         assert_eq!(opened.shortcuts.len(), 1);
-        let connected = components_of_faces(opened.refined.mesh.n_vertices(), &opened.refined.mesh.faces);
+        let connected = components_of_faces(opened.cut.mesh.n_vertices(), &opened.cut.mesh.faces);
         assert_eq!(connected.count, 1);
     }
 
@@ -204,12 +204,12 @@ mod tests {
         let seam = welded(welded(ball.clone(), [a, d]), [b, c]);
         assert!(validate(&seam).non_manifold_edges > 0);
         let opened = cut(&seam, 0.5);
-        let report = validate(&opened.refined.mesh);
+        let report = validate(&opened.cut.mesh);
         assert_eq!((report.non_manifold_edges, report.n_boundary_edges, opened.shortcuts.len()), (0, 0, 2));
         let mut fin = shapes::grid(5, 5, 1.0);
         let tip = VertexId::from(fin.n_vertices());
         fin.positions.push(Point3::new(2.0, 2.0, 1.0));
         fin.faces.push([VertexId(12), VertexId(13), tip]);
-        assert_eq!(cut(&fin, 0.0).refined.mesh, fin);
+        assert_eq!(cut(&fin, 0.0).cut.mesh, fin);
     }
 }

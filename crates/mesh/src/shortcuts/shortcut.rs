@@ -3,7 +3,7 @@
 use serde::Serialize;
 use surface::VertexId;
 
-use crate::refine::Refined;
+use crate::remap::Remapped;
 
 /// The kind of a shortcut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -33,7 +33,7 @@ pub struct Shortcut {
 pub struct CutSurface {
     /// The mesh, with new vertices where it was cut. Vertices of a cut that a weld had pulled out of their surface are moved
     /// back.
-    pub refined: Refined,
+    pub cut: Remapped,
     /// What was cut: pinches first, then handles from the narrowest to the widest.
     pub shortcuts: Vec<Shortcut>,
 }

@@ -43,14 +43,14 @@ fn assert_repairs(path: &Path, mesh: &TriMesh) {
 
         // Every vertex of the result is an input vertex, in the input's order and place.
         let mut next = VertexId(0);
-        for (v, to) in repaired.input_to_repaired.iter().enumerate() {
-            let Some(to) = *to else { continue };
+        for (v, to) in repaired.remap.all_to_new().enumerate() {
+            let Some(to) = to else { continue };
             assert!(to <= next, "{name}: vertex {v} is out of order");
             next = next.max(VertexId(to.0 + 1));
             assert_eq!(repaired.mesh.positions[to.index()], mesh.positions[v], "{name}");
         }
         assert_eq!(next.index(), repaired.mesh.n_vertices(), "{name}");
-        let dropped = repaired.input_to_repaired.iter().filter(|to| to.is_none()).count();
+        let dropped = repaired.remap.all_to_new().filter(|to| to.is_none()).count();
         assert_eq!(dropped, repaired.report.dropped_vertices.len(), "{name}");
 
         // A second repair changes nothing.

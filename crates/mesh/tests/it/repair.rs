@@ -29,7 +29,7 @@ fn shifted(mut mesh: TriMesh, by: [f64; 3]) -> TriMesh {
 
 /// The vertex that each input vertex became, -1 for none.
 fn fates(repaired: &Repaired) -> Vec<i64> {
-    repaired.input_to_repaired.iter().map(|to| to.map_or(-1, |v| i64::from(v.0))).collect()
+    repaired.remap.all_to_new().map(|to| to.map_or(-1, |v| i64::from(v.0))).collect()
 }
 
 /// The same faces, each with vertices of its own.
@@ -46,7 +46,7 @@ fn a_clean_mesh_is_returned_unchanged() {
         assert_eq!(repaired.mesh, clean);
         assert!(repaired.report.summary().is_empty());
         assert!(repaired.report.summary().is_empty());
-        assert!(repaired.input_to_repaired.iter().enumerate().all(|(v, to)| *to == Some(VertexId::from(v))));
+        assert!(repaired.remap.is_identity());
     }
 }
 
@@ -103,7 +103,7 @@ fn slivers_stay_and_edges_of_length_zero_collapse_without_a_slit() {
     let options = with(ComponentPolicy::Error, Weld::None, Orient::Keep);
     let repaired = repair(&strip, &options, &()).unwrap();
     assert_eq!((repaired.report.collapsed_vertices, repaired.report.zero_length_faces), (1, 2));
-    assert_eq!(repaired.input_to_repaired[5], repaired.input_to_repaired[6]);
+    assert_eq!(repaired.remap.to_new(VertexId(5)), repaired.remap.to_new(VertexId(6)));
     let after = validate(&repaired.mesh);
     assert_eq!((after.n_boundary_loops, after.duplicate_vertices, after.n_components), (1, 0, 1));
     assert!(after.min_edge_length > 0.0);
@@ -286,7 +286,7 @@ fn scale_changes_no_decision() {
             scaled.positions.iter_mut().for_each(|p| *p *= scale);
             let found = repair(&scaled, &options, &()).unwrap();
             assert_eq!(found.mesh.faces, expected.mesh.faces, "2^{exponent}");
-            assert_eq!(found.input_to_repaired, expected.input_to_repaired);
+            assert_eq!(found.remap, expected.remap);
             assert_eq!(found.report.dropped_area_share, expected.report.dropped_area_share);
             assert_eq!(found.report.weld_gap, scale * expected.report.weld_gap);
             assert_eq!(found.intrinsic.links().len(), expected.intrinsic.links().len());
@@ -492,7 +492,7 @@ proptest! {
         if orient == Orient::Consistent && after.orientable {
             prop_assert_eq!(after.inconsistent_edges, 0);
         }
-        for (v, to) in repaired.input_to_repaired.iter().enumerate() {
+        for (v, to) in repaired.remap.all_to_new().enumerate() {
             if let Some(to) = to {
                 prop_assert_eq!(repaired.mesh.positions[to.index()], input.positions[v]);
             }

@@ -128,7 +128,7 @@ fn the_sides_of_a_crack_are_no_shortcut() {
     for mesh in surfaces() {
         let broken = split(&mesh, |f| usize::from(f > mesh.n_faces() / 2));
         let cut = cut_shortcuts(&broken, &()).unwrap();
-        assert_eq!((cut.shortcuts.len(), cut.refined.mesh), (0, broken));
+        assert_eq!((cut.shortcuts.len(), cut.cut.mesh), (0, broken));
     }
 }
 
@@ -137,7 +137,7 @@ fn points_on_faces_that_were_split_keep_their_positions() {
     for (fine, coarse) in [(1, 0), (4, 0), (2, 1)] {
         let mesh = split(&shapes::icosphere(1), |f| if f.is_multiple_of(3) { fine } else { coarse });
         let surface = Surface::new(&mesh, &RepairOptions::default(), &()).unwrap();
-        assert!(!surface.repaired.parts.is_empty());
+        assert!(!repair(&mesh, &RepairOptions::default(), &()).unwrap().parts.is_empty());
         let at = |v: VertexId| mesh.positions[v.index()].coords;
         let check = |point: InputPoint, expected: Vector3<f64>| {
             let found = surface.locate(&point).unwrap();

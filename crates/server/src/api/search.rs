@@ -140,7 +140,7 @@ impl Answered {
     }
 
     fn with_measured(self, measured: &Measured, geometry: bool) -> Self {
-        let repair = measured.surface.repaired.report.clone();
+        let repair = measured.surface.input.report.clone();
         Self {
             repaired: repair.summary(),
             repair: Some(repair),

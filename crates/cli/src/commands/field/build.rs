@@ -44,12 +44,12 @@ pub(super) fn build(args: &FieldBuildArgs, common: &Common) -> Result<ExitCode> 
     let built = start.elapsed().as_secs_f64();
     field.save(&args.output)?;
     let seconds = Seconds {
-        load: surface.load_seconds,
-        repair: surface.repair_seconds,
+        load: surface.input.load_seconds,
+        repair: surface.input.repair_seconds,
         build: built,
         write: start.elapsed().as_secs_f64() - built,
     };
-    let (output, repair) = (args.output.clone(), surface.repaired.report.clone());
+    let (output, repair) = (args.output.clone(), surface.input.report.clone());
     report(common, &BuildJson { output, facts: field.facts(), seconds, repair }, |json| {
         let mut answer = answer(&json.output, &json.facts);
         let Seconds { load, repair, build, write } = json.seconds;

@@ -39,6 +39,6 @@ pub(crate) fn geodesic(args: &GeodesicArgs, common: &Common) -> Result<ExitCode>
     let solver = method
         .prepare(surface.intrinsic(), &args.limits.budget())
         .map_err(|fault| named(&args.mesh, fault.into()))?;
-    let setup = surface.repair_seconds + start.elapsed().as_secs_f64();
+    let setup = surface.input.repair_seconds + start.elapsed().as_secs_f64();
     write(Task { args, common, output, mesh: &mesh, surface: &surface, solver: solver.as_ref(), setup })
 }

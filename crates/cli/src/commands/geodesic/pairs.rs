@@ -77,12 +77,12 @@ pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
         output: task.output.name(),
         asymmetry,
         seconds: Seconds {
-            load: surface.load_seconds,
+            load: surface.input.load_seconds,
             setup: task.setup,
             all_pairs: start.elapsed().as_secs_f64(),
         },
-        unreached: surface.repaired.report.dropped_vertices.clone(),
-        repair: surface.repaired.report.clone(),
+        unreached: surface.input.report.dropped_vertices.clone(),
+        repair: surface.input.report.clone(),
     };
     let common = task.common;
     task.output.report(common, &json, |json| answer(json).text(common))

@@ -88,7 +88,7 @@ pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
         paths: facts,
         seconds,
         path_seconds,
-        repair: surface.repaired.report.clone(),
+        repair: surface.input.report.clone(),
     };
     let common = task.common;
     task.output.report(common, &json, |json| answer(json).text(common))

@@ -38,13 +38,13 @@ pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
     let is_infinite = |v: &u32| rows.iter().any(|row| !row[*v as usize].is_finite());
     // A repaired surface is connected: with a limit, vertices that are not reached lie beyond it.
     let unreached = if args.max_distance.is_some() {
-        surface.repaired.report.dropped_vertices.iter().map(|v| v.0).collect()
+        surface.input.report.dropped_vertices.iter().map(|v| v.0).collect()
     } else {
         (0..surface.n_input_vertices() as u32).filter(is_infinite).collect()
     };
     let infinite = |row: &Vec<f64>| row.iter().filter(|d| d.is_infinite()).count();
     let finite = |row: &Vec<f64>| row.iter().copied().filter(|d| d.is_finite()).fold(0.0, f64::max);
-    let dropped = surface.repaired.report.dropped_vertices.len();
+    let dropped = surface.input.report.dropped_vertices.len();
     let json = RowsJson {
         method: args.method.name(),
         n_vertices: surface.n_input_vertices(),
@@ -58,7 +58,7 @@ pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
             Some(_) => rows.iter().map(|row| infinite(row) - dropped).collect(),
             None => vec![0; rows.len()],
         },
-        repair: surface.repaired.report.clone(),
+        repair: surface.input.report.clone(),
     };
     let common = task.common;
     task.output.report(common, &json, |json| answer(json, &solved).text(common))

@@ -69,7 +69,7 @@ impl Task<'_> {
             bar.inc(1);
         }
         bar.finish_and_clear();
-        Ok((rows, Seconds { load: surface.load_seconds, setup: self.setup, per_source }))
+        Ok((rows, Seconds { load: surface.input.load_seconds, setup: self.setup, per_source }))
     }
 }
 

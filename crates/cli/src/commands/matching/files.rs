@@ -39,7 +39,8 @@ impl SecondsJson {
     /// Of meshes that were read and prepared, and then mapped in `matching` seconds.
     pub(super) fn new(sides: [&MappedFile; 2], matching: f64) -> Self {
         let surfaces = sides.map(|side| side.mapped.surface());
-        let load = surfaces.iter().map(|surface| surface.load_seconds + surface.repair_seconds).sum();
+        let load =
+            surfaces.iter().map(|surface| surface.input.load_seconds + surface.input.repair_seconds).sum();
         let prepare = sides.iter().map(|side| side.mapped.seconds).sum();
         Self { load, prepare, matching, total: load + prepare + matching }
     }
@@ -208,9 +209,9 @@ pub(super) fn write_functional(
     for ((side, name), k) in sides.iter().zip(["a", "b"]).zip(counts) {
         let spectrum = side.mapped.shape.spectrum();
         let vectors = spectrum.vectors.columns(0, k);
-        let to_repaired = &side.mapped.surface().repaired.input_to_repaired;
-        let rows = Matrix::from_fn(to_repaired.len(), k, |i, j| {
-            to_repaired[i].map_or(f64::NAN, |v| vectors[(v.index(), j)])
+        let remap = &side.mapped.surface().input.remap;
+        let rows = Matrix::from_fn(remap.n_old(), k, |i, j| {
+            remap.to_new(i.into()).map_or(f64::NAN, |v| vectors[(v.index(), j)])
         });
         write_matrix(&beside(path, name), &rows)?;
         values.push(spectrum.values[..k].to_vec());
