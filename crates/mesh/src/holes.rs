@@ -3,7 +3,7 @@
 use nalgebra::{Point3, Vector3};
 use surface::{Topology, VertexId};
 
-use crate::orientation::orient_consistently;
+use crate::orientation::turned_faces;
 use crate::remap::Remapped;
 use crate::tri_mesh::TriMesh;
 
@@ -26,10 +26,13 @@ use crate::tri_mesh::TriMesh;
 /// ```
 #[must_use]
 pub fn fill_holes(mesh: &TriMesh, longest: f64) -> Remapped {
-    let mut oriented = mesh.clone();
-    orient_consistently(&mut oriented);
+    filled(mesh, &Topology::new(mesh.n_vertices(), mesh.faces.clone()), longest)
+}
+
+/// [`fill_holes`], given the connectivity of the mesh.
+pub(crate) fn filled(mesh: &TriMesh, topology: &Topology, longest: f64) -> Remapped {
     let (mut filled, mut origins) = (mesh.clone(), Vec::new());
-    for hole in holes(&oriented) {
+    for hole in holes(mesh, topology) {
         let Some(middle) = middle_within(mesh, &hole, longest) else { continue };
         let center = VertexId::from(filled.n_vertices());
         filled.positions.push(middle);
@@ -58,13 +61,22 @@ fn middle_within(mesh: &TriMesh, hole: &[VertexId], longest: f64) -> Option<Poin
     (length > 0.0 && length * unit <= longest).then(|| Point3::from(moment / length * unit))
 }
 
-/// The simple loops of edges with one face, each in the direction of its faces, by their lowest vertex.
-fn holes(mesh: &TriMesh) -> Vec<Vec<VertexId>> {
-    let topology = Topology::new(mesh.n_vertices(), mesh.faces.clone());
+/// The simple loops of edges with one face, each in the direction of its faces once they are oriented consistently, by their
+/// lowest vertex.
+fn holes(mesh: &TriMesh, topology: &Topology) -> Vec<Vec<VertexId>> {
+    if topology.boundary_edges().next().is_none() {
+        return Vec::new();
+    }
+    let turned = turned_faces(&mesh.positions, topology);
     let mut next = vec![None; mesh.n_vertices()];
     let mut n_sides = vec![0; mesh.n_vertices()];
     for edge in topology.boundary_edges() {
-        let [a, b] = topology.edge_ends(topology.edge_corners(edge)[0]);
+        let corner = topology.edge_corners(edge)[0];
+        let mut ends = topology.edge_ends(corner);
+        if turned[corner.face().index()] {
+            ends.reverse();
+        }
+        let [a, b] = ends;
         next[a.index()] = Some(b);
         n_sides[a.index()] += 1;
         n_sides[b.index()] += 1;

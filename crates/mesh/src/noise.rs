@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use surface::{EdgeId, Topology, VertexId};
 
-use crate::orientation::orient_consistently;
+use crate::orientation::turned_faces;
 use crate::regions::SmoothRegions;
 use crate::tri_mesh::TriMesh;
 
@@ -52,7 +52,12 @@ const STEPS: [f64; 2] = [0.5, -0.53];
 /// ```
 #[must_use]
 pub fn without_noise(mesh: &TriMesh) -> Option<TriMesh> {
-    let (mut smooth, umbrellas) = prepared(mesh);
+    smoothed(mesh, &topology_of(mesh))
+}
+
+/// [`without_noise`], given the connectivity of the mesh.
+pub(crate) fn smoothed(mesh: &TriMesh, topology: &Topology) -> Option<TriMesh> {
+    let (mut smooth, umbrellas) = prepared(mesh, topology);
     if !umbrellas.bending(&smooth).is_noisy() || SmoothRegions::of(mesh).is_mechanical {
         return None;
     }
@@ -74,15 +79,20 @@ pub fn without_noise(mesh: &TriMesh) -> Option<TriMesh> {
 /// As [`without_noise`].
 #[must_use]
 pub fn is_noisy(mesh: &TriMesh) -> bool {
-    let (oriented, umbrellas) = prepared(mesh);
+    let (oriented, umbrellas) = prepared(mesh, &topology_of(mesh));
     umbrellas.bending(&oriented).is_noisy() && !SmoothRegions::of(mesh).is_mechanical
 }
 
-fn prepared(mesh: &TriMesh) -> (TriMesh, Umbrellas) {
+fn topology_of(mesh: &TriMesh) -> Topology {
+    Topology::new(mesh.n_vertices(), mesh.faces.clone())
+}
+
+/// The mesh with its faces oriented consistently, and the neighbours of every vertex.
+fn prepared(mesh: &TriMesh, topology: &Topology) -> (TriMesh, Umbrellas) {
     let mut oriented = mesh.clone();
-    orient_consistently(&mut oriented);
-    let umbrellas = Umbrellas::of(&oriented);
-    (oriented, umbrellas)
+    let turned = turned_faces(&mesh.positions, topology);
+    oriented.faces.iter_mut().zip(turned).filter(|(_, turned)| *turned).for_each(|(face, _)| face.swap(1, 2));
+    (oriented, Umbrellas::of(topology))
 }
 
 /// How a surface bends at its vertices. Vertices on edges that do not have two faces are left out.
@@ -112,17 +122,16 @@ struct Umbrellas {
 }
 
 impl Umbrellas {
-    fn of(mesh: &TriMesh) -> Self {
-        let topology = Topology::new(mesh.n_vertices(), mesh.faces.clone());
+    fn of(topology: &Topology) -> Self {
         let is_rim = |edge: usize| topology.edge_corners(EdgeId::from(edge)).len() != 2;
-        let mut is_inside = vec![true; mesh.n_vertices()];
+        let mut is_inside = vec![true; topology.n_vertices()];
         for (edge, ends) in topology.edges().iter().enumerate() {
             if is_rim(edge) {
                 ends.iter().for_each(|v| is_inside[v.index()] = false);
             }
         }
         let (mut followed, mut inside) = (Vec::new(), Vec::new());
-        let mut n_followed = vec![0; mesh.n_vertices()];
+        let mut n_followed = vec![0; topology.n_vertices()];
         for (edge, &[a, b]) in topology.edges().iter().enumerate() {
             for [v, neighbor] in [[a, b], [b, a]] {
                 if is_inside[v.index()] || is_rim(edge) {
@@ -207,7 +216,7 @@ mod tests {
     }
 
     fn coherence(mesh: &TriMesh) -> f64 {
-        Umbrellas::of(mesh).bending(mesh).coherence
+        Umbrellas::of(&topology_of(mesh)).bending(mesh).coherence
     }
 
     #[test]

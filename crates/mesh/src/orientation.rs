@@ -1,5 +1,6 @@
 //! The orientation of faces.
 
+use nalgebra::Point3;
 use surface::{CornerId, FaceId, Topology};
 
 use crate::face_set::is_degenerate;
@@ -86,26 +87,31 @@ impl Orientation {
 /// faces are left alone. Linear time.
 pub fn orient_consistently(mesh: &mut TriMesh) -> usize {
     let proper: Vec<usize> = (0..mesh.n_faces()).filter(|&f| !is_degenerate(mesh.faces[f])).collect();
-    let topology = Topology::new(mesh.n_vertices(), proper.iter().map(|&f| mesh.faces[f]).collect());
-    let Orientation { patch, mut turned, orientable, closed } = Orientation::of(&topology);
+    let faces = proper.iter().map(|&f| mesh.faces[f]).collect();
+    let turned = turned_faces(&mesh.positions, &Topology::new(mesh.n_vertices(), faces));
+    let to_turn: Vec<usize> =
+        proper.into_iter().zip(turned).filter_map(|(f, turn)| turn.then_some(f)).collect();
+    to_turn.iter().for_each(|&f| mesh.faces[f].swap(1, 2));
+    to_turn.len()
+}
 
+/// Which faces [`orient_consistently`] flips.
+pub(crate) fn turned_faces(positions: &[Point3<f64>], topology: &Topology) -> Vec<bool> {
+    let Orientation { patch, mut turned, orientable, closed } = Orientation::of(topology);
     // Six times the signed volume of every patch, relative to its first vertex to keep the terms small.
     let mut volume = vec![0.0; closed.len()];
     let mut origin = vec![None; closed.len()];
-    for (i, &f) in proper.iter().enumerate() {
-        let [a, b, c] = mesh.triangle(f);
-        let from = *origin[patch[i] as usize].get_or_insert(a);
+    for ((face, turned), patch) in topology.faces().iter().zip(&turned).zip(&patch) {
+        let [a, b, c] = face.map(|v| positions[v.index()]);
+        let from = *origin[*patch as usize].get_or_insert(a);
         let term = (a - from).dot(&(b - from).cross(&(c - from)));
-        volume[patch[i] as usize] += if turned[i] { -term } else { term };
+        volume[*patch as usize] += if *turned { -term } else { term };
     }
     let inside_out = |p: usize| closed[p] && orientable[p] && volume[p] < 0.0;
     for (turn, &p) in turned.iter_mut().zip(&patch) {
         *turn ^= inside_out(p as usize);
     }
-    let to_turn: Vec<usize> =
-        proper.into_iter().zip(turned).filter_map(|(f, turn)| turn.then_some(f)).collect();
-    to_turn.iter().for_each(|&f| mesh.faces[f].swap(1, 2));
-    to_turn.len()
+    turned
 }
 
 #[cfg(test)]

@@ -1,9 +1,15 @@
 //! The mesh on which a surface is measured for its description.
 
+use std::borrow::Cow;
+
+use ::surface::Topology;
 use base::{Budget, Exceeded, Observer};
 
 use super::surface::Surface;
-use crate::{cut_shortcuts, fill_holes, refine, without_noise};
+use crate::holes::filled;
+use crate::noise::smoothed;
+use crate::refine::refine;
+use crate::shortcuts::opened;
 
 /// Longest edge, relative to the square root of the area. Equilateral triangles of this size have about 720 vertices.
 ///
@@ -62,14 +68,19 @@ impl Surface {
     }
 
     fn prepared(&self, longest_hole: f64, budget: &Budget) -> Result<Self, Exceeded> {
-        let opened = cut_shortcuts(self.mesh(), budget)?;
-        let smooth = without_noise(&opened.cut.mesh);
+        let topology = self.intrinsic().topology();
+        let opened = opened(self.mesh(), topology, budget)?;
+        let topology = match opened.cut.remap.is_identity() {
+            true => Cow::Borrowed(topology),
+            false => Cow::Owned(Topology::new(opened.cut.mesh.n_vertices(), opened.cut.mesh.faces.clone())),
+        };
+        let smooth = smoothed(&opened.cut.mesh, &topology);
         let mesh = smooth.as_ref().unwrap_or(&opened.cut.mesh);
         let size = mesh.root_of_area();
         if size.is_nan() || size <= 0.0 {
             return Ok(self.clone());
         }
-        let filled = fill_holes(mesh, longest_hole * size);
+        let filled = filled(mesh, &topology, longest_hole * size);
         let longest = if mesh.n_vertices() < FEW { LONGEST_OF_FEW } else { LONGEST };
         let fine = refine(&filled.mesh, longest * size, mesh.n_vertices() + MOST);
         let made = opened.cut.then(filled).then(fine);

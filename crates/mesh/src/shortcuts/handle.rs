@@ -20,15 +20,14 @@ const FLARE: f64 = 1.4;
 /// Cuts the narrowest handle that is at most `girth` around and joins sides that are otherwise at least `detour` apart.
 pub(super) fn cut(
     mesh: &TriMesh,
-    girth: f64,
-    detour: f64,
+    topology: &Topology,
+    [girth, detour]: [f64; 2],
     budget: &Budget,
 ) -> Result<Option<(Remapped, Shortcut)>, Exceeded> {
-    let topology = Topology::new(mesh.n_vertices(), mesh.faces.clone());
     let length = |[a, b]: &[VertexId; 2]| (mesh.positions[a.index()] - mesh.positions[b.index()]).norm();
     let lengths: Vec<f64> = topology.edges().iter().map(length).collect();
-    let loops = short_loops(&topology, &lengths, girth, budget)?;
-    Ok(loops.iter().find_map(|around| opened(mesh, &topology, around, detour)))
+    let loops = short_loops(topology, &lengths, girth, budget)?;
+    Ok(loops.iter().find_map(|around| opened(mesh, topology, around, detour)))
 }
 
 /// The surface cut along a loop, if the loop goes around a shortcut.
@@ -110,7 +109,8 @@ mod tests {
     use crate::{cut_shortcuts, fill_holes, shapes, validate};
 
     fn narrow(mesh: &TriMesh, girth: f64, detour: f64) -> Option<(Remapped, Shortcut)> {
-        cut(mesh, girth, detour, &Budget::unlimited()).unwrap()
+        let topology = Topology::new(mesh.n_vertices(), mesh.faces.clone());
+        cut(mesh, &topology, [girth, detour], &Budget::unlimited()).unwrap()
     }
 
     /// A ball with a tube between two openings: the vertices nearest to the poles are left out.

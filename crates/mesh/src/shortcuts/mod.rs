@@ -9,9 +9,11 @@ mod pinch;
 mod shortcut;
 mod spike;
 
+use std::borrow::Cow;
 use std::cell::OnceCell;
 
-use base::{Exceeded, Observer};
+use base::{Budget, Exceeded, Observer};
+use surface::Topology;
 
 use crate::regions::SmoothRegions;
 use crate::tri_mesh::TriMesh;
@@ -53,13 +55,23 @@ pub use shortcut::{CutSurface, Shortcut, ShortcutKind};
 /// # Ok::<(), base::Exceeded>(())
 /// ```
 pub fn cut_shortcuts(mesh: &TriMesh, observer: &dyn Observer) -> Result<CutSurface, Exceeded> {
-    let budget = observer.budget();
+    opened(mesh, &Topology::new(mesh.n_vertices(), mesh.faces.clone()), &observer.budget())
+}
+
+/// [`cut_shortcuts`], given the connectivity of the mesh.
+pub(crate) fn opened(mesh: &TriMesh, topology: &Topology, budget: &Budget) -> Result<CutSurface, Exceeded> {
     let size = mesh.root_of_area();
-    let mut opened = pinch::cut(mesh, DETOUR * size);
+    let mut opened = pinch::cut(mesh, topology, DETOUR * size);
+    let mut topology = Cow::Borrowed(topology);
     // The holes of a part that is made of planes and cylinders are meant. Few surfaces have handles, so that only theirs are
     // looked at.
     let is_mechanical = OnceCell::new();
-    while let Some((next, shortcut)) = handle::cut(&opened.cut.mesh, GIRTH * size, DETOUR * size, &budget)? {
+    loop {
+        if !opened.cut.remap.is_identity() {
+            topology = Cow::Owned(Topology::new(opened.cut.mesh.n_vertices(), opened.cut.mesh.faces.clone()));
+        }
+        let limits = [GIRTH * size, DETOUR * size];
+        let Some((next, shortcut)) = handle::cut(&opened.cut.mesh, &topology, limits, budget)? else { break };
         if *is_mechanical.get_or_init(|| SmoothRegions::of(mesh).is_mechanical) {
             break;
         }

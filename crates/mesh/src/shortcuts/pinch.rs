@@ -14,15 +14,14 @@ use crate::tri_mesh::TriMesh;
 const PULLED: f64 = 1.5;
 
 /// Splits vertices that parts of the surface share which are otherwise at least `detour` apart and not in two pieces.
-pub(super) fn cut(mesh: &TriMesh, detour: f64) -> CutSurface {
+pub(super) fn cut(mesh: &TriMesh, topology: &Topology, detour: f64) -> CutSurface {
     let n = mesh.n_vertices();
-    let topology = Topology::new(n, mesh.faces.clone());
     let mut faces = mesh.faces.clone();
     // For every new vertex, the old one.
     let mut origins: Vec<VertexId> = Vec::new();
     let mut ring = OneRing::default();
     for v in (0..n).map(VertexId::from) {
-        for sheet in sheets(&topology, &mut ring, v).into_iter().skip(1) {
+        for sheet in sheets(topology, &mut ring, v).into_iter().skip(1) {
             let copy = VertexId::from(n + origins.len());
             origins.push(v);
             sheet.into_iter().for_each(|corner| faces[corner.face().index()][corner.slot()] = copy);
@@ -148,6 +147,10 @@ fn put_back(split: &mut Remapped, n: usize) {
 mod tests {
     use super::*;
     use crate::{shapes, validate};
+
+    fn cut(mesh: &TriMesh, detour: f64) -> CutSurface {
+        super::cut(mesh, &Topology::new(mesh.n_vertices(), mesh.faces.clone()), detour)
+    }
 
     fn nearest(mesh: &TriMesh, to: [f64; 3]) -> VertexId {
         let gap = |v: usize| (mesh.positions[v] - Point3::from(to)).norm();
