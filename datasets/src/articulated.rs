@@ -291,10 +291,7 @@ pub(crate) fn posed_skeleton<'a>(
 
 #[cfg(test)]
 mod tests {
-    use std::cmp::Reverse;
-    use std::collections::BinaryHeap;
-
-    use surface::VertexId;
+    use surface::{NearestFirst, VertexId};
 
     use super::*;
     use crate::implicit::{Blob, BodyPart, ImplicitBody};
@@ -303,10 +300,9 @@ mod tests {
     /// Lengths of shortest paths along edges from `source`.
     fn path_lengths(surface: &RestSurface, positions: &[Point3<f64>], source: u32) -> Vec<f64> {
         let mut lengths = vec![f64::INFINITY; positions.len()];
-        let mut queue = BinaryHeap::from([Reverse((0u64, source))]);
+        let mut queue = NearestFirst::from([(0.0, source)]);
         lengths[source as usize] = 0.0;
-        while let Some(Reverse((bits, v))) = queue.pop() {
-            let length = f64::from_bits(bits);
+        while let Some((length, v)) = queue.pop() {
             if length > lengths[v as usize] {
                 continue;
             }
@@ -314,7 +310,7 @@ mod tests {
                 let longer = length + (positions[x as usize] - positions[v as usize]).norm();
                 if longer < lengths[x as usize] {
                     lengths[x as usize] = longer;
-                    queue.push(Reverse((longer.to_bits(), x)));
+                    queue.push(longer, x);
                 }
             }
         }

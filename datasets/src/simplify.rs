@@ -1,11 +1,8 @@
 //! Simplification to a given number of vertices.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
-
 use base::{Budget, Exceeded};
 use nalgebra::Point3;
-use surface::VertexId;
+use surface::{NearestFirst, VertexId};
 
 use crate::corner_table::EditableCorners;
 
@@ -100,11 +97,11 @@ fn collapse_by_queue(
     let mut meter = budget.meter();
     let mut entries = Vec::new();
     for v in surface.table.vertices() {
-        entries.extend(surface.table.neighbors(v).filter(|&x| v < x).map(|x| Reverse(surface.entry(v, x))));
+        entries.extend(surface.table.neighbors(v).filter(|&x| v < x).map(|x| surface.entry(v, x)));
     }
-    let mut queue = BinaryHeap::from(entries);
+    let mut queue: NearestFirst<[VertexId; 2]> = entries.into_iter().collect();
     while n_left > n_vertices
-        && let Some(Reverse((_, u, w))) = queue.pop()
+        && let Some((_, [u, w])) = queue.pop()
     {
         meter.count(OPERATIONS)?;
         // Collapses never remove an edge between two living vertices.
@@ -119,7 +116,9 @@ fn collapse_by_queue(
             continue;
         };
         n_left -= 1;
-        queue.extend(surface.table.neighbors(kept).map(|x| Reverse(surface.entry(kept.min(x), kept.max(x)))));
+        for (cost, edge) in surface.table.neighbors(kept).map(|x| surface.entry(kept.min(x), kept.max(x))) {
+            queue.push(cost, edge);
+        }
     }
     Ok(n_left)
 }
@@ -149,10 +148,9 @@ impl RestSurface {
         (self.positions[a] - self.positions[b]).norm_squared() / (grain * grain)
     }
 
-    /// Queue entry of an edge: the bits of its cost, which order like the numbers since they are not
-    /// negative, then its ends.
-    fn entry(&self, u: VertexId, w: VertexId) -> (u64, VertexId, VertexId) {
-        (self.cost(u, w).to_bits(), u, w)
+    /// An edge in the queue, and its cost.
+    fn entry(&self, u: VertexId, w: VertexId) -> (f64, [VertexId; 2]) {
+        (self.cost(u, w), [u, w])
     }
 
     /// Merges `gone` into `kept` if possible; returns whether it was.

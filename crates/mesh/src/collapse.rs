@@ -1,9 +1,6 @@
 //! Edge collapses on any mesh.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
-
-use ::surface::VertexId;
+use ::surface::{NearestFirst, VertexId};
 use base::{Budget, Exceeded};
 use nalgebra::{Matrix3, Point3, Vector3};
 
@@ -66,9 +63,6 @@ impl Quadric {
     }
 }
 
-/// An edge in the queue: the bits of its cost, its ends, and how often these had changed.
-type QueuedEdge = (u64, [u32; 2], [u32; 2]);
-
 /// A mesh under collapse. Dead faces have no vertices in `faces_at`.
 struct Collapse<'a> {
     positions: Vec<Point3<f64>>,
@@ -80,7 +74,8 @@ struct Collapse<'a> {
     merged_into: Vec<u32>,
     /// How often a vertex has changed; older entries of the queue are void.
     changes: Vec<u32>,
-    queue: BinaryHeap<Reverse<QueuedEdge>>,
+    /// Edges by their cost: their ends, and how often these had changed.
+    queue: NearestFirst<[[u32; 2]; 2]>,
     cost: &'a dyn Fn(f64, f64, [usize; 2]) -> f64,
 }
 
@@ -113,7 +108,7 @@ pub fn collapse_edges(
     let mut work = Collapse::new(mesh.clone(), cost);
     let mut n_left = work.faces_at.iter().filter(|faces| !faces.is_empty()).count();
     while n_left > n_vertices.max(4)
-        && let Some(Reverse((_, [a, b], changes))) = work.queue.pop()
+        && let Some((_, [[a, b], changes])) = work.queue.pop()
     {
         meter.count(OPERATIONS)?;
         let ends = [a as usize, b as usize];
@@ -138,7 +133,7 @@ impl<'a> Collapse<'a> {
             quadrics: vec![Quadric::ZERO; n],
             merged_into: (0..n as u32).collect(),
             changes: vec![0; n],
-            queue: BinaryHeap::new(),
+            queue: NearestFirst::default(),
             cost,
         };
         for f in 0..work.faces.len() {
@@ -211,8 +206,7 @@ impl<'a> Collapse<'a> {
             let sum = self.quadrics[v].plus(self.quadrics[w]);
             let cost = (self.cost)(sum.error(sum.best(p, q)), (p - q).norm_squared(), [v, w]);
             let changes = [v, w].map(|v| self.changes[v]);
-            // Nonnegative numbers are ordered as their bits are.
-            self.queue.push(Reverse((cost.to_bits(), [v as u32, w as u32], changes)));
+            self.queue.push(cost, [[v as u32, w as u32], changes]);
         }
     }
 

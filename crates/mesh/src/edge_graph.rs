@@ -1,9 +1,6 @@
 //! Distances along edges.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
-
-use surface::{Rows, VertexId};
+use surface::{NearestFirst, Rows, VertexId};
 
 use crate::tri_mesh::TriMesh;
 
@@ -52,13 +49,10 @@ impl EdgeGraph {
         mut stop: impl FnMut(VertexId) -> bool,
     ) -> Vec<(VertexId, f64)> {
         let mut reached = sources.to_vec();
-        // Nonnegative numbers are ordered as their bits are.
-        let mut queue: BinaryHeap<Reverse<(u64, VertexId)>> =
-            sources.iter().map(|v| Reverse((0, *v))).collect();
+        let mut queue: NearestFirst<VertexId> = sources.iter().map(|v| (0.0, *v)).collect();
         sources.iter().for_each(|v| self.distance[v.index()] = 0.0);
         let mut found: Vec<(VertexId, f64)> = Vec::new();
-        while let Some(Reverse((bits, v))) = queue.pop() {
-            let here = f64::from_bits(bits);
+        while let Some((here, v)) = queue.pop() {
             // A source that was given twice is found once.
             if here > self.distance[v.index()] || found.last().is_some_and(|(last, _)| *last == v) {
                 continue;
@@ -74,7 +68,7 @@ impl EdgeGraph {
                         reached.push(w);
                     }
                     self.distance[w.index()] = there;
-                    queue.push(Reverse((there.to_bits(), w)));
+                    queue.push(there, w);
                 }
             }
         }

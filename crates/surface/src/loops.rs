@@ -5,13 +5,13 @@
 //! integers modulo two if they cross the same loops of faces equally often, up to even numbers. So every edge gets a random
 //! word for each loop of faces that crosses it, and the words of a loop add up to zero exactly if it separates.
 
-use std::cmp::Reverse;
-use std::collections::{BTreeMap, BinaryHeap};
+use std::collections::BTreeMap;
 
 use base::{Budget, Exceeded, SplitMix};
 
 use crate::disjoint_sets::DisjointSets;
 use crate::ids::{EdgeId, VertexId};
+use crate::nearest_first::NearestFirst;
 use crate::rows::Rows;
 use crate::topology::Topology;
 
@@ -187,7 +187,7 @@ struct Search<'a> {
     /// The edge by which a vertex was reached.
     from: Vec<Option<EdgeId>>,
     reached: Vec<VertexId>,
-    queue: BinaryHeap<Reverse<(u64, VertexId)>>,
+    queue: NearestFirst<VertexId>,
 }
 
 impl<'a> Search<'a> {
@@ -201,7 +201,7 @@ impl<'a> Search<'a> {
             word: vec![0; n],
             from: vec![None; n],
             reached: Vec::new(),
-            queue: BinaryHeap::new(),
+            queue: NearestFirst::default(),
         }
     }
 
@@ -213,10 +213,8 @@ impl<'a> Search<'a> {
         self.distance[source.index()] = 0.0;
         self.word[source.index()] = 0;
         self.reached.push(source);
-        // Nonnegative numbers are ordered as their bits are.
-        self.queue.push(Reverse((0, source)));
-        while let Some(Reverse((bits, v))) = self.queue.pop() {
-            let here = f64::from_bits(bits);
+        self.queue.push(0.0, source);
+        while let Some((here, v)) = self.queue.pop() {
             if here > self.distance[v.index()] {
                 continue;
             }
@@ -229,7 +227,7 @@ impl<'a> Search<'a> {
                     self.distance[w.index()] = there;
                     self.word[w.index()] = self.word[v.index()] ^ self.words[edge.index()];
                     self.from[w.index()] = Some(edge);
-                    self.queue.push(Reverse((there.to_bits(), w)));
+                    self.queue.push(there, w);
                 }
             }
         }

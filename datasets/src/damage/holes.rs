@@ -1,10 +1,7 @@
 //! Holes.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
-
 use mesh::TriMesh;
-use surface::components_of_faces;
+use surface::{NearestFirst, components_of_faces};
 
 use super::cut_off::with_faces;
 use crate::stream::Stream;
@@ -45,21 +42,21 @@ fn without_disc(mesh: &TriMesh, first: usize, area: f64) -> TriMesh {
     }
     let centre = |f: usize| mesh.triangle(f).iter().map(|p| p.coords).sum::<nalgebra::Vector3<f64>>() / 3.0;
     let middle = centre(first);
-    // Nonnegative numbers are ordered as their bits are.
-    let entry = |f: usize| Reverse(((centre(f) - middle).norm_squared().to_bits(), f));
+    let entry = |f: usize| ((centre(f) - middle).norm_squared(), f);
     let mut reached = vec![false; mesh.n_faces()];
     let mut is_cut = vec![false; mesh.n_faces()];
-    let mut queue = BinaryHeap::from([entry(first)]);
+    let mut queue = NearestFirst::from([entry(first)]);
     reached[first] = true;
     let mut covered = 0.0;
     while covered < area
-        && let Some(Reverse((_, f))) = queue.pop()
+        && let Some((_, f)) = queue.pop()
     {
         is_cut[f] = true;
         covered += 0.5 * mesh.area_vector(f).norm();
         for &near in mesh.faces[f].iter().flat_map(|v| &faces_at[v.index()]) {
             if !std::mem::replace(&mut reached[near], true) {
-                queue.push(entry(near));
+                let (distance, near) = entry(near);
+                queue.push(distance, near);
             }
         }
     }

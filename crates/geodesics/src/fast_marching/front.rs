@@ -1,9 +1,7 @@
 //! The front: the window of every triangle, and the distances of the vertices.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
-
 use base::{Budget, Exceeded};
+use surface::NearestFirst;
 
 use super::buckets::{Buckets, NOWHERE, Queued};
 use super::crossing::{Crossings, LANES, SolveCrossings};
@@ -93,7 +91,7 @@ pub(super) struct TriangleFront {
     /// The distance of every vertex.
     vertices: Vec<f64>,
     /// Vertices whose neighbours may be too far away.
-    lowered: BinaryHeap<Reverse<(u64, u32)>>,
+    lowered: NearestFirst<u32>,
     /// Vertices that were first reached along edges and links.
     along_edges: Vec<u32>,
     visits: usize,
@@ -456,8 +454,7 @@ impl TriangleFront {
             }
         }
         let mut meter = budget.meter();
-        while let Some(Reverse((at, vertex))) = self.lowered.pop() {
-            let at = f64::from_bits(at);
+        while let Some((at, vertex)) = self.lowered.pop() {
             if at > self.vertices[vertex as usize] {
                 continue;
             }
@@ -503,7 +500,7 @@ impl TriangleFront {
                 self.along_edges.push(to);
             }
             *known = distance;
-            self.lowered.push(Reverse((distance.to_bits(), to)));
+            self.lowered.push(distance, to);
         }
     }
 

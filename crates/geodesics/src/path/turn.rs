@@ -1,10 +1,9 @@
 //! The angle of a path at a vertex, and the faces on its inner side.
 
-use std::cmp::Reverse;
-use std::collections::{BTreeMap, BinaryHeap};
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-use surface::{CornerId, EdgeId, FaceId, IntrinsicMesh, VertexId};
+use surface::{CornerId, EdgeId, FaceId, IntrinsicMesh, NearestFirst, VertexId};
 
 use super::plane::{Flat, is_on};
 use super::strip::Portal;
@@ -62,17 +61,17 @@ pub(super) fn inner_side(
     let topology = mesh.topology();
     // For each edge: the angle to it, and the edge before it and the face between, if any.
     let mut reached: BTreeMap<EdgeId, (f64, Option<EdgeId>, Option<FaceId>)> = BTreeMap::new();
-    let mut queue = BinaryHeap::new();
+    let mut queue = NearestFirst::default();
     let mut best: (f64, Option<EdgeId>) = (STRAIGHT, None);
     match from {
         Direction::Along(edge) => {
             reached.insert(edge, (0.0, None, None));
-            queue.push(Reverse((0, edge)));
+            queue.push(0.0, edge);
         }
         Direction::Into { face, edges, angles } => {
             for (edge, angle) in edges.into_iter().zip(angles) {
                 reached.insert(edge, (angle, None, Some(face)));
-                queue.push(Reverse((angle.to_bits(), edge)));
+                queue.push(angle, edge);
             }
         }
     }
@@ -83,9 +82,7 @@ pub(super) fn inner_side(
     {
         return Some((vec![face], Vec::new()));
     }
-    // Angles are not negative, so their bits are in the same order.
-    while let Some(Reverse((bits, edge))) = queue.pop() {
-        let here = f64::from_bits(bits);
+    while let Some((here, edge)) = queue.pop() {
         if here >= best.0 {
             break;
         }
@@ -107,7 +104,7 @@ pub(super) fn inner_side(
             for next in topology.corner_edges(corner).into_iter().filter(|next| *next != edge) {
                 if there < STRAIGHT && reached.get(&next).is_none_or(|known| there < known.0) {
                     reached.insert(next, (there, Some(edge), Some(facing.face())));
-                    queue.push(Reverse((there.to_bits(), next)));
+                    queue.push(there, next);
                 }
             }
         }

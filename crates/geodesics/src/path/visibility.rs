@@ -1,9 +1,6 @@
 //! The visible vertex over which the source is nearest.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
-
-use surface::{EdgeId, FaceId, VertexId};
+use surface::{EdgeId, FaceId, NearestFirst, VertexId};
 
 use super::field::PathField;
 use super::plane::{Flat, faces_around};
@@ -41,7 +38,7 @@ struct SightSearch<'a> {
     /// The largest number of bundles allowed.
     most: usize,
     /// Bundles by the least length of a path along them.
-    queue: BinaryHeap<Reverse<(u64, usize)>>,
+    queue: NearestFirst<usize>,
     /// Length of the best path, its end, the face of its end, and the rays that lead there.
     best: (f64, Option<(SurfacePoint, FaceId, Option<usize>)>),
 }
@@ -60,11 +57,12 @@ pub(super) fn nearest_visible(
     n_rays: &mut usize,
 ) -> Option<Sight> {
     let best = (known * (1.0 - SAME), None);
-    let mut search = SightSearch { field, rays: Vec::new(), most: *n_rays, queue: BinaryHeap::new(), best };
+    let mut search =
+        SightSearch { field, rays: Vec::new(), most: *n_rays, queue: NearestFirst::default(), best };
     search.start(from);
-    while let Some(Reverse((bits, at))) = search.queue.pop() {
+    while let Some((least, at)) = search.queue.pop() {
         let best = search.best.0;
-        if f64::from_bits(bits) >= best || best <= enough * (1.0 + SAME) {
+        if least >= best || best <= enough * (1.0 + SAME) {
             break;
         }
         search.follow(at);
@@ -184,7 +182,7 @@ impl SightSearch<'_> {
         };
         let least = over(left, q).max(over(right, p)).max(0.0);
         if least < self.best.0 && self.rays.len() < self.most {
-            self.queue.push(Reverse((least.to_bits(), self.rays.len())));
+            self.queue.push(least, self.rays.len());
             self.rays.push(rays);
         }
     }

@@ -1,0 +1,55 @@
+//! A queue in the order of distances.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// Items in the ascending order of a number that is not negative, such as a distance, and of themselves where it is equal.
+///
+/// ```
+/// use canonform_surface::NearestFirst;
+///
+/// let mut queue = NearestFirst::from([(2.5, 'c'), (0.5, 'b'), (0.5, 'a')]);
+/// assert_eq!(queue.pop(), Some((0.5, 'a')));
+/// queue.push(1.0, 'd');
+/// assert_eq!(std::iter::from_fn(|| queue.pop()).map(|(_, item)| item).collect::<String>(), "bdc");
+/// ```
+#[derive(Debug, Clone)]
+pub struct NearestFirst<T>(BinaryHeap<Reverse<(u64, T)>>);
+
+impl<T: Ord> Default for NearestFirst<T> {
+    fn default() -> Self {
+        Self(BinaryHeap::new())
+    }
+}
+
+impl<T: Ord> NearestFirst<T> {
+    /// Adds an item at a distance, which must not be negative.
+    #[inline]
+    pub fn push(&mut self, distance: f64, item: T) {
+        // Numbers that are not negative are ordered as their bits are.
+        self.0.push(Reverse((distance.to_bits(), item)));
+    }
+
+    /// Removes all items.
+    pub fn clear(&mut self) {
+        self.0.clear();
+    }
+
+    /// Removes the nearest item.
+    #[inline]
+    pub fn pop(&mut self) -> Option<(f64, T)> {
+        self.0.pop().map(|Reverse((bits, item))| (f64::from_bits(bits), item))
+    }
+}
+
+impl<T: Ord, const N: usize> From<[(f64, T); N]> for NearestFirst<T> {
+    fn from(items: [(f64, T); N]) -> Self {
+        items.into_iter().collect()
+    }
+}
+
+impl<T: Ord> FromIterator<(f64, T)> for NearestFirst<T> {
+    fn from_iter<I: IntoIterator<Item = (f64, T)>>(items: I) -> Self {
+        Self(items.into_iter().map(|(distance, item)| Reverse((distance.to_bits(), item))).collect())
+    }
+}
