@@ -34,9 +34,10 @@ if [ "${1:-}" = --prepare ]; then
     exit
 fi
 
-# The package is built with the profile of the Rust tests, so that what they compiled need not be compiled again.
+# The package is built with the profile and the features of the Rust tests, so that what they compiled need not be compiled
+# again.
 export VIRTUAL_ENV=$environment CARGO_TARGET_DIR=$target
 # CI names the program that the Rust tests built: building it alone would compile half of its dependencies again.
 test -n "${CANONFORM_PROGRAM:-}" || cargo build --locked -p canonform-cli
-"$environment/bin/maturin" develop --quiet --locked --profile dev
+"$environment/bin/maturin" develop --quiet --locked --profile dev --features canonform/clap
 exec "$environment/bin/python" -m pytest --numprocesses 2 --dist loadfile "$@"

@@ -8,7 +8,7 @@ use std::time::Instant;
 use anyhow::{Result, anyhow};
 use base::terminal::Bars;
 use canonform::{DescribeOptions, Observer};
-use geodesics::{Sampling, Variance};
+use geodesics::Sampling;
 use linalg::LandmarkDistances;
 use report::results::{
     CurvesPanel, CurvesResults, Expectation, Published, Record, RecordedTable, RunProvenance, Series,
@@ -145,7 +145,7 @@ impl Context<'_> {
             let nested = |distances, sampling| specimen.nested(&distances, sampling, first, counts);
             let samples = nested(Distances::default(), Sampling::Farthest)?;
             let hops = nested(Distances::hops(), Sampling::Farthest)?;
-            let least = nested(Distances::default(), Sampling::Incremental(Variance::Least))?;
+            let least = nested(Distances::default(), Sampling::MinVariance)?;
             runs.iter_mut().for_each(|runs| runs.push(Vec::new()));
             for ((samples, hops), least) in samples.iter().zip(&hops).zip(&least) {
                 let values = farthest(samples)?.into_iter().chain([half(hops)?, half(least)?]);

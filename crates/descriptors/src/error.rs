@@ -29,14 +29,6 @@ pub enum DescriptorError {
          that lie far from the rest"
     )]
     NotFinite,
-    /// The name of no signature.
-    #[error("there is no signature `{name}`; choose from {known}")]
-    UnknownSignature {
-        /// The name given.
-        name: String,
-        /// The known names, separated by commas.
-        known: String,
-    },
     /// A decomposition failed.
     #[error(transparent)]
     Linalg(#[from] linalg::LinalgError),

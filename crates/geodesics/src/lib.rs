@@ -61,7 +61,7 @@ pub use heat::{HeatMethod, HeatOptions};
 pub use method::Method;
 pub use observed::Observed;
 pub use path::{GeodesicPath, PathTracer, log_map};
-pub use sampling::{FirstSample, Sampler, Sampling, SpreadSamples, Variance, farthest_point_sampling};
+pub use sampling::{FirstSample, Sampler, Sampling, SpreadSamples, farthest_point_sampling};
 pub use solver::{DistanceSolver, PrunedSolver};
 pub use source::Source;
 pub use surface::SurfacePoint;

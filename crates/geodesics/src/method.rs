@@ -24,12 +24,13 @@ use crate::solver::DistanceSolver;
 /// for method in Method::all() {
 ///     let solver = method.prepare(&sphere, &())?;
 ///     let farthest = solver.distances(VertexId(0))?.into_iter().fold(0.0, f64::max);
-///     println!("{:13} {farthest:.3}  {}", method.name(), method.summary());
+///     println!("{:13} {farthest:.3}", method.name());
 /// }
 /// # Ok::<(), canonform_geodesics::GeodesicError>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "kebab-case")]
+#[strum(serialize_all = "kebab-case")]
 pub enum Method {
     /// [`FastMarching`].
     FastMarching(FastMarchingOptions),
@@ -41,6 +42,7 @@ pub enum Method {
     Dijkstra,
     /// [`BreadthFirst`].
     #[serde(rename = "bfs")]
+    #[strum(serialize = "bfs")]
     BreadthFirst,
 }
 
@@ -61,23 +63,7 @@ impl Method {
     /// The name on the command line and in records.
     #[must_use]
     pub fn name(self) -> &'static str {
-        self.entry().0
-    }
-
-    /// What the method computes, in one line.
-    #[must_use]
-    pub fn summary(self) -> &'static str {
-        self.entry().1
-    }
-
-    fn entry(self) -> (&'static str, &'static str) {
-        match self {
-            Self::FastMarching(_) => ("fast-marching", "Fast marching on triangles"),
-            Self::Heat(_) => ("heat", "Heat method: smooth, fast for many sources"),
-            Self::Exact => ("exact", "Exact on the polyhedral surface"),
-            Self::Dijkstra => ("dijkstra", "Shortest paths along edges"),
-            Self::BreadthFirst => ("bfs", "Number of edges times the mean edge length"),
-        }
+        self.into()
     }
 
     /// Prepares a surface. The solver keeps to the budget of the observer, as its preparation does. The memory of a

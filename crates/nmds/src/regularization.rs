@@ -7,8 +7,9 @@ use crate::squares::n_significant;
 
 /// How the pseudo-inverse `S⁺` in the Nystrom approximation `Ê = R S⁺ R'` is regularised: small eigenvalues of `S` are
 /// mostly noise, and their reciprocals are large.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "kebab-case")]
+#[strum(serialize_all = "kebab-case")]
 pub enum Regularization {
     /// Inverts the `rank` eigenvalues of largest magnitude and drops the rest (eq. 4): the method of the paper, and the
     /// fastest.
@@ -100,24 +101,7 @@ impl Regularization {
     /// The name on the command line and in records.
     #[must_use]
     pub fn name(self) -> &'static str {
-        self.entry().0
-    }
-
-    /// What is kept, in one line.
-    #[must_use]
-    pub fn summary(self) -> &'static str {
-        self.entry().1
-    }
-
-    fn entry(self) -> (&'static str, &'static str) {
-        match self {
-            Self::LowRank { .. } => ("low-rank", "Keep the eigenvalues of largest magnitude"),
-            Self::Rpi { .. } => {
-                ("rpi", "Keep all eigenvalues and damp the small ones (regularised pseudo-inverse)")
-            }
-            Self::None => ("none", "Keep all eigenvalues above rounding error"),
-            Self::Cur { .. } => ("cur", "CUR decomposition: keep the columns of the first samples"),
-        }
+        self.into()
     }
 
     /// The number of eigenpairs (for CUR, of columns) used with `n_landmarks` samples to embed in `dim` dimensions: n1, or

@@ -53,10 +53,9 @@ pub(crate) fn compare<'py>(
     a: &Surface,
     b: &Surface,
     names: [String; 2],
-    settings: &str,
+    settings: Settings,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(String, Bound<'py, PyArray1<f64>>)> {
-    let settings = Settings::parse(settings)?;
     let [of_a, of_b] = [settings.form(a.inner.input.repair)?, settings.form(b.inner.input.repair)?];
     let (found, residuals) = run(py, &settings.budget()?, progress.as_ref(), |observer| {
         let sides = [a.compared(&of_a, observer)?, b.compared(&of_b, observer)?];

@@ -3,7 +3,6 @@
 use base::Exceeded;
 use base::files::FileError;
 use canonform::collection::CollectionError;
-use canonform::descriptors::DescriptorError;
 use canonform::geodesics::GeodesicError;
 use canonform::index::IndexError;
 use canonform::mesh::MeshError;
@@ -85,7 +84,6 @@ impl Exception {
             | Error::OtherSurface { .. }
             | Error::NotThere { .. }
             | Error::ContradictoryLandmarks { .. } => Self::Option,
-            Error::Descriptor(DescriptorError::UnknownSignature { .. }) => Self::Option,
             Error::Index(IndexError::NoSuchShape { .. }) => Self::NoSuchShape,
             Error::Index(IndexError::Io { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => {
                 Self::MissingFile

@@ -62,10 +62,10 @@ impl DistanceField {
         surface: &Surface,
         landmarks: usize,
         rank: Option<usize>,
-        geodesic: &str,
+        geodesic: Settings,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Self> {
-        let options = FieldOptions { method: Settings::parse(geodesic)?.distances()?, landmarks, rank };
+        let options = FieldOptions { method: geodesic.distances()?, landmarks, rank };
         run_alone(py, progress.as_ref(), |observer| {
             Ok(Self(canonform::DistanceField::build(&surface.inner, &options, observer)?))
         })

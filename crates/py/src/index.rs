@@ -2,9 +2,7 @@
 
 use std::collections::{BTreeMap, HashSet};
 use std::path::PathBuf;
-use std::str::FromStr;
 
-use canonform::descriptors::DescriptorError;
 use canonform::index::{Entry, ExportFormat, FORMAT_VERSION, IndexError};
 use canonform::mesh::RepairOptions;
 use canonform::{
@@ -23,7 +21,7 @@ use crate::arrays;
 use crate::error::{Exception, to_python, with_remedy};
 use crate::record::json;
 use crate::run::run_alone;
-use crate::settings::Settings;
+use crate::settings::{Settings, chosen, measure};
 use crate::surface::Surface;
 
 /// An index that is open for searches.
@@ -54,15 +52,8 @@ enum Wanted<'py> {
 /// Name, class, path, and numbers of vertices and faces of a shape.
 type ListedShape = (String, String, PathBuf, u64, u64);
 
-/// An order of results by its name.
-fn rank_by<T: FromStr<Err = String>>(rank: &str) -> PyResult<T> {
-    rank.parse().map_err(|remedy: String| {
-        Exception::Option.with(&format!("rank={rank:?} is not possible: {}", remedy.replace('`', "\"")))
-    })
-}
-
 fn search_options(k: usize, rank: &str, explain: bool) -> PyResult<SearchOptions> {
-    Ok(SearchOptions { k, explain, rank_by: rank_by(rank)? })
+    Ok(SearchOptions { k, explain, rank_by: chosen("rank", rank)? })
 }
 
 /// Where classes come from: a word, or a label file.
@@ -99,10 +90,9 @@ impl Index {
         prune: bool,
         shard: Option<(usize, usize)>,
         only: Option<HashSet<String>>,
-        settings: &str,
+        settings: Settings,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<String> {
-        let settings = Settings::parse(settings)?;
         let describe = settings.describe(settings.repair())?;
         let labels = labels_of(labels)?;
         let shard = shard.map(|(i, n)| Shard::new(i, n)).transpose().map_err(|fault| to_python(&fault))?;
@@ -126,9 +116,8 @@ impl Index {
         folder: PathBuf,
         path: PathBuf,
         labels: Option<PathBuf>,
-        settings: &str,
+        settings: Settings,
     ) -> PyResult<Option<String>> {
-        let settings = Settings::parse(settings)?;
         let describe = settings.describe(settings.repair())?;
         let labels = labels_of(labels)?;
         let options = BuildOptions {
@@ -155,11 +144,11 @@ impl Index {
         label: Option<String>,
         labels: Option<PathBuf>,
         replace: bool,
-        settings: &str,
+        settings: Settings,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<String> {
         let labels = labels_of(labels)?;
-        let limits = Settings::parse(settings)?.limits()?;
+        let limits = settings.limits()?;
         let inputs = Inputs { paths: &meshes, labels: labels.as_ref(), label: label.as_deref(), limits };
         let added =
             run_alone(py, progress.as_ref(), |observer| add_to_index(&path, &inputs, replace, observer))?;
@@ -183,10 +172,10 @@ impl Index {
         labels: Option<PathBuf>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<String> {
-        let measure =
-            by.parse().map_err(|fault: DescriptorError| Exception::Option.with(&fault.to_string()))?;
+        let measure = measure("by", by)?;
         let labels = labels_of(labels)?;
-        let options = EvaluateOptions { measure, labels: labels.as_ref(), knn_k: k, rank_by: rank_by(rank)? };
+        let options =
+            EvaluateOptions { measure, labels: labels.as_ref(), knn_k: k, rank_by: chosen("rank", rank)? };
         let scores =
             run_alone(py, progress.as_ref(), |observer| evaluate_index(&self.path, &options, observer))?;
         Ok(json(&scores))

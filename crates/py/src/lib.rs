@@ -55,7 +55,7 @@ mod _canonform {
     #[pymodule_export]
     use crate::run::{set_threads, threads};
     #[pymodule_export]
-    use crate::settings::{check_options, mesh_formats, options, signature_kinds};
+    use crate::settings::{check_options, mesh_formats, signature_kinds};
     #[pymodule_export]
     use crate::surface::{Surface, write};
 

@@ -85,12 +85,10 @@ pub(crate) fn match_surfaces<'py>(
     landmarks: Pairs<'py>,
     initial: Option<PyReadonlyArray1<'py, i64>>,
     functions: Option<Functions<'py>>,
-    settings: &str,
+    settings: Settings,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Maps<'py>> {
-    let settings = Settings::parse(settings)?;
-    let [of_a, of_b] =
-        [settings.correspond(a.inner.input.repair)?, settings.correspond(b.inner.input.repair)?];
+    let [of_a, of_b] = [settings.correspond(a.inner.input.repair)?, settings.correspond(b.inner.input.repair)?];
     let known = known(&landmarks, initial, functions)?;
     let (found, colors) = run(py, &settings.budget()?, progress.as_ref(), |observer| {
         let sides = [a.matched(&of_a, observer)?, b.matched(&of_b, observer)?];
@@ -122,11 +120,9 @@ pub(crate) fn map_points<'py>(
     partners: Option<[PyReadonlyArray1<'py, i64>; 2]>,
     of_second: bool,
     of_faces: bool,
-    settings: &str,
+    settings: Settings,
 ) -> PyResult<Points<'py>> {
-    let settings = Settings::parse(settings)?;
-    let [of_a, of_b] =
-        [settings.correspond(a.inner.input.repair)?, settings.correspond(b.inner.input.repair)?];
+    let [of_a, of_b] = [settings.correspond(a.inner.input.repair)?, settings.correspond(b.inner.input.repair)?];
     let (functional, landmarks) = (matrix_of(&functional)?, pairs_of(&landmarks)?);
     let partners = match &partners {
         Some([a, b]) => Some([partners_of(a)?, partners_of(b)?]),
@@ -158,8 +154,7 @@ pub(crate) fn map_points<'py>(
 /// The eigenvalues and eigenfunctions in which maps of a surface are written, and the share of the area around each vertex: of
 /// the surface scaled to unit area.
 #[pyfunction]
-pub(crate) fn map_basis<'py>(py: Python<'py>, surface: &Surface, settings: &str) -> PyResult<Basis<'py>> {
-    let settings = Settings::parse(settings)?;
+pub(crate) fn map_basis<'py>(py: Python<'py>, surface: &Surface, settings: Settings) -> PyResult<Basis<'py>> {
     let options = settings.correspond(surface.inner.input.repair)?;
     let spectrum = run(py, &settings.budget()?, None, |observer| {
         Ok(surface.matched(&options, observer)?.shape.spectrum().clone())

@@ -60,13 +60,13 @@ impl Extension {
 #[pyfunction]
 pub(crate) fn search_landmarks(
     py: Python<'_>,
-    settings: &str,
+    settings: Settings,
     columns: Py<PyAny>,
     rows: Py<PyAny>,
     limit: usize,
     seed: u64,
 ) -> PyResult<(usize, Option<usize>)> {
-    let options = Settings::parse(settings)?.nystrom()?;
+    let options = settings.nystrom()?;
     let [columns, rows] = [columns, rows].map(Arc::new);
     let found = run_calling(py, &Budget::unlimited(), None, |_, caller| {
         let search = nmds::SampleSearch {
@@ -102,9 +102,9 @@ pub(crate) fn nystrom<'py>(
     py: Python<'py>,
     columns: PyReadonlyArray2<'py, f64>,
     landmarks: Vec<usize>,
-    settings: &str,
+    settings: Settings,
 ) -> PyResult<Embedded<'py>> {
-    let options = Settings::parse(settings)?.nystrom()?;
+    let options = settings.nystrom()?;
     let columns = matrix_of(&columns);
     let (embedding, extension) = run_alone(py, None, |_| {
         Ok(nystrom_extended(&LandmarkDistances::new(landmarks, columns)?, &options)?)

@@ -1,86 +1,163 @@
 //! Keyword arguments as the options of the library.
 
+use std::collections::BTreeMap;
+use std::fmt;
+use std::time::Duration;
+
 use canonform::descriptors::SignatureKind;
 use canonform::geodesics::Method;
 use canonform::mesh::RepairOptions;
 use canonform::nmds::NystromOptions;
-use canonform::settings::{Named, NoEffect, OptionGroup, OptionSpec, SCHEMA};
+use canonform::settings::{
+    DescriptionSettings, FormSettings, MapSettings, MarchingSettings, MethodSettings, NoEffect,
+    RepairSettings, StressSettings,
+};
 use canonform::{
-    Budget, CorrespondOptions, DescribeOptions, EmbedMethod, FormOptions, ShapeLimits, StressOptions,
+    Budget, CorrespondOptions, DescribeOptions, FormOptions, Measure, ShapeLimits, StressOptions,
 };
 use pyo3::prelude::*;
-use serde::de::DeserializeOwned;
-use serde_json::{Map, Value, json};
+use pyo3::types::PyDict;
+use serde::de::value::{Error, MapDeserializer};
+use serde::de::{DeserializeOwned, IgnoredAny, IntoDeserializer, Visitor};
+use serde::{Deserialize, Deserializer, forward_to_deserialize_any};
 
 use crate::error::Exception;
 
 /// Keyword arguments that were given.
+#[derive(Default, Deserialize)]
 pub(crate) struct Settings {
-    /// Those of the schema of options.
-    options: canonform::settings::Settings,
-    /// Seed and limits.
-    others: Map<String, Value>,
+    #[serde(flatten)]
+    form: FormSettings,
+    #[serde(flatten)]
+    method: MethodSettings,
+    #[serde(flatten)]
+    marching: MarchingSettings,
+    #[serde(flatten)]
+    repair: RepairSettings,
+    #[serde(flatten)]
+    stress: StressSettings,
+    #[serde(flatten)]
+    description: DescriptionSettings,
+    #[serde(flatten)]
+    maps: MapSettings,
+    seed: Option<u64>,
+    timeout: Option<f64>,
+    memory: Option<usize>,
+    max_vertices: Option<u64>,
+    #[serde(flatten)]
+    unknown: BTreeMap<String, IgnoredAny>,
 }
 
-/// Keywords of calls besides the schema of options.
-const OTHERS: [&str; 4] = ["seed", "timeout", "memory", "max_vertices"];
-
-/// An option: its keyword, its default in words, the names that it is chosen from, each with what it does, and the methods that
-/// depend on it.
-type Described = (&'static str, &'static str, Vec<(&'static str, &'static str)>, Vec<&'static str>);
-
-/// The options that are further options of methods, and all others.
-#[pyfunction]
-pub(crate) fn options() -> (Vec<Described>, Vec<Described>) {
-    let described = |option: &OptionSpec| {
-        let methods = EmbedMethod::all().into_iter().filter(|method| option.applies_to(method));
-        (option.keyword, option.default, option.names(), methods.map(|method| method.name()).collect())
-    };
-    let (of_methods, others): (Vec<_>, Vec<_>) =
-        SCHEMA.iter().partition(|option| option.group == OptionGroup::Method && option.name != "method");
-    let others =
-        others.into_iter().map(described).chain(OTHERS.map(|name| (name, "", Vec::new(), Vec::new())));
-    (of_methods.into_iter().map(described).collect(), others.collect())
+/// The value of a keyword argument.
+#[derive(Clone, FromPyObject)]
+enum Value {
+    Switch(bool),
+    Count(u64),
+    Whole(i64),
+    Number(f64),
+    Text(String),
 }
 
-/// Checks options of a method, or of distances.
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Switch(true) => f.write_str("True"),
+            Self::Switch(false) => f.write_str("False"),
+            Self::Count(number) => number.fmt(f),
+            Self::Whole(number) => number.fmt(f),
+            Self::Number(number) => number.fmt(f),
+            Self::Text(text) => write!(f, "{text:?}"),
+        }
+    }
+}
+
+impl<'de> Deserializer<'de> for Value {
+    type Error = Error;
+
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        match self {
+            Self::Switch(on) => visitor.visit_bool(on),
+            Self::Count(number) => visitor.visit_u64(number),
+            Self::Whole(number) => visitor.visit_i64(number),
+            Self::Number(number) => visitor.visit_f64(number),
+            Self::Text(text) => visitor.visit_string(text),
+        }
+    }
+
+    forward_to_deserialize_any! {
+        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf option unit unit_struct
+        newtype_struct seq tuple tuple_struct map struct enum identifier ignored_any
+    }
+}
+
+impl IntoDeserializer<'_, Error> for Value {
+    type Deserializer = Self;
+
+    fn into_deserializer(self) -> Self {
+        self
+    }
+}
+
+/// Checks options of a method, or of distances. Returns all options of a description by them, as JSON.
 #[pyfunction]
-pub(crate) fn check_options(settings: &str) -> PyResult<()> {
-    Settings::parse(settings)?.form(RepairOptions::default()).map(drop)
+pub(crate) fn check_options(settings: Settings) -> PyResult<String> {
+    Ok(settings.describe(RepairOptions::default())?.text())
+}
+
+impl<'py> FromPyObject<'_, 'py> for Settings {
+    type Error = PyErr;
+
+    /// Reads keyword arguments; those that are `None` were not given.
+    fn extract(given: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let mut values = Vec::new();
+        for (name, value) in given.cast::<PyDict>()?.iter().filter(|(_, value)| !value.is_none()) {
+            let name: String = name.extract()?;
+            match value.extract::<Value>() {
+                Ok(value) => values.push((name, value)),
+                Err(_) => return Err(refused(&name, value.repr()?, "give a number, text or a truth value")),
+            }
+        }
+        let read =
+            |values: &[(String, Value)]| Self::deserialize(MapDeserializer::new(values.iter().cloned()));
+        // The error of all of them does not say which one is wrong.
+        for value in &values {
+            read(std::slice::from_ref(value))
+                .map_err(|fault| refused(&value.0, &value.1, &in_words(&fault)))?;
+        }
+        let settings = read(&values).map_err(|fault| Exception::Option.with(&fault.to_string()))?;
+        match settings.unknown.keys().next() {
+            Some(name) => Err(Exception::Option.with(&format!("there is no option {name}"))),
+            None => Ok(settings),
+        }
+    }
+}
+
+/// A value that is chosen by name.
+pub(crate) fn chosen<T: DeserializeOwned>(name: &str, text: &str) -> PyResult<T> {
+    let value = Value::Text(text.to_owned());
+    T::deserialize(value.clone()).map_err(|fault| refused(name, value, &in_words(&fault)))
+}
+
+/// What distances are measured between.
+pub(crate) fn measure(name: &str, text: &str) -> PyResult<Measure> {
+    text.parse().map_err(|known: String| refused(name, format!("{text:?}"), &known.replace('`', "\"")))
+}
+
+/// What is possible instead.
+fn in_words(fault: &Error) -> String {
+    let text =
+        fault.to_string().replace("expected one of", "use").replace("expected", "use").replace('`', "\"");
+    text.replace("usize", "a whole number, 0 or more")
+}
+
+fn refused(name: &str, value: impl fmt::Display, what: &str) -> PyErr {
+    Exception::Option.with(&format!("{name}={value} is not possible: {what}"))
 }
 
 impl Settings {
-    /// Reads the JSON object that the Python layer passes.
-    pub(crate) fn parse(text: &str) -> PyResult<Self> {
-        let given: Map<String, Value> =
-            serde_json::from_str(text).map_err(|fault| Exception::Option.with(&fault.to_string()))?;
-        let (mut options, mut others) = (canonform::settings::Settings::default(), Map::new());
-        for (name, value) in given {
-            let option = SCHEMA.iter().find(|option| option.keyword == name);
-            let text = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
-            match option.map(|option| options.set(option.name, &text)) {
-                Some(set) => set.map_err(|fault| refused(&name, &value, &fault))?,
-                None => drop(others.insert(name, value)),
-            }
-        }
-        Ok(Self { options, others })
-    }
-
-    /// A seed or a limit.
-    fn value<T: DeserializeOwned>(&self, name: &str) -> PyResult<Option<T>> {
-        let Some(value) = self.others.get(name) else { return Ok(None) };
-        serde_json::from_value(value.clone())
-            .map(Some)
-            .map_err(|fault| refused(name, value, &fault.to_string()))
-    }
-
-    fn seed(&self) -> PyResult<u64> {
-        Ok(self.value("seed")?.unwrap_or(0))
-    }
-
     /// How a mesh is repaired.
     pub(crate) fn repair(&self) -> RepairOptions {
-        self.options.repair()
+        self.repair.options()
     }
 
     /// How distances are measured.
@@ -90,7 +167,18 @@ impl Settings {
 
     /// How a form is made of a surface that was repaired in this way.
     pub(crate) fn form(&self, repair: RepairOptions) -> PyResult<FormOptions> {
-        Ok(self.describe(repair)?.form)
+        let checked = || {
+            self.marching.check(self.form.geodesic.unwrap_or_default())?;
+            self.form.options(&self.method, &self.marching, &self.repair)
+        };
+        let options = checked().map_err(|fault: NoEffect| {
+            let spell = |name: &str, values: &[&str]| {
+                let values: Vec<_> = values.iter().map(|value| format!("{value:?}")).collect();
+                format!("{name}={}", values.join(" or "))
+            };
+            Exception::Option.with(&fault.in_words(spell))
+        })?;
+        Ok(FormOptions { repair, seed: self.seed.unwrap_or_default(), ..options })
     }
 
     /// How NMDS inverts the matrix of the samples.
@@ -101,33 +189,18 @@ impl Settings {
 
     /// How shapes are described.
     pub(crate) fn describe(&self, repair: RepairOptions) -> PyResult<DescribeOptions> {
-        let checked = || {
-            let options = self.options.describe()?;
-            self.options.check_distances("geodesic", options.form.geodesic)?;
-            Ok(options)
-        };
-        let mut options = checked().map_err(|fault| without_effect(&fault))?;
-        (options.form.repair, options.form.seed) = (repair, self.seed()?);
-        Ok(options)
+        Ok(self.description.options(self.form(repair)?))
     }
 
     /// How surfaces are mapped to each other.
     pub(crate) fn correspond(&self, repair: RepairOptions) -> PyResult<CorrespondOptions> {
-        let mut options = CorrespondOptions { form: self.form(repair)?, ..CorrespondOptions::default() };
-        if let Some(count) = self.options.get("eigenfunctions") {
-            options.maps.eigenfunctions = count;
-        }
-        Ok(options)
+        Ok(self.maps.options(self.form(repair)?))
     }
 
     /// How the stress of a form is measured.
-    pub(crate) fn stress(&self) -> PyResult<StressOptions> {
-        Ok(StressOptions { choice: self.chosen("stress"), against: None, seed: self.seed()? })
-    }
-
-    /// The value chosen for an option, or its default.
-    pub(crate) fn chosen<T: Named + Default>(&self, name: &str) -> T {
-        self.options.chosen(name).unwrap_or_default()
+    pub(crate) fn stress(&self) -> StressOptions {
+        let choice = self.stress.stress.unwrap_or_default();
+        StressOptions { choice, against: None, seed: self.seed.unwrap_or_default() }
     }
 
     /// The limits of the work, from now on.
@@ -137,28 +210,13 @@ impl Settings {
 
     /// The limits of each of several shapes.
     pub(crate) fn limits(&self) -> PyResult<ShapeLimits> {
-        let seconds: Option<f64> = self.value("timeout")?;
         let limit = |seconds: f64| {
-            let limit = std::time::Duration::try_from_secs_f64(seconds).ok().filter(|limit| !limit.is_zero());
-            limit.ok_or_else(|| refused("timeout", &json!(seconds), "give a positive number of seconds"))
+            let limit = Duration::try_from_secs_f64(seconds).ok().filter(|limit| !limit.is_zero());
+            limit.ok_or_else(|| refused("timeout", seconds, "give a positive number of seconds"))
         };
-        let (max_vertices, memory) = (self.value("max_vertices")?, self.value("memory")?);
-        Ok(ShapeLimits { max_vertices, time: seconds.map(limit).transpose()?, memory })
+        let time = self.timeout.map(limit).transpose()?;
+        Ok(ShapeLimits { max_vertices: self.max_vertices, time, memory: self.memory })
     }
-}
-
-fn refused(name: &str, value: &Value, what: &str) -> PyErr {
-    Exception::Option.with(&format!("{name}={value} is not possible: {what}"))
-}
-
-/// The error that a setting would change nothing, as keyword arguments.
-fn without_effect(fault: &NoEffect) -> PyErr {
-    let spell = |name: &str, values: &[&str]| {
-        let values: Vec<_> = values.iter().map(|value| format!("{value:?}")).collect();
-        let keyword = OptionSpec::named(name).map_or(name, |option| option.keyword);
-        format!("{keyword}={}", values.join(" or "))
-    };
-    Exception::Option.with(&fault.in_words(spell))
 }
 
 /// The names of the kinds of signatures.

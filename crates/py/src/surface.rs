@@ -5,13 +5,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use base::Budget;
 use canonform::ContentHash;
-use canonform::descriptors::SignatureKind;
 use canonform::geodesics::{DistanceSolver, FirstSample, Method, PathTracer, Sampling, Source};
 use canonform::mesh::{RepairOptions, TriMesh};
 use canonform::surface::VertexId;
 use canonform::{
     ComparedMesh, CorrespondOptions, DescribeOptions, EmbedOptions, Error, FormOptions, InputPoint,
-    MappedSurface, Observer, Shape, SurfacePath, content_hash, distance_rows, embed,
+    MappedSurface, Measure, Observer, Shape, SurfacePath, content_hash, distance_rows, embed,
 };
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -22,7 +21,7 @@ use crate::form::Form;
 use crate::points::{point_of, points_of};
 use crate::record::json;
 use crate::run::{Stopped, run, run_alone};
-use crate::settings::Settings;
+use crate::settings::{Settings, measure};
 
 /// Most prepared solvers, descriptions and sides of comparisons that a surface keeps of each kind.
 const MOST_KEPT: usize = 4;
@@ -196,10 +195,9 @@ impl Surface {
     fn description_of(
         &self,
         py: Python<'_>,
-        settings: &str,
+        settings: Settings,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Arc<Shape>> {
-        let settings = Settings::parse(settings)?;
         let options = settings.describe(self.inner.input.repair)?;
         Ok(run(py, &settings.budget()?, progress.as_ref(), |observer| self.described(&options, observer))?)
     }
@@ -219,15 +217,15 @@ impl Surface {
         py: Python<'_>,
         vertices: PyReadonlyArray2<'_, f64>,
         faces: PyReadonlyArray2<'_, i64>,
-        settings: &str,
+        settings: Settings,
     ) -> PyResult<Self> {
-        Self::repaired(py, arrays::mesh_of(&vertices, &faces)?, &Settings::parse(settings)?.repair(), None)
+        Self::repaired(py, arrays::mesh_of(&vertices, &faces)?, &settings.repair(), None)
     }
 
     /// Reads and repairs a mesh file.
     #[staticmethod]
-    fn read(py: Python<'_>, path: PathBuf, settings: &str) -> PyResult<Self> {
-        let options = Settings::parse(settings)?.repair();
+    fn read(py: Python<'_>, path: PathBuf, settings: Settings) -> PyResult<Self> {
+        let options = settings.repair();
         run_alone(py, None, |observer| {
             let content = content_hash(&path)?;
             let mesh = canonform::read_mesh(&path)?;
@@ -294,10 +292,10 @@ impl Surface {
         &self,
         py: Python<'py>,
         sources: &Bound<'py, PyAny>,
-        geodesic: &str,
+        geodesic: Settings,
         max_distance: f64,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let (method, points) = (Settings::parse(geodesic)?.distances()?, points_of(sources)?);
+        let (method, points) = (geodesic.distances()?, points_of(sources)?);
         let distances = self.solve(py, method, None, |solver, _| {
             let mut distances = solver.budget().vector(solver.n_vertices())?;
             solver.solve_into(&self.sources(&points)?, max_distance, &mut distances)?;
@@ -311,11 +309,11 @@ impl Surface {
         &self,
         py: Python<'py>,
         sources: &Bound<'py, PyAny>,
-        geodesic: &str,
+        geodesic: Settings,
         max_distance: f64,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let (method, points) = (Settings::parse(geodesic)?.distances()?, points_of(sources)?);
+        let (method, points) = (geodesic.distances()?, points_of(sources)?);
         let p = self.mesh.n_vertices();
         let rows = self.solve(py, method, progress.as_ref(), |solver, observer| {
             distance_rows(&self.inner, solver, &self.sources(&points)?, max_distance, observer)
@@ -329,9 +327,9 @@ impl Surface {
         py: Python<'py>,
         source: &Bound<'py, PyAny>,
         targets: &Bound<'py, PyAny>,
-        geodesic: &str,
+        geodesic: Settings,
     ) -> PyResult<Vec<FoundPath<'py>>> {
-        let method = Settings::parse(geodesic)?.distances()?;
+        let method = geodesic.distances()?;
         let (source, targets) = (point_of(source)?, points_of(targets)?);
         let paths = self.solve(py, method, None, |solver, _| {
             let inner = &self.inner;
@@ -365,10 +363,10 @@ impl Surface {
         py: Python<'py>,
         n: usize,
         first: Option<u32>,
-        geodesic: &str,
+        geodesic: Settings,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<i64>>> {
-        let method = Settings::parse(geodesic)?.distances()?;
+        let method = geodesic.distances()?;
         let samples = self.solve(py, method, progress.as_ref(), |solver, observer| {
             let inner = &self.inner;
             let first = match first {
@@ -389,12 +387,11 @@ impl Surface {
     fn canonical_form(
         &self,
         py: Python<'_>,
-        settings: &str,
+        settings: Settings,
         reuse: Option<PyRef<'_, Form>>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Form> {
-        let settings = Settings::parse(settings)?;
-        let (options, stress) = (settings.form(self.inner.input.repair)?, settings.stress()?);
+        let (options, stress) = (settings.form(self.inner.input.repair)?, settings.stress());
         let options = EmbedOptions::from(&options).stress(stress);
         let options = match &reuse {
             None => options,
@@ -411,11 +408,10 @@ impl Surface {
         &self,
         py: Python<'_>,
         form: PyRef<'_, Form>,
-        settings: &str,
+        settings: Settings,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Form> {
-        let settings = Settings::parse(settings)?;
-        let (stress, form) = (settings.stress()?, &*form);
+        let (stress, form) = (settings.stress(), &*form);
         let embedded = run(py, &settings.budget()?, progress.as_ref(), |observer| {
             let options = EmbedOptions::finer(&self.inner, &form.surface, &form.embedded)?;
             embed(&*self.inner, options.stress(stress), observer)
@@ -428,21 +424,16 @@ impl Surface {
         &self,
         py: Python<'py>,
         kind: &str,
-        settings: &str,
+        settings: Settings,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        if kind == "fused" {
-            let described = self.description_of(py, settings, progress)?;
-            return Ok(described.fused.clone().into_pyarray(py).into_any());
-        }
-        let kind: SignatureKind = kind.parse().map_err(|_| {
-            let known = SignatureKind::ALL.map(|kind| format!("{:?}", kind.name())).join(", ");
-            Exception::Option.with(&format!("kind={kind:?} is not possible: use \"fused\", {known}"))
-        })?;
+        let measure = measure("kind", kind)?;
         let described = self.description_of(py, settings, progress)?;
-        let values =
-            canonform::signature(&described, kind).map_or_else(Vec::new, |signature| signature.values);
-        Ok(values.into_pyarray(py).into_any())
+        let values = match measure {
+            Measure::Fused => return Ok(described.fused.clone().into_pyarray(py).into_any()),
+            Measure::Signature(kind) => canonform::signature(&described, kind).map(|found| found.values),
+        };
+        Ok(values.unwrap_or_default().into_pyarray(py).into_any())
     }
 }
 

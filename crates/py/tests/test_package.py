@@ -116,9 +116,7 @@ def _possible(call: Callable[[], object]) -> set[str]:
 
 
 def test_literals_are_what_rust_reports(tmp_path: Path) -> None:
-    of_methods, others = _canonform.options()
-    stated = {name: [value for value, _ in names] for name, _, names, _ in [*of_methods, *others] if names}
-    literals = {
+    for keyword, literal in {
         "method": _settings.EmbeddingName,
         "geodesic": _settings.DistanceName,
         "update": _settings.Update,
@@ -127,8 +125,8 @@ def test_literals_are_what_rust_reports(tmp_path: Path) -> None:
         "regularization": _settings.Regularization,
         "stress": _settings.StressChoice,
         "components": _settings.Components,
-    }
-    assert {name: list(get_args(literal)) for name, literal in literals.items()} == stated
+    }.items():
+        assert _possible(lambda keyword=keyword: _canonform.check_options({keyword: "?"})) == set(get_args(literal)), keyword
     assert list(get_args(_settings.SignatureKind)) == ["fused", *canonform.signature_kinds()]
     assert list(get_args(_settings.Family)) == list(canonform.datasets.families())
     assert list(get_args(_settings.MeshFormat)) == _canonform.mesh_formats()
@@ -146,33 +144,38 @@ def test_literals_are_what_rust_reports(tmp_path: Path) -> None:
         assert _possible(call) == set(get_args(literal)), literal
 
 
-def test_methods_have_the_options_that_rust_reports() -> None:
-    of_methods, others = _canonform.options()
+def _fault(**settings: Any) -> str:
+    """What is wrong with options, if anything is."""
+    try:
+        _canonform.check_options(settings)
+    except canonform.errors.OptionError as fault:
+        return str(fault)
+    return ""
+
+
+def test_methods_have_the_options_that_rust_uses() -> None:
     kinds = [getattr(canonform, name) for name in canonform.__all__ if isinstance(getattr(canonform, name), type)]
     methods = {kind._name: kind for kind in kinds if issubclass(kind, _methods.Options)}
-    marching = {name for name, *_ in others if name in ("update", "obtuse")}
-    expected = {name: set() for name in get_args(_settings.EmbeddingName)} | {"fast-marching": marching}
-    for option, _, _, of in of_methods:
-        for method in of:
-            expected[method].add(option)
-    found = {name: {field.name for field in fields(kind)} for name, kind in methods.items()}
-    assert found == {name: options for name, options in expected.items() if options}
+    defaults = {field.name: field.default for kind in methods.values() for field in fields(kind)}
+    values = defaults | {"rank": 5, "first": 7, "alpha": "paper"}
+    for keyword, names in {"method": _settings.EmbeddingName, "geodesic": _settings.DistanceName}.items():
+        options = {field.name for kind in methods.values() if kind._of == keyword for field in fields(kind)}
+        for name in get_args(names):
+            beside = {option: {"regularization": "rpi"} if option == "alpha" else {} for option in options}
+            used = {option for option in options if not _fault(**{keyword: name, option: values[option]}, **beside[option])}
+            assert used == {field.name for field in fields(methods[name])} if name in methods else not used, name
     # What is stated as a default is one.
-    defaults = {name: default for name, default, *_ in [*of_methods, *others]}
     for kind in methods.values():
-        for field in fields(kind):
-            if field.default is not None:
-                assert str(field.default) == defaults[field.name] or float(field.default) == float(defaults[field.name])
+        assert _canonform.check_options(kind().settings()) == _canonform.check_options({kind._of: kind._name}), kind
 
 
 def test_keywords_are_the_options_of_the_library() -> None:
-    options = {name for name, *_ in _canonform.options()[1]}
-    keywords = set(inspect.signature(canonform.Surface.canonical_form).parameters)
-    assert keywords - options == {"self", "reuse", "progress"}
-    of_maps_meshes_and_indexes = {"components", "weld", "n_points", "size", "max_vertices", "eigenfunctions"}
-    assert options - keywords == {"update", "obtuse"} | of_maps_meshes_and_indexes
-    for call in (canonform.compare, canonform.Index.build):
-        assert {"n_landmarks", "method", "geodesic", "seed"} <= set(inspect.signature(call).parameters)
+    assert "no option colour" in _fault(colour=3)
+    others = {"self", "reuse", "progress", "a", "b", "names", "meshes", "path", "labels", "prune", "shard"}
+    for call in (canonform.Surface.canonical_form, canonform.compare, canonform.Index.build):
+        keywords = set(inspect.signature(call).parameters) - others
+        assert {"n_landmarks", "method", "geodesic", "seed"} <= keywords
+        assert not [keyword for keyword in keywords if "no option" in _fault(**{keyword: 3})]
 
 
 def test_stubs_name_what_the_module_has() -> None:

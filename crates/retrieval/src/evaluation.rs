@@ -1,7 +1,5 @@
 //! Retrieval, classification and clustering scores of a labelled distance matrix.
 
-use std::str::FromStr;
-
 use linalg::DistanceMatrix;
 use serde::{Deserialize, Serialize};
 
@@ -12,25 +10,16 @@ use crate::{
 
 /// How shapes are ordered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum RankBy {
-    /// By distance.
+    /// By distance
     #[default]
     Plain,
-    /// By distance and by neighbours in common, see [`graph_rank`](crate::graph_rank).
+    /// Both this and by the neighbours that two shapes have in common
+    ///
+    /// See [`graph_rank`](crate::graph_rank).
     Graph,
-}
-
-impl FromStr for RankBy {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text {
-            "plain" => Ok(Self::Plain),
-            "graph" => Ok(Self::Graph),
-            _ => Err("use `plain` or `graph`".to_owned()),
-        }
-    }
 }
 
 /// How well the distances of a matrix separate labelled shapes; see [`evaluate`].

@@ -10,7 +10,7 @@
 
 use anyhow::Result;
 use descriptors::CanonicalForm;
-use geodesics::{FastMarchingOptions, Method, ObtuseTreatment, Sampling, Update, Variance};
+use geodesics::{FastMarchingOptions, Method, ObtuseTreatment, Sampling, Update};
 use linalg::LandmarkDistances;
 use mesh::TriMesh;
 use nmds::{
@@ -106,7 +106,7 @@ impl Figure3Options {
             let farthest = sampled(distances, Sampling::Farthest, first)?;
             methods[1].push(judged(nmds(&farthest)?)?);
             methods[2].push(judged(spectral(&farthest, &basis, &SpectralOptions::default())?)?);
-            let least = sampled(distances, Sampling::Incremental(Variance::Least), first)?;
+            let least = sampled(distances, Sampling::MinVariance, first)?;
             methods[3].push(judged(nmds(&least)?)?);
             let hops = sampled(&Distances::hops(), Sampling::Farthest, first)?;
             methods[4].push(judged(nmds(&hops)?)?);

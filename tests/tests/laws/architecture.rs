@@ -3,7 +3,7 @@
 use cargo_metadata::{DependencyKind, Package};
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::support::{metadata, workspace_root};
+use crate::support::metadata;
 
 /// The crates of the workspace that a crate may depend on.
 enum May {
@@ -115,51 +115,17 @@ fn only_linalg_depends_on_the_numerical_backend() {
     }
 }
 
-/// The files with this extension below a folder.
-fn files_below(folder: &std::path::Path, extension: &str) -> Vec<std::path::PathBuf> {
-    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    let files = entries.flat_map(|path| match path.is_dir() {
-        true => files_below(&path, extension),
-        false => vec![path],
-    });
-    files.filter(|path| path.extension().is_some_and(|found| found == extension)).collect()
-}
-
-/// The names of options that are also words of commands or of reports.
-const WORDS: [&str; 19] = [
-    "method",
-    "samples",
-    "dim",
-    "geodesic",
-    "update",
-    "obtuse",
-    "components",
-    "weld",
-    "rank",
-    "sampling",
-    "regularization",
-    "alpha",
-    "iterations",
-    "tolerance",
-    "stress",
-    "points",
-    "size",
-    "distance",
-    "eigenfunctions",
-];
-
 #[test]
-fn programs_take_options_from_the_schema() {
-    let names: Vec<&str> = canonform::settings::SCHEMA.iter().map(|option| option.name).collect();
-    for program in ["cli", "py", "server"] {
-        for file in files_below(&workspace_root().join("crates").join(program).join("src"), "rs") {
-            let text = std::fs::read_to_string(&file).unwrap();
-            let is_word = |c: char| c.is_alphanumeric() || c == '_';
-            let words: BTreeSet<&str> = text.split(|c| !is_word(c)).collect();
-            for name in names.iter().filter(|name| !WORDS.contains(name)) {
-                let file = file.display();
-                assert!(!words.contains(name), "{file} names the option `{name}`; the schema declares it");
-            }
-        }
+fn libraries_know_arguments_only_where_a_program_asks_for_them() {
+    let metadata = metadata();
+    for package in metadata.workspace_packages() {
+        let is_program = ["cli", "experiments"].contains(&folder(package.name.as_str()));
+        let clap = package.dependencies.iter().find(|d| d.name == "clap" && d.kind == DependencyKind::Normal);
+        let is_optional = clap.is_none_or(|d| d.optional);
+        assert!(
+            is_program || is_optional,
+            "the crate `{}` depends on `clap`; make that a feature",
+            package.name
+        );
     }
 }

@@ -2,7 +2,7 @@
 
 use canonform::{EmbedMethod, FormOptions, Samples, StressChoice, StressKind, embedded_distances};
 use datasets::{ArticulatedOptions, CreatureOptions, Family, articulated};
-use geodesics::{FirstSample, Sampling, Variance, farthest_point_sampling};
+use geodesics::{FirstSample, Sampling, farthest_point_sampling};
 use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
 use mesh::shapes;
 use nalgebra::Point3;
@@ -193,7 +193,7 @@ fn no_method_depends_on_the_unit_of_length() {
         let options = FormOptions { method: method.clone(), sampling, samples, ..FormOptions::default() };
         measured(mesh, &options, StressChoice::Estimate)
     };
-    let samplings = [Sampling::Farthest, Sampling::Random, Sampling::Incremental(Variance::Least)];
+    let samplings = [Sampling::Farthest, Sampling::Random, Sampling::MinVariance];
     let defaults = samplings.map(|sampling| (EmbedMethod::default(), sampling));
     for (method, sampling) in methods().into_iter().map(|m| (m, Sampling::Farthest)).chain(defaults) {
         let base = embed(&mesh, &method, sampling);

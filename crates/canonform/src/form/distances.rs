@@ -10,7 +10,6 @@ use base::{Budget, Exceeded};
 use geodesics::{DistanceSolver, FirstSample, PrunedSolver, Sampler, Sampling, Source};
 use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
 use nmds::{EmbedOtherwise, EmbedSamples, SampleSearch};
-use serde::{Deserialize, Serialize};
 use surface::VertexId;
 
 use super::outcome::Outcome;
@@ -25,8 +24,7 @@ const DEFAULT_COUNT: usize = 100;
 const AUTO_LAST: usize = 640;
 
 /// How many samples are taken; written as a number or as `auto`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(into = "Stored", try_from = "Stored")]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Samples {
     /// This many.
     Count(usize),
@@ -67,34 +65,6 @@ impl FromStr for Samples {
             _ if text == "auto" => Ok(Self::Auto),
             Ok(0) | Err(_) => Err(format!("`{text}` is neither a positive number nor `auto`")),
             Ok(n) => Ok(Self::Count(n)),
-        }
-    }
-}
-
-/// [`Samples`] as they are stored: `100` or `"auto"`.
-#[derive(Serialize, Deserialize)]
-#[serde(untagged)]
-enum Stored {
-    Count(usize),
-    Text(String),
-}
-
-impl From<Samples> for Stored {
-    fn from(samples: Samples) -> Self {
-        match samples {
-            Samples::Count(n) => Self::Count(n),
-            Samples::Auto => Self::Text(samples.to_string()),
-        }
-    }
-}
-
-impl TryFrom<Stored> for Samples {
-    type Error = String;
-
-    fn try_from(stored: Stored) -> Result<Self, String> {
-        match stored {
-            Stored::Count(n) => n.to_string().parse(),
-            Stored::Text(text) => text.parse(),
         }
     }
 }

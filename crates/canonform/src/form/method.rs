@@ -15,12 +15,17 @@ use super::outcome::Outcome;
 use super::plan::check_memory;
 use crate::error::Error;
 
+/// Eigenfunctions of spectral scaling, as in the comparisons of the paper.
+pub(super) const EIGENVECTORS: usize = 300;
+
 /// How distances become coordinates.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "kebab-case")]
+#[strum(serialize_all = "kebab-case")]
 pub enum EmbedMethod {
     /// Nystrom multidimensional scaling, the paper's method.
     #[serde(rename = "nmds")]
+    #[strum(serialize = "nmds")]
     Nystrom {
         /// How the inverse of the sample matrix is regularised. Default: low rank, half the samples.
         regularization: Regularization,
@@ -37,6 +42,7 @@ pub enum EmbedMethod {
     },
     /// Kernel PCA with the Nystrom method, the paper's baseline.
     #[serde(rename = "kpca")]
+    #[strum(serialize = "kpca")]
     KernelPca {
         /// Eigenpairs of the sample kernel to keep. Default: half the samples.
         rank: Option<usize>,
@@ -45,6 +51,7 @@ pub enum EmbedMethod {
     },
     /// Classical multidimensional scaling of all pairs: the optimum, at quadratic cost.
     #[serde(rename = "mds")]
+    #[strum(serialize = "mds")]
     Classical,
     /// SMACOF on all pairs, started from the result of NMDS: fits distances instead of squared distances.
     Smacof {
@@ -75,34 +82,9 @@ impl EmbedMethod {
         ]
     }
 
-    /// The method with this [name](Self::name) and default options.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::all().into_iter().find(|method| method.name() == name)
-    }
-
     /// The name on the command line and in records.
     pub fn name(&self) -> &'static str {
-        self.entry().0
-    }
-
-    /// What the method computes, in one line.
-    pub fn summary(&self) -> &'static str {
-        self.entry().1
-    }
-
-    fn entry(&self) -> (&'static str, &'static str) {
-        match self {
-            Self::Nystrom { .. } => ("nmds", "Nystrom multidimensional scaling"),
-            Self::Landmark => {
-                ("landmark", "Landmark MDS: embed the samples, place the rest by their distances to them")
-            }
-            Self::Spectral { .. } => {
-                ("spectral", "Spectral scaling: distances between samples, in eigenfunctions of the surface")
-            }
-            Self::KernelPca { .. } => ("kpca", "Kernel PCA with the Nystrom method"),
-            Self::Classical => ("mds", "Classical multidimensional scaling of all pairs"),
-            Self::Smacof { .. } => ("smacof", "SMACOF on all pairs, started from the result of nmds"),
-        }
+        self.into()
     }
 
     /// NMDS with the low-rank regularisation of this rank.
@@ -112,7 +94,7 @@ impl EmbedMethod {
 
     /// Spectral scaling in 300 eigenfunctions, as in the paper, with the default weight of the distances.
     pub fn spectral() -> Self {
-        Self::Spectral { eigenvectors: 300, mu: SpectralOptions::default().mu }
+        Self::Spectral { eigenvectors: EIGENVECTORS, mu: SpectralOptions::default().mu }
     }
 
     /// The regularisation of the sample matrix, for methods that have one.
@@ -204,12 +186,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn methods_are_known_by_their_names_in_options_too() {
+    fn methods_have_one_name_in_options_and_in_records() {
         for method in EmbedMethod::all() {
-            assert_eq!(EmbedMethod::named(method.name()).as_ref(), Some(&method));
             let text = serde_json::to_string(&method).unwrap();
             assert!(text.contains(&format!("\"{}\"", method.name())), "{text}");
         }
-        assert_eq!(EmbedMethod::named("umap"), None);
     }
 }

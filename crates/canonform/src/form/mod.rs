@@ -16,7 +16,6 @@ mod outcome;
 mod part;
 mod plan;
 mod report;
-mod schema;
 pub mod settings;
 mod side_by_side;
 mod stress;

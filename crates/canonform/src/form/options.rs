@@ -5,6 +5,7 @@ use geodesics::{FirstSample, Method, Sampling};
 use mesh::RepairOptions;
 use serde::{Deserialize, Serialize};
 
+use super::as_text;
 use super::distances::Samples;
 use super::method::EmbedMethod;
 use crate::error::Error;
@@ -20,6 +21,7 @@ pub struct FormOptions {
     #[serde(skip_serializing_if = "is_default")]
     pub geodesic: Method,
     /// Number of samples. Default: 100, as in the paper's Figure 4.
+    #[serde(with = "as_text")]
     pub samples: Samples,
     /// How samples are taken. Default: farthest point sampling, as in the paper.
     #[serde(skip_serializing_if = "is_default")]
@@ -143,7 +145,7 @@ fn is_three(dim: &usize) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use geodesics::{HeatOptions, Variance};
+    use geodesics::HeatOptions;
     use nmds::{Bandwidth, Regularization, RpiAlpha, SmacofOptions};
     use surface::VertexId;
 
@@ -177,7 +179,7 @@ mod tests {
             FormOptions { samples: Samples::Auto, ..usual.clone() },
             FormOptions { samples: Samples::Auto, seed: 5, ..usual.clone() },
             FormOptions { first_sample: FirstSample::Vertex(VertexId(17)), ..usual.clone() },
-            FormOptions { sampling: Sampling::Incremental(Variance::Least), seed: 3, ..usual.clone() },
+            FormOptions { sampling: Sampling::MinVariance, seed: 3, ..usual.clone() },
             of(EmbedMethod::low_rank(30)),
             of(EmbedMethod::Nystrom { regularization: Regularization::Rpi { alpha: RpiAlpha::Paper } }),
             of(EmbedMethod::Spectral { eigenvectors: 60, mu: f64::INFINITY }),
@@ -206,9 +208,14 @@ mod tests {
 
     #[test]
     fn samples_are_stored_as_numbers_or_words() {
-        let read = |text: &str| serde_json::from_str::<Samples>(text).ok();
+        let stored = |value: &str| format!("\"samples\":{value}");
+        let read = |value: &str| {
+            let form: Option<FormOptions> = serde_json::from_str(&format!("{{{}}}", stored(value))).ok();
+            form.map(|form| form.samples)
+        };
         for (samples, text) in [(Samples::Count(20), "20"), (Samples::Auto, "\"auto\"")] {
-            assert_eq!(serde_json::to_string(&samples).unwrap(), text);
+            let options = FormOptions { samples, ..FormOptions::default() };
+            assert!(serde_json::to_string(&options).unwrap().contains(&stored(text)));
             assert_eq!(read(text), Some(samples));
         }
         assert_eq!(read("\"20\""), Some(Samples::Count(20)), "a number as text");

@@ -1,38 +1,205 @@
-//! Settings as users give them, one by one: flags of a program or keyword arguments.
-
-use std::collections::BTreeMap;
-use std::str::FromStr;
+//! Settings as users give them: flags of a program, or keyword arguments.
+//!
+//! Every option is declared here, once, in the group that commands combine. A field is named as the keyword of Python. With the
+//! feature `clap` it is also a flag, with its documentation as help.
 
 use descriptors::Normalization;
-use geodesics::{FastMarchingOptions, FirstSample, Method};
-use mesh::{Orient, RepairOptions};
-use nmds::Regularization;
+use geodesics::{FastMarchingOptions, FirstSample, Method, ObtuseTreatment, Sampling, Update};
+use mesh::{ComponentPolicy, Orient, RepairOptions, Weld};
+use nmds::{Bandwidth, Regularization, RpiAlpha, SmacofOptions, SpectralOptions};
+use serde::Deserialize;
 use surface::VertexId;
 
-use super::method::EmbedMethod;
+use super::as_text;
+use super::distances::Samples;
+use super::method::{EIGENVECTORS, EmbedMethod};
 use super::options::{DescribeOptions, FormOptions};
+use super::stress::StressChoice;
+use crate::correspond::CorrespondOptions;
 
-pub use super::schema::{Named, OptionGroup, OptionSpec, SCHEMA};
+/// A method of embedding, without its options.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, strum::IntoStaticStr)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[serde(rename_all = "kebab-case")]
+#[strum(serialize_all = "kebab-case")]
+pub enum Embedding {
+    /// Nystrom multidimensional scaling
+    #[default]
+    Nmds,
+    /// Landmark MDS: embed the samples, place the rest by their distances to them
+    Landmark,
+    /// Spectral scaling: distances between samples, in eigenfunctions of the surface
+    Spectral,
+    /// Kernel PCA with the Nystrom method
+    Kpca,
+    /// Classical multidimensional scaling of all pairs
+    Mds,
+    /// SMACOF on all pairs, started from the result of nmds
+    Smacof,
+}
 
-/// The settings that were given: values of options of the [`SCHEMA`].
-///
-/// ```
-/// use canonform::EmbedMethod;
-/// use canonform::settings::Settings;
-///
-/// let mut settings = Settings::default();
-/// settings.set("rank", "30")?;
-/// assert_eq!(settings.form()?.method, EmbedMethod::low_rank(30));
-///
-/// settings.set("method", "landmark")?;
-/// let fault = settings.form().unwrap_err();
-/// assert_eq!(fault.to_string(), "rank has no effect with method landmark; leave it out, or use method nmds or kpca or smacof");
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Settings(BTreeMap<&'static str, String>);
+/// A method of measuring distances, without its options.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, strum::IntoStaticStr)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[serde(rename_all = "kebab-case")]
+#[strum(serialize_all = "kebab-case")]
+pub enum Geodesic {
+    /// Fast marching on triangles
+    #[default]
+    FastMarching,
+    /// Exact on the polyhedral surface
+    Exact,
+    /// Heat method: smooth, fast for many sources
+    Heat,
+    /// Shortest paths along edges
+    Dijkstra,
+    /// Number of edges times the mean edge length
+    Bfs,
+}
 
-/// A setting that would change nothing beside another one.
+/// How the sample matrix is inverted, without the options of that.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, strum::IntoStaticStr)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[serde(rename_all = "kebab-case")]
+#[strum(serialize_all = "kebab-case")]
+pub enum Inverse {
+    /// Keep the eigenvalues of largest magnitude
+    #[default]
+    LowRank,
+    /// Keep all eigenvalues and damp the small ones (regularised pseudo-inverse)
+    Rpi,
+    /// Keep all eigenvalues above rounding error
+    None,
+    /// CUR decomposition: keep the columns of the first samples
+    Cur,
+}
+
+/// What every form needs.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::Args), command(next_help_heading = "Embedding"))]
+#[serde(default)]
+pub struct FormSettings {
+    /// Number of samples, or `auto` to take as many as needed [default: 100]
+    #[cfg_attr(feature = "clap", arg(short = 'n', long = "samples", value_name = "SAMPLES|auto"))]
+    #[serde(deserialize_with = "as_text::given")]
+    pub n_landmarks: Option<Samples>,
+    /// Dimensions of the embedding [default: 3]
+    #[cfg_attr(feature = "clap", arg(long = "dim", value_name = "K"))]
+    pub n_components: Option<usize>,
+    /// How to measure distances [default: fast-marching]
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub geodesic: Option<Geodesic>,
+}
+
+/// Options of fast marching.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::Args), command(next_help_heading = "Fast marching"))]
+#[serde(default)]
+pub struct MarchingSettings {
+    /// Local solver [default: virtual-source]
+    #[cfg_attr(feature = "clap", arg(long, hide_short_help = true))]
+    pub update: Option<Update>,
+    /// What to do about angles wider than 90 degrees [default: flip]
+    #[cfg_attr(feature = "clap", arg(long, hide_short_help = true))]
+    pub obtuse: Option<ObtuseTreatment>,
+}
+
+/// How meshes are repaired.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::Args), command(next_help_heading = "Repair"))]
+#[serde(default)]
+pub struct RepairSettings {
+    /// What to do with a mesh of several components [default: largest]
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub components: Option<ComponentPolicy>,
+    /// Which vertices to merge: `seams` on boundaries (the default), `all`, `none`, or a distance
+    ///
+    /// `seams` merges boundary vertices in the same position, and boundary edges that nearly coincide: those whose ends are
+    /// within 2 % of the shortest side of their faces. A number merges boundary vertices within this distance, in mesh units.
+    /// `all` merges all vertices in the same position. Two vertices of one edge are never merged.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "seams|all|none|TOL"))]
+    #[serde(deserialize_with = "as_text::given")]
+    pub weld: Option<Weld>,
+}
+
+/// Which method makes coordinates of distances, and the options of methods.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::Args), command(next_help_heading = "Embedding"))]
+#[serde(default)]
+pub struct MethodSettings {
+    /// How to turn distances into coordinates [default: nmds]
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub method: Option<Embedding>,
+    /// Number of eigenpairs of the sample matrix to keep (of columns for cur) [default: half the samples, at least --dim + 4]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N1", hide_short_help = true))]
+    pub rank: Option<usize>,
+    /// How to choose samples [default: farthest]
+    #[cfg_attr(feature = "clap", arg(long, hide_short_help = true))]
+    pub sampling: Option<Sampling>,
+    /// First sample, a vertex of the input [default: the vertex farthest from vertex 0; with other samplings, drawn with --seed]
+    #[cfg_attr(feature = "clap", arg(long = "first-sample", value_name = "V", hide_short_help = true))]
+    pub first: Option<u32>,
+    /// How nmds, and the start of smacof, regularise the inverse of the sample matrix [default: low-rank]
+    #[cfg_attr(feature = "clap", arg(long, hide_short_help = true))]
+    pub regularization: Option<Inverse>,
+    /// For --regularization rpi: alpha over the fourth power of the largest eigenvalue, or `paper` for the third power of that
+    /// eigenvalue, which depends on the unit of length [default: 1e-10]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "C|paper", hide_short_help = true))]
+    #[serde(deserialize_with = "as_text::given")]
+    pub alpha: Option<RpiAlpha>,
+    /// Kernel width of kpca, in mesh units or as a statistic of the measured distances [default: mean]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "mean|median|max|WIDTH", hide_short_help = true))]
+    #[serde(deserialize_with = "as_text::given")]
+    pub sigma: Option<Bandwidth>,
+    /// Number of Laplace-Beltrami eigenfunctions for spectral [default: 300]
+    #[cfg_attr(feature = "clap", arg(long = "eigenvectors", value_name = "M", hide_short_help = true))]
+    pub n_eigenfunctions: Option<usize>,
+    /// Weight of the distances against smoothness in spectral, for a surface of unit area; `inf` fits the distances exactly
+    /// [default: 1000]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "MU", hide_short_help = true))]
+    pub mu: Option<f64>,
+    /// Maximum number of smacof steps [default: 300]
+    #[cfg_attr(feature = "clap", arg(long = "iterations", value_name = "N", hide_short_help = true))]
+    pub max_iterations: Option<usize>,
+    /// Stop smacof when a step reduces the stress by less than this fraction [default: 1e-6]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "T", hide_short_help = true))]
+    pub tolerance: Option<f64>,
+}
+
+/// How the stress is found.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+#[serde(default)]
+pub struct StressSettings {
+    /// How to find the stress; see below for its formulas [default: auto]
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub stress: Option<StressChoice>,
+}
+
+/// What is kept of a form.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+#[serde(default)]
+pub struct DescriptionSettings {
+    /// Number of points of each form to keep for alignment [default: 1000]
+    #[cfg_attr(feature = "clap", arg(long = "points", value_name = "POINTS"))]
+    pub n_points: Option<usize>,
+    /// Distinguish shapes by size: all meshes have the same unit of length
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub size: bool,
+}
+
+/// How surfaces are mapped.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+#[serde(default)]
+pub struct MapSettings {
+    /// Most eigenfunctions of each surface that the map is refined with [default: 150]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "K"))]
+    pub eigenfunctions: Option<usize>,
+}
+
+/// A setting that would change nothing beside another one. Settings are named as their fields.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NoEffect {
     /// Name of the setting.
@@ -46,6 +213,18 @@ pub struct NoEffect {
 }
 
 impl NoEffect {
+    /// Refuses a setting that was given, unless the other setting has one of the values with which it has an effect.
+    fn check<T: Copy + PartialEq + Into<&'static str>>(
+        (setting, is_given, instead): (&'static str, bool, &[T]),
+        (beside, value): (&'static str, T),
+    ) -> Result<(), Self> {
+        if !is_given || instead.contains(&value) {
+            return Ok(());
+        }
+        let instead = instead.iter().map(|&value| value.into()).collect();
+        Err(Self { setting, beside, value: value.into(), instead })
+    }
+
     /// The message, with settings as `spell` writes them: a name, and the values that it may have, or none.
     pub fn in_words(&self, spell: impl Fn(&str, &[&str]) -> String) -> String {
         let (setting, with) = (spell(self.setting, &[]), spell(self.beside, &[self.value]));
@@ -54,290 +233,209 @@ impl NoEffect {
     }
 }
 
-impl std::fmt::Display for NoEffect {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let plain =
-            |name: &str, values: &[&str]| format!("{name} {}", values.join(" or ")).trim_end().to_owned();
-        f.write_str(&self.in_words(plain))
+impl MethodSettings {
+    /// Refuses settings that would change nothing.
+    fn check(&self) -> Result<(), NoEffect> {
+        use Embedding::{Kpca, Landmark, Nmds, Smacof, Spectral};
+        let method = ("method", self.method.unwrap_or_default());
+        let sampled = [Nmds, Landmark, Spectral, Kpca, Smacof];
+        NoEffect::check(("sampling", self.sampling.is_some(), &sampled), method)?;
+        NoEffect::check(("first", self.first.is_some(), &sampled), method)?;
+        NoEffect::check(("rank", self.rank.is_some(), &[Nmds, Kpca, Smacof]), method)?;
+        NoEffect::check(("regularization", self.regularization.is_some(), &[Nmds, Smacof]), method)?;
+        NoEffect::check(("alpha", self.alpha.is_some(), &[Nmds, Smacof]), method)?;
+        NoEffect::check(("sigma", self.sigma.is_some(), &[Kpca]), method)?;
+        NoEffect::check(("n_eigenfunctions", self.n_eigenfunctions.is_some(), &[Spectral]), method)?;
+        NoEffect::check(("mu", self.mu.is_some(), &[Spectral]), method)?;
+        NoEffect::check(("max_iterations", self.max_iterations.is_some(), &[Smacof]), method)?;
+        NoEffect::check(("tolerance", self.tolerance.is_some(), &[Smacof]), method)?;
+        if method.1 == Kpca {
+            return Ok(());
+        }
+        let inverse = ("regularization", self.regularization.unwrap_or_default());
+        NoEffect::check(("rank", self.rank.is_some(), &[Inverse::LowRank, Inverse::Cur]), inverse)?;
+        NoEffect::check(("alpha", self.alpha.is_some(), &[Inverse::Rpi]), inverse)
+    }
+
+    /// The method with its options.
+    ///
+    /// # Errors
+    /// [`NoEffect`] if a setting was given that would change nothing.
+    pub fn options(&self) -> Result<EmbedMethod, NoEffect> {
+        self.check()?;
+        let rank = self.rank;
+        let regularization = match self.regularization.unwrap_or_default() {
+            Inverse::LowRank => Regularization::LowRank { rank },
+            Inverse::Rpi => Regularization::Rpi { alpha: self.alpha.unwrap_or_default() },
+            Inverse::None => Regularization::None,
+            Inverse::Cur => Regularization::Cur { rank },
+        };
+        let usual = SmacofOptions::default();
+        Ok(match self.method.unwrap_or_default() {
+            Embedding::Nmds => EmbedMethod::Nystrom { regularization },
+            Embedding::Landmark => EmbedMethod::Landmark,
+            Embedding::Spectral => EmbedMethod::Spectral {
+                eigenvectors: self.n_eigenfunctions.unwrap_or(EIGENVECTORS),
+                mu: self.mu.unwrap_or(SpectralOptions::default().mu),
+            },
+            Embedding::Kpca => EmbedMethod::KernelPca { rank, bandwidth: self.sigma.unwrap_or_default() },
+            Embedding::Mds => EmbedMethod::Classical,
+            Embedding::Smacof => EmbedMethod::Smacof {
+                regularization,
+                descent: SmacofOptions {
+                    max_iterations: self.max_iterations.unwrap_or(usual.max_iterations),
+                    tolerance: self.tolerance.unwrap_or(usual.tolerance),
+                },
+            },
+        })
     }
 }
 
-impl std::error::Error for NoEffect {}
-
-impl Settings {
-    /// Gives an option a value.
-    ///
-    /// # Errors
-    /// There is no such option, or the value is not possible; the message says what is.
-    pub fn set(&mut self, name: &str, text: &str) -> Result<(), String> {
-        let option = OptionSpec::named(name).ok_or_else(|| format!("there is no option {name}"))?;
-        option.check(text)?;
-        self.0.insert(option.name, text.to_owned());
-        Ok(())
-    }
-
-    /// These settings and those of another group.
-    #[must_use]
-    pub fn and(&self, others: &Self) -> Self {
-        Self(self.0.clone().into_iter().chain(others.0.clone()).collect())
-    }
-
-    /// Whether an option has been given a value.
-    pub fn is_given(&self, name: &str) -> bool {
-        self.0.contains_key(name)
-    }
-
-    /// The number or text given for an option.
-    pub fn get<T: FromStr>(&self, name: &str) -> Option<T> {
-        self.0.get(name)?.parse().ok()
-    }
-
-    /// The value chosen by name for an option.
-    pub fn chosen<T: Named>(&self, name: &str) -> Option<T> {
-        T::named(self.0.get(name)?)
-    }
-
-    /// How meshes are repaired.
-    pub fn repair(&self) -> RepairOptions {
-        let usual = RepairOptions::default();
-        RepairOptions {
-            components: self.chosen("components").unwrap_or(usual.components),
-            weld: self.get("weld").unwrap_or(usual.weld),
-            orient: Orient::Keep,
-        }
-    }
-
-    /// A method of distances, with the options of fast marching if it is that.
-    pub fn distances(&self, method: Method) -> Method {
-        match method {
-            Method::FastMarching(_) => Method::FastMarching(FastMarchingOptions {
-                update: self.chosen("update").unwrap_or_default(),
-                obtuse: self.chosen("obtuse").unwrap_or_default(),
-            }),
-            other => other,
-        }
-    }
-
-    /// Refuses options of fast marching beside another method, the value of the option `name`.
+impl MarchingSettings {
+    /// Refuses these options beside another method than fast marching.
     ///
     /// # Errors
     /// [`NoEffect`].
-    pub fn check_distances(&self, name: &'static str, method: Method) -> Result<(), NoEffect> {
-        let given = ["update", "obtuse"].into_iter().find(|option| self.is_given(option));
-        match (method, given) {
-            (Method::FastMarching(_), _) | (_, None) => Ok(()),
-            (other, Some(setting)) => {
-                let instead = vec![Method::default().name()];
-                Err(NoEffect { setting, beside: name, value: other.name(), instead })
-            }
-        }
+    pub fn check(&self, geodesic: Geodesic) -> Result<(), NoEffect> {
+        let geodesic = ("geodesic", geodesic);
+        NoEffect::check(("update", self.update.is_some(), &[Geodesic::FastMarching]), geodesic)?;
+        NoEffect::check(("obtuse", self.obtuse.is_some(), &[Geodesic::FastMarching]), geodesic)
     }
 
+    /// The method with its options: with these, if it is fast marching.
+    pub fn method(&self, geodesic: Geodesic) -> Method {
+        match geodesic {
+            Geodesic::FastMarching => Method::FastMarching(FastMarchingOptions {
+                update: self.update.unwrap_or_default(),
+                obtuse: self.obtuse.unwrap_or_default(),
+            }),
+            Geodesic::Exact => Method::Exact,
+            Geodesic::Heat => Method::Heat(Default::default()),
+            Geodesic::Dijkstra => Method::Dijkstra,
+            Geodesic::Bfs => Method::BreadthFirst,
+        }
+    }
+}
+
+impl RepairSettings {
+    /// How a mesh is repaired.
+    pub fn options(&self) -> RepairOptions {
+        let components = self.components.unwrap_or_default();
+        RepairOptions { components, weld: self.weld.unwrap_or_default(), orient: Orient::Keep }
+    }
+}
+
+impl FormSettings {
     /// How a form is made, with seed 0.
     ///
     /// # Errors
     /// [`NoEffect`] if a setting of the method was given that would change nothing.
-    pub fn form(&self) -> Result<FormOptions, NoEffect> {
-        let mut method: EmbedMethod = self.chosen("method").unwrap_or_default();
-        self.check(&method)?;
-        match &mut method {
-            EmbedMethod::Nystrom { regularization } => *regularization = self.regularization(),
-            EmbedMethod::Spectral { eigenvectors, mu } => {
-                self.apply("eigenvectors", eigenvectors);
-                self.apply("mu", mu);
-            }
-            EmbedMethod::KernelPca { rank, bandwidth } => {
-                *rank = self.get("rank");
-                self.apply("sigma", bandwidth);
-            }
-            EmbedMethod::Smacof { regularization, descent } => {
-                *regularization = self.regularization();
-                self.apply("iterations", &mut descent.max_iterations);
-                self.apply("tolerance", &mut descent.tolerance);
-            }
-            EmbedMethod::Classical | EmbedMethod::Landmark => {}
-        }
+    pub fn options(
+        &self,
+        method: &MethodSettings,
+        marching: &MarchingSettings,
+        repair: &RepairSettings,
+    ) -> Result<FormOptions, NoEffect> {
+        let first = method.first.map(|v| FirstSample::Vertex(VertexId(v)));
         let usual = FormOptions::default();
-        let first_sample = self.get("first_sample").map(|v| FirstSample::Vertex(VertexId(v)));
         Ok(FormOptions {
-            repair: self.repair(),
-            geodesic: self.distances(self.chosen("geodesic").unwrap_or_default()),
-            samples: self.get("samples").unwrap_or_default(),
-            sampling: self.chosen("sampling").unwrap_or_default(),
-            first_sample: first_sample.unwrap_or(FirstSample::Farthest),
-            method,
-            dim: self.get("dim").unwrap_or(usual.dim),
+            repair: repair.options(),
+            geodesic: marching.method(self.geodesic.unwrap_or_default()),
+            samples: self.n_landmarks.unwrap_or_default(),
+            sampling: method.sampling.unwrap_or_default(),
+            first_sample: first.unwrap_or_default(),
+            method: method.options()?,
+            dim: self.n_components.unwrap_or(usual.dim),
             seed: usual.seed,
         })
     }
+}
 
-    /// How shapes are described, with seed 0.
-    ///
-    /// # Errors
-    /// As [`form`](Self::form).
-    pub fn describe(&self) -> Result<DescribeOptions, NoEffect> {
+impl MapSettings {
+    /// How surfaces of such forms are mapped.
+    pub fn options(&self, form: FormOptions) -> CorrespondOptions {
+        let mut options = CorrespondOptions { form, ..CorrespondOptions::default() };
+        if let Some(most) = self.eigenfunctions {
+            options.maps.eigenfunctions = most;
+        }
+        options
+    }
+}
+
+impl DescriptionSettings {
+    /// How shapes of such forms are described.
+    pub fn options(&self, form: FormOptions) -> DescribeOptions {
         let usual = DescribeOptions::default();
-        let counts = self.get("size").unwrap_or(false);
-        Ok(DescribeOptions {
-            form: self.form()?,
-            points: self.get("points").unwrap_or(usual.points),
-            size: if counts { Normalization::Raw } else { usual.size },
-        })
-    }
-
-    /// Replaces a value by the one given, if any.
-    fn apply<T: FromStr>(&self, name: &str, value: &mut T) {
-        if let Some(given) = self.get(name) {
-            *value = given;
-        }
-    }
-
-    fn regularization(&self) -> Regularization {
-        let mut chosen = self.chosen("regularization").unwrap_or_default();
-        match &mut chosen {
-            Regularization::LowRank { rank } | Regularization::Cur { rank } => *rank = self.get("rank"),
-            Regularization::Rpi { alpha } => self.apply("alpha", alpha),
-            Regularization::None => {}
-        }
-        chosen
-    }
-
-    /// Refuses settings that would change nothing.
-    fn check(&self, method: &EmbedMethod) -> Result<(), NoEffect> {
-        let given = || SCHEMA.iter().filter(|option| self.is_given(option.name));
-        if let Some(option) = given().find(|option| !option.applies_to(method)) {
-            let methods = EmbedMethod::all();
-            let instead = methods.iter().filter(|m| option.applies_to(m)).map(EmbedMethod::name).collect();
-            return Err(NoEffect { setting: option.name, beside: "method", value: method.name(), instead });
-        }
-        if method.regularization().is_none() {
-            return Ok(());
-        }
-        let chosen: Regularization = self.chosen("regularization").unwrap_or_default();
-        let has_rank =
-            |r: &Regularization| matches!(r, Regularization::LowRank { .. } | Regularization::Cur { .. });
-        let has_alpha = |r: &Regularization| matches!(r, Regularization::Rpi { .. });
-        let of_regularization: [(_, fn(&_) -> bool); 2] = [("rank", has_rank), ("alpha", has_alpha)];
-        let lost = of_regularization.into_iter().find(|(name, has)| self.is_given(name) && !has(&chosen));
-        lost.map_or(Ok(()), |(setting, has)| {
-            let instead = Regularization::all().into_iter().filter(has).map(Regularization::name).collect();
-            Err(NoEffect { setting, beside: "regularization", value: chosen.name(), instead })
-        })
+        let size = if self.size { Normalization::Raw } else { usual.size };
+        DescribeOptions { form, points: self.n_points.unwrap_or(usual.points), size }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use serde_json::{Value, json};
+
     use super::*;
-    use crate::Samples;
 
-    /// Names and values of settings.
-    type Given<'a> = &'a [(&'a str, &'a str)];
-
-    fn of(given: Given<'_>) -> Settings {
-        let mut settings = Settings::default();
-        given.iter().for_each(|(name, text)| settings.set(name, text).unwrap());
-        settings
+    fn of<T: serde::de::DeserializeOwned>(given: Value) -> T {
+        serde_json::from_value(given).unwrap()
     }
 
-    /// A method, further settings and a value that is not the default, for every option of a description.
-    const OTHERS: [(&str, &str, Given<'static>); 19] = [
-        ("method", "spectral", &[]),
-        ("samples", "50", &[]),
-        ("dim", "2", &[]),
-        ("geodesic", "exact", &[]),
-        ("update", "planar", &[]),
-        ("obtuse", "ignore", &[]),
-        ("components", "bridge", &[]),
-        ("weld", "0.5", &[]),
-        ("rank", "30", &[]),
-        ("sampling", "random", &[]),
-        ("first_sample", "7", &[]),
-        ("regularization", "cur", &[]),
-        ("alpha", "paper", &[("regularization", "rpi")]),
-        ("sigma", "median", &[("method", "kpca")]),
-        ("eigenvectors", "60", &[("method", "spectral")]),
-        ("mu", "inf", &[("method", "spectral")]),
-        ("iterations", "5", &[("method", "smacof")]),
-        ("tolerance", "0.1", &[("method", "smacof")]),
-        ("points", "500", &[]),
-    ];
+    #[test]
+    fn no_settings_are_the_default_options() {
+        let (form, description) = (FormSettings::default(), DescriptionSettings::default());
+        let form = form.options(&Default::default(), &Default::default(), &Default::default()).unwrap();
+        assert_eq!(description.options(form.clone()), DescribeOptions::default());
+        assert_eq!(MapSettings::default().options(form), CorrespondOptions::default());
+    }
 
     #[test]
-    fn every_option_of_a_description_is_stored_and_its_default_is_stated() {
-        let stored = [OptionGroup::Method, OptionGroup::Form, OptionGroup::Marching, OptionGroup::Repair];
-        for option in
-            SCHEMA.iter().filter(|o| stored.contains(&o.group) || o.group == OptionGroup::Description)
-        {
-            if option.is_switch() {
-                let text = |on: &str| of(&[(option.name, on)]).describe().unwrap().text();
-                assert!(text("true") != text("false") && text("false") == DescribeOptions::default().text());
-                continue;
-            }
-            let (name, other, beside) = OTHERS
-                .into_iter()
-                .find(|(name, ..)| *name == option.name)
-                .unwrap_or_else(|| panic!("{}", option.name));
-            let without = of(beside);
-            let with = |value: &str| without.and(&of(&[(name, value)])).describe().unwrap();
-            let usual = without.describe().unwrap();
-            let changed = with(other);
-            assert_ne!(changed.text(), usual.text(), "{name}");
-            assert_eq!(DescribeOptions::from_text(&changed.text()), Some(changed), "{name}");
-            if option.check(option.default).is_ok() {
-                assert_eq!(with(option.default), usual, "the default of {name}");
-            }
+    fn methods_have_one_name_in_settings_and_in_options() {
+        for method in EmbedMethod::all() {
+            let settings: MethodSettings = of(json!({ "method": method.name() }));
+            assert_eq!(settings.options(), Ok(method));
         }
-    }
-
-    #[test]
-    fn settings_reach_the_options_that_they_belong_to() {
-        assert_eq!(Settings::default().describe().unwrap(), DescribeOptions::default());
-        assert_eq!(of(&[("samples", "auto")]).form().unwrap().samples, Samples::Auto);
-        assert_eq!(of(&[("stress", "skip")]).chosen("stress"), Some(crate::StressChoice::Skip));
-        let first = of(&[("first_sample", "7")]).form().unwrap();
-        assert_eq!(first.first_sample, FirstSample::Vertex(VertexId(7)));
+        for regularization in Regularization::all() {
+            let settings: MethodSettings = of(json!({ "regularization": regularization.name() }));
+            assert_eq!(settings.options(), Ok(EmbedMethod::Nystrom { regularization }));
+        }
+        for method in Method::all() {
+            let FormSettings { geodesic, .. } = of(json!({ "geodesic": method.name() }));
+            assert_eq!(MarchingSettings::default().method(geodesic.unwrap()), method);
+        }
     }
 
     #[test]
     fn impossible_values_are_refused_with_what_is_possible() {
-        for (name, text, words) in [
-            ("method", "umap", "use \"nmds\""),
-            ("weld", "-1", "distance in mesh units"),
-            ("alpha", "ten", "neither a number nor `paper`"),
-            ("sigma", "wide", "`mean`"),
-            ("samples", "0", "`auto`"),
-            ("rank", "1.5", "invalid digit"),
-            ("colour", "3", "no option colour"),
-        ] {
-            let fault = Settings::default().set(name, text).unwrap_err();
-            assert!(fault.contains(words), "{name} {text}: {fault}");
+        fn refused<T: serde::de::DeserializeOwned>(given: Value, words: &str) {
+            let fault = serde_json::from_value::<T>(given.clone()).err().unwrap().to_string();
+            assert!(fault.contains(words), "{given}: {fault}");
         }
+        refused::<MethodSettings>(json!({"method": "umap"}), "expected one of `nmds`, `landmark`");
+        refused::<MethodSettings>(json!({"alpha": "ten"}), "neither a number nor `paper`");
+        refused::<MethodSettings>(json!({"sigma": "wide"}), "`mean`");
+        refused::<MethodSettings>(json!({"sigma": true}), "neither a number nor a word");
+        refused::<MethodSettings>(json!({"rank": 1.5}), "expected usize");
+        refused::<RepairSettings>(json!({"weld": -1}), "distance in mesh units");
+        refused::<FormSettings>(json!({"n_landmarks": 0}), "`auto`");
     }
 
     #[test]
     fn settings_without_effect_are_refused_with_what_would_use_them() {
-        let cases: [(Given<'_>, [&str; 3]); 4] = [
-            (&[("mu", "5")], ["mu", "method", "spectral"]),
-            (&[("alpha", "paper")], ["alpha", "regularization", "rpi"]),
-            (&[("rank", "5"), ("regularization", "none")], ["rank", "regularization", "low-rank"]),
-            (&[("first_sample", "1"), ("method", "mds")], ["first_sample", "method", "nmds"]),
-        ];
-        for (given, [setting, beside, instead]) in cases {
-            let fault = of(given).form().unwrap_err();
+        for (given, [setting, beside, instead]) in [
+            (json!({"mu": 5}), ["mu", "method", "spectral"]),
+            (json!({"alpha": "paper"}), ["alpha", "regularization", "rpi"]),
+            (json!({"rank": 5, "regularization": "none"}), ["rank", "regularization", "low-rank"]),
+            (json!({"rank": 5, "method": "landmark"}), ["rank", "method", "nmds"]),
+            (json!({"first": 1, "method": "mds"}), ["first", "method", "nmds"]),
+        ] {
+            let fault = of::<MethodSettings>(given).options().unwrap_err();
             assert_eq!((fault.setting, fault.beside, fault.instead[0]), (setting, beside, instead));
             let words = fault.in_words(|name, values| format!("<{name}={}>", values.join("|")));
             assert!(words.starts_with(&format!("<{setting}=>")), "{words}");
             assert!(words.contains(&format!("or use <{beside}={instead}")), "{words}");
         }
-        let heat = Method::named("heat").unwrap();
-        let fault = of(&[("obtuse", "flip")]).check_distances("geodesic", heat).unwrap_err();
+        let fault = of::<MarchingSettings>(json!({"obtuse": "flip"})).check(Geodesic::Heat).unwrap_err();
         assert_eq!((fault.setting, fault.beside, fault.value), ("obtuse", "geodesic", "heat"));
-    }
-
-    #[test]
-    fn help_states_the_default_and_other_options() {
-        let rank = OptionSpec::named("rank").unwrap().help(|name| format!("--{name}"));
-        assert!(rank.ends_with("[default: half the samples, at least --dim + 4]"), "{rank}");
     }
 }

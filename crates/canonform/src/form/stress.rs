@@ -37,18 +37,21 @@ pub struct StressOptions {
 }
 
 /// From which distances a stress is measured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[serde(rename_all = "kebab-case")]
 pub enum StressChoice {
-    /// From all pairs where the method has measured them, else estimated from one row for every 7 samples, at least 3, so that
-    /// it takes less than a fifth of the time for distances. If the number of samples
-    /// [was searched for](crate::Samples::Auto), from at least 32 rows.
+    /// Exactly where the method measures all pairs, else from one row for every 7 samples, at least 3, or 32 with samples
+    /// chosen automatically
+    ///
+    /// So an estimate takes less than a fifth of the time for distances.
     #[default]
     Auto,
-    /// From the distances between all pairs of vertices.
+    /// From the distances between all pairs of vertices
     Exact,
-    /// From the distances of 100 vertices to all others.
+    /// From the distances of 100 vertices to all others
     Estimate,
-    /// Not measured.
+    /// Not at all
     Skip,
 }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::str::FromStr;
 
-use descriptors::{DescriptorError, ShapeMetric, SignatureKind};
+use descriptors::{ShapeMetric, SignatureKind};
 use index::{Entry, Index, Shape};
 use linalg::DistanceMatrix;
 use rayon::prelude::*;
@@ -28,12 +28,16 @@ pub enum Measure {
 }
 
 impl FromStr for Measure {
-    type Err = DescriptorError;
+    type Err = String;
 
-    fn from_str(text: &str) -> Result<Self, DescriptorError> {
-        match text {
-            "fused" => Ok(Self::Fused),
-            kind => kind.parse().map(Self::Signature),
+    fn from_str(text: &str) -> Result<Self, String> {
+        let kind = SignatureKind::ALL.into_iter().find(|kind| kind.name() == text);
+        match (text, kind) {
+            ("fused", _) => Ok(Self::Fused),
+            (_, Some(kind)) => Ok(Self::Signature(kind)),
+            (_, None) => {
+                Err(format!("use `fused`, `{}`", SignatureKind::ALL.map(SignatureKind::name).join("`, `")))
+            }
         }
     }
 }

@@ -1,7 +1,5 @@
 //! How an index is searched.
 
-use std::str::FromStr;
-
 use serde::{Deserialize, Serialize};
 
 /// How an index is searched.
@@ -24,17 +22,22 @@ impl Default for SearchOptions {
 
 /// How the results of a search are ordered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum SearchRank {
-    /// By combined distance.
+    /// By distance
     #[default]
     Plain,
-    /// By distance and by neighbours in common.
+    /// By distance of signatures and by the neighbours that query and shape have in common
     Graph,
-    /// By how well the query fits as a part of the shape. Compares the query with every shape of the index, which must store
-    /// disc areas, and needs the mesh or the surface of the query.
+    /// By how well the query fits as a part of the shape, for a mesh that was cut or scanned in part
+    ///
+    /// Compares the query with every shape of the index, which must store disc areas, and needs the mesh or the surface of
+    /// the query.
     Part,
-    /// By canonical forms alone ([`descriptors::SampledForm::spectrum`]). Compares the query with every shape of the index.
+    /// By canonical forms alone
+    ///
+    /// Compares the query with every shape of the index by [`descriptors::SampledForm::spectrum`].
     Forms,
 }
 
@@ -44,20 +47,6 @@ impl SearchRank {
         match self {
             Self::Plain | Self::Graph => true,
             Self::Part | Self::Forms => false,
-        }
-    }
-}
-
-impl FromStr for SearchRank {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text {
-            "plain" => Ok(Self::Plain),
-            "graph" => Ok(Self::Graph),
-            "part" => Ok(Self::Part),
-            "forms" => Ok(Self::Forms),
-            _ => Err("use `plain`, `graph`, `part` or `forms`".to_owned()),
         }
     }
 }

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use canonform::Finish;
-use canonform::geodesics::Method;
+use canonform::settings::{Geodesic, MarchingSettings};
 use clap::{Args, Subcommand};
 
-use super::settings::{OfDistances, RepairArgs, SettingArgs, distance_method};
+use super::settings::RepairArgs;
 use super::shared::{LimitArgs, counted};
 
 #[derive(Debug, Subcommand)]
@@ -47,10 +47,10 @@ pub(crate) struct FieldBuildArgs {
     #[arg(long, value_name = "R")]
     pub(crate) rank: Option<usize>,
     /// How to measure distances; only `exact` certifies the bounds
-    #[arg(long, value_parser = distance_method(), default_value = Method::default().name())]
-    pub(crate) method: Method,
+    #[arg(long, default_value = "fast-marching")]
+    pub(crate) method: Geodesic,
     #[command(flatten)]
-    pub(crate) marching: SettingArgs<OfDistances>,
+    pub(crate) marching: MarchingSettings,
     #[command(flatten)]
     pub(crate) repair: RepairArgs,
     #[command(flatten)]

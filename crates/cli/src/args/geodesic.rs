@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use canonform::InputPoint;
-use canonform::geodesics::Method;
 use canonform::mesh::io::{Content, or_list, writable};
+use canonform::settings::{Geodesic, MarchingSettings};
 use clap::Args;
 
-use super::settings::{OfDistances, RepairArgs, SettingArgs, distance_method};
+use super::settings::RepairArgs;
 use super::shared::LimitArgs;
 
 /// How points are written.
@@ -63,10 +63,10 @@ pub(crate) struct GeodesicArgs {
     #[arg(long, requires = "all_pairs")]
     pub(crate) force: bool,
     /// How to measure distances
-    #[arg(long, value_parser = distance_method(), default_value = Method::default().name())]
-    pub(crate) method: Method,
+    #[arg(long, default_value = "fast-marching")]
+    pub(crate) method: Geodesic,
     #[command(flatten)]
-    pub(crate) marching: SettingArgs<OfDistances>,
+    pub(crate) marching: MarchingSettings,
     #[command(flatten)]
     pub(crate) repair: RepairArgs,
     #[command(flatten)]

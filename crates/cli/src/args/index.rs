@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
+use canonform::settings::{DescriptionSettings, MethodSettings};
 use canonform::{Measure, RankBy, SearchRank, ShapeLimits, Shard};
 use clap::{Args, Subcommand};
 
-use super::settings::{FormArgs, OfDescription};
+use super::settings::FormArgs;
 use super::shared::LimitArgs;
 
 #[derive(Debug, Subcommand)]
@@ -98,7 +99,11 @@ pub(crate) struct BuildArgs {
     #[arg(long, value_name = "I/N")]
     pub(crate) shard: Option<Shard>,
     #[command(flatten)]
-    pub(crate) describe: FormArgs<OfDescription>,
+    pub(crate) description: DescriptionSettings,
+    #[command(flatten)]
+    pub(crate) method: MethodSettings,
+    #[command(flatten)]
+    pub(crate) form: FormArgs,
     #[command(flatten)]
     pub(crate) limits: BatchLimitArgs,
 }
@@ -169,10 +174,8 @@ pub(crate) struct SearchArgs {
     /// Accepted for older scripts: every search compares all shapes
     #[arg(long, hide = true)]
     pub(crate) exact: bool,
-    /// How to order results: `plain`, by distance; `graph`, by distance of signatures and by the neighbours that query
-    /// and shape have in common; `part`, by how well the query fits as a part of the shape, for a mesh that was cut or
-    /// scanned in part; `forms`, by canonical forms alone; the last two compare it with every shape
-    #[arg(long, visible_alias = "by", value_name = "plain|graph|part|forms", default_value = "plain")]
+    /// How to order results; `part` and `forms` compare the query with every shape
+    #[arg(long, visible_alias = "by", default_value = "plain")]
     pub(crate) rank: SearchRank,
 }
 
@@ -192,7 +195,7 @@ pub(crate) struct EvaluateArgs {
     /// Number of neighbours that vote on the class of a shape
     #[arg(short, default_value_t = 1)]
     pub(crate) k: usize,
-    /// Rankings to score: `plain`, by distance; `graph`, both this and by the neighbours that two shapes have in common
-    #[arg(long, value_name = "plain|graph", default_value = "plain")]
+    /// Rankings to score
+    #[arg(long, default_value = "plain")]
     pub(crate) rank: RankBy,
 }

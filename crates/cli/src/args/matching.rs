@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 
 use canonform::mesh::io::or_list;
+use canonform::settings::MapSettings;
 use clap::Args;
 
 use super::PairArgs;
-use super::settings::{FormArgs, OfMaps};
+use super::settings::FormArgs;
 use super::shared::LimitArgs;
 
 /// What is written, and what the numbers mean.
@@ -63,7 +64,9 @@ pub(crate) struct MatchArgs {
     #[arg(long, value_name = "C.npy")]
     pub(crate) functional: Option<PathBuf>,
     #[command(flatten)]
-    pub(crate) form: FormArgs<OfMaps>,
+    pub(crate) maps: MapSettings,
+    #[command(flatten)]
+    pub(crate) form: FormArgs,
     #[command(flatten)]
     pub(crate) limits: LimitArgs,
 }

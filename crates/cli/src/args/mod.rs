@@ -14,15 +14,14 @@ mod shared;
 use std::path::{Path, PathBuf};
 
 use canonform::RelationKind;
-use canonform::geodesics::Method;
 use canonform::mesh::io::{Content, files_in, mesh_files, or_list, writable};
-use canonform::settings::Named;
+use canonform::settings::{Geodesic, MethodSettings, StressSettings};
 use canonform::{InputPoint, Storage, StressChoice};
 use clap::builder::TypedValueParser;
 use clap::{Arg, ArgAction, Args, CommandFactory, FromArgMatches, Id, Parser, Subcommand};
 use clap_complete::Shell;
 
-use self::settings::{FormArgs, OfComparison, OfEmbedding, OfForm, distance_method, one_of};
+use self::settings::{FormArgs, one_of};
 
 pub(crate) use duplicates::DuplicatesArgs;
 pub(crate) use field::{FieldBuildArgs, FieldCommand, FieldQueryArgs};
@@ -67,6 +66,7 @@ fn with_help(command: clap::Command) -> clap::Command {
     let command = command
         .mut_args(takes_minus)
         .disable_help_flag(true)
+        .next_help_heading(None::<&str>)
         .arg(usual.help("Print this help").display_order(990))
         .arg(all.help("Print help with all options, their values, and notes").display_order(991));
     names.into_iter().fold(command, |command, name| command.mut_subcommand(name, with_help))
@@ -224,10 +224,14 @@ pub(crate) struct EmbedArgs {
     #[arg(long, conflicts_with_all = ["extend", "at"])]
     pub(crate) features: bool,
     /// How to measure the distances that the stress compares the form with [default: as --geodesic]
-    #[arg(long, value_parser = distance_method(), value_name = "METHOD")]
-    pub(crate) stress_against: Option<Method>,
+    #[arg(long, value_name = "METHOD")]
+    pub(crate) stress_against: Option<Geodesic>,
     #[command(flatten)]
-    pub(crate) form: FormArgs<OfEmbedding>,
+    pub(crate) stress: StressSettings,
+    #[command(flatten)]
+    pub(crate) method: MethodSettings,
+    #[command(flatten)]
+    pub(crate) form: FormArgs,
     #[command(flatten)]
     pub(crate) limits: LimitArgs,
 }
@@ -277,17 +281,19 @@ pub(crate) struct MethodsArgs {
     #[arg(long, value_parser = compared_stress(), default_value = "auto")]
     pub(crate) stress: StressChoice,
     #[command(flatten)]
-    pub(crate) form: FormArgs<OfForm>,
+    pub(crate) form: FormArgs,
     #[command(flatten)]
     pub(crate) limits: LimitArgs,
 }
 
 /// How the stress is found when methods are compared.
 fn compared_stress() -> impl TypedValueParser<Value = StressChoice> {
-    let mut choices = StressChoice::table();
-    choices.retain(|(.., choice)| *choice != StressChoice::Skip);
-    choices[0].1 = "Exactly up to 5,000 vertices, beyond from 100 vertices to all others";
-    one_of(choices)
+    use StressChoice::{Auto, Estimate, Exact};
+    one_of(vec![
+        ("auto", "Exactly up to 5,000 vertices, beyond from 100 vertices to all others", Auto),
+        ("exact", "From the distances between all pairs of vertices", Exact),
+        ("estimate", "From the distances of 100 vertices to all others", Estimate),
+    ])
 }
 
 /// Two meshes.
@@ -316,7 +322,9 @@ pub(crate) struct CompareArgs {
     #[arg(long)]
     pub(crate) details: bool,
     #[command(flatten)]
-    pub(crate) form: FormArgs<OfComparison>,
+    pub(crate) method: MethodSettings,
+    #[command(flatten)]
+    pub(crate) form: FormArgs,
     #[command(flatten)]
     pub(crate) limits: LimitArgs,
 }

@@ -1,163 +1,38 @@
-//! Options of the library as flags, made of its schema.
-
-use std::marker::PhantomData;
+//! Options of the library as flags.
 
 use anyhow::{Result, anyhow};
-use canonform::geodesics::Method;
+use canonform::FormOptions;
 use canonform::mesh::RepairOptions;
-use canonform::settings::{Named, NoEffect, OptionGroup, OptionSpec, SCHEMA, Settings};
-use canonform::{DescribeOptions, FormOptions};
+use canonform::settings::{FormSettings, MarchingSettings, MethodSettings, NoEffect, RepairSettings};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
+use clap::{Args, Command};
 
 use super::shared::Common;
 
-/// The groups of options that a command has.
-pub(crate) trait Groups: Clone + std::fmt::Debug {
-    const GROUPS: &'static [OptionGroup];
-}
-
-/// Declares sets of groups.
-macro_rules! groups {
-    ($($name:ident: $($group:ident)+;)+) => {$(
-        #[derive(Debug, Clone)]
-        pub(crate) struct $name;
-
-        impl Groups for $name {
-            const GROUPS: &'static [OptionGroup] = &[$(OptionGroup::$group),+];
-        }
-    )+};
-}
-
-groups! {
-    OfRepair: Repair;
-    OfDistances: Marching;
-    OfForm: Form Marching;
-    OfMaps: Form Marching Maps;
-    OfEmbedding: Method Form Marching Stress;
-    OfComparison: Method Form Marching;
-    OfDescription: Method Form Marching Description;
-}
-
-/// The flags of some groups of options.
-#[derive(Debug, Clone)]
-pub(crate) struct SettingArgs<G> {
-    /// The options that were given.
-    pub(crate) given: Settings,
-    groups: PhantomData<G>,
-}
-
-fn options_of<G: Groups>() -> impl Iterator<Item = &'static OptionSpec> {
-    SCHEMA.iter().filter(|option| G::GROUPS.contains(&option.group))
-}
-
-/// The name of an option as a flag.
-fn flag(name: &str) -> String {
-    format!("--{}", name.replace('_', "-"))
-}
-
 /// A setting with the values that it may have, as on the command line.
 fn spelled(name: &str, values: &[&str]) -> String {
-    format!("{} {}", flag(name), values.join(" or ")).trim_end().to_owned()
-}
-
-fn heading(group: OptionGroup) -> Option<&'static str> {
-    match group {
-        OptionGroup::Method | OptionGroup::Form => Some("Embedding"),
-        OptionGroup::Marching => Some("Fast marching"),
-        OptionGroup::Repair => Some("Repair"),
-        _ => None,
-    }
-}
-
-fn arg(option: &'static OptionSpec) -> Arg {
-    let help = option.help(flag);
-    let arg = Arg::new(option.name)
-        .long(option.name.replace('_', "-"))
-        .help_heading(heading(option.group))
-        .hide_short_help(option.is_advanced);
-    let arg = match help.split_once("\n\n") {
-        Some((first, _)) => arg.help(first.to_owned()).long_help(help),
-        None => arg.help(help),
-    };
-    let arg = if option.name == "samples" { arg.short('n') } else { arg };
-    if option.is_switch() {
-        return arg.action(ArgAction::SetTrue);
-    }
-    let names = option.names();
-    let arg = match option.placeholder {
-        "" => arg.value_name(option.name.to_uppercase()),
-        placeholder => arg.value_name(placeholder),
-    };
-    if names.is_empty() {
-        return arg.value_parser(|text: &str| option.check(text).map(|()| text.to_owned()));
-    }
-    arg.value_parser(possible(names))
-}
-
-fn possible(names: impl IntoIterator<Item = (&'static str, &'static str)>) -> PossibleValuesParser {
-    PossibleValuesParser::new(names.into_iter().map(|(name, help)| PossibleValue::new(name).help(help)))
+    let command = MethodSettings::augment_args(Command::new(""));
+    let arg = command.get_arguments().find(|arg| arg.get_id() == name);
+    let flag = arg.and_then(|arg| arg.get_long()).unwrap_or(name);
+    format!("--{flag} {}", values.join(" or ")).trim_end().to_owned()
 }
 
 /// Reads values by their names, each with a line of help.
 pub(crate) fn one_of<T: Clone + Send + Sync + 'static>(
     values: Vec<(&'static str, &'static str, T)>,
 ) -> impl TypedValueParser<Value = T> {
-    possible(values.iter().map(|(name, help, _)| (*name, *help))).try_map(move |chosen| {
+    let names = values.iter().map(|(name, help, _)| PossibleValue::new(*name).help(*help));
+    PossibleValuesParser::new(names).try_map(move |chosen| {
         let found = values.iter().find(|(name, ..)| *name == chosen);
         found.map(|(.., value)| value.clone()).ok_or_else(|| format!("`{chosen}` is unknown"))
     })
-}
-
-/// Reads a distance method by its name.
-pub(crate) fn distance_method() -> impl TypedValueParser<Value = Method> {
-    one_of(Method::table())
-}
-
-impl<G: Groups> Args for SettingArgs<G> {
-    fn augment_args(command: Command) -> Command {
-        command.args(options_of::<G>().map(arg))
-    }
-
-    fn augment_args_for_update(command: Command) -> Command {
-        Self::augment_args(command)
-    }
-}
-
-impl<G: Groups> FromArgMatches for SettingArgs<G> {
-    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        let mut args = Self { given: Settings::default(), groups: PhantomData };
-        args.update_from_arg_matches(matches)?;
-        Ok(args)
-    }
-
-    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
-        for option in options_of::<G>() {
-            let text = match option.is_switch() {
-                true => matches.get_flag(option.name).then_some("true"),
-                false => matches.get_one(option.name).map(String::as_str),
-            };
-            if let Some(text) = text {
-                let wrong = |fault| clap::Error::raw(clap::error::ErrorKind::InvalidValue, fault);
-                self.given.set(option.name, text).map_err(wrong)?;
-            }
-        }
-        Ok(())
-    }
-}
-
-impl<G> SettingArgs<G> {
-    /// A method, with the options of fast marching if it is that.
-    pub(crate) fn distances(&self, method: Method) -> Method {
-        self.given.distances(method)
-    }
 }
 
 /// How meshes are repaired before anything is measured.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct RepairArgs {
     #[command(flatten)]
-    settings: SettingArgs<OfRepair>,
+    settings: RepairSettings,
     /// Exit with code 1 if more than this share of the surface is dropped; results are still written
     #[arg(long, help_heading = "Repair", value_parser = share, default_value_t = MAX_DROPPED, value_name = "SHARE")]
     pub(crate) max_dropped: f64,
@@ -173,37 +48,113 @@ fn share(text: &str) -> Result<f64, String> {
 
 impl RepairArgs {
     pub(crate) fn options(&self) -> RepairOptions {
-        self.settings.given.repair()
+        self.settings.options()
     }
 }
 
-/// Everything that decides the form of a mesh.
+/// Everything that decides the form of a mesh, except the method.
 #[derive(Debug, Clone, Args)]
-pub(crate) struct FormArgs<G: Groups> {
+pub(crate) struct FormArgs {
     #[command(flatten)]
-    pub(crate) settings: SettingArgs<G>,
+    pub(crate) form: FormSettings,
+    #[command(flatten)]
+    pub(crate) marching: MarchingSettings,
     #[command(flatten)]
     pub(crate) repair: RepairArgs,
 }
 
-impl<G: Groups> FormArgs<G> {
+impl FormArgs {
     /// # Errors
     /// Options that do not apply together.
-    pub(crate) fn options(&self, common: &Common) -> Result<FormOptions> {
-        Ok(self.describe_options(common)?.form)
+    pub(crate) fn options(&self, method: &MethodSettings, common: &Common) -> Result<FormOptions> {
+        let options = self.form.options(method, &self.marching, &self.repair.settings);
+        let options = options.map_err(|fault: NoEffect| anyhow!(fault.in_words(spelled)))?;
+        Ok(FormOptions { seed: common.seed, ..options })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use canonform::DescribeOptions;
+    use canonform::settings::{DescriptionSettings, Embedding};
+    use clap::FromArgMatches;
+
+    use super::*;
+
+    #[derive(Debug, Args)]
+    struct All {
+        #[command(flatten)]
+        method: MethodSettings,
+        #[command(flatten)]
+        form: FormArgs,
+        #[command(flatten)]
+        description: DescriptionSettings,
     }
 
-    /// # Errors
-    /// As [`options`](Self::options).
-    pub(crate) fn describe_options(&self, common: &Common) -> Result<DescribeOptions> {
-        let settings = self.settings.given.and(&self.repair.settings.given);
-        let mut options = settings.describe().map_err(|fault: NoEffect| anyhow!(fault.in_words(spelled)))?;
-        options.form.seed = common.seed;
-        Ok(options)
+    fn described(words: &str) -> DescribeOptions {
+        let command = All::augment_args(Command::new("describe").no_binary_name(true));
+        let all =
+            All::from_arg_matches(&command.try_get_matches_from(words.split_whitespace()).unwrap()).unwrap();
+        let FormArgs { form, marching, repair } = &all.form;
+        all.description.options(form.options(&all.method, marching, &repair.settings).unwrap())
     }
 
-    /// The value chosen for an option, or its default.
-    pub(crate) fn chosen<T: Named + Default>(&self, name: &str) -> T {
-        self.settings.given.chosen(name).unwrap_or_default()
+    /// Every option of a description with a value that is not the default, and what has to be beside it.
+    const OTHERS: [(&str, &str); 20] = [
+        ("--method spectral", ""),
+        ("--samples 50", ""),
+        ("--dim 2", ""),
+        ("--geodesic exact", ""),
+        ("--update planar", ""),
+        ("--obtuse ignore", ""),
+        ("--components bridge", ""),
+        ("--weld 0.5", ""),
+        ("--rank 30", ""),
+        ("--sampling random", ""),
+        ("--first-sample 7", ""),
+        ("--regularization cur", ""),
+        ("--alpha paper", "--regularization rpi"),
+        ("--sigma median", "--method kpca"),
+        ("--eigenvectors 60", "--method spectral"),
+        ("--mu inf", "--method spectral"),
+        ("--iterations 5", "--method smacof"),
+        ("--tolerance 0.1", "--method smacof"),
+        ("--points 500", ""),
+        ("--size", ""),
+    ];
+
+    #[test]
+    fn every_option_of_a_description_is_stored_and_its_default_is_stated() {
+        let command = All::augment_args(Command::new("describe"));
+        let options = command.get_arguments().filter(|arg| arg.get_long() != Some("max-dropped"));
+        for option in options {
+            let flag = format!("--{}", option.get_long().unwrap());
+            let is_of = |(other, _): &(&str, &str)| other.split(' ').next() == Some(&flag);
+            let (other, beside) = OTHERS.into_iter().find(is_of).unwrap_or_else(|| panic!("{flag}"));
+            let usual = described(beside);
+            let changed = described(&format!("{beside} {other}"));
+            assert_ne!(changed.text(), usual.text(), "{flag}");
+            assert_eq!(DescribeOptions::from_text(&changed.text()), Some(changed), "{flag}");
+            let help = option.get_help().unwrap().to_string();
+            let stated = help.split_once("[default: ").map(|(_, default)| default.trim_end_matches(']'));
+            match stated {
+                Some(default) if !default.contains(' ') => {
+                    assert_eq!(
+                        described(&format!("{beside} {flag} {default}")),
+                        usual,
+                        "the default of {flag}"
+                    );
+                }
+                Some(_) => assert!(["--rank", "--first-sample"].contains(&flag.as_str()), "{flag}"),
+                None => assert!(["--weld", "--size"].contains(&flag.as_str()), "{flag} states no default"),
+            }
+        }
+    }
+
+    #[test]
+    fn settings_without_effect_are_told_by_their_flags() {
+        let settings = MethodSettings { first: Some(1), method: Some(Embedding::Mds), ..Default::default() };
+        let words = settings.options().unwrap_err().in_words(spelled);
+        assert!(words.starts_with("--first-sample has no effect with --method mds; "), "{words}");
     }
 }

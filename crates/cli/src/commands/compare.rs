@@ -49,7 +49,7 @@ fn names(PairArgs { a: path_a, b: path_b }: &PairArgs) -> [String; 2] {
 
 /// Embeds, aligns and compares two meshes.
 pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
-    let options = args.form.options(common)?;
+    let options = args.form.options(&args.method, common)?;
     options.validate()?;
     if let Some(path) = &args.residual_mesh {
         check_format(path, "a coloured mesh", &writable(Content::Field).collect::<Vec<_>>())?;

@@ -56,10 +56,11 @@ struct ShapeJson {
 
 /// Embeds one mesh, or each of several.
 pub(crate) fn embed(args: &EmbedArgs, common: &Common) -> Result<ExitCode> {
-    let options = args.form.options(common)?;
-    let against = args.stress_against.map(|method| args.form.settings.distances(method));
-    let stress = StressOptions { choice: args.form.chosen("stress"), against, seed: common.seed };
-    if args.form.settings.given.is_given("samples") && options.method == EmbedMethod::Classical {
+    let options = args.form.options(&args.method, common)?;
+    let against = args.stress_against.map(|method| args.form.marching.method(method));
+    let choice = args.stress.stress.unwrap_or_default();
+    let stress = StressOptions { choice, against, seed: common.seed };
+    if args.form.form.n_landmarks.is_some() && options.method == EmbedMethod::Classical {
         base::terminal::note(
             "note: -n has no effect with --method mds, which measures all pairs of vertices",
         );

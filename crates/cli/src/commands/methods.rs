@@ -7,8 +7,9 @@ use super::embed::normalized_text;
 use anyhow::Result;
 use base::Budget;
 use base::terminal::{Bars, with_peak_bytes};
-use canonform::geodesics::{Method, Sampling, Variance};
+use canonform::geodesics::{Method, Sampling};
 use canonform::nmds::{Regularization, RpiAlpha};
+use canonform::settings::MethodSettings;
 use canonform::surface::VertexId;
 use canonform::{
     DISTANCES_LIMIT, EmbedMethod, FormOptions, MethodFacts, MethodsReport, Observer, Samples, StressOptions,
@@ -23,7 +24,7 @@ use crate::output::{report, table_of};
 pub(crate) fn methods(args: &MethodsArgs, common: &Common) -> Result<ExitCode> {
     let stress = StressOptions { choice: args.stress, against: None, seed: common.seed };
     let surface = read_surface(&args.mesh, &args.form.repair, common)?;
-    let options = args.form.options(common)?;
+    let options = args.form.options(&MethodSettings::default(), common)?;
     let variants = variants(&options);
     let bars = Bars::with_budget(common.quiet, args.limits.budget());
     announce(&surface, &options, &variants, &bars.budget()).map_err(|fault| named(&args.mesh, fault))?;
@@ -85,7 +86,7 @@ fn variants(shared: &FormOptions) -> Vec<(&'static str, FormOptions)> {
         ("--regularization none", nmds(Regularization::None)),
         ("--regularization cur", nmds(Regularization::Cur { rank: None })),
         ("--sampling random", sampled(Sampling::Random)),
-        ("--sampling min-variance", sampled(Sampling::Incremental(Variance::Least))),
+        ("--sampling min-variance", sampled(Sampling::MinVariance)),
         ("--geodesic bfs", FormOptions { geodesic: Method::BreadthFirst, ..shared.clone() }),
     ];
     let others = EmbedMethod::all().into_iter().filter(|method| *method != EmbedMethod::default());

@@ -3,7 +3,11 @@
 use std::process::Stdio;
 
 use canonform::mesh::shapes;
-use canonform::settings::{OptionGroup, SCHEMA};
+use canonform::settings::{
+    DescriptionSettings, FormSettings, MapSettings, MarchingSettings, MethodSettings, RepairSettings,
+    StressSettings,
+};
+use clap::{Arg, Args};
 use serde_json::Value;
 
 use crate::support::{Workplace, assert_keys, broken_ring, one_object, program, read_npy, ring};
@@ -325,35 +329,57 @@ fn completions_cover_every_shell() {
 fn help_mentions_every_option() {
     let place = Workplace::new();
     let front = place.done("--help").out;
-    let embedding = [OptionGroup::Method, OptionGroup::Form, OptionGroup::Marching, OptionGroup::Repair];
-    let of = |more: &[OptionGroup]| [&embedding[..], more].concat();
-    for (command, groups, words) in [
+    let of = |augment: fn(clap::Command) -> clap::Command| {
+        let command = augment(clap::Command::new("options"));
+        command.get_arguments().cloned().collect::<Vec<Arg>>()
+    };
+    let form = [
+        of(FormSettings::augment_args),
+        of(MarchingSettings::augment_args),
+        of(RepairSettings::augment_args),
+    ]
+    .concat();
+    let embedding = [of(MethodSettings::augment_args), form.clone()].concat();
+    let repair = of(RepairSettings::augment_args);
+    for (command, options, words) in [
         (
             "geodesic",
-            vec![OptionGroup::Marching, OptionGroup::Repair],
+            [of(MarchingSettings::augment_args), repair.clone()].concat(),
             "--source --nearest --max-distance \
             --path-to --all-pairs --memory 17-42@0.3 f8@2:1:1 --method -o fast-marching dijkstra bfs",
         ),
-        ("embed", of(&[OptionGroup::Stress]), "-o -n --stress-against --timeout"),
-        ("compare", of(&[]), "--threshold --exit-code same-class"),
+        (
+            "embed",
+            [embedding.clone(), of(StressSettings::augment_args)].concat(),
+            "-o -n --stress-against --timeout",
+        ),
+        ("compare", embedding.clone(), "--threshold --exit-code same-class"),
         (
             "render",
-            vec![OptionGroup::Repair],
+            repair,
             "-o --size --view principal --up --background transparent \
             --color --field --row --distance-from --isolines --range --no-bar --form .npy .csv",
         ),
-        ("index build", of(&[OptionGroup::Description]), "--labels --prune --shard --max-vertices"),
-        ("match", vec![OptionGroup::Form, OptionGroup::Maps], "-o .npy .csv .ply .png"),
+        (
+            "index build",
+            [embedding, of(DescriptionSettings::augment_args)].concat(),
+            "--labels --prune --shard --max-vertices",
+        ),
+        ("match", [form, of(MapSettings::augment_args)].concat(), "-o .npy .csv .ply .png"),
         ("completions", vec![], "bash zsh fish"),
     ] {
         assert!(front.contains(command.split(' ').next().unwrap()), "no `{command}` in {front}");
         let page = place.done(format!("{command} --help-all")).out;
         let words = words.split_whitespace().chain(["--json", "--threads", "--seed", "--details"]);
         words.for_each(|word| assert!(page.contains(word), "{command} --help-all does not mention {word}"));
-        for option in SCHEMA.iter().filter(|option| groups.contains(&option.group)) {
-            let flag = format!("--{}", option.name.replace('_', "-"));
-            let names = option.names().into_iter().map(|(name, _)| name.to_owned());
-            for word in names.chain([flag, option.placeholder.to_owned()]) {
+        for option in options {
+            let takes_values = option.get_action().takes_values();
+            let names = option.get_possible_values().into_iter().filter(|_| takes_values);
+            let names = names.map(|value| value.get_name().to_owned());
+            let placeholders =
+                option.get_value_names().unwrap_or_default().iter().map(|name| name.to_string());
+            let flag = format!("--{}", option.get_long().unwrap());
+            for word in names.chain(placeholders).chain([flag]) {
                 assert!(page.contains(&word), "{command} --help-all does not mention {word}");
             }
         }

@@ -1,10 +1,6 @@
 //! Kinds of signatures, and their values.
 
-use std::str::FromStr;
-
 use serde::{Deserialize, Serialize};
-
-use crate::error::DescriptorError;
 
 /// The kinds of signatures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -57,19 +53,6 @@ impl SignatureKind {
     /// Number of values, without the size.
     pub const fn n_values(self) -> usize {
         TABLE[self as usize].1
-    }
-}
-
-impl FromStr for SignatureKind {
-    type Err = DescriptorError;
-
-    fn from_str(name: &str) -> Result<Self, Self::Err> {
-        Self::ALL.into_iter().find(|kind| kind.name() == name).ok_or_else(|| {
-            DescriptorError::UnknownSignature {
-                name: name.to_owned(),
-                known: Self::ALL.map(Self::name).join(", "),
-            }
-        })
     }
 }
 

@@ -60,29 +60,38 @@ pub(crate) use update::Stencil;
 
 /// The local solver of fast marching.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum Update {
+    /// Triangles hand on where the source lies in their plane
+    ///
     /// Every triangle knows where the source, or the vertex where the path bent last, lies in its plane, and hands
     /// that on to its neighbours. After Trettner, Bommes and Kobbelt 2021 (`trettner2021`), with limits to what a
     /// triangle sees. Exact in the plane, and its error falls when flat triangles are subdivided. It needs no treatment
     /// of obtuse corners: [`ObtuseTreatment::Unfold`] leaves them as they are.
     #[default]
     VirtualSource,
-    /// The front in a triangle is a straight line. Kimmel and Sethian 1998 (`kimmel1998`), as in the paper: slower and
-    /// less accurate.
+    /// The front in a triangle is a straight line (Kimmel and Sethian)
+    ///
+    /// `kimmel1998`, as in the paper: slower and less accurate.
     Planar,
 }
 
 /// The treatment of corners wider than 90 degrees, which a front may reach before both ends of their base.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum ObtuseTreatment {
-    /// Flip edges inside the surface until few such corners are left (the intrinsic Delaunay triangulation).
+    /// Flip interior edges until few are left
+    ///
+    /// The result is the intrinsic Delaunay triangulation.
     #[default]
     Flip,
-    /// Unfold the surface behind the corner and split it, as Kimmel and Sethian do.
+    /// Unfold the surface across the angle and split it (Kimmel and Sethian)
     Unfold,
-    /// Nothing: faster to set up, less accurate.
+    /// Treat them like any other
+    ///
+    /// Faster to set up, less accurate.
     Ignore,
 }
 

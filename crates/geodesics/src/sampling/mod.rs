@@ -25,10 +25,16 @@ pub use spread::SpreadSamples;
 /// }
 /// # Ok::<(), canonform_geodesics::GeodesicError>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize, strum::IntoStaticStr,
+)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
+#[strum(serialize_all = "kebab-case")]
 pub enum Sampling {
-    /// Farthest point sampling: each landmark is the vertex farthest from those before it (Procedure 1 of the paper).
+    /// Each sample is the vertex farthest from the earlier ones
+    ///
+    /// Farthest point sampling, Procedure 1 of the paper.
     ///
     /// | paper | here | shape | meaning |
     /// |---|---|---|---|
@@ -43,33 +49,28 @@ pub enum Sampling {
     /// `1/2 + ... + 1/n` additional runs choose the landmarks in advance. The result is the same.
     #[default]
     Farthest,
-    /// Random sampling, the baseline: every set of n vertices is equally likely.
+    /// Vertices drawn uniformly at random
+    ///
+    /// The baseline: every set of n vertices is equally likely.
     ///
     /// Cost: one run of the solver per landmark, in parallel; `O(p)` to start.
     Random,
+    /// Each sample is the vertex whose squared distances to the earlier ones vary least
+    ///
     /// Incremental sampling by variance ("Min-Var"; Yu, Zhao, Zhang and Yang 2012, `yu2012`): two landmarks are drawn at
-    /// random, then each is the vertex `j` with the least (or greatest) variance of the squared distances `E_ij` to the
-    /// landmarks `i` so far.
+    /// random, then each is the vertex `j` with the least variance of the squared distances `E_ij` to the landmarks `i` so
+    /// far.
     ///
     /// A vertex with equal squared distances to all landmarks is central. So the least variance avoids the tips of a
     /// surface and soon takes neighbours of landmarks: the samples are close together, and the stress is far above that
     /// of farthest point sampling.
     ///
     /// Cost: one run of the solver and `O(p)` per landmark, as means and variances are updated (Welford 1962).
-    #[serde(untagged)]
-    Incremental(Variance),
-}
-
-/// The rule by which [`Sampling::Incremental`] takes the next vertex.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
-pub enum Variance {
-    /// The vertex whose squared distances to the landmarks vary least, as in Yu et al.
-    #[default]
-    #[serde(rename = "min-variance")]
-    Least,
-    /// The vertex whose squared distances vary most: the opposite rule, for comparison.
-    #[serde(rename = "max-variance")]
-    Greatest,
+    MinVariance,
+    /// Each sample is the vertex whose squared distances to the earlier ones vary most
+    ///
+    /// The opposite rule, for comparison.
+    MaxVariance,
 }
 
 /// The first landmark.
@@ -86,38 +87,12 @@ pub enum FirstSample {
 
 impl Sampling {
     /// All rules.
-    pub const ALL: [Self; 4] = [
-        Self::Farthest,
-        Self::Random,
-        Self::Incremental(Variance::Least),
-        Self::Incremental(Variance::Greatest),
-    ];
+    pub const ALL: [Self; 4] = [Self::Farthest, Self::Random, Self::MinVariance, Self::MaxVariance];
 
     /// The name on the command line and in records.
     #[must_use]
     pub fn name(self) -> &'static str {
-        self.entry().0
-    }
-
-    /// How landmarks are chosen, in one line.
-    #[must_use]
-    pub fn summary(self) -> &'static str {
-        self.entry().1
-    }
-
-    fn entry(self) -> (&'static str, &'static str) {
-        match self {
-            Self::Farthest => ("farthest", "Each sample is the vertex farthest from the earlier ones"),
-            Self::Random => ("random", "Vertices drawn uniformly at random"),
-            Self::Incremental(Variance::Least) => (
-                "min-variance",
-                "Each sample is the vertex whose squared distances to the earlier ones vary least",
-            ),
-            Self::Incremental(Variance::Greatest) => (
-                "max-variance",
-                "Each sample is the vertex whose squared distances to the earlier ones vary most",
-            ),
-        }
+        self.into()
     }
 
     /// Starts with the landmark `first`; `seed` determines what is drawn at random.
@@ -254,9 +229,8 @@ mod tests {
     #[test]
     fn every_landmark_has_the_least_or_greatest_variance() {
         let solver = Dijkstra::new(&icosphere(2).intrinsic(), &());
-        for (variance, sign) in [(Variance::Least, 1.0), (Variance::Greatest, -1.0)] {
-            let mut sampler =
-                Sampling::Incremental(variance).start(&solver, FirstSample::default(), 5).unwrap();
+        for (sampling, sign) in [(Sampling::MinVariance, 1.0), (Sampling::MaxVariance, -1.0)] {
+            let mut sampler = sampling.start(&solver, FirstSample::default(), 5).unwrap();
             sampler.extend_to(12).unwrap();
             let distances = sampler.distances(12).unwrap();
             for n in 2..12 {
@@ -268,7 +242,7 @@ mod tests {
                 let taken = &distances.landmarks()[..n];
                 let free = (0..162).filter(|v| !taken.contains(v));
                 let best = free.map(spread).fold(f64::INFINITY, f64::min);
-                assert!(spread(distances.landmarks()[n]) <= best + 1e-12, "{variance:?} {n}");
+                assert!(spread(distances.landmarks()[n]) <= best + 1e-12, "{sampling:?} {n}");
             }
         }
     }
@@ -280,20 +254,20 @@ mod tests {
         let middle = |v: usize| (strip.positions[v].x - 20.0).abs() < 1.1;
         let solver = Dijkstra::new(&strip.intrinsic(), &());
         let at_far_end = |seed: &u64| {
-            let sampling = Sampling::Incremental(Variance::Least);
-            let mut sampler = sampling.start(&solver, FirstSample::Vertex(VertexId(0)), *seed).unwrap();
+            let mut sampler =
+                Sampling::MinVariance.start(&solver, FirstSample::Vertex(VertexId(0)), *seed).unwrap();
             sampler.extend_to(2).unwrap();
             sampler.distances(2).unwrap().landmarks()[1] % 41 == 40
         };
         for seed in (0..).filter(at_far_end).take(3) {
-            let third = |variance| {
+            let third = |sampling: Sampling| {
                 let first = FirstSample::Vertex(VertexId(0));
-                let mut sampler = Sampling::Incremental(variance).start(&solver, first, seed).unwrap();
+                let mut sampler = sampling.start(&solver, first, seed).unwrap();
                 sampler.extend_to(3).unwrap();
                 sampler.distances(3).unwrap().landmarks()[2]
             };
-            assert!(middle(third(Variance::Least)));
-            assert!(!middle(third(Variance::Greatest)));
+            assert!(middle(third(Sampling::MinVariance)));
+            assert!(!middle(third(Sampling::MaxVariance)));
         }
     }
 }

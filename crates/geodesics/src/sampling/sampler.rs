@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use surface::VertexId;
 
-use super::{FirstSample, Sampling, Variance};
+use super::{FirstSample, Sampling};
 use crate::error::GeodesicError;
 use crate::solver::{DistanceSolver, PrunedSolver};
 
@@ -45,7 +45,8 @@ enum Rule {
     /// All vertices in the order in which they are taken.
     Random { order: Vec<usize> },
     Incremental {
-        variance: Variance,
+        /// 1 for the least variance, -1 for the greatest.
+        sign: f64,
         second: Option<usize>,
         /// For every vertex, the mean of its squared distances to the landmarks and the sum of their squared deviations.
         moments: Vec<[f64; 2]>,
@@ -60,11 +61,8 @@ impl Rule {
             Self::Random { order } => return order[taken..n].to_vec(),
             Self::Farthest { nearest } => Some(farthest(nearest)).filter(|next| nearest[*next] > 0.0),
             Self::Incremental { second, .. } if taken == 1 => *second,
-            Self::Incremental { variance, moments, is_landmark, .. } => {
-                let better = |v: usize, best: usize| match variance {
-                    Variance::Least => moments[v][1] < moments[best][1],
-                    Variance::Greatest => moments[v][1] > moments[best][1],
-                };
+            Self::Incremental { sign, moments, is_landmark, .. } => {
+                let better = |v: usize, best: usize| sign * moments[v][1] < sign * moments[best][1];
                 let free = (0..moments.len()).filter(|&v| !is_landmark[v]);
                 free.reduce(|best, v| if better(v, best) { v } else { best })
             }
@@ -122,8 +120,8 @@ impl<'a> Sampler<'a> {
                 }
                 Rule::Random { order }
             }
-            Sampling::Incremental(variance) => Rule::Incremental {
-                variance,
+            Sampling::MinVariance | Sampling::MaxVariance => Rule::Incremental {
+                sign: if sampling == Sampling::MinVariance { 1.0 } else { -1.0 },
                 // Any other vertex: those from the first on move up by one.
                 second: (p > 1).then(|| below(p - 1, &mut rng)).map(|v| v + usize::from(v >= first)),
                 moments: vec![[0.0; 2]; p],

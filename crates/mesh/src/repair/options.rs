@@ -16,15 +16,19 @@ pub struct RepairOptions {
 
 /// What happens to a mesh with several components.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum ComponentPolicy {
-    /// Keep only the component with the largest area.
+    /// Keep the component with the largest area
     #[default]
     Largest,
-    /// Keep all components and join them by straight links between vertices: a minimum spanning tree, and links all
-    /// along gaps that are no wider than the boundary edges beside them.
+    /// Join the components by links, all along narrow gaps
+    ///
+    /// Links are straight, between vertices: a minimum spanning tree, and links all along gaps that are no wider than the boundary edges beside them.
     Bridge,
-    /// Fail with [`MeshError::Disconnected`](crate::MeshError::Disconnected).
+    /// Refuse the mesh
+    ///
+    /// The error is [`MeshError::Disconnected`](crate::MeshError::Disconnected).
     Error,
 }
 

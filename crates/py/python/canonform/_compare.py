@@ -156,7 +156,9 @@ def compare(
 
     The relation does not depend on the other options, which are those of `Surface.canonical_form`.
     """
-    settings = options_of(**locals())
+    settings = options_of(
+        n_landmarks=n_landmarks, method=method, geodesic=geodesic, seed=seed, timeout=timeout, memory=memory
+    )
     a, b = surface_of(a), surface_of(b)
     called = names or (a._name or "the first", b._name or "the second")
     with shown(progress) as report:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from . import _canonform, _html
 from ._arrays import Floats, Ints
-from ._settings import Progress, StressChoice, encoded, shown
+from ._settings import Progress, StressChoice, shown
 from ._stored import Constant
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ class Form(Constant):
     """
 
     def __init__(
-        self, inner: _canonform.Form | None, surface: Surface, settings: str, name: str = "", coarse: Form | None = None
+        self, inner: _canonform.Form | None, surface: Surface, settings: dict[str, Any], name: str = "", coarse: Form | None = None
     ) -> None:
         self._made = inner
         self._surface, self._settings, self._coarse = surface, settings, coarse
@@ -47,7 +47,7 @@ class Form(Constant):
         if self._made is None:
             surface = self._surface._inner
             # Without the limits of the call that made it, which do not change the form.
-            settings = json.dumps({k: v for k, v in json.loads(self._settings).items() if k not in ("timeout", "memory")})
+            settings = {**self._settings, "timeout": None, "memory": None}
             coarse = self._coarse
             finer = None if coarse is None else surface.finer(coarse._inner, settings, None)
             self._made = finer or surface.canonical_form(settings, None, None)
@@ -176,7 +176,7 @@ class Form(Constant):
 
         The meshes are in the same place: each landmark is the nearest vertex of the finer mesh. Needs method="nmds".
         """
-        settings = encoded(stress=stress, seed=seed)
+        settings = {"stress": stress, "seed": seed}
         with shown(progress) as report:
             inner = surface._inner.finer(self._inner, settings, report)
         return Form(inner, surface, settings, self._name, self)

@@ -28,7 +28,6 @@ from ._settings import (
     RelationKind,
     SignatureKind,
     Weld,
-    encoded,
     renamed,
     shown,
     whole,
@@ -309,7 +308,10 @@ class Index(Stored):
         ShapeIndexError
             If the file is not an index, or was made with other options.
         """
-        settings = options_of(**locals())
+        settings = options_of(
+            n_landmarks=n_landmarks, n_points=n_points, size=size, method=method, geodesic=geodesic, components=components,
+            weld=weld, seed=seed, max_vertices=max_vertices, timeout=timeout, memory=memory,
+        )  # fmt: skip
         meshes, labels = _in_files(meshes, path, labels, replace=True)
         with shown(progress) as update, _label_file(labels) as label_file, _dataset(meshes) as (dataset, name):
             report = json.loads(_canonform.Index.build(dataset, os.fspath(path), label_file, prune, shard, None, settings, update))
@@ -360,7 +362,7 @@ class Index(Stored):
         if label is not None and labels is not None:
             raise OptionError("label= has no effect for meshes that come with a class; leave one of them out")
         paths = [meshes] if isinstance(meshes, (str, os.PathLike)) else list(meshes)
-        settings = encoded(max_vertices=max_vertices, timeout=timeout, memory=memory)
+        settings = options_of(max_vertices=max_vertices, timeout=timeout, memory=memory)
         with shown(progress) as update, _label_file(labels) as label_file:
             report = _canonform.Index.add(
                 self.path, [os.fspath(path) for path in paths], label, label_file, replace, settings, update

@@ -100,7 +100,7 @@ class SurfaceMap(Stored):
         arrays: Sequence[_Arrays | None],
         shapes: tuple[Surface, Surface],
         landmarks: Ints,
-        settings: str,
+        settings: dict[str, Any],
     ) -> None:
         assert arrays[0] is not None
         self.vertices, self.vertex_confidence, self._functional, self._partners = arrays[0]
@@ -249,7 +249,7 @@ class Match(Stored):
         colors: NDArray[np.uint8],
         shapes: tuple[Surface, Surface],
         landmarks: Ints,
-        settings: str,
+        settings: dict[str, Any],
     ) -> None:
         found = zip(report["maps"], arrays, strict=True)
         self.maps = [SurfaceMap(*entry, shapes, landmarks, settings) for entry in found]

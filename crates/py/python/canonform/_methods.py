@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from functools import lru_cache
 from typing import Any, ClassVar, TypeAlias
 
 from . import _canonform
-from ._settings import Bandwidth, DistanceName, EmbeddingName, Obtuse, Regularization, Sampling, Update, encoded
+from ._settings import Bandwidth, DistanceName, EmbeddingName, Obtuse, Regularization, Sampling, Update, n_bytes
 
 
 class Options:
@@ -17,7 +16,7 @@ class Options:
     _name: ClassVar[str]
 
     def __post_init__(self) -> None:
-        _canonform.check_options(encoded(**self.settings()))
+        _canonform.check_options(self.settings())
 
     def settings(self) -> dict[str, Any]:
         """The method and its options as keywords."""
@@ -180,26 +179,9 @@ Geodesic: TypeAlias = DistanceName | FastMarching
 """How distances are measured."""
 
 
-def options_of(**arguments: Any) -> str:
-    """The options among the arguments of a call, as JSON, with those of methods beside their names."""
+def options_of(**arguments: Any) -> dict[str, Any]:
+    """Arguments of a call, with the options of methods beside their names."""
     given: dict[str, Any] = {}
     for name, value in arguments.items():
-        if isinstance(value, Options) and value._of == name:
-            given |= value.settings()
-        elif name in _OPTIONS:
-            given[name] = value
-    return encoded(**given)
-
-
-def way_of(geodesic: Geodesic) -> str:
-    """How distances are measured, as JSON."""
-    return _way(geodesic) if isinstance(geodesic, (str, FastMarching)) else options_of(geodesic=geodesic)
-
-
-@lru_cache(maxsize=64)
-def _way(geodesic: Geodesic) -> str:
-    # Making the text would be a good part of a short call.
-    return options_of(geodesic=geodesic)
-
-
-_OPTIONS = frozenset(name for name, *_ in _canonform.options()[1])
+        given |= value.settings() if isinstance(value, Options) and value._of == name else {name: value}
+    return given if given.get("memory") is None else {**given, "memory": n_bytes(given["memory"])}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -50,21 +49,6 @@ Landmarks: TypeAlias = int | Literal["auto"]
 """A number of landmarks, or as many as are needed."""
 
 _SIZES = {"": 0, "K": 1, "M": 2, "G": 3, "T": 4}
-
-
-def encoded(**settings: Any) -> str:
-    """The settings that were given, as JSON."""
-    given = {name: _plain(name, value) for name, value in settings.items() if value is not None}
-    return json.dumps({**given, "memory": n_bytes(given["memory"])} if "memory" in given else given)
-
-
-def _plain(name: str, value: Any) -> Any:
-    # NumPy numbers.
-    value = value.item() if hasattr(value, "item") else value
-    if not isinstance(value, (bool, int, float, str)):
-        raise OptionError(f"{name}={value!r} is not possible: give a number, text or a truth value")
-    # JSON has no infinity.
-    return "inf" if isinstance(value, float) and math.isinf(value) and value > 0 else value
 
 
 def whole(name: str, value: Any, least: int = 0) -> int:

@@ -12,7 +12,7 @@ import numpy as np
 from ._arrays import straight
 from .errors import CanonformError
 
-_VERSION = 1
+_VERSION = 2
 
 
 class Stored:

@@ -17,7 +17,7 @@ from . import _canonform, _html
 from ._arrays import Floats, Ints, mesh_of, straight
 from ._field import DistanceField
 from ._form import Form
-from ._methods import Embedding, Geodesic, options_of, way_of
+from ._methods import Embedding, Geodesic, options_of
 from ._operators import ClosestPoints, EdgePoint, Eigenbasis, FacePoint, parsed
 from ._settings import (
     OF_FORMS,
@@ -29,7 +29,6 @@ from ._settings import (
     SignatureKind,
     StressChoice,
     Weld,
-    encoded,
     number,
     renamed,
     shown,
@@ -183,7 +182,7 @@ class Surface(Constant):
         weld: Weld = "seams",
     ) -> None:
         vertices, triangles = mesh_of(mesh, faces)
-        self._inner = _canonform.Surface(vertices, triangles, encoded(components=components, weld=weld))
+        self._inner = _canonform.Surface(vertices, triangles, options_of(components=components, weld=weld))
         self._name = ""
         self._warn_of_loss()
 
@@ -193,7 +192,7 @@ class Surface(Constant):
 
         Raises `MissingFileError`, `FileError` and `MeshError`.
         """
-        inner = _canonform.Surface.read(os.fspath(path), encoded(components=components, weld=weld))
+        inner = _canonform.Surface.read(os.fspath(path), options_of(components=components, weld=weld))
         surface = cls._of(inner, os.path.basename(os.fspath(path)))
         surface._warn_of_loss()
         return surface
@@ -290,7 +289,7 @@ class Surface(Constant):
         points = _several(sources, self.n_vertices)
         if not points:
             raise PointError("there are no sources; give at least one point")
-        return self._inner.distances(points, way_of(geodesic), number("max_distance", max_distance, 0))
+        return self._inner.distances(points, options_of(geodesic=geodesic), number("max_distance", max_distance, 0))
 
     @_of_distances
     def distances_many(
@@ -307,7 +306,7 @@ class Surface(Constant):
         """
         with shown(progress) as report:
             return self._inner.distances_many(
-                _several(sources, self.n_vertices), way_of(geodesic), number("max_distance", max_distance, 0), report
+                _several(sources, self.n_vertices), options_of(geodesic=geodesic), number("max_distance", max_distance, 0), report
             )
 
     @overload
@@ -326,7 +325,7 @@ class Surface(Constant):
         single = isinstance(b, (int, str, np.integer, EdgePoint, FacePoint))
         [source] = _several(a, self.n_vertices)
         ends = _several(b, self.n_vertices)
-        paths = self._inner.paths(source, ends, way_of(geodesic))
+        paths = self._inner.paths(source, ends, options_of(geodesic=geodesic))
         found = [Path(points, list(map(parsed, at)), along, length) for points, at, along, length in paths]
         return found[0] if single else found
 
@@ -354,7 +353,7 @@ class Surface(Constant):
             Vertex numbers of the input.
         """
         with shown(progress) as report:
-            return self._inner.farthest_points(whole("n_points", n_points), some_whole("first", first), way_of(geodesic), report)
+            return self._inner.farthest_points(whole("n_points", n_points), some_whole("first", first), options_of(geodesic=geodesic), report)
 
     @renamed(landmarks="n_landmarks=", method="geodesic=", **OF_MARCHING)
     def distance_field(
@@ -379,7 +378,7 @@ class Surface(Constant):
         """
         with shown(progress) as report:
             inner = _canonform.DistanceField.build(
-                self._inner, whole("n_landmarks", n_landmarks), some_whole("rank", rank), way_of(geodesic), report
+                self._inner, whole("n_landmarks", n_landmarks), some_whole("rank", rank), options_of(geodesic=geodesic), report
             )
         return DistanceField(inner)
 
@@ -431,7 +430,10 @@ class Surface(Constant):
             If an option is not possible, or has no effect beside the others.
         EmbeddingError, LimitError
         """
-        settings = options_of(**locals())
+        settings = options_of(
+            n_landmarks=n_landmarks, method=method, n_components=n_components, geodesic=geodesic,
+            stress=stress, seed=seed, timeout=timeout, memory=memory,
+        )  # fmt: skip
         with shown(progress) as report:
             earlier = None if reuse is None else reuse._inner
             inner = self._inner.canonical_form(settings, earlier, report)
@@ -459,7 +461,7 @@ class Surface(Constant):
             float32 for "fused", else float64. It is computed once and kept.
         """
         with shown(progress) as report:
-            return self._inner.signature(word("kind", kind), encoded(n_landmarks=n_landmarks, size=size), report)
+            return self._inner.signature(word("kind", kind), options_of(n_landmarks=n_landmarks, size=size), report)
 
     def laplacian(self, *, kind: LaplacianKind = "intrinsic") -> sparse.csr_array:
         """The stiffness matrix, sparse, symmetric, positive semidefinite: shape (n, n). Needs SciPy.

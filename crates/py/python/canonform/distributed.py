@@ -131,7 +131,10 @@ def build_index(
     MeshError
         If there are no meshes, or none of them can be described.
     """
-    settings = options_of(**locals())
+    settings = options_of(
+        n_landmarks=n_landmarks, n_points=n_points, size=size, method=method, geodesic=geodesic, components=components,
+        weld=weld, seed=seed, max_vertices=max_vertices, timeout=timeout, memory=memory,
+    )  # fmt: skip
     out = os.path.abspath(out)
     place = os.path.abspath(shards if shards is not None else f"{out}.shards")
     meshes, labels = _in_files(meshes, out, labels, replace=True)
@@ -160,7 +163,7 @@ def _build_index(
     client: Client,
     out: str,
     labels: Any,
-    settings: str,
+    settings: dict[str, Any],
     n_batches: int | None,
     retries: int,
     place: str,
@@ -531,7 +534,7 @@ def _dask() -> Any:
 
 
 def _describe(
-    dataset: str, shapes: list[tuple[str, str, str]], place: str, label_file: str | None, settings: str
+    dataset: str, shapes: list[tuple[str, str, str]], place: str, label_file: str | None, settings: dict[str, Any]
 ) -> tuple[str, dict[str, Any]]:
     """Makes the index of a batch, on a worker. Returns its path and report."""
     _use_threads_of_worker()

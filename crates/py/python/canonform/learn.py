@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _canonform
 from ._arrays import Floats, Ints
-from ._settings import Landmarks, Regularization, encoded, unmasked, whole
+from ._settings import Landmarks, Regularization, unmasked, whole
 from .errors import CanonformError, OptionError
 
 try:
@@ -159,7 +159,7 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         else:
             n_landmarks = whole("n_landmarks", self.n_landmarks, 1)
         landmarks, columns = taken.first(n_landmarks)
-        found = _canonform.nystrom(columns, landmarks.tolist(), encoded(**{**self._settings(), "rank": rank}))
+        found = _canonform.nystrom(columns, landmarks.tolist(), {**self._settings(), "rank": rank})
         self.embedding_, self.eigenvalues_, self.negative_mass_, self.rank_, self._extension = found
         self.landmarks_ = landmarks
         self._n_fitted = n
@@ -235,7 +235,7 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
     def _searched(self, X: Any, taken: _Landmarks) -> tuple[int, int | None]:
         """Takes landmarks until they are enough; their number, and the best rank for them."""
         seed = int(check_random_state(self.random_state).randint(2**31 - 1)) if self.random_state is not None else 0
-        settings = encoded(**self._settings())
+        settings = self._settings()
         limit = min(_MOST_LANDMARKS, len(X))
 
         def columns(n: int) -> tuple[list[int], Floats]:

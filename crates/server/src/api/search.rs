@@ -13,6 +13,8 @@ use canonform::{
     is_archive_name, single_mesh,
 };
 use report::viewer::Geometry;
+use serde::de::value::StrDeserializer;
+use serde::de::{DeserializeOwned, IntoDeserializer};
 use serde::{Deserialize, Serialize};
 
 use super::answer::{Params, Written};
@@ -62,6 +64,12 @@ struct Wanted {
     format: Format,
 }
 
+/// A value by its name, as in a query string.
+fn named<T: DeserializeOwned>(name: &str) -> Option<T> {
+    let name: StrDeserializer<'_, serde::de::value::Error> = name.into_deserializer();
+    T::deserialize(name).ok()
+}
+
 impl SearchParams {
     /// Adds the fields of a form.
     fn with_fields(mut self, upload: &Upload) -> Result<Self, ApiError> {
@@ -72,15 +80,9 @@ impl SearchParams {
             match name.as_str() {
                 "k" => self.k = Some(text.parse().map_err(|_| wrong("a number"))?),
                 "explain" => self.explain = Some(choice()?),
-                "rank" => self.rank = Some(text.parse().map_err(|_| wrong("plain, graph, part or forms"))?),
+                "rank" => self.rank = Some(named(text).ok_or_else(|| wrong("plain, graph, part or forms"))?),
                 "geometry" => self.geometry = Some(choice()?),
-                "format" => {
-                    self.format = Some(match text.as_str() {
-                        "json" => Format::Json,
-                        "csv" => Format::Csv,
-                        _ => return Err(wrong("json or csv")),
-                    });
-                }
+                "format" => self.format = Some(named(text).ok_or_else(|| wrong("json or csv"))?),
                 _ => {
                     let error = format!("the form has an unknown field `{name}`");
                     let remedy = "send files, `k`, `explain`, `rank`, `geometry` and `format`";

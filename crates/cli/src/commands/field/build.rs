@@ -35,7 +35,7 @@ struct Seconds {
 pub(super) fn build(args: &FieldBuildArgs, common: &Common) -> Result<ExitCode> {
     check_output(&args.output)?;
     let surface = read_surface(&args.mesh, &args.repair, common)?;
-    let method = args.marching.distances(args.method);
+    let method = args.marching.method(args.method);
     let options = FieldOptions { method, landmarks: args.landmarks, rank: args.rank };
     let observer = Bars::with_budget(common.quiet, args.limits.budget());
     let start = Instant::now();

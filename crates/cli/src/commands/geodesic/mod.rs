@@ -35,7 +35,7 @@ pub(crate) fn geodesic(args: &GeodesicArgs, common: &Common) -> Result<ExitCode>
         pairs::check_size(surface.n_input_vertices(), args.force)?;
     }
     let start = Instant::now();
-    let method = args.marching.distances(args.method);
+    let method = args.marching.method(args.method);
     let solver = method
         .prepare(surface.intrinsic(), &args.limits.budget())
         .map_err(|fault| named(&args.mesh, fault.into()))?;

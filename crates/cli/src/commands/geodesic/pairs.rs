@@ -72,7 +72,7 @@ pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
     })
     .map_err(|fault| stopped(&fault).map_or(fault, |limit| named(&args.mesh, limit.into())))?;
     let json = PairsJson {
-        method: args.method.name(),
+        method: args.method.into(),
         n_vertices: pairs.n_vertices(),
         output: task.output.name(),
         asymmetry,

@@ -80,7 +80,7 @@ pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
     let path_seconds = start.elapsed().as_secs_f64();
     write_paths(&task.output, &paths, &facts)?;
     let json = PathsJson {
-        method: args.method.name(),
+        method: args.method.into(),
         n_vertices: surface.n_input_vertices(),
         sources: args.source.clone(),
         targets: args.path_to.clone(),

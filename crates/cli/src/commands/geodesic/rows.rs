@@ -46,7 +46,7 @@ pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
     let finite = |row: &Vec<f64>| row.iter().copied().filter(|d| d.is_finite()).fold(0.0, f64::max);
     let dropped = surface.input.report.dropped_vertices.len();
     let json = RowsJson {
-        method: args.method.name(),
+        method: args.method.into(),
         n_vertices: surface.n_input_vertices(),
         sources: args.source.clone(),
         outputs,

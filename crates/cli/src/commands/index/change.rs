@@ -27,7 +27,7 @@ struct Json<T: Serialize> {
 pub(super) fn build(args: &BuildArgs, common: &Common) -> Result<ExitCode> {
     check_output(&args.output)?;
     let labels = args.labels.as_deref().map(LabelSource::read).transpose()?;
-    let describe = args.describe.describe_options(common)?;
+    let describe = args.description.options(args.form.options(&args.method, common)?);
     let options = BuildOptions {
         labels: labels.as_ref(),
         shard: args.shard,
@@ -36,7 +36,7 @@ pub(super) fn build(args: &BuildArgs, common: &Common) -> Result<ExitCode> {
         ..BuildOptions::new(&describe)
     };
     let built = build_index(&args.folder, &args.output, &options, &Bars::new(common.quiet))?;
-    let max_dropped = args.describe.repair.max_dropped;
+    let max_dropped = args.form.repair.max_dropped;
     summarize(&args.output, built, labels.as_ref(), max_dropped, common)
 }
 

@@ -5,9 +5,8 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use base::terminal::Bars;
-use canonform::{
-    CorrespondOptions, Error, InputPoint, MappedSurface, PartOfWhole, PointMap, Side, VertexMap, correspond,
-};
+use canonform::settings::MethodSettings;
+use canonform::{Error, InputPoint, MappedSurface, PartOfWhole, PointMap, Side, VertexMap, correspond};
 use serde::Serialize;
 
 use super::files::{
@@ -56,10 +55,7 @@ struct MapJson {
 
 /// Maps the vertices of one mesh to those of another.
 pub(crate) fn match_meshes(args: &MatchArgs, common: &Common) -> Result<ExitCode> {
-    let mut options = CorrespondOptions { form: args.form.options(common)?, ..CorrespondOptions::default() };
-    if let Some(most) = args.form.settings.given.get("eigenfunctions") {
-        options.maps.eigenfunctions = most;
-    }
+    let mut options = args.maps.options(args.form.options(&MethodSettings::default(), common)?);
     let format = match &args.output {
         Some(path) => {
             for path in [
