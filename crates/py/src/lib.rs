@@ -55,7 +55,9 @@ mod _canonform {
     #[pymodule_export]
     use crate::run::{set_threads, threads};
     #[pymodule_export]
-    use crate::settings::{check_options, mesh_formats, signature_kinds};
+    use crate::settings::{
+        check_options, distance_methods, embedding_methods, mesh_formats, signature_kinds,
+    };
     #[pymodule_export]
     use crate::surface::{Surface, write};
 

@@ -9,17 +9,18 @@ use canonform::geodesics::Method;
 use canonform::mesh::RepairOptions;
 use canonform::nmds::NystromOptions;
 use canonform::settings::{
-    DescriptionSettings, FormSettings, MapSettings, MarchingSettings, MethodSettings, NoEffect,
-    RepairSettings, StressSettings,
+    DescriptionSettings, Embedding, FormSettings, Geodesic, MapSettings, MarchingSettings, MethodSettings,
+    NoEffect, RepairSettings, StressSettings,
 };
 use canonform::{
     Budget, CorrespondOptions, DescribeOptions, FormOptions, Measure, ShapeLimits, StressOptions,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use serde::de::value::{Error, MapDeserializer};
+use serde::de::value::{Error, MapDeserializer, StrDeserializer};
 use serde::de::{DeserializeOwned, IgnoredAny, IntoDeserializer, Visitor};
 use serde::{Deserialize, Deserializer, forward_to_deserialize_any};
+use strum::{EnumMessage, VariantArray};
 
 use crate::error::Exception;
 
@@ -84,8 +85,12 @@ impl<'de> Deserializer<'de> for Value {
         }
     }
 
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        visitor.visit_some(self)
+    }
+
     forward_to_deserialize_any! {
-        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf option unit unit_struct
+        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf unit unit_struct
         newtype_struct seq tuple tuple_struct map struct enum identifier ignored_any
     }
 }
@@ -134,8 +139,8 @@ impl<'py> FromPyObject<'_, 'py> for Settings {
 
 /// A value that is chosen by name.
 pub(crate) fn chosen<T: DeserializeOwned>(name: &str, text: &str) -> PyResult<T> {
-    let value = Value::Text(text.to_owned());
-    T::deserialize(value.clone()).map_err(|fault| refused(name, value, &in_words(&fault)))
+    let value: StrDeserializer<'_, Error> = text.into_deserializer();
+    T::deserialize(value).map_err(|fault| refused(name, format!("{text:?}"), &in_words(&fault)))
 }
 
 /// What distances are measured between.
@@ -217,6 +222,23 @@ impl Settings {
         let time = self.timeout.map(limit).transpose()?;
         Ok(ShapeLimits { max_vertices: self.max_vertices, time, memory: self.memory })
     }
+}
+
+/// The names of values, and what each of them does.
+fn named<T: Copy + VariantArray + EnumMessage + Into<&'static str>>() -> Vec<(&'static str, &'static str)> {
+    T::VARIANTS.iter().map(|value| ((*value).into(), value.get_documentation().unwrap_or_default())).collect()
+}
+
+/// Methods that measure distances, and what they compute.
+#[pyfunction]
+pub(crate) fn distance_methods() -> Vec<(&'static str, &'static str)> {
+    named::<Geodesic>()
+}
+
+/// Methods that turn distances into coordinates, and what they compute.
+#[pyfunction]
+pub(crate) fn embedding_methods() -> Vec<(&'static str, &'static str)> {
+    named::<Embedding>()
 }
 
 /// The names of the kinds of signatures.

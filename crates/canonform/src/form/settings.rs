@@ -8,6 +8,7 @@ use geodesics::{FastMarchingOptions, FirstSample, Method, ObtuseTreatment, Sampl
 use mesh::{ComponentPolicy, Orient, RepairOptions, Weld};
 use nmds::{Bandwidth, Regularization, RpiAlpha, SmacofOptions, SpectralOptions};
 use serde::Deserialize;
+use strum::{EnumMessage, IntoStaticStr, VariantArray};
 use surface::VertexId;
 
 use super::as_text;
@@ -18,7 +19,9 @@ use super::stress::StressChoice;
 use crate::correspond::CorrespondOptions;
 
 /// A method of embedding, without its options.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, strum::IntoStaticStr)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, IntoStaticStr, EnumMessage, VariantArray,
+)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 #[strum(serialize_all = "kebab-case")]
@@ -39,7 +42,9 @@ pub enum Embedding {
 }
 
 /// A method of measuring distances, without its options.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, strum::IntoStaticStr)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, IntoStaticStr, EnumMessage, VariantArray,
+)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 #[strum(serialize_all = "kebab-case")]
@@ -58,7 +63,7 @@ pub enum Geodesic {
 }
 
 /// How the sample matrix is inverted, without the options of that.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, strum::IntoStaticStr)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, IntoStaticStr)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 #[strum(serialize_all = "kebab-case")]

@@ -58,16 +58,12 @@ _MOST_DROPPED = 0.01
 
 def distance_methods() -> dict[str, str]:
     """Methods that measure distances: names, and what they compute."""
-    return _named("geodesic")
+    return dict(_canonform.distance_methods())
 
 
 def embedding_methods() -> dict[str, str]:
     """Methods that turn distances into coordinates: names, and what they compute."""
-    return _named("method")
-
-
-def _named(option: str) -> dict[str, str]:
-    return next(dict(names) for name, _, names, _ in _canonform.options()[1] if name == option)
+    return dict(_canonform.embedding_methods())
 
 
 def signature_kinds() -> list[str]:
