@@ -110,9 +110,8 @@ pub use fields::{
 };
 pub use form::{
     DISTANCES_LIMIT, DescribeOptions, EmbedInput, EmbedMethod, EmbedOptions, EmbedReport, Embedded,
-    FormOptions, MeasuredSurface, MethodFacts, MethodReport, MethodsReport, Samples, SecondsReport,
-    StressChoice, StressKind, StressOptions, StressReport, compare_methods, describe, describe_part, embed,
-    settings, signature,
+    FormOptions, MeasuredSurface, Samples, SecondsReport, SharedStress, StressChoice, StressKind,
+    StressOptions, StressReport, describe, describe_part, embed, settings, signature,
 };
 pub use index::Shape;
 pub use input::{AllPairs, Asymmetry, PathPoint, SurfacePath, distance_rows, read_surface};

@@ -8,8 +8,7 @@ use canonform::geodesics::Method;
 use canonform::mesh::shapes;
 use canonform::{
     Budget, BuildOptions, DescribeOptions, EmbedMethod, EmbedOptions, Error, Exceeded, FormOptions, Remedy,
-    Samples, SearchOptions, ShapeSearch, StressOptions, Surface, build_index, compare_methods, describe,
-    embed,
+    Samples, SearchOptions, ShapeSearch, SharedStress, StressOptions, Surface, build_index, describe, embed,
 };
 
 /// Runs `work` with a budget that is cancelled after a delay, for some delays. The work must end with the expected result
@@ -96,14 +95,10 @@ fn describing_searching_and_comparing_methods_are_cancellable() {
     });
 
     let form = FormOptions::default();
-    let variants = [("", form.clone()), ("exact", FormOptions { geodesic: Method::Exact, ..form.clone() })];
-    assert_cancellable("methods", |budget| {
-        let watch = |work: &mut dyn FnMut()| {
-            work();
-            0
-        };
-        let report = compare_methods(&surface, &form, &variants, &StressOptions::default(), budget, &watch)?;
-        Ok(report.methods.into_iter().map(|m| m.facts.map(|f| f.stress)).collect::<Vec<_>>())
+    let embedded = embed(&surface, &form, &()).unwrap();
+    assert_cancellable("shared stress", |budget| {
+        SharedStress::new(&surface, Method::Exact, &StressOptions::default(), budget)?
+            .of(&embedded.embedding.coords)
     });
 }
 

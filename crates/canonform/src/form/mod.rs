@@ -17,7 +17,6 @@ mod part;
 mod plan;
 mod report;
 pub mod settings;
-mod side_by_side;
 mod stress;
 
 pub use describe::{MeasuredSurface, describe, signature};
@@ -29,5 +28,4 @@ pub use options::{DescribeOptions, FormOptions};
 pub use part::describe_part;
 pub use plan::DISTANCES_LIMIT;
 pub use report::{EmbedReport, SecondsReport};
-pub use side_by_side::{MethodFacts, MethodReport, MethodsReport, compare_methods};
-pub use stress::{StressChoice, StressKind, StressOptions, StressReport};
+pub use stress::{SharedStress, StressChoice, StressKind, StressOptions, StressReport};

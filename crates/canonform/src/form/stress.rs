@@ -6,8 +6,10 @@ use nmds::{DistanceRows, RowSample, Stress, estimate_stress, sample_rows};
 use serde::Serialize;
 use surface::{VertexId, unit_for};
 
+use super::plan::check_memory;
 use crate::error::Error;
 use base::Observer;
+use mesh::Surface;
 
 /// [`StressChoice::Auto`] measures one row for this many samples.
 const SAMPLES_PER_ROW: usize = 7;
@@ -67,16 +69,6 @@ impl StressChoice {
             Self::Estimate | Self::Skip => ESTIMATE_ROWS,
         };
         (n < n_vertices).then_some(n)
-    }
-
-    /// The rows that several embeddings of the same vertices are compared by; `None` for all of them.
-    pub(super) fn shared_rows(self, n_vertices: usize, seed: u64) -> Option<Vec<usize>> {
-        let is_exact = match self {
-            Self::Auto => n_vertices <= COMPARED_EXACTLY,
-            Self::Exact => true,
-            Self::Estimate | Self::Skip => false,
-        };
-        (!is_exact).then(|| sample_rows(n_vertices, ESTIMATE_ROWS, seed))
     }
 }
 
@@ -141,6 +133,53 @@ impl StressReport {
         };
         let (measure, geodesic) = ("paper_stress", method.name());
         Ok(Self { measure, geodesic, value, normalized, normalized_interval, kind, interval, rows })
+    }
+}
+
+/// Distances that several embeddings of one surface are measured against, all by the same rows.
+pub struct SharedStress {
+    method: Method,
+    distances: Box<dyn DistanceRows>,
+    sample: RowSample,
+}
+
+impl SharedStress {
+    /// Measures the distances: between all pairs of vertices, or from 100 vertices to all others. [`StressChoice::Auto`] takes
+    /// all pairs up to 5,000 vertices.
+    ///
+    /// # Errors
+    /// [`Error::AllPairsTooLarge`], [`Error::Exceeded`] and those of the solver.
+    pub fn new(
+        surface: &Surface,
+        method: Method,
+        options: &StressOptions,
+        observer: &dyn Observer,
+    ) -> Result<Self, Error> {
+        let p = surface.mesh().n_vertices();
+        let is_exact = match options.choice {
+            StressChoice::Auto => p <= COMPARED_EXACTLY,
+            StressChoice::Exact => true,
+            StressChoice::Estimate | StressChoice::Skip => false,
+        };
+        check_memory(p, if is_exact { p } else { ESTIMATE_ROWS.min(p) }, &observer.budget())?;
+        observer.begin("stress", 1);
+        let solver = method.prepare(surface.intrinsic(), observer)?;
+        if is_exact {
+            let distances = Box::new(solver.distance_matrix()?);
+            return Ok(Self { method, distances, sample: RowSample::all(p) });
+        }
+        let rows = sample_rows(p, ESTIMATE_ROWS, options.seed);
+        let sources: Vec<VertexId> = rows.iter().copied().map(VertexId::from).collect();
+        let distances = Box::new(LandmarkDistances::new(rows.clone(), solver.distance_columns(&sources)?)?);
+        Ok(Self { method, distances, sample: RowSample::of_rows(rows, p) })
+    }
+
+    /// The stress of coordinates.
+    ///
+    /// # Errors
+    /// [`Error::Nmds`].
+    pub fn of(&self, coords: &Matrix) -> Result<StressReport, Error> {
+        StressReport::new(coords, self.distances.as_ref(), &|_, _| Ok(self.sample.clone()), self.method)
     }
 }
 

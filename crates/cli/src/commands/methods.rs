@@ -5,16 +5,19 @@ use std::time::Instant;
 
 use super::embed::normalized_text;
 use anyhow::Result;
-use base::Budget;
 use base::terminal::{Bars, with_peak_bytes};
+use base::{Budget, Exceeded};
 use canonform::geodesics::{Method, Sampling};
+use canonform::mesh::RepairReport;
 use canonform::nmds::{Regularization, RpiAlpha};
 use canonform::settings::MethodSettings;
 use canonform::surface::VertexId;
 use canonform::{
-    DISTANCES_LIMIT, EmbedMethod, FormOptions, MethodFacts, MethodsReport, Observer, Samples, StressOptions,
-    Surface, compare_methods,
+    DISTANCES_LIMIT, EmbedMethod, Embedded, Error, FormOptions, Observer, Samples, SecondsReport,
+    SharedStress, StressOptions, StressReport, Surface, embed,
 };
+
+use serde::Serialize;
 
 use crate::args::{Common, MethodsArgs};
 use crate::input::{named, read_surface};
@@ -25,13 +28,101 @@ pub(crate) fn methods(args: &MethodsArgs, common: &Common) -> Result<ExitCode> {
     let stress = StressOptions { choice: args.stress, against: None, seed: common.seed };
     let surface = read_surface(&args.mesh, &args.form.repair, common)?;
     let options = args.form.options(&MethodSettings::default(), common)?;
-    let variants = variants(&options);
     let bars = Bars::with_budget(common.quiet, args.limits.budget());
-    announce(&surface, &options, &variants, &bars.budget()).map_err(|fault| named(&args.mesh, fault))?;
-    let methods =
-        compare_methods(&surface, &options, &variants, &stress, &bars, &|work| with_peak_bytes(work).1)
-            .map_err(|fault| named(&args.mesh, fault))?;
+    let methods = compared(&surface, &options, &stress, &bars).map_err(|fault| named(&args.mesh, fault))?;
     report(common, &methods, |methods| table(methods, common))
+}
+
+/// The results of every method on one surface.
+#[derive(Serialize)]
+struct MethodsJson {
+    n_vertices: usize,
+    n_embedded: usize,
+    dim: usize,
+    /// The method that measured the distances, unless an entry says otherwise; the stress of all entries is measured against
+    /// it.
+    geodesic: &'static str,
+    methods: Vec<MethodJson>,
+    /// The entry of least stress.
+    best: Option<usize>,
+    repair: RepairReport,
+}
+
+#[derive(Serialize)]
+struct MethodJson {
+    method: &'static str,
+    /// The options that select a variant.
+    options: &'static str,
+    #[serde(flatten)]
+    facts: Option<MethodFacts>,
+    error: Option<String>,
+}
+
+#[derive(Serialize)]
+struct MethodFacts {
+    /// Unless the coordinates have no unit.
+    stress: Option<StressReport>,
+    negative_mass: f64,
+    n_samples: usize,
+    geodesics_seconds: f64,
+    embedding_seconds: f64,
+    seconds: f64,
+    peak_bytes: usize,
+}
+
+/// Embeds a surface by every method. One that cannot embed it reports its error and does not stop the others; if all fail, the
+/// error of the first is returned. The stress does not count as time of a method.
+fn compared(
+    surface: &Surface,
+    options: &FormOptions,
+    stress: &StressOptions,
+    observer: &dyn Observer,
+) -> Result<MethodsJson, Error> {
+    let variants = variants(options);
+    announce(surface, options, &variants, &observer.budget())?;
+    let shared = SharedStress::new(surface, options.geodesic, stress, observer)?;
+    let (mut methods, mut first_error) = (Vec::new(), None);
+    for (name, changed) in variants {
+        let (embedded, peak_bytes) = with_peak_bytes(|| embed(surface, &changed, observer));
+        let (facts, error) = match embedded {
+            Ok(Embedded { embedding, report, .. }) => {
+                let stress = changed.method.has_unit().then(|| shared.of(&embedding.coords)).transpose()?;
+                let SecondsReport { geodesics, embedding, .. } = report.seconds;
+                let facts = MethodFacts {
+                    stress,
+                    negative_mass: report.negative_mass,
+                    n_samples: report.n_samples,
+                    geodesics_seconds: geodesics,
+                    embedding_seconds: embedding,
+                    seconds: geodesics + embedding,
+                    peak_bytes,
+                };
+                (Some(facts), None)
+            }
+            Err(fault @ Error::Exceeded(Exceeded::Cancelled)) => return Err(fault),
+            Err(fault) => {
+                let text = fault.to_string();
+                first_error.get_or_insert(fault);
+                (None, Some(text))
+            }
+        };
+        methods.push(MethodJson { method: changed.method.name(), options: name, facts, error });
+    }
+    if let Some(fault) = first_error.filter(|_| methods.iter().all(|m| m.facts.is_none())) {
+        return Err(fault);
+    }
+    let stress = |m: &MethodJson| m.facts.as_ref().and_then(|f| f.stress.as_ref()).map(|s| s.value);
+    let stresses = methods.iter().enumerate().filter_map(|(i, m)| stress(m).map(|s| (i, s)));
+    let best = stresses.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(i, _)| i);
+    Ok(MethodsJson {
+        n_vertices: surface.n_input_vertices(),
+        n_embedded: surface.mesh().n_vertices(),
+        dim: options.dim,
+        geodesic: options.geodesic.name(),
+        methods,
+        best,
+        repair: surface.repaired.report.clone(),
+    })
 }
 
 /// Most samples that `auto` takes.
@@ -46,7 +137,7 @@ fn announce(
     options: &FormOptions,
     variants: &[(&'static str, FormOptions)],
     budget: &Budget,
-) -> Result<(), canonform::Error> {
+) -> Result<(), Error> {
     let p = surface.mesh().n_vertices();
     let solver = options.geodesic.prepare(surface.intrinsic(), budget)?;
     let start = Instant::now();
@@ -137,7 +228,7 @@ const COLUMNS: [Column; 6] = [
 ];
 
 /// One row per method, with a star at the lowest value of a column.
-fn table(report: &MethodsReport, common: &Common) -> String {
+fn table(report: &MethodsJson, common: &Common) -> String {
     let columns: Vec<&Column> = COLUMNS.iter().filter(|c| common.details || !c.is_detail).collect();
     let facts = || report.methods.iter().filter_map(|m| m.facts.as_ref());
     let least =
