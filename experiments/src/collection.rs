@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
-use canonform::{LabelSource, Observer, Surface, list_shapes, read_surface};
+use canonform::collection::{LabelSource, list_shapes};
+use canonform::{Observer, Surface, read_surface};
 use clap::Args;
 use mesh::RepairOptions;
 use rayon::prelude::*;
@@ -122,7 +123,7 @@ impl SurfaceCollection {
                 }
                 files.retain(|file| wanted.is_empty() || wanted.contains(&file.label));
                 observer.begin("reading", files.len());
-                let shape = |file: canonform::ShapeFile| {
+                let shape = |file: canonform::collection::ShapeFile| {
                     let surface = read_surface(&file.path, &repair, &Default::default(), &());
                     observer.step();
                     (file.name, file.label, surface)

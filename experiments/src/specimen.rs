@@ -3,7 +3,8 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use anyhow::{Context, Result, bail};
-use canonform::{DescribeOptions, EmbedMethod, FormOptions, Samples};
+use canonform::DescribeOptions;
+use canonform::embed::{EmbedMethod, FormOptions, Samples};
 use descriptors::LaplaceSpectrum;
 use geodesics::{DistanceSolver, FirstSample, Method, Sampling};
 use linalg::{DistanceMatrix, LandmarkDistances};
@@ -73,7 +74,7 @@ impl<'a> Specimen<'a> {
     pub(crate) fn all_pairs(&self, distances: &Distances) -> Result<Arc<DistanceMatrix>> {
         once(&self.all_pairs, distances.name, || {
             let p = self.n_vertices();
-            if p.saturating_mul(p) > canonform::DISTANCES_LIMIT / size_of::<f64>() {
+            if p.saturating_mul(p) > canonform::embed::DISTANCES_LIMIT / size_of::<f64>() {
                 bail!(
                     "{}: this experiment needs the distances of all pairs, {} GiB for {p} vertices; use shapes of at \
                      most 23,000 vertices",

@@ -1,7 +1,7 @@
 //! Surfaces and canonical forms for figures, and for the 3D views of the page (`figure4-shapes.json`).
 
 use anyhow::{Result, bail};
-use canonform::{Embedded, FormOptions};
+use canonform::embed::{Embedded, FormOptions};
 use descriptors::{CanonicalForm, Normalization};
 use geodesics::DistanceSolver;
 use linalg::Matrix;

@@ -5,8 +5,9 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use base::terminal::Bars;
+use canonform::embed::signature;
 use canonform::index::Shape;
-use canonform::{DescribeOptions, Observer, Surface, describe, signature};
+use canonform::{DescribeOptions, Observer, Surface, describe};
 use datasets::{ArticulatedOptions, Family, LabeledShape, articulated};
 use descriptors::{PreparedShape, ShapeMetric, ShapePair, SignatureKind, rigid_signature};
 use linalg::Matrix;

@@ -3,7 +3,8 @@
 #![no_main]
 
 use canonform::descriptors::ShapePair;
-use canonform::{DescribeOptions, Surface, compare, describe};
+use canonform::{DescribeOptions, Surface, describe};
+use canonform::compare::compare;
 use canonform_fuzz::{Limited, mesh_of, single_threaded};
 use libfuzzer_sys::fuzz_target;
 

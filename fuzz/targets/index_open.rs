@@ -8,7 +8,9 @@ use std::panic;
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use canonform::{BuildOptions, DescribeOptions, SearchOptions, ShapeSearch, build_index};
+use canonform::DescribeOptions;
+use canonform::library::{BuildOptions, build_index};
+use canonform::search::{SearchOptions, ShapeSearch};
 use canonform_fuzz::single_threaded;
 use libfuzzer_sys::fuzz_target;
 use mesh::shapes;

@@ -3,9 +3,8 @@
 #![no_main]
 
 use canonform::geodesics::Method;
-use canonform::{
-    EmbedMethod, EmbedOptions, FormOptions, Samples, StressChoice, StressOptions, Surface, embed,
-};
+use canonform::Surface;
+use canonform::embed::{EmbedMethod, EmbedOptions, FormOptions, Samples, StressChoice, StressOptions, embed};
 use canonform_fuzz::{Limited, first_byte, mesh_of, single_threaded};
 use libfuzzer_sys::fuzz_target;
 use mesh::{ComponentPolicy, RepairOptions, Weld};

@@ -11,9 +11,10 @@ use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
 
+use canonform::fields::{DistanceField, FieldOptions, Finish, PairDistance, PairKind};
 use canonform::geodesics::Method;
+use canonform::read_surface;
 use canonform::surface::VertexId;
-use canonform::{DistanceField, FieldOptions, Finish, PairDistance, PairKind, read_surface};
 
 const SOURCES: usize = 20;
 const TARGETS: usize = 500;

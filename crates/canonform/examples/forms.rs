@@ -14,9 +14,10 @@ use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
 
+use canonform::embed::{EmbedMethod, FormOptions, Samples, embed};
 use canonform::geodesics::FirstSample;
 use canonform::surface::VertexId;
-use canonform::{EmbedMethod, FormOptions, Samples, Surface, embed, mesh};
+use canonform::{Surface, mesh};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().collect();

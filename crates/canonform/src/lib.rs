@@ -27,28 +27,28 @@
 //!
 //! Data flows one way. Each step is a noun, made from the one before it:
 //!
-//! 1. [`mesh::TriMesh`]: vertices and faces, read by [`read_mesh`] from files of any format in
+//! 1. [`mesh::TriMesh`]: vertices and faces, read by [`read_mesh`](collection::read_mesh) from files of any format in
 //!    [`FORMATS`](mesh::io::FORMATS), compressed by gzip or not, and from members of archives (`cats.zip/cat0.off`).
 //! 2. [`Surface`]: the repaired mesh, with its connectivity and edge lengths. Defects that would break distance
-//!    computation are repaired and reported; vertices keep their order. [`InputPoint`] and [`SurfacePath`] name points
+//!    computation are repaired and reported; vertices keep their order. [`InputPoint`](mesh::InputPoint) and [`SurfacePath`](geodesics::SurfacePath) name points
 //!    and shortest paths in the numbers of the input.
-//! 3. Distances along the surface, by any [`geodesics::Method`], from samples or between [`AllPairs`] of vertices. A
-//!    [`DistanceField`] holds all pairs in little memory, with bounds.
-//! 4. [`Embedded`]: coordinates by any [`EmbedMethod`], made by [`embed`] as [`FormOptions`] say. The options travel with
-//!    everything that is made from here on. [`EmbedOptions::stress`] adds the stress.
+//! 3. Distances along the surface, by any [`geodesics::Method`], from samples or between [`AllPairs`](geodesics::AllPairs) of vertices. A
+//!    [`DistanceField`](fields::DistanceField) holds all pairs in little memory, with bounds.
+//! 4. [`Embedded`](embed::Embedded): coordinates by any [`EmbedMethod`](embed::EmbedMethod), made by [`embed`](embed::embed) as [`FormOptions`](embed::FormOptions) say. The options travel with
+//!    everything that is made from here on. [`EmbedOptions::stress`](embed::EmbedOptions::stress) adds the stress.
 //! 5. [`descriptors::CanonicalForm`]: the embedded surface, weighted by area, in three dimensions.
 //! 6. [`Shape`]: form, signatures and facts, made by [`describe`]: all that an index stores of a shape.
 //! 7. [`descriptors::ShapePair`]: two descriptions and the alignments of their forms, each found once. All units, weights
 //!    and thresholds of its distance belong to [`descriptors::ShapeMetric`].
-//! 8. [`Relation`]: how the two are related, by that distance and, where they are at hand, by files and meshes.
-//!    [`compare_meshes`] goes all the way from two meshes; [`compare`] gives the numbers of two descriptions.
+//! 8. [`Relation`](relations::Relation): how the two are related, by that distance and, where they are at hand, by files and meshes.
+//!    [`compare_meshes`](compare::compare_meshes) goes all the way from two meshes; [`compare`](compare::compare) gives the numbers of two descriptions.
 //!
 //! # Collections
 //!
-//! [`list_shapes`] finds the labelled meshes of a folder, an archive or a list of paths. [`build_index`] describes them into a durable file;
-//! [`add_to_index`], [`remove_from_index`] and [`merge_indexes`] change it; [`ShapeSearch`] finds the shapes nearest to a
-//! mesh; [`evaluate_index`] scores how well an index separates classes, [`evaluate_matrix`] does the same for any matrix of
-//! distances. [`form_alignments`] aligns all pairs of forms without an index.
+//! [`list_shapes`](collection::list_shapes) finds the labelled meshes of a folder, an archive or a list of paths. [`build_index`](library::build_index) describes them into a durable file;
+//! [`add_to_index`](library::add_to_index), [`remove_from_index`](library::remove_from_index) and [`merge_indexes`](library::merge_indexes) change it; [`ShapeSearch`](search::ShapeSearch) finds the shapes nearest to a
+//! mesh; [`evaluate_index`](library::evaluate_index) scores how well an index separates classes, [`evaluate_matrix`](library::evaluate_matrix) does the same for any matrix of
+//! distances. [`form_alignments`](compare::form_alignments) aligns all pairs of forms without an index.
 //!
 //! # Distances and samples
 //!
@@ -58,7 +58,6 @@
 //! use canonform::geodesics::{FirstSample, Method, Sampling};
 //! use canonform::nmds::{NystromOptions, nystrom};
 //! use canonform::surface::VertexId;
-//! use canonform::{Surface, mesh::shapes};
 //!
 //! let surface = Surface::new(&shapes::icosphere(3), &Default::default(), &())?;
 //! // Distances from vertex 0 by fast marching, at most half of the circumference of the unit sphere.
@@ -83,54 +82,61 @@
 //! * [`Error::remedy`] says what would help, as a [`Remedy`] that a program words in terms of its own interface.
 //! * Nothing here knows terminals, plots or HTTP.
 
-mod compare;
 mod correspond;
 mod error;
 mod form;
 mod input;
 mod shape_index;
 
-pub use ::mesh::{BadPoint, InputMap, InputPoint, PointError, Surface};
+pub mod compare;
+
+pub use ::mesh::Surface;
 pub use base::{Budget, ContentHash, Exceeded, Observer, one_line};
-pub use collection::{
-    Dataset, LabelFile, LabelOrigin, LabelSource, ShapeFile, SkipKind, Skipped, Storage, UnusedLabel,
-    content_hash, is_archive_name, is_dataset, label_of, list_shapes, read_mesh, read_mesh_file, single_mesh,
-};
-pub use compare::{
-    Compared, ComparedMesh, Comparison, FaceAgreement, FormAlignments, MeshComparison, Overlay, Residual,
-    compare, compare_meshes, embedded_distances, form_alignments,
-};
-pub use correspond::{
-    CorrespondOptions, Correspondence, FacePoint, MappedSurface, Mapping, PointMap, VertexMap, correspond,
-};
-pub use descriptors::Side;
 pub use error::{Error, Remedy};
-pub use fields::{
-    DistanceField, FieldBounds, FieldFacts, FieldFault, FieldOptions, Finish, PairDistance, PairKind,
-};
-pub use form::{
-    DISTANCES_LIMIT, DescribeOptions, EmbedInput, EmbedMethod, EmbedOptions, EmbedReport, Embedded,
-    FormOptions, MeasuredSurface, Samples, SecondsReport, SharedStress, StressChoice, StressKind,
-    StressOptions, StressReport, describe, describe_part, embed, settings, signature,
-};
+pub use form::{DescribeOptions, describe, settings};
 pub use index::Shape;
-pub use input::{AllPairs, Asymmetry, PathPoint, SurfacePath, distance_rows, read_surface};
-pub use maps::{KnownMap, MapKind, MapParams, PartOfWhole};
-pub use relations::{
-    Basis, Change, Evidence, MeshGeometry, MeshOverlay, Parts, Relation, RelationKind, UnitChange,
-};
-pub use retrieval::RankBy;
-pub use rigid::Handedness;
-pub use shape_index::{
-    Aligned, Answer, BuildOptions, BuildReport, ClassVotes, ComponentResult, Dropped, DuplicateFile,
-    DuplicateGroup, DuplicateMember, DuplicateOptions, DuplicateReport, EvaluateOptions, Failure,
-    FailureReason, Hit, Inputs, Measure, MergeReport, MoveReport, NearestShape, NotMoved, OrderedBy,
-    PairwiseDistance, Prediction, Query, SearchOptions, SearchRank, SearchSeconds, ShapeLimits, ShapeSearch,
-    Shard, Unknown, add_to_index, bounds, build_index, check_place, evaluate_index, evaluate_matrix,
-    export_index, find_duplicates, indexed_shapes, merge_answers, merge_indexes, mesh_path, move_duplicates,
-    n_candidates, n_results, remove_from_index, rerank, unchanged_index, undo_moves,
-};
-pub use {
-    collection, descriptors, fields, geodesics, index, linalg, maps, mesh, nmds, relations, retrieval, rigid,
-    surface,
-};
+pub use input::read_surface;
+pub use {collection, descriptors, fields, index, linalg, mesh, nmds, relations, retrieval, rigid, surface};
+
+/// From distances to coordinates, and what they tell of a shape.
+pub mod embed {
+    pub use crate::form::{
+        DISTANCES_LIMIT, EmbedInput, EmbedMethod, EmbedOptions, EmbedReport, Embedded, FormOptions,
+        MeasuredSurface, Samples, SecondsReport, SharedStress, StressChoice, StressKind, StressOptions,
+        StressReport, describe_part, embed, signature,
+    };
+}
+
+/// Distances and shortest paths, also in the numbers of the input.
+pub mod geodesics {
+    pub use crate::input::{AllPairs, Asymmetry, PathPoint, SurfacePath, distance_rows};
+    pub use ::geodesics::*;
+}
+
+/// Maps between surfaces.
+pub mod maps {
+    pub use crate::correspond::{
+        CorrespondOptions, Correspondence, FacePoint, MappedSurface, Mapping, PointMap, VertexMap, correspond,
+    };
+    pub use ::maps::*;
+}
+
+/// Libraries of shapes: building, changing and scoring an index, and its duplicates.
+pub mod library {
+    pub use crate::shape_index::{
+        BuildOptions, BuildReport, Dropped, DuplicateFile, DuplicateGroup, DuplicateMember, DuplicateOptions,
+        DuplicateReport, EvaluateOptions, Failure, FailureReason, Inputs, Measure, MergeReport, MoveReport,
+        NotMoved, ShapeLimits, Shard, add_to_index, build_index, check_place, evaluate_index,
+        evaluate_matrix, export_index, find_duplicates, indexed_shapes, merge_indexes, mesh_path,
+        move_duplicates, remove_from_index, unchanged_index, undo_moves,
+    };
+}
+
+/// Searching an index, and merging the answers of several.
+pub mod search {
+    pub use crate::shape_index::{
+        Aligned, Answer, ClassVotes, ComponentResult, Hit, NearestShape, OrderedBy, PairwiseDistance,
+        Prediction, Query, SearchOptions, SearchRank, SearchSeconds, ShapeSearch, Unknown, bounds,
+        merge_answers, n_candidates, n_results, rerank,
+    };
+}

@@ -4,12 +4,12 @@
 
 use std::time::Duration;
 
+use canonform::embed::{EmbedMethod, EmbedOptions, FormOptions, Samples, SharedStress, StressOptions, embed};
 use canonform::geodesics::Method;
+use canonform::library::{BuildOptions, build_index};
 use canonform::mesh::shapes;
-use canonform::{
-    Budget, BuildOptions, DescribeOptions, EmbedMethod, EmbedOptions, Error, Exceeded, FormOptions, Remedy,
-    Samples, SearchOptions, ShapeSearch, SharedStress, StressOptions, Surface, build_index, describe, embed,
-};
+use canonform::search::{SearchOptions, ShapeSearch};
+use canonform::{Budget, DescribeOptions, Error, Exceeded, Remedy, Surface, describe};
 
 /// Runs `work` with a budget that is cancelled after a delay, for some delays. The work must end with the expected result
 /// or as cancelled.

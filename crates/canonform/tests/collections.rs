@@ -7,12 +7,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
 
+use canonform::DescribeOptions;
 use canonform::index::Index;
-use canonform::mesh::{TriMesh, io, shapes};
-use canonform::{
-    BuildOptions, BuildReport, DescribeOptions, DuplicateOptions, DuplicateReport, MoveReport, ShapeSearch,
-    build_index, check_place, find_duplicates, move_duplicates, undo_moves,
+use canonform::library::{
+    BuildOptions, BuildReport, DuplicateOptions, DuplicateReport, MoveReport, build_index, check_place,
+    find_duplicates, move_duplicates, undo_moves,
 };
+use canonform::mesh::{TriMesh, io, shapes};
+use canonform::search::ShapeSearch;
 
 /// Names that a shell, a spreadsheet, a terminal or a browser may obey.
 const HOSTILE: [&str; 12] = [

@@ -1,10 +1,11 @@
 //! A search says of every result what a comparison of the two meshes says.
 
+use canonform::compare::{ComparedMesh, compare_meshes};
+use canonform::embed::FormOptions;
+use canonform::library::{BuildOptions, build_index};
 use canonform::mesh::{TriMesh, shapes};
-use canonform::{
-    BuildOptions, ComparedMesh, DescribeOptions, FormOptions, SearchOptions, ShapeSearch, Surface,
-    build_index, compare_meshes,
-};
+use canonform::search::{SearchOptions, ShapeSearch};
+use canonform::{DescribeOptions, Surface};
 use nalgebra::Vector3;
 
 fn moved(mesh: &TriMesh, motion: impl Fn(nalgebra::Point3<f64>) -> nalgebra::Point3<f64>) -> TriMesh {

@@ -1,13 +1,13 @@
 //! Flat surfaces: rounding of coordinates changes neither forms nor descriptions.
 
 use canonform::descriptors::{ShapeMetric, ShapePair, SignatureKind};
+use canonform::embed::{
+    EmbedMethod, EmbedOptions, FormOptions, Samples, StressChoice, StressOptions, embed, signature,
+};
 use canonform::mesh::{TriMesh, shapes};
 use canonform::nmds::Regularization;
 use canonform::surface::VertexId;
-use canonform::{
-    DescribeOptions, EmbedMethod, EmbedOptions, FormOptions, Samples, StressChoice, StressOptions, Surface,
-    describe, embed, signature,
-};
+use canonform::{DescribeOptions, Surface, describe};
 use nalgebra::{Point3, Rotation3, Vector3};
 
 /// Numbers in 0..1.

@@ -4,8 +4,9 @@
 
 use std::sync::Mutex;
 
+use canonform::embed::{EmbedMethod, EmbedOptions, FormOptions, Samples, StressOptions, embed};
 use canonform::mesh::shapes;
-use canonform::{EmbedMethod, EmbedOptions, FormOptions, Observer, Samples, StressOptions, Surface, embed};
+use canonform::{Observer, Surface};
 
 /// The stages: their names, totals and steps.
 #[derive(Default)]

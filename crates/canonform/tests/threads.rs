@@ -2,8 +2,10 @@
 
 #![cfg(test)]
 
+use canonform::DescribeOptions;
+use canonform::library::{BuildOptions, build_index};
 use canonform::mesh::{io, shapes};
-use canonform::{BuildOptions, DescribeOptions, SearchOptions, ShapeSearch, build_index};
+use canonform::search::{SearchOptions, ShapeSearch};
 use rayon::ThreadPoolBuilder;
 
 /// The only test of this program: the global pool starts with its first use, and then cannot be built any more.

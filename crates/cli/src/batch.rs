@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use base::files::is_input;
 use base::terminal::Bars;
-use canonform::ShapeFile;
+use canonform::collection::ShapeFile;
 use rayon::prelude::*;
 use serde::Serialize;
 

@@ -7,12 +7,12 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use base::terminal::Bars;
-use canonform::collection::mesh_at;
+use canonform::collection::{ShapeFile, Storage, is_dataset, list_shapes, mesh_at, read_mesh_file};
 use canonform::mesh::io::{
     FORMATS, FileSource, Format, MeshFile, ReadLimits, files_in, is_mesh_path, or_list, without_extension,
 };
 use canonform::mesh::{RepairReport, TriMesh};
-use canonform::{Remedy, ShapeFile, Storage, Surface, is_dataset, list_shapes, read_mesh_file};
+use canonform::{Remedy, Surface};
 
 use crate::args::{Common, LimitArgs, PairArgs, RepairArgs};
 use crate::remedy::with_remedy;
@@ -182,7 +182,7 @@ fn single(path: PathBuf) -> ShapeFile {
     let stem = without_extension(&path);
     let stem = stem.file_name().unwrap_or_default().to_string_lossy();
     let name = if is_stream(&path) { "stdin".to_owned() } else { stem.into_owned() };
-    ShapeFile { label: canonform::label_of(&name), name, path }
+    ShapeFile { label: canonform::collection::label_of(&name), name, path }
 }
 
 /// An error that names the file exactly once.

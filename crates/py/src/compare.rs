@@ -1,6 +1,6 @@
 //! Alignment and comparison of two shapes.
 
-use canonform::compare_meshes;
+use canonform::compare::compare_meshes;
 use canonform::rigid::{self, Reflections, align_points};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use canonform::{FieldOptions, Finish, PairDistance, PairKind};
+use canonform::fields::{FieldOptions, Finish, PairDistance, PairKind};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -17,7 +17,7 @@ use crate::surface::Surface;
 
 /// The distances between all pairs of vertices of a surface.
 #[pyclass(frozen, module = "canonform._canonform")]
-pub(crate) struct DistanceField(canonform::DistanceField);
+pub(crate) struct DistanceField(canonform::fields::DistanceField);
 
 /// Vertices, and their distances.
 type Neighbours<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<f64>>);
@@ -67,13 +67,13 @@ impl DistanceField {
     ) -> PyResult<Self> {
         let options = FieldOptions { method: geodesic.distances()?, landmarks, rank };
         run_alone(py, progress.as_ref(), |observer| {
-            Ok(Self(canonform::DistanceField::build(&surface.inner, &options, observer)?))
+            Ok(Self(canonform::fields::DistanceField::build(&surface.inner, &options, observer)?))
         })
     }
 
     #[staticmethod]
     fn open(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        run_alone(py, None, |_| Ok(Self(canonform::DistanceField::open(&path)?)))
+        run_alone(py, None, |_| Ok(Self(canonform::fields::DistanceField::open(&path)?)))
     }
 
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
@@ -88,7 +88,7 @@ impl DistanceField {
     /// The field of which these bytes are the file.
     #[staticmethod]
     fn from_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
-        let read = py.detach(|| canonform::DistanceField::from_bytes(bytes));
+        let read = py.detach(|| canonform::fields::DistanceField::from_bytes(bytes));
         read.map(Self).map_err(|fault| Exception::File.with(&fault.to_string()))
     }
 

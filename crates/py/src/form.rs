@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use canonform::Embedded;
 use canonform::descriptors::CanonicalForm;
+use canonform::embed::Embedded;
 use canonform::mesh::TriMesh;
 use canonform::rigid::PointSet;
 use canonform::surface::VertexId;

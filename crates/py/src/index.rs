@@ -3,14 +3,16 @@
 use std::collections::{BTreeMap, HashSet};
 use std::path::PathBuf;
 
+use canonform::collection::{LabelSource, ShapeFile, content_hash};
 use canonform::index::{Entry, ExportFormat, FORMAT_VERSION, IndexError};
-use canonform::mesh::RepairOptions;
-use canonform::{
-    Answer, BuildOptions, DescribeOptions, DuplicateOptions, Error, EvaluateOptions, Inputs, LabelSource,
-    Observer, PairwiseDistance, Query, SearchOptions, ShapeFile, ShapeSearch, Shard, add_to_index,
-    build_index, content_hash, evaluate_index, export_index, find_duplicates, indexed_shapes, mesh_path,
-    remove_from_index, unchanged_index,
+use canonform::library::{
+    BuildOptions, DuplicateOptions, EvaluateOptions, Inputs, Shard, add_to_index, build_index,
+    evaluate_index, export_index, find_duplicates, indexed_shapes, mesh_path, remove_from_index,
+    unchanged_index,
 };
+use canonform::mesh::RepairOptions;
+use canonform::search::{Answer, PairwiseDistance, Query, SearchOptions, ShapeSearch};
+use canonform::{DescribeOptions, Error, Observer};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use rayon::prelude::*;
@@ -62,7 +64,7 @@ fn labels_of(labels: Option<PathBuf>) -> PyResult<Option<LabelSource>> {
 }
 
 /// The report on a build, with the remedies of failures in words.
-fn report_of(mut report: canonform::BuildReport) -> String {
+fn report_of(mut report: canonform::library::BuildReport) -> String {
     for failure in &mut report.failed {
         failure.error = with_remedy(std::mem::take(&mut failure.error), failure.remedy);
     }
@@ -203,7 +205,7 @@ impl Index {
                 (Some(surface), _) => query_of(surface, search.describe_options(), name, &options, observer)?,
                 (None, Some(id)) => search.query_of(id, &options, observer)?,
                 (None, None) => {
-                    let mesh = canonform::read_mesh(&path)?;
+                    let mesh = canonform::collection::read_mesh(&path)?;
                     let content = explain.then(|| content_hash(&path)).transpose()?;
                     search.query(&mesh, (name, content), &options, observer)?
                 }
@@ -435,7 +437,7 @@ pub(crate) fn query_components(py: Python<'_>, query: &str) -> PyResult<Vec<(Str
 /// How many candidates a search for `k` results has where only vectors are searched, and how many results each shard gives.
 #[pyfunction]
 pub(crate) fn shortlist(k: usize) -> [usize; 2] {
-    [canonform::n_candidates(k), canonform::n_results(k)]
+    [canonform::search::n_candidates(k), canonform::search::n_results(k)]
 }
 
 /// The answer to a query in shards, from what they answer and the threshold of unknown classes; all as JSON.
@@ -448,7 +450,7 @@ pub(crate) fn merge_answers(
 ) -> PyResult<String> {
     let (query, threshold): (Query, _) = (unpacked(query)?, unpacked(threshold)?);
     let answers = answers.iter().map(|answer| unpacked(answer)).collect::<PyResult<Vec<Answer>>>()?;
-    Ok(json(&canonform::merge_answers(&query, answers, threshold, k)))
+    Ok(json(&canonform::search::merge_answers(&query, answers, threshold, k)))
 }
 
 /// The fused distance beyond which a shape is of no class of these indexes, as JSON.
@@ -473,8 +475,9 @@ pub(crate) fn merge_indexes(
     path: PathBuf,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<String> {
-    let merged =
-        run_alone(py, progress.as_ref(), |observer| canonform::merge_indexes(&inputs, &path, observer))?;
+    let merged = run_alone(py, progress.as_ref(), |observer| {
+        canonform::library::merge_indexes(&inputs, &path, observer)
+    })?;
     Ok(json(&merged))
 }
 

@@ -1,8 +1,9 @@
 //! Maps between surfaces.
 
+use canonform::descriptors::Side;
 use canonform::linalg::Matrix;
+use canonform::maps::{CorrespondOptions, KnownMap, Mapping, PointMap, VertexMap, correspond};
 use canonform::surface::VertexId;
-use canonform::{CorrespondOptions, KnownMap, Mapping, PointMap, Side, VertexMap, correspond};
 use numpy::PyUntypedArrayMethods;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;

@@ -1,6 +1,6 @@
 //! Points of a surface as Python writes them.
 
-use canonform::InputPoint;
+use canonform::mesh::InputPoint;
 use canonform::surface::VertexId;
 use pyo3::prelude::*;
 
@@ -14,7 +14,9 @@ pub(crate) fn points_of(points: &Bound<'_, PyAny>) -> PyResult<Vec<InputPoint>> 
 
 pub(crate) fn point_of(point: &Bound<'_, PyAny>) -> PyResult<InputPoint> {
     if let Ok(text) = point.extract::<&str>() {
-        return text.parse().map_err(|fault: canonform::BadPoint| Exception::Point.with(&fault.to_string()));
+        return text
+            .parse()
+            .map_err(|fault: canonform::mesh::BadPoint| Exception::Point.with(&fault.to_string()));
     }
     Ok(InputPoint::Vertex(vertex(point.extract().map_err(|_| not_a_point(point))?)?))
 }

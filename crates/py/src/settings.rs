@@ -5,16 +5,17 @@ use std::fmt;
 use std::time::Duration;
 
 use canonform::descriptors::SignatureKind;
+use canonform::embed::{FormOptions, StressOptions};
 use canonform::geodesics::Method;
+use canonform::library::{Measure, ShapeLimits};
+use canonform::maps::CorrespondOptions;
 use canonform::mesh::RepairOptions;
 use canonform::nmds::NystromOptions;
 use canonform::settings::{
     DescriptionSettings, Embedding, FormSettings, Geodesic, MapSettings, MarchingSettings, MethodSettings,
     NoEffect, RepairSettings, StressSettings,
 };
-use canonform::{
-    Budget, CorrespondOptions, DescribeOptions, FormOptions, Measure, ShapeLimits, StressOptions,
-};
+use canonform::{Budget, DescribeOptions};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::de::value::{Error, MapDeserializer, StrDeserializer};

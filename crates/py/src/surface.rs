@@ -4,14 +4,17 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use base::Budget;
-use canonform::ContentHash;
-use canonform::geodesics::{DistanceSolver, FirstSample, Method, PathTracer, Sampling, Source};
-use canonform::mesh::{RepairOptions, TriMesh};
-use canonform::surface::VertexId;
-use canonform::{
-    ComparedMesh, CorrespondOptions, DescribeOptions, EmbedOptions, Error, FormOptions, InputPoint,
-    MappedSurface, Measure, Observer, Shape, SurfacePath, content_hash, distance_rows, embed,
+use canonform::collection::content_hash;
+use canonform::compare::ComparedMesh;
+use canonform::embed::{EmbedOptions, FormOptions, embed};
+use canonform::geodesics::{
+    DistanceSolver, FirstSample, Method, PathTracer, Sampling, Source, SurfacePath, distance_rows,
 };
+use canonform::library::Measure;
+use canonform::maps::{CorrespondOptions, MappedSurface};
+use canonform::mesh::{InputPoint, RepairOptions, TriMesh};
+use canonform::surface::VertexId;
+use canonform::{ContentHash, DescribeOptions, Error, Observer, Shape};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 
@@ -228,7 +231,7 @@ impl Surface {
         let options = settings.repair();
         run_alone(py, None, |observer| {
             let content = content_hash(&path)?;
-            let mesh = canonform::read_mesh(&path)?;
+            let mesh = canonform::collection::read_mesh(&path)?;
             let inner = canonform::Surface::new(&mesh, &options, observer)?;
             Ok(Self::of(mesh, inner, Some(content)))
         })
@@ -348,7 +351,7 @@ impl Surface {
             };
             targets.iter().zip(&ends).map(path).collect::<Result<Vec<_>, Error>>()
         })?;
-        let found = |path: canonform::SurfacePath| {
+        let found = |path: canonform::geodesics::SurfacePath| {
             let positions: Vec<_> = path.points.iter().map(|point| point.position).collect();
             let at = path.points.iter().map(|point| point.at.to_string()).collect();
             let along = path.points.iter().map(|point| point.distance).collect();
@@ -431,7 +434,9 @@ impl Surface {
         let described = self.description_of(py, settings, progress)?;
         let values = match measure {
             Measure::Fused => return Ok(described.fused.clone().into_pyarray(py).into_any()),
-            Measure::Signature(kind) => canonform::signature(&described, kind).map(|found| found.values),
+            Measure::Signature(kind) => {
+                canonform::embed::signature(&described, kind).map(|found| found.values)
+            }
         };
         Ok(values.unwrap_or_default().into_pyarray(py).into_any())
     }

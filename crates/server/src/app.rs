@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use axum::body::Bytes;
 use axum::http::StatusCode;
-use canonform::{
-    Answer, Budget, ContentHash, Error, MeasuredSurface, MeshGeometry, SearchOptions, SearchRank, Surface,
-};
+use canonform::embed::MeasuredSurface;
+use canonform::relations::MeshGeometry;
+use canonform::search::{Answer, SearchOptions, SearchRank};
+use canonform::{Budget, ContentHash, Error, Surface};
 
 use crate::cache::Cache;
 use crate::collection::{Collection, Served};
@@ -33,7 +34,7 @@ pub(crate) struct App {
 
 /// An upload that was searched for.
 pub(crate) struct Query {
-    pub(crate) described: canonform::Query,
+    pub(crate) described: canonform::search::Query,
     pub(crate) measured: Arc<Measured>,
 }
 
@@ -42,7 +43,7 @@ impl Query {
         name: &str,
         content: ContentHash,
         measured: Measured,
-        described: canonform::Query,
+        described: canonform::search::Query,
     ) -> Self {
         let mut described = described.named(name, Some(content));
         described.geometry.clone_from(&measured.geometry);

@@ -6,7 +6,8 @@ use std::sync::{Arc, PoisonError, RwLock};
 use std::time::SystemTime;
 
 use canonform::index::{Entry, Facts, log_path};
-use canonform::{ContentHash, Error, SearchOptions, ShapeSearch};
+use canonform::search::{SearchOptions, ShapeSearch};
+use canonform::{ContentHash, Error};
 use serde::Serialize;
 
 use crate::cost;

@@ -3,7 +3,7 @@
 //! Measured with generated cats of 3,400 and 30,000 vertices and an index of 144 shapes. The [load](crate::load) learns how
 //! much faster or slower its machine is.
 
-use canonform::{SearchOptions, SearchRank};
+use canonform::search::{SearchOptions, SearchRank};
 
 /// To measure and describe an upload: 22 s for a text file of 14 MB with 193,600 vertices, one core.
 pub(crate) const UPLOADED_BYTE: f64 = 1.6e-6;

@@ -5,7 +5,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use axum::body::Bytes;
-use canonform::{Budget, DuplicateFile, DuplicateOptions, Error, Observer, find_duplicates};
+use canonform::library::{DuplicateFile, DuplicateOptions, find_duplicates};
+use canonform::{Budget, Error, Observer};
 use rayon::ThreadPoolBuilder;
 use serde::Serialize;
 

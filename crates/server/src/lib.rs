@@ -1,7 +1,7 @@
 //! Shape search over HTTP: a JSON interface, and a page on top of it.
 //!
 //! ```text
-//! request -> guard (host, origin, headers) -> api / page -> work (a bounded number of jobs) -> canonform::ShapeSearch
+//! request -> guard (host, origin, headers) -> api / page -> work (a bounded number of jobs) -> canonform::search::ShapeSearch
 //! ```
 //!
 //! **Invariants.** The index is only read, and opened again when its file changes; no response tells where it lies. No text of a request becomes a path: shapes are looked up by name in the

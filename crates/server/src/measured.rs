@@ -2,10 +2,14 @@
 
 use std::sync::Arc;
 
+use canonform::compare::Overlay;
 use canonform::descriptors::CanonicalForm;
+use canonform::embed::MeasuredSurface;
+use canonform::maps::VertexMap;
 use canonform::mesh::TriMesh;
+use canonform::relations::{MeshGeometry, MeshOverlay};
 use canonform::surface::VertexId;
-use canonform::{Error, MeasuredSurface, MeshGeometry, MeshOverlay, Overlay, Surface, VertexMap};
+use canonform::{Error, Surface};
 
 use report::viewer::Geometry;
 

@@ -5,7 +5,8 @@
 //! confidence`, over bins of at least [`FEWEST`] relations.
 
 use anyhow::Result;
-use canonform::{Handedness, MeshGeometry, Relation, RelationKind};
+use canonform::relations::{MeshGeometry, Relation, RelationKind};
+use canonform::rigid::Handedness;
 use datasets::{Damage, MechanicalPart, PartMesh, mechanical_parts};
 use descriptors::ShapeDistance;
 use mesh::TriMesh;

@@ -3,7 +3,7 @@
 //! Measures `largest stress ratio`: the largest ratio of the stress to the squared spread of a form, which has no unit.
 
 use anyhow::Result;
-use canonform::{EmbedOptions, StressChoice, StressOptions, embed};
+use canonform::embed::{EmbedOptions, StressChoice, StressOptions, embed};
 use descriptors::CanonicalForm;
 use mesh::TriMesh;
 use report::results::{Figure1Results, Figure1Shape};

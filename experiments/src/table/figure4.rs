@@ -6,7 +6,8 @@
 //! minus that of KPCA-Nystrom.
 
 use anyhow::{Context as _, Result};
-use canonform::{EmbedMethod, FormOptions, embed, embedded_distances, form_alignments};
+use canonform::compare::{embedded_distances, form_alignments};
+use canonform::embed::{EmbedMethod, FormOptions, embed};
 use descriptors::{CanonicalForm, Normalization};
 use geodesics::{FastMarchingOptions, Method, ObtuseTreatment};
 use linalg::DistanceMatrix;

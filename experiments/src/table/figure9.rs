@@ -6,7 +6,8 @@
 
 use anyhow::{Context as _, Result};
 use base::terminal::with_peak_bytes;
-use canonform::{EmbedMethod, FormOptions, Surface, embed};
+use canonform::Surface;
+use canonform::embed::{EmbedMethod, FormOptions, embed};
 use datasets::{ArticulatedOptions, Family, articulated_shape};
 use mesh::RepairOptions;
 use nmds::classical_full;
@@ -70,8 +71,8 @@ impl Experiment for Figure9Options {
             add("SMDS", Ok(self.timed(shape, EmbedMethod::spectral())?));
             let gib = |bytes: usize| bytes as f64 / f64::from(1 << 30);
             let needed = shape.surface.mesh().n_vertices().pow(2) * size_of::<f64>();
-            if needed > canonform::DISTANCES_LIMIT {
-                let (needed, limit) = (gib(needed), gib(canonform::DISTANCES_LIMIT));
+            if needed > canonform::embed::DISTANCES_LIMIT {
+                let (needed, limit) = (gib(needed), gib(canonform::embed::DISTANCES_LIMIT));
                 let seconds = all_pairs_seconds(shape)?;
                 let reason = format!(
                     "all pairs need {needed:.1} GiB, above the limit of {limit:.0}; measuring them would take {seconds:.0} s"

@@ -5,8 +5,12 @@
 //! relation to the undamaged shape is right.
 
 use anyhow::{Context as _, Result};
+use canonform::describe;
+use canonform::embed::signature;
 use canonform::index::{Shape, VectorTable};
-use canonform::{Handedness, MeshGeometry, Relation, RelationKind, bounds, describe, rerank, signature};
+use canonform::relations::{MeshGeometry, Relation, RelationKind};
+use canonform::rigid::Handedness;
+use canonform::search::{bounds, rerank};
 use datasets::Damage;
 use descriptors::{ShapeMetric, ShapePair, SignatureKind};
 use mesh::{SmoothRegions, TriMesh};

@@ -6,7 +6,8 @@
 //! the shares of them below the boundary of a class.
 
 use anyhow::{Context as _, Result};
-use canonform::{describe, describe_part};
+use canonform::describe;
+use canonform::embed::describe_part;
 use datasets::Damage;
 use descriptors::{DiscAreas, PartDistance, ShapeMetric};
 use report::results::{CurvesPanel, Series};

@@ -8,8 +8,10 @@
 use std::io::Write;
 
 use anyhow::Result;
+use canonform::DescribeOptions;
+use canonform::compare::form_alignments;
+use canonform::embed::signature;
 use canonform::index::Shape;
-use canonform::{DescribeOptions, form_alignments, signature};
 use descriptors::{CanonicalForm, Normalization, ShapeMetric, SignatureKind};
 use linalg::DistanceMatrix;
 use rayon::prelude::*;

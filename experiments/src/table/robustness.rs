@@ -7,8 +7,9 @@
 //! welds.
 
 use anyhow::{Context as _, Result};
+use canonform::describe;
+use canonform::embed::signature;
 use canonform::index::Shape;
-use canonform::{describe, signature};
 use datasets::DamageKind;
 use descriptors::{PreparedShape, ShapeMetric, ShapePair, SignatureKind};
 use report::results::{CurvesPanel, Series};

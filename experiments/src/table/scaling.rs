@@ -5,7 +5,8 @@
 
 use anyhow::Result;
 use base::terminal::with_peak_bytes;
-use canonform::{Surface, embed};
+use canonform::Surface;
+use canonform::embed::embed;
 use datasets::{ArticulatedOptions, Family, articulated_shape};
 use mesh::RepairOptions;
 use report::results::Series;

@@ -1,7 +1,10 @@
 //! Expected results on the built-in dataset.
 
-use canonform::{DescribeOptions, FormOptions, describe, embed, form_alignments};
-use canonform::{Handedness, Relation};
+use canonform::compare::form_alignments;
+use canonform::embed::{FormOptions, embed};
+use canonform::relations::Relation;
+use canonform::rigid::Handedness;
+use canonform::{DescribeOptions, describe};
 use datasets::{ArticulatedOptions, articulated};
 use descriptors::{Boundary, Normalization, ShapeMetric, ShapePair};
 use rayon::prelude::*;

@@ -1,7 +1,6 @@
 //! Dense maps between surfaces: exact cases, invariances, and known partners.
 
-use canonform::MapKind;
-use canonform::{CorrespondOptions, Correspondence, MappedSurface, VertexMap, correspond};
+use canonform::maps::{CorrespondOptions, Correspondence, MapKind, MappedSurface, VertexMap, correspond};
 use datasets::{ArticulatedOptions, Family, RestedShape, articulated_at_rest};
 use geodesics::Method;
 use mesh::{TriMesh, shapes};

@@ -1,6 +1,7 @@
 //! Laws of embeddings, on distances of meshes and through the whole pipeline.
 
-use canonform::{EmbedMethod, FormOptions, Samples, StressChoice, StressKind, embedded_distances};
+use canonform::compare::embedded_distances;
+use canonform::embed::{EmbedMethod, FormOptions, Samples, StressChoice, StressKind};
 use datasets::{ArticulatedOptions, CreatureOptions, Family, articulated};
 use geodesics::{FirstSample, Sampling, farthest_point_sampling};
 use linalg::{DistanceMatrix, LandmarkDistances, Matrix};

@@ -1,6 +1,7 @@
 //! Distance fields of bodies and of real meshes against exact distances.
 
-use canonform::{DistanceField, FieldBounds, FieldOptions, Finish, PairKind, Surface};
+use canonform::Surface;
+use canonform::fields::{DistanceField, FieldBounds, FieldOptions, Finish, PairKind};
 use datasets::Family;
 use geodesics::Method;
 use mesh::{RepairOptions, TriMesh};

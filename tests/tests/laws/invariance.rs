@@ -1,7 +1,8 @@
 //! Signatures depend on the surface, not on its triangles.
 
+use canonform::embed::signature;
 use canonform::index::Shape;
-use canonform::{DescribeOptions, describe, signature};
+use canonform::{DescribeOptions, describe};
 use datasets::{ArticulatedOptions, Damage, Family, articulated_shape};
 use descriptors::{ShapeMetric, ShapePair, SignatureKind};
 use mesh::TriMesh;

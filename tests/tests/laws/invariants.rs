@@ -1,7 +1,6 @@
 //! What copies of a mechanical surface have in common.
 
-use canonform::MeshGeometry;
-use canonform::relations::SurfaceInvariants;
+use canonform::relations::{MeshGeometry, SurfaceInvariants};
 use datasets::{Damage, Diagonals, PartMesh, mechanical_parts};
 use mesh::{TriMesh, refine};
 

@@ -1,6 +1,7 @@
 //! Invariance to folding, motions and renumbering.
 
-use canonform::{EmbedMethod, FormOptions, Samples, StressChoice, form_alignments};
+use canonform::compare::form_alignments;
+use canonform::embed::{EmbedMethod, FormOptions, Samples, StressChoice};
 use datasets::Family;
 use descriptors::Normalization;
 use geodesics::{FirstSample, Method};
@@ -113,7 +114,7 @@ fn normalised_form_distances_do_not_depend_on_size() {
     let distances = |factor: f64| {
         let forms = meshes.iter().map(|mesh| {
             let surface = surface(&moved(mesh, |p| p * factor));
-            canonform::embed(&surface, &few_samples(), &()).unwrap().form(&surface).unwrap()
+            canonform::embed::embed(&surface, &few_samples(), &()).unwrap().form(&surface).unwrap()
         });
         let forms: Vec<_> = forms.collect();
         let found = form_alignments(&forms, Normalization::UnitArea, &()).unwrap();

@@ -1,10 +1,11 @@
 //! What maps are good for: known pairs, points inside faces, and what they carry.
 
-use canonform::maps::LandmarkConflict;
-use canonform::{
-    CorrespondOptions, Error, KnownMap, MapKind, MappedSurface, Mapping, PointMap, Side, Surface, VertexMap,
+use canonform::descriptors::Side;
+use canonform::maps::{
+    CorrespondOptions, KnownMap, LandmarkConflict, MapKind, MappedSurface, Mapping, PointMap, VertexMap,
     correspond,
 };
+use canonform::{Error, Surface};
 use datasets::{ArticulatedOptions, Family, RestedShape, articulated_at_rest};
 use linalg::Matrix;
 use mesh::{TriMesh, refine, shapes};

@@ -2,7 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use canonform::{Change, Handedness, MeshGeometry, Relation, RelationKind, Side, list_shapes};
+use canonform::collection::list_shapes;
+use canonform::descriptors::Side;
+use canonform::relations::{Change, MeshGeometry, Relation, RelationKind};
+use canonform::rigid::Handedness;
 use datasets::{ArticulatedOptions, Damage, Family, articulated_body, articulated_shape};
 use descriptors::ShapeDistance;
 use mesh::{TriMesh, shapes};

@@ -1,7 +1,8 @@
 //! Distances that do not fit into memory are kept in a file, and results are the same bit for bit.
 
-use canonform::{
-    Budget, EmbedMethod, EmbedOptions, Embedded, FormOptions, Samples, StressChoice, StressOptions, embed,
+use canonform::Budget;
+use canonform::embed::{
+    EmbedMethod, EmbedOptions, Embedded, FormOptions, Samples, StressChoice, StressOptions, embed,
 };
 use datasets::Family;
 use geodesics::{FirstSample, Sampler, Sampling};

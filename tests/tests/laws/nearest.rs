@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use canonform::{
-    Answer, BuildOptions, DescribeOptions, Hit, SearchOptions, SearchRank, ShapeSearch, build_index,
-    merge_answers, n_results,
-};
+use canonform::DescribeOptions;
+use canonform::library::{BuildOptions, build_index};
+use canonform::search::{Answer, Hit, SearchOptions, SearchRank, ShapeSearch, merge_answers, n_results};
 use datasets::{CreatureOptions, Damage, PartMesh, creatures, mechanical_parts};
 use descriptors::{ShapeMetric, ShapePair};
 use mesh::TriMesh;

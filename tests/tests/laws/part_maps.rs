@@ -1,7 +1,8 @@
 //! Dense maps between a whole and what a cut has left of it.
 
-use canonform::{
-    CorrespondOptions, MapKind, MappedSurface, PartOfWhole, PointMap, Side, VertexMap, correspond,
+use canonform::descriptors::Side;
+use canonform::maps::{
+    CorrespondOptions, MapKind, MappedSurface, PartOfWhole, PointMap, VertexMap, correspond,
 };
 use datasets::{ArticulatedOptions, Damage, Family, articulated_at_rest};
 use geodesics::Method;

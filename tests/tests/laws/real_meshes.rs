@@ -5,9 +5,10 @@
 
 use std::path::Path;
 
-use canonform::{
-    DescribeOptions, FormOptions, Surface, describe, embed, form_alignments, label_of, list_shapes,
-};
+use canonform::collection::{label_of, list_shapes};
+use canonform::compare::form_alignments;
+use canonform::embed::{FormOptions, embed};
+use canonform::{DescribeOptions, Surface, describe};
 use descriptors::{Normalization, ShapeMetric, ShapePair};
 use geodesics::{FirstSample, farthest_point_sampling};
 use mesh::RepairOptions;

@@ -1,6 +1,7 @@
 //! How many samples are enough: `-n auto` stops where it should, and says how sure it is.
 
-use canonform::{EmbedMethod, EmbedOptions, Embedded, FormOptions, Samples, StressOptions, Surface, embed};
+use canonform::Surface;
+use canonform::embed::{EmbedMethod, EmbedOptions, Embedded, FormOptions, Samples, StressOptions, embed};
 use datasets::{CreatureOptions, Family, creature, creature_plans};
 use linalg::DistanceMatrix;
 use mesh::TriMesh;

@@ -1,11 +1,11 @@
 //! Every result in any unit of length from 1e-150 to 1e150: distances and forms have the same bits for powers of two;
 //! everything else is the same to rounding.
 
-use canonform::geodesics::{FirstSample, Method, Sampling};
-use canonform::{
-    DescribeOptions, EmbedMethod, EmbedOptions, Embedded, FormOptions, Samples, StressChoice, StressOptions,
-    describe, embed, signature,
+use canonform::embed::{
+    EmbedMethod, EmbedOptions, Embedded, FormOptions, Samples, StressChoice, StressOptions, embed, signature,
 };
+use canonform::geodesics::{FirstSample, Method, Sampling};
+use canonform::{DescribeOptions, describe};
 use descriptors::SignatureKind;
 use mesh::{TriMesh, shapes};
 use surface::VertexId;

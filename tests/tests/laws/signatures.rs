@@ -1,7 +1,9 @@
 //! Signatures depend little on pose and triangulation, distinguish bodies, and exist for any mesh.
 
+use canonform::embed::signature;
 use canonform::index::Shape;
-use canonform::{DescribeOptions, describe, rerank, signature};
+use canonform::search::rerank;
+use canonform::{DescribeOptions, describe};
 use datasets::{ArticulatedOptions, Family, articulated_shape};
 use descriptors::{ShapeMetric, SignatureKind};
 use rayon::prelude::*;

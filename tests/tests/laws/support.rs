@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use canonform::{
-    EmbedOptions, Embedded, FormOptions, StressChoice, StressOptions, Surface, embed, embedded_distances,
-};
+use canonform::Surface;
+use canonform::compare::embedded_distances;
+use canonform::embed::{EmbedOptions, Embedded, FormOptions, StressChoice, StressOptions, embed};
 use cargo_metadata::{Metadata, MetadataCommand};
 use datasets::{ArticulatedOptions, Family, articulated_shape};
 use geodesics::Method;

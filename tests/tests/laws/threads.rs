@@ -1,8 +1,8 @@
 //! Results are bitwise equal for any number of threads.
 
-use canonform::{
-    DescribeOptions, EmbedMethod, Embedded, FormOptions, Samples, StressChoice, describe, form_alignments,
-};
+use canonform::compare::form_alignments;
+use canonform::embed::{EmbedMethod, Embedded, FormOptions, Samples, StressChoice};
+use canonform::{DescribeOptions, describe};
 use datasets::Family;
 use descriptors::Normalization;
 
@@ -57,7 +57,7 @@ fn distances_between_forms_do_not_depend_on_threads() {
         .into_iter()
         .map(|family| {
             let surface = surface(&body(family));
-            canonform::embed(&surface, &FormOptions::default(), &()).unwrap().form(&surface).unwrap()
+            canonform::embed::embed(&surface, &FormOptions::default(), &()).unwrap().form(&surface).unwrap()
         })
         .collect();
     for normalization in [Normalization::Raw, Normalization::UnitArea] {

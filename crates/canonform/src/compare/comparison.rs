@@ -55,7 +55,9 @@ impl Comparison {
 ///
 /// ```
 /// use canonform::descriptors::ShapePair;
-/// use canonform::{DescribeOptions, Surface, compare, describe, mesh::shapes};
+/// use canonform::{DescribeOptions, Surface, describe};
+/// use canonform::compare::compare;
+/// use canonform::mesh::shapes;
 ///
 /// let sheet = shapes::grid(21, 17, 0.1);
 /// let [flat, folded, ball] = [&sheet, &shapes::fold(&sheet, 0.8, 1.2), &shapes::icosphere(3)].map(|mesh| {

@@ -21,7 +21,10 @@ pub struct FormAlignments {
 ///
 /// ```
 /// use canonform::descriptors::Normalization;
-/// use canonform::{FormOptions, Surface, embed, form_alignments, mesh::shapes};
+/// use canonform::Surface;
+/// use canonform::compare::form_alignments;
+/// use canonform::embed::{FormOptions, embed};
+/// use canonform::mesh::shapes;
 ///
 /// let sheet = shapes::grid(21, 17, 0.1);
 /// let forms = [&sheet, &shapes::fold(&sheet, 0.8, 1.2), &shapes::icosphere(3)].map(|mesh| {

@@ -116,7 +116,11 @@ pub struct MeshComparison {
 /// depend on the options that their forms were made with. What is not known of a mesh is not compared.
 ///
 /// ```
-/// use canonform::{ComparedMesh, FormOptions, RelationKind, Surface, compare_meshes, mesh::shapes};
+/// use canonform::Surface;
+/// use canonform::compare::{ComparedMesh, compare_meshes};
+/// use canonform::embed::FormOptions;
+/// use canonform::mesh::shapes;
+/// use canonform::relations::RelationKind;
 ///
 /// let flat = shapes::grid(21, 17, 0.1);
 /// let folded = shapes::fold(&flat, 0.8, 1.2);

@@ -68,7 +68,9 @@ pub struct Correspondence {
 /// depend on the number of threads.
 ///
 /// ```
-/// use canonform::{CorrespondOptions, MappedSurface, Surface, correspond, mesh::shapes};
+/// use canonform::Surface;
+/// use canonform::maps::{CorrespondOptions, MappedSurface, correspond};
+/// use canonform::mesh::shapes;
 ///
 /// // A sheet, flat and folded.
 /// let flat = shapes::grid(21, 17, 0.1);

@@ -56,8 +56,10 @@ pub struct Mapping<'a, S = Surface> {
 ///
 /// ```
 /// use canonform::linalg::Matrix;
-/// use canonform::Side;
-/// use canonform::{CorrespondOptions, MappedSurface, Surface, correspond, mesh::shapes};
+/// use canonform::descriptors::Side;
+/// use canonform::Surface;
+/// use canonform::maps::{CorrespondOptions, MappedSurface, correspond};
+/// use canonform::mesh::shapes;
 ///
 /// let flat = shapes::grid(21, 17, 0.1);
 /// let options = CorrespondOptions::default();

@@ -74,7 +74,9 @@ impl<'a> EmbedOptions<'a> {
     /// method or rank on the same ones. The result is the same, bit for bit.
     ///
     /// ```
-    /// use canonform::{EmbedOptions, FormOptions, Samples, Surface, embed, mesh::shapes};
+    /// use canonform::Surface;
+    /// use canonform::embed::{EmbedOptions, FormOptions, Samples, embed};
+    /// use canonform::mesh::shapes;
     ///
     /// let surface = Surface::new(&shapes::torus(24, 12, 2.0, 0.7), &Default::default(), &())?;
     /// let few = FormOptions { samples: Samples::Count(20), ..FormOptions::default() };
@@ -98,7 +100,9 @@ impl<'a> EmbedOptions<'a> {
     /// the coarser mesh: both meshes are in the same place.
     ///
     /// ```
-    /// use canonform::{EmbedOptions, FormOptions, Surface, embed, mesh::shapes};
+    /// use canonform::Surface;
+    /// use canonform::embed::{EmbedOptions, FormOptions, embed};
+    /// use canonform::mesh::shapes;
     ///
     /// let [coarse, fine] = [3, 4].map(|level| Surface::new(&shapes::icosphere(level), &Default::default(), &()));
     /// let (coarse, fine) = (coarse?, fine?);
@@ -129,7 +133,9 @@ impl<'a> EmbedOptions<'a> {
 /// not fit are kept in a file there, by methods that can read them in blocks: NMDS and landmark MDS.
 ///
 /// ```
-/// use canonform::{EmbedOptions, FormOptions, Samples, StressOptions, Surface, embed, mesh::shapes};
+/// use canonform::Surface;
+/// use canonform::embed::{EmbedOptions, FormOptions, Samples, StressOptions, embed};
+/// use canonform::mesh::shapes;
 ///
 /// let surface = Surface::new(&shapes::torus(24, 12, 2.0, 0.7), &Default::default(), &())?;
 /// let options = FormOptions { samples: Samples::Count(40), ..FormOptions::default() };

@@ -50,7 +50,9 @@ impl Embedded {
     /// face unfold into one plane, and else off by a share of the size of the face.
     ///
     /// ```
-    /// use canonform::{FormOptions, Surface, embed, mesh::shapes};
+    /// use canonform::Surface;
+    /// use canonform::embed::{FormOptions, embed};
+    /// use canonform::mesh::shapes;
     ///
     /// let surface = Surface::new(&shapes::fold(&shapes::grid(9, 7, 0.5), 0.8, 2.0), &Default::default(), &())?;
     /// let form = embed(&surface, &FormOptions::default(), &())?;

@@ -14,7 +14,9 @@ use mesh::Surface;
 ///
 /// ```
 /// use canonform::descriptors::DiscAreas;
-/// use canonform::{DescribeOptions, Surface, describe, describe_part, mesh::shapes};
+/// use canonform::{DescribeOptions, Surface, describe};
+/// use canonform::embed::describe_part;
+/// use canonform::mesh::shapes;
 ///
 /// let options = DescribeOptions::default();
 /// let (ball, mut half) = (shapes::icosphere(4), shapes::icosphere(4));

@@ -14,7 +14,7 @@ use crate::form::{describe, describe_part};
 
 impl ShapeSearch {
     /// Describes a mesh as the shapes of the index are, with what a search with these options needs. `name` is what it is called
-    /// in words, `content` the [hash](crate::content_hash) of its file.
+    /// in words, `content` the [hash](crate::collection::content_hash) of its file.
     ///
     /// # Errors
     /// Those of describing a mesh.

@@ -276,7 +276,8 @@ impl<'a> Missing<'a> {
 /// shard.
 ///
 /// ```
-/// use canonform::{BuildOptions, DescribeOptions, build_index, mesh};
+/// use canonform::{DescribeOptions, mesh};
+/// use canonform::library::{BuildOptions, build_index};
 ///
 /// let folder = tempfile::tempdir()?;
 /// mesh::io::write(&folder.path().join("ball1.off"), &mesh::shapes::icosphere(2))?;

@@ -144,7 +144,10 @@ type Pair = (usize, usize);
 /// of a group is proved against its keeper. Nothing is changed.
 ///
 /// ```
-/// use canonform::{BuildOptions, DescribeOptions, DuplicateOptions, RelationKind, ShapeSearch, build_index, find_duplicates, mesh};
+/// use canonform::{DescribeOptions, mesh};
+/// use canonform::library::{BuildOptions, DuplicateOptions, build_index, find_duplicates};
+/// use canonform::relations::RelationKind;
+/// use canonform::search::ShapeSearch;
 ///
 /// let folder = tempfile::tempdir()?;
 /// let mut ring = mesh::shapes::torus(24, 12, 2.0, 0.7);

@@ -125,7 +125,7 @@ pub fn evaluate_index(
 /// labels they come from the names. Both directions of a pair are averaged.
 ///
 /// ```
-/// use canonform::{EvaluateOptions, evaluate_matrix};
+/// use canonform::library::{EvaluateOptions, evaluate_matrix};
 ///
 /// let folder = tempfile::tempdir()?;
 /// let path = folder.path().join("distances.csv");

@@ -17,9 +17,9 @@ use rigid::Handedness;
 const MOST_WHOLES: usize = 10;
 
 impl ShapeSearch {
-    /// How a query and a shape are related, once their files and meshes are known, too: as [`compare_meshes`](crate::compare_meshes)
+    /// How a query and a shape are related, once their files and meshes are known, too: as [`compare_meshes`](crate::compare::compare_meshes)
     /// says. The file of the shape is read again if it is unchanged; otherwise the relation is
-    /// [by descriptions](crate::Basis::Descriptions).
+    /// [by descriptions](crate::relations::Basis::Descriptions).
     pub(super) fn related(
         &self,
         query: &Query,

@@ -56,7 +56,7 @@ pub struct Hit {
     pub id: String,
     /// Its class.
     pub label: String,
-    /// Path of its mesh as the index states it; [`mesh_path`](crate::mesh_path) finds the file.
+    /// Path of its mesh as the index states it; [`mesh_path`](crate::library::mesh_path) finds the file.
     pub path: String,
     /// Combined distance, by signatures and aligned forms; results are ordered by it if they are ranked
     /// plainly.

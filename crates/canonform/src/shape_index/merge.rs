@@ -129,6 +129,6 @@ mod tests {
         let sent: Query = serde_json::from_str(&serde_json::to_string(&query).unwrap()).unwrap();
         let found = [query, sent].map(|query| search.search(&query, &options, &()).unwrap().results);
         assert_eq!(found[0][0].relation.to_string(), found[1][0].relation.to_string());
-        assert_eq!(found[1][0].relation.kind, crate::RelationKind::Scaled);
+        assert_eq!(found[1][0].relation.kind, crate::relations::RelationKind::Scaled);
     }
 }

@@ -8,7 +8,7 @@ pub struct SearchOptions {
     /// Number of results. Default: 10.
     pub k: usize,
     /// Whether every result is compared with the query by files and meshes, too, and with a
-    /// [`Comparison`](crate::Comparison). Default: no.
+    /// [`Comparison`](crate::compare::Comparison). Default: no.
     pub explain: bool,
     /// How results are ordered. Default: [`SearchRank::Plain`], by combined distance.
     pub rank_by: SearchRank,

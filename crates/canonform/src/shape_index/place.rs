@@ -122,7 +122,7 @@ impl<'a> Root<'a> {
 /// ```
 /// use std::path::Path;
 ///
-/// let path = canonform::mesh_path(Path::new("work/shapes.canonform"), "../meshes/cat0.off");
+/// let path = canonform::library::mesh_path(Path::new("work/shapes.canonform"), "../meshes/cat0.off");
 /// assert_eq!(path, Path::new("meshes/cat0.off"));
 /// ```
 #[must_use]

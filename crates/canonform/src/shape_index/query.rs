@@ -15,8 +15,8 @@ use crate::form::{DescribeOptions, describe_part};
 
 /// A described shape that is searched for, and what else is known of it. As JSON it can be sent to indexes on other machines.
 ///
-/// [`ShapeSearch::query`](crate::ShapeSearch::query) makes one of a mesh, and
-/// [`query_of`](crate::ShapeSearch::query_of) one of a shape of the index.
+/// [`ShapeSearch::query`](crate::search::ShapeSearch::query) makes one of a mesh, and
+/// [`query_of`](crate::search::ShapeSearch::query_of) one of a shape of the index.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Query {
     /// What it is called in words.
@@ -25,7 +25,7 @@ pub struct Query {
     pub shape: Shape,
     /// The options it was described with, as indexes state them.
     pub options: String,
-    /// The [hash](crate::content_hash) of its file.
+    /// The [hash](crate::collection::content_hash) of its file.
     pub content: Option<ContentHash>,
     /// What its fit as a part is measured by. Only with it can results be ordered by that.
     pub part: Option<PartDiscAreas>,

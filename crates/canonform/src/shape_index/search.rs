@@ -28,7 +28,7 @@ use crate::compare::compare;
 use crate::error::Error;
 use crate::form::DescribeOptions;
 
-/// The answer to a search. Read from JSON, it is one that can be [merged](crate::merge_answers): without its explanations and
+/// The answer to a search. Read from JSON, it is one that can be [merged](crate::search::merge_answers): without its explanations and
 /// its class.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Answer {
@@ -136,7 +136,9 @@ impl ShapeSearch {
     /// the first of those for a larger one, and the class does not depend on it.
     ///
     /// ```
-    /// use canonform::{BuildOptions, DescribeOptions, SearchOptions, ShapeSearch, build_index, mesh};
+    /// use canonform::{DescribeOptions, mesh};
+    /// use canonform::library::{BuildOptions, build_index};
+    /// use canonform::search::{SearchOptions, ShapeSearch};
     ///
     /// let folder = tempfile::tempdir()?;
     /// mesh::io::write(&folder.path().join("ball1.off"), &mesh::shapes::icosphere(2))?;
@@ -696,7 +698,7 @@ mod tests {
         let (folder, search) = indexed(&DescribeOptions::default());
         let options = SearchOptions { explain: true, ..SearchOptions::default() };
         let path = folder.path().join("ring1.off");
-        let content = crate::content_hash(&path).unwrap();
+        let content = crate::collection::content_hash(&path).unwrap();
         let ring = mesh::io::read(&path).unwrap();
         let explained = |mesh: &TriMesh, name: &str, content| {
             search_as(&search, mesh, (name, content), &options).results[0].relation.to_string()

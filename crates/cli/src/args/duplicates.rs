@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use canonform::RelationKind;
+use canonform::relations::RelationKind;
 use clap::Args;
 use clap::builder::TypedValueParser;
 

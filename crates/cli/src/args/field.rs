@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use canonform::Finish;
+use canonform::fields::Finish;
 use canonform::settings::{Geodesic, MarchingSettings};
 use clap::{Args, Subcommand};
 

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use canonform::InputPoint;
+use canonform::mesh::InputPoint;
 use canonform::mesh::io::{Content, or_list, writable};
 use canonform::settings::{Geodesic, MarchingSettings};
 use clap::Args;

@@ -2,8 +2,10 @@
 
 use std::path::PathBuf;
 
+use canonform::library::{Measure, ShapeLimits, Shard};
+use canonform::retrieval::RankBy;
+use canonform::search::SearchRank;
 use canonform::settings::{DescriptionSettings, MethodSettings};
-use canonform::{Measure, RankBy, SearchRank, ShapeLimits, Shard};
 use clap::{Args, Subcommand};
 
 use super::settings::FormArgs;

@@ -13,10 +13,12 @@ mod shared;
 
 use std::path::{Path, PathBuf};
 
-use canonform::RelationKind;
+use canonform::collection::Storage;
+use canonform::embed::StressChoice;
+use canonform::mesh::InputPoint;
 use canonform::mesh::io::{Content, files_in, mesh_files, or_list, writable};
+use canonform::relations::RelationKind;
 use canonform::settings::{Geodesic, MethodSettings, StressSettings};
-use canonform::{InputPoint, Storage, StressChoice};
 use clap::builder::TypedValueParser;
 use clap::{Arg, ArgAction, Args, CommandFactory, FromArgMatches, Id, Parser, Subcommand};
 use clap_complete::Shell;

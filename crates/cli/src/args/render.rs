@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use canonform::InputPoint;
+use canonform::mesh::InputPoint;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use report::color::ColorMap;

@@ -1,7 +1,7 @@
 //! Options of the library as flags.
 
 use anyhow::{Result, anyhow};
-use canonform::FormOptions;
+use canonform::embed::FormOptions;
 use canonform::mesh::RepairOptions;
 use canonform::settings::{FormSettings, MarchingSettings, MethodSettings, NoEffect, RepairSettings};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};

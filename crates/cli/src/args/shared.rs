@@ -4,7 +4,7 @@ use std::str::FromStr;
 use std::time::Duration;
 
 use base::Budget;
-use canonform::ShapeLimits;
+use canonform::library::ShapeLimits;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 

@@ -4,12 +4,12 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
+use canonform::collection::content_hash;
+use canonform::compare::{ComparedMesh, FaceAgreement, MeshComparison, Residual, compare_meshes};
 use canonform::descriptors::ShapeMetric;
 use canonform::mesh::io::{Content, writable};
-use canonform::{
-    ComparedMesh, FaceAgreement, Handedness, MeshComparison, RelationKind, Residual, compare_meshes,
-    content_hash,
-};
+use canonform::relations::RelationKind;
+use canonform::rigid::Handedness;
 use serde::Serialize;
 
 use crate::args::{Common, CompareArgs, PairArgs};

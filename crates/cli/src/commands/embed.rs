@@ -5,14 +5,14 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
+use canonform::collection::ShapeFile;
+use canonform::embed::{EmbedMethod, EmbedOptions, EmbedReport, StressKind, StressOptions, StressReport};
 use canonform::linalg::Matrix;
 use canonform::mesh::io::{extension, or_list};
+use canonform::mesh::{InputMap, InputPoint};
 use canonform::nmds::{SampleStop, SmacofStop};
 use canonform::surface::VertexId;
-use canonform::{
-    Budget, EmbedMethod, EmbedOptions, EmbedReport, InputMap, InputPoint, ShapeFile, StressKind,
-    StressOptions, StressReport, Surface,
-};
+use canonform::{Budget, Surface};
 use serde::Serialize;
 
 use crate::args::{Common, EmbedArgs, FORM_FORMATS, LimitArgs};
@@ -88,12 +88,12 @@ fn one(mesh: &Path, args: &EmbedArgs, options: &EmbedOptions<'_>, common: &Commo
         (None, []) => (embed_and_write(mesh, surface, output.path(), args, options, &bars)?, Vec::new()),
         (coarser, at) => {
             let embedded = match coarser {
-                None => canonform::embed(&surface, options.clone(), &bars),
+                None => canonform::embed::embed(&surface, options.clone(), &bars),
                 Some(coarser) => {
                     let coarser = read_surface(coarser, &args.form.repair, common)?;
-                    canonform::embed(&coarser, options.form, &bars).and_then(|form| {
+                    canonform::embed::embed(&coarser, options.form, &bars).and_then(|form| {
                         let finer = EmbedOptions::finer(&surface, &coarser, &form)?;
-                        canonform::embed(&surface, finer.stress(options.stress), &bars)
+                        canonform::embed::embed(&surface, finer.stress(options.stress), &bars)
                     })
                 }
             };
@@ -149,7 +149,7 @@ fn lean(
     bars: &Bars,
 ) -> Result<(Matrix, InputMap, EmbedReport), canonform::Error> {
     let (intrinsic, map) = surface.into_parts();
-    let embedded = canonform::embed((intrinsic, &map), options.clone(), bars)?;
+    let embedded = canonform::embed::embed((intrinsic, &map), options.clone(), bars)?;
     Ok((embedded.embedding.coords, map, embedded.report))
 }
 
@@ -159,7 +159,7 @@ fn bent(
     options: &EmbedOptions<'_>,
     bars: &Bars,
 ) -> Result<(Matrix, InputMap, EmbedReport), canonform::Error> {
-    let embedded = canonform::embed(&surface, options.clone(), bars)?;
+    let embedded = canonform::embed::embed(&surface, options.clone(), bars)?;
     let form = embedded.form(&surface)?.with_features(surface.mesh(), bars)?;
     let coords = Matrix::from_fn(form.points().len(), 3, |i, axis| form.points()[i][axis]);
     Ok((coords, surface.into_parts().1, embedded.report))

@@ -4,9 +4,10 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use base::terminal::Bars;
+use canonform::collection::LabelSource;
+use canonform::library::{EvaluateOptions, evaluate_index, evaluate_matrix};
 use canonform::mesh::io::extension;
 use canonform::retrieval::{Evaluation, ScoreIntervals, Scores};
-use canonform::{EvaluateOptions, LabelSource, evaluate_index, evaluate_matrix};
 
 use crate::args::{Common, EvaluateArgs};
 use crate::input::named;

@@ -7,15 +7,16 @@ use super::embed::normalized_text;
 use anyhow::Result;
 use base::terminal::{Bars, with_peak_bytes};
 use base::{Budget, Exceeded};
+use canonform::embed::{
+    DISTANCES_LIMIT, EmbedMethod, Embedded, FormOptions, Samples, SecondsReport, SharedStress, StressOptions,
+    StressReport, embed,
+};
 use canonform::geodesics::{Method, Sampling};
 use canonform::mesh::RepairReport;
 use canonform::nmds::{Regularization, RpiAlpha};
 use canonform::settings::MethodSettings;
 use canonform::surface::VertexId;
-use canonform::{
-    DISTANCES_LIMIT, EmbedMethod, Embedded, Error, FormOptions, Observer, Samples, SecondsReport,
-    SharedStress, StressOptions, StressReport, Surface, embed,
-};
+use canonform::{Error, Observer, Surface};
 
 use serde::Serialize;
 

@@ -6,10 +6,11 @@ use std::time::Instant;
 
 use anyhow::{Result, bail};
 use base::terminal::Bars;
+use canonform::Surface;
+use canonform::embed::{FormOptions, embed};
 use canonform::geodesics::{Method, Source};
 use canonform::mesh::io::{MeshFile, ScalarField};
 use canonform::mesh::{RepairReport, TriMesh};
-use canonform::{FormOptions, Surface, embed};
 use report::render::{Coloring, RenderOptions, render, render_with_bar, value_range};
 use serde::Serialize;
 

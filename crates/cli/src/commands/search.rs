@@ -5,10 +5,12 @@ use std::process::ExitCode;
 
 use anyhow::{Result, anyhow};
 use base::one_line;
+use canonform::collection::{content_hash, is_dataset, list_shapes};
+use canonform::library::mesh_path;
 use canonform::mesh::io::without_extension;
-use canonform::{
-    Answer, ComponentResult, OrderedBy, Prediction, Relation, SearchOptions, SearchRank, ShapeSearch,
-    Unknown, content_hash, is_dataset, list_shapes, mesh_path,
+use canonform::relations::Relation;
+use canonform::search::{
+    Answer, ComponentResult, OrderedBy, Prediction, SearchOptions, SearchRank, ShapeSearch, Unknown,
 };
 use serde::Serialize;
 

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use axum::extract::State;
-use canonform::ContentHash;
+use canonform::compare::{Compared, MeshComparison, Residual, compare_meshes};
 use canonform::descriptors::PreparedShape;
-use canonform::{Budget, Compared, Error, MeshComparison, Residual, compare_meshes};
+use canonform::{Budget, ContentHash, Error};
 use report::viewer::Geometry;
 use serde::{Deserialize, Serialize};
 

@@ -1,7 +1,7 @@
 //! Results as CSV (RFC 4180).
 
 use canonform::index::text_cell;
-use canonform::{Answer, OrderedBy, SearchRank};
+use canonform::search::{Answer, OrderedBy, SearchRank};
 
 /// One line per result, under a header.
 pub(super) fn of(query: &str, report: &Answer) -> String {

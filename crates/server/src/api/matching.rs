@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use axum::extract::State;
-use canonform::{Budget, CorrespondOptions, MappedSurface, VertexMap, correspond};
+use canonform::Budget;
+use canonform::maps::{CorrespondOptions, MappedSurface, VertexMap, correspond};
 use report::viewer::Geometry;
 use serde::Serialize;
 

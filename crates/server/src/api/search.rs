@@ -5,13 +5,14 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use axum::extract::{Request, State};
+use canonform::collection::{is_archive_name, single_mesh};
+use canonform::embed::MeasuredSurface;
 use canonform::index::ContentHash;
 use canonform::mesh::RepairReport;
 use canonform::mesh::io::{MemoryFile, ReadLimits, is_mesh_path, mesh_files, read_memory};
-use canonform::{
-    Budget, Error, MeasuredSurface, MeshGeometry, SearchOptions, SearchRank, SearchSeconds, Surface,
-    is_archive_name, single_mesh,
-};
+use canonform::relations::MeshGeometry;
+use canonform::search::{SearchOptions, SearchRank, SearchSeconds};
+use canonform::{Budget, Error, Surface};
 use report::viewer::Geometry;
 use serde::de::value::StrDeserializer;
 use serde::de::{DeserializeOwned, IntoDeserializer};
@@ -112,7 +113,7 @@ struct Answered {
     /// Name of the file, or of the shape of the index.
     query: String,
     #[serde(flatten)]
-    answer: canonform::Answer,
+    answer: canonform::search::Answer,
     /// Identifies this upload for later searches and comparisons; none for a shape of the index.
     query_id: Option<String>,
     /// None if the mesh of a shape of the index is missing.
@@ -127,7 +128,7 @@ struct Answered {
 
 impl Answered {
     /// Without geometry and repair. Paths are shown as clients may see them.
-    fn new(collection: &Collection, query: String, mut answer: canonform::Answer) -> Self {
+    fn new(collection: &Collection, query: String, mut answer: canonform::search::Answer) -> Self {
         answer.place(|path| collection.public_path(path));
         Self {
             query,
@@ -266,7 +267,7 @@ fn with_upload(app: &App, upload: Upload, wanted: &Wanted, budget: &Budget) -> R
     let describe = start.elapsed().as_secs_f64();
     let report = query.search(&collection, &wanted.options, budget)?;
     let seconds = SearchSeconds { describe, ..report.seconds };
-    let report = canonform::Answer { seconds, ..report };
+    let report = canonform::search::Answer { seconds, ..report };
     let answer = Answered::new(&collection, query.described.name.clone(), report);
     Ok(Answered { query_id: Some(address), ..answer.with_measured(&query.measured, wanted.geometry) })
 }
@@ -294,7 +295,7 @@ fn measure(app: &App, collection: &Collection, upload: Upload, budget: &Budget) 
     let describe = collection.search.describe_options();
     let surface = Surface::new(&mesh, &describe.form.repair, budget)?;
     let embedded = MeasuredSurface::new(&surface, &describe.form, budget)?;
-    let described = canonform::Query::new(embedded.describe(describe, budget)?, describe);
+    let described = canonform::search::Query::new(embedded.describe(describe, budget)?, describe);
     let geometry = MeshGeometry::new(&mesh, Some(content)).map(Arc::new);
     let measured = Measured::new(surface, geometry, &embedded)?;
     Ok(Query::new(&name, content, measured, described))

@@ -118,8 +118,8 @@ fn an_archive_of_one_mesh_is_that_mesh() {
 fn an_upload_gives_the_same_answer_as_the_library() {
     let server = Served::start(options());
     let mesh = shapes::torus(24, 12, 2.0, 0.7);
-    let search = canonform::ShapeSearch::open(&server.folder.join(INDEX)).unwrap();
-    let options = canonform::SearchOptions::default();
+    let search = canonform::search::ShapeSearch::open(&server.folder.join(INDEX)).unwrap();
+    let options = canonform::search::SearchOptions::default();
     let query = search.query(&mesh, ("q.off", None), &options, &()).unwrap();
     let report = search.search(&query, &options, &()).unwrap();
     let answer = upload(server.address, &[("q.off", &written("q.off", &mesh))], &[]).unwrap().json();

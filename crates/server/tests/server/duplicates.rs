@@ -3,7 +3,8 @@
 use std::fs;
 use std::time::{Duration, Instant};
 
-use canonform::{DuplicateOptions, ShapeSearch, find_duplicates};
+use canonform::library::{DuplicateOptions, find_duplicates};
+use canonform::search::ShapeSearch;
 use canonform_server::ServeOptions;
 use serde_json::Value;
 

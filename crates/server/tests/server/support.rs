@@ -5,8 +5,9 @@ use std::ops::Deref;
 use std::path::{Path, PathBuf};
 use std::sync::{OnceLock, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 
+use canonform::DescribeOptions;
+use canonform::library::{BuildOptions, build_index};
 use canonform::mesh::{TriMesh, shapes};
-use canonform::{BuildOptions, DescribeOptions, build_index};
 use canonform_server::{ServeOptions, ServerError};
 use tempfile::TempDir;
 

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use anyhow::Result;
-use canonform::form_alignments;
+use canonform::compare::form_alignments;
 use descriptors::{CanonicalForm, LaplaceSpectrum, Normalization, Signature, shape_dna};
 use linalg::DistanceMatrix;
 use rayon::prelude::*;

@@ -1,7 +1,7 @@
 //! What a perfect alignment of the forms of one body would give.
 
 use anyhow::Result;
-use canonform::MapKind;
+use canonform::maps::MapKind;
 use descriptors::{CanonicalForm, Normalization};
 use nalgebra::Point3;
 use rayon::prelude::*;

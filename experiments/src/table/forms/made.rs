@@ -1,7 +1,8 @@
 //! The methods that make forms.
 
 use anyhow::{Context as _, Result};
-use canonform::{EmbedMethod, Embedded, FormOptions, Samples, Surface, embed};
+use canonform::Surface;
+use canonform::embed::{EmbedMethod, Embedded, FormOptions, Samples, embed};
 use descriptors::{CanonicalForm, SampledForm};
 use linalg::{LandmarkDistances, Matrix};
 use mesh::TriMesh;

@@ -10,7 +10,7 @@ mod ideal;
 mod made;
 
 use anyhow::Result;
-use canonform::embedded_distances;
+use canonform::compare::embedded_distances;
 use linalg::DistanceMatrix;
 use nmds::classical_full;
 use report::results::{Axis, AxisScale, CurvesPanel, Mark, RecordedTable, Series, SeriesPoint, TableEntry};

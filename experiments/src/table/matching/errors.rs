@@ -1,8 +1,7 @@
 //! The errors of the maps of a pair.
 
 use anyhow::{Context as _, Result};
-use canonform::MapKind;
-use canonform::{CorrespondOptions, Correspondence, VertexMap, correspond};
+use canonform::maps::{CorrespondOptions, Correspondence, MapKind, VertexMap, correspond};
 use geodesics::{DistanceSolver, Method};
 use rayon::prelude::*;
 use surface::VertexId;

@@ -20,7 +20,7 @@ mod errors;
 pub(super) mod shapes;
 
 use anyhow::{Context as _, Result};
-use canonform::CorrespondOptions;
+use canonform::maps::CorrespondOptions;
 use report::results::{CurvesPanel, Mark, Series};
 use serde::Deserialize;
 

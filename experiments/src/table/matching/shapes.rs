@@ -4,8 +4,8 @@ use std::borrow::Cow;
 use std::collections::HashSet;
 
 use anyhow::{Context as _, Result};
-use canonform::MapKind;
-use canonform::{CorrespondOptions, MappedSurface, Surface};
+use canonform::Surface;
+use canonform::maps::{CorrespondOptions, MapKind, MappedSurface};
 use datasets::{ArticulatedOptions, Damage, Family, RestedShape, articulated_at_rest};
 use mesh::TriMesh;
 use nalgebra::Point3;

@@ -9,12 +9,14 @@ use std::process::ExitCode;
 use anyhow::{Result, bail};
 use base::files::{Scratch, write_bytes};
 use base::terminal::Bars;
+use canonform::DescribeOptions;
+use canonform::collection::is_dataset;
 use canonform::index::text_cell;
-use canonform::{
-    BuildOptions, DescribeOptions, DuplicateFile, DuplicateGroup, DuplicateOptions, DuplicateReport,
-    MoveReport, ShapeSearch, build_index, check_place, find_duplicates, is_dataset, move_duplicates,
-    undo_moves,
+use canonform::library::{
+    BuildOptions, DuplicateFile, DuplicateGroup, DuplicateOptions, DuplicateReport, MoveReport, build_index,
+    check_place, find_duplicates, move_duplicates, undo_moves,
 };
+use canonform::search::ShapeSearch;
 use serde::Serialize;
 
 use self::words::{moved, text};

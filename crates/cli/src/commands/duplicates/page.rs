@@ -1,7 +1,8 @@
 //! Duplicates as a page with pictures.
 
 use anyhow::Result;
-use canonform::{DuplicateFile, DuplicateReport, ShapeSearch};
+use canonform::library::{DuplicateFile, DuplicateReport};
+use canonform::search::ShapeSearch;
 use report::page::escape;
 use report::render::{RenderOptions, render};
 

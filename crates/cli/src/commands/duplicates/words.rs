@@ -1,7 +1,7 @@
 //! Duplicates in words.
 
+use canonform::library::{DuplicateFile, DuplicateGroup, DuplicateReport, MoveReport};
 use canonform::relations::in_four_digits;
-use canonform::{DuplicateFile, DuplicateGroup, DuplicateReport, MoveReport};
 
 use base::one_line;
 

@@ -6,8 +6,8 @@ use std::time::Instant;
 
 use anyhow::Result;
 use base::terminal::Bars;
+use canonform::fields::{DistanceField, FieldBounds, FieldFacts, FieldOptions};
 use canonform::mesh::RepairReport;
-use canonform::{DistanceField, FieldBounds, FieldFacts, FieldOptions};
 use serde::Serialize;
 
 use crate::args::{Common, FieldBuildArgs};

@@ -6,8 +6,8 @@ use std::time::Instant;
 
 use anyhow::Result;
 use base::terminal::Bars;
+use canonform::fields::{DistanceField, FieldBounds, PairDistance, PairKind};
 use canonform::surface::VertexId;
-use canonform::{DistanceField, FieldBounds, PairDistance, PairKind};
 use serde::Serialize;
 
 use crate::args::{Common, FieldQueryArgs};

@@ -7,9 +7,10 @@ use std::time::Instant;
 use anyhow::{Result, bail};
 use base::files::FileError;
 use base::terminal::Bars;
+use canonform::Exceeded;
+use canonform::geodesics::{AllPairs, Asymmetry};
 use canonform::mesh::RepairReport;
 use canonform::surface::VertexId;
-use canonform::{AllPairs, Asymmetry, Exceeded};
 use serde::Serialize;
 
 use super::task::Task;

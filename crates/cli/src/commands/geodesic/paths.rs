@@ -6,9 +6,9 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::Result;
-use canonform::geodesics::{PathTracer, Source};
-use canonform::mesh::RepairReport;
-use canonform::{InputPoint, Surface, SurfacePath};
+use canonform::Surface;
+use canonform::geodesics::{PathTracer, Source, SurfacePath};
+use canonform::mesh::{InputPoint, RepairReport};
 use serde::Serialize;
 
 use super::task::{Row, Seconds, Task, spelled};
@@ -171,8 +171,11 @@ fn write_json(out: &mut dyn Write, paths: &[SurfacePath], facts: &[PathFacts]) -
         paths: Vec<Path<'a>>,
     }
     let points = |path: &SurfacePath| {
-        let point =
-            |p: &canonform::PathPoint| Point { at: p.at, position: p.position.into(), distance: p.distance };
+        let point = |p: &canonform::geodesics::PathPoint| Point {
+            at: p.at,
+            position: p.position.into(),
+            distance: p.distance,
+        };
         path.points.iter().map(point).collect()
     };
     let paths = paths.iter().zip(facts).map(|(path, facts)| Path { facts, points: points(path) }).collect();

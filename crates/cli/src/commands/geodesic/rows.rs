@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
-use canonform::InputPoint;
-use canonform::mesh::RepairReport;
+use canonform::mesh::{InputPoint, RepairReport};
 use serde::Serialize;
 
 use super::task::{Row, Seconds, Task, spelled};

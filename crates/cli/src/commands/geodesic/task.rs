@@ -4,9 +4,9 @@ use std::time::Instant;
 
 use anyhow::Result;
 use base::terminal::Bars;
+use canonform::Surface;
 use canonform::geodesics::{DistanceSolver, Source};
-use canonform::mesh::TriMesh;
-use canonform::{InputPoint, Surface};
+use canonform::mesh::{InputPoint, TriMesh};
 use serde::Serialize;
 
 use crate::args::{Common, GeodesicArgs};

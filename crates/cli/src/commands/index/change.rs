@@ -5,10 +5,11 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use base::terminal::Bars;
+use canonform::collection::{LabelOrigin, LabelSource};
 use canonform::index::damaged_path;
-use canonform::{
-    BuildOptions, BuildReport, FailureReason, Inputs, LabelOrigin, LabelSource, MergeReport, add_to_index,
-    build_index, merge_indexes, remove_from_index,
+use canonform::library::{
+    BuildOptions, BuildReport, FailureReason, Inputs, MergeReport, add_to_index, build_index, merge_indexes,
+    remove_from_index,
 };
 use serde::Serialize;
 

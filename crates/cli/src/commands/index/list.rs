@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use canonform::index::{Entry, Index};
-use canonform::mesh_path;
+use canonform::library::mesh_path;
 use serde::Serialize;
 
 use crate::args::{Common, ListArgs};

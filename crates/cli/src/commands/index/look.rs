@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
+use canonform::Remedy;
 use canonform::index::{ExportFormat, FORMAT_VERSION, Index, Verification};
-use canonform::{Remedy, export_index};
+use canonform::library::export_index;
 use serde::Serialize;
 
 use crate::args::Common;

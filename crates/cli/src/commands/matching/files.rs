@@ -4,11 +4,12 @@ use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
+use canonform::descriptors::Side;
 use canonform::linalg::Matrix;
+use canonform::maps::{MappedSurface, PointMap, VertexMap};
 use canonform::mesh::TriMesh;
 use canonform::mesh::io::VertexField;
 use canonform::surface::VertexId;
-use canonform::{MappedSurface, PointMap, Side, VertexMap};
 use npyz::WriterBuilder;
 use report::color::{Rgb, mix, perceptual, place_colors};
 use report::render::{Coloring, RenderOptions, render};
@@ -97,7 +98,7 @@ pub(super) fn write_table(
         }
         (_, None) => write_whole(path, &map.vertices.iter().map(number).collect::<Vec<_>>()),
         (_, Some(points)) => {
-            let row = |point: &Option<canonform::FacePoint>| {
+            let row = |point: &Option<canonform::maps::FacePoint>| {
                 point.map_or([-1.0, f64::NAN, f64::NAN, f64::NAN], |point| {
                     let [u, v, w] = point.weights;
                     [f64::from(point.face.0), u, v, w]

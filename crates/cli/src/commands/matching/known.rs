@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, bail};
+use canonform::Surface;
 use canonform::collection::TextTable;
+use canonform::maps::KnownMap;
 use canonform::surface::VertexId;
-use canonform::{KnownMap, Surface};
 
 use crate::args::MatchArgs;
 use crate::field::read_numbers;

@@ -5,8 +5,11 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use base::terminal::Bars;
+use canonform::Error;
+use canonform::descriptors::Side;
+use canonform::maps::{MappedSurface, PartOfWhole, PointMap, VertexMap, correspond};
+use canonform::mesh::InputPoint;
 use canonform::settings::MethodSettings;
-use canonform::{Error, InputPoint, MappedSurface, PartOfWhole, PointMap, Side, VertexMap, correspond};
 use serde::Serialize;
 
 use super::files::{

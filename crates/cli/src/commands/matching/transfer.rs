@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use canonform::collection::TextTable;
+use canonform::descriptors::Side;
 use canonform::linalg::Matrix;
-use canonform::{Side, VertexMap};
+use canonform::maps::VertexMap;
 use report::color::{Rgb, class_color, color_scale, perceptual};
 use serde::Serialize;
 

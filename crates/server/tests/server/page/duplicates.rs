@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use canonform::{BuildOptions, DescribeOptions, build_index};
+use canonform::DescribeOptions;
+use canonform::library::{BuildOptions, build_index};
 use datasets::{Damage, Family, PartMesh, mechanical_parts};
 use serde_json::json;
 

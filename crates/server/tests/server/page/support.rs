@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use browser::Browser;
-use canonform::{BuildOptions, DescribeOptions, build_index};
+use canonform::DescribeOptions;
+use canonform::library::{BuildOptions, build_index};
 use canonform_server::ServeOptions;
 use datasets::{ArticulatedOptions, Family, LabeledShape, articulated_shape};
 use serde_json::{Value, json};
