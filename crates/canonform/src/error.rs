@@ -343,7 +343,7 @@ impl From<FieldError> for Error {
 impl Remedy {
     /// What would help against an error of an index.
     #[must_use]
-    pub fn of_index(fault: &IndexError) -> Option<Self> {
+    pub fn from_index(fault: &IndexError) -> Option<Self> {
         match fault {
             IndexError::Damaged { .. } | IndexError::PastVersion { .. } => Some(Self::BuildIndexAgain),
             IndexError::Foreign(_) => Some(Self::BuildIndexAnew),
@@ -377,7 +377,7 @@ impl Error {
             Self::AlreadyThere { .. } => Remedy::ReplaceShape,
             Self::MeshGone { .. } | Self::MeshChanged { .. } => Remedy::RestoreMesh,
             Self::UnknownOptions { .. } => Remedy::BuildIndexAgain,
-            Self::Index(fault) => return Remedy::of_index(fault),
+            Self::Index(fault) => return Remedy::from_index(fault),
             Self::NoDiscAreas { .. } => Remedy::BuildIndexAnew,
             Self::Field(_) => Remedy::BuildFieldAgain,
             Self::TooManyShapes { .. } => Remedy::EvaluateShard,

@@ -98,7 +98,7 @@ fn describing_searching_and_comparing_methods_are_cancellable() {
     let embedded = embed(&surface, &form, &()).unwrap();
     assert_cancellable("shared stress", |budget| {
         SharedStress::new(&surface, Method::Exact, &StressOptions::default(), budget)?
-            .of(&embedded.embedding.coords)
+            .measure(&embedded.embedding.coords)
     });
 }
 

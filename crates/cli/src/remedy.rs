@@ -48,7 +48,7 @@ fn advice(cause: &(dyn std::error::Error + 'static)) -> Option<&'static str> {
         });
     }
     if let Some(fault) = cause.downcast_ref() {
-        return Remedy::of_index(fault).map(words);
+        return Remedy::from_index(fault).map(words);
     }
     if let Some(fault) = cause.downcast_ref::<io::Error>() {
         return base::files::remedy(fault).strip_prefix("; ");

@@ -1,7 +1,7 @@
 //! Keyword arguments as the options of the library.
 
 use std::collections::BTreeMap;
-use std::fmt;
+use std::fmt::Display;
 use std::time::Duration;
 
 use canonform::descriptors::SignatureKind;
@@ -20,10 +20,11 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::de::value::{Error, MapDeserializer, StrDeserializer};
 use serde::de::{DeserializeOwned, IgnoredAny, IntoDeserializer, Visitor};
-use serde::{Deserialize, Deserializer, forward_to_deserialize_any};
+use serde::{Deserialize, Deserializer, Serialize, forward_to_deserialize_any};
 use strum::{EnumMessage, VariantArray};
 
 use crate::error::Exception;
+use crate::record::json;
 
 /// Keyword arguments that were given.
 #[derive(Default, Deserialize)]
@@ -51,26 +52,14 @@ pub(crate) struct Settings {
 }
 
 /// The value of a keyword argument.
-#[derive(Clone, FromPyObject)]
+#[derive(Clone, FromPyObject, Serialize)]
+#[serde(untagged)]
 enum Value {
     Switch(bool),
     Count(u64),
     Whole(i64),
     Number(f64),
     Text(String),
-}
-
-impl fmt::Display for Value {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Switch(true) => f.write_str("True"),
-            Self::Switch(false) => f.write_str("False"),
-            Self::Count(number) => number.fmt(f),
-            Self::Whole(number) => number.fmt(f),
-            Self::Number(number) => number.fmt(f),
-            Self::Text(text) => write!(f, "{text:?}"),
-        }
-    }
 }
 
 impl<'de> Deserializer<'de> for Value {
@@ -127,8 +116,8 @@ impl<'py> FromPyObject<'_, 'py> for Settings {
             |values: &[(String, Value)]| Self::deserialize(MapDeserializer::new(values.iter().cloned()));
         // The error of all of them does not say which one is wrong.
         for value in &values {
-            read(std::slice::from_ref(value))
-                .map_err(|fault| refused(&value.0, &value.1, &in_words(&fault)))?;
+            let refused = |fault: Error| refused(&value.0, json(&value.1), &in_words(&fault));
+            read(std::slice::from_ref(value)).map_err(refused)?;
         }
         let settings = read(&values).map_err(|fault| Exception::Option.with(&fault.to_string()))?;
         match settings.unknown.keys().next() {
@@ -156,7 +145,7 @@ fn in_words(fault: &Error) -> String {
     text.replace("usize", "a whole number, 0 or more")
 }
 
-fn refused(name: &str, value: impl fmt::Display, what: &str) -> PyErr {
+fn refused(name: &str, value: impl Display, what: &str) -> PyErr {
     Exception::Option.with(&format!("{name}={value} is not possible: {what}"))
 }
 

@@ -129,14 +129,14 @@ impl Overlay {
 
     /// The residuals of both forms, in brief; zero for a form without points.
     pub fn residual(&self) -> [Residual; 2] {
-        self.residuals.each_ref().map(|residuals| Residual::of(residuals))
+        self.residuals.each_ref().map(|residuals| Residual::new(residuals))
     }
 }
 
 impl Residual {
     /// Of distances; zero if there are none.
     #[must_use]
-    pub fn of(distances: &[f64]) -> Self {
+    pub fn new(distances: &[f64]) -> Self {
         let mut order: Vec<usize> = (0..distances.len()).collect();
         order.sort_by(|&i, &j| distances[i].total_cmp(&distances[j]));
         let Some(&max_point) = order.last() else { return Self::default() };

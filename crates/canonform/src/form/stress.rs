@@ -178,7 +178,7 @@ impl SharedStress {
     ///
     /// # Errors
     /// [`Error::Nmds`].
-    pub fn of(&self, coords: &Matrix) -> Result<StressReport, Error> {
+    pub fn measure(&self, coords: &Matrix) -> Result<StressReport, Error> {
         StressReport::new(coords, self.distances.as_ref(), &|_, _| Ok(self.sample.clone()), self.method)
     }
 }

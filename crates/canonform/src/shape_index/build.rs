@@ -100,7 +100,7 @@ pub enum FailureReason {
 }
 
 impl FailureReason {
-    fn of(fault: &Error) -> Self {
+    fn new(fault: &Error) -> Self {
         match fault {
             Error::Exceeded(Exceeded::Time { .. }) => Self::Time,
             Error::Exceeded(Exceeded::Memory { .. }) => Self::Memory,
@@ -170,7 +170,7 @@ fn as_text<S: Serializer>(paths: &[PathBuf], out: S) -> Result<S::Ok, S::Error> 
 
 impl BuildReport {
     /// The report on a listing before anything is described.
-    pub(super) fn of(listing: &Listing) -> Self {
+    pub(super) fn new(listing: &Listing) -> Self {
         let unexpected = listing.skipped.iter().filter(|skipped| !skipped.kind.is_expected());
         Self {
             unlabelled: listing.shapes.iter().filter(|listed| listed.file.label.is_empty()).count(),
@@ -187,7 +187,7 @@ impl BuildReport {
 
     fn fail(&mut self, listed: &Listed, fault: &Error) {
         let (id, path) = (listed.file.name.clone(), listed.file.path.clone());
-        let (reason, error) = (FailureReason::of(fault), fault.to_string());
+        let (reason, error) = (FailureReason::new(fault), fault.to_string());
         self.failed.push(Failure { id, path, reason, error, remedy: fault.remedy() });
     }
 
@@ -298,10 +298,10 @@ pub fn build_index(
     observer: &dyn Observer,
 ) -> Result<BuildReport, Error> {
     let start = Instant::now();
-    let home = Home::of(path)?;
+    let home = Home::new(path)?;
     let root = Root::new(folder, &home)?;
     let (existing, listing) = index_and_listing(&root, path, options)?;
-    let mut report = BuildReport::of(&listing);
+    let mut report = BuildReport::new(&listing);
     let hashed = hash_all(listing.shapes, observer);
     let mut missing = Missing::new(&root, options.prune, &listing.skipped);
     if let Some(index) = existing
@@ -348,7 +348,7 @@ pub fn unchanged_index(
     options: &BuildOptions<'_>,
     observer: &dyn Observer,
 ) -> Result<Option<BuildReport>, Error> {
-    let (home, start) = (Home::of(path)?, Instant::now());
+    let (home, start) = (Home::new(path)?, Instant::now());
     let root = Root::new(folder, &home)?;
     let (Some(index), listing) = index_and_listing(&root, path, options)? else { return Ok(None) };
     // Without reading a mesh.
@@ -358,7 +358,7 @@ pub fn unchanged_index(
     if !listing.shapes.iter().all(is_known) {
         return Ok(None);
     }
-    let mut report = BuildReport::of(&listing);
+    let mut report = BuildReport::new(&listing);
     let hashed = hash_all(listing.shapes, observer);
     let missing = Missing::new(&root, options.prune, &listing.skipped);
     let is_current = report.is_current(&index, &hashed, &missing)?;
@@ -381,7 +381,7 @@ fn index_and_listing(
         Err(IndexError::Io { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => None,
         Err(fault) => return Err(fault.into()),
     };
-    let mut listing = Listing::of_folder(root, options.labels)?;
+    let mut listing = Listing::from_folder(root, options.labels)?;
     listing.shapes = share(listing.shapes, options.shard);
     if let Some(only) = options.only {
         listing.shapes.retain(|listed| only.contains(&listed.file.name));
@@ -402,8 +402,8 @@ pub fn indexed_shapes(
     path: &Path,
     labels: Option<&LabelSource>,
 ) -> Result<Vec<ShapeFile>, Error> {
-    let home = Home::of(path)?;
-    let listing = Listing::of_folder(&Root::new(folder, &home)?, labels)?;
+    let home = Home::new(path)?;
+    let listing = Listing::from_folder(&Root::new(folder, &home)?, labels)?;
     Ok(listing.shapes.into_iter().map(|listed| listed.file).collect())
 }
 

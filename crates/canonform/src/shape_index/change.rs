@@ -29,8 +29,8 @@ pub fn add_to_index(
     let index = Index::open(path)?;
     let options = options_of(&index)?;
     let classes = index.classes()?;
-    let listing = inputs.list(&Home::of(path)?, |label| classes.contains_key(label))?;
-    let mut report = BuildReport::of(&listing);
+    let listing = inputs.list(&Home::new(path)?, |label| classes.contains_key(label))?;
+    let mut report = BuildReport::new(&listing);
     let hashed = hash_all(listing.shapes, observer);
     if !replace {
         for (listed, hash) in &hashed {
@@ -88,7 +88,7 @@ pub fn merge_indexes(inputs: &[PathBuf], path: &Path, observer: &dyn Observer) -
     for index in &indexes {
         index.expect_options(first.options())?;
     }
-    let home = Home::of(path)?;
+    let home = Home::new(path)?;
     let mut writer = IndexWriter::build(path, first.options())?;
     writer.clear()?;
     let mut repeated = 0;

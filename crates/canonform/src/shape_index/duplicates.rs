@@ -296,7 +296,7 @@ impl<'a> ClusterShape<'a> {
         let is_own = |home: Home| has_one_name(&path) && home.file_text(&path) == candidate.entry.path;
         let file = DuplicateFile {
             id: candidate.entry.id.clone(),
-            is_linked: !Home::of(search.index().path()).is_ok_and(is_own),
+            is_linked: !Home::new(search.index().path()).is_ok_and(is_own),
             bytes: facts.map(|facts| facts.len()),
             modified: since_1970.map(|time| time.as_secs()),
             size: geometry.as_ref().and_then(|geometry| {

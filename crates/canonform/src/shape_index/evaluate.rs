@@ -141,7 +141,7 @@ pub fn evaluate_index(
 /// [`Error::Collection`], [`Error::NoNames`], [`Error::Retrieval`].
 pub fn evaluate_matrix(path: &Path, options: &EvaluateOptions<'_>) -> Result<Evaluation, Error> {
     let EvaluateOptions { labels, knn_k, rank_by, .. } = *options;
-    let Matrix { names, rows } = Matrix::of(&TextTable::read(path)?)?;
+    let Matrix { names, rows } = Matrix::from_table(&TextTable::read(path)?)?;
     let classes: Vec<String> = match (labels, names) {
         (None, Some(names)) => names.iter().map(|name| label_of(name)).collect(),
         (Some(source), Some(names)) => {
@@ -180,7 +180,7 @@ struct Matrix {
 }
 
 impl Matrix {
-    fn of(table: &TextTable) -> Result<Self, CollectionError> {
+    fn from_table(table: &TextTable) -> Result<Self, CollectionError> {
         let mut lines = table.rows().peekable();
         let is_head = |row: &Row<'_>| !row.cells().skip(1).all(|cell| row.number(cell).is_some());
         let head = lines.next_if(is_head);
@@ -224,7 +224,7 @@ mod tests {
 
     fn parse(text: &str) -> Result<Matrix, String> {
         let table = TextTable::parse(text.into(), Path::new("m.csv"));
-        table.and_then(|table| Matrix::of(&table)).map_err(|fault| fault.to_string())
+        table.and_then(|table| Matrix::from_table(&table)).map_err(|fault| fault.to_string())
     }
 
     #[test]

@@ -16,7 +16,7 @@ pub(super) struct Home(PathBuf);
 impl Home {
     /// # Errors
     /// [`Error::File`] if the folder does not exist.
-    pub(super) fn of(index: &Path) -> Result<Self, Error> {
+    pub(super) fn new(index: &Path) -> Result<Self, Error> {
         Ok(Self(canonical(folder_of(index))?))
     }
 
@@ -178,7 +178,7 @@ mod tests {
             ("data/i", "meshes/sub/a.off"),
             ("data/meshes/i", "sub/a.off"),
         ] {
-            let home = Home::of(&at(index)).unwrap();
+            let home = Home::new(&at(index)).unwrap();
             for folder in ["data/meshes", "work/../data/./meshes"] {
                 let folder = at(folder);
                 let root = Root::new(&folder, &home).unwrap();
@@ -197,7 +197,7 @@ mod tests {
     fn shapes_of_the_folder_of_the_index_are_told_from_others() {
         let place = tempfile::tempdir().unwrap();
         let index = place.path().join("i");
-        let home = Home::of(&index).unwrap();
+        let home = Home::new(&index).unwrap();
         let root = Root::new(place.path(), &home).unwrap();
         assert!(root.contains_source("a", "a.off") && root.contains_source("b/a", "b/a.off"));
         assert!(!root.contains_source("a", "../a.off") && !root.contains_source("a", "/a.off"));

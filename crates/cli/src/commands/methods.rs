@@ -87,7 +87,8 @@ fn compared(
         let (embedded, peak_bytes) = with_peak_bytes(|| embed(surface, &changed, observer));
         let (facts, error) = match embedded {
             Ok(Embedded { embedding, report, .. }) => {
-                let stress = changed.method.has_unit().then(|| shared.of(&embedding.coords)).transpose()?;
+                let stress =
+                    changed.method.has_unit().then(|| shared.measure(&embedding.coords)).transpose()?;
                 let SecondsReport { geodesics, embedding, .. } = report.seconds;
                 let facts = MethodFacts {
                     stress,

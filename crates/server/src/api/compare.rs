@@ -145,6 +145,6 @@ fn answer(
         _ => None,
     };
     let meshes = laid.as_ref().map(in_space);
-    let gap = laid.map(|laid| Residual::of(&laid.gaps.concat()));
+    let gap = laid.map(|laid| Residual::new(&laid.gaps.concat()));
     Ok(Answer { a: name, b: params.b, residual: found.residual, found, forms, meshes, gap })
 }

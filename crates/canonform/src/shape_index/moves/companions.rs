@@ -24,7 +24,7 @@ pub(super) struct Below {
 
 impl Below {
     /// What cannot be read holds nothing.
-    pub(super) fn of(folder: &Path) -> Self {
+    pub(super) fn new(folder: &Path) -> Self {
         let mut below = Self::default();
         let mut folders = vec![folder.to_owned()];
         while let Some(folder) = folders.pop() {

@@ -55,7 +55,7 @@ pub fn check_place(folder: &Path, place: &Path) -> Result<(), Error> {
 pub fn move_duplicates(report: &DuplicateReport, folder: &Path, place: &Path) -> Result<MoveReport, Error> {
     check_place(folder, place)?;
     let root = folder.canonicalize().map_err(|source| FileError::read(folder, source))?;
-    let below = Below::of(&root);
+    let below = Below::new(&root);
     let (mut moves, mut journal) = (MoveReport::default(), None);
     for (keeper, member) in
         report.groups.iter().flat_map(|group| group.members.iter().map(|m| (&group.keeper, m)))
