@@ -123,7 +123,7 @@ fn compared(
         geodesic: options.geodesic.name(),
         methods,
         best,
-        repair: surface.repaired.report.clone(),
+        repair: surface.input.report.clone(),
     })
 }
 
