@@ -89,7 +89,8 @@ pub(crate) fn match_surfaces<'py>(
     settings: Settings,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Maps<'py>> {
-    let [of_a, of_b] = [settings.correspond(a.inner.input.repair)?, settings.correspond(b.inner.input.repair)?];
+    let [of_a, of_b] =
+        [settings.correspond(a.inner.input.repair)?, settings.correspond(b.inner.input.repair)?];
     let known = known(&landmarks, initial, functions)?;
     let (found, colors) = run(py, &settings.budget()?, progress.as_ref(), |observer| {
         let sides = [a.matched(&of_a, observer)?, b.matched(&of_b, observer)?];
@@ -123,7 +124,8 @@ pub(crate) fn map_points<'py>(
     of_faces: bool,
     settings: Settings,
 ) -> PyResult<Points<'py>> {
-    let [of_a, of_b] = [settings.correspond(a.inner.input.repair)?, settings.correspond(b.inner.input.repair)?];
+    let [of_a, of_b] =
+        [settings.correspond(a.inner.input.repair)?, settings.correspond(b.inner.input.repair)?];
     let (functional, landmarks) = (matrix_of(&functional)?, pairs_of(&landmarks)?);
     let partners = match &partners {
         Some([a, b]) => Some([partners_of(a)?, partners_of(b)?]),

@@ -12,8 +12,8 @@ use canonform::maps::CorrespondOptions;
 use canonform::mesh::RepairOptions;
 use canonform::nmds::NystromOptions;
 use canonform::settings::{
-    DescriptionSettings, Embedding, FormSettings, Geodesic, MapSettings, MarchingSettings, MethodSettings,
-    NoEffect, RepairSettings, StressSettings,
+    DescriptionSettings, EmbeddingName, FormSettings, Geodesic, MapSettings, MarchingSettings,
+    MethodSettings, NoEffect, RepairSettings, StressSettings,
 };
 use canonform::{Budget, DescribeOptions};
 use pyo3::prelude::*;
@@ -140,9 +140,10 @@ pub(crate) fn measure(name: &str, text: &str) -> PyResult<Measure> {
 
 /// What is possible instead.
 fn in_words(fault: &Error) -> String {
-    let text =
-        fault.to_string().replace("expected one of", "use").replace("expected", "use").replace('`', "\"");
-    text.replace("usize", "a whole number, 0 or more")
+    const COUNT: &str = "a whole number, 0 or more";
+    let words = [("expected one of", "use"), ("expected", "use"), ("`", "\""), ("f64", "a number")];
+    let counts = ["usize", "u64", "u32"].map(|kind| (kind, COUNT));
+    words.iter().chain(&counts).fold(fault.to_string(), |text, (from, to)| text.replace(from, to))
 }
 
 fn refused(name: &str, value: impl Display, what: &str) -> PyErr {
@@ -228,7 +229,7 @@ pub(crate) fn distance_methods() -> Vec<(&'static str, &'static str)> {
 /// Methods that turn distances into coordinates, and what they compute.
 #[pyfunction]
 pub(crate) fn embedding_methods() -> Vec<(&'static str, &'static str)> {
-    named::<Embedding>()
+    named::<EmbeddingName>()
 }
 
 /// The names of the kinds of signatures.

@@ -25,7 +25,7 @@ use crate::correspond::CorrespondOptions;
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 #[strum(serialize_all = "kebab-case")]
-pub enum Embedding {
+pub enum EmbeddingName {
     /// Nystrom multidimensional scaling
     #[default]
     Nmds,
@@ -134,7 +134,7 @@ pub struct RepairSettings {
 pub struct MethodSettings {
     /// How to turn distances into coordinates [default: nmds]
     #[cfg_attr(feature = "clap", arg(long))]
-    pub method: Option<Embedding>,
+    pub method: Option<EmbeddingName>,
     /// Number of eigenpairs of the sample matrix to keep (of columns for cur) [default: half the samples, at least --dim + 4]
     #[cfg_attr(feature = "clap", arg(long, value_name = "N1", hide_short_help = true))]
     pub rank: Option<usize>,
@@ -241,7 +241,7 @@ impl NoEffect {
 impl MethodSettings {
     /// Refuses settings that would change nothing.
     fn check(&self) -> Result<(), NoEffect> {
-        use Embedding::{Kpca, Landmark, Nmds, Smacof, Spectral};
+        use EmbeddingName::{Kpca, Landmark, Nmds, Smacof, Spectral};
         let method = ("method", self.method.unwrap_or_default());
         let sampled = [Nmds, Landmark, Spectral, Kpca, Smacof];
         NoEffect::check(("sampling", self.sampling.is_some(), &sampled), method)?;
@@ -277,15 +277,15 @@ impl MethodSettings {
         };
         let usual = SmacofOptions::default();
         Ok(match self.method.unwrap_or_default() {
-            Embedding::Nmds => EmbedMethod::Nystrom { regularization },
-            Embedding::Landmark => EmbedMethod::Landmark,
-            Embedding::Spectral => EmbedMethod::Spectral {
+            EmbeddingName::Nmds => EmbedMethod::Nystrom { regularization },
+            EmbeddingName::Landmark => EmbedMethod::Landmark,
+            EmbeddingName::Spectral => EmbedMethod::Spectral {
                 eigenvectors: self.n_eigenfunctions.unwrap_or(EIGENVECTORS),
                 mu: self.mu.unwrap_or(SpectralOptions::default().mu),
             },
-            Embedding::Kpca => EmbedMethod::KernelPca { rank, bandwidth: self.sigma.unwrap_or_default() },
-            Embedding::Mds => EmbedMethod::Classical,
-            Embedding::Smacof => EmbedMethod::Smacof {
+            EmbeddingName::Kpca => EmbedMethod::KernelPca { rank, bandwidth: self.sigma.unwrap_or_default() },
+            EmbeddingName::Mds => EmbedMethod::Classical,
+            EmbeddingName::Smacof => EmbedMethod::Smacof {
                 regularization,
                 descent: SmacofOptions {
                     max_iterations: self.max_iterations.unwrap_or(usual.max_iterations),

@@ -76,7 +76,7 @@ impl FormArgs {
 #[cfg(test)]
 mod tests {
     use canonform::DescribeOptions;
-    use canonform::settings::{DescriptionSettings, Embedding};
+    use canonform::settings::{DescriptionSettings, EmbeddingName};
     use clap::FromArgMatches;
 
     use super::*;
@@ -153,7 +153,8 @@ mod tests {
 
     #[test]
     fn settings_without_effect_are_told_by_their_flags() {
-        let settings = MethodSettings { first: Some(1), method: Some(Embedding::Mds), ..Default::default() };
+        let settings =
+            MethodSettings { first: Some(1), method: Some(EmbeddingName::Mds), ..Default::default() };
         let words = settings.options().unwrap_err().in_words(spelled);
         assert!(words.starts_with("--first-sample has no effect with --method mds; "), "{words}");
     }

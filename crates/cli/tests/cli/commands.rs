@@ -374,10 +374,10 @@ fn help_mentions_every_option() {
         words.for_each(|word| assert!(page.contains(word), "{command} --help-all does not mention {word}"));
         for option in options {
             let takes_values = option.get_action().takes_values();
-            let names = option.get_possible_values().into_iter().filter(|_| takes_values);
-            let names = names.map(|value| value.get_name().to_owned());
-            let placeholders =
-                option.get_value_names().unwrap_or_default().iter().map(|name| name.to_string());
+            let values = if takes_values { option.get_possible_values() } else { Vec::new() };
+            let names = values.iter().map(|value| value.get_name().to_owned());
+            let placeholders = option.get_value_names().filter(|_| takes_values).unwrap_or_default();
+            let placeholders = placeholders.iter().map(|name| name.to_string());
             let flag = format!("--{}", option.get_long().unwrap());
             for word in names.chain(placeholders).chain([flag]) {
                 assert!(page.contains(&word), "{command} --help-all does not mention {word}");

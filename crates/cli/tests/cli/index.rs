@@ -254,7 +254,7 @@ fn an_index_is_verified_described_and_scored() {
     assert_keys(&graph, "nn ft st e dcg map knn_accuracy confusion intervals");
     let text = place.done("evaluate all.canonform --rank graph").out;
     assert!(text.contains("plain") && text.contains("graph"), "{text}");
-    place.refused("evaluate all.canonform --rank best", &["best", "`plain` or `graph`"]);
+    place.refused("evaluate all.canonform --rank best", &["best", "possible values: plain, graph"]);
     let found = place.found("all.canonform --id ring1 --rank graph");
     assert_eq!((&found["rank_by"], &found["results"][0]["id"]), (&"graph".into(), &"ring1".into()));
     let order = |i: usize| found["results"][i]["rank_distance"].as_f64().unwrap();
