@@ -58,6 +58,7 @@
 //! use canonform::geodesics::{FirstSample, Method, Sampling};
 //! use canonform::nmds::{NystromOptions, nystrom};
 //! use canonform::surface::VertexId;
+//! use canonform::{Surface, mesh::shapes};
 //!
 //! let surface = Surface::new(&shapes::icosphere(3), &Default::default(), &())?;
 //! // Distances from vertex 0 by fast marching, at most half of the circumference of the unit sphere.

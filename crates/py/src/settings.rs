@@ -140,10 +140,14 @@ pub(crate) fn measure(name: &str, text: &str) -> PyResult<Measure> {
 
 /// What is possible instead.
 fn in_words(fault: &Error) -> String {
-    const COUNT: &str = "a whole number, 0 or more";
-    let words = [("expected one of", "use"), ("expected", "use"), ("`", "\""), ("f64", "a number")];
-    let counts = ["usize", "u64", "u32"].map(|kind| (kind, COUNT));
-    words.iter().chain(&counts).fold(fault.to_string(), |text, (from, to)| text.replace(from, to))
+    let text = fault.to_string().replace('`', "\"");
+    let Some((_, possible)) = text.split_once(", expected ") else { return text };
+    let possible = match possible.trim_start_matches("one of ") {
+        "usize" | "u64" | "u32" => "a whole number, 0 or more",
+        "f64" => "a number",
+        names => names,
+    };
+    format!("use {possible}")
 }
 
 fn refused(name: &str, value: impl Display, what: &str) -> PyErr {
