@@ -4,19 +4,15 @@ use std::fmt;
 
 use serde::{Serialize, Serializer};
 
-/// Units that meshes are stored in, and by how much numbers grow from the first to the second.
-const UNITS: [(&str, &str, f64); 11] = [
-    ("inches", "millimetres", 25.4),
-    ("inches", "centimetres", 2.54),
-    ("metres", "millimetres", 1000.0),
-    ("metres", "centimetres", 100.0),
-    ("centimetres", "millimetres", 10.0),
-    ("metres", "inches", 1.0 / 0.0254),
-    ("feet", "millimetres", 304.8),
-    ("feet", "centimetres", 30.48),
-    ("metres", "feet", 1.0 / 0.3048),
-    ("feet", "inches", 12.0),
-    ("metres", "micrometres", 1e6),
+/// Units that meshes are stored in, in millimetres, by length: of two changes by one factor, the one between longer units is
+/// meant.
+const UNITS: [(&str, f64); 6] = [
+    ("metres", 1000.0),
+    ("feet", 304.8),
+    ("inches", 25.4),
+    ("centimetres", 10.0),
+    ("millimetres", 1.0),
+    ("micrometres", 0.001),
 ];
 
 /// A change of the unit of length, which explains a change of size.
@@ -31,10 +27,8 @@ pub struct UnitChange {
 impl UnitChange {
     /// Every change of unit, in both directions, and by how much numbers grow.
     fn all() -> impl Iterator<Item = (Self, f64)> {
-        let both = |&(from, to, factor): &(&'static str, &'static str, f64)| {
-            [(Self { from, to }, factor), (Self { from: to, to: from }, 1.0 / factor)]
-        };
-        UNITS.iter().flat_map(both)
+        let pairs = UNITS.into_iter().flat_map(|a| UNITS.map(|b| (a, b))).filter(|(a, b)| a != b);
+        pairs.map(|((from, long), (to, short))| (Self { from, to }, long / short))
     }
 
     /// By how much numbers grow with every change of unit.
@@ -75,7 +69,10 @@ mod tests {
 
     #[test]
     fn each_change_of_unit_is_named_in_both_directions() {
-        for (from, to, factor) in UNITS {
+        let named =
+            [("inches", "millimetres", 25.4), ("metres", "millimetres", 1000.0), ("feet", "inches", 12.0)];
+        let more = [("metres", "feet", 1.0 / 0.3048), ("centimetres", "millimetres", 10.0)];
+        for (from, to, factor) in named.into_iter().chain(more) {
             assert_eq!(UnitChange::of(factor * 1.00001, 1e-4), Some(UnitChange { from, to }));
             assert_eq!(UnitChange::of(1.0 / factor, 1e-4), Some(UnitChange { from: to, to: from }));
         }
