@@ -46,6 +46,12 @@ pub(crate) enum ExperimentCommand {
         #[arg(long, short)]
         quiet: bool,
     },
+    /// Measure the numbers of relations on built-in shapes: the boundary of one surface, and how often confidence is right
+    Relations {
+        /// Show no progress bars
+        #[arg(long, short)]
+        quiet: bool,
+    },
 }
 
 #[derive(Debug, Args)]

@@ -81,29 +81,46 @@ fn weights(pairs: &[CreaturePair], prior: Prior) -> Vec<f64> {
     pairs.iter().map(|pair| prior[pair.kind] / counts[pair.kind] as f64).collect()
 }
 
-/// The boundary of greatest likelihood between kinds below `second` and the others, by expectation maximization: a logarithm of
-/// the distance is on the near or the far side, by logistic regression, and on each side a share of pairs is of the kinds below.
-fn fitted(pairs: &[CreaturePair], prior: Prior, second: usize) -> Boundary {
-    let weights = weights(pairs, prior);
-    let ([mut a, mut b], [mut far, mut near]) = ([0.0, -1.0], [0.1, 0.9]);
+/// The boundary of greatest likelihood between kinds below `second` and the others.
+fn between(pairs: &[CreaturePair], prior: Prior, second: usize) -> Boundary {
+    let samples = pairs.iter().zip(weights(pairs, prior));
+    let samples: Vec<Sample> =
+        samples.map(|(pair, weight)| (pair.distance.combined, pair.kind < second, weight)).collect();
+    fitted(&samples, [0.1, 0.9])
+}
+
+/// A distance, or a probability, whether the pair is one, and its weight.
+pub(crate) type Sample = (f64, bool, f64);
+
+/// The boundary of greatest likelihood, by expectation maximization: a logarithm of the distance is on the near or the far side, by
+/// logistic regression, and on each side a share of pairs is one. The iteration starts from the range of these shares; 0 and 1
+/// stay, and leave a plain logistic regression.
+pub(crate) fn fitted(samples: &[Sample], [mut far, mut near]: [f64; 2]) -> Boundary {
+    let [mut a, mut b] = [0.0, -1.0];
     for _ in 0..STEPS {
         let (mut gradient, mut hessian, mut sides) = ([0.0; 2], [0.0; 3], [[0.0; 2]; 2]);
-        for (pair, weight) in pairs.iter().zip(&weights) {
-            let x = pair.distance.combined.ln();
-            let p = 1.0 / (1.0 + (-a - b * x).exp());
-            let kind = usize::from(pair.kind < second);
+        for &(distance, is_one, weight) in samples {
+            let x = distance.ln();
+            // Near the ends, one of both is not 1 less the other.
+            let [p, q] = [-a - b * x, a + b * x].map(|odds| 1.0 / (1.0 + odds.exp()));
+            let kind = usize::from(is_one);
             let [at_far, at_near] = [[1.0 - far, far], [1.0 - near, near]].map(|share| share[kind]);
-            let is_near = at_near * p / (at_near * p + at_far * (1.0 - p));
+            let is_near = at_near * p / (at_near * p + at_far * q);
             sides[0][kind] += weight * (1.0 - is_near);
             sides[1][kind] += weight * is_near;
             let rest = weight * (is_near - p);
             gradient = [gradient[0] + rest, gradient[1] + rest * x];
-            let spread = weight * p * (1.0 - p);
+            let spread = weight * p * q;
             hessian = [hessian[0] + spread, hessian[1] + spread * x, hessian[2] + spread * x * x];
         }
         let determinant = hessian[0] * hessian[2] - hessian[1] * hessian[1];
-        a += (hessian[2] * gradient[0] - hessian[1] * gradient[1]) / determinant;
-        b += (hessian[0] * gradient[1] - hessian[1] * gradient[0]) / determinant;
+        let step = [
+            (hessian[2] * gradient[0] - hessian[1] * gradient[1]) / determinant,
+            (hessian[0] * gradient[1] - hessian[1] * gradient[0]) / determinant,
+        ];
+        // Far from the greatest likelihood, Newton's steps are too long.
+        let length = step[0].hypot(step[1]).max(1.0);
+        (a, b) = (a + step[0] / length, b + step[1] / length);
         [far, near] = sides.map(|[others, these]| these / (others + these));
     }
     let at = ((a - ((0.5 - far) / (near - 0.5)).ln()) / -b).exp();
@@ -114,19 +131,19 @@ fn fitted(pairs: &[CreaturePair], prior: Prior, second: usize) -> Boundary {
 /// the rule of succession.
 fn both(pairs: &[CreaturePair]) -> [Boundary; 2] {
     let n_plans = creature_plans().len() as f64;
-    let shape = fitted(pairs, OF_SHAPES, 1);
+    let shape = between(pairs, OF_SHAPES, 1);
     let range = shape.range.map(|share| (n_plans * share + 0.5) / (n_plans + 1.0));
-    [Boundary { range, ..shape }, fitted(pairs, OF_CLASSES, 2)]
+    [Boundary { range, ..shape }, between(pairs, OF_CLASSES, 2)]
 }
 
 /// As it is printed and used.
-fn rounded(Boundary { at, steepness, range }: Boundary) -> Boundary {
+pub(crate) fn rounded(Boundary { at, steepness, range }: Boundary) -> Boundary {
     let [at, far, near] = [at, range[0], range[1]].map(|value| (1000.0 * value).round() / 1000.0);
     Boundary { at, steepness: (100.0 * steepness).round() / 100.0, range: [far, near] }
 }
 
 /// In ten bins of the stated probabilities: the number of pairs, the mean of what is stated, and the share that is true.
-fn reliability(stated: &[(f64, bool, f64)]) -> Vec<[f64; 3]> {
+pub(crate) fn reliability(stated: &[Sample]) -> Vec<[f64; 3]> {
     let bin = |i: usize| {
         let inside = |p: f64| ((10.0 * p) as usize).min(9) == i;
         let (mut n, mut sums) = (0.0, [0.0; 3]);
@@ -171,7 +188,7 @@ pub(crate) fn print(observer: &dyn Observer, out: &mut impl Write) -> Result<()>
         both(&pairs.iter().filter(is_known).copied().collect::<Vec<_>>())
     };
     let boundaries: Vec<[Boundary; 2]> = held_out.par_iter().map(without).collect();
-    let mut stated: [Vec<(f64, bool, f64)>; 2] = Default::default();
+    let mut stated: [Vec<Sample>; 2] = Default::default();
     for (pair, weight) in pairs.iter().zip(weights(&pairs, OF_CLASSES)) {
         let i =
             held_out.iter().position(|plans| *plans == pair.plans).context("any two plans are held out")?;
@@ -206,7 +223,7 @@ mod tests {
             })
             .collect();
         let ones = pairs.iter().filter(|pair| pair.kind == 1).count() as f64 / pairs.len() as f64;
-        let found = fitted(&pairs, [0.0, ones, 1.0 - ones], 2);
+        let found = between(&pairs, [0.0, ones, 1.0 - ones], 2);
         assert!((found.at - 2.0).abs() < 0.02 && (found.steepness - 9.0).abs() < 0.2, "{found:?}");
         assert!(
             found.range.iter().zip(truth.range).all(|(found, truth)| (found - truth).abs() < 0.01),

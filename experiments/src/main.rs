@@ -21,6 +21,7 @@ mod paper;
 mod parts;
 mod prose;
 mod quoted;
+mod relations;
 mod run;
 mod specimen;
 mod surfaces;
@@ -49,5 +50,6 @@ fn main() -> ExitCode {
         ExperimentCommand::List => run::list(),
         ExperimentCommand::Report { output, markdown } => run::report(output, markdown.as_deref()),
         ExperimentCommand::Units { seeds, quiet } => units::units(*seeds, *quiet),
+        ExperimentCommand::Relations { quiet } => relations::relations(*quiet),
     })
 }

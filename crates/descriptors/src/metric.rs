@@ -29,7 +29,7 @@ const OUTLYING: f64 = 4.0;
 pub struct ShapeMetric;
 
 /// How far apart two shapes are, regardless of size.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct ShapeDistance {
     /// By signatures alone.
     #[serde(rename = "fused_distance")]

@@ -11,7 +11,7 @@ use super::units::UnitChange;
 use super::variant::Difference;
 
 /// What a relation is taken from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Basis {
     /// The bytes of both files.
@@ -19,11 +19,12 @@ pub enum Basis {
     /// Both meshes. In a search, the file of the shape was read again.
     Meshes,
     /// What an index stores of the shapes: the file of one is missing or has changed, or was not read.
+    #[default]
     Descriptions,
 }
 
 /// Everything that a relation is told from.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Evidence {
     /// What the relation is taken from.
     pub basis: Basis,
@@ -57,6 +58,8 @@ pub struct Evidence {
     pub vertex_gap: Option<f64>,
     /// How far the surfaces are apart in space.
     pub surface_gap: Option<Gap>,
+    /// The same in multiples of what triangles, rounding and noise explain: about 1 or less for copies of one surface.
+    pub gap_ratio: Option<f64>,
     /// How often one mesh occurs among the components of the other.
     pub parts: Option<Parts>,
     /// What was cut out of what.
@@ -70,25 +73,8 @@ pub struct Evidence {
 impl Evidence {
     /// The distance of two shapes, and nothing else.
     pub(super) fn by_distance(distance: ShapeDistance) -> Self {
-        Self {
-            basis: Basis::Descriptions,
-            distance,
-            same_shape: distance.same_shape(),
-            same_class: distance.same_class(),
-            handedness: Handedness::Unknown,
-            scale: 1.0,
-            units: None,
-            content: [None; 2],
-            vertices: None,
-            faces: None,
-            components: None,
-            rotation: None,
-            vertex_gap: None,
-            surface_gap: None,
-            parts: None,
-            cut: None,
-            differences: Vec::new(),
-        }
+        let (same_shape, same_class) = (distance.same_shape(), distance.same_class());
+        Self { distance, same_shape, same_class, scale: 1.0, ..Self::default() }
     }
 }
 

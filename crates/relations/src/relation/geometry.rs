@@ -15,8 +15,9 @@ use surface::{Components, VertexId, components_of_faces};
 /// are finer. A tolerance of rounding.
 const ROUNDING: f64 = 1e-5;
 
-/// Vertices of one geometry are never farther apart than this, relative to the size, wherever the mesh lies. A safety limit.
-const MOST_ROUNDING: f64 = 1e-4;
+/// Vertices of one geometry are never farther apart than this, relative to the size, wherever the mesh lies, and their sizes and
+/// places are equal up to this share.
+pub(super) const MOST_ROUNDING: f64 = 1e-4;
 
 /// Most components that are compared on their own, the largest by area.
 const MOST_COMPONENTS: usize = 200;

@@ -1,20 +1,12 @@
 //! Numbers of a surface that tell cheaply that two surfaces are not one.
 
+use super::calibration::{ARCS, EXACT};
 use super::geometry::MeshGeometry;
 use super::same_surface::{euler_characteristic_if_closed, rms_chord_error};
 
 /// Spreads of organic copies, at unit area, differ by less than this, by decimation, noise and holes. A safety limit: it saves
 /// time.
 const MOST_OF_BODIES: f64 = 0.05;
-
-/// Spreads and volumes of mechanical copies with as many vertices differ by less than this: the vertices are the same. A
-/// tolerance of rounding and of other diagonals.
-const EXACT: f64 = 5e-4;
-
-/// Those of other copies differ by this multiple of the error of flat triangles besides. The largest of 60 generated parts
-/// with circles of 12 to 64 segments, refined and decimated, is 0.96 (`cargo test -p tests --test laws -- invariants
-/// --nocapture`).
-const ARCS: f64 = 1.5;
 
 /// What copies of one surface have in common, whatever their triangles, places and sizes.
 ///

@@ -6,12 +6,9 @@ use surface::{Topology, VertexId};
 use super::Change;
 use super::geometry::MeshGeometry;
 
-/// Meshes with numbers of vertices that differ by less than this share have about as many vertices. A convention.
-const AS_MANY: f64 = 0.05;
-
-/// Vertices that a subdivision keeps are found again within this distance, relative to the mean edge of the finer mesh. A
-/// tolerance: their places are those of an alignment.
-const KEPT: f64 = 0.05;
+/// Meshes have about as many vertices if the numbers differ by less than this share. Vertices that a subdivision keeps, nearly all,
+/// are found again within this distance, relative to the mean edge. Half and twice as much change no answer.
+const ABOUT: f64 = 0.05;
 
 /// Displacements of neighbouring vertices are independent, as those by noise, if their correlation along edges is below
 /// this. A safety limit: it is 0 for noise and 1 for a smooth deformation.
@@ -25,9 +22,9 @@ pub(super) fn mesh_change([a, b]: [&MeshGeometry; 2], map: &Similarity) -> Chang
         return if is_noise { Change::Noisy } else { Change::Posed };
     }
     let ratio = b.n_vertices() as f64 / a.n_vertices() as f64;
-    if ratio < 1.0 - AS_MANY {
+    if ratio < 1.0 - ABOUT {
         Change::Decimated
-    } else if ratio > 1.0 + AS_MANY && has_vertices(b, a, map) {
+    } else if ratio > 1.0 + ABOUT && has_vertices(b, a, map) {
         Change::Subdivided
     } else {
         Change::Remeshed
@@ -58,7 +55,7 @@ fn has_vertices(fine: &MeshGeometry, coarse: &MeshGeometry, map: &Similarity) ->
     let Ok(nearest) = NearestPoints::new(fine.mesh().positions.clone()) else { return false };
     // About the side of equilateral triangles of unit area in total.
     let edge = (2.3 / fine.n_faces() as f64).sqrt();
-    let is_kept = |p: &nalgebra::Point3<f64>| nearest.nearest(&map.apply(p)).1 < (KEPT * edge).powi(2);
+    let is_kept = |p: &nalgebra::Point3<f64>| nearest.nearest(&map.apply(p)).1 < (ABOUT * edge).powi(2);
     let kept = coarse.mesh().positions.iter().filter(|p| is_kept(p)).count();
-    kept as f64 > 0.95 * coarse.n_vertices() as f64
+    kept as f64 > (1.0 - ABOUT) * coarse.n_vertices() as f64
 }

@@ -3,22 +3,16 @@
 use descriptors::Side;
 use rigid::{Alignment, Similarity, align_surfaces, is_symmetric};
 
-use super::cut::{CutPiece, FoundPiece, piece_of};
+use super::calibration::{CUT, VARIANT};
+use super::cut::piece_of;
 use super::exact::{SameVertices, same_vertices};
-use super::geometry::MeshGeometry;
+use super::geometry::{MOST_ROUNDING, MeshGeometry};
 use super::mesh_change::mesh_change;
 use super::parts::{PartCopy, Parts, occurrences};
 use super::same_surface::{is_one_surface, same_surface};
 use super::units::UnitChange;
 use super::variant::differences;
-use super::{Basis, Change, Relation, RelationKind, SIZE_OF_SURFACES, SIZE_OF_VERTICES};
-
-/// Triangles in common are hardly chance. A convention.
-const CUT: f64 = 0.99;
-
-/// The share of parts called variants that are variants of one part. Measured on generated parts (`experiments run
-/// evidence`).
-const VARIANT: f64 = 0.95;
+use super::{Basis, Change, Relation, RelationKind, SIZE_OF_SURFACES};
 
 impl Relation {
     /// The relation once both meshes are known, too.
@@ -88,17 +82,17 @@ impl Relation {
         if !reflected {
             let angle = nalgebra::Rotation3::from_matrix_unchecked(rotation).angle();
             let shift = b.surface.center().coords - rotation * a.surface.center().coords * scale;
-            if shift.norm() > SIZE_OF_VERTICES * b.size() {
+            if shift.norm() > MOST_ROUNDING * b.size() {
                 changes.push(Change::Moved);
             }
-            if angle > SIZE_OF_VERTICES {
+            if angle > MOST_ROUNDING {
                 changes.push(Change::Rotated);
             }
             self.evidence.rotation = Some(angle.to_degrees());
         }
         // A surface that is its own mirror image is not another one for being mirrored, only its triangles are.
         let is_turned = reflected && is_symmetric(&b.surface);
-        changes.extend(Change::of_similarity(scale, SIZE_OF_VERTICES, reflected && !is_turned));
+        changes.extend(Change::of_similarity(scale, MOST_ROUNDING, reflected && !is_turned));
         changes.extend((is_turned || !same.same_faces).then_some(Change::Remeshed));
         let kind = match changes.last() {
             Some(Change::Scaled) => RelationKind::Scaled,
@@ -107,14 +101,14 @@ impl Relation {
             _ => RelationKind::IdenticalGeometry,
         };
         self.evidence.vertex_gap = Some(same.gap);
-        self.found(kind, 1.0, changes, scale, SIZE_OF_VERTICES)
+        self.found(kind, 1.0, changes, scale, MOST_ROUNDING)
     }
 
     /// Of meshes of which one has the other as a component.
     fn with_parts(mut self, parts: Parts, copy: PartCopy) -> Self {
         let PartCopy { scale, mirrored, gap, confidence } = copy;
         let scale = if parts.whole == Side::Second { scale } else { 1.0 / scale };
-        let tolerance = if gap.is_none() { SIZE_OF_VERTICES } else { SIZE_OF_SURFACES };
+        let tolerance = if gap.is_none() { MOST_ROUNDING } else { SIZE_OF_SURFACES };
         let mut changes = Change::of_similarity(scale, tolerance, mirrored);
         changes.extend(gap.map(|_| Change::Remeshed));
         let all = parts.found == parts.components && parts.found > 1;
@@ -131,8 +125,8 @@ impl Relation {
         };
         let Alignment { map, gap } = aligned;
         let change = mesh_change([a, b], &map);
-        let probability = same_surface(&aligned, [a, b], change);
-        self.evidence.surface_gap = Some(gap);
+        let [ratio, probability] = same_surface(&aligned, [a, b], change);
+        (self.evidence.surface_gap, self.evidence.gap_ratio) = (Some(gap), Some(ratio));
         if probability < 0.5 || change == Change::Posed {
             return self.with_differences([a, b], Some(gap.rms));
         }
@@ -151,13 +145,13 @@ impl Relation {
     fn with_differences(mut self, meshes: [&MeshGeometry; 2], rms: Option<f64>) -> Self {
         let [a, b] = meshes;
         let sides = [(Side::First, a, b), (Side::Second, b, a)];
-        let piece = sides.into_iter().find_map(|(whole, of, piece)| Some((whole, piece_of(of, piece)?)));
-        if let Some((whole, FoundPiece { left, factor })) = piece {
-            self.evidence.cut = Some(CutPiece { whole, left });
-            let scale = if whole == Side::First { factor } else { 1.0 / factor };
-            let mut changes = Change::of_similarity(scale, SIZE_OF_VERTICES, false);
+        let piece = sides.into_iter().find_map(|(whole, of, piece)| piece_of(whole, of, piece));
+        if let Some((cut, factor)) = piece {
+            let scale = if cut.whole == Side::First { factor } else { 1.0 / factor };
+            self.evidence.cut = Some(cut);
+            let mut changes = Change::of_similarity(scale, MOST_ROUNDING, false);
             changes.push(Change::Cut);
-            return self.found(RelationKind::PartOf, CUT, changes, scale, SIZE_OF_VERTICES);
+            return self.found(RelationKind::PartOf, CUT, changes, scale, MOST_ROUNDING);
         }
         if let Some(differences) = differences(meshes, rms) {
             self.evidence.differences = differences;

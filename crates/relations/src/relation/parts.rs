@@ -92,7 +92,7 @@ fn copy_of(mesh: &MeshGeometry, part: &MeshGeometry, align: bool) -> Option<Part
     }
     let aligned = if align { align_surfaces(&mesh.surface, &part.surface)? } else { return None };
     let Alignment { map, gap } = aligned;
-    let confidence = same_surface(&aligned, [mesh, part], mesh_change([mesh, part], &map));
+    let [_, confidence] = same_surface(&aligned, [mesh, part], mesh_change([mesh, part], &map));
     let (scale, mirrored) = (map.scale * sizes, map.reflected);
     (confidence > 0.5).then_some(PartCopy { scale, mirrored, gap: Some(gap), confidence })
 }
