@@ -4,8 +4,8 @@ use std::error::Error;
 use std::fs;
 use std::path::Path;
 
-use mesh::io::FORMATS;
-use mesh::{TriMesh, io, shapes};
+use mesh::{TriMesh, shapes};
+use mesh_io::FORMATS;
 
 /// Small meshes, intact and broken.
 fn meshes() -> Vec<(&'static str, TriMesh)> {
@@ -62,8 +62,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut files: Vec<(String, u8, Vec<u8>)> = Vec::new();
         for format in FORMATS.iter().filter(|format| format.can_write(io::Content::Mesh)) {
             let path = folder.path().join(format!("{name}.{}", format.extensions[0]));
-            io::write(&path, &mesh)?;
-            let contents = io::files_of(&path).iter().map(fs::read).collect::<Result<Vec<_>, _>>()?;
+            mesh_io::write(&path, &mesh)?;
+            let contents = mesh_io::files_of(&path).iter().map(fs::read).collect::<Result<Vec<_>, _>>()?;
             let byte = format_byte(format.extensions[0]).ok_or("an unknown format")?;
             files.push((format.extensions[0].to_owned(), byte, contents.join(&0)));
         }

@@ -11,7 +11,6 @@ use std::error::Error;
 use std::path::Path;
 
 use canonform_datasets::{ArticulatedOptions, Damage, Family, articulated_at_rest};
-use mesh::io;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().collect();
@@ -23,15 +22,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     let options = ArticulatedOptions { n_vertices, ..ArticulatedOptions::default() };
     for pose in 0..poses.parse()? {
         let made = articulated_at_rest(Family::David, 0, pose, &options, &())?;
-        io::write(&folder.join(format!("{}.off", made.shape.name)), &made.shape.mesh)?;
-        io::write(&folder.join(format!("{}-rest.off", made.shape.name)), &made.rest)?;
+        mesh_io::write(&folder.join(format!("{}.off", made.shape.name)), &made.shape.mesh)?;
+        mesh_io::write(&folder.join(format!("{}-rest.off", made.shape.name)), &made.rest)?;
     }
     for (seed, path) in meshes.iter().enumerate() {
-        let mesh = io::read(Path::new(path))?;
+        let mesh = mesh_io::read(Path::new(path))?;
         let share = n_vertices as f64 / mesh.n_vertices() as f64;
         let name = Path::new(path).file_stem().ok_or("a mesh has a name")?;
         let own = Damage::Sample(share.min(1.0)).apply(&mesh, seed as u64);
-        io::write(&folder.join(name).with_extension("off"), &own)?;
+        mesh_io::write(&folder.join(name).with_extension("off"), &own)?;
     }
     Ok(())
 }

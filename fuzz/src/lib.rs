@@ -9,7 +9,7 @@ use std::time::Duration;
 use base::Budget;
 use canonform::Observer;
 use mesh::TriMesh;
-use mesh::io::{FORMATS, MemoryFile, ReadLimits, read_memory};
+use mesh_io::{FORMATS, MemoryFile, ReadLimits, read_memory};
 
 /// Limits the time of one input and cancels nothing else.
 #[derive(Debug)]

@@ -24,7 +24,7 @@ fn intact() -> &'static (Vec<u8>, PathBuf) {
         let meshes = folder.path().join("meshes");
         std::fs::create_dir(&meshes).expect("a folder");
         for (name, mesh) in [("ball1.off", shapes::icosphere(2)), ("ring1.off", shapes::torus(24, 12, 2.0, 0.7))] {
-            mesh::io::write(&meshes.join(name), &mesh).expect("a mesh");
+            mesh_io::write(&meshes.join(name), &mesh).expect("a mesh");
         }
         let path = folder.path().join("intact.canonform");
         let describe = DescribeOptions::default();

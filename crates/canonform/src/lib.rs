@@ -97,7 +97,7 @@ pub use error::{Error, Remedy};
 pub use form::{DescribeOptions, describe, settings};
 pub use index::Shape;
 pub use input::read_surface;
-pub use {collection, descriptors, fields, index, linalg, mesh, nmds, relations, retrieval, rigid, surface};
+pub use {collection, descriptors, fields, index, linalg, nmds, relations, retrieval, rigid, surface};
 
 /// From distances to coordinates, and what they tell of a shape.
 pub mod embed {
@@ -140,4 +140,10 @@ pub mod search {
         Prediction, Query, SearchOptions, SearchRank, SearchSeconds, ShapeSearch, Unknown, bounds,
         merge_answers, n_candidates, n_results, rerank,
     };
+}
+
+/// Triangle meshes and their files.
+pub mod mesh {
+    pub use ::mesh::*;
+    pub use mesh_io as io;
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use base::files::FileError;
 use base::{ContentHash, ContentHasher};
-use mesh::io::ReadLimits;
+use mesh_io::ReadLimits;
 
 use crate::error::CollectionError;
 use crate::storage::{Storage, member_of, mesh_at, open_archive};
@@ -18,7 +18,7 @@ use crate::storage::{Storage, member_of, mesh_at, open_archive};
 /// [`CollectionError`] if a file cannot be read.
 pub fn content_hash(path: &Path) -> Result<ContentHash, CollectionError> {
     let mut hasher = ContentHasher::default();
-    for path in &mesh::io::files_in(&mesh_at(path)?, &Storage) {
+    for path in &mesh_io::files_in(&mesh_at(path)?, &Storage) {
         match member_of(path) {
             Some(_) => hasher.add(&content_of(path)?),
             None => {

@@ -75,7 +75,7 @@ pub enum CollectionError {
         "{path}: no mesh found in it or its sub-folders; \
          a mesh is {meshes}",
         path = path.display(),
-        meshes = mesh::io::mesh_files()
+        meshes = mesh_io::mesh_files()
     )]
     NoShapes {
         /// The folder.

@@ -5,7 +5,7 @@
 //!
 //! let folder = tempfile::tempdir()?;
 //! for name in ["ball1.off", "ball2.off"] {
-//!     mesh::io::write(&folder.path().join(name), &mesh::shapes::icosphere(2))?;
+//!     mesh_io::write(&folder.path().join(name), &mesh::shapes::icosphere(2))?;
 //! }
 //! let found = Dataset::read(folder.path(), None)?;
 //! assert_eq!((found.shapes[0].name.as_str(), found.shapes[0].label.as_str()), ("ball1", "ball"));

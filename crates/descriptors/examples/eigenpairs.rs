@@ -10,7 +10,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use linalg::{GeneralizedEigen, SparseSymmetric, smallest_eigenpairs};
-use mesh::{RepairOptions, io, repair};
+use mesh::{RepairOptions, repair};
 use surface::laplacian::Laplacian;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -18,7 +18,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [_, mesh, pairs, folder] = &arguments[..] else {
         return Err("usage: eigenpairs MESH PAIRS FOLDER".into());
     };
-    let surface = repair(&io::read(Path::new(mesh))?, &RepairOptions::default(), &())?.intrinsic;
+    let surface = repair(&mesh_io::read(Path::new(mesh))?, &RepairOptions::default(), &())?.intrinsic;
     let start = Instant::now();
     let laplacian = Laplacian::new(&surface);
     let masses = laplacian.masses();

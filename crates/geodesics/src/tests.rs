@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use mesh::{TriMesh, io, shapes};
+use mesh::{TriMesh, shapes};
 use proptest::prelude::*;
 use surface::{IntrinsicMesh, Topology, VertexId};
 
@@ -111,7 +111,7 @@ pub(crate) struct Reference {
 pub(crate) fn reference(data: &Path, mesh: &str) -> Reference {
     let name = Path::new(mesh).file_stem().unwrap().to_string_lossy().into_owned();
     let file = |what| data.join(format!("exact/{name}-{what}.npy"));
-    let mesh = io::read(&data.join(mesh)).unwrap();
+    let mesh = mesh_io::read(&data.join(mesh)).unwrap();
     let sources = numbers(&file("sources"), u32::from_le_bytes).into_iter().map(VertexId);
     let distances = numbers(&file("distances"), f64::from_le_bytes);
     let rows = distances.chunks_exact(mesh.n_vertices()).map(<[f64]>::to_vec);

@@ -1,12 +1,12 @@
 //! What can be wrong with a mesh or its file.
 
 use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use surface::Topology;
 
 /// Fewest different points that can become a surface.
-pub(crate) const FEWEST_POINTS: usize = 12;
+pub const MIN_POINTS: usize = 12;
 
 /// Why a mesh could not be read, written or repaired. The message names the file, the place, the fault and a remedy.
 #[derive(Debug, thiserror::Error)]
@@ -95,27 +95,6 @@ fn unknown_extension(extension: &str) -> String {
             )
         }
         _ => format!("unknown mesh format `.{extension}`"),
-    }
-}
-
-/// What a mesh file can be written with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Content {
-    /// Vertices and faces.
-    Mesh,
-    /// Vertices, faces, and a value and a colour per vertex.
-    Field,
-    /// Polylines.
-    Lines,
-}
-
-impl fmt::Display for Content {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Mesh => "a mesh",
-            Self::Field => "a value per vertex",
-            Self::Lines => "lines",
-        })
     }
 }
 
@@ -241,7 +220,7 @@ pub enum Fault {
     /// A file without faces, and with too few vertices for a point cloud.
     #[error(
         "the file has {n_vertices} vertices but no faces; a surface needs faces, or at least {least} points",
-        least = FEWEST_POINTS
+        least = MIN_POINTS
     )]
     NoFaces {
         /// Number of vertices.
@@ -259,7 +238,7 @@ pub enum Fault {
         limit: u64,
     },
 
-    /// More vertices or faces than [`ReadLimits`](crate::io::ReadLimits) allow.
+    /// More vertices or faces than the reader was told to accept.
     #[error("the mesh has more than {limit} {items}, the limit here; simplify it or raise the limit")]
     OverLimit {
         /// What is counted, such as `vertices`.
@@ -279,35 +258,6 @@ pub enum Fault {
     },
 }
 
-/// A fault and its place in a file that has no name yet; the error of every parser.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Located {
-    /// Which of the files of the mesh.
-    pub(crate) file: usize,
-    /// The file inside the file, if it is an archive.
-    pub(crate) member: Option<String>,
-    pub(crate) place: Place,
-    pub(crate) fault: Fault,
-}
-
-impl Located {
-    /// Moves the fault to another file of the mesh.
-    pub(crate) fn of_file(self, file: usize) -> Self {
-        Self { file, ..self }
-    }
-
-    /// Moves the fault to a file inside the file.
-    pub(crate) fn of_member(self, member: &str) -> Self {
-        Self { member: Some(member.to_owned()), ..self }
-    }
-
-    /// Names the file.
-    pub(crate) fn in_file(self, path: &Path) -> MeshError {
-        let path = self.member.map_or_else(|| path.to_owned(), |member| path.join(member));
-        MeshError::File { path, place: self.place, fault: self.fault }
-    }
-}
-
 impl Fault {
     /// Text or data that the format does not allow here.
     pub fn syntax(expected: &'static str, found: impl Into<String>) -> Self {
@@ -320,12 +270,12 @@ impl Fault {
     }
 
     /// Content of another format.
-    pub(crate) fn wrong_format(expected: &'static str, found: impl Into<String>) -> Self {
+    pub fn wrong_format(expected: &'static str, found: impl Into<String>) -> Self {
         Self::WrongFormat { expected, found: found.into() }
     }
 
     /// A file that ends early.
-    pub(crate) fn cut_short(expected: impl Into<String>) -> Self {
+    pub fn cut_short(expected: impl Into<String>) -> Self {
         Self::CutShort { expected: expected.into() }
     }
 
@@ -335,32 +285,7 @@ impl Fault {
     }
 
     /// A face that refers to none of the vertices, which are counted from `first`.
-    pub(crate) fn no_vertex(index: String, first: u64, n_vertices: u64) -> Self {
+    pub fn no_vertex(index: String, first: u64, n_vertices: u64) -> Self {
         Self::IndexOutOfRange { index, first, last: first.saturating_add(n_vertices).saturating_sub(1) }
-    }
-
-    /// The fault of the file as a whole.
-    pub(crate) fn whole(self) -> Located {
-        self.at(Place::File)
-    }
-
-    /// The fault in a line, counted from one.
-    pub(crate) fn in_line(self, line: usize) -> Located {
-        self.at(Place::Line(line))
-    }
-
-    /// The fault at a byte, counted from zero.
-    pub(crate) fn at_byte(self, byte: usize) -> Located {
-        self.at(Place::Byte(byte as u64))
-    }
-
-    /// The fault in a numbered part of the file.
-    pub(crate) fn in_part(self, kind: &'static str, number: usize) -> Located {
-        self.at(Place::Part(kind, number))
-    }
-
-    /// The fault at a place in the first file.
-    pub(crate) fn at(self, place: Place) -> Located {
-        Located { file: 0, member: None, place, fault: self }
     }
 }

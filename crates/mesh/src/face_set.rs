@@ -6,8 +6,12 @@ use surface::{Topology, VertexId};
 use crate::error::MeshError;
 use crate::tri_mesh::TriMesh;
 
-/// Returns an error if the mesh is too large, a face refers to a vertex that does not exist or a coordinate is not finite.
-pub(crate) fn check_input(mesh: &TriMesh) -> Result<(), MeshError> {
+/// Checks what every algorithm relies on.
+///
+/// # Errors
+/// [`MeshError::TooLarge`] for too many vertices or faces, [`MeshError::Unusable`] if a face refers to a vertex that does not
+/// exist or a coordinate is not finite.
+pub fn check_input(mesh: &TriMesh) -> Result<(), MeshError> {
     let n_vertices = mesh.n_vertices();
     check_counts(n_vertices, mesh.n_faces())?;
     for (face, corners) in mesh.faces.iter().enumerate() {
@@ -29,10 +33,11 @@ fn check_counts(n_vertices: usize, n_faces: usize) -> Result<(), MeshError> {
     }
 }
 
-/// Returns an error if a coordinate is not finite.
-pub(crate) fn check_finite<'a>(
-    positions: impl IntoIterator<Item = &'a Point3<f64>>,
-) -> Result<(), MeshError> {
+/// Checks coordinates.
+///
+/// # Errors
+/// [`MeshError::Unusable`] if one is not finite.
+pub fn check_finite<'a>(positions: impl IntoIterator<Item = &'a Point3<f64>>) -> Result<(), MeshError> {
     match positions.into_iter().position(|p| !p.iter().all(|x| x.is_finite())) {
         Some(vertex) => Err(MeshError::Unusable(format!(
             "vertex {vertex} has a coordinate that is not finite; correct it or remove the vertex"

@@ -1,9 +1,7 @@
-//! Triangle meshes: files, validation, repair, analytic shapes.
+//! Triangle meshes: validation, repair, analytic shapes.
 //!
-//! file -> [`io`] -> [`TriMesh`] -> [`repair()`] -> `surface::IntrinsicMesh` -> `geodesics`
+//! file -> `mesh-io` -> [`TriMesh`] -> [`repair()`] -> `surface::IntrinsicMesh` -> `geodesics`
 //!
-//! * [`io`] reads and writes mesh files. A file that is not a mesh is a [`MeshError`] that names file, place,
-//!   fault and remedy.
 //! * [`validate`] reports the properties and defects of a mesh.
 //! * [`repair()`] removes defects that algorithms cannot handle, as [`RepairOptions`] say, and reports every change.
 //! * [`cut_shortcuts`] separates surfaces that touch and were welded.
@@ -19,18 +17,15 @@
 //! The crate knows nothing of distances, embeddings or matrices.
 //!
 //! ```
-//! use canonform_mesh::{RepairOptions, io, repair, shapes};
+//! use canonform_mesh::{RepairOptions, repair, shapes};
 //!
-//! let folder = tempfile::tempdir()?;
-//! let path = folder.path().join("two-cubes.off");
-//! io::write(&path, &shapes::disjoint(&[shapes::cube(2), shapes::cube(0)]))?;
-//!
-//! let repaired = repair(&io::read(&path)?, &RepairOptions::default(), &())?;
+//! let cubes = shapes::disjoint(&[shapes::cube(2), shapes::cube(0)]);
+//! let repaired = repair(&cubes, &RepairOptions::default(), &())?;
 //! let summary = repaired.report.summary();
 //! assert_eq!(summary.len(), 1);
 //! assert!(summary[0].starts_with("1 of 2 components dropped, 12 faces and 8 vertices"));
 //! assert_eq!(repaired.intrinsic.n_vertices(), 98);
-//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! # Ok::<(), canonform_mesh::MeshError>(())
 //! ```
 
 mod coincidence;
@@ -40,7 +35,6 @@ mod error;
 mod face_set;
 mod holes;
 mod input;
-pub mod io;
 mod noise;
 mod orientation;
 mod outward;
@@ -56,7 +50,8 @@ mod validate;
 
 pub use collapse::collapse_edges;
 pub use edge_graph::EdgeGraph;
-pub use error::{Fault, MeshError, Place};
+pub use error::{Fault, MIN_POINTS, MeshError, Place};
+pub use face_set::{check_finite, check_input};
 pub use holes::fill_holes;
 pub use input::{BadPoint, InputMap, InputPoint, PointError, Surface};
 pub use noise::{is_noisy, without_noise};

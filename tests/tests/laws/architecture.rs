@@ -15,16 +15,17 @@ enum May {
 const EVERYWHERE: [&str; 1] = ["base"];
 
 /// All crates of the workspace, by folder name; packages are called `canonform-FOLDER`.
-const RULES: [(&str, May); 25] = [
+const RULES: [(&str, May); 26] = [
     ("base", May::Know(&[])),
     ("surface", May::Know(&[])),
     ("linalg", May::Know(&[])),
     ("mesh", May::Know(&["surface"])),
+    ("mesh-io", May::Know(&["mesh", "surface"])),
     ("datasets", May::Know(&["mesh", "surface"])),
     ("geodesics", May::Know(&["surface", "linalg"])),
     ("nmds", May::Know(&["linalg"])),
     ("retrieval", May::Know(&["linalg"])),
-    ("collection", May::Know(&["mesh"])),
+    ("collection", May::Know(&["mesh", "mesh-io"])),
     ("fields", May::Know(&["mesh", "surface", "linalg", "geodesics", "nmds"])),
     ("rigid", May::Know(&["mesh", "surface"])),
     ("maps", May::Know(&["mesh", "surface", "linalg", "rigid", "descriptors"])),
@@ -36,6 +37,7 @@ const RULES: [(&str, May); 25] = [
         May::Know(&[
             "surface",
             "mesh",
+            "mesh-io",
             "linalg",
             "geodesics",
             "nmds",

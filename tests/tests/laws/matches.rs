@@ -179,10 +179,8 @@ fn same_positions(a: &TriMesh, b: &TriMesh) -> bool {
 fn every_change_of_a_tosca_shape_is_told() {
     let Some(data) = data("relations on TOSCA") else { return };
     let files = list_shapes(&data.join("tosca-lowres"), None).unwrap();
-    let shapes: Vec<_> = files
-        .into_par_iter()
-        .filter_map(|file| Some((file.name, mesh::io::read(&file.path).ok()?)))
-        .collect();
+    let shapes: Vec<_> =
+        files.into_par_iter().filter_map(|file| Some((file.name, mesh_io::read(&file.path).ok()?))).collect();
     let neighbours = shapes.par_windows(2).map(|pair| {
         let found = related(&geometry(&pair[0].1), &geometry(&pair[1].1)).named(&pair[0].0, &pair[1].0);
         // Two pairs of victorias have the same vertices in another order.
@@ -270,8 +268,8 @@ fn scale_and_rounding_of_files_do_not_hide_one_geometry() {
     let folder = tempfile::tempdir().unwrap();
     for extension in ["off", "obj", "ply", "stl"] {
         let path = folder.path().join(format!("cat.{extension}"));
-        mesh::io::write(&path, cat).unwrap();
-        let found = related(&own, &geometry(&mesh::io::read(&path).unwrap()));
+        mesh_io::write(&path, cat).unwrap();
+        let found = related(&own, &geometry(&mesh_io::read(&path).unwrap()));
         assert_eq!(
             (found.kind, found.changes.len()),
             (RelationKind::IdenticalGeometry, 0),

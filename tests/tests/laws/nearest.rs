@@ -11,7 +11,7 @@ use mesh::TriMesh;
 use rayon::prelude::*;
 
 fn indexed(folder: &Path, shapes: &[(String, TriMesh)]) -> ShapeSearch {
-    let write = |(name, mesh): &(String, TriMesh)| mesh::io::write(&folder.join(format!("{name}.off")), mesh);
+    let write = |(name, mesh): &(String, TriMesh)| mesh_io::write(&folder.join(format!("{name}.off")), mesh);
     shapes.iter().try_for_each(write).unwrap();
     let path = folder.join("all.canonform");
     build_index(folder, &path, &BuildOptions::new(&DescribeOptions::default()), &()).unwrap();

@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use base::Observer;
 use collection::read_mesh_file;
-use mesh::io::ReadLimits;
 use mesh::{RepairOptions, Surface};
+use mesh_io::ReadLimits;
 
 use crate::error::Error;
 

@@ -79,8 +79,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name);
         for (i, size) in [0.7, 0.75, 0.8].into_iter().enumerate() {
-            mesh::io::write(&at(&format!("ring{i}.off")), &shapes::torus(20, 10, 2.0, size)).unwrap();
-            mesh::io::write(&at(&format!("tube{i}.off")), &shapes::torus(30, 8, 4.0, size)).unwrap();
+            mesh_io::write(&at(&format!("ring{i}.off")), &shapes::torus(20, 10, 2.0, size)).unwrap();
+            mesh_io::write(&at(&format!("tube{i}.off")), &shapes::torus(30, 8, 4.0, size)).unwrap();
         }
         let describe_options = DescribeOptions::default();
         let built = |name: &str, shard| {
@@ -118,12 +118,12 @@ mod tests {
     fn a_mesh_in_space_is_sent_with_the_query() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("ring0.off");
-        mesh::io::write(&path, &shapes::torus(20, 10, 2.0, 0.7)).unwrap();
+        mesh_io::write(&path, &shapes::torus(20, 10, 2.0, 0.7)).unwrap();
         let index = folder.path().join("index");
         build_index(folder.path(), &index, &BuildOptions::new(&DescribeOptions::default()), &()).unwrap();
         let search = ShapeSearch::open(&index).unwrap();
         let options = SearchOptions { explain: true, ..SearchOptions::default() };
-        let mut mesh = mesh::io::read(&path).unwrap();
+        let mut mesh = mesh_io::read(&path).unwrap();
         mesh.positions.iter_mut().for_each(|p| p.coords *= 25.4);
         let query = search.query(&mesh, ("a.off", None), &options, &()).unwrap();
         let sent: Query = serde_json::from_str(&serde_json::to_string(&query).unwrap()).unwrap();

@@ -4,7 +4,7 @@ use std::path::{Component, Path, PathBuf};
 
 use base::files::FileError;
 
-use mesh::io::{FileSource, without_extension};
+use mesh_io::{FileSource, without_extension};
 
 use crate::error::Error;
 use collection::{Storage, member_of};

@@ -10,7 +10,7 @@ use descriptors::DiscAreas;
 use descriptors::{PartDiscAreas, PartDistance, PreparedShape, ShapeMetric, ShapePair, SignatureKind};
 use index::{Entry, Index, VectorTable};
 use mesh::TriMesh;
-use mesh::io::FileSource;
+use mesh_io::FileSource;
 use rayon::prelude::*;
 use relations::Relation;
 use retrieval::{LINKS, Neighbor, graph_rank};
@@ -459,7 +459,7 @@ mod tests {
             ("box0.vert", shapes::cube(3)),
         ];
         for (name, mesh) in bodies {
-            mesh::io::write(&folder.path().join(name), &mesh).unwrap();
+            mesh_io::write(&folder.path().join(name), &mesh).unwrap();
         }
         let path = folder.path().join("all.canonform");
         build_index(folder.path(), &path, &BuildOptions::new(describe), &()).unwrap();
@@ -699,7 +699,7 @@ mod tests {
         let options = SearchOptions { explain: true, ..SearchOptions::default() };
         let path = folder.path().join("ring1.off");
         let content = crate::collection::content_hash(&path).unwrap();
-        let ring = mesh::io::read(&path).unwrap();
+        let ring = mesh_io::read(&path).unwrap();
         let explained = |mesh: &TriMesh, name: &str, content| {
             search_as(&search, mesh, (name, content), &options).results[0].relation.to_string()
         };
@@ -722,7 +722,7 @@ mod tests {
         assert_eq!((found[0].0, found[0].1.id.as_str()), (1, "ring0"));
         assert_eq!((found[1].0, found[1].1.id.as_str(), found.len()), (2, "ball0", 2));
         // The ball is a component of the plate, but not the largest.
-        mesh::io::write(&folder.path().join("plate7.off"), &plate).unwrap();
+        mesh_io::write(&folder.path().join("plate7.off"), &plate).unwrap();
         let path = folder.path().join("all.canonform");
         build_index(folder.path(), &path, &BuildOptions::new(search.describe_options()), &()).unwrap();
         let again = ShapeSearch::open(&path).unwrap();

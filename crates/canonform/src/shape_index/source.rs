@@ -9,8 +9,8 @@ use base::Budget;
 use base::ContentHash;
 use base::files::FileId;
 use index::Entry;
-use mesh::io::{MemoryFile, ReadLimits, without_extension};
 use mesh::{MeshError, TriMesh};
+use mesh_io::{MemoryFile, ReadLimits, without_extension};
 use rayon::prelude::*;
 
 use super::place::{Home, Root, mesh_path};
@@ -94,7 +94,7 @@ impl ShapeLimits {
     pub(super) fn read(&self, path: &Path, budget: &Budget) -> Result<TriMesh, Error> {
         let limits = self.max_vertices.map_or_else(ReadLimits::default, ReadLimits::of_vertices);
         let mut n_bytes = 0;
-        for file in mesh::io::files_in(path, &Storage) {
+        for file in mesh_io::files_in(path, &Storage) {
             n_bytes += Storage.n_bytes(&file)?;
         }
         budget.check_memory(usize::try_from(n_bytes).unwrap_or(usize::MAX))?;
@@ -269,7 +269,7 @@ pub(super) fn read_unchanged(index: &Path, entry: &Entry) -> Result<TriMesh, Err
         other => other.into(),
     };
     let changed = || Error::MeshChanged { id: entry.id.clone(), path: path.clone() };
-    let files = mesh::io::files_in(&path, &Storage);
+    let files = mesh_io::files_in(&path, &Storage);
     // Hashing takes little memory, whatever the path of a foreign index leads to.
     if content_hash(&path).map_err(gone)? != entry.content {
         return Err(changed());
@@ -280,7 +280,7 @@ pub(super) fn read_unchanged(index: &Path, entry: &Entry) -> Result<TriMesh, Err
         return Err(changed());
     }
     let files = files.iter().zip(&pieces).map(|(name, bytes)| MemoryFile { name, bytes });
-    Ok(mesh::io::read_memory(&files.collect::<Vec<_>>(), &ReadLimits::default())?)
+    Ok(mesh_io::read_memory(&files.collect::<Vec<_>>(), &ReadLimits::default())?)
 }
 
 #[cfg(test)]

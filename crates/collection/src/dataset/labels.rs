@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use mesh::io::{is_mesh_path, without_extension};
+use mesh_io::{is_mesh_path, without_extension};
 use serde::Serialize;
 
 use super::shape_file::ShapeFile;

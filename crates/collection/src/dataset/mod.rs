@@ -8,7 +8,7 @@ mod walk;
 use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use mesh::io::{extension, files_in, is_mesh_path, mesh_files, without_extension};
+use mesh_io::{extension, files_in, is_mesh_path, mesh_files, without_extension};
 
 use crate::error::CollectionError;
 use crate::storage::{Container, Storage, is_unread_archive, open_archive, read_list};

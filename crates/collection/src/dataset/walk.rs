@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use base::files::{FileError, FileId};
-use mesh::io::{extension, files_of, is_mesh_path};
+use mesh_io::{extension, files_of, is_mesh_path};
 
 use crate::error::CollectionError;
 

@@ -6,8 +6,8 @@ use std::io::{self, Read, Seek, Write};
 use std::path::{Component, Path};
 
 use base::files::{FileError, nameless_in};
-use mesh::io::{inflated_limit, is_mesh_path};
 use mesh::{Fault, MeshError};
+use mesh_io::{inflated_limit, is_mesh_path};
 
 use super::container::fault;
 use super::window::Window;

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use mesh::io::{extension, is_gzip};
 use mesh::{Fault, MeshError, Place};
+use mesh_io::{extension, is_gzip};
 
 /// What holds several meshes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -17,8 +17,8 @@ mod zip;
 use std::path::{Path, PathBuf};
 
 use base::files::FileError;
-use mesh::io::{Disk, FileSource, MeshFile, Opened, ReadLimits};
 use mesh::{MeshError, TriMesh};
+use mesh_io::{Disk, FileSource, MeshFile, Opened, ReadLimits};
 
 use crate::error::CollectionError;
 pub(crate) use cache::open as open_archive;
@@ -87,7 +87,7 @@ pub fn member_of(path: &Path) -> Option<(PathBuf, String)> {
 /// ```
 /// let folder = tempfile::tempdir()?;
 /// let path = folder.path().join("ball.ply.gz");
-/// mesh::io::write(&path, &mesh::shapes::icosphere(2))?;
+/// mesh_io::write(&path, &mesh::shapes::icosphere(2))?;
 /// assert_eq!(canonform_collection::read_mesh(&path)?.n_vertices(), 162);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -105,7 +105,7 @@ pub fn read_mesh(path: &Path) -> Result<TriMesh, CollectionError> {
 pub fn read_mesh_file(path: &Path, limits: &ReadLimits) -> Result<MeshFile, CollectionError> {
     match is_unread_archive(path) {
         true => Err(CollectionError::UnreadArchive { path: path.to_owned() }),
-        false => Ok(mesh::io::read_file(&mesh_at(path)?, &Storage, limits)?),
+        false => Ok(mesh_io::read_file(&mesh_at(path)?, &Storage, limits)?),
     }
 }
 

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use mesh::Fault;
-use mesh::io::Format;
+use mesh_io::Format;
 use parquet::basic::Type as Physical;
 use parquet::column::reader::{ColumnReader, get_typed_column_reader};
 use parquet::data_type::{ByteArray, ByteArrayType, DataType, Int32Type, Int64Type};
@@ -95,7 +95,7 @@ fn named(id: String, format: Option<&str>, row: usize) -> Result<String, Fault> 
         let expected = "the extension of a mesh, such as ply, in the column `format`";
         return Err(Fault::syntax(expected, format!("{stated} in row {row}")));
     }
-    Ok(if mesh::io::extension(id.as_ref()) == extension { id } else { format!("{id}.{extension}") })
+    Ok(if mesh_io::extension(id.as_ref()) == extension { id } else { format!("{id}.{extension}") })
 }
 
 impl Columns {

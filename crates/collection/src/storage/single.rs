@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use base::files::FileError;
 use mesh::MeshError;
-use mesh::io::{FileSource, Opened, files_in, is_mesh_path};
+use mesh_io::{FileSource, Opened, files_in, is_mesh_path};
 
 use super::archive::Archive;
 use super::cache::{members, open as open_archive};

@@ -5,7 +5,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use mesh::Fault;
-use mesh::io::GzipReader;
+use mesh_io::GzipReader;
 use tar::EntryType;
 
 use super::archive::{Archive, Data, Member, Spool};

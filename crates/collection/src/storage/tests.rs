@@ -26,7 +26,7 @@ fn folder() -> TempDir {
 fn bytes_of(mesh: &TriMesh, extension: &str) -> Vec<u8> {
     let folder = folder();
     let path = folder.path().join(format!("m.{extension}"));
-    mesh::io::write(&path, mesh).unwrap();
+    mesh_io::write(&path, mesh).unwrap();
     fs::read(path).unwrap()
 }
 
@@ -45,7 +45,7 @@ fn contents() -> Vec<(&'static str, Vec<u8>)> {
 fn other_half() -> (&'static str, Vec<u8>) {
     let folder = folder();
     let path = folder.path().join("m.vert");
-    mesh::io::write(&path, &shapes::cube(2)).unwrap();
+    mesh_io::write(&path, &shapes::cube(2)).unwrap();
     ("all/dog/dog1.tri", fs::read(path.with_extension("tri")).unwrap())
 }
 
@@ -498,7 +498,7 @@ fn lists_name_files_and_members_relative_to_themselves() {
     fs::create_dir_all(at("meshes/cat")).unwrap();
     fs::create_dir_all(at("lists")).unwrap();
     for name in ["meshes/cat/cat0.off", "meshes/dog1.off"] {
-        mesh::io::write(&at(name), &shapes::cube(0)).unwrap();
+        mesh_io::write(&at(name), &shapes::cube(0)).unwrap();
     }
     fs::write(at("meshes/more.zip"), zip_of(&[("x/dog2.off", bytes_of(&shapes::cube(1), "off"))])).unwrap();
     let list = at("lists/all.txt");

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::Read;
 
 use mesh::Fault;
-use mesh::io::inflated_limit;
+use mesh_io::inflated_limit;
 use zip::ZipArchive;
 use zip::result::ZipError;
 

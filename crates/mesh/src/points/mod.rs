@@ -17,7 +17,7 @@ use serde::Serialize;
 use surface::VertexId;
 
 use crate::coincidence::position_key;
-use crate::error::{FEWEST_POINTS, MeshError};
+use crate::error::{MIN_POINTS, MeshError};
 use crate::face_set::check_finite;
 use crate::orientation::orient_consistently;
 use crate::tri_mesh::TriMesh;
@@ -115,9 +115,9 @@ pub fn triangulate_points(
     let cloud = TriMesh { positions: points.to_vec(), faces: Vec::new() };
     let unit = cloud.unit();
     let (distinct, of_point) = without_copies(points, unit);
-    if distinct.len() < FEWEST_POINTS {
+    if distinct.len() < MIN_POINTS {
         return Err(MeshError::Unusable(format!(
-            "{} different points without faces; a surface needs faces, or at least {FEWEST_POINTS} points",
+            "{} different points without faces; a surface needs faces, or at least {MIN_POINTS} points",
             distinct.len()
         )));
     }

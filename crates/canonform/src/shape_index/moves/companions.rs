@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Component, Path, PathBuf};
 
 use collection::list_shapes;
-use mesh::io::{Disk, files_in};
+use mesh_io::{Disk, files_in};
 
 /// Extensions of files that a mesh needs to look as it does.
 const COMPANIONS: [&str; 14] = [

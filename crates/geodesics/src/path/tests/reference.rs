@@ -1,6 +1,6 @@
 //! Comparison with exact distances on real meshes.
 
-use mesh::{RepairOptions, io, repair};
+use mesh::{RepairOptions, repair};
 use rayon::prelude::*;
 use surface::VertexId;
 
@@ -44,7 +44,7 @@ fn exact_distances_on_every_tosca_mesh_are_symmetric_and_those_of_their_paths() 
     paths.retain(|path| path.extension().is_some_and(|e| e == "vert"));
     let done = paths.par_iter().filter(|path| {
         // One of them is damaged.
-        let Ok(read) = io::read(path) else { return false };
+        let Ok(read) = mesh_io::read(path) else { return false };
         let mesh = repair(&read, &RepairOptions::default(), &()).unwrap().intrinsic;
         let n = mesh.n_vertices();
         let [source, other] = [n / 3, n / 2].map(VertexId::from);

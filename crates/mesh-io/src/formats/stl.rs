@@ -1,0 +1,287 @@
+//! STL, ASCII and binary.
+
+use std::collections::HashMap;
+use std::io::{self, Write};
+
+use nalgebra::Point3;
+use surface::VertexId;
+
+use crate::facts::MeshFile;
+use crate::field::WrittenField;
+use crate::limits::ReadLimits;
+use crate::located::{At, Located};
+use crate::polygons::{finish, finite};
+use crate::text::{Lines, Words, check_is_not_utf16, check_is_text, excerpt, parse_number};
+use mesh::Fault;
+use mesh::TriMesh;
+
+/// Bytes of a binary file: 80 of free text, the 32-bit number of triangles, then per triangle its normal, its
+/// three corners and two unused bytes.
+const HEADER: usize = 80;
+const PREFIX: usize = HEADER + 4;
+const TRIANGLE: usize = 50;
+
+/// Checks the length of a binary file against its header, and that any other is text.
+pub(super) fn check_start(start: &[u8], size: Option<u64>) -> Result<(), Located> {
+    let Some(promised) = promised(start, size)? else {
+        return check_is_text(start, "an STL file");
+    };
+    let found = size.map(|size| (size - PREFIX as u64) / TRIANGLE as u64);
+    match found {
+        Some(found) if found < promised => Err(Fault::truncated("triangles", promised, found).whole()),
+        Some(found) if found > promised => Err(Fault::Leftover { items: "triangles", promised }.whole()),
+        _ if promised == 0 => Err(Fault::NoFaces { n_vertices: 0 }.whole()),
+        _ => Ok(()),
+    }
+}
+
+/// The number of triangles that the header of a binary file promises; `None` for text.
+///
+/// A file that has the length its header promises is binary, whatever it begins with. Any other is binary if a byte of its
+/// header is zero: no byte of a text is, and one of every number below 2^24 is.
+fn promised(start: &[u8], size: Option<u64>) -> Result<Option<u64>, Located> {
+    let Some(&number) = start.get(HEADER..).and_then(<[u8]>::first_chunk) else { return Ok(None) };
+    let promised = u64::from(u32::from_le_bytes(number));
+    if size == Some(PREFIX as u64 + TRIANGLE as u64 * promised) {
+        return Ok(Some(promised));
+    }
+    check_is_not_utf16(start)?;
+    Ok(start[..PREFIX].contains(&0).then_some(promised))
+}
+
+/// Reads STL. The format stores three corners per triangle; corners in the same position become one vertex,
+/// numbered in the order of first appearance.
+pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
+    let bytes = files[0];
+    if bytes.trim_ascii().is_empty() {
+        return Err(Fault::Empty.whole());
+    }
+    let size = Some(bytes.len() as u64);
+    check_start(bytes.get(..bytes.len().min(PREFIX)).unwrap_or(bytes), size)?;
+    match promised(bytes, size)? {
+        Some(promised) => parse_binary(bytes, promised, limits),
+        None => parse_text(bytes, limits),
+    }
+}
+
+fn parse_binary(bytes: &[u8], n_triangles: u64, limits: &ReadLimits) -> Result<MeshFile, Located> {
+    limits.check(0, n_triangles).map_err(Fault::whole)?;
+    let mut soup = Soup::default();
+    for (t, triangle) in bytes[PREFIX..].chunks_exact(TRIANGLE).take(n_triangles as usize).enumerate() {
+        // Three numbers each for the normal and the corners.
+        for corner in triangle[..48].as_chunks::<4>().0.as_chunks::<3>().0.iter().skip(1) {
+            let pushed = soup.push(corner.map(f32::from_le_bytes), limits);
+            pushed.map_err(|fault| fault.at_byte(PREFIX + t * TRIANGLE))?;
+        }
+    }
+    soup.into_mesh(limits)
+}
+
+/// Reads the words of a text, on whichever lines they are.
+fn parse_text(bytes: &[u8], limits: &ReadLimits) -> Result<MeshFile, Located> {
+    let mut soup = Soup::default();
+    let mut words = Words::new(Lines::new(bytes), true);
+    // `None` before the first solid.
+    let mut is_open = None;
+    while let Some(word) = words.next() {
+        let line = words.line;
+        match &word.to_ascii_lowercase()[..] {
+            b"solid" => is_open = Some(true),
+            b"endsolid" => is_open = Some(false),
+            b"end" if words.rest_begins_with(&["solid"]) => is_open = Some(false),
+            b"facet" => {
+                is_open = Some(true);
+                limits.check(0, soup.n_triangles() + 1).map_err(|fault| fault.in_line(line.number))?;
+                parse_facet(&mut words, &mut soup, limits)?;
+                continue;
+            }
+            _ if is_open.is_some() => return Err(line.expected("`facet` or `endsolid`")),
+            _ => {
+                let found = format!("it begins with `{}`", excerpt(line.text));
+                return Err(Fault::wrong_format("an STL file", found).whole());
+            }
+        }
+        // The name of the solid: the rest of the line, or what comes before a facet in it.
+        while words.rest_of_line() && !words.rest_begins_with(&["facet", "normal"]) {
+            words.next();
+        }
+    }
+    match is_open {
+        None => Err(Fault::Empty.whole()),
+        Some(true) => Err(cut_short(&words)),
+        Some(false) => soup.into_mesh(limits),
+    }
+}
+
+/// Reads what follows `facet`.
+fn parse_facet(words: &mut Words<'_>, soup: &mut Soup, limits: &ReadLimits) -> Result<(), Located> {
+    // `normal` and its three numbers, or some of them.
+    let mut skipped = 0;
+    while !next_word(words)?.eq_ignore_ascii_case(b"outer") {
+        skipped += 1;
+        if skipped > 4 {
+            return Err(words.line.expected("`outer loop`"));
+        }
+    }
+    expect(words, b"loop", "`outer loop`")?;
+    for _ in 0..3 {
+        let expected = "`vertex` and three coordinates";
+        expect(words, b"vertex", expected)?;
+        let mut corner = [0.0; 3];
+        for x in &mut corner {
+            *x = parse_number(next_word(words)?).ok_or_else(|| words.line.expected(expected))?;
+        }
+        soup.push(corner, limits).map_err(|fault| fault.in_line(words.line.number))?;
+    }
+    expect(words, b"endloop", "`endloop`")?;
+    expect(words, b"endfacet", "`endfacet`")
+}
+
+fn cut_short(words: &Words<'_>) -> Located {
+    Fault::cut_short("`endsolid`").in_line(words.line.number)
+}
+
+fn next_word<'a>(words: &mut Words<'a>) -> Result<&'a [u8], Located> {
+    words.next().ok_or_else(|| cut_short(words))
+}
+
+/// Takes a word in upper or lower case.
+fn expect(words: &mut Words<'_>, word: &[u8], expected: &'static str) -> Result<(), Located> {
+    match next_word(words)?.eq_ignore_ascii_case(word) {
+        true => Ok(()),
+        false => Err(words.line.expected(expected)),
+    }
+}
+
+/// Triangles whose corners are merged by position.
+#[derive(Default)]
+struct Soup {
+    numbers: HashMap<[u32; 3], VertexId>,
+    positions: Vec<Point3<f64>>,
+    /// The vertices of all corners, three per triangle.
+    corners: Vec<VertexId>,
+}
+
+impl Soup {
+    fn n_triangles(&self) -> u64 {
+        self.corners.len() as u64 / 3
+    }
+
+    /// Adds the next corner.
+    fn push(&mut self, corner: [f32; 3], limits: &ReadLimits) -> Result<(), Fault> {
+        let p = finite(corner.map(f64::from), self.corners.len())?;
+        self.corners.push(*self.numbers.entry(corner.map(|x| (x + 0.0).to_bits())).or_insert_with(|| {
+            self.positions.push(p);
+            VertexId::from(self.positions.len() - 1)
+        }));
+        limits.check(self.positions.len() as u64, 0)
+    }
+
+    fn into_mesh(self, limits: &ReadLimits) -> Result<MeshFile, Located> {
+        finish(TriMesh { positions: self.positions, faces: self.corners.as_chunks().0.to_vec() }, limits)
+    }
+}
+
+/// Writes binary STL. Rounds coordinates to 32 bits; vertex numbers and unused vertices are lost.
+pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh, _: WrittenField<'_>) -> io::Result<()> {
+    out.write_all(&[0; HEADER])?;
+    out.write_all(&(mesh.n_faces() as u32).to_le_bytes())?;
+    for f in 0..mesh.n_faces() {
+        let normal = mesh.area_vector(f).try_normalize(0.0).unwrap_or_default();
+        let corners = mesh.triangle(f).map(|p| p.coords);
+        for x in [normal].iter().chain(&corners).flat_map(|v| v.iter()) {
+            out.write_all(&(*x as f32).to_le_bytes())?;
+        }
+        out.write_all(&[0; 2])?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::located::Located;
+    use mesh::Place;
+    use mesh::shapes;
+
+    const FACET: &str = "facet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 1 0 0\n  vertex 0 1 0\n endloop\nendfacet\n";
+
+    fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
+        super::parse(&[bytes], &ReadLimits::default()).map(|file| file.mesh)
+    }
+
+    fn binary(mesh: &TriMesh) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        write(&mut bytes, mesh, None).unwrap();
+        bytes
+    }
+
+    fn fault(text: &str) -> (Place, Fault) {
+        let Located { place, fault, .. } = parse(text.as_bytes()).unwrap_err();
+        (place, fault)
+    }
+
+    #[test]
+    fn corners_in_the_same_position_become_one_vertex() {
+        let cube = shapes::cube(1);
+        for header in ["", "solid but binary"] {
+            let mut bytes = binary(&cube);
+            bytes[..header.len()].copy_from_slice(header.as_bytes());
+            let back = parse(&bytes).unwrap();
+            assert_eq!((back.n_vertices(), back.n_faces()), (cube.n_vertices(), cube.n_faces()));
+            for f in 0..cube.n_faces() {
+                assert_eq!(back.triangle(f), cube.triangle(f));
+            }
+        }
+    }
+
+    #[test]
+    fn ascii_parses_in_every_dialect() {
+        let expected = parse(format!("solid a\n{FACET}endsolid a\n").as_bytes()).unwrap();
+        assert_eq!((expected.n_vertices(), expected.n_faces()), (3, 1));
+        for text in [
+            format!("solid\n{FACET}endsolid"),
+            format!("SOLID X\r\n{}ENDSOLID\r\n", FACET.to_uppercase().replace('\n', "\r\n")),
+            format!("solid a\n{}endsolid\n", FACET.replace("0 0 1", "nan nan nan")),
+            format!("solid a\n{}endsolid\n", FACET.replace("  vertex 0 0 0", "vertex -0 0e5 -0.0")),
+        ] {
+            assert_eq!(parse(text.as_bytes()).unwrap(), expected);
+        }
+        let two = format!("solid a\n{FACET}endsolid a\nsolid b\n{FACET}endsolid b\n");
+        assert_eq!(parse(two.as_bytes()).unwrap().n_faces(), 2);
+    }
+
+    #[test]
+    fn ascii_faults_name_the_line() {
+        let cut = fault(&format!("solid a\n{FACET}"));
+        assert_eq!(cut, (Place::Line(8), Fault::CutShort { expected: "`endsolid`".into() }));
+        let broken = FACET.replace("endloop", "endlop");
+        let (place, broken) = fault(&format!("solid a\n{FACET}{broken}endsolid\n"));
+        assert_eq!(place, Place::Line(14));
+        assert!(matches!(broken, Fault::Syntax { expected: "`endloop`", .. }));
+        for word in ["nan", "inf", "1e300"] {
+            let broken = FACET.replace("1 0 0", &format!("1 {word} 0"));
+            let (place, fault) = fault(&format!("solid a\n{FACET}{broken}endsolid\n"));
+            assert_eq!(place, Place::Line(12));
+            assert!(matches!(fault, Fault::NonFinite { vertex: 4, .. }));
+        }
+        assert_eq!(fault("solid a\nendsolid\n"), (Place::File, Fault::NoFaces { n_vertices: 0 }));
+        assert_eq!(fault(" \n"), (Place::File, Fault::Empty));
+        assert!(matches!(fault("OFF\n"), (Place::File, Fault::WrongFormat { .. })));
+    }
+
+    #[test]
+    fn binary_faults_name_the_byte() {
+        let mut bytes = binary(&shapes::tetrahedron(0));
+        bytes[PREFIX + TRIANGLE + 16..PREFIX + TRIANGLE + 20].copy_from_slice(&f32::NAN.to_le_bytes());
+        let nan = parse(&bytes).unwrap_err();
+        assert_eq!(nan.place, Place::Byte(134));
+        assert!(matches!(nan.fault, Fault::NonFinite { vertex: 3, .. }));
+        bytes.pop();
+        let short = Fault::Truncated { items: "triangles".into(), promised: 4, found: 3 };
+        assert_eq!(parse(&bytes).unwrap_err().fault, short);
+        assert_eq!(parse(&[0; PREFIX]).unwrap_err().fault, Fault::NoFaces { n_vertices: 0 });
+        let bold = [[0u8; HEADER].as_slice(), &u32::MAX.to_le_bytes()].concat();
+        assert!(matches!(parse(&bold).unwrap_err().fault, Fault::Truncated { found: 0, .. }));
+    }
+}

@@ -1,0 +1,134 @@
+//! The zip archive of a 3MF file and its parts.
+
+use std::io::{Cursor, Read};
+
+use quick_xml::events::Event;
+use quick_xml::reader::Reader;
+use zip::ZipArchive;
+use zip::result::ZipError;
+
+use crate::located::{At, Located};
+use crate::name::referred;
+use crate::source::inflated_limit;
+use crate::text::excerpt;
+use mesh::Fault;
+
+/// Where relationships say which part is the model.
+const RELATIONSHIPS: &str = "_rels/.rels";
+/// How the type of that relationship ends.
+const MODEL_TYPE: &str = "/3dmodel";
+/// The usual name of that part.
+const USUAL: &str = "3D/3dmodel.model";
+
+/// Checks that a file begins like a zip archive.
+pub(crate) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
+    match start {
+        [b'P', b'K', 3 | 5, ..] => Ok(()),
+        _ if start.trim_ascii().is_empty() => Err(Fault::Empty.whole()),
+        [0xd0, 0xcf, 0x11, 0xe0, ..] => {
+            let what = "this file is protected by a password";
+            Err(Fault::unsupported(what, "save it without protection").whole())
+        }
+        _ => {
+            let found = format!("it begins with `{}`", excerpt(start));
+            Err(Fault::wrong_format("a 3MF file, which is a zip archive", found).whole())
+        }
+    }
+}
+
+/// The parts of a file.
+pub(super) struct Package<'a> {
+    archive: ZipArchive<Cursor<&'a [u8]>>,
+    /// Bytes that may still be decompressed, and how many they were at first.
+    budget: u64,
+    limit: u64,
+}
+
+impl<'a> Package<'a> {
+    pub(super) fn open(bytes: &'a [u8]) -> Result<Self, Located> {
+        check_start(bytes, None)?;
+        let archive = ZipArchive::new(Cursor::new(bytes)).map_err(damaged)?;
+        let limit = inflated_limit(bytes.len() as u64);
+        Ok(Self { archive, budget: limit, limit })
+    }
+
+    /// The name of the part that holds the build.
+    pub(super) fn root(&mut self) -> Result<String, Located> {
+        let stated = match self.find(RELATIONSHIPS) {
+            Some(_) => target(&self.read(RELATIONSHIPS)?),
+            None => None,
+        };
+        let name = stated.unwrap_or_else(|| USUAL.to_owned());
+        match self.find(&name) {
+            Some(_) => Ok(name),
+            None => Err(Fault::wrong_format("a 3MF file", format!("a zip archive without {name}")).whole()),
+        }
+    }
+
+    /// Number of a part.
+    fn find(&self, name: &str) -> Option<usize> {
+        self.archive.index_for_name(name).or_else(|| {
+            let (name, mut names) = (canonical(name), self.archive.file_names());
+            names.position(|other| other.is_ok_and(|other| canonical(&other) == name))
+        })
+    }
+
+    /// The content of a part.
+    pub(super) fn read(&mut self, name: &str) -> Result<Vec<u8>, Located> {
+        let Some(number) = self.find(name) else {
+            let found = format!("no part {name}");
+            return Err(Fault::syntax("all parts that the file refers to", found).whole());
+        };
+        let in_part = |fault: Located| fault.of_member(name);
+        let part = self.archive.by_index(number).map_err(damaged).map_err(in_part)?;
+        let mut content = Vec::new();
+        part.take(self.budget.saturating_add(1))
+            .read_to_end(&mut content)
+            .map_err(|fault| in_part(Fault::syntax("compressed data", fault.to_string()).whole()))?;
+        let left = self.budget.checked_sub(content.len() as u64);
+        self.budget = left.ok_or_else(|| in_part(Fault::Inflates { limit: self.limit }.whole()))?;
+        Ok(content)
+    }
+}
+
+/// A name as parts are told apart by: absolute, without escapes, and in lower case.
+pub(super) fn canonical(name: &str) -> String {
+    let name = referred(name).unwrap_or_else(|| name.to_owned());
+    name.trim_start_matches('/').to_ascii_lowercase()
+}
+
+/// The target of the relationship to the model.
+fn target(relationships: &[u8]) -> Option<String> {
+    let mut reader = Reader::from_reader(relationships);
+    loop {
+        let element = match reader.read_event().ok()? {
+            Event::Eof => return None,
+            Event::Start(element) | Event::Empty(element) => element,
+            _ => continue,
+        };
+        let (mut kind, mut target) = (None, None);
+        for attribute in element.attributes().with_checks(false).flatten() {
+            match attribute.key.local_name().as_ref() {
+                "Type" => kind = attribute.normalized_value(quick_xml::XmlVersion::Explicit1_0).ok(),
+                "Target" => target = attribute.normalized_value(quick_xml::XmlVersion::Explicit1_0).ok(),
+                _ => {}
+            }
+        }
+        if let (Some(kind), Some(target)) = (kind, target)
+            && kind.ends_with(MODEL_TYPE)
+        {
+            return Some(target.trim_start_matches('/').to_owned());
+        }
+    }
+}
+
+fn damaged(fault: ZipError) -> Located {
+    let fault = match fault {
+        ZipError::UnsupportedArchive(_) | ZipError::CompressionMethodNotSupported(_) => Fault::unsupported(
+            fault.to_string(),
+            "save it again with Deflate compression and without a password",
+        ),
+        other => Fault::syntax("an intact zip archive", other.to_string()),
+    };
+    fault.whole()
+}

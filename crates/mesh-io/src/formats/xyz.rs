@@ -1,0 +1,166 @@
+//! Point clouds as text: a point per line, as in `.xyz` and `.pts` files.
+
+use crate::facts::MeshFile;
+use crate::limits::ReadLimits;
+use crate::located::{At, Located};
+use crate::polygons::finish;
+use crate::text::{Line, Lines, check_is_text, parse_number, parse_position};
+use mesh::Fault;
+use mesh::TriMesh;
+
+/// The fewest bytes of a line: three digits, two separators, a line end.
+const SHORTEST_LINE: usize = 6;
+
+/// Checks that the file is text.
+pub(super) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
+    check_is_text(start, "a file of points")
+}
+
+/// Reads three coordinates per line, separated by blanks, commas or semicolons. What follows them (intensity, colour,
+/// normal) is ignored, and so is a first line of names, such as `//X Y Z`. A line with a single integer, as `.pts` files
+/// begin with, promises so many points. Between blanks or semicolons, a comma may mark decimals, as in `1,5 2,5 3,5`.
+pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
+    let bytes = files[0];
+    let mut positions = Vec::with_capacity(bytes.len() / (4 * SHORTEST_LINE));
+    let mut promised: Option<u64> = None;
+    let mut is_first = true;
+    for line in Lines::new(bytes) {
+        let begins_file = std::mem::replace(&mut is_first, false);
+        if begins_file && is_names(line) {
+            continue;
+        }
+        if let Some(count) = count(line) {
+            promised = Some(promised.unwrap_or(0).saturating_add(count));
+            continue;
+        }
+        let marks_decimals = commas_mark_decimals(line)?;
+        let point = |b: &u8| if marks_decimals && *b == b',' { b'.' } else { *b };
+        let text: Vec<u8> = line.text.iter().map(point).collect();
+        let mut words = text.split(is_separator).filter(|word| !word.is_empty());
+        positions.push(parse_position(line, &mut words, positions.len() + 1)?);
+        limits.check(positions.len() as u64, 0).map_err(|fault| fault.in_line(line.number))?;
+    }
+    if is_first {
+        return Err(Fault::Empty.whole());
+    }
+    let found = positions.len() as u64;
+    match promised {
+        Some(promised) if promised > found => Err(Fault::truncated("points", promised, found).whole()),
+        Some(promised) if promised < found => Err(Fault::Leftover { items: "points", promised }.whole()),
+        _ => finish(TriMesh { positions, faces: Vec::new() }, limits),
+    }
+}
+
+fn is_separator(b: &u8) -> bool {
+    b.is_ascii_whitespace() || matches!(b, b',' | b';')
+}
+
+fn numbers(line: Line<'_>) -> impl Iterator<Item = &[u8]> {
+    line.text.split(is_separator).filter(|token| !token.is_empty())
+}
+
+/// Whether commas mark decimals in a line, as they may between blanks or semicolons: `1,5 2,5 3,5`. A fault if they may as
+/// well separate numbers, or thousands.
+fn commas_mark_decimals(line: Line<'_>) -> Result<bool, Located> {
+    if !line.text.contains(&b',') {
+        return Ok(false);
+    }
+    let is_plain_separator = |b: &u8| *b != b',' && is_separator(b);
+    let words = line.text.split(is_plain_separator).filter(|word| !word.is_empty());
+    let words: Vec<&[u8]> = words.take(3).collect();
+    let is_within_number = |before: &[u8], behind: &[u8]| {
+        let n_digits = behind.iter().take_while(|b| b.is_ascii_digit()).count();
+        let unsigned = before.strip_prefix(b"-").or_else(|| before.strip_prefix(b"+")).unwrap_or(before);
+        unsigned.iter().all(u8::is_ascii_digit)
+            && n_digits > 0
+            && (n_digits == 3 || behind.get(n_digits) != Some(&b'.'))
+    };
+    // Of each word, the number of its commas, and of those that may be within a number.
+    let counts = words.iter().map(|word| {
+        let parts: Vec<&[u8]> = word.split(|b| *b == b',').collect();
+        let within =
+            parts.windows(2).filter(|pair| !pair[0].is_empty() && is_within_number(pair[0], pair[1]));
+        (parts.len() - 1, within.count())
+    });
+    let counts: Vec<(usize, usize)> = counts.collect();
+    if words.len() == 1 || counts.iter().all(|(_, n_within)| *n_within == 0) {
+        return Ok(false);
+    }
+    let has_point = words.iter().any(|word| word.contains(&b'.'));
+    match words.len() == 3 && !has_point && counts.iter().all(|count| matches!(count, (0, 0) | (1, 1))) {
+        true => Ok(true),
+        false => {
+            let what = "commas may separate numbers here, or mark decimals";
+            let remedy = "write decimals with points, or separate numbers by blanks or semicolons alone";
+            Err(Fault::unsupported(what, remedy).in_line(line.number))
+        }
+    }
+}
+
+/// The number of points that a line promises.
+fn count(line: Line<'_>) -> Option<u64> {
+    let mut numbers = numbers(line);
+    numbers.next().filter(|_| numbers.next().is_none()).and_then(parse_number)
+}
+
+/// Whether a line names the columns.
+fn is_names(line: Line<'_>) -> bool {
+    line.text.starts_with(b"//") || numbers(line).next().is_some_and(|name| name.eq_ignore_ascii_case(b"x"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::located::Located;
+    use mesh::Place;
+
+    /// Twelve lines of points.
+    fn rows(separator: &str, rest: &str) -> String {
+        (0..12).map(|i| format!("{i}{separator}0.5{separator}-1e1{rest}\n")).collect()
+    }
+
+    fn fault(text: &str) -> (Place, Fault) {
+        let Located { place, fault, .. } = parse(&[text.as_bytes()], &ReadLimits::default()).unwrap_err();
+        (place, fault)
+    }
+
+    #[test]
+    fn points_parse_with_any_separator_names_counts_and_further_columns() {
+        let texts = [
+            rows(" ", ""),
+            rows(", ", ""),
+            rows(";", " 255 0 0"),
+            format!("//X Y Z Intensity\n{}", rows("\t", "\t.7")),
+            format!("x,y,z\n{}", rows(",", "")),
+            format!("12\n{}", rows(" ", " -1000 10 20 30")),
+            format!("# scan\n7\n{0}", rows(" ", "").replacen("7 0.5", "5\n7 0.5", 1)),
+        ];
+        for text in texts {
+            let found = parse(&[text.as_bytes()], &ReadLimits::default()).unwrap().mesh;
+            assert_eq!((found.n_vertices(), found.n_faces()), (12, 0), "{text}");
+            assert_eq!(found.positions[11], nalgebra::Point3::new(11.0, 0.5, -10.0));
+        }
+    }
+
+    #[test]
+    fn faults_name_the_line() {
+        assert!(matches!(fault("0 0 0\n1 a 0\n"), (Place::Line(2), Fault::Syntax { .. })));
+        assert!(matches!(fault("0 0 0\n1 0\n"), (Place::Line(2), Fault::Syntax { .. })));
+        assert!(matches!(fault("0 0 inf\n"), (Place::Line(1), Fault::NonFinite { .. })));
+        assert_eq!(fault("0 0 0\n"), (Place::File, Fault::NoFaces { n_vertices: 1 }));
+        assert_eq!(fault("\n"), (Place::File, Fault::Empty));
+        let truncated = Fault::Truncated { items: "points".into(), promised: 13, found: 12 };
+        assert_eq!(fault(&format!("13\n{}", rows(" ", ""))), (Place::File, truncated));
+        let leftover = Fault::Leftover { items: "points", promised: 11 };
+        assert_eq!(fault(&format!("11\n{}", rows(" ", ""))), (Place::File, leftover));
+        // Chemists use the extension too.
+        assert!(matches!(fault("2\nwater\nO 0 0 0\n"), (Place::Line(2), Fault::Syntax { .. })));
+    }
+
+    #[test]
+    fn points_beyond_the_limit_are_refused() {
+        let limits = ReadLimits::of_vertices(11);
+        let fault = parse(&[rows(" ", "").as_bytes()], &limits).unwrap_err().fault;
+        assert_eq!(fault, Fault::OverLimit { items: "vertices", limit: 11 });
+    }
+}

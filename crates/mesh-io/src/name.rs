@@ -1,0 +1,86 @@
+//! Names of mesh files: the extension, behind which `.gz` may follow.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+/// The extension of gzip files.
+const GZIP: &str = "gz";
+
+/// Whether a file is compressed, judging by its name.
+#[must_use]
+pub fn is_gzip(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(GZIP))
+}
+
+/// The name without `.gz`.
+pub(super) fn inflated(path: &Path) -> PathBuf {
+    if is_gzip(path) { path.with_extension("") } else { path.to_owned() }
+}
+
+/// The extension of a file name in lower case, that before `.gz` if the file is compressed; empty if there is none.
+///
+/// ```
+/// use std::path::Path;
+/// use canonform_mesh_io::extension;
+///
+/// assert_eq!(extension(Path::new("scans/CAT.OBJ")), "obj");
+/// assert_eq!(extension(Path::new("scans/cat.obj.gz")), "obj");
+/// ```
+#[must_use]
+pub fn extension(path: &Path) -> String {
+    inflated(path).extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
+}
+
+/// The path without the extension, and without `.gz`.
+#[must_use]
+pub fn without_extension(path: &Path) -> PathBuf {
+    inflated(path).with_extension("")
+}
+
+/// The path with another extension; `.gz` stays.
+pub(super) fn with_extension(path: &Path, extension: &str) -> PathBuf {
+    let changed = inflated(path).with_extension(extension);
+    if !is_gzip(path) {
+        return changed;
+    }
+    let mut name: OsString = changed.into();
+    name.push(".");
+    name.push(path.extension().unwrap_or_default());
+    name.into()
+}
+
+/// The path that a reference inside a file stands for: `./my%20data.bin` is `my data.bin`.
+pub(super) fn referred(text: &str) -> Option<String> {
+    let mut parts = text.split('%');
+    let mut bytes = parts.next()?.as_bytes().to_vec();
+    for part in parts {
+        let (digits, rest) = part.split_at_checked(2)?;
+        let is_byte = digits.bytes().all(|digit| digit.is_ascii_hexdigit());
+        bytes.push(u8::from_str_radix(digits, 16).ok().filter(|_| is_byte)?);
+        bytes.extend(rest.bytes());
+    }
+    let path = String::from_utf8(bytes).ok()?;
+    Some(path.split('/').filter(|part| *part != ".").collect::<Vec<_>>().join("/"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn compressed_files_have_the_extension_of_their_content() {
+        for (name, expected, stem) in [
+            ("a/cat0.off", "off", "a/cat0"),
+            ("a/cat0.OFF.GZ", "off", "a/cat0"),
+            ("cat.1.ply.gz", "ply", "cat.1"),
+            ("cat.gz", "", "cat"),
+            ("cat", "", "cat"),
+        ] {
+            let path = Path::new(name);
+            assert_eq!(extension(path), expected, "{name}");
+            assert_eq!(without_extension(path), Path::new(stem), "{name}");
+        }
+        assert_eq!(with_extension(Path::new("a.vert.GZ"), "tri"), Path::new("a.tri.GZ"));
+        assert_eq!(with_extension(Path::new("a.vert"), "tri"), Path::new("a.tri"));
+    }
+}

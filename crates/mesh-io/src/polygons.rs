@@ -1,0 +1,408 @@
+//! From the polygons of a file to a triangle mesh.
+
+use std::collections::{BTreeSet, HashMap};
+
+use earcut::Earcut;
+use nalgebra::{Matrix4, Point3, Vector3};
+use surface::VertexId;
+
+use super::facts::MeshFile;
+use super::limits::ReadLimits;
+use crate::located::{At, Located};
+use mesh::TriMesh;
+use mesh::{Fault, MIN_POINTS};
+
+/// A polygon is flat if its corners are within this share `h` of its size from its plane. Across a square whose corners are
+/// alternately `h` above and below, lengths depend on the diagonal by a share of `4 h^2`: less than a part in a thousand.
+const FLAT: f64 = 0.01;
+/// Areas in units of the square of the size of a polygon that rounding may make of nothing.
+const ROUNDING: f64 = 1e-9;
+/// Corners that [`Earcut`] can count with its 32-bit offsets.
+const MOST_CORNERS: usize = 1 << 24;
+
+/// The triangles of the polygons of a file.
+#[derive(Default)]
+pub(super) struct Polygons {
+    faces: Vec<[VertexId; 3]>,
+    n_bent: usize,
+    n_crossing: usize,
+}
+
+impl Polygons {
+    pub(super) fn with_room_for(n_faces: usize) -> Self {
+        Self { faces: Vec::with_capacity(n_faces), ..Self::default() }
+    }
+
+    /// Triangulates a polygon whose corners are in range. Every corner becomes a corner of a triangle, and no vertex is added.
+    ///
+    /// A quadrilateral is split along the diagonal that folds neither half over, else along the shorter one. Larger polygons
+    /// are cut by ear clipping in their plane, and edges flipped until triangles are as even as can be (Delaunay).
+    pub(super) fn push(
+        &mut self,
+        positions: &[Point3<f64>],
+        corners: &[VertexId],
+        limits: &ReadLimits,
+    ) -> Result<(), Fault> {
+        limits.check(0, (self.faces.len() + corners.len().saturating_sub(2)) as u64)?;
+        match *corners {
+            [] | [_] | [_, _] => return Err(Fault::TooFewCorners { corners: corners.len() }),
+            [a, b, c] => self.faces.push([a, b, c]),
+            _ => self.cut(positions, corners),
+        }
+        Ok(())
+    }
+
+    fn cut(&mut self, positions: &[Point3<f64>], corners: &[VertexId]) {
+        let n = corners.len();
+        let outline = Outline::of(corners.iter().map(|v| positions[v.index()]));
+        let cut = match *corners {
+            [a, b, c, d] if prefers_second_diagonal(positions, [a, b, c, d]) => vec![0, 1, 3, 1, 2, 3],
+            [_, _, _, _] => vec![0, 1, 2, 0, 2, 3],
+            _ => outline
+                .as_ref()
+                .and_then(Outline::cut)
+                .unwrap_or_else(|| (1..n as u32 - 1).flat_map(|corner| [0, corner, corner + 1]).collect()),
+        };
+        if let Some(outline) = outline {
+            self.n_bent += usize::from(outline.height > FLAT);
+            self.n_crossing += usize::from(outline.crosses(&cut));
+        }
+        self.faces
+            .extend(cut.as_chunks::<3>().0.iter().map(|face| face.map(|corner| corners[corner as usize])));
+    }
+
+    /// The file of the mesh, as [`finish`] makes it, with notes about polygons whose surface is not certain.
+    pub(super) fn finish(
+        self,
+        positions: Vec<Point3<f64>>,
+        limits: &ReadLimits,
+    ) -> Result<MeshFile, Located> {
+        let mut file = finish(TriMesh { positions, faces: self.faces }, limits)?;
+        for (count, what) in [
+            (self.n_bent, "polygons that are not flat, whose surface depends on how they are split"),
+            (
+                self.n_crossing,
+                "polygons that cross themselves, which are covered in parts twice or not at all",
+            ),
+        ] {
+            if count > 0 {
+                file.facts.notes.push(format!("{what}: {count}"));
+            }
+        }
+        Ok(file)
+    }
+}
+
+/// Whether the quadrilateral a b c d is better split from b to d than from a to c.
+fn prefers_second_diagonal(positions: &[Point3<f64>], quad: [VertexId; 4]) -> bool {
+    let [a, b, c, d] = quad.map(|v| positions[v.index()]);
+    let folds_over = |p: Point3<f64>, q: Point3<f64>, r: Point3<f64>, s: Point3<f64>| {
+        let (first, second) = ((q - p).cross(&(r - p)), (r - p).cross(&(s - p)));
+        first.dot(&second) <= 0.0
+    };
+    match (folds_over(a, b, c, d), folds_over(b, c, d, a)) {
+        (true, false) => true,
+        (false, true) => false,
+        _ => (d - b).norm_squared() < (c - a).norm_squared(),
+    }
+}
+
+/// A polygon seen along the normal of its plane, in units of its size.
+struct Outline {
+    points: Vec<[f64; 2]>,
+    /// How far a corner is from the plane.
+    height: f64,
+}
+
+impl Outline {
+    /// `None` if all corners are in one line, or too far apart for numbers.
+    fn of(corners: impl Iterator<Item = Point3<f64>> + Clone) -> Option<Self> {
+        let first = corners.clone().next()?;
+        let size = corners.clone().map(|p| (p - first).amax()).fold(0.0, f64::max);
+        if size == 0.0 || !size.is_finite() {
+            return None;
+        }
+        let points: Vec<Vector3<f64>> = corners.map(|p| (p - first) / size).collect();
+        let normals = points.iter().zip(points.iter().cycle().skip(1)).map(|(p, q)| p.cross(q));
+        // Newell's normal, whose length is twice the area; a polygon that crosses itself may have none.
+        let newell = normals.clone().sum::<Vector3<f64>>().try_normalize(ROUNDING);
+        let largest = || normals.max_by(|a, b| a.norm().total_cmp(&b.norm()))?.try_normalize(ROUNDING);
+        let normal = newell.or_else(largest)?;
+        let mean = points.iter().sum::<Vector3<f64>>() / points.len() as f64;
+        let height = points.iter().map(|p| (p - mean).dot(&normal).abs()).fold(0.0, f64::max);
+        let right = Vector3::ith(normal.iamin(), 1.0).cross(&normal).normalize();
+        let up = normal.cross(&right);
+        Some(Self { points: points.iter().map(|p| [p.dot(&right), p.dot(&up)]).collect(), height })
+    }
+
+    /// Triangles with all corners; `None` if ear clipping fails, as it may for polygons that cross themselves.
+    fn cut(&self) -> Option<Vec<u32>> {
+        let n = self.points.len();
+        let mut cut: Vec<u32> = Vec::with_capacity(3 * n);
+        if n > MOST_CORNERS {
+            return None;
+        }
+        Earcut::new().earcut_slice(&self.points, &[], &mut cut);
+        if self.twice_areas(&cut).sum::<f64>() < 0.0 {
+            cut.as_chunks_mut::<3>().0.iter_mut().for_each(|triangle| triangle.swap(0, 1));
+        }
+        // Ear clipping leaves out corners in a row with their neighbours. Triangles without area are missing there: loops of
+        // edges with a triangle on one side only. Flipping edges gives them an area.
+        if cut.len() < 3 * (n - 2) {
+            let edges: BTreeSet<[u32; 2]> =
+                cut.as_chunks().0.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
+            let outline = || (0..n as u32).map(|corner| [corner, (corner + 1) % n as u32]);
+            let is_loose = |[a, b]: &[u32; 2]| !edges.contains(&[*b, *a]) && (a + 1) % n as u32 != *b;
+            let mut missing: HashMap<u32, u32> =
+                edges.iter().filter(|edge| is_loose(edge)).map(|&[a, b]| (b, a)).collect();
+            missing.extend(outline().filter(|edge| !edges.contains(edge)).map(|[a, b]| (a, b)));
+            for start in 0..n as u32 {
+                let mut at = missing.remove(&start);
+                while let Some(corner) = at {
+                    at = missing.remove(&corner).filter(|next| *next != start);
+                    cut.extend(at.into_iter().flat_map(|next| [start, corner, next]));
+                }
+            }
+        }
+        earcut::refine(&mut cut, &self.points);
+        (cut.len() == 3 * (n - 2)).then_some(cut)
+    }
+
+    fn twice_areas(&self, triangles: &[u32]) -> impl Iterator<Item = f64> {
+        triangles.as_chunks::<3>().0.iter().map(|triangle| {
+            let [[a, b], [c, d], [e, f]] = triangle.map(|corner| self.points[corner as usize]);
+            (c - a) * (f - b) - (d - b) * (e - a)
+        })
+    }
+
+    /// Whether the triangles cover another area than the outline encloses, as they do if it crosses itself.
+    fn crosses(&self, triangles: &[u32]) -> bool {
+        let next = self.points.iter().cycle().skip(1);
+        let enclosed: f64 = self.points.iter().zip(next).map(|([a, b], [c, d])| a * d - b * c).sum();
+        (self.twice_areas(triangles).map(f64::abs).sum::<f64>() - enclosed.abs()).abs() > ROUNDING
+    }
+}
+
+/// A position whose coordinates are numbers; `vertex` only appears in messages.
+pub(super) fn finite(position: impl Into<Point3<f64>>, vertex: usize) -> Result<Point3<f64>, Fault> {
+    let position = position.into();
+    match position.iter().find(|x| !x.is_finite()) {
+        Some(&value) => Err(Fault::NonFinite { vertex: vertex as u64, value }),
+        None => Ok(position),
+    }
+}
+
+/// The place of a copy of a mesh, as an affine map; `None` if it stays where it is.
+pub(super) type Placement = Option<Matrix4<f64>>;
+
+/// The place that a map moves a mesh to.
+pub(super) fn placed_by(map: Matrix4<f64>) -> Placement {
+    (map != Matrix4::identity()).then_some(map)
+}
+
+/// The place of what has a place within something that is placed itself.
+pub(super) fn placed_within(above: Placement, own: Placement) -> Placement {
+    match (above, own) {
+        (Some(above), Some(own)) => Some(above * own),
+        (above, own) => above.or(own),
+    }
+}
+
+/// Appends a copy of a mesh. Where its place mirrors it, corners change their order.
+pub(super) fn append_placed(whole: &mut TriMesh, part: &TriMesh, place: Placement) -> Result<(), Fault> {
+    let start = whole.n_vertices() as u32;
+    let mut mirrors = false;
+    if let Some(place) = place {
+        let (linear, shift) =
+            (place.fixed_view::<3, 3>(0, 0).into_owned(), place.fixed_view::<3, 1>(0, 3).into_owned());
+        mirrors = linear.determinant() < 0.0;
+        for (vertex, p) in part.positions.iter().enumerate() {
+            whole.positions.push(finite(linear * p.coords + shift, vertex)?);
+        }
+    } else {
+        whole.positions.extend_from_slice(&part.positions);
+    }
+    whole.faces.extend(part.faces.iter().map(|&[a, b, c]| {
+        let face = if mirrors { [a, c, b] } else { [a, b, c] };
+        face.map(|v| VertexId(v.0 + start))
+    }));
+    Ok(())
+}
+
+/// Vertices and faces that copies of meshes may always add up to.
+const COPIES: u64 = 1 << 22;
+/// Beyond, they may be this many times the bytes of the file.
+const COPIES_RATIO: u64 = 64;
+
+/// Refuses a small file in which copies of meshes add up to a huge one.
+pub(super) fn check_copies(items: u64, n_bytes: u64) -> Result<(), Fault> {
+    match COPIES.max(n_bytes.saturating_mul(COPIES_RATIO)) {
+        limit if items > limit => Err(Fault::unsupported(
+            format!(
+                "its copies of meshes add up to more than {limit} vertices and faces, out of proportion to the file"
+            ),
+            "the file is damaged or malicious: if it is neither, export a single copy",
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// The file of a mesh, if that has a face or enough vertices for a point cloud, and is within the limits.
+pub(super) fn finish(mesh: TriMesh, limits: &ReadLimits) -> Result<MeshFile, Located> {
+    let (n_vertices, n_faces) = (mesh.n_vertices(), mesh.n_faces());
+    if n_faces == 0 && n_vertices < MIN_POINTS {
+        return Err(Fault::NoFaces { n_vertices }.whole());
+    }
+    limits.check(n_vertices as u64, n_faces as u64).map_err(Fault::whole)?;
+    Ok(MeshFile { mesh, ..MeshFile::default() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn split(points: &[[f64; 2]]) -> Vec<[u32; 3]> {
+        let positions: Vec<_> = points.iter().map(|p| Point3::new(p[0], p[1], 0.0)).collect();
+        let corners: Vec<_> = (0..points.len()).map(VertexId::from).collect();
+        let mut polygons = Polygons::default();
+        polygons.push(&positions, &corners, &ReadLimits::default()).unwrap();
+        polygons.faces.iter().map(|f| f.map(|v| v.0)).collect()
+    }
+
+    #[test]
+    fn quads_are_split_along_the_inner_or_the_shorter_diagonal() {
+        assert_eq!(split(&[[0., 0.], [1., 0.], [1., 1.], [0., 1.]]), [[0, 1, 2], [0, 2, 3]]);
+        assert_eq!(split(&[[0., 0.], [1., 0.], [4., 1.], [0., 1.]]), [[0, 1, 3], [1, 2, 3]]);
+        // An arrow head with its notch at corner 1: only the diagonal from the notch stays inside.
+        assert_eq!(split(&[[0., 0.], [1., 1.], [2., 0.], [1., 3.]]), [[0, 1, 3], [1, 2, 3]]);
+        assert_eq!(split(&[[1., 1.], [2., 0.], [1., 3.], [0., 0.]]), [[0, 1, 2], [0, 2, 3]]);
+    }
+
+    /// The triangles of a polygon in space, and whether it counts as bent and as crossing itself.
+    fn cut(points: &[Point3<f64>]) -> (TriMesh, [bool; 2]) {
+        let corners: Vec<_> = (0..points.len()).map(VertexId::from).collect();
+        let mut polygons = Polygons::default();
+        polygons.push(points, &corners, &ReadLimits::default()).unwrap();
+        let uncertain = [polygons.n_bent, polygons.n_crossing].map(|count| count == 1);
+        (TriMesh { positions: points.to_vec(), faces: polygons.faces }, uncertain)
+    }
+
+    /// A polygon turned in space, far away and large, which changes no coordinate to an integer.
+    fn turned(points: &[[f64; 2]]) -> Vec<Point3<f64>> {
+        let turn = nalgebra::Rotation3::from_euler_angles(0.3, 1.1, -0.7);
+        let place = |p: &[f64; 2]| turn * Point3::new(700.0 * p[0] + 3e4, 700.0 * p[1], -2e4);
+        points.iter().map(place).collect()
+    }
+
+    fn twice_enclosed(points: &[[f64; 2]]) -> f64 {
+        let next = points.iter().cycle().skip(1);
+        points.iter().zip(next).map(|([a, b], [c, d])| a * d - b * c).sum()
+    }
+
+    #[test]
+    fn polygons_of_any_shape_are_covered_once_with_all_corners() {
+        let comb = |teeth: i32| {
+            let teeth_of = |i: i32| [[f64::from(i), 0.1], [f64::from(i) + 0.5, 3.0]];
+            let mut comb: Vec<[f64; 2]> = (0..teeth).flat_map(teeth_of).collect();
+            comb.extend([[f64::from(teeth), 0.0], [0.0, 0.0]]);
+            comb.reverse();
+            comb
+        };
+        let round = |n: u32, radius: fn(u32) -> f64| -> Vec<[f64; 2]> {
+            let angle = |i: u32| std::f64::consts::TAU * f64::from(i) / f64::from(n);
+            (0..n).map(|i| [radius(i) * angle(i).cos(), radius(i) * angle(i).sin()]).collect()
+        };
+        let polygons: Vec<Vec<[f64; 2]>> = vec![
+            // Concave, its notch near an edge.
+            vec![[0., 0.], [4., 0.], [4., 4.], [2., 1.], [0., 4.]],
+            // Corners in a row, on one edge and on all.
+            vec![[0., 0.], [1., 0.], [2., 0.], [4., 0.], [4., 4.], [0., 4.]],
+            vec![[0., 0.], [2., 0.], [4., 0.], [3., 2.], [2., 4.], [1., 2.]],
+            vec![[0., 0.], [1., 0.], [2., 0.], [2., 1.], [2., 2.], [1., 2.], [0., 2.], [0., 1.]],
+            // An L and a U of squares, whose diagonals run along edges.
+            vec![[0., 0.], [1., 0.], [2., 0.], [2., 1.], [1., 1.], [1., 2.], [0., 2.], [0., 1.]],
+            vec![[0., 0.], [3., 0.], [3., 2.], [2., 2.], [2., 1.], [1., 1.], [1., 2.], [0., 2.]],
+            comb(3),
+            comb(40),
+            round(7, |_| 1.0),
+            round(64, |_| 1.0),
+            round(200, |i| if i % 2 == 0 { 1.0 } else { 0.2 }),
+        ];
+        for polygon in &polygons {
+            let n = polygon.len();
+            for first in 0..n {
+                let rolled: Vec<[f64; 2]> = polygon.iter().cycle().skip(first).take(n).copied().collect();
+                let mirrored: Vec<[f64; 2]> = rolled.iter().rev().copied().collect();
+                for (points, scale) in [&rolled, &mirrored].into_iter().flat_map(|p| {
+                    let flat = p.iter().map(|p| Point3::new(p[0], p[1], 0.0)).collect::<Vec<_>>();
+                    [(flat, 1.0), (turned(p), 700.0 * 700.0)]
+                }) {
+                    let (mesh, uncertain) = cut(&points);
+                    assert_eq!(uncertain, [false; 2], "{points:?}");
+                    assert_eq!(mesh.n_faces(), n - 2);
+                    let expected = twice_enclosed(polygon).abs() / 2.0 * scale;
+                    assert!(
+                        (mesh.area() / expected - 1.0).abs() < 1e-9,
+                        "{} {expected} {points:?}",
+                        mesh.area()
+                    );
+                    let least = mesh.face_areas().fold(f64::INFINITY, f64::min);
+                    assert!(least > 1e-6 * expected, "a face of {least}: {:?} of {points:?}", mesh.faces);
+                    // A disc, whose boundary is the polygon.
+                    let report = mesh::validate(&mesh);
+                    assert_eq!((report.euler_characteristic, report.n_boundary_edges), (1, n));
+                    assert_eq!((report.n_boundary_loops, report.flipped_faces), (1, 0));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn polygons_whose_surface_is_uncertain_are_counted() {
+        let star: Vec<[f64; 2]> =
+            (0..5).map(|i| (f64::from(i) * 4.0 * 0.628_318_53).sin_cos().into()).collect();
+        for crossing in [vec![[0., 0.], [1., 1.], [1., 0.], [0., 1.]], star] {
+            let (mesh, uncertain) = cut(&turned(&crossing));
+            assert_eq!((mesh.n_faces(), uncertain), (crossing.len() - 2, [false, true]), "{crossing:?}");
+        }
+        let square = |height: f64| {
+            [[0., 0., height], [1., 0., -height], [1., 1., height], [0., 1., -height]].map(Point3::from)
+        };
+        assert_eq!(cut(&square(0.009)).1, [false; 2]);
+        assert_eq!(cut(&square(0.011)).1, [true, false]);
+        let roof =
+            [[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0.5, 1.5, 0.4], [0., 1., 0.]].map(Point3::from);
+        assert_eq!(cut(&roof).1, [true, false]);
+        // Corners in one position, in one line, or beyond all numbers.
+        for corners in
+            [[[1., 2., 3.]; 6], [0., 1., 2., 3., 2., 1.].map(|x| [x, x, 0.]), [[1e308, -1e308, 0.]; 6]]
+        {
+            assert_eq!(cut(&corners.map(Point3::from)).0.n_faces(), 4);
+        }
+    }
+
+    #[test]
+    fn polygons_of_fewer_than_three_corners_are_errors() {
+        let refused = Polygons::default().push(&[], &[VertexId(0); 2], &ReadLimits::default());
+        assert_eq!(refused, Err(Fault::TooFewCorners { corners: 2 }));
+    }
+
+    #[test]
+    fn a_polygon_beyond_the_limit_is_not_split() {
+        let limits = ReadLimits { max_faces: 3, ..ReadLimits::default() };
+        let mut polygons = Polygons::default();
+        let refused = polygons.push(&[], &[VertexId(0); 6], &limits);
+        assert_eq!(refused, Err(Fault::OverLimit { items: "faces", limit: 3 }));
+        assert!(polygons.faces.is_empty());
+    }
+
+    #[test]
+    fn a_polygon_that_crosses_itself_everywhere_is_cut() {
+        let noise =
+            |i: u32| f64::from(i.wrapping_mul(2_654_435_761).rotate_left(11).wrapping_mul(40_503) >> 8);
+        let points: Vec<Point3<f64>> =
+            (0..2_000).map(|i| Point3::new(noise(2 * i), noise(2 * i + 1), 0.0)).collect();
+        let (mesh, uncertain) = cut(&points);
+        assert_eq!((mesh.n_faces(), uncertain), (1_998, [false, true]));
+    }
+}

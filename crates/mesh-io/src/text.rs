@@ -1,0 +1,249 @@
+//! Lines and numbers of text files, straight from bytes.
+
+use std::io::{self, Write};
+use std::str::FromStr;
+
+use nalgebra::Point3;
+use surface::VertexId;
+
+use crate::located::{At, Located};
+use mesh::Fault;
+
+/// The non-blank lines of a text, without comments, surrounding blanks and line ends of any system.
+#[derive(Debug, Clone)]
+pub(super) struct Lines<'a> {
+    rest: &'a [u8],
+    number: usize,
+}
+
+/// One line; never empty.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Line<'a> {
+    /// Counted from one.
+    pub(super) number: usize,
+    pub(super) text: &'a [u8],
+}
+
+impl<'a> Lines<'a> {
+    /// The lines of `bytes`.
+    pub(super) fn new(bytes: &'a [u8]) -> Self {
+        Self { rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), number: 0 }
+    }
+
+    /// Number of unread bytes.
+    pub(super) fn remaining(&self) -> usize {
+        self.rest.len()
+    }
+
+    /// Number of the last line read.
+    pub(super) fn number(&self) -> usize {
+        self.number
+    }
+}
+
+impl<'a> Iterator for Lines<'a> {
+    type Item = Line<'a>;
+
+    fn next(&mut self) -> Option<Line<'a>> {
+        while !self.rest.is_empty() {
+            let is_end = |b: &u8| matches!(b, b'\n' | b'\r');
+            let end = self.rest.iter().position(is_end).unwrap_or(self.rest.len());
+            let (text, tail) = self.rest.split_at(end);
+            self.rest = tail.strip_prefix(b"\r\n").or_else(|| tail.get(1..)).unwrap_or_default();
+            self.number += 1;
+            let text = without_comment(text).trim_ascii();
+            if !text.is_empty() {
+                return Some(Line { number: self.number, text });
+            }
+        }
+        None
+    }
+}
+
+/// A comment begins at a `#` that begins a word: within a word, as in the `1.#QNAN` of older C libraries, it is no comment.
+fn without_comment(text: &[u8]) -> &[u8] {
+    let begins_word = |at: &usize| text[*at] == b'#' && (*at == 0 || text[at - 1].is_ascii_whitespace());
+    &text[..(0..text.len()).find(begins_word).unwrap_or(text.len())]
+}
+
+impl<'a> Line<'a> {
+    /// The words of the line.
+    pub(super) fn tokens(self) -> impl Iterator<Item = &'a [u8]> {
+        self.text.split(u8::is_ascii_whitespace).filter(|token| !token.is_empty())
+    }
+
+    /// The fault that this line is not what the format requires.
+    pub(super) fn expected(self, expected: &'static str) -> Located {
+        Fault::syntax(expected, excerpt(self.text)).in_line(self.number)
+    }
+}
+
+/// Words of a text one after the other, within a line or across lines.
+#[derive(Debug, Clone)]
+pub(super) struct Words<'a> {
+    pub(super) lines: Lines<'a>,
+    /// The line of the last word.
+    pub(super) line: Line<'a>,
+    /// What is left of it.
+    rest: &'a [u8],
+    /// Whether words of the next line follow those of a line.
+    crosses_lines: bool,
+}
+
+impl<'a> Words<'a> {
+    pub(super) fn new(lines: Lines<'a>, crosses_lines: bool) -> Self {
+        let line = Line { number: lines.number(), text: &[] };
+        Self { lines, line, rest: &[], crosses_lines }
+    }
+
+    /// Begins a row: in the next line, or right after the last word if words cross lines. `None` at the end of the text.
+    pub(super) fn row(&mut self) -> Option<Line<'a>> {
+        if !self.crosses_lines || self.rest.is_empty() {
+            self.line = self.lines.next()?;
+            self.rest = self.line.text;
+        }
+        Some(self.line)
+    }
+
+    /// Whether the line has more words.
+    pub(super) fn rest_of_line(&self) -> bool {
+        !self.rest.is_empty()
+    }
+
+    /// Whether the rest of the line begins with these words, in upper or lower case.
+    pub(super) fn rest_begins_with(&self, phrase: &[&str]) -> bool {
+        let mut rest = Line { text: self.rest, ..self.line }.tokens();
+        phrase.iter().all(|word| rest.next().is_some_and(|found| found.eq_ignore_ascii_case(word.as_bytes())))
+    }
+}
+
+impl<'a> Iterator for Words<'a> {
+    type Item = &'a [u8];
+
+    fn next(&mut self) -> Option<&'a [u8]> {
+        if self.rest.is_empty() && self.crosses_lines {
+            self.row()?;
+        }
+        let end = self.rest.iter().position(u8::is_ascii_whitespace).unwrap_or(self.rest.len());
+        let (word, rest) = self.rest.split_at(end);
+        self.rest = rest.trim_ascii_start();
+        (!word.is_empty()).then_some(word)
+    }
+}
+
+/// Refuses the start of a text file that is encoded as UTF-16 or holds zero bytes, as binary data and files with holes do.
+pub(super) fn check_is_text(start: &[u8], expected: &'static str) -> Result<(), Located> {
+    check_is_not_utf16(start)?;
+    match start.iter().position(|byte| *byte == 0) {
+        Some(at) => Err(Fault::wrong_format(expected, "it is not text but has zero bytes").at_byte(at)),
+        None => Ok(()),
+    }
+}
+
+/// Refuses text in UTF-16: it begins with a byte order mark, or every other byte is zero.
+pub(super) fn check_is_not_utf16(start: &[u8]) -> Result<(), Located> {
+    let is_utf16 = match *start {
+        [0xff, 0xfe, _, 0, ..] | [0xfe, 0xff, 0, _, ..] => true,
+        [a, 0, b, 0, ..] | [0, a, 0, b, ..] => a > 0 && b > 0,
+        _ => false,
+    };
+    match is_utf16 {
+        true => Err(Fault::unsupported("the text is encoded as UTF-16", "save it as UTF-8").whole()),
+        false => Ok(()),
+    }
+}
+
+/// The beginning of a text, fit for an error message.
+pub(super) fn excerpt(text: &[u8]) -> String {
+    const LONGEST: usize = 40;
+    let lossy = String::from_utf8_lossy(&text[..text.len().min(4 * LONGEST)]);
+    let clean: String =
+        lossy.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).take(LONGEST).collect();
+    if clean.len() < text.len() { clean + "..." } else { clean }
+}
+
+/// A number; a floating-point one may be NaN or infinite.
+pub(super) fn parse_number<T: FromStr>(token: &[u8]) -> Option<T> {
+    std::str::from_utf8(token).ok()?.parse().ok()
+}
+
+/// An integer, also one written as `3.0` or `3.000e+00`.
+pub(super) fn parse_integer(token: &[u8]) -> Option<i64> {
+    parse_number(token).or_else(|| {
+        let value: f64 = parse_number(token)?;
+        (value.fract() == 0.0 && value.abs() < 9e15).then_some(value as i64)
+    })
+}
+
+/// The next word of a line as a vertex, counted from `first`.
+pub(super) fn parse_vertex<'a>(
+    line: Line<'a>,
+    tokens: &mut impl Iterator<Item = &'a [u8]>,
+    [first, n_vertices]: [u64; 2],
+    expected: &'static str,
+) -> Result<VertexId, Located> {
+    let token = tokens.next().ok_or_else(|| line.expected(expected))?;
+    let index = parse_integer(token).ok_or_else(|| line.expected(expected))?;
+    let vertex = index.checked_sub_unsigned(first).and_then(|vertex| u64::try_from(vertex).ok());
+    match vertex.filter(|vertex| *vertex < n_vertices) {
+        Some(vertex) => Ok(VertexId(vertex as u32)),
+        None => Err(Fault::no_vertex(excerpt(token), first, n_vertices).in_line(line.number)),
+    }
+}
+
+/// The first three words of a line as a position; `vertex` only appears in messages.
+pub(super) fn parse_position<'a>(
+    line: Line<'a>,
+    tokens: &mut impl Iterator<Item = &'a [u8]>,
+    vertex: usize,
+) -> Result<Point3<f64>, Located> {
+    let mut p = [0.0f64; 3];
+    for x in &mut p {
+        *x = tokens.next().and_then(parse_number).ok_or_else(|| line.expected("three coordinates"))?;
+        if !x.is_finite() {
+            return Err(Fault::NonFinite { vertex: vertex as u64, value: *x }.in_line(line.number));
+        }
+    }
+    Ok(Point3::from(p))
+}
+
+/// Writes a line with a position after `prefix`; it reads back bit for bit.
+pub(super) fn write_position(out: &mut dyn Write, prefix: &str, p: &Point3<f64>) -> io::Result<()> {
+    writeln!(out, "{prefix}{:?} {:?} {:?}", p.x, p.y, p.z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn line_numbers_do_not_depend_on_the_line_ends() {
+        for text in
+            ["a\n\n#x\nb c # d", "a\r\n\r\n#x\r\nb c # d\r\n", "a\r\r#x\rb c\r", "\u{feff}a\n\n\n b c"]
+        {
+            let found: Vec<_> = Lines::new(text.as_bytes()).map(|l| (l.number, l.text)).collect();
+            assert_eq!(found, [(1, &b"a"[..]), (4, &b"b c"[..])], "{text:?}");
+        }
+    }
+
+    #[test]
+    fn numbers_parse_in_every_notation() {
+        assert_eq!(parse_number(b"-1.5e3"), Some(-1500.0));
+        assert_eq!(parse_number(b".5"), Some(0.5));
+        assert_eq!(parse_number(b"5."), Some(5.0));
+        assert!(parse_number(b"nan").is_some_and(f64::is_nan));
+        assert_eq!(parse_number::<f64>(b"1,5"), None);
+        assert_eq!(parse_number::<f64>(b"\xff"), None);
+        assert_eq!(parse_integer(b"12"), Some(12));
+        assert_eq!(parse_integer(b"1.2000e+01"), Some(12));
+        assert_eq!(parse_integer(b"1.5"), None);
+        assert_eq!(parse_integer(b"nan"), None);
+    }
+
+    #[test]
+    fn excerpts_are_short_and_printable() {
+        assert_eq!(excerpt(b"1 2"), "1 2");
+        assert_eq!(excerpt(b"\x00\xff"), "\u{fffd}\u{fffd}");
+        assert!(excerpt(&[b'7'; 1000]).ends_with("777..."));
+    }
+}

@@ -1,0 +1,522 @@
+//! Whole files: round trips, names, pairs, error messages, atomic writes.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use base::files::Action;
+use canonform_mesh_io::{
+    Disk, FORMATS, Format, MemoryFile, ReadLimits, VertexField, files_of, is_mesh_path, read, read_file,
+    read_from, read_memory, write, write_polylines, write_scalar_field,
+};
+use mesh::{Fault, MeshError, TriMesh, shapes};
+use nalgebra::Point3;
+use proptest::prelude::*;
+use surface::VertexId;
+use tempfile::TempDir;
+
+/// The message of a failure.
+fn refusal(outcome: Result<(), MeshError>) -> String {
+    outcome.unwrap_err().to_string()
+}
+
+fn folder() -> TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+fn names_in(folder: &TempDir) -> Vec<String> {
+    let mut names: Vec<String> =
+        fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+/// The fault in a file with this content.
+fn fault_of(name: &str, content: &[u8]) -> Fault {
+    let folder = folder();
+    let path = folder.path().join(name);
+    fs::write(&path, content).unwrap();
+    match read(&path) {
+        Err(MeshError::File { path: named, fault, .. }) if named == path => fault,
+        other => panic!("{other:?}"),
+    }
+}
+
+const EXACT: [&str; 11] = [
+    "m.off", "m.obj", "m.ply", "m.vert", "m.tri", "M.PLY", "m.3mf", "m.off.gz", "m.ply.gz", "M.TRI.GZ",
+    "m.3mf.gz",
+];
+
+#[test]
+fn awkward_numbers_and_unused_vertices_survive_a_round_trip() {
+    let numbers = [0.1, -0.0, 1e300, -5e-324, 1.0 / 3.0, f64::MAX, 123_456_789.123_456_79, 1e-7, 42.0];
+    let positions = numbers.iter().map(|&x| Point3::new(x, -x, x / 7.0)).collect();
+    let faces = vec![[1, 8, 3].map(VertexId), [3, 8, 5].map(VertexId), [3, 3, 5].map(VertexId)];
+    let mesh = TriMesh { positions, faces };
+    for name in EXACT {
+        let folder = folder();
+        let path = folder.path().join(name);
+        write(&path, &mesh).unwrap();
+        let back = read(&path).unwrap();
+        assert_eq!(back.faces, mesh.faces, "{name}");
+        for (p, q) in back.positions.iter().zip(&mesh.positions) {
+            assert!((0..3).all(|i| p[i].to_bits() == q[i].to_bits()), "{name}: {p} {q}");
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+
+    #[test]
+    fn any_mesh_survives_a_round_trip(
+        points in prop::collection::vec(prop::array::uniform3(prop::num::f64::NORMAL), 1..30),
+        corners in prop::collection::vec(prop::array::uniform3(any::<prop::sample::Index>()), 1..30),
+    ) {
+        let n = points.len();
+        let mesh = TriMesh {
+            positions: points.into_iter().map(Point3::from).collect(),
+            faces: corners.iter().map(|f| f.map(|i| VertexId::from(i.index(n)))).collect(),
+        };
+        let folder = folder();
+        for name in EXACT {
+            let path = folder.path().join(name);
+            write(&path, &mesh).unwrap();
+            prop_assert_eq!(&read(&path).unwrap(), &mesh);
+        }
+    }
+}
+
+#[test]
+fn stl_keeps_the_triangles() {
+    let sphere = shapes::icosphere(2);
+    let folder = folder();
+    let path = folder.path().join("s.StL");
+    write(&path, &sphere).unwrap();
+    let back = read(&path).unwrap();
+    assert_eq!((back.n_vertices(), back.n_faces()), (sphere.n_vertices(), sphere.n_faces()));
+    assert!((back.area() - sphere.area()).abs() < 1e-5);
+}
+
+fn from_memory(files: &[(&str, &[u8])]) -> Result<TriMesh, MeshError> {
+    let files: Vec<_> =
+        files.iter().map(|(name, bytes)| MemoryFile { name: Path::new(*name), bytes }).collect();
+    read_memory(&files, &ReadLimits::default())
+}
+
+#[test]
+fn files_in_memory_read_like_files_on_disk() {
+    let sphere = shapes::icosphere(2);
+    let folder = folder();
+    for name in ["m.off", "m.obj", "m.ply", "m.stl", "m.glb", "m.3mf", "m.obj.gz"] {
+        let path = folder.path().join(name);
+        write(&path, &sphere).unwrap();
+        assert_eq!(from_memory(&[(name, &fs::read(&path).unwrap())]).unwrap(), read(&path).unwrap());
+    }
+    write(&folder.path().join("p.vert"), &sphere).unwrap();
+    let [vert, tri] = ["p.vert", "p.tri"].map(|name| fs::read(folder.path().join(name)).unwrap());
+    for names in [["cat0.vert", "cat0.tri"], ["CAT0.VERT", "CAT0.TRI"], ["cat0.VERT", "cat0.tri"]] {
+        let mut files = [(names[0], &vert[..]), (names[1], &tri[..])];
+        assert_eq!(from_memory(&files).unwrap(), sphere);
+        files.reverse();
+        assert_eq!(from_memory(&files).unwrap(), sphere);
+    }
+}
+
+#[test]
+fn errors_of_files_in_memory_equal_those_of_files_on_disk() {
+    let folder = folder();
+    for (name, content) in [
+        ("a.off", &b"OFF\n3 1 0\n0 0 0\n"[..]),
+        ("a.ply", b"ply\nformat ascii 2.0\n"),
+        ("a.stl", b""),
+        ("a.obj", b"v 0 0 nan\n"),
+        ("a.mat", b"MATLAB 7.3"),
+        ("a.glb", b"glTF\x01\0\0\0\0\0\0\0"),
+        ("a.gltf", b"{\"asset\": 1}"),
+        ("a.gltf", br#"{"asset":{"version":"2.0"},"buffers":[{"uri":"b.bin","byteLength":4}]}"#),
+        ("a.3mf", b"PK\x05\x06"),
+        ("a.off.gz", b"OFF\n3 1 0\n0 0 0\n"),
+        ("a.vert", b"0 0 0\n"),
+        ("a.tri", b"1 2 3\n"),
+        ("a.txt", b"hello"),
+    ] {
+        let path = folder.path().join(name);
+        fs::write(&path, content).unwrap();
+        let on_disk = read(&path).unwrap_err().to_string();
+        fs::remove_file(&path).unwrap();
+        let place = format!("{}/", folder.path().display());
+        assert_eq!(from_memory(&[(name, content)]).unwrap_err().to_string(), on_disk.replace(&place, ""));
+    }
+    let (vert, tri) = (("a.vert", &b"0 0 0\n1 0 0\n0 1 0\n"[..]), ("b.tri", &b"1 2 3\n"[..]));
+    let other_half = from_memory(&[vert, tri]).unwrap_err().to_string();
+    assert!(other_half.starts_with("a.vert: its other half a.tri is missing"), "{other_half}");
+    for files in [&[("a.off", tri.1), vert][..], &[vert, ("a.tri", tri.1), ("c.off", tri.1)]] {
+        assert!(matches!(from_memory(files), Err(MeshError::StrayFile { .. })));
+    }
+    assert!(matches!(from_memory(&[]), Err(MeshError::UnknownFormat { .. })));
+}
+
+#[test]
+fn mesh_paths_are_recognised_by_extension() {
+    for name in [
+        "a.off",
+        "a.OBJ",
+        "x/a.ply",
+        "a.stl",
+        "cat0.vert",
+        "CAT0.VERT",
+        "a.b.mat",
+        "a.glb",
+        "a.GLTF",
+        "a.3mf",
+        "a.off.gz",
+        "a.VERT.GZ",
+    ] {
+        assert!(is_mesh_path(Path::new(name)), "{name}");
+    }
+    for name in
+        ["cat0.tri", "CAT0.TRI", "a.tri.gz", "a.gz", ".off.gz", "a.txt.gz", "a.txt", "off", "a", "", ".off"]
+    {
+        assert!(!is_mesh_path(Path::new(name)), "{name}");
+    }
+}
+
+#[test]
+fn the_other_half_of_a_pair_is_found_in_either_case() {
+    let tetrahedron = shapes::tetrahedron(0);
+    let folder = folder();
+    write(&folder.path().join("t.vert"), &tetrahedron).unwrap();
+    assert_eq!(names_in(&folder), ["t.tri", "t.vert"]);
+    for (vert, tri) in [("T.VERT", "T.TRI"), ("u.VERT", "u.tri"), ("v.vert", "v.TRI")] {
+        for (from, to) in [("t.vert", vert), ("t.tri", tri)] {
+            fs::copy(folder.path().join(from), folder.path().join(to)).unwrap();
+        }
+        assert_eq!(read(&folder.path().join(vert)).unwrap(), tetrahedron);
+        assert_eq!(read(&folder.path().join(tri)).unwrap(), tetrahedron);
+    }
+    fs::remove_file(folder.path().join("t.tri")).unwrap();
+    let error = read(&folder.path().join("t.vert")).unwrap_err().to_string();
+    assert!(error.contains("its other half t.tri is missing"), "{error}");
+}
+
+#[test]
+fn an_error_names_the_empty_half_of_a_pair() {
+    let folder = folder();
+    let path = folder.path().join("victoria14.vert");
+    write(&path, &shapes::tetrahedron(0)).unwrap();
+    fs::write(path.with_extension("tri"), "").unwrap();
+    let error = read(&path).unwrap_err().to_string();
+    assert!(error.ends_with("victoria14.tri: the file is empty; copy or export it again"), "{error}");
+}
+
+#[test]
+fn errors_name_file_place_fault_and_remedy() {
+    let folder = folder();
+    let path = folder.path().join("broken.off");
+    fs::write(&path, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n").unwrap();
+    let expected = format!(
+        "{}, line 6: a face refers to vertex 7, but the vertices of the file run from 0 to 2; correct or remove the face",
+        path.display()
+    );
+    assert_eq!(read(&path).unwrap_err().to_string(), expected);
+}
+
+#[test]
+fn empty_and_foreign_files_are_errors_in_every_format() {
+    for name in
+        ["a.off", "a.obj", "a.ply", "a.stl", "a.mat", "a.glb", "a.gltf", "a.3mf", "a.xyz", "a.pts", "a.tri"]
+    {
+        if name != "a.tri" {
+            assert_eq!(fault_of(name, b""), Fault::Empty, "{name}");
+            assert_eq!(fault_of(name, b" \n\t\r\n"), Fault::Empty, "{name}");
+        }
+        let picture = b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR and so on \xff\xfe\xfd";
+        let fault = fault_of(name, picture);
+        let is_expected = matches!(
+            fault,
+            Fault::WrongFormat { .. }
+                | Fault::Syntax { .. }
+                | Fault::NoFaces { .. }
+                | Fault::Unsupported { .. }
+        );
+        assert!(is_expected, "{name}: {fault:?}");
+    }
+}
+
+#[test]
+fn paths_without_a_mesh_are_errors() {
+    let folder = folder();
+    let missing = read(&folder.path().join("none.off")).unwrap_err();
+    assert!(matches!(&missing, MeshError::Io(fault) if fault.action == Action::Read));
+    assert!(missing.to_string().contains("none.off"));
+    let directory = folder.path().join("folder.off");
+    fs::create_dir(&directory).unwrap();
+    assert!(read(&directory).unwrap_err().to_string().contains("not a regular file"));
+    for name in ["a.txt", "a"] {
+        let path = PathBuf::from(name);
+        assert!(matches!(read(&path), Err(MeshError::UnknownFormat { .. })));
+        assert!(matches!(write(&path, &shapes::cube(0)), Err(MeshError::UnknownFormat { .. })));
+    }
+}
+
+#[test]
+fn a_file_of_zeros_is_refused_by_its_start() {
+    let folder = folder();
+    let valid = shapes::tetrahedron(0);
+    write(&folder.path().join("half.vert"), &valid).unwrap();
+    for (name, start) in [
+        ("a.off", ""),
+        ("b.off", "OFF\n4 4 0\n"),
+        ("a.obj", ""),
+        ("b.obj", "v 0 0 0\n"),
+        ("a.ply", ""),
+        ("b.ply", "ply\n"),
+        ("a.stl", ""),
+        ("b.stl", "solid"),
+        ("a.mat", ""),
+        ("a.glb", ""),
+        ("b.glb", "glTF\x02\0\0\0"),
+        ("a.gltf", ""),
+        ("b.gltf", "{"),
+        ("a.3mf", ""),
+        ("a.xyz", "0 0 0\n"),
+        ("half.tri", "1 2 3\n"),
+    ] {
+        let path = folder.path().join(name);
+        fs::write(&path, start).unwrap();
+        // A hole of 64 GiB, more than the memory of most machines.
+        fs::OpenOptions::new().write(true).open(&path).unwrap().set_len(64 << 30).unwrap();
+        let error = read(&path).unwrap_err();
+        assert!(matches!(&error, MeshError::File { .. }), "{name}: {error}");
+        fs::remove_file(&path).unwrap();
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn pipes_and_devices_are_refused_by_name() {
+    let folder = folder();
+    let device = folder.path().join("zero.off");
+    std::os::unix::fs::symlink("/dev/zero", &device).unwrap();
+    let pipe = folder.path().join("pipe.off");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    for path in [device, pipe] {
+        let error = read(&path).unwrap_err().to_string();
+        assert!(error.contains("not a regular file; pass its content through standard input"), "{error}");
+    }
+}
+
+#[test]
+fn a_stream_reads_like_a_file_within_its_limits() {
+    let sphere = shapes::icosphere(4);
+    let folder = folder();
+    let name = Path::new("standard input");
+    let from = |bytes: &[u8], extension: &str, limits: &ReadLimits| {
+        read_from(name, &mut &bytes[..], Format::named(extension).unwrap(), limits).map(|file| file.mesh)
+    };
+    for extension in ["off", "OBJ", "ply", "stl", "glb", "3mf"] {
+        let path = folder.path().join("m").with_extension(extension);
+        write(&path, &sphere).unwrap();
+        let bytes = fs::read(&path).unwrap();
+        assert_eq!(from(&bytes, extension, &ReadLimits::default()).unwrap(), read(&path).unwrap());
+        let size = bytes.len() as u64;
+        let exact = ReadLimits { max_bytes: size, ..ReadLimits::default() };
+        assert!(from(&bytes, extension, &exact).is_ok());
+        let error = from(&bytes, extension, &ReadLimits { max_bytes: size - 1, ..exact }).unwrap_err();
+        let expected = Fault::OverLimit { items: "bytes", limit: size - 1 };
+        assert!(matches!(error, MeshError::File { fault, .. } if fault == expected));
+        assert!(read_file(&path, &Disk, &ReadLimits::of_vertices(2562)).is_ok());
+        assert!(read_file(&path, &Disk, &ReadLimits::of_vertices(2561)).is_err());
+    }
+    // Endless streams end with an error.
+    for extension in ["off", "obj", "ply", "stl", "mat", "glb", "gltf", "3mf", "xyz", "pts"] {
+        let mut zeros = std::io::repeat(0);
+        let format = Format::named(extension).unwrap();
+        assert!(read_from(name, &mut zeros, format, &ReadLimits::default()).is_err(), "{extension}");
+    }
+    let limits = ReadLimits { max_bytes: 1 << 20, ..ReadLimits::default() };
+    let mut blanks = std::io::repeat(b'\n');
+    assert!(read_from(name, &mut blanks, Format::named("obj").unwrap(), &limits).is_err());
+    let pair = from(b"", "vert", &limits).unwrap_err().to_string();
+    assert!(pair.starts_with("standard input: TOSCA consists of two files"), "{pair}");
+}
+
+#[test]
+fn a_failed_write_leaves_the_old_file_and_no_other() {
+    let folder = folder();
+    let cube = shapes::cube(0);
+    for name in ["a.off", "a.obj", "a.ply", "a.stl", "a.vert"] {
+        write(&folder.path().join(name), &cube).unwrap();
+    }
+    let before = names_in(&folder);
+    let broken = |change: &dyn Fn(&mut TriMesh)| {
+        let mut mesh = cube.clone();
+        change(&mut mesh);
+        mesh
+    };
+    let nan = broken(&|m| m.positions[2].y = f64::NAN);
+    let index = broken(&|m| m.faces[5][1] = VertexId(8));
+    let huge = broken(&|m| m.positions[1].x = 1e39);
+    for name in ["a.off", "a.obj", "a.ply", "a.stl", "a.vert"] {
+        let path = folder.path().join(name);
+        assert!(refusal(write(&path, &nan)).starts_with("vertex 2 has a coordinate that is not finite"));
+        let out_of_range = refusal(write(&path, &index));
+        assert!(out_of_range.starts_with("face 5 refers to vertex 8, but the mesh has 8"), "{out_of_range}");
+        assert_eq!(read(&path).unwrap().n_faces(), 12);
+    }
+    let overflow = write(&folder.path().join("a.stl"), &huge);
+    assert!(refusal(overflow).starts_with("vertex 1 has the coordinate 1e39, beyond"));
+    assert_eq!(read(&folder.path().join("a.stl")).unwrap().n_faces(), 12);
+    let mat = write(&folder.path().join("a.mat"), &cube);
+    assert!(refusal(mat).contains("MATLAB files cannot be written with a mesh; use .off"));
+    let nowhere = write(&folder.path().join("none/a.off"), &cube);
+    assert!(matches!(nowhere, Err(MeshError::Io(fault)) if fault.action == Action::Write));
+    assert_eq!(names_in(&folder), before);
+}
+
+#[cfg(unix)]
+#[test]
+fn new_files_have_ordinary_permissions() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = folder();
+    let (ours, ordinary) = (folder.path().join("a.off"), folder.path().join("b"));
+    write(&ours, &shapes::cube(0)).unwrap();
+    fs::write(&ordinary, "").unwrap();
+    let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
+    assert_eq!(mode(&ours), mode(&ordinary));
+}
+
+#[test]
+fn a_scalar_field_has_a_value_and_a_colour_per_vertex() {
+    let cube = shapes::cube(0);
+    let values = [0.0, 1.0, 2.0, f64::INFINITY, f64::NAN, 5.0, 6.0, 7.0];
+    let folder = folder();
+    let path = folder.path().join("field.ply");
+    let colors: Vec<[u8; 3]> = (0..8).map(|v| [v, 10 * v, 255]).collect();
+    let field = VertexField { name: "distance", values: &values, colors: &colors };
+    write_scalar_field(&path, &cube, &field).unwrap();
+    assert_eq!(read(&path).unwrap(), cube);
+    let bytes = fs::read(&path).unwrap();
+    let header = "property double distance\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n";
+    assert!(bytes.windows(header.len()).any(|w| w == header.as_bytes()));
+    let end = b"end_header\n";
+    let start = bytes.windows(end.len()).position(|w| w == end).unwrap() + end.len();
+    let row = |v: usize| &bytes[start + 35 * v..start + 35 * (v + 1)];
+    assert_eq!(row(5)[24..32], 5f64.to_le_bytes());
+    colors.iter().enumerate().for_each(|(v, color)| assert_eq!(row(v)[32..], color[..]));
+
+    let wrong = |path: &Path, field: VertexField| write_scalar_field(path, &cube, &field).unwrap_err();
+    let stl = wrong(&folder.path().join("field.stl"), field).to_string();
+    assert!(
+        stl.ends_with("STL files cannot be written with a value per vertex; use .off, .obj or .ply"),
+        "{stl}"
+    );
+    let short = wrong(&path, VertexField { values: &values[1..], ..field }).to_string();
+    assert!(short.starts_with("7 values for 8 vertices"), "{short}");
+    let colorless = wrong(&path, VertexField { colors: &[], ..field }).to_string();
+    assert!(colorless.starts_with("0 values for 8 vertices"), "{colorless}");
+    for name in ["", "x", "red", "two words", "1st", "d\nelement", "\u{e9}"] {
+        let error = wrong(&path, VertexField { name, ..field }).to_string();
+        assert!(error.contains("is not a valid name of a PLY property"), "{error}");
+    }
+}
+
+#[test]
+fn lines_that_a_file_cannot_hold_are_errors() {
+    let folder = folder();
+    let wrong = |name: &str, lines: &[Vec<Point3<f64>>]| {
+        write_polylines(&folder.path().join(name), lines).unwrap_err()
+    };
+    let line = vec![Point3::origin(), Point3::new(1.0, 0.0, 0.0)];
+    let error = wrong("lines.stl", &[line]).to_string();
+    assert!(error.ends_with("STL files cannot be written with lines; use .obj or .ply"), "{error}");
+    let nowhere = vec![Point3::new(f64::NAN, 0.0, 0.0)];
+    let error = wrong("lines.obj", &[nowhere]).to_string();
+    assert!(error.starts_with("vertex 0 has a coordinate that is not finite"), "{error}");
+    assert!(matches!(wrong("lines.txt", &[]), MeshError::UnknownFormat { .. }));
+}
+
+#[test]
+fn messages_about_extensions_list_the_formats() {
+    let listed = |path: &str| read(Path::new(path)).unwrap_err().to_string();
+    assert!(listed("notes.txt").starts_with("notes.txt: unknown mesh format `.txt`; use .off"));
+    assert!(listed("notes").starts_with("notes: the file name has no extension; use .off"));
+    let scan =
+        "scan.LAS: unknown mesh format `.las`, which `pdal translate in.las out.ply` converts; use .off";
+    assert!(listed("scan.LAS").starts_with(scan), "{}", listed("scan.LAS"));
+    for format in &FORMATS {
+        assert!(listed("notes.txt").contains(&format!(".{}", format.extensions[0])));
+    }
+}
+
+#[test]
+fn gltf_data_lies_beside_the_file() {
+    let folder = folder();
+    let cube = shapes::cube(1);
+    let glb = folder.path().join("cube.glb");
+    write(&glb, &cube).unwrap();
+    let bytes = fs::read(&glb).unwrap();
+    let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+    let json = String::from_utf8(bytes[20..20 + length].to_vec()).unwrap();
+    let json = json.replace(r#""buffers":[{"#, r#""buffers":[{"uri":"more/cube%20data.bin","#);
+    let gltf = folder.path().join("cube.gltf");
+    fs::write(&gltf, &json).unwrap();
+    let error = read(&gltf).unwrap_err().to_string();
+    assert!(error.contains("its data is in cube data.bin, which is missing"), "{error}");
+    fs::create_dir(folder.path().join("more")).unwrap();
+    let data = folder.path().join("more/cube data.bin");
+    fs::write(&data, &bytes[28 + length..]).unwrap();
+    assert_eq!(read(&gltf).unwrap(), read(&glb).unwrap());
+    assert_eq!(files_of(&gltf), [gltf.clone(), data.clone()]);
+    let names = ["cube.gltf", "more/cube data.bin"];
+    let data = fs::read(&data).unwrap();
+    assert_eq!(from_memory(&[(names[0], json.as_bytes()), (names[1], &data)]).unwrap(), read(&glb).unwrap());
+    let stray = [(names[0], json.as_bytes()), (names[1], &data[..]), ("c.bin", &data[..])];
+    assert!(matches!(from_memory(&stray), Err(MeshError::StrayFile { .. })));
+    let stream = read_from(
+        Path::new("standard input"),
+        &mut json.as_bytes(),
+        Format::named("gltf").unwrap(),
+        &ReadLimits::default(),
+    );
+    assert!(stream.unwrap_err().to_string().contains("its data is in another file, `more/cube data.bin`"));
+    fs::write(&gltf, json.replace("more/cube%20data.bin", "../secret.bin")).unwrap();
+    let error = read(&gltf).unwrap_err().to_string();
+    assert!(
+        error.contains("buffer 0: its data is in `../secret.bin`, which is not a file in its own folder"),
+        "{error}"
+    );
+}
+
+#[test]
+fn compressed_files_are_read_within_their_limits() {
+    let folder = folder();
+    let sphere = shapes::icosphere(3);
+    let [plain, gzip] = ["s.obj", "s.obj.gz"].map(|name| folder.path().join(name));
+    write(&plain, &sphere).unwrap();
+    write(&gzip, &sphere).unwrap();
+    assert_eq!(read(&gzip).unwrap(), sphere);
+    let compressed = fs::read(&gzip).unwrap();
+    assert!(compressed.starts_with(&[0x1f, 0x8b]) && compressed.len() < fs::read(&plain).unwrap().len() / 2);
+    // From a stream the content tells.
+    let off = Format::named("obj").unwrap();
+    let limits = ReadLimits::default();
+    assert_eq!(read_from(Path::new("-"), &mut &compressed[..], off, &limits).unwrap().mesh, sphere);
+    // Both halves of a pair, or one of them.
+    write(&folder.path().join("t.vert.gz"), &sphere).unwrap();
+    assert_eq!(names_in(&folder), ["s.obj", "s.obj.gz", "t.tri.gz", "t.vert.gz"]);
+    assert_eq!(read(&folder.path().join("t.tri.gz")).unwrap(), sphere);
+    for damage in [compressed.len() / 2, compressed.len() - 4] {
+        fs::write(&gzip, &compressed[..damage]).unwrap();
+        let error = read(&gzip).unwrap_err().to_string();
+        assert!(error.contains("s.obj.gz: expected compressed data"), "{error}");
+    }
+    // A hundred thousand times the size of the file.
+    let mut bomb = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+    for _ in 0..100 {
+        std::io::Write::write_all(&mut bomb, &vec![b'\n'; 1 << 20]).unwrap();
+    }
+    fs::write(&gzip, bomb.finish().unwrap()).unwrap();
+    let error = read(&gzip).unwrap_err();
+    assert!(matches!(&error, MeshError::File { fault: Fault::Inflates { .. }, .. }), "{error}");
+}

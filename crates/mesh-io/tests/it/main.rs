@@ -1,0 +1,9 @@
+//! Laws of whole files, built-in, foreign and real.
+
+// Helper functions are test code too, which clippy cannot see.
+#![allow(clippy::unwrap_used)]
+
+mod corpus;
+mod files;
+mod foreign;
+mod real_data;

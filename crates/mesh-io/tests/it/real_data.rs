@@ -1,0 +1,165 @@
+//! Real meshes with all their defects through reading, validation and repair. The data is not part of the
+//! project: `CANONFORM_DATA` is its folder; without it these tests print that they are skipped, and pass.
+
+use std::path::{Path, PathBuf};
+
+use canonform_mesh_io as io;
+use mesh::{ComponentPolicy, Fault, MeshError, RepairOptions, TriMesh};
+use mesh::{repair, validate};
+use surface::{VertexId, components_with_links};
+
+fn data(folder: &str) -> Option<PathBuf> {
+    let default = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
+    let path = std::env::var_os("CANONFORM_DATA").map_or_else(default, PathBuf::from).join(folder);
+    if !path.is_dir() {
+        println!("skipped: no data in {}", path.display());
+        return None;
+    }
+    Some(path)
+}
+
+/// The mesh paths of a folder, sorted.
+fn meshes_in(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let mut paths: Vec<PathBuf> = entries.filter(|path| io::is_mesh_path(path)).collect();
+    paths.sort();
+    paths
+}
+
+/// The laws of repair under every policy.
+fn assert_repairs(path: &Path, mesh: &TriMesh) {
+    let report = validate(mesh);
+    for components in [ComponentPolicy::Largest, ComponentPolicy::Bridge] {
+        let repaired = repair(mesh, &RepairOptions { components, ..Default::default() }, &()).unwrap();
+        let after = validate(&repaired.mesh);
+        let name = path.display();
+        assert_eq!(after.degenerate_faces + after.duplicate_faces + after.unreferenced_vertices, 0, "{name}");
+        assert!(after.min_edge_length > 0.0, "{name}");
+        let pieces = if components == ComponentPolicy::Largest { 1 } else { repaired.report.components };
+        assert_eq!(after.n_components, pieces, "{name}");
+        assert!(repaired.intrinsic.links().len() >= pieces - 1, "{name}");
+        assert_eq!(components_with_links(&repaired.intrinsic).count, 1, "{name}");
+        assert!(repaired.report.components <= report.n_components, "{name}");
+        assert_eq!(repaired.intrinsic.n_vertices(), repaired.mesh.n_vertices());
+
+        // Every vertex of the result is an input vertex, in the input's order and place.
+        let mut next = VertexId(0);
+        for (v, to) in repaired.remap.all_to_new().enumerate() {
+            let Some(to) = to else { continue };
+            assert!(to <= next, "{name}: vertex {v} is out of order");
+            next = next.max(VertexId(to.0 + 1));
+            assert_eq!(repaired.mesh.positions[to.index()], mesh.positions[v], "{name}");
+        }
+        assert_eq!(next.index(), repaired.mesh.n_vertices(), "{name}");
+        let dropped = repaired.remap.all_to_new().filter(|to| to.is_none()).count();
+        assert_eq!(dropped, repaired.report.dropped_vertices.len(), "{name}");
+
+        // A second repair changes nothing.
+        let policy = if pieces == 1 { ComponentPolicy::Error } else { components };
+        let again =
+            repair(&repaired.mesh, &RepairOptions { components: policy, ..Default::default() }, &()).unwrap();
+        assert_eq!(again.mesh, repaired.mesh, "{name}");
+        assert_eq!(again.report.bridges.len(), repaired.intrinsic.links().len());
+    }
+}
+
+#[test]
+fn all_tosca_shapes_load_and_can_be_repaired_except_the_one_without_faces() {
+    let Some(folder) = data("tosca-lowres") else { return };
+    let paths = meshes_in(&folder);
+    assert_eq!(paths.len(), 148);
+    let (mut readable, mut clean) = (0, 0);
+    for path in &paths {
+        match io::read(path) {
+            Ok(mesh) => {
+                readable += 1;
+                clean += usize::from(validate(&mesh).is_clean());
+                assert_eq!(io::read(&path.with_extension("tri")).unwrap(), mesh);
+                assert_repairs(path, &mesh);
+            }
+            Err(error) => {
+                let expected = folder.join("victoria14.tri");
+                assert!(
+                    matches!(&error, MeshError::File { path, fault: Fault::Empty, .. } if *path == expected)
+                );
+                let text = error.to_string();
+                assert!(text.contains("victoria14.tri: the file is empty"), "{text}");
+            }
+        }
+    }
+    println!("{readable} of {} shapes readable, {clean} clean", paths.len());
+    assert_eq!(readable, 147);
+}
+
+#[test]
+fn the_components_of_gorillas_and_seahorses_are_bridged_or_dropped() {
+    let Some(folder) = data("tosca-lowres") else { return };
+    let gorilla = io::read(&folder.join("gorilla1.vert")).unwrap();
+    let bridge = RepairOptions { components: ComponentPolicy::Bridge, ..Default::default() };
+    let bridged = repair(&gorilla, &bridge, &()).unwrap();
+    let size = validate(&gorilla).bounding_box_diagonal;
+    assert!(bridged.report.components > 10);
+    assert!(bridged.intrinsic.links().iter().all(|link| link.length < 0.1 * size));
+    let strict = RepairOptions { components: ComponentPolicy::Error, ..Default::default() };
+    let error = repair(&gorilla, &strict, &()).unwrap_err().to_string();
+    assert!(error.contains("mesh is disconnected"), "{error}");
+    let seahorse =
+        repair(&io::read(&folder.join("seahorse1.vert")).unwrap(), &Default::default(), &()).unwrap();
+    assert_eq!(seahorse.report.dropped_components, 2);
+    assert!(seahorse.report.dropped_area_share < 0.2);
+}
+
+#[test]
+fn matlab_files_equal_the_text_files() {
+    let (Some(mat), Some(text)) = (data("tosca-mat"), data("tosca-lowres")) else { return };
+    for (name, n_faces) in [("cat0", 6768), ("centaur0", 6796), ("victoria14", 6768)] {
+        let from_mat = io::read(&mat.join(name).with_extension("mat")).unwrap();
+        assert_eq!((from_mat.n_vertices(), from_mat.n_faces()), (3400, n_faces));
+        assert_repairs(&mat.join(name), &from_mat);
+        // The text has eight decimals.
+        let Ok(from_text) = io::read(&text.join(name).with_extension("vert")) else { continue };
+        assert_eq!(from_mat.faces, from_text.faces);
+        for (p, q) in from_mat.positions.iter().zip(&from_text.positions) {
+            assert!((p - q).norm() < 1e-7);
+        }
+    }
+    let david = io::read(&mat.join("david0-hires.mat")).unwrap();
+    assert_eq!(david.n_vertices(), 52_565);
+    assert_repairs(&mat, &david);
+}
+
+#[test]
+fn obj_vertices_keep_their_order() {
+    let Some(folder) = data("single") else { return };
+    for (name, n_vertices, n_faces, unused) in [
+        ("spot", 2_930, 5_856, 0),
+        ("rocker-arm", 10_044, 20_088, 0),
+        ("stanford-bunny", 35_947, 69_451, 1_113),
+        ("armadillo", 43_243, 86_482, 0),
+        ("ogre", 62_194, 124_008, 0),
+    ] {
+        let path = folder.join(name).with_extension("obj");
+        let mesh = io::read(&path).unwrap();
+        let report = validate(&mesh);
+        let found = (report.n_vertices, report.n_faces, report.unreferenced_vertices);
+        assert_eq!(found, (n_vertices, n_faces, unused), "{name}");
+        assert_repairs(&path, &mesh);
+
+        // Straight from the text: the positions of `v` lines, the corners of `f` lines.
+        let text = std::fs::read_to_string(&path).unwrap();
+        let lines = |keyword: &'static str| {
+            text.lines().filter_map(move |line| line.strip_prefix(keyword)?.strip_prefix(' '))
+        };
+        for (p, line) in mesh.positions.iter().zip(lines("v")) {
+            let expected: Vec<f64> = line.split_whitespace().map(|x| x.parse().unwrap()).collect();
+            assert_eq!(p.coords.as_slice(), &expected[..3], "{name}");
+        }
+        for (face, line) in mesh.faces.iter().zip(lines("f")) {
+            let corner = |word: &str| word.split('/').next().unwrap().parse::<u32>().unwrap() - 1;
+            let expected: Vec<u32> = line.split_whitespace().map(corner).collect();
+            assert_eq!(face.map(|v| v.0), *expected, "{name}");
+        }
+    }
+    let genus = validate(&io::read(&folder.join("rocker-arm.obj")).unwrap()).genus;
+    assert_eq!(genus, Some(1));
+}
