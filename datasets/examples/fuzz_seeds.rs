@@ -60,7 +60,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     for (i, (name, mesh)) in meshes().into_iter().enumerate() {
         let mut files: Vec<(String, u8, Vec<u8>)> = Vec::new();
-        for format in FORMATS.iter().filter(|format| format.can_write(io::Content::Mesh)) {
+        for format in FORMATS.iter().filter(|format| format.can_write(mesh_io::Content::Mesh)) {
             let path = folder.path().join(format!("{name}.{}", format.extensions[0]));
             mesh_io::write(&path, &mesh)?;
             let contents = mesh_io::files_of(&path).iter().map(fs::read).collect::<Result<Vec<_>, _>>()?;

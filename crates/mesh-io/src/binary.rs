@@ -2,14 +2,14 @@
 
 /// The order of the bytes of a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum ByteOrder {
+pub(crate) enum ByteOrder {
     Little,
     Big,
 }
 
 /// The type of a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Scalar {
+pub(crate) enum Scalar {
     I8,
     U8,
     I16,
@@ -24,7 +24,7 @@ pub(super) enum Scalar {
 
 impl Scalar {
     /// Size in bytes.
-    pub(super) fn size(self) -> usize {
+    pub(crate) fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
             Self::I16 | Self::U16 => 2,
@@ -34,13 +34,13 @@ impl Scalar {
     }
 
     /// Whether it is an integer.
-    pub(super) fn is_integer(self) -> bool {
+    pub(crate) fn is_integer(self) -> bool {
         !matches!(self, Self::F32 | Self::F64)
     }
 
     /// The number at the start of `bytes`, where 64-bit integers are rounded; `None` if there are too few bytes.
     #[inline]
-    pub(super) fn decode(self, order: ByteOrder, bytes: &[u8]) -> Option<f64> {
+    pub(crate) fn decode(self, order: ByteOrder, bytes: &[u8]) -> Option<f64> {
         macro_rules! decode {
             ($type:ty) => {{
                 let bytes = *bytes.first_chunk()?;
@@ -62,6 +62,38 @@ impl Scalar {
             Self::F32 => decode!(f32),
             Self::F64 => decode!(f64),
         })
+    }
+}
+
+/// Bytes that are read one after the other.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Bytes<'a> {
+    /// What is left.
+    pub(crate) rest: &'a [u8],
+    /// Where in the file that begins.
+    pub(crate) at: usize,
+    pub(crate) order: ByteOrder,
+}
+
+impl<'a> Bytes<'a> {
+    pub(crate) fn new(bytes: &'a [u8], at: usize, order: ByteOrder) -> Self {
+        Self { rest: bytes.get(at..).unwrap_or_default(), at, order }
+    }
+
+    /// The next bytes; `None`, and nothing is taken, if there are fewer.
+    pub(crate) fn take(&mut self, length: usize) -> Option<&'a [u8]> {
+        let (taken, rest) = self.rest.split_at_checked(length)?;
+        (self.rest, self.at) = (rest, self.at + length);
+        Some(taken)
+    }
+
+    #[inline]
+    pub(crate) fn number(&mut self, scalar: Scalar) -> Option<f64> {
+        scalar.decode(self.order, self.take(scalar.size())?)
+    }
+
+    pub(crate) fn u32(&mut self) -> Option<u32> {
+        self.number(Scalar::U32).map(|word| word as u32)
     }
 }
 

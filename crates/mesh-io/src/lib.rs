@@ -11,41 +11,29 @@
 //! other, moved as the file says. [`read_file`] also tells the unit of length and what was ignored.
 
 mod binary;
-mod facts;
-mod field;
+mod file;
 mod formats;
-mod gzip;
-mod limits;
 mod located;
 mod name;
 mod polygons;
-mod single;
+mod prelude;
 mod source;
 mod text;
+mod write;
 
 use std::borrow::Cow;
-use std::io::{self, Read, Write};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use base::files::Pending;
-use flate2::Compression;
-use flate2::write::GzEncoder;
-use nalgebra::Point3;
+use located::At;
+use mesh::{Fault, MeshError, TriMesh};
+use source::{CheckStart, Memory};
 
-use crate::located::At;
-use formats::Precision;
-use mesh::TriMesh;
-use mesh::{Fault, MeshError};
-use mesh::{check_finite, check_input};
-use source::{CheckStart, Memory, load, load_stream};
-
-pub use facts::{FileFacts, LengthUnit, MeshFile};
-pub use field::{ScalarField, VertexField};
+pub use file::{FileFacts, LengthUnit, MeshFile, ReadLimits, ScalarField, VertexField};
 pub use formats::{Content, FORMATS, Format, mesh_files, or_list, writable};
-pub use gzip::GzipReader;
-pub use limits::ReadLimits;
 pub use name::{extension, is_gzip, without_extension};
-pub use source::{Disk, FileSource, MemoryFile, Opened, inflated_limit};
+pub use source::{Disk, FileSource, GzipReader, MemoryFile, Opened, inflated_limit};
+pub use write::{write, write_polylines, write_scalar_field};
 
 /// Whether a file name belongs to a mesh, judging by its extension alone.
 ///
@@ -106,29 +94,37 @@ pub fn read(path: &Path) -> Result<TriMesh, MeshError> {
 /// As [`read()`]; [`Fault::OverLimit`] beyond `limits`.
 pub fn read_file(path: &Path, source: &dyn FileSource, limits: &ReadLimits) -> Result<MeshFile, MeshError> {
     let format = Format::of(path)?;
-    let mut paths = format.files(path, source);
-    let open = |file: &PathBuf, check: CheckStart| {
-        if file != path && !source.holds(file) {
-            let partner = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            let fault = match format.companions {
-                Some(_) => Fault::unsupported(
-                    format!("its data is in {partner}, which is missing"),
-                    "put both files into the same folder",
-                ),
-                None => Fault::unsupported(
-                    format!("its other half {partner} is missing"),
-                    "put both files of the pair into the same folder",
-                ),
-            };
-            return Err(fault.whole().in_file(path));
+    read_files(format, format.files(path, source), limits, |file, check| {
+        if file == path || source.holds(file) {
+            return load(source, file, check);
         }
-        load(source, file, check)
-    };
-    let loaded = paths.iter().map(|file| open(file, format.check_start));
-    let mut contents = loaded.collect::<Result<Vec<Cow<'_, [u8]>>, _>>()?;
-    if let (Some(companions), Some(content)) = (format.companions, contents.first()) {
-        for name in companions(content).map_err(|fault| fault.in_file(path))? {
-            let file = path.with_file_name(name);
+        let partner = file.file_name().unwrap_or_default().to_string_lossy();
+        let fault = match format.companions {
+            Some(_) => Fault::unsupported(
+                format!("its data is in {partner}, which is missing"),
+                "put both files into the same folder",
+            ),
+            None => Fault::unsupported(
+                format!("its other half {partner} is missing"),
+                "put both files of the pair into the same folder",
+            ),
+        };
+        Err(fault.whole().in_file(path))
+    })
+}
+
+/// Opens the files of a mesh, and those that the first one refers to, and parses them together.
+fn read_files<'a>(
+    format: &Format,
+    mut paths: Vec<PathBuf>,
+    limits: &ReadLimits,
+    mut open: impl FnMut(&Path, CheckStart) -> Result<Cow<'a, [u8]>, MeshError>,
+) -> Result<MeshFile, MeshError> {
+    let opened = paths.iter().map(|file| open(file, format.check_start));
+    let mut contents = opened.collect::<Result<Vec<_>, _>>()?;
+    if let Some(companions) = format.companions {
+        for name in companions(&contents[0]).map_err(|fault| fault.in_file(&paths[0]))? {
+            let file = paths[0].with_file_name(name);
             contents.push(open(&file, |_, _| Ok(()))?);
             paths.push(file);
         }
@@ -138,6 +134,10 @@ pub fn read_file(path: &Path, source: &dyn FileSource, limits: &ReadLimits) -> R
         let file = &paths[fault.file];
         fault.in_file(file)
     })
+}
+
+fn load<'a>(source: &'a dyn FileSource, path: &Path, check: CheckStart) -> Result<Cow<'a, [u8]>, MeshError> {
+    source.open(path)?.load(path, is_gzip(path), check, u64::MAX)
 }
 
 /// Reads a mesh from a stream, such as standard input, to its end. `name` stands for it in messages. Formats of more
@@ -163,20 +163,21 @@ pub fn read_from(
     format: &Format,
     limits: &ReadLimits,
 ) -> Result<MeshFile, MeshError> {
-    let of_several = |what: String| {
-        Fault::unsupported(what, "name one of its files, or convert it to PLY or GLB").whole().in_file(name)
-    };
-    if format.extensions.len() > 1 {
-        let what = format!("{} consists of two files and cannot be read from a stream", format.name);
-        return Err(of_several(what));
-    }
-    let bytes = load_stream(name, stream, format.check_start, limits.max_bytes)?;
-    let companions = format.companions.map_or(Ok(Vec::new()), |companions| companions(&bytes));
-    if let Some(companion) = companions.map_err(|fault| fault.in_file(name))?.first() {
-        let what = format!("its data is in another file, `{companion}`, which cannot be read from a stream");
-        return Err(of_several(what));
-    }
-    (format.parse)(&[&bytes], limits).map_err(|fault| fault.in_file(name))
+    let mut stream = Some(stream);
+    read_files(format, vec![name.to_owned(); format.extensions.len()], limits, |_, check| {
+        match stream.take().filter(|_| format.extensions.len() == 1) {
+            Some(stream) => {
+                let (opened, is_gzip) = Opened::sniffed(name, stream)?;
+                Ok(opened.load(name, is_gzip, check, limits.max_bytes)?.into_owned().into())
+            }
+            None => {
+                let what = "this mesh has several files, and a stream holds one";
+                Err(Fault::unsupported(what, "name one of its files, or convert it to PLY or GLB")
+                    .whole()
+                    .in_file(name))
+            }
+        }
+    })
 }
 
 /// Reads a mesh from files in memory: one file, or a `.vert`/`.tri` pair in either order. Looks for no other file.
@@ -197,100 +198,12 @@ pub fn read_from(
 pub fn read_memory(files: &[MemoryFile<'_>], limits: &ReadLimits) -> Result<TriMesh, MeshError> {
     let nothing = MemoryFile { name: Path::new(""), bytes: &[] };
     let first = files.first().unwrap_or(&nothing);
-    let format = Format::of(first.name)?;
+    Format::of(first.name)?;
     let source = Memory(files);
     // Whether the files of a mesh belong together is checked when they are loaded.
-    let most = match format.companions {
-        Some(_) => files_in(first.name, &source).len(),
-        None => format.extensions.len(),
-    };
-    if let Some(extra) = files.get(most) {
+    if let Some(extra) = files.get(files_in(first.name, &source).len()) {
         let (path, extra) = (first.name.to_owned(), extra.name.to_owned());
         return Err(MeshError::StrayFile { path, extra, supported: mesh_files() });
     }
     Ok(read_file(first.name, &source, limits)?.mesh)
-}
-
-/// Writes a file, compressed if its name says so. It appears once it is published.
-fn pending(
-    path: &Path,
-    content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> Result<Pending<'_>, base::files::FileError> {
-    Pending::write(path, |out| match is_gzip(path) {
-        false => content(out),
-        true => {
-            let mut compressed = GzEncoder::new(out, Compression::default());
-            content(&mut compressed)?;
-            compressed.finish().map(drop)
-        }
-    })
-}
-
-/// Writes a mesh in the format of the extension; the file appears complete or not at all.
-///
-/// OFF, OBJ, PLY, 3MF and the `.vert`/`.tri` pair (both files under either name) read back bit for bit. STL and GLB round
-/// coordinates to 32 bits, and STL has no vertex numbers. GLB moves a mesh that would collapse to the origin and states
-/// its place. A name that ends in `.gz` makes a compressed file.
-///
-/// # Errors
-/// [`MeshError::Io`] if the file cannot be written, [`MeshError::UnknownFormat`] for an unknown extension, and
-/// [`MeshError::Unusable`] for a format that is only read and for a mesh that the file could not hold.
-pub fn write(path: &Path, mesh: &TriMesh) -> Result<(), MeshError> {
-    let format = Format::for_writing(path, Content::Mesh)?;
-    // What `read` would refuse.
-    check_input(mesh)?;
-    if let Precision::Single { moved } = format.precision {
-        check_single_precision(mesh, moved, format)?;
-    }
-    let paths = format.files(path, &Disk);
-    let written =
-        paths.iter().zip(format.write).map(|(path, write)| pending(path, |out| write(out, mesh, None)));
-    let pending = written.collect::<Result<Vec<_>, _>>()?;
-    Ok(pending.into_iter().try_for_each(Pending::publish)?)
-}
-
-/// Refuses coordinates that 32 bits cannot hold, and a surface whose faces they make points or lines.
-fn check_single_precision(mesh: &TriMesh, moved: bool, format: &Format) -> Result<(), MeshError> {
-    let unusable = |what: String, remedy: &str| {
-        let name = format.name;
-        Err(MeshError::Unusable(format!(
-            "{what} the 32-bit floats of {name}; {remedy} or use another format"
-        )))
-    };
-    let overflows = |x: &&f64| !(**x as f32).is_finite();
-    for (vertex, p) in mesh.positions.iter().enumerate() {
-        if let Some(&value) = p.iter().find(overflows) {
-            let what = format!("vertex {vertex} has the coordinate {value:e}, beyond");
-            return unusable(what, "scale the mesh down");
-        }
-    }
-    let origin = if moved { single::origin(mesh) } else { Point3::origin() };
-    match single::merged_face(mesh, &origin) {
-        None => Ok(()),
-        Some(face) => unusable(format!("corners of face {face} coincide in"), "move the mesh to the origin"),
-    }
-}
-
-/// Writes a mesh with a scalar field: as PLY with the property [`VertexField::name`] (double) and the colours
-/// `red green blue`; as OFF and OBJ with the colours alone.
-///
-/// # Errors
-/// As [`write()`]; [`MeshError::Unusable`] also for another extension and for a field that the file cannot hold.
-pub fn write_scalar_field(path: &Path, mesh: &TriMesh, field: &VertexField<'_>) -> Result<(), MeshError> {
-    let format = Format::for_writing(path, Content::Field)?;
-    field.check(mesh.n_vertices())?;
-    check_input(mesh)?;
-    Ok(pending(path, |out| format.write.iter().try_for_each(|write| write(out, mesh, Some(field))))?
-        .publish()?)
-}
-
-/// Writes polylines as OBJ, or as PLY with an element `edge` per segment.
-///
-/// # Errors
-/// [`MeshError::Io`] if the file cannot be written, [`MeshError::UnknownFormat`] for an unknown extension, and
-/// [`MeshError::Unusable`] for another one and if a coordinate is not finite.
-pub fn write_polylines(path: &Path, lines: &[Vec<Point3<f64>>]) -> Result<(), MeshError> {
-    let format = Format::for_writing(path, Content::Lines)?;
-    check_finite(lines.iter().flatten())?;
-    Ok(pending(path, |out| format.write_lines.map_or(Ok(()), |write| write(out, lines)))?.publish()?)
 }

@@ -13,7 +13,7 @@ pub fn is_gzip(path: &Path) -> bool {
 }
 
 /// The name without `.gz`.
-pub(super) fn inflated(path: &Path) -> PathBuf {
+pub(crate) fn inflated(path: &Path) -> PathBuf {
     if is_gzip(path) { path.with_extension("") } else { path.to_owned() }
 }
 
@@ -38,7 +38,7 @@ pub fn without_extension(path: &Path) -> PathBuf {
 }
 
 /// The path with another extension; `.gz` stays.
-pub(super) fn with_extension(path: &Path, extension: &str) -> PathBuf {
+pub(crate) fn with_extension(path: &Path, extension: &str) -> PathBuf {
     let changed = inflated(path).with_extension(extension);
     if !is_gzip(path) {
         return changed;
@@ -50,7 +50,7 @@ pub(super) fn with_extension(path: &Path, extension: &str) -> PathBuf {
 }
 
 /// The path that a reference inside a file stands for: `./my%20data.bin` is `my data.bin`.
-pub(super) fn referred(text: &str) -> Option<String> {
+pub(crate) fn referred(text: &str) -> Option<String> {
     let mut parts = text.split('%');
     let mut bytes = parts.next()?.as_bytes().to_vec();
     for part in parts {

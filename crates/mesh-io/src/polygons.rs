@@ -3,14 +3,10 @@
 use std::collections::{BTreeSet, HashMap};
 
 use earcut::Earcut;
-use nalgebra::{Matrix4, Point3, Vector3};
-use surface::VertexId;
+use mesh::MIN_POINTS;
+use nalgebra::{Matrix4, Vector3};
 
-use super::facts::MeshFile;
-use super::limits::ReadLimits;
-use crate::located::{At, Located};
-use mesh::TriMesh;
-use mesh::{Fault, MIN_POINTS};
+use crate::prelude::*;
 
 /// A polygon is flat if its corners are within this share `h` of its size from its plane. Across a square whose corners are
 /// alternately `h` above and below, lengths depend on the diagonal by a share of `4 h^2`: less than a part in a thousand.
@@ -22,14 +18,14 @@ const MOST_CORNERS: usize = 1 << 24;
 
 /// The triangles of the polygons of a file.
 #[derive(Default)]
-pub(super) struct Polygons {
+pub(crate) struct Polygons {
     faces: Vec<[VertexId; 3]>,
     n_bent: usize,
     n_crossing: usize,
 }
 
 impl Polygons {
-    pub(super) fn with_room_for(n_faces: usize) -> Self {
+    pub(crate) fn with_room_for(n_faces: usize) -> Self {
         Self { faces: Vec::with_capacity(n_faces), ..Self::default() }
     }
 
@@ -37,7 +33,7 @@ impl Polygons {
     ///
     /// A quadrilateral is split along the diagonal that folds neither half over, else along the shorter one. Larger polygons
     /// are cut by ear clipping in their plane, and edges flipped until triangles are as even as can be (Delaunay).
-    pub(super) fn push(
+    pub(crate) fn push(
         &mut self,
         positions: &[Point3<f64>],
         corners: &[VertexId],
@@ -72,7 +68,7 @@ impl Polygons {
     }
 
     /// The file of the mesh, as [`finish`] makes it, with notes about polygons whose surface is not certain.
-    pub(super) fn finish(
+    pub(crate) fn finish(
         self,
         positions: Vec<Point3<f64>>,
         limits: &ReadLimits,
@@ -184,7 +180,7 @@ impl Outline {
 }
 
 /// A position whose coordinates are numbers; `vertex` only appears in messages.
-pub(super) fn finite(position: impl Into<Point3<f64>>, vertex: usize) -> Result<Point3<f64>, Fault> {
+pub(crate) fn finite(position: impl Into<Point3<f64>>, vertex: usize) -> Result<Point3<f64>, Fault> {
     let position = position.into();
     match position.iter().find(|x| !x.is_finite()) {
         Some(&value) => Err(Fault::NonFinite { vertex: vertex as u64, value }),
@@ -192,38 +188,21 @@ pub(super) fn finite(position: impl Into<Point3<f64>>, vertex: usize) -> Result<
     }
 }
 
-/// The place of a copy of a mesh, as an affine map; `None` if it stays where it is.
-pub(super) type Placement = Option<Matrix4<f64>>;
-
-/// The place that a map moves a mesh to.
-pub(super) fn placed_by(map: Matrix4<f64>) -> Placement {
-    (map != Matrix4::identity()).then_some(map)
-}
-
-/// The place of what has a place within something that is placed itself.
-pub(super) fn placed_within(above: Placement, own: Placement) -> Placement {
-    match (above, own) {
-        (Some(above), Some(own)) => Some(above * own),
-        (above, own) => above.or(own),
-    }
-}
-
-/// Appends a copy of a mesh. Where its place mirrors it, corners change their order.
-pub(super) fn append_placed(whole: &mut TriMesh, part: &TriMesh, place: Placement) -> Result<(), Fault> {
+/// Appends a copy of a mesh, moved by an affine map. Where that mirrors it, corners change their order.
+pub(crate) fn append_placed(whole: &mut TriMesh, part: &TriMesh, place: &Matrix4<f64>) -> Result<(), Fault> {
     let start = whole.n_vertices() as u32;
-    let mut mirrors = false;
-    if let Some(place) = place {
-        let (linear, shift) =
-            (place.fixed_view::<3, 3>(0, 0).into_owned(), place.fixed_view::<3, 1>(0, 3).into_owned());
-        mirrors = linear.determinant() < 0.0;
+    let linear = place.fixed_view::<3, 3>(0, 0).into_owned();
+    let shift = place.fixed_view::<3, 1>(0, 3).into_owned();
+    if *place == Matrix4::identity() {
+        whole.positions.extend_from_slice(&part.positions);
+    } else {
         for (vertex, p) in part.positions.iter().enumerate() {
             whole.positions.push(finite(linear * p.coords + shift, vertex)?);
         }
-    } else {
-        whole.positions.extend_from_slice(&part.positions);
     }
+    let is_mirror = linear.determinant() < 0.0;
     whole.faces.extend(part.faces.iter().map(|&[a, b, c]| {
-        let face = if mirrors { [a, c, b] } else { [a, b, c] };
+        let face = if is_mirror { [a, c, b] } else { [a, b, c] };
         face.map(|v| VertexId(v.0 + start))
     }));
     Ok(())
@@ -235,7 +214,7 @@ const COPIES: u64 = 1 << 22;
 const COPIES_RATIO: u64 = 64;
 
 /// Refuses a small file in which copies of meshes add up to a huge one.
-pub(super) fn check_copies(items: u64, n_bytes: u64) -> Result<(), Fault> {
+pub(crate) fn check_copies(items: u64, n_bytes: u64) -> Result<(), Fault> {
     match COPIES.max(n_bytes.saturating_mul(COPIES_RATIO)) {
         limit if items > limit => Err(Fault::unsupported(
             format!(
@@ -248,7 +227,7 @@ pub(super) fn check_copies(items: u64, n_bytes: u64) -> Result<(), Fault> {
 }
 
 /// The file of a mesh, if that has a face or enough vertices for a point cloud, and is within the limits.
-pub(super) fn finish(mesh: TriMesh, limits: &ReadLimits) -> Result<MeshFile, Located> {
+pub(crate) fn finish(mesh: TriMesh, limits: &ReadLimits) -> Result<MeshFile, Located> {
     let (n_vertices, n_faces) = (mesh.n_vertices(), mesh.n_faces());
     if n_faces == 0 && n_vertices < MIN_POINTS {
         return Err(Fault::NoFaces { n_vertices }.whole());

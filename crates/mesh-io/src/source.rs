@@ -3,18 +3,17 @@
 use std::borrow::Cow;
 use std::fmt;
 use std::fs::{self, File};
-use std::io::{self, Read};
+use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
 
 use base::files::FileError;
+use flate2::bufread::GzDecoder;
 
-use super::gzip::GzipReader;
-use super::name;
 use crate::located::{At, Located};
 use mesh::{Fault, MeshError};
 
 /// Checks the first bytes of a file, given its size if that is known: whether the whole can be a file of the format.
-pub(super) type CheckStart = fn(&[u8], Option<u64>) -> Result<(), Located>;
+pub(crate) type CheckStart = fn(&[u8], Option<u64>) -> Result<(), Located>;
 
 /// Bytes that are checked before the rest of a file is read.
 const START: u64 = 16 << 10;
@@ -100,7 +99,7 @@ fn not_regular(facts: &fs::Metadata) -> &'static str {
 }
 
 /// Files in memory.
-pub(super) struct Memory<'a>(pub(super) &'a [MemoryFile<'a>]);
+pub(crate) struct Memory<'a>(pub(crate) &'a [MemoryFile<'a>]);
 
 impl FileSource for Memory<'_> {
     fn holds(&self, path: &Path) -> bool {
@@ -114,86 +113,76 @@ impl FileSource for Memory<'_> {
     }
 }
 
-/// Reads a file whose start passes a check, and decompresses it if its name says so.
-pub(super) fn load<'a>(
-    source: &'a dyn FileSource,
-    path: &Path,
-    check: CheckStart,
-) -> Result<Cow<'a, [u8]>, MeshError> {
-    match (source.open(path)?, name::is_gzip(path)) {
-        (Opened::Bytes(bytes), false) => {
-            let start = &bytes[..bytes.len().min(START as usize)];
-            check(start, Some(bytes.len() as u64)).map_err(|fault| fault.in_file(path))?;
-            Ok(bytes)
-        }
-        (Opened::Bytes(bytes), true) => {
-            let size = bytes.len() as u64;
-            Ok(read_gzip(path, &mut &*bytes, check, inflated_limit(size))?.into())
-        }
-        (Opened::Stream(mut stream, size), false) => {
-            Ok(read_checked(path, &mut stream, check, size, u64::MAX)?.into())
-        }
-        (Opened::Stream(mut stream, size), true) => {
-            Ok(read_gzip(path, &mut stream, check, size.map_or(u64::MAX, inflated_limit))?.into())
-        }
+impl<'a> Opened<'a> {
+    /// Reads all bytes of a file whose start passes a check, decompressed or not: at most `max_bytes` of a stream of unknown
+    /// size.
+    pub(crate) fn load(
+        self,
+        path: &Path,
+        is_gzip: bool,
+        check: CheckStart,
+        max_bytes: u64,
+    ) -> Result<Cow<'a, [u8]>, MeshError> {
+        let (stream, size): (Box<dyn Read + '_>, _) = match self {
+            Self::Bytes(bytes) if !is_gzip => {
+                let start = &bytes[..bytes.len().min(START as usize)];
+                check(start, Some(bytes.len() as u64)).map_err(|fault| fault.in_file(path))?;
+                return Ok(bytes);
+            }
+            Self::Bytes(bytes) => {
+                let size = bytes.len() as u64;
+                (Box::new(io::Cursor::new(bytes)), Some(size))
+            }
+            Self::Stream(stream, size) => (stream, size),
+        };
+        let bytes = match is_gzip {
+            false => read_checked(path, stream, check, size, max_bytes)?,
+            true => {
+                let limit = size.map_or(max_bytes, inflated_limit);
+                read_checked(path, Box::new(GzipReader::new(stream)), check, None, limit)
+                    .map_err(|fault| damage(path, fault))?
+            }
+        };
+        Ok(bytes.into())
+    }
+
+    /// A stream of unknown length, and whether it begins like a gzip file.
+    pub(crate) fn sniffed(path: &Path, stream: &'a mut dyn Read) -> Result<(Self, bool), MeshError> {
+        const GZIP: [u8; 2] = [0x1f, 0x8b];
+        let mut start = Vec::new();
+        stream.take(2).read_to_end(&mut start).map_err(|fault| FileError::read(path, fault))?;
+        let is_gzip = start == GZIP;
+        Ok((Self::Stream(Box::new(io::Cursor::new(start).chain(stream)), None), is_gzip))
     }
 }
 
-/// Reads a stream of unknown length, at most `max_bytes`. It is decompressed if it begins like a gzip file.
-pub(super) fn load_stream(
-    path: &Path,
-    stream: &mut dyn Read,
-    check: CheckStart,
-    max_bytes: u64,
-) -> Result<Vec<u8>, MeshError> {
-    const GZIP: [u8; 2] = [0x1f, 0x8b];
-    let mut start = Vec::new();
-    stream.take(2).read_to_end(&mut start).map_err(|fault| FileError::read(path, fault))?;
-    let is_gzip = start == GZIP;
-    let mut stream = start.chain(stream);
-    match is_gzip {
-        true => read_gzip(path, &mut stream, check, max_bytes),
-        false => read_checked(path, &mut stream, check, None, max_bytes),
-    }
-}
-
-fn read_gzip(
-    path: &Path,
-    stream: &mut dyn Read,
-    check: CheckStart,
-    limit: u64,
-) -> Result<Vec<u8>, MeshError> {
-    // What is wrong with compressed data is not the fault of the system.
-    let is_damage = |kind| {
-        matches!(
-            kind,
-            io::ErrorKind::InvalidInput | io::ErrorKind::InvalidData | io::ErrorKind::UnexpectedEof
-        )
-    };
-    let fault = match read_checked(path, &mut GzipReader::new(stream), check, None, limit) {
-        Err(MeshError::Io(fault)) if is_damage(fault.source.kind()) => {
+/// What is wrong with compressed data is not the fault of the system.
+fn damage(path: &Path, fault: MeshError) -> MeshError {
+    use io::ErrorKind::{InvalidData, InvalidInput, UnexpectedEof};
+    let fault = match fault {
+        MeshError::Io(fault) if matches!(fault.source.kind(), InvalidInput | InvalidData | UnexpectedEof) => {
             Fault::syntax("compressed data", fault.source.to_string())
         }
-        Err(MeshError::File { fault: Fault::OverLimit { items: "bytes", limit }, .. }) => {
+        MeshError::File { fault: Fault::OverLimit { items: "bytes", limit }, .. } => {
             Fault::Inflates { limit }
         }
         other => return other,
     };
-    Err(fault.whole().in_file(path))
+    fault.whole().in_file(path)
 }
 
 /// Reads a stream of `size` bytes, if that is known. Nothing is read beyond a start that fails the check, and at most
 /// `max_bytes`.
 fn read_checked(
     path: &Path,
-    stream: &mut dyn Read,
+    mut stream: Box<dyn Read + '_>,
     check: CheckStart,
     size: Option<u64>,
     max_bytes: u64,
 ) -> Result<Vec<u8>, MeshError> {
     let cannot_read = |source| FileError::read(path, source);
     let mut bytes = Vec::new();
-    stream.take(START).read_to_end(&mut bytes).map_err(cannot_read)?;
+    stream.by_ref().take(START).read_to_end(&mut bytes).map_err(cannot_read)?;
     let is_whole = (bytes.len() as u64) < START;
     check(&bytes, if is_whole { Some(bytes.len() as u64) } else { size })
         .map_err(|fault| fault.in_file(path))?;
@@ -208,5 +197,77 @@ fn read_checked(
     match bytes.len() as u64 > max_bytes {
         true => Err(Fault::OverLimit { items: "bytes", limit: max_bytes }.whole().in_file(path)),
         false => Ok(bytes),
+    }
+}
+
+/// Decompresses all members of a stream. Zeros behind them are ignored, as `gzip` does: tapes and some copies are filled up.
+#[derive(Debug)]
+pub struct GzipReader<R> {
+    /// `None` after the last one.
+    member: Option<GzDecoder<BufReader<R>>>,
+}
+
+impl<R: Read> GzipReader<R> {
+    /// Begins with the first member.
+    pub fn new(stream: R) -> Self {
+        Self { member: Some(GzDecoder::new(BufReader::new(stream))) }
+    }
+}
+
+impl<R: Read> Read for GzipReader<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        while let Some(mut member) = self.member.take() {
+            let n = member.read(buffer)?;
+            if n > 0 || buffer.is_empty() {
+                self.member = Some(member);
+                return Ok(n);
+            }
+            let mut rest = member.into_inner();
+            while rest.fill_buf()?.first() == Some(&0) {
+                rest.consume(1);
+            }
+            if !rest.fill_buf()?.is_empty() {
+                self.member = Some(GzDecoder::new(rest));
+            }
+        }
+        Ok(0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use flate2::Compression;
+    use flate2::write::GzEncoder;
+
+    use super::*;
+
+    fn gzip(text: &str) -> Vec<u8> {
+        let mut out = GzEncoder::new(Vec::new(), Compression::default());
+        out.write_all(text.as_bytes()).unwrap();
+        out.finish().unwrap()
+    }
+
+    fn gunzip(bytes: &[u8]) -> io::Result<String> {
+        let mut text = String::new();
+        GzipReader::new(bytes).read_to_string(&mut text).map(|_| text)
+    }
+
+    #[test]
+    fn members_follow_each_other_and_zeros_the_last() {
+        let [a, b, zeros] = [gzip("OFF\n"), gzip("3 1 0\n"), vec![0; 20_000]];
+        for (pieces, text) in [
+            (vec![&a], "OFF\n"),
+            (vec![&a, &b], "OFF\n3 1 0\n"),
+            (vec![&a, &zeros], "OFF\n"),
+            (vec![&a, &zeros, &b, &zeros], "OFF\n3 1 0\n"),
+            (vec![&gzip(""), &a], "OFF\n"),
+        ] {
+            assert_eq!(gunzip(&pieces.into_iter().flatten().copied().collect::<Vec<_>>()).unwrap(), text);
+        }
+        for damaged in [&a[..a.len() - 3], &[&a[..], b"garbage"].concat(), b"", &zeros] {
+            assert!(gunzip(damaged).is_err(), "{} bytes", damaged.len());
+        }
     }
 }

@@ -1,43 +1,34 @@
 //! Lines and numbers of text files, straight from bytes.
 
-use std::io::{self, Write};
 use std::str::FromStr;
 
-use nalgebra::Point3;
-use surface::VertexId;
-
-use crate::located::{At, Located};
-use mesh::Fault;
+use crate::prelude::*;
 
 /// The non-blank lines of a text, without comments, surrounding blanks and line ends of any system.
 #[derive(Debug, Clone)]
-pub(super) struct Lines<'a> {
+pub(crate) struct Lines<'a> {
     rest: &'a [u8],
-    number: usize,
+    /// Number of the last line read.
+    pub(crate) number: usize,
 }
 
 /// One line; never empty.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Line<'a> {
+pub(crate) struct Line<'a> {
     /// Counted from one.
-    pub(super) number: usize,
-    pub(super) text: &'a [u8],
+    pub(crate) number: usize,
+    pub(crate) text: &'a [u8],
 }
 
 impl<'a> Lines<'a> {
     /// The lines of `bytes`.
-    pub(super) fn new(bytes: &'a [u8]) -> Self {
+    pub(crate) fn new(bytes: &'a [u8]) -> Self {
         Self { rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), number: 0 }
     }
 
     /// Number of unread bytes.
-    pub(super) fn remaining(&self) -> usize {
+    pub(crate) fn remaining(&self) -> usize {
         self.rest.len()
-    }
-
-    /// Number of the last line read.
-    pub(super) fn number(&self) -> usize {
-        self.number
     }
 }
 
@@ -68,36 +59,35 @@ fn without_comment(text: &[u8]) -> &[u8] {
 
 impl<'a> Line<'a> {
     /// The words of the line.
-    pub(super) fn tokens(self) -> impl Iterator<Item = &'a [u8]> {
+    pub(crate) fn tokens(self) -> impl Iterator<Item = &'a [u8]> {
         self.text.split(u8::is_ascii_whitespace).filter(|token| !token.is_empty())
     }
 
     /// The fault that this line is not what the format requires.
-    pub(super) fn expected(self, expected: &'static str) -> Located {
+    pub(crate) fn expected(self, expected: &'static str) -> Located {
         Fault::syntax(expected, excerpt(self.text)).in_line(self.number)
     }
 }
 
 /// Words of a text one after the other, within a line or across lines.
 #[derive(Debug, Clone)]
-pub(super) struct Words<'a> {
-    pub(super) lines: Lines<'a>,
+pub(crate) struct Words<'a> {
+    pub(crate) lines: Lines<'a>,
     /// The line of the last word.
-    pub(super) line: Line<'a>,
+    pub(crate) line: Line<'a>,
     /// What is left of it.
-    rest: &'a [u8],
+    pub(crate) rest: &'a [u8],
     /// Whether words of the next line follow those of a line.
     crosses_lines: bool,
 }
 
 impl<'a> Words<'a> {
-    pub(super) fn new(lines: Lines<'a>, crosses_lines: bool) -> Self {
-        let line = Line { number: lines.number(), text: &[] };
-        Self { lines, line, rest: &[], crosses_lines }
+    pub(crate) fn new(lines: Lines<'a>, crosses_lines: bool) -> Self {
+        Self { line: Line { number: lines.number, text: &[] }, rest: &[], lines, crosses_lines }
     }
 
     /// Begins a row: in the next line, or right after the last word if words cross lines. `None` at the end of the text.
-    pub(super) fn row(&mut self) -> Option<Line<'a>> {
+    pub(crate) fn row(&mut self) -> Option<Line<'a>> {
         if !self.crosses_lines || self.rest.is_empty() {
             self.line = self.lines.next()?;
             self.rest = self.line.text;
@@ -105,13 +95,8 @@ impl<'a> Words<'a> {
         Some(self.line)
     }
 
-    /// Whether the line has more words.
-    pub(super) fn rest_of_line(&self) -> bool {
-        !self.rest.is_empty()
-    }
-
     /// Whether the rest of the line begins with these words, in upper or lower case.
-    pub(super) fn rest_begins_with(&self, phrase: &[&str]) -> bool {
+    pub(crate) fn begins_with(&self, phrase: &[&str]) -> bool {
         let mut rest = Line { text: self.rest, ..self.line }.tokens();
         phrase.iter().all(|word| rest.next().is_some_and(|found| found.eq_ignore_ascii_case(word.as_bytes())))
     }
@@ -132,16 +117,15 @@ impl<'a> Iterator for Words<'a> {
 }
 
 /// Refuses the start of a text file that is encoded as UTF-16 or holds zero bytes, as binary data and files with holes do.
-pub(super) fn check_is_text(start: &[u8], expected: &'static str) -> Result<(), Located> {
+pub(crate) fn check_is_text(start: &[u8], expected: &'static str) -> Result<(), Located> {
     check_is_not_utf16(start)?;
-    match start.iter().position(|byte| *byte == 0) {
-        Some(at) => Err(Fault::wrong_format(expected, "it is not text but has zero bytes").at_byte(at)),
-        None => Ok(()),
-    }
+    start.iter().position(|byte| *byte == 0).map_or(Ok(()), |at| {
+        Err(Fault::wrong_format(expected, "it is not text but has zero bytes").at_byte(at))
+    })
 }
 
 /// Refuses text in UTF-16: it begins with a byte order mark, or every other byte is zero.
-pub(super) fn check_is_not_utf16(start: &[u8]) -> Result<(), Located> {
+pub(crate) fn check_is_not_utf16(start: &[u8]) -> Result<(), Located> {
     let is_utf16 = match *start {
         [0xff, 0xfe, _, 0, ..] | [0xfe, 0xff, 0, _, ..] => true,
         [a, 0, b, 0, ..] | [0, a, 0, b, ..] => a > 0 && b > 0,
@@ -154,7 +138,7 @@ pub(super) fn check_is_not_utf16(start: &[u8]) -> Result<(), Located> {
 }
 
 /// The beginning of a text, fit for an error message.
-pub(super) fn excerpt(text: &[u8]) -> String {
+pub(crate) fn excerpt(text: &[u8]) -> String {
     const LONGEST: usize = 40;
     let lossy = String::from_utf8_lossy(&text[..text.len().min(4 * LONGEST)]);
     let clean: String =
@@ -163,12 +147,12 @@ pub(super) fn excerpt(text: &[u8]) -> String {
 }
 
 /// A number; a floating-point one may be NaN or infinite.
-pub(super) fn parse_number<T: FromStr>(token: &[u8]) -> Option<T> {
+pub(crate) fn parse_number<T: FromStr>(token: &[u8]) -> Option<T> {
     std::str::from_utf8(token).ok()?.parse().ok()
 }
 
 /// An integer, also one written as `3.0` or `3.000e+00`.
-pub(super) fn parse_integer(token: &[u8]) -> Option<i64> {
+pub(crate) fn parse_integer(token: &[u8]) -> Option<i64> {
     parse_number(token).or_else(|| {
         let value: f64 = parse_number(token)?;
         (value.fract() == 0.0 && value.abs() < 9e15).then_some(value as i64)
@@ -176,40 +160,37 @@ pub(super) fn parse_integer(token: &[u8]) -> Option<i64> {
 }
 
 /// The next word of a line as a vertex, counted from `first`.
-pub(super) fn parse_vertex<'a>(
+pub(crate) fn parse_vertex<'a>(
     line: Line<'a>,
-    tokens: &mut impl Iterator<Item = &'a [u8]>,
+    words: &mut impl Iterator<Item = &'a [u8]>,
     [first, n_vertices]: [u64; 2],
     expected: &'static str,
 ) -> Result<VertexId, Located> {
-    let token = tokens.next().ok_or_else(|| line.expected(expected))?;
-    let index = parse_integer(token).ok_or_else(|| line.expected(expected))?;
+    let word = words.next().unwrap_or_default();
+    let index = parse_integer(word).ok_or_else(|| line.expected(expected))?;
     let vertex = index.checked_sub_unsigned(first).and_then(|vertex| u64::try_from(vertex).ok());
-    match vertex.filter(|vertex| *vertex < n_vertices) {
-        Some(vertex) => Ok(VertexId(vertex as u32)),
-        None => Err(Fault::no_vertex(excerpt(token), first, n_vertices).in_line(line.number)),
-    }
+    vertex.filter(|vertex| *vertex < n_vertices).map_or_else(
+        || Err(Fault::no_vertex(excerpt(word), first, n_vertices).in_line(line.number)),
+        |vertex| Ok(VertexId(vertex as u32)),
+    )
 }
 
 /// The first three words of a line as a position; `vertex` only appears in messages.
-pub(super) fn parse_position<'a>(
+pub(crate) fn parse_position<'a>(
     line: Line<'a>,
-    tokens: &mut impl Iterator<Item = &'a [u8]>,
+    words: &mut impl Iterator<Item = &'a [u8]>,
     vertex: usize,
 ) -> Result<Point3<f64>, Located> {
-    let mut p = [0.0f64; 3];
+    let mut p = [0.0; 3];
     for x in &mut p {
-        *x = tokens.next().and_then(parse_number).ok_or_else(|| line.expected("three coordinates"))?;
-        if !x.is_finite() {
-            return Err(Fault::NonFinite { vertex: vertex as u64, value: *x }.in_line(line.number));
-        }
+        *x = words.next().and_then(parse_number).ok_or_else(|| line.expected("three coordinates"))?;
     }
-    Ok(Point3::from(p))
+    finite(p, vertex).in_line(line.number)
 }
 
-/// Writes a line with a position after `prefix`; it reads back bit for bit.
-pub(super) fn write_position(out: &mut dyn Write, prefix: &str, p: &Point3<f64>) -> io::Result<()> {
-    writeln!(out, "{prefix}{:?} {:?} {:?}", p.x, p.y, p.z)
+/// Writes a position after `prefix`; it reads back bit for bit.
+pub(crate) fn write_position(out: &mut dyn Write, prefix: &str, p: &Point3<f64>) -> io::Result<()> {
+    write!(out, "{prefix}{:?} {:?} {:?}", p.x, p.y, p.z)
 }
 
 #[cfg(test)]

@@ -13,19 +13,13 @@ mod tosca;
 mod xyz;
 
 use std::fmt;
-use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use nalgebra::Point3;
-
-use crate::facts::MeshFile;
-use crate::field::WrittenField;
-use crate::limits::ReadLimits;
-use crate::located::Located;
-use crate::name::{extension, inflated, is_gzip, with_extension};
-use crate::source::{CheckStart, FileSource};
 use mesh::MeshError;
-use mesh::TriMesh;
+
+use crate::name::{extension, inflated, is_gzip, with_extension};
+use crate::prelude::*;
+use crate::source::{CheckStart, FileSource};
 
 /// What a mesh file can be written with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,7 +44,7 @@ impl fmt::Display for Content {
 
 type Parse = fn(&[&[u8]], &ReadLimits) -> Result<MeshFile, Located>;
 type Companions = fn(&[u8]) -> Result<Vec<String>, Located>;
-type WriteMesh = fn(&mut dyn Write, &TriMesh, WrittenField<'_>) -> io::Result<()>;
+type WriteMesh = fn(&mut dyn Write, &TriMesh, Field<'_>) -> io::Result<()>;
 type WriteLines = fn(&mut dyn Write, &[Vec<Point3<f64>>]) -> io::Result<()>;
 
 /// A mesh file format; [`FORMATS`] lists them.
@@ -61,24 +55,24 @@ pub struct Format {
     /// The extensions of the files that together hold one mesh, lower case, without a dot. Where there are
     /// two, the first one stands for the pair.
     pub extensions: &'static [&'static str],
-    pub(super) precision: Precision,
+    pub(crate) precision: Precision,
     /// Checks the start of each file.
-    pub(super) check_start: CheckStart,
+    pub(crate) check_start: CheckStart,
     /// Names, relative to the file, of further files that its content refers to.
-    pub(super) companions: Option<Companions>,
+    pub(crate) companions: Option<Companions>,
     /// Parses the contents of [`files`](Self::files), followed by those of its companions.
-    pub(super) parse: Parse,
+    pub(crate) parse: Parse,
     /// Writers of the files, in the order of `extensions`; empty if the format is read-only.
-    pub(super) write: &'static [WriteMesh],
+    pub(crate) write: &'static [WriteMesh],
     /// Whether the writers can add a field.
     has_fields: bool,
-    pub(super) write_lines: Option<WriteLines>,
+    pub(crate) write_lines: Option<WriteLines>,
 }
 
 /// How a format stores coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Precision {
-    /// Rounded to 32 bits, perhaps after moving the mesh to its [origin](crate::single::origin).
+pub(crate) enum Precision {
+    /// Rounded to 32 bits, perhaps after moving the mesh to its [origin](crate::write::origin).
     Single { moved: bool },
     /// Such that 64-bit numbers read back bit for bit.
     Double,
@@ -95,7 +89,7 @@ pub static FORMATS: [Format; 11] = [
         write: &[obj::write],
         has_fields: true,
         write_lines: Some(obj::write_lines),
-        ..read_only("OBJ", &["obj"], obj::check_start, obj::parse)
+        ..read_only("OBJ", &["obj"], |start, _| check_is_text(start, "an OBJ file"), obj::parse)
     },
     Format {
         write: &[ply::write],
@@ -111,7 +105,12 @@ pub static FORMATS: [Format; 11] = [
     read_only("MATLAB", &["mat"], mat::check_start, mat::parse),
     Format {
         write: &[tosca::write_positions, tosca::write_faces],
-        ..read_only("TOSCA", &["vert", "tri"], tosca::check_start, tosca::parse)
+        ..read_only(
+            "TOSCA",
+            &["vert", "tri"],
+            |start, _| check_is_text(start, "a file of numbers"),
+            tosca::parse,
+        )
     },
     Format {
         precision: Precision::Single { moved: true },
@@ -124,8 +123,8 @@ pub static FORMATS: [Format; 11] = [
         ..read_only("glTF", &["gltf"], gltf::check_start, gltf::parse)
     },
     Format { write: &[threemf::write], ..read_only("3MF", &["3mf"], threemf::check_start, threemf::parse) },
-    read_only("XYZ", &["xyz"], xyz::check_start, xyz::parse),
-    read_only("PTS", &["pts"], xyz::check_start, xyz::parse),
+    read_only("XYZ", &["xyz"], |start, _| check_is_text(start, "a file of points"), xyz::parse),
+    read_only("PTS", &["pts"], |start, _| check_is_text(start, "a file of points"), xyz::parse),
 ];
 
 /// A format with 64-bit coordinates that cannot be written.
@@ -184,7 +183,7 @@ impl Format {
     }
 
     /// The format of a file to be written with this content.
-    pub(super) fn for_writing(path: &Path, content: Content) -> Result<&'static Self, MeshError> {
+    pub(crate) fn for_writing(path: &Path, content: Content) -> Result<&'static Self, MeshError> {
         let format = Self::of(path)?;
         match format.can_write(content) {
             true => Ok(format),
@@ -200,7 +199,7 @@ impl Format {
     /// The files of the mesh that `path` names, in the order of `extensions`.
     ///
     /// The extension of a companion file has the case of the given one, unless only the other one exists.
-    pub(super) fn files(&self, path: &Path, source: &dyn FileSource) -> Vec<PathBuf> {
+    pub(crate) fn files(&self, path: &Path, source: &dyn FileSource) -> Vec<PathBuf> {
         let given = inflated(path).extension().unwrap_or_default().to_string_lossy().into_owned();
         let prefers_upper = given.chars().all(|c| c.is_ascii_uppercase());
         let file = |extension: &&str| {

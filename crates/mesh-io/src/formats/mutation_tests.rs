@@ -6,10 +6,8 @@ use proptest::prelude::*;
 use super::mat::tests::{PLAIN, Style};
 use super::{FORMATS, Format};
 use crate::formats::Content;
-use crate::limits::ReadLimits;
-use mesh::TriMesh;
-use mesh::shapes;
-use mesh::{Fault, MIN_POINTS};
+use crate::prelude::*;
+use mesh::{MIN_POINTS, shapes};
 
 /// Makes a file of bytes.
 type Wrap = fn(&[u8]) -> Vec<u8>;

@@ -1,20 +1,6 @@
 //! OFF, the Object File Format of Geomview, as text.
 
-use std::io::{self, Write};
-
-use surface::VertexId;
-
-use crate::facts::MeshFile;
-use crate::field::WrittenField;
-use crate::limits::ReadLimits;
-use crate::located::{At, Located};
-use crate::polygons::Polygons;
-use crate::text::{
-    Line, Lines, Words, check_is_not_utf16, check_is_text, excerpt, parse_integer, parse_position,
-    parse_vertex,
-};
-use mesh::Fault;
-use mesh::TriMesh;
+use crate::prelude::*;
 
 /// The fewest bytes of a vertex, `0 0 0` and a line end, and of a face, `3 0 1 2` and a line end.
 const SHORTEST_VERTEX: usize = 6;
@@ -23,140 +9,107 @@ const SHORTEST_FACE: usize = 8;
 /// Checks the keyword, and that text follows.
 pub(super) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
     check_is_not_utf16(start)?;
-    if let Some(header) = Lines::new(start).next() {
-        after_keyword(header)?;
-    }
+    Lines::new(start).next().map_or(Ok(()), |header| after_keyword(header).map(drop))?;
     check_is_text(start, "an OFF file")
 }
 
-/// Reads OFF, COFF, NOFF, STOFF and their combinations. Normals, colours and texture coordinates, which
+/// Reads OFF, COFF, NOFF, STOFF and their combinations. Normals, colors and texture coordinates, which
 /// follow the position of a vertex, are ignored.
+///
+/// A vertex or a face has a line. Without colors and normals, lines may end elsewhere: words alone tell where it ends.
 pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
-    let bytes = files[0];
-    parse_lines(bytes, limits).or_else(|fault| parse_words(bytes, limits).ok_or(fault))
+    parse_words(files[0], false, limits)
+        .or_else(|fault| parse_words(files[0], true, limits).map_err(|_| fault))
 }
 
-/// Reads a file with a line for each vertex and each face.
-fn parse_lines(bytes: &[u8], limits: &ReadLimits) -> Result<MeshFile, Located> {
-    let mut lines = Lines::new(bytes);
-    let header = lines.next().ok_or_else(|| Fault::Empty.whole())?;
-    let counts = match after_keyword(header)? {
-        [] => lines
-            .next()
-            .ok_or_else(|| Fault::cut_short("the counts of vertices and faces").in_line(lines.number()))?,
-        rest => Line { text: rest, ..header },
+fn parse_words(bytes: &[u8], crosses_lines: bool, limits: &ReadLimits) -> Result<MeshFile, Located> {
+    let mut words = Words::new(Lines::new(bytes), crosses_lines);
+    let header = words.row().ok_or_else(|| Fault::Empty.whole())?;
+    let (prefix, rest) = after_keyword(header)?;
+    words.rest = rest;
+    if rest.is_empty() && words.row().is_none() {
+        return Err(Fault::cut_short("the counts of vertices and faces").in_line(words.lines.number));
+    }
+    let counts = words.line.number;
+    let expected =
+        Line { text: words.rest, number: counts }.expected("the counts of vertices, faces and edges");
+    let parse_count = |word| parse_integer(word).and_then(|n| u64::try_from(n).ok());
+    let found = words.by_ref().take(if crosses_lines { 3 } else { 4 }).map(parse_count);
+    let (n_vertices, n_faces) = match *found.collect::<Vec<_>>() {
+        // The number of edges is ignored.
+        [Some(n_vertices), Some(n_faces)] | [Some(n_vertices), Some(n_faces), Some(_)]
+            if prefix.is_empty() || !crosses_lines =>
+        {
+            (n_vertices, n_faces)
+        }
+        _ => return Err(expected),
     };
-    let (n_vertices, n_faces) = parse_counts(counts)?;
-    limits.check(n_vertices, n_faces).map_err(|fault| fault.in_line(counts.number))?;
-    parse_rows(Words::new(lines, false), n_vertices, n_faces, limits)
-}
+    limits.check(n_vertices, n_faces).in_line(counts)?;
 
-/// Reads a file whose lines end elsewhere. Without colours and normals, words alone tell where a vertex and a face end.
-fn parse_words(bytes: &[u8], limits: &ReadLimits) -> Option<MeshFile> {
-    let mut words = Words::new(Lines::new(bytes), true);
-    words.next().filter(|keyword| keyword.eq_ignore_ascii_case(b"OFF"))?;
-    let mut count = || u64::try_from(parse_integer(words.next()?)?).ok();
-    let [n_vertices, n_faces, _] = [count()?, count()?, count()?];
-    limits.check(n_vertices, n_faces).ok()?;
-    parse_rows(words, n_vertices, n_faces, limits).ok()
-}
-
-/// Reads the vertices and the faces that the header promises.
-fn parse_rows(
-    mut words: Words<'_>,
-    n_vertices: u64,
-    n_faces: u64,
-    limits: &ReadLimits,
-) -> Result<MeshFile, Located> {
-    let room = words.lines.remaining();
-    let mut positions = Vec::with_capacity((n_vertices as usize).min(room / SHORTEST_VERTEX));
+    let truncated = |words: &Words<'_>, items: &str, promised, found| {
+        Fault::truncated(items, promised, found).in_line(words.lines.number)
+    };
+    let room = words.lines.remaining() / SHORTEST_VERTEX;
+    let mut positions = Vec::with_capacity(room.min(n_vertices as usize));
     for found in 0..n_vertices {
         let line = words.row().ok_or_else(|| truncated(&words, "vertices", n_vertices, found))?;
         positions.push(parse_position(line, &mut words, found as usize)?);
     }
-    let room = words.lines.remaining();
-    let mut polygons = Polygons::with_room_for((n_faces as usize).min(room / SHORTEST_FACE));
+    let room = words.lines.remaining() / SHORTEST_FACE;
+    let mut polygons = Polygons::with_room_for(room.min(n_faces as usize));
     let mut corners = Vec::new();
     for found in 0..n_faces {
         let line = words.row().ok_or_else(|| truncated(&words, "faces", n_faces, found))?;
-        parse_corners(line, &mut words, n_vertices, &mut corners)?;
-        polygons.push(&positions, &corners, limits).map_err(|fault| fault.in_line(line.number))?;
+        let expected = "a number of corners and that many vertices";
+        let n_corners = words.next().and_then(parse_integer).filter(|n| *n >= 0);
+        corners.clear();
+        for _ in 0..n_corners.ok_or_else(|| line.expected(expected))? {
+            corners.push(parse_vertex(line, &mut words, [0, n_vertices], expected)?);
+        }
+        polygons.push(&positions, &corners, limits).in_line(line.number)?;
     }
-    if let Some(line) = words.row() {
-        return Err(Fault::Leftover { items: "faces", promised: n_faces }.in_line(line.number));
+    match words.row() {
+        Some(line) => Err(Fault::Leftover { items: "faces", promised: n_faces }.in_line(line.number)),
+        None => polygons.finish(positions, limits),
     }
-    polygons.finish(positions, limits)
 }
 
-fn truncated(words: &Words<'_>, items: &str, promised: u64, found: u64) -> Located {
-    Fault::truncated(items, promised, found).in_line(words.lines.number())
-}
-
-/// The rest of the header line after the keyword: nothing, or the counts, even without a space between.
-fn after_keyword(header: Line<'_>) -> Result<&[u8], Located> {
-    let text = header.text;
+/// What is before the keyword `OFF` in the header, and the rest of the line: nothing, or the counts, even without a space
+/// between.
+fn after_keyword(header: Line<'_>) -> Result<(&[u8], &[u8]), Located> {
     let not_off = || {
-        let found = format!("it begins with `{}`", excerpt(text));
+        let found = format!("it begins with `{}`", excerpt(header.text));
         Fault::wrong_format("an OFF file", found).in_line(header.number)
     };
-    let at = text.windows(3).take(6).position(|w| w.eq_ignore_ascii_case(b"OFF")).ok_or_else(not_off)?;
-    let (mut prefix, rest) = (&text[..at], text[at + 3..].trim_ascii());
+    let at =
+        header.text.windows(3).take(6).position(|w| w.eq_ignore_ascii_case(b"OFF")).ok_or_else(not_off)?;
+    let (prefix, rest) = (&header.text[..at], header.text[at + 3..].trim_ascii());
     // The order is ST, C, N, but MeshLab writes NCOFF.
-    let mut parts = vec![&b"ST"[..], b"C", b"N"];
-    while let Some(found) = parts.iter().position(|part| prefix.starts_with(part)) {
-        prefix = &prefix[parts.remove(found).len()..];
+    let (mut unknown, mut parts) = (prefix, vec![&b"ST"[..], b"C", b"N"]);
+    while let Some(found) = parts.iter().position(|part| unknown.starts_with(part)) {
+        unknown = &unknown[parts.remove(found).len()..];
     }
-    let unsupported = |what, remedy| Err(Fault::unsupported(what, remedy).in_line(header.number));
-    if matches!(prefix, b"4" | b"n" | b"4n") {
-        let remedy = "project them to three and save as OFF";
-        return unsupported("vertices of four or more dimensions", remedy);
-    }
-    if !prefix.is_empty() {
-        return Err(not_off());
-    }
-    if rest.starts_with(b"BINARY") {
-        return unsupported("a binary OFF file", "save it as text OFF or as binary PLY");
-    }
-    Ok(rest)
+    let (what, remedy) = match unknown {
+        b"4" | b"n" | b"4n" => {
+            ("vertices of four or more dimensions", "project them to three and save as OFF")
+        }
+        [_, ..] => return Err(not_off()),
+        [] if rest.starts_with(b"BINARY") => ("a binary OFF file", "save it as text OFF or as binary PLY"),
+        [] => return Ok((prefix, rest)),
+    };
+    Err(Fault::unsupported(what, remedy).in_line(header.number))
 }
 
-/// Numbers of vertices and faces; the number of edges may follow and is ignored.
-fn parse_counts(line: Line<'_>) -> Result<(u64, u64), Located> {
-    let expected = || line.expected("the counts of vertices, faces and edges");
-    let counts: Option<Vec<u64>> =
-        line.tokens().take(4).map(|t| parse_integer(t).and_then(|n| u64::try_from(n).ok())).collect();
-    match *counts.ok_or_else(expected)? {
-        [vertices, faces] | [vertices, faces, _] => Ok((vertices, faces)),
-        _ => Err(expected()),
-    }
-}
-
-/// Reads the corners of one face into `corners`; colours may follow and are ignored.
-fn parse_corners<'a>(
-    line: Line<'a>,
-    words: &mut Words<'a>,
-    n_vertices: u64,
-    corners: &mut Vec<VertexId>,
-) -> Result<(), Located> {
-    let expected = "a number of corners and that many vertices";
-    let n_corners = words.next().and_then(parse_integer).filter(|n| *n >= 0);
-    corners.clear();
-    for _ in 0..n_corners.ok_or_else(|| line.expected(expected))? {
-        corners.push(parse_vertex(line, words, [0, n_vertices], expected)?);
-    }
-    Ok(())
-}
-
-/// Writes OFF; coordinates read back bit for bit. With a colour per vertex it is COFF, which has no place for values.
-pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh, field: WrittenField<'_>) -> io::Result<()> {
+/// Writes OFF; coordinates read back bit for bit. With a color per vertex it is COFF, which has no place for values.
+pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh, field: Field<'_>) -> io::Result<()> {
     let keyword = if field.is_some() { "COFF" } else { "OFF" };
     writeln!(out, "{keyword}\n{} {} 0", mesh.n_vertices(), mesh.n_faces())?;
     for (v, p) in mesh.positions.iter().enumerate() {
-        write!(out, "{:?} {:?} {:?}", p.x, p.y, p.z)?;
-        if let Some([r, g, b]) = field.map(|field| field.colors[v]) {
-            write!(out, " {r} {g} {b} 255")?;
+        write_position(out, "", p)?;
+        match field.map(|field| field.colors[v]) {
+            Some([r, g, b]) => writeln!(out, " {r} {g} {b} 255")?,
+            None => writeln!(out)?,
         }
-        writeln!(out)?;
     }
     mesh.faces.iter().try_for_each(|[a, b, c]| writeln!(out, "3 {a} {b} {c}"))
 }
@@ -164,8 +117,6 @@ pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh, field: WrittenField<'_>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::located::Located;
-    use mesh::Place;
 
     fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
         super::parse(&[bytes], &ReadLimits::default()).map(|file| file.mesh)

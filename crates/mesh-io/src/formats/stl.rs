@@ -1,19 +1,8 @@
-//! STL, ASCII and binary.
+//! STL, text and binary.
 
 use std::collections::HashMap;
-use std::io::{self, Write};
 
-use nalgebra::Point3;
-use surface::VertexId;
-
-use crate::facts::MeshFile;
-use crate::field::WrittenField;
-use crate::limits::ReadLimits;
-use crate::located::{At, Located};
-use crate::polygons::{finish, finite};
-use crate::text::{Lines, Words, check_is_not_utf16, check_is_text, excerpt, parse_number};
-use mesh::Fault;
-use mesh::TriMesh;
+use crate::prelude::*;
 
 /// Bytes of a binary file: 80 of free text, the 32-bit number of triangles, then per triangle its normal, its
 /// three corners and two unused bytes.
@@ -26,8 +15,7 @@ pub(super) fn check_start(start: &[u8], size: Option<u64>) -> Result<(), Located
     let Some(promised) = promised(start, size)? else {
         return check_is_text(start, "an STL file");
     };
-    let found = size.map(|size| (size - PREFIX as u64) / TRIANGLE as u64);
-    match found {
+    match size.map(|size| (size - PREFIX as u64) / TRIANGLE as u64) {
         Some(found) if found < promised => Err(Fault::truncated("triangles", promised, found).whole()),
         Some(found) if found > promised => Err(Fault::Leftover { items: "triangles", promised }.whole()),
         _ if promised == 0 => Err(Fault::NoFaces { n_vertices: 0 }.whole()),
@@ -49,7 +37,7 @@ fn promised(start: &[u8], size: Option<u64>) -> Result<Option<u64>, Located> {
     Ok(start[..PREFIX].contains(&0).then_some(promised))
 }
 
-/// Reads STL. The format stores three corners per triangle; corners in the same position become one vertex,
+/// Reads STL. The format stores three corners per triangle; corners at the same position become one vertex,
 /// numbered in the order of first appearance.
 pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
     let bytes = files[0];
@@ -57,29 +45,28 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
         return Err(Fault::Empty.whole());
     }
     let size = Some(bytes.len() as u64);
-    check_start(bytes.get(..bytes.len().min(PREFIX)).unwrap_or(bytes), size)?;
+    check_start(&bytes[..bytes.len().min(PREFIX)], size)?;
+    let mut soup = Soup { limits, numbers: HashMap::new(), positions: Vec::new(), corners: Vec::new() };
     match promised(bytes, size)? {
-        Some(promised) => parse_binary(bytes, promised, limits),
-        None => parse_text(bytes, limits),
+        Some(promised) => parse_binary(bytes, promised, &mut soup)?,
+        None => parse_text(bytes, &mut soup)?,
     }
+    finish(TriMesh { positions: soup.positions, faces: soup.corners.as_chunks().0.to_vec() }, limits)
 }
 
-fn parse_binary(bytes: &[u8], n_triangles: u64, limits: &ReadLimits) -> Result<MeshFile, Located> {
-    limits.check(0, n_triangles).map_err(Fault::whole)?;
-    let mut soup = Soup::default();
+fn parse_binary(bytes: &[u8], n_triangles: u64, soup: &mut Soup<'_>) -> Result<(), Located> {
+    soup.limits.check(0, n_triangles).whole()?;
     for (t, triangle) in bytes[PREFIX..].chunks_exact(TRIANGLE).take(n_triangles as usize).enumerate() {
         // Three numbers each for the normal and the corners.
         for corner in triangle[..48].as_chunks::<4>().0.as_chunks::<3>().0.iter().skip(1) {
-            let pushed = soup.push(corner.map(f32::from_le_bytes), limits);
-            pushed.map_err(|fault| fault.at_byte(PREFIX + t * TRIANGLE))?;
+            soup.push(corner.map(f32::from_le_bytes)).at_byte(PREFIX + t * TRIANGLE)?;
         }
     }
-    soup.into_mesh(limits)
+    Ok(())
 }
 
 /// Reads the words of a text, on whichever lines they are.
-fn parse_text(bytes: &[u8], limits: &ReadLimits) -> Result<MeshFile, Located> {
-    let mut soup = Soup::default();
+fn parse_text(bytes: &[u8], soup: &mut Soup<'_>) -> Result<(), Located> {
     let mut words = Words::new(Lines::new(bytes), true);
     // `None` before the first solid.
     let mut is_open = None;
@@ -88,11 +75,11 @@ fn parse_text(bytes: &[u8], limits: &ReadLimits) -> Result<MeshFile, Located> {
         match &word.to_ascii_lowercase()[..] {
             b"solid" => is_open = Some(true),
             b"endsolid" => is_open = Some(false),
-            b"end" if words.rest_begins_with(&["solid"]) => is_open = Some(false),
+            b"end" if words.begins_with(&["solid"]) => is_open = Some(false),
             b"facet" => {
                 is_open = Some(true);
-                limits.check(0, soup.n_triangles() + 1).map_err(|fault| fault.in_line(line.number))?;
-                parse_facet(&mut words, &mut soup, limits)?;
+                soup.limits.check(0, soup.corners.len() as u64 / 3 + 1).in_line(line.number)?;
+                parse_facet(&mut words, soup)?;
                 continue;
             }
             _ if is_open.is_some() => return Err(line.expected("`facet` or `endsolid`")),
@@ -102,19 +89,19 @@ fn parse_text(bytes: &[u8], limits: &ReadLimits) -> Result<MeshFile, Located> {
             }
         }
         // The name of the solid: the rest of the line, or what comes before a facet in it.
-        while words.rest_of_line() && !words.rest_begins_with(&["facet", "normal"]) {
+        while !words.rest.is_empty() && !words.begins_with(&["facet", "normal"]) {
             words.next();
         }
     }
     match is_open {
         None => Err(Fault::Empty.whole()),
         Some(true) => Err(cut_short(&words)),
-        Some(false) => soup.into_mesh(limits),
+        Some(false) => Ok(()),
     }
 }
 
 /// Reads what follows `facet`.
-fn parse_facet(words: &mut Words<'_>, soup: &mut Soup, limits: &ReadLimits) -> Result<(), Located> {
+fn parse_facet(words: &mut Words<'_>, soup: &mut Soup<'_>) -> Result<(), Located> {
     // `normal` and its three numbers, or some of them.
     let mut skipped = 0;
     while !next_word(words)?.eq_ignore_ascii_case(b"outer") {
@@ -131,7 +118,7 @@ fn parse_facet(words: &mut Words<'_>, soup: &mut Soup, limits: &ReadLimits) -> R
         for x in &mut corner {
             *x = parse_number(next_word(words)?).ok_or_else(|| words.line.expected(expected))?;
         }
-        soup.push(corner, limits).map_err(|fault| fault.in_line(words.line.number))?;
+        soup.push(corner).in_line(words.line.number)?;
     }
     expect(words, b"endloop", "`endloop`")?;
     expect(words, b"endfacet", "`endfacet`")
@@ -154,36 +141,28 @@ fn expect(words: &mut Words<'_>, word: &[u8], expected: &'static str) -> Result<
 }
 
 /// Triangles whose corners are merged by position.
-#[derive(Default)]
-struct Soup {
+struct Soup<'a> {
+    limits: &'a ReadLimits,
     numbers: HashMap<[u32; 3], VertexId>,
     positions: Vec<Point3<f64>>,
     /// The vertices of all corners, three per triangle.
     corners: Vec<VertexId>,
 }
 
-impl Soup {
-    fn n_triangles(&self) -> u64 {
-        self.corners.len() as u64 / 3
-    }
-
-    /// Adds the next corner.
-    fn push(&mut self, corner: [f32; 3], limits: &ReadLimits) -> Result<(), Fault> {
+impl Soup<'_> {
+    /// Adds the next corner. Minus zero equals zero.
+    fn push(&mut self, corner: [f32; 3]) -> Result<(), Fault> {
         let p = finite(corner.map(f64::from), self.corners.len())?;
         self.corners.push(*self.numbers.entry(corner.map(|x| (x + 0.0).to_bits())).or_insert_with(|| {
             self.positions.push(p);
             VertexId::from(self.positions.len() - 1)
         }));
-        limits.check(self.positions.len() as u64, 0)
-    }
-
-    fn into_mesh(self, limits: &ReadLimits) -> Result<MeshFile, Located> {
-        finish(TriMesh { positions: self.positions, faces: self.corners.as_chunks().0.to_vec() }, limits)
+        self.limits.check(self.positions.len() as u64, 0)
     }
 }
 
 /// Writes binary STL. Rounds coordinates to 32 bits; vertex numbers and unused vertices are lost.
-pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh, _: WrittenField<'_>) -> io::Result<()> {
+pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh, _: Field<'_>) -> io::Result<()> {
     out.write_all(&[0; HEADER])?;
     out.write_all(&(mesh.n_faces() as u32).to_le_bytes())?;
     for f in 0..mesh.n_faces() {
@@ -200,8 +179,6 @@ pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh, _: WrittenField<'_>) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::located::Located;
-    use mesh::Place;
     use mesh::shapes;
 
     const FACET: &str = "facet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 1 0 0\n  vertex 0 1 0\n endloop\nendfacet\n";

@@ -1,47 +1,29 @@
 //! Point clouds as text: a point per line, as in `.xyz` and `.pts` files.
 
-use crate::facts::MeshFile;
-use crate::limits::ReadLimits;
-use crate::located::{At, Located};
-use crate::polygons::finish;
-use crate::text::{Line, Lines, check_is_text, parse_number, parse_position};
-use mesh::Fault;
-use mesh::TriMesh;
+use crate::prelude::*;
 
-/// The fewest bytes of a line: three digits, two separators, a line end.
-const SHORTEST_LINE: usize = 6;
-
-/// Checks that the file is text.
-pub(super) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
-    check_is_text(start, "a file of points")
-}
-
-/// Reads three coordinates per line, separated by blanks, commas or semicolons. What follows them (intensity, colour,
+/// Reads three coordinates per line, separated by blanks, commas or semicolons. What follows them (intensity, color,
 /// normal) is ignored, and so is a first line of names, such as `//X Y Z`. A line with a single integer, as `.pts` files
 /// begin with, promises so many points. Between blanks or semicolons, a comma may mark decimals, as in `1,5 2,5 3,5`.
 pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
-    let bytes = files[0];
-    let mut positions = Vec::with_capacity(bytes.len() / (4 * SHORTEST_LINE));
-    let mut promised: Option<u64> = None;
-    let mut is_first = true;
-    for line in Lines::new(bytes) {
-        let begins_file = std::mem::replace(&mut is_first, false);
-        if begins_file && is_names(line) {
+    let mut positions = Vec::new();
+    let mut promised = None;
+    let mut lines = Lines::new(files[0]).peekable();
+    let first = lines.peek().ok_or_else(|| Fault::Empty.whole())?;
+    let has_names = first.text.starts_with(b"//")
+        || numbers(first.text).next().is_some_and(|name| name.eq_ignore_ascii_case(b"x"));
+    for line in lines.skip(usize::from(has_names)) {
+        let mut words = numbers(line.text);
+        if let (Some(count), None) = (words.next().and_then(parse_number::<u64>), words.next()) {
+            promised = Some(promised.unwrap_or(0u64).saturating_add(count));
             continue;
         }
-        if let Some(count) = count(line) {
-            promised = Some(promised.unwrap_or(0).saturating_add(count));
-            continue;
+        let mut text = line.text.to_vec();
+        if commas_mark_decimals(line)? {
+            text.iter_mut().filter(|b| **b == b',').for_each(|b| *b = b'.');
         }
-        let marks_decimals = commas_mark_decimals(line)?;
-        let point = |b: &u8| if marks_decimals && *b == b',' { b'.' } else { *b };
-        let text: Vec<u8> = line.text.iter().map(point).collect();
-        let mut words = text.split(is_separator).filter(|word| !word.is_empty());
-        positions.push(parse_position(line, &mut words, positions.len() + 1)?);
-        limits.check(positions.len() as u64, 0).map_err(|fault| fault.in_line(line.number))?;
-    }
-    if is_first {
-        return Err(Fault::Empty.whole());
+        positions.push(parse_position(line, &mut numbers(&text), positions.len() + 1)?);
+        limits.check(positions.len() as u64, 0).in_line(line.number)?;
     }
     let found = positions.len() as u64;
     match promised {
@@ -55,8 +37,8 @@ fn is_separator(b: &u8) -> bool {
     b.is_ascii_whitespace() || matches!(b, b',' | b';')
 }
 
-fn numbers(line: Line<'_>) -> impl Iterator<Item = &[u8]> {
-    line.text.split(is_separator).filter(|token| !token.is_empty())
+fn numbers(text: &[u8]) -> impl Iterator<Item = &[u8]> {
+    text.split(is_separator).filter(|word| !word.is_empty())
 }
 
 /// Whether commas mark decimals in a line, as they may between blanks or semicolons: `1,5 2,5 3,5`. A fault if they may as
@@ -97,22 +79,9 @@ fn commas_mark_decimals(line: Line<'_>) -> Result<bool, Located> {
     }
 }
 
-/// The number of points that a line promises.
-fn count(line: Line<'_>) -> Option<u64> {
-    let mut numbers = numbers(line);
-    numbers.next().filter(|_| numbers.next().is_none()).and_then(parse_number)
-}
-
-/// Whether a line names the columns.
-fn is_names(line: Line<'_>) -> bool {
-    line.text.starts_with(b"//") || numbers(line).next().is_some_and(|name| name.eq_ignore_ascii_case(b"x"))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::located::Located;
-    use mesh::Place;
 
     /// Twelve lines of points.
     fn rows(separator: &str, rest: &str) -> String {

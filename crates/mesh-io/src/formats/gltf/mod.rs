@@ -9,39 +9,20 @@
 //! transform of its node is ignored, as the standard demands. Where a transform mirrors, the corners of faces change
 //! their order.
 
-mod accessors;
-mod container;
+mod data;
 mod scene;
 mod schema;
-mod write;
 
-use crate::facts::{FileFacts, LengthUnit, MeshFile};
-use crate::limits::ReadLimits;
-use crate::located::{At, Located};
-use crate::polygons::finish;
-use crate::text::excerpt;
-use accessors::Accessors;
-use container::{Buffers, Parts, split_binary};
-use mesh::Fault;
+use crate::prelude::*;
+use crate::write::{origin, rounded};
+use data::{Data, Parts, split_binary};
 use schema::Root;
 
-pub(super) use container::{check_binary_start, check_start};
-pub(super) use write::write;
+pub(super) use data::{check_binary_start, check_start};
 
 /// Extensions that a file may require although this reader does not know them: they change no positions.
-const HARMLESS: [&str; 11] = [
-    "KHR_materials_",
-    "KHR_texture_",
-    "KHR_lights_",
-    "KHR_node_",
-    "KHR_animation_",
-    "KHR_xmp",
-    "EXT_texture_",
-    "EXT_materials_",
-    "EXT_lights_",
-    "MSFT_texture_",
-    "KHR_mesh_quantization",
-];
+const HARMLESS: &str = "KHR_materials_ KHR_texture_ KHR_lights_ KHR_node_ KHR_animation_ KHR_xmp KHR_mesh_quantization \
+    EXT_texture_ EXT_materials_ EXT_lights_ MSFT_texture_";
 
 /// Extensions that hide or multiply geometry, by the ends of their names, and what to do about each.
 const REFUSED: [(&str, &str, &str); 3] = [
@@ -64,13 +45,13 @@ const REFUSED: [(&str, &str, &str); 3] = [
 
 /// Names of the other files that hold the data of a `.gltf` file.
 pub(super) fn companions(json: &[u8]) -> Result<Vec<String>, Located> {
-    container::companions(&parse_json(json, 0)?)
+    data::companions(&parse_json(json, 0)?)
 }
 
 /// Names of the other files that hold the data of a `.glb` file.
 pub(super) fn companions_of_binary(bytes: &[u8]) -> Result<Vec<String>, Located> {
     let (json, start, _) = split_binary(bytes)?;
-    container::companions(&parse_json(json, start)?)
+    data::companions(&parse_json(json, start)?)
 }
 
 /// Reads a `.gltf` file, followed by its companions.
@@ -90,21 +71,15 @@ fn parse_json(json: &[u8], start: usize) -> Result<Root, Located> {
         return Err(Fault::Empty.whole());
     }
     serde_json::from_slice(json).map_err(|error| {
-        let fault = Fault::syntax("the JSON of glTF 2.0", error.to_string());
-        match start {
-            0 => fault.in_line(error.line()),
-            start => fault.at_byte(start),
-        }
+        let place = if start == 0 { Place::Line(error.line()) } else { Place::Byte(start as u64) };
+        Fault::syntax("the JSON of glTF 2.0", error.to_string()).at(place)
     })
 }
 
 fn read((json, start, chunk): Parts<'_>, files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
     let root = &parse_json(json, start)?;
-    check_version(root)?;
-    check_extensions(root)?;
-    let buffers = Buffers::new(root, chunk, &files[1..])?;
-    let n_bytes = files.iter().map(|file| file.len() as u64).sum();
-    let (mesh, instances) = scene::read(&Accessors { root, buffers, n_bytes }, limits)?;
+    check_support(root).whole()?;
+    let (mesh, instances) = scene::read(&Data::new(root, chunk, files)?, limits)?;
     let facts = FileFacts {
         unit: Some(LengthUnit::Meter),
         instances: Some(instances),
@@ -114,34 +89,71 @@ fn read((json, start, chunk): Parts<'_>, files: &[&[u8]], limits: &ReadLimits) -
     Ok(MeshFile { facts, ..finish(mesh, limits)? })
 }
 
-fn check_version(root: &Root) -> Result<(), Located> {
+/// Refuses other versions, and extensions without which positions would be wrong.
+fn check_support(root: &Root) -> Result<(), Fault> {
     let version = root.asset.min_version.as_ref().unwrap_or(&root.asset.version);
     if version.split('.').next() != Some("2") {
-        let what = format!("this is glTF {}", excerpt(version.as_bytes()));
-        return Err(Fault::unsupported(what, "export it as glTF 2.0").whole());
+        let what = format!("its version of glTF is `{}`", excerpt(version.as_bytes()));
+        return Err(Fault::unsupported(what, "export it as glTF 2.0"));
     }
-    Ok(())
-}
-
-fn check_extensions(root: &Root) -> Result<(), Located> {
-    let used = root.extensions_required.iter().chain(&root.extensions_used);
     for (name, what, remedy) in REFUSED {
         // Compression that is not required has a fallback, which is read.
-        let is_fatal = root.extensions_required.iter().any(|used| used.ends_with(name))
-            || name == "EXT_mesh_gpu_instancing" && used.clone().any(|used| used == name);
+        let is_fatal = root.extensions_required.iter().any(|required| required.ends_with(name))
+            || name == "EXT_mesh_gpu_instancing" && root.extensions_used.iter().any(|used| used == name);
         if is_fatal {
-            return Err(Fault::unsupported(what, remedy).whole());
+            return Err(Fault::unsupported(what, remedy));
         }
     }
-    let is_harmless = |name: &String| HARMLESS.iter().any(|prefix| name.starts_with(prefix));
-    match root.extensions_required.iter().find(|name| !is_harmless(name)) {
-        Some(name) => {
-            let what =
-                format!("it requires the extension {}, which is not supported", excerpt(name.as_bytes()));
-            Err(Fault::unsupported(what, "export it without this extension").whole())
+    let is_harmless = |name: &&String| HARMLESS.split(' ').any(|prefix| name.starts_with(prefix));
+    root.extensions_required.iter().find(|name| !is_harmless(name)).map_or(Ok(()), |name| {
+        let what = format!("it requires the extension {}, which is not supported", excerpt(name.as_bytes()));
+        Err(Fault::unsupported(what, "export it without this extension"))
+    })
+}
+
+/// Writes a GLB file with one mesh. Rounds coordinates to 32 bits; every vertex keeps its number. A mesh that would
+/// collapse is moved to the origin, and its node back.
+pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh, _: Field<'_>) -> io::Result<()> {
+    let (n_vertices, n_corners) = (mesh.n_vertices() as u64, 3 * mesh.n_faces() as u64);
+    let (position_bytes, index_bytes) = (12 * n_vertices, 4 * n_corners);
+    let data = position_bytes + index_bytes;
+    // The format requires the bounds of the numbers as they are stored.
+    let mut bounds = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
+    let origin = origin(mesh);
+    let positions = || mesh.positions.iter().map(|p| rounded(p, &origin));
+    for p in positions() {
+        for axis in 0..3 {
+            bounds[0][axis] = bounds[0][axis].min(p[axis]);
+            bounds[1][axis] = bounds[1][axis].max(p[axis]);
         }
-        None => Ok(()),
     }
+    let [x, y, z] = [origin.x, origin.y, origin.z];
+    let place =
+        if [x, y, z] == [0.0; 3] { String::new() } else { format!(r#","translation":[{x:?},{y:?},{z:?}]"#) };
+    let [least, most] = bounds.map(|[x, y, z]| format!("[{x:?},{y:?},{z:?}]"));
+    let mut json = format!(
+        r#"{{"asset":{{"version":"2.0","generator":"canonform"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0{place}}}],"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"indices":1}}]}}],"accessors":[{{"bufferView":0,"componentType":5126,"count":{n_vertices},"type":"VEC3","min":{least},"max":{most}}},{{"bufferView":1,"componentType":5125,"count":{n_corners},"type":"SCALAR"}}],"bufferViews":[{{"buffer":0,"byteLength":{position_bytes},"target":34962}},{{"buffer":0,"byteOffset":{position_bytes},"byteLength":{index_bytes},"target":34963}}],"buffers":[{{"byteLength":{data}}}]}}"#
+    );
+    while json.len() % 4 != 0 {
+        json.push(' ');
+    }
+    let word = |n: u64| {
+        let word = u32::try_from(n)
+            .map_err(|_| io::Error::other("a GLB file is limited to 4 GiB; use another format"));
+        word.map(u32::to_le_bytes)
+    };
+    out.write_all(b"glTF")?;
+    out.write_all(&word(2)?)?;
+    out.write_all(&word(12 + 8 + json.len() as u64 + 8 + data)?)?;
+    out.write_all(&word(json.len() as u64)?)?;
+    out.write_all(b"JSON")?;
+    out.write_all(json.as_bytes())?;
+    out.write_all(&word(data)?)?;
+    out.write_all(b"BIN\0")?;
+    for x in positions().flatten() {
+        out.write_all(&x.to_le_bytes())?;
+    }
+    mesh.faces.iter().flatten().try_for_each(|v| out.write_all(&v.0.to_le_bytes()))
 }
 
 #[cfg(test)]

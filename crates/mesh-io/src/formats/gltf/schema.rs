@@ -6,37 +6,26 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 use serde_json::Value;
 
-use crate::binary::Scalar;
-
 /// The number of a part in its list in [`Root`].
 pub(super) type Index = usize;
 
-#[derive(Deserialize)]
-#[serde(rename_all = "camelCase")]
+#[derive(Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
 pub(super) struct Root {
     pub(super) asset: Asset,
     pub(super) scene: Option<Index>,
-    #[serde(default)]
     pub(super) extensions_used: Vec<String>,
-    #[serde(default)]
     pub(super) extensions_required: Vec<String>,
-    #[serde(default)]
     pub(super) buffers: Vec<Buffer>,
-    #[serde(default)]
     pub(super) buffer_views: Vec<View>,
-    #[serde(default)]
     pub(super) accessors: Vec<Accessor>,
-    #[serde(default)]
     pub(super) meshes: Vec<Mesh>,
-    #[serde(default)]
     pub(super) nodes: Vec<Node>,
-    #[serde(default)]
     pub(super) scenes: Vec<Scene>,
-    #[serde(default)]
     pub(super) animations: Vec<IgnoredAny>,
 }
 
-#[derive(Deserialize)]
+#[derive(Default, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct Asset {
     pub(super) version: String,
@@ -82,9 +71,8 @@ pub(super) struct Sparse {
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct SparseIndices {
-    pub(super) buffer_view: Index,
-    #[serde(default)]
-    pub(super) byte_offset: u64,
+    #[serde(flatten)]
+    pub(super) rows: SparseValues,
     pub(super) component_type: u32,
 }
 
@@ -105,47 +93,22 @@ pub(super) struct Mesh {
 pub(super) struct Primitive {
     pub(super) attributes: BTreeMap<String, Index>,
     pub(super) indices: Option<Index>,
-    #[serde(default)]
-    pub(super) mode: Mode,
+    /// Points and lines, from 4 on triangles, a strip and a fan of them. Triangles unless stated.
+    pub(super) mode: Option<u32>,
     #[serde(default)]
     pub(super) targets: Vec<IgnoredAny>,
 }
 
-#[derive(Clone, Copy, Default, Deserialize)]
-#[serde(from = "u32")]
-pub(super) enum Mode {
-    PointsOrLines,
-    #[default]
-    Triangles,
-    Strip,
-    Fan,
-    /// Not in the standard.
-    Unknown,
-}
-
-impl From<u32> for Mode {
-    fn from(number: u32) -> Self {
-        match number {
-            0..=3 => Self::PointsOrLines,
-            4 => Self::Triangles,
-            5 => Self::Strip,
-            6 => Self::Fan,
-            _ => Self::Unknown,
-        }
-    }
-}
-
-#[derive(Deserialize)]
+#[derive(Default, Deserialize)]
+#[serde(default)]
 pub(super) struct Node {
     pub(super) mesh: Option<Index>,
     pub(super) skin: Option<Index>,
-    #[serde(default)]
     pub(super) children: Vec<Index>,
     pub(super) matrix: Option<[f32; 16]>,
     pub(super) translation: Option<[f32; 3]>,
     pub(super) rotation: Option<[f32; 4]>,
     pub(super) scale: Option<[f32; 3]>,
-    #[serde(default)]
     extensions: Value,
 }
 
@@ -156,21 +119,8 @@ impl Node {
     }
 }
 
-#[derive(Deserialize)]
+#[derive(Default, Deserialize)]
+#[serde(default)]
 pub(super) struct Scene {
-    #[serde(default)]
     pub(super) nodes: Vec<Index>,
-}
-
-/// How numbers of a component type are stored. `None` for a number that is not in the standard.
-pub(super) fn scalar(component_type: u32) -> Option<Scalar> {
-    Some(match component_type {
-        5120 => Scalar::I8,
-        5121 => Scalar::U8,
-        5122 => Scalar::I16,
-        5123 => Scalar::U16,
-        5125 => Scalar::U32,
-        5126 => Scalar::F32,
-        _ => return None,
-    })
 }

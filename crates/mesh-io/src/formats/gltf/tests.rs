@@ -1,11 +1,7 @@
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use nalgebra::Point3;
 
 use super::*;
-use crate::located::Located;
-use mesh::Place;
-use mesh::TriMesh;
 use mesh::shapes;
 
 /// Files with dense, sparse, strided and quantized accessors, strips, fans and nodes, and which of them to damage.

@@ -5,11 +5,9 @@ use std::io::Write;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
-use super::container::{COMPRESSED, HEADER, MATRIX};
-use crate::limits::ReadLimits;
-use crate::located::Located;
-use mesh::{Fault, Place};
-use mesh::{TriMesh, shapes};
+use super::{COMPRESSED, HEADER, MATRIX};
+use crate::prelude::*;
+use mesh::shapes;
 
 /// How to write.
 #[derive(Clone, Copy)]
@@ -136,7 +134,7 @@ impl Style {
 }
 
 fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
-    super::surface::parse(&[bytes], &ReadLimits::default()).map(|file| file.mesh)
+    super::parse(&[bytes], &ReadLimits::default()).map(|file| file.mesh)
 }
 
 fn fault(bytes: &[u8]) -> Fault {
@@ -234,7 +232,7 @@ fn decompression_bombs_are_cut_off() {
     bytes.extend(data);
     assert!(bytes.len() < 4 << 20);
     assert!(matches!(fault(&bytes), Fault::Inflates { .. }), "{:?}", fault(&bytes));
-    let limited = super::surface::parse(&[&bytes], &ReadLimits::of_vertices(1000)).unwrap_err();
+    let limited = super::parse(&[&bytes], &ReadLimits::of_vertices(1000)).unwrap_err();
     assert_eq!(limited.fault, Fault::OverLimit { items: "vertices", limit: 1000 });
 }
 

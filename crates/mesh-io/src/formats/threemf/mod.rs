@@ -8,21 +8,19 @@
 
 mod model;
 mod package;
-mod write;
 
 use std::collections::HashMap;
 
-use crate::facts::{FileFacts, MeshFile};
-use crate::limits::ReadLimits;
-use crate::located::{At, Located};
-use crate::polygons::{Placement, append_placed, check_copies, finish, placed_within};
-use mesh::Fault;
-use mesh::TriMesh;
+use nalgebra::Matrix4;
+use zip::ZipWriter;
+use zip::write::SimpleFileOptions;
+
+use crate::polygons::{append_placed, check_copies};
+use crate::prelude::*;
 use model::{Model, Object, Reference};
 use package::{Package, canonical};
 
 pub(super) use package::check_start;
-pub(super) use write::write;
 
 /// Components may be nested this deep.
 const DEEPEST: usize = 64;
@@ -31,9 +29,8 @@ const DEEPEST: usize = 64;
 pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
     let bytes = files[0];
     let mut package = Package::open(bytes)?;
-    let mut file = Parts { models: Vec::new(), numbers: HashMap::new() };
     let root = package.root()?;
-    file.numbers.insert(canonical(&root), 0);
+    let mut file = Parts { models: Vec::new(), numbers: HashMap::from([(canonical(&root), 0)]) };
     let mut waiting = vec![root];
     // Objects may be in other parts of the package.
     while let Some(name) = waiting.get(file.models.len()).cloned() {
@@ -47,7 +44,7 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
         }
         file.models.push(model);
     }
-    assemble(&file, bytes.len() as u64, limits)
+    file.assemble(bytes.len() as u64, limits)
 }
 
 /// The models of all parts.
@@ -60,6 +57,13 @@ struct Parts {
 /// A part and the id of one of its objects.
 type Key = (usize, u64);
 
+/// Vertices, faces and meshes of an object with its components.
+type Size = [u64; 3];
+
+fn add(total: &mut Size, more: Size) {
+    total.iter_mut().zip(more).for_each(|(total, more)| *total = total.saturating_add(more));
+}
+
 impl Parts {
     fn key(&self, reference: &Reference, part: usize) -> Key {
         let other = reference.part.as_ref().and_then(|name| self.numbers.get(&canonical(name)));
@@ -71,102 +75,124 @@ impl Parts {
             .object(id)
             .ok_or_else(|| Fault::syntax("the id of an object that exists", format!("object {id}")).whole())
     }
-}
 
-/// Vertices, faces and meshes of an object with its components.
-#[derive(Debug, Clone, Copy, Default)]
-struct Size {
-    vertices: u64,
-    faces: u64,
-    meshes: u64,
-}
-
-impl Size {
-    fn add(&mut self, other: Self) {
-        self.vertices = self.vertices.saturating_add(other.vertices);
-        self.faces = self.faces.saturating_add(other.faces);
-        self.meshes = self.meshes.saturating_add(other.meshes);
-    }
-}
-
-fn assemble(file: &Parts, n_bytes: u64, limits: &ReadLimits) -> Result<MeshFile, Located> {
-    let mut sizes = HashMap::new();
-    let root = &file.models[0];
-    let mut items: Vec<(Key, Placement)> =
-        root.items.iter().map(|item| (file.key(item, 0), item.place)).collect();
-    if items.is_empty() {
-        let components = root.objects.iter().flat_map(|object| &object.components);
-        let of_others: Vec<Key> = components.map(|component| file.key(component, 0)).collect();
-        let tops = root.objects.iter().map(|object| (0, object.id));
-        items = tops.filter(|key| !of_others.contains(key)).map(|key| (key, None)).collect();
-    }
-    let mut whole = Size::default();
-    for (key, _) in &items {
-        whole.add(measure(file, *key, 0, &mut sizes)?);
-    }
-    limits.check(whole.vertices, whole.faces).map_err(Fault::whole)?;
-    if whole.meshes > 1 {
-        check_copies(whole.vertices.saturating_add(whole.faces), n_bytes).map_err(Fault::whole)?;
-    }
-    let mut mesh = TriMesh {
-        positions: Vec::with_capacity(whole.vertices as usize),
-        faces: Vec::with_capacity(whole.faces as usize),
-    };
-    for (key, place) in items {
-        append(&mut mesh, file, key, place, &sizes)?;
-    }
-    let has_supports = file.models.iter().flat_map(|model| &model.objects).any(|object| object.is_support);
-    let has_beams = file.models.iter().any(|model| model.has_beams);
-    let ignored = [(has_supports, "supports"), (has_beams, "beam lattices")];
-    let facts = FileFacts {
-        unit: Some(root.unit),
-        instances: Some(whole.meshes as usize),
-        ignored: ignored.into_iter().filter(|(is_there, _)| *is_there).map(|(_, what)| what).collect(),
-        ..FileFacts::default()
-    };
-    Ok(MeshFile { facts, ..finish(mesh, limits)? })
-}
-
-/// The size of an object with its components, which must be a tree.
-fn measure(file: &Parts, key: Key, depth: usize, known: &mut HashMap<Key, Size>) -> Result<Size, Located> {
-    if let Some(size) = known.get(&key) {
-        return Ok(*size);
-    }
-    if depth > DEEPEST {
-        let what =
-            format!("object {} has components more than {DEEPEST} deep, or is its own component", key.1);
-        return Err(Fault::unsupported(what, "export it as a single mesh").whole());
-    }
-    let object = file.object(key)?;
-    let mut size = Size::default();
-    if !object.is_support {
-        let (vertices, faces) = (object.mesh.n_vertices() as u64, object.mesh.n_faces() as u64);
-        size = Size { vertices, faces, meshes: u64::from(vertices > 0) };
-        for component in &object.components {
-            size.add(measure(file, file.key(component, key.0), depth + 1, known)?);
+    fn assemble(&self, n_bytes: u64, limits: &ReadLimits) -> Result<MeshFile, Located> {
+        let root = &self.models[0];
+        let mut items: Vec<_> = root.items.iter().map(|item| (self.key(item, 0), item.place)).collect();
+        if items.is_empty() {
+            let components = root.objects.iter().flat_map(|object| &object.components);
+            let of_others: Vec<Key> = components.map(|component| self.key(component, 0)).collect();
+            let tops = root.objects.iter().map(|object| (0, object.id));
+            items =
+                tops.filter(|key| !of_others.contains(key)).map(|key| (key, Matrix4::identity())).collect();
         }
+        let (mut sizes, mut whole) = (HashMap::new(), Size::default());
+        for (key, _) in &items {
+            add(&mut whole, self.measure(*key, 0, &mut sizes)?);
+        }
+        let [n_vertices, n_faces, n_meshes] = whole;
+        limits.check(n_vertices, n_faces).whole()?;
+        if n_meshes > 1 {
+            check_copies(n_vertices.saturating_add(n_faces), n_bytes).whole()?;
+        }
+        let mut mesh = TriMesh::default();
+        for (key, place) in items {
+            self.append(&mut mesh, key, &place, &sizes)?;
+        }
+        let has_supports =
+            self.models.iter().flat_map(|model| &model.objects).any(|object| object.is_support);
+        let has_beams = self.models.iter().any(|model| model.has_beams);
+        let ignored = [(has_supports, "supports"), (has_beams, "beam lattices")];
+        let facts = FileFacts {
+            unit: Some(root.unit),
+            instances: Some(n_meshes as usize),
+            ignored: ignored.into_iter().filter_map(|(is_there, what)| is_there.then_some(what)).collect(),
+            ..FileFacts::default()
+        };
+        Ok(MeshFile { facts, ..finish(mesh, limits)? })
     }
-    known.insert(key, size);
-    Ok(size)
+
+    /// The size of an object with its components, which must be a tree.
+    fn measure(&self, key: Key, depth: usize, known: &mut HashMap<Key, Size>) -> Result<Size, Located> {
+        if let Some(size) = known.get(&key) {
+            return Ok(*size);
+        }
+        if depth > DEEPEST {
+            let what =
+                format!("object {} has components more than {DEEPEST} deep, or is its own component", key.1);
+            return Err(Fault::unsupported(what, "export it as a single mesh").whole());
+        }
+        let object = self.object(key)?;
+        let mut size = Size::default();
+        if !object.is_support {
+            let n_vertices = object.mesh.n_vertices() as u64;
+            size = [n_vertices, object.mesh.n_faces() as u64, u64::from(n_vertices > 0)];
+            for component in &object.components {
+                add(&mut size, self.measure(self.key(component, key.0), depth + 1, known)?);
+            }
+        }
+        known.insert(key, size);
+        Ok(size)
+    }
+
+    /// Appends an object with its components.
+    fn append(
+        &self,
+        mesh: &mut TriMesh,
+        key: Key,
+        place: &Matrix4<f64>,
+        sizes: &HashMap<Key, Size>,
+    ) -> Result<(), Located> {
+        // Without meshes, or as a support, there is nothing to visit, however many components there are.
+        if sizes.get(&key).is_none_or(|[_, _, n_meshes]| *n_meshes == 0) {
+            return Ok(());
+        }
+        let object = self.object(key)?;
+        append_placed(mesh, &object.mesh, place).in_part("object", key.1 as usize)?;
+        object.components.iter().try_for_each(|component| {
+            self.append(mesh, self.key(component, key.0), &(place * component.place), sizes)
+        })
+    }
 }
 
-/// Appends an object with its components.
-fn append(
-    mesh: &mut TriMesh,
-    file: &Parts,
-    key: Key,
-    place: Placement,
-    sizes: &HashMap<Key, Size>,
-) -> Result<(), Located> {
-    // Without meshes, or as a support, there is nothing to visit, however many components there are.
-    if sizes.get(&key).is_none_or(|size| size.meshes == 0) {
-        return Ok(());
+const TYPES: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
+<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"><Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/><Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>
+"#;
+
+const RELATIONS: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
+<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Id="rel0" Target="/3D/3dmodel.model" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>
+"#;
+
+/// Writes a 3MF file with one object in millimetres, the default unit; coordinates read back bit for bit.
+pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh, _: Field<'_>) -> io::Result<()> {
+    let mut archive = ZipWriter::new(io::Cursor::new(Vec::new()));
+    let options = SimpleFileOptions::default().large_file(mesh.n_vertices() + mesh.n_faces() > 1 << 24);
+    for (name, content) in [("[Content_Types].xml", TYPES), ("_rels/.rels", RELATIONS)] {
+        archive.start_file(name, options)?;
+        archive.write_all(content.as_bytes())?;
     }
-    let object = file.object(key)?;
-    append_placed(mesh, &object.mesh, place).map_err(|fault| fault.in_part("object", key.1 as usize))?;
-    object.components.iter().try_for_each(|component| {
-        append(mesh, file, file.key(component, key.0), placed_within(place, component.place), sizes)
-    })
+    archive.start_file("3D/3dmodel.model", options)?;
+    let mut text = io::BufWriter::with_capacity(1 << 16, &mut archive);
+    write!(
+        text,
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"millimeter\" xml:lang=\"en\" \
+         xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">\n\
+         <resources><object id=\"1\" type=\"model\"><mesh>\n<vertices>\n"
+    )?;
+    for p in &mesh.positions {
+        writeln!(text, r#"<vertex x="{:?}" y="{:?}" z="{:?}"/>"#, p.x, p.y, p.z)?;
+    }
+    write!(text, "</vertices>\n<triangles>\n")?;
+    for [a, b, c] in &mesh.faces {
+        writeln!(text, r#"<triangle v1="{a}" v2="{b}" v3="{c}"/>"#)?;
+    }
+    write!(
+        text,
+        "</triangles>\n</mesh></object></resources>\n<build><item objectid=\"1\"/></build>\n</model>\n"
+    )?;
+    text.flush()?;
+    drop(text);
+    out.write_all(archive.finish()?.get_ref())
 }
 
 #[cfg(test)]

@@ -7,11 +7,10 @@ use quick_xml::reader::Reader;
 use zip::ZipArchive;
 use zip::result::ZipError;
 
-use crate::located::{At, Located};
+use super::model::value;
 use crate::name::referred;
+use crate::prelude::*;
 use crate::source::inflated_limit;
-use crate::text::excerpt;
-use mesh::Fault;
 
 /// Where relationships say which part is the model.
 const RELATIONSHIPS: &str = "_rels/.rels";
@@ -47,7 +46,7 @@ pub(super) struct Package<'a> {
 impl<'a> Package<'a> {
     pub(super) fn open(bytes: &'a [u8]) -> Result<Self, Located> {
         check_start(bytes, None)?;
-        let archive = ZipArchive::new(Cursor::new(bytes)).map_err(damaged)?;
+        let archive = ZipArchive::new(Cursor::new(bytes)).map_err(damaged).whole()?;
         let limit = inflated_limit(bytes.len() as u64);
         Ok(Self { archive, budget: limit, limit })
     }
@@ -79,15 +78,17 @@ impl<'a> Package<'a> {
             let found = format!("no part {name}");
             return Err(Fault::syntax("all parts that the file refers to", found).whole());
         };
-        let in_part = |fault: Located| fault.of_member(name);
-        let part = self.archive.by_index(number).map_err(damaged).map_err(in_part)?;
-        let mut content = Vec::new();
-        part.take(self.budget.saturating_add(1))
-            .read_to_end(&mut content)
-            .map_err(|fault| in_part(Fault::syntax("compressed data", fault.to_string()).whole()))?;
-        let left = self.budget.checked_sub(content.len() as u64);
-        self.budget = left.ok_or_else(|| in_part(Fault::Inflates { limit: self.limit }.whole()))?;
-        Ok(content)
+        let mut read = || {
+            let mut content = Vec::new();
+            let part = self.archive.by_index(number).map_err(damaged)?;
+            part.take(self.budget.saturating_add(1))
+                .read_to_end(&mut content)
+                .map_err(|fault| Fault::syntax("compressed data", fault.to_string()))?;
+            let left = self.budget.checked_sub(content.len() as u64);
+            self.budget = left.ok_or(Fault::Inflates { limit: self.limit })?;
+            Ok(content)
+        };
+        read().whole().map_err(|fault| fault.of_member(name))
     }
 }
 
@@ -109,8 +110,8 @@ fn target(relationships: &[u8]) -> Option<String> {
         let (mut kind, mut target) = (None, None);
         for attribute in element.attributes().with_checks(false).flatten() {
             match attribute.key.local_name().as_ref() {
-                "Type" => kind = attribute.normalized_value(quick_xml::XmlVersion::Explicit1_0).ok(),
-                "Target" => target = attribute.normalized_value(quick_xml::XmlVersion::Explicit1_0).ok(),
+                "Type" => kind = value(&attribute).ok(),
+                "Target" => target = value(&attribute).ok(),
                 _ => {}
             }
         }
@@ -122,13 +123,12 @@ fn target(relationships: &[u8]) -> Option<String> {
     }
 }
 
-fn damaged(fault: ZipError) -> Located {
-    let fault = match fault {
+fn damaged(fault: ZipError) -> Fault {
+    match fault {
         ZipError::UnsupportedArchive(_) | ZipError::CompressionMethodNotSupported(_) => Fault::unsupported(
             fault.to_string(),
             "save it again with Deflate compression and without a password",
         ),
         other => Fault::syntax("an intact zip archive", other.to_string()),
-    };
-    fault.whole()
+    }
 }

@@ -1,11 +1,6 @@
-use std::io::{Cursor, Write};
-
-use zip::ZipWriter;
-use zip::write::SimpleFileOptions;
+use std::io::Cursor;
 
 use super::*;
-use crate::facts::LengthUnit;
-use mesh::TriMesh;
 use mesh::shapes;
 
 /// A package with these parts.

@@ -1,0 +1,360 @@
+//! The data of a glTF file: chunks of GLB, buffers in data URIs and other files, and typed arrays of numbers in them.
+
+use std::borrow::Cow;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+
+use super::schema::{Accessor, Index, Root};
+use crate::name::referred;
+use crate::prelude::*;
+
+const MAGIC: &[u8] = b"glTF";
+const HEADER: usize = 12;
+const CHUNK_HEADER: usize = 8;
+
+/// Checks that a file is text that begins like JSON.
+pub(crate) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
+    check_is_not_utf16(start)?;
+    let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start).trim_ascii_start();
+    match text.first() {
+        None | Some(b'{') => check_is_text(start, "a glTF file"),
+        Some(_) if start.starts_with(MAGIC) => {
+            let found = "it begins like a binary one, whose extension is .glb";
+            Err(Fault::wrong_format("a glTF file as text", found).whole())
+        }
+        Some(_) => Err(wrong("a glTF file", text)),
+    }
+}
+
+/// Checks the header of a GLB file, and that the file has the length it states.
+pub(crate) fn check_binary_start(start: &[u8], size: Option<u64>) -> Result<(), Located> {
+    stated_length(start, size).map(drop)
+}
+
+fn stated_length(start: &[u8], size: Option<u64>) -> Result<u64, Located> {
+    if start.trim_ascii().is_empty() {
+        return Err(Fault::Empty.whole());
+    }
+    if !start.starts_with(MAGIC) {
+        return Err(wrong("a GLB file", start));
+    }
+    let mut words = Bytes::new(start, MAGIC.len(), ByteOrder::Little);
+    let (Some(version), Some(length)) = (words.u32(), words.u32().map(u64::from)) else {
+        return Err(Fault::cut_short("the header").at_byte(start.len()));
+    };
+    if version != 2 {
+        let what = format!("this is version {version} of GLB");
+        return Err(Fault::unsupported(what, "export it as glTF 2.0").at_byte(4));
+    }
+    if length < (HEADER + CHUNK_HEADER) as u64 {
+        let found = format!("{length} bytes in the header");
+        return Err(Fault::syntax("the length of a GLB file, which is not empty", found).at_byte(8));
+    }
+    match size.filter(|size| *size < length) {
+        Some(size) => Err(Fault::truncated("bytes", length, size).at_byte(8)),
+        None => Ok(length),
+    }
+}
+
+fn wrong(expected: &'static str, start: &[u8]) -> Located {
+    Fault::wrong_format(expected, format!("it begins with `{}`", excerpt(start))).whole()
+}
+
+/// The JSON of a file, the byte at which it begins, and the binary chunk if there is one.
+pub(super) type Parts<'a> = (&'a [u8], usize, Option<&'a [u8]>);
+
+/// Splits a GLB file.
+pub(super) fn split_binary(bytes: &[u8]) -> Result<Parts<'_>, Located> {
+    let length = stated_length(bytes, Some(bytes.len() as u64))?;
+    // Bytes after the stated length belong to nobody.
+    let mut chunks = Bytes::new(&bytes[..length as usize], HEADER, ByteOrder::Little);
+    let Some((b"JSON", json)) = chunk(&mut chunks)? else {
+        return Err(Fault::cut_short("the JSON chunk").at_byte(HEADER));
+    };
+    while let Some((kind, data)) = chunk(&mut chunks)? {
+        if kind == b"BIN\0" {
+            return Ok((json, HEADER + CHUNK_HEADER, Some(data)));
+        }
+    }
+    Ok((json, HEADER + CHUNK_HEADER, None))
+}
+
+/// The kind and the data of the next chunk. Less than the header of one at the end of the file is padding.
+fn chunk<'a>(bytes: &mut Bytes<'a>) -> Result<Option<(&'a [u8], &'a [u8])>, Located> {
+    let start = bytes.at;
+    let (Some(length), Some(kind)) = (bytes.u32(), bytes.take(4)) else { return Ok(None) };
+    let found = bytes.rest.len() as u64;
+    match bytes.take(length as usize) {
+        Some(data) => Ok(Some((kind, data))),
+        None => Err(Fault::truncated("bytes of a chunk", u64::from(length), found).at_byte(start)),
+    }
+}
+
+/// Names of the other files that hold buffers, each once, in the order of the buffers.
+pub(super) fn companions(root: &Root) -> Result<Vec<String>, Located> {
+    let mut names = Vec::new();
+    for (number, buffer) in root.buffers.iter().enumerate() {
+        if let Some(uri) = buffer.uri.as_deref().filter(|uri| !is_data(uri)) {
+            let name = local_name(uri).in_part("buffer", number)?;
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+    }
+    Ok(names)
+}
+
+fn is_data(uri: &str) -> bool {
+    uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:"))
+}
+
+/// The name of a file below the folder of the glTF file.
+fn local_name(uri: &str) -> Result<String, Fault> {
+    let is_strange = |c: char| c.is_control() || matches!(c, '\\' | ':');
+    let is_part = |part: &str| !matches!(part, "" | "..");
+    let is_local = |name: &String| !name.contains(is_strange) && name.split('/').all(is_part);
+    referred(uri).filter(is_local).ok_or_else(|| {
+        Fault::unsupported(
+            format!("its data is in `{}`, which is not a file in its own folder", excerpt(uri.as_bytes())),
+            "put both files into one folder and name the data by its file name, or export a .glb file",
+        )
+    })
+}
+
+/// The data in a data URI.
+fn decoded(uri: &str) -> Result<Vec<u8>, Fault> {
+    let wrong = |found: String| Fault::syntax("a data URI in base64", found);
+    let (head, data) = uri.split_once(',').ok_or_else(|| wrong(excerpt(uri.as_bytes())))?;
+    if !head.to_ascii_lowercase().ends_with(";base64") {
+        return Err(wrong(excerpt(head.as_bytes())));
+    }
+    STANDARD.decode(data.trim()).map_err(|fault| wrong(fault.to_string()))
+}
+
+/// A part of the file that another refers to.
+pub(super) fn part<'a, T>(parts: &'a [T], kind: &'static str, number: Index) -> Result<&'a T, Located> {
+    parts.get(number).ok_or_else(|| {
+        let found = format!("{kind} {number} of {}", parts.len());
+        Fault::syntax("the number of a part that exists", found).whole()
+    })
+}
+
+/// The accessors of a file and what they read from.
+pub(super) struct Data<'a> {
+    pub(super) root: &'a Root,
+    buffers: Vec<Option<Cow<'a, [u8]>>>,
+    /// Bytes of all files.
+    pub(super) n_bytes: u64,
+}
+
+/// How the rows of an accessor are stored.
+#[derive(Clone, Copy)]
+struct Layout {
+    accessor: Index,
+    scalar: Scalar,
+    width: usize,
+}
+
+impl Layout {
+    fn at(self, fault: Fault) -> Located {
+        fault.in_part("accessor", self.accessor)
+    }
+}
+
+impl<'a> Data<'a> {
+    /// Finds the buffers in the binary chunk, in data URIs and in the files, which are the glTF file and its
+    /// [`companions`].
+    pub(super) fn new(root: &'a Root, chunk: Option<&'a [u8]>, files: &[&'a [u8]]) -> Result<Self, Located> {
+        let names = companions(root)?;
+        let mut buffers = Vec::with_capacity(root.buffers.len());
+        for (number, buffer) in root.buffers.iter().enumerate() {
+            buffers.push(match buffer.uri.as_deref() {
+                None => chunk.filter(|_| number == 0).map(Cow::from),
+                Some(uri) if is_data(uri) => Some(decoded(uri).in_part("buffer", number)?.into()),
+                Some(uri) => {
+                    let name = local_name(uri).in_part("buffer", number)?;
+                    let place = names.iter().position(|known| *known == name);
+                    place.and_then(|place| files.get(place + 1)).map(|file| Cow::from(*file))
+                }
+            });
+        }
+        Ok(Self { root, buffers, n_bytes: files.iter().map(|file| file.len() as u64).sum() })
+    }
+
+    /// The number of rows of an accessor.
+    pub(super) fn len(&self, accessor: Index) -> Result<u64, Located> {
+        Ok(part(&self.root.accessors, "accessor", accessor)?.count)
+    }
+
+    /// Positions; integers that are normalized are fractions of their largest value.
+    pub(super) fn positions(&self, index: Index) -> Result<Vec<Point3<f64>>, Located> {
+        let (accessor, layout) = self.typed(index, "VEC3", 3, "positions of type VEC3")?;
+        let numbers = self.numbers(accessor, layout)?;
+        let unit = match layout.scalar {
+            Scalar::I8 => f64::from(i8::MAX),
+            Scalar::U8 => f64::from(u8::MAX),
+            Scalar::I16 => f64::from(i16::MAX),
+            Scalar::U16 => f64::from(u16::MAX),
+            Scalar::U32 => f64::from(u32::MAX),
+            _ => 1.0,
+        };
+        // The most negative integer stands for -1 too.
+        let scaled = |x: f64| if accessor.normalized { (x / unit).max(-1.0) } else { x };
+        let rows = numbers.as_chunks::<3>().0.iter().enumerate();
+        rows.map(|(vertex, row)| finite(row.map(scaled), vertex).in_part("accessor", index)).collect()
+    }
+
+    /// Vertex numbers, less than `n_vertices`.
+    pub(super) fn indices(&self, index: Index, n_vertices: usize) -> Result<Vec<u32>, Located> {
+        let (accessor, layout) = self.typed(index, "SCALAR", 1, "indices of type SCALAR")?;
+        if !matches!(layout.scalar, Scalar::U8 | Scalar::U16 | Scalar::U32) {
+            let found = format!("{:?}", layout.scalar);
+            return Err(layout.at(Fault::syntax("indices that are unsigned integers", found)));
+        }
+        let numbers = self.numbers(accessor, layout)?;
+        match numbers.iter().find(|x| **x >= n_vertices as f64) {
+            Some(number) => Err(layout.at(Fault::no_vertex(number.to_string(), 0, n_vertices as u64))),
+            None => Ok(numbers.into_iter().map(|x| x as u32).collect()),
+        }
+    }
+
+    /// An accessor with rows of a kind.
+    fn typed(
+        &self,
+        accessor: Index,
+        kind: &str,
+        width: usize,
+        expected: &'static str,
+    ) -> Result<(&Accessor, Layout), Located> {
+        let found = part(&self.root.accessors, "accessor", accessor)?;
+        match scalar(found.component_type) {
+            Some(scalar) if found.kind == kind => Ok((found, Layout { accessor, scalar, width })),
+            _ => Err(Fault::syntax(expected, "another type").in_part("accessor", accessor)),
+        }
+    }
+
+    /// All numbers of an accessor, row by row.
+    fn numbers(&self, accessor: &Accessor, layout: Layout) -> Result<Vec<f64>, Located> {
+        let count = accessor.count;
+        let mut numbers = match accessor.buffer_view {
+            Some(view) => self.rows(view, accessor.byte_offset.unwrap_or(0), count, layout, true)?,
+            None if accessor.sparse.is_none() => {
+                return Err(layout.at(Fault::unsupported(
+                    "its numbers are not in the file, as in compressed meshes",
+                    "decompress it, for example with `gltf-transform copy in.glb out.glb`",
+                )));
+            }
+            None if count > self.n_bytes => return Err(layout.at(Fault::Inflates { limit: self.n_bytes })),
+            None => vec![0.0; count as usize * layout.width],
+        };
+        let Some(sparse) = &accessor.sparse else { return Ok(numbers) };
+        let (places, values, n) = (&sparse.indices, &sparse.values, sparse.count);
+        let Some(scalar) = scalar(places.component_type) else {
+            return Err(layout.at(Fault::syntax("indices that are unsigned integers", "another type")));
+        };
+        let of_places = Layout { scalar, width: 1, ..layout };
+        let places = self.rows(places.rows.buffer_view, places.rows.byte_offset, n, of_places, false)?;
+        let values = self.rows(values.buffer_view, values.byte_offset, n, layout, false)?;
+        for (place, row) in places.iter().zip(values.chunks_exact(layout.width)) {
+            let slot = numbers.chunks_exact_mut(layout.width).nth(*place as usize).filter(|_| *place >= 0.0);
+            let slot = slot.ok_or_else(|| layout.at(Fault::no_vertex(place.to_string(), 0, count)))?;
+            slot.copy_from_slice(row);
+        }
+        Ok(numbers)
+    }
+
+    /// Rows of a buffer view.
+    fn rows(
+        &self,
+        view: Index,
+        offset: u64,
+        count: u64,
+        layout: Layout,
+        is_strided: bool,
+    ) -> Result<Vec<f64>, Located> {
+        let (bytes, stride) = self.view(view)?;
+        let row = layout.scalar.size() * layout.width;
+        let stride = stride.filter(|_| is_strided).unwrap_or(row);
+        if stride < row {
+            let found = format!("{stride} bytes");
+            return Err(layout.at(Fault::syntax("a stride no shorter than a row", found)));
+        }
+        let to_last = count.saturating_sub(1).checked_mul(stride as u64).and_then(|n| n.checked_add(offset));
+        let needed = to_last.and_then(|n| n.checked_add(if count == 0 { 0 } else { row as u64 }));
+        if needed.is_none_or(|needed| needed > bytes.len() as u64) {
+            let found = (bytes.len() as u64).saturating_sub(offset) / stride as u64;
+            return Err(layout.at(Fault::truncated("rows", count, found)));
+        }
+        let mut numbers = Vec::with_capacity(count as usize * layout.width);
+        for i in 0..count as usize {
+            let mut row = Bytes::new(bytes, offset as usize + i * stride, ByteOrder::Little);
+            numbers.extend((0..layout.width).filter_map(|_| row.number(layout.scalar)));
+        }
+        Ok(numbers)
+    }
+
+    /// The bytes of a view and its stride.
+    fn view(&self, index: Index) -> Result<(&[u8], Option<usize>), Located> {
+        let view = part(&self.root.buffer_views, "buffer view", index)?;
+        let buffer = view.buffer;
+        let bytes = part(&self.buffers, "buffer", buffer)?.as_deref().ok_or_else(|| {
+            let what = format!("buffer {buffer} has no data, as in compressed files");
+            Fault::unsupported(what, "export it without compression").in_part("buffer view", index)
+        })?;
+        let start = view.byte_offset.unwrap_or(0);
+        let end = start.saturating_add(view.byte_length);
+        let data = bytes.get(start as usize..end as usize).ok_or_else(|| {
+            let items = format!("bytes in buffer {buffer}");
+            Fault::truncated(items, end, bytes.len() as u64).in_part("buffer view", index)
+        })?;
+        Ok((data, view.byte_stride.filter(|stride| *stride > 0)))
+    }
+}
+
+/// How numbers of a component type are stored. `None` for a number that is not in the standard.
+fn scalar(component_type: u32) -> Option<Scalar> {
+    use Scalar::{F32, I8, I16, U8, U16, U32};
+    let numbered = [(5120, I8), (5121, U8), (5122, I16), (5123, U16), (5125, U32), (5126, F32)];
+    numbered.into_iter().find(|(number, _)| *number == component_type).map(|(_, scalar)| scalar)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn data_is_only_looked_for_below_the_folder_of_the_file() {
+        for (uri, name) in [("cat.bin", "cat.bin"), ("a%20b/c.bin", "a b/c.bin"), ("%C3%A9.bin", "é.bin")] {
+            assert_eq!(local_name(uri).unwrap(), name);
+        }
+        for uri in [
+            "../cat.bin",
+            "a/../../cat.bin",
+            "/etc/passwd",
+            "%2e%2e/cat.bin",
+            "a%2F..%2F..%2Fb",
+            "file:///etc/passwd",
+            "https://example.org/a.bin",
+            "C:\\a.bin",
+            "..\\a.bin",
+            "",
+            ".",
+            "a//b",
+            "%zz",
+            "%ff",
+            "a%00b",
+        ] {
+            assert!(matches!(local_name(uri), Err(Fault::Unsupported { .. })), "{uri}");
+        }
+    }
+
+    #[test]
+    fn data_uris_are_decoded() {
+        assert_eq!(decoded("data:application/octet-stream;base64,AAEC/w==").unwrap(), [0, 1, 2, 255]);
+        assert!(decoded("DATA:;BASE64,").unwrap().is_empty());
+        for uri in ["data:", "data:text/plain,abc", "data:;base64,A", "data:;base64,?"] {
+            assert!(decoded(uri).is_err(), "{uri}");
+        }
+    }
+}

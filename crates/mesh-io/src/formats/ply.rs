@@ -1,0 +1,530 @@
+//! PLY, text and binary.
+
+use mesh::MIN_POINTS;
+
+use crate::prelude::*;
+
+const FORMAT: &str = "a PLY file";
+/// The last line of the header.
+const END: &[u8] = b"end_header";
+
+/// Checks the first line, and that the header is text.
+pub(super) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
+    check_is_not_utf16(start)?;
+    check_first_line(&mut Lines::new(start))?;
+    let end = start.windows(END.len()).position(|window| window == END).unwrap_or(start.len());
+    check_is_text(&start[..end], FORMAT)
+}
+
+/// Reads `ply`.
+fn check_first_line(lines: &mut Lines<'_>) -> Result<(), Located> {
+    let first = lines.next().ok_or_else(|| Fault::Empty.whole())?;
+    match first.text == b"ply" {
+        true => Ok(()),
+        false => {
+            Err(Fault::wrong_format(FORMAT, format!("it begins with `{}`", excerpt(first.text))).whole())
+        }
+    }
+}
+
+/// Reads PLY: the element `vertex` with `x y z`, then `face` with a list `vertex_indices` or `vertex_index`. The first
+/// floating-point property of the vertices other than positions, normals, colors and texture coordinates is a scalar
+/// field. Other elements and properties are ignored.
+pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
+    let (bytes, mut field) = (files[0], None);
+    let mut lines = Lines::new(bytes);
+    check_first_line(&mut lines)?;
+    let header = Header::parse(&mut lines)?;
+    header.check(lines.remaining(), limits).whole()?;
+    let mut body = match header.byte_order {
+        None => Body::Text(Words::new(lines, false)),
+        Some(order) => Body::Binary(Bytes::new(bytes, bytes.len() - lines.remaining(), order)),
+    };
+    let (mut positions, mut polygons, mut corners) = (Vec::new(), Polygons::default(), Vec::new());
+    for element in &header.elements {
+        match element.name.as_str() {
+            "vertex" => {
+                positions.reserve_exact(element.count as usize);
+                let axes: Vec<Option<usize>> = element.properties.iter().map(|p| p.axis()).collect();
+                let carrier = element.properties.iter().position(|p| p.is_field());
+                let mut values = Vec::new();
+                let is_needed = |property: usize| axes[property].is_some();
+                for row in 0..element.count {
+                    let mut p = Point3::origin();
+                    let place = body.row(element, row, is_needed, |property, x| {
+                        if let Some(axis) = axes[property] {
+                            p[axis] = x;
+                        }
+                        if carrier == Some(property) {
+                            values.push(x);
+                        }
+                    })?;
+                    positions.push(finite(p, row as usize).at(place)?);
+                }
+                field = carrier.map(|i| ScalarField { name: element.properties[i].name.clone(), values });
+            }
+            "face" => {
+                polygons = Polygons::with_room_for(element.count as usize);
+                let list = element.corner_list();
+                for row in 0..element.count {
+                    let mut outside = None;
+                    corners.clear();
+                    let is_needed = |property| Some(property) == list;
+                    let place = body.row(element, row, is_needed, |property, index| {
+                        if !is_needed(property) {
+                        } else if (0.0..positions.len() as f64).contains(&index) {
+                            corners.push(VertexId(index as u32));
+                        } else {
+                            outside.get_or_insert(index);
+                        }
+                    })?;
+                    if let Some(index) = outside {
+                        let n = positions.len() as u64;
+                        return Err(Fault::no_vertex(index.to_string(), 0, n).at(place));
+                    }
+                    polygons.push(&positions, &corners, limits).at(place)?;
+                }
+            }
+            _ => {
+                for row in 0..element.count {
+                    body.row(element, row, |_| false, |_, _| ())?;
+                }
+            }
+        }
+    }
+    let leftover = match body {
+        Body::Text(mut words) => words.row().map(|line| Place::Line(line.number)),
+        Body::Binary(bytes) => (!bytes.rest.trim_ascii().is_empty()).then_some(Place::Byte(bytes.at as u64)),
+    };
+    if let Some(place) = leftover {
+        let promised = header.elements.iter().map(|element| element.count).sum();
+        return Err(Fault::Leftover { items: "elements", promised }.at(place));
+    }
+    Ok(MeshFile { field, ..polygons.finish(positions, limits)? })
+}
+
+/// What follows the header: in text, a row per line.
+enum Body<'a> {
+    Text(Words<'a>),
+    Binary(Bytes<'a>),
+}
+
+impl Body<'_> {
+    /// Reads the next row and gives each of its numbers to `take`, with the index of its property; returns
+    /// the place of the row. Words of properties that are not needed may be no numbers: they are given as NaN.
+    fn row(
+        &mut self,
+        element: &Element,
+        row: u64,
+        is_needed: impl Fn(usize) -> bool,
+        take: impl FnMut(usize, f64),
+    ) -> Result<Place, Located> {
+        let truncated = || Fault::truncated(format!("rows of `{}`", element.name), element.count, row);
+        match self {
+            Self::Text(words) => {
+                let line = words.row().ok_or_else(|| truncated().in_line(words.lines.number))?;
+                let next = |scalar, property: Option<usize>| {
+                    let is_needed = property.is_none_or(&is_needed);
+                    parse_scalar(scalar, words.next()?).or_else(|| (!is_needed).then_some(f64::NAN))
+                };
+                element
+                    .read_row(next, take)
+                    .ok_or_else(|| line.expected("a row as the header declares it"))?;
+                Ok(Place::Line(line.number))
+            }
+            Self::Binary(bytes) => {
+                let place = Place::Byte(bytes.at as u64);
+                let next = |scalar, _| bytes.number(scalar);
+                element.read_row(next, take).ok_or_else(|| truncated().at(place))?;
+                Ok(place)
+            }
+        }
+    }
+}
+
+/// A number as its type can hold it.
+fn parse_scalar(scalar: Scalar, token: &[u8]) -> Option<f64> {
+    match scalar {
+        Scalar::F32 => parse_number::<f32>(token).map(f64::from),
+        Scalar::F64 => parse_number(token),
+        _ => parse_integer(token).map(|x| x as f64),
+    }
+}
+
+/// Which numbers follow, and how they are stored.
+struct Header {
+    /// `None` for text.
+    byte_order: Option<ByteOrder>,
+    elements: Vec<Element>,
+}
+
+/// A table of `count` rows.
+struct Element {
+    name: String,
+    count: u64,
+    properties: Vec<Property>,
+}
+
+/// A column: one number per row, or a list of them.
+struct Property {
+    name: String,
+    /// Type of the length of a list; `None` for a single number.
+    length: Option<Scalar>,
+    item: Scalar,
+}
+
+impl Header {
+    /// Reads the lines after `ply` up to `end_header`.
+    fn parse(lines: &mut Lines<'_>) -> Result<Self, Located> {
+        let mut byte_order = None;
+        let mut elements: Vec<Element> = Vec::new();
+        for line in lines.by_ref() {
+            let unexpected = || line.expected("a line of a PLY header");
+            let words: Vec<&str> = line.tokens().map(|word| str::from_utf8(word).unwrap_or("")).collect();
+            match words[..] {
+                ["comment" | "obj_info", ..] => {}
+                ["format", name, version] if byte_order.is_none() => {
+                    parse_number::<f64>(version.as_bytes()).ok_or_else(unexpected)?;
+                    byte_order = Some(match name {
+                        "ascii" => None,
+                        "binary_little_endian" => Some(ByteOrder::Little),
+                        "binary_big_endian" => Some(ByteOrder::Big),
+                        _ => return Err(unexpected()),
+                    });
+                }
+                ["element", name, count] if elements.iter().all(|element| element.name != name) => {
+                    let count = count.parse().map_err(|_| unexpected())?;
+                    elements.push(Element { name: name.into(), count, properties: Vec::new() });
+                }
+                ["property", .., name] if words.len() > 2 => {
+                    let scalar = |name| scalar(name).ok_or_else(unexpected);
+                    let (length, item) = match words[1..words.len() - 1] {
+                        [item] => (None, scalar(item)?),
+                        ["list", length, item] => (Some(scalar(length)?), scalar(item)?),
+                        _ => return Err(unexpected()),
+                    };
+                    let element = elements.last_mut().ok_or_else(unexpected)?;
+                    element.properties.push(Property { name: name.into(), length, item });
+                }
+                ["end_header"] => {
+                    let byte_order =
+                        byte_order.ok_or_else(|| line.expected("a line `format` before the end"))?;
+                    return Ok(Self { byte_order, elements });
+                }
+                _ => return Err(unexpected()),
+            }
+        }
+        Err(Fault::cut_short("the rest of the header, to `end_header`").in_line(lines.number))
+    }
+
+    /// Rejects a header that does not declare a mesh or that promises more than `payload` bytes can hold,
+    /// before anything is read or reserved.
+    fn check(&self, payload: usize, limits: &ReadLimits) -> Result<(), Fault> {
+        let remedy = "export the mesh with vertices `x y z`, then faces `vertex_indices`";
+        let unsupported = |what: &str| Err(Fault::unsupported(what, remedy));
+        let position_of = |name: &str| self.elements.iter().position(|element| element.name == name);
+        let Some(vertex_at) = position_of("vertex") else {
+            return unsupported("the header declares no element `vertex`");
+        };
+        let vertex = &self.elements[vertex_at];
+        let face_at = position_of("face");
+        let n_faces = face_at.map_or(0, |at| self.elements[at].count);
+        limits.check(vertex.count, n_faces)?;
+        if n_faces == 0 && position_of("tristrips").is_some() {
+            return unsupported("the faces are strips of triangles");
+        }
+        if n_faces == 0 && vertex.count < MIN_POINTS as u64 {
+            return Err(Fault::NoFaces { n_vertices: vertex.count as usize });
+        }
+        if face_at.is_some_and(|face_at| face_at < vertex_at) {
+            return unsupported("the faces come before the vertices");
+        }
+        if (0..3).any(|axis| !vertex.properties.iter().any(|p| p.axis() == Some(axis))) {
+            return unsupported("the vertices lack one of the properties `x y z`");
+        }
+        if n_faces > 0 && face_at.is_some_and(|at| self.elements[at].corner_list().is_none()) {
+            return unsupported("the faces lack a list of integers `vertex_indices`");
+        }
+
+        // The last number of an ASCII file needs no separator after it.
+        let mut room = payload as u64 + u64::from(self.byte_order.is_none());
+        for element in self.elements.iter().filter(|element| element.count > 0) {
+            let shortest = element.shortest_row(self.byte_order);
+            if shortest == 0 {
+                return unsupported(&format!("the element `{}` has no properties", element.name));
+            }
+            let found = room / shortest;
+            if element.count > found {
+                return Err(Fault::truncated(format!("rows of `{}`", element.name), element.count, found));
+            }
+            room -= element.count * shortest;
+        }
+        Ok(())
+    }
+}
+
+impl Element {
+    /// Index of the property that lists the corners of a face.
+    fn corner_list(&self) -> Option<usize> {
+        let names = ["vertex_indices", "vertex_index"];
+        self.properties
+            .iter()
+            .position(|p| names.contains(&p.name.as_str()) && p.length.is_some() && p.item.is_integer())
+    }
+
+    /// Reads a row, number by number; `None` if one is missing or malformed. `next` learns the property that a number
+    /// belongs to, `None` for the length of a list.
+    fn read_row(
+        &self,
+        mut next: impl FnMut(Scalar, Option<usize>) -> Option<f64>,
+        mut take: impl FnMut(usize, f64),
+    ) -> Option<()> {
+        for (i, property) in self.properties.iter().enumerate() {
+            let n = match property.length {
+                None => 1,
+                Some(length) => Some(next(length, None)?).filter(|n| *n >= 0.0 && n.fract() == 0.0)? as u64,
+            };
+            for _ in 0..n {
+                take(i, next(property.item, Some(i))?);
+            }
+        }
+        Some(())
+    }
+
+    /// The fewest bytes that a row can take.
+    fn shortest_row(&self, byte_order: Option<ByteOrder>) -> u64 {
+        // A digit and a separator in text.
+        let shortest = |p: &Property| byte_order.map_or(2, |_| p.length.unwrap_or(p.item).size() as u64);
+        self.properties.iter().map(shortest).sum()
+    }
+}
+
+impl Property {
+    /// The axis whose coordinate a property of a vertex holds.
+    fn axis(&self) -> Option<usize> {
+        let axis = ["x", "y", "z"].iter().position(|axis| *axis == self.name);
+        axis.filter(|_| self.length.is_none())
+    }
+
+    /// Whether a property of a vertex is a scalar field, judging by its type and name.
+    fn is_field(&self) -> bool {
+        const OTHERS: &str = "x y z nx ny nz red green blue alpha r g b a s t u v texture_u texture_v w";
+        self.length.is_none() && !self.item.is_integer() && OTHERS.split(' ').all(|other| other != self.name)
+    }
+}
+
+fn scalar(name: &str) -> Option<Scalar> {
+    Some(match name {
+        "char" | "int8" => Scalar::I8,
+        "uchar" | "uint8" => Scalar::U8,
+        "short" | "int16" => Scalar::I16,
+        "ushort" | "uint16" => Scalar::U16,
+        "int" | "int32" => Scalar::I32,
+        "uint" | "uint32" => Scalar::U32,
+        "float" | "float32" => Scalar::F32,
+        "double" | "float64" => Scalar::F64,
+        _ => return None,
+    })
+}
+
+const FACE_PROPERTIES: &str = "property list uchar uint vertex_indices\n";
+const FIELD_COLORS: &str = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+
+/// Writes a mesh, perhaps with a value and a colour per vertex; coordinates read back bit for bit.
+pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh, field: Field<'_>) -> io::Result<()> {
+    let properties = field.map(|field| format!("property double {}\n{FIELD_COLORS}", field.name));
+    let properties = properties.unwrap_or_default();
+    write_header(out, mesh.n_vertices(), &properties, "face", mesh.n_faces(), FACE_PROPERTIES)?;
+    for (v, p) in mesh.positions.iter().enumerate() {
+        write_coordinates(out, p)?;
+        if let Some(field) = field {
+            out.write_all(&field.values[v].to_le_bytes())?;
+            out.write_all(&field.colors[v])?;
+        }
+    }
+    for face in &mesh.faces {
+        out.write_all(&[3])?;
+        face.iter().try_for_each(|v| out.write_all(&v.0.to_le_bytes()))?;
+    }
+    Ok(())
+}
+
+/// Writes the points of polylines, and an element `edge` for each segment.
+pub(super) fn write_lines(out: &mut dyn Write, lines: &[Vec<Point3<f64>>]) -> io::Result<()> {
+    let n_points = lines.iter().map(Vec::len).sum();
+    let n_edges = lines.iter().map(|line| line.len().saturating_sub(1)).sum();
+    write_header(out, n_points, "", "edge", n_edges, "property uint vertex1\nproperty uint vertex2\n")?;
+    lines.iter().flatten().try_for_each(|p| write_coordinates(out, p))?;
+    let mut first = 0u32;
+    for line in lines {
+        for vertex in (first..).take(line.len().saturating_sub(1)) {
+            out.write_all(&vertex.to_le_bytes())?;
+            out.write_all(&(vertex + 1).to_le_bytes())?;
+        }
+        first += line.len() as u32;
+    }
+    Ok(())
+}
+
+/// Writes the header of vertices, with `more` properties after their coordinates, and of another element.
+fn write_header(
+    out: &mut dyn Write,
+    n_vertices: usize,
+    more: &str,
+    element: &str,
+    count: usize,
+    properties: &str,
+) -> io::Result<()> {
+    write!(
+        out,
+        "ply\nformat binary_little_endian 1.0\nelement vertex {n_vertices}\nproperty double x\nproperty double y\n\
+         property double z\n{more}element {element} {count}\n{properties}end_header\n"
+    )
+}
+
+fn write_coordinates(out: &mut dyn Write, p: &Point3<f64>) -> io::Result<()> {
+    p.iter().try_for_each(|x| out.write_all(&x.to_le_bytes()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mesh::shapes;
+
+    const HEADER: &str = "ply\nformat ascii 1.0\ncomment c\nelement vertex 4\nproperty float x\n\
+        property float y\nproperty double z\nproperty uchar red\nelement face 2\n\
+        property list uchar int vertex_indices\nproperty int flags\nend_header\n";
+    const BODY: &str = "0 0 0 255\n1 0 0 9\n1 1 0 9\n0 1 .5 9\n3 0 1 2 7\n3 0 2 3 7\n";
+
+    fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
+        super::parse(&[bytes], &ReadLimits::default()).map(|file| file.mesh)
+    }
+
+    fn fault(text: &str) -> (Place, Fault) {
+        let Located { place, fault, .. } = parse(text.as_bytes()).unwrap_err();
+        (place, fault)
+    }
+
+    #[test]
+    fn other_properties_and_elements_are_ignored() {
+        let mesh = parse(format!("{HEADER}{BODY}").as_bytes()).unwrap();
+        assert_eq!(mesh.positions[3], nalgebra::Point3::new(0.0, 1.0, 0.5));
+        assert_eq!(mesh.faces, [[0, 1, 2].map(VertexId), [0, 2, 3].map(VertexId)]);
+        let windows = format!("{HEADER}{BODY}").replace('\n', "\r\n");
+        assert_eq!(parse(windows.as_bytes()).unwrap(), mesh);
+        let header = HEADER.replace("end_header", "element edge 1\nproperty int a\nend_header");
+        assert_eq!(parse(format!("{header}{BODY}3\n").as_bytes()).unwrap(), mesh);
+        let header = HEADER.replace("vertex_indices", "vertex_index").replace("uchar int", "int8 uint16");
+        assert_eq!(parse(format!("{header}{BODY}").as_bytes()).unwrap(), mesh);
+        let quad = BODY.replace("3 0 1 2 7\n3 0 2 3 7", "4 0 1 2 3 7");
+        let header = HEADER.replace("face 2", "face 1");
+        assert_eq!(parse(format!("{header}{quad}").as_bytes()).unwrap(), mesh);
+    }
+
+    /// The same mesh in either byte order, floats for coordinates and shorts for indices.
+    fn binary(mesh: &TriMesh, big: bool) -> Vec<u8> {
+        let order = if big { "big" } else { "little" };
+        let header = format!(
+            "ply\nformat binary_{order}_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\n\
+             property float z\nelement face {}\nproperty list uchar short vertex_index\nend_header\n",
+            mesh.n_vertices(),
+            mesh.n_faces()
+        );
+        let mut bytes = header.into_bytes();
+        for x in mesh.positions.iter().flat_map(|p| [p.x, p.y, p.z]) {
+            bytes.extend(if big { (x as f32).to_be_bytes() } else { (x as f32).to_le_bytes() });
+        }
+        for face in &mesh.faces {
+            bytes.push(3);
+            for v in face.map(|v| v.0 as i16) {
+                bytes.extend(if big { v.to_be_bytes() } else { v.to_le_bytes() });
+            }
+        }
+        bytes
+    }
+
+    #[test]
+    fn binary_parses_in_both_byte_orders() {
+        let cube = shapes::cube(1);
+        assert_eq!(parse(&binary(&cube, false)).unwrap(), cube);
+        assert_eq!(parse(&binary(&cube, true)).unwrap(), cube);
+    }
+
+    #[test]
+    fn ascii_faults_name_the_line() {
+        let with = |from: &str, to: &str| fault(&format!("{HEADER}{BODY}").replacen(from, to, 1));
+        assert!(matches!(
+            with("1 1 0 9", "1 nan 0 9"),
+            (Place::Line(15), Fault::NonFinite { vertex: 2, .. })
+        ));
+        assert!(matches!(with("1 1 0 9", "1 x 0 9"), (Place::Line(15), Fault::Syntax { .. })));
+        assert!(matches!(with("1 1 0 9", "1 1"), (Place::Line(15), Fault::Syntax { .. })));
+        let index = |index: &str| Fault::IndexOutOfRange { index: index.into(), first: 0, last: 3 };
+        assert_eq!(with("3 0 2 3", "3 0 2 4"), (Place::Line(18), index("4")));
+        assert_eq!(with("3 0 2 3", "3 0 -2 3"), (Place::Line(18), index("-2")));
+        assert_eq!(with("3 0 2 3", "2 0 2 3"), (Place::Line(18), Fault::TooFewCorners { corners: 2 }));
+        assert!(matches!(with("3 0 2 3", "9 0 2 3"), (Place::Line(18), Fault::Syntax { .. })));
+        assert!(matches!(with("face 2", "face 1"), (Place::Line(18), Fault::Leftover { .. })));
+        let rows = Fault::Truncated { items: "rows of `face`".into(), promised: 3, found: 2 };
+        assert_eq!(with("face 2", "face 3").1, rows);
+        assert!(matches!(with("ascii 1.0", "ascii one"), (Place::Line(2), Fault::Syntax { .. })));
+        assert!(matches!(with("comment c", "commend c"), (Place::Line(3), Fault::Syntax { .. })));
+    }
+
+    #[test]
+    fn headers_that_declare_no_mesh_or_too_much_are_errors() {
+        let with = |from: &str, to: &str| fault(&format!("{HEADER}{BODY}").replacen(from, to, 1)).1;
+        assert!(matches!(with("property float x\n", ""), Fault::Unsupported { .. }));
+        assert!(matches!(with("vertex_indices", "texcoords"), Fault::Unsupported { .. }));
+        assert!(matches!(with("uchar int", "uchar float"), Fault::Unsupported { .. }));
+        assert!(matches!(with("element vertex", "element vertices"), Fault::Unsupported { .. }));
+        assert!(matches!(with("element face", "element faces"), Fault::NoFaces { n_vertices: 4 }));
+        assert!(matches!(
+            with("end_header\n", "element e 99999999999999999\nend_header\n"),
+            Fault::Unsupported { .. }
+        ));
+        let bold = with("vertex 4", "vertex 4000000000");
+        assert!(matches!(bold, Fault::Truncated { promised: 4_000_000_000, .. }), "{bold:?}");
+        assert!(matches!(with("vertex 4", "vertex 99999999999"), Fault::TooLarge { .. }));
+        assert!(matches!(fault("ply\nformat ascii 1.0\n"), (_, Fault::CutShort { .. })));
+        assert!(matches!(fault("OFF\n"), (Place::File, Fault::WrongFormat { .. })));
+        assert_eq!(fault("\n"), (Place::File, Fault::Empty));
+        assert!(parse(b"ply\n\xff\xfe\n").is_err());
+    }
+
+    #[test]
+    fn binary_faults_name_the_byte() {
+        let cube = shapes::cube(0);
+        let whole = binary(&cube, false);
+        let start = whole.len() - 12 * 8 - 7 * 12;
+        let mut bytes = whole.clone();
+        bytes[start + 12..start + 16].copy_from_slice(&f32::INFINITY.to_le_bytes());
+        let Located { place, fault, .. } = parse(&bytes).unwrap_err();
+        assert_eq!(place, Place::Byte(start as u64 + 12));
+        assert_eq!(fault, Fault::NonFinite { vertex: 1, value: f64::INFINITY });
+        let mut bytes = whole.clone();
+        bytes[start + 96] = 200;
+        let Located { place, fault, .. } = parse(&bytes).unwrap_err();
+        assert_eq!(place, Place::Byte(start as u64 + 96));
+        assert_eq!(fault, Fault::Truncated { items: "rows of `face`".into(), promised: 12, found: 0 });
+        assert!(matches!(parse(&whole[..whole.len() - 1]).unwrap_err().fault, Fault::Truncated { .. }));
+        assert!(matches!(parse(&[whole, vec![1]].concat()).unwrap_err().fault, Fault::Leftover { .. }));
+    }
+
+    #[test]
+    fn lines_have_an_edge_per_segment() {
+        let point = |x: f64| Point3::new(x, 0.5, -1.0);
+        let lines =
+            [vec![point(0.0), point(1.0), point(2.5)], vec![point(7.0)], vec![point(3.0), point(4.0)]];
+        let mut out = Vec::new();
+        write_lines(&mut out, &lines).unwrap();
+        let header = "ply\nformat binary_little_endian 1.0\nelement vertex 6\nproperty double x\nproperty double y\n\
+            property double z\nelement edge 3\nproperty uint vertex1\nproperty uint vertex2\nend_header\n";
+        let body = out.strip_prefix(header.as_bytes()).unwrap();
+        let (points, edges) = body.split_at(6 * 24);
+        let x = |v: usize| f64::from_le_bytes(*points[24 * v..].first_chunk().unwrap());
+        assert_eq!([0, 1, 2, 3, 4, 5].map(x), [0.0, 1.0, 2.5, 7.0, 3.0, 4.0]);
+        let ends: Vec<u32> = edges.as_chunks().0.iter().map(|&v| u32::from_le_bytes(v)).collect();
+        assert_eq!(ends, [0, 1, 1, 2, 4, 5]);
+    }
+}

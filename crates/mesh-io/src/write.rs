@@ -1,0 +1,130 @@
+//! Writing files, complete or not at all.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use base::files::{FileError, Pending};
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use mesh::{MeshError, TriMesh, check_finite, check_input};
+use nalgebra::Point3;
+
+use crate::file::VertexField;
+use crate::formats::{Content, Format, Precision};
+use crate::name::is_gzip;
+use crate::source::Disk;
+
+/// Writes a mesh in the format of the extension; the file appears complete or not at all.
+///
+/// OFF, OBJ, PLY, 3MF and the `.vert`/`.tri` pair (both files under either name) read back bit for bit. STL and GLB round
+/// coordinates to 32 bits, and STL has no vertex numbers. GLB moves a mesh that would collapse to the origin and states
+/// its place. A name that ends in `.gz` makes a compressed file.
+///
+/// # Errors
+/// [`MeshError::Io`] if the file cannot be written, [`MeshError::UnknownFormat`] for an unknown extension, and
+/// [`MeshError::Unusable`] for a format that is only read and for a mesh that the file could not hold.
+pub fn write(path: &Path, mesh: &TriMesh) -> Result<(), MeshError> {
+    let format = Format::for_writing(path, Content::Mesh)?;
+    // What `read` would refuse.
+    check_input(mesh)?;
+    if let Precision::Single { moved } = format.precision {
+        check_single_precision(mesh, moved, format)?;
+    }
+    let paths = format.files(path, &Disk);
+    let written =
+        paths.iter().zip(format.write).map(|(path, write)| pending(path, |out| write(out, mesh, None)));
+    let pending = written.collect::<Result<Vec<_>, _>>()?;
+    Ok(pending.into_iter().try_for_each(Pending::publish)?)
+}
+
+/// Writes a mesh with a scalar field: as PLY with the property [`VertexField::name`] (double) and the colours
+/// `red green blue`; as OFF and OBJ with the colours alone.
+///
+/// # Errors
+/// As [`write()`]; [`MeshError::Unusable`] also for another extension and for a field that the file cannot hold.
+pub fn write_scalar_field(path: &Path, mesh: &TriMesh, field: &VertexField<'_>) -> Result<(), MeshError> {
+    let format = Format::for_writing(path, Content::Field)?;
+    field.check(mesh.n_vertices())?;
+    check_input(mesh)?;
+    Ok(pending(path, |out| format.write.iter().try_for_each(|write| write(out, mesh, Some(field))))?
+        .publish()?)
+}
+
+/// Writes polylines as OBJ, or as PLY with an element `edge` per segment.
+///
+/// # Errors
+/// [`MeshError::Io`] if the file cannot be written, [`MeshError::UnknownFormat`] for an unknown extension, and
+/// [`MeshError::Unusable`] for another one and if a coordinate is not finite.
+pub fn write_polylines(path: &Path, lines: &[Vec<Point3<f64>>]) -> Result<(), MeshError> {
+    let format = Format::for_writing(path, Content::Lines)?;
+    check_finite(lines.iter().flatten())?;
+    Ok(pending(path, |out| format.write_lines.map_or(Ok(()), |write| write(out, lines)))?.publish()?)
+}
+
+/// Writes a file, compressed if its name says so. It appears once it is published.
+fn pending(
+    path: &Path,
+    content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<Pending<'_>, FileError> {
+    Pending::write(path, |out| match is_gzip(path) {
+        false => content(out),
+        true => {
+            let mut compressed = GzEncoder::new(out, Compression::default());
+            content(&mut compressed)?;
+            compressed.finish().map(drop)
+        }
+    })
+}
+
+/// Refuses coordinates that 32 bits cannot hold, and a surface whose faces they make points or lines.
+fn check_single_precision(mesh: &TriMesh, moved: bool, format: &Format) -> Result<(), MeshError> {
+    let unusable = |what: String, remedy: &str| {
+        let name = format.name;
+        Err(MeshError::Unusable(format!(
+            "{what} the 32-bit floats of {name}; {remedy} or use another format"
+        )))
+    };
+    let overflows = |x: &&f64| !(**x as f32).is_finite();
+    for (vertex, p) in mesh.positions.iter().enumerate() {
+        if let Some(&value) = p.iter().find(overflows) {
+            let what = format!("vertex {vertex} has the coordinate {value:e}, beyond");
+            return unusable(what, "scale the mesh down");
+        }
+    }
+    let origin = if moved { origin(mesh) } else { Point3::origin() };
+    match merged_face(mesh, &origin) {
+        None => Ok(()),
+        Some(face) => unusable(format!("corners of face {face} coincide in"), "move the mesh to the origin"),
+    }
+}
+
+/// A position less the origin, as 32 bits hold it.
+pub(crate) fn rounded(p: &Point3<f64>, origin: &Point3<f64>) -> [f32; 3] {
+    [0, 1, 2].map(|axis| (p[axis] - origin[axis]) as f32)
+}
+
+/// Share of the area that rounding may take without a word, as a repair may.
+const ALLOWED_LOSS: f64 = 0.01;
+
+/// The first face with different corners that rounding makes equal, if such faces hold more of the area than is allowed.
+fn merged_face(mesh: &TriMesh, origin: &Point3<f64>) -> Option<usize> {
+    let is_merged = |face: &usize| {
+        let [a, b, c] = mesh.triangle(*face);
+        [(a, b), (b, c), (c, a)].iter().any(|(p, q)| p != q && rounded(p, origin) == rounded(q, origin))
+    };
+    let (mut first, mut lost) = (None, 0.0);
+    for (face, area) in mesh.face_areas().enumerate().filter(|(face, _)| is_merged(face)) {
+        first = first.or(Some(face));
+        lost += area;
+    }
+    first.filter(|_| lost > ALLOWED_LOSS * mesh.area())
+}
+
+/// An origin that 32 bits hold: the middle of a mesh whose faces would collapse otherwise.
+pub(crate) fn origin(mesh: &TriMesh) -> Point3<f64> {
+    let origin = Point3::origin();
+    match mesh.bounds().filter(|_| merged_face(mesh, &origin).is_some()) {
+        Some([lo, hi]) => Point3::from(rounded(&nalgebra::center(&lo, &hi), &origin)).cast(),
+        None => origin,
+    }
+}
