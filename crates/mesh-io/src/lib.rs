@@ -27,7 +27,7 @@ use std::path::{Path, PathBuf};
 
 use located::At;
 use mesh::{Fault, MeshError, TriMesh};
-use source::{CheckStart, Memory};
+use source::{Check, Memory};
 
 pub use file::{FileFacts, LengthUnit, MeshFile, ReadLimits, ScalarField, VertexField};
 pub use formats::{Content, FORMATS, Format, mesh_files, or_list, writable};
@@ -58,7 +58,7 @@ pub fn files_in(path: &Path, source: &dyn FileSource) -> Vec<PathBuf> {
     let mut files = format.files(path, source);
     // A file that cannot be read is reported when it is.
     if let Some(companions) = format.companions
-        && let Ok(content) = load(source, path, format.check_start)
+        && let Ok(content) = load(source, path, &|start, size| format.check(start, size))
     {
         let names = companions(&content).unwrap_or_default();
         files.extend(names.iter().map(|name| path.with_file_name(name)));
@@ -118,14 +118,15 @@ fn read_files<'a>(
     format: &Format,
     mut paths: Vec<PathBuf>,
     limits: &ReadLimits,
-    mut open: impl FnMut(&Path, CheckStart) -> Result<Cow<'a, [u8]>, MeshError>,
+    mut open: impl FnMut(&Path, Check<'_>) -> Result<Cow<'a, [u8]>, MeshError>,
 ) -> Result<MeshFile, MeshError> {
-    let opened = paths.iter().map(|file| open(file, format.check_start));
+    let check: Check<'_> = &|start, size| format.check(start, size);
+    let opened = paths.iter().map(|file| open(file, check));
     let mut contents = opened.collect::<Result<Vec<_>, _>>()?;
     if let Some(companions) = format.companions {
         for name in companions(&contents[0]).map_err(|fault| fault.in_file(&paths[0]))? {
             let file = paths[0].with_file_name(name);
-            contents.push(open(&file, |_, _| Ok(()))?);
+            contents.push(open(&file, &|_, _| Ok(()))?);
             paths.push(file);
         }
     }
@@ -136,7 +137,7 @@ fn read_files<'a>(
     })
 }
 
-fn load<'a>(source: &'a dyn FileSource, path: &Path, check: CheckStart) -> Result<Cow<'a, [u8]>, MeshError> {
+fn load<'a>(source: &'a dyn FileSource, path: &Path, check: Check<'_>) -> Result<Cow<'a, [u8]>, MeshError> {
     source.open(path)?.load(path, is_gzip(path), check, u64::MAX)
 }
 
@@ -149,11 +150,11 @@ fn load<'a>(source: &'a dyn FileSource, path: &Path, check: CheckStart) -> Resul
 ///
 /// ```
 /// use std::path::Path;
-/// use canonform_mesh_io::{self, Format, ReadLimits};
+/// use canonform_mesh_io::{Format, ReadLimits, read_from};
 ///
 /// let mut stream = &b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"[..];
 /// let format = Format::named("off").unwrap();
-/// let file = io::read_from(Path::new("standard input"), &mut stream, format, &ReadLimits::default())?;
+/// let file = read_from(Path::new("standard input"), &mut stream, format, &ReadLimits::default())?;
 /// assert_eq!(file.mesh.n_faces(), 1);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -188,11 +189,11 @@ pub fn read_from(
 ///
 /// ```
 /// use std::path::Path;
-/// use canonform_mesh_io::{self, MemoryFile, ReadLimits};
+/// use canonform_mesh_io::{MemoryFile, ReadLimits, read_memory};
 ///
 /// let bytes = b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 9\n";
 /// let file = MemoryFile { name: Path::new("upload.off"), bytes };
-/// let error = io::read_memory(&[file], &ReadLimits::of_vertices(1000)).unwrap_err();
+/// let error = read_memory(&[file], &ReadLimits::of_vertices(1000)).unwrap_err();
 /// assert!(error.to_string().starts_with("upload.off, line 6: a face refers to vertex 9"));
 /// ```
 pub fn read_memory(files: &[MemoryFile<'_>], limits: &ReadLimits) -> Result<TriMesh, MeshError> {

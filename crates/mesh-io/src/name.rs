@@ -1,6 +1,5 @@
 //! Names of mesh files: the extension, behind which `.gz` may follow.
 
-use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 /// The extension of gzip files.
@@ -39,13 +38,11 @@ pub fn without_extension(path: &Path) -> PathBuf {
 
 /// The path with another extension; `.gz` stays.
 pub(crate) fn with_extension(path: &Path, extension: &str) -> PathBuf {
-    let changed = inflated(path).with_extension(extension);
-    if !is_gzip(path) {
-        return changed;
+    let mut name = inflated(path).with_extension(extension).into_os_string();
+    if is_gzip(path) {
+        name.push(".");
+        name.push(path.extension().unwrap_or_default());
     }
-    let mut name: OsString = changed.into();
-    name.push(".");
-    name.push(path.extension().unwrap_or_default());
     name.into()
 }
 

@@ -11,8 +11,8 @@ pub(crate) use crate::file::{FileFacts, LengthUnit, MeshFile, ReadLimits, Scalar
 pub(crate) use crate::located::{At, Located};
 pub(crate) use crate::polygons::{Polygons, finish, finite};
 pub(crate) use crate::text::{
-    Line, Lines, Words, check_is_not_utf16, check_is_text, excerpt, parse_integer, parse_number,
-    parse_position, parse_vertex, write_position,
+    Line, Lines, Words, check_is_not_utf16, check_is_text, excerpt, other_format, parse_integer,
+    parse_number, parse_position, parse_vertex, write_position,
 };
 
 /// The field that is written with a mesh, if there is one.

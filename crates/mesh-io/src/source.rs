@@ -13,7 +13,7 @@ use crate::located::{At, Located};
 use mesh::{Fault, MeshError};
 
 /// Checks the first bytes of a file, given its size if that is known: whether the whole can be a file of the format.
-pub(crate) type CheckStart = fn(&[u8], Option<u64>) -> Result<(), Located>;
+pub(crate) type Check<'a> = &'a dyn Fn(&[u8], Option<u64>) -> Result<(), Located>;
 
 /// Bytes that are checked before the rest of a file is read.
 const START: u64 = 16 << 10;
@@ -120,7 +120,7 @@ impl<'a> Opened<'a> {
         self,
         path: &Path,
         is_gzip: bool,
-        check: CheckStart,
+        check: Check<'_>,
         max_bytes: u64,
     ) -> Result<Cow<'a, [u8]>, MeshError> {
         let (stream, size): (Box<dyn Read + '_>, _) = match self {
@@ -176,7 +176,7 @@ fn damage(path: &Path, fault: MeshError) -> MeshError {
 fn read_checked(
     path: &Path,
     mut stream: Box<dyn Read + '_>,
-    check: CheckStart,
+    check: Check<'_>,
     size: Option<u64>,
     max_bytes: u64,
 ) -> Result<Vec<u8>, MeshError> {

@@ -137,6 +137,11 @@ pub(crate) fn check_is_not_utf16(start: &[u8]) -> Result<(), Located> {
     }
 }
 
+/// The fault that a file begins with something else than its name promises.
+pub(crate) fn other_format(expected: &'static str, start: &[u8]) -> Fault {
+    Fault::wrong_format(expected, format!("it begins with `{}`", excerpt(start)))
+}
+
 /// The beginning of a text, fit for an error message.
 pub(crate) fn excerpt(text: &[u8]) -> String {
     const LONGEST: usize = 40;

@@ -127,7 +127,7 @@ impl fmt::Display for Place {
 #[non_exhaustive]
 pub enum Fault {
     /// The file has no content.
-    #[error("the file is empty; copy or export it again")]
+    #[error("the file is empty")]
     Empty,
 
     /// The content is of another format.
@@ -151,7 +151,7 @@ pub enum Fault {
     /// Less in the file than its header promises.
     #[error(
         "the header promises {promised} {items} but the file holds only {found}; \
-         it is truncated or its header is wrong: copy or export it again"
+         it is truncated or its header is wrong"
     )]
     Truncated {
         /// What is counted, such as `vertices`.
@@ -163,7 +163,7 @@ pub enum Fault {
     },
 
     /// The file ends early.
-    #[error("the file ends where {expected} should follow; copy or export it again")]
+    #[error("unexpected end of file: expected {expected}; the file may be truncated")]
     CutShort {
         /// What should follow.
         expected: String,
@@ -228,7 +228,7 @@ pub enum Fault {
     },
 
     /// More vertices or faces than 32-bit indices can count.
-    #[error("{count} {items} exceed the {limit} that 32-bit indices can count; simplify the mesh")]
+    #[error("too many {items}: {count} (maximum {limit}); simplify the mesh")]
     TooLarge {
         /// What is counted, such as `vertices`.
         items: &'static str,
@@ -239,7 +239,7 @@ pub enum Fault {
     },
 
     /// More vertices or faces than the reader was told to accept.
-    #[error("the mesh has more than {limit} {items}, the limit here; simplify it or raise the limit")]
+    #[error("the mesh exceeds the limit of {limit} {items}; simplify it or raise the limit")]
     OverLimit {
         /// What is counted, such as `vertices`.
         items: &'static str,

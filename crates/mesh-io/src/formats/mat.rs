@@ -40,9 +40,6 @@ fn parse_header(bytes: &[u8]) -> Result<ByteOrder, Located> {
     if bytes.starts_with(b"MATLAB 7.3") || bytes.starts_with(b"\x89HDF") {
         return Err(Fault::unsupported("this is a MATLAB 7.3 file", "save it with `save -v7`").whole());
     }
-    if bytes.trim_ascii().is_empty() {
-        return Err(Fault::Empty.whole());
-    }
     match bytes.get(124..HEADER) {
         Some([_, 1, b'I', b'M']) => Ok(ByteOrder::Little),
         Some([1, _, b'M', b'I']) => Ok(ByteOrder::Big),
@@ -282,6 +279,3 @@ fn mesh_of(fields: Fields, at: usize, limits: &ReadLimits) -> Result<MeshFile, L
     }
     finish(mesh, limits)
 }
-
-#[cfg(test)]
-pub(super) mod tests;

@@ -2,8 +2,6 @@
 
 mod gltf;
 mod mat;
-#[cfg(test)]
-mod mutation_tests;
 mod obj;
 mod off;
 mod ply;
@@ -19,7 +17,7 @@ use mesh::MeshError;
 
 use crate::name::{extension, inflated, is_gzip, with_extension};
 use crate::prelude::*;
-use crate::source::{CheckStart, FileSource};
+use crate::source::FileSource;
 
 /// What a mesh file can be written with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,6 +40,7 @@ impl fmt::Display for Content {
     }
 }
 
+type CheckStart = fn(&[u8], Option<u64>) -> Result<(), Located>;
 type Parse = fn(&[&[u8]], &ReadLimits) -> Result<MeshFile, Located>;
 type Companions = fn(&[u8]) -> Result<Vec<String>, Located>;
 type WriteMesh = fn(&mut dyn Write, &TriMesh, Field<'_>) -> io::Result<()>;
@@ -57,7 +56,7 @@ pub struct Format {
     pub extensions: &'static [&'static str],
     pub(crate) precision: Precision,
     /// Checks the start of each file.
-    pub(crate) check_start: CheckStart,
+    check_start: CheckStart,
     /// Names, relative to the file, of further files that its content refers to.
     pub(crate) companions: Option<Companions>,
     /// Parses the contents of [`files`](Self::files), followed by those of its companions.
@@ -114,9 +113,9 @@ pub static FORMATS: [Format; 11] = [
     },
     Format {
         precision: Precision::Single { moved: true },
-        companions: Some(gltf::companions_of_binary),
+        companions: Some(gltf::companions),
         write: &[gltf::write],
-        ..read_only("GLB", &["glb"], gltf::check_binary_start, gltf::parse_binary)
+        ..read_only("GLB", &["glb"], gltf::check_binary_start, gltf::parse)
     },
     Format {
         companions: Some(gltf::companions),
@@ -170,6 +169,14 @@ impl Format {
     pub fn named(extension: &str) -> Option<&'static Self> {
         let extension = extension.to_ascii_lowercase();
         FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()))
+    }
+
+    /// Checks the first bytes of a file, given its size if that is known.
+    pub(crate) fn check(&self, start: &[u8], size: Option<u64>) -> Result<(), Located> {
+        match size == Some(start.len() as u64) && start.trim_ascii().is_empty() {
+            true => Err(Fault::Empty.whole()),
+            false => (self.check_start)(start, size),
+        }
     }
 
     /// Whether files of this format can be written with this content.

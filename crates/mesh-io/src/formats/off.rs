@@ -77,10 +77,7 @@ fn parse_words(bytes: &[u8], crosses_lines: bool, limits: &ReadLimits) -> Result
 /// What is before the keyword `OFF` in the header, and the rest of the line: nothing, or the counts, even without a space
 /// between.
 fn after_keyword(header: Line<'_>) -> Result<(&[u8], &[u8]), Located> {
-    let not_off = || {
-        let found = format!("it begins with `{}`", excerpt(header.text));
-        Fault::wrong_format("an OFF file", found).in_line(header.number)
-    };
+    let not_off = || other_format("an OFF file", header.text).in_line(header.number);
     let at =
         header.text.windows(3).take(6).position(|w| w.eq_ignore_ascii_case(b"OFF")).ok_or_else(not_off)?;
     let (prefix, rest) = (&header.text[..at], header.text[at + 3..].trim_ascii());
@@ -112,91 +109,4 @@ pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh, field: Field<'_>) -> io
         }
     }
     mesh.faces.iter().try_for_each(|[a, b, c]| writeln!(out, "3 {a} {b} {c}"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
-        super::parse(&[bytes], &ReadLimits::default()).map(|file| file.mesh)
-    }
-
-    const SQUARE: &str = "4 1 4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
-
-    fn fault(text: &str) -> (Place, Fault) {
-        let Located { place, fault, .. } = parse(text.as_bytes()).unwrap_err();
-        (place, fault)
-    }
-
-    #[test]
-    fn headers_parse_in_every_dialect() {
-        let expected = parse(format!("OFF\n{SQUARE}").as_bytes()).unwrap();
-        assert_eq!(expected.faces.len(), 2);
-        for header in ["OFF ", "OFF", "off\n", "# c\nOFF # c\n\n", "\u{feff}OFF\r\n"] {
-            assert_eq!(parse(format!("{header}{SQUARE}").as_bytes()).unwrap(), expected, "{header:?}");
-        }
-        assert_eq!(parse(format!("OFF\n{}", SQUARE.replace('\n', "\r\n")).as_bytes()).unwrap(), expected);
-        let two_counts = SQUARE.replace("4 1 4\n", "4 1\n");
-        assert_eq!(parse(format!("OFF\n{two_counts}").as_bytes()).unwrap(), expected);
-    }
-
-    #[test]
-    fn values_after_position_and_corners_are_ignored() {
-        let plain = parse(b"OFF 3 1 3 \n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n").unwrap();
-        for text in [
-            "COFF\n3 1 0\n0 0 0 255 0 0 255\n1 0 0 0 0 0 255\n0 1 0 9 9 9 9\n3 0 1 2 0.5 0.5 0.5\n",
-            "NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n",
-            "NCOFF\n3 1 0\n0 0 0 0 0 1 9 9 9 9\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2 7\n",
-            "STCNOFF\n3 1 0\n0 0 0 0 0 1 9 9 9 9 .1 .2\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2 7\n",
-        ] {
-            assert_eq!(parse(text.as_bytes()).unwrap(), plain);
-        }
-    }
-
-    #[test]
-    fn faults_name_the_line() {
-        let truncated =
-            |items: &str, promised, found| Fault::Truncated { items: items.into(), promised, found };
-        assert_eq!(fault("OFF\n4 1 0\n0 0 0\n"), (Place::Line(3), truncated("vertices", 4, 1)));
-        assert_eq!(fault("OFF\n1 2 0\n0 0 0\n3 0 0 0\n"), (Place::Line(4), truncated("faces", 2, 1)));
-        let index = Fault::IndexOutOfRange { index: "3".into(), first: 0, last: 2 };
-        assert_eq!(fault("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"), (Place::Line(6), index));
-        assert!(matches!(
-            fault("OFF\n1 1 0\n0 nan 0\n"),
-            (Place::Line(3), Fault::NonFinite { vertex: 0, value }) if value.is_nan()
-        ));
-        assert!(matches!(fault("OFF\n1 1 0\n0 inf 0\n").1, Fault::NonFinite { .. }));
-        assert_eq!(
-            fault("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1 2\n"),
-            (Place::Line(7), Fault::Leftover { items: "faces", promised: 1 })
-        );
-        assert!(matches!(fault("OFF\n3 1 0\n0 0\n"), (Place::Line(3), Fault::Syntax { .. })));
-        assert!(matches!(fault("OFF\nthree\n"), (Place::Line(2), Fault::Syntax { .. })));
-        assert!(matches!(fault("OFF\n-3 1 0\n"), (Place::Line(2), Fault::Syntax { .. })));
-        assert!(matches!(fault("OFF\n"), (Place::Line(1), Fault::CutShort { .. })));
-        assert_eq!(fault("OFF 1 0 0\n0 0 0\n"), (Place::File, Fault::NoFaces { n_vertices: 1 }));
-        assert_eq!(
-            fault("OFF 2 1 0\n0 0 0\n1 0 0\n2 0 1\n"),
-            (Place::Line(4), Fault::TooFewCorners { corners: 2 })
-        );
-        assert_eq!(fault(" \n# nothing\n"), (Place::File, Fault::Empty));
-    }
-
-    #[test]
-    fn other_formats_are_not_mistaken_for_off() {
-        for text in ["ply\nformat", "v 0 0 0\n", "\u{0}\u{1}\u{2}", "XOFF\n", "CCOFF\n"] {
-            assert!(matches!(fault(text), (Place::Line(1), Fault::WrongFormat { .. })), "{text:?}");
-        }
-        for text in ["4OFF\n", "nOFF 3\n", "OFF BINARY\n"] {
-            assert!(matches!(fault(text), (Place::Line(1), Fault::Unsupported { .. })), "{text:?}");
-        }
-    }
-
-    #[test]
-    fn large_counts_in_the_header_allocate_nothing() {
-        let text = "OFF\n4000000000 1000000000 0\n0 0 0\n";
-        assert!(matches!(fault(text).1, Fault::Truncated { promised: 4_000_000_000, found: 1, .. }));
-        assert!(matches!(fault("OFF\n5000000000 1 0\n").1, Fault::TooLarge { .. }));
-    }
 }

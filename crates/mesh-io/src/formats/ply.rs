@@ -11,20 +11,11 @@ const END: &[u8] = b"end_header";
 /// Checks the first line, and that the header is text.
 pub(super) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
     check_is_not_utf16(start)?;
-    check_first_line(&mut Lines::new(start))?;
+    if let Some(first) = Lines::new(start).next().filter(|first| first.text != b"ply") {
+        return Err(other_format(FORMAT, first.text).whole());
+    }
     let end = start.windows(END.len()).position(|window| window == END).unwrap_or(start.len());
     check_is_text(&start[..end], FORMAT)
-}
-
-/// Reads `ply`.
-fn check_first_line(lines: &mut Lines<'_>) -> Result<(), Located> {
-    let first = lines.next().ok_or_else(|| Fault::Empty.whole())?;
-    match first.text == b"ply" {
-        true => Ok(()),
-        false => {
-            Err(Fault::wrong_format(FORMAT, format!("it begins with `{}`", excerpt(first.text))).whole())
-        }
-    }
 }
 
 /// Reads PLY: the element `vertex` with `x y z`, then `face` with a list `vertex_indices` or `vertex_index`. The first
@@ -33,7 +24,8 @@ fn check_first_line(lines: &mut Lines<'_>) -> Result<(), Located> {
 pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
     let (bytes, mut field) = (files[0], None);
     let mut lines = Lines::new(bytes);
-    check_first_line(&mut lines)?;
+    // The first line is `ply`.
+    lines.next();
     let header = Header::parse(&mut lines)?;
     header.check(lines.remaining(), limits).whole()?;
     let mut body = match header.byte_order {
@@ -384,147 +376,4 @@ fn write_header(
 
 fn write_coordinates(out: &mut dyn Write, p: &Point3<f64>) -> io::Result<()> {
     p.iter().try_for_each(|x| out.write_all(&x.to_le_bytes()))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use mesh::shapes;
-
-    const HEADER: &str = "ply\nformat ascii 1.0\ncomment c\nelement vertex 4\nproperty float x\n\
-        property float y\nproperty double z\nproperty uchar red\nelement face 2\n\
-        property list uchar int vertex_indices\nproperty int flags\nend_header\n";
-    const BODY: &str = "0 0 0 255\n1 0 0 9\n1 1 0 9\n0 1 .5 9\n3 0 1 2 7\n3 0 2 3 7\n";
-
-    fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
-        super::parse(&[bytes], &ReadLimits::default()).map(|file| file.mesh)
-    }
-
-    fn fault(text: &str) -> (Place, Fault) {
-        let Located { place, fault, .. } = parse(text.as_bytes()).unwrap_err();
-        (place, fault)
-    }
-
-    #[test]
-    fn other_properties_and_elements_are_ignored() {
-        let mesh = parse(format!("{HEADER}{BODY}").as_bytes()).unwrap();
-        assert_eq!(mesh.positions[3], nalgebra::Point3::new(0.0, 1.0, 0.5));
-        assert_eq!(mesh.faces, [[0, 1, 2].map(VertexId), [0, 2, 3].map(VertexId)]);
-        let windows = format!("{HEADER}{BODY}").replace('\n', "\r\n");
-        assert_eq!(parse(windows.as_bytes()).unwrap(), mesh);
-        let header = HEADER.replace("end_header", "element edge 1\nproperty int a\nend_header");
-        assert_eq!(parse(format!("{header}{BODY}3\n").as_bytes()).unwrap(), mesh);
-        let header = HEADER.replace("vertex_indices", "vertex_index").replace("uchar int", "int8 uint16");
-        assert_eq!(parse(format!("{header}{BODY}").as_bytes()).unwrap(), mesh);
-        let quad = BODY.replace("3 0 1 2 7\n3 0 2 3 7", "4 0 1 2 3 7");
-        let header = HEADER.replace("face 2", "face 1");
-        assert_eq!(parse(format!("{header}{quad}").as_bytes()).unwrap(), mesh);
-    }
-
-    /// The same mesh in either byte order, floats for coordinates and shorts for indices.
-    fn binary(mesh: &TriMesh, big: bool) -> Vec<u8> {
-        let order = if big { "big" } else { "little" };
-        let header = format!(
-            "ply\nformat binary_{order}_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\n\
-             property float z\nelement face {}\nproperty list uchar short vertex_index\nend_header\n",
-            mesh.n_vertices(),
-            mesh.n_faces()
-        );
-        let mut bytes = header.into_bytes();
-        for x in mesh.positions.iter().flat_map(|p| [p.x, p.y, p.z]) {
-            bytes.extend(if big { (x as f32).to_be_bytes() } else { (x as f32).to_le_bytes() });
-        }
-        for face in &mesh.faces {
-            bytes.push(3);
-            for v in face.map(|v| v.0 as i16) {
-                bytes.extend(if big { v.to_be_bytes() } else { v.to_le_bytes() });
-            }
-        }
-        bytes
-    }
-
-    #[test]
-    fn binary_parses_in_both_byte_orders() {
-        let cube = shapes::cube(1);
-        assert_eq!(parse(&binary(&cube, false)).unwrap(), cube);
-        assert_eq!(parse(&binary(&cube, true)).unwrap(), cube);
-    }
-
-    #[test]
-    fn ascii_faults_name_the_line() {
-        let with = |from: &str, to: &str| fault(&format!("{HEADER}{BODY}").replacen(from, to, 1));
-        assert!(matches!(
-            with("1 1 0 9", "1 nan 0 9"),
-            (Place::Line(15), Fault::NonFinite { vertex: 2, .. })
-        ));
-        assert!(matches!(with("1 1 0 9", "1 x 0 9"), (Place::Line(15), Fault::Syntax { .. })));
-        assert!(matches!(with("1 1 0 9", "1 1"), (Place::Line(15), Fault::Syntax { .. })));
-        let index = |index: &str| Fault::IndexOutOfRange { index: index.into(), first: 0, last: 3 };
-        assert_eq!(with("3 0 2 3", "3 0 2 4"), (Place::Line(18), index("4")));
-        assert_eq!(with("3 0 2 3", "3 0 -2 3"), (Place::Line(18), index("-2")));
-        assert_eq!(with("3 0 2 3", "2 0 2 3"), (Place::Line(18), Fault::TooFewCorners { corners: 2 }));
-        assert!(matches!(with("3 0 2 3", "9 0 2 3"), (Place::Line(18), Fault::Syntax { .. })));
-        assert!(matches!(with("face 2", "face 1"), (Place::Line(18), Fault::Leftover { .. })));
-        let rows = Fault::Truncated { items: "rows of `face`".into(), promised: 3, found: 2 };
-        assert_eq!(with("face 2", "face 3").1, rows);
-        assert!(matches!(with("ascii 1.0", "ascii one"), (Place::Line(2), Fault::Syntax { .. })));
-        assert!(matches!(with("comment c", "commend c"), (Place::Line(3), Fault::Syntax { .. })));
-    }
-
-    #[test]
-    fn headers_that_declare_no_mesh_or_too_much_are_errors() {
-        let with = |from: &str, to: &str| fault(&format!("{HEADER}{BODY}").replacen(from, to, 1)).1;
-        assert!(matches!(with("property float x\n", ""), Fault::Unsupported { .. }));
-        assert!(matches!(with("vertex_indices", "texcoords"), Fault::Unsupported { .. }));
-        assert!(matches!(with("uchar int", "uchar float"), Fault::Unsupported { .. }));
-        assert!(matches!(with("element vertex", "element vertices"), Fault::Unsupported { .. }));
-        assert!(matches!(with("element face", "element faces"), Fault::NoFaces { n_vertices: 4 }));
-        assert!(matches!(
-            with("end_header\n", "element e 99999999999999999\nend_header\n"),
-            Fault::Unsupported { .. }
-        ));
-        let bold = with("vertex 4", "vertex 4000000000");
-        assert!(matches!(bold, Fault::Truncated { promised: 4_000_000_000, .. }), "{bold:?}");
-        assert!(matches!(with("vertex 4", "vertex 99999999999"), Fault::TooLarge { .. }));
-        assert!(matches!(fault("ply\nformat ascii 1.0\n"), (_, Fault::CutShort { .. })));
-        assert!(matches!(fault("OFF\n"), (Place::File, Fault::WrongFormat { .. })));
-        assert_eq!(fault("\n"), (Place::File, Fault::Empty));
-        assert!(parse(b"ply\n\xff\xfe\n").is_err());
-    }
-
-    #[test]
-    fn binary_faults_name_the_byte() {
-        let cube = shapes::cube(0);
-        let whole = binary(&cube, false);
-        let start = whole.len() - 12 * 8 - 7 * 12;
-        let mut bytes = whole.clone();
-        bytes[start + 12..start + 16].copy_from_slice(&f32::INFINITY.to_le_bytes());
-        let Located { place, fault, .. } = parse(&bytes).unwrap_err();
-        assert_eq!(place, Place::Byte(start as u64 + 12));
-        assert_eq!(fault, Fault::NonFinite { vertex: 1, value: f64::INFINITY });
-        let mut bytes = whole.clone();
-        bytes[start + 96] = 200;
-        let Located { place, fault, .. } = parse(&bytes).unwrap_err();
-        assert_eq!(place, Place::Byte(start as u64 + 96));
-        assert_eq!(fault, Fault::Truncated { items: "rows of `face`".into(), promised: 12, found: 0 });
-        assert!(matches!(parse(&whole[..whole.len() - 1]).unwrap_err().fault, Fault::Truncated { .. }));
-        assert!(matches!(parse(&[whole, vec![1]].concat()).unwrap_err().fault, Fault::Leftover { .. }));
-    }
-
-    #[test]
-    fn lines_have_an_edge_per_segment() {
-        let point = |x: f64| Point3::new(x, 0.5, -1.0);
-        let lines =
-            [vec![point(0.0), point(1.0), point(2.5)], vec![point(7.0)], vec![point(3.0), point(4.0)]];
-        let mut out = Vec::new();
-        write_lines(&mut out, &lines).unwrap();
-        let header = "ply\nformat binary_little_endian 1.0\nelement vertex 6\nproperty double x\nproperty double y\n\
-            property double z\nelement edge 3\nproperty uint vertex1\nproperty uint vertex2\nend_header\n";
-        let body = out.strip_prefix(header.as_bytes()).unwrap();
-        let (points, edges) = body.split_at(6 * 24);
-        let x = |v: usize| f64::from_le_bytes(*points[24 * v..].first_chunk().unwrap());
-        assert_eq!([0, 1, 2, 3, 4, 5].map(x), [0.0, 1.0, 2.5, 7.0, 3.0, 4.0]);
-        let ends: Vec<u32> = edges.as_chunks().0.iter().map(|&v| u32::from_le_bytes(v)).collect();
-        assert_eq!(ends, [0, 1, 1, 2, 4, 5]);
-    }
 }

@@ -41,10 +41,8 @@ fn promised(start: &[u8], size: Option<u64>) -> Result<Option<u64>, Located> {
 /// numbered in the order of first appearance.
 pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
     let bytes = files[0];
-    if bytes.trim_ascii().is_empty() {
-        return Err(Fault::Empty.whole());
-    }
     let size = Some(bytes.len() as u64);
+    // Of a stream the size was not known.
     check_start(&bytes[..bytes.len().min(PREFIX)], size)?;
     let mut soup = Soup { limits, numbers: HashMap::new(), positions: Vec::new(), corners: Vec::new() };
     match promised(bytes, size)? {
@@ -83,10 +81,7 @@ fn parse_text(bytes: &[u8], soup: &mut Soup<'_>) -> Result<(), Located> {
                 continue;
             }
             _ if is_open.is_some() => return Err(line.expected("`facet` or `endsolid`")),
-            _ => {
-                let found = format!("it begins with `{}`", excerpt(line.text));
-                return Err(Fault::wrong_format("an STL file", found).whole());
-            }
+            _ => return Err(other_format("an STL file", line.text).whole()),
         }
         // The name of the solid: the rest of the line, or what comes before a facet in it.
         while !words.rest.is_empty() && !words.begins_with(&["facet", "normal"]) {
@@ -174,91 +169,4 @@ pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh, _: Field<'_>) -> io::Re
         out.write_all(&[0; 2])?;
     }
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use mesh::shapes;
-
-    const FACET: &str = "facet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 1 0 0\n  vertex 0 1 0\n endloop\nendfacet\n";
-
-    fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
-        super::parse(&[bytes], &ReadLimits::default()).map(|file| file.mesh)
-    }
-
-    fn binary(mesh: &TriMesh) -> Vec<u8> {
-        let mut bytes = Vec::new();
-        write(&mut bytes, mesh, None).unwrap();
-        bytes
-    }
-
-    fn fault(text: &str) -> (Place, Fault) {
-        let Located { place, fault, .. } = parse(text.as_bytes()).unwrap_err();
-        (place, fault)
-    }
-
-    #[test]
-    fn corners_in_the_same_position_become_one_vertex() {
-        let cube = shapes::cube(1);
-        for header in ["", "solid but binary"] {
-            let mut bytes = binary(&cube);
-            bytes[..header.len()].copy_from_slice(header.as_bytes());
-            let back = parse(&bytes).unwrap();
-            assert_eq!((back.n_vertices(), back.n_faces()), (cube.n_vertices(), cube.n_faces()));
-            for f in 0..cube.n_faces() {
-                assert_eq!(back.triangle(f), cube.triangle(f));
-            }
-        }
-    }
-
-    #[test]
-    fn ascii_parses_in_every_dialect() {
-        let expected = parse(format!("solid a\n{FACET}endsolid a\n").as_bytes()).unwrap();
-        assert_eq!((expected.n_vertices(), expected.n_faces()), (3, 1));
-        for text in [
-            format!("solid\n{FACET}endsolid"),
-            format!("SOLID X\r\n{}ENDSOLID\r\n", FACET.to_uppercase().replace('\n', "\r\n")),
-            format!("solid a\n{}endsolid\n", FACET.replace("0 0 1", "nan nan nan")),
-            format!("solid a\n{}endsolid\n", FACET.replace("  vertex 0 0 0", "vertex -0 0e5 -0.0")),
-        ] {
-            assert_eq!(parse(text.as_bytes()).unwrap(), expected);
-        }
-        let two = format!("solid a\n{FACET}endsolid a\nsolid b\n{FACET}endsolid b\n");
-        assert_eq!(parse(two.as_bytes()).unwrap().n_faces(), 2);
-    }
-
-    #[test]
-    fn ascii_faults_name_the_line() {
-        let cut = fault(&format!("solid a\n{FACET}"));
-        assert_eq!(cut, (Place::Line(8), Fault::CutShort { expected: "`endsolid`".into() }));
-        let broken = FACET.replace("endloop", "endlop");
-        let (place, broken) = fault(&format!("solid a\n{FACET}{broken}endsolid\n"));
-        assert_eq!(place, Place::Line(14));
-        assert!(matches!(broken, Fault::Syntax { expected: "`endloop`", .. }));
-        for word in ["nan", "inf", "1e300"] {
-            let broken = FACET.replace("1 0 0", &format!("1 {word} 0"));
-            let (place, fault) = fault(&format!("solid a\n{FACET}{broken}endsolid\n"));
-            assert_eq!(place, Place::Line(12));
-            assert!(matches!(fault, Fault::NonFinite { vertex: 4, .. }));
-        }
-        assert_eq!(fault("solid a\nendsolid\n"), (Place::File, Fault::NoFaces { n_vertices: 0 }));
-        assert_eq!(fault(" \n"), (Place::File, Fault::Empty));
-        assert!(matches!(fault("OFF\n"), (Place::File, Fault::WrongFormat { .. })));
-    }
-
-    #[test]
-    fn binary_faults_name_the_byte() {
-        let mut bytes = binary(&shapes::tetrahedron(0));
-        bytes[PREFIX + TRIANGLE + 16..PREFIX + TRIANGLE + 20].copy_from_slice(&f32::NAN.to_le_bytes());
-        let nan = parse(&bytes).unwrap_err();
-        assert_eq!(nan.place, Place::Byte(134));
-        assert!(matches!(nan.fault, Fault::NonFinite { vertex: 3, .. }));
-        bytes.pop();
-        let short = Fault::Truncated { items: "triangles".into(), promised: 4, found: 3 };
-        assert_eq!(parse(&bytes).unwrap_err().fault, short);
-        assert_eq!(parse(&[0; PREFIX]).unwrap_err().fault, Fault::NoFaces { n_vertices: 0 });
-        let bold = [[0u8; HEADER].as_slice(), &u32::MAX.to_le_bytes()].concat();
-        assert!(matches!(parse(&bold).unwrap_err().fault, Fault::Truncated { found: 0, .. }));
-    }
 }

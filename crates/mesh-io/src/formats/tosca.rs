@@ -48,39 +48,3 @@ pub(super) fn write_faces(out: &mut dyn Write, mesh: &TriMesh, _: Field<'_>) -> 
     let from_one = |face: &[VertexId; 3]| face.map(|v| u64::from(v.0) + 1);
     mesh.faces.iter().map(from_one).try_for_each(|[a, b, c]| writeln!(out, "{a} {b} {c}"))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn parse(vert: &[u8], tri: &[u8]) -> Result<TriMesh, Located> {
-        super::parse(&[vert, tri], &ReadLimits::default()).map(|file| file.mesh)
-    }
-
-    const VERT: &[u8] = b"0 0 0\r\n1.5 -2e-1 3\r\n\r\n.5 1. 0";
-
-    #[test]
-    fn both_halves_parse_with_any_line_end_and_notation() {
-        let mesh = parse(VERT, b"1 2 3\r\n   3.0000000e+00   2.0000000e+00   1.0000000e+00\n").unwrap();
-        assert_eq!(mesh.positions[1], Point3::new(1.5, -0.2, 3.0));
-        assert_eq!(mesh.n_vertices(), 3);
-        assert_eq!(mesh.faces, [[0, 1, 2].map(VertexId), [2, 1, 0].map(VertexId)]);
-    }
-
-    #[test]
-    fn faults_name_the_line() {
-        let index = |index: &str| Fault::IndexOutOfRange { index: index.into(), first: 1, last: 3 };
-        let of_faces = |tri: &[u8]| parse(VERT, tri).unwrap_err();
-        assert_eq!(of_faces(b"1 2 3\n\n1 2 4"), index("4").in_line(3).of_file(1));
-        assert_eq!(of_faces(b"0 2 3\n"), index("0").in_line(1).of_file(1));
-        assert_eq!(of_faces(b"-1 2 3\n"), index("-1").in_line(1).of_file(1));
-        assert_eq!(of_faces(b"1 2\n").place, Place::Line(1));
-        assert_eq!(of_faces(b"1 2 3 1\n").place, Place::Line(1));
-        assert_eq!(of_faces(b" \r\n"), Fault::Empty.whole().of_file(1));
-        assert_eq!(parse(b"1 2 3 4\n", b"").unwrap_err().place, Place::Line(1));
-        assert_eq!(parse(b"", b""), Err(Fault::Empty.whole()));
-        let nan = parse(b"0 0 0\n1 NaN 0\n", b"").unwrap_err();
-        assert_eq!(nan.place, Place::Line(2));
-        assert!(matches!(nan.fault, Fault::NonFinite { vertex: 2, .. }));
-    }
-}

@@ -1,61 +1,81 @@
-//! A table of files as programs write them, and what reading each gives: vertices, faces, area and notes, or the message.
+//! A corpus of small files, and what reading each gives: vertices, faces, area and notes, or the message.
 //! Unless a case says otherwise, the mesh is a rectangle of 2 by 1.
 
-use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
 
-use canonform_mesh_io::{Disk, MeshFile, ReadLimits, read, read_file, write};
+use canonform_mesh_io::{Format, LengthUnit, ReadLimits, read, read_from, write};
 use mesh::{TriMesh, shapes};
 use nalgebra::Point3;
 use tempfile::TempDir;
 
-/// Files, the first of which is read.
-type Files = Vec<(&'static str, Vec<u8>)>;
+use crate::made::{
+    Files, HEAD, OBJ, OFF, PLAIN, PLY, RECTANGLE, Rich, SQUARE, STL, Style, TRI, VERT, binary_ply,
+    binary_stl, check, gltf_text, mesh_text, model_of, one, outcome, package, package_of, read_all, written,
+};
 
-fn one(name: &'static str, content: impl AsRef<[u8]>) -> Files {
-    vec![(name, content.as_ref().to_vec())]
+/// The bytes that a text stands for, in which `\n`, `\r`, `\t`, `\\` and `\x00` are escapes.
+fn unescaped(text: &str) -> Vec<u8> {
+    let mut rest = text.bytes();
+    let mut bytes = Vec::new();
+    while let Some(byte) = rest.next() {
+        let mut next = || rest.next().unwrap();
+        bytes.push(match byte {
+            b'\\' => match next() {
+                b'n' => b'\n',
+                b'r' => b'\r',
+                b't' => b'\t',
+                b'x' => {
+                    [next(), next()].iter().fold(0, |x, b| 16 * x + (*b as char).to_digit(16).unwrap() as u8)
+                }
+                other => other,
+            },
+            byte => byte,
+        });
+    }
+    bytes
 }
 
-/// What reading gives, in words.
-fn outcome(files: &Files) -> String {
-    let folder = tempfile::tempdir().unwrap();
-    for (name, content) in files {
-        std::fs::write(folder.path().join(name), content).unwrap();
-    }
-    match read_file(&folder.path().join(files[0].0), &Disk, &ReadLimits::default()) {
-        Ok(MeshFile { mesh, facts, .. }) => {
-            let area = (mesh.area() * 1e6).round() / 1e6;
-            let mut words = format!("{} vertices, {} faces, area {area}", mesh.n_vertices(), mesh.n_faces());
-            facts.ignored.iter().for_each(|what| write!(words, ", ignored {what}").unwrap());
-            facts.notes.iter().for_each(|what| write!(words, ", {what}").unwrap());
-            words
+/// `corpus.tsv`: the name of a file, what it shows, its content and how its outcome begins. `@OFF|a|b` is the text [`OFF`]
+/// with `b` for every `a`. A zero byte separates a `.vert` from its `.tri`, and 3MF files hold their content as model.
+#[test]
+fn files_of_any_dialect_are_read_or_refused_with_the_place() {
+    let rich = Rich::new();
+    let model = model_of(&shapes::tetrahedron(0));
+    let bases = [
+        ("@OFF", OFF.to_owned()),
+        ("@OBJ", OBJ.to_owned()),
+        ("@PLY", PLY.to_owned()),
+        ("@STL", STL.to_owned()),
+        ("@RICH", rich.json("data.bin")),
+        ("@MODEL", model),
+    ];
+    check(include_str!("corpus.tsv").lines().skip(1).map(|row| {
+        let [name, what, content, expected] = *row.split('\t').collect::<Vec<_>>() else { panic!("{row}") };
+        let mut edits = content.split('|');
+        let mut text = edits.next().unwrap().to_owned();
+        for (base, whole) in &bases {
+            text = text.replace(base, &whole.replace('\n', "\\n"));
         }
-        Err(fault) => fault.to_string().replace(&format!("{}/", folder.path().display()), ""),
-    }
+        while let (Some(from), Some(to)) = (edits.next(), edits.next()) {
+            assert!(text.contains(from), "{name}, {what}: {from}");
+            text = text.replace(from, to);
+        }
+        let bytes = unescaped(&text);
+        let files = match name {
+            "m.vert" | "m.tri" => {
+                let (vert, tri) = bytes.split_at(bytes.iter().position(|byte| *byte == 0).unwrap());
+                let mut pair = vec![("m.vert", vert.to_vec()), ("m.tri", tri[1..].to_vec())];
+                pair.sort_by_key(|(other, _)| *other != name);
+                pair
+            }
+            "m.gltf" => vec![(name, bytes), ("data.bin", rich.data.clone())],
+            "m.3mf" => one(name, package_of(&bytes)),
+            _ => one(name, bytes),
+        };
+        (format!("{name}, {what}"), files, expected.replace("a rectangle", RECTANGLE))
+    }));
 }
-
-/// Checks a table: what a case shows, its files, and how the outcome begins.
-fn check(cases: Vec<(&str, Files, &str)>) {
-    let wrong: Vec<String> = cases
-        .into_iter()
-        .map(|(what, files, expected)| (what, outcome(&files), expected))
-        .filter(|(_, found, expected)| !found.starts_with(expected))
-        .map(|(what, found, expected)| format!("{what}:\n  {found}\nis not\n  {expected}"))
-        .collect();
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-}
-
-const RECTANGLE: &str = "4 vertices, 2 faces, area 2";
-const OBJ: &str = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nf 1 2 3 4\n";
-const OFF: &str = "OFF\n4 1 4\n0 0 0\n2 0 0\n2 1 0\n0 1 0\n4 0 1 2 3\n";
-const VERT: &str = "0 0 0\n2 0 0\n2 1 0\n0 1 0\n";
-const TRI: &str = "1 2 3\n1 3 4\n";
-const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
-    property float nx\nproperty uchar red\nelement face 1\nproperty list uchar int vertex_indices\n\
-    property float quality\nend_header\n0 0 0 0 9\n2 0 0 0 9\n2 1 0 0 9\n0 1 0 0 9\n4 0 1 2 3 .5\n";
-const STL: &str = "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 2 0 0\nvertex 2 1 0\nendloop\nendfacet\n\
-    facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 2 1 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid x\n";
 
 /// A grid of points, of which the fourth has this text.
 fn xyz(separator: &str, mark: &str, fourth: &str) -> String {
@@ -123,110 +143,6 @@ fn text_in_utf16_is_named_in_every_format() {
 }
 
 #[test]
-fn text_of_any_dialect_is_read() {
-    let marked = |text: &str| format!("\u{feff}{text}");
-    let broken = |text: &str| text.replace(' ', "\n");
-    let windows = |text: &str| text.replace('\n', "\r\n");
-    let single = |text: &str| text.replace('\n', " ");
-    check(vec![
-        (
-            "comments",
-            one("m.obj", format!("# a\n{} # b\n", OBJ.replace("v 2 0 0", "v 2 0 0 # c\n#d"))),
-            RECTANGLE,
-        ),
-        (
-            "continued lines",
-            one("m.obj", OBJ.replace("2 0 0", "2 0 \\\n0").replace("2 3", "2 \\\n\\\r\n3")),
-            RECTANGLE,
-        ),
-        (
-            "a line continued at the end",
-            one("m.obj", format!("{OBJ}f 1 2 \\")),
-            "m.obj, line 6: a face has 2 corners",
-        ),
-        ("a continued comment", one("m.obj", OBJ.replace("f 1", "# c \\\nf 1")), RECTANGLE),
-        ("a continued group", one("m.obj", OBJ.replace("f 1", "g a \\\nv 9 9 9\nf 1")), RECTANGLE),
-        (
-            "`\\` within a word",
-            one("m.obj", OBJ.replace("2 3", "2\\\n3")),
-            "m.obj, line 5: a face has 2 corners",
-        ),
-        (
-            "faults behind a continuation",
-            one("m.obj", OBJ.replace("2 0 0", "2 \\\n0 x")),
-            "m.obj, line 2: expected three coordinates, found `v 2 0 x`",
-        ),
-        (
-            "indices behind a continuation",
-            one("m.obj", OBJ.replace("1 2 3", "1 \\\n2 9")),
-            "m.obj, line 5: a face refers to vertex 9",
-        ),
-        ("a mark", one("m.obj", marked(OBJ)), RECTANGLE),
-        ("a mark", one("m.off", marked(OFF)), RECTANGLE),
-        ("two vertices in a line", one("m.off", OFF.replace("0 0 0\n2", "0 0 0 2")), RECTANGLE),
-        ("words on their own", one("m.off", broken(OFF)), RECTANGLE),
-        ("one line", one("m.off", single(OFF)), RECTANGLE),
-        ("colours", one("m.off", OFF.replace(" 0\n", " 0 9 9 9\n")), RECTANGLE),
-        (
-            "colours that run on",
-            one("m.off", OFF.replace("OFF", "COFF").replace("0 0 0\n2", "0 0 0 2")),
-            "m.off, line 6: ",
-        ),
-        (
-            "a vertex too few",
-            one("m.off", OFF.replace("0 0 0\n", "")),
-            "m.off, line 6: the header promises 1 faces",
-        ),
-        ("a mark", one("m.stl", marked(STL)), RECTANGLE),
-        ("a comment first", one("m.stl", format!("# by x\n\n{STL}")), RECTANGLE),
-        ("words on their own", one("m.stl", broken(&STL.replace(" x", ""))), RECTANGLE),
-        ("one line", one("m.stl", single(STL)), RECTANGLE),
-        ("windows", one("m.stl", windows(STL)), RECTANGLE),
-        (
-            "two solids",
-            one("m.stl", format!("{STL}{}", single(&STL.replace(" 0\n", " 3\n")))),
-            "8 vertices, 4 faces, area 4",
-        ),
-        ("names of keywords", one("m.stl", STL.replace("solid x", "solid facet endsolid outer")), RECTANGLE),
-        ("no name", one("m.stl", STL.replace("solid x", "solid")), RECTANGLE),
-        ("`end solid`", one("m.stl", STL.replace("endsolid x", "end solid x")), RECTANGLE),
-        ("a normal that is no number", one("m.stl", STL.replace("0 0 1\n", "-nan(ind) 1.#J 0\n")), RECTANGLE),
-        ("no normal", one("m.stl", STL.replace("normal 0 0 1", "")), RECTANGLE),
-        (
-            "a loop without a word",
-            one("m.stl", STL.replacen("outer loop\n", "", 1)),
-            "m.stl, line 3: expected `outer loop`",
-        ),
-        (
-            "four corners",
-            one("m.stl", STL.replacen("endloop", "vertex 0 1 0\nendloop", 1)),
-            "m.stl, line 7: expected `endloop`, found `vertex 0 1 0`",
-        ),
-        ("a facet cut off", one("m.stl", &STL[..150]), "m.stl, line 12: the file ends where `endsolid`"),
-        (
-            "another text",
-            one("m.stl", OFF.repeat(3)),
-            "m.stl: this is not an STL file (it begins with `OFF`)",
-        ),
-        (
-            "columns of no interest",
-            one("m.ply", PLY.replace("0 9\n", "-nan(ind) 1.#IND\n").replace(".5", "x")),
-            RECTANGLE,
-        ),
-        (
-            "a column too few",
-            one("m.ply", PLY.replace("2 1 0 0 9", "2 1 0 0")),
-            "m.ply, line 15: expected a row as the header declares it",
-        ),
-        (
-            "a corner that is no number",
-            one("m.ply", PLY.replace("4 0 1 2", "4 0 x 2")),
-            "m.ply, line 17: expected a row as the header declares it",
-        ),
-    ]);
-}
-
-#[test]
 fn commas_mark_decimals_or_separate_numbers_or_are_refused() {
     let tetrahedra = "16 vertices, 0 faces";
     let refused =
@@ -248,28 +164,9 @@ fn commas_mark_decimals_or_separate_numbers_or_are_refused() {
     }
     cases.push(("-1,#IND", numbers(" ", ",", "1,5 1,5 -1,#IND"), "m.xyz, line 5: "));
     check(cases);
-    let folder = TempDir::new().unwrap();
-    let path = folder.path().join("m.xyz");
-    std::fs::write(&path, xyz(";", ",", "-1,25;+2,5e-1;318")).unwrap();
-    assert_eq!(
-        read(&path).unwrap().positions[4..6],
-        [[-1.25, 0.25, 318.0], [1.5, 1.5, 0.5]].map(Point3::from)
-    );
-}
-
-/// Binary STL of the rectangle with another header, a count and bytes at the end.
-fn binary_stl(header: &[u8], count: u32, end: &[u8]) -> Files {
-    let corners = [[0f32, 0., 0.], [2., 0., 0.], [2., 1., 0.], [0., 1., 0.]];
-    let mut bytes = vec![b' '; 80];
-    bytes[..header.len()].copy_from_slice(header);
-    bytes.extend(count.to_le_bytes());
-    for face in [[0, 1, 2], [0, 2, 3]] {
-        bytes.extend([0; 12]);
-        bytes.extend(face.iter().flat_map(|v| corners[*v]).flat_map(f32::to_le_bytes));
-        bytes.extend([0; 2]);
-    }
-    bytes.extend(end);
-    one("m.stl", bytes)
+    let mesh =
+        read_all(&one("m.xyz", xyz(";", ",", "-1,25;+2,5e-1;318")), &ReadLimits::default()).unwrap().mesh;
+    assert_eq!(mesh.positions[4..6], [[-1.25, 0.25, 318.0], [1.5, 1.5, 0.5]].map(Point3::from));
 }
 
 #[test]
@@ -294,7 +191,44 @@ fn binary_stl_has_the_length_that_its_header_promises() {
     }
     cases.push(("no triangles", one("m.stl", [0; 84]), "m.stl: the file has 0 vertices but no faces"));
     cases.push(("no count", one("m.stl", [0; 83]), "m.stl, byte 0: this is not an STL file (it is not text"));
+    let of_numbers = |at: usize, x: u32| {
+        let mut bytes = binary_stl(b"\0", 2, b"").remove(0).1;
+        bytes[at..at + 4].copy_from_slice(&x.to_le_bytes());
+        one("m.stl", bytes)
+    };
+    let nan = of_numbers(84 + 50 + 16, f32::NAN.to_bits());
+    cases.push(("no number", nan, "m.stl, byte 134: vertex 3 has the coordinate NaN"));
+    let bold = of_numbers(80, u32::MAX);
+    cases.push((
+        "a bold count",
+        bold,
+        "m.stl: the header promises 4294967295 triangles but the file holds only 2",
+    ));
     check(cases);
+}
+
+#[test]
+fn binary_ply_is_read_in_both_byte_orders_and_faults_name_the_byte() {
+    let whole = binary_ply(false);
+    let start = whole.len() - 9 - 48;
+    let with = |at: usize, bytes: &[u8]| {
+        let mut changed = whole.clone();
+        changed[start + at..start + at + bytes.len()].copy_from_slice(bytes);
+        one("m.ply", changed)
+    };
+    let of_vertex = format!("m.ply, byte {}: vertex 1 has the coordinate inf", start + 12);
+    let of_face =
+        format!("m.ply, byte {}: the header promises 1 rows of `face` but the file holds only 0", start + 48);
+    let behind = format!("m.ply, byte {}: the file continues after the 5 elements", whole.len());
+    check([
+        ("little", one("m.ply", &whole), RECTANGLE),
+        ("big", one("m.ply", binary_ply(true)), RECTANGLE),
+        ("infinite", with(12, &f32::INFINITY.to_le_bytes()), &of_vertex),
+        ("a long list", with(48, &[200]), &of_face),
+        ("cut", one("m.ply", &whole[..whole.len() - 1]), &of_face),
+        ("bytes behind", one("m.ply", [&whole[..], &[1]].concat()), &behind),
+        ("blanks behind", one("m.ply", [&whole[..], b"\n "].concat()), RECTANGLE),
+    ]);
 }
 
 #[test]
@@ -437,6 +371,103 @@ fn gltf_refers_to_files_and_hides_nodes() {
     ]);
 }
 
+#[test]
+fn gltf_puts_primitives_nodes_and_accessors_of_every_kind_together() {
+    let rich = Rich::new();
+    let files = vec![("m.gltf", rich.json("data.bin").into_bytes()), ("data.bin", rich.data.clone())];
+    let file = read_all(&files, &ReadLimits::default()).unwrap();
+    // The root, in its own place: a strip and a fan on the same vertices.
+    assert_eq!(file.mesh.positions[..4], SQUARE.map(|p| Point3::from(p.map(f64::from))));
+    // Its first child, moved, whose last vertex is sparse; its grandchild: mirrored, then twice as large and moved.
+    assert_eq!(
+        file.mesh.positions[4..],
+        [
+            [10., 0., 0.],
+            [11., 0., 0.],
+            [10., 1., 0.],
+            [11., 1., 5.],
+            [0., 20., 0.],
+            [-2., 20., 0.],
+            [0., 22., 0.],
+            [-2., 22., 0.],
+        ]
+        .map(Point3::from)
+    );
+    assert!(outcome(&files).ends_with("; 0 1 2, 1 3 2, 1 3 0, 3 2 0, 4 5 6, 6 5 7, 8 10 9, 10 11 9"));
+    // All squares face the same side, the mirrored one too.
+    assert!((0..file.mesh.n_faces()).all(|f| file.mesh.area_vector(f).z > 0.0));
+    assert_eq!((file.facts.unit, file.facts.instances), (Some(LengthUnit::Meter), Some(3)));
+    assert_eq!(file.facts.ignored, ["all scenes but the default one", "points and lines"]);
+    // What is written keeps the numbers of vertices, and reads alike as text.
+    let mesh = shapes::disjoint(&[shapes::icosphere(2), shapes::cube(1)]);
+    let [glb, gltf] = [one("m.glb", written("m.glb", &mesh)), one("m.gltf", gltf_text(&mesh))]
+        .map(|files| read_all(&files, &ReadLimits::default()).unwrap().mesh);
+    let rounded = mesh.positions.iter().map(|p| p.map(|x| f64::from(x as f32))).collect();
+    assert_eq!(glb, TriMesh { positions: rounded, faces: mesh.faces });
+    assert_eq!(gltf, glb);
+}
+
+#[test]
+fn small_files_cannot_make_huge_meshes() {
+    // Without data, four billion zeros.
+    let zeros = r#"{"asset":{"version":"2.0"},"buffers":[{"uri":"data:;base64,AAAAAAAAAAAAAAAAAAAAAA==","byteLength":16}],"bufferViews":[{"buffer":0,"byteLength":16}],"accessors":[{"componentType":5126,"count":4000000000,"type":"VEC3","sparse":{"count":1,"indices":{"bufferView":0,"componentType":5121},"values":{"bufferView":0}}}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}]}"#;
+    // Thousands of copies of a mesh of thousands of vertices.
+    let nodes = vec![r#"{"mesh":0}"#; 20_000].join(",");
+    let numbers: Vec<String> = (0..20_000).map(|i| i.to_string()).collect();
+    let copies = gltf_text(&shapes::icosphere(5))
+        .replace(r#""nodes":[{"mesh":0}]"#, &format!(r#""nodes":[{nodes}]"#))
+        .replace(r#"{"nodes":[0]}"#, &format!(r#"{{"nodes":[{}]}}"#, numbers.join(",")));
+    // Every object consists of two copies of the one before it.
+    let doubled = |id: usize| {
+        let component = format!("<component objectid=\"{}\"/>", id - 1);
+        format!("<object id=\"{id}\"><components>{component}{component}</components></object>")
+    };
+    let objects: String = (2..60).map(doubled).collect();
+    let of = |first: &str| {
+        let model = format!(
+            "{HEAD}<resources>{first}{objects}</resources><build><item objectid=\"59\"/></build></model>"
+        );
+        one("m.3mf", package_of(model.as_bytes()))
+    };
+    let first = format!("<object id=\"1\">{}</object>", mesh_text(&shapes::tetrahedron(0)));
+    // A column of 320 MB of zeros, declared as such.
+    let style = Style { compressed: true, ..PLAIN };
+    let length = 320u32 << 20;
+    let triangle = PLAIN.fields(&shapes::tetrahedron(0));
+    let mut small = style.structure("surface", &triangle);
+    let start =
+        small.len() - [&triangle[1], &triangle[2], &triangle[3]].map(|f| f.1.len()).iter().sum::<usize>();
+    let column = start - triangle[0].1.len();
+    let head = 8 + 16 + 16 + 8;
+    small[column + 32..column + 36].copy_from_slice(&(length / 8).to_le_bytes());
+    small[column + head + 4..column + head + 8].copy_from_slice(&length.to_le_bytes());
+    small.truncate(column + head + 8);
+    small[4..8].copy_from_slice(&(length + 4096).to_le_bytes());
+    let mut zlib = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::fast());
+    zlib.write_all(&small).unwrap();
+    (0..length >> 20).for_each(|_| zlib.write_all(&vec![0; 1 << 20]).unwrap());
+    let data = zlib.finish().unwrap();
+    let mut bytes = PLAIN.file(&[]);
+    bytes.extend([15u32.to_le_bytes(), (data.len() as u32).to_le_bytes()].concat());
+    bytes.extend(data);
+    assert!(bytes.len() < 4 << 20);
+    let mat = one("m.mat", bytes);
+    let over = read_all(&mat, &ReadLimits::of_vertices(1000)).unwrap_err().to_string();
+    assert!(over.contains("the mesh exceeds the limit of 1000 vertices"), "{over}");
+    check([
+        ("zeros", one("m.gltf", zeros), "m.gltf, accessor 0: the compressed data grows beyond"),
+        ("copies", one("m.gltf", copies), "m.gltf, mesh 0: its copies of meshes add up to more than"),
+        ("doubled", of(&first), "m.3mf: too many vertices"),
+        ("doubled nothing", of("<object id=\"1\"/>"), "m.3mf: the file has 0 vertices but no faces"),
+        (
+            "blanks",
+            one("m.3mf", package_of(&vec![b' '; 200 << 20])),
+            "m.3mf/3D/3dmodel.model: the compressed data grows",
+        ),
+        ("a column", mat, "m.mat, byte 136: the compressed data grows beyond"),
+    ]);
+}
+
 /// A 3MF file whose relationship names a part, and whose second object has attributes and content.
 fn threemf(target: &str, entry: &str, attributes: &str, more: &str) -> Files {
     let mesh = r#"<vertices><vertex x="0" y="0" z="0"/><vertex x="&#50;" y="0" z="0"/><vertex x="2" y="1" z="0"/>
@@ -449,12 +480,7 @@ fn threemf(target: &str, entry: &str, attributes: &str, more: &str) -> Files {
     let relationships = format!(
         r#"<Relationships><Relationship Target="{target}" Id="r" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>"#
     );
-    let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
-    for (name, content) in [("_rels/.rels", &relationships), (entry, &model)] {
-        archive.start_file(name, zip::write::SimpleFileOptions::default()).unwrap();
-        archive.write_all(content.as_bytes()).unwrap();
-    }
-    one("m.3mf", archive.finish().unwrap().into_inner())
+    one("m.3mf", package(&[("_rels/.rels", relationships.as_bytes()), (entry, model.as_bytes())]))
 }
 
 #[test]
@@ -490,10 +516,150 @@ fn threemf_finds_its_parts_and_leaves_out_supports() {
     ]);
 }
 
+#[test]
+fn threemf_places_and_counts_components_and_items() {
+    let corner = shapes::tetrahedron(0);
+    let model = format!(
+        "{HEAD}<resources><object id=\"7\" type=\"model\">{}</object>\
+         <object id=\"8\"><components>\
+         <component objectid=\"7\" transform=\"2 0 0 0 2 0 0 0 2 10 0 0\"/>\
+         <component objectid=\"7\" transform=\"-1 0 0 0 1 0 0 0 1 0 0 0\"/>\
+         </components></object></resources>\
+         <build><item objectid=\"8\" transform=\"0 1 0 -1 0 0 0 0 1 0 0 5\"/><item objectid=\"7\"/></build></model>",
+        mesh_text(&corner)
+    );
+    let file = read_all(&one("m.3mf", package_of(model.as_bytes())), &ReadLimits::default()).unwrap();
+    assert_eq!((file.facts.unit, file.facts.instances), (Some(LengthUnit::Inch), Some(3)));
+    assert_eq!((file.mesh.n_vertices(), file.mesh.n_faces()), (12, 12));
+    for (v, p) in corner.positions.iter().enumerate() {
+        // Doubled and moved, then turned by a right angle and lifted.
+        let q = file.mesh.positions[v];
+        assert_eq!([q.x, q.y, q.z], [-2.0 * p.y, 2.0 * p.x + 10.0, 2.0 * p.z + 5.0]);
+        assert_eq!(file.mesh.positions[v + 8], *p);
+    }
+    let volume = |faces: std::ops::Range<usize>| -> f64 {
+        faces.map(|f| file.mesh.triangle(f)).map(|[a, b, c]| a.coords.dot(&b.coords.cross(&c.coords))).sum()
+    };
+    // The mirrored copy keeps its outside.
+    assert!(volume(4..8) * volume(8..12) > 0.0);
+    // Objects of other parts, and without a build every object that is no component.
+    let ball = shapes::icosphere(1);
+    let other = format!(
+        "{HEAD}<resources><object id=\"1\">{}</object></resources><build/></model>",
+        mesh_text(&ball)
+    );
+    let root = format!(
+        "{HEAD}<resources><object id=\"1\"><components><component p:path=\"/3D/Objects/ball.model\" objectid=\"1\"/>\
+         </components></object></resources><build><item objectid=\"1\"/></build></model>"
+    );
+    let parts = [("3D/3dmodel.model", root.as_bytes()), ("3d/objects/BALL.model", other.as_bytes())];
+    let whole = read_all(&one("m.3mf", package(&parts)), &ReadLimits::default()).unwrap().mesh;
+    assert_eq!(whole, ball);
+    let no_build =
+        model_of(&ball).replace("<item objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 2 0 0\"/>", "");
+    let file = read_all(&one("m.3mf", package_of(no_build.as_bytes())), &ReadLimits::default()).unwrap();
+    assert_eq!((file.mesh.n_vertices(), file.facts.instances), (42, Some(1)));
+    assert_eq!(written("m.3mf", &ball), written("m.3mf", &ball), "the same mesh gives the same bytes");
+    let other = package(&[("word/document.xml", b"<a/>")]);
+    check([
+        (
+            "a part too few",
+            one("m.3mf", package(&parts[..1])),
+            "m.3mf: expected all parts that the file refers to, found `no part 3D/Objects/ball.model`",
+        ),
+        ("another archive", one("m.3mf", other), "m.3mf: this is not a 3MF file (a zip archive without"),
+        (
+            "no archive",
+            one("m.3mf", "PNG"),
+            "m.3mf: this is not a 3MF file, which is a zip archive (it begins with `PNG`)",
+        ),
+    ]);
+}
+
+#[test]
+fn matlab_files_are_read_in_every_encoding() {
+    let torus = shapes::torus(8, 5, 2.0, 0.5);
+    for index_type in [4, 5, 7, 9] {
+        for (big_endian, compressed) in [(false, false), (false, true), (true, false), (true, true)] {
+            let style = Style { big_endian, compressed, index_type };
+            let files = one("m.mat", style.surface(&torus));
+            assert_eq!(read_all(&files, &ReadLimits::default()).unwrap().mesh, torus);
+        }
+    }
+    let mesh = shapes::tetrahedron(0);
+    let x: Vec<f64> = mesh.positions.iter().map(|p| p.x).collect();
+    let with = |field: usize, kind: u32, rows: usize, columns: usize, values: &[f64]| {
+        let mut fields = PLAIN.fields(&mesh);
+        fields[field].1 = PLAIN.matrix("", kind, rows, columns, values);
+        one("m.mat", PLAIN.file(&[PLAIN.structure("surface", &fields)]))
+    };
+    let mut nested = PLAIN.fields(&mesh);
+    nested[0].1 = PLAIN.structure("", &[]);
+    let many: Vec<_> = (0..100).map(|i| PLAIN.matrix(&format!("{i:06000}"), 9, 1, 1, &[1.0])).collect();
+    let whole = PLAIN.surface(&mesh);
+    let index = "m.mat, byte 136: a face refers to vertex";
+    check([
+        ("a row of coordinates", with(0, 9, 1, 4, &x), "4 vertices, 4 faces"),
+        (
+            "no number",
+            with(1, 9, 4, 1, &[0.0, 0.0, f64::NAN, 0.0]),
+            "m.mat, byte 136: vertex 3 has the coordinate NaN",
+        ),
+        (
+            "three for four",
+            with(1, 9, 3, 1, &[0.0; 3]),
+            "m.mat, byte 136: expected columns X Y Z of equal length",
+        ),
+        (
+            "four columns",
+            with(3, 9, 3, 4, &[1.0; 12]),
+            "m.mat, byte 136: expected three columns in TRIV, found `3 x 4`",
+        ),
+        ("vertex 5", with(3, 9, 1, 3, &[1.0, 2.0, 5.0]), index),
+        ("vertex 2.5", with(3, 9, 1, 3, &[1.0, 2.0, 2.5]), index),
+        ("vertex NaN", with(3, 9, 1, 3, &[1.0, 2.0, f64::NAN]), index),
+        ("no faces", with(3, 9, 0, 3, &[]), "m.mat: the file has 4 vertices but no faces"),
+        (
+            "a bold header",
+            with(0, 9, 1_000_000, 1_000_000, &[0.0; 4]),
+            "m.mat, byte 136: the header promises 1000000000000 numbers of a matrix but the file holds only 4",
+        ),
+        (
+            "a struct in a field",
+            one("m.mat", PLAIN.file(&[PLAIN.structure("surface", &nested)])),
+            "m.mat, byte 136: expected a full matrix",
+        ),
+        (
+            "another variable",
+            one("m.mat", PLAIN.file(&[PLAIN.matrix("other", 9, 1, 1, &[1.0])])),
+            "m.mat: the file has no struct with the fields X Y Z TRIV (its variables: other)",
+        ),
+        (
+            "nothing",
+            one("m.mat", PLAIN.file(&[])),
+            "m.mat: the file has no struct with the fields X Y Z TRIV (its variables: none)",
+        ),
+        ("cut", one("m.mat", &whole[..whole.len() - 8]), "m.mat, byte 208: the header promises"),
+        (
+            "a new version",
+            one("m.mat", "MATLAB 7.3 MAT-file"),
+            "m.mat: this is a MATLAB 7.3 file; save it with `save -v7`",
+        ),
+        ("HDF", one("m.mat", b"\x89HDF\r\n"), "m.mat: this is a MATLAB 7.3 file"),
+        (
+            "no version",
+            one("m.mat", [7; 300]),
+            "m.mat: this is not a MATLAB 5 file (its header lacks the version",
+        ),
+        ("short", one("m.mat", "OFF"), "m.mat: this is not a MATLAB 5 file (it is shorter than the header)"),
+    ]);
+    let message = outcome(&one("m.mat", PLAIN.file(&many)));
+    assert!(message.contains("and 92 more") && message.len() < 1000, "{message}");
+}
+
 /// A stream with more bytes than allowed is never read in part.
 #[test]
 fn streams_beyond_their_limit_are_refused_at_any_limit() {
-    use canonform_mesh_io::{Format, read_from};
     let rows = |n: usize| "1 2 3\n".repeat(n).into_bytes();
     let mut zipped = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
     zipped.write_all(&rows(20_000)).unwrap();

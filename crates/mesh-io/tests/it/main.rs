@@ -6,4 +6,6 @@
 mod corpus;
 mod files;
 mod foreign;
+mod made;
+mod mutations;
 mod real_data;

@@ -23,7 +23,7 @@ pub(crate) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
             let found = "it begins like a binary one, whose extension is .glb";
             Err(Fault::wrong_format("a glTF file as text", found).whole())
         }
-        Some(_) => Err(wrong("a glTF file", text)),
+        Some(_) => Err(other_format("a glTF file", text).whole()),
     }
 }
 
@@ -33,11 +33,8 @@ pub(crate) fn check_binary_start(start: &[u8], size: Option<u64>) -> Result<(), 
 }
 
 fn stated_length(start: &[u8], size: Option<u64>) -> Result<u64, Located> {
-    if start.trim_ascii().is_empty() {
-        return Err(Fault::Empty.whole());
-    }
     if !start.starts_with(MAGIC) {
-        return Err(wrong("a GLB file", start));
+        return Err(other_format("a GLB file", start).whole());
     }
     let mut words = Bytes::new(start, MAGIC.len(), ByteOrder::Little);
     let (Some(version), Some(length)) = (words.u32(), words.u32().map(u64::from)) else {
@@ -57,27 +54,29 @@ fn stated_length(start: &[u8], size: Option<u64>) -> Result<u64, Located> {
     }
 }
 
-fn wrong(expected: &'static str, start: &[u8]) -> Located {
-    Fault::wrong_format(expected, format!("it begins with `{}`", excerpt(start))).whole()
-}
-
-/// The JSON of a file, the byte at which it begins, and the binary chunk if there is one.
-pub(super) type Parts<'a> = (&'a [u8], usize, Option<&'a [u8]>);
-
-/// Splits a GLB file.
-pub(super) fn split_binary(bytes: &[u8]) -> Result<Parts<'_>, Located> {
-    let length = stated_length(bytes, Some(bytes.len() as u64))?;
-    // Bytes after the stated length belong to nobody.
-    let mut chunks = Bytes::new(&bytes[..length as usize], HEADER, ByteOrder::Little);
-    let Some((b"JSON", json)) = chunk(&mut chunks)? else {
-        return Err(Fault::cut_short("the JSON chunk").at_byte(HEADER));
-    };
-    while let Some((kind, data)) = chunk(&mut chunks)? {
-        if kind == b"BIN\0" {
-            return Ok((json, HEADER + CHUNK_HEADER, Some(data)));
+/// The description of a scene, and the binary chunk if there is one, of a GLB file or a text.
+pub(super) fn open(bytes: &[u8]) -> Result<(Root, Option<&[u8]>), Located> {
+    let (mut json, mut binary) = (bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), None);
+    let is_text = !bytes.starts_with(MAGIC);
+    if !is_text {
+        let length = stated_length(bytes, Some(bytes.len() as u64))?;
+        // Bytes after the stated length belong to nobody.
+        let mut chunks = Bytes::new(&bytes[..length as usize], HEADER, ByteOrder::Little);
+        let Some((b"JSON", first)) = chunk(&mut chunks)? else {
+            return Err(Fault::cut_short("the JSON chunk").at_byte(HEADER));
+        };
+        json = first;
+        while binary.is_none()
+            && let Some((kind, data)) = chunk(&mut chunks)?
+        {
+            binary = Some(data).filter(|_| kind == b"BIN\0");
         }
     }
-    Ok((json, HEADER + CHUNK_HEADER, None))
+    let root = serde_json::from_slice(json).map_err(|error| {
+        let fault = Fault::syntax("the JSON of glTF 2.0", error.to_string());
+        if is_text { fault.in_line(error.line()) } else { fault.at_byte(HEADER + CHUNK_HEADER) }
+    })?;
+    Ok((root, binary))
 }
 
 /// The kind and the data of the next chunk. Less than the header of one at the end of the file is padding.
@@ -92,7 +91,7 @@ fn chunk<'a>(bytes: &mut Bytes<'a>) -> Result<Option<(&'a [u8], &'a [u8])>, Loca
 }
 
 /// Names of the other files that hold buffers, each once, in the order of the buffers.
-pub(super) fn companions(root: &Root) -> Result<Vec<String>, Located> {
+pub(super) fn companions_of(root: &Root) -> Result<Vec<String>, Located> {
     let mut names = Vec::new();
     for (number, buffer) in root.buffers.iter().enumerate() {
         if let Some(uri) = buffer.uri.as_deref().filter(|uri| !is_data(uri)) {
@@ -164,9 +163,9 @@ impl Layout {
 
 impl<'a> Data<'a> {
     /// Finds the buffers in the binary chunk, in data URIs and in the files, which are the glTF file and its
-    /// [`companions`].
+    /// companions.
     pub(super) fn new(root: &'a Root, chunk: Option<&'a [u8]>, files: &[&'a [u8]]) -> Result<Self, Located> {
-        let names = companions(root)?;
+        let names = companions_of(root)?;
         let mut buffers = Vec::with_capacity(root.buffers.len());
         for (number, buffer) in root.buffers.iter().enumerate() {
             buffers.push(match buffer.uri.as_deref() {
@@ -317,44 +316,4 @@ fn scalar(component_type: u32) -> Option<Scalar> {
     use Scalar::{F32, I8, I16, U8, U16, U32};
     let numbered = [(5120, I8), (5121, U8), (5122, I16), (5123, U16), (5125, U32), (5126, F32)];
     numbered.into_iter().find(|(number, _)| *number == component_type).map(|(_, scalar)| scalar)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn data_is_only_looked_for_below_the_folder_of_the_file() {
-        for (uri, name) in [("cat.bin", "cat.bin"), ("a%20b/c.bin", "a b/c.bin"), ("%C3%A9.bin", "é.bin")] {
-            assert_eq!(local_name(uri).unwrap(), name);
-        }
-        for uri in [
-            "../cat.bin",
-            "a/../../cat.bin",
-            "/etc/passwd",
-            "%2e%2e/cat.bin",
-            "a%2F..%2F..%2Fb",
-            "file:///etc/passwd",
-            "https://example.org/a.bin",
-            "C:\\a.bin",
-            "..\\a.bin",
-            "",
-            ".",
-            "a//b",
-            "%zz",
-            "%ff",
-            "a%00b",
-        ] {
-            assert!(matches!(local_name(uri), Err(Fault::Unsupported { .. })), "{uri}");
-        }
-    }
-
-    #[test]
-    fn data_uris_are_decoded() {
-        assert_eq!(decoded("data:application/octet-stream;base64,AAEC/w==").unwrap(), [0, 1, 2, 255]);
-        assert!(decoded("DATA:;BASE64,").unwrap().is_empty());
-        for uri in ["data:", "data:text/plain,abc", "data:;base64,A", "data:;base64,?"] {
-            assert!(decoded(uri).is_err(), "{uri}");
-        }
-    }
 }

@@ -15,7 +15,7 @@ mod schema;
 
 use crate::prelude::*;
 use crate::write::{origin, rounded};
-use data::{Data, Parts, split_binary};
+use data::{Data, companions_of, open};
 use schema::Root;
 
 pub(super) use data::{check_binary_start, check_start};
@@ -43,43 +43,16 @@ const REFUSED: [(&str, &str, &str); 3] = [
     ),
 ];
 
-/// Names of the other files that hold the data of a `.gltf` file.
-pub(super) fn companions(json: &[u8]) -> Result<Vec<String>, Located> {
-    data::companions(&parse_json(json, 0)?)
+/// Names of the other files that hold the data of a file.
+pub(super) fn companions(bytes: &[u8]) -> Result<Vec<String>, Located> {
+    companions_of(&open(bytes)?.0)
 }
 
-/// Names of the other files that hold the data of a `.glb` file.
-pub(super) fn companions_of_binary(bytes: &[u8]) -> Result<Vec<String>, Located> {
-    let (json, start, _) = split_binary(bytes)?;
-    data::companions(&parse_json(json, start)?)
-}
-
-/// Reads a `.gltf` file, followed by its companions.
+/// Reads a `.gltf` or `.glb` file, followed by its companions.
 pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
-    read((files[0], 0, None), files, limits)
-}
-
-/// Reads a `.glb` file, followed by its companions.
-pub(super) fn parse_binary(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
-    read(split_binary(files[0])?, files, limits)
-}
-
-/// Parses the description of the scene, which begins at byte `start` of the file.
-fn parse_json(json: &[u8], start: usize) -> Result<Root, Located> {
-    let json = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json);
-    if json.trim_ascii().is_empty() {
-        return Err(Fault::Empty.whole());
-    }
-    serde_json::from_slice(json).map_err(|error| {
-        let place = if start == 0 { Place::Line(error.line()) } else { Place::Byte(start as u64) };
-        Fault::syntax("the JSON of glTF 2.0", error.to_string()).at(place)
-    })
-}
-
-fn read((json, start, chunk): Parts<'_>, files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
-    let root = &parse_json(json, start)?;
+    let (root, chunk) = &open(files[0])?;
     check_support(root).whole()?;
-    let (mesh, instances) = scene::read(&Data::new(root, chunk, files)?, limits)?;
+    let (mesh, instances) = scene::read(&Data::new(root, *chunk, files)?, limits)?;
     let facts = FileFacts {
         unit: Some(LengthUnit::Meter),
         instances: Some(instances),
@@ -155,8 +128,3 @@ pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh, _: Field<'_>) -> io::Re
     }
     mesh.faces.iter().flatten().try_for_each(|v| out.write_all(&v.0.to_le_bytes()))
 }
-
-#[cfg(test)]
-mod tests;
-#[cfg(test)]
-pub(super) use tests::samples;

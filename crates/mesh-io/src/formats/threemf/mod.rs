@@ -194,8 +194,3 @@ pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh, _: Field<'_>) -> io::Re
     drop(text);
     out.write_all(archive.finish()?.get_ref())
 }
-
-#[cfg(test)]
-mod tests;
-#[cfg(test)]
-pub(super) use tests::{model_of, package_of};

@@ -23,15 +23,11 @@ const USUAL: &str = "3D/3dmodel.model";
 pub(crate) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
     match start {
         [b'P', b'K', 3 | 5, ..] => Ok(()),
-        _ if start.trim_ascii().is_empty() => Err(Fault::Empty.whole()),
         [0xd0, 0xcf, 0x11, 0xe0, ..] => {
             let what = "this file is protected by a password";
             Err(Fault::unsupported(what, "save it without protection").whole())
         }
-        _ => {
-            let found = format!("it begins with `{}`", excerpt(start));
-            Err(Fault::wrong_format("a 3MF file, which is a zip archive", found).whole())
-        }
+        _ => Err(other_format("a 3MF file, which is a zip archive", start).whole()),
     }
 }
 
@@ -45,7 +41,6 @@ pub(super) struct Package<'a> {
 
 impl<'a> Package<'a> {
     pub(super) fn open(bytes: &'a [u8]) -> Result<Self, Located> {
-        check_start(bytes, None)?;
         let archive = ZipArchive::new(Cursor::new(bytes)).map_err(damaged).whole()?;
         let limit = inflated_limit(bytes.len() as u64);
         Ok(Self { archive, budget: limit, limit })

@@ -1,13 +1,14 @@
-//! Every parser on damaged files: cut at every byte, with bytes changed, and on noise. The result is an error
+//! Every reader on damaged files: cut at every byte, with bytes changed, and on noise. The result is an error
 //! or a mesh that keeps the invariants; never a panic, never a hang.
 
+use std::path::Path;
+use std::sync::LazyLock;
+
+use canonform_mesh_io::{Content, FORMATS, Format, ReadLimits, writable};
+use mesh::{MIN_POINTS, MeshError, TriMesh, shapes};
 use proptest::prelude::*;
 
-use super::mat::tests::{PLAIN, Style};
-use super::{FORMATS, Format};
-use crate::formats::Content;
-use crate::prelude::*;
-use mesh::{MIN_POINTS, shapes};
+use crate::made::{Files, PLAIN, Rich, Style, gltf_text, model_of, package_of, read_all, written};
 
 /// Makes a file of bytes.
 type Wrap = fn(&[u8]) -> Vec<u8>;
@@ -15,37 +16,27 @@ type Wrap = fn(&[u8]) -> Vec<u8>;
 /// The valid files of a mesh, one of which is to be damaged.
 struct Sample {
     name: String,
-    format: &'static Format,
-    files: Vec<Vec<u8>>,
+    files: Files,
     damaged: usize,
     /// Makes the file of the damaged bytes, where checksums would reveal any damage.
     wrap: Option<Wrap>,
 }
 
+static SAMPLES: LazyLock<Vec<Sample>> = LazyLock::new(samples);
+
 /// A sample of each file of each format that can be written, and of what the writers do not write.
 fn samples() -> Vec<Sample> {
     let mesh = shapes::icosphere(0);
-    let mut samples = Vec::new();
-    for format in FORMATS.iter().filter(|format| format.can_write(Content::Mesh)) {
-        let files: Vec<Vec<u8>> = format
-            .write
-            .iter()
-            .map(|write| {
-                let mut bytes = Vec::new();
-                write(&mut bytes, &mesh, None).unwrap();
-                bytes
-            })
-            .collect();
-        for (damaged, extension) in format.extensions.iter().enumerate() {
-            samples.push(Sample {
-                name: extension.to_string(),
-                format,
-                files: files.clone(),
-                damaged,
-                wrap: None,
-            });
-        }
-    }
+    let sample = |name: &str, files, damaged| Sample { name: name.into(), files, damaged, wrap: None };
+    let mut samples: Vec<Sample> = ["m.off", "m.obj", "m.ply", "m.stl", "m.glb", "m.3mf"]
+        .map(|name| sample(&name[2..], vec![(name, written(name, &mesh))], 0))
+        .into();
+    assert_eq!(samples.len() + 1, writable(Content::Mesh).count());
+    let folder = tempfile::tempdir().unwrap();
+    canonform_mesh_io::write(&folder.path().join("m.vert"), &mesh).unwrap();
+    let pair = ["m.vert", "m.tri"].map(|name| (name, std::fs::read(folder.path().join(name)).unwrap()));
+    samples.push(sample("vert", pair.to_vec(), 0));
+    samples.push(sample("tri", pair.to_vec(), 1));
     let ascii_ply = format!(
         "ply\nformat ascii 1.0\nelement vertex 12\nproperty double x\nproperty double y\nproperty double z\n\
          element edge 1\nproperty list uchar int ends\nelement face 20\n\
@@ -61,56 +52,45 @@ fn samples() -> Vec<Sample> {
     let zipped = Style { compressed: true, big_endian: true, index_type: 4 };
     let groups = b"o a\nv 0 0 0\nv 1 0 0\nv 1 1 0 1 0 0\nv 0 1 0 2\nvt 0 0\nvn 0 0 1\n\
         g b\nf 1/1/1 2/1/1 3/1/1 4/1/1\nusemtl c\nf -1//1 -2//1 -3//1\ng\nf 1 2 3 4 -1\n";
-    for (name, bytes) in [
-        ("obj groups", groups.to_vec()),
-        ("ply ascii", ascii_ply.into_bytes()),
-        ("stl ascii", ascii_stl.into_bytes()),
-        ("mat", PLAIN.surface(&mesh)),
-        ("mat zipped", zipped.surface(&mesh)),
-    ] {
-        let extension = name.split(' ').next();
-        let format = FORMATS.iter().find(|format| format.extensions.first().copied() == extension).unwrap();
-        samples.push(Sample { name: name.into(), format, files: vec![bytes], damaged: 0, wrap: None });
-    }
-    let named = |extension| Format::named(extension).unwrap();
-    let gltf = super::gltf::samples(&mesh);
-    for (name, files, damaged) in gltf {
-        samples.push(Sample { name: name.into(), format: named("gltf"), files, damaged, wrap: None });
-    }
     let rows: String = mesh.positions.iter().map(|p| format!("{} {}, {} 7\n", p.x, p.y, p.z)).collect();
-    for (extension, text) in [("xyz", format!("// x y z\n{rows}")), ("pts", format!("12\n{rows}"))] {
-        let (name, files) = (extension.to_owned(), vec![text.into_bytes()]);
-        samples.push(Sample { name, format: named(extension), files, damaged: 0, wrap: None });
+    for (name, file, bytes) in [
+        ("obj groups", "m.obj", groups.to_vec()),
+        ("ply ascii", "m.ply", ascii_ply.into_bytes()),
+        ("stl ascii", "m.stl", ascii_stl.into_bytes()),
+        ("mat", "m.mat", PLAIN.surface(&mesh)),
+        ("mat zipped", "m.mat", zipped.surface(&mesh)),
+        ("gltf", "m.gltf", gltf_text(&mesh).into_bytes()),
+        ("xyz", "m.xyz", format!("// x y z\n{rows}").into_bytes()),
+        ("pts", "m.pts", format!("12\n{rows}").into_bytes()),
+    ] {
+        samples.push(sample(name, vec![(file, bytes)], 0));
     }
-    let wrap: Wrap = super::threemf::package_of;
-    let files = vec![super::threemf::model_of(&mesh).into_bytes()];
-    samples.push(Sample {
-        name: "3mf model".into(),
-        format: named("3mf"),
-        files,
-        damaged: 0,
-        wrap: Some(wrap),
-    });
+    let rich = Rich::new();
+    let scene = vec![("m.gltf", rich.json("data.bin").into_bytes()), ("data.bin", rich.data)];
+    samples.push(sample("gltf rich", scene.clone(), 0));
+    samples.push(sample("gltf data", scene, 1));
+    let model = sample("3mf model", vec![("m.3mf", model_of(&mesh).into_bytes())], 0);
+    samples.push(Sample { wrap: Some(package_of), ..model });
     samples
 }
 
 impl Sample {
     fn bytes(&self) -> &[u8] {
-        &self.files[self.damaged]
+        &self.files[self.damaged].1
     }
 
-    fn parse(&self, bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Fault> {
-        let mut files: Vec<&[u8]> = self.files.iter().map(Vec::as_slice).collect();
-        let wrapped = self.wrap.map(|wrap| wrap(bytes));
-        files[self.damaged] = wrapped.as_deref().unwrap_or(bytes);
-        (self.format.parse)(&files, limits).map(|file| file.mesh).map_err(|located| located.fault)
+    fn parse(&self, bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, MeshError> {
+        let mut files = self.files.clone();
+        files[self.damaged].1 = self.wrap.map_or_else(|| bytes.to_vec(), |wrap| wrap(bytes));
+        read_all(&files, limits).map(|file| file.mesh)
     }
 }
 
 #[test]
 fn every_format_has_a_sample() {
     for format in &FORMATS {
-        assert!(samples().iter().any(|sample| std::ptr::eq(sample.format, format)), "{}", format.name);
+        let is_of = |sample: &Sample| std::ptr::eq(Format::of(Path::new(sample.files[0].0)).unwrap(), format);
+        assert!(SAMPLES.iter().any(is_of), "{}", format.name);
     }
 }
 
@@ -127,26 +107,32 @@ fn check(sample: &Sample, bytes: &[u8]) -> Option<TriMesh> {
 #[test]
 fn meshes_beyond_the_limits_are_errors_in_every_format() {
     let other_meshes = ["obj groups", "gltf rich", "gltf data"];
-    for sample in samples().into_iter().filter(|sample| !other_meshes.contains(&sample.name.as_str())) {
+    for sample in SAMPLES.iter().filter(|sample| !other_meshes.contains(&sample.name.as_str())) {
         let read = |max_vertices, max_faces| {
             sample.parse(sample.bytes(), &ReadLimits { max_vertices, max_faces, ..ReadLimits::default() })
         };
         assert!(read(12, 20).is_ok(), "{}", sample.name);
-        let vertices = Fault::OverLimit { items: "vertices", limit: 11 };
-        assert_eq!(read(11, 20), Err(vertices), "{}", sample.name);
+        let is_over = |read: Result<TriMesh, MeshError>, items: &str| {
+            let fault = read.unwrap_err().to_string();
+            assert!(
+                fault.contains(&format!("the mesh exceeds the limit of {items}")),
+                "{}: {fault}",
+                sample.name
+            );
+        };
+        is_over(read(11, 20), "11 vertices");
         if read(12, 20).is_ok_and(|mesh| !mesh.faces.is_empty()) {
-            let faces = Fault::OverLimit { items: "faces", limit: 19 };
-            assert_eq!(read(12, 19), Err(faces), "{}", sample.name);
+            is_over(read(12, 19), "19 faces");
         }
     }
 }
 
 #[test]
 fn files_cut_at_every_byte() {
-    for sample in samples() {
-        let whole = check(&sample, sample.bytes()).expect(&sample.name);
+    for sample in &*SAMPLES {
+        let whole = check(sample, sample.bytes()).expect(&sample.name);
         for length in 0..sample.bytes().len() {
-            let cut = check(&sample, &sample.bytes()[..length]);
+            let cut = check(sample, &sample.bytes()[..length]);
             // Most formats state their size. The others cannot notice a cut at the end of a line.
             let states_size = !sample.name.starts_with("obj") && sample.name != "tri";
             if let Some(mesh) = cut.filter(|_| states_size) {
@@ -158,12 +144,12 @@ fn files_cut_at_every_byte() {
 
 #[test]
 fn files_with_every_byte_changed() {
-    for sample in samples() {
+    for sample in &*SAMPLES {
         let mut bytes = sample.bytes().to_vec();
         for at in 0..bytes.len() {
             for change in [1u8, 0x80, 0xff, bytes[at] ^ b' ', bytes[at] ^ b'9'] {
                 bytes[at] ^= change;
-                check(&sample, &bytes);
+                check(sample, &bytes);
                 bytes[at] = sample.bytes()[at];
             }
         }
@@ -184,7 +170,7 @@ impl Mixer {
 
 #[test]
 fn ten_thousand_mutations_of_every_sample() {
-    for sample in samples() {
+    for sample in &*SAMPLES {
         let mut random = Mixer(0x9e37_79b9_7f4a_7c15);
         let mut intact = 0;
         for _ in 0..10_000 {
@@ -206,7 +192,7 @@ fn ten_thousand_mutations_of_every_sample() {
                     }
                 }
             }
-            intact += usize::from(check(&sample, &bytes).is_some());
+            intact += usize::from(check(sample, &bytes).is_some());
         }
         println!("{}: 10000 mutations, {intact} of them still a mesh, no panic", sample.name);
     }
@@ -219,13 +205,13 @@ proptest! {
     fn files_with_many_bytes_changed(
         changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..40),
     ) {
-        for sample in samples() {
+        for sample in &*SAMPLES {
             let mut bytes = sample.bytes().to_vec();
             for (at, value) in &changes {
                 let at = at.index(bytes.len());
                 bytes[at] = *value;
             }
-            check(&sample, &bytes);
+            check(sample, &bytes);
         }
     }
 
@@ -233,18 +219,18 @@ proptest! {
     fn files_with_a_piece_removed_doubled_or_moved(
         from in any::<prop::sample::Index>(), to in any::<prop::sample::Index>(), length in 0usize..200,
     ) {
-        for sample in samples() {
+        for sample in &*SAMPLES {
             let (from, to) = (from.index(sample.bytes().len()), to.index(sample.bytes().len()));
             let piece = sample.bytes()[from..].iter().take(length).copied().collect::<Vec<u8>>();
             let mut removed = sample.bytes().to_vec();
             removed.drain(from..from + piece.len());
-            check(&sample, &removed);
+            check(sample, &removed);
             let at = to.min(removed.len());
             removed.splice(at..at, piece.iter().copied());
-            check(&sample, &removed);
+            check(sample, &removed);
             let mut doubled = sample.bytes().to_vec();
             doubled.splice(to..to, piece);
-            check(&sample, &doubled);
+            check(sample, &doubled);
         }
     }
 
@@ -252,17 +238,17 @@ proptest! {
     fn noise_after_any_beginning(
         keep in any::<prop::sample::Index>(), noise in prop::collection::vec(any::<u8>(), 0..400),
     ) {
-        for sample in samples() {
+        for sample in &*SAMPLES {
             let bytes = [&sample.bytes()[..keep.index(sample.bytes().len())], &noise].concat();
-            check(&sample, &bytes);
-            check(&sample, &noise);
+            check(sample, &bytes);
+            check(sample, &noise);
         }
     }
 
     #[test]
     fn text_noise(words in prop::collection::vec("[-+0-9.eE/#vfnoply]{1,12}|v|f|OFF|ply|solid|facet|nan|\n", 0..120)) {
-        for sample in samples() {
-            check(&sample, words.join(" ").as_bytes());
+        for sample in &*SAMPLES {
+            check(sample, words.join(" ").as_bytes());
         }
     }
 }
