@@ -14,7 +14,7 @@ const FLAT: f64 = 0.01;
 /// Areas in units of the square of the size of a polygon that rounding may make of nothing.
 const ROUNDING: f64 = 1e-9;
 /// Corners that [`Earcut`] can count with its 32-bit offsets.
-const MOST_CORNERS: usize = 1 << 24;
+const MAX_CORNERS: usize = 1 << 24;
 
 /// The triangles of the polygons of a file.
 #[derive(Default)]
@@ -135,14 +135,14 @@ impl Outline {
     fn cut(&self) -> Option<Vec<u32>> {
         let n = self.points.len();
         let mut cut: Vec<u32> = Vec::with_capacity(3 * n);
-        if n > MOST_CORNERS {
+        if n > MAX_CORNERS {
             return None;
         }
         Earcut::new().earcut_slice(&self.points, &[], &mut cut);
         if self.twice_areas(&cut).sum::<f64>() < 0.0 {
             cut.as_chunks_mut::<3>().0.iter_mut().for_each(|triangle| triangle.swap(0, 1));
         }
-        // Ear clipping leaves out corners in a row with their neighbours. Triangles without area are missing there: loops of
+        // Ear clipping leaves out corners in a row with their neighbors. Triangles without area are missing there: loops of
         // edges with a triangle on one side only. Flipping edges gives them an area.
         if cut.len() < 3 * (n - 2) {
             let edges: BTreeSet<[u32; 2]> =

@@ -1,7 +1,6 @@
 //! Where the bytes of a mesh come from: the disk, memory, or whatever a program stores meshes in.
 
 use std::borrow::Cow;
-use std::fmt;
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
@@ -21,12 +20,12 @@ const START: u64 = 16 << 10;
 /// Decompressed data of this size is read whatever the size of the file.
 const ALWAYS: u64 = 64 << 20;
 /// Larger data may be this many times the size of the file. Meshes as text compress by a factor of 3 to 30.
-const MOST_RATIO: u64 = 256;
+const MAX_RATIO: u64 = 256;
 
 /// The most bytes that compressed data of `size` bytes may grow to.
 #[must_use]
 pub fn inflated_limit(size: u64) -> u64 {
-    ALWAYS.max(size.saturating_mul(MOST_RATIO))
+    ALWAYS.max(size.saturating_mul(MAX_RATIO))
 }
 
 /// A file in memory.
@@ -44,15 +43,6 @@ pub enum Opened<'a> {
     Bytes(Cow<'a, [u8]>),
     /// A stream, and its number of bytes if that is known.
     Stream(Box<dyn Read + 'a>, Option<u64>),
-}
-
-impl fmt::Debug for Opened<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Bytes(bytes) => write!(f, "{} bytes", bytes.len()),
-            Self::Stream(_, size) => write!(f, "a stream of {size:?} bytes"),
-        }
-    }
 }
 
 /// A place that holds files: implement it to read meshes from a store of your own.

@@ -37,8 +37,8 @@ pub fn write(path: &Path, mesh: &TriMesh) -> Result<(), MeshError> {
     Ok(pending.into_iter().try_for_each(Pending::publish)?)
 }
 
-/// Writes a mesh with a scalar field: as PLY with the property [`VertexField::name`] (double) and the colours
-/// `red green blue`; as OFF and OBJ with the colours alone.
+/// Writes a mesh with a scalar field: as PLY with the property [`VertexField::name`] (double) and the colors
+/// `red green blue`; as OFF and OBJ with the colors alone.
 ///
 /// # Errors
 /// As [`write()`]; [`MeshError::Unusable`] also for another extension and for a field that the file cannot hold.

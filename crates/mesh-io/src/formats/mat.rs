@@ -28,7 +28,7 @@ const INFLATION: u64 = 32;
 const SMALL_FILE: u64 = 16 << 20;
 
 /// The most variables that a message lists.
-const NAMED: usize = 8;
+const MAX_NAMED: usize = 8;
 
 /// Checks the header.
 pub(super) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
@@ -87,7 +87,7 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
             return mesh_of(fields, begin, limits);
         }
     }
-    let seen = match seen.split_at_checked(NAMED) {
+    let seen = match seen.split_at_checked(MAX_NAMED) {
         _ if seen.is_empty() => "none".to_owned(),
         Some((named, more @ [_, ..])) => format!("{} and {} more", named.join(", "), more.len()),
         _ => seen.join(", "),

@@ -24,7 +24,7 @@ use crate::source::FileSource;
 pub enum Content {
     /// Vertices and faces.
     Mesh,
-    /// Vertices, faces, and a value and a colour per vertex.
+    /// Vertices, faces, and a value and a color per vertex.
     Field,
     /// Polylines.
     Lines,

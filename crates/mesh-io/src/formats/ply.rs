@@ -322,7 +322,7 @@ fn scalar(name: &str) -> Option<Scalar> {
 const FACE_PROPERTIES: &str = "property list uchar uint vertex_indices\n";
 const FIELD_COLORS: &str = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
 
-/// Writes a mesh, perhaps with a value and a colour per vertex; coordinates read back bit for bit.
+/// Writes a mesh, perhaps with a value and a color per vertex; coordinates read back bit for bit.
 pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh, field: Field<'_>) -> io::Result<()> {
     let properties = field.map(|field| format!("property double {}\n{FIELD_COLORS}", field.name));
     let properties = properties.unwrap_or_default();

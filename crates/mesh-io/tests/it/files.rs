@@ -157,7 +157,7 @@ fn errors_of_files_in_memory_equal_those_of_files_on_disk() {
 }
 
 #[test]
-fn mesh_paths_are_recognised_by_extension() {
+fn mesh_paths_are_recognized_by_extension() {
     for name in [
         "a.off",
         "a.OBJ",
@@ -387,7 +387,7 @@ fn new_files_have_ordinary_permissions() {
 }
 
 #[test]
-fn a_scalar_field_has_a_value_and_a_colour_per_vertex() {
+fn a_scalar_field_has_a_value_and_a_color_per_vertex() {
     let cube = shapes::cube(0);
     let values = [0.0, 1.0, 2.0, f64::INFINITY, f64::NAN, 5.0, 6.0, 7.0];
     let folder = folder();

@@ -152,7 +152,7 @@ impl Rich {
         // 88: the sparse vertex 3 moves up; 96: its position.
         data.extend([3u8, 0, 0, 0, 0, 0, 0, 0]);
         [1.0f32, 1.0, 5.0].iter().for_each(|x| data.extend(x.to_le_bytes()));
-        // 108: the square as normalised 16-bit integers, 8 bytes a row.
+        // 108: the square as normalized 16-bit integers, 8 bytes a row.
         for p in SQUARE {
             p.iter().for_each(|x| data.extend(((x * 32767.0) as i16).to_le_bytes()));
             data.extend([0; 2]);

@@ -23,7 +23,7 @@ use package::{Package, canonical};
 pub(super) use package::check_start;
 
 /// Components may be nested this deep.
-const DEEPEST: usize = 64;
+const MAX_DEPTH: usize = 64;
 
 /// Reads a 3MF file.
 pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
@@ -117,9 +117,11 @@ impl Parts {
         if let Some(size) = known.get(&key) {
             return Ok(*size);
         }
-        if depth > DEEPEST {
-            let what =
-                format!("object {} has components more than {DEEPEST} deep, or is its own component", key.1);
+        if depth > MAX_DEPTH {
+            let what = format!(
+                "object {} has components more than {MAX_DEPTH} deep, or is its own component",
+                key.1
+            );
             return Err(Fault::unsupported(what, "export it as a single mesh").whole());
         }
         let object = self.object(key)?;
@@ -163,7 +165,7 @@ const RELATIONS: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 <Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Id="rel0" Target="/3D/3dmodel.model" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>
 "#;
 
-/// Writes a 3MF file with one object in millimetres, the default unit; coordinates read back bit for bit.
+/// Writes a 3MF file with one object in millimeters, the default unit; coordinates read back bit for bit.
 pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh, _: Field<'_>) -> io::Result<()> {
     let mut archive = ZipWriter::new(io::Cursor::new(Vec::new()));
     let options = SimpleFileOptions::default().large_file(mesh.n_vertices() + mesh.n_faces() > 1 << 24);
