@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [_, path, samples, rank, form] = &arguments[..] else {
         return Err("usage: forms MESH SAMPLES RANK FORM".into());
     };
-    let mesh = mesh_io::read(Path::new(path))?;
+    let mesh = mesh::io::read(Path::new(path))?;
     let options = FormOptions {
         samples: Samples::Count(samples.parse()?),
         first_sample: FirstSample::Vertex(VertexId(0)),

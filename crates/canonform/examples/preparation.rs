@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [_, path, subdivisions, rounds] = &arguments[..] else {
         return Err("usage: preparation MESH SUBDIVISIONS ROUNDS".into());
     };
-    let mut mesh = mesh_io::read(Path::new(path))?;
+    let mut mesh = mesh::io::read(Path::new(path))?;
     for _ in 0..subdivisions.parse()? {
         mesh = shapes::subdivide(&mesh);
     }

@@ -25,7 +25,7 @@ fn meshes_beyond_the_limit_are_rejected() {
     assert_eq!(answer.status, 413);
     let json = answer.json();
     let error = json["error"].as_str().unwrap();
-    assert!(error.starts_with("q.off, line 2: the mesh has more than 287 vertices"), "{error}");
+    assert!(error.starts_with("q.off, line 2: the mesh exceeds the limit of 287 vertices"), "{error}");
     assert!(json["remedy"].as_str().unwrap().contains("vertex limit"));
 }
 

@@ -104,7 +104,7 @@ impl Parts {
         let has_beams = self.models.iter().any(|model| model.has_beams);
         let ignored = [(has_supports, "supports"), (has_beams, "beam lattices")];
         let facts = FileFacts {
-            unit: Some(root.unit),
+            unit: root.unit.or(Some(LengthUnit::Millimeter)),
             instances: Some(n_meshes as usize),
             ignored: ignored.into_iter().filter_map(|(is_there, what)| is_there.then_some(what)).collect(),
             ..FileFacts::default()

@@ -1,10 +1,8 @@
 //! A model part: the unit, objects and the build.
 
-use std::borrow::Cow;
 use std::collections::HashMap;
 
 use nalgebra::Matrix4;
-use quick_xml::events::attributes::Attribute;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::reader::Reader;
 
@@ -15,8 +13,10 @@ const KNOWN: [&str; 6] =
     ["/production/", "/material/", "/slice/", "/trianglesets/", "/core/", "/productionalternatives/"];
 
 /// One model part.
+#[derive(Default)]
 pub(super) struct Model {
-    pub(super) unit: LengthUnit,
+    /// If it is stated.
+    pub(super) unit: Option<LengthUnit>,
     pub(super) objects: Vec<Object>,
     /// Where the objects are in the list, by their ids.
     numbers: HashMap<u64, usize>,
@@ -70,13 +70,7 @@ pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<Model, Located>
         text: text.as_bytes(),
         at: 0,
         limits,
-        model: Model {
-            unit: LengthUnit::Millimeter,
-            objects: Vec::new(),
-            numbers: HashMap::new(),
-            items: Vec::new(),
-            has_beams: false,
-        },
+        model: Model::default(),
         object: Object::default(),
         path: Vec::new(),
         prefix: String::new(),
@@ -162,9 +156,8 @@ impl Parser<'_> {
     fn model(&mut self, attributes: &[(String, String)]) -> Result<(), Located> {
         if let Some(unit) = find(attributes, "unit") {
             let named = LengthUnit::ALL.into_iter().find(|known| known.name() == unit.trim());
-            self.model.unit = named.ok_or_else(|| {
-                self.syntax("a unit: micron, millimeter, centimeter, inch, foot or meter", unit)
-            })?;
+            let expected = "a unit: micron, millimeter, centimeter, inch, foot or meter";
+            self.model.unit = Some(named.ok_or_else(|| self.syntax(expected, unit))?);
         }
         let required = find(attributes, "requiredextensions").unwrap_or_default().split_ascii_whitespace();
         let mut namespaces =
@@ -219,17 +212,8 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// Gives every attribute of an element to `take`.
-    fn visit(&self, element: &BytesStart<'_>, mut take: impl FnMut(&str, &str)) -> Result<(), Located> {
-        for attribute in element.attributes().with_checks(false) {
-            let visit = || {
-                let attribute = attribute?;
-                take(attribute.key.as_ref(), &value(&attribute)?);
-                Ok(())
-            };
-            visit().map_err(|fault: quick_xml::Error| self.syntax("an attribute", &fault.to_string()))?;
-        }
-        Ok(())
+    fn visit(&self, element: &BytesStart<'_>, take: impl FnMut(&str, &str)) -> Result<(), Located> {
+        visit(element, take).map_err(|fault| self.syntax("an attribute", &fault.to_string()))
     }
 
     /// Three attributes of an element, if it has them all.
@@ -277,9 +261,8 @@ impl Parser<'_> {
             return Err(self.syntax("a transform of 12 numbers", text));
         }
         // The file has four rows that a row vector is multiplied by, without the last column.
-        let place = nalgebra::Matrix3x4::from_column_slice(&numbers).insert_row(3, 0.0);
-        let mut place: Matrix4<f64> = place;
-        place[(3, 3)] = 1.0;
+        let mut place = Matrix4::identity();
+        place.fixed_view_mut::<3, 4>(0, 0).copy_from_slice(&numbers);
         Ok(Reference { part, object, place })
     }
 }
@@ -288,7 +271,11 @@ fn find<'a>(attributes: &'a [(String, String)], name: &str) -> Option<&'a str> {
     attributes.iter().find(|(known, _)| known == name).map(|(_, value)| value.as_str())
 }
 
-/// The value of an attribute, in which `&amp;` stands for `&`.
-pub(super) fn value<'a>(attribute: &Attribute<'a>) -> Result<Cow<'a, str>, quick_xml::Error> {
-    Ok(attribute.normalized_value(quick_xml::XmlVersion::Explicit1_0)?)
+/// Gives every attribute of an element to `take`, with its value, in which `&amp;` stands for `&`.
+pub(super) fn visit(element: &BytesStart<'_>, mut take: impl FnMut(&str, &str)) -> quick_xml::Result<()> {
+    for attribute in element.attributes().with_checks(false) {
+        let attribute = attribute?;
+        take(attribute.key.as_ref(), &attribute.normalized_value(quick_xml::XmlVersion::Explicit1_0)?);
+    }
+    Ok(())
 }

@@ -7,7 +7,7 @@ use quick_xml::reader::Reader;
 use zip::ZipArchive;
 use zip::result::ZipError;
 
-use super::model::value;
+use super::model::visit;
 use crate::name::referred;
 use crate::prelude::*;
 use crate::source::inflated_limit;
@@ -102,18 +102,14 @@ fn target(relationships: &[u8]) -> Option<String> {
             Event::Start(element) | Event::Empty(element) => element,
             _ => continue,
         };
-        let (mut kind, mut target) = (None, None);
-        for attribute in element.attributes().with_checks(false).flatten() {
-            match attribute.key.local_name().as_ref() {
-                "Type" => kind = value(&attribute).ok(),
-                "Target" => target = value(&attribute).ok(),
-                _ => {}
-            }
-        }
-        if let (Some(kind), Some(target)) = (kind, target)
-            && kind.ends_with(MODEL_TYPE)
-        {
-            return Some(target.trim_start_matches('/').to_owned());
+        let (mut is_model, mut target) = (false, None);
+        let visited = visit(&element, |name, value| match name.rsplit(':').next() {
+            Some("Type") => is_model = value.ends_with(MODEL_TYPE),
+            Some("Target") => target = Some(value.trim_start_matches('/').to_owned()),
+            _ => {}
+        });
+        if is_model && target.is_some() && visited.is_ok() {
+            return target;
         }
     }
 }
