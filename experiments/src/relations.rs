@@ -7,7 +7,9 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use base::terminal::Bars;
-use canonform::{Handedness, MeshGeometry, Observer, Relation, RelationKind};
+use canonform::Observer;
+use canonform::relations::{MeshGeometry, Relation, RelationKind};
+use canonform::rigid::Handedness;
 use datasets::{
     CreatureOptions, Damage, MechanicalPart, PartMesh, creature_body, creature_plans, mechanical_parts,
 };

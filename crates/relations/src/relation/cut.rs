@@ -158,13 +158,14 @@ fn sides([a, b, c]: [usize; 3], positions: &[Point3<f64>]) -> Point3<f64> {
 
 #[cfg(test)]
 mod tests {
+    use descriptors::ShapeDistance;
     use mesh::TriMesh;
+    use mesh::shapes::{cube, disjoint, icosphere, lopsided_torus, subdivide};
     use nalgebra::{Rotation3, Vector3};
+    use rigid::Handedness;
 
     use super::*;
-    use crate::{Handedness, Relation, RelationKind};
-    use descriptors::ShapeDistance;
-    use mesh::shapes::{cube, disjoint, icosphere, lopsided_torus, subdivide};
+    use crate::{Relation, RelationKind};
 
     thread_local! {
         pub(super) static SEARCHES: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
