@@ -17,6 +17,7 @@ mod located;
 mod name;
 mod polygons;
 mod prelude;
+mod single;
 mod source;
 mod text;
 mod write;

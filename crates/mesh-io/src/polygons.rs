@@ -3,10 +3,12 @@
 use std::collections::{BTreeSet, HashMap};
 
 use earcut::Earcut;
-use mesh::MIN_POINTS;
-use nalgebra::{Matrix4, Vector3};
+use mesh::{Fault, MIN_POINTS, TriMesh};
+use nalgebra::{Matrix4, Point3, Vector3};
+use surface::VertexId;
 
-use crate::prelude::*;
+use crate::file::{MeshFile, ReadLimits};
+use crate::located::{At, Located};
 
 /// A polygon is flat if its corners are within this share `h` of its size from its plane. Across a square whose corners are
 /// alternately `h` above and below, lengths depend on the diagonal by a share of `4 h^2`: less than a part in a thousand.

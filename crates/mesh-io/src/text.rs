@@ -1,8 +1,14 @@
 //! Lines and numbers of text files, straight from bytes.
 
+use std::io::{self, Write};
 use std::str::FromStr;
 
-use crate::prelude::*;
+use mesh::Fault;
+use nalgebra::Point3;
+use surface::VertexId;
+
+use crate::located::{At, Located};
+use crate::polygons::finite;
 
 /// The non-blank lines of a text, without comments, surrounding blanks and line ends of any system.
 #[derive(Debug, Clone)]

@@ -62,7 +62,7 @@ fn a_public_type_name_means_one_thing() {
 const PACKAGES: [(&str, &str); 8] = [
     ("nalgebra", "descriptors"),
     ("rayon", "geodesics"),
-    ("tobj", "mesh"),
+    ("tobj", "mesh-io"),
     ("serde", "canonform"),
     ("rusqlite", "index"),
     ("kiddo", "descriptors"),

@@ -24,7 +24,7 @@ fn errors_name_files_that_are_not_meshes() {
     let before = place.names();
     for (file, fault, remedy) in [
         ("missing.off", "No such file", "check"),
-        ("empty.off", "empty", "export it again"),
+        ("empty.off", "the file is empty", "empty"),
         ("notes.md", "unknown mesh format `.md`", "use .off, .obj, .ply"),
         ("garbage.obj", "line 1", ""),
     ] {

@@ -71,7 +71,7 @@ pub struct Format {
 /// How a format stores coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Precision {
-    /// Rounded to 32 bits, perhaps after moving the mesh to its [origin](crate::write::origin).
+    /// Rounded to 32 bits, perhaps after moving the mesh to its [origin](crate::single::origin).
     Single { moved: bool },
     /// Such that 64-bit numbers read back bit for bit.
     Double,

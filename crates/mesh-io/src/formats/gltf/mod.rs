@@ -14,7 +14,7 @@ mod scene;
 mod schema;
 
 use crate::prelude::*;
-use crate::write::{origin, rounded};
+use crate::single::{origin, rounded};
 use data::{Data, companions_of, open};
 use schema::Root;
 
