@@ -5,7 +5,7 @@
 //! The only crate that names a linear-algebra backend. Public types are nalgebra's. Decompositions of dense matrices
 //! are faer's, run sequentially so that results do not depend on the number of threads. [`SparseCholesky`] solves
 //! sparse positive definite systems for many right-hand sides; [`smallest_eigenpairs`] and [`largest_eigenpairs`] find
-//! a few eigenpairs of large ones, both by block [`Lanczos`](lanczos) processes. Knows nothing of meshes.
+//! a few eigenpairs of large ones, both by block Lanczos processes. Knows nothing of meshes.
 
 mod cholesky;
 mod column_store;

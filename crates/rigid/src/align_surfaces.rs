@@ -58,6 +58,14 @@ pub fn align_surfaces(a: &RigidSurface, b: &RigidSurface) -> Option<Alignment> {
     }
 }
 
+impl Alignment {
+    /// Two surfaces under a map of the first, at unit area, onto the second; `None` of surfaces without area.
+    #[must_use]
+    pub fn by_map(a: &RigidSurface, b: &RigidSurface, map: Similarity) -> Option<Self> {
+        Self::by(a, b, map)
+    }
+}
+
 fn is_better(better: &Alignment, worse: &Alignment) -> bool {
     is_decisive(better.gap.rms, worse.gap.rms, RESOLUTION)
 }

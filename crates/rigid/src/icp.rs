@@ -3,7 +3,6 @@
 use nalgebra::{Point3, Rotation3, SMatrix, SVector, Vector3};
 use serde::Serialize;
 
-use crate::rigid_surface::RigidSurface;
 use crate::similarity::Similarity;
 
 /// A step that reduces the mean square distance by less than this share is the last. A tolerance.
@@ -75,12 +74,6 @@ pub(crate) fn contacts<'a, B: Body>(
 }
 
 impl Alignment {
-    /// Two surfaces under a map of the first, at unit area, onto the second; `None` of surfaces without area.
-    #[must_use]
-    pub fn by_map(a: &RigidSurface, b: &RigidSurface, map: Similarity) -> Option<Self> {
-        Self::by(a, b, map)
-    }
-
     /// By a map, measured at all samples. `None` of bodies without points.
     pub(crate) fn by<B: Body>(a: &B, b: &B, map: Similarity) -> Option<Self> {
         let squares = contacts(a, b, &map, usize::MAX).map(|contact| contact.sq_distance());

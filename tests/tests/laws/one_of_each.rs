@@ -65,7 +65,7 @@ const PACKAGES: [(&str, &str); 8] = [
     ("tobj", "mesh-io"),
     ("serde", "canonform"),
     ("rusqlite", "index"),
-    ("kiddo", "descriptors"),
+    ("kiddo", "rigid"),
     ("plotters", "report"),
     ("clap", "cli"),
 ];
