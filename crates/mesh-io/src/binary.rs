@@ -76,11 +76,13 @@ pub(crate) struct Bytes<'a> {
 }
 
 impl<'a> Bytes<'a> {
+    #[inline]
     pub(crate) fn new(bytes: &'a [u8], at: usize, order: ByteOrder) -> Self {
         Self { rest: bytes.get(at..).unwrap_or_default(), at, order }
     }
 
     /// The next bytes; `None`, and nothing is taken, if there are fewer.
+    #[inline]
     pub(crate) fn take(&mut self, length: usize) -> Option<&'a [u8]> {
         let (taken, rest) = self.rest.split_at_checked(length)?;
         (self.rest, self.at) = (rest, self.at + length);

@@ -115,9 +115,10 @@ impl Body<'_> {
         match self {
             Self::Text(words) => {
                 let line = words.row().ok_or_else(|| truncated().in_line(words.lines.number))?;
+                let mut tokens = line.tokens();
                 let next = |scalar, property: Option<usize>| {
                     let is_needed = property.is_none_or(&is_needed);
-                    parse_scalar(scalar, words.next()?).or_else(|| (!is_needed).then_some(f64::NAN))
+                    parse_scalar(scalar, tokens.next()?).or_else(|| (!is_needed).then_some(f64::NAN))
                 };
                 element
                     .read_row(next, take)

@@ -59,6 +59,7 @@ pub struct Evidence {
     /// How far the surfaces are apart in space.
     pub surface_gap: Option<Gap>,
     /// The same in multiples of what triangles, rounding and noise explain: about 1 or less for copies of one surface.
+    #[serde(skip)]
     pub gap_ratio: Option<f64>,
     /// How often one mesh occurs among the components of the other.
     pub parts: Option<Parts>,

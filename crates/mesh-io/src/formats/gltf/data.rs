@@ -79,8 +79,10 @@ pub(super) fn open(bytes: &[u8]) -> Result<(Root, Option<&[u8]>), Located> {
     Ok((root, binary))
 }
 
-/// The kind and the data of the next chunk. Less than the header of one at the end of the file is padding.
-fn chunk<'a>(bytes: &mut Bytes<'a>) -> Result<Option<(&'a [u8], &'a [u8])>, Located> {
+/// The kind and the data of a chunk. Less than the header of one at the end of the file is padding.
+type Chunk<'a> = Option<(&'a [u8], &'a [u8])>;
+
+fn chunk<'a>(bytes: &mut Bytes<'a>) -> Result<Chunk<'a>, Located> {
     let start = bytes.at;
     let (Some(length), Some(kind)) = (bytes.u32(), bytes.take(4)) else { return Ok(None) };
     let found = bytes.rest.len() as u64;
@@ -287,8 +289,8 @@ impl<'a> Data<'a> {
         }
         let mut numbers = Vec::with_capacity(count as usize * layout.width);
         for i in 0..count as usize {
-            let mut row = Bytes::new(bytes, offset as usize + i * stride, ByteOrder::Little);
-            numbers.extend((0..layout.width).filter_map(|_| row.number(layout.scalar)));
+            let row = bytes[offset as usize + i * stride..][..row].chunks_exact(layout.scalar.size());
+            numbers.extend(row.filter_map(|number| layout.scalar.decode(ByteOrder::Little, number)));
         }
         Ok(numbers)
     }
