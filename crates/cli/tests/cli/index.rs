@@ -272,7 +272,10 @@ fn an_index_is_verified_described_and_scored() {
     assert!(distance(0) < 1e-6 && (1..9).all(|i| distance(i - 1) <= distance(i)));
     let text = place.done("search all.canonform --id ring1 --rank forms").out;
     assert!(text.contains("form distance") && text.contains("forms alone"), "{text}");
-    place.refused("search all.canonform --id ring1 --rank best", &["best", "possible values: plain, graph, part, forms"]);
+    place.refused(
+        "search all.canonform --id ring1 --rank best",
+        &["best", "possible values: plain, graph, part, forms"],
+    );
     assert_eq!((&scores["nn"], &scores["map"], &scores["n"]), (&1.0.into(), &1.0.into(), &9.into()));
     let dna = place.json("evaluate all.canonform --by shape-dna");
     assert_ne!(dna["silhouette"], scores["silhouette"]);
