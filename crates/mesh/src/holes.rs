@@ -26,7 +26,7 @@ use crate::tri_mesh::TriMesh;
 /// ```
 #[must_use]
 pub fn fill_holes(mesh: &TriMesh, longest: f64) -> Remapped {
-    filled(mesh, &Topology::new(mesh.n_vertices(), mesh.faces.clone()), longest)
+    filled(mesh, &mesh.topology(), longest)
 }
 
 /// [`fill_holes`], given the connectivity of the mesh.

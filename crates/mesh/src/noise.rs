@@ -52,7 +52,7 @@ const STEPS: [f64; 2] = [0.5, -0.53];
 /// ```
 #[must_use]
 pub fn without_noise(mesh: &TriMesh) -> Option<TriMesh> {
-    smoothed(mesh, &topology_of(mesh))
+    smoothed(mesh, &mesh.topology())
 }
 
 /// [`without_noise`], given the connectivity of the mesh.
@@ -79,12 +79,8 @@ pub(crate) fn smoothed(mesh: &TriMesh, topology: &Topology) -> Option<TriMesh> {
 /// As [`without_noise`].
 #[must_use]
 pub fn is_noisy(mesh: &TriMesh) -> bool {
-    let (oriented, umbrellas) = prepared(mesh, &topology_of(mesh));
+    let (oriented, umbrellas) = prepared(mesh, &mesh.topology());
     umbrellas.bending(&oriented).is_noisy() && !SmoothRegions::of(mesh).is_mechanical
-}
-
-fn topology_of(mesh: &TriMesh) -> Topology {
-    Topology::new(mesh.n_vertices(), mesh.faces.clone())
 }
 
 /// The mesh with its faces oriented consistently, and the neighbours of every vertex.
@@ -216,7 +212,7 @@ mod tests {
     }
 
     fn coherence(mesh: &TriMesh) -> f64 {
-        Umbrellas::of(&topology_of(mesh)).bending(mesh).coherence
+        Umbrellas::of(&mesh.topology()).bending(mesh).coherence
     }
 
     #[test]

@@ -164,7 +164,7 @@ impl SmoothRegions {
     }
 
     fn near_unit(mesh: &TriMesh) -> Self {
-        let topology = Topology::new(mesh.n_vertices(), mesh.faces.clone());
+        let topology = mesh.topology();
         let (flats, of_face) = flats(mesh, &topology);
         let creases = creases(mesh, &topology, &flats, &of_face);
         let mut sets = DisjointSets::new(flats.len());

@@ -144,7 +144,12 @@ impl TriMesh {
     /// [`repair`](crate::repair()) removes such faces.
     #[must_use]
     pub fn intrinsic(&self) -> IntrinsicMesh {
-        self.measured(Topology::new(self.n_vertices(), self.faces.clone()))
+        self.measured(self.topology())
+    }
+
+    /// The connectivity.
+    pub(crate) fn topology(&self) -> Topology {
+        Topology::new(self.n_vertices(), self.faces.clone())
     }
 
     /// The intrinsic geometry, given the connectivity of the mesh.

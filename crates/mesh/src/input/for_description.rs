@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 
-use ::surface::Topology;
 use base::{Budget, Exceeded, Observer};
 
 use super::surface::Surface;
@@ -72,7 +71,7 @@ impl Surface {
         let opened = opened(self.mesh(), topology, budget)?;
         let topology = match opened.cut.remap.is_identity() {
             true => Cow::Borrowed(topology),
-            false => Cow::Owned(Topology::new(opened.cut.mesh.n_vertices(), opened.cut.mesh.faces.clone())),
+            false => Cow::Owned(opened.cut.mesh.topology()),
         };
         let smooth = smoothed(&opened.cut.mesh, &topology);
         let mesh = smooth.as_ref().unwrap_or(&opened.cut.mesh);

@@ -20,7 +20,7 @@ mod flat;
 pub use closed::{cube, cylinder, icosphere, lopsided_torus, tetrahedron, torus};
 pub use flat::{fold, folded_sheet, grid, jittered_grid, sheared_grid};
 
-use surface::{Topology, VertexId};
+use surface::VertexId;
 
 use crate::refine::Splits;
 use crate::tri_mesh::TriMesh;
@@ -46,7 +46,7 @@ pub fn disjoint(parts: &[TriMesh]) -> TriMesh {
 /// If a face has a repeated vertex or one that does not exist, see [`surface::Topology::new`].
 #[must_use]
 pub fn subdivide(mesh: &TriMesh) -> TriMesh {
-    let topology = Topology::new(mesh.n_vertices(), mesh.faces.clone());
+    let topology = mesh.topology();
     let mut splits = Splits::new(mesh.clone());
     splits.split(&topology, &(0..topology.n_edges()).collect::<Vec<_>>());
     splits.mesh

@@ -109,7 +109,7 @@ mod tests {
     use crate::{cut_shortcuts, fill_holes, shapes, validate};
 
     fn narrow(mesh: &TriMesh, girth: f64, detour: f64) -> Option<(Remapped, Shortcut)> {
-        let topology = Topology::new(mesh.n_vertices(), mesh.faces.clone());
+        let topology = mesh.topology();
         cut(mesh, &topology, [girth, detour], &Budget::unlimited()).unwrap()
     }
 
@@ -121,7 +121,7 @@ mod tests {
             (0..ball.n_vertices()).min_by(|a, b| gap(a).total_cmp(&gap(b))).unwrap()
         };
         let poles = [pole(1.0), pole(-1.0)].map(VertexId::from);
-        let topology = Topology::new(ball.n_vertices(), ball.faces.clone());
+        let topology = ball.topology();
         let rim = |v: VertexId| {
             let mut rim: Vec<VertexId> = Vec::new();
             let mut next = topology.corner_vertex(topology.vertex_corners(v)[0].next());

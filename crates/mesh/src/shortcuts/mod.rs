@@ -55,7 +55,7 @@ pub use shortcut::{CutSurface, Shortcut, ShortcutKind};
 /// # Ok::<(), base::Exceeded>(())
 /// ```
 pub fn cut_shortcuts(mesh: &TriMesh, observer: &dyn Observer) -> Result<CutSurface, Exceeded> {
-    opened(mesh, &Topology::new(mesh.n_vertices(), mesh.faces.clone()), &observer.budget())
+    opened(mesh, &mesh.topology(), &observer.budget())
 }
 
 /// [`cut_shortcuts`], given the connectivity of the mesh.
@@ -68,7 +68,7 @@ pub(crate) fn opened(mesh: &TriMesh, topology: &Topology, budget: &Budget) -> Re
     let is_mechanical = OnceCell::new();
     loop {
         if !opened.cut.remap.is_identity() {
-            topology = Cow::Owned(Topology::new(opened.cut.mesh.n_vertices(), opened.cut.mesh.faces.clone()));
+            topology = Cow::Owned(opened.cut.mesh.topology());
         }
         let limits = [GIRTH * size, DETOUR * size];
         let Some((next, shortcut)) = handle::cut(&opened.cut.mesh, &topology, limits, budget)? else { break };

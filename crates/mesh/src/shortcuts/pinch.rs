@@ -135,7 +135,7 @@ fn put_back(split: &mut Remapped, n: usize) {
     if cut.is_empty() {
         return;
     }
-    let topology = Topology::new(split.mesh.n_vertices(), split.mesh.faces.clone());
+    let topology = split.mesh.topology();
     let moved: Vec<(VertexId, Point3<f64>)> =
         cut.into_iter().filter_map(|v| Some((v, flattened(&split.mesh, &topology, v, PULLED)?))).collect();
     for (v, position) in moved {
@@ -149,7 +149,7 @@ mod tests {
     use crate::{shapes, validate};
 
     fn cut(mesh: &TriMesh, detour: f64) -> CutSurface {
-        super::cut(mesh, &Topology::new(mesh.n_vertices(), mesh.faces.clone()), detour)
+        super::cut(mesh, &mesh.topology(), detour)
     }
 
     fn nearest(mesh: &TriMesh, to: [f64; 3]) -> VertexId {
