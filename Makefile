@@ -5,7 +5,7 @@ OUT ?= out
 # For `make reproduce`: a folder of meshes with the classes of the paper. Default: the built-in dataset.
 DATASET ?=
 
-.PHONY: help setup build run test test-python wheels notebooks lint-packaging kills lint bench bench-peers bench-nmds bench-preparation bench-search bench-capacity bench-shards bench-duplicates bench-maps bench-packages bench-eigsh fmt doc guide reproduce report paper plotly deny sbom fuzz fuzz-seeds package ci clean
+.PHONY: help setup build run test test-all test-python wheels notebooks lint-packaging lint bench bench-peers bench-nmds bench-preparation bench-search bench-capacity bench-shards bench-duplicates bench-maps bench-packages bench-eigsh fmt doc guide reproduce report paper plotly deny sbom fuzz fuzz-seeds package ci clean
 
 help: ## List these commands
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-17s %s\n", $$1, $$2}'
@@ -19,7 +19,7 @@ build: ## Build the programs
 run: ## Generate the built-in shapes, run figures 1 and 4, and write out/report.html
 	$(CARGO) run --release --locked --bin experiments -- run figure1 figure4 --output $(OUT)
 
-test: ## Run all tests
+test: ## Run the tests, but for those that are slow and rare
 	$(CARGO) test --workspace --locked --no-fail-fast
 
 test-python: ## Build the Python package and run its tests in an environment of its own (needs Python 3.11 or later)
@@ -34,9 +34,8 @@ notebooks: ## Run the notebooks of the Python package and store them with their 
 lint-packaging: ## Check workflows, container, citation, recipe and metadata with linters of PyPI and npm
 	packaging/lint.sh
 
-kills: ## Kill writing commands 200 times: nothing half-written, and the next run works
-	CANONFORM_KILLS=200 $(CARGO) test --locked -p canonform-cli --test cli killed
-	CANONFORM_KILLS=200 $(CARGO) test --locked -p experiments --test it killed
+test-all: ## Run all tests with those that are slow and rare: attacks, exhaustive damage, full-size maps, 200 kills of writing commands
+	CANONFORM_KILLS=200 $(CARGO) test --workspace --lib --bins --tests --locked --no-fail-fast -- --include-ignored
 
 lint: ## Check formatting, clippy and rustdoc; warnings are errors
 	$(CARGO) fmt --all --check

@@ -381,6 +381,7 @@ mod tests {
     }
 
     #[test]
+    #[ignore = "slow: make test-all"]
     fn limbs_do_not_intersect_for_any_seed() {
         let mut n_entangled = 0;
         for family in Family::all() {

@@ -111,6 +111,7 @@ fn noisy(mesh: &TriMesh, numbers: &mut Numbers) -> TriMesh {
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn rounding_and_noise_change_no_description_of_a_flat_surface() {
     let mut numbers = Numbers(7);
     let mut largest = 0.0f64;

@@ -49,6 +49,7 @@ fn families_have_their_own_labels_and_sizes() {
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn bytes_depend_on_the_seed_and_not_on_threads_or_the_number_of_families() {
     let few = options(4, 2);
     let threads = |n| ThreadPoolBuilder::new().num_threads(n).build().unwrap();
@@ -60,6 +61,7 @@ fn bytes_depend_on_the_seed_and_not_on_threads_or_the_number_of_families() {
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn every_seed_gives_bodies() {
     (2..8u64).into_par_iter().for_each(|seed| {
         let options = CreatureOptions { seed, ..options(2 * creature_plans().len(), 1) };

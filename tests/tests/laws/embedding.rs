@@ -72,6 +72,7 @@ fn the_interval_of_the_estimated_stress_contains_the_exact_one() {
 
 /// The level is 95 %. A mesh whose rows have rare large residuals may have less, so it holds over all meshes.
 #[test]
+#[ignore = "slow: make test-all"]
 fn intervals_of_the_estimated_stress_contain_the_exact_one_as_often_as_they_say() {
     let mut torus = shapes::torus(40, 20, 2.0, 0.7);
     torus.positions.iter_mut().for_each(|p| p.coords *= 1.0 + 0.3 * (-(p.x - 2.0).powi(2)).exp());

@@ -93,6 +93,7 @@ fn fields_follow_scale_and_renumbering() {
 
 /// Exact distances of `data/exact`, from other software, to random targets: 10,000 pairs of a mesh.
 #[test]
+#[ignore = "slow: make test-all"]
 fn intervals_hold_published_exact_distances_of_real_meshes() {
     let Some(data) = data("distance fields against exact distances") else { return };
     let scans = ["spot", "rocker-arm", "armadillo"].map(|name| (name, format!("single/{name}.obj")));

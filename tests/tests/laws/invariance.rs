@@ -112,6 +112,7 @@ fn small_holes_leave_the_same_shape() {
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn large_meshes_are_the_same_shape_as_small_and_noisy_ones() {
     let mesh = body(Family::all()[0], 50_000);
     check_body(

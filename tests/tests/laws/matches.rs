@@ -176,6 +176,7 @@ fn same_positions(a: &TriMesh, b: &TriMesh) -> bool {
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn every_change_of_a_tosca_shape_is_told() {
     let Some(data) = data("relations on TOSCA") else { return };
     let files = list_shapes(&data.join("tosca-lowres"), None).unwrap();

@@ -126,6 +126,7 @@ fn canonical_forms_of_animals_retrieve_their_class() {
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn pruned_fronts_choose_the_same_samples_on_real_meshes() {
     let Some(data) = data("pruned farthest point sampling") else { return };
     for name in ["cat0", "david0", "centaur3", "horse5", "wolf1", "michael2"] {

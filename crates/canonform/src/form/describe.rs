@@ -274,6 +274,7 @@ mod tests {
     }
 
     #[test]
+    #[ignore = "slow: make test-all"]
     fn descriptions_are_finite_or_an_error() {
         for far in [1e3, 1e50, 8.9e124, 1e150] {
             let mut mesh = shapes::grid(5, 4, 0.1);

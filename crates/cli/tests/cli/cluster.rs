@@ -92,6 +92,7 @@ fn a_missing_part_is_not_merged() {
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn a_slurm_array_builds_what_one_process_builds() {
     let (place, single) = collection();
     // Runs the tasks of an array at once, and a dependent job after them, as Slurm would: from a copy of the script.

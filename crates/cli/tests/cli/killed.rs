@@ -38,7 +38,7 @@ fn kept(place: &Workplace, index: &str) -> (usize, bool) {
     found
 }
 
-/// How often programs are killed; `make kills` does it 200 times.
+/// How often programs are killed; `make test-all` does it 200 times.
 fn n_kills() -> u32 {
     std::env::var("CANONFORM_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(12)
 }
@@ -79,6 +79,7 @@ fn is_leftover(path: &Path) -> bool {
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn killed_commands_leave_whole_files_and_the_next_run_tidies_up() {
     let place = collection();
     place.add("a.off", &canonform::mesh::shapes::icosphere(5));

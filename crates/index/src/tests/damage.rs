@@ -31,6 +31,7 @@ fn forge(path: &Path, sql: &str) {
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn a_changed_byte_is_detected_and_never_returned() {
     let folder = Folder::new();
     let path = folder.index("a", 100);
@@ -164,6 +165,7 @@ fn a_damaged_index_cannot_be_extended_and_is_built_again_and_kept_under_another_
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn forged_rows_are_named_and_nothing_else_happens() {
     let folder = Folder::new();
     let template = folder.index("a", 30);

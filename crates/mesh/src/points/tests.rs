@@ -51,6 +51,7 @@ fn random_points_of_a_sphere_become_a_closed_sphere() {
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn noise_is_measured_and_smoothed() {
     for (n, noise) in [(4000, 0.02), (4000, 0.05), (20_000, 0.05)] {
         let points = ball(n, noise);
@@ -86,6 +87,7 @@ fn torus(n: usize, thickness: f64, deviation: f64) -> Vec<Point3<f64>> {
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn thin_parts_keep_their_size() {
     // Six times as thick as the noise, which is as large as the spacing.
     let found = triangulated(&torus(10_000, 0.12, 0.02));

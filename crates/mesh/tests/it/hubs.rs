@@ -56,6 +56,7 @@ fn a_closed_fan_around_one_vertex() {
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn needles_that_meet_in_one_vertex() {
     let rim = (0..2 * MANY).map(|i| on_circle(f64::from(i) / f64::from(2 * MANY)));
     let points: Vec<_> = std::iter::once(Point3::origin()).chain(rim).collect();

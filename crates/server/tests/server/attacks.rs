@@ -36,6 +36,7 @@ fn polygon(corners: usize) -> Vec<u8> {
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn uploads_of_huge_polygons_free_their_places_at_the_time_limit() {
     let limit = Duration::from_secs(8);
     let server = Served::start_alone(ServeOptions { time_limit: limit, ..options() });
@@ -54,6 +55,7 @@ fn uploads_of_huge_polygons_free_their_places_at_the_time_limit() {
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn large_uploads_are_answered_in_time_or_refused_at_once() {
     let limit = Duration::from_secs(30);
     let server = Served::start_alone(ServeOptions { time_limit: limit, max_uploads: 20, ..options() });
@@ -141,12 +143,14 @@ fn besieged(
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn idle_connections_give_way() {
     let server = Served::start_alone(options());
     besieged(&server, 300, |_| (), |_| (), || assert_serves(&server));
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn clients_that_never_read_give_way() {
     let server = Served::start_alone(options());
     let request = format!("GET /assets/plotly.js HTTP/1.1\r\nHost: {}\r\n\r\n", server.address).repeat(4);
@@ -163,6 +167,7 @@ fn clients_that_never_read_give_way() {
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn a_client_that_never_reads_is_disconnected() {
     let idle = Duration::from_millis(500);
     let server = Served::start_alone(ServeOptions { idle_time: idle, ..options() });
@@ -191,6 +196,7 @@ fn uploads_of_a_byte_now_and_then_give_way() {
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn an_upload_below_the_minimum_rate_is_told_so() {
     let idle = Duration::from_millis(500);
     let server = Served::start_alone(ServeOptions { idle_time: idle, ..options() });

@@ -22,6 +22,7 @@ fn hit(page: &Page) -> String {
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn every_state_of_an_indexed_shape_is_reached_by_its_address() {
     let Some(page) = Page::open(1280, 900) else { return };
     page.wait_for(AT_THE_START);
@@ -97,6 +98,7 @@ fn options_filters_and_downloads_follow_the_address() {
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn every_order_that_is_offered_can_be_had() {
     let Some(page) = Page::open(1280, 900) else { return };
     let folder = tempfile::tempdir().unwrap();
@@ -168,6 +170,7 @@ fn a_gap_of_rounding_is_none_in_words_and_in_colours() {
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn an_upload_has_an_address_until_it_expires() {
     let lifetime = Duration::from_secs(20);
     let brief = ServeOptions { query_lifetime: lifetime, ..options() };
@@ -221,6 +224,7 @@ fn the_page_can_be_used_with_the_keyboard_alone() {
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn pictures_of_every_state_in_both_colour_schemes() {
     for (scheme, width) in [("light", 1280), ("dark", 1280), ("light", 390), ("dark", 390)] {
         let Some(page) = Page::open(width, 900) else { return };
