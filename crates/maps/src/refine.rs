@@ -1,53 +1,127 @@
 //! The best map of its kind.
 
 use descriptors::DescriptorError;
+use linalg::Matrix;
+use rayon::prelude::*;
 use surface::VertexId;
 
+use crate::curvature::mismatch;
 use crate::local::vertex_confidence;
 use crate::score::Scored;
 use crate::search::{MapSearch, Stage};
 use crate::shape::MapShape;
 use crate::start::Start;
-use crate::surface_map::{DOUBTED, SurfaceMap, codistortion};
+use crate::surface_map::{DOUBTED, MapKind, SurfaceMap, codistortion};
+
+/// Maps of each kind that are refined and judged, and how much worse than the best sketch they may be: a rival of so much
+/// higher cost is right once in a hundred. Limits of effort.
+const FINALISTS: usize = 3;
+const RIVAL: f64 = 4.0;
 
 /// A map that was refined on all samples and eigenfunctions, with how likely it is the right one.
 pub(crate) struct Refined {
     found: Scored,
     confidence: f64,
-    /// The next best, unless this one is certain.
+    /// The next best, unless this one is beyond doubt.
     rival: Option<Scored>,
 }
 
-impl Refined {
-    /// The best of some sketches of one kind.
-    pub(crate) fn best(
-        search: &MapSearch<'_>,
-        mut sketches: Vec<Scored>,
-    ) -> Result<Option<Self>, DescriptorError> {
-        let params = search.params;
-        let least = params.least_agreement(&sketches);
-        let is_mixture = |found: &Scored| found.is_mixture(least);
-        sketches.sort_by(|x, y| is_mixture(x).cmp(&is_mixture(y)).then(x.cost().total_cmp(&y.cost())));
-        let Some(best) = sketches.first() else { return Ok(None) };
-        let mut rivals = sketches.iter().filter(|other| is_mixture(best) || !is_mixture(other));
-        let rival = rivals.find(|other| !best.is_same(other, params));
-        let mut confidence = params.odds(best.cost(), rival.map(Scored::cost));
-        let mut found = refined(search, best)?;
-        if is_mixture(best) || params.misses_one(&found.misses) {
-            confidence = confidence.min(DOUBTED);
-        }
-        let rival = rival.filter(|_| confidence < SurfaceMap::CERTAIN);
-        let mut rival = rival.map(|rival| refined(search, rival)).transpose()?;
-        // An initial map stands unless another one is clearly better, which the sketches tell.
-        let is_better =
-            |second: &&mut Scored| search.known.initial.is_empty() && second.cost() < found.cost();
-        if let Some(second) = rival.as_mut().filter(is_better) {
-            std::mem::swap(&mut found, second);
-            confidence = confidence.min(DOUBTED);
-        }
-        Ok(Some(Self { found, confidence, rival }))
-    }
+/// A refined sketch.
+struct Finalist {
+    kind: MapKind,
+    coset: usize,
+    is_mixture: bool,
+    sketched: f64,
+    refined: Scored,
+    /// One less the correlation of the fine curvatures of corresponding points, if both surfaces have an inside.
+    mismatch: Option<f64>,
+}
 
+/// The best map of each orientation; without one if no map has any.
+pub(crate) fn best_of_each_kind(
+    search: &MapSearch<'_>,
+    mut sketches: Vec<Scored>,
+) -> Result<Vec<Refined>, DescriptorError> {
+    let params = search.params;
+    let mut chosen = Vec::new();
+    // The costs of the best sketches of each kind that are not refined.
+    let mut others = MapKind::ALL.map(|_| None);
+    for kind in MapKind::ALL {
+        if kind == MapKind::Unoriented && !chosen.is_empty() {
+            break;
+        }
+        let (mut of_kind, rest): (Vec<_>, Vec<_>) = sketches.into_iter().partition(|one| one.kind() == kind);
+        sketches = rest;
+        let least = params.least_agreement(&of_kind);
+        let is_mixture = |one: &Scored| one.is_mixture(params.pure - params.lost);
+        of_kind.sort_by(|x, y| is_mixture(x).cmp(&is_mixture(y)).then(x.cost().total_cmp(&y.cost())));
+        let Some(best) = of_kind.first() else { continue };
+        let (only_pure, most) = (!is_mixture(best), RIVAL * best.cost());
+        let mut kept: Vec<Scored> = Vec::new();
+        for one in of_kind {
+            if only_pure && is_mixture(&one) || kept.iter().any(|other| other.is_same(&one, params)) {
+                continue;
+            }
+            if kept.len() == FINALISTS || one.cost() > most {
+                others[kind as usize] = Some(one.cost());
+                break;
+            }
+            kept.push(one);
+        }
+        chosen.extend(kept.into_iter().map(|one| (kind, one.is_mixture(least), one)));
+    }
+    let refine = |(kind, is_mixture, sketch): (MapKind, bool, Scored)| -> Result<_, DescriptorError> {
+        let refined = refined(search, &sketch)?;
+        let mismatch = refined.fine_mismatch([search.a, search.b]);
+        let (coset, sketched) = (sketch.coset, sketch.cost());
+        Ok(Finalist { kind, coset, is_mixture, sketched, refined, mismatch })
+    };
+    let finalists: Vec<Finalist> = chosen.into_par_iter().map(refine).collect::<Result<_, _>>()?;
+    // The geometric mean over a coset, but for what may be a mixture, unless all is.
+    let of_coset = |coset: usize| {
+        let members = || finalists.iter().filter(|one| one.coset == coset);
+        let only_pure = members().any(|one| !one.is_mixture);
+        let counted = members().filter(|one| !(only_pure && one.is_mixture));
+        let logs: Vec<f64> = counted.filter_map(|one| one.mismatch).map(f64::ln).collect();
+        (!logs.is_empty()).then(|| (logs.iter().sum::<f64>() / logs.len() as f64).exp())
+    };
+    // Squared, so that the odds are the same power of its ratio as of that of sketches, nearly.
+    let cost = |one: &Finalist| match of_coset(one.coset) {
+        Some(mismatch) => one.sketched * mismatch.powi(2),
+        None => one.refined.cost(),
+    };
+    let best = MapKind::ALL.into_iter().filter_map(|kind| {
+        let mut of_kind: Vec<&Finalist> = finalists.iter().filter(|one| one.kind == kind).collect();
+        of_kind.sort_by(|x, y| cost(x).total_cmp(&cost(y)));
+        let (best, rival) = (*of_kind.first()?, of_kind.get(1));
+        let mut confidence = match rival {
+            Some(rival) => params.odds(cost(best), Some(cost(rival))),
+            None => params.odds(best.sketched, others[kind as usize]),
+        };
+        if best.refined.is_mixture(params.pure) || params.misses_one(&best.refined.misses) {
+            confidence = confidence.min(DOUBTED);
+        }
+        let rival = rival.filter(|_| confidence < SurfaceMap::BEYOND_DOUBT);
+        Some(Refined { found: best.refined.clone(), confidence, rival: rival.map(|one| one.refined.clone()) })
+    });
+    Ok(best.collect())
+}
+
+impl Scored {
+    /// One less the correlation of the fine curvatures of the samples and their images, both ways.
+    fn fine_mismatch(&self, [a, b]: [&MapShape; 2]) -> Option<f64> {
+        let (of_a, of_b) = (a.fine_curvature.as_ref()?, b.fine_curvature.as_ref()?);
+        let [on_a, on_b] = self.functional.placed([&a.spectrum.vectors, &b.spectrum.vectors]);
+        let one = |from: (&MapShape, &Matrix, &[f64]), to: (&MapShape, &Matrix, &[f64])| {
+            let images = to.0.nearest_vertices(to.1, &from.1.select_rows(&from.0.samples));
+            let own: Vec<f64> = from.0.samples.iter().map(|&v| from.2[v]).collect();
+            mismatch(&own, to.2, &images)
+        };
+        Some(0.5 * (one((a, &on_a, of_a), (b, &on_b, of_b)) + one((b, &on_b, of_b), (a, &on_a, of_a))))
+    }
+}
+
+impl Refined {
     /// The map of all vertices, with its alternative.
     pub(crate) fn on_all_vertices(&self, shapes: [&MapShape; 2]) -> Result<SurfaceMap, DescriptorError> {
         let mut map = on_all_vertices(&self.found, shapes, self.confidence)?;

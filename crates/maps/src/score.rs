@@ -31,6 +31,8 @@ pub(crate) struct Scored {
     /// belly is not bent as his back; a mixture of two maps keeps the orientation in some places only. Of two maps that differ
     /// by a mirror, the geometric mean: they are right together.
     pub(crate) score: f64,
+    /// Maps that differ by left and right have the same number.
+    pub(crate) coset: usize,
     /// How far it takes the landmarks from their partners, and how much that speaks against it.
     pub(crate) misses: Vec<f64>,
     pub(crate) penalty: f64,
@@ -59,7 +61,7 @@ impl Scored {
         let score = distortion * functional.defect() * missing * mismatch;
         let misses = known.misses(&functional, [a, b])?;
         let penalty = params.penalty(&misses);
-        Ok(Self { functional, to_images, distortion, agreement, score, misses, penalty })
+        Ok(Self { functional, to_images, distortion, agreement, score, coset: 0, misses, penalty })
     }
 
     pub(crate) fn kind(&self) -> MapKind {

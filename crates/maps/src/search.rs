@@ -2,18 +2,21 @@
 
 use base::Budget;
 use descriptors::DescriptorError;
-use linalg::LinalgError;
+use linalg::{LinalgError, Matrix};
 use rayon::prelude::*;
+use surface::VertexId;
 
 use crate::error::MapError;
 use crate::functional::{FunctionalMaps, SampledPair};
 use crate::known::KnownMap;
+use crate::nearest_rows::nearest_rows;
 use crate::operators::fitted;
 use crate::params::MapParams;
 use crate::score::Scored;
 use crate::shape::MapShape;
 use crate::sketch::Sketch;
 use crate::start::Start;
+use crate::surface_map::MapKind;
 
 /// A search with what is known and its parameters.
 #[derive(Clone, Copy)]
@@ -31,14 +34,17 @@ impl MapSearch<'_> {
         let MapSearch { params, known, .. } = self;
         let mut starts = self.starts(&[1.0, -1.0])?;
         known.check_orientation(&starts, params)?;
-        let fits = known.fitted([self.a, self.b]).into_iter().map(FunctionalMaps::from);
+        let fits = known.fitted([self.a, self.b], &[1.0, -1.0]).into_iter().map(FunctionalMaps::from);
         starts.extend(self.sketched(&self.stage(2), fits)?);
+        let turned = self.turned(&params.distinct(starts.clone()))?;
+        starts.extend(self.sketched(&self.stage(2), turned.into_iter())?);
         let stage = self.stage(1);
         let found =
             self.sketched(&stage, params.distinct(starts).into_iter().map(|start| start.functional))?;
         let mut found = self.with_mirrored(params.distinct(found))?;
         let initial = known.start(&stage.pair, [self.a, self.b], stage.last).into_iter().collect();
-        let favored = |found: Scored| Scored { score: found.score / params.clearly, ..found };
+        let coset = found.len();
+        let favored = |one: Scored| Scored { score: one.score / params.clearly, coset, ..one };
         found.extend(self.scored(&stage, initial)?.into_iter().map(favored));
         Ok(known.respecting(found, params))
     }
@@ -51,6 +57,29 @@ impl MapSearch<'_> {
         let mut found = self.sketched(&stage, fits.map(FunctionalMaps::from))?;
         found.extend(self.scored(&stage, Start::aligned(self.a, self.b, stage.pair.a.nrows())?)?);
         Ok(self.params.distinct(found))
+    }
+
+    /// Maps that take the ends of limbs to where found ones take them, with the other orientation: of people, those that exchange
+    /// front and back.
+    fn turned(&self, found: &[Scored]) -> Result<Vec<FunctionalMaps>, DescriptorError> {
+        let ends = self.a.ends_of_limbs()?;
+        let rows = self.a.spectrum.vectors.select_rows(&ends);
+        let other = self.b.spectrum.vectors.select_rows(&self.b.samples);
+        let one = |found: &Scored| {
+            let sign = match found.kind() {
+                MapKind::Direct => -1.0,
+                MapKind::Mirrored => 1.0,
+                MapKind::Unoriented => return Vec::new(),
+            };
+            let [images, _] =
+                nearest_rows(&found.functional.places_a(&rows), &found.functional.places_b(&other));
+            let pairs = ends.iter().zip(images);
+            let landmarks = pairs.map(|(x, y)| [*x, self.b.samples[y]].map(VertexId::from)).collect();
+            let known = KnownMap { landmarks, ..KnownMap::default() };
+            known.fitted([self.a, self.b], &[sign])
+        };
+        let all: Vec<Vec<Matrix>> = found.par_iter().map(one).collect();
+        Ok(all.into_iter().flatten().map(FunctionalMaps::from).collect())
     }
 
     /// The sketches that follow from maps of functions.
@@ -73,12 +102,18 @@ impl MapSearch<'_> {
         found.extend(self.sketched(&stage, turned.into_iter())?);
         let sides = mirrors.map(|of| of.sides.as_slice());
         let mut all = Vec::new();
-        for one in self.params.distinct(found) {
+        for (coset, one) in self.params.distinct(found).into_iter().enumerate() {
             let mut others = self.sketched(&stage, mirrored(&one, sides))?;
-            others.retain(|other| other.kind() != one.kind());
-            others.iter_mut().for_each(|other| other.score = (one.score * other.score).sqrt());
+            // What mixes two maps says nothing about either.
+            others.retain(|other| {
+                other.kind() != one.kind() && !other.is_mixture(self.params.pure - self.params.lost)
+            });
+            for other in &mut others {
+                other.score = (one.score * other.score).sqrt();
+                other.coset = coset;
+            }
             let least = others.iter().map(|other| other.score).reduce(f64::min);
-            all.push(Scored { score: least.unwrap_or(one.score), ..one });
+            all.push(Scored { score: least.unwrap_or(one.score), coset, ..one });
             all.extend(others);
         }
         Ok(all)

@@ -7,7 +7,7 @@ use mesh::{TriMesh, outward};
 use nalgebra::{DVector, Point3};
 use rigid::PointSet;
 
-use crate::curvature::{mean_curvature, smoothed};
+use crate::curvature::{fine_curvature, mean_curvature, smoothed};
 use crate::functional::FunctionalMaps;
 use crate::nearest_rows::Cells;
 use crate::operators::Operators;
@@ -19,6 +19,11 @@ const COARSE: usize = 40;
 
 /// One in so many wave kernels takes part in fitted maps: neighbours are nearly the same. As `ren2018` in `REFERENCES.bib`.
 const KERNELS: usize = 5;
+
+/// The end of a limb is farther from the rest than all landmarks within this distance: less than the length of limbs, more than
+/// their width. So many ends tell how limbs are exchanged. Safety limits.
+const LIMB: f64 = 0.3;
+const ENDS: usize = 8;
 
 /// A surface with everything that maps to other surfaces are found by. Lengths are those of the surface at unit area.
 #[derive(Debug)]
@@ -43,6 +48,8 @@ pub struct MapShape {
     pub(crate) oriented: Option<Oriented>,
     /// Coefficients of the mean curvature in the eigenfunctions; `None` if the surface has no outside.
     pub(crate) mean_curvature: Option<DVector<f64>>,
+    /// The mean curvature at all vertices, smoothed as little as its noise allows.
+    pub(crate) fine_curvature: Option<Vec<f64>>,
     /// The distance of each vertex from the boundary, at unit area; `None` if there is no boundary.
     pub(crate) from_cut: Option<Vec<f64>>,
     /// The area forms of the first eigenfunctions at the samples, if it can.
@@ -100,12 +107,15 @@ impl MapShape {
             cells[sample].push(vertex);
         }
         let oriented = Oriented::new(mesh, &spectrum.masses);
-        let mean_curvature = outward(mesh).map(|outward| mean_curvature(&outward, &spectrum));
+        let outward = outward(mesh);
+        let fine_curvature = outward.as_ref().map(fine_curvature).transpose()?;
+        let mean_curvature = outward.map(|outward| mean_curvature(&outward, &spectrum));
         let smooth = |curvature| smoothed(curvature, &spectrum.values, &spectrum.vectors, 1.0);
         let curvatures = mean_curvature.as_ref().map(smooth);
         let curvature = curvatures.as_ref().map(|columns| samples.iter().map(|&v| columns[(v, 0)]).collect());
         let operators = operators(curvatures, &spectrum, oriented.as_ref());
         Ok(Self {
+            fine_curvature,
             mean_curvature,
             from_cut: from_cut.map(|from_cut| from_cut.iter().map(|d| d / size).collect()),
             area_forms: oriented
@@ -158,6 +168,19 @@ impl MapShape {
     /// The same to all vertices.
     pub(crate) fn all_distances(&self) -> Result<Matrix, DescriptorError> {
         self.distances_to(&(0..self.n_vertices()).collect::<Vec<_>>())
+    }
+
+    /// Landmarks at the ends of limbs: farther from all others, on average, than those around them.
+    pub(crate) fn ends_of_limbs(&self) -> Result<Vec<usize>, DescriptorError> {
+        let landmarks = self.landmarks();
+        let between = self.distances_to(landmarks)?;
+        let mean: Vec<f64> = between.column_iter().map(|column| column.mean()).collect();
+        let all = || 0..landmarks.len();
+        let mut ends: Vec<usize> =
+            all().filter(|&i| all().all(|j| between[(i, j)] > LIMB || mean[j] <= mean[i])).collect();
+        ends.sort_by(|i, j| mean[*j].total_cmp(&mean[*i]));
+        ends.truncate(ENDS);
+        Ok(ends.into_iter().map(|i| landmarks[i]).collect())
     }
 
     /// The nearest vertex to each of some places; `rows` are the places of all vertices by maps of functions.

@@ -85,15 +85,18 @@ pub struct SurfaceMap {
     /// The map of functions of the second surface to functions of the first, in their eigenfunctions: `C`, as in
     /// [`LaplaceSpectrum`](descriptors::LaplaceSpectrum).
     pub functional: Matrix,
-    /// The next best map of this kind, unless this one is [certain](Self::CERTAIN).
+    /// The next best map of this kind, unless this one is [beyond doubt](Self::BEYOND_DOUBT).
     pub alternative: Option<Box<SurfaceMap>>,
     /// Which surface is a part of the other; `None` if both are mapped as wholes.
     pub part: Option<PartOfWhole>,
 }
 
 impl SurfaceMap {
-    /// Maps of at least this confidence are certain: the next best one is so much worse that it is not refined. A convention.
+    /// Maps of at least this confidence are certain. A convention.
     pub const CERTAIN: f64 = 0.7;
+
+    /// Maps of at least this confidence come without an alternative. A convention.
+    pub const BEYOND_DOUBT: f64 = 0.9;
 }
 
 /// The mean of `|d(x_i, g y_j) - d(f x_i, y_j)|` over landmarks, from the distances on the first and on the second surface

@@ -7,10 +7,10 @@ use crate::error::MapError;
 use crate::known::KnownMap;
 use crate::params::MapParams;
 use crate::part::part_maps;
-use crate::refine::Refined;
+use crate::refine::best_of_each_kind;
 use crate::search::MapSearch;
 use crate::shape::MapShape;
-use crate::surface_map::{MapKind, SurfaceMap};
+use crate::surface_map::SurfaceMap;
 
 /// A surface with a boundary may be a part if its area is such a share of that of the other surface, both in the same unit. A
 /// larger one is mapped as a whole, and of a smaller one too little is known. Safety limits.
@@ -25,8 +25,11 @@ const SHARES: [f64; 2] = [0.25, 0.92];
 ///    `melzi2019`); the best different ones then with more.
 /// 3. Each map is followed by the mirrors of the surfaces, which exchange left and right, or front and back. A map and one that
 ///    differs by a mirror are scored together.
-/// 4. Of each orientation, the one that keeps distances, the products of functions and the orientation best is refined on all
-///    samples and eigenfunctions, and all vertices follow. How much worse the next best is says how certain it is.
+/// 4. Each map is turned: another one takes the ends of limbs to the same places, with the other orientation. Of people, it
+///    exchanges front and back.
+/// 5. Of each orientation, those that keep distances, the products of functions and the orientation best are refined on all
+///    samples and eigenfunctions. The one that keeps fine curvature best, too, is taken, and all vertices follow. How much worse
+///    the next best is says how certain it is.
 ///
 /// Shapes that are alike under a mirror have two maps of small distortion; for others, one of the two has a large
 /// distortion. If a surface cannot be oriented, there is one map.
@@ -85,17 +88,8 @@ fn possible_part(a: &MapShape, b: &MapShape) -> Option<Side> {
 impl MapSearch<'_> {
     /// The best map of each orientation of two wholes.
     fn maps(&self) -> Result<Vec<SurfaceMap>, MapError> {
-        let mut sketches = self.sketches()?;
-        let mut maps = Vec::new();
-        for sought in MapKind::ALL {
-            if sought == MapKind::Unoriented && !maps.is_empty() {
-                break;
-            }
-            let (of_kind, others) = sketches.into_iter().partition(|found| found.kind() == sought);
-            sketches = others;
-            let best = Refined::best(self, of_kind)?;
-            maps.extend(best.map(|best| best.on_all_vertices([self.a, self.b])).transpose()?);
-        }
-        Ok(maps)
+        let shapes = [self.a, self.b];
+        let best = best_of_each_kind(self, self.sketches()?)?;
+        Ok(best.iter().map(|best| best.on_all_vertices(shapes)).collect::<Result<_, _>>()?)
     }
 }

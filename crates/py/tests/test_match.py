@@ -105,3 +105,21 @@ def test_landmarks_initial_maps_and_descriptors(cats: list[Shape]) -> None:
         canonform.match(a, b, initial=[1, 2, 3])
     with pytest.raises(OptionError, match="1 and 2"):
         canonform.match(a, b, descriptors=(side, np.c_[there, there]))
+
+
+def test_a_map_has_an_inverse_and_maps_follow_each_other(cats: list[Shape]) -> None:
+    a, b = (shape.surface() for shape in cats)
+    forth = next(m for m in canonform.match(a, b).maps if m.kind == "direct")
+    back = forth.inverse()
+    assert back.vertices.shape == back.vertex_confidence.shape == (b.n_vertices,)
+    round_trip = forth.then(back)
+    assert round_trip.kind == "direct" and round_trip.confidence == pytest.approx(forth.confidence**2)
+    size = np.sqrt(a.area)
+    assert np.linalg.norm(a.vertices[round_trip.vertices] - a.vertices, axis=1).mean() < 0.03 * size
+    again = back.inverse()
+    assert np.linalg.norm(b.vertices[again.vertices] - b.vertices[forth.vertices], axis=1).mean() < 0.03 * size
+    np.testing.assert_array_equal(again.functional(), forth.functional())
+    other = next(m for m in canonform.match(b, a).maps if m.kind == "mirrored")
+    chain = forth.then(other)
+    assert chain.kind == "mirrored"
+    np.testing.assert_array_equal(chain.vertices, other.vertices[forth.vertices])

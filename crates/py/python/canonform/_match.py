@@ -22,6 +22,7 @@ from .errors import OptionError
 Side: TypeAlias = Literal["a", "b"]
 MapKind: TypeAlias = Literal["direct", "mirrored", "unoriented"]
 Part: TypeAlias = Literal["first", "second"]
+_OTHER: dict[Part, Part] = {"first": "second", "second": "first"}
 
 _Arrays: TypeAlias = tuple[Ints, Floats, Floats, list[Ints] | None]
 
@@ -89,7 +90,7 @@ class SurfaceMap(Stored):
     confidence
         How likely this map is the right one of its kind, and not the next best; below 0.7 it is uncertain.
     alternative
-        The next best map of this kind, if this one is uncertain: front and back may be exchanged.
+        The next best map of this kind, unless the confidence is 0.9 or more: front and back may be exchanged.
     part
         "first" or "second", the surface that is a part of the other; `None` if both are mapped as wholes.
     """
@@ -196,6 +197,53 @@ class SurfaceMap(Stored):
             f"values have {n} rows, but the surface that they come from has {source.n_vertices} vertices and "
             f"{source.n_faces} faces; give one row for each vertex or for each face"
         )
+
+    def inverse(self) -> SurfaceMap:
+        """The same map from `b` to `a`. A vertex of `b` has the confidence of its partner."""
+        if self._partners is None:
+            points = self.points("b")
+            heaviest = np.nan_to_num(points.weights, nan=-1.0).argmax(axis=1)
+            vertices = np.where(points.faces < 0, -1, points.corners[np.arange(len(points)), heaviest])
+            partners = None
+        else:
+            partners = self._partners[::-1]
+            vertices = partners[0]
+        report = {**self._report(), "part": {"part": _OTHER[self.part]} if self.part else {}}
+        confidence = np.where(vertices < 0, 0.0, self.vertex_confidence[vertices])
+        arrays = (vertices, confidence, self._functional.T.copy(), partners)
+        back = SurfaceMap(report, [arrays], self._shapes[::-1], self._landmarks[:, ::-1].copy(), self._settings)
+        back.alternative = self.alternative.inverse() if self.alternative else None
+        return back
+
+    def then(self, next: SurfaceMap) -> SurfaceMap:
+        """This map from `a` to `b`, followed by one from `b` to `c`. Its confidence is the product of both; its distortion is at most
+        their sum, which stands for it."""
+        middle, start = self._shapes[1], next._shapes[0]
+        if middle.n_vertices != start.n_vertices:
+            raise OptionError(f"the first map ends on {middle.n_vertices} vertices, and the next starts on {start.n_vertices}; they must share a surface")
+        if self.part or next.part:
+            raise OptionError("maps of parts cannot be followed by others; index `vertices` of one with those of the other")
+        known = self.vertices >= 0
+        vertices = np.where(known, next.vertices[self.vertices], -1)
+        confidence = np.where(known, self.vertex_confidence * next.vertex_confidence[self.vertices], 0.0)
+        k = min(len(self._functional), len(next._functional))
+        functional = self._functional[:k, :k] @ next._functional[:k, :k]
+        kinds = {self.kind, next.kind}
+        kind = "unoriented" if "unoriented" in kinds else "mirrored" if len(kinds) == 2 else "direct"
+        agreements = (self.agreement, next.agreement)
+        agreement = None if None in agreements else float(np.prod(agreements))
+        report = {
+            "kind": kind,
+            "distortion": self.distortion + next.distortion,
+            "agreement": agreement,
+            "confidence": self.confidence * next.confidence,
+        }
+        shapes = (self._shapes[0], next._shapes[1])
+        nothing = np.empty((0, 2), dtype=np.int64)
+        return SurfaceMap(report, [(vertices, confidence, functional, None)], shapes, nothing, self._settings)
+
+    def _report(self) -> dict[str, Any]:
+        return {name: getattr(self, name) for name in ("kind", "distortion", "agreement", "confidence")}
 
     def __repr__(self) -> str:
         return f"SurfaceMap({self.kind!r}, distortion={self.distortion:.4f})"

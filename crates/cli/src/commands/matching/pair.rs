@@ -195,16 +195,12 @@ fn table(json: &MatchJson) -> String {
         rows.push(("  agreement", agreement));
         let other =
             alternative_path.as_ref().map_or(String::new(), |path| format!(", in {}", path.display()));
-        rows.push(match &map.alternative {
-            None => ("  confidence", format!("{:.2}", map.confidence)),
-            Some(_) => (
-                "  confidence",
-                format!(
-                    "{:.2}: uncertain, front and back may be exchanged; another map is nearly as good{other}",
-                    map.confidence
-                ),
-            ),
-        });
+        let mut confidence = format!("{:.2}", map.confidence);
+        if map.alternative.is_some() {
+            let how = if map.is_certain() { "likely" } else { "uncertain" };
+            confidence += &format!(": {how}; the next best map may exchange front and back{other}");
+        }
+        rows.push(("  confidence", confidence));
         rows.push(("  doubtful", format!("{:.1} % of the vertices", 100.0 * doubtful)));
     }
     let files = [("target", &json.target), ("source", &json.source)];
