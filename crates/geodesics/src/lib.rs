@@ -39,7 +39,6 @@ mod error;
 mod exact;
 mod fast_marching;
 mod graph;
-mod heap;
 mod heat;
 mod method;
 mod observed;

@@ -6,12 +6,16 @@
 //! word for each loop of faces that crosses it, and the words of a loop add up to zero exactly if it separates.
 
 use std::collections::BTreeMap;
+use std::convert::Infallible;
+use std::ops::ControlFlow;
 
 use base::{Budget, Exceeded, SplitMix};
 
 use crate::disjoint_sets::DisjointSets;
+use crate::edge_graph::{EdgeGraph, Way};
+use crate::frontier::Frontier;
 use crate::ids::{EdgeId, VertexId};
-use crate::nearest_first::NearestFirst;
+use crate::intrinsic::Link;
 use crate::rows::Rows;
 use crate::topology::Topology;
 
@@ -180,69 +184,44 @@ fn words(topology: &Topology) -> Option<Vec<u64>> {
 /// Shortest paths along edges from one vertex, with the words along them.
 struct Search<'a> {
     topology: &'a Topology,
-    lengths: &'a [f64],
     words: &'a [u64],
-    distance: Vec<f64>,
+    graph: EdgeGraph,
+    front: Frontier,
     word: Vec<u64>,
-    /// The edge by which a vertex was reached.
-    from: Vec<Option<EdgeId>>,
-    reached: Vec<VertexId>,
-    queue: NearestFirst<VertexId>,
+    /// The vertex before each on its path.
+    before: Vec<Option<VertexId>>,
 }
 
 impl<'a> Search<'a> {
-    fn new(topology: &'a Topology, lengths: &'a [f64], words: &'a [u64]) -> Self {
+    fn new(topology: &'a Topology, lengths: &[f64], words: &'a [u64]) -> Self {
         let n = topology.n_vertices();
-        Self {
-            topology,
-            lengths,
-            words,
-            distance: vec![f64::INFINITY; n],
-            word: vec![0; n],
-            from: vec![None; n],
-            reached: Vec::new(),
-            queue: NearestFirst::default(),
-        }
+        let edges = topology.edges().iter().zip(lengths);
+        let edges = edges.map(|(ends, length)| Link { ends: *ends, length: *length });
+        let (graph, front) = (EdgeGraph::new(n, edges), Frontier::default());
+        Self { topology, words, graph, front, word: vec![0; n], before: vec![None; n] }
     }
 
     fn run(&mut self, source: VertexId, radius: f64) {
-        for v in self.reached.drain(..) {
-            self.distance[v.index()] = f64::INFINITY;
-            self.from[v.index()] = None;
-        }
-        self.distance[source.index()] = 0.0;
-        self.word[source.index()] = 0;
-        self.reached.push(source);
-        self.queue.push(0.0, source);
-        while let Some((here, v)) = self.queue.pop() {
-            if here > self.distance[v.index()] {
-                continue;
-            }
-            for (edge, w) in edges_at(self.topology, v) {
-                let there = here + self.lengths[edge.index()];
-                if there < self.distance[w.index()] && there <= radius {
-                    if self.distance[w.index()].is_infinite() {
-                        self.reached.push(w);
-                    }
-                    self.distance[w.index()] = there;
-                    self.word[w.index()] = self.word[v.index()] ^ self.words[edge.index()];
-                    self.from[w.index()] = Some(edge);
-                    self.queue.push(there, w);
-                }
-            }
-        }
+        self.front.reset(self.word.len());
+        self.front.relax(source, 0.0);
+        (self.word[source.index()], self.before[source.index()]) = (0, None);
+        let all = |_, _| ControlFlow::<Infallible>::Continue(());
+        let _ = self.graph.search(&mut self.front, radius, all, |v, way| {
+            self.word[way.to.index()] = self.word[v.index()] ^ self.words[way.number as usize];
+            self.before[way.to.index()] = Some(v);
+        });
     }
 
     /// The edges that close a loop with the paths to their ends that does not separate, with its word and its length.
     fn closing(&self, longest: f64) -> Vec<(u64, f64, EdgeId)> {
         let mut found = Vec::new();
-        for &v in &self.reached {
-            for (edge, w) in edges_at(self.topology, v) {
-                let word = self.word[v.index()] ^ self.word[w.index()] ^ self.words[edge.index()];
-                let length = self.distance[v.index()] + self.distance[w.index()] + self.lengths[edge.index()];
+        for &v in self.front.reached() {
+            for &Way { to: w, number, length } in self.graph.ways(v) {
+                let word = self.word[v.index()] ^ self.word[w.index()] ^ self.words[number as usize];
+                let length = self.front.distance(v) + self.front.distance(w) + length;
                 // Infinite if `w` was not reached.
                 if v < w && length <= longest && word != 0 {
-                    found.push((word, length, edge));
+                    found.push((word, length, EdgeId(number)));
                 }
             }
         }
@@ -251,30 +230,13 @@ impl<'a> Search<'a> {
 
     /// The loop that an edge closes; `None` if its two paths share more than the source.
     fn closed(&self, edge: EdgeId) -> Option<Vec<VertexId>> {
-        let [mut path, other] = self.topology.edges()[edge.index()].map(|v| self.path(v));
-        let shared = path.iter().filter(|v| other.contains(v)).count();
-        path.extend(other.iter().rev().skip(1));
-        (shared == 1).then_some(path)
+        let path = |v: VertexId| std::iter::successors(Some(v), |v| self.before[v.index()]);
+        let [a, b] = self.topology.edges()[edge.index()];
+        let (mut around, other): (Vec<VertexId>, Vec<VertexId>) = (path(a).collect(), path(b).collect());
+        let shared = around.iter().filter(|v| other.contains(v)).count();
+        around.extend(other.iter().rev().skip(1));
+        (shared == 1).then_some(around)
     }
-
-    /// The path from a vertex to the source.
-    fn path(&self, mut v: VertexId) -> Vec<VertexId> {
-        let mut path = vec![v];
-        while let Some(edge) = self.from[v.index()] {
-            let [a, b] = self.topology.edges()[edge.index()];
-            v = if a == v { b } else { a };
-            path.push(v);
-        }
-        path
-    }
-}
-
-/// The edges at a vertex with their other ends; inner edges come twice.
-fn edges_at(topology: &Topology, v: VertexId) -> impl Iterator<Item = (EdgeId, VertexId)> + '_ {
-    topology.vertex_corners(v).iter().flat_map(move |&corner| {
-        let [next, prev] = topology.corner_edges(corner);
-        [(next, topology.corner_vertex(corner.next())), (prev, topology.corner_vertex(corner.prev()))]
-    })
 }
 
 #[cfg(test)]

@@ -4,10 +4,9 @@ use std::collections::VecDeque;
 
 use base::{Budget, Exceeded};
 
-use surface::CornerId;
+use surface::{CornerId, Frontier, VertexId};
 
 use super::window::PathWindow;
-use crate::heap::VertexHeap;
 
 /// No list of windows.
 const NONE: u32 = u32::MAX;
@@ -28,7 +27,7 @@ pub(super) enum Arrival {
 /// of its base that was nearer when the first window came.
 #[derive(Debug, Default)]
 pub(super) struct WindowFront {
-    heap: VertexHeap,
+    labels: Frontier,
     arrivals: Vec<Arrival>,
     /// The first list that waits for each vertex.
     waiting: Vec<u32>,
@@ -37,7 +36,7 @@ pub(super) struct WindowFront {
     lists: Vec<WaitingList>,
     /// Lists at no corner.
     free: Vec<u32>,
-    /// Lists whose vertex has left the heap.
+    /// Lists whose vertex has been visited.
     ready: VecDeque<u32>,
     memory: WindowMemory,
     /// Windows delivered, and lists opened, since the last call of [`take_work`](Self::take_work).
@@ -88,7 +87,7 @@ impl WindowFront {
         let held = self.lists.iter().map(|list| list.windows.capacity()).sum();
         self.memory = WindowMemory { held, limit: bytes / size_of::<PathWindow>(), missing: None };
         self.work = 0;
-        self.heap.reset(n_vertices);
+        self.labels.reset(n_vertices);
         self.arrivals.resize(n_vertices, Arrival::Anywhere);
         self.list_at.clear();
         self.list_at.resize(n_corners, NONE);
@@ -102,7 +101,7 @@ impl WindowFront {
 
     #[inline]
     pub(super) fn distance(&self, vertex: u32) -> f64 {
-        self.heap.distance(vertex)
+        self.labels.distance(VertexId(vertex))
     }
 
     #[inline]
@@ -113,14 +112,14 @@ impl WindowFront {
     /// Lowers the label of a vertex to `distance` and puts it (back) into the queue, if that is an improvement.
     #[inline]
     pub(super) fn reach(&mut self, vertex: u32, distance: f64, arrival: Arrival) {
-        if self.heap.relax(vertex, distance) {
+        if self.labels.relax(VertexId(vertex), distance) {
             self.arrivals[vertex as usize] = arrival;
         }
     }
 
     #[inline]
     pub(super) fn pop(&mut self) -> Option<(f64, u32)> {
-        self.heap.pop()
+        self.labels.pop().map(|(distance, vertex)| (distance, vertex.0))
     }
 
     /// Adds windows to those at the base of `corner`, which has the given ends.
@@ -197,7 +196,7 @@ impl WindowFront {
         });
         self.work += 1;
         let end = if self.distance(b) < self.distance(a) { b } else { a };
-        let next = if self.heap.contains(end) {
+        let next = if self.labels.is_waiting(VertexId(end)) {
             std::mem::replace(&mut self.waiting[end as usize], list)
         } else {
             self.ready.push_back(list);

@@ -1,6 +1,6 @@
 //! All that is prepared once per surface.
 
-use surface::{CornerId, FaceId, IntrinsicMesh, Link, Rows};
+use surface::{CornerId, EdgeGraph, FaceId, IntrinsicMesh};
 
 use super::faces::{Face, Faces};
 use super::fan::Fans;
@@ -11,8 +11,8 @@ use super::order::{Renumbered, renumbered};
 pub(super) struct PreparedSurface {
     pub(super) faces: Faces,
     pub(super) fans: Fans,
-    /// The other end and the length, in mesh units, of every link at a vertex.
-    pub(super) links: Rows<(u32, f64)>,
+    /// In mesh units.
+    pub(super) links: EdgeGraph,
     /// How many faces a window may cross in a row around one vertex.
     pub(super) max_turn: i32,
     /// The new number of every vertex and face.
@@ -25,7 +25,7 @@ impl PreparedSurface {
         let Renumbered { mesh, vertices, faces: new_faces } = renumbered(mesh);
         let faces = Faces::new(&mesh);
         let fans = Fans::new(&mesh, &faces);
-        let links = Link::by_vertex(mesh.n_vertices(), mesh.links().iter().copied());
+        let links = EdgeGraph::new(mesh.n_vertices(), mesh.links().iter().copied());
         // A shortest path crosses no face twice.
         let max_turn = i32::try_from(fans.max_valence()).unwrap_or(i32::MAX);
         Self { faces, fans, links, max_turn, new_vertices: vertices, new_faces }

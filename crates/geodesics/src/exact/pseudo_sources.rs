@@ -91,8 +91,8 @@ impl Emission<'_> {
     /// Emits windows from a vertex over links and the edges opposite it, where a path with this arrival may continue.
     pub(super) fn emit_from(&mut self, vertex: u32, distance: f64, arrival: Arrival) {
         let surface = self.surface;
-        for (end, length) in surface.links.row(vertex as usize) {
-            self.front.reach(*end, distance + length / surface.faces.unit, Arrival::Anywhere);
+        for link in surface.links.ways(VertexId(vertex)) {
+            self.front.reach(link.to.0, distance + link.length / surface.faces.unit, Arrival::Anywhere);
         }
         let fan = surface.fans.around(vertex);
         let Some(open) = surface.fans.open_angles(vertex, arrival) else {

@@ -1,7 +1,7 @@
 //! The front: the window of every triangle, and the distances of the vertices.
 
 use base::{Budget, Exceeded};
-use surface::NearestFirst;
+use surface::{NearestFirst, VertexId};
 
 use super::buckets::{Buckets, NOWHERE, Queued};
 use super::crossing::{Crossings, LANES, SolveCrossings};
@@ -448,9 +448,9 @@ impl TriangleFront {
             Some(nearby) => self.relax_sides(nearby.iter().map(|number| triangles.at(*number))),
             None => self.relax_sides(triangles.triangles.iter()),
         }
-        for vertex in 0..triangles.links.n_rows() as u32 {
-            for (end, length) in triangles.links.row(vertex as usize) {
-                self.relax(vertex, *end, *length);
+        for vertex in 0..triangles.links.n_vertices() as u32 {
+            for way in triangles.links.ways(VertexId(vertex)) {
+                self.relax(vertex, way.to.0, way.length);
             }
         }
         let mut meter = budget.meter();
@@ -466,9 +466,9 @@ impl TriangleFront {
                     }
                 }
             }
-            for (end, length) in triangles.links.row(vertex as usize) {
+            for way in triangles.links.ways(VertexId(vertex)) {
                 meter.count(1)?;
-                self.relax(vertex, *end, *length);
+                self.relax(vertex, way.to.0, way.length);
             }
         }
         Ok(())

@@ -5,13 +5,12 @@
 //! again is visited again.
 
 use base::{Budget, Exceeded};
-use surface::Rows;
+use surface::{Frontier, Rows, VertexId};
 
 use super::triangles::{Triangles, around};
 use super::unfold::HalfCorner;
 use super::update::Stencil;
 use super::window::ROUNDING;
-use crate::heap::VertexHeap;
 use crate::plane::{cross, dot, norm, sub};
 use crate::source::Source;
 
@@ -25,14 +24,14 @@ const OPERATIONS: usize = 64;
 /// A front of vertices.
 #[derive(Debug, Default)]
 pub(super) struct PlanarFront {
-    heap: VertexHeap,
+    front: Frontier,
     visits: usize,
 }
 
 impl PlanarFront {
     #[inline]
     pub(super) fn distance(&self, vertex: u32) -> f64 {
-        self.heap.distance(vertex)
+        self.front.distance(VertexId(vertex))
     }
 
     /// Runs from sources until no vertex is left, without continuing from vertices where it `stops` at their distance.
@@ -46,13 +45,13 @@ impl PlanarFront {
         stops: impl Fn(u32, f64) -> bool,
     ) -> Result<(), Exceeded> {
         let n = triangles.order.len();
-        self.heap.reset(n);
+        self.front.reset(n);
         for (vertex, distance) in sources.iter().flat_map(Source::reach) {
-            self.heap.relax(triangles.rank[vertex.index()], *distance);
+            self.front.relax(VertexId(triangles.rank[vertex.index()]), *distance);
         }
         let mut meter = budget.meter();
         self.visits = VISITS_PER_VERTEX.saturating_mul(n);
-        while let Some((distance, vertex)) = self.heap.pop() {
+        while let Some((distance, VertexId(vertex))) = self.front.pop() {
             meter.count(OPERATIONS)?;
             self.visits = self.visits.saturating_sub(1);
             if stops(vertex, distance) {
@@ -98,14 +97,14 @@ impl PlanarFront {
 
     #[inline]
     fn is_finalized(&self, vertex: u32) -> bool {
-        self.distance(vertex).is_finite() && !self.heap.contains(vertex)
+        self.distance(vertex).is_finite() && !self.front.is_waiting(VertexId(vertex))
     }
 
     #[inline]
     fn lower(&mut self, vertex: u32, distance: f64) {
         let corrects = self.visits > 0 || !self.is_finalized(vertex);
         if corrects && distance < self.distance(vertex) * (1.0 - ROUNDING) {
-            self.heap.relax(vertex, distance);
+            self.front.relax(VertexId(vertex), distance);
         }
     }
 }

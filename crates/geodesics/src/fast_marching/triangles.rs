@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use rayon::prelude::*;
 use surface::{
-    AngleSum, CornerId, FaceId, Link, Rows, Triangulation, VertexCorners, VertexId, double_area,
+    AngleSum, CornerId, EdgeGraph, FaceId, Link, Rows, Triangulation, VertexCorners, VertexId, double_area,
     scalar_product,
 };
 
@@ -89,7 +89,7 @@ pub(crate) struct Triangles {
     /// The corners at every vertex.
     pub(super) corners: Rows<u32>,
     /// Straight connections of vertices outside triangles.
-    pub(super) links: Rows<(u32, f64)>,
+    pub(super) links: EdgeGraph,
     /// Vertices that join parts which no side joins: ends of links, and vertices of several fans.
     pub(super) joints: Vec<u32>,
     /// Mesh vertex of every internal number.
@@ -206,7 +206,7 @@ impl Triangles {
         let longest = glued.iter().flat_map(|t| t.lengths).chain(all_links.clone().map(|link| link.length));
         let longest = longest.fold(0.0, f64::max);
         Self {
-            links: Link::by_vertex(n, all_links),
+            links: EdgeGraph::new(n, all_links),
             triangles,
             corners,
             joints,
@@ -242,7 +242,7 @@ impl Triangles {
     /// The edges and links at a vertex: their other ends and lengths.
     pub(super) fn ways_from(&self, vertex: u32) -> impl Iterator<Item = (u32, f64)> {
         let edges = self.corners.row(vertex as usize).iter().flat_map(|corner| self.sides_from(*corner));
-        edges.chain(self.links.row(vertex as usize).iter().copied())
+        edges.chain(self.links.ways(VertexId(vertex)).iter().map(|way| (way.to.0, way.length)))
     }
 
     /// The two sides of a triangle that meet at a corner: their other ends and lengths.

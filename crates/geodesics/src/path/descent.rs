@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use surface::{EdgeId, FaceId, Triangle, VertexId};
+use surface::{EdgeId, FaceId, Triangle, VertexId, Way};
 
 use super::field::PathField;
 use super::plane::{Flat, faces_around, is_on, segment};
@@ -97,10 +97,10 @@ impl Descent<'_> {
             self.steps_within(*face, here, &mut |total, stop| offer(total, stop, Over::Face(*face)));
         }
         if let SurfacePoint::Vertex(vertex) = here {
-            for (other, length) in self.field.links(vertex) {
-                if !self.vertices.contains(&other) {
-                    let total = length + self.field.distances[other.index()];
-                    offer(total, StepEnd::Node(SurfacePoint::Vertex(other)), Over::Link(length));
+            for &Way { to, length, .. } in self.field.links(vertex) {
+                if !self.vertices.contains(&to) {
+                    let total = length + self.field.distances[to.index()];
+                    offer(total, StepEnd::Node(SurfacePoint::Vertex(to)), Over::Link(length));
                 }
             }
         }
