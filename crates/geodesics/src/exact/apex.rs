@@ -1,5 +1,6 @@
 //! Paths through the windows at the base of a face to its apex.
 
+use super::bearing::Bearing;
 use super::frame::FaceFrame;
 use super::window::PathWindow;
 
@@ -46,20 +47,20 @@ impl Apex {
     /// Where the ray from the window's pseudo-source to the apex crosses the base, times the height of the apex over
     /// the pseudo-source, which saves a division.
     #[inline]
-    fn scaled_crossing(&self, window: &PathWindow) -> [f64; 2] {
+    fn scaled_crossing<D>(&self, window: &PathWindow<D>) -> [f64; 2] {
         let [x, y] = self.at;
         [window.x * y + x * window.depth, window.depth + y]
     }
 
     /// Where the ray from the window's pseudo-source to the apex crosses the base.
     #[inline]
-    pub(super) fn crossing(&self, window: &PathWindow) -> f64 {
+    pub(super) fn crossing<D>(&self, window: &PathWindow<D>) -> f64 {
         let [scaled, height] = self.scaled_crossing(window);
         scaled / height
     }
 
     #[inline]
-    pub(super) fn passes(&self, window: &PathWindow) -> Passes {
+    pub(super) fn passes<D>(&self, window: &PathWindow<D>) -> Passes {
         let [scaled, height] = self.scaled_crossing(window);
         if scaled >= window.end * height {
             Passes::Left
@@ -72,7 +73,7 @@ impl Apex {
 
     /// Considers the path through a window, straight or with a bend at the end of the window.
     #[inline]
-    pub(super) fn consider(&mut self, index: usize, window: &PathWindow) {
+    pub(super) fn consider<D: Bearing>(&mut self, index: usize, window: &PathWindow<D>) {
         let [scaled, height] = self.scaled_crossing(window);
         if scaled < (window.start - self.slack) * height || scaled > (window.end + self.slack) * height {
             return;
@@ -98,5 +99,11 @@ impl Apex {
         let [x, y] = self.at;
         let [dx, dy] = [self.from[0] - x, self.from[1] - y];
         [y * dx - x * dy, -(x * dx + y * dy)]
+    }
+
+    /// The ray from the pseudo-source of its window, along which the path leaves that window.
+    pub(super) fn ray<D>(&self, window: &PathWindow<D>) -> [f64; 2] {
+        let [x, y] = if self.from[1] < 0.0 { self.at } else { [self.entry, 0.0] };
+        [x - window.x, y + window.depth]
     }
 }

@@ -2,6 +2,7 @@
 
 use surface::CornerId;
 
+use super::bearing::Bearing;
 use super::faces::{Beyond, Faces, next};
 use super::window::PathWindow;
 
@@ -64,29 +65,29 @@ impl FaceFrame {
     /// Appends the part of `ac` that the rays of `window` between `start` and `end` of the base reach, measured from
     /// `a`, unless it has no width.
     #[inline]
-    pub(super) fn project_on_ac(
+    pub(super) fn project_on_ac<D: Bearing>(
         &self,
-        window: &PathWindow,
+        window: &PathWindow<D>,
         [start, end]: [f64; 2],
         until: Until,
-        out: &mut Vec<PathWindow>,
+        out: &mut Vec<PathWindow<D>>,
     ) {
         let source = [window.x, window.depth];
         let ([x, depth], [start, end]) = project(self.from_a, self.sides[0], source, [start, end], until);
         if end > start {
-            let turn = window.turn.max(0) + 1;
-            out.push(PathWindow { start, end, x, depth, offset: window.offset, turn });
+            let (turn, bearing) = (window.turn.max(0) + 1, window.bearing.turned(self.from_a));
+            out.push(PathWindow { start, end, x, depth, offset: window.offset, turn, bearing });
         }
     }
 
     /// As [`project_on_ac`](Self::project_on_ac), for `bc`, measured from `c`: the apex is at its start.
     #[inline]
-    pub(super) fn project_on_cb(
+    pub(super) fn project_on_cb<D: Bearing>(
         &self,
-        window: &PathWindow,
+        window: &PathWindow<D>,
         [start, end]: [f64; 2],
         until: Until,
-        out: &mut Vec<PathWindow>,
+        out: &mut Vec<PathWindow<D>>,
     ) {
         let side = self.sides[1];
         let source = [self.base - window.x, window.depth];
@@ -94,8 +95,9 @@ impl FaceFrame {
         let ([x, depth], [start, end]) = project(self.from_b, side, source, mirrored, until);
         if end > start {
             let turn = window.turn.min(0) - 1;
+            let bearing = window.bearing.mirrored().turned(self.from_b).mirrored();
             let (start, end, x) = (side - end, side - start, side - x);
-            out.push(PathWindow { start, end, x, depth, offset: window.offset, turn });
+            out.push(PathWindow { start, end, x, depth, offset: window.offset, turn, bearing });
         }
     }
 }

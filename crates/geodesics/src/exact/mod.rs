@@ -6,6 +6,7 @@
 //! | `faces`, `fan` | the faces, and the corners around every vertex with their angles |
 //! | `prepared` | all that is prepared once per surface |
 //! | `window` | an interval of an edge and the unfolded source of its paths |
+//! | `bearing`, `log_map` | the directions in which paths leave the source, and the map that they make |
 //! | `envelope` | the windows at one edge reduced to those that may carry a shortest path |
 //! | `frame`, `apex` | a face laid out, windows propagated across it, and the paths to its apex |
 //! | `front` | labels of vertices, their order, and waiting windows |
@@ -13,11 +14,13 @@
 //! | `pseudo_sources` | new windows, from sources and from vertices where paths bend |
 
 mod apex;
+mod bearing;
 mod envelope;
 mod faces;
 mod fan;
 mod frame;
 mod front;
+mod log_map;
 mod order;
 mod prepared;
 mod propagation;
@@ -31,6 +34,8 @@ use std::sync::Arc;
 
 use base::{Budget, Exceeded, Observer};
 use surface::IntrinsicMesh;
+
+pub use log_map::log_map;
 
 use crate::solver::{DistanceSolver, Pool, within};
 use crate::source::Source;
@@ -120,7 +125,8 @@ impl DistanceSolver for Exact {
         assert_eq!(out.len(), self.n_vertices(), "one distance per vertex");
         let unit = self.surface.faces.unit;
         self.scratch.with(|scratch| {
-            let front = propagation::run(&self.surface, scratch, max_distance / unit, sources, &self.budget)?;
+            let front =
+                propagation::run(&self.surface, scratch, max_distance / unit, (sources, &()), &self.budget)?;
             for (distance, vertex) in out.iter_mut().zip(&self.surface.new_vertices) {
                 *distance = within(front.distance(*vertex) * unit, max_distance);
             }

@@ -1,11 +1,13 @@
 //! Windows: intervals of edges that straight paths from one pseudo-source reach.
 
+use super::bearing::Bearing;
+
 /// An interval of an edge that straight paths from one pseudo-source reach through one sequence of faces.
 ///
 /// The edge lies on the x-axis from zero to its length, with the face to be entered above it and the unfolded
 /// sequence below. The distance at a point `t` of the window is `offset + |(t, 0) - (x, -depth)|`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct PathWindow {
+pub(super) struct PathWindow<D = ()> {
     pub(super) start: f64,
     pub(super) end: f64,
     /// Position of the unfolded pseudo-source along the edge.
@@ -16,9 +18,11 @@ pub(super) struct PathWindow {
     pub(super) offset: f64,
     /// How many faces in a row were crossed around one vertex: positive for the edge's start, negative for its end.
     pub(super) turn: i32,
+    /// The direction of its paths at the source.
+    pub(super) bearing: D,
 }
 
-impl PathWindow {
+impl<D: Bearing> PathWindow<D> {
     /// Distance at the point `t` of the edge.
     #[inline]
     pub(super) fn distance(&self, t: f64) -> f64 {
@@ -40,6 +44,7 @@ impl PathWindow {
             end: length - self.start,
             x: length - self.x,
             turn: -self.turn,
+            bearing: self.bearing.mirrored(),
             ..*self
         }
     }
@@ -74,7 +79,7 @@ fn nearer_until(x: f64, depth: f64, lead: f64) -> f64 {
 /// Positive where the paths of `left` come from further left than those of `right`, whose distance then decreases
 /// relative to `left` with increasing `t`; linear in `t`.
 #[inline]
-pub(super) fn order(left: &PathWindow, right: &PathWindow, t: f64) -> f64 {
+pub(super) fn order<D>(left: &PathWindow<D>, right: &PathWindow<D>, t: f64) -> f64 {
     (t - left.x) * right.depth - (t - right.x) * left.depth
 }
 
@@ -87,7 +92,11 @@ const EQUAL: f64 = 1e-12;
 /// squared is linear in the position but for `2 d s`; squared again it is quadratic. One of its roots may belong to
 /// `-d`. If the two pseudo-sources are in line with a nearly double root, rounding leaves little of either. So a root
 /// only counts if the distances agree there.
-pub(super) fn crossing(left: &PathWindow, right: &PathWindow, [low, high]: [f64; 2]) -> Option<f64> {
+pub(super) fn crossing<D: Bearing>(
+    left: &PathWindow<D>,
+    right: &PathWindow<D>,
+    [low, high]: [f64; 2],
+) -> Option<f64> {
     let (p, q) = (left.x - low, right.x - low);
     let (rr, ss) = (p * p + left.depth * left.depth, q * q + right.depth * right.depth);
     let d = right.offset - left.offset;
@@ -113,7 +122,8 @@ pub(super) fn crossing(left: &PathWindow, right: &PathWindow, [low, high]: [f64;
 mod tests {
     use super::*;
 
-    const NEAR: PathWindow = PathWindow { start: 0.0, end: 4.0, x: 1.0, depth: 2.0, offset: 0.5, turn: 3 };
+    const NEAR: PathWindow =
+        PathWindow { start: 0.0, end: 4.0, x: 1.0, depth: 2.0, offset: 0.5, turn: 3, bearing: () };
 
     #[test]
     fn a_mirrored_window_has_the_same_distances_from_the_other_end() {

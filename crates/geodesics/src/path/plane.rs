@@ -7,14 +7,14 @@ use surface::SurfacePoint;
 
 /// A face laid out in the plane.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Flat {
-    pub(super) vertices: [VertexId; 3],
-    pub(super) at: [PlanePoint; 3],
+pub(crate) struct Flat {
+    pub(crate) vertices: [VertexId; 3],
+    pub(crate) at: [PlanePoint; 3],
 }
 
 impl Flat {
     /// The face of a corner, with that corner in the origin and the next one on the x-axis.
-    pub(super) fn new(mesh: &IntrinsicMesh, corner: CornerId) -> Self {
+    pub(crate) fn new(mesh: &IntrinsicMesh, corner: CornerId) -> Self {
         let corners = [corner, corner.next(), corner.prev()];
         let sides = mesh.sides(corner.prev());
         let vertices = corners.map(|corner| mesh.topology().corner_vertex(corner));
@@ -22,15 +22,15 @@ impl Flat {
     }
 
     /// A face with its first corner in the origin.
-    pub(super) fn of_face(mesh: &IntrinsicMesh, face: FaceId) -> Self {
+    pub(crate) fn of_face(mesh: &IntrinsicMesh, face: FaceId) -> Self {
         Self::new(mesh, CornerId::new(face, 0))
     }
 
-    pub(super) fn vertex(&self, vertex: VertexId) -> PlanePoint {
+    pub(crate) fn vertex(&self, vertex: VertexId) -> PlanePoint {
         self.at[self.vertices.iter().position(|v| *v == vertex).unwrap_or_default()]
     }
 
-    pub(super) fn point(&self, mesh: &IntrinsicMesh, point: SurfacePoint) -> PlanePoint {
+    pub(crate) fn point(&self, mesh: &IntrinsicMesh, point: SurfacePoint) -> PlanePoint {
         match point {
             SurfacePoint::Vertex(vertex) => self.vertex(vertex),
             SurfacePoint::Edge { edge, t } => {

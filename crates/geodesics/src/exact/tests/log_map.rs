@@ -6,15 +6,18 @@ use mesh::{TriMesh, shapes};
 use nalgebra::Point3;
 use surface::{EdgeId, FaceId, IntrinsicMesh, VertexId};
 
-use super::vertex;
 use crate::tests::assert_close;
 use crate::{DistanceSolver, Exact, Source, SurfacePoint, log_map};
+
+fn vertex(index: usize) -> SurfacePoint {
+    SurfacePoint::Vertex(VertexId::from(index))
+}
 
 fn about(mesh: &IntrinsicMesh, point: SurfacePoint) -> Vec<[f64; 2]> {
     let source = Source::new(mesh, point).unwrap();
     let mut distances = vec![0.0; mesh.n_vertices()];
     Exact::new(mesh, &()).solve_into(std::slice::from_ref(&source), f64::INFINITY, &mut distances).unwrap();
-    let map = log_map(mesh, &source, &distances, &()).unwrap();
+    let map = log_map(mesh, point, f64::INFINITY, &()).unwrap();
     for ([x, y], distance) in map.iter().zip(&distances) {
         assert_close(x.hypot(*y), *distance, 1e-12);
     }
@@ -134,11 +137,15 @@ fn the_map_of_a_cone_unrolls_it() {
 #[test]
 fn what_is_out_of_reach_has_no_place() {
     let mesh = shapes::disjoint(&[shapes::grid(3, 3, 1.0), shapes::grid(2, 2, 1.0)]).intrinsic();
-    let source = Source::vertex(VertexId(0));
-    let distances = Exact::new(&mesh, &()).distances(VertexId(0)).unwrap();
-    let map = log_map(&mesh, &source, &distances, &()).unwrap();
+    let source = SurfacePoint::Vertex(VertexId(0));
+    let map = log_map(&mesh, source, f64::INFINITY, &()).unwrap();
     assert!(map[9..].iter().all(|p| p[0].is_nan() && p[1].is_nan()) && map[8][0].is_finite());
     let budget = base::Budget::unlimited();
     budget.cancel();
-    assert!(log_map(&mesh, &source, &distances, &budget).is_err());
+    assert!(log_map(&mesh, source, f64::INFINITY, &budget).is_err());
+    // Along the sides, and not across it.
+    let near = log_map(&mesh, source, 1.2, &()).unwrap();
+    let is_near = |v: usize| [0, 1, 3].contains(&v);
+    assert!((0..mesh.n_vertices()).all(|v| near[v][0].is_finite() == is_near(v)));
+    assert!((0..9).filter(|v| is_near(*v)).all(|v| near[v] == map[v]));
 }
