@@ -2,8 +2,9 @@
 
 use surface::CornerId;
 
-use super::frame::FaceFrame;
-use crate::plane::PlanePoint;
+use super::log_map::{Sheet, TangentPlane, angle_of};
+use super::window::FaceFrame;
+use crate::plane::{PlanePoint, cross, distance, sub};
 
 /// What windows and labels carry besides distances: nothing, or the [`Direction`] at the source of the paths through them.
 pub(super) trait Bearing: Copy + Default + std::fmt::Debug {
@@ -40,7 +41,7 @@ impl Bearing for () {
     fn turned(self, _: [f64; 2]) {}
 }
 
-/// The direction at the source: an angle between the first axis of a [`Tangent`] plane and paths, before scaling.
+/// The direction at the source: an angle between the first axis of a [`TangentPlane`] plane and paths, before scaling.
 ///
 /// Along a ray `(t - x, depth)` of a window, in the plane of its edge, the direction is `zero` plus the angle of the ray, mirrored
 /// if the faces in between turned over, and rotated. At a pseudo-source all rays have that of the path to it.
@@ -58,68 +59,33 @@ pub(super) enum Direction {
     },
 }
 
-impl Direction {
-    /// The angle, unless paths at the source leave it in all directions.
-    pub(super) fn angle(self) -> Option<f64> {
-        match self {
-            Self::At(angle) => Some(angle),
-            Self::Open | Self::Along { .. } => None,
-        }
-    }
-}
-
 /// The product of two complex numbers, of which the second may be conjugated.
 fn times([a, b]: [f64; 2], [c, d]: [f64; 2], is_conjugated: bool) -> [f64; 2] {
     let d = if is_conjugated { -d } else { d };
     [a * c - b * d, a * d + b * c]
 }
 
-/// The faces around a source, unrolled into the plane that touches there.
-#[derive(Debug)]
-pub(super) struct Tangent {
-    pub(super) sheets: Vec<Sheet>,
-}
-
-/// A face of a tangent plane: it is laid out with the source in the origin, and an angle `a` there is `start + sign * a`.
-#[derive(Debug)]
-pub(super) struct Sheet {
-    pub(super) face: u32,
-    pub(super) vertices: [u32; 3],
-    pub(super) at: [PlanePoint; 3],
-    pub(super) start: f64,
-    pub(super) sign: f64,
-}
-
-impl Sheet {
-    fn place(&self, vertex: u32) -> Option<PlanePoint> {
-        self.vertices.iter().position(|v| *v == vertex).map(|slot| self.at[slot])
-    }
-}
-
 impl Bearing for Direction {
-    type Source = Tangent;
+    type Source = TangentPlane;
 
-    fn emitted(self, source: &Tangent, corner: CornerId, frame: &FaceFrame) -> Self {
+    fn emitted(self, source: &TangentPlane, corner: CornerId, frame: &FaceFrame) -> Self {
         let Self::Open = self else { return self };
-        let [a, b, c] = frame.vertices;
-        let in_sheet = |sheet: &Sheet| Some((sheet.place(a)?, sheet.place(b)?, sheet.place(c)?));
-        let sheets = source.sheets.iter().filter(|sheet| sheet.face == corner.face().0);
-        let Some((sheet, (a, b, c))) = sheets.filter_map(|sheet| Some((sheet, in_sheet(sheet)?))).next()
-        else {
+        let layouts = source.sheets.iter().filter(|sheet| sheet.face == corner.face());
+        let mut layouts = layouts.map(|sheet| (sheet, frame.vertices.map(|v| sheet.place(v))));
+        let Some((Sheet { start, sign, .. }, [Some(a), Some(b), Some(c)])) = layouts.next() else {
             return Self::At(f64::NAN);
         };
-        let [x, y] = crate::plane::sub(b, a);
+        let (along, [x, y]) = (distance(a, b), sub(b, a));
         // The window looks out of the face, so that its plane is turned over.
-        let is_mirrored = crate::plane::cross([x, y], crate::plane::sub(c, a)) >= 0.0;
-        let length = x.hypot(y);
-        let (rotation, zero) = ([x / length, sheet.sign * y / length], sheet.start);
-        Self::Along { zero, rotation, is_mirrored: is_mirrored == (sheet.sign > 0.0) }
+        let is_mirrored = cross([x, y], sub(c, a)) >= 0.0;
+        let rotation = [x / along, sign * y / along];
+        Self::Along { zero: *start, rotation, is_mirrored: is_mirrored == (*sign > 0.0) }
     }
 
-    fn along_edge(self, source: &Tangent, to: u32) -> Self {
+    fn along_edge(self, source: &TangentPlane, to: u32) -> Self {
         let Self::Open = self else { return self };
         let at = source.sheets.iter().find_map(|sheet| Some((sheet, sheet.place(to)?)));
-        Self::At(at.map_or(f64::NAN, |(sheet, [x, y])| sheet.start + sheet.sign * y.atan2(x)))
+        Self::At(at.map_or(f64::NAN, |(sheet, at)| sheet.start + sheet.sign * angle_of(at)))
     }
 
     fn over_link(self) -> Self {
@@ -128,8 +94,7 @@ impl Bearing for Direction {
 
     fn towards(self, ray: PlanePoint) -> Self {
         let Self::Along { zero, rotation, is_mirrored } = self else { return self };
-        let [x, y] = times(rotation, ray, is_mirrored);
-        Self::At(zero + y.atan2(x))
+        Self::At(zero + angle_of(times(rotation, ray, is_mirrored)))
     }
 
     fn mirrored(self) -> Self {

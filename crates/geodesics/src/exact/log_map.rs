@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use base::Observer;
 use surface::{CornerId, EdgeId, FaceId, IntrinsicMesh, OneRing, SurfacePoint, VertexId, Winding};
 
-use super::bearing::{Direction, Sheet, Tangent};
+use super::bearing::Direction;
 use super::prepared::PreparedSurface;
 use super::propagation::{self, ExactScratch};
 use super::pseudo_sources::ON_EDGE;
@@ -53,18 +53,25 @@ pub fn log_map(
     }
     let source = Source::new(mesh, point.simplified(mesh))?;
     let surface = PreparedSurface::new(mesh);
-    let plane = TangentPlane::at(mesh, source.point());
-    let around = plane.renumbered(&surface);
+    let plane = TangentPlane::at(mesh, source.point()).renumbered(&surface);
     let mut scratch = ExactScratch::<Direction>::default();
     let (unit, budget) = (surface.faces.unit, observer.budget());
-    let sources = (std::slice::from_ref(&source), &around);
-    let front = propagation::run(&surface, &mut scratch, max_distance / unit, sources, &budget)?;
+    let sources = (std::slice::from_ref(&source), &plane);
+    let front = propagation::run(
+        &surface,
+        &mut scratch,
+        max_distance / unit,
+        sources,
+        surface.max_windows(),
+        &budget,
+    )?;
     let vector = |vertex: &u32| {
         let distance = front.distance(*vertex) * unit;
-        let angle = match front.arrival(*vertex).1.angle() {
+        let angle = match front.arrival(*vertex).1 {
             _ if distance == f64::INFINITY || distance > max_distance => f64::NAN,
-            Some(angle) => plane.scale * (angle - plane.zero),
-            None => 0.0,
+            Direction::At(angle) => plane.scale * (angle - plane.zero),
+            // The source itself.
+            Direction::Open | Direction::Along { .. } => 0.0,
         };
         [distance * angle.cos(), distance * angle.sin()]
     };
@@ -73,22 +80,21 @@ pub fn log_map(
 
 /// The faces around a point, unrolled into the plane that touches there.
 #[derive(Debug)]
-struct TangentPlane {
-    faces: Vec<UnrolledFace>,
+pub(super) struct TangentPlane {
+    pub(super) sheets: Vec<Sheet>,
     /// The angle of the first axis.
     zero: f64,
     /// From angles on the surface to those in the plane.
     scale: f64,
 }
 
-/// A face of a tangent plane: it is laid out with the point at `origin`, and an angle `a` there is `start + sign * a`.
+/// A face of a tangent plane: it is laid out with the point in the origin, and an angle `a` there is `start + sign * a`.
 #[derive(Debug)]
-struct UnrolledFace {
-    face: FaceId,
-    flat: Flat,
-    origin: PlanePoint,
-    start: f64,
-    sign: f64,
+pub(super) struct Sheet {
+    pub(super) face: FaceId,
+    pub(super) flat: Flat,
+    pub(super) start: f64,
+    pub(super) sign: f64,
 }
 
 impl TangentPlane {
@@ -97,13 +103,8 @@ impl TangentPlane {
             SurfacePoint::Vertex(vertex) => Self::at_vertex(mesh, vertex),
             SurfacePoint::Edge { edge, .. } => Self::at_edge(mesh, point, edge),
             SurfacePoint::Face { face, .. } => {
-                let flat = Flat::of_face(mesh, face);
-                let origin = flat.point(mesh, point);
-                Self {
-                    faces: vec![UnrolledFace { face, flat, origin, start: 0.0, sign: 1.0 }],
-                    zero: 0.0,
-                    scale: 1.0,
-                }
+                let flat = Flat::of_face(mesh, face).about(mesh, point);
+                Self { sheets: vec![Sheet { face, flat, start: 0.0, sign: 1.0 }], zero: 0.0, scale: 1.0 }
             }
         }
     }
@@ -111,24 +112,17 @@ impl TangentPlane {
     /// The first face of the edge lies on the side that its orientation says, all others on the other side.
     fn at_edge(mesh: &IntrinsicMesh, point: SurfacePoint, edge: EdgeId) -> Self {
         let [low, high] = mesh.topology().edges()[edge.index()];
-        let layouts = mesh.topology().edge_corners(edge).iter().map(|corner| {
-            let flat = Flat::new(mesh, *corner);
-            // The corner opposite the edge is in the origin, and its face to the left of the side from the next corner on.
-            (
-                corner.face(),
-                flat,
-                if mesh.topology().corner_vertex(corner.next()) == low { 1.0 } else { -1.0 },
-            )
-        });
         let mut first = None;
-        let sheets = layouts.map(|(face, flat, side)| {
+        let sheet = |corner: &CornerId| {
+            // The corner opposite the edge is in the origin, and its face to the left of the side from the next corner on.
+            let side = if mesh.topology().corner_vertex(corner.next()) == low { 1.0 } else { -1.0 };
             let wanted = first.map_or(side, |first: f64| -first);
             first = first.or(Some(side));
-            let sign = wanted * side;
+            let (sign, flat) = (wanted * side, Flat::new(mesh, *corner).about(mesh, point));
             let along = angle_of(sub(flat.vertex(high), flat.vertex(low)));
-            UnrolledFace { face, flat, origin: flat.point(mesh, point), start: -sign * along, sign }
-        });
-        Self { faces: sheets.collect(), zero: 0.0, scale: 1.0 }
+            Sheet { face: corner.face(), flat, start: -sign * along, sign }
+        };
+        Self { sheets: mesh.topology().edge_corners(edge).iter().map(sheet).collect(), zero: 0.0, scale: 1.0 }
     }
 
     fn at_vertex(mesh: &IntrinsicMesh, vertex: VertexId) -> Self {
@@ -150,26 +144,29 @@ impl TangentPlane {
             if corner.corner < orientation.0 {
                 orientation = (corner.corner, sign);
             }
-            sheets.push(UnrolledFace { face: corner.corner.face(), flat, origin: [0.0; 2], start, sign });
+            sheets.push(Sheet { face: corner.corner.face(), flat, start, sign });
         }
         let zero = sides.iter().min_by_key(|(end, _)| *end).map_or(0.0, |(_, angle)| *angle);
         let scale = orientation.1 * if ring.is_closed() && total > 0.0 { TAU / total } else { 1.0 };
-        Self { faces: sheets, zero, scale }
+        Self { sheets, zero, scale }
     }
 
-    /// The same faces by the numbers of a prepared surface.
-    fn renumbered(&self, surface: &PreparedSurface) -> Tangent {
-        let sheet = |unrolled: &UnrolledFace| Sheet {
-            face: surface.new_faces[unrolled.face.index()],
-            vertices: unrolled.flat.vertices.map(|v| surface.new_vertices[v.index()]),
-            at: unrolled.flat.at.map(|at| sub(at, unrolled.origin)),
-            start: unrolled.start,
-            sign: unrolled.sign,
-        };
-        Tangent { sheets: self.faces.iter().map(sheet).collect() }
+    /// The same with the numbers of a prepared surface.
+    fn renumbered(mut self, surface: &PreparedSurface) -> Self {
+        for Sheet { face, flat, .. } in &mut self.sheets {
+            *face = FaceId(surface.new_faces[face.index()]);
+            flat.vertices = flat.vertices.map(|v| VertexId(surface.new_vertices[v.index()]));
+        }
+        self
     }
 }
 
-fn angle_of([x, y]: PlanePoint) -> f64 {
+impl Sheet {
+    pub(super) fn place(&self, vertex: u32) -> Option<PlanePoint> {
+        self.flat.vertices.iter().position(|v| v.0 == vertex).map(|slot| self.flat.at[slot])
+    }
+}
+
+pub(super) fn angle_of([x, y]: PlanePoint) -> f64 {
     y.atan2(x)
 }

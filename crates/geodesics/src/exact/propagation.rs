@@ -3,15 +3,12 @@
 use base::{Budget, Exceeded, Meter};
 use surface::{CornerId, VertexKind};
 
-use super::apex::{Apex, Passes};
 use super::bearing::Bearing;
 use super::envelope::trim;
-use super::faces::{Along, next};
-use super::frame::{FaceFrame, Until};
 use super::front::{Arrival, WindowFront};
-use super::prepared::PreparedSurface;
+use super::prepared::{Along, PreparedSurface, next};
 use super::pseudo_sources::Emission;
-use super::window::PathWindow;
+use super::window::{Apex, FaceFrame, Passes, PathWindow, Until};
 use crate::source::Source;
 
 /// Memory that runs share.
@@ -25,10 +22,6 @@ pub(super) struct ExactScratch<D = ()> {
     right: Vec<PathWindow<D>>,
 }
 
-/// Limit of the mean number of windows propagated per face. Real surfaces of a million vertices need less than a
-/// hundred; only needles with angles below 1e-6 around one vertex come near the limit.
-const BUDGET_PER_FACE: usize = 10_000;
-
 /// Share of the limit by which windows beyond it are propagated, for rounding.
 const LIMIT_SLACK: f64 = 1e-9;
 
@@ -38,7 +31,7 @@ const EDGE_SLACK: f64 = 1e-13;
 /// Operations that a window counts for in the meter of a budget.
 const OPERATIONS: usize = 16;
 
-/// Finds the distances of all vertices within `max_distance` of the nearest source.
+/// Finds the distances of all vertices within `max_distance` of the nearest source, with at most so many windows.
 ///
 /// # Errors
 /// [`Exceeded`]; windows have their share of the memory of the budget.
@@ -46,25 +39,13 @@ pub(super) fn run<'a, D: Bearing>(
     surface: &PreparedSurface,
     scratch: &'a mut ExactScratch<D>,
     max_distance: f64,
-    sources: (&[Source], &D::Source),
-    limits: &Budget,
-) -> Result<&'a WindowFront<D>, Exceeded> {
-    let most = BUDGET_PER_FACE.saturating_mul(surface.faces.all.len());
-    run_within(most, surface, scratch, max_distance, sources, limits)
-}
-
-/// The same with at most so many windows.
-fn run_within<'a, D: Bearing>(
-    most: usize,
-    surface: &PreparedSurface,
-    scratch: &'a mut ExactScratch<D>,
-    max_distance: f64,
     (sources, around): (&[Source], &D::Source),
+    max_windows: usize,
     limits: &Budget,
 ) -> Result<&'a WindowFront<D>, Exceeded> {
     let ExactScratch { front, arrived, left, right } = scratch;
     front.reset(surface.n_vertices(), 3 * surface.faces.all.len(), limits);
-    let mut emission = Emission { surface, around, front, steps_left: Some(most) };
+    let mut emission = Emission { surface, around, front, steps_left: Some(max_windows) };
     sources.iter().for_each(|source| emission.start_at(source));
     let max_distance = max_distance * (1.0 + LIMIT_SLACK);
     let mut propagation = Propagation { emission, left, right, max_distance, meter: limits.meter() };
@@ -77,7 +58,7 @@ fn run_within<'a, D: Bearing>(
         limits.check()?;
         // Without the windows beyond, distances may be too long.
         if propagation.emission.steps_left.is_none() {
-            return Err(Exceeded::Steps { limit: most });
+            return Err(Exceeded::Steps { limit: max_windows });
         }
         if !propagation.relax_edges() {
             break;
@@ -290,16 +271,16 @@ mod tests {
     fn a_run_that_lacks_windows_is_an_error() {
         let surface = PreparedSurface::new(&shapes::torus(12, 8, 2.0, 0.7).intrinsic());
         let source = [Source::vertex(VertexId(5))];
-        let run = |most| {
+        let solve = |most| {
             let mut scratch = ExactScratch::<()>::default();
             let limits = Budget::unlimited();
-            let front = run_within(most, &surface, &mut scratch, f64::INFINITY, (&source, &()), &limits)?;
+            let front = run(&surface, &mut scratch, f64::INFINITY, (&source, &()), most, &limits)?;
             Ok::<Vec<f64>, Exceeded>((0..96).map(|v| front.distance(v)).collect())
         };
-        let whole = run(usize::MAX).unwrap();
+        let whole = solve(usize::MAX).unwrap();
         let mut n_errors = 0;
         for most in 0..2_000 {
-            match run(most) {
+            match solve(most) {
                 Ok(found) => assert_eq!(found, whole),
                 Err(error) => {
                     assert_eq!(error, Exceeded::Steps { limit: most });

@@ -1,16 +1,12 @@
 //! New windows, from sources and from vertices where paths bend.
 
-use surface::{CornerId, FaceId, VertexId, Winding};
+use surface::{CornerId, FaceId, SurfacePoint, VertexId, Winding};
 
 use super::bearing::Bearing;
-use super::faces::{Along, next};
-use super::fan::FanSector;
-use super::frame::FaceFrame;
 use super::front::{Arrival, WindowFront};
-use super::prepared::PreparedSurface;
-use super::window::PathWindow;
+use super::prepared::{Along, FanSector, PreparedSurface, next};
+use super::window::{FaceFrame, PathWindow};
 use crate::source::Source;
-use surface::SurfacePoint;
 
 /// Barycentric coordinates below this are rounding: the point lies on the edge.
 pub(super) const ON_EDGE: f64 = 1e-12;

@@ -47,7 +47,7 @@ use std::cell::Cell;
 use base::{Budget, Exceeded, Observer};
 use surface::{IntrinsicMesh, Loops, Rows, Triangulation, VertexId};
 
-use crate::graph::patches_of;
+use crate::order::patches_of;
 use crate::solver::{DistanceSolver, Pool, PrunedSolver, within};
 use crate::source::Source;
 use front::TriangleFront;

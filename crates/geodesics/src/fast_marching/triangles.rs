@@ -9,7 +9,7 @@ use surface::{
 };
 
 use super::window::COLLINEAR;
-use crate::graph::ranks;
+use crate::order::ranks;
 use crate::plane::{self, PlanePoint};
 
 /// A triangle, laid out in the plane anticlockwise: one cache line. Corners are numbered 0, 1 and 2, sides by the corner

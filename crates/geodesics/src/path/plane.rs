@@ -2,7 +2,7 @@
 
 use surface::{CornerId, EdgeId, FaceId, IntrinsicMesh, VertexId};
 
-use crate::plane::{PlanePoint, apex, between, distance};
+use crate::plane::{PlanePoint, apex, between, distance, sub};
 use surface::SurfacePoint;
 
 /// A face laid out in the plane.
@@ -24,6 +24,12 @@ impl Flat {
     /// A face with its first corner in the origin.
     pub(crate) fn of_face(mesh: &IntrinsicMesh, face: FaceId) -> Self {
         Self::new(mesh, CornerId::new(face, 0))
+    }
+
+    /// The same with a point of the face in the origin.
+    pub(crate) fn about(self, mesh: &IntrinsicMesh, point: SurfacePoint) -> Self {
+        let origin = self.point(mesh, point);
+        Self { at: self.at.map(|at| sub(at, origin)), ..self }
     }
 
     pub(crate) fn vertex(&self, vertex: VertexId) -> PlanePoint {

@@ -2,34 +2,6 @@
 
 use surface::{EdgeGraph, IntrinsicMesh, Rows, VertexId};
 
-/// Vertices in breadth-first order, one component after the other, so that neighbours are close in memory.
-pub(crate) fn breadth_first_order<I: Iterator<Item = u32>>(
-    n: usize,
-    neighbours: impl Fn(u32) -> I,
-) -> Vec<u32> {
-    let mut is_visited = vec![false; n];
-    // One more, for a neighbour that has been visited.
-    let (mut order, mut end) = (vec![0; n + 1], 0);
-    for root in 0..n as u32 {
-        if std::mem::replace(&mut is_visited[root as usize], true) {
-            continue;
-        }
-        let mut head = end;
-        order[end] = root;
-        end += 1;
-        while head < end {
-            for u in neighbours(order[head]) {
-                // Without a branch, which could not be predicted.
-                order[end] = u;
-                end += usize::from(!std::mem::replace(&mut is_visited[u as usize], true));
-            }
-            head += 1;
-        }
-    }
-    order.truncate(n);
-    order
-}
-
 /// Number of vertices in a patch.
 const PATCH: usize = 64;
 
