@@ -1,7 +1,5 @@
 //! Distances along edges.
 
-use std::ops::ControlFlow;
-
 use base::{Budget, Exceeded, Observer};
 use surface::{EdgeGraph, Frontier, IntrinsicMesh, VertexId};
 
@@ -52,15 +50,13 @@ impl DistanceSolver for Dijkstra {
             for (vertex, distance) in sources.iter().flat_map(Source::reach) {
                 front.relax(*vertex, *distance);
             }
-            let mut meter = self.budget.meter();
-            let visit = |v: VertexId, _| match meter.count(1 + self.graph.ways(v).len()) {
-                Ok(()) => ControlFlow::Continue(()),
-                Err(exceeded) => ControlFlow::Break(exceeded),
+            let (mut meter, mut counted) = (self.budget.meter(), Ok(()));
+            let visit = |v: VertexId, _| {
+                counted = meter.count(1 + self.graph.ways(v).len());
+                counted.is_ok()
             };
-            match self.graph.search(front, max_distance, visit, |_, _| ()) {
-                ControlFlow::Break(exceeded) => return Err(exceeded),
-                ControlFlow::Continue(()) => {}
-            }
+            self.graph.search(front, max_distance, visit, |_, _| ());
+            counted?;
             for (v, distance) in (0..).map(VertexId).zip(out) {
                 *distance = within(front.distance(v), max_distance);
             }

@@ -1,8 +1,5 @@
 //! Shortest paths along edges.
 
-use std::convert::Infallible;
-use std::ops::ControlFlow;
-
 use crate::frontier::Frontier;
 use crate::ids::VertexId;
 use crate::intrinsic::{IntrinsicMesh, Link};
@@ -65,16 +62,17 @@ impl EdgeGraph {
     }
 
     /// Visits the vertices that wait in a frontier, and all within `radius` along the graph, from the nearest to the farthest,
-    /// until `visit` breaks (Dijkstra 1959). Tells of every connection that lowers the distance of its other end.
-    pub fn search<B>(
+    /// while `visit` says to go on (Dijkstra 1959). Tells of every connection that lowers the distance of its other end.
+    pub fn search(
         &self,
         front: &mut Frontier,
         radius: f64,
-        mut visit: impl FnMut(VertexId, f64) -> ControlFlow<B>,
+        mut visit: impl FnMut(VertexId, f64) -> bool,
         mut lowers: impl FnMut(VertexId, &Way),
-    ) -> ControlFlow<B> {
-        while let Some((distance, v)) = front.pop() {
-            visit(v, distance)?;
+    ) {
+        while let Some((distance, v)) = front.pop()
+            && visit(v, distance)
+        {
             for way in self.ways(v) {
                 let there = distance + way.length;
                 if there <= radius && front.relax(way.to, there) {
@@ -82,7 +80,6 @@ impl EdgeGraph {
                 }
             }
         }
-        ControlFlow::Continue(())
     }
 
     /// The vertices within `radius` of the sources with their distances, from the nearest to the farthest, up to the first one
@@ -99,9 +96,9 @@ impl EdgeGraph {
         let mut found = Vec::new();
         let visit = |v, distance| {
             found.push((v, distance));
-            if stop(v) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            !stop(v)
         };
-        let _ = self.search(front, radius, visit, |_, _| ());
+        self.search(front, radius, visit, |_, _| ());
         found
     }
 
@@ -123,8 +120,7 @@ impl EdgeGraph {
         let mut front = Frontier::default();
         front.reset(self.n_vertices());
         front.relax(source, 0.0);
-        let all = |_, _| ControlFlow::<Infallible>::Continue(());
-        let _ = self.search(&mut front, f64::INFINITY, all, |_, _| ());
+        self.search(&mut front, f64::INFINITY, |_, _| true, |_, _| ());
         front.into_distances()
     }
 }
@@ -166,9 +162,8 @@ mod tests {
         front.reset(mesh.n_vertices());
         front.relax(VertexId(7), 0.0);
         let mut before = vec![None; mesh.n_vertices()];
-        let all = |_, _| ControlFlow::<Infallible>::Continue(());
-        let _ =
-            graph.search(&mut front, f64::INFINITY, all, |v, way| before[way.to.index()] = Some((v, *way)));
+        let note = |v, way: &Way| before[way.to.index()] = Some((v, *way));
+        graph.search(&mut front, f64::INFINITY, |_, _| true, note);
         for v in (0..240).map(VertexId).filter(|v| v.0 != 7) {
             let (near, way) = before[v.index()].unwrap();
             assert_eq!(front.distance(near) + way.length, front.distance(v));

@@ -6,8 +6,6 @@
 //! word for each loop of faces that crosses it, and the words of a loop add up to zero exactly if it separates.
 
 use std::collections::BTreeMap;
-use std::convert::Infallible;
-use std::ops::ControlFlow;
 
 use base::{Budget, Exceeded, SplitMix};
 
@@ -205,11 +203,15 @@ impl<'a> Search<'a> {
         self.front.reset(self.word.len());
         self.front.relax(source, 0.0);
         (self.word[source.index()], self.before[source.index()]) = (0, None);
-        let all = |_, _| ControlFlow::<Infallible>::Continue(());
-        let _ = self.graph.search(&mut self.front, radius, all, |v, way| {
-            self.word[way.to.index()] = self.word[v.index()] ^ self.words[way.number as usize];
-            self.before[way.to.index()] = Some(v);
-        });
+        self.graph.search(
+            &mut self.front,
+            radius,
+            |_, _| true,
+            |v, way| {
+                self.word[way.to.index()] = self.word[v.index()] ^ self.words[way.number as usize];
+                self.before[way.to.index()] = Some(v);
+            },
+        );
     }
 
     /// The edges that close a loop with the paths to their ends that does not separate, with its word and its length.

@@ -23,20 +23,20 @@ pub(super) struct PreparedSurface {
     pub(super) links: EdgeGraph,
     /// How many faces a window may cross in a row around one vertex.
     pub(super) max_turn: i32,
-    /// The new number of every vertex and face.
+    /// The new number of every vertex and face. The corners of a face keep their order, or have that of the face it repeats.
     pub(super) new_vertices: Vec<u32>,
     pub(super) new_faces: Vec<u32>,
 }
 
 impl PreparedSurface {
     pub(super) fn new(mesh: &IntrinsicMesh) -> Self {
-        let Renumbered { mesh, vertices, faces: new_faces } = renumbered(mesh);
+        let (mesh, new_vertices, new_faces) = renumbered(mesh);
         let faces = Faces::new(&mesh);
         let fans = Fans::new(&mesh, &faces);
         let links = EdgeGraph::new(mesh.n_vertices(), mesh.links().iter().copied());
         // A shortest path crosses no face twice.
         let max_turn = i32::try_from(fans.max_valence()).unwrap_or(i32::MAX);
-        Self { faces, fans, links, max_turn, new_vertices: vertices, new_faces }
+        Self { faces, fans, links, max_turn, new_vertices, new_faces }
     }
 
     /// How many windows a run may propagate.
@@ -53,26 +53,13 @@ impl PreparedSurface {
     pub(super) fn face(&self, corner: CornerId) -> &Face {
         self.faces.of(corner.face())
     }
-
-    /// The vertices of a face.
-    pub(super) fn vertices(&self, face: FaceId) -> [u32; 3] {
-        self.faces.of(face).vertices
-    }
 }
 
-pub(super) struct Renumbered {
-    pub(super) mesh: IntrinsicMesh,
-    /// The new number of every vertex.
-    pub(super) vertices: Vec<u32>,
-    /// The new number of every face. The order of its corners stays, or is that of the face it repeats.
-    pub(super) faces: Vec<u32>,
-}
-
-/// Numbers vertices by patches, and faces by their vertices.
+/// Numbers vertices by patches, and faces by their vertices. Returns the new mesh and the new numbers of all vertices and faces.
 ///
 /// Of faces with the same vertices, only the first is kept: any path through another can run through it, and windows
 /// would multiply at every face.
-pub(super) fn renumbered(mesh: &IntrinsicMesh) -> Renumbered {
+fn renumbered(mesh: &IntrinsicMesh) -> (IntrinsicMesh, Vec<u32>, Vec<u32>) {
     let topology = mesh.topology();
     let vertices = ranks(&patches_of(mesh));
     let new = |face: &[VertexId; 3]| face.map(|v| VertexId(vertices[v.index()]));
@@ -106,7 +93,7 @@ pub(super) fn renumbered(mesh: &IntrinsicMesh) -> Renumbered {
     }
     let link = |link: &Link| Link { ends: link.ends.map(|v| VertexId(vertices[v.index()])), ..*link };
     let links = mesh.links().iter().map(link).collect();
-    Renumbered { mesh: IntrinsicMesh::new(renumbered, lengths).with_links(links), vertices, faces }
+    (IntrinsicMesh::new(renumbered, lengths).with_links(links), vertices, faces)
 }
 
 /// The faces of a surface and their neighbours.

@@ -43,7 +43,7 @@ impl<D: Bearing> Emission<'_, D> {
             }
             SurfacePoint::Face { face, barycentric } => {
                 let face = FaceId(surface.new_faces[face.index()]);
-                let vertices = surface.vertices(face);
+                let vertices = surface.faces.of(face).vertices;
                 // A face that repeats another may have its corners in another order.
                 let slot_of = |v: u32| source.reach().iter().position(|(w, _)| new(*w) == v);
                 let shares = vertices.map(|v| slot_of(v).map_or(0.0, |slot| barycentric[slot]));
@@ -63,7 +63,7 @@ impl<D: Bearing> Emission<'_, D> {
         let surface = self.surface;
         for sector in surface.fans.around(ends[0]) {
             let face = sector.corner.corner.face();
-            let vertices = surface.vertices(face);
+            let vertices = surface.faces.of(face).vertices;
             if vertices.contains(&ends[1]) {
                 let share = |v| ends.iter().position(|end| *end == v).map_or(0.0, |i| shares[i]);
                 self.start_in_face(face, vertices.map(share));

@@ -152,7 +152,9 @@ impl TriangleFront {
             if reach.len() > 1 {
                 self.start_inside(triangles, vertex, known);
             }
-            self.start_around(triangles, vertex, *distance, |_, _| false);
+            for corner in triangles.corners.row(vertex.index()) {
+                self.start_at(triangles, *corner, *distance, |_, _| false);
+            }
         }
     }
 
@@ -170,19 +172,6 @@ impl TriangleFront {
             let window = SourceWindow::around(source, 0.0);
             let distance = window.distance(triangle.centroid());
             self.offers.push(WindowOffer { triangle: number, entry: INSIDE, distance, window });
-        }
-    }
-
-    /// Offers the rays from a vertex to all triangles around it.
-    fn start_around(
-        &mut self,
-        triangles: &Triangles,
-        vertex: VertexId,
-        offset: f64,
-        stops: impl Fn(FaceId, f64) -> bool,
-    ) {
-        for corner in triangles.corners.row(vertex.index()) {
-            self.start_at(triangles, *corner, offset, &stops);
         }
     }
 
@@ -235,8 +224,8 @@ impl TriangleFront {
     fn start_again(&mut self, triangles: &Triangles, stops: impl Fn(FaceId, f64) -> bool) {
         for joint in &triangles.joints {
             let offset = self.vertices[joint.index()];
-            if offset.is_finite() {
-                self.start_around(triangles, *joint, offset, &stops);
+            for corner in triangles.corners.row(joint.index()).iter().filter(|_| offset.is_finite()) {
+                self.start_at(triangles, *corner, offset, &stops);
             }
         }
         if self.reached.len() < triangles.all.len() {

@@ -204,11 +204,12 @@ impl FastMarching {
         Self { unit, triangles, solver, budget: observer.budget() }
     }
 
-    /// Gives the distances from the nearest of `sources` to `found`, by mesh vertex.
+    /// Gives the distances from the nearest of `sources` to `found`, by mesh vertex. The front `stops` near a vertex at a
+    /// distance, given the length of the longest edge there.
     fn run(
         &self,
         sources: &[Source],
-        stops: impl Stops,
+        stops: impl Fn(u32, f64, &dyn Fn() -> f64) -> bool,
         mut found: impl FnMut(u32, f64),
     ) -> Result<(), Exceeded> {
         let unit = self.unit;
@@ -220,13 +221,13 @@ impl FastMarching {
             &scaled
         };
         let triangles = &self.triangles;
+        let numbers = (0..).map(VertexId).zip(&triangles.order);
         match &self.solver {
             LocalSolver::VirtualSource(scratch) => scratch.with(|front| {
                 front.run(triangles, sources, &self.budget, |number, distance| {
                     let longest = || unit * triangles.longest_of(number);
                     triangles.mesh_vertices(number).into_iter().all(|v| stops(v, unit * distance, &longest))
                 })?;
-                let numbers = (0..).map(VertexId).zip(&triangles.order);
                 numbers.for_each(|(internal, v)| found(*v, unit * front.distance(internal)));
                 Ok(())
             }),
@@ -235,18 +236,12 @@ impl FastMarching {
                     let longest = || unit * triangles.longest_at(vertex);
                     stops(triangles.order[vertex.index()], unit * distance, &longest)
                 })?;
-                let numbers = (0..).map(VertexId).zip(&triangles.order);
                 numbers.for_each(|(internal, v)| found(*v, unit * front.distance(internal)));
                 Ok(())
             }),
         }
     }
 }
-
-/// Whether a front stops near a mesh vertex at a distance, given the length of the longest edge there.
-trait Stops: Fn(u32, f64, &dyn Fn() -> f64) -> bool {}
-
-impl<F: Fn(u32, f64, &dyn Fn() -> f64) -> bool> Stops for F {}
 
 /// A pruned front stops this many times the longest edge at a vertex beyond the vertices nearest to the new source,
 /// so that distances near the border are the same as without pruning: a safety margin. Farthest points are checked

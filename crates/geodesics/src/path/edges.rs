@@ -1,8 +1,5 @@
 //! Paths along edges, as a fallback.
 
-use std::convert::Infallible;
-use std::ops::ControlFlow;
-
 use surface::{EdgeGraph, EdgeId, FaceId, Frontier, IntrinsicMesh, VertexId};
 
 use super::field::PathField;
@@ -36,14 +33,18 @@ impl EdgeTree {
                 }
             }
         }
-        let all = |_, _| ControlFlow::<Infallible>::Continue(());
-        let _ = graph.search(&mut front, f64::INFINITY, all, |from, way| {
-            let edge = ((way.number as usize) < mesh.topology().n_edges()).then_some(EdgeId(way.number));
-            let section = edge.map_or(PathSection::Link(way.length), |edge| {
-                PathSection::Strip(Strip::within(mesh.topology().edge_corners(edge)[0].face()))
-            });
-            before[way.to.index()] = Some((SurfacePoint::Vertex(from), section));
-        });
+        graph.search(
+            &mut front,
+            f64::INFINITY,
+            |_, _| true,
+            |from, way| {
+                let edge = ((way.number as usize) < mesh.topology().n_edges()).then_some(EdgeId(way.number));
+                let section = edge.map_or(PathSection::Link(way.length), |edge| {
+                    PathSection::Strip(Strip::within(mesh.topology().edge_corners(edge)[0].face()))
+                });
+                before[way.to.index()] = Some((SurfacePoint::Vertex(from), section));
+            },
+        );
         Self { distances: front.into_distances(), before }
     }
 
