@@ -100,8 +100,6 @@ fn renumbered(mesh: &IntrinsicMesh) -> (IntrinsicMesh, Vec<u32>, Vec<u32>) {
 #[derive(Debug)]
 pub(super) struct Faces {
     pub(super) all: Vec<Face>,
-    /// For each side of a non-manifold edge, the other corners opposite that edge.
-    non_manifold: Vec<Vec<Facing>>,
     /// The unit of all lengths here, in mesh units; a power of two, so that scaling is exact.
     pub(super) unit: f64,
     pub(super) longest_edge: f64,
@@ -114,18 +112,9 @@ pub(super) struct Face {
     pub(super) lengths: [f64; 3],
     pub(super) double_area: f64,
     pub(super) vertices: [u32; 3],
-    pub(super) beyond: [Beyond; 3],
-}
-
-/// What lies beyond a side of a face: nothing, the corner opposite in another face, or a list of such corners.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Beyond(u32);
-
-/// A corner opposite a side, in the face beyond it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Facing {
-    pub(super) corner: CornerId,
-    pub(super) along: Along,
+    /// For each side, the next of the corners opposite to it in the faces that share it; the same corner again if no other
+    /// does.
+    across: [CornerId; 3],
 }
 
 /// The direction of the base of a corner, from the next corner of its face to the previous one, compared with that of
@@ -156,18 +145,20 @@ impl Faces {
         let topology = mesh.topology();
         let longest = mesh.edge_lengths().iter().copied().fold(0.0, f64::max);
         let unit = power_of_two_below(longest);
-        let mut non_manifold = Vec::new();
+        let after = |corner: CornerId| {
+            let around = topology.edge_corners(topology.opposite_edge(corner));
+            around[around.partition_point(|other| *other <= corner) % around.len()]
+        };
         let all = (0u32..)
             .zip(topology.faces())
             .map(|(f, vertices)| {
                 let corners = FaceId(f).corners();
                 let lengths = corners.map(|c| mesh.opposite_length(c) / unit);
                 let (lengths, double_area) = triangle(lengths);
-                let beyond = corners.map(|c| beyond(topology, c, &mut non_manifold));
-                Face { lengths, double_area, vertices: vertices.map(|v| v.0), beyond }
+                Face { lengths, double_area, vertices: vertices.map(|v| v.0), across: corners.map(after) }
             })
             .collect();
-        Self { all, non_manifold, unit, longest_edge: longest / unit }
+        Self { all, unit, longest_edge: longest / unit }
     }
 
     #[inline]
@@ -175,32 +166,16 @@ impl Faces {
         &self.all[face.index()]
     }
 
-    /// Visits every corner beyond a side.
+    /// Visits the corners opposite the same edge as this one in other faces.
     #[inline]
-    pub(super) fn for_each_facing(&self, beyond: Beyond, mut visit: impl FnMut(Facing)) {
-        match beyond {
-            Beyond::NOTHING => {}
-            Beyond(bits) if bits & Beyond::LIST == 0 => visit(beyond.facing()),
-            Beyond(bits) => {
-                self.non_manifold[(bits & !Beyond::LIST) as usize].iter().copied().for_each(visit)
-            }
+    pub(super) fn for_each_facing(&self, own: CornerId, mut visit: impl FnMut(CornerId, Along)) {
+        let start = |corner: CornerId| self.of(corner.face()).vertices[next(corner.slot())];
+        let after = |corner: CornerId| self.of(corner.face()).across[corner.slot()];
+        let mut corner = after(own);
+        while corner != own {
+            visit(corner, if start(corner) == start(own) { Along::Same } else { Along::Opposite });
+            corner = after(corner);
         }
-    }
-}
-
-impl Beyond {
-    const NOTHING: Self = Self(u32::MAX);
-    /// Marks the index of a list.
-    const LIST: u32 = 1 << 31;
-
-    fn one(facing: Facing) -> Self {
-        Self(facing.corner.0 << 1 | u32::from(facing.along == Along::Same))
-    }
-
-    #[inline]
-    fn facing(self) -> Facing {
-        let along = if self.0 & 1 == 1 { Along::Same } else { Along::Opposite };
-        Facing { corner: CornerId(self.0 >> 1), along }
     }
 }
 
@@ -248,22 +223,6 @@ fn triangle(mut lengths: [f64; 3]) -> ([f64; 3], f64) {
         return (lengths, least);
     }
     (lengths, double_area([a, b, c]).max(least))
-}
-
-fn beyond(topology: &Topology, corner: CornerId, non_manifold: &mut Vec<Vec<Facing>>) -> Beyond {
-    let start = |c: CornerId| topology.corner_vertex(c.next());
-    let facing = |other: CornerId| {
-        let along = if start(other) == start(corner) { Along::Same } else { Along::Opposite };
-        Facing { corner: other, along }
-    };
-    match topology.edge_corners(topology.opposite_edge(corner)) {
-        [_] => Beyond::NOTHING,
-        [p, q] => Beyond::one(facing(if *p == corner { *q } else { *p })),
-        many => {
-            non_manifold.push(many.iter().filter(|c| **c != corner).map(|c| facing(*c)).collect());
-            Beyond(Beyond::LIST | (non_manifold.len() - 1) as u32)
-        }
-    }
 }
 
 /// Excess of a total angle, in radians, up to which it is rounding and paths do not bend at a vertex; it affects no

@@ -159,7 +159,7 @@ impl<D: Bearing> Propagation<'_, D> {
             let bearing = windows[nearest].bearing.towards(apex.ray(&windows[nearest]));
             front.reach(c, apex.distance, through(apex.direction()), bearing);
         }
-        self.deliver(&frame);
+        self.deliver(corner, &frame);
     }
 
     /// Propagates windows, in order along the base, to the two sides of a face.
@@ -241,19 +241,19 @@ impl<D: Bearing> Propagation<'_, D> {
     }
 
     /// Delivers the windows on the sides of a face to the faces beyond.
-    fn deliver(&mut self, frame: &FaceFrame) {
+    fn deliver(&mut self, corner: CornerId, frame: &FaceFrame) {
         let [a, b, c] = frame.vertices;
         let Emission { surface, front, .. } = &mut self.emission;
-        let sides = [(&mut *self.left, [a, c]), (&mut *self.right, [b, c])];
-        for (side, (windows, ends)) in sides.into_iter().enumerate() {
+        let sides = [(&*self.left, corner.prev(), [a, c]), (&*self.right, corner.next(), [b, c])];
+        for ((windows, own, ends), length) in sides.into_iter().zip(frame.sides) {
             if windows.is_empty() {
                 continue;
             }
-            surface.faces.for_each_facing(frame.beyond[side], |facing| match facing.along {
-                Along::Opposite => front.deliver(facing.corner, ends, windows.iter().copied()),
+            surface.faces.for_each_facing(own, |facing, along| match along {
+                Along::Opposite => front.deliver(facing, ends, windows.iter().copied()),
                 Along::Same => {
-                    let mirrored = windows.iter().rev().map(|w| w.mirrored(frame.sides[side]));
-                    front.deliver(facing.corner, ends, mirrored);
+                    let mirrored = windows.iter().rev().map(|w| w.mirrored(length));
+                    front.deliver(facing, ends, mirrored);
                 }
             });
         }

@@ -171,13 +171,12 @@ impl<D: Bearing> Emission<'_, D> {
             return;
         }
         let [a, b, _] = frame.vertices;
-        let beyond = self.surface.face(corner).beyond[corner.slot()];
-        self.surface.faces.for_each_facing(beyond, |facing| {
-            let window = match facing.along {
+        self.surface.faces.for_each_facing(corner, |facing, along| {
+            let window = match along {
                 Along::Same => window,
                 Along::Opposite => window.mirrored(frame.base),
             };
-            self.front.deliver(facing.corner, [a, b], std::iter::once(window));
+            self.front.deliver(facing, [a, b], std::iter::once(window));
         });
     }
 }

@@ -3,7 +3,7 @@
 use surface::CornerId;
 
 use super::bearing::Bearing;
-use super::prepared::{Beyond, Faces, next};
+use super::prepared::{Faces, next};
 
 /// An interval of an edge that straight paths from one pseudo-source reach through one sequence of faces.
 ///
@@ -137,8 +137,6 @@ pub(super) struct FaceFrame {
     from_b: [f64; 2],
     /// `a`, `b`, `c`.
     pub(super) vertices: [u32; 3],
-    /// What lies beyond `ac` and `bc`.
-    pub(super) beyond: [Beyond; 2],
 }
 
 /// Where the part of a side that a window reaches ends.
@@ -173,7 +171,6 @@ impl FaceFrame {
             from_a: [from_a * per_ac, height * per_ac],
             from_b: [from_b * per_bc, height * per_bc],
             vertices: [face.vertices[a], face.vertices[b], face.vertices[slot]],
-            beyond: [face.beyond[b], face.beyond[a]],
         }
     }
 
