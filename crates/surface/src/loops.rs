@@ -14,7 +14,6 @@ use crate::edge_graph::{EdgeGraph, Way};
 use crate::frontier::Frontier;
 use crate::ids::{EdgeId, VertexId};
 use crate::intrinsic::Link;
-use crate::rows::Rows;
 use crate::topology::Topology;
 
 /// Most edges that two spanning trees may leave: surfaces with more handles have them by design, and they would cost much time.
@@ -69,7 +68,7 @@ pub fn short_loops(
     budget: &Budget,
 ) -> Result<Vec<SurfaceLoop>, Exceeded> {
     assert_eq!(lengths.len(), topology.n_edges(), "one length for every edge");
-    let Some(words) = words(topology) else { return Ok(Vec::new()) };
+    let Some(words) = homology_signatures(topology) else { return Ok(Vec::new()) };
     let mut sources: Vec<VertexId> = Vec::new();
     for (edge, _) in topology.edges().iter().zip(&words).filter(|(_, word)| **word != 0) {
         sources.extend(edge);
@@ -95,88 +94,88 @@ pub fn short_loops(
 }
 
 /// The word of every edge; `None` if no loop can be found.
-fn words(topology: &Topology) -> Option<Vec<u64>> {
-    let (n_faces, n_edges) = (topology.n_faces(), topology.n_edges());
-    let edges = || (0..n_edges).map(EdgeId::from);
+fn homology_signatures(topology: &Topology) -> Option<Vec<u64>> {
+    let edges = || (0..topology.n_edges()).map(EdgeId::from);
     if edges().any(|edge| topology.edge_corners(edge).len() > 2) {
         return None;
     }
-    // Every boundary is one more face.
+    let (sides, n_nodes) = (beside_edges(topology), topology.n_faces() + topology.n_vertices());
+    // How many edges are left does not depend on the trees.
+    let mut dual = DisjointSets::new(n_nodes);
+    let is_joined = |edge: EdgeId| {
+        let [f, g] = sides[edge.index()].map(|node| node.0);
+        dual.union(f, g)
+    };
+    if !(1..=MOST_LEFT).contains(&left_by_trees(topology, is_joined).len()) {
+        return None;
+    }
+    // A tree of the faces by breadth keeps the loops of faces short, from which paths are searched.
+    let (order, above) = breadth_first_tree(&sides, n_nodes);
+    let mut is_crossed = vec![false; topology.n_edges()];
+    above.iter().flatten().for_each(|(_, edge)| is_crossed[edge.index()] = true);
+    let (mut words, mut at_node, mut random) = (vec![0; is_crossed.len()], vec![0u64; n_nodes], SplitMix(0));
+    for edge in left_by_trees(topology, |edge| is_crossed[edge.index()]) {
+        let word = random.bits();
+        words[edge.index()] = word;
+        sides[edge.index()].into_iter().for_each(|node| at_node[node.index()] ^= word);
+    }
+    // Each edge between faces of the tree is crossed by the loops with one end below it.
+    for node in order.iter().rev() {
+        if let Some((from, edge)) = above[node.index()] {
+            words[edge.index()] ^= at_node[node.index()];
+            at_node[from.index()] ^= at_node[node.index()];
+        }
+    }
+    Some(words)
+}
+
+/// The faces on both sides of every edge, as nodes of a graph. Every boundary is one more face.
+fn beside_edges(topology: &Topology) -> Vec<[VertexId; 2]> {
     let mut rims = DisjointSets::new(topology.n_vertices());
     for edge in topology.boundary_edges() {
         let [a, b] = topology.edges()[edge.index()];
         rims.union(a.0, b.0);
     }
-    // The faces on both sides of every edge.
-    let sides = edges().map(|edge| match topology.edge_corners(edge) {
+    let sides = (0..topology.n_edges()).map(EdgeId::from).map(|edge| match topology.edge_corners(edge) {
         [a, b] => [a.face().0, b.face().0],
         corners => {
-            let rim = n_faces as u32 + rims.find(topology.edges()[edge.index()][0].0);
+            let rim = topology.n_faces() as u32 + rims.find(topology.edges()[edge.index()][0].0);
             [corners.first().map_or(rim, |corner| corner.face().0), rim]
         }
     });
-    let sides: Vec<[u32; 2]> = sides.collect();
-    // How many edges are left does not depend on the trees.
-    let n_nodes = n_faces + topology.n_vertices();
+    sides.map(|nodes| nodes.map(VertexId)).collect()
+}
+
+/// The edges that are left by a spanning tree of the faces, whose edges `joins_faces`, and one of the vertices over the others.
+fn left_by_trees(topology: &Topology, mut joins_faces: impl FnMut(EdgeId) -> bool) -> Vec<EdgeId> {
     let mut tree = DisjointSets::new(topology.n_vertices());
-    let mut dual = DisjointSets::new(n_nodes);
-    let n_left = edges()
-        .filter(|edge| {
-            let [a, b] = topology.edges()[edge.index()];
-            let [f, g] = sides[edge.index()];
-            !tree.union(a.0, b.0) && !dual.union(f, g)
-        })
-        .count();
-    if n_left == 0 || n_left > MOST_LEFT {
-        return None;
-    }
-    // A tree of the faces by breadth keeps the loops of faces short, from which paths are searched.
-    let both = |edge: EdgeId| {
-        let [f, g] = sides[edge.index()];
-        [(f as usize, (g, edge)), (g as usize, (f, edge))]
-    };
-    let links = Rows::collect(n_nodes, edges().flat_map(both));
-    let mut order = Vec::with_capacity(n_nodes);
-    let mut parent: Vec<Option<(u32, EdgeId)>> = vec![None; n_nodes];
-    let mut is_seen = vec![false; n_nodes];
-    for root in 0..n_nodes {
-        if links.row(root).is_empty() || std::mem::replace(&mut is_seen[root], true) {
-            continue;
-        }
-        let mut next = order.len();
-        order.push(root);
-        while let Some(&node) = order.get(next) {
-            next += 1;
-            for &(other, edge) in links.row(node) {
-                if !std::mem::replace(&mut is_seen[other as usize], true) {
-                    parent[other as usize] = Some((node as u32, edge));
-                    order.push(other as usize);
-                }
-            }
-        }
-    }
-    let mut is_crossed = vec![false; n_edges];
-    parent.iter().flatten().for_each(|(_, edge)| is_crossed[edge.index()] = true);
-    let mut tree = DisjointSets::new(topology.n_vertices());
-    let mut words = vec![0; n_edges];
-    let mut at_node = vec![0u64; n_nodes];
-    let mut random = SplitMix(0);
-    for edge in edges().filter(|edge| !is_crossed[edge.index()]) {
+    let mut is_left = |edge: &EdgeId| {
         let [a, b] = topology.edges()[edge.index()];
-        if !tree.union(a.0, b.0) {
-            let word = random.bits();
-            words[edge.index()] = word;
-            sides[edge.index()].into_iter().for_each(|node| at_node[node as usize] ^= word);
+        !joins_faces(*edge) && !tree.union(a.0, b.0)
+    };
+    (0..topology.n_edges()).map(EdgeId::from).filter(|edge| is_left(edge)).collect()
+}
+
+/// The node above a node in a tree, and the edge between them; `None` for a root.
+type Above = Option<(VertexId, EdgeId)>;
+
+/// Trees of the faces by breadth: all nodes that have edges, in order, and what is above each.
+fn breadth_first_tree(sides: &[[VertexId; 2]], n_nodes: usize) -> (Vec<VertexId>, Vec<Above>) {
+    let graph = EdgeGraph::new(n_nodes, sides.iter().map(|ends| Link { ends: *ends, length: 1.0 }));
+    let (mut front, mut order, mut above) = (Frontier::default(), Vec::new(), vec![None; n_nodes]);
+    front.reset(n_nodes);
+    for root in (0..n_nodes).map(VertexId::from).filter(|node| !graph.ways(*node).is_empty()) {
+        if front.distance(root) == f64::INFINITY {
+            front.relax(root, 0.0);
+            let visit = |node, _| {
+                order.push(node);
+                true
+            };
+            let note = |node, way: &Way| above[way.to.index()] = Some((node, EdgeId(way.number)));
+            graph.search(&mut front, f64::INFINITY, visit, note);
         }
     }
-    // Each edge between faces of the tree is crossed by the loops with one end below it.
-    for &node in order.iter().rev() {
-        if let Some((above, edge)) = parent[node] {
-            words[edge.index()] ^= at_node[node];
-            at_node[above as usize] ^= at_node[node];
-        }
-    }
-    Some(words)
+    (order, above)
 }
 
 /// Shortest paths along edges from one vertex, with the words along them.
