@@ -16,19 +16,17 @@ pub struct Frontier {
     /// Position of every vertex in the heap.
     positions: Vec<u32>,
     heap: Vec<(f64, VertexId)>,
-    /// The vertices with a finite distance.
-    reached: Vec<VertexId>,
+    visited: Vec<VertexId>,
 }
 
 impl Frontier {
     /// Sets the distances of `n` vertices to infinity, so that none waits. Takes time in proportion to the vertices that were
     /// reached, and allocates only to grow.
     pub fn reset(&mut self, n: usize) {
-        for v in self.reached.drain(..) {
+        for v in self.visited.drain(..).chain(self.heap.drain(..).map(|(_, v)| v)) {
             self.distances[v.index()] = f64::INFINITY;
             self.positions[v.index()] = NONE;
         }
-        self.heap.clear();
         self.distances.resize(n, f64::INFINITY);
         self.positions.resize(n, NONE);
     }
@@ -46,10 +44,10 @@ impl Frontier {
         self.distances
     }
 
-    /// The vertices with a finite distance.
+    /// The vertices that were visited, in order; those that were lowered afterwards come again.
     #[must_use]
-    pub fn reached(&self) -> &[VertexId] {
-        &self.reached
+    pub fn visited(&self) -> &[VertexId] {
+        &self.visited
     }
 
     /// Whether a vertex waits to be visited.
@@ -65,9 +63,6 @@ impl Frontier {
         let known = &mut self.distances[v.index()];
         let improves = distance < *known;
         if improves {
-            if *known == f64::INFINITY {
-                self.reached.push(v);
-            }
             *known = distance;
             let mut position = self.positions[v.index()];
             if position == NONE {
@@ -84,6 +79,7 @@ impl Frontier {
     pub fn pop(&mut self) -> Option<(f64, VertexId)> {
         let top = *self.heap.first()?;
         self.positions[top.1.index()] = NONE;
+        self.visited.push(top.1);
         if let Some(last) = self.heap.pop()
             && !self.heap.is_empty()
         {
@@ -166,7 +162,7 @@ mod tests {
         }
         front.reset(n as usize);
         assert_eq!(
-            (front.pop(), front.distance(VertexId(3)), front.reached().len()),
+            (front.pop(), front.distance(VertexId(3)), front.visited().len()),
             (None, f64::INFINITY, 0)
         );
     }

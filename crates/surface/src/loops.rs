@@ -216,7 +216,7 @@ impl<'a> Search<'a> {
     /// The edges that close a loop with the paths to their ends that does not separate, with its word and its length.
     fn closing(&self, longest: f64) -> Vec<(u64, f64, EdgeId)> {
         let mut found = Vec::new();
-        for &v in self.front.reached() {
+        for &v in self.front.visited() {
             for &Way { to: w, number, length } in self.graph.ways(v) {
                 let word = self.word[v.index()] ^ self.word[w.index()] ^ self.words[number as usize];
                 let length = self.front.distance(v) + self.front.distance(w) + length;
