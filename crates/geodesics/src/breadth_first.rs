@@ -3,9 +3,8 @@
 use std::collections::VecDeque;
 
 use base::{Budget, Exceeded, Observer};
-use surface::{IntrinsicMesh, Rows};
+use surface::{EdgeGraph, IntrinsicMesh, VertexId};
 
-use crate::graph::edge_graph;
 use crate::solver::{DistanceSolver, Pool, within};
 use crate::source::Source;
 
@@ -24,9 +23,9 @@ use crate::source::Source;
 /// ```
 #[derive(Debug)]
 pub struct BreadthFirst {
-    graph: Rows<(u32, f64)>,
+    graph: EdgeGraph,
     hop: f64,
-    scratch: Pool<VecDeque<u32>>,
+    scratch: Pool<VecDeque<VertexId>>,
     budget: Budget,
 }
 
@@ -34,14 +33,14 @@ impl BreadthFirst {
     /// Prepares a surface. The solver keeps to the budget of the observer.
     #[must_use]
     pub fn new(mesh: &IntrinsicMesh, observer: &dyn Observer) -> Self {
-        let (graph, hop) = (edge_graph(mesh), mesh.mean_edge_length());
+        let (graph, hop) = (EdgeGraph::of(mesh), mesh.mean_edge_length());
         Self { graph, hop, scratch: Pool::default(), budget: observer.budget() }
     }
 }
 
 impl DistanceSolver for BreadthFirst {
     fn n_vertices(&self) -> usize {
-        self.graph.n_rows()
+        self.graph.n_vertices()
     }
 
     fn budget(&self) -> Budget {
@@ -58,17 +57,17 @@ impl DistanceSolver for BreadthFirst {
             for source in sources {
                 if let Some((vertex, _)) = source.reach().iter().min_by(|a, b| a.1.total_cmp(&b.1)) {
                     out[vertex.index()] = 0.0;
-                    queue.push_back(vertex.0);
+                    queue.push_back(*vertex);
                 }
             }
             while let Some(vertex) = queue.pop_front() {
-                let hops = out[vertex as usize] + 1.0;
-                let neighbours = self.graph.row(vertex as usize);
+                let hops = out[vertex.index()] + 1.0;
+                let neighbours = self.graph.ways(vertex);
                 meter.count(1 + neighbours.len())?;
-                for &(target, _) in neighbours {
-                    if out[target as usize] > hops {
-                        out[target as usize] = hops;
-                        queue.push_back(target);
+                for way in neighbours {
+                    if out[way.to.index()] > hops {
+                        out[way.to.index()] = hops;
+                        queue.push_back(way.to);
                     }
                 }
             }

@@ -1,10 +1,8 @@
 //! Distances along edges.
 
 use base::{Budget, Exceeded, Observer};
-use surface::{IntrinsicMesh, Rows};
+use surface::{EdgeGraph, Frontier, IntrinsicMesh, VertexId};
 
-use crate::graph::edge_graph;
-use crate::heap::VertexHeap;
 use crate::solver::{DistanceSolver, Pool, within};
 use crate::source::Source;
 
@@ -23,8 +21,8 @@ use crate::source::Source;
 /// ```
 #[derive(Debug)]
 pub struct Dijkstra {
-    graph: Rows<(u32, f64)>,
-    scratch: Pool<VertexHeap>,
+    graph: EdgeGraph,
+    scratch: Pool<Frontier>,
     budget: Budget,
 }
 
@@ -32,13 +30,13 @@ impl Dijkstra {
     /// Prepares a surface. The solver keeps to the budget of the observer.
     #[must_use]
     pub fn new(mesh: &IntrinsicMesh, observer: &dyn Observer) -> Self {
-        Self { graph: edge_graph(mesh), scratch: Pool::default(), budget: observer.budget() }
+        Self { graph: EdgeGraph::of(mesh), scratch: Pool::default(), budget: observer.budget() }
     }
 }
 
 impl DistanceSolver for Dijkstra {
     fn n_vertices(&self) -> usize {
-        self.graph.n_rows()
+        self.graph.n_vertices()
     }
 
     fn budget(&self) -> Budget {
@@ -47,24 +45,20 @@ impl DistanceSolver for Dijkstra {
 
     fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) -> Result<(), Exceeded> {
         assert_eq!(out.len(), self.n_vertices(), "one distance per vertex");
-        self.scratch.with(|heap| {
-            heap.reset(out.len());
-            let mut meter = self.budget.meter();
+        self.scratch.with(|front| {
+            front.reset(out.len());
             for (vertex, distance) in sources.iter().flat_map(Source::reach) {
-                heap.relax(vertex.0, *distance);
+                front.relax(*vertex, *distance);
             }
-            while let Some((distance, vertex)) = heap.pop() {
-                if distance > max_distance {
-                    break;
-                }
-                let neighbours = self.graph.row(vertex as usize);
-                meter.count(1 + neighbours.len())?;
-                for &(target, length) in neighbours {
-                    heap.relax(target, distance + length);
-                }
-            }
-            for (v, distance) in (0..).zip(out) {
-                *distance = within(heap.distance(v), max_distance);
+            let (mut meter, mut counted) = (self.budget.meter(), Ok(()));
+            let visit = |v: VertexId, _| {
+                counted = meter.count(1 + self.graph.ways(v).len());
+                counted.is_ok()
+            };
+            self.graph.search(front, max_distance, visit, |_, _| ());
+            counted?;
+            for (v, distance) in (0..).map(VertexId).zip(out) {
+                *distance = within(front.distance(v), max_distance);
             }
             self.budget.check()
         })

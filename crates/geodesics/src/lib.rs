@@ -5,7 +5,7 @@
 //! * A [`Method`] names a solver; [`Method::prepare`] makes a [`DistanceSolver`] for one surface. The solvers are
 //!   [`FastMarching`] (the default), [`Exact`], [`HeatMethod`], [`Dijkstra`] and [`BreadthFirst`].
 //! * A [`Source`] is a vertex, or any [`SurfacePoint`].
-//! * A [`PathTracer`] finds shortest paths with the distances of any solver; [`log_map`] unrolls the surface along them.
+//! * A [`PathTracer`] finds shortest paths with the distances of any solver; [`log_map`] unrolls the surface about a point.
 //! * A [`Sampling`] names a choice of landmarks; [`Sampling::start`] makes a [`Sampler`].
 //! * A solver keeps to the budget of the observer it is prepared with; [`Observed`] tells an observer of every solve.
 //!
@@ -38,11 +38,10 @@ mod dijkstra;
 mod error;
 mod exact;
 mod fast_marching;
-mod graph;
-mod heap;
 mod heat;
 mod method;
 mod observed;
+mod order;
 mod path;
 mod plane;
 mod prefetch;
@@ -55,12 +54,12 @@ mod tests;
 pub use breadth_first::BreadthFirst;
 pub use dijkstra::Dijkstra;
 pub use error::GeodesicError;
-pub use exact::Exact;
+pub use exact::{Exact, log_map};
 pub use fast_marching::{FastMarching, FastMarchingOptions, ObtuseTreatment, Update};
 pub use heat::{HeatMethod, HeatOptions};
 pub use method::Method;
 pub use observed::Observed;
-pub use path::{GeodesicPath, PathTracer, log_map};
+pub use path::{GeodesicPath, PathTracer};
 pub use sampling::{FirstSample, Sampler, Sampling, SpreadSamples, farthest_point_sampling};
 pub use solver::{DistanceSolver, PrunedSolver};
 pub use source::Source;

@@ -8,7 +8,6 @@
 //! * [`without_noise`] smooths noisy meshes, [`fill_holes`] closes small holes, [`refine()`] splits long edges,
 //!   [`collapse_edges`] merges vertices.
 //! * [`triangulate_points`] makes a surface of a point cloud; [`repair()`] does so for a mesh without faces.
-//! * [`EdgeGraph`] finds shortest paths along edges.
 //! * [`shapes`] has small analytic surfaces for tests, benches and documentation.
 //!
 //! **Invariant.** Vertices keep the order of the file: repair drops and merges vertices but never reorders
@@ -30,7 +29,6 @@
 
 mod coincidence;
 mod collapse;
-mod edge_graph;
 mod error;
 mod face_set;
 mod holes;
@@ -49,7 +47,6 @@ mod tri_mesh;
 mod validate;
 
 pub use collapse::collapse_edges;
-pub use edge_graph::EdgeGraph;
 pub use error::{Fault, MIN_POINTS, MeshError, Place};
 pub use face_set::{check_finite, check_input};
 pub use holes::fill_holes;

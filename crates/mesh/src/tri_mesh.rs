@@ -1,7 +1,7 @@
 //! Triangle meshes in space.
 
 use nalgebra::{Matrix3, Point3, Vector3};
-use surface::{IntrinsicMesh, Topology, VertexId, power_of_two_below};
+use surface::{EdgeGraph, IntrinsicMesh, Link, Topology, VertexId, power_of_two_below};
 
 /// An indexed triangle mesh: vertex positions and faces, exactly as they were read.
 ///
@@ -45,6 +45,14 @@ impl TriMesh {
     #[must_use]
     pub fn triangle(&self, face: usize) -> [Point3<f64>; 3] {
         self.faces[face].map(|v| self.positions[v.index()])
+    }
+
+    /// The edges, for shortest paths along them; inner ones come twice.
+    #[must_use]
+    pub fn edge_graph(&self) -> EdgeGraph {
+        let sides = self.faces.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        let length = |[a, b]: [VertexId; 2]| (self.positions[b.index()] - self.positions[a.index()]).norm();
+        EdgeGraph::new(self.n_vertices(), sides.map(|ends| Link { ends, length: length(ends) }))
     }
 
     /// The normal of face `face`; its length is twice the area of the face.

@@ -1,7 +1,6 @@
 //! What surfaces are computed with: Laplacians, their eigenfunctions, and nearest points. Rows are vertices of the input.
 
 use canonform::descriptors::LaplaceSpectrum;
-use canonform::geodesics::Method;
 use canonform::rigid::TriangleTree;
 use canonform::surface::laplacian::{Element, Laplacian};
 use canonform::surface::{Triangle, VertexId};
@@ -141,14 +140,13 @@ pub(crate) fn log_map<'py>(
     py: Python<'py>,
     surface: &Surface,
     source: &Bound<'py, PyAny>,
+    max_distance: f64,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let (inner, source) = (&surface.inner, point_of(source)?);
-    let map = surface.solve(py, Method::Exact, progress.as_ref(), |solver, observer| {
-        let sources = surface.sources(&[source])?;
-        let mut distances = solver.budget().vector(solver.n_vertices())?;
-        solver.solve_into(&sources, f64::INFINITY, &mut distances)?;
-        Ok(canonform::geodesics::log_map(inner.intrinsic(), &sources[0], &distances, observer)?)
+    let map = run_alone(py, progress.as_ref(), |observer| {
+        let source = inner.locate(&source)?;
+        Ok(canonform::geodesics::log_map(inner.intrinsic(), source, max_distance, observer)?)
     })?;
     let of_input = inner.input.remap.all_to_new();
     let rows = of_input.flat_map(|vertex| vertex.map_or([f64::NAN; 2], |vertex| map[vertex.index()]));

@@ -195,3 +195,8 @@ def test_the_logarithmic_map_is_about_one_point(square: Surface) -> None:
     vertices, faces = grid()
     with_loose = Surface(np.concatenate([vertices, [[9.0, 9.0, 0.0]]]), faces)
     assert np.isnan(with_loose.log_map(0)[81]).all()
+    whole, near = square.log_map(3), square.log_map(3, max_distance=0.5)
+    is_near = np.linalg.norm(whole, axis=1) <= 0.5
+    assert is_near.any() and not is_near.all()
+    np.testing.assert_array_equal(near[is_near], whole[is_near])
+    assert np.isnan(near[~is_near]).all()

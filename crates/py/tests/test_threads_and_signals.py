@@ -64,7 +64,6 @@ def interrupted(call: str) -> float:
         "surface.canonical_form(n_landmarks=5000)",
         "surface.farthest_points(20000, geodesic='exact')",
         "surface.signature(n_landmarks=5000)",
-        "surface.log_map(0)",
         "surface.distance_field(5000)",
         "surface.eigenbasis(1000)",
         "canonform.match(surface, surface, n_eigenfunctions=1000)",

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// Index of a vertex of a mesh, counted from zero.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize)]
 #[repr(transparent)]
 pub struct VertexId(pub u32);
 

@@ -6,7 +6,6 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::ids::{CornerId, EdgeId, VertexId};
-use crate::rows::Rows;
 use crate::topology::Topology;
 
 /// A triangle mesh reduced to its intrinsic geometry: connectivity and edge lengths.
@@ -87,16 +86,6 @@ pub fn power_of_two_below(length: f64) -> f64 {
 pub fn unit_for(length: f64) -> f64 {
     let ordinary = 2f64.powi(-64)..=2f64.powi(64);
     if ordinary.contains(&length) { 1.0 } else { power_of_two_below(length) }
-}
-
-impl Link {
-    /// The links at each of `n_vertices` vertices: the other end and the length.
-    #[must_use]
-    pub fn by_vertex(n_vertices: usize, links: impl Iterator<Item = Self> + Clone) -> Rows<(u32, f64)> {
-        let both =
-            |Self { ends: [a, b], length }: Self| [(a.index(), (b.0, length)), (b.index(), (a.0, length))];
-        Rows::collect(n_vertices, links.flat_map(both))
-    }
 }
 
 impl IntrinsicMesh {

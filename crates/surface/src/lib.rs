@@ -7,11 +7,14 @@
 //! * [`OneRing`] has the faces around a vertex in order, and tells whether shortest paths may bend there.
 //! * [`Triangulation`] flips edges inside the surface until it is Delaunay.
 //! * [`laplacian`] has the stiffness and mass matrices of any surface.
+//! * [`EdgeGraph`] finds shortest paths along edges.
 //! * [`short_loops`] finds narrow handles and tunnels.
 //! * [`Components`] are the connected components, found with [`DisjointSets`].
 
 mod components;
 mod disjoint_sets;
+mod edge_graph;
+mod frontier;
 mod ids;
 mod intrinsic;
 pub mod laplacian;
@@ -28,6 +31,8 @@ mod triangulation;
 
 pub use components::{Components, components_of_faces, components_with_links};
 pub use disjoint_sets::DisjointSets;
+pub use edge_graph::{EdgeGraph, Way};
+pub use frontier::Frontier;
 pub use ids::{CornerId, EdgeId, FaceId, VertexId};
 pub use intrinsic::{IntrinsicMesh, Link, power_of_two_below, unit_for};
 pub use loops::{SurfaceLoop, short_loops};

@@ -10,9 +10,10 @@ use std::collections::BTreeMap;
 use base::{Budget, Exceeded, SplitMix};
 
 use crate::disjoint_sets::DisjointSets;
+use crate::edge_graph::{EdgeGraph, Way};
+use crate::frontier::Frontier;
 use crate::ids::{EdgeId, VertexId};
-use crate::nearest_first::NearestFirst;
-use crate::rows::Rows;
+use crate::intrinsic::Link;
 use crate::topology::Topology;
 
 /// Most edges that two spanning trees may leave: surfaces with more handles have them by design, and they would cost much time.
@@ -67,7 +68,7 @@ pub fn short_loops(
     budget: &Budget,
 ) -> Result<Vec<SurfaceLoop>, Exceeded> {
     assert_eq!(lengths.len(), topology.n_edges(), "one length for every edge");
-    let Some(words) = words(topology) else { return Ok(Vec::new()) };
+    let Some(words) = homology_signatures(topology) else { return Ok(Vec::new()) };
     let mut sources: Vec<VertexId> = Vec::new();
     for (edge, _) in topology.edges().iter().zip(&words).filter(|(_, word)| **word != 0) {
         sources.extend(edge);
@@ -93,156 +94,135 @@ pub fn short_loops(
 }
 
 /// The word of every edge; `None` if no loop can be found.
-fn words(topology: &Topology) -> Option<Vec<u64>> {
-    let (n_faces, n_edges) = (topology.n_faces(), topology.n_edges());
-    let edges = || (0..n_edges).map(EdgeId::from);
+fn homology_signatures(topology: &Topology) -> Option<Vec<u64>> {
+    let edges = || (0..topology.n_edges()).map(EdgeId::from);
     if edges().any(|edge| topology.edge_corners(edge).len() > 2) {
         return None;
     }
-    // Every boundary is one more face.
-    let mut rims = DisjointSets::new(topology.n_vertices());
-    for edge in topology.boundary_edges() {
-        let [a, b] = topology.edges()[edge.index()];
-        rims.union(a.0, b.0);
-    }
-    // The faces on both sides of every edge.
-    let sides = edges().map(|edge| match topology.edge_corners(edge) {
-        [a, b] => [a.face().0, b.face().0],
-        corners => {
-            let rim = n_faces as u32 + rims.find(topology.edges()[edge.index()][0].0);
-            [corners.first().map_or(rim, |corner| corner.face().0), rim]
-        }
-    });
-    let sides: Vec<[u32; 2]> = sides.collect();
+    let (sides, n_nodes) = (beside_edges(topology), topology.n_faces() + topology.n_vertices());
     // How many edges are left does not depend on the trees.
-    let n_nodes = n_faces + topology.n_vertices();
-    let mut tree = DisjointSets::new(topology.n_vertices());
     let mut dual = DisjointSets::new(n_nodes);
-    let n_left = edges()
-        .filter(|edge| {
-            let [a, b] = topology.edges()[edge.index()];
-            let [f, g] = sides[edge.index()];
-            !tree.union(a.0, b.0) && !dual.union(f, g)
-        })
-        .count();
-    if n_left == 0 || n_left > MOST_LEFT {
+    let is_joined = |edge: EdgeId| {
+        let [f, g] = sides[edge.index()].map(|node| node.0);
+        dual.union(f, g)
+    };
+    if !(1..=MOST_LEFT).contains(&left_by_trees(topology, is_joined).len()) {
         return None;
     }
     // A tree of the faces by breadth keeps the loops of faces short, from which paths are searched.
-    let both = |edge: EdgeId| {
-        let [f, g] = sides[edge.index()];
-        [(f as usize, (g, edge)), (g as usize, (f, edge))]
-    };
-    let links = Rows::collect(n_nodes, edges().flat_map(both));
-    let mut order = Vec::with_capacity(n_nodes);
-    let mut parent: Vec<Option<(u32, EdgeId)>> = vec![None; n_nodes];
-    let mut is_seen = vec![false; n_nodes];
-    for root in 0..n_nodes {
-        if links.row(root).is_empty() || std::mem::replace(&mut is_seen[root], true) {
-            continue;
-        }
-        let mut next = order.len();
-        order.push(root);
-        while let Some(&node) = order.get(next) {
-            next += 1;
-            for &(other, edge) in links.row(node) {
-                if !std::mem::replace(&mut is_seen[other as usize], true) {
-                    parent[other as usize] = Some((node as u32, edge));
-                    order.push(other as usize);
-                }
-            }
-        }
-    }
-    let mut is_crossed = vec![false; n_edges];
-    parent.iter().flatten().for_each(|(_, edge)| is_crossed[edge.index()] = true);
-    let mut tree = DisjointSets::new(topology.n_vertices());
-    let mut words = vec![0; n_edges];
-    let mut at_node = vec![0u64; n_nodes];
-    let mut random = SplitMix(0);
-    for edge in edges().filter(|edge| !is_crossed[edge.index()]) {
-        let [a, b] = topology.edges()[edge.index()];
-        if !tree.union(a.0, b.0) {
-            let word = random.bits();
-            words[edge.index()] = word;
-            sides[edge.index()].into_iter().for_each(|node| at_node[node as usize] ^= word);
-        }
+    let (order, above) = breadth_first_tree(&sides, n_nodes);
+    let mut is_crossed = vec![false; topology.n_edges()];
+    above.iter().flatten().for_each(|(_, edge)| is_crossed[edge.index()] = true);
+    let (mut words, mut at_node, mut random) = (vec![0; is_crossed.len()], vec![0u64; n_nodes], SplitMix(0));
+    for edge in left_by_trees(topology, |edge| is_crossed[edge.index()]) {
+        let word = random.bits();
+        words[edge.index()] = word;
+        sides[edge.index()].into_iter().for_each(|node| at_node[node.index()] ^= word);
     }
     // Each edge between faces of the tree is crossed by the loops with one end below it.
-    for &node in order.iter().rev() {
-        if let Some((above, edge)) = parent[node] {
-            words[edge.index()] ^= at_node[node];
-            at_node[above as usize] ^= at_node[node];
+    for node in order.iter().rev() {
+        if let Some((from, edge)) = above[node.index()] {
+            words[edge.index()] ^= at_node[node.index()];
+            at_node[from.index()] ^= at_node[node.index()];
         }
     }
     Some(words)
 }
 
+/// The faces on both sides of every edge, as nodes of a graph. Every boundary is one more face.
+fn beside_edges(topology: &Topology) -> Vec<[VertexId; 2]> {
+    let mut rims = DisjointSets::new(topology.n_vertices());
+    for edge in topology.boundary_edges() {
+        let [a, b] = topology.edges()[edge.index()];
+        rims.union(a.0, b.0);
+    }
+    let sides = (0..topology.n_edges()).map(EdgeId::from).map(|edge| match topology.edge_corners(edge) {
+        [a, b] => [a.face().0, b.face().0],
+        corners => {
+            let rim = topology.n_faces() as u32 + rims.find(topology.edges()[edge.index()][0].0);
+            [corners.first().map_or(rim, |corner| corner.face().0), rim]
+        }
+    });
+    sides.map(|nodes| nodes.map(VertexId)).collect()
+}
+
+/// The edges that are left by a spanning tree of the faces, whose edges `joins_faces`, and one of the vertices over the others.
+fn left_by_trees(topology: &Topology, mut joins_faces: impl FnMut(EdgeId) -> bool) -> Vec<EdgeId> {
+    let mut tree = DisjointSets::new(topology.n_vertices());
+    let mut is_left = |edge: &EdgeId| {
+        let [a, b] = topology.edges()[edge.index()];
+        !joins_faces(*edge) && !tree.union(a.0, b.0)
+    };
+    (0..topology.n_edges()).map(EdgeId::from).filter(|edge| is_left(edge)).collect()
+}
+
+/// The node above a node in a tree, and the edge between them; `None` for a root.
+type Above = Option<(VertexId, EdgeId)>;
+
+/// Trees of the faces by breadth: all nodes that have edges, in order, and what is above each.
+fn breadth_first_tree(sides: &[[VertexId; 2]], n_nodes: usize) -> (Vec<VertexId>, Vec<Above>) {
+    let graph = EdgeGraph::new(n_nodes, sides.iter().map(|ends| Link { ends: *ends, length: 1.0 }));
+    let (mut front, mut order, mut above) = (Frontier::default(), Vec::new(), vec![None; n_nodes]);
+    front.reset(n_nodes);
+    for root in (0..n_nodes).map(VertexId::from).filter(|node| !graph.ways(*node).is_empty()) {
+        if front.distance(root) == f64::INFINITY {
+            front.relax(root, 0.0);
+            let visit = |node, _| {
+                order.push(node);
+                true
+            };
+            let note = |node, way: &Way| above[way.to.index()] = Some((node, EdgeId(way.number)));
+            graph.search(&mut front, f64::INFINITY, visit, note);
+        }
+    }
+    (order, above)
+}
+
 /// Shortest paths along edges from one vertex, with the words along them.
 struct Search<'a> {
     topology: &'a Topology,
-    lengths: &'a [f64],
     words: &'a [u64],
-    distance: Vec<f64>,
+    graph: EdgeGraph,
+    front: Frontier,
     word: Vec<u64>,
-    /// The edge by which a vertex was reached.
-    from: Vec<Option<EdgeId>>,
-    reached: Vec<VertexId>,
-    queue: NearestFirst<VertexId>,
+    /// The vertex before each on its path.
+    before: Vec<Option<VertexId>>,
 }
 
 impl<'a> Search<'a> {
-    fn new(topology: &'a Topology, lengths: &'a [f64], words: &'a [u64]) -> Self {
+    fn new(topology: &'a Topology, lengths: &[f64], words: &'a [u64]) -> Self {
         let n = topology.n_vertices();
-        Self {
-            topology,
-            lengths,
-            words,
-            distance: vec![f64::INFINITY; n],
-            word: vec![0; n],
-            from: vec![None; n],
-            reached: Vec::new(),
-            queue: NearestFirst::default(),
-        }
+        let edges = topology.edges().iter().zip(lengths);
+        let edges = edges.map(|(ends, length)| Link { ends: *ends, length: *length });
+        let (graph, front) = (EdgeGraph::new(n, edges), Frontier::default());
+        Self { topology, words, graph, front, word: vec![0; n], before: vec![None; n] }
     }
 
     fn run(&mut self, source: VertexId, radius: f64) {
-        for v in self.reached.drain(..) {
-            self.distance[v.index()] = f64::INFINITY;
-            self.from[v.index()] = None;
-        }
-        self.distance[source.index()] = 0.0;
-        self.word[source.index()] = 0;
-        self.reached.push(source);
-        self.queue.push(0.0, source);
-        while let Some((here, v)) = self.queue.pop() {
-            if here > self.distance[v.index()] {
-                continue;
-            }
-            for (edge, w) in edges_at(self.topology, v) {
-                let there = here + self.lengths[edge.index()];
-                if there < self.distance[w.index()] && there <= radius {
-                    if self.distance[w.index()].is_infinite() {
-                        self.reached.push(w);
-                    }
-                    self.distance[w.index()] = there;
-                    self.word[w.index()] = self.word[v.index()] ^ self.words[edge.index()];
-                    self.from[w.index()] = Some(edge);
-                    self.queue.push(there, w);
-                }
-            }
-        }
+        self.front.reset(self.word.len());
+        self.front.relax(source, 0.0);
+        (self.word[source.index()], self.before[source.index()]) = (0, None);
+        self.graph.search(
+            &mut self.front,
+            radius,
+            |_, _| true,
+            |v, way| {
+                self.word[way.to.index()] = self.word[v.index()] ^ self.words[way.number as usize];
+                self.before[way.to.index()] = Some(v);
+            },
+        );
     }
 
     /// The edges that close a loop with the paths to their ends that does not separate, with its word and its length.
     fn closing(&self, longest: f64) -> Vec<(u64, f64, EdgeId)> {
         let mut found = Vec::new();
-        for &v in &self.reached {
-            for (edge, w) in edges_at(self.topology, v) {
-                let word = self.word[v.index()] ^ self.word[w.index()] ^ self.words[edge.index()];
-                let length = self.distance[v.index()] + self.distance[w.index()] + self.lengths[edge.index()];
+        for &v in self.front.visited() {
+            for &Way { to: w, number, length } in self.graph.ways(v) {
+                let word = self.word[v.index()] ^ self.word[w.index()] ^ self.words[number as usize];
+                let length = self.front.distance(v) + self.front.distance(w) + length;
                 // Infinite if `w` was not reached.
                 if v < w && length <= longest && word != 0 {
-                    found.push((word, length, edge));
+                    found.push((word, length, EdgeId(number)));
                 }
             }
         }
@@ -251,30 +231,13 @@ impl<'a> Search<'a> {
 
     /// The loop that an edge closes; `None` if its two paths share more than the source.
     fn closed(&self, edge: EdgeId) -> Option<Vec<VertexId>> {
-        let [mut path, other] = self.topology.edges()[edge.index()].map(|v| self.path(v));
-        let shared = path.iter().filter(|v| other.contains(v)).count();
-        path.extend(other.iter().rev().skip(1));
-        (shared == 1).then_some(path)
+        let path = |v: VertexId| std::iter::successors(Some(v), |v| self.before[v.index()]);
+        let [a, b] = self.topology.edges()[edge.index()];
+        let (mut around, other): (Vec<VertexId>, Vec<VertexId>) = (path(a).collect(), path(b).collect());
+        let shared = around.iter().filter(|v| other.contains(v)).count();
+        around.extend(other.iter().rev().skip(1));
+        (shared == 1).then_some(around)
     }
-
-    /// The path from a vertex to the source.
-    fn path(&self, mut v: VertexId) -> Vec<VertexId> {
-        let mut path = vec![v];
-        while let Some(edge) = self.from[v.index()] {
-            let [a, b] = self.topology.edges()[edge.index()];
-            v = if a == v { b } else { a };
-            path.push(v);
-        }
-        path
-    }
-}
-
-/// The edges at a vertex with their other ends; inner edges come twice.
-fn edges_at(topology: &Topology, v: VertexId) -> impl Iterator<Item = (EdgeId, VertexId)> + '_ {
-    topology.vertex_corners(v).iter().flat_map(move |&corner| {
-        let [next, prev] = topology.corner_edges(corner);
-        [(next, topology.corner_vertex(corner.next())), (prev, topology.corner_vertex(corner.prev()))]
-    })
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Parts that are missing.
 
-use mesh::{EdgeGraph, TriMesh};
-use surface::{VertexId, components_of_faces};
+use mesh::TriMesh;
+use surface::{EdgeGraph, VertexId, components_of_faces};
 
 use super::paths::farthest;
 use crate::stream::Stream;
@@ -12,9 +12,9 @@ pub(super) fn cut_off(mesh: &TriMesh, share: f64, stream: &mut Stream) -> TriMes
     if mesh.faces.is_empty() {
         return mesh.clone();
     }
-    let mut edges = EdgeGraph::of(mesh);
+    let edges = mesh.edge_graph();
     let first = mesh.faces[stream.below(mesh.n_faces())][0];
-    let tip = tip(&mut edges, first);
+    let tip = tip(&edges, first);
     let lengths = edges.from(tip);
     let from_tip = |f: usize| mesh.faces[f].iter().map(|v| lengths[v.index()]).fold(0.0, f64::max);
     let is_cut = first_faces(mesh, share * mesh.area(), from_tip);
@@ -58,7 +58,7 @@ pub(super) fn largest_piece(rest: TriMesh) -> TriMesh {
 }
 
 /// The end of the limb on which a vertex is: from there, the distance from the middle of the surface only falls.
-fn tip(edges: &mut EdgeGraph, first: VertexId) -> VertexId {
+fn tip(edges: &EdgeGraph, first: VertexId) -> VertexId {
     let (one, _) = farthest(&edges.from(first));
     let from_one = edges.from(VertexId::from(one));
     let (other, _) = farthest(&from_one);
@@ -69,7 +69,8 @@ fn tip(edges: &mut EdgeGraph, first: VertexId) -> VertexId {
         (0..from_one.len()).min_by(|a, b| reach(*a).total_cmp(&reach(*b))).map_or(first, VertexId::from);
     let height = edges.from(middle);
     let mut at = first;
-    while let Some(next) = edges.neighbors(at).max_by(|a, b| height[a.index()].total_cmp(&height[b.index()]))
+    while let Some(next) =
+        edges.ways(at).iter().map(|way| way.to).max_by(|a, b| height[a.index()].total_cmp(&height[b.index()]))
         && height[next.index()] > height[at.index()]
     {
         at = next;

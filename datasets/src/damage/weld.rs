@@ -2,9 +2,9 @@
 
 use std::collections::HashSet;
 
-use mesh::{EdgeGraph, TriMesh};
+use mesh::TriMesh;
 use nalgebra::Point3;
-use surface::{OneRing, Topology, VertexId};
+use surface::{EdgeGraph, OneRing, Topology, VertexId};
 
 use super::paths::farthest;
 use crate::stream::Stream;
@@ -31,13 +31,14 @@ const BUMP: f64 = 2.0;
 /// Two vertices with disjoint faces, far apart on the surface and not beside those of earlier welds; `None` if there are none.
 fn pair(
     mesh: &TriMesh,
-    edges: &mut EdgeGraph,
+    edges: &EdgeGraph,
     draw: WeldPair,
     earlier: &HashSet<usize>,
     stream: &mut Stream,
 ) -> Option<[usize; 2]> {
+    let neighbors = |v: VertexId| edges.ways(v).iter().map(|way| way.to);
     let is_free = |v: &usize| {
-        let mut near = edges.neighbors(VertexId::from(*v)).peekable();
+        let mut near = neighbors(VertexId::from(*v)).peekable();
         near.peek().is_some() && !earlier.contains(v) && !near.any(|near| earlier.contains(&near.index()))
     };
     let used: Vec<usize> = (0..mesh.n_vertices()).filter(is_free).collect();
@@ -52,9 +53,9 @@ fn pair(
         let (_, reach) = farthest(&lengths);
         let is_apart = |v: usize| {
             let first = VertexId::from(first);
-            let beside = |w: VertexId| w == first || edges.neighbors(first).any(|near| near == w);
+            let beside = |w: VertexId| w == first || neighbors(first).any(|near| near == w);
             let v = VertexId::from(v);
-            v != first && !edges.neighbors(v).any(beside) && !beside(v)
+            v != first && !neighbors(v).any(beside) && !beside(v)
         };
         let far = |v: &usize| {
             lengths[*v].is_finite() && lengths[*v] >= FAR * reach && lengths[*v] > 0.0 && is_apart(*v)
@@ -79,7 +80,7 @@ fn pair(
 }
 
 /// Pushes the surroundings of two near points together, until the points are at their middle.
-fn push(mesh: &mut TriMesh, edges: &mut EdgeGraph, ends: [usize; 2]) {
+fn push(mesh: &mut TriMesh, edges: &EdgeGraph, ends: [usize; 2]) {
     let middle = nalgebra::center(&mesh.positions[ends[0]], &mesh.positions[ends[1]]);
     let radius = BUMP * (mesh.positions[ends[0]] - mesh.positions[ends[1]]).norm();
     let old = mesh.positions.clone();
@@ -98,8 +99,8 @@ pub(super) fn weld(mesh: &TriMesh, draw: WeldPair, n: u32, stream: &mut Stream) 
     let mut welded = mesh.clone();
     let mut earlier = HashSet::new();
     for _ in 0..n {
-        let mut edges = EdgeGraph::of(&welded);
-        let Some([a, b]) = pair(&welded, &mut edges, draw, &earlier, stream) else { break };
+        let edges = welded.edge_graph();
+        let Some([a, b]) = pair(&welded, &edges, draw, &earlier, stream) else { break };
         welded.positions[a] = nalgebra::center(&welded.positions[a], &welded.positions[b]);
         earlier.insert(a);
         let (kept, gone) = (VertexId::from(a), VertexId::from(b));
@@ -114,11 +115,11 @@ pub(super) fn contact(mesh: &TriMesh, n: u32, stream: &mut Stream) -> TriMesh {
     let mut joined = mesh.clone();
     let mut earlier = HashSet::new();
     for _ in 0..n {
-        let mut edges = EdgeGraph::of(&joined);
-        let Some(ends) = pair(&joined, &mut edges, WeldPair::Near, &earlier, stream) else { break };
+        let edges = joined.edge_graph();
+        let Some(ends) = pair(&joined, &edges, WeldPair::Near, &earlier, stream) else { break };
         let topology = Topology::new(joined.n_vertices(), joined.faces.clone());
         let [Some(a), Some(b)] = ends.map(|v| rim(&topology, VertexId::from(v))) else { continue };
-        push(&mut joined, &mut edges, ends);
+        push(&mut joined, &edges, ends);
         joined.faces.retain(|face| !face.iter().any(|v| ends.contains(&v.index())));
         earlier.extend(a.iter().chain(&b).map(|v| v.index()));
         let strip = strip(&a, &b, &joined.positions);

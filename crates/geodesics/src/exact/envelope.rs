@@ -5,6 +5,7 @@
 //! comes from further left changes at most once, where the line through both pseudo-sources meets the edge. On either
 //! part, the distances are equal at one point at most.
 
+use super::bearing::Bearing;
 use super::window::{PathWindow, crossing, order};
 
 /// Up to this many windows, insertion sort is fastest.
@@ -24,7 +25,7 @@ const OVERLAP: f64 = 0.5;
 
 /// Reduces the windows at an edge of the given length to what may carry a shortest path, in order along the edge;
 /// `ends` are the labels of the edge's ends.
-pub(super) fn trim(windows: &mut Vec<PathWindow>, length: f64, ends: [f64; 2]) {
+pub(super) fn trim<D: Bearing>(windows: &mut Vec<PathWindow<D>>, length: f64, ends: [f64; 2]) {
     cut_ends(windows, length, ends);
     sort(windows);
     // Of the windows before the current one, `kept` are left, in place.
@@ -54,7 +55,7 @@ pub(super) fn trim(windows: &mut Vec<PathWindow>, length: f64, ends: [f64; 2]) {
 }
 
 /// Insertion sort is cheap for few windows, and for those that come in order from either side.
-fn sort(windows: &mut [PathWindow]) {
+fn sort<D: Copy>(windows: &mut [PathWindow<D>]) {
     if windows.len() > FEW {
         windows.sort_unstable_by(|p, q| p.start.total_cmp(&q.start));
         return;
@@ -73,7 +74,7 @@ fn sort(windows: &mut [PathWindow]) {
 }
 
 /// Cuts the outermost windows where paths through the ends of the edge are shorter.
-fn cut_ends(windows: &mut Vec<PathWindow>, length: f64, ends: [f64; 2]) {
+fn cut_ends<D: Bearing>(windows: &mut Vec<PathWindow<D>>, length: f64, ends: [f64; 2]) {
     while windows.last_mut().is_some_and(|last| !last.cut_end(length, ends[1])) {
         windows.pop();
     }
@@ -96,7 +97,7 @@ enum Fate {
 
 /// Whether two windows have the same pseudo-source at the same place.
 #[inline]
-fn have_same_source(left: &PathWindow, right: &PathWindow) -> bool {
+fn have_same_source<D>(left: &PathWindow<D>, right: &PathWindow<D>) -> bool {
     let same = SAME_SOURCE * (left.depth + left.x.abs());
     (left.x - right.x).abs() <= same
         && (left.depth - right.depth).abs() <= same
@@ -105,7 +106,7 @@ fn have_same_source(left: &PathWindow, right: &PathWindow) -> bool {
 
 /// Shares the overlap of two windows, of which `left` comes first.
 #[inline]
-fn meet(left: &mut PathWindow, right: &mut PathWindow) -> Fate {
+fn meet<D: Bearing>(left: &mut PathWindow<D>, right: &mut PathWindow<D>) -> Fate {
     if have_same_source(left, right) {
         left.end = left.end.max(right.end);
         return Fate::LeftStays;

@@ -4,10 +4,10 @@ use std::collections::VecDeque;
 
 use base::{Budget, Exceeded};
 
-use surface::CornerId;
+use surface::{CornerId, Frontier, VertexId};
 
+use super::bearing::Bearing;
 use super::window::PathWindow;
-use crate::heap::VertexHeap;
 
 /// No list of windows.
 const NONE: u32 = u32::MAX;
@@ -27,17 +27,18 @@ pub(super) enum Arrival {
 /// A window waits at the corner whose base it is about to cross, in no particular order. The corner waits for the end
 /// of its base that was nearer when the first window came.
 #[derive(Debug, Default)]
-pub(super) struct WindowFront {
-    heap: VertexHeap,
-    arrivals: Vec<Arrival>,
+pub(super) struct WindowFront<D = ()> {
+    labels: Frontier,
+    /// How the shortest known path to each vertex arrives, and how it left the source.
+    arrivals: Vec<(Arrival, D)>,
     /// The first list that waits for each vertex.
     waiting: Vec<u32>,
     /// The list of windows at the base of every corner.
     list_at: Vec<u32>,
-    lists: Vec<WaitingList>,
+    lists: Vec<WaitingList<D>>,
     /// Lists at no corner.
     free: Vec<u32>,
-    /// Lists whose vertex has left the heap.
+    /// Lists whose vertex has been visited.
     ready: VecDeque<u32>,
     memory: WindowMemory,
     /// Windows delivered, and lists opened, since the last call of [`take_work`](Self::take_work).
@@ -59,8 +60,8 @@ struct WindowMemory {
 const MOST_BYTES: usize = 1 << 30;
 
 #[derive(Debug)]
-struct WaitingList {
-    windows: Vec<PathWindow>,
+struct WaitingList<D> {
+    windows: Vec<PathWindow<D>>,
     corner: CornerId,
     /// The next list that waits for the same vertex.
     next: u32,
@@ -69,7 +70,7 @@ struct WaitingList {
 impl WindowMemory {
     /// Makes room for more windows, unless that would take twice the limit or the system has no more memory.
     #[cold]
-    fn may_grow(&mut self, room: &mut Vec<PathWindow>, count: usize) -> bool {
+    fn may_grow<D>(&mut self, room: &mut Vec<PathWindow<D>>, count: usize) -> bool {
         let needed = self.held.saturating_add(count);
         let may = needed / 2 <= self.limit && room.try_reserve(count).is_ok();
         if !may {
@@ -79,17 +80,17 @@ impl WindowMemory {
     }
 }
 
-impl WindowFront {
+impl<D: Bearing> WindowFront<D> {
     /// Prepares for a new run. Allocates only to grow.
     ///
     /// Runs on all threads share the memory of the budget.
     pub(super) fn reset(&mut self, n_vertices: usize, n_corners: usize, budget: &Budget) {
         let bytes = budget.memory().map_or(MOST_BYTES, |bytes| bytes / rayon::current_num_threads());
         let held = self.lists.iter().map(|list| list.windows.capacity()).sum();
-        self.memory = WindowMemory { held, limit: bytes / size_of::<PathWindow>(), missing: None };
+        self.memory = WindowMemory { held, limit: bytes / size_of::<PathWindow<D>>(), missing: None };
         self.work = 0;
-        self.heap.reset(n_vertices);
-        self.arrivals.resize(n_vertices, Arrival::Anywhere);
+        self.labels.reset(n_vertices);
+        self.arrivals.resize(n_vertices, (Arrival::Anywhere, D::default()));
         self.list_at.clear();
         self.list_at.resize(n_corners, NONE);
         self.waiting.clear();
@@ -102,25 +103,25 @@ impl WindowFront {
 
     #[inline]
     pub(super) fn distance(&self, vertex: u32) -> f64 {
-        self.heap.distance(vertex)
+        self.labels.distance(VertexId(vertex))
     }
 
     #[inline]
-    pub(super) fn arrival(&self, vertex: u32) -> Arrival {
+    pub(super) fn arrival(&self, vertex: u32) -> (Arrival, D) {
         self.arrivals[vertex as usize]
     }
 
     /// Lowers the label of a vertex to `distance` and puts it (back) into the queue, if that is an improvement.
     #[inline]
-    pub(super) fn reach(&mut self, vertex: u32, distance: f64, arrival: Arrival) {
-        if self.heap.relax(vertex, distance) {
-            self.arrivals[vertex as usize] = arrival;
+    pub(super) fn reach(&mut self, vertex: u32, distance: f64, arrival: Arrival, bearing: D) {
+        if self.labels.relax(VertexId(vertex), distance) {
+            self.arrivals[vertex as usize] = (arrival, bearing);
         }
     }
 
     #[inline]
     pub(super) fn pop(&mut self) -> Option<(f64, u32)> {
-        self.heap.pop()
+        self.labels.pop().map(|(distance, vertex)| (distance, vertex.0))
     }
 
     /// Adds windows to those at the base of `corner`, which has the given ends.
@@ -128,7 +129,7 @@ impl WindowFront {
         &mut self,
         corner: CornerId,
         ends: [u32; 2],
-        windows: impl ExactSizeIterator<Item = PathWindow>,
+        windows: impl ExactSizeIterator<Item = PathWindow<D>>,
     ) {
         let list = match self.list_at[corner.index()] {
             NONE => self.open(corner, ends),
@@ -140,7 +141,7 @@ impl WindowFront {
 
     /// Adds windows to a list, unless there is no memory for them.
     #[inline]
-    fn append(&mut self, list: u32, windows: impl ExactSizeIterator<Item = PathWindow>) {
+    fn append(&mut self, list: u32, windows: impl ExactSizeIterator<Item = PathWindow<D>>) {
         let room = &mut self.lists[list as usize].windows;
         let (count, before) = (windows.len(), room.capacity());
         if count > before - room.len() && !self.memory.may_grow(room, count) {
@@ -170,7 +171,7 @@ impl WindowFront {
 
     #[cold]
     fn free_memory(&mut self) -> Result<(), Exceeded> {
-        let bytes = |windows: usize| windows.saturating_mul(size_of::<PathWindow>());
+        let bytes = |windows: usize| windows.saturating_mul(size_of::<PathWindow<D>>());
         let WindowMemory { held, limit, missing } = self.memory;
         match missing {
             Some(needed) if needed <= limit => Err(Exceeded::Allocation { needed: bytes(needed) }),
@@ -197,7 +198,7 @@ impl WindowFront {
         });
         self.work += 1;
         let end = if self.distance(b) < self.distance(a) { b } else { a };
-        let next = if self.heap.contains(end) {
+        let next = if self.labels.is_waiting(VertexId(end)) {
             std::mem::replace(&mut self.waiting[end as usize], list)
         } else {
             self.ready.push_back(list);
@@ -220,7 +221,7 @@ impl WindowFront {
     }
 
     /// The next corner that is ready; its windows replace those in `windows`.
-    pub(super) fn next_ready(&mut self, windows: &mut Vec<PathWindow>) -> Option<CornerId> {
+    pub(super) fn next_ready(&mut self, windows: &mut Vec<PathWindow<D>>) -> Option<CornerId> {
         let index = self.ready.pop_front()?;
         let list = &mut self.lists[index as usize];
         windows.clear();

@@ -2,23 +2,18 @@
 //!
 //! | module | what is in it |
 //! |---|---|
-//! | `order` | the surface renumbered for locality, without repeated faces |
-//! | `faces`, `fan` | the faces, and the corners around every vertex with their angles |
-//! | `prepared` | all that is prepared once per surface |
-//! | `window` | an interval of an edge and the unfolded source of its paths |
+//! | `prepared` | all that is prepared once: the surface renumbered for locality, its faces, and the corners around its vertices |
+//! | `window` | an interval of an edge and the unfolded source of its paths; windows and paths across a face |
 //! | `envelope` | the windows at one edge reduced to those that may carry a shortest path |
-//! | `frame`, `apex` | a face laid out, windows propagated across it, and the paths to its apex |
 //! | `front` | labels of vertices, their order, and waiting windows |
 //! | `propagation` | the main loop |
 //! | `pseudo_sources` | new windows, from sources and from vertices where paths bend |
+//! | `bearing`, `log_map` | the directions in which paths leave the source, and the map that they make |
 
-mod apex;
+mod bearing;
 mod envelope;
-mod faces;
-mod fan;
-mod frame;
 mod front;
-mod order;
+mod log_map;
 mod prepared;
 mod propagation;
 mod pseudo_sources;
@@ -31,6 +26,8 @@ use std::sync::Arc;
 
 use base::{Budget, Exceeded, Observer};
 use surface::IntrinsicMesh;
+
+pub use log_map::log_map;
 
 use crate::solver::{DistanceSolver, Pool, within};
 use crate::source::Source;
@@ -120,7 +117,14 @@ impl DistanceSolver for Exact {
         assert_eq!(out.len(), self.n_vertices(), "one distance per vertex");
         let unit = self.surface.faces.unit;
         self.scratch.with(|scratch| {
-            let front = propagation::run(&self.surface, scratch, max_distance / unit, sources, &self.budget)?;
+            let front = propagation::run(
+                &self.surface,
+                scratch,
+                max_distance / unit,
+                (sources, &()),
+                self.surface.max_windows(),
+                &self.budget,
+            )?;
             for (distance, vertex) in out.iter_mut().zip(&self.surface.new_vertices) {
                 *distance = within(front.distance(*vertex) * unit, max_distance);
             }

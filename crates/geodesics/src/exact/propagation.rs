@@ -3,30 +3,24 @@
 use base::{Budget, Exceeded, Meter};
 use surface::{CornerId, VertexKind};
 
-use super::apex::{Apex, Passes};
+use super::bearing::Bearing;
 use super::envelope::trim;
-use super::faces::{Along, next};
-use super::frame::{FaceFrame, Until};
 use super::front::{Arrival, WindowFront};
-use super::prepared::PreparedSurface;
+use super::prepared::{Along, PreparedSurface, next};
 use super::pseudo_sources::Emission;
-use super::window::PathWindow;
+use super::window::{Apex, FaceFrame, Passes, PathWindow, Until};
 use crate::source::Source;
 
 /// Memory that runs share.
 #[derive(Debug, Default)]
-pub(super) struct ExactScratch {
-    front: WindowFront,
+pub(super) struct ExactScratch<D = ()> {
+    front: WindowFront<D>,
     /// Windows on the base of a face.
-    arrived: Vec<PathWindow>,
+    arrived: Vec<PathWindow<D>>,
     /// Windows on its sides, left and right of its apex.
-    left: Vec<PathWindow>,
-    right: Vec<PathWindow>,
+    left: Vec<PathWindow<D>>,
+    right: Vec<PathWindow<D>>,
 }
-
-/// Limit of the mean number of windows propagated per face. Real surfaces of a million vertices need less than a
-/// hundred; only needles with angles below 1e-6 around one vertex come near the limit.
-const BUDGET_PER_FACE: usize = 10_000;
 
 /// Share of the limit by which windows beyond it are propagated, for rounding.
 const LIMIT_SLACK: f64 = 1e-9;
@@ -37,33 +31,21 @@ const EDGE_SLACK: f64 = 1e-13;
 /// Operations that a window counts for in the meter of a budget.
 const OPERATIONS: usize = 16;
 
-/// Finds the distances of all vertices within `max_distance` of the nearest source.
+/// Finds the distances of all vertices within `max_distance` of the nearest source, with at most so many windows.
 ///
 /// # Errors
 /// [`Exceeded`]; windows have their share of the memory of the budget.
-pub(super) fn run<'a>(
+pub(super) fn run<'a, D: Bearing>(
     surface: &PreparedSurface,
-    scratch: &'a mut ExactScratch,
+    scratch: &'a mut ExactScratch<D>,
     max_distance: f64,
-    sources: &[Source],
+    (sources, around): (&[Source], &D::Source),
+    max_windows: usize,
     limits: &Budget,
-) -> Result<&'a WindowFront, Exceeded> {
-    let most = BUDGET_PER_FACE.saturating_mul(surface.faces.all.len());
-    run_within(most, surface, scratch, max_distance, sources, limits)
-}
-
-/// The same with at most so many windows.
-fn run_within<'a>(
-    most: usize,
-    surface: &PreparedSurface,
-    scratch: &'a mut ExactScratch,
-    max_distance: f64,
-    sources: &[Source],
-    limits: &Budget,
-) -> Result<&'a WindowFront, Exceeded> {
+) -> Result<&'a WindowFront<D>, Exceeded> {
     let ExactScratch { front, arrived, left, right } = scratch;
     front.reset(surface.n_vertices(), 3 * surface.faces.all.len(), limits);
-    let mut emission = Emission { surface, front, steps_left: Some(most) };
+    let mut emission = Emission { surface, around, front, steps_left: Some(max_windows) };
     sources.iter().for_each(|source| emission.start_at(source));
     let max_distance = max_distance * (1.0 + LIMIT_SLACK);
     let mut propagation = Propagation { emission, left, right, max_distance, meter: limits.meter() };
@@ -76,7 +58,7 @@ fn run_within<'a>(
         limits.check()?;
         // Without the windows beyond, distances may be too long.
         if propagation.emission.steps_left.is_none() {
-            return Err(Exceeded::Steps { limit: most });
+            return Err(Exceeded::Steps { limit: max_windows });
         }
         if !propagation.relax_edges() {
             break;
@@ -86,27 +68,27 @@ fn run_within<'a>(
 }
 
 /// One run over a surface.
-struct Propagation<'a> {
-    emission: Emission<'a>,
-    left: &'a mut Vec<PathWindow>,
-    right: &'a mut Vec<PathWindow>,
+struct Propagation<'a, D: Bearing> {
+    emission: Emission<'a, D>,
+    left: &'a mut Vec<PathWindow<D>>,
+    right: &'a mut Vec<PathWindow<D>>,
     /// Windows beyond this need not be propagated.
     max_distance: f64,
     meter: Meter<'a>,
 }
 
-impl Propagation<'_> {
-    fn advance(&mut self, arrived: &mut Vec<PathWindow>) -> Result<(), Exceeded> {
+impl<D: Bearing> Propagation<'_, D> {
+    fn advance(&mut self, arrived: &mut Vec<PathWindow<D>>) -> Result<(), Exceeded> {
         // The path to a vertex within the limit may cross an edge between two vertices beyond it.
         let last = self.max_distance + self.emission.surface.faces.longest_edge;
         while let Some((distance, vertex)) = self.emission.front.pop() {
             if distance > last {
                 break;
             }
-            let arrival = self.emission.front.arrival(vertex);
+            let (arrival, bearing) = self.emission.front.arrival(vertex);
             let kind = self.emission.surface.fans.kind(vertex);
             if arrival == Arrival::Anywhere || kind != VertexKind::Ordinary {
-                self.emission.emit_from(vertex, distance, arrival);
+                self.emission.emit_from(vertex, distance, arrival, bearing);
             }
             self.emission.front.release(vertex);
             while let Some(corner) = self.emission.front.next_ready(arrived) {
@@ -134,10 +116,11 @@ impl Propagation<'_> {
             for slot in 0..3 {
                 let ends = [next(slot), next(next(slot))].map(|end| face.vertices[end]);
                 let [p, q] = ends.map(|v| front.distance(v));
-                let (near, far, vertex) = if p < q { (p, q, ends[1]) } else { (q, p, ends[0]) };
+                let (near, far, [from, to]) = if p < q { (p, q, ends) } else { (q, p, [ends[1], ends[0]]) };
                 let along = near + face.lengths[slot];
                 if along < far - EDGE_SLACK * far.min(f64::MAX) && along <= self.max_distance {
-                    front.reach(vertex, along, Arrival::Anywhere);
+                    let bearing = front.arrival(from).1.along_edge(self.emission.around, to);
+                    front.reach(to, along, Arrival::Anywhere, bearing);
                     is_any = true;
                 }
             }
@@ -146,8 +129,8 @@ impl Propagation<'_> {
     }
 
     /// Propagates the windows at the base of a corner across its face.
-    fn enter_face(&mut self, corner: CornerId, windows: &mut Vec<PathWindow>) {
-        let Emission { surface, front, steps_left } = &mut self.emission;
+    fn enter_face(&mut self, corner: CornerId, windows: &mut Vec<PathWindow<D>>) {
+        let Emission { surface, around, front, steps_left } = &mut self.emission;
         let frame = FaceFrame::new(&surface.faces, corner);
         let [a, b, c] = frame.vertices;
         let ends = [front.distance(a), front.distance(b)];
@@ -161,22 +144,26 @@ impl Propagation<'_> {
         }
 
         let through = |[sin, cos]: [f64; 2]| Arrival::Through { corner, sin, cos };
-        front.reach(c, ends[0] + frame.sides[0], through([0.0, 1.0]));
-        if ends[1] + frame.sides[1] < front.distance(c) {
-            let face = surface.face(corner);
-            let angle = [face.double_area, face.cosine(corner.slot())];
-            front.reach(c, ends[1] + frame.sides[1], through(angle));
+        for (i, end) in [a, b].into_iter().enumerate() {
+            let along = ends[i] + frame.sides[i];
+            if along < front.distance(c) {
+                let face = surface.face(corner);
+                let angle = if i == 0 { [0.0, 1.0] } else { [face.double_area, face.cosine(corner.slot())] };
+                let bearing = front.arrival(end).1.along_edge(around, c);
+                front.reach(c, along, through(angle), bearing);
+            }
         }
         let apex = self.propagate(&frame, windows);
         let front = &mut *self.emission.front;
-        if apex.distance < front.distance(c) {
-            front.reach(c, apex.distance, through(apex.direction()));
+        if let Some(nearest) = apex.nearest.filter(|_| apex.distance < front.distance(c)) {
+            let bearing = windows[nearest].bearing.towards(apex.ray(&windows[nearest]));
+            front.reach(c, apex.distance, through(apex.direction()), bearing);
         }
-        self.deliver(&frame);
+        self.deliver(corner, &frame);
     }
 
     /// Propagates windows, in order along the base, to the two sides of a face.
-    fn propagate(&mut self, frame: &FaceFrame, windows: &[PathWindow]) -> Apex {
+    fn propagate(&mut self, frame: &FaceFrame, windows: &[PathWindow<D>]) -> Apex {
         let mut apex = Apex::new(frame);
         self.left.clear();
         self.right.clear();
@@ -214,7 +201,7 @@ impl Propagation<'_> {
     }
 
     /// Propagates a window to whichever sides it reaches.
-    fn split(&mut self, frame: &FaceFrame, apex: &Apex, index: usize, window: &PathWindow) {
+    fn split(&mut self, frame: &FaceFrame, apex: &Apex, index: usize, window: &PathWindow<D>) {
         match apex.passes(window) {
             Passes::Left => self.push_left(frame, window, window.end, Until::Ray),
             Passes::Right => self.push_right(frame, window, window.start, Until::Ray),
@@ -240,33 +227,33 @@ impl Propagation<'_> {
     /// A shortest path crosses no face twice, so it crosses at most all faces of a vertex in a row: `max_turn` bounds
     /// how often windows circle around the tip of a needle.
     #[inline]
-    fn push_left(&mut self, frame: &FaceFrame, window: &PathWindow, end: f64, until: Until) {
+    fn push_left(&mut self, frame: &FaceFrame, window: &PathWindow<D>, end: f64, until: Until) {
         if end > window.start && window.turn < self.emission.surface.max_turn {
             frame.project_on_ac(window, [window.start, end], until, self.left);
         }
     }
 
     #[inline]
-    fn push_right(&mut self, frame: &FaceFrame, window: &PathWindow, start: f64, until: Until) {
+    fn push_right(&mut self, frame: &FaceFrame, window: &PathWindow<D>, start: f64, until: Until) {
         if start < window.end && -window.turn < self.emission.surface.max_turn {
             frame.project_on_cb(window, [start, window.end], until, self.right);
         }
     }
 
     /// Delivers the windows on the sides of a face to the faces beyond.
-    fn deliver(&mut self, frame: &FaceFrame) {
+    fn deliver(&mut self, corner: CornerId, frame: &FaceFrame) {
         let [a, b, c] = frame.vertices;
         let Emission { surface, front, .. } = &mut self.emission;
-        let sides = [(&mut *self.left, [a, c]), (&mut *self.right, [b, c])];
-        for (side, (windows, ends)) in sides.into_iter().enumerate() {
+        let sides = [(&*self.left, corner.prev(), [a, c]), (&*self.right, corner.next(), [b, c])];
+        for ((windows, own, ends), length) in sides.into_iter().zip(frame.sides) {
             if windows.is_empty() {
                 continue;
             }
-            surface.faces.for_each_facing(frame.beyond[side], |facing| match facing.along {
-                Along::Opposite => front.deliver(facing.corner, ends, windows.iter().copied()),
+            surface.faces.for_each_facing(own, |facing, along| match along {
+                Along::Opposite => front.deliver(facing, ends, windows.iter().copied()),
                 Along::Same => {
-                    let mirrored = windows.iter().rev().map(|w| w.mirrored(frame.sides[side]));
-                    front.deliver(facing.corner, ends, mirrored);
+                    let mirrored = windows.iter().rev().map(|w| w.mirrored(length));
+                    front.deliver(facing, ends, mirrored);
                 }
             });
         }
@@ -284,16 +271,16 @@ mod tests {
     fn a_run_that_lacks_windows_is_an_error() {
         let surface = PreparedSurface::new(&shapes::torus(12, 8, 2.0, 0.7).intrinsic());
         let source = [Source::vertex(VertexId(5))];
-        let run = |most| {
-            let mut scratch = ExactScratch::default();
+        let solve = |most| {
+            let mut scratch = ExactScratch::<()>::default();
             let limits = Budget::unlimited();
-            let front = run_within(most, &surface, &mut scratch, f64::INFINITY, &source, &limits)?;
+            let front = run(&surface, &mut scratch, f64::INFINITY, (&source, &()), most, &limits)?;
             Ok::<Vec<f64>, Exceeded>((0..96).map(|v| front.distance(v)).collect())
         };
-        let whole = run(usize::MAX).unwrap();
+        let whole = solve(usize::MAX).unwrap();
         let mut n_errors = 0;
         for most in 0..2_000 {
-            match run(most) {
+            match solve(most) {
                 Ok(found) => assert_eq!(found, whole),
                 Err(error) => {
                     assert_eq!(error, Exceeded::Steps { limit: most });

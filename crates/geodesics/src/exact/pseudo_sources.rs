@@ -1,35 +1,38 @@
 //! New windows, from sources and from vertices where paths bend.
 
-use surface::{CornerId, FaceId, VertexId, Winding};
+use surface::{CornerId, FaceId, SurfacePoint, VertexId, Winding};
 
-use super::faces::{Along, next};
-use super::fan::FanSector;
-use super::frame::FaceFrame;
+use super::bearing::Bearing;
 use super::front::{Arrival, WindowFront};
-use super::prepared::PreparedSurface;
-use super::window::PathWindow;
+use super::prepared::{Along, FanSector, PreparedSurface, next};
+use super::window::{FaceFrame, PathWindow};
 use crate::source::Source;
-use surface::SurfacePoint;
 
 /// Barycentric coordinates below this are rounding: the point lies on the edge.
-const ON_EDGE: f64 = 1e-12;
+pub(super) const ON_EDGE: f64 = 1e-12;
 
 /// Emits windows into a front.
 #[derive(Debug)]
-pub(super) struct Emission<'a> {
+pub(super) struct Emission<'a, D: Bearing> {
     pub(super) surface: &'a PreparedSurface,
-    pub(super) front: &'a mut WindowFront,
+    /// What is known of the source.
+    pub(super) around: &'a D::Source,
+    pub(super) front: &'a mut WindowFront<D>,
     /// How many windows may still be emitted or propagated; `None` once there were more.
     pub(super) steps_left: Option<usize>,
 }
 
-impl Emission<'_> {
+impl<D: Bearing> Emission<'_, D> {
     /// Starts at a source.
     pub(super) fn start_at(&mut self, source: &Source) {
         let surface = self.surface;
         let new = |vertex: VertexId| surface.new_vertices[vertex.index()];
         for (vertex, distance) in source.reach() {
-            self.front.reach(new(*vertex), distance / surface.faces.unit, Arrival::Anywhere);
+            let bearing = match source.point() {
+                SurfacePoint::Vertex(_) => D::default(),
+                _ => D::default().along_edge(self.around, new(*vertex)),
+            };
+            self.front.reach(new(*vertex), distance / surface.faces.unit, Arrival::Anywhere, bearing);
         }
         match source.point() {
             SurfacePoint::Vertex(_) => {}
@@ -40,7 +43,7 @@ impl Emission<'_> {
             }
             SurfacePoint::Face { face, barycentric } => {
                 let face = FaceId(surface.new_faces[face.index()]);
-                let vertices = surface.vertices(face);
+                let vertices = surface.faces.of(face).vertices;
                 // A face that repeats another may have its corners in another order.
                 let slot_of = |v: u32| source.reach().iter().position(|(w, _)| new(*w) == v);
                 let shares = vertices.map(|v| slot_of(v).map_or(0.0, |slot| barycentric[slot]));
@@ -60,7 +63,7 @@ impl Emission<'_> {
         let surface = self.surface;
         for sector in surface.fans.around(ends[0]) {
             let face = sector.corner.corner.face();
-            let vertices = surface.vertices(face);
+            let vertices = surface.faces.of(face).vertices;
             if vertices.contains(&ends[1]) {
                 let share = |v| ends.iter().position(|end| *end == v).map_or(0.0, |i| shares[i]);
                 self.start_in_face(face, vertices.map(share));
@@ -79,25 +82,29 @@ impl Emission<'_> {
             let ([x, height], at) = (frame.apex, barycentric[slot]);
             let source = [at * x + barycentric[next(next(slot))] * frame.base, at * height];
             let distance = (x - source[0]).hypot(height - source[1]);
-            self.front.reach(frame.vertices[2], distance, Arrival::Anywhere);
+            let apex = frame.vertices[2];
+            self.front.reach(apex, distance, Arrival::Anywhere, D::default().along_edge(self.around, apex));
             if at >= ON_EDGE {
                 let [x, depth] = source;
-                let window = PathWindow { start: 0.0, end: frame.base, x, depth, offset: 0.0, turn: 0 };
+                let bearing = D::default().emitted(self.around, corner, &frame);
+                let window =
+                    PathWindow { start: 0.0, end: frame.base, x, depth, offset: 0.0, turn: 0, bearing };
                 self.emit_over_base(corner, &frame, window);
             }
         }
     }
 
     /// Emits windows from a vertex over links and the edges opposite it, where a path with this arrival may continue.
-    pub(super) fn emit_from(&mut self, vertex: u32, distance: f64, arrival: Arrival) {
+    pub(super) fn emit_from(&mut self, vertex: u32, distance: f64, arrival: Arrival, bearing: D) {
         let surface = self.surface;
-        for (end, length) in surface.links.row(vertex as usize) {
-            self.front.reach(*end, distance + length / surface.faces.unit, Arrival::Anywhere);
+        for link in surface.links.ways(VertexId(vertex)) {
+            let distance = distance + link.length / surface.faces.unit;
+            self.front.reach(link.to.0, distance, Arrival::Anywhere, bearing.over_link());
         }
         let fan = surface.fans.around(vertex);
         let Some(open) = surface.fans.open_angles(vertex, arrival) else {
             for sector in fan {
-                self.emit_from_corner(sector.corner.corner, distance, [0.0, f64::INFINITY]);
+                self.emit_from_corner(sector.corner.corner, (distance, bearing), [0.0, f64::INFINITY]);
             }
             return;
         };
@@ -109,7 +116,7 @@ impl Emission<'_> {
                         Winding::Backward => [end - high, end - low],
                     };
                     let high = if high < end - start { high } else { f64::INFINITY };
-                    self.emit_from_corner(corner.corner, distance, [low, high]);
+                    self.emit_from_corner(corner.corner, (distance, bearing), [low, high]);
                 }
             }
         }
@@ -117,7 +124,7 @@ impl Emission<'_> {
 
     /// Emits a window from a corner onto its base, between angles from the side to the base's start; zero and
     /// infinity mean no bound.
-    fn emit_from_corner(&mut self, corner: CornerId, distance: f64, [low, high]: [f64; 2]) {
+    fn emit_from_corner(&mut self, corner: CornerId, (distance, bearing): (f64, D), [low, high]: [f64; 2]) {
         let face = self.surface.face(corner);
         let slot = corner.slot();
         let (a, b) = (next(slot), next(next(slot)));
@@ -128,8 +135,10 @@ impl Emission<'_> {
         };
         // The vertex is at the end of the base of the corner at `a`, and at the start of that at `b`.
         let from_end = [face.double_area, face.cosine(a)];
-        self.front.reach(face.vertices[a], distance + face.lengths[b], through(a, from_end));
-        self.front.reach(face.vertices[b], distance + face.lengths[a], through(b, [0.0, 1.0]));
+        let (at_a, at_b) = (face.vertices[a], face.vertices[b]);
+        let [to_a, to_b] = [at_a, at_b].map(|end| bearing.along_edge(self.around, end));
+        self.front.reach(at_a, distance + face.lengths[b], through(a, from_end), to_a);
+        self.front.reach(at_b, distance + face.lengths[a], through(b, [0.0, 1.0]), to_b);
         if face.lengths[slot] == 0.0 {
             return;
         }
@@ -142,17 +151,18 @@ impl Emission<'_> {
             let at = if down > 0.0 { x + height * along / down } else { along * f64::INFINITY };
             at.max(0.0).min(frame.base)
         };
+        let bearing = bearing.emitted(self.around, corner, &frame);
         let start = if low > 0.0 { meet_base(low) } else { 0.0 };
         let end = if high < f64::INFINITY { meet_base(high) } else { frame.base };
         self.emit_over_base(
             corner,
             &frame,
-            PathWindow { start, end, x, depth: height, offset: distance, turn: 0 },
+            PathWindow { start, end, x, depth: height, offset: distance, turn: 0, bearing },
         );
     }
 
     /// Delivers a window on the base of a corner, given from inside its face, to the faces beyond.
-    fn emit_over_base(&mut self, corner: CornerId, frame: &FaceFrame, window: PathWindow) {
+    fn emit_over_base(&mut self, corner: CornerId, frame: &FaceFrame, window: PathWindow<D>) {
         if window.end <= window.start {
             return;
         }
@@ -161,13 +171,12 @@ impl Emission<'_> {
             return;
         }
         let [a, b, _] = frame.vertices;
-        let beyond = self.surface.face(corner).beyond[corner.slot()];
-        self.surface.faces.for_each_facing(beyond, |facing| {
-            let window = match facing.along {
+        self.surface.faces.for_each_facing(corner, |facing, along| {
+            let window = match along {
                 Along::Same => window,
                 Along::Opposite => window.mirrored(frame.base),
             };
-            self.front.deliver(facing.corner, [a, b], std::iter::once(window));
+            self.front.deliver(facing, [a, b], std::iter::once(window));
         });
     }
 }

@@ -1,11 +1,16 @@
-//! Windows: intervals of edges that straight paths from one pseudo-source reach.
+//! Windows: intervals of edges that straight paths from one pseudo-source reach, and how they cross faces.
+
+use surface::CornerId;
+
+use super::bearing::Bearing;
+use super::prepared::{Faces, next};
 
 /// An interval of an edge that straight paths from one pseudo-source reach through one sequence of faces.
 ///
 /// The edge lies on the x-axis from zero to its length, with the face to be entered above it and the unfolded
 /// sequence below. The distance at a point `t` of the window is `offset + |(t, 0) - (x, -depth)|`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct PathWindow {
+pub(super) struct PathWindow<D = ()> {
     pub(super) start: f64,
     pub(super) end: f64,
     /// Position of the unfolded pseudo-source along the edge.
@@ -16,9 +21,11 @@ pub(super) struct PathWindow {
     pub(super) offset: f64,
     /// How many faces in a row were crossed around one vertex: positive for the edge's start, negative for its end.
     pub(super) turn: i32,
+    /// The direction of its paths at the source.
+    pub(super) bearing: D,
 }
 
-impl PathWindow {
+impl<D: Bearing> PathWindow<D> {
     /// Distance at the point `t` of the edge.
     #[inline]
     pub(super) fn distance(&self, t: f64) -> f64 {
@@ -40,6 +47,7 @@ impl PathWindow {
             end: length - self.start,
             x: length - self.x,
             turn: -self.turn,
+            bearing: self.bearing.mirrored(),
             ..*self
         }
     }
@@ -74,7 +82,7 @@ fn nearer_until(x: f64, depth: f64, lead: f64) -> f64 {
 /// Positive where the paths of `left` come from further left than those of `right`, whose distance then decreases
 /// relative to `left` with increasing `t`; linear in `t`.
 #[inline]
-pub(super) fn order(left: &PathWindow, right: &PathWindow, t: f64) -> f64 {
+pub(super) fn order<D>(left: &PathWindow<D>, right: &PathWindow<D>, t: f64) -> f64 {
     (t - left.x) * right.depth - (t - right.x) * left.depth
 }
 
@@ -87,7 +95,11 @@ const EQUAL: f64 = 1e-12;
 /// squared is linear in the position but for `2 d s`; squared again it is quadratic. One of its roots may belong to
 /// `-d`. If the two pseudo-sources are in line with a nearly double root, rounding leaves little of either. So a root
 /// only counts if the distances agree there.
-pub(super) fn crossing(left: &PathWindow, right: &PathWindow, [low, high]: [f64; 2]) -> Option<f64> {
+pub(super) fn crossing<D: Bearing>(
+    left: &PathWindow<D>,
+    right: &PathWindow<D>,
+    [low, high]: [f64; 2],
+) -> Option<f64> {
     let (p, q) = (left.x - low, right.x - low);
     let (rr, ss) = (p * p + left.depth * left.depth, q * q + right.depth * right.depth);
     let d = right.offset - left.offset;
@@ -109,11 +121,227 @@ pub(super) fn crossing(left: &PathWindow, right: &PathWindow, [low, high]: [f64;
     [big / a, c / big].into_iter().find(is_change).map(|t| low + t)
 }
 
+/// The face of a corner, laid out with its base `ab`, the side opposite the corner, on the x-axis from zero, and the
+/// corner `c` above.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct FaceFrame {
+    /// Length of `ab`.
+    pub(super) base: f64,
+    /// Position of `c`.
+    pub(super) apex: [f64; 2],
+    /// Lengths of `ac` and `bc`.
+    pub(super) sides: [f64; 2],
+    /// Direction of `ac` from `a`.
+    from_a: [f64; 2],
+    /// Direction of `bc` from `b`, mirrored: in the frame with `b` at zero.
+    from_b: [f64; 2],
+    /// `a`, `b`, `c`.
+    pub(super) vertices: [u32; 3],
+}
+
+/// Where the part of a side that a window reaches ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Until {
+    /// At the ray through the end of the interval.
+    Ray,
+    /// At the apex: the interval ends on the ray to it.
+    Apex,
+}
+
+impl FaceFrame {
+    /// The face of a corner whose base has a length.
+    ///
+    /// Does not use [`surface::Triangle`]: the area is known, which saves a square root in the innermost loop.
+    #[inline]
+    pub(super) fn new(faces: &Faces, corner: CornerId) -> Self {
+        let (face, slot) = (faces.of(corner.face()), corner.slot());
+        let (a, b) = (next(slot), next(next(slot)));
+        // A side is in the place of the corner opposite: `ac` in that of `b`.
+        let (base, ac, bc) = (face.lengths[slot], face.lengths[b], face.lengths[a]);
+        let per_base = 1.0 / base;
+        let height = face.double_area * per_base;
+        // The differences are exact on short sides, where the squares are not.
+        let skew = (ac - bc) * (ac + bc) * per_base;
+        let (from_a, from_b) = (0.5 * (base + skew), 0.5 * (base - skew));
+        let (per_ac, per_bc) = (1.0 / ac, 1.0 / bc);
+        Self {
+            base,
+            apex: [from_a, height],
+            sides: [ac, bc],
+            from_a: [from_a * per_ac, height * per_ac],
+            from_b: [from_b * per_bc, height * per_bc],
+            vertices: [face.vertices[a], face.vertices[b], face.vertices[slot]],
+        }
+    }
+
+    /// Appends the part of `ac` that the rays of `window` between `start` and `end` of the base reach, measured from
+    /// `a`, unless it has no width.
+    #[inline]
+    pub(super) fn project_on_ac<D: Bearing>(
+        &self,
+        window: &PathWindow<D>,
+        [start, end]: [f64; 2],
+        until: Until,
+        out: &mut Vec<PathWindow<D>>,
+    ) {
+        let source = [window.x, window.depth];
+        let ([x, depth], [start, end]) = project(self.from_a, self.sides[0], source, [start, end], until);
+        if end > start {
+            let (turn, bearing) = (window.turn.max(0) + 1, window.bearing.turned(self.from_a));
+            out.push(PathWindow { start, end, x, depth, offset: window.offset, turn, bearing });
+        }
+    }
+
+    /// As [`project_on_ac`](Self::project_on_ac), for `bc`, measured from `c`: the apex is at its start.
+    #[inline]
+    pub(super) fn project_on_cb<D: Bearing>(
+        &self,
+        window: &PathWindow<D>,
+        [start, end]: [f64; 2],
+        until: Until,
+        out: &mut Vec<PathWindow<D>>,
+    ) {
+        let side = self.sides[1];
+        let source = [self.base - window.x, window.depth];
+        let mirrored = [self.base - end, self.base - start];
+        let ([x, depth], [start, end]) = project(self.from_b, side, source, mirrored, until);
+        if end > start {
+            let turn = window.turn.min(0) - 1;
+            let bearing = window.bearing.mirrored().turned(self.from_b).mirrored();
+            let (start, end, x) = (side - end, side - start, side - x);
+            out.push(PathWindow { start, end, x, depth, offset: window.offset, turn, bearing });
+        }
+    }
+}
+
+/// Position and depth of a source below the side of a face that leaves the origin in the direction `(cos, sin)`, and
+/// where the rays from it through `start` and `end` of the base meet the side.
+#[inline]
+fn project(
+    [cos, sin]: [f64; 2],
+    side: f64,
+    [x, depth]: [f64; 2],
+    [start, end]: [f64; 2],
+    until: Until,
+) -> ([f64; 2], [f64; 2]) {
+    let below = x * sin + depth * cos;
+    let meet = |t: f64| t * depth / (below - t * sin);
+    let far = meet(end);
+    // Rounding may let a ray along the side meet it beyond its end, before its start or nowhere.
+    let far = if until == Until::Ray && far >= 0.0 { far.min(side) } else { side };
+    ([x * cos - depth * sin, below.max(0.0)], [meet(start).max(0.0), far])
+}
+
+/// A ray that misses the apex by no more than this, in lengths of the base where it crosses it, bends there to meet
+/// it. Rounding opens such gaps between windows that share a ray, and diverging rays widen them. The bent path is too
+/// long by the square of the gap.
+const NEAR_MISS: f64 = 1e-6;
+
+/// The side of the apex on which the rays of a window pass: that of the base's start, that of its end, or both.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Passes {
+    Left,
+    Both,
+    Right,
+}
+
+/// The shortest of the paths to the apex so far.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Apex {
+    at: [f64; 2],
+    slack: f64,
+    /// Index of its window.
+    pub(super) nearest: Option<usize>,
+    pub(super) distance: f64,
+    /// Where it crosses the base.
+    pub(super) entry: f64,
+    /// Where its last straight stretch begins.
+    from: [f64; 2],
+}
+
+impl Apex {
+    #[inline]
+    pub(super) fn new(frame: &FaceFrame) -> Self {
+        Self {
+            at: frame.apex,
+            slack: NEAR_MISS * frame.base,
+            nearest: None,
+            distance: f64::INFINITY,
+            entry: 0.0,
+            from: [0.0; 2],
+        }
+    }
+
+    /// Where the ray from the window's pseudo-source to the apex crosses the base, times the height of the apex over
+    /// the pseudo-source, which saves a division.
+    #[inline]
+    fn scaled_crossing<D>(&self, window: &PathWindow<D>) -> [f64; 2] {
+        let [x, y] = self.at;
+        [window.x * y + x * window.depth, window.depth + y]
+    }
+
+    /// Where the ray from the window's pseudo-source to the apex crosses the base.
+    #[inline]
+    pub(super) fn crossing<D>(&self, window: &PathWindow<D>) -> f64 {
+        let [scaled, height] = self.scaled_crossing(window);
+        scaled / height
+    }
+
+    #[inline]
+    pub(super) fn passes<D>(&self, window: &PathWindow<D>) -> Passes {
+        let [scaled, height] = self.scaled_crossing(window);
+        if scaled >= window.end * height {
+            Passes::Left
+        } else if scaled <= window.start * height {
+            Passes::Right
+        } else {
+            Passes::Both
+        }
+    }
+
+    /// Considers the path through a window, straight or with a bend at the end of the window.
+    #[inline]
+    pub(super) fn consider<D: Bearing>(&mut self, index: usize, window: &PathWindow<D>) {
+        let [scaled, height] = self.scaled_crossing(window);
+        if scaled < (window.start - self.slack) * height || scaled > (window.end + self.slack) * height {
+            return;
+        }
+        let [x, y] = self.at;
+        let crossing = scaled / height;
+        let entry = crossing.max(window.start).min(window.end);
+        let (distance, from) = if entry == crossing {
+            let along = x - window.x;
+            (window.offset + (along * along + height * height).sqrt(), [window.x, -window.depth])
+        } else {
+            let along = x - entry;
+            (window.distance(entry) + (along * along + y * y).sqrt(), [entry, 0.0])
+        };
+        if distance < self.distance {
+            *self = Self { nearest: Some(index), distance, entry, from, ..*self };
+        }
+    }
+
+    /// Sine and cosine, up to a common factor, of the angle at the apex between the side to the base's start and the
+    /// path.
+    pub(super) fn direction(&self) -> [f64; 2] {
+        let [x, y] = self.at;
+        let [dx, dy] = [self.from[0] - x, self.from[1] - y];
+        [y * dx - x * dy, -(x * dx + y * dy)]
+    }
+
+    /// The ray from the pseudo-source of its window, along which the path leaves that window.
+    pub(super) fn ray<D>(&self, window: &PathWindow<D>) -> [f64; 2] {
+        let [x, y] = if self.from[1] < 0.0 { self.at } else { [self.entry, 0.0] };
+        [x - window.x, y + window.depth]
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const NEAR: PathWindow = PathWindow { start: 0.0, end: 4.0, x: 1.0, depth: 2.0, offset: 0.5, turn: 3 };
+    const NEAR: PathWindow =
+        PathWindow { start: 0.0, end: 4.0, x: 1.0, depth: 2.0, offset: 0.5, turn: 3, bearing: () };
 
     #[test]
     fn a_mirrored_window_has_the_same_distances_from_the_other_end() {

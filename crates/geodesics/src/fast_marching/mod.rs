@@ -5,11 +5,10 @@
 //! | `triangles` | the triangles and their neighbours, laid out for speed |
 //! | `window` | what a triangle sees of the source |
 //! | `crossing` | windows that leave triangles, and the distances they give, in lanes |
-//! | `buckets` | the queue: which triangles are in a round |
+//! | `queue` | which triangles are in a round |
 //! | `front` | the loop over rounds, and the distances of the vertices |
 //! | `planar` | the other way to march: from vertex to vertex |
 //! | `unfold` | one of two treatments of obtuse corners; the other is `surface::Triangulation::flip_to_delaunay` |
-//! | `update` | the distance at one vertex of a triangle from those at the other two |
 //!
 //! # One run, step by step
 //!
@@ -34,13 +33,12 @@
 //!
 //! Meshes may have triangles of very different sizes, so the width of the buckets adapts.
 
-mod buckets;
 mod crossing;
 mod front;
 mod planar;
+mod queue;
 mod triangles;
 mod unfold;
-mod update;
 mod window;
 
 use std::borrow::Cow;
@@ -49,14 +47,13 @@ use std::cell::Cell;
 use base::{Budget, Exceeded, Observer};
 use surface::{IntrinsicMesh, Loops, Rows, Triangulation, VertexId};
 
-use crate::graph::patches_of;
+use crate::order::patches_of;
 use crate::solver::{DistanceSolver, Pool, PrunedSolver, within};
 use crate::source::Source;
 use front::TriangleFront;
 use planar::PlanarFront;
 use triangles::Triangles;
 use unfold::{HalfCorner, split_obtuse_corners};
-pub(crate) use update::Stencil;
 
 /// The local solver of fast marching.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
@@ -196,11 +193,10 @@ impl FastMarching {
         let solver = if carries_sources {
             LocalSolver::VirtualSource(Pool::default())
         } else {
-            let at = |v: u32| triangles.rank[v as usize];
-            let halves = halves.into_iter().map(|(v, half): (u32, HalfCorner)| {
-                let HalfCorner { base, apex, third } = half;
+            let at = |v| triangles.number(v);
+            let halves = halves.into_iter().map(|(v, HalfCorner { base, apex, third })| {
                 let half = HalfCorner { base: (at(base.0), base.1), apex: (at(apex.0), apex.1), third };
-                (at(v) as usize, half)
+                (at(v).index(), half)
             });
             let halves: Vec<_> = halves.collect();
             LocalSolver::Planar(Rows::collect(triangles.order.len(), halves.into_iter()), Pool::default())
@@ -208,11 +204,12 @@ impl FastMarching {
         Self { unit, triangles, solver, budget: observer.budget() }
     }
 
-    /// Gives the distances from the nearest of `sources` to `found`, by mesh vertex.
+    /// Gives the distances from the nearest of `sources` to `found`, by mesh vertex. The front `stops` near a vertex at a
+    /// distance, given the length of the longest edge there.
     fn run(
         &self,
         sources: &[Source],
-        stops: impl Stops,
+        stops: impl Fn(u32, f64, &dyn Fn() -> f64) -> bool,
         mut found: impl FnMut(u32, f64),
     ) -> Result<(), Exceeded> {
         let unit = self.unit;
@@ -224,33 +221,27 @@ impl FastMarching {
             &scaled
         };
         let triangles = &self.triangles;
+        let numbers = (0..).map(VertexId).zip(&triangles.order);
         match &self.solver {
             LocalSolver::VirtualSource(scratch) => scratch.with(|front| {
                 front.run(triangles, sources, &self.budget, |number, distance| {
                     let longest = || unit * triangles.longest_of(number);
                     triangles.mesh_vertices(number).into_iter().all(|v| stops(v, unit * distance, &longest))
                 })?;
-                let numbers = (0..).zip(&triangles.order);
                 numbers.for_each(|(internal, v)| found(*v, unit * front.distance(internal)));
                 Ok(())
             }),
             LocalSolver::Planar(halves, scratch) => scratch.with(|front| {
                 front.run(triangles, halves, sources, &self.budget, |vertex, distance| {
                     let longest = || unit * triangles.longest_at(vertex);
-                    stops(triangles.order[vertex as usize], unit * distance, &longest)
+                    stops(triangles.order[vertex.index()], unit * distance, &longest)
                 })?;
-                let numbers = (0..).zip(&triangles.order);
                 numbers.for_each(|(internal, v)| found(*v, unit * front.distance(internal)));
                 Ok(())
             }),
         }
     }
 }
-
-/// Whether a front stops near a mesh vertex at a distance, given the length of the longest edge there.
-trait Stops: Fn(u32, f64, &dyn Fn() -> f64) -> bool {}
-
-impl<F: Fn(u32, f64, &dyn Fn() -> f64) -> bool> Stops for F {}
 
 /// A pruned front stops this many times the longest edge at a vertex beyond the vertices nearest to the new source,
 /// so that distances near the border are the same as without pruning: a safety margin. Farthest points are checked

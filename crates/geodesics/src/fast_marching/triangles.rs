@@ -4,12 +4,12 @@ use std::collections::HashMap;
 
 use rayon::prelude::*;
 use surface::{
-    AngleSum, CornerId, FaceId, Link, Rows, Triangulation, VertexCorners, VertexId, double_area,
+    AngleSum, CornerId, EdgeGraph, FaceId, Link, Rows, Triangulation, VertexCorners, VertexId, double_area,
     scalar_product,
 };
 
 use super::window::COLLINEAR;
-use crate::graph::ranks;
+use crate::order::ranks;
 use crate::plane::{self, PlanePoint};
 
 /// A triangle, laid out in the plane anticlockwise: one cache line. Corners are numbered 0, 1 and 2, sides by the corner
@@ -23,7 +23,7 @@ pub(super) struct MarchTriangle {
     pub(super) apex: PlanePoint,
     /// For each side, the next of the corners opposite to it in the triangles that share it; the same corner again if
     /// no other triangle does.
-    pub(super) across: [u32; 3],
+    pub(super) across: [CornerId; 3],
     /// The vertices with their flags.
     vertices: [u32; 3],
 }
@@ -34,14 +34,19 @@ const BENDS: u32 = 1 << 31;
 const IS_IRREGULAR: u32 = 1 << 30;
 
 impl MarchTriangle {
+    #[cfg(test)]
+    pub(super) fn of(lengths: [f64; 3], vertices: [u32; 3]) -> Self {
+        Self { lengths, apex: apex(lengths), across: [CornerId(0); 3], vertices }
+    }
+
     /// The vertex at a corner.
     #[inline(always)]
-    pub(super) fn vertex(&self, corner: usize) -> u32 {
-        self.vertices[corner] & !(BENDS | IS_IRREGULAR)
+    pub(super) fn vertex(&self, corner: usize) -> VertexId {
+        VertexId(self.vertices[corner] & !(BENDS | IS_IRREGULAR))
     }
 
     #[inline(always)]
-    pub(super) fn vertices(&self) -> [u32; 3] {
+    pub(super) fn vertices(&self) -> [VertexId; 3] {
         [self.vertex(0), self.vertex(1), self.vertex(2)]
     }
 
@@ -69,6 +74,12 @@ impl MarchTriangle {
         [[0.0; 2], [self.base(), 0.0], self.apex]
     }
 
+    /// The base, the apex, and a corner: what lanes of triangles hold.
+    #[inline(always)]
+    pub(super) fn numbers(&self, corner: usize) -> [f64; 4] {
+        [self.base(), self.apex[0], self.apex[1], corner as f64]
+    }
+
     pub(super) fn centroid(&self) -> PlanePoint {
         [(self.base() + self.apex[0]) / 3.0, self.apex[1] / 3.0]
     }
@@ -85,20 +96,20 @@ impl MarchTriangle {
 /// renumbered for locality.
 #[derive(Debug)]
 pub(crate) struct Triangles {
-    pub(super) triangles: Vec<MarchTriangle>,
+    pub(super) all: Vec<MarchTriangle>,
     /// The corners at every vertex.
-    pub(super) corners: Rows<u32>,
+    pub(super) corners: Rows<CornerId>,
     /// Straight connections of vertices outside triangles.
-    pub(super) links: Rows<(u32, f64)>,
+    pub(super) links: EdgeGraph,
     /// Vertices that join parts which no side joins: ends of links, and vertices of several fans.
-    pub(super) joints: Vec<u32>,
+    pub(super) joints: Vec<VertexId>,
     /// Mesh vertex of every internal number.
     pub(crate) order: Vec<u32>,
     /// Internal number of every mesh vertex.
-    pub(crate) rank: Vec<u32>,
+    rank: Vec<u32>,
     /// The numbers of the hubs, edges of many triangles, by corner opposite. A window enters their triangles only if
     /// the middle of the edge is nearer through it than through those before.
-    pub(super) hubs: HashMap<u32, u32>,
+    pub(super) hubs: HashMap<CornerId, u32>,
     pub(super) n_hubs: usize,
     /// The length of the longest side.
     pub(super) longest: f64,
@@ -123,6 +134,86 @@ const LEAST_SLOPE: f64 = 1e-6;
 /// Edges of more triangles are hubs.
 const MOST_AROUND: usize = 8;
 
+/// The triangles of a triangulation in another order and with other corners first.
+struct Renumbered<'t> {
+    triangulation: &'t Triangulation,
+    rank: Vec<u32>,
+    /// The old number of every new one: triangles follow their first vertices.
+    old: Vec<u32>,
+    /// The new number of every old one.
+    new: Vec<u32>,
+}
+
+impl<'t> Renumbered<'t> {
+    fn new(triangulation: &'t Triangulation, order: &[u32]) -> Self {
+        let (rank, triangles) = (ranks(order), triangulation.triangles());
+        let first = |t: usize| triangles[t].vertices.iter().map(|v| rank[v.index()]).min().unwrap_or(0);
+        let by_vertex =
+            Rows::collect(order.len(), (0..triangles.len()).map(|t| (first(t) as usize, t as u32)));
+        let old = by_vertex.items().to_vec();
+        let new = ranks(&old);
+        Self { triangulation, rank, old, new }
+    }
+
+    /// The old corner that comes first: the last is opposite the shortest side.
+    fn first_corner(&self, old: u32) -> usize {
+        let lengths = self.triangulation.triangles()[old as usize].lengths;
+        let shortest = if lengths[1] < lengths[0] { 1 } else { 0 };
+        if lengths[2] <= lengths[shortest] { 0 } else { shortest + 1 }
+    }
+
+    /// The new number of an old corner.
+    fn new_corner(&self, old: CornerId) -> CornerId {
+        let t = old.face();
+        CornerId::new(FaceId(self.new[t.index()]), (old.slot() + 3 - self.first_corner(t.0)) % 3)
+    }
+
+    /// The old number of a new corner.
+    fn old_corner(&self, new: CornerId) -> CornerId {
+        let old = self.old[new.face().index()];
+        CornerId::new(FaceId(old), (new.slot() + self.first_corner(old)) % 3)
+    }
+
+    /// All triangles in their new order; `across` gives the next corner opposite the same side.
+    fn laid_out(&self, across: impl Fn(CornerId) -> CornerId + Sync) -> Vec<MarchTriangle> {
+        let laid_out = |(new, old): (u32, &u32)| {
+            let corners = FaceId(new).corners().map(|corner| self.old_corner(corner));
+            let side =
+                |corner: CornerId| self.triangulation.triangles()[*old as usize].lengths[corner.slot()];
+            let lengths = corners.map(side);
+            let is_irregular = corners.into_iter().any(|corner| across(across(corner)) != corner);
+            let mut vertices =
+                corners.map(|corner| self.rank[self.triangulation.corner_vertex(corner).index()]);
+            vertices[0] |= if is_irregular { IS_IRREGULAR } else { 0 };
+            let across = corners.map(|corner| self.new_corner(across(corner)));
+            MarchTriangle { lengths, apex: apex(lengths), across, vertices }
+        };
+        let numbers = (0..self.old.len() as u32).into_par_iter();
+        numbers.zip(&self.old).map(laid_out).collect()
+    }
+
+    /// For every vertex in its new order whether shortest paths may bend there, and whether its triangles form several fans;
+    /// `corners` are those of the triangles at each.
+    fn kinds(&self, corners: &Rows<CornerId>, order: &[u32]) -> Vec<[bool; 2]> {
+        let surroundings = self.triangulation.vertex_corners(order.len());
+        let kind = |v: usize| {
+            let mut angle = AngleSum::default();
+            for corner in corners.row(v) {
+                let old = self.old_corner(*corner);
+                let lengths = self.triangulation.triangles()[old.face().index()].lengths;
+                let [opposite, p, q] = [0, 1, 2].map(|step| lengths[(old.slot() + step) % 3]);
+                angle.add([double_area([opposite, p, q]), scalar_product(opposite, p, q)]);
+            }
+            let VertexCorners { first, n_corners, n_free } = surroundings[order[v] as usize];
+            let is_closed = n_corners > 0 && n_free == 0;
+            let is_inside = is_closed && self.triangulation.n_around(first) == n_corners as usize;
+            let has_fans = n_free > 2 || (is_closed && !is_inside);
+            [angle.exceeds(if is_inside { 2 } else { 1 }, EXCESS), has_fans]
+        };
+        (0..order.len()).into_par_iter().map(kind).collect()
+    }
+}
+
 impl Triangles {
     /// The triangles of a triangulation whose vertices are renumbered in the given order. Windows do not cross
     /// `removed` edges, which distances follow nevertheless; links may lead anywhere.
@@ -133,81 +224,34 @@ impl Triangles {
         removed: &[Link],
         mean_edge_length: f64,
     ) -> Self {
-        let n = order.len();
-        let rank = ranks(&order);
-        let glued = triangulation.triangles();
-        // Triangles follow their first vertices.
-        let first = |t: usize| glued[t].vertices.iter().map(|v| rank[v.index()]).min().unwrap_or(0);
-        let by_vertex = Rows::collect(n, (0..glued.len()).map(|t| (first(t) as usize, t as u32)));
-        let place = by_vertex.items();
-        let mut number = vec![0; glued.len()];
-        for (i, t) in (0..).zip(place) {
-            number[*t as usize] = i;
-        }
-        // The corners of every triangle are turned so that the last is opposite the shortest side.
-        let first_corner = |t: usize| {
-            let lengths = glued[t].lengths;
-            let shortest = if lengths[1] < lengths[0] { 1 } else { 0 };
-            if lengths[2] <= lengths[shortest] { 0 } else { shortest + 1 }
-        };
-        let renamed = |corner: CornerId| {
-            let t = corner.face().index();
-            3 * number[t] + ((corner.slot() + 3 - first_corner(t)) % 3) as u32
-        };
+        let renumbered = Renumbered::new(triangulation, &order);
         let (next, many) = around_edges(triangulation);
         let across =
             |corner| triangulation.opposite(corner).unwrap_or_else(|| *next.get(&corner).unwrap_or(&corner));
-        let mut triangles: Vec<MarchTriangle> = place
-            .par_iter()
-            .map(|t| {
-                let (face, first) = (FaceId(*t), first_corner(*t as usize));
-                let corner = |slot: usize| face.corners()[(slot + first) % 3];
-                let lengths = [0, 1, 2].map(|slot| glued[*t as usize].lengths[corner(slot).slot()]);
-                let is_irregular = face.corners().into_iter().any(|corner| across(across(corner)) != corner);
-                let mut vertices =
-                    [0, 1, 2].map(|slot| rank[triangulation.corner_vertex(corner(slot)).index()]);
-                vertices[0] |= if is_irregular { IS_IRREGULAR } else { 0 };
-                MarchTriangle {
-                    lengths,
-                    apex: apex(lengths),
-                    across: [0, 1, 2].map(|slot| renamed(across(corner(slot)))),
-                    vertices,
-                }
-            })
-            .collect();
-        let hubs =
-            (0..).zip(&many).flat_map(|(hub, edge)| edge.iter().map(move |corner| (renamed(*corner), hub)));
-        let hubs = hubs.collect();
-        let corners = triangles
-            .iter()
-            .flat_map(MarchTriangle::vertices)
-            .zip(0..)
-            .map(|(v, corner)| (v as usize, corner));
-        let corners = Rows::collect(n, corners);
-        let renumbered = |link: &Link| Link { ends: link.ends.map(|v| VertexId(rank[v.index()])), ..*link };
-        let all_links = links.iter().chain(removed).map(renumbered);
-        let lengths_at = |corner: u32| {
-            let (t, slot) = (place[corner as usize / 3] as usize, corner as usize % 3);
-            let first = first_corner(t);
-            [0, 1, 2].map(|k| glued[t].lengths[(slot + first + k) % 3])
-        };
-        let kinds = kinds(triangulation, lengths_at, &corners, &order);
-        triangles.par_iter_mut().for_each(|triangle| {
+        let mut all = renumbered.laid_out(across);
+        let hubs = (0..).zip(&many).flat_map(|(hub, edge)| edge.iter().map(move |corner| (*corner, hub)));
+        let hubs = hubs.map(|(corner, hub)| (renumbered.new_corner(corner), hub)).collect();
+        let at_vertex = all.iter().flat_map(MarchTriangle::vertices).zip((0..).map(CornerId));
+        let corners = Rows::collect(order.len(), at_vertex.map(|(v, corner)| (v.index(), corner)));
+        let kinds = renumbered.kinds(&corners, &order);
+        all.par_iter_mut().for_each(|triangle| {
             for slot in 0..3 {
-                if kinds[triangle.vertex(slot) as usize].may_bend {
-                    triangle.vertices[slot] |= BENDS;
-                }
+                let [may_bend, _] = kinds[triangle.vertex(slot).index()];
+                triangle.vertices[slot] |= if may_bend { BENDS } else { 0 };
             }
         });
-        let mut joints: Vec<u32> = links.iter().flat_map(|link| link.ends).map(|v| rank[v.index()]).collect();
-        joints.extend((0..).zip(&kinds).filter(|(_, kind)| kind.has_fans).map(|(v, _)| v));
+        let rank = renumbered.rank;
+        let new = |v: VertexId| VertexId(rank[v.index()]);
+        let mut joints: Vec<VertexId> = links.iter().flat_map(|link| link.ends).map(new).collect();
+        joints.extend((0..).map(VertexId).zip(&kinds).filter(|(_, [_, has_fans])| *has_fans).map(|(v, _)| v));
         joints.sort_unstable();
         joints.dedup();
-        let longest = glued.iter().flat_map(|t| t.lengths).chain(all_links.clone().map(|link| link.length));
-        let longest = longest.fold(0.0, f64::max);
+        let links = links.iter().chain(removed).map(|link| Link { ends: link.ends.map(new), ..*link });
+        let sides = triangulation.triangles().iter().flat_map(|triangle| triangle.lengths);
+        let longest = sides.chain(links.clone().map(|link| link.length)).fold(0.0, f64::max);
         Self {
-            links: Link::by_vertex(n, all_links),
-            triangles,
+            links: EdgeGraph::new(order.len(), links),
+            all,
             corners,
             joints,
             hubs,
@@ -219,36 +263,42 @@ impl Triangles {
         }
     }
 
+    /// The internal number of a mesh vertex.
+    #[inline]
+    pub(super) fn number(&self, v: VertexId) -> VertexId {
+        VertexId(self.rank[v.index()])
+    }
+
     /// The length of the longest side of a triangle.
-    pub(crate) fn longest_of(&self, triangle: u32) -> f64 {
+    pub(crate) fn longest_of(&self, triangle: FaceId) -> f64 {
         self.at(triangle).lengths.into_iter().fold(0.0, f64::max)
     }
 
     /// The length of the longest edge or link at a vertex.
-    pub(super) fn longest_at(&self, vertex: u32) -> f64 {
+    pub(super) fn longest_at(&self, vertex: VertexId) -> f64 {
         self.ways_from(vertex).map(|(_, length)| length).fold(0.0, f64::max)
     }
 
     /// The mesh vertices of a triangle.
-    pub(crate) fn mesh_vertices(&self, triangle: u32) -> [u32; 3] {
-        self.at(triangle).vertices().map(|v| self.order[v as usize])
+    pub(crate) fn mesh_vertices(&self, triangle: FaceId) -> [u32; 3] {
+        self.at(triangle).vertices().map(|v| self.order[v.index()])
     }
 
     #[inline]
-    pub(super) fn at(&self, triangle: u32) -> &MarchTriangle {
-        &self.triangles[triangle as usize]
+    pub(super) fn at(&self, triangle: FaceId) -> &MarchTriangle {
+        &self.all[triangle.index()]
     }
 
     /// The edges and links at a vertex: their other ends and lengths.
-    pub(super) fn ways_from(&self, vertex: u32) -> impl Iterator<Item = (u32, f64)> {
-        let edges = self.corners.row(vertex as usize).iter().flat_map(|corner| self.sides_from(*corner));
-        edges.chain(self.links.row(vertex as usize).iter().copied())
+    pub(super) fn ways_from(&self, vertex: VertexId) -> impl Iterator<Item = (VertexId, f64)> {
+        let edges = self.corners.row(vertex.index()).iter().flat_map(|corner| self.sides_from(*corner));
+        edges.chain(self.links.ways(vertex).iter().map(|way| (way.to, way.length)))
     }
 
     /// The two sides of a triangle that meet at a corner: their other ends and lengths.
     #[inline]
-    pub(super) fn sides_from(&self, corner: u32) -> [(u32, f64); 2] {
-        let (triangle, [next, prev]) = (self.at(corner / 3), around(corner as usize % 3));
+    pub(super) fn sides_from(&self, corner: CornerId) -> [(VertexId, f64); 2] {
+        let (triangle, [next, prev]) = (self.at(corner.face()), around(corner.slot()));
         [(triangle.vertex(next), triangle.lengths[prev]), (triangle.vertex(prev), triangle.lengths[next])]
     }
 }
@@ -285,38 +335,6 @@ fn around_edges(triangulation: &Triangulation) -> (HashMap<CornerId, CornerId>, 
         }
     }
     (next, many)
-}
-
-/// What shortest paths may do at a vertex.
-struct Kind {
-    /// Whether they may bend.
-    may_bend: bool,
-    /// Whether its triangles form several fans.
-    has_fans: bool,
-}
-
-/// The kinds of the vertices, in the given order; `corners` are those of the triangles at each, and `lengths_at` gives
-/// the lengths of the side opposite a corner and of the two others.
-fn kinds(
-    triangulation: &Triangulation,
-    lengths_at: impl Fn(u32) -> [f64; 3] + Sync,
-    corners: &Rows<u32>,
-    order: &[u32],
-) -> Vec<Kind> {
-    let surroundings = triangulation.vertex_corners(order.len());
-    let kind = |v: usize| {
-        let mut angle = AngleSum::default();
-        for corner in corners.row(v) {
-            let [opposite, p, q] = lengths_at(*corner);
-            angle.add([double_area([opposite, p, q]), scalar_product(opposite, p, q)]);
-        }
-        let VertexCorners { first, n_corners, n_free } = surroundings[order[v] as usize];
-        let is_closed = n_corners > 0 && n_free == 0;
-        let is_inside = is_closed && triangulation.n_around(first) == n_corners as usize;
-        let has_fans = n_free > 2 || (is_closed && !is_inside);
-        Kind { may_bend: angle.exceeds(if is_inside { 2 } else { 1 }, EXCESS), has_fans }
-    };
-    (0..order.len()).into_par_iter().map(kind).collect()
 }
 
 /// The next and the previous of the three corners of a triangle.

@@ -16,25 +16,25 @@ const MAX_STEPS: usize = 12;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct HalfCorner {
     /// The other end of the base, and its distance.
-    pub(super) base: (u32, f64),
+    pub(super) base: (VertexId, f64),
     /// The vertex in the obtuse corner, and its distance.
-    pub(super) apex: (u32, f64),
+    pub(super) apex: (VertexId, f64),
     /// The length of the third side.
     pub(super) third: f64,
 }
 
 /// Splits all obtuse corners of a mesh where unfolding finds a vertex. Returns the segments that split them, and
 /// their halves with the vertices at both ends of each base.
-pub(super) fn split_obtuse_corners(mesh: &IntrinsicMesh) -> (Vec<Link>, Vec<(u32, HalfCorner)>) {
+pub(super) fn split_obtuse_corners(mesh: &IntrinsicMesh) -> (Vec<Link>, Vec<(VertexId, HalfCorner)>) {
     let (topology, mut segments, mut halves) = (mesh.topology(), Vec::new(), Vec::new());
     for corner in (0..topology.n_faces()).flat_map(|f| FaceId::from(f).corners()) {
         let Some(Split { vertex: middle, length, bases }) = split(mesh, corner) else { continue };
         let apex = topology.corner_vertex(corner);
         let [_, from_a, from_b] = mesh.sides(corner);
         for ((end, base), side) in topology.edge_ends(corner).into_iter().zip(bases).zip([from_a, from_b]) {
-            let at_end = HalfCorner { base: (middle.0, base), apex: (apex.0, side), third: length };
-            let at_middle = HalfCorner { base: (end.0, base), apex: (apex.0, length), third: side };
-            halves.extend([(end.0, at_end), (middle.0, at_middle)]);
+            let at_end = HalfCorner { base: (middle, base), apex: (apex, side), third: length };
+            let at_middle = HalfCorner { base: (end, base), apex: (apex, length), third: side };
+            halves.extend([(end, at_end), (middle, at_middle)]);
         }
         segments.push(Link { ends: [apex, middle], length });
     }

@@ -55,4 +55,24 @@ impl SourceWindow {
         }
         self.offset + norm(ray)
     }
+
+    /// All numbers of the window: source, limits, offset.
+    #[inline(always)]
+    pub(super) fn numbers(&self) -> [f64; 7] {
+        let Self { source: [x, y], limits: [[lx, ly], [rx, ry]], offset } = *self;
+        [x, y, lx, ly, rx, ry, offset]
+    }
+
+    /// The window with these [numbers](Self::numbers).
+    #[inline(always)]
+    pub(super) fn of([x, y, lx, ly, rx, ry, offset]: [f64; 7]) -> Self {
+        Self { source: [x, y], limits: [[lx, ly], [rx, ry]], offset }
+    }
+
+    /// The same window of the [mirrored](super::triangles::MarchTriangle::mirrored) triangle, whose base has the given length.
+    pub(super) fn mirrored(&self, base: f64) -> Self {
+        let Self { source: [x, y], limits: [left, right], offset } = *self;
+        let flipped = |[x, y]: PlanePoint| [-x, y];
+        Self { source: [base - x, y], limits: [flipped(right), flipped(left)], offset }
+    }
 }

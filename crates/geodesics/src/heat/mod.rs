@@ -7,14 +7,14 @@ use base::{Budget, Exceeded, Observer};
 use linalg::Matrix;
 use rayon::prelude::*;
 use surface::laplacian::{Element, Laplacian, Metric};
-use surface::{Components, IntrinsicMesh, Link, Rows, VertexId, components_with_links};
+use surface::{
+    Components, EdgeGraph, Frontier, IntrinsicMesh, Link, Rows, SurfacePoint, VertexId, components_with_links,
+};
 
-use crate::dijkstra::Dijkstra;
 use crate::error::GeodesicError;
 use crate::solver::{DistanceSolver, Pool, within};
 use crate::source::Source;
 use flow::{HeatBar, LONGEST_BAR};
-use surface::SurfacePoint;
 use system::System;
 
 /// Options of [`HeatMethod`].
@@ -339,22 +339,19 @@ fn extent(
     budget: &Budget,
 ) -> Result<f64, Exceeded> {
     let links = metric.links.iter().map(|link| Link { length: link.length.min(LONGEST_BAR), ..*link });
-    let scaled = IntrinsicMesh::new(mesh.topology().clone(), metric.edges.clone());
-    let graph = Dijkstra::new(&scaled.with_links(links.collect()), budget);
-    let mut distances = vec![0.0; mesh.n_vertices()];
+    let edges = mesh.topology().edges().iter().zip(&metric.edges);
+    let edges = edges.map(|(ends, length)| Link { ends: *ends, length: *length });
+    let (graph, mut front) = (EdgeGraph::new(mesh.n_vertices(), edges.chain(links)), Frontier::default());
     let mut farthest = components.lowest_vertices();
     for _ in 0..2 {
-        let sources: Vec<Source> = farthest.iter().map(|v| Source::vertex(*v)).collect();
-        graph.solve_into(&sources, f64::INFINITY, &mut distances)?;
-        for v in (0..distances.len()).map(VertexId::from) {
-            if let Some(best) = components.of(v).map(|component| &mut farthest[component])
-                && distances[v.index()] > distances[best.index()]
-            {
-                *best = v;
-            }
-        }
+        budget.check()?;
+        front.reset(mesh.n_vertices());
+        farthest.iter().for_each(|v| _ = front.relax(*v, 0.0));
+        // The last vertex of a component that is visited is the farthest.
+        let visit = |v, _| components.of(v).map(|component| farthest[component] = v).is_some();
+        graph.search(&mut front, f64::INFINITY, visit, |_, _| ());
     }
-    Ok(farthest.iter().map(|v| distances[v.index()]).fold(0.0, f64::max))
+    Ok(farthest.iter().map(|v| front.distance(*v)).fold(0.0, f64::max))
 }
 
 #[cfg(test)]

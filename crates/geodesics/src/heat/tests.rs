@@ -201,7 +201,7 @@ fn degenerate_surfaces_give_no_nan() {
     let check = |mesh: IntrinsicMesh, what: &str| {
         let n = mesh.n_vertices();
         let method = heat(&mesh);
-        let graph = Dijkstra::new(&mesh, &());
+        let graph = crate::Dijkstra::new(&mesh, &());
         for source in [0, n / 2, n - 1].map(VertexId::from) {
             let (found, reached) = (method.distances(source).unwrap(), graph.distances(source).unwrap());
             assert_eq!(found[source.index()], 0.0, "{what}");

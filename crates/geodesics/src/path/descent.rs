@@ -2,12 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use surface::{EdgeId, FaceId, Triangle, VertexId};
+use surface::{EdgeId, FaceId, Triangle, VertexId, Way};
 
 use super::field::PathField;
 use super::plane::{Flat, faces_around, is_on, segment};
 use super::strip::{PathSection, Portal, Strip, StripPath};
-use crate::fast_marching::Stencil;
 use crate::plane::{PlanePoint, between, distance};
 use surface::SurfacePoint;
 
@@ -97,10 +96,10 @@ impl Descent<'_> {
             self.steps_within(*face, here, &mut |total, stop| offer(total, stop, Over::Face(*face)));
         }
         if let SurfacePoint::Vertex(vertex) = here {
-            for (other, length) in self.field.links(vertex) {
-                if !self.vertices.contains(&other) {
-                    let total = length + self.field.distances[other.index()];
-                    offer(total, StepEnd::Node(SurfacePoint::Vertex(other)), Over::Link(length));
+            for &Way { to, length, .. } in self.field.links(vertex) {
+                if !self.vertices.contains(&to) {
+                    let total = length + self.field.distances[to.index()];
+                    offer(total, StepEnd::Node(SurfacePoint::Vertex(to)), Over::Link(length));
                 }
             }
         }
@@ -138,9 +137,8 @@ fn distance_through(here: PlanePoint, base: [PlanePoint; 2], [at_a, at_b]: [f64;
     let [a, b] = base;
     let (length, side) = (distance(a, b), distance(a, here));
     let above = Triangle::from_sides([length, side, distance(b, here)]);
-    let stencil = Stencil { base: length, side, dot: above.x * length, cross: above.y * length };
     let below = Triangle::from_sides([length, at_a, at_b]);
-    let total = stencil.point_source(at_a, at_b);
+    let total = point_source([length, side], [above.x * length, above.y * length], [at_a, at_b]);
     if !total.is_finite() {
         // The point may be on the base itself, as the apex of a face without area behind it is.
         let is_on_base = at_a + at_b <= length * (1.0 + ON_BASE) && (0.0..=length).contains(&below.x);
@@ -153,4 +151,62 @@ fn distance_through(here: PlanePoint, base: [PlanePoint; 2], [at_a, at_b]: [f64;
     let crossing = between(a, b, t.clamp(0.0, 1.0));
     // In flat or impossible triangles, the source may appear nearer than the base.
     (total >= distance(here, crossing)).then_some((total, t.clamp(0.0, 1.0)))
+}
+
+/// If the squared height of the point source above the line through the base is below this share of its squared
+/// distance, it lies on that line up to rounding. Edges carry the front as well, and rounding would decide between
+/// the two.
+const COLLINEAR: f64 = 1e-12;
+
+/// Distance at `C` of a front that comes from a single point beyond the base `AB`, from the distances at `A` and `B`, the
+/// lengths `|AB|` and `|AC|`, and the scalar and cross product of the two; infinite if the straight line from that point to
+/// `C` misses the base, or without such a point. Edges carry the front.
+///
+/// Exact in the plane. Novotni and Klein 2002 (`novotni2002`), in coordinates that are multiples of `|AB|`.
+fn point_source([base, side]: [f64; 2], [dot, cross]: [f64; 2], [at_a, at_b]: [f64; 2]) -> f64 {
+    let sq_base = base * base;
+    // The point lies at (along, -height) / |AB|: at distance `at_a` from A and `at_b` from B.
+    let along = 0.5 * (sq_base + (at_a - at_b) * (at_a + at_b));
+    let reach = base * at_a;
+    let sq_height = (reach - along) * (reach + along);
+    let height = sq_height.sqrt();
+    // Where the line crosses the base, as a share of the base, times its positive denominator.
+    let crossing = along * cross + dot * height;
+    let distance = (side * side + at_a * at_a + 2.0 * (cross * height - dot * along) / sq_base).sqrt();
+    let is_hit =
+        (sq_height >= COLLINEAR * reach * reach) && (0.0..=sq_base * (height + cross)).contains(&crossing);
+    if is_hit { distance } else { f64::INFINITY }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_point_source_is_exact_in_the_plane_and_infinite_if_the_line_misses_the_base() {
+        let update = |known| point_source([2.0, 0.7f64.hypot(1.5)], [2.0 * 0.7, 2.0 * 1.5], known);
+        for sx in [-3.0f64, -0.5, 0.1, 1.0, 1.9, 4.0] {
+            for sy in [1e-9, 0.3, 2.0, 50.0] {
+                let at_a = sx.hypot(sy);
+                let at_b = (sx - 2.0).hypot(sy);
+                let exact = (sx - 0.7).hypot(sy + 1.5);
+                let crossing = sx + (0.7 - sx) * sy / (sy + 1.5);
+                let t = update([at_a, at_b]);
+                // The height of a source within rounding of the base's line cannot be recovered.
+                let tolerance = if sy < 1e-6 { 1e-7 } else { 1e-12 };
+                if (0.01..=1.99).contains(&crossing) && (sy > 1e-6 || t.is_finite()) {
+                    assert!((t - exact).abs() < tolerance * exact.max(1.0), "{t} against {exact}");
+                } else if !(-0.01..=2.01).contains(&crossing) {
+                    assert_eq!(t, f64::INFINITY);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_base_without_length_never_updates() {
+        for products in [[0.0, 0.0], [f64::NAN, f64::NAN]] {
+            assert_eq!(f64::min(7.0, point_source([0.0, 1.0], products, [1.0, 1.0])), 7.0);
+        }
+    }
 }

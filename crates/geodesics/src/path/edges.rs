@@ -1,11 +1,10 @@
 //! Paths along edges, as a fallback.
 
-use surface::{FaceId, IntrinsicMesh, VertexId};
+use surface::{EdgeGraph, EdgeId, FaceId, Frontier, IntrinsicMesh, VertexId};
 
 use super::field::PathField;
 use super::plane::faces_around;
 use super::strip::{PathSection, Strip, StripPath};
-use crate::heap::VertexHeap;
 use crate::source::Source;
 use surface::SurfacePoint;
 
@@ -20,32 +19,33 @@ pub(super) struct EdgeTree {
 impl EdgeTree {
     /// Cost: `O(p log p)`.
     pub(super) fn new(field: &PathField) -> Self {
-        let n = field.mesh.n_vertices();
-        let mut heap = VertexHeap::default();
-        heap.reset(n);
+        let (mesh, n) = (field.mesh, field.mesh.n_vertices());
+        let (graph, mut front) = (EdgeGraph::of(mesh), Frontier::default());
+        front.reset(n);
         let mut before = vec![None; n];
         for source in field.sources {
-            let point = source.point().simplified(field.mesh);
+            let point = source.point().simplified(mesh);
             for (vertex, distance) in source.reach() {
-                if let Some(section) = within_face(field.mesh, point, *vertex)
-                    && heap.relax(vertex.0, *distance)
+                if let Some(section) = within_face(mesh, point, *vertex)
+                    && front.relax(*vertex, *distance)
                 {
                     before[vertex.index()] = Some((point, section));
                 }
             }
         }
-        while let Some((distance, vertex)) = heap.pop() {
-            let vertex = VertexId(vertex);
-            let edges = edges_at(field.mesh, vertex)
-                .map(|(next, length, face)| (next, length, PathSection::Strip(Strip::within(face))));
-            let links = field.links(vertex).map(|(next, length)| (next, length, PathSection::Link(length)));
-            for (next, length, section) in edges.chain(links) {
-                if heap.relax(next.0, distance + length) {
-                    before[next.index()] = Some((SurfacePoint::Vertex(vertex), section));
-                }
-            }
-        }
-        Self { distances: (0..n as u32).map(|v| heap.distance(v)).collect(), before }
+        graph.search(
+            &mut front,
+            f64::INFINITY,
+            |_, _| true,
+            |from, way| {
+                let edge = ((way.number as usize) < mesh.topology().n_edges()).then_some(EdgeId(way.number));
+                let section = edge.map_or(PathSection::Link(way.length), |edge| {
+                    PathSection::Strip(Strip::within(mesh.topology().edge_corners(edge)[0].face()))
+                });
+                before[way.to.index()] = Some((SurfacePoint::Vertex(from), section));
+            },
+        );
+        Self { distances: front.into_distances(), before }
     }
 
     /// The shortest path along edges from `target` to a source, if there is one.
@@ -71,15 +71,6 @@ impl EdgeTree {
             }
         }
     }
-}
-
-/// The edges at a vertex, once for each face on them: the other end, the length, the face.
-fn edges_at(mesh: &IntrinsicMesh, vertex: VertexId) -> impl Iterator<Item = (VertexId, f64, FaceId)> {
-    let topology = mesh.topology();
-    topology.vertex_corners(vertex).iter().flat_map(move |corner| {
-        [(corner.next(), corner.prev()), (corner.prev(), corner.next())]
-            .map(|(third, end)| (topology.corner_vertex(end), mesh.opposite_length(third), corner.face()))
-    })
 }
 
 /// The section within a face from a point to a vertex of a face that holds it.

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use surface::{FaceId, IntrinsicMesh, Link, Rows, VertexId};
+use surface::{EdgeGraph, FaceId, IntrinsicMesh, VertexId, Way};
 
 use super::plane::faces_around;
 use crate::source::Source;
@@ -14,8 +14,7 @@ pub(super) struct PathField<'a> {
     pub(super) mesh: &'a IntrinsicMesh,
     pub(super) sources: &'a [Source],
     pub(super) distances: &'a [f64],
-    /// The other end and the length of every link at a vertex.
-    links: Rows<(u32, f64)>,
+    links: EdgeGraph,
     /// The sources that are vertices, and the others by the faces that hold them.
     at_vertices: BTreeSet<VertexId>,
     in_faces: BTreeMap<FaceId, Vec<SurfacePoint>>,
@@ -23,7 +22,7 @@ pub(super) struct PathField<'a> {
 
 impl<'a> PathField<'a> {
     pub(super) fn new(mesh: &'a IntrinsicMesh, sources: &'a [Source], distances: &'a [f64]) -> Self {
-        let links = Link::by_vertex(mesh.n_vertices(), mesh.links().iter().copied());
+        let links = EdgeGraph::new(mesh.n_vertices(), mesh.links().iter().copied());
         let mut at_vertices = BTreeSet::new();
         let mut in_faces: BTreeMap<FaceId, Vec<SurfacePoint>> = BTreeMap::new();
         for point in sources.iter().map(|source| source.point().simplified(mesh)) {
@@ -47,8 +46,8 @@ impl<'a> PathField<'a> {
         self.in_faces.get(&face).map_or(&[], Vec::as_slice)
     }
 
-    /// The vertices linked to a vertex, and the lengths of the links.
-    pub(super) fn links(&self, vertex: VertexId) -> impl Iterator<Item = (VertexId, f64)> {
-        self.links.row(vertex.index()).iter().map(|(end, length)| (VertexId(*end), *length))
+    /// The links at a vertex.
+    pub(super) fn links(&self, vertex: VertexId) -> &[Way] {
+        self.links.ways(vertex)
     }
 }

@@ -11,13 +11,11 @@
 //! | `funnel` | the shortest path through a strip of faces |
 //! | `turn` | the angle of a path at a vertex, and the faces on its inner side |
 //! | `straighten` | replaces bends by detours over their inner side until there are none |
-//! | `log_map` | the direction and length of the paths to all vertices |
 
 mod descent;
 mod edges;
 mod field;
 mod funnel;
-mod log_map;
 mod plane;
 mod straighten;
 mod strip;
@@ -36,13 +34,12 @@ use crate::source::Source;
 use descent::descend;
 use edges::EdgeTree;
 use field::PathField;
+pub(crate) use plane::Flat;
 use plane::faces_around;
 use straighten::straighten;
 use strip::{PathSection, StripPath};
 use surface::SurfacePoint;
 use visibility::nearest_visible;
-
-pub use log_map::log_map;
 
 /// A path along the surface, straight in every face it crosses.
 #[derive(Debug, Clone, PartialEq)]

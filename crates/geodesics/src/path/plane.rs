@@ -2,19 +2,19 @@
 
 use surface::{CornerId, EdgeId, FaceId, IntrinsicMesh, VertexId};
 
-use crate::plane::{PlanePoint, apex, between, distance};
+use crate::plane::{PlanePoint, apex, between, distance, sub};
 use surface::SurfacePoint;
 
 /// A face laid out in the plane.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Flat {
-    pub(super) vertices: [VertexId; 3],
-    pub(super) at: [PlanePoint; 3],
+pub(crate) struct Flat {
+    pub(crate) vertices: [VertexId; 3],
+    pub(crate) at: [PlanePoint; 3],
 }
 
 impl Flat {
     /// The face of a corner, with that corner in the origin and the next one on the x-axis.
-    pub(super) fn new(mesh: &IntrinsicMesh, corner: CornerId) -> Self {
+    pub(crate) fn new(mesh: &IntrinsicMesh, corner: CornerId) -> Self {
         let corners = [corner, corner.next(), corner.prev()];
         let sides = mesh.sides(corner.prev());
         let vertices = corners.map(|corner| mesh.topology().corner_vertex(corner));
@@ -22,15 +22,21 @@ impl Flat {
     }
 
     /// A face with its first corner in the origin.
-    pub(super) fn of_face(mesh: &IntrinsicMesh, face: FaceId) -> Self {
+    pub(crate) fn of_face(mesh: &IntrinsicMesh, face: FaceId) -> Self {
         Self::new(mesh, CornerId::new(face, 0))
     }
 
-    pub(super) fn vertex(&self, vertex: VertexId) -> PlanePoint {
+    /// The same with a point of the face in the origin.
+    pub(crate) fn about(self, mesh: &IntrinsicMesh, point: SurfacePoint) -> Self {
+        let origin = self.point(mesh, point);
+        Self { at: self.at.map(|at| sub(at, origin)), ..self }
+    }
+
+    pub(crate) fn vertex(&self, vertex: VertexId) -> PlanePoint {
         self.at[self.vertices.iter().position(|v| *v == vertex).unwrap_or_default()]
     }
 
-    pub(super) fn point(&self, mesh: &IntrinsicMesh, point: SurfacePoint) -> PlanePoint {
+    pub(crate) fn point(&self, mesh: &IntrinsicMesh, point: SurfacePoint) -> PlanePoint {
         match point {
             SurfacePoint::Vertex(vertex) => self.vertex(vertex),
             SurfacePoint::Edge { edge, t } => {

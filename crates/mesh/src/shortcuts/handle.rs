@@ -3,10 +3,9 @@
 use std::collections::HashSet;
 
 use base::{Budget, Exceeded};
-use surface::{CornerId, DisjointSets, SurfaceLoop, Topology, VertexId, short_loops};
+use surface::{CornerId, DisjointSets, Frontier, SurfaceLoop, Topology, VertexId, short_loops};
 
 use super::shortcut::{Shortcut, ShortcutKind};
-use crate::edge_graph::EdgeGraph;
 use crate::remap::Remapped;
 use crate::tri_mesh::TriMesh;
 
@@ -39,13 +38,13 @@ fn opened(
 ) -> Option<(Remapped, Shortcut)> {
     let (cut, sides) = cut_along(mesh, topology, &around.vertices)?;
     let areas = cut.mesh.vertex_areas();
-    let mut graph = EdgeGraph::of(&cut.mesh);
+    let (graph, mut front) = (cut.mesh.edge_graph(), Frontier::default());
     let mut flare = |side: &Vec<VertexId>| {
-        let near = graph.within(side, around.length, |_| false);
+        let near = graph.within(&mut front, side, around.length, |_| false);
         near.iter().map(|(v, _)| areas[v.index()]).sum::<f64>() / (around.length * around.length)
     };
     let widens = sides.iter().all(|side| flare(side) >= FLARE);
-    let detour = graph.between(&sides[0], &sides[1], f64::INFINITY);
+    let detour = graph.between(&mut front, &sides[0], &sides[1], f64::INFINITY);
     let shortcut =
         Shortcut { kind: ShortcutKind::Handle, vertex: around.vertices[0], girth: around.length, detour };
     (widens && detour >= least && detour.is_finite()).then_some((cut, shortcut))

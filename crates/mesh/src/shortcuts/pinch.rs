@@ -1,11 +1,10 @@
 //! Vertices that several parts of a surface share.
 
 use nalgebra::Point3;
-use surface::{CornerId, DisjointSets, EdgeId, OneRing, Topology, VertexId, components_of_faces};
+use surface::{CornerId, DisjointSets, EdgeId, Frontier, OneRing, Topology, VertexId, components_of_faces};
 
 use super::shortcut::{CutSurface, MOST, Shortcut, ShortcutKind};
 use super::spike::flattened;
-use crate::edge_graph::EdgeGraph;
 use crate::remap::Remapped;
 use crate::tri_mesh::TriMesh;
 
@@ -43,10 +42,11 @@ pub(super) fn cut(mesh: &TriMesh, topology: &Topology, detour: f64) -> CutSurfac
     let mut split = with_copies(mesh, &faces, &origins, &separate);
     // And where its parts meet nearby; a vertex that was pulled out of its surface is not far for that reason.
     put_back(&mut split, n);
-    let mut graph = EdgeGraph::of(&split.mesh);
+    let (graph, mut front) = (split.mesh.edge_graph(), Frontier::default());
     let copy = |i: usize| VertexId::from(n + i);
-    let is_far =
-        |(i, origin): (usize, &VertexId)| graph.between(&[*origin], &[copy(i)], detour).is_infinite();
+    let is_far = |(i, origin): (usize, &VertexId)| {
+        graph.between(&mut front, &[*origin], &[copy(i)], detour).is_infinite()
+    };
     let mut far: Vec<bool> = split.remap.origins().iter().enumerate().map(is_far).collect();
     if far.iter().filter(|far| **far).count() > MOST {
         far.fill(false);
@@ -118,9 +118,9 @@ fn shortcuts(cut: &Remapped, n: usize) -> Vec<Shortcut> {
     if cut.remap.is_identity() {
         return Vec::new();
     }
-    let mut graph = EdgeGraph::of(&cut.mesh);
+    let (graph, mut front) = (cut.mesh.edge_graph(), Frontier::default());
     let copies = cut.remap.origins().iter().enumerate().map(|(i, &vertex)| {
-        let detour = graph.between(&[VertexId::from(n + i)], &[vertex], f64::INFINITY);
+        let detour = graph.between(&mut front, &[VertexId::from(n + i)], &[vertex], f64::INFINITY);
         Shortcut { kind: ShortcutKind::Pinch, vertex, girth: 0.0, detour }
     });
     copies.collect()

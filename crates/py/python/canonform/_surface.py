@@ -545,18 +545,18 @@ class Surface(Constant):
             gradient: Floats = (array[self.faces][:, :, None] * sides).sum(axis=1) / (2 * self.areas[:, None]) ** 2
         return gradient
 
-    def log_map(self, source: Point, *, progress: Progress = False) -> Floats:
+    def log_map(self, source: Point, *, max_distance: float = np.inf, progress: Progress = False) -> Floats:
         """Where the vertices lie around a point, unrolled into the plane that touches there: shape (n, 2), in mesh units.
 
         Row v is the logarithm of vertex v: the direction in which the shortest path from the source to it starts, as long as this
         path. So its norm is `distances(source, geodesic="exact")[v]`, and neighbourhoods of several points can be laid over each
-        other. NaN for vertices that the repair dropped.
+        other. NaN for vertices beyond `max_distance` and for those that the repair dropped.
 
         The first axis points, from a vertex, along the edge to its neighbour with the lowest number; from a point of an edge, to the
         end with the higher number; in a face, from its first corner to the second. The second axis is 90 degrees to the left, seen
         from the side on which the corners of faces run counterclockwise. Angles at an inner vertex are scaled to a full turn.
 
-        Takes a path to every vertex. Raises `PointError`.
+        Takes as long as exact distances. Raises `PointError`.
 
         Examples
         --------
@@ -569,7 +569,7 @@ class Surface(Constant):
         if len(points) != 1:
             raise PointError(f"the logarithmic map is about one point, not {len(points)}")
         with shown(progress) as report:
-            return _canonform.log_map(self._inner, points[0], report)
+            return _canonform.log_map(self._inner, points[0], number("max_distance", max_distance, 0), report)
 
     def closest_point(self, points: ArrayLike) -> ClosestPoints:
         """For points in space, shape (3,) or (k, 3), the nearest points of the faces of the input."""

@@ -2,6 +2,7 @@
 
 mod closed_forms;
 mod degenerate;
+mod log_map;
 mod oracle;
 mod random;
 mod reference;

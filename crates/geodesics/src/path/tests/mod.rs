@@ -3,7 +3,6 @@
 mod closed_forms;
 mod degenerate;
 mod laws;
-mod log_map;
 mod reference;
 
 use surface::{FaceId, IntrinsicMesh, VertexId};

@@ -1,4 +1,8 @@
-//! Triangles in buckets, by tentative distance.
+//! The queue: triangles in buckets, by tentative distance.
+
+use surface::FaceId;
+
+use super::front::Labels;
 
 /// A triangle in no bucket.
 pub(super) const NOWHERE: u32 = u32::MAX;
@@ -23,12 +27,6 @@ const SHARE: usize = 8;
 /// Buckets with less than one triangle in this many should be wider.
 const SPARSE: usize = 8;
 
-/// What a queue knows of its triangles: their tentative distances and their buckets.
-pub(super) trait Queued {
-    fn distance(&self, triangle: u32) -> f64;
-    fn bucket(&mut self, triangle: u32) -> &mut u32;
-}
-
 /// A bucket queue (Dial 1969, `dial1969`) for distances that are not integers: a bucket may have to be emptied
 /// several times (delta-stepping; Meyer and Sanders 2003, `meyer2003`).
 ///
@@ -48,15 +46,15 @@ pub(super) struct Buckets {
     /// Whether nothing has been taken from it yet.
     is_fresh: bool,
     /// The buckets from the current one on; their number is a power of two.
-    ring: Vec<Vec<u32>>,
+    ring: Vec<Vec<FaceId>>,
     /// Number of entries in the ring.
     n_entries: usize,
     /// Triangles in later buckets than those of the ring.
-    beyond: Vec<u32>,
+    beyond: Vec<FaceId>,
     /// The first of these buckets.
     beyond_from: u32,
     /// Triangles while they are sorted into buckets again.
-    moving: Vec<u32>,
+    moving: Vec<FaceId>,
     /// Triangles that came into the current bucket after it was emptied.
     n_late: usize,
     /// Buckets, and triangles taken from them, since the width was last reconsidered.
@@ -98,7 +96,7 @@ impl Buckets {
 
     /// Puts a triangle, which is `at` a bucket, into the bucket of this distance, or into the current one if that is later.
     #[inline]
-    pub(super) fn put(&mut self, triangle: u32, at: &mut u32, distance: f64) {
+    pub(super) fn put(&mut self, triangle: FaceId, at: &mut u32, distance: f64) {
         let bucket = self.bucket(distance).max(self.current);
         if *at == bucket {
             return;
@@ -114,7 +112,7 @@ impl Buckets {
     }
 
     #[cold]
-    fn put_beyond(&mut self, triangle: u32, at: &mut u32, bucket: u32) {
+    fn put_beyond(&mut self, triangle: FaceId, at: &mut u32, bucket: u32) {
         if std::mem::replace(at, BEYOND) != BEYOND {
             self.beyond.push(triangle);
         }
@@ -125,7 +123,7 @@ impl Buckets {
     ///
     /// A triangle that comes into the current bucket after it was emptied is taken in another round.
     #[inline(never)]
-    pub(super) fn next_round(&mut self, round: &mut Vec<u32>, triangles: &mut impl Queued) -> bool {
+    pub(super) fn next_round(&mut self, round: &mut Vec<FaceId>, triangles: &mut Labels) -> bool {
         round.clear();
         while round.is_empty() {
             self.fit_width(triangles);
@@ -165,7 +163,7 @@ impl Buckets {
 
     /// Sorts the triangles beyond the ring again.
     #[cold]
-    fn bring_near(&mut self, triangles: &mut impl Queued) {
+    fn bring_near(&mut self, triangles: &mut Labels) {
         std::mem::swap(&mut self.beyond, &mut self.moving);
         self.beyond_from = NOWHERE;
         self.moving.retain(|triangle| *triangles.bucket(*triangle) == BEYOND);
@@ -173,7 +171,7 @@ impl Buckets {
     }
 
     /// Puts all triangles that are being moved into their buckets.
-    fn put_moving(&mut self, triangles: &mut impl Queued) {
+    fn put_moving(&mut self, triangles: &mut Labels) {
         for i in 0..self.moving.len() {
             let triangle = self.moving[i];
             let distance = triangles.distance(triangle);
@@ -186,7 +184,7 @@ impl Buckets {
 
     /// Makes buckets narrower or wider if that is due.
     #[inline]
-    fn fit_width(&mut self, triangles: &mut impl Queued) {
+    fn fit_width(&mut self, triangles: &mut Labels) {
         let share = (self.n_entries + self.beyond.len()) / SHARE;
         let is_too_high = self.current > TOO_HIGH;
         if self.n_late > LATE + share && self.current < TOO_HIGH / FACTOR as u32 {
@@ -201,7 +199,7 @@ impl Buckets {
 
     /// Sorts all triangles into buckets of another width.
     #[cold]
-    fn sort_again(&mut self, width: f64, triangles: &mut impl Queued) {
+    fn sort_again(&mut self, width: f64, triangles: &mut Labels) {
         self.moving.append(&mut self.beyond);
         self.ring.iter_mut().for_each(|bucket| self.moving.append(bucket));
         self.moving.retain(|triangle| std::mem::replace(triangles.bucket(*triangle), NOWHERE) != NOWHERE);
@@ -218,47 +216,37 @@ impl Buckets {
 mod tests {
     use super::*;
 
-    /// Triangles at given distances.
-    struct Triangles {
-        distances: Vec<f64>,
-        buckets: Vec<u32>,
+    fn put(triangle: u32, distance: f64, triangles: &mut Labels, queue: &mut Buckets) {
+        triangles.distances[triangle as usize] = distance;
+        queue.put(FaceId(triangle), triangles.bucket(FaceId(triangle)), distance);
     }
 
-    impl Triangles {
-        fn at(distances: Vec<f64>) -> Self {
-            Self { buckets: vec![NOWHERE; distances.len()], distances }
-        }
-
-        fn put(&mut self, triangle: u32, distance: f64, queue: &mut Buckets) {
-            queue.put(triangle, &mut self.buckets[triangle as usize], distance);
-        }
-    }
-
-    impl Queued for Triangles {
-        fn distance(&self, triangle: u32) -> f64 {
-            self.distances[triangle as usize]
-        }
-
-        fn bucket(&mut self, triangle: u32) -> &mut u32 {
-            &mut self.buckets[triangle as usize]
-        }
+    fn unreached(n: usize) -> Labels {
+        let mut labels = Labels::default();
+        labels.reset(n);
+        labels
     }
 
     /// Takes all triangles out, round by round.
-    fn rounds(buckets: &mut Buckets, triangles: &mut Triangles) -> Vec<Vec<u32>> {
+    fn rounds(buckets: &mut Buckets, triangles: &mut Labels) -> Vec<Vec<u32>> {
         let mut round = Vec::new();
-        std::iter::from_fn(|| buckets.next_round(&mut round, triangles).then(|| round.clone())).collect()
+        std::iter::from_fn(|| {
+            buckets
+                .next_round(&mut round, triangles)
+                .then(|| round.iter().map(|triangle| triangle.0).collect())
+        })
+        .collect()
     }
 
     #[test]
     fn triangles_come_once_each_bucket_by_bucket() {
         // Far more buckets than the ring has, with long gaps.
         let distances: Vec<f64> = (0..500u32).map(|v| f64::from(v * 7919 % 1013).powi(3) * 0.01).collect();
-        let (mut buckets, mut triangles) = (Buckets::default(), Triangles::at(distances.clone()));
+        let (mut buckets, mut triangles) = (Buckets::default(), unreached(distances.len()));
         buckets.reset(0.5, 20.0);
         for (v, distance) in (0..).zip(&distances) {
-            triangles.put(v, distance + 40.0, &mut buckets);
-            triangles.put(v, *distance, &mut buckets);
+            put(v, distance + 40.0, &mut triangles, &mut buckets);
+            put(v, *distance, &mut triangles, &mut buckets);
         }
         let rounds = rounds(&mut buckets, &mut triangles);
         let mut nearest = 0.0;
@@ -275,35 +263,33 @@ mod tests {
 
     #[test]
     fn late_triangles_come_in_another_round_of_the_same_bucket() {
-        let (mut buckets, mut triangles) = (Buckets::default(), Triangles::at(vec![0.0, 2.25, 2.75, 9.0]));
+        let (mut buckets, mut triangles) = (Buckets::default(), unreached(4));
         buckets.reset(1.0, 100.0);
-        for v in [0, 1, 3] {
-            triangles.put(v, triangles.distance(v), &mut buckets);
+        for (v, distance) in [(0, 0.0), (1, 2.25), (3, 9.0)] {
+            put(v, distance, &mut triangles, &mut buckets);
         }
         let mut round = Vec::new();
         assert!(buckets.next_round(&mut round, &mut triangles));
         assert!(buckets.next_round(&mut round, &mut triangles));
-        assert_eq!(round, [1]);
-        triangles.put(2, 2.75, &mut buckets);
-        triangles.distances[0] = -1.0;
-        triangles.put(0, -1.0, &mut buckets);
+        assert_eq!(round, [FaceId(1)]);
+        put(2, 2.75, &mut triangles, &mut buckets);
+        put(0, -1.0, &mut triangles, &mut buckets);
         assert_eq!(rounds(&mut buckets, &mut triangles), [vec![2, 0], vec![3]]);
     }
 
     #[test]
     fn a_bucket_that_keeps_filling_becomes_narrower() {
         let n = 3000u32;
-        let (mut buckets, mut triangles) =
-            (Buckets::default(), Triangles::at((0..n).map(|v| f64::from(v) * 1e-3).collect()));
+        let (mut buckets, mut triangles) = (Buckets::default(), unreached(n as usize));
         buckets.reset(1.0, 1.0);
-        triangles.put(0, 0.0, &mut buckets);
+        put(0, 0.0, &mut triangles, &mut buckets);
         let (mut round, mut next) = (Vec::new(), 0);
         while buckets.next_round(&mut round, &mut triangles) {
             for v in &round {
-                assert_eq!(*v, next);
+                assert_eq!(v.0, next);
                 next += 1;
                 if next < n {
-                    triangles.put(next, triangles.distance(next), &mut buckets);
+                    put(next, f64::from(next) * 1e-3, &mut triangles, &mut buckets);
                 }
             }
         }
@@ -315,9 +301,9 @@ mod tests {
     fn a_width_of_zero_gives_a_single_bucket() {
         let mut buckets = Buckets::default();
         for width in [0.0, f64::NAN, 1e-310] {
-            let mut triangles = Triangles::at(vec![0.0, 1.0, 2.0]);
+            let mut triangles = unreached(3);
             buckets.reset(width, 1.0);
-            (0..3).for_each(|v| triangles.put(v, f64::from(v), &mut buckets));
+            (0..3).for_each(|v| put(v, f64::from(v), &mut triangles, &mut buckets));
             let n: usize = rounds(&mut buckets, &mut triangles).iter().map(Vec::len).sum();
             assert_eq!(n, 3);
         }

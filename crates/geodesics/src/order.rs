@@ -1,41 +1,6 @@
-//! The graph of edges and links.
+//! Orders of vertices in which neighbours are close in memory.
 
-use surface::{IntrinsicMesh, Link, Rows, VertexId};
-
-/// The neighbours of every vertex along edges and links, and their distances.
-pub(crate) fn edge_graph(mesh: &IntrinsicMesh) -> Rows<(u32, f64)> {
-    let edges = mesh.topology().edges().iter().zip(mesh.edge_lengths());
-    let edges = edges.map(|(ends, length)| Link { ends: *ends, length: *length });
-    Link::by_vertex(mesh.n_vertices(), edges.chain(mesh.links().iter().copied()))
-}
-
-/// Vertices in breadth-first order, one component after the other, so that neighbours are close in memory.
-pub(crate) fn breadth_first_order<I: Iterator<Item = u32>>(
-    n: usize,
-    neighbours: impl Fn(u32) -> I,
-) -> Vec<u32> {
-    let mut is_visited = vec![false; n];
-    // One more, for a neighbour that has been visited.
-    let (mut order, mut end) = (vec![0; n + 1], 0);
-    for root in 0..n as u32 {
-        if std::mem::replace(&mut is_visited[root as usize], true) {
-            continue;
-        }
-        let mut head = end;
-        order[end] = root;
-        end += 1;
-        while head < end {
-            for u in neighbours(order[head]) {
-                // Without a branch, which could not be predicted.
-                order[end] = u;
-                end += usize::from(!std::mem::replace(&mut is_visited[u as usize], true));
-            }
-            head += 1;
-        }
-    }
-    order.truncate(n);
-    order
-}
+use surface::{EdgeGraph, IntrinsicMesh, Rows, VertexId};
 
 /// Number of vertices in a patch.
 const PATCH: usize = 64;
@@ -89,10 +54,10 @@ pub(crate) fn ranks(order: &[u32]) -> Vec<u32> {
 pub(crate) fn patches_of(mesh: &IntrinsicMesh) -> Vec<u32> {
     let (n, topology) = (mesh.n_vertices(), mesh.topology());
     let below = Rows::collect(n, topology.edges().iter().map(|[a, b]| (b.index(), a.0)));
-    let links = Link::by_vertex(n, mesh.links().iter().copied());
+    let links = EdgeGraph::new(n, mesh.links().iter().copied());
     order_by_patches(n, |v| {
         let above = topology.edges_above(VertexId(v)).iter().map(|[_, b]| b.0);
-        let along_links = links.row(v as usize).iter().map(|(end, _)| *end);
+        let along_links = links.ways(VertexId(v)).iter().map(|way| way.to.0);
         below.row(v as usize).iter().copied().chain(above).chain(along_links)
     })
 }

@@ -2,19 +2,21 @@
 
 use std::f64::consts::{PI, TAU};
 
-use mesh::{TriMesh, shapes};
-use nalgebra::Point3;
-use surface::{EdgeId, FaceId, IntrinsicMesh, VertexId};
+use mesh::shapes;
+use surface::{EdgeId, FaceId, IntrinsicMesh, Topology, VertexId};
 
-use super::vertex;
 use crate::tests::assert_close;
 use crate::{DistanceSolver, Exact, Source, SurfacePoint, log_map};
+
+fn vertex(index: usize) -> SurfacePoint {
+    SurfacePoint::Vertex(VertexId::from(index))
+}
 
 fn about(mesh: &IntrinsicMesh, point: SurfacePoint) -> Vec<[f64; 2]> {
     let source = Source::new(mesh, point).unwrap();
     let mut distances = vec![0.0; mesh.n_vertices()];
     Exact::new(mesh, &()).solve_into(std::slice::from_ref(&source), f64::INFINITY, &mut distances).unwrap();
-    let map = log_map(mesh, &source, &distances, &()).unwrap();
+    let map = log_map(mesh, point, f64::INFINITY, &()).unwrap();
     for ([x, y], distance) in map.iter().zip(&distances) {
         assert_close(x.hypot(*y), *distance, 1e-12);
     }
@@ -75,8 +77,8 @@ fn the_map_of_a_flat_sheet_is_the_sheet() {
     assert_same(&about(&mesh, point), &in_frame(&at, middle, [b[0] - a[0], b[1] - a[1]]), 1e-11);
 }
 
-/// A cone of rings of 16 vertices around vertex 0, whose slope makes its total angle `angle`, and the polar coordinates of the
-/// vertices on its surface.
+/// A cone of rings of 16 vertices around vertex 0 with this total angle, and the polar coordinates of the vertices on its
+/// surface.
 fn cone(angle: f64) -> (IntrinsicMesh, Vec<[f64; 2]>) {
     const AROUND: u32 = 16;
     let mut polar = vec![[0.0; 2]];
@@ -94,51 +96,56 @@ fn cone(angle: f64) -> (IntrinsicMesh, Vec<[f64; 2]>) {
             }
         }
     }
-    // The chord of a sector is the same in space as on the unrolled cone.
-    let sector = PI / f64::from(AROUND);
-    let radius = (0.5 * angle / f64::from(AROUND)).sin() / sector.sin();
-    let height = (1.0 - radius * radius).sqrt();
-    let place = |[r, a]: &[f64; 2]| {
-        let turn = a * TAU / angle;
-        Point3::new(r * radius * turn.cos(), r * radius * turn.sin(), -r * height)
+    let length = |ends: [VertexId; 2]| {
+        let [[r, a], [s, b]] = ends.map(|v| polar[v.index()]);
+        let turn = (a - b).abs().min(angle - (a - b).abs());
+        (r * r + s * s - 2.0 * r * s * turn.cos()).sqrt()
     };
-    (TriMesh { positions: polar.iter().map(place).collect(), faces }.intrinsic(), polar)
+    (IntrinsicMesh::with_lengths(Topology::new(polar.len(), faces), length), polar)
+}
+
+/// The point at a distance in a direction.
+fn at([r, a]: [f64; 2]) -> [f64; 2] {
+    [r * a.cos(), r * a.sin()]
 }
 
 #[test]
 fn the_map_of_a_cone_unrolls_it() {
-    let angle = 1.5 * PI;
-    let (mesh, polar) = cone(angle);
-    // About the apex, angles are scaled to a full turn.
-    let scaled: Vec<_> =
-        polar.iter().map(|[r, a]| [r * (a * TAU / angle).cos(), r * (a * TAU / angle).sin()]).collect();
-    assert_same(&about(&mesh, vertex(0)), &scaled, 1e-11);
-    // About another vertex, the cone is cut on the far side and lies flat.
-    let source = 1 + 2 * 16;
-    let flat: Vec<_> = polar
-        .iter()
-        .map(|[r, a]| {
-            let a = if *a > angle / 2.0 { a - angle } else { *a };
-            [r * a.cos(), r * a.sin()]
-        })
-        .collect();
-    let lowest = flat[1 + 16];
-    let along = [lowest[0] - flat[source][0], lowest[1] - flat[source][1]];
-    let (found, expected) = (about(&mesh, vertex(source)), in_frame(&flat, flat[source], along));
-    // Two shortest paths lead to the vertices on the cut.
-    let is_single = |i: &usize| (polar[*i][1] - angle / 2.0).abs() > 1e-9;
-    let pick = |map: &[[f64; 2]]| (0..map.len()).filter(is_single).map(|i| map[i]).collect::<Vec<_>>();
-    assert_same(&pick(&found), &pick(&expected), 1e-10);
+    for angle in [1.5 * PI, 2.7 * PI] {
+        let (mesh, polar) = cone(angle);
+        // About the apex, angles are scaled to a full turn.
+        let scaled: Vec<_> = polar.iter().map(|[r, a]| at([*r, a * TAU / angle])).collect();
+        assert_same(&about(&mesh, vertex(0)), &scaled, 1e-11);
+        // About another vertex, the cone is cut on the far side and lies flat. Paths to where the apex hides the source bend there.
+        let source = 1 + 2 * 16;
+        let turned = |a: f64| if a > angle / 2.0 { a - angle } else { a };
+        let flat = |[r, a]: &[f64; 2]| match turned(*a) {
+            a if a.abs() < PI => at([*r, a]),
+            _ => at([*r, PI]),
+        };
+        let flat: Vec<_> = polar.iter().map(flat).collect();
+        let lowest = flat[1 + 16];
+        let along = [lowest[0] - flat[source][0], lowest[1] - flat[source][1]];
+        let (found, expected) = (about(&mesh, vertex(source)), in_frame(&flat, flat[source], along));
+        // Two shortest paths lead to the vertices on the cut, unless both bend at the apex.
+        let is_single = |i: &usize| angle > TAU || (polar[*i][1] - angle / 2.0).abs() > 1e-9;
+        let pick = |map: &[[f64; 2]]| (0..map.len()).filter(is_single).map(|i| map[i]).collect::<Vec<_>>();
+        assert_same(&pick(&found), &pick(&expected), 1e-10);
+    }
 }
 
 #[test]
 fn what_is_out_of_reach_has_no_place() {
     let mesh = shapes::disjoint(&[shapes::grid(3, 3, 1.0), shapes::grid(2, 2, 1.0)]).intrinsic();
-    let source = Source::vertex(VertexId(0));
-    let distances = Exact::new(&mesh, &()).distances(VertexId(0)).unwrap();
-    let map = log_map(&mesh, &source, &distances, &()).unwrap();
+    let source = SurfacePoint::Vertex(VertexId(0));
+    let map = log_map(&mesh, source, f64::INFINITY, &()).unwrap();
     assert!(map[9..].iter().all(|p| p[0].is_nan() && p[1].is_nan()) && map[8][0].is_finite());
     let budget = base::Budget::unlimited();
     budget.cancel();
-    assert!(log_map(&mesh, &source, &distances, &budget).is_err());
+    assert!(log_map(&mesh, source, f64::INFINITY, &budget).is_err());
+    // Along the sides, and not across it.
+    let near = log_map(&mesh, source, 1.2, &()).unwrap();
+    let is_near = |v: usize| [0, 1, 3].contains(&v);
+    assert!((0..mesh.n_vertices()).all(|v| near[v][0].is_finite() == is_near(v)));
+    assert!((0..9).filter(|v| is_near(*v)).all(|v| near[v] == map[v]));
 }
