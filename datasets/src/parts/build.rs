@@ -60,7 +60,7 @@ impl MechanicalPart {
                 v[0] * v[1] * v[2] - inside - v[4] * v[3] * disc(FLOOR_HOLE)
             }
             PartFamily::HexScrew => return None,
-            // The centre of a section moves this far (Pappus).
+            // The center of a section moves this far (Pappus).
             PartFamily::BentPipe => ring(v[0], v[1]) * (2.0 * v[4] + v[2] * v[3].to_radians()),
             PartFamily::Shaft => (0..3).map(|i| disc(v[i]) * v[i + 3]).sum(),
             PartFamily::Block => v[0] * v[1] * v[2],

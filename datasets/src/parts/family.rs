@@ -1,7 +1,10 @@
 //! The families of parts, their parameters and the values that these take.
 
+use strum::{IntoStaticStr, VariantArray};
+
 /// A kind of mechanical part.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, IntoStaticStr, VariantArray)]
+#[strum(serialize_all = "kebab-case")]
 pub enum PartFamily {
     /// Two plates at a right angle with holes in a row through each.
     Bracket,
@@ -87,37 +90,24 @@ const BLOCK: &[Parameter] =
 
 impl PartFamily {
     /// All families.
-    pub const ALL: [Self; 8] = [
-        Self::Bracket,
-        Self::Plate,
-        Self::Gear,
-        Self::HexScrew,
-        Self::Enclosure,
-        Self::BentPipe,
-        Self::Shaft,
-        Self::Block,
-    ];
+    pub const ALL: &[Self] = Self::VARIANTS;
 
     /// Its name, such as `bent-pipe`.
     #[must_use]
     pub fn name(self) -> &'static str {
-        self.facts().0
+        self.into()
     }
 
     pub(super) fn parameters(self) -> &'static [Parameter] {
-        self.facts().1
-    }
-
-    fn facts(self) -> (&'static str, &'static [Parameter]) {
         match self {
-            Self::Bracket => ("bracket", BRACKET),
-            Self::Plate => ("plate", PLATE),
-            Self::Gear => ("gear", GEAR),
-            Self::HexScrew => ("hex-screw", HEX_SCREW),
-            Self::Enclosure => ("enclosure", ENCLOSURE),
-            Self::BentPipe => ("bent-pipe", BENT_PIPE),
-            Self::Shaft => ("shaft", SHAFT),
-            Self::Block => ("block", BLOCK),
+            Self::Bracket => BRACKET,
+            Self::Plate => PLATE,
+            Self::Gear => GEAR,
+            Self::HexScrew => HEX_SCREW,
+            Self::Enclosure => ENCLOSURE,
+            Self::BentPipe => BENT_PIPE,
+            Self::Shaft => SHAFT,
+            Self::Block => BLOCK,
         }
     }
 }

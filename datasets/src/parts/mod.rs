@@ -97,7 +97,7 @@ impl MechanicalPart {
 /// list ends when there are none; that is after more than 300 parts.
 #[must_use]
 pub fn mechanical_parts(seed: u64, n: usize) -> Vec<MechanicalPart> {
-    let mut families: Vec<Draw> = PartFamily::ALL.into_iter().map(|family| Draw::new(seed, family)).collect();
+    let mut families: Vec<Draw> = PartFamily::ALL.iter().map(|family| Draw::new(seed, *family)).collect();
     let mut parts = Vec::with_capacity(n);
     while parts.len() < n && !families.is_empty() {
         families.retain_mut(|family| {
