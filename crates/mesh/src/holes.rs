@@ -48,7 +48,7 @@ fn sides(hole: &[VertexId]) -> impl Iterator<Item = [VertexId; 2]> {
     hole.iter().zip(hole.iter().cycle().skip(1)).map(|(&a, &b)| [a, b])
 }
 
-/// The centre of gravity of a boundary, if it is short enough. Measured along the boundary, so that it does not depend on
+/// The center of gravity of a boundary, if it is short enough. Measured along the boundary, so that it does not depend on
 /// where its vertices are.
 fn middle_within(mesh: &TriMesh, hole: &[VertexId], longest: f64) -> Option<Point3<f64>> {
     let unit = mesh.unit();

@@ -37,7 +37,7 @@ const MOST: usize = 10_000;
 
 impl Surface {
     /// The surface that is described: without [shortcuts](crate::cut_shortcuts) and
-    /// [noise](crate::without_noise), with small [holes](crate::fill_holes) closed and long edges split. Coarse meshes are then
+    /// [noise](crate::denoise), with small [holes](crate::fill_holes) closed and long edges split. Coarse meshes are then
     /// measured as accurately as fine ones, and neither subdivision, noise, small holes nor a weld of two parts that touch
     /// change much. The first vertices are those of the repaired mesh, and so are the links. A mesh without such damage
     /// stays the same surface.
