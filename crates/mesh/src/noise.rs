@@ -35,28 +35,20 @@ const STEPS: [f64; 2] = [0.5, -0.53];
 /// Smooths like Taubin 1995 (`taubin1995` in `REFERENCES.bib`), which hardly shrinks. A vertex on an edge that does not have
 /// two faces follows its neighbors along such edges, so boundaries stay boundaries.
 ///
-/// # Panics
-/// If a face has a repeated vertex or one that does not exist, see [`Topology::new`].
-///
 /// ```
-/// use canonform_mesh::{shapes, denoise};
+/// use canonform_mesh::{denoise, shapes};
 ///
 /// let mut ball = shapes::icosphere(4);
-/// assert!(denoise(&ball).is_none());
+/// assert!(denoise(&ball, &ball.topology()).is_none());
 /// for (i, p) in ball.positions.iter_mut().enumerate() {
 ///     p.coords *= 1.0 + 0.02 * (12.9 * i as f64).sin();
 /// }
-/// let smooth = denoise(&ball).unwrap();
+/// let smooth = denoise(&ball, &ball.topology()).unwrap();
 /// let sphere = 4.0 * std::f64::consts::PI;
 /// assert!((smooth.area() / sphere - 1.0).abs() < 0.02 && ball.area() > 1.05 * sphere);
 /// ```
 #[must_use]
-pub fn denoise(mesh: &TriMesh) -> Option<TriMesh> {
-    smoothed(mesh, &mesh.topology())
-}
-
-/// [`denoise`], given the connectivity of the mesh.
-pub(crate) fn smoothed(mesh: &TriMesh, topology: &Topology) -> Option<TriMesh> {
+pub fn denoise(mesh: &TriMesh, topology: &Topology) -> Option<TriMesh> {
     let (mut smooth, umbrellas) = prepared(mesh, topology);
     if !umbrellas.bending(&smooth).is_noisy() || SmoothRegions::of(mesh).is_mechanical {
         return None;
@@ -76,7 +68,7 @@ pub(crate) fn smoothed(mesh: &TriMesh, topology: &Topology) -> Option<TriMesh> {
 /// Whether [`denoise`] changes a mesh. The edges of [mechanical parts](SmoothRegions::is_mechanical) are not noise.
 ///
 /// # Panics
-/// As [`denoise`].
+/// If a face has a repeated vertex or one that does not exist, see [`Topology::new`].
 #[must_use]
 pub fn is_noisy(mesh: &TriMesh) -> bool {
     let (oriented, umbrellas) = prepared(mesh, &mesh.topology());
@@ -219,12 +211,12 @@ mod tests {
     fn noise_is_smoothed_away_and_the_volume_stays() {
         let (clean, rough) = (shapes::torus(60, 30, 2.0, 0.7), noisy(0.05));
         assert!(coherence(&clean) > 0.8 && coherence(&rough) < 0.0);
-        let smooth = denoise(&rough).unwrap();
+        let smooth = denoise(&rough, &rough.topology()).unwrap();
         assert_eq!(smooth.faces, rough.faces);
         assert!(error(&smooth) < 0.5 * error(&rough), "{} of {}", error(&smooth), error(&rough));
         let area = [&clean, &rough, &smooth].map(TriMesh::area);
         assert!(area[1] > 1.1 * area[0] && (area[2] / area[0] - 1.0).abs() < 0.03, "{area:?}");
-        assert!(denoise(&smooth).is_none());
+        assert!(denoise(&smooth, &smooth.topology()).is_none());
     }
 
     #[test]
@@ -240,7 +232,7 @@ mod tests {
         turned.faces.iter_mut().step_by(3).for_each(|face| face.swap(0, 1));
         let empty = TriMesh { positions: Vec::new(), faces: Vec::new() };
         for mesh in [tilted, cube, torus, subdivided, turned, shapes::tetrahedron(0), empty] {
-            assert!(!is_noisy(&mesh) && denoise(&mesh).is_none(), "{}", coherence(&mesh));
+            assert!(!is_noisy(&mesh) && denoise(&mesh, &mesh.topology()).is_none(), "{}", coherence(&mesh));
         }
     }
 
@@ -251,7 +243,7 @@ mod tests {
         for (i, p) in sheet.positions.iter_mut().enumerate() {
             p.z += 0.2 * (12.9 * i as f64).sin();
         }
-        let smooth = denoise(&sheet).unwrap();
+        let smooth = denoise(&sheet, &sheet.topology()).unwrap();
         let [old, new] = [&before, &smooth].map(|mesh| mesh.bounds().unwrap());
         assert!((old[0] - new[0]).xy().amax() < 0.3 && (old[1] - new[1]).xy().amax() < 0.3);
         let areas = [&before, &sheet, &smooth].map(TriMesh::area);
@@ -261,12 +253,12 @@ mod tests {
     #[test]
     fn the_unit_of_length_does_not_matter() {
         let rough = noisy(0.05);
-        let smooth = denoise(&rough).unwrap();
+        let smooth = denoise(&rough, &rough.topology()).unwrap();
         for exponent in [-400, 400] {
             let factor = 2_f64.powi(exponent);
             let scaled =
                 TriMesh { positions: rough.positions.iter().map(|p| p * factor).collect(), ..rough.clone() };
-            let found = denoise(&scaled).unwrap();
+            let found = denoise(&scaled, &scaled.topology()).unwrap();
             assert!(found.positions.iter().zip(&smooth.positions).all(|(a, b)| *a == b * factor));
         }
     }

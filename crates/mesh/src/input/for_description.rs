@@ -5,10 +5,10 @@ use std::borrow::Cow;
 use base::{Budget, Exceeded, Observer};
 
 use super::surface::Surface;
-use crate::holes::filled;
-use crate::noise::smoothed;
+use crate::holes::fill_holes;
+use crate::noise::denoise;
 use crate::refine::refine;
-use crate::shortcuts::opened;
+use crate::shortcuts::cut_shortcuts;
 
 /// Longest edge, relative to the square root of the area. Equilateral triangles of this size have about 720 vertices.
 ///
@@ -68,18 +68,18 @@ impl Surface {
 
     fn prepared(&self, longest_hole: f64, budget: &Budget) -> Result<Self, Exceeded> {
         let topology = self.intrinsic().topology();
-        let opened = opened(self.mesh(), topology, budget)?;
+        let opened = cut_shortcuts(self.mesh(), topology, budget)?;
         let topology = match opened.cut.remap.is_identity() {
             true => Cow::Borrowed(topology),
             false => Cow::Owned(opened.cut.mesh.topology()),
         };
-        let smooth = smoothed(&opened.cut.mesh, &topology);
+        let smooth = denoise(&opened.cut.mesh, &topology);
         let mesh = smooth.as_ref().unwrap_or(&opened.cut.mesh);
         let size = mesh.root_of_area();
         if size.is_nan() || size <= 0.0 {
             return Ok(self.clone());
         }
-        let filled = filled(mesh, &topology, longest_hole * size);
+        let filled = fill_holes(mesh, &topology, longest_hole * size);
         let longest = if mesh.n_vertices() < FEW { LONGEST_OF_FEW } else { LONGEST };
         let fine = refine(&filled.mesh, longest * size, mesh.n_vertices() + MOST);
         let made = opened.cut.then(filled).then(fine);
