@@ -1,4 +1,4 @@
-//! The built-in dataset: labelled shapes of articulated families.
+//! The built-in dataset: labeled shapes of articulated families.
 
 use base::{Budget, Observer};
 use mesh::TriMesh;
@@ -13,7 +13,7 @@ use crate::shape::{posed_positions, rest_surface, shuffled};
 use crate::stream::{Purpose, Stream};
 
 /// Area of the rest surface of every family, in squared units, so that families do not differ by size alone.
-/// Lengths are roughly centimetres of a grown man.
+/// Lengths are roughly centimeters of a grown man.
 const AREA: f64 = 18_000.0;
 
 /// A family of shapes: poses of one body.
@@ -80,7 +80,7 @@ impl Default for ArticulatedOptions {
 }
 
 impl ArticulatedOptions {
-    /// Fewest vertices with which a body is recognisable.
+    /// Fewest vertices with which a body is recognizable.
     pub const MIN_VERTICES: usize = 1_000;
     /// Most vertices.
     pub const MAX_VERTICES: usize = 1_000_000;

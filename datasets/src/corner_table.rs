@@ -74,7 +74,7 @@ impl EditableCorners {
         })
     }
 
-    /// The neighbours of `v`, one for each corner of [`around`](Self::around).
+    /// The neighbors of `v`, one for each corner of [`around`](Self::around).
     pub(crate) fn neighbors(&self, v: VertexId) -> impl Iterator<Item = VertexId> + '_ {
         self.around(v).map(|c| self.vertex(c.next()))
     }
@@ -85,7 +85,7 @@ impl EditableCorners {
     }
 
     /// Whether the surface stays a manifold if the edge opposite `c` is collapsed: its ends have no common
-    /// neighbours but the two apexes, and the apexes keep at least three neighbours.
+    /// neighbors but the two apexes, and the apexes keep at least three neighbors.
     pub(crate) fn can_collapse(&self, c: CornerId) -> bool {
         let (u, w) = (self.vertex(c.next()), self.vertex(c.prev()));
         let apexes = [self.vertex(c), self.vertex(self.twin(c))];
@@ -117,8 +117,8 @@ impl EditableCorners {
         self.corner[u.index()] = NO_CORNER;
     }
 
-    /// Whether the edge opposite `c` can be flipped: its apexes are not neighbours, and its ends keep at
-    /// least three neighbours.
+    /// Whether the edge opposite `c` can be flipped: its apexes are not neighbors, and its ends keep at
+    /// least three neighbors.
     pub(crate) fn can_flip(&self, c: CornerId) -> bool {
         let (p, q) = (self.vertex(c), self.vertex(self.twin(c)));
         let ends = [self.vertex(c.next()), self.vertex(c.prev())];

@@ -4,7 +4,7 @@
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DatasetError {
-    /// Too few vertices for a recognisable body, or more than the generator supports.
+    /// Too few vertices for a recognizable body, or more than the generator supports.
     #[error("{n_vertices} vertices are out of range for an articulated shape; use {least} to {most}")]
     VertexCount {
         /// Requested number of vertices.

@@ -37,7 +37,7 @@ struct Leaf {
     origin: [i64; 3],
     /// Place in the block and sign pattern of each crossed cell.
     cells: Vec<(u16, u8)>,
-    /// Crossings of the edges that this block owns, then centres of loops with more than four corners.
+    /// Crossings of the edges that this block owns, then centers of loops with more than four corners.
     positions: Vec<Point3<f64>>,
     n_crossings: usize,
     /// Vertex on edge `3 * sample + axis`, counted within the block.
@@ -47,9 +47,9 @@ struct Leaf {
 /// Extracts the surface of `body`.
 ///
 /// Every crossed lattice edge has one vertex. Loops of three and four vertices become one or two triangles,
-/// longer ones a fan around their centre. No two triangles share more than an edge, so the result is a closed
+/// longer ones a fan around their center. No two triangles share more than an edge, so the result is a closed
 /// manifold for any body. The search descends from a cube around the body and drops blocks that the surface
-/// cannot reach: those where the value of the 1-Lipschitz function at the centre exceeds half the diagonal.
+/// cannot reach: those where the value of the 1-Lipschitz function at the center exceeds half the diagonal.
 /// Time and memory are `O(area / spacing^2)`.
 pub(crate) fn extract(
     body: &ImplicitBody,
@@ -134,7 +134,7 @@ fn each(n: usize) -> impl Iterator<Item = [usize; 3]> {
 
 /// Values at the lattice points of a block.
 ///
-/// If the value at the centre of 2 x 2 x 2 cells rules out that the surface passes, it is used for the
+/// If the value at the center of 2 x 2 x 2 cells rules out that the surface passes, it is used for the
 /// corners too: they have the same sign, and only the sign matters.
 fn samples(body: &ImplicitBody, spacing: f64, point: &impl Fn([f64; 3]) -> Point3<f64>) -> Vec<f64> {
     let reach = 3f64.sqrt() * spacing * (1.0 + 1e-9);
@@ -149,7 +149,7 @@ fn samples(body: &ImplicitBody, spacing: f64, point: &impl Fn([f64; 3]) -> Point
             each(3).for_each(|offset| values[sample_index(add(low, offset))] = value);
         }
     }
-    // In a second pass, so that true values replace those of centres at shared corners.
+    // In a second pass, so that true values replace those of centers at shared corners.
     let mut is_true = [false; SAMPLES * SAMPLES * SAMPLES];
     for low in crossed {
         for at in each(3).map(|offset| add(low, offset)) {
@@ -208,7 +208,7 @@ fn leaf(
     Leaf { origin, cells, positions, n_crossings, on_edge }
 }
 
-/// The triangles of block `i`; vertices on its upper faces belong to its neighbours.
+/// The triangles of block `i`; vertices on its upper faces belong to its neighbors.
 fn triangles(
     leaves: &[Leaf],
     offsets: &[u32],
@@ -217,7 +217,7 @@ fn triangles(
     loops: &[Vec<Loop>],
 ) -> Vec<[VertexId; 3]> {
     let leaf = &leaves[i];
-    // The block itself and its seven upper neighbours.
+    // The block itself and its seven upper neighbors.
     let neighbors: [Option<usize>; 8] = [0, 1, 2, 3, 4, 5, 6, 7].map(|c| {
         let step = corner(c);
         by_origin.get(&[0, 1, 2].map(|k| leaf.origin[k] + (BLOCK * step[k]) as i64)).copied()

@@ -290,7 +290,7 @@ impl ImplicitBody {
         sum
     }
 
-    /// Centre, in the plane of symmetry if there is one, and radius of a ball around the body.
+    /// Center, in the plane of symmetry if there is one, and radius of a ball around the body.
     pub(crate) fn bounding_ball(&self) -> (Point3<f64>, f64) {
         let added = || self.parts.iter().filter(|part| part.effect == Effect::Add);
         let n = added().count().max(1) as f64;

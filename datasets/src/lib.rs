@@ -1,4 +1,4 @@
-//! Generated datasets of labelled shapes.
+//! Generated datasets of labeled shapes.
 //!
 //! `ArticulatedOptions` -> **datasets** -> `LabeledShape` (`mesh::TriMesh`, name, class) -> `experiments`
 //!
@@ -17,7 +17,7 @@
 //!
 //! [`mechanical_parts`] makes screws, brackets and other parts as CAD programs export them.
 //!
-//! [`Damage`] changes meshes, generated or not, in ways that leave the shape recognisable.
+//! [`Damage`] changes meshes, generated or not, in ways that leave the shape recognizable.
 //!
 //! **Invariant.** The same options give the same bytes on any machine and any number of threads: every shape
 //! has its own random streams, and all arithmetic consists of operations that IEEE 754 defines exactly.

@@ -76,7 +76,7 @@ fn cotangent(apex: Point3<f64>, a: Point3<f64>, b: Point3<f64>) -> f64 {
     x.dot(&y) / x.cross(&y).norm().max(1e-300)
 }
 
-/// Moves each vertex in its tangent plane towards the weighted centre of its neighbours, then back onto the surface.
+/// Moves each vertex in its tangent plane towards the weighted center of its neighbors, then back onto the surface.
 /// The weights are proportional to the length of an edge over its grain, so that edges approach lengths proportional
 /// to the grain. All vertices move at once, so the result does not depend on their order or on the number of threads.
 fn smooth(surface: &mut RestSurface, body: &ImplicitBody, budget: &Budget) -> Result<(), Exceeded> {

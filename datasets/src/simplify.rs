@@ -16,14 +16,14 @@ pub(crate) struct RestSurface {
 }
 
 /// Smallest cosine between the normals of a triangle before and after a collapse.
-const LEAST_COSINE: f64 = 0.2;
+const MIN_COSINE: f64 = 0.2;
 
-/// Most neighbours of a vertex after a collapse; with more, it would block further collapses.
-const MOST_NEIGHBORS: usize = 12;
+/// Most neighbors of a vertex after a collapse; with more, it would block further collapses.
+const MAX_NEIGHBORS: usize = 12;
 
 /// Collapses edges, the shortest relative to their grain first, until `n_vertices` vertices are left.
 ///
-/// A vertex is merged into its neighbour without moving it, so that all vertices stay on the surface. An edge stays
+/// A vertex is merged into its neighbor without moving it, so that all vertices stay on the surface. An edge stays
 /// if its collapse would break the manifold or invert a triangle. Edges far shorter than those of the result are
 /// collapsed in a few sweeps, `O(m)` for the bulk, the others in the order of a queue, `O(k log k)` for the rest.
 /// Returns the number of vertices left, which exceeds `n_vertices` only if no other edge can be collapsed.
@@ -158,7 +158,7 @@ impl RestSurface {
         let Some(c) = self.table.facing(gone, kept) else { return false };
         let n_neighbors = self.table.neighbors(gone).count() + self.table.neighbors(kept).count() - 4;
         let possible =
-            n_neighbors <= MOST_NEIGHBORS && self.table.can_collapse(c) && self.stays_unfolded(gone, kept);
+            n_neighbors <= MAX_NEIGHBORS && self.table.can_collapse(c) && self.stays_unfolded(gone, kept);
         if possible {
             self.table.collapse(c);
         }
@@ -175,7 +175,7 @@ impl RestSurface {
             }
             let edge = at(d) - at(b);
             let (old, new) = ((at(gone) - at(b)).cross(&edge), (at(kept) - at(b)).cross(&edge));
-            old.dot(&new) > LEAST_COSINE * (old.norm_squared() * new.norm_squared()).sqrt()
+            old.dot(&new) > MIN_COSINE * (old.norm_squared() * new.norm_squared()).sqrt()
         })
     }
 }

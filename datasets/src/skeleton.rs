@@ -23,7 +23,7 @@ pub(crate) fn node(at: [f64; 3], radius: f64, grain: f64) -> BoneNode {
 /// its length.
 #[derive(Debug, Clone)]
 pub(crate) struct Joint {
-    /// Node at its centre.
+    /// Node at its center.
     pub(crate) node: usize,
     /// Length of the interval before the node.
     pub(crate) before: f64,
@@ -88,7 +88,7 @@ pub(crate) struct Skeleton {
 pub(crate) struct Membership {
     /// Length along the axis.
     pub(crate) arc: f64,
-    /// Not normalised over the chains.
+    /// Not normalized over the chains.
     pub(crate) weight: f64,
     pub(crate) grain: f64,
 }

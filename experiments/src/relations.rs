@@ -111,7 +111,7 @@ impl Truth {
 
 /// Parameters that are numbers of things or angles, which stay as they are at another size.
 fn is_count(name: &str) -> bool {
-    ["holes", "teeth", "angle", "hand", "lobes", "flutes", "grips"].iter().any(|word| name.contains(word))
+    ["holes", "teeth", "angle", "hand"].iter().any(|word| name.contains(word))
 }
 
 /// The relation by the meshes of two shapes whose signatures are alike, the hardest case.

@@ -9,7 +9,7 @@ fn is_code(c: char) -> bool {
         || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
-/// The text on one line that people can read: a name may hold codes that end a line, move the cursor, change colours, or make
+/// The text on one line that people can read: a name may hold codes that end a line, move the cursor, change colors, or make
 /// a terminal answer.
 ///
 /// ```

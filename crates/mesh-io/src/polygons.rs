@@ -190,26 +190,6 @@ pub(crate) fn finite(position: impl Into<Point3<f64>>, vertex: usize) -> Result<
     }
 }
 
-/// Appends a copy of a mesh, moved by an affine map. Where that mirrors it, corners change their order.
-pub(crate) fn append_placed(whole: &mut TriMesh, part: &TriMesh, place: &Matrix4<f64>) -> Result<(), Fault> {
-    let start = whole.n_vertices() as u32;
-    let linear = place.fixed_view::<3, 3>(0, 0).into_owned();
-    let shift = place.fixed_view::<3, 1>(0, 3).into_owned();
-    if *place == Matrix4::identity() {
-        whole.positions.extend_from_slice(&part.positions);
-    } else {
-        for (vertex, p) in part.positions.iter().enumerate() {
-            whole.positions.push(finite(linear * p.coords + shift, vertex)?);
-        }
-    }
-    let is_mirror = linear.determinant() < 0.0;
-    whole.faces.extend(part.faces.iter().map(|&[a, b, c]| {
-        let face = if is_mirror { [a, c, b] } else { [a, b, c] };
-        face.map(|v| VertexId(v.0 + start))
-    }));
-    Ok(())
-}
-
 /// Vertices and faces that copies of meshes may always add up to.
 const COPIES: u64 = 1 << 22;
 /// Beyond, they may be this many times the bytes of the file.
@@ -225,6 +205,54 @@ pub(crate) fn check_copies(items: u64, n_bytes: u64) -> Result<(), Fault> {
             "the file is damaged or malicious: if it is neither, export a single copy",
         )),
         _ => Ok(()),
+    }
+}
+
+/// Meshes that are put together, each where the file places it.
+pub(crate) struct Assembly<'a> {
+    pub(crate) whole: TriMesh,
+    /// Number of meshes with vertices so far.
+    pub(crate) instances: usize,
+    /// Number of meshes, with those that have none.
+    n_appended: u64,
+    limits: &'a ReadLimits,
+    /// Bytes of the file.
+    n_bytes: u64,
+}
+
+impl<'a> Assembly<'a> {
+    pub(crate) fn new(limits: &'a ReadLimits, n_bytes: u64) -> Self {
+        Self { whole: TriMesh::default(), instances: 0, n_appended: 0, limits, n_bytes }
+    }
+
+    /// Appends a copy of a mesh, moved by an affine map. Where that mirrors it, corners change their order.
+    pub(crate) fn append(&mut self, part: &TriMesh, place: &Matrix4<f64>) -> Result<(), Fault> {
+        let n_vertices = (self.whole.n_vertices() + part.n_vertices()) as u64;
+        let n_faces = (self.whole.n_faces() + part.n_faces()) as u64;
+        self.limits.check(n_vertices, n_faces)?;
+        self.n_appended += 1;
+        // A single mesh is no copy, however large it is.
+        let is_only = self.instances == 0 && part.n_vertices() > 0;
+        if !is_only {
+            check_copies(n_vertices + n_faces + self.n_appended, self.n_bytes)?;
+        }
+        self.instances += usize::from(part.n_vertices() > 0);
+        let start = self.whole.n_vertices() as u32;
+        let linear = place.fixed_view::<3, 3>(0, 0).into_owned();
+        let shift = place.fixed_view::<3, 1>(0, 3).into_owned();
+        if *place == Matrix4::identity() {
+            self.whole.positions.extend_from_slice(&part.positions);
+        } else {
+            for (vertex, p) in part.positions.iter().enumerate() {
+                self.whole.positions.push(finite(linear * p.coords + shift, vertex)?);
+            }
+        }
+        let is_mirror = linear.determinant() < 0.0;
+        self.whole.faces.extend(part.faces.iter().map(|&[a, b, c]| {
+            let face = if is_mirror { [a, c, b] } else { [a, b, c] };
+            face.map(|v| VertexId(v.0 + start))
+        }));
+        Ok(())
     }
 }
 

@@ -154,7 +154,7 @@ fn damage(path: &Path, fault: MeshError) -> MeshError {
             Fault::syntax("compressed data", fault.source.to_string())
         }
         MeshError::File { fault: Fault::OverLimit { items: "bytes", limit }, .. } => {
-            Fault::Inflates { limit }
+            Fault::DecompressionBomb { limit }
         }
         other => return other,
     };

@@ -11,7 +11,7 @@ use crate::tri_mesh::TriMesh;
 const BOUNDARY: f64 = 10.0;
 
 /// Smallest cosine between the normals of a face before and after a collapse.
-const LEAST_COSINE: f64 = 0.2;
+const MIN_COSINE: f64 = 0.2;
 
 /// Operations that a collapse counts for in the meter of a budget.
 const OPERATIONS: usize = 256;
@@ -199,7 +199,7 @@ impl<'a> Collapse<'a> {
         self.faces_at[v].iter().filter(|&&f| self.faces[f as usize].iter().any(|x| x.index() == w)).count()
     }
 
-    /// Queues the edges from `v` to the chosen neighbours.
+    /// Queues the edges from `v` to the chosen neighbors.
     fn enqueue(&mut self, v: usize, chosen: impl Fn(usize) -> bool) {
         for w in self.neighbors(v).into_iter().filter(|&w| chosen(w)) {
             let (p, q) = (self.positions[v], self.positions[w]);
@@ -217,7 +217,7 @@ impl<'a> Collapse<'a> {
         let common = near_v.iter().filter(|x| near_w.binary_search(x).is_ok()).count();
         let on_boundary = |v: usize, near: &[usize]| near.iter().any(|&x| self.faces_of_edge(v, x) != 2);
         let pinches = of_edge == 2 && on_boundary(v, &near_v) && on_boundary(w, &near_w);
-        // A vertex with fewer than three neighbours would leave a face without area.
+        // A vertex with fewer than three neighbors would leave a face without area.
         let small = near_v.len() + near_w.len() - common < 5 && of_edge == 2;
         if common != of_edge || of_edge > 2 || pinches || small {
             return false;
@@ -258,7 +258,7 @@ impl<'a> Collapse<'a> {
             let normal = |[a, b, c]: [Point3<f64>; 3]| (b - a).cross(&(c - a));
             let old = normal(face.map(|x| self.positions[x]));
             let new = normal(face.map(|x| if x == v { target } else { self.positions[x] }));
-            old.dot(&new) > LEAST_COSINE * (old.norm_squared() * new.norm_squared()).sqrt()
+            old.dot(&new) > MIN_COSINE * (old.norm_squared() * new.norm_squared()).sqrt()
         })
     }
 }

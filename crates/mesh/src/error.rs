@@ -252,7 +252,7 @@ pub enum Fault {
         "the compressed data grows beyond {limit} bytes, out of proportion to the file; \
          the file is damaged or malicious: if it is neither, save it without compression"
     )]
-    Inflates {
+    DecompressionBomb {
         /// Largest decompressed size, in bytes.
         limit: u64,
     },

@@ -12,25 +12,17 @@ use crate::tri_mesh::TriMesh;
 ///
 /// A hole is a closed loop of edges with one face. Loops that touch each other in a vertex are left open.
 ///
-/// # Panics
-/// If a face has a repeated vertex or one that does not exist, see [`Topology::new`].
-///
 /// ```
 /// use canonform_mesh::{fill_holes, shapes, validate};
 ///
 /// let mut ball = shapes::icosphere(3);
 /// ball.faces.truncate(ball.faces.len() - 4);
 /// assert_eq!(validate(&ball).n_boundary_loops, 1);
-/// assert_eq!(validate(&fill_holes(&ball, 1.0).mesh).n_boundary_loops, 0);
-/// assert!(fill_holes(&ball, 0.1).remap.is_identity());
+/// assert_eq!(validate(&fill_holes(&ball, &ball.topology(), 1.0).mesh).n_boundary_loops, 0);
+/// assert!(fill_holes(&ball, &ball.topology(), 0.1).remap.is_identity());
 /// ```
 #[must_use]
-pub fn fill_holes(mesh: &TriMesh, longest: f64) -> Remapped {
-    filled(mesh, &mesh.topology(), longest)
-}
-
-/// [`fill_holes`], given the connectivity of the mesh.
-pub(crate) fn filled(mesh: &TriMesh, topology: &Topology, longest: f64) -> Remapped {
+pub fn fill_holes(mesh: &TriMesh, topology: &Topology, longest: f64) -> Remapped {
     let (mut filled, mut origins) = (mesh.clone(), Vec::new());
     for hole in holes(mesh, topology) {
         let Some(middle) = middle_within(mesh, &hole, longest) else { continue };
@@ -48,7 +40,7 @@ fn sides(hole: &[VertexId]) -> impl Iterator<Item = [VertexId; 2]> {
     hole.iter().zip(hole.iter().cycle().skip(1)).map(|(&a, &b)| [a, b])
 }
 
-/// The centre of gravity of a boundary, if it is short enough. Measured along the boundary, so that it does not depend on
+/// The center of gravity of a boundary, if it is short enough. Measured along the boundary, so that it does not depend on
 /// where its vertices are.
 fn middle_within(mesh: &TriMesh, hole: &[VertexId], longest: f64) -> Option<Point3<f64>> {
     let unit = mesh.unit();
@@ -119,7 +111,7 @@ mod tests {
     #[test]
     fn holes_are_closed_and_faces_stay_oriented() {
         let mesh = pierced(&[3, 100, 500]);
-        let filled = fill_holes(&mesh, 3.0);
+        let filled = fill_holes(&mesh, &mesh.topology(), 3.0);
         let report = validate(&filled.mesh);
         assert_eq!((report.n_boundary_loops, report.flipped_faces), (0, 0), "{report:?}");
         assert_eq!(filled.mesh.positions[..mesh.n_vertices()], mesh.positions);
@@ -132,27 +124,28 @@ mod tests {
     #[test]
     fn large_holes_and_touching_ones_stay() {
         let sheet = shapes::grid(5, 5, 1.0);
-        assert!(fill_holes(&sheet, 15.9).remap.is_identity());
-        assert_eq!(fill_holes(&sheet, 16.1).remap.origins().len(), 1);
+        assert!(fill_holes(&sheet, &sheet.topology(), 15.9).remap.is_identity());
+        assert_eq!(fill_holes(&sheet, &sheet.topology(), 16.1).remap.origins().len(), 1);
         let mut touching = shapes::grid(6, 6, 1.0);
         touching.faces.retain(|face| {
             let corner = face.iter().map(|v| v.0).min().unwrap();
             ![7, 14].contains(&corner)
         });
-        assert!(fill_holes(&touching, 6.0).remap.is_identity());
-        assert!(fill_holes(&shapes::torus(8, 8, 2.0, 0.7), 100.0).remap.is_identity());
+        assert!(fill_holes(&touching, &touching.topology(), 6.0).remap.is_identity());
+        let torus = shapes::torus(8, 8, 2.0, 0.7);
+        assert!(fill_holes(&torus, &torus.topology(), 100.0).remap.is_identity());
     }
 
     #[test]
     fn subdivision_and_flipped_faces_do_not_change_the_middle() {
         let mesh = pierced(&[77]);
-        let expected = fill_holes(&mesh, 3.0);
+        let expected = fill_holes(&mesh, &mesh.topology(), 3.0);
         let fine = shapes::subdivide(&mesh);
         assert!(fine.n_vertices() > 3 * mesh.n_vertices());
         let mut turned = mesh.clone();
         turned.faces.iter_mut().step_by(5).for_each(|face| face.swap(0, 2));
         for other in [fine, turned] {
-            let found = fill_holes(&other, 3.0);
+            let found = fill_holes(&other, &other.topology(), 3.0);
             assert_eq!(found.remap.origins().len(), 1);
             let gap = found.mesh.positions.last().unwrap() - expected.mesh.positions.last().unwrap();
             assert!(gap.norm() < 1e-12);

@@ -5,7 +5,7 @@
 //! * [`validate`] reports the properties and defects of a mesh.
 //! * [`repair()`] removes defects that algorithms cannot handle, as [`RepairOptions`] say, and reports every change.
 //! * [`cut_shortcuts`] separates surfaces that touch and were welded.
-//! * [`without_noise`] smooths noisy meshes, [`fill_holes`] closes small holes, [`refine()`] splits long edges,
+//! * [`denoise`] smooths noisy meshes, [`fill_holes`] closes small holes, [`refine()`] splits long edges,
 //!   [`collapse_edges`] merges vertices.
 //! * [`triangulate_points`] makes a surface of a point cloud; [`repair()`] does so for a mesh without faces.
 //! * [`shapes`] has small analytic surfaces for tests, benches and documentation.
@@ -50,8 +50,8 @@ pub use collapse::collapse_edges;
 pub use error::{Fault, MIN_POINTS, MeshError, Place};
 pub use face_set::{check_finite, check_input};
 pub use holes::fill_holes;
-pub use input::{BadPoint, InputMap, InputPoint, PointError, Surface};
-pub use noise::{is_noisy, without_noise};
+pub use input::{InputMap, InputPoint, ParsePointError, PointError, Surface};
+pub use noise::{denoise, is_noisy};
 pub use orientation::orient_consistently;
 pub use outward::{oriented_faces, outward};
 pub use points::{PointsReport, TriangulatedPoints, triangulate_points};

@@ -24,44 +24,36 @@ const SMOOTH: f64 = 0.4;
 const ROUNDS: usize = 5;
 
 /// Most measurements.
-const MOST: usize = 12;
+const MAX_PASSES: usize = 12;
 
-/// Share of the way to its neighbours that a vertex moves in the two steps of a round: forth and back. The second undoes the
+/// Share of the way to its neighbors that a vertex moves in the two steps of a round: forth and back. The second undoes the
 /// shrinkage of the first.
 const STEPS: [f64; 2] = [0.5, -0.53];
 
-/// The mesh without its noise, if it is noisy: smoothed until neighbouring vertices bend alike. The faces stay.
+/// The mesh without its noise, if it is noisy: smoothed until neighboring vertices bend alike. The faces stay.
 ///
 /// Smooths like Taubin 1995 (`taubin1995` in `REFERENCES.bib`), which hardly shrinks. A vertex on an edge that does not have
-/// two faces follows its neighbours along such edges, so boundaries stay boundaries.
-///
-/// # Panics
-/// If a face has a repeated vertex or one that does not exist, see [`Topology::new`].
+/// two faces follows its neighbors along such edges, so boundaries stay boundaries.
 ///
 /// ```
-/// use canonform_mesh::{shapes, without_noise};
+/// use canonform_mesh::{denoise, shapes};
 ///
 /// let mut ball = shapes::icosphere(4);
-/// assert!(without_noise(&ball).is_none());
+/// assert!(denoise(&ball, &ball.topology()).is_none());
 /// for (i, p) in ball.positions.iter_mut().enumerate() {
 ///     p.coords *= 1.0 + 0.02 * (12.9 * i as f64).sin();
 /// }
-/// let smooth = without_noise(&ball).unwrap();
+/// let smooth = denoise(&ball, &ball.topology()).unwrap();
 /// let sphere = 4.0 * std::f64::consts::PI;
 /// assert!((smooth.area() / sphere - 1.0).abs() < 0.02 && ball.area() > 1.05 * sphere);
 /// ```
 #[must_use]
-pub fn without_noise(mesh: &TriMesh) -> Option<TriMesh> {
-    smoothed(mesh, &mesh.topology())
-}
-
-/// [`without_noise`], given the connectivity of the mesh.
-pub(crate) fn smoothed(mesh: &TriMesh, topology: &Topology) -> Option<TriMesh> {
+pub fn denoise(mesh: &TriMesh, topology: &Topology) -> Option<TriMesh> {
     let (mut smooth, umbrellas) = prepared(mesh, topology);
     if !umbrellas.bending(&smooth).is_noisy() || SmoothRegions::of(mesh).is_mechanical {
         return None;
     }
-    for _ in 0..MOST {
+    for _ in 0..MAX_PASSES {
         for step in [STEPS; ROUNDS].into_iter().flatten() {
             let offsets = umbrellas.offsets(&smooth, 1.0);
             smooth.positions.iter_mut().zip(offsets).for_each(|(p, offset)| *p -= offset * step);
@@ -73,17 +65,17 @@ pub(crate) fn smoothed(mesh: &TriMesh, topology: &Topology) -> Option<TriMesh> {
     Some(TriMesh { faces: mesh.faces.clone(), ..smooth })
 }
 
-/// Whether [`without_noise`] changes a mesh. The edges of [mechanical parts](SmoothRegions::is_mechanical) are not noise.
+/// Whether [`denoise`] changes a mesh. The edges of [mechanical parts](SmoothRegions::is_mechanical) are not noise.
 ///
 /// # Panics
-/// As [`without_noise`].
+/// If a face has a repeated vertex or one that does not exist, see [`Topology::new`].
 #[must_use]
 pub fn is_noisy(mesh: &TriMesh) -> bool {
     let (oriented, umbrellas) = prepared(mesh, &mesh.topology());
     umbrellas.bending(&oriented).is_noisy() && !SmoothRegions::of(mesh).is_mechanical
 }
 
-/// The mesh with its faces oriented consistently, and the neighbours of every vertex.
+/// The mesh with its faces oriented consistently, and the neighbors of every vertex.
 fn prepared(mesh: &TriMesh, topology: &Topology) -> (TriMesh, Umbrellas) {
     let mut oriented = mesh.clone();
     let turned = turned_faces(&mesh.positions, topology);
@@ -94,9 +86,9 @@ fn prepared(mesh: &TriMesh, topology: &Topology) -> (TriMesh, Umbrellas) {
 /// How a surface bends at its vertices. Vertices on edges that do not have two faces are left out.
 #[derive(Debug, Clone, Copy)]
 struct Bending {
-    /// How well neighbouring vertices agree, -1 to 1: the correlation along edges of the heights of vertices over the mean of
-    /// their neighbours. Near 1 on a finely sampled smooth surface, and near -0.2 for noise that is independent in every
-    /// vertex, because a vertex that sticks out lowers its neighbours relative to theirs.
+    /// How well neighboring vertices agree, -1 to 1: the correlation along edges of the heights of vertices over the mean of
+    /// their neighbors. Near 1 on a finely sampled smooth surface, and near -0.2 for noise that is independent in every
+    /// vertex, because a vertex that sticks out lowers its neighbors relative to theirs.
     coherence: f64,
     /// Root mean square of these heights, relative to the mean edge.
     height: f64,
@@ -108,9 +100,9 @@ impl Bending {
     }
 }
 
-/// The neighbours of every vertex.
+/// The neighbors of every vertex.
 struct Umbrellas {
-    /// Pairs of a vertex and a neighbour that it follows.
+    /// Pairs of a vertex and a neighbor that it follows.
     followed: Vec<[VertexId; 2]>,
     n_followed: Vec<u32>,
     /// Edges of which both ends are inside the surface.
@@ -142,7 +134,7 @@ impl Umbrellas {
         Self { followed, n_followed, inside }
     }
 
-    /// The position of every vertex relative to the mean of the neighbours that it follows, in units of `unit`.
+    /// The position of every vertex relative to the mean of the neighbors that it follows, in units of `unit`.
     fn offsets(&self, mesh: &TriMesh, unit: f64) -> Vec<Vector3<f64>> {
         let mut sums = vec![Vector3::zeros(); mesh.n_vertices()];
         for [v, neighbor] in &self.followed {
@@ -219,12 +211,12 @@ mod tests {
     fn noise_is_smoothed_away_and_the_volume_stays() {
         let (clean, rough) = (shapes::torus(60, 30, 2.0, 0.7), noisy(0.05));
         assert!(coherence(&clean) > 0.8 && coherence(&rough) < 0.0);
-        let smooth = without_noise(&rough).unwrap();
+        let smooth = denoise(&rough, &rough.topology()).unwrap();
         assert_eq!(smooth.faces, rough.faces);
         assert!(error(&smooth) < 0.5 * error(&rough), "{} of {}", error(&smooth), error(&rough));
         let area = [&clean, &rough, &smooth].map(TriMesh::area);
         assert!(area[1] > 1.1 * area[0] && (area[2] / area[0] - 1.0).abs() < 0.03, "{area:?}");
-        assert!(without_noise(&smooth).is_none());
+        assert!(denoise(&smooth, &smooth.topology()).is_none());
     }
 
     #[test]
@@ -240,7 +232,7 @@ mod tests {
         turned.faces.iter_mut().step_by(3).for_each(|face| face.swap(0, 1));
         let empty = TriMesh { positions: Vec::new(), faces: Vec::new() };
         for mesh in [tilted, cube, torus, subdivided, turned, shapes::tetrahedron(0), empty] {
-            assert!(!is_noisy(&mesh) && without_noise(&mesh).is_none(), "{}", coherence(&mesh));
+            assert!(!is_noisy(&mesh) && denoise(&mesh, &mesh.topology()).is_none(), "{}", coherence(&mesh));
         }
     }
 
@@ -251,7 +243,7 @@ mod tests {
         for (i, p) in sheet.positions.iter_mut().enumerate() {
             p.z += 0.2 * (12.9 * i as f64).sin();
         }
-        let smooth = without_noise(&sheet).unwrap();
+        let smooth = denoise(&sheet, &sheet.topology()).unwrap();
         let [old, new] = [&before, &smooth].map(|mesh| mesh.bounds().unwrap());
         assert!((old[0] - new[0]).xy().amax() < 0.3 && (old[1] - new[1]).xy().amax() < 0.3);
         let areas = [&before, &sheet, &smooth].map(TriMesh::area);
@@ -261,12 +253,12 @@ mod tests {
     #[test]
     fn the_unit_of_length_does_not_matter() {
         let rough = noisy(0.05);
-        let smooth = without_noise(&rough).unwrap();
+        let smooth = denoise(&rough, &rough.topology()).unwrap();
         for exponent in [-400, 400] {
             let factor = 2_f64.powi(exponent);
             let scaled =
                 TriMesh { positions: rough.positions.iter().map(|p| p * factor).collect(), ..rough.clone() };
-            let found = without_noise(&scaled).unwrap();
+            let found = denoise(&scaled, &scaled.topology()).unwrap();
             assert!(found.positions.iter().zip(&smooth.positions).all(|(a, b)| *a == b * factor));
         }
     }

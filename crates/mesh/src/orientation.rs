@@ -21,7 +21,7 @@ pub(crate) struct Orientation {
 
 /// Whether two faces traverse the edge opposite a corner of each in the same direction, that is, are oriented
 /// inconsistently.
-pub(crate) fn runs_against(topology: &Topology, corner: CornerId, twin: CornerId) -> bool {
+pub(crate) fn has_same_direction(topology: &Topology, corner: CornerId, twin: CornerId) -> bool {
     topology.edge_ends(corner) == topology.edge_ends(twin)
 }
 
@@ -59,7 +59,7 @@ impl Orientation {
                         continue;
                     };
                     let neighbor = twin.face().index();
-                    let turn = turned[face] ^ runs_against(topology, corner, twin);
+                    let turn = turned[face] ^ has_same_direction(topology, corner, twin);
                     if patch[neighbor] == UNSEEN {
                         patch[neighbor] = number;
                         turned[neighbor] = turn;
@@ -79,7 +79,7 @@ impl Orientation {
     }
 }
 
-/// Flips faces so that neighbours are oriented consistently; returns how many were flipped.
+/// Flips faces so that neighbors are oriented consistently; returns how many were flipped.
 ///
 /// A patch is a set of faces joined by edges with exactly two faces. A closed patch ends up facing outward
 /// (positive signed volume); any other keeps the orientation of the majority of its faces. A patch that is

@@ -234,7 +234,7 @@ mod tests {
 
     #[test]
     fn needles_in_a_plane_become_well_shaped_triangles() {
-        // A round plate: an n-gon cut into needles from its centre, with a rim that is no part of the plane.
+        // A round plate: an n-gon cut into needles from its center, with a rim that is no part of the plane.
         let n = 200;
         let at = |i: usize, z: f64| {
             let angle = std::f64::consts::TAU * i as f64 / n as f64;

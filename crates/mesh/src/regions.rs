@@ -8,7 +8,7 @@
 use nalgebra::{Matrix2, Matrix3, Point3, Unit, Vector2, Vector3};
 use surface::{DisjointSets, EdgeId, Topology};
 
-use crate::orientation::runs_against;
+use crate::orientation::has_same_direction;
 use crate::tri_mesh::TriMesh;
 
 /// Triangles with vertices this near to a plane, relative to the square root of the area, lie in it. A tolerance: the rounding of coordinates in files.
@@ -22,7 +22,7 @@ const SHARP: f64 = 40.0;
 const ORGANIC_SHARP: f64 = 60.0;
 
 /// Vertices of a flat beyond which its width is not measured; such a flat is wide. A safety limit on time.
-const MOST_CORNERS: usize = 64;
+const MAX_CORNERS: usize = 64;
 
 /// Distances from the axis of a cylinder differ by less than this share: a circle of twelve chords, divided once more, has
 /// points at cos 15° of the radius. A tolerance.
@@ -32,12 +32,12 @@ const ROUND: f64 = 0.05;
 const ACROSS: f64 = 1e-3;
 
 /// A surface is mechanical if planes and cylinders between sharp edges have at least this share of its area. All
-/// generated parts but balls have it, and no creature (`cargo test -p canonform-datasets parts_are_mechanical`).
+/// generated parts have it, and no creature (`cargo test -p canonform-datasets parts_are_mechanical`).
 const MECHANICAL: f64 = 0.15;
 
 /// A surface with this many planes of at least [`WIDE`] triangles is mechanical, too, such as a bent pipe with its two ends.
 /// A convention: one plane may be the base of a bust.
-const LEAST_WIDE: usize = 2;
+const MIN_WIDE: usize = 2;
 const WIDE: usize = 6;
 
 /// A flat whose area differs by less than this share from that of a triangle is one. A tolerance of rounding.
@@ -45,7 +45,7 @@ const OUTLINE: f64 = 1e-3;
 
 /// Area vectors of a body add up to zero, those of a sheet to its area. Below this share a surface is a body. A convention: a
 /// box without a lid has a fifth, half of a cylinder .6.
-const MOST_OPEN: f64 = 0.4;
+const MAX_OPEN: f64 = 0.4;
 
 /// Least share of the area of a plane that counts for [`MECHANICAL`]. A convention.
 const LARGE: f64 = 0.0025;
@@ -65,7 +65,7 @@ pub enum RegionShape {
         /// Unit direction of the axis.
         axis: Vector3<f64>,
         /// A point of the axis.
-        centre: Point3<f64>,
+        center: Point3<f64>,
         /// The largest distance of a vertex from the axis.
         radius: f64,
         /// Whether the normals point to the axis.
@@ -153,8 +153,8 @@ impl SmoothRegions {
         for region in &mut found.all {
             match &mut region.shape {
                 RegionShape::Plane { offset, .. } => *offset *= unit,
-                RegionShape::Cylinder { centre, radius, .. } => {
-                    *centre *= unit;
+                RegionShape::Cylinder { center, radius, .. } => {
+                    *center *= unit;
                     *radius *= unit;
                 }
                 RegionShape::Curved => {}
@@ -191,7 +191,7 @@ impl SmoothRegions {
                 region
             })
             .collect();
-        let is_mechanical = (plain >= MECHANICAL || wide >= LEAST_WIDE) && is_body(mesh);
+        let is_mechanical = (plain >= MECHANICAL || wide >= MIN_WIDE) && is_body(mesh);
         let sharp = if is_mechanical { SHARP } else { ORGANIC_SHARP }.to_radians();
         let blunt = creases.iter().filter(|crease| crease.turn < sharp);
         let chord_errors = chord_errors(mesh, &flats, &of_face, blunt);
@@ -221,7 +221,7 @@ impl SmoothRegions {
 /// Whether a surface encloses a volume, at least in part. Sheets bend.
 fn is_body(mesh: &TriMesh) -> bool {
     let sum: Vector3<f64> = (0..mesh.n_faces()).map(|f| mesh.area_vector(f)).sum();
-    sum.norm() < MOST_OPEN * 2.0 * mesh.area()
+    sum.norm() < MAX_OPEN * 2.0 * mesh.area()
 }
 
 /// Grows flats from the largest triangles, and tells the flat of every face.
@@ -274,7 +274,7 @@ fn creases(mesh: &TriMesh, topology: &Topology, flats: &[Flat], of_face: &[usize
         let flats_of = [a, b].map(|corner| of_face[corner.face().index()]);
         let [f, g] = flats_of.map(|flat| &flats[flat]);
         // Both may be oriented alike or not.
-        let sign = if runs_against(topology, a, b) { -1.0 } else { 1.0 };
+        let sign = if has_same_direction(topology, a, b) { -1.0 } else { 1.0 };
         let turn = f.normal.cross(&g.normal).norm().atan2(sign * f.normal.dot(&g.normal));
         let ends = topology.edges()[e].map(|v| mesh.positions[v.index()]);
         (flats_of[0] != flats_of[1]).then_some(Crease { flats: flats_of, ends, turn })
@@ -307,7 +307,7 @@ fn chord_errors<'c>(
 
 /// How far a flat reaches from one of its edges.
 fn width(mesh: &TriMesh, flat: &Flat, [start, end]: [Point3<f64>; 2]) -> f64 {
-    if flat.faces.len() > MOST_CORNERS {
+    if flat.faces.len() > MAX_CORNERS {
         return f64::INFINITY;
     }
     let Some(along) = (end - start).try_normalize(0.0) else { return 0.0 };
@@ -347,24 +347,24 @@ fn cylinder(mesh: &TriMesh, flats: &[Flat], members: &[usize]) -> Option<RegionS
     let flat = |p: &Point3<f64>| Vector2::new(u.dot(&p.coords), v.dot(&p.coords));
     let faces = || members.iter().flat_map(|&flat| flats[flat].faces.iter().copied());
     let points: Vec<Vector2<f64>> = faces().flat_map(|f| mesh.triangle(f)).map(|p| flat(&p)).collect();
-    let centre = centre_of_circle(&points)?;
-    let radii = || points.iter().map(|p| (p - centre).norm());
+    let center = centre_of_circle(&points)?;
+    let radii = || points.iter().map(|p| (p - center).norm());
     let (radius, least) = (radii().fold(0.0, f64::max), radii().fold(f64::INFINITY, f64::min));
     if least < (1.0 - ROUND) * radius {
         return None;
     }
     let outward: f64 = faces()
         .map(|f| {
-            let middle = mesh.triangle(f).iter().map(&flat).sum::<Vector2<f64>>() / 3.0 - centre;
+            let middle = mesh.triangle(f).iter().map(&flat).sum::<Vector2<f64>>() / 3.0 - center;
             let normal = mesh.area_vector(f);
             middle.dot(&Vector2::new(u.dot(&normal), v.dot(&normal)))
         })
         .sum();
-    let centre = Point3::from(u * centre.x + v * centre.y);
-    Some(RegionShape::Cylinder { axis: axis.into_inner(), centre, radius, is_hole: outward < 0.0 })
+    let center = Point3::from(u * center.x + v * center.y);
+    Some(RegionShape::Cylinder { axis: axis.into_inner(), center, radius, is_hole: outward < 0.0 })
 }
 
-/// The centre of the circle nearest to points, in algebraic least squares (Kåsa 1976).
+/// The center of the circle nearest to points, in algebraic least squares (Kåsa 1976).
 fn centre_of_circle(points: &[Vector2<f64>]) -> Option<Vector2<f64>> {
     let mean = points.iter().sum::<Vector2<f64>>() / points.len().max(1) as f64;
     let (mut matrix, mut right) = (Matrix2::zeros(), Vector2::zeros());

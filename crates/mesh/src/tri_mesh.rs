@@ -156,7 +156,11 @@ impl TriMesh {
     }
 
     /// The connectivity.
-    pub(crate) fn topology(&self) -> Topology {
+    ///
+    /// # Panics
+    /// As [`intrinsic`](Self::intrinsic).
+    #[must_use]
+    pub fn topology(&self) -> Topology {
         Topology::new(self.n_vertices(), self.faces.clone())
     }
 

@@ -16,7 +16,7 @@ pub(crate) fn point_of(point: &Bound<'_, PyAny>) -> PyResult<InputPoint> {
     if let Ok(text) = point.extract::<&str>() {
         return text
             .parse()
-            .map_err(|fault: canonform::mesh::BadPoint| Exception::Point.with(&fault.to_string()));
+            .map_err(|fault: canonform::mesh::ParsePointError| Exception::Point.with(&fault.to_string()));
     }
     Ok(InputPoint::Vertex(vertex(point.extract().map_err(|_| not_a_point(point))?)?))
 }

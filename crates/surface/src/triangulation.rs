@@ -194,7 +194,7 @@ impl Triangulation {
         let mut is_new = vec![false; n_sides];
         let mut budget = FLIPS_PER_SIDE * n_sides;
         while let Some(corner) = waiting.pop() {
-            let Some(quad) = self.crossed(corner, loops) else { continue };
+            let Some(quad) = self.flippable_quad(corner, loops) else { continue };
             let triangles = self.flip(corner, quad, &mut is_new, &mut removed);
             waiting.extend(triangles.into_iter().flat_map(|t| [1, 2].map(|slot| CornerId::new(t, slot))));
             budget -= 1;
@@ -218,7 +218,7 @@ impl Triangulation {
                     n_obtuse += usize::from(!is_acute(self.sides(corner)));
                 }
                 obtuse.truncate(n_obtuse);
-                obtuse.retain(|side| self.crossed(*side, loops).is_some());
+                obtuse.retain(|side| self.flippable_quad(*side, loops).is_some());
                 obtuse
             })
             .collect();
@@ -226,13 +226,13 @@ impl Triangulation {
     }
 
     /// The two triangles at a side, if it is not Delaunay and can be flipped.
-    pub(crate) fn crossed(&self, corner: CornerId, loops: Loops) -> Option<Quad> {
+    pub(crate) fn flippable_quad(&self, corner: CornerId, loops: Loops) -> Option<Quad> {
         let far = self.opposite(corner)?;
         if corner.face() == far.face() {
             return None;
         }
         // The triangles a b c above the side from a to b, and b a d below it.
-        let is_reversed = self.runs_along(corner, far);
+        let is_reversed = self.is_reversed(corner, far);
         let above = self.sides(corner);
         let mut below = self.sides(far);
         if is_reversed {
@@ -297,7 +297,7 @@ impl Triangulation {
     }
 
     /// Whether two glued sides have the same direction, so that their triangles have opposite orientations.
-    fn runs_along(&self, corner: CornerId, far: CornerId) -> bool {
+    fn is_reversed(&self, corner: CornerId, far: CornerId) -> bool {
         let [start, end] = [corner.next(), corner.prev()].map(|c| self.corner_vertex(c));
         // A loop is glued as on an oriented surface.
         start != end && start == self.corner_vertex(far.next())

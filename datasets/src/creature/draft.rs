@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Point3, Vector3};
 
 use crate::implicit::{Blob, BodyPart, ImplicitBody};
 use crate::skeleton::{BoneNode, Joint, Skeleton, node};
-use crate::trig::{rotation, sin_cos};
+use crate::trig::sin_cos;
 
 /// Greatest product of the angle of a joint in radians and the girth of the limb, over the length that bends. A straight
 /// line on the side of a bent limb becomes longer or shorter by up to this share.
@@ -24,80 +24,54 @@ const N_SIDES: usize = 18;
 /// The tube around a chain of bones.
 #[derive(Debug, Clone)]
 pub(crate) struct Limb {
-    direction: Vector3<f64>,
+    /// A unit vector.
+    pub(crate) direction: Vector3<f64>,
     /// From the node of the parent to its start; the start itself of a limb without a parent.
-    offset: Vector3<f64>,
-    length: f64,
+    pub(crate) offset: Vector3<f64>,
+    pub(crate) length: f64,
     /// At the root and at the tip.
-    radii: [f64; 2],
+    pub(crate) radii: [f64; 2],
     /// Number of bones.
-    n_bones: usize,
+    pub(crate) n_bones: usize,
     /// Rotation from each bone to the next, at rest.
-    curl: Matrix3<f64>,
+    pub(crate) curl: Matrix3<f64>,
     /// Greatest angle of every joint, in degrees.
-    bend: f64,
-    flattening: Option<([f64; 3], f64)>,
-    /// Length of the first bone, inside the parent.
-    buried: Option<f64>,
+    pub(crate) bend: f64,
+    /// A direction, and the factor of the thickness along it.
+    pub(crate) flattening: Option<([f64; 3], f64)>,
+    /// Length of the first bone, inside the parent; otherwise it follows from the radius of the parent.
+    pub(crate) buried: Option<f64>,
     /// Radius of a ball at the tip.
-    knob: Option<f64>,
+    pub(crate) knob: Option<f64>,
+    /// Whether it has bones only.
+    pub(crate) is_bare: bool,
+    /// Instead of a tube of some length.
+    pub(crate) ring: Option<Ring>,
+}
+
+/// A ring with the given radii of its hole and of its tube; the hole is seen along the normal.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Ring {
+    pub(crate) normal: Vector3<f64>,
+    pub(crate) hole: f64,
+    pub(crate) tube: f64,
 }
 
 impl Limb {
-    /// A straight limb of one bone with the given radii of root and tip.
-    pub(crate) fn new(direction: [f64; 3], length: f64, radii: [f64; 2]) -> Self {
-        Self {
-            direction: Vector3::from(direction).normalize(),
-            offset: Vector3::zeros(),
-            length,
-            radii,
-            n_bones: 1,
-            curl: Matrix3::identity(),
-            bend: 0.0,
-            flattening: None,
-            buried: None,
-            knob: None,
+    /// Its mirror image under `x -> -x`.
+    pub(crate) fn mirrored(&self) -> Self {
+        let mut other = self.clone();
+        other.direction.x = -other.direction.x;
+        other.offset.x = -other.offset.x;
+        let flip = Matrix3::from_diagonal(&[-1.0, 1.0, 1.0].into());
+        other.curl = flip * other.curl * flip;
+        if let Some((direction, _)) = &mut other.flattening {
+            direction[0] = -direction[0];
         }
-    }
-
-    /// Divides the limb into equal bones, with joints that bend by up to `bend` degrees.
-    pub(crate) fn bones(self, n_bones: usize, bend: f64) -> Self {
-        Self { n_bones, bend, ..self }
-    }
-
-    /// Curves the limb at rest: every bone but the first is turned by these angles about x, y and z.
-    pub(crate) fn curled(self, [x, y, z]: [f64; 3]) -> Self {
-        Self { curl: rotation(x, y, z), ..self }
-    }
-
-    /// Squeezes the limb along a direction to a factor of its thickness.
-    pub(crate) fn flat(self, direction: [f64; 3], factor: f64) -> Self {
-        Self { flattening: Some((direction, factor)), ..self }
-    }
-
-    /// The same limb in another direction.
-    pub(crate) fn towards(&self, direction: [f64; 3]) -> Self {
-        Self { direction: Vector3::from(direction).normalize(), ..self.clone() }
-    }
-
-    /// The same limb from another point, relative to the node of its parent.
-    pub(crate) fn at(&self, offset: [f64; 3]) -> Self {
-        Self { offset: offset.into(), ..self.clone() }
-    }
-
-    /// The same limb with another length.
-    pub(crate) fn long(self, length: f64) -> Self {
-        Self { length, ..self }
-    }
-
-    /// Sets the length inside the parent; otherwise it follows from the radius of the parent.
-    pub(crate) fn buried(self, buried: f64) -> Self {
-        Self { buried: Some(buried), ..self }
-    }
-
-    /// Adds a ball at the tip.
-    pub(crate) fn knob(self, radius: f64) -> Self {
-        Self { knob: Some(radius), ..self }
+        if let Some(ring) = &mut other.ring {
+            ring.normal.x = -ring.normal.x;
+        }
+        other
     }
 }
 
@@ -124,78 +98,43 @@ impl Draft {
         self.parts.push(part);
     }
 
-    /// Adds the first limb, which carries the others.
-    pub(crate) fn trunk(&mut self, limb: &Limb) -> usize {
-        let axis = axis(limb.offset.into(), 0.0, limb);
-        self.tube(&axis, limb);
-        self.chain(None, &axis, limb)
-    }
-
-    /// Adds the first chain of bones without any skin.
-    pub(crate) fn bones(&mut self, limb: &Limb) -> usize {
-        self.chain(None, &axis(limb.offset.into(), 0.0, limb), limb)
-    }
-
-    /// Adds a limb at a node of a chain. Its length is what sticks out of the parent.
-    pub(crate) fn limb(&mut self, root: (usize, usize), limb: &Limb) -> usize {
-        let axis = self.rooted(root, limb);
-        self.tube(&axis, limb);
-        self.chain(Some(root), &axis, limb)
-    }
-
-    /// Adds a limb and its mirror image under `x -> -x`.
-    pub(crate) fn limbs(&mut self, root: (usize, usize), limb: &Limb) -> [usize; 2] {
-        let mut other = limb.clone();
-        other.direction.x = -other.direction.x;
-        other.offset.x = -other.offset.x;
-        let flip = Matrix3::from_diagonal(&[-1.0, 1.0, 1.0].into());
-        other.curl = flip * other.curl * flip;
-        if let Some((direction, _)) = &mut other.flattening {
-            direction[0] = -direction[0];
+    /// Adds a limb at a node of a chain, or the first limb, which carries the others. The length of a limb is what sticks
+    /// out of the parent.
+    pub(crate) fn limb(&mut self, root: Option<(usize, usize)>, limb: &Limb) -> usize {
+        if let Some(ring) = limb.ring {
+            return self.ring(root, ring, limb);
         }
-        [limb, &other].map(|limb| self.limb(root, limb))
+        let axis = self.axis(root, limb);
+        if !limb.is_bare {
+            self.tube(&axis, limb);
+        }
+        self.chain(root, &axis, limb)
     }
 
-    /// Adds a ring with the given radii around its hole and of its tube, which starts at a node of a chain. `limb` says
-    /// where it goes; the hole is seen along `normal`.
-    pub(crate) fn ring(
+    fn ring(
         &mut self,
-        root: (usize, usize),
-        normal: [f64; 3],
-        [hole, tube]: [f64; 2],
+        root: Option<(usize, usize)>,
+        Ring { normal, hole, tube }: Ring,
         limb: &Limb,
-    ) {
-        let reach = 2.0 * hole;
-        let bones = Limb { length: reach, radii: [hole; 2], ..limb.clone() };
-        let start = self.rooted(root, &Limb { radii: [tube; 2], ..bones.clone() });
+    ) -> usize {
+        let bones = Limb { length: 2.0 * hole, radii: [hole; 2], ..limb.clone() };
+        let start = self.axis(root, &Limb { radii: [tube; 2], ..bones.clone() });
         // From the root to the near side of the ring and to its far side.
         let near = start[1];
-        let axis = [start[0], near, near + bones.direction * hole, near + bones.direction * reach];
-        self.chain(Some(root), &axis, &bones);
-        self.torus(axis[2], limb.direction, normal.into(), [hole, tube]);
-    }
-
-    /// Adds a ring without bones: `across` is a direction in its plane.
-    pub(crate) fn torus(
-        &mut self,
-        centre: Point3<f64>,
-        across: Vector3<f64>,
-        normal: Vector3<f64>,
-        [hole, tube]: [f64; 2],
-    ) {
-        let u = across.normalize();
-        let v = normal.cross(&u).normalize();
+        let center = near + limb.direction * hole;
+        let (u, v) = (limb.direction, normal.cross(&limb.direction).normalize());
         let at = |i: usize| {
             let (sin, cos) = sin_cos(2.0 * PI * (i % N_SIDES) as f64 / N_SIDES as f64);
-            (centre + (u * cos + v * sin) * hole).coords.into()
+            (center + (u * cos + v * sin) * hole).coords.into()
         };
         let sides = (0..N_SIDES).map(|i| Blob::cone(at(i), tube, at(i + 1), tube)).collect();
         self.skin(BodyPart::added(sides).blend(BLEND * tube), tube);
-        self.genus += 1;
+        self.chain(root, &[start[0], near, center, near + limb.direction * bones.length], &bones)
     }
 
-    /// The nodes of a limb of the chain `root`, the first inside its parent.
-    fn rooted(&self, (chain, at): (usize, usize), limb: &Limb) -> Vec<Point3<f64>> {
+    /// The nodes of a limb, the first inside its parent.
+    fn axis(&self, root: Option<(usize, usize)>, limb: &Limb) -> Vec<Point3<f64>> {
+        let Some((chain, at)) = root else { return axis(limb.offset.into(), 0.0, limb) };
         let parent = self.skeleton.chains[chain].nodes[at];
         let default = (parent.radius - limb.offset.norm()).max(0.5 * limb.radii[0]);
         axis(parent.at + limb.offset, limb.buried.unwrap_or(default), limb)

@@ -1,6 +1,6 @@
 //! Creatures: families of articulated shapes from a seed.
 //!
-//! A [plan](plans) says what a body is made of, such as a trunk with eight legs; random proportions say how long, how
+//! A plan in `bodies/creatures.toml` says what a body is made of, such as a trunk with eight legs; random proportions say how long, how
 //! thick and how many. Bodies are then made like those of the [articulated](crate::articulated()) families.
 
 mod draft;
@@ -132,7 +132,7 @@ pub fn creature_body(
 /// The names of the body plans, in the order of the families; they are the labels of the first ones.
 #[must_use]
 pub fn creature_plans() -> Vec<&'static str> {
-    PLANS.iter().map(|(name, _)| *name).collect()
+    PLANS.iter().map(|plan| plan.name.as_str()).collect()
 }
 
 fn validate(options: &CreatureOptions) -> Result<(), DatasetError> {
@@ -142,13 +142,13 @@ fn validate(options: &CreatureOptions) -> Result<(), DatasetError> {
 /// The label of a family: that of its plan, followed by a capital letter after the first round (`worm`, `wormB`, ...).
 /// Letters, since the leading letters of a file name are its class.
 fn label(family: usize) -> String {
-    let (name, mut round) = (PLANS[family % PLANS.len()].0, family / PLANS.len());
+    let (name, mut round) = (&PLANS[family % PLANS.len()].name, family / PLANS.len());
     let mut letters = String::new();
     while round > 0 {
         letters.insert(0, char::from(b'A' + (round % 26) as u8));
         round /= 26;
     }
-    name.to_owned() + &letters
+    name.clone() + &letters
 }
 
 fn no_surface(shape: String, options: &CreatureOptions) -> DatasetError {
@@ -159,8 +159,7 @@ fn model(family: usize, options: &CreatureOptions, budget: &Budget) -> Result<Bo
     let (plan, round) = (family % PLANS.len(), family / PLANS.len());
     for attempt in 0..N_ATTEMPTS {
         let mut proportions = Proportions::new(options.seed, plan, round, attempt);
-        let mut draft = Draft::default();
-        PLANS[plan].1(&mut proportions, &mut draft);
+        let draft = PLANS[plan].draft(&mut proportions);
         if let Some(model) = measured(draft, &mut proportions.into_stream(), budget)? {
             return Ok(model);
         }

@@ -40,9 +40,9 @@ fn without_disc(mesh: &TriMesh, first: usize, area: f64) -> TriMesh {
     for (f, face) in mesh.faces.iter().enumerate() {
         face.iter().for_each(|v| faces_at[v.index()].push(f));
     }
-    let centre = |f: usize| mesh.triangle(f).iter().map(|p| p.coords).sum::<nalgebra::Vector3<f64>>() / 3.0;
-    let middle = centre(first);
-    let entry = |f: usize| ((centre(f) - middle).norm_squared(), f);
+    let center = |f: usize| mesh.triangle(f).iter().map(|p| p.coords).sum::<nalgebra::Vector3<f64>>() / 3.0;
+    let middle = center(first);
+    let entry = |f: usize| ((center(f) - middle).norm_squared(), f);
     let mut reached = vec![false; mesh.n_faces()];
     let mut is_cut = vec![false; mesh.n_faces()];
     let mut queue = NearestFirst::from([entry(first)]);

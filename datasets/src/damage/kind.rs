@@ -1,5 +1,7 @@
 //! Kinds of damage with strengths from 1 to 5.
 
+use strum::{IntoStaticStr, VariantArray};
+
 use super::{Damage, WeldPair};
 
 /// A kind of damage, of which [`at`](Self::at) gives five strengths.
@@ -25,21 +27,27 @@ use super::{Damage, WeldPair};
 /// assert_eq!(DamageKind::Holes.at(3).to_string(), "holes 3 %");
 /// assert_eq!(DamageKind::ALL.len(), 11);
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, IntoStaticStr, VariantArray)]
+#[strum(serialize_all = "lowercase")]
 pub enum DamageKind {
     /// Points that are near in space become one.
+    #[strum(serialize = "weld, near points")]
     Weld,
     /// Random points become one.
+    #[strum(serialize = "weld, random points")]
     FarWeld,
     /// Points that are near in space are joined by a handle.
+    #[strum(serialize = "handle, near points")]
     Contact,
     /// Discs are cut out.
     Holes,
     /// The end of a limb is missing.
+    #[strum(serialize = "cut off")]
     CutOff,
     /// All vertices are displaced.
     Noise,
     /// A few vertices are displaced far.
+    #[strum(serialize = "shot noise")]
     ShotNoise,
     /// Edges are collapsed.
     Decimation,
@@ -53,19 +61,7 @@ pub enum DamageKind {
 
 impl DamageKind {
     /// All kinds.
-    pub const ALL: [Self; 11] = [
-        Self::Weld,
-        Self::FarWeld,
-        Self::Contact,
-        Self::Holes,
-        Self::CutOff,
-        Self::Noise,
-        Self::ShotNoise,
-        Self::Decimation,
-        Self::Sampling,
-        Self::Scale,
-        Self::Mirror,
-    ];
+    pub const ALL: &[Self] = Self::VARIANTS;
 
     /// Number of strengths.
     pub const STRENGTHS: usize = 5;
@@ -73,19 +69,7 @@ impl DamageKind {
     /// Its name, such as `shot noise`.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Weld => "weld, near points",
-            Self::FarWeld => "weld, random points",
-            Self::Contact => "handle, near points",
-            Self::Holes => "holes",
-            Self::CutOff => "cut off",
-            Self::Noise => "noise",
-            Self::ShotNoise => "shot noise",
-            Self::Decimation => "decimation",
-            Self::Sampling => "sampling",
-            Self::Scale => "scale",
-            Self::Mirror => "mirror",
-        }
+        self.into()
     }
 
     /// The damage of a strength from 1 to 5; others count as the nearest of these.

@@ -22,7 +22,7 @@ use crate::stream::{Purpose, Stream};
 pub use kind::DamageKind;
 pub use weld::WeldPair;
 
-/// A change of a mesh that leaves the shape recognisable.
+/// A change of a mesh that leaves the shape recognizable.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Damage {
     /// Every face is split into four at the midpoints of its edges, this many times. The surface is the same.
@@ -252,7 +252,7 @@ mod tests {
             DamageKind::Scale => diagonal(found),
             DamageKind::Mirror => 0.0,
         };
-        for kind in DamageKind::ALL {
+        for &kind in DamageKind::ALL {
             let amounts: Vec<f64> =
                 (1..=DamageKind::STRENGTHS).map(|s| amount(kind, &kind.at(s).apply(&mesh, 3))).collect();
             let is_monotone = amounts.windows(2).all(|pair| match kind {

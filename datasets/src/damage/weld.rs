@@ -128,7 +128,7 @@ pub(super) fn contact(mesh: &TriMesh, n: u32, stream: &mut Stream) -> TriMesh {
     joined.without_unused_vertices()
 }
 
-/// The neighbours of an inner vertex in the order of its faces; `None` at a boundary, or where faces are turned over.
+/// The neighbors of an inner vertex in the order of its faces; `None` at a boundary, or where faces are turned over.
 fn rim(topology: &Topology, v: VertexId) -> Option<Vec<VertexId>> {
     let mut ring = OneRing::default();
     ring.collect(topology, v);

@@ -26,7 +26,6 @@ impl MechanicalPart {
                     plate_holes(v).into_iter().map(|at| circle(at, v[4] / 2.0, arcs)).collect();
                 solid.extrude(&rectangle([v[0], v[1]], v[3], arcs), &holes, [0.0, v[2]]);
             }
-            PartFamily::Washer => solid.extrude(&disc(v[1]), &[disc(clearance(v[0]))], [0.0, v[2]]),
             PartFamily::Gear => solid.extrude(&gear_outline(v[0], v[1]), &[disc(v[3])], [0.0, v[2]]),
             PartFamily::HexScrew => {
                 let size = v[0];
@@ -35,11 +34,7 @@ impl MechanicalPart {
                 let shank = thread(solid, size, v[1], v[2]);
                 solid.cap(&under, &[shank], -Vector3::z());
             }
-            PartFamily::SocketScrew => socket_screw(solid, v[0], v[1]),
-            PartFamily::Nut => solid.extrude(&hexagon(1.6 * v[0]), &[disc(v[0])], [0.0, v[1]]),
             PartFamily::Enclosure => enclosure(solid, v),
-            PartFamily::Knob => knob(solid, v),
-            PartFamily::Pipe => solid.extrude(&disc(v[0]), &[disc(v[0] - 2.0 * v[1])], [0.0, v[2]]),
             PartFamily::BentPipe => bent_pipe(solid, v),
             PartFamily::Shaft => {
                 let [a, b, c] = [v[0], v[1], v[2]].map(|diameter| diameter / 2.0);
@@ -47,9 +42,6 @@ impl MechanicalPart {
                 solid.revolve(&[[a, 0.0], [a, d], [b, d], [b, e], [c, e], [c, f]]);
             }
             PartFamily::Block => solid.extrude(&rectangle([v[0], v[1]], 0.0, arcs), &[], [0.0, v[2]]),
-            PartFamily::Cylinder => solid.revolve(&[[v[0] / 2.0, 0.0], [v[0] / 2.0, v[1]]]),
-            PartFamily::Sphere => sphere(solid, v[0] / 2.0),
-            PartFamily::Frustum => solid.revolve(&[[v[0] / 2.0, 0.0], [v[1] / 2.0, v[2]]]),
         }
     }
 
@@ -62,22 +54,16 @@ impl MechanicalPart {
         Some(match self.family {
             PartFamily::Bracket => v[3] * ((v[0] + v[1] - v[3]) * v[2] - 2.0 * v[5] * disc(v[4])),
             PartFamily::Plate => v[2] * (v[0] * v[1] - (4.0 - PI) * v[3] * v[3] - v[5] * disc(v[4])),
-            PartFamily::Washer => v[2] * (disc(v[1]) - disc(clearance(v[0]))),
             PartFamily::Gear => v[2] * (area(&gear_outline(v[0], v[1])) - disc(v[3])),
-            PartFamily::Nut => v[1] * (area(&hexagon(1.6 * v[0])) - disc(v[0])),
             PartFamily::Enclosure => {
                 let inside = (v[0] - 2.0 * v[3]) * (v[1] - 2.0 * v[3]) * (v[2] - v[3]);
                 v[0] * v[1] * v[2] - inside - v[4] * v[3] * disc(FLOOR_HOLE)
             }
-            PartFamily::HexScrew | PartFamily::SocketScrew | PartFamily::Knob => return None,
-            PartFamily::Pipe => v[2] * ring(v[0], v[1]),
-            // The centre of a section moves this far (Pappus).
+            PartFamily::HexScrew => return None,
+            // The center of a section moves this far (Pappus).
             PartFamily::BentPipe => ring(v[0], v[1]) * (2.0 * v[4] + v[2] * v[3].to_radians()),
             PartFamily::Shaft => (0..3).map(|i| disc(v[i]) * v[i + 3]).sum(),
             PartFamily::Block => v[0] * v[1] * v[2],
-            PartFamily::Cylinder => disc(v[0]) * v[1],
-            PartFamily::Sphere => PI / 6.0 * v[0] * v[0] * v[0],
-            PartFamily::Frustum => PI / 12.0 * v[2] * (v[0] * v[0] + v[0] * v[1] + v[1] * v[1]),
         })
     }
 
@@ -88,16 +74,10 @@ impl MechanicalPart {
             PartFamily::Bracket => 2 * self.values[5] as usize,
             PartFamily::Plate => self.values[5] as usize,
             PartFamily::Enclosure => self.values[4] as usize,
-            PartFamily::Washer | PartFamily::Gear | PartFamily::Nut => 1,
-            PartFamily::Pipe | PartFamily::BentPipe => 1,
+            PartFamily::Gear | PartFamily::BentPipe => 1,
             _ => 0,
         }
     }
-}
-
-/// The hole that a screw passes through.
-fn clearance(size: f64) -> f64 {
-    1.05 * size
 }
 
 fn area(outline: &[[f64; 2]]) -> f64 {
@@ -184,16 +164,6 @@ fn thread(solid: &mut Solid, size: f64, length: f64, hand: f64) -> Loop {
     rings[0].clone()
 }
 
-fn socket_screw(solid: &mut Solid, size: f64, length: f64) {
-    let head = circle([0.0, 0.0], 0.75 * size, solid.arcs());
-    let [under, top] = solid.prism(&head, [0.0, size], false);
-    let [floor, rim] = solid.prism(&hexagon(0.8 * size), [0.5 * size, size], true);
-    solid.cap(&floor, &[], Vector3::z());
-    solid.cap(&top, &[rim], Vector3::z());
-    let shank = thread(solid, size, length, 1.0);
-    solid.cap(&under, &[shank], -Vector3::z());
-}
-
 fn enclosure(solid: &mut Solid, v: &[f64]) {
     let &[length, width, height, wall, holes] = v else { return };
     let arcs = solid.arcs();
@@ -210,27 +180,6 @@ fn enclosure(solid: &mut Solid, v: &[f64]) {
     let [lower, upper] = [0, 1].map(|side| bores.iter().map(|bore| bore[side].clone()).collect::<Vec<_>>());
     solid.cap(&under, &lower, -Vector3::z());
     solid.cap(&floor, &upper, Vector3::z());
-}
-
-fn knob(solid: &mut Solid, v: &[f64]) {
-    let &[diameter, height, flutes, bore] = v else { return };
-    let n = flutes as usize * solid.arcs().div_ceil(4).max(4);
-    let grip = |radius: f64| -> Outline {
-        let point = |i: usize| {
-            let turn = i as f64 / n as f64;
-            let (_, wave) = sin_cos(TAU * (flutes * turn).fract());
-            on_circle([0.0, 0.0], radius * (0.95 + 0.05 * wave), TAU * turn)
-        };
-        (0..n).map(point).collect()
-    };
-    let [under, edge] = solid.prism(&grip(diameter / 2.0), [0.0, height - 2.0], false);
-    let top = solid.level(&grip(diameter / 2.0 - 2.0), height);
-    solid.wall(&edge, &top);
-    solid.cap(&top, &[], Vector3::z());
-    let outline = circle([0.0, 0.0], bore / 2.0, solid.arcs());
-    let [mouth, end] = solid.prism(&outline, [0.0, 0.6 * height], true);
-    solid.cap(&under, &[mouth], -Vector3::z());
-    solid.cap(&end, &[], -Vector3::z());
 }
 
 /// From the origin along z, then bent towards x.
@@ -265,16 +214,4 @@ fn bent_pipe(solid: &mut Solid, v: &[f64]) {
     for (end, up) in [(0, -forward(0.0)), (steps + 2, forward(angle))] {
         solid.cap(&outer[end], &inner[end..=end], up);
     }
-}
-
-/// Meridians and circles of latitude.
-fn sphere(solid: &mut Solid, radius: f64) {
-    let n = solid.arcs().div_ceil(2);
-    let mut line = vec![[0.0, -radius]];
-    line.extend((1..n).map(|i| {
-        let (sin, cos) = sin_cos(PI * i as f64 / n as f64);
-        [radius * sin, -radius * cos]
-    }));
-    line.push([0.0, radius]);
-    solid.revolve(&line);
 }

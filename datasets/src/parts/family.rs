@@ -1,40 +1,27 @@
 //! The families of parts, their parameters and the values that these take.
 
+use strum::{IntoStaticStr, VariantArray};
+
 /// A kind of mechanical part.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, IntoStaticStr, VariantArray)]
+#[strum(serialize_all = "kebab-case")]
 pub enum PartFamily {
     /// Two plates at a right angle with holes in a row through each.
     Bracket,
     /// A rectangle with rounded corners and holes along its long sides.
     Plate,
-    /// A flat ring, named by the screw it fits.
-    Washer,
     /// A spur gear with straight flanks and a bore.
     Gear,
     /// A screw with a hexagonal head and a helical thread, right-handed or left-handed.
     HexScrew,
-    /// A screw with a cylindrical head, a hexagonal socket and a helical thread.
-    SocketScrew,
-    /// A hexagonal nut with a plain bore.
-    Nut,
     /// A box without a lid, with holes in its floor.
     Enclosure,
-    /// A fluted knob with a blind bore.
-    Knob,
-    /// A straight pipe.
-    Pipe,
     /// A pipe with a bend between two straight ends.
     BentPipe,
     /// Three cylinders in a row.
     Shaft,
     /// A block with six rectangular sides.
     Block,
-    /// A cylinder.
-    Cylinder,
-    /// A sphere.
-    Sphere,
-    /// A cone without its tip.
-    Frustum,
 }
 
 /// A parameter: its name, its letter in the names of parts, and the values of [`mechanical_parts`](super::mechanical_parts).
@@ -68,8 +55,6 @@ const PLATE: &[Parameter] = &[
     p("hole diameter", "d", &[4.0, 5.0]),
     p("holes", "n", &[4.0, 6.0]),
 ];
-const WASHER: &[Parameter] =
-    &[p("size", "m", SIZES), p("outer diameter", "d", &[10.0, 11.0, 12.0]), p("thickness", "t", &[1.0, 1.2])];
 const GEAR: &[Parameter] = &[
     p("teeth", "z", &[18.0, 19.0, 20.0]),
     p("module", "m", &[1.0, 1.25]),
@@ -78,25 +63,12 @@ const GEAR: &[Parameter] = &[
 ];
 const HEX_SCREW: &[Parameter] =
     &[p("size", "m", SIZES), p("length", "l", &[16.0, 18.0, 20.0]), p("thread hand", "h", &[1.0, -1.0])];
-const SOCKET_SCREW: &[Parameter] = &[p("size", "m", SIZES), p("length", "l", &[16.0, 18.0, 20.0, 22.0])];
-const NUT: &[Parameter] = &[p("size", "m", SIZES), p("height", "h", &[3.2, 4.0, 4.7, 5.2])];
 const ENCLOSURE: &[Parameter] = &[
     p("length", "l", &[60.0, 62.0]),
     p("width", "w", LENGTHS),
     p("height", "h", &[20.0, 22.0]),
     p("wall", "t", &[1.5, 2.0]),
     p("floor holes", "n", &[2.0, 4.0]),
-];
-const KNOB: &[Parameter] = &[
-    p("diameter", "d", &[24.0, 25.0]),
-    p("height", "h", &[14.0, 15.0]),
-    p("flutes", "n", &[8.0, 10.0]),
-    p("bore diameter", "b", &[6.0, 6.35]),
-];
-const PIPE: &[Parameter] = &[
-    p("outer diameter", "d", &[20.0, 21.0]),
-    p("wall", "t", &[1.5, 2.0]),
-    p("length", "l", &[60.0, 62.0, 64.0]),
 ];
 const BENT_PIPE: &[Parameter] = &[
     p("outer diameter", "d", &[20.0, 21.0]),
@@ -115,64 +87,27 @@ const SHAFT: &[Parameter] = &[
 ];
 const BLOCK: &[Parameter] =
     &[p("length", "l", &[20.0, 21.0]), p("width", "w", &[19.0, 20.0]), p("height", "h", &[20.0, 20.5])];
-const CYLINDER: &[Parameter] =
-    &[p("diameter", "d", &[10.0, 10.5, 11.0]), p("height", "h", &[20.0, 21.0, 22.0])];
-const SPHERE: &[Parameter] = &[p("diameter", "d", &[10.0, 10.5, 11.0, 12.0, 16.0, 20.0, 21.0])];
-const FRUSTUM: &[Parameter] = &[
-    p("lower diameter", "d", &[20.0, 21.0]),
-    p("upper diameter", "u", &[10.0, 11.0]),
-    p("height", "h", &[15.0, 16.0]),
-];
 
 impl PartFamily {
     /// All families.
-    pub const ALL: [Self; 16] = [
-        Self::Bracket,
-        Self::Plate,
-        Self::Washer,
-        Self::Gear,
-        Self::HexScrew,
-        Self::SocketScrew,
-        Self::Nut,
-        Self::Enclosure,
-        Self::Knob,
-        Self::Pipe,
-        Self::BentPipe,
-        Self::Shaft,
-        Self::Block,
-        Self::Cylinder,
-        Self::Sphere,
-        Self::Frustum,
-    ];
+    pub const ALL: &[Self] = Self::VARIANTS;
 
     /// Its name, such as `bent-pipe`.
     #[must_use]
     pub fn name(self) -> &'static str {
-        self.facts().0
+        self.into()
     }
 
     pub(super) fn parameters(self) -> &'static [Parameter] {
-        self.facts().1
-    }
-
-    fn facts(self) -> (&'static str, &'static [Parameter]) {
         match self {
-            Self::Bracket => ("bracket", BRACKET),
-            Self::Plate => ("plate", PLATE),
-            Self::Washer => ("washer", WASHER),
-            Self::Gear => ("gear", GEAR),
-            Self::HexScrew => ("hex-screw", HEX_SCREW),
-            Self::SocketScrew => ("socket-screw", SOCKET_SCREW),
-            Self::Nut => ("nut", NUT),
-            Self::Enclosure => ("enclosure", ENCLOSURE),
-            Self::Knob => ("knob", KNOB),
-            Self::Pipe => ("pipe", PIPE),
-            Self::BentPipe => ("bent-pipe", BENT_PIPE),
-            Self::Shaft => ("shaft", SHAFT),
-            Self::Block => ("block", BLOCK),
-            Self::Cylinder => ("cylinder", CYLINDER),
-            Self::Sphere => ("sphere", SPHERE),
-            Self::Frustum => ("frustum", FRUSTUM),
+            Self::Bracket => BRACKET,
+            Self::Plate => PLATE,
+            Self::Gear => GEAR,
+            Self::HexScrew => HEX_SCREW,
+            Self::Enclosure => ENCLOSURE,
+            Self::BentPipe => BENT_PIPE,
+            Self::Shaft => SHAFT,
+            Self::Block => BLOCK,
         }
     }
 }

@@ -25,7 +25,7 @@ pub(super) fn triangulate(points: &[[f64; 2]], hole_starts: &[usize], diagonals:
     triangles
 }
 
-/// The points moved by 1e-7 of their extent: ear clipping drops points in a row with their neighbours, which would leave
+/// The points moved by 1e-7 of their extent: ear clipping drops points in a row with their neighbors, which would leave
 /// gaps beside the faces that share their edges.
 fn nudged(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let extent = points.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));

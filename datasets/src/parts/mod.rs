@@ -26,12 +26,12 @@ use solid::Solid;
 /// use canonform_datasets::{PartMesh, mechanical_parts};
 ///
 /// let parts = mechanical_parts(0, 112);
-/// let washer = &parts[2];
-/// assert_eq!(washer.family().name(), "washer");
-/// assert_eq!(washer.parameters()[0].0, "size");
-/// let coarse = washer.mesh(&PartMesh::default());
-/// let fine = washer.mesh(&PartMesh { arcs: 400, ..PartMesh::default() });
-/// let exact = washer.volume().unwrap();
+/// let gear = &parts[2];
+/// assert_eq!(gear.family().name(), "gear");
+/// assert_eq!(gear.parameters()[0].0, "teeth");
+/// let coarse = gear.mesh(&PartMesh::default());
+/// let fine = gear.mesh(&PartMesh { arcs: 400, ..PartMesh::default() });
+/// let exact = gear.volume().unwrap();
 /// assert!((fine.signed_volume() - exact).abs() < 1e-3 * exact && coarse.n_faces() < fine.n_faces());
 /// ```
 #[derive(Debug, Clone, PartialEq)]
@@ -73,7 +73,7 @@ impl MechanicalPart {
         (self.family == other.family).then(|| differing.collect())
     }
 
-    /// Family and parameters, such as `washer-m5-d10-t1`.
+    /// Family and parameters, such as `gear-z18-m1-t5-d4`.
     #[must_use]
     pub fn name(&self) -> String {
         let parameters = self.family.parameters().iter().zip(&self.values);
@@ -94,10 +94,10 @@ impl MechanicalPart {
 /// family, and most others in a few, by a millimetre or two.
 ///
 /// The first parts of a longer list are those of a shorter one. Families without further parts are left out, and the
-/// list ends when there are none; that is after more than 400 parts.
+/// list ends when there are none; that is after more than 300 parts.
 #[must_use]
 pub fn mechanical_parts(seed: u64, n: usize) -> Vec<MechanicalPart> {
-    let mut families: Vec<Draw> = PartFamily::ALL.into_iter().map(|family| Draw::new(seed, family)).collect();
+    let mut families: Vec<Draw> = PartFamily::ALL.iter().map(|family| Draw::new(seed, *family)).collect();
     let mut parts = Vec::with_capacity(n);
     while parts.len() < n && !families.is_empty() {
         families.retain_mut(|family| {

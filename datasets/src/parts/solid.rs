@@ -62,18 +62,13 @@ impl Solid {
         self.mesh.faces.extend(triangles.into_iter().map(|t| t.map(|i| corners[i])));
     }
 
-    /// The wall between two loops as long as each other, or between a loop and an apex. It faces away from the axis, and
-    /// towards the axis if `lower` is above `upper`.
+    /// The wall between two loops as long as each other. It faces away from the axis, and towards the axis if `lower` is
+    /// above `upper`.
     pub(super) fn wall(&mut self, lower: &[VertexId], upper: &[VertexId]) {
-        let n = lower.len().max(upper.len());
+        let n = lower.len();
         for i in 0..n {
-            let [[a, b], [d, c]] =
-                [lower, upper].map(|ring| [ring[i % ring.len()], ring[(i + 1) % n % ring.len()]]);
-            if lower.len() == 1 {
-                self.mesh.faces.push([a, c, d]);
-            } else if upper.len() == 1 {
-                self.mesh.faces.push([a, b, c]);
-            } else if self.options.diagonals == Diagonals::Even && self.is_planar([a, b, c, d]) {
+            let [[a, b], [d, c]] = [lower, upper].map(|ring| [ring[i], ring[(i + 1) % n]]);
+            if self.options.diagonals == Diagonals::Even && self.is_planar([a, b, c, d]) {
                 self.mesh.faces.extend([[a, b, d], [b, c, d]]);
             } else {
                 self.mesh.faces.extend([[a, b, c], [a, c, d]]);
@@ -108,16 +103,10 @@ impl Solid {
         }
     }
 
-    /// Revolves a line of points (radius, height) about the z axis, from the lowest face to the highest. A radius of zero
-    /// is an apex.
+    /// Revolves a line of points (radius, height) about the z axis, from the lowest face to the highest.
     pub(super) fn revolve(&mut self, line: &[[f64; 2]]) {
-        let rings: Vec<Loop> = line
-            .iter()
-            .map(|&[radius, z]| match radius {
-                0.0 => self.level(&[[0.0, 0.0]], z),
-                _ => self.level(&circle([0.0, 0.0], radius, self.arcs()), z),
-            })
-            .collect();
+        let rings: Vec<Loop> =
+            line.iter().map(|&[radius, z]| self.level(&circle([0.0, 0.0], radius, self.arcs()), z)).collect();
         for (ends, pair) in line.windows(2).zip(rings.windows(2)) {
             if ends[0][1] != ends[1][1] {
                 self.wall(&pair[0], &pair[1]);
@@ -129,9 +118,7 @@ impl Solid {
         }
         let last = rings.len() - 1;
         for (end, up) in [(0, -Vector3::z()), (last, Vector3::z())] {
-            if rings[end].len() > 1 {
-                self.cap(&rings[end], &[], up);
-            }
+            self.cap(&rings[end], &[], up);
         }
     }
 }

@@ -66,16 +66,14 @@ fn lists_are_reproducible_without_duplicates_and_full_of_near_parts() {
     let pairs = parts.iter().enumerate().flat_map(|(i, a)| parts[..i].iter().map(move |b| a.differences(b)));
     let near = pairs.filter(|differences| differences.as_ref().is_some_and(|d| d.len() == 1)).count();
     assert!(near >= 80, "{near}");
-    assert!(all().len() > 400, "{}", all().len());
+    assert!(all().len() > 300, "{}", all().len());
 }
 
 #[test]
 fn parts_are_mechanical_and_bodies_are_not() {
     let is_mechanical = |mesh: &TriMesh| mesh::SmoothRegions::of(mesh).is_mechanical;
     for part in mechanical_parts(0, 320) {
-        // A ball has neither planes nor edges.
-        let expected = part.family() != PartFamily::Sphere;
-        assert_eq!(is_mechanical(&part.mesh(&PartMesh::default())), expected, "{}", part.name());
+        assert!(is_mechanical(&part.mesh(&PartMesh::default())), "{}", part.name());
     }
     for n_vertices in [1000, 3000] {
         let options = crate::CreatureOptions { n_poses: 1, n_vertices, ..Default::default() };

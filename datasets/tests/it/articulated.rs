@@ -174,7 +174,7 @@ fn nothing_corresponds_between_poses() {
             degrees
         };
         assert_ne!(degrees(&a), degrees(&b), "{family:?}: triangulations are alike");
-        // Neighbours in number are not neighbours in space.
+        // Neighbors in number are not neighbors in space.
         let near = |mesh: &TriMesh| {
             let steps = mesh.positions.windows(2).map(|p| (p[1] - p[0]).norm());
             steps.sum::<f64>() / mesh.n_vertices() as f64

@@ -52,7 +52,7 @@ impl Experiment for RobustnessOptions {
         record("undamaged", &undamaged, &mut measured);
         let mut panels = Vec::new();
         let mut least = f64::INFINITY;
-        for kind in DamageKind::ALL {
+        for &kind in DamageKind::ALL {
             let mut curves: Vec<(usize, MethodScores)> = vec![(0, undamaged.clone())];
             for strength in 1..=DamageKind::STRENGTHS {
                 let stage = format!("{} {strength}", kind.name());

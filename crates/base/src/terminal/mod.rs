@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn a_closed_pipe_is_recognised_below_its_context() {
+    fn a_closed_pipe_is_recognized_below_its_context() {
         let pipe = std::io::Error::from(std::io::ErrorKind::BrokenPipe);
         assert!(is_closed_pipe(&anyhow::Error::from(pipe).context("writing")));
         assert!(!is_closed_pipe(&anyhow::anyhow!("something else")));

@@ -10,7 +10,7 @@ use clap::{Args, ValueEnum};
 const NOTES: &str = "\
 Shapes of the families cat, centaur, david and person are written to FOLDER/NAME.EXT, creatures to
 FOLDER/CLASS/NAME.EXT; both are datasets for `canonform index build`. The default seed gives the shapes that the
-experiments use. Files that are there already are replaced. Mechanical parts go to FOLDER/FAMILY-PARAMETERS.EXT, such as washer-m5-d10-t1.off; --vertices
+experiments use. Files that are there already are replaced. Mechanical parts go to FOLDER/FAMILY-PARAMETERS.EXT, such as gear-z18-m1-t5-d4.off; --vertices
 and --poses do not concern them.
 
 Examples:

@@ -42,7 +42,7 @@ pub(crate) fn info(args: &InfoArgs, common: &Common) -> Result<ExitCode> {
         let report = read_file(&path, common).and_then(|MeshFile { mesh, facts, .. }| {
             let repaired =
                 repair(&mesh, &args.repair.options(), &()).map_err(|fault| named(&path, fault.into()))?;
-            let mut shortcuts = cut_shortcuts(&repaired.mesh, &())?.shortcuts;
+            let mut shortcuts = cut_shortcuts(&repaired.mesh, repaired.intrinsic.topology(), &())?.shortcuts;
             for shortcut in &mut shortcuts {
                 shortcut.vertex = repaired.remap.to_old(shortcut.vertex);
             }

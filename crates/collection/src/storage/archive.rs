@@ -152,7 +152,7 @@ impl Spool {
         let start = self.n_bytes;
         self.n_bytes += bytes.len() as u64;
         if self.n_bytes > self.limit {
-            return Err(Fault::Inflates { limit: self.limit });
+            return Err(Fault::DecompressionBomb { limit: self.limit });
         }
         self.file.write_all(bytes).map_err(|error| cannot_keep(&error))?;
         Ok(start)

@@ -62,7 +62,7 @@ impl Entries for Zip {
             .read_to_end(&mut bytes)
             .map_err(|error| Fault::syntax("compressed data", error.to_string()))?;
         match bytes.len() as u64 > limit {
-            true => Err(Fault::Inflates { limit }),
+            true => Err(Fault::DecompressionBomb { limit }),
             false => Ok(bytes),
         }
     }

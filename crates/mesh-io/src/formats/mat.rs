@@ -73,7 +73,7 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
                 Err(e) if e.kind() != io::ErrorKind::UnexpectedEof => {
                     Fault::syntax("compressed data", e.to_string())
                 }
-                _ if content.len() as u64 == limit => Fault::Inflates { limit },
+                _ if content.len() as u64 == limit => Fault::DecompressionBomb { limit },
                 _ => cut_short(),
             };
             variable = Elements::new(&content, 0, order, end);

@@ -22,7 +22,7 @@ pub(super) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
 /// floating-point property of the vertices other than positions, normals, colors and texture coordinates is a scalar
 /// field. Other elements and properties are ignored.
 pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
-    let (bytes, mut field) = (files[0], None);
+    let bytes = files[0];
     let mut lines = Lines::new(bytes);
     // The first line is `ply`.
     lines.next();
@@ -32,55 +32,32 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
         None => Body::Text(Words::new(lines, false)),
         Some(order) => Body::Binary(Bytes::new(bytes, bytes.len() - lines.remaining(), order)),
     };
-    let (mut positions, mut polygons, mut corners) = (Vec::new(), Polygons::default(), Vec::new());
+    let (mut positions, mut polygons) = (Vec::new(), Polygons::default());
+    let (mut corners, mut values) = (Vec::new(), Vec::new());
     for element in &header.elements {
-        match element.name.as_str() {
-            "vertex" => {
-                positions.reserve_exact(element.count as usize);
-                let axes: Vec<Option<usize>> = element.properties.iter().map(|p| p.axis()).collect();
-                let carrier = element.properties.iter().position(|p| p.is_field());
-                let mut values = Vec::new();
-                let is_needed = |property: usize| axes[property].is_some();
-                for row in 0..element.count {
-                    let mut p = Point3::origin();
-                    let place = body.row(element, row, is_needed, |property, x| {
-                        if let Some(axis) = axes[property] {
-                            p[axis] = x;
-                        }
-                        if carrier == Some(property) {
-                            values.push(x);
-                        }
-                    })?;
-                    positions.push(finite(p, row as usize).at(place)?);
-                }
-                field = carrier.map(|i| ScalarField { name: element.properties[i].name.clone(), values });
-            }
-            "face" => {
-                polygons = Polygons::with_room_for(element.count as usize);
-                let list = element.corner_list();
-                for row in 0..element.count {
-                    let mut outside = None;
-                    corners.clear();
-                    let is_needed = |property| Some(property) == list;
-                    let place = body.row(element, row, is_needed, |property, index| {
-                        if !is_needed(property) {
-                        } else if (0.0..positions.len() as f64).contains(&index) {
-                            corners.push(VertexId(index as u32));
-                        } else {
-                            outside.get_or_insert(index);
-                        }
-                    })?;
-                    if let Some(index) = outside {
-                        let n = positions.len() as u64;
-                        return Err(Fault::no_vertex(index.to_string(), 0, n).at(place));
-                    }
-                    polygons.push(&positions, &corners, limits).at(place)?;
-                }
-            }
-            _ => {
-                for row in 0..element.count {
-                    body.row(element, row, |_| false, |_, _| ())?;
-                }
+        let (is_vertex, is_face) = (element.name == "vertex", element.name == "face");
+        match element.count as usize {
+            n_vertices if is_vertex => positions.reserve_exact(n_vertices),
+            n_faces if is_face => polygons = Polygons::with_room_for(n_faces),
+            _ => {}
+        }
+        let n_vertices = positions.len() as f64;
+        for row in 0..element.count {
+            let (mut p, mut outside) = (Point3::origin(), None);
+            corners.clear();
+            let place = body.row(element, row, |role, x| match role {
+                Role::Axis(axis) => p[axis] = x,
+                Role::Field => values.push(x),
+                Role::Corner if (0.0..n_vertices).contains(&x) => corners.push(VertexId(x as u32)),
+                Role::Corner => drop(outside.get_or_insert(x)),
+                Role::Ignored => {}
+            })?;
+            if is_vertex {
+                positions.push(finite(p, row as usize).at(place)?);
+            } else if let Some(index) = outside {
+                return Err(Fault::no_vertex(index.to_string(), 0, n_vertices as u64).at(place));
+            } else if is_face {
+                polygons.push(&positions, &corners, limits).at(place)?;
             }
         }
     }
@@ -92,6 +69,9 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
         let promised = header.elements.iter().map(|element| element.count).sum();
         return Err(Fault::Leftover { items: "elements", promised }.at(place));
     }
+    let mut properties = header.elements.into_iter().flat_map(|element| element.properties);
+    let field = properties.find(|property| property.role == Role::Field);
+    let field = field.map(|property| ScalarField { name: property.name, values });
     Ok(MeshFile { field, ..polygons.finish(positions, limits)? })
 }
 
@@ -102,22 +82,16 @@ enum Body<'a> {
 }
 
 impl Body<'_> {
-    /// Reads the next row and gives each of its numbers to `take`, with the index of its property; returns
-    /// the place of the row. Words of properties that are not needed may be no numbers: they are given as NaN.
-    fn row(
-        &mut self,
-        element: &Element,
-        row: u64,
-        is_needed: impl Fn(usize) -> bool,
-        take: impl FnMut(usize, f64),
-    ) -> Result<Place, Located> {
+    /// Reads the next row and gives each of its numbers to `take`; returns the place of the row. Only words of positions and
+    /// corners must be numbers: others may be given as NaN.
+    fn row(&mut self, element: &Element, row: u64, take: impl FnMut(Role, f64)) -> Result<Place, Located> {
         let truncated = || Fault::truncated(format!("rows of `{}`", element.name), element.count, row);
         match self {
             Self::Text(words) => {
                 let line = words.row().ok_or_else(|| truncated().in_line(words.lines.number))?;
                 let mut tokens = line.tokens();
-                let next = |scalar, property: Option<usize>| {
-                    let is_needed = property.is_none_or(&is_needed);
+                let next = |scalar, role| {
+                    let is_needed = matches!(role, Role::Axis(_) | Role::Corner);
                     parse_scalar(scalar, tokens.next()?).or_else(|| (!is_needed).then_some(f64::NAN))
                 };
                 element
@@ -164,6 +138,19 @@ struct Property {
     /// Type of the length of a list; `None` for a single number.
     length: Option<Scalar>,
     item: Scalar,
+    role: Role,
+}
+
+/// What the numbers of a property are for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Role {
+    /// The coordinate of a vertex along this axis.
+    Axis(usize),
+    /// The scalar field.
+    Field,
+    /// The corners of a face, and lengths of lists.
+    Corner,
+    Ignored,
 }
 
 impl Header {
@@ -197,7 +184,8 @@ impl Header {
                         _ => return Err(unexpected()),
                     };
                     let element = elements.last_mut().ok_or_else(unexpected)?;
-                    element.properties.push(Property { name: name.into(), length, item });
+                    let role = element.role(name, length.is_some(), item.is_integer());
+                    element.properties.push(Property { name: name.into(), length, item, role });
                 }
                 ["end_header"] => {
                     let byte_order =
@@ -232,10 +220,10 @@ impl Header {
         if face_at.is_some_and(|face_at| face_at < vertex_at) {
             return unsupported("the faces come before the vertices");
         }
-        if (0..3).any(|axis| !vertex.properties.iter().any(|p| p.axis() == Some(axis))) {
+        if !(0..3).all(|axis| vertex.has(Role::Axis(axis))) {
             return unsupported("the vertices lack one of the properties `x y z`");
         }
-        if n_faces > 0 && face_at.is_some_and(|at| self.elements[at].corner_list().is_none()) {
+        if n_faces > 0 && face_at.is_some_and(|at| !self.elements[at].has(Role::Corner)) {
             return unsupported("the faces lack a list of integers `vertex_indices`");
         }
 
@@ -257,28 +245,48 @@ impl Header {
 }
 
 impl Element {
-    /// Index of the property that lists the corners of a face.
-    fn corner_list(&self) -> Option<usize> {
-        let names = ["vertex_indices", "vertex_index"];
-        self.properties
-            .iter()
-            .position(|p| names.contains(&p.name.as_str()) && p.length.is_some() && p.item.is_integer())
+    fn has(&self, role: Role) -> bool {
+        self.properties.iter().any(|property| property.role == role)
     }
 
-    /// Reads a row, number by number; `None` if one is missing or malformed. `next` learns the property that a number
-    /// belongs to, `None` for the length of a list.
+    /// What the next property is for.
+    fn role(&self, name: &str, is_list: bool, is_integer: bool) -> Role {
+        /// Properties of vertices that are no field.
+        const OTHERS: &str = "nx ny nz red green blue alpha r g b a s t u v texture_u texture_v w";
+        match (self.name.as_str(), name) {
+            ("face", "vertex_indices" | "vertex_index")
+                if is_list && is_integer && !self.has(Role::Corner) =>
+            {
+                Role::Corner
+            }
+            ("vertex", "x") if !is_list => Role::Axis(0),
+            ("vertex", "y") if !is_list => Role::Axis(1),
+            ("vertex", "z") if !is_list => Role::Axis(2),
+            ("vertex", name)
+                if !is_list
+                    && !is_integer
+                    && !self.has(Role::Field)
+                    && !OTHERS.split(' ').any(|other| other == name) =>
+            {
+                Role::Field
+            }
+            _ => Role::Ignored,
+        }
+    }
+
+    /// Reads a row, number by number; `None` if one is missing or malformed.
     fn read_row(
         &self,
-        mut next: impl FnMut(Scalar, Option<usize>) -> Option<f64>,
-        mut take: impl FnMut(usize, f64),
+        mut next: impl FnMut(Scalar, Role) -> Option<f64>,
+        mut take: impl FnMut(Role, f64),
     ) -> Option<()> {
-        for (i, property) in self.properties.iter().enumerate() {
+        for property in &self.properties {
             let n = match property.length {
                 None => 1,
-                Some(length) => Some(next(length, None)?).filter(|n| *n >= 0.0 && n.fract() == 0.0)? as u64,
+                Some(length) => next(length, Role::Corner).filter(|n| *n >= 0.0 && n.fract() == 0.0)? as u64,
             };
             for _ in 0..n {
-                take(i, next(property.item, Some(i))?);
+                take(property.role, next(property.item, property.role)?);
             }
         }
         Some(())
@@ -289,20 +297,6 @@ impl Element {
         // A digit and a separator in text.
         let shortest = |p: &Property| byte_order.map_or(2, |_| p.length.unwrap_or(p.item).size() as u64);
         self.properties.iter().map(shortest).sum()
-    }
-}
-
-impl Property {
-    /// The axis whose coordinate a property of a vertex holds.
-    fn axis(&self) -> Option<usize> {
-        let axis = ["x", "y", "z"].iter().position(|axis| *axis == self.name);
-        axis.filter(|_| self.length.is_none())
-    }
-
-    /// Whether a property of a vertex is a scalar field, judging by its type and name.
-    fn is_field(&self) -> bool {
-        const OTHERS: &str = "x y z nx ny nz red green blue alpha r g b a s t u v texture_u texture_v w";
-        self.length.is_none() && !self.item.is_integer() && OTHERS.split(' ').all(|other| other != self.name)
     }
 }
 

@@ -539,5 +539,5 @@ fn compressed_files_are_read_within_their_limits() {
     }
     fs::write(&gzip, bomb.finish().unwrap()).unwrap();
     let error = read(&gzip).unwrap_err();
-    assert!(matches!(&error, MeshError::File { fault: Fault::Inflates { .. }, .. }), "{error}");
+    assert!(matches!(&error, MeshError::File { fault: Fault::DecompressionBomb { .. }, .. }), "{error}");
 }

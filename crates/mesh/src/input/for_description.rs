@@ -5,10 +5,10 @@ use std::borrow::Cow;
 use base::{Budget, Exceeded, Observer};
 
 use super::surface::Surface;
-use crate::holes::filled;
-use crate::noise::smoothed;
+use crate::holes::fill_holes;
+use crate::noise::denoise;
 use crate::refine::refine;
-use crate::shortcuts::opened;
+use crate::shortcuts::cut_shortcuts;
 
 /// Longest edge, relative to the square root of the area. Equilateral triangles of this size have about 720 vertices.
 ///
@@ -37,7 +37,7 @@ const MOST: usize = 10_000;
 
 impl Surface {
     /// The surface that is described: without [shortcuts](crate::cut_shortcuts) and
-    /// [noise](crate::without_noise), with small [holes](crate::fill_holes) closed and long edges split. Coarse meshes are then
+    /// [noise](crate::denoise), with small [holes](crate::fill_holes) closed and long edges split. Coarse meshes are then
     /// measured as accurately as fine ones, and neither subdivision, noise, small holes nor a weld of two parts that touch
     /// change much. The first vertices are those of the repaired mesh, and so are the links. A mesh without such damage
     /// stays the same surface.
@@ -68,18 +68,18 @@ impl Surface {
 
     fn prepared(&self, longest_hole: f64, budget: &Budget) -> Result<Self, Exceeded> {
         let topology = self.intrinsic().topology();
-        let opened = opened(self.mesh(), topology, budget)?;
+        let opened = cut_shortcuts(self.mesh(), topology, budget)?;
         let topology = match opened.cut.remap.is_identity() {
             true => Cow::Borrowed(topology),
             false => Cow::Owned(opened.cut.mesh.topology()),
         };
-        let smooth = smoothed(&opened.cut.mesh, &topology);
+        let smooth = denoise(&opened.cut.mesh, &topology);
         let mesh = smooth.as_ref().unwrap_or(&opened.cut.mesh);
         let size = mesh.root_of_area();
         if size.is_nan() || size <= 0.0 {
             return Ok(self.clone());
         }
-        let filled = filled(mesh, &topology, longest_hole * size);
+        let filled = fill_holes(mesh, &topology, longest_hole * size);
         let longest = if mesh.n_vertices() < FEW { LONGEST_OF_FEW } else { LONGEST };
         let fine = refine(&filled.mesh, longest * size, mesh.n_vertices() + MOST);
         let made = opened.cut.then(filled).then(fine);

@@ -7,4 +7,4 @@ mod point;
 mod surface;
 
 pub use self::surface::{InputMap, Surface};
-pub use point::{BadPoint, InputPoint, PointError};
+pub use point::{InputPoint, ParsePointError, PointError};

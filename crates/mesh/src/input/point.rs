@@ -39,7 +39,7 @@ pub enum InputPoint {
     "`{text}` is not a point of a mesh; write 17 for a vertex (counted from 0), 17-42@0.3 for a point on an edge (at 0.3 of the \
      length from 17 to 42), or f8@2:1:1 for a point of a face with these weights of its corners"
 )]
-pub struct BadPoint {
+pub struct ParsePointError {
     /// The text.
     pub text: String,
 }
@@ -81,10 +81,10 @@ pub enum PointError {
 }
 
 impl FromStr for InputPoint {
-    type Err = BadPoint;
+    type Err = ParsePointError;
 
-    fn from_str(text: &str) -> Result<Self, BadPoint> {
-        parse(text.trim()).ok_or_else(|| BadPoint { text: text.to_owned() })
+    fn from_str(text: &str) -> Result<Self, ParsePointError> {
+        parse(text.trim()).ok_or_else(|| ParsePointError { text: text.to_owned() })
     }
 }
 

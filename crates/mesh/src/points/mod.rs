@@ -42,12 +42,12 @@ pub struct PointsReport {
     pub n_points: usize,
     /// Number of faces of the surface.
     pub n_faces: usize,
-    /// Mean distance of a point from its neighbours in the surface, if they were spread evenly, in mesh units.
+    /// Mean distance of a point from its neighbors in the surface, if they were spread evenly, in mesh units.
     pub spacing: f64,
     /// Standard deviation of the points from smooth patches, in mesh units: the noise, and curvature that the sampling is too
     /// coarse for.
     pub noise: f64,
-    /// Fewest neighbours to which patches were fitted for smoothing; 0 if the points were left where they are.
+    /// Fewest neighbors to which patches were fitted for smoothing; 0 if the points were left where they are.
     pub neighbors: usize,
     /// Points without a face, for which a vertex nearby stands, and copies of other points.
     pub replaced_points: usize,
@@ -75,15 +75,15 @@ impl PointsReport {
     }
 }
 
-/// The surface through a cloud of points: triangles between neighbours, at most two at an edge.
+/// The surface through a cloud of points: triangles between neighbors, at most two at an edge.
 ///
 /// 1. **Smoothing.** The noise is measured with patches, quadrics fitted to the nearest points: the smallest patches of
 ///    which a quarter are flat for their size tell the noise. If there is more than a small part of the spacing, every
 ///    point is projected onto the largest patch around it that fits within the noise (moving least squares; `alexa2003` in
 ///    `REFERENCES.bib`).
-/// 2. **Triangles.** Every point takes its neighbours into its tangent plane, where the corners of its Voronoi cell are
+/// 2. **Triangles.** Every point takes its neighbors into its tangent plane, where the corners of its Voronoi cell are
 ///    the triangles of the Delaunay triangulation around it (`sharp2020` uses the union of these). Empty circles larger
-///    than the neighbourhood make no triangle, so boundaries and holes stay open.
+///    than the neighborhood make no triangle, so boundaries and holes stay open.
 /// 3. **Agreement.** A triangle is proposed by up to three points. Those with three proposals are taken first, then those with
 ///    two, each unless it overlaps a face that was taken, as seen in the tangent planes of its corners. Small gaps that are left
 ///    are closed.

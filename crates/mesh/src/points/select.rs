@@ -9,7 +9,7 @@ use super::star::{Proposal, Stars};
 const FEWEST: usize = 2;
 
 /// Corners of the largest gap that is closed.
-const LARGEST_GAP: usize = 10;
+const MAX_GAP: usize = 10;
 
 /// Angles that overlap by less do not overlap.
 const ROUNDING: f64 = 1e-9;
@@ -75,7 +75,7 @@ fn overlap([a, wide]: [f64; 2], [b, other]: [f64; 2]) -> bool {
 /// Closes gaps of few sides with the faces that fit, short new edges first.
 fn close_gaps(faces: &mut Vec<[u32; 3]>, sectors: &mut Sectors<'_>) {
     // A gap of n sides needs n - 2 faces. Each cuts off a corner of the boundary.
-    for _ in 0..LARGEST_GAP {
+    for _ in 0..MAX_GAP {
         let mut ears = ears(faces, sectors.stars);
         ears.sort_unstable_by(|(a, f), (b, g)| a.total_cmp(b).then(f.cmp(g)));
         let before = faces.len();
@@ -90,7 +90,7 @@ fn close_gaps(faces: &mut Vec<[u32; 3]>, sectors: &mut Sectors<'_>) {
     }
 }
 
-/// The corners of small gaps: a corner of the boundary with its two neighbours, and the length of the edge between these.
+/// The corners of small gaps: a corner of the boundary with its two neighbors, and the length of the edge between these.
 fn ears(faces: &[[u32; 3]], stars: &Stars) -> Vec<(f64, [u32; 3])> {
     let mut n_faces: HashMap<[u32; 2], u32> = HashMap::with_capacity(2 * faces.len());
     for &[a, b, c] in faces {
@@ -125,7 +125,7 @@ fn gaps(next: &HashMap<u32, Vec<u32>>) -> Vec<Vec<u32>> {
     for start in starts {
         let mut gap = vec![start];
         let (mut before, mut at) = (start, start);
-        while gap.len() <= LARGEST_GAP {
+        while gap.len() <= MAX_GAP {
             let ends = &next[&at];
             let [a, b] = ends[..] else { break };
             let step = if at == start {

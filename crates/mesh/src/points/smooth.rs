@@ -67,7 +67,7 @@ impl Smooth {
 /// Smooths points that are noisy.
 ///
 /// A point is projected onto the largest patch that fits within the noise: thin limbs have small patches, which do not shorten
-/// them, and flat parts have large ones, over which more noise is averaged. Patches of neighbours of different sizes leave
+/// them, and flat parts have large ones, over which more noise is averaged. Patches of neighbors of different sizes leave
 /// the result uneven, so smoothed points are projected again, onto small patches of each other.
 pub(super) fn smooth(points: Vec<Point3<f64>>, budget: &Budget) -> Result<Smooth, Exceeded> {
     let neighbors = Neighbors::new(&points);
@@ -133,7 +133,7 @@ fn sizes(rough: &Smooth, neighbors: &Neighbors) -> Vec<usize> {
 
 /// Points at which the noise is measured.
 fn probes(points: &[Point3<f64>]) -> Vec<Point3<f64>> {
-    // Spread over the input by the golden ratio: neighbours in the input are often neighbours in space.
+    // Spread over the input by the golden ratio: neighbors in the input are often neighbors in space.
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let n = points.len();
     let probe = |i: usize| ((i as f64 * GOLDEN).fract() * n as f64) as usize;

@@ -6,17 +6,17 @@ use rayon::prelude::*;
 use super::fit::Frame;
 use super::neighbors::Neighbors;
 
-/// Neighbours whose plane is the tangent plane.
+/// Neighbors whose plane is the tangent plane.
 const TANGENT: usize = 16;
 
-/// Neighbours among which a point looks for triangles. Of points spread at random, one in 10,000 empty circles is larger than
-/// half the radius of 48 neighbours.
+/// Neighbors among which a point looks for triangles. Of points spread at random, one in 10,000 empty circles is larger than
+/// half the radius of 48 neighbors.
 const NEAR: usize = 48;
 
-/// Least cosine of the angle between the normals of neighbours on the same part of a surface.
+/// Least cosine of the angle between the normals of neighbors on the same part of a surface.
 const ALIKE: f64 = 0.5;
 
-/// Largest share of the distance of a neighbour that is height over the tangent plane.
+/// Largest share of the distance of a neighbor that is height over the tangent plane.
 const STEEPEST: f64 = 0.8;
 
 /// A triangle that a point proposes: its corners, ascending, and the radius of its circle.
@@ -26,7 +26,7 @@ pub(super) struct Proposal {
     pub(super) radius: f64,
 }
 
-/// The triangles that every point proposes, and the directions in which it sees its neighbours.
+/// The triangles that every point proposes, and the directions in which it sees its neighbors.
 pub(super) struct Stars {
     pub(super) frames: Vec<Frame>,
     pub(super) points: Vec<Point3<f64>>,
@@ -82,7 +82,7 @@ pub(super) fn stars(points: &[Point3<f64>], neighbors: &Neighbors) -> Stars {
     Stars { frames, points: points.to_vec(), proposals: proposals.concat() }
 }
 
-/// A side of a Voronoi cell begins at a corner and belongs to a neighbour, or to the frame around the cell.
+/// A side of a Voronoi cell begins at a corner and belongs to a neighbor, or to the frame around the cell.
 #[derive(Debug, Clone, Copy)]
 struct Side {
     from: [f64; 2],
@@ -90,7 +90,7 @@ struct Side {
 }
 
 /// The corners of the Voronoi cell of the origin among points that are sorted by distance and known up to `reach`: the
-/// two neighbours of each, and its distance from the origin, the radius of the circle through the origin and both.
+/// two neighbors of each, and its distance from the origin, the radius of the circle through the origin and both.
 fn cell(points: &[(u32, [f64; 2])], reach: f64) -> Vec<([u32; 2], f64)> {
     let r = 2.0 * reach;
     let corner = |from| Side { from, neighbor: None };

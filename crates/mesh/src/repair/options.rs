@@ -66,7 +66,7 @@ impl std::str::FromStr for Weld {
     }
 }
 
-/// Whether faces are flipped so that neighbours are oriented consistently.
+/// Whether faces are flipped so that neighbors are oriented consistently.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Orient {

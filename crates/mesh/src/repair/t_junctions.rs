@@ -11,7 +11,7 @@ use super::weld::SEAM_TOLERANCE;
 const ROUNDING: f64 = 1e-5;
 
 /// Vertices of more boundary edges are left alone: comparing all of them would take quadratic time.
-const MOST_BESIDE: usize = 64;
+const MAX_BESIDE: usize = 64;
 
 /// Splits faces at the vertices that lie on one of their boundary edges, up to rounding, and appends the parts of each to
 /// the faces; returns the number of vertices joined to an edge.
@@ -99,7 +99,7 @@ impl Boundary<'_> {
             let (mut here, mut reached) = (first, if sign > 0.0 { 0.0 } else { length });
             loop {
                 let beside = self.beside.row(here.index());
-                let few = &beside[..if beside.len() <= MOST_BESIDE { beside.len() } else { 0 }];
+                let few = &beside[..if beside.len() <= MAX_BESIDE { beside.len() } else { 0 }];
                 let onward = few.iter().filter_map(|v| Some((place(*v)?, *v)));
                 let onward = onward.filter(|(to, _)| sign * (to - reached) > tolerance);
                 let Some(next) = onward.min_by(|a, b| (sign * a.0).total_cmp(&(sign * b.0))) else { break };

@@ -169,8 +169,8 @@ fn merge_near(
         let (small, mut large, [own, other]) =
             if a.n_corners < b.n_corners { (a, b, sets) } else { (b, a, [sets[1], sets[0]]) };
         let corners = small.members.iter().flat_map(|v| topology.vertex_corners(VertexId(*v)));
-        let mut neighbours = corners.flat_map(|corner| topology.edge_ends(*corner));
-        if (high - low).max() > tolerance || neighbours.any(|v| merged.find(v.0) == other) {
+        let mut neighbors = corners.flat_map(|corner| topology.edge_ends(*corner));
+        if (high - low).max() > tolerance || neighbors.any(|v| merged.find(v.0) == other) {
             clusters.extend([(own, small), (other, large)]);
             continue;
         }

@@ -155,11 +155,11 @@ mod tests {
     fn a_narrow_handle_is_cut_and_its_holes_can_be_filled() {
         let mesh = bridged(4);
         assert_eq!(validate(&mesh).genus, Some(1));
-        let opened = cut_shortcuts(&mesh, &()).unwrap();
+        let opened = cut_shortcuts(&mesh, &mesh.topology(), &()).unwrap();
         let [shortcut] = opened.shortcuts[..] else { panic!("{:?}", opened.shortcuts) };
         assert_eq!(shortcut.kind, ShortcutKind::Handle);
         assert!(shortcut.girth < 0.8 && shortcut.detour > 2.5, "{shortcut:?}");
-        let filled = fill_holes(&opened.cut.mesh, 1.0).mesh;
+        let filled = fill_holes(&opened.cut.mesh, &opened.cut.mesh.topology(), 1.0).mesh;
         let report = validate(&filled);
         assert_eq!((report.genus, report.n_boundary_edges, report.n_components), (Some(0), 0, 1));
         assert_eq!(opened.cut.mesh.positions[..mesh.n_vertices()], mesh.positions);
@@ -176,7 +176,7 @@ mod tests {
             (shapes::icosphere(3), 100.0),
         ] {
             assert_eq!(narrow(&mesh, girth, 0.0), None);
-            assert_eq!(cut_shortcuts(&mesh, &()).unwrap().cut.mesh, mesh);
+            assert_eq!(cut_shortcuts(&mesh, &mesh.topology(), &()).unwrap().cut.mesh, mesh);
         }
     }
 }

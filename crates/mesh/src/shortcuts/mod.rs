@@ -12,7 +12,7 @@ mod spike;
 use std::borrow::Cow;
 use std::cell::OnceCell;
 
-use base::{Budget, Exceeded, Observer};
+use base::{Exceeded, Observer};
 use surface::Topology;
 
 use crate::regions::SmoothRegions;
@@ -33,9 +33,6 @@ pub use shortcut::{CutSurface, Shortcut, ShortcutKind};
 /// # Errors
 /// [`Exceeded`] if the time of the budget is over or it was cancelled.
 ///
-/// # Panics
-/// If a face has a repeated vertex or one that does not exist, see [`surface::Topology::new`].
-///
 /// ```
 /// use canonform_mesh::{cut_shortcuts, shapes, validate};
 /// use surface::VertexId;
@@ -48,18 +45,18 @@ pub use shortcut::{CutSurface, Shortcut, ShortcutKind};
 /// });
 /// let far = VertexId::from(far.unwrap());
 /// ball.faces.iter_mut().flatten().filter(|v| **v == far).for_each(|v| *v = VertexId(0));
-/// let opened = cut_shortcuts(&ball, &())?;
+/// let opened = cut_shortcuts(&ball, &ball.topology(), &())?;
 /// assert_eq!(opened.shortcuts.len(), 1);
 /// assert!(opened.shortcuts[0].detour > 2.5);
 /// assert_eq!(validate(&opened.cut.mesh).non_manifold_vertices, 0);
 /// # Ok::<(), base::Exceeded>(())
 /// ```
-pub fn cut_shortcuts(mesh: &TriMesh, observer: &dyn Observer) -> Result<CutSurface, Exceeded> {
-    opened(mesh, &mesh.topology(), &observer.budget())
-}
-
-/// [`cut_shortcuts`], given the connectivity of the mesh.
-pub(crate) fn opened(mesh: &TriMesh, topology: &Topology, budget: &Budget) -> Result<CutSurface, Exceeded> {
+pub fn cut_shortcuts(
+    mesh: &TriMesh,
+    topology: &Topology,
+    observer: &dyn Observer,
+) -> Result<CutSurface, Exceeded> {
+    let budget = &observer.budget();
     let size = mesh.root_of_area();
     let mut opened = pinch::cut(mesh, topology, DETOUR * size);
     let mut topology = Cow::Borrowed(topology);

@@ -7,7 +7,7 @@ use surface::{OneRing, Topology, VertexId};
 
 use crate::tri_mesh::TriMesh;
 
-/// The mean of the neighbours of an inner vertex, if its median edge is more than `limit` times as long as the radius of a
+/// The mean of the neighbors of an inner vertex, if its median edge is more than `limit` times as long as the radius of a
 /// regular polygon with the median edge around it.
 pub(super) fn flattened(mesh: &TriMesh, topology: &Topology, v: VertexId, limit: f64) -> Option<Point3<f64>> {
     let mut ring = OneRing::default();

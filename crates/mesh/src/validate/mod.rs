@@ -8,7 +8,7 @@ use surface::{EdgeId, Topology, VertexId, components_of_faces};
 
 use crate::coincidence::coincident_pairs;
 use crate::face_set::{remove_degenerate, remove_duplicates};
-use crate::orientation::{Orientation, runs_against};
+use crate::orientation::{Orientation, has_same_direction};
 use crate::tri_mesh::TriMesh;
 
 /// The properties and defects of a mesh, from [`validate`].
@@ -49,9 +49,9 @@ pub struct MeshReport {
     pub non_manifold_vertices: usize,
     /// Edges that their two faces traverse in the same direction: one of the faces is flipped.
     pub inconsistent_edges: usize,
-    /// The fewest faces to flip so that neighbours across manifold edges are oriented consistently.
+    /// The fewest faces to flip so that neighbors across manifold edges are oriented consistently.
     pub flipped_faces: usize,
-    /// Whether neighbours across manifold edges can be oriented consistently.
+    /// Whether neighbors across manifold edges can be oriented consistently.
     pub orientable: bool,
     /// Vertices with a face, minus edges, plus faces.
     pub euler_characteristic: i64,
@@ -170,7 +170,7 @@ impl MeshReport {
         for (e, [a, b]) in topology.edges().iter().enumerate() {
             match *topology.edge_corners(EdgeId::from(e)) {
                 [_] => self.n_boundary_edges += 1,
-                [a, b] => self.inconsistent_edges += usize::from(runs_against(topology, a, b)),
+                [a, b] => self.inconsistent_edges += usize::from(has_same_direction(topology, a, b)),
                 _ => self.non_manifold_edges += 1,
             }
             let length = ((positions[a.index()] - positions[b.index()]) / unit).norm() * unit;

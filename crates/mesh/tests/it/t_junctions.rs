@@ -127,7 +127,7 @@ fn meshes_without_t_junctions_stay_as_they_are() {
 fn the_sides_of_a_crack_are_no_shortcut() {
     for mesh in surfaces() {
         let broken = split(&mesh, |f| usize::from(f > mesh.n_faces() / 2));
-        let cut = cut_shortcuts(&broken, &()).unwrap();
+        let cut = cut_shortcuts(&broken, &broken.topology(), &()).unwrap();
         assert_eq!((cut.shortcuts.len(), cut.cut.mesh), (0, broken));
     }
 }

@@ -246,7 +246,9 @@ impl<'a> Data<'a> {
                     "decompress it, for example with `gltf-transform copy in.glb out.glb`",
                 )));
             }
-            None if count > self.n_bytes => return Err(layout.at(Fault::Inflates { limit: self.n_bytes })),
+            None if count > self.n_bytes => {
+                return Err(layout.at(Fault::DecompressionBomb { limit: self.n_bytes }));
+            }
             None => vec![0.0; count as usize * layout.width],
         };
         let Some(sparse) = &accessor.sparse else { return Ok(numbers) };

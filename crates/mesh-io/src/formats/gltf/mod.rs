@@ -13,6 +13,7 @@ mod data;
 mod scene;
 mod schema;
 
+use crate::polygons::Assembly;
 use crate::prelude::*;
 use crate::single::{origin, rounded};
 use data::{Data, companions_of, open};
@@ -52,14 +53,15 @@ pub(super) fn companions(bytes: &[u8]) -> Result<Vec<String>, Located> {
 pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
     let (root, chunk) = &open(files[0])?;
     check_support(root).whole()?;
-    let (mesh, instances) = scene::read(&Data::new(root, *chunk, files)?, limits)?;
+    let data = Data::new(root, *chunk, files)?;
+    let Assembly { whole, instances, .. } = scene::read(&data, limits)?;
     let facts = FileFacts {
         unit: Some(LengthUnit::Meter),
         instances: Some(instances),
         ignored: scene::ignored(root),
         ..FileFacts::default()
     };
-    Ok(MeshFile { facts, ..finish(mesh, limits)? })
+    Ok(MeshFile { facts, ..finish(whole, limits)? })
 }
 
 /// Refuses other versions, and extensions without which positions would be wrong.

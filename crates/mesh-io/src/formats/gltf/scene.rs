@@ -7,20 +7,21 @@ use nalgebra::{Matrix4, Quaternion, Translation3, UnitQuaternion, Vector3};
 
 use super::data::{Data, part};
 use super::schema::{Index, Mesh, Node, Root};
-use crate::polygons::{append_placed, check_copies};
+use crate::polygons::{Assembly, check_copies};
 use crate::prelude::*;
 
 const TRIANGLES: u32 = 4;
 const STRIP: u32 = 5;
 const FAN: u32 = 6;
 
-/// Puts the instances of the default scene together; also returns their number.
-pub(super) fn read(data: &Data<'_>, limits: &ReadLimits) -> Result<(TriMesh, usize), Located> {
+/// Puts the instances of the default scene together.
+pub(super) fn read<'a>(data: &'a Data<'_>, limits: &'a ReadLimits) -> Result<Assembly<'a>, Located> {
     let root = data.root;
-    let mut scene = Scene { whole: TriMesh::default(), instances: 0, meshes: HashMap::new(), data, limits };
+    let mut scene =
+        Scene { assembly: Assembly::new(limits, data.n_bytes), meshes: HashMap::new(), data, limits };
     if root.nodes.is_empty() {
         (0..root.meshes.len()).try_for_each(|number| scene.append(number, &Matrix4::identity()))?;
-        return Ok((scene.whole, scene.instances));
+        return Ok(scene.assembly);
     }
     let mut visited = vec![false; root.nodes.len()];
     let mut open: Vec<(Index, Matrix4<f64>)> = Vec::new();
@@ -40,7 +41,7 @@ pub(super) fn read(data: &Data<'_>, limits: &ReadLimits) -> Result<(TriMesh, usi
         }
         open.extend(node.children.iter().rev().map(|child| (*child, here)));
     }
-    Ok((scene.whole, scene.instances))
+    Ok(scene.assembly)
 }
 
 /// The nodes at the top of the default scene, else of the first; of a file without scenes, all that are not children.
@@ -91,9 +92,7 @@ pub(super) fn ignored(root: &Root) -> Vec<&'static str> {
 
 /// The scene so far.
 struct Scene<'a> {
-    whole: TriMesh,
-    /// Nodes with a mesh.
-    instances: usize,
+    assembly: Assembly<'a>,
     /// The meshes of the file, each decoded once.
     meshes: HashMap<Index, TriMesh>,
     data: &'a Data<'a>,
@@ -110,14 +109,7 @@ impl Scene<'_> {
                 new.insert(decode(mesh, self.data, self.limits)?)
             }
         };
-        let n_vertices = (self.whole.n_vertices() + shape.n_vertices()) as u64;
-        let n_faces = (self.whole.n_faces() + shape.n_faces()) as u64;
-        self.limits.check(n_vertices, n_faces).in_part("mesh", number)?;
-        if self.instances > 0 {
-            check_copies(n_vertices + n_faces, self.data.n_bytes).in_part("mesh", number)?;
-        }
-        self.instances += 1;
-        append_placed(&mut self.whole, shape, place).in_part("mesh", number)
+        self.assembly.append(shape, place).in_part("mesh", number)
     }
 }
 

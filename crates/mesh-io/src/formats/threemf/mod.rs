@@ -15,7 +15,7 @@ use nalgebra::Matrix4;
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
-use crate::polygons::{append_placed, check_copies};
+use crate::polygons::Assembly;
 use crate::prelude::*;
 use model::{Model, Object, Reference};
 use package::{Package, canonical};
@@ -57,13 +57,6 @@ struct Parts {
 /// A part and the id of one of its objects.
 type Key = (usize, u64);
 
-/// Vertices, faces and meshes of an object with its components.
-type Size = [u64; 3];
-
-fn add(total: &mut Size, more: Size) {
-    total.iter_mut().zip(more).for_each(|(total, more)| *total = total.saturating_add(more));
-}
-
 impl Parts {
     fn key(&self, reference: &Reference, part: usize) -> Key {
         let other = reference.part.as_ref().and_then(|name| self.numbers.get(&canonical(name)));
@@ -86,18 +79,9 @@ impl Parts {
             items =
                 tops.filter(|key| !of_others.contains(key)).map(|key| (key, Matrix4::identity())).collect();
         }
-        let (mut sizes, mut whole) = (HashMap::new(), Size::default());
-        for (key, _) in &items {
-            add(&mut whole, self.measure(*key, 0, &mut sizes)?);
-        }
-        let [n_vertices, n_faces, n_meshes] = whole;
-        limits.check(n_vertices, n_faces).whole()?;
-        if n_meshes > 1 {
-            check_copies(n_vertices.saturating_add(n_faces), n_bytes).whole()?;
-        }
-        let mut mesh = TriMesh::default();
+        let mut assembly = Assembly::new(limits, n_bytes);
         for (key, place) in items {
-            self.append(&mut mesh, key, &place, &sizes)?;
+            self.append(&mut assembly, key, &place, 0)?;
         }
         let has_supports =
             self.models.iter().flat_map(|model| &model.objects).any(|object| object.is_support);
@@ -105,18 +89,21 @@ impl Parts {
         let ignored = [(has_supports, "supports"), (has_beams, "beam lattices")];
         let facts = FileFacts {
             unit: root.unit.or(Some(LengthUnit::Millimeter)),
-            instances: Some(n_meshes as usize),
+            instances: Some(assembly.instances),
             ignored: ignored.into_iter().filter_map(|(is_there, what)| is_there.then_some(what)).collect(),
             ..FileFacts::default()
         };
-        Ok(MeshFile { facts, ..finish(mesh, limits)? })
+        Ok(MeshFile { facts, ..finish(assembly.whole, limits)? })
     }
 
-    /// The size of an object with its components, which must be a tree.
-    fn measure(&self, key: Key, depth: usize, known: &mut HashMap<Key, Size>) -> Result<Size, Located> {
-        if let Some(size) = known.get(&key) {
-            return Ok(*size);
-        }
+    /// Appends an object with its components, which must be a tree.
+    fn append(
+        &self,
+        assembly: &mut Assembly<'_>,
+        key: Key,
+        place: &Matrix4<f64>,
+        depth: usize,
+    ) -> Result<(), Located> {
         if depth > MAX_DEPTH {
             let what = format!(
                 "object {} has components more than {MAX_DEPTH} deep, or is its own component",
@@ -125,34 +112,12 @@ impl Parts {
             return Err(Fault::unsupported(what, "export it as a single mesh").whole());
         }
         let object = self.object(key)?;
-        let mut size = Size::default();
-        if !object.is_support {
-            let n_vertices = object.mesh.n_vertices() as u64;
-            size = [n_vertices, object.mesh.n_faces() as u64, u64::from(n_vertices > 0)];
-            for component in &object.components {
-                add(&mut size, self.measure(self.key(component, key.0), depth + 1, known)?);
-            }
-        }
-        known.insert(key, size);
-        Ok(size)
-    }
-
-    /// Appends an object with its components.
-    fn append(
-        &self,
-        mesh: &mut TriMesh,
-        key: Key,
-        place: &Matrix4<f64>,
-        sizes: &HashMap<Key, Size>,
-    ) -> Result<(), Located> {
-        // Without meshes, or as a support, there is nothing to visit, however many components there are.
-        if sizes.get(&key).is_none_or(|[_, _, n_meshes]| *n_meshes == 0) {
+        if object.is_support {
             return Ok(());
         }
-        let object = self.object(key)?;
-        append_placed(mesh, &object.mesh, place).in_part("object", key.1 as usize)?;
+        assembly.append(&object.mesh, place).in_part("object", key.1 as usize)?;
         object.components.iter().try_for_each(|component| {
-            self.append(mesh, self.key(component, key.0), &(place * component.place), sizes)
+            self.append(assembly, self.key(component, key.0), &(place * component.place), depth + 1)
         })
     }
 }

@@ -80,7 +80,7 @@ impl<'a> Package<'a> {
                 .read_to_end(&mut content)
                 .map_err(|fault| Fault::syntax("compressed data", fault.to_string()))?;
             let left = self.budget.checked_sub(content.len() as u64);
-            self.budget = left.ok_or(Fault::Inflates { limit: self.limit })?;
+            self.budget = left.ok_or(Fault::DecompressionBomb { limit: self.limit })?;
             Ok(content)
         };
         read().whole().map_err(|fault| fault.of_member(name))

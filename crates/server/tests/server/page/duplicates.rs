@@ -13,7 +13,7 @@ use crate::running::options;
 
 const READY: &str = "document.querySelector('#duplicates').dataset.state === 'ready'";
 
-/// A part with a copy of its file and one that is turned, the second part of the family, and a cat with a finer copy.
+/// A part with a copy of its file and one that is turned, a part of another family, and a cat with a finer copy.
 fn index(folder: &Path) {
     let meshes = folder.join("meshes");
     fs::create_dir(&meshes).unwrap();
