@@ -86,18 +86,25 @@ pub(crate) fn best_of_each_kind(
         (!logs.is_empty()).then(|| (logs.iter().sum::<f64>() / logs.len() as f64).exp())
     };
     // Squared, so that the odds are the same power of its ratio as of that of sketches, nearly.
-    let cost = |one: &Finalist| match of_coset(one.coset) {
-        Some(mismatch) => one.sketched * mismatch.powi(2),
-        None => one.refined.cost(),
-    };
+    let cost = |one: &Finalist| one.sketched * of_coset(one.coset).unwrap_or(1.0).powi(2);
     let best = MapKind::ALL.into_iter().filter_map(|kind| {
         let mut of_kind: Vec<&Finalist> = finalists.iter().filter(|one| one.kind == kind).collect();
         of_kind.sort_by(|x, y| cost(x).total_cmp(&cost(y)));
-        let (best, rival) = (*of_kind.first()?, of_kind.get(1));
+        let (mut best, mut rival) = (*of_kind.first()?, of_kind.get(1).copied());
         let mut confidence = match rival {
             Some(rival) => params.odds(cost(best), Some(cost(rival))),
             None => params.odds(best.sketched, others[kind as usize]),
         };
+        // Without an inside, refinement is the judge. An initial map stands unless another one is clearly better, which the sketches
+        // tell.
+        if let Some(second) = &mut rival
+            && best.mismatch.is_none()
+            && search.known.initial.is_empty()
+            && second.refined.cost() < best.refined.cost()
+        {
+            std::mem::swap(&mut best, second);
+            confidence = confidence.min(DOUBTED);
+        }
         if best.refined.is_mixture(params.pure) || params.misses_one(&best.refined.misses) {
             confidence = confidence.min(DOUBTED);
         }

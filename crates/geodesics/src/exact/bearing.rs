@@ -2,8 +2,8 @@
 
 use surface::CornerId;
 
-use super::log_map::{Sheet, TangentPlane, angle_of};
-use super::window::FaceFrame;
+use super::prepared::FaceFrame;
+use super::tangent_plane::{Sheet, TangentPlane, angle_of};
 use crate::plane::{PlanePoint, cross, distance, sub};
 
 /// What windows and labels carry besides distances: nothing, or the [`Direction`] at the source of the paths through them.

@@ -7,20 +7,11 @@ use base::{Budget, Exceeded};
 use surface::{CornerId, Frontier, VertexId};
 
 use super::bearing::Bearing;
+use super::prepared::Arrival;
 use super::window::PathWindow;
 
 /// No list of windows.
 const NONE: u32 = u32::MAX;
-
-/// How the shortest known path arrives at a vertex.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Arrival {
-    /// From a source or over a link: it may continue in any direction.
-    Anywhere,
-    /// Through the face of a corner at the vertex. The angle from the side to the start of the corner's base has this
-    /// sine and cosine, times any factor.
-    Through { corner: CornerId, sin: f64, cos: f64 },
-}
 
 /// Labels, the queue of vertices, and the windows to be propagated.
 ///

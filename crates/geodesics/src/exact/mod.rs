@@ -8,7 +8,7 @@
 //! | `front` | labels of vertices, their order, and waiting windows |
 //! | `propagation` | the main loop |
 //! | `pseudo_sources` | new windows, from sources and from vertices where paths bend |
-//! | `bearing`, `log_map` | the directions in which paths leave the source, and the map that they make |
+//! | `bearing`, `tangent_plane`, `log_map` | the directions in which paths leave the source, and the map that they make |
 
 mod bearing;
 mod envelope;
@@ -17,6 +17,7 @@ mod log_map;
 mod prepared;
 mod propagation;
 mod pseudo_sources;
+mod tangent_plane;
 mod window;
 
 #[cfg(test)]

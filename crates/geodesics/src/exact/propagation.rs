@@ -5,10 +5,10 @@ use surface::{CornerId, VertexKind};
 
 use super::bearing::Bearing;
 use super::envelope::trim;
-use super::front::{Arrival, WindowFront};
-use super::prepared::{Along, PreparedSurface, next};
+use super::front::WindowFront;
+use super::prepared::{Along, Arrival, FaceFrame, PreparedSurface, next};
 use super::pseudo_sources::Emission;
-use super::window::{Apex, FaceFrame, Passes, PathWindow, Until};
+use super::window::{Apex, Passes, PathWindow, Until};
 use crate::source::Source;
 
 /// Memory that runs share.

@@ -3,9 +3,9 @@
 use surface::{CornerId, FaceId, SurfacePoint, VertexId, Winding};
 
 use super::bearing::Bearing;
-use super::front::{Arrival, WindowFront};
-use super::prepared::{Along, FanSector, PreparedSurface, next};
-use super::window::{FaceFrame, PathWindow};
+use super::front::WindowFront;
+use super::prepared::{Along, Arrival, FaceFrame, FanSector, PreparedSurface, next};
+use super::window::PathWindow;
 use crate::source::Source;
 
 /// Barycentric coordinates below this are rounding: the point lies on the edge.

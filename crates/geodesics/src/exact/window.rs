@@ -1,9 +1,7 @@
 //! Windows: intervals of edges that straight paths from one pseudo-source reach, and how they cross faces.
 
-use surface::CornerId;
-
 use super::bearing::Bearing;
-use super::prepared::{Faces, next};
+use super::prepared::FaceFrame;
 
 /// An interval of an edge that straight paths from one pseudo-source reach through one sequence of faces.
 ///
@@ -121,24 +119,6 @@ pub(super) fn crossing<D: Bearing>(
     [big / a, c / big].into_iter().find(is_change).map(|t| low + t)
 }
 
-/// The face of a corner, laid out with its base `ab`, the side opposite the corner, on the x-axis from zero, and the
-/// corner `c` above.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct FaceFrame {
-    /// Length of `ab`.
-    pub(super) base: f64,
-    /// Position of `c`.
-    pub(super) apex: [f64; 2],
-    /// Lengths of `ac` and `bc`.
-    pub(super) sides: [f64; 2],
-    /// Direction of `ac` from `a`.
-    from_a: [f64; 2],
-    /// Direction of `bc` from `b`, mirrored: in the frame with `b` at zero.
-    from_b: [f64; 2],
-    /// `a`, `b`, `c`.
-    pub(super) vertices: [u32; 3],
-}
-
 /// Where the part of a side that a window reaches ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Until {
@@ -149,31 +129,6 @@ pub(super) enum Until {
 }
 
 impl FaceFrame {
-    /// The face of a corner whose base has a length.
-    ///
-    /// Does not use [`surface::Triangle`]: the area is known, which saves a square root in the innermost loop.
-    #[inline]
-    pub(super) fn new(faces: &Faces, corner: CornerId) -> Self {
-        let (face, slot) = (faces.of(corner.face()), corner.slot());
-        let (a, b) = (next(slot), next(next(slot)));
-        // A side is in the place of the corner opposite: `ac` in that of `b`.
-        let (base, ac, bc) = (face.lengths[slot], face.lengths[b], face.lengths[a]);
-        let per_base = 1.0 / base;
-        let height = face.double_area * per_base;
-        // The differences are exact on short sides, where the squares are not.
-        let skew = (ac - bc) * (ac + bc) * per_base;
-        let (from_a, from_b) = (0.5 * (base + skew), 0.5 * (base - skew));
-        let (per_ac, per_bc) = (1.0 / ac, 1.0 / bc);
-        Self {
-            base,
-            apex: [from_a, height],
-            sides: [ac, bc],
-            from_a: [from_a * per_ac, height * per_ac],
-            from_b: [from_b * per_bc, height * per_bc],
-            vertices: [face.vertices[a], face.vertices[b], face.vertices[slot]],
-        }
-    }
-
     /// Appends the part of `ac` that the rays of `window` between `start` and `end` of the base reach, measured from
     /// `a`, unless it has no width.
     #[inline]

@@ -4,7 +4,7 @@ use base::{Budget, Exceeded};
 use surface::{CornerId, FaceId, NearestFirst, VertexId};
 
 use super::crossing::{Crossing, Crossings};
-use super::queue::{Buckets, NOWHERE};
+use super::queue::{Buckets, Labels, NOWHERE};
 use super::triangles::{MarchTriangle, Triangles, around};
 use super::window::{ROUNDING, SourceWindow};
 use crate::plane::{self, PlanePoint};
@@ -29,56 +29,6 @@ const OPERATIONS: usize = 16;
 
 /// Through which side a window enters, if not from inside the triangle: a corner that no triangle has.
 const INSIDE: usize = 3;
-
-/// What is known of a triangle at a finite distance.
-#[derive(Debug, Clone, Copy)]
-#[repr(align(16))]
-struct Label {
-    /// Distance of the virtual source of its window.
-    offset: f64,
-    bucket: u32,
-    /// While it waits, four times the place of its window, plus the corner opposite the side where that enters.
-    window: u32,
-}
-
-impl Label {
-    #[inline(always)]
-    fn entry(&self) -> usize {
-        self.window as usize % 4
-    }
-
-    #[inline(always)]
-    fn place(&self) -> usize {
-        self.window as usize / 4
-    }
-}
-
-/// What is known of all triangles.
-#[derive(Debug, Default)]
-pub(super) struct Labels {
-    /// The distances of the centroids.
-    pub(super) distances: Vec<f64>,
-    labels: Vec<Label>,
-}
-
-impl Labels {
-    /// Sets the distances of `n` triangles to infinity. Allocates only to grow.
-    pub(super) fn reset(&mut self, n: usize) {
-        self.distances.clear();
-        self.distances.resize(n, f64::INFINITY);
-        self.labels.resize(n, Label { offset: 0.0, bucket: NOWHERE, window: 0 });
-    }
-
-    #[inline(always)]
-    pub(super) fn distance(&self, triangle: FaceId) -> f64 {
-        self.distances[triangle.index()]
-    }
-
-    #[inline(always)]
-    pub(super) fn bucket(&mut self, triangle: FaceId) -> &mut u32 {
-        &mut self.labels[triangle.index()].bucket
-    }
-}
 
 /// A window that may be better than the one of its triangle.
 #[derive(Debug, Clone, Copy)]

@@ -2,8 +2,6 @@
 
 use surface::FaceId;
 
-use super::front::Labels;
-
 /// A triangle in no bucket.
 pub(super) const NOWHERE: u32 = u32::MAX;
 /// A triangle beyond all buckets of the ring.
@@ -22,6 +20,56 @@ const FACTOR: f64 = 4.0;
 const LATE: usize = 64;
 /// Whether they should become wider is decided after this many buckets, plus a share of the triangles in the queue.
 const PERIOD: usize = 256;
+
+/// What is known of a triangle at a finite distance.
+#[derive(Debug, Clone, Copy)]
+#[repr(align(16))]
+pub(super) struct Label {
+    /// Distance of the virtual source of its window.
+    pub(super) offset: f64,
+    pub(super) bucket: u32,
+    /// While it waits, four times the place of its window, plus the corner opposite the side where that enters.
+    pub(super) window: u32,
+}
+
+impl Label {
+    #[inline(always)]
+    pub(super) fn entry(&self) -> usize {
+        self.window as usize % 4
+    }
+
+    #[inline(always)]
+    pub(super) fn place(&self) -> usize {
+        self.window as usize / 4
+    }
+}
+
+/// What is known of all triangles.
+#[derive(Debug, Default)]
+pub(super) struct Labels {
+    /// The distances of the centroids.
+    pub(super) distances: Vec<f64>,
+    pub(super) labels: Vec<Label>,
+}
+
+impl Labels {
+    /// Sets the distances of `n` triangles to infinity. Allocates only to grow.
+    pub(super) fn reset(&mut self, n: usize) {
+        self.distances.clear();
+        self.distances.resize(n, f64::INFINITY);
+        self.labels.resize(n, Label { offset: 0.0, bucket: NOWHERE, window: 0 });
+    }
+
+    #[inline(always)]
+    pub(super) fn distance(&self, triangle: FaceId) -> f64 {
+        self.distances[triangle.index()]
+    }
+
+    #[inline(always)]
+    pub(super) fn bucket(&mut self, triangle: FaceId) -> &mut u32 {
+        &mut self.labels[triangle.index()].bucket
+    }
+}
 /// Divisor for that share: sorting again must cost no more than the work since the last time.
 const SHARE: usize = 8;
 /// Buckets with less than one triangle in this many should be wider.
