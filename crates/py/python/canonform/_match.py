@@ -230,8 +230,8 @@ class SurfaceMap(Stored):
         functional = self._functional[:k, :k] @ next._functional[:k, :k]
         kinds = {self.kind, next.kind}
         kind = "unoriented" if "unoriented" in kinds else "mirrored" if len(kinds) == 2 else "direct"
-        agreements = (self.agreement, next.agreement)
-        agreement = None if None in agreements else float(np.prod(agreements))
+        first, second = self.agreement, next.agreement
+        agreement = None if first is None or second is None else first * second
         report = {
             "kind": kind,
             "distortion": self.distortion + next.distortion,
