@@ -86,13 +86,13 @@ impl KnownMap {
     }
 
     /// Maps of functions that are fitted to the landmarks and functions, alone and together with what surfaces have in common.
-    pub(crate) fn fitted(&self, [a, b]: [&MapShape; 2], signs: &[f64]) -> Vec<Matrix> {
+    pub(crate) fn fitted(&self, [a, b]: [&MapShape; 2]) -> Vec<Matrix> {
         let known = [(a, 0), (b, 1)].map(|(shape, side)| self.operators(shape, side));
         let [Some(on_a), Some(on_b)] = known else { return Vec::new() };
         let own = [&on_a, &on_b];
         let both = a.operators.iter().zip(&b.operators).map(|(x, y)| vec![[x, y], own]);
         let all = both.chain([vec![own]]);
-        all.flat_map(|pairs| signs.iter().flat_map(move |sign| fitted(&pairs, *sign))).collect()
+        all.flat_map(|pairs| [1.0, -1.0].into_iter().flat_map(move |sign| fitted(&pairs, sign))).collect()
     }
 
     /// The functions known on one side: heat that was placed at the landmarks, and those that were given.

@@ -4,7 +4,6 @@ use base::Budget;
 use descriptors::DescriptorError;
 use linalg::{LinalgError, Matrix};
 use rayon::prelude::*;
-use surface::VertexId;
 
 use crate::error::MapError;
 use crate::functional::{FunctionalMaps, SampledPair};
@@ -34,7 +33,7 @@ impl MapSearch<'_> {
         let MapSearch { params, known, .. } = self;
         let mut starts = self.starts(&[1.0, -1.0])?;
         known.check_orientation(&starts, params)?;
-        let fits = known.fitted([self.a, self.b], &[1.0, -1.0]).into_iter().map(FunctionalMaps::from);
+        let fits = known.fitted([self.a, self.b]).into_iter().map(FunctionalMaps::from);
         starts.extend(self.sketched(&self.stage(2), fits)?);
         let turned = self.turned(&params.distinct(starts.clone()))?;
         starts.extend(self.sketched(&self.stage(2), turned.into_iter())?);
@@ -63,6 +62,10 @@ impl MapSearch<'_> {
     /// front and back.
     fn turned(&self, found: &[Scored]) -> Result<Vec<FunctionalMaps>, DescriptorError> {
         let ends = self.a.ends_of_limbs()?;
+        let (Some(of_a), Some(of_b)) = (self.a.operators.first(), self.b.operators.first()) else {
+            return Ok(Vec::new());
+        };
+        let heat_on_a = self.a.heat_operators(&ends);
         let rows = self.a.spectrum.vectors.select_rows(&ends);
         let other = self.b.spectrum.vectors.select_rows(&self.b.samples);
         let one = |found: &Scored| {
@@ -73,10 +76,8 @@ impl MapSearch<'_> {
             };
             let [images, _] =
                 nearest_rows(&found.functional.places_a(&rows), &found.functional.places_b(&other));
-            let pairs = ends.iter().zip(images);
-            let landmarks = pairs.map(|(x, y)| [*x, self.b.samples[y]].map(VertexId::from)).collect();
-            let known = KnownMap { landmarks, ..KnownMap::default() };
-            known.fitted([self.a, self.b], &[sign])
+            let images: Vec<usize> = images.into_iter().map(|y| self.b.samples[y]).collect();
+            fitted(&[[of_a, of_b], [&heat_on_a, &self.b.heat_operators(&images)]], sign)
         };
         let all: Vec<Vec<Matrix>> = found.par_iter().map(one).collect();
         Ok(all.into_iter().flatten().map(FunctionalMaps::from).collect())

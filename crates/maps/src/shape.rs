@@ -7,7 +7,7 @@ use mesh::{TriMesh, outward};
 use nalgebra::{DVector, Point3};
 use rigid::PointSet;
 
-use crate::curvature::{fine_curvature, mean_curvature, smoothed};
+use crate::curvature::{TIMES, fine_curvature, mean_curvature, smoothed};
 use crate::functional::FunctionalMaps;
 use crate::nearest_rows::Cells;
 use crate::operators::Operators;
@@ -181,6 +181,17 @@ impl MapShape {
         ends.sort_by(|i, j| mean[*j].total_cmp(&mean[*i]));
         ends.truncate(ENDS);
         Ok(ends.into_iter().map(|i| landmarks[i]).collect())
+    }
+
+    /// Heat that was placed at some vertices, as functions to fit maps to.
+    pub(crate) fn heat_operators(&self, vertices: &[usize]) -> Operators {
+        let spectrum = &self.spectrum;
+        let heat = |v: &usize| {
+            let at = spectrum.vectors.row(*v).transpose();
+            smoothed(&at, &spectrum.values, &spectrum.vectors, 1.0).column(TIMES.len() - 1).into_owned()
+        };
+        let columns: Vec<_> = vertices.iter().map(heat).collect();
+        Operators::new(spectrum, Matrix::from_columns(&columns), self.oriented.as_ref())
     }
 
     /// The nearest vertex to each of some places; `rows` are the places of all vertices by maps of functions.
