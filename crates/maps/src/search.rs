@@ -17,6 +17,9 @@ use crate::sketch::Sketch;
 use crate::start::Start;
 use crate::surface_map::MapKind;
 
+/// Scores of identities are below this, those of two poses near 1e-5. A safety limit.
+const IDENTITY: f64 = 1e-9;
+
 /// A search with what is known and its parameters.
 #[derive(Clone, Copy)]
 pub(crate) struct MapSearch<'a> {
@@ -35,8 +38,11 @@ impl MapSearch<'_> {
         known.check_orientation(&starts, params)?;
         let fits = known.fitted([self.a, self.b]).into_iter().map(FunctionalMaps::from);
         starts.extend(self.sketched(&self.stage(2), fits)?);
-        let turned = self.turned(&params.distinct(starts.clone()))?;
-        starts.extend(self.sketched(&self.stage(2), turned.into_iter())?);
+        // What is beside an identity has its mirrors already.
+        if starts.iter().all(|start| start.score > IDENTITY) {
+            let turned = self.turned(&params.distinct(starts.clone()))?;
+            starts.extend(self.sketched(&self.stage(2), turned.into_iter())?);
+        }
         let stage = self.stage(1);
         let found =
             self.sketched(&stage, params.distinct(starts).into_iter().map(|start| start.functional))?;
