@@ -4,7 +4,6 @@ use descriptors::{DescriptorError, Side};
 use linalg::Matrix;
 use surface::VertexId;
 
-use crate::curvature::smoothed;
 use crate::error::{LandmarkConflict, MapError};
 use crate::functional::{FunctionalMaps, SampledPair, TwoWayMap};
 use crate::local::{between, least_distance};
@@ -98,10 +97,7 @@ impl KnownMap {
     /// The functions known on one side: heat that was placed at the landmarks, and those that were given.
     fn operators(&self, shape: &MapShape, side: usize) -> Option<Operators> {
         let spectrum = &shape.spectrum;
-        let heat = |pair: &[VertexId; 2]| {
-            let at = spectrum.vectors.row(pair[side].index()).transpose();
-            smoothed(&at, &spectrum.values, &spectrum.vectors, 1.0)
-        };
+        let heat = |pair: &[VertexId; 2]| shape.heat(pair[side].index());
         let heat: Vec<Matrix> = self.landmarks.iter().map(heat).collect();
         let given = self.functions.iter().flat_map(|both| both[side].column_iter());
         let columns: Vec<_> = heat.iter().flat_map(|heat| heat.column_iter()).chain(given).collect();

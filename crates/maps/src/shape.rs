@@ -7,7 +7,7 @@ use mesh::{TriMesh, outward};
 use nalgebra::{DVector, Point3};
 use rigid::PointSet;
 
-use crate::curvature::{TIMES, fine_curvature, mean_curvature, smoothed};
+use crate::curvature::{TIMES, bends, fine_curvature, mean_curvature, smoothed};
 use crate::functional::FunctionalMaps;
 use crate::nearest_rows::Cells;
 use crate::operators::Operators;
@@ -108,8 +108,10 @@ impl MapShape {
         }
         let oriented = Oriented::new(mesh, &spectrum.masses);
         let outward = outward(mesh);
-        let fine_curvature = outward.as_ref().map(fine_curvature).transpose()?;
-        let mean_curvature = outward.map(|outward| mean_curvature(&outward, &spectrum));
+        let bends = outward.as_ref().map(bends);
+        let both = outward.as_ref().zip(bends.as_ref());
+        let fine_curvature = both.map(|(outward, bends)| fine_curvature(outward, bends)).transpose()?;
+        let mean_curvature = bends.map(|bends| mean_curvature(&bends, &spectrum));
         let smooth = |curvature| smoothed(curvature, &spectrum.values, &spectrum.vectors, 1.0);
         let curvatures = mean_curvature.as_ref().map(smooth);
         let curvature = curvatures.as_ref().map(|columns| samples.iter().map(|&v| columns[(v, 0)]).collect());
@@ -183,14 +185,17 @@ impl MapShape {
         Ok(ends.into_iter().map(|i| landmarks[i]).collect())
     }
 
-    /// Heat that was placed at some vertices, as functions to fit maps to.
+    /// Heat that was placed at a vertex, a column for each of the [times](TIMES).
+    pub(crate) fn heat(&self, vertex: usize) -> Matrix {
+        let at = self.spectrum.vectors.row(vertex).transpose();
+        smoothed(&at, &self.spectrum.values, &self.spectrum.vectors, 1.0)
+    }
+
+    /// Heat that was placed at some vertices, as functions to fit maps to: the last of the times.
     pub(crate) fn heat_operators(&self, vertices: &[usize]) -> Operators {
         let spectrum = &self.spectrum;
-        let heat = |v: &usize| {
-            let at = spectrum.vectors.row(*v).transpose();
-            smoothed(&at, &spectrum.values, &spectrum.vectors, 1.0).column(TIMES.len() - 1).into_owned()
-        };
-        let columns: Vec<_> = vertices.iter().map(heat).collect();
+        let columns: Vec<_> =
+            vertices.iter().map(|v| self.heat(*v).column(TIMES.len() - 1).into_owned()).collect();
         Operators::new(spectrum, Matrix::from_columns(&columns), self.oriented.as_ref())
     }
 

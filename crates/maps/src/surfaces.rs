@@ -22,11 +22,11 @@ const SHARES: [f64; 2] = [0.25, 0.92];
 /// 1. Maps of functions are fitted in closed form to the curvature and the wave kernels of both surfaces, once for each
 ///    orientation (`ren2018` in `REFERENCES.bib`). Each alignment of the forms maps samples to the nearest ones, too.
 /// 2. All these maps are refined with few samples, by taking in eigenfunctions of higher frequency, there and back (ZoomOut,
-///    `melzi2019`); the best different ones then with more.
-/// 3. Each map is followed by the mirrors of the surfaces, which exchange left and right, or front and back. A map and one that
+///    `melzi2019`). Each of the best different ones is turned: another one takes the ends of limbs to the same places, with the
+///    other orientation. Of people, it exchanges front and back.
+/// 3. The best different ones are refined with more samples.
+/// 4. Each map is followed by the mirrors of the surfaces, which exchange left and right, or front and back. A map and one that
 ///    differs by a mirror are scored together.
-/// 4. Each map is turned: another one takes the ends of limbs to the same places, with the other orientation. Of people, it
-///    exchanges front and back.
 /// 5. Of each orientation, those that keep distances, the products of functions and the orientation best are refined on all
 ///    samples and eigenfunctions. The one that keeps fine curvature best, too, is taken, and all vertices follow. How much worse
 ///    the next best is says how certain it is.
