@@ -74,21 +74,33 @@ pub(crate) fn fine_curvature(outward: &TriMesh, bends: &DVector<f64>) -> Result<
     Ok(found)
 }
 
-/// One less the correlation of the curvatures of corresponding points: 0 for isometries that do not turn inside out.
-/// `partners` names a point of the second list for each of the first, as far as they go.
+/// One less the correlation of the curvatures of corresponding points, or a rounding error for isometries that do not turn inside
+/// out, so that its logarithm and ratios of two are finite. `partners` names a point of the second list for each of the first, as far as they go.
 pub(crate) fn mismatch(x: &[f64], y: &[f64], partners: &[usize]) -> f64 {
     let n = partners.len();
     let centred = |values: DVector<f64>| values.add_scalar(-values.mean());
     let x = centred(DVector::from_column_slice(&x[..n]));
     let y = centred(DVector::from_iterator(n, partners.iter().map(|&i| y[i])));
     let scale = x.norm() * y.norm();
-    if scale > 0.0 { 1.0 - x.dot(&y) / scale } else { 1.0 }
+    if scale > 0.0 { (1.0 - x.dot(&y) / scale).max(f64::EPSILON) } else { 1.0 }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use mesh::shapes;
+
+    #[test]
+    fn equal_curvatures_match_up_to_rounding_and_opposite_ones_do_not() {
+        let partners: Vec<usize> = (0..300).collect();
+        for seed in 0..50 {
+            let values: Vec<f64> = partners.iter().map(|&i| 9.0 + ((i * i + seed) as f64).sin()).collect();
+            let opposite: Vec<f64> = values.iter().map(|x| -x).collect();
+            let equal = mismatch(&values, &values, &partners);
+            assert!(equal > 0.0 && equal < 1e-14, "{equal}");
+            assert!((mismatch(&values, &opposite, &partners) - 2.0).abs() < 1e-14);
+        }
+    }
 
     #[test]
     fn a_ball_bulges_evenly_and_a_ring_bulges_outside() {

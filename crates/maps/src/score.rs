@@ -54,8 +54,7 @@ impl Scored {
         // Agreements nearer to 1 than refinement changes them are as good as 1.
         let missing = agreement.map_or(1.0, |agreement| (1.0 - agreement.abs()).max(0.5 * params.lost));
         let mismatch = match (&a.curvature, &b.curvature) {
-            // Rounding may take the mismatch of equal curvatures below zero.
-            (Some(x), Some(y)) => (0.5 * (mismatch(x, y, &maps.forth) + mismatch(y, x, &maps.back))).max(0.0),
+            (Some(x), Some(y)) => 0.5 * (mismatch(x, y, &maps.forth) + mismatch(y, x, &maps.back)),
             _ => 1.0,
         };
         let score = distortion * functional.defect() * missing * mismatch;
