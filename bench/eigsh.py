@@ -4,7 +4,7 @@
     make bench-eigsh            builds the example, sets up the environment, writes its section of docs/benchmarks.md
 
 Each round runs both solvers on one thread each, so that other load on the machine affects both alike. The table gives
-the smallest wall-clock and processor time over the rounds. SciPy factorises the same shifted matrix (SuperLU) and runs
+the smallest wall-clock and processor time over the rounds. SciPy factorizes the same shifted matrix (SuperLU) and runs
 ARPACK, with its default tolerance and with that of canonform. Residuals are |W x - lambda M x| / (lambda |M x|), the
 largest over all pairs except the constant one.
 """

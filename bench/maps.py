@@ -159,7 +159,7 @@ def main():
         table(["shapes", *cells], lines),
         f"Over all pairs, pyFM takes {ratio(np.median, 0):.1f} times as long, {ratio(np.median, 1):.1f} times the processor seconds, "
         f"and has {ratio(mean, 2):.1f} times the mean error. It gives no map of {np.isinf(other[:, 2]).sum()} pairs, whose matrices it cannot "
-        "factorise.")
+        "factorize.")
 
 
 def cell(rows):

@@ -363,7 +363,7 @@ impl Error {
                 Remedy::BridgeComponents
             }
             Self::Descriptor(DescriptorError::NotThreeDimensional { .. }) => Remedy::UseThreeDimensions,
-            Self::Geodesic(GeodesicError::NotFactorised { .. }) => Remedy::UseFastMarching,
+            Self::Geodesic(GeodesicError::NotFactorized(_)) => Remedy::UseFastMarching,
             Self::Geodesic(GeodesicError::NoWay { .. }) | Self::NoPath { .. } => Remedy::RaiseMaxDistance,
             Self::AllPairsTooLarge { .. } => Remedy::UseNystrom,
             Self::NoStress { .. } => Remedy::GiveSamples,

@@ -36,7 +36,7 @@ impl CanonicalForm {
     /// * The form is as good as its mirror image, the result is not: of both, the one nearer to the surface is taken, so that
     ///   results need no reflection to be aligned. Mirror images have mirrored results.
     /// * A form without a unit of length is scaled first, until its energy `Σ_ij w_ij |z_i - z_j|²` is that of the surface.
-    /// * Cost: one sparse factorisation, and 11 solutions with three right-hand sides.
+    /// * Cost: one sparse factorization, and 11 solutions with three right-hand sides.
     ///
     /// # Errors
     /// [`DescriptorError::SizeMismatch`] unless the form has a point for every vertex; [`DescriptorError::NoExtent`];

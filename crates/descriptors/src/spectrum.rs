@@ -39,7 +39,7 @@ impl LaplaceSpectrum {
     /// The `m` smallest eigenpairs, including the constant function; fewer on a surface with fewer vertices.
     ///
     /// Cotangent stiffness on an intrinsic Delaunay triangulation, lumped masses: see
-    /// [`Laplacian`] and [`smallest_eigenpairs`](linalg::smallest_eigenpairs). Cost: one sparse factorisation.
+    /// [`Laplacian`] and [`smallest_eigenpairs`](linalg::smallest_eigenpairs). Cost: one sparse factorization.
     ///
     /// With edges of length `h`, lumped masses make an eigenvalue `λ` too small by about `λ h² / 16` of itself, and consistent
     /// masses too large by as much (exactly so on equilateral triangles). The corrected eigenvalues are the Rayleigh

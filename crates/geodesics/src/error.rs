@@ -1,8 +1,6 @@
 //! Errors.
 
-use surface::VertexId;
-
-use surface::SurfacePoint;
+use surface::{EdgeId, FaceId, SurfacePoint, VertexId};
 
 /// Errors of this crate.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -28,11 +26,8 @@ pub enum GeodesicError {
         n_vertices: usize,
     },
     /// A source that is not on the surface.
-    #[error("no such point on the surface: {reason}")]
-    BadPoint {
-        /// What is wrong with it.
-        reason: String,
-    },
+    #[error("no such point on the surface: {0}")]
+    BadPoint(#[from] BadPoint),
     /// A path to a point without a distance.
     #[error(
         "no path to {point}: it is on another component or beyond the distance limit; choose another target or raise \
@@ -51,12 +46,9 @@ pub enum GeodesicError {
         /// The time.
         time: f64,
     },
-    /// The matrices of the heat method cannot be factorised.
-    #[error("cannot set up the heat method: {reason}; use fast marching")]
-    NotFactorised {
-        /// Why not.
-        reason: String,
-    },
+    /// The matrices of the heat method cannot be factorized.
+    #[error("cannot set up the heat method: {0}; use fast marching")]
+    NotFactorized(linalg::LinalgError),
     /// A limit on time or memory, or a cancellation.
     #[error(transparent)]
     Exceeded(#[from] base::Exceeded),
@@ -72,4 +64,37 @@ impl From<linalg::LinalgError> for GeodesicError {
             other => Self::Matrix(other),
         }
     }
+}
+
+/// Why a point is not on a surface.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum BadPoint {
+    /// An edge that does not exist.
+    #[error("edge {edge} of {n_edges}")]
+    NoEdge {
+        /// The edge.
+        edge: EdgeId,
+        /// Edges of the surface.
+        n_edges: usize,
+    },
+    /// A position beyond the ends of an edge.
+    #[error("the position {t} along an edge is not in 0..=1")]
+    OffEdge {
+        /// The position.
+        t: f64,
+    },
+    /// A face that does not exist.
+    #[error("face {face} of {n_faces}")]
+    NoFace {
+        /// The face.
+        face: FaceId,
+        /// Faces of the surface.
+        n_faces: usize,
+    },
+    /// Barycentric coordinates of a point outside a face.
+    #[error("barycentric coordinates {barycentric:?} are negative or do not sum to 1")]
+    OffFace {
+        /// The coordinates.
+        barycentric: [f64; 3],
+    },
 }

@@ -53,7 +53,7 @@ mod tests;
 
 pub use breadth_first::BreadthFirst;
 pub use dijkstra::Dijkstra;
-pub use error::GeodesicError;
+pub use error::{BadPoint, GeodesicError};
 pub use exact::{Exact, log_map};
 pub use fast_marching::{FastMarching, FastMarchingOptions, ObtuseTreatment, Update};
 pub use heat::{HeatMethod, HeatOptions};

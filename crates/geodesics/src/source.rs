@@ -1,9 +1,8 @@
 //! Sources: the points that distances are measured from.
 
-use surface::{IntrinsicMesh, Triangle, VertexId};
+use surface::{IntrinsicMesh, SurfacePoint, Triangle, VertexId};
 
-use crate::error::GeodesicError;
-use surface::SurfacePoint;
+use crate::error::{BadPoint, GeodesicError};
 
 /// A point that distances are measured from, with its straight distances to the vertices of its own faces.
 ///
@@ -45,7 +44,6 @@ impl Source {
     /// [`GeodesicError::NoSuchVertex`] and [`GeodesicError::BadPoint`].
     pub fn new(mesh: &IntrinsicMesh, point: SurfacePoint) -> Result<Self, GeodesicError> {
         let topology = mesh.topology();
-        let bad = |reason: String| GeodesicError::BadPoint { reason };
         match point {
             SurfacePoint::Vertex(vertex) if vertex.index() < mesh.n_vertices() => Ok(Self::vertex(vertex)),
             SurfacePoint::Vertex(vertex) => {
@@ -53,10 +51,10 @@ impl Source {
             }
             SurfacePoint::Edge { edge, t } => {
                 if edge.index() >= topology.n_edges() {
-                    return Err(bad(format!("edge {edge} of {}", topology.n_edges())));
+                    return Err(BadPoint::NoEdge { edge, n_edges: topology.n_edges() }.into());
                 }
                 if !(0.0..=1.0).contains(&t) {
-                    return Err(bad(format!("the position {t} along an edge is not in 0..=1")));
+                    return Err(BadPoint::OffEdge { t }.into());
                 }
                 let length = mesh.length(edge);
                 let [a, b] = topology.edges()[edge.index()];
@@ -74,14 +72,12 @@ impl Source {
             }
             SurfacePoint::Face { face, barycentric } => {
                 if face.index() >= topology.n_faces() {
-                    return Err(bad(format!("face {face} of {}", topology.n_faces())));
+                    return Err(BadPoint::NoFace { face, n_faces: topology.n_faces() }.into());
                 }
                 let sum: f64 = barycentric.iter().sum();
                 let whole = (1.0 - BARYCENTRIC_SLACK..=1.0 + BARYCENTRIC_SLACK).contains(&sum);
                 if barycentric.iter().any(|b| *b < 0.0) || !whole {
-                    return Err(bad(format!(
-                        "barycentric coordinates {barycentric:?} are negative or do not sum to 1"
-                    )));
+                    return Err(BadPoint::OffFace { barycentric }.into());
                 }
                 let vertices = topology.faces()[face.index()];
                 // The squared distance in the plane of the face from a point with barycentric coordinates b to corner
@@ -162,7 +158,7 @@ mod tests {
             SurfacePoint::Face { face: FaceId(0), barycentric: [1.5, -0.5, 0.0] },
             SurfacePoint::Face { face: FaceId(0), barycentric: [f64::NAN, 0.5, 0.5] },
         ] {
-            assert!(matches!(Source::new(&mesh, point), Err(GeodesicError::BadPoint { .. })), "{point:?}");
+            assert!(matches!(Source::new(&mesh, point), Err(GeodesicError::BadPoint(_))), "{point:?}");
         }
         let vertex = SurfacePoint::Vertex(VertexId(4));
         assert!(matches!(Source::new(&mesh, vertex), Err(GeodesicError::NoSuchVertex { .. })));

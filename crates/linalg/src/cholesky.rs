@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use base::Observer;
 use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::LltError;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
@@ -13,7 +14,7 @@ use faer::{Par, Side};
 use rayon::prelude::*;
 
 use crate::panels::Panels;
-use crate::{LinalgError, SparseSymmetric};
+use crate::{LinalgError, NoFactor, SparseSymmetric};
 
 /// The elimination order of a sparse matrix and the pattern of its Cholesky factor, which depend on the pattern of the
 /// matrix but not on its values.
@@ -36,20 +37,20 @@ impl EliminationOrder {
     /// Analyses the pattern of a matrix.
     ///
     /// # Errors
-    /// [`LinalgError::NotFactorised`] if the factor does not fit into memory; [`LinalgError::Exceeded`] if it does not
+    /// [`LinalgError::NotFactorized`] if the factor does not fit into memory; [`LinalgError::Exceeded`] if it does not
     /// fit into the budget of the observer.
     pub fn new(matrix: &SparseSymmetric, observer: &dyn Observer) -> Result<Self, LinalgError> {
         let budget = observer.budget();
         budget.check()?;
         let n = matrix.order();
-        // Panels even where single columns would factorise faster, because they make solving fast.
+        // Panels even where single columns would factorize faster, because they make solving fast.
         let params = CholeskySymbolicParams {
             supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
             ..Default::default()
         };
         let pattern = matrix.view().symbolic();
         let symbolic = factorize_symbolic_cholesky(pattern, Side::Lower, SymmetricOrdering::Amd, params)
-            .map_err(|e| LinalgError::NotFactorised { n, reason: format!("{e:?}") })?;
+            .map_err(|_| LinalgError::NotFactorized { n, reason: NoFactor::OutOfMemory })?;
         budget.check()?;
         budget.check_memory(symbolic.len_val().saturating_mul(size_of::<f64>()))?;
         let rows = match symbolic.perm() {
@@ -85,10 +86,10 @@ impl EliminationOrder {
 
 /// The Cholesky factor `A = L L'` of a sparse positive definite matrix.
 ///
-/// * Factorised sequentially, so the result does not depend on the number of threads.
+/// * Factorized sequentially, so the result does not depend on the number of threads.
 /// * `solve` may be called from any number of threads.
 ///
-/// Cost on a surface of n vertices: `O(n^1.5)` to factorise, `O(n log n)` memory and time to solve.
+/// Cost on a surface of n vertices: `O(n^1.5)` to factorize, `O(n log n)` memory and time to solve.
 ///
 /// ```
 /// use canonform_linalg::{EliminationOrder, SparseCholesky, SparseSymmetric};
@@ -106,11 +107,11 @@ pub struct SparseCholesky {
 }
 
 impl SparseCholesky {
-    /// Factorises a matrix whose pattern has been analysed before, possibly on another matrix. The factorisation itself
+    /// Factorizes a matrix whose pattern has been analysed before, possibly on another matrix. The factorization itself
     /// cannot be interrupted: the budget of the observer is checked before and after it.
     ///
     /// # Errors
-    /// [`LinalgError::NotFactorised`] if an entry is not finite, the matrix is numerically not positive definite, or the
+    /// [`LinalgError::NotFactorized`] if an entry is not finite, the matrix is numerically not positive definite, or the
     /// pattern has another number of entries; [`LinalgError::Exceeded`].
     pub fn new(
         order: &EliminationOrder,
@@ -120,17 +121,17 @@ impl SparseCholesky {
         let budget = observer.budget();
         budget.check()?;
         let n = matrix.order();
-        let failed = |reason: String| LinalgError::NotFactorised { n, reason };
+        let failed = |reason| LinalgError::NotFactorized { n, reason };
         if (n, matrix.n_stored()) != (order.0.rows.len(), order.0.n_stored) {
-            return Err(failed("its pattern is not the one analysed".into()));
+            return Err(failed(NoFactor::OtherPattern));
         }
         if let Some((row, column, value)) = matrix.entries().find(|(_, _, value)| !value.is_finite()) {
-            return Err(failed(format!("its entry ({row}, {column}) is {value}")));
+            return Err(failed(NoFactor::NotFinite { row, column, value }));
         }
         let symbolic = &order.0.symbolic;
         let mut values = budget.vector(symbolic.len_val())?;
         let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
-        let mut memory = MemBuffer::try_new(scratch).map_err(|e| failed(format!("{e:?}")))?;
+        let mut memory = MemBuffer::try_new(scratch).map_err(|_| failed(NoFactor::OutOfMemory))?;
         symbolic
             .factorize_numeric_llt(
                 &mut values,
@@ -141,7 +142,9 @@ impl SparseCholesky {
                 MemStack::new(&mut memory),
                 Default::default(),
             )
-            .map_err(|e| failed(format!("it is not positive definite ({e})")))?;
+            .map_err(|LltError::NonPositivePivot { index }| {
+                failed(NoFactor::NotPositiveDefinite { column: index })
+            })?;
         budget.check()?;
         Ok(Self { order: order.clone(), values })
     }
@@ -209,7 +212,7 @@ mod tests {
     use super::*;
     use crate::Matrix;
 
-    fn factorise(matrix: &SparseSymmetric) -> Result<SparseCholesky, LinalgError> {
+    fn factorize(matrix: &SparseSymmetric) -> Result<SparseCholesky, LinalgError> {
         SparseCholesky::new(&EliminationOrder::new(matrix, &())?, matrix, &())
     }
     use crate::SymmetricOperator;
@@ -242,7 +245,7 @@ mod tests {
     fn solutions_have_small_residuals() {
         for (side, mass) in [(1, 1.0), (2, 0.1), (5, 1e-3), (40, 1.0), (60, 1e-6)] {
             let a = grid(side, mass);
-            let factor = factorise(&a).unwrap();
+            let factor = factorize(&a).unwrap();
             let b = right_hand_side(a.order(), 1);
             let mut x = b.clone();
             factor.solve(&mut x);
@@ -257,7 +260,7 @@ mod tests {
         let b = right_hand_side(81, 3);
         let expected = a.dense().cholesky().unwrap().solve(&nalgebra::DVector::from_column_slice(&b));
         let mut x = b;
-        factorise(&a).unwrap().solve(&mut x);
+        factorize(&a).unwrap().solve(&mut x);
         assert!(x.iter().zip(&expected).all(|(x, e)| (x - e).abs() < 1e-13 * 50.0));
     }
 
@@ -265,7 +268,7 @@ mod tests {
     fn lanes_do_not_affect_each_other() {
         let a = grid(45, 0.01);
         let n = a.order();
-        let factor = factorise(&a).unwrap();
+        let factor = factorize(&a).unwrap();
         let columns = [0, 1, 2, 3].map(|seed| right_hand_side(n, seed));
         // One sparse right-hand side among dense ones.
         let sparse = |i: usize| if i == n / 3 { 1e200 } else { 0.0 };
@@ -283,7 +286,7 @@ mod tests {
     #[test]
     fn columns_do_not_affect_each_other() {
         let a = grid(31, 0.1);
-        let factor = factorise(&a).unwrap();
+        let factor = factorize(&a).unwrap();
         for count in [0, 1, 3, 9] {
             let b = Matrix::from_fn(a.order(), count, |i, j| right_hand_side(a.order(), j)[i]);
             let mut expected = b.clone();
@@ -301,7 +304,7 @@ mod tests {
         let a = grid(50, 30.0);
         let mut x = vec![0.0; a.order()];
         x[0] = 1e280;
-        factorise(&a).unwrap().solve(&mut x);
+        factorize(&a).unwrap().solve(&mut x);
         assert!(x.iter().all(|x| *x > 0.0));
         assert!(x.iter().fold(f64::MAX, |m, x| m.min(*x)) < 1e200);
         let mut terms = vec![[0.0; 2]; a.order()];
@@ -332,12 +335,12 @@ mod tests {
             x
         };
         let shared = solve(SparseCholesky::new(&order, &heavy, &()).unwrap());
-        assert_eq!(shared, solve(factorise(&heavy).unwrap()));
+        assert_eq!(shared, solve(factorize(&heavy).unwrap()));
     }
 
     #[test]
     fn an_empty_matrix_has_a_factor() {
-        let factor = factorise(&SparseSymmetric::from_entries(0, [])).unwrap();
+        let factor = factorize(&SparseSymmetric::from_entries(0, [])).unwrap();
         factor.solve(&mut []);
         assert!(factor.order().rows().is_empty());
     }
@@ -346,26 +349,26 @@ mod tests {
     fn diagonal_matrices_and_blocks_have_factors() {
         let diagonal = SparseSymmetric::from_entries(3, [(0, 0, 2.0), (1, 1, 4.0), (2, 2, 8.0)]);
         let mut x = [2.0, 2.0, 2.0];
-        factorise(&diagonal).unwrap().solve(&mut x);
+        factorize(&diagonal).unwrap().solve(&mut x);
         assert!(x.iter().zip([1.0, 0.5, 0.25]).all(|(x, e)| (x - e).abs() < 1e-15));
         let blocks = SparseSymmetric::from_entries(
             4,
             [(0, 0, 2.0), (3, 3, 2.0), (0, 3, 1.0), (1, 1, 1.0), (2, 2, 1.0)],
         );
         let mut x = [3.0, 5.0, 7.0, 3.0];
-        factorise(&blocks).unwrap().solve(&mut x);
+        factorize(&blocks).unwrap().solve(&mut x);
         assert!(x.iter().zip([1.0, 5.0, 7.0, 1.0]).all(|(x, e)| (x - e).abs() < 1e-14));
     }
 
     #[test]
     fn matrices_without_a_factor_give_an_error_with_the_reason() {
         let reason = |result: Result<SparseCholesky, LinalgError>| match result {
-            Err(LinalgError::NotFactorised { reason, .. }) => reason,
+            Err(LinalgError::NotFactorized { reason, .. }) => reason.to_string(),
             other => panic!("{other:?}"),
         };
-        assert!(reason(factorise(&grid(8, -0.5))).contains("not positive definite"));
-        assert!(reason(factorise(&grid(8, f64::NAN))).contains("is NaN"));
-        assert!(reason(factorise(&grid(8, f64::INFINITY))).contains("is inf"));
+        assert!(reason(factorize(&grid(8, -0.5))).contains("not positive definite"));
+        assert!(reason(factorize(&grid(8, f64::NAN))).contains("is NaN"));
+        assert!(reason(factorize(&grid(8, f64::INFINITY))).contains("is inf"));
         let order = EliminationOrder::new(&grid(8, 1.0), &()).unwrap();
         assert!(reason(SparseCholesky::new(&order, &grid(9, 1.0), &())).contains("pattern"));
         let diagonal = SparseSymmetric::from_entries(64, []);

@@ -52,14 +52,14 @@ pub enum LinalgError {
     },
     /// A sparse matrix has no Cholesky factor, or the factor does not fit into memory.
     #[error(
-        "the sparse {n} x {n} matrix cannot be factorised: {reason}; add a larger multiple of a positive diagonal to \
+        "the sparse {n} x {n} matrix cannot be factorized: {reason}; add a larger multiple of a positive diagonal to \
          it"
     )]
-    NotFactorised {
+    NotFactorized {
         /// Order of the matrix.
         n: usize,
         /// The reason.
-        reason: String,
+        reason: NoFactor,
     },
     /// A temporary file that holds numbers cannot be read or written.
     #[error("a temporary file of distances cannot be used: {reason}")]
@@ -70,6 +70,33 @@ pub enum LinalgError {
     /// A limit on time or memory, or a cancellation.
     #[error(transparent)]
     Exceeded(#[from] base::Exceeded),
+}
+
+/// Why a sparse matrix has no Cholesky factor.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum NoFactor {
+    /// The order of elimination belongs to a matrix with other entries.
+    #[error("its pattern is not the one analyzed")]
+    OtherPattern,
+    /// An entry is NaN or infinite.
+    #[error("its entry ({row}, {column}) is {value}")]
+    NotFinite {
+        /// Row of the entry.
+        row: usize,
+        /// Column of the entry.
+        column: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// A pivot is not positive.
+    #[error("it is not positive definite (at column {column} in the order of elimination)")]
+    NotPositiveDefinite {
+        /// The column of the pivot.
+        column: usize,
+    },
+    /// The factor, or the work on it, does not fit into memory or into its indices.
+    #[error("its factor does not fit into memory")]
+    OutOfMemory,
 }
 
 impl LinalgError {

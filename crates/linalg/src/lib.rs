@@ -26,7 +26,7 @@ pub use decomposition::{
     triangular_factor,
 };
 pub use distance_matrix::DistanceMatrix;
-pub use error::LinalgError;
+pub use error::{LinalgError, NoFactor};
 pub use generalized::{GeneralizedEigen, smallest_eigenpairs};
 pub use landmark_distances::LandmarkDistances;
 pub use largest::{SymmetricOperator, largest_eigenpairs};

@@ -81,20 +81,14 @@ impl VertexField<'_> {
     /// Refuses a field that does not fit the mesh or whose name a file cannot carry.
     pub(crate) fn check(&self, n_vertices: usize) -> Result<(), MeshError> {
         let lengths = [self.values.len(), self.colors.len()];
-        if let Some(values) = lengths.into_iter().find(|length| *length != n_vertices) {
-            return Err(MeshError::Unusable(format!(
-                "{values} values for {n_vertices} vertices; provide exactly one value and one color per vertex"
-            )));
+        if let Some(n_values) = lengths.into_iter().find(|length| *length != n_vertices) {
+            return Err(MeshError::FieldLength { n_values, n_vertices });
         }
         let is_word = self.name.starts_with(|c: char| c.is_ascii_alphabetic())
             && self.name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
         match is_word && !["x", "y", "z", "red", "green", "blue"].contains(&self.name) {
             true => Ok(()),
-            false => Err(MeshError::Unusable(format!(
-                "`{}` is not a valid name of a PLY property; use letters, digits and `_`, begin with a letter, \
-                 and avoid x y z red green blue",
-                self.name
-            ))),
+            false => Err(MeshError::FieldName { name: self.name.to_owned() }),
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use surface::Topology;
+use surface::{Topology, VertexId};
 
 /// Fewest different points that can become a surface.
 pub const MIN_POINTS: usize = 12;
@@ -53,9 +53,129 @@ pub enum MeshError {
         supported: String,
     },
 
-    /// A mesh or field that cannot be written to a file or repaired: the message says why, where, and what to do.
-    #[error("{0}")]
-    Unusable(String),
+    /// A face refers to a vertex that does not exist.
+    #[error(
+        "face {face} refers to vertex {vertex}, but the mesh has {n_vertices} vertices; correct or remove the face"
+    )]
+    VertexOutOfRange {
+        /// The face.
+        face: usize,
+        /// The vertex.
+        vertex: VertexId,
+        /// Vertices of the mesh.
+        n_vertices: usize,
+    },
+
+    /// A coordinate is NaN or infinite.
+    #[error("vertex {vertex} has a coordinate that is not finite; correct it or remove the vertex")]
+    NonFinite {
+        /// The vertex.
+        vertex: usize,
+    },
+
+    /// A mesh so large or small that areas overflow or vanish.
+    #[error(
+        "the mesh is {size:e} units across, but sizes from {least:e} to {most:e} are supported, since areas beyond \
+         overflow or vanish; scale the mesh"
+    )]
+    UnsupportedSize {
+        /// Its size.
+        size: f64,
+        /// The smallest supported one.
+        least: f64,
+        /// The largest supported one.
+        most: f64,
+    },
+
+    /// A mesh without a usable face.
+    #[error(
+        "none of the {n_faces} faces is usable ({degenerate} degenerate); \
+         a surface needs at least one triangle with three distinct corners"
+    )]
+    NoUsableFace {
+        /// Its faces.
+        n_faces: usize,
+        /// Faces without area.
+        degenerate: usize,
+    },
+
+    /// Too few points for a surface through them.
+    #[error(
+        "{n_distinct} different points without faces; a surface needs faces, or at least {least} points",
+        least = MIN_POINTS
+    )]
+    TooFewPoints {
+        /// Points at different places.
+        n_distinct: usize,
+    },
+
+    /// Points that lie on no surface.
+    #[error(
+        "no two of the {n_points} points agree on a triangle; they do not lie on a surface, or are too sparse"
+    )]
+    NoSurface {
+        /// The points.
+        n_points: usize,
+    },
+
+    /// A format that is not written, or not with this content.
+    #[error("{path}: {format} files cannot be written with {content}; use {supported}", path = path.display())]
+    NotWritable {
+        /// The file.
+        path: PathBuf,
+        /// Its format.
+        format: &'static str,
+        /// What should be written.
+        content: &'static str,
+        /// The extensions that can be, as a phrase.
+        supported: String,
+    },
+
+    /// A field of another number of vertices.
+    #[error(
+        "{n_values} values for {n_vertices} vertices; provide exactly one value and one color per vertex"
+    )]
+    FieldLength {
+        /// Values of the field.
+        n_values: usize,
+        /// Vertices of the mesh.
+        n_vertices: usize,
+    },
+
+    /// A field that a PLY file cannot name.
+    #[error(
+        "`{name}` is not a valid name of a PLY property; use letters, digits and `_`, begin with a letter, \
+         and avoid x y z red green blue"
+    )]
+    FieldName {
+        /// The name.
+        name: String,
+    },
+
+    /// A coordinate that a format of single precision cannot hold.
+    #[error(
+        "vertex {vertex} has the coordinate {value:e}, beyond the 32-bit floats of {format}; scale the mesh down or use \
+         another format"
+    )]
+    BeyondSinglePrecision {
+        /// The vertex.
+        vertex: usize,
+        /// The coordinate.
+        value: f64,
+        /// The format.
+        format: &'static str,
+    },
+
+    /// A face that a format of single precision would collapse.
+    #[error(
+        "corners of face {face} coincide in the 32-bit floats of {format}; move the mesh to the origin or use another format"
+    )]
+    CollapsedFace {
+        /// The face.
+        face: usize,
+        /// The format.
+        format: &'static str,
+    },
 
     /// More vertices or faces than a mesh may have.
     #[error(

@@ -9,17 +9,13 @@ use crate::tri_mesh::TriMesh;
 /// Checks what every algorithm relies on.
 ///
 /// # Errors
-/// [`MeshError::TooLarge`] for too many vertices or faces, [`MeshError::Unusable`] if a face refers to a vertex that does not
-/// exist or a coordinate is not finite.
+/// [`MeshError::TooLarge`], [`MeshError::VertexOutOfRange`] and [`MeshError::NonFinite`].
 pub fn check_input(mesh: &TriMesh) -> Result<(), MeshError> {
     let n_vertices = mesh.n_vertices();
     check_counts(n_vertices, mesh.n_faces())?;
     for (face, corners) in mesh.faces.iter().enumerate() {
         if let Some(&vertex) = corners.iter().find(|v| v.index() >= n_vertices) {
-            return Err(MeshError::Unusable(format!(
-                "face {face} refers to vertex {vertex}, but the mesh has {n_vertices} vertices; \
-                 correct or remove the face"
-            )));
+            return Err(MeshError::VertexOutOfRange { face, vertex, n_vertices });
         }
     }
     check_finite(&mesh.positions)
@@ -36,12 +32,10 @@ fn check_counts(n_vertices: usize, n_faces: usize) -> Result<(), MeshError> {
 /// Checks coordinates.
 ///
 /// # Errors
-/// [`MeshError::Unusable`] if one is not finite.
+/// [`MeshError::NonFinite`].
 pub fn check_finite<'a>(positions: impl IntoIterator<Item = &'a Point3<f64>>) -> Result<(), MeshError> {
     match positions.into_iter().position(|p| !p.iter().all(|x| x.is_finite())) {
-        Some(vertex) => Err(MeshError::Unusable(format!(
-            "vertex {vertex} has a coordinate that is not finite; correct it or remove the vertex"
-        ))),
+        Some(vertex) => Err(MeshError::NonFinite { vertex }),
         None => Ok(()),
     }
 }

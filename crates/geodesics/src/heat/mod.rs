@@ -65,7 +65,7 @@ const LANES: usize = 4;
 /// * Triangles are flipped until they are Delaunay, on the tufted cover of the surface, where boundaries and
 ///   non-manifold edges need no special treatment (Sharp and Crane 2020, [`sharp2020`]). Heat is then positive
 ///   everywhere. The surface and its vertices stay the same.
-/// * Both factorisations are done once, in one order of elimination; a source then costs three passes over a factor.
+/// * Both factorizations are done once, in one order of elimination; a source then costs three passes over a factor.
 ///   Many sources are solved [four at a time](DistanceSolver::distance_columns), with the same bits as one at a time.
 /// * A smooth approximation: it is **not** 1-Lipschitz along edges, can be below or above the distance, and rounds
 ///   off creases where fronts meet. Compared with exact distances, the mean error is 1 to 3 % on meshes of thousands
@@ -116,14 +116,14 @@ pub struct HeatMethod {
 }
 
 impl HeatMethod {
-    /// Flips the surface to Delaunay and factorises its matrices.
+    /// Flips the surface to Delaunay and factorizes its matrices.
     ///
     /// Lengths that violate the triangle inequality are corrected, see [`Metric`]. If rounding makes a matrix
     /// indefinite, 1e-12, 1e-9 or 1e-6 of its diagonal is added. The solver keeps to the budget of the observer, as its
     /// preparation does.
     ///
     /// # Errors
-    /// [`GeodesicError::BadHeatTime`]; [`GeodesicError::NotFactorised`] if that does not help, or memory runs out;
+    /// [`GeodesicError::BadHeatTime`]; [`GeodesicError::NotFactorized`] if that does not help, or memory runs out;
     /// [`GeodesicError::Exceeded`].
     pub fn new(
         mesh: &IntrinsicMesh,

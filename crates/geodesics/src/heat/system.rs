@@ -8,8 +8,8 @@ use surface::laplacian::{Element, Laplacian};
 use super::flow::HeatBar;
 use crate::error::GeodesicError;
 
-/// Shares of its diagonal added, one after the other, to a matrix that rounding keeps from being factorised.
-const SHIFTS: [f64; 4] = [0.0, 1e-12, 1e-9, 1e-6];
+/// Shares of its diagonal added, one after the other, to a matrix that rounding keeps from being factorized.
+const SHIFTS: [f64; 3] = [1e-12, 1e-9, 1e-6];
 
 /// The factors of `M + t L` and of `L`, in the same order of elimination.
 #[derive(Debug)]
@@ -21,7 +21,7 @@ pub(super) struct System {
 }
 
 impl System {
-    /// Assembles and factorises; `grounded` has one vertex of each component.
+    /// Assembles and factorizes; `grounded` has one vertex of each component.
     ///
     /// The cotangent stiffness `L` maps constants to zero. Adding one to its diagonal at one vertex of each component
     /// makes it definite. As right-hand sides sum to zero over a component, this only makes the solution zero there.
@@ -39,14 +39,14 @@ impl System {
         let missing: Vec<f64> = heat.diagonal().iter().map(|d| if *d == 0.0 { 1.0 } else { 0.0 }).collect();
         heat.add_to_diagonal(missing.into_iter());
         let order = EliminationOrder::new(&heat, budget).map_err(failed)?;
-        let heat = factorise(&order, heat, budget)?;
+        let heat = factorize(&order, heat, budget)?;
 
         let mut poisson =
             stiffness(n, elements, 1.0, bars.iter().map(|bar| (bar.ends, [bar.weight(), -bar.weight()])));
         let mut ground = vec![0.0; n];
         grounded.iter().for_each(|v| ground[v.index()] = 1.0);
         poisson.add_to_diagonal(ground.into_iter());
-        Ok(Self { heat, poisson: factorise(&order, poisson, budget)? })
+        Ok(Self { heat, poisson: factorize(&order, poisson, budget)? })
     }
 }
 
@@ -72,28 +72,28 @@ fn stiffness(
     matrix
 }
 
-/// The factor of a matrix, or of the matrix with the first of [`SHIFTS`] that has one.
-fn factorise(
+/// The factor of a matrix, or of the matrix with as many of [`SHIFTS`] as it needs.
+fn factorize(
     order: &EliminationOrder,
     mut matrix: SparseSymmetric,
     budget: &Budget,
 ) -> Result<SparseCholesky, GeodesicError> {
     let diagonal = matrix.diagonal();
-    let mut result = Err(GeodesicError::NotFactorised { reason: String::new() });
-    for shift in SHIFTS {
-        matrix.add_to_diagonal(diagonal.iter().map(|d| shift * d));
-        result = SparseCholesky::new(order, &matrix, budget).map_err(failed);
-        if !matches!(result, Err(GeodesicError::NotFactorised { .. })) {
-            break;
+    let mut shifts = SHIFTS.into_iter();
+    loop {
+        match (SparseCholesky::new(order, &matrix, budget).map_err(failed), shifts.next()) {
+            (Err(GeodesicError::NotFactorized(_)), Some(shift)) => {
+                matrix.add_to_diagonal(diagonal.iter().map(|d| shift * d));
+            }
+            (result, _) => return result,
         }
     }
-    result
 }
 
 fn failed(error: LinalgError) -> GeodesicError {
     match error {
         LinalgError::Exceeded(exceeded) => exceeded.into(),
-        other => GeodesicError::NotFactorised { reason: other.to_string() },
+        other => GeodesicError::NotFactorized(other),
     }
 }
 
@@ -107,9 +107,9 @@ mod tests {
         let order = EliminationOrder::new(&matrix(1.0), &()).unwrap();
         // Constants are mapped to zero; the shift makes the solution large and keeps its difference.
         let mut x = [1.0, -1.0];
-        factorise(&order, matrix(1.0), &Budget::unlimited()).unwrap().solve(&mut x);
+        factorize(&order, matrix(1.0), &Budget::unlimited()).unwrap().solve(&mut x);
         assert!((x[0] - x[1] - 1.0).abs() < 1e-3, "{x:?}");
-        let indefinite = factorise(&order, matrix(0.5), &Budget::unlimited());
-        assert!(matches!(indefinite, Err(GeodesicError::NotFactorised { .. })));
+        let indefinite = factorize(&order, matrix(0.5), &Budget::unlimited());
+        assert!(matches!(indefinite, Err(GeodesicError::NotFactorized(_))));
     }
 }

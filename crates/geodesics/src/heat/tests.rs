@@ -248,7 +248,7 @@ fn invalid_times_are_rejected() {
     }
     // The entries of the matrix overflow.
     let error = HeatMethod::new(&mesh, HeatOptions { time: f64::MAX }, &()).unwrap_err();
-    assert!(matches!(error, GeodesicError::NotFactorised { .. }), "{error}");
+    assert!(matches!(error, GeodesicError::NotFactorized(_)), "{error}");
     // A long time is still a direction.
     let long = HeatMethod::new(&mesh, HeatOptions { time: 1e6 }, &()).unwrap();
     assert!(long.distances(VertexId(0)).unwrap().iter().all(|d| d.is_finite()));

@@ -4,7 +4,7 @@ use base::Budget;
 use faer::Par;
 use faer::dyn_stack::{MemBuffer, MemStack};
 
-use crate::{EliminationOrder, LinalgError, SparseSymmetric};
+use crate::{EliminationOrder, LinalgError, NoFactor, SparseSymmetric};
 
 /// The number of negative eigenvalues of a matrix whose pattern has been analysed. By Sylvester's law of inertia it
 /// equals that of the block diagonal `B` in `A = L B L'` (Bunch and Kaufman, pivoting inside panels).
@@ -15,7 +15,7 @@ use crate::{EliminationOrder, LinalgError, SparseSymmetric};
 /// Returns `None` if a pivot is numerically zero: then the matrix, or a panel of it, has an eigenvalue at zero.
 ///
 /// # Errors
-/// [`LinalgError::Exceeded`]; [`LinalgError::NotFactorised`] if memory runs out.
+/// [`LinalgError::Exceeded`]; [`LinalgError::NotFactorized`] if memory runs out.
 pub(super) fn n_negative(
     order: &EliminationOrder,
     matrix: &SparseSymmetric,
@@ -29,7 +29,7 @@ pub(super) fn n_negative(
     let [mut forward, mut inverse] = [vec![0; n], vec![0; n]];
     let scratch = symbolic.factorize_numeric_intranode_lblt_scratch::<f64>(Par::Seq, Default::default());
     let mut memory = MemBuffer::try_new(scratch)
-        .map_err(|e| LinalgError::NotFactorised { n, reason: format!("{e:?}") })?;
+        .map_err(|_| LinalgError::NotFactorized { n, reason: NoFactor::OutOfMemory })?;
     symbolic.factorize_numeric_intranode_lblt(
         &mut values,
         &mut off_diagonal,

@@ -47,15 +47,15 @@ impl GeneralizedEigen {
 ///
 /// * Residuals `|W x - lambda M x|` are at most `tolerance (lambda + s)` in the norm of `M^-1`, up to rounding; `s` is about a
 ///   third of the mean gap between eigenvalues.
-/// * Complete: a factorisation counts the eigenvalues below a gap above those found (Sylvester's law of inertia), and
+/// * Complete: a factorization counts the eigenvalues below a gap above those found (Sylvester's law of inertia), and
 ///   the search continues while some are missing, as in clusters larger than the block.
 /// * Zero eigenvalues are returned as zeros. Rows without mass contribute no pair; their entries follow from the others.
 /// * Parallel; the result does not depend on the number of threads.
 ///
-/// Cost: a sparse factorisation, about `2.5 m` solutions and `25 n m^2` operations; `O(n m)` memory.
+/// Cost: a sparse factorization, about `2.5 m` solutions and `25 n m^2` operations; `O(n m)` memory.
 ///
 /// # Errors
-/// [`LinalgError::NotFactorised`], [`LinalgError::NotConverged`], [`LinalgError::MissedEigenvalues`];
+/// [`LinalgError::NotFactorized`], [`LinalgError::NotConverged`], [`LinalgError::MissedEigenvalues`];
 /// [`LinalgError::Exceeded`] if the budget of the observer is.
 ///
 /// # Panics

@@ -18,7 +18,7 @@ pub(super) struct ShiftInverse {
 }
 
 impl ShiftInverse {
-    /// Factorises `W + s M`. `s` is the median diagonal entry of `M^-1 W` divided by the order: on a surface about a
+    /// Factorizes `W + s M`. `s` is the median diagonal entry of `M^-1 W` divided by the order: on a surface about a
     /// third of the mean gap between eigenvalues, large enough for an accurate inverse and too small to cluster
     /// eigenvalues of `C`.
     ///

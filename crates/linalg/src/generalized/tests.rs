@@ -165,11 +165,11 @@ fn matrices_without_a_factor_are_errors() {
     let w = SparseSymmetric::from_entries(25, negative);
     assert!(matches!(
         smallest_eigenpairs(&w, &[1.0; 25], 3, GeneralizedEigen::ACCURATE, &()),
-        Err(LinalgError::NotFactorised { n: 25, .. })
+        Err(LinalgError::NotFactorized { n: 25, .. })
     ));
     let w = SparseSymmetric::from_entries(2, [(0, 1, f64::NAN)]);
     assert!(matches!(
         smallest_eigenpairs(&w, &[1.0; 2], 1, GeneralizedEigen::ACCURATE, &()),
-        Err(LinalgError::NotFactorised { n: 2, .. })
+        Err(LinalgError::NotFactorized { n: 2, .. })
     ));
 }

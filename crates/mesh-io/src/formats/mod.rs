@@ -10,7 +10,6 @@ mod threemf;
 mod tosca;
 mod xyz;
 
-use std::fmt;
 use std::path::{Path, PathBuf};
 
 use mesh::MeshError;
@@ -30,13 +29,13 @@ pub enum Content {
     Lines,
 }
 
-impl fmt::Display for Content {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
+impl Content {
+    fn name(self) -> &'static str {
+        match self {
             Self::Mesh => "a mesh",
             Self::Field => "a value per vertex",
             Self::Lines => "lines",
-        })
+        }
     }
 }
 
@@ -194,12 +193,12 @@ impl Format {
         let format = Self::of(path)?;
         match format.can_write(content) {
             true => Ok(format),
-            false => Err(MeshError::Unusable(format!(
-                "{}: {} files cannot be written with {content}; use {}",
-                path.display(),
-                format.name,
-                or_list(writable(content))
-            ))),
+            false => Err(MeshError::NotWritable {
+                path: path.to_owned(),
+                format: format.name,
+                content: content.name(),
+                supported: or_list(writable(content)),
+            }),
         }
     }
 

@@ -104,8 +104,8 @@ impl PointsReport {
 /// ```
 ///
 /// # Errors
-/// [`MeshError::Unusable`] if a coordinate is not finite, if there are fewer than twelve different points, and if no triangle
-/// is agreed on, and [`MeshError::Exceeded`].
+/// [`MeshError::NonFinite`]; [`MeshError::TooFewPoints`], of which [`MIN_POINTS`] are needed; [`MeshError::NoSurface`] if no triangle
+/// is agreed on; [`MeshError::Exceeded`].
 pub fn triangulate_points(
     points: &[Point3<f64>],
     observer: &dyn Observer,
@@ -116,10 +116,7 @@ pub fn triangulate_points(
     let unit = cloud.unit();
     let (distinct, of_point) = without_copies(points, unit);
     if distinct.len() < MIN_POINTS {
-        return Err(MeshError::Unusable(format!(
-            "{} different points without faces; a surface needs faces, or at least {MIN_POINTS} points",
-            distinct.len()
-        )));
+        return Err(MeshError::TooFewPoints { n_distinct: distinct.len() });
     }
     let scaled: Vec<Point3<f64>> = distinct.iter().map(|&i| points[i] / unit).collect();
     let smooth = smooth::smooth(scaled, &budget)?;
@@ -129,10 +126,7 @@ pub fn triangulate_points(
     budget.check()?;
     let faces = select::agreed(&stars);
     if faces.is_empty() {
-        return Err(MeshError::Unusable(format!(
-            "no two of the {} points agree on a triangle; they do not lie on a surface, or are too sparse",
-            points.len()
-        )));
+        return Err(MeshError::NoSurface { n_points: points.len() });
     }
     let stands = stand_ins(&faces, &smooth.points, smooth.spacing);
 

@@ -66,9 +66,9 @@ const MAX_PASSES: usize = 16;
 /// doubling of the number of components.
 ///
 /// # Errors
-/// [`MeshError::Unusable`] for a mesh that no algorithm can use, for one of which no face is left, and for points without
-/// a surface, [`MeshError::Disconnected`] if
-/// there are several components and the policy is [`ComponentPolicy::Error`], and [`MeshError::Exceeded`].
+/// Those of [`check_input`]; [`MeshError::UnsupportedSize`]; [`MeshError::NoUsableFace`]; those of
+/// [`triangulate_points`](crate::triangulate_points) for a mesh without faces; [`MeshError::Disconnected`] if there are several
+/// components and the policy is [`ComponentPolicy::Error`]; [`MeshError::Exceeded`].
 ///
 /// ```
 /// use canonform_mesh::{RepairOptions, repair, shapes};
@@ -106,11 +106,7 @@ pub fn repair(
     };
     if surface.topology().n_faces() == 0 {
         let degenerate = report.degenerate_faces + report.zero_length_faces;
-        return Err(MeshError::Unusable(format!(
-            "none of the {} faces is usable ({degenerate} degenerate); \
-             a surface needs at least one triangle with three distinct corners",
-            mesh.n_faces()
-        )));
+        return Err(MeshError::NoUsableFace { n_faces: mesh.n_faces(), degenerate });
     }
 
     budget.check()?;
@@ -260,12 +256,7 @@ fn checked_unit(mesh: &TriMesh) -> Result<f64, MeshError> {
         // All positions are the same, and no face is usable.
         0.0 => Ok(1.0),
         _ if SIZES.contains(&size) => Ok(mesh.unit()),
-        _ => Err(MeshError::Unusable(format!(
-            "the mesh is {size:e} units across, but sizes from {:e} to {:e} are supported, \
-             since areas beyond overflow or vanish; scale the mesh",
-            SIZES.start(),
-            SIZES.end()
-        ))),
+        _ => Err(MeshError::UnsupportedSize { size, least: *SIZES.start(), most: *SIZES.end() }),
     }
 }
 
