@@ -2,7 +2,7 @@
 
 use linalg::Matrix;
 use rayon::prelude::*;
-use surface::{FaceId, SurfacePoint, Topology, VertexId};
+use surface::{CornerId, FaceId, SurfacePoint, Topology, VertexId};
 
 use crate::functional::FunctionalMaps;
 use crate::shape::MapShape;
@@ -15,6 +15,14 @@ pub enum MapElements<'a> {
     Vertices,
     /// The centroids of some faces.
     Faces(&'a [[VertexId; 3]]),
+    /// The corners of some faces, three for each. The points of a face lie in faces that are joined around that of its centroid:
+    /// `joined` tells for every corner of the other surface whether the edge opposite it may be crossed, which a seam may not.
+    Corners {
+        /// The vertices of the faces.
+        faces: &'a [[VertexId; 3]],
+        /// One for every corner of the other surface.
+        joined: &'a [bool],
+    },
 }
 
 /// For elements of one surface, their points inside the faces of the other one (the precise map of `ezuz2017` in
@@ -48,51 +56,98 @@ pub fn mapped_points(
         Side::Second => (on_b, on_a, a),
     };
     let nearest = shape.nearest_vertices(&other, &own);
-    let start = |v: usize| VertexId::from(nearest[v]);
-    let (queries, starts): (Matrix, Vec<Vec<VertexId>>) = match elements {
-        MapElements::Vertices => (own, (0..nearest.len()).map(|v| vec![start(v)]).collect()),
-        MapElements::Faces(faces) => {
-            let mean = |i: usize, j: usize| faces[i].iter().map(|v| own[(v.index(), j)]).sum::<f64>() / 3.0;
-            let starts = faces.iter().map(|face| face.iter().map(|v| start(v.index())).collect());
-            (Matrix::from_fn(faces.len(), own.ncols(), mean), starts.collect())
-        }
-    };
     // Rows next to each other in memory.
-    let (queries, rows) = (queries.transpose(), other.transpose());
-    let one = |(i, starts): (usize, Vec<VertexId>)| {
-        let n = queries.nrows();
-        nearest_point(&queries.as_slice()[i * n..(i + 1) * n], &rows, target, starts)
+    let rows = other.transpose();
+    let around = |face: FaceId| faces_around(&target.faces()[face.index()], target);
+    let at = |query: &[f64], starts: &[VertexId]| match nearest_point(
+        query,
+        &rows,
+        target,
+        faces_around(starts, target),
+        around,
+    ) {
+        Some((face, found)) => SurfacePoint::Face { face, barycentric: found.weights },
+        None => SurfacePoint::Vertex(starts[0]),
     };
-    starts.into_par_iter().enumerate().map(one).collect()
+    let start = |v: usize| VertexId::from(nearest[v]);
+    let place = |v: VertexId| -> Vec<f64> { own.row(v.index()).iter().copied().collect() };
+    let centroid = |face: &[VertexId; 3]| {
+        let places = face.map(place);
+        let mean: Vec<f64> =
+            (0..own.ncols()).map(|j| places.iter().map(|p| p[j]).sum::<f64>() / 3.0).collect();
+        at(&mean, &face.map(|v| start(v.index())))
+    };
+    match elements {
+        MapElements::Vertices => {
+            (0..nearest.len()).into_par_iter().map(|v| at(&place(VertexId::from(v)), &[start(v)])).collect()
+        }
+        MapElements::Faces(faces) => faces.par_iter().map(centroid).collect(),
+        MapElements::Corners { faces, joined } => {
+            let corners = |face: &[VertexId; 3]| match centroid(face) {
+                SurfacePoint::Face { face: first, .. } => face.map(|v| {
+                    let around = |face| joined_around(face, target, joined);
+                    let found = nearest_point(&place(v), &rows, target, around(first), around);
+                    let (face, OnTriangle { weights: barycentric, .. }) =
+                        found.expect("the first face is one");
+                    SurfacePoint::Face { face, barycentric }
+                }),
+                nowhere => [nowhere; 3],
+            };
+            faces.par_iter().map(corners).collect::<Vec<_>>().into_flattened()
+        }
+    }
 }
 
-/// The nearest point of the faces around some vertices, and on from there. `rows` has a column for each vertex.
-fn nearest_point(query: &[f64], rows: &Matrix, target: &Topology, starts: Vec<VertexId>) -> SurfacePoint {
+/// The faces around some vertices.
+fn faces_around(vertices: &[VertexId], target: &Topology) -> Vec<FaceId> {
+    vertices.iter().flat_map(|v| target.vertex_corners(*v)).map(|corner| corner.face()).collect()
+}
+
+/// A face and those around its vertices that can be reached from it across joined edges.
+fn joined_around(face: FaceId, target: &Topology, joined: &[bool]) -> Vec<FaceId> {
+    let faces = target.faces();
+    let mut found = vec![face];
+    let mut next = 0;
+    while let Some(at) = found.get(next).copied() {
+        let open = at.corners().into_iter().filter(|corner| joined[corner.index()]);
+        for other in open.filter_map(|corner| target.opposite(corner)).map(CornerId::face) {
+            let is_near = faces[other.index()].iter().any(|v| faces[face.index()].contains(v));
+            if is_near && !found.contains(&other) {
+                found.push(other);
+            }
+        }
+        next += 1;
+    }
+    found
+}
+
+/// The nearest point of some faces, and on from there through those `around` the nearest one; `None` without a face. `rows` has a
+/// column for each vertex.
+fn nearest_point(
+    query: &[f64],
+    rows: &Matrix,
+    target: &Topology,
+    mut next: Vec<FaceId>,
+    around: impl Fn(FaceId) -> Vec<FaceId>,
+) -> Option<(FaceId, OnTriangle)> {
     let mut best: Option<(FaceId, OnTriangle)> = None;
     let mut seen: Vec<FaceId> = Vec::new();
-    let start = starts[0];
-    let mut around = starts;
     loop {
-        let before = best.as_ref().map(|(face, _)| *face);
-        for corner in around.iter().flat_map(|v| target.vertex_corners(*v)) {
-            let face = corner.face();
+        let before = best.map(|(face, _)| face);
+        for face in next {
             if seen.contains(&face) {
                 continue;
             }
             seen.push(face);
             let corners = target.faces()[face.index()].map(|v| column(rows, v));
             let found = OnTriangle::nearest(query, corners);
-            if best.as_ref().is_none_or(|(_, best)| found.sq_distance < best.sq_distance) {
+            if best.is_none_or(|(_, best)| found.sq_distance < best.sq_distance) {
                 best = Some((face, found));
             }
         }
-        match &best {
-            Some((face, _)) if before != Some(*face) => around = target.faces()[face.index()].to_vec(),
-            Some((face, found)) => {
-                return SurfacePoint::Face { face: *face, barycentric: found.weights };
-            }
-            // A vertex without a face.
-            None => return SurfacePoint::Vertex(start),
+        match best {
+            Some((face, _)) if before != Some(face) => next = around(face),
+            _ => return best,
         }
     }
 }

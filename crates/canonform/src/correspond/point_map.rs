@@ -8,7 +8,7 @@ use descriptors::Side;
 use linalg::Matrix;
 use maps::{MapElements, mapped_points};
 use mesh::{InputPoint, Surface};
-use surface::{FaceId, SurfacePoint, Topology, VertexId};
+use surface::{CornerId, FaceId, SurfacePoint, Topology, VertexId};
 
 use super::mapped_surface::MappedSurface;
 
@@ -87,20 +87,34 @@ impl PointMap {
     /// of the other input, and a column for every function; the result has a row for every element, NaN where it has no point.
     ///
     /// Texture coordinates are two functions. The corners are those of the input's face, so a seam along which the input
-    /// doubles its vertices stays sharp on the other surface; here, a face across the seam has corners on both sides of it.
+    /// doubles its vertices stays sharp on the other surface; here, a face across the seam has corners on both sides of it, unless
+    /// coordinates are given and carried [by corner](Mapping::corners).
     ///
     /// # Panics
     /// If `values` has fewer rows than the other input has vertices.
     #[must_use]
     pub fn values(&self, values: &Matrix) -> Matrix {
+        self.interpolated(values, |point| point.corners.map(VertexId::index))
+    }
+
+    /// Values at the corners of the faces of the other surface, three rows a face, carried to these elements.
+    ///
+    /// # Panics
+    /// If `values` has fewer rows than the other input has corners.
+    #[must_use]
+    pub fn corner_values(&self, values: &Matrix) -> Matrix {
+        self.interpolated(values, |point| point.face.corners().map(CornerId::index))
+    }
+
+    fn interpolated(&self, values: &Matrix, rows: impl Fn(&FacePoint) -> [usize; 3]) -> Matrix {
         Matrix::from_fn(self.points.len(), values.ncols(), |i, j| {
             self.points[i].map_or(f64::NAN, |point| {
-                let part = |(corner, weight): (&VertexId, &f64)| match weight {
+                let part = |(row, weight): (usize, f64)| match weight {
                     // Not a number times zero is not a number.
                     0.0 => 0.0,
-                    weight => weight * values[(corner.index(), j)],
+                    weight => weight * values[(row, j)],
                 };
-                point.corners.iter().zip(&point.weights).map(part).sum()
+                rows(&point).into_iter().zip(point.weights).map(part).sum()
             })
         })
     }
@@ -170,15 +184,32 @@ impl<S: Borrow<Surface>> Mapping<'_, S> {
             let points: Vec<_> = own.input.faces.iter().map(point).collect();
             return PointMap { points: in_faces(&points, other) };
         }
-        let repaired = |face: &[VertexId; 3]| -> Option<[VertexId; 3]> {
-            let [a, b, c] = face.map(|v| own.repaired_vertex(v).ok());
-            Some([a?, b?, c?])
-        };
-        let faces: Vec<_> = own.input.faces.iter().map(repaired).collect();
+        let faces = repaired_faces(own);
         let known: Vec<_> = faces.iter().flatten().copied().collect();
         let found = self.mapped(of, MapElements::Faces(&known));
         let mut found = in_faces(&all(found), other).into_iter();
         PointMap { points: faces.iter().map(|face| face.and_then(|_| found.next().flatten())).collect() }
+    }
+
+    /// The same for the corners of the faces of one side, three for each face, in order to carry values at the corners of the other
+    /// side, such as texture coordinates: `values` has three rows for each of its faces. No face here takes its values from both
+    /// sides of a seam, across which those of neighboring faces differ. `None` between a part and a whole.
+    #[must_use]
+    pub fn corners(&self, of: Side, values: &Matrix) -> Option<PointMap> {
+        let [own, other] = ordered(self.shapes.map(|shape| shape.surface()), of);
+        if self.partners.is_some() {
+            return None;
+        }
+        let joined = joined(other, values);
+        let faces = repaired_faces(own);
+        let known: Vec<_> = faces.iter().flatten().copied().collect();
+        let found = self.mapped(of, MapElements::Corners { faces: &known, joined: &joined });
+        let mut found = in_faces(&all(found), other).into_iter();
+        let three = |face: &Option<[VertexId; 3]>| match face {
+            Some(_) => std::array::from_fn(|_| found.next().flatten()),
+            None => [None; 3],
+        };
+        Some(PointMap { points: faces.iter().map(three).collect::<Vec<[_; 3]>>().into_flattened() })
     }
 
     fn mapped(&self, of: Side, elements: MapElements<'_>) -> Vec<SurfacePoint> {
@@ -194,6 +225,63 @@ fn ordered<T>([first, second]: [T; 2], side: Side) -> [T; 2] {
         Side::First => [first, second],
         Side::Second => [second, first],
     }
+}
+
+/// The faces of the input, with the vertices of the repaired mesh; `None` for those that have lost one.
+fn repaired_faces(surface: &Surface) -> Vec<Option<[VertexId; 3]>> {
+    let repaired = |face: &[VertexId; 3]| -> Option<[VertexId; 3]> {
+        let [a, b, c] = face.map(|v| surface.repaired_vertex(v).ok());
+        Some([a?, b?, c?])
+    };
+    surface.input.faces.iter().map(repaired).collect()
+}
+
+/// For every corner of the repaired mesh, whether values at the corners of the input are the same on both sides of the edge
+/// opposite it.
+fn joined(surface: &Surface, values: &Matrix) -> Vec<bool> {
+    let topology = surface.intrinsic().topology();
+    let mut rows = vec![None; 3 * topology.n_faces()];
+    let faces = InputFaces::new(surface);
+    for (face, vertices) in topology.faces().iter().enumerate() {
+        let Some(input) = faces.of(vertices) else { continue };
+        let corners = surface.input.faces[input].map(|v| surface.input.remap.to_new(v));
+        for (slot, v) in vertices.iter().enumerate() {
+            let at = corners.iter().position(|corner| *corner == Some(*v));
+            rows[3 * face + slot] = at.map(|at| 3 * input + at);
+        }
+    }
+    let row = |face: FaceId, v: VertexId| rows[topology.corner_at(face, v)?.index()];
+    let same = |corner: CornerId| {
+        let other = topology.opposite(corner)?.face();
+        let one = |v: VertexId| Some(values.row(row(corner.face(), v)?) == values.row(row(other, v)?));
+        let [a, b] = topology.edge_ends(corner);
+        Some(one(a)? && one(b)?)
+    };
+    (0..rows.len()).map(|corner| same(CornerId::from(corner)).unwrap_or(false)).collect()
+}
+
+/// The faces of the input by the vertices of the repaired mesh.
+struct InputFaces(HashMap<[VertexId; 3], usize>);
+
+impl InputFaces {
+    fn new(surface: &Surface) -> Self {
+        let mut faces = HashMap::new();
+        for (i, face) in surface.input.faces.iter().enumerate() {
+            if let [Some(a), Some(b), Some(c)] = face.map(|v| surface.input.remap.to_new(v)) {
+                faces.entry(sorted([a, b, c])).or_insert(i);
+            }
+        }
+        Self(faces)
+    }
+
+    fn of(&self, vertices: &[VertexId; 3]) -> Option<usize> {
+        self.0.get(&sorted(*vertices)).copied()
+    }
+}
+
+fn sorted(mut face: [VertexId; 3]) -> [VertexId; 3] {
+    face.sort_unstable();
+    face
 }
 
 fn all(points: Vec<SurfacePoint>) -> Vec<Option<SurfacePoint>> {
@@ -216,14 +304,11 @@ fn face_among(vertices: [VertexId; 3], topology: &Topology) -> Option<SurfacePoi
 fn in_faces(points: &[Option<SurfacePoint>], surface: &Surface) -> Vec<Option<FacePoint>> {
     let topology = surface.intrinsic().topology();
     let to_repaired = |v: VertexId| surface.input.remap.to_new(v);
-    let mut faces: HashMap<[VertexId; 3], usize> = HashMap::new();
+    let faces = InputFaces::new(surface);
     let mut around: Vec<Option<usize>> = vec![None; topology.n_vertices()];
     for (i, face) in surface.input.faces.iter().enumerate() {
         let [Some(a), Some(b), Some(c)] = face.map(to_repaired) else { continue };
-        let mut key = [a, b, c];
-        key.sort_unstable();
-        faces.entry(key).or_insert(i);
-        key.iter().for_each(|v| around[v.index()] = around[v.index()].or(Some(i)));
+        [a, b, c].iter().for_each(|v| around[v.index()] = around[v.index()].or(Some(i)));
     }
     let in_face = |i: usize, weight: &dyn Fn(VertexId) -> f64| {
         let corners = surface.input.faces[i];
@@ -242,11 +327,9 @@ fn in_faces(points: &[Option<SurfacePoint>], surface: &Surface) -> Vec<Option<Fa
         }
         SurfacePoint::Face { face, barycentric } => {
             let vertices = topology.faces()[face.index()];
-            let mut key = vertices;
-            key.sort_unstable();
             let weight = |v: VertexId| vertices.iter().position(|w| *w == v).map_or(0.0, |i| barycentric[i]);
-            match faces.get(&key) {
-                Some(i) => Some(in_face(*i, &weight)),
+            match faces.of(&vertices) {
+                Some(i) => Some(in_face(i, &weight)),
                 None => {
                     let most = vertices.into_iter().max_by(|v, w| weight(*v).total_cmp(&weight(*w)));
                     most.and_then(at_vertex)

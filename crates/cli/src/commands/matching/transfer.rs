@@ -21,6 +21,7 @@ use crate::output::{check_format, write_npy};
 enum Elements {
     Vertices,
     Faces,
+    Corners,
 }
 
 /// What is carried.
@@ -45,7 +46,7 @@ pub(super) struct Transferred {
     elements: Elements,
     /// `values`, which are interpolated, or `labels`.
     kind: &'static str,
-    /// Rows written, one for each vertex or face of the second mesh.
+    /// Rows written, one for each vertex, face or corner of the second mesh.
     rows: usize,
     /// Columns of them.
     columns: usize,
@@ -56,12 +57,13 @@ impl fmt::Display for Transferred {
         let elements = match self.elements {
             Elements::Vertices => "vertices",
             Elements::Faces => "faces",
+            Elements::Corners => "corners of faces",
         };
         write!(f, "{} of {} {elements}, in {}", self.kind, self.rows, self.path.display())
     }
 }
 
-/// Reads one row for each vertex or each face of a mesh.
+/// Reads one row for each vertex, each face or each corner of the faces of a mesh.
 pub(super) fn read_transfer(path: &Path, side: &MappedFile) -> Result<Transfer> {
     let content = match check_format(path, "values", &["npy", "csv"])?.as_str() {
         "npy" => of_array(path)?,
@@ -75,10 +77,12 @@ pub(super) fn read_transfer(path: &Path, side: &MappedFile) -> Result<Transfer> 
     let elements = match n {
         _ if n == n_vertices => Elements::Vertices,
         _ if n == n_faces => Elements::Faces,
+        _ if n == 3 * n_faces => Elements::Corners,
         _ => bail!(
             "{}: {n} rows, but the first mesh has {n_vertices} vertices and {n_faces} faces; give one row for each \
-             vertex or for each face",
-            path.display()
+             vertex, for each face or for each of the {} corners of its faces",
+            path.display(),
+            3 * n_faces
         ),
     };
     Ok(Transfer { elements, content })
@@ -124,6 +128,19 @@ impl Transfer {
             (Elements::Faces, Content::Labels(labels)) => {
                 Carried::Labels(mapping.faces(Side::Second).face_labels(labels))
             }
+            (Elements::Corners, Content::Values(values)) => {
+                let Some(corners) = mapping.corners(Side::Second, values) else {
+                    bail!(
+                        "{}: values of corners are not carried between a part and a whole; give them by vertex",
+                        path.display()
+                    )
+                };
+                Carried::Values(corners.corner_values(values))
+            }
+            (Elements::Corners, Content::Labels(_)) => bail!(
+                "{}: labels belong to vertices or faces; write the values of corners with fractions",
+                path.display()
+            ),
             (Elements::Faces, Content::Values(values)) => {
                 let rows: Vec<usize> = (0..values.nrows()).collect();
                 let rows = mapping.faces(Side::Second).face_labels(&rows);
@@ -168,7 +185,7 @@ impl Transfer {
                 (own, numbers.collect(), colors.collect())
             }
             _ => bail!(
-                "{}: colours show one value or label for each vertex; write rows of faces and several columns to .npy or .csv",
+                "{}: colours show one value or label for each vertex; write rows of faces and corners, and several columns, to .npy or .csv",
                 path.display()
             ),
         };
