@@ -117,7 +117,8 @@ pub mod geodesics {
 /// Maps between surfaces.
 pub mod maps {
     pub use crate::correspond::{
-        CorrespondOptions, Correspondence, FacePoint, MappedSurface, Mapping, PointMap, VertexMap, correspond,
+        CorrespondOptions, Correspondence, FacePoint, MappedSurface, Mapping, PointMap, VertexMap,
+        correspond, score_map,
     };
     pub use ::maps::*;
 }

@@ -33,4 +33,4 @@ pub use params::MapParams;
 pub use points::{MapElements, mapped_points};
 pub use shape::MapShape;
 pub use surface_map::{MapKind, PartOfWhole, SurfaceMap};
-pub use surfaces::map_surfaces;
+pub use surfaces::{map_surfaces, score_map};

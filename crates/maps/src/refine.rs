@@ -6,7 +6,9 @@ use rayon::prelude::*;
 use surface::VertexId;
 
 use crate::curvature::mismatch;
-use crate::local::vertex_confidence;
+use crate::error::MapError;
+use crate::known::KnownMap;
+use crate::local::{between, vertex_confidence};
 use crate::score::Scored;
 use crate::search::{MapSearch, Stage};
 use crate::shape::MapShape;
@@ -35,6 +37,42 @@ struct Finalist {
     refined: Scored,
     /// One less the correlation of the fine curvatures of corresponding points, if both surfaces have an inside.
     mismatch: Option<f64>,
+}
+
+/// A map that is given, as it is, beside the best one that a search finds; `None` if too few vertices have a partner.
+pub(crate) fn scored_as_given(
+    search: &MapSearch<'_>,
+    given: &KnownMap,
+) -> Result<Option<SurfaceMap>, MapError> {
+    let (params, shapes) = (search.params, [search.a, search.b]);
+    let pair = search.samples(usize::MAX);
+    let Some(start) = given.start(&pair, shapes, params.eigenfunctions) else { return Ok(None) };
+    // No functions are taken in that the given pairs do not determine.
+    let stage = Stage { last: start.first, pair };
+    let Some(scored) = search.scored(&stage, vec![start])?.pop() else { return Ok(None) };
+    let cost = |one: &Scored| one.cost() * one.fine_mismatch(shapes).unwrap_or(1.0).powi(2);
+    // Those of the same kind first, and the better ones of others.
+    let mut found = best_of_each_kind(search, search.sketches()?)?;
+    let is_other = |best: &Refined| best.found.kind() != scored.kind();
+    found.sort_by(|x, y| is_other(x).cmp(&is_other(y)).then(cost(&x.found).total_cmp(&cost(&y.found))));
+    let (confidence, rival) = match found.into_iter().next() {
+        Some(best) if best.found.is_same(&scored, params) => (best.confidence, best.rival),
+        Some(best) => (params.odds(cost(&scored), Some(cost(&best.found))), Some(best.found)),
+        None => (1.0, None),
+    };
+    let rival = rival.filter(|_| confidence < SurfaceMap::BEYOND_DOUBT);
+    let mut map = Refined { found: scored, confidence, rival }.on_all_vertices(shapes)?;
+    for [x, y] in given.initial_pairs() {
+        map.vertices[x.index()] = y;
+    }
+    let [a, b] = shapes;
+    let images: Vec<usize> = map.vertices.iter().map(|y| y.index()).collect();
+    map.vertex_confidence = vertex_confidence(shapes, [1.0; 2], &images)?;
+    // A map that is only given in one direction changes the distances of the landmarks from each other.
+    let of_landmarks: Vec<usize> = a.landmarks().iter().map(|&x| images[x]).collect();
+    let to_images = b.distances_to(&of_landmarks)?;
+    map.distortion = codistortion(&a.distances_to(a.landmarks())?, &between(&to_images, &to_images));
+    Ok(Some(map))
 }
 
 /// The best map of each orientation; without one if no map has any.

@@ -7,7 +7,7 @@ use crate::error::MapError;
 use crate::known::KnownMap;
 use crate::params::MapParams;
 use crate::part::part_maps;
-use crate::refine::best_of_each_kind;
+use crate::refine::{best_of_each_kind, scored_as_given};
 use crate::search::MapSearch;
 use crate::shape::MapShape;
 use crate::surface_map::SurfaceMap;
@@ -71,6 +71,26 @@ pub fn map_surfaces(
         }
     }
     Ok(known.finished(maps, b, params)?)
+}
+
+/// A map that is given, the `initial` one of `known`, without its refinement: how much it changes distances, how far it keeps the
+/// orientation, and how likely it is right, and not the best map of its kind that [`map_surfaces`] finds, or of another one if there
+/// is none. That one is its [alternative](SurfaceMap::alternative), unless both are the same or there is no doubt. Vertices that are given no partner get one.
+/// `None` if fewer than four vertices have one.
+///
+/// # Errors
+/// As [`map_surfaces`].
+pub fn score_map(
+    a: &MapShape,
+    b: &MapShape,
+    known: &KnownMap,
+    params: &MapParams,
+    observer: &dyn Observer,
+) -> Result<Option<SurfaceMap>, MapError> {
+    known.check([a, b], None)?;
+    let budget = observer.budget();
+    let others = KnownMap { initial: Vec::new(), ..known.clone() };
+    scored_as_given(&MapSearch { a, b, known: &others, params, budget: &budget }, known)
 }
 
 /// The surface that may be a part of the other; `None` if neither has a boundary and is much smaller.

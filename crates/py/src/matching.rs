@@ -2,7 +2,7 @@
 
 use canonform::descriptors::Side;
 use canonform::linalg::Matrix;
-use canonform::maps::{CorrespondOptions, KnownMap, Mapping, PointMap, VertexMap, correspond};
+use canonform::maps::{CorrespondOptions, KnownMap, Mapping, PointMap, VertexMap, correspond, score_map};
 use canonform::surface::VertexId;
 use numpy::PyUntypedArrayMethods;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
@@ -86,6 +86,7 @@ pub(crate) fn match_surfaces<'py>(
     landmarks: Pairs<'py>,
     initial: Option<PyReadonlyArray1<'py, i64>>,
     functions: Option<Functions<'py>>,
+    refine: bool,
     settings: Settings,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Maps<'py>> {
@@ -95,7 +96,8 @@ pub(crate) fn match_surfaces<'py>(
     let (found, colors) = run(py, &settings.budget()?, progress.as_ref(), |observer| {
         let sides = [a.matched(&of_a, observer)?, b.matched(&of_b, observer)?];
         let options = CorrespondOptions { known, ..of_a };
-        let found = correspond(&sides[0], &sides[1], &options, observer)?;
+        let search = if refine { correspond } else { score_map };
+        let found = search(&sides[0], &sides[1], &options, observer)?;
         let colors = place_colors(sides[0].shape.form_points());
         Ok((found, a.inner.in_input_order(&colors, perceptual(f64::NAN))))
     })?;
@@ -109,8 +111,8 @@ pub(crate) fn match_surfaces<'py>(
     Ok((json(&found), maps, colors))
 }
 
-/// The points inside the faces of the other surface that a map takes the vertices or faces of one side to: faces, corners and
-/// weights; -1 and NaN for what the repair dropped, or a part lacks. `partners` are those of a part and a whole.
+/// The points inside the faces of the other surface that a map takes the vertices of one side to, or its faces, or the corners of
+/// its faces, for values at the `corners` of the other: faces, corners and weights; -1 and NaN for what the repair dropped, or a part lacks. `partners` are those of a part and a whole.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn map_points<'py>(
@@ -122,6 +124,7 @@ pub(crate) fn map_points<'py>(
     partners: Option<[PyReadonlyArray1<'py, i64>; 2]>,
     of_second: bool,
     of_faces: bool,
+    corners: Option<PyReadonlyArray2<'py, f64>>,
     settings: Settings,
 ) -> PyResult<Points<'py>> {
     let [of_a, of_b] =
@@ -131,6 +134,7 @@ pub(crate) fn map_points<'py>(
         Some([a, b]) => Some([partners_of(a)?, partners_of(b)?]),
         None => None,
     };
+    let corners = corners.as_ref().map(matrix_of).transpose()?;
     let of = if of_second { Side::Second } else { Side::First };
     let PointMap { points } = run(py, &settings.budget()?, None, |observer| {
         let sides = [a.matched(&of_a, observer)?, b.matched(&of_b, observer)?];
@@ -140,7 +144,11 @@ pub(crate) fn map_points<'py>(
             landmarks: &landmarks,
             partners: partners.as_ref(),
         };
-        Ok(if of_faces { mapping.faces(of) } else { mapping.vertices(of) })
+        Ok(match &corners {
+            Some(values) => mapping.corners(of, values).unwrap_or(PointMap { points: Vec::new() }),
+            None if of_faces => mapping.faces(of),
+            None => mapping.vertices(of),
+        })
     })?;
     let faces: Vec<i64> = points.iter().map(|p| p.map_or(-1, |p| i64::from(p.face.0))).collect();
     let corners: Vec<i64> =

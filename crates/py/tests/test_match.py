@@ -57,6 +57,8 @@ def test_values_labels_and_points_are_carried_both_ways(cats: list[Shape]) -> No
     np.testing.assert_array_equal(points.corners, b.faces[points.faces])
     np.testing.assert_allclose(points.interpolate(b.vertices), m.transfer(b.vertices, to="a"))
     assert b.path(points.at[0], 5).length > 0
+    corners = a.vertices[a.faces]
+    np.testing.assert_allclose(m.transfer(corners).reshape(-1, 3), there[b.faces].reshape(-1, 3), atol=0.05 * size)
     again = pickle.loads(pickle.dumps(m))
     np.testing.assert_array_equal(again.transfer(names), m.transfer(names))
     with pytest.raises(OptionError, match="3 rows"):
@@ -92,6 +94,16 @@ def test_landmarks_initial_maps_and_descriptors(cats: list[Shape]) -> None:
         assert [other.kind for other in found.maps] == [m.kind]
         assert found.best.vertices[far] == m.vertices[far]
     assert canonform.match(a, b, initial=mirrored.vertices).best.kind == "mirrored"
+    bases = a.eigenbasis(60), b.eigenbasis(60)
+    functional = mirrored.functional(bases=bases)
+    assert canonform.match(a, b, initial=(functional, *bases)).best.kind == "mirrored"
+    scored = canonform.match(a, b, initial=direct.vertices, refine=False)
+    assert [m.kind for m in scored.maps] == ["direct"] and scored.best.confidence >= 0.7
+    np.testing.assert_array_equal(scored.best.vertices, direct.vertices)
+    with pytest.raises(OptionError, match="initial="):
+        canonform.match(a, b, refine=False)
+    with pytest.raises(OptionError, match="shape"):
+        canonform.match(a, b, initial=(functional[:, :, None], *bases))
     side = np.sin(a.vertices[:, 1] / 10)
     there = direct.transfer(side)
     assert "direct" in [m.kind for m in canonform.match(a, b, descriptors=(side, there)).maps]

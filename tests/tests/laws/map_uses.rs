@@ -3,12 +3,13 @@
 use canonform::descriptors::Side;
 use canonform::maps::{
     CorrespondOptions, KnownMap, LandmarkConflict, MapKind, MappedSurface, Mapping, PointMap, VertexMap,
-    correspond,
+    correspond, score_map,
 };
 use canonform::{Error, Surface};
 use datasets::{ArticulatedOptions, Family, RestedShape, articulated_at_rest};
 use linalg::Matrix;
 use mesh::{TriMesh, refine, shapes};
+use nalgebra::Point3;
 use rigid::NearestPoints;
 use surface::VertexId;
 
@@ -233,7 +234,7 @@ fn contradictory_landmarks_are_refused_and_name_the_pair() {
     // One right leg goes to the right, and the other to the left.
     let mirrored = NearestPoints::new(cats[1].rest.positions.clone()).unwrap();
     let p = cats[0].rest.positions[back[0].index()];
-    let other = VertexId::from(mirrored.nearest(&nalgebra::Point3::new(-p.x, p.y, p.z)).0);
+    let other = VertexId::from(mirrored.nearest(&Point3::new(-p.x, p.y, p.z)).0);
     let (pairs, how) = refused(&[front, [back[0], other]]);
     assert_eq!((pairs, how), (sorted([front, [back[0], other]]), LandmarkConflict::Orientation));
 }
@@ -259,6 +260,36 @@ fn maps_that_miss_a_landmark_are_uncertain() {
 }
 
 #[test]
+fn a_given_map_is_scored_as_it_is() {
+    let cats = [0, 4].map(cat);
+    let sides = cats.each_ref().map(|cat| prepared(&cat.shape.mesh));
+    let scored = |initial: Vec<VertexId>| {
+        let initial: Vec<_> = initial.into_iter().map(Some).collect();
+        let known = KnownMap { initial: initial.clone(), ..KnownMap::default() };
+        let options = CorrespondOptions { known, ..CorrespondOptions::default() };
+        let found = score_map(&sides[0], &sides[1], &options, &()).unwrap();
+        let [map] = <[VertexMap; 1]>::try_from(found.maps).unwrap();
+        assert_eq!(map.vertices, initial);
+        map
+    };
+    let truth = scored(partners(&cats[0], &cats[1]));
+    assert_eq!(truth.kind, MapKind::Direct);
+    assert!(truth.is_certain() && truth.distortion < 0.03, "{} {}", truth.confidence, truth.distortion);
+    // The nose goes to the tail, by the rest of a cat that was turned by half.
+    let turned = NearestPoints::new(cats[1].rest.positions.clone()).unwrap();
+    let rest = &cats[0].rest.positions;
+    let wrong = scored(rest.iter().map(|p| turned.nearest(&Point3::new(-p.x, -p.y, p.z)).0.into()).collect());
+    assert!(!wrong.is_certain() && wrong.confidence < 0.1, "{}", wrong.confidence);
+    assert!(wrong.distortion > 1.8 * truth.distortion, "{} {}", wrong.distortion, truth.distortion);
+    assert!(wrong.alternative.is_some(), "the best one that is found");
+    let initial = (0..rest.len()).map(|x| (x < 3).then_some(VertexId::from(x))).collect();
+    let known = KnownMap { initial, ..KnownMap::default() };
+    let options = CorrespondOptions { known, ..CorrespondOptions::default() };
+    let fault = score_map(&sides[0], &sides[1], &options, &()).unwrap_err().to_string();
+    assert!(fault.contains("at least four"), "{fault}");
+}
+
+#[test]
 fn what_does_not_fit_the_meshes_is_refused() {
     let sides = [shapes::grid(9, 7, 0.1), shapes::grid(8, 8, 0.1)].each_ref().map(prepared);
     let refused = |known: KnownMap| {
@@ -280,17 +311,55 @@ fn what_does_not_fit_the_meshes_is_refused() {
     }
 }
 
-#[test]
-fn twins_of_a_seam_keep_their_own_values() {
-    // A tube whose first and last columns coincide: texture coordinates jump there.
-    let (n, m) = (24, 16);
+/// A tube of `n` columns and `m` rows, narrower at one end, whose first and last columns coincide; and how far around each of its
+/// vertices lies, from 0 to 1.
+fn tube(n: usize, m: usize) -> (TriMesh, Matrix) {
     let mut tube = shapes::grid(n + 1, m, 1.0);
-    let texture = Matrix::from_fn(tube.n_vertices(), 1, |v, _| tube.positions[v].x / n as f64);
+    let around = Matrix::from_fn(tube.n_vertices(), 1, |v, _| tube.positions[v].x / n as f64);
     for p in &mut tube.positions {
         let angle = p.x / n as f64 * std::f64::consts::TAU;
-        let radius = 2.0 + 0.1 * p.y;
-        *p = nalgebra::Point3::new(radius * angle.cos(), radius * angle.sin(), p.y);
+        let height = p.y / (m - 1) as f64;
+        let radius = 2.0 + 1.5 * height;
+        *p = Point3::new(radius * angle.cos(), radius * angle.sin(), 15.0 * height);
     }
+    (tube, around)
+}
+
+#[test]
+fn texture_coordinates_of_corners_are_not_torn_at_seams() {
+    let [(a, around), (b, _)] = [tube(24, 16), tube(29, 19)];
+    let corners: Vec<f64> = a.faces.iter().flatten().map(|v| around[(v.index(), 0)]).collect();
+    let corners = Matrix::from_column_slice(corners.len(), 1, &corners);
+    let sides = [prepared(&a), prepared(&b)];
+    let map = &with(KnownMap::default(), sides.each_ref())[0];
+    let mapping = map.between(sides.each_ref());
+    let by_corner = mapping.corners(Side::Second, &corners).unwrap().corner_values(&corners);
+    assert_eq!(by_corner.nrows(), 3 * b.n_faces());
+    let extent = |values: [f64; 3]| {
+        values.iter().copied().fold(0.0, f64::max) - values.iter().copied().fold(1.0, f64::min)
+    };
+    // Faces of both have 1/24 and 1/29 of the way around.
+    let of_faces = |values: &dyn Fn(usize, usize) -> f64| -> Vec<f64> {
+        (0..b.n_faces()).map(|f| extent([0, 1, 2].map(|slot| values(f, slot)))).collect()
+    };
+    let extents = of_faces(&|f, slot| by_corner[(3 * f + slot, 0)]);
+    assert!(extents.iter().all(|extent| *extent < 0.1), "{extents:?}");
+    let by_vertex = mapping.vertices(Side::Second).values(&around);
+    let torn = of_faces(&|f, slot| by_vertex[(b.faces[f][slot].index(), 0)]);
+    let torn: Vec<usize> = (0..torn.len()).filter(|f| torn[*f] > 0.1).collect();
+    assert!(torn.len() > 18, "a row of faces lies across the seam: {torn:?}");
+    // All others have the same values.
+    for f in (0..b.n_faces()).filter(|f| !torn.contains(f)) {
+        for slot in 0..3 {
+            let (x, y) = (by_corner[(3 * f + slot, 0)], by_vertex[(b.faces[f][slot].index(), 0)]);
+            assert!((x - y).abs() < 0.05, "{f}: {x}, {y}");
+        }
+    }
+}
+
+#[test]
+fn twins_of_a_seam_keep_their_own_values() {
+    let (tube, texture) = tube(24, 16);
     let side = prepared(&tube);
     assert!(side.surface().mesh().n_vertices() < tube.n_vertices(), "the repair welds the seam");
     let k = side.shape.spectrum().values.len();
@@ -304,4 +373,9 @@ fn twins_of_a_seam_keep_their_own_values() {
         let mean = face.iter().map(|v| texture[(v.index(), 0)]).sum::<f64>() / 3.0;
         assert!((found[(f, 0)] - mean).abs() < 1e-6, "face {f}: {} for {mean}", found[(f, 0)]);
     }
+    // And each corner its own.
+    let corners: Vec<f64> = tube.faces.iter().flatten().map(|v| texture[(v.index(), 0)]).collect();
+    let corners = Matrix::from_column_slice(corners.len(), 1, &corners);
+    let found = mapping.corners(Side::First, &corners).unwrap().corner_values(&corners);
+    assert!((found - corners).abs().max() < 1e-6);
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::time::Instant;
 
 use linalg::Matrix;
-use maps::{MapKind, PartOfWhole, SurfaceMap, map_surfaces};
+use maps::{KnownMap, MapError, MapKind, PartOfWhole, SurfaceMap, map_surfaces};
 use serde::Serialize;
 use surface::VertexId;
 
@@ -94,14 +94,44 @@ pub fn correspond<S: Borrow<Surface>>(
     options: &CorrespondOptions,
     observer: &dyn Observer,
 ) -> Result<Correspondence, Error> {
+    found(a, b, options, &|known| map_surfaces(&a.shape, &b.shape, known, &options.maps, observer))
+}
+
+/// What the [initial](maps::KnownMap::initial) map is worth, without its refinement: the one map of the result has its vertices.
+/// See [`maps::score_map`].
+///
+/// # Errors
+/// As [`correspond`]; [`Error::UnusableMap`], if fewer than four vertices have a partner.
+pub fn score_map<S: Borrow<Surface>>(
+    a: &MappedSurface<S>,
+    b: &MappedSurface<S>,
+    options: &CorrespondOptions,
+    observer: &dyn Observer,
+) -> Result<Correspondence, Error> {
+    let found = found(a, b, options, &|known| {
+        Ok(maps::score_map(&a.shape, &b.shape, known, &options.maps, observer)?.into_iter().collect())
+    })?;
+    match found.maps.is_empty() {
+        true => Err(Error::UnusableMap(
+            "too few vertices have a partner; give a map of at least four vertices to score it".into(),
+        )),
+        false => Ok(found),
+    }
+}
+
+fn found<S: Borrow<Surface>>(
+    a: &MappedSurface<S>,
+    b: &MappedSurface<S>,
+    options: &CorrespondOptions,
+    maps_of: &dyn Fn(&KnownMap) -> Result<Vec<SurfaceMap>, MapError>,
+) -> Result<Correspondence, Error> {
     let start = Instant::now();
     let surfaces = [a.surface(), b.surface()];
     // Sorted, so that their order does not matter.
     let landmarks: BTreeSet<[VertexId; 2]> = options.known.landmarks.iter().copied().collect();
     let landmarks: Vec<_> = landmarks.into_iter().collect();
     let known = known::repaired(&options.known, &landmarks, surfaces)?;
-    let found = map_surfaces(&a.shape, &b.shape, &known, &options.maps, observer)
-        .map_err(|fault| known::named(fault, &landmarks))?;
+    let found = maps_of(&known).map_err(|fault| known::named(fault, &landmarks))?;
     let maps = found.into_iter().map(|map| VertexMap::new(map, surfaces, &landmarks));
     Ok(Correspondence { maps: maps.collect(), seconds: start.elapsed().as_secs_f64() })
 }

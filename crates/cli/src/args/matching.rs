@@ -28,11 +28,13 @@ agreement   how far the map keeps the orientation of the surface, from -1 to 1
 confidence  that this map is right, and not the next best of its kind; of a vertex: how well distances around it are kept
 
 Known pairs: --landmarks takes two columns, a vertex of A and one of B: 17,42. They choose the map, and
-contradictory ones are refused; one ear is enough to tell left from right. --initial takes a map as -o writes it, and refines it.
+contradictory ones are refused; one ear is enough to tell left from right. --initial takes a map as -o writes it, and refines it; with
+--score, tells its distortion and confidence instead.
 
 Transfer: --transfer takes one row for each vertex or each face of A, .npy or .csv, and -o then holds the rows of B by the first map.
-Numbers with fractions, and several columns such as texture coordinates, are interpolated inside faces; whole numbers (an integer
-array, or a .csv of them) and words are labels, which go to the nearest. To transfer from B to A, exchange the meshes.
+Numbers with fractions are interpolated inside faces; whole numbers (an integer array, or a .csv of them) and words are labels, which
+go to the nearest. Texture coordinates are two columns with three rows for each face of A, one for each corner, so that seams stay
+whole. To transfer from B to A, exchange the meshes.
 
 Examples:
   canonform match cat0.off cat1.off -o map.npy
@@ -54,7 +56,10 @@ pub(crate) struct MatchArgs {
     /// A map to start from, as -o writes it: .npy or .csv
     #[arg(long, value_name = "MAP")]
     pub(crate) initial: Option<PathBuf>,
-    /// Carry values, labels or texture coordinates of the vertices or faces of A to B: .npy or .csv, and so is -o
+    /// Score the map of --initial as it is, beside the best one that is found, instead of refining it
+    #[arg(long, requires = "initial")]
+    pub(crate) score: bool,
+    /// Carry values or labels of the vertices or faces of A, or texture coordinates of their corners, to B: .npy or .csv, and so is -o
     #[arg(long, value_name = "FILE", requires = "output")]
     pub(crate) transfer: Option<PathBuf>,
     /// Map vertices to points inside faces, in -o and --json

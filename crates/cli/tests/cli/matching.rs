@@ -112,11 +112,13 @@ fn values_labels_and_texture_coordinates_are_carried() {
     let read = |name: &str| -> Vec<String> {
         fs::read_to_string(place.path(name)).unwrap().lines().map(str::to_owned).collect()
     };
-    // A constant stays one.
-    fs::write(place.path("ones.csv"), lines(&|_| "2.5".into(), 1000)).unwrap();
+    let other = canonform::mesh::io::read(&place.path("cat1.off")).unwrap();
+    // A constant of the corners stays one.
+    fs::write(place.path("ones.csv"), lines(&|_| "2.5".into(), 3 * cat.n_faces())).unwrap();
     let json = place.json("match cat0.off cat1.off --transfer ones.csv -o carried.csv");
     assert_keys(&json["transfer"], "path elements kind rows columns");
-    assert_eq!((&json["transfer"]["kind"], &json["transfer"]["rows"]), (&"values".into(), &1000.into()));
+    let (kind, rows) = (&json["transfer"]["kind"], &json["transfer"]["rows"]);
+    assert_eq!((kind, rows), (&"values".into(), &(3 * other.n_faces()).into()));
     let near = |line: &String| (line.parse::<f64>().unwrap() - 2.5).abs() < 1e-9;
     assert!(read("carried.csv").iter().all(near));
     // Coordinates, as functions, arrive where the map takes their vertices.
@@ -147,7 +149,6 @@ fn values_labels_and_texture_coordinates_are_carried() {
         (&json["transfer"]["kind"], &json["transfer"]["elements"]),
         (&"labels".into(), &"faces".into())
     );
-    let other = canonform::mesh::io::read(&place.path("cat1.off")).unwrap();
     let found = numbers(&place, "carried.npy");
     assert_eq!(found.len(), other.n_faces());
     let same = |f: &usize| i64::from(carried[other.faces[*f][0].index()] == "upper") == found[*f];

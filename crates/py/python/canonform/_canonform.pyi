@@ -161,6 +161,7 @@ def match_surfaces(
     landmarks: _Ints,
     initial: _Ints | None,
     functions: tuple[_Floats, _Floats] | None,
+    refine: bool,
     settings: _Settings,
     progress: _Progress,
 ) -> tuple[str, list[list[_MapArrays | None]], _Colors]: ...
@@ -172,6 +173,7 @@ def map_points(
     partners: list[_Ints] | None,
     of_second: bool,
     of_faces: bool,
+    corners: _Floats | None,
     settings: _Settings,
 ) -> tuple[_Ints, _Ints, _Floats]: ...
 def map_basis(surface: Surface, settings: _Settings) -> tuple[_Floats, _Floats, _Floats]: ...

@@ -118,9 +118,17 @@ class SurfaceMap(Stored):
             self.alternative = SurfaceMap(report["alternative"], [other], shapes, landmarks, settings)
 
     @renamed(k="n_eigenfunctions=")
-    def functional(self, n_eigenfunctions: int | None = None) -> Floats:
+    def functional(
+        self, n_eigenfunctions: int | None = None, *, bases: tuple[Eigenbasis, Eigenbasis] | None = None
+    ) -> Floats:
         """The map of functions, a square matrix, smaller for a part: column j has the coefficients of the j-th eigenfunction of `b`,
-        pulled back to `a`, in the eigenfunctions of `a`. `bases` gives these; by default all that the map has."""
+        pulled back to `a`, in the eigenfunctions of `a`. The method `bases` gives these; by default all that the map has. With
+        `bases` of your own, one of `a` and one of `b`, it is written in them."""
+        if bases is not None:
+            a, b = bases
+            pulled = np.where(self.vertices[:, None] < 0, 0.0, np.nan_to_num(b.functions)[self.vertices])
+            found: Floats = a.project(pulled)[:n_eigenfunctions, :n_eigenfunctions]
+            return found
         rows, columns = self._counts(n_eigenfunctions)
         return self._functional[:rows, :columns].copy()
 
@@ -151,19 +159,22 @@ class SurfaceMap(Stored):
     def _mapped(self, of: Side, elements: str) -> MappedPoints:
         key = f"{elements} of {of}"
         if key not in self._points:
-            a, b = (shape._inner for shape in self._shapes)
-            found = _canonform.map_points(
-                a,
-                b,
-                straight(self._functional),
-                self._landmarks,
-                self._partners,
-                of == "b",
-                elements == "faces",
-                self._settings,
-            )
-            self._points[key] = MappedPoints(*found)
+            self._points[key] = self._found(of, elements == "faces", None)
         return self._points[key]
+
+    def _found(self, of: Side, faces: bool, corners: Floats | None) -> MappedPoints:
+        a, b = (shape._inner for shape in self._shapes)
+        functional, pairs = straight(self._functional), self._landmarks
+        found = _canonform.map_points(a, b, functional, pairs, self._partners, of == "b", faces, corners, self._settings)
+        return MappedPoints(*found)
+
+    def _corners(self, of: Side, values: Floats) -> Floats:
+        """Values at the corners of faces, shape (n_faces, 3, d), at those of the other surface."""
+        if self.part:
+            raise OptionError("values of corners are not carried between a part and a whole; give them by vertex")
+        points = self._found(of, True, straight(values.reshape(-1, values.shape[2])))
+        found: Floats = (values[points.faces] * points.weights[:, :, None]).sum(axis=1)
+        return found.reshape(-1, 3, values.shape[2])
 
     def transfer(self, values: ArrayLike, to: Side = "b") -> NDArray[Any]:
         """Carry values from one surface to the other: from `a` to `b`, or back with `to="a"`.
@@ -171,20 +182,22 @@ class SurfaceMap(Stored):
         Parameters
         ----------
         values
-            One row for each vertex of the surface that they come from, or one for each of its faces. Fractional numbers at
-            vertices are interpolated inside faces, which also carries texture coordinates, two columns: a seam along which the
-            mesh doubles its vertices stays sharp. Everything else is a label, such as the number or name of a segment: the
-            label of the largest weight, or that of the face.
+            One row for each vertex of the surface that they come from, or one for each of its faces, or values at the corners of
+            the faces: shape (n_faces, 3, d). Fractional numbers at vertices are interpolated inside faces. Texture coordinates
+            belong to corners: no face takes them from both sides of a seam. Everything else is a label, such as the number or name
+            of a segment: the label of the largest weight, or that of the face.
         to
             The surface that they go to.
 
-        Returns one row for each vertex or face of that surface. Of those that the repair dropped, numbers are NaN or -1, and other
+        Returns one row for each vertex or face of that surface, or values at its corners. Of those that the repair dropped, numbers are NaN or -1, and other
         labels are empty.
         """
         at = _side("to", to)
         source = self._shapes[1 if at == "a" else 0]
         array = np.asarray(values)
         n = len(array) if array.ndim else 0
+        if array.ndim == 3 and array.shape[:2] == (source.n_faces, 3):
+            return self._corners(at, array.astype(np.float64))
         if n == source.n_vertices:
             points = self._mapped(at, "vertices")
             if array.dtype.kind == "f":
@@ -195,7 +208,7 @@ class SurfaceMap(Stored):
             return _labels(array, points.faces, points.faces < 0)
         raise OptionError(
             f"values have {n} rows, but the surface that they come from has {source.n_vertices} vertices and "
-            f"{source.n_faces} faces; give one row for each vertex or for each face"
+            f"{source.n_faces} faces; give one row for each vertex or for each face, or the shape ({source.n_faces}, 3, d)"
         )
 
     def inverse(self) -> SurfaceMap:
@@ -341,7 +354,8 @@ def match(
     b: AnyMesh,
     *,
     landmarks: ArrayLike | None = None,
-    initial: ArrayLike | None = None,
+    initial: ArrayLike | tuple[ArrayLike, Eigenbasis, Eigenbasis] | None = None,
+    refine: bool = True,
     descriptors: tuple[ArrayLike, ArrayLike] | None = None,
     n_eigenfunctions: int | None = None,
     geodesic: Geodesic = "fast-marching",
@@ -360,8 +374,11 @@ def match(
         Known pairs: rows of a vertex of `a` and one of `b`. They choose the map, which contains
         them; contradictory ones are refused. One ear is enough to tell left from right.
     initial
-        A map to start from: for each vertex of `a`, its partner on `b`, or -1. It is refined, and comes out unless another map is
-        clearly better.
+        A map to start from: for each vertex of `a`, its partner on `b`, or -1; or a functional map, as `SurfaceMap.functional`
+        writes it, and the bases of `a` and `b` that it is written in. It is refined, and comes out unless another map is clearly
+        better.
+    refine
+        With `False`, the initial map comes out as it is, with its distortion and its confidence beside the best map that is found.
     descriptors
         Functions that correspond, beside those that are computed: an array for each surface, one row for each vertex and one
         column for each function.
@@ -372,10 +389,14 @@ def match(
     """
     eigenfunctions = some_whole("n_eigenfunctions", n_eigenfunctions)
     settings = options_of(eigenfunctions=eigenfunctions, geodesic=geodesic, timeout=timeout, memory=memory)
+    if not refine and initial is None:
+        raise OptionError("refine=False scores a map that is given; give it as initial=")
     pairs, start, functions = _pairs(landmarks), _partners(initial), _functions(descriptors)
     a, b = surface_of(a), surface_of(b)
     with shown(progress) as report:
-        found, arrays, colors = _canonform.match_surfaces(a._inner, b._inner, pairs, start, functions, settings, report)
+        found, arrays, colors = _canonform.match_surfaces(
+            a._inner, b._inner, pairs, start, functions, refine, settings, report
+        )
     return Match(json.loads(found), arrays, colors, (a, b), pairs, settings)
 
 
@@ -390,9 +411,16 @@ def _pairs(landmarks: ArrayLike | None) -> Ints:
     return straight(array, dtype=np.int64)
 
 
-def _partners(initial: ArrayLike | None) -> Ints | None:
+# Vertices of a functional map that are given partners; its refinement starts from no more samples.
+_MOST_PARTNERS = 2000
+
+
+def _partners(initial: ArrayLike | tuple[ArrayLike, Eigenbasis, Eigenbasis] | None) -> Ints | None:
     if initial is None:
         return None
+    if isinstance(initial, tuple) and len(initial) == 3 and isinstance(initial[1], Eigenbasis):
+        functional, a, b = initial
+        return _of_functional(np.asarray(functional, dtype=np.float64), a, b)
     array = np.asarray(initial)
     if array.ndim != 1 or array.dtype.kind not in "iu":
         raise OptionError(f"initial must have one vertex number for each vertex of a, not shape {array.shape} of {array.dtype}")
@@ -407,3 +435,19 @@ def _functions(descriptors: tuple[ArrayLike, ArrayLike] | None) -> tuple[Floats,
         raise OptionError("descriptors must be two arrays, one for each surface, with one row for each vertex")
     f, g = (straight(array.reshape(len(array), -1)) for array in both)
     return f, g
+
+
+def _of_functional(functional: Floats, a: Eigenbasis, b: Eigenbasis) -> Ints:
+    """The vertices of `b` nearest to vertices of `a` in the space of the eigenfunctions (Ovsjanikov et al. 2012)."""
+    rows, columns = functional.shape if functional.ndim == 2 else (0, 0)
+    if not (0 < rows <= len(a.values) and 0 < columns <= len(b.values)):
+        counts = f"{len(a.values)} and {len(b.values)}"
+        raise OptionError(f"the functional map has the shape {functional.shape}, but the bases of a and b have {counts} functions")
+    targets = b.functions[:, :columns]
+    sq_lengths = np.where(np.isnan(targets[:, 0]), np.inf, (targets**2).sum(axis=1))
+    known = np.flatnonzero(~np.isnan(a.functions[:, 0]))
+    some = known[np.unique(np.linspace(0, len(known) - 1, min(len(known), _MOST_PARTNERS)).astype(np.int64))]
+    places = a.functions[some, :rows] @ functional
+    found = np.full(len(a.masses), -1, dtype=np.int64)
+    found[some] = (sq_lengths - 2 * places @ np.nan_to_num(targets).T).argmin(axis=1)
+    return found

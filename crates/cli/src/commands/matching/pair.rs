@@ -7,7 +7,7 @@ use anyhow::Result;
 use base::terminal::Bars;
 use canonform::Error;
 use canonform::descriptors::Side;
-use canonform::maps::{MappedSurface, PartOfWhole, PointMap, VertexMap, correspond};
+use canonform::maps::{MappedSurface, PartOfWhole, PointMap, VertexMap, correspond, score_map};
 use canonform::mesh::InputPoint;
 use canonform::settings::MethodSettings;
 use serde::Serialize;
@@ -84,7 +84,8 @@ pub(crate) fn match_meshes(args: &MatchArgs, common: &Common) -> Result<ExitCode
     options.known = known::read(args, [a.mapped.surface(), b.mapped.surface()])?;
     let carried = args.transfer.as_deref().map(|path| read_transfer(path, &a)).transpose()?;
     let bars = Bars::with_budget(common.quiet, args.limits.budget());
-    let found = correspond(&a.mapped, &b.mapped, &options, &bars);
+    let search = if args.score { score_map } else { correspond };
+    let found = search(&a.mapped, &b.mapped, &options, &bars);
     let found = match (found, &args.landmarks) {
         (Err(fault @ Error::ContradictoryLandmarks { .. }), Some(path)) => return Err(named(path, fault)),
         (found, _) => found?,
