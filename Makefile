@@ -22,20 +22,22 @@ run: ## Generate the built-in shapes, run figures 1 and 4, and write out/report.
 test: ## Run the tests, but for those that are slow and rare
 	$(CARGO) test --workspace --locked --no-fail-fast
 
-test-python: ## Build the Python package and run its tests in an environment of its own (needs Python 3.11 or later)
+test-python: ## Build the Python package and run its tests, but for slow ones, in an environment of its own (needs Python 3.11 or later)
 	crates/py/test.sh
 
 wheels: ## Build the wheel and the source distribution of the Python package in out/wheels, and try both in a bare Python
 	crates/py/wheels.sh $(OUT)/wheels
 
 notebooks: ## Run the notebooks of the Python package and store them with their outputs
-	CANONFORM_WRITE_DOCS=1 crates/py/test.sh tests/test_notebooks.py
+	CANONFORM_WRITE_DOCS=1 crates/py/test.sh -m slow tests/test_notebooks.py
 
 lint-packaging: ## Check workflows, container, citation, recipe and metadata with linters of PyPI and npm
 	packaging/lint.sh
 
-test-all: ## Run all tests with those that are slow and rare: attacks, exhaustive damage, full-size maps, 200 kills of writing commands
+test-all: ## Run all tests with those that are slow and rare, and build the guide: attacks, exhaustive damage, full-size maps, notebooks, 200 kills of writing commands
 	CANONFORM_KILLS=200 $(CARGO) test --workspace --lib --bins --tests --locked --no-fail-fast -- --include-ignored
+	crates/py/test.sh -m ""
+	$(MAKE) guide
 
 lint: ## Check formatting, clippy and rustdoc; warnings are errors
 	$(CARGO) fmt --all --check

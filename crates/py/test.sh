@@ -28,16 +28,23 @@ test -x "$environment/bin/python" || "$python" -m venv "$environment"
 mapfile -t packages < <("$environment/bin/python" -c '
 import tomllib
 with open("pyproject.toml", "rb") as file:
-    print(*tomllib.load(file)["project"]["optional-dependencies"]["test"], sep="\n")')
+    project = tomllib.load(file)["project"]
+    print(*project["dependencies"], *project["optional-dependencies"]["test"], sep="\n")')
 "$environment/bin/pip" install --quiet --disable-pip-version-check 'maturin>=1.16,<2' "${packages[@]}"
 if [ "${1:-}" = --prepare ]; then
     exit
 fi
 
-# The package is built with the profile and the features of the Rust tests, so that what they compiled need not be compiled
-# again.
 export VIRTUAL_ENV=$environment CARGO_TARGET_DIR=$target
-# CI names the program that the Rust tests built: building it alone would compile half of its dependencies again.
-test -n "${CANONFORM_PROGRAM:-}" || cargo build --locked -p canonform-cli
-"$environment/bin/maturin" develop --quiet --locked --profile dev --features canonform/clap
+if [ -n "${CANONFORM_PROGRAM:-}" ]; then
+    # CI has built the program with the Rust tests. The package is built together with them, too: alone it has other features,
+    # and all of its dependencies would be compiled again.
+    PYO3_PYTHON=$environment/bin/python PYO3_BUILD_EXTENSION_MODULE=1 \
+        cargo build --quiet --locked --workspace --lib --tests
+    cp "$target/debug/lib_canonform.so" python/canonform/_canonform.abi3.so
+    realpath python >"$("$environment/bin/python" -c 'import site; print(site.getsitepackages()[0])')/canonform.pth"
+else
+    cargo build --locked -p canonform-cli
+    "$environment/bin/maturin" develop --quiet --locked --profile dev --features canonform/clap
+fi
 exec "$environment/bin/python" -m pytest --numprocesses 2 --dist loadfile "$@"

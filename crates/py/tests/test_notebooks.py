@@ -25,7 +25,7 @@ TOLERANCE = 0.02
 MOST_BYTES = 3_000_000
 
 # The packages of Jupyter warn of their own affairs.
-pytestmark = pytest.mark.filterwarnings("default")
+pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("default")]
 
 
 def code_of(notebook: Any) -> list[Any]:

@@ -5,6 +5,7 @@ use std::path::Path;
 use guide::Chapter;
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn the_guide_shows_what_experiments_do() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/guide");
     let chapters = Chapter::all(&folder).unwrap();

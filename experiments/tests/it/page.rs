@@ -226,6 +226,7 @@ fn views_rotate_together_by_mouse_and_keyboard() {
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn the_layout_is_stable_and_fits_wide_and_narrow_screens_dark_mode_and_print() {
     for (name, size) in [("1280", [1280, 900]), ("390", [390, 844])] {
         let Some(browser) = opened(size) else { return };

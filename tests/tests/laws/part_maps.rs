@@ -105,6 +105,7 @@ fn a_part_is_mapped_to_where_it_was_in_another_pose_and_back() {
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn landmarks_of_a_part_are_kept_and_decide() {
     let whole = Known::pose(Family::David, 0);
     let part = Known::pose(Family::David, 5).part(0.7, 3);
@@ -129,6 +130,7 @@ fn landmarks_of_a_part_are_kept_and_decide() {
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn an_initial_map_of_a_part_decides_its_orientation() {
     let whole = Known::pose(Family::Cat, 3);
     let part = Known::pose(Family::Cat, 2).part(0.7, 2);

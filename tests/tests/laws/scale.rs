@@ -108,6 +108,7 @@ fn every_embedding_and_its_stress_scale() {
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn signatures_have_no_scale() {
     for mesh in meshes() {
         let describe = |mesh: &TriMesh| describe(&surface(mesh), &DescribeOptions::default(), &()).unwrap();

@@ -39,6 +39,7 @@ fn assert_plain(what: &[&str], text: &str) {
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn no_output_for_people_obeys_a_name() {
     let place = collection();
     let class = "all/cats\u{1b}[31m\nINJECTED";

@@ -318,6 +318,7 @@ fn a_matrix_of_distances_is_scored() {
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn an_index_takes_the_options_of_embed_and_applies_them_to_queries() {
     let place = collection();
     for name in ["ring2", "ball0", "ball1", "ball2"] {
