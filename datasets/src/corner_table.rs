@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fan_visits_every_neighbour_once() {
+    fn a_fan_visits_every_neighbor_once() {
         let table = double_pyramid(5);
         let around: BTreeSet<u32> = table.neighbors(VertexId(5)).map(|v| v.0).collect();
         assert_eq!(around, (0..5).collect());

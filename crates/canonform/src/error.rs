@@ -364,7 +364,7 @@ impl Error {
             }
             Self::Descriptor(DescriptorError::NotThreeDimensional { .. }) => Remedy::UseThreeDimensions,
             Self::Geodesic(GeodesicError::NotFactorized(_)) => Remedy::UseFastMarching,
-            Self::Geodesic(GeodesicError::NoWay { .. }) | Self::NoPath { .. } => Remedy::RaiseMaxDistance,
+            Self::Geodesic(GeodesicError::NoPath { .. }) | Self::NoPath { .. } => Remedy::RaiseMaxDistance,
             Self::AllPairsTooLarge { .. } => Remedy::UseNystrom,
             Self::NoStress { .. } => Remedy::GiveSamples,
             Self::MemoryTooSmall { .. }

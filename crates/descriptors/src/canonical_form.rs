@@ -23,7 +23,7 @@ pub enum Normalization {
 
 /// A surface embedded so that straight-line distances equal its surface distances: its shape regardless of pose.
 ///
-/// It is centred at its area-weighted centroid. It is invariant to bending of the surface and, with
+/// It is centered at its area-weighted centroid. It is invariant to bending of the surface and, with
 /// [`Normalization::UnitArea`], to scale. It is defined up to a rigid motion *and a reflection*: distances do not
 /// distinguish a left hand from a right one.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,7 +72,7 @@ impl CanonicalForm {
         Self::from_parts(points, weights, None)
     }
 
-    /// A form from exactly these points, weights and area: nothing is centred or normalised.
+    /// A form from exactly these points, weights and area: nothing is centered or normalized.
     ///
     /// # Errors
     /// [`DescriptorError::SizeMismatch`] unless there is one weight per point; [`DescriptorError::NoExtent`] if a
@@ -121,7 +121,7 @@ impl CanonicalForm {
         Self::from_parts(points, shares(weights), self.area)
     }
 
-    /// The centred points, one per vertex, in the unit of the distances.
+    /// The centered points, one per vertex, in the unit of the distances.
     pub fn points(&self) -> &[Point3<f64>] {
         &self.points
     }
@@ -198,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn the_form_is_centred_by_area_and_its_spread_scales() {
+    fn the_form_is_centered_by_area_and_its_spread_scales() {
         let mesh = square();
         let coords = Matrix::from_fn(4, 3, |i, j| mesh.positions[i][j] + 7.0);
         let form = CanonicalForm::new(&embedding(coords.clone()), &mesh).unwrap();

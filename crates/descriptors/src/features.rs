@@ -94,7 +94,7 @@ impl CanonicalForm {
 struct Bending {
     /// The vertices of the surface.
     rest: Vec<Point3<f64>>,
-    /// For each vertex, its neighbours and their cotangent weights.
+    /// For each vertex, its neighbors and their cotangent weights.
     neighbors: Rows<(u32, f64)>,
     /// Shares of the area, times [`PULL`].
     pull: Vec<f64>,

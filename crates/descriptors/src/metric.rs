@@ -58,7 +58,7 @@ impl ShapeDistance {
         self.same_shape() > 0.5
     }
 
-    /// Whether the shapes are at least as likely of one class as not. Neighbours as near as this vote on the class of a query.
+    /// Whether the shapes are at least as likely of one class as not. Neighbors as near as this vote on the class of a query.
     #[must_use]
     pub fn may_be_same_class(&self) -> bool {
         self.combined < ShapeMetric::SAME_CLASS.at

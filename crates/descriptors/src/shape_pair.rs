@@ -201,10 +201,10 @@ mod tests {
             .map(|i| f64::from(i) / 400.0)
             .map(|s| Point3::new(3.0 * s, s * (turns * s).cos(), turn * 0.7 * s * (turns * s).sin()) * size)
             .collect();
-        let centred = CanonicalForm::from_points(points, vec![1.0; 400]).unwrap();
+        let centered = CanonicalForm::from_points(points, vec![1.0; 400]).unwrap();
         let form = CanonicalForm::from_parts(
-            centred.points().to_vec(),
-            centred.weights().to_vec(),
+            centered.points().to_vec(),
+            centered.weights().to_vec(),
             Some(4.0 * size * size),
         );
         PreparedShape::new(vec![turns as f32], &form.unwrap(), Some(4.0 * size * size)).unwrap()

@@ -44,7 +44,7 @@ use crate::metric::LandmarkMetric;
 /// // Every vertex, exact wherever the landmarks leave more than 5 % open.
 /// let row = field.row(a, Finish::default(), &())?;
 /// assert_eq!(row[3].b, b);
-/// // The six neighbours of a vertex.
+/// // The six neighbors of a vertex.
 /// assert_eq!(field.nearest(VertexId(100), 6, &())?.len(), 6);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -202,7 +202,7 @@ fn answers_are_in_the_vertex_numbers_of_the_input() {
     let [a, b] = [VertexId(10), VertexId::from(twin)];
     assert_eq!(field.pair(a, b).unwrap().distance, 0.0);
     assert_eq!(field.nearest(a, 1, &()).unwrap()[0].b, b, "the merged vertex is nearest");
-    assert!(field.nearest(VertexId(0), 3, &()).unwrap().is_empty(), "a dropped vertex has no neighbours");
+    assert!(field.nearest(VertexId(0), 3, &()).unwrap().is_empty(), "a dropped vertex has no neighbors");
     let beyond = VertexId::from(mesh.n_vertices());
     let fault = field.pairs(&[[a, beyond]], Finish::Never, &()).unwrap_err();
     let n_vertices = mesh.n_vertices();

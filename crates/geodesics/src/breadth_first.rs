@@ -62,9 +62,9 @@ impl DistanceSolver for BreadthFirst {
             }
             while let Some(vertex) = queue.pop_front() {
                 let hops = out[vertex.index()] + 1.0;
-                let neighbours = self.graph.ways(vertex);
-                meter.count(1 + neighbours.len())?;
-                for way in neighbours {
+                let neighbors = self.graph.ways(vertex);
+                meter.count(1 + neighbors.len())?;
+                for way in neighbors {
                     if out[way.to.index()] > hops {
                         out[way.to.index()] = hops;
                         queue.push_back(way.to);

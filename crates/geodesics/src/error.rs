@@ -33,7 +33,7 @@ pub enum GeodesicError {
         "no path to {point}: it is on another component or beyond the distance limit; choose another target or raise \
          the limit"
     )]
-    NoWay {
+    NoPath {
         /// The end of the path.
         point: SurfacePoint,
     },

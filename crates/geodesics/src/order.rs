@@ -1,13 +1,13 @@
-//! Orders of vertices in which neighbours are close in memory.
+//! Orders of vertices in which neighbors are close in memory.
 
 use surface::{EdgeGraph, IntrinsicMesh, Rows, VertexId};
 
 /// Number of vertices in a patch.
 const PATCH: usize = 64;
 
-/// Vertices in patches of neighbours that grow breadth-first, one next to the other. A front, whatever its source,
+/// Vertices in patches of neighbors that grow breadth-first, one next to the other. A front, whatever its source,
 /// passes few patches at a time, where it would pass all of the rings of a breadth-first order.
-pub(crate) fn order_by_patches<I: Iterator<Item = u32>>(n: usize, neighbours: impl Fn(u32) -> I) -> Vec<u32> {
+pub(crate) fn order_by_patches<I: Iterator<Item = u32>>(n: usize, neighbors: impl Fn(u32) -> I) -> Vec<u32> {
     let mut is_visited = vec![false; n];
     let mut order = Vec::with_capacity(n);
     let (mut waiting, mut next, mut lowest) = (Vec::new(), 0, 0);
@@ -28,7 +28,7 @@ pub(crate) fn order_by_patches<I: Iterator<Item = u32>>(n: usize, neighbours: im
         order.push(root);
         let mut head = start;
         while head < order.len() && order.len() < start + PATCH {
-            for u in neighbours(order[head]) {
+            for u in neighbors(order[head]) {
                 if !std::mem::replace(&mut is_visited[u as usize], true) {
                     order.push(u);
                 }
@@ -36,7 +36,7 @@ pub(crate) fn order_by_patches<I: Iterator<Item = u32>>(n: usize, neighbours: im
             head += 1;
         }
         for v in &order[start..] {
-            waiting.extend(neighbours(*v).filter(|u| !is_visited[*u as usize]));
+            waiting.extend(neighbors(*v).filter(|u| !is_visited[*u as usize]));
         }
     }
 }
@@ -70,7 +70,7 @@ mod tests {
     fn patches_hold_every_vertex_once_and_are_connected() {
         // A grid of 40 x 30 vertices and a path of 100, which nothing joins.
         let (nx, n_grid, n) = (40u32, 1200u32, 1300u32);
-        let neighbours = |v: u32| {
+        let neighbors = |v: u32| {
             let around = if v < n_grid {
                 let [x, y] = [v % nx, v / nx];
                 [
@@ -84,17 +84,17 @@ mod tests {
             };
             around.into_iter().flatten()
         };
-        let order = order_by_patches(n as usize, neighbours);
+        let order = order_by_patches(n as usize, neighbors);
         let mut sorted = order.clone();
         sorted.sort_unstable();
         assert!(sorted.into_iter().eq(0..n));
-        // A vertex follows one of its neighbours, except where a patch begins: much less often than one in eight.
+        // A vertex follows one of its neighbors, except where a patch begins: much less often than one in eight.
         let n_roots = (0..order.len()).filter(|i| {
             let recent = &order[i.saturating_sub(PATCH)..*i];
-            !neighbours(order[*i]).any(|u| recent.contains(&u))
+            !neighbors(order[*i]).any(|u| recent.contains(&u))
         });
         let n_roots = n_roots.count();
         assert!((2..n as usize / 8).contains(&n_roots), "{n_roots}");
-        assert!(order_by_patches(0, neighbours).is_empty());
+        assert!(order_by_patches(0, neighbors).is_empty());
     }
 }

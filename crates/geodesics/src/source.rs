@@ -12,8 +12,8 @@ use crate::error::{BadPoint, GeodesicError};
 /// use surface::FaceId;
 ///
 /// let mesh = shapes::icosphere(2).intrinsic();
-/// let centre = SurfacePoint::Face { face: FaceId(7), barycentric: [1.0 / 3.0; 3] };
-/// let source = Source::new(&mesh, centre)?;
+/// let center = SurfacePoint::Face { face: FaceId(7), barycentric: [1.0 / 3.0; 3] };
+/// let source = Source::new(&mesh, center)?;
 /// assert_eq!(source.reach().len(), 3);
 /// # Ok::<(), canonform_geodesics::GeodesicError>(())
 /// ```

@@ -107,7 +107,7 @@ pub struct SparseCholesky {
 }
 
 impl SparseCholesky {
-    /// Factorizes a matrix whose pattern has been analysed before, possibly on another matrix. The factorization itself
+    /// Factorizes a matrix whose pattern has been analyzed before, possibly on another matrix. The factorization itself
     /// cannot be interrupted: the budget of the observer is checked before and after it.
     ///
     /// # Errors

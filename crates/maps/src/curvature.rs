@@ -78,9 +78,9 @@ pub(crate) fn fine_curvature(outward: &TriMesh, bends: &DVector<f64>) -> Result<
 /// out, so that its logarithm and ratios of two are finite. `partners` names a point of the second list for each of the first, as far as they go.
 pub(crate) fn mismatch(x: &[f64], y: &[f64], partners: &[usize]) -> f64 {
     let n = partners.len();
-    let centred = |values: DVector<f64>| values.add_scalar(-values.mean());
-    let x = centred(DVector::from_column_slice(&x[..n]));
-    let y = centred(DVector::from_iterator(n, partners.iter().map(|&i| y[i])));
+    let centered = |values: DVector<f64>| values.add_scalar(-values.mean());
+    let x = centered(DVector::from_column_slice(&x[..n]));
+    let y = centered(DVector::from_iterator(n, partners.iter().map(|&i| y[i])));
     let scale = x.norm() * y.norm();
     if scale > 0.0 { (1.0 - x.dot(&y) / scale).max(f64::EPSILON) } else { 1.0 }
 }

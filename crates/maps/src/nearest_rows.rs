@@ -50,7 +50,7 @@ pub(crate) struct Cells<'a> {
     /// Columns by which the nearest cells are found.
     pub(crate) coarse: &'a [usize],
     /// The row in the middle of each cell.
-    pub(crate) centres: &'a [usize],
+    pub(crate) centers: &'a [usize],
     /// The rows of each cell.
     pub(crate) members: &'a [Vec<usize>],
 }
@@ -59,20 +59,20 @@ pub(crate) struct Cells<'a> {
 pub(crate) const PROBED: usize = 8;
 
 impl Cells<'_> {
-    /// For every row of `x` the nearest row of the cells with the eight nearest centres; the one of the nearer centre, or
+    /// For every row of `x` the nearest row of the cells with the eight nearest centers; the one of the nearer center, or
     /// the first, in case of a tie.
     ///
-    /// Cost `O(m c d)` for `c` centres; parallel, and independent of the number of threads.
+    /// Cost `O(m c d)` for `c` centers; parallel, and independent of the number of threads.
     pub(crate) fn nearest(&self, x: &Matrix) -> Vec<usize> {
-        let centres = self.rows.select_rows(self.centres).select_columns(self.coarse);
-        let of_centres = half_squares(&centres);
+        let centers = self.rows.select_rows(self.centers).select_columns(self.coarse);
+        let of_centers = half_squares(&centers);
         // Rows next to each other in memory.
         let (sources, targets) = (x.transpose(), self.rows.transpose());
         let coarse = sources.select_rows(self.coarse);
         let one = |rows: Range<usize>| -> Vec<usize> {
-            let products = &centres * coarse.columns_range(rows.clone());
+            let products = &centers * coarse.columns_range(rows.clone());
             let nearest = |(i, column): (usize, nalgebra::DVectorView<'_, f64>)| {
-                let gaps = column.iter().zip(&of_centres).map(|(dot, half)| half - dot);
+                let gaps = column.iter().zip(&of_centers).map(|(dot, half)| half - dot);
                 let cells = first_of(gaps.zip(0..).collect(), PROBED);
                 let members = cells.iter().flat_map(|(_, cell): &(f64, usize)| &self.members[*cell]);
                 let source = sources.column(i);
@@ -131,7 +131,7 @@ mod tests {
 
     #[test]
     fn cells_find_the_nearest_row_if_cells_are_compact() {
-        // Points of a curve, in cells of ten neighbours.
+        // Points of a curve, in cells of ten neighbors.
         let curve = |n: usize, shift: f64| {
             Matrix::from_fn(n, 3, |i, j| {
                 let t = (i as f64 + shift) / n as f64;
@@ -140,8 +140,8 @@ mod tests {
         };
         let (x, y) = (curve(230, 0.3), curve(400, 0.0));
         let members: Vec<Vec<usize>> = (0..40).map(|c| (10 * c..10 * c + 10).collect()).collect();
-        let centres: Vec<usize> = (0..40).map(|c| 10 * c + 5).collect();
-        let cells = Cells { rows: &y, coarse: &[0, 1], centres: &centres, members: &members };
+        let centers: Vec<usize> = (0..40).map(|c| 10 * c + 5).collect();
+        let cells = Cells { rows: &y, coarse: &[0, 1], centers: &centers, members: &members };
         assert_eq!(cells.nearest(&x), by_hand(&x, &y));
     }
 }

@@ -17,7 +17,7 @@ use descriptors::{CanonicalForm, DescriptorError, LaplaceSpectrum, Normalization
 /// Leading eigenfunctions of each surface by which the nearest samples of a vertex are found. A safety limit.
 const COARSE: usize = 40;
 
-/// One in so many wave kernels takes part in fitted maps: neighbours are nearly the same. As `ren2018` in `REFERENCES.bib`.
+/// One in so many wave kernels takes part in fitted maps: neighbors are nearly the same. As `ren2018` in `REFERENCES.bib`.
 const KERNELS: usize = 5;
 
 /// The end of a limb is farther from the rest than all landmarks within this distance: less than the length of limbs, more than
@@ -203,7 +203,7 @@ impl MapShape {
     pub(crate) fn nearest_vertices(&self, rows: &Matrix, places: &Matrix) -> Vec<usize> {
         let k = rows.ncols() / 2;
         let coarse: Vec<usize> = (0..k.min(COARSE)).flat_map(|j| [j, k + j]).collect();
-        Cells { rows, coarse: &coarse, centres: &self.samples, members: &self.cells }.nearest(places)
+        Cells { rows, coarse: &coarse, centers: &self.samples, members: &self.cells }.nearest(places)
     }
 
     /// How far a map preserves orientation, from -1 for one that reverses it to 1; `None` if a surface cannot be oriented.

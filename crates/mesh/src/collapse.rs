@@ -166,12 +166,12 @@ impl<'a> Collapse<'a> {
         let face = self.faces[f].map(|v| v.index());
         let [a, b, c] = face.map(|v| self.positions[v]);
         let vector = (b - a).cross(&(c - a));
-        let double_area = vector.norm();
-        if double_area <= 0.0 {
+        let twice_area = vector.norm();
+        if twice_area <= 0.0 {
             return;
         }
-        let normal = vector / double_area;
-        let plane = Quadric::plane(normal, a, 0.5 * double_area);
+        let normal = vector / twice_area;
+        let plane = Quadric::plane(normal, a, 0.5 * twice_area);
         face.iter().for_each(|&v| self.quadrics[v] = self.quadrics[v].plus(plane));
         for (i, j) in [(0, 1), (1, 2), (2, 0)] {
             let (v, w) = (face[i], face[j]);

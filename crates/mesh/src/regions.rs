@@ -347,7 +347,7 @@ fn cylinder(mesh: &TriMesh, flats: &[Flat], members: &[usize]) -> Option<RegionS
     let flat = |p: &Point3<f64>| Vector2::new(u.dot(&p.coords), v.dot(&p.coords));
     let faces = || members.iter().flat_map(|&flat| flats[flat].faces.iter().copied());
     let points: Vec<Vector2<f64>> = faces().flat_map(|f| mesh.triangle(f)).map(|p| flat(&p)).collect();
-    let center = centre_of_circle(&points)?;
+    let center = center_of_circle(&points)?;
     let radii = || points.iter().map(|p| (p - center).norm());
     let (radius, least) = (radii().fold(0.0, f64::max), radii().fold(f64::INFINITY, f64::min));
     if least < (1.0 - ROUND) * radius {
@@ -365,7 +365,7 @@ fn cylinder(mesh: &TriMesh, flats: &[Flat], members: &[usize]) -> Option<RegionS
 }
 
 /// The center of the circle nearest to points, in algebraic least squares (Kåsa 1976).
-fn centre_of_circle(points: &[Vector2<f64>]) -> Option<Vector2<f64>> {
+fn center_of_circle(points: &[Vector2<f64>]) -> Option<Vector2<f64>> {
     let mean = points.iter().sum::<Vector2<f64>>() / points.len().max(1) as f64;
     let (mut matrix, mut right) = (Matrix2::zeros(), Vector2::zeros());
     let mean_square =

@@ -55,12 +55,12 @@ pub fn classical_full(distances: &DistanceMatrix, dim: usize) -> Result<Embeddin
 fn embed(
     distances: &DistanceMatrix,
     dim: usize,
-    decompose: impl FnOnce(&CentredSquares<'_>) -> Result<SymmetricEigen, LinalgError>,
+    decompose: impl FnOnce(&CenterdSquares<'_>) -> Result<SymmetricEigen, LinalgError>,
 ) -> Result<Embedding, NmdsError> {
     let p = distances.n_points();
     check_dim(dim, p)?;
     let unit = check_extent(distances.max(), p)?;
-    let eigen = decompose(&CentredSquares { distances, unit })?;
+    let eigen = decompose(&CenterdSquares { distances, unit })?;
     let columns = eigen.vectors.resize_horizontally(dim, 0.0);
     let rank = eigen.values.len();
     Ok(Embedding::from_orthonormal(columns, eigen.values, unit, rank))
@@ -68,12 +68,12 @@ fn embed(
 
 /// The matrix `-1/2 J E J` of distances in units of `unit`, as an operator.
 #[derive(Debug)]
-struct CentredSquares<'a> {
+struct CenterdSquares<'a> {
     distances: &'a DistanceMatrix,
     unit: f64,
 }
 
-impl CentredSquares<'_> {
+impl CenterdSquares<'_> {
     fn dense(&self) -> Matrix {
         let p = self.order();
         let square = |i: usize, j: usize| (self.distances.get(i, j) / self.unit).powi(2);
@@ -83,7 +83,7 @@ impl CentredSquares<'_> {
     }
 }
 
-impl SymmetricOperator for CentredSquares<'_> {
+impl SymmetricOperator for CenterdSquares<'_> {
     fn order(&self) -> usize {
         self.distances.n_points()
     }
@@ -91,12 +91,12 @@ impl SymmetricOperator for CentredSquares<'_> {
     fn apply(&self, x: &[f64], y: &mut [f64]) {
         let p = self.order() as f64;
         let mean = x.iter().sum::<f64>() / p;
-        let centred: Vec<f64> = x.iter().map(|v| v - mean).collect();
+        let centered: Vec<f64> = x.iter().map(|v| v - mean).collect();
         let factor = -0.5 / (self.unit * self.unit);
         y.par_iter_mut().enumerate().for_each(|(i, out)| {
             // Four independent chains of additions.
             let mut sums = [0.0; 4];
-            let (row, x) = (self.distances.row(i).chunks_exact(4), centred.chunks_exact(4));
+            let (row, x) = (self.distances.row(i).chunks_exact(4), centered.chunks_exact(4));
             let tail: f64 = row.remainder().iter().zip(x.remainder()).map(|(d, x)| d * d * x).sum();
             for (d, x) in row.zip(x) {
                 for lane in 0..4 {

@@ -8,7 +8,7 @@ use crate::squares::center_columns;
 /// Coordinates of p points in k dimensions, and their quality.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Embedding {
-    /// p x k coordinates in the unit of the distances, centred. Columns are in descending order of their eigenvalues;
+    /// p x k coordinates in the unit of the distances, centered. Columns are in descending order of their eigenvalues;
     /// the largest entry of each is positive. Columns without a positive eigenvalue are zero.
     pub coords: Matrix,
     /// All eigenvalues that the method computed, descending; the first k belong to the columns of `coords`.
@@ -77,7 +77,7 @@ impl Embedding {
         (Self { coords: columns, eigenvalues, negative_mass, rank }, factors)
     }
 
-    /// Centres coordinates in units of `unit` and rotates them to their principal axes; `eigenvalues` become those of
+    /// Centers coordinates in units of `unit` and rotates them to their principal axes; `eigenvalues` become those of
     /// `Z' Z`. Distances between points do not change.
     pub(crate) fn along_principal_axes(
         mut coords: Matrix,

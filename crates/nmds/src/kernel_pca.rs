@@ -74,9 +74,9 @@ impl Default for KernelPcaOptions {
 /// |---|---|---|---|
 /// | `K` | `kernel` | p x n | `exp(-d^2 / (2 sigma^2))` |
 /// | `U L U'` | `kept` | n x n1 | leading eigenpairs of its rows at the landmarks |
-/// | `Phi` | result | p x k | principal components of the centred kernel `K U L^-1 U' K'` |
+/// | `Phi` | result | p x k | principal components of the centered kernel `K U L^-1 U' K'` |
 ///
-/// * The kernel is centred over all p points, which removes the constant leading vector. Components are scaled by the
+/// * The kernel is centered over all p points, which removes the constant leading vector. Components are scaled by the
 ///   roots of their eigenvalues and have no unit.
 /// * Cost: `O(p n n1)` time, `O(p n)` memory.
 ///
@@ -120,7 +120,7 @@ mod tests {
     use crate::tests::support::{Cloud, landmark_distances, procrustes_free_gap};
 
     #[test]
-    fn with_all_samples_equals_the_principal_components_of_the_centred_kernel() {
+    fn with_all_samples_equals_the_principal_components_of_the_centered_kernel() {
         let p = 40;
         let cloud = Cloud::new(p, 3, 11);
         let distances = landmark_distances(&cloud, p);
@@ -158,7 +158,7 @@ mod tests {
 
     #[test]
     fn a_wide_kernel_equals_classical_scaling() {
-        // exp(-x) is nearly 1 - x, so the centred kernel is that of classical scaling divided by sigma^2.
+        // exp(-x) is nearly 1 - x, so the centered kernel is that of classical scaling divided by sigma^2.
         let cloud = Cloud::new(60, 3, 15);
         let distances = landmark_distances(&cloud, 60);
         let sigma = 1e3 * distances.max();

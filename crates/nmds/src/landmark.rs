@@ -14,7 +14,7 @@ use crate::{Embedding, NmdsError};
 /// | `S` | `block` | n x n | squared distances between landmarks |
 /// | `V L V'` | `kept` | n x k | largest positive eigenpairs of `-1/2 J S J` |
 /// | `δ_a - μ` | `columns` | p x n | squared distances of point a from the landmarks, minus the mean row of `S` |
-/// | `x_a` | result | p x k | `-1/2 L^(-1/2) V' (δ_a - μ)`, centred and rotated to its principal axes |
+/// | `x_a` | result | p x k | `-1/2 L^(-1/2) V' (δ_a - μ)`, centered and rotated to its principal axes |
 ///
 /// * Cost: `O(p n k)` time, `O(p k + n^2)` memory besides the distances, which may be in a file.
 /// * Exact for Euclidean distances in `R^k` from landmarks in general position (`n >= k + 1`). Otherwise the subspace

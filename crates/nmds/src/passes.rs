@@ -129,11 +129,11 @@ mod tests {
         let expected = whole.row_mean();
         assert!(means.iter().zip(expected.iter()).all(|(a, b)| (a / b - 1.0).abs() < 1e-13));
 
-        let mut centred = whole;
-        centred.column_iter_mut().zip(&means).for_each(|(mut c, mean)| c.add_scalar_mut(-mean));
+        let mut centered = whole;
+        centered.column_iter_mut().zip(&means).for_each(|(mut c, mean)| c.add_scalar_mut(-mean));
         let basis = Matrix::from_fn(7, 3, |i, j| ((i + 5 * j) as f64).cos());
         for basis in [None, Some(&basis)] {
-            let expected = basis.map_or(centred.clone(), |basis| &centred * basis);
+            let expected = basis.map_or(centered.clone(), |basis| &centered * basis);
             let w = triangle(&distances, 2.0, &means, basis).unwrap();
             let gram = expected.tr_mul(&expected);
             assert!((w.tr_mul(&w) - &gram).norm() < 1e-13 * gram.norm());

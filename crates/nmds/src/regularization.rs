@@ -171,7 +171,7 @@ pub(crate) struct PseudoInverse {
 }
 
 impl PseudoInverse {
-    /// The pseudo-inverse without the pairs that are [rounding](n_significant); `w` is the triangular factor of the centred `R T`.
+    /// The pseudo-inverse without the pairs that are [rounding](n_significant); `w` is the triangular factor of the centered `R T`.
     /// At least one pair stays.
     pub(crate) fn without_rounding(self, w: &Matrix, distances: &LandmarkDistances) -> Self {
         let [x, y] = self.factors.each_ref().map(|factor| w * factor);

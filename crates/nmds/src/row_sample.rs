@@ -50,7 +50,7 @@ impl RowSample {
     ///
     /// With `r_ij` the residual of point i and landmark j, and `w_j` the share of points nearest to landmark j:
     ///
-    /// * The residuals are centred by `u_i = sum_j w_j r_ij` minus half the mean of `u`: the stress is the norm of
+    /// * The residuals are centered by `u_i = sum_j w_j r_ij` minus half the mean of `u`: the stress is the norm of
     ///   `1/2 J D J`, which does not change if `u_i + u_k` is subtracted from every `D_ik`. The means of rows, which vary
     ///   most, are then nearly zero.
     /// * Row i is drawn with a probability proportional to the estimate `sum_j w_j (r_ij - u_i - u_j)^2` of what it

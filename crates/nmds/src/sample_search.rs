@@ -37,7 +37,7 @@ pub struct SampleTrial {
     pub rank: usize,
     /// The stress of the paper on the held-out rows, in the unit of a squared distance.
     pub stress: f64,
-    /// The normalised stress on the same rows.
+    /// The normalized stress on the same rows.
     pub normalized: f64,
 }
 

@@ -74,7 +74,7 @@ pub enum SmacofStop {
 /// * Fits distances, whereas classical and Nystrom scaling fit their squares: the paper's stress of the result is larger than
 ///   that of classical scaling, [`normalized_stress`](crate::normalized_stress) is smaller, and small features count more.
 /// * Landmarks that are spread evenly serve nearly as well as all pairs.
-/// * The result is centred and rotated to its principal axes; `eigenvalues` are the k of `X' X`.
+/// * The result is centered and rotated to its principal axes; `eigenvalues` are the k of `X' X`.
 /// * Cost: `O(p n k)` per step; `O(p k)` memory besides the distances. Does not depend on the number of threads.
 ///
 /// After de Leeuw 1977, Sammon 1969 and Rosman et al. 2008 (`deleeuw1977`, `sammon1969`, `rosman2008` in `REFERENCES.bib`).

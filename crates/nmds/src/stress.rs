@@ -62,7 +62,7 @@ pub struct Stress {
 ///
 /// | paper | here | shape | meaning |
 /// |---|---|---|---|
-/// | `Z` | `coords` | p x k | centred coordinates |
+/// | `Z` | `coords` | p x k | centered coordinates |
 /// | `E` | squares of `rows` | p x p | squared distances |
 ///
 /// With `D_ij = d_ij^2 - |z_i - z_j|^2` the matrix in the norm is `1/2 J D J`, whose norm follows from the sums of squares and of
@@ -145,7 +145,7 @@ impl RowSums {
 /// reason it uses the 98 % quantile. Over 28 forms of 7 meshes, with 3 to 20 rows by [`RowSample::by_landmarks`], 96 % of
 /// the intervals then contain the exact stress; of a single form, 83 % or more do.
 ///
-/// The squared normalised stress is a ratio of two sums over rows; its interval follows from the variance of the residuals of
+/// The squared normalized stress is a ratio of two sums over rows; its interval follows from the variance of the residuals of
 /// that ratio (Cochran 1977, `cochran1977` in `REFERENCES.bib`).
 ///
 /// Cost: each sampled row once, `O(p k)` time each.
@@ -175,15 +175,15 @@ pub fn estimate_stress(
     let mean = |number: &dyn Fn(&RowSums) -> f64| over_drawn(&|weight, row| weight * number(row));
     // The variance of a mean over the sample.
     let variance = |number: &dyn Fn(&RowSums) -> f64| {
-        let centre = mean(number);
-        let squares = over_drawn(&|weight, row| (weight * number(row) - centre).powi(2));
+        let center = mean(number);
+        let squares = over_drawn(&|weight, row| (weight * number(row) - center).powi(2));
         squares / m.saturating_sub(1).max(1) as f64 * sample.correction
     };
-    let centre = mean(&|row| row.mean);
+    let center = mean(&|row| row.mean);
     // The square of a mean is too large by the variance of the mean.
     let excess = variance(&|row| row.mean);
-    let quadruple = mean(&|row| row.square - 2.0 * row.mean * row.mean) + centre * centre - excess;
-    let quadruple_variance = variance(&|row| row.square - 2.0 * (row.mean - centre) * row.mean);
+    let quadruple = mean(&|row| row.square - 2.0 * row.mean * row.mean) + center * center - excess;
+    let quadruple_variance = variance(&|row| row.square - 2.0 * (row.mean - center) * row.mean);
     let total = mean(&|row| row.total);
     let per_total = if total > 0.0 { 1.0 / total } else { 0.0 };
     let ratio = mean(&|row| row.difference) * per_total;
@@ -294,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn the_normalised_stress_equals_its_definition_and_has_no_unit() {
+    fn the_normalized_stress_equals_its_definition_and_has_no_unit() {
         let distances = circle(151);
         let embedding = classical(&distances, 3, &()).unwrap();
         let found = stress(&embedding.coords, &distances).unwrap().normalized;
@@ -325,9 +325,9 @@ mod tests {
         assert_eq!(all.normalized_interval[0], all.normalized_interval[1]);
         // Offsets change nothing.
         let offsets = RowSample::by_landmarks(&coords, &landmarks, 1.0, 2, 0).unwrap().offsets;
-        let centred = RowSample { offsets, ..RowSample::uniform(300, 300, 0) };
-        let centred = estimate_stress(&coords, &distances, &centred).unwrap();
-        assert!((centred.value / exact.value - 1.0).abs() < 1e-12);
+        let centered = RowSample { offsets, ..RowSample::uniform(300, 300, 0) };
+        let centered = estimate_stress(&coords, &distances, &centered).unwrap();
+        assert!((centered.value / exact.value - 1.0).abs() < 1e-12);
     }
 
     #[test]
@@ -351,8 +351,8 @@ mod tests {
                 (e.normalized_interval[0]..=e.normalized_interval[1]).contains(&exact.normalized)
             };
             let covered = found.iter().filter(within).count() as f64 / runs as f64;
-            println!("{name} {m}: {covered:.3} of the normalised stress covered");
-            assert!(covered > 0.93, "{name} {m}, normalised: {covered}");
+            println!("{name} {m}: {covered:.3} of the normalized stress covered");
+            assert!(covered > 0.93, "{name} {m}, normalized: {covered}");
             assert!((mean_square / exact.value.powi(2) - 1.0).abs() < 0.05, "{name} {m}");
         }
     }

@@ -92,7 +92,7 @@ pub(crate) fn below(random: &mut ChaCha8Rng, bound: usize) -> usize {
     ((u128::from(random.next_u64()) * bound as u128) >> 64) as usize
 }
 
-/// The quantile of ascending values, interpolated between its two neighbours; NaN if there are none.
+/// The quantile of ascending values, interpolated between its two neighbors; NaN if there are none.
 fn quantile(sorted: &[f64], share: f64) -> f64 {
     let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
     let at = share.clamp(0.0, 1.0) * last as f64;

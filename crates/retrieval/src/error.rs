@@ -22,7 +22,7 @@ pub enum RetrievalError {
         /// Number of classes.
         n_classes: usize,
     },
-    /// A k-nearest-neighbour vote without neighbours.
+    /// A k-nearest-neighbor vote without neighbors.
     #[error("k-NN needs k of at least 1 and at least 1 other shape; k is {k}, other shapes: {available}")]
     BadNeighborCount {
         /// The requested k.

@@ -16,7 +16,7 @@ pub enum RankBy {
     /// By distance
     #[default]
     Plain,
-    /// Both this and by the neighbours that two shapes have in common
+    /// Both this and by the neighbors that two shapes have in common
     ///
     /// See [`graph_rank`](crate::graph_rank).
     Graph,
@@ -32,7 +32,7 @@ pub struct Evaluation {
     /// Mean retrieval scores over the queries; in JSON keys of this object.
     #[serde(flatten)]
     pub mean: Scores,
-    /// Leave-one-out k-nearest-neighbour accuracy, in 0..=1.
+    /// Leave-one-out k-nearest-neighbor accuracy, in 0..=1.
     pub knn_accuracy: f64,
     /// The k of `knn_accuracy` and `confusion`.
     pub knn_k: usize,
@@ -43,18 +43,18 @@ pub struct Evaluation {
     /// Confidence intervals of the mean scores.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub intervals: Option<ScoreIntervals>,
-    /// The same scores of the ranking on the neighbour graph; all others are those of the ranking by distance.
+    /// The same scores of the ranking on the neighbor graph; all others are those of the ranking by distance.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub graph: Option<RankingEvaluation>,
 }
 
-/// Scores of a ranking. That on the neighbour graph uses the rest of the collection without its classes.
+/// Scores of a ranking. That on the neighbor graph uses the rest of the collection without its classes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RankingEvaluation {
     /// Mean retrieval scores over the queries; in JSON keys of this object.
     #[serde(flatten)]
     pub mean: Scores,
-    /// Leave-one-out k-nearest-neighbour accuracy, in 0..=1.
+    /// Leave-one-out k-nearest-neighbor accuracy, in 0..=1.
     pub knn_accuracy: f64,
     /// `confusion[true class][predicted class]`: counts of the leave-one-out k-NN vote.
     pub confusion: Vec<Vec<usize>>,
@@ -93,7 +93,7 @@ pub fn evaluate(
     Ok(Evaluation { intervals: None, ..scored })
 }
 
-/// As [`evaluate`], with confidence intervals, and with the scores of the neighbour graph beside those of the distances if
+/// As [`evaluate`], with confidence intervals, and with the scores of the neighbor graph beside those of the distances if
 /// `rank_by` asks for it.
 ///
 /// # Errors

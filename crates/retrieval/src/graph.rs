@@ -1,17 +1,17 @@
-//! Ranking on the graph of nearest neighbours.
+//! Ranking on the graph of nearest neighbors.
 //!
-//! Two shapes of one class have the same neighbours. So the distance from a query to a shape is mixed with the
-//! *dissimilarity of their neighbourhoods*, a weighted Jaccard distance in the manner of k-reciprocal re-ranking (Zhong et
+//! Two shapes of one class have the same neighbors. So the distance from a query to a shape is mixed with the
+//! *dissimilarity of their neighborhoods*, a weighted Jaccard distance in the manner of k-reciprocal re-ranking (Zhong et
 //! al. 2017, `zhong2017` in `REFERENCES.bib`).
 //!
-//! The neighbourhood of shape `i` is a weight for each shape `j`: 1 for `i` itself,
+//! The neighborhood of shape `i` is a weight for each shape `j`: 1 for `i` itself,
 //!
 //! ```text
 //! w_ij = exp(-(d_ij / (0.5 s_i))²)
 //! ```
 //!
 //! for its [`LINKS`] nearest others, and 0 for the rest. The local scale `s_i` is the mean distance of these others
-//! (after Zelnik-Manor and Perona 2004, `zelnik2004`). It adapts the neighbourhood to classes of any size: if few shapes are
+//! (after Zelnik-Manor and Perona 2004, `zelnik2004`). It adapts the neighborhood to classes of any size: if few shapes are
 //! much nearer than the rest, the rest determines the scale and gets little weight; if all are about equally near, all
 //! count. Then
 //!
@@ -19,10 +19,10 @@
 //! J_qj = 1 - sum_l min(w_ql, w_jl) / sum_l max(w_ql, w_jl)     r_qj = 0.6 x / (1 + x) + 0.4 J_qj,   x = d_qj / s_q
 //! ```
 //!
-//! is the *rank distance*, in 0..1. It is scaled by the query alone, so shapes without a common neighbour keep the order of
+//! is the *rank distance*, in 0..1. It is scaled by the query alone, so shapes without a common neighbor keep the order of
 //! their distances.
 //!
-//! A query visits its neighbours, theirs, and the lists of these. Other shapes have `J = 1`.
+//! A query visits its neighbors, theirs, and the lists of these. Other shapes have `J = 1`.
 
 use std::collections::HashMap;
 
@@ -31,7 +31,7 @@ use rayon::prelude::*;
 
 use crate::{Neighbor, Rankings, rank};
 
-/// Neighbours listed for every shape. With 16 generated classes gain 0.4 % mAP less than with 32, which take longer.
+/// Neighbors listed for every shape. With 16 generated classes gain 0.4 % mAP less than with 32, which take longer.
 /// `cargo test -p canonform-retrieval --test graph -- --nocapture` prints what these constants give.
 pub const LINKS: usize = 24;
 
@@ -40,7 +40,7 @@ pub const LINKS: usize = 24;
 const WIDTH: f64 = 0.5;
 
 /// The share of the distance in the rank distance. With 0.5, generated classes gain 0.3 % mAP more, but classes of two among
-/// many neighbours lose more; with 0.7, they gain 0.4 % less. See [`LINKS`].
+/// many neighbors lose more; with 0.7, they gain 0.4 % less. See [`LINKS`].
 const DIRECT: f64 = 0.6;
 
 /// A shape as a query finds it on the graph.
@@ -72,7 +72,7 @@ pub trait Graph {
     fn distance(&mut self, shape: usize) -> Result<f64, Self::Error>;
 }
 
-/// Ranks shapes on the graph: those of `nearest`, the nearest shapes of the query, nearest first, and the neighbours of the
+/// Ranks shapes on the graph: those of `nearest`, the nearest shapes of the query, nearest first, and the neighbors of the
 /// first [`LINKS`] of them. Results are ordered by rank distance, ties by distance and index.
 ///
 /// `query` is the index of the query, any other number if it is not among the shapes. It need not be in the lists: it takes
@@ -132,7 +132,7 @@ pub fn graph_rank<G: Graph>(
     Ok(found)
 }
 
-/// The mean distance of the neighbours of a shape.
+/// The mean distance of the neighbors of a shape.
 fn scale(links: &[Neighbor]) -> f64 {
     links.iter().map(|link| link.distance).sum::<f64>() / links.len().max(1) as f64
 }
@@ -147,14 +147,14 @@ fn enter(links: &mut Vec<Neighbor>, query: Neighbor) {
     }
 }
 
-/// The weights of the neighbours of a shape, itself included.
+/// The weights of the neighbors of a shape, itself included.
 fn weights(of: usize, links: &[Neighbor]) -> impl Iterator<Item = (usize, f64)> {
     let width = WIDTH * scale(links);
     let weight = move |distance: f64| if distance > 0.0 { (-(distance / width).powi(2)).exp() } else { 1.0 };
     std::iter::once((of, 1.0)).chain(links.iter().map(move |link| (link.index, weight(link.distance))))
 }
 
-/// The neighbourhood of a query.
+/// The neighborhood of a query.
 struct Neighborhood {
     weights: HashMap<usize, f64>,
     total: f64,
@@ -166,7 +166,7 @@ impl Neighborhood {
         Self { weights: weights(query, links).collect(), total }
     }
 
-    /// The Jaccard distance from the neighbourhood of a shape.
+    /// The Jaccard distance from the neighborhood of a shape.
     fn jaccard(&self, of: usize, links: &[Neighbor]) -> f64 {
         let (mut common, mut total) = (0.0, 0.0);
         for (index, weight) in weights(of, links) {
@@ -177,7 +177,7 @@ impl Neighborhood {
     }
 }
 
-/// The rankings of a matrix of distances on its graph of nearest neighbours. The distances of the ranked shapes are rank
+/// The rankings of a matrix of distances on its graph of nearest neighbors. The distances of the ranked shapes are rank
 /// distances.
 ///
 /// ```
@@ -261,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn shapes_without_a_common_neighbour_keep_their_order() {
+    fn shapes_without_a_common_neighbor_keep_their_order() {
         let points = scattered(200);
         let distances = apart(&points);
         let graph = GraphRankings::new(&distances);
@@ -270,7 +270,7 @@ mod tests {
         assert_eq!(found.len(), 199);
         assert!(found.windows(2).all(|pair| pair[0].rank_distance <= pair[1].rank_distance));
         assert!(found.iter().all(|near| (0.0..1.0).contains(&near.rank_distance)));
-        // Beyond the neighbours of neighbours.
+        // Beyond the neighbors of neighbors.
         let far: Vec<usize> = found.iter().rev().take(80).rev().map(|near| near.index).collect();
         let expected: Vec<usize> = plain.iter().rev().take(80).rev().map(|near| near.index).collect();
         assert_eq!(far, expected);

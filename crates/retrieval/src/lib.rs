@@ -1,6 +1,6 @@
 //! Retrieval from distances: rankings, scores, votes, and search with an expensive distance.
 //!
-//! `linalg::DistanceMatrix` -> [`Rankings`] by distance or on the [neighbour graph](graph_rank) -> **[`evaluate`]** ->
+//! `linalg::DistanceMatrix` -> [`Rankings`] by distance or on the [neighbor graph](graph_rank) -> **[`evaluate`]** ->
 //! [`Evaluation`]
 //!
 //! Works on distances and labels alone; it knows nothing of meshes, files, or how distances were measured.

@@ -22,7 +22,7 @@ impl Neighbor {
 /// The ranking of all other shapes for every shape of a collection.
 ///
 /// Scores need only this. A [`DistanceMatrix`] ranks by distance, [`GraphRankings`](crate::GraphRankings) on the
-/// neighbour graph.
+/// neighbor graph.
 pub trait Rankings: Sync {
     /// Number of shapes.
     fn n_points(&self) -> usize;

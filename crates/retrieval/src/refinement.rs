@@ -1,4 +1,4 @@
-//! Nearest neighbours by an expensive distance with a cheap lower bound.
+//! Nearest neighbors by an expensive distance with a cheap lower bound.
 
 use rayon::prelude::*;
 
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn zero_neighbours_need_no_evaluation_and_errors_are_returned() {
+    fn zero_neighbors_need_no_evaluation_and_errors_are_returned() {
         let none = refine_nearest::<(), ()>(candidates(&points()), 0, |_, _| Ok(None)).unwrap();
         assert_eq!(none, Refinement { nearest: Vec::new(), evaluated: 0, abandoned: 0 });
         let first = candidates(&points())[0].distance;

@@ -11,7 +11,7 @@ use crate::{Labels, Neighbor, Rankings, RetrievalError};
 /// `C` is the number of relevant shapes: the size of the query's class minus the query itself.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Scores {
-    /// Nearest neighbour: 1 if the nearest shape is relevant, else 0.
+    /// Nearest neighbor: 1 if the nearest shape is relevant, else 0.
     pub nn: f64,
     /// First tier: share of the relevant shapes among the first `C`.
     pub ft: f64,
@@ -245,7 +245,7 @@ mod tests {
     fn micro_means_weigh_queries_alike_and_macro_means_classes() {
         let (distances, labels) = example();
         let nn = |averaging| mean_scores(&distances, &labels, averaging).unwrap().nn;
-        // Correct nearest neighbours: the first and last of a, the two distant ones of b.
+        // Correct nearest neighbors: the first and last of a, the two distant ones of b.
         assert!((nn(Averaging::Micro) - 4.0 / 7.0).abs() < 1e-15);
         assert!((nn(Averaging::Macro) - (0.5 + 2.0 / 3.0) / 2.0).abs() < 1e-15);
     }

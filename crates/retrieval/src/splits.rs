@@ -38,7 +38,7 @@ pub struct SplitAccuracy {
 /// Classifies shapes by the class of the first training shape in their ranking, over random splits.
 ///
 /// Each split draws `n_train` training shapes of every class that has more; the others of these classes are test shapes.
-/// Smaller classes take no part. A ranking on a neighbour graph has seen the test shapes, without their classes.
+/// Smaller classes take no part. A ranking on a neighbor graph has seen the test shapes, without their classes.
 ///
 /// Returns `None` if fewer than two classes are large enough.
 ///

@@ -1,4 +1,4 @@
-//! Classification by votes of neighbours, with a threshold for unknown classes.
+//! Classification by votes of neighbors, with a threshold for unknown classes.
 
 use linalg::DistanceMatrix;
 use serde::{Deserialize, Serialize};
@@ -8,7 +8,7 @@ use crate::{Labels, Neighbor, rank};
 /// The distance beyond which a shape is considered to belong to none of the known classes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct UnknownThreshold {
-    /// A shape whose nearest neighbour is farther than this is unknown.
+    /// A shape whose nearest neighbor is farther than this is unknown.
     pub distance: f64,
     /// Share of the labelled shapes that would be called unknown although their class is present.
     pub missed: f64,
@@ -73,14 +73,14 @@ impl UnknownThreshold {
 /// The outcome of a vote on the class of a shape.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Vote {
-    /// Number of neighbours that voted.
+    /// Number of neighbors that voted.
     pub voters: usize,
     /// The votes for every class, the winner first, then by share.
     pub tally: Vec<Tally>,
 }
 
 impl Vote {
-    /// The winning class; `None` if no neighbour is near enough.
+    /// The winning class; `None` if no neighbor is near enough.
     #[must_use]
     pub fn class(&self) -> Option<usize> {
         self.tally.first().map(|winner| winner.class)
@@ -98,10 +98,10 @@ pub struct Tally {
     pub share: f64,
 }
 
-/// Lets the `k` nearest neighbours vote on a class.
+/// Lets the `k` nearest neighbors vote on a class.
 ///
-/// A neighbour at distance `d` has the weight `(1 - (d / t)²)²` with `t` the `limit`; neighbours beyond it have
-/// no vote. Without a limit all votes weigh the same. Ties go to the class of the nearest neighbour.
+/// A neighbor at distance `d` has the weight `(1 - (d / t)²)²` with `t` the `limit`; neighbors beyond it have
+/// no vote. Without a limit all votes weigh the same. Ties go to the class of the nearest neighbor.
 ///
 /// `neighbors` are in ascending order of distance; `class_of` maps the index of a shape to its class.
 #[must_use]
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn near_neighbours_outvote_many_far_ones() {
+    fn near_neighbors_outvote_many_far_ones() {
         let class = |i: usize| usize::from(i > 0);
         let near = neighbors(&[0.1, 0.9, 0.95]);
         let plain = vote(&near, class, 3, None);
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn distant_neighbours_have_no_vote_and_the_nearest_breaks_a_tie() {
+    fn distant_neighbors_have_no_vote_and_the_nearest_breaks_a_tie() {
         let far = vote(&neighbors(&[2.0, 3.0]), |i| i, 2, Some(1.0));
         assert_eq!(far, Vote { voters: 0, tally: Vec::new() });
         assert_eq!(vote(&neighbors(&[2.0, 3.0]), |i| 7 - i, 2, None).class(), Some(7));

@@ -6,7 +6,7 @@ use serde::Serialize;
 use crate::similarity::Similarity;
 
 /// A step that reduces the mean square distance by less than this share is the last. A tolerance.
-const LEAST_GAIN: f64 = 2e-3;
+const MIN_GAIN: f64 = 2e-3;
 
 /// The damping of steps in shares of the trace (Levenberg and Marquardt): a step that is too long is made again, shorter. Limits
 /// of effort.
@@ -123,7 +123,7 @@ pub(crate) fn refine<B: Body>(a: &B, b: &B, start: Similarity, effort: Effort) -
         let Some(next) = step.map(|step| step.after(&map)) else { break };
         let after = found(&next);
         let reached = mean_square(&after);
-        let is_last = reached >= error * (1.0 - LEAST_GAIN);
+        let is_last = reached >= error * (1.0 - MIN_GAIN);
         if reached < error {
             (map, near, error) = (next, after, reached);
             damping = f64::max(0.1 * damping, MIN_DAMPING);

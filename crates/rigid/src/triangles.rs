@@ -75,9 +75,9 @@ impl TriangleTree {
         if range.len() > LEAF {
             let axis = (high - low).imax();
             let middle = range.len() / 2;
-            let centre = |t: &Placed| t.corners.iter().map(|p| p[axis]).sum::<f64>();
+            let center = |t: &Placed| t.corners.iter().map(|p| p[axis]).sum::<f64>();
             self.triangles[range.clone()]
-                .select_nth_unstable_by(middle, |a, b| centre(a).total_cmp(&centre(b)));
+                .select_nth_unstable_by(middle, |a, b| center(a).total_cmp(&center(b)));
             let middle = range.start + middle;
             let children = [self.grow(range.start..middle), self.grow(middle..range.end)];
             self.nodes[index].content = NodeContent::Children(children);

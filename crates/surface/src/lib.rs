@@ -41,5 +41,5 @@ pub use one_ring::{AngleSum, Fan, FanCorner, OneRing, VertexKind, Winding};
 pub use point::SurfacePoint;
 pub use rows::Rows;
 pub use topology::Topology;
-pub use triangle::{Triangle, double_area, scalar_product};
+pub use triangle::{Triangle, scalar_product, twice_area};
 pub use triangulation::{GluedTriangle, Loops, Triangulation, VertexCorners};

@@ -17,7 +17,7 @@ use crate::intrinsic::Link;
 use crate::topology::Topology;
 
 /// Most edges that two spanning trees may leave: surfaces with more handles have them by design, and they would cost much time.
-const MOST_LEFT: usize = 128;
+const MAX_LEFT: usize = 128;
 
 /// A closed loop of edges that does not separate the surface.
 #[derive(Debug, Clone, PartialEq)]
@@ -106,7 +106,7 @@ fn homology_signatures(topology: &Topology) -> Option<Vec<u64>> {
         let [f, g] = sides[edge.index()].map(|node| node.0);
         dual.union(f, g)
     };
-    if !(1..=MOST_LEFT).contains(&left_by_trees(topology, is_joined).len()) {
+    if !(1..=MAX_LEFT).contains(&left_by_trees(topology, is_joined).len()) {
         return None;
     }
     // A tree of the faces by breadth keeps the loops of faces short, from which paths are searched.

@@ -94,8 +94,8 @@ pub enum VertexKind {
 ///
 /// ring.collect(&topology, VertexId(0));
 /// let fan = ring.fans().next().unwrap();
-/// let neighbours = fan.corners.iter().map(|c| topology.corner_vertex(c.opposite_last()));
-/// assert_eq!(neighbours.collect::<Vec<_>>(), [1, 2, 3].map(VertexId));
+/// let neighbors = fan.corners.iter().map(|c| topology.corner_vertex(c.opposite_last()));
+/// assert_eq!(neighbors.collect::<Vec<_>>(), [1, 2, 3].map(VertexId));
 /// assert!(fan.is_closed);
 ///
 /// ring.collect(&topology, VertexId(1));

@@ -24,7 +24,7 @@ pub struct Triangle {
 /// Heron's formula in Kahan's form, which is accurate for needles.
 #[inline]
 #[must_use]
-pub fn double_area([p, q, r]: [f64; 3]) -> f64 {
+pub fn twice_area([p, q, r]: [f64; 3]) -> f64 {
     // Not `min` and `max`, which check for NaN as well.
     let least = |p: f64, q: f64| if p < q { p } else { q };
     let greatest = |p: f64, q: f64| if p < q { q } else { p };
@@ -62,7 +62,7 @@ impl Triangle {
             return Self { base, x: 0.0, y: left };
         }
         let x = 0.5 * (base + (left - right) * ((left + right) / base));
-        Self { base, x, y: double_area([base, right, left]) / base }
+        Self { base, x, y: twice_area([base, right, left]) / base }
     }
 
     /// The lengths of the base and of the sides from its start and its end to the apex.
@@ -119,13 +119,13 @@ mod tests {
             assert!(t.y == 0.0 && t.x.is_finite(), "{t:?}");
         }
         assert_eq!(Triangle::from_sides([0.0, 3.0, 3.0]), Triangle { base: 0.0, x: 0.0, y: 3.0 });
-        assert_eq!(double_area([0.0; 3]).max(0.0), 0.0);
+        assert_eq!(twice_area([0.0; 3]).max(0.0), 0.0);
     }
 
     #[test]
     fn areas_of_tiny_and_huge_triangles_neither_underflow_nor_overflow() {
         for scale in [1e-140, 1e-90, 1e90, 1e140] {
-            let area = double_area([3.0 * scale, 5.0 * scale, 4.0 * scale]);
+            let area = twice_area([3.0 * scale, 5.0 * scale, 4.0 * scale]);
             assert!((area / (12.0 * scale * scale) - 1.0).abs() < 1e-15, "{area}");
         }
     }

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::ids::{CornerId, FaceId, VertexId};
 use crate::intrinsic::{IntrinsicMesh, Link};
-use crate::triangle::{Triangle, double_area};
+use crate::triangle::{Triangle, twice_area};
 
 /// Limit of the number of flips per side; real meshes need less than one.
 const FLIPS_PER_SIDE: usize = 32;
@@ -12,7 +12,7 @@ const FLIPS_PER_SIDE: usize = 32;
 /// A negative sum of two cotangents is rounding if it is below this share of one plus their magnitudes.
 const SLACK: f64 = 1e-10;
 
-/// Marks a side without a neighbour.
+/// Marks a side without a neighbor.
 const NONE: u32 = u32::MAX;
 
 /// Number of triangles that one thread handles at a time.
@@ -51,7 +51,7 @@ pub struct GluedTriangle {
     pub vertices: [VertexId; 3],
     /// The lengths of the sides.
     pub lengths: [f64; 3],
-    /// The corners opposite the same sides in the neighbouring triangles.
+    /// The corners opposite the same sides in the neighboring triangles.
     opposite: [u32; 3],
 }
 
@@ -117,7 +117,7 @@ impl Triangulation {
         Self { triangles: faces.enumerate().map(triangle).collect() }
     }
 
-    /// Triangles with the given vertices, whose sides have neither lengths nor neighbours yet.
+    /// Triangles with the given vertices, whose sides have neither lengths nor neighbors yet.
     pub(crate) fn loose(vertices: impl Iterator<Item = [VertexId; 3]>) -> Self {
         let triangle = |vertices| GluedTriangle { vertices, lengths: [0.0; 3], opposite: [NONE; 3] };
         Self { triangles: vertices.map(triangle).collect() }
@@ -133,25 +133,25 @@ impl Triangulation {
     }
 
     /// Glues a side to the one with the given number, if there is one.
-    fn set_neighbour(&mut self, side: CornerId, neighbour: u32) {
-        if neighbour == NONE {
+    fn set_neighbor(&mut self, side: CornerId, neighbor: u32) {
+        if neighbor == NONE {
             self.triangles[side.face().index()].opposite[side.slot()] = NONE;
         } else {
-            self.glue(side, CornerId(neighbour));
+            self.glue(side, CornerId(neighbor));
         }
     }
 
     /// The number of the corner opposite the same side as another, or [`NONE`].
     #[inline]
-    fn neighbour(&self, side: CornerId) -> u32 {
+    fn neighbor(&self, side: CornerId) -> u32 {
         self.triangles[side.face().index()].opposite[side.slot()]
     }
 
-    /// The corner opposite the same side in the neighbouring triangle; `None` if the side is free.
+    /// The corner opposite the same side in the neighboring triangle; `None` if the side is free.
     #[inline]
     #[must_use]
     pub fn opposite(&self, corner: CornerId) -> Option<CornerId> {
-        let far = self.neighbour(corner);
+        let far = self.neighbor(corner);
         (far != NONE).then_some(CornerId(far))
     }
 
@@ -253,7 +253,7 @@ impl Triangulation {
         let diagonal = upper.apex_to_apex(lower);
         let quad = Quad { far, is_reversed, above, below, diagonal };
         // Two flat triangles become flat ones, whose long sides lead on to others. Their sum falls, so that this ends.
-        let has_area = quad.halves().iter().all(|sides| double_area(*sides) > 0.0);
+        let has_area = quad.halves().iter().all(|sides| twice_area(*sides) > 0.0);
         let [c, d] = [corner, far].map(|apex| self.corner_vertex(apex));
         let may_flip = (has_area || diagonal < above[0]) && (loops == Loops::Allowed || c != d);
         may_flip.then_some(quad)
@@ -280,14 +280,14 @@ impl Triangulation {
         let outer = [far.prev(), corner.next(), corner.prev(), far.next()];
         let moved = [(f, 1), (f, 2), (g, 1), (g, 2)].map(|(triangle, slot)| CornerId::new(triangle, slot));
         let new_number = |side: u32| outer.iter().position(|old| old.0 == side).map_or(side, |i| moved[i].0);
-        let neighbours = outer.map(|old| new_number(self.neighbour(old)));
+        let neighbors = outer.map(|old| new_number(self.neighbor(old)));
         let were_new = outer.map(|old| is_new[old.index()]);
         let triangle = |vertices, lengths| GluedTriangle { vertices, lengths, opposite: [NONE; 3] };
         let halves = quad.halves();
         self.triangles[f.index()] = triangle([b, c, d], halves[0]);
         self.triangles[g.index()] = triangle([a, d, c], halves[1]);
-        for ((side, neighbour), was_new) in moved.into_iter().zip(neighbours).zip(were_new) {
-            self.set_neighbour(side, neighbour);
+        for ((side, neighbor), was_new) in moved.into_iter().zip(neighbors).zip(were_new) {
+            self.set_neighbor(side, neighbor);
             is_new[side.index()] = was_new;
         }
         let diagonals = [f, g].map(|triangle| CornerId::new(triangle, 0));
@@ -306,7 +306,7 @@ impl Triangulation {
     /// Reverses the orientation of a triangle around the given corner, which keeps its slot.
     fn turn_over(&mut self, corner: CornerId, is_new: &mut [bool]) {
         let [p, q] = [corner.next(), corner.prev()];
-        let [at_p, at_q] = [p, q].map(|side| self.neighbour(side));
+        let [at_p, at_q] = [p, q].map(|side| self.neighbor(side));
         let triangle = &mut self.triangles[corner.face().index()];
         triangle.vertices.swap(p.slot(), q.slot());
         triangle.lengths.swap(p.slot(), q.slot());
@@ -317,8 +317,8 @@ impl Triangulation {
             side if side == q => p.0,
             side => side.0,
         };
-        self.set_neighbour(p, renamed(at_q));
-        self.set_neighbour(q, renamed(at_p));
+        self.set_neighbor(p, renamed(at_q));
+        self.set_neighbor(q, renamed(at_p));
     }
 }
 
@@ -391,7 +391,7 @@ pub(crate) mod tests {
     }
 
     pub(crate) fn area(triangulation: &Triangulation) -> f64 {
-        triangulation.triangles.iter().map(|t| 0.5 * double_area(t.lengths)).sum()
+        triangulation.triangles.iter().map(|t| 0.5 * twice_area(t.lengths)).sum()
     }
 
     /// Glued sides fit together, and none can be flipped.

@@ -34,7 +34,7 @@ impl SurfacePath {
     /// [`Error::NoPath`], and [`Error::Geodesic`] if the point belongs to another surface.
     pub fn trace(surface: &Surface, tracer: &PathTracer, target: SurfacePoint) -> Result<Self, Error> {
         let path = match tracer.path_to(target) {
-            Err(GeodesicError::NoWay { point }) => {
+            Err(GeodesicError::NoPath { point }) => {
                 return Err(Error::NoPath { target: surface.input_point(point)?.to_string() });
             }
             path => path?,

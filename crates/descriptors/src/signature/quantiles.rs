@@ -2,7 +2,7 @@
 
 /// The quantiles of weighted samples at the shares `(i + 1/2) / n` of the mass, ascending; zeros without mass.
 ///
-/// These are the centres of a histogram whose `n` bins hold the same mass. The Euclidean distance of two such vectors
+/// These are the centers of a histogram whose `n` bins hold the same mass. The Euclidean distance of two such vectors
 /// is `√n` times the 2-Wasserstein distance of the distributions, at the resolution of `n` bins, so that small shifts
 /// make small changes; with fixed bins they would not. The distribution is linear between samples.
 ///

@@ -53,13 +53,13 @@ fn in_space(mesh: &TriMesh) -> Vec<f64> {
     let mut axes = covariance.symmetric_eigenvalues().map(|x| x.max(0.0).sqrt() / unit);
     axes.as_mut_slice().sort_by(|a, b| b.total_cmp(a));
     // The volume of an open surface depends on the origin.
-    let centred: Vec<_> = mesh.positions.iter().map(|p| (p - centroid) / unit).collect();
-    let centred = TriMesh { positions: centred, faces: mesh.faces.clone() };
-    let mut values = vec![centred.signed_volume().abs().cbrt()];
+    let centered: Vec<_> = mesh.positions.iter().map(|p| (p - centroid) / unit).collect();
+    let centered = TriMesh { positions: centered, faces: mesh.faces.clone() };
+    let mut values = vec![centered.signed_volume().abs().cbrt()];
     values.extend(axes.iter());
-    let distances = quantiles(distances(&centred).iter().copied(), DISTANCES);
+    let distances = quantiles(distances(&centered).iter().copied(), DISTANCES);
     values.extend(distances.into_iter().map(|distance| OF_DISTANCES * distance));
-    values.extend(powers(&centred)[2..].iter().map(|power| OF_NORMALS * power));
+    values.extend(powers(&centered)[2..].iter().map(|power| OF_NORMALS * power));
     values.iter_mut().filter(|value| !value.is_finite()).for_each(|value| *value = 0.0);
     values
 }

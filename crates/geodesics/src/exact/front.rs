@@ -48,7 +48,7 @@ struct WindowMemory {
 
 /// Bytes for the windows of one run if the budget has no limit: the front of a real surface of a million vertices has
 /// a hundredth.
-const MOST_BYTES: usize = 1 << 30;
+const MAX_BYTES: usize = 1 << 30;
 
 #[derive(Debug)]
 struct WaitingList<D> {
@@ -76,7 +76,7 @@ impl<D: Bearing> WindowFront<D> {
     ///
     /// Runs on all threads share the memory of the budget.
     pub(super) fn reset(&mut self, n_vertices: usize, n_corners: usize, budget: &Budget) {
-        let bytes = budget.memory().map_or(MOST_BYTES, |bytes| bytes / rayon::current_num_threads());
+        let bytes = budget.memory().map_or(MAX_BYTES, |bytes| bytes / rayon::current_num_threads());
         let held = self.lists.iter().map(|list| list.windows.capacity()).sum();
         self.memory = WindowMemory { held, limit: bytes / size_of::<PathWindow<D>>(), missing: None };
         self.work = 0;

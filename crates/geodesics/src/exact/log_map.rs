@@ -14,7 +14,7 @@ use crate::source::Source;
 /// The logarithmic map of every vertex about a source: a vector in the tangent plane of the source, in mesh units, that points
 /// along the shortest path to the vertex and is as long as it.
 ///
-/// * **Axes.** The first one points, from a vertex, along the edge to its neighbour with the lowest number; from a point of an
+/// * **Axes.** The first one points, from a vertex, along the edge to its neighbor with the lowest number; from a point of an
 ///   edge, to the higher end; in a face, from its first corner to the second. The second one is 90 degrees to the left, as the
 ///   faces are oriented.
 /// * **Angles.** Those between edges at an interior vertex are scaled, so that they sum to 360 degrees. All others are kept: the

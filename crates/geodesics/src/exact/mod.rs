@@ -70,7 +70,7 @@ use propagation::ExactScratch;
 ///
 /// Mitchell, Mount and Papadimitriou 1987 (`mitchell1987`). Splitting windows at one apex only is from Xin and Wang
 /// 2009 (`xin2009`), the order by vertices from Qin et al. 2016 (`qin2016`). **Deviations:** sources are kept
-/// unfolded, so that roots are needed only where two windows are compared; windows are compared with their neighbours
+/// unfolded, so that roots are needed only where two windows are compared; windows are compared with their neighbors
 /// on the same side of an edge only.
 ///
 /// ```

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use surface::{
     CornerId, EdgeGraph, FaceId, FanCorner, IntrinsicMesh, Link, OneRing, Rows, Topology, VertexId,
-    VertexKind, Winding, double_area, power_of_two_below, scalar_product,
+    VertexKind, Winding, power_of_two_below, scalar_product, twice_area,
 };
 
 use crate::order::{patches_of, ranks};
@@ -52,7 +52,7 @@ impl FaceFrame {
         // A side is in the place of the corner opposite: `ac` in that of `b`.
         let (base, ac, bc) = (face.lengths[slot], face.lengths[b], face.lengths[a]);
         let per_base = 1.0 / base;
-        let height = face.double_area * per_base;
+        let height = face.twice_area * per_base;
         // The differences are exact on short sides, where the squares are not.
         let skew = (ac - bc) * (ac + bc) * per_base;
         let (from_a, from_b) = (0.5 * (base + skew), 0.5 * (base - skew));
@@ -150,7 +150,7 @@ fn renumbered(mesh: &IntrinsicMesh) -> (IntrinsicMesh, Vec<u32>, Vec<u32>) {
     (IntrinsicMesh::new(renumbered, lengths).with_links(links), vertices, faces)
 }
 
-/// The faces of a surface and their neighbours.
+/// The faces of a surface and their neighbors.
 #[derive(Debug)]
 pub(super) struct Faces {
     pub(super) all: Vec<Face>,
@@ -164,7 +164,7 @@ pub(super) struct Faces {
 #[repr(align(64))]
 pub(super) struct Face {
     pub(super) lengths: [f64; 3],
-    pub(super) double_area: f64,
+    pub(super) twice_area: f64,
     pub(super) vertices: [u32; 3],
     /// For each side, the next of the corners opposite to it in the faces that share it; the same corner again if no other
     /// does.
@@ -183,13 +183,13 @@ pub(super) enum Along {
 
 /// Least height of a face over its longest edge, in lengths of that edge: faces without area are inflated, so that
 /// windows can pass a vertex that lies on the edge.
-const LEAST_HEIGHT: f64 = 1e-12;
+const MIN_HEIGHT: f64 = 1e-12;
 
 /// The same in lengths of the shortest edge, whose direction must not change.
-const LEAST_SLOPE: f64 = 1e-3;
+const MIN_SLOPE: f64 = 1e-3;
 
 /// Share of the longest edge of a face below which rounding hides the direction of its shortest edge.
-const LEAST_EDGE: f64 = 1e-13;
+const MIN_EDGE: f64 = 1e-13;
 
 /// Share of the longest edge of a face by which rounding may reduce it below the sum of the other two.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
@@ -208,8 +208,8 @@ impl Faces {
             .map(|(f, vertices)| {
                 let corners = FaceId(f).corners();
                 let lengths = corners.map(|c| mesh.opposite_length(c) / unit);
-                let (lengths, double_area) = triangle(lengths);
-                Face { lengths, double_area, vertices: vertices.map(|v| v.0), across: corners.map(after) }
+                let (lengths, twice_area) = triangle(lengths);
+                Face { lengths, twice_area, vertices: vertices.map(|v| v.0), across: corners.map(after) }
             })
             .collect();
         Self { all, unit, longest_edge: longest / unit }
@@ -241,12 +241,12 @@ impl Face {
     }
 
     pub(super) fn angle(&self, slot: usize) -> f64 {
-        self.double_area.atan2(self.cosine(slot))
+        self.twice_area.atan2(self.cosine(slot))
     }
 
     /// Whether the direction of the side opposite a corner is lost.
     pub(super) fn is_point_like(&self, slot: usize) -> bool {
-        self.lengths[slot] <= LEAST_EDGE * self.lengths.iter().copied().fold(0.0, f64::max)
+        self.lengths[slot] <= MIN_EDGE * self.lengths.iter().copied().fold(0.0, f64::max)
     }
 }
 
@@ -267,21 +267,21 @@ fn triangle(mut lengths: [f64; 3]) -> ([f64; 3], f64) {
     order.sort_unstable_by(|i, j| lengths[*j].total_cmp(&lengths[*i]));
     let [longest, middle, shortest] = order;
     lengths[longest] = lengths[longest].min(lengths[middle] + lengths[shortest]);
-    let is_needle = lengths[shortest] <= LEAST_EDGE * lengths[longest];
+    let is_needle = lengths[shortest] <= MIN_EDGE * lengths[longest];
     if is_needle {
         lengths[middle] = lengths[longest];
     }
     let [a, b, c] = order.map(|i| lengths[i]);
-    let least = a * (LEAST_HEIGHT * a).min(LEAST_SLOPE * c);
+    let least = a * (MIN_HEIGHT * a).min(MIN_SLOPE * c);
     if c - (a - b) <= ROUNDING * a && !is_needle {
         return (lengths, least);
     }
-    (lengths, double_area([a, b, c]).max(least))
+    (lengths, twice_area([a, b, c]).max(least))
 }
 
 /// Excess of a total angle, in radians, up to which it is rounding and paths do not bend at a vertex; it affects no
 /// distance measurably.
-const LEAST_EXCESS: f64 = 1e-12;
+const MIN_EXCESS: f64 = 1e-12;
 
 /// A corner in the fan of a vertex, with angles.
 #[derive(Debug, Clone, Copy)]
@@ -314,7 +314,7 @@ impl Fans {
                 FanSector { corner: *corner, start, end: angle }
             };
             fans.sectors.push_row(ring.fans().flat_map(|fan| fan.corners).map(sector));
-            fans.kinds.push(ring.kind(angle, LEAST_EXCESS));
+            fans.kinds.push(ring.kind(angle, MIN_EXCESS));
         }
         for link_end in mesh.links().iter().flat_map(|link| link.ends) {
             fans.kinds[link_end.index()] = VertexKind::Irregular;

@@ -148,7 +148,7 @@ impl<D: Bearing> Propagation<'_, D> {
             let along = ends[i] + frame.sides[i];
             if along < front.distance(c) {
                 let face = surface.face(corner);
-                let angle = if i == 0 { [0.0, 1.0] } else { [face.double_area, face.cosine(corner.slot())] };
+                let angle = if i == 0 { [0.0, 1.0] } else { [face.twice_area, face.cosine(corner.slot())] };
                 let bearing = front.arrival(end).1.along_edge(around, c);
                 front.reach(c, along, through(angle), bearing);
             }

@@ -134,7 +134,7 @@ impl<D: Bearing> Emission<'_, D> {
             cos,
         };
         // The vertex is at the end of the base of the corner at `a`, and at the start of that at `b`.
-        let from_end = [face.double_area, face.cosine(a)];
+        let from_end = [face.twice_area, face.cosine(a)];
         let (at_a, at_b) = (face.vertices[a], face.vertices[b]);
         let [to_a, to_b] = [at_a, at_b].map(|end| bearing.along_edge(self.around, end));
         self.front.reach(at_a, distance + face.lengths[b], through(a, from_end), to_a);

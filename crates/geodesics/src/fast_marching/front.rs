@@ -58,7 +58,7 @@ pub(super) struct TriangleFront {
     offers: Vec<WindowOffer>,
     /// The distance of every vertex.
     vertices: Vec<f64>,
-    /// Vertices whose neighbours may be too far away.
+    /// Vertices whose neighbors may be too far away.
     lowered: NearestFirst<VertexId>,
     /// Vertices that were first reached along edges and links.
     along_edges: Vec<VertexId>,

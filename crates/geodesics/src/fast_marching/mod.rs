@@ -2,7 +2,7 @@
 //!
 //! | module | what is in it |
 //! |---|---|
-//! | `triangles` | the triangles and their neighbours, laid out for speed |
+//! | `triangles` | the triangles and their neighbors, laid out for speed |
 //! | `window` | what a triangle sees of the source |
 //! | `crossing` | windows that leave triangles, and the distances they give, in lanes |
 //! | `queue` | which triangles are in a round |
@@ -63,7 +63,7 @@ pub enum Update {
     /// Triangles hand on where the source lies in their plane
     ///
     /// Every triangle knows where the source, or the vertex where the path bent last, lies in its plane, and hands
-    /// that on to its neighbours. After Trettner, Bommes and Kobbelt 2021 (`trettner2021`), with limits to what a
+    /// that on to its neighbors. After Trettner, Bommes and Kobbelt 2021 (`trettner2021`), with limits to what a
     /// triangle sees. Exact in the plane, and its error falls when flat triangles are subdivided. It needs no treatment
     /// of obtuse corners: [`ObtuseTreatment::Unfold`] leaves them as they are.
     #[default]
@@ -112,7 +112,7 @@ pub struct FastMarchingOptions {
 /// * Triangles are independent of each other, so edges may have any number of faces of any orientation. Flips and
 ///   unfolding stop at such edges.
 ///
-/// Cost: `O(p)` to set up; per source `O(p)` if neighbouring edges are of similar length.
+/// Cost: `O(p)` to set up; per source `O(p)` if neighboring edges are of similar length.
 ///
 /// **Deviations** from Kimmel and Sethian:
 /// * Virtual sources ([`Update::VirtualSource`]) instead of the planar update.

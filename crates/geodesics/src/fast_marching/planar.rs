@@ -5,7 +5,7 @@
 //! again is visited again.
 
 use base::{Budget, Exceeded};
-use surface::{CornerId, Frontier, Rows, VertexId, double_area, scalar_product};
+use surface::{CornerId, Frontier, Rows, VertexId, scalar_product, twice_area};
 
 use super::triangles::{Triangles, around};
 use super::unfold::HalfCorner;
@@ -65,7 +65,7 @@ impl PlanarFront {
             for HalfCorner { base, apex, third } in halves.row(vertex.index()) {
                 if self.is_finalized(base.0) {
                     let sides = [base.1, apex.1, *third];
-                    let (dot, cross) = (scalar_product(*third, base.1, apex.1), double_area(sides));
+                    let (dot, cross) = (scalar_product(*third, base.1, apex.1), twice_area(sides));
                     let known = [distance, self.distance(base.0)];
                     self.lower(apex.0, planar_update(base.1, dot, cross, known));
                 }

@@ -10,7 +10,7 @@ const BEYOND: u32 = u32::MAX - 1;
 const LAST: u32 = u32::MAX - 2;
 
 /// The most buckets in the ring.
-const MOST_BUCKETS: usize = 1 << 12;
+const MAX_BUCKETS: usize = 1 << 12;
 /// Above this number, a bucket is too narrow for the distance it is at.
 const TOO_HIGH: u32 = 1 << 31;
 
@@ -126,7 +126,7 @@ impl Buckets {
     fn set_width(&mut self, width: f64) {
         (self.width, self.per_length) = (width, width.recip());
         let n_buckets =
-            ((self.reach / width) as usize).saturating_add(2).min(MOST_BUCKETS).next_power_of_two();
+            ((self.reach / width) as usize).saturating_add(2).min(MAX_BUCKETS).next_power_of_two();
         if n_buckets > self.ring.len() {
             self.ring.resize_with(n_buckets, Vec::new);
         }

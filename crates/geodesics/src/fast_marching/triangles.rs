@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use rayon::prelude::*;
 use surface::{
-    AngleSum, CornerId, EdgeGraph, FaceId, Link, Rows, Triangulation, VertexCorners, VertexId, double_area,
-    scalar_product,
+    AngleSum, CornerId, EdgeGraph, FaceId, Link, Rows, Triangulation, VertexCorners, VertexId,
+    scalar_product, twice_area,
 };
 
 use super::window::COLLINEAR;
@@ -126,13 +126,13 @@ const EXCESS: f64 = 1e-6;
 
 /// Least height of a triangle over its longest side, in lengths of that side: beyond what counts as
 /// [collinear](super::window::COLLINEAR).
-const LEAST_HEIGHT: f64 = 8.0 * COLLINEAR;
+const MIN_HEIGHT: f64 = 8.0 * COLLINEAR;
 
 /// The most that this may turn its shortest side, in radians.
-const LEAST_SLOPE: f64 = 1e-6;
+const MIN_SLOPE: f64 = 1e-6;
 
 /// Edges of more triangles are hubs.
-const MOST_AROUND: usize = 8;
+const MAX_AROUND: usize = 8;
 
 /// The triangles of a triangulation in another order and with other corners first.
 struct Renumbered<'t> {
@@ -202,7 +202,7 @@ impl<'t> Renumbered<'t> {
                 let old = self.old_corner(*corner);
                 let lengths = self.triangulation.triangles()[old.face().index()].lengths;
                 let [opposite, p, q] = [0, 1, 2].map(|step| lengths[(old.slot() + step) % 3]);
-                angle.add([double_area([opposite, p, q]), scalar_product(opposite, p, q)]);
+                angle.add([twice_area([opposite, p, q]), scalar_product(opposite, p, q)]);
             }
             let VertexCorners { first, n_corners, n_free } = surroundings[order[v] as usize];
             let is_closed = n_corners > 0 && n_free == 0;
@@ -311,7 +311,7 @@ fn apex([right, left, base]: [f64; 3]) -> PlanePoint {
     }
     let [x, y] = plane::apex([base, left, right]);
     let longest = f64::max(left, right);
-    [x, y.max(longest * f64::min(LEAST_HEIGHT * longest / base, LEAST_SLOPE))]
+    [x, y.max(longest * f64::min(MIN_HEIGHT * longest / base, MIN_SLOPE))]
 }
 
 /// The next corner opposite the same edge, for edges of more than two triangles, which are free sides with the same
@@ -330,7 +330,7 @@ fn around_edges(triangulation: &Triangulation) -> (HashMap<CornerId, CornerId>, 
     for edge in free.chunk_by(|a, b| ends(*a) == ends(*b)).filter(|edge| edge.len() > 1) {
         let following = edge.iter().skip(1).chain(&edge[..1]);
         next.extend(edge.iter().copied().zip(following.copied()));
-        if edge.len() > MOST_AROUND {
+        if edge.len() > MAX_AROUND {
             many.push(edge.to_vec());
         }
     }

@@ -104,7 +104,7 @@ pub struct HeatMethod {
     time: f64,
     components: Components,
     /// The vertices joined to each vertex by a side of a triangle, and their distances in units.
-    neighbours: Rows<(u32, f64)>,
+    neighbors: Rows<(u32, f64)>,
     /// The step that eliminates each vertex, which is its place in all vectors.
     step: Vec<u32>,
     /// The triangles and links; their vertices are given by their steps.
@@ -145,7 +145,7 @@ impl HeatMethod {
         let links = metric.links.iter().filter(|link| link.ends[0] != link.ends[1]);
         let mut bars: Vec<HeatBar> = links.map(|link| HeatBar::new(link, time.sqrt())).collect();
         let system = System::new(&laplacian, &bars, time, &grounded, &budget)?;
-        let neighbours = neighbours(mesh.n_vertices(), laplacian.elements());
+        let neighbors = neighbors(mesh.n_vertices(), laplacian.elements());
         let mut step = vec![0; mesh.n_vertices()];
         for (i, row) in system.heat.order().rows().iter().enumerate() {
             step[*row] = i as u32;
@@ -160,7 +160,7 @@ impl HeatMethod {
             unit: metric.unit,
             time,
             components,
-            neighbours,
+            neighbors,
             step,
             elements,
             bars,
@@ -220,7 +220,7 @@ impl HeatMethod {
         out.fill(f64::INFINITY);
         for source in sources {
             let around: &[_] = match source.point() {
-                SurfacePoint::Vertex(vertex) => self.neighbours.row(vertex.index()),
+                SurfacePoint::Vertex(vertex) => self.neighbors.row(vertex.index()),
                 _ => &[],
             };
             let reach = source.reach().iter().map(|(v, straight)| (v.index(), in_units(*straight)));
@@ -251,7 +251,7 @@ const AT_SOURCE: f64 = 1e-6;
 struct Shift {
     /// Sum and weights around sources.
     around: [f64; 2],
-    /// Sum and number at sources, for sources without neighbours.
+    /// Sum and number at sources, for sources without neighbors.
     at: [f64; 2],
 }
 
@@ -317,7 +317,7 @@ fn shares(source: &Source) -> impl Iterator<Item = (VertexId, f64)> {
 }
 
 /// The vertices joined to each vertex by a side of a triangle, and the length of the shortest such side.
-fn neighbours(n_vertices: usize, elements: &[Element]) -> Rows<(u32, f64)> {
+fn neighbors(n_vertices: usize, elements: &[Element]) -> Rows<(u32, f64)> {
     let sides = elements.iter().flat_map(|element| {
         let [a, b, c] = element.vertices;
         let [ab, ca, bc] = element.triangle.sides();

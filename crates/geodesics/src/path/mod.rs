@@ -122,7 +122,7 @@ impl<'a> PathTracer<'a> {
     ///
     /// # Errors
     /// [`GeodesicError::NoSuchVertex`] and [`GeodesicError::BadPoint`] if the target is not on the surface;
-    /// [`GeodesicError::NoWay`] if its distance is infinite, or no edge or link leads there;
+    /// [`GeodesicError::NoPath`] if its distance is infinite, or no edge or link leads there;
     /// [`GeodesicError::Exceeded`].
     pub fn path_to(&self, target: SurfacePoint) -> Result<GeodesicPath, GeodesicError> {
         let mesh = self.field.mesh;
@@ -136,7 +136,7 @@ impl<'a> PathTracer<'a> {
         };
         let known = distance(self.field.distances);
         if known == f64::INFINITY {
-            return Err(GeodesicError::NoWay { point: target });
+            return Err(GeodesicError::NoPath { point: target });
         }
         // Between vertices the field gives only an upper bound.
         let enough = if matches!(target, SurfacePoint::Vertex(_)) { known } else { 0.0 };
@@ -151,7 +151,7 @@ impl<'a> PathTracer<'a> {
                 best = other;
             }
         }
-        best.map(|path| self.points_of(&path)).ok_or(GeodesicError::NoWay { point: target })
+        best.map(|path| self.points_of(&path)).ok_or(GeodesicError::NoPath { point: target })
     }
 
     /// The shortest path found from `target` to a source. Stops at length `enough`, and uses at most these numbers of

@@ -62,7 +62,7 @@ pub enum Sampling {
     /// far.
     ///
     /// A vertex with equal squared distances to all landmarks is central. So the least variance avoids the tips of a
-    /// surface and soon takes neighbours of landmarks: the samples are close together, and the stress is far above that
+    /// surface and soon takes neighbors of landmarks: the samples are close together, and the stress is far above that
     /// of farthest point sampling.
     ///
     /// Cost: one run of the solver and `O(p)` per landmark, as means and variances are updated (Welford 1962).

@@ -6,7 +6,7 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 
 use crate::{EliminationOrder, LinalgError, NoFactor, SparseSymmetric};
 
-/// The number of negative eigenvalues of a matrix whose pattern has been analysed. By Sylvester's law of inertia it
+/// The number of negative eigenvalues of a matrix whose pattern has been analyzed. By Sylvester's law of inertia it
 /// equals that of the block diagonal `B` in `A = L B L'` (Bunch and Kaufman, pivoting inside panels).
 ///
 /// For `A = W - sigma M` with `M` positive semidefinite, it is the number of eigenvalues of `W x = lambda M x` below

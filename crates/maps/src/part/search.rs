@@ -49,11 +49,11 @@ struct ScoredPlaces {
     score: f64,
     /// What its score was divided by: more than 1 for the initial map, so that another one must be
     /// clearly better.
-    favour: f64,
+    favor: f64,
 }
 
 impl ScoredPlaces {
-    fn new(sides: &Sides<'_>, places: Places, favour: f64) -> Self {
+    fn new(sides: &Sides<'_>, places: Places, favor: f64) -> Self {
         let distortion = change_of_distances(sides, &places);
         let curvature = change_of_curvature(sides, &places);
         // How far it takes known points from their partners on average, beyond what is respected.
@@ -62,12 +62,12 @@ impl ScoredPlaces {
         let defect = functional.as_ref().map_or(1.0, |map| defect(sides, map));
         let score = distortion + CURVATURE * curvature + DEFECT * defect + miss;
         let agreement = functional.and_then(|map| sides.part.agreement(sides.whole, &map, &places));
-        Self { agreement, distortion, score: score / favour, places, favour }
+        Self { agreement, distortion, score: score / favor, places, favor }
     }
 
     /// From the places of some samples, refined.
-    fn refined(sides: &Sides<'_>, places: &[usize], fineness: Fineness, favour: f64) -> Self {
-        Self::new(sides, placed_again(sides, places, fineness), favour)
+    fn refined(sides: &Sides<'_>, places: &[usize], fineness: Fineness, favor: f64) -> Self {
+        Self::new(sides, placed_again(sides, places, fineness), favor)
     }
 
     fn kind(&self) -> MapKind {
@@ -82,7 +82,7 @@ pub(crate) fn part_maps(search: &MapSearch<'_>, side: Side) -> Result<Vec<Surfac
     let Some(sides) = Sides::new(search, side)? else { return Ok(Vec::new()) };
     let starts = placements(&sides, SKETCHES);
     budget.check().map_err(LinalgError::from)?;
-    let sketch = |places: &[usize], favour: f64| ScoredPlaces::refined(&sides, places, SKETCHED, favour);
+    let sketch = |places: &[usize], favor: f64| ScoredPlaces::refined(&sides, places, SKETCHED, favor);
     let start = |anchors: &Vec<(usize, usize)>| sketch(&placed(&sides, anchors, SKETCHED), 1.0);
     let mut found: Vec<ScoredPlaces> = starts.par_iter().map(start).collect();
     if let Some(mirror) = &sides.whole.mirrors(budget)?.sides {
@@ -116,7 +116,7 @@ pub(crate) fn part_maps(search: &MapSearch<'_>, side: Side) -> Result<Vec<Surfac
             }
         }
         let finer =
-            |sketch: &&ScoredPlaces| ScoredPlaces::refined(&sides, &sketch.places, FINER, sketch.favour);
+            |sketch: &&ScoredPlaces| ScoredPlaces::refined(&sides, &sketch.places, FINER, sketch.favor);
         let mut finer: Vec<ScoredPlaces> = different.iter().map(finer).collect();
         finer.sort_by(|a, b| a.score.total_cmp(&b.score));
         maps.extend(best(&sides, &finer)?);
@@ -142,7 +142,7 @@ fn best(sides: &Sides<'_>, found: &[ScoredPlaces]) -> Result<Option<SurfaceMap>,
 }
 
 fn refined(sides: &Sides<'_>, sketch: &ScoredPlaces, confidence: f64) -> Result<SurfaceMap, DescriptorError> {
-    let fine = ScoredPlaces::refined(sides, &sketch.places, FINE, sketch.favour);
+    let fine = ScoredPlaces::refined(sides, &sketch.places, FINE, sketch.favor);
     let agreement = if fine.kind() == sketch.kind() { fine.agreement } else { sketch.agreement };
     let images = all_vertices(sides, &fine.places)?;
     let Coverage { covered, partners, matched } = onto_part(sides, &images)?;

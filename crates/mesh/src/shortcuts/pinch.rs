@@ -41,7 +41,7 @@ pub(super) fn cut(mesh: &TriMesh, topology: &Topology, detour: f64) -> CutSurfac
         .collect();
     let mut split = with_copies(mesh, &faces, &origins, &separate);
     // And where its parts meet nearby; a vertex that was pulled out of its surface is not far for that reason.
-    put_back(&mut split, n);
+    restore_positions(&mut split, n);
     let (graph, mut front) = (split.mesh.edge_graph(), Frontier::default());
     let copy = |i: usize| VertexId::from(n + i);
     let is_far = |(i, origin): (usize, &VertexId)| {
@@ -52,7 +52,7 @@ pub(super) fn cut(mesh: &TriMesh, topology: &Topology, detour: f64) -> CutSurfac
         far.fill(false);
     }
     let mut cut = with_copies(mesh, &split.mesh.faces, split.remap.origins(), &far);
-    put_back(&mut cut, n);
+    restore_positions(&mut cut, n);
     let shortcuts = shortcuts(&cut, n);
     CutSurface { cut, shortcuts }
 }
@@ -127,7 +127,7 @@ fn shortcuts(cut: &Remapped, n: usize) -> Vec<Shortcut> {
 }
 
 /// Moves vertices of cuts back into their surfaces if they stick out.
-fn put_back(split: &mut Remapped, n: usize) {
+fn restore_positions(split: &mut Remapped, n: usize) {
     let mut cut: Vec<VertexId> = (0..split.remap.origins().len()).map(|i| VertexId::from(n + i)).collect();
     cut.extend(split.remap.origins());
     cut.sort_unstable();

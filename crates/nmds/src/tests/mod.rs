@@ -144,7 +144,7 @@ fn gap(a: &Matrix, b: &Matrix) -> f64 {
 }
 
 #[test]
-fn columns_are_orthogonal_centred_and_of_reproducible_sign() {
+fn columns_are_orthogonal_centered_and_of_reproducible_sign() {
     let cloud = Cloud::new(60, 4, 61);
     for exponent in [0.8, 1.0, 1.2] {
         let problem = Problem::new(60, 20, &power(&cloud, exponent));

@@ -38,7 +38,7 @@ fn assert_flat(points: &[[f64; 3]], faces: &[[u32; 3]], relative: f64) {
 
 #[test]
 fn paths_pass_through_caps_without_area() {
-    // Every face gets a vertex on the middle of an edge that its neighbour does not know of, and a face without area
+    // Every face gets a vertex on the middle of an edge that its neighbor does not know of, and a face without area
     // in between.
     let sheet = shapes::grid(5, 4, 1.0);
     let (mut at, mut split) = (points(&sheet), faces(&sheet));

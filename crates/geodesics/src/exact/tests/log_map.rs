@@ -51,10 +51,10 @@ fn the_map_of_a_flat_sheet_is_the_sheet() {
     }
     for (sheet, is_turned) in [(&sheet, false), (&turned, true)] {
         let mesh = sheet.intrinsic();
-        // The first axis points to the neighbour with the lowest number: before an inner vertex, and after the first corner.
+        // The first axis points to the neighbor with the lowest number: before an inner vertex, and after the first corner.
         for (source, lowest) in [(0, 1), (31, 21), (62, 52)] {
-            let neighbours = mesh.topology().edges().iter().filter(|ends| ends.contains(&VertexId(source)));
-            assert_eq!(neighbours.flatten().map(|v| v.0).filter(|v| *v != source).min(), Some(lowest));
+            let neighbors = mesh.topology().edges().iter().filter(|ends| ends.contains(&VertexId(source)));
+            assert_eq!(neighbors.flatten().map(|v| v.0).filter(|v| *v != source).min(), Some(lowest));
             let [from, to] = [source, lowest].map(|v| at[v as usize]);
             let along = [to[0] - from[0], to[1] - from[1]];
             let (found, expected) = (about(&mesh, vertex(source as usize)), in_frame(&at, from, along));

@@ -27,7 +27,7 @@ struct View {
 }
 
 /// Narrower views, in radians, may be rounding; paths through them also exist past a vertex.
-const LEAST_VIEW: f64 = 1e-9;
+const MIN_VIEW: f64 = 1e-9;
 
 struct Oracle<'a> {
     mesh: &'a IntrinsicMesh,
@@ -52,7 +52,7 @@ impl Oracle<'_> {
 
     fn look_through(&mut self, edge_of: CornerId, view: &View) {
         let (r, l) = (view.right, view.left);
-        if cross(r, l).atan2(r[0] * l[0] + r[1] * l[1]) <= LEAST_VIEW {
+        if cross(r, l).atan2(r[0] * l[0] + r[1] * l[1]) <= MIN_VIEW {
             return;
         }
         let edge = self.mesh.topology().opposite_edge(edge_of);

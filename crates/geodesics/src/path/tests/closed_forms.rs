@@ -78,7 +78,7 @@ fn paths_cross_links_but_not_gaps_between_components() {
     let distances = Exact::new(&mesh, &()).distances(VertexId(0)).unwrap();
     let tracer = PathTracer::new(&mesh, &sources, &distances, &());
     let error = tracer.path_to(vertex(40)).unwrap_err();
-    assert_eq!(error, GeodesicError::NoWay { point: vertex(40) });
+    assert_eq!(error, GeodesicError::NoPath { point: vertex(40) });
     assert!(error.to_string().contains("vertex 40"));
     assert!(matches!(tracer.path_to(vertex(41)), Err(GeodesicError::NoSuchVertex { .. })));
     let off = SurfacePoint::Face { face: FaceId(0), barycentric: [2.0, -1.0, 0.0] };
