@@ -9,6 +9,7 @@ use crate::curvature::mismatch;
 use crate::error::MapError;
 use crate::known::KnownMap;
 use crate::local::{between, vertex_confidence};
+use crate::params::MapParams;
 use crate::score::Scored;
 use crate::search::{MapSearch, Stage};
 use crate::shape::MapShape;
@@ -80,32 +81,17 @@ pub(crate) fn best_of_each_kind(
     search: &MapSearch<'_>,
     mut sketches: Vec<Scored>,
 ) -> Result<Vec<Refined>, DescriptorError> {
-    let params = search.params;
     let mut chosen = Vec::new();
-    // The costs of the best sketches of each kind that are not refined.
     let mut others = MapKind::ALL.map(|_| None);
     for kind in MapKind::ALL {
         if kind == MapKind::Unoriented && !chosen.is_empty() {
             break;
         }
-        let (mut of_kind, rest): (Vec<_>, Vec<_>) = sketches.into_iter().partition(|one| one.kind() == kind);
+        let (of_kind, rest): (Vec<_>, Vec<_>) = sketches.into_iter().partition(|one| one.kind() == kind);
         sketches = rest;
-        let least = params.least_agreement(&of_kind);
-        let is_mixture = |one: &Scored| one.is_mixture(params.pure - params.lost);
-        of_kind.sort_by(|x, y| is_mixture(x).cmp(&is_mixture(y)).then(x.cost().total_cmp(&y.cost())));
-        let Some(best) = of_kind.first() else { continue };
-        let (only_pure, most) = (!is_mixture(best), RIVAL * best.cost());
-        let mut kept: Vec<Scored> = Vec::new();
-        for one in of_kind {
-            if only_pure && is_mixture(&one) || kept.iter().any(|other| other.is_same(&one, params)) {
-                continue;
-            }
-            if kept.len() == FINALISTS || one.cost() > most {
-                others[kind as usize] = Some(one.cost());
-                break;
-            }
-            kept.push(one);
-        }
+        let least = search.params.least_agreement(&of_kind);
+        let (kept, next) = shortlist(of_kind, search.params);
+        others[kind as usize] = next;
         chosen.extend(kept.into_iter().map(|one| (kind, one.is_mixture(least), one)));
     }
     let refine = |(kind, is_mixture, sketch): (MapKind, bool, Scored)| -> Result<_, DescriptorError> {
@@ -115,41 +101,72 @@ pub(crate) fn best_of_each_kind(
         Ok(Finalist { kind, coset, is_mixture, sketched, refined, mismatch })
     };
     let finalists: Vec<Finalist> = chosen.into_par_iter().map(refine).collect::<Result<_, _>>()?;
-    // The geometric mean over a coset, but for what may be a mixture, unless all is.
-    let of_coset = |coset: usize| {
-        let members = || finalists.iter().filter(|one| one.coset == coset);
-        let only_pure = members().any(|one| !one.is_mixture);
-        let counted = members().filter(|one| !(only_pure && one.is_mixture));
-        let logs: Vec<f64> = counted.filter_map(|one| one.mismatch).map(f64::ln).collect();
-        (!logs.is_empty()).then(|| (logs.iter().sum::<f64>() / logs.len() as f64).exp())
-    };
+    Ok(MapKind::ALL
+        .into_iter()
+        .filter_map(|kind| judged(search, kind, &finalists, others[kind as usize]))
+        .collect())
+}
+
+/// The best different sketches of one kind, and the cost of the best one that is not among them.
+fn shortlist(mut of_kind: Vec<Scored>, params: &MapParams) -> (Vec<Scored>, Option<f64>) {
+    let is_mixture = |one: &Scored| one.is_mixture(params.pure - params.lost);
+    of_kind.sort_by(|x, y| is_mixture(x).cmp(&is_mixture(y)).then(x.cost().total_cmp(&y.cost())));
+    let Some(best) = of_kind.first() else { return (of_kind, None) };
+    let (only_pure, most) = (!is_mixture(best), RIVAL * best.cost());
+    let mut kept: Vec<Scored> = Vec::new();
+    for one in of_kind {
+        if only_pure && is_mixture(&one) || kept.iter().any(|other| other.is_same(&one, params)) {
+            continue;
+        }
+        if kept.len() == FINALISTS || one.cost() > most {
+            return (kept, Some(one.cost()));
+        }
+        kept.push(one);
+    }
+    (kept, None)
+}
+
+/// The best finalist of a kind, with its odds against the next one, or against the cost of the next sketch if there is none.
+fn judged(
+    search: &MapSearch<'_>,
+    kind: MapKind,
+    finalists: &[Finalist],
+    next_sketch: Option<f64>,
+) -> Option<Refined> {
+    let params = search.params;
     // Squared, so that the odds are the same power of its ratio as of that of sketches, nearly.
-    let cost = |one: &Finalist| one.sketched * of_coset(one.coset).unwrap_or(1.0).powi(2);
-    let best = MapKind::ALL.into_iter().filter_map(|kind| {
-        let mut of_kind: Vec<&Finalist> = finalists.iter().filter(|one| one.kind == kind).collect();
-        of_kind.sort_by(|x, y| cost(x).total_cmp(&cost(y)));
-        let (mut best, mut rival) = (*of_kind.first()?, of_kind.get(1).copied());
-        let mut confidence = match rival {
-            Some(rival) => params.odds(cost(best), Some(cost(rival))),
-            None => params.odds(best.sketched, others[kind as usize]),
-        };
-        // Without an inside, refinement is the judge. An initial map stands unless another one is clearly better, which the sketches
-        // tell.
-        if let Some(second) = &mut rival
-            && best.mismatch.is_none()
-            && search.known.initial.is_empty()
-            && second.refined.cost() < best.refined.cost()
-        {
-            std::mem::swap(&mut best, second);
-            confidence = confidence.min(DOUBTED);
-        }
-        if best.refined.is_mixture(params.pure) || params.misses_one(&best.refined.misses) {
-            confidence = confidence.min(DOUBTED);
-        }
-        let rival = rival.filter(|_| confidence < SurfaceMap::BEYOND_DOUBT);
-        Some(Refined { found: best.refined.clone(), confidence, rival: rival.map(|one| one.refined.clone()) })
-    });
-    Ok(best.collect())
+    let cost = |one: &Finalist| one.sketched * mismatch_of_coset(one.coset, finalists).unwrap_or(1.0).powi(2);
+    let mut of_kind: Vec<&Finalist> = finalists.iter().filter(|one| one.kind == kind).collect();
+    of_kind.sort_by(|x, y| cost(x).total_cmp(&cost(y)));
+    let (mut best, mut rival) = (*of_kind.first()?, of_kind.get(1).copied());
+    let mut confidence = match rival {
+        Some(rival) => params.odds(cost(best), Some(cost(rival))),
+        None => params.odds(best.sketched, next_sketch),
+    };
+    // Without an inside, refinement is the judge. An initial map stands unless another one is clearly better, which the sketches
+    // tell.
+    if let Some(second) = &mut rival
+        && best.mismatch.is_none()
+        && search.known.initial.is_empty()
+        && second.refined.cost() < best.refined.cost()
+    {
+        std::mem::swap(&mut best, second);
+        confidence = confidence.min(DOUBTED);
+    }
+    if best.refined.is_mixture(params.pure) || params.misses_one(&best.refined.misses) {
+        confidence = confidence.min(DOUBTED);
+    }
+    let rival = rival.filter(|_| confidence < SurfaceMap::BEYOND_DOUBT);
+    Some(Refined { found: best.refined.clone(), confidence, rival: rival.map(|one| one.refined.clone()) })
+}
+
+/// The geometric mean of the mismatches of the maps that differ by left and right, but for what may be a mixture, unless all is.
+fn mismatch_of_coset(coset: usize, finalists: &[Finalist]) -> Option<f64> {
+    let members = || finalists.iter().filter(|one| one.coset == coset);
+    let only_pure = members().any(|one| !one.is_mixture);
+    let counted = members().filter(|one| !(only_pure && one.is_mixture));
+    let logs: Vec<f64> = counted.filter_map(|one| one.mismatch).map(f64::ln).collect();
+    (!logs.is_empty()).then(|| (logs.iter().sum::<f64>() / logs.len() as f64).exp())
 }
 
 impl Scored {
