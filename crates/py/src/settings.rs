@@ -167,11 +167,8 @@ impl Settings {
 
     /// How a form is made of a surface that was repaired in this way.
     pub(crate) fn form(&self, repair: RepairOptions) -> PyResult<FormOptions> {
-        let checked = || {
-            self.marching.check(self.form.geodesic.unwrap_or_default())?;
-            self.form.options(&self.method, &self.marching, &self.repair)
-        };
-        let options = checked().map_err(|fault: NoEffect| {
+        let checked = self.form.options(&self.method, &self.marching, &self.repair);
+        let options = checked.map_err(|fault: NoEffect| {
             let spell = |name: &str, values: &[&str]| {
                 let values: Vec<_> = values.iter().map(|value| format!("{value:?}")).collect();
                 format!("{name}={}", values.join(" or "))

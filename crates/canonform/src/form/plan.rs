@@ -5,7 +5,7 @@ use linalg::ColumnStore;
 
 use crate::error::Error;
 
-/// Most memory for distances that are held at once, in bytes.
+/// Most memory for distances that are held at once, in bytes, unless the budget says how much.
 pub const DISTANCES_LIMIT: usize = 4 << 30;
 
 /// Bytes per vertex while distances are measured by fast marching, besides the distances: one-rings, what relates results to
@@ -95,12 +95,12 @@ impl Plan {
     }
 }
 
-/// Refuses to hold `n_columns` columns of distances to `n_vertices` vertices beyond the memory of the budget or
-/// [`DISTANCES_LIMIT`].
+/// Refuses to hold `n_columns` columns of distances to `n_vertices` vertices beyond the memory of the budget or, without one,
+/// beyond [`DISTANCES_LIMIT`].
 pub(super) fn check_memory(n_vertices: usize, n_columns: usize, budget: &Budget) -> Result<(), Error> {
     let needed = n_vertices.saturating_mul(n_columns).saturating_mul(size_of::<f64>());
     budget.check_memory(needed)?;
-    if needed <= DISTANCES_LIMIT {
+    if needed <= DISTANCES_LIMIT || budget.memory().is_some() {
         return Ok(());
     }
     let [needed_mib, limit_mib] = [needed, DISTANCES_LIMIT].map(|bytes| bytes >> 20);
@@ -129,5 +129,6 @@ mod tests {
         assert!(Plan::new(10_000_000, 100).store(&open).unwrap().is_in_file());
         let nowhere = Plan::new(10_000_000, 100).store(&Budget::unlimited()).unwrap_err();
         assert!(matches!(nowhere, Error::AllPairsTooLarge { .. }));
+        assert!(check_memory(10_000_000, 100, &Budget::unlimited().with_memory(8_000_000_000)).is_ok());
     }
 }

@@ -297,19 +297,15 @@ impl MethodSettings {
 }
 
 impl MarchingSettings {
-    /// Refuses these options beside another method than fast marching.
+    /// The method with its options.
     ///
     /// # Errors
-    /// [`NoEffect`].
-    pub fn check(&self, geodesic: Geodesic) -> Result<(), NoEffect> {
-        let geodesic = ("geodesic", geodesic);
-        NoEffect::check(("update", self.update.is_some(), &[Geodesic::FastMarching]), geodesic)?;
-        NoEffect::check(("obtuse", self.obtuse.is_some(), &[Geodesic::FastMarching]), geodesic)
-    }
-
-    /// The method with its options: with these, if it is fast marching.
-    pub fn method(&self, geodesic: Geodesic) -> Method {
-        match geodesic {
+    /// [`NoEffect`] if one of these was given beside another method than fast marching.
+    pub fn method(&self, geodesic: Geodesic) -> Result<Method, NoEffect> {
+        let beside = ("geodesic", geodesic);
+        NoEffect::check(("update", self.update.is_some(), &[Geodesic::FastMarching]), beside)?;
+        NoEffect::check(("obtuse", self.obtuse.is_some(), &[Geodesic::FastMarching]), beside)?;
+        Ok(match geodesic {
             Geodesic::FastMarching => Method::FastMarching(FastMarchingOptions {
                 update: self.update.unwrap_or_default(),
                 obtuse: self.obtuse.unwrap_or_default(),
@@ -318,7 +314,7 @@ impl MarchingSettings {
             Geodesic::Heat => Method::Heat(Default::default()),
             Geodesic::Dijkstra => Method::Dijkstra,
             Geodesic::Bfs => Method::BreadthFirst,
-        }
+        })
     }
 }
 
@@ -334,7 +330,7 @@ impl FormSettings {
     /// How a form is made, with seed 0.
     ///
     /// # Errors
-    /// [`NoEffect`] if a setting of the method was given that would change nothing.
+    /// [`NoEffect`] if a setting of a method was given that would change nothing.
     pub fn options(
         &self,
         method: &MethodSettings,
@@ -345,7 +341,7 @@ impl FormSettings {
         let usual = FormOptions::default();
         Ok(FormOptions {
             repair: repair.options(),
-            geodesic: marching.method(self.geodesic.unwrap_or_default()),
+            geodesic: marching.method(self.geodesic.unwrap_or_default())?,
             samples: self.n_landmarks.unwrap_or_default(),
             sampling: method.sampling.unwrap_or_default(),
             first_sample: first.unwrap_or_default(),
@@ -406,7 +402,7 @@ mod tests {
         }
         for method in Method::all() {
             let FormSettings { geodesic, .. } = of(json!({ "geodesic": method.name() }));
-            assert_eq!(MarchingSettings::default().method(geodesic.unwrap()), method);
+            assert_eq!(MarchingSettings::default().method(geodesic.unwrap()), Ok(method));
         }
     }
 
@@ -440,7 +436,7 @@ mod tests {
             assert!(words.starts_with(&format!("<{setting}=>")), "{words}");
             assert!(words.contains(&format!("or use <{beside}={instead}")), "{words}");
         }
-        let fault = of::<MarchingSettings>(json!({"obtuse": "flip"})).check(Geodesic::Heat).unwrap_err();
+        let fault = of::<MarchingSettings>(json!({"obtuse": "flip"})).method(Geodesic::Heat).unwrap_err();
         assert_eq!((fault.setting, fault.beside, fault.value), ("obtuse", "geodesic", "heat"));
     }
 }

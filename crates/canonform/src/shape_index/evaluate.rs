@@ -14,7 +14,7 @@ use crate::error::Error;
 use base::Observer;
 use collection::{CollectionError, LabelSource, Row, TextTable, label_of};
 
-/// Most shapes evaluated at once: their matrix takes 800 MB.
+/// Most shapes evaluated at once, unless the budget says how much memory there is: their matrix takes 800 MB.
 const MOST: usize = 10_000;
 
 /// The vectors that distances are measured between.
@@ -74,8 +74,9 @@ pub fn evaluate_index(
     let EvaluateOptions { measure, labels, knn_k, rank_by } = *options;
     let index = Index::open(path)?;
     let n = index.len();
-    if n > MOST {
-        return Err(Error::TooManyShapes { n_shapes: n, limit: MOST });
+    let limit = observer.budget().memory().map_or(MOST, |bytes| (bytes / size_of::<f64>()).isqrt());
+    if n > limit {
+        return Err(Error::TooManyShapes { n_shapes: n, limit });
     }
     let (mut names, mut rows) = (Vec::with_capacity(n), Vec::with_capacity(n));
     let mut unlabelled = None;

@@ -2,8 +2,11 @@
 
 use anyhow::{Result, anyhow};
 use canonform::embed::FormOptions;
+use canonform::geodesics::Method;
 use canonform::mesh::RepairOptions;
-use canonform::settings::{FormSettings, MarchingSettings, MethodSettings, NoEffect, RepairSettings};
+use canonform::settings::{
+    FormSettings, Geodesic, MarchingSettings, MethodSettings, NoEffect, RepairSettings,
+};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Command};
 
@@ -15,6 +18,16 @@ fn spelled(name: &str, values: &[&str]) -> String {
     let arg = command.get_arguments().find(|arg| arg.get_id() == name);
     let flag = arg.and_then(|arg| arg.get_long()).unwrap_or(name);
     format!("--{flag} {}", values.join(" or ")).trim_end().to_owned()
+}
+
+/// How distances are measured, where the flag for it is `--method`.
+///
+/// # Errors
+/// Options that do not apply to it.
+pub(crate) fn geodesic_method(marching: &MarchingSettings, method: Geodesic) -> Result<Method> {
+    let spell =
+        |name: &str, values: &[&str]| spelled(if name == "geodesic" { "method" } else { name }, values);
+    marching.method(method).map_err(|fault: NoEffect| anyhow!(fault.in_words(spell)))
 }
 
 /// Reads values by their names, each with a line of help.

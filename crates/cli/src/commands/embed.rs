@@ -11,6 +11,7 @@ use canonform::linalg::Matrix;
 use canonform::mesh::io::{extension, or_list};
 use canonform::mesh::{InputMap, InputPoint};
 use canonform::nmds::{SampleStop, SmacofStop};
+use canonform::settings::MarchingSettings;
 use canonform::surface::VertexId;
 use canonform::{Budget, Surface};
 use serde::Serialize;
@@ -57,7 +58,9 @@ struct ShapeJson {
 /// Embeds one mesh, or each of several.
 pub(crate) fn embed(args: &EmbedArgs, common: &Common) -> Result<ExitCode> {
     let options = args.form.options(&args.method, common)?;
-    let against = args.stress_against.map(|method| args.form.marching.method(method));
+    // Options of fast marching may be those of the form alone.
+    let marching = [&args.form.marching, &MarchingSettings::default()];
+    let against = args.stress_against.and_then(|method| marching.iter().find_map(|m| m.method(method).ok()));
     let choice = args.stress.stress.unwrap_or_default();
     let stress = StressOptions { choice, against, seed: common.seed };
     if args.form.form.n_landmarks.is_some() && options.method == EmbedMethod::Classical {

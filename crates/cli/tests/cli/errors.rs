@@ -164,10 +164,15 @@ fn errors_name_options_that_do_not_apply_together() {
         ("--mu=-1 --method spectral", ["ring.off", "mu", "must be positive (it may be infinite), not -1"]),
         ("--eigenvectors 3 --method spectral", ["ring.off", "3 dimensions", "1 to 2"]),
         ("--method landmark -n 3", ["ring.off", "3 dimensions", "1 to 2"]),
+        ("--geodesic exact --obtuse flip", ["--obtuse has no effect", "--geodesic exact", "fast-marching"]),
     ] {
         let options: Vec<&str> = options.split(' ').collect();
         place.refused(&[&["embed", "ring.off", "-o", "f.npy"], &options[..]].concat(), &words);
         place.refused(&[&["compare", "ring.off", "ring.off"], &options[..]].concat(), &words);
+    }
+    for command in ["geodesic ring.off --source 0 -o x.npy", "field build ring.off -o x.field"] {
+        let wrong = format!("{command} --method heat --update planar");
+        place.refused(&*wrong, &["--update has no effect with --method heat", "--method fast-marching"]);
     }
     assert_eq!(place.names(), before);
     let noted = place.done("embed ring.off --method mds -n 20 -o f.npy");

@@ -10,7 +10,7 @@ use canonform::fields::{DistanceField, FieldBounds, FieldFacts, FieldOptions};
 use canonform::mesh::RepairReport;
 use serde::Serialize;
 
-use crate::args::{Common, FieldBuildArgs};
+use crate::args::{Common, FieldBuildArgs, geodesic_method};
 use crate::input::{named, read_surface};
 use crate::output::{Answer, check_output, report};
 
@@ -34,8 +34,8 @@ struct Seconds {
 /// Builds, writes and reports a field.
 pub(super) fn build(args: &FieldBuildArgs, common: &Common) -> Result<ExitCode> {
     check_output(&args.output)?;
+    let method = geodesic_method(&args.marching, args.method)?;
     let surface = read_surface(&args.mesh, &args.repair, common)?;
-    let method = args.marching.method(args.method);
     let options = FieldOptions { method, landmarks: args.landmarks, rank: args.rank };
     let observer = Bars::with_budget(common.quiet, args.limits.budget());
     let start = Instant::now();

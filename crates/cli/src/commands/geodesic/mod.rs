@@ -14,7 +14,7 @@ use anyhow::Result;
 use canonform::mesh::io::{Content, writable};
 
 use self::task::Task;
-use crate::args::{Common, GeodesicArgs};
+use crate::args::{Common, GeodesicArgs, geodesic_method};
 use crate::input::{named, read_reported};
 use crate::output::Output;
 
@@ -29,13 +29,13 @@ pub(crate) fn geodesic(args: &GeodesicArgs, common: &Common) -> Result<ExitCode>
     } else {
         ("paths", writable(Content::Lines).chain(["csv", "json"]).collect(), paths::write)
     };
+    let method = geodesic_method(&args.marching, args.method)?;
     let output = Output::new(&args.output, what, &formats, Some(&args.output_format), common)?;
     let (mesh, surface) = read_reported(&args.mesh, &args.repair, common)?;
     if args.all_pairs {
         pairs::check_size(surface.n_input_vertices(), args.force)?;
     }
     let start = Instant::now();
-    let method = args.marching.method(args.method);
     let solver = method
         .prepare(surface.intrinsic(), &args.limits.budget())
         .map_err(|fault| named(&args.mesh, fault.into()))?;
