@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use crate::arrays;
 use crate::form::Form;
 use crate::record::json;
-use crate::run::{run, run_alone};
+use crate::run::run;
 use crate::settings::Settings;
 use crate::surface::Surface;
 
@@ -42,7 +42,7 @@ impl Alignment {
 #[pyfunction]
 pub(crate) fn align(py: Python<'_>, a: &Form, b: &Form, reflections: bool) -> PyResult<Alignment> {
     let reflections = if reflections { Reflections::Allow } else { Reflections::Forbid };
-    run_alone(py, None, |_| Ok(Alignment(align_points(&a.prepared()?, &b.prepared()?, reflections))))
+    run(py, |_| Ok(Alignment(align_points(&a.prepared()?, &b.prepared()?, reflections))))
 }
 
 /// The comparison of two surfaces as the JSON of `canonform compare`, and the residuals of the vertices of both repaired
@@ -54,10 +54,9 @@ pub(crate) fn compare<'py>(
     b: &Surface,
     names: [String; 2],
     settings: Settings,
-    progress: Option<Py<PyAny>>,
 ) -> PyResult<(String, Bound<'py, PyArray1<f64>>)> {
     let [of_a, of_b] = [settings.form(a.inner.input.repair)?, settings.form(b.inner.input.repair)?];
-    let (found, residuals) = run(py, &settings.budget()?, progress.as_ref(), |observer| {
+    let (found, residuals) = run(py, |observer| {
         let sides = [a.compared(&of_a, observer)?, b.compared(&of_b, observer)?];
         let mut found = compare_meshes([sides[0].compared(), sides[1].compared()])?;
         found.relation = found.relation.named(&names[0], &names[1]);

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use crate::arrays;
 use crate::error::of_dataset;
-use crate::run::run_alone;
+use crate::run::run;
 
 /// A shape: name, class, vertices, faces, and the vertices at rest, if the shapes of its family correspond there.
 type Generated<'py> =
@@ -36,12 +36,11 @@ pub(crate) fn generate<'py>(
     shapes: Vec<(usize, usize)>,
     n_vertices: usize,
     seed: u64,
-    progress: Option<Py<PyAny>>,
 ) -> PyResult<Vec<Generated<'py>>> {
     let options = ArticulatedOptions { seed, n_vertices };
     options.validate().map_err(|fault| of_dataset(&fault))?;
     let families: Vec<Family> = articulated_families().collect();
-    made(py, &shapes, progress, |(family, pose), observer| {
+    made(py, &shapes, |(family, pose), observer| {
         let RestedShape { shape, rest } = articulated_at_rest(families[family], 0, pose, &options, observer)?;
         Ok((shape, Some(rest)))
     })
@@ -54,23 +53,19 @@ pub(crate) fn creatures<'py>(
     shapes: Vec<(usize, usize)>,
     n_vertices: usize,
     seed: u64,
-    progress: Option<Py<PyAny>>,
 ) -> PyResult<Vec<Generated<'py>>> {
     let n_families = shapes.iter().map(|(family, _)| family + 1).max().unwrap_or(0);
     let n_poses = shapes.iter().map(|(_, pose)| pose + 1).max().unwrap_or(0);
     let options = CreatureOptions { seed, n_families, n_poses, n_vertices };
-    made(py, &shapes, progress, |(family, pose), observer| {
-        Ok((creature(family, pose, &options, observer)?, None))
-    })
+    made(py, &shapes, |(family, pose), observer| Ok((creature(family, pose, &options, observer)?, None)))
 }
 
 fn made<'py>(
     py: Python<'py>,
     shapes: &[(usize, usize)],
-    progress: Option<Py<PyAny>>,
     make: impl Fn((usize, usize), &dyn Observer) -> Result<(LabeledShape, Option<TriMesh>), DatasetError> + Sync,
 ) -> PyResult<Vec<Generated<'py>>> {
-    let made = run_alone(py, progress.as_ref(), |observer| {
+    let made = run(py, |observer| {
         observer.begin("shapes", shapes.len());
         let of_shape = |shape: &(usize, usize)| {
             let made = match make(*shape, observer) {

@@ -11,7 +11,7 @@ use crate::arrays;
 use crate::error::Exception;
 use crate::points::vertex;
 use crate::record::json;
-use crate::run::run_alone;
+use crate::run::run;
 use crate::settings::Settings;
 use crate::surface::Surface;
 
@@ -43,7 +43,10 @@ fn finish(tolerance: Option<f64>) -> PyResult<Finish> {
 }
 
 fn answers<'py>(py: Python<'py>, found: &[PairDistance]) -> Answers<'py> {
-    let column = |value: fn(&PairDistance) -> f64| arrays::vector(py, found.iter().map(value).collect());
+    let column = |value: fn(&PairDistance) -> f64| {
+        let known = |pair: &PairDistance| if pair.kind == PairKind::Dropped { f64::NAN } else { value(pair) };
+        arrays::vector(py, found.iter().map(known).collect())
+    };
     let exact: Vec<bool> = found.iter().map(|pair| pair.kind == PairKind::Exact).collect();
     (
         column(|pair| pair.distance),
@@ -63,21 +66,20 @@ impl DistanceField {
         landmarks: usize,
         rank: Option<usize>,
         geodesic: Settings,
-        progress: Option<Py<PyAny>>,
     ) -> PyResult<Self> {
         let options = FieldOptions { method: geodesic.distances()?, landmarks, rank };
-        run_alone(py, progress.as_ref(), |observer| {
+        run(py, |observer| {
             Ok(Self(canonform::fields::DistanceField::build(&surface.inner, &options, observer)?))
         })
     }
 
     #[staticmethod]
     fn open(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        run_alone(py, None, |_| Ok(Self(canonform::fields::DistanceField::open(&path)?)))
+        run(py, |_| Ok(Self(canonform::fields::DistanceField::open(&path)?)))
     }
 
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        run_alone(py, None, |_| Ok(self.0.save(&path)?))
+        run(py, |_| Ok(self.0.save(&path)?))
     }
 
     /// The content of its file.
@@ -120,28 +122,26 @@ impl DistanceField {
         py: Python<'py>,
         pairs: PyReadonlyArray2<'py, i64>,
         tolerance: Option<f64>,
-        progress: Option<Py<PyAny>>,
     ) -> PyResult<Answers<'py>> {
         debug_assert_eq!(pairs.shape()[1], 2);
         let finish = finish(tolerance)?;
         let rows = pairs.as_slice()?.as_chunks::<2>().0.iter();
         let pairs = rows.map(|[a, b]| Ok([vertex(*a)?, vertex(*b)?])).collect::<PyResult<Vec<_>>>()?;
-        let found =
-            run_alone(py, progress.as_ref(), |observer| Ok(self.0.pairs(&pairs, finish, observer)?))?;
+        let found = run(py, |observer| Ok(self.0.pairs(&pairs, finish, observer)?))?;
         Ok(answers(py, &found))
     }
 
     /// The distances from one vertex to all.
     fn row<'py>(&self, py: Python<'py>, source: i64, tolerance: Option<f64>) -> PyResult<Answers<'py>> {
         let (source, finish) = (vertex(source)?, finish(tolerance)?);
-        let found = run_alone(py, None, |observer| Ok(self.0.row(source, finish, observer)?))?;
+        let found = run(py, |observer| Ok(self.0.row(source, finish, observer)?))?;
         Ok(answers(py, &found))
     }
 
     /// The nearest vertices, and their distances.
     fn nearest<'py>(&self, py: Python<'py>, source: i64, k: usize) -> PyResult<Neighbours<'py>> {
         let source = vertex(source)?;
-        let found = run_alone(py, None, |observer| Ok(self.0.nearest(source, k, observer)?))?;
+        let found = run(py, |observer| Ok(self.0.nearest(source, k, observer)?))?;
         let (vertices, distances): (Vec<i64>, Vec<f64>) =
             found.iter().map(|pair| (i64::from(pair.b.0), pair.distance)).unzip();
         Ok((vertices.into_pyarray(py), arrays::vector(py, distances)))

@@ -15,7 +15,7 @@ use crate::arrays;
 use crate::error::{Exception, to_python};
 use crate::points::points_of;
 use crate::record::json;
-use crate::run::run_alone;
+use crate::run::run;
 
 /// An embedding of a surface.
 #[pyclass(frozen, module = "canonform._canonform")]
@@ -59,9 +59,7 @@ impl Form {
 
     /// Coordinates of the surface bent into its form, in the order of the input.
     fn bent_points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let bent = run_alone(py, None, |observer| {
-            Ok(self.weighted()?.with_features(self.surface.mesh(), observer)?)
-        })?;
+        let bent = run(py, |observer| Ok(self.weighted()?.with_features(self.surface.mesh(), observer)?))?;
         let points: Vec<[f64; 3]> = bent.points().iter().map(|p| p.coords.into()).collect();
         let rows = self.surface.in_input_order(&points, [f64::NAN; 3]);
         let n = rows.len();
@@ -81,10 +79,10 @@ impl Form {
     fn distances<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let known = &self.embedded.distances;
         let (n, p) = (known.n_landmarks(), self.surface.n_input_vertices());
-        let rows = run_alone(py, None, |_| {
+        let rows = run(py, |_| {
             let mut rows = Vec::with_capacity(n * p);
             for landmark in 0..n {
-                rows.extend(self.surface.in_input_order(&known.column(landmark)?, f64::INFINITY));
+                rows.extend(self.surface.in_input_order(&known.column(landmark)?, f64::NAN));
             }
             Ok(rows)
         })?;
@@ -94,7 +92,7 @@ impl Form {
     /// Coordinates of points of the surface, one row each.
     fn place<'py>(&self, py: Python<'py>, points: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let points = points_of(points)?;
-        let placed = run_alone(py, None, |_| self.embedded.place(&self.surface, &points))?;
+        let placed = run(py, |_| self.embedded.place(&self.surface, &points))?;
         arrays::of_matrix(py, &placed)
     }
 

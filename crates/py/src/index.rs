@@ -22,7 +22,7 @@ use serde::de::DeserializeOwned;
 use crate::arrays;
 use crate::error::{Exception, to_python, with_remedy};
 use crate::record::json;
-use crate::run::run_alone;
+use crate::run::run;
 use crate::settings::{Settings, chosen, measure};
 use crate::surface::Surface;
 
@@ -75,7 +75,7 @@ fn report_of(mut report: canonform::library::BuildReport) -> String {
 impl Index {
     #[staticmethod]
     fn open(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        run_alone(py, None, |_| {
+        run(py, |_| {
             let search = ShapeSearch::open(&path)?;
             Ok(Self { path: path.clone(), search })
         })
@@ -93,7 +93,6 @@ impl Index {
         shard: Option<(usize, usize)>,
         only: Option<HashSet<String>>,
         settings: Settings,
-        progress: Option<Py<PyAny>>,
     ) -> PyResult<String> {
         let describe = settings.describe(settings.repair())?;
         let labels = labels_of(labels)?;
@@ -106,8 +105,7 @@ impl Index {
             limits: settings.limits()?,
             ..BuildOptions::new(&describe)
         };
-        let built =
-            run_alone(py, progress.as_ref(), |observer| build_index(&folder, &path, &options, observer))?;
+        let built = run(py, |observer| build_index(&folder, &path, &options, observer))?;
         Ok(report_of(built))
     }
 
@@ -128,17 +126,15 @@ impl Index {
             limits: settings.limits()?,
             ..BuildOptions::new(&describe)
         };
-        let found =
-            run_alone(py, None, |observer| match unchanged_index(&folder, &path, &options, observer) {
-                Err(Error::Index(IndexError::OtherOptions { .. })) => Ok(None),
-                found => found,
-            })?;
+        let found = run(py, |observer| match unchanged_index(&folder, &path, &options, observer) {
+            Err(Error::Index(IndexError::OtherOptions { .. })) => Ok(None),
+            found => found,
+        })?;
         Ok(found.map(report_of))
     }
 
     /// Adds meshes and folders of them to the index at a path; returns the report as JSON.
     #[staticmethod]
-    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn add(
         py: Python<'_>,
         path: PathBuf,
@@ -147,24 +143,22 @@ impl Index {
         labels: Option<PathBuf>,
         replace: bool,
         settings: Settings,
-        progress: Option<Py<PyAny>>,
     ) -> PyResult<String> {
         let labels = labels_of(labels)?;
         let limits = settings.limits()?;
         let inputs = Inputs { paths: &meshes, labels: labels.as_ref(), label: label.as_deref(), limits };
-        let added =
-            run_alone(py, progress.as_ref(), |observer| add_to_index(&path, &inputs, replace, observer))?;
+        let added = run(py, |observer| add_to_index(&path, &inputs, replace, observer))?;
         Ok(report_of(added))
     }
 
     /// Removes shapes from the index at a path by name; returns how many are left.
     #[staticmethod]
     fn remove(py: Python<'_>, path: PathBuf, ids: Vec<String>) -> PyResult<usize> {
-        run_alone(py, None, |_| remove_from_index(&path, &ids))
+        run(py, |_| remove_from_index(&path, &ids))
     }
 
     /// Scores how well the classes are separated; returns the scores as JSON.
-    #[pyo3(signature = (by, k, rank, labels, progress))]
+    #[pyo3(signature = (by, k, rank, labels))]
     fn evaluate(
         &self,
         py: Python<'_>,
@@ -172,14 +166,12 @@ impl Index {
         k: usize,
         rank: &str,
         labels: Option<PathBuf>,
-        progress: Option<Py<PyAny>>,
     ) -> PyResult<String> {
         let measure = measure("by", by)?;
         let labels = labels_of(labels)?;
         let options =
             EvaluateOptions { measure, labels: labels.as_ref(), knn_k: k, rank_by: chosen("rank", rank)? };
-        let scores =
-            run_alone(py, progress.as_ref(), |observer| evaluate_index(&self.path, &options, observer))?;
+        let scores = run(py, |observer| evaluate_index(&self.path, &options, observer))?;
         Ok(json(&scores))
     }
 
@@ -199,7 +191,7 @@ impl Index {
             Wanted::Text(path) => (None, path.clone()),
         };
         let search = &self.search;
-        let mut answer = run_alone(py, None, |observer| {
+        let mut answer = run(py, |observer| {
             // As on the command line, a file goes before a shape of the same name.
             let query = match (surface, search.id_of(&path)) {
                 (Some(surface), _) => query_of(surface, search.describe_options(), name, &options, observer)?,
@@ -224,14 +216,14 @@ impl Index {
         k: usize,
     ) -> PyResult<Vec<(String, f64)>> {
         let vector = vector.as_slice()?;
-        let found = run_alone(py, None, |_| Ok(self.search.index().nearest(vector, k)?))?;
+        let found = run(py, |_| Ok(self.search.index().nearest(vector, k)?))?;
         Ok(found)
     }
 
     /// A shape as a query for other indexes, as JSON.
     fn query_of(&self, py: Python<'_>, id: &str, rank: &str, explain: bool) -> PyResult<String> {
         let options = search_options(0, rank, explain)?;
-        Ok(json(&run_alone(py, None, |observer| self.search.query_of(id, &options, observer))?))
+        Ok(json(&run(py, |observer| self.search.query_of(id, &options, observer))?))
     }
 
     /// The answer to a query of another process, among some shapes or all; both as JSON.
@@ -245,9 +237,8 @@ impl Index {
         explain: bool,
     ) -> PyResult<String> {
         let (query, options): (Query, _) = (unpacked(query)?, search_options(k, rank, explain)?);
-        let mut answer = run_alone(py, None, |observer| {
-            self.search.search_among(&query, ids.as_deref(), &options, observer)
-        })?;
+        let mut answer =
+            run(py, |observer| self.search.search_among(&query, ids.as_deref(), &options, observer))?;
         answer.place(|path| self.placed(path));
         Ok(json(&answer))
     }
@@ -284,7 +275,7 @@ impl Index {
 
     /// Name, class, path and numbers of vertices and faces of all shapes.
     fn shapes(&self, py: Python<'_>) -> PyResult<Vec<ListedShape>> {
-        run_alone(py, None, |_| {
+        run(py, |_| {
             let listed = |Entry { id, label, path, facts, .. }: Entry| {
                 (id, label, mesh_path(&self.path, &path), facts.vertices, facts.faces)
             };
@@ -295,7 +286,7 @@ impl Index {
     /// The fused vectors of all shapes, in the order of `shapes`.
     fn vectors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let index = self.search.index();
-        let flat = run_alone(py, None, |_| {
+        let flat = run(py, |_| {
             let table = index.vector_table()?;
             Ok((0..table.len()).flat_map(|i| table.vector(i).iter().copied()).collect::<Vec<f32>>())
         })?;
@@ -317,7 +308,6 @@ impl Index {
         rows: Vec<String>,
         columns: Option<Vec<String>>,
         kind: &str,
-        progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let kind = match kind {
             "combined" => PairwiseDistance::Combined,
@@ -327,16 +317,14 @@ impl Index {
                 return Err(Exception::Option.with(&message));
             }
         };
-        let distances = run_alone(py, progress.as_ref(), |observer| {
-            self.search.distances(&rows, columns.as_deref(), kind, observer)
-        })?;
+        let distances = run(py, |observer| self.search.distances(&rows, columns.as_deref(), kind, observer))?;
         arrays::of_matrix(py, &distances)
     }
 
     /// The surface of the mesh of a shape, repaired as the index says.
     fn surface(&self, py: Python<'_>, id: &str) -> PyResult<Surface> {
         let repair: RepairOptions = self.search.describe_options().form.repair;
-        run_alone(py, None, |observer| {
+        run(py, |observer| {
             let mesh = self.search.mesh(id)?;
             let content = self.search.index().entry(id)?.content;
             let inner = canonform::Surface::new(&mesh, &repair, observer)?;
@@ -352,7 +340,7 @@ impl Index {
             let message = format!("`{extension}` is not a format of exports; use one of {known}");
             return Err(Exception::Option.with(&message));
         };
-        run_alone(py, None, |_| export_index(self.search.index(), format, &path))
+        run(py, |_| export_index(self.search.index(), format, &path))
     }
 
     /// Finds the shapes that are one; returns the report as JSON.
@@ -361,7 +349,6 @@ impl Index {
         py: Python<'_>,
         kinds: Option<Vec<String>>,
         min_confidence: f64,
-        progress: Option<Py<PyAny>>,
     ) -> PyResult<String> {
         let mut options = DuplicateOptions { min_confidence, ..DuplicateOptions::default() };
         if let Some(kinds) = kinds {
@@ -369,8 +356,7 @@ impl Index {
             options.kinds = serde_json::from_value(serde_json::Value::Array(kinds))
                 .map_err(|fault| Exception::Option.with(&format!("kinds: {fault}")))?;
         }
-        let found =
-            run_alone(py, progress.as_ref(), |observer| find_duplicates(&self.search, &options, observer))?;
+        let found = run(py, |observer| find_duplicates(&self.search, &options, observer))?;
         Ok(json(&found))
     }
 }
@@ -422,7 +408,7 @@ pub(crate) fn query_of_surface(
     let unknown = || Exception::Option.with(&format!("options {options:?} are not of this version"));
     let describe = DescribeOptions::from_text(options).ok_or_else(unknown)?;
     let (surface, options) = (surface.get(), search_options(0, rank, explain)?);
-    let query = run_alone(py, None, |observer| query_of(surface, &describe, name, &options, observer))?;
+    let query = run(py, |observer| query_of(surface, &describe, name, &options, observer))?;
     Ok(json(&query))
 }
 
@@ -430,7 +416,7 @@ pub(crate) fn query_of_surface(
 #[pyfunction]
 pub(crate) fn query_components(py: Python<'_>, query: &str) -> PyResult<Vec<(String, String)>> {
     let query: Query = unpacked(query)?;
-    let parts = run_alone(py, None, |observer| query.components(observer))?;
+    let parts = run(py, |observer| query.components(observer))?;
     Ok(parts.iter().map(|(found, query)| (json(found), json(query))).collect())
 }
 
@@ -456,7 +442,7 @@ pub(crate) fn merge_answers(
 /// The fused distance beyond which a shape is of no class of these indexes, as JSON.
 #[pyfunction]
 pub(crate) fn class_threshold(py: Python<'_>, paths: Vec<PathBuf>) -> PyResult<String> {
-    let threshold = run_alone(py, None, |_| {
+    let threshold = run(py, |_| {
         let indexes = paths.iter().map(|path| canonform::index::Index::open(path));
         let indexes = indexes.collect::<Result<Vec<_>, _>>()?;
         for index in &indexes {
@@ -469,15 +455,8 @@ pub(crate) fn class_threshold(py: Python<'_>, paths: Vec<PathBuf>) -> PyResult<S
 
 /// Merges indexes into one file; returns the report as JSON.
 #[pyfunction]
-pub(crate) fn merge_indexes(
-    py: Python<'_>,
-    inputs: Vec<PathBuf>,
-    path: PathBuf,
-    progress: Option<Py<PyAny>>,
-) -> PyResult<String> {
-    let merged = run_alone(py, progress.as_ref(), |observer| {
-        canonform::library::merge_indexes(&inputs, &path, observer)
-    })?;
+pub(crate) fn merge_indexes(py: Python<'_>, inputs: Vec<PathBuf>, path: PathBuf) -> PyResult<String> {
+    let merged = run(py, |observer| canonform::library::merge_indexes(&inputs, &path, observer))?;
     Ok(json(&merged))
 }
 
@@ -491,7 +470,7 @@ pub(crate) fn list_folder(
     labels: Option<PathBuf>,
 ) -> PyResult<Vec<(String, String, PathBuf, u64)>> {
     let labels = labels_of(labels)?;
-    run_alone(py, None, |_| {
+    run(py, |_| {
         let size = |path: &PathBuf| std::fs::metadata(path).map_or(0, |found| found.len());
         let listed = |shape: ShapeFile| {
             let n_bytes = canonform::mesh::io::files_of(&shape.path).iter().map(size).sum();
@@ -504,7 +483,7 @@ pub(crate) fn list_folder(
 /// The hashes of mesh files, as text. A file that cannot be read has none.
 #[pyfunction]
 pub(crate) fn content_hashes(py: Python<'_>, paths: Vec<PathBuf>) -> PyResult<Vec<Option<String>>> {
-    run_alone(py, None, |_| {
+    run(py, |_| {
         Ok(paths.par_iter().map(|path| content_hash(path).ok().map(|hash| hash.to_string())).collect())
     })
 }

@@ -53,7 +53,7 @@ mod _canonform {
     #[pymodule_export]
     use crate::picture::{draw, scene_page};
     #[pymodule_export]
-    use crate::run::{set_threads, threads};
+    use crate::run::{begin_call, end_call, set_threads, threads};
     #[pymodule_export]
     use crate::settings::{
         check_options, distance_methods, embedding_methods, mesh_formats, signature_kinds,

@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 use report::color::{perceptual, place_colors};
 
 use crate::arrays;
+use crate::operators::{Eigenpairs, eigenpairs};
 use crate::points::vertex;
 use crate::record::json;
 use crate::run::run;
@@ -33,9 +34,6 @@ type Functions<'py> = (PyReadonlyArray2<'py, f64>, PyReadonlyArray2<'py, f64>);
 
 /// Faces, their corners and the weights of these.
 type Points<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray2<i64>>, Bound<'py, PyArray2<f64>>);
-
-/// Eigenvalues, eigenfunctions as columns, and the areas around the vertices.
-type Basis<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>);
 
 fn pairs_of(pairs: &Pairs<'_>) -> PyResult<Vec<[VertexId; 2]>> {
     let pairs = pairs.as_slice()?.as_chunks::<2>().0.iter();
@@ -88,12 +86,11 @@ pub(crate) fn match_surfaces<'py>(
     functions: Option<Functions<'py>>,
     refine: bool,
     settings: Settings,
-    progress: Option<Py<PyAny>>,
 ) -> PyResult<Maps<'py>> {
     let [of_a, of_b] =
         [settings.correspond(a.inner.input.repair)?, settings.correspond(b.inner.input.repair)?];
     let known = known(&landmarks, initial, functions)?;
-    let (found, colors) = run(py, &settings.budget()?, progress.as_ref(), |observer| {
+    let (found, colors) = run(py, |observer| {
         let sides = [a.matched(&of_a, observer)?, b.matched(&of_b, observer)?];
         let options = CorrespondOptions { known, ..of_a };
         let search = if refine { correspond } else { score_map };
@@ -136,7 +133,7 @@ pub(crate) fn map_points<'py>(
     };
     let corners = corners.as_ref().map(matrix_of).transpose()?;
     let of = if of_second { Side::Second } else { Side::First };
-    let PointMap { points } = run(py, &settings.budget()?, None, |observer| {
+    let PointMap { points } = run(py, |observer| {
         let sides = [a.matched(&of_a, observer)?, b.matched(&of_b, observer)?];
         let mapping = Mapping {
             shapes: [&*sides[0], &*sides[1]],
@@ -165,18 +162,12 @@ pub(crate) fn map_points<'py>(
 /// The eigenvalues and eigenfunctions in which maps of a surface are written, and the share of the area around each vertex: of
 /// the surface scaled to unit area.
 #[pyfunction]
-pub(crate) fn map_basis<'py>(py: Python<'py>, surface: &Surface, settings: Settings) -> PyResult<Basis<'py>> {
+pub(crate) fn map_basis<'py>(
+    py: Python<'py>,
+    surface: &Surface,
+    settings: Settings,
+) -> PyResult<Eigenpairs<'py>> {
     let options = settings.correspond(surface.inner.input.repair)?;
-    let spectrum = run(py, &settings.budget()?, None, |observer| {
-        Ok(surface.matched(&options, observer)?.shape.spectrum().clone())
-    })?;
-    let inner = &surface.inner;
-    let map = inner.input.remap.all_to_new();
-    let mut masses = vec![0.0; map.len()];
-    spectrum.masses.iter().enumerate().for_each(|(v, mass)| {
-        masses[inner.input_vertex(VertexId::from(v)).index()] = *mass;
-    });
-    let shape = [map.len(), spectrum.vectors.ncols()];
-    let rows = arrays::picked_rows(&spectrum.vectors, map.map(|vertex| vertex.map(VertexId::index)));
-    Ok((arrays::vector(py, spectrum.values), arrays::matrix(py, rows, shape)?, arrays::vector(py, masses)))
+    let spectrum = run(py, |observer| Ok(surface.matched(&options, observer)?.shape.spectrum().clone()))?;
+    eigenpairs(py, surface, &spectrum, 1.0)
 }

@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
+use canonform::Error;
 use canonform::linalg::{LandmarkDistances, Matrix};
 use canonform::nmds::{self, Embedding, OutOfSample, Regularization, nystrom_extended};
-use canonform::{Budget, Error};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::arrays;
-use crate::run::{run_alone, run_calling};
+use crate::run::{run, run_calling};
 use crate::settings::Settings;
 
 /// An embedding, and what places further points in it.
@@ -43,7 +43,7 @@ impl Extension {
         distances: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let distances = matrix_of(&distances);
-        let placed = run_alone(py, None, |_| Ok(self.0.place(&distances)?))?;
+        let placed = run(py, |_| Ok(self.0.place(&distances)?))?;
         arrays::of_matrix(py, &placed)
     }
 
@@ -68,7 +68,7 @@ pub(crate) fn search_landmarks(
 ) -> PyResult<(usize, Option<usize>)> {
     let options = settings.nystrom()?;
     let [columns, rows] = [columns, rows].map(Arc::new);
-    let found = run_calling(py, &Budget::unlimited(), None, |_, caller| {
+    let found = run_calling(py, |_, caller| {
         let search = nmds::SampleSearch {
             first: options.first_samples(),
             limit,
@@ -106,9 +106,8 @@ pub(crate) fn nystrom<'py>(
 ) -> PyResult<Embedded<'py>> {
     let options = settings.nystrom()?;
     let columns = matrix_of(&columns);
-    let (embedding, extension) = run_alone(py, None, |_| {
-        Ok(nystrom_extended(&LandmarkDistances::new(landmarks, columns)?, &options)?)
-    })?;
+    let (embedding, extension) =
+        run(py, |_| Ok(nystrom_extended(&LandmarkDistances::new(landmarks, columns)?, &options)?))?;
     let Embedding { coords, eigenvalues, negative_mass, rank } = embedding;
     let points = arrays::of_matrix(py, &coords)?;
     Ok((points, arrays::vector(py, eigenvalues), negative_mass, rank, Extension(extension)))

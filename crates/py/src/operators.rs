@@ -1,7 +1,6 @@
 //! What surfaces are computed with: Laplacians, their eigenfunctions, and nearest points. Rows are vertices of the input.
 
 use canonform::descriptors::LaplaceSpectrum;
-use canonform::rigid::TriangleTree;
 use canonform::surface::laplacian::{Element, Laplacian};
 use canonform::surface::{Triangle, VertexId};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2};
@@ -9,8 +8,9 @@ use pyo3::prelude::*;
 use rayon::prelude::*;
 
 use crate::arrays;
+use crate::error::Exception;
 use crate::points::point_of;
-use crate::run::run_alone;
+use crate::run::run;
 use crate::surface::Surface;
 
 /// Rows, columns and values of a matrix, and the areas around the vertices.
@@ -21,8 +21,9 @@ type Operators<'py> = (
     Bound<'py, PyArray1<f64>>,
 );
 
-/// Eigenvalues, and eigenfunctions as columns.
-type Eigenpairs<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>);
+/// Eigenvalues, eigenfunctions as columns, and the areas around the vertices.
+pub(crate) type Eigenpairs<'py> =
+    (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>);
 
 /// Points, their distances, and the faces that they lie in.
 type Nearest<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<i64>>);
@@ -36,7 +37,7 @@ pub(crate) fn laplacian<'py>(
     intrinsic: bool,
 ) -> PyResult<Operators<'py>> {
     let inner = &surface.inner;
-    let (entries, masses) = run_alone(py, None, |_| {
+    let (entries, masses) = run(py, |_| {
         Ok(match intrinsic {
             true => {
                 let laplacian = Laplacian::new(inner.intrinsic());
@@ -87,25 +88,33 @@ fn cotangents(surface: &Surface) -> (Vec<(usize, usize, f64)>, Vec<f64>) {
 /// The smallest eigenvalues of the Laplacian, in one over squared mesh units, and its eigenfunctions as columns, orthonormal
 /// with the areas around vertices; NaN for vertices that the repair dropped.
 #[pyfunction]
-pub(crate) fn eigenbasis<'py>(
-    py: Python<'py>,
-    surface: &Surface,
-    k: usize,
-    progress: Option<Py<PyAny>>,
-) -> PyResult<Eigenpairs<'py>> {
-    let inner = &surface.inner;
-    let spectrum = run_alone(py, progress.as_ref(), |observer| {
-        Ok(LaplaceSpectrum::new(inner.intrinsic(), k, observer)?)
-    })?;
-    let LaplaceSpectrum { values, vectors, area, .. } = spectrum;
-    let values = values.iter().map(|value| value / area).collect();
-    let map = inner.input.remap.all_to_new();
-    let shape = [map.len(), vectors.ncols()];
-    let rows = arrays::picked_rows(&(vectors / area.sqrt()), map.map(|vertex| vertex.map(VertexId::index)));
-    Ok((arrays::vector(py, values), arrays::matrix(py, rows, shape)?))
+pub(crate) fn eigenbasis<'py>(py: Python<'py>, surface: &Surface, k: usize) -> PyResult<Eigenpairs<'py>> {
+    let spectrum = run(py, |observer| Ok(LaplaceSpectrum::new(surface.inner.intrinsic(), k, observer)?))?;
+    let area = spectrum.area;
+    eigenpairs(py, surface, &spectrum, area)
 }
 
-/// For each of several points in space, the nearest point of the faces of the input.
+/// Eigenpairs of a surface of this area that has the shape of the surface, in the order of the input.
+pub(crate) fn eigenpairs<'py>(
+    py: Python<'py>,
+    surface: &Surface,
+    spectrum: &LaplaceSpectrum,
+    area: f64,
+) -> PyResult<Eigenpairs<'py>> {
+    let inner = &surface.inner;
+    let values = spectrum.values.iter().map(|value| value / area).collect();
+    let map = inner.input.remap.all_to_new();
+    let mut masses = vec![0.0; map.len()];
+    for (v, share) in spectrum.masses.iter().enumerate() {
+        masses[inner.input_vertex(VertexId::from(v)).index()] = share * area;
+    }
+    let shape = [map.len(), spectrum.vectors.ncols()];
+    let mut rows = arrays::picked_rows(&spectrum.vectors, map.map(|vertex| vertex.map(VertexId::index)));
+    rows.iter_mut().for_each(|value| *value /= area.sqrt());
+    Ok((arrays::vector(py, values), arrays::matrix(py, rows, shape)?, arrays::vector(py, masses)))
+}
+
+/// For each of several points in space, the nearest point of the faces of the input that the repair kept.
 #[pyfunction]
 pub(crate) fn closest_points<'py>(
     py: Python<'py>,
@@ -113,25 +122,19 @@ pub(crate) fn closest_points<'py>(
     points: PyReadonlyArray2<'py, f64>,
 ) -> PyResult<Nearest<'py>> {
     let queries = points.as_slice()?.as_chunks::<3>().0;
-    let mesh = canonform::mesh::TriMesh {
-        positions: surface.mesh.positions.clone(),
-        faces: surface.inner.input.faces.clone(),
-    };
-    let found = run_alone(py, None, |_| {
-        let tree = TriangleTree::new(&mesh);
-        let nearest = |point: &[f64; 3]| tree.nearest(&(*point).into());
-        Ok(queries.par_iter().map(nearest).collect::<Vec<_>>())
+    let found = run(py, |_| {
+        let (tree, numbers) = surface.tree();
+        let nearest = |point: &[f64; 3]| {
+            let found = tree.nearest(&(*point).into())?;
+            Some((found.point, found.sq_distance.sqrt(), numbers[found.face]))
+        };
+        Ok(queries.par_iter().map(nearest).collect::<Option<Vec<_>>>())
     })?;
-    let missing = [f64::NAN; 3];
-    let places = found.iter().flat_map(|found| found.map_or(missing, |found| found.point.into())).collect();
-    let distances =
-        found.iter().map(|found| found.map_or(f64::NAN, |found| found.sq_distance.sqrt())).collect();
-    let faces: Vec<i64> = found.iter().map(|found| found.map_or(-1, |found| found.face as i64)).collect();
-    Ok((
-        arrays::matrix(py, places, [queries.len(), 3])?,
-        arrays::vector(py, distances),
-        faces.into_pyarray(py),
-    ))
+    let found = found.ok_or_else(|| Exception::Mesh.with("the surface has no area"))?;
+    let places = found.iter().flat_map(|(point, ..)| [point.x, point.y, point.z]).collect();
+    let distances = found.iter().map(|(_, distance, _)| *distance).collect();
+    let faces: Vec<i64> = found.iter().map(|(.., face)| *face).collect();
+    Ok((arrays::matrix(py, places, [found.len(), 3])?, arrays::vector(py, distances), faces.into_pyarray(py)))
 }
 
 /// The logarithmic map about a point, one row for each vertex of the input; NaN for those that the repair dropped.
@@ -141,10 +144,9 @@ pub(crate) fn log_map<'py>(
     surface: &Surface,
     source: &Bound<'py, PyAny>,
     max_distance: f64,
-    progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let (inner, source) = (&surface.inner, point_of(source)?);
-    let map = run_alone(py, progress.as_ref(), |observer| {
+    let map = run(py, |observer| {
         let source = inner.locate(&source)?;
         Ok(canonform::geodesics::log_map(inner.intrinsic(), source, max_distance, observer)?)
     })?;

@@ -8,7 +8,7 @@ use report::render::{Background, Coloring, RenderOptions, render};
 use report::viewer::{self, Geometry};
 
 use crate::arrays;
-use crate::run::run_alone;
+use crate::run::run;
 
 /// A picture of a mesh as the bytes of a PNG file with a transparent background, coloured by values or by colours at its
 /// vertices if there are some. Faces at vertices without finite coordinates are left out.
@@ -32,7 +32,7 @@ pub(crate) fn draw<'py>(
     let [width, height] = size;
     let background = Background::Transparent;
     let options = RenderOptions { width, height, background, coloring, ..RenderOptions::default() };
-    let image = run_alone(py, None, |observer| Ok(render(&mesh, &options, observer)?))?;
+    let image = run(py, |observer| Ok(render(&mesh, &options, observer)?))?;
     Ok(PyBytes::new(py, &image.to_png()?))
 }
 

@@ -4,18 +4,22 @@
 //! Python, which alone handles signals: it looks for them several times a second, and cancels the budget of the work when
 //! one raises an exception. Worker threads never touch Python: the waiting thread makes their calls.
 
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use base::{Budget, Exceeded};
+use canonform::library::ShapeLimits;
 use canonform::{Error, Observer};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::error::{Exception, to_python};
+use crate::settings::time_limit;
 
 /// Time between two looks for signals.
 const INTERVAL: Duration = Duration::from_millis(50);
@@ -44,15 +48,73 @@ impl Stopped {
     }
 }
 
-/// Runs `work` on the pool without the GIL. `progress` is called with the stage, the steps done and all steps, a few times
-/// a second.
+/// What the keywords of a call of Python say about the work that it does.
+#[derive(Default)]
+struct Keywords {
+    /// Called with the stage, the steps done and all steps, a few times a second.
+    progress: Option<Py<PyAny>>,
+    /// The limits, from the beginning of the call.
+    budget: Budget,
+    threads: Option<usize>,
+}
+
+thread_local! {
+    /// Those of the calls that this thread is in, the innermost last.
+    static CALLS: RefCell<Vec<Keywords>> = const { RefCell::new(Vec::new()) };
+}
+
+/// Begins a call with these keywords: all work until [`end_call`] is under its limits.
+#[pyfunction]
+pub(crate) fn begin_call(
+    progress: Option<Py<PyAny>>,
+    timeout: Option<f64>,
+    memory: Option<usize>,
+    threads: Option<usize>,
+) -> PyResult<()> {
+    let limits = ShapeLimits { max_vertices: None, time: time_limit(timeout)?, memory };
+    let budget = limits.budget(Budget::unlimited());
+    CALLS.with_borrow_mut(|calls| calls.push(Keywords { progress, budget, threads }));
+    Ok(())
+}
+
+/// Ends the call that began last.
+#[pyfunction]
+pub(crate) fn end_call() {
+    CALLS.with_borrow_mut(|calls| drop(calls.pop()));
+}
+
+impl Keywords {
+    /// Those of the innermost call.
+    fn current(py: Python<'_>) -> Self {
+        CALLS.with_borrow(|calls| calls.last().map(|call| call.cloned(py))).unwrap_or_default()
+    }
+
+    fn cloned(&self, py: Python<'_>) -> Self {
+        let progress = self.progress.as_ref().map(|progress| progress.clone_ref(py));
+        Self { progress, budget: self.budget.clone(), threads: self.threads }
+    }
+}
+
+/// The limit on memory of the current call.
+pub(crate) fn memory_limit() -> Option<usize> {
+    CALLS.with_borrow(|calls| calls.last().and_then(|call| call.budget.memory()))
+}
+
+/// Runs `work` on the pool without the GIL, as the keywords of the call say.
 pub(crate) fn run<T: Send>(
     py: Python<'_>,
-    budget: &Budget,
-    progress: Option<&Py<PyAny>>,
     work: impl FnOnce(&dyn Observer) -> Result<T, Error> + Send,
-) -> Result<T, Stopped> {
-    run_calling(py, budget, progress, |observer, _| work(observer))
+) -> PyResult<T> {
+    run_calling(py, |observer, _| work(observer))
+}
+
+/// [`run`] for work that calls Python.
+pub(crate) fn run_calling<T: Send>(
+    py: Python<'_>,
+    work: impl FnOnce(&dyn Observer, &Caller<'_>) -> Result<T, Error> + Send,
+) -> PyResult<T> {
+    let budget = Keywords::current(py).budget;
+    Ok(run_within(py, &budget, work)?)
 }
 
 /// A call of Python.
@@ -82,14 +144,16 @@ impl Caller<'_> {
     }
 }
 
-/// [`run`] for work that calls Python.
-pub(crate) fn run_calling<T: Send>(
+/// [`run_calling`] with a budget of its own, which is cancelled when that of the call is over.
+pub(crate) fn run_within<T: Send>(
     py: Python<'_>,
     budget: &Budget,
-    progress: Option<&Py<PyAny>>,
     work: impl FnOnce(&dyn Observer, &Caller<'_>) -> Result<T, Error> + Send,
 ) -> Result<T, Stopped> {
-    let pool = pool().map_err(Stopped::Interrupted)?;
+    let call = Keywords::current(py);
+    let over = |fault: Exceeded| Stopped::Interrupted(to_python(&fault.into()));
+    call.budget.check().map_err(over)?;
+    let pool = pool(call.threads).map_err(Stopped::Interrupted)?;
     let watched = Watched { budget: budget.clone(), stage: Mutex::default(), done: AtomicUsize::new(0) };
     let mut exception = None;
     let outcome = py.detach(|| {
@@ -109,7 +173,7 @@ pub(crate) fn run_calling<T: Send>(
                     Err(RecvTimeoutError::Disconnected) => return None,
                     _ if exception.is_some() => continue,
                     Ok(Message::Call(call)) => Python::attach(call),
-                    Err(RecvTimeoutError::Timeout) => Python::attach(|py| watched.look(py, progress)),
+                    Err(RecvTimeoutError::Timeout) => Python::attach(|py| watched.look(py, &call)),
                 };
                 if let Err(raised) = raised {
                     *exception = Some(raised);
@@ -125,15 +189,6 @@ pub(crate) fn run_calling<T: Send>(
     }
 }
 
-/// [`run`] with a budget of its own.
-pub(crate) fn run_alone<T: Send>(
-    py: Python<'_>,
-    progress: Option<&Py<PyAny>>,
-    work: impl FnOnce(&dyn Observer) -> Result<T, Error> + Send,
-) -> PyResult<T> {
-    Ok(run(py, &Budget::unlimited(), progress, work)?)
-}
-
 /// The state of some work, for the thread that waits for it.
 struct Watched {
     budget: Budget,
@@ -142,10 +197,11 @@ struct Watched {
 }
 
 impl Watched {
-    /// Handles signals and shows progress.
-    fn look(&self, py: Python<'_>, progress: Option<&Py<PyAny>>) -> PyResult<()> {
+    /// Handles signals, shows progress, and looks at the clock for work whose budget does not.
+    fn look(&self, py: Python<'_>, call: &Keywords) -> PyResult<()> {
         py.check_signals()?;
-        if let Some(progress) = progress {
+        call.budget.check().map_err(|fault| to_python(&fault.into()))?;
+        if let Some(progress) = &call.progress {
             let (stage, total) = self.stage.lock().unwrap_or_else(PoisonError::into_inner).clone();
             if total > 0 {
                 progress.call1(py, (stage, self.done.load(Ordering::Relaxed).min(total), total))?;
@@ -170,46 +226,63 @@ impl Observer for Watched {
     }
 }
 
-/// The pool, and the process that it belongs to.
-static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
+/// The pools of a process, by their number of threads.
+struct Pools {
+    process: u32,
+    /// The number that [`set_threads`] has set.
+    usual: Option<usize>,
+    started: BTreeMap<usize, Arc<ThreadPool>>,
+}
 
-/// The pool of this process. The threads of a pool do not survive `fork`, so a child gets its own.
-fn pool() -> PyResult<Arc<ThreadPool>> {
-    let mut current = POOL.lock().unwrap_or_else(PoisonError::into_inner);
-    match current.take() {
-        Some((process, pool)) if process == std::process::id() => {
-            *current = Some((process, pool.clone()));
-            return Ok(pool);
-        }
-        // Waiting for the threads of the parent would never end.
-        Some(of_parent) => std::mem::forget(of_parent),
-        None => {}
+static POOLS: Mutex<Pools> = Mutex::new(Pools { process: 0, usual: None, started: BTreeMap::new() });
+
+fn pools() -> MutexGuard<'static, Pools> {
+    let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
+    if pools.process != std::process::id() {
+        // The threads of a pool do not survive `fork`, and waiting for those of the parent would never end.
+        std::mem::forget(std::mem::take(&mut pools.started));
+        pools.process = std::process::id();
     }
-    let pool = Arc::new(started(0)?);
-    *current = Some((std::process::id(), pool.clone()));
-    Ok(pool)
+    pools
 }
 
-fn started(n_threads: usize) -> PyResult<ThreadPool> {
-    let pool = ThreadPoolBuilder::new().num_threads(n_threads).thread_name(|i| format!("canonform-{i}"));
-    pool.build().map_err(|fault| PyRuntimeError::new_err(format!("cannot start threads: {fault}")))
+/// Where the number of threads comes from unless a call or [`set_threads`] says it, the first that is set: the parent of this
+/// process, users of Rust, and those of most other libraries.
+const VARIABLES: [&str; 3] = [OF_PARENT, "RAYON_NUM_THREADS", "OMP_NUM_THREADS"];
+const OF_PARENT: &str = "CANONFORM_NUM_THREADS";
+
+/// A pool of so many threads; by default the usual number, 0 for all cores.
+fn pool(n_threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
+    let mut pools = pools();
+    let stated = || VARIABLES.iter().find_map(|name| std::env::var(name).ok()?.parse().ok());
+    let n = n_threads.or(pools.usual).or_else(stated).unwrap_or(0).min(1024);
+    if let Some(pool) = pools.started.get(&n) {
+        return Ok(pool.clone());
+    }
+    let builder = ThreadPoolBuilder::new().num_threads(n).thread_name(|i| format!("canonform-{i}"));
+    let pool =
+        builder.build().map_err(|fault| PyRuntimeError::new_err(format!("cannot start threads: {fault}")))?;
+    Ok(pools.started.entry(n).or_insert(Arc::new(pool)).clone())
 }
 
-/// Sets the number of worker threads, 0 for all cores. Results do not depend on it.
+/// Sets the number of worker threads, 0 for all cores. Results do not depend on it. Processes that are started from now on
+/// have the same number.
 #[pyfunction]
-pub(crate) fn set_threads(n: i64) -> PyResult<()> {
+pub(crate) fn set_threads(py: Python<'_>, n: i64) -> PyResult<()> {
     let message = || format!("n={n} is not possible: give a number of threads, or 0 for all cores");
     let n = usize::try_from(n).map_err(|_| Exception::Option.with(&message()))?;
-    // The pool of a parent process is left alone.
-    drop(pool()?);
-    let new = Arc::new(started(n.min(1024))?);
-    let old = POOL.lock().unwrap_or_else(PoisonError::into_inner).replace((std::process::id(), new));
-    drop(old);
+    py.import("os")?.getattr("environ")?.set_item(OF_PARENT, n.to_string())?;
+    let others = {
+        let mut pools = pools();
+        pools.usual = Some(n);
+        std::mem::take(&mut pools.started)
+    };
+    drop(others);
     Ok(())
 }
 
 /// The number of worker threads.
 #[pyfunction]
 pub(crate) fn threads() -> PyResult<usize> {
-    Ok(pool()?.current_num_threads())
+    Ok(pool(None)?.current_num_threads())
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::time::Duration;
 
+use canonform::DescribeOptions;
 use canonform::descriptors::SignatureKind;
 use canonform::embed::{FormOptions, StressOptions};
 use canonform::geodesics::Method;
@@ -15,7 +16,6 @@ use canonform::settings::{
     DescriptionSettings, EmbeddingName, FormSettings, Geodesic, MapSettings, MarchingSettings,
     MethodSettings, NoEffect, RepairSettings, StressSettings,
 };
-use canonform::{Budget, DescribeOptions};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::de::value::{Error, MapDeserializer, StrDeserializer};
@@ -200,20 +200,20 @@ impl Settings {
         StressOptions { choice, against: None, seed: self.seed.unwrap_or_default() }
     }
 
-    /// The limits of the work, from now on.
-    pub(crate) fn budget(&self) -> PyResult<Budget> {
-        Ok(self.limits()?.budget(Budget::unlimited()))
-    }
-
     /// The limits of each of several shapes.
     pub(crate) fn limits(&self) -> PyResult<ShapeLimits> {
-        let limit = |seconds: f64| {
-            let limit = Duration::try_from_secs_f64(seconds).ok().filter(|limit| !limit.is_zero());
-            limit.ok_or_else(|| refused("timeout", seconds, "give a positive number of seconds"))
-        };
-        let time = self.timeout.map(limit).transpose()?;
+        let time = time_limit(self.timeout)?;
         Ok(ShapeLimits { max_vertices: self.max_vertices, time, memory: self.memory })
     }
+}
+
+/// The time that the keyword `timeout` gives.
+pub(crate) fn time_limit(seconds: Option<f64>) -> PyResult<Option<Duration>> {
+    let limit = |seconds: f64| {
+        let limit = Duration::try_from_secs_f64(seconds).ok().filter(|limit| !limit.is_zero());
+        limit.ok_or_else(|| refused("timeout", seconds, "give a positive number of seconds"))
+    };
+    seconds.map(limit).transpose()
 }
 
 /// The names of values, and what each of them does.

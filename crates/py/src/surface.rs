@@ -1,7 +1,7 @@
 //! Surfaces: distances, paths, samples, forms and signatures.
 
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use base::Budget;
 use canonform::collection::content_hash;
@@ -12,7 +12,9 @@ use canonform::geodesics::{
 };
 use canonform::library::Measure;
 use canonform::maps::{CorrespondOptions, MappedSurface};
+use canonform::mesh::io::{MemoryFile, ReadLimits};
 use canonform::mesh::{InputPoint, RepairOptions, TriMesh};
+use canonform::rigid::TriangleTree;
 use canonform::surface::VertexId;
 use canonform::{ContentHash, DescribeOptions, Error, Observer, Shape};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2};
@@ -23,7 +25,7 @@ use crate::error::{Exception, to_python};
 use crate::form::Form;
 use crate::points::{point_of, points_of};
 use crate::record::json;
-use crate::run::{Stopped, run, run_alone};
+use crate::run::{Stopped, memory_limit, run, run_within};
 use crate::settings::{Settings, measure};
 
 /// Most prepared solvers, descriptions and sides of comparisons that a surface keeps of each kind.
@@ -97,13 +99,24 @@ pub(crate) struct Surface {
     descriptions: Kept<DescribeOptions, Arc<Shape>>,
     compared: Kept<FormOptions, Arc<Compared>>,
     matched: Kept<CorrespondOptions, Arc<Matched>>,
+    tree: OnceLock<(TriangleTree, Vec<i64>)>,
 }
 
 impl Surface {
     pub(crate) fn of(mesh: TriMesh, inner: canonform::Surface, content: Option<ContentHash>) -> Self {
         let unchanged = inner.input.remap.is_identity();
-        let (solvers, descriptions, compared, matched) = Default::default();
-        Self { mesh, inner: Arc::new(inner), content, unchanged, solvers, descriptions, compared, matched }
+        let (solvers, descriptions, compared, matched, tree) = Default::default();
+        Self {
+            mesh,
+            inner: Arc::new(inner),
+            content,
+            unchanged,
+            solvers,
+            descriptions,
+            compared,
+            matched,
+            tree,
+        }
     }
 
     /// Repairs a mesh; `content` is the hash of its file.
@@ -113,7 +126,7 @@ impl Surface {
         options: &RepairOptions,
         content: Option<ContentHash>,
     ) -> PyResult<Self> {
-        let inner = run_alone(py, None, |observer| Ok(canonform::Surface::new(&mesh, options, observer)?))?;
+        let inner = run(py, |observer| Ok(canonform::Surface::new(&mesh, options, observer)?))?;
         Ok(Self::of(mesh, inner, content))
     }
 
@@ -121,7 +134,7 @@ impl Surface {
     fn in_input_order(&self, values: Vec<f64>) -> Vec<f64> {
         match self.unchanged {
             true => values,
-            false => self.inner.in_input_order(&values, f64::INFINITY),
+            false => self.inner.in_input_order(&values, f64::NAN),
         }
     }
 
@@ -130,19 +143,23 @@ impl Surface {
         &self,
         py: Python<'_>,
         method: Method,
-        progress: Option<&Py<PyAny>>,
         work: impl Fn(&dyn DistanceSolver, &dyn Observer) -> Result<T, Error> + Sync,
     ) -> PyResult<T> {
+        // Solvers that are kept know no limit on memory.
+        let limit = memory_limit();
         loop {
-            let kept = self.solvers.get(&method);
+            let kept = self.solvers.get(&method).filter(|_| limit.is_none());
             let budget = kept.as_ref().map_or_else(Budget::unlimited, |kept| kept.budget.clone());
-            let outcome = run(py, &budget, progress, |observer| {
+            let budget = limit.map_or(budget.clone(), |bytes| budget.with_memory(bytes));
+            let outcome = run_within(py, &budget, |observer, _| {
                 let prepared = match kept {
                     Some(prepared) => prepared,
                     None => {
                         let solver = method.prepare(self.inner.intrinsic(), &budget)?.into();
                         let prepared = Prepared { solver, budget: budget.clone() };
-                        self.solvers.put(method, prepared.clone());
+                        if limit.is_none() {
+                            self.solvers.put(method, prepared.clone());
+                        }
                         prepared
                     }
                 };
@@ -186,6 +203,21 @@ impl Surface {
             .or_make(options, || ComparedMesh::new(&self.mesh, self.content, surface, options, observer))
     }
 
+    /// The faces of the input that the repair kept, to look for nearest points, and their numbers; made once.
+    pub(crate) fn tree(&self) -> &(TriangleTree, Vec<i64>) {
+        self.tree.get_or_init(|| {
+            let input = &self.inner.input;
+            let is_kept = |face: &[VertexId; 3]| match face.map(|v| input.remap.to_new(v)) {
+                [Some(a), Some(b), Some(c)] => a != b && b != c && c != a,
+                _ => false,
+            };
+            let kept = (0..).zip(&input.faces).filter(|(_, face)| is_kept(face));
+            let (numbers, faces): (Vec<i64>, _) = kept.unzip();
+            let positions = self.mesh.positions.clone();
+            (TriangleTree::new(&TriMesh { positions, faces }), numbers)
+        })
+    }
+
     /// The surface, ready to be mapped to others, made once.
     pub(crate) fn matched(
         &self,
@@ -195,19 +227,22 @@ impl Surface {
         self.matched.or_make(options, || MappedSurface::new(self.inner.clone(), options, observer))
     }
 
-    fn description_of(
-        &self,
-        py: Python<'_>,
-        settings: Settings,
-        progress: Option<Py<PyAny>>,
-    ) -> PyResult<Arc<Shape>> {
+    fn description_of(&self, py: Python<'_>, settings: Settings) -> PyResult<Arc<Shape>> {
         let options = settings.describe(self.inner.input.repair)?;
-        Ok(run(py, &settings.budget()?, progress.as_ref(), |observer| self.described(&options, observer))?)
+        run(py, |observer| self.described(&options, observer))
     }
 }
 
 /// Vertices, faces, options of the repair as JSON, and the hash of a file.
 type State<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<i64>>, String, Option<String>);
+
+/// Vertices, faces, and the numbers of vertices of another mesh.
+type Repaired<'py> = (
+    Bound<'py, PyArray2<f64>>,
+    Bound<'py, PyArray2<i64>>,
+    Bound<'py, PyArray1<i64>>,
+    Bound<'py, PyArray1<i64>>,
+);
 
 /// A path: its points, the points of the input that they are, and its length.
 type FoundPath<'py> = (Bound<'py, PyArray2<f64>>, Vec<String>, Vec<f64>, f64);
@@ -225,15 +260,29 @@ impl Surface {
         Self::repaired(py, arrays::mesh_of(&vertices, &faces)?, &settings.repair(), None)
     }
 
-    /// Reads and repairs a mesh file.
+    /// Reads and repairs a mesh file. Returns also what was ignored of it, in words.
     #[staticmethod]
-    fn read(py: Python<'_>, path: PathBuf, settings: Settings) -> PyResult<Self> {
+    fn read(py: Python<'_>, path: PathBuf, settings: Settings) -> PyResult<(Self, Vec<String>)> {
         let options = settings.repair();
-        run_alone(py, None, |observer| {
+        run(py, |observer| {
             let content = content_hash(&path)?;
-            let mesh = canonform::collection::read_mesh(&path)?;
+            let file = canonform::collection::read_mesh_file(&path, &ReadLimits::default())?;
+            let inner = canonform::Surface::new(&file.mesh, &options, observer)?;
+            let ignored = file.facts.ignored.iter().map(|what| format!("ignored {what}"));
+            let notes = file.facts.notes.iter().cloned().chain(ignored).collect();
+            Ok((Self::of(file.mesh, inner, Some(content)), notes))
+        })
+    }
+
+    /// Reads and repairs the content of a mesh file of this name.
+    #[staticmethod]
+    fn parse(py: Python<'_>, name: PathBuf, bytes: &[u8], settings: Settings) -> PyResult<Self> {
+        let options = settings.repair();
+        run(py, |observer| {
+            let file = MemoryFile { name: &name, bytes };
+            let mesh = canonform::mesh::io::read_memory(&[file], &ReadLimits::default())?;
             let inner = canonform::Surface::new(&mesh, &options, observer)?;
-            Ok(Self::of(mesh, inner, Some(content)))
+            Ok(Self::of(mesh, inner, Some(ContentHash::of(&[bytes]))))
         })
     }
 
@@ -284,6 +333,18 @@ impl Surface {
         arrays::faces(py, &self.inner.input.faces)
     }
 
+    /// Vertices and faces of the repaired mesh, the vertex of the input that each of its vertices is from, and the vertex that
+    /// each of the input became, or -1.
+    fn repaired_mesh<'py>(&self, py: Python<'py>) -> PyResult<Repaired<'py>> {
+        let (mesh, remap) = (self.inner.mesh(), &self.inner.input.remap);
+        let number = |v: VertexId| i64::from(v.0);
+        let of_input: Vec<i64> = remap.all_to_new().map(|vertex| vertex.map_or(-1, number)).collect();
+        let to_input: Vec<i64> =
+            (0..mesh.n_vertices()).map(|v| number(remap.to_old(VertexId::from(v)))).collect();
+        let (vertices, faces) = (arrays::positions(py, &mesh.positions)?, arrays::faces(py, &mesh.faces)?);
+        Ok((vertices, faces, to_input.into_pyarray(py), of_input.into_pyarray(py)))
+    }
+
     /// The report on the repair, as JSON, and in words.
     fn repair_report(&self) -> (String, Vec<String>) {
         let report = &self.inner.input.report;
@@ -299,7 +360,7 @@ impl Surface {
         max_distance: f64,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let (method, points) = (geodesic.distances()?, points_of(sources)?);
-        let distances = self.solve(py, method, None, |solver, _| {
+        let distances = self.solve(py, method, |solver, _| {
             let mut distances = solver.budget().vector(solver.n_vertices())?;
             solver.solve_into(&self.sources(&points)?, max_distance, &mut distances)?;
             Ok(self.in_input_order(distances))
@@ -314,13 +375,16 @@ impl Surface {
         sources: &Bound<'py, PyAny>,
         geodesic: Settings,
         max_distance: f64,
-        progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let (method, points) = (geodesic.distances()?, points_of(sources)?);
         let p = self.mesh.n_vertices();
-        let rows = self.solve(py, method, progress.as_ref(), |solver, observer| {
+        let mut rows = self.solve(py, method, |solver, observer| {
             distance_rows(&self.inner, solver, &self.sources(&points)?, max_distance, observer)
         })?;
+        let dropped = self.inner.input.remap.all_to_new().enumerate().filter(|(_, vertex)| vertex.is_none());
+        for (v, _) in dropped {
+            rows.iter_mut().skip(v).step_by(p).for_each(|distance| *distance = f64::NAN);
+        }
         arrays::matrix(py, rows, [points.len(), p])
     }
 
@@ -334,7 +398,7 @@ impl Surface {
     ) -> PyResult<Vec<FoundPath<'py>>> {
         let method = geodesic.distances()?;
         let (source, targets) = (point_of(source)?, points_of(targets)?);
-        let paths = self.solve(py, method, None, |solver, _| {
+        let paths = self.solve(py, method, |solver, _| {
             let inner = &self.inner;
             let ends = targets.iter().map(|target| inner.locate(target)).collect::<Result<Vec<_>, _>>()?;
             let sources = self.sources(std::slice::from_ref(&source))?;
@@ -367,10 +431,9 @@ impl Surface {
         n: usize,
         first: Option<u32>,
         geodesic: Settings,
-        progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<i64>>> {
         let method = geodesic.distances()?;
-        let samples = self.solve(py, method, progress.as_ref(), |solver, observer| {
+        let samples = self.solve(py, method, |solver, observer| {
             let inner = &self.inner;
             let first = match first {
                 None => FirstSample::Farthest,
@@ -392,7 +455,6 @@ impl Surface {
         py: Python<'_>,
         settings: Settings,
         reuse: Option<PyRef<'_, Form>>,
-        progress: Option<Py<PyAny>>,
     ) -> PyResult<Form> {
         let (options, stress) = (settings.form(self.inner.input.repair)?, settings.stress());
         let options = EmbedOptions::from(&options).stress(stress);
@@ -401,21 +463,14 @@ impl Surface {
             Some(form) => options.reuse(&form.embedded),
         };
         let surface = &*self.inner;
-        let embedded =
-            run(py, &settings.budget()?, progress.as_ref(), |observer| embed(surface, options, observer))?;
+        let embedded = run(py, |observer| embed(surface, options, observer))?;
         Ok(Form { surface: self.inner.clone(), embedded })
     }
 
     /// This mesh, a finer one of the surface of a form, in the coordinates of that form.
-    fn finer(
-        &self,
-        py: Python<'_>,
-        form: PyRef<'_, Form>,
-        settings: Settings,
-        progress: Option<Py<PyAny>>,
-    ) -> PyResult<Form> {
+    fn finer(&self, py: Python<'_>, form: PyRef<'_, Form>, settings: Settings) -> PyResult<Form> {
         let (stress, form) = (settings.stress(), &*form);
-        let embedded = run(py, &settings.budget()?, progress.as_ref(), |observer| {
+        let embedded = run(py, |observer| {
             let options = EmbedOptions::finer(&self.inner, &form.surface, &form.embedded)?;
             embed(&*self.inner, options.stress(stress), observer)
         })?;
@@ -423,15 +478,9 @@ impl Surface {
     }
 
     /// The signature of one kind, or all of them as one vector if the kind is `fused`.
-    fn signature<'py>(
-        &self,
-        py: Python<'py>,
-        kind: &str,
-        settings: Settings,
-        progress: Option<Py<PyAny>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    fn signature<'py>(&self, py: Python<'py>, kind: &str, settings: Settings) -> PyResult<Bound<'py, PyAny>> {
         let measure = measure("kind", kind)?;
-        let described = self.description_of(py, settings, progress)?;
+        let described = self.description_of(py, settings)?;
         let values = match measure {
             Measure::Fused => return Ok(described.fused.clone().into_pyarray(py).into_any()),
             Measure::Signature(kind) => {

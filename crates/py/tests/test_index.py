@@ -143,8 +143,6 @@ def test_meshes_that_fail_are_listed(collection: Path, tmp_path: Path, cat: Shap
         (lambda i, d: i.add(d / "cat0.off", label="x", labels={"a": "b"}), OptionError, "label="),
         (lambda i, d: Index.build(d / "nowhere", d / "x.canonform"), MissingFileError, "nowhere"),
         (lambda i, d: Index.build(d, i.path, n_landmarks=50), ShapeIndexError, "other options"),
-        (lambda i, d: Index.build(d, i.path, form={"mu": 1}), OptionError, "form= is not possible: use method="),
-        (lambda i, d: Index.build(d, i.path, points=2), OptionError, "use n_points="),
         (lambda i, d: Index.build(d, i.path, shard=(5, 2)), OptionError, "shard 5 of 2"),
         (lambda i, d: Index.build(d, i.path, n_points=2), OptionError, "points"),
     ],

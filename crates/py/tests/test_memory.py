@@ -93,7 +93,7 @@ def test_compare_match_and_align_take_any_mesh(shapes: list[Shape], tmp_path: Pa
         (lambda s, i: canonform.compare("nowhere.off", s), canonform.errors.MissingFileError, "nowhere.off"),
         (lambda s, i: canonform.match(s, None), MeshError, "NoneType is not a mesh"),
         (lambda s, i: canonform.align(s, [[1, 2, 3]]), MeshError, "at least 12 points"),
-        (lambda s, i: Surface([[0, 0, 0], [1, 2]], [[0, 1, 2]]), MeshError, "3 numbers in each row"),
+        (lambda s, i: Surface([[0, 0, 0], [1, 2]], [[0, 1, 2]]), MeshError, "as many in each row"),
         (lambda s, i: Surface(SimpleNamespace(points=1, cells=1, extract_surface=1)), MeshError, "extract_surface"),
         (lambda s, i: s.distances(None), PointError, "None is not a point"),
         (lambda s, i: s.distances([0.5]), PointError, "0.5 is not a point"),

@@ -88,7 +88,7 @@ def test_points_without_faces_are_a_surface(tmp_path) -> None:
     report = surface.repair_report["points"]
     assert (report["n_points"], report["replaced_points"], report["outliers"]) == (2006, 5, 1)
     distances = surface.distances(0, geodesic="exact")
-    assert np.isinf(distances[2005]) and distances[2000] == 0
+    assert np.isnan(distances[2005]) and distances[2000] == 0 and not surface.kept[2005]
     straight = np.linalg.norm(points - points[0], axis=1)
     np.testing.assert_allclose(distances[:2000], 2 * np.arcsin(straight / 2), rtol=0.001)
     np.savetxt(tmp_path / "ball.xyz", points)
@@ -110,7 +110,7 @@ def test_results_are_in_the_order_of_the_input() -> None:
     far = [[9.0, 9, 9], [9.1, 9, 9], [9, 9.1, 9]]
     mixed = np.concatenate([[[5.0, 5, 5]], vertices, far])
     surface = Surface(mixed, np.concatenate([faces + 1, [[82, 83, 84]]]))
-    expected = np.concatenate([[np.inf], Surface(vertices, faces).distances(3), [np.inf] * 3])
+    expected = np.concatenate([[np.nan], Surface(vertices, faces).distances(3), [np.nan] * 3])
     np.testing.assert_array_equal(surface.distances(4), expected)
     np.testing.assert_array_equal(surface.distances_many([4])[0], expected)
     form = surface.canonical_form(n_landmarks=20)
@@ -216,12 +216,7 @@ def test_settings_reach_the_library(cat: Shape) -> None:
         (lambda s: s.distances(0, geodesic="fastest"), OptionError, 'geodesic="fastest" is not possible: use "fast-marching"'),
         (lambda s: FastMarching(update="magic"), OptionError, 'update="magic" is not possible'),
         (lambda s: s.distances(0, geodesic=Nystrom()), OptionError, "geodesic=Nystrom() is not possible"),
-        (lambda s: s.distances(0, method="exact"), OptionError, "method= is not possible: use geodesic="),
-        (lambda s: s.distances(0, update="planar"), OptionError, "use geodesic=FastMarching(update=...)"),
-        (lambda s: s.canonical_form(n=30), OptionError, "n= is not possible: use n_landmarks="),
-        (lambda s: s.canonical_form(dim=2), OptionError, "use n_components="),
-        (lambda s: s.canonical_form(rank=9), OptionError, "use method=Nystrom(rank=...)"),
-        (lambda s: s.eigenbasis(k=9), OptionError, "use n_eigenfunctions="),
+        (lambda s: s.distances(0, method="exact"), TypeError, "unexpected keyword argument 'method'"),
         (lambda s: s.distances(-1), PointError, "-1 is not a vertex"),
         (lambda s: s.distances([]), PointError, "no sources"),
         (lambda s: s.distances(np.zeros(81, dtype=bool)), PointError, "no sources"),
@@ -236,6 +231,12 @@ def test_settings_reach_the_library(cat: Shape) -> None:
         (lambda s: s.hks(times=[]), OptionError, "times=[]"),
         (lambda s: s.wks(energies=[np.nan]), OptionError, "energies"),
         (lambda s: s.wks(n_energies=2.5), OptionError, "n_energies=2.5"),
+        (lambda s: s.wks(n_energies=28), OptionError, "n_energies=28 makes bands that are wider than the spectrum; give 29"),
+        (lambda s: s.wks(sigma=0), OptionError, "sigma=0"),
+        (lambda s: s.distances(0, timeout=1e-9), TimeLimitError, "raise timeout="),
+        (lambda s: s.distances(0, memory=100), canonform.errors.MemoryLimitError, "raise memory="),
+        (lambda s: s.hks(timeout="soon"), OptionError, "timeout='soon'"),
+        (lambda s: s.hks(threads=-1), OptionError, "threads=-1"),
         (lambda s: s.eigenbasis(True), OptionError, "n_eigenfunctions=True"),
         (lambda s: s.canonical_form(2.5), OptionError, "n_landmarks=2.5"),
         (lambda s: s.canonical_form(True), OptionError, "n_landmarks="),
@@ -262,12 +263,14 @@ def test_settings_reach_the_library(cat: Shape) -> None:
         (lambda s: canonform.read(__file__), MeshError, "unknown mesh format"),
         (lambda s: Surface(grid()[0], grid()[1], components="all"), OptionError, "components="),
         (lambda s: Surface(grid()[0], grid()[1], weld=-1), OptionError, "weld=-1"),
-        (lambda s: Surface(grid()[0], grid()[1] + 1), MeshError, "vertex 81"),
+        (lambda s: Surface(grid()[0], grid()[1] + 1), MeshError, "counted from 1: pass faces - 1"),
+        (lambda s: Surface(grid()[0], grid()[1] + 2), MeshError, "vertex number 81; the 81 vertices are counted from 0"),
         (lambda s: Surface(grid()[0], grid()[1] - 1), MeshError, "vertex number -1"),
-        (lambda s: Surface(grid()[0], np.zeros((2, 4), int)), MeshError, "4 corners"),
+        (lambda s: Surface(grid()[0], np.zeros((2, 5), int)), MeshError, "5 corners"),
         (lambda s: Surface(grid()[0][:, :2], grid()[1]), MeshError, "shape (n, 3)"),
         (lambda s: Surface(np.full((3, 3), np.nan), [[0, 1, 2]]), MeshError, "not finite"),
-        (lambda s: Surface("cat.off"), MeshError, "canonform.read(path)"),
+        (lambda s: Surface("cat.off"), MissingFileError, "cat.off"),
+        (lambda s: Surface(b"OFF"), MeshError, 'format="ply"'),
         (lambda s: Surface(grid()[0][:11]), MeshError, "at least 12 points"),
         (lambda s: canonform.align(s.canonical_form(n_landmarks=20, n_components=2), s), EmbeddingError, "n_components="),
         (lambda s: canonform.datasets.generate("whale"), OptionError, "'cat'"),

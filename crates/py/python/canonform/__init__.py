@@ -11,7 +11,8 @@ straight lines equal these distances (their *canonical forms*), and aligns, comp
     (1000, 3)
 
 `Surface` holds a mesh and everything that was prepared on it. `method=` says how distances become coordinates, `geodesic=` how they are
-measured: a name, or an object such as `Nystrom` or `FastMarching` with the options of that method. Counts are called `n_...`. `Index` is a searchable file of shapes. `NystromMDS` embeds any
+measured: a name, or an object such as `Nystrom` or `FastMarching` with the options of that method. Counts are called `n_...`. Calls that
+may take long take the keywords of `Call`: `progress`, `timeout`, `memory` and `threads`. `Index` is a searchable file of shapes. `NystromMDS` embeds any
 metric space (needs scikit-learn), and `canonform.distributed` builds indexes on several machines (needs Dask).
 
 Arrays may be of any real type and layout. Vertices and faces are counted from 0, results are in the vertex order of the input, and
@@ -24,9 +25,11 @@ from __future__ import annotations
 import os as _os
 from typing import TYPE_CHECKING as _TYPE_CHECKING
 from typing import Any as _Any
+from typing import Unpack as _Unpack
 
 from . import datasets, errors
 from ._canonform import __version__, set_threads, threads
+from ._arrays import VertexValues
 from ._compare import Alignment, Comparison, align, compare
 from ._field import DistanceField, PairDistance, PairDistances
 from ._form import Form
@@ -34,7 +37,8 @@ from ._index import Index, Result, SearchResults, ShapeEntry
 from ._match import MappedPoints, Match, SurfaceMap, match
 from ._methods import FastMarching, KernelPca, Landmark, Nystrom, Smacof, Spectral
 from ._operators import ClosestPoints, EdgePoint, Eigenbasis, FacePoint
-from ._surface import Path, RepairReport, Surface, distance_methods, embedding_methods, signature_kinds
+from ._settings import Call, Shown
+from ._surface import Path, RepairedMesh, RepairReport, Surface, distance_methods, embedding_methods, signature_kinds
 from ._view import SurfaceView
 from .errors import CanonformError
 
@@ -45,6 +49,7 @@ if _TYPE_CHECKING:
 
 __all__ = [
     "Alignment",
+    "Call",
     "CanonformError",
     "ClosestPoints",
     "Comparison",
@@ -65,14 +70,17 @@ __all__ = [
     "PairDistances",
     "Path",
     "RepairReport",
+    "RepairedMesh",
     "Result",
     "SearchResults",
     "ShapeEntry",
+    "Shown",
     "Smacof",
     "Spectral",
     "Surface",
     "SurfaceMap",
     "SurfaceView",
+    "VertexValues",
     "__version__",
     "align",
     "compare",
@@ -89,12 +97,9 @@ __all__ = [
 ]
 
 
-def read(path: str | _os.PathLike[str], *, components: Components = "largest", weld: Weld = "seams") -> Surface:
-    """Read and repair a mesh file; see `Surface` for the options.
-
-    Raises `MissingFileError`, `FileError` and `MeshError`.
-    """
-    return Surface.read(path, components=components, weld=weld)
+def read(path: str | _os.PathLike[str], *, components: Components = "largest", weld: Weld = "seams", **call: _Unpack[Call]) -> Surface:
+    """Read and repair a mesh file; the same as `Surface(path)`."""
+    return Surface(path, components=components, weld=weld, **call)
 
 
 def __getattr__(name: str) -> _Any:

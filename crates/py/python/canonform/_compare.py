@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import json
-from typing import Any
+from typing import Any, Unpack
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _canonform, _html
-from ._arrays import Floats
+from ._arrays import Floats, VertexValues, numeric, on_vertices
 from ._form import Form
 from ._methods import Embedding, Geodesic, options_of
-from ._settings import OF_FORMS, Landmarks, Progress, RelationKind, renamed, shown
+from ._settings import Call, Landmarks, RelationKind, running
 from ._stored import Stored
 from ._surface import AnyMesh, Surface, surface_of
 
@@ -40,7 +39,7 @@ class Alignment(Stored):
 
     def apply(self, points: ArrayLike) -> Floats:
         """Moves points, shape (k, 3)."""
-        moved: Floats = np.asarray(points, dtype=np.float64) @ self.rotation.T + self.translation
+        moved: Floats = numeric("points", points, ("k", 3)) @ self.rotation.T + self.translation
         return moved
 
     def __repr__(self) -> str:
@@ -48,15 +47,16 @@ class Alignment(Stored):
         return f"Alignment(rms={self.rms:.6g}{reflected})"
 
 
-def align(a: Form | AnyMesh, b: Form | AnyMesh, *, reflections: bool = True) -> Alignment:
+def align(a: Form | AnyMesh, b: Form | AnyMesh, *, reflections: bool = True, **call: Unpack[Call]) -> Alignment:
     """The motion that takes the form of a onto that of b, in mesh units.
 
     A surface, or a mesh as `compare` takes it, stands for its canonical form with default options. `compare` uses forms at equal size instead.
 
     Raises `EmbeddingError` for forms that are not three-dimensional.
     """
-    forms = [shape if isinstance(shape, Form) else surface_of(shape).canonical_form(stress="skip") for shape in (a, b)]
-    return Alignment(_canonform.align(forms[0]._inner, forms[1]._inner, reflections))
+    with running(call):
+        forms = [shape if isinstance(shape, Form) else surface_of(shape).canonical_form(stress="skip") for shape in (a, b)]
+        return Alignment(_canonform.align(forms[0]._inner, forms[1]._inner, reflections))
 
 
 class Comparison(Stored):
@@ -70,7 +70,7 @@ class Comparison(Stored):
         For each vertex of the first mesh, the distance of its form from that of the second, in mesh units; shape (n,).
     """
 
-    def __init__(self, report: dict[str, Any], residuals: Floats, shapes: tuple[Surface, Surface]) -> None:
+    def __init__(self, report: dict[str, Any], residuals: VertexValues, shapes: tuple[Surface, Surface]) -> None:
         self.report = report
         self.residuals = residuals
         self._shapes = shapes
@@ -123,15 +123,13 @@ class Comparison(Stored):
             ("forms, at equal size", f"{self.form_distance:.6f}"),
             ("scale, second over first", f"{self.scale:.6g}"),
         ]
-        residuals = np.where(np.isfinite(self.residuals), self.residuals, np.nan)
         pictures = [
-            _html.image(a.picture(residuals, width=440, height=440), title="the first, coloured by how far the forms are apart"),
+            _html.image(a.picture(self.residuals, width=440, height=440), title="the first, coloured by how far the forms are apart"),
             _html.image(b.picture(width=440, height=440), title="the second"),
         ]
         return _html.card("Comparison", rows, pictures)
 
 
-@renamed(**OF_FORMS)
 def compare(
     a: AnyMesh,
     b: AnyMesh,
@@ -141,9 +139,7 @@ def compare(
     method: Embedding = "nmds",
     geodesic: Geodesic = "fast-marching",
     seed: int = 0,
-    timeout: float | None = None,
-    memory: int | str | None = None,
-    progress: Progress = False,
+    **call: Unpack[Call],
 ) -> Comparison:
     """Compare two shapes: one shape, one class or different ones; the same geometry, scaled, mirrored, remeshed, part of the other.
 
@@ -156,11 +152,9 @@ def compare(
 
     The relation does not depend on the other options, which are those of `Surface.canonical_form`.
     """
-    settings = options_of(
-        n_landmarks=n_landmarks, method=method, geodesic=geodesic, seed=seed, timeout=timeout, memory=memory
-    )
-    a, b = surface_of(a), surface_of(b)
-    called = names or (a._name or "the first", b._name or "the second")
-    with shown(progress) as report:
-        found, residuals = _canonform.compare(a._inner, b._inner, list(called), settings, report)
-    return Comparison(json.loads(found), residuals, (a, b))
+    settings = options_of(n_landmarks=n_landmarks, method=method, geodesic=geodesic, seed=seed)
+    with running(call):
+        a, b = surface_of(a), surface_of(b)
+        called = names or (a._name or "the first", b._name or "the second")
+        found, residuals = _canonform.compare(a._inner, b._inner, list(called), settings)
+    return Comparison(json.loads(found), on_vertices(residuals), (a, b))

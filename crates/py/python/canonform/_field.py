@@ -5,14 +5,14 @@ from __future__ import annotations
 import json
 import os
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _canonform
-from ._arrays import Floats, Ints, straight
-from ._settings import Progress, number, shown, whole
+from ._arrays import Floats, Ints, numeric
+from ._settings import Call, number, running, whole
 from ._stored import ByValue, Constant
 from .errors import PointError
 
@@ -48,7 +48,7 @@ class PairDistances(ByValue):
     Attributes
     ----------
     distance
-        The estimates, between the bounds. Infinite if the repair dropped one of the vertices.
+        The estimates, between the bounds; NaN if the repair dropped one of the vertices, and so are the bounds.
     lower
         No distance is below these.
     upper
@@ -61,6 +61,11 @@ class PairDistances(ByValue):
     lower: Floats
     upper: Floats
     exact: NDArray[np.bool_]
+
+    @property
+    def valid(self) -> NDArray[np.bool_]:
+        """The pairs whose vertices are both on the surface: a mask."""
+        return np.isfinite(self.distance)
 
     def __len__(self) -> int:
         return len(self.distance)
@@ -131,7 +136,7 @@ class DistanceField(Constant):
         return PairDistance(*self._inner.pair(_vertex(a), _vertex(b)))
 
     def pairs(
-        self, pairs: ArrayLike, *, tolerance: float | None = 0.05, progress: Progress = False
+        self, pairs: ArrayLike, *, tolerance: float | None = 0.05, **call: Unpack[Call]
     ) -> PairDistances:
         """The distances of many pairs of vertices, in parallel.
 
@@ -148,21 +153,19 @@ class DistanceField(Constant):
         PointError
             If the mesh has no such vertex, or they are not pairs of vertices.
         """
-        array = np.asarray(pairs)
-        if array.size == 0:
-            array = np.zeros((0, 2), dtype=np.int64)
-        if array.ndim != 2 or array.shape[1] != 2 or array.dtype.kind not in "iu":
-            raise PointError(f"pairs must be an array of vertex numbers of shape (k, 2), not {array.dtype} of shape {array.shape}")
-        with shown(progress) as report:
-            return PairDistances(*self._inner.pairs(straight(array, dtype=np.int64), _share(tolerance), report))
+        array: Ints = numeric("pairs", pairs, ("k", 2), np.int64, PointError) if np.size(pairs) else np.empty((0, 2), dtype=np.int64)
+        with running(call):
+            return PairDistances(*self._inner.pairs(array, _share(tolerance)))
 
-    def row(self, source: int, *, tolerance: float | None = 0.05) -> PairDistances:
+    def row(self, source: int, *, tolerance: float | None = 0.05, **call: Unpack[Call]) -> PairDistances:
         """The distances from one vertex to all, in the order of the input; `tolerance` as in `pairs`."""
-        return PairDistances(*self._inner.row(_vertex(source), _share(tolerance)))
+        with running(call):
+            return PairDistances(*self._inner.row(_vertex(source), _share(tolerance)))
 
-    def nearest(self, source: int, k: int) -> tuple[Ints, Floats]:
+    def nearest(self, source: int, k: int, **call: Unpack[Call]) -> tuple[Ints, Floats]:
         """The `k` vertices nearest to one of them along the surface, itself left out, and their exact distances, nearest first."""
-        return self._inner.nearest(_vertex(source), whole("k", k))
+        with running(call):
+            return self._inner.nearest(_vertex(source), whole("k", k))
 
     def __repr__(self) -> str:
         facts = self.facts

@@ -6,14 +6,14 @@ import json
 import os
 from collections.abc import Callable, Iterable
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _canonform, _html
-from ._arrays import Floats, Ints
-from ._settings import Progress, StressChoice, shown
+from ._arrays import Floats, Ints, SourceRows, VertexValues, on_vertices
+from ._settings import Call, StressChoice, running
 from ._stored import Constant
 
 if TYPE_CHECKING:
@@ -46,11 +46,9 @@ class Form(Constant):
     def _inner(self) -> _canonform.Form:
         if self._made is None:
             surface = self._surface._inner
-            # Without the limits of the call that made it, which do not change the form.
-            settings = {**self._settings, "timeout": None, "memory": None}
             coarse = self._coarse
-            finer = None if coarse is None else surface.finer(coarse._inner, settings, None)
-            self._made = finer or surface.canonical_form(settings, None, None)
+            finer = None if coarse is None else surface.finer(coarse._inner, self._settings)
+            self._made = finer or surface.canonical_form(self._settings, None)
         return self._made
 
     def _state(self) -> dict[str, Any]:
@@ -62,16 +60,19 @@ class Form(Constant):
         self.points.flags.writeable = self.faces.flags.writeable = False
 
     @cached_property
-    def points(self) -> Floats:
+    def points(self) -> VertexValues:
         """Coordinates of the vertices, shape (n, n_components), in mesh units and in the order of the input. NaN for vertices that the repair dropped.
 
         The same numbers as `canonform embed -o FORM.npy` writes.
         """
-        points = self._inner.points()
-        points.flags.writeable = False
-        return points
+        return on_vertices(self._inner.points(), writeable=False)
 
-    def bent_surface(self) -> Floats:
+    @property
+    def valid(self) -> NDArray[np.bool_]:
+        """Which vertices have a place: a mask of shape (n,). `points[valid]` is the cloud of the form."""
+        return self.points.valid
+
+    def bent_surface(self, **call: Unpack[Call]) -> VertexValues:
         """Coordinates of the surface itself, bent into this form as rigidly as possible: shape (n, 3), NaN for vertices that the repair dropped.
 
         Features keep their shape: limbs stay round, and ears stay ears. The result has the handedness of the surface. Needs three components.
@@ -84,7 +85,8 @@ class Form(Constant):
         >>> bool(abs(bent.area / cat.area - 1) < 0.05)
         True
         """
-        return self._inner.bent_points()
+        with running(call):
+            return on_vertices(self._inner.bent_points())
 
     @cached_property
     def faces(self) -> Ints:
@@ -155,11 +157,11 @@ class Form(Constant):
         return np.array(self.report["samples"], dtype=np.int64)
 
     @cached_property
-    def distances(self) -> Floats:
+    def distances(self) -> SourceRows:
         """Distances from each landmark to all vertices, shape (number of landmarks, n), in mesh units."""
-        return self._inner.distances()
+        return self._inner.distances().view(SourceRows)
 
-    def place(self, points: Point | Iterable[Point]) -> Floats:
+    def place(self, points: Point | Iterable[Point], **call: Unpack[Call]) -> Floats:
         """Coordinates of points of the surface, shape (number of points, n_components), in mesh units. Needs method="nmds".
 
         Parameters
@@ -169,16 +171,17 @@ class Form(Constant):
         """
         from ._surface import _several
 
-        return self._inner.place(_several(points, len(self)))
+        with running(call):
+            return self._inner.place(_several(points, len(self)))
 
-    def finer(self, surface: Surface, *, stress: StressChoice = "auto", seed: int = 0, progress: Progress = False) -> Form:
+    def finer(self, surface: Surface, *, stress: StressChoice = "auto", seed: int = 0, **call: Unpack[Call]) -> Form:
         """A finer mesh of the same surface in the coordinates of this form, placed by the distances from its landmarks.
 
         The meshes are in the same place: each landmark is the nearest vertex of the finer mesh. Needs method="nmds".
         """
         settings = {"stress": stress, "seed": seed}
-        with shown(progress) as report:
-            inner = surface._inner.finer(self._inner, settings, report)
+        with running(call):
+            inner = surface._inner.finer(self._inner, settings)
         return Form(inner, surface, settings, self._name, self)
 
     def write(self, path: str | os.PathLike[str]) -> None:

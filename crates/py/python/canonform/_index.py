@@ -5,36 +5,36 @@ from __future__ import annotations
 import csv
 import json
 import os
-import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, overload
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, Unpack, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _canonform, _html
-from ._arrays import Floats, Ints, straight
+from ._arrays import Floats, Ints, mesh_of, numeric
 from ._methods import Embedding, Geodesic, options_of
 from ._settings import (
-    OF_FORMS,
+    Call,
     Components,
     IndexDistance,
     Landmarks,
-    Progress,
     Ranking,
     RelationKind,
+    Shown,
     SignatureKind,
     Weld,
-    renamed,
-    shown,
+    number,
+    running,
+    warned,
     whole,
     word,
 )
 from ._stored import Stored
-from ._surface import AnyMesh, Surface, arrays_of, surface_of
+from ._surface import AnyMesh, Surface, surface_of
 from .datasets import Shape
 from .errors import CanonformError, OptionError, ShapeIndexError, SkippedMeshWarning
 
@@ -213,10 +213,6 @@ def _caption(image: str, caption: str) -> str:
     return f'<div style="text-align:center;max-width:120px">{image}<div style="font-size:11px">{escape(caption)}</div></div>'
 
 
-OF_INDEXES = {**OF_FORMS, "points": "n_points=", "form": "method= and geodesic= with options"}
-"""What stands for earlier keywords."""
-
-
 class Index(Stored):
     """A searchable file of shapes.
 
@@ -242,12 +238,6 @@ class Index(Stored):
         self._inner, self.build_report = _canonform.Index.open(state["path"]), state["build_report"]
 
     @classmethod
-    def open(cls, path: AnyPath) -> Index:
-        """Open an index; the same as `Index(path)`."""
-        return cls(path)
-
-    @classmethod
-    @renamed(**OF_INDEXES)
     def build(
         cls,
         meshes: Meshes,
@@ -267,7 +257,7 @@ class Index(Stored):
         max_vertices: int | None = None,
         timeout: float | None = None,
         memory: int | str | None = None,
-        progress: Progress = False,
+        **call: Unpack[Shown],
     ) -> Index:
         """Make a file the index of meshes, and open it.
 
@@ -313,8 +303,8 @@ class Index(Stored):
             weld=weld, seed=seed, max_vertices=max_vertices, timeout=timeout, memory=memory,
         )  # fmt: skip
         meshes, labels = _in_files(meshes, path, labels, replace=True)
-        with shown(progress) as update, _label_file(labels) as label_file, _dataset(meshes) as (dataset, name):
-            report = json.loads(_canonform.Index.build(dataset, os.fspath(path), label_file, prune, shard, None, settings, update))
+        with running(call), _label_file(labels) as label_file, _dataset(meshes) as (dataset, name):
+            report = json.loads(_canonform.Index.build(dataset, os.fspath(path), label_file, prune, shard, None, settings))
         if not os.path.exists(path):
             from .errors import MeshError
 
@@ -326,10 +316,10 @@ class Index(Stored):
         return index
 
     @classmethod
-    def merge(cls, indexes: Iterable[AnyPath], path: AnyPath, *, progress: Progress = False) -> Index:
+    def merge(cls, indexes: Iterable[AnyPath], path: AnyPath, **call: Unpack[Call]) -> Index:
         """Merge indexes, for example those of shards, into one file, and open it."""
-        with shown(progress) as update:
-            report = json.loads(_canonform.merge_indexes([os.fspath(index) for index in indexes], os.fspath(path), update))
+        with running(call):
+            report = json.loads(_canonform.merge_indexes([os.fspath(index) for index in indexes], os.fspath(path)))
         index = cls(path)
         index.build_report = report
         return index
@@ -344,7 +334,7 @@ class Index(Stored):
         max_vertices: int | None = None,
         timeout: float | None = None,
         memory: int | str | None = None,
-        progress: Progress = False,
+        **call: Unpack[Shown],
     ) -> dict[str, Any]:
         """Add meshes as in `build`: files, folders of them, or meshes in memory, described with the options of the index. Returns what happened to each.
 
@@ -363,10 +353,8 @@ class Index(Stored):
             raise OptionError("label= has no effect for meshes that come with a class; leave one of them out")
         paths = [meshes] if isinstance(meshes, (str, os.PathLike)) else list(meshes)
         settings = options_of(max_vertices=max_vertices, timeout=timeout, memory=memory)
-        with shown(progress) as update, _label_file(labels) as label_file:
-            report = _canonform.Index.add(
-                self.path, [os.fspath(path) for path in paths], label, label_file, replace, settings, update
-            )
+        with running(call), _label_file(labels) as label_file:
+            report = _canonform.Index.add(self.path, [os.fspath(path) for path in paths], label, label_file, replace, settings)
         self._reopen(json.loads(report))
         return self.build_report or {}
 
@@ -379,7 +367,9 @@ class Index(Stored):
     def _reopen(self, report: dict[str, Any] | None) -> None:
         self._inner, self.build_report = _canonform.Index.open(self.path), report
 
-    def search(self, query: AnyMesh, k: int = 10, *, rank: Ranking = "plain", explain: bool = False) -> SearchResults:
+    def search(
+        self, query: AnyMesh, k: int = 10, *, rank: Ranking = "plain", explain: bool = False, **call: Unpack[Call]
+    ) -> SearchResults:
         """Find the shapes nearest to a query.
 
         Parameters
@@ -396,9 +386,10 @@ class Index(Stored):
             Say how each result is related to the query, as `compare` does; reads the mesh files of the results.
         """
         if not isinstance(query, (str, os.PathLike)):
-            query = surface_of(query)
-            name = query._name or "the query"
-            report = self._inner.search(query._inner, name, whole("k", k), word("rank", rank), explain)
+            with running(call):
+                query = surface_of(query)
+                name = query._name or "the query"
+                report = self._inner.search(query._inner, name, whole("k", k), word("rank", rank), explain)
             return SearchResults(json.loads(report), query, name, self)
         text = os.fspath(query)
         if not os.path.exists(text) and text not in self:
@@ -406,12 +397,13 @@ class Index(Stored):
 
             raise NoSuchShapeError(f"{text!r} is neither a file nor a shape of the index; Index.shapes() names its shapes")
         name = os.path.basename(text) if os.path.exists(text) else text
-        report = self._inner.search(text, name, whole("k", k), word("rank", rank), explain)
+        with running(call):
+            report = self._inner.search(text, name, whole("k", k), word("rank", rank), explain)
         return SearchResults(json.loads(report), self._pictured(text), name, self)
 
     def _pictured(self, query: str) -> Surface | None:
         try:
-            return Surface.read(query) if os.path.exists(query) else Surface._of(self._inner.surface(query))
+            return Surface(query) if os.path.exists(query) else Surface._of(self._inner.surface(query))
         except CanonformError:
             return None
 
@@ -426,7 +418,7 @@ class Index(Stored):
         k: int = 1,
         rank: Ranking = "plain",
         labels: Mapping[str, str] | AnyPath | None = None,
-        progress: Progress = False,
+        **call: Unpack[Call],
     ) -> dict[str, Any]:
         """How well the index separates classes: the object that `canonform evaluate --json` prints, with `nn`, `ft`, `st`, `map`, ...
 
@@ -439,8 +431,8 @@ class Index(Stored):
         rank
             "plain", or "graph" to score the ranking on the graph of nearest neighbours as well, under the key `graph`.
         """
-        with shown(progress) as update, _label_file(labels) as label_file:
-            scores: dict[str, Any] = json.loads(self._inner.evaluate(word("by", by), whole("k", k), word("rank", rank), label_file, update))
+        with running(call), _label_file(labels) as label_file:
+            scores: dict[str, Any] = json.loads(self._inner.evaluate(word("by", by), whole("k", k), word("rank", rank), label_file))
         return scores
 
     @property
@@ -470,10 +462,7 @@ class Index(Stored):
 
     def nearest(self, vector: ArrayLike, k: int = 10) -> list[tuple[str, float]]:
         """The shapes whose signatures are nearest to a vector, such as `Surface.signature()`: names and distances, nearest first."""
-        array = np.asarray(vector)
-        if array.ndim != 1 or array.dtype.kind not in "fiu":
-            raise OptionError(f"vector must be an array of numbers of shape (d,), not {array.dtype} of shape {array.shape}")
-        return self._inner.nearest(straight(array, dtype=np.float32), whole("k", k))
+        return self._inner.nearest(numeric("vector", vector, ("d",), np.float32), whole("k", k))
 
     def distances(
         self,
@@ -481,7 +470,7 @@ class Index(Stored):
         others: Sequence[str] | None = None,
         *,
         kind: IndexDistance = "combined",
-        progress: Progress = False,
+        **call: Unpack[Call],
     ) -> Floats:
         """Distances between shapes of the index, in parallel: all of them by default.
 
@@ -499,15 +488,15 @@ class Index(Stored):
         ndarray of shape (len(ids), len(others))
         """
         rows = list(self) if ids is None else list(ids)
-        with shown(progress) as update:
-            return self._inner.distances(rows, None if others is None else list(others), word("kind", kind), update)
+        with running(call):
+            return self._inner.distances(rows, None if others is None else list(others), word("kind", kind))
 
     def surface(self, id: str) -> Surface:
         """The surface of a shape. Its mesh file must be where it was, and unchanged."""
         return Surface._of(self._inner.surface(id), id)
 
     def duplicates(
-        self, *, kinds: Iterable[RelationKind] | None = None, min_confidence: float = 0.9, progress: Progress = False
+        self, *, kinds: Iterable[RelationKind] | None = None, min_confidence: float = 0.9, **call: Unpack[Call]
     ) -> list[dict[str, Any]]:
         """Groups of shapes that are one: the same file or surface, in another place, size or triangulation.
 
@@ -523,8 +512,8 @@ class Index(Stored):
             The least confidence, 0 to 1.
         """
         wanted: list[str] | None = None if kinds is None else list(kinds)
-        with shown(progress) as update:
-            found: dict[str, Any] = json.loads(self._inner.duplicates(wanted, float(min_confidence), update))
+        with running(call):
+            found: dict[str, Any] = json.loads(self._inner.duplicates(wanted, number("min_confidence", min_confidence)))
         groups: list[dict[str, Any]] = found["groups"]
         return groups
 
@@ -574,11 +563,9 @@ def _warn_of_skipped(report: dict[str, Any]) -> None:
     failed = report["failed"]
     if failed:
         first = failed[0]
-        warnings.warn(
-            f"{len(failed)} of the meshes are not in the index; the first, {first['path']}: {first['error']}; "
-            "`build_report` lists them",
+        warned(
+            f"{len(failed)} of the meshes are not in the index; the first, {first['path']}: {first['error']}; `build_report` lists them",
             SkippedMeshWarning,
-            stacklevel=4,
         )
 
 
@@ -605,7 +592,7 @@ def _in_files(
         taken.add(name)
         if label:
             known[name] = label
-        paths.append(_kept(arrays_of(mesh), os.path.join(folder, f"{name}.ply"), replace))
+        paths.append(_kept(_arrays(mesh), os.path.join(folder, f"{name}.ply"), replace))
     if known and labels is not None:
         raise OptionError("labels= has no effect for meshes that come with a class; leave one of them out")
     return paths, known or labels
@@ -626,6 +613,12 @@ def _named(item: Any, i: int) -> tuple[str, AnyMesh, str]:
     if name != name.strip() or name.startswith(".") or any(c in name for c in '/\\:\n\r\0'):
         raise OptionError(f"the name {name!r} is not possible: it stands for a file of this name")
     return name, mesh, label or ""
+
+
+def _arrays(mesh: AnyMesh) -> tuple[Floats, Ints]:
+    """The vertices and faces of a mesh as they are, without a repair."""
+    mesh = Surface(mesh) if isinstance(mesh, (str, os.PathLike)) else mesh
+    return mesh_of(mesh)[:2]
 
 
 def _kept(mesh: tuple[Floats, Ints], path: str, replace: bool) -> str:

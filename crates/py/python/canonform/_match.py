@@ -5,16 +5,16 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal, TypeAlias, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _canonform, _html
-from ._arrays import Floats, Ints, straight
+from ._arrays import Floats, Ints, numeric, on_vertices, straight
 from ._operators import Eigenbasis, FacePoint
 from ._methods import Geodesic, options_of
-from ._settings import OF_MARCHING, Progress, renamed, shown, some_whole
+from ._settings import Call, running, some_whole, unmasked
 from ._stored import ByValue, Stored
 from ._surface import AnyMesh, Surface, surface_of
 from .errors import OptionError
@@ -38,7 +38,7 @@ class MappedPoints(ByValue):
     Attributes
     ----------
     faces
-        The face that each lies in, or -1 if the repair dropped the vertex: shape (n,).
+        The face that each lies in, or -1 if the repair dropped the vertex: shape (n,). `valid` is the mask of the others.
     corners
         The vertices of that face: shape (n, 3).
     weights
@@ -50,6 +50,11 @@ class MappedPoints(ByValue):
     weights: Floats
 
     @property
+    def valid(self) -> NDArray[np.bool_]:
+        """Which of them are on the surface: a mask of shape (n,)."""
+        return self.faces >= 0
+
+    @property
     def at(self) -> list[FacePoint | None]:
         """The points as sources of distances and ends of paths; `None` for dropped vertices."""
         pairs = zip(self.faces.tolist(), self.weights.tolist(), strict=True)
@@ -57,7 +62,8 @@ class MappedPoints(ByValue):
 
     def interpolate(self, values: ArrayLike) -> Floats:
         """Values at the vertices of that surface, shape (m,) or (m, d), at the points; NaN for dropped vertices."""
-        array = np.asarray(values, dtype=np.float64)
+        sides = ("m",) if np.ndim(values) == 1 else ("m", "d")
+        array = numeric("values", values, sides)
         weights = self.weights if array.ndim == 1 else self.weights[:, :, None]
         parts = array[self.corners] * weights
         # Not a number times zero is not a number.
@@ -117,7 +123,11 @@ class SurfaceMap(Stored):
         if other is not None:
             self.alternative = SurfaceMap(report["alternative"], [other], shapes, landmarks, settings)
 
-    @renamed(k="n_eigenfunctions=")
+    @property
+    def valid(self) -> NDArray[np.bool_]:
+        """Which vertices of `a` have a partner: a mask of shape (n,)."""
+        return self.vertices >= 0
+
     def functional(
         self, n_eigenfunctions: int | None = None, *, bases: tuple[Eigenbasis, Eigenbasis] | None = None
     ) -> Floats:
@@ -132,13 +142,12 @@ class SurfaceMap(Stored):
         rows, columns = self._counts(n_eigenfunctions)
         return self._functional[:rows, :columns].copy()
 
-    @renamed(k="n_eigenfunctions=")
     def bases(self, n_eigenfunctions: int | None = None) -> tuple[Eigenbasis, Eigenbasis]:
         """The eigenfunctions of `a` and of `b` that `functional` is written in, of both surfaces scaled to unit area."""
         counts = self._counts(n_eigenfunctions)
         found = [_canonform.map_basis(shape._inner, self._settings) for shape in self._shapes]
         a, b = (
-            Eigenbasis(values[:most], functions[:, :most].copy(), masses)
+            Eigenbasis(values, on_vertices(functions), masses).first(most)
             for (values, functions, masses), most in zip(found, counts, strict=True)
         )
         return a, b
@@ -194,7 +203,7 @@ class SurfaceMap(Stored):
         """
         at = _side("to", to)
         source = self._shapes[1 if at == "a" else 0]
-        array = np.asarray(values)
+        array = np.asarray(unmasked("values", values))
         n = len(array) if array.ndim else 0
         if array.ndim == 3 and array.shape[:2] == (source.n_faces, 3):
             return self._corners(at, array.astype(np.float64))
@@ -289,9 +298,6 @@ def _labels(labels: NDArray[Any], rows: Ints, missing: NDArray[np.bool_]) -> NDA
     return found
 
 
-_of_maps = renamed(n="the default, 100 landmarks", eigenfunctions="n_eigenfunctions=", **OF_MARCHING)
-
-
 class Match(Stored):
     """The maps from one surface to another: the direct one first, unless it distorts distances clearly more.
 
@@ -348,7 +354,6 @@ class Match(Stored):
         return _html.card("Match", rows, [_html.image(png, title=title) for png, title in shown])
 
 
-@_of_maps
 def match(
     a: AnyMesh,
     b: AnyMesh,
@@ -359,9 +364,7 @@ def match(
     descriptors: tuple[ArrayLike, ArrayLike] | None = None,
     n_eigenfunctions: int | None = None,
     geodesic: Geodesic = "fast-marching",
-    timeout: float | None = None,
-    memory: int | str | None = None,
-    progress: Progress = False,
+    **call: Unpack[Call],
 ) -> Match:
     """Map the vertices of `a` to those of `b`: surfaces, mesh files, or meshes in memory.
 
@@ -388,27 +391,16 @@ def match(
         How distances are measured, as in `Surface.distances`.
     """
     eigenfunctions = some_whole("n_eigenfunctions", n_eigenfunctions)
-    settings = options_of(eigenfunctions=eigenfunctions, geodesic=geodesic, timeout=timeout, memory=memory)
+    settings = options_of(eigenfunctions=eigenfunctions, geodesic=geodesic)
     if not refine and initial is None:
         raise OptionError("refine=False scores a map that is given; give it as initial=")
-    pairs, start, functions = _pairs(landmarks), _partners(initial), _functions(descriptors)
-    a, b = surface_of(a), surface_of(b)
-    with shown(progress) as report:
-        found, arrays, colors = _canonform.match_surfaces(
-            a._inner, b._inner, pairs, start, functions, refine, settings, report
-        )
+    none = landmarks is None or not np.size(landmarks)
+    pairs: Ints = numeric("landmarks", np.empty((0, 2), dtype=np.int64) if none else landmarks, ("k", 2), np.int64)
+    start, functions = _partners(initial), _functions(descriptors)
+    with running(call):
+        a, b = surface_of(a), surface_of(b)
+        found, arrays, colors = _canonform.match_surfaces(a._inner, b._inner, pairs, start, functions, bool(refine), settings)
     return Match(json.loads(found), arrays, colors, (a, b), pairs, settings)
-
-
-def _pairs(landmarks: ArrayLike | None) -> Ints:
-    if landmarks is None:
-        return np.empty((0, 2), dtype=np.int64)
-    array = np.asarray(landmarks)
-    if array.size == 0:
-        return np.empty((0, 2), dtype=np.int64)
-    if array.ndim != 2 or array.shape[1] != 2 or array.dtype.kind not in "iu":
-        raise OptionError(f"landmarks must be pairs of vertex numbers, such as [(17, 42)], not of shape {array.shape} of {array.dtype}")
-    return straight(array, dtype=np.int64)
 
 
 # Vertices of a functional map that are given partners; its refinement starts from no more samples.
@@ -420,20 +412,18 @@ def _partners(initial: ArrayLike | tuple[ArrayLike, Eigenbasis, Eigenbasis] | No
         return None
     if isinstance(initial, tuple) and len(initial) == 3 and isinstance(initial[1], Eigenbasis):
         functional, a, b = initial
-        return _of_functional(np.asarray(functional, dtype=np.float64), a, b)
-    array = np.asarray(initial)
-    if array.ndim != 1 or array.dtype.kind not in "iu":
-        raise OptionError(f"initial must have one vertex number for each vertex of a, not shape {array.shape} of {array.dtype}")
-    return straight(array, dtype=np.int64)
+        return _of_functional(numeric("initial", functional, ("k", "l")), a, b)
+    found: Ints = numeric("initial", initial, ("n",), np.int64)
+    return found
 
 
 def _functions(descriptors: tuple[ArrayLike, ArrayLike] | None) -> tuple[Floats, Floats] | None:
     if descriptors is None:
         return None
-    both = [np.asarray(functions, dtype=np.float64) for functions in descriptors]
-    if len(both) != 2 or any(array.ndim not in (1, 2) for array in both):
+    if len(descriptors) != 2:
         raise OptionError("descriptors must be two arrays, one for each surface, with one row for each vertex")
-    f, g = (straight(array.reshape(len(array), -1)) for array in both)
+    one = [functions if np.ndim(functions) != 1 else np.reshape(functions, (-1, 1)) for functions in descriptors]
+    f, g = (numeric("descriptors", functions, ("n", "d")) for functions in one)
     return f, g
 
 

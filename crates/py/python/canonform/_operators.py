@@ -8,8 +8,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ._arrays import Floats, Ints
-from ._settings import numbers, renamed, whole
+from ._arrays import Floats, Ints, VertexValues, numeric, on_vertices
+from ._settings import number, numbers, whole
 from ._stored import ByValue
 from .errors import OptionError
 
@@ -120,54 +120,67 @@ class Eigenbasis(ByValue):
     """
 
     values: Floats
-    functions: Floats
+    functions: VertexValues
     masses: Floats
 
     @cached_property
     def _weighted(self) -> Floats:
-        weighted: Floats = np.nan_to_num(self.functions) * self.masses[:, None]
+        weighted: Floats = np.nan_to_num(self.functions.view(np.ndarray)) * self.masses[:, None]
         return weighted
 
     def project(self, values: ArrayLike) -> Floats:
         """The coefficients of functions, shape (n,) or (n, d), in this basis: shape (k,) or (k, d)."""
-        array = np.asarray(values, dtype=np.float64)
-        if array.ndim not in (1, 2) or len(array) != len(self.masses):
-            raise OptionError(f"values must be one row for each of the {len(self.masses)} vertices, not of shape {array.shape}")
-        coefficients: Floats = self._weighted.T @ array
+        array = numeric("values", values, (len(self.masses), "d")[: max(np.ndim(values), 1)])
+        known = np.where(self.functions.valid.reshape(-1, *[1] * (array.ndim - 1)), array, 0)
+        coefficients: Floats = self._weighted.T @ known
         return coefficients
 
-    def synthesize(self, coefficients: ArrayLike) -> Floats:
+    def synthesize(self, coefficients: ArrayLike) -> VertexValues:
         """The functions of coefficients, shape (k,) or (k, d), at the vertices."""
-        found: Floats = self.functions @ np.asarray(coefficients, dtype=np.float64)
-        return found
+        return on_vertices(self.functions.view(np.ndarray) @ numeric("coefficients", coefficients, (len(self), "d")[: max(np.ndim(coefficients), 1)]))
 
-    @renamed(n="n_times=")
-    def hks(self, times: ArrayLike | None = None, *, n_times: int = 16) -> Floats:
+    def hks(self, times: ArrayLike | None = None, *, n_times: int = 16, scaled: bool = False) -> VertexValues:
         """The heat kernel signature of every vertex (Sun et al. 2009), shape (n_vertices, number of times).
 
         `times` are in squared mesh units; by default `n_times` of them, from the time of the last eigenfunction to that of the first.
+        `scaled` divides each column by the trace of the kernel at that time, so that all times count alike.
         """
         curved = self._curved()
         if times is None:
             first, last = (float(4 * np.log(10) / value) for value in curved[[-1, 0]])
             times = np.geomspace(first, last, whole("n_times", n_times, 1))
-        return self._spread(np.exp(-np.multiply.outer(self.values, numbers("times", times, 0))))
+        return self._spread(np.exp(-np.multiply.outer(self.values, numbers("times", times, 0))), scaled)
 
-    @renamed(n="n_energies=")
-    def wks(self, energies: ArrayLike | None = None, *, n_energies: int = 16) -> Floats:
+    def wks(
+        self, energies: ArrayLike | None = None, *, n_energies: int = 100, sigma: float | None = None, scaled: bool = True
+    ) -> VertexValues:
         """The wave kernel signature of every vertex (Aubry et al. 2011), shape (n_vertices, number of energies).
 
-        `energies` are logarithms of eigenvalues; by default `n_energies` of them, evenly spaced over those of the basis.
+        Parameters
+        ----------
+        energies
+            Logarithms of eigenvalues; by default `n_energies` of them, evenly spaced from the lowest of the basis plus 2 `sigma` to
+            the highest minus 2 `sigma`.
+        sigma
+            Width of the bands of energy; by default 7 times the range of the logarithms over their number, as published.
+        scaled
+            Whether to divide each column by the sum of the weights of its eigenfunctions, as published.
         """
         curved = self._curved()
         low, high = np.log(curved[[0, -1]])
-        at = np.linspace(low, high, whole("n_energies", n_energies, 1)) if energies is None else numbers("energies", energies)
-        width = 7 * (high - low) / len(at)
+        given = None if energies is None else numbers("energies", energies)
+        n = whole("n_energies", n_energies, 1) if given is None else len(given)
+        width = 7 * (high - low) / n if sigma is None else number("sigma", sigma)
+        if not 0 < width < np.inf:
+            raise OptionError(f"sigma={width:g} is not possible: give a positive number, or more eigenfunctions")
+        if given is None and 4 * width >= high - low:
+            what = f"n_energies={n}" if sigma is None else f"sigma={sigma:g}"
+            raise OptionError(f"{what} makes bands that are wider than the spectrum; give 29 energies or more, a smaller sigma=, or energies=")
+        at = np.linspace(low + 2 * width, high - 2 * width, n) if given is None else given
         # The constant functions say nothing.
         logarithms = np.log(np.where(self._is_curved, self.values, 1.0))
-        exponents = -0.5 * ((at[None, :] - logarithms[:, None]) / (width or 1.0)) ** 2
-        weights = np.where(self._is_curved[:, None], np.exp(exponents), 0.0)
-        return self._spread(weights / weights.sum(axis=0))
+        weights = np.exp(-0.5 * ((at[None, :] - logarithms[:, None]) / width) ** 2)
+        return self._spread(np.where(self._is_curved[:, None], weights, 0.0), scaled)
 
     @property
     def _is_curved(self) -> Floats:
@@ -180,9 +193,14 @@ class Eigenbasis(ByValue):
             raise OptionError(f"n_eigenfunctions={len(self.values)} is not possible here: kernels need an eigenfunction that is not constant")
         return curved
 
-    def _spread(self, weights: Floats) -> Floats:
-        spread: Floats = self.functions**2 @ weights
-        return spread
+    def _spread(self, weights: Floats, scaled: bool) -> VertexValues:
+        weights = weights / weights.sum(axis=0) if scaled else weights
+        return on_vertices(self.functions.view(np.ndarray) ** 2 @ weights, writeable=False)
+
+    def first(self, n_eigenfunctions: int) -> Eigenbasis:
+        """The first of its functions."""
+        n = whole("n_eigenfunctions", n_eigenfunctions, 1)
+        return Eigenbasis(self.values[:n], self.functions[:, :n].view(VertexValues), self.masses)
 
     def __len__(self) -> int:
         return len(self.values)

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+import sys
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import wraps
-from typing import Any, Literal, ParamSpec, TypeAlias, TypeVar
+from typing import Any, Literal, TypeAlias, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
 
+from . import _canonform
 from .errors import OptionError
 
 Progress: TypeAlias = bool | Callable[[str, int, int], None]
@@ -107,48 +109,73 @@ def n_bytes(size: int | str) -> int:
         return whole("memory", size)
     text = size.strip().upper().removesuffix("B").removesuffix("I")
     unit = text[-1:] if text[-1:].isalpha() else ""
-    number = text.removesuffix(unit)
-    if unit not in _SIZES or not number.isdigit():
-        raise OptionError(f"memory={size!r} is not possible: give a number of bytes, or text such as \"800M\" or \"2G\"")
-    return int(number) << (10 * _SIZES[unit])
+    try:
+        return whole("memory", int(float(text.removesuffix(unit)) * 2 ** (10 * _SIZES[unit])))
+    except (KeyError, ValueError, OverflowError):
+        raise OptionError(f"memory={size!r} is not possible: give a number of bytes, or text such as \"800M\" or \"2G\"") from None
 
 
-_P = ParamSpec("_P")
-_R = TypeVar("_R")
+class Shown(TypedDict, total=False):
+    """Keywords that say how a call runs, and change nothing about its result.
 
-_OF_METHODS = {
-    "regularization": "method=Nystrom(regularization=...)",
-    "rank": "method=Nystrom(rank=...)",
-    "alpha": "method=Nystrom(alpha=...)",
-    "sampling": "method=Nystrom(sampling=...)",
-    "first_sample": "method=Nystrom(first=...)",
-    "sigma": "method=KernelPca(sigma=...)",
-    "eigenvectors": "method=Spectral(n_eigenfunctions=...)",
-    "mu": "method=Spectral(mu=...)",
-    "iterations": "method=Smacof(max_iterations=...)",
-    "tolerance": "method=Smacof(tolerance=...)",
-}
+    Attributes
+    ----------
+    progress
+        True shows a bar (needs the package tqdm); a function gets the stage, the steps done and all steps.
+    threads
+        Number of threads, 0 for all cores; by default that of `set_threads`.
+    """
 
-OF_MARCHING = {"update": "geodesic=FastMarching(update=...)", "obtuse": "geodesic=FastMarching(obtuse=...)"}
-"""What stands for earlier keywords of distances."""
-
-OF_FORMS = {"n": "n_landmarks=", "dim": "n_components=", **OF_MARCHING, **_OF_METHODS}
-"""What stands for earlier keywords of forms."""
+    progress: Progress
+    threads: int | None
 
 
-def renamed(**forms: str) -> Callable[[Callable[_P, _R]], Callable[_P, _R]]:
-    """A call that names what stands for keywords of earlier versions."""
+class Call(Shown, total=False):
+    """Keywords of every call that may take long. They change nothing about its result.
 
-    def checked(call: Callable[_P, _R]) -> Callable[_P, _R]:
-        @wraps(call)
-        def checking(*args: _P.args, **kwargs: _P.kwargs) -> _R:
-            for old in forms.keys() & kwargs.keys():
-                raise OptionError(f"{old}= is not possible: use {forms[old]}")
-            return call(*args, **kwargs)
+    Attributes
+    ----------
+    progress, threads
+        Whether to show progress, and the number of threads, as in `Shown`.
+    timeout
+        Seconds after which the call ends with `TimeLimitError`.
+    memory
+        Bytes that it may use, or text such as "2G". It replaces the limits that hold otherwise.
+    """
 
-        return checking
+    timeout: float | None
+    memory: int | str | None
 
-    return checked
+
+def warned(message: str, kind: type[Warning]) -> None:
+    """Warns at the line that called this package."""
+    frame, level = sys._getframe(1), 2
+    while frame.f_back is not None and frame.f_globals.get("__package__") == __package__:
+        frame, level = frame.f_back, level + 1
+    warnings.warn(message, kind, stacklevel=level)
+
+
+@contextmanager
+def running(call: Call | Shown) -> Iterator[None]:
+    """Runs the work inside as the keywords of a call say. Without any, calls inside of others run as those."""
+    given: dict[str, Any] = {**call}
+    for name in given.keys() - {"progress", "threads", "timeout", "memory"}:
+        raise TypeError(f"got an unexpected keyword argument {name!r}")
+    if not given:
+        yield
+        return
+    timeout, memory = given.get("timeout"), given.get("memory")
+    with shown(given.get("progress", False)) as update:
+        _canonform.begin_call(
+            update,
+            None if timeout is None else number("timeout", timeout),
+            None if memory is None else n_bytes(memory),
+            some_whole("threads", given.get("threads")),
+        )
+        try:
+            yield
+        finally:
+            _canonform.end_call()
 
 
 @contextmanager

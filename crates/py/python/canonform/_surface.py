@@ -4,42 +4,40 @@ from __future__ import annotations
 
 import json
 import os
-import warnings
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, TypeAlias, overload
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, Unpack, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _canonform, _html
-from ._arrays import Floats, Ints, mesh_of, straight
+from ._arrays import Floats, Ints, SourceRows, VertexValues, mesh_of, numeric, on_vertices, straight
 from ._field import DistanceField
 from ._form import Form
 from ._methods import Embedding, Geodesic, options_of
 from ._operators import ClosestPoints, EdgePoint, Eigenbasis, FacePoint, parsed
 from ._settings import (
-    OF_FORMS,
-    OF_MARCHING,
+    Call,
     Components,
     Landmarks,
     LaplacianKind,
-    Progress,
     SignatureKind,
     StressChoice,
     Weld,
     number,
-    renamed,
-    shown,
+    numbers,
+    running,
     some_whole,
     unmasked,
+    warned,
     whole,
     word,
 )
 from ._stored import ByValue, Constant
 from ._view import SurfaceView, scene
-from .errors import OptionError, PointError, SurfaceLossWarning
+from .errors import MeshError, OptionError, PointError, SurfaceLossWarning
 
 if TYPE_CHECKING:
     import trimesh
@@ -52,8 +50,13 @@ Points: TypeAlias = list[Point] | tuple[Point, ...] | range | Ints
 """Several points."""
 
 
+_T = TypeVar("_T")
+
 _MOST_DROPPED = 0.01
 """Losing more of a surface is a warning."""
+
+_MOST_KEPT = 16
+"""Kernels and matrices that a surface keeps; the oldest goes when there are more."""
 
 
 def distance_methods() -> dict[str, str]:
@@ -121,7 +124,31 @@ class Path(ByValue):
         return f"Path(length={self.length:.6g}, points={len(self)}, from {self.at[0]} to {self.at[-1]})"
 
 
-_of_distances = renamed(method="geodesic=", **OF_MARCHING)
+@dataclass(frozen=True, repr=False, eq=False)
+class RepairedMesh(ByValue):
+    """The mesh that the repair made of the input, without what it dropped, and the way from one to the other.
+
+    Values on the input become values on this mesh by `values[to_input]`, and matrices by `matrix[to_input][:, to_input]`.
+
+    Attributes
+    ----------
+    vertices
+        Its vertices: shape (k, 3).
+    faces
+        Its faces: shape (l, 3).
+    to_input
+        For each of its vertices, the vertex of the input that it was, the first of those that were merged: shape (k,).
+    from_input
+        For each vertex of the input, the vertex that it became, or -1 if the repair dropped it: shape (n,).
+    """
+
+    vertices: Floats
+    faces: Ints
+    to_input: Ints
+    from_input: Ints
+
+    def __repr__(self) -> str:
+        return f"RepairedMesh({len(self.vertices)} vertices, {len(self.faces)} faces)"
 
 
 class Surface(Constant):
@@ -133,21 +160,27 @@ class Surface(Constant):
     Parameters
     ----------
     mesh
-        The vertices: an array of shape (n, 3), of any type of numbers, in any unit of length. Or a mesh of trimesh, meshio, PyVista or
-        Open3D; then leave out `faces`. Or points without faces: they are smoothed if they are noisy, and joined by triangles.
+        The vertices: an array of shape (n, 3), of any type of numbers, in any unit of length. Or, without `faces`: vertices and faces in
+        a tuple; a mesh, scene or points of trimesh, meshio, PyVista or Open3D; the path of a mesh file; the file, open, or its bytes. Or
+        points without faces: they are smoothed if they are noisy, and joined by triangles.
     faces
-        The triangles: an array of shape (m, 3) of vertex numbers, counted from 0. Leave it out for a point cloud.
+        The triangles: an array of shape (m, 3) of vertex numbers, counted from 0. Faces of 4 corners are split into triangles, as in
+        files. Leave it out for a point cloud.
     components
         What happens to a mesh of several components: "largest" keeps the one of the largest area, "bridge" joins them by links, "error"
         refuses the mesh.
     weld
         Which vertices are merged: "seams" merges those on boundaries that coincide or nearly do, "all" those in the same position, "none"
         none, and a number those on boundaries within that distance, in mesh units.
+    format
+        The format of bytes, or of an open file without a name, such as "ply". Otherwise the extension tells it.
 
     Raises
     ------
     MeshError
-        If it is not a mesh of triangles with finite coordinates.
+        If it is not a mesh with finite coordinates.
+    MissingFileError, FileError
+        If a file cannot be read.
 
     Examples
     --------
@@ -168,6 +201,7 @@ class Surface(Constant):
 
     _inner: _canonform.Surface
     _name: str
+    _notes: list[str]
 
     def __init__(
         self,
@@ -176,46 +210,53 @@ class Surface(Constant):
         *,
         components: Components = "largest",
         weld: Weld = "seams",
+        format: str | None = None,
+        **call: Unpack[Call],
     ) -> None:
-        vertices, triangles = mesh_of(mesh, faces)
-        self._inner = _canonform.Surface(vertices, triangles, options_of(components=components, weld=weld))
-        self._name = ""
-        self._warn_of_loss()
-
-    @classmethod
-    def read(cls, path: str | os.PathLike[str], *, components: Components = "largest", weld: Weld = "seams") -> Surface:
-        """Read and repair a mesh file. The extension tells the format.
-
-        Raises `MissingFileError`, `FileError` and `MeshError`.
-        """
-        inner = _canonform.Surface.read(os.fspath(path), options_of(components=components, weld=weld))
-        surface = cls._of(inner, os.path.basename(os.fspath(path)))
-        surface._warn_of_loss()
-        return surface
-
-    def _warn_of_loss(self) -> None:
+        settings = options_of(components=components, weld=weld)
+        self._name, self._notes = "", []
+        with running(call):
+            if isinstance(mesh, (str, os.PathLike)) and faces is None:
+                self._name = os.path.basename(os.fspath(mesh))
+                self._inner, self._notes = _canonform.Surface.read(os.fspath(mesh), settings)
+            elif isinstance(mesh, (bytes, bytearray)) or hasattr(mesh, "readable"):
+                self._name, content = _content_of(mesh, format)
+                self._inner = _canonform.Surface.parse(self._name, content, settings)
+            else:
+                vertices, triangles, self._notes = mesh_of(mesh, faces)
+                self._inner = _canonform.Surface(vertices, triangles, settings)
         share = self.repair_report["dropped_area_share"]
         if share > _MOST_DROPPED:
-            warnings.warn(
-                f"{100 * share:.0f} % of the surface{f' of {self._name}' if self._name else ''} is not used: {self.repair_report}; "
-                'components="bridge" keeps it',
+            whose = f" of {self._name}" if self._name else ""
+            warned(
+                f"{100 * share:.0f} % of the surface{whose} is not used: {self.repair_report}; components=\"bridge\" keeps it",
                 SurfaceLossWarning,
-                stacklevel=3,
             )
 
     @classmethod
     def _of(cls, inner: _canonform.Surface, name: str = "") -> Surface:
         surface = cls.__new__(cls)
-        surface._inner, surface._name = inner, name
+        surface._inner, surface._name, surface._notes = inner, name, []
         return surface
 
     def _state(self) -> dict[str, Any]:
         vertices, faces, repair, content = self._inner.state()
-        return {"vertices": vertices, "faces": faces, "repair": repair, "content": content, "name": self._name}
+        return {"vertices": vertices, "faces": faces, "repair": repair, "content": content, "name": self._name, "notes": self._notes}
 
     def _restore(self, state: dict[str, Any]) -> None:
         mesh = (state[key] for key in ("vertices", "faces", "repair", "content"))
-        self._inner, self._name = _canonform.Surface.restore(*mesh), state["name"]
+        self._inner, self._name, self._notes = _canonform.Surface.restore(*mesh), state["name"], state["notes"]
+
+    def _once(self, make: Callable[[], _T], *key: Any) -> _T:
+        """What was made for this key before, or what is made now and kept."""
+        kept: dict[tuple[Any, ...], Any] = self.__dict__.setdefault("_kept", {})
+        if key not in kept:
+            made = make()
+            while len(kept) >= _MOST_KEPT:
+                kept.pop(next(iter(kept)), None)
+            kept[key] = made
+        found: _T = kept[key]
+        return found
 
     @property
     def n_vertices(self) -> int:
@@ -248,18 +289,32 @@ class Surface(Constant):
 
     @cached_property
     def repair_report(self) -> RepairReport:
-        """What the repair changed. Vertices that it dropped have infinite distances, and NaN as coordinates."""
+        """What the repair changed. Results are NaN at vertices that it dropped, see `kept`."""
         report, lines = self._inner.repair_report()
-        return RepairReport(json.loads(report), lines)
+        return RepairReport(json.loads(report), [*self._notes, *lines])
 
-    @_of_distances
+    @cached_property
+    def repaired(self) -> RepairedMesh:
+        """The repaired mesh, and where its vertices come from."""
+        return RepairedMesh(*self._inner.repaired_mesh())
+
+    @property
+    def kept(self) -> NDArray[np.bool_]:
+        """Which vertices of the input are on the surface, shape (n,): all but those without faces and those of dropped components.
+
+        All results have finite numbers there, and NaN elsewhere.
+        """
+        kept: NDArray[np.bool_] = self.repaired.from_input >= 0
+        return kept
+
     def distances(
         self,
         sources: Point | Iterable[Point],
         *,
         geodesic: Geodesic = "fast-marching",
         max_distance: float = np.inf,
-    ) -> Floats:
+        **call: Unpack[Call],
+    ) -> VertexValues:
         """Distances along the surface from the nearest of the sources to every vertex.
 
         Parameters
@@ -274,8 +329,8 @@ class Surface(Constant):
 
         Returns
         -------
-        ndarray of shape (n,)
-            In mesh units; infinite for vertices that the repair dropped.
+        VertexValues of shape (n,)
+            In mesh units; NaN for vertices that the repair dropped.
 
         Raises
         ------
@@ -285,32 +340,31 @@ class Surface(Constant):
         points = _several(sources, self.n_vertices)
         if not points:
             raise PointError("there are no sources; give at least one point")
-        return self._inner.distances(points, options_of(geodesic=geodesic), number("max_distance", max_distance, 0))
+        with running(call):
+            return on_vertices(self._inner.distances(points, options_of(geodesic=geodesic), number("max_distance", max_distance, 0)))
 
-    @_of_distances
     def distances_many(
         self,
         sources: Iterable[Point],
         *,
         geodesic: Geodesic = "fast-marching",
         max_distance: float = np.inf,
-        progress: Progress = False,
-    ) -> Floats:
+        **call: Unpack[Call],
+    ) -> SourceRows:
         """Distances from each source on its own, computed in parallel. Row i equals `distances(sources[i])`.
 
         Returns an array of shape (number of sources, n), in mesh units.
         """
-        with shown(progress) as report:
+        with running(call):
             return self._inner.distances_many(
-                _several(sources, self.n_vertices), options_of(geodesic=geodesic), number("max_distance", max_distance, 0), report
-            )
+                _several(sources, self.n_vertices), options_of(geodesic=geodesic), number("max_distance", max_distance, 0)
+            ).view(SourceRows)
 
     @overload
-    def path(self, a: Point, b: Point, *, geodesic: Geodesic = ...) -> Path: ...
+    def path(self, a: Point, b: Point, *, geodesic: Geodesic = ..., **call: Unpack[Call]) -> Path: ...
     @overload
-    def path(self, a: Point, b: Points, *, geodesic: Geodesic = ...) -> list[Path]: ...
-    @_of_distances
-    def path(self, a: Point, b: Point | Points, *, geodesic: Geodesic = "fast-marching") -> Path | list[Path]:
+    def path(self, a: Point, b: Points, *, geodesic: Geodesic = ..., **call: Unpack[Call]) -> list[Path]: ...
+    def path(self, a: Point, b: Point | Points, *, geodesic: Geodesic = "fast-marching", **call: Unpack[Call]) -> Path | list[Path]:
         """The shortest path along the surface from a to b; one path for each if b is a list, tuple or array of points.
 
         The path crosses faces: it is straightened until it is locally shortest, so it may be shorter than the distance that an approximate
@@ -321,18 +375,18 @@ class Surface(Constant):
         single = isinstance(b, (int, str, np.integer, EdgePoint, FacePoint))
         [source] = _several(a, self.n_vertices)
         ends = _several(b, self.n_vertices)
-        paths = self._inner.paths(source, ends, options_of(geodesic=geodesic))
+        with running(call):
+            paths = self._inner.paths(source, ends, options_of(geodesic=geodesic))
         found = [Path(points, list(map(parsed, at)), along, length) for points, at, along, length in paths]
         return found[0] if single else found
 
-    @renamed(n="n_points=", method="geodesic=", **OF_MARCHING)
     def farthest_points(
         self,
         n_points: int,
         *,
         first: int | None = None,
         geodesic: Geodesic = "fast-marching",
-        progress: Progress = False,
+        **call: Unpack[Call],
     ) -> Ints:
         """Vertices spread evenly over the surface, each the farthest from those before it.
 
@@ -348,17 +402,16 @@ class Surface(Constant):
         ndarray of shape (n_points,)
             Vertex numbers of the input.
         """
-        with shown(progress) as report:
-            return self._inner.farthest_points(whole("n_points", n_points), some_whole("first", first), options_of(geodesic=geodesic), report)
+        with running(call):
+            return self._inner.farthest_points(whole("n_points", n_points), some_whole("first", first), options_of(geodesic=geodesic))
 
-    @renamed(landmarks="n_landmarks=", method="geodesic=", **OF_MARCHING)
     def distance_field(
         self,
         n_landmarks: int = 100,
         *,
         rank: int | None = None,
         geodesic: Geodesic = "fast-marching",
-        progress: Progress = False,
+        **call: Unpack[Call],
     ) -> DistanceField:
         """The distances between all pairs of vertices, with bounds, in little memory.
 
@@ -372,13 +425,12 @@ class Surface(Constant):
             How distances are measured, as in `distances`. Only "exact" certifies the bounds; with others they are widened by the error that
             was measured on this surface.
         """
-        with shown(progress) as report:
+        with running(call):
             inner = _canonform.DistanceField.build(
-                self._inner, whole("n_landmarks", n_landmarks), some_whole("rank", rank), options_of(geodesic=geodesic), report
+                self._inner, whole("n_landmarks", n_landmarks), some_whole("rank", rank), options_of(geodesic=geodesic)
             )
         return DistanceField(inner)
 
-    @renamed(**OF_FORMS)
     def canonical_form(
         self,
         n_landmarks: Landmarks = 100,
@@ -389,9 +441,7 @@ class Surface(Constant):
         stress: StressChoice = "auto",
         seed: int = 0,
         reuse: Form | None = None,
-        timeout: float | None = None,
-        memory: int | str | None = None,
-        progress: Progress = False,
+        **call: Unpack[Call],
     ) -> Form:
         """Embed the surface so that straight-line distances approximate those along it.
 
@@ -417,8 +467,6 @@ class Surface(Constant):
         reuse
             An earlier form of this surface. Distances that it has measured are looked up, so that further landmarks, another rank or
             another method cost less; the result is the same.
-        timeout, memory
-            Limits, in seconds and in bytes; memory may be text such as "2G".
 
         Raises
         ------
@@ -427,17 +475,15 @@ class Surface(Constant):
         EmbeddingError, LimitError
         """
         settings = options_of(
-            n_landmarks=n_landmarks, method=method, n_components=n_components, geodesic=geodesic,
-            stress=stress, seed=seed, timeout=timeout, memory=memory,
-        )  # fmt: skip
-        with shown(progress) as report:
+            n_landmarks=n_landmarks, method=method, n_components=n_components, geodesic=geodesic, stress=stress, seed=seed
+        )
+        with running(call):
             earlier = None if reuse is None else reuse._inner
-            inner = self._inner.canonical_form(settings, earlier, report)
+            inner = self._inner.canonical_form(settings, earlier)
         return Form(inner, self, settings, self._name)
 
-    @renamed(n="n_landmarks=")
     def signature(
-        self, kind: SignatureKind = "fused", *, n_landmarks: int = 100, size: bool = False, progress: Progress = False
+        self, kind: SignatureKind = "fused", *, n_landmarks: int = 100, size: bool = False, **call: Unpack[Call]
     ) -> NDArray[np.float32] | Floats:
         """A vector that describes the shape regardless of pose, position, triangulation and, by default, size.
 
@@ -456,10 +502,10 @@ class Surface(Constant):
         ndarray
             float32 for "fused", else float64. It is computed once and kept.
         """
-        with shown(progress) as report:
-            return self._inner.signature(word("kind", kind), options_of(n_landmarks=n_landmarks, size=size), report)
+        with running(call):
+            return self._inner.signature(word("kind", kind), options_of(n_landmarks=n_landmarks, size=size))
 
-    def laplacian(self, *, kind: LaplacianKind = "intrinsic") -> sparse.csr_array:
+    def laplacian(self, *, kind: LaplacianKind = "intrinsic", **call: Unpack[Call]) -> sparse.csr_array:
         """The stiffness matrix, sparse, symmetric, positive semidefinite: shape (n, n). Needs SciPy.
 
         Parameters
@@ -468,36 +514,85 @@ class Surface(Constant):
             "intrinsic": cotangents on an intrinsic Delaunay triangulation (Sharp and Crane 2020), none of them negative, for any mesh.
             "cotangent": cotangents of the faces as they are.
 
-        Vertices that the repair dropped have empty rows; of those that it merged, the first stands for all.
+        Vertices that the repair dropped have empty rows; of those that it merged, the first stands for all. With `i =
+        surface.repaired.to_input`, `laplacian()[i][:, i]` is the matrix of the repaired mesh.
         """
-        scipy_sparse = _sparse()
-        rows, columns, values, _ = _canonform.laplacian(self._inner, _is_intrinsic(kind))
-        matrix: sparse.csr_array = scipy_sparse.coo_array((values, (rows, columns)), shape=(self.n_vertices, self.n_vertices)).tocsr()
-        return matrix
+        with running(call):
+            return self._operators(kind)[0].copy()
 
-    def mass(self, *, kind: LaplacianKind = "intrinsic") -> sparse.dia_array:
-        """The areas around the vertices, in squared mesh units, as a sparse diagonal matrix: shape (n, n). Needs SciPy."""
-        masses = _canonform.laplacian(self._inner, _is_intrinsic(kind))[3]
-        diagonal: sparse.dia_array = _sparse().diags_array(masses)
-        return diagonal
+    def mass(self, *, kind: LaplacianKind = "intrinsic", **call: Unpack[Call]) -> sparse.dia_array:
+        """The areas around the vertices, in squared mesh units, as a sparse diagonal matrix: shape (n, n). Needs SciPy.
 
-    @renamed(k="n_eigenfunctions=")
-    def eigenbasis(self, n_eigenfunctions: int = 100, *, progress: Progress = False) -> Eigenbasis:
-        """The smallest eigenvalues of the intrinsic Laplacian, and their eigenfunctions; fewer if the surface has fewer vertices."""
-        with shown(progress) as report:
-            n = whole("n_eigenfunctions", n_eigenfunctions, 1)
-            values, functions = _canonform.eigenbasis(self._inner, n, report)
-        return Eigenbasis(values, functions, _canonform.laplacian(self._inner, True)[3])
+        Vertices whose rows of the Laplacian are empty have mass 1, so that the matrix is not singular.
+        """
+        with running(call):
+            masses = np.ones(self.n_vertices)
+            own = self.repaired.to_input
+            masses[own] = self._operators(kind)[1][own]
+            diagonal: sparse.dia_array = _sparse().diags_array(masses)
+            return diagonal
 
-    @renamed(n="n_times=", k="n_eigenfunctions=")
-    def hks(self, times: ArrayLike | None = None, *, n_times: int = 16, n_eigenfunctions: int = 100) -> Floats:
-        """The heat kernel signature of every vertex, see `Eigenbasis.hks`."""
-        return self.eigenbasis(n_eigenfunctions).hks(times, n_times=n_times)
+    def _operators(self, kind: str) -> tuple[sparse.csr_array, Floats]:
+        """The stiffness matrix, and the areas around the vertices."""
 
-    @renamed(n="n_energies=", k="n_eigenfunctions=")
-    def wks(self, energies: ArrayLike | None = None, *, n_energies: int = 16, n_eigenfunctions: int = 100) -> Floats:
-        """The wave kernel signature of every vertex, see `Eigenbasis.wks`."""
-        return self.eigenbasis(n_eigenfunctions).wks(energies, n_energies=n_energies)
+        def made() -> tuple[sparse.csr_array, Floats]:
+            rows, columns, values, masses = _canonform.laplacian(self._inner, kind == "intrinsic")
+            return _sparse().coo_array((values, (rows, columns)), shape=(self.n_vertices, self.n_vertices)).tocsr(), masses
+
+        if kind not in ("intrinsic", "cotangent"):
+            raise OptionError(f'kind={kind!r} is not possible: use "intrinsic" or "cotangent"')
+        return self._once(made, "operators", kind)
+
+    def eigenbasis(self, n_eigenfunctions: int = 100, **call: Unpack[Call]) -> Eigenbasis:
+        """The smallest eigenvalues of the intrinsic Laplacian, and their eigenfunctions; fewer if the surface has fewer vertices.
+
+        They are kept: the next call takes the first of them, and finds more only if there are not enough.
+        """
+        n = whole("n_eigenfunctions", n_eigenfunctions, 1)
+        with running(call):
+            found, basis = self.__dict__.get("_basis", (0, None))
+            if found < n:
+                values, functions, masses = _canonform.eigenbasis(self._inner, n)
+                found, basis = self.__dict__["_basis"] = n, Eigenbasis(values, on_vertices(functions, writeable=False), masses)
+            kept: Eigenbasis = basis if found == n else basis.first(n)
+            return kept
+
+    def hks(
+        self,
+        times: ArrayLike | None = None,
+        *,
+        n_times: int = 16,
+        scaled: bool = False,
+        n_eigenfunctions: int = 100,
+        **call: Unpack[Call],
+    ) -> VertexValues:
+        """The heat kernel signature of every vertex, see `Eigenbasis.hks`. It is kept, and not writable."""
+        at = None if times is None else numbers("times", times, 0)
+
+        def made() -> VertexValues:
+            return self.eigenbasis(n_eigenfunctions).hks(at, n_times=n_times, scaled=scaled)
+
+        with running(call):
+            return self._once(made, "hks", None if at is None else at.tobytes(), n_times, scaled, n_eigenfunctions)
+
+    def wks(
+        self,
+        energies: ArrayLike | None = None,
+        *,
+        n_energies: int = 100,
+        sigma: float | None = None,
+        scaled: bool = True,
+        n_eigenfunctions: int = 100,
+        **call: Unpack[Call],
+    ) -> VertexValues:
+        """The wave kernel signature of every vertex, see `Eigenbasis.wks`. It is kept, and not writable."""
+        at = None if energies is None else numbers("energies", energies)
+
+        def made() -> VertexValues:
+            return self.eigenbasis(n_eigenfunctions).wks(at, n_energies=n_energies, sigma=sigma, scaled=scaled)
+
+        with running(call):
+            return self._once(made, "wks", None if at is None else at.tobytes(), n_energies, sigma, scaled, n_eigenfunctions)
 
     @cached_property
     def _face_vectors(self) -> Floats:
@@ -513,17 +608,17 @@ class Surface(Constant):
         return areas
 
     @cached_property
-    def face_normals(self) -> Floats:
+    def face_normals(self) -> VertexValues:
         """The unit normal of each face of the input: shape (m, 3). NaN for a face without area."""
-        return _units(self._face_vectors)
+        return on_vertices(_units(self._face_vectors))
 
     @cached_property
-    def normals(self) -> Floats:
+    def normals(self) -> VertexValues:
         """The unit normal at each vertex of the input, the mean of its faces by area: shape (n, 3). NaN at a vertex without faces."""
         sums = np.zeros_like(self.vertices)
         for corner in range(3):
             np.add.at(sums, self.faces[:, corner], self._face_vectors)
-        return _units(sums)
+        return on_vertices(_units(sums))
 
     @cached_property
     def edges(self) -> Ints:
@@ -532,20 +627,77 @@ class Surface(Constant):
         edges: Ints = np.unique(sides, axis=0)
         return edges
 
-    def gradient(self, values: ArrayLike) -> Floats:
-        """The gradient on each face of a function that is linear there, from its values at the vertices: shape (m, 3).
-
-        NaN on a face without area.
-        """
-        array = self._one_per_vertex(values)
+    @cached_property
+    def _slopes(self) -> Floats:
+        """On each face, the gradients of the functions that are 1 at one corner and 0 at the others: shape (m, 3, 3)."""
         corners = self.vertices[self.faces]
         opposite = np.roll(corners, 1, axis=1) - np.roll(corners, -1, axis=1)
         sides = np.cross(self._face_vectors[:, None, :], opposite)
         with np.errstate(invalid="ignore", divide="ignore"):
-            gradient: Floats = (array[self.faces][:, :, None] * sides).sum(axis=1) / (2 * self.areas[:, None]) ** 2
-        return gradient
+            slopes: Floats = sides / (2 * self.areas[:, None, None]) ** 2
+        return slopes
 
-    def log_map(self, source: Point, *, max_distance: float = np.inf, progress: Progress = False) -> Floats:
+    @overload
+    def gradient(self) -> sparse.csr_array: ...
+    @overload
+    def gradient(self, values: ArrayLike) -> VertexValues: ...
+    def gradient(self, values: ArrayLike | None = None) -> sparse.csr_array | VertexValues:
+        """The gradient on each face of a function that is linear there.
+
+        Parameters
+        ----------
+        values
+            The values of the function at the vertices, shape (n,).
+
+        Returns
+        -------
+        VertexValues of shape (m, 3), or without values a sparse matrix of shape (3 m, n)
+            `(surface.gradient() @ values).reshape(-1, 3)` equals `surface.gradient(values)`, except on faces without area, where the
+            matrix has empty rows, and the gradient is NaN.
+        """
+        if values is not None:
+            array = self._one_per_vertex(values)
+            return on_vertices(np.einsum("fk,fkx->fx", array[self.faces], self._slopes))
+
+        def made() -> sparse.csr_array:
+            n_faces, slopes = self.n_faces, np.where(np.isfinite(self._slopes), self._slopes, 0)
+            rows = np.arange(3 * n_faces).reshape(n_faces, 1, 3) + np.zeros((1, 3, 1), dtype=np.int64)
+            columns = np.broadcast_to(self.faces[:, :, None], slopes.shape)
+            entries = slopes.ravel(), (rows.ravel(), columns.ravel())
+            return _sparse().coo_array(entries, shape=(3 * n_faces, self.n_vertices)).tocsr()
+
+        return self._once(made, "gradient").copy()
+
+    @overload
+    def divergence(self) -> sparse.csr_array: ...
+    @overload
+    def divergence(self, vectors: ArrayLike) -> VertexValues: ...
+    def divergence(self, vectors: ArrayLike | None = None) -> sparse.csr_array | VertexValues:
+        """The divergence of vectors on faces, integrated over the area around each vertex. Needs SciPy.
+
+        Divided by the areas around the vertices, the diagonal of `mass`, it is a density. `divergence() @ gradient()` is minus the
+        Laplacian of kind "cotangent", on a mesh that the repair left as it is.
+
+        Parameters
+        ----------
+        vectors
+            A vector for each face: shape (m, 3).
+
+        Returns
+        -------
+        VertexValues of shape (n,), or without vectors a sparse matrix of shape (n, 3 m)
+        """
+
+        def made() -> sparse.csr_array:
+            return (-self.gradient().T.multiply(np.repeat(self.areas, 3))).tocsr()
+
+        matrix = self._once(made, "divergence")
+        if vectors is None:
+            return matrix.copy()
+        given = numeric("vectors", vectors, (self.n_faces, 3)).ravel()
+        return on_vertices(np.asarray(matrix @ np.where(np.isfinite(given), given, 0)))
+
+    def log_map(self, source: Point, *, max_distance: float = np.inf, **call: Unpack[Call]) -> VertexValues:
         """Where the vertices lie around a point, unrolled into the plane that touches there: shape (n, 2), in mesh units.
 
         Row v is the logarithm of vertex v: the direction in which the shortest path from the source to it starts, as long as this
@@ -568,18 +720,17 @@ class Surface(Constant):
         points = _several(source, self.n_vertices)
         if len(points) != 1:
             raise PointError(f"the logarithmic map is about one point, not {len(points)}")
-        with shown(progress) as report:
-            return _canonform.log_map(self._inner, points[0], number("max_distance", max_distance, 0), report)
+        with running(call):
+            return on_vertices(_canonform.log_map(self._inner, points[0], number("max_distance", max_distance, 0)))
 
-    def closest_point(self, points: ArrayLike) -> ClosestPoints:
-        """For points in space, shape (3,) or (k, 3), the nearest points of the faces of the input."""
-        try:
-            queries = straight(np.atleast_2d(np.asarray(points, dtype=np.float64)))
-        except (TypeError, ValueError) as fault:
-            raise PointError(f"points must be an array of shape (k, 3): {fault}") from fault
-        if queries.ndim != 2 or queries.shape[1] != 3 or not np.isfinite(queries).all():
-            raise PointError(f"points must be an array of finite numbers of shape (k, 3), not of shape {queries.shape}")
-        places, distances, faces = _canonform.closest_points(self._inner, queries)
+    def closest_point(self, points: ArrayLike, **call: Unpack[Call]) -> ClosestPoints:
+        """For points in space, shape (3,) or (k, 3), the nearest points of the faces of the input that the repair kept."""
+        single = points if np.ndim(points) != 1 else [points]
+        queries: Floats = numeric("points", single, ("k", 3), error=PointError)
+        if not np.isfinite(queries).all():
+            raise PointError("points has numbers that are not finite; leave them out")
+        with running(call):
+            places, distances, faces = _canonform.closest_points(self._inner, queries)
         a, b, c = (self.vertices[self.faces[faces, corner]] for corner in range(3))
         normal = np.cross(b - a, c - a)
         shares = [np.einsum("ij,ij->i", np.cross(y - x, places - x), normal) for x, y in ((b, c), (c, a), (a, b))]
@@ -592,9 +743,13 @@ class Surface(Constant):
 
         return trimesh.Trimesh(self.vertices, self.faces, process=False)
 
-    def write(self, path: str | os.PathLike[str]) -> None:
-        """Write the input as a mesh file. The extension tells the format; .ply keeps coordinates exactly. Raises `FileError`."""
-        _canonform.write(straight(self.vertices), self.faces, os.fspath(path))
+    def write(self, path: str | os.PathLike[str], *, repaired: bool = False) -> None:
+        """Write the input, or the repaired mesh, as a mesh file. The extension tells the format; .ply keeps coordinates exactly.
+
+        Raises `FileError`.
+        """
+        mesh = self.repaired if repaired else self
+        _canonform.write(straight(mesh.vertices), straight(mesh.faces), os.fspath(path))
 
     def picture(self, values: ArrayLike | None = None, *, width: int = 600, height: int = 600) -> bytes:
         """A shaded picture of the surface as the bytes of a PNG file, coloured by values at its vertices if given."""
@@ -619,7 +774,7 @@ class Surface(Constant):
     def _one_per_vertex(self, values: ArrayLike) -> Floats:
         if np.shape(values) != (self.n_vertices,):
             raise OptionError(f"values must be one number for each of the {self.n_vertices} vertices, not of shape {np.shape(values)}")
-        return straight(unmasked("values", values), dtype=np.float64)
+        return numeric("values", values, (self.n_vertices,))
 
     def __repr__(self) -> str:
         name = f"{self._name!r}, " if self._name else ""
@@ -667,12 +822,6 @@ def _sparse() -> Any:
     return sparse
 
 
-def _is_intrinsic(kind: str) -> bool:
-    if kind not in ("intrinsic", "cotangent"):
-        raise OptionError(f'kind={kind!r} is not possible: use "intrinsic" or "cotangent"')
-    return kind == "intrinsic"
-
-
 def _units(vectors: Floats) -> Floats:
     with np.errstate(invalid="ignore", divide="ignore"):
         units: Floats = vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
@@ -693,22 +842,14 @@ def surface_of(mesh: AnyMesh) -> Surface:
 
     if isinstance(mesh, Surface):
         return mesh
-    if isinstance(mesh, Shape):
-        return mesh.surface()
-    if isinstance(mesh, (str, os.PathLike)):
-        return Surface.read(mesh)
-    return Surface(*_with_faces(mesh))
+    return mesh.surface() if isinstance(mesh, Shape) else Surface(mesh)
 
 
-def arrays_of(mesh: AnyMesh) -> tuple[Floats, Ints]:
-    """The vertices and faces of a mesh as they are, without a repair."""
-    if isinstance(mesh, Surface):
-        return mesh.vertices, mesh.faces
-    if isinstance(mesh, (str, os.PathLike)):
-        return arrays_of(Surface.read(mesh))
-    return mesh_of(*_with_faces(mesh))
-
-
-def _with_faces(mesh: Any) -> tuple[Any, Any]:
-    is_pair = isinstance(mesh, tuple) and len(mesh) == 2 and np.ndim(mesh[0]) == 2
-    return mesh if is_pair else (mesh, None)
+def _content_of(file: Any, format: str | None) -> tuple[str, bytes]:
+    """Name and content of an open file, or of bytes."""
+    name = getattr(file, "name", None)
+    name = f"mesh.{format}" if format else name if isinstance(name, str) else ""
+    if not name:
+        raise MeshError('bytes and files without a name do not tell their format; name it, such as format="ply"')
+    content = file.read() if hasattr(file, "read") else file
+    return os.path.basename(name), content.encode() if isinstance(content, str) else bytes(content)

@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, Unpack
 
 import numpy as np
 
 from . import _canonform, _html
 from ._arrays import Floats, Ints
-from ._settings import Family, MeshFormat, Progress, shown, whole
+from ._settings import Call, Family, MeshFormat, running, whole
 from ._stored import ByValue
 from ._surface import Surface
 from .errors import OptionError
@@ -91,7 +91,7 @@ def generate(
     poses: int | Sequence[int] | None = None,
     n_vertices: int = 3400,
     seed: int = 1,
-    progress: Progress = False,
+    **call: Unpack[Call],
 ) -> list[Shape]:
     """Generate labelled shapes in different poses.
 
@@ -117,7 +117,7 @@ def generate(
     known = dict(articulated)
     names: list[str] = _DATASET if family == "all" else [family] if isinstance(family, str) else list(family)
     made: list[Shape] = []
-    with shown(progress) as update:
+    with running(call):
         for name in names:
             if name not in known and name not in plans:
                 raise OptionError(f"family={name!r} is not possible: use \"all\", {', '.join(map(repr, families()))}")
@@ -128,9 +128,9 @@ def generate(
                     raise OptionError(f"poses={pose} is not possible: {name} has the poses 0 to {count - 1}")
             if name in known:
                 shapes = [(list(known).index(name), pose) for pose in wanted]
-                found = _canonform.generate(shapes, n_vertices, seed, update)
+                found = _canonform.generate(shapes, n_vertices, seed)
             else:
-                found = _canonform.creatures([(plans.index(name), pose) for pose in wanted], n_vertices, seed, update)
+                found = _canonform.creatures([(plans.index(name), pose) for pose in wanted], n_vertices, seed)
             made.extend(Shape(*shape) for shape in found)
     return made
 

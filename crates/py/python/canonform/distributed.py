@@ -35,9 +35,9 @@ import numpy as np
 
 from . import _canonform, _vectors
 from ._arrays import Floats
-from ._index import OF_INDEXES, AnyPath, Index, Meshes, SearchResults, _dataset, _in_files, _label_file
+from ._index import AnyPath, Index, Meshes, SearchResults, _dataset, _in_files, _label_file
 from ._methods import Embedding, Geodesic, options_of
-from ._settings import Components, IndexDistance, Landmarks, Progress, Ranking, Weld, renamed, shown, whole, word
+from ._settings import Components, IndexDistance, Landmarks, Progress, Ranking, Weld, shown, whole, word
 from ._stored import Stored
 from ._surface import AnyMesh, Surface, surface_of
 from .errors import MeshError, NoSuchShapeError, OptionError, ShapeIndexError
@@ -79,7 +79,6 @@ def batches_by_size(sizes: Sequence[int], n_batches: int, most: int = _MOST_IN_B
     return batches
 
 
-@renamed(**OF_INDEXES)
 def build_index(
     meshes: Meshes,
     client: Client,
@@ -448,7 +447,7 @@ class _Search:
             if not found:
                 raise NoSuchShapeError(f"{name!r} is neither a file nor a shape of the table")
             return self.ask("query_of", [(found[0], name, rank, explain)])[0], None, name
-        surface = Surface.read(name) if name else surface_of(query)
+        surface = Surface(name) if name else surface_of(query)
         name = os.path.basename(name) or surface._name or "the query"
         return _canonform.query_of_surface(surface._inner, self.facts.options, name, rank, explain), surface, name
 
@@ -543,7 +542,7 @@ def _describe(
     path = os.path.join(place, f"{name}.canonform")
     # An unfinished batch is resumed, and one that is there is recognised by the content of its meshes.
     report = _canonform.Index.build(
-        dataset, path, label_file, False, None, {name for name, _, _ in shapes}, settings, None
+        dataset, path, label_file, False, None, {name for name, _, _ in shapes}, settings
     )
     return path, json.loads(report)
 
@@ -551,7 +550,7 @@ def _describe(
 def _measure(path: str, rows: list[str], columns: list[str] | None, kind: str) -> Floats:
     """Measures the distances between two blocks of shapes, on a worker."""
     _use_threads_of_worker()
-    return _canonform.Index.open(path).distances(rows, columns, kind, None)
+    return _canonform.Index.open(path).distances(rows, columns, kind)
 
 
 def _use_threads_of_worker() -> None:
