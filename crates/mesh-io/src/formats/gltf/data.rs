@@ -73,11 +73,22 @@ pub(super) fn open(bytes: &[u8]) -> Result<(Root, Option<&[u8]>), Located> {
         }
     }
     let root = serde_json::from_slice(json).map_err(|error| {
-        let fault = Fault::syntax("the JSON of glTF 2.0", error.to_string());
+        let fault = Fault::syntax("the JSON of glTF 2.0", there(json, &error));
         if is_text { fault.in_line(error.line()) } else { fault.at_byte(HEADER + CHUNK_HEADER) }
     })?;
     Ok((root, binary))
 }
+
+/// The text around the place in JSON at which it cannot be read.
+fn there(json: &[u8], error: &serde_json::Error) -> String {
+    let line = json.split(|byte| *byte == b'\n').nth(error.line().saturating_sub(1)).unwrap_or_default();
+    let start = error.column().saturating_sub(AROUND).min(line.len());
+    let around = &line[start..line.len().min(start + 2 * AROUND)];
+    String::from_utf8_lossy(around).trim().to_owned()
+}
+
+/// Bytes of JSON before and after a fault that its message shows.
+const AROUND: usize = 20;
 
 /// The kind and the data of a chunk. Less than the header of one at the end of the file is padding.
 type Chunk<'a> = Option<(&'a [u8], &'a [u8])>;
