@@ -10,10 +10,12 @@ use canonform::library::{
     evaluate_index, export_index, find_duplicates, indexed_shapes, mesh_path, remove_from_index,
     unchanged_index,
 };
+use canonform::linalg::DistanceMatrix;
 use canonform::mesh::RepairOptions;
+use canonform::retrieval::{Labels, evaluate_ranked};
 use canonform::search::{Answer, PairwiseDistance, Query, SearchOptions, ShapeSearch};
 use canonform::{DescribeOptions, Error, Observer};
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -23,7 +25,7 @@ use crate::arrays;
 use crate::error::{Exception, to_python, with_remedy};
 use crate::record::json;
 use crate::run::run;
-use crate::settings::{Settings, chosen, measure};
+use crate::settings::{Settings, chosen, in_words, measure};
 use crate::surface::Surface;
 
 /// An index that is open for searches.
@@ -263,6 +265,12 @@ impl Index {
         self.search.index().contains(id).map_err(|fault| to_python(&fault.into()))
     }
 
+    /// Name, class, path and numbers of vertices and faces of a shape.
+    fn entry(&self, id: &str) -> PyResult<ListedShape> {
+        let found = self.search.index().entry(id).map_err(|fault| to_python(&fault.into()))?;
+        Ok(self.listed(found))
+    }
+
     /// What the index holds, as JSON.
     fn info(&self) -> PyResult<String> {
         let index = self.search.index();
@@ -275,12 +283,7 @@ impl Index {
 
     /// Name, class, path and numbers of vertices and faces of all shapes.
     fn shapes(&self, py: Python<'_>) -> PyResult<Vec<ListedShape>> {
-        run(py, |_| {
-            let listed = |Entry { id, label, path, facts, .. }: Entry| {
-                (id, label, mesh_path(&self.path, &path), facts.vertices, facts.faces)
-            };
-            Ok(self.search.index().entries()?.into_iter().map(listed).collect())
-        })
+        run(py, |_| Ok(self.search.index().entries()?.into_iter().map(|entry| self.listed(entry)).collect()))
     }
 
     /// The fused vectors of all shapes, in the order of `shapes`.
@@ -353,8 +356,9 @@ impl Index {
         let mut options = DuplicateOptions { min_confidence, ..DuplicateOptions::default() };
         if let Some(kinds) = kinds {
             let kinds = kinds.into_iter().map(serde_json::Value::from).collect();
-            options.kinds = serde_json::from_value(serde_json::Value::Array(kinds))
-                .map_err(|fault| Exception::Option.with(&format!("kinds: {fault}")))?;
+            options.kinds = serde_json::from_value(serde_json::Value::Array(kinds)).map_err(
+                |fault: serde_json::Error| Exception::Option.with(&format!("kinds: {}", in_words(&fault))),
+            )?;
         }
         let found = run(py, |observer| find_duplicates(&self.search, &options, observer))?;
         Ok(json(&found))
@@ -362,6 +366,10 @@ impl Index {
 }
 
 impl Index {
+    fn listed(&self, Entry { id, label, path, facts, .. }: Entry) -> ListedShape {
+        (id, label, mesh_path(&self.path, &path), facts.vertices, facts.faces)
+    }
+
     /// The path of a mesh that this index states.
     fn placed(&self, path: &str) -> String {
         mesh_path(&self.path, path).to_string_lossy().into_owned()
@@ -451,6 +459,22 @@ pub(crate) fn class_threshold(py: Python<'_>, paths: Vec<PathBuf>) -> PyResult<S
         Ok(canonform::index::class_threshold(&indexes)?)
     })?;
     Ok(json(&threshold))
+}
+
+/// Scores a square matrix of distances by the classes of its rows; returns the scores as JSON. Both directions are averaged.
+#[pyfunction]
+pub(crate) fn evaluate_matrix(
+    py: Python<'_>,
+    distances: PyReadonlyArray2<'_, f64>,
+    labels: Vec<String>,
+    k: usize,
+    rank: &str,
+) -> PyResult<String> {
+    let (distances, rank_by) = (distances.as_array(), chosen("rank", rank)?);
+    let mean = |i: usize, j: usize| 0.5 * (distances[(i, j)] + distances[(j, i)]);
+    let matrix = DistanceMatrix::from_pairs(labels.len(), mean).map_err(|fault| to_python(&fault.into()))?;
+    let scores = run(py, |_| Ok(evaluate_ranked(&matrix, &Labels::new(&labels), k, rank_by)?))?;
+    Ok(json(&scores))
 }
 
 /// Merges indexes into one file; returns the report as JSON.

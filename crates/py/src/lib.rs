@@ -41,8 +41,8 @@ mod _canonform {
     use crate::form::Form;
     #[pymodule_export]
     use crate::index::{
-        Index, class_threshold, content_hashes, list_folder, merge_answers, merge_indexes, query_components,
-        query_of_surface, shortlist,
+        Index, class_threshold, content_hashes, evaluate_matrix, list_folder, merge_answers, merge_indexes,
+        query_components, query_of_surface, shortlist,
     };
     #[pymodule_export]
     use crate::matching::{map_basis, map_points, match_surfaces};

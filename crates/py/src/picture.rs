@@ -4,14 +4,33 @@ use canonform::mesh::TriMesh;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use report::render::{Background, Coloring, RenderOptions, render};
+use report::render::{Background, Coloring, RenderOptions, View, render, render_with_bar};
 use report::viewer::{self, Geometry};
 
 use crate::arrays;
+use crate::error::Exception;
 use crate::run::run;
 
-/// A picture of a mesh as the bytes of a PNG file with a transparent background, coloured by values or by colours at its
-/// vertices if there are some. Faces at vertices without finite coordinates are left out.
+/// How a picture is drawn.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Look {
+    width: u32,
+    height: u32,
+    /// How far the viewer walks around the surface, and how far up, in degrees; `None` for its principal axes.
+    view: Option<[f64; 2]>,
+    up: [f64; 3],
+    colormap: String,
+    range: Option<[f64; 2]>,
+    isolines: u32,
+    /// The name of the values, beside a bar of their colours; `None` for no bar.
+    bar: Option<String>,
+    /// `None` for a transparent one.
+    background: Option<[u8; 3]>,
+}
+
+/// A picture of a mesh as the bytes of a PNG file, coloured by values or by colours at its vertices if there are some. `marks` are
+/// the colours of its last vertices. Faces at vertices without finite coordinates are left out.
 #[pyfunction]
 pub(crate) fn draw<'py>(
     py: Python<'py>,
@@ -19,20 +38,41 @@ pub(crate) fn draw<'py>(
     faces: PyReadonlyArray2<'py, i64>,
     values: Option<PyReadonlyArray1<'py, f64>>,
     colors: Option<PyReadonlyArray2<'py, u8>>,
-    size: [u32; 2],
+    marks: PyReadonlyArray2<'py, u8>,
+    look: Look,
 ) -> PyResult<Bound<'py, PyBytes>> {
     let mesh = finite_mesh(&vertices, &faces)?;
+    let usual = RenderOptions::default();
     let coloring = match (values, colors) {
-        (None, None) => RenderOptions::default().coloring,
+        (None, None) => usual.coloring,
         (None, Some(colors)) => Coloring::Colors(colors.as_slice()?.as_chunks().0.to_vec()),
-        (Some(values), _) => {
-            Coloring::Scalars { values: values.as_slice()?.to_vec(), range: None, isolines: 0 }
-        }
+        (Some(values), _) => Coloring::Scalars {
+            values: values.as_slice()?.to_vec(),
+            range: look.range,
+            isolines: look.isolines,
+        },
     };
-    let [width, height] = size;
-    let background = Background::Transparent;
-    let options = RenderOptions { width, height, background, coloring, ..RenderOptions::default() };
-    let image = run(py, |observer| Ok(render(&mesh, &options, observer)?))?;
+    let options = RenderOptions {
+        width: look.width,
+        height: look.height,
+        background: look.background.map_or(Background::Transparent, Background::Color),
+        coloring,
+        marks: marks.as_slice()?.as_chunks().0.to_vec(),
+        colors: look.colormap.parse().map_err(|fault: String| Exception::Option.with(&fault))?,
+        view: look.view.map_or(View::Principal, |[azimuth, elevation]| View::Upright {
+            azimuth,
+            elevation,
+            up: look.up.into(),
+        }),
+        ..usual
+    };
+    let image = run(py, |observer| {
+        Ok(match &look.bar {
+            None => render(&mesh, &options, observer).map_err(report::ReportError::from),
+            Some(name) => render_with_bar(&mesh, &options, name, observer),
+        })
+    })?;
+    let image = image.map_err(|fault| Exception::Canonform.with(&fault.to_string()))?;
     Ok(PyBytes::new(py, &image.to_png()?))
 }
 

@@ -139,12 +139,13 @@ pub(crate) fn measure(name: &str, text: &str) -> PyResult<Measure> {
 }
 
 /// What is possible instead.
-fn in_words(fault: &Error) -> String {
+pub(crate) fn in_words(fault: &impl Display) -> String {
     let text = fault.to_string().replace('`', "\"");
     let Some((_, possible)) = text.split_once(", expected ") else { return text };
     let possible = match possible.trim_start_matches("one of ") {
         "usize" | "u64" | "u32" => "a whole number, 0 or more",
         "f64" => "a number",
+        "string or map" => "text",
         names => names,
     };
     format!("use {possible}")

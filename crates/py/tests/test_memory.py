@@ -13,9 +13,18 @@ from typing import Any
 import canonform
 import numpy as np
 import pytest
-from canonform import Index, Surface
+from canonform import FacePoint, Index, Surface
 from canonform.datasets import Shape
-from canonform.errors import CanonformError, MeshError, OptionError, PointError, ShapeIndexError
+from canonform.errors import (
+    CanonformError,
+    MeshError,
+    MissingFileError,
+    NoSuchShapeError,
+    OptionError,
+    PointError,
+    ShapeIndexError,
+    SkippedMeshWarning,
+)
 from conftest import grid
 
 trimesh = pytest.importorskip("trimesh")
@@ -36,7 +45,7 @@ def index(shapes: list[Shape], tmp_path_factory: pytest.TempPathFactory) -> Inde
         ("dave", (dave.vertices, dave.faces), "david"),
         don,
     ]
-    return Index.build(iter(items), tmp_path_factory.mktemp("memory") / "i.canonform")
+    return Index.build(iter(items), tmp_path_factory.mktemp("memory") / "i.canonform", keep_meshes=True)
 
 
 def test_an_index_of_meshes_in_memory_is_complete(index: Index, shapes: list[Shape]) -> None:
@@ -62,7 +71,7 @@ def test_a_vector_is_a_query_by_signatures(index: Index, shapes: list[Shape]) ->
 
 
 def test_meshes_in_memory_are_added(index: Index, shapes: list[Shape], tmp_path: Path) -> None:
-    own = Index.build({"tom": shapes[0], "dave": shapes[2]}, tmp_path / "own.canonform")
+    own = Index.build({"tom": shapes[0], "dave": shapes[2]}, tmp_path / "own.canonform", keep_meshes=True)
     assert own.info()["unlabelled"] == 2
     own.add([("tim", shapes[1], "cat")])
     own.add({"don": shapes[3]}, label="david")
@@ -74,6 +83,45 @@ def test_meshes_in_memory_are_added(index: Index, shapes: list[Shape], tmp_path:
     np.testing.assert_array_equal(own.surface("tom").vertices, shapes[1].vertices)
     again = Index.build({"tom": shapes[1], "dave": shapes[2]}, own.path)
     assert again.build_report is not None and again.build_report["unchanged"] == 2
+    # Building again replaces: the others are not among the meshes any more.
+    assert sorted(again) == ["dave", "tom"]
+
+
+def test_an_index_from_memory_has_no_surprises(shapes: list[Shape], tmp_path: Path) -> None:
+    tom, tim, dave, don = shapes
+    bad = (np.full((4, 3), np.nan), [[0, 1, 2]])
+    meshes = {"cats/tom": tom, "cats/tim": tim, "bad": bad, "none": object(), "men/dave": dave, "men/don": don}
+    with pytest.warns(SkippedMeshWarning, match="2 of the meshes are not in the index"):
+        index = Index.build(meshes, tmp_path / "i.canonform", labels=["cat", "cat", "", "", "david", "david"])
+    assert sorted(failure["id"] for failure in index.build_report["failed"]) == ["bad", "none"]
+    assert list(index) == ["cats/tim", "cats/tom", "men/dave", "men/don"]
+    assert index["cats/tom"].label == "cat" and index["cats/tom"].n_vertices == 1000
+    with pytest.raises(NoSuchShapeError):
+        index["tom"]
+    # Nothing is left beside it, and what needs the meshes says so.
+    assert not (tmp_path / "i.canonform.meshes").exists()
+    with pytest.raises(MissingFileError, match="keep_meshes=True"):
+        index.surface("cats/tom")
+    assert [found[0].id for found in index.search_many([tom, "men/don"], k=1)] == ["cats/tom", "men/don"]
+    # Without its own vote: a class of one shape is unknown, or the other class.
+    assert index.classify("cats/tom") == "cat"
+    alone = Index.build({"cat1": tom, "cat2": tim, "dave": dave}, tmp_path / "alone.canonform", labels=["cat", "cat", "david"])
+    assert alone.classify("dave") != "david" and alone.search("dave").label == "david"
+    again = Index.build({"cats/tom": tom}, index.path)
+    assert list(again) == ["cats/tom"] and again.build_report["unchanged"] == 1
+
+
+def test_an_index_is_evaluated_by_any_distances(shapes: list[Shape], tmp_path: Path) -> None:
+    pytest.importorskip("pandas")
+    names = [f"{shape.name}-{i}" for i in range(2) for shape in shapes]
+    index = Index.build(dict(zip(names, 2 * shapes, strict=True)), tmp_path / "i.canonform", labels=[name[:3] for name in names])
+    combined = index.evaluate(by="combined")
+    assert combined["nn"] == 1 and combined == index.evaluate(by=index.distances())
+    assert combined.to_pandas().loc["cat"].tolist() == [4, 0]
+    classes = np.array(["odd", "even"] * 4)
+    assert index.evaluate(by=1.0 * (classes[:, None] != classes), labels=classes.tolist())["map"] == 1
+    with pytest.raises(OptionError, match="by must be"):
+        index.evaluate(by=np.zeros((2, 2)))
 
 
 def test_compare_match_and_align_take_any_mesh(shapes: list[Shape], tmp_path: Path) -> None:
@@ -127,6 +175,22 @@ def test_compare_match_and_align_take_any_mesh(shapes: list[Shape], tmp_path: Pa
         (lambda s, i: canonform.datasets.generate("cat", n_vertices=-1), OptionError, "n_vertices=-1"),
         (lambda s, i: canonform.datasets.generate("cat", n_vertices=1000, seed=-1), OptionError, "seed=-1"),
         (lambda s, i: canonform.set_threads(-1), OptionError, "n=-1"),
+        (lambda s, i: canonform.set_threads("all"), OptionError, "n='all'"),
+        (lambda s, i: s.distances(0, memory="64X"), OptionError, "memory='64X'"),
+        (lambda s, i: s.distances(FacePoint(3, ("a", 1, 1))), PointError, "is not a point"),
+        (lambda s, i: Index.build([s], "x", shard=("a", 2)), OptionError, "shard='a'"),
+        (lambda s, i: canonform.datasets.generate("cat", poses=[1.5]), OptionError, "poses=1.5"),
+        (lambda s, i: canonform.datasets.generate(5), OptionError, "family=5"),
+        (lambda s, i: canonform.compare(s, s, names="a"), OptionError, "names='a'"),
+        (lambda s, i: i.distances([3]), OptionError, "ids=3"),
+        (lambda s, i: i.duplicates(kinds=["x"]), OptionError, 'kinds: use "identical-file"'),
+        (lambda s, i: s.picture(width="x"), OptionError, "width='x'"),
+        (lambda s, i: s.picture(view="above"), OptionError, "view='above'"),
+        (lambda s, i: s.picture(colormap="jet"), OptionError, "choose from viridis"),
+        (lambda s, i: s.picture(points=[99]), PointError, "99 is not a point"),
+        (lambda s, i: canonform.FastMarching(update=3), OptionError, "update=3 is not possible: use text"),
+        (lambda s, i: s.farthest_points(3, first=2**40), PointError, "1099511627776"),
+        (lambda s, i: s.canonical_form(reuse=5), OptionError, "reuse=5"),
     ],
 )
 def test_every_error_is_ours(index: Index, square: Surface, call: Callable, kind: type[Exception], words: str) -> None:

@@ -101,6 +101,11 @@ index.search(cat, rank="graph")
 index.search(cat, rank="best")  # wrong
 index.evaluate(by="shape-dna")
 index.evaluate(by="moment")  # wrong
+index.evaluate(by=index.distances(kind="combined"))
+cat.distances(0, timeout=3, memory="2G", threads=2, progress=True)
+cat.distances(0, time=3)  # wrong
+cat.picture(up="y", view=(30, 12), bar="mm")
+cat.picture(up="w")  # wrong
 index.distances(kind="forms")  # wrong
 index.duplicates(kinds=["scaled"])
 index.duplicates(kinds=["equal"])  # wrong
@@ -171,7 +176,7 @@ def test_methods_have_the_options_that_rust_uses() -> None:
 
 def test_keywords_are_the_options_of_the_library() -> None:
     assert "no option colour" in _fault(colour=3)
-    others = {"self", "reuse", "progress", "a", "b", "names", "meshes", "path", "labels", "prune", "shard", "call"}
+    others = {"self", "reuse", "progress", "a", "b", "names", "meshes", "path", "labels", "prune", "shard", "call", "keep_meshes"}
     for call in (canonform.Surface.canonical_form, canonform.compare, canonform.Index.build):
         keywords = set(inspect.signature(call).parameters) - others
         assert {"n_landmarks", "method", "geodesic", "seed"} <= keywords

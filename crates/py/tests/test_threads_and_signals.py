@@ -122,13 +122,50 @@ def test_a_forked_process_has_threads_of_its_own(square: Surface) -> None:
         import os, canonform
         shape = canonform.datasets.generate("cat", poses=1, n_vertices=1000)[0]
         expected = shape.surface().canonical_form(n_landmarks=20).points
+        canonform.set_threads(3)
         child = os.fork()
         if child == 0:
-            os._exit(0 if (shape.surface().canonical_form(n_landmarks=20).points == expected).all() else 1)
+            os._exit(0 if canonform.threads() == 3 and (shape.surface().canonical_form(n_landmarks=20).points == expected).all() else 1)
         assert os.waitpid(child, 0)[1] == 0
         assert (shape.surface().canonical_form(n_landmarks=20).points == expected).all()
     """
     subprocess.run([sys.executable, "-W", "ignore", "-c", textwrap.dedent(code)], check=True, timeout=60)
+
+
+@pytest.mark.parametrize(
+    ("variables", "n"),
+    [
+        ({"OMP_NUM_THREADS": "3"}, 3),
+        ({"OMP_NUM_THREADS": "3", "RAYON_NUM_THREADS": "2"}, 2),
+        # As `set_threads` of the parent says, which workers of joblib inherit.
+        ({"OMP_NUM_THREADS": "3", "CANONFORM_NUM_THREADS": "4"}, 4),
+        ({"OMP_NUM_THREADS": "4,2"}, os.cpu_count()),
+    ],
+)
+def test_the_environment_says_how_many_threads(variables: dict[str, str], n: int) -> None:
+    others = {name: value for name, value in os.environ.items() if not name.endswith("_NUM_THREADS")}
+    code = "import canonform; print(canonform.threads())"
+    done = subprocess.run([sys.executable, "-c", code], env={**others, **variables}, capture_output=True, text=True, check=True)
+    assert int(done.stdout) == n
+
+
+def test_threads_of_a_call_and_of_new_processes(square: Surface) -> None:
+    before = canonform.threads()
+    try:
+        canonform.set_threads(3)
+        assert os.environ["CANONFORM_NUM_THREADS"] == "3"
+        np.testing.assert_array_equal(square.distances_many([0, 1], threads=1), square.distances_many([0, 1]))
+        assert canonform.threads() == 3
+    finally:
+        canonform.set_threads(before)
+
+
+def test_a_limit_ends_a_call_and_keeps_the_surface() -> None:
+    large = Surface(*grid(60))
+    expected = large.distances(0, geodesic="exact")
+    with pytest.raises(canonform.errors.TimeLimitError, match="timeout="):
+        large.distances_many(range(3600), geodesic="exact", timeout=0.1)
+    np.testing.assert_array_equal(large.distances(0, geodesic="exact", timeout=60, memory="1.5G"), expected)
 
 
 def test_progress_calls_a_function_or_a_bar(capsys: pytest.CaptureFixture[str]) -> None:

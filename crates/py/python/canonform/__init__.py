@@ -28,16 +28,19 @@ from typing import Any as _Any
 from typing import Unpack as _Unpack
 
 from . import datasets, errors
-from ._canonform import __version__, set_threads, threads
+from . import _canonform as _canonform
+from ._canonform import __version__, threads
 from ._arrays import VertexValues
 from ._compare import Alignment, Comparison, align, compare
 from ._field import DistanceField, PairDistance, PairDistances
 from ._form import Form
-from ._index import Index, Result, SearchResults, ShapeEntry
+from ._index import Index, Result, Scores, SearchResults, ShapeEntry
+from ._look import Look
 from ._match import MappedPoints, Match, SurfaceMap, match
 from ._methods import FastMarching, KernelPca, Landmark, Nystrom, Smacof, Spectral
 from ._operators import ClosestPoints, EdgePoint, Eigenbasis, FacePoint
 from ._settings import Call, Shown
+from ._settings import whole as _whole
 from ._surface import Path, RepairedMesh, RepairReport, Surface, distance_methods, embedding_methods, signature_kinds
 from ._view import SurfaceView
 from .errors import CanonformError
@@ -62,6 +65,7 @@ __all__ = [
     "Index",
     "KernelPca",
     "Landmark",
+    "Look",
     "MappedPoints",
     "Match",
     "Nystrom",
@@ -72,6 +76,7 @@ __all__ = [
     "RepairReport",
     "RepairedMesh",
     "Result",
+    "Scores",
     "SearchResults",
     "ShapeEntry",
     "Shown",
@@ -100,6 +105,14 @@ __all__ = [
 def read(path: str | _os.PathLike[str], *, components: Components = "largest", weld: Weld = "seams", **call: _Unpack[Call]) -> Surface:
     """Read and repair a mesh file; the same as `Surface(path)`."""
     return Surface(path, components=components, weld=weld, **call)
+
+
+def set_threads(n: int) -> None:
+    """Set the number of worker threads, 0 for all cores, also of processes that are started from now on.
+
+    Otherwise the environment variables RAYON_NUM_THREADS and OMP_NUM_THREADS say it. Results do not depend on it.
+    """
+    _canonform.set_threads(_whole("n", n))
 
 
 def __getattr__(name: str) -> _Any:

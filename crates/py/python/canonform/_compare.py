@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any, Unpack
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _canonform, _html
@@ -14,6 +15,7 @@ from ._methods import Embedding, Geodesic, options_of
 from ._settings import Call, Landmarks, RelationKind, running
 from ._stored import Stored
 from ._surface import AnyMesh, Surface, surface_of
+from .errors import OptionError
 
 
 class Alignment(Stored):
@@ -56,7 +58,7 @@ def align(a: Form | AnyMesh, b: Form | AnyMesh, *, reflections: bool = True, **c
     """
     with running(call):
         forms = [shape if isinstance(shape, Form) else surface_of(shape).canonical_form(stress="skip") for shape in (a, b)]
-        return Alignment(_canonform.align(forms[0]._inner, forms[1]._inner, reflections))
+        return Alignment(_canonform.align(forms[0]._inner, forms[1]._inner, bool(reflections)))
 
 
 class Comparison(Stored):
@@ -153,6 +155,8 @@ def compare(
     The relation does not depend on the other options, which are those of `Surface.canonical_form`.
     """
     settings = options_of(n_landmarks=n_landmarks, method=method, geodesic=geodesic, seed=seed)
+    if names is not None and (isinstance(names, str) or np.shape(names) != (2,)):
+        raise OptionError(f"names={names!r} is not possible: give two names")
     with running(call):
         a, b = surface_of(a), surface_of(b)
         called = names or (a._name or "the first", b._name or "the second")

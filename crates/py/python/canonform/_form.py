@@ -9,10 +9,11 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar, Unpack
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from . import _canonform, _html
-from ._arrays import Floats, Ints, SourceRows, VertexValues, on_vertices
+from ._arrays import Floats, Ints, SourceRows, VertexValues, numeric, on_vertices
+from ._look import Look, drawn
 from ._settings import Call, StressChoice, running
 from ._stored import Constant
 
@@ -188,12 +189,12 @@ class Form(Constant):
         """Write the form as a mesh; the extension tells the format. Vertices that the repair dropped are left out."""
         self._inner.write(os.fspath(path))
 
-    def picture(self, *, width: int = 600, height: int = 600) -> bytes:
-        """A shaded picture of the form as the bytes of a PNG file. Needs two or three dimensions."""
+    def picture(self, values: ArrayLike | None = None, **look: Unpack[Look]) -> bytes:
+        """A shaded picture of the form as the bytes of a PNG file, as of `Surface.picture`. Needs two or three dimensions."""
         points = self.points[:, :3]
         if points.shape[1] < 3:
             points = np.pad(points, ((0, 0), (0, 3 - points.shape[1])))
-        return _html.picture(points, self.faces, None, (width, height))
+        return drawn(points, self.faces, None if values is None else numeric("values", values, (len(self),)), look)
 
     def __len__(self) -> int:
         return len(self.points)

@@ -7,26 +7,10 @@ from collections.abc import Iterable, Sequence
 from html import escape
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
-from . import _canonform
-from ._arrays import straight
+from numpy.typing import NDArray
 
 _BOX = "display:inline-block;font-family:sans-serif;font-size:13px;border:1px solid #8884;border-radius:6px;padding:10px 14px"
 _CELL = "text-align:left;padding:2px 12px 2px 0;background:none;vertical-align:top"
-
-
-def picture(
-    vertices: NDArray[np.float64],
-    faces: NDArray[np.int64],
-    values: ArrayLike | None,
-    size: tuple[int, int],
-    colors: NDArray[np.uint8] | None = None,
-) -> bytes:
-    """A PNG file of a mesh, coloured by values, or by one colour for each vertex."""
-    numbers = None if values is None else straight(values, dtype=np.float64)
-    shades = None if colors is None else straight(colors, dtype=np.uint8)
-    return _canonform.draw(straight(vertices), straight(faces), numbers, shades, size)
 
 
 def image(png: bytes, side: int = 220, title: str = "") -> str:

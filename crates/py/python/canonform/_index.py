@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import csv
+import glob
 import json
 import os
+import shutil
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, Unpack, overload
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias, Unpack, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _canonform, _html
-from ._arrays import Floats, Ints, mesh_of, numeric
+from ._arrays import Floats, Ints, mesh_of, numeric, straight
 from ._methods import Embedding, Geodesic, options_of
 from ._settings import (
     Call,
@@ -36,7 +38,7 @@ from ._settings import (
 from ._stored import Stored
 from ._surface import AnyMesh, Surface, surface_of
 from .datasets import Shape
-from .errors import CanonformError, OptionError, ShapeIndexError, SkippedMeshWarning
+from .errors import CanonformError, MeshError, MissingFileError, OptionError, ShapeIndexError, SkippedMeshWarning
 
 if TYPE_CHECKING:
     import pandas
@@ -45,6 +47,9 @@ AnyPath: TypeAlias = str | os.PathLike[str]
 
 Meshes: TypeAlias = AnyPath | Mapping[str, AnyMesh] | Iterable[AnyPath | Surface | tuple[str, AnyMesh] | tuple[str, AnyMesh, str]]
 """A dataset on disk, paths of mesh files, or meshes with names."""
+
+Labels: TypeAlias = Mapping[str, str] | Sequence[str] | AnyPath
+"""Classes by name, in the order of the meshes, or where they come from."""
 
 _PICTURED = 6
 
@@ -213,6 +218,16 @@ def _caption(image: str, caption: str) -> str:
     return f'<div style="text-align:center;max-width:120px">{image}<div style="font-size:11px">{escape(caption)}</div></div>'
 
 
+class Scores(dict[str, Any]):
+    """How well classes are separated: the object that `canonform evaluate --json` prints, with `nn`, `ft`, `st`, `map`, ..."""
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """How many shapes of each class, a row, were taken for each class, a column, by their neighbours."""
+        import pandas
+
+        return pandas.DataFrame(self["confusion"], index=self["classes"], columns=self["classes"])
+
+
 class Index(Stored):
     """A searchable file of shapes.
 
@@ -243,8 +258,9 @@ class Index(Stored):
         meshes: Meshes,
         path: AnyPath,
         *,
-        labels: Mapping[str, str] | AnyPath | None = None,
+        labels: Labels | None = None,
         prune: bool = False,
+        keep_meshes: bool = False,
         shard: tuple[int, int] | None = None,
         n_landmarks: Landmarks = 100,
         n_points: int = 1000,
@@ -268,16 +284,18 @@ class Index(Stored):
         ----------
         meshes
             A folder, also with sub-folders, an archive, a list file, or paths of mesh files. Or meshes in memory, as `Surface` takes
-            them: a dictionary from names to meshes, or (name, mesh) and (name, mesh, class). They are kept as files in the folder
-            PATH.meshes, from which results are explained and drawn.
+            them: a dictionary from names to meshes, or (name, mesh) and (name, mesh, class). A name may have folders: "cats/tom".
         path
             The index.
         labels
-            Where classes come from: "folders", "names" (their leading letters), "none", classes by name of the shape, or a file of
-            lines `name,label`; shapes that are not named there have no class. By default, sub-folders are classes if at least two hold
+            Where classes come from: "folders", "names" (their leading letters), "none", classes in the order of the meshes or by name
+            of the shape, or a file of lines `name,label`; shapes that are not named there have no class. By default, sub-folders are classes if at least two hold
             at least two meshes each and none lies in another, else leading letters if at least two names share them.
         prune
-            Remove shapes of the index that did not come from these meshes.
+            Remove shapes of the index that came from elsewhere. Those of the same folder whose files are gone, and those in memory that
+            are not among these meshes any more, are always removed.
+        keep_meshes
+            Whether to keep meshes in memory as files in the folder PATH.meshes. Without them, results are not explained or drawn.
         shard
             (i, k) to index the i-th of k equal parts of the meshes, counted from 1; `merge` joins them.
         n_points
@@ -302,12 +320,12 @@ class Index(Stored):
             n_landmarks=n_landmarks, n_points=n_points, size=size, method=method, geodesic=geodesic, components=components,
             weld=weld, seed=seed, max_vertices=max_vertices, timeout=timeout, memory=memory,
         )  # fmt: skip
-        meshes, labels = _in_files(meshes, path, labels, replace=True)
-        with running(call), _label_file(labels) as label_file, _dataset(meshes) as (dataset, name):
-            report = json.loads(_canonform.Index.build(dataset, os.fspath(path), label_file, prune, shard, None, settings))
+        part = None if shard is None else (whole("shard", shard[0]), whole("shard", shard[1], 1))
+        with running(call), in_files(meshes, path, labels, keep=keep_meshes) as files:
+            with _label_file(files.labels) as label_file, _dataset(files.paths) as (dataset, name):
+                report = json.loads(_canonform.Index.build(dataset, os.fspath(path), label_file, bool(prune), part, None, settings))
+        report["failed"] += files.failed
         if not os.path.exists(path):
-            from .errors import MeshError
-
             first = report["failed"][0]["error"] if report["failed"] else "there are no meshes"
             raise MeshError(f"no mesh of {name} could be described, so no index was written; the first: {first}")
         _warn_of_skipped(report)
@@ -329,7 +347,7 @@ class Index(Stored):
         meshes: Meshes,
         *,
         label: str | None = None,
-        labels: Mapping[str, str] | AnyPath | None = None,
+        labels: Labels | None = None,
         replace: bool = False,
         max_vertices: int | None = None,
         timeout: float | None = None,
@@ -348,24 +366,34 @@ class Index(Stored):
         """
         if label is not None and labels is not None:
             raise OptionError("label= has no effect with labels=; leave one of them out")
-        meshes, labels = _in_files(meshes, self.path, labels, replace=replace)
-        if label is not None and labels is not None:
-            raise OptionError("label= has no effect for meshes that come with a class; leave one of them out")
-        paths = [meshes] if isinstance(meshes, (str, os.PathLike)) else list(meshes)
         settings = options_of(max_vertices=max_vertices, timeout=timeout, memory=memory)
-        with running(call), _label_file(labels) as label_file:
-            report = _canonform.Index.add(self.path, [os.fspath(path) for path in paths], label, label_file, replace, settings)
-        self._reopen(json.loads(report))
+        with running(call), in_files(meshes, self.path, labels, keep=False, add=not replace) as files:
+            if label is not None and files.labels is not None:
+                raise OptionError("label= has no effect for meshes that come with a class; leave one of them out")
+            paths = [files.paths] if isinstance(files.paths, (str, os.PathLike)) else files.paths
+            with _label_file(files.labels) as label_file:
+                added = _canonform.Index.add(self.path, [os.fspath(path) for path in paths], label, label_file, bool(replace), settings)
+        report = json.loads(added)
+        report["failed"] += files.failed
+        _warn_of_skipped(report)
+        self._reopen(report)
         return self.build_report or {}
 
     def remove(self, ids: str | Iterable[str]) -> int:
         """Remove shapes by name; none if one of the names is unknown. Returns how many shapes are left."""
-        left = _canonform.Index.remove(self.path, [ids] if isinstance(ids, str) else list(ids))
+        left = _canonform.Index.remove(self.path, [ids] if isinstance(ids, str) else [word("ids", id) for id in ids])
         self._reopen(None)
         return left
 
     def _reopen(self, report: dict[str, Any] | None) -> None:
         self._inner, self.build_report = _canonform.Index.open(self.path), report
+
+    def search_many(
+        self, queries: Iterable[AnyMesh], k: int = 10, *, rank: Ranking = "plain", explain: bool = False, **call: Unpack[Call]
+    ) -> list[SearchResults]:
+        """Find the shapes nearest to each of several queries, as `search` does."""
+        with running(call):
+            return [self.search(query, k, rank=rank, explain=explain) for query in queries]
 
     def search(
         self, query: AnyMesh, k: int = 10, *, rank: Ranking = "plain", explain: bool = False, **call: Unpack[Call]
@@ -389,7 +417,7 @@ class Index(Stored):
             with running(call):
                 query = surface_of(query)
                 name = query._name or "the query"
-                report = self._inner.search(query._inner, name, whole("k", k), word("rank", rank), explain)
+                report = self._inner.search(query._inner, name, whole("k", k), word("rank", rank), bool(explain))
             return SearchResults(json.loads(report), query, name, self)
         text = os.fspath(query)
         if not os.path.exists(text) and text not in self:
@@ -398,7 +426,7 @@ class Index(Stored):
             raise NoSuchShapeError(f"{text!r} is neither a file nor a shape of the index; Index.shapes() names its shapes")
         name = os.path.basename(text) if os.path.exists(text) else text
         with running(call):
-            report = self._inner.search(text, name, whole("k", k), word("rank", rank), explain)
+            report = self._inner.search(text, name, whole("k", k), word("rank", rank), bool(explain))
         return SearchResults(json.loads(report), self._pictured(text), name, self)
 
     def _pictured(self, query: str) -> Surface | None:
@@ -407,33 +435,60 @@ class Index(Stored):
         except CanonformError:
             return None
 
-    def classify(self, query: AnyMesh, *, rank: Ranking = "plain") -> str | None:
-        """The class of a query by the votes of the nearest shapes; None if no shape is near enough. `search` says why."""
-        return self.search(query, 0, rank=rank).label
+    def classify(self, query: AnyMesh, *, rank: Ranking = "plain", **call: Unpack[Call]) -> str | None:
+        """The class of a query by the votes of the nearest shapes; None if no shape is near enough. `search` says why.
+
+        A shape of the index, given by its name, has no vote about itself.
+        """
+        if not (isinstance(query, str) and query in self and not os.path.exists(query)):
+            return self.search(query, 0, rank=rank, **call).label
+        with running(call):
+            packed = self._inner.query_of(query, word("rank", rank), False)
+            answer = self._inner.search_among(packed, [id for id in self if id != query], 0, rank, False)
+        label: str | None = json.loads(answer)["predicted"]["label"]
+        return label
 
     def evaluate(
         self,
         *,
-        by: SignatureKind = "fused",
+        by: SignatureKind | Literal["combined"] | NDArray[Any] = "fused",
         k: int = 1,
         rank: Ranking = "plain",
-        labels: Mapping[str, str] | AnyPath | None = None,
+        labels: Labels | None = None,
         **call: Unpack[Call],
-    ) -> dict[str, Any]:
-        """How well the index separates classes: the object that `canonform evaluate --json` prints, with `nn`, `ft`, `st`, `map`, ...
+    ) -> Scores:
+        """How well the index separates classes.
 
         Parameters
         ----------
         by
-            "fused", or the kind of signatures that shapes are compared by, see `Surface.signature`.
+            What shapes are compared by: "fused", or the kind of signatures, see `Surface.signature`; "combined" for the distances that a
+            search orders results by, with aligned forms; or a matrix of your own, with a row and a column for each shape in the order of
+            `shapes`.
         k
             Number of neighbours that vote on the class of a shape.
         rank
             "plain", or "graph" to score the ranking on the graph of nearest neighbours as well, under the key `graph`.
+        labels
+            Other classes, as in `build`.
         """
-        with running(call), _label_file(labels) as label_file:
-            scores: dict[str, Any] = json.loads(self._inner.evaluate(word("by", by), whole("k", k), word("rank", rank), label_file))
-        return scores
+        ids = list(self)
+        if labels is not None and not isinstance(labels, (str, os.PathLike, Mapping)):
+            if len(labels) != len(ids):
+                raise OptionError(f"labels= has {len(labels)} classes for {len(ids)} shapes; give one for each")
+            labels = dict(zip(ids, labels, strict=True))
+        with running(call):
+            if isinstance(by, str) and by != "combined":
+                with _label_file(labels) as label_file:
+                    return Scores(json.loads(self._inner.evaluate(by, whole("k", k), word("rank", rank), label_file)))
+            if isinstance(labels, (str, os.PathLike)):
+                raise OptionError("labels= needs classes by name here, or in the order of the shapes")
+            known = {shape.id: shape.label for shape in self.shapes()} if labels is None else labels
+            matrix = self.distances() if isinstance(by, str) else numeric("by", by, (len(ids), len(ids)))
+            some = [i for i, id in enumerate(ids) if known.get(id)]
+            classes = [known[ids[i]] for i in some]
+            chosen = straight(matrix[np.ix_(some, some)])
+            return Scores(json.loads(_canonform.evaluate_matrix(chosen, classes, whole("k", k), word("rank", rank))))
 
     @property
     def path(self) -> str:
@@ -458,7 +513,7 @@ class Index(Stored):
 
     def vector(self, id: str) -> NDArray[np.float32]:
         """The fused signature of one shape."""
-        return self._inner.vector(id)
+        return self._inner.vector(word("id", id))
 
     def nearest(self, vector: ArrayLike, k: int = 10) -> list[tuple[str, float]]:
         """The shapes whose signatures are nearest to a vector, such as `Surface.signature()`: names and distances, nearest first."""
@@ -487,13 +542,23 @@ class Index(Stored):
         -------
         ndarray of shape (len(ids), len(others))
         """
-        rows = list(self) if ids is None else list(ids)
+        rows = list(self) if ids is None else [word("ids", id) for id in ids]
         with running(call):
             return self._inner.distances(rows, None if others is None else list(others), word("kind", kind))
 
     def surface(self, id: str) -> Surface:
         """The surface of a shape. Its mesh file must be where it was, and unchanged."""
-        return Surface._of(self._inner.surface(id), id)
+        try:
+            return Surface._of(self._inner.surface(word("id", id)), id)
+        except MissingFileError as fault:
+            if f"{os.path.basename(self.path)}.meshes" not in self[id].path:
+                raise
+            raise MissingFileError(f"the mesh of {id!r} was in memory; build the index with keep_meshes=True to keep such meshes") from fault
+
+    def __getitem__(self, id: str) -> ShapeEntry:
+        """A shape by its name. Raises `NoSuchShapeError`."""
+        name, label, path, vertices, faces = self._inner.entry(word("id", id))
+        return ShapeEntry(name, label, os.fspath(path), vertices, faces)
 
     def duplicates(
         self, *, kinds: Iterable[RelationKind] | None = None, min_confidence: float = 0.9, **call: Unpack[Call]
@@ -511,7 +576,7 @@ class Index(Stored):
         min_confidence
             The least confidence, 0 to 1.
         """
-        wanted: list[str] | None = None if kinds is None else list(kinds)
+        wanted = None if kinds is None else [word("kinds", kind) for kind in ([kinds] if isinstance(kinds, str) else kinds)]
         with running(call):
             found: dict[str, Any] = json.loads(self._inner.duplicates(wanted, number("min_confidence", min_confidence)))
         groups: list[dict[str, Any]] = found["groups"]
@@ -569,33 +634,75 @@ def _warn_of_skipped(report: dict[str, Any]) -> None:
         )
 
 
-def _in_files(
-    meshes: Meshes, index: AnyPath, labels: Mapping[str, str] | AnyPath | None, *, replace: bool
-) -> tuple[AnyPath | list[AnyPath], Mapping[str, str] | AnyPath | None]:
-    """Paths of the meshes, and classes: those in memory are written to a folder beside the index."""
+@contextmanager
+def in_files(meshes: Meshes, index: AnyPath, labels: Labels | None, *, keep: bool, add: bool = False) -> Iterator[_Files]:
+    """Meshes as files: those in memory are in a folder beside the index, as long as they are needed or kept."""
     if isinstance(meshes, (str, os.PathLike)):
-        return meshes, labels
+        if labels is not None and not isinstance(labels, (str, os.PathLike, Mapping)):
+            raise OptionError("labels= has no order for the meshes of a folder; give a dictionary from names to classes")
+        yield _Files(meshes, labels, [])
+        return
     if not isinstance(meshes, Iterable):
         raise OptionError(f"meshes={meshes!r} is not possible: give a folder, paths of mesh files, or meshes with names")
-    given: list[Any] = list(meshes.items()) if isinstance(meshes, Mapping) else list(meshes)
     folder = f"{os.fspath(index)}.meshes"
+    is_kept = keep or os.path.exists(folder)
+    found = _Files([], labels, [])
     paths: list[AnyPath] = []
     known: dict[str, str] = {}
-    taken: set[str] = set()
-    for i, item in enumerate(given):
-        if isinstance(item, (str, os.PathLike)):
-            paths.append(item)
-            continue
-        name, mesh, label = _named(item, i)
-        if name in taken:
-            raise OptionError(f"two meshes have the name {name!r}")
-        taken.add(name)
-        if label:
-            known[name] = label
-        paths.append(_kept(_arrays(mesh), os.path.join(folder, f"{name}.ply"), replace))
-    if known and labels is not None:
-        raise OptionError("labels= has no effect for meshes that come with a class; leave one of them out")
-    return paths, known or labels
+    names: list[str] = []
+    given: list[Any] = list(meshes.items()) if isinstance(meshes, Mapping) else list(meshes)
+    try:
+        for i, item in enumerate(given):
+            if isinstance(item, (str, os.PathLike)):
+                paths.append(item)
+                names.append(_stem(item))
+                continue
+            name, mesh, label = _named(item, i)
+            if name in names:
+                raise OptionError(f"two meshes have the name {name!r}")
+            names.append(name)
+            if label:
+                known[name] = label
+            try:
+                paths.append(_kept(_arrays(mesh), os.path.join(folder, *f"{name}.ply".split("/")), not add))
+            except MeshError as fault:
+                found.failed.append({"id": name, "path": name, "reason": "shape", "error": str(fault)})
+        if known and labels is not None:
+            raise OptionError("labels= has no effect for meshes that come with a class; leave one of them out")
+        if labels is not None and not isinstance(labels, (str, os.PathLike, Mapping)):
+            if len(labels) != len(names):
+                raise OptionError(f"labels= has {len(labels)} classes for {len(names)} meshes; give one for each")
+            known = {name: str(label) for name, label in zip(names, labels, strict=True) if label}
+        in_memory = [os.path.abspath(path) for path in paths if os.fspath(path).startswith(folder)]
+        if found.failed and not paths:
+            raise MeshError(f"no mesh could be described, so no index was written; the first, {names[0]}: {found.failed[0]['error']}")
+        if not add and paths and len(in_memory) == len(paths):
+            # As of any folder, shapes whose files are gone are removed.
+            for path in map(os.path.abspath, glob.glob(f"{glob.escape(folder)}/**/*.ply", recursive=True)):
+                if path not in in_memory:
+                    os.remove(path)
+            found.paths = folder
+        else:
+            found.paths = paths
+            deep = [name for name in names if "/" in name]
+            if deep:
+                raise OptionError(f"the name {deep[0]!r} is not possible here: only Index.build of meshes in memory has names with folders")
+        found.labels = known or labels
+        yield found
+    finally:
+        if not is_kept:
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+@dataclass
+class _Files:
+    paths: AnyPath | list[AnyPath]
+    labels: Labels | None
+    failed: list[dict[str, Any]]
+
+
+def _stem(path: AnyPath) -> str:
+    return os.path.splitext(os.path.basename(os.fspath(path)).removesuffix(".gz"))[0]
 
 
 def _named(item: Any, i: int) -> tuple[str, AnyMesh, str]:
@@ -608,9 +715,9 @@ def _named(item: Any, i: int) -> tuple[str, AnyMesh, str]:
     elif isinstance(item, Shape):
         name, label = item.name, item.label
     elif isinstance(item, Surface):
-        name = os.path.splitext(item._name)[0]
+        name = _stem(item._name)
     name = name or f"mesh{i}"
-    if name != name.strip() or name.startswith(".") or any(c in name for c in '/\\:\n\r\0'):
+    if any(part != part.strip() or not part or part.startswith(".") for part in name.split("/")) or any(c in name for c in "\\:\n\r\0"):
         raise OptionError(f"the name {name!r} is not possible: it stands for a file of this name")
     return name, mesh, label or ""
 
@@ -660,11 +767,13 @@ def _dataset(meshes: AnyPath | Iterable[AnyPath], folder: str | None = None) -> 
 
 
 @contextmanager
-def _label_file(labels: Mapping[str, str] | AnyPath | None) -> Iterator[str | None]:
+def _label_file(labels: Labels | None) -> Iterator[str | None]:
     """The word or file given, or a temporary file with the labels given."""
     if labels is None or isinstance(labels, (str, os.PathLike)):
         yield None if labels is None else os.fspath(labels)
         return
+    if not isinstance(labels, Mapping):
+        raise OptionError(f"labels={labels!r} is not possible: give classes by name, in the order of the meshes, or a file")
     if not labels:
         yield "none"
         return
@@ -674,6 +783,8 @@ def _label_file(labels: Mapping[str, str] | AnyPath | None) -> Iterator[str | No
             rows = csv.writer(file, quoting=csv.QUOTE_ALL)
             rows.writerow(["name", "label"])
             for name, label in labels.items():
+                if not label:
+                    continue
                 if any(c in f"{name}{label}" for c in "\n\r"):
                     raise OptionError(f"labels={{{name!r}: {label!r}}} is not possible: a line break in a name or class")
                 rows.writerow([name, label])

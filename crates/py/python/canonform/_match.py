@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _canonform, _html
 from ._arrays import Floats, Ints, numeric, on_vertices, straight
 from ._operators import Eigenbasis, FacePoint
+from ._look import Look, drawn, to_the_right
 from ._methods import Geodesic, options_of
 from ._settings import Call, running, some_whole, unmasked
 from ._stored import ByValue, Stored
@@ -264,6 +265,12 @@ class SurfaceMap(Stored):
         nothing = np.empty((0, 2), dtype=np.int64)
         return SurfaceMap(report, [(vertices, confidence, functional, None)], shapes, nothing, self._settings)
 
+    def _colors(self, colors: NDArray[np.uint8]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Colours of the first surface, and those that the map carries to the second: grey where it is not to be relied on."""
+        doubt = np.clip(1.5 - self.vertex_confidence / _DOUBTFUL, 0, 1)
+        source: Floats = colors + (_GREY - colors.astype(np.float64)) * doubt[:, None] + 0.0
+        return source, np.nan_to_num(self.transfer(source), nan=_GREY)
+
     def _report(self) -> dict[str, Any]:
         return {name: getattr(self, name) for name in ("kind", "distortion", "agreement", "confidence")}
 
@@ -329,20 +336,41 @@ class Match(Stored):
         """The first of the maps."""
         return self.maps[0]
 
-    def pictures(self, *, width: int = 600, height: int = 600) -> list[bytes]:
+    def pictures(self, **look: Unpack[Look]) -> list[bytes]:
         """PNG files: the first surface in colours, and the second in the colours that each map carries to it; grey where the map is
-        not to be relied on."""
+        not to be relied on. The keywords are those of `Look`."""
         a, b = self._shapes
-        size = (width, height)
-        pictures: list[bytes] = []
-        for m in self.maps:
-            doubt = np.clip(1.5 - m.vertex_confidence / _DOUBTFUL, 0, 1)
-            source = self._colors + (_GREY - self._colors.astype(np.float64)) * doubt[:, None]
-            target = np.nan_to_num(m.transfer(source), nan=_GREY)
-            if not pictures:
-                pictures.append(_html.picture(a.vertices, a.faces, None, size, source.round().astype(np.uint8)))
-            pictures.append(_html.picture(b.vertices, b.faces, None, size, target.round().astype(np.uint8)))
-        return pictures
+        colors = [m._colors(self._colors) for m in self.maps]
+        both = [(a, colors[0][0]), *((b, target) for _, target in colors)]
+        return [drawn(shape.vertices, shape.faces, None, {**look, "colors": paint}) for shape, paint in both]
+
+    def picture(self, kind: MapKind | None = None, *, n_lines: int = 0, **look: Unpack[Look]) -> bytes:
+        """A PNG file of both surfaces side by side, in the colours that a map carries from the first to the second.
+
+        Parameters
+        ----------
+        kind
+            The kind of the map, by default that of `best`.
+        n_lines
+            How many vertices, spread evenly, are joined to their partners by lines.
+        look
+            Other keywords of `Look`; the picture is twice as wide as high by default.
+        """
+        chosen = [m for m in self.maps if kind in (None, m.kind)]
+        if not chosen:
+            raise OptionError(f"kind={kind!r} is not possible: the maps are {' and '.join(m.kind for m in self.maps)}")
+        (a, b), [source, target] = self._shapes, chosen[0]._colors(self._colors)
+        right = to_the_right(look)
+        spans = [np.ptp(shape.vertices[np.unique(shape.faces)] @ right) for shape in (a, b)]
+        ends = [f(shape.vertices[np.unique(shape.faces)] @ right) for f, shape in ((np.max, a), (np.min, b))]
+        moved = b.vertices + (ends[0] - ends[1] + 0.15 * max(spans)) * right
+        from_a = a.farthest_points(n_lines) if n_lines else np.empty(0, dtype=np.int64)
+        to_b = chosen[0].vertices[from_a]
+        lines = [np.stack([a.vertices[i], moved[j]]) for i, j in zip(from_a, to_b, strict=True) if j >= 0]
+        vertices = np.concatenate([a.vertices, moved])
+        faces = np.concatenate([a.faces, b.faces + a.n_vertices])
+        usual: Look = {"width": 1200, "height": 600, "paths": lines}
+        return drawn(vertices, faces, None, {**usual, **look, "colors": np.concatenate([source, target])})
 
     def __repr__(self) -> str:
         return f"Match({', '.join(map(repr, self.maps))})"

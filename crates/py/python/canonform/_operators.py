@@ -59,11 +59,11 @@ def parsed(text: str) -> int | EdgePoint | FacePoint:
     """The point that text stands for."""
     place, _, share = text.partition("@")
     if place.startswith("f"):
-        a, b, c = (float(weight) for weight in share.split(":"))
+        a, b, c = (float(weight) for weight in (share or "1:1:1").split(":"))
         return FacePoint(int(place[1:]), (a, b, c))
     if "-" in place:
         start, end = place.split("-")
-        return EdgePoint(int(start), int(end), float(share))
+        return EdgePoint(int(start), int(end), float(share or 0.5))
     return int(place)
 
 

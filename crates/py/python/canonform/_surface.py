@@ -7,7 +7,7 @@ import os
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, Unpack, overload
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypeVar, Unpack, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +16,7 @@ from . import _canonform, _html
 from ._arrays import Floats, Ints, SourceRows, VertexValues, mesh_of, numeric, on_vertices, straight
 from ._field import DistanceField
 from ._form import Form
+from ._look import Look, drawn
 from ._methods import Embedding, Geodesic, options_of
 from ._operators import ClosestPoints, EdgePoint, Eigenbasis, FacePoint, parsed
 from ._settings import (
@@ -40,6 +41,7 @@ from ._view import SurfaceView, scene
 from .errors import MeshError, OptionError, PointError, SurfaceLossWarning
 
 if TYPE_CHECKING:
+    import pyvista
     import trimesh
     from scipy import sparse
 
@@ -402,6 +404,8 @@ class Surface(Constant):
         ndarray of shape (n_points,)
             Vertex numbers of the input.
         """
+        if first is not None and whole("first", first) >= self.n_vertices:
+            raise PointError(f"first={first} is not possible: the mesh has {self.n_vertices} vertices, counted from 0")
         with running(call):
             return self._inner.farthest_points(whole("n_points", n_points), some_whole("first", first), options_of(geodesic=geodesic))
 
@@ -478,6 +482,8 @@ class Surface(Constant):
             n_landmarks=n_landmarks, method=method, n_components=n_components, geodesic=geodesic, stress=stress, seed=seed
         )
         with running(call):
+            if reuse is not None and not isinstance(reuse, Form):
+                raise OptionError(f"reuse={reuse!r} is not possible: give an earlier form of this surface")
             earlier = None if reuse is None else reuse._inner
             inner = self._inner.canonical_form(settings, earlier)
         return Form(inner, self, settings, self._name)
@@ -505,7 +511,7 @@ class Surface(Constant):
         with running(call):
             return self._inner.signature(word("kind", kind), options_of(n_landmarks=n_landmarks, size=size))
 
-    def laplacian(self, *, kind: LaplacianKind = "intrinsic", **call: Unpack[Call]) -> sparse.csr_array:
+    def laplacian(self, *, kind: LaplacianKind = "intrinsic", repaired: bool = False, **call: Unpack[Call]) -> sparse.csr_array:
         """The stiffness matrix, sparse, symmetric, positive semidefinite: shape (n, n). Needs SciPy.
 
         Parameters
@@ -513,23 +519,26 @@ class Surface(Constant):
         kind
             "intrinsic": cotangents on an intrinsic Delaunay triangulation (Sharp and Crane 2020), none of them negative, for any mesh.
             "cotangent": cotangents of the faces as they are.
-
-        Vertices that the repair dropped have empty rows; of those that it merged, the first stands for all. With `i =
-        surface.repaired.to_input`, `laplacian()[i][:, i]` is the matrix of the repaired mesh.
+        repaired
+            Whether rows and columns are vertices of `Surface.repaired`. Otherwise those of vertices that the repair dropped are empty,
+            and of those that it merged, the first stands for all.
         """
+        own = self.repaired.to_input
         with running(call):
-            return self._operators(kind)[0].copy()
+            matrix = self._operators(kind)[0]
+            return matrix[own][:, own] if repaired else matrix.copy()
 
-    def mass(self, *, kind: LaplacianKind = "intrinsic", **call: Unpack[Call]) -> sparse.dia_array:
+    def mass(self, *, kind: LaplacianKind = "intrinsic", repaired: bool = False, **call: Unpack[Call]) -> sparse.dia_array:
         """The areas around the vertices, in squared mesh units, as a sparse diagonal matrix: shape (n, n). Needs SciPy.
 
-        Vertices whose rows of the Laplacian are empty have mass 1, so that the matrix is not singular.
+        Parameters as in `laplacian`. Vertices whose rows are empty there have mass 1, so that the matrix is not singular.
         """
+        own = self.repaired.to_input
         with running(call):
+            areas = self._operators(kind)[1][own]
             masses = np.ones(self.n_vertices)
-            own = self.repaired.to_input
-            masses[own] = self._operators(kind)[1][own]
-            diagonal: sparse.dia_array = _sparse().diags_array(masses)
+            masses[own] = areas
+            diagonal: sparse.dia_array = _sparse().diags_array(areas if repaired else masses)
             return diagonal
 
     def _operators(self, kind: str) -> tuple[sparse.csr_array, Floats]:
@@ -751,12 +760,34 @@ class Surface(Constant):
         mesh = self.repaired if repaired else self
         _canonform.write(straight(mesh.vertices), straight(mesh.faces), os.fspath(path))
 
-    def picture(self, values: ArrayLike | None = None, *, width: int = 600, height: int = 600) -> bytes:
-        """A shaded picture of the surface as the bytes of a PNG file, coloured by values at its vertices if given."""
-        numbers = None if values is None else self._one_per_vertex(values)
-        return _html.picture(self.vertices, self.faces, numbers, (width, height))
+    def to_pyvista(self, **values: ArrayLike) -> pyvista.PolyData:
+        """The input as a mesh of the package PyVista, with arrays of one row for each vertex, or each face, by name."""
+        import pyvista
 
-    def view(self, values: ArrayLike | None = None, *, name: str = "", height: int = 480) -> SurfaceView:
+        mesh: pyvista.PolyData = pyvista.PolyData.from_regular_faces(self.vertices, self.faces)
+        for name, array in values.items():
+            (mesh.point_data if len(np.asarray(array)) == self.n_vertices else mesh.cell_data)[name] = np.asarray(array)
+        return mesh
+
+    def picture(self, values: ArrayLike | None = None, **look: Unpack[Look]) -> bytes:
+        """A shaded picture of the surface as the bytes of a PNG file, coloured by values at its vertices if given.
+
+        The keywords of `Look` say from where, how large, and what is drawn on it.
+
+        Examples
+        --------
+        >>> import canonform
+        >>> cat = canonform.datasets.generate("cat", poses=1, n_vertices=1000)[0].surface()
+        >>> png = cat.picture(cat.distances(0), view="left", bar="distance", paths=[cat.path(0, 500)], points=[0, 500])
+        >>> png[1:4]
+        b'PNG'
+        """
+        numbers = None if values is None else self._one_per_vertex(values)
+        return drawn(self.vertices, self.faces, numbers, look)
+
+    def view(
+        self, values: ArrayLike | None = None, *, name: str = "", height: int = 480, up: Literal["x", "y", "z"] = "z"
+    ) -> SurfaceView:
         """The surface to turn and zoom in a notebook, coloured by values at its vertices if given.
 
         Parameters
@@ -767,9 +798,11 @@ class Surface(Constant):
             What the values are, for the colour bar.
         height
             Height of the view, in pixels.
+        up
+            The axis that points up.
         """
         numbers = None if values is None else self._one_per_vertex(values)
-        return scene(self.vertices, self.faces, numbers, self._name or "Surface", name, whole("height", height, 40))
+        return scene(self.vertices, self.faces, numbers, self._name or "Surface", name, whole("height", height, 40), up)
 
     def _one_per_vertex(self, values: ArrayLike) -> Floats:
         if np.shape(values) != (self.n_vertices,):
@@ -794,7 +827,7 @@ class Surface(Constant):
 def _several(points: Any, n_vertices: int) -> list[Any]:
     """Points one by one. A mask stands for the vertices where it is true."""
     if isinstance(points, (EdgePoint, FacePoint)):
-        return [str(points)]
+        points = [points]
     if not isinstance(points, (int, str, float, np.number, Iterable)):
         raise PointError(f"{points!r} is not a point; give the number of a vertex")
     if isinstance(points, (bool, np.bool_)):
@@ -811,7 +844,10 @@ def _several(points: Any, n_vertices: int) -> list[Any]:
         points = np.flatnonzero(array).tolist()
     elif array is not None:
         points = array.ravel().tolist()
-    return [str(point) if isinstance(point, (EdgePoint, FacePoint)) else point for point in points]
+    try:
+        return [str(point) if isinstance(point, (EdgePoint, FacePoint)) else point for point in points]
+    except (TypeError, ValueError) as fault:
+        raise PointError(f"{points!r} is not a point; give numbers in it: {fault}") from fault
 
 
 def _sparse() -> Any:

@@ -5,12 +5,14 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from html import escape
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _canonform, _html
 from ._arrays import Floats, Ints, straight
+from ._look import drawn
 from ._stored import ByValue
 
 _MOST_FACES = 100_000
@@ -61,9 +63,13 @@ class SurfaceView(ByValue):
         )
 
 
-def scene(vertices: Floats, faces: Ints, values: Floats | None, title: str, values_name: str, height: int) -> SurfaceView:
+def scene(
+    vertices: Floats, faces: Ints, values: Floats | None, title: str, values_name: str, height: int, up: Literal["x", "y", "z"]
+) -> SurfaceView:
     """A view of a mesh, coloured by values at its vertices."""
-    picture = _html.picture(vertices, faces, values, (height, height))
+    picture = drawn(vertices, faces, values, {"width": height, "height": height, "up": up})
+    # The viewer has z up, and the axis after that to the right.
+    vertices = np.roll(vertices, {"x": 2, "y": 1, "z": 0}[up], axis=1)
     vertices, faces, values = _visible(vertices, faces, values)
     page = _canonform.scene_page(straight(vertices), straight(faces), None if values is None else straight(values), title, values_name)
     return SurfaceView(page, picture, title, height, len(faces))

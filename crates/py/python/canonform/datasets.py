@@ -11,6 +11,7 @@ import numpy as np
 
 from . import _canonform, _html
 from ._arrays import Floats, Ints
+from ._look import drawn
 from ._settings import Call, Family, MeshFormat, running, whole
 from ._stored import ByValue
 from ._surface import Surface
@@ -75,7 +76,7 @@ class Shape(ByValue):
         return f"Shape({self.name!r}, {len(self.vertices)} vertices, {len(self.faces)} faces)"
 
     def _repr_html_(self) -> str:
-        picture = _html.picture(self.vertices, self.faces, None, (440, 440))
+        picture = drawn(self.vertices, self.faces, None, {"width": 440, "height": 440})
         return _html.card(self.name, [("vertices, faces", f"{len(self.vertices):,}, {len(self.faces):,}")], [_html.image(picture)])
 
 
@@ -115,6 +116,8 @@ def generate(
     n_vertices, seed = whole("n_vertices", n_vertices), whole("seed", seed)
     articulated, plans = _canonform.families()
     known = dict(articulated)
+    if not isinstance(family, Iterable):
+        raise OptionError(f"family={family!r} is not possible: use \"all\", {', '.join(map(repr, families()))}")
     names: list[str] = _DATASET if family == "all" else [family] if isinstance(family, str) else list(family)
     made: list[Shape] = []
     with running(call):
@@ -124,7 +127,7 @@ def generate(
             count = known.get(name, 8)
             wanted = range(count) if poses is None else range(poses) if isinstance(poses, int) else list(poses)
             for pose in wanted:
-                if pose < 0 or (name in known and pose >= count):
+                if whole("poses", pose, -1) < 0 or (name in known and pose >= count):
                     raise OptionError(f"poses={pose} is not possible: {name} has the poses 0 to {count - 1}")
             if name in known:
                 shapes = [(list(known).index(name), pose) for pose in wanted]

@@ -35,7 +35,7 @@ import numpy as np
 
 from . import _canonform, _vectors
 from ._arrays import Floats
-from ._index import AnyPath, Index, Meshes, SearchResults, _dataset, _in_files, _label_file
+from ._index import AnyPath, Index, Labels, Meshes, SearchResults, _dataset, _label_file, in_files
 from ._methods import Embedding, Geodesic, options_of
 from ._settings import Components, IndexDistance, Landmarks, Progress, Ranking, Weld, shown, whole, word
 from ._stored import Stored
@@ -84,7 +84,7 @@ def build_index(
     client: Client,
     out: AnyPath,
     *,
-    labels: Mapping[str, str] | AnyPath | None = None,
+    labels: Labels | None = None,
     n_landmarks: Landmarks = 100,
     n_points: int = 1000,
     size: bool = False,
@@ -136,25 +136,26 @@ def build_index(
     )  # fmt: skip
     out = os.path.abspath(out)
     place = os.path.abspath(shards if shards is not None else f"{out}.shards")
-    meshes, labels = _in_files(meshes, out, labels, replace=True)
-    if os.path.exists(out):
-        with _label_file(labels) as given, _dataset(meshes) as (dataset, _):
-            unchanged = _canonform.Index.unchanged(os.path.abspath(dataset), out, given, settings)
-        if unchanged is not None:
-            index, known = Index(out), json.loads(unchanged)
-            index.build_report = {key: known[key] for key in ("n_shapes", "described", "unchanged", "failed")} | {"batches": 0}
-            return index
-    _dask()
-    is_new = not os.path.exists(place)
-    os.makedirs(place, exist_ok=True)
-    try:
-        # Workers do not see temporary files of the client, so lists of meshes and labels are beside the shards.
-        with TemporaryDirectory(prefix="canonform-", dir=place) as lists:
-            return _build_index(meshes, client, out, labels, settings, n_batches, retries, place, lists, keep_shards, progress)
-    finally:
-        # A folder that holds anything else stays.
-        if (is_new or shards is None) and not os.listdir(place):
-            os.rmdir(place)
+    with in_files(meshes, out, labels, keep=False) as files:
+        meshes, labels = files.paths, files.labels
+        if os.path.exists(out):
+            with _label_file(labels) as given, _dataset(meshes) as (dataset, _):
+                unchanged = _canonform.Index.unchanged(os.path.abspath(dataset), out, given, settings)
+            if unchanged is not None:
+                index, known = Index(out), json.loads(unchanged)
+                index.build_report = {key: known[key] for key in ("n_shapes", "described", "unchanged", "failed")} | {"batches": 0}
+                return index
+        _dask()
+        is_new = not os.path.exists(place)
+        os.makedirs(place, exist_ok=True)
+        try:
+            # Workers do not see temporary files of the client, so lists of meshes and labels are beside the shards.
+            with TemporaryDirectory(prefix="canonform-", dir=place) as lists:
+                return _build_index(meshes, client, out, labels, settings, n_batches, retries, place, lists, keep_shards, progress)
+        finally:
+            # A folder that holds anything else stays.
+            if (is_new or shards is None) and not os.listdir(place):
+                os.rmdir(place)
 
 
 def _build_index(

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::options::RenderOptions;
 use crate::color::{ColorMap, to_linear, value_range};
 
 /// Colours of a surface.
@@ -29,8 +30,16 @@ pub(super) const ISOLINE_LIGHT: f32 = 0.35;
 /// The colour of a vertex without one.
 const MISSING: [u8; 3] = [160, 160, 160];
 
+/// The colours of a surface and of its marks, in linear light.
+pub(super) struct Paint {
+    surface: Coat,
+    /// The colours of the last vertices, and where they begin.
+    marks: Vec<Vector3<f32>>,
+    first_mark: usize,
+}
+
 /// A [`Coloring`] in linear light.
-pub(super) enum Paint {
+enum Coat {
     Plain([f32; 3]),
     Scalars {
         /// Scaled to 0..=1; NaN for missing values.
@@ -45,7 +54,31 @@ pub(super) enum Paint {
 }
 
 impl Paint {
-    pub(super) fn new(n_vertices: usize, coloring: &Coloring, colors: ColorMap, samples: u32) -> Self {
+    pub(super) fn new(n_vertices: usize, options: &RenderOptions, samples: u32) -> Self {
+        let linear = |color: &[u8; 3]| Vector3::from(color.map(to_linear));
+        let marks: Vec<_> = options.marks.iter().map(linear).collect();
+        let first_mark = n_vertices.saturating_sub(marks.len());
+        let surface = Coat::new(n_vertices, &options.coloring, options.colors, samples);
+        Self { surface, marks, first_mark }
+    }
+
+    /// The colour at barycentric coordinates `at` of `face`; `slopes` are the changes of these coordinates per
+    /// sample to the right and down.
+    pub(super) fn color(
+        &self,
+        face: [usize; 3],
+        at: Vector3<f32>,
+        slopes: [Vector3<f32>; 2],
+    ) -> Vector3<f32> {
+        match face.map(|v| v.checked_sub(self.first_mark).and_then(|mark| self.marks.get(mark))) {
+            [Some(a), Some(b), Some(c)] => a * at.x + b * at.y + c * at.z,
+            _ => self.surface.color(face, at, slopes),
+        }
+    }
+}
+
+impl Coat {
+    fn new(n_vertices: usize, coloring: &Coloring, colors: ColorMap, samples: u32) -> Self {
         match coloring {
             Coloring::Plain(color) => Self::Plain(color.map(to_linear)),
             Coloring::Colors(colors) => {
@@ -67,14 +100,7 @@ impl Paint {
         }
     }
 
-    /// The colour at barycentric coordinates `at` of `face`; `slopes` are the changes of these coordinates per
-    /// sample to the right and down.
-    pub(super) fn color(
-        &self,
-        face: [usize; 3],
-        at: Vector3<f32>,
-        slopes: [Vector3<f32>; 2],
-    ) -> Vector3<f32> {
+    fn color(&self, face: [usize; 3], at: Vector3<f32>, slopes: [Vector3<f32>; 2]) -> Vector3<f32> {
         match self {
             Self::Plain(color) => Vector3::from(*color),
             Self::Colors(colors) => {

@@ -19,6 +19,8 @@ pub struct RenderOptions {
     pub background: Background,
     /// Colours of the surface. Default: a light clay.
     pub coloring: Coloring,
+    /// The sRGB colours of the last vertices of the mesh, which are those of marks on the surface, such as paths. Default: none.
+    pub marks: Vec<[u8; 3]>,
     /// The colours of numbers. Default: [`ColorMap::Viridis`].
     pub colors: ColorMap,
     /// Dihedral angle in degrees, clamped to 0..=90, above which an edge is shaded as a crease. Default: 80.
@@ -36,6 +38,7 @@ impl Default for RenderOptions {
             view: View::default(),
             background: Background::White,
             coloring: Coloring::Plain([214, 206, 194]),
+            marks: Vec::new(),
             colors: ColorMap::default(),
             crease: 80.0,
             supersampling: 3,

@@ -1,0 +1,192 @@
+"""Pictures: how they are drawn, and marks on surfaces."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _canonform
+from ._arrays import Floats, Ints, numeric, straight
+from ._operators import EdgePoint, FacePoint, parsed
+from ._settings import number, whole, word
+from .errors import OptionError, PointError
+
+if TYPE_CHECKING:
+    from ._surface import Path
+
+ColorMap: TypeAlias = Literal["viridis", "magma", "inferno", "cividis", "turbo", "coolwarm", "gray"]
+View: TypeAlias = Literal["front", "back", "left", "right", "top", "bottom", "principal"] | tuple[float, float]
+
+_VIEWS = {"front": (0, 0), "right": (90, 0), "back": (180, 0), "left": (270, 0), "top": (0, 90), "bottom": (0, -90)}
+_AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+_EDGE, _PATH, _POINT = (60, 60, 60), (200, 30, 30), (30, 60, 200)
+_LARGEST = 8192
+"""Most pixels along a side."""
+
+
+class Look(TypedDict, total=False):
+    """Keywords of pictures.
+
+    Attributes
+    ----------
+    width, height
+        In pixels, 600 by default.
+    view
+        Where the viewer stands: "front", "right", "back", "left", "top", "bottom", "principal" along the principal axes, or how far
+        around and how far up, in degrees; by default (30, 12).
+    up
+        The axis that points up: "x", "y" or "z", the default.
+    colormap
+        Colours of values: "viridis", "magma", "inferno", "cividis", "turbo", "coolwarm" or "gray".
+    range
+        The values of the first and the last colour; by default the least and the greatest.
+    bar
+        The name of the values beside a bar of their colours; by default no bar. True for a bar without a name.
+    isolines
+        Number of steps of the range that lines of equal value separate.
+    colors
+        A colour for each vertex instead of values: shape (n, 3), from 0 to 255, or from 0 to 1 if they are fractions.
+    edges
+        Whether edges are drawn.
+    paths
+        Paths of `Surface.path`, or arrays of points of shape (k, 3), drawn as red lines.
+    points
+        Points drawn as blue dots: vertices, points of edges and faces, or places of shape (k, 3).
+    background
+        A colour such as "#ffffff", by default none.
+    """
+
+    width: int
+    height: int
+    view: View
+    up: Literal["x", "y", "z"]
+    colormap: ColorMap
+    range: tuple[float, float]
+    bar: str | bool
+    isolines: int
+    colors: ArrayLike
+    edges: bool
+    paths: Sequence[Path | ArrayLike]
+    points: Iterable[Any]
+    background: str
+
+
+def drawn(vertices: Floats, faces: Ints, values: Floats | None, look: Look) -> bytes:
+    """A PNG file of a mesh, coloured by values if there are some."""
+    for name in look.keys() - Look.__annotations__.keys():
+        raise TypeError(f"got an unexpected keyword argument {name!r}")
+    vertices, faces = vertices.view(np.ndarray), np.asarray(faces)
+    size = float(np.linalg.norm(np.ptp(vertices[np.unique(faces)], axis=0))) if len(faces) else 1.0
+    marks: list[tuple[Floats, Ints, tuple[int, int, int]]] = []
+    if look.get("edges"):
+        sides = np.unique(np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0)
+        marks.append((*_tubes(vertices[sides], 0.0007 * size), _EDGE))
+    for path in look.get("paths", ()):
+        places: Floats = numeric("paths", np.asarray(path), ("k", 3))
+        marks.append((*_tubes(np.stack([places[:-1], places[1:]], axis=1), 0.004 * size), _PATH))
+    points = look.get("points")
+    if points is not None:
+        places = _places(points, vertices, faces)
+        x = 0.011 * size * np.eye(3)
+        marks.append((*_solid(places[:, None] + np.concatenate([x, -x]), _OCTAHEDRON), _POINT))
+    colors = None if "colors" not in look else _colors(look["colors"], len(vertices))
+    n = len(vertices) + np.cumsum([0, *(len(mark[0]) for mark in marks)])
+    every = np.concatenate([vertices, *(mark[0] for mark in marks)])
+    corners = np.concatenate([faces, *(mark[1] + first for mark, first in zip(marks, n[:-1], strict=True))])
+    paint = np.concatenate([np.empty((0, 3), np.uint8), *(np.full((len(mark[0]), 3), mark[2], np.uint8) for mark in marks)])
+    numbers = None if values is None else straight(values.view(np.ndarray), dtype=np.float64)
+    return _canonform.draw(straight(every), straight(corners), numbers, colors, straight(paint), _settings(look))
+
+
+def to_the_right(look: Look) -> Floats:
+    """The direction that points right in a picture."""
+    settings = _settings(look)
+    up, around = np.array(settings["up"]), np.radians((settings["view"] or (0, 0))[0])
+    flat = np.array(_AXES["y" if settings["up"] == _AXES["x"] else "x"])
+    right: Floats = np.cos(around) * flat + np.sin(around) * np.cross(up, flat)
+    return right
+
+
+def _settings(look: Look) -> dict[str, Any]:
+    view, up, bar = look.get("view", (30, 12)), look.get("up", "z"), look.get("bar", False)
+    named = _VIEWS.get(view) if isinstance(view, str) else view
+    if up not in _AXES:
+        raise OptionError(f'up={up!r} is not possible: use "x", "y" or "z"')
+    if named is None and view != "principal" or named is not None and len(named) != 2:
+        raise OptionError(f"view={view!r} is not possible: use {', '.join(map(repr, _VIEWS))}, 'principal', or two angles such as (30, 12)")
+    ends = look.get("range")
+    if ends is not None and not (len(ends) == 2 and -np.inf < number("range", ends[0]) < number("range", ends[1]) < np.inf):
+        raise OptionError(f"range={ends!r} is not possible: give the values of the first and the last colour, such as (0, 80)")
+    sides = {name: min(whole(name, look.get(name, 600), 1), _LARGEST) for name in ("width", "height")}
+    return {
+        **sides,
+        "view": None if named is None else [number("view", angle) for angle in named],
+        "up": _AXES[up],
+        "colormap": word("colormap", look.get("colormap", "viridis")),
+        "range": None if ends is None else [float(end) for end in ends],
+        "isolines": min(whole("isolines", look.get("isolines", 0)), 1000),
+        "bar": None if bar is False else "" if bar is True else word("bar", bar),
+        "background": _rgb(look["background"]) if "background" in look else None,
+    }
+
+
+def _rgb(text: str) -> list[int]:
+    digits = word("background", text).removeprefix("#")
+    try:
+        if len(digits) != 6:
+            raise ValueError
+        return list(bytes.fromhex(digits))
+    except ValueError:
+        raise OptionError(f'background={text!r} is not possible: write it as "#rrggbb", such as "#ffffff"') from None
+
+
+def _colors(colors: ArrayLike, n: int) -> NDArray[np.uint8]:
+    array = numeric("colors", np.asarray(colors)[..., :3], (n, 3))
+    bright = array * 255 if np.asarray(colors).dtype.kind == "f" and np.nanmax(array, initial=0) <= 1 else array
+    found: NDArray[np.uint8] = straight(np.clip(np.nan_to_num(bright, nan=160), 0, 255).round(), np.uint8)
+    return found
+
+
+def _places(points: Iterable[Any], vertices: Floats, faces: Ints) -> Floats:
+    """Where points of a mesh are."""
+    if isinstance(points, np.ndarray) and points.ndim == 2:
+        found: Floats = numeric("points", points, ("k", 3), error=PointError)
+        return found
+    places = []
+    for point in points:
+        at = point
+        try:
+            at = parsed(point) if isinstance(point, str) else point
+            if isinstance(at, EdgePoint):
+                places.append(vertices[at.start] * (1 - at.t) + vertices[at.end] * at.t)
+            elif isinstance(at, FacePoint):
+                places.append(np.average(vertices[faces[at.face]], axis=0, weights=at.weights))
+            else:
+                places.append(vertices[whole("points", at)])
+        except (IndexError, ValueError):
+            raise PointError(f"{at} is not a point of this mesh") from None
+    return np.array(places).reshape(-1, 3)
+
+
+_OCTAHEDRON = np.array([[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]])
+_PRISM = np.array([[i, (i + 1) % 4, 4 + i] for i in range(4)] + [[(i + 1) % 4, 4 + (i + 1) % 4, 4 + i] for i in range(4)])
+
+
+def _solid(corners: Floats, faces: Ints) -> tuple[Floats, Ints]:
+    """Copies of a solid, each with its own corners, as one mesh."""
+    first = corners.shape[1] * np.arange(len(corners))
+    return corners.reshape(-1, 3), (faces[None] + first[:, None, None]).reshape(-1, 3)
+
+
+def _tubes(segments: Floats, radius: float) -> tuple[Floats, Ints]:
+    """Prisms around segments, shape (k, 2, 3)."""
+    along = segments[:, 1] - segments[:, 0]
+    aside = np.cross(along, np.eye(3)[np.abs(along).argmin(axis=1)])
+    across = np.cross(along, aside)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        units = [np.nan_to_num(v / np.linalg.norm(v, axis=1, keepdims=True)) for v in (aside, across)]
+    ring = radius * np.stack([units[0], units[1], -units[0], -units[1]], axis=1)
+    return _solid(np.concatenate([segments[:, :1] + ring, segments[:, 1:] + ring], axis=1), _PRISM)
