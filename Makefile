@@ -5,7 +5,7 @@ OUT ?= out
 # For `make reproduce`: a folder of meshes with the classes of the paper. Default: the built-in dataset.
 DATASET ?=
 
-.PHONY: help setup build run test test-all test-python wheels notebooks lint-packaging lint bench bench-peers bench-nmds bench-preparation bench-search bench-capacity bench-shards bench-duplicates bench-maps bench-packages bench-eigsh fmt doc guide reproduce report paper plotly deny sbom fuzz fuzz-seeds package ci clean
+.PHONY: help setup build run test test-all test-python wheels reference notebooks lint-packaging lint bench bench-peers bench-nmds bench-preparation bench-search bench-capacity bench-shards bench-duplicates bench-maps bench-packages bench-eigsh fmt doc guide reproduce report paper plotly deny sbom fuzz fuzz-seeds package ci clean
 
 help: ## List these commands
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-17s %s\n", $$1, $$2}'
@@ -27,6 +27,9 @@ test-python: ## Build the Python package and run its tests, but for slow ones, i
 
 wheels: ## Build the wheel and the source distribution of the Python package in out/wheels, and try both in a bare Python
 	crates/py/wheels.sh $(OUT)/wheels
+
+reference: ## Write the pages of the Python API to target/reference
+	crates/py/test.sh --reference
 
 notebooks: ## Run the notebooks of the Python package and store them with their outputs
 	CANONFORM_WRITE_DOCS=1 crates/py/test.sh -m slow tests/test_notebooks.py

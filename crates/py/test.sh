@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Builds the Python package and runs its tests in an environment of its own below target/, in two processes. `--find` only
-# prints the Python that would be used, and `--prepare` only makes the environment. Further arguments go to pytest.
+# prints the Python that would be used, `--prepare` only makes the environment, and `--reference` writes the pages of the API to
+# target/reference instead. Further arguments go to pytest.
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -46,5 +47,13 @@ if [ -n "${CANONFORM_PROGRAM:-}" ]; then
 else
     cargo build --locked -p canonform-cli
     "$environment/bin/maturin" develop --quiet --locked --profile dev --features canonform/clap
+fi
+if [ "${1:-}" = --reference ]; then
+    "$environment/bin/pip" install --quiet --disable-pip-version-check 'pdoc>=16,<17'
+    exec "$environment/bin/python" -W ignore -c '
+import sys, pathlib, canonform, pdoc
+canonform.NystromMDS, canonform.distributed
+pdoc.render.configure(docformat="numpy")
+pdoc.pdoc("canonform", output_directory=pathlib.Path(sys.argv[1]))' "$target/reference"
 fi
 exec "$environment/bin/python" -m pytest --numprocesses 2 --dist loadfile "$@"

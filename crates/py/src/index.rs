@@ -25,7 +25,7 @@ use crate::arrays;
 use crate::error::{Exception, to_python, with_remedy};
 use crate::record::json;
 use crate::run::run;
-use crate::settings::{Settings, chosen, in_words, measure};
+use crate::settings::{Settings, chosen, measure};
 use crate::surface::Surface;
 
 /// An index that is open for searches.
@@ -355,10 +355,8 @@ impl Index {
     ) -> PyResult<String> {
         let mut options = DuplicateOptions { min_confidence, ..DuplicateOptions::default() };
         if let Some(kinds) = kinds {
-            let kinds = kinds.into_iter().map(serde_json::Value::from).collect();
-            options.kinds = serde_json::from_value(serde_json::Value::Array(kinds)).map_err(
-                |fault: serde_json::Error| Exception::Option.with(&format!("kinds: {}", in_words(&fault))),
-            )?;
+            let kinds = kinds.iter().map(|kind| chosen("kinds", kind));
+            options.kinds = kinds.collect::<PyResult<_>>()?;
         }
         let found = run(py, |observer| find_duplicates(&self.search, &options, observer))?;
         Ok(json(&found))

@@ -139,7 +139,7 @@ pub(crate) fn measure(name: &str, text: &str) -> PyResult<Measure> {
 }
 
 /// What is possible instead.
-pub(crate) fn in_words(fault: &impl Display) -> String {
+fn in_words(fault: &Error) -> String {
     let text = fault.to_string().replace('`', "\"");
     let Some((_, possible)) = text.split_once(", expected ") else { return text };
     let possible = match possible.trim_start_matches("one of ") {

@@ -183,7 +183,7 @@ def test_compare_match_and_align_take_any_mesh(shapes: list[Shape], tmp_path: Pa
         (lambda s, i: canonform.datasets.generate(5), OptionError, "family=5"),
         (lambda s, i: canonform.compare(s, s, names="a"), OptionError, "names='a'"),
         (lambda s, i: i.distances([3]), OptionError, "ids=3"),
-        (lambda s, i: i.duplicates(kinds=["x"]), OptionError, 'kinds: use "identical-file"'),
+        (lambda s, i: i.duplicates(kinds=["x"]), OptionError, 'kinds="x" is not possible: use "identical-file"'),
         (lambda s, i: s.picture(width="x"), OptionError, "width='x'"),
         (lambda s, i: s.picture(view="above"), OptionError, "view='above'"),
         (lambda s, i: s.picture(colormap="jet"), OptionError, "choose from viridis"),

@@ -120,6 +120,7 @@ def __getattr__(name: str) -> _Any:
     if name == "NystromMDS":
         from .learn import NystromMDS
 
+        globals()[name] = NystromMDS
         return NystromMDS
     if name == "distributed":
         from importlib import import_module
