@@ -1,7 +1,7 @@
 //! Alignment and comparison of two shapes.
 
 use canonform::compare::compare_meshes;
-use canonform::rigid::{self, Reflections, align_points};
+use canonform::rigid::{Reflections, align_points};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
@@ -12,37 +12,18 @@ use crate::run::run;
 use crate::settings::Settings;
 use crate::surface::Surface;
 
-/// The rigid motion that takes one form onto another.
-#[pyclass(frozen, module = "canonform._canonform")]
-pub(crate) struct Alignment(rigid::Alignment);
+/// A rigid motion: rotation, translation, whether it includes a reflection, and how far nearest points are apart after it.
+type Motion<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>, bool, f64);
 
-#[pymethods]
-impl Alignment {
-    fn rotation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let rotation = self.0.map.rotation.transpose();
-        arrays::matrix(py, rotation.as_slice().to_vec(), [3, 3])
-    }
-
-    fn translation<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        arrays::vector(py, self.0.map.translation.as_slice().to_vec())
-    }
-
-    #[getter]
-    fn reflected(&self) -> bool {
-        self.0.map.reflected
-    }
-
-    #[getter]
-    fn rms(&self) -> f64 {
-        self.0.gap.rms
-    }
-}
-
-/// Aligns two forms in mesh units.
+/// The rigid motion that takes one form onto another, in mesh units.
 #[pyfunction]
-pub(crate) fn align(py: Python<'_>, a: &Form, b: &Form, reflections: bool) -> PyResult<Alignment> {
+pub(crate) fn align<'py>(py: Python<'py>, a: &Form, b: &Form, reflections: bool) -> PyResult<Motion<'py>> {
     let reflections = if reflections { Reflections::Allow } else { Reflections::Forbid };
-    run(py, |_| Ok(Alignment(align_points(&a.prepared()?, &b.prepared()?, reflections))))
+    let found = run(py, |_| Ok(align_points(&a.prepared()?, &b.prepared()?, reflections)))?;
+    let rotation = found.map.rotation.transpose().as_slice().to_vec();
+    let translation = found.map.translation.as_slice().to_vec();
+    let rotation = arrays::matrix(py, rotation, [3, 3])?;
+    Ok((rotation, arrays::vector(py, translation), found.map.reflected, found.gap.rms))
 }
 
 /// The comparison of two surfaces as the JSON of `canonform compare`, and the residuals of the vertices of both repaired

@@ -109,13 +109,6 @@ impl DistanceField {
         self.0.landmarks().iter().map(|v| i64::from(v.0)).collect::<Vec<_>>().into_pyarray(py)
     }
 
-    /// The distance of two vertices, its bounds, and whether it is exact.
-    fn pair(&self, a: i64, b: i64) -> PyResult<(f64, f64, f64, bool)> {
-        let pair =
-            self.0.pair(vertex(a)?, vertex(b)?).map_err(|fault| crate::error::to_python(&fault.into()))?;
-        Ok((pair.distance, pair.lower, pair.upper, pair.kind == PairKind::Exact))
-    }
-
     /// The distances of the rows of an n x 2 array.
     fn pairs<'py>(
         &self,

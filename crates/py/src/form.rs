@@ -66,11 +66,6 @@ impl Form {
         arrays::matrix(py, rows.into_flattened(), [n, 3])
     }
 
-    /// The faces of the input.
-    fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
-        arrays::faces(py, &self.surface.input.faces)
-    }
-
     fn eigenvalues<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         arrays::vector(py, self.embedded.embedding.eigenvalues.clone())
     }

@@ -32,7 +32,7 @@ mod _canonform {
     use pyo3::prelude::*;
 
     #[pymodule_export]
-    use crate::compare::{Alignment, align, compare};
+    use crate::compare::{align, compare};
     #[pymodule_export]
     use crate::datasets::{creatures, families, generate};
     #[pymodule_export]

@@ -70,6 +70,78 @@ def test_pictures_show_the_values(cat: Shape) -> None:
     assert surface.picture(dropped, width=80, height=60).startswith(b"\x89PNG")
 
 
+def decoded(png: bytes) -> np.ndarray:
+    plt = pytest.importorskip("matplotlib.image")
+    import io
+
+    pixels: np.ndarray = plt.imread(io.BytesIO(png))
+    return pixels
+
+
+def share_of(png: bytes, color: tuple[int, int, int]) -> float:
+    """The share of the pixels of a picture that have nearly the hue of a colour."""
+    pixels = decoded(png)
+    lit = pixels[pixels[..., 3] > 0.9][:, :3]
+    units = lit / np.maximum(np.linalg.norm(lit, axis=1, keepdims=True), 1e-9)
+    wanted = np.array(color) / np.linalg.norm(color)
+    return float((units @ wanted > 0.99).sum() / pixels[..., 3].size)
+
+
+def test_pictures_are_directed() -> None:
+    # A box of 1 x 2 x 3.
+    pyvista = pytest.importorskip("pyvista", exc_type=ImportError)
+    box = Surface(pyvista.Cube(x_length=1, y_length=2, z_length=3).clean())
+    small: Any = {"width": 60, "height": 60}
+
+    def sides(**look: Any) -> float:
+        """Width over height of what is seen."""
+        seen = decoded(box.picture(**small, **look))[..., 3] > 0.5
+        rows, columns = np.flatnonzero(seen.any(axis=1)), np.flatnonzero(seen.any(axis=0))
+        return float(np.ptp(columns) / np.ptp(rows))
+
+    for look, expected in [
+        ({"view": "front"}, 1 / 3),
+        ({"view": "right"}, 2 / 3),
+        ({"view": "top"}, 1 / 2),
+        ({"view": "front", "up": "y"}, 1 / 2),
+        ({"view": (90, 0), "up": "x"}, 3 / 1),
+    ]:
+        assert sides(**look) == pytest.approx(expected, rel=0.1), look
+    assert decoded(box.picture(width=40, height=30)).shape == (30, 40, 4)
+    assert decoded(box.picture(background="#102030", **small))[0, 0].tolist() == pytest.approx(np.array([16, 32, 48, 255]) / 255)
+
+
+def test_pictures_have_marks_colors_ranges_and_bars(cat: Shape) -> None:
+    surface = cat.surface()
+    values = surface.distances(0)
+    small: Any = {"width": 200, "height": 160, "view": "left"}
+    path = surface.path(0, values.argmax())
+    assert share_of(surface.picture(**small), (200, 30, 30)) == 0
+    assert share_of(surface.picture(paths=[path, path.points], **small), (200, 30, 30)) > 0.001
+    points = [0, 7, canonform.FacePoint(500), "f800", canonform.EdgePoint(*map(int, surface.edges[900]))]
+    assert share_of(surface.picture(points=points, **small), (30, 60, 200)) > 0.0002
+    assert share_of(surface.picture(colors=np.tile([0.0, 1, 0], (1000, 1)), **small), (0, 1, 0)) > 0.05
+    # A range that ends early makes the rest the last colour.
+    yellow = (253, 231, 37)
+    assert share_of(surface.picture(values, range=(0, 1), **small), yellow) > 2 * share_of(surface.picture(values, **small), yellow)
+    looks: list[Any] = [{}, {"edges": True}, {"isolines": 9}, {"bar": True}, {"bar": "mm"}, {"colormap": "gray"}]
+    assert len({surface.picture(values, **look, **small) for look in looks}) == len(looks)
+    form = surface.canonical_form(20)
+    assert form.picture(values, view="principal", width=80, height=80) != form.picture(view="principal", width=80, height=80)
+    with pytest.raises(TypeError, match="colour"):
+        surface.picture(colour=3)  # type: ignore[call-arg]
+
+
+def test_a_match_is_drawn_side_by_side(cats: list[Shape]) -> None:
+    match = canonform.match(*(shape.surface() for shape in cats), n_eigenfunctions=30)
+    pixels = decoded(match.picture(n_lines=4, width=160, height=80))
+    halves = np.array_split(pixels[..., 3] > 0.5, 2, axis=1)
+    assert all(half.mean() > 0.05 for half in halves)
+    assert match.picture(n_lines=4) != match.picture() and len(match.pictures(width=40, height=40)) == 1 + len(match.maps)
+    with pytest.raises(canonform.errors.OptionError, match="kind='other'"):
+        match.picture("other")  # type: ignore[arg-type]
+
+
 def test_a_search_without_mesh_files_is_shown_all_the_same(tmp_path: Path, cats: list[Shape]) -> None:
     folder = tmp_path / "meshes"
     paths = canonform.datasets.write(cats, folder)

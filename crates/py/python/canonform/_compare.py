@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass
 from typing import Any, Unpack
 
 import numpy as np
@@ -13,12 +14,13 @@ from ._arrays import Floats, VertexValues, numeric, on_vertices
 from ._form import Form
 from ._methods import Embedding, Geodesic, options_of
 from ._settings import Call, Landmarks, RelationKind, running
-from ._stored import Stored
+from ._stored import ByValue, Stored
 from ._surface import AnyMesh, Surface, surface_of
 from .errors import OptionError
 
 
-class Alignment(Stored):
+@dataclass(frozen=True, repr=False, eq=False)
+class Alignment(ByValue):
     """The rigid motion that takes one form onto another: `points @ rotation.T + translation`.
 
     Attributes
@@ -33,11 +35,10 @@ class Alignment(Stored):
         Root mean square distance between nearest points of the aligned forms, in mesh units.
     """
 
-    def __init__(self, inner: _canonform.Alignment) -> None:
-        self.rotation: Floats = inner.rotation()
-        self.translation: Floats = inner.translation()
-        self.reflected: bool = inner.reflected
-        self.rms: float = inner.rms
+    rotation: Floats
+    translation: Floats
+    reflected: bool
+    rms: float
 
     def apply(self, points: ArrayLike) -> Floats:
         """Moves points, shape (k, 3)."""
@@ -58,7 +59,7 @@ def align(a: Form | AnyMesh, b: Form | AnyMesh, *, reflections: bool = True, **c
     """
     with running(call):
         forms = [shape if isinstance(shape, Form) else surface_of(shape).canonical_form(stress="skip") for shape in (a, b)]
-        return Alignment(_canonform.align(forms[0]._inner, forms[1]._inner, bool(reflections)))
+        return Alignment(*_canonform.align(forms[0]._inner, forms[1]._inner, bool(reflections)))
 
 
 class Comparison(Stored):

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _canonform
 from ._arrays import Floats, Ints, numeric
 from ._settings import Call, number, running, whole
-from ._stored import ByValue, Constant
+from ._stored import AsArray, ByValue, Constant
 from .errors import PointError
 
 
@@ -40,7 +40,7 @@ class PairDistance:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class PairDistances(ByValue):
+class PairDistances(AsArray, ByValue):
     """The distances of several pairs, with bounds: arrays of one number for each pair, in mesh units.
 
     `numpy.asarray(distances)` gives the distances.
@@ -57,6 +57,8 @@ class PairDistances(ByValue):
         Which distances are exact instead of estimates.
     """
 
+    _rows = "distance"
+
     distance: Floats
     lower: Floats
     upper: Floats
@@ -66,12 +68,6 @@ class PairDistances(ByValue):
     def valid(self) -> NDArray[np.bool_]:
         """The pairs whose vertices are both on the surface: a mask."""
         return np.isfinite(self.distance)
-
-    def __len__(self) -> int:
-        return len(self.distance)
-
-    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
-        return np.array(self.distance, dtype=dtype, copy=True if copy is None else copy)
 
     def __repr__(self) -> str:
         return f"PairDistances({len(self)} pairs, {int(self.exact.sum())} exact)"
@@ -133,7 +129,8 @@ class DistanceField(Constant):
 
     def pair(self, a: int, b: int) -> PairDistance:
         """The distance of two vertices, estimated. Raises `PointError`."""
-        return PairDistance(*self._inner.pair(_vertex(a), _vertex(b)))
+        distance, lower, upper, exact = self._inner.pairs(np.array([[_vertex(a), _vertex(b)]]), None)
+        return PairDistance(float(distance[0]), float(lower[0]), float(upper[0]), bool(exact[0]))
 
     def pairs(
         self, pairs: ArrayLike, *, tolerance: float | None = 0.05, **call: Unpack[Call]

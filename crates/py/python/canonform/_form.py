@@ -15,7 +15,7 @@ from . import _canonform, _html
 from ._arrays import Floats, Ints, SourceRows, VertexValues, numeric, on_vertices
 from ._look import Look, drawn
 from ._settings import Call, StressChoice, running
-from ._stored import Constant
+from ._stored import AsArray, Constant
 
 if TYPE_CHECKING:
     from ._surface import Point, Surface
@@ -29,7 +29,7 @@ def _interval(bounds: list[float]) -> tuple[float, float]:
     return low, high
 
 
-class Form(Constant):
+class Form(AsArray, Constant):
     """A surface, embedded so that straight-line distances approximate the distances along it.
 
     `numpy.asarray(form)` gives its points. A pickled form holds its points and its report; the distances of the landmarks, and what
@@ -53,12 +53,12 @@ class Form(Constant):
         return self._made
 
     def _state(self) -> dict[str, Any]:
-        made = {name: getattr(self, name) for name in ("points", "faces", "eigenvalues", "report", "options")}
+        made = {name: getattr(self, name) for name in ("points", "eigenvalues", "report", "options")}
         return {**{k: v for k, v in vars(self).items() if k != "distances"}, **made, "_made": None}
 
     def _restore(self, state: dict[str, Any]) -> None:
         super()._restore(state)
-        self.points.flags.writeable = self.faces.flags.writeable = False
+        self.points.flags.writeable = False
 
     @cached_property
     def points(self) -> VertexValues:
@@ -89,12 +89,10 @@ class Form(Constant):
         with running(call):
             return on_vertices(self._inner.bent_points())
 
-    @cached_property
+    @property
     def faces(self) -> Ints:
         """The faces of the input, shape (m, 3)."""
-        faces = self._inner.faces()
-        faces.flags.writeable = False
-        return faces
+        return self._surface.faces
 
     @cached_property
     def report(self) -> dict[str, Any]:
@@ -195,12 +193,6 @@ class Form(Constant):
         if points.shape[1] < 3:
             points = np.pad(points, ((0, 0), (0, 3 - points.shape[1])))
         return drawn(points, self.faces, None if values is None else numeric("values", values, (len(self),)), look)
-
-    def __len__(self) -> int:
-        return len(self.points)
-
-    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
-        return np.array(self.points, dtype=dtype, copy=True if copy is None else copy)
 
     def __repr__(self) -> str:
         report = self.report

@@ -161,10 +161,11 @@ class SurfaceMap(Stored):
         k = most if k is None else k
         return min(k, rows), min(k, columns)
 
-    def points(self, of: Side = "a") -> MappedPoints:
+    def points(self, of: Side = "a", **call: Unpack[Call]) -> MappedPoints:
         """The points inside faces of `b` that the vertices of `a` are mapped to; with `of="b"`, the points of `a` that are mapped to
         the vertices of `b`."""
-        return self._mapped(_side("of", of), "vertices")
+        with running(call):
+            return self._mapped(_side("of", of), "vertices")
 
     def _mapped(self, of: Side, elements: str) -> MappedPoints:
         key = f"{elements} of {of}"
@@ -186,7 +187,7 @@ class SurfaceMap(Stored):
         found: Floats = (values[points.faces] * points.weights[:, :, None]).sum(axis=1)
         return found.reshape(-1, 3, values.shape[2])
 
-    def transfer(self, values: ArrayLike, to: Side = "b") -> NDArray[Any]:
+    def transfer(self, values: ArrayLike, to: Side = "b", **call: Unpack[Call]) -> NDArray[Any]:
         """Carry values from one surface to the other: from `a` to `b`, or back with `to="a"`.
 
         Parameters
@@ -202,7 +203,10 @@ class SurfaceMap(Stored):
         Returns one row for each vertex or face of that surface, or values at its corners. Of those that the repair dropped, numbers are NaN or -1, and other
         labels are empty.
         """
-        at = _side("to", to)
+        with running(call):
+            return self._carried(values, _side("to", to))
+
+    def _carried(self, values: ArrayLike, at: Side) -> NDArray[Any]:
         source = self._shapes[1 if at == "a" else 0]
         array = np.asarray(unmasked("values", values))
         n = len(array) if array.ndim else 0

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from ._arrays import Floats, Ints, VertexValues, numeric, on_vertices
 from ._settings import number, numbers, whole
-from ._stored import ByValue
+from ._stored import AsArray, ByValue
 from .errors import OptionError
 
 
@@ -68,7 +68,7 @@ def parsed(text: str) -> int | EdgePoint | FacePoint:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class ClosestPoints(ByValue):
+class ClosestPoints(AsArray, ByValue):
     """The points of a surface that are nearest to points in space. `numpy.asarray` gives them.
 
     Attributes
@@ -93,12 +93,6 @@ class ClosestPoints(ByValue):
         """The points as sources of distances and ends of paths."""
         pairs = zip(self.faces.tolist(), self.weights.tolist(), strict=True)
         return [FacePoint(face, (a, b, c)) for face, (a, b, c) in pairs]
-
-    def __len__(self) -> int:
-        return len(self.points)
-
-    def __array__(self, dtype: object = None, copy: bool | None = None) -> Floats:
-        return np.array(self.points, dtype=dtype, copy=True if copy is None else copy)  # type: ignore[call-overload,no-any-return]
 
     def __repr__(self) -> str:
         return f"ClosestPoints({len(self)} points)"

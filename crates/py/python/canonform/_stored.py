@@ -5,9 +5,10 @@ from __future__ import annotations
 import zlib
 from collections.abc import Callable, Iterator
 from dataclasses import fields
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ._arrays import straight
 from .errors import CanonformError
@@ -54,6 +55,18 @@ class ByValue(Stored):
 
     def __hash__(self) -> int:
         return hash(self._key())
+
+
+class AsArray:
+    """An object with as many rows as one of its arrays, which `numpy.asarray` gives."""
+
+    _rows: ClassVar[str] = "points"
+
+    def __len__(self) -> int:
+        return len(getattr(self, self._rows))
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
+        return np.array(getattr(self, self._rows), dtype=dtype, copy=True if copy is None else copy)
 
 
 def _restored(kind: type[Stored], version: int, checksum: int, state: dict[str, Any]) -> Stored:

@@ -36,7 +36,7 @@ from ._settings import (
     whole,
     word,
 )
-from ._stored import ByValue, Constant
+from ._stored import AsArray, ByValue, Constant
 from ._view import SurfaceView, scene
 from .errors import MeshError, OptionError, PointError, SurfaceLossWarning
 
@@ -96,7 +96,7 @@ class RepairReport(dict[str, Any]):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Path(ByValue):
+class Path(AsArray, ByValue):
     """A shortest path along a surface.
 
     Attributes
@@ -115,12 +115,6 @@ class Path(ByValue):
     at: list[int | EdgePoint | FacePoint]
     along: Floats
     length: float
-
-    def __len__(self) -> int:
-        return len(self.points)
-
-    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
-        return np.array(self.points, dtype=dtype, copy=True if copy is None else copy)
 
     def __repr__(self) -> str:
         return f"Path(length={self.length:.6g}, points={len(self)}, from {self.at[0]} to {self.at[-1]})"
