@@ -648,6 +648,7 @@ def in_files(meshes: Meshes, index: AnyPath, labels: Labels | None, *, keep: boo
     is_kept = keep or os.path.exists(folder)
     found = _Files([], labels, [])
     paths: list[AnyPath] = []
+    written: list[str] = []
     known: dict[str, str] = {}
     names: list[str] = []
     given: list[Any] = list(meshes.items()) if isinstance(meshes, Mapping) else list(meshes)
@@ -664,7 +665,8 @@ def in_files(meshes: Meshes, index: AnyPath, labels: Labels | None, *, keep: boo
             if label:
                 known[name] = label
             try:
-                paths.append(_kept(_arrays(mesh), os.path.join(folder, *f"{name}.ply".split("/")), not add))
+                written.append(_kept(_arrays(mesh), os.path.join(folder, *f"{name}.ply".split("/")), not add))
+                paths.append(written[-1])
             except MeshError as fault:
                 found.failed.append({"id": name, "path": name, "reason": "shape", "error": str(fault)})
         if known and labels is not None:
@@ -673,14 +675,12 @@ def in_files(meshes: Meshes, index: AnyPath, labels: Labels | None, *, keep: boo
             if len(labels) != len(names):
                 raise OptionError(f"labels= has {len(labels)} classes for {len(names)} meshes; give one for each")
             known = {name: str(label) for name, label in zip(names, labels, strict=True) if label}
-        in_memory = [os.path.abspath(path) for path in paths if os.fspath(path).startswith(folder)]
         if found.failed and not paths:
             raise MeshError(f"no mesh could be described, so no index was written; the first, {names[0]}: {found.failed[0]['error']}")
-        if not add and paths and len(in_memory) == len(paths):
+        if not add and paths and len(written) == len(paths):
             # As of any folder, shapes whose files are gone are removed.
-            for path in map(os.path.abspath, glob.glob(f"{glob.escape(folder)}/**/*.ply", recursive=True)):
-                if path not in in_memory:
-                    os.remove(path)
+            for path in set(glob.glob(f"{glob.escape(folder)}/**/*.ply", recursive=True)) - set(written):
+                os.remove(path)
             found.paths = folder
         else:
             found.paths = paths

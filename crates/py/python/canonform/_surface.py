@@ -57,7 +57,7 @@ _T = TypeVar("_T")
 _MOST_DROPPED = 0.01
 """Losing more of a surface is a warning."""
 
-_MOST_KEPT = 16
+_MOST_KEPT = 8
 """Kernels and matrices that a surface keeps; the oldest goes when there are more."""
 
 
