@@ -58,7 +58,8 @@ def test_values_labels_and_points_are_carried_both_ways(cats: list[Shape]) -> No
     np.testing.assert_allclose(points.interpolate(b.vertices), m.transfer(b.vertices, to="a"))
     assert b.path(points.at[0], 5).length > 0
     corners = a.vertices[a.faces]
-    np.testing.assert_allclose(m.transfer(corners).reshape(-1, 3), there[b.faces].reshape(-1, 3), atol=0.05 * size)
+    gaps = np.linalg.norm(m.transfer(corners) - there[b.faces], axis=2)
+    assert gaps.mean() < 0.002 * size and (gaps < 0.05 * size).mean() > 0.99
     again = pickle.loads(pickle.dumps(m))
     np.testing.assert_array_equal(again.transfer(names), m.transfer(names))
     with pytest.raises(OptionError, match="3 rows"):
