@@ -13,7 +13,7 @@ use crate::form::DescribeOptions;
 
 /// The least number of pairs of one class from which a boundary is fitted, and the most of either kind whose forms are aligned.
 const LEAST: usize = 30;
-const MOST: usize = 300;
+const MOST: usize = 100;
 
 /// Shapes whose pairs are drawn, those whose hashed names come first.
 const SHAPES: usize = 512;

@@ -472,6 +472,14 @@ impl<'a> ClusterShape<'a> {
         own.over(others).filter(|_| self.wanted == other.wanted)
     }
 
+    /// Whether what it has beyond another shape, to which it has this relation, is noise.
+    fn is_noise_beside(&self, other: &Self, told: &Relation) -> bool {
+        let both = self.exactness.as_ref().zip(other.exactness.as_ref());
+        let may_be = self.wanted == other.wanted && both.is_some_and(|(a, b)| a.may_be_noise(b));
+        let meshes = self.geometry.as_ref().zip(other.geometry.as_ref()).filter(|_| may_be);
+        meshes.and_then(|(a, b)| told.overlay([a, b])).is_some_and(|overlay| overlay.is_noise())
+    }
+
     /// Its files but the first, which have the bytes of that.
     fn copies(&self) -> impl Iterator<Item = DuplicateMember> {
         let of = &self.files[0].id;
@@ -517,26 +525,40 @@ fn groups(
     let budget = observer.budget();
     let (mut groups, mut n_compared) = (Vec::new(), 0);
     let mut left: Vec<&ClusterShape<'_>> = shapes.iter().collect();
-    while let Some(&first) = left.first() {
-        let keeper = left[1..]
+    // Shapes to which another one of their group is preferred.
+    let mut rough: Vec<&ClusterShape<'_>> = Vec::new();
+    let is_in = |all: &[&ClusterShape<'_>], shape: &ClusterShape<'_>| {
+        all.iter().any(|other| std::ptr::eq(*other, shape))
+    };
+    while let Some(&first) = left.iter().find(|shape| !is_in(&rough, shape)).or(left.first()) {
+        let keeper = left
             .iter()
+            .filter(|shape| !is_in(&rough, shape))
             .fold(first, |best, next| if next.merit_over(best).is_some() { next } else { best });
-        left.retain(|shape| !std::ptr::eq(*shape, keeper));
+        let others: Vec<_> = left.iter().copied().filter(|shape| !std::ptr::eq(*shape, keeper)).collect();
         let relate = |other: &&ClusterShape<'_>| {
             budget.check()?;
             let may_be = keeper.candidate.may_be(other.candidate, options);
             Ok(if may_be { related(keeper, other) } else { None })
         };
-        let relations = left.par_iter().map(relate).collect::<Result<Vec<_>, Error>>()?;
+        let relations = others.par_iter().map(relate).collect::<Result<Vec<_>, Error>>()?;
         n_compared += relations.iter().flatten().count();
         let is_one =
             |told: &Relation| options.kinds.contains(&told.kind) && told.confidence >= options.min_confidence;
         let (mut rest, mut same) = (Vec::new(), Vec::new());
-        for (other, relation) in left.into_iter().zip(relations) {
+        for (other, relation) in others.into_iter().zip(relations) {
             match relation.filter(is_one) {
                 Some(relation) => same.push((other, relation)),
                 None => rest.push(other),
             }
+        }
+        // Merits over one shape and of another one over that need not add up.
+        let is_better = |(other, told): &(&ClusterShape<'_>, Relation)| {
+            keeper.is_noise_beside(other, told) || !is_in(&rough, other) && other.merit_over(keeper).is_some()
+        };
+        if !is_in(&rough, keeper) && same.iter().any(is_better) {
+            rough.push(keeper);
+            continue;
         }
         (0..=same.len()).for_each(|_| observer.step());
         let place = |kind| RelationKind::ALL.iter().position(|known| *known == kind);

@@ -72,7 +72,6 @@ pub struct IndexEvaluation {
     #[serde(flatten)]
     pub scores: Evaluation,
     /// How well classes and combined distances agree; `None` if there are too few pairs of one class.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub agreement: Option<Agreement>,
 }
 

@@ -13,6 +13,10 @@ const ONE_NORMAL: f64 = 1e-3;
 /// changes something leaves out more.
 const ABOUT: f64 = 0.05;
 
+/// Detail that bends a surface by this share more may be noise. A convention: decimated copies of smooth surfaces bend less than a
+/// tenth less.
+const ROUGH: f64 = 0.2;
+
 /// What tells how exactly a mesh states a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Exactness {
@@ -56,6 +60,12 @@ impl Merit {
 }
 
 impl Exactness {
+    /// Whether what it has beyond another copy may be noise, which then [an overlay](super::MeshOverlay::is_noise) tells.
+    #[must_use]
+    pub fn may_be_noise(&self, other: &Self) -> bool {
+        self.bending > (1.0 + ROUGH) * other.bending
+    }
+
     /// Why this copy is more exact than another one; `None` if it is not.
     #[must_use]
     pub fn over(&self, other: &Self) -> Option<Merit> {
