@@ -207,7 +207,7 @@ impl Index {
                 (None, None) => {
                     let mesh = canonform::collection::read_mesh(&path)?;
                     let content = explain.then(|| content_hash(&path)).transpose()?;
-                    search.from_file(search.query(&mesh, (name, content), &options, observer)?, &path)
+                    search.of_file(search.query(&mesh, (name, content), &options, observer)?, &path)
                 }
             };
             search.search(&query, &options, observer)

@@ -62,7 +62,7 @@ impl Query {
                     let is_hashed = options.explain && !is_stream(path);
                     let content = is_hashed.then(|| content_hash(path)).transpose()?;
                     let query = index.query(&mesh, (&file_name(path), content), options, &())?;
-                    let query = if is_stream(path) { query } else { index.from_file(query, path) };
+                    let query = if is_stream(path) { query } else { index.of_file(query, path) };
                     index.search(&query, options, &())
                 };
                 search().map_err(|fault| named(path, fault))

@@ -46,6 +46,9 @@ pub enum Merit {
     Plain,
 }
 
+/// Whether the first of two copies is better in some way.
+type Better<'a> = &'a dyn Fn(&Exactness, &Exactness) -> bool;
+
 impl Merit {
     /// As the end of a sentence on a file that is kept.
     #[must_use]
@@ -78,7 +81,7 @@ impl Exactness {
             (by_planes || same_counts) && bends(ONE_NORMAL) || a.is_noisy && !b.is_noisy && bends(ABOUT)
         };
         let has_more = |a: &Self, b: &Self| a.n_needed as f64 > (1.0 + ABOUT) * b.n_needed as f64;
-        let merits: [(Merit, &dyn Fn(&Self, &Self) -> bool); 4] = [
+        let merits: [(Merit, Better<'_>); 4] = [
             (Merit::Clean, &|a, b| is_rougher(b, a)),
             (Merit::Closed, &|a, b| a.is_closed && !b.is_closed),
             (Merit::Detailed, &has_more),
