@@ -6,7 +6,7 @@ use std::io::Write;
 use anyhow::{Context, Result};
 use canonform::{DescribeOptions, Observer, Surface, describe};
 use datasets::{CreatureOptions, creature_body, creature_plans};
-use descriptors::{Boundary, PreparedShape, ShapeDistance, ShapeMetric, ShapePair};
+use descriptors::{Boundary, PreparedShape, Sample, ShapeDistance, ShapeMetric, ShapePair};
 use rayon::prelude::*;
 
 use crate::families::coarse;
@@ -21,9 +21,6 @@ const POSES: usize = 2;
 
 /// Pairs of two families whose forms are aligned, evenly drawn: that takes long.
 const PAIRS_OF_FAMILIES: usize = 12_000;
-
-/// Steps of the fit, after which no printed digit changes any more.
-const STEPS: usize = 100;
 
 /// How frequent pairs are: poses of one body, bodies of one family, two families.
 type Prior = [f64; 3];
@@ -86,45 +83,7 @@ fn between(pairs: &[CreaturePair], prior: Prior, second: usize) -> Boundary {
     let samples = pairs.iter().zip(weights(pairs, prior));
     let samples: Vec<Sample> =
         samples.map(|(pair, weight)| (pair.distance.combined, pair.kind < second, weight)).collect();
-    fitted(&samples, [0.1, 0.9])
-}
-
-/// A distance, or a probability, whether the pair is one, and its weight.
-pub(crate) type Sample = (f64, bool, f64);
-
-/// The boundary of greatest likelihood, by expectation maximization: a logarithm of the distance is on the near or the far side, by
-/// logistic regression, and on each side a share of pairs is one. The iteration starts from the range of these shares; 0 and 1
-/// stay, and leave a plain logistic regression.
-pub(crate) fn fitted(samples: &[Sample], [mut far, mut near]: [f64; 2]) -> Boundary {
-    let [mut a, mut b] = [0.0, -1.0];
-    for _ in 0..STEPS {
-        let (mut gradient, mut hessian, mut sides) = ([0.0; 2], [0.0; 3], [[0.0; 2]; 2]);
-        for &(distance, is_one, weight) in samples {
-            let x = distance.ln();
-            // Near the ends, one of both is not 1 less the other.
-            let [p, q] = [-a - b * x, a + b * x].map(|odds| 1.0 / (1.0 + odds.exp()));
-            let kind = usize::from(is_one);
-            let [at_far, at_near] = [[1.0 - far, far], [1.0 - near, near]].map(|share| share[kind]);
-            let is_near = at_near * p / (at_near * p + at_far * q);
-            sides[0][kind] += weight * (1.0 - is_near);
-            sides[1][kind] += weight * is_near;
-            let rest = weight * (is_near - p);
-            gradient = [gradient[0] + rest, gradient[1] + rest * x];
-            let spread = weight * p * q;
-            hessian = [hessian[0] + spread, hessian[1] + spread * x, hessian[2] + spread * x * x];
-        }
-        let determinant = hessian[0] * hessian[2] - hessian[1] * hessian[1];
-        let step = [
-            (hessian[2] * gradient[0] - hessian[1] * gradient[1]) / determinant,
-            (hessian[0] * gradient[1] - hessian[1] * gradient[0]) / determinant,
-        ];
-        // Far from the greatest likelihood, Newton's steps are too long.
-        let length = step[0].hypot(step[1]).max(1.0);
-        (a, b) = (a + step[0] / length, b + step[1] / length);
-        [far, near] = sides.map(|[others, these]| these / (others + these));
-    }
-    let at = ((a - ((0.5 - far) / (near - 0.5)).ln()) / -b).exp();
-    Boundary { at, steepness: -b, range: [far, near] }
+    Boundary::fitted(&samples, [0.1, 0.9])
 }
 
 /// The boundaries of shapes and of classes. Of one plan more, which is not known, distances are taken to say nothing about shapes:

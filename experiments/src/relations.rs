@@ -18,7 +18,9 @@ use mesh::TriMesh;
 use rayon::prelude::*;
 use surface::VertexId;
 
-use crate::boundaries::{Sample, fitted, reliability, rounded};
+use descriptors::Sample;
+
+use crate::boundaries::{reliability, rounded};
 use crate::families::coarse;
 use crate::parts::copies;
 
@@ -194,7 +196,7 @@ fn boundary<'p>(pairs: impl Iterator<Item = &'p RelatedPair>) -> Boundary {
         let known = known[usize::from(is_one)];
         [(ratio, is_one, weight * known), (ratio, !is_one, weight * (1.0 - known))]
     });
-    Boundary { range: [0.0, known[1]], ..fitted(&samples.collect::<Vec<Sample>>(), [0.0, 1.0]) }
+    Boundary { range: [0.0, known[1]], ..Boundary::fitted(&samples.collect::<Vec<Sample>>(), [0.0, 1.0]) }
 }
 
 /// The share of relations of a kind that are right; one more is right and one wrong.

@@ -126,11 +126,11 @@ pub mod maps {
 /// Libraries of shapes: building, changing and scoring an index, and its duplicates.
 pub mod library {
     pub use crate::shape_index::{
-        BuildOptions, BuildReport, Dropped, DuplicateFile, DuplicateGroup, DuplicateMember, DuplicateOptions,
-        DuplicateReport, EvaluateOptions, Failure, FailureReason, Inputs, Measure, MergeReport, MoveReport,
-        NotMoved, ShapeLimits, Shard, add_to_index, build_index, check_place, evaluate_index,
-        evaluate_matrix, export_index, find_duplicates, indexed_shapes, merge_indexes, mesh_path,
-        move_duplicates, remove_from_index, unchanged_index, undo_moves,
+        Agreement, BuildOptions, BuildReport, Dropped, DuplicateFile, DuplicateGroup, DuplicateMember,
+        DuplicateOptions, DuplicateReport, EvaluateOptions, Failure, FailureReason, IndexEvaluation, Inputs,
+        Keep, Measure, MergeReport, MoveReport, NotMoved, ShapeLimits, Shard, add_to_index, build_index,
+        check_place, evaluate_index, evaluate_matrix, export_index, find_duplicates, indexed_shapes,
+        merge_indexes, mesh_path, move_duplicates, remove_from_index, unchanged_index, undo_moves,
     };
 }
 

@@ -8,13 +8,15 @@ use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
 
 use canonform::DescribeOptions;
+use canonform::collection::LabelSource;
 use canonform::index::Index;
 use canonform::library::{
-    BuildOptions, BuildReport, DuplicateOptions, DuplicateReport, MoveReport, build_index, check_place,
-    find_duplicates, move_duplicates, undo_moves,
+    BuildOptions, BuildReport, DuplicateOptions, DuplicateReport, EvaluateOptions, Inputs, Keep, MoveReport,
+    add_to_index, build_index, check_place, evaluate_index, find_duplicates, move_duplicates, undo_moves,
 };
 use canonform::mesh::{TriMesh, io, shapes};
-use canonform::search::ShapeSearch;
+use canonform::relations::RelationKind;
+use canonform::search::{SearchOptions, ShapeSearch};
 
 /// Names that a shell, a spreadsheet, a terminal or a browser may obey.
 const HOSTILE: [&str; 12] = [
@@ -49,7 +51,7 @@ fn duplicates(folder: &Path) -> DuplicateReport {
 
 fn moved(folder: &Path, place: &Path) -> MoveReport {
     check_place(folder, place).unwrap();
-    move_duplicates(&duplicates(folder), folder, place).unwrap()
+    move_duplicates(&duplicates(folder), &[folder], place).unwrap()
 }
 
 /// All files below a folder, links by where they lead.
@@ -169,12 +171,14 @@ fn links_and_what_they_lead_to_stay() {
     let keeper = &found.groups[0].keeper.id;
     let own = ["a", "linked", "free longer name"].iter().filter(|id| *id != keeper).count() as u64;
     assert_eq!(found.spare_bytes(), own * fs::metadata(folder.join("a.off")).unwrap().len());
-    let report = move_duplicates(&found, &folder, &place.path().join("away")).unwrap();
+    let report = move_duplicates(&found, &[&folder], &place.path().join("away")).unwrap();
     let why = reasons(&report);
     assert!(why["out.off"].starts_with("it is a link"));
     assert!(why["far.off"].starts_with("it is a link"));
-    assert!(why["hard.off"].starts_with("it has several names"));
-    assert!(why["hard too.off"].starts_with("it has several names"));
+    // Two names of one file are no duplicates.
+    assert!(why["hard.off"].starts_with("it has several names") && !why.contains_key("hard too.off"));
+    let hard = found.groups[0].members.iter().find(|member| member.file.id == "hard").unwrap();
+    assert_eq!((&hard.file.links[..], hard.is_spare()), (&["hard too".to_owned()][..], false));
     assert!(!report.moved.is_empty());
     assert!(tree(&master) == outside);
     for name in ["linked.off", "alias.off", "out.off"] {
@@ -341,13 +345,13 @@ fn places_that_hold_or_hide_something_are_refused() {
         ("models/sub", "holds other files"),
         (".", "the meshes"),
     ] {
-        let error = move_duplicates(&found, &folder, &place.path().join(away)).unwrap_err().to_string();
+        let error = move_duplicates(&found, &[&folder], &place.path().join(away)).unwrap_err().to_string();
         assert!(error.contains(what), "{away}: {error}");
     }
     // What changed since it was compared stays.
     let member = &found.groups[0].members[0].file.path;
     fs::write(member, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n").unwrap();
-    let report = move_duplicates(&found, &folder, &place.path().join("away")).unwrap();
+    let report = move_duplicates(&found, &[&folder], &place.path().join("away")).unwrap();
     assert!(reasons(&report)[member.file_name().unwrap().to_str().unwrap()].contains("has changed"));
     assert!(tree(place.path()).len() >= before.len());
 }
@@ -376,6 +380,149 @@ fn files_of_equal_bytes_are_described_once() {
     assert_eq!(index.entry("b/a").unwrap().path, "models/b/a.off");
     fs::copy(folder.join("a.off"), folder.join("f.off")).unwrap();
     assert_eq!(build(&folder, &path).n_shapes, 6);
+}
+
+#[test]
+fn places_of_two_folders_stay_apart_and_what_moves_is_not_described_again() {
+    let place = tempfile::tempdir().unwrap();
+    let at = |name: &str| place.path().join(name);
+    let (index, other) = (at("all.canonform"), shapes::torus(12, 8, 2.0, 0.7));
+    written(place.path(), &["disk/a.off", "disk/b.ply"]);
+    io::write(&at("disk/ring.off"), &other).unwrap();
+    build(&at("disk"), &index);
+    // A backup, a further copy, another shape of a known name, and what is not looked into.
+    written(place.path(), &["backup/a.off", "backup/b.ply", "backup/more.off"]);
+    io::write(&at("backup/ring.off"), &shapes::torus(12, 8, 2.0, 0.5)).unwrap();
+    fs::write(at("backup/old.7z"), "7z").unwrap();
+    let add = || {
+        let (paths, limits) = ([at("backup")], Default::default());
+        add_to_index(&index, &Inputs { paths: &paths, labels: None, label: None, limits }, false, &())
+            .unwrap()
+    };
+    let report = add();
+    assert_eq!((report.n_shapes, report.described, report.copies, report.unchanged), (7, 4, 3, 0));
+    assert_eq!(report.skipped_paths, [at("backup/old.7z")]);
+    let paths = |index: &Path| -> Vec<[String; 2]> {
+        Index::open(index)
+            .unwrap()
+            .entries()
+            .unwrap()
+            .into_iter()
+            .map(|entry| [entry.id, entry.path])
+            .collect()
+    };
+    let expected = [
+        ["a", "disk/a.off"],
+        ["b", "disk/b.ply"],
+        ["backup/a", "backup/a.off"],
+        ["backup/b", "backup/b.ply"],
+        ["backup/ring", "backup/ring.off"],
+        ["more", "backup/more.off"],
+        ["ring", "disk/ring.off"],
+    ];
+    assert_eq!(paths(&index), expected.map(|pair| pair.map(str::to_owned)));
+    // Again, and one folder after the other.
+    assert_eq!((add().unchanged, build(&at("disk"), &index).unchanged, paths(&index).len()), (4, 3, 7));
+    assert_eq!(build(&at("backup"), &index).unchanged, 4);
+    let search = ShapeSearch::open(&index).unwrap();
+    let options = DuplicateOptions { reference: vec![at("backup")], ..DuplicateOptions::default() };
+    let found = find_duplicates(&search, &options, &()).unwrap();
+    let [group] = &found.groups[..] else { panic!("{:?}", found.groups) };
+    assert_eq!((group.members.len(), group.keeper.reference), (4, true));
+    let spare: Vec<&str> = found.spare().map(|file| file.id.as_str()).collect();
+    assert_eq!(spare, ["a", "b"], "nothing in the reference");
+    let all = find_duplicates(&search, &DuplicateOptions::default(), &()).unwrap();
+    assert_eq!(all.spare().count(), 4);
+    fs::rename(at("disk/ring.off"), at("disk/renamed.off")).unwrap();
+    let report = build(&at("disk"), &index);
+    assert_eq!((report.described, report.copies, report.removed), (1, 1, 1));
+}
+
+#[test]
+fn classes_that_were_given_stay_and_have_a_boundary_of_their_own() {
+    let place = tempfile::tempdir().unwrap();
+    let at = |name: &str| place.path().join(name);
+    // Nine rings of each of two widths: 72 pairs of one class.
+    for (i, class) in (0..18).map(|i| (i, if i % 2 == 0 { "thin" } else { "fat" })) {
+        let width = if i % 2 == 0 { 0.2 } else { 0.9 } + 0.001 * f64::from(i);
+        fs::create_dir_all(at("models")).unwrap();
+        io::write(&at(&format!("models/{class}{i}.off")), &shapes::torus(12, 8, 2.0, width)).unwrap();
+    }
+    let rows = (0..18).map(|i| format!("{}{i}.off,{}\n", ["thin", "fat"][i % 2], ["wire", "tyre"][i % 2]));
+    fs::write(at("labels.csv"), rows.collect::<String>()).unwrap();
+    let (describe, index) = (DescribeOptions::default(), at("all.canonform"));
+    let build = |labels: Option<&LabelSource>| {
+        let options = BuildOptions { labels, ..BuildOptions::new(&describe) };
+        build_index(&at("models"), &index, &options, &()).unwrap();
+        Index::open(&index).unwrap().classes().unwrap().into_keys().collect::<Vec<_>>()
+    };
+    let file = LabelSource::read(&at("labels.csv")).unwrap();
+    assert_eq!(build(Some(&file)), ["tyre", "wire"]);
+    io::write(&at("models/new.off"), &ball()).unwrap();
+    assert_eq!(build(None), ["tyre", "wire"], "the new shape has no class");
+    let search = ShapeSearch::open(&index).unwrap();
+    let options = SearchOptions { k: 18, ..SearchOptions::default() };
+    let found = search.search(&search.query_of("thin0", &options, &()).unwrap(), &options, &()).unwrap();
+    assert!(found.results[0].itself && found.results[1..].iter().all(|hit| !hit.itself));
+    assert_eq!(
+        (found.predicted.label.as_deref(), found.predicted.nearest.unwrap().id != "thin0"),
+        (Some("wire"), true)
+    );
+    for hit in &found.results[1..] {
+        let told = hit.relation.kind != RelationKind::Different;
+        assert!(hit.label.is_empty() || told == (hit.label == "wire"), "{}: {}", hit.id, hit.relation);
+    }
+    let agreement = evaluate_index(&index, &EvaluateOptions::default(), &()).unwrap().agreement.unwrap();
+    assert_eq!((agreement.same_class, agreement.other_classes), (72, 81));
+    assert!(agreement.agree > 0.95, "{agreement:?}");
+    assert_eq!(build(Some(&LabelSource::None)), Vec::<String>::new());
+    assert_eq!(build(None), Vec::<String>::new(), "that there are none was said, too");
+    let told = ShapeSearch::open(&index).unwrap();
+    let answer = told.search(&told.query_of("thin0", &options, &()).unwrap(), &options, &()).unwrap();
+    assert!(answer.results.iter().all(|hit| !hit.relation.to_string().contains("class")));
+}
+
+#[test]
+fn what_is_wanted_is_kept_and_copies_of_copies_are_exact() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path().join("models");
+    written(&folder, &["new/it.off", "old/copy.off"]);
+    let write = |name: &str, mesh: &TriMesh| io::write(&folder.join(name), mesh).unwrap();
+    // Subdivided twice, and a copy of that.
+    let fine = shapes::subdivide(&ball());
+    write("fine.off", &fine);
+    write("fine too.ply", &fine);
+    let index = place.path().join("all.canonform");
+    build(&folder, &index);
+    let search = ShapeSearch::open(&index).unwrap();
+    let group = |keep: Keep| {
+        let found = find_duplicates(&search, &DuplicateOptions { keep, ..Default::default() }, &()).unwrap();
+        found.groups[0].clone()
+    };
+    let exact = group(Keep::Exact);
+    let told = exact
+        .members
+        .iter()
+        .map(|member| (member.file.id.as_str(), member.of.as_str(), member.relation.kind));
+    let told: Vec<_> = told.collect();
+    assert_eq!(exact.keeper.id, "new/it");
+    assert_eq!(
+        told,
+        [
+            ("old/copy", "new/it", RelationKind::IdenticalFile),
+            ("fine", "new/it", RelationKind::Remeshed),
+            ("fine too", "fine", RelationKind::IdenticalGeometry)
+        ]
+    );
+    for (keep, id) in [("largest", "fine"), ("smallest", "new/it"), ("oldest", "new/it")] {
+        assert_eq!(group(keep.parse().unwrap()).keeper.id, id, "{keep}");
+    }
+    assert_eq!(group(folder.join("old").to_str().unwrap().parse().unwrap()).keeper.id, "old/copy");
+    assert!("none".parse::<Keep>().is_err());
+    // Moved with all that it is a copy of.
+    let found = find_duplicates(&search, &DuplicateOptions::default(), &()).unwrap();
+    let moved = move_duplicates(&found, &[&folder], &place.path().join("away")).unwrap();
+    assert_eq!((moved.moved.len(), moved.not_moved.len()), (2, 1));
 }
 
 #[cfg(unix)]

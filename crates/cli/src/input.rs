@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use base::terminal::Bars;
-use canonform::collection::{ShapeFile, Storage, is_dataset, list_shapes, mesh_at, read_mesh_file};
+use canonform::collection::{Dataset, ShapeFile, Storage, is_dataset, mesh_at, read_mesh_file};
 use canonform::mesh::io::{
     FORMATS, FileSource, Format, MeshFile, ReadLimits, files_in, is_mesh_path, or_list, without_extension,
 };
@@ -142,7 +142,7 @@ pub(crate) fn expand(arguments: &[PathBuf]) -> Result<Vec<ShapeFile>> {
     let mut shapes = Vec::new();
     for argument in arguments {
         match argument.to_str().filter(|text| text.contains(['*', '?', '['])) {
-            _ if is_dataset(argument) => shapes.extend(list_shapes(argument, None)?),
+            _ if is_dataset(argument) => shapes.extend(shapes_of(argument)?),
             Some(pattern) if !is_there(argument) => {
                 // As in shells, `*` stands for no leading dot.
                 let options = glob::MatchOptions { require_literal_leading_dot: true, ..Default::default() };
@@ -161,6 +161,15 @@ pub(crate) fn expand(arguments: &[PathBuf]) -> Result<Vec<ShapeFile>> {
             }
             _ => shapes.push(single(argument.clone())),
         }
+    }
+    Ok(shapes)
+}
+
+/// The meshes of a dataset. What was skipped although it may hold some is noted.
+pub(crate) fn shapes_of(dataset: &Path) -> Result<Vec<ShapeFile>> {
+    let Dataset { shapes, skipped, .. } = Dataset::read(dataset, None)?;
+    for it in skipped.iter().filter(|it| !it.kind.is_expected()) {
+        base::terminal::note(&format!("warning: skipped {}: {}", it.path.display(), it.kind));
     }
     Ok(shapes)
 }

@@ -22,7 +22,7 @@ mod table;
 pub use content::{content_hash, content_of};
 pub use dataset::{
     Dataset, LabelFile, LabelOrigin, LabelSource, MOVES, ShapeFile, SkipKind, Skipped, UnusedLabel,
-    count_skipped, drop_single_class, label_of, label_shapes, list_shapes, n_classes,
+    count_skipped, drop_single_class, is_suggested, label_of, label_shapes, list_shapes, n_classes,
 };
 pub use error::CollectionError;
 pub use storage::{

@@ -35,6 +35,7 @@ pub struct Row<'a> {
     table: &'a TextTable,
     /// Its line in the file, counted from one.
     pub line: usize,
+    text: &'a str,
     cells: StringRecord,
 }
 
@@ -79,7 +80,7 @@ impl TextTable {
             let mut cells = StringRecord::new();
             // One line of text is one record, whatever is in it.
             let _ = reader.read_record(&mut cells);
-            Row { table: self, line, cells }
+            Row { table: self, line, text, cells }
         })
     }
 
@@ -129,6 +130,14 @@ impl Row<'_> {
     /// The cells, without blanks around them.
     pub fn cells(&self) -> impl Iterator<Item = &str> {
         self.cells.iter()
+    }
+
+    /// The first cells as one, with what is between them; `None` if any is in quotation marks.
+    #[must_use]
+    pub fn before(&self, n_cells: usize) -> Option<&str> {
+        let (separator, _) =
+            self.text.match_indices(self.table.separator as char).nth(n_cells.checked_sub(1)?)?;
+        (!self.text.contains('"')).then(|| self.text[..separator].trim())
     }
 
     /// The number of cells, at least one.

@@ -23,6 +23,9 @@ pub enum DescriptorError {
         /// Number of points.
         n_points: usize,
     },
+    /// A single triangle, which differs from others in its proportions only.
+    #[error("the mesh is a single triangle, which is no shape to compare; leave it out")]
+    OneTriangle,
     /// Signatures with values that are not finite.
     #[error(
         "the signatures of the mesh are not finite: its triangles differ too much in size; remesh it, or remove vertices \

@@ -21,7 +21,7 @@ mod shape_pair;
 mod signature;
 mod spectrum;
 
-pub use boundary::Boundary;
+pub use boundary::{Boundary, Sample};
 pub use canonical_form::{CanonicalForm, Normalization};
 pub use error::DescriptorError;
 pub use metric::{ShapeDistance, ShapeMetric};

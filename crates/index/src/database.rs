@@ -52,6 +52,8 @@ pub(crate) enum Meta {
     Unfinished,
     /// The distance beyond which a shape is of no class, as JSON.
     Threshold,
+    /// What the program that writes the index wants to know again.
+    Note(&'static str),
     /// A number that grows with every transaction.
     Change,
     /// A random word for each writer whose changes may be in the log, that of the state before it first.
@@ -65,6 +67,7 @@ impl Meta {
             Self::Shapes => "shapes",
             Self::Unfinished => "unfinished",
             Self::Threshold => "unknown_beyond",
+            Self::Note(name) => name,
             Self::Change => "change",
             Self::Writers => "writers",
         }

@@ -74,6 +74,11 @@ impl Index {
         self.threshold
     }
 
+    /// A [note](crate::IndexWriter::set_note), if there is one of this name.
+    pub fn note(&self, name: &'static str) -> Result<Option<String>, IndexError> {
+        self.database().meta(Meta::Note(name))
+    }
+
     /// The file.
     #[must_use]
     pub fn path(&self) -> &Path {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use base::Observer;
 
 use crate::database::{Database, EntryRow, Meta, checksum, damaged_path, to_bytes, with_suffix};
-use crate::reader::{DISC_AREAS, FORM, SIGNATURE, classes, entries, find, vectors};
+use crate::reader::{DISC_AREAS, FORM, SIGNATURE, classes, entries, find, shape_of, vectors};
 use crate::vectors::threshold;
 use crate::{Entry, Index, IndexError, Shape};
 
@@ -162,6 +162,14 @@ impl IndexWriter {
         Ok(find(&self.database, id)?.map(|row| row.entry))
     }
 
+    /// A shape.
+    ///
+    /// # Errors
+    /// [`IndexError::NoSuchShape`].
+    pub fn shape(&self, id: &str) -> Result<Shape, IndexError> {
+        shape_of(&self.database, self.expect(id)?)
+    }
+
     /// The entries of all shapes so far, in ascending order of names.
     pub fn entries(&self) -> Result<Vec<Entry>, IndexError> {
         entries(&self.database)
@@ -246,6 +254,11 @@ impl IndexWriter {
             sum
         ];
         self.database.change(sql, values)
+    }
+
+    /// Notes what is true of the whole index, under a name that is not one of the schema, or removes the note.
+    pub fn set_note(&mut self, name: &'static str, text: Option<&str>) -> Result<(), IndexError> {
+        self.database.set_meta(Meta::Note(name), text)
     }
 
     /// Removes shapes.

@@ -201,7 +201,7 @@ impl Index {
                 (None, None) => {
                     let mesh = canonform::collection::read_mesh(&path)?;
                     let content = explain.then(|| content_hash(&path)).transpose()?;
-                    search.query(&mesh, (name, content), &options, observer)?
+                    search.of_file(search.query(&mesh, (name, content), &options, observer)?, &path)
                 }
             };
             search.search(&query, &options, observer)
@@ -352,8 +352,11 @@ impl Index {
         py: Python<'_>,
         kinds: Option<Vec<String>>,
         min_confidence: f64,
+        keep: &str,
+        reference: Vec<PathBuf>,
     ) -> PyResult<String> {
-        let mut options = DuplicateOptions { min_confidence, ..DuplicateOptions::default() };
+        let keep = keep.parse().map_err(|fault: String| Exception::Option.with(&format!("keep: {fault}")))?;
+        let mut options = DuplicateOptions { min_confidence, keep, reference, ..DuplicateOptions::default() };
         if let Some(kinds) = kinds {
             let kinds = kinds.iter().map(|kind| chosen("kinds", kind));
             options.kinds = kinds.collect::<PyResult<_>>()?;

@@ -12,7 +12,9 @@ use rayon::prelude::*;
 use report::results::Series;
 use serde::Deserialize;
 
-use crate::boundaries::{Sample, reliability};
+use descriptors::Sample;
+
+use crate::boundaries::reliability;
 use crate::context::Context;
 use crate::experiment::Experiment;
 use crate::relations::{LEFT, Truth, beyond_a_plane, of_parts, related};

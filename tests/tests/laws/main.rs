@@ -15,6 +15,7 @@
 //! | `invariance` | signatures of subdivided, simplified, remeshed, noisy and moved shapes |
 //! | `fields` | distance fields against exact distances |
 //! | `matches` | how a changed mesh is related to the original |
+//! | `keepers` | which of several copies is kept |
 //! | `nearest` | what a search finds |
 //! | `part_maps` | dense maps between a part and a whole |
 //! | `samples` | how many samples are enough, and the interval of the stress after that choice |
@@ -46,6 +47,8 @@ mod invariance;
 mod invariants;
 #[cfg(test)]
 mod isometry;
+#[cfg(test)]
+mod keepers;
 #[cfg(test)]
 mod licences;
 #[cfg(test)]

@@ -6,7 +6,9 @@ use canonform::collection::list_shapes;
 use canonform::descriptors::Side;
 use canonform::relations::{Change, MeshGeometry, Relation, RelationKind};
 use canonform::rigid::Handedness;
-use datasets::{ArticulatedOptions, Damage, Family, articulated_body, articulated_shape};
+use datasets::{
+    ArticulatedOptions, Damage, Family, PartMesh, articulated_body, articulated_shape, mechanical_parts,
+};
 use descriptors::ShapeDistance;
 use mesh::{TriMesh, shapes};
 use nalgebra::{Point3, Vector3};
@@ -125,6 +127,45 @@ fn every_change_of_a_built_in_shape_is_told() {
             assert_eq!(score.falsely_identical, 0, "{label}");
             assert_eq!(score.right, score.all, "{n_vertices} vertices, {label}: {:?}", score.wrong);
         }
+    }
+}
+
+/// What is said of parts with noise, on their own faces and on new ones: how many are noisy or the same of all, and those that are
+/// called variants.
+fn noisy_parts(n: usize, noise: f64) -> ([usize; 2], Vec<String>) {
+    let told = mechanical_parts(0, n).into_par_iter().flat_map_iter(|part| {
+        let mesh = part.mesh(&PartMesh::default());
+        let refined = mesh::refine(&mesh, mesh.root_of_area() / 12.0, 20_000).mesh;
+        let own = geometry(&mesh);
+        let told = [&mesh, &refined].map(|copy| {
+            let found = related(&own, &geometry(&Damage::Noise(noise).apply(copy, 7)));
+            found.named(&part.name(), "the noisy copy")
+        });
+        told.into_iter()
+    });
+    let told: Vec<Relation> = told.collect();
+    let is_right = |found: &&Relation| matches!(found.kind, RelationKind::Noisy | RelationKind::Remeshed);
+    told.iter()
+        .filter(|found| !is_right(found))
+        .for_each(|found| println!("{noise}: {found} ({})", found.reason()));
+    let variants = told.iter().filter(|found| found.kind == RelationKind::Variant).map(Relation::to_string);
+    ([told.iter().filter(is_right).count(), told.len()], variants.collect())
+}
+
+#[test]
+fn parts_with_noise_are_not_called_variants() {
+    let (_, variants) = noisy_parts(8, 0.001);
+    assert_eq!(variants, Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "slow: make test-all"]
+fn parts_with_noise_are_told_to_be_noisy() {
+    for noise in [0.0003, 0.0005, 0.001, 0.002] {
+        let ([right, all], variants) = noisy_parts(15, noise);
+        println!("{noise}: {right} of {all}");
+        assert_eq!(variants, Vec::<String>::new(), "{noise}");
+        assert!(right as f64 >= 14.0 / 15.0 * all as f64, "{noise}: {right} of {all}");
     }
 }
 

@@ -122,6 +122,9 @@ impl MeasuredSurface {
         let Self { prepared, embedded, .. } = self;
         let options = DescribeOptions { form: embedded.options.clone(), ..*options };
         options.validate()?;
+        if self.remap.all_to_new().count() < 4 {
+            return Err(DescriptorError::OneTriangle.into());
+        }
         let spectrum = LaplaceSpectrum::describing(prepared.intrinsic(), observer)?;
         observer.budget().check()?;
         let mut signatures = vec![
@@ -224,6 +227,18 @@ mod tests {
 
     fn described(mesh: &TriMesh) -> Shape {
         described_by(mesh, &DescribeOptions::default())
+    }
+
+    #[test]
+    fn a_single_triangle_has_no_description() {
+        let fault = |mesh: &TriMesh| {
+            let surface = Surface::new(mesh, &Default::default(), &()).unwrap();
+            describe(&surface, &DescribeOptions::default(), &()).err().map(|fault| fault.to_string())
+        };
+        let square = mesh::shapes::grid(2, 2, 1.0);
+        let triangle = TriMesh { faces: square.faces[..1].to_vec(), ..square.clone() };
+        assert!(fault(&triangle).unwrap().contains("a single triangle"));
+        assert_eq!(fault(&square), None);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Queries made of meshes and of shapes of an index.
 
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -7,6 +8,7 @@ use base::{ContentHash, Observer};
 use mesh::{Surface, TriMesh};
 
 use super::options::{SearchOptions, SearchRank};
+use super::place::Home;
 use super::query::Query;
 use super::search::{Answer, ShapeSearch};
 use crate::error::Error;
@@ -32,6 +34,13 @@ impl ShapeSearch {
         let query =
             query.named(name, content).with_mesh(mesh, &surface, (options, describe_options), observer)?;
         Ok(Query { seconds: start.elapsed().as_secs_f64(), ..query })
+    }
+
+    /// The query of a mesh file, which may be one of the index.
+    #[must_use]
+    pub fn of_file(&self, query: Query, path: &Path) -> Query {
+        let home = Home::new(self.index().path()).ok();
+        Query { place: home.map(|home| home.file_text(path)), ..query }
     }
 
     /// [Searches](Self::search) for a mesh.
@@ -66,7 +75,7 @@ impl ShapeSearch {
         };
         let part = (options.rank_by == SearchRank::Part).then(part).transpose()?;
         let geometry = options.explain.then(|| self.geometry(&shape.entry)).flatten().map(Arc::new);
-        let content = Some(shape.entry.content);
-        Ok(Query { part, geometry, ..Query::new(shape, describe_options).named(id, content) })
+        let (content, place) = (Some(shape.entry.content), Some(shape.entry.path.clone()));
+        Ok(Query { part, geometry, place, ..Query::new(shape, describe_options).named(id, content) })
     }
 }

@@ -6,16 +6,19 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::time::Instant;
 
-use base::{Budget, Exceeded};
+use base::{Budget, ContentHash, Exceeded};
 use index::{Entry, Index, IndexError, IndexWriter, Shape};
 use mesh::{Fault, MeshError};
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 
+use super::agreement::finish;
 use super::components::other_components;
 use super::place::{Home, Root, mesh_path};
 use super::record::same_source;
-use super::source::{Hashed, Listed, Listing, ShapeLimits, Shard, full_extension, hash_all, share};
+use super::source::{
+    Hashed, Listed, Listing, ShapeLimits, Shard, full_extension, hash_all, name_below, share,
+};
 use crate::error::{Error, Remedy};
 use crate::form::{DescribeOptions, describe};
 use base::Observer;
@@ -23,6 +26,12 @@ use collection::{
     LabelOrigin, LabelSource, ShapeFile, SkipKind, Skipped, UnusedLabel, count_skipped, n_classes,
 };
 use mesh::Surface;
+
+/// What an index states whose classes came from a file.
+const FILE: &str = "file";
+
+/// The note of an index on where its classes come from.
+const LABELS: &str = "labels";
 
 /// Most shapes written to disk in one transaction.
 const BATCH: usize = 64;
@@ -302,8 +311,11 @@ pub fn build_index(
     let root = Root::new(folder, &home)?;
     let (existing, listing) = index_and_listing(&root, path, options)?;
     let mut report = BuildReport::new(&listing);
-    let hashed = hash_all(listing.shapes, observer);
+    let mut hashed = hash_all(listing.shapes, observer);
     let mut missing = Missing::new(&root, options.prune, &listing.skipped);
+    if let Some(index) = &existing {
+        name_below(&root, &mut hashed, (path, &index.entries()?))?;
+    }
     if let Some(index) = existing
         && report.is_current(&index, &hashed, &missing)?
     {
@@ -312,6 +324,9 @@ pub fn build_index(
     }
     let text = options.describe.text();
     let mut writer = IndexWriter::build(path, &text)?;
+    if let Some(source) = options.labels {
+        writer.set_note(LABELS, Some(source.word().as_deref().unwrap_or(FILE)))?;
+    }
     report.resumed = writer.is_resumed();
     report.replaced_damaged = writer.replaced_damaged();
     let unread = hashed.iter().filter(|(_, hash)| hash.is_err());
@@ -332,7 +347,7 @@ pub fn build_index(
     if nothing_new && !writer.is_new() || is_useless {
         drop(writer);
     } else {
-        writer.finish(observer)?;
+        finish(writer, options.describe, observer)?;
     }
     report.seconds = start.elapsed().as_secs_f64();
     Ok(report)
@@ -352,15 +367,16 @@ pub fn unchanged_index(
     let root = Root::new(folder, &home)?;
     let (Some(index), listing) = index_and_listing(&root, path, options)? else { return Ok(None) };
     // Without reading a mesh.
-    let entries = by_id(index.entries()?);
-    let is_known =
-        |listed: &Listed| entries.get(&listed.file.name).is_some_and(|entry| same_source(entry, listed));
+    let known: HashSet<[String; 2]> =
+        index.entries()?.into_iter().map(|entry| [entry.path, entry.label]).collect();
+    let is_known = |listed: &Listed| known.contains(&[listed.stored.clone(), listed.file.label.clone()]);
     if !listing.shapes.iter().all(is_known) {
         return Ok(None);
     }
     let mut report = BuildReport::new(&listing);
-    let hashed = hash_all(listing.shapes, observer);
+    let mut hashed = hash_all(listing.shapes, observer);
     let missing = Missing::new(&root, options.prune, &listing.skipped);
+    name_below(&root, &mut hashed, (path, &index.entries()?))?;
     let is_current = report.is_current(&index, &hashed, &missing)?;
     report.seconds = start.elapsed().as_secs_f64();
     Ok(is_current.then_some(report))
@@ -381,7 +397,18 @@ fn index_and_listing(
         Err(IndexError::Io { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => None,
         Err(fault) => return Err(fault.into()),
     };
-    let mut listing = Listing::from_folder(root, options.labels)?;
+    let given = match (&existing, options.labels) {
+        (Some(index), None) => index.note(LABELS)?,
+        _ => None,
+    };
+    let given = given.as_deref();
+    let stated = given
+        .map(|given| LabelSource::read(if given == FILE { "none" } else { given }.as_ref()))
+        .transpose()?;
+    let mut listing = Listing::from_folder(root, options.labels.or(stated.as_ref()))?;
+    if let (Some(index), None) = (&existing, options.labels) {
+        listing.keep_labels(&index.entries()?, given == Some(FILE));
+    }
     listing.shapes = share(listing.shapes, options.shard);
     if let Some(only) = options.only {
         listing.shapes.retain(|listed| only.contains(&listed.file.name));
@@ -419,6 +446,11 @@ pub(super) fn fill(
     let mut kept = HashSet::new();
     let mut renamed: Vec<Entry> = Vec::new();
     let mut wanted = Vec::new();
+    let known: HashMap<_, String> = writer
+        .entries()?
+        .into_iter()
+        .map(|entry| (described_from(&entry.content, Path::new(&entry.path)), entry.id))
+        .collect();
     for (listed, hash) in files {
         let content = match hash {
             Ok(content) => content,
@@ -445,16 +477,32 @@ pub(super) fn fill(
     if !renamed.is_empty() {
         writer.set_entries(&renamed)?;
     }
-    // The extension decides how bytes are read.
     let mut equal: BTreeMap<_, Vec<usize>> = BTreeMap::new();
     for (place, (listed, content)) in wanted.iter().enumerate() {
-        let key = (*content, full_extension(&listed.file.path));
-        equal.entry(key).or_default().push(place);
+        equal.entry(described_from(content, &listed.file.path)).or_default().push(place);
     }
-    let mut equal: Vec<Vec<usize>> = equal.into_values().collect();
-    equal.sort();
-    let copies = AtomicUsize::new(0);
     observer.begin("describing", wanted.len());
+    // A file that was moved or copied is described already.
+    let mut copied = Vec::new();
+    for (key, places) in &mut equal {
+        let Some(shape) = known.get(key).map(|id| writer.shape(id)).transpose()? else { continue };
+        // Another file may just have taken its name.
+        if shape.entry.content != key.0 {
+            continue;
+        }
+        for place in places.drain(..) {
+            let entry = entry_of(&wanted[place].0, shape.entry.clone());
+            copied.push(entry.clone());
+            writer.put(&[Shape { entry, ..shape.clone() }])?;
+        }
+    }
+    if !copied.is_empty() {
+        writer.commit()?;
+        copied.iter().for_each(|_| observer.step());
+    }
+    let mut equal: Vec<Vec<usize>> = equal.into_values().filter(|places| !places.is_empty()).collect();
+    equal.sort();
+    let copies = AtomicUsize::new(copied.len());
     let whole = observer.budget();
     let (send, receive) = sync_channel(WAITING);
     let described = std::thread::scope(|scope| {
@@ -484,8 +532,8 @@ pub(super) fn fill(
         stored.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     })?;
     let Outcome { stored, mut failed } = described;
-    (report.described, report.copies) = (stored.len(), copies.into_inner());
-    for entry in stored {
+    (report.described, report.copies) = (stored.len() + copied.len(), copies.into_inner());
+    for entry in stored.into_iter().chain(copied) {
         report.note_dropped(writer.path(), &entry);
         kept.insert(entry.id);
     }
@@ -495,9 +543,14 @@ pub(super) fn fill(
     Ok(kept)
 }
 
+/// What a description is made from: bytes, and the extension, which decides how they are read.
+fn described_from(content: &ContentHash, path: &Path) -> (ContentHash, Option<String>) {
+    (*content, full_extension(path))
+}
+
 /// What is known of a shape as that of a file.
 fn entry_of(listed: &Listed, known: Entry) -> Entry {
-    let Listed { file, stored } = listed;
+    let Listed { file, stored, .. } = listed;
     Entry { id: file.name.clone(), label: file.label.clone(), path: stored.clone(), ..known }
 }
 

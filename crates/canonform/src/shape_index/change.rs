@@ -1,17 +1,19 @@
 //! Changing an index, and merging several.
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use index::{Entry, Index, IndexError, IndexWriter, Shape};
 use serde::Serialize;
 
+use super::agreement::finish;
 use super::build::{BuildReport, fill};
 use super::place::{Home, mesh_path};
 use super::record::options_of;
-use super::source::{Inputs, hash_all};
+use super::source::{Inputs, hash_all, name_places};
 use crate::error::Error;
-use base::Observer;
+use base::{ContentHash, Observer};
 
 /// Adds meshes to an index, described with its options. Shapes with the same name and content are kept. The next
 /// run resumes an interrupted one.
@@ -31,17 +33,23 @@ pub fn add_to_index(
     let classes = index.classes()?;
     let listing = inputs.list(&Home::new(path)?, |label| classes.contains_key(label))?;
     let mut report = BuildReport::new(&listing);
-    let hashed = hash_all(listing.shapes, observer);
+    let mut hashed = hash_all(listing.shapes, observer);
+    let entries = index.entries()?;
+    name_places(
+        &mut hashed,
+        (path, &entries),
+        |_, _| true,
+        |listed, hash, entry| (listed.is_single || replace) && hash != Some(&entry.content),
+    )?;
     if !replace {
-        for (listed, hash) in &hashed {
-            let Ok(hash) = hash else { continue };
-            let id = &listed.file.name;
-            if index.contains(id)? {
-                let entry = index.entry(id)?;
-                if entry.content != *hash {
-                    return Err(Error::AlreadyThere { id: id.clone(), path: mesh_path(path, &entry.path) });
-                }
-            }
+        let hashes: HashMap<&str, &ContentHash> = hashed
+            .iter()
+            .filter_map(|(listed, hash)| Some((listed.file.name.as_str(), hash.as_ref().ok()?)))
+            .collect();
+        let is_another =
+            |entry: &&Entry| hashes.get(entry.id.as_str()).is_some_and(|hash| **hash != entry.content);
+        if let Some(Entry { id, path: stored, .. }) = entries.iter().find(is_another) {
+            return Err(Error::AlreadyThere { id: id.clone(), path: mesh_path(path, stored) });
         }
     }
     drop(index);
@@ -52,7 +60,7 @@ pub fn add_to_index(
     if report.described + report.renamed == 0 && !report.resumed {
         drop(writer);
     } else {
-        writer.finish(observer)?;
+        finish(writer, &options, observer)?;
     }
     report.seconds = start.elapsed().as_secs_f64();
     Ok(report)
@@ -63,9 +71,10 @@ pub fn add_to_index(
 /// # Errors
 /// [`Error::Index`] if one of the names is unknown; nothing is removed then.
 pub fn remove_from_index(path: &Path, ids: &[String]) -> Result<usize, Error> {
+    let options = options_of(&Index::open(path)?)?;
     let mut writer = IndexWriter::open(path)?;
     writer.remove(ids)?;
-    Ok(writer.finish(&())?.len())
+    Ok(finish(writer, &options, &())?.len())
 }
 
 /// The outcome of a merge.
@@ -109,5 +118,5 @@ pub fn merge_indexes(inputs: &[PathBuf], path: &Path, observer: &dyn Observer) -
             Ok(())
         })?;
     }
-    Ok(MergeReport { n_shapes: writer.finish(observer)?.len(), repeated })
+    Ok(MergeReport { n_shapes: finish(writer, &options_of(first)?, observer)?.len(), repeated })
 }

@@ -2,24 +2,27 @@
 //! triangulation.
 //!
 //! ```text
-//! fused vectors -> near pairs -> invariants -> clusters -> meshes -> keeper, and what is proved to be the keeper
+//! equal bytes -> fused vectors -> near pairs -> invariants -> clusters -> meshes -> keeper, and what is proved to be the keeper
 //! ```
 
 use std::cmp::Reverse;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 use std::time::Instant;
 
 use base::Observer;
+use base::files::FileId;
+use collection::Storage;
 use descriptors::{ShapeDistance, ShapeMetric};
 use index::Entry;
 use rayon::prelude::*;
-use relations::{MeshGeometry, Relation, RelationKind, SurfaceInvariants};
+use relations::{Exactness, Merit, MeshGeometry, Relation, RelationKind, SurfaceInvariants};
 use rigid::Handedness;
 use serde::Serialize;
 use surface::DisjointSets;
 
-use super::place::{Home, mesh_path};
+use super::place::{Home, absolute, canonical, mesh_path};
 use super::search::ShapeSearch;
 use crate::error::Error;
 
@@ -43,18 +46,61 @@ const KINDS: [RelationKind; 6] = [
     RelationKind::Remeshed,
 ];
 
-/// What counts as a duplicate.
+/// Which file of a group is suggested to be kept. Between equal ones, references come first, then the size of most, files before
+/// links and members of archives, formats that lose nothing, the folders in the order of
+/// [`folders`](DuplicateOptions::folders), the oldest, the shortest path.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Keep {
+    /// The most [exact](relations::Exactness): without noise, with all detail, in the fewest vertices.
+    #[default]
+    Exact,
+    /// That with the most vertices, then bytes.
+    Largest,
+    /// That with the fewest.
+    Smallest,
+    /// The one that was changed first.
+    Oldest,
+    /// The one that was changed last.
+    Newest,
+    /// One in this folder, then the most exact.
+    In(PathBuf),
+}
+
+impl FromStr for Keep {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        Ok(match text {
+            "exact" => Self::Exact,
+            "largest" => Self::Largest,
+            "smallest" => Self::Smallest,
+            "oldest" => Self::Oldest,
+            "newest" => Self::Newest,
+            folder if Path::new(folder).is_dir() => Self::In(folder.into()),
+            _ => return Err("use `exact`, `largest`, `smallest`, `oldest`, `newest`, or a folder".to_owned()),
+        })
+    }
+}
+
+/// What counts as a duplicate, and what is kept.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DuplicateOptions {
     /// Kinds of relation. Default: one file, one geometry, scaled, mirrored, noisy, remeshed.
     pub kinds: Vec<RelationKind>,
     /// The least confidence. Default: 0.9.
     pub min_confidence: f64,
+    /// Which file of a group is kept. Default: the most exact.
+    pub keep: Keep,
+    /// Folders and archives from which nothing is to be removed. Default: none.
+    pub reference: Vec<PathBuf>,
+    /// Folders and archives in the order in which their files are kept. Default: none goes first.
+    pub folders: Vec<PathBuf>,
 }
 
 impl Default for DuplicateOptions {
     fn default() -> Self {
-        Self { kinds: KINDS.to_vec(), min_confidence: 0.9 }
+        let (keep, reference, folders) = Default::default();
+        Self { kinds: KINDS.to_vec(), min_confidence: 0.9, keep, reference, folders }
     }
 }
 
@@ -65,7 +111,7 @@ pub struct DuplicateFile {
     pub id: String,
     /// Its file.
     pub path: PathBuf,
-    /// Size of the file in bytes; unknown for members of archives.
+    /// Size of the file in bytes, also of a member of an archive, which need less.
     pub bytes: Option<u64>,
     /// When it was last changed, in seconds since 1970.
     pub modified: Option<u64>,
@@ -73,7 +119,12 @@ pub struct DuplicateFile {
     pub size: Option<[f64; 3]>,
     /// Number of vertices in different positions.
     pub vertices: Option<usize>,
-    /// Whether it is found through a link, or has several names (hard links): nothing is spared without it.
+    /// Other shapes of the index that are this file: links and hard links.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub links: Vec<String>,
+    /// Whether it is in a folder from which nothing is to be removed.
+    pub reference: bool,
+    /// Whether nothing is spared without it: it is found through a link, has several names (hard links), or is in an archive.
     #[serde(skip)]
     pub is_linked: bool,
 }
@@ -84,8 +135,18 @@ pub struct DuplicateMember {
     /// The file.
     #[serde(flatten)]
     pub file: DuplicateFile,
-    /// How it is related to the keeper.
+    /// The file that it is compared with: the keeper, or a member that it is an exact copy of.
+    pub of: String,
+    /// How it is related to that file.
     pub relation: Relation,
+}
+
+impl DuplicateMember {
+    /// Whether it can be spared: it is the surface of a file that is kept, is no reference, and its bytes would be free.
+    #[must_use]
+    pub fn is_spare(&self) -> bool {
+        self.relation.kind.is_one_surface() && !(self.file.reference || self.file.is_linked)
+    }
 }
 
 /// Files of one shape.
@@ -115,11 +176,16 @@ pub struct DuplicateReport {
 }
 
 impl DuplicateReport {
-    /// Bytes of all files but the keepers. Links do not count: their files have other names.
+    /// The files that [can be spared](DuplicateMember::is_spare).
+    pub fn spare(&self) -> impl Iterator<Item = &DuplicateFile> {
+        let members = self.groups.iter().flat_map(|group| &group.members);
+        members.filter(|member| member.is_spare()).map(|member| &member.file)
+    }
+
+    /// Bytes of all files that can be spared.
     #[must_use]
     pub fn spare_bytes(&self) -> u64 {
-        let members = self.groups.iter().flat_map(|group| &group.members);
-        members.filter(|member| !member.file.is_linked).filter_map(|member| member.file.bytes).sum()
+        self.spare().filter_map(|file| file.bytes).sum()
     }
 }
 
@@ -129,9 +195,12 @@ pub(super) fn has_one_name(path: &Path) -> bool {
         && std::fs::File::open(path).is_ok_and(|file| !base::files::has_other_names(&file))
 }
 
-/// A shape with its numbers.
+/// A content with its numbers, and the files that have it.
 struct Candidate {
-    entry: Entry,
+    /// Different files, those that are links to others left out.
+    files: Vec<Entry>,
+    /// The names of links to each of them.
+    links: Vec<Vec<String>>,
     fused: Vec<f32>,
     /// Of its mesh, if that was read: it is near another shape, and unchanged.
     invariants: Option<SurfaceInvariants>,
@@ -172,34 +241,62 @@ pub fn find_duplicates(
     observer: &dyn Observer,
 ) -> Result<DuplicateReport, Error> {
     let start = Instant::now();
-    let mut candidates = candidates(search)?;
+    let (mut candidates, places) = (candidates(search)?, Places::new(search, options)?);
     let near = clusters(candidates.len(), near_pairs(&candidates, observer)?);
-    let to_read: Vec<usize> = near.concat();
+    let to_read: Vec<usize> = near.iter().filter(|cluster| cluster.len() > 1).flatten().copied().collect();
     read_invariants(search, &mut candidates, &to_read, observer)?;
     let unread = to_read.into_iter().filter(|&i| candidates[i].invariants.is_none());
-    let mut unread: Vec<String> = unread.map(|i| candidates[i].entry.id.clone()).collect();
+    let mut unread: Vec<String> =
+        unread.flat_map(|i| candidates[i].files.iter().map(|entry| entry.id.clone())).collect();
     unread.sort();
     // Copies of copies need not be near themselves.
     let pairs = near.iter().flat_map(|cluster| pairs_of(cluster));
     let pairs = pairs.filter(|&(i, j)| candidates[i].may_be(&candidates[j], options));
-    let clusters = clusters(candidates.len(), pairs);
+    let mut clusters = clusters(candidates.len(), pairs);
+    clusters.retain(|cluster| cluster.iter().map(|&i| candidates[i].files.len()).sum::<usize>() > 1);
     observer.begin("comparing", clusters.iter().map(Vec::len).sum());
     let found = clusters
         .par_iter()
-        .map(|cluster| groups(&kept_first(search, &candidates, cluster), options, observer))
+        .map(|cluster| {
+            let read = |&number: &usize| ClusterShape::read(&candidates[number], &places);
+            groups(kept_first(cluster.par_iter().map(read).collect(), &places), options, observer)
+        })
         .collect::<Result<Vec<_>, Error>>()?;
     let n_compared = found.iter().map(|(_, n_compared)| n_compared).sum();
     let mut groups: Vec<DuplicateGroup> = found.into_iter().flat_map(|(groups, _)| groups).collect();
+    // Nothing is suggested about files in references alone.
+    groups
+        .retain(|group| !group.keeper.reference || group.members.iter().any(|member| !member.file.reference));
     groups.sort_by(|a, b| b.members.len().cmp(&a.members.len()).then(a.keeper.id.cmp(&b.keeper.id)));
-    let (n_shapes, seconds) = (candidates.len(), start.elapsed().as_secs_f64());
+    let (n_shapes, seconds) = (search.index().len(), start.elapsed().as_secs_f64());
     Ok(DuplicateReport { n_shapes, n_compared, groups, unread, seconds })
 }
 
+/// The contents of an index, with the files that have each.
 fn candidates(search: &ShapeSearch) -> Result<Vec<Candidate>, Error> {
     let (entries, vectors) = (search.index().entries()?, search.index().vector_table()?);
-    let shapes = entries.into_iter().enumerate();
-    let candidate = |(i, entry)| Candidate { entry, fused: vectors.vector(i).to_vec(), invariants: None };
-    Ok(shapes.map(candidate).collect())
+    let mut candidates: Vec<Candidate> = Vec::new();
+    let (mut of_content, mut of_file) = (HashMap::new(), HashMap::new());
+    for (i, entry) in entries.into_iter().enumerate() {
+        let number = *of_content.entry(entry.content).or_insert(candidates.len());
+        if number == candidates.len() {
+            let (files, links, fused) = (Vec::new(), Vec::new(), vectors.vector(i).to_vec());
+            candidates.push(Candidate { files, links, fused, invariants: None });
+        }
+        let Candidate { files, links, .. } = &mut candidates[number];
+        let file = FileId::of(&mesh_path(search.index().path(), &entry.path)).ok();
+        match file
+            .map(|file| *of_file.entry((number, file)).or_insert(files.len()))
+            .filter(|place| *place < files.len())
+        {
+            Some(place) => links[place].push(entry.id),
+            None => {
+                files.push(entry);
+                links.push(Vec::new());
+            }
+        }
+    }
+    Ok(candidates)
 }
 
 /// Reads the meshes of some shapes for their invariants, and does not keep them.
@@ -213,7 +310,7 @@ fn read_invariants(
     observer.begin("reading", numbers.len());
     let read = |&i: &usize| {
         budget.check()?;
-        let geometry = search.geometry(&candidates[i].entry);
+        let geometry = candidates[i].geometry(search);
         observer.step();
         Ok(geometry.map(|geometry| geometry.invariants()))
     };
@@ -231,19 +328,23 @@ impl Candidate {
         ShapeMetric::robust(&self.fused, &other.fused)
     }
 
-    /// Whether their meshes, or their files, may be one.
+    /// The mesh of the first of its files that can be read.
+    fn geometry(&self, search: &ShapeSearch) -> Option<MeshGeometry> {
+        self.files.iter().find_map(|entry| search.geometry(entry))
+    }
+
+    /// Whether their meshes may be one.
     fn may_be(&self, other: &Self, options: &DuplicateOptions) -> bool {
         // Parts and variants have other invariants than what they are compared with.
         let surfaces_only = options.kinds.iter().all(|kind| kind.is_one_surface());
-        self.entry.content == other.entry.content
-            || match (&self.invariants, &other.invariants) {
-                (Some(a), Some(b)) => !surfaces_only || a.may_be_copy_of(b),
-                _ => false,
-            }
+        match (&self.invariants, &other.invariants) {
+            (Some(a), Some(b)) => !surfaces_only || a.may_be_copy_of(b),
+            _ => false,
+        }
     }
 }
 
-/// Pairs of equal content, and of shapes whose vectors are near.
+/// Pairs of shapes whose vectors are near.
 fn near_pairs(candidates: &[Candidate], observer: &dyn Observer) -> Result<Vec<Pair>, Error> {
     let budget = observer.budget();
     observer.begin("searching", candidates.len());
@@ -258,16 +359,10 @@ fn near_pairs(candidates: &[Candidate], observer: &dyn Observer) -> Result<Vec<P
         observer.step();
         Ok::<_, Error>(near.into_iter().take(NEIGHBOURS).map(|(_, j)| (i, j)).collect::<Vec<_>>())
     };
-    let found = (0..candidates.len()).into_par_iter().map(near).collect::<Result<Vec<_>, Error>>()?;
-    let mut pairs = found.concat();
-    let mut first: HashMap<_, usize> = HashMap::new();
-    for (i, candidate) in candidates.iter().enumerate() {
-        pairs.push((*first.entry(candidate.entry.content).or_insert(i), i));
-    }
-    Ok(pairs)
+    Ok((0..candidates.len()).into_par_iter().map(near).collect::<Result<Vec<_>, Error>>()?.concat())
 }
 
-/// Shapes that pairs connect.
+/// Shapes that pairs connect, also single ones.
 fn clusters(n: usize, pairs: impl IntoIterator<Item = Pair>) -> Vec<Vec<usize>> {
     let mut sets = DisjointSets::new(n);
     pairs.into_iter().for_each(|(i, j)| {
@@ -275,81 +370,172 @@ fn clusters(n: usize, pairs: impl IntoIterator<Item = Pair>) -> Vec<Vec<usize>> 
     });
     let mut members: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     (0..n).for_each(|i| members.entry(sets.find(i as u32)).or_default().push(i));
-    members.into_values().filter(|members| members.len() > 1).collect()
+    members.into_values().collect()
 }
 
-/// A shape that may be a copy of others, with its mesh.
-struct ClusterShape<'a> {
-    candidate: &'a Candidate,
-    geometry: Option<MeshGeometry>,
-    file: DuplicateFile,
+/// Where files are, and what that says about keeping them.
+struct Places<'a> {
+    search: &'a ShapeSearch,
+    home: Home,
+    keep: &'a Keep,
+    /// Without links: the folder to keep, that of [`Keep::In`].
+    folder: Option<PathBuf>,
+    reference: Vec<PathBuf>,
+    folders: Vec<PathBuf>,
 }
 
-impl<'a> ClusterShape<'a> {
-    fn read(search: &ShapeSearch, candidate: &'a Candidate) -> Self {
-        let geometry = search.geometry(&candidate.entry);
-        let path = mesh_path(search.index().path(), &candidate.entry.path);
-        let facts = std::fs::metadata(&path).ok();
-        let modified = facts.as_ref().and_then(|facts| facts.modified().ok());
+impl<'a> Places<'a> {
+    fn new(search: &'a ShapeSearch, options: &'a DuplicateOptions) -> Result<Self, Error> {
+        let all =
+            |paths: &[PathBuf]| paths.iter().map(|path| canonical(path)).collect::<Result<Vec<_>, Error>>();
+        let DuplicateOptions { keep, reference, folders, .. } = options;
+        let folder = if let Keep::In(folder) = keep { Some(canonical(folder)?) } else { None };
+        let (reference, folders) = (all(reference)?, all(folders)?);
+        Ok(Self { search, home: Home::new(search.index().path())?, keep, folder, reference, folders })
+    }
+
+    fn file(&self, entry: &Entry, links: &[String], geometry: Option<&MeshGeometry>) -> DuplicateFile {
+        let path = mesh_path(self.search.index().path(), &entry.path);
+        let modified = std::fs::metadata(&path).ok().and_then(|facts| facts.modified().ok());
         let since_1970 = modified.and_then(|time| time.duration_since(std::time::UNIX_EPOCH).ok());
-        // The folders of a file have no links if its path without them is the one that is known.
-        let is_own = |home: Home| has_one_name(&path) && home.file_text(&path) == candidate.entry.path;
-        let file = DuplicateFile {
-            id: candidate.entry.id.clone(),
-            is_linked: !Home::new(search.index().path()).is_ok_and(is_own),
-            bytes: facts.map(|facts| facts.len()),
+        let place = absolute(&path).unwrap_or_else(|_| path.clone());
+        DuplicateFile {
+            id: entry.id.clone(),
+            // The folders of a file have no links if its path without them is the one that is known.
+            is_linked: !(has_one_name(&path) && self.home.file_text(&path) == entry.path),
+            bytes: Storage.n_bytes(&path).ok(),
             modified: since_1970.map(|time| time.as_secs()),
-            size: geometry.as_ref().and_then(|geometry| {
+            size: geometry.and_then(|geometry| {
                 let [low, high] = geometry.to_mesh().bounds()?;
                 Some((high - low).into())
             }),
-            vertices: geometry.as_ref().map(MeshGeometry::n_vertices),
+            vertices: geometry.map(MeshGeometry::n_vertices),
+            links: links.to_vec(),
+            reference: self.reference.iter().any(|folder| place.starts_with(folder)),
             path,
+        }
+    }
+
+    /// What the user wants to keep comes first, whatever its exactness.
+    fn wanted(&self, file: &DuplicateFile) -> [i64; 3] {
+        let place = absolute(&file.path).unwrap_or_else(|_| file.path.clone());
+        let is_elsewhere = self.folder.as_ref().is_some_and(|folder| !place.starts_with(folder));
+        let [vertices, bytes] =
+            [file.vertices.unwrap_or_default() as i64, file.bytes.unwrap_or_default() as i64];
+        let age = file.modified.map_or(i64::MAX, |seconds| seconds as i64);
+        let [first, second] = match self.keep {
+            Keep::Exact | Keep::In(_) => [0, 0],
+            Keep::Largest => [-vertices, -bytes],
+            Keep::Smallest => [vertices, bytes],
+            Keep::Oldest => [age, 0],
+            Keep::Newest => [-age, 0],
         };
-        Self { candidate, geometry, file }
+        [i64::from(is_elsewhere), first, second]
+    }
+
+    /// Files in the order of these are kept, as far as nothing else decides.
+    fn order(&self, file: &DuplicateFile) -> impl Ord + use<> {
+        let place = absolute(&file.path).unwrap_or_else(|_| file.path.clone());
+        let folder = self.folders.iter().position(|folder| place.starts_with(folder));
+        // Triangles of STL have no vertices in common, and coordinates of 32 bits.
+        let format = usize::from(mesh_io::extension(&file.path) == "stl");
+        let length = file.path.as_os_str().len();
+        let about = (format, folder.unwrap_or(self.folders.len()), file.modified, length, file.id.clone());
+        (!file.reference, file.is_linked, about)
     }
 }
 
-/// The shapes of a cluster in the order in which they are kept: the finest mesh, at the size of most, then a file before a
-/// link, then the oldest file, then the shortest path.
-fn kept_first<'a>(
-    search: &ShapeSearch,
-    candidates: &'a [Candidate],
-    cluster: &[usize],
-) -> Vec<ClusterShape<'a>> {
-    let read = |&number: &usize| ClusterShape::read(search, &candidates[number]);
-    let mut shapes: Vec<ClusterShape<'a>> = cluster.par_iter().map(read).collect();
+/// A content that may be that of others, with its mesh.
+struct ClusterShape<'a> {
+    candidate: &'a Candidate,
+    geometry: Option<MeshGeometry>,
+    exactness: Option<Exactness>,
+    /// The first to keep first.
+    files: Vec<DuplicateFile>,
+    wanted: [i64; 3],
+}
+
+impl<'a> ClusterShape<'a> {
+    fn read(candidate: &'a Candidate, places: &Places<'_>) -> Self {
+        let geometry = candidate.geometry(places.search);
+        let file = |(entry, links): (&Entry, &Vec<String>)| places.file(entry, links, geometry.as_ref());
+        let mut files: Vec<DuplicateFile> = candidate.files.iter().zip(&candidate.links).map(file).collect();
+        files.sort_by_cached_key(|file| (places.wanted(file), places.order(file)));
+        let exactness = geometry.as_ref().map(MeshGeometry::exactness);
+        let wanted = places.wanted(&files[0]);
+        Self { candidate, geometry, exactness, files, wanted }
+    }
+
+    /// Why this shape is rather kept than another one, if it is.
+    fn merit_over(&self, other: &Self) -> Option<Merit> {
+        let (own, others) = (self.exactness.as_ref()?, other.exactness.as_ref()?);
+        own.over(others).filter(|_| self.wanted == other.wanted)
+    }
+
+    /// Whether what it has beyond another shape, to which it has this relation, is noise.
+    fn is_noise_beside(&self, other: &Self, told: &Relation) -> bool {
+        let both = self.exactness.as_ref().zip(other.exactness.as_ref());
+        let may_be = self.wanted == other.wanted && both.is_some_and(|(a, b)| a.may_be_noise(b));
+        let meshes = self.geometry.as_ref().zip(other.geometry.as_ref()).filter(|_| may_be);
+        meshes.and_then(|(a, b)| told.overlay([a, b])).is_some_and(|overlay| overlay.is_noise())
+    }
+
+    /// Its files but the first, which have the bytes of that.
+    fn copies(&self) -> impl Iterator<Item = DuplicateMember> {
+        let of = &self.files[0].id;
+        self.files[1..].iter().map(move |file| {
+            let (same, content) = (ShapeDistance::default(), Some(self.candidate.files[0].content));
+            let relation = Relation::by_distance(same, 1.0, Handedness::Unknown).named(of, &file.id);
+            let relation = relation.by_files([content, content]);
+            DuplicateMember { file: file.clone(), of: of.clone(), relation }
+        })
+    }
+
+    /// Its files, of which the first has this relation to another file. If that is an exact one, so have all.
+    fn members(&self, of: &str, relation: &Relation) -> Vec<DuplicateMember> {
+        let member = |file: &DuplicateFile| {
+            let relation = relation.clone().named(of, &file.id);
+            DuplicateMember { file: file.clone(), of: of.to_owned(), relation }
+        };
+        match relation.kind.is_one_geometry() {
+            true => self.files.iter().map(member).collect(),
+            false => self.files[..1].iter().map(member).chain(self.copies()).collect(),
+        }
+    }
+}
+
+/// Shapes in the order in which they are kept where none is more exact: what is wanted, then the size of most.
+fn kept_first<'a>(mut shapes: Vec<ClusterShape<'a>>, places: &Places<'_>) -> Vec<ClusterShape<'a>> {
     let sizes: Vec<f64> = shapes.iter().filter_map(|shape| Some(shape.geometry.as_ref()?.size())).collect();
     let n_alike = |shape: &ClusterShape<'_>| {
         let size = shape.geometry.as_ref().map_or(f64::NAN, MeshGeometry::size);
         sizes.iter().filter(|other| (size / **other).ln().abs() < SAME_SIZE).count()
     };
-    shapes.sort_by_cached_key(|shape| {
-        let file = &shape.file;
-        let path = file.path.as_os_str().len();
-        (
-            Reverse(file.vertices),
-            Reverse(n_alike(shape)),
-            file.is_linked,
-            file.modified,
-            path,
-            file.id.clone(),
-        )
-    });
+    shapes.sort_by_cached_key(|shape| (shape.wanted, Reverse(n_alike(shape)), places.order(&shape.files[0])));
     shapes
 }
 
-/// Takes the first shape that is left as a keeper, and what is proved to be the same, until none is left. Returns the number of
+/// Takes the shape to keep of those that are left, and what is proved to be the same, until none is left. Returns the number of
 /// meshes that were compared, too.
 fn groups(
-    shapes: &[ClusterShape<'_>],
+    shapes: Vec<ClusterShape<'_>>,
     options: &DuplicateOptions,
     observer: &dyn Observer,
 ) -> Result<(Vec<DuplicateGroup>, usize), Error> {
     let budget = observer.budget();
     let (mut groups, mut n_compared) = (Vec::new(), 0);
     let mut left: Vec<&ClusterShape<'_>> = shapes.iter().collect();
-    while let Some((keeper, others)) = left.split_first() {
+    // Shapes to which another one of their group is preferred.
+    let mut rough: Vec<&ClusterShape<'_>> = Vec::new();
+    let is_in = |all: &[&ClusterShape<'_>], shape: &ClusterShape<'_>| {
+        all.iter().any(|other| std::ptr::eq(*other, shape))
+    };
+    while let Some(&first) = left.iter().find(|shape| !is_in(&rough, shape)).or(left.first()) {
+        let keeper = left
+            .iter()
+            .filter(|shape| !is_in(&rough, shape))
+            .fold(first, |best, next| if next.merit_over(best).is_some() { next } else { best });
+        let others: Vec<_> = left.iter().copied().filter(|shape| !std::ptr::eq(*shape, keeper)).collect();
         let relate = |other: &&ClusterShape<'_>| {
             budget.check()?;
             let may_be = keeper.candidate.may_be(other.candidate, options);
@@ -359,49 +545,98 @@ fn groups(
         n_compared += relations.iter().flatten().count();
         let is_one =
             |told: &Relation| options.kinds.contains(&told.kind) && told.confidence >= options.min_confidence;
-        let (mut rest, mut members) = (Vec::new(), Vec::new());
-        for (&other, relation) in others.iter().zip(relations) {
+        let (mut rest, mut same) = (Vec::new(), Vec::new());
+        for (other, relation) in others.into_iter().zip(relations) {
             match relation.filter(is_one) {
-                Some(relation) => members.push(DuplicateMember { file: other.file.clone(), relation }),
+                Some(relation) => same.push((other, relation)),
                 None => rest.push(other),
             }
         }
-        (0..=members.len()).for_each(|_| observer.step());
-        if !members.is_empty() {
-            let place = |kind| RelationKind::ALL.iter().position(|known| *known == kind);
-            members.sort_by(|a, b| {
-                place(a.relation.kind).cmp(&place(b.relation.kind)).then_with(|| a.file.id.cmp(&b.file.id))
-            });
-            let why = why(&keeper.file, &members);
-            groups.push(DuplicateGroup { keeper: keeper.file.clone(), why, members });
+        // Merits over one shape and of another one over that need not add up.
+        let is_better = |(other, told): &(&ClusterShape<'_>, Relation)| {
+            keeper.is_noise_beside(other, told) || !is_in(&rough, other) && other.merit_over(keeper).is_some()
+        };
+        if !is_in(&rough, keeper) && same.iter().any(is_better) {
+            rough.push(keeper);
+            continue;
         }
+        (0..=same.len()).for_each(|_| observer.step());
+        let place = |kind| RelationKind::ALL.iter().position(|known| *known == kind);
+        same.sort_by(|(a, told), (b, other)| {
+            place(told.kind).cmp(&place(other.kind)).then_with(|| a.files[0].id.cmp(&b.files[0].id))
+        });
+        let group = Group { keeper, same };
+        groups.extend(group.told(options));
         left = rest;
     }
     Ok((groups, n_compared))
 }
 
+/// A shape to keep, and others that are proved to be it.
+struct Group<'a, 's> {
+    keeper: &'a ClusterShape<'s>,
+    same: Vec<(&'a ClusterShape<'s>, Relation)>,
+}
+
+impl Group<'_, '_> {
+    /// The files of the group; `None` if there is one only.
+    fn told(self, options: &DuplicateOptions) -> Option<DuplicateGroup> {
+        let Self { keeper, same } = self;
+        let why = why(keeper, &same, options);
+        let mut members: Vec<DuplicateMember> = keeper.copies().collect();
+        let mut left = VecDeque::from(same);
+        while let Some((shape, relation)) = left.pop_front() {
+            members.extend(shape.members(&keeper.files[0].id, &relation));
+            // What is no exact copy of the keeper may have exact copies itself.
+            let may_have = |other: &ClusterShape<'_>| {
+                !relation.kind.is_one_geometry() && shape.files[0].vertices == other.files[0].vertices
+            };
+            left.retain(|(other, _)| {
+                let found = may_have(other).then(|| related(shape, other)).flatten();
+                let found = found.filter(|told| told.kind.is_one_geometry());
+                members.extend(found.iter().flat_map(|told| other.members(&shape.files[0].id, told)));
+                found.is_none()
+            });
+        }
+        members.retain(|member| options.kinds.contains(&member.relation.kind));
+        let keeper = keeper.files[0].clone();
+        (!members.is_empty()).then_some(DuplicateGroup { keeper, why, members })
+    }
+}
+
 /// How a shape is related to a keeper; `None` if a mesh cannot be read.
 fn related(keeper: &ClusterShape<'_>, other: &ClusterShape<'_>) -> Option<Relation> {
-    let contents = [keeper, other].map(|shape| Some(shape.candidate.entry.content));
+    let contents = [keeper, other].map(|shape| Some(shape.candidate.files[0].content));
     let fused = keeper.candidate.distance(other.candidate);
     let distance = ShapeDistance { fused, combined: fused };
     let by_distance = Relation::by_distance(distance, 1.0, Handedness::Unknown)
-        .named(&keeper.file.id, &other.file.id)
+        .named(&keeper.files[0].id, &other.files[0].id)
         .by_files(contents);
-    if by_distance.kind == RelationKind::IdenticalFile {
-        return Some(by_distance);
-    }
     let (a, b) = (keeper.geometry.as_ref()?, other.geometry.as_ref()?);
     Some(by_distance.by_meshes([a, b]))
 }
 
-/// Why a file is kept.
-fn why(keeper: &DuplicateFile, members: &[DuplicateMember]) -> String {
-    let is_finest = members.iter().any(|member| member.file.vertices < keeper.vertices);
-    let is_oldest = members.iter().any(|member| member.file.modified > keeper.modified);
-    match (is_finest, is_oldest) {
-        (true, _) => "it has the most vertices".to_owned(),
-        (false, true) => "it is the oldest".to_owned(),
-        (false, false) => "it has the size of most, or the shortest path".to_owned(),
+/// Why a shape is kept.
+fn why(
+    keeper: &ClusterShape<'_>,
+    same: &[(&ClusterShape<'_>, Relation)],
+    options: &DuplicateOptions,
+) -> String {
+    let others = || same.iter().flat_map(|(shape, _)| &shape.files).chain(&keeper.files[1..]);
+    let is_wanted = same.iter().any(|(shape, _)| shape.wanted != keeper.wanted);
+    let merit = same.iter().filter_map(|(shape, _)| keeper.merit_over(shape)).min();
+    let file = &keeper.files[0];
+    match (&options.keep, merit) {
+        (Keep::In(_), _) if is_wanted => "it is in the folder to keep".to_owned(),
+        (Keep::Largest, _) => "it is the largest".to_owned(),
+        (Keep::Smallest, _) => "it is the smallest".to_owned(),
+        (Keep::Oldest, _) => "it is the oldest".to_owned(),
+        (Keep::Newest, _) => "it is the newest".to_owned(),
+        (Keep::Exact | Keep::In(_), Some(merit)) => merit.words().to_owned(),
+        _ if file.reference && others().any(|other| !other.reference) => {
+            "it is in a reference folder".to_owned()
+        }
+        _ if others().any(|other| other.modified > file.modified) => "it is the oldest".to_owned(),
+        _ => "it has the size of most, or the shortest path".to_owned(),
     }
 }

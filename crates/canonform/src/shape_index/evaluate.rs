@@ -9,7 +9,10 @@ use linalg::DistanceMatrix;
 use rayon::prelude::*;
 use retrieval::{Evaluation, Labels, RankBy, evaluate_ranked};
 
-use super::record::missing_signature;
+use serde::Serialize;
+
+use super::agreement::{Agreement, Labelled};
+use super::record::{missing_signature, options_of};
 use crate::error::Error;
 use base::Observer;
 use collection::{CollectionError, LabelSource, Row, TextTable, label_of};
@@ -62,6 +65,16 @@ impl Default for EvaluateOptions<'_> {
     }
 }
 
+/// The scores of an index.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct IndexEvaluation {
+    /// By the distances between all pairs.
+    #[serde(flatten)]
+    pub scores: Evaluation,
+    /// How well classes and combined distances agree; `None` if there are too few pairs of one class.
+    pub agreement: Option<Agreement>,
+}
+
 /// Scores an index by the distances between all pairs of its shapes. Shapes without a class are left out.
 ///
 /// # Errors
@@ -70,7 +83,7 @@ pub fn evaluate_index(
     path: &Path,
     options: &EvaluateOptions<'_>,
     observer: &dyn Observer,
-) -> Result<Evaluation, Error> {
+) -> Result<IndexEvaluation, Error> {
     let EvaluateOptions { measure, labels, knn_k, rank_by } = *options;
     let index = Index::open(path)?;
     let n = index.len();
@@ -78,10 +91,10 @@ pub fn evaluate_index(
     if n > limit {
         return Err(Error::TooManyShapes { n_shapes: n, limit });
     }
-    let (mut names, mut rows) = (Vec::with_capacity(n), Vec::with_capacity(n));
+    let (mut names, mut rows, mut shapes) = (Vec::with_capacity(n), Vec::with_capacity(n), Vec::new());
     let mut unlabelled = None;
     index.each(|shape| {
-        let Shape { entry: Entry { id, label, path: place, .. }, fused, mut signatures, .. } = shape;
+        let Shape { entry: Entry { id, label, content, path: place, .. }, fused, mut signatures, .. } = shape;
         let label = match labels {
             Some(source) => source.label(&id, Some(Path::new(&place))),
             None => label,
@@ -99,8 +112,9 @@ pub fn evaluate_index(
                 None => return Err(missing_signature(path, &id, kind).into()),
             },
         };
-        names.push(label);
+        names.push(label.clone());
         rows.push(vector);
+        shapes.push(Labelled { id, label, content });
         Ok::<(), Error>(())
     })?;
     let n = names.len();
@@ -117,7 +131,9 @@ pub fn evaluate_index(
     };
     let later: Vec<Vec<f64>> = (0..n).into_par_iter().map(later).collect();
     let distances = DistanceMatrix::from_pairs(n, |i, j| later[i][j - i - 1])?;
-    Ok(evaluate_ranked(&distances, &Labels::new(&names), knn_k, rank_by)?)
+    let scores = evaluate_ranked(&distances, &Labels::new(&names), knn_k, rank_by)?;
+    let agreement = Agreement::of(shapes, &options_of(&index)?, |id| index.shape(id), observer)?;
+    Ok(IndexEvaluation { scores, agreement })
 }
 
 /// Scores a matrix of distances: a [`TextTable`] of numbers, optionally below a line of names.

@@ -90,8 +90,8 @@ impl ShapeSearch {
             let Entry { id, label, path, facts, .. } = entry;
             let ShapeDistance { fused, combined: distance } = distances;
             let relation = relation.to_component(facts.components as usize);
-            let (rank, order, comparison) = (wholes.len() + 1, None, None);
-            wholes.push(Hit { rank, id, label, path, distance, fused, order, relation, comparison });
+            let (rank, itself, order, comparison) = (wholes.len() + 1, false, None, None);
+            wholes.push(Hit { rank, id, label, itself, path, distance, fused, order, relation, comparison });
         }
         Ok(wholes)
     }

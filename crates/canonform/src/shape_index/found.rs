@@ -56,6 +56,9 @@ pub struct Hit {
     pub id: String,
     /// Its class.
     pub label: String,
+    /// Whether it is the shape that the query is, which has no vote on its own class.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub itself: bool,
     /// Path of its mesh as the index states it; [`mesh_path`](crate::library::mesh_path) finds the file.
     pub path: String,
     /// Combined distance, by signatures and aligned forms; results are ordered by it if they are ranked

@@ -34,7 +34,7 @@ pub fn merge_answers(
         hit.relation = hit.relation.clone().named(&query.name, &hit.id);
     }
     let threshold = threshold.filter(|_| merged.rank_by.is_by_signatures());
-    merged.predicted = predicted(&merged.results, threshold, &query.shape.entry.facts);
+    merged.predicted = predicted(&merged.results, (threshold, None), &query.shape.entry.facts);
     merged.results.truncate(k);
     merged
 }

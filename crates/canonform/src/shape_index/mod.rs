@@ -7,6 +7,7 @@
 //! Query -> an Answer of every shard -> merge_answers -> Answer
 //! ```
 
+mod agreement;
 mod ask;
 mod build;
 mod change;
@@ -28,15 +29,16 @@ mod rerank;
 mod search;
 mod source;
 
+pub use agreement::Agreement;
 pub use build::{
     BuildOptions, BuildReport, Dropped, Failure, FailureReason, build_index, indexed_shapes, unchanged_index,
 };
 pub use change::{MergeReport, add_to_index, merge_indexes, remove_from_index};
 pub use distances::PairwiseDistance;
 pub use duplicates::{
-    DuplicateFile, DuplicateGroup, DuplicateMember, DuplicateOptions, DuplicateReport, find_duplicates,
+    DuplicateFile, DuplicateGroup, DuplicateMember, DuplicateOptions, DuplicateReport, Keep, find_duplicates,
 };
-pub use evaluate::{EvaluateOptions, Measure, evaluate_index, evaluate_matrix};
+pub use evaluate::{EvaluateOptions, IndexEvaluation, Measure, evaluate_index, evaluate_matrix};
 pub use export::export_index;
 pub use found::{ComponentResult, Hit, OrderedBy};
 pub use merge::{merge_answers, n_candidates};

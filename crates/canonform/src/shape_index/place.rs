@@ -49,7 +49,7 @@ impl Home {
 }
 
 /// A file's absolute path: without links in the folder, or the archive, that it is in.
-fn absolute(file: &Path) -> Result<PathBuf, Error> {
+pub(super) fn absolute(file: &Path) -> Result<PathBuf, Error> {
     let start = folder_of(file);
     for above in start.ancestors() {
         let above = if above.as_os_str().is_empty() { Path::new(".") } else { above };
@@ -100,18 +100,21 @@ impl<'a> Root<'a> {
                 }
                 folder => stored.strip_prefix(folder).and_then(|rest| rest.strip_prefix('/')),
             };
-            // The name may hold the extension, if several files differ in nothing else. Folders around all meshes of an
-            // archive are no part of the names.
+            // The name may hold the extension, if several files differ in nothing else, and folders around this one, if another
+            // place has the name without. Folders around all meshes of an archive are no part of the names.
             below.is_some_and(|below| {
                 let stem = slashed(&without_extension(Path::new(below)));
-                let is_named = |name: &str| {
-                    name == id
-                        || self.is_archive && name.strip_suffix(id).is_some_and(|rest| rest.ends_with('/'))
-                };
+                let is_named =
+                    |name: &str| name == id || is_end(name, id) || self.is_archive && is_end(id, name);
                 is_named(below) || is_named(&stem)
             })
         })
     }
+}
+
+/// Whether a name has another one at its end, below a folder.
+pub(super) fn is_end(end: &str, name: &str) -> bool {
+    name.strip_suffix(end).is_some_and(|rest| rest.ends_with('/'))
 }
 
 /// The path of a mesh that an index states as `stored`, for programs to open and people to read.
@@ -154,7 +157,7 @@ fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-fn canonical(folder: &Path) -> Result<PathBuf, Error> {
+pub(super) fn canonical(folder: &Path) -> Result<PathBuf, Error> {
     Ok(folder.canonicalize().map_err(|source| FileError::read(folder, source))?)
 }
 

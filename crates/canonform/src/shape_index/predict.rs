@@ -1,6 +1,6 @@
 //! The class that the nearest shapes suggest, or why there is none.
 
-use descriptors::{PartDistance, ShapeMetric};
+use descriptors::{Boundary, PartDistance, ShapeMetric};
 use index::Facts;
 use relations::Relation;
 use retrieval::{Labels, Neighbor, Tally, UnknownThreshold, vote};
@@ -14,7 +14,8 @@ const VOTERS: usize = 5;
 /// How many results of each index are needed for the `k` best of all and the class: those that vote are among them.
 #[must_use]
 pub fn n_results(k: usize) -> usize {
-    k.max(VOTERS)
+    // The query may be one of them.
+    k.max(VOTERS + 1)
 }
 
 /// A vote is split if the winner has less than this share of it.
@@ -117,15 +118,21 @@ fn shortcut_warning(facts: &Facts) -> Option<String> {
     ))
 }
 
-/// The vote of the first [`VOTERS`] results, so that it does not depend on their number.
+/// The vote of the first [`VOTERS`] results but the query itself, so that it does not depend on their number.
 ///
 /// A result at combined distance `d` and fused distance `f` votes if `r = min(d / c, f / t)` is below 1, with `c` the
 /// boundary of a class and `t` the width of the classes of the index; its weight is `(1 - r²)²`. If the query is
 /// taken as a part, `r` is the part distance over that of parts of shapes of one class.
-pub(super) fn predicted(results: &[Hit], threshold: Option<UnknownThreshold>, query: &Facts) -> Prediction {
-    let results = &results[..results.len().min(VOTERS)];
-    let as_part = results.first().and_then(part_distance);
-    let class_below = as_part.map_or(ShapeMetric::SAME_CLASS.at, |_| PartDistance::SAME_CLASS);
+pub(super) fn predicted(
+    results: &[Hit],
+    (threshold, classes): (Option<UnknownThreshold>, Option<Boundary>),
+    query: &Facts,
+) -> Prediction {
+    let others: Vec<&Hit> = results.iter().filter(|result| !result.itself).take(VOTERS).collect();
+    let results = &others[..];
+    let as_part = results.first().and_then(|first| part_distance(first));
+    let class_below =
+        as_part.map_or(classes.unwrap_or(ShapeMetric::SAME_CLASS).at, |_| PartDistance::SAME_CLASS);
     let threshold = threshold.map(|threshold| threshold.distance);
     let labels = Labels::new(&results.iter().map(|result| &result.label).collect::<Vec<_>>());
     let label = |class: usize| labels.classes()[class].clone();
@@ -234,7 +241,7 @@ impl Prediction {
             let split = if self.confidence < CLEAR { "; the vote is split" } else { "" };
             words += &format!("{split}; other votes: {}", others.join(", "));
         }
-        let may_be = |nearest: &NearestShape| nearest.relation.evidence.distance.may_be_same_class();
+        let may_be = |nearest: &NearestShape| nearest.relation.evidence.distance.combined < self.class_below;
         if let (false, Some(threshold)) = (self.nearest.as_ref().is_some_and(may_be), self.threshold) {
             words += &format!(
                 "; no shape is near enough for one class elsewhere, but classes of this index are up to {threshold:.3} wide by signatures"
@@ -257,6 +264,7 @@ mod tests {
             rank,
             id: format!("{label}{rank}"),
             label: label.to_owned(),
+            itself: false,
             path: String::new(),
             distance,
             fused: distance,
@@ -283,28 +291,37 @@ mod tests {
         let near = results(&[("cat", 0.9), ("cat", 1.0)]);
         // Narrow classes do not overrule the distance.
         for width in [None, threshold(0.2), threshold(9.0)] {
-            let found = predicted(&near, width, &facts());
+            let found = predicted(&near, (width, None), &facts());
             assert_eq!((found.label.as_deref(), found.votes, found.unknown), (Some("cat"), 2, None));
             assert_eq!(found.explanation, format!("cat, by 2 of 2 votes, confidence {:.2}", 1.0));
         }
     }
 
     #[test]
+    fn no_shape_votes_on_its_own_class() {
+        let mut near = results(&[("dog", 0.0), ("cat", 0.9), ("cat", 1.0)]);
+        near[0].itself = true;
+        let found = predicted(&near, (None, None), &facts());
+        assert_eq!((found.label.as_deref(), found.voters), (Some("cat"), 2));
+        assert_eq!(found.nearest.unwrap().id, "cat2");
+    }
+
+    #[test]
     fn unknown_names_the_nearest_shape_and_the_limit_it_missed() {
         let far = results(&[("cat", 9.25), ("dog", 9.5)]);
-        let found = predicted(&far, threshold(2.0), &facts());
+        let found = predicted(&far, (threshold(2.0), None), &facts());
         assert_eq!((found.label.as_deref(), found.unknown), (None, Some(Unknown::NothingNear)));
         for words in
-            ["cat1", "9.250", "another class", "up to 2.000 wide", &format!("{:.3}", found.class_below)]
+            ["cat1", "9.250", "not the same shape", "up to 2.000 wide", &format!("{:.3}", found.class_below)]
         {
             assert!(found.explanation.contains(words), "{}", found.explanation);
         }
         assert_eq!(found.nearest.as_ref().map(|n| &n.relation), Some(&far[0].relation));
         // Classes of a collection may be wider than those of the metric.
-        let wide = predicted(&far, threshold(10.0), &facts());
+        let wide = predicted(&far, (threshold(10.0), None), &facts());
         assert_eq!((wide.label.as_deref(), wide.voters), (Some("cat"), 2));
         assert!(wide.explanation.contains("up to 10.000 wide"), "{}", wide.explanation);
-        let empty = predicted(&[], None, &facts());
+        let empty = predicted(&[], (None, None), &facts());
         assert_eq!((empty.unknown, empty.nearest), (Some(Unknown::EmptyIndex), None));
     }
 
@@ -315,13 +332,13 @@ mod tests {
             (Facts { dropped_area_share: 0.14, ..facts() }, "14 % of its surface"),
             (Facts { longest_boundary: 1.25, ..facts() }, "1.2 times"),
         ] {
-            let found = predicted(&far, None, &query);
+            let found = predicted(&far, (None, None), &query);
             assert_eq!(found.unknown, Some(Unknown::Partial));
             assert!(found.explanation.contains(words) && found.explanation.contains("ranking by parts"));
-            assert_eq!(predicted(&results(&[("cat", 0.5)]), None, &query).unknown, None);
+            assert_eq!(predicted(&results(&[("cat", 0.5)]), (None, None), &query).unknown, None);
         }
         let small_holes = Facts { dropped_area_share: 0.001, longest_boundary: 0.05, ..facts() };
-        assert_eq!(predicted(&far, None, &small_holes).unknown, Some(Unknown::NothingNear));
+        assert_eq!(predicted(&far, (None, None), &small_holes).unknown, Some(Unknown::NothingNear));
     }
 
     #[test]
@@ -334,9 +351,9 @@ mod tests {
         let shapes = results(&[("cat", 9.0), ("dog", 9.0)]);
         let fits = |cat, dog| vec![fit(shapes[0].clone(), cat), fit(shapes[1].clone(), dog)];
         let open = Facts { longest_boundary: 1.25, ..facts() };
-        let found = predicted(&fits(0.3, 1.2), None, &open);
+        let found = predicted(&fits(0.3, 1.2), (None, None), &open);
         assert_eq!((found.label.as_deref(), found.votes, found.unknown), (Some("cat"), 1, None));
-        let found = predicted(&fits(1.1, 1.2), None, &open);
+        let found = predicted(&fits(1.1, 1.2), (None, None), &open);
         assert_eq!(found.unknown, Some(Unknown::NothingNear));
         assert!(found.explanation.contains("fits best as a part of cat1"), "{}", found.explanation);
     }
@@ -344,7 +361,7 @@ mod tests {
     #[test]
     fn shortcuts_of_the_query_are_a_warning() {
         let near = results(&[("cat", 0.5)]);
-        let words = |shortcuts| predicted(&near, None, &Facts { shortcuts, ..facts() }).explanation;
+        let words = |shortcuts| predicted(&near, (None, None), &Facts { shortcuts, ..facts() }).explanation;
         assert!(!words(0).contains("shortcut"));
         assert!(words(1).contains("probably has a shortcut") && words(1).contains("in one place"));
         assert!(words(3).contains("in 3 places"), "{}", words(3));
@@ -353,7 +370,7 @@ mod tests {
     #[test]
     fn a_split_vote_says_so() {
         let people = results(&[("david", 1.0), ("michael", 1.05), ("david", 1.1), ("michael", 1.1)]);
-        let found = predicted(&people, None, &facts());
+        let found = predicted(&people, (None, None), &facts());
         assert_eq!(found.label.as_deref(), Some("david"));
         assert!(
             found.explanation.contains("the vote is split; other votes: michael 2"),

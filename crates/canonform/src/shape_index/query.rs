@@ -27,6 +27,8 @@ pub struct Query {
     pub options: String,
     /// The [hash](crate::collection::content_hash) of its file.
     pub content: Option<ContentHash>,
+    /// Where its mesh is, as the index would state it.
+    pub place: Option<String>,
     /// What its fit as a part is measured by. Only with it can results be ordered by that.
     pub part: Option<PartDiscAreas>,
     /// The mesh in space, by which results are explained.
@@ -48,6 +50,7 @@ impl Query {
             shape,
             options: options.text(),
             content: None,
+            place: None,
             part: None,
             geometry: None,
             is_component: false,

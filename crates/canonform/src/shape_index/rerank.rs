@@ -18,6 +18,8 @@ pub struct Aligned {
     pub shape_distance: ShapeDistance,
     /// Size of the shape over that of the query.
     pub scale: f64,
+    /// Whether both are parts of machines, which do not bend.
+    pub are_parts: bool,
     /// How the form of the query, at unit area, aligns with that of the shape.
     pub alignment: Alignment,
 }
@@ -53,7 +55,9 @@ pub fn rerank<S: Borrow<PreparedShape>>(
         let Some(alignment) = align_near_points(a, b, left) else { return Ok(None) };
         let pair = ShapePair::new([query, shape]).with_best(alignment);
         let fused = ShapeMetric::fused(query.fused(), shape.fused());
-        let aligned = Aligned { fused, shape_distance: pair.distance(), scale: pair.scale(), alignment };
+        let are_parts = !(query.rigid().is_empty() || shape.rigid().is_empty());
+        let (shape_distance, scale) = (pair.distance(), pair.scale());
+        let aligned = Aligned { fused, shape_distance, scale, are_parts, alignment };
         Ok(Some((ShapeMetric::combined(robust, alignment.gap.rms), aligned)))
     })
 }
@@ -114,7 +118,11 @@ mod tests {
                         let (fused, alignment) = (fused(index), pair.best());
                         let distance = ShapeMetric::combined(robust(index), alignment.gap.rms);
                         let (shape_distance, scale) = (pair.distance(), pair.scale());
-                        (Neighbor { index, distance }, Aligned { fused, shape_distance, scale, alignment })
+                        let are_parts = false;
+                        (
+                            Neighbor { index, distance },
+                            Aligned { fused, shape_distance, scale, are_parts, alignment },
+                        )
                     })
                     .collect();
                 all.sort_by(|(a, _), (b, _)| a.distance.total_cmp(&b.distance).then(a.index.cmp(&b.index)));

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use base::{Budget, Observer};
 use collection::Storage;
-use descriptors::DiscAreas;
+use descriptors::{Boundary, DiscAreas};
 use descriptors::{PartDiscAreas, PartDistance, PreparedShape, ShapeMetric, ShapePair, SignatureKind};
 use index::{Entry, Index, VectorTable};
 use mesh::TriMesh;
@@ -17,6 +17,7 @@ use retrieval::{LINKS, Neighbor, graph_rank};
 use rigid::{Alignment, Handedness};
 use serde::{Deserialize, Serialize};
 
+use super::agreement::Agreement;
 use super::found::{ComponentResult, Hit, OrderedBy};
 use super::options::{SearchOptions, SearchRank};
 use super::predict::{Prediction, n_results, predicted};
@@ -83,6 +84,8 @@ pub struct SearchSeconds {
 pub struct ShapeSearch {
     index: Index,
     describe: DescribeOptions,
+    /// The boundary of its classes, if it has enough pairs of one class.
+    classes: Option<Boundary>,
     /// Filled by the first explained search.
     pub(super) components: OnceLock<Vec<(String, Vec<f32>)>>,
 }
@@ -95,7 +98,8 @@ impl ShapeSearch {
     pub fn open(path: &Path) -> Result<Self, Error> {
         let index = Index::open(path)?;
         let describe = options_of(&index)?;
-        Ok(Self { index, describe, components: OnceLock::new() })
+        let classes = Agreement::stated(&index)?.map(|agreement| agreement.classes());
+        Ok(Self { index, describe, classes, components: OnceLock::new() })
     }
 
     /// How the shapes of the index were described; queries are described in the same way.
@@ -236,7 +240,7 @@ impl ShapeSearch {
         let (found, aligned) = self.aligned((query, shape), shortlist, wanted, budget)?;
         let (mut results, alignments): (Vec<Hit>, Vec<_>) = found.into_iter().unzip();
         let threshold = self.index.threshold().filter(|_| rank_by.is_by_signatures());
-        let predicted = predicted(&results, threshold, &query.shape.entry.facts);
+        let predicted = predicted(&results, (threshold, self.classes), &query.shape.entry.facts);
         results.truncate(options.k);
         if options.explain {
             let found = results.par_iter_mut().zip(alignments);
@@ -382,10 +386,15 @@ impl ShapeSearch {
         let found =
             refined.nearest.into_iter().zip(1..).map(|((Neighbor { index, distance }, found), rank)| {
                 let Entry { id, label, path, .. } = self.index.entry(&id(index))?;
-                let relation = Relation::by_distance(found.shape_distance, found.scale, Handedness::Unknown);
-                let relation = relation.named(&query.name, &id);
+                let (distances, scale) = (found.shape_distance, found.scale);
+                let relation = Relation::in_classes(distances, scale, Handedness::Unknown, self.classes);
+                // Only what has the same description may be called the same part without its mesh.
+                let is_part = found.are_parts && found.fused > 0.0;
+                let relation = if is_part { relation.of_parts() } else { relation }.named(&query.name, &id);
                 let (fused, order) = (found.fused, orders.as_ref().map(|all| all[index]));
-                let hit = Hit { rank, id, label, path, distance, fused, order, relation, comparison: None };
+                let itself = query.place.as_ref() == Some(&path);
+                let hit =
+                    Hit { rank, id, label, itself, path, distance, fused, order, relation, comparison: None };
                 Ok((hit, found.alignment))
             });
         Ok((found.collect::<Result<_, Error>>()?, refined.evaluated))

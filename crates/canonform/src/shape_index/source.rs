@@ -10,15 +10,16 @@ use base::ContentHash;
 use base::files::FileId;
 use index::Entry;
 use mesh::{MeshError, TriMesh};
-use mesh_io::{MemoryFile, ReadLimits, without_extension};
+use mesh_io::{FileSource, MemoryFile, ReadLimits, without_extension};
 use rayon::prelude::*;
 
-use super::place::{Home, Root, mesh_path};
+use super::place::{Home, Root, absolute, is_end, mesh_path};
 use crate::error::Error;
 use base::Observer;
 use collection::{
     CollectionError, Dataset, LabelOrigin, LabelSource, ShapeFile, SkipKind, Skipped, Storage, UnusedLabel,
-    content_hash, content_of, drop_single_class, is_dataset, label_of, label_shapes, read_mesh_file,
+    content_hash, content_of, drop_single_class, is_dataset, is_suggested, label_of, label_shapes,
+    read_mesh_file,
 };
 
 /// One of several equal parts of a collection.
@@ -108,6 +109,8 @@ pub(super) struct Listed {
     pub(super) file: ShapeFile,
     /// Its path as the index stores it.
     pub(super) stored: String,
+    /// Whether it was named on its own, and not found in a dataset.
+    pub(super) is_single: bool,
 }
 
 /// The meshes to index, and what was found beside them.
@@ -128,7 +131,7 @@ impl Listing {
     pub(super) fn from_folder(root: &Root<'_>, labels: Option<&LabelSource>) -> Result<Self, Error> {
         let Dataset { shapes, labelled_by, skipped } = Dataset::read(root.given(), labels)?;
         let stored = shapes.iter().map(|shape| root.text(&shape.path)).collect();
-        let listing = Self::new(shapes, stored, skipped, labels, |_| false)?;
+        let listing = Self::new(shapes, (stored, &[]), skipped, labels, |_| false)?;
         let is_unlabelled = |listed: &Listed| listed.file.label.is_empty();
         if let (Some(file), [first, ..]) = (labels.and_then(LabelSource::file), &listing.shapes[..])
             && listing.shapes.iter().all(is_unlabelled)
@@ -139,9 +142,24 @@ impl Listing {
         Ok(Self { labelled_by: Some(labelled_by), ..listing })
     }
 
+    /// Keeps the classes that shapes of an index have, if `all` were given or one is not what the name suggests.
+    pub(super) fn keep_labels(&mut self, entries: &[Entry], all: bool) {
+        let known: HashMap<&str, &str> =
+            entries.iter().map(|entry| (entry.path.as_str(), entry.label.as_str())).collect();
+        for Listed { file, stored, .. } in &mut self.shapes {
+            let label = known.get(stored.as_str()).copied().unwrap_or_default();
+            if all || !(label.is_empty() || is_suggested(label, &file.name)) {
+                label.clone_into(&mut file.label);
+            }
+        }
+        if all {
+            self.labelled_by = Some(LabelOrigin::File);
+        }
+    }
+
     fn new(
         mut shapes: Vec<ShapeFile>,
-        stored: Vec<String>,
+        (stored, single): (Vec<String>, &[usize]),
         skipped: Vec<Skipped>,
         labels: Option<&LabelSource>,
         is_class: impl Fn(&str) -> bool,
@@ -150,8 +168,13 @@ impl Listing {
         let file = labels.and_then(LabelSource::file);
         let unused_labels = file.map(|file| file.unused(&shapes)).transpose()?.unwrap_or_default();
         name_apart(&mut shapes);
-        let listed = shapes.into_iter().zip(stored).map(|(file, stored)| Listed { file, stored });
-        Ok(Self { shapes: listed.collect(), skipped, single_class, labelled_by: None, unused_labels })
+        let mut listed: Vec<Listed> = shapes
+            .into_iter()
+            .zip(stored)
+            .map(|(file, stored)| Listed { file, stored, is_single: false })
+            .collect();
+        single.iter().for_each(|&place| listed[place].is_single = true);
+        Ok(Self { shapes: listed, skipped, single_class, labelled_by: None, unused_labels })
     }
 }
 
@@ -160,9 +183,14 @@ impl Inputs<'_> {
     /// index.
     pub(super) fn list(&self, home: &Home, is_class: impl Fn(&str) -> bool) -> Result<Listing, Error> {
         let (mut shapes, mut stored, mut skipped) = (Vec::new(), Vec::new(), Vec::new());
-        let (mut seen, mut single) = (HashSet::new(), Vec::new());
-        // What cannot be found is reported when it is read.
-        let mut is_repeated = |path: &Path| FileId::of(path).is_ok_and(|id| !seen.insert(id));
+        let (mut seen, mut places, mut single) = (HashSet::new(), HashSet::new(), Vec::new());
+        // A link leads to a file that is there anyway; hard links are files of their own. What cannot be found is reported when it
+        // is read.
+        let mut is_repeated = |path: &Path, stored: &String| {
+            let is_link = path.symlink_metadata().is_ok_and(|about| about.is_symlink());
+            let is_known = FileId::of(path).is_ok_and(|id| !seen.insert(id));
+            !places.insert(stored.clone()) || is_link && is_known
+        };
         let mut skip = |path: &Path, kind| skipped.push(Skipped { path: path.to_owned(), kind });
         for path in self.paths {
             if is_dataset(path) {
@@ -170,10 +198,11 @@ impl Inputs<'_> {
                 let dataset = Dataset::read(path, self.labels)?;
                 dataset.skipped.into_iter().for_each(|it| skip(&it.path, it.kind));
                 for shape in dataset.shapes {
-                    if is_repeated(&shape.path) {
+                    let place = root.text(&shape.path);
+                    if is_repeated(&shape.path, &place) {
                         skip(&shape.path, SkipKind::Repeated);
                     } else {
-                        stored.push(root.text(&shape.path));
+                        stored.push(place);
                         shapes.push(shape);
                     }
                 }
@@ -184,11 +213,12 @@ impl Inputs<'_> {
                 skip(path, SkipKind::NotUtf8);
                 continue;
             };
-            if is_repeated(path) {
+            let place = home.file_text(path);
+            if is_repeated(path, &place) {
                 skip(path, SkipKind::Repeated);
                 continue;
             }
-            stored.push(home.file_text(path));
+            stored.push(place);
             single.push(shapes.len());
             shapes.push(ShapeFile { label: String::new(), name: name.to_owned(), path: path.clone() });
         }
@@ -198,7 +228,7 @@ impl Inputs<'_> {
         }
         // A class that was asked for is one.
         let is_class = |label: &str| self.label == Some(label) || is_class(label);
-        Listing::new(shapes, stored, skipped, self.labels, is_class)
+        Listing::new(shapes, (stored, &single), skipped, self.labels, is_class)
     }
 
     /// Labels the files at these places, which belong to no dataset, together.
@@ -215,17 +245,72 @@ impl Inputs<'_> {
     }
 }
 
-/// Adds the extension to the names of files that differ in nothing else.
+/// Adds the extension to the names of files beside each other that differ in nothing else.
 pub(super) fn name_apart(shapes: &mut [ShapeFile]) {
-    let mut counts: HashMap<String, usize> = HashMap::new();
-    shapes.iter().for_each(|shape| *counts.entry(shape.name.clone()).or_default() += 1);
+    let place = |shape: &ShapeFile| without_extension(&shape.path);
+    let mut counts: HashMap<PathBuf, usize> = HashMap::new();
+    shapes.iter().for_each(|shape| *counts.entry(place(shape)).or_default() += 1);
     for shape in shapes {
-        if counts.get(&shape.name).is_some_and(|count| *count > 1)
+        if counts[&place(shape)] > 1
             && let Some(extension) = full_extension(&shape.path)
         {
             shape.name = format!("{}.{extension}", shape.name);
         }
     }
+}
+
+/// [Names](name_places) files below a folder.
+pub(super) fn name_below(
+    root: &Root<'_>,
+    files: &mut [Hashed],
+    index: (&Path, &[Entry]),
+) -> Result<(), Error> {
+    let keeps = |listed: &Listed, entry: &Entry| is_end(&listed.file.name, &entry.id);
+    name_places(files, index, keeps, |_, _, entry| root.contains_source(&entry.id, &entry.path))
+}
+
+/// Gives every file the name of its place in the index, or one that no other place has: with the names of folders around its
+/// dataset in front. A name goes from one place to another if the file was moved, or if `gives` says so.
+pub(super) fn name_places(
+    files: &mut [Hashed],
+    (index, entries): (&Path, &[Entry]),
+    keeps: impl Fn(&Listed, &Entry) -> bool,
+    gives: impl Fn(&Listed, Option<&ContentHash>, &Entry) -> bool,
+) -> Result<(), Error> {
+    let by_id: HashMap<&str, &Entry> = entries.iter().map(|entry| (entry.id.as_str(), entry)).collect();
+    let by_place: HashMap<&str, &Entry> = entries.iter().map(|entry| (entry.path.as_str(), entry)).collect();
+    let mut taken = HashSet::new();
+    let mut nameless = Vec::new();
+    for (i, (listed, hash)) in files.iter_mut().enumerate() {
+        let known = by_place.get(listed.stored.as_str()).filter(|entry| keeps(listed, entry));
+        if let Some(entry) = known {
+            listed.file.name.clone_from(&entry.id);
+        }
+        let is_free = known.is_some()
+            || by_id.get(listed.file.name.as_str()).is_none_or(|entry| {
+                let hash = hash.as_ref().ok();
+                let has_moved =
+                    || hash == Some(&entry.content) && !Storage.holds(&mesh_path(index, &entry.path));
+                entry.path == listed.stored || gives(listed, hash, entry) || has_moved()
+            });
+        if !is_free || !taken.insert(listed.file.name.clone()) {
+            nameless.push(i);
+        }
+    }
+    for i in nameless {
+        let file = &mut files[i].0.file;
+        let path = absolute(&file.path)?;
+        let folders: Vec<String> = path.iter().map(|part| part.to_string_lossy().into_owned()).collect();
+        let around = &folders[..folders.len().saturating_sub(file.name.split('/').count())];
+        let names =
+            (0..around.len()).rev().map(|start| format!("{}/{}", around[start..].join("/"), file.name));
+        let is_free = |name: &String| !by_id.contains_key(name.as_str()) && !taken.contains(name);
+        if let Some(name) = names.into_iter().find(is_free) {
+            file.name.clone_from(&name);
+            taken.insert(name);
+        }
+    }
+    Ok(())
 }
 
 /// The extension of a mesh, that of a compressed one with `.gz`.

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use canonform::library::Keep;
 use canonform::relations::RelationKind;
 use clap::Args;
 use clap::builder::TypedValueParser;
@@ -9,8 +10,12 @@ use clap::builder::TypedValueParser;
 use super::settings::one_of;
 
 const NOTES: &str = "\
-Nothing is ever deleted. Every member of a group is compared with the file that is suggested to be kept, by the
-triangles of both: `remeshed` and `noisy` say how surely. Exit code 0 with duplicates, 1 without.
+Nothing is ever deleted. Every member of a group is compared with the file that is suggested to be kept, or with a member of
+which it is an exact copy, by the triangles of both: `remeshed` and `noisy` say how surely. Exit code 0 with duplicates, 1
+without.
+
+By default, the most exact file is kept: without noise, with all detail, in the fewest vertices. Between equal ones, references
+come first, then the size of most, formats that lose nothing, folders in the order given, and the oldest.
 
 --move-to moves copies of a file or of its geometry, with all files of their meshes, into FOLDER, which scans leave out from
 then on. Links, what they lead to, files with several names and members of archives stay. A cell of the CSV that a spreadsheet
@@ -18,6 +23,7 @@ would take for a formula begins with an apostrophe.
 
 Examples:
   canonform duplicates models/
+  canonform duplicates models/ backup/ --reference master/
   canonform duplicates shapes.canonform --csv duplicates.csv --html duplicates.html
   canonform duplicates models/ --move-to duplicates/
   canonform duplicates --undo duplicates/canonform-moved.jsonl";
@@ -25,20 +31,26 @@ Examples:
 #[derive(Debug, Args)]
 #[command(after_help = NOTES)]
 pub(crate) struct DuplicatesArgs {
-    /// An index, or a dataset, which is described first
-    #[arg(value_name = "INDEX|DIR", required_unless_present = "undo")]
-    pub(crate) input: Option<PathBuf>,
+    /// An index, or datasets and meshes, which are described first
+    #[arg(value_name = "INDEX|DIR", required_unless_present_any = ["undo", "reference"])]
+    pub(crate) inputs: Vec<PathBuf>,
+    /// Compare with this folder or archive, too, and never suggest to remove or move anything from it; may be repeated
+    #[arg(long, value_name = "DIR")]
+    pub(crate) reference: Vec<PathBuf>,
+    /// Which file of a group is kept: `exact`, `largest`, `smallest`, `oldest`, `newest`, or one in a folder
+    #[arg(long, value_name = "WHICH|DIR", default_value = "exact")]
+    pub(crate) keep: Keep,
     /// Write one line per file
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) csv: Option<PathBuf>,
     /// Write a page with pictures
     #[arg(long, value_name = "FILE.html")]
     pub(crate) html: Option<PathBuf>,
-    /// Move proved copies out of DIR into this folder, and write there how to put them back
+    /// Move proved copies out of the folders into this one, and write there how to put them back
     #[arg(long, value_name = "FOLDER")]
     pub(crate) move_to: Option<PathBuf>,
     /// Put back what --move-to has moved
-    #[arg(long, value_name = "JOURNAL", conflicts_with_all = ["input", "csv", "html", "move_to"])]
+    #[arg(long, value_name = "JOURNAL", conflicts_with_all = ["inputs", "reference", "csv", "html", "move_to"])]
     pub(crate) undo: Option<PathBuf>,
     /// What counts as a duplicate
     #[arg(

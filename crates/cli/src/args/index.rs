@@ -88,10 +88,12 @@ pub(crate) struct BuildArgs {
     /// Output index
     #[arg(short, long, value_name = "INDEX")]
     pub(crate) output: PathBuf,
-    /// Where classes come from: `folders`, `names` (their leading letters), `none`, or a file of lines `name,label`
+    /// Where classes come from: `folders`, `folders:N` (the N-th below the dataset), `names` (their leading letters), `none`, or a
+    /// file of lines `name,label`
     ///
-    /// The file need not name all shapes. By default, sub-folders are classes if at least two hold at least two meshes each
-    /// and none lies in another; else leading letters, if at least two names share them and not nearly all do.
+    /// The file need not name all shapes. By default, an index keeps the classes that were given; else sub-folders beside each other
+    /// are classes if at least two hold at least two meshes each and none lies in another; else leading letters, if at least two
+    /// names share them and not nearly all do.
     #[arg(long, value_name = "SOURCE")]
     pub(crate) labels: Option<PathBuf>,
     /// Remove the shapes that did not come from this folder, such as those that `index add` put in

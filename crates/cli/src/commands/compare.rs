@@ -93,7 +93,7 @@ fn text(json: &CompareJson, name_a: &str, details: bool) -> String {
     let relation = &json.found.relation;
     let (shape, [_, class]) = (ShapeMetric::SAME_SHAPE.at, ShapeMetric::SAME_CLASS.gap());
     let distance = json.found.comparison.shape_distance.combined;
-    let limits = format!("probably one shape below {shape:.2}, another class above {class:.2}");
+    let limits = format!("probably one shape below {shape:.2}, not alike above {class:.2}");
     let times = format!("{:.4}", relation.evidence.scale);
     let size =
         if times == "1.0000" { "the same".to_owned() } else { format!("{times} times that of {name_a}") };

@@ -5,9 +5,9 @@ use std::process::ExitCode;
 use anyhow::Result;
 use base::terminal::Bars;
 use canonform::collection::LabelSource;
-use canonform::library::{EvaluateOptions, evaluate_index, evaluate_matrix};
+use canonform::library::{EvaluateOptions, IndexEvaluation, evaluate_index, evaluate_matrix};
 use canonform::mesh::io::extension;
-use canonform::retrieval::{Evaluation, ScoreIntervals, Scores};
+use canonform::retrieval::{ScoreIntervals, Scores};
 
 use crate::args::{Common, EvaluateArgs};
 use crate::input::named;
@@ -19,7 +19,7 @@ pub(crate) fn evaluate(args: &EvaluateArgs, common: &Common) -> Result<ExitCode>
     let options =
         EvaluateOptions { measure: args.by, labels: labels.as_ref(), knn_k: args.k, rank_by: args.rank };
     let scores = if extension(&args.input) == "csv" {
-        evaluate_matrix(&args.input, &options)
+        evaluate_matrix(&args.input, &options).map(|scores| IndexEvaluation { scores, agreement: None })
     } else {
         evaluate_index(&args.input, &options, &Bars::new(common.quiet))
     };
@@ -53,14 +53,14 @@ fn confusion(title: &str, classes: &[String], counts: &[Vec<usize>]) -> comfy_ta
 }
 
 /// The number of queries whose nearest shape is of their class, and the scores that say more.
-fn answer(scores: &Evaluation) -> Answer {
+fn answer(IndexEvaluation { scores, agreement }: &IndexEvaluation) -> Answer {
     let (n, n_classes) = (scores.n, scores.classes.len());
     let plain = column(&scores.mean, scores.intervals.as_ref());
     let value = |name: &str| {
         plain.iter().find(|(known, _)| *known == name).map_or_else(String::new, |(_, value)| value.clone())
     };
     let votes = format!("{:.4} (k = {})", scores.knn_accuracy, scores.knn_k);
-    let facts = vec![
+    let mut facts = vec![
         (
             "first tier",
             format!("{}: of as many shapes as the class has, those of the class", value("first tier")),
@@ -69,6 +69,13 @@ fn answer(scores: &Evaluation) -> Answer {
         ("k-NN accuracy", votes),
         ("silhouette", format!("{:.4}: from -1 to 1, above 0 if classes are apart", scores.silhouette)),
     ];
+    facts.extend(agreement.map(|it| {
+        let (share, at, pairs) = (100.0 * it.agree, it.boundary, it.same_class + it.other_classes);
+        (
+            "classes",
+            format!("distances agree with {share:.0} % of {pairs} pairs; those of one class end at {at:.2}"),
+        )
+    }));
     let mut details: Vec<Fact> =
         plain.iter().filter(|(name, _)| !["first tier", "mAP"].contains(name)).cloned().collect();
     if let Some(intervals) = &scores.intervals {
@@ -91,8 +98,8 @@ fn answer(scores: &Evaluation) -> Answer {
     }
 }
 
-fn text(scores: &Evaluation, common: &Common) -> String {
-    let mut text = answer(scores).text(common);
+fn text(found: &IndexEvaluation, common: &Common) -> String {
+    let (mut text, scores) = (answer(found).text(common), &found.scores);
     if let Some(graph) = &scores.graph {
         let columns = column(&graph.mean, Some(&graph.intervals));
         text += "\n  ranked on the graph of nearest neighbours, instead of plain:\n";

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::{Result, anyhow};
 use base::one_line;
-use canonform::collection::{content_hash, is_dataset, list_shapes};
+use canonform::collection::{content_hash, is_dataset};
 use canonform::library::mesh_path;
 use canonform::mesh::io::without_extension;
 use canonform::relations::Relation;
@@ -15,7 +15,7 @@ use canonform::search::{
 use serde::Serialize;
 
 use crate::args::{Common, SearchArgs};
-use crate::input::{file_name, is_stream, is_there, named, read_mesh};
+use crate::input::{file_name, is_stream, is_there, named, read_mesh, shapes_of};
 use crate::output::{count, exit_code, print, print_json, row_of, table_of};
 
 #[derive(Serialize)]
@@ -62,6 +62,7 @@ impl Query {
                     let is_hashed = options.explain && !is_stream(path);
                     let content = is_hashed.then(|| content_hash(path)).transpose()?;
                     let query = index.query(&mesh, (&file_name(path), content), options, &())?;
+                    let query = if is_stream(path) { query } else { index.of_file(query, path) };
                     index.search(&query, options, &())
                 };
                 search().map_err(|fault| named(path, fault))
@@ -75,7 +76,7 @@ fn queries(args: &SearchArgs, index: &ShapeSearch) -> Result<Vec<Query>> {
     let mut queries = Vec::new();
     for given in &args.queries {
         if is_dataset(given) {
-            queries.extend(list_shapes(given, None)?.into_iter().map(|shape| Query::Mesh(shape.path)));
+            queries.extend(shapes_of(given)?.into_iter().map(|shape| Query::Mesh(shape.path)));
             continue;
         }
         let id = index.id_of(given).filter(|_| !is_stream(given));

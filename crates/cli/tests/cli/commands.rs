@@ -294,7 +294,7 @@ fn copies_are_told_from_other_shapes_and_named_by_their_files() {
             "part-of",
             "plate.stl has three copies of ring.off among its four components",
         ),
-        ("ring.off", "ball.off", "different", "ball.off is another kind of shape than ring.off"),
+        ("ring.off", "ball.off", "different", "ball.off is not the same shape as ring.off"),
     ] {
         let asked = ["compare", a, b, "--max-dropped", "1"];
         let found = place.json(&asked)["relation"].clone();

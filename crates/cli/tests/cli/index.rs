@@ -91,7 +91,7 @@ fn an_unknown_class_is_explained() {
         predicted["explanation"].as_str().unwrap(),
         "class: unknown. The nearest shape",
         nearest["id"].as_str().unwrap(),
-        "another class",
+        "not the same shape",
         &distance,
         "ranking by parts compares it as one",
     ] {

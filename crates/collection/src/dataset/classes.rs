@@ -13,8 +13,8 @@ use crate::error::CollectionError;
 /// [`Dataset`](super::Dataset).
 #[derive(Debug, Clone, PartialEq)]
 pub enum LabelSource {
-    /// The sub-folder of a shape is its class.
-    Folders,
+    /// The sub-folder of a shape is its class: all of its path, or one level, counted from 1 for the outermost.
+    Folders(Option<usize>),
     /// The leading letters of its file name are: `cat0` is a `cat`.
     Names,
     /// There are no classes.
@@ -24,12 +24,13 @@ pub enum LabelSource {
 }
 
 impl LabelSource {
-    /// One of the words `folders`, `names` and `none`, or a label file.
+    /// One of the words `folders`, `folders:N`, `names` and `none`, or a label file.
     ///
     /// ```
     /// use canonform_collection::LabelSource;
     ///
-    /// assert_eq!(LabelSource::read("folders".as_ref())?, LabelSource::Folders);
+    /// assert_eq!(LabelSource::read("folders".as_ref())?, LabelSource::Folders(None));
+    /// assert_eq!(LabelSource::read("folders:2".as_ref())?.label("train/cats/a1", None), "cats");
     /// assert!(LabelSource::read("no-such-file.csv".as_ref()).is_err());
     /// # Ok::<(), canonform_collection::CollectionError>(())
     /// ```
@@ -37,12 +38,26 @@ impl LabelSource {
     /// # Errors
     /// Those of [`LabelFile::read`].
     pub fn read(given: &Path) -> Result<Self, CollectionError> {
+        let level = given.to_str().and_then(|text| text.strip_prefix("folders:")?.parse().ok());
         match given.to_str() {
-            Some("folders") => Ok(Self::Folders),
+            Some("folders") => Ok(Self::Folders(None)),
+            _ if level.is_some_and(|level: usize| level > 0) => Ok(Self::Folders(level)),
             Some("names") => Ok(Self::Names),
             Some("none") => Ok(Self::None),
             _ => LabelFile::read(given).map(Self::File),
         }
+    }
+
+    /// The word that [`read`](Self::read) reads as this source, unless it is a file.
+    #[must_use]
+    pub fn word(&self) -> Option<String> {
+        Some(match self {
+            Self::Folders(None) => "folders".to_owned(),
+            Self::Folders(Some(level)) => format!("folders:{level}"),
+            Self::Names => "names".to_owned(),
+            Self::None => "none".to_owned(),
+            Self::File(_) => return None,
+        })
     }
 
     /// The label file, if there is one.
@@ -58,7 +73,13 @@ impl LabelSource {
     #[must_use]
     pub fn label(&self, name: &str, mesh: Option<&Path>) -> String {
         match self {
-            Self::Folders => folder(name).unwrap_or_default().to_owned(),
+            Self::Folders(level) => {
+                let path = folder(name).unwrap_or_default();
+                level
+                    .map_or(Some(path), |level| path.split('/').nth(level - 1))
+                    .unwrap_or_default()
+                    .to_owned()
+            }
             Self::Names => leading_letters(name).to_owned(),
             Self::None => String::new(),
             Self::File(file) => file.label(name, mesh).unwrap_or_default().to_owned(),
@@ -83,17 +104,18 @@ pub enum LabelOrigin {
     Dataset,
 }
 
-/// Gives every shape its class. Without a source, a label that a shape has stays. If none has one, sub-folders are classes if
-/// at least two hold at least two shapes each and none lies in another; else the leading letters of file names, if at least
+/// Gives every shape its class. Without a source, a label that a shape has stays. If none has one, sub-folders beside each other,
+/// at any depth, are classes if at least two hold at least two shapes each and none lies in another; else the leading letters of file names, if at least
 /// two share them.
 pub fn label_shapes(shapes: &mut [ShapeFile], source: Option<&LabelSource>) -> LabelOrigin {
+    let folders = class_level(shapes).map(|level| LabelSource::Folders(Some(level)));
     let (origin, source) = match source {
-        Some(LabelSource::Folders) => (LabelOrigin::Folders, source),
+        Some(LabelSource::Folders(_)) => (LabelOrigin::Folders, source),
         Some(LabelSource::Names) => (LabelOrigin::Names, source),
         Some(LabelSource::None) => (LabelOrigin::None, source),
         Some(LabelSource::File(_)) => (LabelOrigin::File, source),
         None if shapes.iter().any(|shape| !shape.label.is_empty()) => return LabelOrigin::Dataset,
-        None if are_classes(shapes) => (LabelOrigin::Folders, Some(&LabelSource::Folders)),
+        None if folders.is_some() => (LabelOrigin::Folders, folders.as_ref()),
         None if share_letters(shapes) => (LabelOrigin::Names, Some(&LabelSource::Names)),
         None => return LabelOrigin::None,
     };
@@ -102,11 +124,13 @@ pub fn label_shapes(shapes: &mut [ShapeFile], source: Option<&LabelSource>) -> L
     origin
 }
 
-/// Whether sub-folders look like classes.
-fn are_classes(shapes: &[ShapeFile]) -> bool {
+/// The level of sub-folders that look like classes.
+fn class_level(shapes: &[ShapeFile]) -> Option<usize> {
     let folders = || shapes.iter().filter_map(|shape| folder(&shape.name));
     let large = counted(folders()).values().filter(|count| **count > 1).count();
-    large > 1 && folders().all(|folder| !folder.contains('/'))
+    let parents: HashSet<Option<&str>> = folders().map(folder).collect();
+    let level = folders().next()?.split('/').count();
+    (large > 1 && parents.len() == 1).then_some(level)
 }
 
 /// Whether file names look like those of classes.
@@ -130,6 +154,13 @@ fn folder(name: &str) -> Option<&str> {
 fn leading_letters(name: &str) -> &str {
     let file = name.rsplit_once('/').map_or(name, |(_, file)| file);
     &file[..file.len() - file.trim_start_matches(char::is_alphabetic).len()]
+}
+
+/// Whether a label is one that a name suggests in some way, so that nobody need have given it.
+#[must_use]
+pub fn is_suggested(label: &str, name: &str) -> bool {
+    let path = folder(name).unwrap_or_default();
+    label == leading_letters(name) || label == path || path.split('/').any(|part| part == label)
 }
 
 /// The class that a name alone suggests: its sub-folder, else the leading letters of its file name
@@ -220,10 +251,20 @@ mod tests {
     }
 
     #[test]
+    fn classes_may_lie_at_any_depth() {
+        let names = ["in/cats/a1", "in/cats/b1", "in/dogs/a1", "in/dogs/b1", "top"];
+        let expected = ["cats", "cats", "dogs", "dogs", ""].map(str::to_owned).to_vec();
+        assert_eq!(labelled(&names, None), (LabelOrigin::Folders, expected));
+        let level = LabelSource::read("folders:1".as_ref()).unwrap();
+        assert_eq!(labelled(&["cats/new/1", "dogs/old/1"], Some(&level)).1, ["cats", "dogs"]);
+        assert!(LabelSource::read("folders:0".as_ref()).is_err());
+    }
+
+    #[test]
     fn whoever_says_where_classes_come_from_is_believed() {
         let names = ["game/old/cat0", "game/dog0", "7"];
         for (source, origin, expected) in [
-            (LabelSource::Folders, LabelOrigin::Folders, ["game/old", "game", ""]),
+            (LabelSource::Folders(None), LabelOrigin::Folders, ["game/old", "game", ""]),
             (LabelSource::Names, LabelOrigin::Names, ["cat", "dog", ""]),
             (LabelSource::None, LabelOrigin::None, ["", "", ""]),
         ] {

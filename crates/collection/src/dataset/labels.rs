@@ -30,7 +30,7 @@ pub struct UnusedLabel {
 
 impl LabelFile {
     /// Reads a label file, a [`TextTable`]. Names are those of [`ShapeFile`], with or without the extension of the mesh; a header
-    /// such as `name,label` is skipped. A file of labels without names labels the rows of a matrix in their order. The file
+    /// such as `name,label` is skipped. Where a line has more cells, the last one is the label. A file of labels without names labels the rows of a matrix in their order. The file
     /// need not name all shapes.
     ///
     /// # Errors
@@ -44,6 +44,11 @@ impl LabelFile {
             // Spreadsheets fill short rows up.
             while cells.len() > 2 && cells.last() == Some(&"") {
                 cells.pop();
+            }
+            // A name may hold separators: the label is the last cell.
+            let name = row.before(cells.len() - 1).filter(|_| cells.len() > 2);
+            if let (Some(name), Some(&label)) = (&name, cells.last()) {
+                cells = vec![name, label];
             }
             match cells[..] {
                 [name, label] if number == 0 && is_header(name, label) => {}
@@ -204,7 +209,6 @@ mod tests {
         }
         for (text, what) in [
             ("cat0;cat\ncat1\n", "line 2: expected `name,label`, found `cat1`"),
-            ("cat0,cat,dog\n", "line 1: expected `name,label`"),
             ("cat0,\n", "line 1: expected `name,label`"),
             ("cat0,cat\ncat0,dog\n", "line 2: `cat0` has the label `cat` in line 1"),
             ("\u{feff}\n", "no rows"),
@@ -212,6 +216,8 @@ mod tests {
             let fault = read(text).unwrap_err();
             assert!(fault.contains(what), "{text:?}: {fault}");
         }
+        let labels = read("cat0,cat\ncats, old, large.off,pet\n").unwrap();
+        assert_eq!(labels.label("cats, old, large", None), Some("pet"));
         // Labels without names are those of the rows of a matrix, not of shapes.
         let labels = read("cat\ndog\n").unwrap();
         assert!(labels.fits_none("cat0").to_string().contains("line 1 has `cat`"));

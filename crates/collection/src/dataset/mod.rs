@@ -16,7 +16,9 @@ use walk::Walk;
 
 pub(crate) use labels::joined;
 
-pub use classes::{LabelOrigin, LabelSource, drop_single_class, label_of, label_shapes, n_classes};
+pub use classes::{
+    LabelOrigin, LabelSource, drop_single_class, is_suggested, label_of, label_shapes, n_classes,
+};
 pub use labels::{LabelFile, UnusedLabel};
 pub use shape_file::ShapeFile;
 pub(crate) use walk::is_apple_double;
@@ -36,15 +38,16 @@ pub struct Dataset {
 impl Dataset {
     /// The meshes of a dataset, whose names are paths below it without extensions:
     ///
-    /// * a folder and its sub-folders. Links are followed, but no file or folder is found twice through them;
+    /// * a folder and its sub-folders, and the `.zip` and `.tar` archives in them. Links are followed, but no file or folder is
+    ///   found twice through them;
     /// * an archive, `.zip`, `.tar`, `.tar.gz` or `.tgz`. Folders around all of its meshes are left out of the names;
     /// * a `.parquet` file with a mesh in every row: the column `bytes` holds the content of a file, `id` its name, `format`
     ///   its extension and `label` its class;
     /// * a `.txt` or `.list` file with a path in every line, relative to its folder. Folders around all of its meshes are left
     ///   out of the names.
     ///
-    /// Without `labels`, classes are those that a Parquet file states; else the sub-folders, if at least two hold at least
-    /// two meshes each and none lies in another; else the leading letters of file names, if at least two share them.
+    /// Without `labels`, classes are those that a Parquet file states; else sub-folders beside each other, if at least two hold at
+    /// least two meshes each and none lies in another; else the leading letters of file names, if at least two share them.
     ///
     /// # Errors
     /// [`CollectionError::File`] and [`CollectionError::Mesh`] if it cannot be read, [`CollectionError::NotADataset`],
@@ -53,7 +56,7 @@ impl Dataset {
         let found = match Container::of(path) {
             Some(Container::List) => Found::in_list(path)?,
             Some(Container::Zip | Container::Tar | Container::Parquet) => Found::in_archive(path)?,
-            None if is_unread_archive(path) => {
+            None if path.is_file() && is_unread_archive(path) => {
                 return Err(CollectionError::UnreadArchive { path: path.to_owned() });
             }
             None if path.is_file() => return Err(CollectionError::NotADataset { path: path.to_owned() }),
@@ -89,8 +92,26 @@ fn nameless(path: PathBuf, label: String) -> ShapeFile {
 
 impl Found {
     fn in_folder(folder: &Path) -> Result<Self, CollectionError> {
-        let Walk { meshes, skipped, .. } = Walk::below(folder)?;
-        let shapes = meshes.into_iter().map(|path| nameless(path, String::new())).collect();
+        let Walk { files, mut skipped, .. } = Walk::below(folder)?;
+        let mut shapes = Vec::new();
+        for path in files {
+            if is_mesh_path(&path) {
+                shapes.push(nameless(path, String::new()));
+                continue;
+            }
+            match Self::in_archive(&path) {
+                // What else is in an archive without meshes is no concern of theirs.
+                Ok(found) if found.shapes.is_empty() => {
+                    skipped.push(Skipped { kind: SkipKind::Extension(extension(&path)), path });
+                }
+                Ok(found) => {
+                    shapes.extend(found.shapes);
+                    skipped.extend(found.skipped);
+                }
+                Err(_) => skipped.push(Skipped { path, kind: SkipKind::Unreadable }),
+            }
+        }
+        skipped.sort_by(|a, b| a.path.cmp(&b.path));
         Ok(Self { root: folder.to_owned(), shapes, skipped })
     }
 
@@ -105,7 +126,7 @@ impl Found {
             if is_mesh_path(below) {
                 shapes.push(nameless(path.join(below), member.label.clone()));
             } else if files_in(&path.join(below), &Storage).len() < 2 {
-                skipped.push(skip(name, SkipKind::Extension(extension(below))));
+                skipped.push(skip(name, SkipKind::of_file(below)));
             }
         }
         skipped.sort_by(|a, b| a.path.cmp(&b.path));

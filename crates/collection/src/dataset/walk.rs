@@ -9,6 +9,7 @@ use base::files::{FileError, FileId};
 use mesh_io::{extension, files_of, is_mesh_path};
 
 use crate::error::CollectionError;
+use crate::storage::{has_members, is_archive_like};
 
 /// Something in a folder that is not a shape.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -37,8 +38,10 @@ pub enum SkipKind {
     AppleDouble,
     /// A link that leads nowhere.
     BrokenLink,
-    /// A sub-folder that cannot be read.
+    /// A sub-folder or an archive that cannot be read.
     Unreadable,
+    /// An archive whose members are not read: of a kind that is unknown, compressed as a whole, or in another archive.
+    UnreadArchive(String),
     /// A sub-folder that duplicates were moved into.
     MovedAway,
 }
@@ -47,6 +50,14 @@ pub enum SkipKind {
 pub const MOVES: &str = "canonform-moved.jsonl";
 
 impl SkipKind {
+    /// Of a file that is no mesh.
+    pub(super) fn of_file(path: &Path) -> Self {
+        match is_archive_like(path) {
+            true => Self::UnreadArchive(extension(path)),
+            false => Self::Extension(extension(path)),
+        }
+    }
+
     /// Whether users expect it: files that are not meshes, and what they moved.
     #[must_use]
     pub fn is_expected(&self) -> bool {
@@ -65,7 +76,8 @@ impl fmt::Display for SkipKind {
             Self::Repeated => f.write_str("link to something found already"),
             Self::AppleDouble => f.write_str("._ file of macOS"),
             Self::BrokenLink => f.write_str("broken link"),
-            Self::Unreadable => f.write_str("unreadable folder"),
+            Self::Unreadable => f.write_str("unreadable folder or archive"),
+            Self::UnreadArchive(extension) => write!(f, ".{extension} archive that is not looked into"),
             Self::MovedAway => f.write_str("folder of moved duplicates"),
         }
     }
@@ -74,10 +86,10 @@ impl fmt::Display for SkipKind {
 /// What is below a folder.
 #[derive(Debug, Default)]
 pub(super) struct Walk {
-    /// Paths of meshes, in no particular order.
-    pub(super) meshes: Vec<PathBuf>,
+    /// Paths of meshes and of archives that may hold some, in no particular order.
+    pub(super) files: Vec<PathBuf>,
     pub(super) skipped: Vec<Skipped>,
-    /// Folders and meshes found so far.
+    /// Folders and files found so far.
     seen: HashSet<FileId>,
     folders: Vec<PathBuf>,
     links: Vec<PathBuf>,
@@ -105,7 +117,6 @@ impl Walk {
                 }
             }
             if walk.links.is_empty() {
-                walk.skipped.sort_by(|a, b| a.path.cmp(&b.path));
                 return Ok(walk);
             }
             let mut links = std::mem::take(&mut walk.links);
@@ -143,15 +154,15 @@ impl Walk {
         if kind.is_file() && is_apple_double(&path) {
             return self.skip(path, SkipKind::AppleDouble);
         }
-        let is_mesh = kind.is_file() && is_mesh_path(&path);
-        if !kind.is_dir() && !is_mesh {
+        let is_wanted = kind.is_file() && (is_mesh_path(&path) || has_members(&path));
+        if !kind.is_dir() && !is_wanted {
             return match kind.is_file() {
                 false => self.skip(path, SkipKind::Special),
                 // The other half of a pair is no file of its own.
                 true if files_of(&path).len() > 1 => {}
                 true => {
-                    let extension = extension(&path);
-                    self.skip(path, SkipKind::Extension(extension));
+                    let kind = SkipKind::of_file(&path);
+                    self.skip(path, kind);
                 }
             };
         }
@@ -164,7 +175,7 @@ impl Walk {
         match FileId::of(&path).map(|id| self.seen.insert(id)) {
             Err(_) => self.skip(path, SkipKind::BrokenLink),
             Ok(false) if is_link(&path) => self.skip(path, SkipKind::Repeated),
-            Ok(_) if is_mesh => self.meshes.push(path),
+            Ok(_) if is_wanted => self.files.push(path),
             Ok(_) => self.folders.push(path),
         }
     }

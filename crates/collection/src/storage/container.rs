@@ -41,10 +41,24 @@ impl Container {
     }
 }
 
-/// Whether a file is compressed in a way that is not read.
+/// Whether the members of an archive in a folder are found: its list of members is read without decompressing all of it.
+pub(crate) fn has_members(path: &Path) -> bool {
+    match Container::by_name(path) {
+        Some(Container::Zip) => true,
+        Some(Container::Tar) => extension(path) == "tar" && !is_gzip(path),
+        _ => false,
+    }
+}
+
+/// Whether a name is that of an archive or of a file that is compressed in a way that is not read.
+pub(crate) fn is_archive_like(path: &Path) -> bool {
+    matches!(Container::by_name(path), Some(Container::Zip | Container::Tar)) || is_unread_archive(path)
+}
+
+/// Whether a name is that of a file that is compressed in a way that is not read.
 pub(crate) fn is_unread_archive(path: &Path) -> bool {
     let known = ["7z", "bz2", "lz", "lz4", "lzma", "rar", "tbz", "tbz2", "txz", "tzst", "xz", "z", "zst"];
-    path.is_file() && known.contains(&extension(path).as_str())
+    known.contains(&extension(path).as_str())
 }
 
 /// The error that a file cannot be read faithfully.

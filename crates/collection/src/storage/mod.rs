@@ -22,7 +22,7 @@ use mesh_io::{Disk, FileSource, MeshFile, Opened, ReadLimits};
 
 use crate::error::CollectionError;
 pub(crate) use cache::open as open_archive;
-pub(crate) use container::{Container, is_unread_archive};
+pub(crate) use container::{Container, has_members, is_archive_like, is_unread_archive};
 pub(crate) use list::read as read_list;
 pub use single::{is_archive_name, mesh_at, single_mesh};
 

@@ -116,6 +116,28 @@ fn described(dataset: &Dataset) -> Vec<(String, String)> {
 }
 
 #[test]
+fn archives_in_folders_are_looked_into_or_listed() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let off = bytes_of(&shapes::icosphere(1), "off");
+    fs::write(at("a.off"), &off).unwrap();
+    let inner = zip_of(&[("b.off", off.clone())]);
+    fs::write(at("all.zip"), zip_of(&[("in/b.off", off.clone()), ("deep.zip", inner)])).unwrap();
+    fs::write(at("old.tar"), tar_of(&[("c.off", off.clone())])).unwrap();
+    fs::write(at("pictures.zip"), zip_of(&[("x.jpg", vec![1])])).unwrap();
+    fs::write(at("damaged.zip"), "PK").unwrap();
+    fs::write(at("packed.tar.gz"), gzip_of(&tar_of(&[("d.off", off)]))).unwrap();
+    fs::write(at("other.7z"), "7z").unwrap();
+    let found = Dataset::read(folder.path(), None).unwrap();
+    let names: Vec<_> = found.shapes.iter().map(|shape| shape.name.as_str()).collect();
+    assert_eq!(names, ["a", "all.zip/in/b", "old.tar/c"]);
+    assert!(found.shapes.iter().all(|shape| read_mesh(&shape.path).unwrap().n_vertices() == 42));
+    let unread: Vec<_> =
+        found.skipped.iter().filter(|it| !it.kind.is_expected()).map(|it| it.path.clone()).collect();
+    assert_eq!(unread, ["all.zip/deep.zip", "damaged.zip", "other.7z", "packed.tar.gz"].map(at));
+}
+
+#[test]
 fn an_archive_is_the_dataset_that_it_was_made_from() {
     let place = folder();
     let mut files = contents();

@@ -288,9 +288,10 @@ class Index(Stored):
         path
             The index.
         labels
-            Where classes come from: "folders", "names" (their leading letters), "none", classes in the order of the meshes or by name
-            of the shape, or a file of lines `name,label`; shapes that are not named there have no class. By default, sub-folders are classes if at least two hold
-            at least two meshes each and none lies in another, else leading letters if at least two names share them.
+            Where classes come from: "folders", "folders:N" (the N-th below), "names" (their leading letters), "none", classes in the
+            order of the meshes or by name of the shape, or a file of lines `name,label`; shapes that are not named there have no class.
+            By default, an index keeps those that were given; else sub-folders beside each other are classes if at least two hold at
+            least two meshes each and none lies in another, else leading letters if at least two names share them.
         prune
             Remove shapes of the index that came from elsewhere. Those of the same folder whose files are gone, and those in memory that
             are not among these meshes any more, are always removed.
@@ -561,12 +562,19 @@ class Index(Stored):
         return ShapeEntry(name, label, os.fspath(path), vertices, faces)
 
     def duplicates(
-        self, *, kinds: Iterable[RelationKind] | None = None, min_confidence: float = 0.9, **call: Unpack[Call]
+        self,
+        *,
+        kinds: Iterable[RelationKind] | None = None,
+        min_confidence: float = 0.9,
+        keep: AnyPath = "exact",
+        reference: Iterable[AnyPath] = (),
+        **call: Unpack[Call],
     ) -> list[dict[str, Any]]:
         """Groups of shapes that are one: the same file or surface, in another place, size or triangulation.
 
         Each group has `keeper` (`id`, `path`, `bytes`, `modified`, `size`, `vertices`), `why` it is suggested, and `members`: these
-        keys, and the `relation` to the keeper, which is proved by the triangles of both. Nothing is changed.
+        keys, and the `relation` to the shape `of`: the keeper, or a member of which it is an exact copy. It is proved by the
+        triangles of both. Nothing is changed.
 
         Parameters
         ----------
@@ -575,10 +583,17 @@ class Index(Stored):
             "copies", "part-of", "variant" and "other-pose".
         min_confidence
             The least confidence, 0 to 1.
+        keep
+            Which file of a group is kept: "exact", "largest", "smallest", "oldest", "newest", or one in a folder.
+        reference
+            Folders and archives from which nothing is to be removed.
         """
         wanted = None if kinds is None else [word("kinds", kind) for kind in ([kinds] if isinstance(kinds, str) else kinds)]
+        folders = [os.fspath(path) for path in reference]
         with running(call):
-            found: dict[str, Any] = json.loads(self._inner.duplicates(wanted, number("min_confidence", min_confidence)))
+            found: dict[str, Any] = json.loads(
+                self._inner.duplicates(wanted, number("min_confidence", min_confidence), os.fspath(keep), folders)
+            )
         groups: list[dict[str, Any]] = found["groups"]
         return groups
 

@@ -37,6 +37,10 @@ pub(super) const EXACT: f64 = 5e-4;
 /// times: this is the geometric mean.
 pub(super) const PARTS: f64 = 2.5;
 
+/// How far noise takes the farthest of 10,000 vertices, in multiples of its root mean square along one axis, over [`PARTS`]: 4.5 for
+/// normal noise, and as much again for what alignments follow.
+pub(super) const FARTHEST: f64 = 3.6;
+
 /// The error of flat triangles that counts, in multiples of the height of the arcs over them. The largest of 60 generated parts with
 /// circles of 12 to 64 segments, refined and decimated, is .96 (`cargo test -p tests --test laws -- invariants --nocapture`).
 /// Half and twice as much change no answer.

@@ -1,7 +1,7 @@
 //! What a relation is told from.
 
 use base::ContentHash;
-use descriptors::ShapeDistance;
+use descriptors::{Boundary, ShapeDistance, ShapeMetric};
 use rigid::{Gap, Handedness};
 use serde::{Serialize, Serializer};
 
@@ -35,6 +35,9 @@ pub struct Evidence {
     pub same_shape: f64,
     /// Probability, by this distance, that both are of one class.
     pub same_class: f64,
+    /// The boundary of classes of a collection, if it has any: only then are classes spoken of.
+    #[serde(skip)]
+    pub classes: Option<Boundary>,
     /// Whether the second shape is the mirror image of the first.
     pub handedness: Handedness,
     /// Size of the second over that of the first.
@@ -73,9 +76,11 @@ pub struct Evidence {
 
 impl Evidence {
     /// The distance of two shapes, and nothing else.
-    pub(super) fn by_distance(distance: ShapeDistance) -> Self {
-        let (same_shape, same_class) = (distance.same_shape(), distance.same_class());
-        Self { distance, same_shape, same_class, scale: 1.0, ..Self::default() }
+    pub(super) fn by_distance(distance: ShapeDistance, classes: Option<Boundary>) -> Self {
+        let same_class = classes.unwrap_or(ShapeMetric::SAME_CLASS).probability(distance.combined);
+        // Bodies of one class may be farther apart elsewhere, poses of one body not.
+        let same_shape = distance.same_shape().min(same_class);
+        Self { distance, same_shape, same_class, classes, scale: 1.0, ..Self::default() }
     }
 }
 

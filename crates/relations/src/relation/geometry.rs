@@ -13,7 +13,7 @@ use surface::{Components, VertexId, components_of_faces};
 
 /// How coarsely files round coordinates, relative to the largest coordinate: text with six digits, twice. Numbers of 32 bits
 /// are finer. A tolerance of rounding.
-const ROUNDING: f64 = 1e-5;
+pub(super) const ROUNDING: f64 = 1e-5;
 
 /// Vertices of one geometry are never farther apart than this, relative to the size, wherever the mesh lies, and their sizes and
 /// places are equal up to this share.
@@ -48,6 +48,7 @@ pub struct MeshGeometry {
     farthest: f64,
     components: Components,
     noisy: OnceLock<bool>,
+    pub(super) noise: OnceLock<Option<f64>>,
     parts: OnceLock<Vec<MeshGeometry>>,
 }
 
@@ -104,8 +105,8 @@ impl MeshGeometry {
 
     fn from_surface(surface: RigidSurface, farthest: f64) -> Self {
         let components = components_of_faces(surface.mesh().n_vertices(), &surface.mesh().faces);
-        let (noisy, parts) = Default::default();
-        Self { content: None, surface, farthest, components, noisy, parts }
+        let (noisy, noise, parts) = Default::default();
+        Self { content: None, surface, farthest, components, noisy, noise, parts }
     }
 
     /// How far vertices may be apart because files round them, relative to the size.

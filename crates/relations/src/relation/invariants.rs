@@ -28,6 +28,8 @@ pub struct SurfaceInvariants {
     pub closed: Option<(f64, isize)>,
     /// Root mean square of the error of flat triangles, at unit area; `None` unless the surface is mechanical.
     pub chords: Option<f64>,
+    /// How far vertices of a part are from its planes, root mean square, at unit area.
+    pub noise: f64,
 }
 
 impl SurfaceInvariants {
@@ -37,7 +39,7 @@ impl SurfaceInvariants {
         let spread = self.spreads.iter().zip(&other.spreads).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
         let (Some(a), Some(b)) = (self.chords, other.chords) else { return spread < MOST_OF_BODIES };
         let flatness = if self.n_vertices == other.n_vertices { 0.0 } else { a + b };
-        let most = EXACT + ARCS * flatness;
+        let most = EXACT + ARCS * flatness + self.noise + other.noise;
         let is_same_solid = match (self.closed, other.closed) {
             (Some((x, handles)), Some((y, others))) => handles == others && (x - y).abs() < most,
             _ => true,
@@ -56,6 +58,7 @@ impl MeshGeometry {
             spreads: self.surface.axis_std(),
             closed: euler_characteristic_if_closed(self).map(volume),
             chords: self.is_mechanical().then(|| rms_chord_error(self)),
+            noise: self.noise().unwrap_or_default(),
         }
     }
 }

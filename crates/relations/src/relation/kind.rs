@@ -81,8 +81,8 @@ impl RelationKind {
             Self::PartOf => "one is part of the other",
             Self::Variant => "a variant of the same part",
             Self::OtherPose => "the same shape",
-            Self::SameClass => "the same class",
-            Self::Different => "another class",
+            Self::SameClass => "a similar shape",
+            Self::Different => "not the same shape",
         }
     }
 }

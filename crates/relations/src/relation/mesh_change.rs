@@ -12,7 +12,7 @@ const ABOUT: f64 = 0.05;
 
 /// Displacements of neighbouring vertices are independent, as those by noise, if their correlation along edges is below
 /// this. A safety limit: it is 0 for noise and 1 for a smooth deformation.
-const INDEPENDENT: f64 = 0.5;
+pub(super) const INDEPENDENT: f64 = 0.5;
 
 /// What happened to the triangles of a surface; `map` takes the first mesh onto the second. Of meshes with the same faces it is
 /// [`Change::Noisy`] if displacements do not depend on those of neighbours, else [`Change::Posed`].

@@ -6,6 +6,7 @@ use rigid::{TriangleTree, align_surfaces};
 
 use super::exact::same_vertices;
 use super::geometry::MeshGeometry;
+use super::mesh_change::INDEPENDENT;
 use super::{Relation, RelationKind};
 
 /// Two meshes laid over each other by the best motion, reflection and change of size, at the size of the first and in its
@@ -16,6 +17,21 @@ pub struct MeshOverlay {
     pub meshes: [TriMesh; 2],
     /// For every vertex of either mesh, its distance from the surface of the other.
     pub gaps: [Vec<f64>; 2],
+}
+
+impl MeshOverlay {
+    /// Whether vertices of the first mesh are as far from the second as noise takes them: independently of their neighbours.
+    #[must_use]
+    pub fn is_noise(&self) -> bool {
+        let ([mesh, _], [gaps, _]) = (&self.meshes, &self.gaps);
+        let mean = gaps.iter().sum::<f64>() / gaps.len().max(1) as f64;
+        let (mut product, mut square) = (0.0, 0.0);
+        for [v, w] in mesh.topology().edges().iter().map(|edge| edge.map(|v| gaps[v.index()] - mean)) {
+            product += v * w;
+            square += 0.5 * (v * v + w * w);
+        }
+        product < INDEPENDENT * square
+    }
 }
 
 impl Relation {

@@ -9,11 +9,13 @@ mod calibration;
 mod cut;
 mod evidence;
 mod exact;
+mod exactness;
 mod geometry;
 mod invariants;
 mod kind;
 mod mesh_change;
 mod mesh_overlay;
+mod noise;
 mod numbers;
 mod of_meshes;
 mod parts;
@@ -23,11 +25,12 @@ mod variant;
 mod words;
 
 use base::ContentHash;
-use descriptors::{ShapeDistance, ShapeMetric, Side};
+use descriptors::{Boundary, ShapeDistance, ShapeMetric, Side};
 use rigid::Handedness;
 
 pub use cut::CutPiece;
 pub use evidence::{Basis, Evidence};
+pub use exactness::{Exactness, Merit};
 pub use geometry::MeshGeometry;
 pub use invariants::SurfaceInvariants;
 pub use kind::{Change, RelationKind};
@@ -79,12 +82,23 @@ impl Relation {
     /// # use descriptors::ShapeDistance;
     /// let at = |d| Relation::by_distance(ShapeDistance { fused: d, combined: d }, 1.0, Handedness::Unknown);
     /// assert_eq!(at(0.5).kind, RelationKind::OtherPose);
-    /// assert_eq!(at(20.0).named("cat", "hand").to_string(), "hand is another kind of shape than cat");
+    /// assert_eq!(at(20.0).named("cat", "hand").to_string(), "hand is not the same shape as cat");
     /// assert!(at(0.5).confidence > at(1.0).confidence);
     /// ```
     #[must_use]
     pub fn by_distance(distance: ShapeDistance, scale: f64, handedness: Handedness) -> Self {
-        let mut evidence = Evidence { scale, handedness, ..Evidence::by_distance(distance) };
+        Self::in_classes(distance, scale, handedness, None)
+    }
+
+    /// The same in a collection that has classes with this boundary.
+    #[must_use]
+    pub fn in_classes(
+        distance: ShapeDistance,
+        scale: f64,
+        handedness: Handedness,
+        classes: Option<Boundary>,
+    ) -> Self {
+        let mut evidence = Evidence { scale, handedness, ..Evidence::by_distance(distance, classes) };
         let (same_shape, same_class) = (evidence.same_shape, evidence.same_class);
         let (another_shape, another_class) = (same_class - same_shape, 1.0 - same_class);
         let (kind, confidence, changes) = if same_shape >= another_shape.max(another_class) {
@@ -99,6 +113,16 @@ impl Relation {
         };
         let names = ["the first", "the second"].map(str::to_owned);
         Self { kind, changes, confidence, evidence, names }
+    }
+
+    /// The relation of parts of machines: they do not bend, so that another pose is not what their distance may say.
+    #[must_use]
+    pub fn of_parts(mut self) -> Self {
+        if self.kind == RelationKind::OtherPose {
+            self.changes.clear();
+            (self.kind, self.confidence) = (RelationKind::SameClass, self.evidence.same_class);
+        }
+        self
     }
 
     /// The relation once the hashes of the files are known, too.
@@ -178,18 +202,34 @@ mod tests {
         assert_eq!(mirrored.to_string(), "b is probably a in this or another pose, mirrored");
         assert_eq!(at(near, 2.0, Handedness::Mirrored).changes, [Change::Scaled, Change::Mirrored]);
         let apart = at(far, 3.0, Handedness::Mirrored);
-        assert_eq!(
-            (apart.changes.len(), apart.to_string().as_str()),
-            (0, "b is another kind of shape than a")
-        );
+        assert_eq!((apart.changes.len(), apart.to_string().as_str()), (0, "b is not the same shape as a"));
     }
 
     #[test]
     fn what_is_not_certain_is_probable() {
         let unsure = at(ShapeMetric::SAME_SHAPE.at * 1.01, 1.0, Handedness::Unknown);
-        assert_eq!(unsure.to_string(), "b is of the same class as a, and perhaps a in another pose");
+        assert_eq!(unsure.to_string(), "b is similar to a, and perhaps a in another pose");
         let unsure = at(ShapeMetric::SAME_CLASS.at * 1.01, 1.0, Handedness::Unknown);
-        assert_eq!(unsure.to_string(), "b is probably another kind of shape than a");
+        assert_eq!(unsure.to_string(), "b is probably not the same shape as a");
+    }
+
+    #[test]
+    fn classes_are_spoken_of_only_where_there_are_some() {
+        let classes = Some(Boundary::new(8.0, 6.0));
+        let at = |combined| {
+            let distance = ShapeDistance { fused: combined, combined };
+            Relation::in_classes(distance, 1.0, Handedness::Unknown, classes).named("a", "b")
+        };
+        assert_eq!(at(5.0).kind, RelationKind::SameClass, "classes of this collection are wide");
+        assert_eq!(at(5.0).to_string(), "b is of the same class as a, but another shape");
+        assert_eq!(
+            (at(5.0).in_brief(), at(20.0).in_brief()),
+            ("the same class".into(), "another class".into())
+        );
+        assert_eq!(at(20.0).to_string(), "b is of another class than a");
+        assert!(at(20.0).reason().contains("another class above"));
+        let part = Relation::by_distance(ShapeDistance::default(), 1.0, Handedness::Unknown).of_parts();
+        assert_eq!((part.in_brief(), part.kind), ("a similar shape".into(), RelationKind::SameClass));
     }
 
     #[test]

@@ -3,11 +3,12 @@
 use descriptors::Side;
 use rigid::{Alignment, Similarity, align_surfaces, is_symmetric};
 
-use super::calibration::{CUT, VARIANT};
+use super::calibration::{CUT, EXACT, FARTHEST, VARIANT};
 use super::cut::piece_of;
 use super::exact::{SameVertices, same_vertices};
 use super::geometry::{MOST_ROUNDING, MeshGeometry};
 use super::mesh_change::mesh_change;
+use super::noise::noise_of_parts;
 use super::parts::{PartCopy, Parts, occurrences};
 use super::same_surface::{is_one_surface, same_surface};
 use super::units::UnitChange;
@@ -135,7 +136,11 @@ impl Relation {
         let kind = if change == Change::Noisy { RelationKind::Noisy } else { RelationKind::Remeshed };
         changes.push(change);
         // One of the two has noise, and the other has not.
-        if change != Change::Noisy && a.is_noisy() != b.is_noisy() {
+        let is_noisier = match noise_of_parts([a, b]) {
+            Some([x, y]) => (x - y).abs() > EXACT / FARTHEST,
+            None => a.is_noisy() != b.is_noisy(),
+        };
+        if change != Change::Noisy && is_noisier {
             changes.push(Change::Noisy);
         }
         self.found(kind, probability, changes, scale, SIZE_OF_SURFACES)
@@ -158,10 +163,6 @@ impl Relation {
             self.changes.clear();
             return Self { kind: RelationKind::Variant, confidence: VARIANT, ..self };
         }
-        if meshes.iter().any(|mesh| mesh.is_mechanical()) && self.kind == RelationKind::OtherPose {
-            self.changes.clear();
-            return Self { kind: RelationKind::SameClass, confidence: self.evidence.same_class, ..self };
-        }
-        self
+        if meshes.iter().any(|mesh| mesh.is_mechanical()) { self.of_parts() } else { self }
     }
 }

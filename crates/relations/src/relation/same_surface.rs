@@ -8,15 +8,18 @@ use rigid::{Alignment, NearestPoints, Similarity};
 use surface::Topology;
 
 use super::Change;
-use super::calibration::{ALLOWED, ARCS, CHORDS, EXACT, LARGEST, MOST_NOISE, NOISE, PARTS, SAME_SURFACE};
+use super::calibration::{
+    ALLOWED, ARCS, CHORDS, EXACT, FARTHEST, LARGEST, MOST_NOISE, NOISE, PARTS, SAME_SURFACE,
+};
 use super::exact::{Fitted, SameVertices};
 use super::geometry::MeshGeometry;
+use super::noise::noise_of_parts;
 
 /// How far two surfaces are apart, in multiples of what copies of one may be, and the probability that they are one.
 pub(super) fn same_surface(aligned: &Alignment, meshes: [&MeshGeometry; 2], change: Change) -> [f64; 2] {
-    let ratio = match meshes.map(MeshGeometry::is_mechanical) {
-        [true, true] => part_ratio(aligned, meshes),
-        _ => body_ratio(aligned, meshes, change),
+    let ratio = match noise_of_parts(meshes) {
+        Some(_) => part_ratio(aligned, meshes),
+        None => body_ratio(aligned, meshes, change),
     };
     [ratio, SAME_SURFACE.probability(ratio)]
 }
@@ -64,16 +67,22 @@ fn displaced(aligned: &Alignment, [a, b]: [&MeshGeometry; 2]) -> Option<f64> {
     let nearest = NearestPoints::new(b.mesh().positions.clone()).ok()?;
     // A part that is round may be aligned at another angle than its vertices.
     let Fitted { gap, .. } = Fitted::new(&a.mesh().positions, &nearest, &aligned.map, f64::INFINITY)?;
-    Some(gap / (EXACT + a.rounding() + b.rounding()))
+    Some(gap / allowed([a, b]))
+}
+
+/// How far points of one surface may be from those of the other: by rounding, other diagonals and noise.
+fn allowed(meshes: [&MeshGeometry; 2]) -> f64 {
+    let noise: f64 = noise_of_parts(meshes).unwrap_or_default().iter().sum();
+    EXACT + meshes.iter().map(|mesh| mesh.rounding()).sum::<f64>() + FARTHEST * noise
 }
 
 /// The largest distance from points of one surface to the other, in multiples of what is allowed there.
 fn worst([a, b]: [&MeshGeometry; 2], map: &Similarity) -> f64 {
     let [errors_a, errors_b] = [a, b].map(|mesh| &mesh.regions().chord_errors);
+    let rounding = allowed([a, b]);
     let probe = |(p, face): (Point3<f64>, usize)| {
         let near = b.tree().nearest(&map.apply(&p))?;
-        let allowed =
-            EXACT + a.rounding() + b.rounding() + ARCS * (errors_a[face] * map.scale + errors_b[near.face]);
+        let allowed = rounding + ARCS * (errors_a[face] * map.scale + errors_b[near.face]);
         Some(near.sq_distance.sqrt() / allowed)
     };
     probes(a).into_iter().filter_map(probe).fold(0.0, f64::max)

@@ -4,7 +4,7 @@ use mesh::{RegionShape, SmoothRegion, SmoothRegions};
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use super::calibration::EXACT;
+use super::calibration::{EXACT, FARTHEST};
 use super::geometry::MeshGeometry;
 use super::numbers::in_four_digits;
 use super::same_surface::euler_characteristic_if_closed;
@@ -163,7 +163,11 @@ fn extents(part: &MeshGeometry, directions: &[Vector3<f64>]) -> [f64; 3] {
 /// In what two mechanical parts differ, if they are variants of one part. `rms` is how far their surfaces are apart, if
 /// they can be laid over each other at one size.
 pub(super) fn differences([a, b]: [&MeshGeometry; 2], rms: Option<f64>) -> Option<Vec<Difference>> {
-    if !(a.is_mechanical() && b.is_mechanical()) {
+    // Noise breaks planes and cylinders up, so that holes and steps of a noisy part are not those that it has.
+    let is_exact = |part: &MeshGeometry| {
+        part.is_mechanical() && part.noise().is_none_or(|noise| noise < EXACT / FARTHEST)
+    };
+    if !(is_exact(a) && is_exact(b)) {
         return None;
     }
     let [a, b] = [a, b].map(Dimensions::of);

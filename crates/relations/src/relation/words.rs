@@ -27,13 +27,20 @@ impl Display for Relation {
                 let changes = self.with_changes(self.pose().to_owned());
                 write!(f, "{b} is {probably}{a} {changes}")
             }
-            (RelationKind::SameClass, _) if !probably.is_empty() && perhaps_same => {
-                write!(f, "{b} is of the same class as {a}, and perhaps {a} in another pose")
-            }
             (RelationKind::SameClass, _) => {
-                write!(f, "{b} is {probably}of the same class as {a}, but another shape")
+                let [alike, not] = match self.evidence.classes {
+                    Some(_) => ["of the same class as", "another shape"],
+                    None => ["similar to", "not the same shape"],
+                };
+                match !probably.is_empty() && perhaps_same {
+                    true => write!(f, "{b} is {alike} {a}, and perhaps {a} in another pose"),
+                    false => write!(f, "{b} is {probably}{alike} {a}, but {not}"),
+                }
             }
-            (RelationKind::Different, _) => write!(f, "{b} is {probably}another kind of shape than {a}"),
+            (RelationKind::Different, _) if self.evidence.classes.is_some() => {
+                write!(f, "{b} is {probably}of another class than {a}")
+            }
+            (RelationKind::Different, _) => write!(f, "{b} is {probably}not the same shape as {a}"),
             (RelationKind::Copies | RelationKind::PartOf, Some(parts)) => {
                 f.write_str(&self.with_changes(self.parts_in_words(parts)))
             }
@@ -50,7 +57,12 @@ impl Relation {
     /// What the two have in common, in a few words.
     #[must_use]
     pub fn in_brief(&self) -> String {
-        format!("{}{}", self.probably(), self.kind.words())
+        let words = match (self.kind, self.evidence.classes) {
+            (RelationKind::SameClass, Some(_)) => "the same class",
+            (RelationKind::Different, Some(_)) => "another class",
+            (kind, _) => kind.words(),
+        };
+        format!("{}{words}", self.probably())
     }
 
     /// The numbers that decided.
@@ -94,15 +106,21 @@ impl Relation {
 
     /// The distance of the shapes, and what it is compared with.
     fn by_distance_in_words(&self) -> String {
-        let (shape, [_, class]) = (ShapeMetric::SAME_SHAPE.at, ShapeMetric::SAME_CLASS.gap());
-        let distance = self.evidence.distance.combined;
-        format!(
-            "combined distance {distance:.3} (probably one shape below {shape:.3}, another class above {class:.3})"
-        )
+        let (shape, distance) = (ShapeMetric::SAME_SHAPE.at, self.evidence.distance.combined);
+        let above = match self.evidence.classes {
+            Some(classes) => format!("another class above {:.3}", classes.gap()[1]),
+            None => format!("not alike above {:.3}", ShapeMetric::SAME_CLASS.gap()[1]),
+        };
+        format!("combined distance {distance:.3} (probably one shape below {shape:.3}, {above})")
     }
 
     fn probably(&self) -> &'static str {
-        if self.confidence < ShapeMetric::CERTAIN { "probably " } else { "" }
+        // Without classes, what is said of different shapes is that they are not one.
+        let certainty = match (self.kind, self.evidence.classes) {
+            (RelationKind::Different, None) => 1.0 - self.evidence.same_shape,
+            _ => self.confidence,
+        };
+        if certainty < ShapeMetric::CERTAIN { "probably " } else { "" }
     }
 
     /// What was said, and all changes.

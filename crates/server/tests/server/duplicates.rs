@@ -47,8 +47,8 @@ fn duplicates_are_those_of_the_library_and_searched_for_once() {
     let [group, expected] = [&found, &own].map(|report| &report["groups"][0]);
     assert_eq!((found["groups"].as_array().unwrap().len(), &group["why"]), (1, &expected["why"]));
     assert_eq!(group["members"][0]["relation"], expected["members"][0]["relation"]);
-    assert_eq!((&group["keeper"]["id"], &group["members"][0]["id"]), (&"box1".into(), &"box0".into()));
-    assert_eq!(group["keeper"]["path"], "meshes/box1.off", "where the index lies is not told");
+    assert_eq!((&group["keeper"]["id"], &group["members"][0]["id"]), (&"box0".into(), &"box1".into()));
+    assert_eq!(group["keeper"]["path"], "meshes/box0.off", "where the index lies is not told");
     assert_eq!(report(&server, |_| true)["seconds"], found["seconds"], "not searched for again");
 }
 

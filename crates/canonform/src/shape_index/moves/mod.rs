@@ -45,22 +45,37 @@ pub fn check_place(folder: &Path, place: &Path) -> Result<(), Error> {
     }
 }
 
-/// Moves the duplicates of a report that are proved to have the bytes, or the vertices and faces, of the file to keep. They go
-/// from `folder` into `place`, below which they keep their folders and names, with all files of their meshes. Nothing is
-/// overwritten; links and what they lead to stay. Collections around `place` leave it out from then on.
+/// Moves the duplicates of a report that are proved to have the bytes, or the vertices and faces, of a file that stays. They go
+/// from `folders` into `place`, below which they keep their folders and names, with all files of their meshes. Nothing is
+/// overwritten; links and what they lead to stay, and files in reference folders or on another file system. Collections around `place` leave it out from then on.
 ///
 /// # Errors
-/// Those of [`check_place`]; [`Error::Move`] if `place` is in use or on another file system; [`Error::File`]. What was moved
-/// before stays in the journal.
-pub fn move_duplicates(report: &DuplicateReport, folder: &Path, place: &Path) -> Result<MoveReport, Error> {
-    check_place(folder, place)?;
-    let root = folder.canonicalize().map_err(|source| FileError::read(folder, source))?;
-    let below = Below::new(&root);
+/// Those of [`check_place`]; [`Error::Move`] if `place` is in use; [`Error::File`]. What was moved before stays in the journal.
+pub fn move_duplicates<P: AsRef<Path>>(
+    report: &DuplicateReport,
+    folders: &[P],
+    place: &Path,
+) -> Result<MoveReport, Error> {
+    let mut roots = Vec::new();
+    for folder in folders.iter().map(AsRef::as_ref) {
+        check_place(folder, place)?;
+        let root = folder.canonicalize().map_err(|source| FileError::read(folder, source))?;
+        roots.push((Below::new(&root), root));
+    }
     let (mut moves, mut journal) = (MoveReport::default(), None);
-    for (keeper, member) in
-        report.groups.iter().flat_map(|group| group.members.iter().map(|m| (&group.keeper, m)))
-    {
-        let files = match files_to_move(member, &keeper.path, &root, &below) {
+    let pairs = report.groups.iter().flat_map(|group| {
+        let files = || group.members.iter().map(|member| &member.file).chain([&group.keeper]);
+        let kept = move |id: &str| files().find(|file| file.id == id).map(|file| file.path.as_path());
+        group
+            .members
+            .iter()
+            .filter(|member| !member.file.reference)
+            .map(move |member| (member, kept(&member.of)))
+    });
+    for (member, kept) in pairs {
+        let root = roots.iter().find(|(_, root)| member.file.path.starts_with(root)).or(roots.first());
+        let (Some((below, root)), Some(kept)) = (root, kept) else { continue };
+        let files = match files_to_move(member, kept, root, below) {
             Ok(files) => files,
             Err(why) => {
                 moves.not_moved.push(NotMoved { path: member.file.path.clone(), why });
@@ -71,18 +86,17 @@ pub fn move_duplicates(report: &DuplicateReport, folder: &Path, place: &Path) ->
             Some(journal) => journal,
             none => none.insert(Journal::start(place)?),
         };
-        let line = journal.line(files, &root);
+        let line = journal.line(files, root);
         journal.append(&line)?;
         moves.journal = Some(journal.path.clone());
         if let Err(source) = line.there(&journal.folder, &mut moves) {
             line.back(&journal.folder, &mut MoveReport::default());
             journal.take_back()?;
-            let (path, what) =
-                (place.to_owned(), "the folder is on another file system; name one on that of the meshes");
-            return Err(match source.kind() {
-                ErrorKind::CrossesDevices => Error::Move { path, what },
-                _ => FileError::write(&member.file.path, source).into(),
-            });
+            if source.kind() != ErrorKind::CrossesDevices {
+                return Err(FileError::write(&member.file.path, source).into());
+            }
+            let why = "it is on another file system; name a folder on that one".to_owned();
+            moves.not_moved.push(NotMoved { path: member.file.path.clone(), why });
         }
     }
     Ok(moves)
@@ -113,7 +127,7 @@ fn files_to_move(
 ) -> Result<Vec<PathBuf>, String> {
     let path = member.file.path.as_path();
     if !member.relation.kind.is_one_geometry() {
-        return Err("it is not proved to have the vertices and faces of the file to keep".into());
+        return Err("it is not proved to have the vertices and faces of a file to keep".into());
     }
     if member_of(path).is_some() {
         return Err("it is in an archive".into());

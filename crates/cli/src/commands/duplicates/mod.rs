@@ -10,16 +10,18 @@ use anyhow::{Result, bail};
 use base::files::{Scratch, write_bytes};
 use base::terminal::Bars;
 use canonform::DescribeOptions;
-use canonform::collection::is_dataset;
-use canonform::index::text_cell;
+use canonform::collection::{LabelSource, is_dataset};
+use canonform::index::{IndexWriter, text_cell};
 use canonform::library::{
-    BuildOptions, DuplicateFile, DuplicateGroup, DuplicateOptions, DuplicateReport, MoveReport, build_index,
-    check_place, find_duplicates, move_duplicates, undo_moves,
+    DuplicateFile, DuplicateGroup, DuplicateOptions, DuplicateReport, Inputs, MoveReport, ShapeLimits,
+    add_to_index, check_place, find_duplicates, move_duplicates, undo_moves,
 };
+use canonform::mesh::io::is_mesh_path;
 use canonform::search::ShapeSearch;
 use serde::Serialize;
 
 use self::words::{moved, text};
+use super::index::skipped;
 use crate::args::{Common, DuplicatesArgs};
 use crate::output::{check_output, exit_code, report};
 
@@ -38,24 +40,32 @@ pub(crate) fn duplicates(args: &DuplicatesArgs, common: &Common) -> Result<ExitC
         report(common, &undone, moved)?;
         return Ok(exit_code(undone.journal.is_none()));
     }
-    let input = args.input.as_deref().unwrap_or(Path::new("."));
     for path in [&args.csv, &args.html].into_iter().flatten() {
         check_output(path)?;
     }
-    let is_dataset = is_dataset(input);
-    if let Some(place) = &args.move_to {
-        if !is_dataset {
-            bail!("{}: files are moved out of a folder; name that of the meshes", input.display());
-        }
-        check_place(input, place)?;
+    let index = args.inputs.iter().find(|input| !(is_dataset(input) || is_mesh_path(input)));
+    if let (Some(index), true) = (index, args.move_to.is_some() || args.inputs.len() > 1) {
+        bail!(
+            "{}: an index stands alone, and files are moved out of folders; name the folders of the meshes",
+            index.display()
+        );
+    }
+    for (folder, place) in args.inputs.iter().zip(args.move_to.iter().cycle()) {
+        check_place(folder, place)?;
     }
     let bars = Bars::new(common.quiet);
-    let scratch = is_dataset.then(Scratch::new).transpose()?;
-    let search = match &scratch {
-        Some(scratch) => ShapeSearch::open(&described(input, scratch, &bars)?)?,
-        None => ShapeSearch::open(input)?,
+    let scratch = Scratch::new()?;
+    let search = match index {
+        Some(index) => ShapeSearch::open(index)?,
+        None => ShapeSearch::open(&described(args, &scratch, &bars)?)?,
     };
-    let options = DuplicateOptions { kinds: args.kinds.clone(), min_confidence: args.min_confidence };
+    let options = DuplicateOptions {
+        kinds: args.kinds.clone(),
+        min_confidence: args.min_confidence,
+        keep: args.keep.clone(),
+        reference: args.reference.clone(),
+        folders: args.inputs.iter().filter(|_| index.is_none()).cloned().collect(),
+    };
     let mut found = find_duplicates(&search, &options, &bars)?;
     bars.finish();
     if let Some(path) = &args.html {
@@ -71,7 +81,8 @@ pub(crate) fn duplicates(args: &DuplicatesArgs, common: &Common) -> Result<ExitC
     }
     // What can be spared is known before it is moved.
     let told = text(&found);
-    let moves = args.move_to.as_ref().map(|place| move_duplicates(&whole, input, place)).transpose()?;
+    let moves =
+        args.move_to.as_ref().map(|place| move_duplicates(&whole, &args.inputs, place)).transpose()?;
     let json = Json { found, moves };
     report(common, &json, |json| {
         told + &json.moves.as_ref().map(|moves| format!("\n\n{}", moved(moves))).unwrap_or_default()
@@ -79,10 +90,19 @@ pub(crate) fn duplicates(args: &DuplicatesArgs, common: &Common) -> Result<ExitC
     Ok(if json.found.groups.is_empty() { ExitCode::from(1) } else { ExitCode::SUCCESS })
 }
 
-/// Builds the index of a dataset.
-fn described(dataset: &Path, scratch: &Scratch, bars: &Bars) -> Result<PathBuf> {
+/// Builds the index of datasets and meshes.
+fn described(args: &DuplicatesArgs, scratch: &Scratch, bars: &Bars) -> Result<PathBuf> {
     let (index, describe) = (scratch.file("all.canonform"), DescribeOptions::default());
-    let built = build_index(dataset, &index, &BuildOptions::new(&describe), bars)?;
+    IndexWriter::build(&index, &describe.text())?.finish(&())?;
+    let paths = [&args.inputs[..], &args.reference].concat();
+    let inputs = Inputs {
+        paths: &paths,
+        labels: Some(&LabelSource::None),
+        label: None,
+        limits: ShapeLimits::default(),
+    };
+    let built = add_to_index(&index, &inputs, false, bars)?;
+    skipped(&built).iter().for_each(|note| base::terminal::note(note));
     for failure in &built.failed {
         base::terminal::note(&format!("left out {}: {}", failure.path.display(), failure.error));
     }
@@ -111,7 +131,12 @@ fn csv(report: &DuplicateReport) -> String {
             let told = &member.relation;
             let kind = serde_json::to_value(told.kind).unwrap_or_default();
             let confidence = format!("{:.3}", told.confidence);
-            line("spare", &member.file, kind.as_str().unwrap_or_default(), &confidence, &told.to_string());
+            let role = match (member.file.reference, member.is_spare()) {
+                (true, _) => "reference",
+                (false, true) => "spare",
+                (false, false) => "related",
+            };
+            line(role, &member.file, kind.as_str().unwrap_or_default(), &confidence, &told.to_string());
         }
     }
     text

@@ -7,28 +7,27 @@ use base::one_line;
 
 use crate::output::{count, decimal_bytes, shown};
 
-/// Size of the file, lengths of its box, and the day of its last change.
+/// Size of the file, lengths of its box, the day of its last change, its other names, and whether it stays anyway.
 pub(super) fn facts(file: &DuplicateFile) -> String {
     let bytes = file.bytes.map(|bytes| decimal_bytes(bytes.into()));
     let size = file.size.map(|size| size.map(in_four_digits).join(" × "));
     let day = file.modified.and_then(|seconds| chrono::DateTime::from_timestamp(seconds as i64, 0));
     let day = day.map(|day| day.format("%Y-%m-%d").to_string());
-    [bytes, size, day].into_iter().flatten().collect::<Vec<_>>().join(", ")
+    let links = (!file.links.is_empty()).then(|| format!("also {}", one_line(&file.links.join(", "))));
+    let stays = file.reference.then(|| "reference".to_owned());
+    [bytes, size, day, links, stays].into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
 /// The answer, and a paragraph for each group.
 pub(super) fn text(report: &DuplicateReport) -> String {
-    let n_spare: usize = report.groups.iter().map(|group| group.members.len()).sum();
-    let mut text = if report.groups.is_empty() {
-        format!("no duplicates among {}\n", count(report.n_shapes, "shape"))
-    } else {
-        format!(
-            "{} of {} can be spared: {} of files of one shape, {} without those to keep\n",
-            n_spare,
-            count(report.n_shapes, "shape"),
-            count(report.groups.len(), "group"),
+    let (shapes, groups) = (count(report.n_shapes, "shape"), count(report.groups.len(), "group"));
+    let mut text = match report.spare().count() {
+        _ if report.groups.is_empty() => format!("no duplicates among {shapes}\n"),
+        0 => format!("none of {shapes} can be spared: {groups} of files that are related\n"),
+        n_spare => format!(
+            "{n_spare} of {shapes} can be spared: {groups} of files of one shape, {} without those to keep\n",
             decimal_bytes(report.spare_bytes().into())
-        )
+        ),
     };
     for DuplicateGroup { keeper, why, members } in &report.groups {
         text += &format!("\nkeep {} ({why}; {})\n", shown(&keeper.path), facts(keeper));

@@ -100,11 +100,7 @@ fn notes(index: &Path, built: &BuildReport, labels: Option<&LabelSource>) -> Vec
     if let (Some(file), [_, ..]) = (labels.and_then(LabelSource::file), &built.unused_label_lines[..]) {
         notes.push(unused_labels(file.path(), built));
     }
-    let skipped = &built.skipped_paths;
-    notes.extend(skipped.iter().take(MOST_NAMED).map(|path| format!("warning: skipped {}", path.display())));
-    if skipped.len() > MOST_NAMED {
-        notes.push(format!("warning: skipped {} more", skipped.len() - MOST_NAMED));
-    }
+    notes.extend(skipped(built));
     let kept = &built.unreadable;
     notes.extend(
         kept.iter().take(MOST_NAMED).map(|id| format!("warning: kept {id}, which cannot be read now")),
@@ -116,6 +112,14 @@ fn notes(index: &Path, built: &BuildReport, labels: Option<&LabelSource>) -> Vec
         ));
     }
     notes
+}
+
+/// What was skipped although it may hold meshes.
+pub(crate) fn skipped(built: &BuildReport) -> Vec<String> {
+    let skipped = &built.skipped_paths;
+    let named = skipped.iter().take(MOST_NAMED).map(|path| format!("warning: skipped {}", path.display()));
+    let more = skipped.len().checked_sub(MOST_NAMED).filter(|more| *more > 0);
+    named.chain(more.map(|more| format!("warning: skipped {more} more"))).collect()
 }
 
 /// The lines of a label file that name no shape.
@@ -149,7 +153,7 @@ fn classes(report: &BuildReport) -> Option<String> {
 }
 
 fn answer(index: &Path, report: &BuildReport, max_dropped: f64) -> Answer {
-    let (name, described, unchanged) = (index.display(), report.described, report.unchanged);
+    let (name, described, unchanged) = (index.display(), report.described - report.copies, report.unchanged);
     let sentence = match index.exists() {
         true => {
             let holds = count(report.n_shapes, "shape");

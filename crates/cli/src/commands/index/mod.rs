@@ -4,6 +4,8 @@ mod change;
 mod list;
 mod look;
 
+pub(crate) use change::skipped;
+
 use std::process::ExitCode;
 
 use anyhow::Result;

@@ -1,0 +1,156 @@
+//! How well the classes of an index and the distances of its shapes agree.
+
+use std::collections::HashMap;
+
+use base::{ContentHash, Observer};
+use descriptors::{Boundary, PreparedShape, Sample, ShapeMetric, ShapePair};
+use index::{Entry, Index, IndexError, IndexWriter, Shape};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::error::Error;
+use crate::form::DescribeOptions;
+
+/// The least number of pairs of one class from which a boundary is fitted, and the most of either kind whose forms are aligned.
+const LEAST: usize = 30;
+const MOST: usize = 100;
+
+/// Shapes whose pairs are drawn, those whose hashed names come first.
+const SHAPES: usize = 512;
+
+/// Parts of the pairs that are held out one by one.
+const FOLDS: usize = 5;
+
+/// The note of an index that states it.
+const NOTE: &str = "agreement";
+
+/// Where pairs of one class end in a collection, and how well that separates them from others.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Agreement {
+    /// Pairs of one class that were measured.
+    pub same_class: usize,
+    /// Pairs of two classes that were measured.
+    pub other_classes: usize,
+    /// The combined distance at which both are equally likely.
+    pub boundary: f64,
+    /// How fast the odds change there.
+    pub steepness: f64,
+    /// The share of pairs that are on their side of the boundary that the others have, by cross-validation; both kinds being
+    /// equally frequent. One half says that distances tell nothing about these classes.
+    pub agree: f64,
+}
+
+/// A shape with a class.
+pub(super) struct Labelled {
+    pub(super) id: String,
+    pub(super) label: String,
+    pub(super) content: ContentHash,
+}
+
+impl Labelled {
+    fn new(entry: Entry) -> Self {
+        Self { id: entry.id, label: entry.label, content: entry.content }
+    }
+}
+
+impl Agreement {
+    /// Of shapes, those without a class left out; `None` if too few pairs have one.
+    pub(super) fn of(
+        mut shapes: Vec<Labelled>,
+        options: &DescribeOptions,
+        shape: impl Fn(&str) -> Result<Shape, IndexError>,
+        observer: &dyn Observer,
+    ) -> Result<Option<Self>, Error> {
+        shapes.retain(|shape| !shape.label.is_empty());
+        shapes.sort_by_cached_key(|shape| ContentHash::of(&[&shape.id]).start());
+        shapes.truncate(SHAPES);
+        let pairs = (0..shapes.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
+        let (same, others): (Vec<_>, Vec<_>) = pairs
+            .filter(|&(i, j)| shapes[i].content != shapes[j].content)
+            .partition(|&(i, j)| shapes[i].label == shapes[j].label);
+        if same.len() < LEAST || others.is_empty() {
+            return Ok(None);
+        }
+        let drawn = |pairs: &[(usize, usize)]| -> Vec<(usize, usize)> {
+            let n = pairs.len().min(MOST);
+            (0..n).map(|i| pairs[i * pairs.len() / n]).collect()
+        };
+        let (same, others) = (drawn(&same), drawn(&others));
+        let mut prepared: HashMap<usize, PreparedShape> = HashMap::new();
+        for i in same.iter().chain(&others).flat_map(|&(i, j)| [i, j]) {
+            if !prepared.contains_key(&i) {
+                prepared.insert(i, options.prepare(&shape(&shapes[i].id)?)?);
+            }
+        }
+        observer.begin("comparing classes", same.len() + others.len());
+        let budget = observer.budget();
+        let sample = |&(i, j): &(usize, usize)| {
+            budget.check()?;
+            let distance = ShapePair::new([&prepared[&i], &prepared[&j]]).distance().combined;
+            observer.step();
+            let is_one = shapes[i].label == shapes[j].label;
+            let weight = 0.5 / if is_one { same.len() } else { others.len() } as f64;
+            // Two forms that coincide say no more than two that nearly do.
+            Ok::<Sample, Error>((distance.max(1e-3), is_one, weight))
+        };
+        let samples =
+            [&same[..], &others].concat().par_iter().map(sample).collect::<Result<Vec<_>, Error>>()?;
+        let agree: f64 = (0..FOLDS)
+            .map(|fold| {
+                let is_held_out = |i: usize| i % FOLDS == fold;
+                let numbered = || samples.iter().enumerate();
+                let known: Vec<Sample> =
+                    numbered().filter(|(i, _)| !is_held_out(*i)).map(|(_, sample)| *sample).collect();
+                let boundary = boundary(&known);
+                let is_right =
+                    |&(distance, is_one, _): &Sample| (boundary.probability(distance) > 0.5) == is_one;
+                numbered()
+                    .filter(|(i, sample)| is_held_out(*i) && is_right(sample))
+                    .map(|(_, (.., weight))| weight)
+                    .sum::<f64>()
+            })
+            .sum();
+        let Boundary { at, steepness, .. } = boundary(&samples);
+        Ok(Some(Self { same_class: same.len(), other_classes: others.len(), boundary: at, steepness, agree }))
+    }
+
+    /// The boundary of classes.
+    #[must_use]
+    pub fn classes(&self) -> Boundary {
+        Boundary::new(self.boundary, self.steepness)
+    }
+
+    /// What an index states.
+    pub(super) fn stated(index: &Index) -> Result<Option<Self>, IndexError> {
+        Ok(index.note(NOTE)?.and_then(|text| serde_json::from_str(&text).ok()))
+    }
+}
+
+/// The boundary of some pairs. One more pair of each kind is at the farthest and the nearest distance of the others, where it
+/// contradicts them (rule of succession), so that the fit is finite.
+fn boundary(samples: &[Sample]) -> Boundary {
+    let ends = samples.iter().fold([f64::INFINITY, 0.0], |[low, high], (d, ..)| [d.min(low), d.max(high)]);
+    let weight = |kind: bool| {
+        samples.iter().find(|(_, is_one, _)| *is_one == kind).map_or(0.0, |(.., weight)| *weight)
+    };
+    let more = [(ends[1], true, weight(true)), (ends[0], false, weight(false))];
+    let found = Boundary::fitted(&[samples, &more].concat(), [0.0, 1.0]);
+    match found.at.is_finite() && found.at > 0.0 && found.steepness > 0.0 {
+        true => found,
+        // Pairs of one class are no nearer than others: no distance tells anything.
+        false => Boundary::new(ShapeMetric::SAME_CLASS.at, 0.0),
+    }
+}
+
+/// Finishes an index, with what its classes say.
+pub(super) fn finish(
+    mut writer: IndexWriter,
+    options: &DescribeOptions,
+    observer: &dyn Observer,
+) -> Result<Index, Error> {
+    let shapes = writer.entries()?.into_iter().map(Labelled::new).collect();
+    let found = Agreement::of(shapes, options, |id| writer.shape(id), observer)?;
+    let text = found.and_then(|found| serde_json::to_string(&found).ok());
+    writer.set_note(NOTE, text.as_deref())?;
+    Ok(writer.finish(observer)?)
+}

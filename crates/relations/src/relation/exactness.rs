@@ -1,0 +1,141 @@
+//! Which of several copies of one surface is the original.
+
+use nalgebra::Vector3;
+use surface::Topology;
+
+use super::geometry::{MeshGeometry, ROUNDING};
+use super::same_surface::euler_characteristic_if_closed;
+
+/// Normals that differ by less than this (sine) are one: the rounding of files turns small faces by as much. A tolerance.
+const ONE_NORMAL: f64 = 1e-3;
+
+/// Copies have equally many vertices that matter if the numbers differ by less than this share. A tolerance: a decimation that
+/// changes something leaves out more.
+const ABOUT: f64 = 0.05;
+
+/// Detail that bends a surface by this share more may be noise. A convention: decimated copies of smooth surfaces bend less than a
+/// tenth less.
+const ROUGH: f64 = 0.2;
+
+/// What tells how exactly a mesh states a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Exactness {
+    /// How far vertices are from the planes of a part, relative to the size; 0 if it has none.
+    noise: f64,
+    is_mechanical: bool,
+    is_noisy: bool,
+    is_closed: bool,
+    counts: [usize; 2],
+    /// Vertices without which the surface would be another one.
+    n_needed: usize,
+    /// Angles by which normals turn at edges, times their lengths, summed, at unit area. Other triangles of a surface hardly change
+    /// it, and noise increases it.
+    bending: f64,
+}
+
+/// Why one copy of a surface is more exact than another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Merit {
+    /// It has less noise.
+    Clean,
+    /// It is closed, and the other one is not.
+    Closed,
+    /// It has details that the other one has lost.
+    Detailed,
+    /// It states the same with fewer vertices.
+    Plain,
+}
+
+/// Whether the first of two copies is better in some way.
+type Better<'a> = &'a dyn Fn(&Exactness, &Exactness) -> bool;
+
+impl Merit {
+    /// As the end of a sentence on a file that is kept.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Clean => "it has the least noise",
+            Self::Closed => "its surface is closed",
+            Self::Detailed => "it has the most detail",
+            Self::Plain => "it has all detail with the fewest vertices",
+        }
+    }
+}
+
+impl Exactness {
+    /// Whether what it has beyond another copy may be noise, which then [an overlay](super::MeshOverlay::is_noise) tells.
+    #[must_use]
+    pub fn may_be_noise(&self, other: &Self) -> bool {
+        self.bending > (1.0 + ROUGH) * other.bending
+    }
+
+    /// Why this copy is more exact than another one; `None` if it is not.
+    #[must_use]
+    pub fn over(&self, other: &Self) -> Option<Merit> {
+        let same_counts = self.counts == other.counts;
+        let is_rougher = |a: &Self, b: &Self| {
+            // Triangles of other sizes may look noisy, but bend no more.
+            let bends = |by: f64| a.bending > (1.0 + by) * b.bending;
+            let are_parts = a.is_mechanical || b.is_mechanical;
+            let by_planes = are_parts && a.noise > b.noise + ROUNDING && a.noise > 2.0 * b.noise;
+            (by_planes || same_counts) && bends(ONE_NORMAL) || a.is_noisy && !b.is_noisy && bends(ABOUT)
+        };
+        let has_more = |a: &Self, b: &Self| a.n_needed as f64 > (1.0 + ABOUT) * b.n_needed as f64;
+        let merits: [(Merit, Better<'_>); 4] = [
+            (Merit::Clean, &|a, b| is_rougher(b, a)),
+            (Merit::Closed, &|a, b| a.is_closed && !b.is_closed),
+            (Merit::Detailed, &has_more),
+            (Merit::Plain, &|a, b| a.counts[0] < b.counts[0]),
+        ];
+        // The first in which they differ decides.
+        let (merit, is_better) =
+            merits.into_iter().find(|(_, is_better)| is_better(self, other) || is_better(other, self))?;
+        is_better(self, other).then_some(merit)
+    }
+}
+
+impl MeshGeometry {
+    /// How exactly it states its surface.
+    ///
+    /// ```
+    /// use canonform_relations::{Merit, MeshGeometry};
+    /// use mesh::shapes;
+    ///
+    /// let of = |mesh| MeshGeometry::new(&mesh, None).unwrap().exactness();
+    /// let [cube, finer] = [of(shapes::cube(1)), of(shapes::cube(3))];
+    /// assert_eq!((cube.over(&finer), finer.over(&cube)), (Some(Merit::Plain), None));
+    /// let [ball, coarse] = [of(shapes::icosphere(3)), of(shapes::icosphere(2))];
+    /// assert_eq!(ball.over(&coarse), Some(Merit::Detailed));
+    /// ```
+    #[must_use]
+    pub fn exactness(&self) -> Exactness {
+        let mesh = self.mesh();
+        let normals: Vec<Vector3<f64>> =
+            (0..mesh.n_faces()).map(|f| mesh.area_vector(f).try_normalize(0.0).unwrap_or_default()).collect();
+        let mut around: Vec<Vec<Vector3<f64>>> = vec![Vec::new(); mesh.n_vertices()];
+        for (face, normal) in mesh.faces.iter().zip(&normals) {
+            for v in face {
+                let known = &mut around[v.index()];
+                if known.len() < 3 && known.iter().all(|other| other.cross(normal).norm() > ONE_NORMAL) {
+                    known.push(*normal);
+                }
+            }
+        }
+        let topology = Topology::new(mesh.n_vertices(), mesh.faces.clone());
+        let turns = topology.edges().iter().enumerate().map(|(e, ends)| {
+            let &[a, b] = topology.edge_corners(surface::EdgeId::from(e)) else { return 0.0 };
+            let [a, b] = [a, b].map(|corner| normals[corner.face().index()]);
+            let [p, q] = ends.map(|v| mesh.positions[v.index()]);
+            a.cross(&b).norm().atan2(a.dot(&b)) * (p - q).norm()
+        });
+        Exactness {
+            noise: self.noise().unwrap_or_default(),
+            is_mechanical: self.is_mechanical(),
+            is_noisy: self.is_noisy(),
+            is_closed: euler_characteristic_if_closed(self).is_some(),
+            counts: [self.n_vertices(), self.n_faces()],
+            n_needed: around.iter().filter(|known| known.len() == 3).count(),
+            bending: turns.sum(),
+        }
+    }
+}
