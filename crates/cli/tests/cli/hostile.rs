@@ -219,7 +219,7 @@ fn duplicates_move_with_their_journal_and_come_back() {
     place.refused("duplicates models --move-to models/x", &["holds other files"]);
     place.refused("duplicates --undo models/x/part.off", &["no journal"]);
     place.done("index build models -n 20 -o i");
-    place.refused("duplicates i --move-to away", &["out of a folder"]);
+    place.refused("duplicates i --move-to away", &["out of folders"]);
     // Members of an archive are named, and stay.
     let mut zip = zip::ZipWriter::new(fs::File::create(place.path("all.zip")).unwrap());
     for name in ["m/a.off", "m/b.off"] {

@@ -22,7 +22,7 @@ use serde::Serialize;
 
 use self::words::{moved, text};
 use super::index::skipped;
-use crate::args::{Common, DuplicatesArgs};
+use crate::args::{Common, DuplicatesArgs, keep_inputs};
 use crate::output::{check_output, exit_code, report};
 
 #[derive(Serialize)]
@@ -40,6 +40,7 @@ pub(crate) fn duplicates(args: &DuplicatesArgs, common: &Common) -> Result<ExitC
         report(common, &undone, moved)?;
         return Ok(exit_code(undone.journal.is_none()));
     }
+    args.inputs.iter().filter(|input| input.is_file()).for_each(|input| keep_inputs(input));
     for path in [&args.csv, &args.html].into_iter().flatten() {
         check_output(path)?;
     }
@@ -105,6 +106,9 @@ fn described(args: &DuplicatesArgs, scratch: &Scratch, bars: &Bars) -> Result<Pa
     skipped(&built).iter().for_each(|note| base::terminal::note(note));
     for failure in &built.failed {
         base::terminal::note(&format!("left out {}: {}", failure.path.display(), failure.error));
+    }
+    if built.n_shapes == 0 && !built.failed.is_empty() {
+        bail!("none of the {} meshes can be used; the notes above say why", built.failed.len());
     }
     Ok(index)
 }
