@@ -2,7 +2,6 @@
 
 use nalgebra::Vector3;
 
-use super::options::RenderOptions;
 use crate::color::{ColorMap, to_linear, value_range};
 
 /// Colours of a surface.
@@ -54,12 +53,15 @@ enum Coat {
 }
 
 impl Paint {
-    pub(super) fn new(n_vertices: usize, options: &RenderOptions, samples: u32) -> Self {
-        let linear = |color: &[u8; 3]| Vector3::from(color.map(to_linear));
-        let marks: Vec<_> = options.marks.iter().map(linear).collect();
+    pub(super) fn new(
+        n_vertices: usize,
+        (coloring, colors): (&Coloring, ColorMap),
+        marks: &[[u8; 3]],
+        samples: u32,
+    ) -> Self {
+        let marks: Vec<_> = marks.iter().map(|color| Vector3::from(color.map(to_linear))).collect();
         let first_mark = n_vertices.saturating_sub(marks.len());
-        let surface = Coat::new(n_vertices, &options.coloring, options.colors, samples);
-        Self { surface, marks, first_mark }
+        Self { surface: Coat::new(n_vertices, coloring, colors, samples), marks, first_mark }
     }
 
     /// The colour at barycentric coordinates `at` of `face`; `slopes` are the changes of these coordinates per

@@ -34,7 +34,7 @@ pub fn render(
     let camera = Camera::fit(mesh, &faces, &options.view, size, options.margin.clamp(0.0, 0.45));
     let buffer = DepthBuffer::draw(mesh, &faces, &camera, size, &budget)?;
     let normals = corner_normals(mesh, &faces, &camera, options.crease.clamp(0.0, 90.0));
-    let paint = Paint::new(mesh.n_vertices(), options, samples);
+    let paint = Paint::new(mesh.n_vertices(), (&options.coloring, options.colors), &options.marks, samples);
     budget.check()?;
     Ok(shade(&buffer, &normals, &paint, samples, options.background))
 }
