@@ -106,7 +106,7 @@ def test_an_index_from_memory_has_no_surprises(shapes: list[Shape], tmp_path: Pa
     # Without its own vote: a class of one shape is unknown, or the other class.
     assert index.classify("cats/tom") == "cat"
     alone = Index.build({"cat1": tom, "cat2": tim, "dave": dave}, tmp_path / "alone.canonform", labels=["cat", "cat", "david"])
-    assert alone.classify("dave") != "david" and alone.search("dave").label == "david"
+    assert alone.classify("dave") is None and alone.search("dave").label is None
     again = Index.build({"cats/tom": tom}, index.path)
     assert list(again) == ["cats/tom"] and again.build_report["unchanged"] == 1
 
@@ -224,6 +224,7 @@ def _resident() -> int:
 
 
 @pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="no /proc")
+@pytest.mark.slow
 def test_ten_thousand_calls_take_no_more_memory(index: Index, square: Surface) -> None:
     field, form, basis = square.distance_field(10), square.canonical_form(20), square.eigenbasis(9)
     at, vector = canonform.FacePoint(8), index.vector("tom")

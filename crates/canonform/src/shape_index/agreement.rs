@@ -1,6 +1,6 @@
 //! How well the classes of an index and the distances of its shapes agree.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, hash_map};
 
 use base::{ContentHash, Observer};
 use descriptors::{Boundary, PreparedShape, Sample, ShapeMetric, ShapePair};
@@ -78,8 +78,8 @@ impl Agreement {
         let (same, others) = (drawn(&same), drawn(&others));
         let mut prepared: HashMap<usize, PreparedShape> = HashMap::new();
         for i in same.iter().chain(&others).flat_map(|&(i, j)| [i, j]) {
-            if !prepared.contains_key(&i) {
-                prepared.insert(i, options.prepare(&shape(&shapes[i].id)?)?);
+            if let hash_map::Entry::Vacant(place) = prepared.entry(i) {
+                place.insert(options.prepare(&shape(&shapes[i].id)?)?);
             }
         }
         observer.begin("comparing classes", same.len() + others.len());
