@@ -196,7 +196,13 @@ impl Index {
         let mut answer = run(py, |observer| {
             // As on the command line, a file goes before a shape of the same name.
             let query = match (surface, search.id_of(&path)) {
-                (Some(surface), _) => query_of(surface, search.describe_options(), name, &options, observer)?,
+                (Some(surface), _) => search.of_bytes(query_of(
+                    surface,
+                    search.describe_options(),
+                    name,
+                    &options,
+                    observer,
+                )?)?,
                 (None, Some(id)) => search.query_of(id, &options, observer)?,
                 (None, None) => {
                     let mesh = canonform::collection::read_mesh(&path)?;
@@ -239,8 +245,10 @@ impl Index {
         explain: bool,
     ) -> PyResult<String> {
         let (query, options): (Query, _) = (unpacked(query)?, search_options(k, rank, explain)?);
-        let mut answer =
-            run(py, |observer| self.search.search_among(&query, ids.as_deref(), &options, observer))?;
+        let mut answer = run(py, |observer| {
+            let query = self.search.of_bytes(query)?;
+            self.search.search_among(&query, ids.as_deref(), &options, observer)
+        })?;
         answer.place(|path| self.placed(path));
         Ok(json(&answer))
     }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use base::{ContentHash, Observer};
+use index::Entry;
 use mesh::{Surface, TriMesh};
 
 use super::options::{SearchOptions, SearchRank};
@@ -41,6 +42,16 @@ impl ShapeSearch {
     pub fn of_file(&self, query: Query, path: &Path) -> Query {
         let home = Home::new(self.index().path()).ok();
         Query { place: home.map(|home| home.file_text(path)), ..query }
+    }
+
+    /// The query of a surface whose file may be one of the index, known by its bytes.
+    ///
+    /// # Errors
+    /// [`Error::Index`], if the index cannot be read.
+    pub fn of_bytes(&self, query: Query) -> Result<Query, Error> {
+        let has_them = |entry: &Entry| query.content == Some(entry.content);
+        let found = self.index().entries()?.into_iter().find(has_them);
+        Ok(Query { place: query.place.or(found.map(|entry| entry.path)), ..query })
     }
 
     /// [Searches](Self::search) for a mesh.

@@ -56,7 +56,7 @@ pub struct Hit {
     pub id: String,
     /// Its class.
     pub label: String,
-    /// Whether it is the shape that the query is, by its place or its bytes, which has no vote on its own class.
+    /// Whether it is the shape that the query is, which has no vote on its own class.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub itself: bool,
     /// Path of its mesh as the index states it; [`mesh_path`](crate::library::mesh_path) finds the file.

@@ -385,14 +385,14 @@ impl ShapeSearch {
         }
         let found =
             refined.nearest.into_iter().zip(1..).map(|((Neighbor { index, distance }, found), rank)| {
-                let Entry { id, label, path, content, .. } = self.index.entry(&id(index))?;
+                let Entry { id, label, path, .. } = self.index.entry(&id(index))?;
                 let (distances, scale) = (found.shape_distance, found.scale);
                 let relation = Relation::in_classes(distances, scale, Handedness::Unknown, self.classes);
                 // Only what has the same description may be called the same part without its mesh.
                 let is_part = found.are_parts && found.fused > 0.0;
                 let relation = if is_part { relation.of_parts() } else { relation }.named(&query.name, &id);
                 let (fused, order) = (found.fused, orders.as_ref().map(|all| all[index]));
-                let itself = query.place.as_ref() == Some(&path) || query.content == Some(content);
+                let itself = query.place.as_ref() == Some(&path);
                 let hit =
                     Hit { rank, id, label, itself, path, distance, fused, order, relation, comparison: None };
                 Ok((hit, found.alignment))
