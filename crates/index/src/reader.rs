@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
+use base::ContentHash;
 use retrieval::UnknownThreshold;
 
 use crate::database::{Database, EntryRow, Meta, log_path, vector_row};
@@ -161,6 +162,14 @@ impl Index {
     /// What is known of a shape but its vectors, or [`IndexError::NoSuchShape`].
     pub fn entry(&self, id: &str) -> Result<Entry, IndexError> {
         Ok(find(&self.database(), id)?.ok_or_else(|| self.missing(id))?.entry)
+    }
+
+    /// The first shape, in ascending order of names, whose file has these bytes.
+    pub fn entry_with(&self, content: &ContentHash) -> Result<Option<Entry>, IndexError> {
+        let mut found = None;
+        let these = "WHERE content = ? ORDER BY id LIMIT 1";
+        each_row(&self.database(), these, [content.to_string()], |row| found = Some(row.entry))?;
+        Ok(found)
     }
 
     /// A shape, or [`IndexError::NoSuchShape`].

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use base::{ContentHash, Observer};
-use index::Entry;
 use mesh::{Surface, TriMesh};
 
 use super::options::{SearchOptions, SearchRank};
@@ -49,9 +48,9 @@ impl ShapeSearch {
     /// # Errors
     /// [`Error::Index`], if the index cannot be read.
     pub fn of_bytes(&self, query: Query) -> Result<Query, Error> {
-        let has_them = |entry: &Entry| query.content == Some(entry.content);
-        let found = self.index().entries()?.into_iter().find(has_them);
-        Ok(Query { place: query.place.or(found.map(|entry| entry.path)), ..query })
+        let Some(content) = query.content.filter(|_| query.place.is_none()) else { return Ok(query) };
+        let place = self.index().entry_with(&content)?.map(|entry| entry.path);
+        Ok(Query { place, ..query })
     }
 
     /// [Searches](Self::search) for a mesh.

@@ -107,6 +107,11 @@ fn shapes_round_trip() {
     let entries = index.entries().unwrap();
     assert!(entries.is_sorted_by_key(|entry| &entry.id) && entries.len() == 20);
     assert!(index.contains("class0/0000").unwrap() && !index.contains("class1/0000").unwrap());
+    let first = |content| entries.iter().find(|entry| entry.content == content).cloned();
+    for Entry { content, .. } in &entries {
+        assert_eq!(index.entry_with(content).unwrap(), first(*content));
+    }
+    assert_eq!(index.entry_with(&ContentHash::of(&["no file of the index"])).unwrap(), None);
 }
 
 #[test]
