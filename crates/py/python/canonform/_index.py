@@ -441,13 +441,7 @@ class Index(Stored):
 
         A shape of the index, given by its name, has no vote about itself.
         """
-        if not (isinstance(query, str) and query in self and not os.path.exists(query)):
-            return self.search(query, 0, rank=rank, **call).label
-        with running(call):
-            packed = self._inner.query_of(query, word("rank", rank), False)
-            answer = self._inner.search_among(packed, [id for id in self if id != query], 0, rank, False)
-        label: str | None = json.loads(answer)["predicted"]["label"]
-        return label
+        return self.search(query, 0, rank=rank, **call).label
 
     def evaluate(
         self,
