@@ -57,7 +57,7 @@ pub fn mapped_points(
     };
     let nearest = shape.nearest_vertices(&other, &own);
     // Rows next to each other in memory.
-    let rows = other.transpose();
+    let (own, rows) = (own.transpose(), other.transpose());
     let around = |face: FaceId| faces_around(&target.faces()[face.index()], target);
     let at = |query: &[f64], starts: &[VertexId]| match nearest_point(
         query,
@@ -70,23 +70,23 @@ pub fn mapped_points(
         None => SurfacePoint::Vertex(starts[0]),
     };
     let start = |v: usize| VertexId::from(nearest[v]);
-    let place = |v: VertexId| -> Vec<f64> { own.row(v.index()).iter().copied().collect() };
     let centroid = |face: &[VertexId; 3]| {
-        let places = face.map(place);
+        let places = face.map(|v| column(&own, v));
         let mean: Vec<f64> =
-            (0..own.ncols()).map(|j| places.iter().map(|p| p[j]).sum::<f64>() / 3.0).collect();
+            (0..own.nrows()).map(|j| places.iter().map(|p| p[j]).sum::<f64>() / 3.0).collect();
         at(&mean, &face.map(|v| start(v.index())))
     };
     match elements {
         MapElements::Vertices => {
-            (0..nearest.len()).into_par_iter().map(|v| at(&place(VertexId::from(v)), &[start(v)])).collect()
+            let vertices = (0..nearest.len()).into_par_iter();
+            vertices.map(|v| at(column(&own, VertexId::from(v)), &[start(v)])).collect()
         }
         MapElements::Faces(faces) => faces.par_iter().map(centroid).collect(),
         MapElements::Corners { faces, joined } => {
             let corners = |face: &[VertexId; 3]| match centroid(face) {
                 SurfacePoint::Face { face: first, .. } => face.map(|v| {
                     let around = |face| joined_around(face, target, joined);
-                    let found = nearest_point(&place(v), &rows, target, around(first), around);
+                    let found = nearest_point(column(&own, v), &rows, target, around(first), around);
                     let (face, OnTriangle { weights: barycentric, .. }) =
                         found.expect("the first face is one");
                     SurfacePoint::Face { face, barycentric }
