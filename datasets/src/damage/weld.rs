@@ -117,7 +117,7 @@ pub(super) fn contact(mesh: &TriMesh, n: u32, stream: &mut Stream) -> TriMesh {
     for _ in 0..n {
         let edges = joined.edge_graph();
         let Some(ends) = pair(&joined, &edges, WeldPair::Near, &earlier, stream) else { break };
-        let topology = Topology::new(joined.n_vertices(), joined.faces.clone());
+        let topology = joined.topology();
         let [Some(a), Some(b)] = ends.map(|v| rim(&topology, VertexId::from(v))) else { continue };
         push(&mut joined, &edges, ends);
         joined.faces.retain(|face| !face.iter().any(|v| ends.contains(&v.index())));

@@ -1,7 +1,6 @@
 //! Which of several copies of one surface is the original.
 
 use nalgebra::Vector3;
-use surface::Topology;
 
 use super::geometry::{MeshGeometry, ROUNDING};
 use super::same_surface::euler_characteristic_if_closed;
@@ -121,7 +120,7 @@ impl MeshGeometry {
                 }
             }
         }
-        let topology = Topology::new(mesh.n_vertices(), mesh.faces.clone());
+        let topology = mesh.topology();
         let turns = topology.edges().iter().enumerate().map(|(e, ends)| {
             let &[a, b] = topology.edge_corners(surface::EdgeId::from(e)) else { return 0.0 };
             let [a, b] = [a, b].map(|corner| normals[corner.face().index()]);
@@ -132,7 +131,7 @@ impl MeshGeometry {
             noise: self.noise().unwrap_or_default(),
             is_mechanical: self.is_mechanical(),
             is_noisy: self.is_noisy(),
-            is_closed: euler_characteristic_if_closed(self).is_some(),
+            is_closed: euler_characteristic_if_closed(&topology).is_some(),
             counts: [self.n_vertices(), self.n_faces()],
             n_needed: around.iter().filter(|known| known.len() == 3).count(),
             bending: turns.sum(),

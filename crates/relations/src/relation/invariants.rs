@@ -56,7 +56,7 @@ impl MeshGeometry {
         SurfaceInvariants {
             n_vertices: self.n_vertices(),
             spreads: self.surface.axis_std(),
-            closed: euler_characteristic_if_closed(self).map(volume),
+            closed: euler_characteristic_if_closed(&self.mesh().topology()).map(volume),
             chords: self.is_mechanical().then(|| rms_chord_error(self)),
             noise: self.noise().unwrap_or_default(),
         }

@@ -1,7 +1,8 @@
 //! How the triangles of one surface changed.
 
+use mesh::TriMesh;
 use rigid::{NearestPoints, Similarity};
-use surface::{Topology, VertexId};
+use surface::VertexId;
 
 use super::Change;
 use super::geometry::MeshGeometry;
@@ -41,13 +42,17 @@ fn displacements([a, b]: [&MeshGeometry; 2]) -> Option<f64> {
         Some((square, moved))
     });
     let (_, moved) = fits.into_iter().flatten().min_by(|x, y| x.0.total_cmp(&y.0))?;
-    let topology = Topology::new(a.n_vertices(), a.mesh().faces.clone());
-    let (mut product, mut square) = (0.0, 0.0);
-    for [v, w] in topology.edges().iter().map(|edge| edge.map(VertexId::index)) {
-        product += moved[v].dot(&moved[w]);
-        square += 0.5 * (moved[v].norm_squared() + moved[w].norm_squared());
+    correlation_of_neighbors(a.mesh(), |v, w| moved[v].dot(&moved[w]))
+}
+
+/// The correlation of something at vertices that share an edge, by products of any two; `None` if it is zero everywhere.
+pub(super) fn correlation_of_neighbors(mesh: &TriMesh, product: impl Fn(usize, usize) -> f64) -> Option<f64> {
+    let (mut joint, mut own) = (0.0, 0.0);
+    for [v, w] in mesh.topology().edges().iter().map(|edge| edge.map(VertexId::index)) {
+        joint += product(v, w);
+        own += 0.5 * (product(v, v) + product(w, w));
     }
-    (square > 0.0).then(|| product / square)
+    (own > 0.0).then(|| joint / own)
 }
 
 /// Whether nearly all vertices of `coarse` are vertices of `fine`; `map` takes the first onto the second.

@@ -6,7 +6,7 @@ use rigid::{TriangleTree, align_surfaces};
 
 use super::exact::same_vertices;
 use super::geometry::MeshGeometry;
-use super::mesh_change::INDEPENDENT;
+use super::mesh_change::{INDEPENDENT, correlation_of_neighbors};
 use super::{Relation, RelationKind};
 
 /// Two meshes laid over each other by the best motion, reflection and change of size, at the size of the first and in its
@@ -25,12 +25,8 @@ impl MeshOverlay {
     pub fn is_noise(&self) -> bool {
         let ([mesh, _], [gaps, _]) = (&self.meshes, &self.gaps);
         let mean = gaps.iter().sum::<f64>() / gaps.len().max(1) as f64;
-        let (mut product, mut square) = (0.0, 0.0);
-        for [v, w] in mesh.topology().edges().iter().map(|edge| edge.map(|v| gaps[v.index()] - mean)) {
-            product += v * w;
-            square += 0.5 * (v * v + w * w);
-        }
-        product < INDEPENDENT * square
+        let found = correlation_of_neighbors(mesh, |v, w| (gaps[v] - mean) * (gaps[w] - mean));
+        found.is_some_and(|correlation| correlation < INDEPENDENT)
     }
 }
 

@@ -62,7 +62,7 @@ impl MeshGeometry {
     pub(super) fn noise(&self) -> Option<f64> {
         *self.noise.get_or_init(|| {
             let mesh = self.mesh();
-            let topology = Topology::new(mesh.n_vertices(), mesh.faces.clone());
+            let topology = mesh.topology();
             let tolerances = std::iter::successors(Some(MOST_ROUNDING), |t| Some(2.0 * t));
             let tolerances = tolerances.take_while(|t| *t <= MOST);
             let planes: Vec<[f64; 2]> = tolerances.map(|t| self.planes_within(t, &topology)).collect();

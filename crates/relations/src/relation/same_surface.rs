@@ -50,7 +50,7 @@ pub(super) fn rms_chord_error(mesh: &MeshGeometry) -> f64 {
 /// Mechanical surfaces: no point of either may be farther from the other than arcs and rounding explain, and closed ones
 /// have equally many handles.
 fn part_ratio(aligned: &Alignment, [a, b]: [&MeshGeometry; 2]) -> f64 {
-    let handles = [a, b].map(euler_characteristic_if_closed);
+    let handles = [a, b].map(|geometry| euler_characteristic_if_closed(&geometry.mesh().topology()));
     if matches!(handles, [Some(x), Some(y)] if x != y) {
         return f64::INFINITY;
     }
@@ -102,10 +102,9 @@ fn probes(geometry: &MeshGeometry) -> Vec<(Point3<f64>, usize)> {
 }
 
 /// Vertices less edges plus faces, if every edge has two faces.
-pub(super) fn euler_characteristic_if_closed(geometry: &MeshGeometry) -> Option<isize> {
-    let topology = Topology::new(geometry.n_vertices(), geometry.mesh().faces.clone());
+pub(super) fn euler_characteristic_if_closed(topology: &Topology) -> Option<isize> {
     let edges = 0..topology.n_edges();
     let is_closed = edges.map(surface::EdgeId::from).all(|edge| topology.edge_corners(edge).len() == 2);
     is_closed
-        .then(|| geometry.n_vertices() as isize - topology.n_edges() as isize + geometry.n_faces() as isize)
+        .then(|| topology.n_vertices() as isize - topology.n_edges() as isize + topology.n_faces() as isize)
 }

@@ -104,7 +104,7 @@ impl Dimensions {
             extents: [0.0; 3],
             steps: Vec::new(),
             volume: None,
-            euler: euler_characteristic_if_closed(part),
+            euler: euler_characteristic_if_closed(&part.mesh().topology()),
             size: part.size(),
         };
         for region in &regions {
