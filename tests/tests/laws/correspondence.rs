@@ -135,18 +135,28 @@ fn mean_error([a, b]: [&RestedShape; 2], map: &VertexMap) -> f64 {
 
 #[test]
 fn poses_are_mapped_to_their_true_partners() {
-    let pairs = [
+    are_mapped_to_true_partners(&[
         (Family::Cat, [0, 3]),
-        (Family::Centaur, [1, 2]),
         // A map that mixes the direct and the mirrored one distorts least.
         (Family::Centaur, [2, 4]),
+        // The mirror of the second man that distorts least exchanges front and back.
+        (Family::David, [5, 6]),
+    ]);
+}
+
+#[test]
+#[ignore = "slow: make test-all"]
+fn more_poses_are_mapped_to_their_true_partners() {
+    are_mapped_to_true_partners(&[
+        (Family::Centaur, [1, 2]),
         (Family::David, [2, 5]),
         // Most starts turn this man back to front.
         (Family::David, [0, 5]),
-        // The mirror of the second man that distorts least exchanges front and back.
-        (Family::David, [5, 6]),
-    ];
-    for (family, poses) in pairs {
+    ]);
+}
+
+fn are_mapped_to_true_partners(pairs: &[(Family, [usize; 2])]) {
+    for &(family, poses) in pairs {
         let [a, b]: [RestedShape; 2] = poses.map(|pose| rested(family, pose));
         let found = maps(&a.shape.mesh, &b.shape.mesh);
         for kind in [MapKind::Direct, MapKind::Mirrored] {

@@ -128,12 +128,23 @@ fn intervals_of_the_estimated_stress_contain_the_exact_one_as_often_as_they_say(
 
 #[test]
 fn the_default_stress_costs_few_rows_and_its_intervals_contain_the_exact_one() {
+    intervals_contain_the_exact_stress(2, 18);
+}
+
+#[test]
+#[ignore = "slow: make test-all"]
+fn intervals_of_the_stress_contain_the_exact_one_for_95_in_100_shapes() {
+    intervals_contain_the_exact_stress(1, 38);
+}
+
+/// Asserts that for `least` shapes or more, of 40 every `step`th, the interval holds the exact stress.
+fn intervals_contain_the_exact_stress(step: usize, least: usize) {
     let of = ArticulatedOptions { n_vertices: 1000, ..ArticulatedOptions::default() };
     let creatures =
         CreatureOptions { n_families: 5, n_poses: 2, n_vertices: 1000, ..CreatureOptions::default() };
     let shapes = articulated(&of).unwrap().into_iter().chain(datasets::creatures(&creatures).unwrap());
     let (mut within, mut all, mut error) = ([0; 2], 0, 0.0);
-    for (n, shape) in [20, 60, 100].into_iter().cycle().zip(shapes) {
+    for (n, shape) in [20, 60, 100].into_iter().cycle().zip(shapes.step_by(step)) {
         let options = FormOptions { samples: Samples::Count(n), ..FormOptions::default() };
         let stress = |choice| measured(&shape.mesh, &options, choice).report.stress.unwrap();
         let [exact, found] = [StressChoice::Exact, StressChoice::Auto].map(stress);
@@ -150,7 +161,7 @@ fn the_default_stress_costs_few_rows_and_its_intervals_contain_the_exact_one() {
         all += 1;
     }
     println!("{within:?} of {all} intervals, normalised stress off by {:.1} %", 100.0 * error / all as f64);
-    assert!(all == 40 && within.iter().all(|n| *n >= 38), "{within:?} of {all}");
+    assert!(all == 40 / step && within.iter().all(|n| *n >= least), "{within:?} of {all}");
 }
 
 #[test]

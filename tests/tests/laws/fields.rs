@@ -45,7 +45,7 @@ fn intervals_hold_pairs_of_bodies() {
         let n = surface.n_input_vertices();
         let solver = Method::Exact.prepare(surface.intrinsic(), &()).unwrap();
         let vertices: Vec<VertexId> = (0..n).map(VertexId::from).collect();
-        let sources: Vec<VertexId> = vertices.iter().copied().step_by(3).collect();
+        let sources: Vec<VertexId> = vertices.iter().copied().step_by(9).collect();
         let columns = solver.distance_columns(&sources).unwrap();
         let pairs: Vec<_> = sources.iter().flat_map(|&b| vertices.iter().map(move |&a| [a, b])).collect();
         for method in [Method::Exact, Method::default()] {

@@ -81,10 +81,9 @@ fn check_body(mesh: &TriMesh, body: &str, damages: &[Damage], most: f64, most_of
 fn the_same_surface_has_the_same_signatures() {
     let same = [Damage::Subdivide(1), Damage::Move, Damage::Scale, Damage::Mirror];
     assert!(same.iter().all(|damage| damage.keeps_surface()));
-    for n_vertices in [250, 1000, 4000] {
+    for n_vertices in [250, 1000] {
         check(n_vertices, &same, SAME_SURFACE, SAME_SIGNATURE);
     }
-    check(250, &[Damage::Subdivide(3)], SAME_SURFACE, SAME_SIGNATURE);
 }
 
 #[test]
@@ -101,15 +100,22 @@ fn noise_leaves_the_same_shape() {
     check(1000, &[Damage::Noise(0.002)], SAME_COARSE_SHAPE, f64::INFINITY);
     // Noise much smaller than the edges cannot be told from shape.
     check(1000, &[Damage::Noise(0.005)], 2.87, f64::INFINITY);
-    for n_vertices in [4000, 16_000] {
-        check(n_vertices, &[Damage::Noise(0.002), Damage::Noise(0.005)], SAME_SHAPE, f64::INFINITY);
-    }
+    check(4000, &[Damage::Noise(0.005)], SAME_SHAPE, f64::INFINITY);
 }
 
 #[test]
 fn small_holes_leave_the_same_shape() {
     check(1000, &[Damage::Holes(0.01)], SAME_COARSE_SHAPE, f64::INFINITY);
-    check(4000, &[Damage::Holes(0.01)], SAME_SHAPE, f64::INFINITY);
+}
+
+#[test]
+#[ignore = "slow: make test-all"]
+fn finer_meshes_are_the_same_shape_when_damaged() {
+    let same = [Damage::Subdivide(1), Damage::Move, Damage::Scale, Damage::Mirror];
+    check(4000, &same, SAME_SURFACE, SAME_SIGNATURE);
+    check(250, &[Damage::Subdivide(3)], SAME_SURFACE, SAME_SIGNATURE);
+    check(4000, &[Damage::Noise(0.002), Damage::Holes(0.01)], SAME_SHAPE, f64::INFINITY);
+    check(16_000, &[Damage::Noise(0.002), Damage::Noise(0.005)], SAME_SHAPE, f64::INFINITY);
 }
 
 #[test]

@@ -24,7 +24,7 @@ fn numbers(place: &Workplace, name: &str) -> Vec<i64> {
 #[test]
 fn both_maps_of_a_pair_are_written_in_every_format() {
     let place = cats();
-    let json = place.json("match cat0.off cat1.off -o map.npy");
+    let json = place.json("match cat0.off cat1.off --eigenfunctions 40 -o map.npy");
     assert_keys(&json, "a b n_vertices maps target source transfer functional seconds");
     assert_keys(&json["seconds"], "load prepare matching total");
     let maps = json["maps"].as_array().unwrap();
@@ -42,7 +42,7 @@ fn both_maps_of_a_pair_are_written_in_every_format() {
         assert!(found.len() == 1000 && found.iter().all(|v| (0..1000).contains(v)));
     }
     let npy = numbers(&place, "map.npy");
-    let table = place.done("match cat0.off cat1.off -o map.csv").out;
+    let table = place.done("match cat0.off cat1.off --eigenfunctions 40 -o map.csv").out;
     assert!(table.contains("distortion") && table.contains(&format!("map-{other}.csv")), "{table}");
     let csv = fs::read_to_string(place.path("map.csv")).unwrap();
     let rows: Vec<&str> = csv.lines().collect();
@@ -50,7 +50,7 @@ fn both_maps_of_a_pair_are_written_in_every_format() {
     assert!(
         rows[1..].iter().zip(&npy).enumerate().all(|(x, (row, y))| row.starts_with(&format!("{x},{y},")))
     );
-    let json = place.json("match cat0.off cat1.off -o map.ply");
+    let json = place.json("match cat0.off cat1.off --eigenfunctions 40 -o map.ply");
     assert_eq!((&json["target"], &json["source"]), (&"map.ply".into(), &"map-source.ply".into()));
     for (name, mesh) in [("map.ply", "cat1.off"), ("map-source.ply", "cat0.off")] {
         let [colored, plain] = [name, mesh].map(|name| canonform::mesh::io::read(&place.path(name)).unwrap());
@@ -59,7 +59,7 @@ fn both_maps_of_a_pair_are_written_in_every_format() {
     assert_eq!(json["maps"][0]["picture"], "map.png");
     let beside = fs::read(place.path("map.png")).unwrap();
     fs::remove_file(place.path("map.png")).unwrap();
-    place.done("match cat0.off cat1.off -o map.png");
+    place.done("match cat0.off cat1.off --eigenfunctions 40 -o map.png");
     assert!(beside.starts_with(b"\x89PNG") && beside == fs::read(place.path("map.png")).unwrap());
     assert!(place.path(&format!("map-{other}.png")).is_file());
 }
@@ -67,7 +67,7 @@ fn both_maps_of_a_pair_are_written_in_every_format() {
 #[test]
 fn landmarks_break_the_symmetry_and_an_initial_map_comes_out() {
     let place = cats();
-    place.done("match cat0.off cat1.off -o both.npy");
+    place.done("match cat0.off cat1.off --eigenfunctions 40 -o both.npy");
     // Partners of a few vertices under each map: those that are far apart, so that only one of the maps takes them there.
     let maps = ["both.npy", "both-mirrored.npy"].map(|name| numbers(&place, name));
     let other = canonform::mesh::io::read(&place.path("cat1.off")).unwrap();
@@ -76,32 +76,40 @@ fn landmarks_break_the_symmetry_and_an_initial_map_comes_out() {
     let far = (0..1000).max_by(|v, w| apart(v).total_cmp(&apart(w))).unwrap();
     for (map, kind) in maps.iter().zip(["direct", "mirrored"]) {
         fs::write(place.path("pairs.csv"), format!("a,b\n{far},{}\n", map[far])).unwrap();
-        let json = place.json("match cat0.off cat1.off --landmarks pairs.csv -o map.npy");
+        let json = place.json("match cat0.off cat1.off --eigenfunctions 40 --landmarks pairs.csv -o map.npy");
         let found = json["maps"].as_array().unwrap();
         assert!(found.len() == 1 && found[0]["kind"] == kind, "{json}");
         assert_eq!(numbers(&place, "map.npy")[far], map[far]);
     }
     // The mirrored map, as a start, comes out first.
     for (name, kind) in [("both.npy", "direct"), ("both-mirrored.npy", "mirrored")] {
-        let json = place.json(format!("match cat0.off cat1.off --initial {name} -o again.csv").as_str());
+        let json = place.json(
+            format!("match cat0.off cat1.off --eigenfunctions 40 --initial {name} -o again.csv").as_str(),
+        );
         assert_eq!(json["maps"][0]["kind"], kind);
-        let again = place.json("match cat0.off cat1.off --initial again.csv");
+        let again = place.json("match cat0.off cat1.off --eigenfunctions 40 --initial again.csv");
         assert_eq!(again["maps"][0]["kind"], kind);
     }
     fs::write(place.path("pairs.csv"), "1,2\n3,4000\n").unwrap();
     place.refused(
-        "match cat0.off cat1.off --landmarks pairs.csv",
+        "match cat0.off cat1.off --eigenfunctions 40 --landmarks pairs.csv",
         &["pairs.csv", "line 2", "4000", "counted from 0", "second mesh"],
     );
     fs::write(place.path("pairs.csv"), "3,1\n3,900\n").unwrap();
     place.refused(
-        "match cat0.off cat1.off --landmarks pairs.csv",
+        "match cat0.off cat1.off --eigenfunctions 40 --landmarks pairs.csv",
         &["pairs.csv", "3,1 and 3,900", "two partners", "correct or leave out"],
     );
     fs::write(place.path("pairs.csv"), "1,2\n3;x\n").unwrap();
-    place.refused("match cat0.off cat1.off --landmarks pairs.csv", &["pairs.csv", "line 2", "17,42"]);
+    place.refused(
+        "match cat0.off cat1.off --eigenfunctions 40 --landmarks pairs.csv",
+        &["pairs.csv", "line 2", "17,42"],
+    );
     fs::write(place.path("start.csv"), "1\n2\nx\n").unwrap();
-    place.refused("match cat0.off cat1.off --initial start.csv", &["start.csv", "line 3", "`x`"]);
+    place.refused(
+        "match cat0.off cat1.off --eigenfunctions 40 --initial start.csv",
+        &["start.csv", "line 3", "`x`"],
+    );
 }
 
 #[test]
@@ -115,19 +123,19 @@ fn values_labels_and_texture_coordinates_are_carried() {
     let other = canonform::mesh::io::read(&place.path("cat1.off")).unwrap();
     // A constant of the corners stays one.
     fs::write(place.path("ones.csv"), lines(&|_| "2.5".into(), 3 * cat.n_faces())).unwrap();
-    let json = place.json("match cat0.off cat1.off --transfer ones.csv -o carried.csv");
+    let json = place.json("match cat0.off cat1.off --eigenfunctions 40 --transfer ones.csv -o carried.csv");
     assert_keys(&json["transfer"], "path elements kind rows columns");
     let (kind, rows) = (&json["transfer"]["kind"], &json["transfer"]["rows"]);
     assert_eq!((kind, rows), (&"values".into(), &(3 * other.n_faces()).into()));
     let near = |line: &String| (line.parse::<f64>().unwrap() - 2.5).abs() < 1e-9;
     assert!(read("carried.csv").iter().all(near));
     // Coordinates, as functions, arrive where the map takes their vertices.
-    place.done("match cat0.off cat1.off -o map.npy");
+    place.done("match cat0.off cat1.off --eigenfunctions 40 -o map.npy");
     let map: Vec<usize> = numbers(&place, "map.npy").into_iter().map(|v| v as usize).collect();
     let position = |v: usize| cat.positions[v].coords;
     let coordinates = |v: usize| format!("{},{},{}", position(v).x, position(v).y, position(v).z);
     fs::write(place.path("xyz.csv"), lines(&coordinates, 1000)).unwrap();
-    place.done("match cat0.off cat1.off --transfer xyz.csv -o carried.csv");
+    place.done("match cat0.off cat1.off --eigenfunctions 40 --transfer xyz.csv -o carried.csv");
     let carried = read("carried.csv");
     let gap = |v: usize| {
         let found: Vec<f64> = carried[map[v]].split(',').map(|word| word.parse().unwrap()).collect();
@@ -138,13 +146,13 @@ fn values_labels_and_texture_coordinates_are_carried() {
     // Labels of vertices, in words, and of faces, as numbers.
     let name = |v: usize| if position(v).z > 40.0 { "upper" } else { "lower" };
     fs::write(place.path("parts.csv"), lines(&|v| name(v).into(), 1000)).unwrap();
-    place.done("match cat0.off cat1.off --transfer parts.csv -o carried.csv");
+    place.done("match cat0.off cat1.off --eigenfunctions 40 --transfer parts.csv -o carried.csv");
     let carried = read("carried.csv");
     let right = (0..1000).filter(|v| name(*v) == carried[map[*v]]).count();
     assert!(right > 950, "{right} of 1000");
     let part = |f: usize| i64::from(name(cat.faces[f][0].index()) == "upper");
     fs::write(place.path("faces.csv"), lines(&|f| part(f).to_string(), cat.n_faces())).unwrap();
-    let json = place.json("match cat0.off cat1.off --transfer faces.csv -o carried.npy");
+    let json = place.json("match cat0.off cat1.off --eigenfunctions 40 --transfer faces.csv -o carried.npy");
     assert_eq!(
         (&json["transfer"]["kind"], &json["transfer"]["elements"]),
         (&"labels".into(), &"faces".into())
@@ -154,14 +162,16 @@ fn values_labels_and_texture_coordinates_are_carried() {
     let same = |f: &usize| i64::from(carried[other.faces[*f][0].index()] == "upper") == found[*f];
     let right = (0..found.len()).filter(same).count();
     assert!(right * 100 > 90 * found.len(), "{right} of {}", found.len());
-    place.done("match cat0.off cat1.off --transfer parts.csv -o parts.png");
+    place.done("match cat0.off cat1.off --eigenfunctions 40 --transfer parts.csv -o parts.png");
     assert!(fs::read(place.path("parts.png")).unwrap().starts_with(b"\x89PNG"));
     // Words need text, and rows elements.
-    place
-        .refused("match cat0.off cat1.off --transfer parts.csv -o carried.npy", &["carried.npy", "use .csv"]);
+    place.refused(
+        "match cat0.off cat1.off --eigenfunctions 40 --transfer parts.csv -o carried.npy",
+        &["carried.npy", "use .csv"],
+    );
     fs::write(place.path("few.csv"), "1.5\n2.5\n").unwrap();
     place.refused(
-        "match cat0.off cat1.off --transfer few.csv -o carried.csv",
+        "match cat0.off cat1.off --eigenfunctions 40 --transfer few.csv -o carried.csv",
         &["few.csv", "2 rows", "1000 vertices", "each face"],
     );
 }
@@ -170,7 +180,7 @@ fn values_labels_and_texture_coordinates_are_carried() {
 fn points_and_functional_maps_are_written() {
     let place = cats();
     let json =
-        place.json("match cat0.off cat1.off --points -o map.csv --functional c.npy --eigenfunctions 40");
+        place.json("match cat0.off cat1.off --eigenfunctions 40 --points -o map.csv --functional c.npy");
     let points = json["maps"][0]["points"].as_array().unwrap();
     assert!(points.len() == 1000 && points[0].as_str().unwrap().starts_with('f'));
     let csv = fs::read_to_string(place.path("map.csv")).unwrap();
