@@ -18,8 +18,8 @@ pytest.importorskip("distributed")
 
 import canonform  # noqa: E402
 from canonform import Index, SearchResults, _vectors  # noqa: E402
-from canonform.distributed import search, vector_table  # noqa: E402
-from canonform.errors import NoSuchShapeError, OptionError, ShapeIndexError  # noqa: E402
+from canonform.distributed import distance_matrix, search, vector_table  # noqa: E402
+from canonform.errors import MemoryLimitError, NoSuchShapeError, OptionError, ShapeIndexError, TimeLimitError  # noqa: E402
 from distributed import Client  # noqa: E402
 
 # Dask, Lance and their dependencies warn of their own affairs.
@@ -235,6 +235,19 @@ def test_other_programs_search_the_table(shards: list[Path], whole: Index, tmp_p
     finally:
         ray.shutdown()
     assert found["id"].to_pylist() == [name for name, _ in whole.nearest(whole.vector("cat1"), 9)]
+
+
+def test_calls_end_at_their_limits(client: Client, shards: list[Path], whole: Index, tmp_path: Path) -> None:
+    table = tmp_path / "shapes.lance"
+    vector_table(shards, table, timeout=60)
+    for given in ({}, {"client": client}):
+        with pytest.raises(TimeLimitError, match="timeout="):
+            search(table, "cat1", timeout=1e-9, **given)
+    with pytest.raises(TimeLimitError, match="timeout="):
+        distance_matrix(whole, client, timeout=0.01)
+    with pytest.raises(MemoryLimitError, match="memory="):
+        search(table, whole.surface("cat1"), memory=1000)
+    assert len(search(table, "cat1", 3, client=client, timeout=60, memory="2G")) == 3
 
 
 def test_mistakes_are_told(shards: list[Path], collection: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -246,7 +246,7 @@ def test_settings_reach_the_library(cat: Shape) -> None:
         (lambda s: s.distances(81), PointError, "vertex 81 does not exist; the mesh has 128 faces and 81 vertices"),
         (lambda s: s.distances("x"), PointError, "write 17 for a vertex"),
         (lambda s: s.path(0, "0-80"), PointError, "edge 0-80 does not exist"),
-        (lambda s: s.distances(1.5), PointError, "whole numbers"),
+        (lambda s: s.distances(1.5), PointError, "1.5 is not a point"),
         (lambda s: s.canonical_form(method="umap"), OptionError, 'use "nmds"'),
         (lambda s: Nystrom(rank=5, regularization="none"), OptionError, 'or use regularization="low-rank" or "cur"'),
         (lambda s: Spectral(n_eigenfunctions=-1), OptionError, "n_eigenfunctions=-1 is not possible"),

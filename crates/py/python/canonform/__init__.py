@@ -35,7 +35,7 @@ from ._compare import Alignment, Comparison, align, compare
 from ._field import DistanceField, PairDistance, PairDistances
 from ._form import Form
 from ._index import Index, Result, Scores, SearchResults, ShapeEntry
-from ._look import Look
+from ._look import Look, figure
 from ._match import MappedPoints, Match, SurfaceMap, match
 from ._methods import FastMarching, KernelPca, Landmark, Nystrom, Smacof, Spectral
 from ._operators import ClosestPoints, EdgePoint, Eigenbasis, FacePoint
@@ -94,6 +94,7 @@ __all__ = [
     "distributed",
     "embedding_methods",
     "errors",
+    "figure",
     "match",
     "read",
     "set_threads",

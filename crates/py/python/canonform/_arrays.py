@@ -63,6 +63,11 @@ def straight(array: ArrayLike, dtype: Any = None) -> NDArray[Any]:
     return np.require(array, dtype, ["C_CONTIGUOUS", "ALIGNED"])
 
 
+def edges_of(faces: Ints) -> Ints:
+    """The edges of faces as pairs of vertices, each once and in order."""
+    return np.unique(np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0)
+
+
 def numeric(
     name: str, values: Any, sides: tuple[int | str, ...], dtype: Any = np.float64, error: type[CanonformError] = OptionError
 ) -> NDArray[Any]:
@@ -180,5 +185,4 @@ def _split(quads: Ints, vertices: Floats) -> Ints:
     folds = np.einsum("fwk,fwk->fw", normals[:, :, 0], normals[:, :, 1]) <= 0
     lengths = np.linalg.norm(vertices[quads[:, [0, 1]]] - vertices[quads[:, [2, 3]]], axis=2)
     second = np.where(folds[:, 0] == folds[:, 1], lengths[:, 1] < lengths[:, 0], folds[:, 0])
-    found: Ints = ways[np.arange(len(quads)), second.astype(int)].reshape(-1, 3)
-    return found
+    return ways[np.arange(len(quads)), second.astype(int)].reshape(-1, 3)

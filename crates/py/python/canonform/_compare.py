@@ -42,8 +42,7 @@ class Alignment(ByValue):
 
     def apply(self, points: ArrayLike) -> Floats:
         """Moves points, shape (k, 3)."""
-        moved: Floats = numeric("points", points, ("k", 3)) @ self.rotation.T + self.translation
-        return moved
+        return numeric("points", points, ("k", 3)) @ self.rotation.T + self.translation
 
     def __repr__(self) -> str:
         reflected = ", reflected" if self.reflected else ""
@@ -81,8 +80,7 @@ class Comparison(Stored):
     @property
     def relation(self) -> dict[str, Any]:
         """How the meshes are related: `kind`, `confidence`, `changes`, `text`, and the numbers that decided in `because`."""
-        relation: dict[str, Any] = self.report["relation"]
-        return relation
+        return self.report["relation"]
 
     @property
     def distance(self) -> float:
@@ -102,8 +100,7 @@ class Comparison(Stored):
     @property
     def match(self) -> RelationKind:
         """The kind of relation, such as "identical-file", "scaled", "remeshed" or "other-pose"."""
-        kind: RelationKind = self.relation["kind"]
-        return kind
+        return self.relation["kind"]
 
     @property
     def confidence(self) -> float:

@@ -119,8 +119,7 @@ class DistanceField(Constant):
     @property
     def facts(self) -> dict[str, Any]:
         """How the field was built, and what its bounds rest on: the object that `canonform field info --json` prints."""
-        facts: dict[str, Any] = json.loads(self._inner.facts())
-        return facts
+        return json.loads(self._inner.facts())
 
     @property
     def certified(self) -> bool:
@@ -129,8 +128,8 @@ class DistanceField(Constant):
 
     def pair(self, a: int, b: int) -> PairDistance:
         """The distance of two vertices, estimated. Raises `PointError`."""
-        distance, lower, upper, exact = self._inner.pairs(np.array([[_vertex(a), _vertex(b)]]), None)
-        return PairDistance(float(distance[0]), float(lower[0]), float(upper[0]), bool(exact[0]))
+        found = self.pairs([[a, b]], tolerance=None)
+        return PairDistance(*(values[0].item() for values in (found.distance, found.lower, found.upper, found.exact)))
 
     def pairs(
         self, pairs: ArrayLike, *, tolerance: float | None = 0.05, **call: Unpack[Call]
@@ -157,24 +156,17 @@ class DistanceField(Constant):
     def row(self, source: int, *, tolerance: float | None = 0.05, **call: Unpack[Call]) -> PairDistances:
         """The distances from one vertex to all, in the order of the input; `tolerance` as in `pairs`."""
         with running(call):
-            return PairDistances(*self._inner.row(_vertex(source), _share(tolerance)))
+            return PairDistances(*self._inner.row(source, _share(tolerance)))
 
     def nearest(self, source: int, k: int, **call: Unpack[Call]) -> tuple[Ints, Floats]:
         """The `k` vertices nearest to one of them along the surface, itself left out, and their exact distances, nearest first."""
         with running(call):
-            return self._inner.nearest(_vertex(source), whole("k", k))
+            return self._inner.nearest(source, whole("k", k))
 
     def __repr__(self) -> str:
         facts = self.facts
         bounds = facts["bounds"]["kind"]
         return f"DistanceField({facts['n_vertices']} vertices, {facts['n_landmarks']} landmarks, {bounds} bounds)"
-
-
-def _vertex(vertex: Any) -> int:
-    number = vertex.item() if isinstance(vertex, np.generic) else vertex
-    if isinstance(number, bool) or not isinstance(number, int) or not -(2**63) <= number < 2**63:
-        raise PointError(f"{vertex!r} is not a vertex; give its number")
-    return number
 
 
 def _share(tolerance: float | None) -> float | None:

@@ -97,14 +97,12 @@ class Form(AsArray, Constant):
     @cached_property
     def report(self) -> dict[str, Any]:
         """Facts about the embedding: the object that `canonform embed --json` prints."""
-        report: dict[str, Any] = json.loads(self._inner.report())
-        return report
+        return json.loads(self._inner.report())
 
     @cached_property
     def options(self) -> dict[str, Any]:
         """How it was made, without options that have their default value."""
-        options: dict[str, Any] = json.loads(self._inner.options())
-        return options
+        return json.loads(self._inner.options())
 
     @property
     def stress(self) -> float | None:

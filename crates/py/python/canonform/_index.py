@@ -9,7 +9,8 @@ import os
 import shutil
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from html import escape
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias, Unpack, overload
 
@@ -38,7 +39,7 @@ from ._settings import (
 from ._stored import Stored
 from ._surface import AnyMesh, Surface, surface_of
 from .datasets import Shape
-from .errors import CanonformError, MeshError, MissingFileError, OptionError, ShapeIndexError, SkippedMeshWarning
+from .errors import CanonformError, MeshError, MissingFileError, NoSuchShapeError, OptionError, ShapeIndexError, SkippedMeshWarning
 
 if TYPE_CHECKING:
     import pandas
@@ -135,22 +136,17 @@ class SearchResults(Stored, Sequence[Result]):
         The answer that `canonform search --json` prints.
     """
 
-    def __init__(self, report: dict[str, Any], query: Surface | None, name: str, index: _Surfaces) -> None:
+    def __init__(self, report: dict[str, Any], query: Surface | str, name: str, index: _Surfaces) -> None:
         self.report = report
         self._results = [
-            Result(
-                **{key: found[key] for key in ("rank", "id", "label", "path", "distance", "fused", "relation")},
-                **{key: found.get(key) for key in ("rank_distance", "part_distance", "part_share", "form_distance")},
-            )
-            for found in report["results"]
+            Result(**{field.name: found.get(field.name) for field in fields(Result)}) for found in report["results"]
         ]
         self._query, self._name, self._index = query, name, index
 
     @property
     def predicted(self) -> dict[str, Any]:
         """The class that the nearest shapes suggest: `label` (None if it is unknown), `votes`, `confidence`, `explanation`, ..."""
-        predicted: dict[str, Any] = self.report["predicted"]
-        return predicted
+        return self.report["predicted"]
 
     @property
     def label(self) -> str | None:
@@ -172,50 +168,31 @@ class SearchResults(Stored, Sequence[Result]):
         """One row for each result, with `rank` as the index."""
         import pandas
 
-        rows = [
-            {
-                "rank": found.rank,
-                "id": found.id,
-                "label": found.label,
-                "distance": found.distance,
-                "fused": found.fused,
-                "relation": found.relation["kind"],
-                "path": found.path,
-            }
-            for found in self
-        ]
-        return pandas.DataFrame(rows, columns=["rank", "id", "label", "distance", "fused", "relation", "path"]).set_index("rank")
+        columns = ["rank", "id", "label", "distance", "fused", "relation", "path"]
+        rows = [vars(found) | {"relation": found.relation["kind"]} for found in self]
+        return pandas.DataFrame(rows, columns=columns).set_index("rank")
 
     def __repr__(self) -> str:
         lines = [f"{found.rank:>3}  {found.id:<20} {found.label or '-':<12} {found.distance:.4f}" for found in self]
         return "\n".join([f"SearchResults of {self._name}: {self.predicted['explanation']}", *lines])
 
     def _repr_html_(self) -> str:
-        pictures = []
-        if self._query is not None:
-            pictures.append(_captioned(self._query, f"query: {self._name}"))
-        for found in self[:_PICTURED]:
-            try:
-                pictures.append(_captioned(self._index.surface(found.id), f"{found.rank}. {found.id}"))
-            except CanonformError:
-                # The file may be gone, and the results are worth showing all the same.
-                pictures.append(_caption("", f"{found.rank}. {found.id}"))
-        strip = f'<div style="display:flex;gap:10px;flex-wrap:wrap">{"".join(pictures)}</div>'
-        rows = (
-            (str(f.rank), f.id, f.label or "-", f"{f.distance:.4f}", f.relation["text"]) for f in self
-        )
+        shown = [(self._query, f"query: {self._name}"), *((found.id, f"{found.rank}. {found.id}") for found in self[:_PICTURED])]
+        strip = f'<div style="display:flex;gap:10px;flex-wrap:wrap">{"".join(self._captioned(*one) for one in shown)}</div>'
+        rows = ((str(f.rank), f.id, f.label or "-", f"{f.distance:.4f}", f.relation["text"]) for f in self)
         head = ("", "shape", "class", "distance", "relation")
         return _html.box(f"class: {self.predicted['explanation']}", strip + _html.table(head, rows))
 
 
-def _captioned(surface: Surface, caption: str) -> str:
-    return _caption(_html.image(surface.picture(width=220, height=220), 110, caption), caption)
-
-
-def _caption(image: str, caption: str) -> str:
-    from html import escape
-
-    return f'<div style="text-align:center;max-width:120px">{image}<div style="font-size:11px">{escape(caption)}</div></div>'
+    def _captioned(self, shape: Surface | str, caption: str) -> str:
+        try:
+            if isinstance(shape, str):
+                shape = Surface(shape) if os.path.exists(shape) else self._index.surface(shape)
+            image = _html.image(shape.picture(width=220, height=220), 110, caption)
+        except (CanonformError, KeyError):
+            # The file may be gone, and the results are worth showing all the same.
+            image = ""
+        return f'<div style="text-align:center;max-width:120px">{image}<div style="font-size:11px">{escape(caption)}</div></div>'
 
 
 class Scores(dict[str, Any]):
@@ -414,27 +391,17 @@ class Index(Stored):
         explain
             Say how each result is related to the query, as `compare` does; reads the mesh files of the results.
         """
-        if not isinstance(query, (str, os.PathLike)):
-            with running(call):
-                query = surface_of(query)
-                name = query._name or "the query"
-                report = self._inner.search(query._inner, name, whole("k", k), word("rank", rank), bool(explain))
-            return SearchResults(json.loads(report), query, name, self)
-        text = os.fspath(query)
-        if not os.path.exists(text) and text not in self:
-            from .errors import NoSuchShapeError
-
-            raise NoSuchShapeError(f"{text!r} is neither a file nor a shape of the index; Index.shapes() names its shapes")
-        name = os.path.basename(text) if os.path.exists(text) else text
         with running(call):
-            report = self._inner.search(text, name, whole("k", k), word("rank", rank), bool(explain))
-        return SearchResults(json.loads(report), self._pictured(text), name, self)
-
-    def _pictured(self, query: str) -> Surface | None:
-        try:
-            return Surface(query) if os.path.exists(query) else Surface._of(self._inner.surface(query))
-        except CanonformError:
-            return None
+            shape = os.fspath(query) if isinstance(query, (str, os.PathLike)) else surface_of(query)
+            if isinstance(shape, Surface):
+                name = shape._name or "the query"
+            elif os.path.exists(shape) or shape in self:
+                name = os.path.basename(shape) if os.path.exists(shape) else shape
+            else:
+                raise NoSuchShapeError(f"{shape!r} is neither a file nor a shape of the index; Index.shapes() names its shapes")
+            given = shape._inner if isinstance(shape, Surface) else shape
+            report = self._inner.search(given, name, whole("k", k), word("rank", rank), bool(explain))
+        return SearchResults(json.loads(report), shape, name, self)
 
     def classify(self, query: AnyMesh, *, rank: Ranking = "plain", **call: Unpack[Call]) -> str | None:
         """The class of a query by the votes of the nearest shapes; None if no shape is near enough. `search` says why.
@@ -488,19 +455,15 @@ class Index(Stored):
     @property
     def path(self) -> str:
         """The file."""
-        return os.fspath(self._inner.path)
+        return self._inner.path
 
     def info(self) -> dict[str, Any]:
         """Format, size, options and classes."""
-        info: dict[str, Any] = json.loads(self._inner.info())
-        return info
+        return json.loads(self._inner.info())
 
     def shapes(self) -> list[ShapeEntry]:
         """All shapes, by name."""
-        return [
-            ShapeEntry(id, label, os.fspath(path), vertices, faces)
-            for id, label, path, vertices, faces in self._inner.shapes()
-        ]
+        return [ShapeEntry(*shape) for shape in self._inner.shapes()]
 
     def vectors(self) -> NDArray[np.float32]:
         """The fused signatures of all shapes, in the order of `shapes`: shape (number of shapes, length)."""
@@ -510,9 +473,10 @@ class Index(Stored):
         """The fused signature of one shape."""
         return self._inner.vector(word("id", id))
 
-    def nearest(self, vector: ArrayLike, k: int = 10) -> list[tuple[str, float]]:
+    def nearest(self, vector: ArrayLike, k: int = 10, **call: Unpack[Call]) -> list[tuple[str, float]]:
         """The shapes whose signatures are nearest to a vector, such as `Surface.signature()`: names and distances, nearest first."""
-        return self._inner.nearest(numeric("vector", vector, ("d",), np.float32), whole("k", k))
+        with running(call):
+            return self._inner.nearest(numeric("vector", vector, ("d",), np.float32), whole("k", k))
 
     def distances(
         self,
@@ -541,10 +505,11 @@ class Index(Stored):
         with running(call):
             return self._inner.distances(rows, None if others is None else list(others), word("kind", kind))
 
-    def surface(self, id: str) -> Surface:
+    def surface(self, id: str, **call: Unpack[Call]) -> Surface:
         """The surface of a shape. Its mesh file must be where it was, and unchanged."""
         try:
-            return Surface._of(self._inner.surface(word("id", id)), id)
+            with running(call):
+                return Surface._of(self._inner.surface(word("id", id)), id)
         except MissingFileError as fault:
             if f"{os.path.basename(self.path)}.meshes" not in self[id].path:
                 raise
@@ -552,8 +517,7 @@ class Index(Stored):
 
     def __getitem__(self, id: str) -> ShapeEntry:
         """A shape by its name. Raises `NoSuchShapeError`."""
-        name, label, path, vertices, faces = self._inner.entry(word("id", id))
-        return ShapeEntry(name, label, os.fspath(path), vertices, faces)
+        return ShapeEntry(*self._inner.entry(word("id", id)))
 
     def duplicates(
         self,
@@ -585,13 +549,10 @@ class Index(Stored):
         wanted = None if kinds is None else [word("kinds", kind) for kind in ([kinds] if isinstance(kinds, str) else kinds)]
         folders = [os.fspath(path) for path in reference]
         with running(call):
-            found: dict[str, Any] = json.loads(
-                self._inner.duplicates(wanted, number("min_confidence", min_confidence), os.fspath(keep), folders)
-            )
-        groups: list[dict[str, Any]] = found["groups"]
-        return groups
+            found = self._inner.duplicates(wanted, number("min_confidence", min_confidence), os.fspath(keep), folders)
+        return json.loads(found)["groups"]
 
-    def export(self, path: AnyPath) -> None:
+    def export(self, path: AnyPath, **call: Unpack[Call]) -> None:
         """Write the index, the same however it was built. The extension tells the format: jsonl, parquet, npz or csv.
 
         With the extension lance, write its vectors to a table as `distributed.vector_table` does.
@@ -599,9 +560,10 @@ class Index(Stored):
         if os.fspath(path).endswith(".lance"):
             from .distributed import vector_table
 
-            vector_table([self.path], path)
+            vector_table([self.path], path, **call)
             return
-        self._inner.export(os.fspath(path))
+        with running(call):
+            self._inner.export(os.fspath(path))
 
     def to_pandas(self) -> pandas.DataFrame:
         """One row for each shape, with `id` as the index."""

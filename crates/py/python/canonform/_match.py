@@ -69,8 +69,7 @@ class MappedPoints(ByValue):
         parts = array[self.corners] * weights
         # Not a number times zero is not a number.
         parts[np.broadcast_to(weights == 0, parts.shape)] = 0
-        found: Floats = parts.sum(axis=1)
-        return found
+        return parts.sum(axis=1)
 
     def __len__(self) -> int:
         return len(self.faces)
@@ -138,15 +137,15 @@ class SurfaceMap(Stored):
         if bases is not None:
             a, b = bases
             pulled = np.where(self.vertices[:, None] < 0, 0.0, np.nan_to_num(b.functions)[self.vertices])
-            found: Floats = a.project(pulled)[:n_eigenfunctions, :n_eigenfunctions]
-            return found
+            return a.project(pulled)[:n_eigenfunctions, :n_eigenfunctions]
         rows, columns = self._counts(n_eigenfunctions)
         return self._functional[:rows, :columns].copy()
 
-    def bases(self, n_eigenfunctions: int | None = None) -> tuple[Eigenbasis, Eigenbasis]:
+    def bases(self, n_eigenfunctions: int | None = None, **call: Unpack[Call]) -> tuple[Eigenbasis, Eigenbasis]:
         """The eigenfunctions of `a` and of `b` that `functional` is written in, of both surfaces scaled to unit area."""
         counts = self._counts(n_eigenfunctions)
-        found = [_canonform.map_basis(shape._inner, self._settings) for shape in self._shapes]
+        with running(call):
+            found = [_canonform.map_basis(shape._inner, self._settings) for shape in self._shapes]
         a, b = (
             Eigenbasis(values, on_vertices(functions), masses).first(most)
             for (values, functions, masses), most in zip(found, counts, strict=True)
@@ -225,10 +224,10 @@ class SurfaceMap(Stored):
             f"{source.n_faces} faces; give one row for each vertex or for each face, or the shape ({source.n_faces}, 3, d)"
         )
 
-    def inverse(self) -> SurfaceMap:
+    def inverse(self, **call: Unpack[Call]) -> SurfaceMap:
         """The same map from `b` to `a`. A vertex of `b` has the confidence of its partner."""
         if self._partners is None:
-            points = self.points("b")
+            points = self.points("b", **call)
             heaviest = np.nan_to_num(points.weights, nan=-1.0).argmax(axis=1)
             vertices = np.where(points.faces < 0, -1, points.corners[np.arange(len(points)), heaviest])
             partners = None
@@ -285,8 +284,7 @@ class SurfaceMap(Stored):
 def _side(name: str, value: Any) -> Side:
     if value not in ("a", "b"):
         raise OptionError(f"{name}={value!r} is not possible: give \"a\" or \"b\"")
-    side: Side = value
-    return side
+    return value
 
 
 def _majority(labels: NDArray[Any], points: MappedPoints) -> Ints:
@@ -295,8 +293,7 @@ def _majority(labels: NDArray[Any], points: MappedPoints) -> Ints:
     of = classes.reshape(len(labels))[points.corners]
     weights = np.nan_to_num(points.weights)
     sums = ((of[:, :, None] == of[:, None, :]) * weights[:, None, :]).sum(axis=2)
-    best: Ints = np.take_along_axis(points.corners, sums.argmax(axis=1)[:, None], axis=1)[:, 0]
-    return best
+    return np.take_along_axis(points.corners, sums.argmax(axis=1)[:, None], axis=1)[:, 0]
 
 
 def _labels(labels: NDArray[Any], rows: Ints, missing: NDArray[np.bool_]) -> NDArray[Any]:
@@ -445,8 +442,7 @@ def _partners(initial: ArrayLike | tuple[ArrayLike, Eigenbasis, Eigenbasis] | No
     if isinstance(initial, tuple) and len(initial) == 3 and isinstance(initial[1], Eigenbasis):
         functional, a, b = initial
         return _of_functional(numeric("initial", functional, ("k", "l")), a, b)
-    found: Ints = numeric("initial", initial, ("n",), np.int64)
-    return found
+    return numeric("initial", initial, ("n",), np.int64)
 
 
 def _functions(descriptors: tuple[ArrayLike, ArrayLike] | None) -> tuple[Floats, Floats] | None:

@@ -119,15 +119,13 @@ class Eigenbasis(ByValue):
 
     @cached_property
     def _weighted(self) -> Floats:
-        weighted: Floats = np.nan_to_num(self.functions.view(np.ndarray)) * self.masses[:, None]
-        return weighted
+        return np.nan_to_num(self.functions.view(np.ndarray)) * self.masses[:, None]
 
     def project(self, values: ArrayLike) -> Floats:
         """The coefficients of functions, shape (n,) or (n, d), in this basis: shape (k,) or (k, d)."""
         array = numeric("values", values, (len(self.masses), "d")[: max(np.ndim(values), 1)])
         known = np.where(self.functions.valid.reshape(-1, *[1] * (array.ndim - 1)), array, 0)
-        coefficients: Floats = self._weighted.T @ known
-        return coefficients
+        return self._weighted.T @ known
 
     def synthesize(self, coefficients: ArrayLike) -> VertexValues:
         """The functions of coefficients, shape (k,) or (k, d), at the vertices."""
@@ -178,8 +176,7 @@ class Eigenbasis(ByValue):
 
     @property
     def _is_curved(self) -> Floats:
-        curved: Floats = self.values * self.masses.sum() > 1e-6
-        return curved
+        return self.values * self.masses.sum() > 1e-6
 
     def _curved(self) -> Floats:
         curved: Floats = self.values[self._is_curved]

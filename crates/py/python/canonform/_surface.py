@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _canonform, _html
-from ._arrays import Floats, Ints, SourceRows, VertexValues, mesh_of, numeric, on_vertices, straight
+from ._arrays import Floats, Ints, SourceRows, VertexValues, edges_of, mesh_of, numeric, on_vertices, straight
 from ._field import DistanceField
 from ._form import Form
 from ._look import Look, drawn
@@ -245,14 +245,11 @@ class Surface(Constant):
 
     def _once(self, make: Callable[[], _T], *key: Any) -> _T:
         """What was made for this key before, or what is made now and kept."""
-        kept: dict[tuple[Any, ...], Any] = self.__dict__.setdefault("_kept", {})
-        if key not in kept:
-            made = make()
-            while len(kept) >= _MOST_KEPT:
-                kept.pop(next(iter(kept)), None)
-            kept[key] = made
-        found: _T = kept[key]
-        return found
+        kept: dict[tuple[Any, ...], _T] = self.__dict__.setdefault("_kept", {})
+        made = kept[key] if key in kept else make()
+        while len(kept) >= _MOST_KEPT and key not in kept:
+            kept.pop(next(iter(kept)), None)
+        return kept.setdefault(key, made)
 
     @property
     def n_vertices(self) -> int:
@@ -300,8 +297,7 @@ class Surface(Constant):
 
         All results have finite numbers there, and NaN elsewhere.
         """
-        kept: NDArray[np.bool_] = self.repaired.from_input >= 0
-        return kept
+        return self.repaired.from_input >= 0
 
     def distances(
         self,
@@ -368,7 +364,7 @@ class Surface(Constant):
 
         Raises `PointError`.
         """
-        single = isinstance(b, (int, str, np.integer, EdgePoint, FacePoint))
+        single = isinstance(b, (str, EdgePoint, FacePoint)) or not isinstance(b, Iterable)
         [source] = _several(a, self.n_vertices)
         ends = _several(b, self.n_vertices)
         with running(call):
@@ -532,8 +528,7 @@ class Surface(Constant):
             areas = self._operators(kind)[1][own]
             masses = np.ones(self.n_vertices)
             masses[own] = areas
-            diagonal: sparse.dia_array = _sparse().diags_array(areas if repaired else masses)
-            return diagonal
+            return _sparse().diags_array(areas if repaired else masses)
 
     def _operators(self, kind: str) -> tuple[sparse.csr_array, Floats]:
         """The stiffness matrix, and the areas around the vertices."""
@@ -557,26 +552,13 @@ class Surface(Constant):
             if found < n:
                 values, functions, masses = _canonform.eigenbasis(self._inner, n)
                 found, basis = self.__dict__["_basis"] = n, Eigenbasis(values, on_vertices(functions, writeable=False), masses)
-            kept: Eigenbasis = basis if found == n else basis.first(n)
-            return kept
+            return basis if found == n else basis.first(n)
 
     def hks(
-        self,
-        times: ArrayLike | None = None,
-        *,
-        n_times: int = 16,
-        scaled: bool = False,
-        n_eigenfunctions: int = 100,
-        **call: Unpack[Call],
+        self, times: ArrayLike | None = None, *, n_times: int = 16, scaled: bool = False, n_eigenfunctions: int = 100, **call: Unpack[Call]
     ) -> VertexValues:
         """The heat kernel signature of every vertex, see `Eigenbasis.hks`. It is kept, and not writable."""
-        at = None if times is None else numbers("times", times, 0)
-
-        def made() -> VertexValues:
-            return self.eigenbasis(n_eigenfunctions).hks(at, n_times=n_times, scaled=scaled)
-
-        with running(call):
-            return self._once(made, "hks", None if at is None else at.tobytes(), n_times, scaled, n_eigenfunctions)
+        return self._kernels(Eigenbasis.hks, "times", times, n_eigenfunctions, call, n_times=n_times, scaled=scaled)
 
     def wks(
         self,
@@ -589,26 +571,26 @@ class Surface(Constant):
         **call: Unpack[Call],
     ) -> VertexValues:
         """The wave kernel signature of every vertex, see `Eigenbasis.wks`. It is kept, and not writable."""
-        at = None if energies is None else numbers("energies", energies)
+        return self._kernels(Eigenbasis.wks, "energies", energies, n_eigenfunctions, call, n_energies=n_energies, sigma=sigma, scaled=scaled)
 
-        def made() -> VertexValues:
-            return self.eigenbasis(n_eigenfunctions).wks(at, n_energies=n_energies, sigma=sigma, scaled=scaled)
-
+    def _kernels(
+        self, kind: Callable[..., VertexValues], name: str, at: ArrayLike | None, n: int, call: Call, **options: Any
+    ) -> VertexValues:
+        """Kernels, kept by their arguments."""
+        key = None if at is None else numbers(name, at).tobytes()
         with running(call):
-            return self._once(made, "wks", None if at is None else at.tobytes(), n_energies, sigma, scaled, n_eigenfunctions)
+            return self._once(lambda: kind(self.eigenbasis(n), at, **options), name, key, n, *options.values())
 
     @cached_property
     def _face_vectors(self) -> Floats:
         """The normal of each face, as long as twice its area."""
         a, b, c = (self.vertices[self.faces[:, corner]] for corner in range(3))
-        vectors: Floats = np.cross(b - a, c - a)
-        return vectors
+        return np.cross(b - a, c - a)
 
     @cached_property
     def areas(self) -> Floats:
         """The area of each face of the input, in squared mesh units: shape (m,)."""
-        areas: Floats = 0.5 * np.linalg.norm(self._face_vectors, axis=1)
-        return areas
+        return 0.5 * np.linalg.norm(self._face_vectors, axis=1)
 
     @cached_property
     def face_normals(self) -> VertexValues:
@@ -626,9 +608,7 @@ class Surface(Constant):
     @cached_property
     def edges(self) -> Ints:
         """The edges of the input as pairs of vertices, each once and in order: shape (k, 2)."""
-        sides = np.sort(self.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-        edges: Ints = np.unique(sides, axis=0)
-        return edges
+        return edges_of(self.faces)
 
     @cached_property
     def _slopes(self) -> Floats:
@@ -659,7 +639,7 @@ class Surface(Constant):
             matrix has empty rows, and the gradient is NaN.
         """
         if values is not None:
-            array = self._one_per_vertex(values)
+            array = numeric("values", values, (self.n_vertices,))
             return on_vertices(np.einsum("fk,fkx->fx", array[self.faces], self._slopes))
 
         def made() -> sparse.csr_array:
@@ -776,7 +756,7 @@ class Surface(Constant):
         >>> png[1:4]
         b'PNG'
         """
-        numbers = None if values is None else self._one_per_vertex(values)
+        numbers = None if values is None else numeric("values", values, (self.n_vertices,))
         return drawn(self.vertices, self.faces, numbers, look)
 
     def view(
@@ -795,13 +775,8 @@ class Surface(Constant):
         up
             The axis that points up.
         """
-        numbers = None if values is None else self._one_per_vertex(values)
+        numbers = None if values is None else numeric("values", values, (self.n_vertices,))
         return scene(self.vertices, self.faces, numbers, self._name or "Surface", name, whole("height", height, 40), up)
-
-    def _one_per_vertex(self, values: ArrayLike) -> Floats:
-        if np.shape(values) != (self.n_vertices,):
-            raise OptionError(f"values must be one number for each of the {self.n_vertices} vertices, not of shape {np.shape(values)}")
-        return numeric("values", values, (self.n_vertices,))
 
     def __repr__(self) -> str:
         name = f"{self._name!r}, " if self._name else ""
@@ -820,24 +795,13 @@ class Surface(Constant):
 
 def _several(points: Any, n_vertices: int) -> list[Any]:
     """Points one by one. A mask stands for the vertices where it is true."""
-    if isinstance(points, (EdgePoint, FacePoint)):
-        points = [points]
-    if not isinstance(points, (int, str, float, np.number, Iterable)):
-        raise PointError(f"{points!r} is not a point; give the number of a vertex")
-    if isinstance(points, (bool, np.bool_)):
-        raise PointError(f"{points} is not a point; give the number of a vertex")
-    if isinstance(points, (int, str, np.integer)):
-        return [points]
-    if isinstance(points, (float, np.floating)):
-        raise PointError(f"{points} is not a point; vertices have whole numbers")
-    unmasked("sources", points)
-    array = np.asarray(points) if isinstance(points, np.ndarray) or _is_mask(points) else None
-    if array is not None and array.dtype == bool:
-        if array.shape != (n_vertices,):
+    is_one = isinstance(points, (str, EdgePoint, FacePoint)) or not isinstance(points, Iterable)
+    points = [points] if is_one else points if isinstance(points, np.ndarray) else list(points)
+    if not is_one and (isinstance(points, np.ndarray) or any(isinstance(point, (bool, np.bool_)) for point in points)):
+        array = np.asarray(unmasked("sources", points))
+        if array.dtype == bool and array.shape != (n_vertices,):
             raise PointError(f"a mask of sources needs one value for each of the {n_vertices} vertices; it has shape {array.shape}")
-        points = np.flatnonzero(array).tolist()
-    elif array is not None:
-        points = array.ravel().tolist()
+        points = (np.flatnonzero(array) if array.dtype == bool else array.ravel()).tolist()
     try:
         return [str(point) if isinstance(point, (EdgePoint, FacePoint)) else point for point in points]
     except (TypeError, ValueError) as fault:
@@ -856,10 +820,6 @@ def _units(vectors: Floats) -> Floats:
     with np.errstate(invalid="ignore", divide="ignore"):
         units: Floats = vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
     return units
-
-
-def _is_mask(points: Any) -> bool:
-    return isinstance(points, (list, tuple)) and any(isinstance(point, (bool, np.bool_)) for point in points)
 
 
 AnyMesh: TypeAlias = Surface | str | os.PathLike[str] | ArrayLike | Any

@@ -47,18 +47,18 @@ class Shape(ByValue):
     faces: Ints
     rest: Floats | None = None
 
-    def true_map(self, other: Shape) -> Ints:
+    def true_map(self, other: Shape, **call: Unpack[Call]) -> Ints:
         """For each vertex, the vertex of another shape of the family that it truly corresponds to: shape (n,).
 
         Raises `OptionError` for shapes of different families, and of creatures.
         """
         if self.rest is None or other.rest is None or self.label != other.label:
             raise OptionError(f"{self.name} and {other.name} have no true map; give two shapes of one of the families cat, centaur, david and person")
-        near = Surface(other.rest, other.faces).closest_point(self.rest)
+        with running(call):
+            near = Surface(other.rest, other.faces).closest_point(self.rest)
         corners = other.faces[near.faces]
         nearest = np.linalg.norm(other.rest[corners] - near.points[:, None], axis=2).argmin(axis=1)
-        found: Ints = corners[np.arange(len(corners)), nearest]
-        return found
+        return corners[np.arange(len(corners)), nearest]
 
     def _state(self) -> dict[str, Any]:
         return {name: value for name, value in vars(self).items() if name != "_surface"}
