@@ -12,23 +12,23 @@ straight lines equal these distances (their *canonical forms*), and aligns, comp
 
 `Surface` holds a mesh and everything that was prepared on it. `method=` says how distances become coordinates, `geodesic=` how they are
 measured: a name, or an object such as `Nystrom` or `FastMarching` with the options of that method. Counts are called `n_...`. Calls that
-may take long take the keywords of `Call`: `progress`, `timeout`, `memory` and `threads`. `Index` is a searchable file of shapes. `NystromMDS` embeds any
-metric space (needs scikit-learn), and `canonform.distributed` builds indexes on several machines (needs Dask).
+may take long take the keywords of `Call`: `progress`, `timeout`, `memory` and `threads`. `Index` is a searchable file of shapes.
+`NystromMDS` embeds any metric space (needs scikit-learn), and `canonform.distributed` builds indexes on several machines (needs Dask).
 
 Arrays may be of any real type and layout. Vertices and faces are counted from 0, results are in the vertex order of the input, and
 lengths are in the units of the mesh. The same input, options and seed give the same numbers as the command line, for any number of
 threads.
+
+In all examples `cat` and `other` are surfaces, two poses of a cat, `best` is the best map from one to the other, and `index` is an index
+of three cats and three davids.
 """
 
 from __future__ import annotations
 
-import os as _os
 from typing import TYPE_CHECKING as _TYPE_CHECKING
 from typing import Any as _Any
-from typing import Unpack as _Unpack
 
 from . import datasets, errors
-from . import _canonform as _canonform
 from ._canonform import __version__, threads
 from ._arrays import VertexValues
 from ._compare import Alignment, Comparison, align, compare
@@ -39,15 +39,14 @@ from ._look import Look, figure
 from ._match import MappedPoints, Match, SurfaceMap, match
 from ._methods import FastMarching, KernelPca, Landmark, Nystrom, Smacof, Spectral
 from ._operators import ClosestPoints, EdgePoint, Eigenbasis, FacePoint
-from ._settings import Call, Shown
-from ._settings import whole as _whole
-from ._surface import Path, RepairedMesh, RepairReport, Surface, distance_methods, embedding_methods, signature_kinds
+from ._reference import complete as _complete
+from ._settings import Call, Shown, set_threads
+from ._surface import Path, RepairedMesh, RepairReport, Surface, distance_methods, embedding_methods, read, signature_kinds
 from ._view import SurfaceView
 from .errors import CanonformError
 
 if _TYPE_CHECKING:
     from . import distributed
-    from ._settings import Components, Weld
     from .learn import NystromMDS
 
 __all__ = [
@@ -103,19 +102,6 @@ __all__ = [
 ]
 
 
-def read(path: str | _os.PathLike[str], *, components: Components = "largest", weld: Weld = "seams", **call: _Unpack[Call]) -> Surface:
-    """Read and repair a mesh file; the same as `Surface(path)`."""
-    return Surface(path, components=components, weld=weld, **call)
-
-
-def set_threads(n: int) -> None:
-    """Set the number of worker threads, 0 for all cores, also of processes that are started from now on.
-
-    Otherwise the environment variables RAYON_NUM_THREADS and OMP_NUM_THREADS say it. Results do not depend on it.
-    """
-    _canonform.set_threads(_whole("n", n))
-
-
 def __getattr__(name: str) -> _Any:
     # These need scikit-learn and Dask, which not everybody has.
     if name == "NystromMDS":
@@ -128,3 +114,6 @@ def __getattr__(name: str) -> _Any:
 
         return import_module(".distributed", __name__)
     raise AttributeError(f"module 'canonform' has no attribute {name!r}")
+
+
+_complete([Surface, Index, *(globals()[name] for name in __all__ if name in globals()), *(getattr(datasets, name) for name in datasets.__all__)])

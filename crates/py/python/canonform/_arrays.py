@@ -18,6 +18,10 @@ class VertexValues(np.ndarray[Any, np.dtype[np.float64]]):
     """A number or a row for each vertex of the input, or for each face: NaN where there is no surface, infinite where nothing was reached.
 
     An array like others, but `max`, `min`, `argmax` and `argmin` pass over what is not finite.
+
+    >>> near = cat.distances(0, max_distance=20)
+    >>> near.max() <= 20 and bool(near.valid[near.argmax()])
+    True
     """
 
     _axis: ClassVar[int] = 0

@@ -69,6 +69,9 @@ class ShapeEntry:
         Its mesh file.
     n_vertices, n_faces
         The size of its mesh.
+
+    >>> index["cat0"].label, index["cat0"].n_vertices
+    ('cat', 1000)
     """
 
     id: str
@@ -106,6 +109,10 @@ class Result:
         The share of the area of the shape that the query has if it is taken as a part.
     form_distance
         What results are ordered by if they are ranked by canonical forms alone.
+
+    >>> result = index.search("cat0", k=1)[0]
+    >>> result.rank, result.id, result.label
+    (1, 'cat0', 'cat')
     """
 
     rank: int
@@ -134,6 +141,10 @@ class SearchResults(Stored, Sequence[Result]):
     ----------
     report
         The answer that `canonform search --json` prints.
+
+    >>> results = index.search(cat, k=2)
+    >>> results.label, [result.id for result in results]
+    ('cat', ['cat0', 'cat1'])
     """
 
     def __init__(self, report: dict[str, Any], query: Surface | str, name: str, index: _Surfaces) -> None:
@@ -196,7 +207,12 @@ class SearchResults(Stored, Sequence[Result]):
 
 
 class Scores(dict[str, Any]):
-    """How well classes are separated: the object that `canonform evaluate --json` prints, with `nn`, `ft`, `st`, `map`, ..."""
+    """How well classes are separated: the object that `canonform evaluate --json` prints, with `nn`, `ft`, `st`, `map`, ...
+
+    >>> scores = index.evaluate()
+    >>> scores["nn"], scores.to_pandas().shape
+    (1.0, (2, 2))
+    """
 
     def to_pandas(self) -> pandas.DataFrame:
         """How many shapes of each class, a row, were taken for each class, a column, by their neighbours."""
@@ -217,6 +233,11 @@ class Index(Stored):
     build_report
         What happened to each mesh when this object built or changed the index: the object that `canonform index build --json`
         prints.
+
+    >>> sorted(index)
+    ['cat0', 'cat1', 'cat2', 'david0', 'david1', 'david2']
+    >>> index.classify(other)
+    'cat'
     """
 
     def __init__(self, path: AnyPath) -> None:
@@ -287,12 +308,12 @@ class Index(Stored):
         max_vertices, timeout, memory
             Limits on each mesh; what exceeds them is left out.
 
-        Raises
-        ------
-        MeshError
-            If there are no meshes, or none of them can be described.
-        ShapeIndexError
-            If the file is not an index, or was made with other options.
+        Raises `MeshError` if there are no meshes, or none of them can be described.
+        Raises `ShapeIndexError` if the file is not an index, or was made with other options.
+
+        >>> shapes = canonform.datasets.generate("worm", poses=2, n_vertices=1000)
+        >>> len(canonform.Index.build(shapes, "worms.canonform"))
+        2
         """
         settings = options_of(
             n_landmarks=n_landmarks, n_points=n_points, size=size, method=method, geodesic=geodesic, components=components,
@@ -313,7 +334,20 @@ class Index(Stored):
 
     @classmethod
     def merge(cls, indexes: Iterable[AnyPath], path: AnyPath, **call: Unpack[Call]) -> Index:
-        """Merge indexes, for example those of shards, into one file, and open it."""
+        """Merge indexes, for example those of shards, into one file, and open it.
+
+        Parameters
+        ----------
+        indexes
+            Paths of indexes that were made with the same options.
+
+        Raises `ShapeIndexError` if they have other options, or different shapes of the same name.
+
+        >>> shapes = canonform.datasets.generate("worm", poses=2, n_vertices=1000)
+        >>> parts = [canonform.Index.build([shape], f"{shape.name}.canonform").path for shape in shapes]
+        >>> len(canonform.Index.merge(parts, "both.canonform"))
+        2
+        """
         with running(call):
             report = json.loads(_canonform.merge_indexes([os.fspath(index) for index in indexes], os.fspath(path)))
         index = cls(path)
@@ -341,6 +375,12 @@ class Index(Stored):
         replace
             Replace shapes that have the same name. Otherwise a shape of the same name with another content is an error, and nothing is
             added.
+
+        Raises `ShapeIndexError`, `OptionError` if a shape of the name has another content, or options contradict each other.
+
+        >>> worm = canonform.datasets.generate("worm", poses=1, n_vertices=1000)
+        >>> index.add(worm)["n_shapes"], index.remove("worm0")
+        (7, 6)
         """
         if label is not None and labels is not None:
             raise OptionError("label= has no effect with labels=; leave one of them out")
@@ -358,7 +398,18 @@ class Index(Stored):
         return self.build_report or {}
 
     def remove(self, ids: str | Iterable[str]) -> int:
-        """Remove shapes by name; none if one of the names is unknown. Returns how many shapes are left."""
+        """Remove shapes by name; none if one of the names is unknown. Returns how many shapes are left.
+
+        Parameters
+        ----------
+        ids
+            One name, or several.
+
+        Raises `NoSuchShapeError` if the index has no shape of this name.
+
+        >>> index.add({"copy": cat})["n_shapes"], index.remove(["copy"])
+        (7, 6)
+        """
         left = _canonform.Index.remove(self.path, [ids] if isinstance(ids, str) else [word("ids", id) for id in ids])
         self._reopen(None)
         return left
@@ -369,7 +420,18 @@ class Index(Stored):
     def search_many(
         self, queries: Iterable[AnyMesh], k: int = 10, *, rank: Ranking = "plain", explain: bool = False, **call: Unpack[Call]
     ) -> list[SearchResults]:
-        """Find the shapes nearest to each of several queries, as `search` does."""
+        """Find the shapes nearest to each of several queries, as `search` does.
+
+        Parameters
+        ----------
+        queries
+            Each as in `search`.
+
+        Raises `NoSuchShapeError`, `MeshError` if a query is neither a file, nor a shape of the index, nor a mesh.
+
+        >>> [results[0].id for results in index.search_many([other, "david0"], k=1)]
+        ['cat1', 'david0']
+        """
         with running(call):
             return [self.search(query, k, rank=rank, explain=explain) for query in queries]
 
@@ -390,6 +452,11 @@ class Index(Stored):
             canonical forms alone.
         explain
             Say how each result is related to the query, as `compare` does; reads the mesh files of the results.
+
+        Raises `NoSuchShapeError`, `MeshError` if the query is neither a file, nor a shape of the index, nor a mesh.
+
+        >>> index.search(other, k=3)[0].id
+        'cat1'
         """
         with running(call):
             shape = os.fspath(query) if isinstance(query, (str, os.PathLike)) else surface_of(query)
@@ -407,6 +474,9 @@ class Index(Stored):
         """The class of a query by the votes of the nearest shapes; None if no shape is near enough. `search` says why.
 
         A shape of the index, given by its name, has no vote about itself.
+
+        >>> index.classify("david1")
+        'david'
         """
         return self.search(query, 0, rank=rank, **call).label
 
@@ -433,6 +503,11 @@ class Index(Stored):
             "plain", or "graph" to score the ranking on the graph of nearest neighbours as well, under the key `graph`.
         labels
             Other classes, as in `build`.
+
+        Raises `OptionError` if options are not possible, or classes are not one for each shape.
+
+        >>> index.evaluate(by=index.distances(kind="fused"))["nn"]
+        1.0
         """
         ids = list(self)
         if labels is not None and not isinstance(labels, (str, os.PathLike, Mapping)):
@@ -470,11 +545,33 @@ class Index(Stored):
         return self._inner.vectors()
 
     def vector(self, id: str) -> NDArray[np.float32]:
-        """The fused signature of one shape."""
+        """The fused signature of one shape.
+
+        Parameters
+        ----------
+        id
+            The name of a shape.
+
+        Raises `NoSuchShapeError` if the index has no shape of this name.
+
+        >>> bool(np.array_equal(index.vector("cat0"), cat.signature()))
+        True
+        """
         return self._inner.vector(word("id", id))
 
     def nearest(self, vector: ArrayLike, k: int = 10, **call: Unpack[Call]) -> list[tuple[str, float]]:
-        """The shapes whose signatures are nearest to a vector, such as `Surface.signature()`: names and distances, nearest first."""
+        """The shapes whose signatures are nearest to a vector, such as `Surface.signature()`: names and distances, nearest first.
+
+        Parameters
+        ----------
+        vector
+            Shape (length,), as those of `vectors`.
+
+        Raises `ShapeIndexError` if the vector has another length.
+
+        >>> [name for name, distance in index.nearest(cat.signature(), 2)]
+        ['cat0', 'cat1']
+        """
         with running(call):
             return self._inner.nearest(numeric("vector", vector, ("d",), np.float32), whole("k", k))
 
@@ -500,13 +597,24 @@ class Index(Stored):
         Returns
         -------
         ndarray of shape (len(ids), len(others))
+
+        Raises `NoSuchShapeError` if the index has no shape of this name.
+
+        >>> index.distances(["cat0"], ["cat1", "david0"]).shape
+        (1, 2)
         """
         rows = list(self) if ids is None else [word("ids", id) for id in ids]
         with running(call):
             return self._inner.distances(rows, None if others is None else list(others), word("kind", kind))
 
     def surface(self, id: str, **call: Unpack[Call]) -> Surface:
-        """The surface of a shape. Its mesh file must be where it was, and unchanged."""
+        """The surface of a shape. Its mesh file must be where it was, and unchanged.
+
+        Raises `NoSuchShapeError`, `MissingFileError`, `ShapeIndexError` if the index has no such shape, or its mesh is gone or changed.
+
+        >>> index.surface("cat0").n_vertices
+        1000
+        """
         try:
             with running(call):
                 return Surface._of(self._inner.surface(word("id", id)), id)
@@ -545,6 +653,13 @@ class Index(Stored):
             Which file of a group is kept: "exact", "largest", "smallest", "oldest", "newest", or one in a folder.
         reference
             Folders and archives from which nothing is to be removed.
+
+        Raises `OptionError` if there is no such kind of relation.
+
+        >>> index.add({"copy": cat})["n_shapes"]
+        7
+        >>> [[member["id"] for member in group["members"]] for group in index.duplicates()], index.remove("copy")
+        ([['copy']], 6)
         """
         wanted = None if kinds is None else [word("kinds", kind) for kind in ([kinds] if isinstance(kinds, str) else kinds)]
         folders = [os.fspath(path) for path in reference]
@@ -556,6 +671,10 @@ class Index(Stored):
         """Write the index, the same however it was built. The extension tells the format: jsonl, parquet, npz or csv.
 
         With the extension lance, write its vectors to a table as `distributed.vector_table` does.
+
+        Raises `OptionError`, `FileError` if there is no such format, or the file cannot be written.
+
+        >>> index.export("shapes.csv")
         """
         if os.fspath(path).endswith(".lance"):
             from .distributed import vector_table

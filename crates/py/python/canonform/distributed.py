@@ -37,6 +37,7 @@ from . import _canonform, _vectors
 from ._arrays import Floats
 from ._index import AnyPath, Index, Labels, Meshes, SearchResults, _dataset, _label_file, in_files
 from ._methods import Embedding, Geodesic, options_of
+from ._reference import complete
 from ._settings import Call, Components, IndexDistance, Landmarks, Progress, Ranking, Weld, running, shown, whole, word
 from ._stored import Stored
 from ._surface import AnyMesh, Surface, surface_of
@@ -62,10 +63,15 @@ def batches_by_size(sizes: Sequence[int], n_batches: int, most: int = _MOST_IN_B
         The size of each item.
     n_batches
         About how many batches; more if they would hold more than `most` items, fewer if there are fewer items.
+    most
+        Most items of a batch.
 
     Returns
     -------
     list of lists of positions in `sizes`, those with the largest items first
+
+    >>> canonform.distributed.batches_by_size([5, 1, 1, 9], 2)
+    [[3], [0, 1, 2]]
     """
     target = max(sum(sizes) / max(n_batches, 1), 1)
     batches: list[list[int]] = []
@@ -124,11 +130,13 @@ def build_index(
         The folder of the small indexes; by default `out` with the ending `.shards`. Workers must see it. Other files in it stay.
     keep_shards
         Whether to keep these indexes when all is done, so that the next run describes only batches that have changed.
+    progress
+        As in `Call`.
 
-    Raises
-    ------
-    MeshError
-        If there are no meshes, or none of them can be described.
+    Raises `MeshError` if there are no meshes, or none of them can be described.
+
+    >>> canonform.distributed.build_index("meshes", client, "shapes.canonform")   # doctest: +SKIP
+    Index('shapes.canonform', 30 shapes)
     """
     settings = options_of(
         n_landmarks=n_landmarks, n_points=n_points, size=size, method=method, geodesic=geodesic, components=components,
@@ -216,6 +224,10 @@ def distance_matrix(
     Returns
     -------
     names of the shapes, and an array of shape (number of shapes, number of shapes), equal to `Index.distances`
+
+    Raises `OptionError` if an option is not possible.
+
+    >>> names, matrix = canonform.distributed.distance_matrix("shapes.canonform", client)   # doctest: +SKIP
     """
     if kind not in ("combined", "fused"):
         raise OptionError(f'kind="{kind}" is not possible: use "combined", "fused"')
@@ -255,6 +267,11 @@ def vector_table(shards: Iterable[AnyPath], table: AnyPath, *, client: Client | 
     -------
     `n_shapes`, `changed`: shapes that were written; `partitions`, `probes`: how many of them a search visits, 0 if it compares all;
     `recall`: the share of the ten nearest vectors that searches find, on queries that did not decide about it.
+
+    Raises `OptionError`, `ShapeIndexError` if an index of the table is left out, or two have a shape of the same name.
+
+    >>> canonform.distributed.vector_table(["shapes.canonform"], "shapes.lance")["n_shapes"]   # doctest: +SKIP
+    30
     """
     _vectors.lance_module()
     paths, uri = [os.path.abspath(path) for path in shards], os.path.abspath(table)
@@ -353,6 +370,11 @@ def search(
     Returns
     -------
     The results of `Index.search`; `report["recall"]` is the measured share of the ten nearest signatures that such a search finds.
+
+    Raises `OptionError`, `NoSuchShapeError` if an option is not possible, or the query is neither a file nor a shape of the table.
+
+    >>> canonform.distributed.search("shapes.lance", "cat.off")[0].id   # doctest: +SKIP
+    'cat0'
     """
     if rank == "graph":
         raise OptionError(
@@ -558,3 +580,6 @@ def _gathered(client: Client, tasks: list[Any], weights: Iterable[int], stage: s
             raise TimeLimitError(f"not finished within the time limit of {timeout:g} seconds; raise timeout=") from fault
         raise
     return [results[task.key] for task in tasks]
+
+
+complete([batches_by_size, build_index, distance_matrix, search, vector_table])

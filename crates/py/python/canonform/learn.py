@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _canonform
 from ._arrays import Floats, Ints
+from ._reference import complete
 from ._settings import Call, Landmarks, Regularization, running, unmasked, whole
 from .errors import CanonformError, OptionError
 
@@ -96,8 +97,6 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
     n_features_in_ : int
         Number of features of the points of the fit.
 
-    Examples
-    --------
     Distances along the arc of a circle, which are those of points on a line:
 
     >>> import numpy as np
@@ -142,7 +141,19 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         self.warm_start = warm_start
 
     def fit(self, X: Any, y: object = None, **call: Unpack[Call]) -> NystromMDS:
-        """Choose landmarks and embed the points X. y is ignored."""
+        """Choose landmarks and embed the points X.
+
+        Parameters
+        ----------
+        X, y
+            The points, as the metric takes them; y is ignored.
+
+        Raises `OptionError`, `LimitError` if points or parameters cannot be used, or a limit does not suffice.
+
+        >>> points = np.random.default_rng(0).normal(size=(100, 3))
+        >>> canonform.NystromMDS(20).fit(points).embedding_.shape
+        (100, 3)
+        """
         with _refused(), running(call):
             return self._fitted(X)
 
@@ -170,13 +181,27 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         return self
 
     def fit_transform(self, X: Any, y: object = None, **call: Unpack[Call]) -> Floats:
-        """Embed the points X, and return their coordinates: shape (n, n_components)."""
+        """Embed the points X, and return their coordinates: shape (n, n_components).
+
+        >>> points = np.random.default_rng(0).normal(size=(100, 3))
+        >>> canonform.NystromMDS(20).fit_transform(points).shape
+        (100, 3)
+        """
         return self.fit(X, **call).embedding_
 
     def transform(self, X: Any, **call: Unpack[Call]) -> Floats:
         """Place points in the embedding, from their distances to the landmarks: shape (len(X), n_components).
 
         Points of the fit get their coordinates in `embedding_`, up to rounding.
+
+        Parameters
+        ----------
+        X
+            Points, or their distances to those of the fit or to the landmarks, as the metric takes them.
+
+        >>> points = np.random.default_rng(0).normal(size=(100, 3))
+        >>> canonform.NystromMDS(20).fit(points).transform(points[:5]).shape
+        (5, 3)
         """
         check_is_fitted(self)
         with _refused(), running(call):
@@ -316,3 +341,6 @@ class _Landmarks:
                 # The other points repeat landmarks, up to the rounding of Euclidean distances by scikit-learn.
                 self._is_complete = not self._nearest[self._next] > _ROUNDING * columns[:, 0].max()
         self._columns = columns[:, : len(self._taken)]
+
+
+complete([NystromMDS])
