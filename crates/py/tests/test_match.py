@@ -11,9 +11,9 @@ from canonform.datasets import Shape
 from canonform.errors import OptionError, PointError
 
 
-def test_both_maps_of_a_symmetric_pair_are_found(cats: list[Shape]) -> None:
+def test_both_maps_of_a_symmetric_pair_are_found(cats: list[Shape], cat_match: canonform.Match) -> None:
     a, b = (shape.surface() for shape in cats)
-    found = canonform.match(a, b)
+    found = cat_match
     assert [m.kind for m in found.maps] in (["direct", "mirrored"], ["mirrored", "direct"])
     for m in found.maps:
         assert m.vertices.shape == (a.n_vertices,) and m.vertices.dtype == np.int64
@@ -39,9 +39,9 @@ def test_a_surface_matches_itself_and_carries_its_own_values(cat: Shape) -> None
         np.testing.assert_array_equal(m.transfer(np.arange(surface.n_faces), to), np.arange(surface.n_faces))
 
 
-def test_values_labels_and_points_are_carried_both_ways(cats: list[Shape]) -> None:
+def test_values_labels_and_points_are_carried_both_ways(cats: list[Shape], cat_match: canonform.Match) -> None:
     a, b = (shape.surface() for shape in cats)
-    m = next(m for m in canonform.match(a, b).maps if m.kind == "direct")
+    m = next(m for m in cat_match.maps if m.kind == "direct")
     np.testing.assert_allclose(m.transfer(np.full(a.n_vertices, 2.5)), 2.5)
     there = m.transfer(a.vertices)
     back = m.transfer(there, to="a")
@@ -68,9 +68,9 @@ def test_values_labels_and_points_are_carried_both_ways(cats: list[Shape]) -> No
         m.transfer(names, to="c")  # type: ignore[arg-type]
 
 
-def test_the_functional_map_takes_coefficients_to_each_other(cats: list[Shape]) -> None:
+def test_the_functional_map_takes_coefficients_to_each_other(cats: list[Shape], cat_match: canonform.Match) -> None:
     a, b = (shape.surface() for shape in cats)
-    m = canonform.match(a, b).best
+    m = cat_match.best
     k = 40
     phi, psi = m.bases(k)
     assert phi.functions.shape == (a.n_vertices, k)
@@ -85,9 +85,9 @@ def test_the_functional_map_takes_coefficients_to_each_other(cats: list[Shape]) 
         m.bases(1000)
 
 
-def test_landmarks_initial_maps_and_descriptors(cats: list[Shape]) -> None:
+def test_landmarks_initial_maps_and_descriptors(cats: list[Shape], cat_match: canonform.Match) -> None:
     a, b = (shape.surface() for shape in cats)
-    direct, mirrored = sorted(canonform.match(a, b).maps, key=lambda m: m.kind)
+    direct, mirrored = sorted(cat_match.maps, key=lambda m: m.kind)
     # Where the maps are farthest apart.
     far = int(np.linalg.norm(b.vertices[direct.vertices] - b.vertices[mirrored.vertices], axis=1).argmax())
     for m in (direct, mirrored):
@@ -120,9 +120,9 @@ def test_landmarks_initial_maps_and_descriptors(cats: list[Shape]) -> None:
         canonform.match(a, b, descriptors=(side, np.c_[there, there]))
 
 
-def test_a_map_has_an_inverse_and_maps_follow_each_other(cats: list[Shape]) -> None:
+def test_a_map_has_an_inverse_and_maps_follow_each_other(cats: list[Shape], cat_match: canonform.Match) -> None:
     a, b = (shape.surface() for shape in cats)
-    forth = next(m for m in canonform.match(a, b).maps if m.kind == "direct")
+    forth = next(m for m in cat_match.maps if m.kind == "direct")
     back = forth.inverse()
     assert back.vertices.shape == back.vertex_confidence.shape == (b.n_vertices,)
     round_trip = forth.then(back)

@@ -39,9 +39,8 @@ def checked(html: str) -> list[bytes]:
     return pictures
 
 
-def test_every_result_has_a_view(cats: list[Shape], collection: Path, tmp_path: Path) -> None:
+def test_every_result_has_a_view(cats: list[Shape], index: Index) -> None:
     a, b = (shape.surface() for shape in cats)
-    index = Index.build(collection, tmp_path / "i.canonform")
     for shown, n_pictures in [
         (cats[0], 1),
         (a, 1),

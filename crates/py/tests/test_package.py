@@ -6,6 +6,7 @@ import ast
 import doctest
 import inspect
 import re
+import shutil
 import subprocess
 import sys
 import textwrap
@@ -27,12 +28,13 @@ SOURCE = ROOT / "crates" / "py" / "python" / "canonform"
 MODULES = sorted(path.stem for path in SOURCE.glob("*.py") if path.stem != "__init__")
 
 
-def test_examples_in_docstrings_run(cats: list[Shape], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_examples_in_docstrings_run(
+    cats: list[Shape], cat_match: canonform.Match, index: canonform.Index, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
-    shapes = canonform.datasets.generate(["cat", "david"], poses=3, n_vertices=1000)
     cat, other = (shape.surface() for shape in cats)
-    index = canonform.Index.build(shapes, "shapes.canonform", keep_meshes=True)
-    scope = {"canonform": canonform, "np": np, "cat": cat, "other": other, "best": canonform.match(cat, other).best, "index": index}
+    index = canonform.Index(shutil.copy(index.path, "shapes.canonform"))
+    scope = {"canonform": canonform, "np": np, "cat": cat, "other": other, "best": cat_match.best, "index": index}
     before = canonform.threads()
     for module in [canonform, *(import_module(f"canonform.{name}") for name in MODULES)]:
         failed, _ = doctest.testmod(module, extraglobs=scope, optionflags=doctest.ELLIPSIS)
@@ -50,25 +52,15 @@ def test_the_readme_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
         exec(compile(block, "README.md", "exec"), scope)
 
 
-def test_types_hold() -> None:
-    pytest.importorskip("mypy")
-    done = _mypy(SOURCE)
-    assert done.returncode == 0, done.stdout + done.stderr
-
-
-def _mypy(*arguments: object) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "mypy", "--config-file", ROOT / "crates" / "py" / "pyproject.toml", *arguments]
-    return subprocess.run(list(map(str, command)), capture_output=True, text=True, cwd=ROOT / "crates" / "py")
-
-
-def test_mypy_finds_wrong_names(tmp_path: Path) -> None:
-    """The lines that end in "# wrong" fail, and no others."""
+def test_types_hold_and_wrong_names_are_found(tmp_path: Path) -> None:
+    """The lines that end in "# wrong" fail, and no others, here or in the package."""
     pytest.importorskip("mypy")
     snippet = tmp_path / "snippet.py"
     snippet.write_text(WRONG_AND_RIGHT)
-    done = _mypy("--cache-dir", tmp_path / "cache", snippet)
-    found = {int(number) for number in re.findall(r"^.*snippet\.py:(\d+): error", done.stdout, re.M)}
-    expected = {i + 1 for i, line in enumerate(WRONG_AND_RIGHT.splitlines()) if line.endswith("# wrong")}
+    command = [sys.executable, "-m", "mypy", "--config-file", ROOT / "crates" / "py" / "pyproject.toml", SOURCE, snippet]
+    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, cwd=ROOT / "crates" / "py")
+    found = {(Path(path).name, int(number)) for path, number in re.findall(r"^(.*?):(\d+): error", done.stdout, re.M)}
+    expected = {("snippet.py", i + 1) for i, line in enumerate(WRONG_AND_RIGHT.splitlines()) if line.endswith("# wrong")}
     assert found == expected, done.stdout + done.stderr
 
 

@@ -20,7 +20,7 @@ lengths are in the units of the mesh. The same input, options and seed give the 
 threads.
 
 In all examples `cat` and `other` are surfaces, two poses of a cat, `best` is the best map from one to the other, and `index` is an index
-of three cats and three davids.
+of three cats, three centaurs and three davids.
 """
 
 from __future__ import annotations

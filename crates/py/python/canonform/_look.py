@@ -158,7 +158,7 @@ def figure(
         raise OptionError(f"{len(names)} titles for {len(files)} pictures are not possible: give pictures, and one title for each, or none")
     sizes = np.array([struct.unpack(">II", file[16:24].rjust(8, b"\0")) for file in files])
     cell = sizes.max(axis=0)
-    type_size = max(11.0, 0.05 * float(cell.min()))
+    type_size = float(np.clip(0.05 * cell.min(), 11, 22))
     cell[1] += int(2 * type_size) if names else 0
     if at is None:
         columns = min(len(files), 4) if n_columns is None else min(whole("n_columns", n_columns, 1), len(files))
