@@ -26,6 +26,10 @@ class VertexValues(np.ndarray[Any, np.dtype[np.float64]]):
 
     _axis: ClassVar[int] = 0
 
+    def __array_wrap__(self, array: Any, context: Any = None, return_scalar: bool = False) -> Any:
+        # Sums and means are numbers, as those of other arrays.
+        return array.view(type(self)) if array.ndim else array[()]
+
     @property
     def valid(self) -> NDArray[np.bool_]:
         """Which vertices, or faces, have finite numbers: a mask."""

@@ -491,8 +491,6 @@ def match(
         column for each function.
     n_eigenfunctions
         Most eigenfunctions of each surface that the map is refined with, 150 by default.
-    geodesic
-        How distances are measured, as in `Surface.distances`.
 
     Raises `OptionError` if an option is not possible, or landmarks contradict each other.
 

@@ -501,8 +501,6 @@ class Surface(Constant):
             "smacof"; or one of `Nystrom`, `Landmark`, `Spectral`, `KernelPca`, `Smacof` with options.
         n_components
             Dimensions of the embedding.
-        geodesic
-            How distances are measured, as in `distances`.
         stress
             From which distances the stress is found: "exact" measures those between all pairs of vertices, "estimate" those of 100
             vertices to all others, "skip" none. "auto" is exact where the method measures all pairs anyway;
