@@ -34,7 +34,7 @@ def test_examples_in_docstrings_run(
     monkeypatch.chdir(tmp_path)
     cat, other = (shape.surface() for shape in cats)
     index = canonform.Index(shutil.copy(index.path, "shapes.canonform"))
-    scope = {"canonform": canonform, "np": np, "cat": cat, "other": other, "best": cat_match.best, "index": index}
+    scope = {"canonform": canonform, "np": np, "cat": cat, "other": other, "found": cat_match, "index": index}
     before = canonform.threads()
     for module in [canonform, *(import_module(f"canonform.{name}") for name in MODULES)]:
         failed, _ = doctest.testmod(module, extraglobs=scope, optionflags=doctest.ELLIPSIS)

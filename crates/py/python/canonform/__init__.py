@@ -19,7 +19,7 @@ Arrays may be of any real type and layout. Vertices and faces are counted from 0
 lengths are in the units of the mesh. The same input, options and seed give the same numbers as the command line, for any number of
 threads.
 
-In all examples `cat` and `other` are surfaces, two poses of a cat, `best` is the best map from one to the other, and `index` is an index
+In all examples `cat` and `other` are surfaces, two poses of a cat, `found` the maps from one to the other, and `index` is an index
 of three cats, three centaurs and three davids.
 """
 
@@ -50,56 +50,13 @@ if _TYPE_CHECKING:
     from .learn import NystromMDS
 
 __all__ = [
-    "Alignment",
-    "Call",
-    "CanonformError",
-    "ClosestPoints",
-    "Comparison",
-    "DistanceField",
-    "EdgePoint",
-    "Eigenbasis",
-    "FacePoint",
-    "FastMarching",
-    "Form",
-    "Index",
-    "KernelPca",
-    "Landmark",
-    "Look",
-    "MappedPoints",
-    "Match",
-    "Nystrom",
-    "NystromMDS",
-    "PairDistance",
-    "PairDistances",
-    "Path",
-    "RepairReport",
-    "RepairedMesh",
-    "Result",
-    "Scores",
-    "SearchResults",
-    "ShapeEntry",
-    "Shown",
-    "Smacof",
-    "Spectral",
-    "Surface",
-    "SurfaceMap",
-    "SurfaceView",
-    "VertexValues",
-    "__version__",
-    "align",
-    "compare",
-    "datasets",
-    "distance_methods",
-    "distributed",
-    "embedding_methods",
-    "errors",
-    "figure",
-    "match",
-    "read",
-    "set_threads",
-    "signature_kinds",
+    "Alignment", "Call", "CanonformError", "ClosestPoints", "Comparison", "DistanceField", "EdgePoint", "Eigenbasis", "FacePoint",
+    "FastMarching", "Form", "Index", "KernelPca", "Landmark", "Look", "MappedPoints", "Match", "Nystrom", "NystromMDS", "PairDistance",
+    "PairDistances", "Path", "RepairReport", "RepairedMesh", "Result", "Scores", "SearchResults", "ShapeEntry", "Shown", "Smacof",
+    "Spectral", "Surface", "SurfaceMap", "SurfaceView", "VertexValues", "__version__", "align", "compare", "datasets",
+    "distance_methods", "distributed", "embedding_methods", "errors", "figure", "match", "read", "set_threads", "signature_kinds",
     "threads",
-]
+]  # fmt: skip
 
 
 def __getattr__(name: str) -> _Any:

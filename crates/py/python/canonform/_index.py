@@ -21,21 +21,8 @@ from . import _canonform, _html
 from ._arrays import Floats, Ints, mesh_of, numeric, straight
 from ._methods import Embedding, Geodesic, options_of
 from ._settings import (
-    Call,
-    Components,
-    IndexDistance,
-    Landmarks,
-    Ranking,
-    RelationKind,
-    Shown,
-    SignatureKind,
-    Weld,
-    number,
-    running,
-    warned,
-    whole,
-    word,
-)
+    Call, Components, IndexDistance, Landmarks, Ranking, RelationKind, Shown, SignatureKind, Weld, number, running, warned, whole, word,
+)  # fmt: skip
 from ._stored import Stored
 from ._surface import AnyMesh, Surface, surface_of
 from .datasets import Shape
@@ -309,9 +296,8 @@ class Index(Stored):
         Raises `MeshError` if there are no meshes, or none of them can be described.
         Raises `ShapeIndexError` if the file is not an index, or was made with other options.
 
-        >>> shapes = canonform.datasets.generate("worm", poses=2, n_vertices=1000)
-        >>> len(canonform.Index.build(shapes, "worms.canonform"))
-        2
+        >>> canonform.Index.build({"tom": cat}, "cats.canonform", labels=["cat"])["tom"].label
+        'cat'
         """
         settings = options_of(
             n_landmarks=n_landmarks, n_points=n_points, size=size, method=method, geodesic=geodesic, components=components,
@@ -341,10 +327,10 @@ class Index(Stored):
 
         Raises `ShapeIndexError` if they have other options, or different shapes of the same name.
 
-        >>> shapes = canonform.datasets.generate("worm", poses=2, n_vertices=1000)
-        >>> parts = [canonform.Index.build([shape], f"{shape.name}.canonform").path for shape in shapes]
-        >>> len(canonform.Index.merge(parts, "both.canonform"))
-        2
+        >>> worm = canonform.datasets.generate("worm", poses=1, n_vertices=1000)
+        >>> other = canonform.Index.build(worm, "worm.canonform")
+        >>> len(canonform.Index.merge([index.path, other.path], "both.canonform"))
+        10
         """
         with running(call):
             report = json.loads(_canonform.merge_indexes([os.fspath(index) for index in indexes], os.fspath(path)))
@@ -376,8 +362,7 @@ class Index(Stored):
 
         Raises `ShapeIndexError`, `OptionError` if a shape of the name has another content, or options contradict each other.
 
-        >>> worm = canonform.datasets.generate("worm", poses=1, n_vertices=1000)
-        >>> index.add(worm)["n_shapes"], index.remove("worm0")
+        >>> index.add([("tom", cat, "cat")])["n_shapes"], index.remove("tom")
         (10, 9)
         """
         if label is not None and labels is not None:

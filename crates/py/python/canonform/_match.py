@@ -45,7 +45,7 @@ class MappedPoints(ByValue):
     weights
         The weights of these vertices, with sum 1; NaN for dropped vertices: shape (n, 3).
 
-    >>> points = best.points()
+    >>> points = found.best.points()
     >>> points.interpolate(other.vertices).shape
     (1000, 3)
     """
@@ -75,7 +75,7 @@ class MappedPoints(ByValue):
 
         Raises `OptionError` if there is not one row for each vertex.
 
-        >>> best.points().interpolate(other.distances(0)).shape
+        >>> found.best.points().interpolate(other.distances(0)).shape
         (1000,)
         """
         sides = ("m",) if np.ndim(values) == 1 else ("m", "d")
@@ -115,7 +115,7 @@ class SurfaceMap(Stored):
     part
         "first" or "second", the surface that is a part of the other; `None` if both are mapped as wholes.
 
-    >>> best.vertices.shape, best.kind in ("direct", "mirrored")
+    >>> found.best.vertices.shape, found.best.kind in ("direct", "mirrored")
     ((1000,), True)
     """
 
@@ -159,7 +159,7 @@ class SurfaceMap(Stored):
 
         Raises `OptionError` if the map has fewer eigenfunctions.
 
-        >>> best.functional(20).shape
+        >>> found.best.functional(20).shape
         (20, 20)
         """
         if bases is not None:
@@ -174,7 +174,7 @@ class SurfaceMap(Stored):
 
         Raises `OptionError` if the map has fewer eigenfunctions.
 
-        >>> a, b = best.bases(20)
+        >>> a, b = found.best.bases(20)
         >>> len(a), len(b)
         (20, 20)
         """
@@ -206,7 +206,7 @@ class SurfaceMap(Stored):
 
         Raises `OptionError` if `of` is neither.
 
-        >>> best.points("b")
+        >>> found.best.points("b")
         MappedPoints(1000 points)
         """
         with running(call):
@@ -253,7 +253,7 @@ class SurfaceMap(Stored):
 
         Raises `OptionError` if there is not one row for each vertex or face.
 
-        >>> best.transfer(cat.distances(0)).shape
+        >>> found.best.transfer(cat.distances(0)).shape
         (1000,)
         """
         with running(call):
@@ -306,7 +306,7 @@ class SurfaceMap(Stored):
 
         Raises `OptionError` if the maps do not share a surface, or one is of a part.
 
-        >>> best.then(best.inverse()).vertices.shape
+        >>> found.best.then(found.best.inverse()).vertices.shape
         (1000,)
         """
         middle, start = self._shapes[1], next._shapes[0]
@@ -381,7 +381,6 @@ class Match(Stored):
     seconds
         The time of the search, after both surfaces were prepared.
 
-    >>> found = canonform.match(cat, other, n_eigenfunctions=30)
     >>> found.best is found.maps[0]
     True
     """
@@ -428,7 +427,7 @@ class Match(Stored):
 
         Raises `OptionError` if there is no map of this kind.
 
-        >>> canonform.match(cat, other, n_eigenfunctions=30).picture(n_lines=4, width=80)[1:4]
+        >>> found.picture(n_lines=4, width=80)[1:4]
         b'PNG'
         """
         chosen = [m for m in self.maps if kind in (None, m.kind)]

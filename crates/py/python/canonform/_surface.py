@@ -20,22 +20,9 @@ from ._look import Look, drawn
 from ._methods import Embedding, Geodesic, options_of
 from ._operators import ClosestPoints, EdgePoint, Eigenbasis, FacePoint, parsed
 from ._settings import (
-    Call,
-    Components,
-    Landmarks,
-    LaplacianKind,
-    SignatureKind,
-    StressChoice,
-    Weld,
-    number,
-    numbers,
-    running,
-    some_whole,
-    unmasked,
-    warned,
-    whole,
-    word,
-)
+    Call, Components, Landmarks, LaplacianKind, SignatureKind, StressChoice, Weld, number, numbers, running, some_whole, unmasked,
+    warned, whole, word,
+)  # fmt: skip
 from ._stored import AsArray, ByValue, Constant
 from ._view import SurfaceView, scene
 from .errors import MeshError, OptionError, PointError, SurfaceLossWarning
@@ -354,12 +341,7 @@ class Surface(Constant):
             return on_vertices(self._inner.distances(points, options_of(geodesic=geodesic), number("max_distance", max_distance, 0)))
 
     def distances_many(
-        self,
-        sources: Iterable[Point],
-        *,
-        geodesic: Geodesic = "fast-marching",
-        max_distance: float = np.inf,
-        **call: Unpack[Call],
+        self, sources: Iterable[Point], *, geodesic: Geodesic = "fast-marching", max_distance: float = np.inf, **call: Unpack[Call]
     ) -> SourceRows:
         """Distances from each source on its own, computed in parallel. Row i equals `distances(sources[i])`.
 
@@ -415,12 +397,7 @@ class Surface(Constant):
         return found[0] if single else found
 
     def farthest_points(
-        self,
-        n_points: int,
-        *,
-        first: int | None = None,
-        geodesic: Geodesic = "fast-marching",
-        **call: Unpack[Call],
+        self, n_points: int, *, first: int | None = None, geodesic: Geodesic = "fast-marching", **call: Unpack[Call]
     ) -> Ints:
         """Vertices spread evenly over the surface, each the farthest from those before it.
 
@@ -447,12 +424,7 @@ class Surface(Constant):
             return self._inner.farthest_points(whole("n_points", n_points), some_whole("first", first), options_of(geodesic=geodesic))
 
     def distance_field(
-        self,
-        n_landmarks: int = 100,
-        *,
-        rank: int | None = None,
-        geodesic: Geodesic = "fast-marching",
-        **call: Unpack[Call],
+        self, n_landmarks: int = 100, *, rank: int | None = None, geodesic: Geodesic = "fast-marching", **call: Unpack[Call]
     ) -> DistanceField:
         """The distances between all pairs of vertices, with bounds, in little memory.
 

@@ -202,13 +202,7 @@ def build_index(
 
 
 def distance_matrix(
-    index: Index | AnyPath,
-    client: Client,
-    *,
-    kind: IndexDistance = "combined",
-    block: int = 64,
-    retries: int = 3,
-    **call: Unpack[Call],
+    index: Index | AnyPath, client: Client, *, kind: IndexDistance = "combined", block: int = 64, retries: int = 3, **call: Unpack[Call]
 ) -> tuple[list[str], Floats]:
     """Distances between all pairs of shapes of an index, on the workers of a Dask client.
 

@@ -13,21 +13,9 @@ PointError vertex 5000 does not exist; the mesh has 1996 faces and 1000 vertices
 from __future__ import annotations
 
 __all__ = [
-    "CanonformError",
-    "EmbeddingError",
-    "FileError",
-    "LimitError",
-    "MemoryLimitError",
-    "MeshError",
-    "MissingFileError",
-    "NoSuchShapeError",
-    "OptionError",
-    "PointError",
-    "ShapeIndexError",
-    "SkippedMeshWarning",
-    "SurfaceLossWarning",
-    "TimeLimitError",
-]
+    "CanonformError", "EmbeddingError", "FileError", "LimitError", "MemoryLimitError", "MeshError", "MissingFileError",
+    "NoSuchShapeError", "OptionError", "PointError", "ShapeIndexError", "SkippedMeshWarning", "SurfaceLossWarning", "TimeLimitError",
+]  # fmt: skip
 
 
 class CanonformError(Exception):
