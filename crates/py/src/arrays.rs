@@ -4,7 +4,7 @@ use canonform::linalg::Matrix;
 use canonform::mesh::TriMesh;
 use canonform::surface::VertexId;
 use nalgebra::Point3;
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::error::Exception;
@@ -55,6 +55,13 @@ pub(crate) fn matrix(
 /// A vector, without a copy.
 pub(crate) fn vector(py: Python<'_>, values: Vec<f64>) -> Bound<'_, PyArray1<f64>> {
     values.into_pyarray(py)
+}
+
+/// A matrix of the library from an array, whatever its layout.
+pub(crate) fn matrix_of(array: &PyReadonlyArray2<'_, f64>) -> Matrix {
+    let [rows, columns] = [array.shape()[0], array.shape()[1]];
+    let array = array.as_array();
+    Matrix::from_fn(rows, columns, |i, j| array[(i, j)])
 }
 
 /// A matrix of the library.

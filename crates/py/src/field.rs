@@ -9,7 +9,7 @@ use pyo3::types::PyBytes;
 
 use crate::arrays;
 use crate::error::Exception;
-use crate::points::vertex;
+use crate::points::{vertex, vertex_of};
 use crate::record::json;
 use crate::run::run;
 use crate::settings::Settings;
@@ -31,15 +31,8 @@ type Answers<'py> = (
 );
 
 /// `None` finishes no pair.
-fn finish(tolerance: Option<f64>) -> PyResult<Finish> {
-    match tolerance {
-        None => Ok(Finish::Never),
-        Some(share) if share >= 0.0 => Ok(Finish::Beyond(share)),
-        Some(other) => {
-            let message = format!("tolerance={other} is not possible: give a share such as 0.05, or None");
-            Err(Exception::Option.with(&message))
-        }
-    }
+fn finish(tolerance: Option<f64>) -> Finish {
+    tolerance.map_or(Finish::Never, Finish::Beyond)
 }
 
 fn answers<'py>(py: Python<'py>, found: &[PairDistance]) -> Answers<'py> {
@@ -117,7 +110,7 @@ impl DistanceField {
         tolerance: Option<f64>,
     ) -> PyResult<Answers<'py>> {
         debug_assert_eq!(pairs.shape()[1], 2);
-        let finish = finish(tolerance)?;
+        let finish = finish(tolerance);
         let rows = pairs.as_slice()?.as_chunks::<2>().0.iter();
         let pairs = rows.map(|[a, b]| Ok([vertex(*a)?, vertex(*b)?])).collect::<PyResult<Vec<_>>>()?;
         let found = run(py, |observer| Ok(self.0.pairs(&pairs, finish, observer)?))?;
@@ -125,15 +118,25 @@ impl DistanceField {
     }
 
     /// The distances from one vertex to all.
-    fn row<'py>(&self, py: Python<'py>, source: i64, tolerance: Option<f64>) -> PyResult<Answers<'py>> {
-        let (source, finish) = (vertex(source)?, finish(tolerance)?);
+    fn row<'py>(
+        &self,
+        py: Python<'py>,
+        source: &Bound<'py, PyAny>,
+        tolerance: Option<f64>,
+    ) -> PyResult<Answers<'py>> {
+        let (source, finish) = (vertex_of(source)?, finish(tolerance));
         let found = run(py, |observer| Ok(self.0.row(source, finish, observer)?))?;
         Ok(answers(py, &found))
     }
 
     /// The nearest vertices, and their distances.
-    fn nearest<'py>(&self, py: Python<'py>, source: i64, k: usize) -> PyResult<Neighbours<'py>> {
-        let source = vertex(source)?;
+    fn nearest<'py>(
+        &self,
+        py: Python<'py>,
+        source: &Bound<'py, PyAny>,
+        k: usize,
+    ) -> PyResult<Neighbours<'py>> {
+        let source = vertex_of(source)?;
         let found = run(py, |observer| Ok(self.0.nearest(source, k, observer)?))?;
         let (vertices, distances): (Vec<i64>, Vec<f64>) =
             found.iter().map(|pair| (i64::from(pair.b.0), pair.distance)).unzip();

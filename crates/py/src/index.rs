@@ -1,6 +1,7 @@
 //! Indexes of shape collections.
 
 use std::collections::{BTreeMap, HashSet};
+use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
 
 use canonform::collection::{LabelSource, ShapeFile, content_hash};
@@ -54,7 +55,7 @@ enum Wanted<'py> {
 }
 
 /// Name, class, path, and numbers of vertices and faces of a shape.
-type ListedShape = (String, String, PathBuf, u64, u64);
+type ListedShape = (String, String, OsString, u64, u64);
 
 fn search_options(k: usize, rank: &str, explain: bool) -> PyResult<SearchOptions> {
     Ok(SearchOptions { k, explain, rank_by: chosen("rank", rank)? })
@@ -260,8 +261,8 @@ impl Index {
     }
 
     #[getter]
-    fn path(&self) -> PathBuf {
-        self.path.clone()
+    fn path(&self) -> &OsStr {
+        self.path.as_os_str()
     }
 
     #[getter]
@@ -376,7 +377,7 @@ impl Index {
 
 impl Index {
     fn listed(&self, Entry { id, label, path, facts, .. }: Entry) -> ListedShape {
-        (id, label, mesh_path(&self.path, &path), facts.vertices, facts.faces)
+        (id, label, mesh_path(&self.path, &path).into_os_string(), facts.vertices, facts.faces)
     }
 
     /// The path of a mesh that this index states.

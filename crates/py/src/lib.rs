@@ -51,9 +51,9 @@ mod _canonform {
     #[pymodule_export]
     use crate::operators::{closest_points, eigenbasis, laplacian, log_map};
     #[pymodule_export]
-    use crate::picture::{draw, scene_page};
+    use crate::picture::{draw, figure, scene_page, scene_scripts};
     #[pymodule_export]
-    use crate::run::{begin_call, end_call, set_threads, threads};
+    use crate::run::{begin_call, check_call, end_call, set_threads, threads};
     #[pymodule_export]
     use crate::settings::{
         check_options, distance_methods, embedding_methods, mesh_formats, signature_kinds,

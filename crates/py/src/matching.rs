@@ -1,15 +1,13 @@
 //! Maps between surfaces.
 
 use canonform::descriptors::Side;
-use canonform::linalg::Matrix;
 use canonform::maps::{CorrespondOptions, KnownMap, Mapping, PointMap, VertexMap, correspond, score_map};
 use canonform::surface::VertexId;
-use numpy::PyUntypedArrayMethods;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use report::color::{perceptual, place_colors};
 
-use crate::arrays;
+use crate::arrays::{self, matrix_of};
 use crate::operators::{Eigenpairs, eigenpairs};
 use crate::points::vertex;
 use crate::record::json;
@@ -40,11 +38,6 @@ fn pairs_of(pairs: &Pairs<'_>) -> PyResult<Vec<[VertexId; 2]>> {
     pairs.map(|[a, b]| Ok([vertex(*a)?, vertex(*b)?])).collect()
 }
 
-fn matrix_of(values: &PyReadonlyArray2<'_, f64>) -> PyResult<Matrix> {
-    let [rows, columns] = [values.shape()[0], values.shape()[1]];
-    Ok(Matrix::from_row_slice(rows, columns, values.as_slice()?))
-}
-
 /// Numbers of vertices; -1 stands for none.
 fn partners_of(numbers: &PyReadonlyArray1<'_, i64>) -> PyResult<Vec<Option<VertexId>>> {
     let partner = |number: &i64| if *number == -1 { Ok(None) } else { vertex(*number).map(Some) };
@@ -57,10 +50,7 @@ fn known(
     functions: Option<Functions<'_>>,
 ) -> PyResult<KnownMap> {
     let initial = initial.as_ref().map(partners_of).transpose()?.unwrap_or_default();
-    let functions = match &functions {
-        Some((f, g)) => Some([matrix_of(f)?, matrix_of(g)?]),
-        None => None,
-    };
+    let functions = functions.map(|(f, g)| [matrix_of(&f), matrix_of(&g)]);
     Ok(KnownMap { landmarks: pairs_of(landmarks)?, initial, functions })
 }
 
@@ -126,12 +116,12 @@ pub(crate) fn map_points<'py>(
 ) -> PyResult<Points<'py>> {
     let [of_a, of_b] =
         [settings.correspond(a.inner.input.repair)?, settings.correspond(b.inner.input.repair)?];
-    let (functional, landmarks) = (matrix_of(&functional)?, pairs_of(&landmarks)?);
+    let (functional, landmarks) = (matrix_of(&functional), pairs_of(&landmarks)?);
     let partners = match &partners {
         Some([a, b]) => Some([partners_of(a)?, partners_of(b)?]),
         None => None,
     };
-    let corners = corners.as_ref().map(matrix_of).transpose()?;
+    let corners = corners.as_ref().map(matrix_of);
     let of = if of_second { Side::Second } else { Side::First };
     let PointMap { points } = run(py, |observer| {
         let sides = [a.matched(&of_a, observer)?, b.matched(&of_b, observer)?];

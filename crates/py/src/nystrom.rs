@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use canonform::Error;
-use canonform::linalg::{LandmarkDistances, Matrix};
+use canonform::linalg::LandmarkDistances;
 use canonform::nmds::{self, Embedding, OutOfSample, Regularization, nystrom_extended};
-use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays;
+use crate::arrays::{self, matrix_of};
 use crate::run::{run, run_calling};
 use crate::settings::Settings;
 
@@ -21,13 +21,6 @@ type Arguments<'py> = (f64, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>
 /// Places further points by their distances to the landmarks.
 #[pyclass(frozen, module = "canonform._canonform")]
 pub(crate) struct Extension(OutOfSample);
-
-/// A matrix of the library from an array, whatever its layout.
-fn matrix_of(array: &PyReadonlyArray2<'_, f64>) -> Matrix {
-    let [rows, columns] = [array.shape()[0], array.shape()[1]];
-    let array = array.as_array();
-    Matrix::from_fn(rows, columns, |i, j| array[(i, j)])
-}
 
 #[pymethods]
 impl Extension {

@@ -3,9 +3,11 @@
 use canonform::mesh::TriMesh;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedBytes;
 use pyo3::types::PyBytes;
-use report::render::{Background, Coloring, RenderOptions, View, render, render_with_bar};
+use report::render::{Background, Coloring, Label, RenderOptions, Title, View, annotated, collage};
 use report::viewer::{self, Geometry};
+use report::{ReportError, RgbaImage};
 
 use crate::arrays;
 use crate::error::Exception;
@@ -25,6 +27,8 @@ pub(crate) struct Look {
     isolines: u32,
     /// The name of the values, beside a bar of their colours; `None` for no bar.
     bar: Option<String>,
+    /// Points of the surface, and what they are called.
+    labels: Vec<([f64; 3], String)>,
     /// `None` for a transparent one.
     background: Option<[u8; 3]>,
 }
@@ -66,14 +70,40 @@ pub(crate) fn draw<'py>(
         }),
         ..usual
     };
-    let image = run(py, |observer| {
-        Ok(match &look.bar {
-            None => render(&mesh, &options, observer).map_err(report::ReportError::from),
-            Some(name) => render_with_bar(&mesh, &options, name, observer),
-        })
-    })?;
+    let labels: Vec<Label> =
+        look.labels.into_iter().map(|(at, text)| Label { at: at.into(), text }).collect();
+    png(py, run(py, |observer| Ok(annotated(&mesh, &options, look.bar.as_deref(), &labels, observer)))?)
+}
+
+/// Pictures at places in pixels of one picture, and titles by their middles and greatest widths.
+#[pyfunction]
+pub(crate) fn figure<'py>(
+    py: Python<'py>,
+    size: [u32; 2],
+    background: Option<[u8; 3]>,
+    pictures: Vec<(PyBackedBytes, [i64; 2])>,
+    titles: Vec<(String, [f64; 2], f64)>,
+    type_size: f64,
+) -> PyResult<Bound<'py, PyBytes>> {
+    let background = background.map_or(Background::Transparent, Background::Color);
+    let titles: Vec<Title> =
+        titles.into_iter().map(|(text, middle, width)| Title { text, middle, width }).collect();
+    let image = |(bytes, place): &(PyBackedBytes, [i64; 2])| Ok((RgbaImage::from_png(bytes)?, *place));
+    let pictures = pictures.iter().map(image).collect::<Result<Vec<_>, std::io::Error>>();
+    let pictures =
+        pictures.map_err(|fault| Exception::Option.with(&format!("pictures must be PNG files: {fault}")))?;
+    png(py, run(py, |_| Ok(collage(size, background, &pictures, (&titles, type_size))))?)
+}
+
+fn png(py: Python<'_>, image: Result<RgbaImage, ReportError>) -> PyResult<Bound<'_, PyBytes>> {
     let image = image.map_err(|fault| Exception::Canonform.with(&fault.to_string()))?;
     Ok(PyBytes::new(py, &image.to_png()?))
+}
+
+/// The part of all pages of [`scene_page`] that they share.
+#[pyfunction]
+pub(crate) fn scene_scripts() -> &'static str {
+    viewer::scene_scripts()
 }
 
 /// A page that shows a surface, coloured by values at its vertices if there are some.

@@ -3,6 +3,7 @@
 use canonform::mesh::InputPoint;
 use canonform::surface::VertexId;
 use pyo3::prelude::*;
+use pyo3::types::PyBool;
 
 use crate::error::Exception;
 
@@ -18,7 +19,15 @@ pub(crate) fn point_of(point: &Bound<'_, PyAny>) -> PyResult<InputPoint> {
             .parse()
             .map_err(|fault: canonform::mesh::ParsePointError| Exception::Point.with(&fault.to_string()));
     }
-    Ok(InputPoint::Vertex(vertex(point.extract().map_err(|_| not_a_point(point))?)?))
+    Ok(InputPoint::Vertex(vertex_of(point)?))
+}
+
+/// A vertex of the input by its number. Truth values are none.
+pub(crate) fn vertex_of(number: &Bound<'_, PyAny>) -> PyResult<VertexId> {
+    match number.extract() {
+        Ok(found) if !number.is_instance_of::<PyBool>() => vertex(found),
+        _ => Err(not_a_point(number)),
+    }
 }
 
 fn not_a_point(given: &Bound<'_, PyAny>) -> PyErr {

@@ -77,6 +77,14 @@ pub(crate) fn begin_call(
     Ok(())
 }
 
+/// Raises an exception if a limit of the call does not suffice, or it needs so many bytes more than it may use: for work in Python.
+#[pyfunction]
+pub(crate) fn check_call(py: Python<'_>, needed: usize) -> PyResult<()> {
+    let budget = Keywords::current(py).budget;
+    let checked = budget.check().and_then(|()| budget.check_memory(needed));
+    checked.map_err(|fault| to_python(&fault.into()))
+}
+
 /// Ends the call that began last.
 #[pyfunction]
 pub(crate) fn end_call() {

@@ -13,6 +13,7 @@ from typing import Any
 import canonform
 import numpy as np
 import pytest
+from canonform import Index, Match
 from canonform.datasets import Shape
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -81,6 +82,18 @@ def collection(tmp_path_factory: pytest.TempPathFactory) -> Path:
     shapes = canonform.datasets.generate(poses=3, n_vertices=1000)
     canonform.datasets.write(shapes, folder)
     return folder
+
+
+@pytest.fixture(scope="session")
+def index(collection: Path, tmp_path_factory: pytest.TempPathFactory) -> Index:
+    """The index of these meshes, for tests that do not change it."""
+    return Index.build(collection, tmp_path_factory.mktemp("index") / "shapes.canonform")
+
+
+@pytest.fixture(scope="session")
+def cat_match(cats: list[Shape]) -> Match:
+    """The maps between two cats."""
+    return canonform.match(*(shape.surface() for shape in cats))
 
 
 def grid(n: int = 9, size: float = 1.0) -> tuple[np.ndarray, np.ndarray]:

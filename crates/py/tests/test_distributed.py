@@ -21,6 +21,12 @@ from distributed import Client  # noqa: E402
 pytestmark = pytest.mark.filterwarnings("default")
 
 
+@pytest.fixture
+def single(index: Index) -> Index:
+    """The index that one process makes."""
+    return index
+
+
 def exported(index: Index, folder: Path, name: str) -> bytes:
     index.export(folder / name)
     return (folder / name).read_bytes()
@@ -37,8 +43,7 @@ def test_batches_are_even_and_begin_with_the_largest() -> None:
     assert batches_by_size([], 3) == [] and batches_by_size([0, 0], 5) == [[0, 1]]
 
 
-def test_two_workers_make_the_index_of_one_process(client: Client, collection: Path, tmp_path: Path) -> None:
-    single = Index.build(collection, tmp_path / "single.canonform")
+def test_two_workers_make_the_index_of_one_process(client: Client, single: Index, collection: Path, tmp_path: Path) -> None:
     seen = []
     index = build_index(
         collection, client, tmp_path / "many.canonform", n_batches=4, progress=lambda *step: seen.append(step)
@@ -81,8 +86,7 @@ def test_a_finished_batch_is_not_described_again(client: Client, collection: Pat
     assert third.build_report["described"] >= 1
 
 
-def test_what_else_is_in_the_folder_of_the_shards_stays(client: Client, collection: Path, tmp_path: Path) -> None:
-    single = Index.build(collection, tmp_path / "single.canonform")
+def test_what_else_is_in_the_folder_of_the_shards_stays(client: Client, single: Index, collection: Path, tmp_path: Path) -> None:
     folder = tmp_path / "my results"
     folder.mkdir()
     own = {name: f"my {name}" for name in ("thesis.txt", "labels.csv", "meshes.txt", "mine.canonform")}
@@ -100,8 +104,7 @@ def test_what_else_is_in_the_folder_of_the_shards_stays(client: Client, collecti
         assert len(shards) == (index.build_report["batches"] if keep else 0), shards
 
 
-def test_a_lost_worker_costs_its_batch_only(own_client: Client, collection: Path, tmp_path: Path) -> None:
-    single = Index.build(collection, tmp_path / "single.canonform")
+def test_a_lost_worker_costs_its_batch_only(own_client: Client, single: Index, collection: Path, tmp_path: Path) -> None:
     shards = tmp_path / "shards"
     victims = own_client.run(os.getpid)
     victim = next(iter(victims.values()))
@@ -144,9 +147,8 @@ def test_failures_are_listed_and_nothing_at_all_is_an_error(client: Client, coll
         build_index(collection, client, tmp_path / "bad.canonform", geodesic="magic")
 
 
-def test_paths_make_the_index_of_their_folder(client: Client, collection: Path, tmp_path: Path) -> None:
+def test_paths_make_the_index_of_their_folder(client: Client, single: Index, collection: Path, tmp_path: Path) -> None:
     # The folder of the index decides which paths it states.
-    single = Index.build(collection, tmp_path / "single.canonform")
     paths = sorted(collection.glob("*.off"), reverse=True)
     alone = Index.build(iter(paths), tmp_path / "alone.canonform")
     index = build_index(iter(paths), client, tmp_path / "many.canonform", n_batches=4)
@@ -160,8 +162,7 @@ def test_paths_make_the_index_of_their_folder(client: Client, collection: Path, 
         Index.build([f"{paths[0]} "], tmp_path / "none.canonform")
 
 
-def test_the_matrix_of_distances_is_that_of_the_index(client: Client, collection: Path, tmp_path: Path) -> None:
-    index = Index.build(collection, tmp_path / "i.canonform")
+def test_the_matrix_of_distances_is_that_of_the_index(client: Client, index: Index) -> None:
     for kind in ("combined", "fused"):
         ids, matrix = distance_matrix(index, client, kind=kind, block=4)
         assert ids == list(index)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import canonform
@@ -10,11 +11,6 @@ import pytest
 from canonform import Index
 from canonform.datasets import Shape
 from canonform.errors import MeshError, MissingFileError, NoSuchShapeError, OptionError, ShapeIndexError
-
-
-@pytest.fixture(scope="module")
-def index(collection: Path, tmp_path_factory: pytest.TempPathFactory) -> Index:
-    return Index.build(collection, tmp_path_factory.mktemp("index") / "shapes.canonform")
 
 
 def test_a_shape_finds_its_class(index: Index, collection: Path) -> None:
@@ -70,8 +66,8 @@ def test_vectors_are_the_signatures(index: Index, collection: Path) -> None:
     np.testing.assert_array_equal(vectors[ids.index("cat0")], signature)
 
 
-def test_an_index_is_changed_while_it_is_open(collection: Path, tmp_path: Path, cat: Shape) -> None:
-    index = Index.build(collection, tmp_path / "i.canonform")
+def test_an_index_is_changed_while_it_is_open(index: Index, collection: Path, tmp_path: Path, cat: Shape) -> None:
+    index = Index(shutil.copy(index.path, tmp_path / "i.canonform"))
     extra = canonform.datasets.write([Shape("tom", "", cat.vertices * 2, cat.faces)], tmp_path / "extra")
     report = index.add(extra, label="cat")
     assert report["described"] == 1 and len(index) == 10
@@ -81,19 +77,20 @@ def test_an_index_is_changed_while_it_is_open(collection: Path, tmp_path: Path, 
     assert again.build_report is not None and again.build_report["unchanged"] == 9
 
 
-def test_labels_come_from_a_mapping_or_a_file(collection: Path, tmp_path: Path) -> None:
+def test_labels_come_from_a_mapping_or_a_file(index: Index, collection: Path, tmp_path: Path) -> None:
     labels = {f"{name}{i}": kind for name, kind in [("cat", "beast"), ("centaur", "beast")] for i in range(3)}
-    index = Index.build(collection, tmp_path / "i.canonform", labels=labels)
+    path = shutil.copy(index.path, tmp_path / "i.canonform")
+    index = Index.build(collection, path, labels=labels)
     assert index.info()["classes"] == {"beast": 6} and index.info()["unlabelled"] == 3
     file = tmp_path / "labels.csv"
     file.write_text("cat0,x\n")
-    assert Index.build(collection, tmp_path / "j.canonform", labels=file).info()["classes"]["x"] == 1
-    none = Index.build(collection, tmp_path / "n.canonform", labels="none")
+    assert Index.build(collection, path, labels=file).info()["classes"]["x"] == 1
+    none = Index.build(collection, path, labels="none")
     assert none.info()["unlabelled"] == 9 and none.build_report is not None and none.build_report["labels_from"] == "none"
-    quoted = Index.build(collection, tmp_path / "q.canonform", labels={"cat0": 'a; "b", c'})
+    quoted = Index.build(collection, path, labels={"cat0": 'a; "b", c'})
     assert quoted.info()["classes"] == {'a; "b", c': 1}
     with pytest.raises(OptionError, match="line break"):
-        Index.build(collection, tmp_path / "k.canonform", labels={"a": "b\nc"})
+        Index.build(collection, path, labels={"a": "b\nc"})
 
 
 def test_shards_merge_to_the_whole(index: Index, collection: Path, tmp_path: Path) -> None:

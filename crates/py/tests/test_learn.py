@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import time
 
 import canonform
 import numpy as np
@@ -204,3 +205,20 @@ def test_further_landmarks_are_added_without_measuring_the_first_again() -> None
     again = pickle.loads(pickle.dumps(NystromMDS(n_landmarks=5, warm_start=True).fit(points)))
     again.set_params(n_landmarks=9).fit(points)
     np.testing.assert_array_equal(again.embedding_, NystromMDS(n_landmarks=9).fit(points).embedding_)
+
+
+def test_calls_end_at_their_limits() -> None:
+    def slow(a, b):
+        time.sleep(0.01)
+        return np.linalg.norm(np.asarray(b) - a, axis=1)
+
+    X = points(200, 3)
+    with pytest.raises(canonform.errors.TimeLimitError, match="timeout="):
+        NystromMDS(metric=slow).fit(X, timeout=0.1)
+    with pytest.raises(canonform.errors.MemoryLimitError, match="memory="):
+        NystromMDS().fit(X, memory="10K")
+    fitted = NystromMDS(n_landmarks=20).fit(X, timeout=60, memory="1G")
+    with pytest.raises(canonform.errors.MemoryLimitError):
+        fitted.transform(X, memory=100)
+    with pytest.raises(TypeError, match="'time'"):
+        fitted.transform(X, time=3)

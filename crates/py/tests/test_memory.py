@@ -148,7 +148,7 @@ def test_compare_match_and_align_take_any_mesh(shapes: list[Shape], tmp_path: Pa
         (lambda s, i: s.distances(np.array([0.5])), PointError, "0.5 is not a point"),
         (lambda s, i: s.distances(-1), PointError, "-1 is not a vertex"),
         (lambda s, i: s.distances(2**70), PointError, "is not a point"),
-        (lambda s, i: s.path(0.5, 3), PointError, "whole numbers"),
+        (lambda s, i: s.path(0.5, 3), PointError, "0.5 is not a point"),
         (lambda s, i: s.path(0, None), PointError, "None is not a point"),
         (lambda s, i: s.distances(0, max_distance="far"), OptionError, "max_distance='far'"),
         (lambda s, i: s.farthest_points(-1), OptionError, "n_points=-1 is not possible"),

@@ -9,18 +9,20 @@ import pickle
 import re
 import shutil
 import subprocess
+import sys
 import time
 import urllib.request
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import canonform
 import numpy as np
 import pytest
-from canonform import Index, Surface, SurfaceView
+from canonform import Index, Surface, SurfaceView, _view
 from canonform.datasets import Shape
 from conftest import grid
 
@@ -37,9 +39,8 @@ def checked(html: str) -> list[bytes]:
     return pictures
 
 
-def test_every_result_has_a_view(cats: list[Shape], collection: Path, tmp_path: Path) -> None:
+def test_every_result_has_a_view(cats: list[Shape], index: Index) -> None:
     a, b = (shape.surface() for shape in cats)
-    index = Index.build(collection, tmp_path / "i.canonform")
     for shown, n_pictures in [
         (cats[0], 1),
         (a, 1),
@@ -130,6 +131,31 @@ def test_pictures_have_marks_colors_ranges_and_bars(cat: Shape) -> None:
     assert form.picture(values, view="principal", width=80, height=80) != form.picture(view="principal", width=80, height=80)
     with pytest.raises(TypeError, match="colour"):
         surface.picture(colour=3)  # type: ignore[call-arg]
+    green = (path, "#00ff00")
+    assert share_of(surface.picture(paths=[green], **small), (0, 255, 0)) > 0.001
+    # Labels are dark text beside their points, on a light margin.
+    plain, named = (decoded(surface.picture(labels=labels, **small)) for labels in ({}, {0: "source", canonform.FacePoint(500): "face"}))
+    changed = (plain != named).any(axis=2)
+    assert 0.005 < changed.mean() < 0.2 and (named[changed][:, :3] < 0.3).all(axis=1).any()
+
+
+def test_figures_are_made_of_pictures(cat: Shape) -> None:
+    red, blue = (canonform.figure([cat.surface().picture(width=40, height=30)], background=color) for color in ("#ff0000", "#0000ff"))
+    both = decoded(canonform.figure([red, blue, red], n_columns=2))
+    assert both.shape == (60, 80, 4) and both[0, 0].tolist() == [1, 0, 0, 1] == both[30, 0].tolist()
+    assert both[0, 79].tolist() == [0, 0, 1, 1] and both[59, 79].tolist() == [1, 1, 1, 1]
+    titled = decoded(canonform.figure([red, blue], titles=["one", "other"]))
+    assert titled.shape == (30 + 22, 80, 4) and (titled[30:, :40].min(axis=(0, 1)) < 0.5).any()
+    # The second is to the right of the first, and above it.
+    placed = decoded(canonform.figure([red, blue], at=[[0, 0], [1, 2]], width=200, height=100))
+    rows, columns = (np.flatnonzero((placed[..., :3] == color).all(axis=2).any(axis=axis)) for color, axis in (([1, 0, 0], 1), ([0, 0, 1], 0)))
+    assert placed.shape == (100, 200, 4) and rows.max() == 99 and columns.min() > 80
+    for wrong in ({"titles": ["one"]}, {"at": [[0, 0]]}, {"background": "red"}, {"n_columns": 0}):
+        with pytest.raises(canonform.errors.OptionError):
+            canonform.figure([red, blue], **wrong)  # type: ignore[arg-type]
+    for files in ([], [b"no picture"]):
+        with pytest.raises(canonform.errors.OptionError):
+            canonform.figure(files)
 
 
 def test_a_match_is_drawn_side_by_side(cats: list[Shape]) -> None:
@@ -240,6 +266,42 @@ def test_a_view_turns_in_a_frame_without_a_network(view: SurfaceView, tmp_path: 
         assert browser.state() == "ready"
 
 
+def run_cell(monkeypatch: pytest.MonkeyPatch, cell: str, run: str, **metadata: str) -> None:
+    """What IPython says while a cell of a notebook runs."""
+    parent = {"header": {"msg_id": run}, "metadata": metadata, "content": {"code": cell}}
+    shell = SimpleNamespace(get_parent=lambda: parent)
+    monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(get_ipython=lambda: shell))
+
+
+def test_one_cell_has_the_scripts_of_all_views(view: SurfaceView, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(_view._Cell, "known", None)
+    outputs = []
+    for run, (cell, metadata) in enumerate([("a", {}), ("b", {}), ("a", {}), ("c", {"cellId": "1"}), ("edited", {"cellId": "1"})]):
+        run_cell(monkeypatch, cell, f"run {run}", **metadata)
+        outputs += [view._repr_html_(), view._repr_html_()]
+    # The first view of the first cell, and again when that cell runs again.
+    assert ["<script>" in output for output in outputs] == [i in (0, 4) for i in range(10)]
+    assert len(outputs[0]) < 1_000_000 and len(outputs[1]) < 150_000
+    monkeypatch.setattr(_view._Cell, "known", None)
+    run_cell(monkeypatch, "text", "run 1", cellId="1")
+    assert "<script>" in view._repr_html_()
+    run_cell(monkeypatch, "edited", "run 2", cellId="1")
+    assert "<script>" in view._repr_html_()
+    # In any order, and after what had the scripts has left the page.
+    page = tmp_path / "notebook.html"
+    page.write_text(f"<!doctype html><body>{outputs[1]}{outputs[2]}<p>{outputs[0]}</p></body>", encoding="utf-8")
+    with browsing() as browser:
+        browser.ask("/url", {"url": page.as_uri()})
+        for frame in range(3):
+            browser.ask("/frame", {"id": frame})
+            assert browser.state() == "ready"
+            browser.ask("/frame", {"id": None})
+        browser.script("const all = document.querySelectorAll('body > *'); all[2].remove(); all[0].outerHTML = all[0].outerHTML")
+        browser.enter_frame()
+        assert browser.state() == "ready"
+        assert [entry for entry in browser.ask("/se/log", {"type": "browser"}) if entry["level"] == "SEVERE"] == []
+
+
 def test_without_webgl_a_view_is_its_picture(view: SurfaceView, tmp_path: Path) -> None:
     with browsing("--disable-3d-apis") as browser:
         browser.ask("/url", {"url": page_with(view, tmp_path)})
@@ -253,7 +315,7 @@ def test_views_are_small_and_refuse_what_pictures_refuse(view: SurfaceView, cat:
     assert len(view.page) < 800_000 and len(view._repr_html_()) < 1_000_000
     assert pickle.loads(pickle.dumps(view)) == view and view.n_faces == len(cat.faces)
     for wrong in (np.zeros(5), np.zeros((1000, 3))):
-        with pytest.raises(canonform.errors.OptionError, match="one number for each of the 1000 vertices"):
+        with pytest.raises(canonform.errors.OptionError, match=r"shape \(1000,\)"):
             cat.surface().view(wrong)
 
 

@@ -5,30 +5,41 @@ from __future__ import annotations
 import ast
 import doctest
 import inspect
-import pydoc
 import re
+import shutil
 import subprocess
 import sys
 import textwrap
 from collections.abc import Callable
 from dataclasses import fields
 from functools import cached_property
+from importlib import import_module
 from pathlib import Path
 from typing import Any, get_args
 
 import canonform
+import numpy as np
 import pytest
 from canonform import _canonform, _methods, _settings
+from canonform.datasets import Shape
 from conftest import ROOT, grid
 
 SOURCE = ROOT / "crates" / "py" / "python" / "canonform"
 MODULES = sorted(path.stem for path in SOURCE.glob("*.py") if path.stem != "__init__")
 
 
-def test_examples_in_docstrings_run() -> None:
-    for module in [canonform, *(sys.modules[f"canonform.{name}"] for name in MODULES if f"canonform.{name}" in sys.modules)]:
-        failed, _ = doctest.testmod(module)
+def test_examples_in_docstrings_run(
+    cats: list[Shape], cat_match: canonform.Match, index: canonform.Index, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    cat, other = (shape.surface() for shape in cats)
+    index = canonform.Index(shutil.copy(index.path, "shapes.canonform"))
+    scope = {"canonform": canonform, "np": np, "cat": cat, "other": other, "found": cat_match, "index": index}
+    before = canonform.threads()
+    for module in [canonform, *(import_module(f"canonform.{name}") for name in MODULES)]:
+        failed, _ = doctest.testmod(module, extraglobs=scope, optionflags=doctest.ELLIPSIS)
         assert failed == 0, module
+    canonform.set_threads(before)
 
 
 def test_the_readme_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -41,25 +52,15 @@ def test_the_readme_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
         exec(compile(block, "README.md", "exec"), scope)
 
 
-def test_types_hold() -> None:
-    pytest.importorskip("mypy")
-    done = _mypy(SOURCE)
-    assert done.returncode == 0, done.stdout + done.stderr
-
-
-def _mypy(*arguments: object) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "mypy", "--config-file", ROOT / "crates" / "py" / "pyproject.toml", *arguments]
-    return subprocess.run(list(map(str, command)), capture_output=True, text=True, cwd=ROOT / "crates" / "py")
-
-
-def test_mypy_finds_wrong_names(tmp_path: Path) -> None:
-    """The lines that end in "# wrong" fail, and no others."""
+def test_types_hold_and_wrong_names_are_found(tmp_path: Path) -> None:
+    """The lines that end in "# wrong" fail, and no others, here or in the package."""
     pytest.importorskip("mypy")
     snippet = tmp_path / "snippet.py"
     snippet.write_text(WRONG_AND_RIGHT)
-    done = _mypy("--cache-dir", tmp_path / "cache", snippet)
-    found = {int(number) for number in re.findall(r"^.*snippet\.py:(\d+): error", done.stdout, re.M)}
-    expected = {i + 1 for i, line in enumerate(WRONG_AND_RIGHT.splitlines()) if line.endswith("# wrong")}
+    command = [sys.executable, "-m", "mypy", "--config-file", ROOT / "crates" / "py" / "pyproject.toml", SOURCE, snippet]
+    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, cwd=ROOT / "crates" / "py")
+    found = {(Path(path).name, int(number)) for path, number in re.findall(r"^(.*?):(\d+): error", done.stdout, re.M)}
+    expected = {("snippet.py", i + 1) for i, line in enumerate(WRONG_AND_RIGHT.splitlines()) if line.endswith("# wrong")}
     assert found == expected, done.stdout + done.stderr
 
 
@@ -183,37 +184,12 @@ def test_keywords_are_the_options_of_the_library() -> None:
         assert not [keyword for keyword in keywords if "no option" in _fault(**{keyword: 3})]
 
 
-def test_stubs_name_what_the_module_has() -> None:
-    stub = ast.parse((SOURCE / "_canonform.pyi").read_text())
-    public = {name for name in dir(_canonform) if not name.startswith("_")}
-    stated = {node.name for node in stub.body if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
-    assert stated == public
-    for node in stub.body:
-        if isinstance(node, ast.ClassDef):
-            methods = {item.name for item in node.body if isinstance(item, ast.FunctionDef)} - {"__new__"}
-            assert methods == {name for name in vars(getattr(_canonform, node.name)) if not name.startswith("_")}, node.name
-
-
 def _public() -> dict[str, Any]:
     """Everything public by its name in the documentation."""
     found = {name: getattr(canonform, name) for name in canonform.__all__ if name != "__version__"}
     for module in (canonform.datasets, canonform.errors, canonform.distributed):
         found |= {f"{module.__name__}.{name}": getattr(module, name) for name in module.__all__}
     return found
-
-
-def test_everything_public_is_documented() -> None:
-    for name, found in _public().items():
-        assert inspect.getdoc(found), name
-        if inspect.isclass(found) and found.__module__.startswith("canonform"):
-            own = [member for kind in found.__mro__ if kind.__module__.startswith("canonform") for member in vars(kind)]
-            members = {member for member in own if not member.startswith("_")}
-            # Fields of data classes are in the documentation of the class.
-            stated = set(re.findall(r"\w+", found.__doc__ or ""))
-            for member in members - (stated & _attributes(found)):
-                value = inspect.getattr_static(found, member)
-                documented = getattr(value, "__func__", value)
-                assert inspect.getdoc(documented), f"{name}.{member}"
 
 
 def _attributes(found: type) -> set[str]:
@@ -230,16 +206,67 @@ def _attributes(found: type) -> set[str]:
     return {name for name in names if not name.startswith("_")}
 
 
-def test_help_names_every_attribute() -> None:
+PROPERTIES = (property, cached_property)
+
+
+def _functions() -> dict[str, Callable[..., Any]]:
+    """All public functions, and the methods that classes have of their own."""
+    found = {}
+    for name, public in _public().items():
+        own = {f"{name}.{member}": value for member, value in vars(public).items()} if inspect.isclass(public) else {name: public}
+        found |= {key: getattr(value, "__func__", value) for key, value in own.items() if not key.split(".")[-1].startswith("_")}
+    return {name: value for name, value in found.items() if inspect.isfunction(value)}
+
+
+def test_everything_public_is_documented() -> None:
     for name, found in _public().items():
-        if inspect.isclass(found):
-            properties = {member for member in dir(found) if isinstance(inspect.getattr_static(found, member), PROPERTIES)}
-            for attribute in _attributes(found) - properties:
-                section = (found.__doc__ or "").partition("Attributes\n")[2] + (found.__doc__ or "").partition("Parameters\n")[2]
-                assert re.search(rf"^ *(\w+, )*{attribute}\b", section, re.M), f"{name}.{attribute}"
-            for attribute in properties:
-                if not attribute.startswith("_"):
-                    assert attribute in pydoc.render_doc(found, renderer=pydoc.plaintext), f"{name}.{attribute}"
+        doc = found.__doc__ or ""
+        assert len(doc) > 20 and not doc.startswith(f"{name}("), name
+        if inspect.isclass(found) and not issubclass(found, Exception):
+            assert "Examples\n--------\n>>> " in doc, name
+            stated = doc.partition("Attributes\n")[2] + doc.partition("Parameters\n")[2]
+            for member in _attributes(found):
+                value = inspect.getattr_static(found, member, None)
+                is_told = value.__doc__ if isinstance(value, PROPERTIES) else re.search(rf"^(\w+, )*{member}\b", stated, re.M)
+                assert is_told, f"{name}.{member}"
+
+
+def test_functions_have_all_sections() -> None:
+    for name, function in _functions().items():
+        doc, signature = function.__doc__ or "", inspect.signature(function)
+        if name.startswith("VertexValues."):
+            continue
+        parameters = [p for p in signature.parameters.values() if p.name not in ("self", "cls") and not str(p.annotation).startswith("Unpack")]
+        for parameter in parameters:
+            assert re.search(rf"^{parameter.name} : .+\n    \S", doc, re.M), f"{name}: {parameter.name}"
+        assert ("Returns\n-------\n" in doc) == (signature.return_annotation != "None"), name
+        assert not parameters or "Examples\n--------\n>>> " in doc, name
+        assert not re.search(r"Raises `|^Parameters\n(?!---)", doc, re.M), name
+
+
+QUICK = {
+    name
+    for names in (
+        "Alignment.apply DistanceField.load DistanceField.save DistanceField.pair Eigenbasis.first Eigenbasis.hks Eigenbasis.project",
+        "Eigenbasis.synthesize Eigenbasis.wks Form.picture Form.write Index.info Index.remove Index.shapes Index.to_pandas Index.vector",
+        "Index.vectors MappedPoints.interpolate Match.picture Match.pictures Scores.to_pandas SearchResults.to_pandas Surface.divergence",
+        "Surface.gradient Surface.picture Surface.to_pyvista Surface.to_trimesh Surface.view Surface.write SurfaceMap.functional",
+        "SurfaceMap.then SurfaceView.write VertexValues.argmax VertexValues.argmin VertexValues.max VertexValues.min",
+        "canonform.datasets.Shape.surface canonform.datasets.families canonform.datasets.write canonform.distributed.batches_by_size",
+        "distance_methods embedding_methods figure set_threads signature_kinds",
+    )
+    for name in names.split()
+}
+"""What computes nothing, or takes less than a second on 100,000 vertices."""
+
+
+def test_all_other_calls_take_limits_and_pass_them_on() -> None:
+    for name, function in _functions().items():
+        parameters = inspect.signature(function).parameters
+        of_call = next((p.name for p in parameters.values() if p.annotation == "Unpack[Call]"), None)
+        assert (of_call is not None or {"timeout", "memory"} <= set(parameters)) == (name not in QUICK), name
+        body = inspect.getsource(function).partition('"""')[2].partition('"""')[2]
+        assert of_call is None or re.search(r"\*\*call\b|running\(call\)|, call, ", body), name
 
 
 PROPERTIES = (property, cached_property)

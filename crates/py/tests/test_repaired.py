@@ -133,6 +133,8 @@ def test_extremes_are_those_of_finite_numbers(damaged: Surface) -> None:
     assert np.isinf(distances).any() and np.isnan(distances).any()
     assert (distances.argmin(), distances.min()) == (5, 0) and 0 < distances.max() <= 10
     assert distances[np.argmax(distances)] == np.max(distances) == distances.max()
+    assert {type(found) for found in (distances[5], distances.mean(), np.nanmean(distances), (distances > 1).any())} == {np.float64, np.bool_}
+    assert type(2 * distances) is type(distances) and (2 * distances).max() == 2 * distances.max()
 
 
 def test_dropped_vertices_are_no_points(damaged: Surface) -> None:

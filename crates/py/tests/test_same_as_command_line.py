@@ -132,10 +132,9 @@ def test_comparisons(program: Program, meshes: list[Path]) -> None:
         assert found.relation["because"]["same_class"] > 0.9
 
 
-def test_indexes(program: Program, collection: Path, tmp_path: Path) -> None:
-    ours, theirs = tmp_path / "ours.canonform", tmp_path / "theirs.canonform"
+def test_indexes(program: Program, index: Index, collection: Path, tmp_path: Path) -> None:
+    theirs = tmp_path / "theirs.canonform"
     report = program.json("index", "build", collection, "-o", theirs)
-    index = Index.build(collection, ours)
     assert index.build_report is not None
     expected = {key: value for key, value in report.items() if key != "index"}
     assert timeless(index.build_report) == timeless(expected)

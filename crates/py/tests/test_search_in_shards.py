@@ -18,8 +18,8 @@ pytest.importorskip("distributed")
 
 import canonform  # noqa: E402
 from canonform import Index, SearchResults, _vectors  # noqa: E402
-from canonform.distributed import search, vector_table  # noqa: E402
-from canonform.errors import NoSuchShapeError, OptionError, ShapeIndexError  # noqa: E402
+from canonform.distributed import distance_matrix, search, vector_table  # noqa: E402
+from canonform.errors import MemoryLimitError, NoSuchShapeError, OptionError, ShapeIndexError, TimeLimitError  # noqa: E402
 from distributed import Client  # noqa: E402
 
 # Dask, Lance and their dependencies warn of their own affairs.
@@ -27,17 +27,20 @@ pytestmark = pytest.mark.filterwarnings("default")
 
 
 @pytest.fixture(scope="module")
-def whole(collection: Path, tmp_path_factory: pytest.TempPathFactory) -> Index:
+def whole(index: Index) -> Index:
     """One index of all shapes."""
-    return Index.build(collection, tmp_path_factory.mktemp("whole") / "whole.canonform")
+    return index
+
+
+@pytest.fixture(scope="module")
+def built(collection: Path, tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+    folder = tmp_path_factory.mktemp("shards")
+    return [Index.build(collection, folder / f"part-{i}.canonform", shard=(i, 3)).path for i in (1, 2, 3)]
 
 
 @pytest.fixture
-def shards(collection: Path, tmp_path: Path) -> list[Path]:
-    paths = [tmp_path / f"part-{i}.canonform" for i in (1, 2, 3)]
-    for i, path in enumerate(paths, 1):
-        Index.build(collection, path, shard=(i, 3))
-    return paths
+def shards(built: list[str], tmp_path: Path) -> list[Path]:
+    return [Path(shutil.copy(path, tmp_path)) for path in built]
 
 
 def found(results: SearchResults) -> dict[str, object]:
@@ -237,7 +240,20 @@ def test_other_programs_search_the_table(shards: list[Path], whole: Index, tmp_p
     assert found["id"].to_pylist() == [name for name, _ in whole.nearest(whole.vector("cat1"), 9)]
 
 
-def test_mistakes_are_told(shards: list[Path], collection: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_calls_end_at_their_limits(client: Client, shards: list[Path], whole: Index, tmp_path: Path) -> None:
+    table = tmp_path / "shapes.lance"
+    vector_table(shards, table, timeout=60)
+    for given in ({}, {"client": client}):
+        with pytest.raises(TimeLimitError, match="timeout="):
+            search(table, "cat1", timeout=1e-9, **given)
+    with pytest.raises(TimeLimitError, match="timeout="):
+        distance_matrix(whole, client, timeout=0.01)
+    with pytest.raises(MemoryLimitError, match="memory="):
+        search(table, whole.surface("cat1"), memory=1000)
+    assert len(search(table, "cat1", 3, client=client, timeout=60, memory="2G")) == 3
+
+
+def test_mistakes_are_told(shards: list[Path], whole: Index, collection: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with monkeypatch.context() as without:
         without.setitem(sys.modules, "lance", None)
         with pytest.raises(ImportError, match=r"pip install 'canonform\[lance\]'"):
@@ -245,7 +261,7 @@ def test_mistakes_are_told(shards: list[Path], collection: Path, tmp_path: Path,
     with pytest.raises(OptionError, match="shards="):
         vector_table([], tmp_path / "none.lance")
     with pytest.raises(ShapeIndexError, match="'cat"):
-        vector_table([*shards, Index.build(collection, tmp_path / "all.canonform").path], tmp_path / "twice.lance")
+        vector_table([*shards, whole.path], tmp_path / "twice.lance")
     with pytest.raises(ShapeIndexError):
         other = Index.build([collection / "cat0.off"], tmp_path / "other.canonform", n_landmarks=50)
         vector_table([shards[0], other.path], tmp_path / "other.lance")

@@ -15,11 +15,10 @@ pytestmark = pytest.mark.filterwarnings("default")
 
 
 def test_duckdb_and_lancedb_find_the_neighbours_that_the_program_finds(
-    program: Program, collection: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    program: Program, index: Index, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for package in ("duckdb", "lancedb", "pyarrow"):
         pytest.importorskip(package)
-    index = Index.build(collection, tmp_path / "shapes.canonform")
     examples = ROOT / "examples" / "stores"
     monkeypatch.syspath_prepend(str(examples))
     monkeypatch.setattr(sys, "argv", ["check.py"])

@@ -32,6 +32,25 @@ impl RgbaImage {
         Self { width, height, pixels: (0..height as usize).flat_map(row).collect() }
     }
 
+    /// The image of a PNG file.
+    ///
+    /// # Errors
+    /// If these are not the bytes of one.
+    pub fn from_png(bytes: &[u8]) -> Result<Self, png::DecodingError> {
+        let mut decoder = png::Decoder::new(bytes);
+        decoder
+            .set_transformations(png::Transformations::normalize_to_color8() | png::Transformations::ALPHA);
+        let mut reader = decoder.read_info()?;
+        let mut found = vec![0; reader.output_buffer_size()];
+        let info = reader.next_frame(&mut found)?;
+        let is_gray = info.color_type == png::ColorType::GrayscaleAlpha;
+        let pixels = match is_gray {
+            true => found.as_chunks().0.iter().map(|[gray, alpha]| [*gray, *gray, *gray, *alpha]).collect(),
+            false => found.as_chunks().0.to_vec(),
+        };
+        Ok(Self { width: info.width, height: info.height, pixels })
+    }
+
     /// Two images side by side; a missing part at the bottom of the lower one has the colour of its first pixel.
     #[must_use]
     pub fn beside(&self, right: &Self) -> Self {
@@ -147,12 +166,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("x.png");
         image.write_png(&path).unwrap();
-        let mut reader = png::Decoder::new(std::fs::File::open(&path).unwrap()).read_info().unwrap();
-        let mut bytes = vec![0; reader.output_buffer_size()];
-        let info = reader.next_frame(&mut bytes).unwrap();
-        assert_eq!((info.width, info.height), (3, 2));
-        assert_eq!(bytes, image.pixels().as_flattened());
-        assert_eq!(image.pixels()[4], [1, 2, 3, 4]);
+        assert_eq!(RgbaImage::from_png(&std::fs::read(&path).unwrap()).unwrap(), image);
+        let gray = encode_png(2, 1, png::ColorType::Grayscale, &[7, 200]).unwrap();
+        assert_eq!(RgbaImage::from_png(&gray).unwrap().pixels(), [[7, 7, 7, 255], [200, 200, 200, 255]]);
+        assert!(RgbaImage::from_png(b"not a picture").is_err());
     }
 
     #[test]

@@ -11,7 +11,7 @@ use canonform::embed::{FormOptions, embed};
 use canonform::geodesics::{Method, Source};
 use canonform::mesh::io::{MeshFile, ScalarField};
 use canonform::mesh::{RepairReport, TriMesh};
-use report::render::{Coloring, RenderOptions, render, render_with_bar, value_range};
+use report::render::{Coloring, RenderOptions, annotated, render, value_range};
 use serde::Serialize;
 
 use crate::args::{Common, Place, RenderArgs};
@@ -107,7 +107,7 @@ fn draw_one(
     let options = options(args, field.as_ref());
     let budget = args.limits.budget();
     let image = match &field {
-        Some(field) if !args.no_bar => render_with_bar(&drawn, &options, &field.name, &budget)?,
+        Some(field) if !args.no_bar => annotated(&drawn, &options, Some(&field.name), &[], &budget)?,
         _ => render(&drawn, &options, &budget).map_err(|fault| named(path, fault.into()))?,
     };
     image.write_png(output)?;

@@ -18,9 +18,17 @@ class VertexValues(np.ndarray[Any, np.dtype[np.float64]]):
     """A number or a row for each vertex of the input, or for each face: NaN where there is no surface, infinite where nothing was reached.
 
     An array like others, but `max`, `min`, `argmax` and `argmin` pass over what is not finite.
+
+    >>> near = cat.distances(0, max_distance=20)
+    >>> near.max() <= 20 and bool(near.valid[near.argmax()])
+    True
     """
 
     _axis: ClassVar[int] = 0
+
+    def __array_wrap__(self, array: Any, context: Any = None, return_scalar: bool = False) -> Any:
+        # Sums and means are numbers, as those of other arrays.
+        return array.view(type(self)) if array.ndim else array[()]
 
     @property
     def valid(self) -> NDArray[np.bool_]:
@@ -61,6 +69,11 @@ def on_vertices(values: Floats, *, writeable: bool = True) -> VertexValues:
 def straight(array: ArrayLike, dtype: Any = None) -> NDArray[Any]:
     """The same numbers in order and aligned, as Rust reads them; the same array if they are already."""
     return np.require(array, dtype, ["C_CONTIGUOUS", "ALIGNED"])
+
+
+def edges_of(faces: Ints) -> Ints:
+    """The edges of faces as pairs of vertices, each once and in order."""
+    return np.unique(np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0)
 
 
 def numeric(
@@ -180,5 +193,4 @@ def _split(quads: Ints, vertices: Floats) -> Ints:
     folds = np.einsum("fwk,fwk->fw", normals[:, :, 0], normals[:, :, 1]) <= 0
     lengths = np.linalg.norm(vertices[quads[:, [0, 1]]] - vertices[quads[:, [2, 3]]], axis=2)
     second = np.where(folds[:, 0] == folds[:, 1], lengths[:, 1] < lengths[:, 0], folds[:, 0])
-    found: Ints = ways[np.arange(len(quads)), second.astype(int)].reshape(-1, 3)
-    return found
+    return ways[np.arange(len(quads)), second.astype(int)].reshape(-1, 3)

@@ -33,6 +33,11 @@ class Alignment(ByValue):
         Whether the motion includes a reflection.
     rms
         Root mean square distance between nearest points of the aligned forms, in mesh units.
+
+    >>> a, b = (surface.canonical_form(50) for surface in (cat, other))
+    >>> alignment = canonform.align(a, b)
+    >>> alignment.apply(a.points).shape
+    (1000, 3)
     """
 
     rotation: Floats
@@ -41,9 +46,19 @@ class Alignment(ByValue):
     rms: float
 
     def apply(self, points: ArrayLike) -> Floats:
-        """Moves points, shape (k, 3)."""
-        moved: Floats = numeric("points", points, ("k", 3)) @ self.rotation.T + self.translation
-        return moved
+        """Moves points, shape (k, 3).
+
+        Parameters
+        ----------
+        points
+            Shape (k, 3).
+
+        Raises `OptionError` if they are not points.
+
+        >>> canonform.align(cat, other).apply([[0, 0, 0]]).shape
+        (1, 3)
+        """
+        return numeric("points", points, ("k", 3)) @ self.rotation.T + self.translation
 
     def __repr__(self) -> str:
         reflected = ", reflected" if self.reflected else ""
@@ -55,7 +70,17 @@ def align(a: Form | AnyMesh, b: Form | AnyMesh, *, reflections: bool = True, **c
 
     A surface, or a mesh as `compare` takes it, stands for its canonical form with default options. `compare` uses forms at equal size instead.
 
-    Raises `EmbeddingError` for forms that are not three-dimensional.
+    Parameters
+    ----------
+    a, b
+        Forms, surfaces, mesh files, or meshes in memory.
+    reflections
+        Whether the motion may include a reflection.
+
+    Raises `EmbeddingError` if a form is not three-dimensional.
+
+    >>> canonform.align(cat, cat).rms < 1e-6
+    True
     """
     with running(call):
         forms = [shape if isinstance(shape, Form) else surface_of(shape).canonical_form(stress="skip") for shape in (a, b)]
@@ -71,6 +96,10 @@ class Comparison(Stored):
         The object that `canonform compare --json` prints.
     residuals
         For each vertex of the first mesh, the distance of its form from that of the second, in mesh units; shape (n,).
+
+    >>> found = canonform.compare(cat, other)
+    >>> found.match, found.confidence > 0.5
+    ('other-pose', True)
     """
 
     def __init__(self, report: dict[str, Any], residuals: VertexValues, shapes: tuple[Surface, Surface]) -> None:
@@ -81,8 +110,7 @@ class Comparison(Stored):
     @property
     def relation(self) -> dict[str, Any]:
         """How the meshes are related: `kind`, `confidence`, `changes`, `text`, and the numbers that decided in `because`."""
-        relation: dict[str, Any] = self.report["relation"]
-        return relation
+        return self.report["relation"]
 
     @property
     def distance(self) -> float:
@@ -102,8 +130,7 @@ class Comparison(Stored):
     @property
     def match(self) -> RelationKind:
         """The kind of relation, such as "identical-file", "scaled", "remeshed" or "other-pose"."""
-        kind: RelationKind = self.relation["kind"]
-        return kind
+        return self.relation["kind"]
 
     @property
     def confidence(self) -> float:
@@ -146,14 +173,21 @@ def compare(
 ) -> Comparison:
     """Compare two shapes: one shape, one class or different ones; the same geometry, scaled, mirrored, remeshed, part of the other.
 
-    Both are surfaces, mesh files, or meshes in memory as `Surface` takes them. A surface is described once, and keeps that.
+    A surface is described once, and keeps that.
 
     Parameters
     ----------
     names
         What the two are called in words; by default their file names.
+    a, b
+        Surfaces, mesh files, or meshes in memory as `Surface` takes them.
 
     The relation does not depend on the other options, which are those of `Surface.canonical_form`.
+
+    Raises `OptionError`, `MeshError` if an option is not possible, or a mesh cannot be used.
+
+    >>> canonform.compare(cat, canonform.Surface(2 * cat.vertices, cat.faces)).match
+    'scaled'
     """
     settings = options_of(n_landmarks=n_landmarks, method=method, geodesic=geodesic, seed=seed)
     if names is not None and (isinstance(names, str) or np.shape(names) != (2,)):

@@ -31,6 +31,10 @@ class PairDistance:
         The distance is not above this.
     exact
         Whether the distance is exact instead of an estimate.
+
+    >>> pair = cat.distance_field(20, geodesic="exact").pair(3, 500)
+    >>> pair.lower <= pair.distance <= pair.upper
+    True
     """
 
     distance: float
@@ -55,6 +59,9 @@ class PairDistances(AsArray, ByValue):
         No distance is above these.
     exact
         Which distances are exact instead of estimates.
+
+    >>> cat.distance_field(20).pairs([[0, 5], [3, 500]], tolerance=0)
+    PairDistances(2 pairs, 2 exact)
     """
 
     _rows = "distance"
@@ -78,10 +85,6 @@ class DistanceField(Constant):
 
     Made by `Surface.distance_field`, or read from a file by `DistanceField.load`. A file is that of the command line.
 
-    Examples
-    --------
-    >>> import canonform
-    >>> cat = canonform.datasets.generate("cat", n_vertices=1000)[0].surface()
     >>> field = cat.distance_field(geodesic="exact")
     >>> pair = field.pair(3, 500)
     >>> pair.lower <= pair.distance <= pair.upper
@@ -99,11 +102,23 @@ class DistanceField(Constant):
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> DistanceField:
-        """Read a field from a file. Raises `MissingFileError` and `FileError`."""
+        """Read a field from a file.
+
+        Raises `MissingFileError`, `FileError` if the file cannot be read, or is no field.
+
+        >>> cat.distance_field(20).save("cat.field")
+        >>> canonform.DistanceField.load("cat.field").n_vertices
+        1000
+        """
         return cls(_canonform.DistanceField.open(os.fspath(path)))
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the field to a file. Raises `FileError`."""
+        """Write the field to a file.
+
+        Raises `FileError` if the file cannot be written.
+
+        >>> cat.distance_field(20).save("cat.field")
+        """
         self._inner.save(os.fspath(path))
 
     @property
@@ -119,8 +134,7 @@ class DistanceField(Constant):
     @property
     def facts(self) -> dict[str, Any]:
         """How the field was built, and what its bounds rest on: the object that `canonform field info --json` prints."""
-        facts: dict[str, Any] = json.loads(self._inner.facts())
-        return facts
+        return json.loads(self._inner.facts())
 
     @property
     def certified(self) -> bool:
@@ -128,9 +142,20 @@ class DistanceField(Constant):
         return bool(self.facts["bounds"]["kind"] == "certified")
 
     def pair(self, a: int, b: int) -> PairDistance:
-        """The distance of two vertices, estimated. Raises `PointError`."""
-        distance, lower, upper, exact = self._inner.pairs(np.array([[_vertex(a), _vertex(b)]]), None)
-        return PairDistance(float(distance[0]), float(lower[0]), float(upper[0]), bool(exact[0]))
+        """The distance of two vertices, estimated.
+
+        Parameters
+        ----------
+        a, b
+            Vertex numbers.
+
+        Raises `PointError` if the mesh has no such vertex.
+
+        >>> cat.distance_field(20).pair(3, 3).distance
+        0.0
+        """
+        found = self.pairs([[a, b]], tolerance=None)
+        return PairDistance(*(values[0].item() for values in (found.distance, found.lower, found.upper, found.exact)))
 
     def pairs(
         self, pairs: ArrayLike, *, tolerance: float | None = 0.05, **call: Unpack[Call]
@@ -145,36 +170,47 @@ class DistanceField(Constant):
             Pairs whose bounds are farther apart than this share of the distance are finished by exact propagation on the surface. None
             finishes no pair.
 
-        Raises
-        ------
-        PointError
-            If the mesh has no such vertex, or they are not pairs of vertices.
+        Raises `PointError` if the mesh has no such vertex, or they are not pairs of vertices.
+
+        >>> cat.distance_field(20).pairs([[0, 5], [3, 500]]).distance.shape
+        (2,)
         """
         array: Ints = numeric("pairs", pairs, ("k", 2), np.int64, PointError) if np.size(pairs) else np.empty((0, 2), dtype=np.int64)
         with running(call):
             return PairDistances(*self._inner.pairs(array, _share(tolerance)))
 
     def row(self, source: int, *, tolerance: float | None = 0.05, **call: Unpack[Call]) -> PairDistances:
-        """The distances from one vertex to all, in the order of the input; `tolerance` as in `pairs`."""
+        """The distances from one vertex to all, in the order of the input; `tolerance` as in `pairs`.
+
+        Parameters
+        ----------
+        source
+            A vertex.
+
+        Raises `PointError` if the mesh has no such vertex.
+
+        >>> len(cat.distance_field(20).row(0))
+        1000
+        """
         with running(call):
-            return PairDistances(*self._inner.row(_vertex(source), _share(tolerance)))
+            return PairDistances(*self._inner.row(source, _share(tolerance)))
 
     def nearest(self, source: int, k: int, **call: Unpack[Call]) -> tuple[Ints, Floats]:
-        """The `k` vertices nearest to one of them along the surface, itself left out, and their exact distances, nearest first."""
+        """The `k` vertices nearest to one of them along the surface, itself left out, and their exact distances, nearest first.
+
+        Raises `PointError` if the mesh has no such vertex.
+
+        >>> vertices, distances = cat.distance_field(20).nearest(0, 5)
+        >>> len(vertices), bool((np.diff(distances) >= 0).all())
+        (5, True)
+        """
         with running(call):
-            return self._inner.nearest(_vertex(source), whole("k", k))
+            return self._inner.nearest(source, whole("k", k))
 
     def __repr__(self) -> str:
         facts = self.facts
         bounds = facts["bounds"]["kind"]
         return f"DistanceField({facts['n_vertices']} vertices, {facts['n_landmarks']} landmarks, {bounds} bounds)"
-
-
-def _vertex(vertex: Any) -> int:
-    number = vertex.item() if isinstance(vertex, np.generic) else vertex
-    if isinstance(number, bool) or not isinstance(number, int) or not -(2**63) <= number < 2**63:
-        raise PointError(f"{vertex!r} is not a vertex; give its number")
-    return number
 
 
 def _share(tolerance: float | None) -> float | None:

@@ -34,6 +34,10 @@ class Form(AsArray, Constant):
 
     `numpy.asarray(form)` gives its points. A pickled form holds its points and its report; the distances of the landmarks, and what
     `place`, `finer`, `align` and `reuse` need, are made again when they are first asked for.
+
+    >>> form = cat.canonical_form(50)
+    >>> form.points.shape, len(form.landmarks), form.normalized_stress < 0.2
+    ((1000, 3), 50, True)
     """
 
     def __init__(
@@ -78,10 +82,6 @@ class Form(AsArray, Constant):
 
         Features keep their shape: limbs stay round, and ears stay ears. The result has the handedness of the surface. Needs three components.
 
-        Examples
-        --------
-        >>> import canonform
-        >>> cat = canonform.datasets.generate("cat", poses=1, n_vertices=1000)[0].surface()
         >>> bent = canonform.Surface(cat.canonical_form(100).bent_surface(), cat.faces)
         >>> bool(abs(bent.area / cat.area - 1) < 0.05)
         True
@@ -97,14 +97,12 @@ class Form(AsArray, Constant):
     @cached_property
     def report(self) -> dict[str, Any]:
         """Facts about the embedding: the object that `canonform embed --json` prints."""
-        report: dict[str, Any] = json.loads(self._inner.report())
-        return report
+        return json.loads(self._inner.report())
 
     @cached_property
     def options(self) -> dict[str, Any]:
         """How it was made, without options that have their default value."""
-        options: dict[str, Any] = json.loads(self._inner.options())
-        return options
+        return json.loads(self._inner.options())
 
     @property
     def stress(self) -> float | None:
@@ -167,6 +165,12 @@ class Form(AsArray, Constant):
         ----------
         points
             Points as in `Surface.distances`.
+
+        Raises `OptionError`, `PointError` if the form has no such extension, or the mesh no such point.
+
+        >>> form = cat.canonical_form(50)
+        >>> bool(np.allclose(form.place(7), form.points[7]))
+        True
         """
         from ._surface import _several
 
@@ -177,6 +181,16 @@ class Form(AsArray, Constant):
         """A finer mesh of the same surface in the coordinates of this form, placed by the distances from its landmarks.
 
         The meshes are in the same place: each landmark is the nearest vertex of the finer mesh. Needs method="nmds".
+
+        Parameters
+        ----------
+        surface
+            The finer mesh.
+
+        Raises `OptionError` if the form has no such extension, or the meshes are not in the same place.
+
+        >>> cat.canonical_form(50).finer(cat, stress="skip").points.shape
+        (1000, 3)
         """
         settings = {"stress": stress, "seed": seed}
         with running(call):
@@ -184,11 +198,20 @@ class Form(AsArray, Constant):
         return Form(inner, surface, settings, self._name, self)
 
     def write(self, path: str | os.PathLike[str]) -> None:
-        """Write the form as a mesh; the extension tells the format. Vertices that the repair dropped are left out."""
+        """Write the form as a mesh; the extension tells the format. Vertices that the repair dropped are left out.
+
+        Raises `FileError`, `EmbeddingError` if the file cannot be written, or the form has not three dimensions.
+
+        >>> cat.canonical_form(50).write("form.ply")
+        """
         self._inner.write(os.fspath(path))
 
     def picture(self, values: ArrayLike | None = None, **look: Unpack[Look]) -> bytes:
-        """A shaded picture of the form as the bytes of a PNG file, as of `Surface.picture`. Needs two or three dimensions."""
+        """A shaded picture of the form as the bytes of a PNG file, as of `Surface.picture`. Needs two or three dimensions.
+
+        >>> cat.canonical_form(50).picture(view="principal", width=80)[1:4]
+        b'PNG'
+        """
         points = self.points[:, :3]
         if points.shape[1] < 3:
             points = np.pad(points, ((0, 0), (0, 3 - points.shape[1])))

@@ -9,7 +9,8 @@ import os
 import shutil
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from html import escape
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias, Unpack, overload
 
@@ -20,25 +21,12 @@ from . import _canonform, _html
 from ._arrays import Floats, Ints, mesh_of, numeric, straight
 from ._methods import Embedding, Geodesic, options_of
 from ._settings import (
-    Call,
-    Components,
-    IndexDistance,
-    Landmarks,
-    Ranking,
-    RelationKind,
-    Shown,
-    SignatureKind,
-    Weld,
-    number,
-    running,
-    warned,
-    whole,
-    word,
-)
+    Call, Components, IndexDistance, Landmarks, Ranking, RelationKind, Shown, SignatureKind, Weld, number, running, warned, whole, word,
+)  # fmt: skip
 from ._stored import Stored
 from ._surface import AnyMesh, Surface, surface_of
 from .datasets import Shape
-from .errors import CanonformError, MeshError, MissingFileError, OptionError, ShapeIndexError, SkippedMeshWarning
+from .errors import CanonformError, MeshError, MissingFileError, NoSuchShapeError, OptionError, ShapeIndexError, SkippedMeshWarning
 
 if TYPE_CHECKING:
     import pandas
@@ -68,6 +56,9 @@ class ShapeEntry:
         Its mesh file.
     n_vertices, n_faces
         The size of its mesh.
+
+    >>> index["cat0"].label, index["cat0"].n_vertices
+    ('cat', 1000)
     """
 
     id: str
@@ -105,6 +96,10 @@ class Result:
         The share of the area of the shape that the query has if it is taken as a part.
     form_distance
         What results are ordered by if they are ranked by canonical forms alone.
+
+    >>> result = index.search("cat0", k=1)[0]
+    >>> result.rank, result.id, result.label
+    (1, 'cat0', 'cat')
     """
 
     rank: int
@@ -133,24 +128,23 @@ class SearchResults(Stored, Sequence[Result]):
     ----------
     report
         The answer that `canonform search --json` prints.
+
+    >>> results = index.search(cat, k=2)
+    >>> results.label, [result.id for result in results]
+    ('cat', ['cat0', 'cat1'])
     """
 
-    def __init__(self, report: dict[str, Any], query: Surface | None, name: str, index: _Surfaces) -> None:
+    def __init__(self, report: dict[str, Any], query: Surface | str, name: str, index: _Surfaces) -> None:
         self.report = report
         self._results = [
-            Result(
-                **{key: found[key] for key in ("rank", "id", "label", "path", "distance", "fused", "relation")},
-                **{key: found.get(key) for key in ("rank_distance", "part_distance", "part_share", "form_distance")},
-            )
-            for found in report["results"]
+            Result(**{field.name: found.get(field.name) for field in fields(Result)}) for found in report["results"]
         ]
         self._query, self._name, self._index = query, name, index
 
     @property
     def predicted(self) -> dict[str, Any]:
         """The class that the nearest shapes suggest: `label` (None if it is unknown), `votes`, `confidence`, `explanation`, ..."""
-        predicted: dict[str, Any] = self.report["predicted"]
-        return predicted
+        return self.report["predicted"]
 
     @property
     def label(self) -> str | None:
@@ -172,54 +166,40 @@ class SearchResults(Stored, Sequence[Result]):
         """One row for each result, with `rank` as the index."""
         import pandas
 
-        rows = [
-            {
-                "rank": found.rank,
-                "id": found.id,
-                "label": found.label,
-                "distance": found.distance,
-                "fused": found.fused,
-                "relation": found.relation["kind"],
-                "path": found.path,
-            }
-            for found in self
-        ]
-        return pandas.DataFrame(rows, columns=["rank", "id", "label", "distance", "fused", "relation", "path"]).set_index("rank")
+        columns = ["rank", "id", "label", "distance", "fused", "relation", "path"]
+        rows = [vars(found) | {"relation": found.relation["kind"]} for found in self]
+        return pandas.DataFrame(rows, columns=columns).set_index("rank")
 
     def __repr__(self) -> str:
         lines = [f"{found.rank:>3}  {found.id:<20} {found.label or '-':<12} {found.distance:.4f}" for found in self]
         return "\n".join([f"SearchResults of {self._name}: {self.predicted['explanation']}", *lines])
 
     def _repr_html_(self) -> str:
-        pictures = []
-        if self._query is not None:
-            pictures.append(_captioned(self._query, f"query: {self._name}"))
-        for found in self[:_PICTURED]:
-            try:
-                pictures.append(_captioned(self._index.surface(found.id), f"{found.rank}. {found.id}"))
-            except CanonformError:
-                # The file may be gone, and the results are worth showing all the same.
-                pictures.append(_caption("", f"{found.rank}. {found.id}"))
-        strip = f'<div style="display:flex;gap:10px;flex-wrap:wrap">{"".join(pictures)}</div>'
-        rows = (
-            (str(f.rank), f.id, f.label or "-", f"{f.distance:.4f}", f.relation["text"]) for f in self
-        )
+        shown = [(self._query, f"query: {self._name}"), *((found.id, f"{found.rank}. {found.id}") for found in self[:_PICTURED])]
+        strip = f'<div style="display:flex;gap:10px;flex-wrap:wrap">{"".join(self._captioned(*one) for one in shown)}</div>'
+        rows = ((str(f.rank), f.id, f.label or "-", f"{f.distance:.4f}", f.relation["text"]) for f in self)
         head = ("", "shape", "class", "distance", "relation")
         return _html.box(f"class: {self.predicted['explanation']}", strip + _html.table(head, rows))
 
 
-def _captioned(surface: Surface, caption: str) -> str:
-    return _caption(_html.image(surface.picture(width=220, height=220), 110, caption), caption)
-
-
-def _caption(image: str, caption: str) -> str:
-    from html import escape
-
-    return f'<div style="text-align:center;max-width:120px">{image}<div style="font-size:11px">{escape(caption)}</div></div>'
+    def _captioned(self, shape: Surface | str, caption: str) -> str:
+        try:
+            if isinstance(shape, str):
+                shape = Surface(shape) if os.path.exists(shape) else self._index.surface(shape)
+            image = _html.image(shape.picture(width=220, height=220), 110, caption)
+        except (CanonformError, KeyError):
+            # The file may be gone, and the results are worth showing all the same.
+            image = ""
+        return f'<div style="text-align:center;max-width:120px">{image}<div style="font-size:11px">{escape(caption)}</div></div>'
 
 
 class Scores(dict[str, Any]):
-    """How well classes are separated: the object that `canonform evaluate --json` prints, with `nn`, `ft`, `st`, `map`, ..."""
+    """How well classes are separated: the object that `canonform evaluate --json` prints, with `nn`, `ft`, `st`, `map`, ...
+
+    >>> scores = index.evaluate()
+    >>> scores["nn"], scores.to_pandas().shape
+    (1.0, (3, 3))
+    """
 
     def to_pandas(self) -> pandas.DataFrame:
         """How many shapes of each class, a row, were taken for each class, a column, by their neighbours."""
@@ -240,6 +220,9 @@ class Index(Stored):
     build_report
         What happened to each mesh when this object built or changed the index: the object that `canonform index build --json`
         prints.
+
+    >>> len(index), "cat0" in index, index.classify(other)
+    (9, True, 'cat')
     """
 
     def __init__(self, path: AnyPath) -> None:
@@ -310,12 +293,11 @@ class Index(Stored):
         max_vertices, timeout, memory
             Limits on each mesh; what exceeds them is left out.
 
-        Raises
-        ------
-        MeshError
-            If there are no meshes, or none of them can be described.
-        ShapeIndexError
-            If the file is not an index, or was made with other options.
+        Raises `MeshError` if there are no meshes, or none of them can be described.
+        Raises `ShapeIndexError` if the file is not an index, or was made with other options.
+
+        >>> canonform.Index.build({"tom": cat}, "cats.canonform", labels=["cat"])["tom"].label
+        'cat'
         """
         settings = options_of(
             n_landmarks=n_landmarks, n_points=n_points, size=size, method=method, geodesic=geodesic, components=components,
@@ -336,7 +318,20 @@ class Index(Stored):
 
     @classmethod
     def merge(cls, indexes: Iterable[AnyPath], path: AnyPath, **call: Unpack[Call]) -> Index:
-        """Merge indexes, for example those of shards, into one file, and open it."""
+        """Merge indexes, for example those of shards, into one file, and open it.
+
+        Parameters
+        ----------
+        indexes
+            Paths of indexes that were made with the same options.
+
+        Raises `ShapeIndexError` if they have other options, or different shapes of the same name.
+
+        >>> worm = canonform.datasets.generate("worm", poses=1, n_vertices=1000)
+        >>> other = canonform.Index.build(worm, "worm.canonform")
+        >>> len(canonform.Index.merge([index.path, other.path], "both.canonform"))
+        10
+        """
         with running(call):
             report = json.loads(_canonform.merge_indexes([os.fspath(index) for index in indexes], os.fspath(path)))
         index = cls(path)
@@ -364,6 +359,11 @@ class Index(Stored):
         replace
             Replace shapes that have the same name. Otherwise a shape of the same name with another content is an error, and nothing is
             added.
+
+        Raises `ShapeIndexError`, `OptionError` if a shape of the name has another content, or options contradict each other.
+
+        >>> index.add([("tom", cat, "cat")])["n_shapes"], index.remove("tom")
+        (10, 9)
         """
         if label is not None and labels is not None:
             raise OptionError("label= has no effect with labels=; leave one of them out")
@@ -381,7 +381,18 @@ class Index(Stored):
         return self.build_report or {}
 
     def remove(self, ids: str | Iterable[str]) -> int:
-        """Remove shapes by name; none if one of the names is unknown. Returns how many shapes are left."""
+        """Remove shapes by name; none if one of the names is unknown. Returns how many shapes are left.
+
+        Parameters
+        ----------
+        ids
+            One name, or several.
+
+        Raises `NoSuchShapeError` if the index has no shape of this name.
+
+        >>> index.add({"copy": cat})["n_shapes"], index.remove(["copy"])
+        (10, 9)
+        """
         left = _canonform.Index.remove(self.path, [ids] if isinstance(ids, str) else [word("ids", id) for id in ids])
         self._reopen(None)
         return left
@@ -392,7 +403,18 @@ class Index(Stored):
     def search_many(
         self, queries: Iterable[AnyMesh], k: int = 10, *, rank: Ranking = "plain", explain: bool = False, **call: Unpack[Call]
     ) -> list[SearchResults]:
-        """Find the shapes nearest to each of several queries, as `search` does."""
+        """Find the shapes nearest to each of several queries, as `search` does.
+
+        Parameters
+        ----------
+        queries
+            Each as in `search`.
+
+        Raises `NoSuchShapeError`, `MeshError` if a query is neither a file, nor a shape of the index, nor a mesh.
+
+        >>> [results[0].id for results in index.search_many([other, "david0"], k=1)]
+        ['cat1', 'david0']
+        """
         with running(call):
             return [self.search(query, k, rank=rank, explain=explain) for query in queries]
 
@@ -413,33 +435,31 @@ class Index(Stored):
             canonical forms alone.
         explain
             Say how each result is related to the query, as `compare` does; reads the mesh files of the results.
+
+        Raises `NoSuchShapeError`, `MeshError` if the query is neither a file, nor a shape of the index, nor a mesh.
+
+        >>> index.search(other, k=3)[0].id
+        'cat1'
         """
-        if not isinstance(query, (str, os.PathLike)):
-            with running(call):
-                query = surface_of(query)
-                name = query._name or "the query"
-                report = self._inner.search(query._inner, name, whole("k", k), word("rank", rank), bool(explain))
-            return SearchResults(json.loads(report), query, name, self)
-        text = os.fspath(query)
-        if not os.path.exists(text) and text not in self:
-            from .errors import NoSuchShapeError
-
-            raise NoSuchShapeError(f"{text!r} is neither a file nor a shape of the index; Index.shapes() names its shapes")
-        name = os.path.basename(text) if os.path.exists(text) else text
         with running(call):
-            report = self._inner.search(text, name, whole("k", k), word("rank", rank), bool(explain))
-        return SearchResults(json.loads(report), self._pictured(text), name, self)
-
-    def _pictured(self, query: str) -> Surface | None:
-        try:
-            return Surface(query) if os.path.exists(query) else Surface._of(self._inner.surface(query))
-        except CanonformError:
-            return None
+            shape = os.fspath(query) if isinstance(query, (str, os.PathLike)) else surface_of(query)
+            if isinstance(shape, Surface):
+                name = shape._name or "the query"
+            elif os.path.exists(shape) or shape in self:
+                name = os.path.basename(shape) if os.path.exists(shape) else shape
+            else:
+                raise NoSuchShapeError(f"{shape!r} is neither a file nor a shape of the index; Index.shapes() names its shapes")
+            given = shape._inner if isinstance(shape, Surface) else shape
+            report = self._inner.search(given, name, whole("k", k), word("rank", rank), bool(explain))
+        return SearchResults(json.loads(report), shape, name, self)
 
     def classify(self, query: AnyMesh, *, rank: Ranking = "plain", **call: Unpack[Call]) -> str | None:
         """The class of a query by the votes of the nearest shapes; None if no shape is near enough. `search` says why.
 
         A shape of the index, given by its name, has no vote about itself.
+
+        >>> index.classify("david1")
+        'david'
         """
         return self.search(query, 0, rank=rank, **call).label
 
@@ -466,6 +486,11 @@ class Index(Stored):
             "plain", or "graph" to score the ranking on the graph of nearest neighbours as well, under the key `graph`.
         labels
             Other classes, as in `build`.
+
+        Raises `OptionError` if options are not possible, or classes are not one for each shape.
+
+        >>> index.evaluate(by=index.distances(kind="fused"))["nn"]
+        1.0
         """
         ids = list(self)
         if labels is not None and not isinstance(labels, (str, os.PathLike, Mapping)):
@@ -488,31 +513,50 @@ class Index(Stored):
     @property
     def path(self) -> str:
         """The file."""
-        return os.fspath(self._inner.path)
+        return self._inner.path
 
     def info(self) -> dict[str, Any]:
         """Format, size, options and classes."""
-        info: dict[str, Any] = json.loads(self._inner.info())
-        return info
+        return json.loads(self._inner.info())
 
     def shapes(self) -> list[ShapeEntry]:
         """All shapes, by name."""
-        return [
-            ShapeEntry(id, label, os.fspath(path), vertices, faces)
-            for id, label, path, vertices, faces in self._inner.shapes()
-        ]
+        return [ShapeEntry(*shape) for shape in self._inner.shapes()]
 
     def vectors(self) -> NDArray[np.float32]:
         """The fused signatures of all shapes, in the order of `shapes`: shape (number of shapes, length)."""
         return self._inner.vectors()
 
     def vector(self, id: str) -> NDArray[np.float32]:
-        """The fused signature of one shape."""
+        """The fused signature of one shape.
+
+        Parameters
+        ----------
+        id
+            The name of a shape.
+
+        Raises `NoSuchShapeError` if the index has no shape of this name.
+
+        >>> bool(np.array_equal(index.vector("cat0"), cat.signature()))
+        True
+        """
         return self._inner.vector(word("id", id))
 
-    def nearest(self, vector: ArrayLike, k: int = 10) -> list[tuple[str, float]]:
-        """The shapes whose signatures are nearest to a vector, such as `Surface.signature()`: names and distances, nearest first."""
-        return self._inner.nearest(numeric("vector", vector, ("d",), np.float32), whole("k", k))
+    def nearest(self, vector: ArrayLike, k: int = 10, **call: Unpack[Call]) -> list[tuple[str, float]]:
+        """The shapes whose signatures are nearest to a vector, such as `Surface.signature()`: names and distances, nearest first.
+
+        Parameters
+        ----------
+        vector
+            Shape (length,), as those of `vectors`.
+
+        Raises `ShapeIndexError` if the vector has another length.
+
+        >>> [name for name, distance in index.nearest(cat.signature(), 2)]
+        ['cat0', 'cat1']
+        """
+        with running(call):
+            return self._inner.nearest(numeric("vector", vector, ("d",), np.float32), whole("k", k))
 
     def distances(
         self,
@@ -536,15 +580,27 @@ class Index(Stored):
         Returns
         -------
         ndarray of shape (len(ids), len(others))
+
+        Raises `NoSuchShapeError` if the index has no shape of this name.
+
+        >>> index.distances(["cat0"], ["cat1", "david0"]).shape
+        (1, 2)
         """
         rows = list(self) if ids is None else [word("ids", id) for id in ids]
         with running(call):
             return self._inner.distances(rows, None if others is None else list(others), word("kind", kind))
 
-    def surface(self, id: str) -> Surface:
-        """The surface of a shape. Its mesh file must be where it was, and unchanged."""
+    def surface(self, id: str, **call: Unpack[Call]) -> Surface:
+        """The surface of a shape. Its mesh file must be where it was, and unchanged.
+
+        Raises `NoSuchShapeError`, `MissingFileError`, `ShapeIndexError` if the index has no such shape, or its mesh is gone or changed.
+
+        >>> index.surface("cat0").n_vertices
+        1000
+        """
         try:
-            return Surface._of(self._inner.surface(word("id", id)), id)
+            with running(call):
+                return Surface._of(self._inner.surface(word("id", id)), id)
         except MissingFileError as fault:
             if f"{os.path.basename(self.path)}.meshes" not in self[id].path:
                 raise
@@ -552,8 +608,7 @@ class Index(Stored):
 
     def __getitem__(self, id: str) -> ShapeEntry:
         """A shape by its name. Raises `NoSuchShapeError`."""
-        name, label, path, vertices, faces = self._inner.entry(word("id", id))
-        return ShapeEntry(name, label, os.fspath(path), vertices, faces)
+        return ShapeEntry(*self._inner.entry(word("id", id)))
 
     def duplicates(
         self,
@@ -581,27 +636,37 @@ class Index(Stored):
             Which file of a group is kept: "exact", "largest", "smallest", "oldest", "newest", or one in a folder.
         reference
             Folders and archives from which nothing is to be removed.
+
+        Raises `OptionError` if there is no such kind of relation.
+
+        >>> cat.write("copy.ply")
+        >>> index.add("copy.ply")["n_shapes"]
+        10
+        >>> [[member["id"] for member in group["members"]] for group in index.duplicates()], index.remove("copy")
+        ([['copy']], 9)
         """
         wanted = None if kinds is None else [word("kinds", kind) for kind in ([kinds] if isinstance(kinds, str) else kinds)]
         folders = [os.fspath(path) for path in reference]
         with running(call):
-            found: dict[str, Any] = json.loads(
-                self._inner.duplicates(wanted, number("min_confidence", min_confidence), os.fspath(keep), folders)
-            )
-        groups: list[dict[str, Any]] = found["groups"]
-        return groups
+            found = self._inner.duplicates(wanted, number("min_confidence", min_confidence), os.fspath(keep), folders)
+        return json.loads(found)["groups"]
 
-    def export(self, path: AnyPath) -> None:
+    def export(self, path: AnyPath, **call: Unpack[Call]) -> None:
         """Write the index, the same however it was built. The extension tells the format: jsonl, parquet, npz or csv.
 
         With the extension lance, write its vectors to a table as `distributed.vector_table` does.
+
+        Raises `OptionError`, `FileError` if there is no such format, or the file cannot be written.
+
+        >>> index.export("shapes.csv")
         """
         if os.fspath(path).endswith(".lance"):
             from .distributed import vector_table
 
-            vector_table([self.path], path)
+            vector_table([self.path], path, **call)
             return
-        self._inner.export(os.fspath(path))
+        with running(call):
+            self._inner.export(os.fspath(path))
 
     def to_pandas(self) -> pandas.DataFrame:
         """One row for each shape, with `id` as the index."""

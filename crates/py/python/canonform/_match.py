@@ -44,6 +44,10 @@ class MappedPoints(ByValue):
         The vertices of that face: shape (n, 3).
     weights
         The weights of these vertices, with sum 1; NaN for dropped vertices: shape (n, 3).
+
+    >>> points = found.best.points()
+    >>> points.interpolate(other.vertices).shape
+    (1000, 3)
     """
 
     faces: Ints
@@ -62,15 +66,25 @@ class MappedPoints(ByValue):
         return [None if face < 0 else FacePoint(face, (u, v, w)) for face, (u, v, w) in pairs]
 
     def interpolate(self, values: ArrayLike) -> Floats:
-        """Values at the vertices of that surface, shape (m,) or (m, d), at the points; NaN for dropped vertices."""
+        """Values at the vertices of that surface, shape (m,) or (m, d), at the points; NaN for dropped vertices.
+
+        Parameters
+        ----------
+        values
+            Shape (m,) or (m, d).
+
+        Raises `OptionError` if there is not one row for each vertex.
+
+        >>> found.best.points().interpolate(other.distances(0)).shape
+        (1000,)
+        """
         sides = ("m",) if np.ndim(values) == 1 else ("m", "d")
         array = numeric("values", values, sides)
         weights = self.weights if array.ndim == 1 else self.weights[:, :, None]
         parts = array[self.corners] * weights
         # Not a number times zero is not a number.
         parts[np.broadcast_to(weights == 0, parts.shape)] = 0
-        found: Floats = parts.sum(axis=1)
-        return found
+        return parts.sum(axis=1)
 
     def __len__(self) -> int:
         return len(self.faces)
@@ -100,6 +114,9 @@ class SurfaceMap(Stored):
         The next best map of this kind, unless the confidence is 0.9 or more: front and back may be exchanged.
     part
         "first" or "second", the surface that is a part of the other; `None` if both are mapped as wholes.
+
+    >>> found.best.vertices.shape, found.best.kind in ("direct", "mirrored")
+    ((1000,), True)
     """
 
     def __init__(
@@ -133,20 +150,37 @@ class SurfaceMap(Stored):
         self, n_eigenfunctions: int | None = None, *, bases: tuple[Eigenbasis, Eigenbasis] | None = None
     ) -> Floats:
         """The map of functions, a square matrix, smaller for a part: column j has the coefficients of the j-th eigenfunction of `b`,
-        pulled back to `a`, in the eigenfunctions of `a`. The method `bases` gives these; by default all that the map has. With
-        `bases` of your own, one of `a` and one of `b`, it is written in them."""
+        pulled back to `a`, in the eigenfunctions of `a`. The method `bases` gives these; by default all that the map has.
+
+        Parameters
+        ----------
+        bases
+            Bases of `a` and `b` to write it in.
+
+        Raises `OptionError` if the map has fewer eigenfunctions.
+
+        >>> found.best.functional(20).shape
+        (20, 20)
+        """
         if bases is not None:
             a, b = bases
             pulled = np.where(self.vertices[:, None] < 0, 0.0, np.nan_to_num(b.functions)[self.vertices])
-            found: Floats = a.project(pulled)[:n_eigenfunctions, :n_eigenfunctions]
-            return found
+            return a.project(pulled)[:n_eigenfunctions, :n_eigenfunctions]
         rows, columns = self._counts(n_eigenfunctions)
         return self._functional[:rows, :columns].copy()
 
-    def bases(self, n_eigenfunctions: int | None = None) -> tuple[Eigenbasis, Eigenbasis]:
-        """The eigenfunctions of `a` and of `b` that `functional` is written in, of both surfaces scaled to unit area."""
+    def bases(self, n_eigenfunctions: int | None = None, **call: Unpack[Call]) -> tuple[Eigenbasis, Eigenbasis]:
+        """The eigenfunctions of `a` and of `b` that `functional` is written in, of both surfaces scaled to unit area.
+
+        Raises `OptionError` if the map has fewer eigenfunctions.
+
+        >>> a, b = found.best.bases(20)
+        >>> len(a), len(b)
+        (20, 20)
+        """
         counts = self._counts(n_eigenfunctions)
-        found = [_canonform.map_basis(shape._inner, self._settings) for shape in self._shapes]
+        with running(call):
+            found = [_canonform.map_basis(shape._inner, self._settings) for shape in self._shapes]
         a, b = (
             Eigenbasis(values, on_vertices(functions), masses).first(most)
             for (values, functions, masses), most in zip(found, counts, strict=True)
@@ -163,7 +197,18 @@ class SurfaceMap(Stored):
 
     def points(self, of: Side = "a", **call: Unpack[Call]) -> MappedPoints:
         """The points inside faces of `b` that the vertices of `a` are mapped to; with `of="b"`, the points of `a` that are mapped to
-        the vertices of `b`."""
+        the vertices of `b`.
+
+        Parameters
+        ----------
+        of
+            "a" or "b".
+
+        Raises `OptionError` if `of` is neither.
+
+        >>> found.best.points("b")
+        MappedPoints(1000 points)
+        """
         with running(call):
             return self._mapped(_side("of", of), "vertices")
 
@@ -200,8 +245,16 @@ class SurfaceMap(Stored):
         to
             The surface that they go to.
 
-        Returns one row for each vertex or face of that surface, or values at its corners. Of those that the repair dropped, numbers are NaN or -1, and other
-        labels are empty.
+        Returns
+        -------
+        ndarray
+            One row for each vertex or face of that surface, or values at its corners. Of those that the repair dropped, numbers are NaN or
+            -1, and other labels are empty.
+
+        Raises `OptionError` if there is not one row for each vertex or face.
+
+        >>> found.best.transfer(cat.distances(0)).shape
+        (1000,)
         """
         with running(call):
             return self._carried(values, _side("to", to))
@@ -225,10 +278,10 @@ class SurfaceMap(Stored):
             f"{source.n_faces} faces; give one row for each vertex or for each face, or the shape ({source.n_faces}, 3, d)"
         )
 
-    def inverse(self) -> SurfaceMap:
+    def inverse(self, **call: Unpack[Call]) -> SurfaceMap:
         """The same map from `b` to `a`. A vertex of `b` has the confidence of its partner."""
         if self._partners is None:
-            points = self.points("b")
+            points = self.points("b", **call)
             heaviest = np.nan_to_num(points.weights, nan=-1.0).argmax(axis=1)
             vertices = np.where(points.faces < 0, -1, points.corners[np.arange(len(points)), heaviest])
             partners = None
@@ -244,7 +297,18 @@ class SurfaceMap(Stored):
 
     def then(self, next: SurfaceMap) -> SurfaceMap:
         """This map from `a` to `b`, followed by one from `b` to `c`. Its confidence is the product of both; its distortion is at most
-        their sum, which stands for it."""
+        their sum, which stands for it.
+
+        Parameters
+        ----------
+        next
+            A map that begins on `b`.
+
+        Raises `OptionError` if the maps do not share a surface, or one is of a part.
+
+        >>> found.best.then(found.best.inverse()).vertices.shape
+        (1000,)
+        """
         middle, start = self._shapes[1], next._shapes[0]
         if middle.n_vertices != start.n_vertices:
             raise OptionError(f"the first map ends on {middle.n_vertices} vertices, and the next starts on {start.n_vertices}; they must share a surface")
@@ -285,8 +349,7 @@ class SurfaceMap(Stored):
 def _side(name: str, value: Any) -> Side:
     if value not in ("a", "b"):
         raise OptionError(f"{name}={value!r} is not possible: give \"a\" or \"b\"")
-    side: Side = value
-    return side
+    return value
 
 
 def _majority(labels: NDArray[Any], points: MappedPoints) -> Ints:
@@ -295,8 +358,7 @@ def _majority(labels: NDArray[Any], points: MappedPoints) -> Ints:
     of = classes.reshape(len(labels))[points.corners]
     weights = np.nan_to_num(points.weights)
     sums = ((of[:, :, None] == of[:, None, :]) * weights[:, None, :]).sum(axis=2)
-    best: Ints = np.take_along_axis(points.corners, sums.argmax(axis=1)[:, None], axis=1)[:, 0]
-    return best
+    return np.take_along_axis(points.corners, sums.argmax(axis=1)[:, None], axis=1)[:, 0]
 
 
 def _labels(labels: NDArray[Any], rows: Ints, missing: NDArray[np.bool_]) -> NDArray[Any]:
@@ -318,6 +380,9 @@ class Match(Stored):
         At most two maps, of different kinds.
     seconds
         The time of the search, after both surfaces were prepared.
+
+    >>> found.best is found.maps[0]
+    True
     """
 
     def __init__(
@@ -359,6 +424,11 @@ class Match(Stored):
             How many vertices, spread evenly, are joined to their partners by lines.
         look
             Other keywords of `Look`; the picture is twice as wide as high by default.
+
+        Raises `OptionError` if there is no map of this kind.
+
+        >>> found.picture(n_lines=4, width=80)[1:4]
+        b'PNG'
         """
         chosen = [m for m in self.maps if kind in (None, m.kind)]
         if not chosen:
@@ -370,10 +440,11 @@ class Match(Stored):
         moved = b.vertices + (ends[0] - ends[1] + 0.15 * max(spans)) * right
         from_a = a.farthest_points(n_lines) if n_lines else np.empty(0, dtype=np.int64)
         to_b = chosen[0].vertices[from_a]
-        lines = [np.stack([a.vertices[i], moved[j]]) for i, j in zip(from_a, to_b, strict=True) if j >= 0]
+        joined = [(i, j) for i, j in zip(from_a, to_b, strict=True) if j >= 0]
+        lines = [(np.stack([a.vertices[i], moved[j]]), "#" + bytes(source[i].astype(np.uint8)).hex()) for i, j in joined]
         vertices = np.concatenate([a.vertices, moved])
         faces = np.concatenate([a.faces, b.faces + a.n_vertices])
-        usual: Look = {"width": 1200, "height": 600, "paths": lines}
+        usual: Look = {"width": 1200, "height": 600, "paths": lines, "thickness": 0.4}
         return drawn(vertices, faces, None, {**usual, **look, "colors": np.concatenate([source, target])})
 
     def __repr__(self) -> str:
@@ -419,8 +490,11 @@ def match(
         column for each function.
     n_eigenfunctions
         Most eigenfunctions of each surface that the map is refined with, 150 by default.
-    geodesic
-        How distances are measured, as in `Surface.distances`.
+
+    Raises `OptionError` if an option is not possible, or landmarks contradict each other.
+
+    >>> canonform.match(cat, other, n_eigenfunctions=30, landmarks=[[0, 0]]).best.vertices.shape
+    (1000,)
     """
     eigenfunctions = some_whole("n_eigenfunctions", n_eigenfunctions)
     settings = options_of(eigenfunctions=eigenfunctions, geodesic=geodesic)
@@ -445,8 +519,7 @@ def _partners(initial: ArrayLike | tuple[ArrayLike, Eigenbasis, Eigenbasis] | No
     if isinstance(initial, tuple) and len(initial) == 3 and isinstance(initial[1], Eigenbasis):
         functional, a, b = initial
         return _of_functional(numeric("initial", functional, ("k", "l")), a, b)
-    found: Ints = numeric("initial", initial, ("n",), np.int64)
-    return found
+    return numeric("initial", initial, ("n",), np.int64)
 
 
 def _functions(descriptors: tuple[ArrayLike, ArrayLike] | None) -> tuple[Floats, Floats] | None:

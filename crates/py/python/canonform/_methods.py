@@ -38,10 +38,6 @@ class FastMarching(Options):
     obtuse
         What happens to angles wider than 90 degrees: "flip", "unfold" or "ignore".
 
-    Examples
-    --------
-    >>> import canonform
-    >>> cat = canonform.datasets.generate("cat", poses=1, n_vertices=1000)[0].surface()
     >>> distances = cat.distances(0, geodesic=canonform.FastMarching(obtuse="ignore"))
     >>> bool(abs(distances - cat.distances(0, geodesic="exact")).max() < 0.02 * distances.max())
     True
@@ -88,10 +84,6 @@ class Nystrom(_Regularized):
     first
         The first landmark, a vertex. By default the one farthest from vertex 0; with other samplings it is drawn with the seed.
 
-    Examples
-    --------
-    >>> import canonform
-    >>> cat = canonform.datasets.generate("cat", poses=1, n_vertices=1000)[0].surface()
     >>> cat.canonical_form(40, method=canonform.Nystrom(rank=9)).report["rank"]
     9
     """
@@ -107,6 +99,9 @@ class Landmark(_Sampled):
     ----------
     sampling, first
         How landmarks are chosen, see `Nystrom`.
+
+    >>> cat.canonical_form(40, method=canonform.Landmark(sampling="random"), seed=1).report["method"]
+    'landmark'
     """
 
     _name = "landmark"
@@ -124,6 +119,9 @@ class Spectral(_Sampled):
         Weight of the distances against smoothness, for a surface of unit area; `math.inf` fits the distances exactly.
     sampling, first
         How landmarks are chosen, see `Nystrom`.
+
+    >>> cat.canonical_form(40, method=canonform.Spectral(n_eigenfunctions=50)).report["method"]
+    'spectral'
     """
 
     _name = "spectral"
@@ -144,6 +142,9 @@ class KernelPca(_Sampled):
         Eigenpairs of the kernel of the landmarks to keep, by default half.
     sampling, first
         How landmarks are chosen, see `Nystrom`.
+
+    >>> cat.canonical_form(40, method=canonform.KernelPca(sigma="median")).report["method"]
+    'kpca'
     """
 
     _name = "kpca"
@@ -164,6 +165,9 @@ class Smacof(_Regularized):
         The last step reduces the stress by less than this share.
     regularization, rank, alpha, sampling, first
         Of the start, see `Nystrom`.
+
+    >>> cat.canonical_form(40, method=canonform.Smacof(max_iterations=5)).report["method"]
+    'smacof'
     """
 
     _name = "smacof"

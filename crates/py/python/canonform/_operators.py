@@ -26,6 +26,10 @@ class EdgePoint:
         The vertex at the other.
     t
         Where the point is, from 0 at the start to 1 at the end.
+
+    >>> a, b = map(int, cat.edges[0])
+    >>> float(cat.distances(canonform.EdgePoint(a, b)).min()) > 0
+    True
     """
 
     start: int
@@ -46,6 +50,9 @@ class FacePoint:
         The face.
     weights
         Weights of the corners of the face, in their order: not negative, with a positive sum.
+
+    >>> cat.path(0, canonform.FacePoint(8, (2, 1, 1))).at[-1]
+    FacePoint(face=8, weights=(2.0, 1.0, 1.0))
     """
 
     face: int
@@ -81,6 +88,9 @@ class ClosestPoints(AsArray, ByValue):
         The face that each lies in: shape (k,).
     weights
         The weights of the corners of that face: shape (k, 3).
+
+    >>> cat.closest_point(cat.vertices[:3]).distances.round(6).tolist()
+    [0.0, 0.0, 0.0]
     """
 
     points: Floats
@@ -111,6 +121,11 @@ class Eigenbasis(ByValue):
         dropped.
     masses
         The area around each vertex, in squared mesh units: shape (n,).
+
+    >>> basis = cat.eigenbasis(20)
+    >>> smooth = basis.synthesize(basis.project(cat.vertices))
+    >>> smooth.shape
+    (1000, 3)
     """
 
     values: Floats
@@ -119,25 +134,56 @@ class Eigenbasis(ByValue):
 
     @cached_property
     def _weighted(self) -> Floats:
-        weighted: Floats = np.nan_to_num(self.functions.view(np.ndarray)) * self.masses[:, None]
-        return weighted
+        return np.nan_to_num(self.functions.view(np.ndarray)) * self.masses[:, None]
 
     def project(self, values: ArrayLike) -> Floats:
-        """The coefficients of functions, shape (n,) or (n, d), in this basis: shape (k,) or (k, d)."""
+        """The coefficients of functions, shape (n,) or (n, d), in this basis: shape (k,) or (k, d).
+
+        Parameters
+        ----------
+        values
+            Shape (n,) or (n, d).
+
+        Raises `OptionError` if there is not one row for each vertex.
+
+        >>> basis = cat.eigenbasis(20)
+        >>> basis.project(basis.functions[:, 3]).round(6).tolist()[2:5]
+        [0.0, 1.0, 0.0]
+        """
         array = numeric("values", values, (len(self.masses), "d")[: max(np.ndim(values), 1)])
         known = np.where(self.functions.valid.reshape(-1, *[1] * (array.ndim - 1)), array, 0)
-        coefficients: Floats = self._weighted.T @ known
-        return coefficients
+        return self._weighted.T @ known
 
     def synthesize(self, coefficients: ArrayLike) -> VertexValues:
-        """The functions of coefficients, shape (k,) or (k, d), at the vertices."""
+        """The functions of coefficients, shape (k,) or (k, d), at the vertices.
+
+        Parameters
+        ----------
+        coefficients
+            Shape (k,) or (k, d).
+
+        Raises `OptionError` if there is not one row for each function.
+
+        >>> basis = cat.eigenbasis(20)
+        >>> bool(np.allclose(basis.synthesize(np.eye(20)[3]), basis.functions[:, 3]))
+        True
+        """
         return on_vertices(self.functions.view(np.ndarray) @ numeric("coefficients", coefficients, (len(self), "d")[: max(np.ndim(coefficients), 1)]))
 
     def hks(self, times: ArrayLike | None = None, *, n_times: int = 16, scaled: bool = False) -> VertexValues:
         """The heat kernel signature of every vertex (Sun et al. 2009), shape (n_vertices, number of times).
 
-        `times` are in squared mesh units; by default `n_times` of them, from the time of the last eigenfunction to that of the first.
-        `scaled` divides each column by the trace of the kernel at that time, so that all times count alike.
+        Parameters
+        ----------
+        times, n_times
+            In squared mesh units; by default `n_times` of them, from the time of the last eigenfunction to that of the first.
+        scaled
+            Whether to divide each column by the trace of the kernel at that time, so that all times count alike.
+
+        Raises `OptionError` if times are not positive, or all functions are constant.
+
+        >>> cat.eigenbasis(20).hks([100.0, 1000.0]).shape
+        (1000, 2)
         """
         curved = self._curved()
         if times is None:
@@ -152,13 +198,18 @@ class Eigenbasis(ByValue):
 
         Parameters
         ----------
-        energies
+        energies, n_energies
             Logarithms of eigenvalues; by default `n_energies` of them, evenly spaced from the lowest of the basis plus 2 `sigma` to
             the highest minus 2 `sigma`.
         sigma
             Width of the bands of energy; by default 7 times the range of the logarithms over their number, as published.
         scaled
             Whether to divide each column by the sum of the weights of its eigenfunctions, as published.
+
+        Raises `OptionError` if bands are wider than the spectrum, or all functions are constant.
+
+        >>> cat.eigenbasis(20).wks(n_energies=40).shape
+        (1000, 40)
         """
         curved = self._curved()
         low, high = np.log(curved[[0, -1]])
@@ -178,8 +229,7 @@ class Eigenbasis(ByValue):
 
     @property
     def _is_curved(self) -> Floats:
-        curved: Floats = self.values * self.masses.sum() > 1e-6
-        return curved
+        return self.values * self.masses.sum() > 1e-6
 
     def _curved(self) -> Floats:
         curved: Floats = self.values[self._is_curved]
@@ -192,7 +242,13 @@ class Eigenbasis(ByValue):
         return on_vertices(self.functions.view(np.ndarray) ** 2 @ weights, writeable=False)
 
     def first(self, n_eigenfunctions: int) -> Eigenbasis:
-        """The first of its functions."""
+        """The first of its functions.
+
+        Raises `OptionError` if it is not a whole number, 1 or more.
+
+        >>> cat.eigenbasis(20).first(5)
+        Eigenbasis(1000 vertices, 5 functions)
+        """
         n = whole("n_eigenfunctions", n_eigenfunctions, 1)
         return Eigenbasis(self.values[:n], self.functions[:, :n].view(VertexValues), self.masses)
 

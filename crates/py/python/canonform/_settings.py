@@ -124,6 +124,9 @@ class Shown(TypedDict, total=False):
         True shows a bar (needs the package tqdm); a function gets the stage, the steps done and all steps.
     threads
         Number of threads, 0 for all cores; by default that of `set_threads`.
+
+    >>> cat.distances(0, threads=1).shape
+    (1000,)
     """
 
     progress: Progress
@@ -141,6 +144,9 @@ class Call(Shown, total=False):
         Seconds after which the call ends with `TimeLimitError`.
     memory
         Bytes that it may use, or text such as "2G". It replaces the limits that hold otherwise.
+
+    >>> cat.distances(0, timeout=10, memory="1G", threads=1).shape
+    (1000,)
     """
 
     timeout: float | None
@@ -153,6 +159,25 @@ def warned(message: str, kind: type[Warning]) -> None:
     while frame.f_back is not None and frame.f_globals.get("__package__") == __package__:
         frame, level = frame.f_back, level + 1
     warnings.warn(message, kind, stacklevel=level)
+
+
+def set_threads(n: int) -> None:
+    """Set the number of worker threads, 0 for all cores, also of processes that are started from now on.
+
+    Otherwise the environment variables RAYON_NUM_THREADS and OMP_NUM_THREADS say it. Results do not depend on it.
+
+    Parameters
+    ----------
+    n
+        The number, 0 for all cores.
+
+    Raises `OptionError` if it is not a whole number, 0 or more.
+
+    >>> canonform.set_threads(2)
+    >>> canonform.threads()
+    2
+    """
+    _canonform.set_threads(whole("n", n))
 
 
 @contextmanager

@@ -13,29 +13,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _canonform, _html
-from ._arrays import Floats, Ints, SourceRows, VertexValues, mesh_of, numeric, on_vertices, straight
+from ._arrays import Floats, Ints, SourceRows, VertexValues, edges_of, mesh_of, numeric, on_vertices, straight
 from ._field import DistanceField
 from ._form import Form
 from ._look import Look, drawn
 from ._methods import Embedding, Geodesic, options_of
 from ._operators import ClosestPoints, EdgePoint, Eigenbasis, FacePoint, parsed
 from ._settings import (
-    Call,
-    Components,
-    Landmarks,
-    LaplacianKind,
-    SignatureKind,
-    StressChoice,
-    Weld,
-    number,
-    numbers,
-    running,
-    some_whole,
-    unmasked,
-    warned,
-    whole,
-    word,
-)
+    Call, Components, Landmarks, LaplacianKind, SignatureKind, StressChoice, Weld, number, numbers, running, some_whole, unmasked,
+    warned, whole, word,
+)  # fmt: skip
 from ._stored import AsArray, ByValue, Constant
 from ._view import SurfaceView, scene
 from .errors import MeshError, OptionError, PointError, SurfaceLossWarning
@@ -62,17 +49,29 @@ _MOST_KEPT = 8
 
 
 def distance_methods() -> dict[str, str]:
-    """Methods that measure distances: names, and what they compute."""
+    """Methods that measure distances: names, and what they compute.
+
+    >>> sorted(canonform.distance_methods())
+    ['bfs', 'dijkstra', 'exact', 'fast-marching', 'heat']
+    """
     return dict(_canonform.distance_methods())
 
 
 def embedding_methods() -> dict[str, str]:
-    """Methods that turn distances into coordinates: names, and what they compute."""
+    """Methods that turn distances into coordinates: names, and what they compute.
+
+    >>> "smacof" in canonform.embedding_methods()
+    True
+    """
     return dict(_canonform.embedding_methods())
 
 
 def signature_kinds() -> list[str]:
-    """Kinds of signatures that `Surface.signature` computes, besides "fused"."""
+    """Kinds of signatures that `Surface.signature` computes, besides "fused".
+
+    >>> "shape-dna" in canonform.signature_kinds()
+    True
+    """
     return _canonform.signature_kinds()
 
 
@@ -85,6 +84,9 @@ class RepairReport(dict[str, Any]):
     ----------
     lines
         One line for each kind of change; empty if nothing was changed.
+
+    >>> str(cat.repair_report)
+    'nothing to repair'
     """
 
     def __init__(self, report: dict[str, Any], lines: list[str]) -> None:
@@ -109,6 +111,12 @@ class Path(AsArray, ByValue):
         The distance of each from the start, along the path, in mesh units: shape (k,).
     length
         Its length, in mesh units.
+
+    >>> path = cat.path(0, 500)
+    >>> path
+    Path(length=..., points=..., from 0 to 500)
+    >>> bool(np.isclose(path.along[-1], path.length))
+    True
     """
 
     points: Floats
@@ -136,6 +144,9 @@ class RepairedMesh(ByValue):
         For each of its vertices, the vertex of the input that it was, the first of those that were merged: shape (k,).
     from_input
         For each vertex of the input, the vertex that it became, or -1 if the repair dropped it: shape (n,).
+
+    >>> cat.repaired
+    RepairedMesh(1000 vertices, 1996 faces)
     """
 
     vertices: Floats
@@ -171,16 +182,9 @@ class Surface(Constant):
     format
         The format of bytes, or of an open file without a name, such as "ply". Otherwise the extension tells it.
 
-    Raises
-    ------
-    MeshError
-        If it is not a mesh with finite coordinates.
-    MissingFileError, FileError
-        If a file cannot be read.
+    Raises `MeshError` if it is not a mesh with finite coordinates.
+    Raises `MissingFileError`, `FileError` if a file cannot be read.
 
-    Examples
-    --------
-    >>> import canonform, numpy as np
     >>> square = canonform.Surface(np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 2, 3]]))
     >>> square.distances(0).round(6).tolist()
     [0.0, 1.0, 1.414214, 1.0]
@@ -245,14 +249,11 @@ class Surface(Constant):
 
     def _once(self, make: Callable[[], _T], *key: Any) -> _T:
         """What was made for this key before, or what is made now and kept."""
-        kept: dict[tuple[Any, ...], Any] = self.__dict__.setdefault("_kept", {})
-        if key not in kept:
-            made = make()
-            while len(kept) >= _MOST_KEPT:
-                kept.pop(next(iter(kept)), None)
-            kept[key] = made
-        found: _T = kept[key]
-        return found
+        kept: dict[tuple[Any, ...], _T] = self.__dict__.setdefault("_kept", {})
+        made = kept[key] if key in kept else make()
+        while len(kept) >= _MOST_KEPT and key not in kept:
+            kept.pop(next(iter(kept)), None)
+        return kept.setdefault(key, made)
 
     @property
     def n_vertices(self) -> int:
@@ -300,8 +301,7 @@ class Surface(Constant):
 
         All results have finite numbers there, and NaN elsewhere.
         """
-        kept: NDArray[np.bool_] = self.repaired.from_input >= 0
-        return kept
+        return self.repaired.from_input >= 0
 
     def distances(
         self,
@@ -328,10 +328,11 @@ class Surface(Constant):
         VertexValues of shape (n,)
             In mesh units; NaN for vertices that the repair dropped.
 
-        Raises
-        ------
-        PointError
-            If the mesh has no such point, or the repair dropped it.
+        Raises `PointError` if the mesh has no such point, or the repair dropped it.
+
+        >>> distances = cat.distances([0, 10])
+        >>> distances.shape, float(distances[10])
+        ((1000,), 0.0)
         """
         points = _several(sources, self.n_vertices)
         if not points:
@@ -340,16 +341,24 @@ class Surface(Constant):
             return on_vertices(self._inner.distances(points, options_of(geodesic=geodesic), number("max_distance", max_distance, 0)))
 
     def distances_many(
-        self,
-        sources: Iterable[Point],
-        *,
-        geodesic: Geodesic = "fast-marching",
-        max_distance: float = np.inf,
-        **call: Unpack[Call],
+        self, sources: Iterable[Point], *, geodesic: Geodesic = "fast-marching", max_distance: float = np.inf, **call: Unpack[Call]
     ) -> SourceRows:
         """Distances from each source on its own, computed in parallel. Row i equals `distances(sources[i])`.
 
-        Returns an array of shape (number of sources, n), in mesh units.
+        Parameters
+        ----------
+        sources
+            Points as in `distances`.
+
+        Returns
+        -------
+        SourceRows of shape (number of sources, n)
+            In mesh units.
+
+        Raises `PointError` if the mesh has no such point, or the repair dropped it.
+
+        >>> cat.distances_many([0, 10, 20]).shape
+        (3, 1000)
         """
         with running(call):
             return self._inner.distances_many(
@@ -366,9 +375,20 @@ class Surface(Constant):
         The path crosses faces: it is straightened until it is locally shortest, so it may be shorter than the distance that an approximate
         method states.
 
-        Raises `PointError`.
+        Parameters
+        ----------
+        a
+            The start: a vertex, an `EdgePoint` or a `FacePoint`.
+        b
+            The end, or several.
+
+        Raises `PointError` if the mesh has no such point, the repair dropped it, or no path leads there.
+
+        >>> path, other_path = cat.path(0, [500, "f8@2:1:1"])
+        >>> path.at[-1], other_path.at[-1]
+        (500, FacePoint(face=8, weights=(2.0, 1.0, 1.0)))
         """
-        single = isinstance(b, (int, str, np.integer, EdgePoint, FacePoint))
+        single = isinstance(b, (str, EdgePoint, FacePoint)) or not isinstance(b, Iterable)
         [source] = _several(a, self.n_vertices)
         ends = _several(b, self.n_vertices)
         with running(call):
@@ -377,12 +397,7 @@ class Surface(Constant):
         return found[0] if single else found
 
     def farthest_points(
-        self,
-        n_points: int,
-        *,
-        first: int | None = None,
-        geodesic: Geodesic = "fast-marching",
-        **call: Unpack[Call],
+        self, n_points: int, *, first: int | None = None, geodesic: Geodesic = "fast-marching", **call: Unpack[Call]
     ) -> Ints:
         """Vertices spread evenly over the surface, each the farthest from those before it.
 
@@ -397,6 +412,11 @@ class Surface(Constant):
         -------
         ndarray of shape (n_points,)
             Vertex numbers of the input.
+
+        Raises `PointError` if the mesh has no vertex `first`.
+
+        >>> cat.farthest_points(5).shape
+        (5,)
         """
         if first is not None and whole("first", first) >= self.n_vertices:
             raise PointError(f"first={first} is not possible: the mesh has {self.n_vertices} vertices, counted from 0")
@@ -404,12 +424,7 @@ class Surface(Constant):
             return self._inner.farthest_points(whole("n_points", n_points), some_whole("first", first), options_of(geodesic=geodesic))
 
     def distance_field(
-        self,
-        n_landmarks: int = 100,
-        *,
-        rank: int | None = None,
-        geodesic: Geodesic = "fast-marching",
-        **call: Unpack[Call],
+        self, n_landmarks: int = 100, *, rank: int | None = None, geodesic: Geodesic = "fast-marching", **call: Unpack[Call]
     ) -> DistanceField:
         """The distances between all pairs of vertices, with bounds, in little memory.
 
@@ -422,6 +437,11 @@ class Surface(Constant):
         geodesic
             How distances are measured, as in `distances`. Only "exact" certifies the bounds; with others they are widened by the error that
             was measured on this surface.
+
+        Raises `OptionError`, `LimitError` if an option is not possible, or a limit does not suffice.
+
+        >>> cat.distance_field(20).row(0, tolerance=None)
+        PairDistances(1000 pairs, ... exact)
         """
         with running(call):
             inner = _canonform.DistanceField.build(
@@ -453,8 +473,6 @@ class Surface(Constant):
             "smacof"; or one of `Nystrom`, `Landmark`, `Spectral`, `KernelPca`, `Smacof` with options.
         n_components
             Dimensions of the embedding.
-        geodesic
-            How distances are measured, as in `distances`.
         stress
             From which distances the stress is found: "exact" measures those between all pairs of vertices, "estimate" those of 100
             vertices to all others, "skip" none. "auto" is exact where the method measures all pairs anyway;
@@ -466,11 +484,11 @@ class Surface(Constant):
             An earlier form of this surface. Distances that it has measured are looked up, so that further landmarks, another rank or
             another method cost less; the result is the same.
 
-        Raises
-        ------
-        OptionError
-            If an option is not possible, or has no effect beside the others.
+        Raises `OptionError` if an option is not possible, or has no effect beside the others.
         EmbeddingError, LimitError
+
+        >>> cat.canonical_form(50, method=canonform.Nystrom(rank=20)).points.shape
+        (1000, 3)
         """
         settings = options_of(
             n_landmarks=n_landmarks, method=method, n_components=n_components, geodesic=geodesic, stress=stress, seed=seed
@@ -501,6 +519,11 @@ class Surface(Constant):
         -------
         ndarray
             float32 for "fused", else float64. It is computed once and kept.
+
+        Raises `OptionError` if there is no such kind.
+
+        >>> cat.signature().shape == other.signature().shape
+        True
         """
         with running(call):
             return self._inner.signature(word("kind", kind), options_of(n_landmarks=n_landmarks, size=size))
@@ -516,6 +539,12 @@ class Surface(Constant):
         repaired
             Whether rows and columns are vertices of `Surface.repaired`. Otherwise those of vertices that the repair dropped are empty,
             and of those that it merged, the first stands for all.
+
+        Raises `OptionError` if there is no such kind.
+
+        >>> W, A = cat.laplacian(), cat.mass()
+        >>> W.shape, bool(abs(W.sum()) < 1e-6)
+        ((1000, 1000), True)
         """
         own = self.repaired.to_input
         with running(call):
@@ -526,14 +555,18 @@ class Surface(Constant):
         """The areas around the vertices, in squared mesh units, as a sparse diagonal matrix: shape (n, n). Needs SciPy.
 
         Parameters as in `laplacian`. Vertices whose rows are empty there have mass 1, so that the matrix is not singular.
+
+        Raises `OptionError` if there is no such kind.
+
+        >>> bool(np.isclose(cat.mass().trace(), cat.area))
+        True
         """
         own = self.repaired.to_input
         with running(call):
             areas = self._operators(kind)[1][own]
             masses = np.ones(self.n_vertices)
             masses[own] = areas
-            diagonal: sparse.dia_array = _sparse().diags_array(areas if repaired else masses)
-            return diagonal
+            return _sparse().diags_array(areas if repaired else masses)
 
     def _operators(self, kind: str) -> tuple[sparse.csr_array, Floats]:
         """The stiffness matrix, and the areas around the vertices."""
@@ -550,6 +583,16 @@ class Surface(Constant):
         """The smallest eigenvalues of the intrinsic Laplacian, and their eigenfunctions; fewer if the surface has fewer vertices.
 
         They are kept: the next call takes the first of them, and finds more only if there are not enough.
+
+        Parameters
+        ----------
+        n_eigenfunctions
+            How many.
+
+        Raises `OptionError` if it is not a whole number, 1 or more.
+
+        >>> cat.eigenbasis(20)
+        Eigenbasis(1000 vertices, 20 functions)
         """
         n = whole("n_eigenfunctions", n_eigenfunctions, 1)
         with running(call):
@@ -557,26 +600,17 @@ class Surface(Constant):
             if found < n:
                 values, functions, masses = _canonform.eigenbasis(self._inner, n)
                 found, basis = self.__dict__["_basis"] = n, Eigenbasis(values, on_vertices(functions, writeable=False), masses)
-            kept: Eigenbasis = basis if found == n else basis.first(n)
-            return kept
+            return basis if found == n else basis.first(n)
 
     def hks(
-        self,
-        times: ArrayLike | None = None,
-        *,
-        n_times: int = 16,
-        scaled: bool = False,
-        n_eigenfunctions: int = 100,
-        **call: Unpack[Call],
+        self, times: ArrayLike | None = None, *, n_times: int = 16, scaled: bool = False, n_eigenfunctions: int = 100, **call: Unpack[Call]
     ) -> VertexValues:
-        """The heat kernel signature of every vertex, see `Eigenbasis.hks`. It is kept, and not writable."""
-        at = None if times is None else numbers("times", times, 0)
+        """The heat kernel signature of every vertex, see `Eigenbasis.hks`. It is kept, and not writable.
 
-        def made() -> VertexValues:
-            return self.eigenbasis(n_eigenfunctions).hks(at, n_times=n_times, scaled=scaled)
-
-        with running(call):
-            return self._once(made, "hks", None if at is None else at.tobytes(), n_times, scaled, n_eigenfunctions)
+        >>> cat.hks(n_times=8).shape
+        (1000, 8)
+        """
+        return self._kernels(Eigenbasis.hks, "times", times, n_eigenfunctions, call, n_times=n_times, scaled=scaled)
 
     def wks(
         self,
@@ -588,27 +622,31 @@ class Surface(Constant):
         n_eigenfunctions: int = 100,
         **call: Unpack[Call],
     ) -> VertexValues:
-        """The wave kernel signature of every vertex, see `Eigenbasis.wks`. It is kept, and not writable."""
-        at = None if energies is None else numbers("energies", energies)
+        """The wave kernel signature of every vertex, see `Eigenbasis.wks`. It is kept, and not writable.
 
-        def made() -> VertexValues:
-            return self.eigenbasis(n_eigenfunctions).wks(at, n_energies=n_energies, sigma=sigma, scaled=scaled)
+        >>> cat.wks(n_energies=50).shape
+        (1000, 50)
+        """
+        return self._kernels(Eigenbasis.wks, "energies", energies, n_eigenfunctions, call, n_energies=n_energies, sigma=sigma, scaled=scaled)
 
+    def _kernels(
+        self, kind: Callable[..., VertexValues], name: str, at: ArrayLike | None, n: int, call: Call, **options: Any
+    ) -> VertexValues:
+        """Kernels, kept by their arguments."""
+        key = None if at is None else numbers(name, at).tobytes()
         with running(call):
-            return self._once(made, "wks", None if at is None else at.tobytes(), n_energies, sigma, scaled, n_eigenfunctions)
+            return self._once(lambda: kind(self.eigenbasis(n), at, **options), name, key, n, *options.values())
 
     @cached_property
     def _face_vectors(self) -> Floats:
         """The normal of each face, as long as twice its area."""
         a, b, c = (self.vertices[self.faces[:, corner]] for corner in range(3))
-        vectors: Floats = np.cross(b - a, c - a)
-        return vectors
+        return np.cross(b - a, c - a)
 
     @cached_property
     def areas(self) -> Floats:
         """The area of each face of the input, in squared mesh units: shape (m,)."""
-        areas: Floats = 0.5 * np.linalg.norm(self._face_vectors, axis=1)
-        return areas
+        return 0.5 * np.linalg.norm(self._face_vectors, axis=1)
 
     @cached_property
     def face_normals(self) -> VertexValues:
@@ -626,9 +664,7 @@ class Surface(Constant):
     @cached_property
     def edges(self) -> Ints:
         """The edges of the input as pairs of vertices, each once and in order: shape (k, 2)."""
-        sides = np.sort(self.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-        edges: Ints = np.unique(sides, axis=0)
-        return edges
+        return edges_of(self.faces)
 
     @cached_property
     def _slopes(self) -> Floats:
@@ -657,9 +693,15 @@ class Surface(Constant):
         VertexValues of shape (m, 3), or without values a sparse matrix of shape (3 m, n)
             `(surface.gradient() @ values).reshape(-1, 3)` equals `surface.gradient(values)`, except on faces without area, where the
             matrix has empty rows, and the gradient is NaN.
+
+        Raises `OptionError` if there is not one number for each vertex.
+
+        >>> slopes = np.linalg.norm(cat.gradient(cat.distances(0)), axis=1)
+        >>> bool(abs(np.median(slopes) - 1) < 0.1)
+        True
         """
         if values is not None:
-            array = self._one_per_vertex(values)
+            array = numeric("values", values, (self.n_vertices,))
             return on_vertices(np.einsum("fk,fkx->fx", array[self.faces], self._slopes))
 
         def made() -> sparse.csr_array:
@@ -689,6 +731,12 @@ class Surface(Constant):
         Returns
         -------
         VertexValues of shape (n,), or without vectors a sparse matrix of shape (n, 3 m)
+
+        Raises `OptionError` if there is not one vector for each face.
+
+        >>> G, D = cat.gradient(), cat.divergence()
+        >>> bool(abs(D @ G + cat.laplacian(kind="cotangent")).max() < 1e-9)
+        True
         """
 
         def made() -> sparse.csr_array:
@@ -711,11 +759,13 @@ class Surface(Constant):
         end with the higher number; in a face, from its first corner to the second. The second axis is 90 degrees to the left, seen
         from the side on which the corners of faces run counterclockwise. Angles at an inner vertex are scaled to a full turn.
 
-        Takes as long as exact distances. Raises `PointError`.
+        Takes as long as exact distances.
 
-        Examples
-        --------
-        >>> import canonform, numpy as np
+        Parameters
+        ----------
+        source
+            A vertex, an `EdgePoint` or a `FacePoint`.
+
         >>> square = canonform.Surface(np.array([[0, 0, 5], [1, 0, 5], [1, 1, 5], [0, 1, 5]]), np.array([[0, 1, 2], [0, 2, 3]]))
         >>> (square.log_map(0) + 0.0).round(6).tolist()
         [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
@@ -727,7 +777,19 @@ class Surface(Constant):
             return on_vertices(_canonform.log_map(self._inner, points[0], number("max_distance", max_distance, 0)))
 
     def closest_point(self, points: ArrayLike, **call: Unpack[Call]) -> ClosestPoints:
-        """For points in space, shape (3,) or (k, 3), the nearest points of the faces of the input that the repair kept."""
+        """For points in space, shape (3,) or (k, 3), the nearest points of the faces of the input that the repair kept.
+
+        Parameters
+        ----------
+        points
+            Shape (3,) or (k, 3).
+
+        Raises `PointError` if they are not points of finite coordinates.
+
+        >>> near = cat.closest_point([0, 0, 50])
+        >>> cat.distances(near.at).shape
+        (1000,)
+        """
         single = points if np.ndim(points) != 1 else [points]
         queries: Floats = numeric("points", single, ("k", 3), error=PointError)
         if not np.isfinite(queries).all():
@@ -749,13 +811,23 @@ class Surface(Constant):
     def write(self, path: str | os.PathLike[str], *, repaired: bool = False) -> None:
         """Write the input, or the repaired mesh, as a mesh file. The extension tells the format; .ply keeps coordinates exactly.
 
-        Raises `FileError`.
+        Parameters
+        ----------
+        path
+            The file.
+
+        Raises `FileError` if the file cannot be written.
+
+        >>> cat.write("cat.off", repaired=True)
         """
         mesh = self.repaired if repaired else self
         _canonform.write(straight(mesh.vertices), straight(mesh.faces), os.fspath(path))
 
     def to_pyvista(self, **values: ArrayLike) -> pyvista.PolyData:
-        """The input as a mesh of the package PyVista, with arrays of one row for each vertex, or each face, by name."""
+        """The input as a mesh of the package PyVista, with arrays of one row for each vertex, or each face, by name.
+
+        >>> cat.to_pyvista(distance=cat.distances(0)).plot()   # doctest: +SKIP
+        """
         import pyvista
 
         mesh: pyvista.PolyData = pyvista.PolyData.from_regular_faces(self.vertices, self.faces)
@@ -768,15 +840,11 @@ class Surface(Constant):
 
         The keywords of `Look` say from where, how large, and what is drawn on it.
 
-        Examples
-        --------
-        >>> import canonform
-        >>> cat = canonform.datasets.generate("cat", poses=1, n_vertices=1000)[0].surface()
         >>> png = cat.picture(cat.distances(0), view="left", bar="distance", paths=[cat.path(0, 500)], points=[0, 500])
         >>> png[1:4]
         b'PNG'
         """
-        numbers = None if values is None else self._one_per_vertex(values)
+        numbers = None if values is None else numeric("values", values, (self.n_vertices,))
         return drawn(self.vertices, self.faces, numbers, look)
 
     def view(
@@ -794,14 +862,14 @@ class Surface(Constant):
             Height of the view, in pixels.
         up
             The axis that points up.
-        """
-        numbers = None if values is None else self._one_per_vertex(values)
-        return scene(self.vertices, self.faces, numbers, self._name or "Surface", name, whole("height", height, 40), up)
 
-    def _one_per_vertex(self, values: ArrayLike) -> Floats:
-        if np.shape(values) != (self.n_vertices,):
-            raise OptionError(f"values must be one number for each of the {self.n_vertices} vertices, not of shape {np.shape(values)}")
-        return numeric("values", values, (self.n_vertices,))
+        Raises `OptionError` if there is not one number for each vertex.
+
+        >>> cat.view(cat.distances(0), name="distance")
+        SurfaceView('cat0', 1996 faces)
+        """
+        numbers = None if values is None else numeric("values", values, (self.n_vertices,))
+        return scene(self.vertices, self.faces, numbers, self._name or "Surface", name, whole("height", height, 40), up)
 
     def __repr__(self) -> str:
         name = f"{self._name!r}, " if self._name else ""
@@ -818,26 +886,27 @@ class Surface(Constant):
         return _html.card(self._name or "Surface", rows, [_html.image(self.picture(width=440, height=440))])
 
 
+def read(path: str | os.PathLike[str], *, components: Components = "largest", weld: Weld = "seams", **call: Unpack[Call]) -> Surface:
+    """Read and repair a mesh file; the same as `Surface(path)`.
+
+    Raises `MissingFileError`, `FileError`, `MeshError` if the file cannot be read, or has no mesh.
+
+    >>> cat.write("cat.ply")
+    >>> canonform.read("cat.ply").n_vertices
+    1000
+    """
+    return Surface(path, components=components, weld=weld, **call)
+
+
 def _several(points: Any, n_vertices: int) -> list[Any]:
     """Points one by one. A mask stands for the vertices where it is true."""
-    if isinstance(points, (EdgePoint, FacePoint)):
-        points = [points]
-    if not isinstance(points, (int, str, float, np.number, Iterable)):
-        raise PointError(f"{points!r} is not a point; give the number of a vertex")
-    if isinstance(points, (bool, np.bool_)):
-        raise PointError(f"{points} is not a point; give the number of a vertex")
-    if isinstance(points, (int, str, np.integer)):
-        return [points]
-    if isinstance(points, (float, np.floating)):
-        raise PointError(f"{points} is not a point; vertices have whole numbers")
-    unmasked("sources", points)
-    array = np.asarray(points) if isinstance(points, np.ndarray) or _is_mask(points) else None
-    if array is not None and array.dtype == bool:
-        if array.shape != (n_vertices,):
+    is_one = isinstance(points, (str, EdgePoint, FacePoint)) or not isinstance(points, Iterable)
+    points = [points] if is_one else points if isinstance(points, np.ndarray) else list(points)
+    if not is_one and (isinstance(points, np.ndarray) or any(isinstance(point, (bool, np.bool_)) for point in points)):
+        array = np.asarray(unmasked("sources", points))
+        if array.dtype == bool and array.shape != (n_vertices,):
             raise PointError(f"a mask of sources needs one value for each of the {n_vertices} vertices; it has shape {array.shape}")
-        points = np.flatnonzero(array).tolist()
-    elif array is not None:
-        points = array.ravel().tolist()
+        points = (np.flatnonzero(array) if array.dtype == bool else array.ravel()).tolist()
     try:
         return [str(point) if isinstance(point, (EdgePoint, FacePoint)) else point for point in points]
     except (TypeError, ValueError) as fault:
@@ -856,10 +925,6 @@ def _units(vectors: Floats) -> Floats:
     with np.errstate(invalid="ignore", divide="ignore"):
         units: Floats = vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
     return units
-
-
-def _is_mask(points: Any) -> bool:
-    return isinstance(points, (list, tuple)) and any(isinstance(point, (bool, np.bool_)) for point in points)
 
 
 AnyMesh: TypeAlias = Surface | str | os.PathLike[str] | ArrayLike | Any

@@ -177,8 +177,7 @@ def change(table: lance.LanceDataset, shard: str, now: pyarrow.Table) -> int:
 def matrix(table: pyarrow.Table) -> Vectors:
     """The vectors of rows."""
     column = table["vector"].combine_chunks()
-    values: Vectors = column.flatten().to_numpy(zero_copy_only=False).reshape(len(table), -1)
-    return values
+    return column.flatten().to_numpy(zero_copy_only=False).reshape(len(table), -1)
 
 
 @dataclass(frozen=True)

@@ -39,6 +39,10 @@ class Shape(ByValue):
     rest
         Where the vertices are before the body takes its pose, shape (n, 3): points of two shapes of a family correspond if they are
         in the same place there. None for creatures.
+
+    >>> shape = canonform.datasets.generate("worm", poses=1, n_vertices=1000)[0]
+    >>> shape.name, shape.label, shape.surface().n_vertices
+    ('worm0', 'worm', 1000)
     """
 
     name: str
@@ -47,18 +51,27 @@ class Shape(ByValue):
     faces: Ints
     rest: Floats | None = None
 
-    def true_map(self, other: Shape) -> Ints:
+    def true_map(self, other: Shape, **call: Unpack[Call]) -> Ints:
         """For each vertex, the vertex of another shape of the family that it truly corresponds to: shape (n,).
 
+        Parameters
+        ----------
+        other
+            Another shape of the family.
+
         Raises `OptionError` for shapes of different families, and of creatures.
+
+        >>> a, b = canonform.datasets.generate("cat", poses=2, n_vertices=1000)
+        >>> a.true_map(b).shape
+        (1000,)
         """
         if self.rest is None or other.rest is None or self.label != other.label:
             raise OptionError(f"{self.name} and {other.name} have no true map; give two shapes of one of the families cat, centaur, david and person")
-        near = Surface(other.rest, other.faces).closest_point(self.rest)
+        with running(call):
+            near = Surface(other.rest, other.faces).closest_point(self.rest)
         corners = other.faces[near.faces]
         nearest = np.linalg.norm(other.rest[corners] - near.points[:, None], axis=2).argmin(axis=1)
-        found: Ints = corners[np.arange(len(corners)), nearest]
-        return found
+        return corners[np.arange(len(corners)), nearest]
 
     def _state(self) -> dict[str, Any]:
         return {name: value for name, value in vars(self).items() if name != "_surface"}
@@ -81,7 +94,11 @@ class Shape(ByValue):
 
 
 def families() -> dict[str, int | None]:
-    """Families, and how many shapes each has; None for creatures, which have as many poses as you like."""
+    """Families, and how many shapes each has; None for creatures, which have as many poses as you like.
+
+    >>> canonform.datasets.families()["cat"]
+    9
+    """
     articulated, plans = _canonform.families()
     return {**dict(articulated), **dict.fromkeys(plans)}
 
@@ -108,10 +125,10 @@ def generate(
     seed
         Of bodies, poses and triangulations.
 
-    Raises
-    ------
-    OptionError
-        If there is no such family, pose or number of vertices.
+    Raises `OptionError` if there is no such family, pose or number of vertices.
+
+    >>> [shape.name for shape in canonform.datasets.generate(["cat", "worm"], poses=[0, 2], n_vertices=1000)]
+    ['cat0', 'cat2', 'worm0', 'worm2']
     """
     n_vertices, seed = whole("n_vertices", n_vertices), whole("seed", seed)
     articulated, plans = _canonform.families()
@@ -139,7 +156,21 @@ def generate(
 
 
 def write(shapes: Iterable[Shape], folder: str | os.PathLike[str], *, format: MeshFormat = "off") -> list[str]:
-    """Write shapes into a folder, one file each, and return their paths."""
+    """Write shapes into a folder, one file each, and return their paths.
+
+    Parameters
+    ----------
+    shapes, folder
+        What is written, and where.
+    format
+        The extension of the files.
+
+    Raises `FileError` if a file cannot be written.
+
+    >>> shapes = canonform.datasets.generate("worm", poses=1, n_vertices=1000)
+    >>> canonform.datasets.write(shapes, "worms", format="ply")
+    ['worms/worm0.ply']
+    """
     os.makedirs(folder, exist_ok=True)
     paths = []
     for shape in shapes:

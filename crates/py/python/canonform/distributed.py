@@ -29,7 +29,7 @@ import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import lru_cache
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
@@ -37,10 +37,11 @@ from . import _canonform, _vectors
 from ._arrays import Floats
 from ._index import AnyPath, Index, Labels, Meshes, SearchResults, _dataset, _label_file, in_files
 from ._methods import Embedding, Geodesic, options_of
-from ._settings import Components, IndexDistance, Landmarks, Progress, Ranking, Weld, shown, whole, word
+from ._reference import complete
+from ._settings import Call, Components, IndexDistance, Landmarks, Progress, Ranking, Weld, running, shown, whole, word
 from ._stored import Stored
 from ._surface import AnyMesh, Surface, surface_of
-from .errors import MeshError, NoSuchShapeError, OptionError, ShapeIndexError
+from .errors import CanonformError, MeshError, NoSuchShapeError, OptionError, ShapeIndexError, TimeLimitError
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -62,10 +63,15 @@ def batches_by_size(sizes: Sequence[int], n_batches: int, most: int = _MOST_IN_B
         The size of each item.
     n_batches
         About how many batches; more if they would hold more than `most` items, fewer if there are fewer items.
+    most
+        Most items of a batch.
 
     Returns
     -------
     list of lists of positions in `sizes`, those with the largest items first
+
+    >>> canonform.distributed.batches_by_size([5, 1, 1, 9], 2)
+    [[3], [0, 1, 2]]
     """
     target = max(sum(sizes) / max(n_batches, 1), 1)
     batches: list[list[int]] = []
@@ -124,11 +130,13 @@ def build_index(
         The folder of the small indexes; by default `out` with the ending `.shards`. Workers must see it. Other files in it stay.
     keep_shards
         Whether to keep these indexes when all is done, so that the next run describes only batches that have changed.
+    progress
+        As in `Call`.
 
-    Raises
-    ------
-    MeshError
-        If there are no meshes, or none of them can be described.
+    Raises `MeshError` if there are no meshes, or none of them can be described.
+
+    >>> canonform.distributed.build_index("meshes", client, "shapes.canonform")   # doctest: +SKIP
+    Index('shapes.canonform', 30 shapes)
     """
     settings = options_of(
         n_landmarks=n_landmarks, n_points=n_points, size=size, method=method, geodesic=geodesic, components=components,
@@ -136,96 +144,65 @@ def build_index(
     )  # fmt: skip
     out = os.path.abspath(out)
     place = os.path.abspath(shards if shards is not None else f"{out}.shards")
-    with in_files(meshes, out, labels, keep=False) as files:
-        meshes, labels = files.paths, files.labels
-        if os.path.exists(out):
-            with _label_file(labels) as given, _dataset(meshes) as (dataset, _):
-                unchanged = _canonform.Index.unchanged(os.path.abspath(dataset), out, given, settings)
+    is_new = not os.path.exists(place)
+    os.makedirs(place, exist_ok=True)
+    try:
+        # Workers do not see temporary files of the client, so lists of meshes and labels are beside the shards.
+        with (
+            in_files(meshes, out, labels, keep=False) as files,
+            TemporaryDirectory(prefix="canonform-", dir=place) as lists,
+            _label_file(files.labels) as given,
+            _dataset(files.paths, lists) as (dataset, name),
+        ):
+            dataset, label_file = os.path.abspath(dataset), given
+            if given is not None and os.path.isfile(given):
+                label_file = shutil.copyfile(given, os.path.join(lists, "labels.csv"))
+            unchanged = _canonform.Index.unchanged(dataset, out, label_file, settings) if os.path.exists(out) else None
             if unchanged is not None:
                 index, known = Index(out), json.loads(unchanged)
                 index.build_report = {key: known[key] for key in ("n_shapes", "described", "unchanged", "failed")} | {"batches": 0}
                 return index
-        _dask()
-        is_new = not os.path.exists(place)
-        os.makedirs(place, exist_ok=True)
-        try:
-            # Workers do not see temporary files of the client, so lists of meshes and labels are beside the shards.
-            with TemporaryDirectory(prefix="canonform-", dir=place) as lists:
-                return _build_index(meshes, client, out, labels, settings, n_batches, retries, place, lists, keep_shards, progress)
-        finally:
-            # A folder that holds anything else stays.
-            if (is_new or shards is None) and not os.listdir(place):
-                os.rmdir(place)
-
-
-def _build_index(
-    meshes: Any,
-    client: Client,
-    out: str,
-    labels: Any,
-    settings: dict[str, Any],
-    n_batches: int | None,
-    retries: int,
-    place: str,
-    lists: str,
-    keep_shards: bool,
-    progress: Progress,
-) -> Index:
-    with _label_file(labels) as given, _dataset(meshes, lists) as (dataset, name):
-        dataset, label_file = os.path.abspath(dataset), None
-        if given in ("folders", "names", "none"):
-            label_file = given
-        elif given is not None:
-            label_file = os.path.join(lists, "labels.csv")
-            shutil.copyfile(given, label_file)
-        found = _canonform.list_folder(dataset, out, label_file)
-    threads = sum(client.nthreads().values()) or 1
-    batches = batches_by_size([n_bytes for *_, n_bytes in found], n_batches or _BATCHES_PER_THREAD * threads)
-    # The largest batches run first.
-    tasks = [
-        client.submit(
-            _describe,
-            dataset,
-            [found[item][:3] for item in batch],
-            place,
-            label_file,
-            settings,
-            key=f"canonform-{_hash(settings, dataset, [found[item] for item in batch])}",
-            priority=-place_in_line,
-            retries=retries,
-            pure=False,
-        )
-        for place_in_line, batch in enumerate(batches)
-    ]
-    reports: list[tuple[str, dict[str, Any]]] = _gathered(client, tasks, [len(batch) for batch in batches], "shapes", progress)
-
-    failed = sorted((failure for _, report in reports for failure in report["failed"]), key=lambda failure: str(failure["id"]))
-    written = sorted({path for path, _ in reports if os.path.exists(path)})
-    if not written:
-        first = failed[0]["error"] if failed else "there are no meshes"
-        raise MeshError(f"no mesh of {name} could be described, so no index was written; the first: {first}")
-    index = Index.merge(written, out)
-    index.build_report = {
-        "n_shapes": len(index),
-        "described": sum(report["described"] for _, report in reports),
-        "unchanged": sum(report["unchanged"] for _, report in reports),
-        "failed": failed,
-        "batches": len(batches),
-    }
-    if not keep_shards:
-        for path in written:
-            os.remove(path)
-    return index
+            _dask()
+            found = _canonform.list_folder(dataset, out, label_file)
+            threads = sum(client.nthreads().values()) or 1
+            batches = batches_by_size([n_bytes for *_, n_bytes in found], n_batches or _BATCHES_PER_THREAD * threads)
+            # The largest batches run first.
+            tasks = [
+                client.submit(
+                    _describe,
+                    dataset,
+                    [found[item][:3] for item in batch],
+                    place,
+                    label_file,
+                    settings,
+                    key=f"canonform-{_hash(settings, dataset, [found[item] for item in batch])}",
+                    priority=-place_in_line,
+                    retries=retries,
+                    pure=False,
+                )
+                for place_in_line, batch in enumerate(batches)
+            ]
+            reports: list[tuple[str, dict[str, Any]]] = _gathered(client, tasks, [len(batch) for batch in batches], "shapes", {"progress": progress})
+        failed = sorted((failure for _, report in reports for failure in report["failed"]), key=lambda failure: str(failure["id"]))
+        written = sorted({path for path, _ in reports if os.path.exists(path)})
+        if not written:
+            first = failed[0]["error"] if failed else "there are no meshes"
+            raise MeshError(f"no mesh of {name} could be described, so no index was written; the first: {first}")
+        index = Index.merge(written, out)
+        counts = {key: sum(report[key] for _, report in reports) for key in ("described", "unchanged")}
+        index.build_report = {"n_shapes": len(index), **counts, "failed": failed, "batches": len(batches)}
+        if not keep_shards:
+            for path in written:
+                os.remove(path)
+        return index
+    finally:
+        # A folder that holds anything else stays.
+        if (is_new or shards is None) and not os.listdir(place):
+            os.rmdir(place)
 
 
 def distance_matrix(
-    index: Index | AnyPath,
-    client: Client,
-    *,
-    kind: IndexDistance = "combined",
-    block: int = 64,
-    retries: int = 3,
-    progress: Progress = False,
+    index: Index | AnyPath, client: Client, *, kind: IndexDistance = "combined", block: int = 64, retries: int = 3, **call: Unpack[Call]
 ) -> tuple[list[str], Floats]:
     """Distances between all pairs of shapes of an index, on the workers of a Dask client.
 
@@ -241,6 +218,10 @@ def distance_matrix(
     Returns
     -------
     names of the shapes, and an array of shape (number of shapes, number of shapes), equal to `Index.distances`
+
+    Raises `OptionError` if an option is not possible.
+
+    >>> names, matrix = canonform.distributed.distance_matrix("shapes.canonform", client)   # doctest: +SKIP
     """
     if kind not in ("combined", "fused"):
         raise OptionError(f'kind="{kind}" is not possible: use "combined", "fused"')
@@ -251,19 +232,8 @@ def distance_matrix(
     starts = range(0, len(ids), block)
     # Half of the pairs: distances are symmetric.
     places = [(row, column) for row in starts for column in starts if row <= column]
-    tasks = [
-        client.submit(
-            _measure,
-            path,
-            ids[row : row + block],
-            None if row == column else ids[column : column + block],
-            kind,
-            pure=False,
-            retries=retries,
-        )
-        for row, column in places
-    ]
-    blocks: list[Floats] = _gathered(client, tasks, [1] * len(tasks), "blocks", progress)
+    items = [(path, ids[row : row + block], None if row == column else ids[column : column + block], kind) for row, column in places]
+    blocks: list[Floats] = _mapped(client, _measure, items, call, retries, stage="blocks")
     matrix = np.empty((len(ids), len(ids)))
     for (row, column), measured in zip(places, blocks, strict=True):
         matrix[column : column + block, row : row + block] = measured.T
@@ -271,9 +241,7 @@ def distance_matrix(
     return ids, matrix
 
 
-def vector_table(
-    shards: Iterable[AnyPath], table: AnyPath, *, client: Client | None = None, progress: Progress = False
-) -> dict[str, Any]:
+def vector_table(shards: Iterable[AnyPath], table: AnyPath, *, client: Client | None = None, **call: Unpack[Call]) -> dict[str, Any]:
     """Collect the vectors of indexes in a Lance table, in which `search` finds the shapes nearest to a query.
 
     Call it again when indexes have changed: only their new and changed shapes are written, and searches that run meanwhile see the table
@@ -293,6 +261,11 @@ def vector_table(
     -------
     `n_shapes`, `changed`: shapes that were written; `partitions`, `probes`: how many of them a search visits, 0 if it compares all;
     `recall`: the share of the ten nearest vectors that searches find, on queries that did not decide about it.
+
+    Raises `OptionError`, `ShapeIndexError` if an index of the table is left out, or two have a shape of the same name.
+
+    >>> canonform.distributed.vector_table(["shapes.canonform"], "shapes.lance")["n_shapes"]   # doctest: +SKIP
+    30
     """
     _vectors.lance_module()
     paths, uri = [os.path.abspath(path) for path in shards], os.path.abspath(table)
@@ -310,7 +283,7 @@ def vector_table(
     if new:
         _refuse_repeated(paths)
     changed = 0
-    with shown(progress) as update:
+    with running(call), shown(call.get("progress", False)) as update:
 
         def rows_of(path: str, name: str) -> Any:
             index = Index(path)
@@ -326,15 +299,15 @@ def vector_table(
         else:
             for path, name in new:
                 changed += _vectors.change(stored, name, rows_of(path, name))
-    n = stored.count_rows()
-    # A few vectors beside the partitions are compared one by one, and hardly move the threshold.
-    trains = n > _vectors.LEAST and (facts.partitions == 0 or 8 * _vectors.unindexed(stored) > n)
-    if trains or new and n <= _vectors.LEAST:
-        facts.threshold = json.loads(_canonform.class_threshold(paths))
-    if trains:
-        workers = 1 if client is None else max(1, len(client.nthreads()))
-        facts.partitions = _vectors.train(stored, workers, lambda make, items: _mapped(client, make, items))
-        facts.probes, facts.recall = _vectors.calibrate(stored)
+        n = stored.count_rows()
+        # A few vectors beside the partitions are compared one by one, and hardly move the threshold.
+        trains = n > _vectors.LEAST and (facts.partitions == 0 or 8 * _vectors.unindexed(stored) > n)
+        if trains or new and n <= _vectors.LEAST:
+            facts.threshold = json.loads(_canonform.class_threshold(paths))
+        if trains:
+            workers = 1 if client is None else max(1, len(client.nthreads()))
+            facts.partitions = _vectors.train(stored, workers, lambda make, items: _mapped(client, make, items, call))
+            facts.probes, facts.recall = _vectors.calibrate(stored)
     if trains or new:
         facts.options, facts.shards = Index(paths[0])._inner.options, stamps
         _vectors.describe(stored, facts)
@@ -361,6 +334,7 @@ def search(
     client: Client | None = None,
     where: Mapping[str, str | Sequence[str]] | None = None,
     retries: int = 3,
+    **call: Unpack[Call],
 ) -> SearchResults:
     """Find the shapes nearest to a query in all indexes of a table, as `Index.search` does in one.
 
@@ -390,6 +364,11 @@ def search(
     Returns
     -------
     The results of `Index.search`; `report["recall"]` is the measured share of the ten nearest signatures that such a search finds.
+
+    Raises `OptionError`, `NoSuchShapeError` if an option is not possible, or the query is neither a file nor a shape of the table.
+
+    >>> canonform.distributed.search("shapes.lance", "cat.off")[0].id   # doctest: +SKIP
+    'cat0'
     """
     if rank == "graph":
         raise OptionError(
@@ -397,18 +376,19 @@ def search(
             'the result, or use "plain", "part" or "forms"'
         )
     start = time.perf_counter()
-    running = _Search(os.path.abspath(table), client, exact, where or {}, retries)
-    packed, surface, name = running.packed(query, word("rank", rank), explain)
-    described = time.perf_counter()
-    report = running.report(packed, whole("k", k), rank, explain)
-    if explain:
-        report["components"] = [
-            json.loads(about) | {"nearest": next(iter(running.report(part, 1, "plain", explain)["results"]), None)}
-            for about, part in _canonform.query_components(packed)
-        ]
+    with running(call):
+        shards = _Search(os.path.abspath(table), client, exact, where or {}, retries, call)
+        packed, surface, name = shards.packed(query, word("rank", rank), explain)
+        described = time.perf_counter()
+        report = shards.report(packed, whole("k", k), rank, explain)
+        if explain:
+            report["components"] = [
+                json.loads(about) | {"nearest": next(iter(shards.report(part, 1, "plain", explain)["results"]), None)}
+                for about, part in _canonform.query_components(packed)
+            ]
     report = {key: value for key, value in report.items() if value or key not in ("components", "wholes")}
     report["seconds"] = {"describe": described - start, "search": time.perf_counter() - described}
-    return SearchResults(report, surface, name, _Shards(running.shards_of))
+    return SearchResults(report, surface or name, name, _Shards(shards.shards_of))
 
 
 class _Shards(Stored):
@@ -425,9 +405,10 @@ class _Search:
     """A search in the indexes of a table, which are as the table states them when it begins."""
 
     def __init__(
-        self, uri: str, client: Client | None, exact: bool, where: Mapping[str, str | Sequence[str]], retries: int
+        self, uri: str, client: Client | None, exact: bool, where: Mapping[str, str | Sequence[str]], retries: int, call: Call
     ) -> None:
-        self.table, self.folder, self.client, self.exact, self.retries = _vectors.opened(uri), os.path.dirname(uri), client, exact, retries
+        self.table, self.folder, self.client, self.exact = _vectors.opened(uri), os.path.dirname(uri), client, exact
+        self.retries, self.call = retries, call
         self.facts = _vectors.about(self.table)
         if not self.facts.options:
             raise OptionError(f"{uri} is not a table of vector_table")
@@ -437,7 +418,7 @@ class _Search:
     def ask(self, method: str, items: Iterable[tuple[Any, ...]]) -> list[Any]:
         """What indexes answer, each asked with some arguments."""
         asked = [(os.path.join(self.folder, shard), method, *arguments) for shard, *arguments in items]
-        return _mapped(self.client, _ask, asked, self.retries, [self.workers.get(item[0]) for item in asked])
+        return _mapped(self.client, _ask, asked, self.call, self.retries, [self.workers.get(item[0]) for item in asked])
 
     def packed(self, query: AnyMesh, rank: str, explain: bool) -> tuple[str, Surface | None, str]:
         """A described query, its surface if it is known, and what it is called."""
@@ -458,7 +439,7 @@ class _Search:
         if self.client is None or self.table.count_rows() <= _vectors.ALONE:
             return _vectors.nearest(self.table, row, n, self.facts.probes)
         pieces = [(piece, row, n, self.facts.probes) for piece in _vectors.pieces(self.table)]
-        lists = _mapped(self.client, _vectors.nearest_in, pieces, self.retries)
+        lists = _mapped(self.client, _vectors.nearest_in, pieces, self.call, self.retries)
         return sorted(near for some in lists for near in some)[:n]
 
     def report(self, packed: str, k: int, rank: str, explain: bool) -> dict[str, Any]:
@@ -501,17 +482,27 @@ def _mapped(
     client: Client | None,
     task: Callable[..., Any],
     items: list[tuple[Any, ...]],
+    call: Call,
     retries: int = 3,
     workers: Sequence[list[str] | None] = (),
+    stage: str = "tasks",
 ) -> list[Any]:
     """The results of a task for each of these arguments, on workers or here."""
     if client is None:
         return [task(*item) for item in items]
+    limits = {name: value for name, value in call.items() if name in ("timeout", "memory")}
     at = workers or [None] * len(items)
     tasks = [
-        client.submit(task, *item, workers=place, pure=False, retries=retries) for item, place in zip(items, at, strict=True)
+        client.submit(_within, limits, task, *item, workers=place, pure=False, retries=retries)
+        for item, place in zip(items, at, strict=True)
     ]
-    return _gathered(client, tasks, [1] * len(tasks), "", False)
+    return _gathered(client, tasks, [1] * len(tasks), stage, call)
+
+
+def _within(limits: Call, task: Callable[..., Any], *arguments: Any) -> Any:
+    """Runs a task under the limits of the call that it is for, on a worker."""
+    with running(limits):
+        return task(*arguments)
 
 
 def _ask(path: str, method: str, *arguments: Any) -> Any:
@@ -565,19 +556,24 @@ def _hash(*parts: Any) -> str:
     return hashlib.sha256(json.dumps(parts, default=str).encode()).hexdigest()[:32]
 
 
-def _gathered(client: Client, tasks: list[Any], weights: Iterable[int], stage: str, progress: Progress) -> list[Any]:
-    """The results in the order of the tasks. After an error, or Ctrl-C, the other tasks are cancelled."""
+def _gathered(client: Client, tasks: list[Any], weights: Iterable[int], stage: str, call: Call) -> list[Any]:
+    """The results in the order of the tasks. After an error, the end of the time, or Ctrl-C, the other tasks are cancelled."""
     weight = dict(zip((task.key for task in tasks), weights, strict=True))
     results: dict[str, Any] = {}
-    done, total = 0, sum(weight.values())
+    done, total, timeout = 0, sum(weight.values()), call.get("timeout")
     try:
-        with shown(progress) as update:
-            for task, result in _dask().as_completed(tasks, with_results=True):
+        with shown(call.get("progress", False)) as update:
+            for task, result in _dask().as_completed(tasks, with_results=True, timeout=timeout):
                 results[task.key] = result
                 done += weight[task.key]
                 if update is not None:
                     update(stage, done, total)
-    except BaseException:
+    except BaseException as fault:
         client.cancel(tasks)
+        if isinstance(fault, TimeoutError) and not isinstance(fault, CanonformError):
+            raise TimeLimitError(f"not finished within the time limit of {timeout:g} seconds; raise timeout=") from fault
         raise
     return [results[task.key] for task in tasks]
+
+
+complete([batches_by_size, build_index, distance_matrix, search, vector_table])

@@ -2,26 +2,20 @@
 
 All exceptions are `CanonformError`; each is also the built-in exception that fits, so that `except ValueError` or `except
 FileNotFoundError` works.
+
+>>> try:
+...     cat.distances(5000)
+... except IndexError as fault:
+...     print(type(fault).__name__, fault)
+PointError vertex 5000 does not exist; the mesh has 1996 faces and 1000 vertices, ...
 """
 
 from __future__ import annotations
 
 __all__ = [
-    "CanonformError",
-    "EmbeddingError",
-    "FileError",
-    "LimitError",
-    "MemoryLimitError",
-    "MeshError",
-    "MissingFileError",
-    "NoSuchShapeError",
-    "OptionError",
-    "PointError",
-    "ShapeIndexError",
-    "SkippedMeshWarning",
-    "SurfaceLossWarning",
-    "TimeLimitError",
-]
+    "CanonformError", "EmbeddingError", "FileError", "LimitError", "MemoryLimitError", "MeshError", "MissingFileError",
+    "NoSuchShapeError", "OptionError", "PointError", "ShapeIndexError", "SkippedMeshWarning", "SurfaceLossWarning", "TimeLimitError",
+]  # fmt: skip
 
 
 class CanonformError(Exception):

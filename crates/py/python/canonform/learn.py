@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal, TypeAlias, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _canonform
 from ._arrays import Floats, Ints
-from ._settings import Landmarks, Regularization, unmasked, whole
+from ._reference import complete
+from ._settings import Call, Landmarks, Regularization, running, unmasked, whole
 from .errors import CanonformError, OptionError
 
 try:
@@ -96,8 +97,6 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
     n_features_in_ : int
         Number of features of the points of the fit.
 
-    Examples
-    --------
     Distances along the arc of a circle, which are those of points on a line:
 
     >>> import numpy as np
@@ -141,9 +140,24 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         self.random_state = random_state
         self.warm_start = warm_start
 
-    @_refused()
-    def fit(self, X: Any, y: object = None) -> NystromMDS:
-        """Choose landmarks and embed the points X. y is ignored."""
+    def fit(self, X: Any, y: object = None, **call: Unpack[Call]) -> NystromMDS:
+        """Choose landmarks and embed the points X.
+
+        Parameters
+        ----------
+        X, y
+            The points, as the metric takes them; y is ignored.
+
+        Raises `OptionError`, `LimitError` if points or parameters cannot be used, or a limit does not suffice.
+
+        >>> points = np.random.default_rng(0).normal(size=(100, 3))
+        >>> canonform.NystromMDS(20).fit(points).embedding_.shape
+        (100, 3)
+        """
+        with _refused(), running(call):
+            return self._fitted(X)
+
+    def _fitted(self, X: Any) -> NystromMDS:
         X = self._points(X, reset=True)
         n = len(X)
         if n < 2:
@@ -166,19 +180,33 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         self._landmark_points: Any = None if self.metric == "precomputed" else _items(X, landmarks)
         return self
 
-    def fit_transform(self, X: Any, y: object = None) -> Floats:
-        """Embed the points X, and return their coordinates: shape (n, n_components)."""
-        return self.fit(X).embedding_
+    def fit_transform(self, X: Any, y: object = None, **call: Unpack[Call]) -> Floats:
+        """Embed the points X, and return their coordinates: shape (n, n_components).
 
-    def transform(self, X: Any) -> Floats:
+        >>> points = np.random.default_rng(0).normal(size=(100, 3))
+        >>> canonform.NystromMDS(20).fit_transform(points).shape
+        (100, 3)
+        """
+        return self.fit(X, **call).embedding_
+
+    def transform(self, X: Any, **call: Unpack[Call]) -> Floats:
         """Place points in the embedding, from their distances to the landmarks: shape (len(X), n_components).
 
         Points of the fit get their coordinates in `embedding_`, up to rounding.
+
+        Parameters
+        ----------
+        X
+            Points, or their distances to those of the fit or to the landmarks, as the metric takes them.
+
+        >>> points = np.random.default_rng(0).normal(size=(100, 3))
+        >>> canonform.NystromMDS(20).fit(points).transform(points[:5]).shape
+        (5, 3)
         """
         check_is_fitted(self)
-        return self._placed(X)
+        with _refused(), running(call):
+            return self._placed(X)
 
-    @_refused()
     def _placed(self, X: Any) -> Floats:
         n_landmarks = len(self.landmarks_)
         if self.metric == "precomputed":
@@ -190,9 +218,9 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
             X = self._points(X, reset=False)
             columns = np.empty((len(X), n_landmarks))
             for j in range(n_landmarks):
+                _canonform.check_call(columns.nbytes)
                 columns[:, j] = self._column(self._landmark_points[j], X)
-        placed: Floats = self._extension.place(np.asarray(columns, dtype=np.float64))
-        return placed
+        return self._extension.place(np.asarray(columns, dtype=np.float64))
 
     def _points(self, X: Any, *, reset: bool) -> Any:
         """The points, checked if they are numbers."""
@@ -221,16 +249,14 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
             if column.shape != (len(X),):
                 raise OptionError(f"metric(a, X) must return {len(X)} distances, one for each point of X; got shape {column.shape}")
             return column
-        distances: Floats = pairwise_distances(X, np.asarray(a)[None], metric=self.metric, **parameters)[:, 0]
-        return distances
+        return pairwise_distances(X, np.asarray(a)[None], metric=self.metric, **parameters)[:, 0]
 
     def _settings(self) -> dict[str, Any]:
         return {"n_components": self.n_components, "regularization": self.regularization, "rank": self.rank, "alpha": self.alpha}
 
     def _measure(self, X: Any, i: int) -> Floats:
         """The distances from a point of the fit to all."""
-        measured: Floats = X[:, i] if self.metric == "precomputed" else self._column(X[i], X)
-        return measured
+        return X[:, i] if self.metric == "precomputed" else self._column(X[i], X)
 
     def _searched(self, X: Any, taken: _Landmarks) -> tuple[int, int | None]:
         """Takes landmarks until they are enough; their number, and the best rank for them."""
@@ -300,9 +326,11 @@ class _Landmarks:
 
     def _extend_to(self, n: int) -> None:
         n = min(n, len(self._columns))
+        _canonform.check_call(8 * len(self._columns) * max(n, len(self._taken)))
         columns = np.empty((len(self._columns), max(n, len(self._taken))), order="F")
         columns[:, : len(self._taken)] = self._columns
         while len(self._taken) < n and not self._is_complete:
+            _canonform.check_call(columns.nbytes)
             i = self._next if self._order is None else int(self._order[len(self._taken)])
             columns[:, len(self._taken)] = self._measure(i)
             np.minimum(self._nearest, columns[:, len(self._taken)], out=self._nearest)
@@ -313,3 +341,6 @@ class _Landmarks:
                 # The other points repeat landmarks, up to the rounding of Euclidean distances by scikit-learn.
                 self._is_complete = not self._nearest[self._next] > _ROUNDING * columns[:, 0].max()
         self._columns = columns[:, : len(self._taken)]
+
+
+complete([NystromMDS])

@@ -43,6 +43,8 @@ const FONT: &str = "DejaVu Sans, Bitstream Vera Sans, Verdana, sans-serif";
 pub(crate) type Area<DB> = DrawingArea<DB, Shift>;
 pub(crate) type Drawn<DB> = Result<(), DrawingAreaErrorKind<<DB as DrawingBackend>::ErrorType>>;
 
+pub(crate) use plotters::prelude::BitMapBackend as Bitmap;
+
 /// What plotters draws on any backend.
 pub(crate) trait Drawing {
     /// Width and height, in units.
@@ -181,7 +183,7 @@ fn png(drawing: &impl Drawing, pictures: &[Picture]) -> Result<Vec<u8>, String> 
 /// RGB pixels of a drawing on white, row by row.
 pub(crate) fn pixels(
     [width, height]: [u32; 2],
-    draw: impl FnOnce(&Area<BitMapBackend<'_>>) -> Drawn<BitMapBackend<'static>>,
+    draw: impl FnOnce(&Area<Bitmap<'_>>) -> Drawn<Bitmap<'static>>,
 ) -> Result<Vec<u8>, String> {
     register_fonts().map_err(|e| e.to_string())?;
     let mut bytes = vec![255; width as usize * height as usize * 3];
@@ -192,7 +194,7 @@ pub(crate) fn pixels(
 }
 
 /// Averages squares of `n` x `n` RGB pixels.
-pub(super) fn average(pixels: &[u8], width: usize, n: usize) -> Vec<u8> {
+pub(crate) fn average(pixels: &[u8], width: usize, n: usize) -> Vec<u8> {
     let row = width * 3;
     let channel = |band: &[u8], at: usize| {
         let (column, channel) = (at / 3 * n, at % 3);

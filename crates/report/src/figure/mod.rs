@@ -17,7 +17,7 @@ mod tiles;
 mod units;
 
 pub use axis::PlotAxis;
-pub(crate) use drawing::{INK, dark, pixels, scaled_text, text_width};
+pub(crate) use drawing::{Area, Bitmap, Drawn, INK, average, dark, drop_of, pixels, scaled_text, text_width};
 pub(crate) use heat::bar_labels;
 pub use model::{Figure, FigurePanels, GroupedValue, Heat, Plot, PlotPoint, PlotSeries, SeriesKind, grouped};
 pub use plot::MAP_SIZE;

@@ -6,41 +6,40 @@ use mesh::TriMesh;
 use super::coloring::{Coloring, ISOLINE_LIGHT};
 use super::draw::render;
 use super::options::{Background, RenderOptions};
-use crate::color::{ColorMap, Rgb, from_linear, mix, to_linear, value_range};
+use super::text::{Label, empty, paint, type_size, write_labels};
+use crate::color::{ColorMap, from_linear, to_linear, value_range};
 use crate::error::ReportError;
-use crate::figure::{INK, PlotAxis, bar_labels, pixels, scaled_text, text_width};
+use crate::figure::{INK, PlotAxis, bar_labels, scaled_text, text_width};
 use crate::image::RgbaImage;
 
-/// Draws like [`render`], with a colour bar, its ticks and its `name` to the right of the mesh, in an image of the
-/// same size.
+/// Draws like [`render`], with labels at points, and with a colour bar of this name and its ticks to the right of the mesh, in
+/// an image of the same size.
 ///
 /// There is no bar if the surface has no finite numbers, or if the bar would take more than half of the image.
 ///
 /// # Errors
 /// [`ReportError::Exceeded`], and [`ReportError::Draw`] if text cannot be written.
-pub fn render_with_bar(
+pub fn annotated(
     mesh: &TriMesh,
     options: &RenderOptions,
-    name: &str,
+    bar: Option<&str>,
+    labels: &[Label],
     observer: &dyn Observer,
 ) -> Result<RgbaImage, ReportError> {
-    let Some(bar) = ColorBar::new(options, name) else { return Ok(render(mesh, options, observer)?) };
-    let room = RenderOptions { width: bar.size[0] - bar.width, ..options.clone() };
-    let mut image = bar.with_room(&render(mesh, &room, observer)?, options.background);
+    let bar = bar.and_then(|name| ColorBar::new(options, name));
+    let taken = bar.as_ref().map_or(0, |bar| bar.width);
+    let room = RenderOptions { width: options.width.clamp(1, 8192) - taken, ..options.clone() };
+    let mut image = render(mesh, &room, observer)?;
+    write_labels(&mut image, mesh, &room, labels, &observer.budget())?;
+    let Some(bar) = bar else { return Ok(image) };
+    let mut image = bar.with_room(&image, options.background);
     bar.paint(&mut image);
-    let pen = pen(options.background);
-    // Drawn dark on white: the darker a pixel, the more of it is covered.
-    let drawn = pixels(bar.size, |area| {
+    paint(&mut image, options.background, (0.0, 1), "a colour bar", |area| {
         let [left, top, height] = [bar.left(), bar.top, bar.height].map(|at| at as i32);
         let width = bar.size[0] as i32 - left - (0.4 * bar.em) as i32;
         let place = area.clone().shrink((left, top), (width, height));
         bar_labels(&place, &bar.axis, bar.em, bar.em, 1)
-    });
-    let drawn = drawn.map_err(|reason| ReportError::draw("a colour bar", reason))?;
-    for (pixel, drawn) in image.pixels_mut().iter_mut().zip(drawn.chunks_exact(3)) {
-        let cover = f64::from(255 - drawn[1]) / f64::from(255 - INK[1]);
-        *pixel = over(*pixel, pen, cover);
-    }
+    })?;
     Ok(image)
 }
 
@@ -68,8 +67,8 @@ impl ColorBar {
         // The range of the surface's colours if there is only one value.
         let high = if high > low { high } else { low + 1.0 };
         let size = [options.width, options.height].map(|side| side.clamp(1, 8192));
-        let [wide, high_side] = size.map(f64::from);
-        let em = (wide.min(high_side) / 36.0).clamp(11.0, 64.0).round();
+        let high_side = f64::from(size[1]);
+        let em = type_size(size);
         if !(high - low).is_finite() || em * 8.0 > high_side {
             return None;
         }
@@ -92,12 +91,7 @@ impl ColorBar {
 
     /// The image of the mesh, extended to the right by empty space for the bar.
     fn with_room(&self, mesh: &RgbaImage, background: Background) -> RgbaImage {
-        let empty = match background {
-            Background::White => [255; 4],
-            Background::Color([r, g, b]) => [r, g, b, 255],
-            Background::Transparent => [0; 4],
-        };
-        mesh.beside(&RgbaImage::new(self.width, self.size[1], empty))
+        mesh.beside(&RgbaImage::new(self.width, self.size[1], empty(background)))
     }
 
     /// Fills the bar with the colour map and its isolines.
@@ -119,31 +113,6 @@ impl ColorBar {
     }
 }
 
-/// A text colour that contrasts with the background.
-fn pen(background: Background) -> Rgb {
-    let light = match background {
-        // As far from white as from black.
-        Background::Transparent => return [118; 3],
-        Background::White => 1.0,
-        Background::Color(color) => {
-            let [r, g, b] = color.map(to_linear);
-            0.2126 * r + 0.7152 * g + 0.0722 * b
-        }
-    };
-    if light > 0.18 { [34; 3] } else { [235; 3] }
-}
-
-/// A pixel of which an opaque colour covers `share`.
-fn over([r, g, b, alpha]: [u8; 4], color: Rgb, share: f64) -> [u8; 4] {
-    if share <= 0.0 {
-        return [r, g, b, alpha];
-    }
-    let below = f64::from(alpha) / 255.0 * (1.0 - share);
-    let whole = below + share;
-    let [r, g, b] = mix([r, g, b], color, share / whole);
-    [r, g, b, (whole * 255.0).round() as u8]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -155,7 +124,7 @@ mod tests {
     }
 
     fn with_bar(options: &RenderOptions) -> RgbaImage {
-        render_with_bar(&sphere(12), options, "z", &()).unwrap()
+        annotated(&sphere(12), options, Some("z"), &[], &()).unwrap()
     }
 
     fn heights() -> Vec<f64> {
@@ -225,13 +194,5 @@ mod tests {
         assert!(
             clear.iter().any(|p| p[3] == 0) && clear.iter().any(|p| p[0].abs_diff(118) < 3 && p[3] > 200)
         );
-    }
-
-    #[test]
-    fn a_partly_covered_pixel_mixes_both_colours() {
-        assert_eq!(over([10, 20, 30, 40], [0; 3], 0.0), [10, 20, 30, 40]);
-        assert_eq!(over([10, 20, 30, 40], [1, 2, 3], 1.0), [1, 2, 3, 255]);
-        assert_eq!(over([200, 200, 200, 255], [0; 3], 0.5), [100, 100, 100, 255]);
-        assert_eq!(over([0; 4], [80; 3], 0.5), [80, 80, 80, 128]);
     }
 }

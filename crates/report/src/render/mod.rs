@@ -13,13 +13,15 @@ mod normals;
 mod options;
 mod raster;
 mod shade;
+mod text;
 
-pub use bar::render_with_bar;
+pub use bar::annotated;
 pub use camera::{View, aspect};
 pub use coloring::Coloring;
 pub use dots::dots;
 pub use draw::render;
 pub use options::{Background, RenderOptions};
+pub use text::{Label, Title, collage};
 
 pub use crate::color::value_range;
 

@@ -15,20 +15,10 @@ use crate::page::escape;
 /// A page of HTML that shows a surface to turn and zoom: 0.7 MB of scripts, packed, and the surface.
 ///
 /// It fetches nothing, and its policy allows its own scripts only. Before the surface is drawn, and without scripts or
-/// WebGL, the page is transparent.
+/// WebGL, the page is transparent. Without [`scene_scripts`] the page asks the page around it for them.
 #[must_use]
 pub fn scene_page(geometry: Geometry, title: &str) -> String {
-    // The bundle is packed already, and packing it again takes a second.
-    static SCRIPTS: LazyLock<[[String; 2]; 3]> = LazyLock::new(|| {
-        let bundle = plotly_js().strip_prefix(PRELUDE).unwrap_or_default();
-        [
-            [packed("prelude", PRELUDE), hash(PRELUDE)],
-            [island("plotly", BUNDLE), hash(bundle)],
-            [packed("viewer", viewer_js()), hash(viewer_js())],
-        ]
-    });
-    let [islands, hashes] =
-        [0, 1].map(|part| SCRIPTS.each_ref().map(|script| script[part].as_str()).join(" "));
+    let [islands, hashes] = &*SCRIPTS;
     let start = include_str!("scene.js");
     let scene = serde_json::to_string(&geometry.rounded()).unwrap_or_default();
     format!(
@@ -43,6 +33,20 @@ pub fn scene_page(geometry: Geometry, title: &str) -> String {
         scene = packed("scene", &scene),
     )
 }
+
+/// The part of every [`scene_page`] that all share: its scripts, packed.
+#[must_use]
+pub fn scene_scripts() -> &'static str {
+    &SCRIPTS[0]
+}
+
+/// The scripts as elements that are not run, and their hashes.
+static SCRIPTS: LazyLock<[String; 2]> = LazyLock::new(|| {
+    // The bundle is packed already, and packing it again takes a second.
+    let bundle = plotly_js().strip_prefix(PRELUDE).unwrap_or_default();
+    let islands = [packed("prelude", PRELUDE), island("plotly", BUNDLE), packed("viewer", viewer_js())];
+    [islands.concat(), [PRELUDE, bundle, viewer_js()].map(hash).join(" ")]
+});
 
 fn hash(script: &str) -> String {
     format!("'sha256-{}'", STANDARD.encode(Sha256::digest(script)))
@@ -75,5 +79,6 @@ mod tests {
         assert_eq!(page.matches("</script>").count(), 5);
         assert!(!page.contains("http:") && !page.contains("https:") && !page.contains("unsafe-eval"));
         assert!((600_000..900_000).contains(&page.len()), "{} bytes", page.len());
+        assert!(page.replace(scene_scripts(), "").len() < 5_000);
     }
 }

@@ -1,0 +1,301 @@
+//! Text over images: labels of points, and pictures with titles in one image.
+
+use base::Budget;
+use mesh::TriMesh;
+use nalgebra::Point3;
+
+use super::camera::{Camera, drawable_faces};
+use super::options::{Background, RenderOptions};
+use super::raster::DepthBuffer;
+use crate::color::{Rgb, mix, to_linear};
+use crate::error::ReportError;
+use crate::figure::{Area, Bitmap, Drawn, INK, average, drop_of, pixels, scaled_text, text_width};
+use crate::image::RgbaImage;
+
+/// The text at a point of a mesh.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Label {
+    /// Where the point is.
+    pub at: Point3<f64>,
+    /// The text.
+    pub text: String,
+}
+
+/// A text in an image, no wider than this. It is written smaller otherwise.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Title {
+    /// The text.
+    pub text: String,
+    /// Its middle, in pixels from the left and the top.
+    pub middle: [f64; 2],
+    /// In pixels.
+    pub width: f64,
+}
+
+/// Places pictures, given by their top left corners, and then titles of this type size in an image of this size. Pictures beyond
+/// the image are cut off.
+///
+/// # Errors
+/// [`ReportError::Draw`] if text cannot be written.
+pub fn collage(
+    [width, height]: [u32; 2],
+    background: Background,
+    pictures: &[(RgbaImage, [i64; 2])],
+    (titles, size): (&[Title], f64),
+) -> Result<RgbaImage, ReportError> {
+    let mut image = RgbaImage::new(width, height, empty(background));
+    for (picture, [left, top]) in pictures {
+        for (i, pixel) in picture.pixels().iter().enumerate() {
+            let (column, row) = (i as u32 % picture.width(), i as u32 / picture.width());
+            let place = [left + i64::from(column), top + i64::from(row)].map(u32::try_from);
+            if let [Ok(x), Ok(y)] = place
+                && x < width
+                && y < height
+            {
+                let below = &mut image.pixels_mut()[y as usize * width as usize + x as usize];
+                *below = over(*below, [pixel[0], pixel[1], pixel[2]], f64::from(pixel[3]) / 255.0);
+            }
+        }
+    }
+    let texts = titles.iter().map(|title| {
+        let share = (title.width / width_of(&title.text, size)).min(1.0);
+        (title.text.as_str(), title.middle, share * size)
+    });
+    write(&mut image, background, &texts.collect::<Vec<_>>(), 0.0)?;
+    Ok(image)
+}
+
+/// Writes labels beside those points of a mesh that are seen with these options: none over another or over a labelled point, as
+/// far as there is room, and all inside the image.
+pub(super) fn write_labels(
+    image: &mut RgbaImage,
+    mesh: &TriMesh,
+    options: &RenderOptions,
+    labels: &[Label],
+    budget: &Budget,
+) -> Result<(), ReportError> {
+    if labels.is_empty() {
+        return Ok(());
+    }
+    let (size, faces) = ([image.width(), image.height()], drawable_faces(mesh));
+    let camera = Camera::fit(mesh, &faces, &options.view, size, options.margin.clamp(0.0, 0.45));
+    let nearest = DepthBuffer::draw(mesh, &faces, &camera, size, budget)?;
+    let em = type_size(size);
+    let seen = |label: &&Label| {
+        let [x, y, depth] = camera.project(&label.at);
+        let [column, row] = [x, y].map(|at| at.max(0.0) as usize);
+        let is_inside = column < nearest.size[0] && row < nearest.size[1];
+        // Points lie on the surface, or are the middles of dots on it.
+        !is_inside || f64::from(nearest.depth[row * nearest.size[0] + column]) <= depth + em
+    };
+    let labels: Vec<&Label> = labels.iter().filter(seen).collect();
+    let points: Vec<_> =
+        labels.iter().map(|label| camera.project(&label.at)).map(|[x, y, _]| [x, y]).collect();
+    let widths: Vec<f64> = labels.iter().map(|label| width_of(&label.text, em)).collect();
+    let middles = beside(&points, &widths, em, size.map(f64::from));
+    let texts = labels.iter().zip(middles).map(|(label, middle)| (label.text.as_str(), middle, em));
+    write(image, options.background, &texts.collect::<Vec<_>>(), em / 6.0)
+}
+
+/// The middles of texts of these widths beside points.
+fn beside(points: &[[f64; 2]], widths: &[f64], em: f64, size: [f64; 2]) -> Vec<[f64; 2]> {
+    // To the upper right first, as in maps.
+    const SIDES: [[f64; 2]; 8] =
+        [[1., -1.], [1., 1.], [-1., -1.], [-1., 1.], [0., -1.], [0., 1.], [1., 0.], [-1., 0.]];
+    let mut taken: Vec<[[f64; 2]; 2]> = points.iter().map(|point| [*point, [0.4 * em; 2]]).collect();
+    let mut middles = Vec::with_capacity(points.len());
+    for (point, width) in points.iter().zip(widths) {
+        let half = [0.5 * width + 0.2 * em, 0.6 * em];
+        let at = |side: &[f64; 2]| {
+            let axis = |i: usize| {
+                let aside = point[i] + side[i] * (half[i] + 0.5 * em);
+                aside.min(size[i] - half[i]).max(half[i])
+            };
+            [axis(0), axis(1)]
+        };
+        let is_free = |middle: &[f64; 2]| {
+            let meets = |[other, extent]: &[[f64; 2]; 2]| {
+                (0..2).all(|i| (middle[i] - other[i]).abs() < half[i] + extent[i])
+            };
+            !taken.iter().any(meets)
+        };
+        let middle = SIDES.iter().map(at).find(is_free).unwrap_or_else(|| at(&SIDES[0]));
+        taken.push([middle, half]);
+        middles.push(middle);
+    }
+    middles
+}
+
+/// The type size in an image of this size, in pixels.
+pub(super) fn type_size(size: [u32; 2]) -> f64 {
+    (f64::from(size[0].min(size[1])) / 36.0).clamp(11.0, 64.0).round()
+}
+
+/// The width of a text in pixels.
+fn width_of(text: &str, size: f64) -> f64 {
+    // Measured large, as plotters rounds to whole pixels.
+    text_width(text, &scaled_text(size, INK, 8)) / 8.0
+}
+
+/// Writes texts by their middles and sizes, on a margin of the background of this width.
+fn write(
+    image: &mut RgbaImage,
+    background: Background,
+    texts: &[(&str, [f64; 2], f64)],
+    margin: f64,
+) -> Result<(), ReportError> {
+    // Letters are placed at whole pixels: drawn finer and averaged, they are as far apart as they should be.
+    let n_pixels = f64::from(image.width()) * f64::from(image.height());
+    let scale = (MOST_FINE / n_pixels).sqrt().clamp(1.0, 4.0) as u32;
+    paint(image, background, (margin, scale), "text", |area| {
+        for (text, [x, y], size) in texts {
+            let style = scaled_text(*size, INK, scale as i32);
+            let [x, y] = [x, y].map(|at| (at * f64::from(scale)).round() as i32);
+            area.draw_text(text, &style, (x, y + drop_of(&style)))?;
+        }
+        Ok(())
+    })
+}
+
+/// Most pixels of a drawing that is averaged: 200 MB.
+const MOST_FINE: f64 = 6.4e7;
+
+/// Paints what is drawn in [`INK`], with this many pixels to a side of each of the image, in a colour that contrasts with the
+/// background, on a margin of this width.
+pub(super) fn paint(
+    image: &mut RgbaImage,
+    background: Background,
+    (margin, scale): (f64, u32),
+    what: &str,
+    draw: impl FnOnce(&Area<Bitmap<'_>>) -> Drawn<Bitmap<'static>>,
+) -> Result<(), ReportError> {
+    let (width, height) = (image.width() as usize, image.height() as usize);
+    let drawn = pixels([image.width() * scale, image.height() * scale], draw);
+    let drawn = drawn.map_err(|reason| ReportError::draw(what, reason))?;
+    let drawn = average(&drawn, width * scale as usize, scale as usize);
+    // Drawn dark on white: the darker a pixel, the more of it is covered.
+    let cover: Vec<f64> =
+        drawn.chunks_exact(3).map(|pixel| f64::from(255 - pixel[1]) / f64::from(255 - INK[1])).collect();
+    let mut around = vec![0.0_f64; cover.len()];
+    let reach = margin.ceil() as usize;
+    for (i, share) in cover.iter().enumerate().filter(|(_, share)| reach > 0 && **share > 0.0) {
+        let (x, y) = (i % width, i / width);
+        for row in y.saturating_sub(reach)..(y + reach + 1).min(height) {
+            for column in x.saturating_sub(reach)..(x + reach + 1).min(width) {
+                let apart = (row as f64 - y as f64).hypot(column as f64 - x as f64);
+                let near = &mut around[row * width + column];
+                *near = near.max(share * (margin + 0.5 - apart).clamp(0.0, 1.0));
+            }
+        }
+    }
+    // On a margin, text is on white where nothing is behind the surface.
+    let background = match background {
+        Background::Transparent if reach > 0 => Background::White,
+        background => background,
+    };
+    let [r, g, b, _] = empty(background);
+    for ((pixel, near), share) in image.pixels_mut().iter_mut().zip(around).zip(cover) {
+        *pixel = over(over(*pixel, [r, g, b], 0.85 * near), pen(background), share);
+    }
+    Ok(())
+}
+
+/// A pixel without a surface.
+pub(super) fn empty(background: Background) -> [u8; 4] {
+    match background {
+        Background::White => [255; 4],
+        Background::Color([r, g, b]) => [r, g, b, 255],
+        Background::Transparent => [0; 4],
+    }
+}
+
+/// A text colour that contrasts with the background.
+fn pen(background: Background) -> Rgb {
+    let light = match background {
+        // As far from white as from black.
+        Background::Transparent => return [118; 3],
+        Background::White => 1.0,
+        Background::Color(color) => {
+            let [r, g, b] = color.map(to_linear);
+            0.2126 * r + 0.7152 * g + 0.0722 * b
+        }
+    };
+    if light > 0.18 { [34; 3] } else { [235; 3] }
+}
+
+/// A pixel of which an opaque colour covers `share`.
+fn over([r, g, b, alpha]: [u8; 4], color: Rgb, share: f64) -> [u8; 4] {
+    if share <= 0.0 {
+        return [r, g, b, alpha];
+    }
+    let below = f64::from(alpha) / 255.0 * (1.0 - share);
+    let whole = below + share;
+    let [r, g, b] = mix([r, g, b], color, share / whole);
+    [r, g, b, (whole * 255.0).round() as u8]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tests::meshes::sphere;
+
+    #[test]
+    fn labels_neither_meet_nor_leave_the_image() {
+        // Many points in one place, and others in the corners.
+        let size = [400.0, 300.0];
+        let mut points = vec![[200.0, 150.0], [201.0, 150.0], [200.0, 152.0], [199.0, 149.0]];
+        points.extend([[0.0, 0.0], [400.0, 0.0], [0.0, 300.0], [400.0, 300.0]]);
+        let middles = beside(&points, &[60.0; 8], 12.0, size);
+        for (i, [x, y]) in middles.iter().enumerate() {
+            assert!((32.3..=367.7).contains(x) && (7.1..=292.9).contains(y), "{x}, {y}");
+            for [u, v] in &middles[..i] {
+                assert!((x - u).abs() > 64.7 || (y - v).abs() > 14.3, "{middles:?}");
+            }
+        }
+        assert!(middles[0][0] > 200.0 && middles[0][1] < 150.0, "to the upper right if there is room");
+    }
+
+    #[test]
+    fn a_label_is_written_beside_its_point_and_nowhere_else() {
+        let options = RenderOptions { width: 300, height: 200, ..RenderOptions::default() };
+        let plain = super::super::render(&sphere(12), &options, &()).unwrap();
+        let mut image = plain.clone();
+        let label = |z: f64, text: &str| Label { at: Point3::new(0.0, 0.0, z), text: text.into() };
+        let labels = [label(1.0, "pole"), label(-1.0, "hidden")];
+        write_labels(&mut image, &sphere(12), &options, &labels, &Budget::unlimited()).unwrap();
+        let changed: Vec<usize> =
+            (0..300 * 200).filter(|i| image.pixels()[*i] != plain.pixels()[*i]).collect();
+        assert!(!changed.is_empty() && changed.iter().all(|i| i % 300 > 140 && i / 300 < 60));
+    }
+
+    #[test]
+    fn pictures_are_placed_one_over_the_other_and_titles_fit() {
+        let red = RgbaImage::new(2, 2, [255, 0, 0, 255]);
+        let clear = RgbaImage::new(2, 2, [0, 0, 255, 0]);
+        let placed = [(red, [1, 1]), (clear, [0, 0]), (RgbaImage::new(3, 1, [0, 255, 0, 255]), [-1, 29])];
+        let title = |width| [Title { text: "a long title".into(), middle: [20.0, 15.0], width }];
+        let made = |width| collage([40, 30], Background::White, &placed, (&title(width), 12.0)).unwrap();
+        let image = made(18.0);
+        assert_eq!(
+            [image.pixel(0, 0), image.pixel(1, 1), image.pixel(2, 2)],
+            [[255; 4], [255, 0, 0, 255], [255, 0, 0, 255]]
+        );
+        assert_eq!([image.pixel(1, 29), image.pixel(2, 29)], [[0, 255, 0, 255], [255; 4]]);
+        let inked = |image: &RgbaImage| {
+            (0..40)
+                .filter(|x| (8..22).any(|y| image.pixel(*x, y)[0] < 200))
+                .map(|x| x as f64)
+                .collect::<Vec<_>>()
+        };
+        assert!(inked(&image).iter().all(|x| (x - 20.0).abs() <= 10.0) && !inked(&image).is_empty());
+        assert!(inked(&made(100.0)).iter().any(|x| (x - 20.0).abs() > 12.0));
+    }
+
+    #[test]
+    fn a_partly_covered_pixel_mixes_both_colours() {
+        assert_eq!(over([10, 20, 30, 40], [0; 3], 0.0), [10, 20, 30, 40]);
+        assert_eq!(over([10, 20, 30, 40], [1, 2, 3], 1.0), [1, 2, 3, 255]);
+        assert_eq!(over([200, 200, 200, 255], [0; 3], 0.5), [100, 100, 100, 255]);
+        assert_eq!(over([0; 4], [80; 3], 0.5), [80, 80, 80, 128]);
+    }
+}
