@@ -21,6 +21,11 @@ pub fn n_results(k: usize) -> usize {
 /// A vote is split if the winner has less than this share of it.
 const CLEAR: f64 = 2.0 / 3.0;
 
+/// Parts may be of a class if they fit it and no shape of another class less than this times as far away. Chosen on parts of 19
+/// built-in classes, halves and 70 % by planes: with the class in the index, 35 of 38 were named and none wrongly; without it,
+/// 5 instead of 17 were. Of views from one side, 2 of 19 were named wrongly instead of 15.
+const CLEAR_FIT: f64 = 1.2;
+
 /// A query without this share of its surface may be a part of a shape.
 const DROPPED: f64 = 0.01;
 
@@ -89,6 +94,8 @@ pub enum Unknown {
     Unlabelled,
     /// No shape is near enough.
     NothingNear,
+    /// The query fits as a part of shapes of several classes nearly as well.
+    SeveralClasses,
     /// No shape is near enough, and the query looks like a part of a shape, but was compared as a whole.
     Partial,
 }
@@ -122,7 +129,8 @@ fn shortcut_warning(facts: &Facts) -> Option<String> {
 ///
 /// A result at combined distance `d` and fused distance `f` votes if `r = min(d / c, f / t)` is below 1, with `c` the
 /// boundary of a class and `t` the width of the classes of the index; its weight is `(1 - r²)²`. If the query is
-/// taken as a part, `r` is the part distance over that of parts of shapes of one class.
+/// taken as a part, `r` is the part distance over [`CLEAR_FIT`] times the smallest, but at most that of parts of shapes of one
+/// class, and the vote has to be unanimous.
 pub(super) fn predicted(
     results: &[Hit],
     (threshold, classes): (Option<UnknownThreshold>, Option<Boundary>),
@@ -138,7 +146,8 @@ pub(super) fn predicted(
     let label = |class: usize| labels.classes()[class].clone();
     let reach = |result: &Hit| {
         if let Some(distance) = part_distance(result) {
-            return distance / class_below;
+            let nearest = as_part.map_or(f64::INFINITY, |nearest| CLEAR_FIT * nearest);
+            return distance / nearest.min(class_below).max(f64::MIN_POSITIVE);
         }
         let combined = result.relation.evidence.distance.combined / class_below;
         threshold.map_or(combined, |threshold| combined.min(result.fused / threshold))
@@ -157,6 +166,7 @@ pub(super) fn predicted(
     });
     let signs = signs_of_a_part(query);
     let unknown = match (vote.class(), &nearest) {
+        (Some(_), _) if as_part.is_some() && vote.tally.len() > 1 => Some(Unknown::SeveralClasses),
         (Some(_), _) => None,
         (None, None) => Some(Unknown::EmptyIndex),
         (None, Some(_)) if neighbors.is_empty() => Some(Unknown::Unlabelled),
@@ -164,7 +174,7 @@ pub(super) fn predicted(
         (None, Some(_)) => Some(Unknown::Partial),
     };
     let mut found = Prediction {
-        label: vote.class().map(label),
+        label: vote.class().map(label).filter(|_| unknown.is_none()),
         votes: vote.tally.first().map_or(0, |winner| winner.votes),
         voters: vote.voters,
         confidence: vote.tally.first().map_or(0.0, |winner| winner.share),
@@ -194,7 +204,7 @@ fn part_distance(result: &Hit) -> Option<f64> {
 impl Prediction {
     fn in_words(&self, signs: &[String], as_part: Option<f64>) -> String {
         if let Some(label) = &self.label {
-            return self.vote_in_words(label);
+            return self.vote_in_words(label, as_part.is_some());
         }
         let Some(nearest) = &self.nearest else { return "unknown. The index is empty".to_owned() };
         let distance = nearest.relation.evidence.distance.combined;
@@ -209,6 +219,13 @@ impl Prediction {
             "" => "without a class".to_owned(),
             label => format!("of the class {label}"),
         };
+        if self.unknown == Some(Unknown::SeveralClasses) {
+            let classes: Vec<&str> = self.tally.iter().map(|of| of.label.as_str()).collect();
+            return format!(
+                "unknown. The query fits as a part of {} nearly as well",
+                classes.join(" and of ")
+            );
+        }
         if let Some(distance) = as_part {
             return format!(
                 "unknown. The query fits best as a part of {} {class}, at part distance {distance:.3}; parts of shapes of one class are below {:.3}",
@@ -231,9 +248,13 @@ impl Prediction {
         words
     }
 
-    fn vote_in_words(&self, label: &str) -> String {
-        let mut words =
-            format!("{label}, by {} of {} votes, confidence {:.2}", self.votes, self.voters, self.confidence);
+    fn vote_in_words(&self, label: &str, as_part: bool) -> String {
+        let mut words = format!("{label}, by {} of {} votes", self.votes, self.voters);
+        // Parts have a class by unanimous votes only.
+        if as_part {
+            return words;
+        }
+        words += &format!(", confidence {:.2}", self.confidence);
         if let [_, others @ ..] = &self.tally[..]
             && !others.is_empty()
         {
@@ -353,6 +374,13 @@ mod tests {
         let open = Facts { longest_boundary: 1.25, ..facts() };
         let found = predicted(&fits(0.3, 1.2), (None, None), &open);
         assert_eq!((found.label.as_deref(), found.votes, found.unknown), (Some("cat"), 1, None));
+        assert_eq!(found.explanation, "cat, by 1 of 1 votes");
+        let found = predicted(&fits(0.3, 0.35), (None, None), &open);
+        assert_eq!((found.label.as_deref(), found.unknown), (None, Some(Unknown::SeveralClasses)));
+        assert!(found.explanation.contains("as a part of cat and of dog"), "{}", found.explanation);
+        // A surface of a few faces fits everywhere.
+        let found = predicted(&fits(0.0, 0.0), (None, None), &open);
+        assert_eq!(found.unknown, Some(Unknown::SeveralClasses));
         let found = predicted(&fits(1.1, 1.2), (None, None), &open);
         assert_eq!(found.unknown, Some(Unknown::NothingNear));
         assert!(found.explanation.contains("fits best as a part of cat1"), "{}", found.explanation);

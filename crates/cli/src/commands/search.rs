@@ -154,7 +154,7 @@ fn meant(given: &Path, index: &ShapeSearch) -> Option<String> {
 
 /// The shapes found and the class; with `details`, how each shape is related and what the search did.
 fn text(query: String, report: &Answer, details: bool) -> String {
-    let mut text = format!("{}\n{}\n", one_line(&query), table(report));
+    let mut text = format!("{}\n{}\n", one_line(&query), table(report, details));
     text += match report.rank_by {
         SearchRank::Plain => "",
         SearchRank::Graph => {
@@ -197,7 +197,9 @@ fn class(predicted: &Prediction) -> String {
     }
 }
 
-fn table(report: &Answer) -> comfy_table::Table {
+fn table(report: &Answer, details: bool) -> comfy_table::Table {
+    // Without its mesh, a part is only known to differ from wholes.
+    let is_related = details || report.rank_by != SearchRank::Part;
     let has_classes = report.results.iter().any(|result| !result.label.is_empty());
     let mut head = vec!["", "shape", "class", "distance", "relation"];
     match report.rank_by {
@@ -205,6 +207,9 @@ fn table(report: &Answer) -> comfy_table::Table {
         SearchRank::Graph => drop(head.splice(3..3, ["rank distance", "plain"])),
         SearchRank::Part => drop(head.splice(3..3, ["part distance", "share"])),
         SearchRank::Forms => head.insert(3, "form distance"),
+    }
+    if !is_related {
+        head.truncate(5);
     }
     if !has_classes {
         head.remove(2);
@@ -230,6 +235,7 @@ fn table(report: &Answer) -> comfy_table::Table {
             }
             Some(OrderedBy::Forms { form_distance }) => row.insert(3, format!("{form_distance:.4}")),
         }
+        row.truncate(if is_related { row.len() } else { 5 });
         if !has_classes {
             row.remove(2);
         }

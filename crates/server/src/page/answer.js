@@ -106,13 +106,13 @@ export class Answer {
 
   // A result: its name and folder, its class, and how it is related to the query.
   card(result, common) {
-    const { rank, id, label, distance, relation } = result;
+    const { rank, id, label, distance } = result;
     const folder = folderOf(id).slice(common.length).replace(/^\//, '');
     const lines = [];
     if (folder && folder !== label) lines.push(['more', folder]);
     if (label) lines.push(['more', label]);
     if (result.part_share !== undefined) lines.push(['more', `the query is ${percent(result.part_share)} of it`]);
-    lines.push(['kind', relation.brief]);
+    lines.push(['kind', '']);
     const item = tile(id, label, lines, '', this.picked);
     Object.assign(item.firstChild.dataset, { distance, rank });
     this.tell(item.firstChild, result);
@@ -122,8 +122,11 @@ export class Answer {
   // Says on a card how a shape is related; all about it is shown on hover.
   tell(card, { id, relation, distance, ...order }) {
     card.dataset.kind = relation.kind;
-    card.querySelector('.kind').textContent = relation.brief;
-    const lines = [id, `${relation.text} (${percent(relation.confidence)} certain)`, `distance ${number(distance)}`];
+    // Without its mesh, a part is only known to differ from wholes.
+    const isKnown = order.part_distance === undefined || relation.because.basis !== 'descriptions';
+    card.querySelector('.kind').textContent = isKnown ? relation.brief : '';
+    const lines = [id];
+    if (isKnown) lines.push(`${relation.text} (${percent(relation.confidence)} certain)`, `distance ${number(distance)}`);
     // What another order follows.
     if (order.rank_distance !== undefined) lines.push(`rank distance ${number(order.rank_distance)}`);
     if (order.part_distance !== undefined) lines.push(`part distance ${number(order.part_distance)}`);
