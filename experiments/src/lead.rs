@@ -16,6 +16,9 @@ use crate::prose::filled;
 
 const TEMPLATE: &str = include_str!("../configs/lead.txt");
 
+/// How a page of built-in shapes begins.
+const GENERATED: &str = "The shapes on this page are generated; its figures are those of the paper by Shamai, Zibulevsky and Kimmel (3DOR 2015). ";
+
 /// The first paragraph whose numbers are all in the records of a folder; empty if there is none.
 pub(crate) fn lead(folder: &Path) -> Result<String, ReportError> {
     let records = Records { folder, known: RefCell::default() };
@@ -27,7 +30,8 @@ pub(crate) fn lead(folder: &Path) -> Result<String, ReportError> {
             return Err(fault);
         }
         if let Ok(text) = text {
-            return Ok(text);
+            let generated = if records.are_generated() { GENERATED } else { "" };
+            return Ok(format!("{generated}{text}"));
         }
     }
     Ok(String::new())
@@ -41,6 +45,14 @@ struct Records<'a> {
 }
 
 impl Records<'_> {
+    /// Whether the shapes of a record that was read are built in.
+    fn are_generated(&self) -> bool {
+        let of = |record: &Value| {
+            record["provenance"]["dataset"].as_str().is_some_and(|d| d.starts_with("built-in"))
+        };
+        self.known.borrow().values().any(of)
+    }
+
     /// The number `EXPERIMENT/NAME`.
     fn number(&self, name: &str) -> Result<Option<f64>, ReportError> {
         let Some((experiment, name)) = name.split_once('/') else { return Ok(None) };
@@ -76,10 +88,11 @@ mod tests {
             std::fs::write(folder.path().join(name), record.to_string()).unwrap();
         };
         assert_eq!(lead(folder.path()).unwrap(), "");
-        let made = json!({"classes": ["cat", "dog"]});
+        let made = json!({"classes": ["cat", "dog"], "dataset": "built-in articulated families"});
         let measured = json!({"largest stress ratio": 0.125});
         write("figure1.json", json!({"provenance": made, "measured": measured, "shapes": [1, 2, 3]}));
         let text = lead(folder.path()).unwrap();
+        assert!(text.starts_with("The shapes on this page are generated"), "{text}");
         assert!(text.contains("3 shapes of 2 classes") && text.ends_with("12.5 % of their squared size."));
         // A record without a number of the paragraph does not begin the page.
         write("figure4.json", json!({"provenance": made, "names": [1, 2, 3, 4]}));
