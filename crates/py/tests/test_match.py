@@ -87,7 +87,7 @@ def test_the_functional_map_takes_coefficients_to_each_other(cats: list[Shape], 
 
 def test_landmarks_initial_maps_and_descriptors(cats: list[Shape]) -> None:
     a, b = (shape.surface() for shape in cats)
-    few = {"n_eigenfunctions": 40}
+    few = {"n_eigenfunctions": 30}
     direct, mirrored = sorted(canonform.match(a, b, **few).maps, key=lambda m: m.kind)
     # Where the maps are farthest apart.
     far = int(np.linalg.norm(b.vertices[direct.vertices] - b.vertices[mirrored.vertices], axis=1).argmax())

@@ -163,7 +163,7 @@ def test_a_match_is_drawn_side_by_side(cats: list[Shape]) -> None:
     pixels = decoded(match.picture(n_lines=4, width=160, height=80))
     halves = np.array_split(pixels[..., 3] > 0.5, 2, axis=1)
     assert all(half.mean() > 0.05 for half in halves)
-    assert match.picture(n_lines=4) != match.picture() and len(match.pictures(width=40, height=40)) == 1 + len(match.maps)
+    assert match.picture(n_lines=4, width=160, height=80) != match.picture(width=160, height=80) and len(match.pictures(width=40, height=40)) == 1 + len(match.maps)
     with pytest.raises(canonform.errors.OptionError, match="kind='other'"):
         match.picture("other")  # type: ignore[arg-type]
 
