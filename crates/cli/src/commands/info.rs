@@ -1,10 +1,11 @@
 //! `canonform info`.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use canonform::mesh::io::{FileFacts, MeshFile};
+use canonform::mesh::io::{FileFacts, MeshFile, extension};
 use canonform::mesh::{
     MeshReport, RepairReport, Shortcut, ShortcutKind, cut_shortcuts, is_noisy, repair, validate,
 };
@@ -64,8 +65,18 @@ pub(crate) fn info(args: &InfoArgs, common: &Common) -> Result<ExitCode> {
     }
     if common.json {
         print_json(&json)?;
+    } else if json.meshes.len() > 1 {
+        print(&total(&json.meshes))?;
     }
     Ok(exit_code(json.failed.is_empty()))
+}
+
+/// How many meshes of each format there are.
+fn total(meshes: &[MeshInfo]) -> String {
+    let mut formats = BTreeMap::<String, usize>::new();
+    meshes.iter().for_each(|mesh| *formats.entry(extension(&mesh.path)).or_default() += 1);
+    let formats: Vec<String> = formats.iter().map(|(format, n)| format!("{n} {format}")).collect();
+    format!("{} meshes: {}", meshes.len(), formats.join(", "))
 }
 
 fn answer(info: &MeshInfo) -> Answer {
@@ -78,7 +89,12 @@ fn answer(info: &MeshInfo) -> Answer {
     let changes = info.repair.summary();
     let repair = if changes.is_empty() { "nothing to repair" } else { "it would be repaired" };
     let (path, n_vertices, n_faces) = (info.path.display(), mesh.n_vertices, mesh.n_faces);
-    let mut facts = Vec::new();
+    // Five significant digits.
+    let short = |x: f64| format!("{x:.4e}").parse().unwrap_or(x);
+    let [length, width, height] = mesh.size.map(short);
+    let mut size = format!("{length} x {width} x {height}");
+    size.extend(mesh.volume.map(|volume| format!(", volume {}", short(volume))));
+    let mut facts = vec![("size", size)];
     if !changes.is_empty() {
         facts.push(("would repair", changes.join("; ")));
     }

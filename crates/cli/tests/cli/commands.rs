@@ -19,6 +19,9 @@ fn info_reports_what_a_mesh_contains() {
     place.add("broken.ply", &broken_ring());
     let text = place.done("info ring.off --details").out;
     assert!(text.contains("160, 480, 320") && text.contains("genus") && text.contains("nothing"), "{text}");
+    assert!(text.contains("size") && text.contains("volume"), "{text}");
+    assert!(place.done("info ring.off ring.off -q").out.ends_with("2 meshes: 2 off\n"));
+    place.refused("search . ring.off", &["this is a folder", "index build"]);
 
     let json = place.json("info ring.off broken.ply");
     let meshes = json["meshes"].as_array().unwrap();

@@ -68,8 +68,12 @@ pub struct MeshReport {
     pub max_edge_length: f64,
     /// Sum of the areas of all faces but duplicates, in squared mesh units.
     pub area: f64,
-    /// Diagonal of the axis-aligned bounding box of all vertices, in mesh units.
+    /// Lengths of the sides of the axis-aligned bounding box of all vertices, in mesh units.
+    pub size: [f64; 3],
+    /// Its diagonal.
     pub bounding_box_diagonal: f64,
+    /// What the faces enclose, in cubed mesh units, if they close it and are oriented consistently.
+    pub volume: Option<f64>,
 }
 
 impl MeshReport {
@@ -135,6 +139,7 @@ pub fn validate(mesh: &TriMesh) -> MeshReport {
         flipped_faces: orientation.turned.iter().filter(|&&t| t).count(),
         orientable: orientation.orientable.iter().all(|&o| o),
         euler_characteristic: n_used as i64 - topology.n_edges() as i64 + n_faces as i64,
+        size: mesh.bounds().map_or([0.0; 3], |[lo, hi]| (hi - lo).into()),
         bounding_box_diagonal: mesh.bounds().map_or(0.0, |[lo, hi]| ((hi - lo) / unit).norm() * unit),
         ..MeshReport::default()
     };
@@ -142,8 +147,11 @@ pub fn validate(mesh: &TriMesh) -> MeshReport {
     report.add_edges(&mesh.positions, unit, &topology);
     report.add_fans(&topology);
     let n_defects = report.n_boundary_edges + report.non_manifold_edges + report.non_manifold_vertices;
-    let is_closed_manifold = report.n_components == 1 && report.orientable && n_defects == 0;
-    report.genus = is_closed_manifold.then_some((2 - report.euler_characteristic).unsigned_abs() / 2);
+    let is_closed = report.orientable && n_defects == 0;
+    let encloses = is_closed && report.inconsistent_edges == 0 && n_faces == mesh.n_faces() && n_faces > 0;
+    report.volume = encloses.then(|| mesh.signed_volume().abs()).filter(|volume| volume.is_finite());
+    report.genus = (is_closed && report.n_components == 1)
+        .then_some((2 - report.euler_characteristic).unsigned_abs() / 2);
     report
 }
 
@@ -208,6 +216,12 @@ mod tests {
         assert_eq!((report.area, report.obtuse_share), (24.0, 0.0));
         assert_eq!((report.min_edge_length, report.max_edge_length), (2.0, 8f64.sqrt()));
         assert!((report.bounding_box_diagonal - 52f64.sqrt()).abs() < 1e-12);
+        assert_eq!((report.size, report.volume), ([6.0, 4.0, 0.0], None));
+        let mut cube = shapes::cube(1);
+        let report = validate(&cube);
+        assert!(report.size == [1.0; 3] && (report.volume.unwrap() - 1.0).abs() < 1e-12, "{report:?}");
+        cube.faces[0].swap(0, 1);
+        assert_eq!(validate(&cube).volume, None);
         assert_eq!(validate(&shapes::sheared_grid(4, 3, 1.0, 1.5)).obtuse_share, 1.0);
     }
 
