@@ -86,7 +86,8 @@ impl Database {
     pub(crate) fn read(path: &Path) -> Result<Self, IndexError> {
         let about = std::fs::metadata(path).map_err(IndexError::io("read", path))?;
         if about.is_dir() {
-            return Err(IndexError::io("read", path)(ErrorKind::IsADirectory.into()));
+            let folder = "this is a folder; build an index of it (`index build`) and give that";
+            return Err(IndexError::io("read", path)(std::io::Error::other(folder)));
         }
         Self::expect_own_log(path)?;
         // Readers of a write-ahead log share memory in files beside it, and the last of them tidies up.
