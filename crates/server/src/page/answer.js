@@ -106,11 +106,12 @@ export class Answer {
 
   // A result: its name and folder, its class, and how it is related to the query.
   card(result, common) {
-    const { rank, id, label, distance } = result;
+    const { rank, id, label, path, distance } = result;
     const folder = folderOf(id).slice(common.length).replace(/^\//, '');
     const lines = [];
     if (folder && folder !== label) lines.push(['more', folder]);
     if (label) lines.push(['more', label]);
+    lines.push(['more', path.slice(path.lastIndexOf('.'))]);
     if (result.part_share !== undefined) lines.push(['more', `the query is ${percent(result.part_share)} of it`]);
     lines.push(['kind', '']);
     const item = tile(id, label, lines, '', this.picked);
@@ -120,12 +121,12 @@ export class Answer {
   }
 
   // Says on a card how a shape is related; all about it is shown on hover.
-  tell(card, { id, relation, distance, ...order }) {
+  tell(card, { path, relation, distance, ...order }) {
     card.dataset.kind = relation.kind;
     // Without its mesh, a part is only known to differ from wholes.
     const isKnown = order.part_distance === undefined || relation.because.basis !== 'descriptions';
     card.querySelector('.kind').textContent = isKnown ? relation.brief : '';
-    const lines = [id];
+    const lines = [path];
     if (isKnown) lines.push(`${relation.text} (${percent(relation.confidence)} certain)`, `distance ${number(distance)}`);
     // What another order follows.
     if (order.rank_distance !== undefined) lines.push(`rank distance ${number(order.rank_distance)}`);
