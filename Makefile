@@ -37,10 +37,10 @@ notebooks: ## Run the notebooks of the Python package and store them with their 
 lint-packaging: ## Check workflows, container, citation, recipe and metadata with linters of PyPI and npm
 	packaging/lint.sh
 
-test-all: ## Run all tests with those that are slow and rare, and build the guide: attacks, exhaustive damage, full-size maps, notebooks, 200 kills of writing commands
+test-all: ## Run all tests with those that are slow and rare, and build the guide and the reference: attacks, exhaustive damage, full-size maps, notebooks, 200 kills of writing commands
 	CANONFORM_KILLS=200 $(CARGO) test --workspace --lib --bins --tests --locked --no-fail-fast -- --include-ignored
 	crates/py/test.sh -m ""
-	$(MAKE) guide
+	$(MAKE) reference guide
 
 lint: ## Check formatting, clippy and rustdoc; warnings are errors
 	$(CARGO) fmt --all --check
