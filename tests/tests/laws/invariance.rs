@@ -26,6 +26,9 @@ const SAME_SHAPE: f64 = 1.0;
 /// The same with 1,000 vertices. One class is certain up to 3.04.
 const SAME_COARSE_SHAPE: f64 = 2.45;
 
+/// Changes that keep the surface.
+const SAME: [Damage; 4] = [Damage::Subdivide(1), Damage::Move, Damage::Scale, Damage::Mirror];
+
 fn described(mesh: &TriMesh) -> Shape {
     describe(&surface(mesh), &DescribeOptions::default(), &()).unwrap()
 }
@@ -79,10 +82,9 @@ fn check_body(mesh: &TriMesh, body: &str, damages: &[Damage], most: f64, most_of
 
 #[test]
 fn the_same_surface_has_the_same_signatures() {
-    let same = [Damage::Subdivide(1), Damage::Move, Damage::Scale, Damage::Mirror];
-    assert!(same.iter().all(|damage| damage.keeps_surface()));
+    assert!(SAME.iter().all(|damage| damage.keeps_surface()));
     for n_vertices in [250, 1000] {
-        check(n_vertices, &same, SAME_SURFACE, SAME_SIGNATURE);
+        check(n_vertices, &SAME, SAME_SURFACE, SAME_SIGNATURE);
     }
 }
 
@@ -111,8 +113,7 @@ fn small_holes_leave_the_same_shape() {
 #[test]
 #[ignore = "slow: make test-all"]
 fn finer_meshes_are_the_same_shape_when_damaged() {
-    let same = [Damage::Subdivide(1), Damage::Move, Damage::Scale, Damage::Mirror];
-    check(4000, &same, SAME_SURFACE, SAME_SIGNATURE);
+    check(4000, &SAME, SAME_SURFACE, SAME_SIGNATURE);
     check(250, &[Damage::Subdivide(3)], SAME_SURFACE, SAME_SIGNATURE);
     check(4000, &[Damage::Noise(0.002), Damage::Holes(0.01)], SAME_SHAPE, f64::INFINITY);
     check(16_000, &[Damage::Noise(0.002), Damage::Noise(0.005)], SAME_SHAPE, f64::INFINITY);

@@ -144,10 +144,11 @@ pub(super) fn predicted(
     let threshold = threshold.map(|threshold| threshold.distance);
     let labels = Labels::new(&results.iter().map(|result| &result.label).collect::<Vec<_>>());
     let label = |class: usize| labels.classes()[class].clone();
+    // A surface of a few faces fits at distance 0.
+    let part_limit = as_part.map(|nearest| (CLEAR_FIT * nearest).min(class_below).max(f64::MIN_POSITIVE));
     let reach = |result: &Hit| {
-        if let Some(distance) = part_distance(result) {
-            let nearest = as_part.map_or(f64::INFINITY, |nearest| CLEAR_FIT * nearest);
-            return distance / nearest.min(class_below).max(f64::MIN_POSITIVE);
+        if let Some((distance, limit)) = part_distance(result).zip(part_limit) {
+            return distance / limit;
         }
         let combined = result.relation.evidence.distance.combined / class_below;
         threshold.map_or(combined, |threshold| combined.min(result.fused / threshold))

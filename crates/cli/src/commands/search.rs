@@ -199,7 +199,7 @@ fn class(predicted: &Prediction) -> String {
 
 fn table(report: &Answer, details: bool) -> comfy_table::Table {
     // Without its mesh, a part is only known to differ from wholes.
-    let is_related = details || report.rank_by != SearchRank::Part;
+    let n_columns = if details || report.rank_by != SearchRank::Part { usize::MAX } else { 5 };
     let has_classes = report.results.iter().any(|result| !result.label.is_empty());
     let mut head = vec!["", "shape", "class", "distance", "relation"];
     match report.rank_by {
@@ -208,9 +208,7 @@ fn table(report: &Answer, details: bool) -> comfy_table::Table {
         SearchRank::Part => drop(head.splice(3..3, ["part distance", "share"])),
         SearchRank::Forms => head.insert(3, "form distance"),
     }
-    if !is_related {
-        head.truncate(5);
-    }
+    head.truncate(n_columns);
     if !has_classes {
         head.remove(2);
     }
@@ -235,7 +233,7 @@ fn table(report: &Answer, details: bool) -> comfy_table::Table {
             }
             Some(OrderedBy::Forms { form_distance }) => row.insert(3, format!("{form_distance:.4}")),
         }
-        row.truncate(if is_related { row.len() } else { 5 });
+        row.truncate(n_columns);
         if !has_classes {
             row.remove(2);
         }

@@ -2,7 +2,7 @@
 
 mod fans;
 
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 use serde::Serialize;
 use surface::{EdgeId, Topology, VertexId, components_of_faces};
 
@@ -114,6 +114,7 @@ impl MeshReport {
 pub fn validate(mesh: &TriMesh) -> MeshReport {
     let n_vertices = mesh.n_vertices();
     let unit = mesh.unit();
+    let size = mesh.bounds().map_or(Vector3::zeros(), |[low, high]| high - low);
     let mut faces = mesh.faces.clone();
     let degenerate_faces = remove_degenerate(&mut faces);
     let duplicate_faces = remove_duplicates(&mut faces);
@@ -139,8 +140,8 @@ pub fn validate(mesh: &TriMesh) -> MeshReport {
         flipped_faces: orientation.turned.iter().filter(|&&t| t).count(),
         orientable: orientation.orientable.iter().all(|&o| o),
         euler_characteristic: n_used as i64 - topology.n_edges() as i64 + n_faces as i64,
-        size: mesh.bounds().map_or([0.0; 3], |[lo, hi]| (hi - lo).into()),
-        bounding_box_diagonal: mesh.bounds().map_or(0.0, |[lo, hi]| ((hi - lo) / unit).norm() * unit),
+        size: size.into(),
+        bounding_box_diagonal: (size / unit).norm() * unit,
         ..MeshReport::default()
     };
     report.add_faces(&mesh.positions, unit, topology.faces());
