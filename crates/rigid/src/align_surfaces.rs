@@ -14,6 +14,11 @@ const MAX_DEVIATION: f64 = 0.05;
 /// A limit of effort.
 const FINE: Effort = Effort { samples: 400, steps: 30, towards: Towards::Planes };
 
+/// Bodies are not aligned further if points of them, at unit rms radius, stay farther apart than this, unless they may be turned about
+/// their axes: twice what copies of built-in shapes with 1,000 to 10,000 vertices leave
+/// (`cargo test -p tests --test laws matches`).
+const FAR: f64 = 0.1;
+
 /// Turned starts are tried unless the surfaces are nearer than this, relative to the size. A safety limit: other bodies are at
 /// least 0.0045 apart (`cargo test -p tests --test laws matches`).
 const CLOSE: f64 = 0.003;
@@ -32,7 +37,7 @@ const RANKED: usize = 4;
 /// unless the best is better by it. A safety limit: it saves time.
 const REFINE_WITHIN: f64 = 1.6;
 
-/// Aligns two surfaces in space; `None` if their extents differ too much to be one surface. The map takes the first surface, at
+/// Aligns two surfaces in space; `None` if they are too far apart to be one surface, by their extents or by a few points. The map takes the first surface, at
 /// unit area, onto the second, at unit area: with a reflection only if the surfaces fit decisively better.
 #[must_use]
 pub fn align_surfaces(a: &RigidSurface, b: &RigidSurface) -> Option<Alignment> {
@@ -43,6 +48,10 @@ pub fn align_surfaces(a: &RigidSurface, b: &RigidSurface) -> Option<Alignment> {
     let start = |by| Some(align_points(a.points()?, b.points()?, by));
     let [proper, reflected] = [start(Reflections::Forbid)?, start(Reflections::Require)?];
     let turnable = equal_axes(a.axis_std(), b.axis_std()) != [false; 2];
+    let are_bodies = !(a.is_mechanical() && b.is_mechanical());
+    if are_bodies && !turnable && f64::min(proper.gap.rms, reflected.gap.rms) > FAR {
+        return None;
+    }
     let found = |mine: Alignment, other: Alignment| {
         let is_worth = turnable || mine.gap.rms < REFINE_WITHIN * other.gap.rms;
         if is_worth { best(a, b, &mine.map) } else { None }

@@ -12,7 +12,7 @@ fn invariants(mesh: &TriMesh) -> SurfaceInvariants {
 fn difference(a: &SurfaceInvariants, b: &SurfaceInvariants) -> [f64; 2] {
     let spreads = a.spreads.iter().zip(&b.spreads).map(|(x, y)| (x - y).abs());
     let volumes = a.closed.zip(b.closed).map(|((x, _), (y, _))| (x - y).abs());
-    let chords = [a, b].map(|part| part.chords.unwrap_or(f64::NAN));
+    let chords = [a, b].map(|part| part.chords);
     [spreads.chain(volumes).fold(0.0, f64::max), chords[0] + chords[1]]
 }
 

@@ -78,10 +78,19 @@ fn scores(shapes: &[(String, TriMesh)], variants: &[Variant]) -> BTreeMap<String
         .par_iter()
         .flat_map_iter(|(name, mesh)| {
             let own = geometry(mesh);
+            let invariants = own.invariants();
             variants.iter().map(move |(damages, kind, changes)| {
                 let changed = damages.iter().fold(mesh.clone(), |mesh, damage| damage.apply(&mesh, 7));
-                let found = related(&own, &geometry(&changed)).named(name, "the copy");
+                let changed = geometry(&changed);
+                let found = related(&own, &changed).named(name, "the copy");
                 let label = damages.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+                if kind.is_one_surface() {
+                    let of_copy = changed.invariants();
+                    assert!(
+                        invariants.may_be_copy_of(&of_copy),
+                        "{name}, {label}: {invariants:?}, {of_copy:?}"
+                    );
+                }
                 let is_right = found.kind == *kind && changes.iter().all(|change| found.has(*change));
                 (label, *kind, is_right, found)
             })

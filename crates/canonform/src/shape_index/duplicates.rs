@@ -104,6 +104,12 @@ impl Default for DuplicateOptions {
     }
 }
 
+impl DuplicateOptions {
+    fn asks_surfaces_only(&self) -> bool {
+        self.kinds.iter().all(|kind| kind.is_one_surface())
+    }
+}
+
 /// A file of a group.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DuplicateFile {
@@ -336,9 +342,8 @@ impl Candidate {
     /// Whether their meshes may be one.
     fn may_be(&self, other: &Self, options: &DuplicateOptions) -> bool {
         // Parts and variants have other invariants than what they are compared with.
-        let surfaces_only = options.kinds.iter().all(|kind| kind.is_one_surface());
         match (&self.invariants, &other.invariants) {
-            (Some(a), Some(b)) => !surfaces_only || a.may_be_copy_of(b),
+            (Some(a), Some(b)) => !options.asks_surfaces_only() || a.may_be_copy_of(b),
             _ => false,
         }
     }
@@ -539,7 +544,7 @@ fn groups(
         let relate = |other: &&ClusterShape<'_>| {
             budget.check()?;
             let may_be = keeper.candidate.may_be(other.candidate, options);
-            Ok(if may_be { related(keeper, other) } else { None })
+            Ok(if may_be { related(keeper, other, options) } else { None })
         };
         let relations = others.par_iter().map(relate).collect::<Result<Vec<_>, Error>>()?;
         n_compared += relations.iter().flatten().count();
@@ -592,7 +597,7 @@ impl Group<'_, '_> {
                 !relation.kind.is_one_geometry() && shape.files[0].vertices == other.files[0].vertices
             };
             left.retain(|(other, _)| {
-                let found = may_have(other).then(|| related(shape, other)).flatten();
+                let found = may_have(other).then(|| related(shape, other, options)).flatten();
                 let found = found.filter(|told| told.kind.is_one_geometry());
                 members.extend(found.iter().flat_map(|told| other.members(&shape.files[0].id, told)));
                 found.is_none()
@@ -605,7 +610,11 @@ impl Group<'_, '_> {
 }
 
 /// How a shape is related to a keeper; `None` if a mesh cannot be read.
-fn related(keeper: &ClusterShape<'_>, other: &ClusterShape<'_>) -> Option<Relation> {
+fn related(
+    keeper: &ClusterShape<'_>,
+    other: &ClusterShape<'_>,
+    options: &DuplicateOptions,
+) -> Option<Relation> {
     let contents = [keeper, other].map(|shape| Some(shape.candidate.files[0].content));
     let fused = keeper.candidate.distance(other.candidate);
     let distance = ShapeDistance { fused, combined: fused };
@@ -613,7 +622,10 @@ fn related(keeper: &ClusterShape<'_>, other: &ClusterShape<'_>) -> Option<Relati
         .named(&keeper.files[0].id, &other.files[0].id)
         .by_files(contents);
     let (a, b) = (keeper.geometry.as_ref()?, other.geometry.as_ref()?);
-    Some(by_distance.by_meshes([a, b]))
+    Some(match options.asks_surfaces_only() {
+        true => by_distance.by_surfaces([a, b]),
+        false => by_distance.by_meshes([a, b]),
+    })
 }
 
 /// Why a shape is kept.

@@ -1,12 +1,16 @@
 //! Numbers of a surface that tell cheaply that two surfaces are not one.
 
-use super::calibration::{ARCS, EXACT};
+use super::calibration::{ARCS, EXACT, MOST_NOISE};
 use super::geometry::MeshGeometry;
-use super::same_surface::{euler_characteristic_if_closed, rms_chord_error};
+use super::same_surface::{allowed_in_bodies, euler_characteristic_if_closed, rms_chord_error};
 
-/// Spreads of organic copies, at unit area, differ by less than this, by decimation, noise and holes. A safety limit: it saves
-/// time.
+/// Spreads of organic copies, as shares of the rms radius, differ by less than this, by decimation, noise and holes. A safety limit:
+/// it saves time.
 const MOST_OF_BODIES: f64 = 0.05;
+
+/// Spreads of closed bodies differ by less than this multiple of what copies may be apart, both as shares of the rms radius: each
+/// of the two by once of it at most (Minkowski), and as much again for the area that decimation takes from thin limbs.
+const SPREAD_BY_GAP: f64 = 4.0;
 
 /// What copies of one surface have in common, whatever their triangles, places and sizes.
 ///
@@ -26,8 +30,12 @@ pub struct SurfaceInvariants {
     pub spreads: [f64; 3],
     /// The enclosed volume at unit area, and the Euler characteristic; `None` for surfaces that are not closed.
     pub closed: Option<(f64, isize)>,
-    /// Root mean square of the error of flat triangles, at unit area; `None` unless the surface is mechanical.
-    pub chords: Option<f64>,
+    /// Root mean square of the error of flat triangles, at unit area.
+    pub chords: f64,
+    /// Whether it is a part of planes and cylinders, which does not bend.
+    pub is_mechanical: bool,
+    /// Whether vertices have noise that is independent of their neighbors'.
+    pub is_noisy: bool,
     /// How far vertices of a part are from its planes, root mean square, at unit area.
     pub noise: f64,
 }
@@ -36,15 +44,37 @@ impl SurfaceInvariants {
     /// Whether two surfaces may be one. If not, no alignment need be tried.
     #[must_use]
     pub fn may_be_copy_of(&self, other: &Self) -> bool {
-        let spread = self.spreads.iter().zip(&other.spreads).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
-        let (Some(a), Some(b)) = (self.chords, other.chords) else { return spread < MOST_OF_BODIES };
-        let flatness = if self.n_vertices == other.n_vertices { 0.0 } else { a + b };
+        let largest =
+            |a: [f64; 3], b: [f64; 3]| a.iter().zip(&b).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
+        if !(self.is_mechanical && other.is_mechanical) {
+            let [a, b] = [self, other].map(|one| one.spreads.map(|spread| spread / one.rms_radius()));
+            return largest(a, b) < self.most_of_bodies(other);
+        }
+        let flatness = if self.n_vertices == other.n_vertices { 0.0 } else { self.chords + other.chords };
         let most = EXACT + ARCS * flatness + self.noise + other.noise;
         let is_same_solid = match (self.closed, other.closed) {
             (Some((x, handles)), Some((y, others))) => handles == others && (x - y).abs() < most,
             _ => true,
         };
-        spread < most && is_same_solid
+        largest(self.spreads, other.spreads) < most && is_same_solid
+    }
+
+    fn rms_radius(&self) -> f64 {
+        self.spreads.iter().map(|x| x * x).sum::<f64>().sqrt()
+    }
+
+    /// How much the spreads of copies of a body may differ, as a share of the rms radius.
+    fn most_of_bodies(&self, other: &Self) -> f64 {
+        // A hole takes what was there from the spreads.
+        if self.closed.is_none() || other.closed.is_none() {
+            return MOST_OF_BODIES;
+        }
+        // Of the same faces, noise may be the only change.
+        let allowed = match self.n_vertices == other.n_vertices {
+            true => MOST_NOISE,
+            false => allowed_in_bodies(self.chords + other.chords, self.is_noisy || other.is_noisy),
+        };
+        MOST_OF_BODIES.min(SPREAD_BY_GAP * allowed / self.rms_radius().min(other.rms_radius()))
     }
 }
 
@@ -57,7 +87,9 @@ impl MeshGeometry {
             n_vertices: self.n_vertices(),
             spreads: self.surface.axis_std(),
             closed: euler_characteristic_if_closed(&self.mesh().topology()).map(volume),
-            chords: self.is_mechanical().then(|| rms_chord_error(self)),
+            chords: rms_chord_error(self),
+            is_mechanical: self.is_mechanical(),
+            is_noisy: self.is_noisy(),
             noise: self.noise().unwrap_or_default(),
         }
     }

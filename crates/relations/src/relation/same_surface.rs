@@ -26,13 +26,19 @@ pub(super) fn same_surface(aligned: &Alignment, meshes: [&MeshGeometry; 2], chan
 
 /// Organic surfaces: the root mean square decides, unless the largest distance is out of proportion.
 fn body_ratio(aligned: &Alignment, meshes: [&MeshGeometry; 2], change: Change) -> f64 {
-    let flatness = CHORDS * meshes.map(rms_chord_error).iter().sum::<f64>();
     let allowed = match change {
         Change::Noisy => MOST_NOISE,
-        _ if meshes.iter().any(|mesh| mesh.is_noisy()) => ALLOWED + NOISE + flatness,
-        _ => ALLOWED + flatness,
+        _ => allowed_in_bodies(
+            meshes.map(rms_chord_error).iter().sum(),
+            meshes.iter().any(|mesh| mesh.is_noisy()),
+        ),
     };
     aligned.gap.rms.max(aligned.gap.max / LARGEST) / allowed
+}
+
+/// How far copies of a body with other triangles may be apart, root mean square; `chords` is the error of flat triangles in both.
+pub(super) fn allowed_in_bodies(chords: f64, is_noisy: bool) -> f64 {
+    ALLOWED + CHORDS * chords + if is_noisy { NOISE } else { 0.0 }
 }
 
 /// Whether the faces between the same vertices make up one surface.
