@@ -5,7 +5,7 @@ OUT ?= out
 # For `make reproduce`: a folder of meshes with the classes of the paper. Default: the built-in dataset.
 DATASET ?=
 
-.PHONY: help setup build run test test-all test-python wheels reference notebooks lint-packaging lint bench bench-peers bench-nmds bench-preparation bench-search bench-capacity bench-shards bench-duplicates bench-maps bench-packages bench-eigsh fmt doc guide reproduce report paper plotly deny sbom fuzz fuzz-seeds package ci clean
+.PHONY: help setup build run test test-all test-python wheels reference notebooks lint-packaging lint bench bench-peers bench-nmds bench-preparation bench-search bench-capacity bench-duplicates bench-maps bench-packages fmt doc guide reproduce report paper plotly deny sbom fuzz fuzz-seeds package ci clean
 
 help: ## List these commands
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-17s %s\n", $$1, $$2}'
@@ -67,12 +67,6 @@ bench-preparation: ## Time the preparation of meshes and write its section of do
 	target/peers/bin/pip install --quiet numpy
 	target/peers/bin/python bench/preparation.py
 
-bench-eigsh: ## Compare eigenpairs with SciPy and write its section of docs/benchmarks.md (needs Python and test meshes)
-	$(CARGO) build --release --locked -p canonform-descriptors --example eigenpairs
-	test -x target/peers/bin/python || python3 -m venv target/peers
-	target/peers/bin/pip install --quiet numpy scipy
-	target/peers/bin/python bench/eigsh.py
-
 bench-maps: build ## Compare dense maps with pyFM and write its section of docs/benchmarks.md (needs Python and test meshes)
 	$(CARGO) build --release --locked -p canonform-datasets --example placed_shapes
 	test -x target/peers/bin/python || python3 -m venv target/peers
@@ -90,12 +84,6 @@ bench-capacity: build ## Measure what a shape costs, simulate ten million and wr
 	test -x target/peers/bin/python || python3 -m venv target/peers
 	target/peers/bin/pip install --quiet numpy
 	target/peers/bin/python bench/capacity.py
-
-bench-shards: ## Build and search tables of up to ten million vectors and write its section of docs/benchmarks.md (needs Python and 9 GB of disk; takes an hour)
-	$(CARGO) build --release --locked -p canonform-index --example vectors
-	test -x target/peers/bin/python || python3 -m venv target/peers
-	target/peers/bin/pip install --quiet './crates/py[dask,lance]' faiss-cpu
-	target/peers/bin/python bench/shards.py
 
 bench-duplicates: build ## Time the search for duplicates among 1,000 generated shapes and write its section of docs/benchmarks.md (needs Python)
 	test -x target/peers/bin/python || python3 -m venv target/peers

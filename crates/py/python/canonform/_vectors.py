@@ -31,7 +31,7 @@ LEAST = 50_000
 """Up to so many vectors all are compared, as in an index."""
 
 ALONE = 20_000_000
-"""Up to so many vectors are searched by the process that asks: a task of a cluster takes longer (`make bench-shards`)."""
+"""Up to so many vectors are searched by the process that asks: a task of a cluster takes longer."""
 
 _WIDTH = 8
 """Vectors are padded to a multiple of so many numbers, which Lance asks for."""
