@@ -82,15 +82,16 @@ impl MeshGeometry {
     /// Its invariants.
     #[must_use]
     pub fn invariants(&self) -> SurfaceInvariants {
+        let is_mechanical = self.is_mechanical();
         let volume = |euler| (self.mesh().signed_volume().abs(), euler);
         SurfaceInvariants {
             n_vertices: self.n_vertices(),
             spreads: self.surface.axis_std(),
             closed: euler_characteristic_if_closed(&self.mesh().topology()).map(volume),
             chords: rms_chord_error(self),
-            is_mechanical: self.is_mechanical(),
+            is_mechanical,
             is_noisy: self.is_noisy(),
-            noise: self.noise().unwrap_or_default(),
+            noise: if is_mechanical { self.noise().unwrap_or_default() } else { 0.0 },
         }
     }
 }
