@@ -32,19 +32,16 @@ pub enum Family {
 
 impl Family {
     /// The families of the dataset, in its order.
-    #[must_use]
     pub fn all() -> [Self; 3] {
         [Self::Cat, Self::Centaur, Self::David]
     }
 
     /// The class label: `cat`, `centaur` or `david`.
-    #[must_use]
     pub fn name(self) -> &'static str {
         self.entry().0
     }
 
     /// Number of shapes of the family in the dataset.
-    #[must_use]
     pub fn n_shapes(self) -> usize {
         self.entry().1
     }

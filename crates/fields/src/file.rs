@@ -133,7 +133,6 @@ impl DistanceField {
     }
 
     /// The content of its file.
-    #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let text = Head::of(self).text();
         let tables = self.metric.tables();

@@ -31,7 +31,6 @@ pub struct BreadthFirst {
 
 impl BreadthFirst {
     /// Prepares a surface. The solver keeps to the budget of the observer.
-    #[must_use]
     pub fn new(mesh: &IntrinsicMesh, observer: &dyn Observer) -> Self {
         let (graph, hop) = (EdgeGraph::of(mesh), mesh.mean_edge_length());
         Self { graph, hop, scratch: Pool::default(), budget: observer.budget() }

@@ -28,7 +28,6 @@ pub struct Dijkstra {
 
 impl Dijkstra {
     /// Prepares a surface. The solver keeps to the budget of the observer.
-    #[must_use]
     pub fn new(mesh: &IntrinsicMesh, observer: &dyn Observer) -> Self {
         Self { graph: EdgeGraph::of(mesh), scratch: Pool::default(), budget: observer.budget() }
     }

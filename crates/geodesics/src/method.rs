@@ -54,14 +54,12 @@ impl Default for Method {
 
 impl Method {
     /// All methods with their default options; the default method comes first.
-    #[must_use]
     pub fn all() -> [Self; 5] {
         let heat = Self::Heat(HeatOptions::default());
         [Self::default(), Self::Exact, heat, Self::Dijkstra, Self::BreadthFirst]
     }
 
     /// The name on the command line and in records.
-    #[must_use]
     pub fn name(self) -> &'static str {
         self.into()
     }

@@ -60,7 +60,6 @@ impl LengthUnit {
         [Self::Micron, Self::Millimeter, Self::Centimeter, Self::Inch, Self::Foot, Self::Meter];
 
     /// The name, as in a 3MF file.
-    #[must_use]
     pub fn name(self) -> &'static str {
         ["micron", "millimeter", "centimeter", "inch", "foot", "meter"][self as usize]
     }
@@ -120,7 +119,6 @@ impl Default for ReadLimits {
 
 impl ReadLimits {
     /// At most `max_vertices` vertices and four times as many faces, twice as many as a closed surface has.
-    #[must_use]
     pub fn of_vertices(max_vertices: u64) -> Self {
         let max_vertices = max_vertices.min(MAX_VERTICES);
         Self { max_vertices, max_faces: max_vertices.saturating_mul(4).min(MAX_FACES), ..Self::default() }

@@ -130,7 +130,6 @@ pub fn creature_body(
 }
 
 /// The names of the body plans, in the order of the families; they are the labels of the first ones.
-#[must_use]
 pub fn creature_plans() -> Vec<&'static str> {
     PLANS.iter().map(|plan| plan.name.as_str()).collect()
 }

@@ -103,7 +103,6 @@ impl<'a> PathTracer<'a> {
     ///
     /// # Panics
     /// If there is not one distance per vertex.
-    #[must_use]
     pub fn new(
         mesh: &'a IntrinsicMesh,
         sources: &'a [Source],

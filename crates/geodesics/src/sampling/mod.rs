@@ -90,7 +90,6 @@ impl Sampling {
     pub const ALL: [Self; 4] = [Self::Farthest, Self::Random, Self::MinVariance, Self::MaxVariance];
 
     /// The name on the command line and in records.
-    #[must_use]
     pub fn name(self) -> &'static str {
         self.into()
     }

@@ -164,7 +164,6 @@ impl Format {
     }
 
     /// The format with this extension, in upper or lower case, without a dot.
-    #[must_use]
     pub fn named(extension: &str) -> Option<&'static Self> {
         let extension = extension.to_ascii_lowercase();
         FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()))
@@ -179,7 +178,6 @@ impl Format {
     }
 
     /// Whether files of this format can be written with this content.
-    #[must_use]
     pub fn can_write(&self, content: Content) -> bool {
         match content {
             Content::Mesh => !self.write.is_empty(),
@@ -229,7 +227,6 @@ pub fn writable(content: Content) -> impl Iterator<Item = &'static str> {
 }
 
 /// Extensions as a phrase, such as `.npy, .csv or .ply`.
-#[must_use]
 pub fn or_list<'a>(extensions: impl IntoIterator<Item = &'a str>) -> String {
     let dotted: Vec<String> = extensions.into_iter().map(|extension| format!(".{extension}")).collect();
     match dotted.split_last() {
@@ -239,7 +236,6 @@ pub fn or_list<'a>(extensions: impl IntoIterator<Item = &'a str>) -> String {
 }
 
 /// The files of one mesh, as a phrase: `a .off, ... or .mat file, or a .vert with its .tri`.
-#[must_use]
 pub fn mesh_files() -> String {
     let (single, paired): (Vec<&Format>, Vec<&Format>) =
         FORMATS.iter().partition(|format| format.extensions.len() == 1);

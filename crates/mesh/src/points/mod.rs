@@ -57,7 +57,6 @@ pub struct PointsReport {
 
 impl PointsReport {
     /// One line for people.
-    #[must_use]
     pub fn summary(&self) -> String {
         let mut text = format!("{} points without faces joined by {} faces", self.n_points, self.n_faces);
         if self.neighbors > 0 {
