@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::ids::{CornerId, EdgeId, VertexId};
 use crate::topology::Topology;
@@ -46,7 +46,7 @@ impl From<IntrinsicMesh> for Cow<'_, IntrinsicMesh> {
 const BLOCK: usize = 4096;
 
 /// A straight connection of two vertices outside all faces, such as a bridge between two components.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Link {
     /// The two vertices that it joins.
     pub ends: [VertexId; 2],
