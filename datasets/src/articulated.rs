@@ -32,19 +32,16 @@ pub enum Family {
 
 impl Family {
     /// The families of the dataset, in its order.
-    #[must_use]
     pub fn all() -> [Self; 3] {
         [Self::Cat, Self::Centaur, Self::David]
     }
 
     /// The class label: `cat`, `centaur` or `david`.
-    #[must_use]
     pub fn name(self) -> &'static str {
         self.entry().0
     }
 
     /// Number of shapes of the family in the dataset.
-    #[must_use]
     pub fn n_shapes(self) -> usize {
         self.entry().1
     }
@@ -214,9 +211,6 @@ pub fn articulated_at_rest(
     rested(family, &family.model(), [body, pose], options, &observer.budget())
 }
 
-/// Poses that have streams of random numbers of their own for every body.
-pub(crate) const POSES_PER_BODY: usize = 1 << 20;
-
 fn shape(
     family: Family,
     model: &BodyModel,
@@ -229,32 +223,53 @@ fn shape(
 fn rested(
     family: Family,
     model: &BodyModel,
+    numbers: [usize; 2],
+    options: &ArticulatedOptions,
+    budget: &Budget,
+) -> Result<RestedShape, DatasetError> {
+    let stream = |number, purpose| match purpose {
+        // Bodies do not depend on the seed.
+        Purpose::Build => Stream::new(numbers[0] as u64, family as usize, 0, purpose),
+        _ => Stream::new(options.seed, family as usize, number, purpose),
+    };
+    bent(model, family.name(), numbers, options, stream, budget)
+}
+
+/// A body of a model, 0 for its own, in a pose. A stream of random numbers has a number and a purpose.
+pub(crate) fn bent(
+    model: &BodyModel,
+    label: &str,
     [body, pose]: [usize; 2],
     options: &ArticulatedOptions,
+    stream: impl Fn(usize, Purpose) -> Stream,
     budget: &Budget,
 ) -> Result<RestedShape, DatasetError> {
     let ArticulatedOptions { seed, n_vertices } = *options;
     let name = match body {
-        0 => format!("{}{pose}", family.name()),
-        _ => format!("{}-body{body}-pose{pose}", family.name()),
+        0 => format!("{label}{pose}"),
+        _ => format!("{label}-body{body}-pose{pose}"),
     };
-    let stream = |purpose| Stream::new(seed, family as usize, body * POSES_PER_BODY + pose, purpose);
-    let surface = rest_surface(model, n_vertices, &mut stream(Purpose::Lattice), budget)?
+    let of_pose = |purpose| stream(body * POSES_PER_BODY + pose, purpose);
+    let surface = rest_surface(model, n_vertices, &mut of_pose(Purpose::Lattice), budget)?
         .ok_or_else(|| DatasetError::NoSurface { shape: name.clone(), n_vertices, seed })?;
-    let mut posed = posed_skeleton(model, pose, &mut stream(Purpose::Pose));
+    let mut posed = posed_skeleton(model, pose, &mut of_pose(Purpose::Pose));
     if body > 0 {
-        let mut proportions = Stream::new(body as u64, family as usize, 0, Purpose::Build);
+        let mut proportions = stream(body * POSES_PER_BODY, Purpose::Build);
         posed = posed.built(&Build::random(&model.skeleton, &mut proportions));
     }
     let positions = posed_positions(&surface, &posed, scale(model));
-    let numbered = |positions: &[Point3<f64>]| shuffled(&surface, positions, &mut stream(Purpose::Numbering));
+    let numbered =
+        |positions: &[Point3<f64>]| shuffled(&surface, positions, &mut of_pose(Purpose::Numbering));
     let at_rest: Vec<_> = surface.positions.iter().map(|p| p * scale(model)).collect();
-    let shape = LabeledShape { name, label: family.name().to_owned(), mesh: numbered(&positions) };
+    let shape = LabeledShape { name, label: label.to_owned(), mesh: numbered(&positions) };
     Ok(RestedShape { shape, rest: numbered(&at_rest) })
 }
 
+/// Poses that have streams of random numbers of their own for every body.
+const POSES_PER_BODY: usize = 1 << 20;
+
 /// From body units to the units of the dataset.
-pub(crate) fn scale(model: &BodyModel) -> f64 {
+fn scale(model: &BodyModel) -> f64 {
     (AREA / model.area).sqrt()
 }
 
@@ -263,11 +278,7 @@ const N_DRAWS: usize = 12;
 
 /// The skeleton in a random variation of a typical pose without intersecting limbs; number 0 is exactly the
 /// rest pose.
-pub(crate) fn posed_skeleton<'a>(
-    model: &'a BodyModel,
-    pose: usize,
-    stream: &mut Stream,
-) -> PosedSkeleton<'a> {
+fn posed_skeleton<'a>(model: &'a BodyModel, pose: usize, stream: &mut Stream) -> PosedSkeleton<'a> {
     let typical = &model.poses[pose % model.poses.len()];
     if pose == 0 {
         return PosedSkeleton::new(&model.skeleton, typical);

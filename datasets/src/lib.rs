@@ -47,7 +47,7 @@ pub use articulated::{
     ArticulatedOptions, Family, LabeledShape, RestedShape, articulated, articulated_at_rest,
     articulated_body, articulated_shape,
 };
-pub use creature::{CreatureOptions, creature, creature_body, creature_family, creature_plans, creatures};
+pub use creature::{CreatureOptions, creature_body, creature_family, creature_plans, creatures};
 pub use damage::{Damage, DamageKind, WeldPair};
 pub use error::DatasetError;
 pub use parts::{Diagonals, MechanicalPart, PartFamily, PartMesh, mechanical_parts};

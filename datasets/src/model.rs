@@ -27,49 +27,17 @@ pub(crate) struct BodyModel {
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 struct BodyDescription {
-    /// The file whose parts and chains come first.
-    extends: Option<String>,
     area: f64,
     spacing: f64,
-    /// The angle (degrees) about the y axis by which the topmost joints of legs turn in a pose.
-    spread: f64,
-    /// Where the upper half of a man is added: behind the first part, and behind the nodes of the first chain.
-    man: Option<ManAt>,
-    /// Coordinates in which some of the parts are given.
-    frames: HashMap<String, LocalFrame>,
     parts: Vec<PartData>,
     chains: Vec<ChainData>,
     poses: Vec<PoseData>,
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ManAt {
-    offset: [f64; 3],
-    /// Factor of the length of edges.
-    grain: f64,
-}
-
-/// Coordinates of its own: an origin, axes, and a factor of all lengths.
-#[derive(Debug, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-struct LocalFrame {
-    origin: [f64; 3],
-    axes: [[f64; 3]; 3],
-    scale: f64,
-}
-
-impl Default for LocalFrame {
-    fn default() -> Self {
-        Self { origin: [0.0; 3], axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], scale: 1.0 }
-    }
 }
 
 /// Blobs that belong together; see [`BodyPart`].
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct PartData {
-    frame: Option<String>,
     #[serde(default)]
     carved: bool,
     #[serde(default)]
@@ -126,21 +94,12 @@ struct JointData {
 #[serde(deny_unknown_fields)]
 struct PoseData {
     root: Option<Angles>,
-    /// By the name of a chain, the angles that flex its joints from the trunk down, on the left and on the right.
+    /// By the name of a chain, the angles of its joints from the trunk down, on the left and perhaps on the right.
     #[serde(default)]
-    legs: BTreeMap<String, [Vec<f64>; 2]>,
-    tail: Option<TailData>,
+    chains: BTreeMap<String, Vec<Vec<Angles>>>,
     /// By the name of a joint.
     #[serde(default)]
     turns: BTreeMap<String, BothSides>,
-}
-
-/// How a tail is curled, from root to tip.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct TailData {
-    up: Vec<f64>,
-    left: Vec<f64>,
 }
 
 #[derive(Debug, Clone, Copy, Deserialize)]
@@ -173,10 +132,10 @@ impl BodyModel {
     /// # Panics
     /// If the text is no description: it is one of ours, which tests read.
     pub(crate) fn read(text: &str) -> Self {
-        let all = BodyDescription::whole(text);
+        let all: BodyDescription = toml::from_str(text).unwrap_or_else(|fault| panic!("a body: {fault}"));
         let body = ImplicitBody::new(all.parts.iter().map(PartData::part).collect());
         let (skeleton, names) = all.skeleton();
-        let poses = all.poses.iter().map(|pose| pose.pose(&skeleton, &names, all.spread)).collect();
+        let poses = all.poses.iter().map(|pose| pose.pose(&skeleton, &names)).collect();
         Self { body, skeleton, poses, genus: 0, area: all.area, spacing: all.spacing }
     }
 }
@@ -189,52 +148,6 @@ struct JointNames<'a> {
 }
 
 impl BodyDescription {
-    /// A file with all points in the coordinates of the body.
-    fn read(text: &str) -> Self {
-        let mut found: Self = toml::from_str(text).unwrap_or_else(|fault| panic!("a body: {fault}"));
-        for part in &mut found.parts {
-            if let Some(frame) = part.frame.take() {
-                part.place(&found.frames[&frame]);
-            }
-        }
-        found
-    }
-
-    /// A file with the body that it extends and the upper half of a man, if it says so.
-    fn whole(text: &str) -> Self {
-        let mut found = Self::read(text);
-        if let Some(name) = found.extends.take() {
-            assert_eq!(name, "david", "the only body that others extend");
-            let mut base = Self::whole(include_str!("../bodies/david.toml"));
-            base.parts.append(&mut found.parts);
-            base.chains.append(&mut found.chains);
-            (found.parts, found.chains) = (base.parts, base.chains);
-        }
-        let Some(ManAt { offset, grain }) = found.man.take() else { return found };
-        let mut man = Self::read(include_str!("../bodies/man.toml"));
-        let shift = |at: &mut [f64]| at.iter_mut().zip(offset).for_each(|(x, by)| *x += by);
-        man.parts
-            .iter_mut()
-            .flat_map(|part| &mut part.blobs)
-            .flat_map(|blob| &mut blob.axis)
-            .for_each(|p| shift(p));
-        for node in man.chains.iter_mut().flat_map(|chain| &mut chain.nodes) {
-            shift(node);
-            node[4] *= grain;
-        }
-        found.parts.splice(1..1, man.parts);
-        let first = found.chains[0].nodes.len();
-        let mut limbs = man.chains.split_off(1);
-        limbs.iter_mut().for_each(|limb| limb.node += first);
-        for mut spine in man.chains {
-            spine.joints.iter_mut().for_each(|joint| joint.at += first);
-            found.chains[0].nodes.append(&mut spine.nodes);
-            found.chains[0].joints.append(&mut spine.joints);
-        }
-        found.chains.splice(1..1, limbs);
-        found
-    }
-
     fn skeleton(&self) -> (Skeleton, JointNames<'_>) {
         let (mut skeleton, mut names) = (Skeleton::default(), JointNames::default());
         for data in &self.chains {
@@ -261,19 +174,6 @@ impl BodyDescription {
 }
 
 impl PartData {
-    /// Changes its points from the coordinates of a frame to those of the body.
-    fn place(&mut self, LocalFrame { origin, axes, scale }: &LocalFrame) {
-        self.blend *= scale;
-        for blob in &mut self.blobs {
-            blob.blend *= scale;
-            for [x, y, z, radius] in &mut blob.axis {
-                let given = [*x, *y, *z];
-                let along = |i: usize| (0..3).fold(origin[i], |sum, k| sum + given[k] * scale * axes[k][i]);
-                ([*x, *y, *z], *radius) = ([0, 1, 2].map(along), *radius * scale);
-            }
-        }
-    }
-
     fn part(&self) -> BodyPart {
         let blobs = self.blobs.iter().flat_map(BlobData::blobs).collect();
         let part = if self.carved { BodyPart::carved(blobs) } else { BodyPart::added(blobs) };
@@ -300,20 +200,13 @@ impl JointData {
 }
 
 impl PoseData {
-    fn pose(&self, skeleton: &Skeleton, names: &JointNames<'_>, spread: f64) -> Pose {
+    fn pose(&self, skeleton: &Skeleton, names: &JointNames<'_>) -> Pose {
         let mut set = Vec::new();
-        for (name, sides) in &self.legs {
+        for (name, sides) in &self.chains {
             for (&chain, angles) in names.chains[name.as_str()].iter().zip(sides) {
-                set.extend(angles.iter().enumerate().map(|(joint, &x)| {
-                    let y = if joint == 0 { spread } else { 0.0 };
-                    (JointId { chain, joint }, turn(x, y, 0.0))
-                }));
+                let joints = angles.iter().enumerate();
+                set.extend(joints.map(|(joint, angles)| (JointId { chain, joint }, angles.turn())));
             }
-        }
-        if let Some(TailData { up, left }) = &self.tail {
-            let chain = names.chains["tail"][0];
-            let turns = up.iter().zip(left).map(|(&up, &left)| turn(up, 0.0, -left));
-            set.extend(turns.enumerate().map(|(joint, turn)| (JointId { chain, joint }, turn)));
         }
         for (name, sides) in &self.turns {
             let turns = match *sides {
@@ -336,16 +229,5 @@ mod tests {
     #[should_panic(expected = "unknown field `feathers`")]
     fn unknown_keys_are_errors() {
         let _ = BodyModel::read("area = 1.0\nfeathers = 2");
-    }
-
-    #[test]
-    fn a_frame_moves_and_scales_a_part() {
-        let text = "[frames.a]\nscale = 2.0\norigin = [1.0, -1.0, 0.5]\n[[parts]]\nframe = 'a'\nblend = 1.0\n\
-            blobs = [{ axis = [[1.0, 2.0, 3.0, 1.0], [2.0, 2.0, 5.0, 0.5]], blend = 0.3 }]";
-        let body = |text: &str| ImplicitBody::whole(vec![BodyDescription::read(text).parts[0].part()]);
-        let (moved, body) = (body(text), body(&text.replace("frame = 'a'", "")));
-        let p = nalgebra::Vector3::new(0.3, 0.1, 2.0);
-        let q = p * 2.0 + nalgebra::Vector3::new(1.0, -1.0, 0.5);
-        assert!((moved.value(q.into()) - 2.0 * body.value(p.into())).abs() < 1e-12);
     }
 }

@@ -31,7 +31,6 @@ pub struct ScannedPoint {
 ///
 /// # Panics
 /// If the mesh has no area.
-#[must_use]
 pub fn scan(mesh: &TriMesh, n_points: usize, deviation: f64, seed: u64) -> Vec<ScannedPoint> {
     let mut stream = Stream::new(seed, 0, 0, Purpose::Scan);
     let mut covered = 0.0;

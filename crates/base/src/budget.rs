@@ -73,7 +73,6 @@ pub enum Exceeded {
 
 impl Budget {
     /// No limits; only [`cancel`](Self::cancel) ends a computation.
-    #[must_use]
     pub fn unlimited() -> Self {
         Self::default()
     }
@@ -92,7 +91,6 @@ impl Budget {
     }
 
     /// The limit on memory in bytes, if there is one.
-    #[must_use]
     pub fn memory(&self) -> Option<usize> {
         self.memory
     }
@@ -104,7 +102,6 @@ impl Budget {
     }
 
     /// The folder for temporary files; without one, everything has to fit into memory.
-    #[must_use]
     pub fn spill(&self) -> Option<&Path> {
         self.spill.as_deref()
     }
@@ -168,7 +165,6 @@ impl Budget {
     }
 
     /// Checks this budget once in a while.
-    #[must_use]
     pub fn meter(&self) -> Meter<'_> {
         Meter { budget: self, left: INTERVAL }
     }

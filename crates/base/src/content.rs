@@ -15,7 +15,6 @@ pub struct ContentHash([u8; 32]);
 
 impl ContentHash {
     /// Hashes several pieces of bytes in order, including where each of them ends.
-    #[must_use]
     pub fn of<B: AsRef<[u8]>>(pieces: &[B]) -> Self {
         let mut hasher = ContentHasher::default();
         pieces.iter().for_each(|piece| hasher.add(piece.as_ref()));
@@ -23,7 +22,6 @@ impl ContentHash {
     }
 
     /// Its first 64 bits.
-    #[must_use]
     pub fn start(&self) -> u64 {
         self.0.iter().take(8).fold(0, |bits, byte| bits << 8 | u64::from(*byte))
     }
@@ -61,7 +59,6 @@ impl ContentHasher {
     }
 
     /// The hash of all pieces.
-    #[must_use]
     pub fn finish(self) -> ContentHash {
         ContentHash(self.0.finalize().into())
     }

@@ -16,19 +16,16 @@ fn is_code(c: char) -> bool {
 /// assert_eq!(canonform_base::one_line("\u{1b}[2Jcat\n.off"), "\\u{1b}[2Jcat\\n.off");
 /// assert_eq!(canonform_base::one_line("çat 1"), "çat 1");
 /// ```
-#[must_use]
 pub fn one_line(text: &str) -> Cow<'_, str> {
     escaped(text, is_code, |c| c.escape_default().to_string())
 }
 
 /// As [`one_line`], but line ends and tabs stay, in text of our own whose names are escaped.
-#[must_use]
 pub fn printable(text: &str) -> Cow<'_, str> {
     escaped(text, |c| is_code(c) && c != '\n' && c != '\t', |c| c.escape_default().to_string())
 }
 
 /// JSON that says the same without such characters.
-#[must_use]
 pub fn printable_json(text: &str) -> Cow<'_, str> {
     escaped(text, is_code, |c| format!("\\u{:04x}", u32::from(c)))
 }

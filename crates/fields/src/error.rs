@@ -8,8 +8,6 @@ use geodesics::GeodesicError;
 use linalg::LinalgError;
 use nmds::NmdsError;
 
-use crate::fault::FieldFault;
-
 /// A field that cannot be built, read or asked.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -37,4 +35,24 @@ pub enum FieldError {
     /// A limit on time or memory, or a cancellation.
     #[error(transparent)]
     Exceeded(#[from] Exceeded),
+}
+
+/// Why a file is not a distance field that this version can read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FieldFault {
+    /// It begins like no distance field.
+    #[error("this is not a distance field")]
+    NotAField,
+    /// Another version of the program wrote it.
+    #[error("the distance field has format {found}, but this version reads format {known}")]
+    OtherVersion {
+        /// The format of the file.
+        found: u32,
+        /// The format that this version reads.
+        known: u32,
+    },
+    /// Its content does not match its checksum, or contradicts itself.
+    #[error("the distance field is damaged: {0}")]
+    Damaged(&'static str),
 }

@@ -1,12 +1,11 @@
 //! All pairs of distances in little memory, with bounds.
 //!
-//! `distance_field` (what a field holds), `metric` (what landmarks say about a pair), `build` (from a surface), `query` (pairs, rows, nearest vertices), `file` (the
-//! format) and `fault` (what is wrong with a file).
+//! `distance_field` (what a field holds), `metric` (what landmarks say about a pair), `build` (from a surface), `query` (pairs, rows,
+//! nearest vertices) and `file` (the format).
 
 mod build;
 mod distance_field;
 mod error;
-mod fault;
 mod file;
 mod metric;
 mod query;
@@ -15,6 +14,5 @@ mod tests;
 
 pub use build::FieldOptions;
 pub use distance_field::{DistanceField, FieldBounds, FieldFacts};
-pub use error::FieldError;
-pub use fault::FieldFault;
+pub use error::{FieldError, FieldFault};
 pub use query::{Finish, PairDistance, PairKind};

@@ -40,7 +40,7 @@ impl ColumnError {
 }
 
 /// Distances of all points from n landmarks and a factor of all squared distances, in 16 bits each.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Tables {
     /// Number of landmarks n.
     pub(crate) n_landmarks: usize,
@@ -51,6 +51,7 @@ pub(crate) struct Tables {
     /// The distance that the codes count in, in the unit of the distances.
     pub(crate) quantum: f64,
     /// p x n distances, one row per point, in multiples of `quantum`.
+    #[serde(skip)]
     pub(crate) codes: Vec<u16>,
     /// Number of eigenpairs behind the factor.
     pub(crate) rank: usize,
@@ -59,6 +60,7 @@ pub(crate) struct Tables {
     /// What the entries of the factor count in, in the unit of the distances.
     pub(crate) factor_quantum: f64,
     /// `Z`, p x rank, one row per point, in multiples of `factor_quantum`.
+    #[serde(skip)]
     pub(crate) factor: Vec<i16>,
 }
 

@@ -281,7 +281,7 @@ fn every_changed_byte_of_a_file_is_detected() {
             let fault = DistanceField::from_bytes(&changed).unwrap_err();
             match at {
                 0..8 => assert_eq!(fault, FieldFault::NotAField),
-                8..12 => assert!(matches!(fault, FieldFault::OtherVersion { known: 2, .. })),
+                8..12 => assert!(matches!(fault, FieldFault::OtherVersion { known: 3, .. })),
                 _ => assert_eq!(fault, FieldFault::Damaged("its checksum is wrong")),
             }
         }

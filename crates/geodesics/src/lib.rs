@@ -3,7 +3,7 @@
 //! `surface::IntrinsicMesh` -> **geodesics** -> `linalg::LandmarkDistances` -> `nmds`
 //!
 //! * A [`Method`] names a solver; [`Method::prepare`] makes a [`DistanceSolver`] for one surface. The solvers are
-//!   [`FastMarching`] (the default), [`Exact`], [`HeatMethod`], [`Dijkstra`] and [`BreadthFirst`].
+//!   [`FastMarching`] (the default), [`Exact`], [`HeatMethod`] and [`Dijkstra`], along edges or in [hops](Dijkstra::of_hops).
 //! * A [`Source`] is a vertex, or any [`SurfacePoint`].
 //! * A [`PathTracer`] finds shortest paths with the distances of any solver; [`log_map`] unrolls the surface about a point.
 //! * A [`Sampling`] names a choice of landmarks; [`Sampling::start`] makes a [`Sampler`].
@@ -33,7 +33,6 @@
 //! # Ok::<(), canonform_geodesics::GeodesicError>(())
 //! ```
 
-mod breadth_first;
 mod dijkstra;
 mod error;
 mod exact;
@@ -51,7 +50,6 @@ mod source;
 #[cfg(test)]
 mod tests;
 
-pub use breadth_first::BreadthFirst;
 pub use dijkstra::Dijkstra;
 pub use error::{BadPoint, GeodesicError};
 pub use exact::{Exact, log_map};

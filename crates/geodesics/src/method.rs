@@ -5,7 +5,6 @@ use std::borrow::Cow;
 use base::Observer;
 use surface::IntrinsicMesh;
 
-use crate::breadth_first::BreadthFirst;
 use crate::dijkstra::Dijkstra;
 use crate::error::GeodesicError;
 use crate::exact::Exact;
@@ -40,7 +39,7 @@ pub enum Method {
     Exact,
     /// [`Dijkstra`].
     Dijkstra,
-    /// [`BreadthFirst`].
+    /// [`Dijkstra::of_hops`].
     #[serde(rename = "bfs")]
     #[strum(serialize = "bfs")]
     BreadthFirst,
@@ -54,14 +53,12 @@ impl Default for Method {
 
 impl Method {
     /// All methods with their default options; the default method comes first.
-    #[must_use]
     pub fn all() -> [Self; 5] {
         let heat = Self::Heat(HeatOptions::default());
         [Self::default(), Self::Exact, heat, Self::Dijkstra, Self::BreadthFirst]
     }
 
     /// The name on the command line and in records.
-    #[must_use]
     pub fn name(self) -> &'static str {
         self.into()
     }
@@ -83,7 +80,7 @@ impl Method {
             Self::Heat(options) => Box::new(HeatMethod::new(&mesh, options, observer)?),
             Self::Exact => Box::new(Exact::new(&mesh, observer)),
             Self::Dijkstra => Box::new(Dijkstra::new(&mesh, observer)),
-            Self::BreadthFirst => Box::new(BreadthFirst::new(&mesh, observer)),
+            Self::BreadthFirst => Box::new(Dijkstra::of_hops(&mesh, observer)),
         };
         budget.check()?;
         Ok(solver)

@@ -28,7 +28,6 @@ const BARYCENTRIC_SLACK: f64 = 1e-9;
 
 impl Source {
     /// A vertex.
-    #[must_use]
     pub fn vertex(vertex: VertexId) -> Self {
         Self { point: SurfacePoint::Vertex(vertex), reach: vec![(vertex, 0.0)] }
     }
@@ -95,14 +94,12 @@ impl Source {
     }
 
     /// The point.
-    #[must_use]
     pub fn point(&self) -> SurfacePoint {
         self.point
     }
 
     /// The vertices of the faces that contain the point, with their distances from it inside these faces, in mesh
     /// units; of a vertex only itself.
-    #[must_use]
     pub fn reach(&self) -> &[(VertexId, f64)] {
         &self.reach
     }

@@ -78,7 +78,6 @@ impl EliminationOrder {
     }
 
     /// The row that each elimination step eliminates: a permutation.
-    #[must_use]
     pub fn rows(&self) -> &[usize] {
         &self.0.rows
     }
@@ -150,7 +149,6 @@ impl SparseCholesky {
     }
 
     /// The elimination order.
-    #[must_use]
     pub fn order(&self) -> &EliminationOrder {
         &self.order
     }

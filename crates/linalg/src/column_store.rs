@@ -58,7 +58,6 @@ impl PartialEq for ColumnStore {
 
 impl ColumnStore {
     /// No columns yet, in memory.
-    #[must_use]
     pub fn in_memory(n_rows: usize) -> Self {
         Self { n_rows, n_columns: 0, backing: Backing::Memory(Vec::new()) }
     }
@@ -77,32 +76,27 @@ impl ColumnStore {
     }
 
     /// No columns yet, in a file of the caller, which should be open for reading and writing and used by nobody else.
-    #[must_use]
     pub fn in_file(n_rows: usize, file: File) -> Self {
         Self { n_rows, n_columns: 0, backing: Backing::File(Arc::new(Mutex::new(file))) }
     }
 
     /// The columns of a matrix.
-    #[must_use]
     pub fn of_matrix(matrix: Matrix) -> Self {
         let (n_rows, n_columns) = matrix.shape();
         Self { n_rows, n_columns, backing: Backing::Memory(matrix.data.into()) }
     }
 
     /// Numbers in a column.
-    #[must_use]
     pub fn n_rows(&self) -> usize {
         self.n_rows
     }
 
     /// Number of columns.
-    #[must_use]
     pub fn n_columns(&self) -> usize {
         self.n_columns
     }
 
     /// Whether the columns are in a file.
-    #[must_use]
     pub fn is_in_file(&self) -> bool {
         matches!(self.backing, Backing::File(_))
     }
@@ -169,7 +163,6 @@ impl ColumnStore {
     }
 
     /// The first `n` columns: a copy if they are in memory, the same file if they are in one.
-    #[must_use]
     pub fn first(&self, n: usize) -> Self {
         let n_columns = n.min(self.n_columns);
         let backing = match &self.backing {

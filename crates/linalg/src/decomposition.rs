@@ -15,7 +15,6 @@ pub struct SymmetricEigen {
 
 impl SymmetricEigen {
     /// The eigenpairs with the indices `order`, in that order.
-    #[must_use]
     pub fn select(&self, order: &[usize]) -> Self {
         Self {
             values: order.iter().map(|&i| self.values[i]).collect(),
@@ -26,7 +25,6 @@ impl SymmetricEigen {
 
 /// The sign, 1 or -1, of the first entry of at least 0.999 times the largest magnitude: multiplied by it, a column has
 /// a reproducible sign. (The largest entry itself is not reproducible: rounding may reorder nearly equal ones.)
-#[must_use]
 pub fn leading_sign(column: &[f64]) -> f64 {
     let largest = column.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
     match column.iter().find(|x| x.abs() >= 0.999 * largest) {
@@ -92,7 +90,6 @@ pub fn symmetric_eigenvalues(a: &Matrix) -> Result<Vec<f64>, LinalgError> {
 /// triangular n x n `R`.
 ///
 /// `Q` is orthonormal even if `a` is rank deficient. Cost: `O(p n^2)`.
-#[must_use]
 pub fn thin_qr(a: &Matrix) -> (Matrix, Matrix) {
     let qr = view(a).qr();
     let q: Mat<f64> = qr.compute_thin_Q();
@@ -102,7 +99,6 @@ pub fn thin_qr(a: &Matrix) -> (Matrix, Matrix) {
 /// The upper triangular factor of [`thin_qr`] alone, min(p, n) x n, up to the signs of its rows.
 ///
 /// Cost: `O(p n^2)`.
-#[must_use]
 pub fn triangular_factor(a: &Matrix) -> Matrix {
     from_faer(view(a).qr().thin_R())
 }

@@ -61,33 +61,28 @@ impl DistanceMatrix {
     }
 
     /// Number of points.
-    #[must_use]
     pub fn n_points(&self) -> usize {
         self.n
     }
 
     /// The distance between points `i` and `j`.
     #[inline]
-    #[must_use]
     pub fn get(&self, i: usize, j: usize) -> f64 {
         self.values[i * self.n + j]
     }
 
     /// The distances from point `i` to all points.
     #[inline]
-    #[must_use]
     pub fn row(&self, i: usize) -> &[f64] {
         &self.values[i * self.n..(i + 1) * self.n]
     }
 
     /// All values, row by row.
-    #[must_use]
     pub fn as_slice(&self) -> &[f64] {
         &self.values
     }
 
     /// The largest distance; zero if there are no points.
-    #[must_use]
     pub fn max(&self) -> f64 {
         self.values.iter().copied().fold(0.0, f64::max)
     }

@@ -75,25 +75,21 @@ impl LandmarkDistances {
     }
 
     /// Number of points p.
-    #[must_use]
     pub fn n_points(&self) -> usize {
         self.columns.n_rows()
     }
 
     /// Number of landmarks n.
-    #[must_use]
     pub fn n_landmarks(&self) -> usize {
         self.landmarks.len()
     }
 
     /// The point of each landmark, in sampling order.
-    #[must_use]
     pub fn landmarks(&self) -> &[usize] {
         &self.landmarks
     }
 
     /// Whether the distances are in a file.
-    #[must_use]
     pub fn is_in_file(&self) -> bool {
         self.columns.is_in_file()
     }
@@ -136,21 +132,18 @@ impl LandmarkDistances {
     }
 
     /// Ranges of rows that a pass over all rows reads one at a time. They depend on the number of points only.
-    #[must_use]
     pub fn blocks(&self) -> Vec<Range<usize>> {
         let p = self.n_points();
         (0..p).step_by(BLOCK).map(|start| start..(start + BLOCK).min(p)).collect()
     }
 
     /// The largest distance; zero if there are no points.
-    #[must_use]
     pub fn max(&self) -> f64 {
         self.max
     }
 
     /// The n x n squared distances between the landmarks (`S` in the paper). Averages the two directions of each pair,
     /// because computed distances are not exactly symmetric.
-    #[must_use]
     pub fn sq_block(&self) -> Matrix {
         self.sq_block.clone()
     }

@@ -36,7 +36,6 @@ pub use sparse::SparseSymmetric;
 pub type Matrix = nalgebra::DMatrix<f64>;
 
 /// The squared distance of two points, over the coordinates that both have.
-#[must_use]
 pub fn sq_distance(a: &[f64], b: &[f64]) -> f64 {
     // Four sums, which vector instructions can take at once.
     let mut sums = [0.0; 4];

@@ -24,7 +24,6 @@ impl SparseSymmetric {
     ///
     /// # Panics
     /// If a row or column is not below `order`.
-    #[must_use]
     pub fn from_entries(order: usize, entries: impl IntoIterator<Item = (usize, usize, f64)>) -> Self {
         let diagonal = (0..order).map(|i| (i, i, 0.0));
         let entries: Vec<(usize, usize, f64)> = diagonal.chain(entries).collect();
@@ -61,13 +60,11 @@ impl SparseSymmetric {
     }
 
     /// The order n.
-    #[must_use]
     pub fn order(&self) -> usize {
         self.column_starts.len() - 1
     }
 
     /// Number of stored entries, all in the lower triangle.
-    #[must_use]
     pub fn n_stored(&self) -> usize {
         self.values.len()
     }
@@ -78,7 +75,6 @@ impl SparseSymmetric {
     }
 
     /// The diagonal.
-    #[must_use]
     pub fn diagonal(&self) -> Vec<f64> {
         (0..self.order()).map(|j| self.values[self.column_starts[j]]).collect()
     }

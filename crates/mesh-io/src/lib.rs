@@ -40,20 +40,17 @@ pub use write::{write, write_polylines, write_scalar_field};
 ///
 /// `.vert` stands for a `.vert`/`.tri` pair and `.tri` is not a mesh path, so that each shape of a folder
 /// counts once.
-#[must_use]
 pub fn is_mesh_path(path: &Path) -> bool {
     Format::of(path).is_ok_and(|format| format.extensions[0] == extension(path))
 }
 
 /// The files that [`read()`] opens for this name: two for a `.vert`/`.tri` pair, whichever half is named, and those that
 /// a `.gltf` file names.
-#[must_use]
 pub fn files_of(path: &Path) -> Vec<PathBuf> {
     files_in(path, &Disk)
 }
 
 /// As [`files_of`], in any place that holds files.
-#[must_use]
 pub fn files_in(path: &Path, source: &dyn FileSource) -> Vec<PathBuf> {
     let Ok(format) = Format::of(path) else { return vec![path.to_owned()] };
     let mut files = format.files(path, source);
@@ -204,8 +201,12 @@ pub fn read_memory(files: &[MemoryFile<'_>], limits: &ReadLimits) -> Result<TriM
     let source = Memory(files);
     // Whether the files of a mesh belong together is checked when they are loaded.
     if let Some(extra) = files.get(files_in(first.name, &source).len()) {
-        let (path, extra) = (first.name.to_owned(), extra.name.to_owned());
-        return Err(MeshError::StrayFile { path, extra, supported: mesh_files() });
+        return Err(MeshError::StrayFile(format!(
+            "{} does not belong to {}; provide the files of one mesh: {}",
+            extra.name.display(),
+            first.name.display(),
+            mesh_files()
+        )));
     }
     Ok(read_file(first.name, &source, limits)?.mesh)
 }

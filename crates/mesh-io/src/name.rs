@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 const GZIP: &str = "gz";
 
 /// Whether a file is compressed, judging by its name.
-#[must_use]
 pub fn is_gzip(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(GZIP))
 }
@@ -25,13 +24,11 @@ pub(crate) fn inflated(path: &Path) -> PathBuf {
 /// assert_eq!(extension(Path::new("scans/CAT.OBJ")), "obj");
 /// assert_eq!(extension(Path::new("scans/cat.obj.gz")), "obj");
 /// ```
-#[must_use]
 pub fn extension(path: &Path) -> String {
     inflated(path).extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
 }
 
 /// The path without the extension, and without `.gz`.
-#[must_use]
 pub fn without_extension(path: &Path) -> PathBuf {
     inflated(path).with_extension("")
 }

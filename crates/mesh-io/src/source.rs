@@ -23,7 +23,6 @@ const ALWAYS: u64 = 64 << 20;
 const MAX_RATIO: u64 = 256;
 
 /// The most bytes that compressed data of `size` bytes may grow to.
-#[must_use]
 pub fn inflated_limit(size: u64) -> u64 {
     ALWAYS.max(size.saturating_mul(MAX_RATIO))
 }

@@ -21,7 +21,6 @@ use crate::tri_mesh::TriMesh;
 /// assert_eq!(validate(&fill_holes(&ball, &ball.topology(), 1.0).mesh).n_boundary_loops, 0);
 /// assert!(fill_holes(&ball, &ball.topology(), 0.1).remap.is_identity());
 /// ```
-#[must_use]
 pub fn fill_holes(mesh: &TriMesh, topology: &Topology, longest: f64) -> Remapped {
     let (mut filled, mut origins) = (mesh.clone(), Vec::new());
     for hole in holes(mesh, topology) {

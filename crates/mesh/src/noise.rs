@@ -47,7 +47,6 @@ const STEPS: [f64; 2] = [0.5, -0.53];
 /// let sphere = 4.0 * std::f64::consts::PI;
 /// assert!((smooth.area() / sphere - 1.0).abs() < 0.02 && ball.area() > 1.05 * sphere);
 /// ```
-#[must_use]
 pub fn denoise(mesh: &TriMesh, topology: &Topology) -> Option<TriMesh> {
     let (mut smooth, umbrellas) = prepared(mesh, topology);
     if !umbrellas.bending(&smooth).is_noisy() || SmoothRegions::of(mesh).is_mechanical {
@@ -69,7 +68,6 @@ pub fn denoise(mesh: &TriMesh, topology: &Topology) -> Option<TriMesh> {
 ///
 /// # Panics
 /// If a face has a repeated vertex or one that does not exist, see [`Topology::new`].
-#[must_use]
 pub fn is_noisy(mesh: &TriMesh) -> bool {
     let (oriented, umbrellas) = prepared(mesh, &mesh.topology());
     umbrellas.bending(&oriented).is_noisy() && !SmoothRegions::of(mesh).is_mechanical

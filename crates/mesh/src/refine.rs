@@ -24,7 +24,6 @@ const FLAT: f64 = 1e-5;
 ///
 /// # Panics
 /// If a face has a repeated vertex or one that does not exist, see [`Topology::new`].
-#[must_use]
 pub fn refine(mesh: &TriMesh, longest: f64, most: usize) -> Remapped {
     // Coordinates in this unit, a power of two, are exact, and their products do not overflow.
     let unit = mesh.unit();

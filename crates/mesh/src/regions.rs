@@ -143,7 +143,6 @@ impl SmoothRegions {
     ///
     /// # Panics
     /// If a face has a repeated vertex or one that does not exist, see [`surface::Topology::new`].
-    #[must_use]
     pub fn of(mesh: &TriMesh) -> Self {
         // Products of lengths neither overflow nor vanish near the unit.
         let unit = mesh.unit();
@@ -199,7 +198,6 @@ impl SmoothRegions {
     }
 
     /// Directions of planes and axes with the share of the area across or around them, the largest first.
-    #[must_use]
     pub fn directions(&self) -> Vec<(Vector3<f64>, f64)> {
         let mut all: Vec<(Vector3<f64>, f64)> = Vec::new();
         for region in self.all.iter().filter(|region| region.area > LARGE) {

@@ -28,7 +28,6 @@ pub struct Remap {
 
 impl Remap {
     /// Of old vertices that keep their numbers, with new ones behind them, each from an old one near it.
-    #[must_use]
     pub fn extended(n_old: usize, origins: Vec<VertexId>) -> Self {
         Self { n_old, to_new: None, to_old: origins }
     }
@@ -37,7 +36,6 @@ impl Remap {
     ///
     /// # Panics
     /// If a new vertex does not exist.
-    #[must_use]
     pub fn new(to_new: Vec<Option<VertexId>>, n_new: usize) -> Self {
         let n_old = to_new.len();
         let stays = |(old, new): (usize, &Option<VertexId>)| *new == Some(VertexId::from(old));
@@ -52,13 +50,11 @@ impl Remap {
     }
 
     /// Number of old vertices.
-    #[must_use]
     pub fn n_old(&self) -> usize {
         self.n_old
     }
 
     /// Number of new vertices.
-    #[must_use]
     pub fn n_new(&self) -> usize {
         self.to_old.len() + if self.to_new.is_none() { self.n_old } else { 0 }
     }
@@ -69,13 +65,11 @@ impl Remap {
     }
 
     /// Whether all vertices keep their numbers and there are no others.
-    #[must_use]
     pub fn is_identity(&self) -> bool {
         self.to_new.is_none() && self.to_old.is_empty()
     }
 
     /// The new vertex of an old one; `None` if it was dropped or does not exist.
-    #[must_use]
     pub fn to_new(&self, old: VertexId) -> Option<VertexId> {
         match &self.to_new {
             Some(to_new) => *to_new.get(old.index())?,
@@ -87,7 +81,6 @@ impl Remap {
     ///
     /// # Panics
     /// If there is no such new vertex.
-    #[must_use]
     pub fn to_old(&self, new: VertexId) -> VertexId {
         let kept = if self.to_new.is_none() { self.n_old } else { 0 };
         new.index().checked_sub(kept).map_or(new, |i| self.to_old[i])
@@ -104,7 +97,6 @@ impl Remap {
     }
 
     /// This map, and then the next one.
-    #[must_use]
     pub fn then(&self, next: &Self) -> Self {
         let to_old = |new: VertexId| self.to_old(next.to_old(new));
         if self.to_new.is_none() && next.to_new.is_none() {

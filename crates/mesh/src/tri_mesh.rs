@@ -30,25 +30,21 @@ pub struct TriMesh {
 
 impl TriMesh {
     /// Number of vertices.
-    #[must_use]
     pub fn n_vertices(&self) -> usize {
         self.positions.len()
     }
 
     /// Number of faces.
-    #[must_use]
     pub fn n_faces(&self) -> usize {
         self.faces.len()
     }
 
     /// The three corner positions of face `face`.
-    #[must_use]
     pub fn triangle(&self, face: usize) -> [Point3<f64>; 3] {
         self.faces[face].map(|v| self.positions[v.index()])
     }
 
     /// The edges, for shortest paths along them; inner ones come twice.
-    #[must_use]
     pub fn edge_graph(&self) -> EdgeGraph {
         let sides = self.faces.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
         let length = |[a, b]: [VertexId; 2]| (self.positions[b.index()] - self.positions[a.index()]).norm();
@@ -56,7 +52,6 @@ impl TriMesh {
     }
 
     /// The normal of face `face`; its length is twice the area of the face.
-    #[must_use]
     pub fn area_vector(&self, face: usize) -> Vector3<f64> {
         self.area_vector_in(face, 1.0)
     }
@@ -68,7 +63,6 @@ impl TriMesh {
     }
 
     /// Sum of the areas of all faces, in squared mesh units.
-    #[must_use]
     pub fn area(&self) -> f64 {
         self.face_areas().sum()
     }
@@ -80,14 +74,12 @@ impl TriMesh {
     }
 
     /// The square root of the area, in mesh units; accurate also where the area is too small for a number.
-    #[must_use]
     pub fn root_of_area(&self) -> f64 {
         let unit = self.unit();
         (0..self.n_faces()).map(|f| 0.5 * self.area_vector_in(f, unit).norm()).sum::<f64>().sqrt() * unit
     }
 
     /// The mesh without vertices that no face names; the others keep their order.
-    #[must_use]
     pub fn without_unused_vertices(&self) -> Self {
         self.compacted().0
     }
@@ -107,7 +99,6 @@ impl TriMesh {
     }
 
     /// The volume that a closed surface encloses, in cubed mesh units; negative if its faces are turned inward.
-    #[must_use]
     pub fn signed_volume(&self) -> f64 {
         let cone = |f| {
             let [a, b, c] = self.triangle(f);
@@ -118,7 +109,6 @@ impl TriMesh {
 
     /// The centroid of the surface, and its second moments about it: the mean of `(x - c)(x - c)'` over the area, exact for
     /// flat faces.
-    #[must_use]
     pub fn moments(&self) -> (Vector3<f64>, Matrix3<f64>) {
         let (mut first, mut second, mut total) = (Vector3::zeros(), Matrix3::zeros(), 0.0);
         for (f, area) in self.face_areas().enumerate() {
@@ -134,7 +124,6 @@ impl TriMesh {
     }
 
     /// The lumped mass of each vertex, a third of the area of its faces, in squared mesh units.
-    #[must_use]
     pub fn vertex_areas(&self) -> Vec<f64> {
         let mut areas = vec![0.0; self.n_vertices()];
         for (face, area) in self.faces.iter().zip(self.face_areas()) {
@@ -150,7 +139,6 @@ impl TriMesh {
     /// # Panics
     /// If a face has a repeated vertex or one that does not exist, see [`Topology::new`];
     /// [`repair`](crate::repair()) removes such faces.
-    #[must_use]
     pub fn intrinsic(&self) -> IntrinsicMesh {
         self.measured(self.topology())
     }
@@ -159,7 +147,6 @@ impl TriMesh {
     ///
     /// # Panics
     /// As [`intrinsic`](Self::intrinsic).
-    #[must_use]
     pub fn topology(&self) -> Topology {
         Topology::new(self.n_vertices(), self.faces.clone())
     }
@@ -173,20 +160,17 @@ impl TriMesh {
     }
 
     /// The largest extent along an axis, in mesh units; zero without vertices, infinite if it cannot be represented.
-    #[must_use]
     pub fn size(&self) -> f64 {
         self.bounds().map_or(0.0, |[lo, hi]| (hi - lo).max())
     }
 
     /// A unit of length near the size of the mesh, in mesh units: a power of two, so that dividing coordinates and
     /// lengths by it and multiplying them with it is exact. Products of lengths in units neither overflow nor vanish.
-    #[must_use]
     pub fn unit(&self) -> f64 {
         power_of_two_below(self.size())
     }
 
     /// Lower and upper corner of the axis-aligned bounding box, in mesh units; `None` without vertices.
-    #[must_use]
     pub fn bounds(&self) -> Option<[Point3<f64>; 2]> {
         let first = *self.positions.first()?;
         Some(self.positions.iter().fold([first, first], |[lo, hi], p| [lo.inf(p), hi.sup(p)]))

@@ -2,7 +2,7 @@
 
 use ::datasets::{
     ArticulatedOptions, CreatureOptions, DatasetError, Family, LabeledShape, RestedShape,
-    articulated_at_rest, creature, creature_plans,
+    articulated_at_rest, creature_body, creature_plans,
 };
 use canonform::Observer;
 use canonform::mesh::TriMesh;
@@ -57,7 +57,9 @@ pub(crate) fn creatures<'py>(
     let n_families = shapes.iter().map(|(family, _)| family + 1).max().unwrap_or(0);
     let n_poses = shapes.iter().map(|(_, pose)| pose + 1).max().unwrap_or(0);
     let options = CreatureOptions { seed, n_families, n_poses, n_vertices };
-    made(py, &shapes, |(family, pose), observer| Ok((creature(family, pose, &options, observer)?, None)))
+    made(py, &shapes, |(family, pose), observer| {
+        Ok((creature_body(family, 0, pose, &options, observer)?, None))
+    })
 }
 
 fn made<'py>(

@@ -15,7 +15,6 @@ pub struct Components {
 
 /// The components of any faces, degenerate ones included, in linear time; vertices without faces are in none. Faces
 /// that share only a vertex are connected, as paths along edges can pass through it.
-#[must_use]
 pub fn components_of_faces(n_vertices: usize, faces: &[[VertexId; 3]]) -> Components {
     let mut sets = DisjointSets::new(n_vertices);
     let mut has_face = vec![false; n_vertices];
@@ -30,7 +29,6 @@ pub fn components_of_faces(n_vertices: usize, faces: &[[VertexId; 3]]) -> Compon
 }
 
 /// The components along edges and links; a vertex without either is a component of its own.
-#[must_use]
 pub fn components_with_links(mesh: &IntrinsicMesh) -> Components {
     let mut sets = DisjointSets::new(mesh.n_vertices());
     let links = mesh.links().iter().map(|link| &link.ends);
@@ -59,13 +57,11 @@ impl Components {
     }
 
     /// The component of a vertex; `None` if it is in none.
-    #[must_use]
     pub fn of(&self, vertex: VertexId) -> Option<usize> {
         self.labels[vertex.index()].map(|label| label as usize)
     }
 
     /// The lowest vertex of every component.
-    #[must_use]
     pub fn lowest_vertices(&self) -> Vec<VertexId> {
         let mut lowest = Vec::with_capacity(self.count);
         for (v, label) in self.labels.iter().enumerate() {

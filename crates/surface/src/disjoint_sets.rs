@@ -8,7 +8,6 @@ pub struct DisjointSets {
 
 impl DisjointSets {
     /// `n` sets of one member each; `n` fits into 32 bits.
-    #[must_use]
     pub fn new(n: usize) -> Self {
         Self { parent: (0..n as u32).collect() }
     }
@@ -33,7 +32,6 @@ impl DisjointSets {
     }
 
     /// Number of members.
-    #[must_use]
     #[expect(clippy::len_without_is_empty, reason = "the number of members is fixed")]
     pub fn len(&self) -> usize {
         self.parent.len()

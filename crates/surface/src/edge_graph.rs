@@ -32,7 +32,6 @@ pub struct EdgeGraph(Rows<Way>);
 
 impl EdgeGraph {
     /// The graph of some connections of `n_vertices` vertices.
-    #[must_use]
     pub fn new(n_vertices: usize, links: impl Iterator<Item = Link> + Clone) -> Self {
         let both = |(number, Link { ends: [a, b], length }): (u32, Link)| {
             [(a.index(), Way { to: b, number, length }), (b.index(), Way { to: a, number, length })]
@@ -41,7 +40,6 @@ impl EdgeGraph {
     }
 
     /// The edges of a surface in their order, then its links.
-    #[must_use]
     pub fn of(mesh: &IntrinsicMesh) -> Self {
         let edges = mesh.topology().edges().iter().zip(mesh.edge_lengths());
         let edges = edges.map(|(ends, length)| Link { ends: *ends, length: *length });
@@ -49,14 +47,12 @@ impl EdgeGraph {
     }
 
     /// Number of vertices.
-    #[must_use]
     pub fn n_vertices(&self) -> usize {
         self.0.n_rows()
     }
 
     /// The connections at a vertex.
     #[inline]
-    #[must_use]
     pub fn ways(&self, v: VertexId) -> &[Way] {
         self.0.row(v.index())
     }
@@ -115,7 +111,6 @@ impl EdgeGraph {
     }
 
     /// The distance from a vertex to every vertex; infinite for another component.
-    #[must_use]
     pub fn from(&self, source: VertexId) -> Vec<f64> {
         let mut front = Frontier::default();
         front.reset(self.n_vertices());

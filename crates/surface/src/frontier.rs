@@ -33,26 +33,22 @@ impl Frontier {
 
     /// The tentative distance of a vertex; infinite until it is relaxed.
     #[inline]
-    #[must_use]
     pub fn distance(&self, v: VertexId) -> f64 {
         self.distances[v.index()]
     }
 
     /// The tentative distances of all vertices.
-    #[must_use]
     pub fn into_distances(self) -> Vec<f64> {
         self.distances
     }
 
     /// The vertices that were visited, in order; those that were lowered afterwards come again.
-    #[must_use]
     pub fn visited(&self) -> &[VertexId] {
         &self.visited
     }
 
     /// Whether a vertex waits to be visited.
     #[inline]
-    #[must_use]
     pub fn is_waiting(&self, v: VertexId) -> bool {
         self.positions[v.index()] != NONE
     }

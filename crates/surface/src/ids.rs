@@ -30,7 +30,6 @@ macro_rules! index_newtype {
         impl $name {
             /// The index as a `usize`, for slices.
             #[inline]
-            #[must_use]
             pub fn index(self) -> usize {
                 self.0 as usize
             }
@@ -62,7 +61,6 @@ index_newtype!(CornerId);
 impl FaceId {
     /// The corners, in the order of the face's vertices.
     #[inline]
-    #[must_use]
     pub fn corners(self) -> [CornerId; 3] {
         let first = 3 * self.0;
         [CornerId(first), CornerId(first + 1), CornerId(first + 2)]
@@ -72,21 +70,18 @@ impl FaceId {
 impl CornerId {
     /// The corner in the given slot (0, 1 or 2) of a face.
     #[inline]
-    #[must_use]
     pub fn new(face: FaceId, slot: usize) -> Self {
         Self(3 * face.0 + slot as u32)
     }
 
     /// The face of this corner.
     #[inline]
-    #[must_use]
     pub fn face(self) -> FaceId {
         FaceId(self.0 / 3)
     }
 
     /// Which corner of its face this is: 0, 1 or 2.
     #[inline]
-    #[must_use]
     pub fn slot(self) -> usize {
         (self.0 % 3) as usize
     }

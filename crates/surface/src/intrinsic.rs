@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::ids::{CornerId, EdgeId, VertexId};
 use crate::topology::Topology;
@@ -46,7 +46,7 @@ impl From<IntrinsicMesh> for Cow<'_, IntrinsicMesh> {
 const BLOCK: usize = 4096;
 
 /// A straight connection of two vertices outside all faces, such as a bridge between two components.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Link {
     /// The two vertices that it joins.
     pub ends: [VertexId; 2],
@@ -61,7 +61,6 @@ pub struct Link {
 ///
 /// assert_eq!([0.3, 1.0, 7.9, 0.0].map(power_of_two_below), [0.25, 1.0, 4.0, 1.0]);
 /// ```
-#[must_use]
 pub fn power_of_two_below(length: f64) -> f64 {
     /// The bits of the exponent of a number.
     const EXPONENT: u64 = 0x7ff << 52;
@@ -82,7 +81,6 @@ pub fn power_of_two_below(length: f64) -> f64 {
 /// assert_eq!(unit_for(0.3), 1.0);
 /// assert_eq!(unit_for(3e-100), 2f64.powi(-331));
 /// ```
-#[must_use]
 pub fn unit_for(length: f64) -> f64 {
     let ordinary = 2f64.powi(-64)..=2f64.powi(64);
     if ordinary.contains(&length) { 1.0 } else { power_of_two_below(length) }
@@ -93,7 +91,6 @@ impl IntrinsicMesh {
     ///
     /// # Panics
     /// If the number of lengths differs from the number of edges, or a length is negative or not finite.
-    #[must_use]
     pub fn new(topology: Topology, edge_lengths: Vec<f64>) -> Self {
         assert_eq!(topology.n_edges(), edge_lengths.len(), "one length per edge");
         assert!(
@@ -107,7 +104,6 @@ impl IntrinsicMesh {
     ///
     /// # Panics
     /// If a length is negative or not finite.
-    #[must_use]
     pub fn with_lengths(topology: Topology, length: impl Fn([VertexId; 2]) -> f64 + Sync) -> Self {
         let edges = topology.edges().par_iter().with_min_len(BLOCK);
         let edge_lengths = edges.map(|ends| length(*ends)).collect();
@@ -115,7 +111,6 @@ impl IntrinsicMesh {
     }
 
     /// The connectivity, without the lengths.
-    #[must_use]
     pub fn into_topology(self) -> Topology {
         self.topology
     }
@@ -128,33 +123,28 @@ impl IntrinsicMesh {
     }
 
     /// The connectivity.
-    #[must_use]
     pub fn topology(&self) -> &Topology {
         &self.topology
     }
 
     /// Number of vertices.
-    #[must_use]
     pub fn n_vertices(&self) -> usize {
         self.topology.n_vertices()
     }
 
     /// The length of every edge, in mesh units, in the order of [`Topology::edges`].
-    #[must_use]
     pub fn edge_lengths(&self) -> &[f64] {
         &self.edge_lengths
     }
 
     /// The length of an edge, in mesh units.
     #[inline]
-    #[must_use]
     pub fn length(&self, edge: EdgeId) -> f64 {
         self.edge_lengths[edge.index()]
     }
 
     /// The length of the side opposite a corner, in mesh units.
     #[inline]
-    #[must_use]
     pub fn opposite_length(&self, corner: CornerId) -> f64 {
         self.length(self.topology.opposite_edge(corner))
     }
@@ -162,25 +152,21 @@ impl IntrinsicMesh {
     /// The lengths of the three sides of a corner's face, in mesh units: the side opposite the corner, then those
     /// from the vertices in the next and in the previous corner to the corner's own.
     #[inline]
-    #[must_use]
     pub fn sides(&self, corner: CornerId) -> [f64; 3] {
         [corner, corner.prev(), corner.next()].map(|c| self.opposite_length(c))
     }
 
     /// Connections outside all faces.
-    #[must_use]
     pub fn links(&self) -> &[Link] {
         &self.links
     }
 
     /// The unit that lengths are best measured in, see [`unit_for`], in mesh units.
-    #[must_use]
     pub fn unit(&self) -> f64 {
         unit_for(self.mean_edge_length())
     }
 
     /// The same surface with all lengths divided by `unit`.
-    #[must_use]
     pub fn in_units_of(&self, unit: f64) -> Self {
         Self {
             topology: self.topology.clone(),
@@ -190,7 +176,6 @@ impl IntrinsicMesh {
     }
 
     /// Mean length of the edges, in mesh units; zero without edges.
-    #[must_use]
     pub fn mean_edge_length(&self) -> f64 {
         match self.edge_lengths.len() {
             0 => 0.0,

@@ -27,7 +27,6 @@ pub struct FanCorner {
 impl FanCorner {
     /// The corner of the same face opposite the first side. The last side ends at the vertex in it.
     #[inline]
-    #[must_use]
     pub fn opposite_first(self) -> CornerId {
         match self.winding {
             Winding::Forward => self.corner.prev(),
@@ -37,7 +36,6 @@ impl FanCorner {
 
     /// The corner of the same face opposite the last side. The first side ends at the vertex in it.
     #[inline]
-    #[must_use]
     pub fn opposite_last(self) -> CornerId {
         match self.winding {
             Winding::Forward => self.corner.next(),
@@ -60,7 +58,6 @@ impl Fan<'_> {
     ///
     /// # Panics
     /// If the fan is empty, which no fan of a [`OneRing`] is.
-    #[must_use]
     pub fn ends(self) -> [CornerId; 2] {
         [self.corners[0].opposite_first(), self.corners[self.corners.len() - 1].opposite_last()]
     }
@@ -181,7 +178,6 @@ impl OneRing {
     }
 
     /// The fans as sets of those with common edges of more than two faces, except for edges that are to be `left_out`.
-    #[must_use]
     pub fn joined(&self, topology: &Topology, left_out: impl Fn(EdgeId) -> bool) -> DisjointSets {
         let mut ends: Vec<(EdgeId, u32)> = Vec::new();
         for (i, fan) in (0..).zip(self.fans()).filter(|(_, fan)| !fan.is_closed) {
@@ -197,13 +193,11 @@ impl OneRing {
     }
 
     /// Whether there is a single fan and it is closed.
-    #[must_use]
     pub fn is_closed(&self) -> bool {
         matches!(self.fans[..], [(_, true)])
     }
 
     /// Classifies the vertex. Paths may bend if its total angle exceeds the limit by over `excess`, both in radians.
-    #[must_use]
     pub fn kind(&self, total_angle: f64, excess: f64) -> VertexKind {
         match self.fans[..] {
             [(_, true)] if total_angle > TAU + excess => VertexKind::Saddle,
@@ -252,7 +246,6 @@ impl AngleSum {
     }
 
     /// Whether the sum exceeds a number of half turns by more than a small angle, given by its tangent.
-    #[must_use]
     pub fn exceeds(self, half_turns: u8, excess: f64) -> bool {
         let by = self.half_turns - f64::from(half_turns);
         by > 0.0 || (by == 0.0 && (self.x <= 0.0 || self.y > excess * self.x))

@@ -58,7 +58,6 @@ impl<T: Copy> Rows<T> {
     ///
     /// # Panics
     /// If the offsets are not ascending from zero to the number of items.
-    #[must_use]
     pub fn from_offsets(offsets: Vec<u32>, items: Vec<T>) -> Self {
         assert!(offsets.is_sorted() && offsets.first() == Some(&0), "offsets ascend from zero");
         assert_eq!(offsets.last().map(|end| *end as usize), Some(items.len()), "all items are in a row");
@@ -66,28 +65,24 @@ impl<T: Copy> Rows<T> {
     }
 
     /// Number of rows.
-    #[must_use]
     pub fn n_rows(&self) -> usize {
         self.offsets.len() - 1
     }
 
     /// The items of a row.
     #[inline]
-    #[must_use]
     pub fn row(&self, row: usize) -> &[T] {
         &self.items[self.range(row)]
     }
 
     /// Where the items of a row are among [all items](Self::items).
     #[inline]
-    #[must_use]
     pub fn range(&self, row: usize) -> std::ops::Range<usize> {
         self.offsets[row] as usize..self.offsets[row + 1] as usize
     }
 
     /// The items of all rows, one row after the other.
     #[inline]
-    #[must_use]
     pub fn items(&self) -> &[T] {
         &self.items
     }

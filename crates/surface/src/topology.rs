@@ -165,7 +165,6 @@ impl Topology {
     /// # Panics
     /// If a face has a vertex twice (`mesh::repair` removes such faces) or out of range (readers reject such files), or there
     /// are more vertices or faces than a mesh may have (`mesh::repair` rejects such meshes).
-    #[must_use]
     pub fn new(n_vertices: usize, faces: Vec<[VertexId; 3]>) -> Self {
         assert!(
             n_vertices <= Self::MAX_VERTICES && faces.len() <= Self::MAX_FACES,
@@ -208,43 +207,36 @@ impl Topology {
     }
 
     /// The vertices of every face, without the connectivity.
-    #[must_use]
     pub fn into_faces(self) -> Vec<[VertexId; 3]> {
         self.faces
     }
 
     /// Whether two faces have the same three vertices.
-    #[must_use]
     pub fn has_duplicate_faces(&self) -> bool {
         self.has_duplicate_faces
     }
 
     /// Number of vertices.
-    #[must_use]
     pub fn n_vertices(&self) -> usize {
         self.n_vertices
     }
 
     /// Number of faces.
-    #[must_use]
     pub fn n_faces(&self) -> usize {
         self.faces.len()
     }
 
     /// Number of undirected edges.
-    #[must_use]
     pub fn n_edges(&self) -> usize {
         self.edges.len()
     }
 
     /// The vertices of every face.
-    #[must_use]
     pub fn faces(&self) -> &[[VertexId; 3]] {
         &self.faces
     }
 
     /// The two ends of every edge, the lower first.
-    #[must_use]
     pub fn edges(&self) -> &[[VertexId; 2]] {
         &self.edges
     }
@@ -256,7 +248,6 @@ impl Topology {
 
     /// The edges from a vertex to higher ones, in ascending order.
     #[inline]
-    #[must_use]
     pub fn edges_above(&self, vertex: VertexId) -> &[[VertexId; 2]] {
         &self.edges[self.range_above(vertex)]
     }
@@ -268,55 +259,47 @@ impl Topology {
 
     /// The vertex in a corner.
     #[inline]
-    #[must_use]
     pub fn corner_vertex(&self, corner: CornerId) -> VertexId {
         self.faces[corner.face().index()][corner.slot()]
     }
 
     /// The edge opposite a corner.
     #[inline]
-    #[must_use]
     pub fn opposite_edge(&self, corner: CornerId) -> EdgeId {
         self.corner_edge[corner.index()]
     }
 
     /// The vertices at the ends of the edge opposite a corner: in the next and in the previous corner.
     #[inline]
-    #[must_use]
     pub fn edge_ends(&self, corner: CornerId) -> [VertexId; 2] {
         [corner.next(), corner.prev()].map(|end| self.corner_vertex(end))
     }
 
     /// The edges from a corner to the vertices in the next and in the previous corner of its face.
     #[inline]
-    #[must_use]
     pub fn corner_edges(&self, corner: CornerId) -> [EdgeId; 2] {
         [corner.prev(), corner.next()].map(|third| self.opposite_edge(third))
     }
 
     /// The corner of a face at one of its vertices; `None` for other vertices.
-    #[must_use]
     pub fn corner_at(&self, face: FaceId, vertex: VertexId) -> Option<CornerId> {
         face.corners().into_iter().find(|corner| self.corner_vertex(*corner) == vertex)
     }
 
     /// The corners at a vertex, one for each face around it.
     #[inline]
-    #[must_use]
     pub fn vertex_corners(&self, vertex: VertexId) -> &[CornerId] {
         self.vertex_corners.row(vertex.index())
     }
 
     /// The corners opposite an edge, one per face: one at the boundary, over two if it is non-manifold.
     #[inline]
-    #[must_use]
     pub fn edge_corners(&self, edge: EdgeId) -> &[CornerId] {
         self.edge_corners.row(edge.index())
     }
 
     /// The corner opposite the same edge in the other face; `None` if the edge does not have exactly two faces.
     #[inline]
-    #[must_use]
     pub fn opposite(&self, corner: CornerId) -> Option<CornerId> {
         match *self.edge_corners(self.opposite_edge(corner)) {
             // The other of the two; a branch would be mispredicted every second time.
@@ -326,7 +309,6 @@ impl Topology {
     }
 
     /// The edge between two vertices, if there is one.
-    #[must_use]
     pub fn edge_between(&self, a: VertexId, b: VertexId) -> Option<EdgeId> {
         if a.max(b).index() >= self.n_vertices {
             return None;

@@ -23,7 +23,6 @@ pub struct Triangle {
 ///
 /// Heron's formula in Kahan's form, which is accurate for needles.
 #[inline]
-#[must_use]
 pub fn twice_area([p, q, r]: [f64; 3]) -> f64 {
     // Not `min` and `max`, which check for NaN as well.
     let least = |p: f64, q: f64| if p < q { p } else { q };
@@ -45,7 +44,6 @@ pub fn twice_area([p, q, r]: [f64; 3]) -> f64 {
 /// Scalar product of two sides of a triangle from their common corner, from their lengths `p` and `q` and that of the
 /// side opposite.
 #[inline]
-#[must_use]
 pub fn scalar_product(opposite: f64, p: f64, q: f64) -> f64 {
     0.5 * (q * q + (p - opposite) * (p + opposite))
 }
@@ -56,7 +54,6 @@ impl Triangle {
     /// The height is zero if they violate the triangle inequality. Over a base without length, the apex is above its
     /// start.
     #[inline]
-    #[must_use]
     pub fn from_sides([base, left, right]: [f64; 3]) -> Self {
         if base <= 0.0 {
             return Self { base, x: 0.0, y: left };
@@ -66,20 +63,17 @@ impl Triangle {
     }
 
     /// The lengths of the base and of the sides from its start and its end to the apex.
-    #[must_use]
     pub fn sides(self) -> [f64; 3] {
         let Self { base, x, y } = self;
         [base, x.hypot(y), (base - x).hypot(y)]
     }
 
     /// Its area.
-    #[must_use]
     pub fn area(self) -> f64 {
         0.5 * self.base * self.y
     }
 
     /// The cotangents at the start of the base, at its end and at the apex; infinite or NaN in a flat triangle.
-    #[must_use]
     pub fn cotangents(self) -> [f64; 3] {
         let Self { base, x, y } = self;
         [x / y, (base - x) / y, self.apex_cotangent()]

@@ -95,13 +95,11 @@ pub enum Loops {
 
 impl Triangulation {
     /// The faces of a mesh, glued at edges of exactly two faces.
-    #[must_use]
     pub fn new(mesh: &IntrinsicMesh) -> Self {
         Self::glued_where(mesh, |_, _| true)
     }
 
     /// The same, but glued only where two opposite corners say so, whichever of them comes first.
-    #[must_use]
     pub fn glued_where(mesh: &IntrinsicMesh, is_glued: impl Fn(CornerId, CornerId) -> bool + Sync) -> Self {
         let topology = mesh.topology();
         let far = |corner| {
@@ -149,7 +147,6 @@ impl Triangulation {
 
     /// The corner opposite the same side in the neighboring triangle; `None` if the side is free.
     #[inline]
-    #[must_use]
     pub fn opposite(&self, corner: CornerId) -> Option<CornerId> {
         let far = self.neighbor(corner);
         (far != NONE).then_some(CornerId(far))
@@ -157,20 +154,17 @@ impl Triangulation {
 
     /// The vertex in a corner.
     #[inline]
-    #[must_use]
     pub fn corner_vertex(&self, corner: CornerId) -> VertexId {
         self.triangles[corner.face().index()].vertices[corner.slot()]
     }
 
     /// The triangles.
-    #[must_use]
     pub fn triangles(&self) -> &[GluedTriangle] {
         &self.triangles
     }
 
     /// The lengths of the three sides of a corner's triangle, as in [`IntrinsicMesh::sides`].
     #[inline]
-    #[must_use]
     pub fn sides(&self, corner: CornerId) -> [f64; 3] {
         let lengths = &self.triangles[corner.face().index()].lengths;
         let slot = corner.slot();
@@ -337,7 +331,6 @@ impl Triangulation {
     /// The number of triangles around the vertex in a corner, glued side to side until they are back at the corner; zero if
     /// they end at a free side.
     #[inline]
-    #[must_use]
     pub fn n_around(&self, start: CornerId) -> usize {
         let vertex = self.corner_vertex(start);
         let (mut corner, mut is_forward, mut n) = (start, true, 0);
@@ -357,7 +350,6 @@ impl Triangulation {
     ///
     /// # Panics
     /// If a triangle has a vertex that is out of range.
-    #[must_use]
     pub fn vertex_corners(&self, n_vertices: usize) -> Vec<VertexCorners> {
         let mut around = vec![VertexCorners::default(); n_vertices];
         for (t, triangle) in self.triangles.iter().enumerate().rev() {

@@ -12,15 +12,15 @@ use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 use surface::VertexId;
 
-use crate::articulated::{ArticulatedOptions, LabeledShape, POSES_PER_BODY, posed_skeleton, scale};
+use crate::articulated::{ArticulatedOptions, LabeledShape, bent};
 use crate::clearance::entanglement;
 use crate::error::DatasetError;
 use crate::extract::{Lattice, RawSurface, extract};
 use crate::model::BodyModel;
-use crate::pose::{Build, Pose, PosedSkeleton, turn};
-use crate::shape::{genus, posed_positions, rest_surface, shuffled};
+use crate::pose::{Pose, PosedSkeleton, turn};
+use crate::shape::genus;
 use crate::skeleton::{JointId, Skeleton};
-use crate::stream::{Purpose, Stream};
+use crate::stream::Stream;
 use draft::{Draft, PLAY};
 use plans::PLANS;
 use proportions::Proportions;
@@ -41,6 +41,12 @@ pub struct CreatureOptions {
 impl Default for CreatureOptions {
     fn default() -> Self {
         Self { seed: 1, n_families: 48, n_poses: 8, n_vertices: 3400 }
+    }
+}
+
+impl CreatureOptions {
+    fn of_shape(&self) -> ArticulatedOptions {
+        ArticulatedOptions { seed: self.seed, n_vertices: self.n_vertices }
     }
 }
 
@@ -90,7 +96,7 @@ pub fn creatures(options: &CreatureOptions) -> Result<Vec<LabeledShape>, Dataset
 /// # Errors
 /// As [`creatures`].
 pub fn creature_family(family: usize, options: &CreatureOptions) -> Result<Vec<LabeledShape>, DatasetError> {
-    validate(options)?;
+    options.of_shape().validate()?;
     let budget = Budget::unlimited();
     let model = model(family, options, &budget)?;
     (0..options.n_poses)
@@ -99,24 +105,11 @@ pub fn creature_family(family: usize, options: &CreatureOptions) -> Result<Vec<L
         .collect()
 }
 
-/// Generates one creature, the same as in [`creatures`]; poses beyond the number in the options are further variations.
+/// Generates one creature; poses beyond the number in the options are further variations. Body 0 is that of [`creatures`], others have
+/// other lengths and girths of trunk and limbs, as those of [`articulated_body`](crate::articulated_body).
 ///
 /// # Errors
 /// As [`creatures`], and [`DatasetError::Exceeded`] when the budget of the observer is.
-pub fn creature(
-    family: usize,
-    pose: usize,
-    options: &CreatureOptions,
-    observer: &dyn Observer,
-) -> Result<LabeledShape, DatasetError> {
-    creature_body(family, 0, pose, options, observer)
-}
-
-/// Generates a creature with other lengths and girths of trunk and limbs, as [`articulated_body`](crate::articulated_body) does.
-/// Body 0 is that of [`creatures`].
-///
-/// # Errors
-/// As [`creature`].
 pub fn creature_body(
     family: usize,
     body: usize,
@@ -124,19 +117,14 @@ pub fn creature_body(
     options: &CreatureOptions,
     observer: &dyn Observer,
 ) -> Result<LabeledShape, DatasetError> {
-    validate(options)?;
+    options.of_shape().validate()?;
     let budget = observer.budget();
     shape(family, &model(family, options, &budget)?, [body, pose], options, &budget)
 }
 
 /// The names of the body plans, in the order of the families; they are the labels of the first ones.
-#[must_use]
 pub fn creature_plans() -> Vec<&'static str> {
     PLANS.iter().map(|plan| plan.name.as_str()).collect()
-}
-
-fn validate(options: &CreatureOptions) -> Result<(), DatasetError> {
-    ArticulatedOptions { seed: options.seed, n_vertices: options.n_vertices }.validate()
 }
 
 /// The label of a family: that of its plan, followed by a capital letter after the first round (`worm`, `wormB`, ...).
@@ -151,10 +139,6 @@ fn label(family: usize) -> String {
     name.clone() + &letters
 }
 
-fn no_surface(shape: String, options: &CreatureOptions) -> DatasetError {
-    DatasetError::NoSurface { shape, n_vertices: options.n_vertices, seed: options.seed }
-}
-
 fn model(family: usize, options: &CreatureOptions, budget: &Budget) -> Result<BodyModel, DatasetError> {
     let (plan, round) = (family % PLANS.len(), family / PLANS.len());
     for attempt in 0..N_ATTEMPTS {
@@ -164,7 +148,7 @@ fn model(family: usize, options: &CreatureOptions, budget: &Budget) -> Result<Bo
             return Ok(model);
         }
     }
-    Err(no_surface(label(family), options))
+    Err(DatasetError::NoSurface { shape: label(family), n_vertices: options.n_vertices, seed: options.seed })
 }
 
 /// The model of a body with random poses; `None` if its limbs touch at rest.
@@ -217,25 +201,10 @@ fn random_pose(skeleton: &Skeleton, stream: &mut Stream) -> Pose {
 fn shape(
     family: usize,
     model: &BodyModel,
-    [body, pose]: [usize; 2],
+    numbers: [usize; 2],
     options: &CreatureOptions,
     budget: &Budget,
 ) -> Result<LabeledShape, DatasetError> {
-    let label = label(family);
-    let name = match body {
-        0 => format!("{label}{pose}"),
-        _ => format!("{label}-body{body}-pose{pose}"),
-    };
     let stream = |number, purpose| Stream::of_creature(options.seed, family, number, purpose);
-    let stream_of_pose = |purpose| stream(body * POSES_PER_BODY + pose, purpose);
-    let surface = rest_surface(model, options.n_vertices, &mut stream_of_pose(Purpose::Lattice), budget)?
-        .ok_or_else(|| no_surface(name.clone(), options))?;
-    let mut posed = posed_skeleton(model, pose, &mut stream_of_pose(Purpose::Pose));
-    if body > 0 {
-        posed =
-            posed.built(&Build::random(&model.skeleton, &mut stream(body * POSES_PER_BODY, Purpose::Build)));
-    }
-    let positions = posed_positions(&surface, &posed, scale(model));
-    let mesh = shuffled(&surface, &positions, &mut stream_of_pose(Purpose::Numbering));
-    Ok(LabeledShape { name, label, mesh })
+    Ok(bent(model, &label(family), numbers, &options.of_shape(), stream, budget)?.shape)
 }

@@ -67,13 +67,11 @@ impl DamageKind {
     pub const STRENGTHS: usize = 5;
 
     /// Its name, such as `shot noise`.
-    #[must_use]
     pub fn name(self) -> &'static str {
         self.into()
     }
 
     /// The damage of a strength from 1 to 5; others count as the nearest of these.
-    #[must_use]
     pub fn at(self, strength: usize) -> Damage {
         let strength = strength.clamp(1, Self::STRENGTHS);
         let of = |steps: [f64; 5]| steps[strength - 1];

@@ -62,7 +62,6 @@ pub enum Damage {
 
 impl Damage {
     /// Applies the damage. The same mesh and seed give the same bytes on any machine.
-    #[must_use]
     pub fn apply(self, mesh: &TriMesh, seed: u64) -> TriMesh {
         let mut stream = Stream::new(seed, 0, 0, Purpose::Damage);
         match self {
@@ -97,7 +96,6 @@ impl Damage {
     }
 
     /// Whether the surface is the same up to a motion, a reflection and scale.
-    #[must_use]
     pub fn keeps_surface(self) -> bool {
         matches!(self, Self::Subdivide(_) | Self::Move | Self::Scale | Self::Resize(_) | Self::Mirror)
     }

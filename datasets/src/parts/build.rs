@@ -46,7 +46,6 @@ impl MechanicalPart {
     }
 
     /// The volume in cubic millimetres of the exact part, whose circles are round; `None` where there is no simple formula.
-    #[must_use]
     pub fn volume(&self) -> Option<f64> {
         let v = &self.values[..];
         let disc = |diameter: f64| PI / 4.0 * diameter * diameter;
@@ -68,7 +67,6 @@ impl MechanicalPart {
     }
 
     /// The number of handles of the surface: one for each hole through the part.
-    #[must_use]
     pub fn genus(&self) -> usize {
         match self.family {
             PartFamily::Bracket => 2 * self.values[5] as usize,

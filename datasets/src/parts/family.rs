@@ -93,7 +93,6 @@ impl PartFamily {
     pub const ALL: &[Self] = Self::VARIANTS;
 
     /// Its name, such as `bent-pipe`.
-    #[must_use]
     pub fn name(self) -> &'static str {
         self.into()
     }

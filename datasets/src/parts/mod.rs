@@ -46,27 +46,23 @@ impl MechanicalPart {
     ///
     /// # Panics
     /// If the number of values is not that of the parameters of the family.
-    #[must_use]
     pub fn new(family: PartFamily, values: &[f64]) -> Self {
         assert_eq!(values.len(), family.parameters().len(), "parameters of a {}", family.name());
         Self { family, values: values.to_vec() }
     }
 
     /// Its family.
-    #[must_use]
     pub fn family(&self) -> PartFamily {
         self.family
     }
 
     /// Names and values of the parameters: lengths in millimetres, counts, angles in degrees. A thread's hand is 1 if it
     /// is right-handed and -1 if it is left-handed; such screws are each other's mirror images.
-    #[must_use]
     pub fn parameters(&self) -> Vec<(&'static str, f64)> {
         self.family.parameters().iter().map(|p| p.name).zip(self.values.iter().copied()).collect()
     }
 
     /// The parameters in which two parts of one family differ, with both values; `None` for parts of two families.
-    #[must_use]
     pub fn differences(&self, other: &Self) -> Option<Vec<(&'static str, [f64; 2])>> {
         let pairs = self.parameters().into_iter().zip(&other.values);
         let differing = pairs.filter(|((_, a), b)| a != *b).map(|((name, a), &b)| (name, [a, b]));
@@ -74,7 +70,6 @@ impl MechanicalPart {
     }
 
     /// Family and parameters, such as `gear-z18-m1-t5-d4`.
-    #[must_use]
     pub fn name(&self) -> String {
         let parameters = self.family.parameters().iter().zip(&self.values);
         parameters
@@ -82,7 +77,6 @@ impl MechanicalPart {
     }
 
     /// The surface: closed, manifold, in one piece and oriented outwards.
-    #[must_use]
     pub fn mesh(&self, options: &PartMesh) -> TriMesh {
         let mut solid = Solid::new(*options);
         self.build(&mut solid);
@@ -95,7 +89,6 @@ impl MechanicalPart {
 ///
 /// The first parts of a longer list are those of a shorter one. Families without further parts are left out, and the
 /// list ends when there are none; that is after more than 300 parts.
-#[must_use]
 pub fn mechanical_parts(seed: u64, n: usize) -> Vec<MechanicalPart> {
     let mut families: Vec<Draw> = PartFamily::ALL.iter().map(|family| Draw::new(seed, *family)).collect();
     let mut parts = Vec::with_capacity(n);

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use canonform_datasets::{
     ArticulatedOptions, CreatureOptions, DatasetError, Family, LabeledShape, articulated,
-    articulated_at_rest, articulated_body, articulated_shape, creature,
+    articulated_at_rest, articulated_body, articulated_shape, creature_body,
 };
 use mesh::{TriMesh, validate};
 use nalgebra::Point3;
@@ -150,7 +150,7 @@ fn a_cancelled_shape_ends_early() {
     budget.cancel();
     let cancelled = Err(DatasetError::Exceeded(base::Exceeded::Cancelled));
     assert_eq!(articulated_at_rest(Family::Cat, 0, 0, &options(1000), &budget).map(drop), cancelled);
-    assert_eq!(creature(0, 0, &CreatureOptions::default(), &budget).map(drop), cancelled);
+    assert_eq!(creature_body(0, 0, 0, &CreatureOptions::default(), &budget).map(drop), cancelled);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use canonform_datasets::{CreatureOptions, DatasetError, creature, creature_plans, creatures};
+use canonform_datasets::{CreatureOptions, DatasetError, creature_body, creature_plans, creatures};
 use mesh::validate;
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
@@ -55,9 +55,9 @@ fn bytes_depend_on_the_seed_and_not_on_threads_or_the_number_of_families() {
     let threads = |n| ThreadPoolBuilder::new().num_threads(n).build().unwrap();
     let all = threads(2).install(|| creatures(&few)).unwrap();
     assert_eq!(threads(1).install(|| creatures(&few)).unwrap(), all);
-    assert_eq!(creature(3, 1, &options(40, 8), &()).unwrap(), all[7]);
+    assert_eq!(creature_body(3, 0, 1, &options(40, 8), &()).unwrap(), all[7]);
     let other = CreatureOptions { seed: 2, ..few };
-    assert_ne!(creature(3, 1, &other, &()).unwrap().mesh, all[7].mesh);
+    assert_ne!(creature_body(3, 0, 1, &other, &()).unwrap().mesh, all[7].mesh);
 }
 
 #[test]

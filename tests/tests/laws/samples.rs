@@ -2,7 +2,7 @@
 
 use canonform::Surface;
 use canonform::embed::{EmbedMethod, EmbedOptions, Embedded, FormOptions, Samples, StressOptions, embed};
-use datasets::{CreatureOptions, Family, creature, creature_plans};
+use datasets::{CreatureOptions, Family, creature_body, creature_plans};
 use linalg::DistanceMatrix;
 use mesh::TriMesh;
 use nmds::{SampleStop, stress};
@@ -18,7 +18,7 @@ fn of_kind(kind: &str, n_vertices: usize) -> TriMesh {
 
 fn of_plan(plan: usize, n_vertices: usize) -> TriMesh {
     let options = CreatureOptions { n_vertices, ..CreatureOptions::default() };
-    creature(plan, 0, &options, &()).unwrap().mesh
+    creature_body(plan, 0, 0, &options, &()).unwrap().mesh
 }
 
 fn all_pairs(surface: &Surface) -> DistanceMatrix {

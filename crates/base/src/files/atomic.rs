@@ -35,7 +35,6 @@ pub fn keep_input(path: &Path) {
 }
 
 /// Whether a path leads to a file that [must not be replaced](keep_input).
-#[must_use]
 pub fn is_input(path: &Path) -> bool {
     let inputs = INPUTS.lock().unwrap_or_else(PoisonError::into_inner);
     inputs.as_ref().is_some_and(|inputs| FileId::of(path).is_ok_and(|id| inputs.contains(&id)))
@@ -233,7 +232,6 @@ impl Scratch {
     }
 
     /// A file name in the folder.
-    #[must_use]
     pub fn file(&self, name: &str) -> PathBuf {
         self.0.path.join(name)
     }

@@ -17,7 +17,6 @@ pub struct FileError {
 }
 
 /// What to do about an error of the operating system, after `; `; empty if nobody can say.
-#[must_use]
 pub fn remedy(source: &io::Error) -> &'static str {
     use io::ErrorKind as Kind;
     match source.kind() {

@@ -41,28 +41,24 @@ impl FileId {
 }
 
 /// Whether two paths lead to one file. False if one of them leads nowhere.
-#[must_use]
 pub fn is_same_file(a: &Path, b: &Path) -> bool {
     matches!((FileId::of(a), FileId::of(b)), (Ok(a), Ok(b)) if a == b)
 }
 
 /// Whether an open file still has this name.
 #[cfg(unix)]
-#[must_use]
 pub fn is_at(file: &File, path: &Path) -> bool {
     file.metadata().is_ok_and(|open| FileId::of(path).is_ok_and(|named| named == FileId::of_metadata(&open)))
 }
 
 /// Whether an open file still has this name: here open files cannot be renamed.
 #[cfg(not(unix))]
-#[must_use]
 pub fn is_at(_: &File, path: &Path) -> bool {
     path.exists()
 }
 
 /// Whether an open file has several names (hard links).
 #[cfg(unix)]
-#[must_use]
 pub fn has_other_names(file: &File) -> bool {
     use std::os::unix::fs::MetadataExt;
     file.metadata().is_ok_and(|about| about.nlink() > 1)
@@ -70,7 +66,6 @@ pub fn has_other_names(file: &File) -> bool {
 
 /// Whether an open file has several names (hard links): unknown here.
 #[cfg(not(unix))]
-#[must_use]
 pub fn has_other_names(_: &File) -> bool {
     false
 }

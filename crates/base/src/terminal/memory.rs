@@ -13,7 +13,6 @@ pub fn with_peak_bytes<T>(work: impl FnOnce() -> T) -> (T, usize) {
 }
 
 /// The memory that the program may reserve, in bytes, if the user has limited it with `ulimit -v`; known on Linux only.
-#[must_use]
 pub fn memory_limit() -> Option<usize> {
     parse_limit(&std::fs::read_to_string("/proc/self/limits").ok()?)
 }

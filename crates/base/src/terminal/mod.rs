@@ -55,7 +55,6 @@ pub fn run(threads: usize, program: impl FnOnce() -> Result<ExitCode>) -> ExitCo
 }
 
 /// An error and its causes, without causes whose text is already quoted.
-#[must_use]
 pub fn message(error: &anyhow::Error) -> String {
     let mut text = String::new();
     for cause in error.chain().map(ToString::to_string) {

@@ -13,7 +13,6 @@ pub fn set_quiet(quiet: bool) {
 }
 
 /// Whether all messages but errors are hidden.
-#[must_use]
 pub fn is_quiet() -> bool {
     QUIET.load(Ordering::Relaxed)
 }

@@ -20,19 +20,16 @@ pub struct Bars {
 
 impl Bars {
     /// Bars that are hidden if `quiet`, or if the [program is](crate::terminal::set_quiet).
-    #[must_use]
     pub fn new(quiet: bool) -> Self {
         Self::with_budget(quiet, Budget::unlimited())
     }
 
     /// Bars of work with this budget.
-    #[must_use]
     pub fn with_budget(quiet: bool, budget: Budget) -> Self {
         Self { visible: !quiet && !is_quiet(), budget, current: Mutex::new(None) }
     }
 
     /// A bar over the steps of a stage, which the caller advances.
-    #[must_use]
     pub fn bar(&self, stage: &str, total: usize) -> ProgressBar {
         if !self.visible {
             return ProgressBar::hidden();

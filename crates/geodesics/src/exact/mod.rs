@@ -92,14 +92,12 @@ pub struct Exact {
 
 impl Exact {
     /// Prepares a surface. The solver keeps to the budget of the observer.
-    #[must_use]
     pub fn new(mesh: &IntrinsicMesh, observer: &dyn Observer) -> Self {
         let surface = Arc::new(PreparedSurface::new(mesh));
         Self { surface, scratch: Arc::default(), budget: observer.budget() }
     }
 
     /// The same solver with the budget of another observer.
-    #[must_use]
     pub fn observed_by(&self, observer: &dyn Observer) -> Self {
         Self { budget: observer.budget(), ..self.clone() }
     }

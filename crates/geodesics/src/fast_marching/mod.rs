@@ -162,7 +162,6 @@ enum LocalSolver {
 impl FastMarching {
     /// Prepares a surface. The solver keeps to the budget of the observer. The memory of a surface that is given away is
     /// free before that of the solver is needed.
-    #[must_use]
     pub fn new<'a>(
         mesh: impl Into<Cow<'a, IntrinsicMesh>>,
         options: FastMarchingOptions,

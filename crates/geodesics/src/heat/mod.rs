@@ -171,7 +171,6 @@ impl HeatMethod {
     }
 
     /// How long heat flows, in squared mesh units.
-    #[must_use]
     pub fn time(&self) -> f64 {
         self.time * self.unit * self.unit
     }

@@ -5,14 +5,12 @@
 //! | `plane` | faces laid out in the plane |
 //! | `field` | distances and their sources, which paths lead to |
 //! | `strip` | paths as nodes and the faces crossed between them, laid out one after the other |
-//! | `descent` | a first path from a point to the source, down the field of distances |
 //! | `edges` | paths along edges, as a fallback |
 //! | `visibility` | the visible vertex over which the source is nearest |
 //! | `funnel` | the shortest path through a strip of faces |
 //! | `turn` | the angle of a path at a vertex, and the faces on its inner side |
 //! | `straighten` | replaces bends by detours over their inner side until there are none |
 
-mod descent;
 mod edges;
 mod field;
 mod funnel;
@@ -31,7 +29,6 @@ use surface::IntrinsicMesh;
 
 use crate::error::GeodesicError;
 use crate::source::Source;
-use descent::descend;
 use edges::EdgeTree;
 use field::PathField;
 pub(crate) use plane::Flat;
@@ -39,7 +36,7 @@ use plane::faces_around;
 use straighten::straighten;
 use strip::{PathSection, StripPath};
 use surface::SurfacePoint;
-use visibility::nearest_visible;
+use visibility::{Sight, nearest_visible};
 
 /// A path along the surface, straight in every face it crosses.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,21 +54,18 @@ const MAX_LEGS: usize = 64;
 /// Limit of the bundles of rays followed for one path; some hundreds if the field is accurate.
 const MAX_RAYS: usize = 50_000;
 
-/// Share by which rounding may make a path longer than its distance in the field.
-const ROUNDING: f64 = 1e-11;
-
 /// Finds shortest paths to the sources of a field of distances.
 ///
-/// A first path descends the field from the target to the nearest source. It is then made locally shortest (Xin and
-/// Wang 2007, `xin2007`): straight through faces, bending only at vertices with at least 180 degrees on either side.
-/// So the field only decides between paths on different sides of an obstacle, and its error does not enter the path.
+/// A first path goes straight from the target to the visible vertex over which the source is nearest, and so on from there. It is then
+/// made locally shortest (Xin and Wang 2007, `xin2007`): straight through faces, bending only at vertices with at least 180 degrees
+/// on either side. So the field only decides between paths on different sides of an obstacle, and its error does not enter the path.
 ///
 /// * A path starts exactly at the source and ends exactly at the target. Its length is that of its points in order,
 ///   so it is at least the exact distance, and at most the distance along edges.
-/// * With exact distances it is the shortest path, except for rare targets near a ridge of the field.
+/// * With exact distances it is the shortest path.
 /// * Any surface: edges with any number of faces, any orientation, boundaries, links, faces without area. It always
-///   terminates: a path passes no vertex and crosses no edge twice, and every step of straightening makes it shorter.
-///   If the descent is stuck, the path along edges is straightened.
+///   terminates: a path has a limited number of legs, and every step of straightening makes it shorter.
+///   If the field leads nowhere, the path along edges is straightened.
 ///
 /// Cost: in practice `O(k log k)` for a path that crosses `k` faces. If a path is longer than its distance in the
 /// field, paths along edges are computed, once per tracer.
@@ -103,7 +97,6 @@ impl<'a> PathTracer<'a> {
     ///
     /// # Panics
     /// If there is not one distance per vertex.
-    #[must_use]
     pub fn new(
         mesh: &'a IntrinsicMesh,
         sources: &'a [Source],
@@ -142,7 +135,7 @@ impl<'a> PathTracer<'a> {
         let enough = if matches!(target, SurfacePoint::Vertex(_)) { known } else { 0.0 };
         self.budget.check()?;
         let mut rays = MAX_RAYS;
-        let mut best = self.path_from(target, enough, MAX_LEGS, &mut rays);
+        let mut best = self.path_from(target, enough, MAX_LEGS, &mut rays).map(|path| straighten(mesh, path));
         self.budget.check()?;
         let length = |path: &Option<StripPath>| path.as_ref().map_or(f64::INFINITY, |path| path.length(mesh));
         if length(&best) > known && length(&best) > distance(&self.tree().distances) {
@@ -154,11 +147,8 @@ impl<'a> PathTracer<'a> {
         best.map(|path| self.points_of(&path)).ok_or(GeodesicError::NoPath { point: target })
     }
 
-    /// The shortest path found from `target` to a source. Stops at length `enough`, and uses at most these numbers of
-    /// legs and rays.
-    ///
-    /// Descends the field first; if that is too long, goes straight to the visible vertex over which the source is
-    /// nearest, and continues from there.
+    /// The path from `target` over the vertices that lead to a source, with at most these numbers of legs and rays. The first leg
+    /// need not promise less than `enough`.
     fn path_from(
         &self,
         target: SurfacePoint,
@@ -166,25 +156,32 @@ impl<'a> PathTracer<'a> {
         legs: usize,
         rays: &mut usize,
     ) -> Option<StripPath> {
-        let mesh = self.field.mesh;
-        let best = descend(&self.field, target).map(|path| straighten(mesh, path));
-        let known = best.as_ref().map_or(f64::INFINITY, |path| path.length(mesh));
-        if known <= enough * (1.0 + ROUNDING) || legs == 0 {
-            return best;
+        let field = &self.field;
+        let mut link = None;
+        if let SurfacePoint::Vertex(vertex) = target {
+            if field.is_source(vertex) {
+                return Some(StripPath { nodes: vec![target], sections: Vec::new() });
+            }
+            let totals =
+                field.links(vertex).iter().map(|way| (way.length + field.distances[way.to.index()], way));
+            link = totals.min_by(|a, b| a.0.total_cmp(&b.0));
         }
-        let other = nearest_visible(&self.field, target, known, enough, rays).and_then(|sight| {
-            let rest = match sight.end {
-                SurfacePoint::Vertex(vertex) => {
-                    self.path_from(sight.end, self.field.distances[vertex.index()], legs - 1, rays)?
-                }
-                source => StripPath { nodes: vec![source], sections: Vec::new() },
-            };
-            let mut path = StripPath { nodes: vec![target], sections: vec![PathSection::Strip(sight.strip)] };
-            path.nodes.extend(rest.nodes);
-            path.sections.extend(rest.sections);
-            Some(straighten(mesh, path))
-        });
-        other.filter(|path| path.length(mesh) < known).or(best)
+        let over_link = link.map_or(f64::INFINITY, |(total, _)| total);
+        let (section, end) = match nearest_visible(field, target, over_link, enough, rays) {
+            Some(Sight { end, strip }) => (PathSection::Strip(strip), end),
+            None => link.map(|(_, way)| (PathSection::Link(way.length), SurfacePoint::Vertex(way.to)))?,
+        };
+        let mut path = StripPath { nodes: vec![target], sections: vec![section] };
+        match end {
+            SurfacePoint::Vertex(vertex) => {
+                let rest =
+                    self.path_from(end, field.distances[vertex.index()], legs.checked_sub(1)?, rays)?;
+                path.nodes.extend(rest.nodes);
+                path.sections.extend(rest.sections);
+            }
+            source => path.nodes.push(source),
+        }
+        Some(path)
     }
 
     /// The points of a path, from the source on.

@@ -4,7 +4,7 @@ use surface::IntrinsicMesh;
 
 use super::funnel::shortest_through;
 use super::strip::{PathSection, Portal, Strip, StripPath};
-use super::turn::{Direction, direction, inner_side};
+use super::turn::{Direction, inner_side};
 use surface::SurfacePoint;
 
 /// Share of its length that a detour must save; less is rounding.
@@ -66,15 +66,12 @@ fn detour(
     let [before, after] = [&path.sections[at - 1], &path.sections[at]];
     let SurfacePoint::Vertex(vertex) = node else { return None };
     let (PathSection::Strip(first), PathSection::Strip(second)) = (before, after) else { return None };
-    let from = direction(mesh, vertex, *first.faces.last()?, first.portals.last(), start)?;
-    let to = direction(mesh, vertex, *second.faces.first()?, second.portals.first(), end)?;
-    let (faces, edges) = inner_side(mesh, vertex, from, to)?;
+    let from = Direction::of(mesh, vertex, *first.faces.last()?, first.portals.last(), start)?;
+    let to = Direction::of(mesh, vertex, *second.faces.first()?, second.portals.first(), end)?;
+    let (faces, edges) = inner_side(mesh, vertex, &from, &to)?;
     // Along an edge no face is crossed; otherwise the face is the first or the last on the inner side.
-    let upto = |strip: &Strip, direction| match direction {
-        Direction::Along(_) => 0,
-        Direction::Into { .. } => strip.portals.len(),
-    };
-    let (n, m) = (upto(first, from), upto(second, to));
+    let upto = |strip: &Strip, direction: &Direction| direction.face.map_or(0, |_| strip.portals.len());
+    let (n, m) = (upto(first, &from), upto(second, &to));
     let mut strip = Strip { faces: first.faces[..n].to_vec(), portals: first.portals[..n].to_vec() };
     strip.faces.extend(faces);
     strip.portals.extend(edges.into_iter().map(|edge| Portal { edge, t: 0.5 }));

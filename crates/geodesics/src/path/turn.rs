@@ -1,9 +1,8 @@
 //! The angle of a path at a vertex, and the faces on its inner side.
 
-use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-use surface::{CornerId, EdgeId, FaceId, IntrinsicMesh, NearestFirst, VertexId};
+use surface::{CornerId, EdgeGraph, EdgeId, FaceId, Frontier, IntrinsicMesh, Link, VertexId};
 
 use super::plane::{Flat, is_on};
 use super::strip::Portal;
@@ -12,37 +11,36 @@ use surface::SurfacePoint;
 /// A path bends if the angle on one side is less than this: smaller bends are rounding.
 const STRAIGHT: f64 = PI - 1e-8;
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Direction {
-    Along(EdgeId),
-    /// Into a face, at these angles from its two edges at the vertex.
-    Into {
-        face: FaceId,
-        edges: [EdgeId; 2],
-        angles: [f64; 2],
-    },
+/// A direction at a vertex.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Direction {
+    /// The face that it leads into; `None` along an edge.
+    pub(super) face: Option<FaceId>,
+    /// That edge, or the two edges of the face at the vertex, and the angles to them.
+    edges: Vec<(EdgeId, f64)>,
 }
 
-/// The direction from `vertex` into a face, towards a portal or, without one, the point `end` in it.
-pub(super) fn direction(
-    mesh: &IntrinsicMesh,
-    vertex: VertexId,
-    face: FaceId,
-    portal: Option<&Portal>,
-    end: SurfacePoint,
-) -> Option<Direction> {
-    let towards = portal.map_or(end, |portal| portal.point());
-    let topology = mesh.topology();
-    let corner = topology.corner_at(face, vertex)?;
-    let edges = topology.corner_edges(corner);
-    if let Some(edge) = edges.into_iter().find(|edge| is_on(mesh, towards, *edge)) {
-        return Some(Direction::Along(edge));
+impl Direction {
+    /// The direction from `vertex` into a face, towards a portal or, without one, the point `end` in it.
+    pub(super) fn of(
+        mesh: &IntrinsicMesh,
+        vertex: VertexId,
+        face: FaceId,
+        portal: Option<&Portal>,
+        end: SurfacePoint,
+    ) -> Option<Self> {
+        let towards = portal.map_or(end, |portal| portal.point());
+        let corner = mesh.topology().corner_at(face, vertex)?;
+        let edges = mesh.topology().corner_edges(corner);
+        if let Some(edge) = edges.into_iter().find(|edge| is_on(mesh, towards, *edge)) {
+            return Some(Self { face: None, edges: vec![(edge, 0.0)] });
+        }
+        let [x, y] = Flat::new(mesh, corner).point(mesh, towards);
+        // Rounding may put the point outside the face, but angles must not be negative.
+        let first = y.atan2(x).abs();
+        let rest = (angle(mesh, corner) - first).abs();
+        Some(Self { face: Some(face), edges: vec![(edges[0], first), (edges[1], rest)] })
     }
-    let [x, y] = Flat::new(mesh, corner).point(mesh, towards);
-    // Rounding may put the point outside the face, but angles must not be negative.
-    let first = y.atan2(x).abs();
-    let rest = (angle(mesh, corner) - first).abs();
-    Some(Direction::Into { face, edges, angles: [first, rest] })
 }
 
 /// The faces between two directions at a vertex, and the edges between these faces, on a side where the directions
@@ -50,90 +48,62 @@ pub(super) fn direction(
 ///
 /// Finds the shortest path in a graph whose nodes are the edges at the vertex and whose arcs are the angles of faces.
 /// So edges may have any number of faces of any orientation, and the fan may be open.
-///
-/// Cost: `O(k log k)` for the `k` faces within 180 degrees.
 pub(super) fn inner_side(
     mesh: &IntrinsicMesh,
     vertex: VertexId,
-    from: Direction,
-    to: Direction,
+    from: &Direction,
+    to: &Direction,
 ) -> Option<(Vec<FaceId>, Vec<EdgeId>)> {
     let topology = mesh.topology();
-    // For each edge: the angle to it, and the edge before it and the face between, if any.
-    let mut reached: BTreeMap<EdgeId, (f64, Option<EdgeId>, Option<FaceId>)> = BTreeMap::new();
-    let mut queue = NearestFirst::default();
-    let mut best: (f64, Option<EdgeId>) = (STRAIGHT, None);
-    match from {
-        Direction::Along(edge) => {
-            reached.insert(edge, (0.0, None, None));
-            queue.push(0.0, edge);
-        }
-        Direction::Into { face, edges, angles } => {
-            for (edge, angle) in edges.into_iter().zip(angles) {
-                reached.insert(edge, (angle, None, Some(face)));
-                queue.push(angle, edge);
-            }
-        }
+    if from.face.is_some() && from.face == to.face {
+        return Some((from.face.into_iter().collect(), Vec::new()));
     }
-    if let (Direction::Into { face, angles: a, .. }, Direction::Into { face: other, angles: b, .. }) =
-        (from, to)
-        && face == other
-        && (a[0] - b[0]).abs() < best.0
-    {
-        return Some((vec![face], Vec::new()));
+    let corners = topology.vertex_corners(vertex);
+    let mut edges: Vec<EdgeId> = corners.iter().flat_map(|corner| topology.corner_edges(*corner)).collect();
+    edges.sort_unstable();
+    edges.dedup();
+    let node = |edge: EdgeId| VertexId::from(edges.partition_point(|other| *other < edge));
+    let arc = |corner: &CornerId| Link {
+        ends: topology.corner_edges(*corner).map(node),
+        length: angle(mesh, *corner),
+    };
+    let (graph, mut front) = (EdgeGraph::new(edges.len(), corners.iter().map(arc)), Frontier::default());
+    // For each edge: the one before it, and the face between.
+    let mut before = vec![(None, None); edges.len()];
+    front.reset(edges.len());
+    for (edge, angle) in &from.edges {
+        front.relax(node(*edge), *angle);
+        before[node(*edge).index()] = (None, from.face);
     }
-    while let Some((here, edge)) = queue.pop() {
-        if here >= best.0 {
-            break;
-        }
-        if reached.get(&edge).is_some_and(|known| known.0 < here) {
-            continue;
-        }
-        let rest = match to {
-            Direction::Along(last) => (last == edge).then_some(0.0),
-            Direction::Into { edges, angles, .. } => {
-                edges.iter().position(|last| *last == edge).map(|i| angles[i])
-            }
-        };
-        if let Some(rest) = rest.filter(|rest| here + rest < best.0) {
-            best = (here + rest, Some(edge));
-        }
-        for facing in topology.edge_corners(edge) {
-            let Some(corner) = topology.corner_at(facing.face(), vertex) else { continue };
-            let there = here + angle(mesh, corner);
-            for next in topology.corner_edges(corner).into_iter().filter(|next| *next != edge) {
-                if there < STRAIGHT && reached.get(&next).is_none_or(|known| there < known.0) {
-                    reached.insert(next, (there, Some(edge), Some(facing.face())));
-                    queue.push(there, next);
-                }
-            }
-        }
-    }
-    let mut at = best.1;
-    let (mut faces, mut edges) = (Vec::new(), Vec::new());
-    if let Direction::Into { face, .. } = to {
-        faces.push(face);
-    }
-    at?;
-    while let Some((edge, (_, before, face))) = at.and_then(|edge| Some((edge, *reached.get(&edge)?))) {
-        edges.push(edge);
+    graph.search(
+        &mut front,
+        STRAIGHT,
+        |_, _| true,
+        |edge, way| before[way.to.index()] = (Some(edge), Some(corners[way.number as usize].face())),
+    );
+    let totals = to.edges.iter().map(|(edge, rest)| (front.distance(node(*edge)) + rest, node(*edge)));
+    let (_, last) = totals.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(total, _)| *total < STRAIGHT)?;
+    let (mut faces, mut crossed, mut at) = (Vec::from_iter(to.face), Vec::new(), Some(last));
+    while let Some(node) = at {
+        let (earlier, face) = before[node.index()];
+        crossed.push(edges[node.index()]);
         faces.extend(face);
-        at = before;
+        at = earlier;
     }
     faces.reverse();
-    edges.reverse();
+    crossed.reverse();
     // Edges along which the path arrives or leaves are not crossed.
-    if matches!(to, Direction::Along(_)) {
-        edges.pop();
+    if to.face.is_none() {
+        crossed.pop();
     }
-    if matches!(from, Direction::Along(_)) && !edges.is_empty() {
-        edges.remove(0);
+    if from.face.is_none() && !crossed.is_empty() {
+        crossed.remove(0);
     }
     if faces.is_empty() {
         // Back along the same edge.
-        faces.push(topology.edge_corners(best.1?).first()?.face());
+        faces.push(topology.edge_corners(edges[last.index()]).first()?.face());
     }
-    Some((faces, edges))
+    Some((faces, crossed))
 }
 
 fn angle(mesh: &IntrinsicMesh, corner: CornerId) -> f64 {

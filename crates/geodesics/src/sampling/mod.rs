@@ -90,7 +90,6 @@ impl Sampling {
     pub const ALL: [Self; 4] = [Self::Farthest, Self::Random, Self::MinVariance, Self::MaxVariance];
 
     /// The name on the command line and in records.
-    #[must_use]
     pub fn name(self) -> &'static str {
         self.into()
     }
@@ -118,7 +117,6 @@ mod tests {
     use surface::VertexId;
 
     use super::*;
-    use crate::breadth_first::BreadthFirst;
     use crate::dijkstra::Dijkstra;
 
     const ALL: [Sampling; 4] = Sampling::ALL;
@@ -209,7 +207,7 @@ mod tests {
 
     #[test]
     fn all_vertices_are_equally_likely() {
-        let solver = BreadthFirst::new(&grid(4, 3, 1.0).intrinsic(), &());
+        let solver = Dijkstra::of_hops(&grid(4, 3, 1.0).intrinsic(), &());
         let p = solver.n_vertices();
         let (runs, n) = (3000, 4);
         let mut taken = vec![0usize; p];

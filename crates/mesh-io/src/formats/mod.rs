@@ -156,15 +156,20 @@ impl Format {
             none if none.is_empty() && is_gzip(path) => "gz".to_owned(),
             extension => extension,
         };
-        Self::named(&extension).ok_or_else(|| MeshError::UnknownFormat {
-            path: path.to_path_buf(),
-            extension,
-            supported: or_list(FORMATS.iter().map(|format| format.extensions[0])),
+        Self::named(&extension).ok_or_else(|| {
+            let what = match &*extension {
+                "" => "the file name has no extension".to_owned(),
+                "las" | "laz" => format!(
+                    "unknown mesh format `.{extension}`, which `pdal translate in.{extension} out.ply` converts"
+                ),
+                _ => format!("unknown mesh format `.{extension}`"),
+            };
+            let supported = or_list(FORMATS.iter().map(|format| format.extensions[0]));
+            MeshError::UnknownFormat(format!("{}: {what}; use {supported}", path.display()))
         })
     }
 
     /// The format with this extension, in upper or lower case, without a dot.
-    #[must_use]
     pub fn named(extension: &str) -> Option<&'static Self> {
         let extension = extension.to_ascii_lowercase();
         FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()))
@@ -179,7 +184,6 @@ impl Format {
     }
 
     /// Whether files of this format can be written with this content.
-    #[must_use]
     pub fn can_write(&self, content: Content) -> bool {
         match content {
             Content::Mesh => !self.write.is_empty(),
@@ -193,12 +197,13 @@ impl Format {
         let format = Self::of(path)?;
         match format.can_write(content) {
             true => Ok(format),
-            false => Err(MeshError::NotWritable {
-                path: path.to_owned(),
-                format: format.name,
-                content: content.name(),
-                supported: or_list(writable(content)),
-            }),
+            false => Err(MeshError::Invalid(format!(
+                "{}: {} files cannot be written with {}; use {}",
+                path.display(),
+                format.name,
+                content.name(),
+                or_list(writable(content))
+            ))),
         }
     }
 
@@ -229,7 +234,6 @@ pub fn writable(content: Content) -> impl Iterator<Item = &'static str> {
 }
 
 /// Extensions as a phrase, such as `.npy, .csv or .ply`.
-#[must_use]
 pub fn or_list<'a>(extensions: impl IntoIterator<Item = &'a str>) -> String {
     let dotted: Vec<String> = extensions.into_iter().map(|extension| format!(".{extension}")).collect();
     match dotted.split_last() {
@@ -239,7 +243,6 @@ pub fn or_list<'a>(extensions: impl IntoIterator<Item = &'a str>) -> String {
 }
 
 /// The files of one mesh, as a phrase: `a .off, ... or .mat file, or a .vert with its .tri`.
-#[must_use]
 pub fn mesh_files() -> String {
     let (single, paired): (Vec<&Format>, Vec<&Format>) =
         FORMATS.iter().partition(|format| format.extensions.len() == 1);

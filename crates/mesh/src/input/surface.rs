@@ -115,19 +115,16 @@ impl Surface {
     }
 
     /// The geometry, and everything that relates results to the input. The mesh with its coordinates is dropped.
-    #[must_use]
     pub fn into_parts(self) -> (IntrinsicMesh, InputMap) {
         (self.intrinsic, self.input)
     }
 
     /// The repaired mesh.
-    #[must_use]
     pub fn into_mesh(self) -> TriMesh {
         self.mesh
     }
 
     /// The same surface on a mesh that was made of its own, cut at `shortcuts`. Links move with their ends.
-    #[must_use]
     pub(crate) fn with_mesh(&self, Remapped { mesh, remap }: Remapped, shortcuts: Vec<Shortcut>) -> Self {
         let moved = |link: &Link| {
             let [a, b] = link.ends.map(|v| remap.to_new(v));
@@ -211,7 +208,6 @@ impl Surface {
 
     /// The input of this surface, to be shown: of a point cloud, the surface through its points, with a vertex for every
     /// point; any other mesh as it is.
-    #[must_use]
     pub fn shown(&self, input: TriMesh) -> TriMesh {
         if !input.faces.is_empty() {
             return input;

@@ -74,7 +74,6 @@ const COARSE: f64 = 1e-9;
 
 impl RepairReport {
     /// One short line per kind of change; empty if nothing was changed.
-    #[must_use]
     pub fn summary(&self) -> Vec<String> {
         const FACES: [&str; 2] = ["face", "faces"];
         const VERTICES: [&str; 2] = ["vertex", "vertices"];

@@ -21,14 +21,12 @@ fn subdivided(mesh: TriMesh, level: u32) -> TriMesh {
 }
 
 /// A regular tetrahedron with corners at (+-1, +-1, +-1), each face split into `4^level`.
-#[must_use]
 pub fn tetrahedron(level: u32) -> TriMesh {
     let corners = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
     subdivided(from_arrays(&corners, &[[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]), level)
 }
 
 /// The unit cube [0, 1]^3, each of its twelve triangles split into `4^level`.
-#[must_use]
 pub fn cube(level: u32) -> TriMesh {
     let corners: Vec<[f64; 3]> =
         (0..8).map(|i| [f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)]).collect();
@@ -39,7 +37,6 @@ pub fn cube(level: u32) -> TriMesh {
 
 /// A unit sphere: an icosahedron subdivided `level` times with all vertices on the sphere, `10 * 4^level + 2`
 /// of them.
-#[must_use]
 pub fn icosphere(level: u32) -> TriMesh {
     let g = (1.0 + 5f64.sqrt()) / 2.0;
     // Three rectangles at right angles, with sides in the golden ratio.
@@ -70,7 +67,6 @@ pub fn icosphere(level: u32) -> TriMesh {
 ///
 /// # Panics
 /// If `n_around` is below three or `n_along` below two.
-#[must_use]
 pub fn cylinder(n_around: usize, n_along: usize, radius: f64, height: f64) -> TriMesh {
     assert!(n_around >= 3 && n_along >= 2, "a cylinder needs 3 x 2 vertices, not {n_around} x {n_along}");
     let positions = (0..n_along * n_around)
@@ -88,7 +84,6 @@ pub fn cylinder(n_around: usize, n_along: usize, radius: f64, height: f64) -> Tr
 ///
 /// # Panics
 /// If `n_major` or `n_minor` is below three.
-#[must_use]
 pub fn torus(n_major: usize, n_minor: usize, major: f64, minor: f64) -> TriMesh {
     assert!(n_major >= 3 && n_minor >= 3, "a torus needs 3 x 3 vertices, not {n_major} x {n_minor}");
     let positions = (0..n_major * n_minor)
@@ -104,7 +99,6 @@ pub fn torus(n_major: usize, n_minor: usize, major: f64, minor: f64) -> TriMesh 
 }
 
 /// A torus of 40 x 20 vertices with a bump: no symmetry.
-#[must_use]
 pub fn lopsided_torus() -> TriMesh {
     let mut mesh = torus(40, 20, 2.0, 0.7);
     for p in &mut mesh.positions {

@@ -11,7 +11,6 @@ use crate::tri_mesh::TriMesh;
 ///
 /// # Panics
 /// If `nx` or `ny` is below two.
-#[must_use]
 pub fn grid(nx: usize, ny: usize, step: f64) -> TriMesh {
     sheared_grid(nx, ny, step, 0.0)
 }
@@ -21,7 +20,6 @@ pub fn grid(nx: usize, ny: usize, step: f64) -> TriMesh {
 ///
 /// # Panics
 /// If `nx` or `ny` is below two.
-#[must_use]
 pub fn sheared_grid(nx: usize, ny: usize, step: f64, shear: f64) -> TriMesh {
     assert!(nx >= 2 && ny >= 2, "a grid needs two vertices per side, not {nx} x {ny}");
     let positions = (0..nx * ny)
@@ -38,7 +36,6 @@ pub fn sheared_grid(nx: usize, ny: usize, step: f64, shear: f64) -> TriMesh {
 ///
 /// # Panics
 /// If `nx` or `ny` is below two.
-#[must_use]
 pub fn jittered_grid(nx: usize, ny: usize, step: f64, jitter: f64, seed: u64) -> TriMesh {
     let mut mesh = grid(nx, ny, step);
     let mut random = SplitMix(seed);
@@ -62,7 +59,6 @@ pub(super) fn triangles(nx: usize, ny: usize, vertex: impl Fn(usize, usize) -> u
 /// Rotates everything beyond the line `x = crease, z = 0` around that line by `angle` radians.
 ///
 /// This is an isometry of a sheet in the plane z = 0 if no edge crosses the line.
-#[must_use]
 pub fn fold(sheet: &TriMesh, crease: f64, angle: f64) -> TriMesh {
     let mut folded = sheet.clone();
     let (sin, cos) = angle.sin_cos();
@@ -78,7 +74,6 @@ pub fn fold(sheet: &TriMesh, crease: f64, angle: f64) -> TriMesh {
 ///
 /// # Panics
 /// If `nx` or `ny` is below two.
-#[must_use]
 pub fn folded_sheet(nx: usize, ny: usize, step: f64, column: usize, angle: f64) -> TriMesh {
     fold(&grid(nx, ny, step), step * column as f64, angle)
 }

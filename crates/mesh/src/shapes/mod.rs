@@ -26,7 +26,6 @@ use crate::refine::Splits;
 use crate::tri_mesh::TriMesh;
 
 /// Joins copies of all meshes, in order, into one mesh of several components.
-#[must_use]
 pub fn disjoint(parts: &[TriMesh]) -> TriMesh {
     let mut whole = TriMesh::default();
     for part in parts {
@@ -44,7 +43,6 @@ pub fn disjoint(parts: &[TriMesh]) -> TriMesh {
 ///
 /// # Panics
 /// If a face has a repeated vertex or one that does not exist, see [`surface::Topology::new`].
-#[must_use]
 pub fn subdivide(mesh: &TriMesh) -> TriMesh {
     let topology = mesh.topology();
     let mut splits = Splits::new(mesh.clone());

@@ -78,7 +78,6 @@ pub struct MeshReport {
 
 impl MeshReport {
     /// Whether the mesh is a connected, consistently oriented manifold, with or without boundary, without defects.
-    #[must_use]
     pub fn is_clean(&self) -> bool {
         self.n_components == 1
             && [
@@ -110,7 +109,6 @@ impl MeshReport {
 /// assert_eq!((report.duplicate_faces, report.n_boundary_loops, report.area), (1, 1, 24.0));
 /// assert!(!report.is_clean());
 /// ```
-#[must_use]
 pub fn validate(mesh: &TriMesh) -> MeshReport {
     let n_vertices = mesh.n_vertices();
     let unit = mesh.unit();

@@ -28,7 +28,6 @@ impl Metric {
     ///   sum: that is the distance between its ends.
     /// * If two sides of a face exceed the third by less than 1e-6, all edges grow by the missing amount (intrinsic
     ///   mollification, Sharp and Crane 2020).
-    #[must_use]
     pub fn new(mesh: &IntrinsicMesh) -> Self {
         let all = || mesh.edge_lengths().iter().copied().chain(mesh.links().iter().map(|link| link.length));
         let longest = all().fold(0.0, f64::max);

@@ -42,7 +42,6 @@ pub struct Laplacian {
 
 impl Laplacian {
     /// Corrects the lengths and flips the surface to Delaunay.
-    #[must_use]
     pub fn new(mesh: &IntrinsicMesh) -> Self {
         let metric = Metric::new(mesh);
         let mut cover = cover::tufted_cover(mesh, &metric.edges);
@@ -51,25 +50,21 @@ impl Laplacian {
     }
 
     /// Number of vertices p.
-    #[must_use]
     pub fn n_vertices(&self) -> usize {
         self.n_vertices
     }
 
     /// The corrected lengths and their unit.
-    #[must_use]
     pub fn metric(&self) -> &Metric {
         &self.metric
     }
 
     /// The triangles.
-    #[must_use]
     pub fn elements(&self) -> &[Element] {
         &self.elements
     }
 
     /// The mean length of the sides of all triangles, in units, and their area, in squared units; zeros without any.
-    #[must_use]
     pub fn mean_side_and_area(&self) -> (f64, f64) {
         let [mut shares, mut perimeter, mut area] = [0.0; 3];
         for Element { triangle, share, .. } in &self.elements {
@@ -82,7 +77,6 @@ impl Laplacian {
     }
 
     /// The area around every vertex, in squared units; zero at a vertex that no face names.
-    #[must_use]
     pub fn masses(&self) -> Vec<f64> {
         let mut masses = vec![0.0; self.n_vertices];
         for Element { vertices, triangle, share } in &self.elements {

@@ -6,9 +6,7 @@ use surface::{EdgeId, FaceId, VertexId};
 use super::super::plane::segment;
 use super::{assert_path, vertex};
 use crate::tests::{assert_close, bumpy, faces, points, spatial};
-use crate::{
-    BreadthFirst, Dijkstra, DistanceSolver, Exact, FastMarching, HeatMethod, PathTracer, Source, SurfacePoint,
-};
+use crate::{Dijkstra, DistanceSolver, Exact, FastMarching, HeatMethod, PathTracer, Source, SurfacePoint};
 
 #[test]
 fn exact_distances_give_exactly_shortest_paths_between_all_pairs() {
@@ -78,7 +76,7 @@ fn any_field_gives_a_path_between_the_exact_distance_and_that_along_edges() {
         &FastMarching::new(&mesh, Default::default(), &()),
         &HeatMethod::new(&mesh, Default::default(), &()).unwrap(),
         &dijkstra,
-        &BreadthFirst::new(&mesh, &()),
+        &Dijkstra::of_hops(&mesh, &()),
     ];
     for source in [0, 101].map(VertexId) {
         let (shortest, along_edges) = (exact.distances(source).unwrap(), dijkstra.distances(source).unwrap());
