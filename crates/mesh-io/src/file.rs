@@ -81,19 +81,13 @@ impl VertexField<'_> {
     pub(crate) fn check(&self, n_vertices: usize) -> Result<(), MeshError> {
         let lengths = [self.values.len(), self.colors.len()];
         if let Some(n_values) = lengths.into_iter().find(|length| *length != n_vertices) {
-            return Err(MeshError::Invalid(format!(
-                "{n_values} values for {n_vertices} vertices; provide exactly one value and one color per vertex"
-            )));
+            return Err(MeshError::FieldLength { n_values, n_vertices });
         }
         let is_word = self.name.starts_with(|c: char| c.is_ascii_alphabetic())
             && self.name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
         match is_word && !["x", "y", "z", "red", "green", "blue"].contains(&self.name) {
             true => Ok(()),
-            false => Err(MeshError::Invalid(format!(
-                "`{}` is not a valid name of a PLY property; use letters, digits and `_`, begin with a letter, and avoid x y z \
-                 red green blue",
-                self.name
-            ))),
+            false => Err(MeshError::FieldName { name: self.name.to_owned() }),
         }
     }
 }
@@ -134,9 +128,7 @@ impl ReadLimits {
     pub(crate) fn check(&self, n_vertices: u64, n_faces: u64) -> Result<(), Fault> {
         let check = |items, count, limit, max| match count {
             _ if count <= limit => Ok(()),
-            _ if limit >= max => {
-                Err(Fault::Broken(format!("too many {items}: {count} (maximum {max}); simplify the mesh")))
-            }
+            _ if limit >= max => Err(Fault::TooLarge { items, count, limit: max }),
             _ => Err(Fault::OverLimit { items, limit }),
         };
         check("vertices", n_vertices, self.max_vertices.min(MAX_VERTICES), MAX_VERTICES)?;
@@ -151,8 +143,8 @@ mod tests {
     #[test]
     fn counts_beyond_the_limits_are_errors() {
         let limits = ReadLimits::default();
-        assert!(matches!(limits.check(1 << 32, 0), Err(Fault::Broken(_))));
-        assert!(matches!(limits.check(3, 1 << 31), Err(Fault::Broken(_))));
+        assert!(limits.check(1 << 32, 0).is_err_and(|f| matches!(f, Fault::TooLarge { .. })));
+        assert!(limits.check(3, 1 << 31).is_err_and(|f| matches!(f, Fault::TooLarge { .. })));
         assert_eq!(limits.check(1 << 30, 1 << 30), Ok(()));
         let limits = ReadLimits::of_vertices(100);
         assert_eq!(limits.check(100, 400), Ok(()));

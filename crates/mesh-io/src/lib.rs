@@ -201,12 +201,8 @@ pub fn read_memory(files: &[MemoryFile<'_>], limits: &ReadLimits) -> Result<TriM
     let source = Memory(files);
     // Whether the files of a mesh belong together is checked when they are loaded.
     if let Some(extra) = files.get(files_in(first.name, &source).len()) {
-        return Err(MeshError::StrayFile(format!(
-            "{} does not belong to {}; provide the files of one mesh: {}",
-            extra.name.display(),
-            first.name.display(),
-            mesh_files()
-        )));
+        let (path, extra) = (first.name.to_owned(), extra.name.to_owned());
+        return Err(MeshError::StrayFile { path, extra, supported: mesh_files() });
     }
     Ok(read_file(first.name, &source, limits)?.mesh)
 }

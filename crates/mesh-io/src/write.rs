@@ -23,7 +23,8 @@ use crate::source::Disk;
 ///
 /// # Errors
 /// [`MeshError::Io`] if the file cannot be written, [`MeshError::UnknownFormat`] for an unknown extension, and
-/// [`MeshError::Invalid`] for a format that is only read, and for a mesh that [`check_input`] refuses or the file could not hold.
+/// [`MeshError::NotWritable`] for a format that is only read; those of [`check_input`], [`MeshError::BeyondSinglePrecision`] and
+/// [`MeshError::CollapsedFace`] for a mesh that the file could not hold.
 pub fn write(path: &Path, mesh: &TriMesh) -> Result<(), MeshError> {
     let format = Format::for_writing(path, Content::Mesh)?;
     // What `read` would refuse.
@@ -42,7 +43,7 @@ pub fn write(path: &Path, mesh: &TriMesh) -> Result<(), MeshError> {
 /// `red green blue`; as OFF and OBJ with the colors alone.
 ///
 /// # Errors
-/// As [`write()`]; [`MeshError::Invalid`] also for a field of another length or with a name that PLY does not allow.
+/// As [`write()`]; [`MeshError::FieldLength`] and [`MeshError::FieldName`].
 pub fn write_scalar_field(path: &Path, mesh: &TriMesh, field: &VertexField<'_>) -> Result<(), MeshError> {
     let format = Format::for_writing(path, Content::Field)?;
     field.check(mesh.n_vertices())?;
@@ -55,7 +56,7 @@ pub fn write_scalar_field(path: &Path, mesh: &TriMesh, field: &VertexField<'_>) 
 ///
 /// # Errors
 /// [`MeshError::Io`] if the file cannot be written, [`MeshError::UnknownFormat`] for an unknown extension, and
-/// [`MeshError::Invalid`] for another one and for points that are not finite.
+/// [`MeshError::NotWritable`] for another one, [`MeshError::NonFinite`].
 pub fn write_polylines(path: &Path, lines: &[Vec<Point3<f64>>]) -> Result<(), MeshError> {
     let format = Format::for_writing(path, Content::Lines)?;
     check_finite(lines.iter().flatten())?;
@@ -83,17 +84,12 @@ fn check_single_precision(mesh: &TriMesh, moved: bool, format: &Format) -> Resul
     let overflows = |x: &&f64| !(**x as f32).is_finite();
     for (vertex, p) in mesh.positions.iter().enumerate() {
         if let Some(&value) = p.iter().find(overflows) {
-            return Err(MeshError::Invalid(format!(
-                "vertex {vertex} has the coordinate {value:e}, beyond the 32-bit floats of {format}; scale the mesh down or use \
-                 another format"
-            )));
+            return Err(MeshError::BeyondSinglePrecision { vertex, value, format });
         }
     }
     let origin = if moved { origin(mesh) } else { Point3::origin() };
     match merged_face(mesh, &origin) {
         None => Ok(()),
-        Some(face) => Err(MeshError::Invalid(format!(
-            "corners of face {face} coincide in the 32-bit floats of {format}; move the mesh to the origin or use another format"
-        ))),
+        Some(face) => Err(MeshError::CollapsedFace { face, format }),
     }
 }

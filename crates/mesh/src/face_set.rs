@@ -9,15 +9,13 @@ use crate::tri_mesh::TriMesh;
 /// Checks what every algorithm relies on.
 ///
 /// # Errors
-/// [`MeshError::Invalid`].
+/// [`MeshError::TooLarge`], [`MeshError::VertexOutOfRange`] and [`MeshError::NonFinite`].
 pub fn check_input(mesh: &TriMesh) -> Result<(), MeshError> {
     let n_vertices = mesh.n_vertices();
     check_counts(n_vertices, mesh.n_faces())?;
     for (face, corners) in mesh.faces.iter().enumerate() {
         if let Some(&vertex) = corners.iter().find(|v| v.index() >= n_vertices) {
-            return Err(MeshError::Invalid(format!(
-                "face {face} refers to vertex {vertex}, but the mesh has {n_vertices} vertices; correct or remove the face"
-            )));
+            return Err(MeshError::VertexOutOfRange { face, vertex, n_vertices });
         }
     }
     check_finite(&mesh.positions)
@@ -26,11 +24,7 @@ pub fn check_input(mesh: &TriMesh) -> Result<(), MeshError> {
 /// Returns an error if there are more vertices or faces than a mesh may have.
 fn check_counts(n_vertices: usize, n_faces: usize) -> Result<(), MeshError> {
     match n_vertices > Topology::MAX_VERTICES || n_faces > Topology::MAX_FACES {
-        true => Err(MeshError::Invalid(format!(
-            "the mesh has {n_vertices} vertices and {n_faces} faces, but at most {} and {} are supported; simplify it",
-            Topology::MAX_VERTICES,
-            Topology::MAX_FACES
-        ))),
+        true => Err(MeshError::TooLarge { n_vertices, n_faces }),
         false => Ok(()),
     }
 }
@@ -38,12 +32,10 @@ fn check_counts(n_vertices: usize, n_faces: usize) -> Result<(), MeshError> {
 /// Checks coordinates.
 ///
 /// # Errors
-/// [`MeshError::Invalid`].
+/// [`MeshError::NonFinite`].
 pub fn check_finite<'a>(positions: impl IntoIterator<Item = &'a Point3<f64>>) -> Result<(), MeshError> {
     match positions.into_iter().position(|p| !p.iter().all(|x| x.is_finite())) {
-        Some(vertex) => Err(MeshError::Invalid(format!(
-            "vertex {vertex} has a coordinate that is not finite; correct it or remove the vertex"
-        ))),
+        Some(vertex) => Err(MeshError::NonFinite { vertex }),
         None => Ok(()),
     }
 }
@@ -91,7 +83,8 @@ mod tests {
     fn meshes_are_limited_to_numbers_that_leave_two_bits_for_flags() {
         assert!(check_counts(Topology::MAX_VERTICES, Topology::MAX_FACES).is_ok());
         for [n_vertices, n_faces] in [[1 << 30, 1], [3, (1 << 30) / 3 + 1], [usize::MAX; 2]] {
-            assert!(check_counts(n_vertices, n_faces).is_err());
+            let error = check_counts(n_vertices, n_faces).unwrap_err();
+            assert!(matches!(error, MeshError::TooLarge { .. }), "{error}");
         }
     }
 

@@ -156,16 +156,10 @@ impl Format {
             none if none.is_empty() && is_gzip(path) => "gz".to_owned(),
             extension => extension,
         };
-        Self::named(&extension).ok_or_else(|| {
-            let what = match &*extension {
-                "" => "the file name has no extension".to_owned(),
-                "las" | "laz" => format!(
-                    "unknown mesh format `.{extension}`, which `pdal translate in.{extension} out.ply` converts"
-                ),
-                _ => format!("unknown mesh format `.{extension}`"),
-            };
-            let supported = or_list(FORMATS.iter().map(|format| format.extensions[0]));
-            MeshError::UnknownFormat(format!("{}: {what}; use {supported}", path.display()))
+        Self::named(&extension).ok_or_else(|| MeshError::UnknownFormat {
+            path: path.to_path_buf(),
+            extension,
+            supported: or_list(FORMATS.iter().map(|format| format.extensions[0])),
         })
     }
 
@@ -197,13 +191,12 @@ impl Format {
         let format = Self::of(path)?;
         match format.can_write(content) {
             true => Ok(format),
-            false => Err(MeshError::Invalid(format!(
-                "{}: {} files cannot be written with {}; use {}",
-                path.display(),
-                format.name,
-                content.name(),
-                or_list(writable(content))
-            ))),
+            false => Err(MeshError::NotWritable {
+                path: path.to_owned(),
+                format: format.name,
+                content: content.name(),
+                supported: or_list(writable(content)),
+            }),
         }
     }
 

@@ -67,7 +67,7 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
     };
     if let Some(place) = leftover {
         let promised = header.elements.iter().map(|element| element.count).sum();
-        return Err(Fault::leftover("elements", promised).at(place));
+        return Err(Fault::Leftover { items: "elements", promised }.at(place));
     }
     let mut properties = header.elements.into_iter().flat_map(|element| element.properties);
     let field = properties.find(|property| property.role == Role::Field);
@@ -215,7 +215,7 @@ impl Header {
             return unsupported("the faces are strips of triangles");
         }
         if n_faces == 0 && vertex.count < MIN_POINTS as u64 {
-            return Err(Fault::no_faces(vertex.count as usize));
+            return Err(Fault::NoFaces { n_vertices: vertex.count as usize });
         }
         if face_at.is_some_and(|face_at| face_at < vertex_at) {
             return unsupported("the faces come before the vertices");

@@ -103,8 +103,8 @@ impl PointsReport {
 /// ```
 ///
 /// # Errors
-/// [`MeshError::Invalid`] for positions that are not finite, fewer than [`MIN_POINTS`] different ones, or points that agree on no
-/// triangle; [`MeshError::Exceeded`].
+/// [`MeshError::NonFinite`]; [`MeshError::TooFewPoints`], of which [`MIN_POINTS`] are needed; [`MeshError::NoSurface`] if no triangle
+/// is agreed on; [`MeshError::Exceeded`].
 pub fn triangulate_points(
     points: &[Point3<f64>],
     observer: &dyn Observer,
@@ -115,10 +115,7 @@ pub fn triangulate_points(
     let unit = cloud.unit();
     let (distinct, of_point) = without_copies(points, unit);
     if distinct.len() < MIN_POINTS {
-        return Err(MeshError::Invalid(format!(
-            "{} different points without faces; a surface needs faces, or at least {MIN_POINTS} points",
-            distinct.len()
-        )));
+        return Err(MeshError::TooFewPoints { n_distinct: distinct.len() });
     }
     let scaled: Vec<Point3<f64>> = distinct.iter().map(|&i| points[i] / unit).collect();
     let smooth = smooth::smooth(scaled, &budget)?;
@@ -128,10 +125,7 @@ pub fn triangulate_points(
     budget.check()?;
     let faces = select::agreed(&stars);
     if faces.is_empty() {
-        return Err(MeshError::Invalid(format!(
-            "no two of the {} points agree on a triangle; they do not lie on a surface, or are too sparse",
-            points.len()
-        )));
+        return Err(MeshError::NoSurface { n_points: points.len() });
     }
     let stands = stand_ins(&faces, &smooth.points, smooth.spacing);
 

@@ -66,7 +66,7 @@ const MAX_PASSES: usize = 16;
 /// doubling of the number of components.
 ///
 /// # Errors
-/// [`MeshError::Invalid`] for a mesh without a usable face, that [`check_input`] refuses or whose size is not supported; those of
+/// Those of [`check_input`]; [`MeshError::UnsupportedSize`]; [`MeshError::NoUsableFace`]; those of
 /// [`triangulate_points`](crate::triangulate_points) for a mesh without faces; [`MeshError::Disconnected`] if there are several
 /// components and the policy is [`ComponentPolicy::Error`]; [`MeshError::Exceeded`].
 ///
@@ -106,10 +106,7 @@ pub fn repair(
     };
     if surface.topology().n_faces() == 0 {
         let degenerate = report.degenerate_faces + report.zero_length_faces;
-        return Err(MeshError::Invalid(format!(
-            "none of the {} faces is usable ({degenerate} degenerate); a surface needs at least one triangle with three distinct corners",
-            mesh.n_faces()
-        )));
+        return Err(MeshError::NoUsableFace { n_faces: mesh.n_faces(), degenerate });
     }
 
     budget.check()?;
@@ -259,12 +256,7 @@ fn checked_unit(mesh: &TriMesh) -> Result<f64, MeshError> {
         // All positions are the same, and no face is usable.
         0.0 => Ok(1.0),
         _ if SIZES.contains(&size) => Ok(mesh.unit()),
-        _ => Err(MeshError::Invalid(format!(
-            "the mesh is {size:e} units across, but sizes from {:e} to {:e} are supported, since areas beyond overflow or \
-             vanish; scale the mesh",
-            SIZES.start(),
-            SIZES.end()
-        ))),
+        _ => Err(MeshError::UnsupportedSize { size, least: *SIZES.start(), most: *SIZES.end() }),
     }
 }
 

@@ -318,7 +318,7 @@ fn sizes_whose_areas_cannot_be_represented_are_refused() {
     for scale in [1e-160, 1e-300, 5e-324, 1e155, 1e307] {
         let error = scaled(scale).unwrap_err();
         let text = error.to_string();
-        assert!(matches!(error, MeshError::Invalid(_)), "{scale}: {text}");
+        assert!(matches!(error, MeshError::UnsupportedSize { .. }), "{scale}: {text}");
         assert!(text.contains("sizes from 1e-151 to 1e152 are supported"), "{text}");
     }
     // Coordinates near zero, and edges whose squared lengths vanish beside the others.
