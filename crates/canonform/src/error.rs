@@ -342,7 +342,6 @@ impl From<FieldError> for Error {
 
 impl Remedy {
     /// What would help against an error of an index.
-    #[must_use]
     pub fn from_index(fault: &IndexError) -> Option<Self> {
         match fault {
             IndexError::Damaged { .. } | IndexError::PastVersion { .. } => Some(Self::BuildIndexAgain),

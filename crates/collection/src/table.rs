@@ -133,7 +133,6 @@ impl Row<'_> {
     }
 
     /// The first cells as one, with what is between them; `None` if any is in quotation marks.
-    #[must_use]
     pub fn before(&self, n_cells: usize) -> Option<&str> {
         let (separator, _) =
             self.text.match_indices(self.table.separator as char).nth(n_cells.checked_sub(1)?)?;
@@ -141,13 +140,11 @@ impl Row<'_> {
     }
 
     /// The number of cells, at least one.
-    #[must_use]
     pub fn n_cells(&self) -> usize {
         self.cells.len()
     }
 
     /// A cell as a number. It may have a decimal comma where semicolons separate cells.
-    #[must_use]
     pub fn number(&self, cell: &str) -> Option<f64> {
         let point =
             || (self.table.separator == b';' && !cell.contains('.')).then(|| cell.replacen(',', ".", 1));

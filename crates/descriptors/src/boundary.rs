@@ -22,7 +22,6 @@ impl Boundary {
     pub const CERTAIN: f64 = 0.9;
 
     /// A boundary on either side of which any probability is reached.
-    #[must_use]
     pub const fn new(at: f64, steepness: f64) -> Self {
         Self { at, steepness, range: [0.0, 1.0] }
     }
@@ -30,7 +29,6 @@ impl Boundary {
     /// The boundary of greatest likelihood, by expectation maximization: a logarithm of the distance is on the near or the far side, by
     /// logistic regression, and on each side a share of pairs is one. The iteration starts from the range of these shares; 0 and 1
     /// stay, and leave a plain logistic regression.
-    #[must_use]
     pub fn fitted(samples: &[Sample], [mut far, mut near]: [f64; 2]) -> Self {
         let [mut a, mut b] = [0.0, -1.0];
         for _ in 0..STEPS {
@@ -64,7 +62,6 @@ impl Boundary {
     }
 
     /// The probability of the nearer answer at a distance. It falls from one end of the range to the other.
-    #[must_use]
     pub fn probability(&self, distance: f64) -> f64 {
         let [far, near] = self.range;
         let odds = (distance / self.at).powf(self.steepness) * (near - 0.5) / (0.5 - far);
@@ -72,7 +69,6 @@ impl Boundary {
     }
 
     /// The distance at which the nearer answer has this probability: 0 or infinite if that is beyond the range.
-    #[must_use]
     pub fn distance(&self, probability: f64) -> f64 {
         let [far, near] = self.range;
         let odds = (near - probability).max(0.0) / (probability - far).max(0.0);
@@ -80,7 +76,6 @@ impl Boundary {
     }
 
     /// The range of distances within which neither answer is [certain](Self::CERTAIN).
-    #[must_use]
     pub fn gap(&self) -> [f64; 2] {
         [Self::CERTAIN, 1.0 - Self::CERTAIN].map(|probability| self.distance(probability))
     }

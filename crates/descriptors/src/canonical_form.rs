@@ -97,7 +97,6 @@ impl CanonicalForm {
 
     /// The form at up to `n` evenly spread points, each with the weight of all points nearest to it. It keeps its
     /// coordinates; any leading part of the points is evenly spread too. Cost `O(p n)`.
-    #[must_use]
     pub fn reduced(&self, n: usize) -> Self {
         let spread = farthest_points(&self.points, n);
         let mut weights = vec![0.0; spread.samples.len()];
@@ -150,7 +149,6 @@ impl CanonicalForm {
     }
 
     /// The form, scaled as `normalization` says.
-    #[must_use]
     pub fn normalized(&self, normalization: Normalization) -> Self {
         match (normalization, self.area) {
             (Normalization::UnitArea, Some(area)) => Self {

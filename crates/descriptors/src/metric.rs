@@ -41,31 +41,26 @@ pub struct ShapeDistance {
 
 impl ShapeDistance {
     /// Probability that both are one shape: that of one class, times that of one shape among those of one class.
-    #[must_use]
     pub fn same_shape(&self) -> f64 {
         ShapeMetric::SAME_SHAPE.probability(self.combined) * self.same_class()
     }
 
     /// Probability that both are of one class.
-    #[must_use]
     pub fn same_class(&self) -> f64 {
         ShapeMetric::SAME_CLASS.probability(self.combined)
     }
 
     /// Whether the shapes are more likely one shape than not. No distance makes that certain.
-    #[must_use]
     pub fn is_same_shape(&self) -> bool {
         self.same_shape() > 0.5
     }
 
     /// Whether the shapes are at least as likely of one class as not. Neighbors as near as this vote on the class of a query.
-    #[must_use]
     pub fn may_be_same_class(&self) -> bool {
         self.combined < ShapeMetric::SAME_CLASS.at
     }
 
     /// Whether the shapes are certainly of different classes.
-    #[must_use]
     pub fn is_different(&self) -> bool {
         self.combined > ShapeMetric::SAME_CLASS.gap()[1]
     }
@@ -150,7 +145,6 @@ impl ShapeMetric {
 
     /// The signature with the size of the surface as one more value, in the unit of the signature: a difference of
     /// 5 % in size is as much as the difference between two poses.
-    #[must_use]
     pub fn with_size(mut signature: Signature, area: f64) -> Signature {
         signature.values.push(Self::unit(signature.kind) * Self::size_coordinate(area));
         signature

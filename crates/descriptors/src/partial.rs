@@ -162,13 +162,11 @@ impl DiscAreas {
     }
 
     /// The numbers, as an index stores them: the areas of one landmark after those of another.
-    #[must_use]
     pub fn to_numbers(&self) -> Vec<f32> {
         self.rows.as_flattened().iter().map(|area| *area as f32).collect()
     }
 
     /// From stored [numbers](Self::to_numbers); `None` if they are not whole rows.
-    #[must_use]
     pub fn from_numbers(numbers: &[f32]) -> Option<Self> {
         let (rows, rest) = numbers.as_chunks::<RADII>();
         rest.is_empty().then(|| Self { rows: rows.iter().map(|row| row.map(f64::from)).collect() })

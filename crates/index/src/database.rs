@@ -343,7 +343,6 @@ fn uri(path: &Path, query: &str) -> String {
 }
 
 /// The write-ahead log of an index, which is there while a program has it open.
-#[must_use]
 pub fn log_path(path: &Path) -> PathBuf {
     with_suffix(path, "-wal")
 }
@@ -353,7 +352,6 @@ fn has_log(path: &Path) -> bool {
 }
 
 /// The file that keeps an index that could not be read after it was built again.
-#[must_use]
 pub fn damaged_path(path: &Path) -> PathBuf {
     with_suffix(path, ".damaged")
 }

@@ -70,7 +70,6 @@ impl Index {
 
     /// A query whose nearest shape is farther belongs to no class of the index; `None` if the classes are too small to
     /// tell, or the index is not finished. From at most 512 of the shapes when the index was finished.
-    #[must_use]
     pub fn threshold(&self) -> Option<UnknownThreshold> {
         self.threshold
     }
@@ -81,13 +80,11 @@ impl Index {
     }
 
     /// The file.
-    #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
     /// The options its shapes were described with.
-    #[must_use]
     pub fn options(&self) -> &str {
         &self.options
     }
@@ -108,31 +105,26 @@ impl Index {
     }
 
     /// Number of shapes.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.n_shapes
     }
 
     /// Whether the index holds no shapes.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.n_shapes == 0
     }
 
     /// Whether its writer finished it. One that was interrupted, or is at work, has put some of the shapes only.
-    #[must_use]
     pub fn is_finished(&self) -> bool {
         self.is_finished
     }
 
     /// The number of transactions that led to this state.
-    #[must_use]
     pub fn change(&self) -> u64 {
         self.change
     }
 
     /// Size in bytes, with what a writer has not copied into the file yet.
-    #[must_use]
     pub fn n_bytes(&self) -> u64 {
         let files = [self.path.clone(), log_path(&self.path)];
         files.iter().filter_map(|file| Some(std::fs::metadata(file).ok()?.len())).sum()

@@ -128,31 +128,26 @@ impl IndexWriter {
     }
 
     /// The index.
-    #[must_use]
     pub fn path(&self) -> &Path {
         &self.database.path
     }
 
     /// Whether the existing index could not be read, so that the work started from nothing.
-    #[must_use]
     pub fn replaced_damaged(&self) -> bool {
         self.replaced_damaged
     }
 
     /// Whether the last writer was interrupted.
-    #[must_use]
     pub fn is_resumed(&self) -> bool {
         self.resumed
     }
 
     /// Whether there was no index.
-    #[must_use]
     pub fn is_new(&self) -> bool {
         self.is_new
     }
 
     /// Number of shapes so far.
-    #[must_use]
     pub fn n_shapes(&self) -> usize {
         self.n_shapes as usize
     }

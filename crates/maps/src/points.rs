@@ -41,7 +41,6 @@ pub enum MapElements<'a> {
 ///
 /// # Panics
 /// If `functional` is not square, as that of a part.
-#[must_use]
 pub fn mapped_points(
     [a, b]: [&MapShape; 2],
     functional: &Matrix,

@@ -37,7 +37,6 @@ impl MapKind {
     pub(crate) const ALL: [Self; 3] = [Self::Direct, Self::Mirrored, Self::Unoriented];
 
     /// The name on the command line and in records.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Direct => "direct",

@@ -22,19 +22,16 @@ pub struct Embedding {
 
 impl Embedding {
     /// Number of points p.
-    #[must_use]
     pub fn n_points(&self) -> usize {
         self.coords.nrows()
     }
 
     /// Number of dimensions k.
-    #[must_use]
     pub fn dim(&self) -> usize {
         self.coords.ncols()
     }
 
     /// Number of leading dimensions with a positive eigenvalue; the other columns are zero.
-    #[must_use]
     pub fn positive_dims(&self) -> usize {
         self.eigenvalues.iter().take(self.dim()).filter(|value| **value > 0.0).count()
     }

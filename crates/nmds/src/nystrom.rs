@@ -34,7 +34,6 @@ impl NystromOptions {
     }
 
     /// The number of samples that a [search](crate::SampleSearch) begins with: at least the rank, if one is given.
-    #[must_use]
     pub fn first_samples(&self) -> usize {
         let first = SampleSearch::first(self.dim);
         match self.regularization {

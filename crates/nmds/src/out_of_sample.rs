@@ -39,7 +39,6 @@ pub struct OutOfSample {
 
 impl OutOfSample {
     /// Number of landmarks n.
-    #[must_use]
     pub fn n_landmarks(&self) -> usize {
         self.means.len()
     }

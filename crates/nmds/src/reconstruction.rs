@@ -86,7 +86,6 @@ impl Reconstruction {
     }
 
     /// The error of `RR⁺E` (eq. 5), which requires all of `E`: the reference in Fig. 6.
-    #[must_use]
     pub fn best_projection(&self) -> ReconstructionError {
         self.error_of(self.outside_sq)
     }

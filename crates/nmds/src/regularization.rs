@@ -77,7 +77,6 @@ impl std::str::FromStr for RpiAlpha {
 impl RpiAlpha {
     /// `α / σ1⁴`, which has no unit. `sigma_1` is the largest magnitude of the eigenvalues of `S`, in the squared unit of the
     /// distances.
-    #[must_use]
     pub fn relative(self, sigma_1: f64) -> f64 {
         match self {
             Self::Relative(c) => c,
@@ -88,7 +87,6 @@ impl RpiAlpha {
 
 impl Regularization {
     /// All kinds, with their default options.
-    #[must_use]
     pub fn all() -> [Self; 4] {
         [
             Self::LowRank { rank: None },
@@ -99,7 +97,6 @@ impl Regularization {
     }
 
     /// The name on the command line and in records.
-    #[must_use]
     pub fn name(self) -> &'static str {
         self.into()
     }

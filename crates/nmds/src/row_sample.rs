@@ -26,20 +26,17 @@ const LEVEL: f64 = 0.5;
 
 impl RowSample {
     /// All rows: the stress is exact.
-    #[must_use]
     pub fn all(n_points: usize) -> Self {
         Self::of_rows((0..n_points).collect(), n_points)
     }
 
     /// Takes these rows, which should be different and a random choice from all `n_points` rows.
-    #[must_use]
     pub fn of_rows(rows: Vec<usize>, n_points: usize) -> Self {
         let (m, correction) = (rows.len(), 1.0 - rows.len() as f64 / n_points.max(1) as f64);
         Self { rows, weights: vec![1.0; m], offsets: Vec::new(), correction }
     }
 
     /// Draws `m` different rows (at most `n_points`) with `seed`, all equally likely; see [`sample_rows`].
-    #[must_use]
     pub fn uniform(n_points: usize, m: usize, seed: u64) -> Self {
         Self::of_rows(sample_rows(n_points, m, seed), n_points)
     }
@@ -115,7 +112,6 @@ impl RowSample {
     }
 
     /// The rows that are needed, in ascending order without repetitions.
-    #[must_use]
     pub fn rows(&self) -> Vec<usize> {
         let mut rows = self.rows.clone();
         rows.sort_unstable();
@@ -125,7 +121,6 @@ impl RowSample {
 }
 
 /// `m` distinct numbers below `p` (at most `p`), ascending, drawn with `seed` by Floyd's algorithm.
-#[must_use]
 pub fn sample_rows(p: usize, m: usize, seed: u64) -> Vec<usize> {
     let m = m.min(p);
     let mut rng = ChaCha8Rng::seed_from_u64(seed);

@@ -116,7 +116,6 @@ impl SampleSearch<'_> {
     pub const ROWS: usize = 16;
 
     /// The number of samples that a search in `dim` dimensions begins with: one more than the default rank.
-    #[must_use]
     pub fn first(dim: usize) -> usize {
         dim + 5
     }

@@ -229,7 +229,6 @@ fn t_99(freedom: usize) -> f64 {
 /// 1 if all points coincide. It has no unit.
 ///
 /// Cost: `O(p^2 k)` time on one thread, for small p; [`stress`] finds it faster.
-#[must_use]
 pub fn normalized_stress(coords: &Matrix, distances: &DistanceMatrix) -> f64 {
     let p = distances.n_points();
     let (mut residual, mut total) = (0.0, 0.0);

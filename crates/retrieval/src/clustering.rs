@@ -8,7 +8,6 @@ use crate::Labels;
 /// members of the class and `b` the smallest mean distance to another class (Rousseeuw 1987).
 ///
 /// A shape that is alone in its class counts as 0. Returns 0 for fewer than two classes.
-#[must_use]
 pub fn silhouette(distances: &DistanceMatrix, labels: &Labels) -> f64 {
     let n = labels.n_points();
     let n_classes = labels.classes().len();

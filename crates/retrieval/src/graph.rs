@@ -201,7 +201,6 @@ pub struct GraphRankings<'a> {
 
 impl<'a> GraphRankings<'a> {
     /// Makes the graph, in parallel.
-    #[must_use]
     pub fn new(distances: &'a DistanceMatrix) -> Self {
         let links = |i: usize| {
             let mut links = rank(distances, i);

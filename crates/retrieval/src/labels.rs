@@ -10,7 +10,6 @@ pub struct Labels {
 
 impl Labels {
     /// Takes the class name of each shape. Classes are numbered in alphabetical order.
-    #[must_use]
     pub fn new<S: AsRef<str>>(names: &[S]) -> Self {
         let mut classes: Vec<String> = names.iter().map(|name| name.as_ref().to_owned()).collect();
         classes.sort();
@@ -25,32 +24,27 @@ impl Labels {
     }
 
     /// Number of shapes.
-    #[must_use]
     pub fn n_points(&self) -> usize {
         self.of.len()
     }
 
     /// The class names, sorted.
-    #[must_use]
     pub fn classes(&self) -> &[String] {
         &self.classes
     }
 
     /// The class of shape `i`, as an index into [`classes`](Self::classes).
-    #[must_use]
     pub fn class(&self, i: usize) -> usize {
         self.of[i]
     }
 
     /// Number of shapes in a class.
-    #[must_use]
     pub fn size(&self, class: usize) -> usize {
         self.sizes[class]
     }
 
     /// Whether shape `i` is scored as a query: its class has more than two members (the convention of the
     /// Princeton shape benchmark).
-    #[must_use]
     pub fn is_query(&self, i: usize) -> bool {
         self.size(self.of[i]) > 2
     }

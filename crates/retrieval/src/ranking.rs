@@ -13,7 +13,6 @@ pub struct Neighbor {
 
 impl Neighbor {
     /// Orders by distance, ties by index.
-    #[must_use]
     pub fn by_distance(&self, other: &Self) -> std::cmp::Ordering {
         self.distance.total_cmp(&other.distance).then(self.index.cmp(&other.index))
     }
@@ -53,13 +52,11 @@ impl Rankings for DistanceMatrix {
 /// assert_eq!(order, [2, 3, 1]);
 /// # Ok::<(), canonform_linalg::LinalgError>(())
 /// ```
-#[must_use]
 pub fn rank(distances: &DistanceMatrix, query: usize) -> Vec<Neighbor> {
     rank_row(distances.row(query), query)
 }
 
 /// The same from the distances of `query` to all shapes.
-#[must_use]
 pub fn rank_row(distances: &[f64], query: usize) -> Vec<Neighbor> {
     let others = distances.iter().enumerate().filter(|(index, _)| *index != query);
     let mut neighbors: Vec<_> = others.map(|(index, &distance)| Neighbor { index, distance }).collect();

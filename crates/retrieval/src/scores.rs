@@ -29,7 +29,6 @@ pub struct Scores {
 impl Scores {
     /// The scores of the shape `query`, given its ranking of all other shapes. Returns `None` if no other shape
     /// is in its class.
-    #[must_use]
     pub fn of_query(ranking: &[Neighbor], query: usize, labels: &Labels) -> Option<Self> {
         let class = labels.class(query);
         let relevant = labels.size(class) - 1;
@@ -63,7 +62,6 @@ impl Scores {
     pub const N: usize = 6;
 
     /// NN, FT, ST, E, DCG and mAP.
-    #[must_use]
     pub fn to_array(self) -> [f64; Self::N] {
         [self.nn, self.ft, self.st, self.e, self.dcg, self.map]
     }
@@ -104,7 +102,6 @@ impl QueryScores {
     }
 
     /// The mean scores; 0 without queries.
-    #[must_use]
     pub fn mean(&self, labels: &Labels, averaging: Averaging) -> Scores {
         let queries = self.of.iter().map(|(i, scores)| (*i, scores.to_array()));
         Scores::from_array(averaged(queries, [0.0; Scores::N], labels, averaging))

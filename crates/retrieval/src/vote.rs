@@ -22,7 +22,6 @@ impl UnknownThreshold {
     ///
     /// Minimises the sum of the two error rates; if a range of thresholds does, returns its middle. Without foreign
     /// distances, returns twice the largest own distance. Returns `None` without own distances.
-    #[must_use]
     pub fn of(own: &[f64], foreign: &[f64]) -> Option<Self> {
         let sorted = |distances: &[f64]| {
             let mut sorted: Vec<f64> = distances.iter().copied().filter(|d| d.is_finite()).collect();
@@ -54,7 +53,6 @@ impl UnknownThreshold {
 
     /// The threshold from the distances between all shapes; see [`of`](Self::of). A shape that is alone in its class
     /// has no own distance.
-    #[must_use]
     pub fn leave_one_out(distances: &DistanceMatrix, labels: &Labels) -> Option<Self> {
         let (mut own, mut foreign) = (Vec::new(), Vec::new());
         for i in 0..distances.n_points() {
@@ -81,7 +79,6 @@ pub struct Vote {
 
 impl Vote {
     /// The winning class; `None` if no neighbor is near enough.
-    #[must_use]
     pub fn class(&self) -> Option<usize> {
         self.tally.first().map(|winner| winner.class)
     }
@@ -104,7 +101,6 @@ pub struct Tally {
 /// no vote. Without a limit all votes weigh the same. Ties go to the class of the nearest neighbor.
 ///
 /// `neighbors` are in ascending order of distance; `class_of` maps the index of a shape to its class.
-#[must_use]
 pub fn vote(neighbors: &[Neighbor], class_of: impl Fn(usize) -> usize, k: usize, limit: Option<f64>) -> Vote {
     let weight = |distance: f64| match limit {
         Some(limit) if distance > limit => None,

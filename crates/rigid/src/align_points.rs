@@ -78,7 +78,6 @@ fn views<'a>(sets: [&'a PointSet; 2], searched: fn(&PointSet) -> &NearestPoints)
 /// assert!(found.gap.rms < 0.1, "one is the other, turned about its axis");
 /// # Ok::<(), canonform_rigid::NoExtent>(())
 /// ```
-#[must_use]
 pub fn align_points(a: &PointSet, b: &PointSet, reflections: Reflections) -> Alignment {
     let mut best = (f64::INFINITY, Similarity::identity());
     let [rough_a, rough_b] = views([a, b], PointSet::samples);
@@ -99,7 +98,6 @@ pub fn align_points(a: &PointSet, b: &PointSet, reflections: Reflections) -> Ali
 
 /// Aligns two sets as [`align_points`] does, with or without a reflection, or returns `None` if the root mean square distance
 /// is larger than `limit`. Nothing is aligned if the [lower bound](PointSet::least_distance) of the distance is larger.
-#[must_use]
 pub fn align_near_points(a: &PointSet, b: &PointSet, limit: f64) -> Option<Alignment> {
     let may_be_near = a.least_distance(b) <= limit;
     may_be_near.then(|| align_points(a, b, Reflections::Allow)).filter(|found| found.gap.rms <= limit)
@@ -107,7 +105,6 @@ pub fn align_near_points(a: &PointSet, b: &PointSet, limit: f64) -> Option<Align
 
 /// Motions of the principal axes of the first set to those of the second, the best of each handedness, after all stages
 /// but the last; by ascending error.
-#[must_use]
 pub fn alignments(a: &PointSet, b: &PointSet) -> Vec<Similarity> {
     let sketched = [Reflections::Forbid, Reflections::Require].into_iter().flat_map(|by| sketched(a, b, by));
     refine_all(a, b, sketched.map(|(_, motion)| motion), ROUGH)

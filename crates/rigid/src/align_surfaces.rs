@@ -39,7 +39,6 @@ const REFINE_WITHIN: f64 = 1.6;
 
 /// Aligns two surfaces in space; `None` if they are too far apart to be one surface, by their extents or by a few points. The map takes the first surface, at
 /// unit area, onto the second, at unit area: with a reflection only if the surfaces fit decisively better.
-#[must_use]
 pub fn align_surfaces(a: &RigidSurface, b: &RigidSurface) -> Option<Alignment> {
     let [axes_a, axes_b] = [a, b].map(|surface| surface.axis_std().map(|x| x / surface.rms_radius()));
     if axes_a.iter().zip(&axes_b).any(|(x, y)| (x - y).abs() > MAX_DEVIATION) {
@@ -69,7 +68,6 @@ pub fn align_surfaces(a: &RigidSurface, b: &RigidSurface) -> Option<Alignment> {
 
 impl Alignment {
     /// Two surfaces under a map of the first, at unit area, onto the second; `None` of surfaces without area.
-    #[must_use]
     pub fn by_map(a: &RigidSurface, b: &RigidSurface, map: Similarity) -> Option<Self> {
         Self::by(a, b, map)
     }
@@ -88,7 +86,6 @@ fn unmirrored(a: &RigidSurface, b: &RigidSurface, mirrored: &Alignment) -> Optio
 }
 
 /// Whether a surface is its own mirror image.
-#[must_use]
 pub fn is_symmetric(surface: &RigidSurface) -> bool {
     let itself = Alignment { map: Similarity::identity(), gap: Gap { rms: 0.0, max: 0.0 } };
     let is_near = |mirror: &Similarity| {

@@ -38,7 +38,6 @@ fn farthest(points: impl Iterator<Item = (usize, f64)>) -> (usize, f64) {
 }
 
 /// Chooses up to `n` of the points, the one farthest from the origin first; fewer if points coincide.
-#[must_use]
 pub fn farthest_points(points: &[Point3<f64>], n: usize) -> FarthestPoints {
     let sq_distance = |i: usize, j: usize| (points[i] - points[j]).norm_squared();
     farthest_points_by(points.iter().map(|p| p.coords.norm_squared()), sq_distance, n)
@@ -48,7 +47,6 @@ pub fn farthest_points(points: &[Point3<f64>], n: usize) -> FarthestPoints {
 ///
 /// A new sample takes points from cells only whose own sample is less than twice as far away as their farthest member, so
 /// that each point is looked at a few times.
-#[must_use]
 pub fn farthest_points_by(
     from_origin: impl Iterator<Item = f64>,
     sq_distance: impl Fn(usize, usize) -> f64,

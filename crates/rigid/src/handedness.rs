@@ -46,7 +46,6 @@ pub struct OrientedPoints<'a> {
 impl<'a> OrientedPoints<'a> {
     /// The vertices of `mesh` at other `points`, with its faces turned so that normals point outwards. `None` of a surface that
     /// encloses no volume.
-    #[must_use]
     pub fn new(mesh: &TriMesh, points: Vec<Point3<f64>>, weights: &'a [f64]) -> Option<Self> {
         Some(Self { mesh: TriMesh { positions: points, ..outward(mesh)? }, weights })
     }

@@ -43,7 +43,6 @@ impl PointSet {
     }
 
     /// All points, in the principal axes.
-    #[must_use]
     pub fn points(&self) -> &[Point3<f64>] {
         self.points.points()
     }
@@ -59,7 +58,6 @@ impl PointSet {
     }
 
     /// A lower bound of the root mean square distance to another set, over all motions.
-    #[must_use]
     pub fn least_distance(&self, other: &Self) -> f64 {
         self.extent.least_distance(&other.extent)
     }

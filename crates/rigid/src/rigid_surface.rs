@@ -27,7 +27,6 @@ pub struct RigidSurface {
 
 impl RigidSurface {
     /// The surface of a mesh in any unit and place. `None` without a finite area.
-    #[must_use]
     pub fn new(mut mesh: TriMesh) -> Option<Self> {
         let size = mesh.root_of_area();
         if !(size > 0.0 && size.is_finite()) {
@@ -44,32 +43,27 @@ impl RigidSurface {
 
     /// A surface again, from its [mesh](Self::mesh), [size](Self::size), [center](Self::center) and
     /// [deviations](Self::axis_std).
-    #[must_use]
     pub fn from_parts(mesh: TriMesh, size: f64, center: Point3<f64>, axis_std: [f64; 3]) -> Self {
         let (samples, tree, points, regions) = Default::default();
         Self { mesh, size, center, axis_std, samples, tree, points, regions }
     }
 
     /// The mesh at unit area, about its centroid.
-    #[must_use]
     pub fn mesh(&self) -> &TriMesh {
         &self.mesh
     }
 
     /// The square root of the area, in mesh units.
-    #[must_use]
     pub fn size(&self) -> f64 {
         self.size
     }
 
     /// The centroid of the surface, in mesh units.
-    #[must_use]
     pub fn center(&self) -> Point3<f64> {
         self.center
     }
 
     /// Root mean square distance of the surface from its centroid along its principal axes, descending, at unit area.
-    #[must_use]
     pub fn axis_std(&self) -> [f64; 3] {
         self.axis_std
     }

@@ -45,13 +45,11 @@ impl Similarity {
 
     /// Applies the map to a point.
     #[inline]
-    #[must_use]
     pub fn apply(&self, point: &Point3<f64>) -> Point3<f64> {
         Point3::from(self.rotation * (point.coords * self.scale) + self.translation)
     }
 
     /// The map back.
-    #[must_use]
     pub fn inverse(&self) -> Self {
         let rotation = self.rotation.transpose();
         let translation = -(rotation * self.translation) / self.scale;
@@ -59,7 +57,6 @@ impl Similarity {
     }
 
     /// This map after `first`.
-    #[must_use]
     pub fn after(&self, first: &Self) -> Self {
         Self {
             rotation: self.rotation * first.rotation,

@@ -52,7 +52,6 @@ pub struct NearestOnSurface {
 
 impl TriangleTree {
     /// The tree over the triangles that have an area. `O(n log n)`.
-    #[must_use]
     pub fn new(mesh: &TriMesh) -> Self {
         let placed = |f: usize| {
             let corners = mesh.triangle(f);
@@ -86,7 +85,6 @@ impl TriangleTree {
     }
 
     /// The point of the surface that is nearest to `query`; `None` for a surface without area.
-    #[must_use]
     pub fn nearest(&self, query: &Point3<f64>) -> Option<NearestOnSurface> {
         let mut best = Best { sq_distance: f64::INFINITY, point: Point3::origin(), triangle: 0 };
         self.search(self.nodes.first()?, query, &mut best);

@@ -135,7 +135,6 @@ impl Overlay {
 
 impl Residual {
     /// Of distances; zero if there are none.
-    #[must_use]
     pub fn new(distances: &[f64]) -> Self {
         let mut order: Vec<usize> = (0..distances.len()).collect();
         order.sort_by(|&i, &j| distances[i].total_cmp(&distances[j]));

@@ -166,14 +166,12 @@ impl VertexMap {
     }
 
     /// The map between the surfaces that it was found for, which takes points into faces and carries functions.
-    #[must_use]
     pub fn between<'a, S>(&'a self, shapes: [&'a MappedSurface<S>; 2]) -> Mapping<'a, S> {
         let partners = self.part.as_ref().map(|part| &part.partners);
         Mapping { shapes, functional: &self.functional, landmarks: &self.landmarks, partners }
     }
 
     /// Whether no other map of its kind is nearly as good.
-    #[must_use]
     pub fn is_certain(&self) -> bool {
         self.confidence >= SurfaceMap::CERTAIN
     }

@@ -25,13 +25,11 @@ pub struct FacePoint {
 
 impl FacePoint {
     /// The point as it is written.
-    #[must_use]
     pub fn point(&self) -> InputPoint {
         InputPoint::Face { face: self.face, weights: self.weights }
     }
 
     /// The corner of the largest weight, the first in case of a tie.
-    #[must_use]
     pub fn nearest_corner(&self) -> VertexId {
         let [a, b, c] = self.weights;
         self.corners[if a >= b && a >= c { 0 } else { usize::from(b < c) + 1 }]
@@ -92,7 +90,6 @@ impl PointMap {
     ///
     /// # Panics
     /// If `values` has fewer rows than the other input has vertices.
-    #[must_use]
     pub fn values(&self, values: &Matrix) -> Matrix {
         self.interpolated(values, |point| point.corners.map(VertexId::index))
     }
@@ -101,7 +98,6 @@ impl PointMap {
     ///
     /// # Panics
     /// If `values` has fewer rows than the other input has corners.
-    #[must_use]
     pub fn corner_values(&self, values: &Matrix) -> Matrix {
         self.interpolated(values, |point| point.face.corners().map(CornerId::index))
     }
@@ -123,7 +119,6 @@ impl PointMap {
     ///
     /// # Panics
     /// If there are fewer labels than the other input has vertices.
-    #[must_use]
     pub fn vertex_labels<L: Clone + PartialEq>(&self, labels: &[L]) -> Vec<Option<L>> {
         let label = |point: &FacePoint| {
             let of = point.corners.map(|corner| &labels[corner.index()]);
@@ -141,7 +136,6 @@ impl PointMap {
     ///
     /// # Panics
     /// If there are fewer labels than the other input has faces.
-    #[must_use]
     pub fn face_labels<L: Clone>(&self, labels: &[L]) -> Vec<Option<L>> {
         self.points.iter().map(|point| point.map(|point| labels[point.face.index()].clone())).collect()
     }
@@ -150,7 +144,6 @@ impl PointMap {
 impl<S: Borrow<Surface>> Mapping<'_, S> {
     /// For every vertex of one side, its point on the other surface: of the first side, where the map takes it; of the second, what
     /// is taken to it.
-    #[must_use]
     pub fn vertices(&self, of: Side) -> PointMap {
         let surfaces = self.shapes.map(|shape| shape.surface());
         let [own, other] = ordered(surfaces, of);
@@ -172,7 +165,6 @@ impl<S: Borrow<Surface>> Mapping<'_, S> {
     }
 
     /// The same for the centroid of every face of one side.
-    #[must_use]
     pub fn faces(&self, of: Side) -> PointMap {
         let [own, other] = ordered(self.shapes.map(|shape| shape.surface()), of);
         if let Some(partners) = self.partners {
@@ -194,7 +186,6 @@ impl<S: Borrow<Surface>> Mapping<'_, S> {
     /// The same for the corners of the faces of one side, three for each face, in order to carry values at the corners of the other
     /// side, such as texture coordinates: `values` has three rows for each of its faces. No face here takes its values from both
     /// sides of a seam, across which those of neighboring faces differ. `None` between a part and a whole.
-    #[must_use]
     pub fn corners(&self, of: Side, values: &Matrix) -> Option<PointMap> {
         let [own, other] = ordered(self.shapes.map(|shape| shape.surface()), of);
         if self.partners.is_some() {

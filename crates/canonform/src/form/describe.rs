@@ -90,7 +90,6 @@ impl MeasuredSurface {
     }
 
     /// How the surface was embedded.
-    #[must_use]
     pub fn options(&self) -> &FormOptions {
         &self.embedded.options
     }
@@ -205,7 +204,6 @@ impl DescribeOptions {
 }
 
 /// The signature of one kind, if a shape has it.
-#[must_use]
 pub fn signature(shape: &Shape, kind: SignatureKind) -> Option<Signature> {
     let values = shape.signatures.get(kind.name())?;
     Some(Signature { kind, values: values.iter().map(|value| f64::from(*value)).collect() })

@@ -115,7 +115,6 @@ impl Agreement {
     }
 
     /// The boundary of classes.
-    #[must_use]
     pub fn classes(&self) -> Boundary {
         Boundary::new(self.boundary, self.steepness)
     }

@@ -37,7 +37,6 @@ impl ShapeSearch {
     }
 
     /// The query of a mesh file, which may be one of the index.
-    #[must_use]
     pub fn of_file(&self, query: Query, path: &Path) -> Query {
         let home = Home::new(self.index().path()).ok();
         Query { place: home.map(|home| home.file_text(path)), ..query }

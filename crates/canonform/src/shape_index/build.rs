@@ -58,7 +58,6 @@ pub struct BuildOptions<'a> {
 
 impl<'a> BuildOptions<'a> {
     /// The defaults.
-    #[must_use]
     pub fn new(describe: &'a DescribeOptions) -> Self {
         Self { describe, labels: None, shard: None, only: None, prune: false, limits: ShapeLimits::default() }
     }

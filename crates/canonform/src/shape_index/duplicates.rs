@@ -149,7 +149,6 @@ pub struct DuplicateMember {
 
 impl DuplicateMember {
     /// Whether it can be spared: it is the surface of a file that is kept, is no reference, and its bytes would be free.
-    #[must_use]
     pub fn is_spare(&self) -> bool {
         self.relation.kind.is_one_surface() && !(self.file.reference || self.file.is_linked)
     }
@@ -189,7 +188,6 @@ impl DuplicateReport {
     }
 
     /// Bytes of all files that can be spared.
-    #[must_use]
     pub fn spare_bytes(&self) -> u64 {
         self.spare().filter_map(|file| file.bytes).sum()
     }

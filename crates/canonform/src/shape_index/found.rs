@@ -37,7 +37,6 @@ pub enum OrderedBy {
 
 impl OrderedBy {
     /// The number by which results ascend.
-    #[must_use]
     pub fn distance(&self) -> f64 {
         match *self {
             Self::Graph { rank_distance, .. } => rank_distance,

@@ -11,7 +11,6 @@ use super::search::Answer;
 /// its class. `threshold` is that of [all of them](index::class_threshold).
 ///
 /// Each must have been asked for [`n_results`] results at least. Explanations are not merged.
-#[must_use]
 pub fn merge_answers(
     query: &Query,
     answers: Vec<Answer>,
@@ -40,7 +39,6 @@ pub fn merge_answers(
 }
 
 /// How many shapes with the nearest fused vectors are candidates for `k` results, where only vectors are searched.
-#[must_use]
 pub fn n_candidates(k: usize) -> usize {
     n_results(k).saturating_mul(CANDIDATES).max(LEAST_CANDIDATES)
 }

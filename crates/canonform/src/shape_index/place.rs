@@ -128,7 +128,6 @@ pub(super) fn is_end(end: &str, name: &str) -> bool {
 /// let path = canonform::library::mesh_path(Path::new("work/shapes.canonform"), "../meshes/cat0.off");
 /// assert_eq!(path, Path::new("meshes/cat0.off"));
 /// ```
-#[must_use]
 pub fn mesh_path(index: &Path, stored: &str) -> PathBuf {
     let joined = index.parent().unwrap_or(Path::new("")).join(stored);
     let tidy = without_detours(&joined);

@@ -12,7 +12,6 @@ use super::found::{Hit, OrderedBy};
 const VOTERS: usize = 5;
 
 /// How many results of each index are needed for the `k` best of all and the class: those that vote are among them.
-#[must_use]
 pub fn n_results(k: usize) -> usize {
     // The query may be one of them.
     k.max(VOTERS + 1)

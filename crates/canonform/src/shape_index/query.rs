@@ -43,7 +43,6 @@ pub struct Query {
 
 impl Query {
     /// A shape that was described with these options.
-    #[must_use]
     pub fn new(shape: Shape, options: &DescribeOptions) -> Self {
         Self {
             name: "the query".to_owned(),

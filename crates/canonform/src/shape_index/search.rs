@@ -130,7 +130,6 @@ impl ShapeSearch {
     }
 
     /// The shape that a text names, unless there is a file of this name, which goes first.
-    #[must_use]
     pub fn id_of<'p>(&self, given: &'p Path) -> Option<&'p str> {
         given.to_str().filter(|id| !Storage.holds(given) && self.index.contains(id).unwrap_or(false))
     }

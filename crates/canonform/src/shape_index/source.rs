@@ -79,7 +79,6 @@ pub struct ShapeLimits {
 
 impl ShapeLimits {
     /// The budget of a shape that is begun now, as part of that of the whole.
-    #[must_use]
     pub fn budget(&self, whole: Budget) -> Budget {
         let budget = match self.time {
             Some(limit) => whole.with_time(limit),

@@ -49,7 +49,6 @@ impl LabelSource {
     }
 
     /// The word that [`read`](Self::read) reads as this source, unless it is a file.
-    #[must_use]
     pub fn word(&self) -> Option<String> {
         Some(match self {
             Self::Folders(None) => "folders".to_owned(),
@@ -61,7 +60,6 @@ impl LabelSource {
     }
 
     /// The label file, if there is one.
-    #[must_use]
     pub fn file(&self) -> Option<&LabelFile> {
         match self {
             Self::File(file) => Some(file),
@@ -70,7 +68,6 @@ impl LabelSource {
     }
 
     /// The class of a shape; empty if it has none.
-    #[must_use]
     pub fn label(&self, name: &str, mesh: Option<&Path>) -> String {
         match self {
             Self::Folders(level) => {
@@ -157,7 +154,6 @@ fn leading_letters(name: &str) -> &str {
 }
 
 /// Whether a label is one that a name suggests in some way, so that nobody need have given it.
-#[must_use]
 pub fn is_suggested(label: &str, name: &str) -> bool {
     let path = folder(name).unwrap_or_default();
     label == leading_letters(name) || label == path || path.split('/').any(|part| part == label)
@@ -196,7 +192,6 @@ pub fn drop_single_class(shapes: &mut [ShapeFile], known: impl Fn(&str) -> bool)
 }
 
 /// The number of classes that shapes have.
-#[must_use]
 pub fn n_classes<'a>(shapes: impl IntoIterator<Item = &'a ShapeFile>) -> usize {
     let labels = shapes.into_iter().map(|shape| shape.label.as_str()).filter(|label| !label.is_empty());
     labels.collect::<HashSet<_>>().len()

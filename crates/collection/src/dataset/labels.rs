@@ -71,7 +71,6 @@ impl LabelFile {
     }
 
     /// The file.
-    #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -117,7 +116,6 @@ impl LabelFile {
     }
 
     /// The error that no line names a shape, such as this one.
-    #[must_use]
     pub fn fits_none(&self, shape: &str) -> CollectionError {
         let first = self.labels.iter().map(|(name, (line, _))| (*line, name)).min();
         let (line, name) = first.or(self.in_order.first().map(|label| (1, label))).unzip();

@@ -59,7 +59,6 @@ impl SkipKind {
     }
 
     /// Whether users expect it: files that are not meshes, and what they moved.
-    #[must_use]
     pub fn is_expected(&self) -> bool {
         matches!(self, Self::Extension(_) | Self::AppleDouble | Self::MovedAway)
     }

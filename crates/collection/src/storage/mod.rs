@@ -28,7 +28,6 @@ pub use single::{is_archive_name, mesh_at, single_mesh};
 
 /// Whether a path leads to a dataset: a folder, an archive (`.zip`, `.tar`, `.tar.gz`, `.tgz`), a `.parquet` file with a
 /// column of bytes, or a list of paths (`.txt`, `.list`).
-#[must_use]
 pub fn is_dataset(path: &Path) -> bool {
     Container::of(path).is_some()
 }

@@ -15,7 +15,6 @@ use crate::dataset::joined;
 use crate::error::CollectionError;
 
 /// Whether a name is that of an archive: `.zip`, `.tar`, `.tar.gz` or `.tgz`.
-#[must_use]
 pub fn is_archive_name(name: &Path) -> bool {
     matches!(Container::by_name(name), Some(Container::Zip | Container::Tar))
 }

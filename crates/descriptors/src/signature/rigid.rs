@@ -41,7 +41,6 @@ const DEGREE: usize = 8;
 ///   triangulation changes a little.
 /// * `None` unless planes and cylinders between sharp edges make up the surface ([`SmoothRegions`]): others may bend.
 /// * Cost `O(p)` for p vertices, with 400 passes over them.
-#[must_use]
 pub fn rigid_signature(mesh: &TriMesh) -> Option<Signature> {
     let signature = || Signature { kind: SignatureKind::Rigid, values: in_space(mesh) };
     SmoothRegions::of(mesh).is_mechanical.then(signature)

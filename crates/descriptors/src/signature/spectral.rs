@@ -97,7 +97,6 @@ fn wave_filters(spectrum: &LaplaceSpectrum) -> Matrix {
 }
 
 /// The wave kernels of [`wave_kernel_signature`] at some vertices, one row for each vertex and one column for each energy.
-#[must_use]
 pub fn wave_kernels(spectrum: &LaplaceSpectrum, vertices: &[usize]) -> Matrix {
     let at = spectrum.vectors.select_rows(vertices).map(|x| x * x);
     at * wave_filters(spectrum)

@@ -33,7 +33,6 @@ fn cells((name, value): (Cow<'static, str>, Value<'_>)) -> Vec<String> {
 }
 
 /// A field of comma-separated values (RFC 4180), in quotes where it must be.
-#[must_use]
 pub fn csv_field(text: &str) -> String {
     match text.contains([',', '"', '\n', '\r']) {
         true => format!("\"{}\"", text.replace('"', "\"\"")),
@@ -43,7 +42,6 @@ pub fn csv_field(text: &str) -> String {
 
 /// A field of text in a table for people: what a spreadsheet would take for a formula begins with an apostrophe. An export that
 /// programs read says names as they are.
-#[must_use]
 pub fn text_cell(text: &str) -> String {
     let is_formula = text.starts_with(['=', '+', '-', '@', '\t', '\r', '\n', '＝', '＋', '－', '＠']);
     let field = csv_field(&format!("{}{text}", if is_formula { "'" } else { "" }));

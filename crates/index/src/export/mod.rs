@@ -53,7 +53,6 @@ impl ExportFormat {
     pub const ALL: [Self; 4] = [Self::JsonLines, Self::Parquet, Self::Npz, Self::Csv];
 
     /// The extension of its files.
-    #[must_use]
     pub fn extension(self) -> &'static str {
         match self {
             Self::JsonLines => "jsonl",
@@ -64,7 +63,6 @@ impl ExportFormat {
     }
 
     /// The format of files with this extension.
-    #[must_use]
     pub fn named(extension: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|format| format.extension() == extension)
     }

@@ -46,31 +46,26 @@ impl VectorTable {
     }
 
     /// Number of shapes.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.ids.len()
     }
 
     /// Whether there are none.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
     /// Length of a vector; 0 if there are none.
-    #[must_use]
     pub fn dim(&self) -> usize {
         self.dim
     }
 
     /// The name of a shape.
-    #[must_use]
     pub fn id(&self, i: usize) -> &str {
         &self.ids[i]
     }
 
     /// The vector of a shape.
-    #[must_use]
     pub fn vector(&self, i: usize) -> &[f32] {
         &self.rows(i..i + 1)[..self.dim]
     }
@@ -82,7 +77,6 @@ impl VectorTable {
     }
 
     /// The numbers and distances of the `k` vectors nearest to a query of this length; ties by number.
-    #[must_use]
     pub fn nearest(&self, query: &[f32], k: usize) -> Vec<Neighbor> {
         self.nearest_first(query, &[], |vector| distance(query, vector)).take(k).collect()
     }

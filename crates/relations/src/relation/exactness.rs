@@ -50,7 +50,6 @@ type Better<'a> = &'a dyn Fn(&Exactness, &Exactness) -> bool;
 
 impl Merit {
     /// As the end of a sentence on a file that is kept.
-    #[must_use]
     pub fn words(self) -> &'static str {
         match self {
             Self::Clean => "it has the least noise",
@@ -63,13 +62,11 @@ impl Merit {
 
 impl Exactness {
     /// Whether what it has beyond another copy may be noise, which then [an overlay](super::MeshOverlay::is_noise) tells.
-    #[must_use]
     pub fn may_be_noise(&self, other: &Self) -> bool {
         self.bending > (1.0 + ROUGH) * other.bending
     }
 
     /// Why this copy is more exact than another one; `None` if it is not.
-    #[must_use]
     pub fn over(&self, other: &Self) -> Option<Merit> {
         let same_counts = self.counts == other.counts;
         let is_rougher = |a: &Self, b: &Self| {
@@ -106,7 +103,6 @@ impl MeshGeometry {
     /// let [ball, coarse] = [of(shapes::icosphere(3)), of(shapes::icosphere(2))];
     /// assert_eq!(ball.over(&coarse), Some(Merit::Detailed));
     /// ```
-    #[must_use]
     pub fn exactness(&self) -> Exactness {
         let mesh = self.mesh();
         let normals: Vec<Vector3<f64>> =

@@ -96,7 +96,6 @@ impl<'de> Deserialize<'de> for MeshGeometry {
 impl MeshGeometry {
     /// The geometry of a mesh, exactly as its file states it; `content` is the hash of the file, if there is one. `None` for
     /// a mesh without area, or with coordinates that are not finite.
-    #[must_use]
     pub fn new(mesh: &TriMesh, content: Option<ContentHash>) -> Option<Self> {
         let farthest = mesh.positions.iter().map(|p| p.coords.amax()).fold(0.0, f64::max);
         let surface = RigidSurface::new(welded(mesh)).filter(|_| farthest.is_finite())?;
@@ -120,31 +119,26 @@ impl MeshGeometry {
     }
 
     /// Number of vertices in different positions.
-    #[must_use]
     pub fn n_vertices(&self) -> usize {
         self.mesh().n_vertices()
     }
 
     /// Number of faces, without degenerate and duplicate ones.
-    #[must_use]
     pub fn n_faces(&self) -> usize {
         self.mesh().n_faces()
     }
 
     /// Number of connected components.
-    #[must_use]
     pub fn n_components(&self) -> usize {
         self.components.count
     }
 
     /// The square root of the area, in mesh units.
-    #[must_use]
     pub fn size(&self) -> f64 {
         self.surface.size()
     }
 
     /// The mesh in its own units and place, without repeated positions, degenerate and duplicate faces and unused vertices.
-    #[must_use]
     pub fn to_mesh(&self) -> TriMesh {
         let place = |p: &Point3<f64>| self.surface.center() + p.coords * self.size();
         TriMesh {
@@ -154,7 +148,6 @@ impl MeshGeometry {
     }
 
     /// Approximate size in memory.
-    #[must_use]
     pub fn n_bytes(&self) -> usize {
         // With the tree, the samples and the components, which are made when they are needed.
         100 * self.n_vertices() + 250 * self.n_faces()

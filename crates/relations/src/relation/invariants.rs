@@ -42,7 +42,6 @@ pub struct SurfaceInvariants {
 
 impl SurfaceInvariants {
     /// Whether two surfaces may be one. If not, no alignment need be tried.
-    #[must_use]
     pub fn may_be_copy_of(&self, other: &Self) -> bool {
         let largest =
             |a: [f64; 3], b: [f64; 3]| a.iter().zip(&b).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
@@ -80,7 +79,6 @@ impl SurfaceInvariants {
 
 impl MeshGeometry {
     /// Its invariants.
-    #[must_use]
     pub fn invariants(&self) -> SurfaceInvariants {
         let is_mechanical = self.is_mechanical();
         let volume = |euler| (self.mesh().signed_volume().abs(), euler);

@@ -50,25 +50,21 @@ impl RelationKind {
     ];
 
     /// Whether both have the same vertices and faces at one size.
-    #[must_use]
     pub fn is_one_geometry(self) -> bool {
         matches!(self, Self::IdenticalFile | Self::IdenticalGeometry)
     }
 
     /// Whether both are one surface, at any size, mirrored or not.
-    #[must_use]
     pub fn is_one_surface(self) -> bool {
         self.is_one_geometry() || matches!(self, Self::Scaled | Self::Mirrored | Self::Noisy | Self::Remeshed)
     }
 
     /// Whether the distance of their shapes is all that says so.
-    #[must_use]
     pub fn is_by_distance(self) -> bool {
         matches!(self, Self::OtherPose | Self::SameClass | Self::Different)
     }
 
     /// What the two have in common, in a few words.
-    #[must_use]
     pub fn words(self) -> &'static str {
         match self {
             Self::IdenticalFile => "the same file",

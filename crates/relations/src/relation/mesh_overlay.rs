@@ -21,7 +21,6 @@ pub struct MeshOverlay {
 
 impl MeshOverlay {
     /// Whether vertices of the first mesh are as far from the second as noise takes them: independently of their neighbours.
-    #[must_use]
     pub fn is_noise(&self) -> bool {
         let ([mesh, _], [gaps, _]) = (&self.meshes, &self.gaps);
         let mean = gaps.iter().sum::<f64>() / gaps.len().max(1) as f64;
@@ -46,7 +45,6 @@ impl Relation {
     /// assert!(overlay.gaps.iter().flatten().all(|gap| *gap < 1e-3));
     /// assert!(found.by_meshes([&a, &c]).overlay([&a, &c]).is_none());
     /// ```
-    #[must_use]
     pub fn overlay(&self, [a, b]: [&MeshGeometry; 2]) -> Option<MeshOverlay> {
         if !(self.kind.is_one_surface() || self.kind == RelationKind::Variant) {
             return None;

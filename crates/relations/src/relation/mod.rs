@@ -85,13 +85,11 @@ impl Relation {
     /// assert_eq!(at(20.0).named("cat", "hand").to_string(), "hand is not the same shape as cat");
     /// assert!(at(0.5).confidence > at(1.0).confidence);
     /// ```
-    #[must_use]
     pub fn by_distance(distance: ShapeDistance, scale: f64, handedness: Handedness) -> Self {
         Self::in_classes(distance, scale, handedness, None)
     }
 
     /// The same in a collection that has classes with this boundary.
-    #[must_use]
     pub fn in_classes(
         distance: ShapeDistance,
         scale: f64,
@@ -155,7 +153,6 @@ impl Relation {
     }
 
     /// Whether the second mesh changed from the first in this way.
-    #[must_use]
     pub fn has(&self, change: Change) -> bool {
         self.changes.contains(&change)
     }

@@ -12,7 +12,6 @@ pub(super) fn percent(share: f64) -> String {
 }
 
 /// A number with four significant digits and no zeros at the end.
-#[must_use]
 pub fn in_four_digits(x: f64) -> String {
     in_digits(4, x)
 }

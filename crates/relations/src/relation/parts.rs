@@ -100,7 +100,6 @@ fn copy_of(mesh: &MeshGeometry, part: &MeshGeometry, align: bool) -> Option<Part
 impl MeshGeometry {
     /// The components with at least a thousandth of the area, and how many copies there are of each, largest first; none if there
     /// is only one. Copies have the same vertices and faces.
-    #[must_use]
     pub fn different_components(&self) -> Vec<(&Self, usize)> {
         let mut kinds: Vec<(&Self, usize)> = Vec::new();
         for part in self.parts() {

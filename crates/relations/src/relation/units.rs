@@ -45,7 +45,6 @@ impl UnitChange {
     /// assert_eq!(UnitChange::of(0.001, 1e-4).unwrap().to_string(), "millimetres to metres");
     /// assert_eq!(UnitChange::of(2.0, 1e-4), None);
     /// ```
-    #[must_use]
     pub fn of(scale: f64, tolerance: f64) -> Option<Self> {
         Self::all().find(|(_, factor)| (scale / factor).ln().abs() <= tolerance).map(|(change, _)| change)
     }

@@ -55,7 +55,6 @@ impl Display for Relation {
 
 impl Relation {
     /// What the two have in common, in a few words.
-    #[must_use]
     pub fn in_brief(&self) -> String {
         let words = match (self.kind, self.evidence.classes) {
             (RelationKind::SameClass, Some(_)) => "the same class",
@@ -66,7 +65,6 @@ impl Relation {
     }
 
     /// The numbers that decided.
-    #[must_use]
     pub fn reason(&self) -> String {
         let Evidence { vertex_gap, surface_gap, content, vertices, .. } = &self.evidence;
         let vertices = match vertices {
