@@ -1,14 +1,10 @@
 //! The command line.
 
-use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use clap::parser::ValueSource;
-use clap::{Arg, ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand};
 
 use crate::collection::ShapeSource;
-use crate::quoted::quoted;
-use crate::table::parse_name;
 
 /// The default folder for results.
 const OUTPUT: &str = "out";
@@ -57,7 +53,7 @@ pub(crate) enum ExperimentCommand {
 #[derive(Debug, Args)]
 pub(crate) struct RunArgs {
     /// Names of experiments (see `experiments list`), or `all`
-    #[arg(required = true, value_name = "NAME", value_parser = parse_name)]
+    #[arg(required = true, value_name = "NAME")]
     pub(crate) names: Vec<String>,
     #[command(flatten)]
     pub(crate) source: ShapeSource,
@@ -76,47 +72,30 @@ pub(crate) struct RunArgs {
     /// Show no progress bars
     #[arg(long, short)]
     pub(crate) quiet: bool,
-    /// The options that decide the results and where they are, each after a space.
-    #[arg(skip)]
-    pub(crate) arguments: String,
-}
-
-/// Options that do not decide the results.
-const INDIFFERENT: [&str; 4] = ["names", "resume", "threads", "quiet"];
-
-impl ExperimentArguments {
-    /// Reads the command line, and keeps what decides the results of a run.
-    pub(crate) fn read(words: impl IntoIterator<Item: Into<OsString> + Clone>) -> Self {
-        let mut matches = Self::command().get_matches_from(words);
-        let given = matches.subcommand().map(|(name, given)| repeated(name, given)).unwrap_or_default();
-        let mut arguments = Self::from_arg_matches_mut(&mut matches).unwrap_or_else(|fault| fault.exit());
-        if let ExperimentCommand::Run(run) = &mut arguments.command {
-            run.arguments = given;
-        }
-        arguments
-    }
-}
-
-/// The options on the command line that decide the results and where they are, each after a space, in a fixed order.
-fn repeated(name: &str, given: &ArgMatches) -> String {
-    let command = ExperimentArguments::command();
-    let options = command.find_subcommand(name).into_iter().flat_map(clap::Command::get_arguments);
-    let decides = |option: &&Arg| {
-        let id = option.get_id().as_str();
-        given.value_source(id) == Some(ValueSource::CommandLine) && !INDIFFERENT.contains(&id)
-    };
-    let written = |option: &Arg| {
-        let values = given.get_raw(option.get_id().as_str()).into_iter().flatten();
-        let values: Vec<_> = values.map(|value| value.to_string_lossy()).collect();
-        format!(" --{} {}", option.get_long().unwrap_or_default(), quoted(&values.join(",")))
-    };
-    options.filter(decides).map(written).collect()
 }
 
 impl RunArgs {
+    /// The options that decide the results and where they are, each after a space.
+    pub(crate) fn arguments(&self) -> String {
+        let mut options = self.source.options();
+        let path = |path: &Path| path.display().to_string();
+        options.extend((self.output != Path::new(OUTPUT)).then(|| ("output", path(&self.output))));
+        options.extend(self.compare.as_deref().map(|compare| ("compare", path(compare))));
+        options.iter().map(|(name, value)| format!(" --{name} {}", quoted(value))).collect()
+    }
+
     /// The command line that repeats the run.
     pub(crate) fn command(&self) -> String {
-        format!("cargo run --release -p experiments -- run {}{}", self.names.join(" "), self.arguments)
+        format!("cargo run --release -p experiments -- run {}{}", self.names.join(" "), self.arguments())
+    }
+}
+
+/// A word of a command line, in quotes if a shell would take it apart.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "-_./:,+=@%".contains(c);
+    match !word.is_empty() && word.chars().all(is_plain) {
+        true => word.to_owned(),
+        false => format!("'{}'", word.replace('\'', "'\\''")),
     }
 }
 
@@ -125,7 +104,7 @@ mod tests {
     use super::*;
 
     fn parsed(line: &str) -> RunArgs {
-        match ExperimentArguments::read(format!("experiments run {line}").split(' ')).command {
+        match ExperimentArguments::parse_from(format!("experiments run {line}").split(' ')).command {
             ExperimentCommand::Run(args) => args,
             other => panic!("{other:?}"),
         }

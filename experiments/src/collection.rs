@@ -72,6 +72,23 @@ impl ShapeSource {
     fn families(&self) -> String {
         self.families.iter().map(ToString::to_string).collect::<Vec<_>>().join(",")
     }
+
+    /// The options that are not the default, with their values.
+    pub(crate) fn options(&self) -> Vec<(&'static str, String)> {
+        let path = |path: &Option<PathBuf>| path.as_ref().map(|path| path.display().to_string());
+        let is_default = self.families == [Families::Articulated];
+        [
+            ("dataset", path(&self.dataset)),
+            ("labels", path(&self.labels)),
+            ("classes", Some(self.classes.join(","))),
+            ("families", Some(self.families()).filter(|_| !is_default)),
+            ("vertices", Some(self.vertices.to_string()).filter(|_| self.vertices != VERTICES)),
+            ("seed", Some(self.seed.to_string()).filter(|_| self.seed != 0)),
+        ]
+        .into_iter()
+        .filter_map(|(name, value)| Some((name, value.filter(|value| !value.is_empty())?)))
+        .collect()
+    }
 }
 
 /// Labelled surfaces, sorted by class.
@@ -158,10 +175,6 @@ impl SurfaceCollection {
         shapes.retain(|shape| rank(&shape.label).is_some());
         shapes.sort_by_key(|shape| rank(&shape.label));
         Ok(Self { dataset, classes, shapes })
-    }
-
-    pub(crate) fn names(&self) -> Vec<String> {
-        self.shapes.iter().map(|shape| shape.name.clone()).collect()
     }
 
     pub(crate) fn labels(&self) -> Vec<String> {

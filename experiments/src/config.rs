@@ -1,151 +1,179 @@
-//! The configuration of an experiment, `configs/*.toml`: options of its own, expectations and analysis.
+//! The configuration of an experiment, `configs/*.toml`: options, expectations and texts.
 
 use std::collections::BTreeMap;
 
-use anyhow::{Context, Result, bail};
-use report::results::Expectation;
+use anyhow::{Context, Result};
+use report::record::Expectation;
 use serde::Deserialize;
 
-use crate::bound::Bound;
 use crate::collection::Setting;
-use crate::prose::Paragraph;
 use crate::sweep::MeasuredNumbers;
+use crate::text::filled;
 
 /// Numbers printed in the paper, by row (a class, or a number of vertices) and method.
 pub(crate) type Printed = BTreeMap<String, BTreeMap<String, f64>>;
 
-/// A configuration.
-#[derive(Debug)]
-pub(crate) struct Config {
-    /// What the experiment reads.
-    pub(crate) options: toml::Table,
-    pub(crate) findings: Findings,
-}
-
-/// What all configurations have in common.
-#[derive(Debug, Clone, Deserialize)]
+/// A configuration. Its texts state numbers of the run, see [`text`](crate::text).
+#[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Findings {
+pub(crate) struct Config {
+    pub(crate) title: String,
+    /// What the experiment reads, as text for its record.
     #[serde(default)]
-    pub(crate) expect: Vec<Bound>,
-    /// Of the figure, with numbers as in the analysis.
+    pub(crate) options: toml::Table,
+    /// How a page can begin.
+    #[serde(default)]
+    pub(crate) lead: String,
+    /// Of the figures without a caption of their own.
     #[serde(default)]
     pub(crate) caption: String,
-    /// What the results show.
-    analysis: Vec<Paragraph>,
+    /// What the results show. Paragraphs with numbers that were not measured are left out.
+    pub(crate) analysis: String,
+    #[serde(default)]
+    expect: Vec<Bound>,
+}
+
+/// The options of all experiments; each reads its own.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(crate) struct Options {
+    /// Samples of an embedding, and eigenpairs that are kept.
+    pub(crate) samples: usize,
+    pub(crate) rank: usize,
+    pub(crate) runs: usize,
+    pub(crate) eigenvectors: usize,
+    /// The values of the horizontal axis.
+    pub(crate) counts: Vec<usize>,
+    /// Decimal logarithms of alpha.
+    pub(crate) exponents: Vec<f64>,
+    pub(crate) printed: Printed,
+    /// Shapes of each class that are searched for.
+    pub(crate) queries: usize,
+    /// Nearest neighbours that vote.
+    pub(crate) voters: usize,
+    /// Training shapes of each class, for classification over so many random splits.
+    pub(crate) training: Vec<usize>,
+    pub(crate) splits: usize,
+    /// Most shapes whose forms are all aligned with each other.
+    pub(crate) aligned: usize,
+    /// Parts of which all pairs are compared, and parts that are compared with copies of themselves.
+    pub(crate) parts: usize,
+    pub(crate) treated: usize,
+}
+
+/// Bounds on one of an experiment's numbers.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Bound {
+    /// Name of the number; the module of the experiment lists them.
+    value: String,
+    /// The number in words, for readers.
+    words: String,
+    at_least: Option<f64>,
+    at_most: Option<f64>,
+    /// Whether this is a goal that is known to be missed.
+    #[serde(default)]
+    goal: bool,
+    /// The collections to which it applies; all known ones but the one of whole maps if empty.
+    #[serde(default)]
+    on: Vec<Setting>,
+}
+
+impl Bound {
+    fn applies(&self, setting: Setting) -> bool {
+        let is_usual = !matches!(setting, Setting::Other | Setting::FullResolution);
+        self.on.contains(&setting) || self.on.is_empty() && is_usual
+    }
+
+    fn check(&self, measured: &MeasuredNumbers) -> Result<Expectation> {
+        let value =
+            *measured.get(&self.value).with_context(|| format!("nothing measures `{}`", self.value))?;
+        let limits =
+            [self.at_least.map(|l| format!("at least {l}")), self.at_most.map(|l| format!("at most {l}"))];
+        Ok(Expectation {
+            what: self.words.clone(),
+            expected: limits.into_iter().flatten().collect::<Vec<_>>().join(", "),
+            measured: report::numbers::significant(value, 4),
+            held: self.at_least.is_none_or(|l| value >= l) && self.at_most.is_none_or(|l| value <= l),
+            goal: self.goal,
+        })
+    }
 }
 
 impl Config {
-    pub(crate) fn parse(name: &str, text: &str) -> Result<Self> {
+    pub(crate) fn parse(name: &str, text: &str) -> Result<(Self, Options)> {
         let place = || format!("experiments/configs/{name}.toml");
-        let mut options: toml::Table = toml::from_str(text).with_context(place)?;
-        let findings =
-            ["expect", "caption", "analysis"].into_iter().filter_map(|key| options.remove_entry(key));
-        let findings = toml::Table::from_iter(findings).try_into().with_context(place)?;
-        Ok(Self { options, findings })
+        let config: Self = toml::from_str(text).with_context(place)?;
+        let options = config.options.clone().try_into().with_context(place)?;
+        Ok((config, options))
     }
 
-    /// The options that are whole numbers, which texts may state.
-    pub(crate) fn counts(&self) -> impl Iterator<Item = (&str, f64)> {
-        self.options.iter().filter_map(|(name, value)| Some((name.as_str(), value.as_integer()? as f64)))
-    }
-}
-
-impl Findings {
     /// Compares the expectations that apply with what was measured.
     pub(crate) fn check(&self, setting: Setting, measured: &MeasuredNumbers) -> Result<Vec<Expectation>> {
-        let applies = |bound: &&Bound| match setting {
-            Setting::Other => false,
-            Setting::FullResolution => bound.on.contains(&setting),
-            _ => bound.on.is_empty() || bound.on.contains(&setting),
-        };
-        self.expect.iter().filter(applies).map(|bound| bound.check(measured)).collect()
+        let applying = self.expect.iter().filter(|bound| bound.applies(setting));
+        applying.map(|bound| bound.check(measured)).collect()
     }
 
-    /// The text on a run that measured these numbers, on the `shapes` that are examined closely.
-    ///
-    /// A paragraph about a number that was not measured is left out unless it names the collection or the collection is that of
-    /// the paper, the built-in one or TOSCA; there it is an error.
-    pub(crate) fn analysis(
-        &self,
-        setting: Setting,
-        numbers: &MeasuredNumbers,
-        shapes: &[&str],
-    ) -> Result<String> {
-        let mut text = Vec::new();
-        for paragraph in self.analysis.iter().filter(|p| p.on.is_empty() || p.on.contains(&setting)) {
-            match paragraph.write(numbers, shapes) {
-                Ok(paragraph) => text.push(paragraph),
-                Err(_) if setting == Setting::Other => {}
-                Err(_) if setting == Setting::FullResolution && !paragraph.on.contains(&setting) => {}
-                Err(name) => bail!("the analysis: nothing measures `{name}`"),
-            }
-        }
-        text.retain(|paragraph| !paragraph.is_empty());
-        Ok(text.join("\n\n"))
+    /// The text on a run with these numbers.
+    pub(crate) fn analysis(&self, numbers: &MeasuredNumbers) -> String {
+        let paragraphs = self.analysis.split("\n\n");
+        let filled = paragraphs.filter_map(|text| filled(text, |name| numbers.get(name).copied()).ok());
+        filled.collect::<Vec<_>>().join("\n\n")
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use report::results::ExpectationOutcome;
-
     use super::*;
 
     const TEXT: &str = r#"
-        samples = 10
-        rank = 5
-        [[analysis]]
-        text = "x is {x}."
-        [[analysis]]
-        text = "On the paper's shapes, y is {y}."
-        on = ["paper", "other"]
-        [[expect]]
-        value = "x"
-        at_least = 1.0
+        title = "Test"
+        analysis = """
+x is {x}.
+
+On the paper's shapes, y is {y}.
+"""
+        options.samples = 10
         [[expect]]
         value = "x"
         words = "The number x"
         at_least = 1.0
-        strictly = true
+        [[expect]]
+        value = "x"
+        words = "The number x"
+        at_least = 2.0
+        goal = true
         on = ["paper"]
     "#;
 
     #[test]
-    fn bounds_apply_to_their_collections_and_may_be_strict() {
-        let config = Config::parse("test", TEXT).unwrap();
-        let limits = config.findings.check(Setting::Paper, &[("x".to_owned(), 1.0)].into()).unwrap();
-        let limits: Vec<_> = limits.iter().map(|e| (e.what.as_str(), e.expected.as_str())).collect();
-        assert_eq!(limits, [("x", "at least 1"), ("The number x", "above 1")]);
-        let held = |setting, x: f64| {
-            let found = config.findings.check(setting, &[("x".to_owned(), x)].into()).unwrap();
-            found.iter().map(|e| e.held).collect::<Vec<_>>()
+    fn bounds_apply_to_their_collections() {
+        let (config, options) = Config::parse("test", TEXT).unwrap();
+        assert_eq!(options.samples, 10);
+        let held = |setting, x: f64| -> Vec<(bool, bool)> {
+            let found = config.check(setting, &[("x".to_owned(), x)].into()).unwrap();
+            found.iter().map(|e| (e.held, e.goal)).collect()
         };
-        assert_eq!(held(Setting::BuiltIn, 1.0), [true]);
-        assert_eq!(held(Setting::Paper, 1.0), [true, false]);
-        assert_eq!(held(Setting::Paper, 0.5), [false, false]);
-        assert!(held(Setting::Other, 0.0).is_empty());
-        assert!(config.findings.check(Setting::Paper, &MeasuredNumbers::new()).is_err());
-        // A goal that is missed is no failure.
-        let config = Config::parse("test", &TEXT.replacen("strictly = true", "goal = true", 1)).unwrap();
-        let found = config.findings.check(Setting::Paper, &[("x".to_owned(), 0.5)].into()).unwrap();
-        let outcomes: Vec<_> = found.iter().map(Expectation::outcome).collect();
-        assert_eq!(outcomes, [ExpectationOutcome::Failed, ExpectationOutcome::Missed]);
+        assert_eq!(held(Setting::BuiltIn, 1.0), [(true, false)]);
+        assert_eq!(held(Setting::Paper, 1.5), [(true, false), (false, true)]);
+        assert!(held(Setting::Other, 0.0).is_empty() && held(Setting::FullResolution, 0.0).is_empty());
+        assert!(config.check(Setting::Paper, &MeasuredNumbers::new()).is_err());
     }
 
     #[test]
-    fn texts_follow_the_numbers_and_the_collection() {
-        let config = Config::parse("test", TEXT).unwrap();
-        let text = |setting, x: f64| config.findings.analysis(setting, &[("x".to_owned(), x)].into(), &[]);
-        assert_eq!(text(Setting::BuiltIn, 1.0).unwrap(), "x is 1.");
-        assert_eq!(text(Setting::BuiltIn, 2.5).unwrap(), "x is 2.50.");
-        assert_eq!(text(Setting::Other, 2.5).unwrap(), "x is 2.50.");
-        assert!(text(Setting::Paper, 1.0).unwrap_err().to_string().contains("`y`"));
+    fn texts_state_the_numbers_that_were_measured() {
+        let (config, _) = Config::parse("test", TEXT).unwrap();
+        let mut numbers: MeasuredNumbers = [("x".to_owned(), 2.5)].into();
+        assert_eq!(config.analysis(&numbers), "x is 2.50.");
+        numbers.insert("y".to_owned(), 3.0);
+        assert_eq!(config.analysis(&numbers), "x is 2.50.\n\nOn the paper's shapes, y is 3.");
     }
 
     #[test]
     fn unknown_keys_are_errors_that_name_the_key() {
-        let fault = Config::parse("test", &format!("{TEXT}\ntypo = 1")).unwrap_err();
-        assert!(format!("{fault:#}").contains("typo"));
+        for typo in ["[options]\ntypo = 1", "[[expect]]\ntypo = 1"] {
+            let fault = Config::parse("test", &format!("title = ''\nanalysis = ''\n{typo}")).unwrap_err();
+            assert!(format!("{fault:#}").contains("typo"));
+        }
     }
 }

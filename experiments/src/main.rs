@@ -1,36 +1,31 @@
 //! The experiment runner: reproduces every figure of the paper with one command.
 //!
-//! `datasets` or a folder -> **experiments** -> `report::results` (JSON) -> figures and one page
+//! `datasets` or a folder -> **experiments** -> `report::Record` (JSON) -> figures and one page
 //!
-//! An experiment is a configuration (`configs/*.toml`: options, expectations, analysis), a module in `table` with the type of
-//! its options, and a line in [`table::EXPERIMENTS`]. Its results are data, of which `report` makes figures, tables and the page.
+//! An experiment is a configuration (`configs/*.toml`: title, options, expectations, texts), a function from the [`context`]
+//! to a record in [`paper`] or [`studies`], and a line in [`run`]. [`calibration`] measures the constants of the libraries.
 
 mod args;
-mod bound;
-mod boundaries;
-mod coarse;
+mod calibration;
 mod collection;
 mod config;
 mod context;
-mod experiment;
 mod families;
 mod gallery;
-mod lead;
 mod machine;
 mod paper;
 mod parts;
-mod prose;
-mod quoted;
-mod relations;
 mod run;
 mod specimen;
+mod studies;
+mod summary;
 mod surfaces;
 mod sweep;
-mod table;
-mod units;
+mod text;
 
 use std::process::ExitCode;
 
+use clap::Parser;
 use peak_alloc::PeakAlloc;
 
 use crate::args::{ExperimentArguments, ExperimentCommand};
@@ -40,7 +35,7 @@ use crate::args::{ExperimentArguments, ExperimentCommand};
 static ALLOCATOR: PeakAlloc = PeakAlloc;
 
 fn main() -> ExitCode {
-    let arguments = ExperimentArguments::read(std::env::args_os());
+    let arguments = ExperimentArguments::parse();
     let threads = match &arguments.command {
         ExperimentCommand::Run(args) => args.threads,
         _ => 0,
@@ -49,7 +44,7 @@ fn main() -> ExitCode {
         ExperimentCommand::Run(args) => run::run(args),
         ExperimentCommand::List => run::list(),
         ExperimentCommand::Report { output, markdown } => run::report(output, markdown.as_deref()),
-        ExperimentCommand::Units { seeds, quiet } => units::units(*seeds, *quiet),
-        ExperimentCommand::Relations { quiet } => relations::relations(*quiet),
+        ExperimentCommand::Units { seeds, quiet } => calibration::units(*seeds, *quiet),
+        ExperimentCommand::Relations { quiet } => calibration::relations(*quiet),
     })
 }

@@ -1,78 +1,120 @@
-//! The commands of the program, except `units`.
+//! The experiments, and the commands that run them.
 
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
-use anyhow::{Context as _, Result};
+use anyhow::{Context as _, Result, bail};
 use base::terminal::{Bars, on_interruption};
-use report::page::write_report;
-use report::results::{Published, RunProvenance, provenance};
+use report::Record;
+use report::page::{Section, write_report};
 
 use crate::args::RunArgs;
 use crate::collection::SurfaceCollection;
+use crate::config::Config;
 use crate::context::Context;
-use crate::lead::lead;
 use crate::specimen::specimens;
-use crate::table::{ALL, EXPERIMENTS, TableEntry};
+use crate::{paper, studies};
+
+/// An experiment: its name, its configuration, and what it does.
+type Experiment = (&'static str, &'static str, fn(&Context<'_>) -> Result<Record>);
+
+macro_rules! experiments {
+    ($($name:literal $run:path,)*) => {
+        /// All experiments, in the order in which they run and appear on the page.
+        const EXPERIMENTS: [Experiment; [$($name),*].len()] =
+            [$(($name, include_str!(concat!("../configs/", $name, ".toml")), $run)),*];
+    };
+}
+
+experiments! {
+    "figure1" paper::figure1,
+    "figure3" paper::figure3,
+    "figure4" paper::figure4,
+    "figure5a" paper::figure5a,
+    "figure5b" paper::figure5b,
+    "figure6" paper::figure6,
+    "figure7" paper::figure7,
+    "figure8" paper::figure8,
+    "figure9" paper::figure9,
+    "retrieval" studies::retrieval,
+    "forms" studies::forms,
+    "invariance" studies::invariance,
+    "robustness" studies::robustness,
+    "matching" studies::matching,
+    "points" studies::points,
+    "partial" studies::partial,
+    "evidence" studies::evidence,
+    "scaling" studies::scaling,
+}
+
+/// Stands for all experiments on the command line.
+const ALL: &str = "all";
+
+/// The experiments that can begin a page, the most telling first.
+const LEADS: [&str; 3] = ["figure4", "retrieval", "figure1"];
 
 /// Exit code after an interruption, by the convention of shells: 128 plus the number of the signal.
 const INTERRUPTED: i32 = 130;
 
 /// `experiments run`.
 pub(crate) fn run(args: &RunArgs) -> Result<ExitCode> {
-    let is_wanted =
-        |entry: &&TableEntry| args.names.iter().any(|name| name == entry.section.name || name == ALL);
-    let (kept, open): (Vec<&TableEntry>, Vec<&TableEntry>) =
-        EXPERIMENTS.iter().filter(is_wanted).partition(|entry| args.resume && is_made(args, entry));
-    let finished: Vec<&'static str> = kept.iter().map(|entry| entry.section.name).collect();
+    let known: Vec<&str> = [ALL].into_iter().chain(EXPERIMENTS.map(|(name, ..)| name)).collect();
+    if let Some(name) = args.names.iter().find(|name| !known.contains(&name.as_str())) {
+        bail!("there is no experiment `{name}`; choose from {}", known.join(", "));
+    }
+    let is_wanted = |(name, ..): &Experiment| args.names.iter().any(|wanted| wanted == name || wanted == ALL);
+    let wanted = EXPERIMENTS.into_iter().filter(is_wanted);
+    let (kept, open): (Vec<_>, Vec<_>) = wanted.partition(|(name, ..)| args.resume && is_made(args, name));
+    let finished: Vec<&'static str> = kept.iter().map(|(name, ..)| *name).collect();
     for name in &finished {
         eprintln!("{name} is there already, made with these options");
     }
     let finished = Arc::new(Mutex::new(finished));
     keep_finished(args, Arc::clone(&finished));
-    let published = args.compare.as_deref().map(published).transpose()?;
+    let published = args.compare.as_deref().map(studies::published).transpose()?;
     if !open.is_empty() {
         let bars = Bars::new(args.quiet);
         let collection = SurfaceCollection::load(&args.source, &bars)?;
         let specimens = specimens(&collection);
-        for entry in open {
-            let (config, experiment) = entry.parse()?;
+        for (name, config, experiment) in open {
+            let (config, options) = Config::parse(name, config)?;
             let context = Context {
-                name: entry.section.name,
                 config,
+                options,
                 collection: &collection,
                 specimens: &specimens,
                 seed: args.source.seed,
-                folder: &args.output,
                 published: published.as_ref(),
-                command: args.command(),
-                arguments: args.arguments.clone(),
+                args,
                 observer: &bars,
-                bars: &bars,
                 start: Instant::now(),
             };
-            experiment.run(&context)?;
-            finished.lock().unwrap_or_else(PoisonError::into_inner).push(entry.section.name);
+            let record = experiment(&context).and_then(|record| context.completed(record));
+            let record = record.with_context(|| format!("experiment {name}"))?;
+            bars.finish();
+            for e in record.expectations.iter().filter(|e| !e.held) {
+                let kind = if e.goal { "goal missed" } else { "not as expected" };
+                eprintln!("{kind}: {} is {}, {}", e.what, e.measured, e.expected);
+            }
+            record.save(&args.output, name)?;
+            if let Some(table) = record.summary() {
+                writeln!(std::io::stdout().lock(), "{}\n{}", table.caption, table.to_text())?;
+            }
+            finished.lock().unwrap_or_else(PoisonError::into_inner).push(name);
         }
     }
     report(&args.output, None)
 }
 
-/// Reads published scores.
-fn published(path: &Path) -> Result<Published> {
-    let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
-    toml::from_str(&text).with_context(|| path.display().to_string())
-}
-
 /// Whether the folder has the record of an experiment that this program would make again.
-fn is_made(args: &RunArgs, entry: &TableEntry) -> bool {
-    let path = args.output.join(format!("{}.json", entry.section.name));
+fn is_made(args: &RunArgs, name: &str) -> bool {
     let [version, commit] = [env!("CARGO_PKG_VERSION"), env!("CANONFORM_COMMIT")];
-    provenance(path).is_ok_and(|made: RunProvenance| {
-        made.version == version && made.commit == commit && made.arguments == args.arguments
+    Record::read(args.output.join(format!("{name}.json"))).is_ok_and(|record| {
+        let made = record.provenance;
+        made.version == version && made.commit == commit && made.arguments == args.arguments()
     })
 }
 
@@ -93,17 +135,25 @@ fn keep_finished(args: &RunArgs, finished: Arc<Mutex<Vec<&'static str>>>) {
     });
 }
 
+/// The names and titles of all experiments.
+fn sections() -> Result<Vec<Section>> {
+    let section = |(name, config, _): Experiment| {
+        Ok(Section { name: name.to_owned(), title: Config::parse(name, config)?.0.title })
+    };
+    EXPERIMENTS.into_iter().map(section).collect()
+}
+
 /// `experiments list`.
 pub(crate) fn list() -> Result<ExitCode> {
     let mut out = std::io::stdout().lock();
-    for TableEntry { section, .. } in &EXPERIMENTS {
-        writeln!(out, "{:<10} {}", section.name, section.title)?;
+    for Section { name, title } in sections()? {
+        writeln!(out, "{name:<10} {title}")?;
     }
     Ok(ExitCode::SUCCESS)
 }
 
-fn write_page(folder: &Path) -> Result<std::path::PathBuf> {
-    Ok(write_report(folder, &lead(folder)?, &EXPERIMENTS.map(|entry| entry.section))?)
+fn write_page(folder: &Path) -> Result<PathBuf> {
+    Ok(write_report(folder, &LEADS, &sections()?)?)
 }
 
 /// `experiments report`: writes the page and prints its path; with a path, also the summary of the paper.
@@ -111,41 +161,8 @@ pub(crate) fn report(folder: &Path, markdown: Option<&Path>) -> Result<ExitCode>
     let mut out = std::io::stdout().lock();
     writeln!(out, "report: {}", write_page(folder)?.display())?;
     if let Some(path) = markdown {
-        crate::paper::write(folder, path)?;
+        crate::summary::write(folder, path)?;
         writeln!(out, "summary: {}", path.display())?;
     }
     Ok(ExitCode::SUCCESS)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_files_of_published_scores_can_be_read() {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("published");
-        let files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|file| file.unwrap().path()).collect();
-        assert!(!files.is_empty());
-        for path in files {
-            let found = published(&path).unwrap();
-            assert!(!found.method.is_empty(), "{}", path.display());
-            for method in &found.method {
-                let scores = [method.nn, method.ft, method.st, method.e, method.dcg, method.map];
-                assert!(
-                    !method.source.is_empty() && scores.iter().flatten().all(|s| (0.0..=1.0).contains(s))
-                );
-                assert!(scores.iter().any(Option::is_some), "{}", method.name);
-            }
-        }
-    }
-
-    #[test]
-    fn an_unknown_score_is_an_error_that_names_it() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a.toml");
-        std::fs::write(&path, "collection = \"c\"\n[[method]]\nname = \"m\"\nsource = \"s\"\nftt = 1.0\n")
-            .unwrap();
-        let fault = format!("{:#}", published(&path).unwrap_err());
-        assert!(fault.contains("a.toml") && fault.contains("ftt"), "{fault}");
-    }
 }

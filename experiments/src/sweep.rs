@@ -7,7 +7,7 @@ use std::time::Instant;
 use anyhow::Result;
 use linalg::DistanceMatrix;
 use nmds::Regularization;
-use report::results::{Axis, AxisScale, CurvesPanel, Series, SeriesPoint};
+use report::record::{Axis, Figure, FigurePanels, Plot, PlotPoint, Series, SeriesKind};
 use retrieval::{Averaging, Labels, QueryScores, Scores};
 
 pub(crate) type MeasuredNumbers = BTreeMap<String, f64>;
@@ -44,6 +44,18 @@ pub(crate) fn share<T>(all: &[T], is: impl Fn(&T) -> bool) -> f64 {
     mean(all.iter().map(|one| f64::from(u8::from(is(one)))))
 }
 
+/// The headings of retrieval scores in tables, as in the paper.
+pub(crate) const SCORES: [&str; 6] = ["NN", "FT", "ST", "E", "DCG", "mAP"];
+
+/// The meaning of [`SCORES`], and the E-measure of a ranking without error.
+pub(crate) fn scores_caption(labels: &Labels) -> Result<String> {
+    Ok(format!(
+        "NN: nearest neighbour; FT and ST: first and second tier; E: E-measure; DCG: discounted cumulative gain; mAP: mean \
+         average precision. The best value is 1, but {:.3} for E, which examines 32 results.",
+        best_e(labels)?
+    ))
+}
+
 /// Retrieval scores by the names that expectations use.
 pub(crate) fn named(s: &Scores) -> [(&'static str, f64); 6] {
     [("nn", s.nn), ("ft", s.ft), ("st", s.st), ("e", s.e), ("dcg", s.dcg), ("mAP", s.map)]
@@ -69,21 +81,25 @@ pub(crate) fn median(values: &[f64]) -> (usize, f64) {
 }
 
 /// Median and range of the runs at one value of `x`.
-pub(crate) fn point(x: f64, runs: &[f64]) -> SeriesPoint {
-    SeriesPoint {
+pub(crate) fn point(x: f64, runs: &[f64]) -> PlotPoint {
+    PlotPoint {
         x,
-        median: median(runs).1,
+        y: median(runs).1,
         low: runs.iter().copied().fold(f64::INFINITY, f64::min),
         high: runs.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-        runs: runs.len(),
+        note: if runs.len() > 1 { format!("{} runs", runs.len()) } else { String::new() },
     }
+}
+
+/// A curve through these points.
+pub(crate) fn curve(name: &str, points: Vec<PlotPoint>) -> Series {
+    Series { name: name.to_owned(), kind: SeriesKind::Curve, points }
 }
 
 /// The curve of `runs[run][place]` over the places.
 pub(crate) fn series(name: &str, places: &[f64], runs: &[Vec<f64>]) -> Series {
     let at = |place: usize| runs.iter().map(|run| run[place]).collect::<Vec<_>>();
-    let points = places.iter().enumerate().map(|(i, &x)| point(x, &at(i))).collect();
-    Series { name: name.to_owned(), points }
+    curve(name, places.iter().enumerate().map(|(i, &x)| point(x, &at(i))).collect())
 }
 
 /// A curve for each name over the places, from `runs[name][run][place]`.
@@ -93,44 +109,39 @@ pub(crate) fn curves(names: &[&str], places: &[f64], runs: &[Vec<Vec<f64>>]) -> 
 
 /// The last median of a curve.
 pub(crate) fn last(series: &Series) -> f64 {
-    series.points.last().map_or(f64::NAN, |p| p.median)
+    series.points.last().map_or(f64::NAN, |p| p.y)
 }
 
 /// The medians of a curve.
 pub(crate) fn medians(series: &Series) -> Vec<f64> {
-    series.points.iter().map(|p| p.median).collect()
+    series.points.iter().map(|p| p.y).collect()
 }
 
 /// The place of the least median of a curve, and that median.
 pub(crate) fn least(series: &Series) -> (f64, f64) {
-    let points = series.points.iter().map(|p| (p.x, p.median));
+    let points = series.points.iter().map(|p| (p.x, p.y));
     points.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((f64::NAN, f64::NAN))
 }
 
 /// The share of places where the median of `a` is at most that of every other curve.
 pub(crate) fn share_lowest(a: &Series, others: &[&Series]) -> f64 {
-    let lowest = |i: &usize| others.iter().all(|other| a.points[*i].median <= other.points[*i].median);
+    let lowest = |i: &usize| others.iter().all(|other| a.points[*i].y <= other.points[*i].y);
     (0..a.points.len()).filter(lowest).count() as f64 / a.points.len().max(1) as f64
 }
 
-/// A panel of curves without marks.
-pub(crate) fn panel(title: impl Into<String>, x: Axis, y: Axis, series: Vec<Series>) -> CurvesPanel {
-    CurvesPanel { title: title.into(), x, y, series, marks: Vec::new() }
+/// A plot without marks.
+pub(crate) fn plot(title: impl Into<String>, x: Axis, y: Axis, series: Vec<Series>) -> Plot {
+    Plot { title: title.into(), x, y, series, marks: Vec::new() }
 }
 
-/// A linear axis for a pure number.
-pub(crate) fn linear(name: &str) -> Axis {
-    Axis { name: name.to_owned(), unit: String::new(), scale: AxisScale::Linear }
-}
-
-/// A logarithmic axis.
-pub(crate) fn log(name: &str, unit: &str) -> Axis {
-    Axis { name: name.to_owned(), unit: unit.to_owned(), scale: AxisScale::Log }
+/// Plots under the caption of the configuration.
+pub(crate) fn plots(part: &str, plots: Vec<Plot>) -> Figure {
+    Figure { part: part.to_owned(), caption: String::new(), panels: FigurePanels::Plots(plots) }
 }
 
 /// The vertical axis of reconstruction errors, in the paper's unit: the fourth power of the mesh unit.
 pub(crate) fn error_axis() -> Axis {
-    log("reconstruction error", "mesh units⁴")
+    Axis::log("reconstruction error", "mesh units⁴")
 }
 
 /// Whole numbers as values on an axis.
@@ -154,7 +165,8 @@ mod tests {
         assert_eq!(median(&[3.0, 1.0, 2.0]), (2, 2.0));
         assert_eq!(median(&[4.0, 1.0, 2.0, 3.0]), (2, 2.0));
         let found = series("a", &[1.0, 2.0], &[vec![5.0, 1.0], vec![7.0, 3.0], vec![6.0, 2.0]]);
-        assert_eq!(found.points[0], SeriesPoint { x: 1.0, median: 6.0, low: 5.0, high: 7.0, runs: 3 });
+        let first = PlotPoint { x: 1.0, y: 6.0, low: 5.0, high: 7.0, note: "3 runs".to_owned() };
+        assert_eq!(found.points[0], first);
         assert_eq!(medians(&found), [6.0, 2.0]);
         assert_eq!(share_lowest(&found, &[&found]), 1.0);
         let lower = series("b", &[1.0, 2.0], &[vec![5.0, 2.5]]);

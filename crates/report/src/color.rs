@@ -21,22 +21,10 @@ const OKABE_ITO: [Rgb; 8] = [
     [240, 228, 66],
 ];
 
-/// Stands for the darkest colour of the palette on dark pages.
-const PALE_GREY: Rgb = [201, 204, 209];
-
 /// The colour of class number `class`. Colours repeat from the ninth class on.
 #[must_use]
 pub fn class_color(class: usize) -> Rgb {
     OKABE_ITO[class % OKABE_ITO.len()]
-}
-
-/// The colour of class number `class` on a dark page.
-#[must_use]
-pub fn class_color_on_dark(class: usize) -> Rgb {
-    match class % OKABE_ITO.len() {
-        6 => PALE_GREY,
-        _ => class_color(class),
-    }
 }
 
 /// The colour of the surfaces of class number `class`: its colour mixed with a pale clay, so that shading shows.

@@ -28,7 +28,7 @@ pub enum ReportError {
         source: serde_json::Error,
     },
     /// Two lists of a record do not belong together.
-    #[error("{what} has {found} entries instead of {expected}, one per {unit}; run the experiment again")]
+    #[error("{what} has {found} entries instead of {expected}; run the experiment again")]
     Shape {
         /// The part of the record.
         what: String,
@@ -36,8 +36,6 @@ pub enum ReportError {
         found: usize,
         /// The number of entries it needs.
         expected: usize,
-        /// What each entry belongs to.
-        unit: &'static str,
     },
     /// A number of a record is not finite.
     #[error(
@@ -49,40 +47,11 @@ pub enum ReportError {
         /// Its value.
         value: f64,
     },
-    /// A figure has no content.
-    #[error("{figure} has nothing to draw: provide at least one {unit}")]
-    Empty {
-        /// Which figure.
-        figure: &'static str,
-        /// What it draws.
-        unit: &'static str,
-    },
 }
 
 impl ReportError {
     /// The backend failed to draw `figure` for `reason`.
     pub fn draw(figure: impl ToString, reason: impl ToString) -> Self {
         Self::Draw { figure: figure.to_string(), reason: reason.to_string() }
-    }
-
-    /// An error unless a part of a record has the `expected` number of entries.
-    pub(crate) fn check_length(
-        what: impl Into<String>,
-        found: usize,
-        expected: usize,
-        unit: &'static str,
-    ) -> Result<(), Self> {
-        match found == expected {
-            true => Ok(()),
-            false => Err(Self::Shape { what: what.into(), found, expected, unit }),
-        }
-    }
-
-    /// An error unless a number of a record is finite. `what` is only called for the error.
-    pub(crate) fn check_finite(value: f64, what: impl FnOnce() -> String) -> Result<(), Self> {
-        match value.is_finite() {
-            true => Ok(()),
-            false => Err(Self::NotFinite { what: what(), value }),
-        }
     }
 }

@@ -1,38 +1,27 @@
-//! Figures, tables and the report page of experiments.
+//! Records of experiments, with their figures, tables and page; pictures of meshes, and surfaces in the browser.
 //!
-//! `experiments` -> [`results`] (JSON) -> **report** -> SVG / PNG / text / one HTML page
+//! `experiments` -> [`Record`] (JSON) -> **report** -> SVG / PNG / text / one HTML page
 //!
-//! [`Results`] say which figures and tables show them. [`figure`] describes figures as data, which the static files
-//! and the page draw; [`Table`] is written as text and as HTML. Nothing here computes results: every value that is
-//! drawn or printed comes from a record.
+//! A record holds all that is shown as data: nothing here computes results, and every record is drawn in the same way.
 //!
 //! `mesh::TriMesh` -> [`render`] -> [`RgbaImage`] -> PNG, or [`viewer::Geometry`] (JSON) -> a scene in the browser.
 
-mod classes;
 pub mod color;
 mod color_map;
-mod curves;
 mod error;
-pub mod figure;
-mod figure1;
-mod figure3;
-mod figure4;
-mod figure9;
+mod figure;
 mod image;
-mod invariance;
+mod markup;
 pub mod numbers;
 pub mod page;
-mod record;
+pub mod record;
 pub mod render;
-pub mod results;
-mod retrieval;
 mod table;
-mod tables;
 #[cfg(test)]
 mod tests;
 pub mod viewer;
 
 pub use error::ReportError;
 pub use image::RgbaImage;
-pub use record::{Results, save};
+pub use record::Record;
 pub use table::{Cell, Table};

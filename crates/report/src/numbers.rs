@@ -71,6 +71,21 @@ pub fn signed(value: f64, decimals: usize) -> String {
     }
 }
 
+/// A number with so many significant digits; whole numbers in full.
+#[must_use]
+pub fn significant(value: f64, digits: i32) -> String {
+    let size = value.abs();
+    if value.fract() == 0.0 && size < 1e15 {
+        return format!("{value:.0}");
+    }
+    if !(1e-4..1e6).contains(&size) {
+        return format!("{value:.1e}");
+    }
+    // The first digit is that of the largest power of ten.
+    let decimals = (digits - 1 - size.log10().floor() as i32).max(0) as usize;
+    format!("{value:.decimals$}")
+}
+
 /// A duration in seconds with at least two significant digits.
 #[must_use]
 pub fn seconds(seconds: f64) -> String {
@@ -129,6 +144,8 @@ mod tests {
     fn durations_and_memory_have_digits_to_suit_their_size() {
         assert_eq!([123.0, 1.5, 0.5, 0.0012].map(seconds), ["123.0", "1.50", "0.500", "0.0012"]);
         assert_eq!([1 << 19, 200 << 20, 3 << 30].map(bytes), ["0.5 MiB", "200 MiB", "3.00 GiB"]);
+        let digits = [12345.0, 1060.4, 0.012_34, 1e-9, 2.5e7 + 0.5].map(|value| significant(value, 3));
+        assert_eq!(digits, ["12345", "1060", "0.0123", "1.0e-9", "2.5e7"]);
     }
 
     #[test]

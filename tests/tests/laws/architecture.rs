@@ -51,7 +51,7 @@ const RULES: [(&str, May); 26] = [
             "rigid",
         ]),
     ),
-    ("report", May::Know(&["mesh", "surface", "retrieval", "linalg"])),
+    ("report", May::Know(&["mesh", "surface"])),
     ("server", May::Know(&["canonform", "report"])),
     ("cli", May::Know(&["canonform", "report", "server", "datasets"])),
     ("py", May::Know(&["canonform", "datasets", "report"])),

@@ -3,10 +3,9 @@
 use std::ops::Range;
 
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
-use serde::Serialize;
 
 use crate::numbers::{NumberFormat, superscript, ticks};
-use crate::results::{Axis, AxisScale};
+use crate::record::{Axis, AxisScale};
 
 /// The most ticks of an axis, about.
 const TICKS: usize = 7;
@@ -14,35 +13,34 @@ const TICKS: usize = 7;
 const ROOM: f64 = 0.04;
 
 /// One axis of a plot or matrix.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct PlotAxis {
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct PlotAxis {
     /// The quantity and its unit.
-    pub name: String,
+    pub(crate) name: String,
     /// How values are spaced.
-    pub scale: AxisScale,
+    pub(super) scale: AxisScale,
     /// Values at the left or lower end and at the other one; their decimal logarithms on a logarithmic axis.
-    pub range: [f64; 2],
+    pub(crate) range: [f64; 2],
     /// Values of ticks in ascending order, with their labels.
-    pub ticks: Vec<(f64, String)>,
+    pub(crate) ticks: Vec<(f64, String)>,
 }
 
 impl PlotAxis {
     /// An axis for a quantity whose range holds all of `values` that can be shown, with a little room at both ends.
-    pub fn holding(quantity: &Axis, values: impl Iterator<Item = f64>) -> Self {
+    pub(super) fn holding(quantity: &Axis, values: impl Iterator<Item = f64>) -> Self {
         let Axis { name, unit, scale } = quantity;
         let range = range(values.filter_map(|value| place(value, *scale)));
         match scale {
             AxisScale::Log => {
                 Self { name: with_unit(name, unit), scale: *scale, range, ticks: log_ticks(range) }
             }
-            AxisScale::Linear | AxisScale::Category => Self::linear(name, unit, range, TICKS),
+            _ => Self::linear(name, unit, range),
         }
     }
 
-    /// A linear axis over a range, with at most about `most` ticks.
-    #[must_use]
-    pub fn linear(name: &str, unit: &str, range: [f64; 2], most: usize) -> Self {
-        Self::with_ticks(name, unit, range, ticks(range, most))
+    /// A linear axis over a range.
+    pub(super) fn linear(name: &str, unit: &str, range: [f64; 2]) -> Self {
+        Self::with_ticks(name, unit, range, ticks(range, TICKS))
     }
 
     fn with_ticks(name: &str, unit: &str, range: [f64; 2], values: Vec<f64>) -> Self {
@@ -53,8 +51,7 @@ impl PlotAxis {
     }
 
     /// The axis of a colour bar, with a tick at both ends of a range that has no round values.
-    #[must_use]
-    pub fn bar(name: &str, unit: &str, range: [f64; 2], most: usize) -> Self {
+    pub(crate) fn bar(name: &str, unit: &str, range: [f64; 2], most: usize) -> Self {
         let [low, high] = range;
         // A step below the spacing of floating-point numbers would never arrive.
         let is_narrow = high - low <= 1e-9 * low.abs().max(high.abs());
@@ -63,16 +60,10 @@ impl PlotAxis {
     }
 
     /// An axis of categories.
-    pub fn categories(name: &str, labels: impl IntoIterator<Item = String>) -> Self {
-        let ticks: Vec<_> = labels.into_iter().enumerate().map(|(i, label)| (i as f64, label)).collect();
+    pub(super) fn categories(name: &str, labels: impl Iterator<Item = String>) -> Self {
+        let ticks: Vec<_> = labels.enumerate().map(|(i, label)| (i as f64, label)).collect();
         let range = [-0.5, ticks.len() as f64 - 0.5];
         Self { name: name.to_owned(), scale: AxisScale::Category, range, ticks }
-    }
-
-    /// An axis over `n` cells of a matrix, with ticks of their own.
-    #[must_use]
-    pub fn cells(n: usize, ticks: Vec<(f64, String)>) -> Self {
-        Self { ticks, range: [-0.5, n as f64 - 0.5], ..Self::categories("", []) }
     }
 
     /// The place of a value between the ends of the range, clamped to 0..=1; `None` if it cannot be shown.
@@ -216,7 +207,7 @@ mod tests {
 
     #[test]
     fn categories_are_one_unit_apart() {
-        let axis = PlotAxis::categories("kind", ["a", "b"].map(String::from));
+        let axis = PlotAxis::categories("kind", ["a", "b"].map(String::from).into_iter());
         assert_eq!(axis.range, [-0.5, 1.5]);
         assert_eq!(
             [0.0, 1.0].map(|tick| (axis.share(tick), axis.label(tick))),

@@ -1,23 +1,37 @@
-//! Drawings by plotters, as PNG, SVG and PDF of the same content.
+//! Drawings by plotters, as PNG and SVG of the same content.
 //!
 //! Drawings are measured in **units**: [`PAGE_WIDTH`] of them are as wide as the text of a printed page (7 inches), so
 //! a type size of 16 units prints at 8 points. plotters counts in whole pixels, of which a unit has [`PX`] in all files.
 
-use std::fmt::Display;
-use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use base::files::write_bytes;
 use plotters::coord::Shift;
+use plotters::coord::ranged1d::ValueFormatter;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontTransform, register_font};
 
-use super::pdf::{self, PdfBackend};
-pub(super) use super::units::{LINE, PAGE_WIDTH, PICTURE_PX, PX, Picture};
-use crate::color::{Rgb, class_color, class_color_on_dark, hex};
+use super::axis::PlotAxis;
+use crate::color::{Rgb, class_color, hex};
 use crate::error::ReportError;
-use crate::image::encode_png;
+use crate::image::{RgbaImage, encode_png};
+use crate::markup::escape;
+
+/// Pixels of plotters per unit.
+pub(crate) const PX: i32 = 4;
+/// Pixels per unit of a [`Picture`] and of the PNG: 286 dots per inch in print.
+pub(crate) const PICTURE_PX: i32 = 2;
+/// Width of a figure that fills the text of a page, in units.
+pub(crate) const PAGE_WIDTH: i32 = 1000;
+
+/// plotters measures a font by its line, which is 1.164 em in DejaVu.
+const LINE: f64 = 1.164;
+
+/// A raster of [`PICTURE_PX`], and its top left corner in units.
+pub(crate) type Picture = (RgbaImage, [i32; 2]);
+
+/// A place of a drawing in pixels, and what the page says when the reader points at it.
+pub(crate) type Hover = ((i32, i32), String);
 
 /// The background. Dark pages have other colours for it, for ink and for grid lines.
 pub(crate) const PAPER: Rgb = [255; 3];
@@ -37,11 +51,11 @@ pub(crate) const NAME_MARGIN: f64 = 5.0;
 /// Type size of titles.
 pub(crate) const TITLE: f64 = 19.0;
 
-/// The embedded font of the PNG and the PDF; for the SVG with fonts of similar width after it.
+/// The embedded font of the PNG; for the SVG with fonts of similar width after it.
 const FONT: &str = "DejaVu Sans, Bitstream Vera Sans, Verdana, sans-serif";
 
 pub(crate) type Area<DB> = DrawingArea<DB, Shift>;
-pub(crate) type Drawn<DB> = Result<(), DrawingAreaErrorKind<<DB as DrawingBackend>::ErrorType>>;
+pub(crate) type Drawn<DB, T = ()> = Result<T, DrawingAreaErrorKind<<DB as DrawingBackend>::ErrorType>>;
 
 pub(crate) use plotters::prelude::BitMapBackend as Bitmap;
 
@@ -51,8 +65,8 @@ pub(crate) trait Drawing {
     fn size(&self) -> [i32; 2];
     /// The pictures under the drawing.
     fn pictures(&self) -> Result<Vec<Picture>, ReportError>;
-    /// Draws what is not a picture.
-    fn draw<DB: DrawingBackend>(&self, area: &Area<DB>) -> Drawn<DB>;
+    /// Draws what is not a picture, and returns what it says on hover.
+    fn draw<DB: DrawingBackend>(&self, area: &Area<DB>) -> Drawn<DB, Vec<Hover>>;
 }
 
 /// Pixels of a length in units.
@@ -142,28 +156,31 @@ fn register_fonts() -> Result<(), ReportError> {
     if *done { Ok(()) } else { Err(ReportError::draw("text", "the embedded font cannot be read")) }
 }
 
-/// Writes a PNG, an SVG and a PDF and returns their paths: the stem, the part and the extension.
-pub(crate) fn save(drawing: &impl Drawing, stem: &Path, part: &str) -> Result<Vec<PathBuf>, ReportError> {
-    register_fonts()?;
-    let pictures = drawing.pictures()?;
-    let failed = |reason: &dyn Display| ReportError::draw(stem.display(), reason);
-    let files = [
-        (".png", png(drawing, &pictures).map_err(|e| failed(&e))?),
-        (".svg", svg(drawing, &pictures).map_err(|e| failed(&e))?),
-        (".pdf", pdf(drawing, &pictures).map_err(|e| failed(&e))?),
-    ];
-    let write = |(extension, bytes): (&str, Vec<u8>)| {
-        let mut name = stem.as_os_str().to_owned();
-        name.push(part);
-        name.push(extension);
-        let path = PathBuf::from(name);
-        write_bytes(&path, &bytes)?;
-        Ok(path)
-    };
-    files.into_iter().map(write).collect()
+/// Draws the ticks and the name of a colour bar of this thickness at the left of an area, with `scale` pixels per unit.
+pub(crate) fn bar_labels<DB: DrawingBackend>(
+    area: &Area<DB>,
+    axis: &PlotAxis,
+    thickness: f64,
+    size: f64,
+    scale: i32,
+) -> Drawn<DB> {
+    let label = scaled_text(size, INK, scale);
+    let thickness = (thickness * f64::from(scale)) as u32;
+    let (width, _) = area.dim_in_pixel();
+    let mut chart = ChartBuilder::on(area)
+        .right_y_label_area_size(width.saturating_sub(thickness))
+        .build_cartesian_2d(0.0..1.0, axis.clone())?;
+    let format = |tick: &f64| axis.format_ext(tick);
+    let mut mesh = chart.configure_mesh();
+    mesh.disable_mesh().axis_style(rgb(INK).stroke_width(scale.max(1) as u32));
+    mesh.set_all_tick_mark_size((0.3 * size * f64::from(scale)) as i32).y_label_offset(drop_of(&label));
+    mesh.label_style(label.clone()).axis_desc_style(label).y_label_formatter(&format).y_desc(&axis.name);
+    mesh.draw()
 }
 
-fn png(drawing: &impl Drawing, pictures: &[Picture]) -> Result<Vec<u8>, String> {
+/// The bytes of a drawing as PNG.
+pub(crate) fn png(drawing: &impl Drawing) -> Result<Vec<u8>, String> {
+    let pictures = drawing.pictures().map_err(|e| e.to_string())?;
     let [width, height] = drawing.size().map(|side| (side * PX) as u32);
     // Drawn finer and averaged, which smooths every edge.
     let fine = (PX / PICTURE_PX) as u32;
@@ -174,7 +191,7 @@ fn png(drawing: &impl Drawing, pictures: &[Picture]) -> Result<Vec<u8>, String> 
             let raster = BitMapElement::with_owned_buffer(place, size, picture.rgb_bytes(fine));
             raster.map_or(Ok(()), |raster| area.draw(&raster))?;
         }
-        drawing.draw(area)
+        drawing.draw(area).map(drop)
     })?;
     let pixels = average(&pixels, width as usize, fine as usize);
     encode_png(width / fine, height / fine, png::ColorType::Rgb, &pixels).map_err(|e| e.to_string())
@@ -205,62 +222,63 @@ pub(crate) fn average(pixels: &[u8], width: usize, n: usize) -> Vec<u8> {
     bands.flat_map(|band| (0..row / n).map(move |at| channel(band, at))).collect()
 }
 
-fn svg(drawing: &impl Drawing, pictures: &[Picture]) -> Result<Vec<u8>, String> {
+/// The text of a drawing as SVG.
+pub(crate) fn svg(drawing: &impl Drawing) -> Result<String, String> {
+    register_fonts().map_err(|e| e.to_string())?;
+    let pictures = drawing.pictures().map_err(|e| e.to_string())?;
     let [width, height] = drawing.size();
     let mut svg = String::new();
     let area =
         SVGBackend::with_string(&mut svg, ((width * PX) as u32, (height * PX) as u32)).into_drawing_area();
     let draw = || {
         area.fill(&WHITE)?;
-        drawing.draw(&area)?;
-        area.present()
+        let hovers = drawing.draw(&area)?;
+        area.present()?;
+        Ok(hovers)
     };
-    draw().map_err(|e: DrawingAreaErrorKind<_>| e.to_string())?;
+    let hovers = draw().map_err(|e: DrawingAreaErrorKind<_>| e.to_string())?;
     drop(area);
-    // As wide as the drawing, not as its pixels; text as far below its anchor as in the other files.
+    // As wide as the drawing, not as its pixels; text as far below its anchor as on bitmaps.
     let size = |scale: i32| format!("<svg width=\"{}\" height=\"{}\"", width * scale, height * scale);
     svg = svg.replacen(&size(PX), &size(1), 1);
-    for (theirs, ours) in [("0.76em", pdf::TOP), ("0.5ex", pdf::CENTER), ("-0.5ex", pdf::BOTTOM)] {
-        svg = svg.replace(&format!(" dy=\"{theirs}\""), &format!(" dy=\"{:.3}em\"", f64::from(ours) * 1.24));
+    for (theirs, ours) in [("0.76em", "0.620em"), ("0.5ex", "0.120em"), ("-0.5ex", "-0.379em")] {
+        svg = svg.replace(&format!(" dy=\"{theirs}\""), &format!(" dy=\"{ours}\""));
     }
     // The background is the first element.
     let mut place = svg.find("/>\n").map_or(0, |end| end + 3);
     for (picture, [left, top]) in pictures {
         let data = picture.to_data_url().map_err(|e| e.to_string())?;
+        let [x, y] = [left, top].map(|at| at * PX);
         let [wide, high] = [picture.width(), picture.height()].map(|side| side as i32 * PX / PICTURE_PX);
-        let image = format!(
-            "<image x=\"{}\" y=\"{}\" width=\"{wide}\" height=\"{high}\" href=\"{data}\"/>\n",
-            left * PX,
-            top * PX
-        );
+        let image =
+            format!("<image x=\"{x}\" y=\"{y}\" width=\"{wide}\" height=\"{high}\" href=\"{data}\"/>\n");
         svg.insert_str(place, &image);
         place += image.len();
     }
-    Ok(svg.into_bytes())
+    let end = svg.rfind("</svg>").unwrap_or(svg.len());
+    let place = |((x, y), text): Hover| {
+        let text = escape(&text);
+        format!(
+            "<circle cx=\"{x}\" cy=\"{y}\" r=\"32\" fill=\"transparent\"><title>{text}</title></circle>\n"
+        )
+    };
+    svg.insert_str(end, &hovers.into_iter().map(place).collect::<String>());
+    Ok(svg)
 }
 
-fn pdf(drawing: &impl Drawing, pictures: &[Picture]) -> Result<Vec<u8>, String> {
-    let mut page = pdf::Page::new(drawing.size(), pictures)?;
-    drawing.draw(&PdfBackend(&mut page).into_drawing_area()).map_err(|e| e.to_string())?;
-    page.finish()
-}
-
-/// An SVG with a style that gives it the colours of dark pages if the reader prefers those, except in print.
-pub(crate) fn dark(svg: &str) -> String {
+/// Rules of CSS that give drawings the colours of dark pages.
+pub(crate) fn dark_rules() -> String {
     let colors = [
         (PAPER, [20, 23, 26]),
         (INK, [228, 231, 234]),
         (PALE_INK, [163, 171, 181]),
         (GRID, [53, 59, 66]),
-        (class_color(6), class_color_on_dark(6)),
+        // The darkest of the colours of classes.
+        (class_color(6), [201, 204, 209]),
     ];
     let rule = |(light, dark): (Rgb, Rgb)| {
         let [light, dark] = [light, dark].map(|color| hex(color).to_uppercase());
-        format!("[fill=\"{light}\"]{{fill:{dark}}}[stroke=\"{light}\"]{{stroke:{dark}}}")
+        format!("svg [fill=\"{light}\"]{{fill:{dark}}}svg [stroke=\"{light}\"]{{stroke:{dark}}}")
     };
-    let style = format!(
-        "<style>@media screen and (prefers-color-scheme:dark){{{}}}</style>",
-        colors.map(rule).concat()
-    );
-    svg.replacen('>', &format!(">{style}"), 1)
+    colors.map(rule).concat()
 }

@@ -1,39 +1,36 @@
-//! Matrices: one with counts by itself, others two in a row with colour bars.
+//! Matrices: one by itself, others two in a row.
 //!
-//! Cells are a picture, as 148 shapes have 22,000 of them; axes, lines, counts and colour bars are drawn over it.
+//! Cells are a picture, as 148 shapes have 22,000 of them; names, lines, counts and colour bars are drawn over it.
 
-use plotters::coord::ranged1d::ValueFormatter;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
 use super::axis::PlotAxis;
 use super::drawing::{
-    Area, Drawing, Drawn, GRID, INK, LABEL, NAME, NAME_MARGIN, PAGE_WIDTH, PAPER, PICTURE_PX, PX, Picture,
-    TITLE, anchored, bold, drop_of, px, rgb, scaled_text, text, text_width, upwards, write,
+    Area, Drawing, Drawn, GRID, Hover, INK, LABEL, NAME_MARGIN, PAGE_WIDTH, PAPER, PICTURE_PX, PX, Picture,
+    TITLE, anchored, bar_labels, bold, line, px, text, text_width, upwards, write,
 };
-use super::model::Heat;
 use crate::color::{Rgb, perceptual};
 use crate::error::ReportError;
 use crate::image::RgbaImage;
+use crate::record::Heat;
 
 /// White and ink over cells, in which dark pages keep them.
 const ON_DARK: Rgb = [254; 3];
 const ON_PALE: Rgb = [35; 3];
-/// Height of a line of names.
+/// The colour of a count that is all of its row.
+const FULL: Rgb = [31, 80, 154];
+/// Height of a line of names, and the space between names and cells.
 const LINE: f64 = 16.0;
-/// The greatest side of a cell with a count, and the least in which a count fits.
+const SPACE: f64 = 8.0;
+/// The greatest side of a cell, and the least in which a count fits.
 const CELL: f64 = 46.0;
 const LEGIBLE: f64 = 18.0;
-/// Side of a matrix with a colour bar, and the room for its names.
-const SIDE: f64 = 310.0;
-const LEFT: f64 = 92.0;
 const TITLE_HEIGHT: f64 = 40.0;
-/// To the right of it: a gap, the colour bar, its labels.
+/// To the right: a gap, the colour bar, its labels.
 const GAP: f64 = 12.0;
 const BAR: f64 = 14.0;
 const BAR_LABELS: f64 = 70.0;
-/// Characters of a name that fit into [`LEFT`], about.
-const LONGEST: usize = 10;
 
 /// The matrices of a figure.
 pub(super) struct Heats<'a>(pub(super) &'a [Heat]);
@@ -41,17 +38,17 @@ pub(super) struct Heats<'a>(pub(super) &'a [Heat]);
 impl Heats<'_> {
     fn frames(&self) -> Vec<MatrixFrame<'_>> {
         let columns = self.0.len().clamp(1, 2);
-        let mut frames: Vec<MatrixFrame<'_>> = self.0.iter().map(MatrixFrame::new).collect();
-        let below = frames.iter().map(|frame| frame.below).fold(0.0, f64::max);
-        let column = f64::from(PAGE_WIDTH) / columns as f64;
-        for (i, frame) in frames.iter_mut().enumerate() {
-            let room = if frame.heat.bar.is_some() { GAP + BAR + BAR_LABELS } else { 0.0 };
-            let before = (column - frame.wide - frame.names - room).max(0.0) / 2.0;
-            frame.left =
-                (i % columns) as f64 * column + frame.names + if columns == 1 { before } else { 0.0 };
-            let title = if frame.heat.title.is_empty() { LINE } else { TITLE_HEIGHT };
-            frame.top = (i / columns) as f64 * (title + frame.high + below) + title;
-            (frame.left, frame.top, frame.below) = (frame.left.round(), frame.top.round(), below);
+        let room = f64::from(PAGE_WIDTH) / columns as f64;
+        let mut frames: Vec<MatrixFrame<'_>> =
+            self.0.iter().map(|heat| MatrixFrame::new(heat, room)).collect();
+        let mut top = 0.0;
+        for row in frames.chunks_mut(columns) {
+            for (column, frame) in row.iter_mut().enumerate() {
+                let taken = frame.names + frame.wide + frame.beside;
+                frame.left = (column as f64 * room + frame.names + (room - taken) / 2.0).round();
+                frame.top = top + TITLE_HEIGHT;
+            }
+            top += row.iter().map(|frame| TITLE_HEIGHT + frame.high + frame.below).fold(0.0, f64::max);
         }
         frames
     }
@@ -67,8 +64,9 @@ impl Drawing for Heats<'_> {
         Ok(self.frames().iter().flat_map(MatrixFrame::pictures).collect())
     }
 
-    fn draw<DB: DrawingBackend>(&self, area: &Area<DB>) -> Drawn<DB> {
-        self.frames().iter().try_for_each(|frame| frame.draw(area))
+    fn draw<DB: DrawingBackend>(&self, area: &Area<DB>) -> Drawn<DB, Vec<Hover>> {
+        self.frames().iter().try_for_each(|frame| frame.draw(area))?;
+        Ok(Vec::new())
     }
 }
 
@@ -77,179 +75,117 @@ struct MatrixFrame<'a> {
     heat: &'a Heat,
     left: f64,
     top: f64,
+    /// Side of a cell, and size of the matrix.
+    cell: f64,
     wide: f64,
     high: f64,
-    /// Room for names at the left and below, with the names of the axes.
+    /// Room for names at the left and below, and for the colour bar.
     names: f64,
     below: f64,
-    /// The axes with shortened names. Names that would touch the one before are left out.
-    x: PlotAxis,
-    y: PlotAxis,
-    /// Whether the names of columns fit side by side.
-    is_level: bool,
+    beside: f64,
+    /// The value of the last colour; the first colour is that of zero.
+    max: f64,
 }
 
 impl<'a> MatrixFrame<'a> {
-    fn new(heat: &'a Heat) -> Self {
-        let (n_rows, n_columns) = (heat.rows.len() as f64, heat.columns.len() as f64);
-        let [mut x, mut y] = [heat.x.clone(), heat.y.clone()];
-        let width = |name: &str| text_width(name, &text(LABEL, INK)) / f64::from(PX);
-        let widest = |axis: &PlotAxis| axis.ticks.iter().map(|(_, name)| width(name)).fold(0.0, f64::max);
-        let (names, [wide, high]) = match heat.counts {
-            Some(_) => {
-                let names = widest(&y).max(widest(&x)) + 44.0;
-                let cell = CELL.min(((f64::from(PAGE_WIDTH) - names - 32.0) / n_columns).floor()).max(2.0);
-                (names, [n_columns, n_rows].map(|n| cell * n))
-            }
-            None => {
-                let ticks = x.ticks.iter_mut().chain(&mut y.ticks);
-                ticks.for_each(|(_, name)| *name = shortened(name));
-                (LEFT, [SIDE; 2])
-            }
-        };
-        let [column, row] = [wide / n_columns, high / n_rows];
-        let room = |t: &[(f64, String)]| (width(&t[0].1) + width(&t[1].1)) / 2.0 + 8.0;
-        let is_level = x.ticks.windows(2).all(|t| (t[1].0 - t[0].0) * column > room(t));
-        let below = if is_level { 24.0 } else { 16.0 + widest(&x) };
-        let below = below + if x.name.is_empty() { 10.0 } else { 30.0 };
-        y.ticks = thinned(&y, row);
-        if !is_level {
-            x.ticks = thinned(&x, column);
-        }
-        Self { heat, left: 0.0, top: 0.0, wide, high, names, below, x, y, is_level }
+    fn new(heat: &'a Heat, room: f64) -> Self {
+        let [n_rows, n_columns] = [&heat.rows, &heat.columns].map(|names| names.len().max(1) as f64);
+        let width = |name: &String| text_width(name, &text(LABEL, INK)) / f64::from(PX);
+        let [names, below] =
+            [&heat.rows, &heat.columns].map(|all| all.iter().map(width).fold(0.0, f64::max) + 2.0 * SPACE);
+        let beside = if heat.quantity.is_some() { GAP + BAR + BAR_LABELS } else { 2.0 * SPACE };
+        let cell = ((room - names - beside) / n_columns).clamp(1.0, CELL);
+        let cell = if cell > LEGIBLE { cell.floor() } else { cell };
+        let [wide, high] = [n_columns, n_rows].map(|n| (cell * n).floor());
+        let max = heat.values.iter().flatten().fold(0.0_f64, |most, v| most.max(*v));
+        Self { heat, left: 0.0, top: 0.0, cell, wide, high, names, below, beside, max }
     }
 
+    /// The share of the greatest value, or of the counts of a row.
     fn share(&self, row: usize, column: usize) -> f64 {
-        if self.heat.max > 0.0 { self.heat.values[row][column] / self.heat.max } else { 0.0 }
+        let values = &self.heat.values[row];
+        let whole = if self.heat.quantity.is_some() { self.max } else { values.iter().sum() };
+        if whole > 0.0 { values[column] / whole } else { 0.0 }
+    }
+
+    /// The pixel for a share. Counts cover the page as far as the share says.
+    fn color(&self, share: f64) -> [u8; 4] {
+        let is_count = self.heat.quantity.is_none();
+        let ([r, g, b], alpha) = if is_count { (FULL, share) } else { (perceptual(share), 1.0) };
+        [r, g, b, (255.0 * alpha).round() as u8]
     }
 
     /// The cells, and the colours of the bar.
     fn pictures(&self) -> Vec<Picture> {
-        let Heat { rows, columns, tint, bar, .. } = self.heat;
+        let Heat { rows, columns, quantity, .. } = self.heat;
         let [wide, high, thick] = [self.wide, self.high, BAR].map(|side| side as i32 * PICTURE_PX);
         let cell = |x: usize, y: usize| {
-            color(*tint, self.share(y * rows.len() / high as usize, x * columns.len() / wide as usize))
+            self.color(self.share(y * rows.len() / high as usize, x * columns.len() / wide as usize))
         };
         let [left, top] = [self.left, self.top].map(|at| at as i32);
         let cells = (RgbaImage::from_fn(wide as u32, high as u32, cell), [left, top]);
-        let shade = |_, row| color(*tint, 1.0 - row as f64 / f64::from(high - 1));
+        let shade = |_, row| self.color(1.0 - row as f64 / f64::from(high - 1));
         let shades = || RgbaImage::from_fn(thick as u32, high as u32, shade);
-        let bar = bar.iter().map(|_| (shades(), [(self.left + self.wide + GAP) as i32, top]));
+        let bar = quantity.iter().map(|_| (shades(), [(self.left + self.wide + GAP) as i32, top]));
         std::iter::once(cells).chain(bar).collect()
     }
 
     fn draw<DB: DrawingBackend>(&self, area: &Area<DB>) -> Drawn<DB> {
-        let Self { heat, left, top, wide, high, names, below, x, y, is_level } = self;
+        let Self { heat, left, top, cell, wide, high, .. } = self;
         let title = bold(text(TITLE, INK));
         write(area, &heat.title, title, [left + wide / 2.0, top - TITLE_HEIGHT / 2.0])?;
-        let corner = (px(left - names), px(*top));
-        let panel = area.clone().shrink(corner, (px(names + wide), px(high + below)));
-        let across = PlotAxis { ticks: if *is_level { x.ticks.clone() } else { vec![] }, ..x.clone() };
-        let mut chart = ChartBuilder::on(&panel)
-            .x_label_area_size(px(*below))
-            .y_label_area_size(px(*names))
-            .build_cartesian_2d(across.clone(), y.clone())?;
-        let [x_label, y_label] = [&across, y].map(|axis| move |tick: &f64| axis.format_ext(tick));
-        let label = text(LABEL, INK);
-        let mut mesh = chart.configure_mesh();
-        mesh.disable_mesh().axis_style(TRANSPARENT).set_all_tick_mark_size(px(4.0));
-        mesh.y_label_offset(drop_of(&label)).label_style(label).axis_desc_style(text(NAME, INK));
-        mesh.x_label_formatter(&x_label).y_label_formatter(&y_label).x_desc(&x.name).y_desc(&y.name);
-        mesh.draw()?;
-        if !is_level {
-            // plotters centres the names under an axis, also those that run upwards.
-            for (tick, name) in &x.ticks {
-                let place = [left + (tick + 0.5) * wide / heat.columns.len() as f64, top + high + 8.0];
-                write(area, name, upwards(anchored(text(LABEL, INK), HPos::Right)), place)?;
-            }
+        let label = anchored(text(LABEL, INK), HPos::Right);
+        for (at, name) in self.named(&heat.rows) {
+            write(area, name, label.clone(), [left - SPACE, top + at * cell])?;
         }
-        let (n_rows, n_columns) = (heat.rows.len(), heat.columns.len());
-        let ends = [n_columns, n_rows].map(|n| n as f64 - 0.5);
-        let stroke = |color, width| rgb(color).stroke_width(px(width) as u32);
-        let (stroke, lines) = match &heat.counts {
-            Some(_) => (stroke(GRID, 1.0), [(0..=n_columns).collect(), (0..=n_rows).collect()]),
-            None => (stroke(PAPER, 1.5), [heat.borders.clone(), heat.borders.clone()]),
-        };
-        let [down, across] = lines.map(|at: Vec<usize>| at.into_iter().map(|at| at as f64 - 0.5));
-        chart.draw_series(down.map(|x| PathElement::new([(x, -0.5), (x, ends[1])], stroke)))?;
-        chart.draw_series(across.map(|y| PathElement::new([(-0.5, y), (ends[0], y)], stroke)))?;
-        let cell = wide / n_columns as f64;
-        for (row, own) in heat.counts.iter().flatten().enumerate().filter(|_| cell >= LEGIBLE) {
-            for (column, count) in own.iter().enumerate().filter(|(_, count)| **count > 0) {
-                let ink = if self.share(row, column) > 0.5 { ON_DARK } else { ON_PALE };
-                let at = [left + (column as f64 + 0.5) * cell, top + (row as f64 + 0.5) * cell];
-                write(area, &count.to_string(), text(LABEL, ink), at)?;
-            }
+        for (at, name) in self.named(&heat.columns) {
+            write(area, name, upwards(label.clone()), [left + at * cell, top + high + SPACE])?;
         }
-        let Some(bar) = &heat.bar else { return Ok(()) };
+        let (color, width) = if heat.quantity.is_some() { (PAPER, 1.5) } else { (GRID, 1.0) };
+        for x in edges(&heat.columns).into_iter().map(|edge| left + edge as f64 * cell) {
+            line(area, [x, *top], [x, top + high], width, color)?;
+        }
+        for y in edges(&heat.rows).into_iter().map(|edge| top + edge as f64 * cell) {
+            line(area, [*left, y], [left + wide, y], width, color)?;
+        }
+        let Some(quantity) = &heat.quantity else { return self.draw_counts(area) };
         let corner = (px(left + wide + GAP), px(*top));
-        bar_labels(
-            &area.clone().shrink(corner, (px(BAR + BAR_LABELS - NAME_MARGIN), px(*high))),
-            bar,
-            BAR,
-            LABEL,
-            PX,
-        )
+        let axis = PlotAxis::bar(
+            &quantity.name,
+            &quantity.unit,
+            [0.0, if self.max > 0.0 { self.max } else { 1.0 }],
+            7,
+        );
+        let place = area.clone().shrink(corner, (px(BAR + BAR_LABELS - NAME_MARGIN), px(*high)));
+        bar_labels(&place, &axis, BAR, LABEL, PX)
     }
-}
 
-/// Draws the ticks and the name of a colour bar of this thickness at the left of an area, with `scale` pixels per unit.
-pub(crate) fn bar_labels<DB: DrawingBackend>(
-    area: &Area<DB>,
-    axis: &PlotAxis,
-    thickness: f64,
-    size: f64,
-    scale: i32,
-) -> Drawn<DB> {
-    let label = scaled_text(size, INK, scale);
-    let thickness = (thickness * f64::from(scale)) as u32;
-    let (width, _) = area.dim_in_pixel();
-    let mut chart = ChartBuilder::on(area)
-        .right_y_label_area_size(width.saturating_sub(thickness))
-        .build_cartesian_2d(0.0..1.0, axis.clone())?;
-    let format = |tick: &f64| axis.format_ext(tick);
-    let mut mesh = chart.configure_mesh();
-    mesh.disable_mesh().axis_style(rgb(INK).stroke_width(scale.max(1) as u32));
-    mesh.set_all_tick_mark_size((0.3 * size * f64::from(scale)) as i32).y_label_offset(drop_of(&label));
-    mesh.label_style(label.clone()).axis_desc_style(label).y_label_formatter(&format).y_desc(&axis.name);
-    mesh.draw()
-}
-
-/// The ticks whose names do not touch the one before, along an axis with cells of this size.
-fn thinned(axis: &PlotAxis, cell: f64) -> Vec<(f64, String)> {
-    let mut free = f64::NEG_INFINITY;
-    let mut is_free = |tick: &&(f64, String)| {
-        let fits = tick.0 * cell >= free;
-        if fits {
-            free = tick.0 * cell + LINE;
+    fn draw_counts<DB: DrawingBackend>(&self, area: &Area<DB>) -> Drawn<DB> {
+        for (row, counts) in self.heat.values.iter().enumerate().filter(|_| self.cell >= LEGIBLE) {
+            for (column, count) in counts.iter().enumerate().filter(|(_, count)| **count > 0.0) {
+                let ink = if self.share(row, column) > 0.5 { ON_DARK } else { ON_PALE };
+                let [x, y] = [column, row].map(|at| (at as f64 + 0.5) * self.cell);
+                write(area, &count.to_string(), text(LABEL, ink), [self.left + x, self.top + y])?;
+            }
         }
-        fits
-    };
-    axis.ticks.iter().filter(|tick| is_free(tick)).cloned().collect()
-}
+        Ok(())
+    }
 
-/// The pixel for a share of the greatest value. A tint covers the page as far as the share says.
-fn color(tint: Option<Rgb>, share: f64) -> [u8; 4] {
-    let ([r, g, b], alpha) = tint.map_or_else(|| (perceptual(share), 1.0), |full| (full, share));
-    [r, g, b, (255.0 * alpha).round() as u8]
-}
-
-/// A name that fits to the left of a matrix with a colour bar.
-fn shortened(name: &str) -> String {
-    match name.char_indices().nth(LONGEST) {
-        Some((end, _)) if name.chars().count() > LONGEST + 1 => format!("{}…", &name[..end]),
-        _ => name.to_string(),
+    /// The name and the middle of every group, without those that would touch the one before.
+    fn named<'n>(&self, names: &'n [String]) -> Vec<(f64, &'n str)> {
+        let groups = edges(names);
+        let mut free = f64::NEG_INFINITY;
+        let named = groups.windows(2).filter_map(|group| {
+            let middle = (group[0] + group[1]) as f64 / 2.0;
+            let fits = middle * self.cell >= free;
+            free = if fits { middle * self.cell + LINE } else { free };
+            fits.then(|| (middle, names[group[0]].as_str()))
+        });
+        named.collect()
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn long_names_are_cut_between_letters() {
-        assert_eq!(shortened("cat"), "cat");
-        assert_eq!(shortened("elevenchars"), "elevenchars");
-        assert_eq!(shortened("höchst unübersichtlich"), "höchst unü…");
-    }
+/// Where groups of equal names begin, and the end of the last one.
+fn edges(names: &[String]) -> Vec<usize> {
+    (0..=names.len()).filter(|&i| i == 0 || i == names.len() || names[i] != names[i - 1]).collect()
 }

@@ -6,13 +6,13 @@ use plotters::style::text_anchor::HPos;
 
 use super::axis::PlotAxis;
 use super::drawing::{
-    Area, Drawing, Drawn, GRID, INK, LABEL, NAME, NAME_MARGIN, PAGE_WIDTH, PALE_INK, PX, Picture, TITLE,
-    anchored, bold, drop_of, line, px, rgb, text, text_width, upwards, write,
+    Area, Drawing, Drawn, GRID, Hover, INK, LABEL, NAME, NAME_MARGIN, PAGE_WIDTH, PALE_INK, PX, Picture,
+    TITLE, anchored, bold, drop_of, line, px, rgb, text, text_width, upwards, write,
 };
-use super::model::{Plot, PlotPoint, PlotSeries, SeriesKind};
-use crate::color::{Rgb, mix};
+use crate::color::{Rgb, class_color, mix, value_range};
 use crate::error::ReportError;
-use crate::results::AxisScale;
+use crate::numbers::significant;
+use crate::record::{AxisScale, Plot, PlotPoint, Series, SeriesKind, distinct};
 
 /// The area inside the axes, and the distances around it.
 const HEIGHT: f64 = 340.0;
@@ -20,10 +20,7 @@ const TITLE_HEIGHT: f64 = 36.0;
 const LEFT: f64 = 92.0;
 const RIGHT: f64 = 14.0;
 const UNDER: f64 = 60.0;
-/// Height of the scores under a plot.
-const SCORES: f64 = 72.0;
-/// Type size of scores.
-const SCORE: f64 = 13.0;
+const PANEL: f64 = TITLE_HEIGHT + HEIGHT + UNDER;
 /// Height of a line of the legend, and the space at its top.
 const LEGEND_LINE: f64 = 28.0;
 const LEGEND_TOP: f64 = 6.0;
@@ -36,32 +33,70 @@ const RADIUS: f64 = 5.8;
 const RIM: f64 = 1.4;
 
 /// Width and height of the area inside the axes where two plots share a row, for ranges that fill it.
-pub const MAP_SIZE: [f64; 2] = [PAGE_WIDTH as f64 / 2.0 - LEFT - RIGHT, HEIGHT];
+const MAP_SIZE: [f64; 2] = [PAGE_WIDTH as f64 / 2.0 - LEFT - RIGHT, HEIGHT];
 
-/// The plots of a figure.
-pub(super) struct Plots<'a>(pub(super) &'a [Plot]);
+/// Markers: a regular polygon by its number of corners, the direction of the first in degrees, and its radius, about one.
+const MARKERS: [(u32, f64, f64); 5] =
+    [(24, 0.0, 0.95), (3, 90.0, 1.25), (4, 45.0, 1.2), (4, 0.0, 1.25), (3, -90.0, 1.25)];
 
-impl Plots<'_> {
-    fn columns(&self) -> usize {
-        self.0.len().clamp(1, 2)
+/// The look of series number `n`: five markers and eight colours. The first 40 differ in the pair, neighbours in both.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct SeriesStyle(usize);
+
+impl SeriesStyle {
+    fn color(self) -> Rgb {
+        class_color(self.0)
     }
 
-    fn panel_height(&self) -> f64 {
-        let scores = if self.0.iter().all(|plot| plot.scores.is_empty()) { 0.0 } else { SCORES };
-        TITLE_HEIGHT + HEIGHT + UNDER + scores
+    /// The marker around its point: the rim, and the face over it, as plotters strokes small outlines unevenly.
+    fn marker(self, kind: SeriesKind) -> (Polygon<Pixels>, Polygon<Pixels>) {
+        let (rim, fill) = match kind {
+            SeriesKind::Hollow => (self.color(), [255; 3]),
+            SeriesKind::Curve | SeriesKind::Filled => (mix(self.color(), [0; 3], 0.5), self.color()),
+        };
+        let (corners, first, long) = MARKERS[self.0 % MARKERS.len()];
+        let outline = |radius: f64, color: Rgb| {
+            let corner = |i| {
+                let (sin, cos) = (first + 360.0 * f64::from(i) / f64::from(corners)).to_radians().sin_cos();
+                (px(cos * long * radius), -px(sin * long * radius))
+            };
+            Polygon::new((0..corners).map(corner).collect::<Vec<_>>(), rgb(color).filled())
+        };
+        (outline(RADIUS + RIM, rim), outline(RADIUS, fill))
+    }
+}
+
+/// The plots of a figure, and the names of their series, whose numbers decide the look.
+pub(super) struct Plots<'a> {
+    plots: &'a [Plot],
+    names: Vec<&'a str>,
+}
+
+impl<'a> Plots<'a> {
+    pub(super) fn new(plots: &'a [Plot]) -> Self {
+        let series = plots.iter().flat_map(|plot| &plot.series);
+        Self { plots, names: distinct(series.map(|series| series.name.as_str())) }
+    }
+
+    fn columns(&self) -> usize {
+        self.plots.len().clamp(1, 2)
+    }
+
+    fn style(&self, series: &Series) -> SeriesStyle {
+        SeriesStyle(self.names.iter().position(|name| *name == series.name).unwrap_or(0))
     }
 
     /// One entry per name and kind of series, and the number of them in a line.
-    fn legend(&self) -> (Vec<&PlotSeries>, usize) {
-        let mut entries: Vec<&PlotSeries> = Vec::new();
-        for series in self.0.iter().flat_map(|plot| &plot.series) {
-            if !entries.iter().any(|known| known.name == series.name && known.kind == series.kind) {
-                entries.push(series);
+    fn legend(&self) -> (Vec<LegendEntry>, usize) {
+        let mut entries: Vec<LegendEntry> = Vec::new();
+        for series in self.plots.iter().flat_map(|plot| &plot.series) {
+            let printed = if series.kind == SeriesKind::Hollow { ", paper" } else { "" };
+            let entry = (format!("{}{printed}", series.name), self.style(series), series.kind);
+            if !entries.contains(&entry) {
+                entries.push(entry);
             }
         }
-        let style = text(NAME, INK);
-        let width = |series: &&PlotSeries| text_width(&series.name, &style) / f64::from(PX) + 64.0;
-        let widest = entries.iter().map(width).fold(1.0, f64::max);
+        let widest = entries.iter().map(|(name, ..)| name_width(name) + 64.0).fold(1.0, f64::max);
         let most = (f64::from(PAGE_WIDTH) / widest).max(1.0) as usize;
         let columns = entries.len().div_ceil(entries.len().div_ceil(most).max(1)).max(1);
         (entries, columns)
@@ -73,148 +108,183 @@ impl Plots<'_> {
     }
 }
 
+/// The name, look and kind of a series.
+type LegendEntry = (String, SeriesStyle, SeriesKind);
+
+fn name_width(name: &str) -> f64 {
+    text_width(name, &text(NAME, INK)) / f64::from(PX)
+}
+
+type Pixels = (i32, i32);
+
 impl Drawing for Plots<'_> {
     fn size(&self) -> [i32; 2] {
-        let rows = self.0.len().div_ceil(self.columns()) as f64;
-        [PAGE_WIDTH, (self.legend_height() + rows * self.panel_height()) as i32 + 12]
+        let rows = self.plots.len().div_ceil(self.columns()) as f64;
+        [PAGE_WIDTH, (self.legend_height() + rows * PANEL) as i32 + 12]
     }
 
     fn pictures(&self) -> Result<Vec<Picture>, ReportError> {
         Ok(vec![])
     }
 
-    fn draw<DB: DrawingBackend>(&self, area: &Area<DB>) -> Drawn<DB> {
+    fn draw<DB: DrawingBackend>(&self, area: &Area<DB>) -> Drawn<DB, Vec<Hover>> {
         // A legend of plotters has one column inside the axes, where it covers data.
         let (entries, columns) = self.legend();
-        let (_, legend) = area.margin(px(LEGEND_TOP), 0, 0, 0).split_vertically(0);
         let lines = entries.len().div_ceil(columns);
         let width = f64::from(PAGE_WIDTH) / columns as f64;
-        for (i, series) in entries.into_iter().enumerate() {
+        for (i, (name, style, kind)) in entries.into_iter().enumerate() {
             let left = (i % columns) as f64 * width;
-            let used = 42.0 + text_width(&series.name, &text(NAME, INK)) / f64::from(PX);
-            let left = if lines > 1 { left + 20.0 } else { left + (width - used) / 2.0 };
-            entry(&legend, series, [left, (i / columns) as f64 * LEGEND_LINE + LEGEND_LINE / 2.0])?;
+            let left = left + if lines > 1 { 20.0 } else { (width - 42.0 - name_width(&name)) / 2.0 };
+            let middle = LEGEND_TOP + ((i / columns) as f64 + 0.5) * LEGEND_LINE;
+            if kind == SeriesKind::Curve {
+                line(area, [left, middle], [left + 32.0, middle], STROKE, style.color())?;
+            }
+            let (rim, face) = style.marker(kind);
+            area.draw(&(EmptyElement::at((px(left + 16.0), px(middle))) + rim + face))?;
+            write(area, &name, anchored(text(NAME, INK), HPos::Left), [left + 42.0, middle])?;
         }
         let column = f64::from(PAGE_WIDTH) / self.columns() as f64;
-        for (i, plot) in self.0.iter().enumerate() {
+        let mut hovers = Vec::new();
+        for (i, plot) in self.plots.iter().enumerate() {
             let (row, edge) = ((i / self.columns()) as f64, (i % self.columns()) as f64 * column);
-            let top = self.legend_height() + row * self.panel_height();
-            let panel = area.clone().shrink((px(edge), px(top)), (px(column), px(self.panel_height())));
-            draw_plot(plot, &panel, column)?;
-            draw_scores(&plot.scores, &panel, column)?;
+            let top = self.legend_height() + row * PANEL;
+            let panel = area.clone().shrink((px(edge), px(top)), (px(column), px(PANEL)));
+            hovers.extend(self.draw_plot(plot, &panel, column)?);
         }
-        Ok(())
+        Ok(hovers)
     }
 }
 
-/// An entry of the legend.
-fn entry<DB: DrawingBackend>(area: &Area<DB>, series: &PlotSeries, [left, middle]: [f64; 2]) -> Drawn<DB> {
-    if series.kind == SeriesKind::Curve {
-        line(area, [left, middle], [left + 32.0, middle], STROKE, series.style.color())?;
+impl Plots<'_> {
+    fn draw_plot<DB: DrawingBackend>(
+        &self,
+        plot: &Plot,
+        panel: &Area<DB>,
+        width: f64,
+    ) -> Drawn<DB, Vec<Hover>> {
+        let [x, y] = &axes(plot);
+        let middle = LEFT + (width - LEFT - RIGHT) / 2.0;
+        write(panel, &plot.title, bold(text(TITLE, INK)), [middle, TITLE_HEIGHT / 2.0])?;
+        let inside = [width - RIGHT - NAME_MARGIN, HEIGHT + UNDER].map(px);
+        let inside = panel.clone().shrink((px(NAME_MARGIN), px(TITLE_HEIGHT)), inside.into());
+        let mut chart = ChartBuilder::on(&inside)
+            .x_label_area_size(px(UNDER))
+            .y_label_area_size(px(LEFT - NAME_MARGIN))
+            .build_cartesian_2d(x.clone(), y.clone())?;
+        let label = text(LABEL, INK);
+        let [x_label, y_label] = [x, y].map(|axis| move |tick: &f64| axis.format_ext(tick));
+        let mut mesh = chart.configure_mesh();
+        mesh.bold_line_style(rgb(GRID).stroke_width(PX as u32)).light_line_style(TRANSPARENT);
+        mesh.axis_style(rgb(PALE_INK).stroke_width(PX as u32)).set_all_tick_mark_size(px(4.0));
+        mesh.y_label_offset(drop_of(&label)).label_style(label).axis_desc_style(text(NAME, INK));
+        mesh.x_label_formatter(&x_label).y_label_formatter(&y_label).x_desc(&x.name).y_desc(&y.name);
+        if x.scale == AxisScale::Category {
+            mesh.disable_x_mesh();
+        }
+        mesh.draw()?;
+        let [low, high] = y.ends();
+        let lines = plot.marks.iter().filter(|mark| x.scale != AxisScale::Category && is_shown(x, mark.x));
+        for mark in lines {
+            let stroke = rgb(INK).stroke_width(px(1.5) as u32);
+            chart.draw_series([PathElement::new([(mark.x, low), (mark.x, high)], stroke)])?;
+            let name = upwards(anchored(text(LABEL, INK), HPos::Right));
+            let beside =
+                EmptyElement::at((mark.x, high)) + Text::new(mark.name.clone(), (px(-8.0), px(8.0)), name);
+            chart.draw_series([beside])?;
+        }
+        let names = distinct(plot.series.iter().map(|series| series.name.as_str()));
+        let mut hovers = Vec::new();
+        // The first series covers the others, and bands are under all of them.
+        for is_band in [true, false] {
+            for series in plot.series.iter().rev() {
+                let points = || series.points.iter().filter(|p| is_shown(x, p.x));
+                let ranged = || points().filter(|p| is_shown(y, p.low) && is_shown(y, p.high));
+                let style = self.style(series);
+                if is_band {
+                    if series.kind == SeriesKind::Curve && ranged().any(|p| p.low < p.high) {
+                        let upper = ranged().map(|p| (p.x, p.high));
+                        let band: Vec<_> = upper.chain(ranged().rev().map(|p| (p.x, p.low))).collect();
+                        chart.draw_series([Polygon::new(band, rgb(style.color()).mix(BAND))])?;
+                    }
+                    continue;
+                }
+                let place = names.iter().position(|name| *name == series.name).unwrap_or(0);
+                let aside = if x.scale == AxisScale::Category { beside(place, names.len()) } else { 0.0 };
+                let stroke = rgb(mix(style.color(), [255; 3], 0.1)).stroke_width(px(STROKE) as u32);
+                let points = || points().filter(|p| is_shown(y, p.y));
+                if series.kind == SeriesKind::Curve {
+                    chart.draw_series(LineSeries::new(points().map(|p| (p.x, p.y)), stroke))?;
+                } else {
+                    let ranges = ranged().filter(|p| p.low < p.high);
+                    let bar =
+                        |p: &PlotPoint| ErrorBar::new_vertical(p.x + aside, p.low, p.y, p.high, stroke, 0);
+                    chart.draw_series(ranges.map(bar))?;
+                }
+                let marked = |p: &PlotPoint| {
+                    let (rim, face) = style.marker(series.kind);
+                    EmptyElement::at((p.x + aside, p.y)) + rim + face
+                };
+                chart.draw_series(points().map(marked))?;
+                hovers.extend(
+                    points().map(|p| (chart.backend_coord(&(p.x + aside, p.y)), says(plot, series, p))),
+                );
+            }
+        }
+        Ok(hovers)
     }
-    let (rim, face) = marker(series);
-    let place = (px(left + 16.0), px(middle));
-    area.draw(&(EmptyElement::at(place) + rim + face))?;
-    write(area, &series.name, anchored(text(NAME, INK), HPos::Left), [left + 42.0, middle])
 }
 
-type Pixels = (i32, i32);
-
-/// The marker of a series around its point: the rim, and the face over it, as plotters strokes small outlines unevenly.
-fn marker(series: &PlotSeries) -> (Polygon<Pixels>, Polygon<Pixels>) {
-    let color = series.style.color();
-    let (rim, fill) = match series.kind {
-        SeriesKind::Hollow => (color, [255; 3]),
-        SeriesKind::Curve | SeriesKind::Filled => (mix(color, [0; 3], 0.5), color),
+/// What the page says of a point.
+fn says(plot: &Plot, series: &Series, p: &PlotPoint) -> String {
+    let written = |value: f64| significant(value, 4);
+    let note = if p.note.is_empty() { String::new() } else { format!(", {}", p.note) };
+    let range = match p.low < p.high {
+        true => format!(" ({} to {})", written(p.low), written(p.high)),
+        false => String::new(),
     };
-    let outline = |radius: f64, color: Rgb| {
-        let corners = series.style.outline().map(|[x, y]| (px(x * radius), -px(y * radius)));
-        Polygon::new(corners.collect::<Vec<_>>(), rgb(color).filled())
-    };
-    (outline(RADIUS + RIM, rim), outline(RADIUS, fill))
+    match plot.x.scale {
+        AxisScale::Map => format!("{}{note}", series.name),
+        AxisScale::Category => format!("{}: {}{range}{note}", series.name, written(p.y)),
+        _ => format!("{}: {}{range} at {}{note}", series.name, written(p.y), written(p.x)),
+    }
 }
 
-fn draw_plot<DB: DrawingBackend>(plot: &Plot, panel: &Area<DB>, width: f64) -> Drawn<DB> {
-    let Plot { title, x, y, series, marks, .. } = plot;
-    let middle = LEFT + (width - LEFT - RIGHT) / 2.0;
-    write(panel, title, bold(text(TITLE, INK)), [middle, TITLE_HEIGHT / 2.0])?;
-    let inside = [width - RIGHT - NAME_MARGIN, HEIGHT + UNDER].map(px);
-    let inside = panel.clone().shrink((px(NAME_MARGIN), px(TITLE_HEIGHT)), inside.into());
-    let mut chart = ChartBuilder::on(&inside)
-        .x_label_area_size(px(UNDER))
-        .y_label_area_size(px(LEFT - NAME_MARGIN))
-        .build_cartesian_2d(x.clone(), y.clone())?;
-    let label = text(LABEL, INK);
-    let [x_label, y_label] = [x, y].map(|axis| move |tick: &f64| axis.format_ext(tick));
-    let mut mesh = chart.configure_mesh();
-    mesh.bold_line_style(rgb(GRID).stroke_width(PX as u32)).light_line_style(TRANSPARENT);
-    mesh.axis_style(rgb(PALE_INK).stroke_width(PX as u32)).set_all_tick_mark_size(px(4.0));
-    mesh.y_label_offset(drop_of(&label)).label_style(label).axis_desc_style(text(NAME, INK));
-    mesh.x_label_formatter(&x_label).y_label_formatter(&y_label).x_desc(&x.name).y_desc(&y.name);
-    if x.scale == AxisScale::Category {
-        mesh.disable_x_mesh();
-    }
-    mesh.draw()?;
-    let shown = |at: &PlotPoint, value: f64| is_shown(x, at.x) && is_shown(y, value);
-    let [low, high] = y.ends();
-    for mark in marks.iter().filter(|mark| is_shown(x, mark.x)) {
-        let stroke = rgb(INK).stroke_width(px(1.5) as u32);
-        chart.draw_series([PathElement::new([(mark.x, low), (mark.x, high)], stroke)])?;
-        let name = upwards(anchored(text(LABEL, INK), HPos::Right));
-        let beside =
-            EmptyElement::at((mark.x, high)) + Text::new(mark.name.clone(), (px(-8.0), px(8.0)), name);
-        chart.draw_series([beside])?;
-    }
-    // The first series covers the others.
-    for one in series.iter().rev().filter(|one| one.kind == SeriesKind::Curve) {
-        let ranges = || one.points.iter().filter(|p| shown(p, p.low) && shown(p, p.high));
-        if ranges().any(|p| p.low < p.high) {
-            let upper = ranges().map(|p| (p.x, p.high));
-            let band: Vec<(f64, f64)> = upper.chain(ranges().rev().map(|p| (p.x, p.low))).collect();
-            chart.draw_series([Polygon::new(band, rgb(one.style.color()).mix(BAND))])?;
+/// The axes of a plot, which hold all series and marks.
+fn axes(plot: &Plot) -> [PlotAxis; 2] {
+    let points = || plot.series.iter().flat_map(|series| &series.points);
+    let x = match plot.x.scale {
+        AxisScale::Map => return map_axes(plot),
+        AxisScale::Category => {
+            PlotAxis::categories(&plot.x.name, plot.marks.iter().map(|mark| mark.name.clone()))
         }
-    }
-    for one in series.iter().rev() {
-        let stroke = rgb(mix(one.style.color(), [255; 3], 0.1)).stroke_width(px(STROKE) as u32);
-        let points = || one.points.iter().filter(|p| shown(p, p.y));
-        if one.kind == SeriesKind::Curve {
-            chart.draw_series(LineSeries::new(points().map(|p| (p.x, p.y)), stroke))?;
-        } else {
-            let ranges = points().filter(|p| p.low < p.high && shown(p, p.low) && shown(p, p.high));
-            chart.draw_series(ranges.map(|p| ErrorBar::new_vertical(p.x, p.low, p.y, p.high, stroke, 0)))?;
-        }
-        let marked = |p: &PlotPoint| {
-            let (rim, face) = marker(one);
-            EmptyElement::at((p.x, p.y)) + rim + face
-        };
-        chart.draw_series(points().map(marked))?;
-    }
-    Ok(())
+        _ => PlotAxis::holding(&plot.x, points().map(|p| p.x).chain(plot.marks.iter().map(|mark| mark.x))),
+    };
+    [x, PlotAxis::holding(&plot.y, points().flat_map(|p| [p.low, p.y, p.high]))]
+}
+
+/// Axes that show all points at one scale.
+fn map_axes(plot: &Plot) -> [PlotAxis; 2] {
+    let points: Vec<[f64; 2]> = plot.series.iter().flat_map(|s| &s.points).map(|p| [p.x, p.y]).collect();
+    let ends = [0, 1].map(|i| {
+        let values: Vec<f64> = points.iter().map(|p| p[i]).collect();
+        value_range(&values).unwrap_or_default()
+    });
+    let per_unit = [0, 1].map(|i| (ends[i][1] - ends[i][0]) / MAP_SIZE[i]).into_iter().fold(0.0, f64::max);
+    // All points in one place: any scale at which the ends of the range differ.
+    let smallest = 1e-6 * ends.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let per_unit = if per_unit > smallest { 1.14 * per_unit } else { smallest.max(1.0 / MAP_SIZE[0]) };
+    [0, 1].map(|i| {
+        let ([low, high], axis) = (ends[i], [&plot.x, &plot.y][i]);
+        let (middle, half) = (low + (high - low) / 2.0, per_unit * MAP_SIZE[i] / 2.0);
+        PlotAxis::linear(&axis.name, &axis.unit, [middle - half, middle + half])
+    })
+}
+
+/// Where the `i`-th of `n` series stands beside the middle of a category.
+fn beside(i: usize, n: usize) -> f64 {
+    (i as f64 - (n as f64 - 1.0) / 2.0) * 0.7 / n as f64
 }
 
 fn is_shown(axis: &PlotAxis, value: f64) -> bool {
     axis.share(value).is_some()
-}
-
-/// Writes scores as a small table at the foot of a panel.
-fn draw_scores<DB: DrawingBackend>(scores: &[(&str, String)], panel: &Area<DB>, width: f64) -> Drawn<DB> {
-    if scores.is_empty() {
-        return Ok(());
-    }
-    let top = TITLE_HEIGHT + HEIGHT + UNDER;
-    let pale = text(SCORE, PALE_INK);
-    let lengths = scores.iter().map(|(name, _)| text_width(name, &pale) / f64::from(PX));
-    let lengths: Vec<f64> = lengths.map(|length| length.max(44.0)).collect();
-    let gap = (width - 20.0 - lengths.iter().sum::<f64>()) / lengths.len() as f64;
-    let mut left = 10.0;
-    for ((name, value), length) in scores.iter().zip(lengths) {
-        let middle = left + (length + gap) / 2.0;
-        write(panel, name, pale.clone(), [middle, top + 20.0])?;
-        write(panel, value, text(SCORE, INK), [middle, top + 43.0])?;
-        left += length + gap;
-    }
-    for (down, color) in [(8.0, INK), (31.0, GRID), (55.0, INK)] {
-        line(panel, [10.0, top + down], [width - 10.0, top + down], 1.0, color)?;
-    }
-    Ok(())
 }

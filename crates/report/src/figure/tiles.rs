@@ -1,17 +1,16 @@
 //! Rows of rendered surfaces with captions, as a static figure.
 
-use std::path::{Path, PathBuf};
-
 use mesh::TriMesh;
 use plotters::prelude::DrawingBackend;
 use plotters::style::text_anchor::HPos;
 
 use super::drawing::{
-    Area, Drawing, Drawn, GRID, INK, LABEL, NAME, PAGE_WIDTH, PALE_INK, PICTURE_PX, Picture, TITLE, anchored,
-    bold, line, save, text, write,
+    Area, Drawing, Drawn, GRID, Hover, INK, LABEL, NAME, PAGE_WIDTH, PALE_INK, PICTURE_PX, Picture, TITLE,
+    anchored, bold, line, text, write,
 };
 use crate::color::class_clay;
 use crate::error::ReportError;
+use crate::record::{Tile, TileRow, Tiles};
 use crate::render::{Background, Coloring, RenderOptions, View, aspect, render};
 
 /// Around the figure.
@@ -31,41 +30,7 @@ const LINE: f64 = 20.0;
 /// Height of the headings of the columns.
 const HEADS: f64 = 28.0;
 
-/// Rows of surfaces. Those of row number `n` have the colour of class number `n`.
-///
-/// Shapes have the default view; all forms of a row share the view of the principal axes of the first one.
-#[derive(Debug, Clone)]
-pub struct Tiles<'a> {
-    /// What follows the name of the experiment in the names of the files.
-    pub part: &'static str,
-    /// Whether there is more space after every second tile.
-    pub is_paired: bool,
-    /// Headings of the columns.
-    pub heads: Vec<String>,
-    /// The rows, with their headings.
-    pub rows: Vec<(String, Vec<Tile<'a>>)>,
-}
-
-/// A surface, with lines of text under it.
-#[derive(Debug, Clone)]
-pub struct Tile<'a> {
-    /// The surface.
-    pub mesh: &'a TriMesh,
-    /// Whether it is a canonical form, not a shape.
-    pub is_form: bool,
-    /// The lines, pale from the second on.
-    pub captions: Vec<String>,
-}
-
-impl Tiles<'_> {
-    /// Draws the figure and returns the paths of the PNG, the SVG and the PDF.
-    ///
-    /// # Errors
-    /// [`ReportError::Draw`] or [`ReportError::File`] if drawing or writing fails.
-    pub fn save(&self, stem: impl AsRef<Path>) -> Result<Vec<PathBuf>, ReportError> {
-        save(self, stem.as_ref(), self.part)
-    }
-
+impl Tiles {
     fn gutter(&self) -> f64 {
         if self.is_paired { GUTTER } else { 0.0 }
     }
@@ -83,10 +48,11 @@ impl Tiles<'_> {
     /// The top of every row and the height of its tiles, from the mean proportions of its shapes; then the bottom.
     fn places(&self) -> (Vec<[f64; 2]>, f64) {
         let (mut places, mut top) = (Vec::new(), HEADS);
-        for (_, tiles) in &self.rows {
+        for TileRow { tiles, .. } in &self.rows {
             let shapes = tiles.iter().filter(|tile| !tile.is_form);
-            let aspects: Vec<f64> = shapes.map(|tile| aspect(tile.mesh, &View::default())).collect();
-            let mean = aspects.iter().sum::<f64>() / aspects.len() as f64;
+            let aspects: Vec<f64> =
+                shapes.map(|tile| aspect(&tile.surface.mesh(), &View::default())).collect();
+            let mean = aspects.iter().sum::<f64>() / aspects.len().max(1) as f64;
             let height = (self.tile_width() / mean.clamp(0.6, 1.3)).round();
             places.push([top, height]);
             let lines = tiles.iter().map(|tile| tile.captions.len()).max().unwrap_or(0);
@@ -96,7 +62,7 @@ impl Tiles<'_> {
     }
 }
 
-impl Drawing for Tiles<'_> {
+impl Drawing for Tiles {
     fn size(&self) -> [i32; 2] {
         [PAGE_WIDTH, self.places().1 as i32]
     }
@@ -104,11 +70,13 @@ impl Drawing for Tiles<'_> {
     fn pictures(&self) -> Result<Vec<Picture>, ReportError> {
         let mut pictures = Vec::new();
         let width = self.tile_width();
-        for (class, ((_, tiles), [top, height])) in self.rows.iter().zip(self.places().0).enumerate() {
-            let form = tiles.iter().find(|tile| tile.is_form);
+        for (class, (row, [top, height])) in self.rows.iter().zip(self.places().0).enumerate() {
+            let meshes: Vec<TriMesh> = row.tiles.iter().map(|tile| tile.surface.mesh()).collect();
+            let tiles = || row.tiles.iter().zip(&meshes);
+            let form = tiles().find(|(tile, _)| tile.is_form);
             let form_view =
-                form.map_or(View::default(), |form| View::Principal.fixed(form.mesh, width > height));
-            for (column, tile) in tiles.iter().enumerate() {
+                form.map_or(View::default(), |(_, form)| View::Principal.fixed(form, width > height));
+            for (column, (tile, mesh)) in tiles().enumerate() {
                 let [wide, high] = [width, height].map(|side| side as u32 * PICTURE_PX as u32);
                 let options = RenderOptions {
                     width: wide,
@@ -119,28 +87,28 @@ impl Drawing for Tiles<'_> {
                     ..RenderOptions::default()
                 };
                 let place = [self.left(column), top + TITLES].map(|at| at as i32);
-                pictures.push((render(tile.mesh, &options, &())?, place));
+                pictures.push((render(mesh, &options, &())?, place));
             }
         }
         Ok(pictures)
     }
 
-    fn draw<DB: DrawingBackend>(&self, area: &Area<DB>) -> Drawn<DB> {
+    fn draw<DB: DrawingBackend>(&self, area: &Area<DB>) -> Drawn<DB, Vec<Hover>> {
         let middle = |column: usize| self.left(column) + self.tile_width() / 2.0;
         for (column, head) in self.heads.iter().enumerate() {
             write(area, head, bold(text(NAME, INK)), [middle(column), HEADS / 2.0])?;
         }
-        for ((title, tiles), [top, height]) in self.rows.iter().zip(self.places().0) {
+        for (TileRow { name: title, tiles }, [top, height]) in self.rows.iter().zip(self.places().0) {
             line(area, [MARGIN, top], [f64::from(PAGE_WIDTH) - MARGIN, top], 1.0, GRID)?;
             write(area, title, anchored(bold(text(TITLE, INK)), HPos::Left), [MARGIN, top + 19.0])?;
-            for (column, tile) in tiles.iter().enumerate() {
-                for (i, caption) in tile.captions.iter().enumerate() {
+            for (column, Tile { captions, .. }) in tiles.iter().enumerate() {
+                for (i, caption) in captions.iter().enumerate() {
                     let ink = if i == 0 { INK } else { PALE_INK };
                     let down = top + TITLES + height + CAPTIONS + i as f64 * LINE;
                     write(area, caption, text(LABEL, ink), [middle(column), down])?;
                 }
             }
         }
-        Ok(())
+        Ok(Vec::new())
     }
 }

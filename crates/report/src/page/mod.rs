@@ -1,127 +1,329 @@
 //! One page with all results of a folder: figures, numbers, expectations and provenance.
 //!
-//! The page is one file: it contains its style, scripts, data and images, and its content-security policy forbids it to
-//! fetch anything. Figures are interactive where scripts run, and images elsewhere and in print.
+//! The page is one file: it contains its style, scripts, data and drawings, and its content-security policy forbids it to
+//! fetch anything. All of it is drawn from the records, so no other file of the folder can run in it or change it.
 
-mod chart;
-mod explorer;
 mod html;
-mod scripts;
 mod section;
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use crate::error::ReportError;
-use crate::results::{Expectation, ExpectationOutcome};
 use base::files::write_bytes;
-pub use html::escape;
-use html::{marked, paragraphs};
-pub use section::{ResultsFolder, Section, SectionContent, charts, explorer, gallery};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use sha2::{Digest, Sha256};
+
+use self::html::{outcome, paragraphs};
+use crate::error::ReportError;
+use crate::figure::dark_rules;
+pub use crate::markup::escape;
+use crate::record::{Expectation, FigurePanels, Record};
+use crate::viewer::{plotly_js, viewer_js};
 
 /// Name of the page in the folder of results.
 pub const FILE: &str = "report.html";
 
-/// Writes `report.html` into a folder of results and returns its path.
-///
-/// The page begins with `lead`, paragraphs of plain text, and shows the records of the experiments with the PNG files
-/// beside them. Its last line names the experiments without a record and the command that runs them, so a page can be
-/// written after any run.
-///
-/// # Errors
-/// [`ReportError::File`] and [`ReportError::Parse`] if a record exists but cannot be read, the errors of
-/// [`Results::validate`](crate::Results::validate), [`ReportError::File`] if the page cannot be written.
-pub fn write_report(
-    folder: impl AsRef<Path>,
-    lead: &str,
-    sections: &[Section],
-) -> Result<PathBuf, ReportError> {
-    let path = folder.as_ref().join(FILE);
-    let folder = ResultsFolder::new(folder.as_ref(), sections.iter().map(|section| section.name))?;
-    let (mut made, mut open) = (Vec::new(), Vec::new());
-    for section in sections {
-        match (section.show)(&folder, section.name)? {
-            Some(content) => made.push((section, content)),
-            None => open.push(section),
-        }
-    }
-    let header = paragraphs(lead) + &headline(&made);
-    write_bytes(&path, page(&header, &made, &folder.closing(&open)).as_bytes())?;
-    Ok(path)
+/// An experiment on the page.
+#[derive(Debug, Clone)]
+pub struct Section {
+    /// Name of the experiment, of its record `NAME.json`, and of the anchor on the page.
+    pub name: String,
+    /// The heading. Its first sentence, such as `Figure 1.`, is the link to it.
+    pub title: String,
 }
 
-/// An experiment that has run, and what the page shows of it.
-type ShownSection<'a> = (&'a Section, SectionContent);
+impl Section {
+    /// The text of links to the section.
+    fn short(&self) -> &str {
+        self.title.split_once(". ").map_or(&self.title, |(short, _)| short)
+    }
+}
+
+/// An experiment that has run.
+type ShownSection<'a> = (&'a Section, Record);
+
+/// Writes `report.html` into a folder of results and returns its path.
+///
+/// The page begins with the lead of the first of the records named in `leads`, and shows all records. Its last line names
+/// the experiments without a record and the command that runs them, so a page can be written after any run.
+///
+/// # Errors
+/// Those of [`Record::read`] for a record that exists, and [`ReportError::Draw`]; [`ReportError::File`] if the page cannot
+/// be written.
+pub fn write_report(
+    folder: impl AsRef<Path>,
+    leads: &[&str],
+    sections: &[Section],
+) -> Result<PathBuf, ReportError> {
+    let folder = folder.as_ref();
+    let (mut made, mut open): (Vec<ShownSection<'_>>, Vec<&Section>) = Default::default();
+    for section in sections {
+        let path = folder.join(format!("{}.json", section.name));
+        match path.exists() {
+            true => made.push((section, Record::read(path)?)),
+            false => open.push(section),
+        }
+    }
+    let lead =
+        |name: &&str| made.iter().find(|(section, record)| section.name == **name && !record.lead.is_empty());
+    let lead = leads.iter().find_map(lead).map_or("", |(_, record)| &record.lead);
+    let mut main = String::new();
+    for (Section { name, title }, record) in &made {
+        let _ = write!(
+            main,
+            "<section id=\"{name}\">\n<h2>{}</h2>\n{}</section>\n",
+            escape(title),
+            section::section(name, record)?
+        );
+    }
+    let path = folder.join(FILE);
+    let page = page(&(paragraphs(lead) + &headline(&made)), &made, &main, &closing(&made, &open));
+    write_bytes(&path, page.as_bytes())?;
+    Ok(path)
+}
 
 /// How many expectations held, and a link to each that did not.
 fn headline(sections: &[ShownSection<'_>]) -> String {
     let all: Vec<(&Section, &Expectation)> = sections
         .iter()
-        .flat_map(|(section, content)| content.expectations.iter().map(move |e| (*section, e)))
+        .flat_map(|(section, record)| record.expectations.iter().map(move |e| (*section, e)))
         .collect();
     if all.is_empty() {
         return String::new();
     }
-    let count = |outcome| all.iter().filter(|(_, e)| e.outcome() == outcome).count();
-    let [held, missed, failed] =
-        [ExpectationOutcome::Held, ExpectationOutcome::Missed, ExpectationOutcome::Failed].map(count);
-    let worst = match (failed, missed) {
-        (0, 0) => ExpectationOutcome::Held,
-        (0, _) => ExpectationOutcome::Missed,
-        _ => ExpectationOutcome::Failed,
-    };
-    let counted = |n: usize, what: &str, word: &str| match n {
-        0 => String::new(),
-        1 => format!(", 1 {what} {word}"),
-        n => format!(", {n} {what}s {word}"),
-    };
-    let (class, sign) = marked(worst);
-    let mut html = format!(
-        "<p><span class=\"{class}\">{sign} {held} of {} expectations held{}{}</span></p>\n",
-        all.len(),
-        counted(failed, "expectation", "failed"),
-        counted(missed, "goal", "missed")
-    );
-    if worst != ExpectationOutcome::Held {
-        html.push_str("<ul class=\"outcomes\">\n");
-        for (section, e) in all.iter().filter(|(_, e)| e.outcome() != ExpectationOutcome::Held) {
-            let (class, sign) = marked(e.outcome());
-            let _ = writeln!(
-                html,
-                "<li><span class=\"{class}\">{sign}</span> <a href=\"#{}\">{}: {}</a> is {} ({}{})</li>",
-                section::anchor(section.name),
-                section.short(),
-                escape(&e.what),
-                escape(&e.measured),
-                if e.goal { "goal: " } else { "expected: " },
-                escape(&e.expected)
-            );
-        }
-        html.push_str("</ul>\n");
+    let held = all.iter().filter(|(_, e)| e.held).count();
+    // Those that failed come before goals that were missed.
+    let mut others: Vec<_> = all.iter().filter(|(_, e)| !e.held).collect();
+    others.sort_by_key(|(_, e)| e.goal);
+    let worst = others.first().map_or("held", |(_, e)| outcome(e).0);
+    let mut html =
+        format!("<p><span class=\"{worst}\">{held} of {} expectations held</span></p>\n", all.len());
+    let mut items = String::new();
+    for (section, e) in others {
+        let (class, text) = outcome(e);
+        let _ = writeln!(
+            items,
+            "<li><span class=\"{class}\">{text}</span>: <a href=\"#{}\">{}: {}</a> is {} (expected: {})</li>",
+            section::anchor(&section.name),
+            escape(section.short()),
+            escape(&e.what),
+            escape(&e.measured),
+            escape(&e.expected)
+        );
+    }
+    if !items.is_empty() {
+        html += &format!("<ul class=\"outcomes\">\n{items}</ul>\n");
     }
     html
 }
 
-fn page(header: &str, sections: &[ShownSection<'_>], closing: &str) -> String {
+/// The last line of the page: which experiments have not run, and the command that runs them on the shapes of the others,
+/// into this folder; empty if all have.
+fn closing(made: &[ShownSection<'_>], open: &[&Section]) -> String {
+    if open.is_empty() {
+        return String::new();
+    }
+    let titles: Vec<String> = open.iter().map(|section| escape(section.short())).collect();
+    let names: Vec<&str> = open.iter().map(|section| section.name.as_str()).collect();
+    // Records of several runs: the last one decides.
+    let last = made.iter().map(|(_, record)| &record.provenance).max_by_key(|made| &made.date);
+    let arguments = last.map_or("", |made| &made.arguments);
+    format!(
+        "<footer><p class=\"pale\">Not run: {}. To run them: <code>{}</code></p></footer>\n",
+        titles.join(", "),
+        escape(&format!("cargo run --release -p experiments -- run {}{arguments}", names.join(" ")))
+    )
+}
+
+/// The whole page. Its policy allows its own scripts by their hashes, so that nothing else on the page can run, and
+/// forbids all requests. plotly inserts style rules and makes images of its scenes.
+fn page(header: &str, sections: &[ShownSection<'_>], main: &str, closing: &str) -> String {
     let link = |(section, _): &ShownSection<'_>| {
-        format!("<li><a href=\"#{}\">{}</a></li>", section.name, section.short())
+        format!("<li><a href=\"#{}\">{}</a></li>", section.name, escape(section.short()))
     };
-    let section = |(Section { name, title, .. }, SectionContent { html, .. }): &ShownSection<'_>| {
-        format!("<section id=\"{name}\">\n<h2>{title}</h2>\n{html}</section>\n")
+    let has_surfaces = |(_, record): &ShownSection<'_>| {
+        record.figures.iter().any(|figure| matches!(figure.panels, FigurePanels::Tiles(_)))
     };
+    let scripts = match sections.iter().any(has_surfaces) {
+        true => vec![plotly_js(), viewer_js(), include_str!("gallery.js")],
+        false => vec![],
+    };
+    let hash = |script: &&str| format!(" 'sha256-{}'", STANDARD.encode(Sha256::digest(script)));
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         {head}<title>canonform: results</title>\n<style>\n{style}</style>\n</head>\n\
+         <meta http-equiv=\"content-security-policy\" content=\"default-src 'none'; script-src{hashes}; \
+         style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; form-action 'none'\">\n\
+         <title>canonform: results</title>\n<style>\n{style}\
+         @media screen and (prefers-color-scheme: dark) {{{dark}}}\n</style>\n</head>\n\
          <body>\n<header>\n<h1>canonform: results</h1>\n{header}</header>\n\
          <nav aria-label=\"Experiments\"><ul>{links}</ul></nav>\n<main>\n{main}</main>\n{closing}{tail}</body>\n</html>\n",
-        head = scripts::head(),
+        hashes = scripts.iter().map(hash).collect::<String>(),
         style = include_str!("style.css"),
+        dark = dark_rules(),
         links = sections.iter().map(link).collect::<String>(),
-        main = sections.iter().map(section).collect::<String>(),
-        tail = scripts::tail(),
+        tail = scripts.iter().map(|script| format!("<script>{script}</script>\n")).collect::<String>(),
     )
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use std::fs;
+
+    use super::*;
+    use crate::record::{Plot, RunProvenance, TileRow, Tiles};
+    use crate::table::Table;
+    use crate::tests::{assert_balanced, assert_holds, figure, plot, tile, without_scripts};
+
+    fn sections() -> Vec<Section> {
+        [("figure1", "Figure 1. Shapes"), ("figure6", "Figure 6. Errors"), ("scaling", "Scaling. Time")]
+            .map(|(name, title)| Section { name: name.to_owned(), title: title.to_owned() })
+            .to_vec()
+    }
+
+    fn expectation(what: &str, held: bool, goal: bool) -> Expectation {
+        let (expected, measured) = ("at least 0.9".to_owned(), "0.125".to_owned());
+        Expectation { what: what.to_owned(), expected, measured, held, goal }
+    }
+
+    fn record(panels: FigurePanels) -> Record {
+        let mut options = serde_json::Map::new();
+        options.insert("rank".to_owned(), 5.into());
+        Record {
+            provenance: RunProvenance {
+                program: "experiments".to_owned(),
+                command: "experiments run all --dataset 'a & b'".to_owned(),
+                arguments: " --dataset 'a & b' --output results".to_owned(),
+                machine: "a processor".to_owned(),
+                options,
+                seconds: 0.25,
+                ..RunProvenance::default()
+            },
+            lead: "Seen & found.".to_owned(),
+            analysis: "Two clusters.\n\na < b & c".to_owned(),
+            expectations: vec![expectation("first tier", true, false)],
+            tables: vec![Table::new(
+                "Scores.",
+                ["method", "NN"],
+                vec![vec!["wave <kernel>".into(), 0.75.into()]],
+            )],
+            figures: vec![figure(panels)],
+            ..Record::default()
+        }
+    }
+
+    fn page_of(folder: &Path) -> String {
+        let path = write_report(folder, &["figure6", "figure1"], &sections()).unwrap();
+        assert_eq!(path, folder.join(FILE));
+        let html = fs::read_to_string(path).unwrap();
+        assert_balanced(&html);
+        // The page fetches nothing.
+        let plain = without_scripts(&html);
+        for outside in
+            ["<link", "http:", "https:", "@import", "url(", "srcset", "<iframe", " onerror", " onclick"]
+        {
+            let namespaces = plain.replace("http://www.w3.org", "");
+            assert!(!namespaces.contains(outside), "{outside}");
+        }
+        assert!(!html.contains("<script src") && html.contains("default-src 'none'"));
+        html
+    }
+
+    #[test]
+    fn a_page_without_records_names_the_experiments_and_the_command_that_runs_them() {
+        let folder = tempfile::tempdir().unwrap();
+        let html = page_of(folder.path());
+        assert_holds(&html, &["Not run: Figure 1, Figure 6, Scaling.", "run figure1 figure6 scaling</code>"]);
+        assert!(!html.contains("<section") && !html.contains("expectations") && !html.contains("<script"));
+    }
+
+    #[test]
+    fn a_section_has_figures_expectations_numbers_and_how_it_was_made() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut one = record(FigurePanels::Plots(vec![plot("david0")]));
+        one.expectations
+            .extend([expectation("<silhouette>", false, false), expectation("speed", false, true)]);
+        one.save(folder.path(), "figure6").unwrap();
+        let html = page_of(folder.path());
+        assert_holds(
+            &html,
+            &["<h1>canonform: results</h1>\n<p>Seen &amp; found.</p>\n", "Not run: Figure 1, Scaling."],
+        );
+        assert_holds(&html, &["run figure1 scaling --dataset &#39;a &amp; b&#39; --output results</code>"]);
+        assert_holds(&html, &["<p>Two clusters.</p>", "a &lt; b &amp; c", "<svg role=\"img\"", "david0"]);
+        assert_holds(&html, &["href=\"figure6-part.png\" download", "href=\"figure6-part.svg\""]);
+        let outcome = "Figure 6: &lt;silhouette&gt;</a> is 0.125 (expected: at least 0.9)";
+        assert_holds(&html, &["class=\"failed\">1 of 3 expectations held<", outcome]);
+        assert_holds(&html, &["✓ held", "✗ failed", "○ goal missed", "<h3 id=\"figure6-expectations\">"]);
+        assert_holds(
+            &html,
+            &["<td>wave &lt;kernel&gt;</td><td class=\"number\">0.750</td>", "Values of the 2 curves"],
+        );
+        assert_holds(
+            &html,
+            &["<summary>How it was made</summary>", "a processor", "0.25 s", "&quot;rank&quot;: 5"],
+        );
+        assert!(!html.contains("<script"), "without surfaces there are no scripts");
+        assert_eq!(html, page_of(folder.path()), "the page is deterministic");
+        for end in ["png", "svg"] {
+            assert!(folder.path().join(format!("figure6-part.{end}")).exists());
+        }
+    }
+
+    #[test]
+    fn surfaces_can_be_turned_and_names_never_become_markup() {
+        let folder = tempfile::tempdir().unwrap();
+        let evil = "</script><img src=x>";
+        let row = TileRow { name: evil.to_owned(), tiles: vec![tile(evil, false), tile("stress 2", true)] };
+        let heads = ["shape", "form"].map(str::to_owned).to_vec();
+        let one = record(FigurePanels::Tiles(Tiles { is_paired: true, heads, rows: vec![row] }));
+        one.save(folder.path(), "figure1").unwrap();
+        let html = page_of(folder.path());
+        assert_eq!(html.matches("* plotly.js v").count(), 1, "plotly is there once");
+        assert!(!html.contains("<img src=x"));
+        let island =
+            html.split("id=\"figure1-part-data\">").nth(1).unwrap().split("</script>").next().unwrap();
+        let groups: serde_json::Value = serde_json::from_str(island).unwrap();
+        assert_eq!(
+            (&groups[0]["name"], &groups[0]["views"][1]["title"]),
+            (&evil.into(), &"form: stress 2".into())
+        );
+    }
+
+    #[test]
+    fn broken_records_are_errors_that_name_the_file_or_the_number() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("figure1.json"), "{\"names\": 3").unwrap();
+        let error = write_report(folder.path(), &[], &sections()).unwrap_err();
+        assert!(error.to_string().contains("figure1.json"), "{error}");
+        assert!(!folder.path().join(FILE).exists());
+        let fault = |change: fn(&mut Plot), part: &str| {
+            let mut broken = plot("cat0");
+            change(&mut broken);
+            let error = record(FigurePanels::Plots(vec![broken])).save(folder.path(), "x").unwrap_err();
+            assert!(error.to_string().contains(part), "{error}");
+            assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+        };
+        fault(|plot| plot.series[0].points[0].high = f64::NAN, "NMDS in cat0");
+        fault(|plot| plot.marks[0].x = f64::INFINITY, "the mark recommended");
+        let mut ragged = record(FigurePanels::Plots(vec![]));
+        ragged.tables[0].headings.pop();
+        assert!(ragged.save(folder.path(), "x").unwrap_err().to_string().contains("Scores."));
+    }
+
+    #[test]
+    fn the_summary_sets_curves_side_by_side_with_dashes_for_gaps() {
+        let mut one = record(FigurePanels::Plots(vec![plot("david0"), plot("cat0")]));
+        let FigurePanels::Plots(plots) = &mut one.figures[0].panels else { panic!() };
+        plots[1].series[1].points.remove(0);
+        assert!(one.summary().unwrap().to_text().contains("wave <kernel>"), "tables come first");
+        one.tables.clear();
+        let text = one.summary().unwrap().to_text();
+        assert_eq!(text.lines().count(), 1 + 6, "{text}");
+        assert!(
+            text.contains("samples n") && text.lines().nth(4).is_some_and(|line| line.ends_with('-')),
+            "{text}"
+        );
+    }
+}

@@ -1,143 +1,79 @@
 //! One experiment on the page.
 
-use std::path::Path;
+use std::fmt::Write;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
-use super::chart::{chart, picture};
-use super::explorer::{self};
-use super::html::{escape, folded, paragraphs, table};
+use super::html::{folded, outcome, paragraphs, table, wide};
+use crate::color::{class_clay, hex};
 use crate::error::ReportError;
-use crate::figure::Figure;
-use crate::record::Results;
-use crate::results::{
-    Expectation, Figure1Results, Figure4Results, Record, RunProvenance, ShapesRecord,
-    provenance as provenance_of, read,
-};
-use crate::table::{Cell, Table};
+use crate::markup::escape;
+use crate::record::{Expectation, Figure, FigurePanels, Record, RunProvenance, Tile, Tiles};
 
-/// An experiment on the page.
-#[derive(Debug, Clone, Copy)]
-pub struct Section {
-    /// Name of the experiment, of its record `NAME.json`, and of the anchor on the page.
-    pub name: &'static str,
-    /// The heading. Its first sentence, such as `Figure 1.`, is the link to it.
-    pub title: &'static str,
-    /// Makes its content, if it has run: [`charts`], [`gallery`] or [`explorer()`].
-    pub show: fn(&ResultsFolder<'_>, &str) -> Result<Option<SectionContent>, ReportError>,
-}
-
-impl Section {
-    /// The text of links to the section.
-    #[must_use]
-    pub fn short(&self) -> &'static str {
-        self.title.split_once(". ").map_or(self.title, |(short, _)| short)
-    }
-}
-
-/// A folder of results.
-#[derive(Debug)]
-pub struct ResultsFolder<'a> {
-    pub(super) path: &'a Path,
-    /// The surfaces of Figure 4.
-    pub(super) shapes: Option<ShapesRecord>,
-    /// The options with which the experiments in the folder were run, each after a space.
-    pub(super) arguments: String,
-}
-
-impl<'a> ResultsFolder<'a> {
-    /// A folder with records of experiments of these names.
-    pub(super) fn new(path: &'a Path, names: impl Iterator<Item = &'a str>) -> Result<Self, ReportError> {
-        let records = names.map(|name| path.join(format!("{name}.json"))).filter(|record| record.exists());
-        let sources: Vec<RunProvenance> = records.map(provenance_of).collect::<Result<_, _>>()?;
-        // Records of several runs: the last one decides.
-        let last = sources.into_iter().max_by(|a, b| a.date.cmp(&b.date));
-        let arguments = last.map_or_else(String::new, |made| made.arguments);
-        Ok(Self { path, shapes: explorer::shapes(path)?, arguments })
-    }
-
-    /// The last line of the page: which experiments have not run, and the command that runs them on the shapes of the
-    /// others, into this folder; empty if all have.
-    pub(super) fn closing(&self, open: &[&Section]) -> String {
-        if open.is_empty() {
-            return String::new();
-        }
-        let titles: Vec<String> = open.iter().map(|section| escape(section.short())).collect();
-        let names: Vec<&str> = open.iter().map(|section| section.name).collect();
-        let command =
-            format!("cargo run --release -p experiments -- run {}{}", names.join(" "), self.arguments);
-        format!(
-            "<footer><p class=\"pale\">Not run: {}. To run them: <code>{}</code></p></footer>\n",
-            titles.join(", "),
-            escape(&command)
-        )
-    }
-}
-
-/// A section.
-#[derive(Debug, Default)]
-pub struct SectionContent {
-    pub(super) html: String,
-    pub(super) expectations: Vec<Expectation>,
-}
-
-/// All figures of an experiment as charts; nothing if it has not run.
-///
-/// # Errors
-/// Those of [`write_report`](super::write_report).
-pub fn charts<T: Results>(
-    folder: &ResultsFolder<'_>,
-    name: &str,
-) -> Result<Option<SectionContent>, ReportError> {
-    content(folder, name, |_: &Record<T>, figures| {
-        figures.iter().map(|figure| chart(folder.path, name, figure)).collect()
-    })
-}
-
-/// [`charts`] of Figure 1, and its shapes in 3D.
-///
-/// # Errors
-/// Those of [`write_report`](super::write_report).
-pub fn gallery(folder: &ResultsFolder<'_>, name: &str) -> Result<Option<SectionContent>, ReportError> {
-    content(folder, name, |record: &Record<Figure1Results>, figures| {
-        let charts = figures.iter().map(|figure| chart(folder.path, name, figure));
-        Ok(charts.collect::<Result<String, _>>()?
-            + &explorer::gallery(&record.results, folder.shapes.as_ref()))
-    })
-}
-
-/// Figure 4 for exploration, with its static figures in place of charts.
-///
-/// # Errors
-/// Those of [`write_report`](super::write_report).
-pub fn explorer(folder: &ResultsFolder<'_>, name: &str) -> Result<Option<SectionContent>, ReportError> {
-    content(folder, name, |record: &Record<Figure4Results>, figures| {
-        let still = figures.iter().map(|figure| picture(folder.path, name, figure));
-        explorer::explorer(record, folder.shapes.as_ref(), &still.collect::<Result<String, _>>()?)
-    })
-}
-
-/// What `body` makes of the record and its figures, between the analysis and the numbers.
-fn content<T: Results>(
-    folder: &ResultsFolder<'_>,
-    name: &str,
-    body: impl FnOnce(&Record<T>, &[Figure]) -> Result<String, ReportError>,
-) -> Result<Option<SectionContent>, ReportError> {
-    let path = folder.path.join(format!("{name}.json"));
-    if !path.exists() {
-        return Ok(None);
-    }
-    let record: Record<T> = read(path)?;
-    record.results.validate()?;
+/// The section of an experiment: analysis, figures, expectations, tables, and how it was made.
+pub(super) fn section(name: &str, record: &Record) -> Result<String, ReportError> {
+    let figures: String =
+        record.figures.iter().map(|figure| drawn(name, figure)).collect::<Result<_, _>>()?;
+    let medians = record.figures.iter().filter_map(Figure::medians);
+    let tables: String = record.tables.iter().cloned().chain(medians).map(|one| table(&one)).collect();
     let html = [
         paragraphs(&record.analysis),
-        body(&record, &record.results.figures())?,
+        figures,
         expectations(name, &record.expectations),
-        "<h3>Numbers</h3>\n".to_owned(),
-        record.results.tables().iter().map(table).collect(),
+        if tables.is_empty() { String::new() } else { format!("<h3>Numbers</h3>\n{tables}") },
         provenance(&record.provenance),
     ];
-    Ok(Some(SectionContent { html: html.concat(), expectations: record.expectations }))
+    Ok(html.concat())
+}
+
+/// A figure with links to its files; surfaces can also be turned where scripts run.
+fn drawn(name: &str, figure: &Figure) -> Result<String, ReportError> {
+    let caption = escape(&figure.caption);
+    let svg = figure.svg()?.replacen("<svg ", &format!("<svg role=\"img\" aria-label=\"{caption}\" "), 1);
+    let link = |kind: &str| {
+        let file = format!("{name}-{}.{}", figure.part, kind.to_lowercase());
+        format!("<a href=\"{file}\" download>{kind}</a>")
+    };
+    let links = ["PNG", "SVG"].map(link).join(" ");
+    let mut html = format!(
+        "<figure>\n<div class=\"drawing\">{svg}</div>\n\
+         <figcaption>{caption} <span class=\"files\">{links}</span></figcaption>\n</figure>\n"
+    );
+    if let FigurePanels::Tiles(tiles) = &figure.panels {
+        let id = format!("{name}-{}", figure.part);
+        let groups = json!(groups(tiles)).to_string();
+        // Escaped as JSON does, so that no text can end the element.
+        let groups = groups.replace('&', "\\u0026").replace('<', "\\u003c").replace('>', "\\u003e");
+        let _ = write!(
+            html,
+            "<div class=\"gallery\" id=\"{id}\" data-source=\"{id}-data\" hidden>\n\
+             <form class=\"controls\" autocomplete=\"off\"><label>Shape <select class=\"shape\"></select></label>\n\
+             <label>Colors <select class=\"color\"><option value=\"class\">class</option>\
+             <option value=\"distance\">geodesic distance from a sample</option></select></label></form>\n\
+             <div class=\"views\"></div>\n<p class=\"pale\">Drag to rotate all views together.</p>\n</div>\n\
+             <script type=\"application/json\" id=\"{id}-data\">{groups}</script>\n"
+        );
+    }
+    Ok(html)
+}
+
+/// The surfaces that are shown together: every shape with its form, or every row.
+fn groups(tiles: &Tiles) -> Vec<Value> {
+    let mut groups = Vec::new();
+    for (class, row) in tiles.rows.iter().enumerate() {
+        let size = if tiles.is_paired { 2 } else { row.tiles.len().max(1) };
+        for group in row.tiles.chunks(size) {
+            let view = |(tile, head): (&Tile, &String)| {
+                let caption = tile.captions.first().map_or("", String::as_str);
+                json!({"title": format!("{head}: {caption}"), "surface": tile.surface})
+            };
+            let caption = group.first().and_then(|tile| tile.captions.first());
+            let name = if tiles.is_paired { caption.unwrap_or(&row.name) } else { &row.name };
+            let views: Vec<Value> = group.iter().zip(&tiles.heads).map(view).collect();
+            groups.push(json!({"name": name, "color": hex(class_clay(class)), "views": views}));
+        }
+    }
+    groups
 }
 
 /// The anchor of the expectations of an experiment.
@@ -150,27 +86,26 @@ fn expectations(name: &str, list: &[Expectation]) -> String {
         return String::new();
     }
     let row = |e: &Expectation| {
-        vec![
-            Cell::Verdict(e.outcome()),
-            Cell::text(&e.what),
-            Cell::text(&e.expected),
-            Cell::text(&e.measured),
-        ]
+        let (class, text) = outcome(e);
+        let cells = [&e.what, &e.expected, &e.measured].map(|text| format!("<td>{}</td>", escape(text)));
+        format!("<tr><td class=\"{class}\">{text}</td>{}</tr>\n", cells.concat())
     };
-    let headings = ["outcome", "quantity", "expected", "measured"];
-    let rows = list.iter().map(row).collect();
     let goals = if list.iter().any(|e| e.goal) {
         " A goal is not expected to be reached yet; to miss it is no failure."
     } else {
         ""
     };
-    let caption = format!("What was expected of this run, and what was measured.{goals}");
-    let expected = Table::new(caption, headings, rows);
-    format!("<h3 id=\"{}\">Expectations</h3>\n{}", anchor(name), table(&expected))
+    let headings = ["outcome", "quantity", "expected", "measured"];
+    let head = headings.map(|heading| format!("<th scope=\"col\">{heading}</th>")).concat();
+    format!(
+        "<h3 id=\"{}\">Expectations</h3>\n\
+         <p class=\"pale\">What was expected of this run, and what was measured.{goals}</p>\n{}",
+        anchor(name),
+        wide(&format!("<tr>{head}</tr>"), &list.iter().map(row).collect::<String>())
+    )
 }
 
 fn provenance(p: &RunProvenance) -> String {
-    let seconds: Vec<String> = p.seconds.iter().map(|(stage, s)| format!("{stage} {s:.2} s")).collect();
     let commit = if p.commit.is_empty() { String::new() } else { format!(", commit {}", p.commit) };
     let facts = [
         ("program", format!("{} {}{commit}", p.program, p.version)),
@@ -179,41 +114,12 @@ fn provenance(p: &RunProvenance) -> String {
         ("dataset", p.dataset.clone()),
         ("classes", p.classes.join(", ")),
         ("seed", p.seed.to_string()),
-        ("time", seconds.join(", ")),
+        ("time", format!("{:.2} s", p.seconds)),
     ];
     let facts = facts.iter().filter(|(_, fact)| !fact.trim().is_empty());
     let facts: String =
         facts.map(|(term, fact)| format!("<dt>{term}</dt><dd>{}</dd>\n", escape(fact))).collect();
     let code = |text: &str| format!("<pre><code>{}</code></pre>\n", escape(text));
-    let made = code(&p.command) + &format!("<dl>\n{facts}</dl>\n") + &code(&as_toml(&p.options));
-    folded("How it was made", &made)
-}
-
-/// Options as TOML; options that have no value are left out.
-fn as_toml(options: &Value) -> String {
-    fn known(value: &Value) -> Value {
-        match value {
-            Value::Object(fields) => {
-                let fields = fields.iter().filter(|(_, value)| !value.is_null());
-                Value::Object(fields.map(|(name, value)| (name.clone(), known(value))).collect())
-            }
-            Value::Array(items) => {
-                Value::Array(items.iter().filter(|value| !value.is_null()).map(known).collect())
-            }
-            value => value.clone(),
-        }
-    }
-    toml::to_string(&known(options)).unwrap_or_else(|_| format!("{options:#}"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn options_are_written_as_toml() {
-        let options =
-            serde_json::json!({"rank": 5, "none": null, "embedding": {"samples": 10, "kinds": ["a", null]}});
-        assert_eq!(as_toml(&options), "rank = 5\n\n[embedding]\nkinds = [\"a\"]\nsamples = 10\n");
-    }
+    let options = serde_json::to_string_pretty(&p.options).unwrap_or_default();
+    folded("How it was made", &(code(&p.command) + &format!("<dl>\n{facts}</dl>\n") + &code(&options)))
 }

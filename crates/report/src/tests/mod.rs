@@ -1,76 +1,72 @@
-//! What the tests share, and laws of all figures.
+//! What the tests share: small invented figures and meshes.
 
-pub(crate) mod fixtures;
 pub(crate) mod meshes;
 
-use std::path::Path;
+use crate::record::{Axis, Figure, FigurePanels, Mark, Plot, PlotPoint, Series, SeriesKind, Tile};
+use crate::viewer::Geometry;
 
-use fixtures::{assert_balanced, curves_record, figure4_record, figure9_record, retrieval_record};
-
-use crate::record::{Results, save};
-use crate::results::Record;
-
-/// Saves a record twice, and compares: the SVG texts of its figures.
-fn drawn(record: &Record<impl Results>, folder: &Path) -> Vec<String> {
-    let read = |name: &str, part: &str, end: &str| {
-        std::fs::read(folder.join(format!("{name}{part}.{end}"))).unwrap()
-    };
-    save(record, folder, "a").unwrap();
-    save(record, folder, "b").unwrap();
-    let parts = record.results.figures().into_iter().map(|figure| figure.part);
-    parts
-        .map(|part| {
-            for end in ["png", "svg", "pdf"] {
-                assert!(read("a", part, end) == read("b", part, end), "{part}.{end} is the same every time");
-            }
-            let svg = String::from_utf8(read("a", part, "svg")).unwrap();
-            assert_balanced(&svg);
-            svg
-        })
-        .collect()
+pub(crate) fn figure(panels: FigurePanels) -> Figure {
+    Figure { part: "part".to_owned(), caption: "What it shows & <why>.".to_owned(), panels }
 }
 
-#[test]
-fn files_of_figures_are_well_formed_deterministic_and_labelled() {
-    let folder = tempfile::tempdir().unwrap();
-    let classes = figure4_record(&[("cat", 4), ("a & <b>", 5), ("david", 7)]);
-    let figures: [(Vec<String>, &[&[&str]]); 4] = [
-        (
-            drawn(&curves_record(), folder.path()),
-            &[&["NMDS", "a &amp; b", "samples n", "error (m⁴)", "recommended", "david0", "cat0", "100"]],
-        ),
-        (
-            drawn(&retrieval_record(), folder.path()),
-            &[
-                &["precision", "recall", "wave-kernel", "size ignored", "size counts"],
-                &["cat", "a &amp; b", "unknown", "true class"],
-            ],
-        ),
-        (
-            drawn(&classes, folder.path()),
-            &[
-                &[
-                    "MDS axis 1 (form units)",
-                    "MDS axis 2 (form units)",
-                    "0.910",
-                    "0.875",
-                    "2D silhouette",
-                    "0.052",
-                ],
-                &["a &amp; &lt;b&gt;", "david", "distance (form units)", "data:image/png;base64,"],
-                &["NMDS", "KPCA-Nyström", "form size = 1", "cat"],
-                &["NMDS", "KPCA-Nyström", "form size = 1", "cat"],
-            ],
-        ),
-        (
-            drawn(&figure9_record(), folder.path()),
-            &[&["NMDS, paper", "time (seconds)", "david0, 3400 vertices"]],
-        ),
-    ];
-    for (svgs, expected) in figures {
-        assert_eq!(svgs.len(), expected.len());
-        for (svg, labels) in svgs.iter().zip(expected) {
-            assert!(labels.iter().all(|label| svg.contains(label)), "{labels:?}");
+/// Two curves over a logarithmic vertical axis.
+pub(crate) fn plot(title: &str) -> Plot {
+    let series = |name: &str, factor: f64| {
+        let points = [10.0, 50.0, 100.0].map(|x| {
+            let y = factor * 1e5 / x;
+            PlotPoint { x, y, low: 0.7 * y, high: 1.5 * y, note: "5 runs".to_owned() }
+        });
+        Series { name: name.to_owned(), kind: SeriesKind::Curve, points: points.to_vec() }
+    };
+    Plot {
+        title: title.to_owned(),
+        x: Axis::linear("samples n"),
+        y: Axis::log("error", "m⁴"),
+        series: vec![series("NMDS", 1.0), series("a & b", 30.0)],
+        marks: vec![Mark { x: 70.0, name: "recommended".to_owned() }],
+    }
+}
+
+pub(crate) fn tile(caption: &str, is_form: bool) -> Tile {
+    let surface = Geometry::new(&mesh::shapes::icosphere(1));
+    Tile { captions: vec![caption.to_owned()], is_form, surface }
+}
+
+/// Panics unless a text holds all parts.
+pub(crate) fn assert_holds(text: &str, parts: &[&str]) {
+    for part in parts {
+        assert!(text.contains(part), "{part} in {text}");
+    }
+}
+
+/// A page without the contents of its scripts and islands of data.
+pub(crate) fn without_scripts(html: &str) -> String {
+    let mut parts = html.split("<script");
+    let mut kept = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (_, rest) = part.split_once("</script>").expect("a script ends");
+        kept.push_str(rest);
+    }
+    kept
+}
+
+/// Panics unless all elements of an XML or HTML text are closed in order.
+pub(crate) fn assert_balanced(markup: &str) {
+    let mut open: Vec<&str> = Vec::new();
+    let plain = without_scripts(markup);
+    let mut rest = plain.as_str();
+    while let Some(start) = rest.find('<') {
+        let end = start + rest[start..].find('>').expect("a tag ends");
+        let tag = &rest[start + 1..end];
+        rest = &rest[end + 1..];
+        let name = tag.trim_start_matches('/').split([' ', '\n']).next().unwrap_or_default();
+        let void = tag.ends_with('/') || tag.starts_with(['!', '?']) || ["meta", "img"].contains(&name);
+        if tag.starts_with('/') {
+            assert_eq!(open.pop(), Some(name), "closed out of order");
+        } else if !void {
+            assert_eq!(tag.matches('"').count() % 2, 0, "quotes in <{tag}>");
+            open.push(name);
         }
     }
+    assert!(open.is_empty(), "left open: {open:?}");
 }

@@ -3,8 +3,9 @@
 use mesh::TriMesh;
 use nalgebra::{Point3, Vector3};
 use serde::{Deserialize, Serialize};
+use surface::VertexId;
 
-use super::base64::{optional_list, triples};
+use super::words;
 
 /// A surface in single precision. In JSON, arrays are base64 of their little-endian bytes.
 ///
@@ -13,13 +14,13 @@ use super::base64::{optional_list, triples};
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Geometry {
     /// Vertex positions, in mesh units.
-    #[serde(with = "triples")]
+    #[serde(with = "words")]
     pub positions: Vec<[f32; 3]>,
     /// The vertices of every face.
-    #[serde(with = "triples")]
+    #[serde(with = "words")]
     pub faces: Vec<[u32; 3]>,
     /// A number per vertex, for its colour; NaN if the vertex has none.
-    #[serde(with = "optional_list", default, skip_serializing_if = "Option::is_none")]
+    #[serde(with = "words", default, skip_serializing_if = "Option::is_none")]
     pub values: Option<Vec<f32>>,
     /// The name and unit of the values, for the colour bar.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -52,6 +53,15 @@ impl Geometry {
         let faces =
             mesh.faces.iter().map(|face| face.map(|v| v.0)).filter(|f| f.iter().all(usable)).collect();
         Self { positions, faces, ..Self::default() }
+    }
+
+    /// The surface as a mesh.
+    #[must_use]
+    pub fn mesh(&self) -> TriMesh {
+        TriMesh {
+            positions: self.positions.iter().map(|p| Point3::from(p.map(f64::from))).collect(),
+            faces: self.faces.iter().map(|face| face.map(VertexId)).collect(),
+        }
     }
 
     /// The surface with a number per vertex. Missing numbers are NaN, excess ones are dropped.
@@ -89,7 +99,6 @@ fn grain(numbers: &[f32]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use surface::VertexId;
 
     fn triangle() -> TriMesh {
         let positions = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 6.0, 4.0]].map(Point3::from).to_vec();
@@ -119,6 +128,7 @@ mod tests {
             [[-1.0, -3.0, -2.0], [1.0, -3.0, -2.0], [-1.0, 3.0, 2.0]]
         );
         assert_eq!(Geometry::in_place(&triangle()).positions[2], [0.0, 6.0, 4.0]);
+        assert_eq!(Geometry::in_place(&triangle()).mesh(), triangle());
         assert_eq!(Geometry::new(&TriMesh::default()), Geometry::default());
     }
 
@@ -160,7 +170,7 @@ mod tests {
             serde_json::from_value::<Geometry>(json).map_err(|fault| fault.to_string())
         };
         assert!(parse("AAAAAAEAAAACAAAA").is_ok());
-        assert!(parse("AAAA").unwrap_err().contains("3 bytes are not a whole number of groups of 3"));
+        assert!(parse("AAAA").unwrap_err().contains("3 bytes are not a whole number of groups"));
         assert!(parse("?").unwrap_err().contains("not base64"));
     }
 }

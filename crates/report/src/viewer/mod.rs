@@ -6,9 +6,9 @@
 //! `script-src` for their own text, `style-src 'unsafe-inline'` for the rules that plotly inserts, and
 //! `img-src data: blob:` for the images that plotly offers as downloads.
 
-pub mod base64;
 mod geometry;
 mod scene;
+mod words;
 
 use std::io::Read;
 use std::sync::LazyLock;

@@ -3,14 +3,14 @@
 use std::io::Write;
 use std::sync::LazyLock;
 
-use ::base64::Engine;
-use ::base64::engine::general_purpose::STANDARD;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use sha2::{Digest, Sha256};
 
 use super::{BUNDLE, Geometry, PRELUDE, plotly_js, viewer_js};
-use crate::page::escape;
+use crate::markup::escape;
 
 /// A page of HTML that shows a surface to turn and zoom: 0.7 MB of scripts, packed, and the surface.
 ///

@@ -1,0 +1,181 @@
+//! Figure 9: time and memory from a surface to its canonical form, distances included.
+//!
+//! Measures ratios of times at the smaller number of vertices, `full MDS over NMDS`, `MDS over NMDS` (with the faster
+//! decomposition) and `SMDS over NMDS`; at the larger one, `large SMDS over NMDS` and `algebra share`, the share of linear
+//! algebra in the time of NMDS; `small|large METHOD seconds|bytes`, the time and memory of each method; and `growth`, the exponent of the time of NMDS in the number of vertices.
+
+use std::collections::BTreeMap;
+
+use anyhow::{Context as _, Result};
+use base::terminal::with_peak_bytes;
+use canonform::Surface;
+use canonform::embed::{EmbedMethod, FormOptions, embed};
+use datasets::{ArticulatedOptions, Family, articulated_shape};
+use mesh::RepairOptions;
+use nmds::classical_full;
+use report::numbers::{bytes, seconds};
+use report::record::{Axis, AxisScale, Figure, FigurePanels, Mark, Plot, PlotPoint, Series, SeriesKind};
+use report::{Cell, Record, Table};
+use surface::VertexId;
+
+use crate::collection::LabeledSurface;
+use crate::context::Context;
+use crate::specimen::{DIM, Distances, low_rank};
+use crate::sweep::{note, numbers, plot, timed};
+
+/// The ratio of the numbers of vertices of both shapes: 28,000 and 3,400 in the paper.
+const LARGER: f64 = 28_000.0 / 3_400.0;
+
+/// The number of sources from which the time of all pairs is extrapolated.
+const TIMED_SOURCES: usize = 64;
+
+/// Time and memory of one method.
+#[derive(Debug, Clone, Copy)]
+struct Spent {
+    /// Wall-clock seconds for distances, and for linear algebra.
+    seconds: [f64; 2],
+    /// Peak memory, in addition to that in use before.
+    peak_bytes: usize,
+}
+
+impl Spent {
+    fn total(&self) -> f64 {
+        self.seconds.iter().sum()
+    }
+}
+
+pub(crate) fn figure9(context: &Context<'_>) -> Result<Record> {
+    let small = context.specimens.first().context("there is no shape to measure")?.shape;
+    let p = small.surface.mesh().n_vertices();
+    let n_vertices = (p as f64 * LARGER / 1000.0).round() as usize * 1000;
+    let made = articulated_shape(Family::David, 0, &ArticulatedOptions { seed: context.seed, n_vertices })?;
+    let large = LabeledSurface {
+        name: format!("built-in {}", made.name),
+        label: made.label,
+        surface: Surface::new(&made.mesh, &RepairOptions::default(), &())?,
+    };
+    context.observer.begin("figure 9", 7);
+    let mut spent = BTreeMap::new();
+    let (mut rows, mut marks, mut series) = (Vec::new(), Vec::new(), Vec::<Series>::new());
+    for (place, (shape, size, printed)) in
+        [(small, "small", "3400"), (&large, "large", "28000")].into_iter().enumerate()
+    {
+        let n = shape.surface.mesh().n_vertices();
+        marks.push(Mark { x: place as f64, name: format!("{}, {n} vertices", shape.name) });
+        let mut add = |method: &'static str, measured: Result<Spent, String>| {
+            context.observer.step();
+            let name = method.split(',').next().unwrap_or(method);
+            let paper = context.printed(&context.options.printed, printed, name);
+            let found = measured.as_ref().ok();
+            let [geodesics, algebra] = found.map_or([f64::NAN; 2], |found| found.seconds);
+            let total = geodesics + algebra;
+            let mut row: Vec<Cell> = vec![shape.name.as_str().into(), n.into(), method.into()];
+            row.extend([geodesics, algebra, total].map(Cell::from));
+            row.extend([found.map(|found| bytes(found.peak_bytes)).into(), paper.into()]);
+            if let Some(found) = found {
+                let [geodesics, algebra] = found.seconds.map(seconds);
+                let said =
+                    format!("{geodesics} s distances, {algebra} s algebra, {}", bytes(found.peak_bytes));
+                add_point(&mut series, method, SeriesKind::Filled, PlotPoint::new(place as f64, total, said));
+                spent.insert((size, method), *found);
+            }
+            row.push(measured.err().into());
+            if let Some(paper) = paper {
+                add_point(&mut series, method, SeriesKind::Hollow, PlotPoint::new(place as f64, paper, ""));
+            }
+            rows.push(row);
+        };
+        let fastest = |method| fastest(context, shape, method);
+        add("NMDS", Ok(fastest(EmbedMethod::low_rank(context.options.rank))?));
+        add("SMDS", Ok(fastest(EmbedMethod::spectral())?));
+        let (needed, limit) = (n.pow(2) * size_of::<f64>(), canonform::embed::DISTANCES_LIMIT);
+        if needed > limit {
+            let [needed, limit] = [needed, limit].map(|bytes| bytes as f64 / f64::from(1 << 30));
+            let seconds = all_pairs_seconds(shape)?;
+            add(
+                "MDS",
+                Err(format!(
+                    "all pairs need {needed:.1} GiB, above the limit of {limit:.0}; measuring them would take {seconds:.0} s"
+                )),
+            );
+        } else {
+            add("MDS, three eigenpairs", Ok(fastest(EmbedMethod::Classical)?));
+            add("MDS, all eigenpairs", Ok(full(shape)?));
+        }
+    }
+    let x = Axis { scale: AxisScale::Category, ..Axis::linear("") };
+    let times = plot("From the repaired mesh to coordinates", x, Axis::log("time", "seconds"), series);
+    let figure = Figure {
+        part: "times".to_owned(),
+        caption: "Filled: this program. Hollow: the paper, on a laptop of 2015.".to_owned(),
+        panels: FigurePanels::Plots(vec![Plot { marks, ..times }]),
+    };
+    let caption = format!(
+        "Wall-clock seconds of the fastest run on {} worker threads, and peak memory in addition to the surface. The times \
+         of the paper are those of a laptop of 2015.",
+        rayon::current_num_threads()
+    );
+    let headings = "shape vertices method distances algebra total memory paper remark".split(' ');
+    let total = |size, method| spent.get(&(size, method)).map_or(f64::NAN, Spent::total);
+    let ratio = |size, method| total(size, method) / total(size, "NMDS");
+    let factor = large.surface.mesh().n_vertices() as f64 / p as f64;
+    let algebra = spent.get(&("large", "NMDS")).map_or(f64::NAN, |found| found.seconds[1]);
+    let mut measured = numbers([
+        ("full MDS over NMDS", ratio("small", "MDS, all eigenpairs")),
+        ("MDS over NMDS", ratio("small", "MDS, three eigenpairs")),
+        ("SMDS over NMDS", ratio("small", "SMDS")),
+        ("large SMDS over NMDS", ratio("large", "SMDS")),
+        ("algebra share", algebra / total("large", "NMDS")),
+        ("growth", (total("large", "NMDS") / total("small", "NMDS")).ln() / factor.ln()),
+    ]);
+    for ((size, method), found) in &spent {
+        let numbers = [("seconds", found.total()), ("bytes", found.peak_bytes as f64)];
+        note(&mut measured, &format!("{size} {method}"), numbers);
+    }
+    let tables = vec![Table::new(caption, headings, rows)];
+    Ok(Record { figures: vec![figure], tables, ..context.record(&[], measured) })
+}
+
+fn add_point(all: &mut Vec<Series>, name: &str, kind: SeriesKind, point: PlotPoint) {
+    match all.iter_mut().find(|series| series.name == name && series.kind == kind) {
+        Some(series) => series.points.push(point),
+        None => all.push(Series { name: name.to_owned(), kind, points: vec![point] }),
+    }
+}
+
+/// The fastest of several runs.
+fn fastest(context: &Context<'_>, shape: &LabeledSurface, method: EmbedMethod) -> Result<Spent> {
+    // Long runs are hardly disturbed by others.
+    let runs = if matches!(method, EmbedMethod::Nystrom { .. }) { context.options.runs } else { 2 };
+    let options = FormOptions { method, ..low_rank(context.options.samples, context.options.rank, 0) };
+    let mut best: Option<Spent> = None;
+    for _ in 0..runs {
+        let (embedded, peak_bytes) = with_peak_bytes(|| embed(&shape.surface, &options, &()));
+        let seconds = embedded?.report.seconds;
+        let run = Spent { seconds: [seconds.geodesics, seconds.embedding], peak_bytes };
+        best = Some(best.filter(|best| best.total() <= run.total()).unwrap_or(run));
+    }
+    best.context("figure 9 needs at least one run")
+}
+
+/// Classical scaling with all eigenpairs.
+fn full(shape: &LabeledSurface) -> Result<Spent> {
+    let method = Distances::default().method;
+    let run = || -> Result<[f64; 2]> {
+        let (all, geodesics) = timed(|| method.prepare(shape.surface.intrinsic(), &())?.distance_matrix())?;
+        let (_, embedding) = timed(|| classical_full(&all, DIM))?;
+        Ok([geodesics, embedding])
+    };
+    let (seconds, peak_bytes) = with_peak_bytes(run);
+    Ok(Spent { seconds: seconds?, peak_bytes })
+}
+
+/// The seconds that all pairs would take, extrapolated from some of the sources.
+fn all_pairs_seconds(shape: &LabeledSurface) -> Result<f64> {
+    let p = shape.surface.mesh().n_vertices();
+    let solver = Distances::default().method.prepare(shape.surface.intrinsic(), &())?;
+    let sources: Vec<VertexId> =
+        (0..TIMED_SOURCES).map(|i| VertexId::from(i * (p / TIMED_SOURCES).max(1) % p)).collect();
+    let (_, seconds) = timed(|| solver.distance_columns(&sources))?;
+    Ok(seconds * p as f64 / TIMED_SOURCES as f64)
+}

@@ -1,0 +1,196 @@
+//! Invariance: some shapes of every class are damaged in several ways, and searched for in the undamaged collection.
+//!
+//! Measures `least top1`, the lowest share over all damages of shapes whose nearest has their class, and `unknown`, the
+//! largest share of unknown shapes over the damages that keep the surface; and `least told`, the lowest share of shapes whose
+//! relation to the undamaged shape is right.
+
+use anyhow::{Context as _, Result};
+use canonform::describe;
+use canonform::embed::signature;
+use canonform::index::{Shape, VectorTable};
+use canonform::relations::{MeshGeometry, Relation, RelationKind};
+use canonform::rigid::Handedness;
+use canonform::search::{bounds, rerank};
+use datasets::Damage;
+use descriptors::{ShapeMetric, ShapePair, SignatureKind};
+use mesh::{SmoothRegions, TriMesh};
+use report::{Cell, Record, Table};
+
+use crate::context::Context;
+use crate::gallery::Gallery;
+use crate::sweep::{numbers, share};
+
+const DAMAGES: [Damage; 13] = [
+    Damage::Subdivide(1),
+    Damage::Subdivide(2),
+    Damage::Decimate(0.5),
+    Damage::Decimate(0.2),
+    Damage::Remesh,
+    Damage::Noise(0.001),
+    Damage::Noise(0.002),
+    Damage::Noise(0.005),
+    Damage::Holes(0.01),
+    Damage::Holes(0.03),
+    Damage::Move,
+    Damage::Scale,
+    Damage::Mirror,
+];
+
+/// A damaged shape beside the undamaged collection.
+struct DamagedShape {
+    name: String,
+    /// Of every signature, relative to its length and in its unit.
+    changes: Vec<[f64; 2]>,
+    form: f64,
+    combined: f64,
+    is_top1: bool,
+    is_top1_of_others: bool,
+    is_unknown: bool,
+    /// Whether the relation to the undamaged shape is right; none if the damage has no kind of its own.
+    is_told: Option<bool>,
+}
+
+/// What a damaged shape may be said to be beside the undamaged one. The mirror image of a symmetric surface is the surface, with
+/// other triangles. Noise and new triangles cut the edges of mechanical parts off, so that the surface is another one.
+fn kinds_of(damage: Damage, mesh: &TriMesh) -> &'static [RelationKind] {
+    match damage {
+        Damage::Move => &[RelationKind::IdenticalGeometry],
+        Damage::Scale => &[RelationKind::Scaled],
+        Damage::Mirror if is_mechanical(mesh) => {
+            &[RelationKind::IdenticalGeometry, RelationKind::Mirrored, RelationKind::Remeshed]
+        }
+        Damage::Mirror => &[RelationKind::Mirrored],
+        Damage::Subdivide(_) => &[RelationKind::Remeshed],
+        Damage::Noise(_) if !is_mechanical(mesh) => &[RelationKind::Noisy],
+        Damage::Decimate(_) | Damage::Remesh if !is_mechanical(mesh) => &[RelationKind::Remeshed],
+        _ => &[],
+    }
+}
+
+fn is_mechanical(mesh: &TriMesh) -> bool {
+    SmoothRegions::of(mesh).is_mechanical
+}
+
+const HEADINGS: [&str; 9] = [
+    "damage",
+    "distance, median",
+    "largest",
+    "farthest shape",
+    "top 1",
+    "others",
+    "unknown",
+    "told",
+    "aligned forms",
+];
+const RELATIVE: &str = "Median distance between the signatures of the damaged and the undamaged shape, over the length of the latter.";
+const UNITS: &str = "The same changes in units of the distance between two poses of one body.";
+
+pub(crate) fn invariance(context: &Context<'_>) -> Result<Record> {
+    let gallery = Gallery::new(context)?;
+    let (all, queries) = (&context.collection.shapes, context.options.queries);
+    let prepared = gallery.prepared()?;
+    let mut vectors = VectorTable::default();
+    prepared.iter().for_each(|shape| vectors.push("", shape.fused()));
+    let [mut found_again, mut relative, mut units]: [Vec<Vec<Cell>>; 3] = Default::default();
+    let (mut least_top1, mut most_unknown, mut least_told) = (1.0_f64, 0.0_f64, 1.0_f64);
+    for damage in DAMAGES {
+        let found = gallery.map(queries, &damage.to_string(), |query| {
+            let surface = query.damaged(damage)?;
+            let damaged = describe(&surface, &gallery.options, &())?;
+            let shape = gallery.options.prepare(&damaged)?;
+            // As a search in an index does.
+            let candidates = bounds(shape.fused(), &vectors);
+            let nearest = rerank(&shape, candidates, 2, |i| Ok(&prepared[i]))?.nearest;
+            let (first, _) = nearest.first().context("the collection has shapes")?;
+            let mut others = nearest.iter().filter(|(near, _)| near.index != query.own);
+            let pair = ShapePair::new([&shape, &prepared[query.own]]);
+            let whole = query.shape.surface.mesh();
+            let mesh = damage.apply(whole, query.seed);
+            let geometries = [whole, &mesh].map(|mesh| MeshGeometry::new(mesh, None));
+            let is_told = match (kinds_of(damage, whole), &geometries) {
+                (kinds @ [_, ..], [Some(a), Some(b)]) => {
+                    let by_distance =
+                        Relation::by_distance(pair.distance(), pair.scale(), Handedness::Unknown);
+                    Some(kinds.contains(&by_distance.by_meshes([a, b]).kind))
+                }
+                _ => None,
+            };
+            Ok(DamagedShape {
+                is_told,
+                name: query.shape.name.clone(),
+                changes: changes(&gallery.described[query.own], &damaged),
+                form: pair.best().gap.rms / ShapeMetric::FORM_UNIT,
+                combined: pair.distance().combined,
+                is_top1: gallery.is_right(query, first.index),
+                is_top1_of_others: others.next().is_some_and(|(near, _)| gallery.is_right(query, near.index)),
+                is_unknown: first.distance >= ShapeMetric::SAME_CLASS.at,
+            })
+        })?;
+        let median_of = |value: &dyn Fn(&DamagedShape) -> f64| upper_median(found.iter().map(value));
+        let farthest = found.iter().max_by(|a, b| a.combined.total_cmp(&b.combined)).context("a query")?;
+        let told: Vec<bool> = found.iter().filter_map(|f| f.is_told).collect();
+        let told = (!told.is_empty()).then(|| share(&told, |is_told| *is_told));
+        let top1 = share(&found, |f| f.is_top1);
+        let unknown = share(&found, |f| f.is_unknown);
+        least_top1 = least_top1.min(top1);
+        least_told = least_told.min(told.unwrap_or(1.0));
+        most_unknown = most_unknown.max(if damage.keeps_surface() { unknown } else { 0.0 });
+        let name = || Cell::from(damage.to_string());
+        found_again.push(vec![
+            name(),
+            median_of(&|f| f.combined).into(),
+            farthest.combined.into(),
+            farthest.name.as_str().into(),
+            top1.into(),
+            share(&found, |f| f.is_top1_of_others).into(),
+            unknown.into(),
+            told.into(),
+            median_of(&|f| f.form).into(),
+        ]);
+        for (table, which) in [(&mut relative, 0), (&mut units, 1)] {
+            let change = |i: usize| Cell::from(median_of(&|f| f.changes[i][which]));
+            table.push([name()].into_iter().chain((0..SignatureKind::INTRINSIC.len()).map(change)).collect());
+        }
+    }
+    let vertices = all.iter().map(|shape| shape.surface.mesh().n_vertices() as f64);
+    let caption = format!(
+        "{} of {} shapes of about {} vertices, damaged and searched for in the undamaged collection. Distance: combined \
+         distance from the undamaged shape; at {:.2}, one shape and two are equally likely. Top 1: share of shapes whose \
+         nearest has their class; others: the same without the undamaged shape itself. Unknown: share of shapes whose nearest \
+         is {:.2} or farther. Told: share of shapes whose relation to the undamaged shape is right. Aligned forms: their \
+         median distance, in units of that between two poses of one body.",
+        context.collection.first_of_each_class(queries).len(),
+        all.len(),
+        upper_median(vertices),
+        ShapeMetric::SAME_SHAPE.at,
+        ShapeMetric::SAME_CLASS.at
+    );
+    let headings = || ["damage"].into_iter().chain(SignatureKind::INTRINSIC.map(SignatureKind::name));
+    let tables = vec![
+        Table::new(caption, HEADINGS, found_again),
+        Table::new(RELATIVE, headings(), relative),
+        Table::new(UNITS, headings(), units),
+    ];
+    let measured =
+        numbers([("least top1", least_top1), ("unknown", most_unknown), ("least told", least_told)]);
+    Ok(Record { tables, ..context.record(&[("description", &gallery.options)], measured) })
+}
+
+/// The change of every signature, relative to its length and in its unit.
+fn changes(before: &Shape, after: &Shape) -> Vec<[f64; 2]> {
+    let pair = |kind| signature(before, kind).zip(signature(after, kind));
+    let pairs = SignatureKind::INTRINSIC.into_iter().filter_map(pair);
+    let change = pairs.map(|(before, after)| {
+        let distance = before.distance(&after);
+        let length = before.values.iter().map(|x| x * x).sum::<f64>().sqrt();
+        [distance / length.max(f64::MIN_POSITIVE), distance / ShapeMetric::unit(before.kind)]
+    });
+    change.collect()
+}
+
+/// The upper median; 0 of nothing.
+fn upper_median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
+}

@@ -1,0 +1,327 @@
+//! Retrieval and classification by signatures and canonical forms.
+//!
+//! Measures `METHOD SCALE nn|ft|st|e|dcg|mAP|macro nn|macro mAP|knn|least mAP` for `METHOD` a signature, `aligned forms`,
+//! `fused`, `fused and forms`, with `SCALE` either `raw` (size counts) or `normalized`; at scale `raw` also for `forms in
+//! mesh units`; and `missed`, `mistaken`. Each score but the last is also measured on the neighbour graph, as `METHOD SCALE
+//! graph SCORE`.
+
+use anyhow::Result;
+use canonform::DescribeOptions;
+use canonform::compare::form_alignments;
+use canonform::embed::signature;
+use canonform::index::Shape;
+use descriptors::{CanonicalForm, Normalization, ShapeMetric, SignatureKind};
+use linalg::DistanceMatrix;
+use rayon::prelude::*;
+use report::record::{Axis, Figure, FigurePanels, Heat, Plot};
+use report::{Cell, Record, Table};
+use retrieval::{
+    Averaging, BootstrapOptions, GraphRankings, Labels, Neighbor, QueryScores, Rankings, SplitOptions,
+    UnknownThreshold, bootstrap, precision_recall, rank, split_accuracy, vote,
+};
+
+use super::published::{Published, PublishedMethod};
+use crate::context::Context;
+use crate::gallery::Gallery;
+use crate::sweep::{MeasuredNumbers, SCORES, curve, named, note, plot, point, scores_caption};
+
+/// The number of recalls at which precision is measured.
+const RECALLS: usize = 21;
+
+/// The method that classifies, and the one for a collection too large for that.
+const CLASSIFIER: &str = "fused and forms";
+const LARGE_CLASSIFIER: &str = "fused";
+
+/// Whether size counts, the name of that in expectations, and the title of its plot.
+const SCALES: [(bool, &str, &str); 2] = [(false, "normalized", "size ignored"), (true, "raw", "size counts")];
+
+/// Stands for the class of shapes that are assigned to none.
+const UNKNOWN: &str = "unknown";
+
+pub(crate) fn retrieval(context: &Context<'_>) -> Result<Record> {
+    let gallery = Gallery::new(context)?;
+    let labels = &gallery.labels;
+    let n = labels.n_points();
+    let classifier = if n <= context.options.aligned { CLASSIFIER } else { LARGE_CLASSIFIER };
+    let (mut measured, mut rows, mut classified) = (MeasuredNumbers::new(), Vec::new(), None);
+    let mut plots: Vec<Plot> = Vec::new();
+    for (counts_size, scale, title) in SCALES {
+        let found = distances(context, &gallery.described, counts_size)?;
+        context.observer.begin("scoring", found.len());
+        let mut series = Vec::new();
+        for (method, distances) in &found {
+            rows.extend(rankings(context, method, scale, distances, labels, &mut measured)?);
+            let precision = precision_recall(distances, labels, Averaging::Micro, RECALLS)?;
+            let points = precision.iter().enumerate();
+            let points = points.map(|(i, &p)| point(i as f64 / (RECALLS - 1) as f64, &[p]));
+            series.push(curve(method, points.collect()));
+            if *method == classifier && !counts_size {
+                classified = Some(classify(context, method, distances, labels, &mut measured)?);
+            }
+            context.observer.step();
+        }
+        let [x, y] = ["recall", "precision"].map(Axis::linear);
+        plots.push(plot(title, x, y, series));
+    }
+    let caption = format!(
+        "Precision over recall, averaged over queries among {n} shapes. Further right and up is better."
+    );
+    let mut figures = vec![Figure { part: "curves".to_owned(), caption, panels: FigurePanels::Plots(plots) }];
+    let mut tables = vec![table(context, labels, rows)?];
+    if let Some((figure, of_classes)) = classified {
+        figures.push(figure);
+        tables.extend(of_classes);
+    }
+    Ok(Record { tables, figures, ..context.record(&[("description", &gallery.options)], measured) })
+}
+
+/// How scores are measured.
+fn protocol(context: &Context<'_>, labels: &Labels) -> String {
+    let options = &context.options;
+    let (n, n_classes) = (labels.n_points(), labels.classes().len());
+    let n_queries = (0..n).filter(|i| labels.is_query(*i)).count();
+    let BootstrapOptions { resamples, level, seed } = BootstrapOptions::default();
+    let left_out = match n > options.aligned {
+        true => format!(
+            " Methods that align the forms of all pairs are left out: {n} shapes are more than {}.",
+            options.aligned
+        ),
+        false => String::new(),
+    };
+    format!(
+        "{n} shapes in {n_classes} classes. Each shape is a query against all {} others, its own class included; {} shapes in \
+         classes of one or two are in the gallery but are no queries, so there are {n_queries} queries. Equal distances are \
+         ordered by the position of the shape in the collection. Scores are means over queries, macro scores over classes. \
+         Intervals cover {:.0} % of {resamples} bootstrap resamples of the queries within classes, seed {seed}. 1-NN over {} \
+         random splits, seed {}: mean and standard deviation over the splits; classes with no more shapes than are trained \
+         with take no part. k-NN: leave-one-out vote of {} neighbours. Least mAP: the lowest mAP when one class is left out \
+         of the collection. Plain: ranked by distance alone. Graph: ranked on the graph of nearest neighbours of the whole \
+         collection, without its classes.{left_out}",
+        n.saturating_sub(1),
+        n - n_queries,
+        100.0 * level,
+        options.splits,
+        context.seed,
+        options.voters
+    )
+}
+
+/// Every method with its distances between all pairs.
+fn distances(
+    context: &Context<'_>,
+    shapes: &[Shape],
+    counts_size: bool,
+) -> Result<Vec<(String, DistanceMatrix)>> {
+    let n = shapes.len();
+    let all = |distance: &dyn Fn(usize, usize) -> f64| DistanceMatrix::from_pairs(n, distance);
+    let aligns = n <= context.options.aligned;
+    let aligned = |normalization| -> Result<DistanceMatrix> {
+        let forms: Vec<CanonicalForm> =
+            shapes.iter().map(|shape| DescribeOptions::default().form_of(shape)).collect::<Result<_, _>>()?;
+        Ok(form_alignments(&forms, normalization, context.observer)?.distances)
+    };
+    let size_of = |i: usize| ShapeMetric::size_coordinate(shapes[i].entry.facts.area);
+    let area = |shape: &Shape| Some(shape.entry.facts.area).filter(|_| counts_size);
+    let fuse = |shape: &Shape| {
+        let signatures = SignatureKind::INTRINSIC.into_iter().filter_map(|kind| signature(shape, kind));
+        ShapeMetric::fuse(&signatures.collect::<Vec<_>>(), area(shape))
+    };
+    let vectors: Vec<_> = shapes.iter().map(fuse).collect();
+    let mut found = Vec::new();
+    let mut add = |method: &str, distances| found.push((method.to_owned(), distances));
+    if aligns {
+        let form = aligned(Normalization::UnitArea)?;
+        let robust = |i: usize, j: usize| ShapeMetric::robust(&vectors[i], &vectors[j]);
+        add(CLASSIFIER, all(&|i, j| ShapeMetric::combined(robust(i, j), form.get(i, j)))?);
+        let sized =
+            |i: usize, j: usize| (form.get(i, j) / ShapeMetric::FORM_UNIT).hypot(size_of(i) - size_of(j));
+        add("aligned forms", if counts_size { all(&sized)? } else { form.clone() });
+    }
+    add(LARGE_CLASSIFIER, all(&|i, j| ShapeMetric::fused(&vectors[i], &vectors[j]))?);
+    for kind in SignatureKind::ALL {
+        let of = |shape: &Shape| {
+            let own = signature(shape, kind)?;
+            Some(area(shape).map_or(own.clone(), |area| ShapeMetric::with_size(own, area)))
+        };
+        let signatures: Vec<_> = shapes.iter().filter_map(of).collect();
+        // Only mechanical parts have a rigid one.
+        if signatures.len() == n {
+            add(kind.name(), all(&|i, j| signatures[i].distance(&signatures[j]))?);
+        }
+    }
+    if counts_size && aligns {
+        add("forms in mesh units", aligned(Normalization::Raw)?);
+    }
+    Ok(found)
+}
+
+/// The rows of a method in the table, by distance and on the graph.
+fn rankings(
+    context: &Context<'_>,
+    method: &str,
+    scale: &str,
+    distances: &DistanceMatrix,
+    labels: &Labels,
+    measured: &mut MeasuredNumbers,
+) -> Result<[Vec<Cell>; 2]> {
+    let mut least = f64::INFINITY;
+    for class in 0..labels.classes().len() {
+        // Without one of two classes there is nothing to distinguish.
+        let (rest, rest_labels) = without(distances, labels, class)?;
+        if rest_labels.classes().len() > 1
+            && let Ok(scores) = QueryScores::new(&rest, &rest_labels)
+        {
+            least = least.min(scores.mean(&rest_labels, Averaging::Micro).map);
+        }
+    }
+    let options = &context.options;
+    let mut ranked = |ranking: &str, rankings: &KeptRankings, least: Option<f64>| -> Result<Vec<Cell>> {
+        let scores = QueryScores::new(rankings, labels)?;
+        let interval = bootstrap(&scores, labels, Averaging::Micro, &BootstrapOptions::default())?;
+        let [micro, by_class] = [Averaging::Micro, Averaging::Macro].map(|of| scores.mean(labels, of));
+        let queries = || (0..labels.n_points()).filter(|i| labels.is_query(*i));
+        let voted = |i: &usize| vote(&rankings.0[*i], |i| labels.class(i), options.voters, None).class();
+        let right = queries().filter(|i| voted(i) == Some(labels.class(*i))).count();
+        let knn = right as f64 / queries().count().max(1) as f64;
+        let of =
+            if ranking == "graph" { format!("{method} {scale} graph") } else { format!("{method} {scale}") };
+        let least = least.map(|least| least.min(micro.map));
+        note(measured, &of, named(&micro));
+        note(measured, &of, [("macro nn", by_class.nn), ("macro mAP", by_class.map), ("knn", knn)]);
+        note(measured, &of, least.map(|least| ("least mAP", least)));
+        let mut row: Vec<Cell> = [method, scale, ranking].map(Cell::from).to_vec();
+        row.extend(micro.to_array().map(Cell::from));
+        row.push(format!("{:.3} to {:.3}", interval.low.map, interval.high.map).into());
+        row.extend([by_class.nn, by_class.map, knn].map(Cell::from));
+        row.push(least.into());
+        for n_train in options.training.iter().copied() {
+            let split = SplitOptions { n_train, runs: options.splits, seed: context.seed };
+            let found = split_accuracy(rankings, labels, &split)?;
+            row.push(found.map(|s| format!("{:.3} ± {:.3}", s.mean, s.deviation)).into());
+        }
+        Ok(row)
+    };
+    let plain = ranked("plain", &KeptRankings::new(distances), Some(least))?;
+    Ok([plain, ranked("graph", &KeptRankings::new(&GraphRankings::new(distances)), None)?])
+}
+
+/// The table of all rankings, and published scores below them.
+fn table(context: &Context<'_>, labels: &Labels, mut rows: Vec<Vec<Cell>>) -> Result<Table> {
+    let training = &context.options.training;
+    let mut caption = format!("{} {}", protocol(context, labels), scores_caption(labels)?);
+    if let Some(Published { collection, method }) = context.published {
+        let line = |method: &PublishedMethod| {
+            let ranking = if method.uses_collection { "published, uses the collection" } else { "published" };
+            let mut row: Vec<Cell> = vec![method.name.as_str().into(), Cell::Missing, ranking.into()];
+            row.extend(method.scores().map(Cell::from));
+            row.extend((0..5 + training.len()).map(|_| Cell::Missing));
+            row
+        };
+        rows.extend(method.iter().map(line));
+        let sources: Vec<String> = method.iter().map(|m| format!("{}: {}", m.name, m.source)).collect();
+        caption += &format!(" Published scores are on {collection}. {}.", sources.join("; "));
+    }
+    let splits: Vec<String> = training.iter().map(|n| format!("1-NN, {n} a class")).collect();
+    let headings = ["method", "size", "ranking"].into_iter().chain(SCORES);
+    let headings = headings.chain(["mAP interval", "macro NN", "macro mAP", "k-NN", "least mAP"]);
+    Ok(Table::new(caption, headings.chain(splits.iter().map(String::as_str)), rows))
+}
+
+/// The classification of every shape by the others, and the error rates for unknown shapes.
+fn classify(
+    context: &Context<'_>,
+    method: &str,
+    distances: &DistanceMatrix,
+    labels: &Labels,
+    measured: &mut MeasuredNumbers,
+) -> Result<(Figure, [Table; 2])> {
+    let (voters, shapes) = (context.options.voters, &context.collection.shapes);
+    let classes = labels.classes();
+    let limit = UnknownThreshold::leave_one_out(distances, labels).map(|threshold| threshold.distance);
+    let mut wrong: Vec<Vec<Cell>> = Vec::new();
+    let mut confusion = vec![vec![0.0; classes.len() + 1]; classes.len()];
+    for i in 0..labels.n_points() {
+        let ranking = rank(distances, i);
+        let found = vote(&ranking, |i| labels.class(i), voters, limit).class();
+        confusion[labels.class(i)][found.unwrap_or(classes.len())] += 1.0;
+        if found != Some(labels.class(i)) {
+            let nearest = ranking.first();
+            let assigned = found.map_or(UNKNOWN, |class| &classes[class]);
+            let near = nearest.map_or("", |near| &shapes[near.index].name);
+            let mut row =
+                [shapes[i].name.as_str(), &shapes[i].label, assigned, near].map(Cell::from).to_vec();
+            row.push(nearest.map(|near| near.distance).into());
+            wrong.push(row);
+        }
+    }
+    let (mut missed, mut mistaken) = ([0usize; 2], [0usize; 2]);
+    for class in 0..classes.len() {
+        let (rest, rest_labels) = without(distances, labels, class)?;
+        let Some(threshold) = UnknownThreshold::leave_one_out(&rest, &rest_labels) else { continue };
+        for i in (0..labels.n_points()).filter(|&i| labels.class(i) == class) {
+            let ranking = rank(distances, i);
+            for (same, [errors, all]) in [(true, &mut missed), (false, &mut mistaken)] {
+                let nearest = ranking.iter().find(|n| (labels.class(n.index) == class) == same);
+                let Some(nearest) = nearest else { continue };
+                *errors += usize::from((nearest.distance <= threshold.distance) != same);
+                *all += 1;
+            }
+        }
+    }
+    let [missed, mistaken] = [missed, mistaken].map(|[errors, all]| errors as f64 / all.max(1) as f64);
+    measured.extend([("missed".to_owned(), missed), ("mistaken".to_owned(), mistaken)]);
+    let threshold = limit.unwrap_or(0.0);
+    let caption = match wrong.len() {
+        0 => "Every shape was assigned to its class.".to_owned(),
+        n => format!(
+            "The {n} shapes that were not assigned to their class. A shape is unknown if its nearest neighbour is farther \
+             than {threshold:.3}."
+        ),
+    };
+    let wrong = Table::new(caption, ["shape", "class", "assigned to", "nearest shape", "distance"], wrong);
+    let caption = "Missed: the share of shapes classified as unknown although others of their class are in the collection. \
+                   Mistaken: the share of shapes assigned to a class although no other of their own is. The thresholds are \
+                   found without the class they are tested on.";
+    let values = [missed, mistaken, threshold].map(Cell::from).to_vec();
+    let unknown = Table {
+        folded: Some("Unknown shapes".to_owned()),
+        ..Table::new(caption, ["missed", "mistaken", "threshold"], vec![values])
+    };
+    let caption = format!(
+        "Classification of every shape by the vote of its {voters} nearest neighbours among the others, by {method}: true \
+         classes down, predicted classes across. A shape is unknown if its nearest neighbour is farther than {threshold:.3}. \
+         The color is the share of the class."
+    );
+    let columns = classes.iter().cloned().chain([UNKNOWN.to_owned()]).collect();
+    let heat =
+        Heat { title: String::new(), rows: classes.to_vec(), columns, values: confusion, quantity: None };
+    let panels = FigurePanels::Heats(vec![heat]);
+    Ok((Figure { part: "confusion".to_owned(), caption, panels }, [wrong, unknown]))
+}
+
+/// Rankings of all shapes, made once.
+struct KeptRankings(Vec<Vec<Neighbor>>);
+
+impl KeptRankings {
+    fn new(rankings: &impl Rankings) -> Self {
+        Self((0..rankings.n_points()).into_par_iter().map(|query| rankings.ranking(query)).collect())
+    }
+}
+
+impl Rankings for KeptRankings {
+    fn n_points(&self) -> usize {
+        self.0.len()
+    }
+
+    fn ranking(&self, query: usize) -> Vec<Neighbor> {
+        self.0[query].clone()
+    }
+}
+
+/// The collection without one class.
+fn without(distances: &DistanceMatrix, labels: &Labels, class: usize) -> Result<(DistanceMatrix, Labels)> {
+    let kept: Vec<usize> = (0..labels.n_points()).filter(|&i| labels.class(i) != class).collect();
+    let names: Vec<&str> = kept.iter().map(|&i| labels.classes()[labels.class(i)].as_str()).collect();
+    let rest = DistanceMatrix::from_pairs(kept.len(), |i, j| distances.get(kept[i], kept[j]))?;
+    Ok((rest, Labels::new(&names)))
+}

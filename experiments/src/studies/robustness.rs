@@ -1,0 +1,131 @@
+//! Robustness: some shapes of every class are damaged in every way at strengths from 1 to 5, and searched for in the
+//! undamaged collection. The shape itself is left out, so that another one of its class has to be found.
+//!
+//! Measures `KIND STRENGTH METHOD nn|mAP` for `METHOD` a signature or `fused`, at strength 3 also `aligned forms` and `fused
+//! and forms`; `undamaged METHOD nn|mAP`; `least fused nn`, over all kinds at strength 3; `false alarms`, the share of
+//! undamaged shapes with a shortcut; and `KIND STRENGTH cut`, the number of shortcuts that are cut, relative to the number of
+//! welds.
+
+use anyhow::{Context as _, Result};
+use canonform::describe;
+use canonform::embed::signature;
+use canonform::index::Shape;
+use datasets::DamageKind;
+use descriptors::{PreparedShape, ShapeMetric, ShapePair, SignatureKind};
+use report::Record;
+use report::record::{Axis, Plot};
+
+use crate::context::Context;
+use crate::gallery::{Gallery, GalleryQuery};
+use crate::sweep::{MeasuredNumbers, curve, mean, note, numbers, plot, plots, point, share};
+
+const FUSED: &str = "fused";
+const FORMS: &str = "aligned forms";
+const BOTH: &str = "fused and forms";
+
+/// The strength at which forms are aligned, too; that takes most of the time.
+const ALIGNED_AT: usize = 3;
+
+/// Scores by method: nearest neighbour, and mean average precision.
+type MethodScores = Vec<(&'static str, [f64; 2])>;
+
+const SCORES: [&str; 2] = ["nn", "mAP"];
+
+pub(crate) fn robustness(context: &Context<'_>) -> Result<Record> {
+    let gallery = Gallery::new(context)?;
+    let prepared = gallery.prepared()?;
+    let alarms = share(&gallery.described, |shape| shape.entry.facts.shortcuts > 0);
+    let mut measured = numbers([("false alarms", alarms)]);
+    let undamaged = gallery.map(context.options.queries, "undamaged", |query| {
+        scores(&gallery, &prepared, query, &gallery.described[query.own], true)
+    })?;
+    let undamaged = means(&undamaged);
+    record("undamaged", &undamaged, &mut measured);
+    let mut panels = Vec::new();
+    let mut least = f64::INFINITY;
+    for &kind in DamageKind::ALL {
+        let mut curves: Vec<(usize, MethodScores)> = vec![(0, undamaged.clone())];
+        for strength in 1..=DamageKind::STRENGTHS {
+            let stage = format!("{} {strength}", kind.name());
+            let found = gallery.map(context.options.queries, &stage, |query| {
+                let damaged = describe(&query.damaged(kind.at(strength))?, &gallery.options, &())?;
+                let found = scores(&gallery, &prepared, query, &damaged, strength == ALIGNED_AT)?;
+                Ok((found, damaged.entry.facts.shortcuts))
+            })?;
+            let (found, cut): (Vec<_>, Vec<_>) = found.into_iter().unzip();
+            if matches!(kind, DamageKind::Weld | DamageKind::FarWeld | DamageKind::Contact) {
+                let cut = mean(cut.into_iter().map(|cut| cut as f64 / strength as f64));
+                measured.insert(format!("{stage} cut"), cut);
+            }
+            let found = means(&found);
+            record(&stage, &found, &mut measured);
+            let fused = found.iter().find(|(method, _)| *method == FUSED && strength == ALIGNED_AT);
+            least = fused.map_or(least, |(_, [nn, _])| least.min(*nn));
+            curves.push((strength, found));
+        }
+        panels.extend(panels_of(kind, &curves));
+    }
+    measured.insert("least fused nn".to_owned(), least);
+    let figures = vec![plots("curves", panels)];
+    Ok(Record { figures, ..context.record(&[("description", &gallery.options)], measured) })
+}
+
+/// The scores of one query by every method.
+fn scores(
+    gallery: &Gallery<'_>,
+    prepared: &[PreparedShape],
+    query: &GalleryQuery<'_>,
+    description: &Shape,
+    aligned: bool,
+) -> Result<MethodScores> {
+    let mut found = Vec::new();
+    let mut add = |method: &'static str, distance: &dyn Fn(usize) -> f64| {
+        let scores = gallery.scores(query, distance);
+        found.push((method, [scores.nn, scores.map]));
+    };
+    for kind in SignatureKind::INTRINSIC {
+        let own = signature(description, kind).context("a signature of every kind")?;
+        add(kind.name(), &|i| signature(&gallery.described[i], kind).map_or(f64::NAN, |s| own.distance(&s)));
+    }
+    let shape = gallery.options.prepare(description)?;
+    add(FUSED, &|i| ShapeMetric::fused(shape.fused(), prepared[i].fused()));
+    if aligned {
+        let pairs = prepared.iter().map(|other| {
+            let pair = ShapePair::new([&shape, other]);
+            (pair.best().gap.rms, pair.distance().combined)
+        });
+        let pairs: Vec<(f64, f64)> = pairs.collect();
+        add(FORMS, &|i| pairs[i].0);
+        add(BOTH, &|i| pairs[i].1);
+    }
+    Ok(found)
+}
+
+/// The means over queries.
+fn means(queries: &[MethodScores]) -> MethodScores {
+    let methods = queries.first().map_or(&[][..], |found| found);
+    let over = |i: usize, score: usize| mean(queries.iter().map(|found| found[i].1[score]));
+    methods.iter().enumerate().map(|(i, (method, _))| (*method, [over(i, 0), over(i, 1)])).collect()
+}
+
+fn record(stage: &str, found: &MethodScores, measured: &mut MeasuredNumbers) {
+    for (method, scores) in found {
+        note(measured, &format!("{stage} {method}"), SCORES.into_iter().zip(*scores));
+    }
+}
+
+/// The panels of one kind: nearest neighbours, and mean average precision.
+fn panels_of(kind: DamageKind, curves: &[(usize, MethodScores)]) -> [Plot; 2] {
+    let methods = curves.first().map_or(&[][..], |(_, found)| found);
+    [("NN", 0), ("mAP", 1)].map(|(name, score)| {
+        let series = methods.iter().map(|(method, _)| {
+            let at = |(strength, found): &(usize, MethodScores)| {
+                let (_, own) = found.iter().find(|(other, _)| other == method)?;
+                Some(point(*strength as f64, &[own[score]]))
+            };
+            curve(method, curves.iter().filter_map(at).collect())
+        });
+        let [x, y] = ["strength", name].map(Axis::linear);
+        plot(format!("{}: {name}", kind.name()), x, y, series.collect())
+    })
+}

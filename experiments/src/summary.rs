@@ -1,0 +1,119 @@
+//! Our numbers beside those of the paper: a section of a page of Markdown, `docs/paper.md`.
+//!
+//! `configs/paper.txt` (a text with `{EXPERIMENT/NAME: FORMAT}` for numbers, see [`text`](crate::text)) + records -> the
+//! section, and beside the page the numbers that it states, as JSON. The rest of the page is written by hand.
+
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use anyhow::{Context, Result, anyhow};
+use base::files::write_bytes;
+use report::Record;
+use serde::{Deserialize, Serialize};
+
+use crate::sweep::MeasuredNumbers;
+use crate::text::filled;
+
+const TEMPLATE: &str = include_str!("../configs/paper.txt");
+
+/// Stands for how the numbers were made.
+const MADE: &str = "MADE";
+
+/// The comments around the section in its page.
+const BOUNDS: [&str; 2] = ["<!-- make paper begins -->\n", "<!-- make paper ends -->\n"];
+
+/// The numbers of one experiment that the page states.
+#[derive(Debug, Default, Serialize, Deserialize)]
+struct StatedNumbers {
+    /// Version, commit, machine and day.
+    made: String,
+    measured: MeasuredNumbers,
+}
+
+/// The numbers by experiment.
+type KnownNumbers = BTreeMap<String, StatedNumbers>;
+
+/// Writes the section of the page and its numbers from the records in a folder.
+pub(crate) fn write(folder: &Path, path: &Path) -> Result<()> {
+    let names = RefCell::new(BTreeSet::new());
+    let collect = |name: &str| {
+        names.borrow_mut().insert(name.to_owned());
+        Some(0.0)
+    };
+    filled(TEMPLATE, collect).map_err(|field| anyhow!("experiments/configs/paper.txt: `{field}` is open"))?;
+    let (mut records, mut known) = (BTreeMap::new(), KnownNumbers::new());
+    for name in names.take() {
+        let (experiment, number) = name.split_once('/').unwrap_or((&name, ""));
+        if !records.contains_key(experiment) {
+            let record = Record::read(folder.join(format!("{experiment}.json")))?;
+            records.insert(experiment.to_owned(), record);
+        }
+        let Record { provenance: p, measured, .. } = &records[experiment];
+        let value = measured.get(number).with_context(|| {
+            format!("{experiment}.json does not measure `{number}`; run the experiment on the shapes of the paper (--dataset)")
+        })?;
+        let commit = if p.commit.is_empty() { String::new() } else { format!(", commit {}", p.commit) };
+        let day = p.date.split(' ').next().unwrap_or_default();
+        let stated = known.entry(experiment.to_owned()).or_default();
+        stated.made = format!("version {}{commit}, {}, {day}", p.version, p.machine);
+        stated.measured.insert(number.to_owned(), *value);
+    }
+    let page = std::fs::read_to_string(path)
+        .with_context(|| format!("cannot read {}, whose section is to be written", path.display()))?;
+    write_bytes(path, updated(&page, &section(&known)?)?.as_bytes())?;
+    let mut json = serde_json::to_vec_pretty(&known)?;
+    json.push(b'\n');
+    Ok(write_bytes(&path.with_extension("json"), &json)?)
+}
+
+/// The page with another section.
+fn updated(page: &str, section: &str) -> Result<String> {
+    let [begin, end] = BOUNDS;
+    let parts = page.split_once(begin).and_then(|(before, rest)| Some((before, rest.split_once(end)?.1)));
+    let (before, after) = parts.ok_or_else(|| anyhow!("the page has no section `make paper`"))?;
+    Ok([before, begin, section, end, after].concat())
+}
+
+/// The section with these numbers.
+fn section(known: &KnownNumbers) -> Result<String> {
+    let number = |name: &str| -> Option<f64> {
+        let (experiment, number) = name.split_once('/')?;
+        known.get(experiment)?.measured.get(number).copied()
+    };
+    let section = filled(TEMPLATE, number).map_err(|name| anyhow!("nothing measures `{name}`"))?;
+    let mut made: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for (experiment, numbers) in known {
+        made.entry(&numbers.made).or_default().push(experiment);
+    }
+    let made = made.iter().map(|(made, experiments)| format!("* {made}: {}", experiments.join(", ")));
+    Ok(section.replacen(MADE, &made.collect::<Vec<_>>().join("\n"), 1) + "\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The committed page.
+    fn committed(extension: &str) -> String {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/paper.md").with_extension(extension);
+        std::fs::read_to_string(path).unwrap()
+    }
+
+    #[test]
+    fn the_committed_page_states_its_numbers() {
+        let known: KnownNumbers = serde_json::from_str(&committed("json")).unwrap();
+        let page = committed("md");
+        assert_eq!(updated(&page, &section(&known).unwrap()).unwrap(), page, "run `make paper`");
+    }
+
+    #[test]
+    fn the_page_follows_its_numbers() {
+        let mut known: KnownNumbers = serde_json::from_str(&committed("json")).unwrap();
+        let stress = "default david MDS stress";
+        known.get_mut("figure3").unwrap().measured.insert(stress.to_owned(), 1234.56);
+        assert!(section(&known).unwrap().contains("| 1,234.6 |"));
+        known.get_mut("figure3").unwrap().measured.remove(stress);
+        assert!(section(&known).unwrap_err().to_string().contains(stress));
+    }
+}
