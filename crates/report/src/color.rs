@@ -22,26 +22,22 @@ const OKABE_ITO: [Rgb; 8] = [
 ];
 
 /// The colour of class number `class`. Colours repeat from the ninth class on.
-#[must_use]
 pub fn class_color(class: usize) -> Rgb {
     OKABE_ITO[class % OKABE_ITO.len()]
 }
 
 /// The colour of the surfaces of class number `class`: its colour mixed with a pale clay, so that shading shows.
-#[must_use]
 pub fn class_clay(class: usize) -> Rgb {
     mix(class_color(class), [226, 224, 220], 0.55)
 }
 
 /// A mixture of `a` and `b` in which the share of `b` is `share`.
-#[must_use]
 pub fn mix(a: Rgb, b: Rgb, share: f64) -> Rgb {
     std::array::from_fn(|i| (f64::from(a[i]) * (1.0 - share) + f64::from(b[i]) * share).round() as u8)
 }
 
 /// The colour map viridis: dark for 0, light for 1, and equal steps look equal. Values outside 0..=1 are clamped;
 /// NaN is grey.
-#[must_use]
 pub fn perceptual(t: f64) -> Rgb {
     if t.is_nan() {
         return [160, 160, 160];
@@ -52,7 +48,6 @@ pub fn perceptual(t: f64) -> Rgb {
 
 /// A colour for each point, by its place in the box around all of them: corresponding points of two surfaces are easy to
 /// find by eye if both have the colours of one. Points that are not finite are grey.
-#[must_use]
 pub fn place_colors(points: &[Point3<f64>]) -> Vec<Rgb> {
     let ranges = [0, 1, 2].map(|axis| {
         let values: Vec<f64> = points.iter().map(|p| p[axis]).collect();
@@ -72,7 +67,6 @@ pub fn place_colors(points: &[Point3<f64>]) -> Vec<Rgb> {
 }
 
 /// The least and the greatest of the finite numbers.
-#[must_use]
 pub fn value_range(values: &[f64]) -> Option<[f64; 2]> {
     let finite = || values.iter().copied().filter(|v| v.is_finite());
     let low = finite().reduce(f64::min)?;
@@ -92,26 +86,22 @@ pub fn color_scale(values: &[f64]) -> impl Fn(f64) -> Rgb + use<> {
 }
 
 /// The colours between which [`perceptual`] interpolates linearly, at equal steps from 0 to 1.
-#[must_use]
 pub fn perceptual_stops() -> [Rgb; 8] {
     std::array::from_fn(|i| perceptual(i as f64 / 7.0))
 }
 
 /// 8-bit sRGB as `#rrggbb`.
-#[must_use]
 pub fn hex([red, green, blue]: Rgb) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
 /// The linear light of an 8-bit sRGB channel, in 0..=1.
-#[must_use]
 pub fn to_linear(channel: u8) -> f32 {
     let c = f32::from(channel) / 255.0;
     if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
 }
 
 /// The 8-bit sRGB channel of a linear light, clamped to 0..=1.
-#[must_use]
 pub fn from_linear(light: f32) -> u8 {
     let l = light.clamp(0.0, 1.0);
     let c = if l <= 0.003_130_8 { 12.92 * l } else { 1.055 * l.powf(1.0 / 2.4) - 0.055 };

@@ -74,7 +74,6 @@ impl ColorMap {
         [Self::Viridis, Self::Magma, Self::Inferno, Self::Cividis, Self::Turbo, Self::Coolwarm, Self::Gray];
 
     /// Its name.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Viridis => "viridis",
@@ -88,7 +87,6 @@ impl ColorMap {
     }
 
     /// Its colours and its use, in a phrase.
-    #[must_use]
     pub fn description(self) -> &'static str {
         match self {
             Self::Viridis => "violet, green, yellow; equal steps look equal, also to colour-blind readers",
@@ -102,7 +100,6 @@ impl ColorMap {
     }
 
     /// The colour of a share of the range. Values outside 0..=1 are clamped; NaN is grey.
-    #[must_use]
     pub fn color(self, share: f64) -> Rgb {
         let stops = match self {
             _ if share.is_nan() => return perceptual(share),

@@ -19,13 +19,11 @@ pub struct RgbaImage {
 
 impl RgbaImage {
     /// An image of one colour.
-    #[must_use]
     pub fn new(width: u32, height: u32, color: [u8; 4]) -> Self {
         Self { width, height, pixels: vec![color; width as usize * height as usize] }
     }
 
     /// An image of `color(column, row)` at each pixel.
-    #[must_use]
     pub fn from_fn(width: u32, height: u32, color: impl Fn(usize, usize) -> [u8; 4]) -> Self {
         let color = &color;
         let row = |row| (0..width as usize).map(move |column| color(column, row));
@@ -52,7 +50,6 @@ impl RgbaImage {
     }
 
     /// Two images side by side; a missing part at the bottom of the lower one has the colour of its first pixel.
-    #[must_use]
     pub fn beside(&self, right: &Self) -> Self {
         let pixel = |image: &Self, column: usize, row: usize| {
             let at = row * image.width as usize + column;
@@ -69,25 +66,21 @@ impl RgbaImage {
     }
 
     /// Width in pixels.
-    #[must_use]
     pub fn width(&self) -> u32 {
         self.width
     }
 
     /// Height in pixels.
-    #[must_use]
     pub fn height(&self) -> u32 {
         self.height
     }
 
     /// All pixels as `[red, green, blue, alpha]`, row by row from the top left.
-    #[must_use]
     pub fn pixels(&self) -> &[[u8; 4]] {
         &self.pixels
     }
 
     /// All pixels, to change them.
-    #[must_use]
     pub fn pixels_mut(&mut self) -> &mut [[u8; 4]] {
         &mut self.pixels
     }

@@ -4,7 +4,6 @@ use plotters::coord::ranged1d::Ranged;
 use plotters::coord::types::RangedCoordf64;
 
 /// Round values within `range` at equal steps, at most about `most` of them.
-#[must_use]
 pub fn ticks([low, high]: [f64; 2], most: usize) -> Vec<f64> {
     RangedCoordf64::from(low..high).key_points(most)
 }
@@ -19,7 +18,6 @@ pub struct NumberFormat {
 impl NumberFormat {
     /// The format with the fewest digits that tells all of `ticks` apart. Very large and very small ones share a
     /// power of ten.
-    #[must_use]
     pub fn for_ticks(ticks: &[f64]) -> Self {
         let largest = ticks.iter().fold(0.0_f64, |m, t| m.max(t.abs()));
         let plain = largest == 0.0 || (0.01..10_000.0).contains(&largest);
@@ -34,13 +32,11 @@ impl NumberFormat {
     }
 
     /// A number without the common power of ten.
-    #[must_use]
     pub fn write(self, value: f64) -> String {
         signed(value / 10f64.powi(self.exponent), self.decimals)
     }
 
     /// The unit of the axis with the power of ten that [`NumberFormat::write`] leaves out. Either may be missing.
-    #[must_use]
     pub fn unit(self, unit: &str) -> String {
         match (self.exponent, unit) {
             (0, unit) => unit.to_owned(),
@@ -51,7 +47,6 @@ impl NumberFormat {
 }
 
 /// An exponent in superscript digits.
-#[must_use]
 pub fn superscript(exponent: i32) -> String {
     const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     let sign = if exponent < 0 { "⁻" } else { "" };
@@ -61,7 +56,6 @@ pub fn superscript(exponent: i32) -> String {
 }
 
 /// A number with a fixed number of decimals and a typographic minus sign, without a sign if it rounds to zero.
-#[must_use]
 pub fn signed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     match text.strip_prefix('-') {
@@ -72,7 +66,6 @@ pub fn signed(value: f64, decimals: usize) -> String {
 }
 
 /// A number with so many significant digits; whole numbers in full.
-#[must_use]
 pub fn significant(value: f64, digits: i32) -> String {
     let size = value.abs();
     if value.fract() == 0.0 && size < 1e15 {
@@ -87,7 +80,6 @@ pub fn significant(value: f64, digits: i32) -> String {
 }
 
 /// A duration in seconds with at least two significant digits.
-#[must_use]
 pub fn seconds(seconds: f64) -> String {
     match seconds {
         s if s >= 10.0 => format!("{s:.1}"),
@@ -98,7 +90,6 @@ pub fn seconds(seconds: f64) -> String {
 }
 
 /// An amount of memory in MiB or GiB.
-#[must_use]
 pub fn bytes(bytes: usize) -> String {
     let mib = bytes as f64 / f64::from(1 << 20);
     match mib {

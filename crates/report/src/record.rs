@@ -236,13 +236,11 @@ pub struct Tile {
 
 impl Axis {
     /// A linear axis of a pure number.
-    #[must_use]
     pub fn linear(name: &str) -> Self {
         Self { name: name.to_owned(), unit: String::new(), scale: AxisScale::Linear }
     }
 
     /// A logarithmic axis.
-    #[must_use]
     pub fn log(name: &str, unit: &str) -> Self {
         Self { unit: unit.to_owned(), scale: AxisScale::Log, ..Self::linear(name) }
     }
@@ -332,7 +330,6 @@ impl Record {
     }
 
     /// The tables that a run prints: the first, or the medians of the curves.
-    #[must_use]
     pub fn summary(&self) -> Option<Table> {
         self.tables.first().cloned().or_else(|| self.figures.iter().find_map(Figure::medians))
     }
@@ -340,7 +337,6 @@ impl Record {
 
 impl Figure {
     /// The values of all curves side by side, a row for each plot and place on the horizontal axis.
-    #[must_use]
     pub fn medians(&self) -> Option<Table> {
         let FigurePanels::Plots(plots) = &self.panels else { return None };
         let curves = |plot: &'_ Plot| plot.series.iter().filter(|s| s.kind == SeriesKind::Curve).count();

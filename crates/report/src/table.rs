@@ -82,13 +82,11 @@ impl Table {
     }
 
     /// Whether a column holds numbers.
-    #[must_use]
     pub fn is_numeric(&self, column: usize) -> bool {
         self.numbers(column).next().is_some()
     }
 
     /// The texts of all cells. Columns of shares and scores have three decimals, other numbers four significant digits.
-    #[must_use]
     pub fn texts(&self) -> Vec<Vec<String>> {
         let is_share = |column: usize| {
             let numbers = || self.numbers(column);
@@ -105,7 +103,6 @@ impl Table {
     }
 
     /// The table as text in aligned columns, without its caption and without a trailing newline.
-    #[must_use]
     pub fn to_text(&self) -> String {
         let mut table = comfy_table::Table::new();
         table.load_style(presets::NOTHING).set_header(&self.headings).add_rows(self.texts());

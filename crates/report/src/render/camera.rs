@@ -92,7 +92,6 @@ fn bounds(mesh: &TriMesh, faces: &[[usize; 3]], axes: &Matrix3<f64>) -> [Vector3
 }
 
 /// Width over height of a mesh in a view; 1 if the mesh has no extent.
-#[must_use]
 pub fn aspect(mesh: &TriMesh, view: &View) -> f64 {
     let faces = drawable_faces(mesh);
     let [low, high] = bounds(mesh, &faces, &view.axes(mesh, &faces, false));
@@ -103,7 +102,6 @@ pub fn aspect(mesh: &TriMesh, view: &View) -> f64 {
 impl View {
     /// The direction in which this view shows `mesh`, independent of the mesh, for images that are wider than high
     /// (`landscape`) or not. Use it to show other meshes from the same direction.
-    #[must_use]
     pub fn fixed(&self, mesh: &TriMesh, landscape: bool) -> Self {
         let axes = self.axes(mesh, &drawable_faces(mesh), landscape);
         Self::Along { towards: axes.row(2).transpose(), up: axes.row(1).transpose() }

@@ -5,7 +5,6 @@ use nalgebra::{Point3, Vector3};
 use surface::VertexId;
 
 /// A small octahedron around every point: six vertices per point, in the order of the points.
-#[must_use]
 pub fn dots(points: &[Point3<f64>], radius: f64) -> TriMesh {
     const FACES: [[u32; 3]; 8] =
         [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];

@@ -31,7 +31,6 @@ impl Geometry {
     /// A surface whose bounding box is centred at the origin.
     ///
     /// Faces with a corner that does not exist or is not finite are left out.
-    #[must_use]
     pub fn new(mesh: &TriMesh) -> Self {
         let middle =
             mesh.bounds().map_or_else(Vector3::zeros, |[low, high]| (low.coords + high.coords) / 2.0);
@@ -39,7 +38,6 @@ impl Geometry {
     }
 
     /// A surface where it is, for several surfaces in one scene.
-    #[must_use]
     pub fn in_place(mesh: &TriMesh) -> Self {
         Self::around(mesh, Vector3::zeros())
     }
@@ -56,7 +54,6 @@ impl Geometry {
     }
 
     /// The surface as a mesh.
-    #[must_use]
     pub fn mesh(&self) -> TriMesh {
         TriMesh {
             positions: self.positions.iter().map(|p| Point3::from(p.map(f64::from))).collect(),
@@ -65,7 +62,6 @@ impl Geometry {
     }
 
     /// The surface with a number per vertex. Missing numbers are NaN, excess ones are dropped.
-    #[must_use]
     pub fn with_values(self, name: impl Into<String>, values: &[f64]) -> Self {
         let value = |v: usize| values.get(v).map_or(f32::NAN, |value| *value as f32);
         let values = (0..self.positions.len()).map(value).collect();
@@ -74,7 +70,6 @@ impl Geometry {
 
     /// The surface with positions rounded to about [`GRAIN`] of its size, and values to that of their range: they compress
     /// better.
-    #[must_use]
     pub(super) fn rounded(mut self) -> Self {
         let positions = self.positions.as_flattened_mut();
         let grain = grain(positions);

@@ -24,7 +24,6 @@ pub use scene::{scene_page, scene_scripts};
 ///
 /// `canonform.view(element, geometry | [geometry, ...], options)` draws surfaces into one scene; the head of the
 /// script describes its interface.
-#[must_use]
 pub fn viewer_js() -> &'static str {
     static SCRIPT: LazyLock<String> = LazyLock::new(|| {
         include_str!("viewer.js").replace("COLOR_STOPS", &perceptual_stops().map(hex).join(" "))
@@ -36,7 +35,6 @@ pub fn viewer_js() -> &'static str {
 ///
 /// It contains the traces `scatter`, `heatmap` and `mesh3d`, requests no address, evaluates no text as code and
 /// contains no `</script`. A prelude keeps browsers from warning about how plotly reads canvases.
-#[must_use]
 pub fn plotly_js() -> &'static str {
     static SCRIPT: LazyLock<String> = LazyLock::new(|| {
         let mut script = PRELUDE.to_owned();

@@ -16,7 +16,6 @@ use crate::markup::escape;
 ///
 /// It fetches nothing, and its policy allows its own scripts only. Before the surface is drawn, and without scripts or
 /// WebGL, the page is transparent. Without [`scene_scripts`] the page asks the page around it for them.
-#[must_use]
 pub fn scene_page(geometry: Geometry, title: &str) -> String {
     let [islands, hashes] = &*SCRIPTS;
     let start = include_str!("scene.js");
@@ -35,7 +34,6 @@ pub fn scene_page(geometry: Geometry, title: &str) -> String {
 }
 
 /// The part of every [`scene_page`] that all share: its scripts, packed.
-#[must_use]
 pub fn scene_scripts() -> &'static str {
     &SCRIPTS[0]
 }
