@@ -15,8 +15,7 @@ use canonform::search::{Answer, SearchOptions, SearchRank};
 use canonform::{Budget, Error, Surface};
 use report::viewer::Geometry;
 use serde::Deserialize;
-use serde::de::value::StrDeserializer;
-use serde::de::{DeserializeOwned, IntoDeserializer};
+use serde_json::{Map, Value};
 
 use super::answer::{Params, Written};
 use super::csv;
@@ -65,33 +64,27 @@ struct Wanted {
     format: Format,
 }
 
-/// A value by its name, as in a query string.
-fn named<T: DeserializeOwned>(name: &str) -> Option<T> {
-    let name: StrDeserializer<'_, serde::de::value::Error> = name.into_deserializer();
-    T::deserialize(name).ok()
-}
-
 impl SearchParams {
-    /// Adds the fields of a form.
-    fn with_fields(mut self, upload: &Upload) -> Result<Self, ApiError> {
-        for (name, text) in &upload.fields {
-            let wrong =
-                |expected: &str| ApiError::bad_request(format!("{name} is `{text}`; expected {expected}"));
-            let choice = || text.parse().map_err(|_| wrong("true or false"));
-            match name.as_str() {
-                "k" => self.k = Some(text.parse().map_err(|_| wrong("a number"))?),
-                "explain" => self.explain = Some(choice()?),
-                "rank" => self.rank = Some(named(text).ok_or_else(|| wrong("plain, graph, part or forms"))?),
-                "geometry" => self.geometry = Some(choice()?),
-                "format" => self.format = Some(named(text).ok_or_else(|| wrong("json or csv"))?),
-                _ => {
-                    let error = format!("the form has an unknown field `{name}`");
-                    let remedy = "send files, `k`, `explain`, `rank`, `geometry` and `format`";
-                    return Err(ApiError::bad_request(error).with_remedy(remedy));
-                }
-            }
+    /// With the fields of a form, which go before what the address says.
+    fn with_fields(self, upload: &Upload) -> Result<Self, ApiError> {
+        let value = |text: &String| text.parse().unwrap_or_else(|_| Value::from(text.as_str()));
+        let fields: Map<_, _> =
+            upload.fields.iter().map(|(name, text)| (name.clone(), value(text))).collect();
+        let wrong = |fault: String| {
+            let remedy = "send files, `k`, `explain`, `rank`, `geometry` and `format`";
+            ApiError::bad_request(format!("a field of the form is wrong: {fault}")).with_remedy(remedy)
+        };
+        match Self::deserialize(fields).map_err(|fault| wrong(fault.to_string()))? {
+            Self { shape: None, query: None, k, explain, rank, geometry, format } => Ok(Self {
+                k: k.or(self.k),
+                explain: explain.or(self.explain),
+                rank: rank.or(self.rank),
+                geometry: geometry.or(self.geometry),
+                format: format.or(self.format),
+                ..self
+            }),
+            _ => Err(wrong("the file is the query".to_owned())),
         }
-        Ok(self)
     }
 
     fn wanted(&self) -> Result<Wanted, ApiError> {
