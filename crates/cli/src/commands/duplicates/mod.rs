@@ -64,10 +64,7 @@ pub(crate) fn duplicates(args: &DuplicatesArgs, common: &Common) -> Result<ExitC
         write_bytes(path, page(&found, &search)?.as_bytes())?;
     }
     let whole = found.clone();
-    for group in &mut found.groups {
-        let members = group.members.iter_mut().map(|member| &mut member.file);
-        members.chain([&mut group.keeper]).for_each(|file| file.path = short(&file.path));
-    }
+    found.files_mut().for_each(|file| file.path = short(&file.path));
     if let Some(path) = &args.csv {
         write_bytes(path, csv(&found).as_bytes())?;
     }
