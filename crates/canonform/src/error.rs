@@ -245,8 +245,8 @@ pub enum Error {
     },
 }
 
-/// What a user can do about an [`Error`]. A program words it in terms of its own interface, and has to word every one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// What a user can do about an [`Error`], in [words](Self::in_words) of a program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::VariantArray)]
 pub enum Remedy {
     /// Keep the largest component of the mesh, or bridge its components.
     KeepLargestOrBridge,
@@ -286,6 +286,47 @@ pub enum Remedy {
     EvaluateShard,
     /// Name one mesh of the archive.
     NameMember,
+}
+
+impl Remedy {
+    /// What to do, with options as `spell` writes them: a name, and the values that it may have, or none. Names of two words
+    /// are those of commands.
+    pub fn in_words(self, spell: impl Fn(&str, &[&str]) -> String) -> String {
+        let named = |name: &str| spell(name, &[]);
+        let valued = |name: &str, value: &str| spell(name, &[value]);
+        let bridge = valued("components", "bridge");
+        match self {
+            Self::KeepLargestOrBridge => format!("pass {} or {bridge}", valued("components", "largest")),
+            Self::BridgeComponents => format!("to keep all components, pass {bridge}"),
+            Self::BridgeOrWeld => {
+                let weld = valued("weld", "TOL");
+                format!("pass {bridge} to keep all components, or {weld} to close gaps up to TOL wide")
+            }
+            Self::UseThreeDimensions => format!("leave out {}", named("dim")),
+            Self::UseFastMarching => "use fast-marching".to_owned(),
+            Self::UseNystrom => format!("use {}, which needs only a few columns", valued("method", "nmds")),
+            Self::GiveSamples => format!("give {}, the number of samples, such as 100", named("samples")),
+            Self::RaiseMemory => format!("raise {}", named("memory")),
+            Self::RaiseTimeLimit => format!("raise {}", named("timeout")),
+            Self::RaiseMaxDistance => format!("choose another target, or raise {}", named("max_distance")),
+            Self::GiveLabels => format!("give classes with {}", named("labels")),
+            Self::ReplaceShape => {
+                format!("rename the new shape, remove the old one, or pass {}", named("replace"))
+            }
+            Self::RestoreMesh => {
+                "restore the file, move the index back to the place where it was built, or build the index again"
+                    .to_owned()
+            }
+            Self::BuildIndexAgain => {
+                format!("restore the index from a copy, or build it again with {}", named("index build"))
+            }
+            Self::BuildIndexAnew => format!("build the index with {} in a new file", named("index build")),
+            Self::BuildFieldAgain => format!("build it again with {}", named("field build")),
+            Self::ListShapes => format!("{} names its shapes", named("index list")),
+            Self::EvaluateShard => "evaluate one shard at a time".to_owned(),
+            Self::NameMember => "name one of them, as ARCHIVE/NAME".to_owned(),
+        }
+    }
 }
 
 /// Errors of the stages. A limit that was exceeded is [`Error::Exceeded`] at every depth.

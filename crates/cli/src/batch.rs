@@ -12,11 +12,12 @@ use serde::Serialize;
 
 use crate::args::{Common, keep_inputs};
 use crate::input::{expand, is_stream};
+use crate::output::shown;
 
 /// A mesh without a result.
 #[derive(Serialize)]
 pub(crate) struct Failure {
-    /// Of commands that list names.
+    /// Of a mesh that was to have a result of its name.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) name: Option<String>,
     pub(crate) path: PathBuf,
@@ -32,19 +33,6 @@ impl Failure {
     }
 }
 
-/// What was made of several meshes.
-pub(crate) struct Batch<T> {
-    pub(crate) done: Vec<(ShapeFile, T)>,
-    pub(crate) failed: Vec<Failure>,
-}
-
-/// Whether meshes share the threads, or each has all of them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Order {
-    InParallel,
-    OneByOne,
-}
-
 /// What is written, and where.
 pub(crate) struct Results<'a> {
     /// In words.
@@ -53,7 +41,8 @@ pub(crate) struct Results<'a> {
     pub(crate) arguments: &'a [PathBuf],
     pub(crate) folder: &'a Path,
     pub(crate) extension: &'a str,
-    pub(crate) order: Order,
+    /// Whether meshes share the threads, or each has all of them.
+    pub(crate) in_parallel: bool,
 }
 
 impl Results<'_> {
@@ -65,7 +54,7 @@ impl Results<'_> {
         &self,
         common: &Common,
         one: impl Fn(&ShapeFile, &Path) -> Result<T> + Sync,
-    ) -> Result<Batch<T>> {
+    ) -> Result<(Vec<(ShapeFile, T)>, Vec<Failure>)> {
         if is_stream(self.folder) {
             bail!("several {} cannot go to standard output; name a folder for them", self.what);
         }
@@ -73,26 +62,34 @@ impl Results<'_> {
         let outputs = self.outputs(&shapes)?;
         let bar = Bars::new(common.quiet).bar(self.what, shapes.len());
         let work = |(shape, output): (&ShapeFile, &PathBuf)| {
-            let result = one(shape, output);
+            let folder = output.parent().unwrap_or(self.folder);
+            let result = std::fs::create_dir_all(folder)
+                .with_context(|| format!("cannot create the folder {}", folder.display()))
+                .and_then(|()| one(shape, output));
             bar.inc(1);
             result
         };
-        let results: Vec<Result<T>> = match self.order {
-            Order::InParallel => shapes.par_iter().zip(&outputs).map(work).collect(),
-            Order::OneByOne => shapes.iter().zip(&outputs).map(work).collect(),
+        let results: Vec<Result<T>> = match self.in_parallel {
+            true => shapes.par_iter().zip(&outputs).map(work).collect(),
+            false => shapes.iter().zip(&outputs).map(work).collect(),
         };
         bar.finish_and_clear();
-        let mut batch = Batch { done: Vec::new(), failed: Vec::new() };
+        let (mut done, mut failed) = (Vec::new(), Vec::new());
         for (shape, result) in shapes.into_iter().zip(results) {
             match result {
-                Ok(result) => batch.done.push((shape, result)),
+                Ok(result) => done.push((shape, result)),
                 Err(fault) => {
                     let name = Some(shape.name);
-                    batch.failed.push(Failure { name, ..Failure::new(shape.path, &fault) });
+                    failed.push(Failure { name, ..Failure::new(shape.path, &fault) });
                 }
             }
         }
-        Ok(batch)
+        Ok((done, failed))
+    }
+
+    /// How many there are.
+    pub(crate) fn counts(&self, n_done: usize, failed: &[Failure]) -> String {
+        format!("{n_done} {} in {}, {} failed", self.what, shown(self.folder), failed.len())
     }
 
     /// Where the result of each mesh goes.
@@ -119,14 +116,5 @@ impl Results<'_> {
             }
         }
         Ok(outputs)
-    }
-}
-
-/// Creates the folder of a result.
-pub(crate) fn create_folder_of(output: &Path) -> Result<()> {
-    match output.parent() {
-        Some(folder) => std::fs::create_dir_all(folder)
-            .with_context(|| format!("cannot create the folder {}", folder.display())),
-        None => Ok(()),
     }
 }

@@ -37,7 +37,7 @@ pub(crate) fn check_dropped(name: &str, share: f64, allowed: f64) {
     if share > allowed {
         LOST_TOO_MUCH.store(true, Ordering::Relaxed);
         let message = format!(
-            "{name}: {:.1} % of the surface was dropped, since it is not connected to the rest; {:.1} % is allowed",
+            "{name}: {:.1} % of the surface was dropped, since it is not connected to the rest; --max-dropped allows {:.1} %",
             100.0 * share,
             100.0 * allowed
         );
@@ -198,11 +198,12 @@ fn single(path: PathBuf) -> ShapeFile {
 pub(crate) fn named(path: &Path, fault: canonform::Error) -> anyhow::Error {
     let is_named = is_named(path, &fault.to_string());
     let error = anyhow::Error::from(fault);
-    match is_named {
-        true => error,
-        false if is_stream(path) => error.context(STREAM),
-        false => error.context(path.display().to_string()),
-    }
+    if is_named { error } else { error.context(input_name(path)) }
+}
+
+/// An input in messages.
+pub(crate) fn input_name(path: &Path) -> String {
+    if is_stream(path) { STREAM.to_owned() } else { path.display().to_string() }
 }
 
 /// Whether a message names a mesh, by any of its files.

@@ -3,11 +3,10 @@
 mod args;
 mod batch;
 mod commands;
-mod field;
 mod input;
 mod output;
-mod pairs;
 mod remedy;
+mod table;
 
 use std::process::ExitCode;
 

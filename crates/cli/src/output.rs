@@ -1,14 +1,13 @@
 //! Output: JSON, tables, files and exit codes.
 
 use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
 use canonform::mesh::io::{Content, Format, VertexField, extension, files_of, is_gzip, or_list};
 use canonform::mesh::{MeshError, TriMesh};
-use npyz::WriterBuilder;
 use report::color::{Rgb, color_scale};
 use serde::Serialize;
 
@@ -106,47 +105,6 @@ pub(crate) fn row_of(cells: impl IntoIterator<Item = impl AsRef<str>>) -> Vec<St
     cells.into_iter().map(|cell| base::one_line(cell.as_ref()).into_owned()).collect()
 }
 
-/// Writes rows of equal length as a little-endian float64 NumPy array.
-pub(crate) fn write_npy<'a>(
-    path: &Path,
-    n_columns: usize,
-    rows: impl ExactSizeIterator<Item = &'a [f64]>,
-) -> Result<()> {
-    fill_npy(path, [rows.len(), n_columns], |file| {
-        let mut out = BufWriter::with_capacity(1 << 16, file);
-        rows.flatten().try_for_each(|x| out.write_all(&x.to_le_bytes()))?;
-        out.flush()
-    })
-}
-
-/// Writes a little-endian float64 NumPy array of this shape; `content` writes its numbers after the header, in any order.
-pub(crate) fn fill_npy(
-    path: &Path,
-    shape: [usize; 2],
-    content: impl FnOnce(&mut File) -> io::Result<()>,
-) -> Result<()> {
-    let mut header = Vec::new();
-    let shape = shape.map(|n| n as u64);
-    let array: npyz::NpyWriter<f64, _> =
-        npyz::WriteOptions::new().default_dtype().shape(&shape).writer(&mut header).begin_nd()?;
-    drop(array);
-    Ok(base::files::fill_atomically(path, |file| {
-        file.write_all(&header)?;
-        content(file)
-    })?)
-}
-
-/// Writes rows of comma-separated numbers in full precision.
-pub(crate) fn write_csv<'a>(path: &Path, rows: impl Iterator<Item = &'a [f64]>) -> Result<()> {
-    Ok(base::files::write_atomically(path, |out| {
-        for row in rows {
-            let text: Vec<String> = row.iter().map(f64::to_string).collect();
-            writeln!(out, "{}", text.join(","))?;
-        }
-        Ok(())
-    })?)
-}
-
 /// Where a command writes its result: a file, or standard output.
 #[derive(Debug)]
 pub(crate) struct Output {
@@ -207,7 +165,7 @@ impl Output {
     /// Prints the result of a command whose file is complete. If the file goes to standard output, the table goes to
     /// standard error.
     pub(crate) fn report<T: Serialize>(
-        self,
+        &self,
         common: &Common,
         result: &T,
         table: impl FnOnce(&T) -> String,

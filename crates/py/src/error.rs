@@ -1,4 +1,4 @@
-//! Library errors as Python exceptions, with remedies as keyword arguments. No other place words a remedy.
+//! Library errors as Python exceptions, with remedies as keyword arguments.
 
 use base::Exceeded;
 use base::files::FileError;
@@ -13,40 +13,24 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::PyModule;
 
 /// The exceptions of `canonform.errors`.
-#[derive(Debug, Clone, Copy)]
+#[expect(clippy::enum_variant_names, reason = "as Python names them")]
+#[derive(Debug, Clone, Copy, strum::IntoStaticStr)]
 pub(crate) enum Exception {
-    Mesh,
-    Option,
-    Point,
-    Embedding,
-    Limit,
-    OutOfMemory,
-    OutOfTime,
-    File,
-    MissingFile,
-    Index,
-    NoSuchShape,
-    Canonform,
+    MeshError,
+    OptionError,
+    PointError,
+    EmbeddingError,
+    LimitError,
+    MemoryLimitError,
+    TimeLimitError,
+    FileError,
+    MissingFileError,
+    ShapeIndexError,
+    NoSuchShapeError,
+    CanonformError,
 }
 
 impl Exception {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Mesh => "MeshError",
-            Self::Option => "OptionError",
-            Self::Point => "PointError",
-            Self::Embedding => "EmbeddingError",
-            Self::Limit => "LimitError",
-            Self::OutOfMemory => "MemoryLimitError",
-            Self::OutOfTime => "TimeLimitError",
-            Self::File => "FileError",
-            Self::MissingFile => "MissingFileError",
-            Self::Index => "ShapeIndexError",
-            Self::NoSuchShape => "NoSuchShapeError",
-            Self::Canonform => "CanonformError",
-        }
-    }
-
     /// The exception with this message.
     pub(crate) fn with(self, message: &str) -> PyErr {
         Python::attach(|py| {
@@ -54,7 +38,7 @@ impl Exception {
             let import = || Ok::<_, PyErr>(py.import("canonform.errors")?.unbind());
             let raised = MODULE.get_or_try_init(py, import).and_then(|module| {
                 Ok(PyErr::from_value(
-                    module.bind(py).getattr(self.name())?.call1((base::printable(message),))?,
+                    module.bind(py).getattr(<&str>::from(self))?.call1((base::printable(message),))?,
                 ))
             });
             raised.unwrap_or_else(|fault| fault)
@@ -64,18 +48,18 @@ impl Exception {
     fn of(fault: &Error) -> Self {
         match fault {
             Error::Mesh(MeshError::Io(file)) | Error::File(file) => Self::of_file(file),
-            Error::Mesh(_) | Error::Collection(CollectionError::NoShapes { .. }) => Self::Mesh,
+            Error::Mesh(_) | Error::Collection(CollectionError::NoShapes { .. }) => Self::MeshError,
             Error::Exceeded(Exceeded::Memory { .. } | Exceeded::Allocation { .. })
             | Error::MemoryTooSmall { .. }
             | Error::EmbeddingTooLarge { .. }
             | Error::AllPairsTooLarge { .. }
-            | Error::TooManyShapes { .. } => Self::OutOfMemory,
-            Error::Exceeded(Exceeded::Time { .. }) => Self::OutOfTime,
-            Error::Exceeded(_) => Self::Limit,
+            | Error::TooManyShapes { .. } => Self::MemoryLimitError,
+            Error::Exceeded(Exceeded::Time { .. }) => Self::TimeLimitError,
+            Error::Exceeded(_) => Self::LimitError,
             Error::Point(_) | Error::NoPath { .. } | Error::Geodesic(GeodesicError::NoSuchVertex { .. }) => {
-                Self::Point
+                Self::PointError
             }
-            Error::Field(_) => Self::File,
+            Error::Field(_) => Self::FileError,
             Error::BadDescription { .. }
             | Error::NoSuchShard { .. }
             | Error::UnusableMap(_)
@@ -83,64 +67,54 @@ impl Exception {
             | Error::NoExtension { .. }
             | Error::OtherSurface { .. }
             | Error::NotThere { .. }
-            | Error::ContradictoryLandmarks { .. } => Self::Option,
-            Error::Index(IndexError::NoSuchShape { .. }) => Self::NoSuchShape,
+            | Error::ContradictoryLandmarks { .. } => Self::OptionError,
+            Error::Index(IndexError::NoSuchShape { .. }) => Self::NoSuchShapeError,
             Error::Index(IndexError::Io { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => {
-                Self::MissingFile
+                Self::MissingFileError
             }
-            Error::MeshGone { .. } => Self::MissingFile,
+            Error::MeshGone { .. } => Self::MissingFileError,
             Error::Index(_)
             | Error::UnknownOptions { .. }
             | Error::AlreadyThere { .. }
-            | Error::MeshChanged { .. } => Self::Index,
+            | Error::MeshChanged { .. } => Self::ShapeIndexError,
             Error::Geodesic(_)
             | Error::Linalg(_)
             | Error::Nmds(_)
             | Error::Descriptor(_)
-            | Error::Retrieval(_) => Self::Embedding,
-            _ => Self::Canonform,
+            | Error::Retrieval(_) => Self::EmbeddingError,
+            _ => Self::CanonformError,
         }
     }
 
     fn of_file(fault: &FileError) -> Self {
         match fault.source.kind() {
-            std::io::ErrorKind::NotFound => Self::MissingFile,
-            _ => Self::File,
+            std::io::ErrorKind::NotFound => Self::MissingFileError,
+            _ => Self::FileError,
         }
     }
 }
 
-fn words(remedy: Remedy) -> &'static str {
-    match remedy {
-        Remedy::KeepLargestOrBridge => "pass components=\"largest\" or components=\"bridge\"",
-        Remedy::BridgeComponents => "to keep all components, pass components=\"bridge\"",
-        Remedy::BridgeOrWeld => {
-            "pass components=\"bridge\" to keep all components, or weld=TOLERANCE to close gaps that wide"
-        }
-        Remedy::UseThreeDimensions => "leave out n_components=",
-        Remedy::UseFastMarching => "use geodesic=\"fast-marching\"",
-        Remedy::UseNystrom => "use method=\"nmds\", which needs only a few columns",
-        Remedy::GiveSamples => "give a number of landmarks, such as n_landmarks=100",
-        Remedy::RaiseMemory => "raise memory=",
-        Remedy::RaiseTimeLimit => "raise timeout=",
-        Remedy::RaiseMaxDistance => "choose another target, or raise max_distance=",
-        Remedy::GiveLabels => "give classes with labels=",
-        Remedy::ReplaceShape => "rename the new shape, remove the old one, or pass replace=True",
-        Remedy::RestoreMesh => {
-            "restore the file, move the index back to the place where it was built, or build the index again"
-        }
-        Remedy::BuildIndexAgain => "restore the index from a copy, or build it again with Index.build",
-        Remedy::BuildIndexAnew => "build the index with Index.build in a new file",
-        Remedy::BuildFieldAgain => "build it again with Surface.distance_field",
-        Remedy::ListShapes => "Index.shapes() names its shapes",
-        Remedy::EvaluateShard => "evaluate one shard at a time",
-        Remedy::NameMember => "name one of them, as \"ARCHIVE/NAME\"",
-    }
+/// An option of the library as a keyword argument with the values that it may have, or a command as a function.
+pub(crate) fn spelled(name: &str, values: &[&str]) -> String {
+    let name = match name {
+        "index build" => return "Index.build".to_owned(),
+        "index list" => return "Index.shapes()".to_owned(),
+        "field build" => return "Surface.distance_field".to_owned(),
+        "replace" => return "replace=True".to_owned(),
+        "dim" => "n_components",
+        "samples" => "n_landmarks",
+        name => name,
+    };
+    let values: Vec<_> = values.iter().map(|value| format!("{value:?}")).collect();
+    format!("{name}={}", values.join(" or "))
 }
 
 /// A message with its remedy as keyword arguments.
 pub(crate) fn with_remedy(message: String, remedy: Option<Remedy>) -> String {
-    remedy.map_or(message.clone(), |remedy| format!("{message}; {}", words(remedy)))
+    match remedy {
+        Some(remedy) => format!("{message}; {}", remedy.in_words(spelled)),
+        None => message,
+    }
 }
 
 /// An error of the library as the exception that Python raises.
@@ -149,5 +123,5 @@ pub(crate) fn to_python(fault: &Error) -> PyErr {
 }
 
 pub(crate) fn of_dataset(fault: &DatasetError) -> PyErr {
-    Exception::Option.with(&fault.to_string())
+    Exception::OptionError.with(&fault.to_string())
 }

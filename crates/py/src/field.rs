@@ -84,7 +84,7 @@ impl DistanceField {
     #[staticmethod]
     fn from_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
         let read = py.detach(|| canonform::fields::DistanceField::from_bytes(bytes));
-        read.map(Self).map_err(|fault| Exception::File.with(&fault.to_string()))
+        read.map(Self).map_err(|fault| Exception::FileError.with(&fault.to_string()))
     }
 
     #[getter]

@@ -40,7 +40,7 @@ impl Form {
         let coords = &self.embedded.embedding.coords;
         if coords.ncols() != 3 {
             let message = format!("a mesh has 3 dimensions, not {}; leave out n_components=", coords.ncols());
-            return Err(Exception::Embedding.with(&message));
+            return Err(Exception::EmbeddingError.with(&message));
         }
         let points: Vec<_> = coords.row_iter().map(|row| [row[0], row[1], row[2]].into()).collect();
         Ok(self.surface.input.with_positions(|v| points[v.index()]))

@@ -1,9 +1,10 @@
 //! Indexes of shape collections.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::HashSet;
 use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
 
+use base::object;
 use canonform::collection::{LabelSource, ShapeFile, content_hash};
 use canonform::index::{Entry, ExportFormat, FORMAT_VERSION, IndexError};
 use canonform::library::{
@@ -19,7 +20,6 @@ use canonform::{DescribeOptions, Error, Observer};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use rayon::prelude::*;
-use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::arrays;
@@ -34,17 +34,6 @@ use crate::surface::Surface;
 pub(crate) struct Index {
     path: PathBuf,
     search: ShapeSearch,
-}
-
-#[derive(Serialize)]
-struct Info<'a> {
-    format: u32,
-    n_shapes: usize,
-    n_bytes: u64,
-    options: &'a canonform::DescribeOptions,
-    classes: BTreeMap<String, u64>,
-    /// Shapes without a class.
-    unlabelled: u64,
 }
 
 /// What a mesh is, or which shape of the index.
@@ -84,7 +73,8 @@ impl Index {
         })
     }
 
-    /// Makes a file the index of the meshes in a folder; returns the report as JSON.
+    /// Makes a file the index of the meshes in a folder; returns the report as JSON. With `only_unchanged`, nothing is done, and
+    /// there is a report only if there is nothing to do.
     #[staticmethod]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn build(
@@ -95,8 +85,9 @@ impl Index {
         prune: bool,
         shard: Option<(usize, usize)>,
         only: Option<HashSet<String>>,
+        only_unchanged: bool,
         settings: Settings,
-    ) -> PyResult<String> {
+    ) -> PyResult<Option<String>> {
         let describe = settings.describe(settings.repair())?;
         let labels = labels_of(labels)?;
         let shard = shard.map(|(i, n)| Shard::new(i, n)).transpose().map_err(|fault| to_python(&fault))?;
@@ -108,32 +99,14 @@ impl Index {
             limits: settings.limits()?,
             ..BuildOptions::new(&describe)
         };
-        let built = run(py, |observer| build_index(&folder, &path, &options, observer))?;
-        Ok(report_of(built))
-    }
-
-    /// The report on a build of all meshes in a folder, with nothing else in the index, as JSON, if there is nothing to do.
-    #[staticmethod]
-    fn unchanged(
-        py: Python<'_>,
-        folder: PathBuf,
-        path: PathBuf,
-        labels: Option<PathBuf>,
-        settings: Settings,
-    ) -> PyResult<Option<String>> {
-        let describe = settings.describe(settings.repair())?;
-        let labels = labels_of(labels)?;
-        let options = BuildOptions {
-            labels: labels.as_ref(),
-            prune: true,
-            limits: settings.limits()?,
-            ..BuildOptions::new(&describe)
-        };
-        let found = run(py, |observer| match unchanged_index(&folder, &path, &options, observer) {
-            Err(Error::Index(IndexError::OtherOptions { .. })) => Ok(None),
-            found => found,
+        let built = run(py, |observer| match only_unchanged {
+            false => build_index(&folder, &path, &options, observer).map(Some),
+            true => match unchanged_index(&folder, &path, &options, observer) {
+                Err(Error::Index(IndexError::OtherOptions { .. })) => Ok(None),
+                found => found,
+            },
         })?;
-        Ok(found.map(report_of))
+        Ok(built.map(report_of))
     }
 
     /// Adds meshes and folders of them to the index at a path; returns the report as JSON.
@@ -284,10 +257,16 @@ impl Index {
     fn info(&self) -> PyResult<String> {
         let index = self.search.index();
         let classes = index.classes().map_err(|fault| to_python(&fault.into()))?;
-        let (format, n_shapes, n_bytes) = (FORMAT_VERSION, index.len(), index.n_bytes());
-        let unlabelled = n_shapes as u64 - classes.values().sum::<u64>();
-        let options = self.search.describe_options();
-        Ok(json(&Info { format, n_shapes, n_bytes, options, classes, unlabelled }))
+        let n_shapes = index.len();
+        Ok(json(&object! {
+            format: FORMAT_VERSION,
+            n_shapes,
+            n_bytes: index.n_bytes(),
+            options: self.search.describe_options(),
+            // Shapes without a class.
+            unlabelled: n_shapes as u64 - classes.values().sum::<u64>(),
+            classes,
+        }))
     }
 
     /// Name, class, path and numbers of vertices and faces of all shapes.
@@ -326,7 +305,7 @@ impl Index {
             "fused" => PairwiseDistance::Fused,
             _ => {
                 let message = format!("kind={kind:?} is not possible: use \"combined\", \"fused\"");
-                return Err(Exception::Option.with(&message));
+                return Err(Exception::OptionError.with(&message));
             }
         };
         let distances = run(py, |observer| self.search.distances(&rows, columns.as_deref(), kind, observer))?;
@@ -336,12 +315,8 @@ impl Index {
     /// The surface of the mesh of a shape, repaired as the index says.
     fn surface(&self, py: Python<'_>, id: &str) -> PyResult<Surface> {
         let repair: RepairOptions = self.search.describe_options().form.repair;
-        run(py, |observer| {
-            let mesh = self.search.mesh(id)?;
-            let content = self.search.index().entry(id)?.content;
-            let inner = canonform::Surface::new(&mesh, &repair, observer)?;
-            Ok(Surface::of(mesh, inner, Some(content)))
-        })
+        let read = || Ok((self.search.mesh(id)?, Some(self.search.index().entry(id)?.content)));
+        Surface::repaired(py, &repair, read)
     }
 
     /// Writes the index in the format of the extension.
@@ -350,7 +325,7 @@ impl Index {
         let Some(format) = ExportFormat::named(extension) else {
             let known = ExportFormat::ALL.map(ExportFormat::extension).join(", ");
             let message = format!("`{extension}` is not a format of exports; use one of {known}");
-            return Err(Exception::Option.with(&message));
+            return Err(Exception::OptionError.with(&message));
         };
         run(py, |_| export_index(self.search.index(), format, &path))
     }
@@ -364,7 +339,8 @@ impl Index {
         keep: &str,
         reference: Vec<PathBuf>,
     ) -> PyResult<String> {
-        let keep = keep.parse().map_err(|fault: String| Exception::Option.with(&format!("keep: {fault}")))?;
+        let keep =
+            keep.parse().map_err(|fault: String| Exception::OptionError.with(&format!("keep: {fault}")))?;
         let mut options = DuplicateOptions { min_confidence, keep, reference, ..DuplicateOptions::default() };
         if let Some(kinds) = kinds {
             let kinds = kinds.iter().map(|kind| chosen("kinds", kind));
@@ -388,7 +364,7 @@ impl Index {
 
 /// What another process wrote as JSON.
 fn unpacked<T: DeserializeOwned>(text: &str) -> PyResult<T> {
-    serde_json::from_str(text).map_err(|fault| Exception::Option.with(&format!("{text:.40}: {fault}")))
+    serde_json::from_str(text).map_err(|fault| Exception::OptionError.with(&format!("{text:.40}: {fault}")))
 }
 
 /// The query of a surface for indexes of these options.
@@ -423,7 +399,7 @@ pub(crate) fn query_of_surface(
     rank: &str,
     explain: bool,
 ) -> PyResult<String> {
-    let unknown = || Exception::Option.with(&format!("options {options:?} are not of this version"));
+    let unknown = || Exception::OptionError.with(&format!("options {options:?} are not of this version"));
     let describe = DescribeOptions::from_text(options).ok_or_else(unknown)?;
     let (surface, options) = (surface.get(), search_options(0, rank, explain)?);
     let query = run(py, |observer| query_of(surface, &describe, name, &options, observer))?;

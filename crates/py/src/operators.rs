@@ -130,7 +130,7 @@ pub(crate) fn closest_points<'py>(
         };
         Ok(queries.par_iter().map(nearest).collect::<Option<Vec<_>>>())
     })?;
-    let found = found.ok_or_else(|| Exception::Mesh.with("the surface has no area"))?;
+    let found = found.ok_or_else(|| Exception::MeshError.with("the surface has no area"))?;
     let places = found.iter().flat_map(|(point, ..)| [point.x, point.y, point.z]).collect();
     let distances = found.iter().map(|(_, distance, _)| *distance).collect();
     let faces: Vec<i64> = found.iter().map(|(.., face)| *face).collect();

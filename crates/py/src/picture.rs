@@ -62,7 +62,7 @@ pub(crate) fn draw<'py>(
         background: look.background.map_or(Background::Transparent, Background::Color),
         coloring,
         marks: marks.as_slice()?.as_chunks().0.to_vec(),
-        colors: look.colormap.parse().map_err(|fault: String| Exception::Option.with(&fault))?,
+        colors: look.colormap.parse().map_err(|fault: String| Exception::OptionError.with(&fault))?,
         view: look.view.map_or(View::Principal, |[azimuth, elevation]| View::Upright {
             azimuth,
             elevation,
@@ -90,13 +90,13 @@ pub(crate) fn figure<'py>(
         titles.into_iter().map(|(text, middle, width)| Title { text, middle, width }).collect();
     let image = |(bytes, place): &(PyBackedBytes, [i64; 2])| Ok((RgbaImage::from_png(bytes)?, *place));
     let pictures = pictures.iter().map(image).collect::<Result<Vec<_>, std::io::Error>>();
-    let pictures =
-        pictures.map_err(|fault| Exception::Option.with(&format!("pictures must be PNG files: {fault}")))?;
+    let pictures = pictures
+        .map_err(|fault| Exception::OptionError.with(&format!("pictures must be PNG files: {fault}")))?;
     png(py, run(py, |_| Ok(collage(size, background, &pictures, (&titles, type_size))))?)
 }
 
 fn png(py: Python<'_>, image: Result<RgbaImage, ReportError>) -> PyResult<Bound<'_, PyBytes>> {
-    let image = image.map_err(|fault| Exception::Canonform.with(&fault.to_string()))?;
+    let image = image.map_err(|fault| Exception::CanonformError.with(&fault.to_string()))?;
     Ok(PyBytes::new(py, &image.to_png()?))
 }
 

@@ -15,9 +15,9 @@ pub(crate) fn points_of(points: &Bound<'_, PyAny>) -> PyResult<Vec<InputPoint>> 
 
 pub(crate) fn point_of(point: &Bound<'_, PyAny>) -> PyResult<InputPoint> {
     if let Ok(text) = point.extract::<&str>() {
-        return text
-            .parse()
-            .map_err(|fault: canonform::mesh::ParsePointError| Exception::Point.with(&fault.to_string()));
+        return text.parse().map_err(|fault: canonform::mesh::ParsePointError| {
+            Exception::PointError.with(&fault.to_string())
+        });
     }
     Ok(InputPoint::Vertex(vertex_of(point)?))
 }
@@ -32,11 +32,11 @@ pub(crate) fn vertex_of(number: &Bound<'_, PyAny>) -> PyResult<VertexId> {
 
 fn not_a_point(given: &Bound<'_, PyAny>) -> PyErr {
     let message = "is not a point; give the number of a vertex, or text such as \"17-42@0.3\"";
-    Exception::Point.with(&format!("{given} {message}"))
+    Exception::PointError.with(&format!("{given} {message}"))
 }
 
 pub(crate) fn vertex(number: i64) -> PyResult<VertexId> {
-    u32::try_from(number)
-        .map(VertexId)
-        .map_err(|_| Exception::Point.with(&format!("{number} is not a vertex; vertices are counted from 0")))
+    u32::try_from(number).map(VertexId).map_err(|_| {
+        Exception::PointError.with(&format!("{number} is not a vertex; vertices are counted from 0"))
+    })
 }

@@ -18,13 +18,13 @@ use canonform::settings::{
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use serde::de::value::{Error, MapDeserializer, StrDeserializer};
-use serde::de::{DeserializeOwned, IgnoredAny, IntoDeserializer, Visitor};
-use serde::{Deserialize, Deserializer, Serialize, forward_to_deserialize_any};
+use serde::de::value::{Error, StrDeserializer};
+use serde::de::{DeserializeOwned, IgnoredAny, IntoDeserializer};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, json};
 use strum::{EnumMessage, VariantArray};
 
-use crate::error::Exception;
-use crate::record::json;
+use crate::error::{Exception, spelled};
 
 /// Keyword arguments that were given.
 #[derive(Default, Deserialize)]
@@ -62,37 +62,6 @@ enum Value {
     Text(String),
 }
 
-impl<'de> Deserializer<'de> for Value {
-    type Error = Error;
-
-    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-        match self {
-            Self::Switch(on) => visitor.visit_bool(on),
-            Self::Count(number) => visitor.visit_u64(number),
-            Self::Whole(number) => visitor.visit_i64(number),
-            Self::Number(number) => visitor.visit_f64(number),
-            Self::Text(text) => visitor.visit_string(text),
-        }
-    }
-
-    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-        visitor.visit_some(self)
-    }
-
-    forward_to_deserialize_any! {
-        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf unit unit_struct
-        newtype_struct seq tuple tuple_struct map struct enum identifier ignored_any
-    }
-}
-
-impl IntoDeserializer<'_, Error> for Value {
-    type Deserializer = Self;
-
-    fn into_deserializer(self) -> Self {
-        self
-    }
-}
-
 /// Checks options of a method, or of distances. Returns all options of a description by them, as JSON.
 #[pyfunction]
 pub(crate) fn check_options(settings: Settings) -> PyResult<String> {
@@ -104,24 +73,26 @@ impl<'py> FromPyObject<'_, 'py> for Settings {
 
     /// Reads keyword arguments; those that are `None` were not given.
     fn extract(given: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        let mut values = Vec::new();
+        let mut values = Map::new();
         for (name, value) in given.cast::<PyDict>()?.iter().filter(|(_, value)| !value.is_none()) {
             let name: String = name.extract()?;
-            match value.extract::<Value>() {
-                Ok(value) => values.push((name, value)),
-                Err(_) => return Err(refused(&name, value.repr()?, "give a number, text or a truth value")),
-            }
+            let Ok(given) = value.extract::<Value>() else {
+                return Err(refused(&name, value.repr()?, "give a number, text or a truth value"));
+            };
+            let given = match given {
+                // JSON has no such numbers.
+                Value::Number(number) if !number.is_finite() => json!(number.to_string()),
+                given => json!(given),
+            };
+            // The error of all of them would not say which one is wrong.
+            let alone = Map::from_iter([(name.clone(), given.clone())]);
+            Self::deserialize(alone).map_err(|fault| refused(&name, &given, &in_words(&fault)))?;
+            values.insert(name, given);
         }
-        let read =
-            |values: &[(String, Value)]| Self::deserialize(MapDeserializer::new(values.iter().cloned()));
-        // The error of all of them does not say which one is wrong.
-        for value in &values {
-            let refused = |fault: Error| refused(&value.0, json(&value.1), &in_words(&fault));
-            read(std::slice::from_ref(value)).map_err(refused)?;
-        }
-        let settings = read(&values).map_err(|fault| Exception::Option.with(&fault.to_string()))?;
+        let settings =
+            Self::deserialize(values).map_err(|fault| Exception::OptionError.with(&fault.to_string()))?;
         match settings.unknown.keys().next() {
-            Some(name) => Err(Exception::Option.with(&format!("there is no option {name}"))),
+            Some(name) => Err(Exception::OptionError.with(&format!("there is no option {name}"))),
             None => Ok(settings),
         }
     }
@@ -139,7 +110,7 @@ pub(crate) fn measure(name: &str, text: &str) -> PyResult<Measure> {
 }
 
 /// What is possible instead.
-fn in_words(fault: &Error) -> String {
+fn in_words(fault: &impl Display) -> String {
     let text = fault.to_string().replace('`', "\"");
     let Some((_, possible)) = text.split_once(", expected ") else { return text };
     let possible = match possible.trim_start_matches("one of ") {
@@ -152,7 +123,7 @@ fn in_words(fault: &Error) -> String {
 }
 
 fn refused(name: &str, value: impl Display, what: &str) -> PyErr {
-    Exception::Option.with(&format!("{name}={value} is not possible: {what}"))
+    Exception::OptionError.with(&format!("{name}={value} is not possible: {what}"))
 }
 
 impl Settings {
@@ -169,13 +140,8 @@ impl Settings {
     /// How a form is made of a surface that was repaired in this way.
     pub(crate) fn form(&self, repair: RepairOptions) -> PyResult<FormOptions> {
         let checked = self.form.options(&self.method, &self.marching, &self.repair);
-        let options = checked.map_err(|fault: NoEffect| {
-            let spell = |name: &str, values: &[&str]| {
-                let values: Vec<_> = values.iter().map(|value| format!("{value:?}")).collect();
-                format!("{name}={}", values.join(" or "))
-            };
-            Exception::Option.with(&fault.in_words(spell))
-        })?;
+        let options =
+            checked.map_err(|fault: NoEffect| Exception::OptionError.with(&fault.in_words(spelled)))?;
         Ok(FormOptions { repair, seed: self.seed.unwrap_or_default(), ..options })
     }
 

@@ -1,9 +1,9 @@
 //! Surfaces: distances, paths, samples, forms and signatures.
 
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, OnceLock};
 
-use base::Budget;
+use base::{Budget, Cache};
 use canonform::collection::content_hash;
 use canonform::compare::ComparedMesh;
 use canonform::embed::{EmbedOptions, FormOptions, embed};
@@ -12,7 +12,7 @@ use canonform::geodesics::{
 };
 use canonform::library::Measure;
 use canonform::maps::{CorrespondOptions, MappedSurface};
-use canonform::mesh::io::{MemoryFile, ReadLimits};
+use canonform::mesh::io::{MemoryFile, MeshFile, ReadLimits};
 use canonform::mesh::{InputPoint, RepairOptions, TriMesh};
 use canonform::rigid::TriangleTree;
 use canonform::surface::VertexId;
@@ -31,48 +31,18 @@ use crate::settings::{Settings, measure};
 /// Most prepared solvers, descriptions and sides of comparisons that a surface keeps of each kind.
 const MOST_KEPT: usize = 4;
 
-/// A few values by what they were made from; the oldest goes when there are too many.
-struct Kept<K, V>(Mutex<Vec<(K, V)>>);
-
-impl<K, V> Default for Kept<K, V> {
-    fn default() -> Self {
-        Self(Mutex::default())
+/// The value kept for a key, or one that is made now and kept.
+fn or_make<K: PartialEq + Clone, V>(
+    kept: &Cache<K, Arc<V>>,
+    key: &K,
+    make: impl FnOnce() -> Result<V, Error>,
+) -> Result<Arc<V>, Error> {
+    if let Some(kept) = kept.get(key) {
+        return Ok(kept);
     }
-}
-
-impl<K: PartialEq, V: Clone> Kept<K, V> {
-    fn lock(&self) -> std::sync::MutexGuard<'_, Vec<(K, V)>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn get(&self, key: &K) -> Option<V> {
-        self.lock().iter().find(|(kept, _)| kept == key).map(|(_, value)| value.clone())
-    }
-
-    fn put(&self, key: K, value: V) {
-        let mut kept = self.lock();
-        kept.retain(|(other, _)| *other != key);
-        if kept.len() >= MOST_KEPT {
-            kept.remove(0);
-        }
-        kept.push((key, value));
-    }
-
-    fn remove(&self, key: &K) {
-        self.lock().retain(|(kept, _)| kept != key);
-    }
-}
-
-impl<K: PartialEq + Clone, V> Kept<K, Arc<V>> {
-    /// The value kept for a key, or one that is made now and kept.
-    fn or_make(&self, key: &K, make: impl FnOnce() -> Result<V, Error>) -> Result<Arc<V>, Error> {
-        if let Some(kept) = self.get(key) {
-            return Ok(kept);
-        }
-        let made = Arc::new(make()?);
-        self.put(key.clone(), made.clone());
-        Ok(made)
-    }
+    let made = Arc::new(make()?);
+    kept.put(key.clone(), made.clone(), 1);
+    Ok(made)
 }
 
 /// A solver, and the budget that it was prepared with: who cancels that has to prepare another.
@@ -95,39 +65,39 @@ pub(crate) struct Surface {
     pub(crate) content: Option<ContentHash>,
     /// Whether the repair left all vertices as they are, so that no values need to be reordered.
     unchanged: bool,
-    solvers: Kept<Method, Prepared>,
-    descriptions: Kept<DescribeOptions, Arc<Shape>>,
-    compared: Kept<FormOptions, Arc<Compared>>,
-    matched: Kept<CorrespondOptions, Arc<Matched>>,
+    solvers: Cache<Method, Prepared>,
+    descriptions: Cache<DescribeOptions, Arc<Shape>>,
+    compared: Cache<FormOptions, Arc<Compared>>,
+    matched: Cache<CorrespondOptions, Arc<Matched>>,
     tree: OnceLock<(TriangleTree, Vec<i64>)>,
 }
 
 impl Surface {
     pub(crate) fn of(mesh: TriMesh, inner: canonform::Surface, content: Option<ContentHash>) -> Self {
-        let unchanged = inner.input.remap.is_identity();
-        let (solvers, descriptions, compared, matched, tree) = Default::default();
         Self {
             mesh,
+            unchanged: inner.input.remap.is_identity(),
             inner: Arc::new(inner),
             content,
-            unchanged,
-            solvers,
-            descriptions,
-            compared,
-            matched,
-            tree,
+            solvers: Cache::new(MOST_KEPT),
+            descriptions: Cache::new(MOST_KEPT),
+            compared: Cache::new(MOST_KEPT),
+            matched: Cache::new(MOST_KEPT),
+            tree: OnceLock::new(),
         }
     }
 
-    /// Repairs a mesh; `content` is the hash of its file.
-    fn repaired(
+    /// Reads a mesh, with the hash of its file, and repairs it.
+    pub(crate) fn repaired(
         py: Python<'_>,
-        mesh: TriMesh,
         options: &RepairOptions,
-        content: Option<ContentHash>,
+        read: impl FnOnce() -> Result<(TriMesh, Option<ContentHash>), Error> + Send,
     ) -> PyResult<Self> {
-        let inner = run(py, |observer| Ok(canonform::Surface::new(&mesh, options, observer)?))?;
-        Ok(Self::of(mesh, inner, content))
+        run(py, |observer| {
+            let (mesh, content) = read()?;
+            let inner = canonform::Surface::new(&mesh, options, observer)?;
+            Ok(Self::of(mesh, inner, content))
+        })
     }
 
     /// Values of the repaired vertices in the order of the input; without a copy if that is the same.
@@ -158,7 +128,7 @@ impl Surface {
                         let solver = method.prepare(self.inner.intrinsic(), &budget)?.into();
                         let prepared = Prepared { solver, budget: budget.clone() };
                         if limit.is_none() {
-                            self.solvers.put(method, prepared.clone());
+                            self.solvers.put(method, prepared.clone(), 1);
                         }
                         prepared
                     }
@@ -189,7 +159,7 @@ impl Surface {
         options: &DescribeOptions,
         observer: &dyn Observer,
     ) -> Result<Arc<Shape>, Error> {
-        self.descriptions.or_make(options, || canonform::describe(&self.inner, options, observer))
+        or_make(&self.descriptions, options, || canonform::describe(&self.inner, options, observer))
     }
 
     /// The surface, ready to be compared, made once.
@@ -199,8 +169,9 @@ impl Surface {
         observer: &dyn Observer,
     ) -> Result<Arc<Compared>, Error> {
         let surface = self.inner.clone();
-        self.compared
-            .or_make(options, || ComparedMesh::new(&self.mesh, self.content, surface, options, observer))
+        or_make(&self.compared, options, || {
+            ComparedMesh::new(&self.mesh, self.content, surface, options, observer)
+        })
     }
 
     /// The faces of the input that the repair kept, to look for nearest points, and their numbers; made once.
@@ -224,7 +195,7 @@ impl Surface {
         options: &CorrespondOptions,
         observer: &dyn Observer,
     ) -> Result<Arc<Matched>, Error> {
-        self.matched.or_make(options, || MappedSurface::new(self.inner.clone(), options, observer))
+        or_make(&self.matched, options, || MappedSurface::new(self.inner.clone(), options, observer))
     }
 
     fn description_of(&self, py: Python<'_>, settings: Settings) -> PyResult<Arc<Shape>> {
@@ -257,32 +228,32 @@ impl Surface {
         faces: PyReadonlyArray2<'_, i64>,
         settings: Settings,
     ) -> PyResult<Self> {
-        Self::repaired(py, arrays::mesh_of(&vertices, &faces)?, &settings.repair(), None)
+        let mesh = arrays::mesh_of(&vertices, &faces)?;
+        Self::repaired(py, &settings.repair(), || Ok((mesh, None)))
     }
 
     /// Reads and repairs a mesh file. Returns also what was ignored of it, in words.
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf, settings: Settings) -> PyResult<(Self, Vec<String>)> {
-        let options = settings.repair();
-        run(py, |observer| {
+        let mut notes = Vec::new();
+        let surface = Self::repaired(py, &settings.repair(), || {
             let content = content_hash(&path)?;
-            let file = canonform::collection::read_mesh_file(&path, &ReadLimits::default())?;
-            let inner = canonform::Surface::new(&file.mesh, &options, observer)?;
-            let ignored = file.facts.ignored.iter().map(|what| format!("ignored {what}"));
-            let notes = file.facts.notes.iter().cloned().chain(ignored).collect();
-            Ok((Self::of(file.mesh, inner, Some(content)), notes))
-        })
+            let MeshFile { mesh, facts, .. } =
+                canonform::collection::read_mesh_file(&path, &ReadLimits::default())?;
+            notes = facts.notes;
+            notes.extend(facts.ignored.iter().map(|what| format!("ignored {what}")));
+            Ok((mesh, Some(content)))
+        })?;
+        Ok((surface, notes))
     }
 
     /// Reads and repairs the content of a mesh file of this name.
     #[staticmethod]
     fn parse(py: Python<'_>, name: PathBuf, bytes: &[u8], settings: Settings) -> PyResult<Self> {
-        let options = settings.repair();
-        run(py, |observer| {
+        Self::repaired(py, &settings.repair(), || {
             let file = MemoryFile { name: &name, bytes };
             let mesh = canonform::mesh::io::read_memory(&[file], &ReadLimits::default())?;
-            let inner = canonform::Surface::new(&mesh, &options, observer)?;
-            Ok(Self::of(mesh, inner, Some(ContentHash::of(&[bytes]))))
+            Ok((mesh, Some(ContentHash::of(&[bytes]))))
         })
     }
 
@@ -304,10 +275,13 @@ impl Surface {
         content: Option<&str>,
     ) -> PyResult<Self> {
         let options: RepairOptions =
-            serde_json::from_str(repair).map_err(|fault| Exception::Option.with(&fault.to_string()))?;
-        let content: Option<ContentHash> =
-            content.map(str::parse).transpose().map_err(|fault: String| Exception::Canonform.with(&fault))?;
-        Self::repaired(py, arrays::mesh_of(&vertices, &faces)?, &options, content)
+            serde_json::from_str(repair).map_err(|fault| Exception::OptionError.with(&fault.to_string()))?;
+        let content: Option<ContentHash> = content
+            .map(str::parse)
+            .transpose()
+            .map_err(|fault: String| Exception::CanonformError.with(&fault))?;
+        let mesh = arrays::mesh_of(&vertices, &faces)?;
+        Self::repaired(py, &options, || Ok((mesh, content)))
     }
 
     #[getter]

@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use axum::body::Bytes;
 use axum::http::StatusCode;
+use base::Cache;
 use canonform::embed::MeasuredSurface;
 use canonform::relations::MeshGeometry;
 use canonform::search::{Answer, SearchOptions, SearchRank};
 use canonform::{Budget, ContentHash, Error, Surface};
 
-use crate::cache::Cache;
 use crate::collection::{Collection, Served};
 use crate::cost;
 use crate::duplicates::Duplicates;
@@ -27,9 +27,9 @@ pub(crate) struct App {
     pub(crate) work: Work,
     pub(crate) uploads: Arc<Places>,
     pub(crate) duplicates: Duplicates,
-    measured: Cache<Arc<Measured>>,
-    pub(crate) thumbnails: Cache<Bytes>,
-    queries: Cache<Arc<Query>>,
+    measured: Cache<String, Arc<Measured>>,
+    pub(crate) thumbnails: Cache<String, Bytes>,
+    queries: Cache<String, Arc<Query>>,
 }
 
 /// An upload that was searched for.

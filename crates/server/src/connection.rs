@@ -51,8 +51,7 @@ pub(crate) async fn serve(
         .serve_connection(TokioIo::new(stream), requests);
     let served = std::pin::pin!(watcher.watch(connection));
     let slow = std::pin::pin!(async {
-        let (lost, late) =
-            (std::pin::pin!(place.lost()), std::pin::pin!(pace.exceeds(idle_time, &[Phase::Waiting])));
+        let (lost, late) = (std::pin::pin!(place.lost()), std::pin::pin!(pace.is_over(Phase::Waiting)));
         select(lost, late).await;
     });
     // Broken connections are not errors of the server.

@@ -1,7 +1,6 @@
 //! What jobs will take, in seconds on two cores.
 //!
-//! Measured with generated cats of 3,400 and 30,000 vertices and an index of 144 shapes. The [load](crate::load) learns how
-//! much faster or slower its machine is.
+//! Measured with generated cats of 3,400 and 30,000 vertices and an index of 144 shapes.
 
 use canonform::search::{SearchOptions, SearchRank};
 
@@ -54,46 +53,42 @@ pub(crate) fn of_search(options: &SearchOptions, n_shapes: usize, mean: u64, ver
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::load::{Length, Load};
+    use crate::work::is_long;
 
     #[test]
     fn long_rankings_and_matches_are_long_jobs() {
         use SearchRank::{Forms, Graph, Part, Plain};
-        let length = |cost: f64| {
-            let accepted = Load::new(2, 1).accept(cost, std::time::Duration::from_secs(60));
-            accepted.unwrap().length
-        };
         for (rank_by, explain, k, n_shapes, vertices, expected) in [
-            (Plain, false, 10, 100_000, 3000, Length::Short),
-            (Plain, false, 100, 100_000, 3000, Length::Long),
-            (Plain, false, 100, 50, 3000, Length::Short),
-            (Graph, false, 10, 100_000, 3000, Length::Short),
-            (Part, false, 10, 100, 3000, Length::Short),
-            (Part, false, 10, 1000, 3000, Length::Long),
-            (Part, false, 10, 10, 60_000, Length::Long),
-            (Forms, false, 10, 1000, 3000, Length::Short),
-            (Forms, false, 10, 100_000, 3000, Length::Long),
-            (Plain, true, 10, 100_000, 3000, Length::Short),
-            (Plain, true, 24, 100_000, 30_000, Length::Long),
-            (Plain, true, 24, 2, 3000, Length::Short),
+            (Plain, false, 10, 100_000, 3000, false),
+            (Plain, false, 100, 100_000, 3000, true),
+            (Plain, false, 100, 50, 3000, false),
+            (Graph, false, 10, 100_000, 3000, false),
+            (Part, false, 10, 100, 3000, false),
+            (Part, false, 10, 1000, 3000, true),
+            (Part, false, 10, 10, 60_000, true),
+            (Forms, false, 10, 1000, 3000, false),
+            (Forms, false, 10, 100_000, 3000, true),
+            (Plain, true, 10, 100_000, 3000, false),
+            (Plain, true, 24, 100_000, 30_000, true),
+            (Plain, true, 24, 2, 3000, false),
         ] {
             let options = SearchOptions { rank_by, explain, k };
             let cost = of_search(&options, n_shapes, 3000, vertices);
-            assert_eq!(length(cost), expected, "{options:?}, {n_shapes} shapes, {vertices} vertices");
+            assert_eq!(is_long(cost), expected, "{options:?}, {n_shapes} shapes, {vertices} vertices");
         }
         let of_large = of_search(&SearchOptions { explain: true, ..Default::default() }, 100, 100_000, 3000);
-        assert_eq!(length(of_large), Length::Long, "the shapes are large");
+        assert!(is_long(of_large), "the shapes are large");
         for (n, each, expected) in [
-            (300, MATCHED_VERTEX, Length::Short),
-            (6800, MATCHED_VERTEX, Length::Long),
-            (6800, COMPARED_VERTEX, Length::Short),
-            (400_000, COMPARED_VERTEX, Length::Long),
-            (30_000, DRAWN_VERTEX, Length::Short),
-            (600_000, DRAWN_VERTEX, Length::Long),
-            (100_000, UPLOADED_BYTE, Length::Short),
-            (2_000_000, UPLOADED_BYTE, Length::Long),
+            (300, MATCHED_VERTEX, false),
+            (6800, MATCHED_VERTEX, true),
+            (6800, COMPARED_VERTEX, false),
+            (400_000, COMPARED_VERTEX, true),
+            (30_000, DRAWN_VERTEX, false),
+            (600_000, DRAWN_VERTEX, true),
+            (100_000, UPLOADED_BYTE, false),
+            (2_000_000, UPLOADED_BYTE, true),
         ] {
-            assert_eq!(length(f64::from(n) * each), expected, "{n} of {each} s");
+            assert_eq!(is_long(f64::from(n) * each), expected, "{n} of {each} s");
         }
     }
 }

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use axum::body::Bytes;
-use canonform::library::{DuplicateFile, DuplicateOptions, find_duplicates};
+use canonform::library::{DuplicateOptions, find_duplicates};
 use canonform::{Budget, Error, Observer};
 use rayon::ThreadPoolBuilder;
 use serde::Serialize;
@@ -139,13 +139,8 @@ fn end(run: Option<Run>) {
 fn search(collection: &Collection, watched: &Watched) -> Result<Bytes, ApiError> {
     let index = collection.search.index();
     let mut report = find_duplicates(&collection.search, &DuplicateOptions::default(), watched)?;
-    let publish = |file: &mut DuplicateFile| -> Result<(), Error> {
-        file.path = collection.public_path(&index.entry(&file.id)?.path).into();
-        Ok(())
-    };
-    for group in &mut report.groups {
-        publish(&mut group.keeper)?;
-        group.members.iter_mut().try_for_each(|member| publish(&mut member.file))?;
+    for file in report.files_mut() {
+        file.path = collection.public_path(&index.entry(&file.id).map_err(Error::from)?.path).into();
     }
     serde_json::to_vec(&report).map(Bytes::from).map_err(|_| ApiError::internal())
 }

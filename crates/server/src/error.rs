@@ -66,16 +66,9 @@ impl ApiError {
             .with_remedy("simplify the mesh, or raise the upload limit of the server")
     }
 
-    /// The client sends nothing, or too slowly.
-    pub(crate) fn upload_too_slow() -> Self {
-        Self::new(StatusCode::REQUEST_TIMEOUT, "the upload did not arrive in time")
-            .with_remedy("check the connection and send it again")
-    }
-
-    /// Another client needed the place of an upload that arrives slowly.
-    pub(crate) fn upload_overtaken() -> Self {
-        Self::new(StatusCode::REQUEST_TIMEOUT, "the upload arrived too slowly while others were waiting")
-            .with_remedy("check the connection and send it again")
+    /// The client sends nothing, or too slowly, perhaps while another one needs its place.
+    pub(crate) fn upload_too_slow(error: &str) -> Self {
+        Self::new(StatusCode::REQUEST_TIMEOUT, error).with_remedy("check the connection and send it again")
     }
 
     /// Too many requests; the client may retry after this many seconds.
@@ -115,9 +108,9 @@ impl ApiError {
     }
 
     fn of_fault(status: StatusCode, error: String, fault: &Error) -> Self {
-        let remedy = match fault {
-            _ if status == StatusCode::PAYLOAD_TOO_LARGE => Some("raise the vertex limit of the server"),
-            fault => remedy(fault),
+        let remedy = match status {
+            StatusCode::PAYLOAD_TOO_LARGE => Some("raise the vertex limit of the server"),
+            _ => remedy(fault),
         };
         Self { status, error, remedy: remedy.map(str::to_owned), retry_after: None }
     }
@@ -150,6 +143,11 @@ impl ApiError {
     #[cfg(test)]
     pub(crate) fn status(&self) -> u16 {
         self.status.as_u16()
+    }
+
+    #[cfg(test)]
+    pub(crate) fn retry_after(&self) -> Option<u32> {
+        self.retry_after
     }
 }
 

@@ -11,7 +11,6 @@
 
 mod api;
 mod app;
-mod cache;
 mod collection;
 mod connection;
 mod cost;
@@ -19,7 +18,6 @@ mod duplicates;
 mod error;
 mod formats;
 mod guard;
-mod load;
 mod measured;
 mod options;
 mod pace;

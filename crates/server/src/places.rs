@@ -5,29 +5,20 @@ use std::time::Duration;
 
 use tokio::sync::Notify;
 
-use crate::pace::{Pace, Phase};
+use crate::pace::Pace;
 
 /// A client with a smaller delay keeps its place.
 const TOLERATED: Duration = Duration::from_millis(250);
 
-/// Pause between two attempts to get a place, unless one becomes free before.
-const RETRY_PAUSE: Duration = Duration::from_millis(50);
+/// Pause between two attempts to get a place.
+const RETRY_PAUSE: Duration = Duration::from_millis(20);
 
 /// The places.
 #[derive(Debug)]
 pub(crate) struct Places {
     limit: usize,
-    holders: Mutex<Vec<Holder>>,
-    freed: Notify,
-}
-
-#[derive(Debug)]
-struct Holder {
-    pace: Arc<Pace>,
-    /// Notified when the place is lost. Also identifies the holder.
-    lost: Arc<Notify>,
-    /// The place cannot be lost any more.
-    kept: bool,
+    /// Clients, each with what is notified when its place is lost, which identifies it.
+    holders: Mutex<Vec<(Arc<Pace>, Arc<Notify>)>>,
 }
 
 /// A place, returned when dropped.
@@ -39,38 +30,34 @@ pub(crate) struct Place {
 
 impl Places {
     pub(crate) fn new(limit: usize) -> Arc<Self> {
-        Arc::new(Self { limit: limit.max(1), holders: Mutex::new(Vec::new()), freed: Notify::new() })
+        Arc::new(Self { limit: limit.max(1), holders: Mutex::default() })
     }
 
     /// A free place, or that of the client with the longest delay.
     pub(crate) fn try_enter(self: &Arc<Self>, pace: &Arc<Pace>) -> Option<Place> {
         let mut holders = self.lock();
         if holders.len() >= self.limit {
-            let slowest = (0..holders.len())
-                .filter(|i| !holders[*i].kept && holders[*i].pace.phase() != Phase::Working)
-                .map(|i| (holders[i].pace.delay(), i))
-                .filter(|(delay, _)| *delay >= TOLERATED)
-                .max()?;
-            holders.swap_remove(slowest.1).lost.notify_one();
+            let delays = holders.iter().enumerate().map(|(i, (pace, _))| (pace.delay(), i));
+            let (_, slowest) = delays.filter(|(delay, _)| *delay >= TOLERATED).max()?;
+            holders.swap_remove(slowest).1.notify_one();
         }
         let lost = Arc::new(Notify::new());
-        holders.push(Holder { pace: pace.clone(), lost: lost.clone(), kept: false });
+        holders.push((pace.clone(), lost.clone()));
         Some(Place { places: self.clone(), lost })
     }
 
     /// Waits for a place.
     pub(crate) async fn enter(self: &Arc<Self>, pace: &Arc<Pace>) -> Place {
         loop {
-            if let Some(place) = self.try_enter(pace) {
-                return place;
+            match self.try_enter(pace) {
+                Some(place) => return place,
+                None => tokio::time::sleep(RETRY_PAUSE).await,
             }
-            // Either way, try again.
-            let _ = tokio::time::timeout(RETRY_PAUSE, self.freed.notified()).await;
         }
     }
 
     /// A poisoned lock is harmless: no method panics between two changes.
-    fn lock(&self) -> MutexGuard<'_, Vec<Holder>> {
+    fn lock(&self) -> MutexGuard<'_, Vec<(Arc<Pace>, Arc<Notify>)>> {
         self.holders.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -80,26 +67,18 @@ impl Place {
     pub(crate) async fn lost(&self) {
         self.lost.notified().await;
     }
-
-    /// From now on the place cannot be lost.
-    pub(crate) fn keep(&self) {
-        let mut holders = self.places.lock();
-        if let Some(holder) = holders.iter_mut().find(|holder| Arc::ptr_eq(&holder.lost, &self.lost)) {
-            holder.kept = true;
-        }
-    }
 }
 
 impl Drop for Place {
     fn drop(&mut self) {
-        self.places.lock().retain(|holder| !Arc::ptr_eq(&holder.lost, &self.lost));
-        self.places.freed.notify_one();
+        self.places.lock().retain(|(_, lost)| !Arc::ptr_eq(lost, &self.lost));
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pace::Phase;
 
     fn runtime() -> tokio::runtime::Runtime {
         tokio::runtime::Builder::new_current_thread().enable_time().build().unwrap()
@@ -108,7 +87,7 @@ mod tests {
     #[test]
     fn the_slowest_client_loses_its_place_and_only_that_one() {
         let places = Places::new(2);
-        let [first, second, third] = [(); 3].map(|()| Arc::new(Pace::new(1000)));
+        let [first, second, third] = [(); 3].map(|()| Arc::new(Pace::new(1000, Duration::from_secs(10))));
         let slow = places.try_enter(&first).unwrap();
         let quick = places.try_enter(&second).unwrap();
         assert!(places.try_enter(&third).is_none(), "nobody is slow yet");
@@ -128,13 +107,9 @@ mod tests {
     #[test]
     fn a_client_that_waits_for_the_server_keeps_its_place() {
         let places = Places::new(1);
-        let pace = Arc::new(Pace::new(1000));
+        let pace = Arc::new(Pace::new(1000, Duration::from_secs(10)));
         let place = places.try_enter(&pace).unwrap();
         pace.begin(Phase::Working);
-        std::thread::sleep(2 * TOLERATED);
-        assert!(places.try_enter(&pace).is_none());
-        pace.begin(Phase::Receiving);
-        place.keep();
         std::thread::sleep(2 * TOLERATED);
         assert!(places.try_enter(&pace).is_none());
         drop(place);

@@ -112,7 +112,7 @@ impl Server {
         loop {
             let next = pin!(async {
                 let (stream, _) = listener.accept().await?;
-                let pace = Arc::new(Pace::new(options.min_rate));
+                let pace = Arc::new(Pace::new(options.min_rate, options.idle_time));
                 let place = places.enter(&pace).await;
                 Ok::<_, std::io::Error>((stream, place, pace))
             });

@@ -72,19 +72,22 @@ pub(crate) async fn receive(
             return Err(ApiError::upload_too_large(options.max_upload));
         }
         let form = pin!(read(request, options));
-        let slow = pin!(pace.exceeds(options.idle_time, &[Phase::Receiving]));
+        let slow = pin!(pace.is_over(Phase::Receiving));
         let late = pin!(tokio::time::sleep(options.upload_time));
         let lost = pin!(place.lost());
         match select(form, select(select(slow, late), lost)).await {
             Either::Left((form, _)) => form,
-            Either::Right((Either::Left(_), _)) => Err(ApiError::upload_too_slow()),
-            Either::Right((Either::Right(_), _)) => Err(ApiError::upload_overtaken()),
+            Either::Right((Either::Left(_), _)) => {
+                Err(ApiError::upload_too_slow("the upload did not arrive in time"))
+            }
+            Either::Right((Either::Right(_), _)) => {
+                Err(ApiError::upload_too_slow("the upload arrived too slowly while others were waiting"))
+            }
         }
     };
     pace.begin(Phase::Receiving);
     let received = received.await;
     pace.begin(Phase::Working);
-    place.keep();
     if received.is_err() {
         tokio::spawn(drained(body));
     }

@@ -2,18 +2,30 @@
 
 use std::num::NonZero;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use canonform::Budget;
-use tokio::sync::Semaphore;
+use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
 use crate::error::ApiError;
-use crate::load::{Length, Load};
 use crate::options::ServeOptions;
 use crate::places::Place;
 
 /// Seconds after which a client that was rejected for the length of the queue may try again.
 pub(crate) const RETRY_AFTER: u32 = 2;
+
+/// Seconds that every job takes, with nothing to measure or to compare.
+const BASE: f64 = 0.1;
+
+/// The share of the time limit that may be promised: [costs](crate::cost) are estimates.
+const MARGIN: f64 = 2.0 / 3.0;
+
+/// Jobs that take longer, in seconds, are long: one place is always left for the others.
+const SHORT: f64 = 2.0;
+
+pub(crate) fn is_long(cost: f64) -> bool {
+    BASE + cost > SHORT
+}
 
 /// The queue of requests that take time.
 pub(crate) struct Work {
@@ -21,8 +33,34 @@ pub(crate) struct Work {
     /// Long jobs need a permit of these too, so that one place is left for short ones.
     long_jobs: Arc<Semaphore>,
     waiting: Arc<Semaphore>,
-    load: Arc<Load>,
+    /// Of short and of long jobs.
+    accepted: [Accepted; 2],
     time_limit: Duration,
+}
+
+/// Jobs that have been accepted and are not done: milliseconds that may be added to theirs are permits.
+struct Accepted {
+    /// How many of them run at once.
+    places: usize,
+    limit: u32,
+    left: Arc<Semaphore>,
+}
+
+impl Accepted {
+    fn new(places: usize, time_limit: Duration) -> Self {
+        let limit = ((MARGIN * 1e3 * time_limit.as_secs_f64()) as u32).max(1).saturating_mul(places as u32);
+        Self { places, limit, left: Arc::new(Semaphore::new(limit as usize)) }
+    }
+
+    /// Accepts a job of this cost until the permit is dropped, unless those before it leave too little of the time limit.
+    /// Without any before it, it is accepted: the estimate may be wrong.
+    fn accept(&self, cost: f64) -> Result<OwnedSemaphorePermit, ApiError> {
+        let wanted = ((1e3 * (BASE + cost)) as u32).min(self.limit);
+        self.left.clone().try_acquire_many_owned(wanted).map_err(|_| {
+            let before = self.limit as usize - self.left.available_permits();
+            ApiError::busy(before.div_ceil(1000 * self.places).clamp(1, 3600) as u32)
+        })
+    }
 }
 
 /// Cancels a job when nobody waits for it any more.
@@ -43,14 +81,15 @@ impl Work {
             jobs: Arc::new(Semaphore::new(jobs)),
             long_jobs: Arc::new(Semaphore::new(long_jobs)),
             waiting: Arc::new(Semaphore::new(jobs + options.queue)),
-            load: Load::new(jobs, long_jobs),
+            accepted: [1, long_jobs].map(|places| Accepted::new(places, options.time_limit)),
             time_limit: options.time_limit,
         }
     }
 
-    /// Rejects a job of this [cost](crate::cost) before it is received if it could not be done in time.
-    pub(crate) fn expect(&self, cost: f64) -> Result<(), ApiError> {
-        self.load.would_accept(cost, self.time_limit).map_err(ApiError::busy)
+    /// Accepts a job of this [cost](crate::cost) until the permit is dropped; before it is received, to reject it at once if it
+    /// could not be done in time.
+    pub(crate) fn accept(&self, cost: f64) -> Result<OwnedSemaphorePermit, ApiError> {
+        self.accepted[usize::from(is_long(cost))].accept(cost)
     }
 
     /// Runs `job` of this [cost](crate::cost) on a thread of its own when its turn comes. After the time limit, and
@@ -63,22 +102,19 @@ impl Work {
     ) -> Result<T, ApiError> {
         let busy = |_| ApiError::busy(RETRY_AFTER);
         let place = self.waiting.clone().try_acquire_owned().map_err(busy)?;
-        let accepted = self.load.accept(cost, self.time_limit).map_err(ApiError::busy)?;
+        let accepted = self.accept(cost)?;
         let budget = Budget::unlimited().with_time(self.time_limit);
         // Dropped at the time limit, and with the connection of a client that has gone.
         let _cancel = CancelOnDrop(budget.clone());
         let work = async {
-            let long = match accepted.length {
-                Length::Long => Some(self.long_jobs.clone().acquire_owned().await),
-                Length::Short => None,
+            let long = match is_long(cost) {
+                true => Some(self.long_jobs.clone().acquire_owned().await),
+                false => None,
             };
             let turn = self.jobs.clone().acquire_owned().await;
             let outcome = tokio::task::spawn_blocking(move || {
-                let _held = (place, turn, long, held);
-                let begun = Instant::now();
-                let outcome = job(&budget);
-                accepted.ended(begun);
-                outcome
+                let _held = (place, accepted, turn, long, held);
+                job(&budget)
             });
             // The only other outcome is a panic, whose message is already printed.
             outcome.await.unwrap_or_else(|_| Err(ApiError::internal()))
@@ -117,6 +153,20 @@ mod tests {
             }
         };
         tokio::time::timeout(Duration::from_secs(20), ends).await.unwrap();
+    }
+
+    #[test]
+    fn jobs_that_cannot_be_done_in_time_are_refused_at_once() {
+        let work = Work::new(&ServeOptions { jobs: 3, ..ServeOptions::default() });
+        let accepted: Vec<_> = (0..20).filter_map(|_| work.accept(20.0).ok()).collect();
+        assert_eq!(accepted.len(), 3, "two at once, 20 seconds each");
+        assert_eq!(work.accept(20.0).unwrap_err().retry_after(), Some(31));
+        drop((work.accept(0.2).unwrap(), accepted));
+        // Nothing is before it.
+        let huge = work.accept(2000.0).unwrap();
+        assert!(work.accept(20.0).is_err());
+        drop(huge);
+        drop(work.accept(20.0).unwrap());
     }
 
     #[test]
@@ -188,7 +238,7 @@ mod tests {
     #[test]
     fn uploads_are_counted_until_they_are_measured() {
         let work = Work::new(&ServeOptions::default());
-        let (places, pace) = (Places::new(1), Arc::new(Pace::new(1000)));
+        let (places, pace) = (Places::new(1), Arc::new(Pace::new(1000, Duration::from_secs(10))));
         runtime().block_on(async {
             let place = places.try_enter(&pace).unwrap();
             assert!(places.try_enter(&pace).is_none());

@@ -162,6 +162,7 @@ pub struct MethodSettings {
     /// Weight of the distances against smoothness in spectral, for a surface of unit area; `inf` fits the distances exactly
     /// [default: 1000]
     #[cfg_attr(feature = "clap", arg(long, value_name = "MU", hide_short_help = true))]
+    #[serde(deserialize_with = "as_text::given")]
     pub mu: Option<f64>,
     /// Maximum number of smacof steps [default: 300]
     #[cfg_attr(feature = "clap", arg(long = "iterations", value_name = "N", hide_short_help = true))]

@@ -181,6 +181,13 @@ pub struct DuplicateReport {
 }
 
 impl DuplicateReport {
+    /// Every file of every group.
+    pub fn files_mut(&mut self) -> impl Iterator<Item = &mut DuplicateFile> {
+        self.groups.iter_mut().flat_map(|DuplicateGroup { keeper, members, .. }| {
+            members.iter_mut().map(|member| &mut member.file).chain([keeper])
+        })
+    }
+
     /// The files that [can be spared](DuplicateMember::is_spare).
     pub fn spare(&self) -> impl Iterator<Item = &DuplicateFile> {
         let members = self.groups.iter().flat_map(|group| &group.members);

@@ -1,6 +1,6 @@
 //! Searching an index for the shapes nearest to a mesh.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::Instant;
 
@@ -24,7 +24,7 @@ use super::predict::{Prediction, n_results, predicted};
 use super::query::Query;
 use super::record::{missing_signature, options_of};
 use super::rerank::{bounds, rerank};
-use super::source::read_unchanged;
+use super::source::{read_unchanged, unchanged_files};
 use crate::compare::compare;
 use crate::error::Error;
 use crate::form::DescribeOptions;
@@ -127,6 +127,14 @@ impl ShapeSearch {
     /// [`Error::Index`], [`Error::Mesh`].
     pub fn mesh(&self, id: &str) -> Result<TriMesh, Error> {
         read_unchanged(self.index.path(), &self.index.entry(id)?)
+    }
+
+    /// Names and contents of the files of the mesh of a shape, if they still have the content that was indexed.
+    ///
+    /// # Errors
+    /// As those of [`mesh`](Self::mesh), but nothing is parsed.
+    pub fn files(&self, id: &str) -> Result<Vec<(PathBuf, Vec<u8>)>, Error> {
+        unchanged_files(self.index.path(), &self.index.entry(id)?)
     }
 
     /// The shape that a text names, unless there is a file of this name, which goes first.

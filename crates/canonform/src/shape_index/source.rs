@@ -344,6 +344,13 @@ pub(super) fn hash_all(shapes: Vec<Listed>, observer: &dyn Observer) -> Vec<Hash
 
 /// Reads the mesh of an indexed shape, if the file still has the content that was indexed.
 pub(super) fn read_unchanged(index: &Path, entry: &Entry) -> Result<TriMesh, Error> {
+    let files = unchanged_files(index, entry)?;
+    let files = files.iter().map(|(name, bytes)| MemoryFile { name, bytes });
+    Ok(mesh_io::read_memory(&files.collect::<Vec<_>>(), &ReadLimits::default())?)
+}
+
+/// The files of the mesh of an indexed shape, if they still have the content that was indexed.
+pub(super) fn unchanged_files(index: &Path, entry: &Entry) -> Result<Vec<(PathBuf, Vec<u8>)>, Error> {
     let path = mesh_path(index, &entry.path);
     let gone = |fault: CollectionError| match fault {
         CollectionError::File(fault) | CollectionError::Mesh(MeshError::Io(fault)) => {
@@ -363,8 +370,7 @@ pub(super) fn read_unchanged(index: &Path, entry: &Entry) -> Result<TriMesh, Err
     if ContentHash::of(&pieces) != entry.content {
         return Err(changed());
     }
-    let files = files.iter().zip(&pieces).map(|(name, bytes)| MemoryFile { name, bytes });
-    Ok(mesh_io::read_memory(&files.collect::<Vec<_>>(), &ReadLimits::default())?)
+    Ok(files.into_iter().zip(pieces).collect())
 }
 
 #[cfg(test)]

@@ -33,7 +33,7 @@ pub(crate) use index::{AddArgs, BuildArgs, EvaluateArgs, IndexCommand, ListArgs,
 pub(crate) use matching::{MAP_FORMATS, MatchArgs};
 pub(crate) use render::{Place, RenderArgs};
 pub(crate) use serve::ServeArgs;
-pub(crate) use settings::{MAX_DROPPED, RepairArgs, geodesic_method};
+pub(crate) use settings::{MAX_DROPPED, RepairArgs, geodesic_method, spelled};
 pub(crate) use shared::{Common, LimitArgs};
 
 /// Nonrigid 3D shapes: surface distances, canonical forms, comparison and search.

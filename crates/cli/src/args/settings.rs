@@ -13,7 +13,7 @@ use clap::{Args, Command};
 use super::shared::Common;
 
 /// A setting with the values that it may have, as on the command line.
-fn spelled(name: &str, values: &[&str]) -> String {
+pub(crate) fn spelled(name: &str, values: &[&str]) -> String {
     let command = MethodSettings::augment_args(Command::new(""));
     let arg = command.get_arguments().find(|arg| arg.get_id() == name);
     let flag = arg.and_then(|arg| arg.get_long()).unwrap_or(name);

@@ -1,42 +1,19 @@
 //! `canonform compare`.
 
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
+use base::object;
 use canonform::collection::content_hash;
 use canonform::compare::{ComparedMesh, FaceAgreement, MeshComparison, Residual, compare_meshes};
 use canonform::descriptors::ShapeMetric;
 use canonform::mesh::io::{Content, writable};
 use canonform::relations::RelationKind;
 use canonform::rigid::Handedness;
-use serde::Serialize;
 
 use crate::args::{Common, CompareArgs, PairArgs};
 use crate::input::{file_name, is_stream, read_pair};
-use crate::output::{check_format, check_output, facts, report, write_colored};
-
-#[derive(Serialize)]
-struct CompareJson {
-    a: PathBuf,
-    b: PathBuf,
-    #[serde(flatten)]
-    found: MeshComparison,
-    residual: ResidualJson,
-    threshold: Option<f64>,
-    /// Whether the threshold is exceeded or the shapes are different; none without a threshold.
-    failed: Option<bool>,
-}
-
-/// Distances from the vertices of the first shape to the second shape, in units of the first mesh.
-#[derive(Serialize)]
-struct ResidualJson {
-    #[serde(flatten)]
-    residual: Residual,
-    /// Input vertex with the largest distance.
-    max_vertex: u32,
-    output: Option<PathBuf>,
-}
+use crate::output::{Fact, check_format, check_output, facts, report, write_colored};
 
 /// What the two meshes are called: by their files, or by their paths if the files have one name.
 fn names(PairArgs { a: path_a, b: path_b }: &PairArgs) -> [String; 2] {
@@ -72,74 +49,71 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
     let kind = found.relation.kind;
     let is_alike = |kinds: &[RelationKind]| kind.is_one_surface() || kinds.contains(&kind);
     let not_alike = args.exit_code.is_some_and(|kinds| !is_alike(kinds));
-    let json = CompareJson {
-        a: args.pair.a.clone(),
-        b: args.pair.b.clone(),
-        residual: ResidualJson {
-            residual: found.residual[0],
-            max_vertex: a.surface().input_vertex(found.residual[0].max_point.into()).0,
-            output: args.residual_mesh.clone(),
-        },
-        found,
-        threshold: args.threshold,
-        failed,
-    };
-    let code = report(common, &json, |json| text(json, &name_a, args.details))?;
-    Ok(if failed == Some(true) || not_alike { ExitCode::from(1) } else { code })
-}
-
-/// The answer in one sentence, and what it rests on in a few lines.
-fn text(json: &CompareJson, name_a: &str, details: bool) -> String {
-    let relation = &json.found.relation;
+    let (residual, form) = (found.residual[0], &found.comparison);
+    let max_vertex = a.surface().input_vertex(residual.max_point.into()).0;
+    let relation = &found.relation;
     let (shape, [_, class]) = (ShapeMetric::SAME_SHAPE.at, ShapeMetric::SAME_CLASS.gap());
-    let distance = json.found.comparison.shape_distance.combined;
-    let limits = format!("probably one shape below {shape:.2}, not alike above {class:.2}");
     let times = format!("{:.4}", relation.evidence.scale);
     let size =
         if times == "1.0000" { "the same".to_owned() } else { format!("{times} times that of {name_a}") };
-    let mut rows = vec![
-        ("certainty", format!("{:.0} %", 100.0 * relation.confidence)),
-        ("distance", format!("{distance:.2}, whatever pose and size: {limits}")),
-        ("size", size),
-    ];
-    let (Residual { median, max, .. }, vertex) = (json.residual.residual, json.residual.max_vertex);
-    match json.threshold {
-        Some(limit) => rows.push(("threshold", threshold(json, limit))),
-        None => {
-            rows.push((
-                "form",
-                format!("differs most at vertex {vertex} of {name_a}, by {max:.4} mesh units"),
-            ));
+    let limits = format!("probably one shape below {shape:.2}, not alike above {class:.2}");
+    let last = match args.threshold {
+        Some(limit) => {
+            let held = match (form.normalized_distance > limit, failed == Some(true)) {
+                (true, _) => "exceeded",
+                (false, true) => "not exceeded, but the shapes are different",
+                (false, false) => "not exceeded",
+            };
+            let apart = form.normalized_distance;
+            ("threshold", format!("{limit} {held}: the forms are {apart:.6} apart at equal size"))
         }
-    }
-    let mut text = format!("{}.\n{}", base::one_line(&relation.to_string()), facts(&rows));
-    if details {
-        let residual = format!("median {median:.6}, maximum {max:.6} (at vertex {vertex}), mesh units");
-        text = format!("{text}\n\n{}", facts(&detailed(json, residual)));
-    }
-    text
-}
-
-fn threshold(json: &CompareJson, limit: f64) -> String {
-    let distance = json.found.comparison.normalized_distance;
-    let held = match (distance > limit, json.failed == Some(true)) {
-        (true, _) => "exceeded",
-        (false, true) => "not exceeded, but the shapes are different",
-        (false, false) => "not exceeded",
+        None => (
+            "form",
+            format!("differs most at vertex {max_vertex} of {name_a}, by {:.4} mesh units", residual.max),
+        ),
     };
-    format!("{limit} {held}: the forms are {distance:.6} apart at equal size")
+    let rows = [
+        ("certainty", format!("{:.0} %", 100.0 * relation.confidence)),
+        ("distance", format!("{:.2}, whatever pose and size: {limits}", distance.combined)),
+        ("size", size),
+        last,
+    ];
+    let mut text = format!("{}.\n{}", base::one_line(&relation.to_string()), facts(&rows));
+    if args.details {
+        text += &format!("\n\n{}", facts(&detailed(&found, max_vertex)));
+    }
+    let json = object! {
+        a: &args.pair.a,
+        b: &args.pair.b,
+        #[serde(flatten)]
+        found: &found,
+        // Distances from the vertices of the first shape to the second shape, in units of the first mesh.
+        residual: object! {
+            #[serde(flatten)]
+            residual,
+            // The input vertex with the largest distance.
+            max_vertex,
+            output: &args.residual_mesh,
+        },
+        threshold: args.threshold,
+        // Whether the threshold is exceeded or the shapes are different; none without a threshold.
+        failed,
+    };
+    let code = report(common, &json, |_| text)?;
+    Ok(if failed == Some(true) || not_alike { ExitCode::from(1) } else { code })
 }
 
 /// Everything else that was measured.
-fn detailed(json: &CompareJson, residual: String) -> Vec<(&'static str, String)> {
-    let (c, relation) = (&json.found.comparison, &json.found.relation);
+fn detailed(found: &MeshComparison, vertex: u32) -> Vec<Fact> {
+    let (c, relation) = (&found.comparison, &found.relation);
+    let Residual { median, max, .. } = found.residual[0];
     let handedness = match relation.evidence.handedness {
         Handedness::Same => "no",
         Handedness::Mirrored => "yes",
         Handedness::Either => "either: the shape is its own mirror image",
         Handedness::Unknown => "unknown: a mesh encloses no volume, or the forms do not fit",
     };
-    let triangulation = match json.found.triangulation {
+    let triangulation = match found.triangulation {
         Some(FaceAgreement::Same) => "the same faces",
         _ => "different faces",
     };
@@ -153,7 +127,7 @@ fn detailed(json: &CompareJson, residual: String) -> Vec<(&'static str, String)>
         ("scale, second over first", format!("{:.6}", c.scale)),
         ("mirror image", handedness.to_owned()),
         ("triangulation", triangulation.to_owned()),
-        ("residual", residual),
+        ("residual", format!("median {median:.6}, maximum {max:.6} (at vertex {vertex}), mesh units")),
         ("form reflected", if c.reflected { "yes" } else { "no" }.to_owned()),
     ];
     for (name, row) in ["rotation", "", ""].into_iter().zip(c.rotation) {

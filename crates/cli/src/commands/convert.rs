@@ -4,12 +4,13 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
+use base::object;
 use canonform::mesh::RepairReport;
 use canonform::mesh::io::{Content, FileFacts, Format, MeshFile, or_list, writable};
 use serde::Serialize;
 
 use crate::args::{Common, ConvertArgs};
-use crate::batch::{Batch, Failure, Order, Results, create_folder_of};
+use crate::batch::Results;
 use crate::input::{file_name, is_single, is_stream, named, print_repair, read_file};
 use crate::output::{Output, exit_code, report, shown};
 
@@ -23,12 +24,6 @@ struct Json {
     file: FileFacts,
     /// How the mesh was repaired, with `--repair`.
     repair: Option<RepairReport>,
-}
-
-#[derive(Serialize)]
-struct BatchJson {
-    meshes: Vec<Json>,
-    failed: Vec<Failure>,
 }
 
 /// Converts one mesh, or each of several.
@@ -104,18 +99,12 @@ fn batch(args: &ConvertArgs, common: &Common) -> Result<ExitCode> {
         bail!("meshes cannot be written as {extension}; use {}", or_list(formats));
     }
     let (arguments, folder) = (std::slice::from_ref(&args.input), &args.output);
-    let results = Results { what: "meshes", arguments, folder, extension, order: Order::InParallel };
-    let Batch { done, failed } = results.make(common, |shape, output| {
-        create_folder_of(output)?;
-        write(&shape.path, output, args, common)
-    })?;
+    let results = Results { what: "meshes", arguments, folder, extension, in_parallel: true };
+    let (done, failed) = results.make(common, |shape, output| write(&shape.path, output, args, common))?;
     let meshes: Vec<Json> = done.into_iter().map(|(_, json)| json).collect();
     meshes.iter().for_each(|json| notes(json, args));
-    let failed = failed.into_iter().map(|failure| Failure { name: None, ..failure }).collect();
-    let json = BatchJson { meshes, failed };
-    report(common, &json, |json| {
-        format!("{} meshes in {}, {} failed", json.meshes.len(), shown(&args.output), json.failed.len())
-    })?;
+    let json = object! { meshes, failed };
+    report(common, &json, |json| results.counts(json.meshes.len(), &json.failed))?;
     Ok(exit_code(json.failed.is_empty()))
 }
 

@@ -1,10 +1,11 @@
 //! `canonform embed`.
 
-use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
+use base::object;
+use base::terminal::Bars;
 use canonform::collection::ShapeFile;
 use canonform::embed::{EmbedMethod, EmbedOptions, EmbedReport, StressKind, StressOptions, StressReport};
 use canonform::linalg::Matrix;
@@ -17,10 +18,10 @@ use canonform::{Budget, Surface};
 use serde::Serialize;
 
 use crate::args::{Common, EmbedArgs, FORM_FORMATS, LimitArgs};
-use crate::batch::{Batch, Failure, Order, Results, create_folder_of};
+use crate::batch::Results;
 use crate::input::{is_single, is_stream, named, print_repair, read_both, read_surface};
-use crate::output::{Answer, Output, exit_code, fill_npy, report, row_of, shown, table_of};
-use base::terminal::Bars;
+use crate::output::{Answer, Output, exit_code, report, row_of, shown, table_of};
+use crate::table::write_npy;
 
 #[derive(Serialize)]
 struct EmbedJson {
@@ -38,21 +39,6 @@ struct EmbedJson {
 struct PointJson {
     at: InputPoint,
     coordinates: Vec<f64>,
-}
-
-#[derive(Serialize)]
-struct BatchJson {
-    shapes: Vec<ShapeJson>,
-    failed: Vec<Failure>,
-}
-
-#[derive(Serialize)]
-struct ShapeJson {
-    name: String,
-    label: String,
-    path: PathBuf,
-    #[serde(flatten)]
-    result: EmbedJson,
 }
 
 /// Embeds one mesh, or each of several.
@@ -138,34 +124,21 @@ fn embed_and_write(
         // Only meshes need them.
         surface.input.faces = Vec::new();
     }
-    let embedded = if args.features { bent(surface, options, bars) } else { lean(surface, options, bars) };
-    let (coords, map, report) = embedded.map_err(|fault| named(mesh, fault))?;
-    create_folder_of(output)?;
+    let embed = || -> Result<_, canonform::Error> {
+        if args.features {
+            let embedded = canonform::embed::embed(&surface, options.clone(), bars)?;
+            let form = embedded.form(&surface)?.with_features(surface.mesh(), bars)?;
+            let coords = Matrix::from_fn(form.points().len(), 3, |i, axis| form.points()[i][axis]);
+            return Ok((coords, surface.into_parts().1, embedded.report));
+        }
+        // Without keeping the mesh in memory.
+        let (intrinsic, map) = surface.into_parts();
+        let embedded = canonform::embed::embed((intrinsic, &map), options.clone(), bars)?;
+        Ok((embedded.embedding.coords, map, embedded.report))
+    };
+    let (coords, map, report) = embed().map_err(|fault| named(mesh, fault))?;
     write(output, &map, &coords)?;
     Ok(report)
-}
-
-/// The form, without keeping the mesh in memory.
-fn lean(
-    surface: Surface,
-    options: &EmbedOptions<'_>,
-    bars: &Bars,
-) -> Result<(Matrix, InputMap, EmbedReport), canonform::Error> {
-    let (intrinsic, map) = surface.into_parts();
-    let embedded = canonform::embed::embed((intrinsic, &map), options.clone(), bars)?;
-    Ok((embedded.embedding.coords, map, embedded.report))
-}
-
-/// The surface bent into its form.
-fn bent(
-    surface: Surface,
-    options: &EmbedOptions<'_>,
-    bars: &Bars,
-) -> Result<(Matrix, InputMap, EmbedReport), canonform::Error> {
-    let embedded = canonform::embed::embed(&surface, options.clone(), bars)?;
-    let form = embedded.form(&surface)?.with_features(surface.mesh(), bars)?;
-    let coords = Matrix::from_fn(form.points().len(), 3, |i, axis| form.points()[i][axis]);
-    Ok((coords, surface.into_parts().1, embedded.report))
 }
 
 /// The format of forms in a folder or on standard output.
@@ -185,21 +158,43 @@ fn output_format(args: &EmbedArgs, common: &Common) -> Result<&'static str> {
 fn batch(args: &EmbedArgs, options: &EmbedOptions<'_>, common: &Common) -> Result<ExitCode> {
     let extension = output_format(args, common)?;
     check_dim(Path::new(&format!("form.{extension}")), options.form.dim)?;
-    let (arguments, folder, order) = (&args.meshes, &args.output, Order::InParallel);
-    let results = Results { what: "forms", arguments, folder, extension, order };
-    let Batch { done, failed } = results.make(common, |shape, output| {
+    let (arguments, folder) = (&args.meshes, &args.output);
+    let results = Results { what: "forms", arguments, folder, extension, in_parallel: true };
+    let (done, failed) = results.make(common, |shape, output| {
         let (_, surface) = read_both(&shape.path, &args.form.repair, common)?;
         let bars = Bars::with_budget(true, budget(args, output, rayon::current_num_threads()));
         let report = embed_and_write(&shape.path, surface, output, args, options, &bars)?;
         Ok(EmbedJson { report, points: Vec::new(), features: args.features, output: output.to_owned() })
     })?;
-    let mut json = BatchJson { shapes: Vec::new(), failed };
-    for (ShapeFile { name, label, path }, result) in done {
+    let shapes = done.into_iter().map(|(ShapeFile { name, label, path }, result)| {
         print_repair(&name, &result.report.repair, &args.form.repair);
         warn(&name, &result.report);
-        json.shapes.push(ShapeJson { name, label, path, result });
-    }
-    report(common, &json, |json| batch_table(json, &args.output))?;
+        object! {
+            name,
+            label,
+            path,
+            #[serde(flatten)]
+            result,
+        }
+    });
+    let json = object! { shapes: shapes.collect::<Vec<_>>(), failed };
+    report(common, &json, |json| {
+        let header = ["shape", "class", "vertices", "samples", "stress", "normalised stress", "seconds"];
+        let mut table = table_of(header);
+        for shape in &json.shapes {
+            let r = &shape.result.report;
+            table.add_row(row_of([
+                shape.name.clone(),
+                shape.label.clone(),
+                r.n_embedded.to_string(),
+                r.n_samples.to_string(),
+                stress_text(r),
+                normalized_or_none(r),
+                format!("{:.3}", r.seconds.total),
+            ]));
+        }
+        format!("{table}\n{}", results.counts(json.shapes.len(), &json.failed))
+    })?;
     Ok(exit_code(json.failed.is_empty()))
 }
 
@@ -214,18 +209,12 @@ fn check_dim(output: &Path, dim: usize) -> Result<()> {
 /// Writes the form: an array with one row per input vertex, or a mesh with the faces of the repaired input.
 fn write(output: &Path, map: &InputMap, coords: &Matrix) -> Result<()> {
     if extension(output) == "npy" {
-        let shape = [map.remap.n_old(), coords.ncols()];
-        return fill_npy(output, shape, |file| {
-            let mut out = BufWriter::with_capacity(1 << 16, file);
-            for vertex in 0..map.remap.n_old() {
-                let vertex = map.remap.to_new(VertexId::from(vertex));
-                for column in coords.column_iter() {
-                    let value = vertex.map_or(f64::NAN, |v| column[v.index()]);
-                    out.write_all(&value.to_le_bytes())?;
-                }
-            }
-            out.flush()
-        });
+        let (n, k) = (map.remap.n_old(), coords.ncols());
+        let row = |vertex: usize| {
+            let vertex = map.remap.to_new(vertex.into());
+            (0..k).map(move |axis| vertex.map_or(f64::NAN, |v| coords[(v.index(), axis)]))
+        };
+        return write_npy(output, &[n, k], (0..n).flat_map(row));
     }
     let position = |v: VertexId| [0, 1, 2].map(|axis| coords[(v.index(), axis)]).into();
     Ok(canonform::mesh::io::write(output, &map.with_positions(position))?)
@@ -335,23 +324,4 @@ fn answer(json: &EmbedJson) -> Answer {
             ("seconds for stress", format!("{:.3}", r.seconds.stress)),
         ],
     }
-}
-
-fn batch_table(json: &BatchJson, folder: &Path) -> String {
-    let header = ["shape", "class", "vertices", "samples", "stress", "normalised stress", "seconds"];
-    let mut table = table_of(header);
-    for shape in &json.shapes {
-        let r = &shape.result.report;
-        table.add_row(row_of([
-            shape.name.clone(),
-            shape.label.clone(),
-            r.n_embedded.to_string(),
-            r.n_samples.to_string(),
-            stress_text(r),
-            normalized_or_none(r),
-            format!("{:.3}", r.seconds.total),
-        ]));
-    }
-    let counts = format!("{} forms in {}, {} failed", json.shapes.len(), shown(folder), json.failed.len());
-    format!("{table}\n{counts}")
 }

@@ -55,17 +55,12 @@ fn confusion(title: &str, classes: &[String], counts: &[Vec<usize>]) -> comfy_ta
 /// The number of queries whose nearest shape is of their class, and the scores that say more.
 fn answer(IndexEvaluation { scores, agreement }: &IndexEvaluation) -> Answer {
     let (n, n_classes) = (scores.n, scores.classes.len());
-    let plain = column(&scores.mean, scores.intervals.as_ref());
-    let value = |name: &str| {
-        plain.iter().find(|(known, _)| *known == name).map_or_else(String::new, |(_, value)| value.clone())
-    };
+    let [nn, first_tier, second_tier, e, dcg, map] = column(&scores.mean, scores.intervals.as_ref());
+    let explained = |(name, value): Fact, words: &str| (name, format!("{value}: {words}"));
     let votes = format!("{:.4} (k = {})", scores.knn_accuracy, scores.knn_k);
     let mut facts = vec![
-        (
-            "first tier",
-            format!("{}: of as many shapes as the class has, those of the class", value("first tier")),
-        ),
-        ("mAP", format!("{}: 1 if every shape finds its whole class first", value("mAP"))),
+        explained(first_tier, "of as many shapes as the class has, those of the class"),
+        explained(map, "1 if every shape finds its whole class first"),
         ("k-NN accuracy", votes),
         ("silhouette", format!("{:.4}: from -1 to 1, above 0 if classes are apart", scores.silhouette)),
     ];
@@ -76,18 +71,12 @@ fn answer(IndexEvaluation { scores, agreement }: &IndexEvaluation) -> Answer {
             format!("distances agree with {share:.0} % of {pairs} pairs; those of one class end at {at:.2}"),
         )
     }));
-    let mut details: Vec<Fact> =
-        plain.iter().filter(|(name, _)| !["first tier", "mAP"].contains(name)).cloned().collect();
-    if let Some(intervals) = &scores.intervals {
-        let percent = 100.0 * intervals.level;
-        details.push((
-            "in parentheses",
-            format!(
-                "{percent:.0} % intervals of the mean over queries, from {} resamples",
-                intervals.resamples
-            ),
-        ));
-    }
+    let mut details = vec![nn, second_tier, e, dcg];
+    details.extend(scores.intervals.as_ref().map(|intervals| {
+        let (percent, n) = (100.0 * intervals.level, intervals.resamples);
+        let words = format!("{percent:.0} % intervals of the mean over queries, from {n} resamples");
+        ("in parentheses", words)
+    }));
     Answer {
         sentence: format!(
             "the nearest neighbour is of the same class for {:.1} % of {n} shapes in {n_classes} classes",

@@ -1,35 +1,18 @@
 //! `canonform generate`.
 
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, Result};
+use base::object;
 use base::terminal::Bars;
 use datasets::{
     ArticulatedOptions, CreatureOptions, DatasetError, Family, LabeledShape, MechanicalPart, PartMesh,
     articulated_shape, creature_family, mechanical_parts,
 };
 use rayon::prelude::*;
-use serde::Serialize;
 
 use crate::args::{Common, FamilyArg, GenerateArgs};
 use crate::output::{report, shown};
-
-#[derive(Serialize)]
-struct GenerateJson {
-    output: PathBuf,
-    n_classes: usize,
-    shapes: Vec<ShapeJson>,
-}
-
-#[derive(Serialize)]
-struct ShapeJson {
-    name: String,
-    label: String,
-    path: PathBuf,
-    n_vertices: usize,
-    n_faces: usize,
-}
 
 /// One class: its shapes can be generated without those of the others, so that a large collection needs little memory.
 enum Class {
@@ -50,7 +33,7 @@ pub(crate) fn generate(args: &GenerateArgs, common: &Common) -> Result<ExitCode>
         FamilyArg::Parts => vec![Class::Parts],
     };
     let bar = Bars::new(common.quiet).bar("classes", classes.len());
-    let mut json = GenerateJson { output: args.output.clone(), n_classes: classes.len(), shapes: Vec::new() };
+    let (n_classes, mut written) = (classes.len(), Vec::new());
     for class in classes {
         let shapes = shapes(&class, args, common)?;
         let folder = match (&class, shapes.first()) {
@@ -62,23 +45,21 @@ pub(crate) fn generate(args: &GenerateArgs, common: &Common) -> Result<ExitCode>
         for shape in shapes {
             let path = folder.join(format!("{}.{}", shape.name, args.output_format));
             canonform::mesh::io::write(&path, &shape.mesh)?;
+            let (name, label) = (shape.name, shape.label);
             let (n_vertices, n_faces) = (shape.mesh.n_vertices(), shape.mesh.n_faces());
-            json.shapes.push(ShapeJson { name: shape.name, label: shape.label, path, n_vertices, n_faces });
+            written.push(object! { name, label, path, n_vertices, n_faces });
         }
         bar.inc(1);
     }
     bar.finish_and_clear();
+    let json = object! { output: &args.output, n_classes, shapes: written };
     report(common, &json, |json| {
+        let (n, folder, n_vertices) = (json.shapes.len(), shown(json.output), args.vertices);
         if args.family == FamilyArg::Parts {
-            return format!("{} mechanical parts in {}", json.shapes.len(), shown(&json.output));
+            return format!("{n} mechanical parts in {folder}");
         }
-        let (folder, n_vertices) = (shown(&json.output), args.vertices);
-        let classes = if json.n_classes == 1 { "class" } else { "classes" };
-        format!(
-            "{} shapes of {} {classes} with {n_vertices} vertices each in {folder}",
-            json.shapes.len(),
-            json.n_classes
-        )
+        let classes = if n_classes == 1 { "class" } else { "classes" };
+        format!("{n} shapes of {n_classes} {classes} with {n_vertices} vertices each in {folder}")
     })
 }
 

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
+use base::object;
 use canonform::mesh::io::{FileFacts, MeshFile, extension};
 use canonform::mesh::{
     MeshReport, RepairReport, Shortcut, ShortcutKind, cut_shortcuts, is_noisy, repair, validate,
@@ -15,12 +16,6 @@ use crate::args::{Common, InfoArgs};
 use crate::batch::Failure;
 use crate::input::{check_dropped, expand, named, read_file};
 use crate::output::{Answer, Fact, count, exit_code, print, print_json};
-
-#[derive(Serialize)]
-struct InfoJson {
-    meshes: Vec<MeshInfo>,
-    failed: Vec<Failure>,
-}
 
 #[derive(Serialize)]
 struct MeshInfo {
@@ -38,7 +33,7 @@ struct MeshInfo {
 
 /// Reports on meshes; unreadable ones are listed and do not stop the others.
 pub(crate) fn info(args: &InfoArgs, common: &Common) -> Result<ExitCode> {
-    let mut json = InfoJson { meshes: Vec::new(), failed: Vec::new() };
+    let (mut meshes, mut failed) = (Vec::new(), Vec::new());
     for path in expand(&args.meshes)?.into_iter().map(|shape| shape.path) {
         let report = read_file(&path, common).and_then(|MeshFile { mesh, facts, .. }| {
             let repaired =
@@ -58,25 +53,21 @@ pub(crate) fn info(args: &InfoArgs, common: &Common) -> Result<ExitCode> {
                 }
                 let name = info.path.display().to_string();
                 check_dropped(&name, info.repair.dropped_area_share, args.repair.max_dropped);
-                json.meshes.push(info);
+                meshes.push(info);
             }
-            Err(fault) => json.failed.push(Failure::new(path, &fault)),
+            Err(fault) => failed.push(Failure::new(path, &fault)),
         }
     }
+    let code = exit_code(failed.is_empty());
     if common.json {
-        print_json(&json)?;
-    } else if json.meshes.len() > 1 {
-        print(&total(&json.meshes))?;
+        print_json(&object! { meshes, failed })?;
+    } else if meshes.len() > 1 {
+        let mut formats = BTreeMap::<String, usize>::new();
+        meshes.iter().for_each(|mesh| *formats.entry(extension(&mesh.path)).or_default() += 1);
+        let formats: Vec<String> = formats.iter().map(|(format, n)| format!("{n} {format}")).collect();
+        print(&format!("{} meshes: {}", meshes.len(), formats.join(", ")))?;
     }
-    Ok(exit_code(json.failed.is_empty()))
-}
-
-/// How many meshes of each format there are.
-fn total(meshes: &[MeshInfo]) -> String {
-    let mut formats = BTreeMap::<String, usize>::new();
-    meshes.iter().for_each(|mesh| *formats.entry(extension(&mesh.path)).or_default() += 1);
-    let formats: Vec<String> = formats.iter().map(|(format, n)| format!("{n} {format}")).collect();
-    format!("{} meshes: {}", meshes.len(), formats.join(", "))
+    Ok(code)
 }
 
 fn answer(info: &MeshInfo) -> Answer {
@@ -95,20 +86,16 @@ fn answer(info: &MeshInfo) -> Answer {
     let mut size = format!("{length} x {width} x {height}");
     size.extend(mesh.volume.map(|volume| format!(", volume {}", short(volume))));
     let mut facts = vec![("size", size)];
-    if !changes.is_empty() {
-        facts.push(("would repair", changes.join("; ")));
-    }
-    if info.noisy {
-        facts.push(("noisy", "yes; compare, index and search smooth it first".to_owned()));
-    }
+    facts.extend((!changes.is_empty()).then(|| ("would repair", changes.join("; "))));
+    let noisy = "yes; compare, index and search smooth it first";
+    facts.extend(info.noisy.then(|| ("noisy", noisy.to_owned())));
     facts.extend(info.shortcuts.first().map(|first| {
         let more = info.shortcuts.len() - 1;
         let more = if more > 0 { format!(" (and {more} more, see --details)") } else { String::new() };
         ("probable shortcut", shortcut_in_words(first) + &more)
     }));
-    if !info.file.ignored.is_empty() {
-        facts.push(("ignored", info.file.ignored.join(", ")));
-    }
+    let ignored = &info.file.ignored;
+    facts.extend((!ignored.is_empty()).then(|| ("ignored", ignored.join(", "))));
     facts.extend(info.file.notes.iter().map(|note| ("uncertain", note.clone())));
     let mut details = facts_of(mesh);
     let FileFacts { unit, instances, .. } = &info.file;
@@ -140,9 +127,7 @@ fn facts_of(mesh: &MeshReport) -> Vec<Fact> {
         ("boundary", format!("{} edges in {} loops", mesh.n_boundary_edges, mesh.n_boundary_loops)),
         ("Euler characteristic", mesh.euler_characteristic.to_string()),
     ];
-    if let Some(genus) = mesh.genus {
-        rows.push(("genus", genus.to_string()));
-    }
+    rows.extend(mesh.genus.map(|genus| ("genus", genus.to_string())));
     rows.extend([
         ("area", format!("{:.6}", mesh.area)),
         ("bounding box diagonal", format!("{:.6}", mesh.bounding_box_diagonal)),
@@ -166,8 +151,6 @@ fn facts_of(mesh: &MeshReport) -> Vec<Fact> {
         ("flipped faces", mesh.flipped_faces),
     ];
     rows.extend(faults.into_iter().filter(|(_, n)| *n > 0).map(|(name, n)| (name, n.to_string())));
-    if !mesh.orientable {
-        rows.push(("orientable", "no".to_owned()));
-    }
+    rows.extend((!mesh.orientable).then(|| ("orientable", "no".to_owned())));
     rows
 }

@@ -1,53 +1,23 @@
 //! `canonform methods`.
 
 use std::process::ExitCode;
-use std::time::Instant;
 
-use super::embed::normalized_text;
 use anyhow::Result;
 use base::terminal::{Bars, with_peak_bytes};
-use base::{Budget, Exceeded};
+use base::{Exceeded, object};
 use canonform::embed::{
-    DISTANCES_LIMIT, EmbedMethod, Embedded, FormOptions, Samples, SecondsReport, SharedStress, StressOptions,
-    StressReport, embed,
+    EmbedMethod, Embedded, FormOptions, SecondsReport, SharedStress, StressOptions, StressReport, embed,
 };
 use canonform::geodesics::{Method, Sampling};
-use canonform::mesh::RepairReport;
 use canonform::nmds::{Regularization, RpiAlpha};
 use canonform::settings::MethodSettings;
-use canonform::surface::VertexId;
 use canonform::{Error, Observer, Surface};
-
 use serde::Serialize;
 
+use super::embed::normalized_text;
 use crate::args::{Common, MethodsArgs};
 use crate::input::{named, read_surface};
 use crate::output::{report, table_of};
-
-/// Embeds a mesh by every method and tabulates the results.
-pub(crate) fn methods(args: &MethodsArgs, common: &Common) -> Result<ExitCode> {
-    let stress = StressOptions { choice: args.stress, against: None, seed: common.seed };
-    let surface = read_surface(&args.mesh, &args.form.repair, common)?;
-    let options = args.form.options(&MethodSettings::default(), common)?;
-    let bars = Bars::with_budget(common.quiet, args.limits.budget());
-    let methods = compared(&surface, &options, &stress, &bars).map_err(|fault| named(&args.mesh, fault))?;
-    report(common, &methods, |methods| table(methods, common))
-}
-
-/// The results of every method on one surface.
-#[derive(Serialize)]
-struct MethodsJson {
-    n_vertices: usize,
-    n_embedded: usize,
-    dim: usize,
-    /// The method that measured the distances, unless an entry says otherwise; the stress of all entries is measured against
-    /// it.
-    geodesic: &'static str,
-    methods: Vec<MethodJson>,
-    /// The entry of least stress.
-    best: Option<usize>,
-    repair: RepairReport,
-}
 
 #[derive(Serialize)]
 struct MethodJson {
@@ -71,6 +41,40 @@ struct MethodFacts {
     peak_bytes: usize,
 }
 
+/// Embeds a mesh by every method and tabulates the results.
+pub(crate) fn methods(args: &MethodsArgs, common: &Common) -> Result<ExitCode> {
+    let stress = StressOptions { choice: args.stress, against: None, seed: common.seed };
+    let surface = read_surface(&args.mesh, &args.form.repair, common)?;
+    let options = args.form.options(&MethodSettings::default(), common)?;
+    let bars = Bars::with_budget(common.quiet, args.limits.budget());
+    let methods = compared(&surface, &options, &stress, &bars).map_err(|fault| named(&args.mesh, fault))?;
+    let stress = |m: &MethodJson| Some(m.facts.as_ref()?.stress.as_ref()?.value);
+    let stresses = methods.iter().enumerate().filter_map(|(i, m)| Some((i, stress(m)?)));
+    let best = stresses.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(i, _)| i);
+    let json = object! {
+        n_vertices: surface.n_input_vertices(),
+        n_embedded: surface.mesh().n_vertices(),
+        dim: options.dim,
+        // The method that measured the distances, unless an entry says otherwise; the stress of all entries is measured
+        // against it.
+        geodesic: options.geodesic.name(),
+        methods,
+        // The entry of least stress.
+        best,
+        repair: &surface.input.report,
+    };
+    report(common, &json, |json| {
+        let kind = json.methods.iter().find_map(|m| m.facts.as_ref()?.stress.as_ref());
+        let kind = kind.map_or_else(String::new, |s| format!(", {:?}", s.kind).to_lowercase());
+        table(&json.methods, common)
+            + &format!(
+                "\n* lowest of its column. {} vertices, {} dimensions; the normalised stress is the relative error of the {} \
+                 distances{kind}; seconds from the repaired mesh to the embedding",
+                json.n_embedded, json.dim, json.geodesic
+            )
+    })
+}
+
 /// Embeds a surface by every method. One that cannot embed it reports its error and does not stop the others; if all fail, the
 /// error of the first is returned. The stress does not count as time of a method.
 fn compared(
@@ -78,12 +82,10 @@ fn compared(
     options: &FormOptions,
     stress: &StressOptions,
     observer: &dyn Observer,
-) -> Result<MethodsJson, Error> {
-    let variants = variants(options);
-    announce(surface, options, &variants, &observer.budget())?;
+) -> Result<Vec<MethodJson>, Error> {
     let shared = SharedStress::new(surface, options.geodesic, stress, observer)?;
     let (mut methods, mut first_error) = (Vec::new(), None);
-    for (name, changed) in variants {
+    for (name, changed) in variants(options) {
         let (embedded, peak_bytes) = with_peak_bytes(|| embed(surface, &changed, observer));
         let (facts, error) = match embedded {
             Ok(Embedded { embedding, report, .. }) => {
@@ -110,61 +112,10 @@ fn compared(
         };
         methods.push(MethodJson { method: changed.method.name(), options: name, facts, error });
     }
-    if let Some(fault) = first_error.filter(|_| methods.iter().all(|m| m.facts.is_none())) {
-        return Err(fault);
+    match first_error.filter(|_| methods.iter().all(|m| m.facts.is_none())) {
+        Some(fault) => Err(fault),
+        None => Ok(methods),
     }
-    let stress = |m: &MethodJson| m.facts.as_ref().and_then(|f| f.stress.as_ref()).map(|s| s.value);
-    let stresses = methods.iter().enumerate().filter_map(|(i, m)| stress(m).map(|s| (i, s)));
-    let best = stresses.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(i, _)| i);
-    Ok(MethodsJson {
-        n_vertices: surface.n_input_vertices(),
-        n_embedded: surface.mesh().n_vertices(),
-        dim: options.dim,
-        geodesic: options.geodesic.name(),
-        methods,
-        best,
-        repair: surface.input.report.clone(),
-    })
-}
-
-/// Most samples that `auto` takes.
-const MOST_AUTO: usize = 640;
-
-/// Seconds of distances beyond which they are announced.
-const WORTH_ANNOUNCING: f64 = 10.0;
-
-/// Times one run of the solver and announces how long all of them will take.
-fn announce(
-    surface: &Surface,
-    options: &FormOptions,
-    variants: &[(&'static str, FormOptions)],
-    budget: &Budget,
-) -> Result<(), Error> {
-    let p = surface.mesh().n_vertices();
-    let solver = options.geodesic.prepare(surface.intrinsic(), budget)?;
-    let start = Instant::now();
-    solver.distances(VertexId(0))?;
-    let one = start.elapsed().as_secs_f64();
-    let samples = match options.samples {
-        Samples::Count(n) => n.min(p),
-        Samples::Auto => p.min(MOST_AUTO),
-    };
-    let fits = p.saturating_mul(p).saturating_mul(size_of::<f64>()) <= DISTANCES_LIMIT;
-    let runs = |options: &FormOptions| match options.method.is_sampled() {
-        true => samples,
-        false if fits => p,
-        false => 0,
-    };
-    let runs: usize = variants.iter().map(|(_, options)| runs(options)).sum();
-    let seconds = runs as f64 * one / rayon::current_num_threads() as f64;
-    if seconds > WORTH_ANNOUNCING {
-        base::terminal::note(&format!(
-            "about {} s for distances ({runs} runs of {} s), besides the embeddings; -n with fewer samples takes less",
-            report::numbers::seconds(seconds),
-            report::numbers::seconds(one)
-        ));
-    }
-    Ok(())
 }
 
 /// Every method, and the variants of the first one by the options that select them.
@@ -187,88 +138,48 @@ fn variants(shared: &FormOptions) -> Vec<(&'static str, FormOptions)> {
     all
 }
 
-/// A column: its name, the value of a method as text, and as a number if the lowest one is marked.
-struct Column {
-    name: &'static str,
-    text: fn(&MethodFacts) -> String,
-    marked: Option<fn(&MethodFacts) -> Option<f64>>,
-    is_detail: bool,
+/// The columns of a method; the lowest value is marked where there is a place for a star.
+const COLUMNS: [&str; 6] =
+    ["normalised stress  ", "seconds  ", "memory  ", "samples", "stress  ", "negative mass"];
+
+/// The values of a method as text, and those of which the lowest is marked.
+fn cells(facts: &MethodFacts) -> [(String, Option<f64>); 6] {
+    let (stress, seconds, bytes) = (facts.stress.as_ref(), facts.seconds, facts.peak_bytes);
+    [
+        (stress.map_or_else(|| "no unit".to_owned(), normalized_text), stress.map(|s| s.normalized)),
+        (report::numbers::seconds(seconds), Some(seconds)),
+        (report::numbers::bytes(bytes), Some(bytes as f64)),
+        (facts.n_samples.to_string(), None),
+        (stress.map_or_else(String::new, |s| format!("{:.4}", s.value)), stress.map(|s| s.value)),
+        (format!("{:.4}", facts.negative_mass), None),
+    ]
 }
 
-const COLUMNS: [Column; 6] = [
-    Column {
-        name: "normalised stress  ",
-        text: |f| f.stress.as_ref().map_or_else(|| "no unit".to_owned(), normalized_text),
-        marked: Some(|f| f.stress.as_ref().map(|s| s.normalized)),
-        is_detail: false,
-    },
-    Column {
-        name: "seconds  ",
-        text: |f| report::numbers::seconds(f.seconds),
-        marked: Some(|f| Some(f.seconds)),
-        is_detail: false,
-    },
-    Column {
-        name: "memory  ",
-        text: |f| report::numbers::bytes(f.peak_bytes),
-        marked: Some(|f| Some(f.peak_bytes as f64)),
-        is_detail: false,
-    },
-    Column { name: "samples", text: |f| f.n_samples.to_string(), marked: None, is_detail: true },
-    Column {
-        name: "stress  ",
-        text: |f| f.stress.as_ref().map_or_else(String::new, |s| format!("{:.4}", s.value)),
-        marked: Some(|f| f.stress.as_ref().map(|s| s.value)),
-        is_detail: true,
-    },
-    Column {
-        name: "negative mass",
-        text: |f| format!("{:.4}", f.negative_mass),
-        marked: None,
-        is_detail: true,
-    },
-];
-
-/// One row per method, with a star at the lowest value of a column.
-fn table(report: &MethodsJson, common: &Common) -> String {
-    let columns: Vec<&Column> = COLUMNS.iter().filter(|c| common.details || !c.is_detail).collect();
-    let facts = || report.methods.iter().filter_map(|m| m.facts.as_ref());
+/// One row per method, and the errors of those that failed.
+fn table(methods: &[MethodJson], common: &Common) -> String {
+    let columns = &COLUMNS[..if common.details { COLUMNS.len() } else { 3 }];
+    let rows: Vec<_> = methods.iter().map(|method| method.facts.as_ref().map(cells)).collect();
     let least =
-        |column: &&Column| column.marked.map(|value| facts().filter_map(value).fold(f64::INFINITY, f64::min));
-    let best: Vec<Option<f64>> = columns.iter().map(least).collect();
-
-    let header = ["method", "options"].into_iter().chain(columns.iter().map(|column| column.name));
-    let mut table = table_of(header);
-    for method in &report.methods {
-        let cell = |(column, best): (&&Column, &Option<f64>)| match (&method.facts, column.marked) {
-            (None, _) => String::new(),
-            (Some(facts), None) => (column.text)(facts),
-            (Some(facts), Some(value)) => {
-                let star = if value(facts).is_some() && value(facts) == *best { " *" } else { "  " };
-                (column.text)(facts) + star
-            }
+        |column: usize| rows.iter().flatten().filter_map(|row| row[column].1).fold(f64::INFINITY, f64::min);
+    let mut table = table_of(["method", "options"].iter().chain(columns));
+    let mut failures = String::new();
+    for (MethodJson { method, options, error, .. }, row) in methods.iter().zip(&rows) {
+        let cell = |(i, (text, value)): (usize, &(String, Option<f64>))| match COLUMNS[i].ends_with(' ') {
+            true if *value == Some(least(i)) => format!("{text} *"),
+            true => format!("{text}  "),
+            false => text.clone(),
         };
-        let mut row = vec![method.method.to_owned(), method.options.to_owned()];
-        row.extend(columns.iter().zip(&best).map(cell));
-        if method.facts.is_none() {
-            row[2] = "failed  ".to_owned();
+        let mut values = vec![(*method).to_owned(), (*options).to_owned()];
+        match row {
+            Some(row) => values.extend(row.iter().enumerate().take(columns.len()).map(cell)),
+            None => values.push("failed  ".to_owned()),
         }
-        table.add_row(row);
+        values.resize(2 + columns.len(), String::new());
+        table.add_row(values);
+        failures.extend(error.as_ref().map(|error| format!("\n{method} {options} failed: {error}")));
     }
     for column in table.column_iter_mut().skip(2) {
         column.set_cell_alignment(comfy_table::CellAlignment::Right);
     }
-    let mut text = table.trim_fmt();
-    for method in &report.methods {
-        if let Some(error) = &method.error {
-            text += &format!("\n{} {} failed: {error}", method.method, method.options);
-        }
-    }
-    let kind = facts().find_map(|facts| facts.stress.as_ref());
-    let kind = kind.map_or_else(String::new, |s| format!(", {:?}", s.kind).to_lowercase());
-    text + &format!(
-        "\n* lowest of its column. {} vertices, {} dimensions; the normalised stress is the relative error of the {} \
-         distances{kind}; seconds from the repaired mesh to the embedding",
-        report.n_embedded, report.dim, report.geodesic
-    )
+    table.trim_fmt() + &failures
 }

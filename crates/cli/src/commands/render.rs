@@ -5,6 +5,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::{Result, bail};
+use base::object;
 use base::terminal::Bars;
 use canonform::Surface;
 use canonform::embed::{FormOptions, embed};
@@ -15,10 +16,10 @@ use report::render::{Coloring, RenderOptions, annotated, render, value_range};
 use serde::Serialize;
 
 use crate::args::{Common, Place, RenderArgs};
-use crate::batch::{Batch, Failure, Order, Results, create_folder_of};
-use crate::field::read_field;
+use crate::batch::Results;
 use crate::input::{file_name, is_single, named, print_repair, read_file};
-use crate::output::{Output, exit_code, facts, report, shown};
+use crate::output::{Output, exit_code, facts, report};
+use crate::table::read_field;
 
 #[derive(Serialize)]
 struct RenderJson {
@@ -46,38 +47,20 @@ struct FieldJson {
     missing: usize,
 }
 
-#[derive(Serialize)]
-struct BatchJson {
-    pictures: Vec<RenderJson>,
-    failed: Vec<Failure>,
-}
-
 /// Draws one mesh, or each of several.
 pub(crate) fn draw(args: &RenderArgs, common: &Common) -> Result<ExitCode> {
+    let bars = |quiet| Bars::with_budget(quiet, args.limits.budget());
     if let ([mesh], true) = (&args.meshes[..], is_single(&args.meshes, &args.output)) {
         let output = Output::new(&args.output, "a picture", &["png"], None, common)?;
-        let mut json = draw_one(
-            mesh,
-            output.path(),
-            args,
-            &Bars::with_budget(common.quiet, args.limits.budget()),
-            common,
-        )?;
-        json.output = output.name();
-        return output.report(common, &json, table);
+        let drawn = draw_one(mesh, output.path(), args, &bars(common.quiet), common)?;
+        return output.report(common, &RenderJson { output: output.name(), ..drawn }, table);
     }
     let (arguments, folder) = (&args.meshes, &args.output);
-    let results = Results { what: "pictures", arguments, folder, extension: "png", order: Order::OneByOne };
-    let Batch { done, failed } = results.make(common, |shape, output| {
-        create_folder_of(output)?;
-        draw_one(&shape.path, output, args, &Bars::with_budget(true, args.limits.budget()), common)
-    })?;
-    let failed = failed.into_iter().map(|failure| Failure { name: None, ..failure }).collect();
-    let json = BatchJson { pictures: done.into_iter().map(|(_, picture)| picture).collect(), failed };
-    report(common, &json, |json| {
-        let folder = shown(&args.output);
-        format!("{} pictures in {folder}, {} failed", json.pictures.len(), json.failed.len())
-    })?;
+    let results = Results { what: "pictures", arguments, folder, extension: "png", in_parallel: false };
+    let (done, failed) =
+        results.make(common, |shape, output| draw_one(&shape.path, output, args, &bars(true), common))?;
+    let json = object! { pictures: done.into_iter().map(|(_, drawn)| drawn).collect::<Vec<_>>(), failed };
+    report(common, &json, |json| results.counts(json.pictures.len(), &json.failed))?;
     Ok(exit_code(json.failed.is_empty()))
 }
 
@@ -201,18 +184,8 @@ fn options(args: &RenderArgs, field: Option<&ScalarField>) -> RenderOptions {
     let [width, height] = args.size;
     // Nine samples per pixel of a large picture would take gigabytes; its pixels are small enough.
     let supersampling = if width * height > 2000 * 2000 { 2 } else { usual.supersampling };
-    let view = place.view(args.up);
-    let colors = args.colors;
-    RenderOptions {
-        width,
-        height,
-        view,
-        background: args.background,
-        coloring,
-        colors,
-        supersampling,
-        ..usual
-    }
+    let (view, background, colors) = (place.view(args.up), args.background, args.colors);
+    RenderOptions { width, height, view, background, coloring, colors, supersampling, ..usual }
 }
 
 fn table(json: &RenderJson) -> String {

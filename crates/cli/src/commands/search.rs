@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Result, anyhow};
-use base::one_line;
+use base::{object, one_line};
 use canonform::collection::{content_hash, is_dataset};
 use canonform::library::mesh_path;
 use canonform::mesh::io::without_extension;
@@ -12,31 +12,10 @@ use canonform::relations::Relation;
 use canonform::search::{
     Answer, ComponentResult, OrderedBy, Prediction, SearchOptions, SearchRank, ShapeSearch, Unknown,
 };
-use serde::Serialize;
 
 use crate::args::{Common, SearchArgs};
 use crate::input::{file_name, is_stream, is_there, named, read_mesh, shapes_of};
 use crate::output::{count, exit_code, print, print_json, row_of, table_of};
-
-#[derive(Serialize)]
-struct Answered {
-    query: String,
-    #[serde(flatten)]
-    answer: Answer,
-}
-
-/// All answers.
-#[derive(Serialize)]
-struct Json<'a> {
-    queries: &'a [Answered],
-    failed: &'a [Failure],
-}
-
-#[derive(Serialize)]
-struct Failure {
-    query: String,
-    error: String,
-}
 
 /// What to search with.
 enum Query {
@@ -100,7 +79,11 @@ pub(crate) fn search(args: &SearchArgs, common: &Common) -> Result<ExitCode> {
                 if !common.json {
                     print(&text(query.name(), &answer, args.explain))?;
                 }
-                answers.push(Answered { query: query.name(), answer });
+                answers.push(object! {
+                    query: query.name(),
+                    #[serde(flatten)]
+                    answer,
+                });
             }
             Err(fault) => {
                 let fault = match query {
@@ -116,14 +99,14 @@ pub(crate) fn search(args: &SearchArgs, common: &Common) -> Result<ExitCode> {
                 }
                 let error = crate::remedy::message(&fault);
                 base::terminal::error(&error);
-                failed.push(Failure { query: query.name(), error });
+                failed.push(object! { query: query.name(), error });
             }
         }
     }
     let nothing = answers.iter().any(|answered| answered.answer.n_shapes == 0);
     let code = if failed.is_empty() && nothing { ExitCode::from(1) } else { exit_code(failed.is_empty()) };
     if common.json {
-        print_json(&Json { queries: &answers, failed: &failed })?;
+        print_json(&object! { queries: answers, failed })?;
     }
     Ok(code)
 }
@@ -198,44 +181,34 @@ fn class(predicted: &Prediction) -> String {
 }
 
 fn table(report: &Answer, details: bool) -> comfy_table::Table {
-    // Without its mesh, a part is only known to differ from wholes.
-    let n_columns = if details || report.rank_by != SearchRank::Part { usize::MAX } else { 5 };
     let has_classes = report.results.iter().any(|result| !result.label.is_empty());
-    let mut head = vec!["", "shape", "class", "distance", "relation"];
-    match report.rank_by {
-        SearchRank::Plain => {}
-        SearchRank::Graph => drop(head.splice(3..3, ["rank distance", "plain"])),
-        SearchRank::Part => drop(head.splice(3..3, ["part distance", "share"])),
-        SearchRank::Forms => head.insert(3, "form distance"),
-    }
-    head.truncate(n_columns);
-    if !has_classes {
-        head.remove(2);
-    }
-    let mut table = table_of(head);
+    let class: &[&str] = if has_classes { &["class"] } else { &[] };
+    let order: &[&str] = match report.rank_by {
+        SearchRank::Plain => &[],
+        SearchRank::Graph => &["rank distance", "plain"],
+        SearchRank::Part => &["part distance", "share"],
+        SearchRank::Forms => &["form distance"],
+    };
+    // Without its mesh, a part is only known to differ from wholes.
+    let is_related = details || report.rank_by != SearchRank::Part;
+    let relation: &[&str] = if is_related { &["distance", "relation"] } else { &[] };
+    let mut table = table_of([&["", "shape"], class, order, relation].concat());
     for result in &report.results {
-        let mut row = vec![
-            result.rank.to_string(),
-            result.id.clone(),
-            result.label.clone(),
-            format!("{:.4}", result.distance),
-            result.relation.in_brief(),
-        ];
+        let mut row = vec![result.rank.to_string(), result.id.clone()];
+        row.extend(has_classes.then(|| result.label.clone()));
         match result.order {
             None => {}
             Some(OrderedBy::Graph { rank_distance, plain_rank }) => {
                 let plain = plain_rank.map_or_else(|| "-".to_owned(), |rank| rank.to_string());
-                drop(row.splice(3..3, [format!("{rank_distance:.4}"), plain]));
+                row.extend([format!("{rank_distance:.4}"), plain]);
             }
             Some(OrderedBy::Part { part_distance, part_share }) => {
-                let share = format!("{:.0} %", 100.0 * part_share);
-                drop(row.splice(3..3, [format!("{part_distance:.4}"), share]));
+                row.extend([format!("{part_distance:.4}"), format!("{:.0} %", 100.0 * part_share)]);
             }
-            Some(OrderedBy::Forms { form_distance }) => row.insert(3, format!("{form_distance:.4}")),
+            Some(OrderedBy::Forms { form_distance }) => row.push(format!("{form_distance:.4}")),
         }
-        row.truncate(n_columns);
-        if !has_classes {
-            row.remove(2);
+        if is_related {
+            row.extend([format!("{:.4}", result.distance), result.relation.in_brief()]);
         }
         table.add_row(row_of(row));
     }

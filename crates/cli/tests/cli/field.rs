@@ -94,7 +94,7 @@ fn mistakes_are_named_and_leave_nothing_behind() {
     let query = |words: &[&'static str]| [&["field", "query", "x.field"][..], words].concat();
     place.refused(&query(&[]), &["--pairs"]);
     place.refused(&query(&["--nearest", "3"]), &["--source"]);
-    place.refused(&query(&["--pairs", "bad.csv"]), &["bad.csv", "line 2", "`3`"]);
+    place.refused(&query(&["--pairs", "bad.csv"]), &["bad.csv", "line 2", "found 1 values"]);
     place.refused(&query(&["--pairs", "far.csv"]), &["x.field", "vertex 999", "160 vertices"]);
     place.refused(&query(&["--source", "160"]), &["vertex 160"]);
     place.refused(&query(&["--source", "1", "-o", "row.ply"]), &["row.ply", ".csv or .npy"]);

@@ -103,7 +103,7 @@ fn landmarks_break_the_symmetry_and_an_initial_map_comes_out() {
     fs::write(place.path("pairs.csv"), "1,2\n3;x\n").unwrap();
     place.refused(
         "match cat0.off cat1.off --eigenfunctions 40 --landmarks pairs.csv",
-        &["pairs.csv", "line 2", "17,42"],
+        &["pairs.csv", "line 2", "`3;x` is not a number"],
     );
     fs::write(place.path("start.csv"), "1\n2\nx\n").unwrap();
     place.refused(

@@ -306,7 +306,7 @@ class Index(Stored):
         part = None if shard is None else (whole("shard", shard[0]), whole("shard", shard[1], 1))
         with running(call), in_files(meshes, path, labels, keep=keep_meshes) as files:
             with _label_file(files.labels) as label_file, _dataset(files.paths) as (dataset, name):
-                report = json.loads(_canonform.Index.build(dataset, os.fspath(path), label_file, bool(prune), part, None, settings))
+                report = json.loads(_canonform.Index.build(dataset, os.fspath(path), label_file, bool(prune), part, None, False, settings))
         report["failed"] += files.failed
         if not os.path.exists(path):
             first = report["failed"][0]["error"] if report["failed"] else "there are no meshes"

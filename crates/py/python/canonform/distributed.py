@@ -157,7 +157,7 @@ def build_index(
             dataset, label_file = os.path.abspath(dataset), given
             if given is not None and os.path.isfile(given):
                 label_file = shutil.copyfile(given, os.path.join(lists, "labels.csv"))
-            unchanged = _canonform.Index.unchanged(dataset, out, label_file, settings) if os.path.exists(out) else None
+            unchanged = _canonform.Index.build(dataset, out, label_file, True, None, None, True, settings) if os.path.exists(out) else None
             if unchanged is not None:
                 index, known = Index(out), json.loads(unchanged)
                 index.build_report = {key: known[key] for key in ("n_shapes", "described", "unchanged", "failed")} | {"batches": 0}
@@ -533,9 +533,8 @@ def _describe(
     name = _hash(settings, [(*shape, content) for shape, content in zip(shapes, contents, strict=True)])
     path = os.path.join(place, f"{name}.canonform")
     # An unfinished batch is resumed, and one that is there is recognised by the content of its meshes.
-    report = _canonform.Index.build(
-        dataset, path, label_file, False, None, {name for name, _, _ in shapes}, settings
-    )
+    names = {name for name, _, _ in shapes}
+    report = _canonform.Index.build(dataset, path, label_file, False, None, names, False, settings)
     return path, json.loads(report)
 
 

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use axum::extract::State;
-use canonform::compare::{Compared, MeshComparison, Residual, compare_meshes};
+use base::object;
+use canonform::compare::{Compared, Residual, compare_meshes};
 use canonform::descriptors::PreparedShape;
 use canonform::{Budget, ContentHash, Error};
-use report::viewer::Geometry;
 use serde::{Deserialize, Serialize};
 
 use super::answer::{Params, Written};
@@ -54,23 +54,6 @@ impl CompareParams {
     }
 }
 
-#[derive(Serialize)]
-struct Answer {
-    a: String,
-    b: String,
-    #[serde(flatten)]
-    found: MeshComparison,
-    /// Of either form from the other, in units of the first mesh.
-    residual: [Residual; 2],
-    /// Both forms after alignment, coloured by the distance of each point from the other form.
-    forms: [Geometry; 2],
-    /// Both meshes after alignment in space, coloured by the distance of each vertex from the other mesh, if they are alike as
-    /// rigid bodies.
-    meshes: Option<[Geometry; 2]>,
-    /// How far the meshes are apart, in units of the first.
-    gap: Option<Residual>,
-}
-
 /// One of the two shapes.
 struct ComparedShape {
     shape: PreparedShape,
@@ -114,16 +97,13 @@ fn answer(
     collection: &Collection,
     params: CompareParams,
     budget: &Budget,
-) -> Result<Answer, ApiError> {
+) -> Result<impl Serialize + use<>, ApiError> {
     let (name, a) = match (params.query, params.a) {
         (Some(query), None) => {
             let query = app.query(collection, &query)?;
             let shape = collection.search.prepared_query(&query.described)?;
-            let measured = Some(query.measured.clone());
-            (
-                query.described.name.clone(),
-                ComparedShape { shape, measured, content: query.described.content },
-            )
+            let (measured, content) = (Some(query.measured.clone()), query.described.content);
+            (query.described.name.clone(), ComparedShape { shape, measured, content })
         }
         (None, Some(id)) => {
             let side = ComparedShape::of_shape(app, collection, &id, budget)?;
@@ -146,5 +126,20 @@ fn answer(
     };
     let meshes = laid.as_ref().map(in_space);
     let gap = laid.map(|laid| Residual::new(&laid.gaps.concat()));
-    Ok(Answer { a: name, b: params.b, residual: found.residual, found, forms, meshes, gap })
+    let residual = found.residual;
+    Ok(object! {
+        a: name,
+        b: params.b,
+        #[serde(flatten)]
+        found,
+        // Of either form from the other, in units of the first mesh.
+        residual,
+        // Both forms after alignment, coloured by the distance of each point from the other form.
+        forms,
+        // Both meshes after alignment in space, coloured by the distance of each vertex from the other mesh, if they are
+        // alike as rigid bodies.
+        meshes,
+        // How far the meshes are apart, in units of the first.
+        gap,
+    })
 }

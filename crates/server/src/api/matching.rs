@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use axum::extract::State;
+use base::object;
 use canonform::Budget;
-use canonform::maps::{CorrespondOptions, MappedSurface, VertexMap, correspond};
-use report::viewer::Geometry;
+use canonform::maps::{CorrespondOptions, MappedSurface, correspond};
 use serde::Serialize;
 
 use super::answer::{Params, Written};
@@ -14,17 +14,6 @@ use crate::app::App;
 use crate::collection::Collection;
 use crate::cost;
 use crate::error::ApiError;
-
-#[derive(Serialize)]
-struct Answer {
-    a: String,
-    b: String,
-    /// From the first mesh to the second, at most two of different kinds: the direct one first, unless it distorts distances
-    /// clearly more.
-    maps: Vec<VertexMap>,
-    /// Both meshes; points that the first map joins have the same colour.
-    meshes: [Geometry; 2],
-}
 
 pub(super) async fn matching(
     State(app): State<Arc<App>>,
@@ -38,7 +27,7 @@ fn answer(
     collection: &Collection,
     params: CompareParams,
     budget: &Budget,
-) -> Result<Answer, ApiError> {
+) -> Result<impl Serialize + use<>, ApiError> {
     let (name, a) = match (params.query, params.a) {
         (Some(query), None) => {
             let query = app.query(collection, &query)?;
@@ -55,5 +44,13 @@ fn answer(
     let [from, to] = [&a, &b].map(|side| MappedSurface::new(&side.surface, &options, budget));
     let maps = correspond(&from?, &to?, &options, budget)?.maps;
     let carried = maps.first().map_or_else(|| a.mesh(), |map| a.carried(&b, map));
-    Ok(Answer { a: name, maps, meshes: [carried, b.mesh()], b: params.b })
+    Ok(object! {
+        a: name,
+        b: params.b,
+        // From the first mesh to the second, at most two of different kinds: the direct one first, unless it distorts
+        // distances clearly more.
+        maps,
+        // Points that the first map joins have the same colour.
+        meshes: [carried, b.mesh()],
+    })
 }

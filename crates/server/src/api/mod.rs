@@ -10,15 +10,14 @@ mod shapes;
 
 use std::sync::{Arc, LazyLock};
 
+use axum::Router;
 use axum::extract::State;
 use axum::http::StatusCode;
 use axum::routing::{MethodRouter, get, post};
-use axum::{Json, Router};
-use serde::Serialize;
+use base::object;
 
 use self::answer::Written;
 use crate::app::App;
-use crate::collection::FileState;
 use crate::error::ApiError;
 use crate::formats::filled_in;
 
@@ -37,6 +36,7 @@ fn routes() -> Vec<Route> {
         ("get", "/api/shapes", get(shapes::list)),
         ("get", "/api/shapes/{id}/mesh", get(shapes::mesh)),
         ("get", "/api/shapes/{id}/form", get(shapes::form)),
+        ("get", "/api/shapes/{id}/file", get(shapes::file)),
         ("get", "/api/shapes/{id}/thumbnail", get(shapes::thumbnail)),
         ("get", "/api/compare", get(compare::compare)),
         ("get", "/api/match", get(matching::matching)),
@@ -67,31 +67,18 @@ async fn wrong_method() -> ApiError {
 }
 
 /// Status, size of the index, and limits.
-#[derive(Serialize)]
-struct Health {
-    status: &'static str,
-    version: &'static str,
-    shapes: usize,
-    index: IndexHealth,
-    max_upload: usize,
-    max_vertices: u64,
-}
-
-#[derive(Serialize)]
-struct IndexHealth {
-    /// Changes with the content of the index in service.
-    version: String,
-    /// Whether that is the content of its file.
-    state: FileState,
-}
-
-async fn health(State(app): State<Arc<App>>) -> Json<Health> {
+async fn health(State(app): State<Arc<App>>) -> Result<Written, ApiError> {
     let collection = app.served.collection();
-    Json(Health {
+    Written::new(&object! {
         status: "ok",
         version: env!("CARGO_PKG_VERSION"),
         shapes: collection.shapes.len(),
-        index: IndexHealth { version: collection.version.clone(), state: app.served.state() },
+        index: object! {
+            // Changes with the content of the index in service.
+            version: &collection.version,
+            // Whether that is the content of its file.
+            state: app.served.state(),
+        },
         max_upload: app.options.max_upload,
         max_vertices: app.options.max_vertices,
     })

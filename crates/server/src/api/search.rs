@@ -5,18 +5,17 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use axum::extract::{Request, State};
+use base::object;
 use canonform::collection::{is_archive_name, single_mesh};
 use canonform::embed::MeasuredSurface;
 use canonform::index::ContentHash;
-use canonform::mesh::RepairReport;
 use canonform::mesh::io::{MemoryFile, ReadLimits, is_mesh_path, mesh_files, read_memory};
 use canonform::relations::MeshGeometry;
-use canonform::search::{SearchOptions, SearchRank, SearchSeconds};
+use canonform::search::{Answer, SearchOptions, SearchRank};
 use canonform::{Budget, Error, Surface};
 use report::viewer::Geometry;
-use serde::de::value::StrDeserializer;
-use serde::de::{DeserializeOwned, IntoDeserializer};
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
+use serde_json::{Map, Value};
 
 use super::answer::{Params, Written};
 use super::csv;
@@ -65,33 +64,27 @@ struct Wanted {
     format: Format,
 }
 
-/// A value by its name, as in a query string.
-fn named<T: DeserializeOwned>(name: &str) -> Option<T> {
-    let name: StrDeserializer<'_, serde::de::value::Error> = name.into_deserializer();
-    T::deserialize(name).ok()
-}
-
 impl SearchParams {
-    /// Adds the fields of a form.
-    fn with_fields(mut self, upload: &Upload) -> Result<Self, ApiError> {
-        for (name, text) in &upload.fields {
-            let wrong =
-                |expected: &str| ApiError::bad_request(format!("{name} is `{text}`; expected {expected}"));
-            let choice = || text.parse().map_err(|_| wrong("true or false"));
-            match name.as_str() {
-                "k" => self.k = Some(text.parse().map_err(|_| wrong("a number"))?),
-                "explain" => self.explain = Some(choice()?),
-                "rank" => self.rank = Some(named(text).ok_or_else(|| wrong("plain, graph, part or forms"))?),
-                "geometry" => self.geometry = Some(choice()?),
-                "format" => self.format = Some(named(text).ok_or_else(|| wrong("json or csv"))?),
-                _ => {
-                    let error = format!("the form has an unknown field `{name}`");
-                    let remedy = "send files, `k`, `explain`, `rank`, `geometry` and `format`";
-                    return Err(ApiError::bad_request(error).with_remedy(remedy));
-                }
-            }
+    /// With the fields of a form, which go before what the address says.
+    fn with_fields(self, upload: &Upload) -> Result<Self, ApiError> {
+        let value = |text: &String| text.parse().unwrap_or_else(|_| Value::from(text.as_str()));
+        let fields: Map<_, _> =
+            upload.fields.iter().map(|(name, text)| (name.clone(), value(text))).collect();
+        let wrong = |fault: String| {
+            let remedy = "send files, `k`, `explain`, `rank`, `geometry` and `format`";
+            ApiError::bad_request(format!("a field of the form is wrong: {fault}")).with_remedy(remedy)
+        };
+        match Self::deserialize(fields).map_err(|fault| wrong(fault.to_string()))? {
+            Self { shape: None, query: None, k, explain, rank, geometry, format } => Ok(Self {
+                k: k.or(self.k),
+                explain: explain.or(self.explain),
+                rank: rank.or(self.rank),
+                geometry: geometry.or(self.geometry),
+                format: format.or(self.format),
+                ..self
+            }),
+            _ => Err(wrong("the file is the query".to_owned())),
         }
-        Ok(self)
     }
 
     fn wanted(&self) -> Result<Wanted, ApiError> {
@@ -107,57 +100,44 @@ impl SearchParams {
     }
 }
 
-/// The output of `canonform search --json`, and the geometry for the page.
-#[derive(Serialize)]
-struct Answered {
-    /// Name of the file, or of the shape of the index.
-    query: String,
-    #[serde(flatten)]
-    answer: canonform::search::Answer,
-    /// Identifies this upload for later searches and comparisons; none for a shape of the index.
-    query_id: Option<String>,
-    /// None if the mesh of a shape of the index is missing.
-    repair: Option<RepairReport>,
-    /// The repair in words, one line per kind of change.
-    repaired: Vec<String>,
-    mesh: Option<Geometry>,
-    /// Why there is no mesh.
-    mesh_missing: Option<String>,
-    form: Option<Geometry>,
-}
+/// A query as it is drawn; without its mesh the points of its form, and why there is no mesh.
+type Drawn = Result<Arc<Measured>, (Geometry, String)>;
 
-impl Answered {
-    /// Without geometry and repair. Paths are shown as clients may see them.
-    fn new(collection: &Collection, query: String, mut answer: canonform::search::Answer) -> Self {
+impl Wanted {
+    /// The output of `canonform search --json`, and the geometry for the page. `query_id` identifies an upload for later
+    /// searches and comparisons. Paths are shown as clients may see them.
+    fn written(
+        &self,
+        collection: &Collection,
+        query: &str,
+        query_id: Option<&str>,
+        mut answer: Answer,
+        drawn: Option<Drawn>,
+    ) -> Result<Written, ApiError> {
         answer.place(|path| collection.public_path(path));
-        Self {
+        if self.format == Format::Csv {
+            return Ok(Written::csv(csv::of(query, &answer)));
+        }
+        let (measured, points) = match drawn {
+            Some(Ok(measured)) => (Some(measured), None),
+            Some(Err(points)) => (None, Some(points)),
+            None => (None, None),
+        };
+        let repair = measured.as_ref().map(|measured| &measured.surface.input.report);
+        let (points, mesh_missing) = points.unzip();
+        let shown = measured.as_ref().filter(|_| self.geometry);
+        Written::new(&object! {
             query,
+            #[serde(flatten)]
             answer,
-            query_id: None,
-            repair: None,
-            repaired: Vec::new(),
-            mesh: None,
-            mesh_missing: None,
-            form: None,
-        }
-    }
-
-    fn with_measured(self, measured: &Measured, geometry: bool) -> Self {
-        let repair = measured.surface.input.report.clone();
-        Self {
-            repaired: repair.summary(),
-            repair: Some(repair),
-            mesh: geometry.then(|| measured.mesh()),
-            form: geometry.then(|| measured.form()),
-            ..self
-        }
-    }
-
-    fn written(&self, wanted: &Wanted) -> Result<Written, ApiError> {
-        match wanted.format {
-            Format::Json => Written::new(self),
-            Format::Csv => Ok(Written::csv(csv::of(&self.query, &self.answer))),
-        }
+            query_id,
+            repair,
+            // The repair in words, one line per kind of change.
+            repaired: repair.map(|repair| repair.summary()).unwrap_or_default(),
+            mesh: shown.map(|measured| measured.mesh()),
+            mesh_missing,
+            form: points.or_else(|| shown.map(|measured| measured.form())),
+        })
     }
 }
 
@@ -170,7 +150,8 @@ pub(super) async fn search(
     if params.shape.is_some() || params.query.is_some() {
         return again(app, params).await;
     }
-    if let Err(busy) = app.work.expect(announced(&request) as f64 * cost::UPLOADED_BYTE) {
+    // Only to learn whether it would be.
+    if let Err(busy) = app.work.accept(announced(&request) as f64 * cost::UPLOADED_BYTE) {
         drain(request);
         return Err(busy);
     }
@@ -184,7 +165,7 @@ pub(super) async fn search(
     let (shared, bytes) = (app.clone(), upload.bytes());
     let vertices = (bytes / VERTEX_BYTES) as u64;
     let searching = app.served.collection().search_cost(&wanted.options, vertices);
-    let answer = move |budget: &Budget| with_upload(&shared, upload, &wanted, budget)?.written(&wanted);
+    let answer = move |budget: &Budget| with_upload(&shared, upload, &wanted, budget);
     app.work.run(bytes as f64 * cost::UPLOADED_BYTE + searching, Some(place), answer).await
 }
 
@@ -203,19 +184,16 @@ async fn again(app: Arc<App>, params: SearchParams) -> Result<Written, ApiError>
         (Some(id), None) => {
             let measuring = if wanted.geometry { app.cost(&collection, &id) } else { 0.0 };
             let searching = collection.search_cost(&wanted.options, collection.n_vertices(&id));
-            let answer = move |budget: &Budget| {
-                with_shape(&shared, &collection, id, &wanted, budget)?.written(&wanted)
-            };
+            let answer = move |budget: &Budget| with_shape(&shared, &collection, &id, &wanted, budget);
             app.work.run(measuring + searching, None, answer).await
         }
         (None, Some(address)) => {
             let query = app.query(&collection, &address)?;
             let cost = collection.search_cost(&wanted.options, query.n_vertices());
             let answer = move |budget: &Budget| {
-                let report = query.search(&collection, &wanted.options, budget)?;
-                let answer = Answered::new(&collection, query.described.name.clone(), report);
-                let answer = answer.with_measured(&query.measured, wanted.geometry);
-                Answered { query_id: Some(address), ..answer }.written(&wanted)
+                let answer = query.search(&collection, &wanted.options, budget)?;
+                let (name, drawn) = (&query.described.name, query.measured.clone());
+                wanted.written(&collection, name, Some(&address), answer, Some(Ok(drawn)))
             };
             app.work.run(cost, None, answer).await
         }
@@ -226,27 +204,24 @@ async fn again(app: Arc<App>, params: SearchParams) -> Result<Written, ApiError>
 fn with_shape(
     app: &App,
     collection: &Collection,
-    id: String,
+    id: &str,
     wanted: &Wanted,
     budget: &Budget,
-) -> Result<Answered, ApiError> {
-    let query = collection.search.query_of(&id, &wanted.options, budget)?;
-    let report = collection.search.search(&query, &wanted.options, budget)?;
-    let answer = Answered::new(collection, id.clone(), report);
-    if !wanted.geometry {
-        return Ok(answer);
-    }
-    match app.indexed(collection, &id, budget) {
-        Ok(measured) => Ok(answer.with_measured(&measured, true)),
-        Err(fault) if is_missing(&fault) => {
-            let form = Some(points(collection, &id)?);
-            Ok(Answered { form, mesh_missing: Some(ApiError::from(fault).text().to_owned()), ..answer })
+) -> Result<Written, ApiError> {
+    let query = collection.search.query_of(id, &wanted.options, budget)?;
+    let answer = collection.search.search(&query, &wanted.options, budget)?;
+    let drawn = match wanted.geometry.then(|| app.indexed(collection, id, budget)) {
+        None => None,
+        Some(Ok(measured)) => Some(Ok(measured)),
+        Some(Err(fault)) if is_missing(&fault) => {
+            Some(Err((points(collection, id)?, ApiError::from(fault).text().to_owned())))
         }
-        Err(fault) => Err(fault.into()),
-    }
+        Some(Err(fault)) => return Err(fault.into()),
+    };
+    wanted.written(collection, id, None, answer, drawn)
 }
 
-fn with_upload(app: &App, upload: Upload, wanted: &Wanted, budget: &Budget) -> Result<Answered, ApiError> {
+fn with_upload(app: &App, upload: Upload, wanted: &Wanted, budget: &Budget) -> Result<Written, ApiError> {
     let Some(name) = upload.files.first().map(|(name, _)| name.clone()) else {
         let remedy = format!("send one mesh, {}; or name a shape of the index with ?shape=", mesh_files());
         return Err(ApiError::bad_request("the request has no file").with_remedy(remedy));
@@ -265,11 +240,10 @@ fn with_upload(app: &App, upload: Upload, wanted: &Wanted, budget: &Budget) -> R
         }
     };
     let describe = start.elapsed().as_secs_f64();
-    let report = query.search(&collection, &wanted.options, budget)?;
-    let seconds = SearchSeconds { describe, ..report.seconds };
-    let report = canonform::search::Answer { seconds, ..report };
-    let answer = Answered::new(&collection, query.described.name.clone(), report);
-    Ok(Answered { query_id: Some(address), ..answer.with_measured(&query.measured, wanted.geometry) })
+    let mut answer = query.search(&collection, &wanted.options, budget)?;
+    answer.seconds.describe = describe;
+    let (name, drawn) = (&query.described.name, query.measured.clone());
+    wanted.written(&collection, name, Some(&address), answer, Some(Ok(drawn)))
 }
 
 /// The upload with the mesh of an archive instead of the archive.

@@ -4,13 +4,14 @@ use std::sync::Arc;
 
 use axum::body::Bytes;
 use axum::extract::State;
-use axum::http::HeaderMap;
-use axum::response::Response;
+use axum::http::{HeaderMap, header};
+use axum::response::{IntoResponse, Response};
+use base::object;
 use canonform::mesh::TriMesh;
 use canonform::{Budget, Error};
 use report::render::{Background, RenderOptions, View, render};
 use report::viewer::Geometry;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
 use super::answer::{Id, Params, Written, is_known, tag, tagged};
 use crate::app::App;
@@ -48,13 +49,6 @@ fn usual_limit() -> usize {
     50
 }
 
-#[derive(Serialize)]
-struct List<'a> {
-    total: usize,
-    offset: usize,
-    shapes: Vec<&'a ShapeSummary>,
-}
-
 pub(super) async fn list(
     State(app): State<Arc<App>>,
     Params(params): Params<ListParams>,
@@ -69,7 +63,7 @@ pub(super) async fn list(
             return Err(ApiError::bad_request(format!("sample is {n}; use 1 to {MOST_LISTED}")));
         }
         let (total, shapes) = (collection.shapes.len(), collection.sample(n));
-        return Written::new(&List { total, offset: 0, shapes });
+        return Written::new(&object! { total, offset: 0, shapes });
     }
     let part = params.q.to_lowercase();
     let is_meant = |shape: &&ShapeSummary| {
@@ -83,7 +77,7 @@ pub(super) async fn list(
         }
         total += 1;
     }
-    Written::new(&List { total, offset: params.offset, shapes })
+    Written::new(&object! { total, offset: params.offset, shapes })
 }
 
 /// The repaired mesh of a shape.
@@ -104,6 +98,27 @@ pub(super) async fn form(State(app): State<Arc<App>>, Id(id): Id) -> Result<Writ
         Err(fault) => Err(fault.into()),
     };
     app.work.run(cost, None, form).await
+}
+
+/// The mesh file of a shape, as it was indexed.
+pub(super) async fn file(State(app): State<Arc<App>>, Id(id): Id) -> Result<Response, ApiError> {
+    let collection = app.served.collection();
+    let cost = collection.n_vertices(&id) as f64 * cost::DRAWN_VERTEX;
+    let read = move |_: &Budget| {
+        let files = collection.search.files(&id)?;
+        let (path, content) = files.into_iter().next().ok_or_else(ApiError::internal)?;
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let kind = (header::CONTENT_TYPE, "application/octet-stream".to_owned());
+        // A name in UTF-8 (RFC 8187).
+        let name = name.bytes().map(|byte| match byte {
+            b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'.' | b'-' | b'_' => char::from(byte).to_string(),
+            _ => format!("%{byte:02X}"),
+        });
+        let name = name.collect::<String>();
+        let disposition = (header::CONTENT_DISPOSITION, format!("attachment; filename*=UTF-8''{name}"));
+        Ok(([kind, disposition], content).into_response())
+    };
+    app.work.run(cost, None, read).await
 }
 
 /// The points of the form in the index, as dots.

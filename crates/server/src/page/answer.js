@@ -1,6 +1,6 @@
 // The results: repairs, mesh and form, class, nearest shapes.
 import { Comparison, ask, byId, number, view, views } from './comparison.js';
-import { commonFolder, folderOf, mark, tile } from './shapes.js';
+import { commonFolder, folderOf, mark, nameOf, tile } from './shapes.js';
 import { USUAL_K, searched } from './state.js';
 
 const percent = (share) => `${Math.round(100 * share)} %`;
@@ -14,6 +14,7 @@ export class Answer {
     this.picked = picked;
     this.root = byId('answer');
     this.root.dataset.state = 'empty';
+    byId('sort').addEventListener('change', () => this.sort());
     this.comparison = new Comparison(() => {
       const result = byId('results').querySelector('[aria-pressed=true]');
       closed();
@@ -93,6 +94,7 @@ export class Answer {
     const folder = commonFolder(found.results.map(({ id }) => id));
     byId('results-folder').textContent = folder && `in ${folder}`;
     byId('results').replaceChildren(...found.results.map((result) => this.card(result, folder)));
+    this.sort();
     byId('results').dataset.explained = 'false';
     byId('components').replaceChildren();
     byId('pick').hidden = false;
@@ -102,6 +104,15 @@ export class Answer {
     this.root.removeAttribute('aria-busy');
     // On a narrow screen the results are below the query.
     if (this.root.getBoundingClientRect().top > 0.6 * innerHeight) this.root.scrollIntoView({ block: 'start' });
+  }
+
+  // Shapes that are equal in the chosen respect stay in the order of the answer.
+  sort() {
+    const by = byId('sort').value;
+    const key = ({ firstChild: { dataset } }) => (by === 'name' ? nameOf(dataset.id) : dataset[by]);
+    const items = [...byId('results').children].sort((a, b) => a.firstChild.dataset.rank - b.firstChild.dataset.rank);
+    if (by !== 'rank') items.sort((a, b) => key(a).localeCompare(key(b), 'en', { numeric: true }));
+    byId('results').append(...items);
   }
 
   // A result: its name and folder, its class, and how it is related to the query.
@@ -151,6 +162,7 @@ export class Answer {
       `${copies === 1 ? '1 component' : `${copies} components`} of ${n} vertices: ${nearest?.relation.text ?? 'nothing found'}.`);
     const wholes = (answer.wholes ?? []).map(({ relation }) => `${relation.text}.`);
     this.list('components', [...parts, ...wholes]);
+    this.sort();
     byId('results').dataset.explained = 'true';
   }
 

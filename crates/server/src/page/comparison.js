@@ -63,6 +63,7 @@ export class Comparison {
     overlay.dataset.state = 'busy';
     overlay.dataset.id = id;
     byId('overlay-title').textContent = `${first} over ${id}`;
+    byId('file-hit').href = `/api/shapes/${encodeURIComponent(id)}/file`;
     byId('overlay-kind').textContent = 'Aligning…';
     byId('overlay-kind').dataset.kind = '';
     byId('overlay-facts').textContent = '';

@@ -5,8 +5,8 @@
 //
 // Stable names, for tests and other scripts:
 //   #duplicates           data-state: `busy`, `ready` or `failed`; #told #progress #error #retry
-//   #which #suggest #clear #as-csv #marked  groups to show, marks of all, the download, what is marked
-//   #groups li.group[data-id of the keeper]  with ul.tiles of button.tile[data-id][data-kind], aria-pressed while compared
+//   #which #sort #fold #suggest #clear #as-csv #marked  groups to show, marks of all, the download, what is marked
+//   #groups li.group[data-id of the keeper]  details with ul.tiles of button.tile[data-id][data-kind], aria-pressed while compared
 //     button.mark[data-mark=keep|spare], aria-pressed; #more shows further groups
 //   #overlay #other       the comparison of comparison.js, in the group of its shapes; the file on its left
 //   the address           /duplicates?a=ID&b=ID, the two files that are compared
@@ -21,6 +21,7 @@ const AGAIN = 700;
 const marks = new Marks();
 let report = null;
 let shown = 0;
+let isFolded = false;
 
 const count = (n, what) => `${n.toLocaleString('en')} ${what}${n === 1 ? '' : 's'}`;
 
@@ -72,7 +73,9 @@ function follow() {
   }
   while (!section(report.groups[at])) more();
   // The picture is beside the files that it shows.
-  section(report.groups[at]).append(byId('overlay'));
+  const shownGroup = section(report.groups[at]);
+  shownGroup.firstChild.open = true;
+  shownGroup.append(byId('overlay'));
   const others = filesOf(report.groups[at]).map(({ id }) => id).filter((id) => id !== b);
   byId('other').replaceChildren(...others.map((id) => new Option(id, id, id === a, id === a)));
   comparison.show(a, b, new URLSearchParams({ a, b }));
@@ -113,16 +116,25 @@ function groupItem(group) {
   const item = document.createElement('li');
   item.className = 'group';
   item.dataset.id = group.keeper.id;
-  const heading = item.appendChild(document.createElement('h2'));
+  const folded = item.appendChild(document.createElement('details'));
+  folded.open = !isFolded;
+  const heading = folded.appendChild(document.createElement('summary')).appendChild(document.createElement('h2'));
   heading.textContent = `${count(files.length, 'file')} of one shape, ${size(spareBytes(group.members))} to spare`;
-  const list = item.appendChild(document.createElement('ul'));
+  const list = folded.appendChild(document.createElement('ul'));
   list.className = 'tiles';
   list.append(...files.map((file) => card(file, group.keeper.id, group.members[0].id)));
   return item;
 }
 
+const orders = {
+  found: () => 0,
+  bytes: (a, b) => spareBytes(b.members) - spareBytes(a.members),
+  files: (a, b) => b.members.length - a.members.length,
+  name: (a, b) => a.keeper.id.localeCompare(b.keeper.id, 'en', { numeric: true }),
+};
+
 const wanted = () => report.groups.filter((group) =>
-  byId('which').value === 'all' || filesOf(group).every((file) => !marks.of(file)));
+  byId('which').value === 'all' || filesOf(group).every((file) => !marks.of(file))).sort(orders[byId('sort').value]);
 
 function more() {
   const groups = wanted();
@@ -226,7 +238,12 @@ addEventListener('popstate', () => { if (report) follow(); });
 byId('search-hit').addEventListener('click', () => {
   location.href = `/?${new URLSearchParams({ shape: byId('overlay').dataset.id })}`;
 });
-byId('which').addEventListener('change', list);
+for (const id of ['which', 'sort']) byId(id).addEventListener('change', list);
+byId('fold').addEventListener('click', () => {
+  isFolded = !isFolded;
+  byId('fold').textContent = isFolded ? 'Unfold all groups' : 'Fold all groups';
+  for (const { firstChild } of byId('groups').children) firstChild.open = !isFolded;
+});
 byId('more').addEventListener('click', more);
 byId('suggest').addEventListener('click', () => suggest((file) => {
   if (file.why) return 'keep';

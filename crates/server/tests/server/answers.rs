@@ -303,6 +303,9 @@ fn every_shape_has_a_mesh_a_form_and_a_thumbnail() {
             geometry(&answer.json())
         });
         assert_eq!((shown.positions.len(), form.positions.len()), (mesh.n_vertices(), mesh.n_vertices()));
+        let file = part("file");
+        assert!(file.status == 200 && file.body == fs::read(server.mesh(id)).unwrap());
+        assert!(file.header("content-disposition").unwrap().starts_with("attachment; filename*=UTF-8''"));
         let picture = part("thumbnail");
         assert!(picture.status == 200 && picture.body.starts_with(b"\x89PNG\r\n"));
         assert_eq!(picture.header("content-type"), Some("image/png"));
@@ -311,7 +314,7 @@ fn every_shape_has_a_mesh_a_form_and_a_thumbnail() {
         let same = ask(server.address, "GET", &target, &[("If-None-Match", tag)], b"").unwrap();
         assert!(same.status == 304 && same.body.is_empty() && same.header("etag") == Some(tag));
     }
-    for part in ["mesh", "form", "thumbnail"] {
+    for part in ["mesh", "form", "file", "thumbnail"] {
         for id in ["none", "..%2f..%2fmeshes%2fball0", "%2fetc%2fpasswd"] {
             let answer = get(&server, &format!("/api/shapes/{id}/{part}"));
             assert_eq!(answer.status, 404);

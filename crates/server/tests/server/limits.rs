@@ -148,6 +148,7 @@ fn only_own_pages_and_programs_may_ask() {
         ("GET", "/api/shapes"),
         ("GET", "/api/shapes/ring0/mesh"),
         ("GET", "/api/shapes/ring0/form"),
+        ("GET", "/api/shapes/ring0/file"),
         ("GET", "/api/shapes/ring0/thumbnail"),
         ("GET", "/api/openapi.json"),
         ("GET", "/healthz"),

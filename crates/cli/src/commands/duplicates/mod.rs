@@ -1,37 +1,28 @@
 //! `canonform duplicates`.
 
-mod page;
-mod words;
+mod shown;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
 use base::files::{Scratch, write_bytes};
+use base::object;
 use base::terminal::Bars;
 use canonform::DescribeOptions;
 use canonform::collection::{LabelSource, is_dataset};
 use canonform::index::{IndexWriter, text_cell};
 use canonform::library::{
-    DuplicateFile, DuplicateGroup, DuplicateOptions, DuplicateReport, Inputs, MoveReport, ShapeLimits,
-    add_to_index, check_place, find_duplicates, move_duplicates, undo_moves,
+    DuplicateFile, DuplicateGroup, DuplicateOptions, DuplicateReport, Inputs, ShapeLimits, add_to_index,
+    check_place, find_duplicates, move_duplicates, undo_moves,
 };
 use canonform::mesh::io::is_mesh_path;
 use canonform::search::ShapeSearch;
-use serde::Serialize;
 
-use self::words::{moved, text};
+use self::shown::{moved, page, text};
 use super::index::skipped;
 use crate::args::{Common, DuplicatesArgs, keep_inputs};
 use crate::output::{check_output, exit_code, report};
-
-#[derive(Serialize)]
-struct Json {
-    #[serde(flatten)]
-    found: DuplicateReport,
-    #[serde(flatten)]
-    moves: Option<MoveReport>,
-}
 
 /// Finds the files of an index or a dataset that hold one shape, and moves them if asked to.
 pub(crate) fn duplicates(args: &DuplicatesArgs, common: &Common) -> Result<ExitCode> {
@@ -70,13 +61,10 @@ pub(crate) fn duplicates(args: &DuplicatesArgs, common: &Common) -> Result<ExitC
     let mut found = find_duplicates(&search, &options, &bars)?;
     bars.finish();
     if let Some(path) = &args.html {
-        write_bytes(path, page::page(&found, &search)?.as_bytes())?;
+        write_bytes(path, page(&found, &search)?.as_bytes())?;
     }
     let whole = found.clone();
-    for group in &mut found.groups {
-        let members = group.members.iter_mut().map(|member| &mut member.file);
-        members.chain([&mut group.keeper]).for_each(|file| file.path = short(&file.path));
-    }
+    found.files_mut().for_each(|file| file.path = short(&file.path));
     if let Some(path) = &args.csv {
         write_bytes(path, csv(&found).as_bytes())?;
     }
@@ -84,7 +72,12 @@ pub(crate) fn duplicates(args: &DuplicatesArgs, common: &Common) -> Result<ExitC
     let told = text(&found);
     let moves =
         args.move_to.as_ref().map(|place| move_duplicates(&whole, &args.inputs, place)).transpose()?;
-    let json = Json { found, moves };
+    let json = object! {
+        #[serde(flatten)]
+        found,
+        #[serde(flatten)]
+        moves,
+    };
     report(common, &json, |json| {
         told + &json.moves.as_ref().map(|moves| format!("\n\n{}", moved(moves))).unwrap_or_default()
     })?;

@@ -18,10 +18,9 @@ use crate::args::{Common, GeodesicArgs, geodesic_method};
 use crate::input::{named, read_reported};
 use crate::output::Output;
 
-type Write = fn(Task<'_>) -> Result<ExitCode>;
-
 /// Measures distances or finds paths.
 pub(crate) fn geodesic(args: &GeodesicArgs, common: &Common) -> Result<ExitCode> {
+    type Write = fn(Task<'_>) -> Result<ExitCode>;
     let (what, formats, write): (_, Vec<&str>, Write) = if args.all_pairs {
         ("all pairs", vec!["npy"], pairs::write)
     } else if args.path_to.is_empty() {

@@ -1,45 +1,22 @@
 //! Distances between all pairs of vertices.
 
-use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::{Result, bail};
-use base::files::FileError;
+use base::files::{FileError, fill_atomically};
+use base::object;
 use base::terminal::Bars;
 use canonform::Exceeded;
 use canonform::geodesics::{AllPairs, Asymmetry};
-use canonform::mesh::RepairReport;
-use canonform::surface::VertexId;
-use serde::Serialize;
+use npyz::WriterBuilder;
 
 use super::task::Task;
 use crate::input::named;
-use crate::output::{Answer, decimal_bytes, fill_npy, shown};
+use crate::output::{Answer, decimal_bytes, shown};
 
 /// Default memory for distances, in bytes.
 const DEFAULT_MEMORY: usize = 1 << 30;
-
-#[derive(Serialize)]
-struct PairsJson {
-    method: &'static str,
-    n_vertices: usize,
-    output: PathBuf,
-    /// The difference between the two directions, which are averaged.
-    asymmetry: Asymmetry,
-    seconds: Seconds,
-    /// Input vertices without a path to any other.
-    unreached: Vec<VertexId>,
-    repair: RepairReport,
-}
-
-#[derive(Serialize)]
-struct Seconds {
-    load: f64,
-    setup: f64,
-    /// All sources, on all threads, with writing the file.
-    all_pairs: f64,
-}
 
 /// The largest file that is written without --force, in bytes: 111,803 vertices.
 const LARGEST_FILE: u128 = 100_000_000_000;
@@ -62,58 +39,62 @@ pub(super) fn check_size(n_vertices: usize, force: bool) -> Result<()> {
 
 /// Measures, writes and reports the distances between all pairs.
 pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
-    let Task { args, surface, .. } = task;
+    let Task { args, surface, common, .. } = task;
     let memory = args.limits.memory.unwrap_or(DEFAULT_MEMORY);
     let pairs = AllPairs::new(surface, task.solver, memory).map_err(|fault| named(&args.mesh, fault))?;
-    let start = Instant::now();
+    let (start, n_vertices) = (Instant::now(), pairs.n_vertices());
+    let observer = Bars::with_budget(common.quiet, args.limits.budget());
     let mut asymmetry = Asymmetry::default();
-    fill_npy(task.output.path(), [pairs.n_vertices(); 2], |file| {
-        asymmetry = pairs.write(file, &Bars::with_budget(task.common.quiet, args.limits.budget()))?;
+    let written = fill_atomically(task.output.path(), |file| {
+        // The header, and then the numbers in any order.
+        let shape = [n_vertices as u64; 2];
+        let array: npyz::NpyWriter<f64, _> =
+            npyz::WriteOptions::new().default_dtype().shape(&shape).writer(&mut *file).begin_nd()?;
+        drop(array);
+        asymmetry = pairs.write(file, &observer)?;
         Ok(())
-    })
-    .map_err(|fault| stopped(&fault).map_or(fault, |limit| named(&args.mesh, limit.into())))?;
-    let json = PairsJson {
-        method: args.method.into(),
-        n_vertices: pairs.n_vertices(),
+    });
+    written.map_err(|fault| stopped(&fault).map_or(fault.into(), |limit| named(&args.mesh, limit.into())))?;
+    drop(observer);
+    let json = object! {
+        method: <&str>::from(args.method),
+        n_vertices,
         output: task.output.name(),
+        // The difference between the two directions, which are averaged.
         asymmetry,
-        seconds: Seconds {
+        seconds: object! {
             load: surface.input.load_seconds,
             setup: task.setup,
+            // All sources, on all threads, with writing the file.
             all_pairs: start.elapsed().as_secs_f64(),
         },
-        unreached: surface.input.report.dropped_vertices.clone(),
-        repair: surface.input.report.clone(),
+        // Input vertices without a path to any other.
+        unreached: &surface.input.report.dropped_vertices,
+        repair: &surface.input.report,
     };
-    let common = task.common;
-    task.output.report(common, &json, |json| answer(json).text(common))
+    task.output.report(common, &json, |json| {
+        let percent = |share: f64| format!("{:.3} %", 100.0 * share);
+        let [mean, most] = [json.asymmetry.mean, json.asymmetry.largest].map(percent);
+        let mut facts = vec![("seconds", format!("{:.1}", json.seconds.all_pairs))];
+        let n = json.unreached.len();
+        facts.extend((n > 0).then(|| ("unreached", format!("{n} vertices, written as inf"))));
+        let output = shown(&json.output);
+        let answer = Answer {
+            sentence: format!("{output} holds the distances between all pairs of {n_vertices} vertices"),
+            facts,
+            details: vec![
+                ("method", json.method.to_owned()),
+                ("setup", format!("{:.1} ms", 1e3 * json.seconds.setup)),
+                ("asymmetry", format!("{mean} on average, {most} at most; both directions are averaged")),
+            ],
+        };
+        answer.text(common)
+    })
 }
 
 /// The limit that ended the work, if it was not the file that failed.
-fn stopped(fault: &anyhow::Error) -> Option<Exceeded> {
-    let FileError { source, .. } = fault.downcast_ref()?;
-    source.get_ref()?.downcast_ref().copied()
-}
-
-fn answer(json: &PairsJson) -> Answer {
-    let percent = |share: f64| format!("{:.3} %", 100.0 * share);
-    let Asymmetry { mean, largest } = json.asymmetry;
-    let mut facts = vec![("seconds", format!("{:.1}", json.seconds.all_pairs))];
-    if !json.unreached.is_empty() {
-        facts.push(("unreached", format!("{} vertices, written as inf", json.unreached.len())));
-    }
-    let (output, n) = (shown(&json.output), json.n_vertices);
-    let asymmetry =
-        format!("{} on average, {} at most; both directions are averaged", percent(mean), percent(largest));
-    Answer {
-        sentence: format!("{output} holds the distances between all pairs of {n} vertices"),
-        facts,
-        details: vec![
-            ("method", json.method.to_owned()),
-            ("setup", format!("{:.1} ms", 1e3 * json.seconds.setup)),
-            ("asymmetry", asymmetry),
-        ],
-    }
+fn stopped(fault: &FileError) -> Option<Exceeded> {
+    fault.source.get_ref()?.downcast_ref().copied()
 }
 
 #[cfg(test)]

@@ -7,7 +7,6 @@ use base::terminal::Bars;
 use canonform::Surface;
 use canonform::geodesics::{DistanceSolver, Source};
 use canonform::mesh::{InputPoint, TriMesh};
-use serde::Serialize;
 
 use crate::args::{Common, GeodesicArgs};
 use crate::input::named;
@@ -26,14 +25,6 @@ pub(super) struct Task<'a> {
     pub(super) setup: f64,
 }
 
-/// Seconds of each stage; the solver runs on one thread.
-#[derive(Serialize)]
-pub(super) struct Seconds {
-    pub(super) load: f64,
-    pub(super) setup: f64,
-    pub(super) per_source: Vec<f64>,
-}
-
 /// Distances from one source, or from the nearest of several.
 pub(super) struct Row {
     /// The sources as the user wrote them.
@@ -41,11 +32,13 @@ pub(super) struct Row {
     pub(super) sources: Vec<Source>,
     /// One for each vertex of the repaired mesh.
     pub(super) distances: Vec<f64>,
+    /// The time of the solver, on one thread.
+    pub(super) seconds: f64,
 }
 
 impl Task<'_> {
     /// Solves for every source, or once for the nearest of them.
-    pub(super) fn solve(&self) -> Result<(Vec<Row>, Seconds)> {
+    pub(super) fn solve(&self) -> Result<Vec<Row>> {
         let Self { args, surface, .. } = self;
         let located = |point: &InputPoint| {
             let source = Source::new(surface.intrinsic(), surface.locate(point)?)?;
@@ -56,7 +49,6 @@ impl Task<'_> {
         let groups = points.chunks(if args.nearest { points.len() } else { 1 });
         let bar = Bars::new(self.common.quiet).bar("distances", groups.len());
         let mut rows = Vec::with_capacity(groups.len());
-        let mut per_source = Vec::with_capacity(groups.len());
         for group in groups {
             let (from, sources): (_, Vec<Source>) = group.iter().cloned().unzip();
             let mut distances = vec![0.0; self.solver.n_vertices()];
@@ -64,16 +56,19 @@ impl Task<'_> {
             self.solver
                 .solve_into(&sources, args.max_distance.unwrap_or(f64::INFINITY), &mut distances)
                 .map_err(canonform::Error::from)?;
-            per_source.push(start.elapsed().as_secs_f64());
-            rows.push(Row { from, sources, distances });
+            rows.push(Row { from, sources, distances, seconds: start.elapsed().as_secs_f64() });
             bar.inc(1);
         }
         bar.finish_and_clear();
-        Ok((rows, Seconds { load: surface.input.load_seconds, setup: self.setup, per_source }))
+        Ok(rows)
     }
 }
 
 /// Points as the user writes them.
 pub(super) fn spelled(points: &[InputPoint]) -> String {
     points.iter().map(ToString::to_string).collect::<Vec<_>>().join(",")
+}
+
+pub(super) fn milliseconds(seconds: f64) -> String {
+    format!("{:.2} ms", 1e3 * seconds)
 }

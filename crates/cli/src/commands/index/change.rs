@@ -1,9 +1,11 @@
 //! `canonform index build | add | remove | merge`.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Result;
+use base::object;
 use base::terminal::Bars;
 use canonform::collection::{LabelOrigin, LabelSource};
 use canonform::index::damaged_path;
@@ -11,19 +13,11 @@ use canonform::library::{
     BuildOptions, BuildReport, FailureReason, Inputs, MergeReport, add_to_index, build_index, merge_indexes,
     remove_from_index,
 };
-use serde::Serialize;
 
 use crate::args::{AddArgs, BuildArgs, Common, MAX_DROPPED};
 use crate::input::{check_dropped, is_named};
-use crate::output::{Answer, Fact, check_output, count, exit_code, report, shown};
+use crate::output::{Answer, check_output, count, exit_code, report, shown};
 use crate::remedy::with_remedy;
-
-#[derive(Serialize)]
-struct Json<T: Serialize> {
-    index: PathBuf,
-    #[serde(flatten)]
-    report: T,
-}
 
 pub(super) fn build(args: &BuildArgs, common: &Common) -> Result<ExitCode> {
     check_output(&args.output)?;
@@ -65,10 +59,13 @@ fn summarize(
     max_dropped: f64,
     common: &Common,
 ) -> Result<ExitCode> {
-    let json = Json { index: index.to_owned(), report: built };
-    report(common, &json, |json| answer(index, &json.report, max_dropped).text(common))?;
-    let built = &json.report;
-    notes(index, built, labels).iter().for_each(|note| base::terminal::note(note));
+    let json = object! {
+        index,
+        #[serde(flatten)]
+        built: &built,
+    };
+    report(common, &json, |_| answer(index, &built, max_dropped).text(common))?;
+    notes(index, &built, labels).iter().for_each(|note| base::terminal::note(note));
     for shape in &built.dropped {
         check_dropped(&shape.id, shape.dropped_area_share, max_dropped);
     }
@@ -161,18 +158,8 @@ fn answer(index: &Path, report: &BuildReport, max_dropped: f64) -> Answer {
         }
         false => format!("{name} was not written: no mesh could be described"),
     };
-    let mut facts: Vec<Fact> = classes(report).map(|words| ("classes", words)).into_iter().collect();
-    if !report.failed.is_empty() {
-        facts.push(("failed", failures(report)));
-    }
     let lossy = report.dropped.iter().filter(|shape| shape.dropped_area_share > max_dropped).count();
-    if lossy > 0 {
-        facts.push(("incomplete", lossy.to_string()));
-    }
-    if !report.skipped.is_empty() {
-        let kinds: Vec<String> = report.skipped.iter().map(|(kind, n)| format!("{kind} ({n})")).collect();
-        facts.push(("skipped", kinds.join(", ")));
-    }
+    let skipped: Vec<String> = report.skipped.iter().map(|(kind, n)| format!("{kind} ({n})")).collect();
     let rare = [
         ("renamed", report.renamed),
         ("copies of other files", report.copies),
@@ -185,9 +172,14 @@ fn answer(index: &Path, report: &BuildReport, max_dropped: f64) -> Answer {
     let rare = rare.into_iter().filter(|(_, n)| *n > 0).map(|(name, n)| format!("{n} {name}"));
     let resumed = report.resumed.then(|| "an interrupted run was resumed".to_owned());
     let others: Vec<String> = rare.chain(resumed).collect();
-    if !others.is_empty() {
-        facts.push(("also", others.join(", ")));
-    }
+    let facts = [
+        ("classes", classes(report).unwrap_or_default()),
+        ("failed", failures(report)),
+        ("incomplete", if lossy > 0 { lossy.to_string() } else { String::new() }),
+        ("skipped", skipped.join(", ")),
+        ("also", others.join(", ")),
+    ];
+    let facts = facts.into_iter().filter(|(_, value)| !value.is_empty()).collect();
     Answer { sentence, facts, details: vec![("seconds", format!("{:.2}", report.seconds))] }
 }
 
@@ -203,33 +195,23 @@ fn failures(report: &BuildReport) -> String {
     let count = |reason| report.failed.iter().filter(|failure| failure.reason == reason).count();
     let parts = reasons.map(|(reason, words)| (count(reason), words)).into_iter().filter(|(n, _)| *n > 0);
     let parts: Vec<String> = parts.map(|(n, words)| format!("{n} {words}")).collect();
-    format!("{}: {}", report.failed.len(), parts.join(", "))
-}
-
-#[derive(Serialize)]
-struct RemoveReport {
-    n_shapes: usize,
-    removed: usize,
+    if parts.is_empty() { String::new() } else { format!("{}: {}", report.failed.len(), parts.join(", ")) }
 }
 
 pub(super) fn remove(index: &Path, ids: &[String], common: &Common) -> Result<ExitCode> {
     let n_shapes = remove_from_index(index, ids)?;
-    let mut ids = ids.to_vec();
-    ids.sort();
-    ids.dedup();
-    let json = Json { index: index.to_owned(), report: RemoveReport { n_shapes, removed: ids.len() } };
-    report(common, &json, |json| {
-        format!("{} removed, {n_shapes} shapes in {}", json.report.removed, shown(&json.index))
+    let removed = ids.iter().collect::<HashSet<_>>().len();
+    report(common, &object! { index, n_shapes, removed }, |_| {
+        format!("{removed} removed, {n_shapes} shapes in {}", shown(index))
     })
 }
 
 pub(super) fn merge(inputs: &[PathBuf], output: &Path, common: &Common) -> Result<ExitCode> {
     check_output(output)?;
-    let merged = merge_indexes(inputs, output, &Bars::new(common.quiet))?;
-    report(common, &Json { index: output.to_owned(), report: merged }, |json| {
-        let MergeReport { n_shapes, repeated } = json.report;
+    let MergeReport { n_shapes, repeated } = merge_indexes(inputs, output, &Bars::new(common.quiet))?;
+    report(common, &object! { index: output, n_shapes, repeated }, |_| {
         let twice =
             if repeated > 0 { format!(", {repeated} of them in more than one index") } else { String::new() };
-        format!("{n_shapes} shapes in {}{twice}", shown(&json.index))
+        format!("{n_shapes} shapes in {}{twice}", shown(output))
     })
 }

@@ -1,35 +1,26 @@
-//! `canonform index verify | info | export`.
+//! `canonform index verify | info | export | list`.
 
-use std::collections::BTreeMap;
 use std::io::{BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
+use base::object;
 use canonform::Remedy;
-use canonform::index::{ExportFormat, FORMAT_VERSION, Index, Verification};
-use canonform::library::export_index;
-use serde::Serialize;
+use canonform::index::{Entry, ExportFormat, FORMAT_VERSION, Index, Verification};
+use canonform::library::{export_index, mesh_path};
+use serde_json::Value;
 
-use crate::args::Common;
+use crate::args::{Common, ListArgs};
 use crate::input::is_stream;
-use crate::output::{Answer, Output, count, exit_code, print, print_json, report, shown};
+use crate::output::{Answer, Output, count, exit_code, print, print_json, report, row_of, shown, table_of};
 use crate::remedy::with_remedy;
 
-#[derive(Serialize)]
-struct VerifyJson<'a> {
-    index: &'a Path,
-    sound: bool,
-    n_shapes: usize,
-    n_bytes: u64,
-    faults: &'a [String],
-}
-
 pub(super) fn verify(index: &Path, common: &Common) -> Result<ExitCode> {
-    let Verification { n_shapes, n_bytes, faults } = &canonform::index::verify(index)?;
+    let Verification { n_shapes, n_bytes, faults } = canonform::index::verify(index)?;
     let (sound, name) = (faults.is_empty(), shown(index));
     if common.json {
-        print_json(&VerifyJson { index, sound, n_shapes: *n_shapes, n_bytes: *n_bytes, faults })?;
+        print_json(&object! { index, sound, n_shapes, n_bytes, faults: &faults })?;
     } else if sound {
         print(&format!("{name}: intact, {n_shapes} shapes, {n_bytes} bytes"))?;
     }
@@ -40,66 +31,49 @@ pub(super) fn verify(index: &Path, common: &Common) -> Result<ExitCode> {
     Ok(exit_code(sound))
 }
 
-#[derive(Serialize)]
-struct InfoJson {
-    index: PathBuf,
-    format: u32,
-    n_shapes: usize,
-    n_bytes: u64,
-    options: serde_json::Value,
-    /// Shapes of each class; those without one have an empty key.
-    classes: BTreeMap<String, u64>,
-    unlabelled: u64,
-    /// Whether its writer was interrupted, or is at work.
-    unfinished: bool,
-}
-
-pub(super) fn info(path: &Path, common: &Common) -> Result<ExitCode> {
-    let index = Index::open(path)?;
-    let mut classes = index.classes()?;
-    let unlabelled = index.len() as u64 - classes.values().sum::<u64>();
-    if unlabelled > 0 {
-        classes.insert(String::new(), unlabelled);
-    }
-    let json = InfoJson {
-        index: path.to_owned(),
-        format: FORMAT_VERSION,
-        n_shapes: index.len(),
-        n_bytes: index.n_bytes(),
-        options: serde_json::from_str(index.options()).unwrap_or_else(|_| index.options().into()),
-        unlabelled,
-        classes,
-        unfinished: !index.is_finished(),
-    };
-    report(common, &json, |json| answer(json).text(common))
-}
-
 /// Most classes that are named without `--details`.
 const MOST_CLASSES: usize = 10;
 
-fn answer(json: &InfoJson) -> Answer {
-    let classes = json.classes.iter().filter(|(class, _)| !class.is_empty());
-    let classes: Vec<String> = classes.map(|(class, n)| format!("{class} {n}")).collect();
-    let (index, n_shapes, n_classes) = (json.index.display(), json.n_shapes, classes.len());
-    let (first, more) = classes.split_at(n_classes.min(MOST_CLASSES));
-    let more = if more.is_empty() { String::new() } else { format!(" and {} more", more.len()) };
-    let mut facts = vec![("classes", first.join(", ") + &more)];
-    if json.unlabelled > 0 {
-        facts.push(("unlabelled", json.unlabelled.to_string()));
+pub(super) fn info(path: &Path, common: &Common) -> Result<ExitCode> {
+    let index = Index::open(path)?;
+    let (mut classes, n_shapes) = (index.classes()?, index.len());
+    let named: Vec<String> = classes.iter().map(|(class, n)| format!("{class} {n}")).collect();
+    let unlabelled = n_shapes as u64 - classes.values().sum::<u64>();
+    if unlabelled > 0 {
+        classes.insert(String::new(), unlabelled);
     }
-    if json.unfinished {
-        facts.push(("unfinished", "run the interrupted command again, or wait until it ends".to_owned()));
-    }
-    Answer {
-        sentence: format!("{index} holds {} of {n_classes} classes", count(n_shapes, "shape")),
-        facts,
-        details: vec![
-            ("all classes", classes.join(", ")),
-            ("bytes", json.n_bytes.to_string()),
-            ("format", json.format.to_string()),
-            ("described by", json.options.to_string()),
-        ],
-    }
+    let json = object! {
+        index: path,
+        format: FORMAT_VERSION,
+        n_shapes,
+        n_bytes: index.n_bytes(),
+        options: serde_json::from_str(index.options()).unwrap_or_else(|_| Value::from(index.options())),
+        // Shapes of each class; those without one have an empty key.
+        classes,
+        unlabelled,
+        // Whether its writer was interrupted, or is at work.
+        unfinished: !index.is_finished(),
+    };
+    report(common, &json, |json| {
+        let (first, more) = named.split_at(named.len().min(MOST_CLASSES));
+        let more = if more.is_empty() { String::new() } else { format!(" and {} more", more.len()) };
+        let mut facts = vec![("classes", first.join(", ") + &more)];
+        facts.extend((unlabelled > 0).then(|| ("unlabelled", unlabelled.to_string())));
+        let unfinished = "run the interrupted command again, or wait until it ends";
+        facts.extend(json.unfinished.then(|| ("unfinished", unfinished.to_owned())));
+        let (index, shapes, n_classes) = (path.display(), count(n_shapes, "shape"), named.len());
+        let answer = Answer {
+            sentence: format!("{index} holds {shapes} of {n_classes} classes"),
+            facts,
+            details: vec![
+                ("all classes", named.join(", ")),
+                ("bytes", json.n_bytes.to_string()),
+                ("format", json.format.to_string()),
+                ("described by", json.options.to_string()),
+            ],
+        };
+        answer.text(common)
+    })
 }
 
 pub(super) fn export(
@@ -126,4 +100,27 @@ pub(super) fn export(
     export_index(&index, format, output.path())?;
     output.copy_to_stdout()?;
     Ok(ExitCode::SUCCESS)
+}
+
+pub(super) fn list(args: &ListArgs, common: &Common) -> Result<ExitCode> {
+    let index = Index::open(&args.index)?;
+    let lists_all = args.label.is_empty() && !args.unlabelled;
+    let is_listed =
+        |label: &String| lists_all || args.label.contains(label) || args.unlabelled && label.is_empty();
+    let entries = index.entries()?.into_iter().filter(|entry| is_listed(&entry.label));
+    let shapes = entries.map(|Entry { id, label, path, facts, .. }| {
+        let path = mesh_path(&args.index, &path).to_string_lossy().into_owned();
+        object! { id, label, path, vertices: facts.vertices, faces: facts.faces }
+    });
+    let json = object! { index: &args.index, n_shapes: index.len(), shapes: shapes.collect::<Vec<_>>() };
+    let code = report(common, &json, |json| {
+        let mut table = table_of(["shape", "class", "vertices", "path"]);
+        for shape in &json.shapes {
+            let class = if shape.label.is_empty() { "-" } else { &shape.label };
+            table.add_row(row_of([&shape.id, class, &shape.vertices.to_string(), &shape.path]));
+        }
+        let counts = format!("{} of {} shapes in {}", json.shapes.len(), json.n_shapes, shown(json.index));
+        format!("{table}\n  {counts}")
+    })?;
+    Ok(if json.shapes.is_empty() { ExitCode::from(1) } else { code })
 }

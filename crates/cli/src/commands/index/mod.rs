@@ -1,7 +1,6 @@
 //! `canonform index`.
 
 mod change;
-mod list;
 mod look;
 
 pub(crate) use change::skipped;
@@ -19,7 +18,7 @@ pub(crate) fn index(command: &IndexCommand, common: &Common) -> Result<ExitCode>
         IndexCommand::Remove { index, ids } => change::remove(index, ids, common),
         IndexCommand::Merge { inputs, output } => change::merge(inputs, output, common),
         IndexCommand::Verify { index } => look::verify(index, common),
-        IndexCommand::List(args) => list::list(args, common),
+        IndexCommand::List(args) => look::list(args, common),
         IndexCommand::Info { index } => look::info(index, common),
         IndexCommand::Export { index, output, output_format } => {
             look::export(index, output.as_deref(), output_format.as_deref(), common)

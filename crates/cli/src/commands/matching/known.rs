@@ -4,26 +4,25 @@ use std::path::Path;
 
 use anyhow::{Context, Result, bail};
 use canonform::Surface;
-use canonform::collection::TextTable;
 use canonform::maps::KnownMap;
 use canonform::surface::VertexId;
 
 use crate::args::MatchArgs;
-use crate::field::read_numbers;
-use crate::output::check_format;
-use crate::pairs;
+use crate::table::{Table, read_pairs, vertex};
 
 /// What the options say of the map between two surfaces.
 pub(super) fn read(args: &MatchArgs, surfaces: [&Surface; 2]) -> Result<KnownMap> {
-    let landmarks = args.landmarks.as_deref().map(|path| landmarks(path, surfaces)).transpose()?;
-    let initial =
-        args.initial.as_deref().map(|path| match check_format(path, "a map", &["npy", "csv"])?.as_str() {
-            "npy" => {
-                let (n_columns, numbers) = read_numbers(path)?;
-                of_array(n_columns, &numbers).with_context(|| path.display().to_string())
-            }
-            _ => of_table(&TextTable::read(path)?, surfaces[0].n_input_vertices()),
-        });
+    let exist = |pair: [VertexId; 2]| {
+        for ((vertex, surface), name) in pair.iter().zip(surfaces).zip(["first", "second"]) {
+            surface.repaired_vertex(*vertex).with_context(|| format!("in the {name} mesh"))?;
+        }
+        Ok(())
+    };
+    let landmarks = args.landmarks.as_deref().map(|path| read_pairs(path, exist)).transpose()?;
+    let initial = args.initial.as_deref().map(|path| {
+        let table = Table::read(path, "a map", &["npy", "csv"])?;
+        initial(table, path, surfaces[0].n_input_vertices())
+    });
     Ok(KnownMap {
         landmarks: landmarks.unwrap_or_default(),
         initial: initial.transpose()?.unwrap_or_default(),
@@ -31,79 +30,36 @@ pub(super) fn read(args: &MatchArgs, surfaces: [&Surface; 2]) -> Result<KnownMap
     })
 }
 
-fn landmarks(path: &Path, surfaces: [&Surface; 2]) -> Result<Vec<[VertexId; 2]>> {
-    let pairs = pairs::read_numbered(path)?;
-    for (row, pair) in &pairs {
-        for ((vertex, surface), name) in pair.iter().zip(surfaces).zip(["first", "second"]) {
-            if let Err(fault) = surface.repaired_vertex(*vertex) {
-                bail!("{}: {row}: {fault} (the {name} mesh)", path.display());
-            }
-        }
-    }
-    Ok(pairs.into_iter().map(|(_, pair)| pair).collect())
-}
-
-fn of_array(n_columns: usize, numbers: &[f64]) -> Result<Vec<Option<VertexId>>> {
-    if n_columns != 1 && n_columns != numbers.len() {
-        bail!("the array has {n_columns} columns; a map has one number for each vertex of the first mesh");
-    }
-    numbers
-        .iter()
-        .enumerate()
-        .map(|(row, number)| partner(*number).with_context(|| format!("row {row}")))
-        .collect()
-}
-
-/// Lines of a map as it is written, `vertex,match`, or one number in every line.
-fn of_table(table: &TextTable, n_vertices: usize) -> Result<Vec<Option<VertexId>>> {
+/// Rows of a map as it is written, a vertex and its partner, or only the partner in every row.
+fn initial(table: Table, path: &Path, n_vertices: usize) -> Result<Vec<Option<VertexId>>> {
     let mut found = vec![None; n_vertices];
-    for (next, row) in table.body()?.enumerate() {
-        let words: Vec<&str> = row.cells().collect();
-        let read = || -> Result<_> {
-            let (vertex, image) = of_line(&words, next)?;
-            match vertex < n_vertices {
-                true => Ok((vertex, image)),
-                false => bail!("vertex {vertex} does not exist; the first mesh has {n_vertices} vertices"),
-            }
+    table.rows(path, |next, row| {
+        let (at, image) = match *row {
+            [at, image, ..] => (vertex(at)?.index(), image),
+            [image] => (next, image),
+            [] => return Ok(()),
         };
-        let (vertex, image) = read().map_err(|fault| row.fault(base::terminal::message(&fault)))?;
-        found[vertex] = image;
-    }
+        let Some(place) = found.get_mut(at) else {
+            bail!("vertex {at} does not exist; the first mesh has {n_vertices} vertices")
+        };
+        *place = match image {
+            -1.0 => None,
+            _ => Some(vertex(image).context("write -1 where there is no partner")?),
+        };
+        Ok(())
+    })?;
     Ok(found)
-}
-
-/// A vertex, which is `next` unless the line names it, and its partner.
-fn of_line(words: &[&str], next: usize) -> Result<(usize, Option<VertexId>)> {
-    let number = |word: &str| -> Result<f64> {
-        word.parse().with_context(|| format!("`{word}` is not a vertex number"))
-    };
-    Ok(match *words {
-        [vertex, image, ..] => {
-            let vertex = vertex.parse().with_context(|| format!("`{vertex}` is not a vertex number"))?;
-            (vertex, partner(number(image)?)?)
-        }
-        [image] => (next, partner(number(image)?)?),
-        [] => (next, None),
-    })
-}
-
-/// A partner, or -1 for none.
-fn partner(number: f64) -> Result<Option<VertexId>> {
-    match number {
-        -1.0 => Ok(None),
-        _ if number >= 0.0 && number < f64::from(u32::MAX) && number.fract() == 0.0 => {
-            Ok(Some(VertexId(number as u32)))
-        }
-        _ => bail!("{number} is not a vertex number; write -1 where there is no partner"),
-    }
 }
 
 #[cfg(test)]
 mod tests {
+    use canonform::collection::TextTable;
+
     use super::*;
 
     fn of_text(text: &str, n_vertices: usize) -> Result<Vec<Option<VertexId>>> {
-        of_table(&TextTable::parse(text.into(), Path::new("map.csv"))?, n_vertices)
+        let path = Path::new("map.csv");
+        initial(Table::of_text(&TextTable::parse(text.into(), path)?)?, path, n_vertices)
     }
 
     #[test]

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Result;
+use base::object;
 use base::terminal::Bars;
 use canonform::Error;
 use canonform::descriptors::Side;
@@ -13,30 +14,13 @@ use canonform::settings::MethodSettings;
 use serde::Serialize;
 
 use super::files::{
-    DOUBTFUL, FunctionalJson, MappedFile, Pictured, SecondsJson, beside, write_colored, write_functional,
-    write_table,
+    DOUBTFUL, MappedFile, beside, corresponding, picture, write_colored, write_functional, write_table,
 };
 use super::known;
-use super::transfer::{Transferred, read_transfer};
+use super::transfer::read_transfer;
 use crate::args::{Common, MAP_FORMATS, MatchArgs};
 use crate::input::{named, read_pair};
-use crate::output::{check_format, check_output, facts, report};
-
-#[derive(Serialize)]
-struct MatchJson {
-    a: PathBuf,
-    b: PathBuf,
-    n_vertices: [usize; 2],
-    maps: Vec<MapJson>,
-    /// The second mesh in the colours that the first map carries to it.
-    target: Option<PathBuf>,
-    /// The first mesh in its colours.
-    source: Option<PathBuf>,
-    /// What was carried to the second mesh.
-    transfer: Option<Transferred>,
-    functional: Option<FunctionalJson>,
-    seconds: SecondsJson,
-}
+use crate::output::{Fact, check_format, check_output, facts, report};
 
 #[derive(Serialize)]
 struct MapJson {
@@ -91,33 +75,48 @@ pub(crate) fn match_meshes(args: &MatchArgs, common: &Common) -> Result<ExitCode
         (found, _) => found?,
     };
     let sides = [&a, &b];
-    let functional = match (&args.functional, found.maps.first()) {
-        (Some(path), Some(map)) => Some(write_functional(path, map, sides)?),
-        _ => None,
-    };
-    let transfer = match (&carried, &args.output, found.maps.first()) {
-        (Some(carried), Some(path), Some(map)) => Some(carried.write(path, map, sides)?),
-        _ => None,
-    };
-    let is_ply = format.as_deref() == Some("ply") && transfer.is_none();
-    let target = args.output.clone().filter(|_| is_ply);
-    let source = target.as_deref().map(|path| beside(path, "source"));
+    let first = found.maps.first();
+    let functional = args.functional.as_deref().zip(first);
+    let functional = functional.map(|(path, map)| write_functional(path, map, sides)).transpose()?;
+    let (functional, functional_words) = functional.unzip();
+    let transfer = carried.zip(args.output.as_deref()).zip(first);
+    let transfer = transfer.map(|((carried, path), map)| carried.write(path, map, sides)).transpose()?;
+    let (transfer, transfer_words) = transfer.unzip();
     // What was transferred took the place of the maps.
     let output = args.output.as_deref().filter(|_| transfer.is_none()).zip(format.as_deref());
+    let target = output.filter(|(_, format)| *format == "ply").map(|(path, _)| path);
     let maps = found.maps.into_iter().enumerate();
-    let maps = maps.map(|(i, map)| written(i, map, args.points, output, sides)).collect::<Result<_>>()?;
-    let json = MatchJson {
-        a: args.pair.a.clone(),
-        b: args.pair.b.clone(),
-        n_vertices: [a.mesh.n_vertices(), b.mesh.n_vertices()],
+    let maps = maps.map(|(i, map)| written(i, map, args.points, output, sides));
+    let maps = maps.collect::<Result<Vec<MapJson>>>()?;
+    let load = |side: &MappedFile| {
+        let input = &side.mapped.surface().input;
+        input.load_seconds + input.repair_seconds
+    };
+    let (load, prepare) = (load(&a) + load(&b), a.mapped.seconds + b.mapped.seconds);
+    let json = object! {
+        a: &args.pair.a,
+        b: &args.pair.b,
+        n_vertices: sides.map(|side| side.mesh.n_vertices()),
         maps,
+        // The second mesh in the colours that the first map carries to it.
         target,
-        source,
+        // The first mesh in its colours.
+        source: target.map(|path| beside(path, "source")),
+        // What was carried to the second mesh.
         transfer,
         functional,
-        seconds: SecondsJson::new(sides, found.seconds),
+        seconds: object! { load, prepare, matching: found.seconds, total: load + prepare + found.seconds },
     };
-    report(common, &json, table)
+    report(common, &json, |json| {
+        let mut rows: Vec<Fact> = json.maps.iter().flat_map(in_words).collect();
+        let files = [("target", json.target), ("source", json.source.as_deref())];
+        let picture = json.maps.first().and_then(|map| map.picture.as_deref());
+        let files = files.into_iter().chain([("picture", picture)]);
+        rows.extend(files.filter_map(|(name, path)| Some((name, path?.display().to_string()))));
+        rows.extend(transfer_words.map(|words| ("transfer", words)));
+        rows.extend(functional_words.map(|words| ("functional map", words)));
+        facts(&rows)
+    })
 }
 
 /// Writes one of the maps, and its alternative, unless there is no output.
@@ -128,29 +127,25 @@ fn written(
     output: Option<(&Path, &str)>,
     sides: [&MappedFile; 2],
 ) -> Result<MapJson> {
-    let (path, format) = output.unzip();
-    let path = path.map(|path| match i {
-        0 => path.to_owned(),
-        _ => beside(path, map.kind.name()),
-    });
     let points_of = |map: &VertexMap| {
         with_points.then(|| map.between(sides.map(|side| &side.mapped)).vertices(Side::First))
     };
     let points = points_of(&map);
-    let mut picture = None;
-    let mut alternative_path = None;
-    if let (Some(path), Some(format)) = (&path, format) {
-        picture = write(path, format, &map, points.as_ref(), sides)?;
+    let (mut path, mut picture, mut alternative_path) = (None, None, None);
+    if let Some((given, format)) = output {
+        let at = if i == 0 { given.to_owned() } else { beside(given, map.kind.name()) };
+        picture = write(&at, format, &map, points.as_ref(), sides)?;
         if format == "ply" && i == 0 {
-            let Pictured { source, .. } = Pictured::new(&map, sides);
-            let path = beside(path, "source");
+            let ([source, _], _) = corresponding(&map, sides);
+            let path = beside(&at, "source");
             write_colored(&path, &sides[0].mesh, "confidence", &map.vertex_confidence, &source)?;
         }
         if let Some(other) = &map.alternative {
-            let path = beside(path, "alternative");
-            write(&path, format, other, points_of(other).as_ref(), sides)?;
-            alternative_path = Some(path);
+            let at = beside(&at, "alternative");
+            write(&at, format, other, points_of(other).as_ref(), sides)?;
+            alternative_path = Some(at);
         }
+        path = Some(at);
     }
     let matched = map.vertices.iter().flatten().count();
     let partners = map.vertices.iter().zip(&map.vertex_confidence);
@@ -168,54 +163,39 @@ fn write(
     points: Option<&PointMap>,
     sides: [&MappedFile; 2],
 ) -> Result<Option<PathBuf>> {
-    let meshes = sides.map(|side| &side.mesh);
-    match format {
-        "ply" => {
-            let pictured = Pictured::new(map, sides);
-            pictured.write_target(path, meshes[1])?;
-            let picture = path.with_extension("png");
-            pictured.write_picture(&picture, meshes)?;
-            Ok(Some(picture))
-        }
-        "png" => Pictured::new(map, sides).write_picture(path, meshes).map(|()| None),
-        _ => write_table(path, format, map, points).map(|()| None),
+    if !["ply", "png"].contains(&format) {
+        return write_table(path, format, map, points).map(|()| None);
     }
+    let meshes = sides.map(|side| &side.mesh);
+    let (colors, origins) = corresponding(map, sides);
+    if format == "png" {
+        return picture(path, meshes, colors).map(|()| None);
+    }
+    write_colored(path, meshes[1], "match", &origins, &colors[1])?;
+    let drawn = path.with_extension("png");
+    picture(&drawn, meshes, colors)?;
+    Ok(Some(drawn))
 }
 
-fn table(json: &MatchJson) -> String {
-    let mut rows = Vec::new();
-    for MapJson { map, matched, doubtful, path, alternative_path, .. } in &json.maps {
-        let file = path.as_ref().map_or(String::new(), |path| format!(", in {}", path.display()));
-        let agreement = map.agreement.map_or("cannot be told".to_owned(), |value| format!("{value:.2}"));
-        rows.push((map.kind.name(), format!("{matched} vertices{file}")));
-        if let Some(PartOfWhole { part, covered, .. }) = &map.part {
-            let [part, whole] = if *part == Side::First { ["first", "second"] } else { ["second", "first"] };
-            rows.push(("  part", format!("the {part} mesh, of {:.0} % of the {whole}", 100.0 * covered)));
-        }
-        rows.push(("  distortion", format!("{:.4}", map.distortion)));
-        rows.push(("  agreement", agreement));
-        let other =
-            alternative_path.as_ref().map_or(String::new(), |path| format!(", in {}", path.display()));
-        let mut confidence = format!("{:.2}", map.confidence);
-        if map.alternative.is_some() {
-            let how = if map.is_certain() { "likely" } else { "uncertain" };
-            confidence += &format!(": {how}; the next best map may exchange front and back{other}");
-        }
-        rows.push(("  confidence", confidence));
-        rows.push(("  doubtful", format!("{:.1} % of the vertices", 100.0 * doubtful)));
+fn in_words(json: &MapJson) -> Vec<Fact> {
+    let MapJson { map, matched, doubtful, path, alternative_path, .. } = json;
+    let place = |path: &Option<PathBuf>| {
+        path.as_ref().map_or_else(String::new, |path| format!(", in {}", path.display()))
+    };
+    let mut rows = vec![(map.kind.name(), format!("{matched} vertices{}", place(path)))];
+    if let Some(PartOfWhole { part, covered, .. }) = &map.part {
+        let [part, whole] = if *part == Side::First { ["first", "second"] } else { ["second", "first"] };
+        rows.push(("  part", format!("the {part} mesh, of {:.0} % of the {whole}", 100.0 * covered)));
     }
-    let files = [("target", &json.target), ("source", &json.source)];
-    rows.extend(
-        files.into_iter().filter_map(|(name, path)| Some((name, path.as_ref()?.display().to_string()))),
-    );
-    if let Some(picture) = json.maps.first().and_then(|map| map.picture.as_ref()) {
-        rows.push(("picture", picture.display().to_string()));
+    rows.push(("  distortion", format!("{:.4}", map.distortion)));
+    let agreement = map.agreement.map_or("cannot be told".to_owned(), |value| format!("{value:.2}"));
+    rows.push(("  agreement", agreement));
+    let mut confidence = format!("{:.2}", map.confidence);
+    if map.alternative.is_some() {
+        let (how, other) = (if map.is_certain() { "likely" } else { "uncertain" }, place(alternative_path));
+        confidence += &format!(": {how}; the next best map may exchange front and back{other}");
     }
-    if let Some(transfer) = &json.transfer {
-        rows.push(("transfer", transfer.to_string()));
-    }
-    if let Some(functional) = &json.functional {
-        rows.push(("functional map", functional.to_string()));
-    }
-    facts(&rows)
+    rows.push(("  confidence", confidence));
+    rows.push(("  doubtful", format!("{:.1} % of the vertices", 100.0 * doubtful)));
+    rows
 }

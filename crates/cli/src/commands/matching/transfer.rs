@@ -1,9 +1,10 @@
 //! Values and labels that a map carries from one mesh to another.
 
-use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use anyhow::{Context, Result, bail};
+use base::files::write_atomically;
+use base::object;
 use canonform::collection::TextTable;
 use canonform::descriptors::Side;
 use canonform::linalg::Matrix;
@@ -11,9 +12,9 @@ use canonform::maps::VertexMap;
 use report::color::{Rgb, class_color, color_scale, perceptual};
 use serde::Serialize;
 
-use super::files::{MappedFile, picture, write_colored, write_whole};
-use crate::field::{Numbers, read_array};
-use crate::output::{check_format, write_npy};
+use super::files::{MappedFile, picture, write_colored};
+use crate::output::check_format;
+use crate::table::{Numbers, Table, write_csv, write_matrix, write_npy};
 
 /// The elements of a mesh that have rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -29,8 +30,8 @@ enum Elements {
 enum Content {
     /// Functions, as columns.
     Values(Matrix),
-    /// One word or whole number for each element.
-    Labels(Vec<String>),
+    /// One word or whole number for each element; `None` for what the repair dropped.
+    Labels(Vec<Option<String>>),
 }
 
 /// Rows of a file.
@@ -39,35 +40,12 @@ pub(super) struct Transfer {
     content: Content,
 }
 
-/// What was carried.
-#[derive(Serialize)]
-pub(super) struct Transferred {
-    path: PathBuf,
-    elements: Elements,
-    /// `values`, which are interpolated, or `labels`.
-    kind: &'static str,
-    /// Rows written, one for each vertex, face or corner of the second mesh.
-    rows: usize,
-    /// Columns of them.
-    columns: usize,
-}
-
-impl fmt::Display for Transferred {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let elements = match self.elements {
-            Elements::Vertices => "vertices",
-            Elements::Faces => "faces",
-            Elements::Corners => "corners of faces",
-        };
-        write!(f, "{} of {} {elements}, in {}", self.kind, self.rows, self.path.display())
-    }
-}
-
 /// Reads one row for each vertex, each face or each corner of the faces of a mesh.
 pub(super) fn read_transfer(path: &Path, side: &MappedFile) -> Result<Transfer> {
-    let content = match check_format(path, "values", &["npy", "csv"])?.as_str() {
-        "npy" => of_array(path)?,
-        _ => of_table(&TextTable::read(path)?)?,
+    let formats = ["npy", "csv"];
+    let content = match check_format(path, "values", &formats)?.as_str() {
+        "npy" => of_table(Table::read(path, "values", &formats)?),
+        _ => of_text(&TextTable::read(path)?)?,
     };
     let n = match &content {
         Content::Values(values) => values.nrows(),
@@ -88,45 +66,47 @@ pub(super) fn read_transfer(path: &Path, side: &MappedFile) -> Result<Transfer> 
     Ok(Transfer { elements, content })
 }
 
-fn of_array(path: &Path) -> Result<Content> {
-    let (n_columns, numbers) = read_array(path)?;
-    // An array of one dimension, or one row as `canonform geodesic` writes it, is a column.
-    let n_columns = if n_columns == numbers.len() { 1 } else { n_columns };
-    let n_rows = numbers.len().checked_div(n_columns).unwrap_or(0);
-    Ok(match numbers {
+fn of_table(table: Table) -> Content {
+    let n_columns = if table.n_columns == table.n_numbers() { 1 } else { table.n_columns };
+    match table.numbers {
         Numbers::Whole(numbers) if n_columns == 1 => {
-            Content::Labels(numbers.iter().map(i64::to_string).collect())
+            Content::Labels(numbers.iter().map(|number| Some(number.to_string())).collect())
         }
-        numbers => Content::Values(Matrix::from_row_slice(n_rows, n_columns, &numbers.reals())),
-    })
+        _ => {
+            let numbers = table.into_reals();
+            Content::Values(Matrix::from_row_slice(numbers.len() / n_columns.max(1), n_columns, &numbers))
+        }
+    }
 }
 
-fn of_table(table: &TextTable) -> Result<Content> {
+/// Words and whole numbers in one column are labels.
+fn of_text(table: &TextTable) -> Result<Content> {
     let is_label = |word: &str| word.parse::<i64>().is_ok() || word.parse::<f64>().is_err();
     if table.rows().all(|row| row.n_cells() == 1 && row.cells().all(is_label)) {
-        return Ok(Content::Labels(
-            table.rows().flat_map(|row| row.cells().map(str::to_owned).collect::<Vec<_>>()).collect(),
-        ));
+        return Ok(Content::Labels(table.rows().map(|row| row.cells().next().map(str::to_owned)).collect()));
     }
-    let (n_columns, values) = table.numbers()?;
-    let n_rows = values.len() / n_columns.max(1);
-    let (n_rows, n_columns) = if n_rows == 1 { (n_columns, 1) } else { (n_rows, n_columns) };
-    Ok(Content::Values(Matrix::from_row_slice(n_rows, n_columns, &values)))
+    Table::of_text(table).map(of_table)
 }
 
 impl Transfer {
-    /// Writes what a map carries to the second mesh.
-    pub(super) fn write(&self, path: &Path, map: &VertexMap, sides: [&MappedFile; 2]) -> Result<Transferred> {
+    /// Writes what a map carries to the second mesh. What was written, and the same in words.
+    pub(super) fn write(
+        &self,
+        path: &Path,
+        map: &VertexMap,
+        sides: [&MappedFile; 2],
+    ) -> Result<(impl Serialize + use<>, String)> {
         let mapping = map.between(sides.map(|side| &side.mapped));
-        let found = match (&self.elements, &self.content) {
+        let elements = self.elements;
+        let found = match (elements, &self.content) {
             (Elements::Vertices, Content::Values(values)) => {
-                Carried::Values(mapping.vertices(Side::Second).values(values))
+                Content::Values(mapping.vertices(Side::Second).values(values))
             }
             (Elements::Vertices, Content::Labels(labels)) => {
-                Carried::Labels(mapping.vertices(Side::Second).vertex_labels(labels))
+                Content::Labels(flat(mapping.vertices(Side::Second).vertex_labels(labels)))
             }
             (Elements::Faces, Content::Labels(labels)) => {
-                Carried::Labels(mapping.faces(Side::Second).face_labels(labels))
+                Content::Labels(flat(mapping.faces(Side::Second).face_labels(labels)))
             }
             (Elements::Corners, Content::Values(values)) => {
                 let Some(corners) = mapping.corners(Side::Second, values) else {
@@ -135,7 +115,7 @@ impl Transfer {
                         path.display()
                     )
                 };
-                Carried::Values(corners.corner_values(values))
+                Content::Values(corners.corner_values(values))
             }
             (Elements::Corners, Content::Labels(_)) => bail!(
                 "{}: labels belong to vertices or faces; write the values of corners with fractions",
@@ -144,7 +124,7 @@ impl Transfer {
             (Elements::Faces, Content::Values(values)) => {
                 let rows: Vec<usize> = (0..values.nrows()).collect();
                 let rows = mapping.faces(Side::Second).face_labels(&rows);
-                Carried::Values(Matrix::from_fn(rows.len(), values.ncols(), |i, j| {
+                Content::Values(Matrix::from_fn(rows.len(), values.ncols(), |i, j| {
                     rows[i].map_or(f64::NAN, |row| values[(row, j)])
                 }))
             }
@@ -155,81 +135,81 @@ impl Transfer {
             format => self.draw(path, format, &found, sides)?,
         }
         let (kind, rows, columns) = match &found {
-            Carried::Values(values) => ("values", values.nrows(), values.ncols()),
-            Carried::Labels(labels) => ("labels", labels.len(), 1),
+            Content::Values(values) => ("values", values.nrows(), values.ncols()),
+            Content::Labels(labels) => ("labels", labels.len(), 1),
         };
-        Ok(Transferred { path: path.to_owned(), elements: self.elements, kind, rows, columns })
+        let of = match elements {
+            Elements::Vertices => "vertices",
+            Elements::Faces => "faces",
+            Elements::Corners => "corners of faces",
+        };
+        let words = format!("{kind} of {rows} {of}, in {}", path.display());
+        Ok((object! { path: path.to_owned(), elements, kind, rows, columns }, words))
     }
 
     /// Writes the second mesh, or a picture of both, coloured by what was carried.
-    fn draw(&self, path: &Path, format: &str, found: &Carried, sides: [&MappedFile; 2]) -> Result<()> {
-        let (own, values, colors) = match (self.elements, &self.content, found) {
-            (Elements::Vertices, Content::Values(own), Carried::Values(values)) if own.ncols() == 1 => {
-                let color = color_scale(own.as_slice());
-                let own = own.iter().map(|value| color(*value)).collect();
-                let colors: Vec<Rgb> = values.iter().map(|value| color(*value)).collect();
-                (own, values.as_slice().to_vec(), colors)
-            }
-            (Elements::Vertices, Content::Labels(own), Carried::Labels(labels)) => {
-                let mut names: Vec<&String> = own.iter().collect();
-                names.sort_unstable();
-                names.dedup();
-                let class = |label: &String| names.binary_search(&label).unwrap_or_default();
-                let colors = labels.iter();
-                let colors = colors.map(|label| {
-                    label.as_ref().map_or(perceptual(f64::NAN), |label| class_color(class(label)))
-                });
-                let own = own.iter().map(|label| class_color(class(label))).collect();
-                let numbers = labels.iter();
-                let numbers = numbers.map(|label| label.as_ref().map_or(-1.0, |label| class(label) as f64));
-                (own, numbers.collect(), colors.collect())
-            }
-            _ => bail!(
+    fn draw(&self, path: &Path, format: &str, found: &Content, sides: [&MappedFile; 2]) -> Result<()> {
+        let mut names = match &self.content {
+            Content::Labels(labels) => labels.clone(),
+            Content::Values(_) => Vec::new(),
+        };
+        names.sort_unstable();
+        names.dedup();
+        let class = |label: &Option<String>| names.binary_search(label).map_or(-1.0, |class| class as f64);
+        let numbers = |content: &Content| match content {
+            Content::Values(values) if values.ncols() == 1 => Some(values.as_slice().to_vec()),
+            Content::Labels(labels) => Some(labels.iter().map(class).collect()),
+            Content::Values(_) => None,
+        };
+        let (Elements::Vertices, Some(own), Some(values)) =
+            (self.elements, numbers(&self.content), numbers(found))
+        else {
+            bail!(
                 "{}: colours show one value or label for each vertex; write rows of faces and corners, and several columns, to .npy or .csv",
                 path.display()
-            ),
+            )
         };
+        let scale = color_scale(&own);
+        let color = |number: f64| match self.content {
+            Content::Values(_) => scale(number),
+            Content::Labels(_) if number < 0.0 => perceptual(f64::NAN),
+            Content::Labels(_) => class_color(number as usize),
+        };
+        let colors = |numbers: &[f64]| numbers.iter().map(|number| color(*number)).collect::<Vec<Rgb>>();
         let meshes = sides.map(|side| &side.mesh);
         match format {
-            "ply" => write_colored(path, meshes[1], "transfer", &values, &colors),
-            _ => picture(path, meshes, [own, colors]),
+            "ply" => write_colored(path, meshes[1], "transfer", &values, &colors(&values)),
+            _ => picture(path, meshes, [colors(&own), colors(&values)]),
         }
     }
 }
 
-/// What arrived on the second mesh.
-enum Carried {
-    Values(Matrix),
-    /// `None` for what the repair dropped.
-    Labels(Vec<Option<String>>),
+fn flat(labels: Vec<Option<Option<String>>>) -> Vec<Option<String>> {
+    labels.into_iter().map(Option::flatten).collect()
 }
 
-impl Carried {
+impl Content {
     fn write_csv(&self, path: &Path) -> Result<()> {
-        Ok(base::files::write_atomically(path, |out| match self {
-            Self::Values(values) => values.row_iter().try_for_each(|row| {
-                let row: Vec<String> = row.iter().map(f64::to_string).collect();
-                writeln!(out, "{}", row.join(","))
-            }),
-            Self::Labels(labels) => {
-                labels.iter().try_for_each(|label| writeln!(out, "{}", label.as_deref().unwrap_or("-1")))
+        match self {
+            Self::Values(values) => {
+                write_csv(path, values.row_iter().map(|row| row.iter().copied().collect::<Vec<_>>()))
             }
-        })?)
+            Self::Labels(labels) => Ok(write_atomically(path, |out| {
+                labels.iter().try_for_each(|label| writeln!(out, "{}", label.as_deref().unwrap_or("-1")))
+            })?),
+        }
     }
 
     fn write_npy(&self, path: &Path) -> Result<()> {
         match self {
-            Self::Values(values) => {
-                let transposed = values.transpose();
-                write_npy(path, values.ncols(), transposed.as_slice().chunks_exact(values.ncols().max(1)))
-            }
+            Self::Values(values) => write_matrix(path, values),
             Self::Labels(labels) => {
                 let number = |label: &Option<String>| label.as_ref().map_or(Ok(-1), |label| label.parse());
                 let numbers: Result<Vec<i64>, _> = labels.iter().map(number).collect();
                 let numbers = numbers.with_context(|| {
                     format!("{}: words cannot be written to .npy; use .csv", path.display())
                 })?;
-                write_whole(path, &numbers)
+                write_npy(path, &[numbers.len()], numbers)
             }
         }
     }
@@ -239,24 +219,25 @@ impl Carried {
 mod tests {
     use super::*;
 
-    fn of_text(text: &str) -> Result<Content> {
-        of_table(&TextTable::parse(text.into(), Path::new("rows.csv"))?)
+    fn content(text: &str) -> Result<Content> {
+        of_text(&TextTable::parse(text.into(), Path::new("rows.csv"))?)
     }
 
     #[test]
     fn words_and_whole_numbers_are_labels() {
-        let labels = |words: &[&str]| Content::Labels(words.iter().map(|word| (*word).to_owned()).collect());
-        assert_eq!(of_text("ear\nleg\n\near\n").unwrap(), labels(&["ear", "leg", "ear"]));
-        assert_eq!(of_text("3\n1\n").unwrap(), labels(&["3", "1"]));
-        assert_eq!(of_text("3\n1.5\n").unwrap(), Content::Values(Matrix::from_row_slice(2, 1, &[3.0, 1.5])));
+        let labels =
+            |words: &[&str]| Content::Labels(words.iter().map(|word| Some((*word).to_owned())).collect());
+        assert_eq!(content("ear\nleg\n\near\n").unwrap(), labels(&["ear", "leg", "ear"]));
+        assert_eq!(content("3\n1\n").unwrap(), labels(&["3", "1"]));
+        assert_eq!(content("3\n1.5\n").unwrap(), Content::Values(Matrix::from_row_slice(2, 1, &[3.0, 1.5])));
         assert_eq!(
-            of_text("0,1\n1,0\n").unwrap(),
+            content("0,1\n1,0\n").unwrap(),
             Content::Values(Matrix::from_row_slice(2, 2, &[0.0, 1.0, 1.0, 0.0]))
         );
         for (text, what) in
             [("1.5\near", "line 2: `ear`"), ("1,2\n3", "line 2: found 1"), ("a,b\nc,d", "line 2: `c`")]
         {
-            assert!(of_text(text).unwrap_err().to_string().contains(what), "{text}");
+            assert!(content(text).unwrap_err().to_string().contains(what), "{text}");
         }
     }
 }

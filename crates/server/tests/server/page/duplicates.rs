@@ -53,7 +53,7 @@ fn groups_are_compared_and_marked() {
         let Some(page) = Page::of(&path, [width, 800], options()) else { return };
         page.go("/");
         page.wait_for("document.querySelectorAll('#shapes .tile').length === 6");
-        page.browser.click("nav a").unwrap();
+        page.browser.click("nav a[href='/duplicates']").unwrap();
         page.wait_for(READY);
         assert_eq!(page.address(), "/duplicates");
         assert!(
@@ -63,6 +63,20 @@ fn groups_are_compared_and_marked() {
         let sizes =
             "[...document.querySelectorAll('.group')].map(group => group.querySelectorAll('.tile').length)";
         assert_eq!(page.eval(sizes), json!([3, 2]));
+
+        let keepers = "[...document.querySelectorAll('.group')].map(group => group.dataset.id)";
+        let found = page.eval(keepers);
+        page.browser
+            .eval("document.querySelector('#sort').value = 'name'; document.querySelector('#sort').dispatchEvent(new Event('change'))")
+            .unwrap();
+        let mut names: Vec<String> = serde_json::from_value(found).unwrap();
+        names.sort();
+        assert_eq!(page.eval(keepers), json!(names));
+        page.browser.click("#fold").unwrap();
+        let open = "document.querySelectorAll('.group > [open]').length";
+        assert_eq!(page.eval(open), 0);
+        page.browser.click("#fold").unwrap();
+        assert_eq!(page.eval(open), 2);
 
         // Every control is reached by Tab; Enter on a file shows it beside the one to keep.
         let reached = page.eval(

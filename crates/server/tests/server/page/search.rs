@@ -36,6 +36,16 @@ fn a_chosen_mesh_is_classified_and_overlaid_with_a_result() {
         let labels =
             "[...document.querySelectorAll('#results .tile')].slice(0, 3).map(tile => tile.dataset.label)";
         assert_eq!(page.eval(labels), json!(["cat", "cat", "cat"]));
+        let order = "[...document.querySelectorAll('#results .tile')].map(tile => tile.dataset.id)";
+        let sorted = |by: &str| {
+            let choose = format!(
+                "document.querySelector('#sort').value = '{by}'; document.querySelector('#sort').dispatchEvent(new Event('change'))"
+            );
+            page.browser.eval(&choose).unwrap();
+            serde_json::from_value::<Vec<String>>(page.eval(order)).unwrap()
+        };
+        let (by_name, by_rank) = (sorted("name"), sorted("rank"));
+        assert!(by_name.is_sorted() && by_name != by_rank && by_name.len() == by_rank.len(), "{by_name:?}");
         page.picture("#answer", &format!("answer-{name}"));
 
         let before = eye(&page, "#mesh-view");
