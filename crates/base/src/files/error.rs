@@ -1,6 +1,5 @@
 //! Errors of the file system.
 
-use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -8,8 +7,8 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, thiserror::Error)]
 #[error("cannot {action} {path}: {source}{}", remedy(source))]
 pub struct FileError {
-    /// The failed action.
-    pub action: Action,
+    /// What failed, `read` or `write`.
+    pub action: &'static str,
     /// The file.
     pub path: PathBuf,
     /// The error of the operating system.
@@ -34,33 +33,15 @@ pub fn remedy(source: &io::Error) -> &'static str {
     }
 }
 
-/// An action on a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Action {
-    /// Reading.
-    Read,
-    /// Writing.
-    Write,
-}
-
-impl fmt::Display for Action {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Read => "read",
-            Self::Write => "write",
-        })
-    }
-}
-
 impl FileError {
     /// The error that a file could not be read.
     pub fn read(path: &Path, source: io::Error) -> Self {
-        Self { action: Action::Read, path: path.to_path_buf(), source }
+        Self { action: "read", path: path.to_path_buf(), source }
     }
 
     /// The error that a file could not be written.
     pub fn write(path: &Path, source: io::Error) -> Self {
-        Self { action: Action::Write, path: path.to_path_buf(), source }
+        Self { action: "write", path: path.to_path_buf(), source }
     }
 }
 

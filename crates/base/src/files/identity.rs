@@ -1,25 +1,12 @@
 //! Which file a name stands for.
 
-#[cfg(unix)]
-use std::fs::Metadata;
 use std::fs::{self, File};
 use std::io;
 use std::path::Path;
-#[cfg(not(unix))]
-use std::path::PathBuf;
 
-/// What tells files and folders apart, whatever their names: device and inode.
-#[cfg(unix)]
+/// What tells files and folders apart, whatever their names: device and inode; elsewhere than on Unix the path without links.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub struct FileId {
-    device: u64,
-    inode: u64,
-}
-
-/// What tells files and folders apart, whatever their names: the path without links.
-#[cfg(not(unix))]
-#[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub struct FileId(PathBuf);
+pub struct FileId(#[cfg(unix)] [u64; 2], #[cfg(not(unix))] std::path::PathBuf);
 
 impl FileId {
     /// Follows links.
@@ -34,9 +21,9 @@ impl FileId {
     }
 
     #[cfg(unix)]
-    fn of_metadata(metadata: &Metadata) -> Self {
+    fn of_metadata(metadata: &fs::Metadata) -> Self {
         use std::os::unix::fs::MetadataExt;
-        Self { device: metadata.dev(), inode: metadata.ino() }
+        Self([metadata.dev(), metadata.ino()])
     }
 }
 
@@ -45,29 +32,24 @@ pub fn is_same_file(a: &Path, b: &Path) -> bool {
     matches!((FileId::of(a), FileId::of(b)), (Ok(a), Ok(b)) if a == b)
 }
 
-/// Whether an open file still has this name.
-#[cfg(unix)]
+/// Whether an open file still has this name. Elsewhere than on Unix open files cannot be renamed.
+#[cfg_attr(not(unix), expect(unused_variables))]
 pub fn is_at(file: &File, path: &Path) -> bool {
-    file.metadata().is_ok_and(|open| FileId::of(path).is_ok_and(|named| named == FileId::of_metadata(&open)))
+    #[cfg(unix)]
+    return file
+        .metadata()
+        .is_ok_and(|open| FileId::of(path).is_ok_and(|named| named == FileId::of_metadata(&open)));
+    #[cfg(not(unix))]
+    return path.exists();
 }
 
-/// Whether an open file still has this name: here open files cannot be renamed.
-#[cfg(not(unix))]
-pub fn is_at(_: &File, path: &Path) -> bool {
-    path.exists()
-}
-
-/// Whether an open file has several names (hard links).
-#[cfg(unix)]
+/// Whether an open file has several names (hard links), as far as is known.
+#[cfg_attr(not(unix), expect(unused_variables))]
 pub fn has_other_names(file: &File) -> bool {
-    use std::os::unix::fs::MetadataExt;
-    file.metadata().is_ok_and(|about| about.nlink() > 1)
-}
-
-/// Whether an open file has several names (hard links): unknown here.
-#[cfg(not(unix))]
-pub fn has_other_names(_: &File) -> bool {
-    false
+    #[cfg(unix)]
+    return file.metadata().is_ok_and(|about| std::os::unix::fs::MetadataExt::nlink(&about) > 1);
+    #[cfg(not(unix))]
+    return false;
 }
 
 #[cfg(test)]

@@ -20,5 +20,5 @@ pub use atomic::{
     Pending, Scratch, abandon_unfinished, fill_atomically, is_input, keep_input, nameless_in, sync_folder,
     write_atomically, write_bytes,
 };
-pub use error::{Action, FileError, remedy};
+pub use error::{FileError, remedy};
 pub use identity::{FileId, has_other_names, is_at, is_same_file};
