@@ -22,7 +22,6 @@ mod source;
 mod text;
 mod write;
 
-use std::borrow::Cow;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -112,11 +111,11 @@ pub fn read_file(path: &Path, source: &dyn FileSource, limits: &ReadLimits) -> R
 }
 
 /// Opens the files of a mesh, and those that the first one refers to, and parses them together.
-fn read_files<'a>(
+fn read_files(
     format: &Format,
     mut paths: Vec<PathBuf>,
     limits: &ReadLimits,
-    mut open: impl FnMut(&Path, Check<'_>) -> Result<Cow<'a, [u8]>, MeshError>,
+    mut open: impl FnMut(&Path, Check<'_>) -> Result<Vec<u8>, MeshError>,
 ) -> Result<MeshFile, MeshError> {
     let check: Check<'_> = &|start, size| format.check(start, size);
     let opened = paths.iter().map(|file| open(file, check));
@@ -128,14 +127,14 @@ fn read_files<'a>(
             paths.push(file);
         }
     }
-    let contents: Vec<&[u8]> = contents.iter().map(AsRef::as_ref).collect();
+    let contents: Vec<&[u8]> = contents.iter().map(Vec::as_slice).collect();
     (format.parse)(&contents, limits).map_err(|fault| {
         let file = &paths[fault.file];
         fault.in_file(file)
     })
 }
 
-fn load<'a>(source: &'a dyn FileSource, path: &Path, check: Check<'_>) -> Result<Cow<'a, [u8]>, MeshError> {
+fn load(source: &dyn FileSource, path: &Path, check: Check<'_>) -> Result<Vec<u8>, MeshError> {
     source.open(path)?.load(path, is_gzip(path), check, u64::MAX)
 }
 
@@ -167,7 +166,7 @@ pub fn read_from(
         match stream.take().filter(|_| format.extensions.len() == 1) {
             Some(stream) => {
                 let (opened, is_gzip) = Opened::sniffed(name, stream)?;
-                Ok(opened.load(name, is_gzip, check, limits.max_bytes)?.into_owned().into())
+                opened.load(name, is_gzip, check, limits.max_bytes)
             }
             None => {
                 let what = "this mesh has several files, and a stream holds one";

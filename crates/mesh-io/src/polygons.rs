@@ -391,21 +391,6 @@ mod tests {
     }
 
     #[test]
-    fn polygons_of_fewer_than_three_corners_are_errors() {
-        let refused = Polygons::default().push(&[], &[VertexId(0); 2], &ReadLimits::default());
-        assert_eq!(refused, Err(Fault::TooFewCorners { corners: 2 }));
-    }
-
-    #[test]
-    fn a_polygon_beyond_the_limit_is_not_split() {
-        let limits = ReadLimits { max_faces: 3, ..ReadLimits::default() };
-        let mut polygons = Polygons::default();
-        let refused = polygons.push(&[], &[VertexId(0); 6], &limits);
-        assert_eq!(refused, Err(Fault::OverLimit { items: "faces", limit: 3 }));
-        assert!(polygons.faces.is_empty());
-    }
-
-    #[test]
     fn a_polygon_that_crosses_itself_everywhere_is_cut() {
         let noise =
             |i: u32| f64::from(i.wrapping_mul(2_654_435_761).rotate_left(11).wrapping_mul(40_503) >> 8);

@@ -1,6 +1,5 @@
 //! Where the bytes of a mesh come from: the disk, memory, or whatever a program stores meshes in.
 
-use std::borrow::Cow;
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
@@ -37,11 +36,11 @@ pub struct MemoryFile<'a> {
 }
 
 /// An opened file.
-pub enum Opened<'a> {
-    /// All of its bytes.
-    Bytes(Cow<'a, [u8]>),
-    /// A stream, and its number of bytes if that is known.
-    Stream(Box<dyn Read + 'a>, Option<u64>),
+pub struct Opened<'a> {
+    /// Its bytes.
+    pub stream: Box<dyn Read + 'a>,
+    /// Their number, if that is known.
+    pub size: Option<u64>,
 }
 
 /// A place that holds files: implement it to read meshes from a store of your own.
@@ -73,7 +72,7 @@ impl FileSource for Disk {
             }
             // A file of unknown size, as some file systems have, has the size zero.
             let size = Some(facts.len()).filter(|size| *size > 0);
-            Ok(Opened::Stream(Box::new(File::open(path)?), size))
+            Ok(Opened { stream: Box::new(File::open(path)?), size })
         };
         open().map_err(|fault| FileError::read(path, fault).into())
     }
@@ -98,11 +97,17 @@ impl FileSource for Memory<'_> {
     fn open(&self, path: &Path) -> Result<Opened<'_>, MeshError> {
         let file = self.0.iter().find(|file| file.name == path);
         let file = file.ok_or_else(|| FileError::read(path, io::ErrorKind::NotFound.into()))?;
-        Ok(Opened::Bytes(file.bytes.into()))
+        Ok(Opened::of(file.bytes))
     }
 }
 
 impl<'a> Opened<'a> {
+    /// A file with this content.
+    pub fn of(content: impl AsRef<[u8]> + 'a) -> Self {
+        let size = Some(content.as_ref().len() as u64);
+        Self { stream: Box::new(io::Cursor::new(content)), size }
+    }
+
     /// Reads all bytes of a file whose start passes a check, decompressed or not: at most `max_bytes` of a stream of unknown
     /// size.
     pub(crate) fn load(
@@ -111,28 +116,14 @@ impl<'a> Opened<'a> {
         is_gzip: bool,
         check: Check<'_>,
         max_bytes: u64,
-    ) -> Result<Cow<'a, [u8]>, MeshError> {
-        let (stream, size): (Box<dyn Read + '_>, _) = match self {
-            Self::Bytes(bytes) if !is_gzip => {
-                let start = &bytes[..bytes.len().min(START as usize)];
-                check(start, Some(bytes.len() as u64)).map_err(|fault| fault.in_file(path))?;
-                return Ok(bytes);
-            }
-            Self::Bytes(bytes) => {
-                let size = bytes.len() as u64;
-                (Box::new(io::Cursor::new(bytes)), Some(size))
-            }
-            Self::Stream(stream, size) => (stream, size),
-        };
-        let bytes = match is_gzip {
-            false => read_checked(path, stream, check, size, max_bytes)?,
-            true => {
-                let limit = size.map_or(max_bytes, inflated_limit);
-                read_checked(path, Box::new(GzipReader::new(stream)), check, None, limit)
-                    .map_err(|fault| damage(path, fault))?
-            }
-        };
-        Ok(bytes.into())
+    ) -> Result<Vec<u8>, MeshError> {
+        let Self { stream, size } = self;
+        if !is_gzip {
+            return read_checked(path, stream, check, size, max_bytes);
+        }
+        let limit = size.map_or(max_bytes, inflated_limit);
+        read_checked(path, Box::new(GzipReader::new(stream)), check, None, limit)
+            .map_err(|fault| damage(path, fault))
     }
 
     /// A stream of unknown length, and whether it begins like a gzip file.
@@ -141,7 +132,7 @@ impl<'a> Opened<'a> {
         let mut start = Vec::new();
         stream.take(2).read_to_end(&mut start).map_err(|fault| FileError::read(path, fault))?;
         let is_gzip = start == GZIP;
-        Ok((Self::Stream(Box::new(io::Cursor::new(start).chain(stream)), None), is_gzip))
+        Ok((Self { stream: Box::new(io::Cursor::new(start).chain(stream)), size: None }, is_gzip))
     }
 }
 

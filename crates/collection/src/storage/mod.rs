@@ -46,7 +46,7 @@ impl FileSource for Storage {
 
     fn open(&self, path: &Path) -> Result<Opened<'_>, MeshError> {
         if let Some((archive, name)) = member_of(path) {
-            return Ok(Opened::Bytes(open_archive(&archive)?.read(&name, path)?.into()));
+            return Ok(Opened::of(open_archive(&archive)?.read(&name, path)?));
         }
         Disk.open(path)
     }

@@ -72,7 +72,7 @@ impl FileSource for Members<'_> {
     }
 
     fn open(&self, path: &Path) -> Result<Opened<'_>, MeshError> {
-        Ok(Opened::Bytes(self.content(path)?.into()))
+        Ok(Opened::of(self.content(path)?))
     }
 }
 

@@ -28,7 +28,7 @@ impl FileSource for Store<'_> {
 
     fn open(&self, path: &Path) -> Result<Opened<'_>, MeshError> {
         let (_, content) = self.0.iter().find(|(name, _)| Path::new(name) == path).unwrap();
-        Ok(Opened::Bytes(content.as_slice().into()))
+        Ok(Opened::of(content))
     }
 }
 

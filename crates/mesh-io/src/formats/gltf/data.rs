@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
-use super::schema::{Accessor, Index, Root};
+use super::schema::{Accessor, Index, Root, Sparse};
 use crate::name::referred;
 use crate::prelude::*;
 
@@ -160,20 +160,6 @@ pub(super) struct Data<'a> {
     pub(super) n_bytes: u64,
 }
 
-/// How the rows of an accessor are stored.
-#[derive(Clone, Copy)]
-struct Layout {
-    accessor: Index,
-    scalar: Scalar,
-    width: usize,
-}
-
-impl Layout {
-    fn at(self, fault: Fault) -> Located {
-        fault.in_part("accessor", self.accessor)
-    }
-}
-
 impl<'a> Data<'a> {
     /// Finds the buffers in the binary chunk, in data URIs and in the files, which are the glTF file and its
     /// companions.
@@ -201,9 +187,8 @@ impl<'a> Data<'a> {
 
     /// Positions; integers that are normalized are fractions of their largest value.
     pub(super) fn positions(&self, index: Index) -> Result<Vec<Point3<f64>>, Located> {
-        let (accessor, layout) = self.typed(index, "VEC3", 3, "positions of type VEC3")?;
-        let numbers = self.numbers(accessor, layout)?;
-        let unit = match layout.scalar {
+        let (accessor, scalar, numbers) = self.numbers(index, ("VEC3", 3), "positions of type VEC3")?;
+        let unit = match scalar {
             Scalar::I8 => f64::from(i8::MAX),
             Scalar::U8 => f64::from(u8::MAX),
             Scalar::I16 => f64::from(i16::MAX),
@@ -219,91 +204,84 @@ impl<'a> Data<'a> {
 
     /// Vertex numbers, less than `n_vertices`.
     pub(super) fn indices(&self, index: Index, n_vertices: usize) -> Result<Vec<u32>, Located> {
-        let (accessor, layout) = self.typed(index, "SCALAR", 1, "indices of type SCALAR")?;
-        if !matches!(layout.scalar, Scalar::U8 | Scalar::U16 | Scalar::U32) {
-            let found = format!("{:?}", layout.scalar);
-            return Err(layout.at(Fault::syntax("indices that are unsigned integers", found)));
-        }
-        let numbers = self.numbers(accessor, layout)?;
-        match numbers.iter().find(|x| **x >= n_vertices as f64) {
-            Some(number) => Err(layout.at(Fault::no_vertex(number.to_string(), 0, n_vertices as u64))),
-            None => Ok(numbers.into_iter().map(|x| x as u32).collect()),
-        }
+        let (_, scalar, numbers) = self.numbers(index, ("SCALAR", 1), "indices of type SCALAR")?;
+        let fault = match numbers.iter().find(|x| **x >= n_vertices as f64) {
+            _ if !matches!(scalar, Scalar::U8 | Scalar::U16 | Scalar::U32) => {
+                Fault::syntax("indices that are unsigned integers", format!("{scalar:?}"))
+            }
+            Some(number) => Fault::no_vertex(number.to_string(), 0, n_vertices as u64),
+            None => return Ok(numbers.into_iter().map(|x| x as u32).collect()),
+        };
+        Err(fault.in_part("accessor", index))
     }
 
-    /// An accessor with rows of a kind.
-    fn typed(
+    /// An accessor with rows of a kind and width, the type of its numbers, and all of them row by row.
+    fn numbers(
         &self,
-        accessor: Index,
-        kind: &str,
-        width: usize,
+        index: Index,
+        (kind, width): (&str, usize),
         expected: &'static str,
-    ) -> Result<(&Accessor, Layout), Located> {
-        let found = part(&self.root.accessors, "accessor", accessor)?;
-        match scalar(found.component_type) {
-            Some(scalar) if found.kind == kind => Ok((found, Layout { accessor, scalar, width })),
-            _ => Err(Fault::syntax(expected, "another type").in_part("accessor", accessor)),
-        }
-    }
-
-    /// All numbers of an accessor, row by row.
-    fn numbers(&self, accessor: &Accessor, layout: Layout) -> Result<Vec<f64>, Located> {
+    ) -> Result<(&Accessor, Scalar, Vec<f64>), Located> {
+        let accessor = part(&self.root.accessors, "accessor", index)?;
+        let at = |fault: Fault| fault.in_part("accessor", index);
+        let Some(scalar) = scalar(accessor.component_type).filter(|_| accessor.kind == kind) else {
+            return Err(at(Fault::syntax(expected, "another type")));
+        };
         let count = accessor.count;
         let mut numbers = match accessor.buffer_view {
-            Some(view) => self.rows(view, accessor.byte_offset.unwrap_or(0), count, layout, true)?,
+            Some(view) => {
+                self.rows(view, accessor.byte_offset.unwrap_or(0), count, (scalar, width), true, at)?
+            }
             None if accessor.sparse.is_none() => {
-                return Err(layout.at(Fault::unsupported(
+                return Err(at(Fault::unsupported(
                     "its numbers are not in the file, as in compressed meshes",
                     "decompress it, for example with `gltf-transform copy in.glb out.glb`",
                 )));
             }
-            None if count > self.n_bytes => {
-                return Err(layout.at(Fault::DecompressionBomb { limit: self.n_bytes }));
-            }
-            None => vec![0.0; count as usize * layout.width],
+            None if count > self.n_bytes => return Err(at(Fault::DecompressionBomb { limit: self.n_bytes })),
+            None => vec![0.0; count as usize * width],
         };
-        let Some(sparse) = &accessor.sparse else { return Ok(numbers) };
-        let (places, values, n) = (&sparse.indices, &sparse.values, sparse.count);
-        let Some(scalar) = scalar(places.component_type) else {
-            return Err(layout.at(Fault::syntax("indices that are unsigned integers", "another type")));
+        let Some(Sparse { indices, values, count: n }) = &accessor.sparse else {
+            return Ok((accessor, scalar, numbers));
         };
-        let of_places = Layout { scalar, width: 1, ..layout };
-        let places = self.rows(places.rows.buffer_view, places.rows.byte_offset, n, of_places, false)?;
-        let values = self.rows(values.buffer_view, values.byte_offset, n, layout, false)?;
-        for (place, row) in places.iter().zip(values.chunks_exact(layout.width)) {
-            let slot = numbers.chunks_exact_mut(layout.width).nth(*place as usize).filter(|_| *place >= 0.0);
-            let slot = slot.ok_or_else(|| layout.at(Fault::no_vertex(place.to_string(), 0, count)))?;
-            slot.copy_from_slice(row);
+        let places = self::scalar(indices.component_type)
+            .ok_or_else(|| at(Fault::syntax("indices that are unsigned integers", "another type")))?;
+        let places =
+            self.rows(indices.rows.buffer_view, indices.rows.byte_offset, *n, (places, 1), false, at)?;
+        let values = self.rows(values.buffer_view, values.byte_offset, *n, (scalar, width), false, at)?;
+        for (place, row) in places.iter().zip(values.chunks_exact(width)) {
+            let slot = numbers.chunks_exact_mut(width).nth(*place as usize).filter(|_| *place >= 0.0);
+            slot.ok_or_else(|| at(Fault::no_vertex(place.to_string(), 0, count)))?.copy_from_slice(row);
         }
-        Ok(numbers)
+        Ok((accessor, scalar, numbers))
     }
 
-    /// Rows of a buffer view.
+    /// Rows of a buffer view; `at` places a fault.
     fn rows(
         &self,
         view: Index,
         offset: u64,
         count: u64,
-        layout: Layout,
+        (scalar, width): (Scalar, usize),
         is_strided: bool,
+        at: impl Fn(Fault) -> Located,
     ) -> Result<Vec<f64>, Located> {
         let (bytes, stride) = self.view(view)?;
-        let row = layout.scalar.size() * layout.width;
+        let row = scalar.size() * width;
         let stride = stride.filter(|_| is_strided).unwrap_or(row);
         if stride < row {
-            let found = format!("{stride} bytes");
-            return Err(layout.at(Fault::syntax("a stride no shorter than a row", found)));
+            return Err(at(Fault::syntax("a stride no shorter than a row", format!("{stride} bytes"))));
         }
         let to_last = count.saturating_sub(1).checked_mul(stride as u64).and_then(|n| n.checked_add(offset));
         let needed = to_last.and_then(|n| n.checked_add(if count == 0 { 0 } else { row as u64 }));
         if needed.is_none_or(|needed| needed > bytes.len() as u64) {
             let found = (bytes.len() as u64).saturating_sub(offset) / stride as u64;
-            return Err(layout.at(Fault::truncated("rows", count, found)));
+            return Err(at(Fault::truncated("rows", count, found)));
         }
-        let mut numbers = Vec::with_capacity(count as usize * layout.width);
+        let mut numbers = Vec::with_capacity(count as usize * width);
         for i in 0..count as usize {
-            let row = bytes[offset as usize + i * stride..][..row].chunks_exact(layout.scalar.size());
-            numbers.extend(row.filter_map(|number| layout.scalar.decode(ByteOrder::Little, number)));
+            let row = bytes[offset as usize + i * stride..][..row].chunks_exact(scalar.size());
+            numbers.extend(row.filter_map(|number| scalar.decode(ByteOrder::Little, number)));
         }
         Ok(numbers)
     }
