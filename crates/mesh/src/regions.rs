@@ -64,8 +64,6 @@ pub enum RegionShape {
     Cylinder {
         /// Unit direction of the axis.
         axis: Vector3<f64>,
-        /// A point of the axis.
-        center: Point3<f64>,
         /// The largest distance of a vertex from the axis.
         radius: f64,
         /// Whether the normals point to the axis.
@@ -152,10 +150,7 @@ impl SmoothRegions {
         for region in &mut found.all {
             match &mut region.shape {
                 RegionShape::Plane { offset, .. } => *offset *= unit,
-                RegionShape::Cylinder { center, radius, .. } => {
-                    *center *= unit;
-                    *radius *= unit;
-                }
+                RegionShape::Cylinder { radius, .. } => *radius *= unit,
                 RegionShape::Curved => {}
             }
         }
@@ -358,8 +353,7 @@ fn cylinder(mesh: &TriMesh, flats: &[Flat], members: &[usize]) -> Option<RegionS
             middle.dot(&Vector2::new(u.dot(&normal), v.dot(&normal)))
         })
         .sum();
-    let center = Point3::from(u * center.x + v * center.y);
-    Some(RegionShape::Cylinder { axis: axis.into_inner(), center, radius, is_hole: outward < 0.0 })
+    Some(RegionShape::Cylinder { axis: axis.into_inner(), radius, is_hole: outward < 0.0 })
 }
 
 /// The center of the circle nearest to points, in algebraic least squares (Kåsa 1976).

@@ -119,11 +119,6 @@ impl Surface {
         (self.intrinsic, self.input)
     }
 
-    /// The repaired mesh.
-    pub fn into_mesh(self) -> TriMesh {
-        self.mesh
-    }
-
     /// The same surface on a mesh that was made of its own, cut at `shortcuts`. Links move with their ends.
     pub(crate) fn with_mesh(&self, Remapped { mesh, remap }: Remapped, shortcuts: Vec<Shortcut>) -> Self {
         let moved = |link: &Link| {

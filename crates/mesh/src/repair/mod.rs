@@ -119,8 +119,7 @@ pub fn repair(
         ComponentPolicy::Largest => Some(largest(&scaled, surface.topology(), &components, &mut report)),
         ComponentPolicy::Error => return Err(disconnected(&components)),
     };
-    let (sources, input_to_repaired) = renumbered(&mut merged, &components, kept);
-    report_dropped(&input_to_repaired, &mut merged, &components, &mut report);
+    let (sources, input_to_repaired) = renumbered(&mut merged, &components, kept, &mut report);
     let faces = surface.topology().faces();
     let kept = |face: &[VertexId; 3]| {
         let [a, b, c] = face.map(|v| input_to_repaired[v.index()]);
@@ -303,39 +302,30 @@ fn largest(
 }
 
 /// The vertices with a face, in the order of the input, if `kept` is given only those of that component; and for every input
-/// vertex its number among them.
+/// vertex its number among them. Reports those that are dropped.
 fn renumbered(
     merged: &mut DisjointSets,
     components: &Components,
     kept: Option<u32>,
+    report: &mut RepairReport,
 ) -> (Vec<VertexId>, Vec<Option<VertexId>>) {
     let mut sources = Vec::with_capacity(merged.len());
     let mut number = vec![None; merged.len()];
     for v in 0..merged.len() {
         // The lowest vertex of a merged set represents it, so it was visited before.
         let source = merged.find(v as u32) as usize;
+        let label = components.labels[source];
         if source != v {
             number[v] = number[source];
-        } else if components.labels[v].is_some_and(|label| kept.is_none_or(|kept| kept == label)) {
+        } else if label.is_some_and(|label| kept.is_none_or(|kept| kept == label)) {
             number[v] = Some(VertexId::from(sources.len()));
             sources.push(VertexId::from(v));
         }
-    }
-    (sources, number)
-}
-
-/// Adds the dropped vertices to the report.
-fn report_dropped(
-    input_to_repaired: &[Option<VertexId>],
-    merged: &mut DisjointSets,
-    components: &Components,
-    report: &mut RepairReport,
-) {
-    for v in (0..input_to_repaired.len()).filter(|&v| input_to_repaired[v].is_none()) {
-        report.dropped_vertices.push(VertexId::from(v));
-        match components.labels[merged.find(v as u32) as usize] {
-            Some(_) => report.dropped_component_vertices += 1,
-            None => report.unreferenced_vertices += 1,
+        if number[v].is_none() {
+            report.dropped_vertices.push(VertexId::from(v));
+            report.dropped_component_vertices += usize::from(label.is_some());
+            report.unreferenced_vertices += usize::from(label.is_none());
         }
     }
+    (sources, number)
 }
