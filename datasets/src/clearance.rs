@@ -98,14 +98,6 @@ mod tests {
     }
 
     #[test]
-    fn path_lengths_follow_the_bones() {
-        let skeleton = skeleton();
-        assert_eq!(path_length(&skeleton, (0, 3.0), (0, 11.0)), 8.0);
-        assert_eq!(path_length(&skeleton, (1, 10.0), (0, 35.0)), 10.0 + 15.0);
-        assert_eq!(path_length(&skeleton, (1, 10.0), (2, 7.0)), 17.0);
-    }
-
-    #[test]
     fn a_forearm_in_the_trunk_is_an_intersection_and_a_bent_elbow_is_not() {
         let skeleton = skeleton();
         assert!(depth(&skeleton, 0.0) < 0.0);

@@ -371,29 +371,4 @@ mod tests {
             assert!((slope - gradient).norm() < 1e-4, "{p}: {slope} {gradient}");
         }
     }
-
-    #[test]
-    fn skipping_distant_parts_changes_nothing() {
-        let body = body();
-        let mut everything = body.clone();
-        for part in &mut everything.parts {
-            part.radius = 1e6;
-        }
-        for p in grid() {
-            assert_eq!(body.sample(p), everything.sample(p));
-            assert_eq!(body.value(p), body.sample(p).0);
-        }
-    }
-
-    #[test]
-    fn the_bounding_ball_contains_the_body_and_projection_reaches_it() {
-        let body = body();
-        let (center, radius) = body.bounding_ball();
-        for p in grid().filter(|p| (p - center).norm() > radius) {
-            assert!(body.value(p) > 0.0);
-        }
-        for p in grid().filter(|p| body.value(*p).abs() < 1.0) {
-            assert!(body.value(body.project(p, 12, 1.0)).abs() < 1e-3);
-        }
-    }
 }

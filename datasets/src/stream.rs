@@ -118,13 +118,4 @@ mod tests {
         }
         assert_eq!(all[0], draw(0, 0, Purpose::Pose));
     }
-
-    #[test]
-    fn a_permutation_contains_every_number_once() {
-        let order = Stream::new(3, 0, 0, Purpose::Numbering).permutation(1000);
-        let mut sorted = order.clone();
-        sorted.sort_unstable();
-        assert_eq!(sorted, (0..1000).collect::<Vec<u32>>());
-        assert_ne!(order, sorted);
-    }
 }
