@@ -337,6 +337,34 @@ mod tests {
         assert_eq!(extremes(&[65535, 10], &[0, 7]), (65535, 17));
     }
 
+    #[test]
+    fn the_product_equals_the_sum_of_products() {
+        let wave = |i: usize, k: usize| ((((i * k) as f64).sin()) * 32767.0) as i16;
+        for n in [0, 1, 7, 8, 9, 50] {
+            let (a, b): (Vec<i16>, Vec<i16>) = (0..n).map(|i| (wave(i, 3), wave(i, 5))).unzip();
+            let expected: i64 = a.iter().zip(&b).map(|(a, b)| i64::from(*a) * i64::from(*b)).sum();
+            assert!((dot(&a, &b) - expected as f64).abs() < 1e-6 * 32767f64.powi(2), "{n}");
+        }
+    }
+
+    #[test]
+    fn intervals_hold_every_distance_up_to_their_rounding() {
+        let cloud = Cloud::new(300, 3);
+        let metric = metric(&cloud.landmarks(9, 1.0), 4);
+        let mut widest = 0.0f64;
+        for i in 0..300 {
+            for j in 0..300 {
+                let interval = metric.intervals(i, j).1;
+                assert!(contains(interval, cloud.distance(i, j)), "{i} {j}");
+                // From a landmark, only rounding is left.
+                if i < 9 && i != j {
+                    widest = widest.max(interval.width());
+                }
+            }
+        }
+        assert!(widest <= 2.1 * metric.tables.quantum);
+    }
+
     /// Points of a line, with distances that are wrong by up to `over` and `under`.
     #[test]
     fn stated_errors_widen_the_interval_as_far_as_they_can_reach() {
@@ -360,6 +388,19 @@ mod tests {
     }
 
     #[test]
+    fn exact_columns_are_not_widened_beside_others() {
+        let distances = Cloud::new(60, 2).landmarks(6, 1.0);
+        let error = ColumnError { over: 0.4, under: 0.4 };
+        let [all, some, none] = [6, 2, 0].map(|n| LandmarkMetric::new(&distances, n, error, 3).unwrap());
+        for (i, j) in (0..60).map(|i| (i, (11 * i + 5) % 60)) {
+            let [all, some, none] = [&all, &some, &none].map(|metric| metric.intervals(i, j).1);
+            assert!(all.lower >= some.lower && some.lower >= none.lower && none.lower >= 0.0);
+            assert!(all.upper <= some.upper && some.upper <= none.upper);
+        }
+        assert!(some.intervals(0, 30).1.width() < 2.1 * some.tables.quantum);
+    }
+
+    #[test]
     fn points_in_space_are_estimated_exactly_and_lie_in_their_intervals() {
         let cloud = Cloud::new(200, 3);
         let metric = metric(&cloud.landmarks(12, 1.0), 5);
@@ -373,6 +414,21 @@ mod tests {
                 assert!((pair.distance.powi(2) - expected.powi(2)).abs() < 3e-4 * extent.powi(2), "{i} {j}");
             }
             assert_eq!(metric.pair(i, i).bounds, Interval { lower: 0.0, upper: 0.0 });
+        }
+    }
+
+    #[test]
+    fn another_unit_changes_nothing_but_the_unit() {
+        let cloud = Cloud::new(150, 4);
+        let plain = metric(&cloud.landmarks(20, 1.0), 10);
+        for scale in [2f64.powi(-40), 2f64.powi(60)] {
+            let other = metric(&cloud.landmarks(20, scale), 10);
+            for (i, j) in (0..150).map(|i| (i, (7 * i + 3) % 150)) {
+                let (a, b) = (plain.pair(i, j), other.pair(i, j));
+                let scaled = [a.bounds.lower, a.bounds.upper].map(|d| d * scale);
+                assert_eq!(scaled, [b.bounds.lower, b.bounds.upper]);
+                assert!((a.distance * scale - b.distance).abs() <= 1e-6 * b.distance, "{i} {j}");
+            }
         }
     }
 

@@ -125,6 +125,42 @@ fn finished_pairs_are_exact_and_the_others_as_near_as_promised() {
 }
 
 #[test]
+fn distances_are_symmetric_and_zero_on_the_diagonal() {
+    for method in [Method::default(), Method::Exact] {
+        let mesh = shapes::torus(16, 9, 2.0, 0.7);
+        let field = built(&mesh, &FieldOptions { method, landmarks: 10, rank: None });
+        let n = mesh.n_vertices();
+        for finish in [Finish::Never, Finish::default()] {
+            let all = field.pairs(&all_pairs(n), finish, &()).unwrap();
+            for a in 0..n {
+                assert_eq!((all[a * n + a].distance, all[a * n + a].upper), (0.0, 0.0));
+                for b in 0..a {
+                    let [there, back] = [all[a * n + b], all[b * n + a]];
+                    assert_eq!(
+                        (there.distance, there.lower, there.upper),
+                        (back.distance, back.lower, back.upper)
+                    );
+                    assert_eq!(there.kind, back.kind);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn intervals_agree_with_the_triangle_inequality() {
+    let mesh = shapes::jittered_grid(9, 8, 1.0, 0.3, 2);
+    let field = built(&mesh, &exact(8));
+    let n = mesh.n_vertices();
+    let all = field.pairs(&all_pairs(n), Finish::Never, &()).unwrap();
+    let at = |a: usize, b: usize| all[a * n + b];
+    for (a, b, c) in (0..n).flat_map(|a| (0..n).map(move |b| (a, b, (7 * a + 3 * b) % n))) {
+        assert!(at(a, c).lower <= at(a, b).upper + at(b, c).upper, "{a} {b} {c}");
+        assert!(at(a, b).lower - at(b, c).upper <= at(a, c).upper, "{a} {b} {c}");
+    }
+}
+
+#[test]
 fn the_nearest_vertices_are_those_of_the_exact_distances() {
     for method in [Method::default(), Method::Exact] {
         for mesh in zoo() {

@@ -208,11 +208,12 @@ impl SparseCholesky {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::SymmetricOperator;
+    use crate::Matrix;
 
     fn factorize(matrix: &SparseSymmetric) -> Result<SparseCholesky, LinalgError> {
         SparseCholesky::new(&EliminationOrder::new(matrix, &())?, matrix, &())
     }
+    use crate::SymmetricOperator;
 
     /// The graph Laplacian of a `side` x `side` grid plus `mass` on the diagonal. Rows are numbered by a stride, so
     /// that their order is bad for elimination.
@@ -252,6 +253,16 @@ mod tests {
     }
 
     #[test]
+    fn solutions_equal_those_of_the_dense_matrix() {
+        let a = grid(9, 0.2);
+        let b = right_hand_side(81, 3);
+        let expected = a.dense().cholesky().unwrap().solve(&nalgebra::DVector::from_column_slice(&b));
+        let mut x = b;
+        factorize(&a).unwrap().solve(&mut x);
+        assert!(x.iter().zip(&expected).all(|(x, e)| (x - e).abs() < 1e-13 * 50.0));
+    }
+
+    #[test]
     fn lanes_do_not_affect_each_other() {
         let a = grid(45, 0.01);
         let n = a.order();
@@ -267,6 +278,20 @@ mod tests {
                 (0..n).map(|i| [if lane == 1 { sparse(i) } else { columns[lane][i] }]).collect();
             factor.solve_ordered(&mut one);
             assert!(one.iter().zip(&four).all(|([a], b)| a.to_bits() == b[lane].to_bits()), "lane {lane}");
+        }
+    }
+
+    #[test]
+    fn columns_do_not_affect_each_other() {
+        let a = grid(31, 0.1);
+        let factor = factorize(&a).unwrap();
+        for count in [0, 1, 3, 9] {
+            let b = Matrix::from_fn(a.order(), count, |i, j| right_hand_side(a.order(), j)[i]);
+            let mut expected = b.clone();
+            expected.column_iter_mut().for_each(|mut column| factor.solve(column.as_mut_slice()));
+            let mut found = b.select_rows(factor.order().rows());
+            factor.solve_ordered_columns(found.as_mut_slice());
+            assert_eq!(found, expected.select_rows(factor.order().rows()));
         }
     }
 
@@ -309,6 +334,28 @@ mod tests {
         };
         let shared = solve(SparseCholesky::new(&order, &heavy, &()).unwrap());
         assert_eq!(shared, solve(factorize(&heavy).unwrap()));
+    }
+
+    #[test]
+    fn an_empty_matrix_has_a_factor() {
+        let factor = factorize(&SparseSymmetric::from_entries(0, [])).unwrap();
+        factor.solve(&mut []);
+        assert!(factor.order().rows().is_empty());
+    }
+
+    #[test]
+    fn diagonal_matrices_and_blocks_have_factors() {
+        let diagonal = SparseSymmetric::from_entries(3, [(0, 0, 2.0), (1, 1, 4.0), (2, 2, 8.0)]);
+        let mut x = [2.0, 2.0, 2.0];
+        factorize(&diagonal).unwrap().solve(&mut x);
+        assert!(x.iter().zip([1.0, 0.5, 0.25]).all(|(x, e)| (x - e).abs() < 1e-15));
+        let blocks = SparseSymmetric::from_entries(
+            4,
+            [(0, 0, 2.0), (3, 3, 2.0), (0, 3, 1.0), (1, 1, 1.0), (2, 2, 1.0)],
+        );
+        let mut x = [3.0, 5.0, 7.0, 3.0];
+        factorize(&blocks).unwrap().solve(&mut x);
+        assert!(x.iter().zip([1.0, 5.0, 7.0, 1.0]).all(|(x, e)| (x - e).abs() < 1e-14));
     }
 
     #[test]

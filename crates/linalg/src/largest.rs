@@ -153,6 +153,11 @@ mod tests {
     }
 
     #[test]
+    fn finds_negative_pairs_if_few_are_positive() {
+        check((0..300).map(|i| if i == 5 { 1.0 } else { -1.0 - i as f64 }).collect(), 2);
+    }
+
+    #[test]
     fn small_operators_have_fewer_pairs_than_requested() {
         check(vec![3.0, -7.0, 2.0], 5);
     }

@@ -283,6 +283,16 @@ mod tests {
     }
 
     #[test]
+    fn an_open_fan_goes_from_boundary_to_boundary() {
+        let (ring, ends) = fans(&[[2, 3, 0], [0, 1, 2], [0, 4, 3]]);
+        assert_eq!(ends, [[1, 2, 3, 4]]);
+        assert_eq!(
+            [3.1, 3.2].map(|angle| ring.kind(angle, 1e-9)),
+            [VertexKind::Ordinary, VertexKind::Boundary]
+        );
+    }
+
+    #[test]
     fn fans_end_at_edges_of_three_faces_and_a_vertex_may_have_several() {
         let (ring, mut ends) = fans(&[[0, 1, 2], [0, 1, 3], [0, 1, 4], [0, 4, 5]]);
         ends.iter_mut().for_each(|fan| fan.sort_unstable());

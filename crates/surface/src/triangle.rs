@@ -125,6 +125,16 @@ mod tests {
     }
 
     #[test]
+    fn cotangents_are_those_of_the_angles() {
+        let [a, b, c] = Triangle::from_sides([5.0, 4.0, 3.0]).cotangents();
+        assert!((a - 4.0 / 3.0).abs() < 1e-14 && (b - 0.75).abs() < 1e-14 && c.abs() < 1e-14, "{a} {b} {c}");
+        let sixty = Triangle::from_sides([2.0; 3]).cotangents();
+        assert!(sixty.iter().all(|c| (c - 1.0 / 3f64.sqrt()).abs() < 1e-15));
+        assert!((scalar_product(5.0, 3.0, 4.0) - 0.0).abs() < 1e-15);
+        assert!((scalar_product(2.0, 2.0, 2.0) - 2.0).abs() < 1e-15);
+    }
+
+    #[test]
     fn a_square_has_two_equal_diagonals() {
         let half = Triangle::from_sides([2f64.sqrt(), 1.0, 1.0]);
         assert!((half.apex_to_apex(half) - 2f64.sqrt()).abs() < 1e-15);

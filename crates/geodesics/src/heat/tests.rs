@@ -30,6 +30,12 @@ fn straight(mesh: &TriMesh, source: usize) -> impl Fn(usize) -> f64 {
     move |v| (p[source] - p[v]).norm()
 }
 
+fn assert_close(found: &[f64], expected: &[f64], tolerance: f64) {
+    for (v, (a, b)) in found.iter().zip(expected).enumerate() {
+        assert!((a - b).abs() <= tolerance * b.abs() || a == b, "vertex {v}: {a} against {b}");
+    }
+}
+
 #[test]
 fn errors_on_a_plane_and_on_a_sphere_fall_with_edge_length() {
     let mut previous = f64::INFINITY;
@@ -48,6 +54,19 @@ fn errors_on_a_plane_and_on_a_sphere_fall_with_edge_length() {
             mean_error(&heat(&surface(&mesh)).distances(VertexId(0)).unwrap(), great_circle(&mesh, 0));
         assert!(error < bound, "{level}: {error}");
     }
+}
+
+#[test]
+fn a_time_of_first_order_makes_the_error_vanish() {
+    let mut previous = f64::INFINITY;
+    for (level, n) in [(3, 16.0), (4, 32.0), (5, 64.0)] {
+        let mesh = icosphere(level);
+        let method = HeatMethod::new(&surface(&mesh), HeatOptions { time: n / 16.0 }, &()).unwrap();
+        let error = mean_error(&method.distances(VertexId(0)).unwrap(), great_circle(&mesh, 0));
+        assert!(error < previous / 1.5, "{level}: {error} after {previous}");
+        previous = error;
+    }
+    assert!(previous < 0.0015, "{previous}");
 }
 
 #[test]
@@ -91,6 +110,18 @@ fn sources_may_lie_in_faces_and_on_edges() {
     }
 }
 
+#[test]
+fn components_affect_each_other_only_through_the_time_of_heat_flow() {
+    let mesh = surface(&disjoint(&[icosphere(2), grid(5, 5, 0.1), icosphere(1)]));
+    let method = heat(&mesh);
+    let mut both = vec![0.0; mesh.n_vertices()];
+    let sources = [5, 163].map(|v| Source::vertex(VertexId(v)));
+    method.solve_into(&sources, f64::INFINITY, &mut both).unwrap();
+    let single = [5, 163].map(|v| method.distances(VertexId(v)).unwrap());
+    assert_close(&both[..162], &single[0][..162], 1e-9);
+    assert_close(&both[162..], &single[1][162..], 1e-9);
+}
+
 /// Two spheres of 642 vertices joined by a link between their first vertices.
 fn dumbbell(length: f64) -> IntrinsicMesh {
     let link = Link { ends: [VertexId(0), VertexId(642)], length };
@@ -113,6 +144,40 @@ fn a_bridge_adds_its_length() {
         let found = brief.distances(VertexId(100)).unwrap();
         assert!(mean_error(&found[642..], beyond) < 0.4, "{length}");
     }
+}
+
+#[test]
+fn a_link_within_a_component_is_used_only_if_it_is_short() {
+    // From one end of a long strip to the other.
+    let strip = surface(&grid(101, 6, 0.1));
+    let (left, right) = (VertexId(303), VertexId(403));
+    let with = |length: f64| {
+        let link = Link { ends: [left, right], length };
+        heat(&strip.clone().with_links(vec![link])).distances(left).unwrap()
+    };
+    let without = heat(&strip).distances(left).unwrap();
+    let short = with(0.5);
+    assert!((short[right.index()] - 0.5).abs() < 0.1, "{}", short[right.index()]);
+    assert!((short[right.index() - 10] - 1.5).abs() < 0.2, "{}", short[right.index() - 10]);
+    let useless = with(30.0);
+    assert!(mean_error(&useless, |v| without[v]) < 0.02);
+}
+
+#[test]
+fn loose_vertices_are_reached_only_over_links() {
+    let mut mesh = grid(3, 3, 1.0);
+    mesh.positions.extend([0, 1].map(|v| 9.0 * mesh.positions[v]));
+    let links = vec![
+        Link { ends: [VertexId(8), VertexId(9)], length: 2.5 },
+        Link { ends: [VertexId(4), VertexId(4)], length: 1.0 },
+    ];
+    let method = heat(&surface(&mesh).with_links(links));
+    let found = method.distances(VertexId(8)).unwrap();
+    assert!((found[9] - 2.5).abs() < 0.3 && found[10] == f64::INFINITY, "{found:?}");
+    let back = method.distances(VertexId(9)).unwrap();
+    assert!(back[9] == 0.0 && (back[8] - 2.5).abs() < 0.3 && back[0] > 4.0, "{back:?}");
+    let alone = method.distances(VertexId(10)).unwrap();
+    assert!(alone.iter().enumerate().all(|(v, d)| if v == 10 { *d == 0.0 } else { *d == f64::INFINITY }));
 }
 
 #[test]
@@ -187,4 +252,12 @@ fn invalid_times_are_rejected() {
     // A long time is still a direction.
     let long = HeatMethod::new(&mesh, HeatOptions { time: 1e6 }, &()).unwrap();
     assert!(long.distances(VertexId(0)).unwrap().iter().all(|d| d.is_finite()));
+}
+
+#[test]
+fn time_is_in_squared_mesh_units() {
+    let mesh = surface(&icosphere(2));
+    let time = HeatMethod::new(&mesh, HeatOptions { time: 2.0 }, &()).unwrap().time();
+    assert!((time - 2.0 * mesh.mean_edge_length().powi(2)).abs() < 1e-12 * time);
+    assert!(heat(&surface(&grid(300, 300, 1.0))).time() > 1.2);
 }

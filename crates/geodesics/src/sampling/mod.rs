@@ -155,12 +155,27 @@ mod tests {
     }
 
     #[test]
+    fn the_first_landmark_can_be_given() {
+        for sampling in ALL {
+            let chosen = sample(sampling, FirstSample::Vertex(VertexId(17)), 3, 5);
+            assert_eq!(chosen.landmarks()[0], 17, "{sampling:?}");
+        }
+    }
+
+    #[test]
     fn the_seed_determines_random_choices() {
         for sampling in ALL {
             let [a, b, c] = [3, 3, 4].map(|seed| sample(sampling, FirstSample::default(), seed, 6));
             assert_eq!(a, b, "{sampling:?}");
             assert_eq!(a == c, sampling == Sampling::Farthest, "{sampling:?}");
         }
+    }
+
+    #[test]
+    fn the_function_gives_the_same_landmarks_as_the_sampler() {
+        let solver = solver(&icosphere(2));
+        let direct = farthest_point_sampling(&solver, 9, FirstSample::default()).unwrap();
+        assert_eq!(sample(Sampling::Farthest, FirstSample::default(), 0, 9), direct);
     }
 
     #[test]
@@ -191,6 +206,25 @@ mod tests {
     }
 
     #[test]
+    fn all_vertices_are_equally_likely() {
+        let solver = Dijkstra::of_hops(&grid(4, 3, 1.0).intrinsic(), &());
+        let p = solver.n_vertices();
+        let (runs, n) = (3000, 4);
+        let mut taken = vec![0usize; p];
+        for seed in 0..runs {
+            let mut sampler = Sampling::Random.start(&solver, FirstSample::default(), seed).unwrap();
+            sampler.extend_to(n).unwrap();
+            for landmark in sampler.distances(n).unwrap().landmarks() {
+                taken[*landmark] += 1;
+            }
+        }
+        // Each count is binomial; a deviation of five sigmas never happens.
+        let share = n as f64 / p as f64;
+        let (mean, deviation) = (runs as f64 * share, (runs as f64 * share * (1.0 - share)).sqrt());
+        assert!(taken.iter().all(|count| (*count as f64 - mean).abs() < 5.0 * deviation), "{taken:?}");
+    }
+
+    #[test]
     fn every_landmark_has_the_least_or_greatest_variance() {
         let solver = Dijkstra::new(&icosphere(2).intrinsic(), &());
         for (sampling, sign) in [(Sampling::MinVariance, 1.0), (Sampling::MaxVariance, -1.0)] {
@@ -208,6 +242,30 @@ mod tests {
                 let best = free.map(spread).fold(f64::INFINITY, f64::min);
                 assert!(spread(distances.landmarks()[n]) <= best + 1e-12, "{sampling:?} {n}");
             }
+        }
+    }
+
+    #[test]
+    fn the_least_variance_is_in_the_middle_of_a_strip() {
+        // The middle of a long strip is equally far from both ends.
+        let strip = grid(41, 2, 1.0);
+        let middle = |v: usize| (strip.positions[v].x - 20.0).abs() < 1.1;
+        let solver = Dijkstra::new(&strip.intrinsic(), &());
+        let at_far_end = |seed: &u64| {
+            let mut sampler =
+                Sampling::MinVariance.start(&solver, FirstSample::Vertex(VertexId(0)), *seed).unwrap();
+            sampler.extend_to(2).unwrap();
+            sampler.distances(2).unwrap().landmarks()[1] % 41 == 40
+        };
+        for seed in (0..).filter(at_far_end).take(3) {
+            let third = |sampling: Sampling| {
+                let first = FirstSample::Vertex(VertexId(0));
+                let mut sampler = sampling.start(&solver, first, seed).unwrap();
+                sampler.extend_to(3).unwrap();
+                sampler.distances(3).unwrap().landmarks()[2]
+            };
+            assert!(middle(third(Sampling::MinVariance)));
+            assert!(!middle(third(Sampling::MaxVariance)));
         }
     }
 }

@@ -66,6 +66,39 @@ fn a_torus_has_its_closed_form_eigenvalues_with_multiplicities() {
 }
 
 #[test]
+fn eigenvalues_scale_inversely_with_masses() {
+    let w = torus(30, 20);
+    let masses: Vec<f64> = (0..600).map(|i| 1.0 + 0.9 * (i as f64).sin()).collect();
+    let found = smallest_eigenpairs(&w, &masses, 40, GeneralizedEigen::ACCURATE, &()).unwrap();
+    let [residual, orthogonality] = faults(&w, &masses, &found);
+    assert!(residual < 1e-9 && orthogonality < 1e-12, "{residual} {orthogonality}");
+    for scale in [1e-12, 1e12] {
+        let scaled: Vec<f64> = masses.iter().map(|m| scale * m).collect();
+        let other = smallest_eigenpairs(&w, &scaled, 40, GeneralizedEigen::ACCURATE, &()).unwrap();
+        for j in 1..40 {
+            let ratio = other.values[j] * scale / found.values[j];
+            assert!((ratio - 1.0).abs() < 1e-9, "{j} {scale}: {ratio}");
+        }
+    }
+}
+
+#[test]
+fn the_kernel_has_one_dimension_per_component() {
+    // Thirty rings of 24 points: zero is 30-fold, the next eigenvalue 60-fold.
+    let rings = 30;
+    let w = springs(24 * rings, (0..24 * rings).map(|v| (v, v / 24 * 24 + (v + 1) % 24, 1.0)));
+    let masses = vec![1.0; 24 * rings];
+    let found = smallest_eigenpairs(&w, &masses, 70, GeneralizedEigen::ACCURATE, &()).unwrap();
+    let ring = |a: f64| 4.0 * (PI * a / 24.0).sin().powi(2);
+    for (j, value) in found.values.iter().enumerate() {
+        let expected = if j < rings { 0.0 } else { ring(1.0) };
+        assert!((value - expected).abs() < 1e-10, "{j}: {value} against {expected}");
+    }
+    let [residual, orthogonality] = faults(&w, &masses, &found);
+    assert!(residual < 1e-9 && orthogonality < 1e-11, "{residual} {orthogonality}");
+}
+
+#[test]
 fn rows_without_mass_follow_the_others_and_isolated_ones_are_zero() {
     // A path with mass on every second point equals one of half as many points with springs half as stiff.
     let n = 81;

@@ -40,6 +40,13 @@ fn prepare(mesh: &TriMesh, options: &RepairOptions) -> MeshReport {
 }
 
 #[test]
+fn a_polygon_with_very_many_corners() {
+    let rim = (0..MANY).map(|i| on_circle(f64::from(i) / f64::from(MANY))).collect();
+    let report = prepare(&mesh(rim, (1..MANY - 1).map(|i| [0, i, i + 1])), &RepairOptions::default());
+    assert_eq!((report.n_boundary_loops, report.n_faces), (1, MANY as usize - 2));
+}
+
+#[test]
 fn a_closed_fan_around_one_vertex() {
     let rim = (0..MANY).map(|i| on_circle(f64::from(i) / f64::from(MANY)));
     let points = std::iter::once(Point3::origin()).chain(rim).collect();

@@ -45,6 +45,7 @@ fn a_clean_mesh_is_returned_unchanged() {
         let repaired = mend(&clean);
         assert_eq!(repaired.mesh, clean);
         assert!(repaired.report.summary().is_empty());
+        assert!(repaired.report.summary().is_empty());
         assert!(repaired.remap.is_identity());
     }
 }
@@ -132,6 +133,14 @@ fn welding_follows_its_policy() {
     assert_eq!(mend(&negative).report.welded_vertices, 3);
 }
 
+#[test]
+fn a_triangle_soup_is_welded_into_its_surface() {
+    let sphere = shapes::icosphere(2);
+    let stitched = mend(&soup(&sphere));
+    assert_eq!(validate(&stitched.mesh).genus, Some(0));
+    assert_eq!(stitched.mesh.n_vertices(), sphere.n_vertices());
+}
+
 /// A sphere cut along two meridians and the equator: every vertex on a cut has a copy for each part it belongs to.
 fn cut_sphere() -> TriMesh {
     let sphere = shapes::icosphere(4);
@@ -194,6 +203,12 @@ fn seams_whose_sides_nearly_coincide_are_welded() {
             assert_eq!(mend(&repaired.mesh).mesh, repaired.mesh);
         }
     }
+}
+
+#[test]
+fn a_soup_of_jittered_triangles_is_welded() {
+    let repaired = mend(&jittered(soup(&shapes::icosphere(3)), 1e-5));
+    assert_eq!((repaired.mesh.n_vertices(), validate(&repaired.mesh).genus), (642, Some(0)));
 }
 
 #[test]

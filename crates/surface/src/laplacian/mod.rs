@@ -159,6 +159,17 @@ mod tests {
     }
 
     #[test]
+    fn scale_changes_only_the_unit() {
+        let mesh = shapes::jittered_grid(8, 8, 1.0, 0.2, 3);
+        let mut large = mesh.clone();
+        large.positions.iter_mut().for_each(|p| p.coords *= 1024.0);
+        let (a, b) = (of(&mesh), of(&large));
+        assert_eq!(b.metric().unit, 1024.0 * a.metric().unit);
+        assert_eq!(b.masses(), a.masses());
+        assert!(a.stiffness_entries().eq(b.stiffness_entries()));
+    }
+
+    #[test]
     fn links_join_and_have_no_mass() {
         let mesh = intrinsic(&shapes::disjoint(&[shapes::cube(1), shapes::cube(1)]));
         let n = mesh.n_vertices();

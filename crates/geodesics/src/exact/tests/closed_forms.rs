@@ -4,7 +4,7 @@ use mesh::shapes;
 use surface::{FaceId, IntrinsicMesh, Topology, VertexId};
 
 use super::super::Exact;
-use super::{all_pairs, assert_close};
+use super::{all_pairs, assert_close, faces, points, spatial};
 use crate::{DistanceSolver, Source, SurfacePoint};
 
 #[test]
@@ -129,6 +129,67 @@ fn paths_around_cones_take_the_shorter_side_and_bend_at_saddles() {
                 let expected = if angle >= PI { p + q } else { apart(p, q, angle) };
                 assert_close(*found, expected, 1e-13);
             }
+        }
+    }
+}
+
+#[test]
+fn paths_bend_at_the_tip_of_a_slit() {
+    // Cut from (5, 0) to (5, 6): the vertices below (5, 6) have copies for the faces to their right.
+    let n = 11;
+    let sheet = shapes::grid(n, n, 1.0);
+    let (mut at, mut cut) = (points(&sheet), faces(&sheet));
+    for j in 0..6usize {
+        let (old, copy) = ((j * n + 5) as u32, at.len() as u32);
+        at.push(at[old as usize]);
+        for face in cut.iter_mut().filter(|f| f.iter().any(|v| at[*v as usize][0] > 5.0)) {
+            face.iter_mut().filter(|v| **v == old).for_each(|v| *v = copy);
+        }
+    }
+    let found = Exact::new(&spatial(&at, &cut), &()).distances(VertexId(3 * n as u32 + 2)).unwrap();
+    let tip = 3f64.hypot(3.0);
+    for (v, p) in at.iter().enumerate() {
+        let is_right = p[0] > 5.0 || v >= n * n;
+        // The line from (2, 3) passes above the tip from slope 1 on.
+        let is_hidden = is_right && p[1] - 3.0 < p[0] - 2.0;
+        let straight = (p[0] - 2.0).hypot(p[1] - 3.0);
+        let bent = tip + (p[0] - 5.0).hypot(p[1] - 6.0);
+        assert_close(found[v], if is_hidden { bent } else { straight }, 1e-14);
+    }
+}
+
+#[test]
+fn distances_from_points_on_edges_and_in_faces_are_euclidean() {
+    let sheet = shapes::jittered_grid(9, 9, 1.0, 0.2, 8);
+    let mesh = sheet.intrinsic();
+    let solver = Exact::new(&mesh, &());
+    let mut out = vec![0.0; mesh.n_vertices()];
+    let mut check = |point: SurfacePoint, at: [f64; 2]| {
+        solver.solve_into(&[Source::new(&mesh, point).unwrap()], f64::INFINITY, &mut out).unwrap();
+        for (found, p) in out.iter().zip(&sheet.positions) {
+            let expected = (p.x - at[0]).hypot(p.y - at[1]);
+            assert!((found - expected).abs() < 1e-9 * expected.max(1.0), "{point:?}: {found} {expected}");
+        }
+    };
+    for face in [0usize, 31, 64, 127].map(FaceId::from) {
+        let corners = sheet.faces[face.index()].map(|v| sheet.positions[v.index()]);
+        for barycentric in [
+            [0.2, 0.5, 0.3],
+            [1.0, 0.0, 0.0],
+            [0.0, 0.4, 0.6],
+            [0.5, 0.5, 0.0],
+            [1e-13, 0.3, 0.7 - 1e-13],
+            [1e-7, 1.0 - 2e-7, 1e-7],
+            [1.0 - 2e-10, 1e-10, 1e-10],
+        ] {
+            let at = [0, 1].map(|axis| (0..3).map(|i| barycentric[i] * corners[i][axis]).sum());
+            check(SurfacePoint::Face { face, barycentric }, at);
+        }
+    }
+    for edge in [0usize, 50, 150].map(surface::EdgeId::from) {
+        let [a, b] = mesh.topology().edges()[edge.index()].map(|v| sheet.positions[v.index()]);
+        for t in [0.0, 0.25, 0.9, 1.0, 1e-14] {
+            check(SurfacePoint::Edge { edge, t }, [a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)]);
         }
     }
 }

@@ -54,6 +54,41 @@ fn paths_pass_through_caps_without_area() {
 }
 
 #[test]
+fn needles_and_near_caps_are_exact() {
+    // A row of faces with angles up to 179.7 degrees and 0.15 degrees: heights of 0.0026 over 1.
+    for height in [0.0026, 1e-5, 1e-9] {
+        let n = 8;
+        let at: Vec<[f64; 3]> = (0..3 * n)
+            .map(|v| [(v % n) as f64 + 0.5 * ((v / n) % 2) as f64, (v / n) as f64 * height, 0.0])
+            .collect();
+        let mut strip = Vec::new();
+        for (i, j) in (0..2).flat_map(|j| (0..n - 1).map(move |i| (i, j))) {
+            let [a, b, c, d] = [j * n + i, j * n + i + 1, (j + 1) * n + i, (j + 1) * n + i + 1];
+            let cells = if j == 0 { [[a, b, c], [b, d, c]] } else { [[a, b, d], [a, d, c]] };
+            strip.extend(cells.map(|f| f.map(|v| v as u32)));
+        }
+        let mesh = spatial(&at, &strip);
+        assert_sane(&mesh);
+        // The strip is not convex, but what is seen straight within a row is Euclidean.
+        let found = all_pairs(&mesh);
+        for j in 0..3 {
+            assert_close(found[j * n][j * n + n - 1], (n - 1) as f64, 1e-12);
+        }
+    }
+}
+
+#[test]
+fn stretched_sheets_stay_euclidean() {
+    let sheet = shapes::jittered_grid(8, 8, 1.0, 0.2, 1);
+    // The lengths of needles say less and less about their heights.
+    for (stretch, relative) in [(30.0, 1e-12), (1e3, 1e-9), (1e5, 1e-5)] {
+        let mut at = points(&sheet);
+        at.iter_mut().for_each(|p| p[0] *= stretch);
+        assert_flat(&at, &faces(&sheet), relative);
+    }
+}
+
+#[test]
 fn windows_around_a_thin_needle_come_to_an_end() {
     // A double cone with n needles and a total angle far below a full turn at either tip.
     for (n, width) in [(3, 1e-3), (3, 1e-5), (5, 1e-8), (40, 1e-3)] {
@@ -100,6 +135,23 @@ fn repeated_faces_and_pillows_have_the_distances_of_one_sheet() {
             }
         }
     }
+}
+
+#[test]
+fn edges_without_length_are_points() {
+    // A sheet whose column 3 is doubled, with faces of no width in between.
+    let (n, m) = (8, 6);
+    let sheet = shapes::grid(n, m, 1.0);
+    let mut at = points(&sheet);
+    at.iter_mut().filter(|p| p[0] > 3.0).for_each(|p| p[0] -= 1.0);
+    assert_flat(&at, &faces(&sheet), 1e-12);
+}
+
+#[test]
+fn surfaces_without_area_do_not_fail() {
+    let points = [[0.0; 3]; 4];
+    let collapsed = spatial(&points, &[[0, 1, 2], [0, 2, 3], [1, 2, 3]]);
+    assert!(all_pairs(&collapsed).iter().flatten().all(|d| *d == 0.0));
 }
 
 proptest! {

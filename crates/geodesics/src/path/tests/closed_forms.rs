@@ -1,6 +1,6 @@
 //! Paths that can be drawn by hand.
 
-use mesh::shapes;
+use mesh::{TriMesh, shapes};
 use surface::{FaceId, Link, VertexId};
 
 use super::{assert_path, shortest, vertex};
@@ -21,6 +21,19 @@ fn a_path_to_its_own_source_is_a_point() {
     let sources = [Source::vertex(a)];
     let distances = Exact::new(&mesh, &()).distances(a).unwrap();
     assert_eq!(PathTracer::new(&mesh, &sources, &distances, &()).path_to(edge).unwrap().length, 0.0);
+}
+
+#[test]
+fn paths_bend_at_the_corner_of_a_boundary() {
+    // An L of three squares of 4 x 4 cells: the inner corner is in the way.
+    let sheet = shapes::grid(9, 9, 1.0);
+    let is_cut = |f: &[VertexId; 3]| f.iter().all(|v| v.0 % 9 >= 4 && v.0 / 9 >= 4);
+    let faces = sheet.faces.iter().copied().filter(|f| !is_cut(f)).collect();
+    let mesh = (TriMesh { faces, ..sheet }).intrinsic();
+    // From (8, 2) to (1, 8) around (4, 4).
+    let path = shortest(&mesh, vertex(2 * 9 + 8), vertex(8 * 9 + 1));
+    assert_close(path.length, 4f64.hypot(2.0) + 3f64.hypot(4.0), 1e-13);
+    assert!(path.points.contains(&vertex(4 * 9 + 4)));
 }
 
 #[test]

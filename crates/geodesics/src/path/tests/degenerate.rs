@@ -2,7 +2,7 @@
 
 use mesh::shapes;
 use proptest::prelude::*;
-use surface::{IntrinsicMesh, Link, VertexId};
+use surface::{IntrinsicMesh, Link, Topology, VertexId};
 
 use super::{assert_path, vertex};
 use crate::tests::{impossible, lengths_of_nothing, pinched, spatial};
@@ -55,6 +55,13 @@ fn paths_around_a_needle_are_found() {
     }
     tube.push([0, 2, 3]);
     assert_sane(&spatial(&at, &tube));
+}
+
+#[test]
+fn an_isolated_vertex_reaches_itself() {
+    let mesh = IntrinsicMesh::new(Topology::new(2, Vec::new()), Vec::new());
+    assert_sane(&mesh);
+    assert_sane(&mesh.with_links(vec![Link { ends: [0, 1].map(VertexId), length: 1.0 }]));
 }
 
 proptest! {
