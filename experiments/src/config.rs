@@ -21,10 +21,10 @@ pub(crate) struct Config {
     /// What the experiment reads, as text for its record.
     #[serde(default)]
     pub(crate) options: toml::Table,
-    /// How a page can begin.
+    /// How a page can begin, if all its numbers were measured.
     #[serde(default)]
     pub(crate) lead: String,
-    /// Of the figures without a caption of their own.
+    /// Of the figures and tables without a caption of their own.
     #[serde(default)]
     pub(crate) caption: String,
     /// What the results show. Paragraphs with numbers that were not measured are left out.

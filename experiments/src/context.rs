@@ -57,17 +57,18 @@ impl Context<'_> {
         let Self { config, collection, .. } = self;
         record.measured.retain(|_, value| value.is_finite());
         let known = self.known(&record.measured);
-        let text = |text: &str| {
-            let number = |name: &str| known.get(name).copied();
-            filled(text, number).map_err(|name| anyhow!("nothing measures `{name}`, which a text states"))
-        };
-        for figure in record.figures.iter_mut().filter(|figure| figure.caption.is_empty()) {
-            figure.caption = text(&config.caption)?;
+        let text = |text: &str| filled(text, |name| known.get(name).copied());
+        let captions = record.figures.iter_mut().map(|figure| &mut figure.caption);
+        let captions = captions.chain(record.tables.iter_mut().map(|table| &mut table.caption));
+        for caption in captions.filter(|caption| caption.is_empty()) {
+            *caption =
+                text(&config.caption).map_err(|name| anyhow!("nothing measures `{name}` of a caption"))?;
         }
         let generated = if collection.dataset.starts_with("built-in") { GENERATED } else { "" };
-        if !config.lead.is_empty() {
-            record.lead = format!("{generated}{}", text(&config.lead)?);
-        }
+        record.lead = match text(&config.lead) {
+            Ok(lead) if !lead.is_empty() => format!("{generated}{lead}"),
+            _ => String::new(),
+        };
         record.analysis = config.analysis(&known);
         record.expectations = config.check(collection.setting(), &record.measured)?;
         let mut options = record.provenance.options;

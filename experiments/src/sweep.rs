@@ -47,15 +47,6 @@ pub(crate) fn share<T>(all: &[T], is: impl Fn(&T) -> bool) -> f64 {
 /// The headings of retrieval scores in tables, as in the paper.
 pub(crate) const SCORES: [&str; 6] = ["NN", "FT", "ST", "E", "DCG", "mAP"];
 
-/// The meaning of [`SCORES`], and the E-measure of a ranking without error.
-pub(crate) fn scores_caption(labels: &Labels) -> Result<String> {
-    Ok(format!(
-        "NN: nearest neighbour; FT and ST: first and second tier; E: E-measure; DCG: discounted cumulative gain; mAP: mean \
-         average precision. The best value is 1, but {:.3} for E, which examines 32 results.",
-        best_e(labels)?
-    ))
-}
-
 /// Retrieval scores by the names that expectations use.
 pub(crate) fn named(s: &Scores) -> [(&'static str, f64); 6] {
     [("nn", s.nn), ("ft", s.ft), ("st", s.st), ("e", s.e), ("dcg", s.dcg), ("mAP", s.map)]

@@ -20,7 +20,7 @@ use crate::collection::map;
 use crate::context::Context;
 use crate::specimen::{describing, low_rank};
 use crate::studies::MANY_DIMENSIONS;
-use crate::sweep::{MeasuredNumbers, SCORES, named, plot, scores_caption};
+use crate::sweep::{MeasuredNumbers, SCORES, best_e, named, plot};
 
 const NMDS: &str = "NMDS";
 const BASELINE: &str = "KPCA-Nystrom";
@@ -115,15 +115,11 @@ pub(crate) fn figure4(context: &Context<'_>) -> Result<Record> {
         figures.push(figure("maps", map, FigurePanels::Plots(maps)));
         figures.push(figure("matrices", matrix, FigurePanels::Heats(matrices)));
     }
-    let caption = format!(
-        "{} k-NN: leave-one-out accuracy. Neg. mass: the share of the spectrum that no Euclidean space can represent. 2D: \
-         of the map in the plane.",
-        scores_caption(&labels)?
-    );
+    measured.insert("best e".to_owned(), best_e(&labels)?);
     let own = ["k-NN", "silhouette", "2D silhouette", "2D stress", "neg. mass"];
     let headings = ["method", "scale"].into_iter().chain(SCORES).chain(own);
     let [nmds, baseline] = methods.map(|(_, options)| describing(options));
-    let tables = vec![Table::new(caption, headings, rows)];
+    let tables = vec![Table::new("", headings, rows)];
     Ok(Record { tables, figures, ..context.record(&[(NMDS, &nmds), (BASELINE, &baseline)], measured) })
 }
 

@@ -110,11 +110,6 @@ pub(crate) fn figure9(context: &Context<'_>) -> Result<Record> {
         caption: "Filled: this program. Hollow: the paper, on a laptop of 2015.".to_owned(),
         panels: FigurePanels::Plots(vec![Plot { marks, ..times }]),
     };
-    let caption = format!(
-        "Wall-clock seconds of the fastest run on {} worker threads, and peak memory in addition to the surface. The times \
-         of the paper are those of a laptop of 2015.",
-        rayon::current_num_threads()
-    );
     let headings = "shape vertices method distances algebra total memory paper remark".split(' ');
     let total = |size, method| spent.get(&(size, method)).map_or(f64::NAN, Spent::total);
     let ratio = |size, method| total(size, method) / total(size, "NMDS");
@@ -132,7 +127,7 @@ pub(crate) fn figure9(context: &Context<'_>) -> Result<Record> {
         let numbers = [("seconds", found.total()), ("bytes", found.peak_bytes as f64)];
         note(&mut measured, &format!("{size} {method}"), numbers);
     }
-    let tables = vec![Table::new(caption, headings, rows)];
+    let tables = vec![Table::new("", headings, rows)];
     Ok(Record { figures: vec![figure], tables, ..context.record(&[], measured) })
 }
 

@@ -23,7 +23,7 @@ use retrieval::{
 use super::published::{Published, PublishedMethod};
 use crate::context::Context;
 use crate::gallery::Gallery;
-use crate::sweep::{MeasuredNumbers, SCORES, curve, named, note, plot, point, scores_caption};
+use crate::sweep::{MeasuredNumbers, SCORES, best_e, curve, named, note, plot, point};
 
 /// The number of recalls at which precision is measured.
 const RECALLS: usize = 21;
@@ -42,11 +42,13 @@ pub(crate) fn retrieval(context: &Context<'_>) -> Result<Record> {
     let gallery = Gallery::new(context)?;
     let labels = &gallery.labels;
     let n = labels.n_points();
-    let classifier = if n <= context.options.aligned { CLASSIFIER } else { LARGE_CLASSIFIER };
+    let aligns = n <= context.options.aligned;
+    let classifier = if aligns { CLASSIFIER } else { LARGE_CLASSIFIER };
+    let form = aligns.then(|| aligned(context, &gallery.described, Normalization::UnitArea)).transpose()?;
     let (mut measured, mut rows, mut classified) = (MeasuredNumbers::new(), Vec::new(), None);
     let mut plots: Vec<Plot> = Vec::new();
     for (counts_size, scale, title) in SCALES {
-        let found = distances(context, &gallery.described, counts_size)?;
+        let found = distances(context, &gallery.described, form.as_ref(), counts_size)?;
         context.observer.begin("scoring", found.len());
         let mut series = Vec::new();
         for (method, distances) in &found {
@@ -67,7 +69,10 @@ pub(crate) fn retrieval(context: &Context<'_>) -> Result<Record> {
         "Precision over recall, averaged over queries among {n} shapes. Further right and up is better."
     );
     let mut figures = vec![Figure { part: "curves".to_owned(), caption, panels: FigurePanels::Plots(plots) }];
-    let mut tables = vec![table(context, labels, rows)?];
+    let n_queries = (0..n).filter(|i| labels.is_query(*i)).count();
+    measured.extend([("best e".to_owned(), best_e(labels)?), ("asked".to_owned(), n_queries as f64)]);
+    let mut tables = vec![table(context, rows)];
+    tables.extend(context.published.map(of_others));
     if let Some((figure, of_classes)) = classified {
         figures.push(figure);
         tables.extend(of_classes);
@@ -75,51 +80,22 @@ pub(crate) fn retrieval(context: &Context<'_>) -> Result<Record> {
     Ok(Record { tables, figures, ..context.record(&[("description", &gallery.options)], measured) })
 }
 
-/// How scores are measured.
-fn protocol(context: &Context<'_>, labels: &Labels) -> String {
-    let options = &context.options;
-    let (n, n_classes) = (labels.n_points(), labels.classes().len());
-    let n_queries = (0..n).filter(|i| labels.is_query(*i)).count();
-    let BootstrapOptions { resamples, level, seed } = BootstrapOptions::default();
-    let left_out = match n > options.aligned {
-        true => format!(
-            " Methods that align the forms of all pairs are left out: {n} shapes are more than {}.",
-            options.aligned
-        ),
-        false => String::new(),
-    };
-    format!(
-        "{n} shapes in {n_classes} classes. Each shape is a query against all {} others, its own class included; {} shapes in \
-         classes of one or two are in the gallery but are no queries, so there are {n_queries} queries. Equal distances are \
-         ordered by the position of the shape in the collection. Scores are means over queries, macro scores over classes. \
-         Intervals cover {:.0} % of {resamples} bootstrap resamples of the queries within classes, seed {seed}. 1-NN over {} \
-         random splits, seed {}: mean and standard deviation over the splits; classes with no more shapes than are trained \
-         with take no part. k-NN: leave-one-out vote of {} neighbours. Least mAP: the lowest mAP when one class is left out \
-         of the collection. Plain: ranked by distance alone. Graph: ranked on the graph of nearest neighbours of the whole \
-         collection, without its classes.{left_out}",
-        n.saturating_sub(1),
-        n - n_queries,
-        100.0 * level,
-        options.splits,
-        context.seed,
-        options.voters
-    )
+/// The distances of aligned forms.
+fn aligned(context: &Context<'_>, shapes: &[Shape], normalization: Normalization) -> Result<DistanceMatrix> {
+    let forms: Vec<CanonicalForm> =
+        shapes.iter().map(|shape| DescribeOptions::default().form_of(shape)).collect::<Result<_, _>>()?;
+    Ok(form_alignments(&forms, normalization, context.observer)?.distances)
 }
 
-/// Every method with its distances between all pairs.
+/// Every method with its distances between all pairs; `form` holds those of aligned forms of unit area.
 fn distances(
     context: &Context<'_>,
     shapes: &[Shape],
+    form: Option<&DistanceMatrix>,
     counts_size: bool,
 ) -> Result<Vec<(String, DistanceMatrix)>> {
     let n = shapes.len();
     let all = |distance: &dyn Fn(usize, usize) -> f64| DistanceMatrix::from_pairs(n, distance);
-    let aligns = n <= context.options.aligned;
-    let aligned = |normalization| -> Result<DistanceMatrix> {
-        let forms: Vec<CanonicalForm> =
-            shapes.iter().map(|shape| DescribeOptions::default().form_of(shape)).collect::<Result<_, _>>()?;
-        Ok(form_alignments(&forms, normalization, context.observer)?.distances)
-    };
     let size_of = |i: usize| ShapeMetric::size_coordinate(shapes[i].entry.facts.area);
     let area = |shape: &Shape| Some(shape.entry.facts.area).filter(|_| counts_size);
     let fuse = |shape: &Shape| {
@@ -129,8 +105,7 @@ fn distances(
     let vectors: Vec<_> = shapes.iter().map(fuse).collect();
     let mut found = Vec::new();
     let mut add = |method: &str, distances| found.push((method.to_owned(), distances));
-    if aligns {
-        let form = aligned(Normalization::UnitArea)?;
+    if let Some(form) = form {
         let robust = |i: usize, j: usize| ShapeMetric::robust(&vectors[i], &vectors[j]);
         add(CLASSIFIER, all(&|i, j| ShapeMetric::combined(robust(i, j), form.get(i, j)))?);
         let sized =
@@ -149,8 +124,8 @@ fn distances(
             add(kind.name(), all(&|i, j| signatures[i].distance(&signatures[j]))?);
         }
     }
-    if counts_size && aligns {
-        add("forms in mesh units", aligned(Normalization::Raw)?);
+    if counts_size && form.is_some() {
+        add("forms in mesh units", aligned(context, shapes, Normalization::Raw)?);
     }
     Ok(found)
 }
@@ -205,26 +180,25 @@ fn rankings(
     Ok([plain, ranked("graph", &KeptRankings::new(&GraphRankings::new(distances)), None)?])
 }
 
-/// The table of all rankings, and published scores below them.
-fn table(context: &Context<'_>, labels: &Labels, mut rows: Vec<Vec<Cell>>) -> Result<Table> {
-    let training = &context.options.training;
-    let mut caption = format!("{} {}", protocol(context, labels), scores_caption(labels)?);
-    if let Some(Published { collection, method }) = context.published {
-        let line = |method: &PublishedMethod| {
-            let ranking = if method.uses_collection { "published, uses the collection" } else { "published" };
-            let mut row: Vec<Cell> = vec![method.name.as_str().into(), Cell::Missing, ranking.into()];
-            row.extend(method.scores().map(Cell::from));
-            row.extend((0..5 + training.len()).map(|_| Cell::Missing));
-            row
-        };
-        rows.extend(method.iter().map(line));
-        let sources: Vec<String> = method.iter().map(|m| format!("{}: {}", m.name, m.source)).collect();
-        caption += &format!(" Published scores are on {collection}. {}.", sources.join("; "));
-    }
-    let splits: Vec<String> = training.iter().map(|n| format!("1-NN, {n} a class")).collect();
+/// The table of all rankings.
+fn table(context: &Context<'_>, rows: Vec<Vec<Cell>>) -> Table {
+    let splits = context.options.training.iter().map(|n| format!("1-NN, {n} a class"));
+    let splits: Vec<String> = splits.collect();
     let headings = ["method", "size", "ranking"].into_iter().chain(SCORES);
     let headings = headings.chain(["mAP interval", "macro NN", "macro mAP", "k-NN", "least mAP"]);
-    Ok(Table::new(caption, headings.chain(splits.iter().map(String::as_str)), rows))
+    Table::new("", headings.chain(splits.iter().map(String::as_str)), rows)
+}
+
+/// Published scores, to compare them.
+fn of_others(published: &Published) -> Table {
+    let line = |method: &PublishedMethod| {
+        let uses = if method.uses_collection { "yes" } else { "no" };
+        let texts = [method.name.as_str(), uses, &method.source].map(Cell::from);
+        texts.into_iter().chain(method.scores().map(Cell::from)).collect()
+    };
+    let headings = ["method", "uses the collection", "source"].into_iter().chain(SCORES);
+    let caption = format!("Published scores on {}.", published.collection);
+    Table::new(caption, headings, published.method.iter().map(line).collect())
 }
 
 /// The classification of every shape by the others, and the error rates for unknown shapes.
