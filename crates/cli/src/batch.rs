@@ -45,6 +45,9 @@ pub(crate) struct Results<'a> {
     pub(crate) in_parallel: bool,
 }
 
+/// A mesh and what was made of it.
+type Made<T> = (ShapeFile, T);
+
 impl Results<'_> {
     /// Makes `FOLDER/NAME.EXTENSION` of every mesh. Failures are printed at the end and do not stop the rest.
     ///
@@ -54,7 +57,7 @@ impl Results<'_> {
         &self,
         common: &Common,
         one: impl Fn(&ShapeFile, &Path) -> Result<T> + Sync,
-    ) -> Result<(Vec<(ShapeFile, T)>, Vec<Failure>)> {
+    ) -> Result<(Vec<Made<T>>, Vec<Failure>)> {
         if is_stream(self.folder) {
             bail!("several {} cannot go to standard output; name a folder for them", self.what);
         }

@@ -1,5 +1,7 @@
 //! The relation of two meshes.
 
+use std::ops::ControlFlow::{self, Break, Continue};
+
 use descriptors::Side;
 use rigid::{Alignment, Similarity, align_surfaces, is_symmetric};
 
@@ -36,31 +38,36 @@ impl Relation {
     /// ```
     #[must_use]
     pub fn by_meshes(self, meshes: [&MeshGeometry; 2]) -> Self {
-        self.with_shared(meshes).unwrap_or_else(|found| found.with_differences(meshes))
+        match self.with_shared(meshes) {
+            Break(found) => found,
+            Continue(found) => found.with_differences(meshes),
+        }
     }
 
     /// The relation once both meshes are known, if all that matters is whether one is the other or has it as a component: pieces and
     /// variants are not sought.
     #[must_use]
     pub fn by_surfaces(self, meshes: [&MeshGeometry; 2]) -> Self {
-        self.with_shared(meshes).unwrap_or_else(|found| found)
+        match self.with_shared(meshes) {
+            Break(found) | Continue(found) => found,
+        }
     }
 
-    /// The relation of meshes that are one surface, or of which one is a component of the other; else what else is known of them.
-    fn with_shared(self, [a, b]: [&MeshGeometry; 2]) -> Result<Self, Self> {
+    /// The relation, if the meshes are one surface, or one is a component of the other; else the search for it goes on.
+    fn with_shared(self, [a, b]: [&MeshGeometry; 2]) -> ControlFlow<Self, Self> {
         let [known_a, known_b] = self.evidence.content;
         let mut found = self.by_files([a.content.or(known_a), b.content.or(known_b)]);
         found.evidence.vertices = Some([a.n_vertices(), b.n_vertices()]);
         found.evidence.faces = Some([a.n_faces(), b.n_faces()]);
         found.evidence.components = Some([a.n_components(), b.n_components()]);
         if found.kind == RelationKind::IdenticalFile {
-            return Ok(found);
+            return Break(found);
         }
         found.evidence.basis = Basis::Meshes;
         // Other faces between the same vertices may be another surface.
         if let Some(same) = same_vertices(a, b).filter(|same| same.same_faces || is_one_surface(same, [a, b]))
         {
-            return Ok(found.with_same_vertices(&same, [a, b]));
+            return Break(found.with_same_vertices(&same, [a, b]));
         }
         let sides = [(Side::Second, a, b), (Side::First, b, a)];
         let copies = sides.into_iter().find_map(|(whole, mesh, of)| {
@@ -68,7 +75,7 @@ impl Relation {
             Some((Parts { whole, found, components: of.parts().len() }, copy))
         });
         match copies {
-            Some((parts, copy)) => Ok(found.with_parts(parts, copy)),
+            Some((parts, copy)) => Break(found.with_parts(parts, copy)),
             None => found.with_surfaces([a, b]),
         }
     }
@@ -132,14 +139,14 @@ impl Relation {
     }
 
     /// Of meshes with different vertices that are one surface; else with how far their surfaces are apart.
-    fn with_surfaces(mut self, [a, b]: [&MeshGeometry; 2]) -> Result<Self, Self> {
-        let Some(aligned) = align_surfaces(&a.surface, &b.surface) else { return Err(self) };
+    fn with_surfaces(mut self, [a, b]: [&MeshGeometry; 2]) -> ControlFlow<Self, Self> {
+        let Some(aligned) = align_surfaces(&a.surface, &b.surface) else { return Continue(self) };
         let Alignment { map, gap } = aligned;
         let change = mesh_change([a, b], &map);
         let [ratio, probability] = same_surface(&aligned, [a, b], change);
         (self.evidence.surface_gap, self.evidence.gap_ratio) = (Some(gap), Some(ratio));
         if probability < 0.5 || change == Change::Posed {
-            return Err(self);
+            return Continue(self);
         }
         let scale = map.scale * b.size() / a.size();
         let mut changes = Change::of_similarity(scale, SIZE_OF_SURFACES, map.reflected);
@@ -153,7 +160,7 @@ impl Relation {
         if change != Change::Noisy && is_noisier {
             changes.push(Change::Noisy);
         }
-        Ok(self.found(kind, probability, changes, scale, SIZE_OF_SURFACES))
+        Break(self.found(kind, probability, changes, scale, SIZE_OF_SURFACES))
     }
 
     /// Of meshes that are not one surface. Parts of machines do not bend, so they are variants of one part, or other parts.
