@@ -128,15 +128,25 @@ fn bodies(n_vertices: usize, poses: usize) -> Vec<(String, TriMesh)> {
         .collect()
 }
 
+fn check_every_change(n_vertices: usize, poses: usize) {
+    println!("{n_vertices} vertices");
+    for (label, score) in scores(&bodies(n_vertices, poses), &[&VARIANTS[..], &MORE].concat()) {
+        assert_eq!(score.falsely_identical, 0, "{label}");
+        assert_eq!(score.right, score.all, "{n_vertices} vertices, {label}: {:?}", score.wrong);
+    }
+}
+
 #[test]
 fn every_change_of_a_built_in_shape_is_told() {
-    for (n_vertices, poses) in [(1000, 2), (3400, 2), (10_000, 1)] {
-        println!("{n_vertices} vertices");
-        for (label, score) in scores(&bodies(n_vertices, poses), &[&VARIANTS[..], &MORE].concat()) {
-            assert_eq!(score.falsely_identical, 0, "{label}");
-            assert_eq!(score.right, score.all, "{n_vertices} vertices, {label}: {:?}", score.wrong);
-        }
-    }
+    check_every_change(1000, 2);
+    check_every_change(3400, 1);
+}
+
+#[test]
+#[ignore = "slow: make test-all"]
+fn every_change_of_a_finer_built_in_shape_is_told() {
+    check_every_change(3400, 2);
+    check_every_change(10_000, 1);
 }
 
 /// What is said of parts with noise, on their own faces and on new ones: how many are noisy or the same of all, and those that are
