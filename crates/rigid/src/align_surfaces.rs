@@ -3,13 +3,13 @@
 use crate::align_points::{Reflections, align_points};
 use crate::handedness::is_decisive;
 use crate::icp::{Alignment, Effort, Gap, Towards, contacts, refine};
-use crate::rigid_surface::RigidSurface;
+use crate::rigid_surface::{RigidSurface, rms_radius};
 use crate::similarity::Similarity;
 use crate::starts::{equal_axes, framed_starts, mirrors, turned_starts};
 
 /// Surfaces of one size whose deviations along a principal axis differ by more than this share of their rms radius are not
 /// aligned: they are farther apart than any copy of a surface (`cargo test -p tests --test laws matches`).
-const MAX_DEVIATION: f64 = 0.05;
+pub const MAX_DEVIATION: f64 = 0.05;
 
 /// A limit of effort.
 const FINE: Effort = Effort { samples: 400, steps: 30, towards: Towards::Planes };
@@ -37,11 +37,17 @@ const RANKED: usize = 4;
 /// unless the best is better by it. A safety limit: it saves time.
 const REFINE_WITHIN: f64 = 1.6;
 
-/// Aligns two surfaces in space; `None` if they are too far apart to be one surface, by their extents or by a few points. The map takes the first surface, at
-/// unit area, onto the second, at unit area: with a reflection only if the surfaces fit decisively better.
+/// The largest difference of the deviations of two surfaces along their principal axes, each as a share of its rms radius.
+pub fn axis_deviation(a: [f64; 3], b: [f64; 3]) -> f64 {
+    let [a, b] = [a, b].map(|axis_std| axis_std.map(|x| x / rms_radius(axis_std)));
+    a.iter().zip(&b).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
+}
+
+/// Aligns two surfaces in space; `None` if they are too far apart to be one surface, by their extents or by a few points. The map
+/// takes the first surface, at unit area, onto the second, at unit area: with a reflection only if the surfaces fit decisively
+/// better.
 pub fn align_surfaces(a: &RigidSurface, b: &RigidSurface) -> Option<Alignment> {
-    let [axes_a, axes_b] = [a, b].map(|surface| surface.axis_std().map(|x| x / surface.rms_radius()));
-    if axes_a.iter().zip(&axes_b).any(|(x, y)| (x - y).abs() > MAX_DEVIATION) {
+    if axis_deviation(a.axis_std(), b.axis_std()) > MAX_DEVIATION {
         return None;
     }
     let start = |by| Some(align_points(a.points()?, b.points()?, by));

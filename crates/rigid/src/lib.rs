@@ -21,12 +21,12 @@ mod starts;
 mod triangles;
 
 pub use align_points::{Reflections, align_near_points, align_points, alignments};
-pub use align_surfaces::{align_surfaces, is_symmetric};
+pub use align_surfaces::{MAX_DEVIATION, align_surfaces, axis_deviation, is_symmetric};
 pub use farthest_points::{FarthestPoints, farthest_points, farthest_points_by};
 pub use handedness::{Handedness, OrientedPoints};
 pub use icp::{Alignment, Gap};
 pub use nearest::{NearestPoints, NoExtent};
 pub use point_set::PointSet;
-pub use rigid_surface::RigidSurface;
+pub use rigid_surface::{RigidSurface, rms_radius};
 pub use similarity::{Similarity, nearest_rotation};
 pub use triangles::{NearestOnSurface, TriangleTree};

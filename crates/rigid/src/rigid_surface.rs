@@ -70,7 +70,7 @@ impl RigidSurface {
 
     /// Root mean square distance of the surface from its centroid, at unit area. Noise changes it less than the size.
     pub(crate) fn rms_radius(&self) -> f64 {
-        self.axis_std.iter().map(|x| x * x).sum::<f64>().sqrt()
+        rms_radius(self.axis_std)
     }
 
     /// The tree that finds nearest points.
@@ -103,6 +103,11 @@ impl RigidSurface {
     pub fn is_mechanical(&self) -> bool {
         self.regions().is_mechanical
     }
+}
+
+/// The root mean square distance of a surface from its centroid, from those along its principal axes.
+pub fn rms_radius(axis_std: [f64; 3]) -> f64 {
+    axis_std.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 impl Body for RigidSurface {

@@ -1,12 +1,10 @@
 //! Numbers of a surface that tell cheaply that two surfaces are not one.
 
+use rigid::{MAX_DEVIATION, axis_deviation, rms_radius};
+
 use super::calibration::{ARCS, EXACT, MOST_NOISE};
 use super::geometry::MeshGeometry;
 use super::same_surface::{allowed_in_bodies, euler_characteristic_if_closed, rms_chord_error};
-
-/// Spreads of organic copies, as shares of the rms radius, differ by less than this, by decimation, noise and holes. A safety limit:
-/// it saves time.
-const MOST_OF_BODIES: f64 = 0.05;
 
 /// Spreads of closed bodies differ by less than this multiple of what copies may be apart, both as shares of the rms radius: each
 /// of the two by once of it at most (Minkowski), and as much again for the area that decimation takes from thin limbs.
@@ -43,37 +41,32 @@ pub struct SurfaceInvariants {
 impl SurfaceInvariants {
     /// Whether two surfaces may be one. If not, no alignment need be tried.
     pub fn may_be_copy_of(&self, other: &Self) -> bool {
-        let largest =
-            |a: [f64; 3], b: [f64; 3]| a.iter().zip(&b).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
         if !(self.is_mechanical && other.is_mechanical) {
-            let [a, b] = [self, other].map(|one| one.spreads.map(|spread| spread / one.rms_radius()));
-            return largest(a, b) < self.most_of_bodies(other);
+            return axis_deviation(self.spreads, other.spreads) < self.most_of_bodies(other);
         }
+        let spread = self.spreads.iter().zip(&other.spreads).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
         let flatness = if self.n_vertices == other.n_vertices { 0.0 } else { self.chords + other.chords };
         let most = EXACT + ARCS * flatness + self.noise + other.noise;
         let is_same_solid = match (self.closed, other.closed) {
             (Some((x, handles)), Some((y, others))) => handles == others && (x - y).abs() < most,
             _ => true,
         };
-        largest(self.spreads, other.spreads) < most && is_same_solid
-    }
-
-    fn rms_radius(&self) -> f64 {
-        self.spreads.iter().map(|x| x * x).sum::<f64>().sqrt()
+        spread < most && is_same_solid
     }
 
     /// How much the spreads of copies of a body may differ, as a share of the rms radius.
     fn most_of_bodies(&self, other: &Self) -> f64 {
         // A hole takes what was there from the spreads.
         if self.closed.is_none() || other.closed.is_none() {
-            return MOST_OF_BODIES;
+            return MAX_DEVIATION;
         }
         // Of the same faces, noise may be the only change.
         let allowed = match self.n_vertices == other.n_vertices {
             true => MOST_NOISE,
             false => allowed_in_bodies(self.chords + other.chords, self.is_noisy || other.is_noisy),
         };
-        MOST_OF_BODIES.min(SPREAD_BY_GAP * allowed / self.rms_radius().min(other.rms_radius()))
+        let radius = rms_radius(self.spreads).min(rms_radius(other.spreads));
+        MAX_DEVIATION.min(SPREAD_BY_GAP * allowed / radius)
     }
 }
 
