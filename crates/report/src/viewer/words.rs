@@ -14,27 +14,23 @@ pub(super) trait Words: Sized {
     fn from_words(words: &[[u8; 4]]) -> Option<Self>;
 }
 
-impl Words for Vec<[f32; 3]> {
-    fn to_bytes(&self) -> Option<Vec<u8>> {
-        Some(self.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect())
-    }
+macro_rules! words_of_triples {
+    ($($number:ty),+) => {$(
+        impl Words for Vec<[$number; 3]> {
+            fn to_bytes(&self) -> Option<Vec<u8>> {
+                Some(self.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect())
+            }
 
-    fn from_words(words: &[[u8; 4]]) -> Option<Self> {
-        let (triples, rest) = words.as_chunks();
-        rest.is_empty().then(|| triples.iter().map(|triple| triple.map(f32::from_le_bytes)).collect())
-    }
+            fn from_words(words: &[[u8; 4]]) -> Option<Self> {
+                let (triples, rest) = words.as_chunks();
+                rest.is_empty()
+                    .then(|| triples.iter().map(|triple| triple.map(<$number>::from_le_bytes)).collect())
+            }
+        }
+    )+};
 }
 
-impl Words for Vec<[u32; 3]> {
-    fn to_bytes(&self) -> Option<Vec<u8>> {
-        Some(self.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect())
-    }
-
-    fn from_words(words: &[[u8; 4]]) -> Option<Self> {
-        let (triples, rest) = words.as_chunks();
-        rest.is_empty().then(|| triples.iter().map(|triple| triple.map(u32::from_le_bytes)).collect())
-    }
-}
+words_of_triples!(f32, u32);
 
 impl Words for Option<Vec<f32>> {
     fn to_bytes(&self) -> Option<Vec<u8>> {
