@@ -1,69 +1,100 @@
-//! An interrupted run keeps what is finished, and a later one continues it.
+//! Interrupted and killed runs: what is finished stays, results are whole or absent, and a later run continues.
 
-use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::fs;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-fn command(folder: &Path, more: &[&str]) -> Command {
+/// Names of experiments and options; the first experiment takes seconds, `scaling` takes minutes.
+fn run(folder: &Path, more: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_experiments"));
-    command.args(["run", "figure1", "scaling", "--vertices", "1000", "--quiet", "--output"]).arg(folder);
-    command.args(more);
+    command.args(["run", "figure5a", "--families", "creatures:1x2", "--vertices", "1000", "--quiet"]);
+    command.args(more).arg("--output").arg(folder).stdout(Stdio::null()).stderr(Stdio::piped());
     command
 }
 
-/// Interrupts a run once it has written a file.
-fn interrupted_after(mut run: Child, file: &Path) -> Output {
-    let start = Instant::now();
-    while !file.exists() {
-        assert!(start.elapsed() < Duration::from_secs(300), "{} does not appear", file.display());
-        assert!(run.try_wait().unwrap().is_none(), "the run ended");
-        std::thread::sleep(Duration::from_millis(50));
-    }
-    // The record of the first experiment is the last of its files.
-    std::thread::sleep(Duration::from_millis(200));
-    interrupted(run)
-}
-
-fn interrupted(run: Child) -> Output {
+/// Runs a command until a condition holds, and interrupts it.
+#[cfg(unix)]
+fn interrupted(mut command: Command, is_time: impl FnOnce(&mut std::process::Child)) -> Output {
+    let mut run = command.spawn().unwrap();
+    is_time(&mut run);
+    assert!(run.try_wait().unwrap().is_none(), "the run ended");
     assert!(Command::new("kill").args(["-INT", &run.id().to_string()]).status().unwrap().success());
     run.wait_with_output().unwrap()
 }
 
-/// What a run says in some seconds, after which it is interrupted.
-fn said_in(seconds: u64, folder: &Path, more: &[&str]) -> String {
-    let run = command(folder, more).stderr(Stdio::piped()).spawn().unwrap();
-    std::thread::sleep(Duration::from_secs(seconds));
-    String::from_utf8_lossy(&interrupted(run).stderr).into_owned()
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
 }
 
 #[cfg(unix)]
 #[test]
 fn an_interrupted_run_keeps_what_is_finished_and_can_be_continued() {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("interrupted");
-    let _ = std::fs::remove_dir_all(&folder);
-    let record = folder.join("figure1.json");
-    let run = command(&folder, &[]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    let output = interrupted_after(run, &record);
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path().join("out");
+    let record = folder.join("figure5a.json");
+    let output = interrupted(run(&folder, &["scaling"]), |run| {
+        let start = Instant::now();
+        while !record.exists() {
+            assert!(start.elapsed() < Duration::from_secs(300), "{} does not appear", record.display());
+            assert!(run.try_wait().unwrap().is_none(), "the run ended");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        // The record of the first experiment is the last of its files.
+        std::thread::sleep(Duration::from_millis(200));
+    });
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(130), "{said}");
-    assert!(
-        said.contains("finished: figure1")
-            && said.contains("run figure1 scaling")
-            && said.contains("--resume"),
-        "{said}"
-    );
-    let page = std::fs::read_to_string(folder.join("report.html")).unwrap();
-    assert!(page.contains("Not run: ") && page.contains("href=\"figure1-forms.svg\""));
-    let names = || std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name());
-    assert!(names().all(|name| !name.to_string_lossy().starts_with(".unfinished")));
+    for words in ["finished: figure5a", "run figure5a scaling", "--resume"] {
+        assert!(said.contains(words), "{said}");
+    }
+    let page = fs::read_to_string(folder.join("report.html")).unwrap();
+    assert!(page.contains("Not run: ") && page.contains("href=\"figure5a-curves.svg\""));
+    assert!(names(&folder).iter().all(|name| !name.starts_with(".unfinished")));
 
     // The second run keeps the first experiment: its record does not change.
-    let before = std::fs::metadata(&record).unwrap().modified().unwrap();
-    let said = said_in(2, &folder, &["--resume"]);
-    assert!(said.contains("figure1 is there already"), "{said}");
-    assert_eq!(std::fs::metadata(&record).unwrap().modified().unwrap(), before);
+    let before = fs::metadata(&record).unwrap().modified().unwrap();
+    let mut said = String::new();
+    interrupted(run(&folder, &["scaling", "--resume"]), |run| {
+        BufReader::new(run.stderr.take().unwrap()).read_line(&mut said).unwrap();
+    });
+    assert!(said.contains("figure5a is there already"), "{said}");
+    assert_eq!(fs::metadata(&record).unwrap().modified().unwrap(), before);
 
     // Other options make another record.
-    let said = said_in(1, &folder, &["--resume", "--seed", "1"]);
-    assert!(!said.contains("is there already"), "{said}");
+    let output = run(&folder, &["--resume", "--seed", "1"]).output().unwrap();
+    assert!(output.status.success() && !String::from_utf8_lossy(&output.stderr).contains("is there already"));
+    assert_ne!(fs::metadata(&record).unwrap().modified().unwrap(), before);
+}
+
+#[test]
+fn a_killed_run_leaves_whole_results_and_the_next_run_works() {
+    let kills: u32 = std::env::var("CANONFORM_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(12);
+    let kills = kills.div_ceil(24);
+    let place = tempfile::tempdir().unwrap();
+    let out = place.path().join("out");
+    let start = Instant::now();
+    assert!(run(&out, &[]).status().unwrap().success());
+    let usual = start.elapsed();
+    let whole = names(&out);
+    for turn in 0..kills {
+        fs::remove_dir_all(&out).unwrap();
+        let mut child = run(&out, &[]).spawn().unwrap();
+        std::thread::sleep(usual.mul_f64(f64::from(turn + 1) / f64::from(kills + 1)));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        if out.exists() {
+            for name in names(&out).iter().filter(|name| name.ends_with(".json") && !name.starts_with('.')) {
+                let text = fs::read(out.join(name)).unwrap();
+                assert!(serde_json::from_slice::<serde_json::Value>(&text).is_ok(), "{name}");
+            }
+        }
+        assert!(run(&out, &[]).status().unwrap().success());
+        assert_eq!(names(&out), whole);
+    }
 }

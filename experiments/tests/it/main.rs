@@ -1,10 +1,8 @@
-//! The program: its page in a browser (pictures go to `target/browser`), interruptions, kills, and the chapters of the guide.
+//! The program: its page in a browser (pictures go to `target/browser`), interruptions and kills, and the chapters of the guide.
 
 #[cfg(test)]
 mod guide;
 #[cfg(test)]
 mod interruption;
-#[cfg(test)]
-mod killed;
 #[cfg(test)]
 mod page;
