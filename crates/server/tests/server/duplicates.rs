@@ -8,14 +8,9 @@ use canonform::search::ShapeSearch;
 use canonform_server::ServeOptions;
 use serde_json::Value;
 
-use crate::client::{Answer, ask};
 use crate::running::options;
 use crate::schema::Description;
-use crate::support::{INDEX, Served};
-
-fn get(server: &Served, target: &str) -> Answer {
-    ask(server.address, "GET", target, &[], b"").unwrap()
-}
+use crate::support::{INDEX, Served, get};
 
 /// Asks until the search is done, or until a report is as it should be.
 fn report(server: &Served, is_wanted: impl Fn(&Value) -> bool) -> Value {

@@ -7,12 +7,12 @@ use canonform::mesh::shapes;
 use canonform_server::ServeOptions;
 use serde_json::Value;
 
-use crate::client::{ask, upload};
+use crate::client::upload;
 use crate::running::options;
-use crate::support::{INDEX, Served, written};
+use crate::support::{INDEX, Served, get, written};
 
 fn health(server: &Served) -> Value {
-    ask(server.address, "GET", "/healthz", &[], b"").unwrap().json()
+    get(server, "/healthz").json()
 }
 
 /// Waits until the health of the server satisfies a condition.
@@ -45,7 +45,7 @@ fn a_changed_index_is_opened_again() {
     fs::write(server.mesh("ring2"), &mesh).unwrap();
     // Searches go on while the index is replaced.
     std::thread::scope(|scope| {
-        let searches = scope.spawn(|| (0..20).for_each(|_| drop(find())));
+        let searches = scope.spawn(|| (0..5).for_each(|_| drop(find())));
         server.rebuild();
         searches.join().unwrap();
     });

@@ -11,6 +11,7 @@ use canonform::mesh::{TriMesh, shapes};
 use canonform_server::{ServeOptions, ServerError};
 use tempfile::TempDir;
 
+use crate::client::{Answer, ask};
 use crate::running::Running;
 
 /// Name of the index in its folder.
@@ -134,6 +135,11 @@ impl Served {
     pub(crate) fn join(&mut self) -> Result<(), ServerError> {
         self.running.join().unwrap().unwrap()
     }
+}
+
+/// Asks for an address of a server.
+pub(crate) fn get(server: &Running, target: &str) -> Answer {
+    ask(server.address, "GET", target, &[], b"").unwrap()
 }
 
 /// The bytes of a mesh in the format of this name.

@@ -49,76 +49,72 @@ fn groups_are_compared_and_marked() {
     let folder = tempfile::tempdir().unwrap();
     index(folder.path());
     let path = folder.path().join("all.canonform");
-    for width in [1280, 360] {
-        let Some(page) = Page::of(&path, [width, 800], options()) else { return };
-        page.go("/");
-        page.wait_for("document.querySelectorAll('#shapes .tile').length === 6");
-        page.browser.click("nav a[href='/duplicates']").unwrap();
-        page.wait_for(READY);
-        assert_eq!(page.address(), "/duplicates");
-        assert!(
-            page.text("#told").starts_with("3 of 6 shapes can be spared: 2 groups of files of one shape")
-        );
-        page.picture("body", &format!("duplicates-{width}"));
-        let sizes =
-            "[...document.querySelectorAll('.group')].map(group => group.querySelectorAll('.tile').length)";
-        assert_eq!(page.eval(sizes), json!([3, 2]));
+    let Some(page) = Page::of(&path, [1280, 800], options()) else { return };
+    page.go("/");
+    page.wait_for("document.querySelectorAll('#shapes .tile').length === 6");
+    page.browser.click("nav a[href='/duplicates']").unwrap();
+    page.wait_for(READY);
+    assert_eq!(page.address(), "/duplicates");
+    assert!(page.text("#told").starts_with("3 of 6 shapes can be spared: 2 groups of files of one shape"));
+    page.picture("body", "duplicates-1280");
+    let sizes =
+        "[...document.querySelectorAll('.group')].map(group => group.querySelectorAll('.tile').length)";
+    assert_eq!(page.eval(sizes), json!([3, 2]));
 
-        let keepers = "[...document.querySelectorAll('.group')].map(group => group.dataset.id)";
-        let found = page.eval(keepers);
-        page.browser
+    let keepers = "[...document.querySelectorAll('.group')].map(group => group.dataset.id)";
+    let found = page.eval(keepers);
+    page.browser
             .eval("document.querySelector('#sort').value = 'name'; document.querySelector('#sort').dispatchEvent(new Event('change'))")
             .unwrap();
-        let mut names: Vec<String> = serde_json::from_value(found).unwrap();
-        names.sort();
-        assert_eq!(page.eval(keepers), json!(names));
-        page.browser.click("#fold").unwrap();
-        let open = "document.querySelectorAll('.group > [open]').length";
-        assert_eq!(page.eval(open), 0);
-        page.browser.click("#fold").unwrap();
-        assert_eq!(page.eval(open), 2);
+    let mut names: Vec<String> = serde_json::from_value(found).unwrap();
+    names.sort();
+    assert_eq!(page.eval(keepers), json!(names));
+    page.browser.click("#fold").unwrap();
+    let open = "document.querySelectorAll('.group > [open]').length";
+    assert_eq!(page.eval(open), 0);
+    page.browser.click("#fold").unwrap();
+    assert_eq!(page.eval(open), 2);
 
-        // Every control is reached by Tab; Enter on a file shows it beside the one to keep.
-        let reached = page.eval(
+    // Every control is reached by Tab; Enter on a file shows it beside the one to keep.
+    let reached = page.eval(
             "[...document.querySelectorAll('a, button, input, select')].filter(e => e.getClientRects().length > 0 && !e.disabled) \
              .every(e => { e.focus({ preventScroll: true }); return document.activeElement === e && e.tabIndex === 0; })",
         );
-        assert_eq!(reached, true);
-        page.browser.type_into(".tile[data-id='finer cat']", "\u{e007}").unwrap();
-        page.overlaid("finer cat");
-        assert_eq!(page.address(), "/duplicates?a=cat&b=finer+cat");
-        page.browser.eval("location.reload()").unwrap();
-        page.wait_for(READY);
-        page.overlaid("finer cat");
-        for view in ["overlay-view", "overlay-second"] {
-            page.wait_for(&format!("document.querySelector('#{view}').dataset.state === 'ready'"));
-        }
-        assert_eq!(page.eval("document.querySelector('#overlay').dataset.shown"), "meshes");
-        assert_eq!(page.eval("document.querySelector('#overlay').closest('.group').dataset.id"), "cat");
-        page.picture("#overlay", &format!("duplicates-{width}-compared"));
-        page.browser.click("#close-hit").unwrap();
-        page.wait_for("document.querySelector('#overlay').hidden");
-
-        // A group keeps one file at least, and marks stay.
-        for id in ["cat", "finer cat"] {
-            page.browser.click(&format!("[aria-label='Spare {id}']")).unwrap();
-        }
-        assert!(
-            page.text("#marked").contains("Of 1 group nothing would be left: cat."),
-            "{}",
-            page.text("#marked")
-        );
-        page.browser.click("[aria-label='Spare cat']").unwrap();
-        page.browser.click("#suggest").unwrap();
-        page.browser.eval("location.reload()").unwrap();
-        page.wait_for(READY);
-        assert!(page.text("#marked").starts_with("3 files marked as spare"), "{}", page.text("#marked"));
-        page.picture("#tools", &format!("duplicates-{width}-marked"));
-        let table = downloaded(&page, "#as-csv");
-        assert_eq!((table.lines().count(), table.matches(",spare,").count()), (6, 3), "{table}");
-        assert_eq!(page.eval("document.querySelectorAll('img[src=\"x\"]').length"), 0);
-        page.assert_sound();
-        page.browser.click("#clear").unwrap();
-        assert!(page.text("#marked").starts_with("0 files marked"));
+    assert_eq!(reached, true);
+    page.browser.type_into(".tile[data-id='finer cat']", "\u{e007}").unwrap();
+    page.overlaid("finer cat");
+    assert_eq!(page.address(), "/duplicates?a=cat&b=finer+cat");
+    page.browser.eval("location.reload()").unwrap();
+    page.wait_for(READY);
+    page.overlaid("finer cat");
+    for view in ["overlay-view", "overlay-second"] {
+        page.wait_for(&format!("document.querySelector('#{view}').dataset.state === 'ready'"));
     }
+    assert_eq!(page.eval("document.querySelector('#overlay').dataset.shown"), "meshes");
+    assert_eq!(page.eval("document.querySelector('#overlay').closest('.group').dataset.id"), "cat");
+    page.browser.click("#close-hit").unwrap();
+    page.wait_for("document.querySelector('#overlay').hidden");
+
+    // A group keeps one file at least, and marks stay.
+    for id in ["cat", "finer cat"] {
+        page.browser.click(&format!("[aria-label='Spare {id}']")).unwrap();
+    }
+    assert!(
+        page.text("#marked").contains("Of 1 group nothing would be left: cat."),
+        "{}",
+        page.text("#marked")
+    );
+    page.browser.click("[aria-label='Spare cat']").unwrap();
+    page.browser.click("#suggest").unwrap();
+    page.browser.eval("location.reload()").unwrap();
+    page.wait_for(READY);
+    assert!(page.text("#marked").starts_with("3 files marked as spare"), "{}", page.text("#marked"));
+    let table = downloaded(&page, "#as-csv");
+    assert_eq!((table.lines().count(), table.matches(",spare,").count()), (6, 3), "{table}");
+    assert_eq!(page.eval("document.querySelectorAll('img[src=\"x\"]').length"), 0);
+    page.assert_sound();
+    page.browser.click("#clear").unwrap();
+    assert!(page.text("#marked").starts_with("0 files marked"));
+    page.browser.resize(360, 800).unwrap();
+    page.assert_sound();
 }

@@ -142,34 +142,6 @@ fn every_order_that_is_offered_can_be_had() {
 }
 
 #[test]
-fn a_gap_of_rounding_is_none_in_words_and_in_colours() {
-    let Some(page) = Page::open(1280, 900) else { return };
-    let gap = |of_rounding: f64| {
-        let found = page.eval(&format!(
-            "(async () => {{
-                 const {{ gapOf }} = await import('/assets/comparison.js');
-                 const mesh = await (await fetch('/api/shapes/cat0/mesh')).json();
-                 const {{ scale }} = gapOf([mesh], {{ max: 0 }});
-                 const gap = gapOf([mesh], {{ max: {of_rounding} * scale }});
-                 return [scale, gap.largest / scale, gap.scale / scale];
-             }})()"
-        ));
-        [0, 1, 2].map(|i| found[i].as_f64().unwrap())
-    };
-    let [rounding, largest, scale] = gap(0.9);
-    assert_eq!([largest, scale], [0.0, 1.0]);
-    let [_, largest, scale] = gap(1.5);
-    assert!((largest - 1.5).abs() < 1e-9 && (scale - 1.5).abs() < 1e-9, "{largest}, {scale}");
-    let mesh = super::support::body(Family::Cat, 0).mesh;
-    let extent = |axis: usize| {
-        let of_axis = || mesh.positions.iter().map(|p| p[axis]);
-        of_axis().fold(f64::MIN, f64::max) - of_axis().fold(f64::MAX, f64::min)
-    };
-    let extent = (0..3).map(extent).fold(0.0, f64::max);
-    assert!((rounding / extent / 1e-5 - 1.0).abs() < 1e-3, "{rounding} of {extent}");
-}
-
-#[test]
 #[ignore = "slow: make test-all"]
 fn an_upload_has_an_address_until_it_expires() {
     let lifetime = Duration::from_secs(20);
