@@ -1,17 +1,17 @@
 //! Killed programs, and full disks.
 
-use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use canonform::index::{Index, log_path};
 
+use crate::hostile::tree;
 use crate::index::body;
 use crate::support::{Workplace, program};
 
-const SHAPES: usize = 20;
+const SHAPES: usize = 12;
 
 fn collection() -> Workplace {
     let place = Workplace::new();
@@ -57,23 +57,6 @@ fn kill_after(place: &Workplace, arguments: &[&str], time: Duration) -> bool {
     !child.wait().unwrap().success()
 }
 
-/// Every file in a folder and its sub-folders.
-fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut found = BTreeMap::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(current) = folders.pop() {
-        for entry in fs::read_dir(&current).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else {
-                found.insert(path.strip_prefix(folder).unwrap().to_owned(), fs::read(&path).unwrap());
-            }
-        }
-    }
-    found
-}
-
 fn is_leftover(path: &Path) -> bool {
     path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(".unfinished-"))
 }
@@ -102,17 +85,17 @@ fn killed_commands_leave_whole_files_and_the_next_run_tidies_up() {
         let start = Instant::now();
         place.done(command);
         let usual = start.elapsed();
-        let whole = contents(&out);
+        let whole = tree(&out);
         assert!(!whole.is_empty(), "{command:?}");
         for turn in 0..turns {
             fs::remove_dir_all(&out).unwrap();
             fs::create_dir(&out).unwrap();
             kill_after(&place, command, usual.mul_f64(f64::from(turn + 1) / f64::from(turns + 1)));
-            for (path, bytes) in contents(&out) {
+            for (path, bytes) in tree(&out) {
                 assert!(is_leftover(&path) || whole.get(&path) == Some(&bytes), "{command:?}: {path:?}");
             }
             place.done(command);
-            assert!(contents(&out) == whole, "{command:?}: {:?}", contents(&out).keys());
+            assert!(tree(&out) == whole, "{command:?}: {:?}", tree(&out).keys());
         }
         fs::remove_dir_all(&out).unwrap();
     }
@@ -212,7 +195,7 @@ fn a_full_disk_is_reported_and_the_old_index_stays() {
     place.add("meshes/t1.off", &body(1, 40));
     let size = fs::metadata(place.path("whole")).unwrap().len() as usize / 512;
     let mut failures = 0;
-    for blocks in [1, 20, 70, size / 4, size / 2, size - 20] {
+    for blocks in [1, 70, size / 2, size - 20] {
         let (code, err) = run_limited(&place, blocks, &build("whole"));
         // What is committed may stay in the log, if only the file itself cannot grow.
         if code != Some(0) {
@@ -268,7 +251,7 @@ fn a_failing_fsync_loses_nothing() {
     let after = export();
     assert_ne!(before, after);
     let mut failures = 0;
-    for (at, goes_on) in (1..12).flat_map(|at| [(at, false), (at, true)]) {
+    for (at, goes_on) in (1..12).map(|at| (at, at % 2 == 0)) {
         renew();
         let mut command = Command::new(program());
         command.args(build("all")).current_dir(place.path("")).env("LD_PRELOAD", &library);
@@ -288,5 +271,5 @@ fn a_failing_fsync_loses_nothing() {
         place.done(&build("all"));
         assert_eq!(export(), after, "{at}");
     }
-    assert!(failures > 4, "{failures}");
+    assert!(failures > 2, "{failures}");
 }

@@ -39,7 +39,7 @@ pub(super) fn ball() -> TriMesh {
 }
 
 /// A mesh as text, also with coordinates that our writer refuses.
-pub(super) fn off(mesh: &TriMesh) -> Vec<u8> {
+pub(crate) fn off(mesh: &TriMesh) -> Vec<u8> {
     let mut text = format!("OFF\n{} {} 0\n", mesh.n_vertices(), mesh.n_faces());
     for p in &mesh.positions {
         text += &format!("{:?} {:?} {:?}\n", p.x, p.y, p.z);

@@ -4,6 +4,7 @@
 
 mod defects;
 mod file;
+pub(crate) use file::off;
 mod files;
 mod numbers;
 
