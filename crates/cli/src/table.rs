@@ -46,25 +46,8 @@ impl Table {
 
     /// The rows below one of names. Blanks separate numbers, too.
     pub(crate) fn of_text(table: &TextTable) -> Result<Self> {
-        let (mut n_columns, mut numbers, mut lines) = (None, Vec::new(), Vec::new());
-        for row in table.body()? {
-            let before = numbers.len();
-            let words = row.cells().flat_map(|cell| {
-                cell.split([' ', '\t']).filter(move |word| !word.is_empty() || cell.is_empty())
-            });
-            for word in words {
-                let number = row.number(word).ok_or_else(|| row.fault(format!("`{word}` is not a number")));
-                numbers.push(number?);
-            }
-            let (found, expected) = (numbers.len() - before, *n_columns.get_or_insert(numbers.len()));
-            if found != expected {
-                let fault = format!("found {found} values instead of {expected}; give as many in every line");
-                return Err(row.fault(fault).into());
-            }
-            lines.push(row.line);
-        }
-        let (n_columns, numbers) = (n_columns.unwrap_or(1), Numbers::Real(numbers));
-        Ok(Self { n_columns, numbers, lines })
+        let (n_columns, numbers, lines) = table.numbers()?;
+        Ok(Self { n_columns, numbers: Numbers::Real(numbers), lines })
     }
 
     fn of_array(path: &Path) -> Result<Self> {

@@ -19,7 +19,7 @@ const SEPARATORS: [u8; 3] = *b"\t;,";
 /// use canonform_collection::TextTable;
 ///
 /// let table = TextTable::parse("width;height\n1,5;2\n".into(), Path::new("sizes.csv"))?;
-/// assert_eq!(table.numbers()?, (2, vec![1.5, 2.0]));
+/// assert_eq!(table.numbers()?, (2, vec![1.5, 2.0], vec![2]));
 /// # Ok::<(), canonform_collection::CollectionError>(())
 /// ```
 #[derive(Debug)]
@@ -88,7 +88,7 @@ impl TextTable {
     ///
     /// # Errors
     /// [`CollectionError::BadLine`] if there are names only.
-    pub fn body(&self) -> Result<impl Iterator<Item = Row<'_>>, CollectionError> {
+    fn body(&self) -> Result<impl Iterator<Item = Row<'_>>, CollectionError> {
         let mut rows = self.rows().peekable();
         let names = rows.next_if(Row::is_names);
         match (names, rows.peek()) {
@@ -97,27 +97,30 @@ impl TextTable {
         }
     }
 
-    /// The number of columns, and all numbers, row by row. A row of names above them is left out.
+    /// The number of columns, all numbers, row by row, and the line of each row. A row of names above them is left out; blanks
+    /// separate numbers, too.
     ///
     /// # Errors
     /// [`CollectionError::BadLine`] if a cell is not a number or rows differ in length.
-    pub fn numbers(&self) -> Result<(usize, Vec<f64>), CollectionError> {
-        let (mut numbers, mut n_columns) = (Vec::new(), None);
+    pub fn numbers(&self) -> Result<(usize, Vec<f64>, Vec<usize>), CollectionError> {
+        let (mut n_columns, mut numbers, mut lines) = (None, Vec::new(), Vec::new());
         for row in self.body()? {
-            for cell in row.cells() {
-                let number =
-                    row.number(cell).ok_or_else(|| row.fault(format!("`{cell}` is not a number")))?;
-                numbers.push(number);
+            let before = numbers.len();
+            let words = row.cells().flat_map(|cell| {
+                cell.split([' ', '\t']).filter(move |word| !word.is_empty() || cell.is_empty())
+            });
+            for word in words {
+                let number = row.number(word).ok_or_else(|| row.fault(format!("`{word}` is not a number")));
+                numbers.push(number?);
             }
-            let expected = *n_columns.get_or_insert(row.n_cells());
-            if row.n_cells() != expected {
-                let found = row.n_cells();
-                return Err(row.fault(format!(
-                    "found {found} values instead of {expected}; give as many in every line"
-                )));
+            let (found, expected) = (numbers.len() - before, *n_columns.get_or_insert(numbers.len()));
+            if found != expected {
+                let fault = format!("found {found} values instead of {expected}; give as many in every line");
+                return Err(row.fault(fault));
             }
+            lines.push(row.line);
         }
-        Ok((n_columns.unwrap_or(0), numbers))
+        Ok((n_columns.unwrap_or(1), numbers, lines))
     }
 
     /// The error that something is wrong in a line.
@@ -236,7 +239,7 @@ mod tests {
         assert_eq!(cells("a \"big\" cat,cat"), [row(1, ["a \"big\" cat", "cat"])]);
         assert_eq!(
             table("x;y\n1,5;-2,25\n1e3;.5").unwrap().numbers().unwrap(),
-            (2, vec![1.5, -2.25, 1e3, 0.5])
+            (2, vec![1.5, -2.25, 1e3, 0.5], vec![2, 3])
         );
         // A comma in a table of tabs may separate thousands.
         for text in ["1,234\t5", "1.234,5;6", "1,2,3;4", "1;1.#QNAN"] {
@@ -251,7 +254,7 @@ mod tests {
             let found = table(text).unwrap().numbers();
             match text.contains("b 2") {
                 true => assert!(found.is_err(), "a row with a number has no names only"),
-                false => assert_eq!(found.unwrap(), (2, vec![1.0, 2.0]), "{text:?}"),
+                false => assert_eq!(found.unwrap().1, [1.0, 2.0], "{text:?}"),
             }
         }
         assert_eq!(table("inf,nan\n1,2").unwrap().numbers().unwrap().1.len(), 4);

@@ -257,19 +257,34 @@ impl Database {
     }
 
     /// Visits the rows of a query, up to the first error of `visit`.
-    pub(crate) fn each<T, E: From<IndexError>>(
+    pub(crate) fn each<T>(
         &self,
         sql: &str,
         values: impl Params,
         read: impl Fn(&rusqlite::Row<'_>) -> rusqlite::Result<T>,
-        mut visit: impl FnMut(T) -> Result<(), E>,
-    ) -> Result<(), E> {
+        mut visit: impl FnMut(T) -> Result<(), IndexError>,
+    ) -> Result<(), IndexError> {
         let mut statement = self.statement(sql)?;
         let mut rows = statement.query(values).map_err(|fault| self.fault(fault))?;
         while let Some(row) = rows.next().map_err(|fault| self.fault(fault))? {
             visit(read(row).map_err(|fault| self.fault(fault))?)?;
         }
         Ok(())
+    }
+
+    /// The rows of a query.
+    pub(crate) fn all<T>(
+        &self,
+        sql: &str,
+        values: impl Params,
+        read: impl Fn(&rusqlite::Row<'_>) -> rusqlite::Result<T>,
+    ) -> Result<Vec<T>, IndexError> {
+        let mut all = Vec::new();
+        self.each(sql, values, read, |row| {
+            all.push(row);
+            Ok(())
+        })?;
+        Ok(all)
     }
 
     pub(crate) fn fault(&self, fault: rusqlite::Error) -> IndexError {

@@ -132,18 +132,9 @@ impl Index {
 
     /// The classes and the number of shapes in each. Shapes without a class do not count.
     pub fn classes(&self) -> Result<BTreeMap<String, u64>, IndexError> {
-        let mut classes = BTreeMap::new();
         let sql = "SELECT label, count(*) FROM shapes WHERE label <> '' GROUP BY label";
-        self.database().each(
-            sql,
-            [],
-            |row| Ok((row.get(0)?, row.get(1)?)),
-            |(label, n)| {
-                classes.insert(label, n);
-                Ok::<_, IndexError>(())
-            },
-        )?;
-        Ok(classes)
+        let classes = self.database().all(sql, [], |row| Ok((row.get(0)?, row.get(1)?)))?;
+        Ok(classes.into_iter().collect())
     }
 
     /// Whether there is a shape of this name.
@@ -158,10 +149,8 @@ impl Index {
 
     /// The first shape, in ascending order of names, whose file has these bytes.
     pub fn entry_with(&self, content: &ContentHash) -> Result<Option<Entry>, IndexError> {
-        let mut found = None;
         let these = "WHERE content = ? ORDER BY id LIMIT 1";
-        each_row(&self.database(), these, [content.to_string()], |row| found = Some(row.entry))?;
-        Ok(found)
+        Ok(rows(&self.database(), these, [content.to_string()])?.pop().map(|row| row.entry))
     }
 
     /// A shape, or [`IndexError::NoSuchShape`].
@@ -174,8 +163,7 @@ impl Index {
     /// Calls `visit` with each shape in ascending order of names, up to its first error. Holds the entries of all shapes and the
     /// vectors of one in memory.
     pub fn each<E: From<IndexError>>(&self, mut visit: impl FnMut(Shape) -> Result<(), E>) -> Result<(), E> {
-        let mut rows = Vec::with_capacity(self.n_shapes.min(1 << 20));
-        each_row(&self.database(), "ORDER BY id", [], |row| rows.push(row))?;
+        let rows = rows(&self.database(), "ORDER BY id", [])?;
         self.expect_all(rows.len())?;
         for row in rows {
             let shape = shape_of(&self.database(), row)?;
@@ -193,20 +181,14 @@ impl Index {
 
     /// The vector of one name of a shape, such as a signature; `None` if the shape has none.
     pub fn vector(&self, id: &str, name: &str) -> Result<Option<Vec<f32>>, IndexError> {
-        let database = self.database();
-        let mut found = None;
         let sql = "SELECT id, name, vector, checksum FROM vectors WHERE id = ? AND name = ?";
-        each_vector(&database, sql, (id, name), |_, _, vector| {
-            found = Some(vector);
-            Ok(())
-        })?;
-        Ok(found)
+        Ok(some_vectors(&self.database(), sql, (id, name))?.pop().map(|(_, vector)| vector))
     }
 
     /// The names of shapes of several components, each with the fused vectors of its components but the largest.
     pub fn components(&self) -> Result<Vec<(String, Vec<f32>)>, IndexError> {
-        let mut all = Vec::new();
         let sql = "SELECT id, CAST(place AS TEXT), vector, checksum FROM components ORDER BY id, place";
+        let mut all = Vec::new();
         each_vector(&self.database(), sql, [], |id, _, vector| {
             all.push((id, vector));
             Ok(())
@@ -233,44 +215,28 @@ impl Index {
 
 /// The row of a shape, if it is there.
 pub(crate) fn find(database: &Database, id: &str) -> Result<Option<EntryRow>, IndexError> {
-    let mut found = None;
-    each_row(database, "WHERE id = ?", [id], |row| found = Some(row))?;
-    Ok(found)
+    Ok(rows(database, "WHERE id = ?", [id])?.pop())
 }
 
 /// All entries, in ascending order of names.
 pub(crate) fn entries(database: &Database) -> Result<Vec<Entry>, IndexError> {
-    let mut all = Vec::new();
-    each_row(database, "ORDER BY id", [], |row| all.push(row.entry))?;
-    Ok(all)
+    Ok(rows(database, "ORDER BY id", [])?.into_iter().map(|row| row.entry).collect())
 }
 
 /// The classes of all shapes, in ascending order of names: entries in full take five times as long to read.
 pub(crate) fn classes(database: &Database) -> Result<Vec<String>, IndexError> {
-    let mut all = Vec::new();
-    database.each(
-        "SELECT label FROM shapes ORDER BY id",
-        [],
-        |row| row.get(0),
-        |label| {
-            all.push(label);
-            Ok(())
-        },
-    )?;
-    Ok(all)
+    database.all("SELECT label FROM shapes ORDER BY id", [], |row| row.get(0))
 }
 
-fn each_row(
+fn rows(
     database: &Database,
     which: &str,
     values: impl rusqlite::Params,
-    mut visit: impl FnMut(EntryRow),
-) -> Result<(), IndexError> {
+) -> Result<Vec<EntryRow>, IndexError> {
     let sql = format!("SELECT {} FROM shapes {which}", EntryRow::COLUMNS);
-    database.each(&sql, values, EntryRow::read, |row| {
-        visit(row.ok_or_else(|| database.damaged("the entry of a shape has changed"))?);
-        Ok(())
-    })
+    let changed = || database.damaged("the entry of a shape has changed");
+    let rows = database.all(&sql, values, EntryRow::read)?.into_iter();
+    rows.map(|row| row.ok_or_else(changed)).collect()
 }
 
 /// The fused vectors of all shapes.
@@ -301,6 +267,20 @@ fn each_vector(
     })
 }
 
+/// Vectors with their names.
+fn some_vectors(
+    database: &Database,
+    sql: &str,
+    values: impl rusqlite::Params,
+) -> Result<Vec<(String, Vec<f32>)>, IndexError> {
+    let mut all = Vec::new();
+    each_vector(database, sql, values, |_, name, vector| {
+        all.push((name, vector));
+        Ok(())
+    })?;
+    Ok(all)
+}
+
 /// The name of a signature among the vectors of a shape begins with this.
 pub(crate) const SIGNATURE: &str = "signature_";
 pub(crate) const FORM: &str = "form";
@@ -310,35 +290,26 @@ pub(crate) const DISC_AREAS: &str = "disc_areas";
 pub(crate) fn shape_of(database: &Database, row: EntryRow) -> Result<Shape, IndexError> {
     let EntryRow { entry, vectors } = row;
     let id = entry.id.clone();
-    let mut found = 0;
-    let mut shape = Shape { entry, ..Shape::default() };
     // The fused vector comes first, and every shape has one.
     let fused = "SELECT id, 'fused', vector, checksum FROM fused WHERE id = ?";
-    each_vector(database, fused, [&id], |_, _, vector| {
-        shape.fused = vector;
-        Ok(())
-    })?;
-    if shape.fused.is_empty() {
-        return Err(database.damaged(format!("`{id}` has no vector")));
-    }
-    let others = "SELECT id, name, vector, checksum FROM vectors WHERE id = ?";
-    each_vector(database, others, [&id], |_, name, vector| {
-        found += 1;
+    let fused = some_vectors(database, fused, [&id])?.pop().filter(|(_, vector)| !vector.is_empty());
+    let (_, fused) = fused.ok_or_else(|| database.damaged(format!("`{id}` has no vector")))?;
+    let mut shape = Shape { entry, fused, ..Shape::default() };
+    let others =
+        some_vectors(database, "SELECT id, name, vector, checksum FROM vectors WHERE id = ?", [&id])?;
+    let components =
+        "SELECT id, CAST(place AS TEXT), vector, checksum FROM components WHERE id = ? ORDER BY place";
+    let components = some_vectors(database, components, [&id])?;
+    let found = (others.len() + components.len()) as u64;
+    for (name, vector) in others {
         match (name.as_str(), name.strip_prefix(SIGNATURE)) {
             (_, Some(signature)) => drop(shape.signatures.insert(signature.to_owned(), vector)),
             (FORM, _) => shape.form = vector.as_chunks::<4>().0.to_vec(),
             (DISC_AREAS, _) => shape.disc_areas = vector,
             _ => return Err(database.damaged(format!("`{id}` has an unknown vector `{name}`"))),
         }
-        Ok(())
-    })?;
-    let components =
-        "SELECT id, CAST(place AS TEXT), vector, checksum FROM components WHERE id = ? ORDER BY place";
-    each_vector(database, components, [&id], |_, _, vector| {
-        shape.components.push(vector);
-        Ok(())
-    })?;
-    found += shape.components.len() as u64;
+    }
+    shape.components = components.into_iter().map(|(_, vector)| vector).collect();
     match found == vectors {
         true => Ok(shape),
         false => Err(database.damaged(format!("`{id}` has {found} vectors, not {vectors}"))),

@@ -41,17 +41,8 @@ pub fn verify(path: &Path) -> Result<Verification, IndexError> {
 
 /// The defects of the structure; the first of values is an error.
 fn check(index: &Index, n_shapes: &mut usize) -> Result<Vec<String>, IndexError> {
-    let mut faults: Vec<String> = Vec::new();
     let sql = format!("PRAGMA integrity_check({MAX_FAULTS})");
-    index.database().each(
-        &sql,
-        [],
-        |row| row.get(0),
-        |fault| {
-            faults.push(fault);
-            Ok::<_, IndexError>(())
-        },
-    )?;
+    let faults: Vec<String> = index.database().all(&sql, [], |row| row.get(0))?;
     if faults != ["ok"] {
         return Ok(faults);
     }
@@ -65,12 +56,9 @@ fn check(index: &Index, n_shapes: &mut usize) -> Result<Vec<String>, IndexError>
     // Every row belongs to a shape.
     for table in ["fused", "vectors", "components"] {
         let sql = format!("SELECT id FROM {table} WHERE id NOT IN (SELECT id FROM shapes) LIMIT 1");
-        index.database().each(
-            &sql,
-            [],
-            |row| row.get::<_, String>(0),
-            |id| Err(index.damaged(format!("there are vectors of `{id}`, but no entry"))),
-        )?;
+        if let Some(id) = index.database().all(&sql, [], |row| row.get::<_, String>(0))?.pop() {
+            return Err(index.damaged(format!("there are vectors of `{id}`, but no entry")));
+        }
     }
     if index.is_finished() {
         let (vectors, classes) = (index.vector_table()?, index.entries()?);

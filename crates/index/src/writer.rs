@@ -109,16 +109,8 @@ impl IndexWriter {
             (None, None) => return Err(database.damaged("it does not state how its shapes were described")),
         }
         let n_shapes = database.count(Meta::Shapes)?;
-        let mut length = None;
-        database.each(
-            "SELECT length(vector) FROM fused LIMIT 1",
-            [],
-            |row| row.get::<_, usize>(0),
-            |bytes| {
-                length = Some(bytes / 4);
-                Ok::<_, IndexError>(())
-            },
-        )?;
+        let lengths = "SELECT length(vector) FROM fused LIMIT 1";
+        let length = database.all(lengths, [], |row| row.get::<_, usize>(0))?.pop().map(|bytes| bytes / 4);
         if (n_shapes == 0) != length.is_none() {
             return Err(database.damaged("the number of its shapes is wrong"));
         }

@@ -14,7 +14,7 @@ use canonform::library::{
 };
 use canonform::linalg::DistanceMatrix;
 use canonform::mesh::RepairOptions;
-use canonform::retrieval::{Labels, evaluate_ranked};
+use canonform::retrieval::{Labels, evaluate};
 use canonform::search::{Answer, PairwiseDistance, Query, SearchOptions, ShapeSearch};
 use canonform::{DescribeOptions, Error, Observer};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
@@ -459,7 +459,7 @@ pub(crate) fn evaluate_matrix(
     let (distances, rank_by) = (distances.as_array(), chosen("rank", rank)?);
     let mean = |i: usize, j: usize| 0.5 * (distances[(i, j)] + distances[(j, i)]);
     let matrix = DistanceMatrix::from_pairs(labels.len(), mean).map_err(|fault| to_python(&fault.into()))?;
-    let scores = run(py, |_| Ok(evaluate_ranked(&matrix, &Labels::new(&labels), k, rank_by)?))?;
+    let scores = run(py, |_| Ok(evaluate(&matrix, &Labels::new(&labels), k, rank_by)?))?;
     Ok(json(&scores))
 }
 

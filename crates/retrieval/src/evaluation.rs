@@ -29,21 +29,14 @@ pub struct Evaluation {
     pub n: usize,
     /// Class names, sorted; rows and columns of `confusion`.
     pub classes: Vec<String>,
-    /// Mean retrieval scores over the queries; in JSON keys of this object.
+    /// Scores of the ranking by distance; in JSON keys of this object.
     #[serde(flatten)]
-    pub mean: Scores,
-    /// Leave-one-out k-nearest-neighbor accuracy, in 0..=1.
-    pub knn_accuracy: f64,
-    /// The k of `knn_accuracy` and `confusion`.
+    pub plain: RankingEvaluation,
+    /// The k of the vote.
     pub knn_k: usize,
-    /// `confusion[true class][predicted class]`: counts of the leave-one-out k-NN vote.
-    pub confusion: Vec<Vec<usize>>,
     /// Mean silhouette of the classes, in -1..=1.
     pub silhouette: f64,
-    /// Confidence intervals of the mean scores.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub intervals: Option<ScoreIntervals>,
-    /// The same scores of the ranking on the neighbor graph; all others are those of the ranking by distance.
+    /// Scores of the ranking on the neighbor graph, if they were asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub graph: Option<RankingEvaluation>,
 }
@@ -65,7 +58,8 @@ pub struct RankingEvaluation {
 /// Scores a labelled distance matrix.
 ///
 /// Every shape is a query against all others, ties by index. Shapes in classes of one or two are ranked but not
-/// used as queries. Scores are means over queries (micro averages).
+/// used as queries. Scores are means over queries (micro averages). Those of the neighbor graph stand beside those of the
+/// distances if `rank_by` asks for them.
 ///
 /// # Errors
 /// [`RetrievalError::LabelCount`], [`RetrievalError::NothingToScore`], [`RetrievalError::BadNeighborCount`].
@@ -73,32 +67,18 @@ pub struct RankingEvaluation {
 /// ```
 /// # extern crate linalg as canonform_linalg;
 /// use canonform_linalg::DistanceMatrix;
-/// use canonform_retrieval::{Labels, evaluate};
+/// use canonform_retrieval::{Labels, RankBy, evaluate};
 ///
 /// // The third cat is nearer to the dogs.
 /// let positions = [0.0_f64, 1.0, 9.0, 10.0, 11.0, 12.0];
 /// let distances = DistanceMatrix::from_pairs(6, |i, j| (positions[i] - positions[j]).abs())?;
 /// let labels = Labels::new(&["cat", "cat", "cat", "dog", "dog", "dog"]);
-/// let evaluation = evaluate(&distances, &labels, 1)?;
-/// assert_eq!(evaluation.confusion, [[2, 1], [1, 2]]);
-/// assert!((evaluation.mean.nn - 4.0 / 6.0).abs() < 1e-12);
+/// let evaluation = evaluate(&distances, &labels, 1, RankBy::Plain)?;
+/// assert_eq!(evaluation.plain.confusion, [[2, 1], [1, 2]]);
+/// assert!((evaluation.plain.mean.nn - 4.0 / 6.0).abs() < 1e-12);
 /// # Ok::<(), canonform_retrieval::RetrievalError>(())
 /// ```
 pub fn evaluate(
-    distances: &DistanceMatrix,
-    labels: &Labels,
-    knn_k: usize,
-) -> Result<Evaluation, RetrievalError> {
-    let scored = evaluate_ranked(distances, labels, knn_k, RankBy::Plain)?;
-    Ok(Evaluation { intervals: None, ..scored })
-}
-
-/// As [`evaluate`], with confidence intervals, and with the scores of the neighbor graph beside those of the distances if
-/// `rank_by` asks for it.
-///
-/// # Errors
-/// Those of [`evaluate`].
-pub fn evaluate_ranked(
     distances: &DistanceMatrix,
     labels: &Labels,
     knn_k: usize,
@@ -112,12 +92,9 @@ pub fn evaluate_ranked(
     Ok(Evaluation {
         n: distances.n_points(),
         classes: labels.classes().to_vec(),
-        mean: plain.mean,
-        knn_accuracy: plain.knn_accuracy,
+        plain,
         knn_k,
-        confusion: plain.confusion,
         silhouette: silhouette(distances, labels),
-        intervals: Some(plain.intervals),
         graph,
     })
 }
@@ -166,18 +143,21 @@ mod tests {
     #[test]
     fn separate_clusters_score_one() {
         let (matrix, labels) = two_clusters(100.0);
-        let scores = evaluate(&matrix, &labels, 3).unwrap();
-        let mean = scores.mean;
-        assert_eq!([mean.nn, mean.ft, mean.st, mean.map, scores.knn_accuracy], [1.0; 5]);
+        let scores = evaluate(&matrix, &labels, 3, RankBy::Plain).unwrap();
+        let RankingEvaluation { mean, knn_accuracy, confusion, .. } = scores.plain;
+        assert_eq!([mean.nn, mean.ft, mean.st, mean.map, knn_accuracy], [1.0; 5]);
         assert!((mean.dcg - 1.0).abs() < 1e-15 && scores.silhouette > 0.95);
-        assert_eq!(scores.confusion, [[4, 0], [0, 5]]);
+        assert_eq!(confusion, [[4, 0], [0, 5]]);
     }
 
     #[test]
     fn scale_changes_no_score() {
         let (matrix, labels) = two_clusters(0.5);
         let scaled = DistanceMatrix::from_pairs(9, |i, j| 7.0 * matrix.get(i, j)).unwrap();
-        let (a, b) = (evaluate(&matrix, &labels, 1).unwrap(), evaluate(&scaled, &labels, 1).unwrap());
+        let (a, b) = (
+            evaluate(&matrix, &labels, 1, RankBy::Plain).unwrap(),
+            evaluate(&scaled, &labels, 1, RankBy::Plain).unwrap(),
+        );
         assert!((a.silhouette - b.silhouette).abs() < 1e-12);
         assert_eq!(Evaluation { silhouette: 0.0, ..a }, Evaluation { silhouette: 0.0, ..b });
     }
@@ -185,32 +165,35 @@ mod tests {
     #[test]
     fn shapes_in_classes_of_two_are_not_queries() {
         let matrix = line(&[0.0, 1.0, 2.0, 3.0, 4.0]);
-        let scores = evaluate(&matrix, &Labels::new(&["a", "a", "a", "b", "b"]), 1).unwrap();
-        assert_eq!(scores.confusion, [[3, 0], [0, 0]]);
-        let error = evaluate(&matrix, &Labels::new(&["a", "a", "b", "b", "c"]), 1).unwrap_err();
+        let scores = evaluate(&matrix, &Labels::new(&["a", "a", "a", "b", "b"]), 1, RankBy::Plain).unwrap();
+        assert_eq!(scores.plain.confusion, [[3, 0], [0, 0]]);
+        let error =
+            evaluate(&matrix, &Labels::new(&["a", "a", "b", "b", "c"]), 1, RankBy::Plain).unwrap_err();
         assert_eq!(error, RetrievalError::NothingToScore { n_points: 5, n_classes: 3 });
     }
 
     #[test]
     fn the_graph_stands_beside_the_plain_ranking() {
         let (matrix, labels) = two_clusters(0.5);
-        let plain = evaluate_ranked(&matrix, &labels, 1, RankBy::Plain).unwrap();
-        let both = evaluate_ranked(&matrix, &labels, 1, RankBy::Graph).unwrap();
+        let plain = evaluate(&matrix, &labels, 1, RankBy::Plain).unwrap();
+        let both = evaluate(&matrix, &labels, 1, RankBy::Graph).unwrap();
         assert_eq!(Evaluation { graph: None, ..both.clone() }, plain);
-        assert_eq!(Evaluation { intervals: None, ..plain }, evaluate(&matrix, &labels, 1).unwrap());
         let graph = both.graph.clone().unwrap();
         let rankings = GraphRankings::new(&matrix);
         assert_eq!(graph.mean, QueryScores::new(&rankings, &labels).unwrap().mean(&labels, Averaging::Micro));
         assert_eq!(graph.confusion.iter().flatten().sum::<usize>(), 9);
         let json = serde_json::to_value(&both).unwrap();
-        assert_eq!((&json["graph"]["map"], &json["map"]), (&graph.mean.map.into(), &both.mean.map.into()));
+        assert_eq!(
+            (&json["graph"]["map"], &json["map"]),
+            (&graph.mean.map.into(), &both.plain.mean.map.into())
+        );
         assert_eq!(serde_json::from_value::<Evaluation>(json).unwrap(), both);
     }
 
     #[test]
     fn json_is_one_flat_object() {
         let (matrix, labels) = two_clusters(100.0);
-        let evaluation = evaluate(&matrix, &labels, 3).unwrap();
+        let evaluation = evaluate(&matrix, &labels, 3, RankBy::Plain).unwrap();
         let json = serde_json::to_string(&evaluation).unwrap();
         assert!(json.starts_with(r#"{"n":9,"classes":["a","b"],"nn":1.0,"ft":1.0,"st":1.0,"e":"#), "{json}");
         assert_eq!(serde_json::from_str::<Evaluation>(&json).unwrap(), evaluation);

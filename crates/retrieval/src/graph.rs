@@ -54,37 +54,20 @@ pub struct GraphNeighbor {
     pub rank_distance: f64,
 }
 
-/// Where a query finds the graph.
-pub trait Graph {
-    /// What may go wrong.
-    type Error;
-
-    /// The [`LINKS`] nearest others of a shape, or all if there are fewer, nearest first.
-    ///
-    /// # Errors
-    /// If the list cannot be read.
-    fn links(&mut self, shape: usize) -> Result<Vec<Neighbor>, Self::Error>;
-
-    /// The distance from the query to a shape, whose list was asked for before.
-    ///
-    /// # Errors
-    /// If the shape cannot be read.
-    fn distance(&mut self, shape: usize) -> Result<f64, Self::Error>;
-}
-
 /// Ranks shapes on the graph: those of `nearest`, the nearest shapes of the query, nearest first, and the neighbors of the
 /// first [`LINKS`] of them. Results are ordered by rank distance, ties by distance and index.
 ///
 /// `query` is the index of the query, any other number if it is not among the shapes. It need not be in the lists: it takes
 /// its place in those that it is near enough to, so a query has the same results before and after it is added.
 ///
-/// # Errors
-/// The first error of `graph`.
-pub fn graph_rank<G: Graph>(
+/// `links` gives the [`LINKS`] nearest others of a shape, or all if there are fewer, nearest first; `distance` that of the query to
+/// a shape.
+pub fn graph_rank(
     query: usize,
     nearest: &[Neighbor],
-    graph: &mut G,
-) -> Result<Vec<GraphNeighbor>, G::Error> {
+    links: impl Fn(usize) -> Vec<Neighbor>,
+    distance: impl Fn(usize) -> f64,
+) -> Vec<GraphNeighbor> {
     let own = &nearest[..nearest.len().min(LINKS)];
     let (scale, around) = (scale(own), Neighborhood::new(query, own));
     let mut distances: HashMap<usize, f64> = nearest.iter().map(|near| (near.index, near.distance)).collect();
@@ -92,7 +75,7 @@ pub fn graph_rank<G: Graph>(
     // The order of visits decides nothing but the order of reading.
     let mut visited: Vec<usize> = own.iter().map(|near| near.index).collect();
     for near in own {
-        let links = graph.links(near.index)?;
+        let links = links(near.index);
         visited.extend(links.iter().map(|link| link.index).filter(|index| *index != query));
         lists.insert(near.index, links);
     }
@@ -100,18 +83,8 @@ pub fn graph_rank<G: Graph>(
     visited.dedup();
     let mut apart: HashMap<usize, f64> = HashMap::with_capacity(visited.len());
     for index in visited {
-        let mut links = match lists.remove(&index) {
-            Some(links) => links,
-            None => graph.links(index)?,
-        };
-        let distance = match distances.get(&index) {
-            Some(known) => *known,
-            None => {
-                let distance = graph.distance(index)?;
-                distances.insert(index, distance);
-                distance
-            }
-        };
+        let mut links = lists.remove(&index).unwrap_or_else(|| links(index));
+        let distance = *distances.entry(index).or_insert_with(|| distance(index));
         enter(&mut links, Neighbor { index: query, distance });
         apart.insert(index, around.jaccard(index, &links));
     }
@@ -129,7 +102,7 @@ pub fn graph_rank<G: Graph>(
         let by_rank = a.rank_distance.total_cmp(&b.rank_distance);
         by_rank.then(a.distance.total_cmp(&b.distance)).then(a.index.cmp(&b.index))
     });
-    Ok(found)
+    found
 }
 
 /// The mean distance of the neighbors of a shape.
@@ -212,24 +185,6 @@ impl<'a> GraphRankings<'a> {
     }
 }
 
-/// A row of a matrix, and the graph of all.
-struct RankedRow<'a> {
-    query: usize,
-    rankings: &'a GraphRankings<'a>,
-}
-
-impl Graph for RankedRow<'_> {
-    type Error = std::convert::Infallible;
-
-    fn links(&mut self, shape: usize) -> Result<Vec<Neighbor>, Self::Error> {
-        Ok(self.rankings.lists[shape].clone())
-    }
-
-    fn distance(&mut self, shape: usize) -> Result<f64, Self::Error> {
-        Ok(self.rankings.distances.get(self.query, shape))
-    }
-}
-
 impl Rankings for GraphRankings<'_> {
     fn n_points(&self) -> usize {
         self.distances.n_points()
@@ -237,7 +192,8 @@ impl Rankings for GraphRankings<'_> {
 
     fn ranking(&self, query: usize) -> Vec<Neighbor> {
         let nearest = rank(self.distances, query);
-        let Ok(found) = graph_rank(query, &nearest, &mut RankedRow { query, rankings: self });
+        let links = |shape: usize| self.lists[shape].clone();
+        let found = graph_rank(query, &nearest, links, |shape| self.distances.get(query, shape));
         found.into_iter().map(|near| Neighbor { index: near.index, distance: near.rank_distance }).collect()
     }
 }
@@ -265,7 +221,7 @@ mod tests {
         let distances = apart(&points);
         let graph = GraphRankings::new(&distances);
         let plain = rank(&distances, 7);
-        let found = graph_rank(7, &plain, &mut RankedRow { query: 7, rankings: &graph }).unwrap();
+        let found = graph_rank(7, &plain, |i| graph.lists[i].clone(), |i| distances.get(7, i));
         assert_eq!(found.len(), 199);
         assert!(found.windows(2).all(|pair| pair[0].rank_distance <= pair[1].rank_distance));
         assert!(found.iter().all(|near| (0.0..1.0).contains(&near.rank_distance)));
@@ -280,23 +236,12 @@ mod tests {
         let points = scattered(150);
         let (all, rest) = (apart(&points), apart(&points[..149]));
         let (graph, without) = (GraphRankings::new(&all), GraphRankings::new(&rest));
-        /// The query is the last row of the larger matrix.
-        struct Outside<'a>(&'a DistanceMatrix, &'a GraphRankings<'a>);
-        impl Graph for Outside<'_> {
-            type Error = std::convert::Infallible;
-
-            fn links(&mut self, shape: usize) -> Result<Vec<Neighbor>, Self::Error> {
-                Ok(self.1.lists[shape].clone())
-            }
-
-            fn distance(&mut self, shape: usize) -> Result<f64, Self::Error> {
-                Ok(self.0.get(149, shape))
-            }
-        }
+        // The query is the last row of the larger matrix.
         let nearest = rank(&all, 149);
-        let inside = graph_rank(149, &nearest, &mut RankedRow { query: 149, rankings: &graph }).unwrap();
+        let distance = |i: usize| all.get(149, i);
+        let inside = graph_rank(149, &nearest, |i| graph.lists[i].clone(), distance);
         for few in [LINKS, 40, 149] {
-            let outside = graph_rank(999, &nearest[..few], &mut Outside(&all, &without)).unwrap();
+            let outside = graph_rank(999, &nearest[..few], |i| without.lists[i].clone(), distance);
             for near in &outside {
                 let same = inside.iter().find(|other| other.index == near.index).unwrap();
                 assert!(

@@ -8,14 +8,14 @@
 //! ```
 //! # extern crate linalg as canonform_linalg;
 //! use canonform_linalg::DistanceMatrix;
-//! use canonform_retrieval::{Labels, evaluate};
+//! use canonform_retrieval::{Labels, RankBy, evaluate};
 //!
 //! let positions = [0.0_f64, 1.0, 2.0, 10.0, 11.0, 12.0];
 //! let distances = DistanceMatrix::from_pairs(6, |i, j| (positions[i] - positions[j]).abs())?;
 //! let labels = Labels::new(&["cat", "cat", "cat", "dog", "dog", "dog"]);
-//! let evaluation = evaluate(&distances, &labels, 1)?;
-//! assert_eq!(evaluation.mean.map, 1.0);
-//! assert_eq!(evaluation.confusion, [[3, 0], [0, 3]]);
+//! let evaluation = evaluate(&distances, &labels, 1, RankBy::Plain)?;
+//! assert_eq!(evaluation.plain.mean.map, 1.0);
+//! assert_eq!(evaluation.plain.confusion, [[3, 0], [0, 3]]);
 //! # Ok::<(), canonform_retrieval::RetrievalError>(())
 //! ```
 
@@ -34,8 +34,8 @@ mod vote;
 pub use bootstrap::{BootstrapOptions, ScoreIntervals, bootstrap};
 pub use clustering::silhouette;
 pub use error::RetrievalError;
-pub use evaluation::{Evaluation, RankBy, RankingEvaluation, evaluate, evaluate_ranked};
-pub use graph::{Graph, GraphNeighbor, GraphRankings, LINKS, graph_rank};
+pub use evaluation::{Evaluation, RankBy, RankingEvaluation, evaluate};
+pub use graph::{GraphNeighbor, GraphRankings, LINKS, graph_rank};
 pub use labels::Labels;
 pub use ranking::{Neighbor, Rankings, rank, rank_row};
 pub use refinement::{Refinement, refine_nearest};

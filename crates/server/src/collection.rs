@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, PoisonError, RwLock};
 use std::time::SystemTime;
 
+use base::files::FileId;
 use canonform::index::{Entry, Facts, log_path};
 use canonform::search::{SearchOptions, ShapeSearch};
 use canonform::{ContentHash, Error};
@@ -134,19 +135,12 @@ struct Now {
 
 /// Differs when an index was replaced or written to: for its file and its log, the device and number where the system has
 /// them, the length, and the time of the last change.
-type Identity = Vec<Option<(Option<(u64, u64)>, u64, Option<SystemTime>)>>;
+type Identity = Vec<Option<(Option<FileId>, u64, Option<SystemTime>)>>;
 
 fn identity(path: &Path) -> Option<Identity> {
     let of_file = |path: &Path| {
         let about = std::fs::metadata(path).ok()?;
-        #[cfg(unix)]
-        let file = {
-            use std::os::unix::fs::MetadataExt;
-            Some((about.dev(), about.ino()))
-        };
-        #[cfg(not(unix))]
-        let file = None;
-        Some((file, about.len(), about.modified().ok()))
+        Some((FileId::of(path).ok(), about.len(), about.modified().ok()))
     };
     let file = of_file(path)?;
     Some(vec![Some(file), of_file(&log_path(path)).filter(|(_, length, _)| *length > 0)])

@@ -1,7 +1,7 @@
 //! The search for the duplicates of the index. It outlasts a request, so clients ask until it is done.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
 use axum::body::Bytes;
@@ -13,10 +13,11 @@ use serde::Serialize;
 use crate::collection::Collection;
 use crate::error::ApiError;
 use crate::options::STACK;
+use crate::work::CancelOnDrop;
 
 /// The search in progress, or the last one: one for each version of the index.
 pub(crate) struct Duplicates {
-    run: Arc<Mutex<Option<Run>>>,
+    run: Mutex<Option<Run>>,
     /// A search that nobody has asked for during this time is cancelled.
     patience: Duration,
 }
@@ -41,14 +42,15 @@ struct Run {
     version: String,
     watched: Watched,
     asked: Instant,
-    outcome: Option<Result<Bytes, ApiError>>,
+    _cancel: CancelOnDrop,
 }
 
-/// Keeps the progress of a search, and cancels it.
+/// Keeps the progress of a search and its outcome, and cancels it.
 #[derive(Clone, Default)]
 struct Watched {
     budget: Budget,
     progress: Arc<Mutex<Progress>>,
+    outcome: Arc<OnceLock<Result<Bytes, ApiError>>>,
 }
 
 impl Observer for Watched {
@@ -67,75 +69,58 @@ impl Observer for Watched {
 
 impl Duplicates {
     pub(crate) fn new(patience: Duration) -> Self {
-        Self { run: Arc::default(), patience }
+        Self { run: Mutex::default(), patience }
     }
 
     /// The duplicates of the collection, if they are known; otherwise they are searched for, on a thread of their own.
     pub(crate) fn ask(&self, collection: &Arc<Collection>) -> Result<Known, ApiError> {
         let mut now = lock(&self.run);
-        if now.as_ref().is_none_or(|run| run.version != collection.version) {
-            end(now.take());
-            *now = Some(self.start(collection.clone())?);
-        }
-        let Some(run) = now.as_mut() else { return Err(ApiError::internal()) };
-        run.asked = Instant::now();
-        match &run.outcome {
+        let run = match now.take().filter(|run| run.version == collection.version) {
+            Some(run) => now.insert(Run { asked: Instant::now(), ..run }),
+            None => now.insert(Run::start(collection.clone())?),
+        };
+        match run.watched.outcome.get().cloned() {
             None => Ok(Known::Progress(lock(&run.watched.progress).clone())),
-            Some(Ok(report)) => Ok(Known::Report(report.clone())),
+            Some(Ok(report)) => Ok(Known::Report(report)),
             // The next client starts another search.
-            Some(Err(_)) => {
-                Err(now.take().and_then(|run| run.outcome?.err()).unwrap_or_else(ApiError::internal))
+            Some(Err(fault)) => {
+                *now = None;
+                Err(fault)
             }
         }
     }
 
     /// Cancels a search that nobody waits for any more.
     pub(crate) fn cancel_unwanted(&self) {
-        let mut now = lock(&self.run);
-        if now.as_ref().is_some_and(|run| run.outcome.is_none() && run.asked.elapsed() > self.patience) {
-            end(now.take());
-        }
+        let is_unwanted =
+            |run: &mut Run| run.watched.outcome.get().is_none() && run.asked.elapsed() > self.patience;
+        lock(&self.run).take_if(is_unwanted);
     }
 
     /// Cancels the search.
     pub(crate) fn cancel(&self) {
-        end(lock(&self.run).take());
+        *lock(&self.run) = None;
     }
+}
 
-    fn start(&self, collection: Arc<Collection>) -> Result<Run, ApiError> {
+impl Run {
+    fn start(collection: Arc<Collection>) -> Result<Self, ApiError> {
         let watched = Watched::default();
-        let run = Run {
-            version: collection.version.clone(),
-            watched: watched.clone(),
-            asked: Instant::now(),
-            outcome: None,
-        };
+        let (version, asked) = (collection.version.clone(), Instant::now());
+        let run =
+            Self { version, watched: watched.clone(), asked, _cancel: CancelOnDrop(watched.budget.clone()) };
         // One thread leaves the others to requests.
         let pool = ThreadPoolBuilder::new().num_threads(1).stack_size(STACK).build();
-        let shared = self.run.clone();
         pool.map_err(|_| ApiError::internal())?.spawn(move || {
             // The message of a panic is already printed.
             let found = catch_unwind(AssertUnwindSafe(|| search(&collection, &watched)));
             let outcome = found.unwrap_or_else(|_| Err(ApiError::internal()));
-            if let Some(run) = lock(&shared).as_mut().filter(|run| run.is_watched_by(&watched)) {
-                run.outcome = Some(outcome);
-            }
+            let _ = watched.outcome.set(outcome);
         });
         Ok(run)
     }
 }
 
-impl Run {
-    fn is_watched_by(&self, watched: &Watched) -> bool {
-        Arc::ptr_eq(&self.watched.progress, &watched.progress)
-    }
-}
-
-fn end(run: Option<Run>) {
-    run.iter().for_each(|run| run.watched.budget.cancel());
-}
-
-/// The report as JSON, with paths as clients may see them.
 fn search(collection: &Collection, watched: &Watched) -> Result<Bytes, ApiError> {
     let index = collection.search.index();
     let mut report = find_duplicates(&collection.search, &DuplicateOptions::default(), watched)?;
@@ -160,8 +145,9 @@ mod tests {
         for (elapsed, is_cancelled) in [(Duration::ZERO, false), (2 * patience, true)] {
             let watched = Watched::default();
             let asked = Instant::now().checked_sub(elapsed).unwrap_or_else(Instant::now);
-            let run = Run { version: String::new(), watched: watched.clone(), asked, outcome: None };
-            let duplicates = Duplicates { run: Arc::new(Mutex::new(Some(run))), patience };
+            let _cancel = CancelOnDrop(watched.budget.clone());
+            let run = Run { version: String::new(), watched: watched.clone(), asked, _cancel };
+            let duplicates = Duplicates { run: Mutex::new(Some(run)), patience };
             duplicates.cancel_unwanted();
             assert_eq!(watched.budget.check().is_err(), is_cancelled);
             assert_eq!(lock(&duplicates.run).is_none(), is_cancelled);

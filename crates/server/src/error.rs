@@ -33,7 +33,7 @@ pub enum ServerError {
 }
 
 /// An error response: `{"error", "remedy"?}`.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 pub(crate) struct ApiError {
     #[serde(skip)]
     status: StatusCode,

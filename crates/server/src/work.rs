@@ -64,7 +64,7 @@ impl Accepted {
 }
 
 /// Cancels a job when nobody waits for it any more.
-struct CancelOnDrop(Budget);
+pub(crate) struct CancelOnDrop(pub(crate) Budget);
 
 impl Drop for CancelOnDrop {
     fn drop(&mut self) {

@@ -14,7 +14,7 @@ use nmds::{Bandwidth, classical_full, normalized_stress};
 use rayon::prelude::*;
 use report::record::{Axis, AxisScale, Figure, FigurePanels, Heat, Plot, PlotPoint, Series, SeriesKind};
 use report::{Record, Table};
-use retrieval::{Labels, evaluate, silhouette};
+use retrieval::{Labels, RankBy, evaluate, silhouette};
 
 use crate::collection::map;
 use crate::context::Context;
@@ -82,18 +82,21 @@ pub(crate) fn figure4(context: &Context<'_>) -> Result<Record> {
         let (mut maps, mut matrices) = (Vec::new(), Vec::new());
         for (_, method, distances) in group {
             let plane = classical_full(distances, 2)?;
-            let scores = evaluate(distances, &labels, context.options.voters)?;
+            let scores = evaluate(distances, &labels, context.options.voters, RankBy::Plain)?;
             let flat = silhouette(&embedded_distances(&plane.coords)?, &labels);
-            let own =
-                [("knn", scores.knn_accuracy), ("silhouette", scores.silhouette), ("2D silhouette", flat)];
+            let own = [
+                ("knn", scores.plain.knn_accuracy),
+                ("silhouette", scores.silhouette),
+                ("2D silhouette", flat),
+            ];
             let sign = f64::from(*method == NMDS) - f64::from(*method == BASELINE);
-            for (score, value) in named(&scores.mean).into_iter().chain(own) {
+            for (score, value) in named(&scores.plain.mean).into_iter().chain(own) {
                 measured.insert(format!("{method} {scale} {score}"), value);
                 *measured.entry(format!("{scale} {score} gap")).or_default() += sign * value;
             }
             let plane_only = [normalized_stress(&plane.coords, distances), plane.negative_mass];
             let numbers =
-                scores.mean.to_array().into_iter().chain(own.map(|(_, value)| value)).chain(plane_only);
+                scores.plain.mean.to_array().into_iter().chain(own.map(|(_, value)| value)).chain(plane_only);
             rows.push([*method, scale].map(Into::into).into_iter().chain(numbers.map(Into::into)).collect());
             let title = format!("{method}, {title}");
             let at = |i: usize| [plane.coords[(i, 0)], plane.coords[(i, 1)]];

@@ -232,9 +232,9 @@ fn repaired_faces(surface: &Surface) -> Vec<Option<[VertexId; 3]>> {
 fn joined(surface: &Surface, values: &Matrix) -> Vec<bool> {
     let topology = surface.intrinsic().topology();
     let mut rows = vec![None; 3 * topology.n_faces()];
-    let faces = InputFaces::new(surface);
+    let faces = input_faces(surface);
     for (face, vertices) in topology.faces().iter().enumerate() {
-        let Some(input) = faces.of(vertices) else { continue };
+        let Some(&input) = faces.get(&sorted(*vertices)) else { continue };
         let corners = surface.input.faces[input].map(|v| surface.input.remap.to_new(v));
         for (slot, v) in vertices.iter().enumerate() {
             let at = corners.iter().position(|corner| *corner == Some(*v));
@@ -251,23 +251,15 @@ fn joined(surface: &Surface, values: &Matrix) -> Vec<bool> {
     (0..rows.len()).map(|corner| same(CornerId::from(corner)).unwrap_or(false)).collect()
 }
 
-/// The faces of the input by the vertices of the repaired mesh.
-struct InputFaces(HashMap<[VertexId; 3], usize>);
-
-impl InputFaces {
-    fn new(surface: &Surface) -> Self {
-        let mut faces = HashMap::new();
-        for (i, face) in surface.input.faces.iter().enumerate() {
-            if let [Some(a), Some(b), Some(c)] = face.map(|v| surface.input.remap.to_new(v)) {
-                faces.entry(sorted([a, b, c])).or_insert(i);
-            }
+/// The faces of the input by the vertices of the repaired mesh, in ascending order.
+fn input_faces(surface: &Surface) -> HashMap<[VertexId; 3], usize> {
+    let mut faces = HashMap::new();
+    for (i, face) in surface.input.faces.iter().enumerate() {
+        if let [Some(a), Some(b), Some(c)] = face.map(|v| surface.input.remap.to_new(v)) {
+            faces.entry(sorted([a, b, c])).or_insert(i);
         }
-        Self(faces)
     }
-
-    fn of(&self, vertices: &[VertexId; 3]) -> Option<usize> {
-        self.0.get(&sorted(*vertices)).copied()
-    }
+    faces
 }
 
 fn sorted(mut face: [VertexId; 3]) -> [VertexId; 3] {
@@ -295,7 +287,7 @@ fn face_among(vertices: [VertexId; 3], topology: &Topology) -> Option<SurfacePoi
 fn in_faces(points: &[Option<SurfacePoint>], surface: &Surface) -> Vec<Option<FacePoint>> {
     let topology = surface.intrinsic().topology();
     let to_repaired = |v: VertexId| surface.input.remap.to_new(v);
-    let faces = InputFaces::new(surface);
+    let faces = input_faces(surface);
     let mut around: Vec<Option<usize>> = vec![None; topology.n_vertices()];
     for (i, face) in surface.input.faces.iter().enumerate() {
         let [Some(a), Some(b), Some(c)] = face.map(to_repaired) else { continue };
@@ -319,8 +311,8 @@ fn in_faces(points: &[Option<SurfacePoint>], surface: &Surface) -> Vec<Option<Fa
         SurfacePoint::Face { face, barycentric } => {
             let vertices = topology.faces()[face.index()];
             let weight = |v: VertexId| vertices.iter().position(|w| *w == v).map_or(0.0, |i| barycentric[i]);
-            match faces.of(&vertices) {
-                Some(i) => Some(in_face(i, &weight)),
+            match faces.get(&sorted(vertices)) {
+                Some(i) => Some(in_face(*i, &weight)),
                 None => {
                     let most = vertices.into_iter().max_by(|v, w| weight(*v).total_cmp(&weight(*w)));
                     most.and_then(at_vertex)

@@ -7,6 +7,7 @@ use base::Observer;
 use geodesics::{DistanceSolver, FirstSample, Observed};
 use linalg::LandmarkDistances;
 use mesh::{InputMap, Surface};
+use nmds::DistanceRows;
 use surface::{IntrinsicMesh, VertexId};
 
 use super::distances::{KnownColumns, Measurement, Samples, plan};
@@ -15,7 +16,7 @@ use super::extend::Coarser;
 use super::options::FormOptions;
 use super::outcome::Outcome;
 use super::report::{EmbedReport, SecondsReport};
-use super::stress::{Known, Rows, StressChoice, StressOptions};
+use super::stress::{SolvedRows, StressChoice, StressOptions, StressReport};
 use crate::error::Error;
 
 /// What [`embed`] embeds: a [`Surface`], or the parts of one, [without its mesh](Surface::into_parts), which needs less memory.
@@ -241,20 +242,19 @@ fn run(
     let (elapsed, geodesics) = (start.elapsed().as_secs_f64(), measurement.seconds.get());
 
     let start = Instant::now();
-    let known =
-        Known { coords: &embedding.coords, samples: &distances, searched: options.samples == Samples::Auto };
-    let stress_report = match (against, surface.as_deref()) {
-        _ if !measures => None,
-        (Some(other), Some(surface)) => {
-            let solver = other.prepare(surface, observer)?;
-            let solver = Observed { solver: solver.as_ref(), observer };
-            Some(known.stress(Rows::Solved(&solver), other, &stress, observer)?)
-        }
-        _ => {
-            let rows = all.as_ref().map_or(Rows::Solved(&solver), Rows::Known);
-            Some(known.stress(rows, options.geodesic, &stress, observer)?)
-        }
+    let other = against.zip(surface.as_deref());
+    let other = other.map(|(method, surface)| method.prepare(surface, observer)).transpose()?;
+    let other = other.as_ref().map(|solver| Observed { solver: solver.as_ref(), observer });
+    let solved = SolvedRows(other.as_ref().unwrap_or(&solver));
+    let rows: (&dyn DistanceRows, bool) = match (&all, &other) {
+        (Some(all), None) => (all, true),
+        _ => (&solved, false),
     };
+    let (method, samples) =
+        (against.unwrap_or(options.geodesic), (&distances, options.samples == Samples::Auto));
+    let stress = measures
+        .then(|| StressReport::against(rows, method, &embedding.coords, samples, &stress, observer))
+        .transpose()?;
     drop(all);
     let is_sampled = options.method.is_sampled();
     let samples = if is_sampled { distances.landmarks() } else { &[] };
@@ -274,7 +274,7 @@ fn run(
         negative_mass: embedding.negative_mass,
         empty_dimensions: embedding.dim() - embedding.positive_dims(),
         auto: search,
-        stress: stress_report,
+        stress,
         descent,
         seconds: SecondsReport {
             load: map.load_seconds,

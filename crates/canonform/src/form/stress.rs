@@ -1,7 +1,7 @@
 //! The stress of an embedding of a surface.
 
 use geodesics::{DistanceSolver, Method};
-use linalg::{DistanceMatrix, LandmarkDistances, LinalgError, Matrix};
+use linalg::{LandmarkDistances, LinalgError, Matrix};
 use nmds::{DistanceRows, RowSample, Stress, estimate_stress, sample_rows};
 use serde::Serialize;
 use surface::{VertexId, unit_for};
@@ -202,7 +202,7 @@ impl DistanceRows for ScaledRows<'_> {
 }
 
 /// Rows that are solved when they are needed.
-struct SolvedRows<'a>(&'a dyn DistanceSolver);
+pub(super) struct SolvedRows<'a>(pub(super) &'a dyn DistanceSolver);
 
 impl DistanceRows for SolvedRows<'_> {
     fn n_points(&self) -> usize {
@@ -214,46 +214,27 @@ impl DistanceRows for SolvedRows<'_> {
     }
 }
 
-/// What is known of an embedding before its stress is measured.
-pub(super) struct Known<'a> {
-    pub(super) coords: &'a Matrix,
-    /// Distances from the samples, which tell what rows are worth measuring.
-    pub(super) samples: &'a LandmarkDistances,
-    /// Whether the number of samples was searched for.
-    pub(super) searched: bool,
-}
-
-/// The distances that a stress is measured against.
-pub(super) enum Rows<'a> {
-    /// Solved row by row.
-    Solved(&'a dyn DistanceSolver),
-    /// Measured before.
-    Known(&'a DistanceMatrix),
-}
-
-impl Known<'_> {
-    /// Measures the stress against distances by `method`.
-    pub(super) fn stress(
-        &self,
-        rows: Rows<'_>,
+impl StressReport {
+    /// The stress of coordinates against distances by `method`, which may be known, or are solved row by row. Distances from the
+    /// samples tell what rows are worth measuring; `searched` says whether the number of samples was searched for.
+    pub(super) fn against(
+        (rows, are_known): (&dyn DistanceRows, bool),
         method: Method,
+        coords: &Matrix,
+        (samples, searched): (&LandmarkDistances, bool),
         options: &StressOptions,
         observer: &dyn Observer,
-    ) -> Result<StressReport, Error> {
-        let p = self.coords.nrows();
-        let n_rows = match (&rows, options.choice) {
-            (Rows::Known(_), StressChoice::Auto) => None,
-            (_, choice) => choice.n_rows(p, self.samples.n_landmarks(), self.searched),
+    ) -> Result<Self, Error> {
+        let p = coords.nrows();
+        let n_rows = match options.choice {
+            StressChoice::Auto if are_known => None,
+            choice => choice.n_rows(p, samples.n_landmarks(), searched),
         };
-        let to_solve = if matches!(rows, Rows::Known(_)) { 0 } else { n_rows.unwrap_or(p) };
-        observer.begin("stress", to_solve);
+        observer.begin("stress", if are_known { 0 } else { n_rows.unwrap_or(p) });
         let sample = |coords: &Matrix, unit: f64| match n_rows {
             None => Ok(RowSample::all(p)),
-            Some(m) => RowSample::by_landmarks(coords, self.samples, unit, m, options.seed),
+            Some(m) => RowSample::by_landmarks(coords, samples, unit, m, options.seed),
         };
-        match rows {
-            Rows::Solved(solver) => StressReport::new(self.coords, &SolvedRows(solver), &sample, method),
-            Rows::Known(all) => StressReport::new(self.coords, all, &sample, method),
-        }
+        Self::new(coords, rows, &sample, method)
     }
 }

@@ -40,23 +40,10 @@ pub struct Agreement {
     pub agree: f64,
 }
 
-/// A shape with a class.
-pub(super) struct Labelled {
-    pub(super) id: String,
-    pub(super) label: String,
-    pub(super) content: ContentHash,
-}
-
-impl Labelled {
-    fn new(entry: Entry) -> Self {
-        Self { id: entry.id, label: entry.label, content: entry.content }
-    }
-}
-
 impl Agreement {
     /// Of shapes, those without a class left out; `None` if too few pairs have one.
     pub(super) fn of(
-        mut shapes: Vec<Labelled>,
+        mut shapes: Vec<Entry>,
         options: &DescribeOptions,
         shape: impl Fn(&str) -> Result<Shape, IndexError>,
         observer: &dyn Observer,
@@ -147,8 +134,7 @@ pub(super) fn finish(
     options: &DescribeOptions,
     observer: &dyn Observer,
 ) -> Result<Index, Error> {
-    let shapes = writer.entries()?.into_iter().map(Labelled::new).collect();
-    let found = Agreement::of(shapes, options, |id| writer.shape(id), observer)?;
+    let found = Agreement::of(writer.entries()?, options, |id| writer.shape(id), observer)?;
     let text = found.and_then(|found| serde_json::to_string(&found).ok());
     writer.set_note(NOTE, text.as_deref())?;
     Ok(writer.finish(observer)?)

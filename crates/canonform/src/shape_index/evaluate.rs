@@ -4,14 +4,14 @@ use std::path::Path;
 use std::str::FromStr;
 
 use descriptors::{ShapeMetric, SignatureKind};
-use index::{Entry, Index, Shape};
+use index::{Index, Shape};
 use linalg::DistanceMatrix;
 use rayon::prelude::*;
-use retrieval::{Evaluation, Labels, RankBy, evaluate_ranked};
+use retrieval::{Evaluation, Labels, RankBy, evaluate};
 
 use serde::Serialize;
 
-use super::agreement::{Agreement, Labelled};
+use super::agreement::Agreement;
 use super::record::{missing_signature, options_of};
 use crate::error::Error;
 use base::Observer;
@@ -91,16 +91,15 @@ pub fn evaluate_index(
     if n > limit {
         return Err(Error::TooManyShapes { n_shapes: n, limit });
     }
-    let (mut names, mut rows, mut shapes) = (Vec::with_capacity(n), Vec::with_capacity(n), Vec::new());
+    let (mut rows, mut shapes) = (Vec::with_capacity(n), Vec::with_capacity(n));
     let mut unlabelled = None;
     index.each(|shape| {
-        let Shape { entry: Entry { id, label, content, path: place, .. }, fused, mut signatures, .. } = shape;
-        let label = match labels {
-            Some(source) => source.label(&id, Some(Path::new(&place))),
-            None => label,
-        };
-        if label.is_empty() {
-            unlabelled.get_or_insert(id);
+        let Shape { mut entry, fused, mut signatures, .. } = shape;
+        if let Some(source) = labels {
+            entry.label = source.label(&entry.id, Some(Path::new(&entry.path)));
+        }
+        if entry.label.is_empty() {
+            unlabelled.get_or_insert(entry.id);
             return Ok(());
         }
         let vector = match measure {
@@ -109,15 +108,14 @@ pub fn evaluate_index(
                 Some(signature) => signature,
                 // Nothing can be said by the rigid signature about shapes that may bend.
                 None if kind == SignatureKind::Rigid => return Ok(()),
-                None => return Err(missing_signature(path, &id, kind).into()),
+                None => return Err(missing_signature(path, &entry.id, kind).into()),
             },
         };
-        names.push(label.clone());
         rows.push(vector);
-        shapes.push(Labelled { id, label, content });
+        shapes.push(entry);
         Ok::<(), Error>(())
     })?;
-    let n = names.len();
+    let n = shapes.len();
     if let (0, Some(LabelSource::File(file)), Some(id)) = (n, labels, unlabelled) {
         return Err(file.fits_none(&id).into());
     }
@@ -131,7 +129,8 @@ pub fn evaluate_index(
     };
     let later: Vec<Vec<f64>> = (0..n).into_par_iter().map(later).collect();
     let distances = DistanceMatrix::from_pairs(n, |i, j| later[i][j - i - 1])?;
-    let scores = evaluate_ranked(&distances, &Labels::new(&names), knn_k, rank_by)?;
+    let names: Vec<&str> = shapes.iter().map(|entry| entry.label.as_str()).collect();
+    let scores = evaluate(&distances, &Labels::new(&names), knn_k, rank_by)?;
     let agreement = Agreement::of(shapes, &options_of(&index)?, |id| index.shape(id), observer)?;
     Ok(IndexEvaluation { scores, agreement })
 }
@@ -150,7 +149,7 @@ pub fn evaluate_index(
 ///     "9,9,9,1,0,1", "9,9,9,2,1,0"];
 /// std::fs::write(&path, rows.join("\n"))?;
 /// let scores = evaluate_matrix(&path, &EvaluateOptions::default())?;
-/// assert_eq!((scores.mean.nn, scores.mean.map), (1.0, 1.0));
+/// assert_eq!((scores.plain.mean.nn, scores.plain.mean.map), (1.0, 1.0));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
@@ -174,20 +173,12 @@ pub fn evaluate_matrix(path: &Path, options: &EvaluateOptions<'_>) -> Result<Eva
         (_, None) => return Err(Error::NoNames { path: path.to_owned() }),
     };
     // Rows that a label file does not name are left out; missing lines of a file without names are an error.
-    let (rows, classes) = match classes.iter().any(String::is_empty) {
-        true => labelled(&rows, classes),
-        false => (rows, classes),
-    };
-    let n = rows.len();
-    let distances = DistanceMatrix::from_pairs(n, |i, j| 0.5 * (rows[i][j] + rows[j][i]))?;
-    Ok(evaluate_ranked(&distances, &Labels::new(&classes), knn_k, rank_by)?)
-}
-
-/// The part of a matrix whose rows and columns have a class.
-fn labelled(rows: &[Vec<f64>], classes: Vec<String>) -> (Vec<Vec<f64>>, Vec<String>) {
-    let kept: Vec<usize> = (0..rows.len()).filter(|i| !classes[*i].is_empty()).collect();
-    let rows = kept.iter().map(|i| kept.iter().map(|j| rows[*i][*j]).collect()).collect();
-    (rows, classes.into_iter().filter(|class| !class.is_empty()).collect())
+    let is_kept = |i: &usize| classes.get(*i).is_none_or(|class| !class.is_empty());
+    let kept: Vec<usize> = (0..rows.len()).filter(is_kept).collect();
+    let classes: Vec<&String> = classes.iter().filter(|class| !class.is_empty()).collect();
+    let mean = |i: usize, j: usize| 0.5 * (rows[kept[i]][kept[j]] + rows[kept[j]][kept[i]]);
+    let distances = DistanceMatrix::from_pairs(kept.len(), mean)?;
+    Ok(evaluate(&distances, &Labels::new(&classes), knn_k, rank_by)?)
 }
 
 /// A square matrix and the names of its rows.

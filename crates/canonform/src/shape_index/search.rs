@@ -8,7 +8,7 @@ use base::{Budget, Observer};
 use collection::Storage;
 use descriptors::{Boundary, DiscAreas};
 use descriptors::{PartDiscAreas, PartDistance, PreparedShape, ShapeMetric, ShapePair, SignatureKind};
-use index::{Entry, Index, VectorTable};
+use index::{Entry, Index, IndexError, VectorTable};
 use mesh::TriMesh;
 use mesh_io::FileSource;
 use rayon::prelude::*;
@@ -224,27 +224,33 @@ impl ShapeSearch {
         let start = Instant::now();
         let (rank_by, n_shapes) = (options.rank_by, self.index.len());
         let wanted = n_results(options.k).min(n_shapes);
-        let known = |ids: &[String]| -> Result<Vec<String>, Error> {
-            let held = ids.iter().filter_map(|id| match self.index.contains(id) {
-                Ok(held) => held.then(|| Ok(id.clone())),
-                Err(fault) => Some(Err(fault.into())),
-            });
-            held.collect()
+        let held = |id: &String| self.index.contains(id).map(|held| held.then(|| id.clone())).transpose();
+        let ids = ids.map(|ids| ids.iter().filter_map(held).collect::<Result<Vec<_>, _>>()).transpose()?;
+        let ordered = match (rank_by, &ids) {
+            (SearchRank::Graph, None) => Some(self.on_graph(shape.fused(), wanted)?),
+            (SearchRank::Part | SearchRank::Forms, _) => {
+                Some(self.by_all(query, rank_by, &ids, wanted, budget)?)
+            }
+            (SearchRank::Plain | SearchRank::Graph, _) => None,
         };
-        let ids = ids.map(known).transpose()?;
-        let shortlist = match (rank_by, ids) {
-            (SearchRank::Plain | SearchRank::Graph, Some(ids)) => self.among(shape, ids)?,
-            (SearchRank::Plain, None) => self.by_distance(shape)?,
-            (SearchRank::Graph, None) => Shortlist::ordered(self.on_graph(shape.fused(), wanted)?),
-            (SearchRank::Part | SearchRank::Forms, ids) => {
-                let ids = match ids {
-                    Some(ids) => ids,
-                    None => self.index.entries()?.into_iter().map(|entry| entry.id).collect(),
-                };
-                Shortlist::ordered(self.by_all(query, rank_by, ids, wanted, budget)?)
+        let (found, aligned) = match &ordered {
+            Some(ordered) => {
+                let candidates = (0..ordered.len()).map(|index| Neighbor { index, distance: 0.0 });
+                let at = |i: usize| (ordered[i].0.as_str(), Some(ordered[i].1));
+                self.aligned((query, shape), candidates, ordered.len(), &at, budget)?
+            }
+            None => {
+                let some = ids.map(|ids| self.table_of(&ids)).transpose()?;
+                let all = some.as_ref().map_or_else(|| self.index.vector_table(), Ok)?;
+                self.aligned(
+                    (query, shape),
+                    bounds(shape.fused(), all),
+                    wanted,
+                    &|i| (all.id(i), None),
+                    budget,
+                )?
             }
         };
-        let (found, aligned) = self.aligned((query, shape), shortlist, wanted, budget)?;
         let (mut results, alignments): (Vec<Hit>, Vec<_>) = found.into_iter().unzip();
         let threshold = self.index.threshold().filter(|_| rank_by.is_by_signatures());
         let predicted = predicted(&results, (threshold, self.classes), &query.shape.entry.facts);
@@ -254,18 +260,17 @@ impl ShapeSearch {
             found.try_for_each(|(hit, best)| self.explain((query, shape), hit, best, budget))?;
         }
         let seconds = SearchSeconds { describe: query.seconds, search: start.elapsed().as_secs_f64() };
-        let (components, wholes) = (Vec::new(), Vec::new());
+        let (measured, recall) = (n_shapes, 1.0);
         Ok(Answer {
             results,
             rank_by,
-            components,
-            wholes,
             predicted,
             n_shapes,
-            measured: n_shapes,
+            measured,
             aligned,
-            recall: 1.0,
+            recall,
             seconds,
+            ..Answer::default()
         })
     }
 
@@ -284,22 +289,13 @@ impl ShapeSearch {
         Ok(())
     }
 
-    /// All shapes, those first that may be nearest.
-    fn by_distance<'a>(&'a self, query: &'a PreparedShape) -> Result<Shortlist<'a>, Error> {
-        let all = self.index.vector_table()?;
-        let candidates = Box::new(bounds(query.fused(), all));
-        Ok(Shortlist { candidates, id: Box::new(|i| all.id(i).to_owned()), orders: None })
-    }
-
-    /// Some shapes, those first that may be nearest.
-    fn among(&self, query: &PreparedShape, ids: Vec<String>) -> Result<Shortlist<'static>, Error> {
+    /// The vectors of some shapes.
+    fn table_of(&self, ids: &[String]) -> Result<VectorTable, IndexError> {
         let mut some = VectorTable::default();
-        for id in &ids {
+        for id in ids {
             some.push(id, &self.index.shape(id)?.fused);
         }
-        let candidates: Vec<_> = bounds(query.fused(), &some).collect();
-        let candidates = Box::new(candidates.into_iter());
-        Ok(Shortlist { candidates, id: Box::new(move |i| ids[i].clone()), orders: None })
+        Ok(some)
     }
 
     /// The first shapes by [rank distance](graph_rank), among the nearest and their neighbours. The graph knows fused distances
@@ -308,7 +304,12 @@ impl ShapeSearch {
     fn on_graph(&self, fused: &[f32], wanted: usize) -> Result<Vec<OrderedShape>, Error> {
         let all = self.index.vector_table()?;
         let nearest = all.nearest(fused, wanted.max(LINKS));
-        let Ok(mut ranked) = graph_rank(usize::MAX, &nearest, &mut NeighborGraph { all, query: fused });
+        let links = |shape: usize| {
+            let found = all.nearest(all.vector(shape), LINKS + 1).into_iter();
+            found.filter(|near| near.index != shape).take(LINKS).collect()
+        };
+        let distance = |shape: usize| ShapeMetric::fused(fused, all.vector(shape));
+        let mut ranked = graph_rank(usize::MAX, &nearest, links, distance);
         ranked.truncate(wanted);
         let ordered = ranked.into_iter().map(|found| {
             let place = nearest.iter().position(|near| near.index == found.index);
@@ -318,13 +319,13 @@ impl ShapeSearch {
         Ok(ordered.collect())
     }
 
-    /// The first of some shapes by a distance that is measured from each of them: how well the query fits as a part, or how
-    /// much forms differ.
+    /// The first of all shapes or of some by a distance that is measured from each of them: how well the query fits as a part, or
+    /// how much forms differ.
     fn by_all(
         &self,
         query: &Query,
         rank: SearchRank,
-        ids: Vec<String>,
+        ids: &Option<Vec<String>>,
         wanted: usize,
         budget: &Budget,
     ) -> Result<Vec<OrderedShape>, Error> {
@@ -342,6 +343,10 @@ impl ShapeSearch {
             budget.check()?;
             Ok((measured(&id)?, id))
         };
+        let ids = match ids {
+            Some(ids) => ids.clone(),
+            None => self.index.entries()?.into_iter().map(|entry| entry.id).collect(),
+        };
         let mut found = ids.into_par_iter().map(one).collect::<Result<Vec<_>, Error>>()?;
         found.sort_by(|(a, x), (b, y)| a.distance().total_cmp(&b.distance()).then_with(|| x.cmp(y)));
         found.truncate(wanted);
@@ -349,18 +354,14 @@ impl ShapeSearch {
     }
 
     /// The distance from the spectrum of a form, in units of two poses of one body.
-    fn form_distance(&self, spectrum: &[f32], id: &str) -> Result<OrderedBy, Error> {
-        let distance = ShapeMetric::fused(spectrum, &self.signature(id, SignatureKind::FormSpectrum)?);
-        Ok(OrderedBy::Forms { form_distance: distance / ShapeMetric::unit(SignatureKind::FormSpectrum) })
-    }
-
-    /// The signature of a kind of an indexed shape.
     ///
     /// # Errors
-    /// [`IndexError::Damaged`] if it is not stored.
-    fn signature(&self, id: &str, kind: SignatureKind) -> Result<Vec<f32>, Error> {
-        let found = self.index().vector(id, &format!("signature_{}", kind.name()))?;
-        Ok(found.ok_or_else(|| missing_signature(self.index().path(), id, kind))?)
+    /// [`IndexError::Damaged`] if the spectrum of the shape is not stored.
+    fn form_distance(&self, spectrum: &[f32], id: &str) -> Result<OrderedBy, Error> {
+        let kind = SignatureKind::FormSpectrum;
+        let found = self.index.vector(id, &format!("signature_{}", kind.name()))?;
+        let found = found.ok_or_else(|| missing_signature(self.index.path(), id, kind))?;
+        Ok(OrderedBy::Forms { form_distance: ShapeMetric::fused(spectrum, &found) / ShapeMetric::unit(kind) })
     }
 
     /// How well a part fits into a shape.
@@ -372,34 +373,32 @@ impl ShapeSearch {
         Ok(OrderedBy::Part { part_distance: distance, part_share: share })
     }
 
-    /// Aligns the forms of a shortlist: of as many as are needed for the `wanted` nearest by combined distance, or of all of
-    /// them for their relations if something else decides on their order. Returns how many alignments were begun, too.
-    fn aligned(
+    /// Aligns the forms of candidates, in ascending order of lower bounds of their combined distances: of as many as are needed for
+    /// the `wanted` nearest, or of all of them for their relations if something else decides on their order. `at` gives the name of
+    /// a candidate, and what it is ordered by. Returns how many alignments were begun, too.
+    fn aligned<'a>(
         &self,
         (query, shape): (&Query, &PreparedShape),
-        shortlist: Shortlist<'_>,
+        candidates: impl Iterator<Item = Neighbor>,
         wanted: usize,
+        at: &(dyn Fn(usize) -> (&'a str, Option<OrderedBy>) + Sync),
         budget: &Budget,
     ) -> Result<(Vec<(Hit, Alignment)>, usize), Error> {
-        let Shortlist { candidates, id, orders } = shortlist;
-        let n = orders.as_ref().map_or(wanted, Vec::len);
-        let mut refined = rerank(shape, candidates, n, |i| {
+        let mut refined = rerank(shape, candidates, wanted, |i| {
             budget.check()?;
-            self.prepared(&id(i))
+            self.prepared(at(i).0)
         })?;
-        if orders.is_some() {
-            refined.nearest.sort_by_key(|(near, _)| near.index);
-        }
+        refined.nearest.sort_by_key(|(near, _)| at(near.index).1.map(|_| near.index));
         let found =
             refined.nearest.into_iter().zip(1..).map(|((Neighbor { index, distance }, found), rank)| {
-                let Entry { id, label, path, .. } = self.index.entry(&id(index))?;
+                let (id, order) = at(index);
+                let Entry { id, label, path, .. } = self.index.entry(id)?;
                 let (distances, scale) = (found.shape_distance, found.scale);
                 let relation = Relation::in_classes(distances, scale, Handedness::Unknown, self.classes);
                 // Only what has the same description may be called the same part without its mesh.
                 let is_part = found.are_parts && found.fused > 0.0;
                 let relation = if is_part { relation.of_parts() } else { relation }.named(&query.name, &id);
-                let (fused, order) = (found.fused, orders.as_ref().map(|all| all[index]));
-                let itself = query.place.as_ref() == Some(&path);
+                let (fused, itself) = (found.fused, query.place.as_ref() == Some(&path));
                 let hit =
                     Hit { rank, id, label, itself, path, distance, fused, order, relation, comparison: None };
                 Ok((hit, found.alignment))
@@ -411,50 +410,12 @@ impl ShapeSearch {
 /// The name of a shape and what it is ordered by.
 type OrderedShape = (String, OrderedBy);
 
-/// Shapes that may be results.
-struct Shortlist<'a> {
-    /// In ascending order of lower bounds of their combined distances.
-    candidates: Box<dyn Iterator<Item = Neighbor> + Send + 'a>,
-    /// The name of each.
-    id: Box<dyn Fn(usize) -> String + Sync + 'a>,
-    /// What they are ordered by, if not by combined distance.
-    orders: Option<Vec<OrderedBy>>,
-}
-
-impl Shortlist<'static> {
-    /// Shapes in their order, all of which are results.
-    fn ordered(shapes: Vec<OrderedShape>) -> Self {
-        let (ids, orders): (Vec<String>, _) = shapes.into_iter().unzip();
-        let candidates = Box::new((0..ids.len()).map(|index| Neighbor { index, distance: 0.0 }));
-        Self { candidates, id: Box::new(move |i| ids[i].clone()), orders: Some(orders) }
-    }
-}
-
-/// The graph of nearest neighbours around a query.
-struct NeighborGraph<'a> {
-    all: &'a VectorTable,
-    query: &'a [f32],
-}
-
-impl retrieval::Graph for NeighborGraph<'_> {
-    type Error = std::convert::Infallible;
-
-    fn links(&mut self, shape: usize) -> Result<Vec<Neighbor>, Self::Error> {
-        let found = self.all.nearest(self.all.vector(shape), LINKS + 1).into_iter();
-        Ok(found.filter(|near| near.index != shape).take(LINKS).collect())
-    }
-
-    fn distance(&mut self, shape: usize) -> Result<f64, Self::Error> {
-        Ok(ShapeMetric::fused(self.query, self.all.vector(shape)))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::fs;
 
     use base::ContentHash;
-    use index::{IndexError, IndexWriter};
+    use index::IndexWriter;
     use mesh::{Surface, shapes};
     use surface::VertexId;
     use tempfile::TempDir;

@@ -7,7 +7,10 @@ use anyhow::{Result, bail};
 use base::object;
 use base::terminal::Bars;
 use canonform::collection::ShapeFile;
-use canonform::embed::{EmbedMethod, EmbedOptions, EmbedReport, StressKind, StressOptions, StressReport};
+use canonform::embed::{
+    EmbedMethod, EmbedOptions, EmbedReport, Embedded, StressKind, StressOptions, StressReport,
+    embed as embed_surface,
+};
 use canonform::linalg::Matrix;
 use canonform::mesh::io::{extension, or_list};
 use canonform::mesh::{InputMap, InputPoint};
@@ -72,32 +75,13 @@ fn one(mesh: &Path, args: &EmbedArgs, options: &EmbedOptions<'_>, common: &Commo
     let output = Output::new(&args.output, "a form", &formats, Some(output_format(args, common)?), common)?;
     check_dim(output.path(), options.form.dim)?;
     let surface = read_surface(mesh, &args.form.repair, common)?;
+    let coarser =
+        args.extend.as_ref().map(|path| read_surface(path, &args.form.repair, common)).transpose()?;
     let bars = Bars::with_budget(common.quiet, budget(args, output.path(), 1));
-    let (report, points) = match (&args.extend, &args.at[..]) {
-        (None, []) => (embed_and_write(mesh, surface, output.path(), args, options, &bars)?, Vec::new()),
-        (coarser, at) => {
-            let embedded = match coarser {
-                None => canonform::embed::embed(&surface, options.clone(), &bars),
-                Some(coarser) => {
-                    let coarser = read_surface(coarser, &args.form.repair, common)?;
-                    canonform::embed::embed(&coarser, options.form, &bars).and_then(|form| {
-                        let finer = EmbedOptions::finer(&surface, &coarser, &form)?;
-                        canonform::embed::embed(&surface, finer.stress(options.stress), &bars)
-                    })
-                }
-            };
-            let embedded = embedded.map_err(|fault| named(mesh, fault))?;
-            let placed = embedded.place(&surface, at).map_err(|fault| named(mesh, fault))?;
-            let coordinates = placed.row_iter().map(|row| row.iter().copied().collect());
-            let points = at.iter().zip(coordinates);
-            let points = points.map(|(&at, coordinates)| PointJson { at, coordinates }).collect();
-            write(output.path(), &surface.into_parts().1, &embedded.embedding.coords)?;
-            (embedded.report, points)
-        }
-    };
+    let json = embed_and_write(mesh, (surface, coarser), output.path(), args, options, &bars)?;
     drop(bars);
-    warn(&mesh.display().to_string(), &report);
-    let json = EmbedJson { report, points, features: args.features, output: output.name() };
+    warn(&mesh.display().to_string(), &json.report);
+    let json = EmbedJson { output: output.name(), ..json };
     output.report(common, &json, |json| answer(json).text(common))
 }
 
@@ -114,31 +98,46 @@ fn budget(args: &EmbedArgs, output: &Path, n_at_once: usize) -> Budget {
 /// Embeds a surface and writes its form.
 fn embed_and_write(
     mesh: &Path,
-    mut surface: Surface,
+    (surface, coarser): (Surface, Option<Surface>),
     output: &Path,
     args: &EmbedArgs,
     options: &EmbedOptions<'_>,
     bars: &Bars,
-) -> Result<EmbedReport> {
-    if extension(output) == "npy" {
-        // Only meshes need them.
-        surface.input.faces = Vec::new();
-    }
-    let embed = || -> Result<_, canonform::Error> {
-        if args.features {
-            let embedded = canonform::embed::embed(&surface, options.clone(), bars)?;
-            let form = embedded.form(&surface)?.with_features(surface.mesh(), bars)?;
-            let coords = Matrix::from_fn(form.points().len(), 3, |i, axis| form.points()[i][axis]);
-            return Ok((coords, surface.into_parts().1, embedded.report));
+) -> Result<EmbedJson> {
+    let (mut points, features) = (Vec::new(), args.features);
+    let embedded = || -> Result<_, canonform::Error> {
+        if !features && coarser.is_none() && args.at.is_empty() {
+            // Without keeping the mesh in memory; only meshes need faces.
+            let (intrinsic, mut map) = surface.into_parts();
+            if extension(output) == "npy" {
+                map.faces = Vec::new();
+            }
+            let Embedded { embedding, report, .. } = embed_surface((intrinsic, &map), options.clone(), bars)?;
+            return Ok((embedding.coords, map, report));
         }
-        // Without keeping the mesh in memory.
-        let (intrinsic, map) = surface.into_parts();
-        let embedded = canonform::embed::embed((intrinsic, &map), options.clone(), bars)?;
-        Ok((embedded.embedding.coords, map, embedded.report))
+        let form = coarser.as_ref().map(|coarser| embed_surface(coarser, options.form, bars)).transpose()?;
+        let options = match coarser.as_ref().zip(form.as_ref()) {
+            Some((coarser, form)) => EmbedOptions::finer(&surface, coarser, form)?.stress(options.stress),
+            None => options.clone(),
+        };
+        let embedded = embed_surface(&surface, options, bars)?;
+        if !args.at.is_empty() {
+            let placed = embedded.place(&surface, &args.at)?;
+            let coordinates = placed.row_iter().map(|row| row.iter().copied().collect());
+            let placed = args.at.iter().zip(coordinates);
+            points.extend(placed.map(|(&at, coordinates)| PointJson { at, coordinates }));
+        }
+        let coords = if features {
+            let form = embedded.form(&surface)?.with_features(surface.mesh(), bars)?;
+            Matrix::from_fn(form.points().len(), 3, |i, axis| form.points()[i][axis])
+        } else {
+            embedded.embedding.coords
+        };
+        Ok((coords, surface.into_parts().1, embedded.report))
     };
-    let (coords, map, report) = embed().map_err(|fault| named(mesh, fault))?;
+    let (coords, map, report) = embedded().map_err(|fault| named(mesh, fault))?;
     write(output, &map, &coords)?;
-    Ok(report)
+    Ok(EmbedJson { report, points, features, output: output.to_owned() })
 }
 
 /// The format of forms in a folder or on standard output.
@@ -163,8 +162,7 @@ fn batch(args: &EmbedArgs, options: &EmbedOptions<'_>, common: &Common) -> Resul
     let (done, failed) = results.make(common, |shape, output| {
         let (_, surface) = read_both(&shape.path, &args.form.repair, common)?;
         let bars = Bars::with_budget(true, budget(args, output, rayon::current_num_threads()));
-        let report = embed_and_write(&shape.path, surface, output, args, options, &bars)?;
-        Ok(EmbedJson { report, points: Vec::new(), features: args.features, output: output.to_owned() })
+        embed_and_write(&shape.path, (surface, None), output, args, options, &bars)
     })?;
     let shapes = done.into_iter().map(|(ShapeFile { name, label, path }, result)| {
         print_repair(&name, &result.report.repair, &args.form.repair);
@@ -209,12 +207,11 @@ fn check_dim(output: &Path, dim: usize) -> Result<()> {
 /// Writes the form: an array with one row per input vertex, or a mesh with the faces of the repaired input.
 fn write(output: &Path, map: &InputMap, coords: &Matrix) -> Result<()> {
     if extension(output) == "npy" {
-        let (n, k) = (map.remap.n_old(), coords.ncols());
-        let row = |vertex: usize| {
-            let vertex = map.remap.to_new(vertex.into());
+        let k = coords.ncols();
+        let row = |vertex: Option<VertexId>| {
             (0..k).map(move |axis| vertex.map_or(f64::NAN, |v| coords[(v.index(), axis)]))
         };
-        return write_npy(output, &[n, k], (0..n).flat_map(row));
+        return write_npy(output, &[map.remap.n_old(), k], map.remap.all_to_new().flat_map(row));
     }
     let position = |v: VertexId| [0, 1, 2].map(|axis| coords[(v.index(), axis)]).into();
     Ok(canonform::mesh::io::write(output, &map.with_positions(position))?)

@@ -7,7 +7,7 @@ use base::terminal::Bars;
 use canonform::collection::LabelSource;
 use canonform::library::{EvaluateOptions, IndexEvaluation, evaluate_index, evaluate_matrix};
 use canonform::mesh::io::extension;
-use canonform::retrieval::{ScoreIntervals, Scores};
+use canonform::retrieval::{RankingEvaluation, ScoreIntervals, Scores};
 
 use crate::args::{Common, EvaluateArgs};
 use crate::input::named;
@@ -27,8 +27,8 @@ pub(crate) fn evaluate(args: &EvaluateArgs, common: &Common) -> Result<ExitCode>
     report(common, &scores, |scores| text(scores, common))
 }
 
-/// One column of scores: names, and values with their intervals.
-fn column(mean: &Scores, intervals: Option<&ScoreIntervals>) -> [(&'static str, String); 6] {
+/// The mean scores of a ranking with their intervals, and its votes.
+fn column(ranking: &RankingEvaluation, knn_k: usize) -> [Fact; 7] {
     type Score = fn(&Scores) -> f64;
     let scores: [(&str, Score); 6] = [
         ("nearest neighbour", |s| s.nn),
@@ -38,10 +38,10 @@ fn column(mean: &Scores, intervals: Option<&ScoreIntervals>) -> [(&'static str, 
         ("DCG", |s| s.dcg),
         ("mAP", |s| s.map),
     ];
-    scores.map(|(name, score)| {
-        let interval = intervals.map(|i| format!(" ({:.4} to {:.4})", score(&i.low), score(&i.high)));
-        (name, format!("{:.4}{}", score(mean), interval.unwrap_or_default()))
-    })
+    let RankingEvaluation { mean, intervals: ScoreIntervals { low, high, .. }, knn_accuracy, .. } = ranking;
+    let [nn, first_tier, second_tier, e, dcg, map] = scores
+        .map(|(name, score)| (name, format!("{:.4} ({:.4} to {:.4})", score(mean), score(low), score(high))));
+    [nn, first_tier, second_tier, e, dcg, map, ("k-NN accuracy", format!("{knn_accuracy:.4} (k = {knn_k})"))]
 }
 
 fn confusion(title: &str, classes: &[String], counts: &[Vec<usize>]) -> comfy_table::Table {
@@ -55,13 +55,12 @@ fn confusion(title: &str, classes: &[String], counts: &[Vec<usize>]) -> comfy_ta
 /// The number of queries whose nearest shape is of their class, and the scores that say more.
 fn answer(IndexEvaluation { scores, agreement }: &IndexEvaluation) -> Answer {
     let (n, n_classes) = (scores.n, scores.classes.len());
-    let [nn, first_tier, second_tier, e, dcg, map] = column(&scores.mean, scores.intervals.as_ref());
+    let [nn, first_tier, second_tier, e, dcg, map, votes] = column(&scores.plain, scores.knn_k);
     let explained = |(name, value): Fact, words: &str| (name, format!("{value}: {words}"));
-    let votes = format!("{:.4} (k = {})", scores.knn_accuracy, scores.knn_k);
     let mut facts = vec![
         explained(first_tier, "of as many shapes as the class has, those of the class"),
         explained(map, "1 if every shape finds its whole class first"),
-        ("k-NN accuracy", votes),
+        votes,
         ("silhouette", format!("{:.4}: from -1 to 1, above 0 if classes are apart", scores.silhouette)),
     ];
     facts.extend(agreement.map(|it| {
@@ -71,32 +70,27 @@ fn answer(IndexEvaluation { scores, agreement }: &IndexEvaluation) -> Answer {
             format!("distances agree with {share:.0} % of {pairs} pairs; those of one class end at {at:.2}"),
         )
     }));
-    let mut details = vec![nn, second_tier, e, dcg];
-    details.extend(scores.intervals.as_ref().map(|intervals| {
-        let (percent, n) = (100.0 * intervals.level, intervals.resamples);
-        let words = format!("{percent:.0} % intervals of the mean over queries, from {n} resamples");
-        ("in parentheses", words)
-    }));
+    let ScoreIntervals { level, resamples, .. } = scores.plain.intervals;
+    let level = 100.0 * level;
+    let intervals = format!("{level:.0} % intervals of the mean over queries, from {resamples} resamples");
     Answer {
         sentence: format!(
             "the nearest neighbour is of the same class for {:.1} % of {n} shapes in {n_classes} classes",
-            100.0 * scores.mean.nn
+            100.0 * scores.plain.mean.nn
         ),
         facts,
-        details,
+        details: vec![nn, second_tier, e, dcg, ("in parentheses", intervals)],
     }
 }
 
 fn text(found: &IndexEvaluation, common: &Common) -> String {
     let (mut text, scores) = (answer(found).text(common), &found.scores);
     if let Some(graph) = &scores.graph {
-        let columns = column(&graph.mean, Some(&graph.intervals));
         text += "\n  ranked on the graph of nearest neighbours, instead of plain:\n";
-        let votes = ("k-NN accuracy", format!("{:.4} (k = {})", graph.knn_accuracy, scores.knn_k));
-        text += &facts(&[&columns[..], &[votes]].concat());
+        text += &facts(&column(graph, scores.knn_k));
     }
     if common.details {
-        text += &format!("\n{}", confusion("true \\ predicted", &scores.classes, &scores.confusion));
+        text += &format!("\n{}", confusion("true \\ predicted", &scores.classes, &scores.plain.confusion));
         if let Some(graph) = &scores.graph {
             let title = "true \\ predicted (graph)";
             text += &format!("\n{}", confusion(title, &scores.classes, &graph.confusion));

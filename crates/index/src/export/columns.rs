@@ -42,19 +42,19 @@ pub(super) fn values(shape: &Shape) -> Vec<(Cow<'static, str>, Value<'_>)> {
     all
 }
 
-/// A column.
+/// A column, in order of first appearance.
 pub(super) struct Column {
     pub(super) name: String,
     pub(super) kind: Kind,
+    /// The most that a shape has: characters of a text, numbers in each dimension.
+    pub(super) extents: Vec<usize>,
 }
 
 /// What a column holds.
 pub(super) enum Kind {
-    /// Texts of at most so many characters.
-    Text(usize),
+    Text,
     Fact,
-    /// Numbers, at most so many in each dimension.
-    Floats(Vec<usize>),
+    Floats,
 }
 
 impl Column {
@@ -63,54 +63,27 @@ impl Column {
         self.name.starts_with(SIGNATURE)
     }
 
-    /// The text of a shape.
-    pub(super) fn text(&self, shape: &Shape) -> String {
-        match self.value(shape) {
-            Some(Value::Text(text)) => text.into_owned(),
-            _ => String::new(),
-        }
-    }
-
-    /// The number of a shape.
-    pub(super) fn fact(&self, shape: &Shape) -> f64 {
-        match self.value(shape) {
-            Some(Value::Fact(fact)) => fact,
-            _ => f64::NAN,
-        }
-    }
-
-    /// The numbers of a shape; `None` if it lacks them.
-    pub(super) fn floats(&self, shape: &Shape) -> Option<Vec<f32>> {
-        match self.value(shape)? {
-            Value::Floats(values, _) => Some(values.into_owned()),
-            _ => None,
-        }
-    }
-
-    fn value<'a>(&self, shape: &'a Shape) -> Option<Value<'a>> {
+    /// What a shape has in it.
+    pub(super) fn value<'a>(&self, shape: &'a Shape) -> Option<Value<'a>> {
         values(shape).into_iter().find(|(name, _)| *name == self.name).map(|(_, value)| value)
     }
 }
 
-/// The columns of the shapes of an index, in order of first appearance.
+/// The columns of the shapes of an index.
 pub(super) fn columns(index: &Index) -> Result<Vec<Column>, IndexError> {
     let mut columns: Vec<Column> = Vec::new();
     index.each(|shape| {
         for (name, value) in values(&shape) {
-            let kind = match value {
-                Value::Text(text) => Kind::Text(text.chars().count()),
-                Value::Fact(_) => Kind::Fact,
-                Value::Floats(_, extents) => Kind::Floats(extents),
+            let (kind, extents) = match value {
+                Value::Text(text) => (Kind::Text, vec![text.chars().count()]),
+                Value::Fact(_) => (Kind::Fact, Vec::new()),
+                Value::Floats(_, extents) => (Kind::Floats, extents),
             };
             match columns.iter_mut().find(|known| known.name == name) {
-                Some(known) => match (&mut known.kind, kind) {
-                    (Kind::Text(most), Kind::Text(n)) => *most = (*most).max(n),
-                    (Kind::Floats(most), Kind::Floats(extents)) => {
-                        most.iter_mut().zip(extents).for_each(|(most, n)| *most = (*most).max(n));
-                    }
-                    _ => {}
-                },
-                None => columns.push(Column { name: name.into_owned(), kind }),
+                Some(known) => {
+                    known.extents.iter_mut().zip(extents).for_each(|(most, n)| *most = n.max(*most))
+                }
+                None => columns.push(Column { name: name.into_owned(), kind, extents }),
             }
         }
         Ok::<(), IndexError>(())

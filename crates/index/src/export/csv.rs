@@ -3,31 +3,30 @@
 use std::borrow::Cow;
 use std::io::Write;
 
-use super::columns::{Kind, Value, columns, values};
+use super::columns::{Value, values};
 use super::error::ExportError;
 use crate::Index;
 
 pub(super) fn write(index: &Index, out: &mut dyn Write) -> Result<(), ExportError> {
-    let columns = columns(index)?;
-    let head = columns.iter().flat_map(|column| match &column.kind {
-        Kind::Text(_) | Kind::Fact => vec![csv_field(&column.name)],
-        Kind::Floats(extents) if column.name == "fused" => {
-            (0..extents[0]).map(|i| format!("fused_{i}")).collect()
-        }
-        Kind::Floats(_) => Vec::new(),
-    });
-    writeln!(out, "{}", head.collect::<Vec<_>>().join(","))?;
+    let mut is_begun = false;
     index.each(|shape| {
-        let cells: Vec<String> = values(&shape).into_iter().flat_map(cells).collect();
-        Ok(writeln!(out, "{}", cells.join(","))?)
-    })
+        let (names, cells): (Vec<_>, Vec<_>) = values(&shape).into_iter().flat_map(cells).unzip();
+        if !std::mem::replace(&mut is_begun, true) {
+            writeln!(out, "{}", names.join(","))?;
+        }
+        Ok::<(), ExportError>(writeln!(out, "{}", cells.join(","))?)
+    })?;
+    if is_begun { Ok(()) } else { Ok(writeln!(out)?) }
 }
 
-fn cells((name, value): (Cow<'static, str>, Value<'_>)) -> Vec<String> {
+/// The cells of a value, with the names of their columns.
+fn cells((name, value): (Cow<'static, str>, Value<'_>)) -> Vec<(String, String)> {
     match value {
-        Value::Text(text) => vec![csv_field(&text)],
-        Value::Fact(fact) => vec![fact.to_string()],
-        Value::Floats(numbers, _) if name == "fused" => numbers.iter().map(f32::to_string).collect(),
+        Value::Text(text) => vec![(csv_field(&name), csv_field(&text))],
+        Value::Fact(fact) => vec![(csv_field(&name), fact.to_string())],
+        Value::Floats(numbers, _) if name == "fused" => {
+            numbers.iter().enumerate().map(|(i, x)| (format!("fused_{i}"), x.to_string())).collect()
+        }
         Value::Floats(..) => Vec::new(),
     }
 }

@@ -11,21 +11,13 @@ mod tests;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 
+use base::object;
 use serde::Serialize;
 
 use crate::Index;
 
 pub use csv::{csv_field, text_cell};
 pub use error::ExportError;
-
-/// The first line of an export.
-#[derive(Serialize)]
-struct Head<'a> {
-    format: &'static str,
-    version: u32,
-    options: &'a str,
-    shapes: usize,
-}
 
 /// A file format for an index; [`Index::export_as`] writes it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -74,18 +66,14 @@ impl Index {
     /// # Errors
     /// [`ExportError`].
     pub fn export_as(&self, format: ExportFormat, file: &mut File) -> Result<(), ExportError> {
+        let mut out = BufWriter::with_capacity(1 << 16, file);
         match format {
-            ExportFormat::Parquet => parquet::write(self, file),
-            ExportFormat::Npz => npz::write(self, file),
-            ExportFormat::JsonLines | ExportFormat::Csv => {
-                let mut out = BufWriter::with_capacity(1 << 16, file);
-                match format {
-                    ExportFormat::Csv => csv::write(self, &mut out)?,
-                    _ => self.export(&mut out)?,
-                }
-                Ok(out.flush()?)
-            }
+            ExportFormat::Parquet => parquet::write(self, out.get_mut())?,
+            ExportFormat::Npz => npz::write(self, out.get_mut())?,
+            ExportFormat::Csv => csv::write(self, &mut out)?,
+            ExportFormat::JsonLines => self.export(&mut out)?,
         }
+        Ok(out.flush()?)
     }
 
     /// Writes the index as lines of JSON: first a header, then one line per shape in ascending order of names. Numbers
@@ -96,9 +84,8 @@ impl Index {
     /// # Errors
     /// [`ExportError`].
     pub fn export(&self, out: &mut dyn Write) -> Result<(), ExportError> {
-        let head =
-            Head { format: "canonform-index", version: 3, options: self.options(), shapes: self.len() };
-        write_line(out, &head)?;
+        let (options, shapes) = (self.options(), self.len());
+        write_line(out, &object! { format: "canonform-index", version: 3, options, shapes })?;
         self.each(|shape| write_line(out, &shape).map_err(ExportError::from))
     }
 }

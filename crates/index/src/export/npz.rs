@@ -1,5 +1,6 @@
 //! NumPy arrays in a zip archive.
 
+use std::borrow::Cow;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 
@@ -7,7 +8,7 @@ use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
-use super::columns::{Kind, columns};
+use super::columns::{Kind, Value, columns};
 use super::error::ExportError;
 use crate::Index;
 use crate::database::to_bytes;
@@ -19,26 +20,26 @@ pub(super) fn write(index: &Index, file: &mut File) -> Result<(), ExportError> {
     archive.begin("options", &format!("<U{longest}"), &[], 4 * longest)?;
     archive.put(&text(options, longest))?;
     for column in columns(index)? {
-        match &column.kind {
-            Kind::Text(longest) => {
-                let longest = (*longest).max(1);
-                archive.begin(&column.name, &format!("<U{longest}"), &[n], 4 * longest)?;
-                index.each(|shape| archive.put(&text(&column.text(&shape), longest)))?;
-            }
-            Kind::Fact => {
-                archive.begin(&column.name, "<f8", &[n], 8)?;
-                index.each(|shape| archive.put(&column.fact(&shape).to_le_bytes()))?;
-            }
-            Kind::Floats(extents) => {
-                archive.begin(&column.name, "<f4", &[&[n], extents.as_slice()].concat(), 4)?;
-                let length = extents.iter().product();
-                index.each(|shape| {
-                    let mut values = column.floats(&shape).unwrap_or_default();
-                    values.resize(length, f32::NAN);
-                    archive.put(&to_bytes(&values))
-                })?;
-            }
-        }
+        let longest = column.extents.first().map_or(1, |n| *n).max(1);
+        let (kind, item) = match column.kind {
+            Kind::Text => (format!("<U{longest}"), 4 * longest),
+            Kind::Fact => ("<f8".to_owned(), 8),
+            Kind::Floats => ("<f4".to_owned(), 4),
+        };
+        let extents = if let Kind::Floats = column.kind { &column.extents[..] } else { &[] };
+        archive.begin(&column.name, &kind, &[&[n], extents].concat(), item)?;
+        index.each(|shape| {
+            let value = column.value(&shape).unwrap_or(Value::Floats(Cow::default(), Vec::new()));
+            archive.put(&match value {
+                Value::Text(value) => text(&value, longest),
+                Value::Fact(value) => value.to_le_bytes().to_vec(),
+                Value::Floats(values, _) => {
+                    let mut values = values.into_owned();
+                    values.resize(extents.iter().product(), f32::NAN);
+                    to_bytes(&values)
+                }
+            })
+        })?;
     }
     let mut out = archive.zip.finish().map_err(failed)?;
     Ok(out.flush()?)

@@ -4,15 +4,16 @@ use std::fs::File;
 use std::io;
 use std::sync::Arc;
 
-use parquet::basic::{Compression, ConvertedType, LogicalType, Repetition, Type as Physical};
+use parquet::basic::Compression;
 use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, FloatType};
 use parquet::errors::ParquetError;
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
-use parquet::schema::types::{ColumnPath, Type, TypePtr};
+use parquet::schema::parser::parse_message_type;
+use parquet::schema::types::ColumnPath;
 
-use super::columns::{Column, Kind, columns};
+use super::columns::{Column, Kind, Value, columns};
 use super::error::ExportError;
 use crate::{Index, Shape};
 
@@ -21,7 +22,7 @@ const GROUP: usize = 1024;
 
 pub(super) fn write(index: &Index, file: &mut File) -> Result<(), ExportError> {
     let columns = columns(index)?;
-    let schema = schema(&columns).map_err(failed)?;
+    let schema = parse_message_type(&schema(&columns)).map_err(failed)?.into();
     let options = KeyValue::new("canonform.options".to_owned(), index.options().to_owned());
     let properties = WriterProperties::builder()
         .set_compression(Compression::SNAPPY)
@@ -46,35 +47,19 @@ pub(super) fn write(index: &Index, file: &mut File) -> Result<(), ExportError> {
     Ok(())
 }
 
-fn schema(columns: &[Column]) -> Result<TypePtr, ParquetError> {
-    let fields = columns.iter().map(|column| field(column).map(Arc::new)).collect::<Result<_, _>>()?;
-    Type::group_type_builder("shapes").with_fields(fields).build().map(Arc::new)
-}
-
-fn field(column: &Column) -> Result<Type, ParquetError> {
-    let name = column.name.as_str();
-    let repetition = if column.is_optional() { Repetition::OPTIONAL } else { Repetition::REQUIRED };
-    match &column.kind {
-        Kind::Text(_) => Type::primitive_type_builder(name, Physical::BYTE_ARRAY)
-            .with_repetition(repetition)
-            .with_logical_type(Some(LogicalType::String))
-            .build(),
-        Kind::Fact => {
-            Type::primitive_type_builder(name, Physical::DOUBLE).with_repetition(repetition).build()
+fn schema(columns: &[Column]) -> String {
+    let field = |column: &Column| {
+        let (name, repetition) = (&column.name, if column.is_optional() { "OPTIONAL" } else { "REQUIRED" });
+        match column.kind {
+            Kind::Text => format!("{repetition} BYTE_ARRAY {name} (STRING);"),
+            Kind::Fact => format!("{repetition} DOUBLE {name};"),
+            Kind::Floats => {
+                let list = "{ REPEATED GROUP list { REQUIRED FLOAT element; } }";
+                format!("{repetition} GROUP {name} (LIST) {list}")
+            }
         }
-        Kind::Floats(_) => {
-            let element = Type::primitive_type_builder("element", Physical::FLOAT);
-            let element = Arc::new(element.with_repetition(Repetition::REQUIRED).build()?);
-            let inner = Type::group_type_builder("list").with_repetition(Repetition::REPEATED);
-            let inner = Arc::new(inner.with_fields(vec![element]).build()?);
-            Type::group_type_builder(name)
-                .with_repetition(repetition)
-                .with_converted_type(ConvertedType::LIST)
-                .with_logical_type(Some(LogicalType::List))
-                .with_fields(vec![inner])
-                .build()
-        }
-    }
+    };
+    format!("message shapes {{ {} }}", columns.iter().map(field).collect::<String>())
 }
 
 fn write_group(
@@ -84,17 +69,20 @@ fn write_group(
 ) -> Result<(), ExportError> {
     let mut group = writer.next_row_group().map_err(failed)?;
     for column in columns {
-        match &column.kind {
-            Kind::Text(_) => {
-                let values: Vec<ByteArray> =
-                    rows.iter().map(|shape| column.text(shape).into_bytes().into()).collect();
+        let values = rows.iter().map(|shape| column.value(shape));
+        match column.kind {
+            Kind::Text => {
+                let text = |value| {
+                    if let Some(Value::Text(text)) = value { text.as_bytes().to_vec() } else { Vec::new() }
+                };
+                let values: Vec<ByteArray> = values.map(text).map(ByteArray::from).collect();
                 put::<ByteArrayType>(&mut group, &values, None, None)?;
             }
             Kind::Fact => {
-                let values: Vec<f64> = rows.iter().map(|shape| column.fact(shape)).collect();
-                put::<DoubleType>(&mut group, &values, None, None)?;
+                let fact = |value| if let Some(Value::Fact(fact)) = value { fact } else { f64::NAN };
+                put::<DoubleType>(&mut group, &values.map(fact).collect::<Vec<_>>(), None, None)?;
             }
-            Kind::Floats(_) => lists(&mut group, column, rows)?,
+            Kind::Floats => lists(&mut group, column.is_optional(), values)?,
         }
     }
     group.close().map_err(failed)?;
@@ -103,24 +91,23 @@ fn write_group(
 
 /// Writes a column of lists. Definition levels count what is there (a list that may be missing, an element), repetition
 /// levels are 0 where a list begins.
-fn lists(
+fn lists<'a>(
     group: &mut SerializedRowGroupWriter<'_, &mut File>,
-    column: &Column,
-    rows: &[Shape],
+    is_optional: bool,
+    rows: impl Iterator<Item = Option<Value<'a>>>,
 ) -> Result<(), ExportError> {
     let (mut values, mut definitions, mut repetitions) = (Vec::new(), Vec::new(), Vec::new());
-    let of_empty = i16::from(column.is_optional());
-    for row in rows.iter().map(|shape| column.floats(shape)) {
-        let is_there = row.is_some();
-        match row.unwrap_or_default().as_slice() {
-            [] => {
-                definitions.push(if is_there { of_empty } else { 0 });
-                repetitions.push(0);
-            }
-            row => {
-                values.extend_from_slice(row);
+    let of_empty = i16::from(is_optional);
+    for row in rows {
+        match row {
+            Some(Value::Floats(row, _)) if !row.is_empty() => {
+                values.extend_from_slice(&row);
                 definitions.extend(row.iter().map(|_| of_empty + 1));
                 repetitions.extend((0..row.len()).map(|i| i16::from(i > 0)));
+            }
+            row => {
+                definitions.push(if row.is_some() { of_empty } else { 0 });
+                repetitions.push(0);
             }
         }
     }

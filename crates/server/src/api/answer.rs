@@ -34,33 +34,10 @@ impl<S: Send + Sync> FromRequestParts<S> for Id {
     }
 }
 
-/// A response as JSON or CSV, written by the job that computed it because large ones take time.
-pub(super) struct Written {
-    kind: &'static str,
-    content: Vec<u8>,
-}
-
-impl Written {
-    pub(super) fn new(answer: &impl Serialize) -> Result<Self, ApiError> {
-        let content = serde_json::to_vec(answer).map_err(|_| ApiError::internal())?;
-        Ok(Self { kind: "application/json", content })
-    }
-
-    /// A table.
-    pub(super) fn csv(text: String) -> Self {
-        Self { kind: "text/csv; charset=utf-8; header=present", content: text.into_bytes() }
-    }
-
-    /// JSON that is already written.
-    pub(super) fn json(text: &str) -> Self {
-        Self { kind: "application/json", content: text.as_bytes().to_vec() }
-    }
-}
-
-impl IntoResponse for Written {
-    fn into_response(self) -> Response {
-        ([(header::CONTENT_TYPE, self.kind)], self.content).into_response()
-    }
+/// A response as JSON, written by the job that computed it because large ones take time.
+pub(super) fn json(answer: &impl Serialize) -> Result<Response, ApiError> {
+    let content = serde_json::to_vec(answer).map_err(|_| ApiError::internal())?;
+    Ok(([(header::CONTENT_TYPE, "application/json")], content).into_response())
 }
 
 /// An entity tag: `text` in quotes.

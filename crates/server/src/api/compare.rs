@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use axum::extract::State;
+use axum::response::Response;
 use base::object;
 use canonform::compare::{Compared, Residual, compare_meshes};
 use canonform::descriptors::PreparedShape;
 use canonform::{Budget, ContentHash, Error};
 use serde::{Deserialize, Serialize};
 
-use super::answer::{Params, Written};
+use super::answer::{Params, json};
 use super::shapes::is_missing;
 use crate::app::App;
 use crate::collection::Collection;
@@ -36,7 +37,7 @@ impl CompareParams {
         app: &Arc<App>,
         each: f64,
         answer: fn(&App, &Collection, Self, &Budget) -> Result<T, ApiError>,
-    ) -> Result<Written, ApiError> {
+    ) -> Result<Response, ApiError> {
         let (shared, collection) = (app.clone(), app.served.collection());
         let ids = self.a.iter().chain([&self.b]);
         let measuring: f64 = ids.clone().map(|id| app.cost(&collection, id)).sum();
@@ -44,7 +45,7 @@ impl CompareParams {
         let uploaded = uploaded.map_or(0, |query| query.n_vertices());
         let vertices = uploaded + ids.map(|id| collection.n_vertices(id)).sum::<u64>();
         let cost = measuring + vertices as f64 * each;
-        let job = move |budget: &Budget| Written::new(&answer(&shared, &collection, self, budget)?);
+        let job = move |budget: &Budget| json(&answer(&shared, &collection, self, budget)?);
         app.work.run(cost, None, job).await
     }
 
@@ -88,7 +89,7 @@ impl ComparedShape {
 pub(super) async fn compare(
     State(app): State<Arc<App>>,
     Params(params): Params<CompareParams>,
-) -> Result<Written, ApiError> {
+) -> Result<Response, ApiError> {
     params.answered(&app, cost::COMPARED_VERTEX, answer).await
 }
 

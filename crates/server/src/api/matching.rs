@@ -3,12 +3,13 @@
 use std::sync::Arc;
 
 use axum::extract::State;
+use axum::response::Response;
 use base::object;
 use canonform::Budget;
 use canonform::maps::{CorrespondOptions, MappedSurface, correspond};
 use serde::Serialize;
 
-use super::answer::{Params, Written};
+use super::answer::Params;
 use super::compare::CompareParams;
 use crate::app::App;
 use crate::collection::Collection;
@@ -18,7 +19,7 @@ use crate::error::ApiError;
 pub(super) async fn matching(
     State(app): State<Arc<App>>,
     Params(params): Params<CompareParams>,
-) -> Result<Written, ApiError> {
+) -> Result<Response, ApiError> {
     params.answered(&app, cost::MATCHED_VERTEX, answer).await
 }
 

@@ -12,11 +12,12 @@ use std::sync::{Arc, LazyLock};
 
 use axum::Router;
 use axum::extract::State;
-use axum::http::StatusCode;
+use axum::http::{StatusCode, header};
+use axum::response::{IntoResponse, Response};
 use axum::routing::{MethodRouter, get, post};
 use base::object;
 
-use self::answer::Written;
+use self::answer::json;
 use crate::app::App;
 use crate::error::ApiError;
 use crate::formats::filled_in;
@@ -52,8 +53,8 @@ pub(crate) fn router() -> Router<Arc<App>> {
     all.fallback(not_found).method_not_allowed_fallback(wrong_method)
 }
 
-async fn openapi() -> Written {
-    Written::json(&OPENAPI)
+async fn openapi() -> impl IntoResponse {
+    ([(header::CONTENT_TYPE, "application/json")], OPENAPI.as_str())
 }
 
 async fn not_found() -> ApiError {
@@ -67,9 +68,9 @@ async fn wrong_method() -> ApiError {
 }
 
 /// Status, size of the index, and limits.
-async fn health(State(app): State<Arc<App>>) -> Result<Written, ApiError> {
+async fn health(State(app): State<Arc<App>>) -> Result<Response, ApiError> {
     let collection = app.served.collection();
-    Written::new(&object! {
+    json(&object! {
         status: "ok",
         version: env!("CARGO_PKG_VERSION"),
         shapes: collection.shapes.len(),

@@ -5,6 +5,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use axum::extract::{Request, State};
+use axum::http::header;
+use axum::response::{IntoResponse, Response};
 use base::object;
 use canonform::collection::{is_archive_name, single_mesh};
 use canonform::embed::MeasuredSurface;
@@ -17,7 +19,7 @@ use report::viewer::Geometry;
 use serde::Deserialize;
 use serde_json::{Map, Value};
 
-use super::answer::{Params, Written};
+use super::answer::{Params, json};
 use super::csv;
 use super::shapes::{is_missing, points};
 use crate::app::{App, Query};
@@ -113,10 +115,11 @@ impl Wanted {
         query_id: Option<&str>,
         mut answer: Answer,
         drawn: Option<Drawn>,
-    ) -> Result<Written, ApiError> {
+    ) -> Result<Response, ApiError> {
         answer.place(|path| collection.public_path(path));
         if self.format == Format::Csv {
-            return Ok(Written::csv(csv::of(query, &answer)));
+            let kind = (header::CONTENT_TYPE, "text/csv; charset=utf-8; header=present");
+            return Ok(([kind], csv::of(query, &answer)).into_response());
         }
         let (measured, points) = match drawn {
             Some(Ok(measured)) => (Some(measured), None),
@@ -126,7 +129,7 @@ impl Wanted {
         let repair = measured.as_ref().map(|measured| &measured.surface.input.report);
         let (points, mesh_missing) = points.unzip();
         let shown = measured.as_ref().filter(|_| self.geometry);
-        Written::new(&object! {
+        json(&object! {
             query,
             #[serde(flatten)]
             answer,
@@ -146,7 +149,7 @@ pub(super) async fn search(
     State(app): State<Arc<App>>,
     Params(params): Params<SearchParams>,
     request: Request,
-) -> Result<Written, ApiError> {
+) -> Result<Response, ApiError> {
     if params.shape.is_some() || params.query.is_some() {
         return again(app, params).await;
     }
@@ -173,11 +176,11 @@ pub(super) async fn search(
 pub(super) async fn search_again(
     State(app): State<Arc<App>>,
     Params(params): Params<SearchParams>,
-) -> Result<Written, ApiError> {
+) -> Result<Response, ApiError> {
     again(app, params).await
 }
 
-async fn again(app: Arc<App>, params: SearchParams) -> Result<Written, ApiError> {
+async fn again(app: Arc<App>, params: SearchParams) -> Result<Response, ApiError> {
     let wanted = params.wanted()?;
     let (shared, collection) = (app.clone(), app.served.collection());
     match (params.shape, params.query) {
@@ -207,7 +210,7 @@ fn with_shape(
     id: &str,
     wanted: &Wanted,
     budget: &Budget,
-) -> Result<Written, ApiError> {
+) -> Result<Response, ApiError> {
     let query = collection.search.query_of(id, &wanted.options, budget)?;
     let answer = collection.search.search(&query, &wanted.options, budget)?;
     let drawn = match wanted.geometry.then(|| app.indexed(collection, id, budget)) {
@@ -221,7 +224,7 @@ fn with_shape(
     wanted.written(collection, id, None, answer, drawn)
 }
 
-fn with_upload(app: &App, upload: Upload, wanted: &Wanted, budget: &Budget) -> Result<Written, ApiError> {
+fn with_upload(app: &App, upload: Upload, wanted: &Wanted, budget: &Budget) -> Result<Response, ApiError> {
     let Some(name) = upload.files.first().map(|(name, _)| name.clone()) else {
         let remedy = format!("send one mesh, {}; or name a shape of the index with ?shape=", mesh_files());
         return Err(ApiError::bad_request("the request has no file").with_remedy(remedy));

@@ -13,7 +13,7 @@ use report::render::{Background, RenderOptions, View, render};
 use report::viewer::Geometry;
 use serde::Deserialize;
 
-use super::answer::{Id, Params, Written, is_known, tag, tagged};
+use super::answer::{Id, Params, is_known, json, tag, tagged};
 use crate::app::App;
 use crate::collection::{Collection, ShapeSummary};
 use crate::cost;
@@ -52,7 +52,7 @@ fn usual_limit() -> usize {
 pub(super) async fn list(
     State(app): State<Arc<App>>,
     Params(params): Params<ListParams>,
-) -> Result<Written, ApiError> {
+) -> Result<Response, ApiError> {
     if !(1..=MOST_LISTED).contains(&params.limit) {
         let error = format!("limit is {}; use 1 to {MOST_LISTED}", params.limit);
         return Err(ApiError::bad_request(error));
@@ -63,7 +63,7 @@ pub(super) async fn list(
             return Err(ApiError::bad_request(format!("sample is {n}; use 1 to {MOST_LISTED}")));
         }
         let (total, shapes) = (collection.shapes.len(), collection.sample(n));
-        return Written::new(&object! { total, offset: 0, shapes });
+        return json(&object! { total, offset: 0, shapes });
     }
     let part = params.q.to_lowercase();
     let is_meant = |shape: &&ShapeSummary| {
@@ -77,24 +77,24 @@ pub(super) async fn list(
         }
         total += 1;
     }
-    Written::new(&object! { total, offset: params.offset, shapes })
+    json(&object! { total, offset: params.offset, shapes })
 }
 
 /// The repaired mesh of a shape.
-pub(super) async fn mesh(State(app): State<Arc<App>>, Id(id): Id) -> Result<Written, ApiError> {
+pub(super) async fn mesh(State(app): State<Arc<App>>, Id(id): Id) -> Result<Response, ApiError> {
     let (shared, collection) = (app.clone(), app.served.collection());
     let cost = app.cost(&collection, &id);
-    let mesh = move |budget: &Budget| Written::new(&shared.indexed(&collection, &id, budget)?.mesh());
+    let mesh = move |budget: &Budget| json(&shared.indexed(&collection, &id, budget)?.mesh());
     app.work.run(cost, None, mesh).await
 }
 
 /// The form of a shape: a surface, or the points stored in the index if its mesh is missing.
-pub(super) async fn form(State(app): State<Arc<App>>, Id(id): Id) -> Result<Written, ApiError> {
+pub(super) async fn form(State(app): State<Arc<App>>, Id(id): Id) -> Result<Response, ApiError> {
     let (shared, collection) = (app.clone(), app.served.collection());
     let cost = app.cost(&collection, &id);
     let form = move |budget: &Budget| match shared.indexed(&collection, &id, budget) {
-        Ok(measured) => Written::new(&measured.form()),
-        Err(fault) if is_missing(&fault) => Written::new(&points(&collection, &id)?),
+        Ok(measured) => json(&measured.form()),
+        Err(fault) if is_missing(&fault) => json(&points(&collection, &id)?),
         Err(fault) => Err(fault.into()),
     };
     app.work.run(cost, None, form).await
