@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 use serde::Deserialize;
 
 use crate::implicit::{Blob, BodyPart, ImplicitBody};
-use crate::pose::{JointTurn, Pose, turn};
+use crate::pose::{JointTurn, Pose};
 use crate::skeleton::{BoneNode, Joint, JointId, Skeleton};
 
 /// A body at rest, its skeleton and its poses.
@@ -113,8 +113,8 @@ enum Angles {
 impl Angles {
     fn turn(self) -> JointTurn {
         match self {
-            Self::Flex(x) => turn(x, 0.0, 0.0),
-            Self::Turn([x, y, z]) => turn(x, y, z),
+            Self::Flex(x) => [x, 0.0, 0.0],
+            Self::Turn(turn) => turn,
         }
     }
 }
