@@ -29,17 +29,6 @@ pub(crate) fn weighted(operator: &dyn SymmetricOperator, columns: &Matrix) -> Ma
     result
 }
 
-/// `x' M y`, in eight independent chains of additions.
-fn inner(masses: Option<&[f64]>, x: &[f64], y: &[f64]) -> f64 {
-    let mut sums = [0.0; 8];
-    let done = x.len() / 8 * 8;
-    let product = |i: usize| x[i] * y[i] * masses.map_or(1.0, |masses| masses[i]);
-    for start in (0..done).step_by(8) {
-        sums.iter_mut().enumerate().for_each(|(lane, sum)| *sum += product(start + lane));
-    }
-    sums.iter().sum::<f64>() + (done..x.len()).map(product).sum::<f64>()
-}
-
 /// A block Lanczos process for the largest eigenvalues of an operator `C` that is symmetric in the inner product
 /// `x' M y` of its masses.
 ///
@@ -180,8 +169,15 @@ impl<'a> Lanczos<'a> {
         (r.rows(0, kept).into_owned(), left)
     }
 
+    /// `x' M y`, in eight independent chains of additions.
     fn inner(&self, x: &[f64], y: &[f64]) -> f64 {
-        inner(self.operator.masses(), x, y)
+        let mut sums = [0.0; 8];
+        let (done, masses) = (x.len() / 8 * 8, self.operator.masses());
+        let product = |i: usize| x[i] * y[i] * masses.map_or(1.0, |masses| masses[i]);
+        for start in (0..done).step_by(8) {
+            sums.iter_mut().enumerate().for_each(|(lane, sum)| *sum += product(start + lane));
+        }
+        sums.iter().sum::<f64>() + (done..x.len()).map(product).sum::<f64>()
     }
 
     /// The M-norm of each column.
