@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use crate::clearance::entanglement;
 use crate::error::DatasetError;
 use crate::model::BodyModel;
-use crate::pose::{Build, PosedSkeleton};
+use crate::pose::{PosedSkeleton, random_build};
 use crate::shape::{posed_positions, rest_surface, shuffled};
 use crate::stream::{Purpose, Stream};
 
@@ -255,7 +255,7 @@ pub(crate) fn bent(
     let mut posed = posed_skeleton(model, pose, &mut of_pose(Purpose::Pose));
     if body > 0 {
         let mut proportions = stream(body * POSES_PER_BODY, Purpose::Build);
-        posed = posed.built(&Build::random(&model.skeleton, &mut proportions));
+        posed = posed.built(&random_build(&model.skeleton, &mut proportions));
     }
     let positions = posed_positions(&surface, &posed, scale(model));
     let numbered =

@@ -79,7 +79,7 @@ fn path_length(skeleton: &Skeleton, mut a: (usize, f64), mut b: (usize, f64)) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pose::{Pose, turn};
+    use crate::pose::Pose;
     use crate::skeleton::{Joint, JointId, node};
 
     /// A trunk upwards with a straight arm on each side.
@@ -93,7 +93,7 @@ mod tests {
     }
 
     fn depth(skeleton: &Skeleton, elbow: f64) -> f64 {
-        let pose = Pose::rest(skeleton).set(JointId { chain: 1, joint: 0 }, turn(0.0, elbow, 0.0));
+        let pose = Pose::rest(skeleton).set(JointId { chain: 1, joint: 0 }, [0.0, elbow, 0.0]);
         entanglement(&PosedSkeleton::new(skeleton, &pose))
     }
 

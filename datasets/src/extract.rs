@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use base::{Budget, Exceeded};
+use mesh::TriMesh;
 use nalgebra::{Matrix3, Point3, Vector3};
 use rayon::prelude::*;
 use surface::VertexId;
@@ -26,12 +27,6 @@ pub(crate) struct Lattice {
     pub(crate) spacing: f64,
 }
 
-/// A closed surface with badly shaped triangles, oriented outwards.
-pub(crate) struct RawSurface {
-    pub(crate) positions: Vec<Point3<f64>>,
-    pub(crate) faces: Vec<[VertexId; 3]>,
-}
-
 /// The part of the surface inside one block.
 struct Leaf {
     origin: [i64; 3],
@@ -44,18 +39,14 @@ struct Leaf {
     on_edge: Vec<u32>,
 }
 
-/// Extracts the surface of `body`.
+/// Extracts the surface of `body`, oriented outwards, with badly shaped triangles.
 ///
 /// Every crossed lattice edge has one vertex. Loops of three and four vertices become one or two triangles,
 /// longer ones a fan around their center. No two triangles share more than an edge, so the result is a closed
 /// manifold for any body. The search descends from a cube around the body and drops blocks that the surface
 /// cannot reach: those where the value of the 1-Lipschitz function at the center exceeds half the diagonal.
 /// Time and memory are `O(area / spacing^2)`.
-pub(crate) fn extract(
-    body: &ImplicitBody,
-    lattice: Lattice,
-    budget: &Budget,
-) -> Result<RawSurface, Exceeded> {
+pub(crate) fn extract(body: &ImplicitBody, lattice: Lattice, budget: &Budget) -> Result<TriMesh, Exceeded> {
     let loops = all_loops();
     let (center, radius) = body.bounding_ball();
     let leaves: Vec<Leaf> = crossed_blocks(body, lattice, center, radius)
@@ -74,7 +65,7 @@ pub(crate) fn extract(
         .map(|i| triangles(&leaves, &offsets, &by_origin, i, &loops))
         .collect::<Vec<_>>()
         .concat();
-    Ok(RawSurface { positions, faces })
+    Ok(TriMesh { positions, faces })
 }
 
 impl Lattice {

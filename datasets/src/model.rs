@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 use serde::Deserialize;
 
 use crate::implicit::{Blob, BodyPart, ImplicitBody};
-use crate::pose::{JointTurn, Pose, turn};
+use crate::pose::{JointTurn, Pose};
 use crate::skeleton::{BoneNode, Joint, JointId, Skeleton};
 
 /// A body at rest, its skeleton and its poses.
@@ -90,40 +90,14 @@ struct JointData {
 }
 
 /// The joints that are not at rest.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 struct PoseData {
-    root: Option<Angles>,
-    /// By the name of a chain, the angles of its joints from the trunk down, on the left and perhaps on the right.
-    #[serde(default)]
-    chains: BTreeMap<String, Vec<Vec<Angles>>>,
-    /// By the name of a joint.
-    #[serde(default)]
-    turns: BTreeMap<String, BothSides>,
-}
-
-#[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(untagged)]
-enum Angles {
-    /// About `x` alone.
-    Flex(f64),
-    Turn([f64; 3]),
-}
-
-impl Angles {
-    fn turn(self) -> JointTurn {
-        match self {
-            Self::Flex(x) => turn(x, 0.0, 0.0),
-            Self::Turn([x, y, z]) => turn(x, y, z),
-        }
-    }
-}
-
-#[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(untagged)]
-enum BothSides {
-    Same(Angles),
-    Apart { left: Angles, right: Angles },
+    root: JointTurn,
+    /// By the name of a chain, the turns of its joints from the trunk down, on the left and perhaps on the right.
+    chains: BTreeMap<String, Vec<Vec<JointTurn>>>,
+    /// By the name of a joint, its turn on the left and on the right, or that on both sides.
+    turns: BTreeMap<String, Vec<JointTurn>>,
 }
 
 impl BodyModel {
@@ -203,20 +177,15 @@ impl PoseData {
     fn pose(&self, skeleton: &Skeleton, names: &JointNames<'_>) -> Pose {
         let mut set = Vec::new();
         for (name, sides) in &self.chains {
-            for (&chain, angles) in names.chains[name.as_str()].iter().zip(sides) {
-                let joints = angles.iter().enumerate();
-                set.extend(joints.map(|(joint, angles)| (JointId { chain, joint }, angles.turn())));
+            for (&chain, turns) in names.chains[name.as_str()].iter().zip(sides) {
+                set.extend(turns.iter().enumerate().map(|(joint, turn)| (JointId { chain, joint }, *turn)));
             }
         }
         for (name, sides) in &self.turns {
-            let turns = match *sides {
-                BothSides::Same(both) => [both; 2],
-                BothSides::Apart { left, right } => [left, right],
-            };
-            set.extend(names.joints[name.as_str()].iter().copied().zip(turns.map(Angles::turn)));
+            set.extend(names.joints[name.as_str()].iter().copied().zip(sides.iter().copied().cycle()));
         }
         let mut rest = Pose::rest(skeleton);
-        rest.root = self.root.map_or_else(JointTurn::default, Angles::turn);
+        rest.root = self.root;
         set.into_iter().fold(rest, |pose, (id, turn)| pose.set(id, turn))
     }
 }

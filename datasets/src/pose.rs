@@ -6,19 +6,9 @@ use crate::skeleton::{BodySide, Chain, JointId, Skeleton};
 use crate::stream::Stream;
 use crate::trig::rotation;
 
-/// A rotation of a joint in degrees: about its y axis first, then x, then z. It is mirrored for the right
+/// A rotation of a joint about its x, y and z axes in degrees: about y first, then x, then z. It is mirrored for the right
 /// side, so that the same numbers give the mirror image.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct JointTurn {
-    pub(crate) x: f64,
-    pub(crate) y: f64,
-    pub(crate) z: f64,
-}
-
-/// Shorthand for tables of turns.
-pub(crate) fn turn(x: f64, y: f64, z: f64) -> JointTurn {
-    JointTurn { x, y, z }
-}
+pub(crate) type JointTurn = [f64; 3];
 
 /// The turns of all joints of one skeleton.
 #[derive(Debug, Clone)]
@@ -49,14 +39,14 @@ impl Pose {
             for (joint, turn) in chain.joints.iter().zip(turns) {
                 let vigour = stream.uniform(0.85, 1.15);
                 let [x, y, z] = joint.play.map(|play| stream.uniform(-play, play));
-                *turn = JointTurn { x: turn.x * vigour + x, y: turn.y * vigour + y, z: turn.z * vigour + z };
+                *turn = [turn[0] * vigour + x, turn[1] * vigour + y, turn[2] * vigour + z];
             }
         }
         if stream.uniform(0.0, 1.0) < 0.5 { pose.mirrored(skeleton) } else { pose }
     }
 
     fn mirrored(&self, skeleton: &Skeleton) -> Self {
-        let flip = |t: JointTurn| JointTurn { x: t.x, y: -t.y, z: -t.z };
+        let flip = |[x, y, z]: JointTurn| [x, -y, -z];
         let mut pose = self.clone();
         pose.root = flip(self.root);
         let mut c = 0;
@@ -74,30 +64,22 @@ impl Pose {
     }
 }
 
-/// The proportions of a body, relative to the one that the skeleton describes.
-#[derive(Debug, Clone)]
-pub(crate) struct Build {
-    /// Factors of the length and of the girth of every chain.
-    factors: Vec<[f64; 2]>,
-}
-
 /// Half the range of the factors of lengths and of girths, which are uniform. Their standard deviations, 4 % and 9 %,
 /// are roughly those of statures and of the girths of trunk and limbs among adults.
 const VARIATION: [f64; 2] = [0.07, 0.16];
 
-impl Build {
-    /// Random proportions, the same on the left and on the right.
-    pub(crate) fn random(skeleton: &Skeleton, stream: &mut Stream) -> Self {
-        let mut factors: Vec<[f64; 2]> = Vec::with_capacity(skeleton.chains.len());
-        for chain in &skeleton.chains {
-            let drawn = match (chain.side, factors.last()) {
-                (BodySide::Right, Some(left)) => *left,
-                _ => VARIATION.map(|range| 1.0 + stream.uniform(-range, range)),
-            };
-            factors.push(drawn);
-        }
-        Self { factors }
+/// Random factors of the length and of the girth of every chain, relative to what the skeleton describes; the same on the left
+/// and on the right.
+pub(crate) fn random_build(skeleton: &Skeleton, stream: &mut Stream) -> Vec<[f64; 2]> {
+    let mut factors: Vec<[f64; 2]> = Vec::with_capacity(skeleton.chains.len());
+    for chain in &skeleton.chains {
+        let drawn = match (chain.side, factors.last()) {
+            (BodySide::Right, Some(left)) => *left,
+            _ => VARIATION.map(|range| 1.0 + stream.uniform(-range, range)),
+        };
+        factors.push(drawn);
     }
+    factors
 }
 
 /// An affine map of space; a rigid motion unless the body has other proportions than the skeleton.
@@ -133,7 +115,8 @@ impl<'a> PosedSkeleton<'a> {
             let base = match chain.parent {
                 Some((parent, arc)) => interpolate(&motions[parent], arc / skeleton.chains[parent].length()),
                 None => {
-                    let rotation = rotation(pose.root.x, pose.root.y, pose.root.z);
+                    let [x, y, z] = pose.root;
+                    let rotation = rotation(x, y, z);
                     let pivot = chain.nodes[0].at.coords;
                     Motion { rotation, shift: pivot - rotation * pivot }
                 }
@@ -145,9 +128,9 @@ impl<'a> PosedSkeleton<'a> {
 
     /// The same pose of a body with other proportions: the axis of every chain is lengthened, everything is moved away
     /// from its axis, and children stay where they are attached.
-    pub(crate) fn built(self, build: &Build) -> Self {
+    pub(crate) fn built(self, build: &[[f64; 2]]) -> Self {
         let mut motions: Vec<Vec<Motion>> = Vec::with_capacity(self.motions.len());
-        let chains = self.skeleton.chains.iter().zip(&self.motions).zip(&build.factors);
+        let chains = self.skeleton.chains.iter().zip(&self.motions).zip(build);
         for ((chain, plain), &[length, girth]) in chains {
             let start = axis_point(chain, 0.0);
             let posed = plain[0].apply(start);
@@ -212,11 +195,10 @@ fn bend(chain: &Chain, turns: &[JointTurn], base: Motion) -> Vec<Motion> {
     };
     let reflect = Matrix3::from_diagonal(&Vector3::new(mirror, 1.0, 1.0));
     let rotation_at = |arc: f64| {
-        chain.joints.iter().zip(turns).fold(base.rotation, |product, (joint, t)| {
+        chain.joints.iter().zip(turns).fold(base.rotation, |product, (joint, [x, y, z])| {
             let middle = chain.arcs[joint.node];
             let share = smooth_step((arc - (middle - joint.before)) / (joint.before + joint.after));
-            let turned =
-                joint.frame * rotation(t.x * share, t.y * share, t.z * share) * joint.frame.transpose();
+            let turned = joint.frame * rotation(x * share, y * share, z * share) * joint.frame.transpose();
             product * (reflect * turned * reflect)
         })
     };
@@ -274,7 +256,7 @@ mod tests {
     #[test]
     fn a_bent_axis_keeps_its_length_and_turns_by_the_given_angle() {
         let skeleton = skeleton();
-        let posed = PosedSkeleton::new(&skeleton, &Pose::rest(&skeleton).set(TRUNK, turn(90.0, 0.0, 0.0)));
+        let posed = PosedSkeleton::new(&skeleton, &Pose::rest(&skeleton).set(TRUNK, [90.0, 0.0, 0.0]));
         let axis: Vec<_> = (0..=4000)
             .map(|i| {
                 interpolate(&posed.motions[0], f64::from(i) / 4000.0).apply(Point3::new(
@@ -296,10 +278,10 @@ mod tests {
     fn the_mirrored_pose_is_the_mirror_image() {
         let skeleton = skeleton();
         let mut pose = Pose::rest(&skeleton)
-            .set(TRUNK, turn(20.0, -15.0, 30.0))
-            .set(ELBOWS[0], turn(10.0, 40.0, -70.0))
-            .set(ELBOWS[1], turn(-5.0, 8.0, 33.0));
-        pose.root = turn(5.0, 10.0, -20.0);
+            .set(TRUNK, [20.0, -15.0, 30.0])
+            .set(ELBOWS[0], [10.0, 40.0, -70.0])
+            .set(ELBOWS[1], [-5.0, 8.0, 33.0]);
+        pose.root = [5.0, 10.0, -20.0];
         let (a, b) =
             (PosedSkeleton::new(&skeleton, &pose), PosedSkeleton::new(&skeleton, &pose.mirrored(&skeleton)));
         for p in [[0.3, 0.2, 12.0], [33.0, 1.0, 30.0], [-25.0, -0.5, 29.0]].map(Point3::from) {
@@ -307,7 +289,7 @@ mod tests {
         }
         let both = ELBOWS
             .into_iter()
-            .fold(Pose::rest(&skeleton), |pose, elbow| pose.set(elbow, turn(10.0, 40.0, -70.0)));
+            .fold(Pose::rest(&skeleton), |pose, elbow| pose.set(elbow, [10.0, 40.0, -70.0]));
         let same = PosedSkeleton::new(&skeleton, &both);
         let hand = Point3::new(38.0, 0.0, 30.0);
         assert!((mirrored(same.deform(hand)) - same.deform(mirrored(hand))).norm() < 1e-9);

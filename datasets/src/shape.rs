@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use surface::{VertexId, components_of_faces};
 
 use crate::corner_table::EditableCorners;
-use crate::extract::{Lattice, RawSurface, extract};
+use crate::extract::{Lattice, extract};
 use crate::model::BodyModel;
 use crate::pose::PosedSkeleton;
 use crate::relax::relax;
@@ -54,7 +54,7 @@ pub(crate) fn rest_surface(
 
 fn closed_surface(
     model: &BodyModel,
-    raw: RawSurface,
+    raw: TriMesh,
     grading: f64,
     n_vertices: usize,
     budget: &Budget,
@@ -76,7 +76,7 @@ fn closed_surface(
 }
 
 /// The number of handles of an extracted surface; `None` unless it is in one piece.
-pub(crate) fn genus(raw: &RawSurface) -> Option<usize> {
+pub(crate) fn genus(raw: &TriMesh) -> Option<usize> {
     let n_vertices = raw.positions.len();
     let is_connected = components_of_faces(n_vertices, &raw.faces).count == 1;
     // Euler's formula of a closed surface is F = 2 V - 4 + 4 g.

@@ -11,33 +11,19 @@ use nalgebra::Matrix3;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Purpose {
     /// Angles of joints.
-    Pose,
+    Pose = 0,
     /// Placement of the lattice from which the surface is extracted.
-    Lattice,
+    Lattice = 1,
     /// Order of vertices and faces.
-    Numbering,
+    Numbering = 2,
     /// Proportions of a body.
-    Build,
+    Build = 3,
     /// Damage of a finished mesh.
-    Damage,
+    Damage = 12,
     /// Points on a surface.
-    Scan,
+    Scan = 13,
     /// Parameters of mechanical parts.
-    Part,
-}
-
-impl Purpose {
-    fn number(self) -> u64 {
-        match self {
-            Self::Pose => 0,
-            Self::Lattice => 1,
-            Self::Numbering => 2,
-            Self::Build => 3,
-            Self::Damage => 12,
-            Self::Scan => 13,
-            Self::Part => 14,
-        }
-    }
+    Part = 14,
 }
 
 /// Families whose streams are numbered together, before those of [`Purpose::Damage`].
@@ -50,12 +36,12 @@ pub(crate) struct Stream(ChaCha8Rng);
 impl Stream {
     pub(crate) fn new(seed: u64, family: usize, pose: usize, purpose: Purpose) -> Self {
         let (group, family) = (family as u64 / FAMILIES, family as u64 % FAMILIES);
-        Self::numbered(seed, (group << 62) | ((pose as u64) * 16 + family * 4 + purpose.number()))
+        Self::numbered(seed, (group << 62) | ((pose as u64) * 16 + family * 4 + purpose as u64))
     }
 
     /// The stream of a creature, none of those of [`new`](Self::new).
     pub(crate) fn of_creature(seed: u64, family: usize, pose: usize, purpose: Purpose) -> Self {
-        Self::numbered(seed, (1 << 63) | ((family as u64) << 40) | ((pose as u64) * 16 + purpose.number()))
+        Self::numbered(seed, (1 << 63) | ((family as u64) << 40) | ((pose as u64) * 16 + purpose as u64))
     }
 
     fn numbered(seed: u64, number: u64) -> Self {

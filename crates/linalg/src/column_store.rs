@@ -62,19 +62,6 @@ impl ColumnStore {
         Self { n_rows, n_columns: 0, backing: Backing::Memory(Vec::new()) }
     }
 
-    /// No columns yet, and memory for `n_columns` of them.
-    ///
-    /// # Errors
-    /// [`Exceeded::Allocation`].
-    pub fn with_capacity(n_rows: usize, n_columns: usize) -> Result<Self, Exceeded> {
-        let mut values = Vec::new();
-        let needed = n_rows.saturating_mul(n_columns).saturating_mul(BYTES);
-        values
-            .try_reserve_exact(n_rows.saturating_mul(n_columns))
-            .map_err(|_| Exceeded::Allocation { needed })?;
-        Ok(Self { n_rows, n_columns: 0, backing: Backing::Memory(values) })
-    }
-
     /// No columns yet, in a file of the caller, which should be open for reading and writing and used by nobody else.
     pub fn in_file(n_rows: usize, file: File) -> Self {
         Self { n_rows, n_columns: 0, backing: Backing::File(Arc::new(Mutex::new(file))) }
@@ -355,7 +342,8 @@ mod tests {
         let [mut memory, mut file] = stores(10);
         assert!(matches!(memory.grow(2, &small), Err(LinalgError::Exceeded(Exceeded::Memory { .. }))));
         assert_eq!(memory.n_columns(), 0);
-        assert!(matches!(ColumnStore::with_capacity(usize::MAX, 2), Err(Exceeded::Allocation { .. })));
+        let refused = ColumnStore::in_memory(usize::MAX).reserve(2, &());
+        assert!(matches!(refused, Err(LinalgError::Exceeded(Exceeded::Allocation { .. }))));
         assert_eq!(file.grow(2, &small).unwrap().len(), 2);
     }
 }

@@ -39,6 +39,13 @@ pub(crate) fn view(a: &Matrix) -> MatRef<'_, f64> {
 }
 
 /// Converts a faer matrix to nalgebra.
+fn finite(a: &Matrix) -> Result<MatRef<'_, f64>, LinalgError> {
+    match a.iter().all(|x| x.is_finite()) {
+        true => Ok(view(a)),
+        false => Err(LinalgError::NotConverged(a.nrows().max(a.ncols()))),
+    }
+}
+
 pub(crate) fn from_faer(a: MatRef<'_, f64>) -> Matrix {
     Matrix::from_fn(a.nrows(), a.ncols(), |i, j| a[(i, j)])
 }
@@ -59,10 +66,7 @@ pub(crate) fn from_faer(a: MatRef<'_, f64>) -> Matrix {
 /// ```
 pub fn symmetric_eigen(a: &Matrix) -> Result<SymmetricEigen, LinalgError> {
     let n = a.nrows();
-    if a.iter().any(|x| !x.is_finite()) {
-        return Err(LinalgError::NotConverged(n));
-    }
-    let eigen = view(a).self_adjoint_eigen(Side::Lower).map_err(|_| LinalgError::NotConverged(n))?;
+    let eigen = finite(a)?.self_adjoint_eigen(Side::Lower).map_err(|_| LinalgError::NotConverged(n))?;
     // faer sorts ascending.
     let (s, u) = (eigen.S(), eigen.U());
     Ok(SymmetricEigen {
@@ -78,11 +82,8 @@ pub fn symmetric_eigen(a: &Matrix) -> Result<SymmetricEigen, LinalgError> {
 /// [`LinalgError::NotConverged`], also if an entry is not finite.
 pub fn symmetric_eigenvalues(a: &Matrix) -> Result<Vec<f64>, LinalgError> {
     let n = a.nrows();
-    if a.iter().any(|x| !x.is_finite()) {
-        return Err(LinalgError::NotConverged(n));
-    }
     let ascending =
-        view(a).self_adjoint_eigenvalues(Side::Lower).map_err(|_| LinalgError::NotConverged(n))?;
+        finite(a)?.self_adjoint_eigenvalues(Side::Lower).map_err(|_| LinalgError::NotConverged(n))?;
     Ok(ascending.into_iter().rev().collect())
 }
 
@@ -112,13 +113,10 @@ pub fn triangular_factor(a: &Matrix) -> Matrix {
 /// [`LinalgError::NotConverged`], also if an entry is not finite.
 pub fn thin_svd(a: &Matrix) -> Result<(Matrix, Vec<f64>, Matrix), LinalgError> {
     let n = a.nrows().max(a.ncols());
-    if a.iter().any(|x| !x.is_finite()) {
-        return Err(LinalgError::NotConverged(n));
-    }
     if a.is_empty() {
         return Ok((Matrix::zeros(a.nrows(), 0), Vec::new(), Matrix::zeros(a.ncols(), 0)));
     }
-    let svd = view(a).thin_svd().map_err(|_| LinalgError::NotConverged(n))?;
+    let svd = finite(a)?.thin_svd().map_err(|_| LinalgError::NotConverged(n))?;
     let all: Vec<f64> = svd.S().column_vector().iter().copied().collect();
     let floor = n as f64 * f64::EPSILON * all[0];
     let values: Vec<f64> = all.into_iter().take_while(|value| *value > floor).collect();

@@ -2,16 +2,30 @@
 
 use base::Observer;
 
-use crate::lanczos::{Lanczos, Operator};
+use crate::lanczos::Lanczos;
 use crate::{LinalgError, Matrix, SymmetricEigen};
 
-/// A symmetric n x n matrix, given by its products with vectors.
+/// An n x n matrix that is symmetric in the inner product `x' M y` of diagonal masses, given by its products with vectors.
 pub trait SymmetricOperator: Sync + std::fmt::Debug {
     /// The order n of the matrix.
     fn order(&self) -> usize;
 
     /// Writes the product of the matrix with `x` into `y`; both have n entries.
     fn apply(&self, x: &[f64], y: &mut [f64]);
+
+    /// The product of the matrix with all columns of another one.
+    fn apply_to_columns(&self, columns: &Matrix) -> Matrix {
+        let mut result = Matrix::zeros(columns.nrows(), columns.ncols());
+        for (x, mut y) in columns.column_iter().zip(result.column_iter_mut()) {
+            self.apply(x.as_slice(), y.as_mut_slice());
+        }
+        result
+    }
+
+    /// The diagonal of `M`; `None` if it is the identity.
+    fn masses(&self) -> Option<&[f64]> {
+        None
+    }
 }
 
 /// The residual up to which a pair counts as found, relative to the norm of the operator.
@@ -45,8 +59,7 @@ pub fn largest_eigenpairs(
 ) -> Result<SymmetricEigen, LinalgError> {
     let budget = &observer.budget();
     let n = operator.order();
-    let operator = Plain(operator);
-    let mut process = Lanczos::new(&operator);
+    let mut process = Lanczos::new(operator);
     let mut next = 2 * k + 16;
     loop {
         budget.check_memory(next.min(n).saturating_mul(n).saturating_mul(size_of::<f64>()))?;
@@ -66,28 +79,6 @@ pub fn largest_eigenpairs(
             return Ok(SymmetricEigen { values: values[..n_found].to_vec(), vectors });
         }
         next += next / 4;
-    }
-}
-
-/// An operator in the usual inner product.
-#[derive(Debug)]
-struct Plain<'a>(&'a dyn SymmetricOperator);
-
-impl Operator for Plain<'_> {
-    fn n_rows(&self) -> usize {
-        self.0.order()
-    }
-
-    fn masses(&self) -> Option<&[f64]> {
-        None
-    }
-
-    fn apply(&self, columns: &Matrix) -> Matrix {
-        let mut result = Matrix::zeros(columns.nrows(), columns.ncols());
-        for (x, mut y) in columns.column_iter().zip(result.column_iter_mut()) {
-            self.0.apply(x.as_slice(), y.as_mut_slice());
-        }
-        result
     }
 }
 

@@ -86,14 +86,6 @@ fn add<const K: usize>(y: &mut Lanes<K>, a: f64, x: &Lanes<K>) {
     }
 }
 
-/// `y -= a x`, lane by lane.
-#[inline(always)]
-fn subtract<const K: usize>(y: &mut Lanes<K>, a: f64, x: &Lanes<K>) {
-    for (y, x) in y.iter_mut().zip(x) {
-        *y -= a * x;
-    }
-}
-
 impl PanelView<'_> {
     /// Numbers per column.
     fn height(&self) -> usize {
@@ -114,7 +106,7 @@ impl PanelView<'_> {
             let solved = top[j].map(|v| v * inverse);
             top[j] = solved;
             for (y, a) in top[j + 1..].iter_mut().zip(&column[j + 1..]) {
-                subtract(y, *a, &solved);
+                add(y, -*a, &solved);
             }
         }
         if self.rows.is_empty() {
@@ -141,7 +133,7 @@ impl PanelView<'_> {
             }
         }
         for (row, y) in self.rows.iter().zip(below) {
-            subtract(&mut x[*row as usize], 1.0, y);
+            add(&mut x[*row as usize], -1.0, y);
         }
     }
 

@@ -17,7 +17,7 @@ const MIN_COSINE: f64 = 0.2;
 const OPERATIONS: usize = 256;
 
 /// A sum of weighted squared distances from planes, `x' A x + 2 b' x + c`.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct Quadric {
     a: Matrix3<f64>,
     b: Vector3<f64>,
@@ -25,12 +25,6 @@ struct Quadric {
 }
 
 impl Quadric {
-    const ZERO: Self = Self {
-        a: Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        b: Vector3::new(0.0, 0.0, 0.0),
-        c: 0.0,
-    };
-
     /// The plane through `at` with the given unit normal.
     fn plane(normal: Vector3<f64>, at: Point3<f64>, weight: f64) -> Self {
         let d = -normal.dot(&at.coords);
@@ -130,7 +124,7 @@ impl<'a> Collapse<'a> {
             positions: mesh.positions,
             faces: mesh.faces,
             faces_at,
-            quadrics: vec![Quadric::ZERO; n],
+            quadrics: vec![Quadric::default(); n],
             merged_into: (0..n as u32).collect(),
             changes: vec![0; n],
             queue: NearestFirst::default(),

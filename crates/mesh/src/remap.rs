@@ -19,17 +19,17 @@ use crate::tri_mesh::TriMesh;
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Remap {
-    n_old: usize,
-    /// For every old vertex, its new one; none at all if all keep their numbers.
-    to_new: Option<Vec<Option<VertexId>>>,
-    /// For every new vertex, the first of its old ones, or one near it; without those that keep their numbers.
+    /// For every old vertex, its new one.
+    to_new: Vec<Option<VertexId>>,
+    /// For every new vertex, the first of its old ones, or one near it.
     to_old: Vec<VertexId>,
 }
 
 impl Remap {
     /// Of old vertices that keep their numbers, with new ones behind them, each from an old one near it.
     pub fn extended(n_old: usize, origins: Vec<VertexId>) -> Self {
-        Self { n_old, to_new: None, to_old: origins }
+        let old = || (0..n_old).map(VertexId::from);
+        Self { to_new: old().map(Some).collect(), to_old: old().chain(origins).collect() }
     }
 
     /// Of old vertices that became one of `n_new`, several perhaps the same, or were dropped.
@@ -37,44 +37,36 @@ impl Remap {
     /// # Panics
     /// If a new vertex does not exist.
     pub fn new(to_new: Vec<Option<VertexId>>, n_new: usize) -> Self {
-        let n_old = to_new.len();
-        let stays = |(old, new): (usize, &Option<VertexId>)| *new == Some(VertexId::from(old));
-        if n_old == n_new && to_new.iter().enumerate().all(stays) {
-            return Self::extended(n_old, Vec::new());
-        }
         let mut to_old = vec![VertexId(u32::MAX); n_new];
         for (old, new) in to_new.iter().enumerate().rev() {
             new.iter().for_each(|new| to_old[new.index()] = VertexId::from(old));
         }
-        Self { n_old, to_new: Some(to_new), to_old }
+        Self { to_new, to_old }
     }
 
     /// Number of old vertices.
     pub fn n_old(&self) -> usize {
-        self.n_old
+        self.to_new.len()
     }
 
     /// Number of new vertices.
     pub fn n_new(&self) -> usize {
-        self.to_old.len() + if self.to_new.is_none() { self.n_old } else { 0 }
+        self.to_old.len()
     }
 
     /// Whether all old vertices keep their numbers.
     pub(crate) fn keeps_numbers(&self) -> bool {
-        self.to_new.is_none()
+        self.to_new.iter().zip(0..).all(|(new, old)| *new == Some(VertexId(old)))
     }
 
     /// Whether all vertices keep their numbers and there are no others.
     pub fn is_identity(&self) -> bool {
-        self.to_new.is_none() && self.to_old.is_empty()
+        self.n_old() == self.n_new() && self.keeps_numbers()
     }
 
     /// The new vertex of an old one; `None` if it was dropped or does not exist.
     pub fn to_new(&self, old: VertexId) -> Option<VertexId> {
-        match &self.to_new {
-            Some(to_new) => *to_new.get(old.index())?,
-            None => (old.index() < self.n_old).then_some(old),
-        }
+        *self.to_new.get(old.index())?
     }
 
     /// The old vertex of a new one, or one near it: the first of those that were merged.
@@ -82,31 +74,24 @@ impl Remap {
     /// # Panics
     /// If there is no such new vertex.
     pub fn to_old(&self, new: VertexId) -> VertexId {
-        let kept = if self.to_new.is_none() { self.n_old } else { 0 };
-        new.index().checked_sub(kept).map_or(new, |i| self.to_old[i])
+        self.to_old[new.index()]
     }
 
     /// The new vertices of all old ones.
     pub fn all_to_new(&self) -> impl ExactSizeIterator<Item = Option<VertexId>> + '_ {
-        (0..self.n_old).map(|old| self.to_new(VertexId::from(old)))
+        self.to_new.iter().copied()
     }
 
-    /// The old vertices near those behind the old ones.
+    /// The old vertices near those behind the old ones, if these keep their numbers.
     pub(crate) fn origins(&self) -> &[VertexId] {
-        if self.to_new.is_none() { &self.to_old } else { &[] }
+        &self.to_old[self.n_old()..]
     }
 
     /// This map, and then the next one.
     pub fn then(&self, next: &Self) -> Self {
-        let to_old = |new: VertexId| self.to_old(next.to_old(new));
-        if self.to_new.is_none() && next.to_new.is_none() {
-            let behind = (self.n_old..next.n_new()).map(VertexId::from);
-            return Self::extended(self.n_old, behind.map(to_old).collect());
-        }
         Self {
-            n_old: self.n_old,
-            to_new: Some(self.all_to_new().map(|new| next.to_new(new?)).collect()),
-            to_old: (0..next.n_new()).map(|new| to_old(VertexId::from(new))).collect(),
+            to_new: self.all_to_new().map(|new| next.to_new(new?)).collect(),
+            to_old: next.to_old.iter().map(|new| self.to_old(*new)).collect(),
         }
     }
 }

@@ -25,8 +25,8 @@ pub struct EdgeId(pub u32);
 #[repr(transparent)]
 pub struct CornerId(pub u32);
 
-macro_rules! index_newtype {
-    ($name:ident) => {
+macro_rules! index_newtypes {
+    ($($name:ident),+) => {$(
         impl $name {
             /// The index as a `usize`, for slices.
             #[inline]
@@ -50,13 +50,10 @@ macro_rules! index_newtype {
                 self.0.fmt(f)
             }
         }
-    };
+    )+};
 }
 
-index_newtype!(VertexId);
-index_newtype!(FaceId);
-index_newtype!(EdgeId);
-index_newtype!(CornerId);
+index_newtypes!(VertexId, FaceId, EdgeId, CornerId);
 
 impl FaceId {
     /// The corners, in the order of the face's vertices.

@@ -10,14 +10,13 @@ mod proportions;
 use base::{Budget, Observer};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
-use surface::VertexId;
 
 use crate::articulated::{ArticulatedOptions, LabeledShape, bent};
 use crate::clearance::entanglement;
 use crate::error::DatasetError;
-use crate::extract::{Lattice, RawSurface, extract};
+use crate::extract::{Lattice, extract};
 use crate::model::BodyModel;
-use crate::pose::{Pose, PosedSkeleton, turn};
+use crate::pose::{Pose, PosedSkeleton};
 use crate::shape::genus;
 use crate::skeleton::{JointId, Skeleton};
 use crate::stream::Stream;
@@ -164,12 +163,7 @@ fn measured(draft: Draft, stream: &mut Stream, budget: &Budget) -> Result<Option
     let mut poses = vec![Pose::rest(&draft.skeleton)];
     poses.extend((1..N_POSES).map(|_| typical_pose(&draft.skeleton, stream)));
     let Draft { skeleton, genus, .. } = draft;
-    Ok(Some(BodyModel { area: area(&raw), body, skeleton, poses, genus, spacing }))
-}
-
-fn area(raw: &RawSurface) -> f64 {
-    let at = |v: VertexId| raw.positions[v.index()];
-    raw.faces.iter().map(|&[a, b, c]| 0.5 * (at(b) - at(a)).cross(&(at(c) - at(a))).norm()).sum()
+    Ok(Some(BodyModel { area: raw.area(), body, skeleton, poses, genus, spacing }))
 }
 
 /// A random pose without intersecting limbs; after a few draws, the last one.
@@ -192,7 +186,7 @@ fn random_pose(skeleton: &Skeleton, stream: &mut Stream) -> Pose {
         for (j, joint) in chain.joints.iter().enumerate() {
             let [x, y, z] = joint.play.map(|play| play / PLAY);
             let [a, b] = side.map(|side| side + stream.uniform(-0.4, 0.4));
-            pose = pose.set(JointId { chain: c, joint: j }, turn(a * x, stream.uniform(-y, y), b * z));
+            pose = pose.set(JointId { chain: c, joint: j }, [a * x, stream.uniform(-y, y), b * z]);
         }
     }
     pose

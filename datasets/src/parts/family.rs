@@ -25,68 +25,60 @@ pub enum PartFamily {
 }
 
 /// A parameter: its name, its letter in the names of parts, and the values of [`mechanical_parts`](super::mechanical_parts).
-pub(super) struct Parameter {
-    pub(super) name: &'static str,
-    pub(super) letter: &'static str,
-    pub(super) values: &'static [f64],
-}
-
-const fn p(name: &'static str, letter: &'static str, values: &'static [f64]) -> Parameter {
-    Parameter { name, letter, values }
-}
+pub(super) type Parameter = (&'static str, &'static str, &'static [f64]);
 
 const SIZES: &[f64] = &[4.0, 5.0, 6.0];
 const LENGTHS: &[f64] = &[40.0, 42.0];
 const SHEETS: &[f64] = &[3.0, 3.5];
 
 const BRACKET: &[Parameter] = &[
-    p("length", "l", LENGTHS),
-    p("height", "h", &[30.0, 40.0]),
-    p("width", "w", &[20.0, 21.0]),
-    p("thickness", "t", SHEETS),
-    p("hole diameter", "d", &[4.0, 5.0]),
-    p("holes per leg", "n", &[1.0, 2.0]),
+    ("length", "l", LENGTHS),
+    ("height", "h", &[30.0, 40.0]),
+    ("width", "w", &[20.0, 21.0]),
+    ("thickness", "t", SHEETS),
+    ("hole diameter", "d", &[4.0, 5.0]),
+    ("holes per leg", "n", &[1.0, 2.0]),
 ];
 const PLATE: &[Parameter] = &[
-    p("length", "l", LENGTHS),
-    p("width", "w", &[25.0, 26.0]),
-    p("thickness", "t", SHEETS),
-    p("corner radius", "r", &[2.0, 3.0]),
-    p("hole diameter", "d", &[4.0, 5.0]),
-    p("holes", "n", &[4.0, 6.0]),
+    ("length", "l", LENGTHS),
+    ("width", "w", &[25.0, 26.0]),
+    ("thickness", "t", SHEETS),
+    ("corner radius", "r", &[2.0, 3.0]),
+    ("hole diameter", "d", &[4.0, 5.0]),
+    ("holes", "n", &[4.0, 6.0]),
 ];
 const GEAR: &[Parameter] = &[
-    p("teeth", "z", &[18.0, 19.0, 20.0]),
-    p("module", "m", &[1.0, 1.25]),
-    p("thickness", "t", &[5.0, 5.5]),
-    p("bore diameter", "d", &[4.0, 5.0]),
+    ("teeth", "z", &[18.0, 19.0, 20.0]),
+    ("module", "m", &[1.0, 1.25]),
+    ("thickness", "t", &[5.0, 5.5]),
+    ("bore diameter", "d", &[4.0, 5.0]),
 ];
 const HEX_SCREW: &[Parameter] =
-    &[p("size", "m", SIZES), p("length", "l", &[16.0, 18.0, 20.0]), p("thread hand", "h", &[1.0, -1.0])];
+    &[("size", "m", SIZES), ("length", "l", &[16.0, 18.0, 20.0]), ("thread hand", "h", &[1.0, -1.0])];
 const ENCLOSURE: &[Parameter] = &[
-    p("length", "l", &[60.0, 62.0]),
-    p("width", "w", LENGTHS),
-    p("height", "h", &[20.0, 22.0]),
-    p("wall", "t", &[1.5, 2.0]),
-    p("floor holes", "n", &[2.0, 4.0]),
+    ("length", "l", &[60.0, 62.0]),
+    ("width", "w", LENGTHS),
+    ("height", "h", &[20.0, 22.0]),
+    ("wall", "t", &[1.5, 2.0]),
+    ("floor holes", "n", &[2.0, 4.0]),
 ];
 const BENT_PIPE: &[Parameter] = &[
-    p("outer diameter", "d", &[20.0, 21.0]),
-    p("wall", "t", &[1.5, 2.0]),
-    p("bend radius", "r", &[30.0, 32.0]),
-    p("bend angle in degrees", "a", &[45.0, 60.0, 90.0]),
-    p("straight length", "l", &[15.0, 16.0]),
+    ("outer diameter", "d", &[20.0, 21.0]),
+    ("wall", "t", &[1.5, 2.0]),
+    ("bend radius", "r", &[30.0, 32.0]),
+    ("bend angle in degrees", "a", &[45.0, 60.0, 90.0]),
+    ("straight length", "l", &[15.0, 16.0]),
 ];
 const SHAFT: &[Parameter] = &[
-    p("first diameter", "a", &[8.0, 9.0]),
-    p("middle diameter", "b", &[12.0, 13.0]),
-    p("last diameter", "c", &[8.0, 10.0]),
-    p("first length", "d", &[15.0, 16.0]),
-    p("middle length", "e", &[30.0, 32.0]),
-    p("last length", "f", &[15.0, 18.0]),
+    ("first diameter", "a", &[8.0, 9.0]),
+    ("middle diameter", "b", &[12.0, 13.0]),
+    ("last diameter", "c", &[8.0, 10.0]),
+    ("first length", "d", &[15.0, 16.0]),
+    ("middle length", "e", &[30.0, 32.0]),
+    ("last length", "f", &[15.0, 18.0]),
 ];
 const BLOCK: &[Parameter] =
-    &[p("length", "l", &[20.0, 21.0]), p("width", "w", &[19.0, 20.0]), p("height", "h", &[20.0, 20.5])];
+    &[("length", "l", &[20.0, 21.0]), ("width", "w", &[19.0, 20.0]), ("height", "h", &[20.0, 20.5])];
 
 impl PartFamily {
     /// All families.

@@ -59,7 +59,7 @@ impl MechanicalPart {
     /// Names and values of the parameters: lengths in millimetres, counts, angles in degrees. A thread's hand is 1 if it
     /// is right-handed and -1 if it is left-handed; such screws are each other's mirror images.
     pub fn parameters(&self) -> Vec<(&'static str, f64)> {
-        self.family.parameters().iter().map(|p| p.name).zip(self.values.iter().copied()).collect()
+        self.family.parameters().iter().map(|(name, ..)| *name).zip(self.values.iter().copied()).collect()
     }
 
     /// The parameters in which two parts of one family differ, with both values; `None` for parts of two families.
@@ -72,8 +72,9 @@ impl MechanicalPart {
     /// Family and parameters, such as `gear-z18-m1-t5-d4`.
     pub fn name(&self) -> String {
         let parameters = self.family.parameters().iter().zip(&self.values);
-        parameters
-            .fold(self.family.name().to_owned(), |name, (p, value)| format!("{name}-{}{value}", p.letter))
+        parameters.fold(self.family.name().to_owned(), |name, ((_, letter, _), value)| {
+            format!("{name}-{letter}{value}")
+        })
     }
 
     /// The surface: closed, manifold, in one piece and oriented outwards.
@@ -120,19 +121,20 @@ impl Draw {
 
     fn next(&mut self) -> Option<MechanicalPart> {
         let parameters = self.family.parameters();
-        if self.seen.len() == parameters.iter().map(|p| p.values.len()).product::<usize>() {
+        if self.seen.len() == parameters.iter().map(|(.., values)| values.len()).product::<usize>() {
             return None;
         }
         loop {
             let mut choices = self.last.clone();
             if choices.is_empty() || self.stream.below(2) == 0 {
-                choices = parameters.iter().map(|p| self.stream.below(p.values.len())).collect();
+                choices = parameters.iter().map(|(.., values)| self.stream.below(values.len())).collect();
             } else {
                 let changed = self.stream.below(parameters.len());
-                choices[changed] = self.stream.below(parameters[changed].values.len());
+                choices[changed] = self.stream.below(parameters[changed].2.len());
             }
             if self.seen.insert(choices.clone()) {
-                let values: Vec<f64> = parameters.iter().zip(&choices).map(|(p, &i)| p.values[i]).collect();
+                let values: Vec<f64> =
+                    parameters.iter().zip(&choices).map(|((.., values), &i)| values[i]).collect();
                 self.last = choices;
                 return Some(MechanicalPart::new(self.family, &values));
             }

@@ -88,7 +88,8 @@ impl Plan {
             Some(limit) => self.rest().saturating_add(self.columns()) <= limit,
         };
         // The system may have less memory than the budget.
-        if fits && let Ok(store) = ColumnStore::with_capacity(self.n_vertices, self.n_columns) {
+        let mut store = ColumnStore::in_memory(self.n_vertices);
+        if fits && store.reserve(self.n_columns, &()).is_ok() {
             return Ok(store);
         }
         Ok(ColumnStore::in_file(self.n_vertices, base::files::nameless_in(folder)?))

@@ -5,8 +5,6 @@ mod spread;
 
 use surface::VertexId;
 
-use crate::error::GeodesicError;
-use crate::solver::DistanceSolver;
 pub use sampler::{Sampler, farthest_point_sampling};
 pub use spread::SpreadSamples;
 
@@ -93,20 +91,6 @@ impl Sampling {
     pub fn name(self) -> &'static str {
         self.into()
     }
-
-    /// Starts with the landmark `first`; `seed` determines what is drawn at random.
-    ///
-    /// # Errors
-    /// [`GeodesicError::NoSuchVertex`], [`GeodesicError::NoSamples`] on an empty surface,
-    /// [`GeodesicError::Disconnected`].
-    pub fn start<'a>(
-        self,
-        solver: &'a dyn DistanceSolver,
-        first: FirstSample,
-        seed: u64,
-    ) -> Result<Sampler<'a>, GeodesicError> {
-        Sampler::new(solver, self, first, seed)
-    }
 }
 
 #[cfg(test)]
@@ -118,6 +102,8 @@ mod tests {
 
     use super::*;
     use crate::dijkstra::Dijkstra;
+    use crate::error::GeodesicError;
+    use crate::solver::DistanceSolver;
 
     const ALL: [Sampling; 4] = Sampling::ALL;
 

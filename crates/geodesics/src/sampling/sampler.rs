@@ -90,13 +90,18 @@ impl Rule {
     }
 }
 
-impl<'a> Sampler<'a> {
-    pub(super) fn new(
+impl Sampling {
+    /// Starts with the landmark `first`; `seed` determines what is drawn at random.
+    ///
+    /// # Errors
+    /// [`GeodesicError::NoSuchVertex`], [`GeodesicError::NoSamples`] on an empty surface,
+    /// [`GeodesicError::Disconnected`].
+    pub fn start<'a>(
+        self,
         solver: &'a dyn DistanceSolver,
-        sampling: Sampling,
         first: FirstSample,
         seed: u64,
-    ) -> Result<Self, GeodesicError> {
+    ) -> Result<Sampler<'a>, GeodesicError> {
         let p = solver.n_vertices();
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let first = match first {
@@ -105,14 +110,12 @@ impl<'a> Sampler<'a> {
                 return Err(GeodesicError::NoSuchVertex { vertex, n_vertices: p });
             }
             FirstSample::Vertex(vertex) => vertex.index(),
-            FirstSample::Farthest if sampling == Sampling::Farthest => {
-                farthest(measured(solver, &[0])?.as_slice())
-            }
+            FirstSample::Farthest if self == Self::Farthest => farthest(measured(solver, &[0])?.as_slice()),
             FirstSample::Farthest => below(p, &mut rng),
         };
-        let rule = match sampling {
-            Sampling::Farthest => Rule::Farthest { nearest: vec![f64::INFINITY; p] },
-            Sampling::Random => {
+        let rule = match self {
+            Self::Farthest => Rule::Farthest { nearest: vec![f64::INFINITY; p] },
+            Self::Random => {
                 let mut order: Vec<usize> = (0..p).collect();
                 order.swap(0, first);
                 for i in 1..p {
@@ -120,19 +123,21 @@ impl<'a> Sampler<'a> {
                 }
                 Rule::Random { order }
             }
-            Sampling::MinVariance | Sampling::MaxVariance => Rule::Incremental {
-                sign: if sampling == Sampling::MinVariance { 1.0 } else { -1.0 },
+            Self::MinVariance | Self::MaxVariance => Rule::Incremental {
+                sign: if self == Self::MinVariance { 1.0 } else { -1.0 },
                 // Any other vertex: those from the first on move up by one.
                 second: (p > 1).then(|| below(p - 1, &mut rng)).map(|v| v + usize::from(v >= first)),
                 moments: vec![[0.0; 2]; p],
                 is_landmark: vec![false; p],
             },
         };
-        let mut sampler = Self { solver, rule, landmarks: Vec::new(), store: ColumnStore::in_memory(p) };
+        let mut sampler = Sampler { solver, rule, landmarks: Vec::new(), store: ColumnStore::in_memory(p) };
         sampler.add(&[first])?;
         Ok(sampler)
     }
+}
 
+impl Sampler<'_> {
     /// Takes further landmarks until there are `n`, or as many as the surface has.
     ///
     /// # Errors

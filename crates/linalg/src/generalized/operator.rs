@@ -2,8 +2,8 @@
 
 use base::Budget;
 
-use crate::lanczos::Operator;
-use crate::{EliminationOrder, LinalgError, Matrix, SparseCholesky, SparseSymmetric};
+use crate::lanczos::weighted;
+use crate::{EliminationOrder, LinalgError, Matrix, SparseCholesky, SparseSymmetric, SymmetricOperator};
 
 /// `C = (W + s M)^-1 s M` with diagonal `M`, for vectors with rows in elimination order.
 ///
@@ -49,19 +49,24 @@ impl ShiftInverse {
     }
 }
 
-impl Operator for ShiftInverse {
-    fn n_rows(&self) -> usize {
+impl SymmetricOperator for ShiftInverse {
+    fn order(&self) -> usize {
         self.masses.len()
+    }
+
+    fn apply(&self, x: &[f64], y: &mut [f64]) {
+        y.iter_mut().zip(x).zip(&self.masses).for_each(|((y, x), m)| *y = x * m);
+        self.factor.solve_ordered_columns(y);
+    }
+
+    fn apply_to_columns(&self, columns: &Matrix) -> Matrix {
+        let mut result = weighted(self, columns);
+        self.factor.solve_ordered_columns(result.as_mut_slice());
+        result
     }
 
     fn masses(&self) -> Option<&[f64]> {
         Some(&self.masses)
-    }
-
-    fn apply(&self, columns: &Matrix) -> Matrix {
-        let mut result = self.weighted(columns);
-        self.factor.solve_ordered_columns(result.as_mut_slice());
-        result
     }
 }
 

@@ -5,7 +5,7 @@ mod strips;
 use base::SplitMix;
 
 use self::strips::Strips;
-use crate::{LinalgError, Matrix, SymmetricEigen, symmetric_eigen};
+use crate::{LinalgError, Matrix, SymmetricEigen, SymmetricOperator, symmetric_eigen};
 
 /// Vectors in the first block. A block of this size finds as many copies of a multiple eigenvalue at once. Larger blocks
 /// make products faster but need a larger basis.
@@ -18,37 +18,15 @@ const ROUNDING: f64 = 1e-13;
 /// orthogonalised again.
 const CANCELLED: f64 = 0.1;
 
-/// An operator `C` that is symmetric in the inner product `x' M y` of diagonal masses.
-pub(crate) trait Operator: std::fmt::Debug {
-    fn n_rows(&self) -> usize;
-
-    /// The diagonal of `M`; `None` if it is the identity.
-    fn masses(&self) -> Option<&[f64]>;
-
-    /// `C W`.
-    fn apply(&self, columns: &Matrix) -> Matrix;
-
-    /// `M W`.
-    fn weighted(&self, columns: &Matrix) -> Matrix {
-        let mut result = columns.clone();
-        if let Some(masses) = self.masses() {
-            for mut column in result.column_iter_mut() {
-                column.iter_mut().zip(masses).for_each(|(x, m)| *x *= m);
-            }
+/// `M W`.
+pub(crate) fn weighted(operator: &dyn SymmetricOperator, columns: &Matrix) -> Matrix {
+    let mut result = columns.clone();
+    if let Some(masses) = operator.masses() {
+        for mut column in result.column_iter_mut() {
+            column.iter_mut().zip(masses).for_each(|(x, m)| *x *= m);
         }
-        result
     }
-}
-
-/// `x' M y`, in eight independent chains of additions.
-fn inner(masses: Option<&[f64]>, x: &[f64], y: &[f64]) -> f64 {
-    let mut sums = [0.0; 8];
-    let done = x.len() / 8 * 8;
-    let product = |i: usize| x[i] * y[i] * masses.map_or(1.0, |masses| masses[i]);
-    for start in (0..done).step_by(8) {
-        sums.iter_mut().enumerate().for_each(|(lane, sum)| *sum += product(start + lane));
-    }
-    sums.iter().sum::<f64>() + (done..x.len()).map(product).sum::<f64>()
+    result
 }
 
 /// A block Lanczos process for the largest eigenvalues of an operator `C` that is symmetric in the inner product
@@ -67,7 +45,7 @@ fn inner(masses: Option<&[f64]>, x: &[f64], y: &[f64]) -> f64 {
 /// exhausted, and are empty once the basis spans the whole space.
 #[derive(Debug)]
 pub(crate) struct Lanczos<'a> {
-    operator: &'a dyn Operator,
+    operator: &'a dyn SymmetricOperator,
     basis: Strips,
     /// For each block `X_k` of the basis, `X_k' M C X_k` and its coupling `B` to the next block.
     blocks: Vec<[Matrix; 2]>,
@@ -79,8 +57,8 @@ pub(crate) struct Lanczos<'a> {
 
 impl<'a> Lanczos<'a> {
     /// A process that starts from a fixed set of random vectors.
-    pub(crate) fn new(operator: &'a dyn Operator) -> Self {
-        let n = operator.n_rows();
+    pub(crate) fn new(operator: &'a dyn SymmetricOperator) -> Self {
+        let n = operator.order();
         let none = || Matrix::zeros(n, 0);
         let random = SplitMix(0x9e37_79b9_7f4a_7c15);
         let mut process =
@@ -101,15 +79,15 @@ impl<'a> Lanczos<'a> {
 
     /// Takes the next block into the basis.
     pub(crate) fn step(&mut self) {
-        let block = std::mem::replace(&mut self.next, Matrix::zeros(self.operator.n_rows(), 0));
+        let block = std::mem::replace(&mut self.next, Matrix::zeros(self.operator.order(), 0));
         self.basis.append(&block);
-        let mut image = self.operator.apply(&block);
+        let mut image = self.operator.apply_to_columns(&block);
         let lengths = self.lengths(&image);
         // First subtracts the components that exist in exact arithmetic, then those due to rounding.
         if let Some([_, coupling]) = self.blocks.last() {
             image -= &self.last * coupling.transpose();
         }
-        let within = block.tr_mul(&self.operator.weighted(&image));
+        let within = block.tr_mul(&weighted(self.operator, &image));
         let within = (&within + within.transpose()) * 0.5;
         image -= &block * &within;
         self.last = block;
@@ -124,9 +102,9 @@ impl<'a> Lanczos<'a> {
     /// Adds up to `count` random vectors to the next block (fewer if there are no more directions), to find eigenvectors
     /// that are orthogonal to the start.
     pub(crate) fn add_random(&mut self, count: usize) {
-        let n = self.operator.n_rows();
+        let n = self.operator.order();
         let random = Matrix::from_fn(n, count, |_, _| self.random.uniform());
-        let mut fresh = self.operator.apply(&random);
+        let mut fresh = self.operator.apply_to_columns(&random);
         let lengths = self.lengths(&fresh);
         self.orthonormalise(&mut fresh, &lengths);
         let old = self.next.ncols();
@@ -147,7 +125,7 @@ impl<'a> Lanczos<'a> {
         // Once is enough unless most of a vector cancels; three times are always enough.
         for _ in 0..3 {
             let before = self.lengths(w);
-            let weighted = self.operator.weighted(w);
+            let weighted = weighted(self.operator, w);
             self.basis.add_combinations(w, &self.basis.products(&weighted), -1.0);
             *w -= &self.next * (self.next.tr_mul(&weighted));
             let (factor, left) = self.gram_schmidt(w, &lengths);
@@ -191,8 +169,15 @@ impl<'a> Lanczos<'a> {
         (r.rows(0, kept).into_owned(), left)
     }
 
+    /// `x' M y`, in eight independent chains of additions.
     fn inner(&self, x: &[f64], y: &[f64]) -> f64 {
-        inner(self.operator.masses(), x, y)
+        let mut sums = [0.0; 8];
+        let (done, masses) = (x.len() / 8 * 8, self.operator.masses());
+        let product = |i: usize| x[i] * y[i] * masses.map_or(1.0, |masses| masses[i]);
+        for start in (0..done).step_by(8) {
+            sums.iter_mut().enumerate().for_each(|(lane, sum)| *sum += product(start + lane));
+        }
+        sums.iter().sum::<f64>() + (done..x.len()).map(product).sum::<f64>()
     }
 
     /// The M-norm of each column.

@@ -188,15 +188,8 @@ impl<'a> Data<'a> {
     /// Positions; integers that are normalized are fractions of their largest value.
     pub(super) fn positions(&self, index: Index) -> Result<Vec<Point3<f64>>, Located> {
         let (accessor, scalar, numbers) = self.numbers(index, ("VEC3", 3), "positions of type VEC3")?;
-        let unit = match scalar {
-            Scalar::I8 => f64::from(i8::MAX),
-            Scalar::U8 => f64::from(u8::MAX),
-            Scalar::I16 => f64::from(i16::MAX),
-            Scalar::U16 => f64::from(u16::MAX),
-            Scalar::U32 => f64::from(u32::MAX),
-            _ => 1.0,
-        };
-        // The most negative integer stands for -1 too.
+        let n_bits = 8 * scalar.size() as i32 - i32::from(matches!(scalar, Scalar::I8 | Scalar::I16));
+        let unit = if scalar.is_integer() { 2f64.powi(n_bits) - 1.0 } else { 1.0 };
         let scaled = |x: f64| if accessor.normalized { (x / unit).max(-1.0) } else { x };
         let rows = numbers.as_chunks::<3>().0.iter().enumerate();
         rows.map(|(vertex, row)| finite(row.map(scaled), vertex).in_part("accessor", index)).collect()

@@ -93,15 +93,9 @@ pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh, _: Field<'_>) -> io::Re
     let (position_bytes, index_bytes) = (12 * n_vertices, 4 * n_corners);
     let data = position_bytes + index_bytes;
     // The format requires the bounds of the numbers as they are stored.
-    let mut bounds = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
     let origin = origin(mesh);
-    let positions = || mesh.positions.iter().map(|p| rounded(p, &origin));
-    for p in positions() {
-        for axis in 0..3 {
-            bounds[0][axis] = bounds[0][axis].min(p[axis]);
-            bounds[1][axis] = bounds[1][axis].max(p[axis]);
-        }
-    }
+    // Rounding keeps the order of coordinates, so the bounds of rounded positions are those of all, rounded.
+    let bounds = mesh.bounds().unwrap_or_default().map(|corner| rounded(&corner, &origin));
     let [x, y, z] = [origin.x, origin.y, origin.z];
     let place =
         if [x, y, z] == [0.0; 3] { String::new() } else { format!(r#","translation":[{x:?},{y:?},{z:?}]"#) };
@@ -125,7 +119,7 @@ pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh, _: Field<'_>) -> io::Re
     out.write_all(json.as_bytes())?;
     out.write_all(&word(data)?)?;
     out.write_all(b"BIN\0")?;
-    for x in positions().flatten() {
+    for x in mesh.positions.iter().flat_map(|p| rounded(p, &origin)) {
         out.write_all(&x.to_le_bytes())?;
     }
     mesh.faces.iter().flatten().try_for_each(|v| out.write_all(&v.0.to_le_bytes()))

@@ -1,8 +1,11 @@
 //! A model part: the unit, objects and the build.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 
 use nalgebra::Matrix4;
+use quick_xml::XmlVersion;
+use quick_xml::events::attributes::{AttrError, Attribute};
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::reader::Reader;
 
@@ -153,7 +156,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    fn model(&mut self, attributes: &[(String, String)]) -> Result<(), Located> {
+    fn model(&mut self, attributes: &Attributes<'_>) -> Result<(), Located> {
         if let Some(unit) = find(attributes, "unit") {
             let named = LengthUnit::ALL.into_iter().find(|known| known.name() == unit.trim());
             let expected = "a unit: micron, millimeter, centimeter, inch, foot or meter";
@@ -212,36 +215,24 @@ impl Parser<'_> {
         Ok(())
     }
 
-    fn visit(&self, element: &BytesStart<'_>, take: impl FnMut(&str, &str)) -> Result<(), Located> {
-        visit(element, take).map_err(|fault| self.syntax("an attribute", &fault.to_string()))
-    }
-
     /// Three attributes of an element, if it has them all.
-    fn numbers<T: Copy>(
+    fn numbers<T>(
         &self,
         element: &BytesStart<'_>,
         names: [&str; 3],
         parse: fn(&[u8]) -> Option<T>,
     ) -> Result<Option<[T; 3]>, Located> {
-        let mut found = [None; 3];
-        self.visit(element, |name, value| {
-            if let Some(slot) = names.iter().position(|known| *known == name) {
-                found[slot] = parse(value.trim().as_bytes());
-            }
-        })?;
-        let [a, b, c] = found;
+        let attributes = self.attributes(element)?;
+        let [a, b, c] = names.map(|name| parse(find(&attributes, name)?.trim().as_bytes()));
         Ok(a.zip(b).zip(c).map(|((a, b), c)| [a, b, c]))
     }
 
-    /// All attributes of an element.
-    fn attributes(&self, element: &BytesStart<'_>) -> Result<Vec<(String, String)>, Located> {
-        let mut pairs = Vec::new();
-        self.visit(element, |name, value| pairs.push((name.to_owned(), value.to_owned())))?;
-        Ok(pairs)
+    fn attributes<'a>(&self, element: &'a BytesStart<'_>) -> Result<Attributes<'a>, Located> {
+        attributes(element).map_err(|fault| self.syntax("an attribute", &fault.to_string()))
     }
 
     /// A number of a resource.
-    fn id(&self, attributes: &[(String, String)], name: &str) -> Result<u64, Located> {
+    fn id(&self, attributes: &Attributes<'_>, name: &str) -> Result<u64, Located> {
         let text = find(attributes, name).unwrap_or_default();
         let id = parse_integer(text.trim().as_bytes()).and_then(|id| u64::try_from(id).ok());
         id.ok_or_else(|| self.syntax("the id of an object, a positive number", text))
@@ -250,8 +241,7 @@ impl Parser<'_> {
     /// An object and where it is placed.
     fn reference(&self, element: &BytesStart<'_>) -> Result<Reference, Located> {
         let attributes = self.attributes(element)?;
-        let path = attributes.iter().find(|(name, _)| name.rsplit(':').next() == Some("path"));
-        let part = path.map(|(_, part)| part.trim_start_matches('/').to_owned());
+        let part = find_local(&attributes, "path").map(|part| part.trim_start_matches('/').to_owned());
         let object = self.id(&attributes, "objectid")?;
         let text = find(&attributes, "transform").unwrap_or("1 0 0 0 1 0 0 0 1 0 0 0");
         let numbers: Vec<f64> =
@@ -267,15 +257,24 @@ impl Parser<'_> {
     }
 }
 
-fn find<'a>(attributes: &'a [(String, String)], name: &str) -> Option<&'a str> {
-    attributes.iter().find(|(known, _)| known == name).map(|(_, value)| value.as_str())
+/// The names of attributes with their values, in which `&amp;` stands for `&`.
+type Attributes<'a> = Vec<(&'a str, Cow<'a, str>)>;
+
+/// All attributes of an element.
+pub(super) fn attributes<'a>(element: &'a BytesStart<'_>) -> quick_xml::Result<Attributes<'a>> {
+    let pair = |attribute: Result<Attribute<'a>, AttrError>| {
+        let attribute = attribute?;
+        Ok((attribute.key.into_inner(), attribute.normalized_value(XmlVersion::Explicit1_0)?))
+    };
+    element.attributes().with_checks(false).map(pair).collect()
 }
 
-/// Gives every attribute of an element to `take`, with its value, in which `&amp;` stands for `&`.
-pub(super) fn visit(element: &BytesStart<'_>, mut take: impl FnMut(&str, &str)) -> quick_xml::Result<()> {
-    for attribute in element.attributes().with_checks(false) {
-        let attribute = attribute?;
-        take(attribute.key.as_ref(), &attribute.normalized_value(quick_xml::XmlVersion::Explicit1_0)?);
-    }
-    Ok(())
+fn find<'a>(attributes: &'a Attributes<'_>, name: &str) -> Option<&'a str> {
+    attributes.iter().find(|(known, _)| *known == name).map(|(_, value)| &**value)
+}
+
+/// The value of an attribute, whatever the prefix of its name.
+pub(super) fn find_local<'a>(attributes: &'a Attributes<'_>, name: &str) -> Option<&'a str> {
+    let mut named = attributes.iter().filter(|(known, _)| known.rsplit(':').next() == Some(name));
+    named.next().map(|(_, value)| &**value)
 }

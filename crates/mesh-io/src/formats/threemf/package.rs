@@ -7,7 +7,7 @@ use quick_xml::reader::Reader;
 use zip::ZipArchive;
 use zip::result::ZipError;
 
-use super::model::visit;
+use super::model::{attributes, find_local};
 use crate::name::referred;
 use crate::prelude::*;
 use crate::source::inflated_limit;
@@ -102,14 +102,10 @@ fn target(relationships: &[u8]) -> Option<String> {
             Event::Start(element) | Event::Empty(element) => element,
             _ => continue,
         };
-        let (mut is_model, mut target) = (false, None);
-        let visited = visit(&element, |name, value| match name.rsplit(':').next() {
-            Some("Type") => is_model = value.ends_with(MODEL_TYPE),
-            Some("Target") => target = Some(value.trim_start_matches('/').to_owned()),
-            _ => {}
-        });
-        if is_model && target.is_some() && visited.is_ok() {
-            return target;
+        let Ok(attributes) = attributes(&element) else { continue };
+        let is_model = find_local(&attributes, "Type").is_some_and(|kind| kind.ends_with(MODEL_TYPE));
+        if let Some(target) = find_local(&attributes, "Target").filter(|_| is_model) {
+            return Some(target.trim_start_matches('/').to_owned());
         }
     }
 }
