@@ -15,6 +15,12 @@ pub struct Rows<T> {
     items: Vec<T>,
 }
 
+impl<T> Default for Rows<T> {
+    fn default() -> Self {
+        Self { offsets: vec![0], items: Vec::new() }
+    }
+}
+
 impl<T: Copy> Rows<T> {
     /// Sorts `(row, item)` pairs by row; items of a row keep their order. Linear time.
     ///
@@ -38,13 +44,6 @@ impl<T: Copy> Rows<T> {
         Self { offsets, items }
     }
 
-    /// No rows yet, and memory for some.
-    pub fn with_capacity(n_rows: usize, n_items: usize) -> Self {
-        let mut offsets = Vec::with_capacity(n_rows + 1);
-        offsets.push(0);
-        Self { offsets, items: Vec::with_capacity(n_items) }
-    }
-
     /// Appends a row.
     ///
     /// # Panics
@@ -53,6 +52,16 @@ impl<T: Copy> Rows<T> {
         self.items.extend(items);
         assert!(u32::try_from(self.items.len()).is_ok(), "more items than fit into 32 bits");
         self.offsets.push(self.items.len() as u32);
+    }
+
+    /// Rows whose items lie back to back: row `i` has the items from `offsets[i]` to `offsets[i + 1]`.
+    ///
+    /// # Panics
+    /// If the offsets are not ascending from zero to the number of items.
+    pub fn from_offsets(offsets: Vec<u32>, items: Vec<T>) -> Self {
+        assert!(offsets.is_sorted() && offsets.first() == Some(&0), "offsets ascend from zero");
+        assert_eq!(offsets.last().map(|end| *end as usize), Some(items.len()), "all items are in a row");
+        Self { offsets, items }
     }
 
     /// Number of rows.
@@ -94,8 +103,10 @@ mod tests {
             assert_eq!(&rows.items()[rows.range(row)], items);
         }
         assert!(Rows::<u8>::collect(1, std::iter::empty()).row(0).is_empty());
-        let mut pushed = Rows::with_capacity(0, 0);
+        let mut pushed = Rows::default();
         expected.into_iter().for_each(|items| pushed.push_row(items.iter().copied()));
         assert_eq!(pushed, rows);
+        let offsets = vec![0, 2, 2, 5, 5];
+        assert_eq!(Rows::from_offsets(offsets, rows.items().to_vec()), rows);
     }
 }

@@ -1,6 +1,9 @@
 //! Connectivity: edges, the faces on each edge, the corners at each vertex.
 
 use std::ops::Range;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use rayon::prelude::*;
 
 use crate::ids::{CornerId, EdgeId, FaceId, VertexId};
 use crate::rows::Rows;
@@ -45,6 +48,21 @@ pub struct Topology {
 /// Vertices and corners of a mesh are fewer: solvers keep flags beside their numbers, in the upper two of 32 bits.
 const LIMIT: usize = 1 << 30;
 
+/// Number of vertices whose edges one thread collects at a time.
+const BLOCK: usize = 512;
+
+/// The edges from some successive vertices to higher ones.
+#[derive(Default)]
+struct EdgeBlock {
+    edges: Vec<[VertexId; 2]>,
+    /// Per vertex, the number of edges before its own, and at the end the number of all.
+    first_edge: Vec<u32>,
+    /// Per edge, the number of corners opposite the edges before it, and at the end that of all.
+    ends: Vec<u32>,
+    corners: Vec<CornerId>,
+    has_duplicate_faces: bool,
+}
+
 /// A side of a face at the lower of its ends.
 #[derive(Clone, Copy)]
 struct Side {
@@ -53,6 +71,74 @@ struct Side {
     corner: CornerId,
     /// The vertex in it.
     apex: VertexId,
+}
+
+impl EdgeBlock {
+    fn with_capacity(n_vertices: usize, n_edges: usize, n_corners: usize) -> Self {
+        let mut block = Self {
+            edges: Vec::with_capacity(n_edges),
+            first_edge: Vec::with_capacity(n_vertices + 1),
+            ends: Vec::with_capacity(n_edges + 1),
+            corners: Vec::with_capacity(n_corners),
+            has_duplicate_faces: false,
+        };
+        block.first_edge.push(0);
+        block.ends.push(0);
+        block
+    }
+
+    fn of(vertices: Range<usize>, faces: &[[VertexId; 3]], vertex_corners: &Rows<CornerId>) -> Self {
+        let n_corners =
+            vertex_corners.range(vertices.end - 1).end - vertex_corners.range(vertices.start).start;
+        let mut block = Self::with_capacity(vertices.len(), n_corners / 2 + 1, n_corners);
+        // The sides of all vertices, collected without a branch, so that many faces are read at once.
+        let none = Side { upper: VertexId(0), corner: CornerId(0), apex: VertexId(0) };
+        let (mut sides, mut n_sides) = (vec![none; 2 * n_corners + 1], 0);
+        let mut sides_end = Vec::with_capacity(vertices.len());
+        for lower in vertices.clone().map(|v| VertexId(v as u32)) {
+            for corner in vertex_corners.row(lower.index()) {
+                let (next, prev, face) = (corner.next(), corner.prev(), faces[corner.face().index()]);
+                let ends = [face[next.slot()], face[prev.slot()]];
+                sides[n_sides] = Side { upper: ends[0], corner: prev, apex: ends[1] };
+                n_sides += usize::from(ends[0] > lower);
+                sides[n_sides] = Side { upper: ends[1], corner: next, apex: ends[0] };
+                n_sides += usize::from(ends[1] > lower);
+            }
+            sides_end.push(n_sides);
+        }
+        let mut start = 0;
+        for (lower, end) in vertices.map(|v| VertexId(v as u32)).zip(sides_end) {
+            let sides = &mut sides[std::mem::replace(&mut start, end)..end];
+            sides.sort_unstable_by_key(|side| u64::from(side.upper.0) << 32 | u64::from(side.corner.0));
+            for around in sides.chunk_by(|a, b| a.upper == b.upper) {
+                block.edges.push([lower, around[0].upper]);
+                block.corners.extend(around.iter().map(|side| side.corner));
+                block.ends.push(block.corners.len() as u32);
+                block.has_duplicate_faces |= has_repeated_apex(around);
+            }
+            block.first_edge.push(block.edges.len() as u32);
+        }
+        block
+    }
+
+    /// The edges of blocks of vertices that follow each other.
+    fn concat(blocks: Vec<Self>) -> Self {
+        let total = |count: fn(&Self) -> usize| blocks.iter().map(count).sum::<usize>();
+        let mut all = Self::with_capacity(
+            total(|block| block.first_edge.len()),
+            total(|block| block.edges.len()),
+            total(|block| block.corners.len()),
+        );
+        for block in blocks {
+            let (n_edges, n_corners) = (all.edges.len() as u32, all.corners.len() as u32);
+            all.first_edge.extend(block.first_edge[1..].iter().map(|edge| n_edges + edge));
+            all.ends.extend(block.ends[1..].iter().map(|end| n_corners + end));
+            all.edges.extend(block.edges);
+            all.corners.extend(block.corners);
+            all.has_duplicate_faces |= block.has_duplicate_faces;
+        }
+        all
+    }
 }
 
 /// Whether two faces at one edge have the same third vertex.
@@ -74,7 +160,7 @@ impl Topology {
     /// The largest number of vertices of a mesh.
     pub const MAX_VERTICES: usize = LIMIT - 1;
 
-    /// Builds the connectivity of `faces` over `n_vertices` vertices, in linear time.
+    /// Builds the connectivity of `faces` over `n_vertices` vertices, in linear time and in parallel.
     ///
     /// # Panics
     /// If a face has a vertex twice (`mesh::repair` removes such faces) or out of range (readers reject such files), or there
@@ -91,33 +177,23 @@ impl Topology {
         let at_corner = faces.as_flattened().iter().enumerate();
         let vertex_corners =
             Rows::collect(n_vertices, at_corner.map(|(c, v)| (v.index(), CornerId(c as u32))));
-        let n_corners = 3 * faces.len();
-        let (mut edges, mut first_edge) =
-            (Vec::with_capacity(n_corners / 2 + 1), Vec::with_capacity(n_vertices + 1));
-        let mut edge_corners = Rows::with_capacity(n_corners / 2 + 1, n_corners);
-        let mut corner_edge = vec![EdgeId(0); n_corners];
-        let (mut sides, mut has_duplicate_faces) = (Vec::new(), false);
-        for lower in (0..n_vertices).map(|v| VertexId(v as u32)) {
-            first_edge.push(edges.len() as u32);
-            sides.clear();
-            for corner in vertex_corners.row(lower.index()) {
-                let (next, prev, face) = (corner.next(), corner.prev(), faces[corner.face().index()]);
-                let ends = [face[next.slot()], face[prev.slot()]];
-                let both = [
-                    Side { upper: ends[0], corner: prev, apex: ends[1] },
-                    Side { upper: ends[1], corner: next, apex: ends[0] },
-                ];
-                sides.extend(both.into_iter().filter(|side| side.upper > lower));
+        let blocks: Vec<EdgeBlock> = (0..n_vertices.div_ceil(BLOCK))
+            .into_par_iter()
+            .map(|block| {
+                let vertices = block * BLOCK..n_vertices.min((block + 1) * BLOCK);
+                EdgeBlock::of(vertices, &faces, &vertex_corners)
+            })
+            .collect();
+        let EdgeBlock { edges, first_edge, ends, corners, has_duplicate_faces } = EdgeBlock::concat(blocks);
+        let edge_corners = Rows::from_offsets(ends, corners);
+        // Every corner is written once, so the order of the writes does not matter.
+        let corner_edge: Vec<AtomicU32> = faces.as_flattened().iter().map(|_| AtomicU32::new(0)).collect();
+        (0..edges.len()).into_par_iter().with_min_len(BLOCK).for_each(|edge| {
+            for corner in edge_corners.row(edge) {
+                corner_edge[corner.index()].store(edge as u32, Ordering::Relaxed);
             }
-            sides.sort_unstable_by_key(|side| u64::from(side.upper.0) << 32 | u64::from(side.corner.0));
-            for around in sides.chunk_by(|a, b| a.upper == b.upper) {
-                around.iter().for_each(|side| corner_edge[side.corner.index()] = EdgeId(edges.len() as u32));
-                edges.push([lower, around[0].upper]);
-                edge_corners.push_row(around.iter().map(|side| side.corner));
-                has_duplicate_faces |= has_repeated_apex(around);
-            }
-        }
-        first_edge.push(edges.len() as u32);
+        });
+        let corner_edge = corner_edge.into_iter().map(|edge| EdgeId(edge.into_inner())).collect();
         Self {
             n_vertices,
             faces,
@@ -300,9 +376,9 @@ mod tests {
     }
 
     #[test]
-    fn edges_and_corners_of_any_numbers_belong_together() {
+    fn the_numbers_of_vertices_and_blocks_do_not_matter() {
         // More vertices than a block has, in an order without locality.
-        let n = 1541u32;
+        let n = 3 * BLOCK as u32 + 5;
         let list: Vec<_> = (0..n).map(|i| [i, i + 1, i + 2].map(|v| VertexId(v * 7919 % n))).collect();
         let t = Topology::new(n as usize, list.clone());
         assert!(t.edges().is_sorted() && t.edges().iter().all(|[a, b]| a < b));

@@ -180,10 +180,7 @@ impl Triangulation {
     /// the other.
     pub fn flip_to_delaunay(&mut self, loops: Loops) -> Vec<Link> {
         let mut removed = Vec::new();
-        let sides = (0..3 * self.triangles.len() as u32).into_par_iter().with_min_len(BLOCK).map(CornerId);
-        let is_wrong =
-            |side: &CornerId| !is_acute(self.sides(*side)) && self.flippable_quad(*side, loops).is_some();
-        let mut waiting: Vec<CornerId> = sides.filter(is_wrong).collect();
+        let mut waiting = self.sides_to_flip(loops);
         if waiting.is_empty() {
             return removed;
         }
@@ -200,6 +197,26 @@ impl Triangulation {
             }
         }
         removed
+    }
+
+    /// The sides that are not Delaunay, in ascending order.
+    fn sides_to_flip(&self, loops: Loops) -> Vec<CornerId> {
+        let blocks = (0..self.triangles.len().div_ceil(BLOCK)).into_par_iter();
+        let blocks: Vec<Vec<CornerId>> = blocks
+            .map(|block| {
+                let triangles = block * BLOCK..self.triangles.len().min((block + 1) * BLOCK);
+                // No branch depends on angles, which could not be predicted.
+                let (mut obtuse, mut n_obtuse) = (vec![CornerId(0); 3 * triangles.len() + 1], 0);
+                for corner in triangles.flat_map(|t| FaceId(t as u32).corners()) {
+                    obtuse[n_obtuse] = corner;
+                    n_obtuse += usize::from(!is_acute(self.sides(corner)));
+                }
+                obtuse.truncate(n_obtuse);
+                obtuse.retain(|side| self.flippable_quad(*side, loops).is_some());
+                obtuse
+            })
+            .collect();
+        blocks.concat()
     }
 
     /// The two triangles at a side, if it is not Delaunay and can be flipped.

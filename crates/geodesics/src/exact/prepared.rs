@@ -303,10 +303,7 @@ impl Fans {
     pub(super) fn new(mesh: &IntrinsicMesh, faces: &Faces) -> Self {
         let topology = mesh.topology();
         let n_vertices = topology.n_vertices();
-        let mut fans = Self {
-            sectors: Rows::with_capacity(n_vertices, 3 * topology.n_faces()),
-            kinds: Vec::with_capacity(n_vertices),
-        };
+        let mut fans = Self { sectors: Rows::default(), kinds: Vec::with_capacity(n_vertices) };
         let mut ring = OneRing::default();
         for vertex in (0..n_vertices).map(VertexId::from) {
             ring.collect(topology, vertex);
