@@ -72,7 +72,7 @@ impl FromStr for Samples {
 /// The memory of an embedding by distances from samples.
 pub(super) fn plan(n_vertices: usize, samples: Samples) -> Plan {
     let held_out = if samples == Samples::Auto { SampleSearch::ROWS } else { 0 };
-    Plan::new(n_vertices, samples.count_or(AUTO_LAST)).with_held_out(held_out)
+    Plan::new(n_vertices, samples.count_or(AUTO_LAST), held_out)
 }
 
 /// Measures distances on one surface and counts the time it takes.
@@ -235,22 +235,5 @@ impl DistanceSolver for KnownColumns<'_> {
 
     fn pruned(&self) -> Option<&dyn PrunedSolver> {
         self.solver.pruned()
-    }
-
-    fn distance_columns(&self, sources: &[VertexId]) -> Result<Matrix, Exceeded> {
-        let p = self.n_vertices();
-        let mut columns =
-            Matrix::from_vec(p, sources.len(), self.budget().vector(p.saturating_mul(sources.len()))?);
-        let mut unknown = Vec::new();
-        for (i, &source) in sources.iter().enumerate() {
-            match self.column(source) {
-                Some(known) => columns.column_mut(i).copy_from_slice(&known),
-                None => unknown.push(i),
-            }
-        }
-        let measured = unknown.iter().map(|&i| sources[i]).collect::<Vec<_>>();
-        let measured = self.solver.distance_columns(&measured)?;
-        unknown.iter().zip(measured.column_iter()).for_each(|(&i, column)| columns.set_column(i, &column));
-        Ok(columns)
     }
 }

@@ -31,14 +31,10 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    pub(super) fn new(n_vertices: usize, n_columns: usize) -> Self {
+    /// `n_held_out` columns are held out to measure the stress.
+    pub(super) fn new(n_vertices: usize, n_columns: usize, n_held_out: usize) -> Self {
         let (n_columns, n_threads) = (n_columns.min(n_vertices), rayon::current_num_threads());
-        Self { n_vertices, n_columns, n_held_out: 0, n_threads }
-    }
-
-    /// With columns that are held out to measure the stress.
-    pub(super) fn with_held_out(self, n_held_out: usize) -> Self {
-        Self { n_held_out, ..self }
+        Self { n_vertices, n_columns, n_held_out, n_threads }
     }
 
     /// Bytes of the distances.
@@ -116,19 +112,19 @@ mod tests {
     #[test]
     fn distances_that_do_not_fit_go_to_a_file_and_what_fits_is_named() {
         let folder = tempfile::tempdir().unwrap();
-        let plan = Plan::new(1_000_000, 20);
+        let plan = Plan::new(1_000_000, 20, 0);
         let budget = |bytes| Budget::unlimited().with_memory(bytes).with_spill(folder.path().to_owned());
         assert!(!plan.store(&budget(4 << 30)).unwrap().is_in_file());
         assert!(plan.store(&budget(plan.rest())).unwrap().is_in_file());
         let error = plan.store(&budget(plan.rest() / 2)).unwrap_err();
         let Error::EmbeddingTooLarge { needed, fits, .. } = error else { panic!("{error}") };
         assert_eq!((needed, error.remedy()), (plan.rest(), Some(Remedy::RaiseMemory)));
-        assert!(Plan::new(fits, 20).store(&budget(plan.rest() / 2)).is_ok());
+        assert!(Plan::new(fits, 20, 0).store(&budget(plan.rest() / 2)).is_ok());
         // Without a limit, only what no usual machine has room for goes to a file.
         let open = Budget::unlimited().with_spill(folder.path().to_owned());
         assert!(!plan.store(&open).unwrap().is_in_file());
-        assert!(Plan::new(10_000_000, 100).store(&open).unwrap().is_in_file());
-        let nowhere = Plan::new(10_000_000, 100).store(&Budget::unlimited()).unwrap_err();
+        assert!(Plan::new(10_000_000, 100, 0).store(&open).unwrap().is_in_file());
+        let nowhere = Plan::new(10_000_000, 100, 0).store(&Budget::unlimited()).unwrap_err();
         assert!(matches!(nowhere, Error::AllPairsTooLarge { .. }));
         assert!(check_memory(10_000_000, 100, &Budget::unlimited().with_memory(8_000_000_000)).is_ok());
     }
