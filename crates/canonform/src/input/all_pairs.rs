@@ -82,7 +82,7 @@ impl<'a> AllPairs<'a> {
         let at = |row: usize, column: usize| SeekFrom::Start(origin + ((row * p + column) * BYTES) as u64);
         let mut tally = Tally::default();
         let mut block = vec![0.0; self.block * p];
-        let mut bytes = vec![0; self.block * STRIPE * BYTES];
+        let mut bytes = vec![[0; BYTES]; self.block * STRIPE];
         observer.begin("all pairs", p);
         for first in (0..p).step_by(self.block.max(1)) {
             let n = self.block.min(p - first);
@@ -91,21 +91,21 @@ impl<'a> AllPairs<'a> {
             // Earlier blocks wrote the stripes left of this one.
             for left in (0..first).step_by(STRIPE) {
                 let width = STRIPE.min(first - left);
-                let stripe = &mut bytes[..width * n * BYTES];
-                for (i, column) in stripe.chunks_exact_mut(n * BYTES).enumerate() {
+                let stripe = &mut bytes[..width * n];
+                for (i, column) in stripe.chunks_exact_mut(n).enumerate() {
                     out.seek(at(left + i, first))?;
-                    out.read_exact(column)?;
+                    out.read_exact(column.as_flattened_mut())?;
                 }
                 for (i, row) in rows.chunks_exact_mut(p).enumerate() {
                     for (j, there) in row[left..left + width].iter_mut().enumerate() {
-                        let back = &mut stripe[(j * n + i) * BYTES..][..BYTES];
-                        *there = tally.average(*there, f64::from_le_bytes(copied(back)));
-                        back.copy_from_slice(&there.to_le_bytes());
+                        let back = &mut stripe[j * n + i];
+                        *there = tally.average(*there, f64::from_le_bytes(*back));
+                        *back = there.to_le_bytes();
                     }
                 }
-                for (i, column) in stripe.chunks_exact(n * BYTES).enumerate() {
+                for (i, column) in stripe.chunks_exact(n).enumerate() {
                     out.seek(at(left + i, first))?;
-                    out.write_all(column)?;
+                    out.write_all(column.as_flattened())?;
                 }
             }
             for i in 0..n {
@@ -116,11 +116,9 @@ impl<'a> AllPairs<'a> {
                 }
             }
             out.seek(at(first, 0))?;
-            for part in rows.chunks(bytes.len() / BYTES) {
-                for (number, place) in part.iter().zip(bytes.chunks_exact_mut(BYTES)) {
-                    place.copy_from_slice(&number.to_le_bytes());
-                }
-                out.write_all(&bytes[..part.len() * BYTES])?;
+            for part in rows.chunks(bytes.len()) {
+                part.iter().zip(&mut bytes).for_each(|(number, place)| *place = number.to_le_bytes());
+                out.write_all(bytes[..part.len()].as_flattened())?;
             }
         }
         Ok(tally.asymmetry())
@@ -151,10 +149,6 @@ impl<'a> AllPairs<'a> {
         }
         Ok(())
     }
-}
-
-fn copied(bytes: &[u8]) -> [u8; BYTES] {
-    std::array::from_fn(|i| bytes[i])
 }
 
 /// The asymmetry of the pairs seen so far.
@@ -206,7 +200,7 @@ mod tests {
         let asymmetry = pairs.write(&mut out, &()).unwrap();
         let bytes = out.into_inner();
         assert_eq!(&bytes[..6], b"header");
-        (bytes[6..].chunks_exact(BYTES).map(|b| f64::from_le_bytes(copied(b))).collect(), asymmetry)
+        (bytes[6..].as_chunks().0.iter().map(|b| f64::from_le_bytes(*b)).collect(), asymmetry)
     }
 
     #[test]
