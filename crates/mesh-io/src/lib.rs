@@ -31,7 +31,7 @@ use source::{Check, Memory};
 
 pub use file::{FileFacts, LengthUnit, MeshFile, ReadLimits, ScalarField, VertexField};
 pub use formats::{Content, FORMATS, Format, mesh_files, or_list, writable};
-pub use name::{extension, is_gzip, without_extension};
+pub use name::{extension, is_gzip, referred, without_extension};
 pub use source::{Disk, FileSource, GzipReader, MemoryFile, Opened, inflated_limit};
 pub use write::{write, write_polylines, write_scalar_field};
 

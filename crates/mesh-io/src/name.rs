@@ -44,7 +44,7 @@ pub(crate) fn with_extension(path: &Path, extension: &str) -> PathBuf {
 }
 
 /// The path that a reference inside a file stands for: `./my%20data.bin` is `my data.bin`.
-pub(crate) fn referred(text: &str) -> Option<String> {
+pub fn referred(text: &str) -> Option<String> {
     let mut parts = text.split('%');
     let mut bytes = parts.next()?.as_bytes().to_vec();
     for part in parts {

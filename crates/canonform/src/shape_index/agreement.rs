@@ -1,6 +1,6 @@
 //! How well the classes of an index and the distances of its shapes agree.
 
-use std::collections::{HashMap, hash_map};
+use std::collections::{BTreeSet, HashMap};
 
 use base::{ContentHash, Observer};
 use descriptors::{Boundary, PreparedShape, Sample, ShapeMetric, ShapePair};
@@ -63,12 +63,9 @@ impl Agreement {
             (0..n).map(|i| pairs[i * pairs.len() / n]).collect()
         };
         let (same, others) = (drawn(&same), drawn(&others));
-        let mut prepared: HashMap<usize, PreparedShape> = HashMap::new();
-        for i in same.iter().chain(&others).flat_map(|&(i, j)| [i, j]) {
-            if let hash_map::Entry::Vacant(place) = prepared.entry(i) {
-                place.insert(options.prepare(&shape(&shapes[i].id)?)?);
-            }
-        }
+        let needed: BTreeSet<usize> = same.iter().chain(&others).flat_map(|&(i, j)| [i, j]).collect();
+        let prepared = needed.into_iter().map(|i| Ok((i, options.prepare(&shape(&shapes[i].id)?)?)));
+        let prepared = prepared.collect::<Result<HashMap<usize, PreparedShape>, Error>>()?;
         observer.begin("comparing classes", same.len() + others.len());
         let budget = observer.budget();
         let sample = |&(i, j): &(usize, usize)| {
@@ -84,17 +81,13 @@ impl Agreement {
             [&same[..], &others].concat().par_iter().map(sample).collect::<Result<Vec<_>, Error>>()?;
         let agree: f64 = (0..FOLDS)
             .map(|fold| {
-                let is_held_out = |i: usize| i % FOLDS == fold;
-                let numbered = || samples.iter().enumerate();
-                let known: Vec<Sample> =
-                    numbered().filter(|(i, _)| !is_held_out(*i)).map(|(_, sample)| *sample).collect();
-                let boundary = boundary(&known);
-                let is_right =
-                    |&(distance, is_one, _): &Sample| (boundary.probability(distance) > 0.5) == is_one;
-                numbered()
-                    .filter(|(i, sample)| is_held_out(*i) && is_right(sample))
-                    .map(|(_, (.., weight))| weight)
-                    .sum::<f64>()
+                let (held_out, known): (Vec<_>, Vec<_>) =
+                    samples.iter().enumerate().partition(|(i, _)| i % FOLDS == fold);
+                let boundary = boundary(&known.into_iter().map(|(_, sample)| *sample).collect::<Vec<_>>());
+                let right = held_out.into_iter().map(|(_, sample)| sample);
+                let right =
+                    right.filter(|(distance, is_one, _)| (boundary.probability(*distance) > 0.5) == *is_one);
+                right.map(|(.., weight)| weight).sum::<f64>()
             })
             .sum();
         let Boundary { at, steepness, .. } = boundary(&samples);

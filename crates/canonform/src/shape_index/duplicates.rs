@@ -575,43 +575,37 @@ fn groups(
         same.sort_by(|(a, told), (b, other)| {
             place(told.kind).cmp(&place(other.kind)).then_with(|| a.files[0].id.cmp(&b.files[0].id))
         });
-        let group = Group { keeper, same };
-        groups.extend(group.told(options));
+        groups.extend(group(keeper, same, options));
         left = rest;
     }
     Ok((groups, n_compared))
 }
 
-/// A shape to keep, and others that are proved to be it.
-struct Group<'a, 's> {
-    keeper: &'a ClusterShape<'s>,
-    same: Vec<(&'a ClusterShape<'s>, Relation)>,
-}
-
-impl Group<'_, '_> {
-    /// The files of the group; `None` if there is one only.
-    fn told(self, options: &DuplicateOptions) -> Option<DuplicateGroup> {
-        let Self { keeper, same } = self;
-        let why = why(keeper, &same, options);
-        let mut members: Vec<DuplicateMember> = keeper.copies().collect();
-        let mut left = VecDeque::from(same);
-        while let Some((shape, relation)) = left.pop_front() {
-            members.extend(shape.members(&keeper.files[0].id, &relation));
-            // What is no exact copy of the keeper may have exact copies itself.
-            let may_have = |other: &ClusterShape<'_>| {
-                !relation.kind.is_one_geometry() && shape.files[0].vertices == other.files[0].vertices
-            };
-            left.retain(|(other, _)| {
-                let found = may_have(other).then(|| related(shape, other, options)).flatten();
-                let found = found.filter(|told| told.kind.is_one_geometry());
-                members.extend(found.iter().flat_map(|told| other.members(&shape.files[0].id, told)));
-                found.is_none()
-            });
-        }
-        members.retain(|member| options.kinds.contains(&member.relation.kind));
-        let keeper = keeper.files[0].clone();
-        (!members.is_empty()).then_some(DuplicateGroup { keeper, why, members })
+/// The files of a shape to keep and of others that are proved to be it; `None` if there is one only.
+fn group(
+    keeper: &ClusterShape<'_>,
+    same: Vec<(&ClusterShape<'_>, Relation)>,
+    options: &DuplicateOptions,
+) -> Option<DuplicateGroup> {
+    let why = why(keeper, &same, options);
+    let mut members: Vec<DuplicateMember> = keeper.copies().collect();
+    let mut left = VecDeque::from(same);
+    while let Some((shape, relation)) = left.pop_front() {
+        members.extend(shape.members(&keeper.files[0].id, &relation));
+        // What is no exact copy of the keeper may have exact copies itself.
+        let may_have = |other: &ClusterShape<'_>| {
+            !relation.kind.is_one_geometry() && shape.files[0].vertices == other.files[0].vertices
+        };
+        left.retain(|(other, _)| {
+            let found = may_have(other).then(|| related(shape, other, options)).flatten();
+            let found = found.filter(|told| told.kind.is_one_geometry());
+            members.extend(found.iter().flat_map(|told| other.members(&shape.files[0].id, told)));
+            found.is_none()
+        });
     }
+    members.retain(|member| options.kinds.contains(&member.relation.kind));
+    let keeper = keeper.files[0].clone();
+    (!members.is_empty()).then_some(DuplicateGroup { keeper, why, members })
 }
 
 /// How a shape is related to a keeper; `None` if a mesh cannot be read.

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Component, Path, PathBuf};
 
 use collection::list_shapes;
-use mesh_io::{Disk, files_in};
+use mesh_io::{Disk, files_in, referred};
 
 /// Extensions of files that a mesh needs to look as it does.
 const COMPANIONS: [&str; 14] = [
@@ -88,7 +88,8 @@ fn named_in(file: &Path) -> Vec<PathBuf> {
         if !COMPANIONS.iter().any(|known| ends(known.as_bytes())) {
             continue;
         }
-        let text = decoded(piece).replace('\\', "/");
+        let text = String::from_utf8_lossy(piece);
+        let text = referred(&text).unwrap_or_else(|| text.into_owned()).replace('\\', "/");
         // Words before the name end with a blank; the name may hold blanks, too.
         let starts = text.match_indices([' ', '\t']).map(|(at, _)| at + 1);
         let names = std::iter::once(0).chain(starts).map(|at| Path::new(&text[at..]));
@@ -99,16 +100,4 @@ fn named_in(file: &Path) -> Vec<PathBuf> {
         found.extend(files.filter(|file| fs::symlink_metadata(file).is_ok_and(|about| !about.is_dir())));
     }
     found
-}
-
-/// Text in which `%20` is a blank, and so on.
-fn decoded(mut bytes: &[u8]) -> String {
-    let mut text = Vec::new();
-    while let Some((&first, rest)) = bytes.split_first() {
-        let digits = rest.get(..2).filter(|_| first == b'%').and_then(|two| std::str::from_utf8(two).ok());
-        let code = digits.and_then(|two| u8::from_str_radix(two, 16).ok());
-        text.push(code.unwrap_or(first));
-        bytes = if code.is_some() { &rest[2..] } else { rest };
-    }
-    String::from_utf8_lossy(&text).into_owned()
 }

@@ -63,16 +63,11 @@ pub fn move_duplicates<P: AsRef<Path>>(
         roots.push((Below::new(&root), root));
     }
     let (mut moves, mut journal) = (MoveReport::default(), None);
-    let pairs = report.groups.iter().flat_map(|group| {
-        let files = || group.members.iter().map(|member| &member.file).chain([&group.keeper]);
-        let kept = move |id: &str| files().find(|file| file.id == id).map(|file| file.path.as_path());
-        group
-            .members
-            .iter()
-            .filter(|member| !member.file.reference)
-            .map(move |member| (member, kept(&member.of)))
-    });
-    for (member, kept) in pairs {
+    let members =
+        report.groups.iter().flat_map(|group| group.members.iter().map(move |member| (group, member)));
+    for (group, member) in members.filter(|(_, member)| !member.file.reference) {
+        let mut files = group.members.iter().map(|member| &member.file).chain([&group.keeper]);
+        let kept = files.find(|file| file.id == member.of).map(|file| file.path.as_path());
         let root = roots.iter().find(|(_, root)| member.file.path.starts_with(root)).or(roots.first());
         let (Some((below, root)), Some(kept)) = (root, kept) else { continue };
         let files = match files_to_move(member, kept, root, below) {
