@@ -329,13 +329,14 @@ impl Remedy {
     }
 }
 
-/// Errors of the stages. A limit that was exceeded is [`Error::Exceeded`] at every depth.
+/// Errors of the stages, those of what they use as the errors that these are: a limit that was exceeded is [`Error::Exceeded`] at
+/// every depth.
 macro_rules! from_stage {
-    ($($error:ident => $variant:ident: $($exceeded:pat => $limit:ident),+;)+) => {$(
+    ($($error:ident => $variant:ident: $($inner:pat => $fault:ident),+;)+) => {$(
         impl From<$error> for Error {
             fn from(error: $error) -> Self {
                 match error {
-                    $($exceeded => Self::Exceeded($limit),)+
+                    $($inner => $fault.into(),)+
                     other => Self::$variant(other),
                 }
             }
@@ -356,29 +357,15 @@ from_stage! {
         DescriptorError::Linalg(LinalgError::Exceeded(limit)) => limit,
         DescriptorError::Nmds(NmdsError::Exceeded(limit)) => limit,
         DescriptorError::Nmds(NmdsError::Linalg(LinalgError::Exceeded(limit))) => limit;
-}
-
-impl From<CollectionError> for Error {
-    fn from(error: CollectionError) -> Self {
-        match error {
-            CollectionError::File(fault) => Self::File(fault),
-            CollectionError::Mesh(fault) => fault.into(),
-            other => Self::Collection(other),
-        }
-    }
-}
-
-impl From<FieldError> for Error {
-    fn from(error: FieldError) -> Self {
-        match error {
-            FieldError::File(fault) => Self::File(fault),
-            FieldError::Geodesic(fault) => fault.into(),
-            FieldError::Linalg(fault) => fault.into(),
-            FieldError::Nmds(fault) => fault.into(),
-            FieldError::Exceeded(limit) => Self::Exceeded(limit),
-            other => Self::Field(other),
-        }
-    }
+    CollectionError => Collection:
+        CollectionError::File(fault) => fault,
+        CollectionError::Mesh(fault) => fault;
+    FieldError => Field:
+        FieldError::File(fault) => fault,
+        FieldError::Geodesic(fault) => fault,
+        FieldError::Linalg(fault) => fault,
+        FieldError::Nmds(fault) => fault,
+        FieldError::Exceeded(limit) => limit;
 }
 
 impl Remedy {

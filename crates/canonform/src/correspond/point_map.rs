@@ -150,8 +150,7 @@ impl<S: Borrow<Surface>> Mapping<'_, S> {
         if let Some(partners) = self.partners {
             let [partners, _] = ordered(partners.each_ref(), of);
             let point = |v: &Option<VertexId>| Some(SurfacePoint::Vertex(other.repaired_vertex((*v)?).ok()?));
-            let points: Vec<_> = partners.iter().map(point).collect();
-            return PointMap { points: in_faces(&points, other) };
+            return PointMap { points: in_faces(partners.iter().map(point), other) };
         }
         let mut found = self.mapped(of, MapElements::Vertices);
         for [x, y] in self.landmarks {
@@ -160,7 +159,7 @@ impl<S: Borrow<Surface>> Mapping<'_, S> {
                 found[x.index()] = SurfacePoint::Vertex(y);
             }
         }
-        let points = in_faces(&all(found), other);
+        let points = in_faces(found.into_iter().map(Some), other);
         PointMap { points: own.in_input_order(&points, None) }
     }
 
@@ -173,13 +172,12 @@ impl<S: Borrow<Surface>> Mapping<'_, S> {
             let topology = other.intrinsic().topology();
             let point =
                 |[a, b, c]: &[VertexId; 3]| face_among([partner(*a)?, partner(*b)?, partner(*c)?], topology);
-            let points: Vec<_> = own.input.faces.iter().map(point).collect();
-            return PointMap { points: in_faces(&points, other) };
+            return PointMap { points: in_faces(own.input.faces.iter().map(point), other) };
         }
         let faces = repaired_faces(own);
         let known: Vec<_> = faces.iter().flatten().copied().collect();
         let found = self.mapped(of, MapElements::Faces(&known));
-        let mut found = in_faces(&all(found), other).into_iter();
+        let mut found = in_faces(found.into_iter().map(Some), other).into_iter();
         PointMap { points: faces.iter().map(|face| face.and_then(|_| found.next().flatten())).collect() }
     }
 
@@ -195,7 +193,7 @@ impl<S: Borrow<Surface>> Mapping<'_, S> {
         let faces = repaired_faces(own);
         let known: Vec<_> = faces.iter().flatten().copied().collect();
         let found = self.mapped(of, MapElements::Corners { faces: &known, joined: &joined });
-        let mut found = in_faces(&all(found), other).into_iter();
+        let mut found = in_faces(found.into_iter().map(Some), other).into_iter();
         let three = |face: &Option<[VertexId; 3]>| match face {
             Some(_) => std::array::from_fn(|_| found.next().flatten()),
             None => [None; 3],
@@ -267,10 +265,6 @@ fn sorted(mut face: [VertexId; 3]) -> [VertexId; 3] {
     face
 }
 
-fn all(points: Vec<SurfacePoint>) -> Vec<Option<SurfacePoint>> {
-    points.into_iter().map(Some).collect()
-}
-
 /// The centroid of a face with as many of three vertices as possible.
 fn face_among(vertices: [VertexId; 3], topology: &Topology) -> Option<SurfacePoint> {
     let faces = vertices.into_iter().flat_map(|v| topology.vertex_corners(v)).map(|corner| corner.face());
@@ -284,7 +278,10 @@ fn face_among(vertices: [VertexId; 3], topology: &Topology) -> Option<SurfacePoi
 
 /// Points of a repaired mesh in faces of its input. A face that the repair added, as a bridge, has none: its points go to the
 /// nearest corner.
-fn in_faces(points: &[Option<SurfacePoint>], surface: &Surface) -> Vec<Option<FacePoint>> {
+fn in_faces(
+    points: impl IntoIterator<Item = Option<SurfacePoint>>,
+    surface: &Surface,
+) -> Vec<Option<FacePoint>> {
     let topology = surface.intrinsic().topology();
     let to_repaired = |v: VertexId| surface.input.remap.to_new(v);
     let faces = input_faces(surface);
@@ -302,7 +299,7 @@ fn in_faces(points: &[Option<SurfacePoint>], surface: &Surface) -> Vec<Option<Fa
         let one = |w: VertexId| f64::from(u8::from(w == v));
         around[v.index()].map(|i| in_face(i, &one))
     };
-    let place = |point: &SurfacePoint| match *point {
+    let place = |point: SurfacePoint| match point {
         SurfacePoint::Vertex(v) => at_vertex(v),
         SurfacePoint::Edge { edge, t } => {
             let [a, b] = topology.edges()[edge.index()];
@@ -320,7 +317,7 @@ fn in_faces(points: &[Option<SurfacePoint>], surface: &Surface) -> Vec<Option<Fa
             }
         }
     };
-    points.iter().map(|point| point.as_ref().and_then(place)).collect()
+    points.into_iter().map(|point| point.and_then(place)).collect()
 }
 
 #[cfg(test)]
