@@ -41,37 +41,20 @@ const PAGE: u32 = 16_384;
 /// Longest value in bytes. A form of 1,000 points has 16,000.
 const MAX_VALUE: i32 = 64 << 20;
 
-/// What is stored once for an index.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Meta {
+/// Names of what is stored once for an index. The program that writes it adds notes of its own.
+pub(crate) mod meta {
     /// How shapes were described.
-    Options,
+    pub(crate) const OPTIONS: &str = "options";
     /// Number of shapes.
-    Shapes,
+    pub(crate) const SHAPES: &str = "shapes";
     /// Whether a writer was interrupted, or is at work.
-    Unfinished,
+    pub(crate) const UNFINISHED: &str = "unfinished";
     /// The distance beyond which a shape is of no class, as JSON.
-    Threshold,
-    /// What the program that writes the index wants to know again.
-    Note(&'static str),
+    pub(crate) const THRESHOLD: &str = "unknown_beyond";
     /// A number that grows with every transaction.
-    Change,
+    pub(crate) const CHANGE: &str = "change";
     /// A random word for each writer whose changes may be in the log, that of the state before it first.
-    Writers,
-}
-
-impl Meta {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Options => "options",
-            Self::Shapes => "shapes",
-            Self::Unfinished => "unfinished",
-            Self::Threshold => "unknown_beyond",
-            Self::Note(name) => name,
-            Self::Change => "change",
-            Self::Writers => "writers",
-        }
-    }
+    pub(crate) const WRITERS: &str = "writers";
 }
 
 /// An open database, and its path for errors.
@@ -135,10 +118,10 @@ impl Database {
         database
             .execute("PRAGMA journal_mode = WAL; PRAGMA wal_autocheckpoint = 1; PRAGMA synchronous = FULL")?;
         database.begin_writing()?;
-        let known = database.meta(Meta::Writers)?.unwrap_or_default();
+        let known = database.meta(meta::WRITERS)?.unwrap_or_default();
         let kept = if has_log(path) { &known } else { known.rsplit(' ').next().unwrap_or_default() };
         let word: String = database.one("SELECT lower(hex(randomblob(8)))")?;
-        database.set_meta(Meta::Writers, Some(&format!("{kept} {word}")))?;
+        database.set_meta(meta::WRITERS, Some(&format!("{kept} {word}")))?;
         Ok(database)
     }
 
@@ -150,7 +133,7 @@ impl Database {
             let keeps = DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE;
             database.connection.set_db_config(keeps, true).map_err(|fault| database.fault(fault))?;
             database.check_format()?;
-            Ok(database.meta(Meta::Writers)?.unwrap_or_default())
+            Ok(database.meta(meta::WRITERS)?.unwrap_or_default())
         };
         for is_last in [false, false, true] {
             if !has_log(path) {
@@ -180,7 +163,7 @@ impl Database {
                  PRAGMA user_version = {FORMAT_VERSION}; {}; \
                  INSERT INTO meta VALUES ('{}', lower(hex(randomblob(8))))",
                 include_str!("schema.sql"),
-                Meta::Writers.name()
+                meta::WRITERS
             ))?;
             Ok::<_, rusqlite::Error>(blank.serialize(rusqlite::MAIN_DB)?.to_vec())
         };
@@ -238,22 +221,22 @@ impl Database {
         self.statement(sql)?.execute(values).map(drop).map_err(|fault| self.fault(fault))
     }
 
-    pub(crate) fn meta(&self, of: Meta) -> Result<Option<String>, IndexError> {
+    pub(crate) fn meta(&self, name: &str) -> Result<Option<String>, IndexError> {
         let mut statement = self.statement("SELECT value FROM meta WHERE name = ?")?;
-        statement.query_row([of.name()], |row| row.get(0)).optional().map_err(|fault| self.fault(fault))
+        statement.query_row([name], |row| row.get(0)).optional().map_err(|fault| self.fault(fault))
     }
 
-    pub(crate) fn set_meta(&self, of: Meta, value: Option<&str>) -> Result<(), IndexError> {
+    pub(crate) fn set_meta(&self, name: &str, value: Option<&str>) -> Result<(), IndexError> {
         match value {
-            Some(value) => self.change("INSERT OR REPLACE INTO meta VALUES (?, ?)", (of.name(), value)),
-            None => self.change("DELETE FROM meta WHERE name = ?", [of.name()]),
+            Some(value) => self.change("INSERT OR REPLACE INTO meta VALUES (?, ?)", (name, value)),
+            None => self.change("DELETE FROM meta WHERE name = ?", [name]),
         }
     }
 
     /// A number that is stored once.
-    pub(crate) fn count(&self, of: Meta) -> Result<u64, IndexError> {
-        let text = self.meta(of)?.unwrap_or_else(|| "0".to_owned());
-        text.parse().map_err(|_| self.damaged(format!("`{}` is `{text}`", of.name())))
+    pub(crate) fn count(&self, name: &str) -> Result<u64, IndexError> {
+        let text = self.meta(name)?.unwrap_or_else(|| "0".to_owned());
+        text.parse().map_err(|_| self.damaged(format!("`{}` is `{text}`", name)))
     }
 
     /// Visits the rows of a query, up to the first error of `visit`.

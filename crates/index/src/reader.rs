@@ -7,7 +7,7 @@ use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use base::ContentHash;
 use retrieval::UnknownThreshold;
 
-use crate::database::{Database, EntryRow, Meta, log_path, vector_row};
+use crate::database::{Database, EntryRow, log_path, meta, vector_row};
 use crate::{Entry, IndexError, Shape, VectorTable};
 
 /// An index, open for reading.
@@ -37,11 +37,11 @@ impl Index {
         let database = Database::read(path)?;
         let missing = || database.damaged("it does not state how its shapes were described");
         Ok(Self {
-            options: database.meta(Meta::Options)?.ok_or_else(missing)?,
-            n_shapes: usize::try_from(database.count(Meta::Shapes)?).unwrap_or(usize::MAX),
-            change: database.count(Meta::Change)?,
-            is_finished: database.meta(Meta::Unfinished)?.is_none(),
-            threshold: match database.meta(Meta::Threshold)? {
+            options: database.meta(meta::OPTIONS)?.ok_or_else(missing)?,
+            n_shapes: usize::try_from(database.count(meta::SHAPES)?).unwrap_or(usize::MAX),
+            change: database.count(meta::CHANGE)?,
+            is_finished: database.meta(meta::UNFINISHED)?.is_none(),
+            threshold: match database.meta(meta::THRESHOLD)? {
                 Some(text) => {
                     serde_json::from_str(&text).map_err(|fault| database.damaged(fault.to_string()))?
                 }
@@ -76,7 +76,7 @@ impl Index {
 
     /// A [note](crate::IndexWriter::set_note), if there is one of this name.
     pub fn note(&self, name: &'static str) -> Result<Option<String>, IndexError> {
-        self.database().meta(Meta::Note(name))
+        self.database().meta(name)
     }
 
     /// The file.

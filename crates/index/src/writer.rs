@@ -3,8 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use base::Observer;
+use rusqlite::params_from_iter;
+use rusqlite::types::Value;
 
-use crate::database::{Database, EntryRow, Meta, checksum, damaged_path, to_bytes, with_suffix};
+use crate::database::{Database, EntryRow, checksum, damaged_path, meta, to_bytes, with_suffix};
 use crate::reader::{DISC_AREAS, FORM, SIGNATURE, classes, entries, find, shape_of, vectors};
 use crate::vectors::threshold;
 use crate::{Entry, Index, IndexError, Shape};
@@ -94,7 +96,7 @@ impl IndexWriter {
     }
 
     fn begin(database: Database, options: Option<&str>) -> Result<Self, IndexError> {
-        let known = database.meta(Meta::Options)?;
+        let known = database.meta(meta::OPTIONS)?;
         let path = database.path.clone();
         match (options, &known) {
             (Some(requested), Some(found)) if requested != found => {
@@ -104,17 +106,17 @@ impl IndexWriter {
                     requested: requested.to_owned(),
                 });
             }
-            (Some(_), None) => database.set_meta(Meta::Options, options)?,
+            (Some(_), None) => database.set_meta(meta::OPTIONS, options)?,
             (_, Some(_)) => {}
             (None, None) => return Err(database.damaged("it does not state how its shapes were described")),
         }
-        let n_shapes = database.count(Meta::Shapes)?;
+        let n_shapes = database.count(meta::SHAPES)?;
         let lengths = "SELECT length(vector) FROM fused LIMIT 1";
         let length = database.all(lengths, [], |row| row.get::<_, usize>(0))?.pop().map(|bytes| bytes / 4);
         if (n_shapes == 0) != length.is_none() {
             return Err(database.damaged("the number of its shapes is wrong"));
         }
-        let (is_new, resumed) = (known.is_none(), database.meta(Meta::Unfinished)?.is_some());
+        let (is_new, resumed) = (known.is_none(), database.meta(meta::UNFINISHED)?.is_some());
         let (replaced_damaged, unwritten) = (false, Unwritten(is_new.then_some(path)));
         Ok(Self { database, n_shapes, length, resumed, replaced_damaged, is_new, unwritten })
     }
@@ -222,30 +224,16 @@ impl IndexWriter {
     fn put_entry(&self, row: EntryRow) -> Result<(), IndexError> {
         let sum = row.checksum();
         let EntryRow { entry: Entry { id, label, path, content, facts }, vectors } = row;
+        let texts = [id, label, path, content.to_string()].map(Value::Text).into_iter();
+        let facts = facts.named().map(|(_, fact)| Value::Real(fact));
+        let values = texts.chain(facts).chain([vectors as i64, sum.into()].map(Value::Integer));
         let sql = "INSERT OR REPLACE INTO shapes VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
-        let content = content.to_string();
-        let values = rusqlite::params![
-            id,
-            label,
-            path,
-            content,
-            facts.vertices,
-            facts.faces,
-            facts.area,
-            facts.diameter,
-            facts.dropped_area_share,
-            facts.components,
-            facts.shortcuts,
-            facts.longest_boundary,
-            vectors,
-            sum
-        ];
-        self.database.change(sql, values)
+        self.database.change(sql, params_from_iter(values))
     }
 
     /// Notes what is true of the whole index, under a name that is not one of the schema, or removes the note.
     pub fn set_note(&mut self, name: &'static str, text: Option<&str>) -> Result<(), IndexError> {
-        self.database.set_meta(Meta::Note(name), text)
+        self.database.set_meta(name, text)
     }
 
     /// Removes shapes.
@@ -290,16 +278,16 @@ impl IndexWriter {
 
     /// Puts all changes on disk. The index says that it is not finished.
     pub fn commit(&mut self) -> Result<(), IndexError> {
-        self.database.set_meta(Meta::Unfinished, Some("run the command again to finish it"))?;
+        self.database.set_meta(meta::UNFINISHED, Some("run the command again to finish it"))?;
         self.commit_as(None)?;
         self.database.begin_writing()
     }
 
     fn commit_as(&mut self, threshold: Option<&str>) -> Result<(), IndexError> {
-        let change = self.database.count(Meta::Change)? + 1;
-        self.database.set_meta(Meta::Change, Some(&change.to_string()))?;
-        self.database.set_meta(Meta::Shapes, Some(&self.n_shapes.to_string()))?;
-        self.database.set_meta(Meta::Threshold, threshold)?;
+        let change = self.database.count(meta::CHANGE)? + 1;
+        self.database.set_meta(meta::CHANGE, Some(&change.to_string()))?;
+        self.database.set_meta(meta::SHAPES, Some(&self.n_shapes.to_string()))?;
+        self.database.set_meta(meta::THRESHOLD, threshold)?;
         self.database.execute("COMMIT")?;
         self.unwritten.0 = None;
         Ok(())
@@ -321,7 +309,7 @@ impl IndexWriter {
             Ok::<_, IndexError>(())
         })?;
         let threshold = threshold.and_then(|threshold| serde_json::to_string(&threshold).ok());
-        self.database.set_meta(Meta::Unfinished, None)?;
+        self.database.set_meta(meta::UNFINISHED, None)?;
         self.commit_as(threshold.as_deref())?;
         let path = self.path().to_owned();
         drop(self);
