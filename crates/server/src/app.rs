@@ -6,10 +6,8 @@ use std::sync::Arc;
 use axum::body::Bytes;
 use axum::http::StatusCode;
 use base::Cache;
-use canonform::embed::MeasuredSurface;
-use canonform::relations::MeshGeometry;
 use canonform::search::{Answer, SearchOptions, SearchRank};
-use canonform::{Budget, ContentHash, Error, Surface};
+use canonform::{Budget, ContentHash, Error};
 
 use crate::collection::{Collection, Served};
 use crate::cost;
@@ -39,17 +37,6 @@ pub(crate) struct Query {
 }
 
 impl Query {
-    pub(crate) fn new(
-        name: &str,
-        content: ContentHash,
-        measured: Measured,
-        described: canonform::search::Query,
-    ) -> Self {
-        let mut described = described.named(name, Some(content));
-        described.geometry.clone_from(&measured.geometry);
-        Self { described, measured: Arc::new(measured) }
-    }
-
     pub(crate) fn n_vertices(&self) -> u64 {
         self.measured.surface.mesh().n_vertices() as u64
     }
@@ -102,12 +89,8 @@ impl App {
             return Ok(known);
         }
         let options = &collection.search.describe_options().form;
-        let mesh = collection.search.mesh(id)?;
-        budget.check()?;
-        let surface = Surface::new(&mesh, &options.repair, budget)?;
-        let embedded = MeasuredSurface::new(&surface, options, budget)?;
-        let geometry = MeshGeometry::new(&mesh, Some(content)).map(Arc::new);
-        let measured = Arc::new(Measured::new(surface, geometry, &embedded)?);
+        let (measured, _) = Measured::new(&collection.search.mesh(id)?, content, options, budget)?;
+        let measured = Arc::new(measured);
         self.measured.put(key, measured.clone(), measured.bytes());
         Ok(measured)
     }

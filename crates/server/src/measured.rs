@@ -4,13 +4,12 @@ use std::sync::Arc;
 
 use canonform::compare::Overlay;
 use canonform::descriptors::CanonicalForm;
-use canonform::embed::MeasuredSurface;
+use canonform::embed::{FormOptions, MeasuredSurface};
 use canonform::maps::VertexMap;
 use canonform::mesh::TriMesh;
 use canonform::relations::{MeshGeometry, MeshOverlay};
 use canonform::surface::VertexId;
-use canonform::{Error, Surface};
-
+use canonform::{Budget, ContentHash, Error, Surface};
 use report::viewer::Geometry;
 
 /// Bytes of a vertex and of a face in memory, with the connectivity, all arrays together.
@@ -36,15 +35,19 @@ pub(crate) struct Measured {
 }
 
 impl Measured {
-    /// The surface, with the form of its vertices from that of the [prepared](Surface::for_description) surface.
+    /// Measures a mesh. The embedding can describe it.
     pub(crate) fn new(
-        surface: Surface,
-        geometry: Option<Arc<MeshGeometry>>,
-        embedded: &MeasuredSurface,
-    ) -> Result<Self, Error> {
-        let form = embedded.form_of(&surface)?;
-        let distances = embedded.distances_from_first()?;
-        Ok(Self { surface, geometry, form, distances })
+        mesh: &TriMesh,
+        content: ContentHash,
+        options: &FormOptions,
+        budget: &Budget,
+    ) -> Result<(Self, MeasuredSurface), Error> {
+        budget.check()?;
+        let surface = Surface::new(mesh, &options.repair, budget)?;
+        let embedded = MeasuredSurface::new(&surface, options, budget)?;
+        let geometry = MeshGeometry::new(mesh, Some(content)).map(Arc::new);
+        let (form, distances) = (embedded.form_of(&surface)?, embedded.distances_from_first()?);
+        Ok((Self { surface, geometry, form, distances }, embedded))
     }
 
     /// Approximate size in memory.

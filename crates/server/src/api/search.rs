@@ -9,12 +9,10 @@ use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use base::object;
 use canonform::collection::{is_archive_name, single_mesh};
-use canonform::embed::MeasuredSurface;
 use canonform::index::ContentHash;
 use canonform::mesh::io::{MemoryFile, ReadLimits, is_mesh_path, mesh_files, read_memory};
-use canonform::relations::MeshGeometry;
 use canonform::search::{Answer, SearchOptions, SearchRank};
-use canonform::{Budget, Error, Surface};
+use canonform::{Budget, Error};
 use report::viewer::Geometry;
 use serde::Deserialize;
 use serde_json::{Map, Value};
@@ -103,7 +101,7 @@ impl SearchParams {
 }
 
 /// A query as it is drawn; without its mesh the points of its form, and why there is no mesh.
-type Drawn = Result<Arc<Measured>, (Geometry, String)>;
+type Drawn = (Option<Arc<Measured>>, Option<(Geometry, String)>);
 
 impl Wanted {
     /// The output of `canonform search --json`, and the geometry for the page. `query_id` identifies an upload for later
@@ -114,18 +112,13 @@ impl Wanted {
         query: &str,
         query_id: Option<&str>,
         mut answer: Answer,
-        drawn: Option<Drawn>,
+        (measured, points): Drawn,
     ) -> Result<Response, ApiError> {
         answer.place(|path| collection.public_path(path));
         if self.format == Format::Csv {
             let kind = (header::CONTENT_TYPE, "text/csv; charset=utf-8; header=present");
             return Ok(([kind], csv::of(query, &answer)).into_response());
         }
-        let (measured, points) = match drawn {
-            Some(Ok(measured)) => (Some(measured), None),
-            Some(Err(points)) => (None, Some(points)),
-            None => (None, None),
-        };
         let repair = measured.as_ref().map(|measured| &measured.surface.input.report);
         let (points, mesh_missing) = points.unzip();
         let shown = measured.as_ref().filter(|_| self.geometry);
@@ -196,7 +189,7 @@ async fn again(app: Arc<App>, params: SearchParams) -> Result<Response, ApiError
             let answer = move |budget: &Budget| {
                 let answer = query.search(&collection, &wanted.options, budget)?;
                 let (name, drawn) = (&query.described.name, query.measured.clone());
-                wanted.written(&collection, name, Some(&address), answer, Some(Ok(drawn)))
+                wanted.written(&collection, name, Some(&address), answer, (Some(drawn), None))
             };
             app.work.run(cost, None, answer).await
         }
@@ -214,10 +207,10 @@ fn with_shape(
     let query = collection.search.query_of(id, &wanted.options, budget)?;
     let answer = collection.search.search(&query, &wanted.options, budget)?;
     let drawn = match wanted.geometry.then(|| app.indexed(collection, id, budget)) {
-        None => None,
-        Some(Ok(measured)) => Some(Ok(measured)),
+        None => (None, None),
+        Some(Ok(measured)) => (Some(measured), None),
         Some(Err(fault)) if is_missing(&fault) => {
-            Some(Err((points(collection, id)?, ApiError::from(fault).text().to_owned())))
+            (None, Some((points(collection, id)?, ApiError::from(fault).text().to_owned())))
         }
         Some(Err(fault)) => return Err(fault.into()),
     };
@@ -246,7 +239,7 @@ fn with_upload(app: &App, upload: Upload, wanted: &Wanted, budget: &Budget) -> R
     let mut answer = query.search(&collection, &wanted.options, budget)?;
     answer.seconds.describe = describe;
     let (name, drawn) = (&query.described.name, query.measured.clone());
-    wanted.written(&collection, name, Some(&address), answer, Some(Ok(drawn)))
+    wanted.written(&collection, name, Some(&address), answer, (Some(drawn), None))
 }
 
 /// The upload with the mesh of an archive instead of the archive.
@@ -268,14 +261,12 @@ fn measure(app: &App, collection: &Collection, upload: Upload, budget: &Budget) 
     let mesh = read_memory(&files, &ReadLimits::of_vertices(app.options.max_vertices))?;
     let content = content_of(&files);
     drop(upload);
-    budget.check()?;
     let describe = collection.search.describe_options();
-    let surface = Surface::new(&mesh, &describe.form.repair, budget)?;
-    let embedded = MeasuredSurface::new(&surface, &describe.form, budget)?;
+    let (measured, embedded) = Measured::new(&mesh, content, &describe.form, budget)?;
     let described = canonform::search::Query::new(embedded.describe(describe, budget)?, describe);
-    let geometry = MeshGeometry::new(&mesh, Some(content)).map(Arc::new);
-    let measured = Measured::new(surface, geometry, &embedded)?;
-    Ok(Query::new(&name, content, measured, described))
+    let mut described = described.named(&name, Some(content));
+    described.geometry.clone_from(&measured.geometry);
+    Ok(Query { described, measured: Arc::new(measured) })
 }
 
 /// The hash by which an index knows the files of a mesh: that of the mesh itself comes first.
