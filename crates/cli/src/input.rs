@@ -61,12 +61,7 @@ pub(crate) fn is_stream(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// Reads a mesh from a file, or from standard input.
-pub(crate) fn read_mesh(path: &Path, common: &Common) -> Result<TriMesh> {
-    Ok(read_file(path, common)?.mesh)
-}
-
-/// As [`read_mesh`], with what else the file says.
+/// Reads a mesh from a file, or from standard input, with what else the file says.
 pub(crate) fn read_file(path: &Path, common: &Common) -> Result<MeshFile> {
     if !is_stream(path) {
         return Ok(read_mesh_file(path, &ReadLimits::default()).map_err(canonform::Error::from)?);
@@ -127,7 +122,7 @@ fn read_stream_once<'a>(arguments: impl IntoIterator<Item = &'a PathBuf>) -> Res
 /// Reads a mesh, and repairs it as a surface. Points without faces come with those of the surface through them.
 pub(crate) fn read_both(path: &Path, repair: &RepairArgs, common: &Common) -> Result<(TriMesh, Surface)> {
     let start = Instant::now();
-    let mesh = read_mesh(path, common)?;
+    let mesh = read_file(path, common)?.mesh;
     let load_seconds = start.elapsed().as_secs_f64();
     let mut surface =
         Surface::new(&mesh, &repair.options(), &()).map_err(|fault| named(path, fault.into()))?;

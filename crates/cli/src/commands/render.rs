@@ -1,6 +1,6 @@
 //! `canonform render`.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -10,8 +10,8 @@ use base::terminal::Bars;
 use canonform::Surface;
 use canonform::embed::{FormOptions, embed};
 use canonform::geodesics::{Method, Source};
+use canonform::mesh::TriMesh;
 use canonform::mesh::io::{MeshFile, ScalarField};
-use canonform::mesh::{RepairReport, TriMesh};
 use report::render::{Coloring, RenderOptions, annotated, render, value_range};
 use serde::Serialize;
 
@@ -21,57 +21,33 @@ use crate::input::{file_name, is_single, named, print_repair, read_file};
 use crate::output::{Output, exit_code, facts, report};
 use crate::table::read_field;
 
-#[derive(Serialize)]
-struct RenderJson {
-    mesh: PathBuf,
-    output: PathBuf,
-    width: u32,
-    height: u32,
-    n_vertices: usize,
-    n_faces: usize,
-    /// The values that colour the mesh.
-    field: Option<FieldJson>,
-    seconds: f64,
-    /// Present if distances or a form were computed.
-    repair: Option<RepairReport>,
-}
-
-#[derive(Serialize)]
-struct FieldJson {
-    name: String,
-    /// Smallest and largest finite value.
-    values: Option<[f64; 2]>,
-    /// Values of the darkest and the lightest colour.
-    range: Option<[f64; 2]>,
-    /// Vertices without a finite value.
-    missing: usize,
-}
-
 /// Draws one mesh, or each of several.
 pub(crate) fn draw(args: &RenderArgs, common: &Common) -> Result<ExitCode> {
     let bars = |quiet| Bars::with_budget(quiet, args.limits.budget());
     if let ([mesh], true) = (&args.meshes[..], is_single(&args.meshes, &args.output)) {
         let output = Output::new(&args.output, "a picture", &["png"], None, common)?;
-        let drawn = draw_one(mesh, output.path(), args, &bars(common.quiet), common)?;
-        return output.report(common, &RenderJson { output: output.name(), ..drawn }, table);
+        let (drawn, text) =
+            draw_one(mesh, [output.path(), &output.name()], args, &bars(common.quiet), common)?;
+        return output.report(common, &drawn, |_| text);
     }
     let (arguments, folder) = (&args.meshes, &args.output);
     let results = Results { what: "pictures", arguments, folder, extension: "png", in_parallel: false };
-    let (done, failed) =
-        results.make(common, |shape, output| draw_one(&shape.path, output, args, &bars(true), common))?;
-    let json = object! { pictures: done.into_iter().map(|(_, drawn)| drawn).collect::<Vec<_>>(), failed };
+    let (done, failed) = results
+        .make(common, |shape, output| draw_one(&shape.path, [output; 2], args, &bars(true), common))?;
+    let json =
+        object! { pictures: done.into_iter().map(|(_, (drawn, _))| drawn).collect::<Vec<_>>(), failed };
     report(common, &json, |json| results.counts(json.pictures.len(), &json.failed))?;
     Ok(exit_code(json.failed.is_empty()))
 }
 
-/// Draws a mesh, or its form, into a file.
+/// Draws a mesh, or its form, into a file. Returns what is said of it, with another name of the file, and in words.
 fn draw_one(
     path: &Path,
-    output: &Path,
+    [output, name]: [&Path; 2],
     args: &RenderArgs,
     bars: &Bars,
     common: &Common,
-) -> Result<RenderJson> {
+) -> Result<(impl Serialize + use<>, String)> {
     let start = Instant::now();
     let MeshFile { mesh, field: carried, .. } = read_file(path, common)?;
     // Points without faces are drawn as the surface through them.
@@ -94,22 +70,40 @@ fn draw_one(
         _ => render(&drawn, &options, &budget).map_err(|fault| named(path, fault.into()))?,
     };
     image.write_png(output)?;
-    Ok(RenderJson {
+    let field = field.map(|ScalarField { name, values }| {
+        let ends = value_range(&values);
+        let missing = values.iter().filter(|value| !value.is_finite()).count();
+        object! { name, values: ends, range: args.range.or(ends), missing }
+    });
+    let json = object! {
         mesh: path.to_owned(),
-        output: output.to_owned(),
+        output: name.to_owned(),
         width: image.width(),
         height: image.height(),
         n_vertices: drawn.n_vertices(),
         n_faces: drawn.n_faces(),
-        field: field.map(|field| FieldJson {
-            values: value_range(&field.values),
-            range: args.range.or_else(|| value_range(&field.values)),
-            missing: field.values.iter().filter(|value| !value.is_finite()).count(),
-            name: field.name,
-        }),
+        field,
         seconds: start.elapsed().as_secs_f64(),
         repair: surface.map(|surface| surface.input.report),
-    })
+    };
+    let mut lines = vec![("vertices, faces", format!("{}, {}", json.n_vertices, json.n_faces))];
+    if let Some(field) = &json.field {
+        let ends = |range: &Option<[f64; 2]>| match range {
+            Some([low, high]) => format!("{low:.6} to {high:.6}"),
+            None => "no finite value".to_owned(),
+        };
+        lines.push(("coloured by", format!("{}, {}", field.name, ends(&field.values))));
+        if field.range != field.values {
+            lines.push(("colours", ends(&field.range)));
+        }
+        if field.missing > 0 {
+            lines.push(("grey", format!("{} vertices without a finite value", field.missing)));
+        }
+    }
+    lines.push(("picture", format!("{} x {} pixels, {:.2} s", json.width, json.height, json.seconds)));
+    lines.push(("wrote", json.output.display().to_string()));
+    let text = facts(&lines);
+    Ok((json, text))
 }
 
 /// Refuses options that would have no effect on a mesh without values.
@@ -186,24 +180,4 @@ fn options(args: &RenderArgs, field: Option<&ScalarField>) -> RenderOptions {
     let supersampling = if width * height > 2000 * 2000 { 2 } else { usual.supersampling };
     let (view, background, colors) = (place.view(args.up), args.background, args.colors);
     RenderOptions { width, height, view, background, coloring, colors, supersampling, ..usual }
-}
-
-fn table(json: &RenderJson) -> String {
-    let mut lines = vec![("vertices, faces", format!("{}, {}", json.n_vertices, json.n_faces))];
-    if let Some(field) = &json.field {
-        let ends = |range: &Option<[f64; 2]>| match range {
-            Some([low, high]) => format!("{low:.6} to {high:.6}"),
-            None => "no finite value".to_owned(),
-        };
-        lines.push(("coloured by", format!("{}, {}", field.name, ends(&field.values))));
-        if field.range != field.values {
-            lines.push(("colours", ends(&field.range)));
-        }
-        if field.missing > 0 {
-            lines.push(("grey", format!("{} vertices without a finite value", field.missing)));
-        }
-    }
-    lines.push(("picture", format!("{} x {} pixels, {:.2} s", json.width, json.height, json.seconds)));
-    lines.push(("wrote", json.output.display().to_string()));
-    facts(&lines)
 }

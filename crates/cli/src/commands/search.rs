@@ -14,7 +14,7 @@ use canonform::search::{
 };
 
 use crate::args::{Common, SearchArgs};
-use crate::input::{file_name, is_stream, is_there, named, read_mesh, shapes_of};
+use crate::input::{file_name, is_stream, is_there, named, read_file, shapes_of};
 use crate::output::{count, exit_code, print, print_json, row_of, table_of};
 
 /// What to search with.
@@ -36,7 +36,7 @@ impl Query {
         match self {
             Self::Indexed(id) => Ok(index.search(&index.query_of(id, options, &())?, options, &())?),
             Self::Mesh(path) => {
-                let mesh = read_mesh(path, common)?;
+                let mesh = read_file(path, common)?.mesh;
                 let search = || {
                     let is_hashed = options.explain && !is_stream(path);
                     let content = is_hashed.then(|| content_hash(path)).transpose()?;

@@ -13,24 +13,13 @@ use serde::Serialize;
 
 use super::task::{Row, Task, milliseconds, spelled};
 use crate::input::named;
-use crate::output::{Answer, Output, count, shown};
+use crate::output::{Answer, Fact, Output, count, shown};
 
 /// Most paths that are printed without `--details`.
 const MOST_PATHS: usize = 4;
 
 /// Share by which rounding in faces without area may make a path longer than its distance.
 const ROUNDING: f64 = 1e-6;
-
-#[derive(Serialize)]
-struct PathFacts {
-    /// The start: the nearest source.
-    source: InputPoint,
-    target: InputPoint,
-    length: f64,
-    /// The distance by the method, for a target that is a vertex.
-    distance: Option<f64>,
-    n_points: usize,
-}
 
 /// Finds, writes and reports paths.
 pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
@@ -58,7 +47,7 @@ pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
                 ),
                 _ => None,
             };
-            facts.push(PathFacts { source, target: *target, length: path.length, distance, n_points });
+            facts.push(object! { source, target: *target, length: path.length, distance, n_points });
             paths.push(path);
         }
     }
@@ -82,14 +71,18 @@ pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
         repair: &surface.input.report,
     };
     task.output.report(common, &json, |json| {
-        let path = |path: &PathFacts| {
-            let ends = format!("{} to {}", spelled(&[path.source]), spelled(&[path.target]));
-            let shortest =
-                path.distance.filter(|d| json.method == "exact" && path.length > d * (1.0 + ROUNDING));
-            let note = shortest.map_or_else(String::new, |d| format!(", not shortest: {d:.6} are possible"));
-            ("path", format!("{ends}: length {:.6}, {} points{note}", path.length, path.n_points))
-        };
-        let (first, others) = facts.split_at(facts.len().min(MOST_PATHS));
+        let lines: Vec<Fact> = facts
+            .iter()
+            .map(|path| {
+                let ends = format!("{} to {}", spelled(&[path.source]), spelled(&[path.target]));
+                let shortest =
+                    path.distance.filter(|d| json.method == "exact" && path.length > d * (1.0 + ROUNDING));
+                let note =
+                    shortest.map_or_else(String::new, |d| format!(", not shortest: {d:.6} are possible"));
+                ("path", format!("{ends}: length {:.6}, {} points{note}", path.length, path.n_points))
+            })
+            .collect();
+        let (first, others) = lines.split_at(lines.len().min(MOST_PATHS));
         let details = [
             ("method", json.method.to_owned()),
             ("vertices", json.n_vertices.to_string()),
@@ -99,8 +92,8 @@ pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
         ];
         let answer = Answer {
             sentence: format!("{} holds {}", shown(&output), count(facts.len(), "path")),
-            facts: first.iter().map(path).collect(),
-            details: details.into_iter().chain(others.iter().map(path)).collect(),
+            facts: first.to_vec(),
+            details: [&details[..], others].concat(),
         };
         answer.text(common)
     })
@@ -114,7 +107,7 @@ fn source_of(path: &SurfacePath, row: &Row, surface: &Surface) -> Option<InputPo
     all.min_by(|(_, a), (_, b)| away(a).total_cmp(&away(b))).map(|(from, _)| *from)
 }
 
-fn write_paths(output: &Output, paths: &[SurfacePath], facts: &[PathFacts]) -> Result<()> {
+fn write_paths(output: &Output, paths: &[SurfacePath], facts: &[impl Serialize]) -> Result<()> {
     match output.format() {
         "csv" => write_atomically(output.path(), |out| {
             writeln!(out, "path,x,y,z,distance,at")?;
