@@ -276,13 +276,9 @@ mod tests {
     #[test]
     fn every_surface_is_closed_and_manifold() {
         let mut blobs = Vec::new();
-        let mut x: u64 = 1;
+        let mut random = base::SplitMix(1);
         for _ in 0..200 {
-            let mut next = || {
-                x = x.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                (x >> 40) as f64 / (1u64 << 24) as f64 * 10.0 - 5.0
-            };
-            blobs.push(Blob::ball([next(), next(), next()], 0.7));
+            blobs.push(Blob::ball([(); 3].map(|()| 5.0 * random.uniform()), 0.7));
         }
         let raw =
             extract(&ImplicitBody::new(vec![BodyPart::added(blobs)]), lattice(0.6), &Budget::unlimited())

@@ -86,23 +86,3 @@ impl Method {
         Ok(solver)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use mesh::shapes::icosphere;
-
-    use super::*;
-
-    #[test]
-    fn every_method_has_its_own_name() {
-        let names: std::collections::BTreeSet<_> = Method::all().iter().map(|method| method.name()).collect();
-        assert_eq!(names.len(), Method::all().len());
-    }
-
-    #[test]
-    fn bad_options_are_rejected() {
-        let frozen = Method::Heat(HeatOptions { time: 0.0 });
-        let error = frozen.prepare(icosphere(1).intrinsic(), &()).unwrap_err();
-        assert_eq!(error, GeodesicError::BadHeatTime { time: 0.0 });
-    }
-}

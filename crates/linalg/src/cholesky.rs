@@ -253,16 +253,6 @@ mod tests {
     }
 
     #[test]
-    fn solutions_equal_those_of_the_dense_matrix() {
-        let a = grid(9, 0.2);
-        let b = right_hand_side(81, 3);
-        let expected = a.dense().cholesky().unwrap().solve(&nalgebra::DVector::from_column_slice(&b));
-        let mut x = b;
-        factorize(&a).unwrap().solve(&mut x);
-        assert!(x.iter().zip(&expected).all(|(x, e)| (x - e).abs() < 1e-13 * 50.0));
-    }
-
-    #[test]
     fn lanes_do_not_affect_each_other() {
         let a = grid(45, 0.01);
         let n = a.order();
@@ -341,21 +331,6 @@ mod tests {
         let factor = factorize(&SparseSymmetric::from_entries(0, [])).unwrap();
         factor.solve(&mut []);
         assert!(factor.order().rows().is_empty());
-    }
-
-    #[test]
-    fn diagonal_matrices_and_blocks_have_factors() {
-        let diagonal = SparseSymmetric::from_entries(3, [(0, 0, 2.0), (1, 1, 4.0), (2, 2, 8.0)]);
-        let mut x = [2.0, 2.0, 2.0];
-        factorize(&diagonal).unwrap().solve(&mut x);
-        assert!(x.iter().zip([1.0, 0.5, 0.25]).all(|(x, e)| (x - e).abs() < 1e-15));
-        let blocks = SparseSymmetric::from_entries(
-            4,
-            [(0, 0, 2.0), (3, 3, 2.0), (0, 3, 1.0), (1, 1, 1.0), (2, 2, 1.0)],
-        );
-        let mut x = [3.0, 5.0, 7.0, 3.0];
-        factorize(&blocks).unwrap().solve(&mut x);
-        assert!(x.iter().zip([1.0, 5.0, 7.0, 1.0]).all(|(x, e)| (x - e).abs() < 1e-14));
     }
 
     #[test]

@@ -98,16 +98,3 @@ impl<'a> Bytes<'a> {
         self.number(Scalar::U32).map(|word| word as u32)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn both_byte_orders_decode() {
-        assert_eq!(Scalar::I16.decode(ByteOrder::Little, &[0xfe, 0xff, 7]), Some(-2.0));
-        assert_eq!(Scalar::U16.decode(ByteOrder::Big, &[1, 2]), Some(258.0));
-        assert_eq!(Scalar::F32.decode(ByteOrder::Big, &1.5f32.to_be_bytes()), Some(1.5));
-        assert_eq!(Scalar::F64.decode(ByteOrder::Little, &[0; 7]), None);
-    }
-}

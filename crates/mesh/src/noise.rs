@@ -184,13 +184,9 @@ mod tests {
     /// A torus whose vertices are moved in all directions by about `amount`.
     fn noisy(amount: f64) -> TriMesh {
         let mut torus = shapes::torus(60, 30, 2.0, 0.7);
-        let mut state = 1_u64;
-        let mut uniform = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-        };
+        let mut random = base::SplitMix(1);
         for p in &mut torus.positions {
-            p.coords += Vector3::from([(); 3].map(|()| uniform())) * 3.5 * amount;
+            p.coords += Vector3::from([(); 3].map(|()| random.uniform())) * 1.75 * amount;
         }
         torus
     }

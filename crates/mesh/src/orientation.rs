@@ -165,6 +165,7 @@ mod tests {
         assert_eq!(Orientation::of(&topology).orientable, [false]);
         let positions = (0..6).map(|i| nalgebra::Point3::new(f64::from(i), f64::from(i * i), 0.0)).collect();
         let mut strip = TriMesh { positions, faces };
+        assert_eq!(crate::outward::oriented_faces(&strip), None);
         orient_consistently(&mut strip);
         assert_eq!(strip.n_faces(), 6);
     }

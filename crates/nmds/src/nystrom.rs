@@ -192,18 +192,6 @@ mod tests {
         assert!(procrustes_free_gap(&cloud, &at_four) > 1e-3, "rank 4 is too small for three dimensions");
     }
 
-    #[test]
-    fn each_regularisation_reproduces_points_in_space_to_its_accuracy() {
-        let cloud = Cloud::new(300, 3, 1);
-        let distances = landmark_distances(&cloud, 20);
-        // The regularised pseudo-inverse also changes large eigenvalues, by a share of alpha / sigma^4.
-        for (regularization, bound) in ALL.into_iter().zip([1e-9, 1e-4, 1e-2, 1e-9, 1e-9]) {
-            let embedding = nystrom(&distances, &options(regularization)).unwrap();
-            let gap = procrustes_free_gap(&cloud, &embedding);
-            assert!(gap < bound, "{regularization:?}: {gap:e}");
-        }
-    }
-
     /// Points in the plane with a little noise: four eigenvalues are far above the rest.
     fn gapped() -> LandmarkDistances {
         let cloud = Cloud::new(150, 2, 4);

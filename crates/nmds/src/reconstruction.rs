@@ -269,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn relative_errors_have_no_unit_and_do_not_depend_on_threads() {
+    fn relative_errors_have_no_unit() {
         let (all, columns) = problem(130, 10, 0.7);
         let base = Reconstruction::new(&columns, &all).unwrap();
         for scale in [1e-3, 1e3] {
@@ -282,11 +282,6 @@ mod tests {
                 assert!((b.mean_square / scale.powi(4) / a.mean_square - 1.0).abs() < 1e-9);
             }
         }
-        let with = |threads: usize| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| Reconstruction::new(&columns, &all).unwrap().error(low_rank(6)).unwrap())
-        };
-        assert_eq!(with(1), with(4));
     }
 
     #[test]

@@ -180,23 +180,9 @@ mod tests {
         TriMesh { positions: mesh.positions.iter().map(to).collect(), faces: mesh.faces.clone() }
     }
 
-    /// A ball with arms of different lengths.
-    fn hand() -> TriMesh {
-        let mut mesh = shapes::icosphere(4);
-        let arms = [([1.0, 1.0, 1.0], 1.0), ([1.0, -1.0, -1.0], 1.6), ([-1.0, 1.0, -1.0], 2.3)];
-        for p in &mut mesh.positions {
-            let direction = p.coords;
-            for (towards, length) in arms {
-                let cosine = direction.dot(&Vector3::from(towards)) / 3f64.sqrt();
-                p.coords += direction * length * (-(1.0 - cosine) * 12.0).exp();
-            }
-        }
-        mesh
-    }
-
     #[test]
     fn subdivided_and_moved_surfaces_coincide() {
-        let mesh = hand();
+        let mesh = shapes::lopsided_torus();
         for (flip, mirrored) in [(1.0, false), (-1.0, true)] {
             let other = changed(&shapes::subdivide(&mesh), 25.4, flip);
             let found = align_surfaces(&surface(&mesh), &surface(&other)).unwrap();
@@ -224,7 +210,8 @@ mod tests {
 
     #[test]
     fn other_surfaces_are_apart() {
-        let (mesh, mut bent) = (hand(), hand());
+        let mesh = shapes::lopsided_torus();
+        let mut bent = mesh.clone();
         for p in &mut bent.positions {
             p.x += 0.25 * p.y * p.y;
         }

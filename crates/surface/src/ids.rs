@@ -98,19 +98,3 @@ impl CornerId {
         Self(self.0.wrapping_add_signed([2, -1, -1][self.slot()]))
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn next_and_prev_go_around_the_face() {
-        for corner in FaceId(7).corners() {
-            assert_eq!(corner, CornerId::new(FaceId(7), corner.slot()));
-            assert_eq!(corner.next().prev(), corner);
-            assert_eq!(corner.next().next(), corner.prev());
-            assert_eq!([corner.next().face(), corner.prev().face()], [FaceId(7); 2]);
-        }
-        assert_eq!(CornerId(21).next(), CornerId(22));
-    }
-}

@@ -12,12 +12,12 @@ fn options(n_families: usize, n_poses: usize) -> CreatureOptions {
 }
 
 #[test]
-fn every_creature_is_a_clean_surface_with_the_handles_of_its_plan() {
-    let options = options(creature_plans().len(), 3);
-    let shapes = creatures(&options).unwrap();
+fn creatures_are_clean_surfaces_of_their_own_with_the_handles_of_their_plans() {
+    let n_plans = creature_plans().len();
+    let shapes = creatures(&options(2 * n_plans, 1)).unwrap();
     for shape in &shapes {
         let report = validate(&shape.mesh);
-        let handles = match shape.label.as_str() {
+        let handles = match shape.label.trim_end_matches('B') {
             "ring" | "cup" | "key" => 1,
             "glasses" | "scissors" => 2,
             _ => 0,
@@ -27,13 +27,6 @@ fn every_creature_is_a_clean_surface_with_the_handles_of_its_plan() {
         assert!(shape.mesh.signed_volume() > 0.0, "{} is inside out", shape.name);
         assert!((report.area / 18_000.0 - 1.0).abs() < 0.15, "{}: area {}", shape.name, report.area);
     }
-}
-
-#[test]
-fn families_have_their_own_labels_and_sizes() {
-    let n_plans = creature_plans().len();
-    let options = options(2 * n_plans, 1);
-    let shapes = creatures(&options).unwrap();
     let labels: HashSet<&str> = shapes.iter().map(|shape| shape.label.as_str()).collect();
     assert_eq!(labels.len(), 2 * n_plans);
     assert_eq!((shapes[0].label.as_str(), shapes[n_plans].label.as_str()), ("worm", "wormB"));

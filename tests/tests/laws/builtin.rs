@@ -5,17 +5,15 @@ use canonform::embed::{FormOptions, embed};
 use canonform::relations::Relation;
 use canonform::rigid::Handedness;
 use canonform::{DescribeOptions, describe};
-use datasets::{ArticulatedOptions, articulated};
 use descriptors::{Boundary, Normalization, ShapeMetric, ShapePair};
 use rayon::prelude::*;
 use retrieval::{Labels, RankBy, evaluate};
 
-use crate::support::surface;
+use crate::support::{SHAPES, surface};
 
 #[test]
 fn canonical_forms_retrieve_their_families() {
-    let options = ArticulatedOptions { n_vertices: 1000, ..ArticulatedOptions::default() };
-    let shapes = articulated(&options).unwrap();
+    let shapes = &*SHAPES;
     let labels = Labels::new(&shapes.iter().map(|shape| shape.label.as_str()).collect::<Vec<_>>());
     let forms: Vec<_> = shapes
         .par_iter()
@@ -33,8 +31,7 @@ fn canonical_forms_retrieve_their_families() {
 
 #[test]
 fn distances_distinguish_poses_from_families() {
-    let options = ArticulatedOptions { n_vertices: 1000, ..ArticulatedOptions::default() };
-    let shapes = articulated(&options).unwrap();
+    let shapes = &*SHAPES;
     let described: Vec<_> = shapes
         .par_iter()
         .map(|shape| {

@@ -1,25 +1,17 @@
 //! Dense maps between surfaces: exact cases, invariances, and known partners.
 
-use canonform::maps::{CorrespondOptions, Correspondence, MapKind, MappedSurface, VertexMap, correspond};
-use datasets::{ArticulatedOptions, Family, RestedShape, articulated_at_rest};
+use canonform::maps::{MapKind, VertexMap};
+use datasets::{ArticulatedOptions, Family};
 use geodesics::Method;
 use mesh::{TriMesh, shapes};
 use nalgebra::{Point3, Rotation3};
-use rigid::NearestPoints;
 use surface::VertexId;
 
-use crate::support::{body, surface};
+use crate::rested::{Rested, of_kind, prepared};
+use crate::support::body;
 
-fn prepared(mesh: &TriMesh) -> MappedSurface {
-    MappedSurface::new(surface(mesh), &CorrespondOptions::default(), &()).unwrap()
-}
-
-fn maps(a: &TriMesh, b: &TriMesh) -> Correspondence {
-    correspond(&prepared(a), &prepared(b), &CorrespondOptions::default(), &()).unwrap()
-}
-
-fn of_kind(found: &Correspondence, kind: MapKind) -> &VertexMap {
-    found.maps.iter().find(|map| map.kind == kind).unwrap_or_else(|| panic!("no {kind:?} map"))
+fn maps(a: &TriMesh, b: &TriMesh) -> Vec<VertexMap> {
+    crate::rested::maps(&prepared(a), &prepared(b))
 }
 
 fn images(map: &VertexMap) -> Vec<usize> {
@@ -33,20 +25,18 @@ fn share(found: &[usize], expected: impl Fn(usize) -> usize) -> f64 {
 
 #[test]
 fn a_surface_is_mapped_to_itself_by_the_identity_and_by_its_mirror() {
-    for family in [Family::Cat, Family::David] {
-        let mesh = body(family);
-        let found = maps(&mesh, &mesh);
-        let direct = of_kind(&found, MapKind::Direct);
-        assert_eq!(found.maps[0], *direct, "the identity distorts nothing");
-        assert_eq!(share(&images(direct), |x| x), 1.0);
-        // Distances by fast marching differ a little in the two directions.
-        assert!(direct.distortion < 0.005, "{}", direct.distortion);
-        let mirrored = of_kind(&found, MapKind::Mirrored);
-        assert!(mirrored.distortion > 1e-3 && mirrored.distortion < 0.06, "{}", mirrored.distortion);
-        let fixed = share(&images(mirrored), |x| x);
-        println!("{}: mirrored {:.4}, fixed {fixed:.3}", family.name(), mirrored.distortion);
-        assert!(fixed < 0.5, "{fixed}");
-    }
+    let mesh = body(Family::Cat);
+    let found = maps(&mesh, &mesh);
+    let direct = of_kind(&found, MapKind::Direct);
+    assert_eq!(found[0], *direct, "the identity distorts nothing");
+    assert_eq!(share(&images(direct), |x| x), 1.0);
+    // Distances by fast marching differ a little in the two directions.
+    assert!(direct.distortion < 0.005, "{}", direct.distortion);
+    let mirrored = of_kind(&found, MapKind::Mirrored);
+    assert!(mirrored.distortion > 1e-3 && mirrored.distortion < 0.06, "{}", mirrored.distortion);
+    let fixed = share(&images(mirrored), |x| x);
+    println!("mirrored {:.4}, fixed {fixed:.3}", mirrored.distortion);
+    assert!(fixed < 0.5, "{fixed}");
 }
 
 #[test]
@@ -93,10 +83,10 @@ fn a_mirror_image_is_matched_by_the_mirrored_map() {
     other.positions.iter_mut().for_each(|p| p.x = -p.x);
     let found = maps(&hand, &other);
     assert_eq!(
-        found.maps[0].kind,
+        found[0].kind,
         MapKind::Mirrored,
         "{:?}",
-        found.maps.iter().map(|m| (m.kind, m.distortion)).collect::<Vec<_>>()
+        found.iter().map(|m| (m.kind, m.distortion)).collect::<Vec<_>>()
     );
 }
 
@@ -105,7 +95,7 @@ fn maps_do_not_depend_on_threads() {
     let [a, b] = [Family::Cat, Family::Centaur].map(body);
     let on = |n: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap();
-        pool.install(|| maps(&a, &b).maps)
+        pool.install(|| maps(&a, &b))
     };
     let (one, three) = (on(1), on(3));
     assert_eq!(one, three);
@@ -113,32 +103,10 @@ fn maps_do_not_depend_on_threads() {
     assert_eq!(bits(&one), bits(&three));
 }
 
-fn rested(family: Family, pose: usize) -> RestedShape {
-    let options = ArticulatedOptions { n_vertices: 1500, ..ArticulatedOptions::default() };
-    articulated_at_rest(family, 0, pose, &options, &()).unwrap()
-}
-
-/// The mean distance of images from true partners, as a share of the square root of the area.
-fn mean_error([a, b]: [&RestedShape; 2], map: &VertexMap) -> f64 {
-    let solver = Method::default().prepare(b.shape.mesh.intrinsic(), &()).unwrap();
-    let partners = NearestPoints::new(b.rest.positions.clone()).unwrap();
-    let sign = if map.kind == MapKind::Mirrored { -1.0 } else { 1.0 };
-    let image = images(map);
-    let error = |x: usize| {
-        let p = a.rest.positions[x];
-        let truth = partners.nearest(&Point3::new(sign * p.x, p.y, p.z)).0;
-        solver.distances(VertexId::from(truth)).unwrap()[image[x]] / b.shape.mesh.area().sqrt()
-    };
-    let errors: Vec<f64> = (0..image.len()).step_by(10).map(error).collect();
-    errors.iter().sum::<f64>() / errors.len() as f64
-}
-
 #[test]
 fn poses_are_mapped_to_their_true_partners() {
     are_mapped_to_true_partners(&[
         (Family::Cat, [0, 3]),
-        // A map that mixes the direct and the mirrored one distorts least.
-        (Family::Centaur, [2, 4]),
         // The mirror of the second man that distorts least exchanges front and back.
         (Family::David, [5, 6]),
     ]);
@@ -149,6 +117,8 @@ fn poses_are_mapped_to_their_true_partners() {
 fn more_poses_are_mapped_to_their_true_partners() {
     are_mapped_to_true_partners(&[
         (Family::Centaur, [1, 2]),
+        // A map that mixes the direct and the mirrored one distorts least.
+        (Family::Centaur, [2, 4]),
         (Family::David, [2, 5]),
         // Most starts turn this man back to front.
         (Family::David, [0, 5]),
@@ -157,11 +127,11 @@ fn more_poses_are_mapped_to_their_true_partners() {
 
 fn are_mapped_to_true_partners(pairs: &[(Family, [usize; 2])]) {
     for &(family, poses) in pairs {
-        let [a, b]: [RestedShape; 2] = poses.map(|pose| rested(family, pose));
-        let found = maps(&a.shape.mesh, &b.shape.mesh);
+        let [a, b] = poses.map(|pose| Rested::pose(family, pose, 1500));
+        let (found, unit) = (a.maps_to(&b), b.mesh.area().sqrt());
         for kind in [MapKind::Direct, MapKind::Mirrored] {
             let map = of_kind(&found, kind);
-            let mean = mean_error([&a, &b], map);
+            let mean = a.error(&b, map, unit);
             println!("{} {kind:?}: {mean:.4}, confidence {:.2}", family.name(), map.confidence);
             assert!(mean < 0.035, "{} {kind:?}: {mean}", family.name());
             assert_eq!(map.alternative.is_none(), map.is_certain());
@@ -174,13 +144,11 @@ fn are_mapped_to_true_partners(pairs: &[(Family, [usize; 2])]) {
 fn wrong_maps_are_uncertain_and_at_least_half_of_the_right_ones_are_not() {
     let (mut right, mut doubted) = (0, 0);
     for (family, poses) in [(Family::David, 3..8), (Family::Cat, 1..4)] {
-        let shapes: Vec<_> = poses.map(|pose| rested(family, pose)).collect();
-        let ready: Vec<_> = shapes.iter().map(|rested| prepared(&rested.shape.mesh)).collect();
-        for i in 1..shapes.len() {
-            let found = correspond(&ready[i - 1], &ready[i], &CorrespondOptions::default(), &()).unwrap();
-            for map in &found.maps {
-                let mean = mean_error([&shapes[i - 1], &shapes[i]], map);
-                let name = &shapes[i].shape.name;
+        let shapes: Vec<_> = poses.map(|pose| Rested::pose(family, pose, 1500)).collect();
+        for (a, b) in shapes.iter().zip(&shapes[1..]) {
+            for map in a.maps_to(b) {
+                let mean = a.error(b, &map, b.mesh.area().sqrt());
+                let name = family.name();
                 println!("{name} {:?}: {mean:.4}, confidence {:.2}", map.kind, map.confidence);
                 if mean < 0.1 {
                     right += 1;
@@ -200,7 +168,7 @@ fn a_sheet_that_fits_in_two_ways_is_uncertain_and_both_are_returned() {
     let flat = shapes::grid(25, 19, 0.1);
     let found = maps(&flat, &shapes::fold(&flat, 0.9, 1.2));
     let n = flat.n_vertices();
-    for map in &found.maps {
+    for map in &found {
         assert!(!map.is_certain(), "{:?}: {}", map.kind, map.confidence);
         let other = map.alternative.as_ref().expect("the other way");
         // They differ by half a turn.

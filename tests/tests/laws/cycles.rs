@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
-use crate::support::{metadata, rust_files};
+use crate::support::{files, metadata};
 
 /// The segments of a path, without `crate`.
 type ModulePath = Vec<String>;
@@ -19,7 +19,7 @@ fn path(text: &str) -> ModulePath {
 /// The modules below a `src` folder. Modules of tests do not count.
 fn modules(src: &Path) -> Modules {
     let mut modules = Modules::new();
-    for file in rust_files(src) {
+    for file in files(src, "rs") {
         let relative = file.strip_prefix(src).unwrap().with_extension("");
         let mut module: ModulePath = relative.iter().map(|part| part.to_str().unwrap().to_owned()).collect();
         module.pop_if(|name| ["lib", "main", "mod"].contains(&name.as_str()));

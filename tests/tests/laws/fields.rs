@@ -4,12 +4,11 @@ use canonform::Surface;
 use canonform::fields::{DistanceField, FieldBounds, FieldOptions, Finish, PairKind};
 use datasets::Family;
 use geodesics::Method;
-use mesh::{RepairOptions, TriMesh};
+use mesh::RepairOptions;
 use surface::VertexId;
 
 use crate::real_meshes::read_npy;
-use crate::support::data;
-use crate::support::{body, moved, permutation, surface};
+use crate::support::{body, data, surface};
 
 fn field(surface: &Surface, method: Method) -> DistanceField {
     DistanceField::build(surface, &FieldOptions { method, ..FieldOptions::default() }, &()).unwrap()
@@ -40,54 +39,20 @@ fn scored(field: &DistanceField, pairs: &[[VertexId; 2]], exact: &[f64]) -> Fiel
 
 #[test]
 fn intervals_hold_pairs_of_bodies() {
-    for family in Family::all() {
-        let surface = surface(&body(family));
-        let n = surface.n_input_vertices();
-        let solver = Method::Exact.prepare(surface.intrinsic(), &()).unwrap();
-        let vertices: Vec<VertexId> = (0..n).map(VertexId::from).collect();
-        let sources: Vec<VertexId> = vertices.iter().copied().step_by(9).collect();
-        let columns = solver.distance_columns(&sources).unwrap();
-        let pairs: Vec<_> = sources.iter().flat_map(|&b| vertices.iter().map(move |&a| [a, b])).collect();
-        for method in [Method::Exact, Method::default()] {
-            let field = field(&surface, method);
-            let score = scored(&field, &pairs, columns.as_slice());
-            println!("{} by {}: {score:?}", family.name(), method.name());
-            assert_eq!(score.missed, 0, "{}: {score:?}", family.name());
-            // On a thousand vertices marching itself has an error of 0.3 %.
-            let most = if method == Method::Exact { 0.0025 } else { 0.005 };
-            assert!(score.finished < most && score.plain < 0.02, "{}: {score:?}", family.name());
-        }
-    }
-}
-
-#[test]
-fn fields_follow_scale_and_renumbering() {
-    let mesh = body(Family::Cat);
-    let n = mesh.n_vertices();
-    let plain = field(&surface(&mesh), Method::Exact);
-    let scaled = field(&surface(&moved(&mesh, |p| p * 2f64.powi(-30))), Method::Exact);
-    // Vertex 0, from which the first landmark is the farthest, keeps its number.
-    let mut order = permutation(n);
-    let at = order.iter().position(|&v| v == 0).unwrap();
-    order.swap(0, at);
-    let mut number = vec![0; n];
-    order.iter().enumerate().for_each(|(new, &old)| number[old] = new);
-    let renumbered = TriMesh {
-        positions: order.iter().map(|&old| mesh.positions[old]).collect(),
-        faces: mesh.faces.iter().map(|face| face.map(|v| VertexId::from(number[v.index()]))).collect(),
-    };
-    let renumbered = field(&surface(&renumbered), Method::Exact);
-    let extent =
-        plain.row(VertexId(0), Finish::Never, &()).unwrap().iter().fold(0.0, |e: f64, p| e.max(p.upper));
-    for (a, b) in (0..n).map(|a| (a, (7 * a + 11) % n)).filter(|(a, b)| a != b) {
-        let expected = plain.pair(VertexId::from(a), VertexId::from(b)).unwrap();
-        let found = scaled.pair(VertexId::from(a), VertexId::from(b)).unwrap();
-        assert_eq!([found.lower, found.upper].map(|d| d * 2f64.powi(30)), [expected.lower, expected.upper]);
-        assert!((found.distance * 2f64.powi(30) - expected.distance).abs() < 1e-9 * expected.distance);
-        // Rounding of codes is all that may differ.
-        let found = renumbered.pair(VertexId::from(number[a]), VertexId::from(number[b])).unwrap();
-        assert!((found.lower - expected.lower).abs() < 1e-4 * extent, "{found:?} {expected:?}");
-        assert!((found.upper - expected.upper).abs() < 1e-4 * extent, "{found:?} {expected:?}");
+    let surface = surface(&body(Family::David));
+    let n = surface.n_input_vertices();
+    let solver = Method::Exact.prepare(surface.intrinsic(), &()).unwrap();
+    let vertices: Vec<VertexId> = (0..n).map(VertexId::from).collect();
+    let sources: Vec<VertexId> = vertices.iter().copied().step_by(9).collect();
+    let columns = solver.distance_columns(&sources).unwrap();
+    let pairs: Vec<_> = sources.iter().flat_map(|&b| vertices.iter().map(move |&a| [a, b])).collect();
+    for method in [Method::Exact, Method::default()] {
+        let score = scored(&field(&surface, method), &pairs, columns.as_slice());
+        println!("by {}: {score:?}", method.name());
+        assert_eq!(score.missed, 0, "{score:?}");
+        // On a thousand vertices marching itself has an error of 0.3 %.
+        let most = if method == Method::Exact { 0.0025 } else { 0.005 };
+        assert!(score.finished < most && score.plain < 0.02, "{score:?}");
     }
 }
 

@@ -2,13 +2,13 @@
 
 use std::fs;
 
-use crate::support::{rust_files, workspace_root};
+use crate::support::{files, workspace_root};
 
 #[test]
 fn every_guarantee_names_tests_that_exist() {
     let root = workspace_root();
-    let files = ["crates", "datasets", "experiments", "tests"].map(|folder| rust_files(&root.join(folder)));
-    let text: String = files.iter().flatten().map(|file| fs::read_to_string(file).unwrap()).collect();
+    let all = ["crates", "datasets", "experiments", "tests"].map(|folder| files(&root.join(folder), "rs"));
+    let text: String = all.iter().flatten().map(|file| fs::read_to_string(file).unwrap()).collect();
     let page = fs::read_to_string(root.join("docs/robustness.md")).unwrap();
     let rows = page.lines().filter(|line| line.starts_with("| ") && !line.starts_with("| guarantee "));
     let mut n_tests = 0;

@@ -5,9 +5,8 @@
 //! | `architecture` | which crate may depend on which |
 //! | `correspondence` | dense maps between surfaces |
 //! | `cycles` | imports between the modules of a crate |
-//! | `one_of_each` | unique names, no doubled functions, the packages of the project |
+//! | `one_of_each` | unique names, the packages of the project |
 //! | `packaging` | whether all packages can be published |
-//! | `licences` | licences of dependencies |
 //! | `guarantees` | the tests behind `docs/robustness.md` |
 //! | `pages` | length of pages, links between them, and the table of contents of the book |
 //! | `marching` | distances by fast marching |
@@ -17,6 +16,7 @@
 //! | `matches` | how a changed mesh is related to the original |
 //! | `keepers` | which of several copies is kept |
 //! | `nearest` | what a search finds |
+//! | `map_uses` | known pairs, points inside faces, and what maps carry |
 //! | `part_maps` | dense maps between a part and a whole |
 //! | `samples` | how many samples are enough, and the interval of the stress after that choice |
 //! | `isometry` | invariance to folding, motions, renumbering and units |
@@ -27,58 +27,34 @@
 //! | `builtin` | the built-in dataset |
 //! | `real_meshes` | scans and TOSCA; skipped without the meshes |
 
-#[cfg(test)]
+// Helper functions are test code too, which clippy cannot see.
+#![allow(clippy::unwrap_used)]
+
 mod architecture;
-#[cfg(test)]
 mod builtin;
-#[cfg(test)]
 mod correspondence;
-#[cfg(test)]
 mod cycles;
-#[cfg(test)]
 mod embedding;
-#[cfg(test)]
 mod fields;
-#[cfg(test)]
 mod guarantees;
-#[cfg(test)]
 mod invariance;
-#[cfg(test)]
 mod invariants;
-#[cfg(test)]
 mod isometry;
-#[cfg(test)]
 mod keepers;
-#[cfg(test)]
-mod licences;
-#[cfg(test)]
 mod map_uses;
-#[cfg(test)]
 mod marching;
-#[cfg(test)]
 mod matches;
 mod memory;
-#[cfg(test)]
 mod nearest;
-#[cfg(test)]
 mod one_of_each;
-#[cfg(test)]
 mod packaging;
-#[cfg(test)]
 mod pages;
-#[cfg(test)]
 mod part_maps;
-#[cfg(test)]
 mod real_meshes;
-#[cfg(test)]
+mod rested;
 mod samples;
-#[cfg(test)]
 mod scale;
-#[cfg(test)]
 mod shortcuts;
-#[cfg(test)]
 mod signatures;
-#[cfg(test)]
 mod support;
-#[cfg(test)]
 mod threads;

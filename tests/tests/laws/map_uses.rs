@@ -1,39 +1,32 @@
 //! What maps are good for: known pairs, points inside faces, and what they carry.
 
+use std::sync::LazyLock;
+
 use canonform::descriptors::Side;
 use canonform::maps::{
     CorrespondOptions, KnownMap, LandmarkConflict, MapKind, MappedSurface, Mapping, PointMap, VertexMap,
     correspond, score_map,
 };
 use canonform::{Error, Surface};
-use datasets::{ArticulatedOptions, Family, RestedShape, articulated_at_rest};
+use datasets::Family;
 use linalg::Matrix;
 use mesh::{TriMesh, refine, shapes};
 use nalgebra::Point3;
-use rigid::NearestPoints;
 use surface::VertexId;
 
-use crate::support::{body, surface};
+use crate::rested::{Rested, maps, maps_with, of_kind, prepared};
+use crate::support::body;
 
-fn prepared(mesh: &TriMesh) -> MappedSurface {
-    MappedSurface::new(surface(mesh), &CorrespondOptions::default(), &()).unwrap()
-}
+/// Two poses of a cat, and the maps between them if nothing is known.
+static CATS: LazyLock<([Rested; 2], Vec<VertexMap>)> = LazyLock::new(|| {
+    let cats = [0, 4].map(|pose| Rested::pose(Family::Cat, pose, 1000));
+    let maps = cats[0].maps_to(&cats[1]);
+    (cats, maps)
+});
 
-/// A pose of a cat, with its vertices at rest.
-fn cat(pose: usize) -> RestedShape {
-    let options = ArticulatedOptions { n_vertices: 1000, ..ArticulatedOptions::default() };
-    articulated_at_rest(Family::Cat, 0, pose, &options, &()).unwrap()
-}
-
-/// The true partners of vertices: the nearest ones at rest.
-fn partners(a: &RestedShape, b: &RestedShape) -> Vec<VertexId> {
-    let nearest = NearestPoints::new(b.rest.positions.clone()).unwrap();
-    a.rest.positions.iter().map(|p| VertexId::from(nearest.nearest(p).0)).collect()
-}
-
-fn with(known: KnownMap, [a, b]: [&MappedSurface; 2]) -> Vec<VertexMap> {
-    let options = CorrespondOptions { known, ..CorrespondOptions::default() };
-    correspond(a, b, &options, &()).unwrap().maps
+/// The surfaces of both poses.
+fn sides() -> [&'static MappedSurface; 2] {
+    CATS.0.each_ref().map(|cat| &cat.mapped)
 }
 
 fn coordinates(mesh: &TriMesh) -> Matrix {
@@ -47,10 +40,10 @@ fn gap(found: &Matrix, expected: &Matrix, mesh: &TriMesh) -> f64 {
 }
 
 /// A vertex of each leg on the right side, far out: landmarks that tell left from right.
-fn right_ends(rest: &TriMesh) -> Vec<VertexId> {
-    let along = |way: [f64; 3], v: usize| rest.positions[v].coords.dot(&nalgebra::Vector3::from(way));
+fn right_ends(rest: &[Point3<f64>]) -> Vec<VertexId> {
+    let along = |way: [f64; 3], v: usize| rest[v].coords.dot(&nalgebra::Vector3::from(way));
     let farthest = |way: [f64; 3]| {
-        (0..rest.n_vertices()).max_by(|v, w| along(way, *v).total_cmp(&along(way, *w))).map(VertexId::from)
+        (0..rest.len()).max_by(|v, w| along(way, *v).total_cmp(&along(way, *w))).map(VertexId::from)
     };
     [[5.0, 1.0, -1.0], [5.0, -1.0, -1.0]].into_iter().filter_map(farthest).collect()
 }
@@ -59,7 +52,7 @@ fn right_ends(rest: &TriMesh) -> Vec<VertexId> {
 fn the_identity_carries_everything_to_itself() {
     let mesh = body(Family::Cat);
     let side = prepared(&mesh);
-    let map = &with(KnownMap::default(), [&side, &side])[0];
+    let map = &maps(&side, &side)[0];
     let own = coordinates(&mesh);
     let labels: Vec<usize> = (0..mesh.n_vertices()).collect();
     let of_faces: Vec<usize> = (0..mesh.n_faces()).collect();
@@ -81,11 +74,9 @@ fn the_identity_carries_everything_to_itself() {
 
 #[test]
 fn constants_stay_and_there_and_back_is_near_the_identity() {
-    let meshes = [0, 4].map(|pose| cat(pose).shape.mesh);
-    let sides = meshes.each_ref().map(prepared);
-    let shapes = sides.each_ref();
-    let map = &with(KnownMap::default(), shapes)[0];
-    let between = map.between(shapes);
+    let (cats, maps) = &*CATS;
+    let (meshes, map) = (cats.each_ref().map(|cat| &cat.mesh), &maps[0]);
+    let between = map.between(sides());
     for (of, [own, other]) in [(Side::First, [0, 1]), (Side::Second, [1, 0])] {
         let points = between.vertices(of);
         let n = meshes[other].n_vertices();
@@ -102,10 +93,10 @@ fn constants_stay_and_there_and_back_is_near_the_identity() {
             assert!(same > 850, "{same} of 1000");
         }
     }
-    let own = coordinates(&meshes[0]);
+    let own = coordinates(meshes[0]);
     let there = between.vertices(Side::Second).values(&own);
     let back = between.vertices(Side::First).values(&there);
-    let error = gap(&back, &own, &meshes[0]);
+    let error = gap(&back, &own, meshes[0]);
     assert!(error < 0.01, "{error}");
 }
 
@@ -116,7 +107,7 @@ fn points_inside_faces_are_nearer_than_vertices() {
     let fine = refine(&coarse, 0.03 * size, 20_000).mesh;
     let sides = [&fine, &coarse].map(prepared);
     let shapes = sides.each_ref();
-    let map = &with(KnownMap::default(), shapes)[0];
+    let map = &maps(shapes[0], shapes[1])[0];
     let places = coordinates(&coarse);
     let truth = coordinates(&fine);
     let inside = gap(&map.between(shapes).vertices(Side::First).values(&places), &truth, &fine);
@@ -128,70 +119,54 @@ fn points_inside_faces_are_nearer_than_vertices() {
 
 #[test]
 fn landmarks_that_break_the_symmetry_leave_one_map() {
-    let cats = [0, 4].map(cat);
-    let sides = cats.each_ref().map(|cat| prepared(&cat.shape.mesh));
-    let shapes = sides.each_ref();
-    assert_eq!(with(KnownMap::default(), shapes).len(), 2);
-    let ends = right_ends(&cats[0].rest);
-    let truth = partners(&cats[0], &cats[1]);
+    let (cats, maps) = &*CATS;
+    let shapes = sides();
+    assert_eq!(maps.len(), 2);
+    let ends = right_ends(cats[0].at_rest.points());
+    let truth = cats[0].partners(&cats[1]);
     let landmarks: Vec<[VertexId; 2]> = ends.iter().map(|v| [*v, truth[v.index()]]).collect();
-    let found = with(KnownMap { landmarks: landmarks.clone(), ..KnownMap::default() }, shapes);
+    let found = maps_with(KnownMap { landmarks: landmarks.clone(), ..KnownMap::default() }, shapes);
     assert_eq!(found.iter().map(|map| map.kind).collect::<Vec<_>>(), [MapKind::Direct]);
     assert!(landmarks.iter().all(|[x, y]| found[0].vertices[x.index()] == Some(*y)), "known pairs are kept");
     let points = found[0].between(shapes).vertices(Side::First).points;
     assert!(landmarks.iter().all(|[x, y]| points[x.index()].unwrap().nearest_corner() == *y));
     // One of them is enough.
     for pair in landmarks {
-        let found = with(KnownMap { landmarks: vec![pair], ..KnownMap::default() }, shapes);
+        let found = maps_with(KnownMap { landmarks: vec![pair], ..KnownMap::default() }, shapes);
         assert_eq!(found.iter().map(|map| map.kind).collect::<Vec<_>>(), [MapKind::Direct], "{pair:?}");
     }
     // The mirrored map, by partners on the other side.
-    let mirrored =
-        with(KnownMap::default(), shapes).into_iter().find(|map| map.kind == MapKind::Mirrored).unwrap();
+    let mirrored = of_kind(maps, MapKind::Mirrored);
     let landmarks = ends.iter().map(|v| [*v, mirrored.vertices[v.index()].unwrap()]).collect();
-    let found = with(KnownMap { landmarks, ..KnownMap::default() }, shapes);
+    let found = maps_with(KnownMap { landmarks, ..KnownMap::default() }, shapes);
     assert_eq!(found.iter().map(|map| map.kind).collect::<Vec<_>>(), [MapKind::Mirrored]);
     // As a start, it comes first.
     let initial = mirrored.vertices.clone();
-    let found = with(KnownMap { initial, ..KnownMap::default() }, shapes);
+    let found = maps_with(KnownMap { initial, ..KnownMap::default() }, shapes);
     assert_eq!(found[0].kind, MapKind::Mirrored);
     // A function that tells left from right finds the direct map.
-    let sideways =
-        |cat: &RestedShape| Matrix::from_fn(cat.rest.n_vertices(), 1, |v, _| cat.rest.positions[v].x);
+    let sideways = |cat: &Rested| Matrix::from_fn(cat.mesh.n_vertices(), 1, |v, _| cat.at_rest.points()[v].x);
     let functions = Some(cats.each_ref().map(sideways));
-    let found = with(KnownMap { functions, ..KnownMap::default() }, shapes);
+    let found = maps_with(KnownMap { functions, ..KnownMap::default() }, shapes);
     assert!(found.iter().any(|map| map.kind == MapKind::Direct));
-}
-
-/// The mean distance in space of the images from the true partners, as a share of the square root of the area.
-fn mean_miss(map: &VertexMap, truth: &[VertexId], target: &TriMesh) -> f64 {
-    let places = coordinates(target);
-    let rows = |partners: &mut dyn Iterator<Item = VertexId>| {
-        places.select_rows(&partners.map(VertexId::index).collect::<Vec<_>>())
-    };
-    let found = rows(&mut map.vertices.iter().map(|v| v.unwrap()));
-    gap(&found, &rows(&mut truth.iter().copied()), target)
 }
 
 #[test]
 #[ignore = "slow: make test-all"]
 fn true_landmarks_hold_for_the_whole_map_in_any_order() {
-    let turn = nalgebra::Rotation3::from_euler_angles(0.3, 2.0, -1.0);
     // Without landmarks, most starts turn the second man back to front.
     for (family, poses, n_vertices) in [(Family::Cat, [0, 4], 1000), (Family::David, [0, 5], 1500)] {
-        let options = ArticulatedOptions { n_vertices, ..ArticulatedOptions::default() };
-        let [a, mut b] = poses.map(|pose| articulated_at_rest(family, 0, pose, &options, &()).unwrap());
-        b.shape.mesh.positions.iter_mut().for_each(|p| *p = turn * *p);
-        let sides = [&a, &b].map(|rested| prepared(&rested.shape.mesh));
-        let truth = partners(&a, &b);
+        let [a, b] = poses.map(|pose| Rested::pose(family, pose, n_vertices));
+        let (truth, unit) = (a.partners(&b), b.mesh.area().sqrt());
         for start in [7, 101] {
             let at = (0..5).map(|i| VertexId::from((start + i * n_vertices / 5) % n_vertices));
             let mut landmarks: Vec<[VertexId; 2]> = at.map(|v| [v, truth[v.index()]]).collect();
             let found = |landmarks: &[[VertexId; 2]]| {
-                with(KnownMap { landmarks: landmarks.to_vec(), ..KnownMap::default() }, sides.each_ref())
+                let known = KnownMap { landmarks: landmarks.to_vec(), ..KnownMap::default() };
+                maps_with(known, [&a.mapped, &b.mapped])
             };
             let maps = found(&landmarks);
-            let miss = mean_miss(&maps[0], &truth, &b.shape.mesh);
+            let miss = a.error(&b, &maps[0], unit);
             println!("{} {start}: {miss:.4}, confidence {:.2}", family.name(), maps[0].confidence);
             assert!(maps[0].kind == MapKind::Direct && miss < 0.035, "{:?}: {miss}", maps[0].kind);
             assert!(landmarks.iter().all(|[x, y]| maps[0].vertices[x.index()] == Some(*y)));
@@ -204,18 +179,17 @@ fn true_landmarks_hold_for_the_whole_map_in_any_order() {
 
 #[test]
 fn contradictory_landmarks_are_refused_and_name_the_pair() {
-    let cats = [0, 4].map(cat);
-    let sides = cats.each_ref().map(|cat| prepared(&cat.shape.mesh));
-    let truth = partners(&cats[0], &cats[1]);
+    let (cats, sides) = (&CATS.0, sides());
+    let truth = cats[0].partners(&cats[1]);
     let refused = |landmarks: &[[VertexId; 2]]| {
         let known = KnownMap { landmarks: landmarks.to_vec(), ..KnownMap::default() };
         let options = CorrespondOptions { known, ..CorrespondOptions::default() };
-        match correspond(&sides[0], &sides[1], &options, &()) {
+        match correspond(sides[0], sides[1], &options, &()) {
             Err(Error::ContradictoryLandmarks { pairs, how }) => (pairs, how),
             other => panic!("{landmarks:?}: {other:?}"),
         }
     };
-    let right = right_ends(&cats[0].rest);
+    let right = right_ends(cats[0].at_rest.points());
     let [front, back] = [right[0], right[1]].map(|v| [v, truth[v.index()]]);
     let sorted = |mut pairs: [[VertexId; 2]; 2]| {
         pairs.sort_unstable();
@@ -226,33 +200,30 @@ fn contradictory_landmarks_are_refused_and_name_the_pair() {
         assert_eq!((pairs, how), (sorted([front, shared]), LandmarkConflict::SharedVertex));
     }
     // Both ends of a leg go to one place.
-    let near = cats[1].shape.mesh.faces.iter().find(|face| face.contains(&front[1])).unwrap();
+    let near = cats[1].mesh.faces.iter().find(|face| face.contains(&front[1])).unwrap();
     let next = *near.iter().find(|v| **v != front[1]).unwrap();
     let (pairs, how) = refused(&[[back[0], next], front]);
     assert_eq!(pairs, sorted([front, [back[0], next]]));
     assert!(matches!(how, LandmarkConflict::Distance([a, b]) if a > 0.3 && b < 0.1), "{how:?}");
     // One right leg goes to the right, and the other to the left.
-    let mirrored = NearestPoints::new(cats[1].rest.positions.clone()).unwrap();
-    let p = cats[0].rest.positions[back[0].index()];
-    let other = VertexId::from(mirrored.nearest(&Point3::new(-p.x, p.y, p.z)).0);
+    let other = cats[0].partner(&cats[1], back[0].index(), -1.0).0;
     let (pairs, how) = refused(&[front, [back[0], other]]);
     assert_eq!((pairs, how), (sorted([front, [back[0], other]]), LandmarkConflict::Orientation));
 }
 
 #[test]
 fn maps_that_miss_a_landmark_are_uncertain() {
-    let cats = [0, 4].map(cat);
-    let sides = cats.each_ref().map(|cat| prepared(&cat.shape.mesh));
-    let truth = partners(&cats[0], &cats[1]);
+    let (cats, sides) = (&CATS.0, sides());
+    let truth = cats[0].partners(&cats[1]);
     // A point of the plane of symmetry goes to one that is a third of the square root of the area away.
-    let rest = &cats[0].rest.positions;
+    let rest = cats[0].at_rest.points();
     let x = (0..rest.len()).min_by(|v, w| rest[*v].x.abs().total_cmp(&rest[*w].x.abs())).unwrap();
     let solver = geodesics::Method::default().prepare(sides[1].surface().intrinsic(), &()).unwrap();
     let from = solver.distances(truth[x]).unwrap();
-    let away = |v: &usize| (from[*v] / cats[1].shape.mesh.area().sqrt() - 0.33).abs();
+    let away = |v: &usize| (from[*v] / cats[1].mesh.area().sqrt() - 0.33).abs();
     let y = (0..from.len()).min_by(|v, w| away(v).total_cmp(&away(w))).unwrap();
     let landmarks = vec![[x, y].map(VertexId::from)];
-    let maps = with(KnownMap { landmarks, ..KnownMap::default() }, sides.each_ref());
+    let maps = maps_with(KnownMap { landmarks, ..KnownMap::default() }, sides);
     assert!(!maps.is_empty());
     for map in maps {
         assert!(!map.is_certain(), "{:?}: {}", map.kind, map.confidence);
@@ -261,23 +232,22 @@ fn maps_that_miss_a_landmark_are_uncertain() {
 
 #[test]
 fn a_given_map_is_scored_as_it_is() {
-    let cats = [0, 4].map(cat);
-    let sides = cats.each_ref().map(|cat| prepared(&cat.shape.mesh));
+    let (cats, sides) = (&CATS.0, sides());
     let scored = |initial: Vec<VertexId>| {
         let initial: Vec<_> = initial.into_iter().map(Some).collect();
         let known = KnownMap { initial: initial.clone(), ..KnownMap::default() };
         let options = CorrespondOptions { known, ..CorrespondOptions::default() };
-        let found = score_map(&sides[0], &sides[1], &options, &()).unwrap();
+        let found = score_map(sides[0], sides[1], &options, &()).unwrap();
         let [map] = <[VertexMap; 1]>::try_from(found.maps).unwrap();
         assert_eq!(map.vertices, initial);
         map
     };
-    let truth = scored(partners(&cats[0], &cats[1]));
+    let truth = scored(cats[0].partners(&cats[1]));
     assert_eq!(truth.kind, MapKind::Direct);
     assert!(truth.is_certain() && truth.distortion < 0.03, "{} {}", truth.confidence, truth.distortion);
     // The nose goes to the tail, by the rest of a cat that was turned by half.
-    let turned = NearestPoints::new(cats[1].rest.positions.clone()).unwrap();
-    let rest = &cats[0].rest.positions;
+    let turned = &cats[1].at_rest;
+    let rest = cats[0].at_rest.points();
     let wrong = scored(rest.iter().map(|p| turned.nearest(&Point3::new(-p.x, -p.y, p.z)).0.into()).collect());
     assert!(!wrong.is_certain() && wrong.confidence < 0.1, "{}", wrong.confidence);
     assert!(wrong.distortion > 1.8 * truth.distortion, "{} {}", wrong.distortion, truth.distortion);
@@ -285,7 +255,7 @@ fn a_given_map_is_scored_as_it_is() {
     let initial = (0..rest.len()).map(|x| (x < 3).then_some(VertexId::from(x))).collect();
     let known = KnownMap { initial, ..KnownMap::default() };
     let options = CorrespondOptions { known, ..CorrespondOptions::default() };
-    let fault = score_map(&sides[0], &sides[1], &options, &()).unwrap_err().to_string();
+    let fault = score_map(sides[0], sides[1], &options, &()).unwrap_err().to_string();
     assert!(fault.contains("at least four"), "{fault}");
 }
 
@@ -331,7 +301,7 @@ fn texture_coordinates_of_corners_are_not_torn_at_seams() {
     let corners: Vec<f64> = a.faces.iter().flatten().map(|v| around[(v.index(), 0)]).collect();
     let corners = Matrix::from_column_slice(corners.len(), 1, &corners);
     let sides = [prepared(&a), prepared(&b)];
-    let map = &with(KnownMap::default(), sides.each_ref())[0];
+    let map = &maps(&sides[0], &sides[1])[0];
     let mapping = map.between(sides.each_ref());
     let by_corner = mapping.corners(Side::Second, &corners).unwrap().corner_values(&corners);
     assert_eq!(by_corner.nrows(), 3 * b.n_faces());

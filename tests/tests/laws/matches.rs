@@ -11,7 +11,7 @@ use datasets::{
 };
 use descriptors::ShapeDistance;
 use mesh::{TriMesh, shapes};
-use nalgebra::{Point3, Vector3};
+use nalgebra::Vector3;
 use rayon::prelude::*;
 
 use crate::support::data;
@@ -67,8 +67,6 @@ struct ToldKinds {
     right: usize,
     all: usize,
     falsely_identical: usize,
-    /// Largest distance of the surfaces, root mean square and maximum.
-    gap: [f64; 2],
     wrong: Vec<String>,
 }
 
@@ -102,16 +100,12 @@ fn scores(shapes: &[(String, TriMesh)], variants: &[Variant]) -> BTreeMap<String
         score.all += 1;
         score.right += usize::from(is_right);
         score.falsely_identical += usize::from(found.kind.is_one_geometry() && kind != found.kind);
-        if let Some(gap) = found.evidence.surface_gap {
-            score.gap = [score.gap[0].max(gap.rms), score.gap[1].max(gap.max)];
-        }
         if !is_right {
             score.wrong.push(format!("{found} ({})", found.reason()));
         }
     }
     for (label, score) in &scores {
-        let ToldKinds { right, all, gap: [rms, max], .. } = score;
-        println!("{label}: {right} of {all} right; largest distance {rms:.4}, maximum {max:.4}");
+        println!("{label}: {} of {} right", score.right, score.all);
         score.wrong.iter().take(3).for_each(|wrong| println!("    {wrong}"));
     }
     scores
@@ -138,13 +132,13 @@ fn check_every_change(n_vertices: usize, poses: usize) {
 
 #[test]
 fn every_change_of_a_built_in_shape_is_told() {
-    check_every_change(1000, 2);
-    check_every_change(3400, 1);
+    check_every_change(1000, 1);
 }
 
 #[test]
 #[ignore = "slow: make test-all"]
 fn every_change_of_a_finer_built_in_shape_is_told() {
+    check_every_change(1000, 2);
     check_every_change(3400, 2);
     check_every_change(10_000, 1);
 }
@@ -195,32 +189,13 @@ fn two_poses_and_two_bodies_are_not_one_surface() {
         .into_par_iter()
         .flat_map_iter(|family| {
             let body = |body, pose| articulated_body(family, body, pose, &options).unwrap().mesh;
-            let poses = (0..6).map(|pose| (pose, body(0, pose)));
-            let bodies = (1..4).map(|i| (0, body(i, 0)));
-            let geometries: Vec<_> =
-                poses.chain(bodies).map(|(pose, mesh)| (pose, geometry(&mesh))).collect();
+            let poses = (0..6).map(|pose| body(0, pose)).chain((1..4).map(|i| body(i, 0)));
+            let geometries: Vec<_> = poses.map(|mesh| geometry(&mesh)).collect();
             let pairs = (0..geometries.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
-            pairs
-                .map(|(i, j)| {
-                    let same_pose = geometries[i].0 == geometries[j].0;
-                    (same_pose, related(&geometries[i].1, &geometries[j].1))
-                })
-                .collect::<Vec<_>>()
+            pairs.map(|(i, j)| related(&geometries[i], &geometries[j])).collect::<Vec<_>>()
         })
         .collect();
-    let mut gaps: Vec<_> = all
-        .iter()
-        .filter_map(|(same_pose, found)| found.evidence.surface_gap.map(|gap| (gap.rms, gap.max, same_pose)))
-        .collect();
-    gaps.sort_by(|a, b| a.0.total_cmp(&b.0));
-    println!("{} pairs, {} aligned, nearest:", all.len(), gaps.len());
-    for (rms, max, same_pose) in gaps.iter().take(20) {
-        println!(
-            "    {rms:.4}, maximum {max:.4}{}",
-            if **same_pose { ", two bodies in one pose" } else { "" }
-        );
-    }
-    let wrong: Vec<_> = all.iter().filter(|(_, found)| !found.kind.is_by_distance()).collect();
+    let wrong: Vec<_> = all.iter().filter(|found| !found.kind.is_by_distance()).collect();
     assert!(wrong.is_empty(), "{wrong:?}");
 }
 
@@ -306,35 +281,5 @@ fn copies_on_a_plate_are_counted() {
         assert_eq!(found.kind, RelationKind::PartOf);
         assert_eq!(found.to_string(), "dog is part of plate, one of its four components");
         assert_eq!(related(&geometry(&shapes::torus(30, 20, 2.0, 0.5)), &mixed).evidence.parts, None);
-    }
-}
-
-#[test]
-fn scale_and_rounding_of_files_do_not_hide_one_geometry() {
-    let cat = &bodies(1000, 1)[0].1;
-    let own = geometry(cat);
-    for (scale, units) in
-        [(25.4, Some("inches to millimetres")), (0.001, Some("millimetres to metres")), (3.0, None)]
-    {
-        let moved = Damage::Move.apply(cat, 3);
-        let rounded = |p: &Point3<f64>| (p * scale).map(|x| f64::from(x as f32));
-        let copy = TriMesh { positions: moved.positions.iter().map(rounded).collect(), faces: moved.faces };
-        let found = related(&own, &geometry(&copy));
-        assert_eq!(
-            (found.kind, found.evidence.units.map(|u| u.to_string()).as_deref()),
-            (RelationKind::Scaled, units)
-        );
-        assert!((found.evidence.scale / scale - 1.0).abs() < 1e-6);
-    }
-    let folder = tempfile::tempdir().unwrap();
-    for extension in ["off", "obj", "ply", "stl"] {
-        let path = folder.path().join(format!("cat.{extension}"));
-        mesh_io::write(&path, cat).unwrap();
-        let found = related(&own, &geometry(&mesh_io::read(&path).unwrap()));
-        assert_eq!(
-            (found.kind, found.changes.len()),
-            (RelationKind::IdenticalGeometry, 0),
-            "{extension}: {found}"
-        );
     }
 }

@@ -25,32 +25,21 @@ fn a_form_does_not_depend_on_memory() {
     let folder = tempfile::tempdir().unwrap();
     let surface = surface(&body(Family::Cat));
     let stress = StressOptions { choice: StressChoice::Estimate, ..StressOptions::default() };
-    for method in [EmbedMethod::default(), EmbedMethod::Landmark] {
-        for (samples, sampling) in [
-            (Samples::Count(150), Sampling::Farthest),
-            (Samples::Count(150), Sampling::Random),
-            (Samples::Auto, Sampling::Farthest),
-        ] {
-            let options = FormOptions { method: method.clone(), samples, sampling, ..FormOptions::default() };
-            let measured = EmbedOptions::from(&options).stress(stress);
-            let usual = embed(&surface, measured.clone(), &()).unwrap();
-            for threads in [1, 2] {
-                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-                // Enough for all but the distances.
-                let bytes = if samples == Samples::Auto { 28_000_000 } else { 2_600_000 };
-                let lean = || {
-                    let budget = Budget::unlimited().with_memory(bytes).with_spill(folder.path().to_owned());
-                    let (intrinsic, map) = surface.clone().into_parts();
-                    embed((intrinsic, &map), measured.clone(), &budget).unwrap()
-                };
-                let lean = pool.install(lean);
-                assert!(lean.distances.is_in_file() && !usual.distances.is_in_file());
-                assert!(
-                    facts(&lean).2.is_some() && facts(&lean) == facts(&usual),
-                    "{options:?} on {threads} threads"
-                );
-            }
-        }
+    for (method, samples, sampling) in [
+        (EmbedMethod::Landmark, Samples::Count(150), Sampling::Farthest),
+        (EmbedMethod::default(), Samples::Count(150), Sampling::Random),
+        (EmbedMethod::default(), Samples::Auto, Sampling::Farthest),
+    ] {
+        let options = FormOptions { method, samples, sampling, ..FormOptions::default() };
+        let measured = EmbedOptions::from(&options).stress(stress);
+        let usual = embed(&surface, measured.clone(), &()).unwrap();
+        // Enough for all but the distances.
+        let bytes = if samples == Samples::Auto { 28_000_000 } else { 2_600_000 };
+        let budget = Budget::unlimited().with_memory(bytes).with_spill(folder.path().to_owned());
+        let (intrinsic, map) = surface.clone().into_parts();
+        let lean = embed((intrinsic, &map), measured, &budget).unwrap();
+        assert!(lean.distances.is_in_file() && !usual.distances.is_in_file());
+        assert!(facts(&lean).2.is_some() && facts(&lean) == facts(&usual), "{options:?}");
     }
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }

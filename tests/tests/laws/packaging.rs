@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::support::{metadata, rust_files, workspace_root};
+use crate::support::{files, metadata, workspace_root};
 
 /// The paths in the `include` macros of a file.
 fn included(text: &str) -> impl Iterator<Item = &str> {
@@ -23,7 +23,7 @@ fn published_packages_describe_themselves_and_contain_what_they_include() {
             assert!(folder.join(licence).is_file(), "{name} has no {licence}: link to that of the workspace");
         }
         let folder = folder.canonicalize().unwrap();
-        for source in rust_files(&folder) {
+        for source in files(&folder, "rs") {
             for path in included(&fs::read_to_string(&source).unwrap()) {
                 let path = source.with_file_name(path);
                 let target =

@@ -1,24 +1,14 @@
 //! Whether pages are short, links between them lead somewhere, and the book contains every page.
-//!
-//! `CANONFORM_WRITE_DOCS=1 cargo test -p tests --test laws decisions` writes the decisions in the table of contents again.
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
-use crate::support::workspace_root;
+use crate::support::{files, workspace_root};
 
 /// All Markdown files below a folder, sorted.
 fn pages(folder: &Path) -> Vec<PathBuf> {
-    let mut pages = Vec::new();
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            pages.extend(self::pages(&path));
-        } else if path.extension().is_some_and(|extension| extension == "md") {
-            pages.push(path);
-        }
-    }
+    let mut pages = files(folder, "md");
     pages.sort();
     pages
 }
@@ -62,23 +52,10 @@ fn anchors(text: &str) -> BTreeSet<String> {
     anchors
 }
 
-/// The path without `.` and `..`.
-fn normal(path: &Path) -> PathBuf {
-    let mut normal = PathBuf::new();
-    for component in path.components() {
-        match component {
-            Component::CurDir => {}
-            Component::ParentDir if normal.file_name().is_some() => drop(normal.pop()),
-            component => normal.push(component),
-        }
-    }
-    normal
-}
-
 /// What is wrong with a link of a page.
 fn fault(page: &Path, target: &str) -> Option<String> {
     let (file, anchor) = target.split_once('#').unwrap_or((target, ""));
-    let path = if file.is_empty() { page.to_owned() } else { normal(&page.with_file_name("").join(file)) };
+    let path = if file.is_empty() { page.to_owned() } else { page.with_file_name("").join(file) };
     if !path.exists() {
         return Some("leads nowhere".to_owned());
     }
@@ -88,23 +65,10 @@ fn fault(page: &Path, target: &str) -> Option<String> {
 
 /// Every page of the repository.
 fn all_pages(root: &Path) -> Vec<PathBuf> {
-    let mut all = pages(&root.join("docs"));
-    for folder in ["crates", "datasets", "examples", "fuzz"] {
-        if root.join(folder).is_dir() {
-            let in_target = |page: &PathBuf| {
-                page.components().any(|part| {
-                    matches!(
-                        part.as_os_str().to_str(),
-                        Some("target" | "node_modules" | ".venv" | ".pytest_cache")
-                    )
-                })
-            };
-            all.extend(pages(&root.join(folder)).into_iter().filter(|page| !in_target(page)));
-        }
-    }
+    let folders = ["docs", "crates", "datasets", "examples", "fuzz"].map(|folder| root.join(folder));
     let tops = fs::read_dir(root).unwrap().map(|entry| entry.unwrap().path());
-    all.extend(tops.filter(|path| path.extension().is_some_and(|extension| extension == "md")));
-    all
+    let tops = tops.filter(|path| path.extension().is_some_and(|extension| extension == "md"));
+    folders.iter().filter(|folder| folder.is_dir()).flat_map(|folder| pages(folder)).chain(tops).collect()
 }
 
 #[test]
@@ -153,39 +117,14 @@ fn links_between_pages_lead_somewhere() {
 fn the_book_contains_every_page_once() {
     let book = workspace_root().join("docs").canonicalize().unwrap();
     let summary = fs::read_to_string(book.join("SUMMARY.md")).unwrap();
-    let listed = links(&summary);
-    let distinct: BTreeSet<PathBuf> = listed.iter().map(|link| book.join(link)).collect();
-    assert_eq!(distinct.len(), listed.len(), "docs/SUMMARY.md lists a page twice");
-    let missing: Vec<String> = pages(&book)
-        .into_iter()
-        .filter(|page| !distinct.contains(page) && *page != book.join("SUMMARY.md"))
-        .map(|page| page.strip_prefix(&book).unwrap().display().to_string())
-        .collect();
-    assert!(missing.is_empty(), "docs/SUMMARY.md does not list {}", missing.join(", "));
-}
-
-#[test]
-fn the_table_of_contents_lists_decisions_with_their_titles() {
-    let book = workspace_root().join("docs");
-    let path = book.join("SUMMARY.md");
-    let summary = fs::read_to_string(&path).unwrap();
-    let lines = pages(&book.join("decisions")).into_iter().map(|page| {
-        let text = fs::read_to_string(&page).unwrap();
-        let title = text.lines().next().unwrap_or_default().trim_start_matches("# ").to_owned();
-        format!("  - [{title}](decisions/{})\n", page.file_name().unwrap().to_string_lossy())
-    });
-    let decisions: String = lines.filter(|line| !line.contains("(decisions/README.md)")).collect();
-    let kept: String = summary
-        .lines()
-        .filter(|line| !line.starts_with("  - [") || !line.contains("](decisions/"))
-        .map(|line| format!("{line}\n"))
-        .collect();
-    let anchor = "- [Decisions](decisions/README.md)\n";
-    assert!(kept.contains(anchor), "docs/SUMMARY.md has no line for decisions");
-    let written = kept.replace(anchor, &format!("{anchor}{decisions}"));
-    if std::env::var_os("CANONFORM_WRITE_DOCS").is_some() && written != summary {
-        fs::write(&path, &written).unwrap();
-        return;
+    let mut listed: Vec<PathBuf> = links(&summary).iter().map(|link| book.join(link)).collect();
+    listed.push(book.join("SUMMARY.md"));
+    listed.sort();
+    assert_eq!(listed, pages(&book), "docs/SUMMARY.md lists every page once");
+    for page in pages(&book.join("decisions")).iter().filter(|page| !page.ends_with("README.md")) {
+        let text = fs::read_to_string(page).unwrap();
+        let title = text.lines().next().unwrap_or_default().trim_start_matches("# ");
+        let entry = format!("  - [{title}](decisions/{})\n", page.file_name().unwrap().to_string_lossy());
+        assert!(summary.contains(&entry), "docs/SUMMARY.md has no line {entry}");
     }
-    assert_eq!(summary, written, "write docs/SUMMARY.md again with CANONFORM_WRITE_DOCS=1");
 }

@@ -1,74 +1,15 @@
 //! Dense maps between a whole and what a cut has left of it.
 
 use canonform::descriptors::Side;
-use canonform::maps::{
-    CorrespondOptions, MapKind, MappedSurface, PartOfWhole, PointMap, VertexMap, correspond,
-};
-use datasets::{ArticulatedOptions, Damage, Family, articulated_at_rest};
-use geodesics::Method;
+use canonform::maps::{KnownMap, MapKind, PartOfWhole, PointMap, VertexMap};
+use datasets::Family;
 use mesh::TriMesh;
-use nalgebra::Point3;
-use rigid::NearestPoints;
 use surface::VertexId;
 
-use crate::support::surface;
+use crate::rested::{Rested, maps_with, of_kind};
 
-/// A surface with the places of its vertices on the body at rest.
-struct Known {
-    mapped: MappedSurface,
-    mesh: TriMesh,
-    at_rest: NearestPoints,
-}
-
-impl Known {
-    fn new(mesh: TriMesh, at_rest: Vec<Point3<f64>>) -> Self {
-        let mapped = MappedSurface::new(surface(&mesh), &CorrespondOptions::default(), &()).unwrap();
-        Self { mapped, mesh, at_rest: NearestPoints::new(at_rest).unwrap() }
-    }
-
-    fn pose(family: Family, pose: usize) -> Self {
-        let options = ArticulatedOptions { n_vertices: 1500, ..ArticulatedOptions::default() };
-        let rested = articulated_at_rest(family, 0, pose, &options, &()).unwrap();
-        Self::new(rested.shape.mesh, rested.rest.positions)
-    }
-
-    /// What a plane has left of it.
-    fn part(&self, share: f64, seed: u64) -> Self {
-        let part = Damage::Slice(share).apply(&self.mesh, seed);
-        let originals = NearestPoints::new(self.mesh.positions.clone()).unwrap();
-        let at_rest = part.positions.iter().map(|p| self.at_rest.points()[originals.nearest(p).0]);
-        let at_rest = at_rest.collect();
-        Self::new(part, at_rest)
-    }
-
-    fn maps_to(&self, other: &Self) -> Vec<VertexMap> {
-        correspond(&self.mapped, &other.mapped, &CorrespondOptions::default(), &()).unwrap().maps
-    }
-
-    /// The true partner of a vertex, directly (1) or mirrored (-1), and how far away at rest it is.
-    fn partner(&self, other: &Self, x: usize, sign: f64) -> (usize, f64) {
-        let p = self.at_rest.points()[x];
-        let p = Point3::new(sign * p.x, p.y, p.z);
-        let y = other.at_rest.nearest(&p).0;
-        (y, (other.at_rest.points()[y] - p).norm())
-    }
-
-    /// The mean distance on the other surface between images and true partners, over a unit of length.
-    fn error(&self, other: &Self, map: &VertexMap, unit: f64) -> f64 {
-        let sign = if map.kind == MapKind::Mirrored { -1.0 } else { 1.0 };
-        let solver = Method::default().prepare(other.mesh.intrinsic(), &()).unwrap();
-        let matched = map.vertices.iter().enumerate().filter_map(|(x, y)| Some((x, (*y)?.index())));
-        let error = |(x, y): (usize, usize)| {
-            let (truth, _) = self.partner(other, x, sign);
-            solver.distances(VertexId::from(truth)).unwrap()[y] / unit
-        };
-        let errors: Vec<f64> = matched.step_by(10).map(error).collect();
-        errors.iter().sum::<f64>() / errors.len() as f64
-    }
-}
-
-fn of_kind(maps: &[VertexMap], kind: MapKind) -> &VertexMap {
-    maps.iter().find(|map| map.kind == kind).unwrap_or_else(|| panic!("no {kind:?} map"))
+fn pose(family: Family, pose: usize) -> Rested {
+    Rested::pose(family, pose, 1500)
 }
 
 fn part_of(map: &VertexMap) -> &PartOfWhole {
@@ -77,8 +18,8 @@ fn part_of(map: &VertexMap) -> &PartOfWhole {
 
 #[test]
 fn a_part_is_mapped_to_where_it_was_in_another_pose_and_back() {
-    let whole = Known::pose(Family::Cat, 3);
-    let part = Known::pose(Family::Cat, 2).part(0.7, 2);
+    let whole = pose(Family::Cat, 3);
+    let part = pose(Family::Cat, 2).part(0.7, 2);
     let unit = whole.mesh.area().sqrt();
     let forth = part.maps_to(&whole);
     for kind in [MapKind::Direct, MapKind::Mirrored] {
@@ -107,16 +48,14 @@ fn a_part_is_mapped_to_where_it_was_in_another_pose_and_back() {
 #[test]
 #[ignore = "slow: make test-all"]
 fn landmarks_of_a_part_are_kept_and_decide() {
-    let whole = Known::pose(Family::David, 0);
-    let part = Known::pose(Family::David, 5).part(0.7, 3);
+    let whole = pose(Family::David, 0);
+    let part = pose(Family::David, 5).part(0.7, 3);
     let unit = whole.mesh.area().sqrt();
-    let nearest = |x: usize| part.partner(&whole, x, 1.0);
     // Vertices far from each other that are on both, and their partners.
     let n = part.mesh.n_vertices();
-    let pairs = [n / 7, n / 3, n / 2, 6 * n / 7].map(|x| [x, nearest(x).0].map(VertexId::from));
-    let mut options = CorrespondOptions::default();
-    options.known.landmarks = pairs.to_vec();
-    let maps = correspond(&part.mapped, &whole.mapped, &options, &()).unwrap().maps;
+    let pairs = [n / 7, n / 3, n / 2, 6 * n / 7].map(|x| [VertexId::from(x), part.partner(&whole, x, 1.0).0]);
+    let known = KnownMap { landmarks: pairs.to_vec(), ..KnownMap::default() };
+    let maps = maps_with(known, [&part.mapped, &whole.mapped]);
     let map = &maps[0];
     let error = part.error(&whole, map, unit);
     println!(
@@ -132,16 +71,15 @@ fn landmarks_of_a_part_are_kept_and_decide() {
 #[test]
 #[ignore = "slow: make test-all"]
 fn an_initial_map_of_a_part_decides_its_orientation() {
-    let whole = Known::pose(Family::Cat, 3);
-    let part = Known::pose(Family::Cat, 2).part(0.7, 2);
+    let whole = pose(Family::Cat, 3);
+    let part = pose(Family::Cat, 2).part(0.7, 2);
     let unit = whole.mesh.area().sqrt();
     for (from, to, sign) in [(&part, &whole, 1.0), (&part, &whole, -1.0), (&whole, &part, -1.0)] {
-        let partner = |x: usize| Some(VertexId::from(from.partner(to, x, sign).0));
-        let mut options = CorrespondOptions::default();
         // A third of the vertices.
-        options.known.initial =
-            (0..from.mesh.n_vertices()).map(|x| partner(x).filter(|_| x % 3 == 0)).collect();
-        let maps = correspond(&from.mapped, &to.mapped, &options, &()).unwrap().maps;
+        let partner = |x: usize| (x % 3 == 0).then(|| from.partner(to, x, sign).0);
+        let initial = (0..from.mesh.n_vertices()).map(partner).collect();
+        let known = KnownMap { initial, ..KnownMap::default() };
+        let maps = maps_with(known, [&from.mapped, &to.mapped]);
         let (map, error) = (&maps[0], from.error(to, &maps[0], unit));
         println!("{sign}: {:?}, error {error:.4}", map.kind);
         let sought = if sign < 0.0 { MapKind::Mirrored } else { MapKind::Direct };
@@ -152,7 +90,7 @@ fn an_initial_map_of_a_part_decides_its_orientation() {
 
 #[test]
 fn a_piece_of_a_surface_is_mapped_to_itself() {
-    let whole = Known::pose(Family::Centaur, 0);
+    let whole = pose(Family::Centaur, 0);
     let part = whole.part(0.7, 1);
     let maps = part.maps_to(&whole);
     let map = of_kind(&maps, MapKind::Direct);
@@ -177,13 +115,13 @@ fn a_piece_of_a_surface_is_mapped_to_itself() {
 #[test]
 fn a_smaller_whole_is_no_part() {
     // Closed, and open with the same shape.
-    let whole = Known::pose(Family::Cat, 0);
+    let whole = Rested::pose(Family::Cat, 0, 1000);
     let mut small = whole.mesh.clone();
     small.positions.iter_mut().for_each(|p| p.coords *= 0.8);
     let open = |mesh: &TriMesh| TriMesh { faces: mesh.faces[1..].to_vec(), ..mesh.clone() };
     let places = whole.at_rest.points().to_vec();
     for small in [small.clone(), open(&small)] {
-        let small = Known::new(small, places.clone());
+        let small = Rested::new(small, places.clone());
         let maps = small.maps_to(&whole);
         let map = of_kind(&maps, MapKind::Direct);
         assert!(map.part.is_none(), "{:?}", map.part);

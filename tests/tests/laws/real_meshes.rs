@@ -5,16 +5,11 @@
 
 use std::path::Path;
 
-use canonform::collection::{label_of, list_shapes};
-use canonform::compare::form_alignments;
-use canonform::embed::{FormOptions, embed};
+use canonform::collection::list_shapes;
 use canonform::{DescribeOptions, Surface, describe};
-use descriptors::{Normalization, ShapeMetric, ShapePair};
-use geodesics::{FirstSample, farthest_point_sampling};
+use descriptors::{ShapeMetric, ShapePair};
 use mesh::RepairOptions;
-use nmds::{NystromOptions, Regularization, classical, nystrom, paper_stress};
 use rayon::prelude::*;
-use retrieval::{Labels, RankBy, evaluate};
 use surface::{IntrinsicMesh, VertexId};
 
 use crate::support::{data, marching};
@@ -75,57 +70,6 @@ fn fast_marching_is_close_to_exact_distances() {
 }
 
 #[test]
-fn the_stress_of_animals_is_near_the_optimum() {
-    let Some(data) = data("stress against classical scaling") else { return };
-    for (name, of_ten_samples, of_a_hundred) in [("david0", 0.02, 0.002), ("cat0", 0.2, 0.002)] {
-        let surface = tosca(&data, name);
-        let solver = marching().prepare(surface.intrinsic(), &()).unwrap();
-        let distances = solver.distance_matrix().unwrap();
-        let optimum = paper_stress(&classical(&distances, 3, &()).unwrap().coords, &distances).unwrap();
-        for (n, rank, limit) in [(10, 5, of_ten_samples), (100, 50, of_a_hundred)] {
-            let sampled = farthest_point_sampling(solver.as_ref(), n, FirstSample::default()).unwrap();
-            let regularization = Regularization::LowRank { rank: Some(rank) };
-            let embedding = nystrom(&sampled, &NystromOptions { regularization, dim: 3 }).unwrap();
-            let excess = paper_stress(&embedding.coords, &distances).unwrap() / optimum - 1.0;
-            println!("{name}, {n} samples, rank {rank}: {:.3} % above classical scaling", 100.0 * excess);
-            assert!(excess <= limit, "{name}, {n} samples: {excess}");
-        }
-    }
-}
-
-#[test]
-fn a_mesh_without_faces_is_an_error_that_names_the_file() {
-    let Some(data) = data("the damaged mesh") else { return };
-    let path = data.join("tosca-lowres/victoria14.vert");
-    let message = canonform::read_surface(&path, &RepairOptions::default(), &Default::default(), &())
-        .unwrap_err()
-        .to_string();
-    println!("{message}");
-    assert!(message.contains("victoria14"), "{message}");
-}
-
-#[test]
-fn canonical_forms_of_animals_retrieve_their_class() {
-    let Some(data) = data("three classes of TOSCA") else { return };
-    let names = ["cat0", "cat1", "cat2", "centaur0", "centaur1", "centaur2", "david0", "david1", "david10"];
-    let options = FormOptions::default();
-    let forms: Vec<_> = names
-        .iter()
-        .map(|name| {
-            let surface = tosca(&data, name);
-            embed(&surface, &options, &()).unwrap().form(&surface).unwrap()
-        })
-        .collect();
-    let labels = Labels::new(&names.map(label_of));
-    for normalization in [Normalization::Raw, Normalization::UnitArea] {
-        let distances = form_alignments(&forms, normalization, &()).unwrap().distances;
-        let scores = evaluate(&distances, &labels, 1, RankBy::Plain).unwrap();
-        println!("{normalization:?}: NN {}, mAP {:.4}", scores.plain.mean.nn, scores.plain.mean.map);
-        assert_eq!(scores.plain.mean.nn, 1.0, "{normalization:?}");
-    }
-}
-
-#[test]
 #[ignore = "slow: make test-all"]
 fn pruned_fronts_choose_the_same_samples_on_real_meshes() {
     let Some(data) = data("pruned farthest point sampling") else { return };
@@ -135,6 +79,7 @@ fn pruned_fronts_choose_the_same_samples_on_real_meshes() {
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn distances_distinguish_poses_from_animals() {
     let Some(data) = data("distances of poses and animals") else { return };
     let shapes = list_shapes(&data.join("tosca-lowres"), None).unwrap();

@@ -14,8 +14,8 @@ use crate::support::surface;
 
 /// Powers of two, and other factors with the gap that rounding of the coordinates may cause.
 fn factors() -> Vec<f64> {
-    let powers = [-498, -330, -266, -100, 10, 100, 257, 330, 498].map(|exponent| 2f64.powi(exponent));
-    powers.into_iter().chain([1e-150, 1e-100, 1e-78, 1e-30, 1e30, 1e77, 1e100, 1e150]).collect()
+    let powers = [-498, -266, 10, 257, 498].map(|exponent| 2f64.powi(exponent));
+    powers.into_iter().chain([1e-150, 1e-78, 1e30, 1e150]).collect()
 }
 
 fn is_power_of_two(factor: f64) -> bool {
@@ -82,8 +82,11 @@ fn every_solver_measures_in_any_unit() {
 #[test]
 fn every_embedding_and_its_stress_scale() {
     let [_, mesh] = meshes();
-    for method in EmbedMethod::all() {
-        let options = FormOptions { method, samples: Samples::Count(30), ..FormOptions::default() };
+    let methods = EmbedMethod::all().map(|method| FormOptions { method, ..FormOptions::default() });
+    let samplings = [Sampling::Random, Sampling::MinVariance]
+        .map(|sampling| FormOptions { sampling, ..FormOptions::default() });
+    for options in methods.into_iter().chain(samplings) {
+        let options = FormOptions { samples: Samples::Count(30), ..options };
         let stress = StressOptions { choice: StressChoice::Exact, ..StressOptions::default() };
         let measured =
             |mesh: &TriMesh| embed(&surface(mesh), EmbedOptions::from(&options).stress(stress), &()).unwrap();

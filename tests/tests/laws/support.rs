@@ -1,17 +1,16 @@
 //! Helpers of several modules.
 
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
 use canonform::Surface;
 use canonform::compare::embedded_distances;
 use canonform::embed::{EmbedOptions, Embedded, FormOptions, StressChoice, StressOptions, embed};
 use cargo_metadata::{Metadata, MetadataCommand};
-use datasets::{ArticulatedOptions, Family, articulated_shape};
+use datasets::{ArticulatedOptions, Family, LabeledShape, articulated};
 use geodesics::Method;
-use linalg::{DistanceMatrix, Matrix};
+use linalg::DistanceMatrix;
 use mesh::{RepairOptions, TriMesh};
-use nalgebra::Point3;
-use surface::VertexId;
 
 /// The folder of the workspace.
 pub(crate) fn workspace_root() -> PathBuf {
@@ -36,21 +35,27 @@ pub(crate) fn metadata() -> Metadata {
     command.other_options(["--offline".to_owned()]).exec().unwrap()
 }
 
-/// All Rust files below a folder.
-pub(crate) fn rust_files(folder: &Path) -> Vec<PathBuf> {
+/// All files below a folder with this extension, except what is built or downloaded.
+pub(crate) fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
+    let skipped = ["target", "node_modules", ".venv", ".pytest_cache"];
     let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     let files = entries.flat_map(|path| match path.is_dir() {
-        true if path.ends_with("target") => Vec::new(),
-        true => rust_files(&path),
+        true if skipped.iter().any(|name| path.ends_with(name)) => Vec::new(),
+        true => files(&path, extension),
         false => vec![path],
     });
-    files.filter(|path| path.extension().is_some_and(|extension| extension == "rs")).collect()
+    files.filter(|path| path.extension().is_some_and(|found| found == extension)).collect()
 }
+
+/// The built-in dataset with 1,000 vertices a shape.
+pub(crate) static SHAPES: LazyLock<Vec<LabeledShape>> = LazyLock::new(|| {
+    articulated(&ArticulatedOptions { n_vertices: 1000, ..ArticulatedOptions::default() }).unwrap()
+});
 
 /// A shape of the built-in dataset with 1,000 vertices: a body with limbs, without symmetries.
 pub(crate) fn body(family: Family) -> TriMesh {
-    let options = ArticulatedOptions { n_vertices: 1000, ..ArticulatedOptions::default() };
-    articulated_shape(family, 1, &options).unwrap().mesh
+    let name = format!("{}1", family.name());
+    SHAPES.iter().find(|shape| shape.name == name).unwrap().mesh.clone()
 }
 
 /// The surface of a clean mesh.
@@ -77,34 +82,9 @@ pub(crate) fn marching() -> Method {
     Method::default()
 }
 
-/// Distances from some vertices of a mesh, one column each.
-pub(crate) fn columns(mesh: &TriMesh, method: Method, sources: &[VertexId]) -> Matrix {
-    method.prepare(mesh.intrinsic(), &()).unwrap().distance_columns(sources).unwrap()
-}
-
-pub(crate) fn all_vertices(mesh: &TriMesh) -> Vec<VertexId> {
-    (0..mesh.n_vertices()).map(VertexId::from).collect()
-}
-
 /// The largest difference between two lists, relative to the largest magnitude in the second.
 pub(crate) fn gap(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
     let largest = b.iter().fold(0.0f64, |most, x| most.max(x.abs()));
     a.iter().zip(b).fold(0.0f64, |most, (x, y)| most.max((x - y).abs())) / largest
-}
-
-/// The mesh with every position moved.
-pub(crate) fn moved(mesh: &TriMesh, motion: impl Fn(&Point3<f64>) -> Point3<f64>) -> TriMesh {
-    TriMesh { positions: mesh.positions.iter().map(motion).collect(), faces: mesh.faces.clone() }
-}
-
-/// A fixed random permutation of `0..n`.
-pub(crate) fn permutation(n: usize) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..n).collect();
-    let mut state = 12345u64;
-    for i in (1..n).rev() {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        order.swap(i, (state >> 33) as usize % (i + 1));
-    }
-    order
 }

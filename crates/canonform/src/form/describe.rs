@@ -393,9 +393,9 @@ mod tests {
         for method in EmbedMethod::all() {
             let form = FormOptions { method, samples: Samples::Count(60), ..FormOptions::default() };
             let options = DescribeOptions { form, ..DescribeOptions::default() };
-            let description = describe(&surface, &options, &()).unwrap();
-            let MeasuredSurface { prepared, embedded, .. } =
-                MeasuredSurface::new(&surface, &options.form, &()).unwrap();
+            let measured = MeasuredSurface::new(&surface, &options.form, &()).unwrap();
+            let description = measured.describe(&options, &()).unwrap();
+            let MeasuredSurface { prepared, embedded, .. } = measured;
             let reduced = embedded.form(&prepared).unwrap().reduced(options.points);
             let rounded = reduced.points().iter().map(|p| [p.x, p.y, p.z].map(|x| x as f32));
             assert!(rounded.eq(description.form.iter().map(|[x, y, z, _]| [*x, *y, *z])));

@@ -180,16 +180,3 @@ impl EmbedMethod {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn methods_have_one_name_in_options_and_in_records() {
-        for method in EmbedMethod::all() {
-            let text = serde_json::to_string(&method).unwrap();
-            assert!(text.contains(&format!("\"{}\"", method.name())), "{text}");
-        }
-    }
-}

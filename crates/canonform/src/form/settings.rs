@@ -395,6 +395,7 @@ mod tests {
     fn methods_have_one_name_in_settings_and_in_options() {
         for method in EmbedMethod::all() {
             let settings: MethodSettings = of(json!({ "method": method.name() }));
+            assert!(serde_json::to_string(&method).unwrap().contains(&format!("\"{}\"", method.name())));
             assert_eq!(settings.options(), Ok(method));
         }
         for regularization in Regularization::all() {

@@ -635,6 +635,9 @@ mod tests {
             search.index().entries().unwrap().into_iter().map(|entry| entry.id).collect();
         assert_eq!(names, ["ball0", "box0", "ring0", "ring1"]);
         assert_eq!(search.index().entry("box0").unwrap().label, "box");
+        // More results than shapes are all shapes.
+        let all = search_by(&search, "box0", &SearchOptions { k: usize::MAX, ..options });
+        assert_eq!(all.results.len(), 4);
     }
 
     #[test]

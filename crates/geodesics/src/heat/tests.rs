@@ -259,5 +259,4 @@ fn time_is_in_squared_mesh_units() {
     let mesh = surface(&icosphere(2));
     let time = HeatMethod::new(&mesh, HeatOptions { time: 2.0 }, &()).unwrap().time();
     assert!((time - 2.0 * mesh.mean_edge_length().powi(2)).abs() < 1e-12 * time);
-    assert!(heat(&surface(&grid(300, 300, 1.0))).time() > 1.2);
 }

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use linalg::{ColumnStore, LandmarkDistances, LinalgError};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
-use surface::VertexId;
+use surface::{VertexId, unit_for};
 
 use super::{FirstSample, Sampling};
 use crate::error::GeodesicError;
@@ -48,6 +48,8 @@ enum Rule {
         /// 1 for the least variance, -1 for the greatest.
         sign: f64,
         second: Option<usize>,
+        /// The unit of the moments, in which fourth powers of distances neither underflow nor overflow.
+        unit: f64,
         /// For every vertex, the mean of its squared distances to the landmarks and the sum of their squared deviations.
         moments: Vec<[f64; 2]>,
         is_landmark: Vec<bool>,
@@ -77,10 +79,13 @@ impl Rule {
                 nearest.iter_mut().zip(column).for_each(|(near, d)| *near = near.min(*d));
             }
             Self::Random { .. } => {}
-            Self::Incremental { moments, is_landmark, .. } => {
+            Self::Incremental { unit, moments, is_landmark, .. } => {
                 is_landmark[landmark] = true;
+                if count == 1 {
+                    *unit = unit_for(column.iter().copied().fold(0.0, f64::max));
+                }
                 for ([mean, spread], d) in moments.iter_mut().zip(column) {
-                    let square = d * d;
+                    let square = (d / *unit).powi(2);
                     let off = square - *mean;
                     *mean += off / count as f64;
                     *spread += off * (square - *mean);
@@ -127,6 +132,7 @@ impl Sampling {
                 sign: if self == Self::MinVariance { 1.0 } else { -1.0 },
                 // Any other vertex: those from the first on move up by one.
                 second: (p > 1).then(|| below(p - 1, &mut rng)).map(|v| v + usize::from(v >= first)),
+                unit: 1.0,
                 moments: vec![[0.0; 2]; p],
                 is_landmark: vec![false; p],
             },

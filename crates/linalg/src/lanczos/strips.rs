@@ -87,26 +87,3 @@ impl Strips {
         MatRef::from_column_major_slice(&self.strips[s], self.height(s), self.n_columns)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn products_and_combinations_equal_those_of_the_whole_matrix() {
-        for n in [1, 511, 512, 1300] {
-            let v = Matrix::from_fn(n, 7, |i, j| ((i * 5 + j * 31) as f64).sin());
-            let w = Matrix::from_fn(n, 3, |i, j| ((i * 3 + j) as f64).cos());
-            let mut strips = Strips::new(n);
-            strips.append(&v.columns(0, 3).into_owned());
-            strips.append(&v.columns(3, 4).into_owned());
-            let h = strips.products(&w);
-            assert_eq!(strips.n_columns(), 7);
-            assert!((&h - v.transpose() * &w).amax() < 1e-12 * n as f64);
-            let mut rest = w.clone();
-            strips.add_combinations(&mut rest, &h, -1.0);
-            assert!((rest + &v * &h - w).amax() < 1e-11 * n as f64);
-            assert!((strips.combine(&h) - &v * &h).amax() < 1e-11 * n as f64);
-        }
-    }
-}

@@ -430,9 +430,9 @@ fn small_files_cannot_make_huge_meshes() {
         one("m.3mf", package_of(model.as_bytes()))
     };
     let first = format!("<object id=\"1\">{}</object>", mesh_text(&shapes::tetrahedron(0)));
-    // A column of 320 MB of zeros, declared as such.
+    // A column of 96 MB of zeros, declared as such.
     let style = Style { compressed: true, ..PLAIN };
-    let length = 320u32 << 20;
+    let length = 96u32 << 20;
     let triangle = PLAIN.fields(&shapes::tetrahedron(0));
     let mut small = style.structure("surface", &triangle);
     let start =
@@ -465,7 +465,7 @@ fn small_files_cannot_make_huge_meshes() {
         ),
         (
             "blanks",
-            one("m.3mf", package_of(&vec![b' '; 200 << 20])),
+            one("m.3mf", package_of(&vec![b' '; 80 << 20])),
             "m.3mf/3D/3dmodel.model: the compressed data grows",
         ),
         ("a column", mat, "m.mat, byte 136: the compressed data grows beyond"),

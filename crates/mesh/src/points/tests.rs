@@ -9,11 +9,8 @@ fn triangulated(points: &[Point3<f64>]) -> TriangulatedPoints {
 
 /// Random numbers, uniform in -0.5..0.5.
 fn uniform() -> impl FnMut() -> f64 {
-    let mut state = 1_u64;
-    move || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-    }
+    let mut random = base::SplitMix(1);
+    move || 0.5 * random.uniform()
 }
 
 /// Random points of the unit sphere, each coordinate moved by noise of this standard deviation.

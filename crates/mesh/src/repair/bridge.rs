@@ -194,11 +194,9 @@ mod tests {
     use super::*;
 
     /// Pseudo-random numbers in [0, 1).
-    fn stream(mut state: u64) -> impl FnMut() -> f64 {
-        move || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 33) as f64 / f64::from(1u32 << 31)
-        }
+    fn stream(seed: u64) -> impl FnMut() -> f64 {
+        let mut random = base::SplitMix(seed);
+        move || 0.5 + 0.5 * random.uniform()
     }
 
     fn shortest_links(positions: &[Point3<f64>], labels: &[u32]) -> Vec<Link> {

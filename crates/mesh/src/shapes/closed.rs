@@ -144,11 +144,4 @@ mod tests {
         assert!((torus(200, 100, 2.0, 0.5).area() / (4.0 * PI * PI) - 1.0).abs() < 1e-3);
         assert!((cylinder(300, 9, 1.5, 2.0).area() / (6.0 * PI) - 1.0).abs() < 1e-4);
     }
-
-    #[test]
-    fn the_cylinder_is_open_at_both_ends() {
-        let report = validate(&cylinder(12, 5, 1.0, 2.0));
-        assert_eq!((report.n_vertices, report.n_boundary_edges, report.n_boundary_loops), (60, 24, 2));
-        assert_eq!((report.euler_characteristic, report.genus), (0, None));
-    }
 }

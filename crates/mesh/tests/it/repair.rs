@@ -133,14 +133,6 @@ fn welding_follows_its_policy() {
     assert_eq!(mend(&negative).report.welded_vertices, 3);
 }
 
-#[test]
-fn a_triangle_soup_is_welded_into_its_surface() {
-    let sphere = shapes::icosphere(2);
-    let stitched = mend(&soup(&sphere));
-    assert_eq!(validate(&stitched.mesh).genus, Some(0));
-    assert_eq!(stitched.mesh.n_vertices(), sphere.n_vertices());
-}
-
 /// A sphere cut along two meridians and the equator: every vertex on a cut has a copy for each part it belongs to.
 fn cut_sphere() -> TriMesh {
     let sphere = shapes::icosphere(4);
@@ -167,13 +159,9 @@ fn cut_sphere() -> TriMesh {
 
 /// Moves every vertex by up to `amplitude` along each axis.
 fn jittered(mut mesh: TriMesh, amplitude: f64) -> TriMesh {
-    let mut state = 1u64;
-    let mut next = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) as f64 / f64::from(1u32 << 30) - 1.0
-    };
+    let mut random = base::SplitMix(1);
     for p in &mut mesh.positions {
-        *p += amplitude * Vector3::new(next(), next(), next());
+        *p += amplitude * Vector3::from([(); 3].map(|()| random.uniform()));
     }
     mesh
 }
@@ -206,9 +194,11 @@ fn seams_whose_sides_nearly_coincide_are_welded() {
 }
 
 #[test]
-fn a_soup_of_jittered_triangles_is_welded() {
-    let repaired = mend(&jittered(soup(&shapes::icosphere(3)), 1e-5));
-    assert_eq!((repaired.mesh.n_vertices(), validate(&repaired.mesh).genus), (642, Some(0)));
+fn a_soup_of_triangles_is_welded_into_its_surface() {
+    for amplitude in [0.0, 1e-5] {
+        let repaired = mend(&jittered(soup(&shapes::icosphere(3)), amplitude));
+        assert_eq!((repaired.mesh.n_vertices(), validate(&repaired.mesh).genus), (642, Some(0)));
+    }
 }
 
 #[test]
@@ -446,15 +436,6 @@ fn unusable_meshes_are_errors() {
     }
 }
 
-#[test]
-fn the_report_serialises() {
-    let json = serde_json::to_value(mend(&shapes::grid(2, 2, 1.0)).report).unwrap();
-    assert_eq!(json["output_vertices"], 4);
-    assert_eq!(json["dropped_vertices"], serde_json::json!([]));
-    let options: RepairOptions = serde_json::from_str(r#"{"components": "bridge", "weld": "all"}"#).unwrap();
-    assert_eq!(options, with(ComponentPolicy::Bridge, Weld::All, Orient::Keep));
-}
-
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
@@ -508,12 +489,11 @@ proptest! {
 
     /// Counts and measures do not depend on rigid motions and on the numbering of vertices.
     #[test]
-    fn reports_are_invariant(seed in any::<u32>(), angle in 0.0..6.0, shift in -10.0..10.0) {
+    fn reports_are_invariant(angle in 0.0..6.0, shift in -10.0..10.0) {
         let parts = [shapes::torus(6, 5, 2.0, 0.5), shifted(shapes::cylinder(5, 3, 1.0, 1.0), [6.0, 1.0, 2.0])];
         let original = shapes::disjoint(&parts);
         let n = original.n_vertices();
-        let step = (0..).map(|i| 1 + (seed as usize + i) % n).find(|s| gcd(*s, n) == 1).unwrap();
-        let to: Vec<usize> = (0..n).map(|v| v * step % n).collect();
+        let to: Vec<usize> = (0..n).rev().collect();
         let rotation = Rotation3::from_euler_angles(angle, 2.0 * angle, 0.3);
         let mut moved = original.clone();
         for (p, &v) in original.positions.iter().zip(&to) {
@@ -530,8 +510,4 @@ proptest! {
         let lengths = [&original, &moved].map(|m| repair(m, &bridge, &()).unwrap().report.bridge_length);
         prop_assert!((lengths[0] - lengths[1]).abs() < 1e-10);
     }
-}
-
-fn gcd(a: usize, b: usize) -> usize {
-    if b == 0 { a } else { gcd(b, a % b) }
 }

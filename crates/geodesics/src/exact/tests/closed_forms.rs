@@ -1,10 +1,12 @@
 //! Surfaces whose distances have a formula.
 
+use std::f64::consts::PI;
+
 use mesh::shapes;
-use surface::{FaceId, IntrinsicMesh, Topology, VertexId};
+use surface::{FaceId, VertexId};
 
 use super::super::Exact;
-use super::{all_pairs, assert_close, faces, points, spatial};
+use super::{all_pairs, apart, assert_close, cone, faces, points, spatial};
 use crate::{DistanceSolver, Source, SurfacePoint};
 
 #[test]
@@ -72,40 +74,8 @@ fn distances_on_a_cube_are_those_of_the_best_unfolding() {
     }
 }
 
-/// Flat rings of `n` sectors with the angle `alpha` around vertex 0, closed or open, by their lengths alone: ring
-/// `r`, sector `s` is vertex `1 + r * spokes + s`.
-fn cone(n: usize, alpha: f64, n_rings: usize, is_closed: bool) -> IntrinsicMesh {
-    let spokes = if is_closed { n } else { n + 1 };
-    let at = |ring: usize, sector: usize| (1 + ring * spokes + sector % spokes) as u32;
-    let mut faces = Vec::new();
-    for s in 0..n {
-        faces.push([0, at(0, s), at(0, s + 1)]);
-        for r in 1..n_rings {
-            faces.push([at(r - 1, s), at(r, s), at(r, s + 1)]);
-            faces.push([at(r - 1, s), at(r, s + 1), at(r - 1, s + 1)]);
-        }
-    }
-    let topology = Topology::new(1 + n_rings * spokes, faces.iter().map(|f| f.map(VertexId)).collect());
-    let polar = |v: VertexId| match v.index() {
-        0 => (0.0, 0),
-        v => (((v - 1) / spokes + 1) as f64, (v - 1) % spokes),
-    };
-    let lengths = topology.edges().iter().map(|[a, b]| {
-        let ((p, s), (q, t)) = (polar(*a), polar(*b));
-        if s == t || p == 0.0 { (p - q).abs() } else { apart(p, q, alpha) }
-    });
-    let lengths = lengths.collect();
-    IntrinsicMesh::new(topology, lengths)
-}
-
-/// Distance of two points at these distances from the origin, at this angle.
-fn apart(p: f64, q: f64, angle: f64) -> f64 {
-    ((p - q).powi(2) + 4.0 * p * q * (0.5 * angle).sin().powi(2)).sqrt()
-}
-
 #[test]
 fn paths_around_cones_take_the_shorter_side_and_bend_at_saddles() {
-    use std::f64::consts::PI;
     for (n, total, is_closed) in [
         (12, 1.6 * PI, true),
         (12, 2.0 * PI, true),
@@ -115,18 +85,14 @@ fn paths_around_cones_take_the_shorter_side_and_bend_at_saddles() {
         (10, 1.0 * PI, false),
         (14, 3.1 * PI, false),
     ] {
-        let (n_rings, alpha) = (4, total / n as f64);
-        let spokes = if is_closed { n } else { n + 1 };
-        let mesh = cone(n, alpha, n_rings, is_closed);
-        let found = all_pairs(&mesh);
-        for (v, row) in found.iter().enumerate().skip(1) {
-            assert_close(row[0], ((v - 1) / spokes + 1) as f64, 1e-14);
-            for (w, found) in row.iter().enumerate().skip(1) {
-                let [(p, s), (q, t)] = [v, w].map(|v| (((v - 1) / spokes + 1) as f64, (v - 1) % spokes));
-                let sectors = s.abs_diff(t);
-                let sectors = if is_closed { sectors.min(n - sectors) } else { sectors };
-                let angle = sectors as f64 * alpha;
-                let expected = if angle >= PI { p + q } else { apart(p, q, angle) };
+        let (mesh, polar) = cone(n, total, 4, is_closed);
+        for (row, [p, a]) in all_pairs(&mesh).iter().zip(&polar).skip(1) {
+            assert_close(row[0], *p, 1e-14);
+            for (found, [q, b]) in row.iter().zip(&polar).skip(1) {
+                let angle = (a - b).abs();
+                let angle = if is_closed { angle.min(total - angle) } else { angle };
+                // Rounding of angles does not move a point beyond the apex.
+                let expected = if angle > PI - 1e-9 { p + q } else { apart(*p, *q, angle) };
                 assert_close(*found, expected, 1e-13);
             }
         }

@@ -3,9 +3,9 @@
 use std::f64::consts::{PI, TAU};
 
 use mesh::shapes;
-use surface::{EdgeId, FaceId, IntrinsicMesh, Topology, VertexId};
+use surface::{EdgeId, FaceId, IntrinsicMesh, VertexId};
 
-use crate::tests::assert_close;
+use super::{assert_close, cone};
 use crate::{DistanceSolver, Exact, Source, SurfacePoint, log_map};
 
 fn vertex(index: usize) -> SurfacePoint {
@@ -77,33 +77,6 @@ fn the_map_of_a_flat_sheet_is_the_sheet() {
     assert_same(&about(&mesh, point), &in_frame(&at, middle, [b[0] - a[0], b[1] - a[1]]), 1e-11);
 }
 
-/// A cone of rings of 16 vertices around vertex 0 with this total angle, and the polar coordinates of the vertices on its
-/// surface.
-fn cone(angle: f64) -> (IntrinsicMesh, Vec<[f64; 2]>) {
-    const AROUND: u32 = 16;
-    let mut polar = vec![[0.0; 2]];
-    let mut faces = Vec::new();
-    for ring in 0..6 {
-        for i in 0..AROUND {
-            polar.push([f64::from(ring + 1), angle * f64::from(i) / f64::from(AROUND)]);
-            let at = |ring: u32, i: u32| VertexId(1 + ring * AROUND + i % AROUND);
-            match ring {
-                0 => faces.push([VertexId(0), at(0, i), at(0, i + 1)]),
-                _ => faces.extend([
-                    [at(ring - 1, i), at(ring, i), at(ring, i + 1)],
-                    [at(ring - 1, i), at(ring, i + 1), at(ring - 1, i + 1)],
-                ]),
-            }
-        }
-    }
-    let length = |ends: [VertexId; 2]| {
-        let [[r, a], [s, b]] = ends.map(|v| polar[v.index()]);
-        let turn = (a - b).abs().min(angle - (a - b).abs());
-        (r * r + s * s - 2.0 * r * s * turn.cos()).sqrt()
-    };
-    (IntrinsicMesh::with_lengths(Topology::new(polar.len(), faces), length), polar)
-}
-
 /// The point at a distance in a direction.
 fn at([r, a]: [f64; 2]) -> [f64; 2] {
     [r * a.cos(), r * a.sin()]
@@ -112,7 +85,7 @@ fn at([r, a]: [f64; 2]) -> [f64; 2] {
 #[test]
 fn the_map_of_a_cone_unrolls_it() {
     for angle in [1.5 * PI, 2.7 * PI] {
-        let (mesh, polar) = cone(angle);
+        let (mesh, polar) = cone(16, angle, 6, true);
         // About the apex, angles are scaled to a full turn.
         let scaled: Vec<_> = polar.iter().map(|[r, a]| at([*r, a * TAU / angle])).collect();
         assert_same(&about(&mesh, vertex(0)), &scaled, 1e-11);

@@ -8,25 +8,32 @@ use super::{assert_path, vertex};
 use crate::tests::{impossible, lengths_of_nothing, pinched, spatial};
 use crate::{Dijkstra, DistanceSolver, Exact, PathTracer, Source, SurfacePoint};
 
-/// Every path is one, and no longer than along edges, or there is none.
+/// No distance is missing, negative or longer than along the edges; every path is one, and no longer than along edges, or
+/// there is none.
 fn assert_sane(mesh: &IntrinsicMesh) {
     let dijkstra = Dijkstra::new(mesh, &());
     let solvers: [&dyn DistanceSolver; 2] = [&Exact::new(mesh, &()), &dijkstra];
-    for source in (0..mesh.n_vertices()).step_by(3) {
-        let along_edges = dijkstra.distances(VertexId::from(source)).unwrap();
+    for source in (0..mesh.n_vertices()).map(VertexId::from) {
+        let along_edges = dijkstra.distances(source).unwrap();
         for solver in solvers {
-            let sources = [Source::vertex(VertexId::from(source))];
-            let field = match solver.distances(VertexId::from(source)) {
+            let sources = [Source::vertex(source)];
+            let field = match solver.distances(source) {
+                // Lengths of no surface in space may need any number of windows.
                 Err(base::Exceeded::Steps { .. }) => continue,
                 field => field.unwrap(),
             };
             let tracer = PathTracer::new(mesh, &sources, &field, &());
-            for (target, limit) in along_edges.iter().enumerate() {
-                match tracer.path_to(vertex(target)) {
-                    Err(_) => assert!(limit.is_infinite()),
-                    Ok(path) => {
-                        assert_path(mesh, &path, vertex(source), vertex(target));
-                        assert!(path.length <= limit * (1.0 + 1e-12), "{} {limit}", path.length);
+            for (target, (limit, found)) in along_edges.iter().zip(&field).enumerate() {
+                assert!(*found >= 0.0 && *found <= limit * (1.0 + 1e-12), "{found} {limit}");
+                assert_eq!(found.is_finite(), limit.is_finite());
+                // Paths from one source in three are enough.
+                if source.0 % 3 == 0 {
+                    match tracer.path_to(vertex(target)) {
+                        Err(_) => assert!(limit.is_infinite()),
+                        Ok(path) => {
+                            assert_path(mesh, &path, vertex(source.index()), vertex(target));
+                            assert!(path.length <= limit * (1.0 + 1e-12), "{} {limit}", path.length);
+                        }
                     }
                 }
             }
@@ -44,17 +51,20 @@ fn repeated_faces_change_no_path() {
 }
 
 #[test]
-fn paths_around_a_needle_are_found() {
-    let mut at = vec![[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [0.0, 0.0, 3.0]];
-    let mut tube = Vec::new();
-    for i in 0..7u32 {
-        let angle = std::f64::consts::TAU * f64::from(i) / 7.0;
-        at.push([1e-7 * angle.cos(), 1e-7 * angle.sin(), 0.1 * angle.sin()]);
-        let (a, b) = (3 + i, 3 + (i + 1) % 7);
-        tube.extend([[0, a, b], [b, a, 1]]);
+fn windows_around_a_thin_needle_come_to_an_end_and_paths_are_found() {
+    // A double cone with n needles and a total angle far below a full turn at either tip.
+    for (n, width) in [(3, 1e-3), (3, 1e-5), (7, 1e-7), (5, 1e-8), (40, 1e-3)] {
+        let mut at = vec![[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [0.0, 0.0, 3.0]];
+        let mut tube = Vec::new();
+        for i in 0..n {
+            let angle = std::f64::consts::TAU * f64::from(i) / f64::from(n);
+            at.push([width * angle.cos(), width * angle.sin(), 0.1 * angle.sin()]);
+            let (a, b) = (3 + i, 3 + (i + 1) % n);
+            tube.extend([[0, a, b], [b, a, 1]]);
+        }
+        tube.push([0, 2, 3]);
+        assert_sane(&spatial(&at, &tube));
     }
-    tube.push([0, 2, 3]);
-    assert_sane(&spatial(&at, &tube));
 }
 
 #[test]
@@ -65,7 +75,7 @@ fn an_isolated_vertex_reaches_itself() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(128))]
 
     #[test]
     fn impossible_lengths_do_no_harm(

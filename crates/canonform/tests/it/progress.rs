@@ -1,7 +1,5 @@
 //! Progress reaches the total of every stage.
 
-#![cfg(test)]
-
 use std::sync::Mutex;
 
 use canonform::embed::{EmbedMethod, EmbedOptions, FormOptions, Samples, StressOptions, embed};

@@ -1,5 +1,6 @@
 //! Flat surfaces: rounding of coordinates changes neither forms nor descriptions.
 
+use base::SplitMix;
 use canonform::descriptors::{ShapeMetric, ShapePair, SignatureKind};
 use canonform::embed::{
     EmbedMethod, EmbedOptions, FormOptions, Samples, StressChoice, StressOptions, embed, signature,
@@ -10,24 +11,11 @@ use canonform::surface::VertexId;
 use canonform::{DescribeOptions, Surface, describe};
 use nalgebra::{Point3, Rotation3, Vector3};
 
-/// Numbers in 0..1.
-struct Numbers(u64);
+use crate::moved;
 
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((mixed ^ (mixed >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
-    }
-}
-
-fn moved(mesh: &TriMesh, motion: impl Fn(&Point3<f64>) -> Point3<f64>) -> TriMesh {
-    TriMesh { positions: mesh.positions.iter().map(motion).collect(), faces: mesh.faces.clone() }
+/// Uniform in an interval.
+fn between(random: &mut SplitMix, low: f64, high: f64) -> f64 {
+    low + (high - low) * (0.5 + 0.5 * random.uniform())
 }
 
 /// A sheet of n x m squares, each cut along either diagonal.
@@ -64,10 +52,10 @@ fn disc(n_rings: usize, n_around: usize) -> TriMesh {
 }
 
 /// Surfaces that are flat up to bending, and mats and rods that nearly are.
-fn flat(numbers: &mut Numbers) -> Vec<(String, TriMesh)> {
+fn flat(random: &mut SplitMix) -> Vec<(String, TriMesh)> {
     let mut found = Vec::new();
     for i in 0..12 {
-        let [n, m] = [0; 2].map(|_| numbers.between(8.0, 40.0) as usize);
+        let [n, m] = [0; 2].map(|_| between(random, 8.0, 40.0) as usize);
         let height = [10.0, 10.0, 5.0, 20.0][i % 4];
         let plate = sheet(n, m, [10.0, height], i % 3 == 1);
         found.push((format!("plate {n} x {m}, {height} high"), plate));
@@ -90,38 +78,38 @@ fn flat(numbers: &mut Numbers) -> Vec<(String, TriMesh)> {
 }
 
 /// The surface elsewhere, as a file of 32 bits has it.
-fn rounded(mesh: &TriMesh, numbers: &mut Numbers) -> TriMesh {
-    let turn = Rotation3::from_euler_angles(numbers.next() * 6.0, numbers.next() * 3.0, numbers.next() * 6.0);
-    let scale = [1.0, 25.4, 0.001][(3.0 * numbers.next()) as usize];
-    let far = [0.0, 10.0, 100.0][(3.0 * numbers.next()) as usize];
-    let shift = Vector3::from_fn(|_, _| numbers.between(-far, far)) * scale;
+fn rounded(mesh: &TriMesh, random: &mut SplitMix) -> TriMesh {
+    let turn = Rotation3::from_euler_angles(
+        between(random, 0.0, 6.0),
+        between(random, 0.0, 3.0),
+        between(random, 0.0, 6.0),
+    );
+    let scale = [1.0, 25.4, 0.001][between(random, 0.0, 3.0) as usize];
+    let far = [0.0, 10.0, 100.0][between(random, 0.0, 3.0) as usize];
+    let shift = Vector3::from_fn(|_, _| between(random, -far, far)) * scale;
     moved(mesh, |p| (turn * (p * scale) + shift).map(|x| f64::from(x as f32)))
 }
 
 /// The surface with errors of 1e-7 of its size.
-fn noisy(mesh: &TriMesh, numbers: &mut Numbers) -> TriMesh {
+fn noisy(mesh: &TriMesh, random: &mut SplitMix) -> TriMesh {
     let size = 1e-7 * mesh.positions.iter().fold(0.0f64, |size, p| size.max(p.coords.norm()));
     let mut changed = mesh.clone();
-    changed
-        .positions
-        .iter_mut()
-        .flat_map(|p| p.iter_mut())
-        .for_each(|x| *x += size * numbers.between(-1.0, 1.0));
+    changed.positions.iter_mut().flat_map(|p| p.iter_mut()).for_each(|x| *x += size * random.uniform());
     changed
 }
 
 #[test]
 #[ignore = "slow: make test-all"]
 fn rounding_and_noise_change_no_description_of_a_flat_surface() {
-    let mut numbers = Numbers(7);
+    let mut random = SplitMix(7);
     let mut largest = 0.0f64;
-    for (name, mesh) in flat(&mut numbers) {
+    for (name, mesh) in flat(&mut random) {
         let described = |mesh: &TriMesh| {
             let surface = Surface::new(mesh, &Default::default(), &()).unwrap();
             describe(&surface, &DescribeOptions::default(), &()).unwrap()
         };
         let base = described(&mesh);
-        let copies = [("rounded", rounded(&mesh, &mut numbers)), ("noisy", noisy(&mesh, &mut numbers))];
+        let copies = [("rounded", rounded(&mesh, &mut random)), ("noisy", noisy(&mesh, &mut random))];
         for (change, copy) in copies {
             let copy = described(&copy);
             let shapes = [&base, &copy].map(|shape| DescribeOptions::default().prepare(shape).unwrap());
@@ -138,7 +126,7 @@ fn rounding_and_noise_change_no_description_of_a_flat_surface() {
 
 #[test]
 fn every_method_embeds_every_flat_surface_that_was_rounded() {
-    let mut numbers = Numbers(11);
+    let mut random = SplitMix(11);
     let mut meshes = vec![
         ("strip 1e-6".to_owned(), sheet(20, 1, [1.0, 1e-6], false)),
         ("strips 1e-6".to_owned(), sheet(20, 3, [1.0, 1e-6], false)),
@@ -146,14 +134,14 @@ fn every_method_embeds_every_flat_surface_that_was_rounded() {
     for n in [12, 20] {
         let mut plate = sheet(n, n, [100.0, 100.0], false);
         for p in plate.positions.iter_mut().filter(|p| [p.x, p.y].iter().all(|x| *x > 0.0 && *x < 100.0)) {
-            *p += Vector3::new(numbers.next() - 0.5, numbers.next() - 0.5, 0.0) * (50.0 / n as f64);
+            *p += Vector3::new(random.uniform(), random.uniform(), 0.0) * (25.0 / n as f64);
         }
-        meshes.push((format!("irregular plate {n}"), rounded(&plate, &mut numbers)));
+        meshes.push((format!("irregular plate {n}"), rounded(&plate, &mut random)));
     }
     let regular = [("plate", sheet(20, 14, [10.0, 7.0], true)), ("disc", disc(8, 24))];
     for (name, mesh) in regular {
-        meshes.push((name.to_owned(), rounded(&mesh, &mut numbers)));
-        meshes.push((format!("noisy {name}"), noisy(&mesh, &mut numbers)));
+        meshes.push((name.to_owned(), rounded(&mesh, &mut random)));
+        meshes.push((format!("noisy {name}"), noisy(&mesh, &mut random)));
     }
     for (name, mesh) in meshes {
         let surface = Surface::new(&mesh, &Default::default(), &()).unwrap();

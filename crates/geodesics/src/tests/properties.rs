@@ -2,15 +2,15 @@
 //! several components.
 
 use base::Exceeded;
-use canonform_geodesics::{
-    Dijkstra, DistanceSolver, Exact, FastMarching, FastMarchingOptions, PathTracer, Source, SurfacePoint,
-};
 use mesh::{TriMesh, shapes};
 use nalgebra::Point3;
 use proptest::prelude::*;
 use surface::{IntrinsicMesh, VertexId};
 
-use crate::support::{longest_edge, methods};
+use super::{longest_edge, methods};
+use crate::{
+    Dijkstra, DistanceSolver, Exact, FastMarching, FastMarchingOptions, PathTracer, Source, SurfacePoint,
+};
 
 /// Share of a distance that rounding may take or add.
 const ROUNDING: f64 = 1e-11;

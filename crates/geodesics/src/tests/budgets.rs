@@ -3,11 +3,11 @@
 use std::time::Duration;
 
 use base::{Budget, Exceeded};
-use canonform_geodesics::{DistanceSolver, Exact, FirstSample, GeodesicError, Method, Sampling};
 use mesh::shapes;
 use surface::VertexId;
 
-use crate::support::all_triangles;
+use super::all_triangles;
+use crate::{DistanceSolver, Exact, FirstSample, GeodesicError, Method, Sampling};
 
 /// Cancels a budget after a delay, while `work` runs.
 fn cancelled<T>(budget: &Budget, delay: Duration, work: impl FnOnce() -> T) -> T {

@@ -8,9 +8,7 @@ use canonform::search::{SearchOptions, ShapeSearch};
 use canonform::{DescribeOptions, Surface};
 use nalgebra::Vector3;
 
-fn moved(mesh: &TriMesh, motion: impl Fn(nalgebra::Point3<f64>) -> nalgebra::Point3<f64>) -> TriMesh {
-    TriMesh { positions: mesh.positions.iter().map(|p| motion(*p)).collect(), faces: mesh.faces.clone() }
-}
+use crate::moved;
 
 #[test]
 fn relations_of_a_search_are_those_of_a_comparison() {

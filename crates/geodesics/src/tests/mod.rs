@@ -1,7 +1,13 @@
-//! Surfaces and references for the tests of several modules.
+//! Laws of the crate, through what it exports, and surfaces and references for the tests of several modules.
 //!
 //! The real meshes are not part of the project. `CANONFORM_DATA` is their folder; without it, the tests that need
 //! them print a note and pass.
+
+mod budgets;
+mod every_method;
+mod hubs;
+mod properties;
+mod slivers;
 
 use std::path::{Path, PathBuf};
 
@@ -9,15 +15,35 @@ use mesh::{TriMesh, shapes};
 use proptest::prelude::*;
 use surface::{IntrinsicMesh, Topology, VertexId};
 
+use crate::{FastMarchingOptions, Method, Update};
+
 /// Connectivity and lengths of a mesh in space.
 pub(crate) fn spatial(points: &[[f64; 3]], faces: &[[u32; 3]]) -> IntrinsicMesh {
     let topology = Topology::new(points.len(), faces.iter().map(|f| f.map(VertexId)).collect());
-    let length = |[a, b]: &[VertexId; 2]| {
-        let (p, q) = (points[a.index()], points[b.index()]);
-        ((p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2) + (p[2] - q[2]).powi(2)).sqrt()
+    let length = |ends: [VertexId; 2]| {
+        let [p, q] = ends.map(|v| points[v.index()]);
+        (0..3).map(|i| (p[i] - q[i]).powi(2)).sum::<f64>().sqrt()
     };
-    let lengths = topology.edges().iter().map(length).collect();
-    IntrinsicMesh::new(topology, lengths)
+    IntrinsicMesh::with_lengths(topology, length)
+}
+
+/// All triangles between `n` points.
+fn all_triangles(n: u32) -> IntrinsicMesh {
+    let faces = (0..n).flat_map(|a| (a + 1..n).flat_map(move |b| (b + 1..n).map(move |c| [a, b, c])));
+    let at = |t: f64| [(0.7 * t).sin() + 0.05 * t, (1.3 * t).cos(), (2.1 * t + 0.5).sin()];
+    let points: Vec<_> = (0..n).map(|i| at(f64::from(i))).collect();
+    spatial(&points, &faces.collect::<Vec<_>>())
+}
+
+fn longest_edge(surface: &IntrinsicMesh) -> f64 {
+    surface.edge_lengths().iter().copied().fold(0.0, f64::max)
+}
+
+/// Every method with its default options, and fast marching with the planar update.
+fn methods() -> Vec<(&'static str, Method)> {
+    let planar = FastMarchingOptions { update: Update::Planar, ..Default::default() };
+    let named = Method::all().map(|method| (method.name(), method));
+    named.into_iter().chain([("planar", Method::FastMarching(planar))]).collect()
 }
 
 pub(crate) fn points(mesh: &TriMesh) -> Vec<[f64; 3]> {

@@ -4,37 +4,37 @@ use std::f64::consts::TAU;
 use std::time::Duration;
 
 use base::Budget;
-use canonform_geodesics::{DistanceSolver, Exact, FastMarchingOptions, Method, Update};
 use surface::{IntrinsicMesh, VertexId};
 
-use crate::support::{all_triangles, methods, surface};
+use super::{all_triangles, methods, spatial};
+use crate::{DistanceSolver, Exact, FastMarchingOptions, Method, Update};
 
-fn rim(n: usize, height: f64) -> impl Iterator<Item = [f64; 3]> {
-    (0..n).map(move |i| i as f64 / n as f64 * TAU).map(move |t| [t.cos(), t.sin(), height])
+fn rim(n: u32, height: f64) -> impl Iterator<Item = [f64; 3]> {
+    (0..n).map(move |i| f64::from(i) / f64::from(n) * TAU).map(move |t| [t.cos(), t.sin(), height])
 }
 
 /// A flat regular polygon, split from its first corner.
-fn polygon(n: usize) -> IntrinsicMesh {
-    surface(&rim(n, 0.0).collect::<Vec<_>>(), (2..n).map(|i| [0, i - 1, i]).collect())
+fn polygon(n: u32) -> IntrinsicMesh {
+    spatial(&rim(n, 0.0).collect::<Vec<_>>(), &(2..n).map(|i| [0, i - 1, i]).collect::<Vec<_>>())
 }
 
 /// A cone around vertex 0.
-fn cone(n: usize) -> IntrinsicMesh {
+fn cone(n: u32) -> IntrinsicMesh {
     let points: Vec<_> = std::iter::once([0.0; 3]).chain(rim(n, -0.3)).collect();
-    surface(&points, (0..n).map(|i| [0, i + 1, (i + 1) % n + 1]).collect())
+    spatial(&points, &(0..n).map(|i| [0, i + 1, (i + 1) % n + 1]).collect::<Vec<_>>())
 }
 
 /// Faces that have one edge in common.
-fn book(n: usize) -> IntrinsicMesh {
+fn book(n: u32) -> IntrinsicMesh {
     let points: Vec<_> = [[0.0; 3], [0.0, 0.0, 1.0]].into_iter().chain(rim(n, 0.4)).collect();
-    surface(&points, (0..n).map(|i| [0, 1, i + 2]).collect())
+    spatial(&points, &(0..n).map(|i| [0, 1, i + 2]).collect::<Vec<_>>())
 }
 
 /// Needles that have one vertex in common.
-fn star(n: usize) -> IntrinsicMesh {
+fn star(n: u32) -> IntrinsicMesh {
     let tips = rim(n, 0.2).flat_map(|[x, y, z]| [[x, y, z], [x, y, z + 1e-3]]);
     let points: Vec<_> = std::iter::once([0.0; 3]).chain(tips).collect();
-    surface(&points, (0..n).map(|i| [0, 2 * i + 1, 2 * i + 2]).collect())
+    spatial(&points, &(0..n).map(|i| [0, 2 * i + 1, 2 * i + 2]).collect::<Vec<_>>())
 }
 
 /// The largest error relative to the largest exact distance that a method may make at hubs.
@@ -105,17 +105,18 @@ fn surfaces_that_touch_in_a_vertex_are_crossed_there() {
         .chain(rim(n, -1.0))
         .chain([[0.0, 0.0, 1.5], [0.0, 0.0, -1.5]])
         .collect();
-    let cone = |first: usize, far: usize| {
+    let cone = |first: u32, far: u32| {
         (0..n).flat_map(move |i| {
             let [a, b] = [first + i, first + (i + 1) % n];
             [[0, a, b], [far, b, a]]
         })
     };
-    let surface = surface(&points, cone(1, 2 * n + 1).chain(cone(n + 1, 2 * n + 2)).collect());
+    let faces: Vec<_> = cone(1, 2 * n + 1).chain(cone(n + 1, 2 * n + 2)).collect();
+    let surface = spatial(&points, &faces);
     for method in Method::all().into_iter().filter(|method| !matches!(method, Method::Heat(_))) {
         let solver = method.prepare(&surface, &()).unwrap();
         let [from_tip, from_rim] = [0, 3].map(|v| solver.distances(VertexId(v)).unwrap());
-        for below in n + 1..=2 * n {
+        for below in n as usize + 1..=2 * n as usize {
             let expected = from_rim[0] + from_tip[below];
             assert!((from_rim[below] / expected - 1.0).abs() < 1e-12, "{}", method.name());
         }

@@ -1,7 +1,5 @@
 //! Collections on the disk: what becomes of files that are copies, move, or cannot be read.
 
-#![cfg(test)]
-
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
