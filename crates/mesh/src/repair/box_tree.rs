@@ -111,31 +111,3 @@ impl Node {
         (self.low - point).sup(&(point - self.high)).sup(&Vector3::zeros()).norm_squared()
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_nearest_points_equal_those_of_all_pairs() {
-        let at = |i: u32| {
-            // Many equal distances.
-            let hash = i.wrapping_mul(2_654_435_761);
-            Point3::new(f64::from(hash >> 28), f64::from(hash >> 24 & 15), f64::from(hash >> 20 & 3))
-        };
-        let tree = BoxTree::new((0..500).map(|i| (at(i), i)));
-        let mut found = Vec::new();
-        for i in 0..500 {
-            for (k, radius) in [(1, 9.0), (5, 2.0), (600, 3.0)] {
-                tree.nearest(&at(i), radius * radius, k, |other| other == i, |_| false, &mut found);
-                let all = (0..500).filter(|j| *j != i).map(|j| (at(j) - at(i)).norm_squared());
-                let mut all: Vec<f64> = all.filter(|sq| *sq <= radius * radius).collect();
-                all.sort_by(f64::total_cmp);
-                all.truncate(k);
-                assert_eq!(found.iter().map(|(sq, _)| *sq).collect::<Vec<_>>(), all);
-            }
-        }
-        BoxTree::new(std::iter::empty()).nearest(&at(0), 1.0, 1, |_| false, |_| false, &mut found);
-        assert!(found.is_empty());
-    }
-}

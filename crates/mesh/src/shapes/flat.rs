@@ -77,18 +77,3 @@ pub fn fold(sheet: &TriMesh, crease: f64, angle: f64) -> TriMesh {
 pub fn folded_sheet(nx: usize, ny: usize, step: f64, column: usize, angle: f64) -> TriMesh {
     fold(&grid(nx, ny, step), step * column as f64, angle)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn flat_sheets_have_the_area_of_their_outline() {
-        assert_eq!(grid(4, 3, 2.0).area(), 24.0);
-        assert!((sheared_grid(5, 6, 1.0, 1.7).area() - 20.0).abs() < 1e-12);
-        let jittered = jittered_grid(9, 7, 0.5, 0.24, 3);
-        assert!((jittered.area() - 12.0).abs() < 1e-12);
-        assert_ne!(jittered, grid(9, 7, 0.5));
-        assert_eq!(jittered, jittered_grid(9, 7, 0.5, 0.24, 3));
-    }
-}
