@@ -7,6 +7,7 @@
 //! | `cycles` | imports between the modules of a crate |
 //! | `one_of_each` | unique names, the packages of the project |
 //! | `packaging` | whether all packages can be published |
+//! | `licences` | licences of dependencies |
 //! | `guarantees` | the tests behind `docs/robustness.md` |
 //! | `pages` | length of pages, links between them, and the table of contents of the book |
 //! | `marching` | distances by fast marching |
@@ -41,6 +42,7 @@ mod invariance;
 mod invariants;
 mod isometry;
 mod keepers;
+mod licences;
 mod map_uses;
 mod marching;
 mod matches;
