@@ -23,7 +23,12 @@ def test_the_guide_has_snippets() -> None:
 
 # Dask and Lance warn of their own affairs.
 @pytest.mark.filterwarnings("default")
-@pytest.mark.parametrize("page", chapters(), ids=lambda page: page.stem)
+@pytest.mark.parametrize(
+    "page",
+    # The laws of clusters are in test_distributed.py and test_search_in_shards.py.
+    [pytest.param(page, marks=[pytest.mark.slow] if page.stem == "clusters" else []) for page in chapters()],
+    ids=lambda page: page.stem,
+)
 def test_a_chapter_runs(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for package in {"clusters": ["distributed", "lance"], "python": ["sklearn", "pandas"]}.get(page.stem, []):
         pytest.importorskip(package)

@@ -91,11 +91,9 @@ def test_landmarks_initial_maps_and_descriptors(cats: list[Shape]) -> None:
     direct, mirrored = sorted(canonform.match(a, b, **few).maps, key=lambda m: m.kind)
     # Where the maps are farthest apart.
     far = int(np.linalg.norm(b.vertices[direct.vertices] - b.vertices[mirrored.vertices], axis=1).argmax())
-    for m in (direct, mirrored):
-        found = canonform.match(a, b, landmarks=[(far, m.vertices[far])], **few)
-        assert [other.kind for other in found.maps] == [m.kind]
-        assert found.best.vertices[far] == m.vertices[far]
-    assert canonform.match(a, b, initial=mirrored.vertices, **few).best.kind == "mirrored"
+    found = canonform.match(a, b, landmarks=[(far, mirrored.vertices[far])], **few)
+    assert [m.kind for m in found.maps] == ["mirrored"]
+    assert found.best.vertices[far] == mirrored.vertices[far]
     bases = a.eigenbasis(60), b.eigenbasis(60)
     functional = mirrored.functional(bases=bases)
     assert canonform.match(a, b, initial=(functional, *bases), **few).best.kind == "mirrored"

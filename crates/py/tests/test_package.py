@@ -28,6 +28,7 @@ SOURCE = ROOT / "crates" / "py" / "python" / "canonform"
 MODULES = sorted(path.stem for path in SOURCE.glob("*.py") if path.stem != "__init__")
 
 
+@pytest.mark.slow
 def test_examples_in_docstrings_run(
     cats: list[Shape], cat_match: canonform.Match, index: canonform.Index, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

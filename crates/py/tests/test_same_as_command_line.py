@@ -145,18 +145,15 @@ def test_indexes(program: Program, index: Index, collection: Path, tmp_path: Pat
 
     query = collection / "cat1.off"
     for flags, arguments in [
-        (["-k", "4"], {"k": 4}),
         (["-k", "4", "--explain"], {"k": 4, "explain": True}),
         (["-k", "3", "--rank", "graph"], {"k": 3, "rank": "graph"}),
-        (["--exact"], {}),
     ]:
         answer = timeless(program.json("search", theirs, query, *flags)["queries"][0])
         answer.pop("query")
-        for asked in (query, canonform.read(query)):
-            assert timeless(index.search(asked, **arguments).report) == answer, flags
+        assert timeless(index.search(query, **arguments).report) == answer, flags
     assert program.json("search", theirs, "--id", "david2")["queries"][0]["predicted"] == index.search("david2").predicted
 
-    for flags, arguments in [([], {}), (["--by", "shape-dna", "-k", "3"], {"by": "shape-dna", "k": 3}), (["--rank", "graph"], {"rank": "graph"})]:
+    for flags, arguments in [(["--by", "shape-dna", "-k", "3"], {"by": "shape-dna", "k": 3}), (["--rank", "graph"], {"rank": "graph"})]:
         assert program.json("evaluate", theirs, *flags) == index.evaluate(**arguments)
 
 

@@ -60,18 +60,18 @@ def interrupted(call: str) -> float:
     "call",
     [
         "surface.distances_many(range(4000))",
-        "surface.distances_many(range(4000), geodesic='exact')",
+        pytest.param("surface.distances_many(range(4000), geodesic='exact')", marks=pytest.mark.slow),
         "surface.canonical_form(n_landmarks=5000)",
-        "surface.farthest_points(20000, geodesic='exact')",
-        "surface.signature(n_landmarks=5000)",
-        "surface.distance_field(5000)",
-        "surface.eigenbasis(1000)",
+        pytest.param("surface.farthest_points(20000, geodesic='exact')", marks=pytest.mark.slow),
+        pytest.param("surface.signature(n_landmarks=5000)", marks=pytest.mark.slow),
+        pytest.param("surface.distance_field(5000)", marks=pytest.mark.slow),
+        pytest.param("surface.eigenbasis(1000)", marks=pytest.mark.slow),
         "canonform.match(surface, surface, n_eigenfunctions=1000)",
-        "canonform.compare(surface, surface, n_landmarks=5000)",
+        pytest.param("canonform.compare(surface, surface, n_landmarks=5000)", marks=pytest.mark.slow),
         "canonform.datasets.generate(n_vertices=20_000, poses=6)",
-        "canonform.datasets.generate('cat', n_vertices=100_000)",
-        "canonform.datasets.generate('spider', n_vertices=100_000)",
-        "canonform.datasets.generate('person', n_vertices=1_000_000)",
+        pytest.param("canonform.datasets.generate('cat', n_vertices=100_000)", marks=pytest.mark.slow),
+        pytest.param("canonform.datasets.generate('spider', n_vertices=100_000)", marks=pytest.mark.slow),
+        pytest.param("canonform.datasets.generate('person', n_vertices=1_000_000)", marks=pytest.mark.slow),
     ],
 )
 def test_control_c_interrupts(call: str) -> None:
@@ -170,10 +170,10 @@ def test_a_limit_ends_a_call_and_keeps_the_surface() -> None:
 
 def test_progress_calls_a_function_or_a_bar(capsys: pytest.CaptureFixture[str]) -> None:
     surface, seen = Surface(*grid(45)), []
-    surface.distances_many(range(2025), geodesic="exact", progress=lambda *step: seen.append(step))
+    surface.distances_many(range(400), geodesic="exact", progress=lambda *step: seen.append(step))
     assert seen and {stage for stage, _, _ in seen} == {"distances"}
     assert [done for _, done, _ in seen] == sorted(done for _, done, _ in seen)
-    surface.distances_many(range(2025), geodesic="exact", progress=True)
+    surface.distances_many(range(400), geodesic="exact", progress=True)
     assert "distances" in capsys.readouterr().err
 
 
