@@ -1,7 +1,7 @@
 //! Faces that are out of range, degenerate or duplicate.
 
 use nalgebra::Point3;
-use surface::{Topology, VertexId};
+use surface::{CornerId, EdgeId, Topology, VertexId};
 
 use crate::error::MeshError;
 use crate::tri_mesh::TriMesh;
@@ -52,6 +52,20 @@ pub(crate) fn remove_degenerate(faces: &mut Vec<[VertexId; 3]>) -> usize {
     before - faces.len()
 }
 
+/// Whether two faces have the same three vertices: two corners opposite one edge are at the same vertex.
+pub(crate) fn has_duplicates(topology: &Topology) -> bool {
+    let apex = |corner: &CornerId| topology.corner_vertex(*corner);
+    (0..topology.n_edges()).any(|edge| match topology.edge_corners(EdgeId::from(edge)) {
+        [_] => false,
+        [a, b] => apex(a) == apex(b),
+        corners => {
+            let mut apices: Vec<VertexId> = corners.iter().map(apex).collect();
+            apices.sort_unstable();
+            apices.windows(2).any(|pair| pair[0] == pair[1])
+        }
+    })
+}
+
 /// Removes faces with the same vertices as an earlier one; returns how many.
 pub(crate) fn remove_duplicates(faces: &mut Vec<[VertexId; 3]>) -> usize {
     let before = faces.len();
@@ -94,5 +108,17 @@ mod tests {
             [[0, 1, 2], [2, 1, 3], [1, 2, 0], [0, 1, 3], [2, 1, 0], [3, 1, 2]].map(|f| f.map(VertexId));
         assert_eq!(duplicates(&faces), [false, false, true, false, true, true]);
         assert_eq!(duplicates(&[]), [false; 0]);
+    }
+
+    #[test]
+    fn duplicate_faces_are_noticed_among_two_faces_of_an_edge_and_among_more() {
+        let topology =
+            |n, list: &[[u32; 3]]| Topology::new(n, list.iter().map(|f| f.map(VertexId)).collect());
+        let book = [[0, 1, 2], [0, 1, 3], [1, 0, 4], [5, 0, 1]];
+        for (more, expected) in [(None, false), (Some([4, 1, 0]), true), (Some([2, 3, 4]), false)] {
+            let list: Vec<_> = book.into_iter().chain(more).collect();
+            assert_eq!(has_duplicates(&topology(6, &list)), expected, "{more:?}");
+        }
+        assert!(has_duplicates(&topology(3, &[[0, 1, 2], [2, 1, 0]])));
     }
 }

@@ -42,4 +42,4 @@ pub use point::SurfacePoint;
 pub use rows::Rows;
 pub use topology::Topology;
 pub use triangle::{Triangle, scalar_product, twice_area};
-pub use triangulation::{GluedTriangle, Loops, Triangulation, VertexCorners};
+pub use triangulation::{GluedTriangle, Loops, Triangulation};

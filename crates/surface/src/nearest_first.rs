@@ -8,7 +8,7 @@ use std::collections::BinaryHeap;
 /// ```
 /// use canonform_surface::NearestFirst;
 ///
-/// let mut queue = NearestFirst::from([(2.5, 'c'), (0.5, 'b'), (0.5, 'a')]);
+/// let mut queue = NearestFirst::from_iter([(2.5, 'c'), (0.5, 'b'), (0.5, 'a')]);
 /// assert_eq!(queue.pop(), Some((0.5, 'a')));
 /// queue.push(1.0, 'd');
 /// assert_eq!(std::iter::from_fn(|| queue.pop()).map(|(_, item)| item).collect::<String>(), "bdc");
@@ -39,12 +39,6 @@ impl<T: Ord> NearestFirst<T> {
     #[inline]
     pub fn pop(&mut self) -> Option<(f64, T)> {
         self.0.pop().map(|Reverse((bits, item))| (f64::from_bits(bits), item))
-    }
-}
-
-impl<T: Ord, const N: usize> From<[(f64, T); N]> for NearestFirst<T> {
-    fn from(items: [(f64, T); N]) -> Self {
-        items.into_iter().collect()
     }
 }
 

@@ -42,7 +42,6 @@ pub struct Topology {
     corner_edge: Vec<EdgeId>,
     vertex_corners: Rows<CornerId>,
     edge_corners: Rows<CornerId>,
-    has_duplicate_faces: bool,
 }
 
 /// Vertices and corners of a mesh are fewer: solvers keep flags beside their numbers, in the upper two of 32 bits.
@@ -52,7 +51,6 @@ const LIMIT: usize = 1 << 30;
 const BLOCK: usize = 512;
 
 /// The edges from some successive vertices to higher ones.
-#[derive(Default)]
 struct EdgeBlock {
     edges: Vec<[VertexId; 2]>,
     /// Per vertex, the number of edges before its own, and at the end the number of all.
@@ -60,17 +58,6 @@ struct EdgeBlock {
     /// Per edge, the number of corners opposite the edges before it, and at the end that of all.
     ends: Vec<u32>,
     corners: Vec<CornerId>,
-    has_duplicate_faces: bool,
-}
-
-/// A side of a face at the lower of its ends.
-#[derive(Clone, Copy)]
-struct Side {
-    upper: VertexId,
-    /// The corner opposite.
-    corner: CornerId,
-    /// The vertex in it.
-    apex: VertexId,
 }
 
 impl EdgeBlock {
@@ -80,7 +67,6 @@ impl EdgeBlock {
             first_edge: Vec::with_capacity(n_vertices + 1),
             ends: Vec::with_capacity(n_edges + 1),
             corners: Vec::with_capacity(n_corners),
-            has_duplicate_faces: false,
         };
         block.first_edge.push(0);
         block.ends.push(0);
@@ -91,17 +77,17 @@ impl EdgeBlock {
         let n_corners =
             vertex_corners.range(vertices.end - 1).end - vertex_corners.range(vertices.start).start;
         let mut block = Self::with_capacity(vertices.len(), n_corners / 2 + 1, n_corners);
-        // The sides of all vertices, collected without a branch, so that many faces are read at once.
-        let none = Side { upper: VertexId(0), corner: CornerId(0), apex: VertexId(0) };
-        let (mut sides, mut n_sides) = (vec![none; 2 * n_corners + 1], 0);
+        // The upper ends of all sides and the corners opposite, collected without a branch, so that many faces are
+        // read at once.
+        let (mut sides, mut n_sides) = (vec![(VertexId(0), CornerId(0)); 2 * n_corners + 1], 0);
         let mut sides_end = Vec::with_capacity(vertices.len());
         for lower in vertices.clone().map(|v| VertexId(v as u32)) {
             for corner in vertex_corners.row(lower.index()) {
                 let (next, prev, face) = (corner.next(), corner.prev(), faces[corner.face().index()]);
                 let ends = [face[next.slot()], face[prev.slot()]];
-                sides[n_sides] = Side { upper: ends[0], corner: prev, apex: ends[1] };
+                sides[n_sides] = (ends[0], prev);
                 n_sides += usize::from(ends[0] > lower);
-                sides[n_sides] = Side { upper: ends[1], corner: next, apex: ends[0] };
+                sides[n_sides] = (ends[1], next);
                 n_sides += usize::from(ends[1] > lower);
             }
             sides_end.push(n_sides);
@@ -109,12 +95,11 @@ impl EdgeBlock {
         let mut start = 0;
         for (lower, end) in vertices.map(|v| VertexId(v as u32)).zip(sides_end) {
             let sides = &mut sides[std::mem::replace(&mut start, end)..end];
-            sides.sort_unstable_by_key(|side| u64::from(side.upper.0) << 32 | u64::from(side.corner.0));
-            for around in sides.chunk_by(|a, b| a.upper == b.upper) {
-                block.edges.push([lower, around[0].upper]);
-                block.corners.extend(around.iter().map(|side| side.corner));
+            sides.sort_unstable_by_key(|(upper, corner)| u64::from(upper.0) << 32 | u64::from(corner.0));
+            for around in sides.chunk_by(|a, b| a.0 == b.0) {
+                block.edges.push([lower, around[0].0]);
+                block.corners.extend(around.iter().map(|(_, corner)| *corner));
                 block.ends.push(block.corners.len() as u32);
-                block.has_duplicate_faces |= has_repeated_apex(around);
             }
             block.first_edge.push(block.edges.len() as u32);
         }
@@ -135,22 +120,8 @@ impl EdgeBlock {
             all.ends.extend(block.ends[1..].iter().map(|end| n_corners + end));
             all.edges.extend(block.edges);
             all.corners.extend(block.corners);
-            all.has_duplicate_faces |= block.has_duplicate_faces;
         }
         all
-    }
-}
-
-/// Whether two faces at one edge have the same third vertex.
-fn has_repeated_apex(around: &[Side]) -> bool {
-    match around {
-        [_] => false,
-        [a, b] => a.apex == b.apex,
-        _ => {
-            let mut apices: Vec<VertexId> = around.iter().map(|side| side.apex).collect();
-            apices.sort_unstable();
-            apices.windows(2).any(|pair| pair[0] == pair[1])
-        }
     }
 }
 
@@ -184,7 +155,7 @@ impl Topology {
                 EdgeBlock::of(vertices, &faces, &vertex_corners)
             })
             .collect();
-        let EdgeBlock { edges, first_edge, ends, corners, has_duplicate_faces } = EdgeBlock::concat(blocks);
+        let EdgeBlock { edges, first_edge, ends, corners } = EdgeBlock::concat(blocks);
         let edge_corners = Rows::from_offsets(ends, corners);
         // Every corner is written once, so the order of the writes does not matter.
         let corner_edge: Vec<AtomicU32> = faces.as_flattened().iter().map(|_| AtomicU32::new(0)).collect();
@@ -194,26 +165,12 @@ impl Topology {
             }
         });
         let corner_edge = corner_edge.into_iter().map(|edge| EdgeId(edge.into_inner())).collect();
-        Self {
-            n_vertices,
-            faces,
-            edges,
-            first_edge,
-            corner_edge,
-            vertex_corners,
-            edge_corners,
-            has_duplicate_faces,
-        }
+        Self { n_vertices, faces, edges, first_edge, corner_edge, vertex_corners, edge_corners }
     }
 
     /// The vertices of every face, without the connectivity.
     pub fn into_faces(self) -> Vec<[VertexId; 3]> {
         self.faces
-    }
-
-    /// Whether two faces have the same three vertices.
-    pub fn has_duplicate_faces(&self) -> bool {
-        self.has_duplicate_faces
     }
 
     /// Number of vertices.
@@ -363,16 +320,6 @@ mod tests {
         assert_eq!(t.edge_between(VertexId(6), VertexId(4)), None);
         assert_eq!(t.edge_between(VertexId(6), VertexId(9)), None);
         assert_eq!(t.into_faces(), faces(&list));
-    }
-
-    #[test]
-    fn duplicate_faces_are_noticed_among_two_faces_of_an_edge_and_among_more() {
-        let book = [[0, 1, 2], [0, 1, 3], [1, 0, 4], [5, 0, 1]];
-        for (more, expected) in [(None, false), (Some([4, 1, 0]), true), (Some([2, 3, 4]), false)] {
-            let list: Vec<_> = book.into_iter().chain(more).collect();
-            assert_eq!(Topology::new(6, faces(&list)).has_duplicate_faces(), expected, "{more:?}");
-        }
-        assert!(Topology::new(3, faces(&[[0, 1, 2], [2, 1, 0]])).has_duplicate_faces());
     }
 
     #[test]

@@ -316,17 +316,6 @@ impl Triangulation {
     }
 }
 
-/// The corners around every vertex of a triangulation, summarized.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct VertexCorners {
-    /// The lowest corner; meaningless without corners.
-    pub first: CornerId,
-    /// The number of corners.
-    pub n_corners: u32,
-    /// The number of free sides that end at the vertex.
-    pub n_free: u32,
-}
-
 impl Triangulation {
     /// The number of triangles around the vertex in a corner, glued side to side until they are back at the corner; zero if
     /// they end at a free side.
@@ -344,27 +333,6 @@ impl Triangulation {
                 return n;
             }
         }
-    }
-
-    /// The corners around each of `n_vertices` vertices, in linear time.
-    ///
-    /// # Panics
-    /// If a triangle has a vertex that is out of range.
-    pub fn vertex_corners(&self, n_vertices: usize) -> Vec<VertexCorners> {
-        let mut around = vec![VertexCorners::default(); n_vertices];
-        for (t, triangle) in self.triangles.iter().enumerate().rev() {
-            for slot in (0..3).rev() {
-                let at = &mut around[triangle.vertices[slot].index()];
-                at.first = CornerId((3 * t + slot) as u32);
-                at.n_corners += 1;
-                if triangle.opposite[slot] == NONE {
-                    for end in [(slot + 1) % 3, (slot + 2) % 3] {
-                        around[triangle.vertices[end].index()].n_free += 1;
-                    }
-                }
-            }
-        }
-        around
     }
 }
 

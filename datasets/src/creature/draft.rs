@@ -209,10 +209,7 @@ fn joint(nodes: &[BoneNode], i: usize, bend: f64) -> Joint {
     let bend = bend.min(strained);
     // The second axis is the direction of the limb, about which it hardly turns.
     let along = after.normalize();
-    let least = along.iamin();
-    let mut side = Vector3::zeros();
-    side[least] = 1.0;
-    let x = side.cross(&along).normalize();
+    let x = Vector3::ith(along.iamin(), 1.0).cross(&along).normalize();
     let frame = Matrix3::from_columns(&[x, along, x.cross(&along)]);
     let play = [bend, 0.25 * bend, bend].map(|bend| PLAY * bend);
     Joint { node: i, before: lengths[0], after: lengths[1], frame, play }

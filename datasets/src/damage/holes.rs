@@ -45,7 +45,7 @@ fn without_disc(mesh: &TriMesh, first: usize, area: f64) -> TriMesh {
     let entry = |f: usize| ((center(f) - middle).norm_squared(), f);
     let mut reached = vec![false; mesh.n_faces()];
     let mut is_cut = vec![false; mesh.n_faces()];
-    let mut queue = NearestFirst::from([entry(first)]);
+    let mut queue = NearestFirst::from_iter([entry(first)]);
     reached[first] = true;
     let mut covered = 0.0;
     while covered < area

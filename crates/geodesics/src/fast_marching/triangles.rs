@@ -4,8 +4,7 @@ use std::collections::HashMap;
 
 use rayon::prelude::*;
 use surface::{
-    AngleSum, CornerId, EdgeGraph, FaceId, Link, Rows, Triangulation, VertexCorners, VertexId,
-    scalar_product, twice_area,
+    AngleSum, CornerId, EdgeGraph, FaceId, Link, Rows, Triangulation, VertexId, scalar_product, twice_area,
 };
 
 use super::window::COLLINEAR;
@@ -194,23 +193,23 @@ impl<'t> Renumbered<'t> {
 
     /// For every vertex in its new order whether shortest paths may bend there, and whether its triangles form several fans;
     /// `corners` are those of the triangles at each.
-    fn kinds(&self, corners: &Rows<CornerId>, order: &[u32]) -> Vec<[bool; 2]> {
-        let surroundings = self.triangulation.vertex_corners(order.len());
+    fn kinds(&self, corners: &Rows<CornerId>) -> Vec<[bool; 2]> {
         let kind = |v: usize| {
-            let mut angle = AngleSum::default();
+            let (mut angle, mut n_free) = (AngleSum::default(), 0);
             for corner in corners.row(v) {
                 let old = self.old_corner(*corner);
+                let is_free = |side: &CornerId| self.triangulation.opposite(*side).is_none();
+                n_free += [old.next(), old.prev()].iter().filter(|side| is_free(side)).count();
                 let lengths = self.triangulation.triangles()[old.face().index()].lengths;
                 let [opposite, p, q] = [0, 1, 2].map(|step| lengths[(old.slot() + step) % 3]);
                 angle.add([twice_area([opposite, p, q]), scalar_product(opposite, p, q)]);
             }
-            let VertexCorners { first, n_corners, n_free } = surroundings[order[v] as usize];
-            let is_closed = n_corners > 0 && n_free == 0;
-            let is_inside = is_closed && self.triangulation.n_around(first) == n_corners as usize;
-            let has_fans = n_free > 2 || (is_closed && !is_inside);
+            let first = corners.row(v).first().filter(|_| n_free == 0).map(|first| self.old_corner(*first));
+            let is_inside = first.is_some_and(|old| self.triangulation.n_around(old) == corners.row(v).len());
+            let has_fans = n_free > 2 || (first.is_some() && !is_inside);
             [angle.exceeds(if is_inside { 2 } else { 1 }, EXCESS), has_fans]
         };
-        (0..order.len()).into_par_iter().map(kind).collect()
+        (0..corners.n_rows()).into_par_iter().map(kind).collect()
     }
 }
 
@@ -233,7 +232,7 @@ impl Triangles {
         let hubs = hubs.map(|(corner, hub)| (renumbered.new_corner(corner), hub)).collect();
         let at_vertex = all.iter().flat_map(MarchTriangle::vertices).zip((0..).map(CornerId));
         let corners = Rows::collect(order.len(), at_vertex.map(|(v, corner)| (v.index(), corner)));
-        let kinds = renumbered.kinds(&corners, &order);
+        let kinds = renumbered.kinds(&corners);
         all.par_iter_mut().for_each(|triangle| {
             for slot in 0..3 {
                 let [may_bend, _] = kinds[triangle.vertex(slot).index()];

@@ -44,7 +44,7 @@ pub(super) fn shortest_through(
         } else {
             let cross = |(portal, gate): (&Portal, &Gate)| {
                 let share = share(gate, here, to);
-                let t = if gate.left.0 < gate.right.0 { share } else { 1.0 - share };
+                let t = if gate[0].0 < gate[1].0 { share } else { 1.0 - share };
                 Portal { t, ..*portal }
             };
             Strip {
@@ -62,8 +62,8 @@ pub(super) fn shortest_through(
 /// Where a straight line crosses a gate, from 0 at its left end to 1 at its right.
 fn share(gate: &Gate, from: PlanePoint, to: PlanePoint) -> f64 {
     let direction = sub(to, from);
-    let left = cross(direction, sub(gate.left.1, from));
-    let right = cross(direction, sub(gate.right.1, from));
+    let left = cross(direction, sub(gate[0].1, from));
+    let right = cross(direction, sub(gate[1].1, from));
     let share = left / (left - right);
     // A line along the gate, or none at all, may take either end.
     if share.is_nan() { 0.0 } else { share.clamp(0.0, 1.0) }
@@ -80,7 +80,7 @@ fn touches(laid: &Laid) -> Vec<Touch> {
             if (SNAP..=1.0 - SNAP).contains(&share) {
                 next += 1;
             } else {
-                let end = if share < 0.5 { End::Left } else { End::Right };
+                let end = usize::from(share >= 0.5);
                 let touch = touch(&laid.gates, next, end);
                 (here, next) = (touch.at, touch.last + 1);
                 all.push(touch);
@@ -96,25 +96,10 @@ fn touches(laid: &Laid) -> Vec<Touch> {
     all
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum End {
-    Left,
-    Right,
-}
-
-impl End {
-    fn of(self, gate: &Gate) -> (VertexId, PlanePoint) {
-        match self {
-            Self::Left => gate.left,
-            Self::Right => gate.right,
-        }
-    }
-}
-
 /// An end of a gate, and of the gates before and after it that share it.
-fn touch(gates: &[Gate], gate: usize, end: End) -> Touch {
-    let (vertex, at) = end.of(&gates[gate]);
-    let is_same = |other: &&Gate| end.of(other).0 == vertex;
+fn touch(gates: &[Gate], gate: usize, end: usize) -> Touch {
+    let (vertex, at) = gates[gate][end];
+    let is_same = |other: &&Gate| other[end].0 == vertex;
     Touch {
         vertex,
         at,
@@ -129,7 +114,7 @@ struct Reached {
     at: PlanePoint,
     before: usize,
     gate: usize,
-    end: End,
+    end: usize,
 }
 
 /// The vertices where the shortest path bends, in order (Lee and Preparata 1984, `lee1984`).
@@ -138,15 +123,15 @@ struct Reached {
 /// that bend outwards: the funnel. The next gate has a new point on one side, which straightens the chain of that
 /// side or, if no vertex of it is left, moves the apex along the other.
 fn bends(laid: &Laid) -> Vec<Touch> {
-    let mut reached = vec![Reached { at: laid.start, before: 0, gate: 0, end: End::Left }];
+    let mut reached = vec![Reached { at: laid.start, before: 0, gate: 0, end: 0 }];
     let mut apex = 0;
     let mut chains = [VecDeque::new(), VecDeque::new()];
-    let mut extend = |at: PlanePoint, gate: usize, end: End| {
+    let mut extend = |at: PlanePoint, gate: usize, end: usize| {
         let [left, right] = &mut chains;
         // For the left side; on the right, left and right are exchanged.
         let (own, other, sign) = match end {
-            End::Left => (left, right, 1.0),
-            End::Right => (right, left, -1.0),
+            0 => (left, right, 1.0),
+            _ => (right, left, -1.0),
         };
         let turn = |a: PlanePoint, b: PlanePoint, c: PlanePoint| sign * cross(sub(b, a), sub(c, b));
         while let Some(&last) = own.back() {
@@ -172,14 +157,14 @@ fn bends(laid: &Laid) -> Vec<Touch> {
         own.push_back(reached.len() - 1);
     };
     for (i, gate) in laid.gates.iter().enumerate() {
-        let is_new = |end: End| i == 0 || end.of(&laid.gates[i - 1]).0 != end.of(gate).0;
-        for end in [End::Left, End::Right] {
+        let is_new = |end: usize| i == 0 || laid.gates[i - 1][end].0 != gate[end].0;
+        for end in [0, 1] {
             if is_new(end) {
-                extend(end.of(gate).1, i, end);
+                extend(gate[end].1, i, end);
             }
         }
     }
-    extend(laid.end, laid.gates.len(), End::Left);
+    extend(laid.end, laid.gates.len(), 0);
     let mut bends = Vec::new();
     let mut at = reached[reached.len() - 1].before;
     while at != 0 {

@@ -67,12 +67,8 @@ impl PathSection {
     }
 }
 
-/// A portal laid out in the plane, with its ends on the left and on the right of the path.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Gate {
-    pub(super) left: (VertexId, PlanePoint),
-    pub(super) right: (VertexId, PlanePoint),
-}
+/// An edge laid out in the plane: its left and its right end.
+pub(super) type Gate = [(VertexId, PlanePoint); 2];
 
 /// A strip laid out in the plane.
 #[derive(Debug, Clone)]
@@ -121,7 +117,7 @@ impl Strip {
             return Laid { start: flat.point(mesh, start), gates: Vec::new(), end: flat.point(mesh, end) };
         };
         let triangle = |face: FaceId, gate: &Gate, side: GateSide| {
-            let ((left, at_left), (right, at_right)) = (gate.left, gate.right);
+            let [(left, at_left), (right, at_right)] = *gate;
             let vertices = topology.faces()[face.index()];
             let third = vertices.into_iter().find(|v| *v != left && *v != right).unwrap_or(left);
             let lengths = [length(left, right), length(left, third), length(right, third)];
@@ -129,15 +125,15 @@ impl Strip {
             (third, at, Flat { vertices: [left, right, third], at: [at_left, at_right, at] })
         };
         let [left, right] = topology.edges()[first.edge.index()];
-        let mut gate = Gate { left: (left, [0.0, 0.0]), right: (right, [mesh.length(first.edge), 0.0]) };
+        let mut gate = [(left, [0.0, 0.0]), (right, [mesh.length(first.edge), 0.0])];
         let start = triangle(self.faces[0], &gate, GateSide::Behind).2.point(mesh, start);
         let mut gates = vec![gate];
         for (face, portal) in self.faces[1..].iter().zip(&self.portals[1..]) {
             let (third, at, _) = triangle(*face, &gate, GateSide::Ahead);
-            if topology.edges()[portal.edge.index()].contains(&gate.left.0) {
-                gate.right = (third, at);
+            if topology.edges()[portal.edge.index()].contains(&gate[0].0) {
+                gate[1] = (third, at);
             } else {
-                gate.left = (third, at);
+                gate[0] = (third, at);
             }
             gates.push(gate);
         }

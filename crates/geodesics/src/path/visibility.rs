@@ -102,7 +102,7 @@ impl SightSearch<'_> {
                 let turn = cross(right.1, left.1);
                 if turn > 0.0 || (turn == 0.0 && dot(right.1, left.1) < 0.0) {
                     let edge = topology.opposite_edge(corner);
-                    let gate = Gate { left, right };
+                    let gate = [left, right];
                     self.send(Rays { before: None, face, edge, gate, left: left.1, right: right.1 });
                 }
             }
@@ -114,7 +114,7 @@ impl SightSearch<'_> {
         let mesh = self.field.mesh;
         let topology = mesh.topology();
         let rays = self.rays[index];
-        let ((left, at_left), (right, at_right)) = (rays.gate.left, rays.gate.right);
+        let [(left, at_left), (right, at_right)] = rays.gate;
         for facing in topology.edge_corners(rays.edge).iter().filter(|c| c.face() != rays.face) {
             let face = facing.face();
             let third = topology.corner_vertex(*facing);
@@ -134,12 +134,12 @@ impl SightSearch<'_> {
             }
             if from_right > 0.0 {
                 // Some rays pass on the right of the vertex.
-                let gate = Gate { left: (third, at), ..rays.gate };
+                let gate = [(third, at), rays.gate[1]];
                 let left = if is_visible { at } else { rays.left };
                 self.send(Rays { before, face, edge: to_right, gate, left, right: rays.right });
             }
             if from_left > 0.0 {
-                let gate = Gate { right: (third, at), ..rays.gate };
+                let gate = [rays.gate[0], (third, at)];
                 let right = if is_visible { at } else { rays.right };
                 self.send(Rays { before, face, edge: to_left, gate, left: rays.left, right });
             }
@@ -169,7 +169,7 @@ impl SightSearch<'_> {
 
     /// Keeps rays that may lead to a shorter path than the best so far.
     fn send(&mut self, rays: Rays) {
-        let Gate { left, right } = rays.gate;
+        let [left, right] = rays.gate;
         // Where the outermost rays cross the edge.
         let [p, q] = [(rays.left, 0.0), (rays.right, 1.0)].map(|(ray, end)| {
             let (a, b) = (cross(ray, left.1), cross(ray, right.1));

@@ -72,8 +72,7 @@ impl Smooth {
 pub(super) fn smooth(points: Vec<Point3<f64>>, budget: &Budget) -> Result<Smooth, Exceeded> {
     let neighbors = Neighbors::new(&points);
     let at = probes(&points);
-    let mut seen = residuals(&points, &neighbors, &at, FEW);
-    let (noise, spacing) = (quantile(&mut seen.residuals, 0.5), seen.spacing);
+    let [noise, _, spacing] = residuals(&points, &neighbors, &at, FEW, 0.5);
     let mut smooth = Smooth { spacing, noise, neighbors: 0, points };
     if noise < SLIGHT * spacing {
         return Ok(smooth);
@@ -140,30 +139,23 @@ fn probes(points: &[Point3<f64>]) -> Vec<Point3<f64>> {
     (0..PROBES.min(n)).map(|i| points[probe(i).min(n - 1)]).collect()
 }
 
-/// What patches of one size say about points.
-struct Residuals {
-    /// How far points stick out of each patch.
-    residuals: Vec<f64>,
-    /// Median radius of the patches.
-    radius: f64,
-    /// Distance between points, if the disc of a patch is shared evenly.
-    spacing: f64,
-}
-
+/// What patches of one size say about points: how far a share of the points stick out of theirs at most, the median
+/// radius of the patches, and the distance between points if the disc of a patch is shared evenly.
 fn residuals(
     points: &[Point3<f64>],
     neighbors: &Neighbors,
     probes: &[Point3<f64>],
     size: usize,
-) -> Residuals {
+    share: f64,
+) -> [f64; 3] {
     let of_probe = |p: &Point3<f64>| {
         let near = nearest(p, neighbors, points, size);
         let radius = near.last().map_or(0.0, |last| (last - p).norm());
         (patch(p, &near).map_or(0.0, |patch| patch.residual), radius)
     };
-    let (residuals, mut radii): (Vec<f64>, Vec<f64>) = probes.par_iter().map(of_probe).unzip();
-    let radius = quantile(&mut radii, 0.5);
-    Residuals { residuals, radius, spacing: radius * (std::f64::consts::PI / size as f64).sqrt() }
+    let (mut residuals, mut radii): (Vec<f64>, Vec<f64>) = probes.par_iter().map(of_probe).unzip();
+    let [residual, radius] = [quantile(&mut residuals, share), quantile(&mut radii, 0.5)];
+    [residual, radius, radius * (std::f64::consts::PI / size as f64).sqrt()]
 }
 
 /// The noise and the spacing of points: those of the smallest patches of which a quarter are flat. Where the surface is
@@ -172,10 +164,9 @@ fn measure(points: &[Point3<f64>], neighbors: &Neighbors, probes: &[Point3<f64>]
     let largest = SIZES.iter().rposition(|size| *size <= points.len() / 8).unwrap_or(0);
     let mut measured = (0.0, 0.0);
     for &size in &SIZES[..=largest] {
-        let mut found = residuals(points, neighbors, probes, size);
-        let noise = quantile(&mut found.residuals, 0.25);
-        measured = (noise, found.spacing);
-        if noise <= FLAT * found.radius {
+        let [noise, radius, spacing] = residuals(points, neighbors, probes, size, 0.25);
+        measured = (noise, spacing);
+        if noise <= FLAT * radius {
             break;
         }
     }

@@ -20,7 +20,7 @@ use surface::{
 
 use self::t_junctions::sorted;
 use crate::error::MeshError;
-use crate::face_set::{check_input, remove_degenerate, remove_duplicates};
+use crate::face_set::{check_input, has_duplicates, remove_degenerate, remove_duplicates};
 use crate::orientation::orient_consistently;
 use crate::points::triangulate_points;
 use crate::remap::Remap;
@@ -189,24 +189,16 @@ fn welded(
     let mut faces = mesh.faces.clone();
     report.degenerate_faces = remove_degenerate(&mut faces);
     let mut surface = without_duplicates(mesh, faces, report);
-    let policy = match policy {
-        Weld::Within(tolerance) => Weld::Within(tolerance / unit),
-        other => other,
-    };
     for _ in 0..MAX_PASSES {
         budget.check()?;
-        let welded = weld::weld(&mesh.positions, scaled, surface.topology(), policy, merged);
+        let n_merged =
+            weld::weld(&mesh.positions, (scaled, unit), surface.topology(), policy, merged, report);
         let collapsed = weld::collapse_zero_edges(&surface, unit, merged);
-        if welded.coincident + welded.near + collapsed == 0 {
+        if n_merged + collapsed == 0 {
             break;
         }
         let mut faces = surface.into_topology().into_faces();
         faces.iter_mut().flatten().for_each(|v| *v = VertexId(merged.find(v.0)));
-        report.welded_vertices += welded.coincident;
-        report.near_welded_vertices += welded.near;
-        if unit * welded.gap > report.weld_gap {
-            (report.weld_gap, report.weld_tolerance) = (unit * welded.gap, unit * welded.tolerance);
-        }
         report.collapsed_vertices += collapsed;
         report.zero_length_faces += remove_degenerate(&mut faces);
         surface = without_duplicates(mesh, faces, report);
@@ -240,7 +232,7 @@ fn surface_of_points(
 /// The surface of faces that are not degenerate, over the vertices of a mesh, without duplicate faces.
 fn without_duplicates(mesh: &TriMesh, faces: Vec<[VertexId; 3]>, report: &mut RepairReport) -> IntrinsicMesh {
     let mut topology = Topology::new(mesh.n_vertices(), faces);
-    if topology.has_duplicate_faces() {
+    if has_duplicates(&topology) {
         let mut faces = topology.into_faces();
         report.duplicate_faces += remove_duplicates(&mut faces);
         topology = Topology::new(mesh.n_vertices(), faces);

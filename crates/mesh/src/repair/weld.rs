@@ -7,6 +7,7 @@ use surface::{DisjointSets, EdgeId, IntrinsicMesh, Topology, VertexId};
 
 use super::box_tree::BoxTree;
 use super::options::Weld;
+use super::report::RepairReport;
 use crate::coincidence::coincident_pairs;
 
 /// Two boundary edges are the two sides of a seam if their ends are no farther apart than this share of the shortest
@@ -16,52 +17,38 @@ pub(super) const SEAM_TOLERANCE: f64 = 0.02;
 /// The most candidates per boundary edge or vertex in a pass. Where more are close together, later passes go on.
 const CANDIDATES: usize = 8;
 
-/// What a pass of welding did.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Welded {
-    /// Vertices merged into another in the same position.
-    pub(super) coincident: usize,
-    /// Vertices merged into another nearby.
-    pub(super) near: usize,
-    /// The widest gap closed.
-    pub(super) gap: f64,
-    /// The tolerance that allowed it.
-    pub(super) tolerance: f64,
-}
-
 /// Merges vertices according to `policy`, first those in the same position; nearby ones wait for a pass in which there
-/// are none. No face is degenerate. Lengths are in units of `scaled`, whose positions are those of `positions` times a
-/// power of two.
+/// are none. Returns how many were merged into another. No face is degenerate. The positions of `scaled` are those of
+/// `positions` in a `unit` that is a power of two.
 pub(super) fn weld(
     positions: &[Point3<f64>],
-    scaled: &[Point3<f64>],
+    (scaled, unit): (&[Point3<f64>], f64),
     topology: &Topology,
     policy: Weld,
     merged: &mut DisjointSets,
-) -> Welded {
-    let n_vertices = positions.len();
-    let mut unite = |pairs: Vec<[u32; 2]>| pairs.into_iter().filter(|&[a, b]| merged.union(a, b)).count();
-    let coincident = |count| Welded { coincident: count, ..Welded::default() };
+    report: &mut RepairReport,
+) -> usize {
     if policy == Weld::None {
-        return Welded::default();
-    }
-    if policy == Weld::All {
-        return coincident(unite(coincident_pairs(positions, 0..n_vertices as u32)));
+        return 0;
     }
     let edges: Vec<EdgeId> = topology.boundary_edges().collect();
     let mut boundary: Vec<u32> =
         edges.iter().flat_map(|edge| topology.edges()[edge.index()]).map(|v| v.0).collect();
     boundary.sort_unstable();
     boundary.dedup();
-    let count = unite(coincident_pairs(positions, boundary.iter().copied()));
-    if count > 0 {
-        return coincident(count);
-    }
     let pairs = match policy {
-        Weld::Within(tolerance) => vertex_pairs(scaled, &boundary, tolerance),
-        _ => seam_pairs(scaled, topology, &edges),
+        Weld::All => coincident_pairs(positions, 0..positions.len() as u32),
+        _ => coincident_pairs(positions, boundary.iter().copied()),
     };
-    merge_near(scaled, topology, pairs, merged)
+    let n_coincident = pairs.into_iter().filter(|&[a, b]| merged.union(a, b)).count();
+    report.welded_vertices += n_coincident;
+    let pairs = match policy {
+        _ if n_coincident > 0 => return n_coincident,
+        Weld::Within(tolerance) => vertex_pairs(scaled, &boundary, tolerance / unit),
+        Weld::Seams => seam_pairs(scaled, topology, &edges),
+        Weld::All | Weld::None => return 0,
+    };
+    merge_near((scaled, unit), topology, pairs, merged, report)
 }
 
 /// Two vertices that may be merged, the lower one first.
@@ -144,14 +131,15 @@ struct Cluster {
 /// Merges the nearest pairs first, unless that would merge two vertices of one edge, or vertices farther apart along an
 /// axis than the tolerance.
 fn merge_near(
-    scaled: &[Point3<f64>],
+    (scaled, unit): (&[Point3<f64>], f64),
     topology: &Topology,
     mut pairs: Vec<Pair>,
     merged: &mut DisjointSets,
-) -> Welded {
+    report: &mut RepairReport,
+) -> usize {
     pairs.sort_unstable_by(|a, b| a.gap.total_cmp(&b.gap).then(a.ends.cmp(&b.ends)));
     pairs.dedup_by_key(|pair| pair.ends);
-    let mut welded = Welded::default();
+    let (mut n_merged, mut widest) = (0, [0.0; 2]);
     // Those of more than one vertex, by their lowest.
     let mut clusters: HashMap<u32, Cluster> = HashMap::new();
     let alone = |v: u32| {
@@ -178,12 +166,16 @@ fn merge_near(
         large.members.extend(small.members);
         let n_corners = large.n_corners + small.n_corners;
         clusters.insert(merged.find(own), Cluster { n_corners, low, high, ..large });
-        welded.near += 1;
-        if gap >= welded.gap {
-            (welded.gap, welded.tolerance) = (gap, tolerance);
+        n_merged += 1;
+        if gap >= widest[0] {
+            widest = [gap, tolerance];
         }
     }
-    welded
+    report.near_welded_vertices += n_merged;
+    if unit * widest[0] > report.weld_gap {
+        [report.weld_gap, report.weld_tolerance] = widest.map(|length| unit * length);
+    }
+    n_merged
 }
 
 /// Merges the ends of every edge whose squared length, in a `unit` near the size of the mesh, vanishes; returns how many

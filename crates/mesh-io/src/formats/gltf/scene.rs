@@ -46,10 +46,8 @@ pub(super) fn read<'a>(data: &'a Data<'_>, limits: &'a ReadLimits) -> Result<Ass
 
 /// The nodes at the top of the default scene, else of the first; of a file without scenes, all that are not children.
 fn roots(root: &Root) -> Result<Vec<Index>, Located> {
-    match root.scene {
-        Some(scene) => return Ok(part(&root.scenes, "scene", scene)?.nodes.clone()),
-        None if !root.scenes.is_empty() => return Ok(root.scenes[0].nodes.clone()),
-        None => {}
+    if let Some(scene) = root.scene.or((!root.scenes.is_empty()).then_some(0)) {
+        return Ok(part(&root.scenes, "scene", scene)?.nodes.clone());
     }
     let mut tops = vec![true; root.nodes.len()];
     for child in root.nodes.iter().flat_map(|node| &node.children) {
