@@ -1,8 +1,7 @@
 //! The program: its page in a browser (pictures go to `target/browser`), interruptions and kills, and the chapters of the guide.
 
-#[cfg(test)]
+#![allow(clippy::unwrap_used, reason = "these are tests")]
+
 mod guide;
-#[cfg(test)]
 mod interruption;
-#[cfg(test)]
 mod page;

@@ -91,19 +91,22 @@ fn mistakes_are_named_and_leave_nothing_behind() {
     damaged[200] ^= 1;
     fs::write(place.path("damaged.field"), damaged).unwrap();
     let before = place.names();
-    let query = |words: &[&'static str]| [&["field", "query", "x.field"][..], words].concat();
-    place.refused(&query(&[]), &["--pairs"]);
-    place.refused(&query(&["--nearest", "3"]), &["--source"]);
-    place.refused(&query(&["--pairs", "bad.csv"]), &["bad.csv", "line 2", "found 1 values"]);
-    place.refused(&query(&["--pairs", "far.csv"]), &["x.field", "vertex 999", "160 vertices"]);
-    place.refused(&query(&["--source", "160"]), &["vertex 160"]);
-    place.refused(&query(&["--source", "1", "-o", "row.ply"]), &["row.ply", ".csv or .npy"]);
-    place.refused(&query(&["--source", "1", "--tolerance", "-1"]), &["-1", "none"]);
-    place.refused("field query damaged.field --source 1", &["damaged.field", "checksum", "field build"]);
-    place.refused("field query ring.off --source 1", &["ring.off", "not a distance field"]);
-    place.refused("field query none.field --source 1", &["none.field"]);
-    place.refused("field build b.off --landmarks 0 -o b.field", &["b.off", "at least 1"]);
-    place.refused("field build b.off --rank 200 -o b.field", &["rank 200"]);
-    place.refused("field build b.off -o no/b.field", &["folder no"]);
+    for (command, words) in [
+        ("query x.field", &["--pairs"][..]),
+        ("query x.field --nearest 3", &["--source"]),
+        ("query x.field --pairs bad.csv", &["bad.csv", "line 2", "found 1 values"]),
+        ("query x.field --pairs far.csv", &["x.field", "vertex 999", "160 vertices"]),
+        ("query x.field --source 160", &["vertex 160"]),
+        ("query x.field --source 1 -o row.ply", &["row.ply", ".csv or .npy"]),
+        ("query x.field --source 1 --tolerance -1", &["-1", "none"]),
+        ("query damaged.field --source 1", &["damaged.field", "checksum", "field build"]),
+        ("query ring.off --source 1", &["ring.off", "not a distance field"]),
+        ("query none.field --source 1", &["none.field"]),
+        ("build b.off --landmarks 0 -o b.field", &["b.off", "at least 1"]),
+        ("build b.off --rank 200 -o b.field", &["rank 200"]),
+        ("build b.off -o no/b.field", &["folder no"]),
+    ] {
+        place.refused(format!("field {command}"), words);
+    }
     assert_eq!(place.names(), before);
 }

@@ -159,63 +159,41 @@ fn the_guide_shows_what_its_commands_do() {
             });
         }
     });
-    let (faults, n_commands) = (faults.into_inner().unwrap(), n_commands.into_inner());
+    let (mut faults, n_commands) = (faults.into_inner().unwrap(), n_commands.into_inner());
+    let shown: BTreeSet<&str> = chapters.iter().flat_map(pictures).collect();
+    for entry in fs::read_dir(root().join("docs/guide/images")).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        faults
+            .extend((!shown.contains(&*name)).then(|| format!("no chapter shows docs/guide/images/{name}")));
+    }
     println!("{n_commands} commands and scripts of {} chapters", pending.len());
     assert!(faults.is_empty(), "{}", faults.join("\n"));
     assert!(n_commands >= 40, "only {n_commands} commands");
 }
 
-#[test]
-fn pictures_of_the_guide_are_shown() {
-    let shown: BTreeSet<String> = chapters()
-        .iter()
-        .flat_map(|chapter| pictures(chapter).into_iter().map(str::to_owned).collect::<Vec<_>>())
-        .collect();
-    for entry in fs::read_dir(root().join("docs/guide/images")).unwrap() {
-        let name = entry.unwrap().file_name().into_string().unwrap();
-        assert!(shown.contains(&name), "no chapter shows docs/guide/images/{name}");
+/// What is wrong with a call of the program, told from its words and from what `--help-all` says.
+fn fault(words: &[&str], helps: &mut BTreeMap<String, String>) -> Option<String> {
+    let n_names = if matches!(words.first(), Some(&("index" | "field"))) { 2 } else { 1 };
+    let Some((command, arguments)) = words.split_at_checked(n_names) else {
+        return (n_names == 2).then(|| format!("`canonform {}` needs a command", words[0]));
+    };
+    if command[0].starts_with('-') || command == ["index", "..."] {
+        return None;
     }
-}
-
-/// What `--help-all` says of a command, and of all commands.
-struct Help(BTreeMap<Vec<String>, String>);
-
-impl Help {
-    fn of(&mut self, command: &[&str]) -> &str {
-        let key: Vec<String> = command.iter().map(|word| (*word).to_owned()).collect();
-        self.0.entry(key).or_insert_with(|| {
-            let output = Command::new(program()).args(command).arg("--help-all").output().unwrap();
-            if output.status.success() { String::from_utf8(output.stdout).unwrap() } else { String::new() }
-        })
+    let name = command.join(" ");
+    let help = helps.entry(name.clone()).or_insert_with(|| {
+        let output = Command::new(program()).args(command).arg("--help-all").output().unwrap();
+        if output.status.success() { String::from_utf8(output.stdout).unwrap() } else { String::new() }
+    });
+    if help.is_empty() {
+        return Some(format!("there is no command `{name}`"));
     }
-
-    /// What is wrong with a call of the program, told from its words alone.
-    fn fault(&mut self, words: &[&str]) -> Option<String> {
-        let group = words.first().filter(|word| matches!(**word, "index" | "field"));
-        let n_names = if group.is_some() { 2 } else { 1 };
-        if words.len() < n_names {
-            return group.map(|group| format!("`canonform {group}` needs a command"));
-        }
-        let (command, arguments) = words.split_at(n_names);
-        if command[0].starts_with('-') || command == ["index", "..."] {
-            return None;
-        }
-        let help = self.of(command).to_owned();
-        if help.is_empty() {
-            return Some(format!("there is no command `{}`", command.join(" ")));
-        }
-        let options: BTreeSet<&str> = help
-            .split(|c: char| !(c.is_ascii_alphanumeric() || c == '-'))
-            .filter(|word| word.starts_with('-'))
-            .collect();
-        let flags =
-            arguments.iter().filter(|word| word.starts_with('-') && word.len() > 1 && !is_number(word));
-        let unknown: Vec<&str> = flags
-            .map(|word| word.split('=').next().unwrap_or(word))
-            .filter(|word| !options.contains(word))
-            .collect();
-        (!unknown.is_empty()).then(|| format!("`{}` has no option {}", command.join(" "), unknown.join(", ")))
-    }
+    let options: BTreeSet<&str> = help.split(|c: char| !(c.is_ascii_alphanumeric() || c == '-')).collect();
+    let is_number = |word: &str| word[1..].starts_with(|c: char| c.is_ascii_digit());
+    let flags = arguments.iter().filter(|word| word.starts_with('-') && word.len() > 1 && !is_number(word));
+    let unknown =
+        flags.map(|word| word.split('=').next().unwrap_or(word)).find(|word| !options.contains(word));
+    unknown.map(|option| format!("`{name}` has no option {option}"))
 }
 
 /// The commands of the program and of its groups, as `-h` lists them.
@@ -249,10 +227,6 @@ fn the_page_of_the_program_lists_its_commands() {
     assert_eq!(page, written, "write docs/program.md again with CANONFORM_WRITE_DOCS=1");
 }
 
-fn is_number(word: &str) -> bool {
-    word[1..].starts_with(|c: char| c.is_ascii_digit())
-}
-
 /// The calls of the program in a script: their words, without comments, redirections and what follows a pipe.
 fn calls<'a>(lines: &[&'a str]) -> Vec<Vec<&'a str>> {
     let mut calls = Vec::new();
@@ -273,7 +247,7 @@ fn calls<'a>(lines: &[&'a str]) -> Vec<Vec<&'a str>> {
 fn commands_on_every_page_exist_with_their_options() {
     let mut pages = Chapter::all(&root().join("docs")).unwrap();
     pages.push(Chapter::read(&root().join("README.md")).unwrap());
-    let (mut help, mut faults, mut n_calls) = (Help(BTreeMap::new()), Vec::new(), 0);
+    let (mut helps, mut faults, mut n_calls) = (BTreeMap::new(), Vec::new(), 0);
     for page in &pages {
         let blocks = page.blocks();
         let scripts = blocks.iter().filter(|block| block.language != Language::Other);
@@ -282,16 +256,16 @@ fn commands_on_every_page_exist_with_their_options() {
             let commands: Vec<&str> = text.lines().filter(is_command).collect();
             for words in calls(&commands) {
                 n_calls += 1;
-                let fault = help.fault(&words);
+                let fault = fault(&words, &mut helps);
                 faults.extend(fault.map(|fault| format!("{}:{line}: {fault}", page.path.display())));
             }
         }
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
     assert!(n_calls >= 40, "only {n_calls} calls were found");
-    assert!(help.fault(&["embed", "a.off", "--no-such-option"]).is_some());
-    assert!(help.fault(&["no-such-command", "a.off"]).is_some());
-    assert!(help.fault(&["index", "build", "a", "--shard", "1/2"]).is_none());
+    assert!(fault(&["embed", "a.off", "--no-such-option"], &mut helps).is_some());
+    assert!(fault(&["no-such-command", "a.off"], &mut helps).is_some());
+    assert!(fault(&["index", "build", "a", "--shard", "1/2"], &mut helps).is_none());
 }
 
 #[test]

@@ -235,7 +235,7 @@ fn duplicates_move_with_their_journal_and_come_back() {
 fn a_search_for_duplicates_leaves_nothing_behind() {
     let place = Workplace::new();
     (0..40).for_each(|i| place.add(&format!("models/{i}.off"), &body(i % 3, i)));
-    (0..2).for_each(|i| place.add(&format!("few/{i}.off"), &body(i, i)));
+    (0..2).for_each(|i| place.add(&format!("few/{i}.off"), &body(0, 0)));
     place.add("one/broken.off", &shapes::icosphere(1));
     fs::write(place.path("one/broken.off"), "OFF\n").unwrap();
     fs::create_dir(place.path("t")).unwrap();
@@ -260,6 +260,6 @@ fn a_search_for_duplicates_leaves_nothing_behind() {
         start(&["duplicates", "few", "--html", "no/such/folder.html"]).wait().unwrap().code(),
         Some(2)
     );
-    assert_eq!(start(&["duplicates", "few", "--kinds", "file"]).wait().unwrap().code(), Some(1));
+    assert_eq!(start(&["duplicates", "few", "--kinds", "file"]).wait().unwrap().code(), Some(0));
     assert_eq!(fs::read_dir(place.path("t")).unwrap().count(), 0);
 }

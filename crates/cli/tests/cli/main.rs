@@ -6,46 +6,27 @@
 //! exports), `streams` (standard input and
 //! output, several meshes, limits), `zoo` (broken meshes).
 
-#[cfg(test)]
+#![allow(clippy::unwrap_used, reason = "these are tests")]
+
 #[cfg(unix)]
 mod cluster;
-#[cfg(test)]
 mod collections;
-#[cfg(test)]
 mod commands;
-#[cfg(test)]
 mod dropped;
-#[cfg(test)]
 mod duplicates;
-#[cfg(test)]
 mod errors;
-#[cfg(test)]
 mod field;
-#[cfg(test)]
 mod forms;
-#[cfg(test)]
 mod generate;
-#[cfg(test)]
 mod geodesic;
-#[cfg(test)]
 mod guide;
-#[cfg(test)]
 mod hostile;
-#[cfg(test)]
 mod index;
-#[cfg(test)]
 mod killed;
-#[cfg(test)]
 mod matching;
-#[cfg(test)]
 mod render;
-#[cfg(test)]
 mod serve;
-#[cfg(test)]
 mod storage;
-#[cfg(test)]
 mod streams;
-#[cfg(test)]
 mod support;
-#[cfg(test)]
 mod zoo;

@@ -56,7 +56,7 @@ fn both_maps_of_a_pair_are_written_in_every_format() {
     }
     let table = place.done(format!("{MATCH} -o map.ply")).out;
     assert!(
-        ["distortion", "map-source.ply", "map-mirrored.png"].iter().all(|w| table.contains(w)),
+        ["distortion", "map-source.ply", "map-mirrored.ply"].iter().all(|w| table.contains(w)),
         "{table}"
     );
     for (name, mesh) in [("map.ply", "cat1.off"), ("map-source.ply", "cat0.off")] {

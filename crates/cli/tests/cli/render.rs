@@ -2,8 +2,6 @@
 
 use std::fs;
 
-use canonform::mesh::shapes;
-
 use crate::support::{Workplace, assert_keys, broken_ring, ring};
 
 fn place() -> Workplace {
@@ -22,13 +20,13 @@ fn pixels(place: &Workplace, name: &str) -> ((u32, u32), Vec<[u8; 4]>) {
     ((info.width, info.height), bytes.chunks_exact(4).map(|p| [p[0], p[1], p[2], p[3]]).collect())
 }
 
-fn drawn(place: &Workplace, options: &[&str]) -> Vec<[u8; 4]> {
-    place.done(&[&["render", "ring.off", "--size", "100", "-o", "x.png"], options].concat());
+fn drawn(place: &Workplace, options: &str) -> Vec<[u8; 4]> {
+    place.done(format!("render ring.off --size 200 -o x.png {options}"));
     pixels(place, "x.png").1
 }
 
 #[test]
-fn a_picture_has_the_requested_size_and_background() {
+fn every_option_changes_the_picture() {
     let place = place();
     let json = place.json("render ring.off --size 90x60 -o x.png");
     assert_keys(&json, "mesh output width height n_vertices n_faces field seconds");
@@ -37,106 +35,68 @@ fn a_picture_has_the_requested_size_and_background() {
     let (size, seen) = pixels(&place, "x.png");
     assert_eq!((size, seen[0]), ((90, 60), [255; 4]));
     assert!(seen.iter().any(|p| p[0] < 200), "the mesh is visible");
-    let corner = |background: &str| drawn(&place, &["--background", background])[0];
-    assert_eq!(corner("transparent")[3], 0);
-    assert_eq!(corner("#102030"), [16, 32, 48, 255]);
-    assert!(corner("dark").iter().take(3).all(|c| *c < 40));
-    let red = drawn(&place, &["--color", "#ff0000"]);
-    assert!(red.iter().any(|p| p[0] > 150 && p[1] < 80));
-}
-
-#[test]
-fn views_show_other_sides() {
-    let place = place();
-    let covered = |view: &str| {
-        let seen = drawn(&place, &["--background", "transparent", "--view", view]);
-        seen.iter().filter(|p| p[3] > 127).count()
-    };
-    // The hole of the ring is visible from above, not from the front.
-    assert!(covered("top") > 2 * covered("front"));
-    let front = drawn(&place, &["--view", "front"]);
-    assert_eq!(front, drawn(&place, &["--view", "0,0"]));
-    assert!(
-        front != drawn(&place, &["--view=-40,25"])
-            && front != drawn(&place, &["--view", "front", "--up", "y"])
-    );
+    let mut pictures: Vec<_> = [
+        "--view top",
+        "--view front",
+        "--view=-40,25",
+        "--view=-40,25 --up y",
+        "--background transparent",
+        "--background #102030",
+        "--background dark",
+        "--color #ff0000",
+        "--distance-from 3",
+        "--distance-from 3 --no-bar",
+        "--distance-from 3 --isolines 5",
+        "--distance-from 3,90",
+        "--form",
+    ]
+    .map(|options| drawn(&place, options))
+    .to_vec();
+    assert_eq!(pictures[1], drawn(&place, "--view 0,0"));
+    assert_eq!((pictures[4][0][3], pictures[5][0]), (0, [16, 32, 48, 255]));
+    assert!(pictures[7].iter().any(|p| p[0] > 150 && p[1] < 80), "red");
+    let n = pictures.len();
+    pictures.sort_unstable();
+    pictures.dedup();
+    assert_eq!(pictures.len(), n);
 }
 
 #[test]
 fn distances_and_the_same_numbers_from_files_give_the_same_picture() {
     let place = place();
-    let [npy, csv] = ["d.npy", "d.csv"].map(|name| {
-        place.done(&["geodesic", "ring.off", "--source", "3", "-o", name]);
-        drawn(&place, &["--field", name, "--isolines", "5", "--no-bar"])
-    });
-    let asked = drawn(&place, &["--distance-from", "3", "--isolines", "5", "--no-bar"]);
-    assert!(npy == csv && csv == asked);
-    for other in ["3 --no-bar", "3 --isolines 5", "3,90 --isolines 5 --no-bar"] {
-        let options: Vec<&str> = ["--distance-from"].into_iter().chain(other.split(' ')).collect();
-        assert!(asked != drawn(&place, &options), "{other}");
+    place.done("geodesic ring.off --source 3,90 -o two.npy");
+    place.done("geodesic ring.off --source 90 -o one.csv");
+    let asked = drawn(&place, "--distance-from 90 --isolines 5 --no-bar");
+    for field in ["two.npy --row 1", "one.csv"] {
+        assert_eq!(asked, drawn(&place, &format!("--field {field} --isolines 5 --no-bar")), "{field}");
     }
     let narrow = place.json("render ring.off --distance-from 3 --range 0,1 --size 60 -o n.png");
     assert_eq!(narrow["field"]["range"], serde_json::json!([0.0, 1.0]));
     assert_eq!((&narrow["field"]["values"][0], &narrow["field"]["missing"]), (&0.0.into(), &0.into()));
-}
-
-#[test]
-fn a_row_of_several_can_be_chosen() {
-    let place = place();
-    place.done("geodesic ring.off --source 3,90 -o two.npy");
-    place.done("geodesic ring.off --source 90 -o one.csv");
-    let row = |row: &str| drawn(&place, &["--field", "two.npy", "--row", row, "--no-bar"]);
-    assert!(row("0") != row("1"));
-    assert_eq!(row("1"), drawn(&place, &["--field", "one.csv", "--no-bar"]));
     // One number per line is a field too, and integers are accepted.
     let column: Vec<String> = (0..160).map(|v| v.to_string()).collect();
     fs::write(place.path("column.csv"), column.join("\n")).unwrap();
     fs::write(place.path("row.csv"), column.join(" , ")).unwrap();
-    assert_eq!(
-        drawn(&place, &["--field", "column.csv", "--no-bar"]),
-        drawn(&place, &["--field", "row.csv", "--no-bar"])
-    );
+    assert_eq!(drawn(&place, "--field column.csv"), drawn(&place, "--field row.csv"));
 }
 
 #[test]
-fn vertices_without_a_value_are_grey_and_counted() {
-    let place = place();
-    place.add("broken.off", &broken_ring());
-    let json = place.json("render broken.off --distance-from 0 --size 60 -o x.png");
-    assert_eq!(json["field"]["missing"], 10);
-    let text = place.done("render broken.off --distance-from 0 --size 60 -o x.png").out;
-    assert!(text.contains("10 vertices without a finite value"), "{text}");
-    fs::write(place.path("nan.csv"), vec!["nan"; 160].join(",")).unwrap();
-    let grey = drawn(&place, &["--field", "nan.csv", "--background", "transparent"]);
-    assert!(grey.iter().filter(|p| p[3] == 255).all(|p| p[0].abs_diff(p[2]) < 30));
-}
-
-#[test]
-fn a_form_can_be_drawn_instead_of_its_mesh() {
-    let place = place();
-    place.add("sheet.off", &shapes::grid(12, 9, 0.1));
-    place.add("broken.off", &broken_ring());
-    place.done("render sheet.off --form -o form.png --size 160");
-    place.done("render sheet.off --view principal -o mesh.png --size 160");
-    // A flat sheet is its own form, seen along the same axes.
-    let covered = |name: &str| pixels(&place, name).1.iter().filter(|p| p[0] < 250).count();
-    assert!(covered("form.png").abs_diff(covered("mesh.png")) < covered("mesh.png") / 20);
-    let json = place.json("render broken.off --form --distance-from 0 --size 60 -o x.png");
-    assert_eq!(json["repair"]["dropped_components"], 1);
-}
-
-#[test]
-fn defective_meshes_are_drawn_the_same_with_any_number_of_threads() {
+fn what_a_repair_dropped_is_grey_counted_and_drawn_the_same_with_any_number_of_threads() {
     let place = place();
     let mut broken = broken_ring();
     broken.faces.push([broken.faces[0][0], broken.faces[0][1], broken.faces[9][2]]);
     broken.faces.push([broken.faces[0][0]; 3]);
     place.add("broken.off", &broken);
-    for threads in ["1", "2"] {
-        let output = format!("{threads}.png");
-        place.done(&["render", "broken.off", "--threads", threads, "-o", &output, "--size", "120"]);
-    }
+    let draw = "render broken.off --distance-from 0 --size 60";
+    let json = place.json(format!("{draw} --form -o x.png"));
+    assert_eq!((&json["field"]["missing"], &json["repair"]["dropped_components"]), (&10.into(), &1.into()));
+    let text = place.done(format!("{draw} --threads 1 -o 1.png")).out;
+    assert!(text.contains("10 vertices without a finite value"), "{text}");
+    place.done(format!("{draw} --threads 2 -o 2.png"));
     assert_eq!(fs::read(place.path("1.png")).unwrap(), fs::read(place.path("2.png")).unwrap());
+    fs::write(place.path("nan.csv"), vec!["nan"; 160].join(",")).unwrap();
+    let grey = drawn(&place, "--field nan.csv --background transparent");
+    assert!(grey.iter().filter(|p| p[3] == 255).all(|p| p[0].abs_diff(p[2]) < 30));
 }
 
 #[test]

@@ -30,38 +30,6 @@ fn zipped(content: &[&[u8]]) -> Vec<u8> {
     file
 }
 
-/// A MATLAB struct of a surface whose first field claims to have this many numbers.
-fn bomb(rows: u32, zeros: usize) -> Vec<u8> {
-    let word = |x: u32| x.to_le_bytes();
-    let element = |kind: u32, data: &[u8]| {
-        let mut out = [word(kind), word(data.len() as u32)].concat();
-        out.extend(data);
-        out.resize(out.len().next_multiple_of(8), 0);
-        out
-    };
-    let head = |class: u32, rows: u32| {
-        [
-            element(6, &[word(class), word(0)].concat()),
-            element(5, &[word(rows), word(1)].concat()),
-            element(1, b""),
-        ]
-        .concat()
-    };
-    let names: Vec<u8> =
-        ["X", "Y", "Z", "TRIV"].iter().flat_map(|n| format!("{n:\0<8}").into_bytes()).collect();
-    // The length of the names fits into its tag.
-    let length = [word(4 << 16 | 5), word(8)].concat();
-    let mut body = [head(2, 1), length, element(1, &names)].concat();
-    body.extend([word(14), word(u32::MAX / 2)].concat());
-    body.extend(head(6, rows));
-    body.extend([word(9), word(rows.saturating_mul(8))].concat());
-    let start = [word(14), word(u32::MAX / 2)].concat();
-    let mut pieces: Vec<&[u8]> = vec![&start, &body];
-    let zero = vec![0; 1 << 20];
-    pieces.extend(std::iter::repeat_n(&zero[..], zeros >> 20));
-    zipped(&pieces)
-}
-
 /// Two hundred bad uploads.
 fn hostile() -> Vec<(String, Files)> {
     let mut all: Vec<(String, Files)> = Vec::new();
@@ -174,10 +142,9 @@ fn hostile() -> Vec<(String, Files)> {
     }
     add("a name of 5000 letters".into(), one(&"x".repeat(5000), written("a.off")));
     // Compression bombs.
-    add("MAT bomb within its limit".into(), one("a.mat", bomb(100_000, 64 << 20)));
-    add("MAT bomb".into(), one("a.mat", bomb(u32::MAX / 8, 400 << 20)));
+    add("MAT bomb".into(), one("a.mat", zipped(&[&[0; 1 << 20][..]; 400])));
     add("MAT without struct".into(), one("a.mat", zipped(&[&[0; 1000]])));
-    add("MAT cut".into(), one("a.mat", &bomb(1000, 1 << 20)[..200]));
+    add("MAT cut".into(), one("a.mat", &zipped(&[&[0; 1000]])[..140]));
     add("MATLAB 7.3".into(), one("a.mat", "MATLAB 7.3 MAT-file"));
     // One endless line, many short ones, one huge polygon.
     add("a long line".into(), one("a.off", "1 ".repeat(1 << 20)));

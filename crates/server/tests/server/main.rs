@@ -1,26 +1,16 @@
 //! The server as clients meet it, over the wire and in a browser.
 
-#[cfg(test)]
+#![allow(clippy::unwrap_used, reason = "these are tests")]
+
 mod answers;
-#[cfg(test)]
 mod attacks;
-#[cfg(test)]
 mod client;
-#[cfg(test)]
 mod duplicates;
-#[cfg(test)]
 mod hostile;
-#[cfg(test)]
 mod index;
-#[cfg(test)]
 mod limits;
-#[cfg(test)]
 mod page;
-#[cfg(test)]
 mod proxy;
-#[cfg(test)]
 mod running;
-#[cfg(test)]
 mod schema;
-#[cfg(test)]
 mod support;

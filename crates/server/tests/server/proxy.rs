@@ -69,28 +69,11 @@ impl Proxy {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name).display().to_string();
         let (key, certificate) = (path("shapes.key"), path("shapes.pem"));
-        let subject = [format!("/CN={NAME}"), format!("subjectAltName=DNS:{NAME}")];
-        let [common, alternative] = &subject;
-        run(
-            "openssl",
-            &[
-                "req",
-                "-x509",
-                "-newkey",
-                "rsa:2048",
-                "-nodes",
-                "-days",
-                "1",
-                "-keyout",
-                &key,
-                "-out",
-                &certificate,
-                "-subj",
-                common,
-                "-addext",
-                alternative,
-            ],
+        let making = format!(
+            "req -x509 -newkey rsa:2048 -nodes -days 1 -keyout {key} -out {certificate} -subj /CN={NAME} \
+             -addext subjectAltName=DNS:{NAME}"
         );
+        run("openssl", &making.split(' ').collect::<Vec<_>>());
         let (user, password) = USER.split_once(':').unwrap();
         let hash = run("openssl", &["passwd", "-apr1", password]);
         fs::write(path("shapes.users"), format!("{user}:{hash}\n")).unwrap();

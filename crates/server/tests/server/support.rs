@@ -111,7 +111,12 @@ impl Served {
     /// A server on an index of its own, whose meshes the test may change.
     pub(crate) fn start_apart(options: ServeOptions) -> Self {
         let own = tempfile::tempdir().unwrap();
-        index(own.path());
+        let copy = |name: &Path| {
+            fs::copy(shared().join(name), own.path().join(name)).unwrap();
+        };
+        fs::create_dir(own.path().join("meshes")).unwrap();
+        bodies().iter().for_each(|(id, _)| copy(&Path::new("meshes").join(format!("{id}.off"))));
+        copy(Path::new(INDEX));
         Self::serve(own.path().to_owned(), Some(own), options, shared_turn())
     }
 

@@ -15,6 +15,14 @@ const AT_THE_START: &str = "document.querySelector('#answer').dataset.state === 
                             document.querySelector('#page').dataset.at === 'start' && \
                             document.querySelectorAll('#shapes .tile').length === 10";
 
+/// Chooses a value of a list.
+fn choose(page: &Page, list: &str, value: &str) {
+    let choose = format!(
+        "const list = document.querySelector('#{list}'); list.value = '{value}'; list.dispatchEvent(new Event('change'))"
+    );
+    page.browser.eval(&choose).unwrap();
+}
+
 /// The first result that is not the query itself.
 fn hit(page: &Page) -> String {
     let hit = page.eval("document.querySelector('#results li:nth-child(2) .tile').dataset.id");
@@ -68,22 +76,39 @@ fn every_state_of_an_indexed_shape_is_reached_by_its_address() {
     page.assert_sound();
 }
 
+/// The page can be used with the keyboard alone.
+fn use_the_keyboard(page: &Page) {
+    page.wait_for(AT_THE_START);
+    // Every control is reached by Tab, in the order of the page, and shows its focus.
+    let reached = page.eval(
+        "[...document.querySelectorAll('a, button, input, select')].filter(e => e.getClientRects().length > 0) \
+         .every(e => { e.focus({ preventScroll: true }); return document.activeElement === e && e.tabIndex === 0; })",
+    );
+    assert_eq!(reached, true);
+    page.browser.type_into("#shapes .tile[data-id^=cat]", "\u{e007}").unwrap();
+    page.answered();
+    page.browser.type_into("#results li:nth-child(2) .tile", "\u{e00d}").unwrap();
+    page.wait_for("document.querySelector('#overlay').dataset.state === 'ready'");
+    assert_eq!(page.eval("document.activeElement.id"), "overlay-title");
+    page.browser.type_into("#close-hit", "\u{e007}").unwrap();
+    page.wait_for("document.querySelector('#overlay').hidden");
+    assert_eq!(page.eval("document.activeElement.closest('#results') !== null"), true);
+    page.assert_sound();
+}
+
 #[test]
 fn options_filters_and_downloads_follow_the_address() {
     let Some(page) = Page::open(1280, 900) else { return };
+    use_the_keyboard(&page);
     page.go("/?shape=cat0&k=3&filter=cent");
     page.answered();
     assert_eq!(page.eval(N_RESULTS), 3);
     assert_eq!(page.eval("document.querySelector('#k').value"), "3");
     page.wait_for("document.querySelectorAll('#shapes .tile').length === 3");
-    page.browser
-        .eval("const k = document.querySelector('#k'); k.value = '6'; k.dispatchEvent(new Event('change'))")
-        .unwrap();
+    choose(&page, "k", "6");
     page.wait_for(&format!("{N_RESULTS} === 6"));
     assert_eq!(page.address(), "/?shape=cat0&k=6&filter=cent");
-    page.browser
-        .eval("const rank = document.querySelector('#rank'); rank.value = 'forms'; rank.dispatchEvent(new Event('change'))")
-        .unwrap();
+    choose(&page, "rank", "forms");
     page.wait_for("location.search.includes('rank=forms')");
     page.answered();
     page.browser.eval("history.back()").unwrap();
@@ -116,10 +141,7 @@ fn every_order_that_is_offered_can_be_had() {
     for rank in &offered {
         page.go("/?shape=cat0&k=6");
         page.answered();
-        let choose = format!(
-            "const list = document.querySelector('#rank'); list.value = '{rank}'; list.dispatchEvent(new Event('change'))"
-        );
-        page.browser.eval(&choose).unwrap();
+        choose(&page, "rank", rank);
         is_ranked(rank);
         let order = match *rank {
             "plain" => "",
@@ -172,27 +194,6 @@ fn an_upload_has_an_address_until_it_expires() {
     page.browser.upload("#file", &[&file(&folder, "new.off", Family::David)]).unwrap();
     page.answered();
     assert_eq!((page.text("#error"), page.address()), (String::new(), query));
-}
-
-#[test]
-fn the_page_can_be_used_with_the_keyboard_alone() {
-    let Some(page) = Page::open(1280, 900) else { return };
-    page.wait_for(AT_THE_START);
-    // Every control is reached by Tab, in the order of the page, and shows its focus.
-    let reached = page.eval(
-        "[...document.querySelectorAll('a, button, input, select')].filter(e => e.getClientRects().length > 0) \
-         .every(e => { e.focus({ preventScroll: true }); return document.activeElement === e && e.tabIndex === 0; })",
-    );
-    assert_eq!(reached, true);
-    page.browser.type_into("#shapes .tile[data-id^=cat]", "\u{e007}").unwrap();
-    page.answered();
-    page.browser.type_into("#results li:nth-child(2) .tile", "\u{e00d}").unwrap();
-    page.wait_for("document.querySelector('#overlay').dataset.state === 'ready'");
-    assert_eq!(page.eval("document.activeElement.id"), "overlay-title");
-    page.browser.type_into("#close-hit", "\u{e007}").unwrap();
-    page.wait_for("document.querySelector('#overlay').hidden");
-    assert_eq!(page.eval("document.activeElement.closest('#results') !== null"), true);
-    page.assert_sound();
 }
 
 #[test]
