@@ -5,7 +5,7 @@ OUT ?= out
 # For `make reproduce`: a folder of meshes with the classes of the paper. Default: the built-in dataset.
 DATASET ?=
 
-.PHONY: help setup build run test test-all test-python wheels reference notebooks lint-packaging lint bench bench-peers bench-nmds bench-preparation bench-search bench-capacity bench-duplicates bench-maps bench-packages fmt doc guide reproduce report paper plotly deny sbom fuzz fuzz-seeds package ci clean
+.PHONY: help setup build run test test-all test-python wheels reference notebooks lint-packaging lint bench bench-peers bench-nmds bench-preparation bench-search bench-capacity bench-duplicates bench-maps bench-packages fmt doc guide reproduce report paper measure plotly deny sbom fuzz fuzz-seeds package ci clean
 
 help: ## List these commands
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-17s %s\n", $$1, $$2}'
@@ -120,6 +120,10 @@ report: ## Write OUT/report.html from the results in OUT without running experim
 
 paper: ## Write docs/paper.md from the results in OUT of `make reproduce DATASET=folder`
 	$(CARGO) run --release --locked -p experiments -- report --output $(OUT) --markdown docs/paper.md
+
+measure: ## Measure again all that docs/paper.md and docs/benchmarks.md state, on DATASET=folder (needs Python and test meshes; takes hours)
+	$(MAKE) reproduce
+	$(MAKE) paper bench-peers bench-nmds bench-preparation bench-maps bench-packages bench-search bench-duplicates bench-capacity
 
 plotly: ## Build the bundle of plotly.js that the pages embed (needs Node 20 and npm)
 	node crates/report/assets/plotly/build.mjs

@@ -394,7 +394,9 @@ impl ShapeSearch {
                 let (id, order) = at(index);
                 let Entry { id, label, path, .. } = self.index.entry(id)?;
                 let (distances, scale) = (found.shape_distance, found.scale);
-                let relation = Relation::in_classes(distances, scale, Handedness::Unknown, self.classes);
+                // A part differs from shapes of its own class, too.
+                let classes = self.classes.filter(|_| !matches!(order, Some(OrderedBy::Part { .. })));
+                let relation = Relation::in_classes(distances, scale, Handedness::Unknown, classes);
                 // Only what has the same description may be called the same part without its mesh.
                 let is_part = found.are_parts && found.fused > 0.0;
                 let relation = if is_part { relation.of_parts() } else { relation }.named(&query.name, &id);

@@ -14,7 +14,7 @@ use canonform::library::{
 };
 use canonform::mesh::{TriMesh, io, shapes};
 use canonform::relations::RelationKind;
-use canonform::search::{SearchOptions, ShapeSearch};
+use canonform::search::{SearchOptions, SearchRank, ShapeSearch};
 
 /// Names that a shell, a spreadsheet, a terminal or a browser may obey.
 const HOSTILE: [&str; 12] = [
@@ -470,6 +470,10 @@ fn classes_that_were_given_stay_and_have_a_boundary_of_their_own() {
         let told = hit.relation.kind != RelationKind::Different;
         assert!(hit.label.is_empty() || told == (hit.label == "wire"), "{}: {}", hit.id, hit.relation);
     }
+    // Distances from a part say nothing of its class.
+    let part = SearchOptions { rank_by: SearchRank::Part, ..options.clone() };
+    let found = search.search(&search.query_of("thin0", &part, &()).unwrap(), &part, &()).unwrap();
+    assert!(found.results.iter().all(|hit| !hit.relation.to_string().contains("class")));
     let agreement = evaluate_index(&index, &EvaluateOptions::default(), &()).unwrap().agreement.unwrap();
     assert_eq!((agreement.same_class, agreement.other_classes), (72, 81));
     assert!(agreement.agree > 0.95, "{agreement:?}");
