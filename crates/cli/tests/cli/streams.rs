@@ -105,12 +105,13 @@ fn lists_folders_and_patterns_are_embedded_and_drawn() {
 fn every_mesh_of_a_folder_becomes_the_form_that_it_has_alone() {
     let place = Workplace::new();
     place.add("animals/cat0.off", &ring());
+    place.add("animals/cat1.ply", &shapes::icosphere(2));
     place.add("animals/dogs/rex.obj", &shapes::cube(2));
     let json = place.json("embed animals -n 20 --format off -o forms");
     let shapes = json["shapes"].as_array().unwrap();
     let facts: Vec<_> =
         shapes.iter().map(|s| [&s["name"], &s["label"]].map(|v| v.as_str().unwrap())).collect();
-    assert_eq!(facts, [["cat0", "cat"], ["dogs/rex", "rex"]]);
+    assert_eq!(facts, [["cat0", "cat"], ["cat1", "cat"], ["dogs/rex", "rex"]]);
     assert!(json["failed"].as_array().unwrap().is_empty() && place.path("forms/dogs/rex.off").exists());
     place.done("embed animals/cat0.off -n 20 -o alone.off");
     assert_eq!(fs::read(place.path("alone.off")).unwrap(), fs::read(place.path("forms/cat0.off")).unwrap());
