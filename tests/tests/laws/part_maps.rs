@@ -76,7 +76,7 @@ fn an_initial_map_of_a_part_decides_its_orientation() {
     let unit = whole.mesh.area().sqrt();
     for (from, to, sign) in [(&part, &whole, 1.0), (&part, &whole, -1.0), (&whole, &part, -1.0)] {
         // A third of the vertices.
-        let partner = |x: usize| (x % 3 == 0).then(|| from.partner(to, x, sign).0);
+        let partner = |x: usize| x.is_multiple_of(3).then(|| from.partner(to, x, sign).0);
         let initial = (0..from.mesh.n_vertices()).map(partner).collect();
         let known = KnownMap { initial, ..KnownMap::default() };
         let maps = maps_with(known, [&from.mapped, &to.mapped]);
