@@ -196,7 +196,7 @@ fn a_full_disk_is_reported_and_the_old_index_stays() {
     let place = collection();
     place.done(&build("whole"));
     let whole = place.done("index export whole").out;
-    place.add("meshes/t1.off", &body(1, 40));
+    place.add("meshes/s99.off", &body(1, 40));
     let size = fs::metadata(place.path("whole")).unwrap().len() as usize / 512;
     let mut failures = 0;
     for blocks in [1, 70, size / 2, size - 20] {
@@ -214,7 +214,7 @@ fn a_full_disk_is_reported_and_the_old_index_stays() {
     assert!(failures > 1, "{failures}");
     // Without the limit the build continues.
     place.done(&build("whole"));
-    fs::remove_file(place.path("meshes/t1.off")).unwrap();
+    fs::remove_file(place.path("meshes/s99.off")).unwrap();
     place.done(&build("whole"));
     assert_eq!(place.done("index export whole").out, whole);
 }
@@ -246,7 +246,7 @@ fn a_failing_fsync_loses_nothing() {
     let compiled = Command::new("cc").args(["-shared", "-fPIC", "-o"]).args([&library, &source]).status();
     assert!(compiled.is_ok_and(|status| status.success()), "the C compiler that SQLite needs");
     place.done(&build("whole"));
-    place.add("meshes/t1.off", &body(1, 40));
+    place.add("meshes/s99.off", &body(1, 40));
     let export = || place.done("index export all").out;
     let renew = || fs::copy(place.path("whole"), place.path("all")).unwrap();
     renew();

@@ -68,7 +68,7 @@ fn distances_and_the_same_numbers_from_files_give_the_same_picture() {
     place.done("geodesic ring.off --source 90 -o one.csv");
     let asked = drawn(&place, "--distance-from 90 --isolines 5 --no-bar");
     for field in ["two.npy --row 1", "one.csv"] {
-        assert_eq!(asked, drawn(&place, &format!("--field {field} --isolines 5 --no-bar")), "{field}");
+        assert!(asked == drawn(&place, &format!("--field {field} --isolines 5 --no-bar")), "{field}");
     }
     let narrow = place.json("render ring.off --distance-from 3 --range 0,1 --size 60 -o n.png");
     assert_eq!(narrow["field"]["range"], serde_json::json!([0.0, 1.0]));
@@ -77,7 +77,7 @@ fn distances_and_the_same_numbers_from_files_give_the_same_picture() {
     let column: Vec<String> = (0..160).map(|v| v.to_string()).collect();
     fs::write(place.path("column.csv"), column.join("\n")).unwrap();
     fs::write(place.path("row.csv"), column.join(" , ")).unwrap();
-    assert_eq!(drawn(&place, "--field column.csv"), drawn(&place, "--field row.csv"));
+    assert!(drawn(&place, "--field column.csv --no-bar") == drawn(&place, "--field row.csv --no-bar"));
 }
 
 #[test]

@@ -49,6 +49,8 @@ fn a_changed_index_is_opened_again() {
         server.rebuild();
         searches.join().unwrap();
     });
+    // The server may have opened it between its last batch and its end.
+    std::thread::sleep(Duration::from_millis(200));
     let second = until(&server, |health| health["shapes"] == 8);
     assert_ne!(second["index"]["version"], first["index"]["version"]);
     assert_eq!(find()["results"][0]["id"], "ring2");

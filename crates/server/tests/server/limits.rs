@@ -207,7 +207,7 @@ fn matches_leave_a_place_to_searches() {
     let check = Duration::from_millis(50);
     let server = Served::start_apart(ServeOptions { jobs: 2, index_check: check, ..options() });
     let poses = [0, 1].map(|pose| {
-        let options = ArticulatedOptions { n_vertices: 1500, ..ArticulatedOptions::default() };
+        let options = ArticulatedOptions { n_vertices: 2600, ..ArticulatedOptions::default() };
         articulated_shape(Family::Cat, pose, &options).unwrap().mesh
     });
     for (i, mesh) in poses.iter().enumerate() {
