@@ -16,6 +16,7 @@ mod generalized;
 mod lanczos;
 mod landmark_distances;
 mod largest;
+mod operator;
 mod panels;
 mod sparse;
 
@@ -29,7 +30,8 @@ pub use distance_matrix::DistanceMatrix;
 pub use error::{LinalgError, NoFactor};
 pub use generalized::{GeneralizedEigen, smallest_eigenpairs};
 pub use landmark_distances::LandmarkDistances;
-pub use largest::{SymmetricOperator, largest_eigenpairs};
+pub use largest::largest_eigenpairs;
+pub use operator::SymmetricOperator;
 pub use sparse::SparseSymmetric;
 
 /// A dense matrix of `f64`, column by column.
