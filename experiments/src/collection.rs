@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
+use base::terminal::note;
 use canonform::collection::{LabelSource, list_shapes};
 use canonform::{Observer, Surface, read_surface};
 use clap::Args;
@@ -152,7 +153,7 @@ impl SurfaceCollection {
         for (name, label, surface) in found {
             match surface {
                 Ok(surface) => shapes.push(LabeledSurface { name, label, surface }),
-                Err(fault) => eprintln!("left out {name}: {fault}"),
+                Err(fault) => note(&format!("left out {name}: {fault}")),
             }
         }
         Self::in_class_order(dataset, shapes, &wanted)

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 use anyhow::{Context as _, Result, bail};
-use base::terminal::{Bars, on_interruption};
+use base::terminal::{Bars, note, on_interruption};
 use report::Record;
 use report::page::{Section, write_report};
 
@@ -70,7 +70,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitCode> {
     let (kept, open): (Vec<_>, Vec<_>) = wanted.partition(|(name, ..)| args.resume && is_made(args, name));
     let finished: Vec<&'static str> = kept.iter().map(|(name, ..)| *name).collect();
     for name in &finished {
-        eprintln!("{name} is there already, made with these options");
+        note(&format!("{name} is there already, made with these options"));
     }
     let finished = Arc::new(Mutex::new(finished));
     keep_finished(args, Arc::clone(&finished));
@@ -97,7 +97,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitCode> {
             bars.finish();
             for e in record.expectations.iter().filter(|e| !e.held) {
                 let kind = if e.goal { "goal missed" } else { "not as expected" };
-                eprintln!("{kind}: {} is {}, {}", e.what, e.measured, e.expected);
+                note(&format!("{kind}: {} is {}, {}", e.what, e.measured, e.expected));
             }
             record.save(&args.output, name)?;
             if let Some(table) = record.summary() {
@@ -124,11 +124,11 @@ fn keep_finished(args: &RunArgs, finished: Arc<Mutex<Vec<&'static str>>>) {
     on_interruption(move || {
         let names = finished.lock().unwrap_or_else(PoisonError::into_inner).join(", ");
         if names.is_empty() {
-            eprintln!("interrupted; no experiment is finished");
+            note("interrupted; no experiment is finished");
         } else {
             let page = write_page(&folder).map_or_else(|e| e.to_string(), |page| page.display().to_string());
-            eprintln!("interrupted; finished: {names} (report: {page})");
-            eprintln!("to continue: {command} --resume");
+            note(&format!("interrupted; finished: {names} (report: {page})"));
+            note(&format!("to continue: {command} --resume"));
         }
         base::files::abandon_unfinished();
         std::process::exit(INTERRUPTED);

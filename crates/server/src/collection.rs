@@ -12,6 +12,7 @@ use canonform::{ContentHash, Error};
 use serde::Serialize;
 
 use crate::cost;
+use crate::error::write_line;
 
 /// An open index and the list of its shapes. Requests that began with it finish with it.
 pub(crate) struct Collection {
@@ -177,14 +178,14 @@ impl Served {
             None => FileState::Missing,
             Some(Ok(collection)) => {
                 let collection = Arc::new(collection);
-                eprintln!("the index has changed: {} shapes", collection.shapes.len());
+                write_line(&format!("the index has changed: {} shapes", collection.shapes.len()));
                 now.collection = collection;
                 FileState::Current
             }
             Some(Err(error)) => {
-                let error = error.to_string();
-                let error = canonform::one_line(&error);
-                eprintln!("the index has changed and cannot be opened; the old one is used: {error}");
+                write_line(&format!(
+                    "the index has changed and cannot be opened; the old one is used: {error}"
+                ));
                 FileState::Unreadable
             }
         };

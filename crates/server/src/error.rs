@@ -1,5 +1,6 @@
 //! Errors of the server, and error responses with their remedies. No other place words a remedy.
 
+use std::io::Write as _;
 use std::net::SocketAddr;
 use std::path::Path;
 use std::time::Duration;
@@ -169,7 +170,7 @@ impl From<Error> for ApiError {
             }
             Error::Exceeded(exceeded) => return Self::exceeded(*exceeded),
             _ => {
-                eprintln!("error: {}", canonform::one_line(&fault.to_string()));
+                write_line(&format!("error: {fault}"));
                 return Self::internal();
             }
         };
@@ -213,6 +214,11 @@ impl IntoResponse for ApiError {
         }
         response
     }
+}
+
+/// Writes a line to standard error, which may be closed: that is no reason to stop, and `eprintln` would panic.
+pub(crate) fn write_line(text: &str) {
+    let _ = writeln!(std::io::stderr().lock(), "{}", canonform::one_line(text));
 }
 
 #[cfg(test)]
