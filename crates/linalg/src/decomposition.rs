@@ -38,7 +38,7 @@ pub(crate) fn view(a: &Matrix) -> MatRef<'_, f64> {
     MatRef::from_column_major_slice(a.as_slice(), a.nrows(), a.ncols())
 }
 
-/// Converts a faer matrix to nalgebra.
+/// The matrix for faer, which need not end on numbers that are not finite.
 fn finite(a: &Matrix) -> Result<MatRef<'_, f64>, LinalgError> {
     match a.iter().all(|x| x.is_finite()) {
         true => Ok(view(a)),
@@ -46,6 +46,7 @@ fn finite(a: &Matrix) -> Result<MatRef<'_, f64>, LinalgError> {
     }
 }
 
+/// Converts a faer matrix to nalgebra.
 pub(crate) fn from_faer(a: MatRef<'_, f64>) -> Matrix {
     Matrix::from_fn(a.nrows(), a.ncols(), |i, j| a[(i, j)])
 }

@@ -190,6 +190,7 @@ impl<'a> Data<'a> {
         let (accessor, scalar, numbers) = self.numbers(index, ("VEC3", 3), "positions of type VEC3")?;
         let n_bits = 8 * scalar.size() as i32 - i32::from(matches!(scalar, Scalar::I8 | Scalar::I16));
         let unit = if scalar.is_integer() { 2f64.powi(n_bits) - 1.0 } else { 1.0 };
+        // The most negative integer stands for -1 too.
         let scaled = |x: f64| if accessor.normalized { (x / unit).max(-1.0) } else { x };
         let rows = numbers.as_chunks::<3>().0.iter().enumerate();
         rows.map(|(vertex, row)| finite(row.map(scaled), vertex).in_part("accessor", index)).collect()
