@@ -16,7 +16,7 @@ pub use cache::Cache;
 pub use content::{ContentHash, ContentHasher};
 pub use observer::Observer;
 pub use random::SplitMix;
-pub use text::{one_line, printable, printable_json};
+pub use text::{one_line, printable, printable_json, write_line};
 
 /// A value with named fields that is only written, such as an object of JSON. Fields may have attributes of serde.
 ///

@@ -1,6 +1,7 @@
 //! Text from outside, such as names of files, among our own.
 
 use std::borrow::Cow;
+use std::io::Write;
 
 /// Whether a terminal or a browser obeys a character instead of showing it: control characters, line ends, and marks that
 /// change the direction of the text around them.
@@ -28,6 +29,11 @@ pub fn printable(text: &str) -> Cow<'_, str> {
 /// JSON that says the same without such characters.
 pub fn printable_json(text: &str) -> Cow<'_, str> {
     escaped(text, is_code, |c| format!("\\u{:04x}", u32::from(c)))
+}
+
+/// Writes a line to standard error, which may be closed: that is no reason to stop, and `eprintln` would panic.
+pub fn write_line(text: &str) {
+    let _ = writeln!(std::io::stderr().lock(), "{}", one_line(text));
 }
 
 fn escaped(text: &str, is_code: impl Fn(char) -> bool, escape: impl Fn(char) -> String) -> Cow<'_, str> {

@@ -12,7 +12,6 @@ use canonform::{ContentHash, Error};
 use serde::Serialize;
 
 use crate::cost;
-use crate::error::write_line;
 
 /// An open index and the list of its shapes. Requests that began with it finish with it.
 pub(crate) struct Collection {
@@ -178,12 +177,12 @@ impl Served {
             None => FileState::Missing,
             Some(Ok(collection)) => {
                 let collection = Arc::new(collection);
-                write_line(&format!("the index has changed: {} shapes", collection.shapes.len()));
+                base::write_line(&format!("the index has changed: {} shapes", collection.shapes.len()));
                 now.collection = collection;
                 FileState::Current
             }
             Some(Err(error)) => {
-                write_line(&format!(
+                base::write_line(&format!(
                     "the index has changed and cannot be opened; the old one is used: {error}"
                 ));
                 FileState::Unreadable

@@ -1,6 +1,5 @@
 //! Errors of the server, and error responses with their remedies. No other place words a remedy.
 
-use std::io::Write as _;
 use std::net::SocketAddr;
 use std::path::Path;
 use std::time::Duration;
@@ -170,7 +169,7 @@ impl From<Error> for ApiError {
             }
             Error::Exceeded(exceeded) => return Self::exceeded(*exceeded),
             _ => {
-                write_line(&format!("error: {fault}"));
+                base::write_line(&format!("error: {fault}"));
                 return Self::internal();
             }
         };
@@ -214,11 +213,6 @@ impl IntoResponse for ApiError {
         }
         response
     }
-}
-
-/// Writes a line to standard error, which may be closed: that is no reason to stop, and `eprintln` would panic.
-pub(crate) fn write_line(text: &str) {
-    let _ = writeln!(std::io::stderr().lock(), "{}", canonform::one_line(text));
 }
 
 #[cfg(test)]

@@ -37,7 +37,7 @@ pub fn run(threads: usize, program: impl FnOnce() -> Result<ExitCode>) -> ExitCo
             return stop();
         }
         crate::files::abandon_unfinished();
-        notes::write_line("interrupted");
+        crate::write_line("interrupted");
         std::process::exit(INTERRUPTED);
     });
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();

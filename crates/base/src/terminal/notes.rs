@@ -1,9 +1,8 @@
 //! Messages on standard error.
 
-use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::one_line;
+use crate::write_line;
 
 static QUIET: AtomicBool = AtomicBool::new(false);
 
@@ -27,9 +26,4 @@ pub fn note(text: &str) {
 /// Writes an error to standard error.
 pub fn error(text: &str) {
     write_line(&format!("error: {text}"));
-}
-
-/// Standard error may be closed: that is no reason to stop, and `eprintln` would panic.
-pub(crate) fn write_line(text: &str) {
-    let _ = writeln!(std::io::stderr().lock(), "{}", one_line(text));
 }

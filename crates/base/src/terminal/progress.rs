@@ -6,8 +6,8 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle, WeakProgressBar};
 
-use super::notes::{is_quiet, write_line};
-use crate::{Budget, Observer};
+use super::notes::is_quiet;
+use crate::{Budget, Observer, write_line};
 
 /// One progress bar per stage, cleared on drop. If standard error is not a terminal, a line every few seconds takes the
 /// place of the bar, so that a log shows progress and a short run prints nothing.
