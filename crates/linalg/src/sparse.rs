@@ -95,16 +95,6 @@ impl SparseSymmetric {
         self.rows[range.clone()].iter().copied().zip(self.values[range].iter().copied())
     }
 
-    #[cfg(test)]
-    pub(crate) fn dense(&self) -> crate::Matrix {
-        let mut dense = crate::Matrix::zeros(self.order(), self.order());
-        for (i, j, value) in self.entries() {
-            dense[(i, j)] = value;
-            dense[(j, i)] = value;
-        }
-        dense
-    }
-
     /// A view of the lower triangle for faer, without a copy.
     pub(crate) fn view(&self) -> SparseColMatRef<'_, usize, f64> {
         let n = self.order();
@@ -130,39 +120,5 @@ impl SymmetricOperator for SparseSymmetric {
             }
             y[j] += sum;
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn entries_are_summed_mirrored_and_sorted_and_the_diagonal_is_stored() {
-        let a = SparseSymmetric::from_entries(3, [(2, 0, 1.5), (0, 2, 0.5), (1, 1, 4.0), (1, 0, -1.0)]);
-        let entries: Vec<_> = a.entries().collect();
-        assert_eq!(entries, [(0, 0, 0.0), (1, 0, -1.0), (2, 0, 2.0), (1, 1, 4.0), (2, 2, 0.0)]);
-        assert_eq!((a.order(), a.n_stored(), a.diagonal()), (3, 5, vec![0.0, 4.0, 0.0]));
-    }
-
-    #[test]
-    fn the_product_uses_both_triangles() {
-        let mut a = SparseSymmetric::from_entries(3, [(2, 0, 2.0), (1, 1, 4.0), (1, 0, -1.0)]);
-        a.add_to_diagonal([1.0, 2.0, 3.0].into_iter());
-        let mut y = [f64::NAN; 3];
-        a.apply(&[1.0, 10.0, 100.0], &mut y);
-        assert_eq!(y, [1.0 - 10.0 + 200.0, -1.0 + 60.0, 2.0 + 300.0]);
-    }
-
-    #[test]
-    fn a_matrix_may_be_empty() {
-        let a = SparseSymmetric::from_entries(0, []);
-        assert_eq!((a.order(), a.n_stored(), a.entries().count()), (0, 0, 0));
-    }
-
-    #[test]
-    #[should_panic(expected = "outside of a matrix of order 2")]
-    fn entries_outside_the_matrix_panic() {
-        let _ = SparseSymmetric::from_entries(2, [(0, 2, 1.0)]);
     }
 }

@@ -61,36 +61,3 @@ pub(super) fn n_negative(
     }
     Ok(Some(negative))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::symmetric_eigen;
-
-    #[test]
-    fn the_count_equals_that_of_the_dense_eigenvalues() {
-        // A ring with chords and a smaller diagonal of both signs, which needs 2 x 2 pivots.
-        let n = 90;
-        let entries = || {
-            (0..n).flat_map(move |i| {
-                let diagonal = ((i * 37 % 11) as f64 - 5.05) * 0.3;
-                [(i, i, diagonal), (i, (i + 1) % n, -1.0), (i, (i + 13) % n, 0.4)]
-            })
-        };
-        for shift in [-4.0, -1.3, -0.2, 0.0, 0.1, 0.7, 2.0, 9.0] {
-            let mut a = SparseSymmetric::from_entries(n, entries());
-            a.add_to_diagonal((0..n).map(|_| -shift));
-            let expected = symmetric_eigen(&a.dense()).unwrap().values.iter().filter(|v| **v < 0.0).count();
-            let order = EliminationOrder::new(&a, &()).unwrap();
-            let found = n_negative(&order, &a, &Budget::unlimited());
-            assert_eq!(found, Ok(Some(expected)), "{shift}");
-        }
-    }
-
-    #[test]
-    fn a_zero_pivot_is_not_counted() {
-        let a = SparseSymmetric::from_entries(3, [(0, 0, 1.0), (1, 1, 0.0), (2, 2, -1.0)]);
-        let order = EliminationOrder::new(&a, &()).unwrap();
-        assert_eq!(n_negative(&order, &a, &Budget::unlimited()), Ok(None));
-    }
-}

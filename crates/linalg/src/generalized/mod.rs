@@ -207,6 +207,3 @@ fn pairs(operator: &ShiftInverse, process: &Lanczos<'_>, ritz: &Ritz, m: usize) 
     }
     GeneralizedEigen { values, vectors }
 }
-
-#[cfg(test)]
-mod tests;

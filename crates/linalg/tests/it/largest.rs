@@ -1,0 +1,104 @@
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use base::{Budget, Exceeded};
+use canonform_linalg::{LinalgError, SymmetricOperator, largest_eigenpairs};
+
+/// A diagonal matrix conjugated by a Householder reflection: known spectrum, dense eigenvectors.
+#[derive(Debug)]
+struct Reflected {
+    spectrum: Vec<f64>,
+}
+
+impl Reflected {
+    fn reflect(x: &mut [f64]) {
+        let n = x.len() as f64;
+        let mean = 2.0 * x.iter().sum::<f64>() / n;
+        x.iter_mut().for_each(|v| *v -= mean);
+    }
+}
+
+impl SymmetricOperator for Reflected {
+    fn order(&self) -> usize {
+        self.spectrum.len()
+    }
+
+    fn apply(&self, x: &[f64], y: &mut [f64]) {
+        y.copy_from_slice(x);
+        Self::reflect(y);
+        y.iter_mut().zip(&self.spectrum).for_each(|(v, s)| *v *= s);
+        Self::reflect(y);
+    }
+}
+
+fn check(spectrum: Vec<f64>, k: usize) {
+    let mut sorted = spectrum.clone();
+    sorted.sort_by(|a, b| b.total_cmp(a));
+    let operator = Reflected { spectrum };
+    let n = operator.order();
+    let found = largest_eigenpairs(&operator, k, &()).unwrap();
+    let scale = sorted[0].abs().max(sorted[n - 1].abs());
+    assert_eq!(found.values.len(), k.min(n));
+    for (j, value) in found.values.iter().enumerate() {
+        assert!((value - sorted[j]).abs() < 1e-10 * scale, "{j}: {value} against {}", sorted[j]);
+        let x = found.vectors.column(j).as_slice().to_vec();
+        let mut y = vec![0.0; n];
+        operator.apply(&x, &mut y);
+        let residual: f64 = y.iter().zip(&x).map(|(y, x)| (y - value * x).powi(2)).sum::<f64>().sqrt();
+        assert!(residual < 1e-10 * scale, "{j}: residual {residual}");
+    }
+}
+
+#[test]
+fn finds_positive_pairs_behind_negative_ones_of_larger_magnitude() {
+    let n = 1500;
+    let spectrum = (0..n).map(|i| if i < 12 { -100.0 - i as f64 } else { 90.0 / (i - 11) as f64 }).collect();
+    check(spectrum, 3);
+}
+
+#[test]
+fn finds_negative_pairs_if_few_are_positive() {
+    check((0..300).map(|i| if i == 5 { 1.0 } else { -1.0 - i as f64 }).collect(), 2);
+}
+
+#[test]
+fn small_operators_have_fewer_pairs_than_requested() {
+    check(vec![3.0, -7.0, 2.0], 5);
+}
+
+/// An operator that cancels the budget at one of its products.
+#[derive(Debug)]
+struct Cancelling {
+    reflected: Reflected,
+    budget: Budget,
+    left: AtomicUsize,
+}
+
+impl SymmetricOperator for Cancelling {
+    fn order(&self) -> usize {
+        self.reflected.order()
+    }
+
+    fn apply(&self, x: &[f64], y: &mut [f64]) {
+        if self.left.fetch_sub(1, Ordering::Relaxed) == 1 {
+            self.budget.cancel();
+        }
+        self.reflected.apply(x, y);
+    }
+}
+
+#[test]
+fn an_iteration_ends_wherever_it_is_cancelled() {
+    for at in 1..40 {
+        let budget = Budget::unlimited();
+        let reflected = Reflected { spectrum: (0..600).map(|i| 1.0 / (1.0 + f64::from(i))).collect() };
+        let operator = Cancelling { reflected, budget: budget.clone(), left: at.into() };
+        let found = largest_eigenpairs(&operator, 3, &budget);
+        assert!(matches!(found, Err(LinalgError::Exceeded(Exceeded::Cancelled))), "{at}: {found:?}");
+    }
+}
+
+#[test]
+fn zero_has_no_pairs() {
+    let found = largest_eigenpairs(&Reflected { spectrum: vec![0.0; 400] }, 3, &()).unwrap();
+    assert!(found.values.is_empty() && found.vectors.shape() == (400, 0), "{:?}", found.values);
+}
