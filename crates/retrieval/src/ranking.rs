@@ -63,20 +63,3 @@ pub fn rank_row(distances: &[f64], query: usize) -> Vec<Neighbor> {
     neighbors.sort_by(Neighbor::by_distance);
     neighbors
 }
-
-/// The distances between points on a line.
-#[cfg(test)]
-pub(crate) fn line(positions: &[f64]) -> DistanceMatrix {
-    DistanceMatrix::from_pairs(positions.len(), |i, j| (positions[i] - positions[j]).abs()).unwrap()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn ties_go_to_the_lower_index() {
-        let distances = line(&[0.0, 1.0, -1.0, 1.0]);
-        assert_eq!(rank(&distances, 0).iter().map(|n| n.index).collect::<Vec<_>>(), [1, 2, 3]);
-    }
-}

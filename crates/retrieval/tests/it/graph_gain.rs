@@ -1,10 +1,11 @@
 //! Graph ranking is compared with the plain ranking on generated labelled sets.
 //!
-//! `cargo test -p canonform-retrieval --test graph -- --nocapture` prints the mean average precision of both on each set.
+//! `cargo test -p canonform-retrieval --test it graph_gain -- --nocapture` prints the mean average precision of both on each
+//! set.
 
-use canonform_retrieval::{GraphRankings, Labels, Rankings, Scores};
 use std::collections::BTreeMap;
 
+use canonform_retrieval::{GraphRankings, Labels, Rankings, Scores};
 use linalg::DistanceMatrix;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};

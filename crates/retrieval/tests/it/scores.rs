@@ -1,0 +1,82 @@
+use linalg::DistanceMatrix;
+
+use canonform_retrieval::*;
+
+use crate::line;
+
+fn mean_scores(
+    distances: &DistanceMatrix,
+    labels: &Labels,
+    averaging: Averaging,
+) -> Result<Scores, RetrievalError> {
+    Ok(QueryScores::new(distances, labels)?.mean(labels, averaging))
+}
+
+/// Class `a` of four on the left; class `b` of three on the right, one of them among `a`.
+fn example() -> (DistanceMatrix, Labels) {
+    let positions = [0.0, 1.0, 2.0, 3.5, 1.4, 50.0, 51.5];
+    (line(&positions), Labels::new(&["a", "a", "a", "a", "b", "b", "b"]))
+}
+
+fn of_first(positions: &[f64], names: &[&str]) -> Option<Scores> {
+    Scores::of_query(&rank(&line(positions), 0), 0, &Labels::new(names))
+}
+
+#[test]
+fn scores_follow_their_definitions_on_a_worked_example() {
+    // From shape 0 the order is b a a b a: relevant at ranks 2, 3 and 5 of 5.
+    let positions = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0];
+    let scores = of_first(&positions, &["a", "b", "a", "a", "b", "a"]).unwrap();
+    assert_eq!(scores.nn, 0.0);
+    assert!((scores.ft - 2.0 / 3.0).abs() < 1e-15);
+    assert_eq!(scores.st, 1.0);
+    assert!((scores.map - (1.0 / 2.0 + 2.0 / 3.0 + 3.0 / 5.0) / 3.0).abs() < 1e-15);
+    let gain = 1.0 + 1.0 / 3f64.log2() + 1.0 / 5f64.log2();
+    let ideal = 1.0 + 1.0 + 1.0 / 3f64.log2();
+    assert!((scores.dcg - gain / ideal).abs() < 1e-15);
+    // At rank 5: precision 3/5, recall 1.
+    assert!((scores.e - 0.75).abs() < 1e-15);
+}
+
+#[test]
+fn e_measure_of_a_perfect_ranking_is_limited_by_the_page() {
+    // 30 shapes, one class of 15: 14 relevant among the 29 on the page.
+    let positions: Vec<f64> = (0..30).map(f64::from).collect();
+    let names: Vec<&str> = (0..30).map(|i| if i < 15 { "a" } else { "b" }).collect();
+    let scores = of_first(&positions, &names).unwrap();
+    assert_eq!(scores.ft, 1.0);
+    assert!((scores.e - 0.651).abs() < 1e-3);
+}
+
+#[test]
+fn a_class_of_one_has_no_scores() {
+    assert_eq!(of_first(&[0.0, 1.0], &["a", "b"]), None);
+}
+
+#[test]
+fn micro_means_weigh_queries_alike_and_macro_means_classes() {
+    let (distances, labels) = example();
+    let nn = |averaging| mean_scores(&distances, &labels, averaging).unwrap().nn;
+    // Correct nearest neighbors: the first and last of a, the two distant ones of b.
+    assert!((nn(Averaging::Micro) - 4.0 / 7.0).abs() < 1e-15);
+    assert!((nn(Averaging::Macro) - (0.5 + 2.0 / 3.0) / 2.0).abs() < 1e-15);
+}
+
+#[test]
+fn precision_falls_with_recall_and_is_one_for_perfect_rankings() {
+    let (distances, labels) = example();
+    let curve = precision_recall(&distances, &labels, Averaging::Micro, 11).unwrap();
+    assert!(curve.windows(2).all(|w| w[0] >= w[1]) && curve[0] < 1.0 && curve[10] > 0.0);
+    let separate = DistanceMatrix::from_pairs(6, |i, j| if i / 3 == j / 3 { 1.0 } else { 9.0 }).unwrap();
+    let labels = Labels::new(&["a", "a", "a", "b", "b", "b"]);
+    assert_eq!(precision_recall(&separate, &labels, Averaging::Macro, 5), Ok(vec![1.0; 5]));
+}
+
+#[test]
+fn scores_need_a_large_class_and_a_label_per_shape() {
+    let distances = DistanceMatrix::from_pairs(2, |_, _| 1.0).unwrap();
+    let error = mean_scores(&distances, &Labels::new(&["a", "a"]), Averaging::Micro).unwrap_err();
+    assert_eq!(error, RetrievalError::NothingToScore { n_points: 2, n_classes: 1 });
+    let error = precision_recall(&distances, &Labels::new(&["a"]), Averaging::Micro, 11).unwrap_err();
+    assert_eq!(error, RetrievalError::LabelCount { n_labels: 1, n_points: 2 });
+}

@@ -1,0 +1,49 @@
+use crate::line;
+use canonform_retrieval::*;
+
+fn neighbors(distances: &[f64]) -> Vec<Neighbor> {
+    distances.iter().enumerate().map(|(index, &distance)| Neighbor { index, distance }).collect()
+}
+
+#[test]
+fn the_threshold_separates_own_from_foreign_distances() {
+    let found = UnknownThreshold::of(&[1.0, 2.0, 1.5], &[4.0, 6.0]).unwrap();
+    assert_eq!(found, UnknownThreshold { distance: 3.0, missed: 0.0, mistaken: 0.0 });
+    // Overlapping: missing the outlier costs less than accepting the foreign shapes.
+    let found = UnknownThreshold::of(&[1.0, 1.0, 1.0, 9.0], &[5.0, 6.0]).unwrap();
+    assert_eq!((found.distance, found.missed, found.mistaken), (3.0, 0.25, 0.0));
+    assert_eq!(UnknownThreshold::of(&[], &[1.0]), None);
+    assert_eq!(UnknownThreshold::of(&[1.0, 2.0], &[]).unwrap().distance, 4.0);
+}
+
+#[test]
+fn leave_one_out_uses_every_shape() {
+    let distances = line(&[0.0, 1.0, 2.5, 10.0, 11.0, 30.0]);
+    let labels = Labels::new(&["a", "a", "a", "b", "b", "c"]);
+    let found = UnknownThreshold::leave_one_out(&distances, &labels).unwrap();
+    // Own: 1, 1, 1.5, 1, 1; foreign: 10, 9, 7.5, 7.5, 8.5, 19.
+    assert_eq!(found, UnknownThreshold { distance: 4.5, missed: 0.0, mistaken: 0.0 });
+}
+
+#[test]
+fn near_neighbors_outvote_many_far_ones() {
+    let class = |i: usize| usize::from(i > 0);
+    let near = neighbors(&[0.1, 0.9, 0.95]);
+    let plain = vote(&near, class, 3, None);
+    assert_eq!((plain.class(), plain.tally[0].votes, plain.voters), (Some(1), 2, 3));
+    assert!((plain.tally[0].share - 2.0 / 3.0).abs() < 1e-15);
+    let weighted = vote(&near, class, 3, Some(1.0));
+    assert_eq!((weighted.class(), weighted.tally[0].votes), (Some(0), 1));
+    assert!(weighted.tally[0].share > 0.9);
+    let tally: Vec<_> = weighted.tally.iter().map(|of| (of.class, of.votes)).collect();
+    assert_eq!(tally, [(0, 1), (1, 2)], "the winner comes first");
+}
+
+#[test]
+fn distant_neighbors_have_no_vote_and_the_nearest_breaks_a_tie() {
+    let far = vote(&neighbors(&[2.0, 3.0]), |i| i, 2, Some(1.0));
+    assert_eq!(far, Vote { voters: 0, tally: Vec::new() });
+    assert_eq!(vote(&neighbors(&[2.0, 3.0]), |i| 7 - i, 2, None).class(), Some(7));
+    assert_eq!(vote(&neighbors(&[0.0, 0.0]), |i| i, 2, Some(0.0)).class(), Some(0));
+    assert_eq!(vote(&[], |i| i, 3, None).class(), None);
+}
