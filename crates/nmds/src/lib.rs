@@ -34,8 +34,6 @@ mod smacof;
 mod spectral;
 mod squares;
 mod stress;
-#[cfg(test)]
-mod tests;
 
 pub use classical::{classical, classical_full};
 pub use embedding::Embedding;

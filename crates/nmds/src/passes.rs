@@ -113,34 +113,3 @@ pub(crate) fn product(
     }
     Ok(result)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::tests::support::{Cloud, landmark_distances};
-
-    #[test]
-    fn passes_equal_operations_on_the_whole_matrix() {
-        // More than one group of blocks, and a last block with fewer rows than columns.
-        let p = 8 * 1024 + 1024 + 3;
-        let distances = landmark_distances(&Cloud::new(p, 4, 5), 7);
-        let whole = distances.to_matrix().unwrap().map(|d| (d / 2.0).powi(2));
-        let means = sq_means(&distances, 2.0).unwrap();
-        let expected = whole.row_mean();
-        assert!(means.iter().zip(expected.iter()).all(|(a, b)| (a / b - 1.0).abs() < 1e-13));
-
-        let mut centered = whole;
-        centered.column_iter_mut().zip(&means).for_each(|(mut c, mean)| c.add_scalar_mut(-mean));
-        let basis = Matrix::from_fn(7, 3, |i, j| ((i + 5 * j) as f64).cos());
-        for basis in [None, Some(&basis)] {
-            let expected = basis.map_or(centered.clone(), |basis| &centered * basis);
-            let w = triangle(&distances, 2.0, &means, basis).unwrap();
-            let gram = expected.tr_mul(&expected);
-            assert!((w.tr_mul(&w) - &gram).norm() < 1e-13 * gram.norm());
-            if let Some(basis) = basis {
-                let found = product(&distances, 2.0, &means, basis).unwrap();
-                assert!((found - &expected).amax() < 1e-12 * expected.amax());
-            }
-        }
-    }
-}

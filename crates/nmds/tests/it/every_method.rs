@@ -1,11 +1,9 @@
 //! Laws of every embedding. A new embedding adds a line to [`METHODS`].
 
-pub(crate) mod support;
-
+use canonform_nmds::*;
 use linalg::{DistanceMatrix, LandmarkDistances, Matrix, SparseSymmetric, leading_sign, smallest_eigenpairs};
 
-use crate::*;
-use support::{Cloud, all_pairs};
+use crate::support::{Cloud, all_pairs, pairwise};
 
 /// Special laws that a method obeys.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -128,14 +126,12 @@ fn power(cloud: &Cloud, exponent: f64) -> impl Fn(usize, usize) -> f64 {
 
 /// Distances between embedded points, by their original numbers.
 fn embedded(embedding: &Embedding, order: &[usize]) -> Matrix {
-    let p = order.len();
-    let mut distances = Matrix::zeros(p, p);
-    for i in 0..p {
-        for j in 0..p {
-            distances[(order[i], order[j])] = (embedding.coords.row(i) - embedding.coords.row(j)).norm();
-        }
-    }
-    distances
+    let mut coords = embedding.coords.clone();
+    order
+        .iter()
+        .enumerate()
+        .for_each(|(i, &original)| coords.row_mut(original).copy_from(&embedding.coords.row(i)));
+    pairwise(&coords)
 }
 
 /// The largest difference, relative to the largest entry of `b`.

@@ -1,10 +1,9 @@
 //! Points with known coordinates, for the tests of this crate.
 
+use canonform_nmds::{Embedding, LandmarkPairs};
 use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
-
-use crate::{Embedding, LandmarkPairs};
 
 /// Points drawn uniformly from a box with sides of different lengths, so that no two axes are equal.
 pub(crate) struct Cloud {
@@ -44,6 +43,17 @@ pub(crate) fn procrustes_free_gap(cloud: &Cloud, embedding: &Embedding) -> f64 {
         }
     }
     gap
+}
+
+/// Distances between all rows.
+pub(crate) fn pairwise(coords: &Matrix) -> Matrix {
+    let p = coords.nrows();
+    Matrix::from_fn(p, p, |i, j| (coords.row(i) - coords.row(j)).norm())
+}
+
+/// Distances between points on a circle along its arc: far from Euclidean.
+pub(crate) fn circle(p: usize) -> DistanceMatrix {
+    DistanceMatrix::from_pairs(p, |i, j| (j - i).min(p - (j - i)) as f64).unwrap()
 }
 
 /// The same distances in another unit of length.

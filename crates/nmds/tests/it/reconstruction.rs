@@ -1,0 +1,145 @@
+use canonform_nmds::*;
+use linalg::{DistanceMatrix, LandmarkDistances, Matrix, SymmetricEigen, pseudo_inverse, symmetric_eigen};
+
+use crate::support::{Cloud, scaled};
+
+/// All distances of a cloud raised to a power (1: Euclidean), and the columns of the first n points.
+fn problem(p: usize, n: usize, power: f64) -> (DistanceMatrix, LandmarkDistances) {
+    let cloud = Cloud::new(p, 3, 41);
+    let all = DistanceMatrix::from_pairs(p, |i, j| cloud.distance(i, j).powf(power)).unwrap();
+    let columns = Matrix::from_fn(p, n, |i, j| all.get(i, j));
+    (all, LandmarkDistances::new((0..n).collect(), columns).unwrap())
+}
+
+const RPI: Regularization = Regularization::Rpi { alpha: RpiAlpha::Relative(1e-10) };
+
+fn low_rank(rank: usize) -> Regularization {
+    Regularization::LowRank { rank: Some(rank) }
+}
+
+fn cur(rank: usize) -> Regularization {
+    Regularization::Cur { rank: Some(rank) }
+}
+
+#[test]
+fn rank_five_reconstructs_a_matrix_of_rank_five() {
+    let (all, columns) = problem(150, 9, 1.0);
+    let reconstruction = Reconstruction::new(&columns, &all).unwrap();
+    assert!(reconstruction.best_projection().relative < 1e-13);
+    for exact in [low_rank(5), cur(5), Regularization::None, cur(9)] {
+        assert!(reconstruction.error(exact).unwrap().relative < 1e-11, "{exact:?}");
+    }
+    for short in [low_rank(4), cur(4)] {
+        assert!(reconstruction.error(short).unwrap().relative > 1e-4, "{short:?}");
+    }
+    assert!(reconstruction.error(RPI).unwrap().relative < 1e-3);
+}
+
+/// The eigenpairs of the `rank` largest magnitudes.
+fn by_magnitude(a: &Matrix, rank: usize) -> SymmetricEigen {
+    let eigen = symmetric_eigen(a).unwrap();
+    let mut order: Vec<usize> = (0..a.nrows()).collect();
+    order.sort_by(|i, j| eigen.values[*j].abs().total_cmp(&eigen.values[*i].abs()));
+    eigen.select(&order[..rank])
+}
+
+#[test]
+fn errors_match_their_definition() {
+    let (p, n) = (90, 8);
+    let (all, columns) = problem(p, n, 0.7);
+    let reconstruction = Reconstruction::new(&columns, &all).unwrap();
+    let squares = Matrix::from_fn(p, p, |i, j| all.get(i, j).powi(2));
+    let r = squares.columns(0, n).into_owned();
+    let s = squares.view((0, 0), (n, n)).into_owned();
+    let check = |approximation: Matrix, error: ReconstructionError| {
+        let gap = approximation - &squares;
+        assert!((error.relative / (gap.norm() / squares.norm()) - 1.0).abs() < 1e-9);
+        assert!((error.mean_square / (gap.norm_squared() / (p * p) as f64) - 1.0).abs() < 1e-9);
+    };
+    let inverse = pseudo_inverse(&s).unwrap();
+    check(&r * &inverse * r.transpose(), reconstruction.error(Regularization::None).unwrap());
+    let kept = by_magnitude(&s, 5);
+    let diagonal = |f: &dyn Fn(f64) -> f64, values: &[f64]| {
+        Matrix::from_diagonal(&values.iter().map(|v| f(*v)).collect::<Vec<_>>().into())
+    };
+    let c = &r * &kept.vectors;
+    check(
+        &c * diagonal(&f64::recip, &kept.values) * c.transpose(),
+        reconstruction.error(low_rank(5)).unwrap(),
+    );
+    let u = pseudo_inverse(&s.columns(0, 5).into_owned()).unwrap();
+    check(r.columns(0, 5) * u * r.transpose(), reconstruction.error(cur(5)).unwrap());
+    let whole = by_magnitude(&s, n);
+    let c = &r * &whole.vectors;
+    let alpha = 1e-10 * whole.values[0].powi(4);
+    let rpi = diagonal(&|v| v.signum() * v.abs() / (v * v + alpha / (v * v)), &whole.values);
+    check(&c * rpi * c.transpose(), reconstruction.error(RPI).unwrap());
+    check(&r * pseudo_inverse(&r).unwrap() * &squares, reconstruction.best_projection());
+}
+
+#[test]
+fn the_projection_is_the_smallest_error_and_falls_with_more_samples() {
+    let mut last = f64::INFINITY;
+    for n in [6, 12, 24, 48] {
+        let (all, columns) = problem(100, n, 0.7);
+        let reconstruction = Reconstruction::new(&columns, &all).unwrap();
+        let best = reconstruction.best_projection().relative;
+        assert!(best < last);
+        last = best;
+        for other in [Regularization::default(), RPI, Regularization::None, cur(5)] {
+            assert!(reconstruction.error(other).unwrap().relative >= best, "{other:?}");
+        }
+    }
+    let (all, columns) = problem(40, 40, 0.7);
+    let reconstruction = Reconstruction::new(&columns, &all).unwrap();
+    assert!(reconstruction.best_projection().relative < 1e-13);
+    assert!(reconstruction.error(Regularization::None).unwrap().relative < 1e-11);
+}
+
+#[test]
+fn relative_errors_have_no_unit() {
+    let (all, columns) = problem(130, 10, 0.7);
+    let base = Reconstruction::new(&columns, &all).unwrap();
+    for scale in [1e-3, 1e3] {
+        let scaled_all = DistanceMatrix::from_pairs(130, |i, j| scale * all.get(i, j)).unwrap();
+        let other = Reconstruction::new(&scaled(&columns, scale), &scaled_all).unwrap();
+        for regularization in [low_rank(6), RPI, Regularization::None, cur(6)] {
+            let [a, b] = [&base, &other].map(|reconstruction| reconstruction.error(regularization).unwrap());
+            assert!((a.relative / b.relative - 1.0).abs() < 1e-9, "{regularization:?}");
+            assert!((b.mean_square / scale.powi(4) / a.mean_square - 1.0).abs() < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn the_factor_is_exact_at_samples_if_no_eigenpair_is_dropped() {
+    let (all, columns) = problem(80, 20, 0.7);
+    let (z, n_positive) = low_rank_factor(&columns, 20).unwrap();
+    let signs = Matrix::from_fn(20, 20, |i, j| match i == j {
+        true if i < n_positive => 1.0,
+        true => -1.0,
+        false => 0.0,
+    });
+    let approximated = &z * signs * z.transpose();
+    let largest = columns.max().powi(2);
+    for (i, j) in (0..20).flat_map(|i| (0..80).map(move |j| (i, j))) {
+        let gap = approximated[(i, j)] - all.get(i, j).powi(2);
+        assert!(gap.abs() < 1e-9 * largest, "{i} {j}: {gap}");
+    }
+}
+
+#[test]
+fn mismatched_arguments_are_rejected() {
+    let (all, columns) = problem(20, 5, 1.0);
+    let (other, _) = problem(21, 5, 1.0);
+    let mismatch = NmdsError::PointMismatch { given: 20, n_points: 21 };
+    assert_eq!(Reconstruction::new(&columns, &other).unwrap_err(), mismatch);
+    let nothing = LandmarkDistances::new(vec![0, 1], Matrix::zeros(20, 2)).unwrap();
+    assert_eq!(Reconstruction::new(&nothing, &all).unwrap_err(), NmdsError::NoExtent(20));
+    let reconstruction = Reconstruction::new(&columns, &all).unwrap();
+    let bad = Err(NmdsError::BadRank { rank: 6, n_landmarks: 5 });
+    assert_eq!(reconstruction.error(low_rank(6)), bad);
+    assert_eq!(reconstruction.error(cur(6)), bad);
+    let alpha = Regularization::Rpi { alpha: RpiAlpha::Relative(-1.0) };
+    assert_eq!(reconstruction.error(alpha), Err(NmdsError::BadAlpha(-1.0)));
+}

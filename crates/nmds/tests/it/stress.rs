@@ -1,0 +1,145 @@
+use canonform_nmds::*;
+use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
+
+use crate::support::{Cloud, circle};
+
+/// The stress by its definition.
+fn by_definition(coords: &Matrix, distances: &DistanceMatrix) -> f64 {
+    let p = distances.n_points();
+    let squares = Matrix::from_fn(p, p, |i, j| distances.get(i, j).powi(2));
+    let centring = Matrix::identity(p, p).add_scalar(-1.0 / p as f64);
+    (coords * coords.transpose() + &centring * squares * &centring * 0.5).norm() / p as f64
+}
+
+#[test]
+fn equals_its_definition_and_the_norm_of_the_omitted_eigenvalues() {
+    let distances = circle(151);
+    let embedding = classical(&distances, 3, &()).unwrap();
+    let stress = paper_stress(&embedding.coords, &distances).unwrap();
+    assert!((stress / by_definition(&embedding.coords, &distances) - 1.0).abs() < 1e-12);
+    let all = classical_full(&distances, 3).unwrap().eigenvalues;
+    let rest = all[3..].iter().map(|v| v * v).sum::<f64>().sqrt() / 151.0;
+    assert!((stress / rest - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn normalized_stress_is_zero_for_exact_distances_and_relative_otherwise() {
+    let coords = Matrix::from_fn(20, 2, |i, j| ((3 * i + 7 * j) as f64).sin());
+    let distance = |i: usize, j: usize| (coords.row(i) - coords.row(j)).norm();
+    let exact = DistanceMatrix::from_pairs(20, distance).unwrap();
+    assert_eq!(normalized_stress(&coords, &exact), 0.0);
+    let stretched = DistanceMatrix::from_pairs(20, |i, j| 1.25 * distance(i, j)).unwrap();
+    assert!((normalized_stress(&coords, &stretched) - 0.2).abs() < 1e-14);
+}
+
+#[test]
+fn the_normalized_stress_equals_its_definition_and_has_no_unit() {
+    let distances = circle(151);
+    let embedding = classical(&distances, 3, &()).unwrap();
+    let found = stress(&embedding.coords, &distances).unwrap().normalized;
+    assert!((found / normalized_stress(&embedding.coords, &distances) - 1.0).abs() < 1e-12);
+    let large = DistanceMatrix::from_pairs(151, |i, j| 1024.0 * distances.get(i, j)).unwrap();
+    assert_eq!(stress(&(embedding.coords * 1024.0), &large).unwrap().normalized, found);
+    assert_eq!(stress(&Matrix::zeros(151, 3), &distances).unwrap().normalized, 1.0);
+}
+
+/// Distances that are not Euclidean, their best embedding in the plane, and the distances from 8 of the points.
+fn bent(p: usize) -> (DistanceMatrix, Matrix, LandmarkDistances) {
+    let cloud = Cloud::new(p, 3, 21);
+    let distances = DistanceMatrix::from_pairs(p, |i, j| cloud.distance(i, j).powf(0.7)).unwrap();
+    let coords = classical(&distances, 2, &()).unwrap().coords;
+    let landmarks: Vec<usize> = (0..8).map(|j| j * p / 8).collect();
+    let columns = Matrix::from_fn(p, 8, |i, j| distances.get(i, landmarks[j]));
+    (distances, coords, LandmarkDistances::new(landmarks, columns).unwrap())
+}
+
+#[test]
+fn estimates_from_all_rows_are_exact() {
+    let (distances, coords, landmarks) = bent(300);
+    let exact = stress(&coords, &distances).unwrap();
+    let all = estimate_stress(&coords, &distances, &RowSample::uniform(300, 1000, 0)).unwrap();
+    assert!((all.value / exact.value - 1.0).abs() < 1e-12 && all.n_rows == 300);
+    assert!((all.normalized / exact.normalized - 1.0).abs() < 1e-12);
+    assert!(all.interval[1] - all.interval[0] < 1e-9 * exact.value);
+    assert_eq!(all.normalized_interval[0], all.normalized_interval[1]);
+    // What is subtracted from the residuals of guided rows changes nothing but the variance.
+    let guided = RowSample::by_landmarks(&coords, &landmarks, 1.0, 20_000, 0).unwrap();
+    let guided = estimate_stress(&coords, &distances, &guided).unwrap();
+    assert!((guided.value / exact.value - 1.0).abs() < 0.01);
+}
+
+#[test]
+fn estimates_are_unbiased_and_intervals_cover_the_exact_stress() {
+    let (distances, coords, landmarks) = bent(300);
+    let exact = stress(&coords, &distances).unwrap();
+    type Draw<'a> = &'a dyn Fn(usize, u64) -> RowSample;
+    let uniform: Draw<'_> = &|m, seed| RowSample::uniform(300, m, seed);
+    let guided: Draw<'_> = &|m, seed| RowSample::by_landmarks(&coords, &landmarks, 1.0, m, seed).unwrap();
+    for (name, draw, m) in [("uniform", uniform, 20), ("guided", guided, 4), ("guided", guided, 20)] {
+        let runs = 300;
+        let found: Vec<_> =
+            (0..runs).map(|seed| estimate_stress(&coords, &distances, &draw(m, seed)).unwrap()).collect();
+        let covered = found.iter().filter(|e| (e.interval[0]..=e.interval[1]).contains(&exact.value));
+        let covered = covered.count() as f64 / runs as f64;
+        let mean_square = found.iter().map(|e| e.value.powi(2)).sum::<f64>() / runs as f64;
+        let width = found.iter().map(|e| e.interval[1] - e.interval[0]).sum::<f64>() / runs as f64;
+        println!("{name} {m}: {covered:.3} covered, width {:.3}", width / exact.value);
+        assert!(covered > 0.93, "{name} {m}: {covered}");
+        let within =
+            |e: &&Stress| (e.normalized_interval[0]..=e.normalized_interval[1]).contains(&exact.normalized);
+        let covered = found.iter().filter(within).count() as f64 / runs as f64;
+        println!("{name} {m}: {covered:.3} of the normalized stress covered");
+        assert!(covered > 0.93, "{name} {m}, normalized: {covered}");
+        assert!((mean_square / exact.value.powi(2) - 1.0).abs() < 0.05, "{name} {m}");
+    }
+}
+
+#[test]
+fn one_row_has_no_interval() {
+    let (distances, coords, landmarks) = bent(50);
+    for sample in
+        [RowSample::uniform(50, 1, 3), RowSample::by_landmarks(&coords, &landmarks, 1.0, 1, 3).unwrap()]
+    {
+        let found = estimate_stress(&coords, &distances, &sample).unwrap();
+        for interval in [found.interval, found.normalized_interval] {
+            assert_eq!(interval, [0.0, f64::INFINITY]);
+        }
+    }
+    let point = DistanceMatrix::from_rows(1, vec![0.0]).unwrap();
+    let found = estimate_stress(&Matrix::zeros(1, 2), &point, &RowSample::uniform(1, 4, 0)).unwrap();
+    assert_eq!((found.value, found.interval), (0.0, [0.0; 2]));
+}
+
+#[test]
+fn an_exact_embedding_has_no_stress() {
+    let cloud = Cloud::new(60, 2, 4);
+    let distances = DistanceMatrix::from_pairs(60, |i, j| cloud.distance(i, j)).unwrap();
+    let coords = classical(&distances, 2, &()).unwrap().coords;
+    let columns = Matrix::from_fn(60, 5, |i, j| distances.get(i, j));
+    let landmarks = LandmarkDistances::new((0..5).collect(), columns).unwrap();
+    let sample = RowSample::by_landmarks(&coords, &landmarks, 1.0, 4, 0).unwrap();
+    let found = estimate_stress(&coords, &distances, &sample).unwrap();
+    assert!(found.value < 1e-6 && found.interval[1] < 1e-6, "{found:?}");
+}
+
+#[test]
+fn intervals_follow_from_the_variance_between_rows_by_students_t() {
+    let (distances, coords, _) = bent(300);
+    for (m, quantile) in [(2, 31.821), (5, 3.747), (31, 2.457), (61, 2.390), (121, 2.358)] {
+        let sample = RowSample::uniform(300, m, 3);
+        let found = estimate_stress(&coords, &distances, &sample).unwrap();
+        let gap = |i: usize, j: usize| distances.get(i, j) - (coords.row(i) - coords.row(j)).norm();
+        let sums = sample.rows().into_iter().map(|i| {
+            let of_row = |term: &dyn Fn(usize) -> f64| (0..300).map(|j| term(j).powi(2)).sum::<f64>();
+            [of_row(&|j| gap(i, j)), of_row(&|j| distances.get(i, j))]
+        });
+        let sums: Vec<[f64; 2]> = sums.collect();
+        let [gaps, totals] = [0, 1].map(|k| sums.iter().map(|sum| sum[k]).sum::<f64>());
+        let ratio = gaps / totals;
+        let squares: f64 = sums.iter().map(|[gap, total]| (gap - ratio * total).powi(2)).sum();
+        let m = m as f64;
+        let deviation = (squares * m / (m - 1.0) * (1.0 - m / 300.0)).sqrt() / totals;
+        let half = found.normalized_interval[1].powi(2) - ratio;
+        assert!((half / deviation - quantile).abs() < 0.003, "{m} rows: {}", half / deviation);
+    }
+}
