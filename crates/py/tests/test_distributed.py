@@ -66,6 +66,7 @@ def test_meshes_in_memory_are_described_by_workers(client: Client, cats: list[Sh
     np.testing.assert_array_equal(form.points, surface.canonical_form(n_landmarks=20).points)
 
 
+@pytest.mark.slow
 def test_a_finished_batch_is_not_described_again(client: Client, collection: Path, tmp_path: Path) -> None:
     meshes = tmp_path / "meshes"
     meshes.mkdir()
@@ -86,6 +87,7 @@ def test_a_finished_batch_is_not_described_again(client: Client, collection: Pat
     assert third.build_report["described"] >= 1
 
 
+@pytest.mark.slow
 def test_what_else_is_in_the_folder_of_the_shards_stays(client: Client, single: Index, collection: Path, tmp_path: Path) -> None:
     folder = tmp_path / "my results"
     folder.mkdir()
@@ -104,6 +106,7 @@ def test_what_else_is_in_the_folder_of_the_shards_stays(client: Client, single: 
         assert len(shards) == (index.build_report["batches"] if keep else 0), shards
 
 
+@pytest.mark.slow
 def test_a_lost_worker_costs_its_batch_only(own_client: Client, single: Index, collection: Path, tmp_path: Path) -> None:
     shards = tmp_path / "shards"
     victims = own_client.run(os.getpid)
@@ -147,6 +150,7 @@ def test_failures_are_listed_and_nothing_at_all_is_an_error(client: Client, coll
         build_index(collection, client, tmp_path / "bad.canonform", geodesic="magic")
 
 
+@pytest.mark.slow
 def test_paths_make_the_index_of_their_folder(client: Client, single: Index, collection: Path, tmp_path: Path) -> None:
     # The folder of the index decides which paths it states.
     paths = sorted(collection.glob("*.off"), reverse=True)

@@ -33,17 +33,6 @@ def test_both_ranks_are_offered(index: Index) -> None:
         index.evaluate(rank="part")
 
 
-def test_a_part_finds_its_class(index: Index, collection: Path) -> None:
-    cat = canonform.read(collection / "cat1.off")
-    # Two thirds of the faces, from one end of the cat.
-    middles = cat.vertices[cat.faces].mean(axis=1)[:, 0]
-    part = canonform.Surface(cat.vertices, cat.faces[middles < np.quantile(middles, 0.67)])
-    found = index.search(part, rank="part")
-    assert found.label == "cat" and found[0].label == "cat"
-    assert found[0].part_distance <= found[1].part_distance and 0.4 < found[0].part_share < 1
-    assert index.search(part)[0].part_distance is None
-
-
 def test_forms_alone_order_results(index: Index) -> None:
     found = index.search("cat1", rank="forms")
     distances = [result.form_distance for result in found]
@@ -93,23 +82,7 @@ def test_labels_come_from_a_mapping_or_a_file(index: Index, collection: Path, tm
         Index.build(collection, path, labels={"a": "b\nc"})
 
 
-def test_shards_merge_to_the_whole(index: Index, collection: Path, tmp_path: Path) -> None:
-    shards = [Index.build(collection, tmp_path / f"{i}.canonform", shard=(i, 2)).path for i in (1, 2)]
-    merged = Index.merge(shards, tmp_path / "whole.canonform")
-    for i, one in enumerate((index, merged)):
-        one.export(tmp_path / f"{i}.jsonl")
-    ours, whole = ((tmp_path / f"{i}.jsonl").read_text() for i in (1, 0))
-    assert [_without_path(line) for line in ours.splitlines()] == [_without_path(line) for line in whole.splitlines()]
-
-
-def _without_path(line: str) -> dict:
-    import json
-
-    record = json.loads(line)
-    record.pop("path", None)
-    return record
-
-
+@pytest.mark.slow
 def test_progress_is_reported(collection: Path, tmp_path: Path) -> None:
     seen = []
     Index.build(collection, tmp_path / "i.canonform", progress=lambda *step: seen.append(step))
@@ -151,6 +124,7 @@ def test_errors_say_what_to_do(index: Index, collection: Path, call, kind: type[
     assert "--" not in str(raised.value)
 
 
+@pytest.mark.slow
 def test_a_shape_in_the_way_is_replaced_on_request(index: Index, collection: Path, tmp_path: Path, cat: Shape) -> None:
     own = Index.build(collection, tmp_path / "i.canonform")
     other = canonform.datasets.write([Shape("cat0", "", cat.vertices[:, [1, 0, 2]] * 3, cat.faces)], tmp_path / "other")

@@ -28,17 +28,6 @@ def test_both_maps_of_a_symmetric_pair_are_found(cats: list[Shape], cat_match: c
     assert found._repr_html_().count("<img") == 3 and "direct" in repr(found)
 
 
-def test_a_surface_matches_itself_and_carries_its_own_values(cat: Shape) -> None:
-    surface = cat.surface()
-    maps = {m.kind: m for m in canonform.match(surface, surface).maps}
-    m = maps["direct"]
-    np.testing.assert_array_equal(m.vertices, np.arange(surface.n_vertices))
-    for to in ("a", "b"):
-        np.testing.assert_allclose(m.transfer(surface.vertices, to), surface.vertices, atol=1e-6 * np.ptp(surface.vertices))
-        np.testing.assert_array_equal(m.transfer(np.arange(surface.n_vertices), to), np.arange(surface.n_vertices))
-        np.testing.assert_array_equal(m.transfer(np.arange(surface.n_faces), to), np.arange(surface.n_faces))
-
-
 def test_values_labels_and_points_are_carried_both_ways(cats: list[Shape], cat_match: canonform.Match) -> None:
     a, b = (shape.surface() for shape in cats)
     m = next(m for m in cat_match.maps if m.kind == "direct")
@@ -85,6 +74,7 @@ def test_the_functional_map_takes_coefficients_to_each_other(cats: list[Shape], 
         m.bases(1000)
 
 
+@pytest.mark.slow
 def test_landmarks_initial_maps_and_descriptors(cats: list[Shape]) -> None:
     a, b = (shape.surface() for shape in cats)
     few = {"n_eigenfunctions": 30}
@@ -119,6 +109,7 @@ def test_landmarks_initial_maps_and_descriptors(cats: list[Shape]) -> None:
         canonform.match(a, b, descriptors=(side, np.c_[there, there]), **few)
 
 
+@pytest.mark.slow
 def test_a_map_has_an_inverse_and_maps_follow_each_other(cats: list[Shape], cat_match: canonform.Match) -> None:
     a, b = (shape.surface() for shape in cats)
     forth = next(m for m in cat_match.maps if m.kind == "direct")

@@ -87,6 +87,7 @@ def test_meshes_in_memory_are_added(index: Index, shapes: list[Shape], tmp_path:
     assert sorted(again) == ["dave", "tom"]
 
 
+@pytest.mark.slow
 def test_an_index_from_memory_has_no_surprises(shapes: list[Shape], tmp_path: Path) -> None:
     tom, tim, dave, don = shapes
     bad = (np.full((4, 3), np.nan), [[0, 1, 2]])
@@ -111,6 +112,7 @@ def test_an_index_from_memory_has_no_surprises(shapes: list[Shape], tmp_path: Pa
     assert list(again) == ["cats/tom"] and again.build_report["unchanged"] == 1
 
 
+@pytest.mark.slow
 def test_an_index_is_evaluated_by_any_distances(shapes: list[Shape], tmp_path: Path) -> None:
     pytest.importorskip("pandas")
     names = [f"{shape.name}-{i}" for i in range(2) for shape in shapes]
@@ -124,6 +126,7 @@ def test_an_index_is_evaluated_by_any_distances(shapes: list[Shape], tmp_path: P
         index.evaluate(by=np.zeros((2, 2)))
 
 
+@pytest.mark.slow
 def test_compare_match_and_align_take_any_mesh(shapes: list[Shape], tmp_path: Path) -> None:
     a, b = shapes[:2]
     expected = canonform.compare(a.surface(), b.surface()).distance
@@ -199,6 +202,7 @@ def test_every_error_is_ours(index: Index, square: Surface, call: Callable, kind
     assert type(raised.value) is kind and words in str(raised.value), repr(raised.value)
 
 
+@pytest.mark.slow
 def test_generated_shapes_come_with_their_true_maps() -> None:
     a, b = canonform.datasets.generate("cat", poses=2, n_vertices=1000)
     truth = a.true_map(b)

@@ -39,6 +39,7 @@ def checked(html: str) -> list[bytes]:
     return pictures
 
 
+@pytest.mark.slow
 def test_every_result_has_a_view(cats: list[Shape], index: Index) -> None:
     a, b = (shape.surface() for shape in cats)
     for shown, n_pictures in [
@@ -273,6 +274,7 @@ def run_cell(monkeypatch: pytest.MonkeyPatch, cell: str, run: str, **metadata: s
     monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(get_ipython=lambda: shell))
 
 
+@pytest.mark.slow
 def test_one_cell_has_the_scripts_of_all_views(view: SurfaceView, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(_view._Cell, "known", None)
     outputs = []
@@ -302,6 +304,7 @@ def test_one_cell_has_the_scripts_of_all_views(view: SurfaceView, tmp_path: Path
         assert [entry for entry in browser.ask("/se/log", {"type": "browser"}) if entry["level"] == "SEVERE"] == []
 
 
+@pytest.mark.slow
 def test_without_webgl_a_view_is_its_picture(view: SurfaceView, tmp_path: Path) -> None:
     with browsing("--disable-3d-apis") as browser:
         browser.ask("/url", {"url": page_with(view, tmp_path)})

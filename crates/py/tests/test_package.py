@@ -53,6 +53,7 @@ def test_the_readme_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
         exec(compile(block, "README.md", "exec"), scope)
 
 
+@pytest.mark.slow
 def test_types_hold_and_wrong_names_are_found(tmp_path: Path) -> None:
     """The lines that end in "# wrong" fail, and no others, here or in the package."""
     pytest.importorskip("mypy")

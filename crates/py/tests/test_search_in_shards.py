@@ -85,6 +85,7 @@ def plate(meshes: list[Path]) -> tuple[np.ndarray, np.ndarray]:
     return np.concatenate(vertices), np.concatenate(faces)
 
 
+@pytest.mark.slow
 def test_all_rankings_and_explanations_are_those_of_one_index(
     client: Client, whole: Index, shards: list[Path], collection: Path, tmp_path: Path
 ) -> None:
@@ -137,6 +138,7 @@ def test_a_killed_worker_costs_a_retry(
         own_client.gather(busy)
 
 
+@pytest.mark.slow
 def test_shapes_are_added_while_others_search(
     client: Client, whole: Index, collection: Path, tmp_path: Path
 ) -> None:
@@ -175,6 +177,7 @@ def test_shapes_are_added_while_others_search(
     assert vector_table(parts, table) == {"n_shapes": 8, "changed": 1, "partitions": 0, "probes": 0, "recall": 1.0}
 
 
+@pytest.mark.slow
 def test_coded_vectors_state_their_recall(client: Client, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     random = np.random.default_rng(0)
     centres = random.normal(size=(40, 20))
@@ -204,6 +207,7 @@ def test_coded_vectors_state_their_recall(client: Client, tmp_path: Path, monkey
         assert {"s0", "new"} <= candidates and len(truth & candidates) >= 9
 
 
+@pytest.mark.slow
 def test_an_export_is_a_table_of_vectors(whole: Index, tmp_path: Path) -> None:
     lancedb, parquet, pa = (pytest.importorskip(name) for name in ("lancedb", "pyarrow.parquet", "pyarrow"))
     whole.export(tmp_path / "shapes.parquet")

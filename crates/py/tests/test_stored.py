@@ -70,6 +70,13 @@ def everything(cats: list[Shape], tmp_path_factory: pytest.TempPathFactory) -> d
     }
 
 
+def test_a_surface_and_its_form_come_back(square: Surface) -> None:
+    surface, form = (pickle.loads(pickle.dumps(value)) for value in (square, square.canonical_form(20)))
+    np.testing.assert_array_equal(surface.distances(5), square.distances(5))
+    np.testing.assert_array_equal(form.points, square.canonical_form(20).points)
+
+
+@pytest.mark.slow
 def test_every_public_type_is_among_them(everything: dict[str, Any]) -> None:
     public = {getattr(canonform, name) for name in canonform.__all__ if isinstance(getattr(canonform, name), type)}
     public = {kind for kind in public if not is_typeddict(kind)}
@@ -77,6 +84,7 @@ def test_every_public_type_is_among_them(everything: dict[str, Any]) -> None:
     assert public <= stored, public - stored
 
 
+@pytest.mark.slow
 def test_everything_goes_through_a_process_pool(everything: dict[str, Any]) -> None:
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(2, mp_context=context) as pool:
@@ -104,6 +112,7 @@ def test_everything_goes_through_a_process_pool(everything: dict[str, Any]) -> N
     assert found["index"].shapes() == everything["index"].shapes()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["form", "finer"])
 def test_a_form_is_made_again_only_when_needed(everything: dict[str, Any], name: str) -> None:
     form = everything[name]
@@ -116,6 +125,7 @@ def test_a_form_is_made_again_only_when_needed(everything: dict[str, Any], name:
     np.testing.assert_array_equal(again.place([3, 700]), form.place([3, 700]))
 
 
+@pytest.mark.slow
 def test_copies_are_equal_and_constant_objects_are_their_copies(everything: dict[str, Any]) -> None:
     for name, value in everything.items():
         for made in (copy.copy(value), copy.deepcopy(value)):
@@ -124,6 +134,7 @@ def test_copies_are_equal_and_constant_objects_are_their_copies(everything: dict
         assert copy.deepcopy(everything[name]) is everything[name]
 
 
+@pytest.mark.slow
 def test_damage_and_other_versions_are_told(everything: dict[str, Any]) -> None:
     for name in ("surface", "form", "comparison", "path"):
         make, (kind, version, checksum, state) = everything[name].__reduce__()
@@ -133,6 +144,7 @@ def test_damage_and_other_versions_are_told(everything: dict[str, Any]) -> None:
             make(kind, version, checksum + 1, state)
 
 
+@pytest.mark.slow
 def test_joblib_stores_surfaces(everything: dict[str, Any], tmp_path: Path) -> None:
     joblib = pytest.importorskip("joblib")
     joblib.dump(everything["surface"], tmp_path / "cat.joblib")

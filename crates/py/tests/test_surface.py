@@ -19,13 +19,6 @@ def test_distances_in_the_plane_are_euclidean(square: Surface) -> None:
         np.testing.assert_allclose(square.distances(0, geodesic=method), expected, atol=1e-12)
 
 
-def test_every_method_of_the_table_measures_distances(square: Surface) -> None:
-    for method in canonform.distance_methods():
-        distances = square.distances(0, geodesic=method)
-        assert distances.shape == (81,) and np.isfinite(distances).all()
-        assert distances.max() == pytest.approx(distances[80]), method
-
-
 def test_several_sources_give_the_nearest_or_one_row_each(square: Surface) -> None:
     rows = square.distances_many([0, 80, "3-4@0.25"])
     assert rows.shape == (3, 81)
@@ -81,6 +74,7 @@ def ball(n: int) -> NDArray[np.float64]:
     return np.column_stack([radius * np.cos(turn), radius * np.sin(turn), height])
 
 
+@pytest.mark.slow
 def test_points_without_faces_are_a_surface(tmp_path) -> None:
     points = ball(2000)
     surface = Surface(np.concatenate([points, points[:5], [[0, 0, 50]]]))
@@ -95,13 +89,6 @@ def test_points_without_faces_are_a_surface(tmp_path) -> None:
     read = canonform.read(tmp_path / "ball.xyz")
     np.testing.assert_allclose(read.distances(0, geodesic="exact"), distances[:2000])
     assert len(read.canonical_form(n_landmarks=20).points) == 2000
-
-
-def test_noisy_points_are_smoothed() -> None:
-    random = np.random.default_rng(0)
-    surface = Surface(ball(4000) + random.normal(scale=0.03, size=(4000, 3)))
-    assert surface.repair_report["points"]["neighbors"] > 0
-    assert abs(surface.area / (4 * np.pi) - 1) < 0.03
 
 
 def test_results_are_in_the_order_of_the_input() -> None:
@@ -138,12 +125,6 @@ def test_paths_lead_from_start_to_end(cat: Shape) -> None:
 
 def _has_edge(shape: Shape, a: int, b: int) -> bool:
     return bool(((shape.faces == a).any(axis=1) & (shape.faces == b).any(axis=1)).any())
-
-
-def test_farthest_points_spread(square: Surface) -> None:
-    points = square.farthest_points(4, first=0)
-    assert sorted(points.tolist()) == [0, 8, 72, 80]
-    assert square.farthest_points(1000).shape == (81,)
 
 
 def test_a_form_of_a_folded_sheet_is_the_flat_sheet() -> None:
@@ -188,6 +169,7 @@ def test_a_form_is_written_as_a_mesh(cat: Shape, tmp_path) -> None:
         cat.surface().canonical_form(n_landmarks=30, n_components=2).write(tmp_path / "flat.ply")
 
 
+@pytest.mark.slow
 def test_signatures_do_not_depend_on_pose_and_size(cats: list[Shape]) -> None:
     a, b = (shape.surface().signature() for shape in cats)
     dog = canonform.datasets.generate("david", poses=1, n_vertices=1000)[0]
@@ -289,21 +271,6 @@ def test_exceptions_are_also_the_built_in_ones() -> None:
         (errors.NoSuchShapeError, LookupError),
     ]:
         assert issubclass(kind, built_in) and issubclass(kind, errors.CanonformError)
-
-
-def test_threads_change_nothing(cat: Shape) -> None:
-    before = canonform.threads()
-    results = []
-    try:
-        for n in (1, 4):
-            canonform.set_threads(n)
-            assert canonform.threads() == n
-            surface = Surface(cat.vertices, cat.faces)
-            results.append((surface.distances_many(range(20)), surface.canonical_form(n_landmarks=40).points, surface.signature()))
-    finally:
-        canonform.set_threads(before)
-    for a, b in zip(*results, strict=True):
-        np.testing.assert_array_equal(a, b)
 
 
 def test_samples_are_taken_until_they_are_enough_and_reused(cat: Shape) -> None:
