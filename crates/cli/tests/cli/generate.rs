@@ -20,33 +20,22 @@ fn built_in_shapes_are_written_as_they_are() {
         assert_eq!(read(&place.path(shape["path"].as_str().unwrap())).unwrap(), expected.mesh);
     }
     // Another seed gives another shape, on any number of threads the same.
-    let other = ["generate", "--family", "cat", "--poses", "1", "--vertices", "1000", "--seed", "7"];
-    place.done(&[&other[..], &["-o", "one", "--threads", "1"]].concat());
-    place.done(&[&other[..], &["-o", "two", "--threads", "2", "--output-format", "off"]].concat());
+    let other = "generate --family cat --poses 1 --vertices 1000 --seed 7";
+    place.done(format!("{other} -o one --threads 1"));
+    place.done(format!("{other} -o two --threads 2 --output-format off"));
     let bytes = |folder: &str| fs::read(place.path(folder).join("cat0.off")).unwrap();
     assert!(bytes("one") == bytes("two") && bytes("one") != bytes("cats"));
-}
-
-#[test]
-fn creatures_are_written_into_a_folder_for_each_class() {
-    let place = Workplace::new();
-    let arguments = ["--family", "creatures", "--classes", "2", "--poses", "2", "--vertices", "1000"];
-    place.done(&[&["generate", "-o", "all"], &arguments[..], &["--output-format", "ply"]].concat());
+    // Creatures are written into a folder for each class.
+    place
+        .done("generate -o all --family creatures --classes 2 --poses 2 --vertices 1000 --output-format ply");
     let options =
         CreatureOptions { n_families: 2, n_poses: 2, n_vertices: 1000, ..CreatureOptions::default() };
     for shape in creatures(&options).unwrap() {
         let path = place.path("all").join(&shape.label).join(format!("{}.ply", shape.name));
         assert_eq!(read(&path).unwrap(), shape.mesh, "{}", path.display());
     }
-}
-
-#[test]
-fn impossible_shapes_are_refused() {
-    let place = Workplace::new();
     place.refused("generate --vertices 10 -o few", &["10 vertices", "1000 to 1000000"]);
     fs::write(place.path("taken"), "").unwrap();
-    place.refused(
-        "generate --family cat --poses 1 --vertices 1000 -o taken",
-        &["cannot create the folder taken"],
-    );
+    let taken = "generate --family cat --poses 1 --vertices 1000 -o taken";
+    place.refused(taken, &["cannot create the folder taken"]);
 }

@@ -10,6 +10,7 @@ use std::process::Command;
 
 use canonform::Remedy;
 use guide::{Chapter, CodeBlock, Language, Ran, Run};
+use rayon::prelude::*;
 use serde_json::Value;
 use strum::VariantArray;
 
@@ -134,39 +135,25 @@ fn check_keys(chapter: &Chapter, ran: &[Ran], faults: &mut Vec<String>) {
 fn the_guide_shows_what_its_commands_do() {
     let chapters = chapters();
     let pending: Vec<&Chapter> = chapters.iter().filter(|chapter| !chapter.runs("experiments")).collect();
-    let next = std::sync::atomic::AtomicUsize::new(0);
-    let faults = std::sync::Mutex::new(Vec::new());
-    let n_commands = std::sync::atomic::AtomicUsize::new(0);
-    std::thread::scope(|scope| {
-        for _ in 0..2 {
-            scope.spawn(|| {
-                while let Some(chapter) = pending.get(next.fetch_add(1, std::sync::atomic::Ordering::Relaxed))
-                {
-                    let mut run = guide::run(
-                        chapter,
-                        &[Path::new(program())],
-                        &[&root().canonicalize().unwrap().join("examples")],
-                    )
-                    .unwrap();
-                    if is_writing() {
-                        fs::write(&chapter.path, run.updated(chapter)).unwrap();
-                    }
-                    check_pictures(chapter, &mut run);
-                    check_keys(chapter, &run.ran, &mut run.faults);
-                    n_commands.fetch_add(run.ran.len(), std::sync::atomic::Ordering::Relaxed);
-                    faults.lock().unwrap().extend(run.faults);
-                }
-            });
+    let examples = root().canonicalize().unwrap().join("examples");
+    let check = |chapter: &&Chapter| {
+        let mut run = guide::run(chapter, &[Path::new(program())], &[&examples]).unwrap();
+        if is_writing() {
+            fs::write(&chapter.path, run.updated(chapter)).unwrap();
         }
-    });
-    let (mut faults, n_commands) = (faults.into_inner().unwrap(), n_commands.into_inner());
+        check_pictures(chapter, &mut run);
+        check_keys(chapter, &run.ran, &mut run.faults);
+        (run.ran.len(), run.faults)
+    };
+    let checked: Vec<(usize, Vec<String>)> = pending.par_iter().map(check).collect();
+    let n_commands: usize = checked.iter().map(|(n, _)| n).sum();
+    let mut faults: Vec<String> = checked.into_iter().flat_map(|(_, faults)| faults).collect();
     let shown: BTreeSet<&str> = chapters.iter().flat_map(pictures).collect();
     for entry in fs::read_dir(root().join("docs/guide/images")).unwrap() {
         let name = entry.unwrap().file_name().into_string().unwrap();
         faults
             .extend((!shown.contains(&*name)).then(|| format!("no chapter shows docs/guide/images/{name}")));
     }
-    println!("{n_commands} commands and scripts of {} chapters", pending.len());
     assert!(faults.is_empty(), "{}", faults.join("\n"));
     assert!(n_commands >= 40, "only {n_commands} commands");
 }

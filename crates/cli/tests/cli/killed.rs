@@ -20,8 +20,8 @@ fn collection() -> Workplace {
     place
 }
 
-fn build(output: &str) -> [&str; 9] {
-    ["index", "build", "meshes", "-n", "20", "--threads", "1", "-o", output]
+fn build(output: &str) -> String {
+    format!("index build meshes -n 20 --threads 1 -o {output}")
 }
 
 /// Number of shapes in an index, and whether it is finished.
@@ -45,9 +45,9 @@ fn n_kills() -> u32 {
 }
 
 /// Starts the program and kills it after `time`, unless it ends before. Returns whether it was killed.
-fn kill_after(place: &Workplace, arguments: &[&str], time: Duration) -> bool {
+fn kill_after(place: &Workplace, command: &str, time: Duration) -> bool {
     let mut child = Command::new(program())
-        .args(arguments)
+        .args(command.split(' '))
         .current_dir(place.path(""))
         .stdout(Stdio::null())
         .stderr(Stdio::null())
@@ -73,16 +73,16 @@ fn killed_commands_leave_whole_files_and_the_next_run_tidies_up() {
     let place = collection();
     place.add("a.off", &canonform::mesh::shapes::icosphere(5));
     place.add("b.off", &body(0, 3));
-    place.done(&build("all"));
-    let commands: [&[&str]; 8] = [
-        &["index", "export", "all", "-o", "out/all.jsonl"],
-        &["embed", "a.off", "-o", "out/a.npy", "--stress", "skip"],
-        &["embed", "a.off", "-o", "out/a.ply", "--stress", "skip"],
-        &["embed", "meshes", "-n", "20", "-o", "out", "--format", "obj"],
-        &["render", "a.off", "-o", "out/a.png"],
-        &["compare", "a.off", "b.off", "-n", "20", "--residual-mesh", "out/residual.ply"],
-        &["geodesic", "a.off", "--source", "7", "-o", "out/distances.npy"],
-        &["geodesic", "b.off", "--all-pairs", "-o", "out/pairs.npy"],
+    place.done(build("all"));
+    let commands = [
+        "index export all -o out/all.jsonl",
+        "embed a.off -o out/a.npy --stress skip",
+        "embed a.off -o out/a.ply --stress skip",
+        "embed meshes -n 20 -o out --format obj",
+        "render a.off -o out/a.png",
+        "compare a.off b.off -n 20 --residual-mesh out/residual.ply",
+        "geodesic a.off --source 7 -o out/distances.npy",
+        "geodesic b.off --all-pairs -o out/pairs.npy",
     ];
     let out = place.path("out");
     let turns = (3 * n_kills() / 4).div_ceil(commands.len() as u32);
@@ -110,13 +110,10 @@ fn killed_commands_leave_whole_files_and_the_next_run_tidies_up() {
 #[test]
 fn a_killed_change_leaves_the_old_index_or_the_new_one() {
     let place = collection();
-    place.done(&build("whole"));
+    place.done(build("whole"));
     (0..6).for_each(|i| place.add(&format!("more/t{i}.off"), &body(i % 3, 30 + i)));
-    let changes: [&[&str]; 3] = [
-        &["index", "add", "all", "more", "--threads", "1"],
-        &["index", "add", "all", "more/t0.off", "--threads", "1"],
-        &["index", "remove", "all", "s3", "s7"],
-    ];
+    let changes =
+        ["index add all more --threads 1", "index add all more/t0.off --threads 1", "index remove all s3 s7"];
     let turns = (n_kills() / 4).div_ceil(3);
     for change in changes {
         let renew = || fs::copy(place.path("whole"), place.path("all")).unwrap();
@@ -149,7 +146,7 @@ fn a_killed_build_continues_and_loses_nothing() {
     let kills = n_kills() / 4;
     let place = collection();
     let start = Instant::now();
-    place.done(&build("whole"));
+    place.done(build("whole"));
     let usual = start.elapsed();
     let whole = place.done("index export whole").out;
     let mut killed = 0;
@@ -171,19 +168,19 @@ fn a_killed_build_continues_and_loses_nothing() {
             assert!(now >= before, "{before} shapes were finished, {now} are left");
             before = now;
         }
-        place.done(&build(&index));
-        assert_eq!(place.done(&["index", "export", &index]).out, whole, "round {round}");
+        place.done(build(&index));
+        assert_eq!(place.done(format!("index export {index}")).out, whole, "round {round}");
         assert!(!log_path(&place.path(&index)).exists(), "one file is left");
     }
 }
 
 /// Runs the program with files limited to this many blocks of 512 bytes.
 #[cfg(unix)]
-fn run_limited(place: &Workplace, blocks: usize, arguments: &[&str]) -> (Option<i32>, String) {
+fn run_limited(place: &Workplace, blocks: usize, command: &str) -> (Option<i32>, String) {
     let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$@\"");
     let output = Command::new("bash")
         .args(["-c", &script, "bash", program()])
-        .args(arguments)
+        .args(command.split(' '))
         .current_dir(place.path(""))
         .output()
         .unwrap();
@@ -194,7 +191,7 @@ fn run_limited(place: &Workplace, blocks: usize, arguments: &[&str]) -> (Option<
 #[test]
 fn a_full_disk_is_reported_and_the_old_index_stays() {
     let place = collection();
-    place.done(&build("whole"));
+    place.done(build("whole"));
     let whole = place.done("index export whole").out;
     place.add("meshes/s99.off", &body(1, 40));
     let size = fs::metadata(place.path("whole")).unwrap().len() as usize / 512;
@@ -213,66 +210,8 @@ fn a_full_disk_is_reported_and_the_old_index_stays() {
     }
     assert!(failures > 1, "{failures}");
     // Without the limit the build continues.
-    place.done(&build("whole"));
+    place.done(build("whole"));
     fs::remove_file(place.path("meshes/s99.off")).unwrap();
-    place.done(&build("whole"));
+    place.done(build("whole"));
     assert_eq!(place.done("index export whole").out, whole);
-}
-
-/// Makes the system's calls that flush files fail: the one of number `FAIL_AT`, or all from there on if `FAIL_ON` is set.
-#[cfg(target_os = "linux")]
-const FAILING_SYNC: &str = r#"
-#include <errno.h>
-#include <stdlib.h>
-#include <sys/syscall.h>
-#include <unistd.h>
-static int calls;
-static int fails(void) {
-    int at = atoi(getenv("FAIL_AT"));
-    calls++;
-    if (calls == at || (calls > at && getenv("FAIL_ON"))) { errno = EIO; return 1; }
-    return 0;
-}
-int fsync(int fd) { return fails() ? -1 : syscall(SYS_fsync, fd); }
-int fdatasync(int fd) { return fails() ? -1 : syscall(SYS_fdatasync, fd); }
-"#;
-
-#[cfg(target_os = "linux")]
-#[test]
-fn a_failing_fsync_loses_nothing() {
-    let place = collection();
-    let (source, library) = (place.path("sync.c"), place.path("sync.so"));
-    fs::write(&source, FAILING_SYNC).unwrap();
-    let compiled = Command::new("cc").args(["-shared", "-fPIC", "-o"]).args([&library, &source]).status();
-    assert!(compiled.is_ok_and(|status| status.success()), "the C compiler that SQLite needs");
-    place.done(&build("whole"));
-    place.add("meshes/s99.off", &body(1, 40));
-    let export = || place.done("index export all").out;
-    let renew = || fs::copy(place.path("whole"), place.path("all")).unwrap();
-    renew();
-    let before = export();
-    place.done(&build("all"));
-    let after = export();
-    assert_ne!(before, after);
-    let mut failures = 0;
-    for (at, goes_on) in (1..12).map(|at| (at, at % 2 == 0)) {
-        renew();
-        let mut command = Command::new(program());
-        command.args(build("all")).current_dir(place.path("")).env("LD_PRELOAD", &library);
-        command.env("FAIL_AT", at.to_string());
-        if goes_on {
-            command.env("FAIL_ON", "1");
-        }
-        let output = command.output().unwrap();
-        let error = String::from_utf8(output.stderr).unwrap();
-        failures += u32::from(!output.status.success());
-        assert!(output.status.success() || error.contains("cannot write all"), "{at}: {error}");
-        place.done("index verify all");
-        let now = export();
-        assert!(lines(&before).is_subset(&lines(&now)), "{at}: a shape is lost");
-        assert!(lines(&now).is_subset(&lines(&after)), "{at}");
-        place.done(&build("all"));
-        assert_eq!(export(), after, "{at}");
-    }
-    assert!(failures > 2, "{failures}");
 }

@@ -2,9 +2,9 @@
 
 use std::fs;
 
-use canonform::mesh::{TriMesh, io, shapes};
+use canonform::mesh::{io, shapes};
 
-use crate::support::{Workplace, assert_keys};
+use crate::support::Workplace;
 
 const MATCH: &str = "match cat0.off cat1.off --eigenfunctions 40";
 
@@ -27,14 +27,10 @@ fn numbers(place: &Workplace, name: &str) -> Vec<i64> {
 fn both_maps_of_a_pair_are_written_in_every_format() {
     let place = cats();
     let json = place.json(format!("{MATCH} -o map.npy"));
-    assert_keys(&json, "a b n_vertices maps target source transfer functional seconds");
-    assert_keys(&json["seconds"], "load prepare matching total");
     let maps = json["maps"].as_array().unwrap();
     assert_eq!(maps.len(), 2);
     for (map, path) in maps.iter().zip(["map.npy", "map-mirrored.npy"]) {
-        let keys =
-            "kind distortion agreement confidence alternative matched doubtful path picture alternative_path";
-        assert_keys(map, keys);
+        assert!(map["kind"].is_string() && map["distortion"].is_number(), "{map}");
         assert!(map["confidence"].as_f64().unwrap() > 0.9 && map["alternative"].is_null(), "{map}");
         assert_eq!(map["path"], path);
         let found = numbers(&place, path);
@@ -55,17 +51,12 @@ fn both_maps_of_a_pair_are_written_in_every_format() {
         assert_eq!(fs::metadata(place.path(name)).unwrap().len(), 128 + 8 * size, "{name}");
     }
     let table = place.done(format!("{MATCH} -o map.ply")).out;
-    assert!(
-        ["distortion", "map-source.ply", "map-mirrored.ply"].iter().all(|w| table.contains(w)),
-        "{table}"
-    );
-    for (name, mesh) in [("map.ply", "cat1.off"), ("map-source.ply", "cat0.off")] {
-        let [colored, plain] = [name, mesh].map(|name| io::read(&place.path(name)).unwrap());
-        assert_eq!(colored.faces, plain.faces);
+    for words in ["distortion", "map-source.ply", "map-mirrored.ply"] {
+        assert!(table.contains(words), "{table}");
     }
-    for name in ["map.png", "map-mirrored.png"] {
-        assert!(fs::read(place.path(name)).unwrap().starts_with(b"\x89PNG"));
-    }
+    let [colored, plain] = ["map.ply", "cat1.off"].map(|name| io::read(&place.path(name)).unwrap());
+    assert_eq!(colored.faces, plain.faces);
+    assert!(fs::read(place.path("map-mirrored.png")).unwrap().starts_with(b"\x89PNG"));
 }
 
 #[test]
@@ -87,7 +78,6 @@ fn landmarks_initial_maps_and_tables_to_carry_are_read_and_their_faults_are_name
     fs::write(place.path("parts.csv"), labels.join("\n")).unwrap();
     let json = place.json(format!("{MATCH} --initial map.csv --transfer parts.csv -o carried.csv"));
     assert_eq!(json["maps"][0]["kind"], "mirrored");
-    assert_keys(&json["transfer"], "path elements kind rows columns");
     assert_eq!((&json["transfer"]["kind"], &json["transfer"]["rows"]), (&"labels".into(), &1000.into()));
     let carried = fs::read_to_string(place.path("carried.csv")).unwrap();
     assert!(carried.lines().count() == 1000 && carried.lines().all(|word| labels.contains(&word)));
@@ -120,18 +110,13 @@ fn landmarks_initial_maps_and_tables_to_carry_are_read_and_their_faults_are_name
 fn dropped_vertices_have_no_partner_and_rows_keep_the_order_of_the_input() {
     let place = cats();
     let cat = io::read(&place.path("cat0.off")).unwrap();
-    let far = shapes::icosphere(0);
-    let n = far.n_vertices();
-    let crumb = TriMesh {
-        positions: far.positions.iter().map(|p| nalgebra::Point3::from(p.coords * 0.01)).collect(),
-        faces: far.faces,
-    };
+    let mut crumb = shapes::icosphere(0);
+    crumb.positions.iter_mut().for_each(|p| p.coords *= 0.01);
+    let n = crumb.n_vertices();
     place.add("crumbs.off", &shapes::disjoint(&[crumb, cat]));
     place.done("match crumbs.off cat0.off --eigenfunctions 40 -o map.npy");
     let found = numbers(&place, "map.npy");
     assert!(found[..n].iter().all(|v| *v == -1));
     let right = found[n..].iter().zip(0..).filter(|(y, x)| **y == *x).count();
     assert!(right > 990, "{right} of 1000");
-    place.done("match cat0.off crumbs.off --eigenfunctions 40 -o back.npy");
-    assert!(numbers(&place, "back.npy").iter().all(|v| *v >= n as i64), "numbers of the input");
 }

@@ -76,14 +76,11 @@ fn errors_of_meshes_equal_those_of_search() {
         ("a.off", &b"OFF\n3 1 0\n0 0 0\n"[..]),
         ("a.obj", b"v 0 0 0\nv 1 nan 0\nf 1 2 3\n"),
         ("a.ply", b"ply\nformat ascii 1.0\n"),
-        ("a.stl", b""),
-        ("a.mat", b"MATLAB 7.3"),
-        ("a.vert", b"0 0 0\n"),
         ("a.md", b"hello"),
         ("flat.off", b"OFF\n3 1 0\n0 0 0\n0 0 0\n0 0 0\n3 0 1 2\n"),
     ] {
         std::fs::write(place.path(name), content).unwrap();
-        let expected = place.run(&["search", "i", name]).err;
+        let expected = place.run(format!("search i {name}")).err;
         assert_eq!(
             format!("error: {}\n", serving.upload(name, content)["error"].as_str().unwrap()),
             expected
@@ -98,7 +95,7 @@ fn errors_name_a_taken_address_a_missing_index_and_bad_limits() {
     let place = indexed();
     let serving = Serving::start(&place);
     let again = ["serve", "i", "--listen", &serving.address];
-    place.refused(&again, &[&serving.address, "another program uses it", "--listen with another port"]);
+    place.refused(&again[..], &[&serving.address, "another program uses it", "--listen with another port"]);
     place.refused("serve none", &["none"]);
     place.refused("serve i --listen nowhere", &["--listen"]);
     place.refused("serve i --max-upload 0", &["--max-upload"]);

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use canonform::mesh::{TriMesh, io, shapes};
-use serde_json::Value;
+use serde_json::{Value, json};
 use tempfile::TempDir;
 
 /// A temporary folder for one test.
@@ -37,18 +37,6 @@ impl Arguments for String {
 }
 
 impl<S: AsRef<str>> Arguments for &[S] {
-    fn words(&self) -> Vec<&str> {
-        self.iter().map(AsRef::as_ref).collect()
-    }
-}
-
-impl<S: AsRef<str>, const N: usize> Arguments for &[S; N] {
-    fn words(&self) -> Vec<&str> {
-        self.iter().map(AsRef::as_ref).collect()
-    }
-}
-
-impl<S: AsRef<str>> Arguments for &Vec<S> {
     fn words(&self) -> Vec<&str> {
         self.iter().map(AsRef::as_ref).collect()
     }
@@ -96,36 +84,39 @@ impl Workplace {
     /// Runs the program, which must succeed.
     pub(crate) fn done(&self, arguments: impl Arguments) -> Outcome {
         let words = arguments.words();
-        let outcome = self.run(&words);
+        let outcome = self.run(&words[..]);
         assert_eq!(outcome.code, 0, "{words:?}: {}", outcome.err);
         outcome
     }
 
     /// Runs the program with `--json`: standard output must be one object on one line.
     pub(crate) fn json(&self, arguments: impl Arguments) -> Value {
-        let outcome = self.done(&[&arguments.words()[..], &["--json"]].concat());
-        one_object(&outcome.out)
+        one_object(&self.done(&[&arguments.words()[..], &["--json"]].concat()[..]).out)
     }
 
     /// The answer to the only query of a search.
     pub(crate) fn found(&self, arguments: impl Arguments) -> Value {
-        let mut answers = self.json(&[&["search"], &arguments.words()[..]].concat());
-        assert_eq!(
-            (answers["queries"].as_array().unwrap().len(), &answers["failed"]),
-            (1, &Value::Array(Vec::new()))
-        );
+        let mut answers = self.json(&[&["search"], &arguments.words()[..]].concat()[..]);
+        assert_eq!((answers["queries"].as_array().unwrap().len(), &answers["failed"]), (1, &json!([])));
         answers["queries"][0].take()
     }
 
     /// Runs the program, which must fail with code 2 and a message that contains all of `words`.
     pub(crate) fn refused(&self, arguments: impl Arguments, words: &[&str]) {
         let arguments = arguments.words();
-        let outcome = self.run(&arguments);
+        let outcome = self.run(&arguments[..]);
         assert_eq!(outcome.code, 2, "{arguments:?}: {}{}", outcome.out, outcome.err);
         assert!(outcome.out.is_empty(), "{arguments:?} printed {}", outcome.out);
         for word in words {
             assert!(outcome.err.contains(word), "{arguments:?}: no `{word}` in: {}", outcome.err);
         }
+    }
+
+    /// Runs commands that must all be [`refused`](Self::refused) and leave nothing behind.
+    pub(crate) fn all_refused(&self, table: &[(&str, &[&str])]) {
+        let before = self.names();
+        table.iter().for_each(|(command, words)| self.refused(*command, words));
+        assert_eq!(self.names(), before);
     }
 
     /// Names of all files and folders, sorted.
@@ -147,12 +138,6 @@ pub(crate) fn one_object(text: &str) -> Value {
     let value: Value = serde_json::from_str(text).unwrap();
     assert!(value.is_object(), "{text}");
     value
-}
-
-pub(crate) fn assert_keys(value: &Value, keys: impl Arguments) {
-    for key in keys.words() {
-        assert!(value.get(key).is_some(), "no `{key}` in {value}");
-    }
 }
 
 /// A clean closed surface of 160 vertices.

@@ -78,9 +78,9 @@ fn the_table_of_broken_meshes_is_true() {
     assert!(zoo.len() >= 60, "{}", zoo.len());
     for file in &zoo {
         fs::write(place.path(file.name), &file.content).unwrap();
-        let info = place.run(&["info", file.name, "--json"]);
-        let embed = place.run(&["embed", file.name, "-n", "20", "-o", "form.npy", "--json"]);
-        let geodesic = place.run(&["geodesic", file.name, "--source", "0", "-o", "rows.npy", "--json"]);
+        let info = place.run(format!("info {} --json", file.name));
+        let embed = place.run(format!("embed {} -n 20 -o form.npy --json", file.name));
+        let geodesic = place.run(format!("geodesic {} --source 0 -o rows.npy --json", file.name));
         for outcome in [&info, &embed, &geodesic] {
             assert!((0..=2).contains(&outcome.code), "{}: {}: {}", file.name, outcome.code, outcome.err);
         }
