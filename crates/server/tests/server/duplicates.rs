@@ -9,22 +9,21 @@ use canonform_server::ServeOptions;
 use serde_json::Value;
 
 use crate::running::options;
-use crate::schema::Description;
+use crate::schema::told;
 use crate::support::{INDEX, Served, get};
 
 /// Asks until the search is done, or until a report is as it should be.
 fn report(server: &Served, is_wanted: impl Fn(&Value) -> bool) -> Value {
-    let description = Description(get(server, "/api/openapi.json").json());
     let start = Instant::now();
     loop {
         let answer = get(server, "/api/duplicates");
-        description.check("get", "/api/duplicates", answer.status, &answer.json());
+        let json = told(server, "get", "/api/duplicates", answer.status, &answer);
         match answer.status {
-            200 if is_wanted(&answer.json()) => return answer.json(),
+            200 if is_wanted(&json) => return json,
             202 => assert_eq!(answer.header("retry-after"), Some("1")),
             _ => (),
         }
-        assert!(start.elapsed() < Duration::from_secs(120), "{}", answer.json());
+        assert!(start.elapsed() < Duration::from_secs(120), "{json}");
         std::thread::sleep(Duration::from_millis(20));
     }
 }

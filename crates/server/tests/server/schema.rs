@@ -2,12 +2,23 @@
 
 use serde_json::Value;
 
-/// The description, as served.
-pub(crate) struct Description(pub(crate) Value);
+use crate::client::Answer;
+use crate::running::Running;
+use crate::support::get;
+
+/// What a route answers with this status, which is as its server describes it.
+pub(crate) fn told(server: &Running, method: &str, route: &str, status: u16, answer: &Answer) -> Value {
+    let json = answer.json();
+    assert_eq!(answer.status, status, "{method} {route}: {json}");
+    Description(get(server, "/api/openapi.json").json()).check(method, route, status, &json);
+    json
+}
+
+struct Description(Value);
 
 impl Description {
     /// Checks a response against the description of this route and status.
-    pub(crate) fn check(&self, method: &str, path: &str, status: u16, answer: &Value) {
+    fn check(&self, method: &str, path: &str, status: u16, answer: &Value) {
         let responses = &self.0["paths"][path][method]["responses"];
         let response = &responses[status.to_string()];
         assert!(response.is_object(), "{method} {path} answers {status}, which is not described: {answer}");
@@ -101,12 +112,7 @@ fn differences_from_the_schema_are_found() {
     };
     for (answer, n_faults) in [
         (r#"{"n": null, "list": ["x"], "more": {"n": 2}}"#, 0),
-        ("{}", 1),
-        (r#"{"n": 1.5}"#, 1),
-        (r#"{"n": 1, "other": 2}"#, 1),
-        (r#"{"n": 1, "list": ["y"]}"#, 1),
-        (r#"{"n": 1, "list": ["x", "x"]}"#, 1),
-        (r#"{"n": 1, "more": {}}"#, 1),
+        (r#"{"n": 1.5, "other": 2, "list": ["x", "y"], "more": {}}"#, 5),
     ] {
         assert_eq!(faults(answer), n_faults, "{answer}");
     }

@@ -68,20 +68,22 @@ impl Deref for Served {
     }
 }
 
-/// Makes an index of the bodies.
-fn index(folder: &Path) {
-    let meshes = folder.join("meshes");
-    fs::create_dir_all(&meshes).unwrap();
-    for (name, mesh) in bodies() {
-        canonform::mesh::io::write(&meshes.join(format!("{name}.off")), &mesh).unwrap();
+/// Writes meshes into a folder, and an index of them.
+pub(crate) fn write_indexed(folder: &Path, meshes: &[(&str, TriMesh)]) {
+    fs::create_dir_all(folder.join("meshes")).unwrap();
+    for (name, mesh) in meshes {
+        canonform::mesh::io::write(&folder.join(format!("meshes/{name}.off")), mesh).unwrap();
     }
+    build(folder);
+}
+
+fn build(folder: &Path) {
     let describe = DescribeOptions::default();
-    let options = BuildOptions::new(&describe);
-    let path = folder.join(INDEX);
-    if build_index(&meshes, &path, &options, &()).is_err() {
+    let (path, options) = (folder.join(INDEX), BuildOptions::new(&describe));
+    if build_index(&folder.join("meshes"), &path, &options, &()).is_err() {
         // An index of an earlier version was left here.
         fs::remove_file(&path).unwrap();
-        build_index(&meshes, &path, &options, &()).unwrap();
+        build_index(&folder.join("meshes"), &path, &options, &()).unwrap();
     }
 }
 
@@ -90,7 +92,7 @@ fn shared() -> PathBuf {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     let make = || {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("server");
-        index(&folder);
+        write_indexed(&folder, &bodies());
         folder
     };
     FOLDER.get_or_init(make).clone()
@@ -126,9 +128,7 @@ impl Served {
 
     /// Builds the index again, from the meshes that are there now.
     pub(crate) fn rebuild(&self) {
-        let describe = DescribeOptions::default();
-        let options = BuildOptions::new(&describe);
-        build_index(&self.folder.join("meshes"), &self.folder.join(INDEX), &options, &()).unwrap();
+        build(&self.folder);
     }
 
     /// Path of the mesh of a body.

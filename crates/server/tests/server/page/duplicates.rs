@@ -1,35 +1,29 @@
 //! The page of duplicates: groups, marks, downloads, the comparison of two members.
 
-use std::fs;
 use std::path::Path;
 
-use canonform::DescribeOptions;
-use canonform::library::{BuildOptions, build_index};
 use datasets::{Damage, Family, PartMesh, mechanical_parts};
 use serde_json::json;
 
 use super::support::{AWKWARD, Page, body};
 use crate::running::options;
+use crate::support::{INDEX, write_indexed};
 
 const READY: &str = "document.querySelector('#duplicates').dataset.state === 'ready'";
 
 /// A part with a copy of its file and one that is turned, a part of another family, and a cat with a finer copy.
 fn index(folder: &Path) {
-    let meshes = folder.join("meshes");
-    fs::create_dir(&meshes).unwrap();
-    let write = |name: &str, mesh: &canonform::mesh::TriMesh| {
-        canonform::mesh::io::write(&meshes.join(format!("{name}.off")), mesh).unwrap();
-    };
     let [part, other] = [0, 5].map(|i| mechanical_parts(0, 8)[i].mesh(&PartMesh::default()));
-    write("part", &part);
-    write(AWKWARD, &part);
-    write("turned part", &Damage::Move.apply(&part, 3));
-    write("other part", &other);
     let cat = body(Family::Cat, 0).mesh;
-    write("cat", &cat);
-    write("finer cat", &canonform::mesh::shapes::subdivide(&cat));
-    let describe = DescribeOptions::default();
-    build_index(&meshes, &folder.join("all.canonform"), &BuildOptions::new(&describe), &()).unwrap();
+    let meshes = [
+        ("part", part.clone()),
+        (AWKWARD, part.clone()),
+        ("turned part", Damage::Move.apply(&part, 3)),
+        ("other part", other),
+        ("cat", cat.clone()),
+        ("finer cat", canonform::mesh::shapes::subdivide(&cat)),
+    ];
+    write_indexed(folder, &meshes);
 }
 
 /// The text that a button downloads.
@@ -45,10 +39,11 @@ fn downloaded(page: &Page, css: &str) -> String {
 }
 
 #[test]
+#[ignore = "slow: make test-all"]
 fn groups_are_compared_and_marked() {
     let folder = tempfile::tempdir().unwrap();
     index(folder.path());
-    let path = folder.path().join("all.canonform");
+    let path = folder.path().join(INDEX);
     let Some(page) = Page::of(&path, [1280, 800], options()) else { return };
     page.go("/");
     page.wait_for("document.querySelectorAll('#shapes .tile').length === 6");

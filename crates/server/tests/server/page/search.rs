@@ -88,7 +88,7 @@ fn a_chosen_mesh_is_classified_and_overlaid_with_a_result() {
     page.browser
             .eval(
                 "const fetch = window.fetch;
-                 window.fetch = async (...asked) => { await new Promise(done => setTimeout(done, 900)); return fetch(...asked); };",
+                 window.fetch = async (...asked) => { await new Promise(done => setTimeout(done, 300)); return fetch(...asked); };",
             )
             .unwrap();
     page.browser.click("#results li:first-child .tile").unwrap();

@@ -124,47 +124,6 @@ fn options_filters_and_downloads_follow_the_address() {
 
 #[test]
 #[ignore = "slow: make test-all"]
-fn every_order_that_is_offered_can_be_had() {
-    let Some(page) = Page::open(1280, 900) else { return };
-    let folder = tempfile::tempdir().unwrap();
-    let offered = page.eval("[...document.querySelectorAll('#rank option')].map(option => option.value)");
-    let offered: Vec<&str> = offered.as_array().unwrap().iter().map(|rank| rank.as_str().unwrap()).collect();
-    assert_eq!(offered, ["plain", "graph", "part", "forms"]);
-    let is_ranked = |rank: &str| {
-        page.answered();
-        let asked = "fetch(document.querySelector('#as-json').href).then(found => found.json())";
-        assert_eq!(page.eval(asked)["rank_by"], rank);
-        assert_eq!(page.eval("document.querySelector('#rank').value"), rank);
-        let address = page.address();
-        assert_eq!(address.contains(&format!("rank={rank}")), rank != offered[0], "{address}");
-    };
-    for rank in &offered {
-        page.go("/?shape=cat0&k=6");
-        page.answered();
-        choose(&page, "rank", rank);
-        is_ranked(rank);
-        let order = match *rank {
-            "plain" => "",
-            "graph" => "rank distance",
-            "part" => "part distance",
-            _ => "form distance",
-        };
-        page.wait_for(&format!(
-            "[...document.querySelectorAll('#results .tile')].every(tile => tile.title.includes('{order}'))"
-        ));
-        // The address is enough, and an upload is ranked in the same way.
-        page.browser.eval("location.reload()").unwrap();
-        is_ranked(rank);
-        let name = format!("{rank}.off");
-        page.browser.upload("#file", &[&file(&folder, &name, Family::Cat)]).unwrap();
-        page.wait_for(&format!("document.querySelector('#query-name').textContent === '{name}'"));
-        is_ranked(rank);
-    }
-    page.assert_sound();
-}
-
-#[test]
-#[ignore = "slow: make test-all"]
 fn an_upload_has_an_address_until_it_expires() {
     let lifetime = Duration::from_secs(20);
     let brief = ServeOptions { query_lifetime: lifetime, ..options() };

@@ -1,18 +1,15 @@
 //! A server on a small index of the built-in shapes, and a browser on its page.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use browser::Browser;
-use canonform::DescribeOptions;
-use canonform::library::{BuildOptions, build_index};
 use canonform_server::ServeOptions;
 use datasets::{ArticulatedOptions, Family, LabeledShape, articulated_shape};
 use serde_json::{Value, json};
 
 use crate::running::{Running, options};
-use crate::support::{Turn, shared_turn};
+use crate::support::{INDEX, Turn, shared_turn, write_indexed};
 
 /// A file name that contains HTML.
 pub(crate) const AWKWARD: &str = "<img src=x onerror=console.error(1)>&'\" ü";
@@ -28,27 +25,11 @@ fn collection() -> PathBuf {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     let make = || {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("page");
-        let meshes = folder.join("meshes");
-        fs::create_dir_all(&meshes).unwrap();
-        for family in [Family::Cat, Family::Centaur, Family::David] {
-            for number in 0..3 {
-                let body = body(family, number);
-                canonform::mesh::io::write(&meshes.join(format!("{}.off", body.name)), &body.mesh).unwrap();
-            }
-        }
-        canonform::mesh::io::write(
-            &meshes.join(format!("{AWKWARD}.off")),
-            &canonform::mesh::shapes::torus(24, 12, 2.0, 0.6),
-        )
-        .unwrap();
-        let describe = DescribeOptions::default();
-        let options = BuildOptions::new(&describe);
-        let path = folder.join("all.canonform");
-        if build_index(&meshes, &path, &options, &()).is_err() {
-            // An index of an earlier version was left here.
-            fs::remove_file(&path).unwrap();
-            build_index(&meshes, &path, &options, &()).unwrap();
-        }
+        let families = [Family::Cat, Family::Centaur, Family::David];
+        let bodies: Vec<_> = families.iter().flat_map(|f| (0..3).map(|number| body(*f, number))).collect();
+        let mut meshes: Vec<_> = bodies.iter().map(|body| (&*body.name, body.mesh.clone())).collect();
+        meshes.push((AWKWARD, canonform::mesh::shapes::torus(24, 12, 2.0, 0.6)));
+        write_indexed(&folder, &meshes);
         folder
     };
     FOLDER.get_or_init(make).clone()
@@ -69,7 +50,7 @@ impl Page {
 
     /// As [`open`](Self::open), with options of the server.
     pub(crate) fn with(width: u32, height: u32, options: ServeOptions) -> Option<Self> {
-        let page = Self::of(&collection().join("all.canonform"), [width, height], options)?;
+        let page = Self::of(&collection().join(INDEX), [width, height], options)?;
         page.go("/");
         page.wait_for("document.querySelectorAll('#shapes .tile').length === 10");
         Some(page)
