@@ -28,23 +28,23 @@ pub(super) fn weld(
     merged: &mut DisjointSets,
     report: &mut RepairReport,
 ) -> usize {
-    if policy == Weld::None {
-        return 0;
-    }
-    let edges: Vec<EdgeId> = topology.boundary_edges().collect();
-    let mut boundary: Vec<u32> =
-        edges.iter().flat_map(|edge| topology.edges()[edge.index()]).map(|v| v.0).collect();
-    boundary.sort_unstable();
-    boundary.dedup();
-    let pairs = match policy {
-        Weld::All => coincident_pairs(positions, 0..positions.len() as u32),
-        _ => coincident_pairs(positions, boundary.iter().copied()),
+    let edges: Vec<EdgeId> = match policy {
+        Weld::None => return 0,
+        Weld::All => Vec::new(),
+        Weld::Seams | Weld::Within(_) => topology.boundary_edges().collect(),
     };
+    let mut candidates: Vec<u32> = match policy {
+        Weld::All => (0..positions.len() as u32).collect(),
+        _ => edges.iter().flat_map(|edge| topology.edges()[edge.index()]).map(|v| v.0).collect(),
+    };
+    candidates.sort_unstable();
+    candidates.dedup();
+    let pairs = coincident_pairs(positions, candidates.iter().copied());
     let n_coincident = pairs.into_iter().filter(|&[a, b]| merged.union(a, b)).count();
     report.welded_vertices += n_coincident;
     let pairs = match policy {
         _ if n_coincident > 0 => return n_coincident,
-        Weld::Within(tolerance) => vertex_pairs(scaled, &boundary, tolerance / unit),
+        Weld::Within(tolerance) => vertex_pairs(scaled, &candidates, tolerance / unit),
         Weld::Seams => seam_pairs(scaled, topology, &edges),
         Weld::All | Weld::None => return 0,
     };
