@@ -134,7 +134,10 @@ pub fn articulated(options: &ArticulatedOptions) -> Result<Vec<LabeledShape>, Da
         .iter()
         .flat_map(|(family, model)| (0..family.n_shapes()).map(move |pose| (*family, model, pose)))
         .collect();
-    shapes.into_par_iter().map(|(family, model, pose)| shape(family, model, [0, pose], options)).collect()
+    let shape = |(family, model, pose)| {
+        rested(family, model, [0, pose], options, &Budget::unlimited()).map(|made| made.shape)
+    };
+    shapes.into_par_iter().map(shape).collect()
 }
 
 /// Generates one shape of the dataset, the same as in [`articulated()`].
@@ -172,8 +175,7 @@ pub fn articulated_body(
     pose: usize,
     options: &ArticulatedOptions,
 ) -> Result<LabeledShape, DatasetError> {
-    options.validate()?;
-    shape(family, &family.model(), [body, pose], options)
+    Ok(articulated_at_rest(family, body, pose, options, &())?.shape)
 }
 
 /// A shape with the surface that it was bent from.
@@ -209,15 +211,6 @@ pub fn articulated_at_rest(
 ) -> Result<RestedShape, DatasetError> {
     options.validate()?;
     rested(family, &family.model(), [body, pose], options, &observer.budget())
-}
-
-fn shape(
-    family: Family,
-    model: &BodyModel,
-    numbers: [usize; 2],
-    options: &ArticulatedOptions,
-) -> Result<LabeledShape, DatasetError> {
-    Ok(rested(family, model, numbers, options, &Budget::unlimited())?.shape)
 }
 
 fn rested(
@@ -382,7 +375,8 @@ mod tests {
             BodyPart::added(vec![Blob::ball([0.0, 0.0, 0.0], 10.0)]),
             BodyPart::added(vec![Blob::ball([0.0, 50.0, 0.0], 10.0)]),
         ]);
-        let error = shape(Family::Cat, &model, [0, 3], &ArticulatedOptions::default()).unwrap_err();
+        let options = ArticulatedOptions::default();
+        let error = rested(Family::Cat, &model, [0, 3], &options, &Budget::unlimited()).unwrap_err();
         let expected = DatasetError::NoSurface { shape: "cat3".to_owned(), n_vertices: 3400, seed: 1 };
         assert_eq!(error, expected);
         assert!(error.to_string().contains("try another seed"));

@@ -6,7 +6,7 @@ use serde::Deserialize;
 
 use crate::implicit::{Blob, BodyPart, ImplicitBody};
 use crate::pose::{JointTurn, Pose};
-use crate::skeleton::{BoneNode, Joint, JointId, Skeleton};
+use crate::skeleton::{Joint, JointId, Skeleton, node};
 
 /// A body at rest, its skeleton and its poses.
 #[derive(Debug, Clone)]
@@ -126,12 +126,8 @@ impl BodyDescription {
         let (mut skeleton, mut names) = (Skeleton::default(), JointNames::default());
         for data in &self.chains {
             let parent = data.parent.as_deref().map(|name| (names.chains[name][0], data.node));
-            let node = |[x, y, z, radius, grain]: &[f64; 5]| BoneNode {
-                at: [*x, *y, *z].into(),
-                radius: *radius,
-                grain: *grain,
-            };
-            let nodes = data.nodes.iter().map(node).collect();
+            let nodes =
+                data.nodes.iter().map(|&[x, y, z, radius, grain]| node([x, y, z], radius, grain)).collect();
             let joints = data.joints.iter().map(JointData::joint).collect();
             let chains = match parent.filter(|_| data.pair) {
                 Some(parent) => skeleton.pair(parent, nodes, joints).to_vec(),

@@ -3,7 +3,6 @@
 use mesh::TriMesh;
 use surface::{EdgeGraph, VertexId, components_of_faces};
 
-use super::paths::farthest;
 use crate::stream::Stream;
 
 /// Cuts off the end of a random limb with the given share of the area: what is nearest along edges to its tip. Only the
@@ -76,4 +75,10 @@ fn tip(edges: &EdgeGraph, first: VertexId) -> VertexId {
         at = next;
     }
     at
+}
+
+/// The largest of the finite lengths with its vertex.
+pub(super) fn farthest(lengths: &[f64]) -> (usize, f64) {
+    let finite = lengths.iter().copied().enumerate().filter(|(_, length)| length.is_finite());
+    finite.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, 0.0))
 }

@@ -6,7 +6,6 @@ mod cut_off;
 mod holes;
 mod kind;
 mod noise;
-mod paths;
 mod remesh;
 mod slice;
 mod weld;

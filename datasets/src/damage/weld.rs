@@ -6,7 +6,7 @@ use mesh::TriMesh;
 use nalgebra::Point3;
 use surface::{EdgeGraph, OneRing, Topology, VertexId};
 
-use super::paths::farthest;
+use super::cut_off::farthest;
 use crate::stream::Stream;
 
 /// How two points are drawn that become one. They are far apart on the surface: at least half as far as the farthest point
