@@ -95,11 +95,11 @@ fn collapse_by_queue(
     budget: &Budget,
 ) -> Result<usize, Exceeded> {
     let mut meter = budget.meter();
-    let mut entries = Vec::new();
+    let mut queue = NearestFirst::default();
     for v in surface.table.vertices() {
-        entries.extend(surface.table.neighbors(v).filter(|&x| v < x).map(|x| surface.entry(v, x)));
+        let above = surface.table.neighbors(v).filter(|&x| v < x);
+        above.for_each(|x| queue.push(surface.cost(v, x), [v, x]));
     }
-    let mut queue: NearestFirst<[VertexId; 2]> = entries.into_iter().collect();
     while n_left > n_vertices
         && let Some((_, [u, w])) = queue.pop()
     {
@@ -116,8 +116,8 @@ fn collapse_by_queue(
             continue;
         };
         n_left -= 1;
-        for (cost, edge) in surface.table.neighbors(kept).map(|x| surface.entry(kept.min(x), kept.max(x))) {
-            queue.push(cost, edge);
+        for x in surface.table.neighbors(kept) {
+            queue.push(surface.cost(kept, x), [kept.min(x), kept.max(x)]);
         }
     }
     Ok(n_left)
@@ -146,11 +146,6 @@ impl RestSurface {
         let (a, b) = (u.index(), w.index());
         let grain = self.grain[a] + self.grain[b];
         (self.positions[a] - self.positions[b]).norm_squared() / (grain * grain)
-    }
-
-    /// An edge in the queue, and its cost.
-    fn entry(&self, u: VertexId, w: VertexId) -> (f64, [VertexId; 2]) {
-        (self.cost(u, w), [u, w])
     }
 
     /// Merges `gone` into `kept` if possible; returns whether it was.

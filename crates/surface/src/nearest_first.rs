@@ -8,7 +8,8 @@ use std::collections::BinaryHeap;
 /// ```
 /// use canonform_surface::NearestFirst;
 ///
-/// let mut queue = NearestFirst::from_iter([(2.5, 'c'), (0.5, 'b'), (0.5, 'a')]);
+/// let mut queue = NearestFirst::default();
+/// [(2.5, 'c'), (0.5, 'b'), (0.5, 'a')].into_iter().for_each(|(distance, item)| queue.push(distance, item));
 /// assert_eq!(queue.pop(), Some((0.5, 'a')));
 /// queue.push(1.0, 'd');
 /// assert_eq!(std::iter::from_fn(|| queue.pop()).map(|(_, item)| item).collect::<String>(), "bdc");
@@ -39,11 +40,5 @@ impl<T: Ord> NearestFirst<T> {
     #[inline]
     pub fn pop(&mut self) -> Option<(f64, T)> {
         self.0.pop().map(|Reverse((bits, item))| (f64::from_bits(bits), item))
-    }
-}
-
-impl<T: Ord> FromIterator<(f64, T)> for NearestFirst<T> {
-    fn from_iter<I: IntoIterator<Item = (f64, T)>>(items: I) -> Self {
-        Self(items.into_iter().map(|(distance, item)| Reverse((distance.to_bits(), item))).collect())
     }
 }

@@ -42,10 +42,10 @@ fn without_disc(mesh: &TriMesh, first: usize, area: f64) -> TriMesh {
     }
     let center = |f: usize| mesh.triangle(f).iter().map(|p| p.coords).sum::<nalgebra::Vector3<f64>>() / 3.0;
     let middle = center(first);
-    let entry = |f: usize| ((center(f) - middle).norm_squared(), f);
     let mut reached = vec![false; mesh.n_faces()];
     let mut is_cut = vec![false; mesh.n_faces()];
-    let mut queue = NearestFirst::from_iter([entry(first)]);
+    let mut queue = NearestFirst::default();
+    queue.push(0.0, first);
     reached[first] = true;
     let mut covered = 0.0;
     while covered < area
@@ -55,8 +55,7 @@ fn without_disc(mesh: &TriMesh, first: usize, area: f64) -> TriMesh {
         covered += 0.5 * mesh.area_vector(f).norm();
         for &near in mesh.faces[f].iter().flat_map(|v| &faces_at[v.index()]) {
             if !std::mem::replace(&mut reached[near], true) {
-                let (distance, near) = entry(near);
-                queue.push(distance, near);
+                queue.push((center(near) - middle).norm_squared(), near);
             }
         }
     }
