@@ -36,13 +36,8 @@ impl RowSample {
         Self { rows, weights: vec![1.0; m], offsets: Vec::new(), correction }
     }
 
-    /// Draws `m` different rows (at most `n_points`) with `seed`, all equally likely; see [`sample_rows`].
-    pub fn uniform(n_points: usize, m: usize, seed: u64) -> Self {
-        Self::of_rows(sample_rows(n_points, m, seed), n_points)
-    }
-
     /// Draws `m` rows with `seed` so that few of them give a narrow interval, by what the distances from landmarks tell of
-    /// every row. The estimate is as unbiased as from [`uniform`](Self::uniform) rows, and so is its variance: the
+    /// every row. The estimate is as unbiased as from [equally likely](sample_rows) rows, and so is its variance: the
     /// landmarks decide which rows are drawn, but their residuals, which are smaller than others, do not enter.
     ///
     /// With `r_ij` the residual of point i and landmark j, and `w_j` the share of points nearest to landmark j:

@@ -100,8 +100,6 @@ const LANES: usize = 4;
 pub struct HeatMethod {
     /// Mesh units in one unit of length inside.
     unit: f64,
-    /// Heat time, in squared units.
-    time: f64,
     components: Components,
     /// The vertices joined to each vertex by a side of a triangle, and their distances in units.
     neighbors: Rows<(u32, f64)>,
@@ -158,7 +156,6 @@ impl HeatMethod {
         }
         Ok(Self {
             unit: metric.unit,
-            time,
             components,
             neighbors,
             step,
@@ -168,11 +165,6 @@ impl HeatMethod {
             scratch: Pool::default(),
             budget,
         })
-    }
-
-    /// How long heat flows, in squared mesh units.
-    pub fn time(&self) -> f64 {
-        self.time * self.unit * self.unit
     }
 
     /// Solves for up to `K` sets of sources at once, one column of `out` each.

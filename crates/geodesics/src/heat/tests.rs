@@ -184,7 +184,6 @@ fn loose_vertices_are_reached_only_over_links() {
 fn heat_reaches_the_far_end_of_a_very_long_surface() {
     let pipe = cylinder(4, 4000, 0.5, 3000.0);
     let method = heat(&surface(&pipe));
-    assert!(method.time() > 1.2, "{}", method.time());
     let found = method.distances(VertexId(0)).unwrap();
     let far = found.len() - 4;
     assert!((found[far] / 3000.0 - 1.0).abs() < 0.01, "{}", found[far]);
@@ -252,11 +251,4 @@ fn invalid_times_are_rejected() {
     // A long time is still a direction.
     let long = HeatMethod::new(&mesh, HeatOptions { time: 1e6 }, &()).unwrap();
     assert!(long.distances(VertexId(0)).unwrap().iter().all(|d| d.is_finite()));
-}
-
-#[test]
-fn time_is_in_squared_mesh_units() {
-    let mesh = surface(&icosphere(2));
-    let time = HeatMethod::new(&mesh, HeatOptions { time: 2.0 }, &()).unwrap().time();
-    assert!((time - 2.0 * mesh.mean_edge_length().powi(2)).abs() < 1e-12 * time);
 }

@@ -43,6 +43,11 @@ fn the_normalized_stress_equals_its_definition_and_has_no_unit() {
     assert_eq!(stress(&Matrix::zeros(151, 3), &distances).unwrap().normalized, 1.0);
 }
 
+/// Different rows, all equally likely.
+fn equally_likely(n_points: usize, m: usize, seed: u64) -> RowSample {
+    RowSample::of_rows(sample_rows(n_points, m, seed), n_points)
+}
+
 /// Distances that are not Euclidean, their best embedding in the plane, and the distances from 8 of the points.
 fn bent(p: usize) -> (DistanceMatrix, Matrix, LandmarkDistances) {
     let cloud = Cloud::new(p, 3, 21);
@@ -57,7 +62,7 @@ fn bent(p: usize) -> (DistanceMatrix, Matrix, LandmarkDistances) {
 fn estimates_from_all_rows_are_exact() {
     let (distances, coords, landmarks) = bent(300);
     let exact = stress(&coords, &distances).unwrap();
-    let all = estimate_stress(&coords, &distances, &RowSample::uniform(300, 1000, 0)).unwrap();
+    let all = estimate_stress(&coords, &distances, &equally_likely(300, 1000, 0)).unwrap();
     assert!((all.value / exact.value - 1.0).abs() < 1e-12 && all.n_rows == 300);
     assert!((all.normalized / exact.normalized - 1.0).abs() < 1e-12);
     assert!(all.interval[1] - all.interval[0] < 1e-9 * exact.value);
@@ -73,7 +78,7 @@ fn estimates_are_unbiased_and_intervals_cover_the_exact_stress() {
     let (distances, coords, landmarks) = bent(300);
     let exact = stress(&coords, &distances).unwrap();
     type Draw<'a> = &'a dyn Fn(usize, u64) -> RowSample;
-    let uniform: Draw<'_> = &|m, seed| RowSample::uniform(300, m, seed);
+    let uniform: Draw<'_> = &|m, seed| equally_likely(300, m, seed);
     let guided: Draw<'_> = &|m, seed| RowSample::by_landmarks(&coords, &landmarks, 1.0, m, seed).unwrap();
     for (name, draw, m) in [("uniform", uniform, 20), ("guided", guided, 4), ("guided", guided, 20)] {
         let runs = 300;
@@ -98,7 +103,7 @@ fn estimates_are_unbiased_and_intervals_cover_the_exact_stress() {
 fn one_row_has_no_interval() {
     let (distances, coords, landmarks) = bent(50);
     for sample in
-        [RowSample::uniform(50, 1, 3), RowSample::by_landmarks(&coords, &landmarks, 1.0, 1, 3).unwrap()]
+        [equally_likely(50, 1, 3), RowSample::by_landmarks(&coords, &landmarks, 1.0, 1, 3).unwrap()]
     {
         let found = estimate_stress(&coords, &distances, &sample).unwrap();
         for interval in [found.interval, found.normalized_interval] {
@@ -106,7 +111,7 @@ fn one_row_has_no_interval() {
         }
     }
     let point = DistanceMatrix::from_rows(1, vec![0.0]).unwrap();
-    let found = estimate_stress(&Matrix::zeros(1, 2), &point, &RowSample::uniform(1, 4, 0)).unwrap();
+    let found = estimate_stress(&Matrix::zeros(1, 2), &point, &equally_likely(1, 4, 0)).unwrap();
     assert_eq!((found.value, found.interval), (0.0, [0.0; 2]));
 }
 
@@ -126,7 +131,7 @@ fn an_exact_embedding_has_no_stress() {
 fn intervals_follow_from_the_variance_between_rows_by_students_t() {
     let (distances, coords, _) = bent(300);
     for (m, quantile) in [(2, 31.821), (5, 3.747), (31, 2.457), (61, 2.390), (121, 2.358)] {
-        let sample = RowSample::uniform(300, m, 3);
+        let sample = equally_likely(300, m, 3);
         let found = estimate_stress(&coords, &distances, &sample).unwrap();
         let gap = |i: usize, j: usize| distances.get(i, j) - (coords.row(i) - coords.row(j)).norm();
         let sums = sample.rows().into_iter().map(|i| {
