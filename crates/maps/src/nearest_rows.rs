@@ -43,46 +43,37 @@ fn nearer(best: (f64, usize), next: (f64, usize)) -> (f64, usize) {
     if next.0 < best.0 { next } else { best }
 }
 
-/// Rows of a matrix in cells, each around one of them.
-pub(crate) struct Cells<'a> {
-    /// All rows.
-    pub(crate) rows: &'a Matrix,
-    /// Columns by which the nearest cells are found.
-    pub(crate) coarse: &'a [usize],
-    /// The row in the middle of each cell.
-    pub(crate) centers: &'a [usize],
-    /// The rows of each cell.
-    pub(crate) members: &'a [Vec<usize>],
-}
-
 /// Cells searched around each place. A safety limit.
 pub(crate) const PROBED: usize = 8;
 
-impl Cells<'_> {
-    /// For every row of `x` the nearest row of the cells with the eight nearest centers; the one of the nearer center, or
-    /// the first, in case of a tie.
-    ///
-    /// Cost `O(m c d)` for `c` centers; parallel, and independent of the number of threads.
-    pub(crate) fn nearest(&self, x: &Matrix) -> Vec<usize> {
-        let centers = self.rows.select_rows(self.centers).select_columns(self.coarse);
-        let of_centers = half_squares(&centers);
-        // Rows next to each other in memory.
-        let (sources, targets) = (x.transpose(), self.rows.transpose());
-        let coarse = sources.select_rows(self.coarse);
-        let one = |rows: Range<usize>| -> Vec<usize> {
-            let products = &centers * coarse.columns_range(rows.clone());
-            let nearest = |(i, column): (usize, nalgebra::DVectorView<'_, f64>)| {
-                let gaps = column.iter().zip(&of_centers).map(|(dot, half)| half - dot);
-                let cells = first_of(gaps.zip(0..).collect(), PROBED);
-                let members = cells.iter().flat_map(|(_, cell): &(f64, usize)| &self.members[*cell]);
-                let source = sources.column(i);
-                let gap = |&v: &usize| (sq_distance(source.as_slice(), targets.column(v).as_slice()), v);
-                members.map(gap).fold((f64::INFINITY, 0), nearer).1
-            };
-            rows.zip(products.column_iter()).map(nearest).collect()
+/// For every row of `x` the nearest row of `y` in the cells with the eight nearest centers, by some `coarse` columns; the
+/// one of the nearer center, or the first, in case of a tie. A cell has a row in its middle, and members.
+///
+/// Cost `O(m c d)` for `c` centers; parallel, and independent of the number of threads.
+pub(crate) fn nearest_in_cells(
+    x: &Matrix,
+    y: &Matrix,
+    (centers, members): (&[usize], &[Vec<usize>]),
+    coarse: &[usize],
+) -> Vec<usize> {
+    let centers = y.select_rows(centers).select_columns(coarse);
+    let of_centers = half_squares(&centers);
+    // Rows next to each other in memory.
+    let (sources, targets) = (x.transpose(), y.transpose());
+    let coarse = sources.select_rows(coarse);
+    let one = |rows: Range<usize>| -> Vec<usize> {
+        let products = &centers * coarse.columns_range(rows.clone());
+        let nearest = |(i, column): (usize, nalgebra::DVectorView<'_, f64>)| {
+            let gaps = column.iter().zip(&of_centers).map(|(dot, half)| half - dot);
+            let cells = first_of(gaps.zip(0..).collect(), PROBED);
+            let members = cells.iter().flat_map(|(_, cell): &(f64, usize)| &members[*cell]);
+            let source = sources.column(i);
+            let gap = |&v: &usize| (sq_distance(source.as_slice(), targets.column(v).as_slice()), v);
+            members.map(gap).fold((f64::INFINITY, 0), nearer).1
         };
-        blocks(x.nrows()).map(one).collect::<Vec<_>>().concat()
-    }
+        rows.zip(products.column_iter()).map(nearest).collect()
+    };
+    blocks(x.nrows()).map(one).collect::<Vec<_>>().concat()
 }
 
 /// The first `n` items by their numbers, and by what follows them where these are equal, in order.
@@ -141,7 +132,6 @@ mod tests {
         let (x, y) = (curve(230, 0.3), curve(400, 0.0));
         let members: Vec<Vec<usize>> = (0..40).map(|c| (10 * c..10 * c + 10).collect()).collect();
         let centers: Vec<usize> = (0..40).map(|c| 10 * c + 5).collect();
-        let cells = Cells { rows: &y, coarse: &[0, 1], centers: &centers, members: &members };
-        assert_eq!(cells.nearest(&x), by_hand(&x, &y));
+        assert_eq!(nearest_in_cells(&x, &y, (&centers, &members), &[0, 1]), by_hand(&x, &y));
     }
 }

@@ -9,7 +9,7 @@ use rigid::PointSet;
 
 use crate::curvature::{TIMES, bends, fine_curvature, mean_curvature, smoothed};
 use crate::functional::FunctionalMaps;
-use crate::nearest_rows::Cells;
+use crate::nearest_rows::nearest_in_cells;
 use crate::operators::Operators;
 use crate::orientation::{FUNCTIONS, Oriented, pairs};
 use descriptors::{CanonicalForm, DescriptorError, LaplaceSpectrum, Normalization, wave_kernels};
@@ -203,7 +203,7 @@ impl MapShape {
     pub(crate) fn nearest_vertices(&self, rows: &Matrix, places: &Matrix) -> Vec<usize> {
         let k = rows.ncols() / 2;
         let coarse: Vec<usize> = (0..k.min(COARSE)).flat_map(|j| [j, k + j]).collect();
-        Cells { rows, coarse: &coarse, centers: &self.samples, members: &self.cells }.nearest(places)
+        nearest_in_cells(places, rows, (&self.samples, &self.cells), &coarse)
     }
 
     /// How far a map preserves orientation, from -1 for one that reverses it to 1; `None` if a surface cannot be oriented.
