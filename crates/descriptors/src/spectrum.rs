@@ -1,7 +1,7 @@
 //! The Laplace-Beltrami spectrum of a surface.
 
 use base::Observer;
-use linalg::{GeneralizedEigen, LinalgError, Matrix, SparseSymmetric, smallest_eigenpairs};
+use linalg::{LinalgError, Matrix, SparseSymmetric, SymmetricEigen, smallest_eigenpairs};
 use surface::IntrinsicMesh;
 use surface::laplacian::{Element, Laplacian};
 
@@ -33,7 +33,7 @@ impl LaplaceSpectrum {
     /// # Errors
     /// As [`new`](Self::new).
     pub fn describing(mesh: &IntrinsicMesh, observer: &dyn Observer) -> Result<Self, DescriptorError> {
-        Self::found(mesh, Self::DESCRIBING, GeneralizedEigen::AVERAGED, observer)
+        Self::found(mesh, Self::DESCRIBING, SymmetricEigen::AVERAGED, observer)
     }
 
     /// The `m` smallest eigenpairs, including the constant function; fewer on a surface with fewer vertices.
@@ -49,7 +49,7 @@ impl LaplaceSpectrum {
     /// [`DescriptorError::NoExtent`] for a surface without area; [`DescriptorError::Linalg`], also if the
     /// budget of the observer is exceeded.
     pub fn new(mesh: &IntrinsicMesh, m: usize, observer: &dyn Observer) -> Result<Self, DescriptorError> {
-        Self::found(mesh, m, GeneralizedEigen::ACCURATE, observer)
+        Self::found(mesh, m, SymmetricEigen::ACCURATE, observer)
     }
 
     fn found(
@@ -67,7 +67,7 @@ impl LaplaceSpectrum {
         }
         masses.iter_mut().for_each(|mass| *mass /= area);
         let stiffness = SparseSymmetric::from_entries(mesh.n_vertices(), laplacian.stiffness_entries());
-        let GeneralizedEigen { values, vectors } =
+        let SymmetricEigen { values, vectors } =
             smallest_eigenpairs(&stiffness, &masses, m, tolerance, observer)?;
         let corrected = corrected(&laplacian, area, &values, &vectors);
         Ok(Self { values, corrected, vectors, masses, area: area * laplacian.metric().unit.powi(2) })

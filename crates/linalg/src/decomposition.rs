@@ -4,10 +4,10 @@ use faer::{Mat, MatRef, Side};
 
 use crate::{LinalgError, Matrix};
 
-/// Eigenvalues in descending algebraic order and orthonormal eigenvectors, one column each.
+/// Eigenvalues and eigenvectors, one column each.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SymmetricEigen {
-    /// Eigenvalues, largest first.
+    /// Eigenvalues, largest first, or smallest first if the smallest were sought.
     pub values: Vec<f64>,
     /// Eigenvectors as columns, in the order of `values`.
     pub vectors: Matrix,

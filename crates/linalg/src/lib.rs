@@ -28,7 +28,7 @@ pub use decomposition::{
 };
 pub use distance_matrix::DistanceMatrix;
 pub use error::{LinalgError, NoFactor};
-pub use generalized::{GeneralizedEigen, smallest_eigenpairs};
+pub use generalized::smallest_eigenpairs;
 pub use landmark_distances::LandmarkDistances;
 pub use largest::largest_eigenpairs;
 pub use operator::SymmetricOperator;

@@ -8,12 +8,12 @@ use base::{Budget, Observer};
 use self::inertia::n_negative;
 use self::operator::{ShiftInverse, shifted};
 use crate::lanczos::{Lanczos, Ritz};
-use crate::{EliminationOrder, LinalgError, Matrix, SparseSymmetric, leading_sign};
+use crate::{EliminationOrder, LinalgError, Matrix, SparseSymmetric, SymmetricEigen, leading_sign};
 
 /// Additional pairs to find, so that the count can be checked in a gap above the requested ones.
 const SPARE: usize = 6;
 
-/// Eigenvalues with a relative gap below this belong to one cluster: a safety margin over [`GeneralizedEigen::ACCURATE`].
+/// Eigenvalues with a relative gap below this belong to one cluster: a safety margin over [`SymmetricEigen::ACCURATE`].
 const CLUSTER: f64 = 1e-6;
 
 /// Positions in a gap at which eigenvalues are counted; the next one is tried if a pivot happens to be zero.
@@ -22,20 +22,11 @@ const CUTS: [f64; 4] = [0.5, 0.45, 0.6, 0.37];
 /// How often the search is extended after eigenvalues were missed.
 const MAX_ROUNDS: usize = 8;
 
-/// Eigenvalues in ascending order and eigenvectors of `W x = lambda M x`, one column each.
-#[derive(Debug, Clone, PartialEq)]
-pub struct GeneralizedEigen {
-    /// Eigenvalues, smallest first.
-    pub values: Vec<f64>,
-    /// Eigenvectors as columns, in the order of `values`: `X' M X = I`, the largest entry of each positive.
-    pub vectors: Matrix,
-}
-
-impl GeneralizedEigen {
-    /// A tolerance for eigenpairs that others build on.
+impl SymmetricEigen {
+    /// A tolerance of [`smallest_eigenpairs`] for eigenpairs that others build on.
     pub const ACCURATE: f64 = 1e-9;
 
-    /// A tolerance for what averages over eigenfunctions. The errors of eigenvalues are its square.
+    /// A tolerance of [`smallest_eigenpairs`] for what averages over eigenfunctions. The errors of eigenvalues are its square.
     pub const AVERAGED: f64 = 1e-2;
 }
 
@@ -45,6 +36,7 @@ impl GeneralizedEigen {
 /// A block Lanczos process on `(W + s M)^-1 M` with full orthogonalisation, from a fixed start (Grimes, Lewis and Simon
 /// 1994).
 ///
+/// * Eigenvalues ascend; `X' M X = I`, and the largest entry of every eigenvector is positive.
 /// * Residuals `|W x - lambda M x|` are at most `tolerance (lambda + s)` in the norm of `M^-1`, up to rounding; `s` is about a
 ///   third of the mean gap between eigenvalues.
 /// * Complete: a factorization counts the eigenvalues below a gap above those found (Sylvester's law of inertia), and
@@ -62,11 +54,11 @@ impl GeneralizedEigen {
 /// If the number of masses differs from the order of `stiffness`.
 ///
 /// ```
-/// use canonform_linalg::{GeneralizedEigen, SparseSymmetric, smallest_eigenpairs};
+/// use canonform_linalg::{SparseSymmetric, SymmetricEigen, smallest_eigenpairs};
 ///
 /// // Three unit masses in a row, joined by two unit springs: eigenvalues 0, 1 and 3.
 /// let springs = [(0, 0, 1.0), (1, 1, 2.0), (2, 2, 1.0), (0, 1, -1.0), (1, 2, -1.0)];
-/// let eigen = smallest_eigenpairs(&SparseSymmetric::from_entries(3, springs), &[1.0; 3], 2, GeneralizedEigen::ACCURATE, &())?;
+/// let eigen = smallest_eigenpairs(&SparseSymmetric::from_entries(3, springs), &[1.0; 3], 2, SymmetricEigen::ACCURATE, &())?;
 /// assert!(eigen.values[0].abs() < 1e-12 && (eigen.values[1] - 1.0).abs() < 1e-9);
 /// # Ok::<(), canonform_linalg::LinalgError>(())
 /// ```
@@ -76,7 +68,7 @@ pub fn smallest_eigenpairs(
     m: usize,
     tolerance: f64,
     observer: &dyn Observer,
-) -> Result<GeneralizedEigen, LinalgError> {
+) -> Result<SymmetricEigen, LinalgError> {
     let budget = &observer.budget();
     let n = stiffness.order();
     let m = m.min(n);
@@ -84,7 +76,7 @@ pub fn smallest_eigenpairs(
     budget.check_memory((2 * m).min(n).saturating_mul(n).saturating_mul(size_of::<f64>()))?;
     assert_eq!(masses.len(), n, "one mass for each row");
     if m == 0 || masses.iter().all(|mass| *mass == 0.0) {
-        return Ok(GeneralizedEigen { values: Vec::new(), vectors: Matrix::zeros(n, 0) });
+        return Ok(SymmetricEigen { values: Vec::new(), vectors: Matrix::zeros(n, 0) });
     }
     let operator = ShiftInverse::new(stiffness, masses, budget)?;
     let mut process = Lanczos::new(&operator);
@@ -192,7 +184,7 @@ fn n_missing(
 }
 
 /// The `m` smallest pairs that the process found, with rows in the order of the matrix.
-fn pairs(operator: &ShiftInverse, process: &Lanczos<'_>, ritz: &Ritz, m: usize) -> GeneralizedEigen {
+fn pairs(operator: &ShiftInverse, process: &Lanczos<'_>, ritz: &Ritz, m: usize) -> SymmetricEigen {
     let m = m.min(ritz.eigen.values.len());
     let values = ritz.eigen.values[..m].iter().map(|theta| operator.unshifted(*theta).max(0.0)).collect();
     // Orthonormal in `s M`.
@@ -205,5 +197,5 @@ fn pairs(operator: &ShiftInverse, process: &Lanczos<'_>, ritz: &Ritz, m: usize) 
         let sign = leading_sign(to.as_slice());
         to *= sign;
     }
-    GeneralizedEigen { values, vectors }
+    SymmetricEigen { values, vectors }
 }

@@ -31,7 +31,7 @@ fn torus_spectrum(k: usize, l: usize, m: usize) -> Vec<f64> {
 }
 
 /// The largest `|W x - lambda M x|` relative to the largest eigenvalue found, and the largest entry of `X' M X - I`.
-fn faults(w: &SparseSymmetric, masses: &[f64], found: &GeneralizedEigen) -> [f64; 2] {
+fn faults(w: &SparseSymmetric, masses: &[f64], found: &SymmetricEigen) -> [f64; 2] {
     let n = w.order();
     let scale = found.values.last().copied().unwrap_or(1.0);
     let mut weighted = found.vectors.clone();
@@ -56,7 +56,7 @@ fn a_torus_has_its_closed_form_eigenvalues_with_multiplicities() {
     for (k, l, m) in [(40, 40, 90), (37, 23, 60), (9, 8, 72), (100, 3, 13), (30, 20, 240)] {
         let w = torus(k, l);
         let masses = vec![1.0; k * l];
-        let found = smallest_eigenpairs(&w, &masses, m, GeneralizedEigen::ACCURATE, &()).unwrap();
+        let found = smallest_eigenpairs(&w, &masses, m, SymmetricEigen::ACCURATE, &()).unwrap();
         let expected = torus_spectrum(k, l, m);
         assert_eq!(found.values.len(), m);
         for (i, (a, b)) in found.values.iter().zip(&expected).enumerate() {
@@ -71,12 +71,12 @@ fn a_torus_has_its_closed_form_eigenvalues_with_multiplicities() {
 fn eigenvalues_scale_inversely_with_masses() {
     let w = torus(30, 20);
     let masses: Vec<f64> = (0..600).map(|i| 1.0 + 0.9 * (i as f64).sin()).collect();
-    let found = smallest_eigenpairs(&w, &masses, 40, GeneralizedEigen::ACCURATE, &()).unwrap();
+    let found = smallest_eigenpairs(&w, &masses, 40, SymmetricEigen::ACCURATE, &()).unwrap();
     let [residual, orthogonality] = faults(&w, &masses, &found);
     assert!(residual < 1e-9 && orthogonality < 1e-12, "{residual} {orthogonality}");
     for scale in [1e-12, 1e12] {
         let scaled: Vec<f64> = masses.iter().map(|m| scale * m).collect();
-        let other = smallest_eigenpairs(&w, &scaled, 40, GeneralizedEigen::ACCURATE, &()).unwrap();
+        let other = smallest_eigenpairs(&w, &scaled, 40, SymmetricEigen::ACCURATE, &()).unwrap();
         for j in 1..40 {
             let ratio = other.values[j] * scale / found.values[j];
             assert!((ratio - 1.0).abs() < 1e-9, "{j} {scale}: {ratio}");
@@ -90,7 +90,7 @@ fn the_kernel_has_one_dimension_per_component() {
     let rings = 30;
     let w = springs(24 * rings, (0..24 * rings).map(|v| (v, v / 24 * 24 + (v + 1) % 24, 1.0)));
     let masses = vec![1.0; 24 * rings];
-    let found = smallest_eigenpairs(&w, &masses, 70, GeneralizedEigen::ACCURATE, &()).unwrap();
+    let found = smallest_eigenpairs(&w, &masses, 70, SymmetricEigen::ACCURATE, &()).unwrap();
     let ring = |a: f64| 4.0 * (PI * a / 24.0).sin().powi(2);
     for (j, value) in found.values.iter().enumerate() {
         let expected = if j < rings { 0.0 } else { ring(1.0) };
@@ -106,7 +106,7 @@ fn rows_without_mass_follow_the_others_and_isolated_ones_are_zero() {
     let n = 81;
     let path = springs(n + 1, (1..n).map(|i| (i - 1, i, 1.0)));
     let masses: Vec<f64> = (0..=n).map(|i| if i < n && i % 2 == 0 { 1.0 } else { 0.0 }).collect();
-    let found = smallest_eigenpairs(&path, &masses, 100, GeneralizedEigen::ACCURATE, &()).unwrap();
+    let found = smallest_eigenpairs(&path, &masses, 100, SymmetricEigen::ACCURATE, &()).unwrap();
     assert_eq!(found.values.len(), 41, "one pair per mass");
     for (j, value) in found.values.iter().enumerate() {
         let expected = 2.0 * (PI * j as f64 / 82.0).sin().powi(2);
@@ -127,7 +127,7 @@ fn results_do_not_depend_on_threads() {
     let masses: Vec<f64> = (0..45 * 31).map(|i| 1.0 + 0.3 * (i as f64).cos()).collect();
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| smallest_eigenpairs(&w, &masses, 30, GeneralizedEigen::ACCURATE, &()).unwrap())
+        pool.install(|| smallest_eigenpairs(&w, &masses, 30, SymmetricEigen::ACCURATE, &()).unwrap())
     };
     let one = on(1);
     // Bit for bit, at any alignment of the vectors in memory.
@@ -144,20 +144,20 @@ fn small_and_empty_matrices_have_all_their_pairs() {
         &SparseSymmetric::from_entries(1, [(0, 0, 6.0)]),
         &[2.0],
         5,
-        GeneralizedEigen::ACCURATE,
+        SymmetricEigen::ACCURATE,
         &(),
     )
     .unwrap();
     assert!(one.values.len() == 1 && (one.values[0] - 3.0).abs() < 1e-14);
     assert!((one.vectors[(0, 0)] - 0.5f64.sqrt()).abs() < 1e-15);
     let none =
-        smallest_eigenpairs(&SparseSymmetric::from_entries(0, []), &[], 5, GeneralizedEigen::ACCURATE, &())
+        smallest_eigenpairs(&SparseSymmetric::from_entries(0, []), &[], 5, SymmetricEigen::ACCURATE, &())
             .unwrap();
     assert_eq!((none.values.len(), none.vectors.shape()), (0, (0, 0)));
     let none_wanted =
-        smallest_eigenpairs(&torus(4, 4), &[1.0; 16], 0, GeneralizedEigen::ACCURATE, &()).unwrap();
+        smallest_eigenpairs(&torus(4, 4), &[1.0; 16], 0, SymmetricEigen::ACCURATE, &()).unwrap();
     assert_eq!((none_wanted.values.len(), none_wanted.vectors.shape()), (0, (16, 0)));
-    let massless = smallest_eigenpairs(&torus(4, 4), &[0.0; 16], 3, GeneralizedEigen::ACCURATE, &());
+    let massless = smallest_eigenpairs(&torus(4, 4), &[0.0; 16], 3, SymmetricEigen::ACCURATE, &());
     assert_eq!(massless.map(|found| found.values.len()), Ok(0));
 }
 
@@ -166,12 +166,12 @@ fn matrices_without_a_factor_are_errors() {
     let negative = torus(5, 5).entries().map(|(i, j, v)| (i, j, -v)).collect::<Vec<_>>();
     let w = SparseSymmetric::from_entries(25, negative);
     assert!(matches!(
-        smallest_eigenpairs(&w, &[1.0; 25], 3, GeneralizedEigen::ACCURATE, &()),
+        smallest_eigenpairs(&w, &[1.0; 25], 3, SymmetricEigen::ACCURATE, &()),
         Err(LinalgError::NotFactorized { n: 25, .. })
     ));
     let w = SparseSymmetric::from_entries(2, [(0, 1, f64::NAN)]);
     assert!(matches!(
-        smallest_eigenpairs(&w, &[1.0; 2], 1, GeneralizedEigen::ACCURATE, &()),
+        smallest_eigenpairs(&w, &[1.0; 2], 1, SymmetricEigen::ACCURATE, &()),
         Err(LinalgError::NotFactorized { n: 2, .. })
     ));
 }

@@ -61,7 +61,7 @@ fn with_weight(problem: &Problem, dim: usize, mu: f64) -> Result<Embedding, Nmds
         &problem.stiffness,
         &problem.masses,
         problem.masses.len(),
-        linalg::GeneralizedEigen::ACCURATE,
+        linalg::SymmetricEigen::ACCURATE,
         &(),
     )?;
     let basis = SpectralBasis { values: &basis.values, vectors: &basis.vectors, masses: &problem.masses };
