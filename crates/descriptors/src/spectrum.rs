@@ -62,7 +62,7 @@ impl LaplaceSpectrum {
         let laplacian = Laplacian::new(mesh);
         let mut masses = laplacian.masses();
         let area: f64 = masses.iter().sum();
-        if area <= 0.0 || laplacian.metric().unit <= 0.0 {
+        if area <= 0.0 || laplacian.metric.unit <= 0.0 {
             return Err(DescriptorError::NoExtent { n_points: mesh.n_vertices() });
         }
         masses.iter_mut().for_each(|mass| *mass /= area);
@@ -70,7 +70,7 @@ impl LaplaceSpectrum {
         let SymmetricEigen { values, vectors } =
             smallest_eigenpairs(&stiffness, &masses, m, tolerance, observer)?;
         let corrected = corrected(&laplacian, area, &values, &vectors);
-        Ok(Self { values, corrected, vectors, masses, area: area * laplacian.metric().unit.powi(2) })
+        Ok(Self { values, corrected, vectors, masses, area: area * laplacian.metric.unit.powi(2) })
     }
 }
 
@@ -79,7 +79,7 @@ impl LaplaceSpectrum {
 fn corrected(laplacian: &Laplacian, area: f64, values: &[f64], vectors: &Matrix) -> Vec<f64> {
     let of = |(j, value): (usize, &f64)| {
         let x = vectors.column(j);
-        let missing = laplacian.elements().iter().map(|Element { vertices, triangle, share }| {
+        let missing = laplacian.elements.iter().map(|Element { vertices, triangle, share }| {
             let [a, b, c] = vertices.map(|v| x[v as usize]);
             share * triangle.area() * ((a - b).powi(2) + (b - c).powi(2) + (c - a).powi(2))
         });

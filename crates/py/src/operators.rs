@@ -41,7 +41,7 @@ pub(crate) fn laplacian<'py>(
         Ok(match intrinsic {
             true => {
                 let laplacian = Laplacian::new(inner.intrinsic());
-                let sq_unit = laplacian.metric().unit.powi(2);
+                let sq_unit = laplacian.metric.unit.powi(2);
                 let masses: Vec<f64> = laplacian.masses().iter().map(|mass| mass * sq_unit).collect();
                 (laplacian.stiffness_entries().collect::<Vec<_>>(), masses)
             }

@@ -134,7 +134,7 @@ impl HeatMethod {
         }
         let laplacian = Laplacian::new(mesh);
         budget.check()?;
-        let metric = laplacian.metric();
+        let metric = &laplacian.metric;
         let components = components_with_links(mesh);
         let grounded = components.lowest_vertices();
         let (side, area) = laplacian.mean_side_and_area();
@@ -143,14 +143,14 @@ impl HeatMethod {
         let links = metric.links.iter().filter(|link| link.ends[0] != link.ends[1]);
         let mut bars: Vec<HeatBar> = links.map(|link| HeatBar::new(link, time.sqrt())).collect();
         let system = System::new(&laplacian, &bars, time, &grounded, &budget)?;
-        let neighbors = neighbors(mesh.n_vertices(), laplacian.elements());
+        let neighbors = neighbors(mesh.n_vertices(), &laplacian.elements);
         let mut step = vec![0; mesh.n_vertices()];
         for (i, row) in system.heat.order().rows().iter().enumerate() {
             step[*row] = i as u32;
         }
         let renamed =
             |element: &Element| Element { vertices: element.vertices.map(|v| step[v as usize]), ..*element };
-        let elements = laplacian.elements().iter().map(renamed).collect();
+        let elements = laplacian.elements.iter().map(renamed).collect();
         for bar in &mut bars {
             bar.ends = bar.ends.map(|v| step[v as usize]);
         }

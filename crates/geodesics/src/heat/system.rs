@@ -32,7 +32,7 @@ impl System {
         grounded: &[VertexId],
         budget: &Budget,
     ) -> Result<Self, GeodesicError> {
-        let (n, elements) = (laplacian.n_vertices(), laplacian.elements());
+        let (n, elements) = (laplacian.n_vertices, &laplacian.elements);
         let mut heat = stiffness(n, elements, time, bars.iter().map(|bar| (bar.ends, bar.heat())));
         heat.add_to_diagonal(laplacian.masses().into_iter());
         // A vertex without triangles and links has an equation of its own.

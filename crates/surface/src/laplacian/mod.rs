@@ -35,9 +35,12 @@ use crate::triangulation::Loops;
 /// **Deviation**: equal triangles of the front and the back of the double cover are merged.
 #[derive(Debug, Clone)]
 pub struct Laplacian {
-    n_vertices: usize,
-    metric: Metric,
-    elements: Vec<Element>,
+    /// Number of vertices p.
+    pub n_vertices: usize,
+    /// The corrected lengths and their unit.
+    pub metric: Metric,
+    /// The triangles.
+    pub elements: Vec<Element>,
 }
 
 impl Laplacian {
@@ -47,21 +50,6 @@ impl Laplacian {
         let mut cover = cover::tufted_cover(mesh, &metric.edges);
         cover.flip_to_delaunay(Loops::Allowed);
         Self { n_vertices: mesh.n_vertices(), elements: elements::elements(&cover), metric }
-    }
-
-    /// Number of vertices p.
-    pub fn n_vertices(&self) -> usize {
-        self.n_vertices
-    }
-
-    /// The corrected lengths and their unit.
-    pub fn metric(&self) -> &Metric {
-        &self.metric
-    }
-
-    /// The triangles.
-    pub fn elements(&self) -> &[Element] {
-        &self.elements
     }
 
     /// The mean length of the sides of all triangles, in units, and their area, in squared units; zeros without any.
@@ -122,7 +110,7 @@ mod tests {
         for mesh in [shapes::icosphere(3), shapes::jittered_grid(12, 9, 0.3, 0.24, 4), shapes::cube(1)] {
             let laplacian = of(&mesh);
             let area: f64 = (0..mesh.n_faces()).map(|f| 0.5 * mesh.area_vector(f).norm()).sum();
-            let found = laplacian.masses().iter().sum::<f64>() * laplacian.metric().unit.powi(2);
+            let found = laplacian.masses().iter().sum::<f64>() * laplacian.metric.unit.powi(2);
             assert!((found / area - 1.0).abs() < 1e-12, "{found} against {area}");
         }
     }
@@ -130,7 +118,7 @@ mod tests {
     #[test]
     fn rows_sum_to_zero_and_diagonals_are_positive() {
         let laplacian = of(&shapes::sheared_grid(9, 7, 1.0, 2.7));
-        let mut sums = vec![0.0; laplacian.n_vertices()];
+        let mut sums = vec![0.0; laplacian.n_vertices];
         let mut diagonal = sums.clone();
         for (i, j, value) in laplacian.stiffness_entries() {
             sums[i] += value;
@@ -147,7 +135,7 @@ mod tests {
     fn the_energy_of_a_linear_function_is_its_squared_slope_times_the_area() {
         let share = |mesh: &TriMesh| {
             let laplacian = of(mesh);
-            let area = laplacian.mean_side_and_area().1 * laplacian.metric().unit.powi(2);
+            let area = laplacian.mean_side_and_area().1 * laplacian.metric.unit.powi(2);
             energy(&laplacian, |v| 3.0 * mesh.positions[v].x - 4.0 * mesh.positions[v].y) / (25.0 * area)
         };
         assert!((share(&shapes::grid(14, 11, 0.5)) - 1.0).abs() < 1e-12);
@@ -164,7 +152,7 @@ mod tests {
         let mut large = mesh.clone();
         large.positions.iter_mut().for_each(|p| p.coords *= 1024.0);
         let (a, b) = (of(&mesh), of(&large));
-        assert_eq!(b.metric().unit, 1024.0 * a.metric().unit);
+        assert_eq!(b.metric.unit, 1024.0 * a.metric.unit);
         assert_eq!(b.masses(), a.masses());
         assert!(a.stiffness_entries().eq(b.stiffness_entries()));
     }
@@ -180,7 +168,7 @@ mod tests {
         );
         let step = |v: usize| if v < n / 2 { 0.0 } else { 1.0 };
         assert!(energy(&apart, step).abs() < 1e-14);
-        let length = 2.0 / joined.metric().unit;
+        let length = 2.0 / joined.metric.unit;
         assert!((energy(&joined, step) - 1.0 / length).abs() < 1e-14);
         assert!((joined.masses().iter().sum::<f64>() - joined.mean_side_and_area().1).abs() < 1e-12);
     }
@@ -193,6 +181,6 @@ mod tests {
         assert_eq!(laplacian.masses().last(), Some(&0.0));
         assert!(laplacian.stiffness_entries().all(|(i, j, _)| i.max(j) < mesh.n_vertices() - 1));
         let none = of(&TriMesh::default());
-        assert_eq!((none.n_vertices(), none.masses(), none.stiffness_entries().count()), (0, vec![], 0));
+        assert_eq!((none.n_vertices, none.masses(), none.stiffness_entries().count()), (0, vec![], 0));
     }
 }
