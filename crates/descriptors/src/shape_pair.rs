@@ -15,11 +15,15 @@ use crate::metric::{ShapeDistance, ShapeMetric};
 /// shape compares in the same way before and after it is stored.
 #[derive(Debug)]
 pub struct PreparedShape {
-    fused: Vec<f32>,
-    rigid: Vec<f32>,
-    form: CanonicalForm,
+    /// All signatures as one vector.
+    pub fused: Vec<f32>,
+    /// The values of its rigid signature, if it has one.
+    pub rigid: Vec<f32>,
+    /// The form, in mesh units.
+    pub form: CanonicalForm,
+    /// The form at unit area, ready to be aligned.
+    pub unit: PointSet,
     area: Option<f64>,
-    unit: PointSet,
 }
 
 impl PreparedShape {
@@ -43,25 +47,10 @@ impl PreparedShape {
         Self { rigid, ..self }
     }
 
-    /// The values of its rigid signature, if it has one.
-    pub fn rigid(&self) -> &[f32] {
-        &self.rigid
-    }
-
     /// The robust distance, with the [rigid part](ShapeMetric::rigid). [`ShapeMetric::robust`] of the fused vectors is a lower
     /// bound.
     pub fn robust(&self, other: &Self) -> f64 {
         ShapeMetric::robust(&self.fused, &other.fused).hypot(ShapeMetric::rigid(&self.rigid, &other.rigid))
-    }
-
-    /// All signatures as one vector.
-    pub fn fused(&self) -> &[f32] {
-        &self.fused
-    }
-
-    /// The form, in mesh units.
-    pub fn form(&self) -> &CanonicalForm {
-        &self.form
     }
 
     /// The unit of length that gives the surface unit area; 1 if the form has no unit of length.
@@ -73,11 +62,6 @@ impl PreparedShape {
     pub fn at_unit_area(&self, form: &CanonicalForm) -> Vec<Point3<f64>> {
         let size = self.size();
         form.points().iter().map(|p| p / size).collect()
-    }
-
-    /// The form at unit area, ready to be aligned.
-    pub fn prepared_form(&self) -> &PointSet {
-        &self.unit
     }
 }
 
@@ -145,7 +129,7 @@ impl<'a> ShapePair<'a> {
     /// # Errors
     /// [`DescriptorError::NoExtent`].
     pub fn align_raw(&self) -> Result<Alignment, DescriptorError> {
-        let [a, b] = self.shapes.map(PreparedShape::form);
+        let [a, b] = self.shapes.map(|shape| &shape.form);
         if a.area().or(b.area()).is_none() {
             return Ok(self.best());
         }
@@ -229,7 +213,7 @@ mod tests {
         let known = Alignment { gap: Gap { rms: 0.5, max: 1.0 }, ..ShapePair::new([&a, &b]).best() };
         let pair = ShapePair::new([&a, &b]).with_best(known);
         assert_eq!(pair.best(), known);
-        let robust = ShapeMetric::robust(a.fused(), b.fused());
+        let robust = ShapeMetric::robust(&a.fused, &b.fused);
         assert_eq!(
             pair.distance(),
             ShapeDistance { fused: 1.0, combined: ShapeMetric::combined(robust, 0.5) }

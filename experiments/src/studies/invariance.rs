@@ -89,7 +89,7 @@ pub(crate) fn invariance(context: &Context<'_>) -> Result<Record> {
     let gallery = Gallery::new(context)?;
     let prepared = gallery.prepared()?;
     let mut vectors = VectorTable::default();
-    prepared.iter().for_each(|shape| vectors.push("", shape.fused()));
+    prepared.iter().for_each(|shape| vectors.push("", &shape.fused));
     let [mut found_again, mut relative, mut units]: [Vec<Vec<Cell>>; 3] = Default::default();
     let (mut least_top1, mut most_unknown, mut least_told) = (1.0_f64, 0.0_f64, 1.0_f64);
     for damage in DAMAGES {
@@ -98,7 +98,7 @@ pub(crate) fn invariance(context: &Context<'_>) -> Result<Record> {
             let damaged = describe(&surface, &gallery.options, &())?;
             let shape = gallery.options.prepare(&damaged)?;
             // As a search in an index does.
-            let candidates = bounds(shape.fused(), &vectors);
+            let candidates = bounds(&shape.fused, &vectors);
             let nearest = rerank(&shape, candidates, 2, |i| Ok(&prepared[i]))?.nearest;
             let (first, _) = nearest.first().context("the collection has shapes")?;
             let mut others = nearest.iter().filter(|(near, _)| near.index != query.own);

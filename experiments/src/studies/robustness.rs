@@ -88,7 +88,7 @@ fn scores(
         add(kind.name(), &|i| signature(&gallery.described[i], kind).map_or(f64::NAN, |s| own.distance(&s)));
     }
     let shape = gallery.options.prepare(description)?;
-    add(FUSED, &|i| ShapeMetric::fused(shape.fused(), prepared[i].fused()));
+    add(FUSED, &|i| ShapeMetric::fused(&shape.fused, &prepared[i].fused));
     if aligned {
         let pairs = prepared.iter().map(|other| {
             let pair = ShapePair::new([&shape, other]);

@@ -81,7 +81,7 @@ fn a_rigid_signature_makes_no_shape_farther_from_one_without() {
     }
     let folder = tempfile::tempdir().unwrap();
     let search = indexed(folder.path(), &shapes);
-    let has_rigid = |id: &str| !search.prepared(id).unwrap().rigid().is_empty();
+    let has_rigid = |id: &str| !search.prepared(id).unwrap().rigid.is_empty();
     let flipped: Vec<usize> = (0..parts.len())
         .filter(|i| has_rigid(&format!("part{i:02}")) && !has_rigid(&format!("noisy{i:02}")))
         .collect();
@@ -89,6 +89,6 @@ fn a_rigid_signature_makes_no_shape_farther_from_one_without() {
     assert!(!flipped.is_empty());
     for i in flipped {
         let [part, noisy] = ["part", "noisy"].map(|kind| search.prepared(&format!("{kind}{i:02}")).unwrap());
-        assert_eq!(part.robust(&noisy), ShapeMetric::robust(part.fused(), noisy.fused()), "part {i}");
+        assert_eq!(part.robust(&noisy), ShapeMetric::robust(&part.fused, &noisy.fused), "part {i}");
     }
 }

@@ -100,7 +100,7 @@ fn distances_distinguish_poses_from_animals() {
     let distance = |&(i, j): &(usize, usize)| {
         let pair = [&described[i], &described[j]];
         let aligned = ShapePair::new(pair);
-        let fused = ShapeMetric::fused(pair[0].fused(), pair[1].fused());
+        let fused = ShapeMetric::fused(&pair[0].fused, &pair[1].fused);
         // The robust loss shortens large distances, so the ratio is one of squared losses.
         let euclidean = ShapeMetric::combined(fused, aligned.best().gap.rms);
         (shapes[i].label == shapes[j].label, aligned.distance(), euclidean)

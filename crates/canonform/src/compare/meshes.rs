@@ -55,7 +55,7 @@ impl<S: Borrow<Surface>> ComparedMesh<S> {
         let described = reference.prepare(&description)?;
         let (fused, area) = (description.fused, Some(description.entry.facts.area));
         let shape = PreparedShape::new(fused, &form.reduced(reference.points), area)?;
-        let shape = shape.with_rigid(described.rigid().to_vec());
+        let shape = shape.with_rigid(described.rigid.clone());
         Ok(Self { geometry, form, shape, reference: Some(described), surface })
     }
 

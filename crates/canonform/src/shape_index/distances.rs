@@ -48,7 +48,7 @@ impl ShapeSearch {
             let (a, b) = (&rows[i], &columns[j]);
             Ok(match kind {
                 PairwiseDistance::Combined => ShapePair::new([a, b]).distance().combined,
-                PairwiseDistance::Fused => ShapeMetric::fused(a.fused(), b.fused()),
+                PairwiseDistance::Fused => ShapeMetric::fused(&a.fused, &b.fused),
             })
         };
         let found = pairs.par_iter().map(distance).collect::<Result<Vec<f64>, Error>>()?;

@@ -64,7 +64,7 @@ impl ShapeSearch {
         (query, shape): (&Query, &PreparedShape),
         budget: &Budget,
     ) -> Result<Vec<Hit>, Error> {
-        let asked = ShapeMetric::without_size(shape.fused());
+        let asked = ShapeMetric::without_size(&shape.fused);
         // Components have no forms in the index, so signatures decide.
         let distance = |fused: &[f32]| {
             let known = ShapeMetric::without_size(fused);

@@ -51,11 +51,11 @@ pub fn rerank<S: Borrow<PreparedShape>>(
         let shape: &PreparedShape = shape.borrow();
         let robust = query.robust(shape);
         let left = ShapeMetric::form_limit(robust, limit);
-        let (a, b) = (query.prepared_form(), shape.prepared_form());
+        let (a, b) = (&query.unit, &shape.unit);
         let Some(alignment) = align_near_points(a, b, left) else { return Ok(None) };
         let pair = ShapePair::new([query, shape]).with_best(alignment);
-        let fused = ShapeMetric::fused(query.fused(), shape.fused());
-        let are_parts = !(query.rigid().is_empty() || shape.rigid().is_empty());
+        let fused = ShapeMetric::fused(&query.fused, &shape.fused);
+        let are_parts = !(query.rigid.is_empty() || shape.rigid.is_empty());
         let (shape_distance, scale) = (pair.distance(), pair.scale());
         let aligned = Aligned { fused, shape_distance, scale, are_parts, alignment };
         Ok(Some((ShapeMetric::combined(robust, alignment.gap.rms), aligned)))
@@ -107,11 +107,11 @@ mod tests {
                 let fused = |i: usize| usefulness * 0.05 * (i.abs_diff(query) as f64 + 2.0 * (i % 3) as f64);
                 let shapes: Vec<_> = (0..30).map(|i| spiral(turns(i), fused(i))).collect();
                 let asked = spiral(turns(query), 0.0);
-                let fused = |i: usize| ShapeMetric::fused(asked.fused(), shapes[i].fused());
-                let robust = |i: usize| ShapeMetric::robust(asked.fused(), shapes[i].fused());
+                let fused = |i: usize| ShapeMetric::fused(&asked.fused, &shapes[i].fused);
+                let robust = |i: usize| ShapeMetric::robust(&asked.fused, &shapes[i].fused);
                 let mut all = VectorTable::default();
-                shapes.iter().for_each(|shape| all.push("", shape.fused()));
-                let candidates: Vec<_> = bounds(asked.fused(), &all).collect();
+                shapes.iter().for_each(|shape| all.push("", &shape.fused));
+                let candidates: Vec<_> = bounds(&asked.fused, &all).collect();
                 let mut all: Vec<_> = (0..30)
                     .map(|index| {
                         let pair = ShapePair::new([&asked, &shapes[index]]);

@@ -227,7 +227,7 @@ impl ShapeSearch {
         let held = |id: &String| self.index.contains(id).map(|held| held.then(|| id.clone())).transpose();
         let ids = ids.map(|ids| ids.iter().filter_map(held).collect::<Result<Vec<_>, _>>()).transpose()?;
         let ordered = match (rank_by, &ids) {
-            (SearchRank::Graph, None) => Some(self.on_graph(shape.fused(), wanted)?),
+            (SearchRank::Graph, None) => Some(self.on_graph(&shape.fused, wanted)?),
             (SearchRank::Part | SearchRank::Forms, _) => {
                 Some(self.by_all(query, rank_by, &ids, wanted, budget)?)
             }
@@ -244,7 +244,7 @@ impl ShapeSearch {
                 let all = some.as_ref().map_or_else(|| self.index.vector_table(), Ok)?;
                 self.aligned(
                     (query, shape),
-                    bounds(shape.fused(), all),
+                    bounds(&shape.fused, all),
                     wanted,
                     &|i| (all.id(i), None),
                     budget,

@@ -78,7 +78,7 @@ impl ComparedShape {
         Compared {
             shape,
             reference: shape,
-            form: measured.map_or(shape.form(), |measured| &measured.form),
+            form: measured.map_or(&shape.form, |measured| &measured.form),
             surface: measured.map(|measured| &measured.surface),
             geometry: measured.and_then(|measured| measured.geometry.as_deref()),
             content: self.content,

@@ -123,7 +123,7 @@ pub(super) async fn file(State(app): State<Arc<App>>, Id(id): Id) -> Result<Resp
 
 /// The points of the form in the index, as dots.
 pub(super) fn points(collection: &Collection, id: &str) -> Result<Geometry, Error> {
-    Ok(Geometry::new(&dots(collection.search.prepared(id)?.form())))
+    Ok(Geometry::new(&dots(&collection.search.prepared(id)?.form)))
 }
 
 /// Whether the mesh of a shape is missing or has changed.
@@ -159,7 +159,7 @@ pub(super) async fn thumbnail(
         }
         // Under another tag, and not cached: the mesh may come back.
         Err(fault) if is_missing(&fault) => {
-            let picture = draw(&dots(collection.search.prepared(&id)?.form()), View::Principal, budget)?;
+            let picture = draw(&dots(&collection.search.prepared(&id)?.form), View::Principal, budget)?;
             Ok(tagged(super::answer::tag("points"), PNG, Some(picture)))
         }
         Err(fault) => Err(fault.into()),
