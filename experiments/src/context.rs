@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use anyhow::{Result, anyhow};
 use canonform::{DescribeOptions, Observer};
-use geodesics::Sampling;
+use geodesics::{Method, Sampling};
 use linalg::LandmarkDistances;
 use report::Record;
 use report::record::{Plot, RunProvenance, Series};
@@ -14,7 +14,7 @@ use crate::args::RunArgs;
 use crate::collection::{Setting, SurfaceCollection};
 use crate::config::{Config, Options, Printed};
 use crate::machine;
-use crate::specimen::{Distances, Specimen};
+use crate::specimen::Specimen;
 use crate::studies::Published;
 use crate::sweep::{MeasuredNumbers, curves, note, places, plots};
 use crate::text::filled;
@@ -127,10 +127,10 @@ impl Context<'_> {
         let counts = &self.options.counts;
         let mut runs: Vec<Vec<Vec<f64>>> = vec![Vec::new(); methods.len()];
         for first in specimen.first_samples(self.options.runs, self.seed) {
-            let nested = |distances, sampling| specimen.nested(&distances, sampling, first, counts);
-            let samples = nested(Distances::default(), Sampling::Farthest)?;
-            let hops = nested(Distances::hops(), Sampling::Farthest)?;
-            let least = nested(Distances::default(), Sampling::MinVariance)?;
+            let nested = |distances, sampling| specimen.nested(distances, sampling, first, counts);
+            let samples = nested(Method::default(), Sampling::Farthest)?;
+            let hops = nested(Method::BreadthFirst, Sampling::Farthest)?;
+            let least = nested(Method::default(), Sampling::MinVariance)?;
             runs.iter_mut().for_each(|runs| runs.push(Vec::new()));
             for ((samples, hops), least) in samples.iter().zip(&hops).zip(&least) {
                 let values = farthest(samples)?.into_iter().chain([half(hops)?, half(least)?]);

@@ -25,8 +25,8 @@ type Once<K, T> = Mutex<Vec<(K, Arc<T>)>>;
 /// A shape, and what has been measured on it.
 pub(crate) struct Specimen<'a> {
     pub(crate) shape: &'a LabeledSurface,
-    all_pairs: Once<&'static str, DistanceMatrix>,
-    optimum: Once<&'static str, Optimum>,
+    all_pairs: Once<Method, DistanceMatrix>,
+    optimum: Once<Method, Optimum>,
     spectrum: Once<usize, LaplaceSpectrum>,
     reconstruction: Once<(usize, VertexId), Reconstruction>,
 }
@@ -66,13 +66,13 @@ impl<'a> Specimen<'a> {
         self.shape.surface.mesh().n_vertices()
     }
 
-    fn solver(&self, distances: &Distances) -> Result<Box<dyn DistanceSolver>> {
-        Ok(distances.method.prepare(self.shape.surface.intrinsic(), &())?)
+    fn solver(&self, method: Method) -> Result<Box<dyn DistanceSolver>> {
+        Ok(method.prepare(self.shape.surface.intrinsic(), &())?)
     }
 
     /// The distances between all pairs of vertices.
-    pub(crate) fn all_pairs(&self, distances: &Distances) -> Result<Arc<DistanceMatrix>> {
-        once(&self.all_pairs, distances.name, || {
+    pub(crate) fn all_pairs(&self, method: Method) -> Result<Arc<DistanceMatrix>> {
+        once(&self.all_pairs, method, || {
             let p = self.n_vertices();
             if p.saturating_mul(p) > canonform::embed::DISTANCES_LIMIT / size_of::<f64>() {
                 bail!(
@@ -82,14 +82,14 @@ impl<'a> Specimen<'a> {
                     (p * p * size_of::<f64>()) >> 30
                 );
             }
-            Ok(self.solver(distances)?.distance_matrix()?)
+            Ok(self.solver(method)?.distance_matrix()?)
         })
     }
 
     /// Classical scaling of all pairs, the optimum of strain.
-    pub(crate) fn optimum(&self, distances: &Distances) -> Result<Arc<Optimum>> {
-        once(&self.optimum, distances.name, || {
-            let all = self.all_pairs(distances)?;
+    pub(crate) fn optimum(&self, method: Method) -> Result<Arc<Optimum>> {
+        once(&self.optimum, method, || {
+            let all = self.all_pairs(method)?;
             let embedding = classical(&all, DIM, &())?;
             let stress = paper_stress(&embedding.coords, all.as_ref())?;
             Ok(Optimum { embedding, stress })
@@ -106,8 +106,8 @@ impl<'a> Specimen<'a> {
     /// The reconstruction of all squared distances from `n` farthest samples, for the default distances.
     pub(crate) fn reconstruction(&self, n: usize, first: VertexId) -> Result<Arc<Reconstruction>> {
         once(&self.reconstruction, (n, first), || {
-            let samples = self.nested(&Distances::default(), Sampling::Farthest, first, &[n])?;
-            let all = self.all_pairs(&Distances::default())?;
+            let samples = self.nested(Method::default(), Sampling::Farthest, first, &[n])?;
+            let all = self.all_pairs(Method::default())?;
             Ok(Reconstruction::new(&samples[0], all.as_ref())?)
         })
     }
@@ -120,12 +120,12 @@ impl<'a> Specimen<'a> {
     /// For each n of `counts`, the distances from the first n samples of the sequence that begins with `first`.
     pub(crate) fn nested(
         &self,
-        distances: &Distances,
+        method: Method,
         sampling: Sampling,
         first: VertexId,
         counts: &[usize],
     ) -> Result<Vec<LandmarkDistances>> {
-        let solver = self.solver(distances)?;
+        let solver = self.solver(method)?;
         let seed = u64::from(first.0);
         let mut sampler = sampling.start(solver.as_ref(), FirstSample::Vertex(first), seed)?;
         sampler.extend_to(counts.iter().copied().max().unwrap_or(0))?;
@@ -146,26 +146,6 @@ pub(crate) fn low_rank(samples: usize, rank: usize, seed: u64) -> FormOptions {
 /// Descriptions by forms with these options.
 pub(crate) fn describing(form: FormOptions) -> DescribeOptions {
     DescribeOptions { form, ..DescribeOptions::default() }
-}
-
-/// A kind of distances, with its name in records and expectations.
-#[derive(Debug, Clone)]
-pub(crate) struct Distances {
-    pub(crate) name: &'static str,
-    pub(crate) method: Method,
-}
-
-impl Default for Distances {
-    fn default() -> Self {
-        Self { name: "default", method: Method::default() }
-    }
-}
-
-impl Distances {
-    /// Hops times the mean edge length.
-    pub(crate) fn hops() -> Self {
-        Self { name: "hops", method: Method::BreadthFirst }
-    }
 }
 
 /// Looks up a value, or computes it.

@@ -125,6 +125,33 @@ pub(crate) fn plot(title: impl Into<String>, x: Axis, y: Axis, series: Vec<Serie
     Plot { title: title.into(), x, y, series, marks: Vec::new() }
 }
 
+/// Plots and their series in the order in which they were first added to.
+#[derive(Default)]
+pub(crate) struct Panels(pub(crate) Vec<Plot>);
+
+impl Panels {
+    /// Adds a point to the series of this name and kind in the plot of this title.
+    pub(crate) fn add(
+        &mut self,
+        title: &str,
+        axes: [Axis; 2],
+        (name, kind): (&str, SeriesKind),
+        point: PlotPoint,
+    ) {
+        let Self(plots) = self;
+        let place = plots.iter().position(|plot| plot.title == title).unwrap_or(plots.len());
+        if place == plots.len() {
+            let [x, y] = axes;
+            plots.push(plot(title, x, y, Vec::new()));
+        }
+        let all = &mut plots[place].series;
+        match all.iter_mut().find(|series| series.name == name && series.kind == kind) {
+            Some(series) => series.points.push(point),
+            None => all.push(Series { name: name.to_owned(), kind, points: vec![point] }),
+        }
+    }
+}
+
 /// Plots under the caption of the configuration.
 pub(crate) fn plots(part: &str, plots: Vec<Plot>) -> Figure {
     Figure { part: part.to_owned(), caption: String::new(), panels: FigurePanels::Plots(plots) }

@@ -24,9 +24,9 @@ use report::{Record, Table};
 use surface::VertexId;
 
 use crate::context::Context;
-use crate::specimen::{DIM, Distances, Specimen};
+use crate::specimen::{DIM, Specimen};
 use crate::surfaces::{aligned, tile};
-use crate::sweep::{MeasuredNumbers, median, note, plot, point};
+use crate::sweep::{MeasuredNumbers, median, note, plot, plots, point};
 
 /// The methods in the order of the paper.
 const METHODS: [&str; 5] = ["MDS", "NMDS", "SMDS", "Min-Var", "BFS"];
@@ -35,9 +35,9 @@ const METHODS: [&str; 5] = ["MDS", "NMDS", "SMDS", "Min-Var", "BFS"];
 type Runs = Vec<(Embedding, f64)>;
 
 /// Our default, and the planar update, which leaves obtuse triangles as they are.
-fn settings() -> [Distances; 2] {
+fn settings() -> [(&'static str, Method); 2] {
     let options = FastMarchingOptions { update: Update::Planar, obtuse: ObtuseTreatment::Ignore };
-    [Distances::default(), Distances { name: "planar", method: Method::FastMarching(options) }]
+    [("default", Method::default()), ("planar", Method::FastMarching(options))]
 }
 
 const FORMS: &str = "Shapes (left) and their canonical forms by each method. Every form fills its tile and is rotated to match the first of its row. Under it: its stress in squared mesh units, from the run of median stress, and the number printed in the paper.";
@@ -50,14 +50,14 @@ pub(crate) fn figure3(context: &Context<'_>) -> Result<Record> {
     let x = Axis { scale: AxisScale::Category, ..Axis::linear("") };
     let marks = METHODS.iter().enumerate().map(|(i, name)| Mark { x: i as f64, name: (*name).to_owned() });
     let marks: Vec<Mark> = marks.collect();
-    let mut plots: Vec<Plot> = Vec::new();
+    let mut panels: Vec<Plot> = Vec::new();
     for specimen in context.specimens {
         let y = Axis::log("stress", "squared mesh units");
         let mut series = Vec::new();
-        for distances in &settings {
-            let is_default = distances.name == Distances::default().name;
-            let methods = embeddings(context, specimen, distances)?;
-            let key = format!("{} {}", distances.name, specimen.label());
+        for (distances, method) in settings {
+            let is_default = method == Method::default();
+            let methods = embeddings(context, specimen, method)?;
+            let key = format!("{distances} {}", specimen.label());
             let ranges: Vec<PlotPoint> =
                 methods.iter().zip(0..).map(|(runs, i)| point(f64::from(i), &values(runs))).collect();
             let paper = |method: &str| context.printed(&context.options.printed, specimen.label(), method);
@@ -69,14 +69,14 @@ pub(crate) fn figure3(context: &Context<'_>) -> Result<Record> {
                 measured.insert(format!("{key} {method}"), y / ranges[0].y);
                 let below = METHODS.into_iter().zip(&ranges).map(|(other, of)| (other, of.y / y));
                 note(&mut measured, &format!("{key} {method} below"), below);
-                let names = [specimen.name(), distances.name, method].map(Into::into);
+                let names = [specimen.name(), distances, method].map(Into::into);
                 let numbers = [y.into(), low.into(), high.into(), paper(method).into()];
                 rows.push([&names[..], &numbers].concat());
             }
             if is_default {
                 tiles.push(pictured(specimen, &methods, paper)?);
             }
-            let name = format!("{} distances", distances.name);
+            let name = format!("{distances} distances");
             // The paper has one number for all kinds of distances.
             let printed = METHODS.into_iter().zip(0..).filter(|_| is_default);
             let printed =
@@ -87,7 +87,7 @@ pub(crate) fn figure3(context: &Context<'_>) -> Result<Record> {
             context.observer.step();
         }
         series.retain(|series| !series.points.is_empty());
-        plots.push(Plot { marks: marks.clone(), ..plot(specimen.name(), x.clone(), y, series) });
+        panels.push(Plot { marks: marks.clone(), ..plot(specimen.name(), x.clone(), y, series) });
     }
     let heads = ["shape"].into_iter().chain(METHODS).map(str::to_owned).collect();
     let tiles = FigurePanels::Tiles(Tiles { is_paired: false, heads, rows: tiles });
@@ -96,11 +96,7 @@ pub(crate) fn figure3(context: &Context<'_>) -> Result<Record> {
     Ok(Record {
         figures: vec![
             Figure { part: "forms".to_owned(), caption: FORMS.to_owned(), panels: tiles },
-            Figure {
-                part: "stress".to_owned(),
-                caption: STRESS.to_owned(),
-                panels: FigurePanels::Plots(plots),
-            },
+            Figure { caption: STRESS.to_owned(), ..plots("stress", panels) },
         ],
         tables: vec![Table::new(caption, headings, rows)],
         ..context.record(&[], measured)
@@ -108,7 +104,7 @@ pub(crate) fn figure3(context: &Context<'_>) -> Result<Record> {
 }
 
 /// All runs of all methods, in the order of [`METHODS`].
-fn embeddings(context: &Context<'_>, specimen: &Specimen<'_>, distances: &Distances) -> Result<Vec<Runs>> {
+fn embeddings(context: &Context<'_>, specimen: &Specimen<'_>, distances: Method) -> Result<Vec<Runs>> {
     let options = &context.options;
     let all = specimen.all_pairs(distances)?;
     let judged = |embedding: Embedding| {
@@ -126,7 +122,7 @@ fn embeddings(context: &Context<'_>, specimen: &Specimen<'_>, distances: &Distan
     let basis =
         SpectralBasis { values: &spectrum.values, vectors: &spectrum.vectors, masses: &spectrum.masses };
     for first in specimen.first_samples(options.runs, context.seed) {
-        let sampled = |distances: &Distances, sampling, first: VertexId| -> Result<LandmarkDistances> {
+        let sampled = |distances: Method, sampling, first: VertexId| -> Result<LandmarkDistances> {
             Ok(specimen.nested(distances, sampling, first, &[options.samples])?.remove(0))
         };
         let farthest = sampled(distances, Sampling::Farthest, first)?;
@@ -134,7 +130,7 @@ fn embeddings(context: &Context<'_>, specimen: &Specimen<'_>, distances: &Distan
         methods[2].push(judged(spectral(&farthest, &basis, &SpectralOptions::default())?)?);
         let least = sampled(distances, Sampling::MinVariance, first)?;
         methods[3].push(judged(nmds(&least)?)?);
-        let hops = sampled(&Distances::hops(), Sampling::Farthest, first)?;
+        let hops = sampled(Method::BreadthFirst, Sampling::Farthest, first)?;
         methods[4].push(judged(nmds(&hops)?)?);
     }
     Ok(methods)
@@ -148,7 +144,7 @@ fn pictured(
 ) -> Result<TileRow> {
     let mesh = specimen.shape.surface.mesh();
     let mut first = None;
-    let distances = specimen.all_pairs(&Distances::default())?;
+    let distances = specimen.all_pairs(Method::default())?;
     let distances = distances.row(0);
     let mut tiles = vec![tile(mesh, false, distances, vec![format!("{} vertices", mesh.n_vertices())])];
     for (method, runs) in METHODS.into_iter().zip(methods) {

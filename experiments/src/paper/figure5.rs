@@ -14,13 +14,13 @@
 //! power of the largest eigenvalue.
 
 use anyhow::Result;
-use geodesics::Sampling;
+use geodesics::{Method, Sampling};
 use nmds::{Reconstruction, Regularization, RpiAlpha, sample_eigenvalues};
 use report::Record;
 use report::record::{Axis, Mark, Plot, Series};
 
 use crate::context::Context;
-use crate::specimen::{Distances, Specimen};
+use crate::specimen::Specimen;
 use crate::sweep::{error_axis, half, last, least, median, places, plot, series, share_lowest};
 
 /// The error of each run at each of some regularisations.
@@ -99,7 +99,7 @@ pub(crate) fn figure5b(context: &Context<'_>) -> Result<Record> {
 fn recommended(context: &Context<'_>, specimen: &Specimen<'_>) -> Result<f64> {
     let one = |first| -> Result<f64> {
         let counts = [context.options.samples];
-        let samples = specimen.nested(&Distances::default(), Sampling::Farthest, first, &counts)?;
+        let samples = specimen.nested(Method::default(), Sampling::Farthest, first, &counts)?;
         Ok(RpiAlpha::Paper.relative(sample_eigenvalues(&samples[0])?[0].abs()))
     };
     let firsts = specimen.first_samples(context.options.runs, context.seed);

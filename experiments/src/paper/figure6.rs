@@ -5,20 +5,20 @@
 //! at which no other method except the projection is better.
 
 use anyhow::Result;
+use geodesics::Method;
 use linalg::LandmarkDistances;
 use nmds::{Reconstruction, Regularization};
 use report::Record;
 use report::record::{Axis, Series};
 
 use crate::context::Context;
-use crate::specimen::Distances;
 use crate::sweep::{error_axis, half, mean, medians, plot, share_lowest};
 
 const METHODS: [&str; 5] = ["best projection R R⁺E", "NMDS", "no regularisation", "BFS", "Min-Var"];
 
 pub(crate) fn figure6(context: &Context<'_>) -> Result<Record> {
     context.on_specimens(context.options.runs, |specimen| {
-        let all = specimen.all_pairs(&Distances::default())?;
+        let all = specimen.all_pairs(Method::default())?;
         let known = |samples: &LandmarkDistances| Reconstruction::new(samples, all.as_ref());
         let farthest = |samples: &LandmarkDistances| {
             let known = known(samples)?;

@@ -7,6 +7,7 @@
 //! * `SHAPE Landmark MDS over NMDS`: the ratio of their excesses at the greatest n.
 
 use anyhow::Result;
+use geodesics::Method;
 use linalg::LandmarkDistances;
 use nmds::{
     Embedding, NmdsError, NystromOptions, Regularization, SpectralBasis, SpectralOptions, landmark_mds,
@@ -16,7 +17,7 @@ use report::Record;
 use report::record::{Axis, Series};
 
 use crate::context::Context;
-use crate::specimen::{DIM, Distances, Specimen};
+use crate::specimen::{DIM, Specimen};
 use crate::sweep::{half, last, plot, share_lowest};
 
 const METHODS: [&str; 6] = ["NMDS", "no regularisation", "Landmark MDS", "SMDS", "BFS", "Min-Var"];
@@ -24,7 +25,7 @@ const METHODS: [&str; 6] = ["NMDS", "no regularisation", "Landmark MDS", "SMDS",
 pub(crate) fn figure7(context: &Context<'_>) -> Result<Record> {
     context.on_specimens(context.options.runs, |specimen| {
         let curves = excesses(context, specimen)?;
-        let optimum = specimen.optimum(&Distances::default())?.stress;
+        let optimum = specimen.optimum(Method::default())?.stress;
         let mut numbers = Vec::new();
         for curve in &curves {
             let first = curve.points.first().map_or(f64::NAN, |p| p.y);
@@ -45,8 +46,8 @@ pub(crate) fn figure7(context: &Context<'_>) -> Result<Record> {
 
 /// The excess of the stress over the optimum, as a curve for each method.
 fn excesses(context: &Context<'_>, specimen: &Specimen<'_>) -> Result<Vec<Series>> {
-    let all = specimen.all_pairs(&Distances::default())?;
-    let optimum = specimen.optimum(&Distances::default())?.stress;
+    let all = specimen.all_pairs(Method::default())?;
+    let optimum = specimen.optimum(Method::default())?.stress;
     let spectrum = specimen.spectrum(context.options.eigenvectors)?;
     let basis =
         SpectralBasis { values: &spectrum.values, vectors: &spectrum.vectors, masses: &spectrum.masses };

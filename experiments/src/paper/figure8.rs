@@ -5,14 +5,14 @@
 
 use anyhow::{Context as _, Result};
 use descriptors::LaplaceSpectrum;
-use geodesics::Sampling;
+use geodesics::{Method, Sampling};
 use linalg::LandmarkDistances;
 use nmds::{NystromOptions, Regularization, RpiAlpha, SpectralBasis, SpectralOptions, nystrom, spectral};
 use report::Record;
 use report::record::Axis;
 
 use crate::context::Context;
-use crate::specimen::{DIM, Distances};
+use crate::specimen::DIM;
 use crate::sweep::{curves, half, last, places, plot, plots, timed};
 
 const METHODS: [&str; 5] =
@@ -27,7 +27,7 @@ pub(crate) fn figure8(context: &Context<'_>) -> Result<Record> {
     let surface = specimen.shape.surface.intrinsic();
     context.observer.begin("figure 8", options.runs);
     let first = specimen.first_samples(1, context.seed)[0];
-    let sampled = specimen.nested(&Distances::default(), Sampling::Farthest, first, &options.counts)?;
+    let sampled = specimen.nested(Method::default(), Sampling::Farthest, first, &options.counts)?;
     let spectrum = specimen.spectrum(options.eigenvectors)?;
     let basis =
         SpectralBasis { values: &spectrum.values, vectors: &spectrum.vectors, masses: &spectrum.masses };

@@ -11,23 +11,26 @@ use base::terminal::with_peak_bytes;
 use canonform::Surface;
 use canonform::embed::{EmbedMethod, FormOptions, embed};
 use datasets::{ArticulatedOptions, Family, articulated_shape};
+use geodesics::Method;
 use mesh::RepairOptions;
 use nmds::classical_full;
 use report::numbers::{bytes, seconds};
-use report::record::{Axis, AxisScale, Figure, FigurePanels, Mark, Plot, PlotPoint, Series, SeriesKind};
+use report::record::{Axis, AxisScale, Figure, Mark, PlotPoint, SeriesKind};
 use report::{Cell, Record, Table};
 use surface::VertexId;
 
 use crate::collection::LabeledSurface;
 use crate::context::Context;
-use crate::specimen::{DIM, Distances, low_rank};
-use crate::sweep::{note, numbers, plot, timed};
+use crate::specimen::{DIM, low_rank};
+use crate::sweep::{Panels, note, numbers, plots, timed};
 
 /// The ratio of the numbers of vertices of both shapes: 28,000 and 3,400 in the paper.
 const LARGER: f64 = 28_000.0 / 3_400.0;
 
 /// The number of sources from which the time of all pairs is extrapolated.
 const TIMED_SOURCES: usize = 64;
+
+const TIMES: &str = "From the repaired mesh to coordinates";
 
 /// Time and memory of one method.
 #[derive(Debug, Clone, Copy)]
@@ -56,12 +59,14 @@ pub(crate) fn figure9(context: &Context<'_>) -> Result<Record> {
     };
     context.observer.begin("figure 9", 7);
     let mut spent = BTreeMap::new();
-    let (mut rows, mut marks, mut series) = (Vec::new(), Vec::new(), Vec::<Series>::new());
+    let (mut rows, mut marks, mut panels) = (Vec::new(), Vec::new(), Panels::default());
+    let axes = [Axis { scale: AxisScale::Category, ..Axis::linear("") }, Axis::log("time", "seconds")];
     for (place, (shape, size, printed)) in
         [(small, "small", "3400"), (&large, "large", "28000")].into_iter().enumerate()
     {
         let n = shape.surface.mesh().n_vertices();
         marks.push(Mark { x: place as f64, name: format!("{}, {n} vertices", shape.name) });
+        let at = |seconds: f64, note: String| PlotPoint::new(place as f64, seconds, note);
         let mut add = |method: &'static str, measured: Result<Spent, String>| {
             context.observer.step();
             let name = method.split(',').next().unwrap_or(method);
@@ -76,12 +81,12 @@ pub(crate) fn figure9(context: &Context<'_>) -> Result<Record> {
                 let [geodesics, algebra] = found.seconds.map(seconds);
                 let said =
                     format!("{geodesics} s distances, {algebra} s algebra, {}", bytes(found.peak_bytes));
-                add_point(&mut series, method, SeriesKind::Filled, PlotPoint::new(place as f64, total, said));
+                panels.add(TIMES, axes.clone(), (method, SeriesKind::Filled), at(total, said));
                 spent.insert((size, method), *found);
             }
             row.push(measured.err().into());
             if let Some(paper) = paper {
-                add_point(&mut series, method, SeriesKind::Hollow, PlotPoint::new(place as f64, paper, ""));
+                panels.add(TIMES, axes.clone(), (method, SeriesKind::Hollow), at(paper, String::new()));
             }
             rows.push(row);
         };
@@ -103,13 +108,9 @@ pub(crate) fn figure9(context: &Context<'_>) -> Result<Record> {
             add("MDS, all eigenpairs", Ok(full(shape)?));
         }
     }
-    let x = Axis { scale: AxisScale::Category, ..Axis::linear("") };
-    let times = plot("From the repaired mesh to coordinates", x, Axis::log("time", "seconds"), series);
-    let figure = Figure {
-        part: "times".to_owned(),
-        caption: "Filled: this program. Hollow: the paper, on a laptop of 2015.".to_owned(),
-        panels: FigurePanels::Plots(vec![Plot { marks, ..times }]),
-    };
+    panels.0.iter_mut().for_each(|plot| plot.marks.clone_from(&marks));
+    let caption = "Filled: this program. Hollow: the paper, on a laptop of 2015.".to_owned();
+    let figure = Figure { caption, ..plots("times", panels.0) };
     let headings = "shape vertices method distances algebra total memory paper remark".split(' ');
     let total = |size, method| spent.get(&(size, method)).map_or(f64::NAN, Spent::total);
     let ratio = |size, method| total(size, method) / total(size, "NMDS");
@@ -131,13 +132,6 @@ pub(crate) fn figure9(context: &Context<'_>) -> Result<Record> {
     Ok(Record { figures: vec![figure], tables, ..context.record(&[], measured) })
 }
 
-fn add_point(all: &mut Vec<Series>, name: &str, kind: SeriesKind, point: PlotPoint) {
-    match all.iter_mut().find(|series| series.name == name && series.kind == kind) {
-        Some(series) => series.points.push(point),
-        None => all.push(Series { name: name.to_owned(), kind, points: vec![point] }),
-    }
-}
-
 /// The fastest of several runs.
 fn fastest(context: &Context<'_>, shape: &LabeledSurface, method: EmbedMethod) -> Result<Spent> {
     // Long runs are hardly disturbed by others.
@@ -155,7 +149,7 @@ fn fastest(context: &Context<'_>, shape: &LabeledSurface, method: EmbedMethod) -
 
 /// Classical scaling with all eigenpairs.
 fn full(shape: &LabeledSurface) -> Result<Spent> {
-    let method = Distances::default().method;
+    let method = Method::default();
     let run = || -> Result<[f64; 2]> {
         let (all, geodesics) = timed(|| method.prepare(shape.surface.intrinsic(), &())?.distance_matrix())?;
         let (_, embedding) = timed(|| classical_full(&all, DIM))?;
@@ -168,7 +162,7 @@ fn full(shape: &LabeledSurface) -> Result<Spent> {
 /// The seconds that all pairs would take, extrapolated from some of the sources.
 fn all_pairs_seconds(shape: &LabeledSurface) -> Result<f64> {
     let p = shape.surface.mesh().n_vertices();
-    let solver = Distances::default().method.prepare(shape.surface.intrinsic(), &())?;
+    let solver = Method::default().prepare(shape.surface.intrinsic(), &())?;
     let sources: Vec<VertexId> =
         (0..TIMED_SOURCES).map(|i| VertexId::from(i * (p / TIMED_SOURCES).max(1) % p)).collect();
     let (_, seconds) = timed(|| solver.distance_columns(&sources))?;

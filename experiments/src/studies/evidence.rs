@@ -28,7 +28,7 @@ pub(crate) fn evidence(context: &Context<'_>) -> Result<Record> {
     let said: Vec<Sample> = pairs.iter().map(|pair| (pair.said.confidence, pair.is_right(), 1.0)).collect();
     let (points, error) = calibration(&said);
     let called_one =
-        |least: f64| share(&told, |pair| is_one_surface(&pair.said) && pair.said.confidence > least);
+        |least: f64| share(&told, |pair| pair.said.kind.is_one_surface() && pair.said.confidence > least);
     let measured = numbers([
         ("pairs", told.len() as f64),
         ("different called one surface", called_one(f64::NEG_INFINITY)),
@@ -45,10 +45,6 @@ pub(crate) fn evidence(context: &Context<'_>) -> Result<Record> {
     let [x, y] = ["confidence", "share that is right"].map(Axis::linear);
     let plot = plot("Calibration", x, y, vec![points, diagonal]);
     Ok(Record { figures: vec![plots("curves", vec![plot])], ..context.record(&[], measured) })
-}
-
-fn is_one_surface(told: &Relation) -> bool {
-    told.kind.is_one_surface()
 }
 
 fn geometry(mesh: &TriMesh) -> Option<MeshGeometry> {
@@ -89,7 +85,7 @@ mod tests {
             let own = geometry(&part.mesh(&PartMesh::default())).unwrap();
             for copy in copies(part) {
                 let told = related(&own, &geometry(&copy).unwrap());
-                assert!(is_one_surface(&told), "{}: {told}", part.name());
+                assert!(told.kind.is_one_surface(), "{}: {told}", part.name());
             }
         }
     }
@@ -107,7 +103,7 @@ mod tests {
         for (i, a) in pipes.iter().enumerate() {
             for (j, b) in pipes.iter().enumerate().take(i) {
                 let told = related(&geometries[i], &geometries[j]);
-                assert!(!is_one_surface(&told), "{}, {}: {told}", a.name(), b.name());
+                assert!(!told.kind.is_one_surface(), "{}, {}: {told}", a.name(), b.name());
             }
         }
     }

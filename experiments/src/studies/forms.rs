@@ -14,14 +14,14 @@ use nmds::{
     kernel_pca, landmark_mds, nystrom, smacof,
 };
 use rayon::prelude::*;
-use report::record::{Axis, AxisScale, Mark, Plot, PlotPoint, Series, SeriesKind};
+use report::record::{Axis, AxisScale, Mark, PlotPoint, SeriesKind};
 use report::{Cell, Record, Table};
 use retrieval::{Averaging, BootstrapOptions, Labels, QueryScores, bootstrap, silhouette};
 
 use crate::collection::map;
 use crate::context::Context;
 use crate::specimen::DIM;
-use crate::sweep::{MeasuredNumbers, SCORES, mean, named, note, plot, plots, timed};
+use crate::sweep::{MeasuredNumbers, Panels, SCORES, mean, named, note, plots, timed};
 
 /// Points of a form that are compared, as many as an index stores.
 const POINTS: usize = 1000;
@@ -100,7 +100,7 @@ pub(crate) fn forms(context: &Context<'_>) -> Result<Record> {
         let (embedded, seconds) = timed(|| embed(&surface, &options, &()))?;
         Ok((surface.mesh().clone(), embedded.distances, seconds))
     })?;
-    let (mut measured, mut rows, mut series) = (MeasuredNumbers::new(), Vec::new(), Vec::<Series>::new());
+    let (mut measured, mut rows, mut panels) = (MeasuredNumbers::new(), Vec::new(), Panels::default());
     let level = 100.0 * BootstrapOptions::default().level;
     for (name, method) in METHODS {
         context.observer.begin(name, shapes.len());
@@ -136,14 +136,9 @@ pub(crate) fn forms(context: &Context<'_>) -> Result<Record> {
             rows.push(row);
             let (low, high) = (intervals.low.map, intervals.high.map);
             let point = PlotPoint { x: place as f64, y: mean.map, low, high, note: String::new() };
-            match series.iter_mut().find(|series| series.name == name) {
-                Some(series) => series.points.push(point),
-                None => series.push(Series {
-                    name: name.to_owned(),
-                    kind: SeriesKind::Filled,
-                    points: vec![point],
-                }),
-            }
+            let x = Axis { scale: AxisScale::Category, ..Axis::linear("compared by") };
+            let axes = [x, Axis::linear("mAP")];
+            panels.add("Mean average precision", axes, (name, SeriesKind::Filled), point);
         }
     }
     let headings = ["form", "compared by"].into_iter().chain(SCORES);
@@ -153,11 +148,10 @@ pub(crate) fn forms(context: &Context<'_>) -> Result<Record> {
     );
     let marks =
         COMPARISONS.iter().enumerate().map(|(i, name)| Mark { x: i as f64, name: (*name).to_owned() });
-    let x = Axis { scale: AxisScale::Category, ..Axis::linear("compared by") };
-    let plain = plot("Mean average precision", x, Axis::linear("mAP"), series);
+    panels.0.iter_mut().for_each(|plot| plot.marks = marks.clone().collect());
     Ok(Record {
         tables: vec![Table::new(caption, headings, rows)],
-        figures: vec![plots("curves", vec![Plot { marks: marks.collect(), ..plain }])],
+        figures: vec![plots("curves", panels.0)],
         ..context.record(&[], measured)
     })
 }

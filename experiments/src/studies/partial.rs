@@ -11,12 +11,12 @@ use canonform::embed::describe_part;
 use datasets::Damage;
 use descriptors::{DiscAreas, PartDistance, ShapeMetric};
 use report::Record;
-use report::record::{Axis, Plot};
+use report::record::{Axis, SeriesKind};
 use retrieval::Scores;
 
 use crate::context::Context;
 use crate::gallery::Gallery;
-use crate::sweep::{MeasuredNumbers, curve, mean, median, note, plot, plots, point, share};
+use crate::sweep::{MeasuredNumbers, Panels, mean, median, note, plots, point, share};
 
 const METHODS: [&str; 2] = ["fused", "discs"];
 
@@ -48,7 +48,7 @@ pub(crate) fn partial(context: &Context<'_>) -> Result<Record> {
     let of_wholes = wholes.iter().map(|whole| DiscAreas::from_numbers(&whole.disc_areas));
     let of_wholes: Vec<DiscAreas> = of_wholes.collect::<Option<_>>().context("disc areas of every shape")?;
     let mut measured = MeasuredNumbers::new();
-    let mut rows = Vec::new();
+    let mut panels = Panels::default();
     for (kind, lost, damage) in cuts() {
         let name = format!("{kind} {lost} %");
         let found = gallery.map(context.options.queries, &name, |query| {
@@ -75,27 +75,22 @@ pub(crate) fn partial(context: &Context<'_>) -> Result<Record> {
             let nn = mean(found.iter().map(|found| found.scores[m].nn));
             let precision = mean(found.iter().map(|found| found.scores[m].map));
             note(&mut measured, &format!("{name} {method}"), [("nn", nn), ("mAP", precision)]);
-            rows.push((kind, lost, m, [nn, precision]));
+            // What is whole is the beginning of every curve.
+            for panel in
+                ["plane", "limb", "holes"].into_iter().filter(|panel| [panel, "nothing"].contains(&kind))
+            {
+                for (score, value) in [("NN", nn), ("mAP", precision)] {
+                    let axes = ["area missing, %", score].map(Axis::linear);
+                    panels.add(
+                        &format!("{panel}: {score}"),
+                        axes,
+                        (method, SeriesKind::Curve),
+                        point(lost, &[value]),
+                    );
+                }
+            }
         }
     }
-    let figures = vec![plots("curves", panels(&rows))];
+    let figures = vec![plots("curves", panels.0)];
     Ok(Record { figures, ..context.record(&[("description", &gallery.options)], measured) })
-}
-
-/// Kind, share of the area that is missing, method and scores.
-type CutRow = (&'static str, f64, usize, [f64; 2]);
-
-fn panels(rows: &[CutRow]) -> Vec<Plot> {
-    let mut panels = Vec::new();
-    for kind in ["plane", "limb", "holes"] {
-        for (i, score) in ["NN", "mAP"].into_iter().enumerate() {
-            let series = METHODS.iter().enumerate().map(|(m, method)| {
-                let is_there = |row: &&CutRow| row.2 == m && [kind, "nothing"].contains(&row.0);
-                curve(method, rows.iter().filter(is_there).map(|row| point(row.1, &[row.3[i]])).collect())
-            });
-            let [x, y] = ["area missing, %", score].map(Axis::linear);
-            panels.push(plot(format!("{kind}: {score}"), x, y, series.collect()));
-        }
-    }
-    panels
 }

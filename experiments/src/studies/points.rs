@@ -17,14 +17,14 @@ use geodesics::{Method, Source, SurfacePoint};
 use mesh::TriMesh;
 use nalgebra::Point3;
 use report::Record;
-use report::record::{Axis, Plot};
+use report::record::{Axis, SeriesKind};
 use rigid::NearestPoints;
 use surface::VertexId;
 
 use crate::collection::LabeledSurface;
 use crate::context::Context;
 use crate::gallery::Gallery;
-use crate::sweep::{MeasuredNumbers, curve, mean, note, plot, plots, point};
+use crate::sweep::{MeasuredNumbers, Panels, mean, note, plots, point};
 
 const COUNTS: [usize; 2] = [10_000, 50_000];
 
@@ -47,7 +47,7 @@ const ERRORS: [&str; 4] = ["error", "bias", "moved", "own"];
 pub(crate) fn points(context: &Context<'_>) -> Result<Record> {
     let gallery = Gallery::new(context)?;
     let all = &gallery.described;
-    let (mut measured, mut least, mut rows) = (MeasuredNumbers::new(), f64::INFINITY, Vec::new());
+    let (mut measured, mut least, mut panels) = (MeasuredNumbers::new(), f64::INFINITY, Panels::default());
     for noise in NOISES {
         for n in COUNTS {
             let name = format!("{} % of sqrt(area), {} points", 100.0 * noise, thousands(n));
@@ -62,11 +62,15 @@ pub(crate) fn points(context: &Context<'_>) -> Result<Record> {
             let errors = [0, 1, 2, 3].map(|i| mean(found.iter().map(|(errors, _)| errors[i])));
             note(&mut measured, &format!("{name},"), ERRORS.into_iter().zip(errors).chain([("nn", nn)]));
             least = least.min(nn);
-            rows.push((noise, n, [errors[0], nn]));
+            for (title, value) in [("mean relative error", errors[0]), ("NN", nn)] {
+                let axes = ["noise, % of sqrt(area)", title].map(Axis::linear);
+                let name = format!("{} points", thousands(n));
+                panels.add(title, axes, (&name, SeriesKind::Curve), point(100.0 * noise, &[value]));
+            }
         }
     }
     measured.insert("least nn".to_owned(), least);
-    let figures = vec![plots("curves", panels(&rows))];
+    let figures = vec![plots("curves", panels.0)];
     Ok(Record { figures, ..context.record(&[("description", &gallery.options)], measured) })
 }
 
@@ -147,20 +151,4 @@ struct Triple {
 /// `10,000`.
 fn thousands(n: usize) -> String {
     format!("{},{:03}", n / 1000, n % 1000)
-}
-
-/// Noise, number of points; error of distances, and share of queries whose nearest has their class.
-type CloudRow = (f64, usize, [f64; 2]);
-
-fn panels(rows: &[CloudRow]) -> Vec<Plot> {
-    let of = |(i, title): (usize, &str)| {
-        let series = COUNTS.map(|n| {
-            let own = rows.iter().filter(|row| row.1 == n);
-            let points = own.map(|row| point(100.0 * row.0, &[row.2[i]])).collect();
-            curve(&format!("{} points", thousands(n)), points)
-        });
-        let [x, y] = ["noise, % of sqrt(area)", title].map(Axis::linear);
-        plot(title, x, y, series.into())
-    };
-    ["mean relative error", "NN"].into_iter().enumerate().map(of).collect()
 }

@@ -13,11 +13,11 @@ use canonform::index::Shape;
 use datasets::DamageKind;
 use descriptors::{PreparedShape, ShapeMetric, ShapePair, SignatureKind};
 use report::Record;
-use report::record::{Axis, Plot};
+use report::record::{Axis, SeriesKind};
 
 use crate::context::Context;
 use crate::gallery::{Gallery, GalleryQuery};
-use crate::sweep::{MeasuredNumbers, curve, mean, note, numbers, plot, plots, point, share};
+use crate::sweep::{MeasuredNumbers, Panels, mean, note, numbers, plots, point, share};
 
 const FUSED: &str = "fused";
 const FORMS: &str = "aligned forms";
@@ -41,10 +41,10 @@ pub(crate) fn robustness(context: &Context<'_>) -> Result<Record> {
     })?;
     let undamaged = means(&undamaged);
     record("undamaged", &undamaged, &mut measured);
-    let mut panels = Vec::new();
+    let mut panels = Panels::default();
     let mut least = f64::INFINITY;
     for &kind in DamageKind::ALL {
-        let mut curves: Vec<(usize, MethodScores)> = vec![(0, undamaged.clone())];
+        draw(kind, 0, &undamaged, &mut panels);
         for strength in 1..=DamageKind::STRENGTHS {
             let stage = format!("{} {strength}", kind.name());
             let found = gallery.map(context.options.queries, &stage, |query| {
@@ -61,12 +61,11 @@ pub(crate) fn robustness(context: &Context<'_>) -> Result<Record> {
             record(&stage, &found, &mut measured);
             let fused = found.iter().find(|(method, _)| *method == FUSED && strength == ALIGNED_AT);
             least = fused.map_or(least, |(_, [nn, _])| least.min(*nn));
-            curves.push((strength, found));
+            draw(kind, strength, &found, &mut panels);
         }
-        panels.extend(panels_of(kind, &curves));
     }
     measured.insert("least fused nn".to_owned(), least);
-    let figures = vec![plots("curves", panels)];
+    let figures = vec![plots("curves", panels.0)];
     Ok(Record { figures, ..context.record(&[("description", &gallery.options)], measured) })
 }
 
@@ -114,18 +113,12 @@ fn record(stage: &str, found: &MethodScores, measured: &mut MeasuredNumbers) {
     }
 }
 
-/// The panels of one kind: nearest neighbours, and mean average precision.
-fn panels_of(kind: DamageKind, curves: &[(usize, MethodScores)]) -> [Plot; 2] {
-    let methods = curves.first().map_or(&[][..], |(_, found)| found);
-    [("NN", 0), ("mAP", 1)].map(|(name, score)| {
-        let series = methods.iter().map(|(method, _)| {
-            let at = |(strength, found): &(usize, MethodScores)| {
-                let (_, own) = found.iter().find(|(other, _)| other == method)?;
-                Some(point(*strength as f64, &[own[score]]))
-            };
-            curve(method, curves.iter().filter_map(at).collect())
-        });
-        let [x, y] = ["strength", name].map(Axis::linear);
-        plot(format!("{}: {name}", kind.name()), x, y, series.collect())
-    })
+/// Adds to the panels of a kind: nearest neighbours, and mean average precision.
+fn draw(kind: DamageKind, strength: usize, found: &MethodScores, panels: &mut Panels) {
+    for (method, scores) in found {
+        for (name, score) in ["NN", "mAP"].into_iter().zip(scores) {
+            let (title, axes) = (format!("{}: {name}", kind.name()), ["strength", name].map(Axis::linear));
+            panels.add(&title, axes, (method, SeriesKind::Curve), point(strength as f64, &[*score]));
+        }
+    }
 }

@@ -8,13 +8,14 @@ use base::terminal::with_peak_bytes;
 use canonform::Surface;
 use canonform::embed::embed;
 use datasets::{ArticulatedOptions, Family, articulated_shape};
+use geodesics::Method;
 use mesh::RepairOptions;
 use report::Record;
 use report::record::{Axis, Series};
 use surface::VertexId;
 
 use crate::context::Context;
-use crate::specimen::{Distances, low_rank};
+use crate::specimen::low_rank;
 use crate::sweep::{MeasuredNumbers, curves, places, plot, plots, series, timed};
 
 /// The curves of time.
@@ -58,7 +59,7 @@ pub(crate) fn scaling(context: &Context<'_>) -> Result<Record> {
 
 /// Seconds for preparing a surface, and for the distances from one vertex in a second run.
 fn of_one_map(surface: &Surface) -> Result<[f64; 2]> {
-    let method = Distances::default().method;
+    let method = Method::default();
     let (solver, preparation) = timed(|| method.prepare(surface.intrinsic(), &()))?;
     let mut distances = solver.distances(VertexId(0))?;
     let (_, map) = timed(|| solver.distances_into(VertexId(0), &mut distances))?;

@@ -6,7 +6,7 @@ use geodesics::Method;
 use rayon::prelude::*;
 use surface::VertexId;
 
-use super::shapes::PreparedShape;
+use super::PreparedShape;
 use crate::sweep::mean;
 
 /// Vertices of a pair whose errors are measured.
@@ -49,15 +49,14 @@ impl JudgedMap {
 impl MappedPair {
     /// Maps one shape to another and judges the maps.
     pub(super) fn new(
-        a: &PreparedShape<'_>,
-        b: &PreparedShape<'_>,
+        [(a, from), (b, to)]: [&PreparedShape<'_>; 2],
         options: &CorrespondOptions,
     ) -> Result<Self> {
-        let found = correspond(&a.mapped, &b.mapped, options, &())?;
-        let surface = b.mapped.surface();
+        let found = correspond(from, to, options, &())?;
+        let surface = to.surface();
         let (solver, size) =
             (Method::default().prepare(surface.intrinsic(), &())?, surface.mesh().root_of_area());
-        let n = a.mapped.surface().mesh().n_vertices();
+        let n = from.surface().mesh().n_vertices();
         let judged = |kind| -> Result<Option<JudgedMap>> {
             let Some(map) = found.maps.iter().find(|map| map.kind == kind) else { return Ok(None) };
             let checked = (0..n).step_by(n.div_ceil(CHECKED).max(1));

@@ -19,12 +19,13 @@ mod errors;
 mod shapes;
 
 use anyhow::{Context as _, Result};
-use canonform::maps::CorrespondOptions;
+use canonform::Surface;
+use canonform::maps::{CorrespondOptions, MappedSurface};
 use report::Record;
 use report::record::{Axis, Mark, Plot};
 
 use self::errors::{JudgedMap, MappedPair};
-use self::shapes::{MapGroup, PreparedShape};
+use self::shapes::{MapGroup, PlacedShape};
 use crate::context::Context;
 use crate::sweep::{MeasuredNumbers, curve, mean, median, note, plot, plots, point, share};
 
@@ -39,44 +40,45 @@ const ALL: &str = "all";
 /// learning (`melzi2019` in `REFERENCES.bib`); no curve is at hand as numbers.
 const PUBLISHED: [(&str, f64); 2] = [("ZoomOut, mean", 0.0217), ("PMF, mean", 0.086)];
 
-/// The pairs of a group.
-struct MappedGroup {
-    name: String,
-    pairs: Vec<MappedPair>,
-}
+/// A shape that is ready to be mapped.
+type PreparedShape<'a> = (&'a PlacedShape<'a>, MappedSurface<&'a Surface>);
+
+/// The name of a group, and its pairs.
+type MappedGroup<'a> = (&'a str, Vec<MappedPair>);
 
 pub(crate) fn matching(context: &Context<'_>) -> Result<Record> {
     let options = CorrespondOptions::default();
     let mut measured = MeasuredNumbers::new();
     let (mut found, mut preparation) = (Vec::new(), Vec::new());
     // One after the other, so that times are those of a machine at rest.
-    for group in MapGroup::all(context.collection, context.seed)? {
+    let groups = MapGroup::all(context.collection, context.seed)?;
+    for group in &groups {
         let pairs = group.pairs();
-        let MapGroup { name, shapes } = group;
-        context.observer.begin("preparing", shapes.len());
-        let mut prepared = Vec::new();
-        for shape in shapes {
-            prepared.push(PreparedShape::new(shape, &options)?);
+        context.observer.begin("preparing", group.shapes.len());
+        let mut prepared: Vec<PreparedShape<'_>> = Vec::new();
+        for shape in &group.shapes {
+            let mapped = MappedSurface::new(&*shape.surface, &options, &());
+            prepared.push((shape, mapped.with_context(|| shape.name.clone())?));
             context.observer.step();
         }
-        preparation.extend(prepared.iter().map(|shape| shape.mapped.seconds));
+        preparation.extend(prepared.iter().map(|(_, mapped)| mapped.seconds));
         context.observer.begin("matching", pairs.len());
         let mut mapped = Vec::new();
-        for [a, b] in pairs.into_iter().map(|pair| pair.map(|i| &prepared[i])) {
-            let names = format!("{} to {}", a.name, b.name);
-            let pair = MappedPair::new(a, b, &options).with_context(|| names.clone())?;
+        for pair in pairs.into_iter().map(|pair| pair.map(|i| &prepared[i])) {
+            let names = pair.map(|(shape, _)| shape.name.as_str()).join(" to ");
+            let pair = MappedPair::new(pair, &options).with_context(|| names.clone())?;
             measured.extend(pair.error().map(|error| (names, error)));
             mapped.push(pair);
             context.observer.step();
         }
-        found.push(MappedGroup { name, pairs: mapped });
+        found.push((group.name.as_str(), mapped));
     }
     measured.insert("preparation seconds".to_owned(), mean(preparation));
     let mut worst = f64::NEG_INFINITY;
-    for MappedGroup { name, pairs } in &found {
+    for (name, pairs) in &found {
         worst = worst.max(measure(name, &pairs.iter().collect::<Vec<_>>(), &mut measured));
     }
-    let all: Vec<&MappedPair> = found.iter().flat_map(|group| &group.pairs).collect();
+    let all: Vec<&MappedPair> = found.iter().flat_map(|(_, pairs)| pairs).collect();
     measure(ALL, &all, &mut measured);
     measured.insert("worst direct".to_owned(), worst);
     let mut record = context.record(&[], measured);
@@ -121,14 +123,14 @@ fn measure(group: &str, pairs: &[&MappedPair], measured: &mut MeasuredNumbers) -
 }
 
 /// Cumulative errors, a panel for each kind that was measured.
-fn panels(groups: &[MappedGroup]) -> Vec<Plot> {
+fn panels(groups: &[MappedGroup<'_>]) -> Vec<Plot> {
     type Of = fn(&MappedPair) -> Option<&JudgedMap>;
     let kinds: [(&str, Of); 2] =
         [("direct map", |pair| pair.direct.as_ref()), ("mirrored map", |pair| pair.mirrored.as_ref())];
     let mut panels = Vec::new();
     for (title, of) in kinds {
         let mut curves = Vec::new();
-        for MappedGroup { name, pairs } in groups {
+        for (name, pairs) in groups {
             let errors = pairs.iter().filter_map(of).map(|map| &map.errors);
             let runs: Vec<&Vec<f64>> = errors.filter(|errors| !errors.is_empty()).collect();
             if runs.is_empty() {

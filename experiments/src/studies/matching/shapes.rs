@@ -5,7 +5,7 @@ use std::collections::HashSet;
 
 use anyhow::{Context as _, Result};
 use canonform::Surface;
-use canonform::maps::{CorrespondOptions, MapKind, MappedSurface};
+use canonform::maps::MapKind;
 use datasets::{ArticulatedOptions, Damage, Family, RestedShape, articulated_at_rest};
 use mesh::TriMesh;
 use nalgebra::Point3;
@@ -162,21 +162,6 @@ fn is_numbered_alike(a: &TriMesh, b: &TriMesh) -> bool {
     }
     let (a, b) = (edges(a), edges(b));
     a.intersection(&b).count() as f64 >= SAME_EDGES * a.len().max(b.len()) as f64
-}
-
-/// A shape that is ready to be mapped.
-pub(super) struct PreparedShape<'a> {
-    pub(super) name: String,
-    pub(super) mapped: MappedSurface<Cow<'a, Surface>>,
-    pub(super) places: VertexPlaces,
-}
-
-impl<'a> PreparedShape<'a> {
-    pub(super) fn new(shape: PlacedShape<'a>, options: &CorrespondOptions) -> Result<Self> {
-        let PlacedShape { name, surface, places } = shape;
-        let mapped = MappedSurface::new(surface, options, &()).with_context(|| name.clone())?;
-        Ok(Self { name, mapped, places })
-    }
 }
 
 #[cfg(test)]
