@@ -94,9 +94,7 @@ impl VectorTable {
         let n = padded(self.dim);
         let [mut query, mut limits] = [query, limits].map(<[f32]>::to_vec);
         query.resize(n, 0.0);
-        if !limits.is_empty() {
-            limits.resize(n, f32::INFINITY);
-        }
+        limits.resize(n, f32::INFINITY);
         // The bits of numbers that are not negative are in the order of the numbers.
         let at_least = move |sum: f32| least_loss(sum, n).sqrt().to_bits();
         let mut sums = vec![0.0; self.len()];

@@ -46,7 +46,8 @@ impl Trial {
     fn meet(&mut self, shapes: Range<usize>, vectors: &VectorTable, classes: &[String]) {
         let mut sqs = [0.0; BLOCK];
         let sqs = &mut sqs[..shapes.len()];
-        losses_into(&self.row, &[], vectors.rows(shapes.clone()), sqs);
+        let unlimited = vec![f32::INFINITY; self.row.len()];
+        losses_into(&self.row, &unlimited, vectors.rows(shapes.clone()), sqs);
         for (i, sq) in shapes.zip(sqs) {
             // The class of most does not matter, so that no names are compared.
             if *sq < self.own.max(self.foreign) && !classes[i].is_empty() && vectors.id(i) != self.id {
