@@ -1,27 +1,30 @@
 //! Colour maps for numbers.
 
-use std::fmt;
 use std::str::FromStr;
+
+use strum::VariantArray;
 
 use crate::color::{Rgb, mix, perceptual};
 
 /// A colour map for numbers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::IntoStaticStr, VariantArray)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[strum(serialize_all = "kebab-case")]
 pub enum ColorMap {
-    /// From dark violet over green to yellow.
+    /// Violet, green, yellow; equal steps look equal, also to colour-blind readers
     #[default]
     Viridis,
-    /// From black over violet and orange to pale yellow.
+    /// Black, violet, orange, pale yellow; equal steps look equal
     Magma,
-    /// From black over red to pale yellow.
+    /// Black, red, orange, pale yellow; equal steps look equal
     Inferno,
-    /// From blue over grey to yellow.
+    /// Blue, grey, yellow; looks the same to most colour-blind readers
     Cividis,
-    /// All colours of the rainbow.
+    /// A smooth rainbow; shows detail, but its steps look unequal
     Turbo,
-    /// From blue over pale grey to red.
+    /// Blue, pale grey, red; diverging, for values around the middle of the range
     Coolwarm,
-    /// From black to white.
+    /// Black to white; for print without colour
     Gray,
 }
 
@@ -69,36 +72,6 @@ const COOLWARM: [u32; STOPS] = [
 ];
 
 impl ColorMap {
-    /// All maps.
-    pub const ALL: [Self; 7] =
-        [Self::Viridis, Self::Magma, Self::Inferno, Self::Cividis, Self::Turbo, Self::Coolwarm, Self::Gray];
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Viridis => "viridis",
-            Self::Magma => "magma",
-            Self::Inferno => "inferno",
-            Self::Cividis => "cividis",
-            Self::Turbo => "turbo",
-            Self::Coolwarm => "coolwarm",
-            Self::Gray => "gray",
-        }
-    }
-
-    /// Its colours and its use, in a phrase.
-    pub fn description(self) -> &'static str {
-        match self {
-            Self::Viridis => "violet, green, yellow; equal steps look equal, also to colour-blind readers",
-            Self::Magma => "black, violet, orange, pale yellow; equal steps look equal",
-            Self::Inferno => "black, red, orange, pale yellow; equal steps look equal",
-            Self::Cividis => "blue, grey, yellow; looks the same to most colour-blind readers",
-            Self::Turbo => "a smooth rainbow; shows detail, but its steps look unequal",
-            Self::Coolwarm => "blue, pale grey, red; diverging, for values around the middle of the range",
-            Self::Gray => "black to white; for print without colour",
-        }
-    }
-
     /// The colour of a share of the range. Values outside 0..=1 are clamped; NaN is grey.
     pub fn color(self, share: f64) -> Rgb {
         let stops = match self {
@@ -121,19 +94,13 @@ impl ColorMap {
     }
 }
 
-impl fmt::Display for ColorMap {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
 impl FromStr for ColorMap {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
-        let names = || Self::ALL.map(Self::name).join(", ");
-        let found = Self::ALL.into_iter().find(|map| map.name() == name);
-        found.ok_or_else(|| format!("there is no colour map `{name}`; choose from {}", names()))
+        let names: Vec<&str> = Self::VARIANTS.iter().map(|map| map.into()).collect();
+        let found = names.iter().position(|known| *known == name).map(|place| Self::VARIANTS[place]);
+        found.ok_or_else(|| format!("there is no colour map `{name}`; choose from {}", names.join(", ")))
     }
 }
 
@@ -149,8 +116,8 @@ mod tests {
 
     #[test]
     fn maps_read_back_by_name_and_have_their_ends() {
-        for map in ColorMap::ALL {
-            assert_eq!(map.to_string().parse::<ColorMap>(), Ok(map));
+        for &map in ColorMap::VARIANTS {
+            assert_eq!(<&str>::from(map).parse::<ColorMap>(), Ok(map));
             assert_eq!([map.color(-1.0), map.color(2.0)], [map.color(0.0), map.color(1.0)]);
             assert_eq!(map.color(f64::NAN), ColorMap::Viridis.color(f64::NAN));
         }
@@ -164,7 +131,7 @@ mod tests {
         let light = |map: ColorMap, i: u32| luminance(map.color(f64::from(i) / 20.0));
         for map in [ColorMap::Viridis, ColorMap::Magma, ColorMap::Inferno, ColorMap::Cividis, ColorMap::Gray]
         {
-            assert!((0..20).all(|i| light(map, i) < light(map, i + 1)), "{map}");
+            assert!((0..20).all(|i| light(map, i) < light(map, i + 1)), "{map:?}");
         }
         let diverging = ColorMap::Coolwarm;
         assert!((0..10).all(|i| light(diverging, i) < light(diverging, i + 1)));

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use canonform::mesh::InputPoint;
 use clap::Args;
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use report::color::ColorMap;
 use report::render::{Background, View};
 
@@ -57,7 +57,7 @@ pub(crate) struct RenderArgs {
     #[arg(long, hide_short_help = true, value_name = "#rrggbb", value_parser = parse_color, conflicts_with_all = ["field", "distance_from"])]
     pub(crate) color: Option<[u8; 3]>,
     /// Colours of the values
-    #[arg(long, default_value_t, value_name = "MAP", value_parser = color_map())]
+    #[arg(long, value_enum, default_value_t, value_name = "MAP")]
     pub(crate) colors: ColorMap,
     /// Colour by the values in this file, one per vertex: .npy or .csv
     #[arg(long, value_name = "FIELD")]
@@ -102,12 +102,6 @@ impl Place {
             Self::Angles([azimuth, elevation]) => View::Upright { azimuth, elevation, up: up.into() },
         }
     }
-}
-
-/// A colour map; `--help` lists them.
-fn color_map() -> impl TypedValueParser<Value = ColorMap> {
-    let value = |map: ColorMap| PossibleValue::new(map.name()).help(map.description());
-    PossibleValuesParser::new(ColorMap::ALL.map(value)).try_map(|name| name.parse::<ColorMap>())
 }
 
 /// The direction of an axis.
