@@ -15,7 +15,7 @@ use crate::collection::{Setting, SurfaceCollection};
 use crate::config::{Config, Options, Printed};
 use crate::machine;
 use crate::specimen::Specimen;
-use crate::studies::Published;
+use crate::studies::published::Published;
 use crate::sweep::{MeasuredNumbers, curves, note, places, plots};
 use crate::text::filled;
 

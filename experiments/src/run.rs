@@ -30,24 +30,24 @@ macro_rules! experiments {
 }
 
 experiments! {
-    "figure1" paper::figure1,
-    "figure3" paper::figure3,
-    "figure4" paper::figure4,
-    "figure5a" paper::figure5a,
-    "figure5b" paper::figure5b,
-    "figure6" paper::figure6,
-    "figure7" paper::figure7,
-    "figure8" paper::figure8,
-    "figure9" paper::figure9,
-    "retrieval" studies::retrieval,
-    "forms" studies::forms,
-    "invariance" studies::invariance,
-    "robustness" studies::robustness,
-    "matching" studies::matching,
-    "points" studies::points,
-    "partial" studies::partial,
-    "evidence" studies::evidence,
-    "scaling" studies::scaling,
+    "figure1" paper::figure1::figure1,
+    "figure3" paper::figure3::figure3,
+    "figure4" paper::figure4::figure4,
+    "figure5a" paper::figure5::figure5a,
+    "figure5b" paper::figure5::figure5b,
+    "figure6" paper::figure6::figure6,
+    "figure7" paper::figure7::figure7,
+    "figure8" paper::figure8::figure8,
+    "figure9" paper::figure9::figure9,
+    "retrieval" studies::retrieval::retrieval,
+    "forms" studies::forms::forms,
+    "invariance" studies::invariance::invariance,
+    "robustness" studies::robustness::robustness,
+    "matching" studies::matching::matching,
+    "points" studies::points::points,
+    "partial" studies::partial::partial,
+    "evidence" studies::evidence::evidence,
+    "scaling" studies::scaling::scaling,
 }
 
 /// Stands for all experiments on the command line.
@@ -74,7 +74,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitCode> {
     }
     let finished = Arc::new(Mutex::new(finished));
     keep_finished(args, Arc::clone(&finished));
-    let published = args.compare.as_deref().map(studies::published).transpose()?;
+    let published = args.compare.as_deref().map(studies::published::published).transpose()?;
     if !open.is_empty() {
         let bars = Bars::new(args.quiet);
         let collection = SurfaceCollection::load(&args.source, &bars)?;

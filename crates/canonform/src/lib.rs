@@ -126,20 +126,15 @@ pub mod maps {
 /// Libraries of shapes: building, changing and scoring an index, and its duplicates.
 pub mod library {
     pub use crate::shape_index::{
-        Agreement, BuildOptions, BuildReport, Dropped, DuplicateFile, DuplicateGroup, DuplicateMember,
-        DuplicateOptions, DuplicateReport, EvaluateOptions, Failure, FailureReason, IndexEvaluation, Inputs,
-        Keep, Measure, MergeReport, MoveReport, NotMoved, ShapeLimits, Shard, add_to_index, build_index,
-        check_place, evaluate_index, evaluate_matrix, export_index, find_duplicates, indexed_shapes,
-        merge_indexes, mesh_path, move_duplicates, remove_from_index, unchanged_index, undo_moves,
+        agreement::*, build::*, change::*, duplicates::*, evaluate::*, export::*, moves::*, place::*,
+        source::*,
     };
 }
 
 /// Searching an index, and merging the answers of several.
 pub mod search {
     pub use crate::shape_index::{
-        Aligned, Answer, ClassVotes, ComponentResult, Hit, NearestShape, OrderedBy, PairwiseDistance,
-        Prediction, Query, SearchOptions, SearchRank, SearchSeconds, ShapeSearch, Unknown, bounds,
-        merge_answers, n_candidates, n_results, rerank,
+        distances::*, found::*, merge::*, options::*, predict::*, query::*, rerank::*, search::*,
     };
 }
 

@@ -20,12 +20,7 @@ mod storage;
 mod table;
 
 pub use content::{content_hash, content_of};
-pub use dataset::{
-    Dataset, LabelFile, LabelOrigin, LabelSource, MOVES, ShapeFile, SkipKind, Skipped, UnusedLabel,
-    count_skipped, drop_single_class, is_suggested, label_of, label_shapes, list_shapes, n_classes,
-};
+pub use dataset::*;
 pub use error::CollectionError;
-pub use storage::{
-    Storage, is_archive_name, is_dataset, member_of, mesh_at, read_mesh, read_mesh_file, single_mesh,
-};
+pub use storage::*;
 pub use table::{Row, TextTable};

@@ -19,7 +19,7 @@ use retrieval::{Labels, RankBy, evaluate, silhouette};
 use crate::collection::map;
 use crate::context::Context;
 use crate::specimen::{describing, low_rank};
-use crate::studies::MANY_DIMENSIONS;
+use crate::studies::forms::MANY_DIMENSIONS;
 use crate::sweep::{MeasuredNumbers, SCORES, best_e, named, plot};
 
 const NMDS: &str = "NMDS";

@@ -54,7 +54,8 @@ mod tests {
 
     use super::*;
     use crate::form::DescribeOptions;
-    use crate::shape_index::{BuildOptions, SearchOptions, SearchRank, ShapeSearch, Shard, build_index};
+    use crate::library::{BuildOptions, Shard, build_index};
+    use crate::search::{SearchOptions, SearchRank, ShapeSearch};
 
     /// The answer of some shards, as it is sent from other processes.
     fn asked(shards: &[ShapeSearch], query: &Query, rank_by: SearchRank, k: usize) -> Answer {

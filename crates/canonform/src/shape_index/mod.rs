@@ -7,46 +7,24 @@
 //! Query -> an Answer of every shard -> merge_answers -> Answer
 //! ```
 
-mod agreement;
+pub(crate) mod agreement;
 mod ask;
-mod build;
-mod change;
+pub(crate) mod build;
+pub(crate) mod change;
 mod components;
-mod distances;
-mod duplicates;
-mod evaluate;
+pub(crate) mod distances;
+pub(crate) mod duplicates;
+pub(crate) mod evaluate;
 mod explain;
-mod export;
-mod found;
-mod merge;
-mod moves;
-mod options;
-mod place;
-mod predict;
-mod query;
+pub(crate) mod export;
+pub(crate) mod found;
+pub(crate) mod merge;
+pub(crate) mod moves;
+pub(crate) mod options;
+pub(crate) mod place;
+pub(crate) mod predict;
+pub(crate) mod query;
 mod record;
-mod rerank;
-mod search;
-mod source;
-
-pub use agreement::Agreement;
-pub use build::{
-    BuildOptions, BuildReport, Dropped, Failure, FailureReason, build_index, indexed_shapes, unchanged_index,
-};
-pub use change::{MergeReport, add_to_index, merge_indexes, remove_from_index};
-pub use distances::PairwiseDistance;
-pub use duplicates::{
-    DuplicateFile, DuplicateGroup, DuplicateMember, DuplicateOptions, DuplicateReport, Keep, find_duplicates,
-};
-pub use evaluate::{EvaluateOptions, IndexEvaluation, Measure, evaluate_index, evaluate_matrix};
-pub use export::export_index;
-pub use found::{ComponentResult, Hit, OrderedBy};
-pub use merge::{merge_answers, n_candidates};
-pub use moves::{MoveReport, NotMoved, check_place, move_duplicates, undo_moves};
-pub use options::{SearchOptions, SearchRank};
-pub use place::mesh_path;
-pub use predict::{ClassVotes, NearestShape, Prediction, Unknown, n_results};
-pub use query::Query;
-pub use rerank::{Aligned, bounds, rerank};
-pub use search::{Answer, SearchSeconds, ShapeSearch};
-pub use source::{Inputs, ShapeLimits, Shard};
+pub(crate) mod rerank;
+pub(crate) mod search;
+pub(crate) mod source;

@@ -425,7 +425,7 @@ mod tests {
     use super::*;
     use crate::error::Remedy;
     use crate::form::{EmbedMethod, FormOptions, describe};
-    use crate::shape_index::{BuildOptions, build_index};
+    use crate::library::{BuildOptions, build_index};
     use relations::{Basis, RelationKind};
 
     /// An index of a few bodies.
