@@ -232,17 +232,6 @@ pub enum Error {
     /// A query that is to be taken as a part, but of which the description as a whole is known only.
     #[error("a query can be ranked as a part only by its mesh, not by a description of the whole query")]
     NoPart,
-    /// A shape of an index without the areas of discs, which parts are compared with.
-    #[error(
-        "{path} has no disc areas of `{id}`, which parts are compared with: an earlier version described it",
-        path = path.display()
-    )]
-    NoDiscAreas {
-        /// The index.
-        path: PathBuf,
-        /// The shape.
-        id: String,
-    },
 }
 
 /// What a user can do about an [`Error`], in [words](Self::in_words) of a program.
@@ -405,7 +394,6 @@ impl Error {
             Self::MeshGone { .. } | Self::MeshChanged { .. } => Remedy::RestoreMesh,
             Self::UnknownOptions { .. } => Remedy::BuildIndexAgain,
             Self::Index(fault) => return Remedy::from_index(fault),
-            Self::NoDiscAreas { .. } => Remedy::BuildIndexAnew,
             Self::Field(_) => Remedy::BuildFieldAgain,
             Self::TooManyShapes { .. } => Remedy::EvaluateShard,
             Self::Collection(CollectionError::NotOneMesh { n_meshes: 2.., .. }) => Remedy::NameMember,

@@ -163,10 +163,6 @@ impl From<Error> for ApiError {
             Error::MeshChanged { id, .. } => {
                 (StatusCode::GONE, format!("the mesh of `{id}` has changed since it was indexed"))
             }
-            Error::NoDiscAreas { id, .. } => {
-                let text = format!("the index does not store what ranking as a part needs to know of `{id}`");
-                (StatusCode::UNPROCESSABLE_ENTITY, text)
-            }
             Error::Exceeded(exceeded) => return Self::exceeded(*exceeded),
             _ => {
                 base::write_line(&format!("error: {fault}"));
@@ -212,18 +208,5 @@ impl IntoResponse for ApiError {
             response.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from(seconds));
         }
         response
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_index_without_disc_areas_is_no_bug_and_its_place_is_not_told() {
-        let fault = Error::NoDiscAreas { path: "/home/ada/all.canonform".into(), id: "cat0".to_owned() };
-        let answer = ApiError::from(fault);
-        assert_eq!((answer.status(), answer.remedy.as_deref()), (422, Some("build the index in a new file")));
-        assert!(answer.text().contains("`cat0`") && !answer.text().contains("ada"), "{}", answer.text());
     }
 }

@@ -12,7 +12,7 @@ use retrieval::{Evaluation, Labels, RankBy, evaluate};
 use serde::Serialize;
 
 use super::agreement::Agreement;
-use super::record::{missing_signature, options_of};
+use super::record::{missing, options_of};
 use crate::error::Error;
 use base::Observer;
 use collection::{CollectionError, LabelSource, Row, TextTable, label_of};
@@ -108,7 +108,9 @@ pub fn evaluate_index(
                 Some(signature) => signature,
                 // Nothing can be said by the rigid signature about shapes that may bend.
                 None if kind == SignatureKind::Rigid => return Ok(()),
-                None => return Err(missing_signature(path, &entry.id, kind).into()),
+                None => {
+                    return Err(missing(path, &entry.id, format_args!("{} signature", kind.name())).into());
+                }
             },
         };
         rows.push(vector);

@@ -23,7 +23,6 @@ pub fn merge_answers(
         merged.n_shapes += answer.n_shapes;
         merged.measured += answer.measured;
         merged.aligned += answer.aligned;
-        merged.recall = merged.recall.min(answer.recall);
         merged.results.extend(answer.results);
     }
     merged.results.sort_by(Hit::cmp);

@@ -1,8 +1,8 @@
 //! What an index says of its shapes.
 
+use std::fmt::Display;
 use std::path::Path;
 
-use descriptors::SignatureKind;
 use index::{Entry, Index, IndexError};
 
 use super::source::Listed;
@@ -24,7 +24,7 @@ pub(super) fn same_source(entry: &Entry, listed: &Listed) -> bool {
     entry.label == listed.file.label && entry.path == listed.stored
 }
 
-/// The error that a shape of an index has no signature of a kind.
-pub(super) fn missing_signature(path: &Path, id: &str, kind: SignatureKind) -> IndexError {
-    IndexError::Damaged { path: path.to_owned(), what: format!("`{id}` has no {} signature", kind.name()) }
+/// The error that a shape of an index lacks something.
+pub(super) fn missing(path: &Path, id: &str, what: impl Display) -> IndexError {
+    IndexError::Damaged { path: path.to_owned(), what: format!("`{id}` has no {what}") }
 }

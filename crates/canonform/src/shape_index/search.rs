@@ -22,7 +22,7 @@ use super::found::{ComponentResult, Hit, OrderedBy};
 use super::options::{SearchOptions, SearchRank};
 use super::predict::{Prediction, n_results, predicted};
 use super::query::Query;
-use super::record::{missing_signature, options_of};
+use super::record::{missing, options_of};
 use super::rerank::{bounds, rerank};
 use super::source::{read_unchanged, unchanged_files};
 use crate::compare::compare;
@@ -260,15 +260,14 @@ impl ShapeSearch {
             found.try_for_each(|(hit, best)| self.explain((query, shape), hit, best, budget))?;
         }
         let seconds = SearchSeconds { describe: query.seconds, search: start.elapsed().as_secs_f64() };
-        let (measured, recall) = (n_shapes, 1.0);
         Ok(Answer {
             results,
             rank_by,
             predicted,
             n_shapes,
-            measured,
+            measured: n_shapes,
             aligned,
-            recall,
+            recall: 1.0,
             seconds,
             ..Answer::default()
         })
@@ -360,16 +359,20 @@ impl ShapeSearch {
     fn form_distance(&self, spectrum: &[f32], id: &str) -> Result<OrderedBy, Error> {
         let kind = SignatureKind::FormSpectrum;
         let found = self.index.vector(id, &format!("signature_{}", kind.name()))?;
-        let found = found.ok_or_else(|| missing_signature(self.index.path(), id, kind))?;
+        let what = format_args!("{} signature", kind.name());
+        let found = found.ok_or_else(|| missing(self.index.path(), id, what))?;
         Ok(OrderedBy::Forms { form_distance: ShapeMetric::fused(spectrum, &found) / ShapeMetric::unit(kind) })
     }
 
     /// How well a part fits into a shape.
+    ///
+    /// # Errors
+    /// [`IndexError::Damaged`] if the disc areas of the shape are not stored.
     fn fit(&self, part: &PartDiscAreas, id: &str) -> Result<OrderedBy, Error> {
         let areas =
             self.index.vector(id, "disc_areas")?.and_then(|numbers| DiscAreas::from_numbers(&numbers));
-        let missing = || Error::NoDiscAreas { path: self.index.path().to_owned(), id: id.to_owned() };
-        let PartDistance { distance, share } = part.distance(&areas.ok_or_else(missing)?);
+        let areas = areas.ok_or_else(|| missing(self.index.path(), id, "disc areas"))?;
+        let PartDistance { distance, share } = part.distance(&areas);
         Ok(OrderedBy::Part { part_distance: distance, part_share: share })
     }
 
@@ -620,11 +623,8 @@ mod tests {
         let options = SearchOptions { rank_by: SearchRank::Part, ..SearchOptions::default() };
         let query = old.query(&shapes::icosphere(3), ("", None), &options, &()).unwrap();
         let fault = old.search(&query, &options, &()).unwrap_err();
-        assert!(
-            matches!(fault, Error::NoDiscAreas { .. }) && fault.to_string().contains("disc areas"),
-            "{fault}"
-        );
-        assert_eq!(fault.remedy(), Some(Remedy::BuildIndexAnew));
+        assert!(fault.to_string().contains("has no disc areas"), "{fault}");
+        assert_eq!(fault.remedy(), Some(Remedy::BuildIndexAgain));
         search_for(&old, &shapes::icosphere(3), &SearchOptions::default());
     }
 

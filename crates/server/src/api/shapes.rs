@@ -35,8 +35,7 @@ const DRAWING: u32 = 1;
 pub(super) struct ListParams {
     #[serde(default)]
     offset: usize,
-    #[serde(default = "usual_limit")]
-    limit: usize,
+    limit: Option<usize>,
     /// Part of a name or a label; case does not matter.
     #[serde(default)]
     q: String,
@@ -45,16 +44,13 @@ pub(super) struct ListParams {
     sample: Option<usize>,
 }
 
-fn usual_limit() -> usize {
-    50
-}
-
 pub(super) async fn list(
     State(app): State<Arc<App>>,
     Params(params): Params<ListParams>,
 ) -> Result<Response, ApiError> {
-    if !(1..=MOST_LISTED).contains(&params.limit) {
-        let error = format!("limit is {}; use 1 to {MOST_LISTED}", params.limit);
+    let limit = params.limit.unwrap_or(50);
+    if !(1..=MOST_LISTED).contains(&limit) {
+        let error = format!("limit is {limit}; use 1 to {MOST_LISTED}");
         return Err(ApiError::bad_request(error));
     }
     let collection = app.served.collection();
@@ -72,7 +68,7 @@ pub(super) async fn list(
     };
     let (mut total, mut shapes) = (0, Vec::new());
     for shape in collection.shapes.iter().filter(is_meant) {
-        if total >= params.offset && shapes.len() < params.limit {
+        if total >= params.offset && shapes.len() < limit {
             shapes.push(shape);
         }
         total += 1;
