@@ -40,5 +40,5 @@ pub use labels::Labels;
 pub use ranking::{Neighbor, Rankings, rank, rank_row};
 pub use refinement::{Refinement, refine_nearest};
 pub use scores::{Averaging, QueryScores, Scores, precision_recall};
-pub use splits::{SplitAccuracy, SplitOptions, split_accuracy};
+pub use splits::{SplitOptions, split_accuracy};
 pub use vote::{Tally, UnknownThreshold, Vote, vote};

@@ -2,7 +2,6 @@
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use serde::{Deserialize, Serialize};
 
 use crate::bootstrap::below;
 use crate::{Labels, Rankings, RetrievalError};
@@ -18,29 +17,13 @@ pub struct SplitOptions {
     pub seed: u64,
 }
 
-/// Accuracy of the nearest training shape over random splits.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct SplitAccuracy {
-    /// Training shapes of each class.
-    pub n_train: usize,
-    /// Number of random splits.
-    pub runs: usize,
-    /// Classes that take part: those of more shapes than `n_train`.
-    pub n_classes: usize,
-    /// Shapes that are classified in each split.
-    pub n_test: usize,
-    /// Mean share of the test shapes that get their class.
-    pub mean: f64,
-    /// Standard deviation over the splits; 0 if there is one.
-    pub deviation: f64,
-}
-
 /// Classifies shapes by the class of the first training shape in their ranking, over random splits.
 ///
 /// Each split draws `n_train` training shapes of every class that has more; the others of these classes are test shapes.
 /// Smaller classes take no part. A ranking on a neighbor graph has seen the test shapes, without their classes.
 ///
-/// Returns `None` if fewer than two classes are large enough.
+/// Returns the mean share of the test shapes that get their class and its standard deviation over the splits, 0 if there is one;
+/// `None` if fewer than two classes are large enough.
 ///
 /// # Errors
 /// [`RetrievalError::LabelCount`].
@@ -48,7 +31,7 @@ pub fn split_accuracy(
     rankings: &impl Rankings,
     labels: &Labels,
     options: &SplitOptions,
-) -> Result<Option<SplitAccuracy>, RetrievalError> {
+) -> Result<Option<[f64; 2]>, RetrievalError> {
     let (n_points, n_labels) = (rankings.n_points(), labels.n_points());
     if n_labels != n_points {
         return Err(RetrievalError::LabelCount { n_labels, n_points });
@@ -94,6 +77,5 @@ pub fn split_accuracy(
     let mean = accuracies.iter().sum::<f64>() / runs;
     let squares: f64 = accuracies.iter().map(|accuracy| (accuracy - mean).powi(2)).sum();
     let deviation = if runs > 1.0 { (squares / (runs - 1.0)).sqrt() } else { 0.0 };
-    let SplitOptions { n_train, runs, .. } = *options;
-    Ok(Some(SplitAccuracy { n_train, runs, n_classes: members.len(), n_test, mean, deviation }))
+    Ok(Some([mean, deviation]))
 }

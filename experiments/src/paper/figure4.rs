@@ -61,7 +61,7 @@ pub(crate) fn figure4(context: &Context<'_>) -> Result<Record> {
         // Those of both methods are the same.
         sampled = distances;
         for (scale, normalization) in [Normalization::Raw, Normalization::UnitArea].into_iter().enumerate() {
-            found.push((scale, name, form_alignments(&forms, normalization, context.observer)?.distances));
+            found.push((scale, name, form_alignments(&forms, normalization, context.observer)?));
         }
     }
     for (name, method) in MANY_DIMENSIONS {

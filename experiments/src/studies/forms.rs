@@ -162,8 +162,8 @@ fn compared(comparison: &str, made: &[MadeForm], context: &Context<'_>) -> Resul
     if comparison == "alignment" {
         let forms = made.iter().map(|made| Ok(solid(made)?.0)).collect::<Result<Vec<CanonicalForm>>>()?;
         let (_, seconds) = timed(|| forms.iter().try_for_each(|form| form.prepared().map(drop)))?;
-        let found = form_alignments(&forms, Normalization::UnitArea, context.observer)?;
-        return Ok((found.distances, seconds / forms.len() as f64));
+        let distances = form_alignments(&forms, Normalization::UnitArea, context.observer)?;
+        return Ok((distances, seconds / forms.len() as f64));
     }
     let one = |made: &MadeForm| {
         timed(|| -> Result<Signature> {

@@ -84,7 +84,7 @@ pub(crate) fn retrieval(context: &Context<'_>) -> Result<Record> {
 fn aligned(context: &Context<'_>, shapes: &[Shape], normalization: Normalization) -> Result<DistanceMatrix> {
     let forms: Vec<CanonicalForm> =
         shapes.iter().map(|shape| DescribeOptions::default().form_of(shape)).collect::<Result<_, _>>()?;
-    Ok(form_alignments(&forms, normalization, context.observer)?.distances)
+    Ok(form_alignments(&forms, normalization, context.observer)?)
 }
 
 /// Every method with its distances between all pairs; `form` holds those of aligned forms of unit area.
@@ -172,7 +172,7 @@ fn rankings(
         for n_train in options.training.iter().copied() {
             let split = SplitOptions { n_train, runs: options.splits, seed: context.seed };
             let found = split_accuracy(rankings, labels, &split)?;
-            row.push(found.map(|s| format!("{:.3} ± {:.3}", s.mean, s.deviation)).into());
+            row.push(found.map(|[mean, deviation]| format!("{mean:.3} ± {deviation:.3}")).into());
         }
         Ok(row)
     };

@@ -22,7 +22,7 @@ fn canonical_forms_retrieve_their_families() {
             embed(&surface, &FormOptions::default(), &()).unwrap().form(&surface).unwrap()
         })
         .collect();
-    let distances = form_alignments(&forms, Normalization::Raw, &()).unwrap().distances;
+    let distances = form_alignments(&forms, Normalization::Raw, &()).unwrap();
     let scores = evaluate(&distances, &labels, 1, RankBy::Plain).unwrap();
     println!("{} shapes: NN {}, mAP {:.4}", scores.n, scores.plain.mean.nn, scores.plain.mean.map);
     assert_eq!((scores.n, scores.plain.mean.nn), (30, 1.0));

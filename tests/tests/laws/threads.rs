@@ -61,10 +61,8 @@ fn distances_between_forms_do_not_depend_on_threads() {
         })
         .collect();
     for normalization in [Normalization::Raw, Normalization::UnitArea] {
-        let [one, three] = on_each_pool(|| {
-            let found = form_alignments(&forms, normalization, &()).unwrap();
-            bits(found.distances.as_slice())
-        });
+        let [one, three] =
+            on_each_pool(|| bits(form_alignments(&forms, normalization, &()).unwrap().as_slice()));
         assert!(one == three, "{normalization:?}");
     }
 }

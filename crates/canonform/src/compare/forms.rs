@@ -3,21 +3,13 @@
 use descriptors::{CanonicalForm, Normalization};
 use linalg::{DistanceMatrix, Matrix};
 use rayon::prelude::*;
-use rigid::{Reflections, Similarity, align_points};
+use rigid::{Reflections, align_points};
 
 use crate::error::Error;
 use base::Observer;
 
-/// The alignments of all pairs of forms.
-#[derive(Debug, Clone)]
-pub struct FormAlignments {
-    /// Root mean square distances between the aligned forms.
-    pub distances: DistanceMatrix,
-    /// For every pair `i < j`, row by row, the motion that takes form `i` onto form `j`, both scaled as was chosen.
-    pub alignments: Vec<Similarity>,
-}
-
-/// Aligns all pairs of forms, in parallel. `observer` counts every pair as a step.
+/// Aligns all pairs of forms, in parallel: the root mean square distances between aligned forms. `observer` counts every pair as
+/// a step.
 ///
 /// ```
 /// use canonform::descriptors::Normalization;
@@ -31,8 +23,8 @@ pub struct FormAlignments {
 ///     let surface = Surface::new(mesh, &Default::default(), &()).unwrap();
 ///     embed(&surface, &FormOptions::default(), &()).unwrap().form(&surface).unwrap()
 /// });
-/// let found = form_alignments(&forms, Normalization::UnitArea, &())?;
-/// assert!(found.distances.get(0, 1) < 0.1 * found.distances.get(0, 2), "folding does not change the form");
+/// let distances = form_alignments(&forms, Normalization::UnitArea, &())?;
+/// assert!(distances.get(0, 1) < 0.1 * distances.get(0, 2), "folding does not change the form");
 /// # Ok::<(), canonform::Error>(())
 /// ```
 ///
@@ -42,7 +34,7 @@ pub fn form_alignments(
     forms: &[CanonicalForm],
     normalization: Normalization,
     observer: &dyn Observer,
-) -> Result<FormAlignments, Error> {
+) -> Result<DistanceMatrix, Error> {
     let prepare = |form: &CanonicalForm| form.normalized(normalization).prepared();
     let forms: Vec<_> = forms.par_iter().map(prepare).collect::<Result<_, _>>()?;
     let n = forms.len();
@@ -51,12 +43,11 @@ pub fn form_alignments(
     let one = |&(i, j): &(usize, usize)| {
         let found = align_points(&forms[i], &forms[j], Reflections::Allow);
         observer.step();
-        found
+        found.gap.rms
     };
-    let found: Vec<_> = pairs.par_iter().map(one).collect();
-    let mut next = found.iter();
-    let distances = DistanceMatrix::from_pairs(n, |_, _| next.next().map_or(f64::NAN, |m| m.gap.rms))?;
-    Ok(FormAlignments { distances, alignments: found.iter().map(|m| m.map).collect() })
+    let found: Vec<f64> = pairs.par_iter().map(one).collect();
+    let mut next = found.into_iter();
+    Ok(DistanceMatrix::from_pairs(n, |_, _| next.next().unwrap_or(f64::NAN))?)
 }
 
 /// Straight-line distances between the points of an embedding.

@@ -5,5 +5,5 @@ mod forms;
 mod meshes;
 
 pub use comparison::{Comparison, FaceAgreement, Overlay, Residual, compare};
-pub use forms::{FormAlignments, embedded_distances, form_alignments};
+pub use forms::{embedded_distances, form_alignments};
 pub use meshes::{Compared, ComparedMesh, MeshComparison, compare_meshes};
