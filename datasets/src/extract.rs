@@ -257,21 +257,6 @@ mod tests {
         Lattice { rotation: rotation(10.0, 20.0, 30.0), shift: Vector3::new(0.3, 0.1, -0.4), spacing }
     }
 
-    #[test]
-    fn a_ball_has_its_area_and_volume() {
-        let body = ImplicitBody::new(vec![BodyPart::added(vec![Blob::ball([0.0, 2.0, 1.0], 5.0)])]);
-        let raw = extract(&body, lattice(0.3), &Budget::unlimited()).unwrap();
-        let (mut area, mut volume) = (0.0, 0.0);
-        for face in &raw.faces {
-            let [a, b, c] = face.map(|v| raw.positions[v.index()]);
-            area += 0.5 * (b - a).cross(&(c - a)).norm();
-            volume += a.coords.dot(&b.coords.cross(&c.coords)) / 6.0;
-        }
-        let ball = 4.0 * std::f64::consts::PI * 25.0;
-        assert!((area / ball - 1.0).abs() < 0.01, "area {area} of {ball}");
-        assert!((volume / (ball * 5.0 / 3.0) - 1.0).abs() < 0.01, "volume {volume}");
-    }
-
     /// Random balls cross the lattice in every way, ambiguous faces included.
     #[test]
     fn every_surface_is_closed_and_manifold() {

@@ -185,14 +185,3 @@ impl PoseData {
         set.into_iter().fold(rest, |pose, (id, turn)| pose.set(id, turn))
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    #[should_panic(expected = "unknown field `feathers`")]
-    fn unknown_keys_are_errors() {
-        let _ = BodyModel::read("area = 1.0\nfeathers = 2");
-    }
-}

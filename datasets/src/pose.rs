@@ -254,27 +254,6 @@ mod tests {
     }
 
     #[test]
-    fn a_bent_axis_keeps_its_length_and_turns_by_the_given_angle() {
-        let skeleton = skeleton();
-        let posed = PosedSkeleton::new(&skeleton, &Pose::rest(&skeleton).set(TRUNK, [90.0, 0.0, 0.0]));
-        let axis: Vec<_> = (0..=4000)
-            .map(|i| {
-                interpolate(&posed.motions[0], f64::from(i) / 4000.0).apply(Point3::new(
-                    0.0,
-                    0.0,
-                    f64::from(i) * 0.01,
-                ))
-            })
-            .collect();
-        let length: f64 = axis.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
-        assert!((length - 40.0).abs() < 0.04, "length {length}");
-        let end = (axis[4000] - axis[3000]).normalize();
-        assert!((end - Vector3::new(0.0, -1.0, 0.0)).norm() < 1e-9, "{end}");
-        // Far away, a symmetric bend over a length of 10 is close to a sharp one.
-        assert!(axis[4000].y < -30.0 && axis[4000].y > -32.0);
-    }
-
-    #[test]
     fn the_mirrored_pose_is_the_mirror_image() {
         let skeleton = skeleton();
         let mut pose = Pose::rest(&skeleton)

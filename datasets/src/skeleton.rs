@@ -174,37 +174,3 @@ impl Joint {
         Self { frame: Matrix3::from_columns(&[x, y, x.cross(&y)]), ..self }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn points_belong_to_the_nearest_chain_at_the_right_arc_length() {
-        let mut skeleton = Skeleton::default();
-        let trunk = skeleton.chain(
-            None,
-            vec![
-                node([0.0, 0.0, 0.0], 4.0, 1.0),
-                node([0.0, 0.0, 10.0], 4.0, 1.0),
-                node([0.0, 0.0, 30.0], 4.0, 2.0),
-            ],
-            Vec::new(),
-        );
-        skeleton.pair(
-            (trunk, 1),
-            vec![node([5.0, 0.0, 10.0], 2.0, 0.5), node([25.0, 0.0, 10.0], 2.0, 0.5)],
-            Vec::new(),
-        );
-        let at = |p: [f64; 3]| skeleton.memberships(p.into()).collect::<Vec<_>>();
-        let high = at([0.0, 4.0, 25.0]);
-        assert!((high[0].arc - 25.0).abs() < 0.1 && (high[0].grain - 1.75).abs() < 0.01);
-        assert!(high[0].weight > 1e3 * high[1].weight);
-        let left = at([20.0, 2.0, 10.0]);
-        assert!((left[1].arc - 15.0).abs() < 1e-9);
-        assert!(left[1].weight > 100.0 * left[0].weight && left[1].weight > 1e6 * left[2].weight);
-        let right = at([-20.0, 2.0, 10.0]);
-        assert_eq!((left[1].arc, left[1].weight), (right[2].arc, right[2].weight));
-        assert!((skeleton.grain([20.0, 2.0, 10.0].into()) - 0.5).abs() < 0.02);
-    }
-}

@@ -82,26 +82,3 @@ impl Stream {
         rotation(x, y, z)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn streams_differ_and_are_reproducible() {
-        let draw = |family, pose, purpose| Stream::new(7, family, pose, purpose).uniform(0.0, 1.0);
-        let all = [
-            draw(0, 0, Purpose::Pose),
-            draw(1, 0, Purpose::Pose),
-            draw(0, 1, Purpose::Pose),
-            draw(0, 0, Purpose::Lattice),
-            draw(0, 0, Purpose::Numbering),
-            Stream::of_creature(7, 0, 0, Purpose::Pose).uniform(0.0, 1.0),
-            Stream::of_creature(7, 1, 0, Purpose::Pose).uniform(0.0, 1.0),
-        ];
-        for (i, a) in all.iter().enumerate() {
-            assert!(all[..i].iter().all(|b| a != b));
-        }
-        assert_eq!(all[0], draw(0, 0, Purpose::Pose));
-    }
-}

@@ -68,15 +68,3 @@ fn lists_are_reproducible_without_duplicates_and_full_of_near_parts() {
     assert!(near >= 80, "{near}");
     assert!(all().len() > 300, "{}", all().len());
 }
-
-#[test]
-fn parts_are_mechanical_and_bodies_are_not() {
-    let is_mechanical = |mesh: &TriMesh| mesh::SmoothRegions::of(mesh).is_mechanical;
-    for part in mechanical_parts(0, 320).iter().step_by(7) {
-        assert!(is_mechanical(&part.mesh(&PartMesh::default())), "{}", part.name());
-    }
-    let options = crate::CreatureOptions { n_poses: 1, n_vertices: 1000, ..Default::default() };
-    for shape in crate::creatures(&options).unwrap() {
-        assert!(!is_mechanical(&shape.mesh), "{}", shape.name);
-    }
-}

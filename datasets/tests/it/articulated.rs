@@ -49,7 +49,7 @@ fn are_clean_spheres_of_the_same_size(shapes: &[LabeledShape], n_vertices: usize
         assert_eq!(name.trim_end_matches(char::is_numeric), label);
         let report = validate(mesh);
         assert!(report.is_clean() && report.genus == Some(0), "{name}: {report:?}");
-        assert_eq!((report.n_vertices, report.n_boundary_edges), (n_vertices, 0));
+        assert_eq!((report.n_vertices, report.n_faces), (n_vertices, 2 * n_vertices - 4));
         assert!(mesh.signed_volume() > 0.0, "{name} is inside out");
         assert!((report.area / 18_000.0 - 1.0).abs() < off, "{name}: area {}", report.area);
         assert!(report.obtuse_share < 0.35, "{name}: {} of the faces are obtuse", report.obtuse_share);
@@ -174,29 +174,12 @@ fn nothing_corresponds_between_poses() {
         mesh.faces.iter().map(|&f| sorted(f)).collect()
     };
     assert!(canonical(&a).intersection(&canonical(&b)).count() < 20, "vertex numbers correspond");
-    // Another numbering of one triangulation would have the same degrees.
-    let degrees = |mesh: &TriMesh| {
-        let topology = mesh.topology();
-        let mut degrees: Vec<usize> =
-            (0..mesh.n_vertices()).map(|v| topology.vertex_corners(VertexId::from(v)).len()).collect();
-        degrees.sort_unstable();
-        degrees
-    };
-    assert_ne!(degrees(&a), degrees(&b), "triangulations are alike");
     // Neighbors in number are not neighbors in space.
     let near = |mesh: &TriMesh| {
         let steps = mesh.positions.windows(2).map(|p| (p[1] - p[0]).norm());
         steps.sum::<f64>() / mesh.n_vertices() as f64
     };
     assert!(near(&a) > 30.0 && near(&b) > 30.0, "numbers follow the surface");
-}
-
-#[test]
-fn shapes_have_exactly_the_requested_size() {
-    for (family, n_vertices) in [(Family::Cat, 1234), (Family::Centaur, 2001), (Family::David, 10_000)] {
-        let shape = articulated_shape(family, 2, &options(n_vertices)).unwrap();
-        assert_eq!((shape.mesh.n_vertices(), shape.mesh.n_faces()), (n_vertices, 2 * n_vertices - 4));
-    }
 }
 
 #[test]

@@ -1,9 +1,12 @@
 //! Laws of the creatures.
 
 use std::collections::HashSet;
+use std::sync::LazyLock;
 
-use canonform_datasets::{CreatureOptions, creature_body, creature_plans, creatures};
-use mesh::validate;
+use canonform_datasets::{
+    CreatureOptions, LabeledShape, PartMesh, creature_body, creature_plans, creatures, mechanical_parts,
+};
+use mesh::{TriMesh, validate};
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 
@@ -11,11 +14,25 @@ fn options(n_families: usize, n_poses: usize) -> CreatureOptions {
     CreatureOptions { n_families, n_poses, n_vertices: 1000, ..CreatureOptions::default() }
 }
 
+/// Two bodies of every plan.
+static SHAPES: LazyLock<Vec<LabeledShape>> =
+    LazyLock::new(|| creatures(&options(2 * creature_plans().len(), 1)).unwrap());
+
+#[test]
+fn parts_are_mechanical_and_bodies_are_not() {
+    let is_mechanical = |mesh: &TriMesh| mesh::SmoothRegions::of(mesh).is_mechanical;
+    for part in mechanical_parts(0, 320).iter().step_by(7) {
+        assert!(is_mechanical(&part.mesh(&PartMesh::default())), "{}", part.name());
+    }
+    for shape in &SHAPES[..CreatureOptions::default().n_families] {
+        assert!(!is_mechanical(&shape.mesh), "{}", shape.name);
+    }
+}
+
 #[test]
 fn creatures_are_clean_surfaces_of_their_own_with_the_handles_of_their_plans() {
-    let n_plans = creature_plans().len();
-    let shapes = creatures(&options(2 * n_plans, 1)).unwrap();
-    for shape in &shapes {
+    let (n_plans, shapes) = (creature_plans().len(), &*SHAPES);
+    for shape in shapes {
         let report = validate(&shape.mesh);
         let handles = match shape.label.trim_end_matches('B') {
             "ring" | "cup" | "key" => 1,
