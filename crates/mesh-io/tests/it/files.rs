@@ -45,22 +45,10 @@ const EXACT: [&str; 11] = [
     "m.3mf.gz",
 ];
 
-#[test]
-fn awkward_numbers_and_unused_vertices_survive_a_round_trip() {
-    let numbers = [0.1, -0.0, 1e300, -5e-324, 1.0 / 3.0, f64::MAX, 123_456_789.123_456_79, 1e-7, 42.0];
-    let positions = numbers.iter().map(|&x| Point3::new(x, -x, x / 7.0)).collect();
-    let faces = vec![[1, 8, 3].map(VertexId), [3, 8, 5].map(VertexId), [3, 3, 5].map(VertexId)];
-    let mesh = TriMesh { positions, faces };
-    for name in EXACT {
-        let folder = folder();
-        let path = folder.path().join(name);
-        write(&path, &mesh).unwrap();
-        let back = read(&path).unwrap();
-        assert_eq!(back.faces, mesh.faces, "{name}");
-        for (p, q) in back.positions.iter().zip(&mesh.positions) {
-            assert!((0..3).all(|i| p[i].to_bits() == q[i].to_bits()), "{name}: {p} {q}");
-        }
-    }
+/// Any finite number, of which zeros have signs.
+fn any_finite() -> impl Strategy<Value = f64> {
+    use prop::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};
+    POSITIVE | NEGATIVE | NORMAL | SUBNORMAL | ZERO
 }
 
 proptest! {
@@ -68,7 +56,7 @@ proptest! {
 
     #[test]
     fn any_mesh_survives_a_round_trip(
-        points in prop::collection::vec(prop::array::uniform3(prop::num::f64::NORMAL), 1..30),
+        points in prop::collection::vec(prop::array::uniform3(any_finite()), 1..30),
         corners in prop::collection::vec(prop::array::uniform3(any::<prop::sample::Index>()), 1..30),
     ) {
         let n = points.len();
@@ -80,7 +68,11 @@ proptest! {
         for name in EXACT {
             let path = folder.path().join(name);
             write(&path, &mesh).unwrap();
-            prop_assert_eq!(&read(&path).unwrap(), &mesh);
+            let back = read(&path).unwrap();
+            prop_assert_eq!(&back.faces, &mesh.faces);
+            for (p, q) in back.positions.iter().zip(&mesh.positions) {
+                prop_assert!((0..3).all(|i| p[i].to_bits() == q[i].to_bits()), "{}: {} {}", name, p, q);
+            }
         }
     }
 }
@@ -206,18 +198,6 @@ fn an_error_names_the_empty_half_of_a_pair() {
     fs::write(path.with_extension("tri"), "").unwrap();
     let error = read(&path).unwrap_err().to_string();
     assert!(error.ends_with("victoria14.tri: the file is empty"), "{error}");
-}
-
-#[test]
-fn errors_name_file_place_fault_and_remedy() {
-    let folder = folder();
-    let path = folder.path().join("broken.off");
-    fs::write(&path, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n").unwrap();
-    let expected = format!(
-        "{}, line 6: a face refers to vertex 7, but the vertices of the file run from 0 to 2; correct or remove the face",
-        path.display()
-    );
-    assert_eq!(read(&path).unwrap_err().to_string(), expected);
 }
 
 #[test]

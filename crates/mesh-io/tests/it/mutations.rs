@@ -148,7 +148,7 @@ fn files_with_every_byte_changed() {
     for sample in &*SAMPLES {
         let mut bytes = sample.bytes().to_vec();
         for at in 0..bytes.len() {
-            for change in [1u8, 0x80, 0xff, bytes[at] ^ b' ', bytes[at] ^ b'9'] {
+            for change in [1u8, 0x80, bytes[at] ^ b' ', bytes[at] ^ b'9'] {
                 bytes[at] ^= change;
                 check(sample, &bytes);
                 bytes[at] = sample.bytes()[at];
@@ -158,12 +158,22 @@ fn files_with_every_byte_changed() {
 }
 
 #[test]
+fn a_thousand_mutations_of_every_sample() {
+    assert_mutations(1000);
+}
+
+#[test]
+#[ignore = "slow: make test-all"]
 fn ten_thousand_mutations_of_every_sample() {
+    assert_mutations(10_000);
+}
+
+fn assert_mutations(n: usize) {
     for sample in &*SAMPLES {
         let mut random = SplitMix(7);
         let mut below = |n: usize| (random.bits() % n.max(1) as u64) as usize;
         let mut intact = 0;
-        for _ in 0..10_000 {
+        for _ in 0..n {
             let mut bytes = sample.bytes().to_vec();
             for _ in 0..=below(3) {
                 let at = below(bytes.len());
@@ -188,12 +198,12 @@ fn ten_thousand_mutations_of_every_sample() {
             }
             intact += usize::from(check(sample, &bytes).is_some());
         }
-        println!("{}: 10000 mutations, {intact} of them still a mesh, no panic", sample.name);
+        println!("{}: {n} mutations, {intact} of them still a mesh, no panic", sample.name);
     }
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(300))]
+    #![proptest_config(ProptestConfig::with_cases(100))]
 
     #[test]
     fn noise_after_any_beginning(
