@@ -101,24 +101,4 @@ mod tests {
             assert!(matches!(error, MeshError::TooLarge { .. }), "{error}");
         }
     }
-
-    #[test]
-    fn the_first_of_equal_faces_is_not_a_duplicate() {
-        let faces =
-            [[0, 1, 2], [2, 1, 3], [1, 2, 0], [0, 1, 3], [2, 1, 0], [3, 1, 2]].map(|f| f.map(VertexId));
-        assert_eq!(duplicates(&faces), [false, false, true, false, true, true]);
-        assert_eq!(duplicates(&[]), [false; 0]);
-    }
-
-    #[test]
-    fn duplicate_faces_are_noticed_among_two_faces_of_an_edge_and_among_more() {
-        let topology =
-            |n, list: &[[u32; 3]]| Topology::new(n, list.iter().map(|f| f.map(VertexId)).collect());
-        let book = [[0, 1, 2], [0, 1, 3], [1, 0, 4], [5, 0, 1]];
-        for (more, expected) in [(None, false), (Some([4, 1, 0]), true), (Some([2, 3, 4]), false)] {
-            let list: Vec<_> = book.into_iter().chain(more).collect();
-            assert_eq!(has_duplicates(&topology(6, &list)), expected, "{more:?}");
-        }
-        assert!(has_duplicates(&topology(3, &[[0, 1, 2], [2, 1, 0]])));
-    }
 }

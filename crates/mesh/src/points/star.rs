@@ -134,20 +134,3 @@ fn cell(points: &[(u32, [f64; 2])], reach: f64) -> Vec<([u32; 2], f64)> {
         })
         .collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_cell_of_a_grid_point_is_a_square_and_that_of_a_hexagonal_one_has_six_corners() {
-        let hexagon: Vec<(u32, [f64; 2])> =
-            (0..6).map(|i| (i, (f64::from(i) * std::f64::consts::FRAC_PI_3).sin_cos().into())).collect();
-        let found = cell(&hexagon, 4.0);
-        assert_eq!(found.len(), 6);
-        assert!(found.iter().all(|(_, radius)| (radius - 1.0 / 3f64.sqrt()).abs() < 1e-12));
-        assert!(cell(&hexagon, 1.0).is_empty(), "circles beyond the reach are not trusted");
-        let half: Vec<_> = hexagon.iter().take(4).copied().collect();
-        assert_eq!(cell(&half, 4.0).len(), 3, "a boundary stays open");
-    }
-}

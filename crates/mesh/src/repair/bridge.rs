@@ -248,24 +248,6 @@ mod tests {
     }
 
     #[test]
-    fn a_thousand_nested_shells_are_linked() {
-        let mut next = stream(7);
-        let (shells, per_shell) = (1000, 40);
-        let mut positions = Vec::new();
-        let mut labels = Vec::new();
-        for shell in 0..shells {
-            for _ in 0..per_shell {
-                let direction = nalgebra::Vector3::new(next() - 0.5, next() - 0.5, next() - 0.5);
-                positions.push(Point3::from(direction.normalize() * (1.0 + f64::from(shell))));
-                labels.push(shell as u32);
-            }
-        }
-        let links = shortest_links(&positions, &labels);
-        assert_eq!(links.len(), shells as usize - 1);
-        assert!(links.iter().all(|link| link.length >= 1.0 - 1e-9));
-    }
-
-    #[test]
     fn a_cancelled_search_ends() {
         let budget = Budget::unlimited();
         budget.cancel();

@@ -49,23 +49,3 @@ pub fn subdivide(mesh: &TriMesh) -> TriMesh {
     splits.split(&topology, &(0..topology.n_edges()).collect::<Vec<_>>());
     splits.mesh
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::validate;
-
-    #[test]
-    fn subdivision_keeps_area_orientation_and_vertices_and_halves_edges() {
-        let coarse = torus(7, 5, 2.0, 0.6);
-        let fine = subdivide(&coarse);
-        let (before, after) = (validate(&coarse), validate(&fine));
-        assert_eq!(fine.n_faces(), 4 * coarse.n_faces());
-        assert_eq!(fine.n_vertices(), coarse.n_vertices() + before.n_edges);
-        assert_eq!(fine.positions[..coarse.n_vertices()], coarse.positions);
-        assert!((after.area - before.area).abs() < 1e-12 * before.area);
-        assert_eq!((after.genus, after.inconsistent_edges), (Some(1), 0));
-        let longest = |m: &TriMesh| m.intrinsic().edge_lengths().iter().fold(0.0, |a, b| f64::max(a, *b));
-        assert!((longest(&fine) - 0.5 * longest(&coarse)).abs() < 1e-12);
-    }
-}
