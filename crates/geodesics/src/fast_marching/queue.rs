@@ -310,22 +310,6 @@ mod tests {
     }
 
     #[test]
-    fn late_triangles_come_in_another_round_of_the_same_bucket() {
-        let (mut buckets, mut triangles) = (Buckets::default(), unreached(4));
-        buckets.reset(1.0, 100.0);
-        for (v, distance) in [(0, 0.0), (1, 2.25), (3, 9.0)] {
-            put(v, distance, &mut triangles, &mut buckets);
-        }
-        let mut round = Vec::new();
-        assert!(buckets.next_round(&mut round, &mut triangles));
-        assert!(buckets.next_round(&mut round, &mut triangles));
-        assert_eq!(round, [FaceId(1)]);
-        put(2, 2.75, &mut triangles, &mut buckets);
-        put(0, -1.0, &mut triangles, &mut buckets);
-        assert_eq!(rounds(&mut buckets, &mut triangles), [vec![2, 0], vec![3]]);
-    }
-
-    #[test]
     fn a_bucket_that_keeps_filling_becomes_narrower() {
         let n = 3000u32;
         let (mut buckets, mut triangles) = (Buckets::default(), unreached(n as usize));
@@ -343,17 +327,5 @@ mod tests {
         }
         assert_eq!(next, n);
         assert!(buckets.width < 0.1, "{}", buckets.width);
-    }
-
-    #[test]
-    fn a_width_of_zero_gives_a_single_bucket() {
-        let mut buckets = Buckets::default();
-        for width in [0.0, f64::NAN, 1e-310] {
-            let mut triangles = unreached(3);
-            buckets.reset(width, 1.0);
-            (0..3).for_each(|v| put(v, f64::from(v), &mut triangles, &mut buckets));
-            let n: usize = rounds(&mut buckets, &mut triangles).iter().map(Vec::len).sum();
-            assert_eq!(n, 3);
-        }
     }
 }

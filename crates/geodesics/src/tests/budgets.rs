@@ -25,7 +25,7 @@ fn a_cancelled_solver_ends_without_a_result() {
     let surface = shapes::torus(200, 80, 2.0, 0.7).intrinsic();
     for method in Method::all() {
         let expected = method.prepare(&surface, &()).unwrap().distances(VertexId(3)).unwrap();
-        for delay in [0, 1, 3, 10, 30, 100] {
+        for delay in [0, 3, 30] {
             let budget = Budget::unlimited();
             let solver = method.prepare(&surface, &budget).unwrap();
             // Far more work than fits into the delay.
