@@ -388,7 +388,7 @@ mod tests {
 
     #[test]
     fn every_method_is_described_and_the_form_is_a_part_of_the_embedded_one() {
-        let mesh = lopsided_torus();
+        let mesh = shapes::torus(18, 11, 2.0, 0.7);
         let surface = Surface::new(&mesh, &Default::default(), &()).unwrap();
         for method in EmbedMethod::all() {
             let form = FormOptions { method, samples: Samples::Count(60), ..FormOptions::default() };

@@ -496,26 +496,15 @@ mod tests {
             assert_eq!(kind(&by_name), RelationKind::IdenticalFile);
             assert_eq!(kind(&by_description), RelationKind::OtherPose, "only descriptions were compared");
             // The comparison of the two shapes says the same.
+            let query = describe_options.prepare(&described).unwrap();
             for result in &by_mesh.results {
                 let other = search.prepared(&result.id).unwrap();
-                let query = describe_options.prepare(&described).unwrap();
                 let direct = compare(&ShapePair::new([&query, &other])).unwrap();
                 assert_eq!(result.comparison.as_ref(), Some(&direct));
                 assert_eq!(result.relation.evidence.distance, direct.shape_distance);
                 assert_eq!(result.distance, direct.shape_distance.combined);
             }
         }
-    }
-
-    #[test]
-    fn a_query_described_with_other_options_is_refused() {
-        let (_folder, search) = indexed(&DescribeOptions::default());
-        let options = DescribeOptions { points: 500, ..DescribeOptions::default() };
-        let surface = Surface::new(&shapes::icosphere(2), &Default::default(), &()).unwrap();
-        let query = describe(&surface, &options, &()).unwrap();
-        let fault = search.search(&Query::new(query, &options), &SearchOptions::default(), &()).unwrap_err();
-        assert!(matches!(fault, Error::Index(IndexError::OtherOptions { .. })));
-        assert!(fault.to_string().contains("\"points\":500"), "{fault}");
     }
 
     #[test]
@@ -629,9 +618,15 @@ mod tests {
     }
 
     #[test]
-    fn shapes_are_found_by_name() {
+    fn shapes_are_found_by_name_and_by_descriptions_of_the_same_options() {
         let (_folder, search) = indexed(&DescribeOptions::default());
         let options = SearchOptions::default();
+        let other = DescribeOptions { points: 500, ..DescribeOptions::default() };
+        let surface = Surface::new(&shapes::icosphere(2), &Default::default(), &()).unwrap();
+        let query = Query::new(describe(&surface, &other, &()).unwrap(), &other);
+        let fault = search.search(&query, &options, &()).unwrap_err();
+        assert!(matches!(fault, Error::Index(IndexError::OtherOptions { .. })));
+        assert!(fault.to_string().contains("\"points\":500"), "{fault}");
         assert!(matches!(search.query_of("none", &options, &()), Err(Error::Index(_))));
         let names: Vec<String> =
             search.index().entries().unwrap().into_iter().map(|entry| entry.id).collect();

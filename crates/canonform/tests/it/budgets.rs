@@ -16,7 +16,7 @@ fn assert_cancellable<T: PartialEq + std::fmt::Debug>(
     work: impl Fn(&Budget) -> Result<T, Error> + Sync,
 ) {
     let expected = work(&Budget::unlimited()).unwrap();
-    for delay in [0, 2, 10, 40, 150].map(Duration::from_millis) {
+    for delay in [0, 5, 60].map(Duration::from_millis) {
         let budget = Budget::unlimited();
         let result = std::thread::scope(|scope| {
             scope.spawn(|| {
