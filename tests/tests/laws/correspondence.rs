@@ -105,11 +105,7 @@ fn maps_do_not_depend_on_threads() {
 
 #[test]
 fn poses_are_mapped_to_their_true_partners() {
-    are_mapped_to_true_partners(&[
-        (Family::Cat, [0, 3]),
-        // The mirror of the second man that distorts least exchanges front and back.
-        (Family::David, [5, 6]),
-    ]);
+    are_mapped_to_true_partners(&[(Family::Cat, [0, 3])]);
 }
 
 #[test]
@@ -117,6 +113,8 @@ fn poses_are_mapped_to_their_true_partners() {
 fn more_poses_are_mapped_to_their_true_partners() {
     are_mapped_to_true_partners(&[
         (Family::Centaur, [1, 2]),
+        // The mirror of the second man that distorts least exchanges front and back.
+        (Family::David, [5, 6]),
         // A map that mixes the direct and the mirrored one distorts least.
         (Family::Centaur, [2, 4]),
         (Family::David, [2, 5]),

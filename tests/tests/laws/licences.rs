@@ -42,21 +42,6 @@ fn permits(expression: &str, allowed: &[String]) -> bool {
 }
 
 #[test]
-fn licence_expressions_are_evaluated() {
-    let allowed = ["MIT", "Unicode-3.0"].map(str::to_owned);
-    for (expression, expected) in [
-        ("MIT", true),
-        ("GPL-3.0", false),
-        ("GPL-3.0 OR MIT", true),
-        ("MIT/Apache-2.0", true),
-        ("(MIT OR Apache-2.0) AND Unicode-3.0", true),
-        ("MIT AND GPL-3.0", false),
-    ] {
-        assert_eq!(permits(expression, &allowed), expected, "{expression}");
-    }
-}
-
-#[test]
 fn every_package_has_an_allowed_licence() {
     let is_allowed = |licence: &str, package: &str| permits(licence, &allowed(package));
     let faults: Vec<String> = metadata()

@@ -89,10 +89,8 @@ fn pages_are_short() {
 #[test]
 fn links_between_pages_lead_somewhere() {
     let root = workspace_root().canonicalize().unwrap();
-    let book = root.join("docs");
-    let all = all_pages(&root);
     let (mut faults, mut n_links) = (Vec::new(), 0);
-    for page in &all {
+    for page in &all_pages(&root) {
         for link in links(&fs::read_to_string(page).unwrap()) {
             n_links += 1;
             let place = page.strip_prefix(&root).unwrap().display();
@@ -101,16 +99,6 @@ fn links_between_pages_lead_somewhere() {
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
     assert!(n_links >= 100, "only {n_links} links were found");
-    let page = book.join("server.md");
-    for (target, ok) in [
-        ("guide/search.md#datasets", false),
-        ("#limits", true),
-        ("guide/search.md#datasets-and-classes", true),
-        ("no-such-page.md", false),
-        ("../no-such-file", false),
-    ] {
-        assert_eq!(fault(&page, target).is_none(), ok, "{target}");
-    }
 }
 
 #[test]

@@ -1,15 +1,14 @@
 //! How many samples are enough: `-n auto` stops where it should, and says how sure it is.
 
 use canonform::Surface;
-use canonform::embed::{EmbedMethod, EmbedOptions, Embedded, FormOptions, Samples, StressOptions, embed};
-use datasets::{CreatureOptions, Family, creature_body, creature_plans};
+use canonform::embed::{EmbedOptions, Embedded, FormOptions, Samples, StressOptions, embed};
+use datasets::{CreatureOptions, creature_body, creature_plans};
 use linalg::DistanceMatrix;
 use mesh::TriMesh;
-use nmds::{SampleStop, stress};
+use nmds::stress;
 use rayon::prelude::*;
 
-use crate::support::data;
-use crate::support::{body, marching, surface};
+use crate::support::{data, marching, surface};
 
 /// The first body of a kind, with this many vertices.
 fn of_kind(kind: &str, n_vertices: usize) -> TriMesh {
@@ -57,23 +56,6 @@ fn intervals_after_a_search_contain_the_exact_stress_as_often_as_they_say() {
     println!("of {} searches: normalised stress in its interval {normalized}, stress {paper}", found.len());
     assert_eq!(found.len(), 100);
     assert!(normalized >= 95 && paper >= 95, "{normalized} {paper}");
-}
-
-#[test]
-fn the_form_is_that_of_the_samples_and_the_rank_that_were_chosen() {
-    let surface = surface(&body(Family::Cat));
-    let found = measured(&surface, &auto(3));
-    let search = found.report.auto.as_ref().unwrap();
-    assert_eq!(search.stop, SampleStop::Settled);
-    assert!(2 * search.sufficient <= found.report.n_samples && search.rows <= 16);
-    let options = FormOptions {
-        samples: Samples::Count(found.report.n_samples),
-        method: EmbedMethod::low_rank(found.report.rank),
-        ..FormOptions::default()
-    };
-    let given = measured(&surface, &options);
-    assert_eq!(given.embedding, found.embedding);
-    assert_eq!(given.distances, found.distances);
 }
 
 /// Twice the samples that are enough prove that they are.

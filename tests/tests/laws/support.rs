@@ -82,6 +82,21 @@ pub(crate) fn marching() -> Method {
     Method::default()
 }
 
+pub(crate) fn bits(values: &[f64]) -> Vec<u64> {
+    values.iter().map(|x| x.to_bits()).collect()
+}
+
+/// Coordinates, eigenvalues, samples and stress, bit by bit.
+pub(crate) fn facts(result: &Embedded) -> (Vec<u64>, Vec<u64>, Vec<u32>, Option<Vec<u64>>) {
+    let stress = result.report.stress.as_ref();
+    (
+        bits(result.embedding.coords.as_slice()),
+        bits(&result.embedding.eigenvalues),
+        result.report.samples.clone(),
+        stress.map(|s| bits(&[s.value, s.interval[0], s.interval[1]])),
+    )
+}
+
 /// The largest difference between two lists, relative to the largest magnitude in the second.
 pub(crate) fn gap(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
