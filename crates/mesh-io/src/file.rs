@@ -135,21 +135,3 @@ impl ReadLimits {
         check("faces", n_faces, self.max_faces.min(MAX_FACES), MAX_FACES)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn counts_beyond_the_limits_are_errors() {
-        let limits = ReadLimits::default();
-        assert!(limits.check(1 << 32, 0).is_err_and(|f| matches!(f, Fault::TooLarge { .. })));
-        assert!(limits.check(3, 1 << 31).is_err_and(|f| matches!(f, Fault::TooLarge { .. })));
-        assert_eq!(limits.check(1 << 30, 1 << 30), Ok(()));
-        let limits = ReadLimits::of_vertices(100);
-        assert_eq!(limits.check(100, 400), Ok(()));
-        assert_eq!(limits.check(101, 0), Err(Fault::OverLimit { items: "vertices", limit: 100 }));
-        assert_eq!(limits.check(0, 401), Err(Fault::OverLimit { items: "faces", limit: 400 }));
-        assert_eq!(ReadLimits::of_vertices(u64::MAX), ReadLimits::default());
-    }
-}

@@ -56,25 +56,3 @@ pub fn referred(text: &str) -> Option<String> {
     let path = String::from_utf8(bytes).ok()?;
     Some(path.split('/').filter(|part| *part != ".").collect::<Vec<_>>().join("/"))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn compressed_files_have_the_extension_of_their_content() {
-        for (name, expected, stem) in [
-            ("a/cat0.off", "off", "a/cat0"),
-            ("a/cat0.OFF.GZ", "off", "a/cat0"),
-            ("cat.1.ply.gz", "ply", "cat.1"),
-            ("cat.gz", "", "cat"),
-            ("cat", "", "cat"),
-        ] {
-            let path = Path::new(name);
-            assert_eq!(extension(path), expected, "{name}");
-            assert_eq!(without_extension(path), Path::new(stem), "{name}");
-        }
-        assert_eq!(with_extension(Path::new("a.vert.GZ"), "tri"), Path::new("a.tri.GZ"));
-        assert_eq!(with_extension(Path::new("a.vert"), "tri"), Path::new("a.tri"));
-    }
-}

@@ -204,39 +204,3 @@ pub(crate) fn parse_position<'a>(
 pub(crate) fn write_position(out: &mut dyn Write, prefix: &str, p: &Point3<f64>) -> io::Result<()> {
     write!(out, "{prefix}{:?} {:?} {:?}", p.x, p.y, p.z)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn line_numbers_do_not_depend_on_the_line_ends() {
-        for text in
-            ["a\n\n#x\nb c # d", "a\r\n\r\n#x\r\nb c # d\r\n", "a\r\r#x\rb c\r", "\u{feff}a\n\n\n b c"]
-        {
-            let found: Vec<_> = Lines::new(text.as_bytes()).map(|l| (l.number, l.text)).collect();
-            assert_eq!(found, [(1, &b"a"[..]), (4, &b"b c"[..])], "{text:?}");
-        }
-    }
-
-    #[test]
-    fn numbers_parse_in_every_notation() {
-        assert_eq!(parse_number(b"-1.5e3"), Some(-1500.0));
-        assert_eq!(parse_number(b".5"), Some(0.5));
-        assert_eq!(parse_number(b"5."), Some(5.0));
-        assert!(parse_number(b"nan").is_some_and(f64::is_nan));
-        assert_eq!(parse_number::<f64>(b"1,5"), None);
-        assert_eq!(parse_number::<f64>(b"\xff"), None);
-        assert_eq!(parse_integer(b"12"), Some(12));
-        assert_eq!(parse_integer(b"1.2000e+01"), Some(12));
-        assert_eq!(parse_integer(b"1.5"), None);
-        assert_eq!(parse_integer(b"nan"), None);
-    }
-
-    #[test]
-    fn excerpts_are_short_and_printable() {
-        assert_eq!(excerpt(b"1 2"), "1 2");
-        assert_eq!(excerpt(b"\x00\xff"), "\u{fffd}\u{fffd}");
-        assert!(excerpt(&[b'7'; 1000]).ends_with("777..."));
-    }
-}

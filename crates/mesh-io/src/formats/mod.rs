@@ -243,33 +243,3 @@ pub fn mesh_files() -> String {
     let single = or_list(single.iter().map(|format| format.extensions[0]));
     format!("a {single} file{}", paired.collect::<String>())
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn extensions_are_unique_and_every_file_of_a_writable_format_has_a_writer() {
-        let mut all: Vec<&str> = FORMATS.iter().flat_map(|format| format.extensions).copied().collect();
-        all.sort_unstable();
-        assert!(all.windows(2).all(|pair| pair[0] != pair[1]), "{all:?}");
-        for format in &FORMATS {
-            assert!(format.write.is_empty() || format.write.len() == format.extensions.len());
-            assert!(format.extensions.iter().all(|e| **e == e.to_ascii_lowercase()));
-        }
-    }
-
-    #[test]
-    fn lists_read_as_phrases() {
-        assert_eq!(or_list([]), "");
-        assert_eq!(or_list(["ply"]), ".ply");
-        assert_eq!(or_list(["npy", "csv", "ply"]), ".npy, .csv or .ply");
-        assert_eq!(or_list(writable(Content::Lines)), ".obj or .ply");
-        assert_eq!(or_list(writable(Content::Field)), ".off, .obj or .ply");
-        assert_eq!(or_list(writable(Content::Mesh)), ".off, .obj, .ply, .stl, .vert, .glb or .3mf");
-        assert_eq!(
-            mesh_files(),
-            "a .off, .obj, .ply, .stl, .mat, .glb, .gltf, .3mf, .xyz or .pts file, or a .vert with its .tri"
-        );
-    }
-}

@@ -77,6 +77,15 @@ fn files_of_any_dialect_are_read_or_refused_with_the_place() {
     }));
 }
 
+#[test]
+fn line_numbers_do_not_depend_on_the_line_ends() {
+    for end in ["\n", "\r\n", "\r"] {
+        let text =
+            ["\u{feff}OFF", "3 1.0000e+00 0", "", "# x", "0 -1.5e3 .5 # y", "1 0 5.", "0 x 0", ""].join(end);
+        assert!(outcome(&one("m.off", text)).starts_with("m.off, line 7: "), "{end:?}");
+    }
+}
+
 /// A grid of points, of which the fourth has this text.
 fn xyz(separator: &str, mark: &str, fourth: &str) -> String {
     let row = |i: usize| match i {

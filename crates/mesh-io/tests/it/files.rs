@@ -1,11 +1,13 @@
 //! Whole files: round trips, names, pairs, error messages, atomic writes.
 
 use std::fs;
+use std::io::{Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
 use canonform_mesh_io::{
-    Disk, FORMATS, Format, MemoryFile, ReadLimits, VertexField, files_of, is_mesh_path, read, read_file,
-    read_from, read_memory, write, write_polylines, write_scalar_field,
+    Content, Disk, FORMATS, Format, GzipReader, MemoryFile, ReadLimits, VertexField, extension, files_of,
+    is_mesh_path, mesh_files, or_list, read, read_file, read_from, read_memory, without_extension, writable,
+    write, write_polylines, write_scalar_field,
 };
 use mesh::{Fault, MeshError, TriMesh, shapes};
 use nalgebra::Point3;
@@ -306,6 +308,8 @@ fn a_stream_reads_like_a_file_within_its_limits() {
         assert!(matches!(error, MeshError::File { fault, .. } if fault == expected));
         assert!(read_file(&path, &Disk, &ReadLimits::of_vertices(2562)).is_ok());
         assert!(read_file(&path, &Disk, &ReadLimits::of_vertices(2561)).is_err());
+        let [all, few] = [u64::MAX, 100].map(ReadLimits::of_vertices);
+        assert_eq!((all, few.max_faces), (ReadLimits::default(), 400));
     }
     // Endless streams end with an error.
     for extension in ["off", "obj", "ply", "stl", "mat", "glb", "gltf", "3mf", "xyz", "pts"] {
@@ -514,9 +518,65 @@ fn compressed_files_are_read_within_their_limits() {
     // A hundred thousand times the size of the file.
     let mut bomb = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
     for _ in 0..100 {
-        std::io::Write::write_all(&mut bomb, &vec![b'\n'; 1 << 20]).unwrap();
+        bomb.write_all(&vec![b'\n'; 1 << 20]).unwrap();
     }
     fs::write(&gzip, bomb.finish().unwrap()).unwrap();
     let error = read(&gzip).unwrap_err();
     assert!(matches!(&error, MeshError::File { fault: Fault::DecompressionBomb { .. }, .. }), "{error}");
+}
+
+fn gzip(text: &str) -> Vec<u8> {
+    let mut out = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::default());
+    out.write_all(text.as_bytes()).unwrap();
+    out.finish().unwrap()
+}
+
+fn gunzip(bytes: &[u8]) -> std::io::Result<String> {
+    let mut text = String::new();
+    GzipReader::new(bytes).read_to_string(&mut text).map(|_| text)
+}
+
+#[test]
+fn members_follow_each_other_and_zeros_the_last() {
+    let [a, b, zeros] = [gzip("OFF\n"), gzip("3 1 0\n"), vec![0; 20_000]];
+    for (pieces, text) in [
+        (vec![&a], "OFF\n"),
+        (vec![&a, &b], "OFF\n3 1 0\n"),
+        (vec![&a, &zeros], "OFF\n"),
+        (vec![&a, &zeros, &b, &zeros], "OFF\n3 1 0\n"),
+        (vec![&gzip(""), &a], "OFF\n"),
+    ] {
+        assert_eq!(gunzip(&pieces.into_iter().flatten().copied().collect::<Vec<_>>()).unwrap(), text);
+    }
+    for damaged in [&a[..a.len() - 3], &[&a[..], b"garbage"].concat(), b"", &zeros] {
+        assert!(gunzip(damaged).is_err(), "{} bytes", damaged.len());
+    }
+}
+
+#[test]
+fn compressed_files_have_the_extension_of_their_content() {
+    for (name, expected, stem) in [
+        ("a/cat0.off", "off", "a/cat0"),
+        ("a/cat0.OFF.GZ", "off", "a/cat0"),
+        ("cat.1.ply.gz", "ply", "cat.1"),
+        ("cat.gz", "", "cat"),
+        ("cat", "", "cat"),
+    ] {
+        let path = Path::new(name);
+        assert_eq!(extension(path), expected, "{name}");
+        assert_eq!(without_extension(path), Path::new(stem), "{name}");
+    }
+}
+
+#[test]
+fn lists_read_as_phrases() {
+    assert_eq!(or_list([]), "");
+    assert_eq!(or_list(["ply"]), ".ply");
+    assert_eq!(or_list(["npy", "csv", "ply"]), ".npy, .csv or .ply");
+    assert_eq!(or_list(writable(Content::Lines)), ".obj or .ply");
+    assert_eq!(or_list(writable(Content::Field)), ".off, .obj or .ply");
+    assert_eq!(or_list(writable(Content::Mesh)), ".off, .obj, .ply, .stl, .vert, .glb or .3mf");
+    let all =
+        "a .off, .obj, .ply, .stl, .mat, .glb, .gltf, .3mf, .xyz or .pts file, or a .vert with its .tri";
+    assert_eq!(mesh_files(), all);
 }

@@ -8,4 +8,5 @@ mod files;
 mod foreign;
 mod made;
 mod mutations;
+mod polygons;
 mod real_data;
