@@ -9,8 +9,6 @@ mod error;
 mod file;
 mod metric;
 mod query;
-#[cfg(test)]
-mod tests;
 
 pub use build::FieldOptions;
 pub use distance_field::{DistanceField, FieldBounds, FieldFacts};

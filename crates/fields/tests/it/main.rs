@@ -1,13 +1,13 @@
 //! Laws of fields: what holds for every surface and for every file.
 
+// Helper functions are test code too, which clippy cannot see.
+#![allow(clippy::unwrap_used)]
+
+use canonform_fields::*;
 use geodesics::{GeodesicError, Method};
-use mesh::{ComponentPolicy, RepairOptions, TriMesh, shapes};
+use mesh::{ComponentPolicy, RepairOptions, Surface, TriMesh, shapes};
 use nmds::NmdsError;
 use surface::VertexId;
-
-use crate::error::FieldError;
-use crate::*;
-use mesh::Surface;
 
 fn surface(mesh: &TriMesh) -> Surface {
     Surface::new(mesh, &RepairOptions::default(), &()).unwrap()
@@ -128,6 +128,43 @@ fn distances_are_symmetric_and_zero_on_the_diagonal() {
                     assert_eq!(there.kind, back.kind);
                 }
             }
+        }
+    }
+}
+
+#[test]
+fn distances_from_landmarks_with_exact_columns_are_known_to_rounding() {
+    for mesh in zoo() {
+        for method in [Method::Exact, Method::default()] {
+            let field = built(&mesh, &FieldOptions { method, ..exact(16) });
+            let n_exact = match field.bounds() {
+                FieldBounds::Certified => 16,
+                FieldBounds::Measured { exact_columns, .. } => exact_columns,
+            };
+            for &landmark in &field.landmarks()[..n_exact] {
+                for v in (0..mesh.n_vertices()).map(VertexId::from) {
+                    let pair = field.pair(landmark, v).unwrap();
+                    assert!(pair.upper - pair.lower < 1e-3 * mesh.root_of_area(), "{pair:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn another_unit_changes_nothing_but_the_unit() {
+    let mesh = shapes::jittered_grid(14, 11, 1.0, 0.3, 5);
+    let pairs: Vec<_> = all_pairs(mesh.n_vertices()).into_iter().step_by(7).collect();
+    let found = |scale: f64| {
+        let positions = mesh.positions.iter().map(|p| p * scale).collect();
+        let scaled = TriMesh { positions, faces: mesh.faces.clone() };
+        built(&scaled, &exact(12)).pairs(&pairs, Finish::Never, &()).unwrap()
+    };
+    let plain = found(1.0);
+    for scale in [2f64.powi(-40), 2f64.powi(60)] {
+        for (a, b) in plain.iter().zip(found(scale)) {
+            assert_eq!([a.lower, a.upper].map(|d| d * scale), [b.lower, b.upper]);
+            assert!((a.distance * scale - b.distance).abs() <= 1e-6 * b.distance, "{a:?} {b:?}");
         }
     }
 }
