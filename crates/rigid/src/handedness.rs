@@ -122,20 +122,3 @@ impl Handedness {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_handedness_follows_the_decisively_better_map() {
-        let of = |distances| Handedness::from_maps(distances, 0.02);
-        let none = f64::INFINITY;
-        for worse in [0.06, none] {
-            assert_eq!(of([0.02, worse]), Handedness::Same);
-            assert_eq!(of([worse, 0.02]), Handedness::Mirrored);
-        }
-        assert_eq!(of([0.021, 0.02]), Handedness::Either);
-        assert_eq!(of([none, none]), Handedness::Unknown);
-    }
-}

@@ -142,31 +142,3 @@ fn sampled(mesh: &TriMesh) -> Vec<Point3<f64>> {
     }
     (0..points.len()).map(|i| points[i * STRIDE % points.len()]).collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use mesh::shapes;
-
-    use super::*;
-
-    #[test]
-    fn surfaces_are_centered_at_unit_area_and_sampled_evenly() {
-        let mut torus = shapes::torus(40, 20, 2.0, 0.7);
-        torus.positions.iter_mut().for_each(|p| *p = *p * 25.4 + Vector3::new(300.0, -7.0, 20.0));
-        let surface = RigidSurface::new(torus).unwrap();
-        assert!((surface.mesh.area() - 1.0).abs() < 1e-12);
-        assert!((surface.center - Point3::new(300.0, -7.0, 20.0)).norm() < 1e-9);
-        assert!(surface.mesh.moments().0.norm() < 1e-12);
-        let samples = surface.samples();
-        assert_eq!(samples.len(), SAMPLES);
-        for n in [60, 400, SAMPLES] {
-            let mean = samples[..n].iter().fold(Vector3::zeros(), |sum, p| sum + p.coords) / n as f64;
-            assert!(mean.norm() < 0.5 / (n as f64).sqrt() * surface.rms_radius(), "{n}: {mean}");
-        }
-        let different: std::collections::HashSet<_> =
-            samples.iter().map(|p| [p.x, p.y, p.z].map(f64::to_bits)).collect();
-        assert_eq!(different.len(), SAMPLES);
-        assert!(samples.iter().all(|p| surface.tree().nearest(p).unwrap().sq_distance < 1e-24));
-        assert!(RigidSurface::new(TriMesh::default()).is_none());
-    }
-}
