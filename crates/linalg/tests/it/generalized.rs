@@ -1,7 +1,7 @@
 use std::f64::consts::PI;
 
 use canonform_linalg::{
-    GeneralizedEigen, LinalgError, Matrix, SparseSymmetric, SymmetricOperator, smallest_eigenpairs,
+    LinalgError, Matrix, SparseSymmetric, SymmetricEigen, SymmetricOperator, smallest_eigenpairs,
 };
 
 /// The stiffness matrix of `n` points joined by springs of the given weights.

@@ -102,8 +102,7 @@ fn estimates_are_unbiased_and_intervals_cover_the_exact_stress() {
 #[test]
 fn one_row_has_no_interval() {
     let (distances, coords, landmarks) = bent(50);
-    for sample in
-        [equally_likely(50, 1, 3), RowSample::by_landmarks(&coords, &landmarks, 1.0, 1, 3).unwrap()]
+    for sample in [equally_likely(50, 1, 3), RowSample::by_landmarks(&coords, &landmarks, 1.0, 1, 3).unwrap()]
     {
         let found = estimate_stress(&coords, &distances, &sample).unwrap();
         for interval in [found.interval, found.normalized_interval] {
