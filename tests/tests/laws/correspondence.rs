@@ -1,14 +1,14 @@
 //! Dense maps between surfaces: exact cases, invariances, and known partners.
 
 use canonform::maps::{MapKind, VertexMap};
-use datasets::{ArticulatedOptions, Family};
+use datasets::Family;
 use geodesics::Method;
 use mesh::{TriMesh, shapes};
 use nalgebra::{Point3, Rotation3};
 use surface::VertexId;
 
 use crate::rested::{Rested, of_kind, prepared};
-use crate::support::body;
+use crate::support::{body, pose};
 
 fn maps(a: &TriMesh, b: &TriMesh) -> Vec<VertexMap> {
     crate::rested::maps(&prepared(a), &prepared(b))
@@ -24,27 +24,8 @@ fn share(found: &[usize], expected: impl Fn(usize) -> usize) -> f64 {
 }
 
 #[test]
-fn a_surface_is_mapped_to_itself_by_the_identity_and_by_its_mirror() {
-    let mesh = body(Family::Cat);
-    let found = maps(&mesh, &mesh);
-    let direct = of_kind(&found, MapKind::Direct);
-    assert_eq!(found[0], *direct, "the identity distorts nothing");
-    assert_eq!(share(&images(direct), |x| x), 1.0);
-    // Distances by fast marching differ a little in the two directions.
-    assert!(direct.distortion < 0.005, "{}", direct.distortion);
-    let mirrored = of_kind(&found, MapKind::Mirrored);
-    assert!(mirrored.distortion > 1e-3 && mirrored.distortion < 0.06, "{}", mirrored.distortion);
-    let fixed = share(&images(mirrored), |x| x);
-    println!("mirrored {:.4}, fixed {fixed:.3}", mirrored.distortion);
-    assert!(fixed < 0.5, "{fixed}");
-}
-
-#[test]
 fn motions_scale_and_numbering_change_no_map() {
-    let (a, b) = (body(Family::Cat), {
-        let options = ArticulatedOptions { n_vertices: 1000, ..ArticulatedOptions::default() };
-        datasets::articulated_shape(Family::Cat, 4, &options).unwrap().mesh
-    });
+    let (a, b) = (body(Family::Cat), pose(Family::Cat, 4));
     let usual = maps(&a, &b);
     let turn = Rotation3::from_euler_angles(0.3, 2.0, -1.0);
     let mut moved = b.clone();

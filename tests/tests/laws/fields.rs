@@ -1,14 +1,13 @@
-//! Distance fields of bodies and of real meshes against exact distances.
+//! Distance fields of real meshes against exact distances.
 
 use canonform::Surface;
 use canonform::fields::{DistanceField, FieldBounds, FieldOptions, Finish, PairKind};
-use datasets::Family;
 use geodesics::Method;
 use mesh::RepairOptions;
 use surface::VertexId;
 
 use crate::real_meshes::read_npy;
-use crate::support::{body, data, surface};
+use crate::support::data;
 
 fn field(surface: &Surface, method: Method) -> DistanceField {
     DistanceField::build(surface, &FieldOptions { method, ..FieldOptions::default() }, &()).unwrap()
@@ -35,25 +34,6 @@ fn scored(field: &DistanceField, pairs: &[[VertexId; 2]], exact: &[f64]) -> Fiel
         }
     }
     score
-}
-
-#[test]
-fn intervals_hold_pairs_of_bodies() {
-    let surface = surface(&body(Family::David));
-    let n = surface.n_input_vertices();
-    let solver = Method::Exact.prepare(surface.intrinsic(), &()).unwrap();
-    let vertices: Vec<VertexId> = (0..n).map(VertexId::from).collect();
-    let sources: Vec<VertexId> = vertices.iter().copied().step_by(9).collect();
-    let columns = solver.distance_columns(&sources).unwrap();
-    let pairs: Vec<_> = sources.iter().flat_map(|&b| vertices.iter().map(move |&a| [a, b])).collect();
-    for method in [Method::Exact, Method::default()] {
-        let score = scored(&field(&surface, method), &pairs, columns.as_slice());
-        println!("by {}: {score:?}", method.name());
-        assert_eq!(score.missed, 0, "{score:?}");
-        // On a thousand vertices marching itself has an error of 0.3 %.
-        let most = if method == Method::Exact { 0.0025 } else { 0.005 };
-        assert!(score.finished < most && score.plain < 0.02, "{score:?}");
-    }
 }
 
 /// Exact distances of `data/exact`, from other software, to random targets: 10,000 pairs of a mesh.

@@ -49,10 +49,21 @@ fn right_ends(rest: &[Point3<f64>]) -> Vec<VertexId> {
 }
 
 #[test]
-fn the_identity_carries_everything_to_itself() {
+fn a_surface_is_mapped_to_itself_by_the_identity_which_carries_everything_and_by_its_mirror() {
     let mesh = body(Family::Cat);
     let side = prepared(&mesh);
-    let map = &maps(&side, &side)[0];
+    let found = maps(&side, &side);
+    let map = of_kind(&found, MapKind::Direct);
+    assert_eq!(found[0], *map, "the identity distorts nothing");
+    let n_fixed = |map: &VertexMap| {
+        map.vertices.iter().enumerate().filter(|(x, y)| **y == Some(VertexId::from(*x))).count()
+    };
+    assert_eq!(n_fixed(map), mesh.n_vertices());
+    // Distances by fast marching differ a little in the two directions.
+    assert!(map.distortion < 0.005, "{}", map.distortion);
+    let mirrored = of_kind(&found, MapKind::Mirrored);
+    assert!(mirrored.distortion > 1e-3 && mirrored.distortion < 0.06, "{}", mirrored.distortion);
+    assert!(2 * n_fixed(mirrored) < mesh.n_vertices(), "{}", n_fixed(mirrored));
     let own = coordinates(&mesh);
     let labels: Vec<usize> = (0..mesh.n_vertices()).collect();
     let of_faces: Vec<usize> = (0..mesh.n_faces()).collect();

@@ -14,7 +14,7 @@ use mesh::{TriMesh, shapes};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-use crate::support::data;
+use crate::support::{data, pose};
 
 /// Changes after one another, with the kind of relation and the changes that must be told.
 type Variant = (&'static [Damage], RelationKind, &'static [Change]);
@@ -188,9 +188,9 @@ fn two_poses_and_two_bodies_are_not_one_surface() {
     let all: Vec<_> = Family::all()
         .into_par_iter()
         .flat_map_iter(|family| {
-            let body = |body, pose| articulated_body(family, body, pose, &options).unwrap().mesh;
-            let poses = (0..6).map(|pose| body(0, pose)).chain((1..4).map(|i| body(i, 0)));
-            let geometries: Vec<_> = poses.map(|mesh| geometry(&mesh)).collect();
+            let others = (1..4).map(|body| articulated_body(family, body, 0, &options).unwrap().mesh);
+            let geometries: Vec<_> =
+                (0..6).map(|i| pose(family, i)).chain(others).map(|mesh| geometry(&mesh)).collect();
             let pairs = (0..geometries.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
             pairs.map(|(i, j)| related(&geometries[i], &geometries[j])).collect::<Vec<_>>()
         })

@@ -54,7 +54,12 @@ pub(crate) static SHAPES: LazyLock<Vec<LabeledShape>> = LazyLock::new(|| {
 
 /// A shape of the built-in dataset with 1,000 vertices: a body with limbs, without symmetries.
 pub(crate) fn body(family: Family) -> TriMesh {
-    let name = format!("{}1", family.name());
+    pose(family, 1)
+}
+
+/// The same in another pose.
+pub(crate) fn pose(family: Family, pose: usize) -> TriMesh {
+    let name = format!("{}{pose}", family.name());
     SHAPES.iter().find(|shape| shape.name == name).unwrap().mesh.clone()
 }
 
