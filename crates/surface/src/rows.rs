@@ -87,26 +87,3 @@ impl<T: Copy> Rows<T> {
         &self.items
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn items_keep_their_order_within_a_row() {
-        let pairs = [(2, 'a'), (0, 'b'), (2, 'c'), (0, 'd'), (2, 'e')];
-        let rows = Rows::collect(4, pairs.into_iter());
-        assert_eq!(rows.n_rows(), 4);
-        let expected: [&[char]; 4] = [&['b', 'd'], &[], &['a', 'c', 'e'], &[]];
-        for (row, items) in expected.into_iter().enumerate() {
-            assert_eq!(rows.row(row), items);
-            assert_eq!(&rows.items()[rows.range(row)], items);
-        }
-        assert!(Rows::<u8>::collect(1, std::iter::empty()).row(0).is_empty());
-        let mut pushed = Rows::default();
-        expected.into_iter().for_each(|items| pushed.push_row(items.iter().copied()));
-        assert_eq!(pushed, rows);
-        let offsets = vec![0, 2, 2, 5, 5];
-        assert_eq!(Rows::from_offsets(offsets, rows.items().to_vec()), rows);
-    }
-}

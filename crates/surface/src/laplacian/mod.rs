@@ -132,6 +132,17 @@ mod tests {
     }
 
     #[test]
+    fn weights_between_vertices_are_not_negative_even_at_boundaries() {
+        for mesh in [shapes::jittered_grid(12, 12, 1.0, 0.24, 1), shapes::sheared_grid(8, 8, 1.0, 3.2)] {
+            let mut sums = std::collections::BTreeMap::new();
+            for (i, j, value) in of(&mesh).stiffness_entries().filter(|(i, j, _)| i != j) {
+                *sums.entry((i.min(j), i.max(j))).or_insert(0.0) += value;
+            }
+            assert!(sums.values().all(|value: &f64| *value < 1e-9));
+        }
+    }
+
+    #[test]
     fn the_energy_of_a_linear_function_is_its_squared_slope_times_the_area() {
         let share = |mesh: &TriMesh| {
             let laplacian = of(mesh);
