@@ -76,19 +76,6 @@ mod tests {
     use datasets::{MechanicalPart, PartMesh, mechanical_parts};
 
     use super::*;
-    use crate::parts::copies;
-
-    #[test]
-    fn parts_that_differ_are_told_apart_and_copies_are_not() {
-        let parts = mechanical_parts(0, 16);
-        for part in parts.iter().step_by(5) {
-            let own = geometry(&part.mesh(&PartMesh::default())).unwrap();
-            for copy in copies(part) {
-                let told = related(&own, &geometry(&copy).unwrap());
-                assert!(told.kind.is_one_surface(), "{}: {told}", part.name());
-            }
-        }
-    }
 
     #[test]
     fn arcs_do_not_explain_a_difference_of_vertices() {

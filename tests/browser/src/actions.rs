@@ -52,18 +52,6 @@ impl Browser {
         .map(drop)
     }
 
-    /// Scrolls an element into view and moves the pointer to its centre.
-    pub fn hover(&self, css: &str) -> Result<()> {
-        let at = self.center(css)?;
-        self.hover_at(at)
-    }
-
-    /// Moves the pointer to a point of the window, in CSS pixels.
-    pub fn hover_at(&self, [x, y]: [i32; 2]) -> Result<()> {
-        // Two moves, because a page may ignore the first one.
-        self.pointer(vec![moved([x - 3, y - 3]), moved([x, y])])
-    }
-
     /// Drags from the centre of an element by this many CSS pixels.
     pub fn drag(&self, css: &str, [dx, dy]: [i32; 2]) -> Result<()> {
         let [x, y] = self.center(css)?;
@@ -71,12 +59,6 @@ impl Browser {
         actions.extend((1..=STEPS).map(|i| moved([x + dx * i / STEPS, y + dy * i / STEPS])));
         actions.push(json!({ "type": "pointerUp", "button": 0 }));
         self.pointer(actions)
-    }
-
-    /// Clicks a point of the window, in CSS pixels.
-    pub fn click_at(&self, at: [i32; 2]) -> Result<()> {
-        let [down, up] = ["pointerDown", "pointerUp"].map(|kind| json!({ "type": kind, "button": 0 }));
-        self.pointer(vec![moved(at), down, up])
     }
 
     /// Writes the visible part of the page to a PNG file, and creates its folder.

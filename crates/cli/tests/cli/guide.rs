@@ -11,6 +11,7 @@ use std::process::Command;
 use canonform::Remedy;
 use guide::{Chapter, CodeBlock, Language, Ran, Run};
 use rayon::prelude::*;
+use report::RgbaImage;
 use serde_json::Value;
 use strum::VariantArray;
 
@@ -38,20 +39,13 @@ fn pictures(chapter: &Chapter) -> Vec<&str> {
 
 /// Pixels of two pictures that differ visibly, as a share; 1 for different sizes.
 fn difference(a: &Path, b: &Path) -> f64 {
-    let read = |path: &Path| {
-        let decoder = png::Decoder::new(std::io::BufReader::new(fs::File::open(path).ok()?));
-        let mut reader = decoder.read_info().ok()?;
-        let mut pixels = vec![0; reader.output_buffer_size()];
-        let info = reader.next_frame(&mut pixels).ok()?;
-        Some((info.width, info.height, info.color_type.samples(), pixels))
-    };
-    match (read(a), read(b)) {
-        (Some((w, h, n, a)), Some((v, g, m, b))) if (w, h, n) == (v, g, m) => {
-            let differs = |(a, b): (&[u8], &[u8])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 24);
-            a.chunks(n).zip(b.chunks(n)).filter(|pair| differs(*pair)).count() as f64 / f64::from(w * h)
-        }
-        _ => 1.0,
+    let [a, b] = [a, b].map(|path| RgbaImage::from_png(&fs::read(path).unwrap_or_default()).ok());
+    let (Some(a), Some(b)) = (a, b) else { return 1.0 };
+    if (a.width(), a.height()) != (b.width(), b.height()) {
+        return 1.0;
     }
+    let differs = |(a, b): &(&[u8; 4], &[u8; 4])| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 24);
+    a.pixels().iter().zip(b.pixels()).filter(differs).count() as f64 / a.pixels().len() as f64
 }
 
 /// Compares the pictures of a chapter with those that its commands drew.

@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use report::RgbaImage;
+
 use crate::support::{Workplace, broken_ring, ring};
 
 fn place() -> Workplace {
@@ -10,19 +12,13 @@ fn place() -> Workplace {
     place
 }
 
-/// Width and height, and the pixels as red, green, blue, alpha.
-fn pixels(place: &Workplace, name: &str) -> ((u32, u32), Vec<[u8; 4]>) {
-    let file = fs::File::open(place.path(name)).unwrap();
-    let mut reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().unwrap();
-    let mut bytes = vec![0; reader.output_buffer_size()];
-    let info = reader.next_frame(&mut bytes).unwrap();
-    assert_eq!(info.color_type, png::ColorType::Rgba);
-    ((info.width, info.height), bytes.chunks_exact(4).map(|p| [p[0], p[1], p[2], p[3]]).collect())
+fn pixels(place: &Workplace, name: &str) -> RgbaImage {
+    RgbaImage::from_png(&fs::read(place.path(name)).unwrap()).unwrap()
 }
 
 fn drawn(place: &Workplace, options: &str) -> Vec<[u8; 4]> {
     place.done(format!("render ring.off --size 200 -o x.png {options}"));
-    pixels(place, "x.png").1
+    pixels(place, "x.png").pixels().to_vec()
 }
 
 #[test]
@@ -31,9 +27,9 @@ fn every_option_changes_the_picture() {
     let json = place.json("render ring.off --size 90x60 -o x.png");
     assert_eq!((&json["width"], &json["height"], &json["n_faces"]), (&90.into(), &60.into(), &320.into()));
     assert!(json["field"].is_null());
-    let (size, seen) = pixels(&place, "x.png");
-    assert_eq!((size, seen[0]), ((90, 60), [255; 4]));
-    assert!(seen.iter().any(|p| p[0] < 200), "the mesh is visible");
+    let seen = pixels(&place, "x.png");
+    assert_eq!((seen.width(), seen.height(), seen.pixels()[0]), (90, 60, [255; 4]));
+    assert!(seen.pixels().iter().any(|p| p[0] < 200), "the mesh is visible");
     let mut pictures: Vec<_> = [
         "--view top",
         "--view front",

@@ -1,10 +1,7 @@
 //! `canonform serve` as a program: its output, its errors, and how it stops.
 
-use std::io::{BufRead, BufReader, Read, Write};
-use std::net::TcpStream;
+use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, Command, Stdio};
-
-use serde_json::Value;
 
 use crate::support::{Workplace, program, ring};
 
@@ -33,24 +30,6 @@ impl Serving {
         serving.address = address.to_owned();
         serving
     }
-
-    fn upload(&self, name: &str, content: &[u8]) -> Value {
-        let part =
-            format!("--x\r\nContent-Disposition: form-data; name=\"mesh\"; filename=\"{name}\"\r\n\r\n");
-        let body = [part.as_bytes(), content, b"\r\n--x--\r\n"].concat();
-        let mut stream = TcpStream::connect(&self.address).unwrap();
-        let head = format!(
-            "POST /api/search HTTP/1.1\r\nHost: {}\r\nConnection: close\r\nContent-Length: {}\r\n\
-             Content-Type: multipart/form-data; boundary=x\r\n\r\n",
-            self.address,
-            body.len()
-        );
-        stream.write_all(&[head.as_bytes(), &body].concat()).unwrap();
-        let mut answer = Vec::new();
-        stream.read_to_end(&mut answer).unwrap();
-        let begin = answer.windows(4).position(|window| window == b"\r\n\r\n").unwrap();
-        serde_json::from_slice(&answer[begin + 4..]).unwrap()
-    }
 }
 
 impl Drop for Serving {
@@ -66,28 +45,6 @@ fn indexed() -> Workplace {
     place.add("meshes/ring0.off", &ring());
     place.done("index build meshes -n 20 -o i");
     place
-}
-
-#[test]
-fn errors_of_meshes_equal_those_of_search() {
-    let place = indexed();
-    let serving = Serving::start(&place);
-    for (name, content) in [
-        ("a.off", &b"OFF\n3 1 0\n0 0 0\n"[..]),
-        ("a.obj", b"v 0 0 0\nv 1 nan 0\nf 1 2 3\n"),
-        ("a.ply", b"ply\nformat ascii 1.0\n"),
-        ("a.md", b"hello"),
-        ("flat.off", b"OFF\n3 1 0\n0 0 0\n0 0 0\n0 0 0\n3 0 1 2\n"),
-    ] {
-        std::fs::write(place.path(name), content).unwrap();
-        let expected = place.run(format!("search i {name}")).err;
-        assert_eq!(
-            format!("error: {}\n", serving.upload(name, content)["error"].as_str().unwrap()),
-            expected
-        );
-    }
-    let mesh = std::fs::read(place.path("meshes/ring0.off")).unwrap();
-    assert_eq!(serving.upload("ring0.off", &mesh)["results"][0]["id"], "ring0");
 }
 
 #[test]

@@ -154,26 +154,3 @@ fn an_upload_has_an_address_until_it_expires() {
     page.answered();
     assert_eq!((page.text("#error"), page.address()), (String::new(), query));
 }
-
-#[test]
-#[ignore = "slow: make test-all"]
-fn pictures_of_every_state_in_both_colour_schemes() {
-    for (scheme, width) in [("light", 1280), ("dark", 1280), ("light", 390), ("dark", 390)] {
-        let Some(page) = Page::open(width, 900) else { return };
-        page.browser.prefer("prefers-color-scheme", scheme).unwrap();
-        page.wait_for(AT_THE_START);
-        page.picture("body", &format!("{scheme}-{width}-start"));
-        page.go("/?shape=cat0");
-        page.answered();
-        page.wait_for("document.querySelector('#mesh-view').dataset.state === 'ready'");
-        page.picture("body", &format!("{scheme}-{width}-shape"));
-        page.picture("#answer", &format!("{scheme}-{width}-answer"));
-        page.picture("#results-title", &format!("{scheme}-{width}-results"));
-        page.go("/?shape=cat0&hit=cat1");
-        page.answered();
-        page.overlaid("cat1");
-        page.wait_for("document.querySelector('#overlay-view').dataset.state === 'ready'");
-        page.picture("#overlay", &format!("{scheme}-{width}-hit"));
-        page.assert_sound();
-    }
-}
