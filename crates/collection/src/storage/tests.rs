@@ -22,6 +22,14 @@ fn folder() -> TempDir {
     tempfile::tempdir().unwrap()
 }
 
+/// Writes a file into a folder.
+fn put(place: &TempDir, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
+    let path = place.path().join(name);
+    fs::create_dir_all(path.parent().unwrap()).unwrap();
+    fs::write(&path, bytes).unwrap();
+    path
+}
+
 /// The bytes of a mesh file.
 fn bytes_of(mesh: &TriMesh, extension: &str) -> Vec<u8> {
     let folder = folder();
@@ -118,23 +126,29 @@ fn described(dataset: &Dataset) -> Vec<(String, String)> {
 #[test]
 fn archives_in_folders_are_looked_into_or_listed() {
     let folder = folder();
-    let at = |name: &str| folder.path().join(name);
     let off = bytes_of(&shapes::icosphere(1), "off");
-    fs::write(at("a.off"), &off).unwrap();
     let inner = zip_of(&[("b.off", off.clone())]);
-    fs::write(at("all.zip"), zip_of(&[("in/b.off", off.clone()), ("deep.zip", inner)])).unwrap();
-    fs::write(at("old.tar"), tar_of(&[("c.off", off.clone())])).unwrap();
-    fs::write(at("pictures.zip"), zip_of(&[("x.jpg", vec![1])])).unwrap();
-    fs::write(at("damaged.zip"), "PK").unwrap();
-    fs::write(at("packed.tar.gz"), gzip_of(&tar_of(&[("d.off", off)]))).unwrap();
-    fs::write(at("other.7z"), "7z").unwrap();
+    for (name, bytes) in [
+        ("a.off", off.clone()),
+        ("all.zip", zip_of(&[("in/b.off", off.clone()), ("deep.zip", inner)])),
+        ("old.tar", tar_of(&[("c.off", off.clone())])),
+        ("pictures.zip", zip_of(&[("x.jpg", vec![1])])),
+        ("damaged.zip", b"PK".to_vec()),
+        ("packed.tar.gz", gzip_of(&tar_of(&[("d.off", off)]))),
+        ("other.7z", b"7z".to_vec()),
+    ] {
+        put(&folder, name, bytes);
+    }
     let found = Dataset::read(folder.path(), None).unwrap();
     let names: Vec<_> = found.shapes.iter().map(|shape| shape.name.as_str()).collect();
     assert_eq!(names, ["a", "all.zip/in/b", "old.tar/c"]);
     assert!(found.shapes.iter().all(|shape| read_mesh(&shape.path).unwrap().n_vertices() == 42));
     let unread: Vec<_> =
         found.skipped.iter().filter(|it| !it.kind.is_expected()).map(|it| it.path.clone()).collect();
-    assert_eq!(unread, ["all.zip/deep.zip", "damaged.zip", "other.7z", "packed.tar.gz"].map(at));
+    assert_eq!(
+        unread,
+        ["all.zip/deep.zip", "damaged.zip", "other.7z", "packed.tar.gz"].map(|name| folder.path().join(name))
+    );
 }
 
 #[test]
@@ -143,9 +157,7 @@ fn an_archive_is_the_dataset_that_it_was_made_from() {
     let mut files = contents();
     files.push(other_half());
     for (name, content) in &files {
-        let path = place.path().join("plain").join(name);
-        fs::create_dir_all(path.parent().unwrap()).unwrap();
-        fs::write(path, content).unwrap();
+        put(&place, &format!("plain/{name}"), content);
     }
     let plain = Dataset::read(&place.path().join("plain/all"), None).unwrap();
     assert_eq!(plain.shapes.len(), 4);
@@ -156,8 +168,7 @@ fn an_archive_is_the_dataset_that_it_was_made_from() {
         ("a.tar.gz", gzip_of(&tar)),
         ("A.TGZ", gzip_of(&tar)),
     ] {
-        let path = place.path().join(name);
-        fs::write(&path, bytes).unwrap();
+        let path = put(&place, name, bytes);
         assert!(is_dataset(&path));
         let dataset = Dataset::read(&path, None).unwrap();
         assert_eq!(described(&dataset), described(&plain), "{name}");
@@ -184,41 +195,42 @@ fn an_archive_of_one_mesh_is_that_mesh() {
     let files = [files, &[other_half()]].concat();
     let tar = tar_of(&files);
     for (name, bytes) in [("a.zip", zip_of(&files)), ("a.tar", tar.clone()), ("a.tar.gz", gzip_of(&tar))] {
-        let path = place.path().join(name);
-        fs::write(&path, bytes).unwrap();
+        let path = put(&place, name, bytes);
         let member = path.join("all/dog/dog1.vert");
         assert_eq!(mesh_at(&path).unwrap(), member);
         assert_eq!(mesh_at(&member).unwrap(), member);
         assert_eq!(read_mesh(&path).unwrap(), shapes::cube(2), "{name}");
         assert_eq!(content_hash(&path).unwrap(), content_hash(&member).unwrap(), "{name}");
     }
-    let path = place.path().join("none.zip");
-    fs::write(&path, zip_of(&[("README.md", b"meshes".to_vec())])).unwrap();
+    let path = put(&place, "none.zip", zip_of(&[("README.md", b"meshes".to_vec())]));
     assert!(read_mesh(&path).unwrap_err().to_string().contains("holds 0 meshes, not one"));
+    // The same from memory.
+    let found = single_mesh(Path::new("dog.tar"), &tar, 1 << 20).unwrap();
+    let names: Vec<_> = found.iter().map(|(name, _)| name.to_str().unwrap()).collect();
+    assert_eq!(names, ["dog1.vert", "dog1.tri"]);
+    let both = tar_of(&[("a.off", b"OFF".to_vec()), ("b.off", b"OFF".to_vec())]);
+    let error = single_mesh(Path::new("all.tar"), &both, 1000).unwrap_err().to_string();
+    assert!(error.contains("all.tar: the archive holds 2 meshes"), "{error}");
+    assert!(single_mesh(Path::new("cat.zip"), b"PK", 1000).is_err());
+    let archives =
+        ["a.zip", "a.tar.gz", "a.tgz", "a.off", "a.txt"].map(|name| is_archive_name(Path::new(name)));
+    assert_eq!(archives, [true, true, true, false, false]);
 }
 
 #[test]
 fn files_of_macos_are_skipped_everywhere() {
     let place = folder();
-    let cube = bytes_of(&shapes::cube(0), "off");
     let double = b"\0\x05\x16\x07\0\x02\0\0Mac OS X        ".to_vec();
-    let files = [("s/cat0.off", cube), ("s/._cat0.off", double.clone()), ("s/._notes.txt", double)];
-    for (name, content) in &files {
-        let path = place.path().join("plain").join(name);
-        fs::create_dir_all(path.parent().unwrap()).unwrap();
-        fs::write(path, content).unwrap();
-    }
-    let names = |files: &[(&'static str, Vec<u8>)]| {
-        let within =
-            |name: &'static str| name.strip_prefix("s/._").map(|rest| format!("__MACOSX/s/._{rest}"));
-        files.iter().map(|(name, _)| within(name).unwrap_or(name.to_string())).collect::<Vec<_>>()
+    let files = |names: [&'static str; 2]| {
+        let [a, b] = names.map(|name| (name, double.clone()));
+        [("s/cat0.off", bytes_of(&shapes::cube(0), "off")), a, b]
     };
-    let apart = names(&files);
-    let apart: Vec<(&str, Vec<u8>)> =
-        apart.iter().zip(&files).map(|(name, (_, content))| (name.as_str(), content.clone())).collect();
-    for (name, bytes) in [("a.zip", zip_of(&apart)), ("a.tar", tar_of(&files))] {
-        fs::write(place.path().join(name), bytes).unwrap();
+    let beside = files(["s/._cat0.off", "s/._notes.txt"]);
+    for (name, content) in &beside {
+        put(&place, &format!("plain/{name}"), content);
     }
+    put(&place, "a.zip", zip_of(&files(["__MACOSX/s/._cat0.off", "__MACOSX/s/._notes.txt"])));
+    put(&place, "a.tar", tar_of(&beside));
     for name in ["plain/s", "a.zip", "a.tar"] {
         let dataset = Dataset::read(&place.path().join(name), None).unwrap();
         assert_eq!(dataset.shapes.len(), 1, "{name}");
@@ -243,8 +255,7 @@ fn a_hard_link_in_a_tar_is_the_file_it_names() {
         header.set_size(0);
         archive.append_link(&mut header, name, target).unwrap();
     }
-    let path = place.path().join("a.tar");
-    fs::write(&path, archive.into_inner().unwrap()).unwrap();
+    let path = put(&place, "a.tar", archive.into_inner().unwrap());
     let dataset = Dataset::read(&path, None).unwrap();
     let names: Vec<_> = dataset.shapes.iter().map(|shape| shape.name.as_str()).collect();
     assert_eq!(names, ["again", "cat0", "same"]);
@@ -264,8 +275,7 @@ fn compressed_files_may_be_filled_up_with_zeros() {
     for (name, bytes) in
         [("a.tar.gz", gzip_of(&tar_of(&[("a.off", off.clone())]))), ("a.off.gz", gzip_of(&off))]
     {
-        let path = place.path().join(name);
-        fs::write(&path, [bytes, vec![0; 512]].concat()).unwrap();
+        let path = put(&place, name, [bytes, vec![0; 512]].concat());
         assert_eq!(read_mesh(&path).unwrap(), shapes::icosphere(1), "{name}");
     }
 }
@@ -281,8 +291,7 @@ fn other_archives_and_files_are_no_datasets() {
         ("a.off", "a dataset is a folder, a .zip"),
         ("a.docx", "a dataset is a folder"),
     ] {
-        let path = place.path().join(name);
-        fs::write(&path, "x").unwrap();
+        let path = put(&place, name, "x");
         let error = Dataset::read(&path, None).unwrap_err().to_string();
         assert!(error.contains(name) && error.contains(words), "{error}");
         if !words.contains("dataset") {
@@ -295,10 +304,9 @@ fn other_archives_and_files_are_no_datasets() {
 fn lists_may_have_byte_order_marks_and_no_other_encoding() {
     let place = folder();
     for name in ["a,1.off", "b;2.off"] {
-        fs::write(place.path().join(name), bytes_of(&shapes::cube(0), "off")).unwrap();
+        put(&place, name, bytes_of(&shapes::cube(0), "off"));
     }
-    let list = place.path().join("list.txt");
-    fs::write(&list, "\u{feff}a,1.off\r\n# more\r\nb;2.off\r\n").unwrap();
+    let list = put(&place, "list.txt", "\u{feff}a,1.off\r\n# more\r\nb;2.off\r\n");
     assert_eq!(list_shapes(&list, None).unwrap().len(), 2);
     let utf16: Vec<u8> = "\u{feff}a,1.off\r\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
     fs::write(&list, utf16).unwrap();
@@ -316,8 +324,7 @@ fn members_are_read_by_many_threads_at_once() {
     let files: Vec<(&str, Vec<u8>)> =
         files.iter().map(|(name, bytes)| (name.as_str(), bytes.clone())).collect();
     for (name, bytes) in [("a.zip", zip_of(&files)), ("a.tar.gz", gzip_of(&tar_of(&files)))] {
-        let path = place.path().join(name);
-        fs::write(&path, bytes).unwrap();
+        let path = put(&place, name, bytes);
         let shapes = list_shapes(&path, None).unwrap();
         shapes.par_iter().enumerate().for_each(|(i, shape)| {
             assert_eq!(read_mesh(&shape.path).unwrap().n_vertices(), 4 * (3 + i), "{name}");
@@ -343,8 +350,7 @@ fn members_that_lead_out_of_an_archive_are_skipped() {
     let files: Vec<(&str, Vec<u8>)> = names.map(|name| (name, cube.clone())).to_vec();
     let tar = tar_of(&files);
     for (name, bytes) in [("a.zip", zip_of(&files)), ("a.tar", tar.clone()), ("a.tar.gz", gzip_of(&tar))] {
-        let path = place.path().join(name);
-        fs::write(&path, bytes).unwrap();
+        let path = put(&place, name, bytes);
         let dataset = Dataset::read(&path, None).unwrap();
         assert_eq!(described(&dataset), [("good".to_owned(), String::new())], "{name}");
         let unsafe_names = dataset.skipped.iter().filter(|skipped| skipped.kind == SkipKind::UnsafeName);
@@ -365,8 +371,7 @@ fn names_that_are_not_utf_8_and_links_are_skipped() {
     tar[at + 148..at + 156].copy_from_slice(b"        ");
     let sum: u32 = tar[header].iter().map(|byte| u32::from(*byte)).sum();
     tar[at + 148..at + 155].copy_from_slice(format!("{sum:06o}\0").as_bytes());
-    let path = place.path().join("a.tar");
-    fs::write(&path, tar).unwrap();
+    let path = put(&place, "a.tar", tar);
     let dataset = Dataset::read(&path, None).unwrap();
     assert_eq!(dataset.shapes.len(), 1);
     assert_eq!(dataset.skipped[0].kind, SkipKind::NotUtf8);
@@ -401,8 +406,7 @@ fn encrypted_and_damaged_members_are_errors_that_name_them() {
         ("empty.tar", b""),
         ("empty.parquet", b""),
     ] {
-        let path = place.path().join(name);
-        fs::write(&path, bytes).unwrap();
+        let path = put(&place, name, bytes);
         let error = list_shapes(&path, None).map(|shapes| read_mesh(&shapes[0].path));
         let error = match error {
             Ok(Ok(_)) => panic!("{name} was read"),
@@ -418,8 +422,7 @@ fn decompression_bombs_are_cut_off() {
     let blanks = vec![b'\n'; 100 << 20];
     let files = [("bomb.obj", blanks.clone())];
     for (name, bytes) in [("a.zip", zip_of(&files)), ("a.tar.gz", gzip_of(&tar_of(&files)))] {
-        let path = place.path().join(name);
-        fs::write(&path, bytes).unwrap();
+        let path = put(&place, name, bytes);
         let error = list_shapes(&path, None).and_then(|shapes| read_mesh(&shapes[0].path)).unwrap_err();
         assert!(error.to_string().contains("out of proportion"), "{name}: {error}");
     }
@@ -516,16 +519,12 @@ fn archives_with_bytes_changed_do_not_panic() {
 #[test]
 fn lists_name_files_and_members_relative_to_themselves() {
     let place = folder();
-    let at = |name: &str| place.path().join(name);
-    fs::create_dir_all(at("meshes/cat")).unwrap();
-    fs::create_dir_all(at("lists")).unwrap();
     for name in ["meshes/cat/cat0.off", "meshes/dog1.off"] {
-        mesh_io::write(&at(name), &shapes::cube(0)).unwrap();
+        put(&place, name, bytes_of(&shapes::cube(0), "off"));
     }
-    fs::write(at("meshes/more.zip"), zip_of(&[("x/dog2.off", bytes_of(&shapes::cube(1), "off"))])).unwrap();
-    let list = at("lists/all.txt");
+    put(&place, "meshes/more.zip", zip_of(&[("x/dog2.off", bytes_of(&shapes::cube(1), "off"))]));
     let lines = "# comment\n../meshes/dog1.off\r\n\n ../meshes/more.zip/x/dog2.off\n./../meshes/cat/cat0.off\n../meshes/dog1.off\n";
-    fs::write(&list, lines).unwrap();
+    let list = put(&place, "lists/all.txt", lines);
     let dataset = Dataset::read(&list, None).unwrap();
     let expected = [("cat/cat0", "cat"), ("dog1", "dog"), ("more.zip/x/dog2", "dog")];
     assert_eq!(described(&dataset), expected.map(|(name, label)| (name.to_owned(), label.to_owned())));

@@ -22,16 +22,10 @@ fn order_batches_and_history_do_not_matter() {
         Index::open(&folder.path("whole")).unwrap().threshold()
     );
     // Each line is a JSON object; the first describes the index.
-    let lines: Vec<serde_json::Value> = whole
-        .split(|b| *b == b'\n')
-        .filter(|l| !l.is_empty())
-        .map(|l| serde_json::from_slice(l).unwrap())
-        .collect();
-    assert_eq!(lines.len(), 31);
+    let lines: Vec<serde_json::Value> =
+        str::from_utf8(&whole).unwrap().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     assert_eq!((&lines[0]["shapes"], &lines[0]["options"]), (&30.into(), &OPTIONS.into()));
-    assert_eq!(lines[1]["id"], "class0/0000");
-    assert_eq!(lines[1]["facts"]["area"], 0.0);
-    assert_eq!(serde_json::from_value::<Shape>(lines[1].clone()).unwrap(), shape(0));
+    assert_eq!((lines.len(), serde_json::from_value::<Shape>(lines[1].clone()).unwrap()), (31, shape(0)));
 }
 
 #[test]

@@ -194,14 +194,7 @@ mod tests {
     #[test]
     fn views_from_any_direction_are_orthonormal() {
         let nan = Vector3::repeat(f64::NAN);
-        for towards in [
-            Vector3::x(),
-            -Vector3::y() * 4.0,
-            Vector3::z(),
-            Vector3::new(1.0, 2.0, 3.0),
-            Vector3::zeros(),
-            nan,
-        ] {
+        for towards in [Vector3::x(), -Vector3::y() * 4.0, Vector3::z(), Vector3::zeros(), nan] {
             for up in [Vector3::z() * 9.0, Vector3::x(), Vector3::zeros(), towards, nan] {
                 let axes = along(towards, up);
                 assert!((axes * axes.transpose() - Matrix3::identity()).norm() < 1e-12, "{towards} {up}");
