@@ -215,26 +215,6 @@ pub(crate) fn write_matrix(path: &Path, matrix: &Matrix) -> Result<()> {
 mod tests {
     use super::*;
 
-    fn rows(text: &str) -> Result<Vec<Vec<f64>>> {
-        let path = Path::new("t.csv");
-        Table::of_text(&TextTable::parse(text.into(), path)?)?.rows(path, |_, row| Ok(row.to_vec()))
-    }
-
-    #[test]
-    fn rows_are_read_with_and_without_a_line_of_names() {
-        for text in ["17,42\n0,3", "a,b\n17, 42\n\n0\t3\n", "17 42\n0 3\n", "\u{feff}a;b\n17;42\n0;3"] {
-            assert_eq!(rows(text).unwrap(), [[17.0, 42.0], [0.0, 3.0]], "{text}");
-        }
-        for (text, what) in [
-            ("", "no rows"),
-            ("a,b\n", "no rows"),
-            ("0,1\na,b", "line 2: `a` is not a number"),
-            ("1,2\n\n3", "line 3: found 1 values instead of 2"),
-        ] {
-            assert!(format!("{:#}", rows(text).unwrap_err()).contains(what), "{text}");
-        }
-    }
-
     #[test]
     fn vertices_are_whole_numbers_from_zero() {
         assert_eq!(vertex(17.0).unwrap(), VertexId(17));

@@ -170,15 +170,6 @@ mod tests {
     }
 
     #[test]
-    fn the_chapter_is_written_again_with_what_was_printed() {
-        let text = "# Page\n```console\n$ echo a\n...\n$ echo \\\n> b\nc\n$ echo d\n```\nend\n".to_owned();
-        let chapter = Chapter { path: "page.md".into(), text: text.clone() };
-        let updated = run(&chapter, &[], &[]).unwrap().updated(&chapter);
-        assert_eq!(updated, text.replace("> b\nc\n", "> b\nb\n").replace("echo d\n", "echo d\nd\n"));
-        assert!(faults(&updated).is_empty());
-    }
-
-    #[test]
     fn a_wrong_command_is_a_fault_with_its_place() {
         for (page, place) in [
             ("\n```sh\nno-such-program\n```\n", "page.md:3:"),

@@ -125,7 +125,7 @@ fn points_and_finer_meshes_are_placed_in_a_form() {
 fn a_comparison_tells_the_relation_as_text_as_json_and_by_its_exit_code() {
     let place = Workplace::new();
     place.add("ring.off", &ring());
-    place.add("ball.off", &shapes::icosphere(3));
+    place.add("ball.off", &shapes::icosphere(2));
     std::fs::create_dir(place.path("other")).unwrap();
     std::fs::copy(place.path("ring.off"), place.path("other/ring.off")).unwrap();
     let mut inches = ring();

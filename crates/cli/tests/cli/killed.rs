@@ -1,6 +1,5 @@
-//! Killed programs, and full disks.
+//! Killed programs.
 
-use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -58,11 +57,6 @@ fn kill_after(place: &Workplace, command: &str, time: Duration) -> bool {
     !child.wait().unwrap().success()
 }
 
-/// The shapes of an export.
-fn lines(export: &str) -> BTreeSet<&str> {
-    export.lines().skip(1).collect()
-}
-
 fn is_leftover(path: &Path) -> bool {
     path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(".unfinished-"))
 }
@@ -108,40 +102,6 @@ fn killed_commands_leave_whole_files_and_the_next_run_tidies_up() {
 }
 
 #[test]
-fn a_killed_change_leaves_the_old_index_or_the_new_one() {
-    let place = collection();
-    place.done(build("whole"));
-    (0..6).for_each(|i| place.add(&format!("more/t{i}.off"), &body(i % 3, 30 + i)));
-    let changes =
-        ["index add all more --threads 1", "index add all more/t0.off --threads 1", "index remove all s3 s7"];
-    let turns = (n_kills() / 4).div_ceil(3);
-    for change in changes {
-        let renew = || fs::copy(place.path("whole"), place.path("all")).unwrap();
-        let export = || place.done("index export all").out;
-        renew();
-        let before = export();
-        let start = Instant::now();
-        place.done(change);
-        let usual = start.elapsed();
-        let after = export();
-        for turn in 0..turns {
-            renew();
-            kill_after(&place, change, usual.mul_f64(f64::from(turn + 1) / f64::from(turns + 1)));
-            place.done("index verify all");
-            // Every shape of the old index and of the new one is whole, and the same work can be done again.
-            let now = export();
-            let [old, new, kept] = [&before, &after, &now].map(|text| lines(text));
-            assert!(kept.iter().all(|line| old.contains(line) || new.contains(line)), "{change:?}");
-            assert!(old.intersection(&new).all(|line| kept.contains(line)), "{change:?}: a shape is lost");
-            if now != after {
-                place.done(change);
-            }
-            assert_eq!(export(), after, "{change:?}");
-        }
-    }
-}
-
-#[test]
 fn a_killed_build_continues_and_loses_nothing() {
     let kills = n_kills() / 4;
     let place = collection();
@@ -172,46 +132,4 @@ fn a_killed_build_continues_and_loses_nothing() {
         assert_eq!(place.done(format!("index export {index}")).out, whole, "round {round}");
         assert!(!log_path(&place.path(&index)).exists(), "one file is left");
     }
-}
-
-/// Runs the program with files limited to this many blocks of 512 bytes.
-#[cfg(unix)]
-fn run_limited(place: &Workplace, blocks: usize, command: &str) -> (Option<i32>, String) {
-    let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$@\"");
-    let output = Command::new("bash")
-        .args(["-c", &script, "bash", program()])
-        .args(command.split(' '))
-        .current_dir(place.path(""))
-        .output()
-        .unwrap();
-    (output.status.code(), String::from_utf8(output.stderr).unwrap())
-}
-
-#[cfg(unix)]
-#[test]
-fn a_full_disk_is_reported_and_the_old_index_stays() {
-    let place = collection();
-    place.done(build("whole"));
-    let whole = place.done("index export whole").out;
-    place.add("meshes/s99.off", &body(1, 40));
-    let size = fs::metadata(place.path("whole")).unwrap().len() as usize / 512;
-    let mut failures = 0;
-    for blocks in [1, 70, size / 2, size - 20] {
-        let (code, err) = run_limited(&place, blocks, &build("whole"));
-        // What is committed may stay in the log, if only the file itself cannot grow.
-        if code != Some(0) {
-            assert_eq!(code, Some(2), "{blocks}: {err}");
-            assert!(err.contains("cannot write whole") && err.contains("free some space"), "{blocks}: {err}");
-            failures += 1;
-        }
-        place.done("index verify whole");
-        let now = place.done("index export whole").out;
-        assert!(lines(&whole).is_subset(&lines(&now)), "{blocks}: a shape is lost");
-    }
-    assert!(failures > 1, "{failures}");
-    // Without the limit the build continues.
-    place.done(build("whole"));
-    fs::remove_file(place.path("meshes/s99.off")).unwrap();
-    place.done(build("whole"));
-    assert_eq!(place.done("index export whole").out, whole);
 }

@@ -150,23 +150,6 @@ fn idle_connections_give_way() {
 }
 
 #[test]
-#[ignore = "slow: make test-all"]
-fn clients_that_never_read_give_way() {
-    let server = Served::start_alone(options());
-    let request = format!("GET /assets/plotly.js HTTP/1.1\r\nHost: {}\r\n\r\n", server.address).repeat(4);
-    let streams: Vec<TcpStream> = (0..300)
-        .map(|_| {
-            let mut stream = connect(server.address).unwrap();
-            stream.write_all(request.as_bytes()).unwrap();
-            stream
-        })
-        .collect();
-    std::thread::sleep(Duration::from_secs(1));
-    assert_serves(&server);
-    drop(streams);
-}
-
-#[test]
 fn uploads_of_a_byte_now_and_then_give_way() {
     let server = Served::start_alone(options());
     let (_, boundary) = form(&[], &[]);
