@@ -63,8 +63,8 @@ impl Splits {
             if !long.contains(&true) {
                 break;
             }
-            let planes = flip_in_planes(&mut self.mesh, height, &long);
-            let topology = planes.mesh.topology();
+            let (intrinsic, is_inside) = flip_in_planes(&mut self.mesh, height, &long);
+            let topology = intrinsic.topology();
             let edges = topology.edges().iter().enumerate();
             let mut long: Vec<(f64, usize)> =
                 edges.map(|(e, ends)| (length(&self.mesh, *ends), e)).filter(|(x, _)| *x > longest).collect();
@@ -73,7 +73,7 @@ impl Splits {
             long.retain(|(_, e)| {
                 let [a, b] = topology.edges()[*e].map(|v| self.mesh.positions[v.index()]);
                 let is_free = taken.is_free(&nalgebra::center(&a, &b));
-                is_free || !planes.is_inside[*e]
+                is_free || !is_inside[*e]
             });
             if long.is_empty() || self.mesh.n_vertices() + long.len() > most {
                 break;
@@ -104,15 +104,9 @@ impl Splits {
     }
 }
 
-/// A mesh, and which of its edges are inside of a plane.
-struct Planes {
-    mesh: IntrinsicMesh,
-    is_inside: Vec<bool>,
-}
-
 /// Flips edges between faces of one plane, one of them with a `long` edge, until they are Delaunay. Vertices may be as far as
-/// `height` from it.
-fn flip_in_planes(mesh: &mut TriMesh, height: f64, long: &[bool]) -> Planes {
+/// `height` from it. Returns the lengths, and which edges are inside of a plane.
+fn flip_in_planes(mesh: &mut TriMesh, height: f64, long: &[bool]) -> (IntrinsicMesh, Vec<bool>) {
     let is_flat = |mesh: &TriMesh, topology: &Topology, [a, b]: [CornerId; 2]| {
         let normal = |corner: CornerId| mesh.area_vector(corner.face().index()).normalize();
         let apex = |corner: CornerId| mesh.positions[topology.corner_vertex(corner).index()];
@@ -143,7 +137,8 @@ fn flip_in_planes(mesh: &mut TriMesh, height: f64, long: &[bool]) -> Planes {
         [a, b] => is_flat(mesh, topology, [*a, *b]),
         _ => false,
     };
-    Planes { is_inside: (0..topology.n_edges()).map(is_inside).collect(), mesh: after }
+    let is_inside = (0..topology.n_edges()).map(is_inside).collect();
+    (after, is_inside)
 }
 
 /// Points that keep others away, in cells of a grid.

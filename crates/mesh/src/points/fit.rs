@@ -2,15 +2,6 @@
 
 use nalgebra::{Matrix3, Matrix6, Point3, Vector3, Vector6};
 
-/// A smooth patch near a place: a height over a plane.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Patch {
-    /// The place, moved along the normal of the plane onto the patch.
-    pub(super) foot: Point3<f64>,
-    /// Weighted root mean square height of the points over the patch, corrected for the degrees of freedom.
-    pub(super) residual: f64,
-}
-
 /// Orthonormal axes of a tangent plane, and its normal.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Frame {
@@ -54,7 +45,10 @@ const ROUNDS: usize = 3;
 /// The patch at a place, fitted to points that are sorted by distance. Points near the place count more, and those farther from
 /// the patch than three times the residual of most of them hardly count: they belong to other parts of the surface.
 /// `None` for fewer than seven points.
-pub(super) fn patch(place: &Point3<f64>, near: &[Point3<f64>]) -> Option<Patch> {
+///
+/// Returns the place, moved along the normal of its plane onto the patch, and the weighted root mean square height of the
+/// points over the patch, corrected for the degrees of freedom.
+pub(super) fn patch(place: &Point3<f64>, near: &[Point3<f64>]) -> Option<(Point3<f64>, f64)> {
     let n = near.len();
     if n < 7 {
         return None;
@@ -116,5 +110,5 @@ pub(super) fn patch(place: &Point3<f64>, near: &[Point3<f64>]) -> Option<Patch> 
         }
     }
     let (height, residual) = found?;
-    Some(Patch { foot: place + frame.normal * (height * radius), residual: residual * radius })
+    Some((place + frame.normal * (height * radius), residual * radius))
 }

@@ -99,7 +99,7 @@ pub(super) fn smooth(points: Vec<Point3<f64>>, budget: &Budget) -> Result<Smooth
 
 /// A place, projected onto the patch of this many points around it.
 fn foot(place: &Point3<f64>, neighbors: &Neighbors, points: &[Point3<f64>], size: usize) -> Point3<f64> {
-    patch(place, &nearest(place, neighbors, points, size)).map_or(*place, |patch| patch.foot)
+    patch(place, &nearest(place, neighbors, points, size)).map_or(*place, |(foot, _)| foot)
 }
 
 fn nearest(
@@ -123,7 +123,7 @@ fn sizes(rough: &Smooth, neighbors: &Neighbors) -> Vec<usize> {
         let near = nearest(p, neighbors, &rough.points, largest);
         let fits = |size: &&usize| {
             let patch = patch(p, &near[..(**size).min(near.len())]);
-            patch.is_some_and(|patch| patch.residual <= FITS * rough.noise)
+            patch.is_some_and(|(_, residual)| residual <= FITS * rough.noise)
         };
         tried[1..].iter().take_while(fits).last().copied().unwrap_or(rough.neighbors)
     };
@@ -151,7 +151,7 @@ fn residuals(
     let of_probe = |p: &Point3<f64>| {
         let near = nearest(p, neighbors, points, size);
         let radius = near.last().map_or(0.0, |last| (last - p).norm());
-        (patch(p, &near).map_or(0.0, |patch| patch.residual), radius)
+        (patch(p, &near).map_or(0.0, |(_, residual)| residual), radius)
     };
     let (mut residuals, mut radii): (Vec<f64>, Vec<f64>) = probes.par_iter().map(of_probe).unzip();
     let [residual, radius] = [quantile(&mut residuals, share), quantile(&mut radii, 0.5)];

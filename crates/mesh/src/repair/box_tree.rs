@@ -9,15 +9,9 @@ const LEAF: usize = 8;
 
 /// A tree of bounding boxes in one array, parents before their children.
 pub(super) struct BoxTree {
-    pub(super) items: Vec<Item>,
+    /// Points and their numbers.
+    pub(super) items: Vec<(Point3<f64>, u32)>,
     pub(super) nodes: Vec<Node>,
-}
-
-/// A point in the tree and its number.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Item {
-    pub(super) position: Point3<f64>,
-    pub(super) id: u32,
 }
 
 #[derive(Debug, Clone)]
@@ -32,18 +26,15 @@ pub(super) struct Node {
 impl BoxTree {
     /// The tree over points, each with a number. `O(n log n)`.
     pub(super) fn new(points: impl Iterator<Item = (Point3<f64>, u32)>) -> Self {
-        let items: Vec<Item> = points.map(|(position, id)| Item { position, id }).collect();
-        let all = 0..items.len();
-        let mut tree = Self { items, nodes: Vec::new() };
-        tree.grow(all);
+        let mut tree = Self { items: points.collect(), nodes: Vec::new() };
+        tree.grow(0..tree.items.len());
         tree
     }
 
     /// Adds the node over a range of items and all below it; returns its index.
     fn grow(&mut self, range: Range<usize>) -> usize {
         let nothing = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]].map(Point3::from);
-        let around =
-            |[low, high]: [Point3<f64>; 2], item: &Item| [low.inf(&item.position), high.sup(&item.position)];
+        let around = |[low, high]: [Point3<f64>; 2], (p, _): &(Point3<f64>, u32)| [low.inf(p), high.sup(p)];
         let [low, high] = self.items[range.clone()].iter().fold(nothing, around);
         let index = self.nodes.len();
         self.nodes.push(Node { low, high, items: range.clone(), children: None });
@@ -52,7 +43,7 @@ impl BoxTree {
             let widest = (0..3).max_by(|a, b| width(a).total_cmp(&width(b))).unwrap_or(0);
             let half = range.len() / 2;
             self.items[range.clone()]
-                .select_nth_unstable_by(half, |a, b| a.position[widest].total_cmp(&b.position[widest]));
+                .select_nth_unstable_by(half, |a, b| a.0[widest].total_cmp(&b.0[widest]));
             let middle = range.start + half;
             let children = [self.grow(range.start..middle), self.grow(middle..range.end)];
             self.nodes[index].children = Some(children);
@@ -86,10 +77,10 @@ impl BoxTree {
                     pending.extend(if a_first { [b, a] } else { [a, b] });
                 }
                 None => {
-                    for item in &self.items[node.items.clone()] {
-                        let sq = (item.position - at).norm_squared();
-                        let candidate = (sq, item.id);
-                        if sq > sq_radius || skips(item.id) {
+                    for (p, id) in &self.items[node.items.clone()] {
+                        let sq = (p - at).norm_squared();
+                        let candidate = (sq, *id);
+                        if sq > sq_radius || skips(*id) {
                             continue;
                         }
                         let place = found.partition_point(|known| *known < candidate);

@@ -153,9 +153,7 @@ impl GroupTree {
             let items = &self.boxes.items[node.items.clone()];
             self.node_groups[index] = match node.children {
                 Some([a, b]) => common(self.node_groups[a], self.node_groups[b]),
-                None => {
-                    items.iter().map(|item| self.groups[item.id as usize]).reduce(common).unwrap_or(MIXED)
-                }
+                None => items.iter().map(|(_, id)| self.groups[*id as usize]).reduce(common).unwrap_or(MIXED),
             };
         }
     }
@@ -171,15 +169,15 @@ impl GroupTree {
     fn nearest_of_groups(&self, n_groups: usize, budget: &Budget) -> Result<Vec<Candidate>, Exceeded> {
         let mut nearest = vec![NONE; n_groups];
         let mut found = Vec::new();
-        for (i, item) in self.boxes.items.iter().enumerate() {
+        for (i, (position, id)) in self.boxes.items.iter().enumerate() {
             if i % BATCH == 0 {
                 budget.check()?;
             }
-            let own = self.groups[item.id as usize];
+            let own = self.groups[*id as usize];
             let sq_radius = f64::from_bits(nearest[own as usize].0);
-            self.nearest_outside(&item.position, own, sq_radius, &mut found);
+            self.nearest_outside(position, own, sq_radius, &mut found);
             for &(sq_length, other) in &found {
-                let candidate = (sq_length.to_bits(), [item.id.min(other), item.id.max(other)]);
+                let candidate = (sq_length.to_bits(), [other.min(*id), other.max(*id)]);
                 for group in [own, self.groups[other as usize]] {
                     nearest[group as usize] = nearest[group as usize].min(candidate);
                 }
