@@ -106,11 +106,6 @@ pub struct Remapped {
 }
 
 impl Remapped {
-    /// The mesh itself.
-    pub(crate) fn unchanged(mesh: TriMesh) -> Self {
-        Self::extended(mesh, Vec::new())
-    }
-
     /// A mesh whose last vertices are new.
     pub(crate) fn extended(mesh: TriMesh, origins: Vec<VertexId>) -> Self {
         Self { remap: Remap::extended(mesh.n_vertices() - origins.len(), origins), mesh }

@@ -27,7 +27,7 @@ pub(super) fn cut(mesh: &TriMesh, topology: &Topology, detour: f64) -> CutSurfac
         }
     }
     if origins.is_empty() {
-        return CutSurface { cut: Remapped::unchanged(mesh.clone()), shortcuts: Vec::new() };
+        return CutSurface { cut: Remapped::extended(mesh.clone(), Vec::new()), shortcuts: Vec::new() };
     }
     // A vertex stays shared where it connects what is otherwise not connected.
     let pieces = components_of_faces(n + origins.len(), &faces);
@@ -115,9 +115,6 @@ fn is_weld(topology: &Topology, edge: EdgeId) -> bool {
 }
 
 fn shortcuts(cut: &Remapped, n: usize) -> Vec<Shortcut> {
-    if cut.remap.is_identity() {
-        return Vec::new();
-    }
     let (graph, mut front) = (cut.mesh.edge_graph(), Frontier::default());
     let copies = cut.remap.origins().iter().enumerate().map(|(i, &vertex)| {
         let detour = graph.between(&mut front, &[VertexId::from(n + i)], &[vertex], f64::INFINITY);
@@ -132,9 +129,6 @@ fn restore_positions(split: &mut Remapped, n: usize) {
     cut.extend(split.remap.origins());
     cut.sort_unstable();
     cut.dedup();
-    if cut.is_empty() {
-        return;
-    }
     let topology = split.mesh.topology();
     let moved: Vec<(VertexId, Point3<f64>)> =
         cut.into_iter().filter_map(|v| Some((v, flattened(&split.mesh, &topology, v, PULLED)?))).collect();
