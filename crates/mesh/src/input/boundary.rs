@@ -4,11 +4,6 @@ use std::collections::BTreeMap;
 
 use ::surface::{DisjointSets, IntrinsicMesh, VertexId};
 
-/// Length of the longest boundary of a surface, in mesh units; 0 for a closed one. Boundaries that touch count as one.
-pub(super) fn longest_boundary(mesh: &IntrinsicMesh) -> f64 {
-    boundaries(mesh).into_iter().map(|(_, length)| length).fold(0.0, f64::max)
-}
-
 /// The vertices of each boundary, and its length. Boundaries that touch count as one.
 pub(super) fn boundaries(mesh: &IntrinsicMesh) -> Vec<(Vec<VertexId>, f64)> {
     let topology = mesh.topology();
@@ -34,21 +29,17 @@ pub(super) fn boundaries(mesh: &IntrinsicMesh) -> Vec<(Vec<VertexId>, f64)> {
 
 #[cfg(test)]
 mod tests {
-    use crate::shapes;
-
-    use super::*;
-    use crate::Surface;
+    use crate::{Surface, shapes};
 
     #[test]
     fn boundaries_are_measured_one_by_one() {
-        let length =
-            |mesh| longest_boundary(Surface::new(&mesh, &Default::default(), &()).unwrap().intrinsic());
+        let length = |mesh| Surface::new(&mesh, &Default::default(), &()).unwrap().longest_boundary();
         assert_eq!(length(shapes::icosphere(2)), 0.0);
         let (large, small) = (shapes::grid(11, 6, 0.1), shapes::grid(3, 3, 0.1));
         assert!((length(large.clone()) - 3.0).abs() < 1e-9);
         let bridged =
             crate::RepairOptions { components: crate::ComponentPolicy::Bridge, ..Default::default() };
         let two = Surface::new(&shapes::disjoint(&[large, small]), &bridged, &()).unwrap();
-        assert!((longest_boundary(two.intrinsic()) - 3.0).abs() < 1e-9);
+        assert!((two.longest_boundary() - 3.0).abs() < 1e-9);
     }
 }

@@ -6,7 +6,7 @@ use ::surface::{IntrinsicMesh, Link, VertexId};
 use base::{Exceeded, Observer};
 use nalgebra::Point3;
 
-use super::boundary::{boundaries, longest_boundary};
+use super::boundary::boundaries;
 use super::point::{InputPoint, PointError};
 use crate::remap::{Remap, Remapped};
 use crate::repair::FacePart;
@@ -158,7 +158,8 @@ impl Surface {
 
     /// Length of the longest boundary of the repaired mesh, in mesh units.
     pub fn longest_boundary(&self) -> f64 {
-        self.open_boundary.unwrap_or_else(|| longest_boundary(self.intrinsic()))
+        let lengths = || boundaries(self.intrinsic()).into_iter().map(|(_, length)| length);
+        self.open_boundary.unwrap_or_else(|| lengths().fold(0.0, f64::max))
     }
 
     /// The vertices on boundaries, and the length of all, in mesh units.
