@@ -43,7 +43,7 @@ fn zoo() -> Vec<TriMesh> {
         shapes::torus(16, 9, 2.0, 0.7),
         shapes::jittered_grid(14, 11, 1.0, 0.3, 5),
         shapes::sheared_grid(12, 9, 1.0, 4.0),
-        shapes::folded_sheet(12, 8, 1.0, 5, 1.5),
+        shapes::fold(&shapes::grid(12, 8, 1.0), 5.0, 1.5),
         shapes::cube(2),
         shapes::cylinder(24, 3, 1.0, 9.0),
     ]

@@ -186,8 +186,9 @@ fn distances_are_infinite_exactly_on_unconnected_components() {
 
 #[test]
 fn folding_a_sheet_changes_no_distance() {
-    let flat = solvers(&shapes::grid(9, 7, 0.3).intrinsic());
-    let folded = solvers(&shapes::folded_sheet(9, 7, 0.3, 4, 2.9).intrinsic());
+    let sheet = shapes::grid(9, 7, 0.3);
+    let flat = solvers(&sheet.intrinsic());
+    let folded = solvers(&shapes::fold(&sheet, 4.0 * 0.3, 2.9).intrinsic());
     for ((name, .., flat), (.., folded)) in flat.into_iter().zip(folded) {
         for source in [0, 17, 40].map(VertexId) {
             let [found, expected] = [&folded, &flat].map(|solver| solver.distances(source).unwrap());

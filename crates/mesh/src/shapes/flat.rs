@@ -69,11 +69,3 @@ pub fn fold(sheet: &TriMesh, crease: f64, angle: f64) -> TriMesh {
     }
     folded
 }
-
-/// A [`grid`] folded by `angle` radians along the vertices of column `column`.
-///
-/// # Panics
-/// If `nx` or `ny` is below two.
-pub fn folded_sheet(nx: usize, ny: usize, step: f64, column: usize, angle: f64) -> TriMesh {
-    fold(&grid(nx, ny, step), step * column as f64, angle)
-}

@@ -10,7 +10,7 @@
 //! assert_eq!(validate(&torus).genus, Some(1));
 //!
 //! // Folding a sheet along a column of vertices keeps all edge lengths.
-//! let sheet = shapes::folded_sheet(9, 4, 0.5, 4, 1.0);
+//! let sheet = shapes::fold(&shapes::grid(9, 4, 0.5), 2.0, 1.0);
 //! assert!((sheet.area() - 6.0).abs() < 1e-12);
 //! ```
 
@@ -18,7 +18,7 @@ mod closed;
 mod flat;
 
 pub use closed::{cube, cylinder, icosphere, lopsided_torus, tetrahedron, torus};
-pub use flat::{fold, folded_sheet, grid, jittered_grid, sheared_grid};
+pub use flat::{fold, grid, jittered_grid, sheared_grid};
 
 use surface::VertexId;
 
