@@ -78,7 +78,7 @@ impl std::fmt::Display for Difference {
 }
 
 /// The dimensions of a part, in units of its file.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Dimensions {
     /// Regions that are planes, cylinders outside, and others.
     n_regions: [usize; 3],
@@ -96,18 +96,13 @@ struct Dimensions {
 
 impl Dimensions {
     fn of(part: &MeshGeometry) -> Self {
-        let regions: Vec<&SmoothRegion> = part.regions().all.iter().collect();
+        let regions = &part.surface.regions().all;
         let mut found = Self {
-            n_regions: [0; 3],
-            holes: Vec::new(),
-            bosses: Vec::new(),
-            extents: [0.0; 3],
-            steps: Vec::new(),
-            volume: None,
             euler: euler_characteristic_if_closed(&part.mesh().topology()),
             size: part.size(),
+            ..Self::default()
         };
-        for region in &regions {
+        for region in regions {
             match region.shape {
                 RegionShape::Plane { .. } => found.n_regions[0] += 1,
                 RegionShape::Cylinder { radius, is_hole: true, .. } => {
@@ -122,8 +117,9 @@ impl Dimensions {
         }
         [&mut found.holes, &mut found.bosses].into_iter().for_each(|all| all.sort_by(f64::total_cmp));
         found.volume = found.euler.map(|_| part.mesh().signed_volume().abs() * part.size().powi(3));
-        let directions: Vec<Vector3<f64>> = part.regions().directions().into_iter().map(|(d, _)| d).collect();
-        found.steps = directions.iter().flat_map(|d| steps(&regions, d)).map(|x| x * part.size()).collect();
+        let directions: Vec<Vector3<f64>> =
+            part.surface.regions().directions().into_iter().map(|(d, _)| d).collect();
+        found.steps = directions.iter().flat_map(|d| steps(regions, d)).map(|x| x * part.size()).collect();
         found.steps.sort_by(f64::total_cmp);
         found.extents = extents(part, &directions).map(|x| x * part.size());
         found
@@ -131,8 +127,8 @@ impl Dimensions {
 }
 
 /// Distances between neighbouring planes across a direction.
-fn steps(regions: &[&SmoothRegion], direction: &Vector3<f64>) -> Vec<f64> {
-    let offset = |region: &&SmoothRegion| match region.shape {
+fn steps(regions: &[SmoothRegion], direction: &Vector3<f64>) -> Vec<f64> {
+    let offset = |region: &SmoothRegion| match region.shape {
         RegionShape::Plane { normal, offset } if normal.dot(direction).abs() > SmoothRegions::PARALLEL => {
             Some(offset * normal.dot(direction).signum())
         }
