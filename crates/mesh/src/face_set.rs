@@ -76,11 +76,7 @@ pub(crate) fn remove_duplicates(faces: &mut Vec<[VertexId; 3]>) -> usize {
 
 /// For each face, whether an earlier one has the same three vertices in any order.
 fn duplicates(faces: &[[VertexId; 3]]) -> Vec<bool> {
-    let sorted = |(f, mut face): (usize, [VertexId; 3])| {
-        face.sort_unstable();
-        (face, f)
-    };
-    let mut faces: Vec<_> = faces.iter().copied().enumerate().map(sorted).collect();
+    let mut faces: Vec<_> = faces.iter().enumerate().map(|(f, face)| (VertexId::sorted(*face), f)).collect();
     faces.sort_unstable();
     let mut duplicate = vec![false; faces.len()];
     for pair in faces.windows(2).filter(|pair| pair[0].0 == pair[1].0) {

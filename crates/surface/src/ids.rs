@@ -7,6 +7,14 @@ use serde::{Deserialize, Serialize};
 #[repr(transparent)]
 pub struct VertexId(pub u32);
 
+impl VertexId {
+    /// The corners of a face in ascending order, by which equal faces are found.
+    pub fn sorted(mut face: [Self; 3]) -> [Self; 3] {
+        face.sort_unstable();
+        face
+    }
+}
+
 /// Index of a face of a mesh, counted from zero.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[repr(transparent)]

@@ -232,7 +232,7 @@ fn joined(surface: &Surface, values: &Matrix) -> Vec<bool> {
     let mut rows = vec![None; 3 * topology.n_faces()];
     let faces = input_faces(surface);
     for (face, vertices) in topology.faces().iter().enumerate() {
-        let Some(&input) = faces.get(&sorted(*vertices)) else { continue };
+        let Some(&input) = faces.get(&VertexId::sorted(*vertices)) else { continue };
         let corners = surface.input.faces[input].map(|v| surface.input.remap.to_new(v));
         for (slot, v) in vertices.iter().enumerate() {
             let at = corners.iter().position(|corner| *corner == Some(*v));
@@ -254,15 +254,10 @@ fn input_faces(surface: &Surface) -> HashMap<[VertexId; 3], usize> {
     let mut faces = HashMap::new();
     for (i, face) in surface.input.faces.iter().enumerate() {
         if let [Some(a), Some(b), Some(c)] = face.map(|v| surface.input.remap.to_new(v)) {
-            faces.entry(sorted([a, b, c])).or_insert(i);
+            faces.entry(VertexId::sorted([a, b, c])).or_insert(i);
         }
     }
     faces
-}
-
-fn sorted(mut face: [VertexId; 3]) -> [VertexId; 3] {
-    face.sort_unstable();
-    face
 }
 
 /// The centroid of a face with as many of three vertices as possible.
@@ -308,7 +303,7 @@ fn in_faces(
         SurfacePoint::Face { face, barycentric } => {
             let vertices = topology.faces()[face.index()];
             let weight = |v: VertexId| vertices.iter().position(|w| *w == v).map_or(0.0, |i| barycentric[i]);
-            match faces.get(&sorted(vertices)) {
+            match faces.get(&VertexId::sorted(vertices)) {
                 Some(i) => Some(in_face(*i, &weight)),
                 None => {
                     let most = vertices.into_iter().max_by(|v, w| weight(*v).total_cmp(&weight(*w)));

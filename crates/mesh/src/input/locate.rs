@@ -97,8 +97,7 @@ impl Surface {
         let topology = self.intrinsic().topology();
         let other = PointError::OtherFaces { point };
         let whole = |face: FaceId| {
-            let mut part = topology.faces()[face.index()];
-            part.sort_unstable();
+            let part = VertexId::sorted(topology.faces()[face.index()]);
             let parts = &self.parts;
             Some(parts[parts.binary_search_by_key(&part, |[part, _]| *part).ok()?][1])
         };

@@ -18,7 +18,6 @@ use surface::{
     Components, DisjointSets, FaceId, IntrinsicMesh, Link, Topology, VertexId, components_of_faces,
 };
 
-use self::t_junctions::sorted;
 use crate::error::MeshError;
 use crate::face_set::{check_input, has_duplicates, remove_degenerate, remove_duplicates};
 use crate::orientation::orient_consistently;
@@ -126,7 +125,9 @@ pub fn repair(
         Some([a?, b?, c?])
     };
     let left = faces.iter().filter_map(kept);
-    let part = |face: &[VertexId; 3]| Some([sorted(kept(face)?), kept(parents.get(&sorted(*face))?)?]);
+    let part = |face: &[VertexId; 3]| {
+        Some([VertexId::sorted(kept(face)?), kept(parents.get(&VertexId::sorted(*face))?)?])
+    };
     let mut parts: Vec<FacePart> = faces.iter().filter_map(part).collect();
     parts.sort_unstable();
     let positions = sources.iter().map(|v| mesh.positions[v.index()]).collect();

@@ -47,23 +47,18 @@ pub(super) fn close(
         n_joined += inner.len();
         if !inner.is_empty() {
             let (apex, [start, end]) = (topology.corner_vertex(corner), topology.edge_ends(corner));
-            let parent = parents.get(&sorted(faces[face])).copied().unwrap_or(faces[face]);
+            let parent = parents.get(&VertexId::sorted(faces[face])).copied().unwrap_or(faces[face]);
             let chain = [&[start], &inner[..], &[end]].concat();
             let mut parts = chain.windows(2).map(|pair| [apex, pair[0], pair[1]]);
             faces[face] = parts.next().unwrap_or(faces[face]);
-            parents.insert(sorted(faces[face]), parent);
+            parents.insert(VertexId::sorted(faces[face]), parent);
             for part in parts {
-                parents.insert(sorted(part), parent);
+                parents.insert(VertexId::sorted(part), parent);
                 faces.push(part);
             }
         }
     }
     n_joined
-}
-
-pub(super) fn sorted(mut face: [VertexId; 3]) -> [VertexId; 3] {
-    face.sort_unstable();
-    face
 }
 
 struct Boundary<'a> {

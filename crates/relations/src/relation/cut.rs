@@ -9,7 +9,7 @@ use rigid::{NearestPoints, Similarity};
 use serde::Serialize;
 use surface::VertexId;
 
-use super::geometry::{MeshGeometry, sorted};
+use super::geometry::MeshGeometry;
 use super::units::UnitChange;
 
 /// The least share of the faces of a piece that are faces of the whole: cutting makes new ones along the cut only. With .3, other
@@ -52,7 +52,8 @@ pub(super) fn piece_of(side: Side, whole: &MeshGeometry, piece: &MeshGeometry) -
     let left = |factor: f64| (piece.size() / (factor * whole.size())).powi(2);
     let is_possible =
         |factor: &f64| left(*factor) <= MOST_LEFT && (*factor == 1.0 || left(*factor) >= LEAST_LEFT);
-    let mut factors = std::iter::once(1.0).chain(UnitChange::factors()).filter(is_possible).peekable();
+    let units = UnitChange::all().map(|(_, factor)| factor);
+    let mut factors = std::iter::once(1.0).chain(units).filter(is_possible).peekable();
     factors.peek()?;
     let search = PieceSearch::new(whole, piece)?;
     let factor = factors.find(|factor| search.finds(*factor))?;
@@ -131,9 +132,9 @@ impl<'a> PieceSearch<'a> {
         };
         let partners: Vec<Option<VertexId>> = points.iter().map(partner).collect();
         let known: HashSet<[VertexId; 3]> =
-            self.whole.mesh().faces.iter().map(|face| sorted(*face)).collect();
+            self.whole.mesh().faces.iter().map(|face| VertexId::sorted(*face)).collect();
         let is_shared = |face: &&[VertexId; 3]| match face.map(|v| partners[v.index()]) {
-            [Some(a), Some(b), Some(c)] => known.contains(&sorted([a, b, c])),
+            [Some(a), Some(b), Some(c)] => known.contains(&VertexId::sorted([a, b, c])),
             _ => false,
         };
         let n_shared = self.piece.mesh().faces.iter().filter(is_shared).count();

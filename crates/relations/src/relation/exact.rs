@@ -6,7 +6,7 @@ use nalgebra::{Point3, Vector3};
 use rigid::{NearestPoints, Similarity};
 use surface::VertexId;
 
-use super::geometry::{MeshGeometry, sorted};
+use super::geometry::MeshGeometry;
 
 /// Most pairs of vertices that are tried as images of two vertices of the first mesh.
 const MOST_PAIRS: usize = 2_000_000;
@@ -108,7 +108,7 @@ impl<'a> VertexSearch<'a> {
             geometries: [a, b],
             tolerance,
             nearest: NearestPoints::new(q.clone()).ok()?,
-            faces: b.mesh().faces.iter().map(|face| sorted(*face)).collect(),
+            faces: b.mesh().faces.iter().map(|face| VertexId::sorted(*face)).collect(),
             base: [p[first], p[second]],
             images,
             probes: p.iter().step_by(step).copied().collect(),
@@ -139,7 +139,8 @@ impl<'a> VertexSearch<'a> {
         if gap > self.tolerance {
             return None;
         }
-        let image = |face: &[VertexId; 3]| sorted(face.map(|v| VertexId::from(partners[v.index()])));
+        let image =
+            |face: &[VertexId; 3]| VertexId::sorted(face.map(|v| VertexId::from(partners[v.index()])));
         let same_faces =
             a.n_faces() == b.n_faces() && a.mesh().faces.iter().all(|face| self.faces.contains(&image(face)));
         let map = Similarity { translation: Vector3::zeros(), ..map };

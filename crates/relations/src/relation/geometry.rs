@@ -4,9 +4,9 @@ use std::collections::HashMap;
 use std::sync::OnceLock;
 
 use base::ContentHash;
-use mesh::{SmoothRegions, TriMesh, is_noisy};
+use mesh::{TriMesh, is_noisy};
 use nalgebra::Point3;
-use rigid::{RigidSurface, TriangleTree};
+use rigid::RigidSurface;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use surface::{Components, VertexId, components_of_faces};
@@ -153,15 +153,6 @@ impl MeshGeometry {
         100 * self.n_vertices() + 250 * self.n_faces()
     }
 
-    pub(super) fn tree(&self) -> &TriangleTree {
-        self.surface.tree()
-    }
-
-    /// The smooth pieces between sharp edges.
-    pub(super) fn regions(&self) -> &SmoothRegions {
-        self.surface.regions()
-    }
-
     /// Whether planes and cylinders with sharp edges between them make up the surface, as in parts of machines.
     pub(super) fn is_mechanical(&self) -> bool {
         self.surface.is_mechanical()
@@ -220,15 +211,11 @@ fn welded(mesh: &TriMesh) -> TriMesh {
     let faces = mesh.faces.iter().map(|face| face.map(|v| merged[v.index()]));
     let mut faces: Vec<_> = faces.filter(|[a, b, c]| a != b && b != c && c != a).collect();
     let mut seen = std::collections::HashSet::with_capacity(faces.len());
-    faces.retain(|face| seen.insert(sorted(*face)));
+    faces.retain(|face| seen.insert(VertexId::sorted(*face)));
     TriMesh { positions: mesh.positions.clone(), faces }.without_unused_vertices()
 }
 
 /// The vertices of a face in ascending order.
-pub(super) fn sorted(mut face: [VertexId; 3]) -> [VertexId; 3] {
-    face.sort_unstable();
-    face
-}
 
 #[cfg(test)]
 mod tests {

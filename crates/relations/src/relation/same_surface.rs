@@ -49,7 +49,7 @@ pub(super) fn is_one_surface(same: &SameVertices, meshes: [&MeshGeometry; 2]) ->
 }
 
 pub(super) fn rms_chord_error(mesh: &MeshGeometry) -> f64 {
-    let errors = mesh.regions().chord_errors.iter();
+    let errors = mesh.surface.regions().chord_errors.iter();
     mesh.mesh().face_areas().zip(errors).map(|(area, error)| area * error * error).sum::<f64>().sqrt()
 }
 
@@ -84,10 +84,10 @@ fn allowed(meshes: [&MeshGeometry; 2]) -> f64 {
 
 /// The largest distance from points of one surface to the other, in multiples of what is allowed there.
 fn worst([a, b]: [&MeshGeometry; 2], map: &Similarity) -> f64 {
-    let [errors_a, errors_b] = [a, b].map(|mesh| &mesh.regions().chord_errors);
+    let [errors_a, errors_b] = [a, b].map(|mesh| &mesh.surface.regions().chord_errors);
     let rounding = allowed([a, b]);
     let probe = |(p, face): (Point3<f64>, usize)| {
-        let near = b.tree().nearest(&map.apply(&p))?;
+        let near = b.surface.tree().nearest(&map.apply(&p))?;
         let allowed = rounding + ARCS * (errors_a[face] * map.scale + errors_b[near.face]);
         Some(near.sq_distance.sqrt() / allowed)
     };

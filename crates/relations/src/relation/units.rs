@@ -26,14 +26,9 @@ pub struct UnitChange {
 
 impl UnitChange {
     /// Every change of unit, in both directions, and by how much numbers grow.
-    fn all() -> impl Iterator<Item = (Self, f64)> {
+    pub(super) fn all() -> impl Iterator<Item = (Self, f64)> {
         let pairs = UNITS.into_iter().flat_map(|a| UNITS.map(|b| (a, b))).filter(|(a, b)| a != b);
         pairs.map(|((from, long), (to, short))| (Self { from, to }, long / short))
-    }
-
-    /// By how much numbers grow with every change of unit.
-    pub(super) fn factors() -> impl Iterator<Item = f64> {
-        Self::all().map(|(_, factor)| factor)
     }
 
     /// The change of unit that multiplies sizes by `scale`, up to a relative error.
