@@ -109,8 +109,11 @@ pub(crate) fn row_of(cells: impl IntoIterator<Item = impl AsRef<str>>) -> Vec<St
 #[derive(Debug)]
 pub(crate) struct Output {
     /// The file to write.
-    path: PathBuf,
-    format: String,
+    pub(crate) path: PathBuf,
+    /// The name in reports.
+    pub(crate) name: PathBuf,
+    /// The extension of the file.
+    pub(crate) format: String,
     /// Holds the file until it is complete and goes to standard output.
     scratch: Option<base::files::Scratch>,
 }
@@ -125,10 +128,11 @@ impl Output {
         format: Option<&str>,
         common: &Common,
     ) -> Result<Self> {
+        let name = path.to_owned();
         if !is_stream(path) {
             let format = check_format(path, what, formats)?;
             check_output(path)?;
-            return Ok(Self { path: path.to_owned(), format, scratch: None });
+            return Ok(Self { path: name.clone(), name, format, scratch: None });
         }
         if common.json {
             bail!(
@@ -139,22 +143,7 @@ impl Output {
         let scratch = base::files::Scratch::new()?;
         let path = scratch.file(&format!("stdout.{format}"));
         check_format(&path, what, formats)?;
-        Ok(Self { path, format, scratch: Some(scratch) })
-    }
-
-    /// The file to write.
-    pub(crate) fn path(&self) -> &Path {
-        &self.path
-    }
-
-    /// Its extension.
-    pub(crate) fn format(&self) -> &str {
-        &self.format
-    }
-
-    /// The name in reports.
-    pub(crate) fn name(&self) -> PathBuf {
-        if self.is_stream() { "-".into() } else { self.path.clone() }
+        Ok(Self { path, name, format, scratch: Some(scratch) })
     }
 
     /// Whether it is standard output.

@@ -83,13 +83,6 @@ impl Table {
         }
     }
 
-    pub(crate) fn n_numbers(&self) -> usize {
-        match &self.numbers {
-            Numbers::Whole(numbers) => numbers.len(),
-            Numbers::Real(numbers) => numbers.len(),
-        }
-    }
-
     pub(crate) fn into_reals(self) -> Vec<f64> {
         match self.numbers {
             Numbers::Whole(numbers) => numbers.into_iter().map(|number| number as f64).collect(),

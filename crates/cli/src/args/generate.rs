@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use canonform::mesh::io::{Content, writable};
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
 
 /// Where the shapes go.
@@ -44,7 +44,7 @@ pub(crate) struct GenerateArgs {
     #[arg(long, value_name = "N", default_value_t = 48)]
     pub(crate) classes: usize,
     /// Format of the files
-    #[arg(long, value_name = "EXT", default_value = "off", value_parser = mesh_format())]
+    #[arg(long, value_name = "EXT", default_value = "off", value_parser = PossibleValuesParser::new(writable(Content::Mesh)))]
     pub(crate) output_format: String,
 }
 
@@ -65,8 +65,4 @@ pub(crate) enum FamilyArg {
     Creatures,
     /// Screws, brackets and other mechanical parts in millimetres, many of nearly the same size
     Parts,
-}
-
-fn mesh_format() -> impl TypedValueParser<Value = String> {
-    PossibleValuesParser::new(writable(Content::Mesh))
 }

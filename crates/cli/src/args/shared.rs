@@ -18,7 +18,7 @@ pub(crate) struct Common {
     #[arg(long, global = true)]
     pub(crate) details: bool,
     /// Number of worker threads, 0 for all cores; results do not depend on it
-    #[arg(long, global = true, default_value_t = 0, value_name = "N", value_parser = threads())]
+    #[arg(long, global = true, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u16).range(0..=MOST_THREADS))]
     pub(crate) threads: u16,
     /// Seed for everything random
     #[arg(long, global = true, default_value_t = 0, value_name = "S")]
@@ -35,18 +35,6 @@ pub(crate) struct Common {
     pub(crate) quiet: bool,
 }
 
-impl Common {
-    /// The format of standard input, if it is known.
-    pub(crate) fn stream_format(&self) -> Option<&str> {
-        self.input_format.or(self.format.as_deref())
-    }
-
-    /// What `--format` says about the output: nothing if it is the format of the input.
-    pub(crate) fn format_of_output(&self, reads_stream: bool) -> Option<&str> {
-        self.format.as_deref().filter(|_| !reads_stream || self.input_format.is_some())
-    }
-}
-
 /// Reads the number of a vertex or a row.
 pub(super) fn counted<T: FromStr>(text: &str) -> Result<T, String> {
     text.parse().map_err(|_| format!("`{text}` is not a whole number, counted from 0"))
@@ -54,10 +42,6 @@ pub(super) fn counted<T: FromStr>(text: &str) -> Result<T, String> {
 
 /// More threads than this do not help on any machine, and starting them may fail.
 const MOST_THREADS: i64 = 1024;
-
-fn threads() -> clap::builder::RangedI64ValueParser<u16> {
-    clap::value_parser!(u16).range(0..=MOST_THREADS)
-}
 
 /// The extensions of formats that hold a mesh in one file.
 fn input_format() -> impl TypedValueParser<Value = &'static str> {

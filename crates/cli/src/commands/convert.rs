@@ -44,8 +44,8 @@ fn one(args: &ConvertArgs, common: &Common) -> Result<ExitCode> {
         false => writable(Content::Mesh).chain(["tri"]).collect(),
     };
     let output = Output::new(&args.output, "a mesh", &formats, args.output_format.as_deref(), common)?;
-    let result = write(&args.input, output.path(), args, common)?;
-    let json = Json { output: output.name(), ..result };
+    let result = write(&args.input, &output.path, args, common)?;
+    let json = Json { output: output.name.clone(), ..result };
     notes(&json, args);
     output.report(common, &json, sentence)
 }

@@ -73,15 +73,15 @@ pub(crate) fn embed(args: &EmbedArgs, common: &Common) -> Result<ExitCode> {
 fn one(mesh: &Path, args: &EmbedArgs, options: &EmbedOptions<'_>, common: &Common) -> Result<ExitCode> {
     let formats = FORM_FORMATS.map(|(extension, _)| extension);
     let output = Output::new(&args.output, "a form", &formats, Some(output_format(args, common)?), common)?;
-    check_dim(output.path(), options.form.dim)?;
+    check_dim(&output.path, options.form.dim)?;
     let surface = read_surface(mesh, &args.form.repair, common)?;
     let coarser =
         args.extend.as_ref().map(|path| read_surface(path, &args.form.repair, common)).transpose()?;
-    let bars = Bars::with_budget(common.quiet, budget(args, output.path(), 1));
-    let json = embed_and_write(mesh, (surface, coarser), output.path(), args, options, &bars)?;
+    let bars = Bars::with_budget(common.quiet, budget(args, &output.path, 1));
+    let json = embed_and_write(mesh, (surface, coarser), &output.path, args, options, &bars)?;
     drop(bars);
     warn(&mesh.display().to_string(), &json.report);
-    let json = EmbedJson { output: output.name(), ..json };
+    let json = EmbedJson { output: output.name.clone(), ..json };
     output.report(common, &json, |json| answer(json).text(common))
 }
 
@@ -142,7 +142,9 @@ fn embed_and_write(
 
 /// The format of forms in a folder or on standard output.
 fn output_format(args: &EmbedArgs, common: &Common) -> Result<&'static str> {
-    let Some(stated) = common.format_of_output(args.meshes.iter().any(|mesh| is_stream(mesh))) else {
+    // Of a mesh from standard input, `--format` is the format, unless that is stated otherwise.
+    let is_of_input = common.input_format.is_none() && args.meshes.iter().any(|mesh| is_stream(mesh));
+    let Some(stated) = common.format.as_deref().filter(|_| !is_of_input) else {
         return Ok(args.output_format.unwrap_or("ply"));
     };
     let known = FORM_FORMATS.map(|(extension, _)| extension);

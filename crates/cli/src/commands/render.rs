@@ -26,8 +26,7 @@ pub(crate) fn draw(args: &RenderArgs, common: &Common) -> Result<ExitCode> {
     let bars = |quiet| Bars::with_budget(quiet, args.limits.budget());
     if let ([mesh], true) = (&args.meshes[..], is_single(&args.meshes, &args.output)) {
         let output = Output::new(&args.output, "a picture", &["png"], None, common)?;
-        let (drawn, text) =
-            draw_one(mesh, [output.path(), &output.name()], args, &bars(common.quiet), common)?;
+        let (drawn, text) = draw_one(mesh, [&output.path, &output.name], args, &bars(common.quiet), common)?;
         return output.report(common, &drawn, |_| text);
     }
     let (arguments, folder) = (&args.meshes, &args.output);

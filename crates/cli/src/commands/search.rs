@@ -157,15 +157,10 @@ fn text(query: String, report: &Answer, details: bool) -> String {
     text.extend(report.components.iter().map(component));
     text.extend(report.wholes.iter().map(|whole| format!("  {}\n", explained(&whole.relation))));
     text += &class(&report.predicted);
-    if details || report.recall < 1.0 {
-        text += &format!("  {} of {} shapes measured", report.measured, report.n_shapes);
-    }
-    if report.recall < 1.0 {
-        text += &format!(", {:.1} % of the nearest found", 100.0 * report.recall);
-    }
     if details {
-        let seconds = report.seconds.describe + report.seconds.search;
-        text += &format!(", {} aligned, {seconds:.3} s", report.aligned);
+        let Answer { measured, n_shapes, aligned, seconds, .. } = report;
+        let seconds = seconds.describe + seconds.search;
+        text += &format!("  {measured} of {n_shapes} shapes measured, {aligned} aligned, {seconds:.3} s");
     }
     text.truncate(text.trim_end().len());
     text

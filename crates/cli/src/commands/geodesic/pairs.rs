@@ -45,7 +45,7 @@ pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
     let (start, n_vertices) = (Instant::now(), pairs.n_vertices());
     let observer = Bars::with_budget(common.quiet, args.limits.budget());
     let mut asymmetry = Asymmetry::default();
-    let written = fill_atomically(task.output.path(), |file| {
+    let written = fill_atomically(&task.output.path, |file| {
         // The header, and then the numbers in any order.
         let shape = [n_vertices as u64; 2];
         let array: npyz::NpyWriter<f64, _> =
@@ -59,7 +59,7 @@ pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
     let json = object! {
         method: <&str>::from(args.method),
         n_vertices,
-        output: task.output.name(),
+        output: &task.output.name,
         // The difference between the two directions, which are averaged.
         asymmetry,
         seconds: object! {
@@ -78,7 +78,7 @@ pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
         let mut facts = vec![("seconds", format!("{:.1}", json.seconds.all_pairs))];
         let n = json.unreached.len();
         facts.extend((n > 0).then(|| ("unreached", format!("{n} vertices, written as inf"))));
-        let output = shown(&json.output);
+        let output = shown(json.output);
         let answer = Answer {
             sentence: format!("{output} holds the distances between all pairs of {n_vertices} vertices"),
             facts,

@@ -53,13 +53,13 @@ pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
     }
     let path_seconds = start.elapsed().as_secs_f64();
     write_paths(&task.output, &paths, &facts)?;
-    let output = task.output.name();
+    let output = &task.output.name;
     let json = object! {
         method: <&str>::from(args.method),
         n_vertices: surface.n_input_vertices(),
         sources: &args.source,
         targets: &args.path_to,
-        outputs: [&output],
+        outputs: [output],
         paths: &facts,
         seconds: object! {
             load: surface.input.load_seconds,
@@ -91,7 +91,7 @@ pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
             ("paths", milliseconds(path_seconds)),
         ];
         let answer = Answer {
-            sentence: format!("{} holds {}", shown(&output), count(facts.len(), "path")),
+            sentence: format!("{} holds {}", shown(output), count(facts.len(), "path")),
             facts: first.to_vec(),
             details: [&details[..], others].concat(),
         };
@@ -108,8 +108,8 @@ fn source_of(path: &SurfacePath, row: &Row, surface: &Surface) -> Option<InputPo
 }
 
 fn write_paths(output: &Output, paths: &[SurfacePath], facts: &[impl Serialize]) -> Result<()> {
-    match output.format() {
-        "csv" => write_atomically(output.path(), |out| {
+    match output.format.as_str() {
+        "csv" => write_atomically(&output.path, |out| {
             writeln!(out, "path,x,y,z,distance,at")?;
             for (i, point) in
                 paths.iter().enumerate().flat_map(|(i, path)| path.points.iter().map(move |p| (i, p)))
@@ -137,7 +137,7 @@ fn write_paths(output: &Output, paths: &[SurfacePath], facts: &[impl Serialize])
                     }
                 })
                 .collect();
-            write_atomically(output.path(), |out| {
+            write_atomically(&output.path, |out| {
                 serde_json::to_writer(&mut *out, &object! { paths })?;
                 writeln!(out)
             })?;
@@ -145,7 +145,7 @@ fn write_paths(output: &Output, paths: &[SurfacePath], facts: &[impl Serialize])
         _ => {
             let lines: Vec<Vec<_>> =
                 paths.iter().map(|path| path.points.iter().map(|point| point.position).collect()).collect();
-            canonform::mesh::io::write_polylines(output.path(), &lines)?;
+            canonform::mesh::io::write_polylines(&output.path, &lines)?;
         }
     }
     Ok(())

@@ -82,7 +82,7 @@ pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
 
 /// Writes the distances, in the vertex order of the input, and returns the files.
 fn write_rows(task: &Task, solved: &[Row], rows: &[Vec<f64>]) -> Result<Vec<PathBuf>> {
-    let (output, format) = (task.output.path(), task.output.format());
+    let (output, format) = (&task.output.path, task.output.format.as_str());
     match format {
         "npy" => {
             let shape = [rows.len(), task.surface.n_input_vertices()];
@@ -98,12 +98,12 @@ fn write_rows(task: &Task, solved: &[Row], rows: &[Vec<f64>]) -> Result<Vec<Path
                 let path = if is_one { output.to_owned() } else { numbered(output, &row.from, format) };
                 write_colored(&path, task.mesh, "distance", distances)
                     .with_context(|| format!("source {}", spelled(&row.from)))?;
-                Ok(if is_one { task.output.name() } else { path })
+                Ok(if is_one { task.output.name.clone() } else { path })
             };
             return solved.iter().zip(rows).map(write).collect();
         }
     }
-    Ok(vec![task.output.name()])
+    Ok(vec![task.output.name.clone()])
 }
 
 /// `out.ply` for source 7 of several: `out-7.ply`.

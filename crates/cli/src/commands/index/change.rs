@@ -95,7 +95,7 @@ fn notes(index: &Path, built: &BuildReport, labels: Option<&LabelSource>) -> Vec
         ));
     }
     if let (Some(file), [_, ..]) = (labels.and_then(LabelSource::file), &built.unused_label_lines[..]) {
-        notes.push(unused_labels(file.path(), built));
+        notes.push(unused_labels(&file.path, built));
     }
     notes.extend(skipped(built));
     let kept = &built.unreadable;

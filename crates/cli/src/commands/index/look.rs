@@ -52,7 +52,7 @@ pub(super) fn info(path: &Path, common: &Common) -> Result<ExitCode> {
         classes,
         unlabelled,
         // Whether its writer was interrupted, or is at work.
-        unfinished: !index.is_finished(),
+        unfinished: !index.is_finished,
     };
     report(common, &json, |json| {
         let (first, more) = named.split_at(named.len().min(MOST_CLASSES));
@@ -96,8 +96,8 @@ pub(super) fn export(
         return Ok(ExitCode::SUCCESS);
     }
     let output = Output::new(output, "an index", &formats, format, common)?;
-    let format = ExportFormat::named(output.format()).unwrap_or(ExportFormat::JsonLines);
-    export_index(&index, format, output.path())?;
+    let format = ExportFormat::named(&output.format).unwrap_or(ExportFormat::JsonLines);
+    export_index(&index, format, &output.path)?;
     output.copy_to_stdout()?;
     Ok(ExitCode::SUCCESS)
 }

@@ -67,13 +67,15 @@ pub(super) fn read_transfer(path: &Path, side: &MappedFile) -> Result<Transfer> 
 }
 
 fn of_table(table: Table) -> Content {
-    let n_columns = if table.n_columns == table.n_numbers() { 1 } else { table.n_columns };
+    let n_columns = table.n_columns;
+    let is_column = |numbers: usize| [1, numbers].contains(&n_columns);
     match table.numbers {
-        Numbers::Whole(numbers) if n_columns == 1 => {
+        Numbers::Whole(numbers) if is_column(numbers.len()) => {
             Content::Labels(numbers.iter().map(|number| Some(number.to_string())).collect())
         }
         _ => {
             let numbers = table.into_reals();
+            let n_columns = if is_column(numbers.len()) { 1 } else { n_columns };
             Content::Values(Matrix::from_row_slice(numbers.len() / n_columns.max(1), n_columns, &numbers))
         }
     }
