@@ -20,9 +20,13 @@ pub struct Index {
     path: std::path::PathBuf,
     options: String,
     n_shapes: usize,
-    change: u64,
-    is_finished: bool,
-    threshold: Option<UnknownThreshold>,
+    /// The number of transactions that led to this state.
+    pub change: u64,
+    /// Whether its writer finished it. One that was interrupted, or is at work, has put some of the shapes only.
+    pub is_finished: bool,
+    /// A query whose nearest shape is farther belongs to no class of the index; `None` if the classes are too small to
+    /// tell, or the index is not finished. From at most 512 of the shapes when the index was finished.
+    pub threshold: Option<UnknownThreshold>,
     /// Read with the first search.
     vectors: OnceLock<VectorTable>,
 }
@@ -68,12 +72,6 @@ impl Index {
         Ok(self.vectors.get_or_init(|| vectors))
     }
 
-    /// A query whose nearest shape is farther belongs to no class of the index; `None` if the classes are too small to
-    /// tell, or the index is not finished. From at most 512 of the shapes when the index was finished.
-    pub fn threshold(&self) -> Option<UnknownThreshold> {
-        self.threshold
-    }
-
     /// A [note](crate::IndexWriter::set_note), if there is one of this name.
     pub fn note(&self, name: &'static str) -> Result<Option<String>, IndexError> {
         self.database().meta(name)
@@ -112,16 +110,6 @@ impl Index {
     /// Whether the index holds no shapes.
     pub fn is_empty(&self) -> bool {
         self.n_shapes == 0
-    }
-
-    /// Whether its writer finished it. One that was interrupted, or is at work, has put some of the shapes only.
-    pub fn is_finished(&self) -> bool {
-        self.is_finished
-    }
-
-    /// The number of transactions that led to this state.
-    pub fn change(&self) -> u64 {
-        self.change
     }
 
     /// Size in bytes, with what a writer has not copied into the file yet.

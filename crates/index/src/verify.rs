@@ -60,7 +60,7 @@ fn check(index: &Index, n_shapes: &mut usize) -> Result<Vec<String>, IndexError>
             return Err(index.damaged(format!("there are vectors of `{id}`, but no entry")));
         }
     }
-    if index.is_finished() {
+    if index.is_finished {
         let (vectors, classes) = (index.vector_table()?, index.entries()?);
         let classes: Vec<String> = classes.into_iter().map(|entry| entry.label).collect();
         let fresh = threshold(|visit| {
@@ -68,7 +68,7 @@ fn check(index: &Index, n_shapes: &mut usize) -> Result<Vec<String>, IndexError>
             Ok::<_, IndexError>(())
         })?;
         // Other processors round in another way.
-        let agree = match (index.threshold(), fresh) {
+        let agree = match (index.threshold, fresh) {
             (Some(a), Some(b)) => (a.distance - b.distance).abs() <= 1e-3 * b.distance,
             (a, b) => a.is_none() && b.is_none(),
         };

@@ -31,7 +31,7 @@ use crate::{Entry, Index, IndexError, Shape};
 /// drop(writer); // interrupted
 ///
 /// let writer = IndexWriter::build(&path, "options")?;
-/// assert!(writer.is_resumed() && writer.entry("cat0")?.is_some());
+/// assert!(writer.is_resumed && writer.entry("cat0")?.is_some());
 /// assert_eq!(writer.finish(&())?.len(), 1);
 /// # Ok::<(), canonform_index::IndexError>(())
 /// ```
@@ -42,11 +42,12 @@ pub struct IndexWriter {
     n_shapes: u64,
     /// Length of the vectors, once there is one.
     length: Option<usize>,
-    resumed: bool,
-    /// Whether a file that cannot be read was set aside.
-    replaced_damaged: bool,
+    /// Whether the last writer was interrupted.
+    pub is_resumed: bool,
+    /// Whether the existing index could not be read and was set aside, so that the work started from nothing.
+    pub replaced_damaged: bool,
     /// Whether there was no index.
-    is_new: bool,
+    pub is_new: bool,
     /// Goes last, once the database is closed.
     unwritten: Unwritten,
 }
@@ -116,29 +117,14 @@ impl IndexWriter {
         if (n_shapes == 0) != length.is_none() {
             return Err(database.damaged("the number of its shapes is wrong"));
         }
-        let (is_new, resumed) = (known.is_none(), database.meta(meta::UNFINISHED)?.is_some());
+        let (is_new, is_resumed) = (known.is_none(), database.meta(meta::UNFINISHED)?.is_some());
         let (replaced_damaged, unwritten) = (false, Unwritten(is_new.then_some(path)));
-        Ok(Self { database, n_shapes, length, resumed, replaced_damaged, is_new, unwritten })
+        Ok(Self { database, n_shapes, length, is_resumed, replaced_damaged, is_new, unwritten })
     }
 
     /// The index.
     pub fn path(&self) -> &Path {
         &self.database.path
-    }
-
-    /// Whether the existing index could not be read, so that the work started from nothing.
-    pub fn replaced_damaged(&self) -> bool {
-        self.replaced_damaged
-    }
-
-    /// Whether the last writer was interrupted.
-    pub fn is_resumed(&self) -> bool {
-        self.resumed
-    }
-
-    /// Whether there was no index.
-    pub fn is_new(&self) -> bool {
-        self.is_new
     }
 
     /// Number of shapes so far.

@@ -55,7 +55,7 @@ impl Collection {
             classes.entry(&shape.label).or_default().push(place);
         }
         let classes = classes.into_values().collect();
-        let version = format!("{:016x}", search.index().change());
+        let version = format!("{:016x}", search.index().change);
         let absolute = std::path::absolute(path).ok();
         let folders = [absolute, path.canonicalize().ok()];
         let folders = folders.into_iter().flatten().filter_map(|file| Some(file.parent()?.to_owned()));

@@ -37,7 +37,8 @@ pub enum ServerError {
 pub(crate) struct ApiError {
     #[serde(skip)]
     status: StatusCode,
-    error: String,
+    /// What is wrong.
+    pub(crate) error: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     remedy: Option<String>,
     /// In seconds.
@@ -133,11 +134,6 @@ impl ApiError {
         let mut files = extensions.iter().map(|e| name.with_extension(e)).chain([name.to_owned()]);
         let is_named = files.any(|file| text.contains(&file.display().to_string()));
         Self::of_fault(status, if is_named { text } else { format!("{}: {text}", name.display()) }, &fault)
-    }
-
-    /// What is wrong.
-    pub(crate) fn text(&self) -> &str {
-        &self.error
     }
 
     #[cfg(test)]

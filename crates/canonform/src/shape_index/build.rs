@@ -326,8 +326,8 @@ pub fn build_index(
     if let Some(source) = options.labels {
         writer.set_note(LABELS, Some(source.word().as_deref().unwrap_or(FILE)))?;
     }
-    report.resumed = writer.is_resumed();
-    report.replaced_damaged = writer.replaced_damaged();
+    report.resumed = writer.is_resumed;
+    report.replaced_damaged = writer.replaced_damaged;
     let unread = hashed.iter().filter(|(_, hash)| hash.is_err());
     missing.unread = unread.map(|(listed, _)| listed.file.name.clone()).collect();
     let kept = fill(&mut writer, hashed, options.describe, options.limits, &mut report, observer)?;
@@ -343,7 +343,7 @@ pub fn build_index(
     report.n_shapes = writer.n_shapes();
     // A shard without shapes is complete, and `merge_indexes` takes it.
     let is_useless = options.shard.is_none() && report.n_shapes == 0 && !report.failed.is_empty();
-    if nothing_new && !writer.is_new() || is_useless {
+    if nothing_new && !writer.is_new || is_useless {
         drop(writer);
     } else {
         finish(writer, options.describe, observer)?;
@@ -412,7 +412,7 @@ fn index_and_listing(
     if let Some(only) = options.only {
         listing.shapes.retain(|listed| only.contains(&listed.file.name));
     }
-    Ok((existing.filter(Index::is_finished), listing))
+    Ok((existing.filter(|index| index.is_finished), listing))
 }
 
 fn by_id(entries: Vec<Entry>) -> HashMap<String, Entry> {

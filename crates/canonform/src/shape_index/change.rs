@@ -54,7 +54,7 @@ pub fn add_to_index(
     }
     drop(index);
     let mut writer = IndexWriter::open(path)?;
-    report.resumed = writer.is_resumed();
+    report.resumed = writer.is_resumed;
     fill(&mut writer, hashed, &options, inputs.limits, &mut report, observer)?;
     report.n_shapes = writer.n_shapes();
     if report.described + report.renamed == 0 && !report.resumed {

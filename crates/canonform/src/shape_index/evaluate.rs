@@ -171,7 +171,7 @@ pub fn evaluate_matrix(path: &Path, options: &EvaluateOptions<'_>) -> Result<Eva
                 _ => classes,
             }
         }
-        (Some(LabelSource::File(file)), None) => file.in_order().to_vec(),
+        (Some(LabelSource::File(file)), None) => file.in_order.clone(),
         (_, None) => return Err(Error::NoNames { path: path.to_owned() }),
     };
     // Rows that a label file does not name are left out; missing lines of a file without names are an error.

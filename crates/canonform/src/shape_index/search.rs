@@ -252,7 +252,7 @@ impl ShapeSearch {
             }
         };
         let (mut results, alignments): (Vec<Hit>, Vec<_>) = found.into_iter().unzip();
-        let threshold = self.index.threshold().filter(|_| rank_by.is_by_signatures());
+        let threshold = self.index.threshold.filter(|_| rank_by.is_by_signatures());
         let predicted = predicted(&results, (threshold, self.classes), &query.shape.entry.facts);
         results.truncate(options.k);
         if options.explain {

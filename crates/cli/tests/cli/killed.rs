@@ -33,7 +33,7 @@ fn kept(place: &Workplace, index: &str) -> (usize, bool) {
     let look = place.path("look");
     fs::copy(&path, &look).unwrap();
     let _ = fs::copy(log_path(&path), log_path(&look));
-    let found = Index::open(&look).map_or((0, false), |index| (index.len(), index.is_finished()));
+    let found = Index::open(&look).map_or((0, false), |index| (index.len(), index.is_finished));
     let _ = fs::remove_file(log_path(&look));
     found
 }

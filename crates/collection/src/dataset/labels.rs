@@ -13,10 +13,12 @@ use crate::table::TextTable;
 /// Labels from a file of lines `name,label`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LabelFile {
-    path: PathBuf,
+    /// The file.
+    pub path: PathBuf,
     /// The number of the line and the label, by the name of the shape.
     labels: HashMap<String, (usize, String)>,
-    in_order: Vec<String>,
+    /// The labels in the order of the lines.
+    pub in_order: Vec<String>,
 }
 
 /// A line of a label file that names no shape.
@@ -68,16 +70,6 @@ impl LabelFile {
             }
         }
         Ok(Self { path: path.to_owned(), labels, in_order })
-    }
-
-    /// The file.
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
-    /// The labels in the order of the lines.
-    pub fn in_order(&self) -> &[String] {
-        &self.in_order
     }
 
     /// The label of a shape, if the file names it: as `scan.001`, or with the extension of its mesh as `scan.001.off`.
@@ -203,7 +195,7 @@ mod tests {
         ] {
             let labels = read(text).unwrap();
             let found = ["cat0", "cats, old"].map(|name| labels.label(name, None));
-            assert_eq!((found, labels.in_order().len()), ([Some("cat"), Some("pet")], 2), "{text:?}");
+            assert_eq!((found, labels.in_order.len()), ([Some("cat"), Some("pet")], 2), "{text:?}");
         }
         for (text, what) in [
             ("cat0;cat\ncat1\n", "line 2: expected `name,label`, found `cat1`"),

@@ -119,7 +119,7 @@ fn other_files_are_never_overwritten() {
 /// Replaces an index that cannot be read by one of `n` shapes.
 fn built_again(path: &Path, n: usize) {
     let mut writer = IndexWriter::build(path, OPTIONS).unwrap();
-    assert!(writer.replaced_damaged() && writer.n_shapes() == 0);
+    assert!(writer.replaced_damaged && writer.n_shapes() == 0);
     writer.put(&(0..n).map(shape).collect::<Vec<_>>()).unwrap();
     writer.finish(&()).unwrap();
 }

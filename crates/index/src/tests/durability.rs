@@ -18,7 +18,7 @@ fn readers_keep_the_state_that_they_opened() {
     let meanwhile = Index::open(&path).unwrap();
     writer.commit().unwrap();
     let committed = Index::open(&path).unwrap();
-    assert!(!committed.is_finished() && committed.change() > meanwhile.change());
+    assert!(!committed.is_finished && committed.change > meanwhile.change);
     let index = writer.finish(&()).unwrap();
     assert_eq!([&early, &meanwhile, &committed, &index].map(Index::len), [5; 4]);
     for old in [&early, &meanwhile] {
@@ -28,7 +28,7 @@ fn readers_keep_the_state_that_they_opened() {
     for new in [&committed, &index] {
         assert!(new.entry(&id(0)).is_err() && new.shape(&id(5)).unwrap() == shape(5));
     }
-    assert!(index.is_finished() && faults(&path).is_empty());
+    assert!(index.is_finished && faults(&path).is_empty());
     drop((early, meanwhile, committed, index));
     assert_eq!(folder.names(), ["a"], "one file is left");
 }
@@ -51,7 +51,7 @@ fn an_index_has_one_writer_at_a_time() {
     refused();
     drop(first);
     let again = IndexWriter::open(&path).unwrap();
-    assert!(again.is_resumed() && again.n_shapes() == 6);
+    assert!(again.is_resumed && again.n_shapes() == 6);
 }
 
 #[test]

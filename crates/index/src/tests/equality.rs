@@ -17,10 +17,7 @@ fn order_batches_and_history_do_not_matter() {
     assert_ne!(export(&path), whole);
     folder.change(&path, &[], &[id(41), id(40)]);
     assert_eq!(export(&path), whole);
-    assert_eq!(
-        Index::open(&path).unwrap().threshold(),
-        Index::open(&folder.path("whole")).unwrap().threshold()
-    );
+    assert_eq!(Index::open(&path).unwrap().threshold, Index::open(&folder.path("whole")).unwrap().threshold);
     // Each line is a JSON object; the first describes the index.
     let lines: Vec<serde_json::Value> =
         str::from_utf8(&whole).unwrap().lines().map(|line| serde_json::from_str(line).unwrap()).collect();

@@ -210,7 +210,7 @@ fn with_shape(
         None => (None, None),
         Some(Ok(measured)) => (Some(measured), None),
         Some(Err(fault)) if is_missing(&fault) => {
-            (None, Some((points(collection, id)?, ApiError::from(fault).text().to_owned())))
+            (None, Some((points(collection, id)?, ApiError::from(fault).error)))
         }
         Some(Err(fault)) => return Err(fault.into()),
     };
