@@ -4,7 +4,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use serde::{Deserialize, Serialize};
 
-use crate::{Averaging, Labels, QueryScores, RetrievalError, Scores};
+use crate::{Labels, QueryScores, RetrievalError, Scores};
 
 /// How a confidence interval is found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,7 +49,6 @@ pub struct ScoreIntervals {
 pub fn bootstrap(
     scores: &QueryScores,
     labels: &Labels,
-    averaging: Averaging,
     options: &BootstrapOptions,
 ) -> Result<ScoreIntervals, RetrievalError> {
     let mut classes: Vec<Vec<[f64; Scores::N]>> = vec![Vec::new(); labels.classes().len()];
@@ -64,13 +63,10 @@ pub fn bootstrap(
     }
     let mut random = ChaCha8Rng::seed_from_u64(options.seed);
     let mut means: [Vec<f64>; Scores::N] = std::array::from_fn(|_| Vec::with_capacity(options.resamples));
+    let weight = 1.0 / n_queries as f64;
     for _ in 0..options.resamples {
         let mut total = [0.0; Scores::N];
         for queries in &classes {
-            let weight = match averaging {
-                Averaging::Micro => 1.0 / n_queries as f64,
-                Averaging::Macro => 1.0 / (classes.len() * queries.len()) as f64,
-            };
             for _ in 0..queries.len() {
                 let drawn = &queries[below(&mut random, queries.len())];
                 total.iter_mut().zip(drawn).for_each(|(total, score)| *total += weight * score);

@@ -103,7 +103,7 @@ impl RankingEvaluation {
     /// Classifies each shape whose class has more than two members by the first `knn_k` of all others.
     fn of(rankings: &impl Rankings, labels: &Labels, knn_k: usize) -> Result<Self, RetrievalError> {
         let scores = QueryScores::new(rankings, labels)?;
-        let intervals = bootstrap(&scores, labels, Averaging::Micro, &BootstrapOptions::default())?;
+        let intervals = bootstrap(&scores, labels, &BootstrapOptions::default())?;
         let n_classes = labels.classes().len();
         let mut confusion = vec![vec![0; n_classes]; n_classes];
         let mut correct = 0;

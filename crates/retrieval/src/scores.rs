@@ -103,8 +103,16 @@ impl QueryScores {
 
     /// The mean scores; 0 without queries.
     pub fn mean(&self, labels: &Labels, averaging: Averaging) -> Scores {
-        let queries = self.of.iter().map(|(i, scores)| (*i, scores.to_array()));
-        Scores::from_array(averaged(queries, [0.0; Scores::N], labels, averaging))
+        let (mut sum, mut total) = ([0.0; Scores::N], 0.0);
+        for (i, scores) in &self.of {
+            let weight = match averaging {
+                Averaging::Micro => 1.0,
+                Averaging::Macro => 1.0 / labels.size(labels.class(*i)) as f64,
+            };
+            sum.iter_mut().zip(scores.to_array()).for_each(|(sum, score)| *sum += weight * score);
+            total += weight;
+        }
+        Scores::from_array(sum.map(|sum| if total > 0.0 { sum / total } else { sum }))
     }
 }
 
@@ -116,7 +124,6 @@ impl QueryScores {
 pub fn precision_recall(
     rankings: &impl Rankings,
     labels: &Labels,
-    averaging: Averaging,
     n: usize,
 ) -> Result<Vec<f64>, RetrievalError> {
     let query = |i: usize| {
@@ -138,7 +145,8 @@ pub fn precision_recall(
         Some((0..n).map(|step| precisions[hits(step) - 1]).collect::<Vec<f64>>())
     };
     let curves = of_queries(rankings.n_points(), labels, query)?;
-    Ok(averaged(curves.into_iter(), vec![0.0; n], labels, averaging))
+    let mean = |step: usize| curves.iter().map(|(_, curve)| curve[step]).sum::<f64>() / curves.len() as f64;
+    Ok((0..n).map(mean).collect())
 }
 
 /// What `query` returns for each shape that is scored as a query, in parallel.
@@ -156,26 +164,4 @@ fn of_queries<T: Send>(
         true => Err(RetrievalError::NothingToScore { n_points, n_classes: labels.classes().len() }),
         false => Ok(found),
     }
-}
-
-/// Averages the values of queries, beginning with a `sum` of zeros.
-fn averaged<V: AsRef<[f64]>, S: AsMut<[f64]>>(
-    queries: impl Iterator<Item = (usize, V)>,
-    mut sum: S,
-    labels: &Labels,
-    averaging: Averaging,
-) -> S {
-    let mut total = 0.0;
-    for (i, values) in queries {
-        let weight = match averaging {
-            Averaging::Micro => 1.0,
-            Averaging::Macro => 1.0 / labels.size(labels.class(i)) as f64,
-        };
-        sum.as_mut().iter_mut().zip(values.as_ref()).for_each(|(sum, value)| *sum += weight * value);
-        total += weight;
-    }
-    if total > 0.0 {
-        sum.as_mut().iter_mut().for_each(|sum| *sum /= total);
-    }
-    sum
 }

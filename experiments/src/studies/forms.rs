@@ -119,7 +119,7 @@ pub(crate) fn forms(context: &Context<'_>) -> Result<Record> {
             let (distances, seconds) = compared(comparison, &made, context)?;
             let scores = QueryScores::new(&distances, &labels)?;
             let mean = scores.mean(&labels, Averaging::Micro);
-            let intervals = bootstrap(&scores, &labels, Averaging::Micro, &BootstrapOptions::default())?;
+            let intervals = bootstrap(&scores, &labels, &BootstrapOptions::default())?;
             let plane = embedded_distances(&classical_full(&distances, 2)?.coords)?;
             let own = [
                 ("silhouette", silhouette(&distances, &labels)),

@@ -53,7 +53,7 @@ pub(crate) fn retrieval(context: &Context<'_>) -> Result<Record> {
         let mut series = Vec::new();
         for (method, distances) in &found {
             rows.extend(rankings(context, method, scale, distances, labels, &mut measured)?);
-            let precision = precision_recall(distances, labels, Averaging::Micro, RECALLS)?;
+            let precision = precision_recall(distances, labels, RECALLS)?;
             let points = precision.iter().enumerate();
             let points = points.map(|(i, &p)| point(i as f64 / (RECALLS - 1) as f64, &[p]));
             series.push(curve(method, points.collect()));
@@ -152,7 +152,7 @@ fn rankings(
     let options = &context.options;
     let mut ranked = |ranking: &str, rankings: &KeptRankings, least: Option<f64>| -> Result<Vec<Cell>> {
         let scores = QueryScores::new(rankings, labels)?;
-        let interval = bootstrap(&scores, labels, Averaging::Micro, &BootstrapOptions::default())?;
+        let interval = bootstrap(&scores, labels, &BootstrapOptions::default())?;
         let [micro, by_class] = [Averaging::Micro, Averaging::Macro].map(|of| scores.mean(labels, of));
         let queries = || (0..labels.n_points()).filter(|i| labels.is_query(*i));
         let voted = |i: &usize| vote(&rankings.0[*i], |i| labels.class(i), options.voters, None).class();

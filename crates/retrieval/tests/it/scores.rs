@@ -65,11 +65,11 @@ fn micro_means_weigh_queries_alike_and_macro_means_classes() {
 #[test]
 fn precision_falls_with_recall_and_is_one_for_perfect_rankings() {
     let (distances, labels) = example();
-    let curve = precision_recall(&distances, &labels, Averaging::Micro, 11).unwrap();
+    let curve = precision_recall(&distances, &labels, 11).unwrap();
     assert!(curve.windows(2).all(|w| w[0] >= w[1]) && curve[0] < 1.0 && curve[10] > 0.0);
     let separate = DistanceMatrix::from_pairs(6, |i, j| if i / 3 == j / 3 { 1.0 } else { 9.0 }).unwrap();
     let labels = Labels::new(&["a", "a", "a", "b", "b", "b"]);
-    assert_eq!(precision_recall(&separate, &labels, Averaging::Macro, 5), Ok(vec![1.0; 5]));
+    assert_eq!(precision_recall(&separate, &labels, 5), Ok(vec![1.0; 5]));
 }
 
 #[test]
@@ -77,6 +77,6 @@ fn scores_need_a_large_class_and_a_label_per_shape() {
     let distances = DistanceMatrix::from_pairs(2, |_, _| 1.0).unwrap();
     let error = mean_scores(&distances, &Labels::new(&["a", "a"]), Averaging::Micro).unwrap_err();
     assert_eq!(error, RetrievalError::NothingToScore { n_points: 2, n_classes: 1 });
-    let error = precision_recall(&distances, &Labels::new(&["a"]), Averaging::Micro, 11).unwrap_err();
+    let error = precision_recall(&distances, &Labels::new(&["a"]), 11).unwrap_err();
     assert_eq!(error, RetrievalError::LabelCount { n_labels: 1, n_points: 2 });
 }
