@@ -56,7 +56,9 @@ fn a_torus_has_its_closed_form_eigenvalues_with_multiplicities() {
     for (k, l, m) in [(40, 40, 90), (37, 23, 60), (9, 8, 72), (100, 3, 13), (30, 20, 240)] {
         let w = torus(k, l);
         let masses = vec![1.0; k * l];
-        let found = smallest_eigenpairs(&w, &masses, m, SymmetricEigen::ACCURATE, &()).unwrap();
+        // Large eigenvalues amplify the residuals of inverses.
+        let tolerance = SymmetricEigen::ACCURATE * if m > 100 { 0.1 } else { 1.0 };
+        let found = smallest_eigenpairs(&w, &masses, m, tolerance, &()).unwrap();
         let expected = torus_spectrum(k, l, m);
         assert_eq!(found.values.len(), m);
         for (i, (a, b)) in found.values.iter().zip(&expected).enumerate() {
