@@ -38,7 +38,7 @@ lint-packaging: ## Check workflows, container, citation, recipe and metadata wit
 	packaging/lint.sh
 
 test-all: ## Run all tests with those that are slow and rare, and build the guide and the reference: attacks, exhaustive damage, full-size maps, notebooks, 200 kills of writing commands
-	CANONFORM_KILLS=200 $(CARGO) test --workspace --lib --bins --tests --locked --no-fail-fast -- --include-ignored
+	CANONFORM_KILLS=200 $(CARGO) test --workspace --tests --locked --no-fail-fast -- --include-ignored
 	crates/py/test.sh -m ""
 	$(MAKE) reference guide
 

@@ -1,4 +1,4 @@
-//! Signatures depend little on pose and triangulation, distinguish bodies, and exist for any mesh.
+//! Signatures depend little on pose and triangulation, and distinguish bodies.
 
 use canonform::embed::signature;
 use canonform::{DescribeOptions, describe};
@@ -6,7 +6,6 @@ use datasets::{ArticulatedOptions, Family, articulated_shape};
 use descriptors::SignatureKind;
 use rayon::prelude::*;
 
-use crate::support::data;
 use crate::support::surface;
 
 /// Three poses of each family, class by class, each with its own triangulation and resolution.
@@ -30,26 +29,5 @@ fn every_signature_separates_bodies_more_than_poses_and_triangulations() {
             found.iter().sum::<f64>() / found.len() as f64
         };
         assert!(mean(false) > 2.0 * mean(true), "{}: {} {}", kind.name(), mean(true), mean(false));
-    }
-}
-
-#[test]
-#[ignore = "slow: make test-all"]
-fn real_meshes_with_defects_have_signatures() {
-    let Some(folder) = data("signatures of meshes with defects") else { return };
-    // Several components, boundaries, edges with three faces, obtuse triangles.
-    for name in ["gorilla0", "seahorse0", "lioness0", "shark0", "david0"] {
-        let surface = canonform::read_surface(
-            &folder.join("tosca-lowres").join(format!("{name}.vert")),
-            &Default::default(),
-            &Default::default(),
-            &(),
-        )
-        .unwrap();
-        let found = describe(&surface, &DescribeOptions::default(), &()).unwrap();
-        assert!(found.fused.iter().all(|x| x.is_finite()), "{name}");
-        // By Weyl's law the values of ShapeDNA are near one.
-        let dna = signature(&found, SignatureKind::ShapeDna).unwrap().values;
-        assert!(dna.iter().all(|x| (0.01..3.0).contains(x)), "{name}: {dna:?}");
     }
 }

@@ -17,13 +17,13 @@ fn lengths_of_paths_equal_exact_distances() {
         let Reference { mesh, rows } = reference(&data, mesh);
         let surface = mesh.intrinsic();
         let marching = FastMarching::new(&surface, Default::default(), &());
-        for (source, exact) in rows.iter().take(2) {
+        for (source, exact) in rows.iter().take(1) {
             let sources = [Source::vertex(*source)];
             let tracer = PathTracer::new(&surface, &sources, exact, &());
             let marched = marching.distances(*source).unwrap();
             let rough = PathTracer::new(&surface, &sources, &marched, &());
             let (mut excess, mut count) = (0.0, 0);
-            for (v, distance) in exact.iter().enumerate().step_by(11).filter(|(_, d)| **d > 0.0) {
+            for (v, distance) in exact.iter().enumerate().step_by(23).filter(|(_, d)| **d > 0.0) {
                 assert_close(tracer.path_to(vertex(v)).unwrap().length, *distance, 1e-11);
                 let length = rough.path_to(vertex(v)).unwrap().length;
                 assert!(length >= distance * (1.0 - 1e-11));
