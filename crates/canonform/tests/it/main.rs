@@ -8,6 +8,7 @@ mod collections;
 mod explained;
 mod flat;
 mod progress;
+mod threads;
 
 use canonform::mesh::TriMesh;
 use nalgebra::Point3;

@@ -1,6 +1,6 @@
 //! Work stays on the threads that the caller provides.
 
-#![cfg(test)]
+use std::process::Command;
 
 use canonform::DescribeOptions;
 use canonform::library::{BuildOptions, build_index};
@@ -8,9 +8,21 @@ use canonform::mesh::{io, shapes};
 use canonform::search::{SearchOptions, ShapeSearch};
 use rayon::ThreadPoolBuilder;
 
-/// The only test of this program: the global pool starts with its first use, and then cannot be built any more.
+/// Set in the process that runs nothing but the test below.
+const ALONE: &str = "CANONFORM_TEST_ALONE";
+
+/// Runs in a process of its own: the global pool starts with its first use, and then cannot be built any more.
 #[test]
 fn an_index_is_built_and_searched_on_the_pool_of_the_caller() {
+    if std::env::var_os(ALONE).is_none() {
+        let name = "threads::an_index_is_built_and_searched_on_the_pool_of_the_caller";
+        let mut program = Command::new(std::env::current_exe().unwrap());
+        let run = program.args(["--exact", name]).env(ALONE, "1").output().unwrap();
+        let text =
+            [run.stdout, run.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).concat();
+        assert!(run.status.success() && text.contains("1 passed"), "{text}");
+        return;
+    }
     let folder = tempfile::tempdir().unwrap();
     let index = folder.path().join("shapes.canonform");
     let describe = DescribeOptions::default();
