@@ -1,4 +1,4 @@
-//! The program: its page in a browser (pictures go to `target/browser`), interruptions, and the chapters of the guide.
+//! The program: its page in a browser, interruptions, and the chapters of the guide.
 
 #![allow(clippy::unwrap_used, reason = "these are tests")]
 

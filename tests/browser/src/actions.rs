@@ -1,6 +1,5 @@
-//! User actions: pointing, clicking, dragging, typing, choosing files; and screenshots.
+//! User actions: pointing, clicking, dragging, typing, choosing files.
 
-use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, Result};
@@ -61,17 +60,6 @@ impl Browser {
         self.pointer(actions)
     }
 
-    /// Writes the visible part of the page to a PNG file, and creates its folder.
-    pub fn screenshot(&self, path: &Path) -> Result<()> {
-        save(path, &self.devtools("Page.captureScreenshot", &json!({ "format": "png" }))?)
-    }
-
-    /// Writes the whole page to a PNG file.
-    pub fn screenshot_all(&self, path: &Path) -> Result<()> {
-        let parameters = json!({ "format": "png", "captureBeyondViewport": true });
-        save(path, &self.devtools("Page.captureScreenshot", &parameters)?)
-    }
-
     /// Waits for an element and returns its handle.
     fn element(&self, css: &str) -> Result<String> {
         self.wait_for(&format!("document.querySelector({}) !== null", json!(css)))?;
@@ -103,10 +91,4 @@ impl Browser {
 
 fn moved([x, y]: [i32; 2]) -> Value {
     json!({ "type": "pointerMove", "duration": 15, "origin": "viewport", "x": x, "y": y })
-}
-
-fn save(path: &Path, picture: &Value) -> Result<()> {
-    let bytes = STANDARD.decode(picture["data"].as_str().unwrap_or_default())?;
-    path.parent().map_or(Ok(()), fs::create_dir_all)?;
-    fs::write(path, bytes).with_context(|| path.display().to_string())
 }

@@ -51,7 +51,6 @@ fn groups_are_compared_and_marked() {
     page.wait_for(READY);
     assert_eq!(page.address(), "/duplicates");
     assert!(page.text("#told").starts_with("3 of 6 shapes can be spared: 2 groups of files of one shape"));
-    page.picture("body", "duplicates-1280");
     let sizes =
         "[...document.querySelectorAll('.group')].map(group => group.querySelectorAll('.tile').length)";
     assert_eq!(page.eval(sizes), json!([3, 2]));

@@ -1,6 +1,4 @@
 //! The page in a browser: dropping and choosing meshes, clicking and rotating shapes.
-//!
-//! Screenshots go to `target/browser`.
 
 mod duplicates;
 mod search;

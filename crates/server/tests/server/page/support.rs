@@ -105,24 +105,6 @@ impl Page {
         self.wait_for("document.querySelector('#form-view').dataset.state === 'ready'");
     }
 
-    /// Scrolls an element to the top and takes a screenshot.
-    pub(crate) fn picture(&self, css: &str, name: &str) {
-        let scroll = format!(
-            "document.querySelector({}).scrollIntoView({{ block: 'start', behavior: 'instant' }})",
-            json!(css)
-        );
-        self.browser.eval(&scroll).unwrap();
-        let seen =
-            "[...document.images].every(i => i.complete || i.getBoundingClientRect().top > innerHeight)";
-        self.wait_for(seen);
-        // One more frame for the latest changes.
-        self.browser
-            .eval("return new Promise(done => requestAnimationFrame(() => setTimeout(done, 300)))")
-            .unwrap();
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/browser");
-        self.browser.screenshot(&folder.join(format!("server-{name}.png"))).unwrap();
-    }
-
     /// The console is empty, all requests went to this server, and nothing is wider than the window.
     pub(crate) fn assert_sound(&self) {
         assert_eq!(self.browser.console().unwrap(), []);
