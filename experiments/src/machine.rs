@@ -25,13 +25,3 @@ fn processor() -> Option<String> {
 pub(crate) fn now() -> String {
     DateTime::<Utc>::from(SystemTime::now()).format("%Y-%m-%d %H:%M UTC").to_string()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_machine_has_its_number_of_threads() {
-        assert!(described().contains(&format!("{} worker threads", rayon::current_num_threads())));
-    }
-}

@@ -61,16 +61,13 @@ mod tests {
         for (rank_by, explain, k, n_shapes, vertices, expected) in [
             (Plain, false, 10, 100_000, 3000, false),
             (Plain, false, 100, 100_000, 3000, true),
-            (Plain, false, 100, 50, 3000, false),
             (Graph, false, 10, 100_000, 3000, false),
             (Part, false, 10, 100, 3000, false),
             (Part, false, 10, 1000, 3000, true),
             (Part, false, 10, 10, 60_000, true),
-            (Forms, false, 10, 1000, 3000, false),
             (Forms, false, 10, 100_000, 3000, true),
             (Plain, true, 10, 100_000, 3000, false),
             (Plain, true, 24, 100_000, 30_000, true),
-            (Plain, true, 24, 2, 3000, false),
         ] {
             let options = SearchOptions { rank_by, explain, k };
             let cost = of_search(&options, n_shapes, 3000, vertices);
@@ -81,11 +78,8 @@ mod tests {
         for (n, each, expected) in [
             (300, MATCHED_VERTEX, false),
             (6800, MATCHED_VERTEX, true),
-            (6800, COMPARED_VERTEX, false),
             (400_000, COMPARED_VERTEX, true),
-            (30_000, DRAWN_VERTEX, false),
             (600_000, DRAWN_VERTEX, true),
-            (100_000, UPLOADED_BYTE, false),
             (2_000_000, UPLOADED_BYTE, true),
         ] {
             assert_eq!(is_long(f64::from(n) * each), expected, "{n} of {each} s");

@@ -172,6 +172,8 @@ fn a_damaged_index_is_built_again() {
     for command in ["index info all.canonform", "search all.canonform ring0"] {
         place.refused(command, &["all.canonform is damaged", "index build"]);
     }
+    let outcome = place.run("index verify all.canonform --json");
+    assert_eq!((outcome.code, &one_object(&outcome.out)["sound"]), (2, &false.into()));
     let outcome = place.done(format!("{BUILD} --json"));
     assert_eq!(one_object(&outcome.out)["replaced_damaged"], true);
     assert!(outcome.err.contains("all.canonform.damaged"), "{}", outcome.err);

@@ -74,24 +74,6 @@ fn a_sphere_looks_the_same_from_all_sides_and_is_lit_from_the_upper_left() {
 }
 
 #[test]
-fn the_near_face_hides_the_far_one() {
-    // Seen from -y, yellow at y = -1 is before violet at y = 1, in either order of the list.
-    let triangle = |y: f64| [[-1.0, y, -1.0], [1.0, y, -1.0], [0.0, y, 1.0]];
-    let positions = [triangle(1.0), triangle(-1.0)].concat();
-    let values = [[0.0; 3], [1.0; 3]].concat();
-    for faces in [[[0, 1, 2], [3, 4, 5]], [[3, 4, 5], [0, 1, 2]]] {
-        let surface = Coloring::Scalars { values: values.clone(), range: None, isolines: 0 };
-        let options = RenderOptions { coloring: surface, ..small(FRONT) };
-        let [r, g, b, a] = drawn(&mesh(&positions, &faces), &options).pixel(60, 70);
-        assert!(a == 255 && r > 150 && g > 150 && b < 90, "{r} {g} {b}");
-        let back = View::Upright { azimuth: 180.0, elevation: 0.0, up: Vector3::z() };
-        let [r, g, b, _] =
-            drawn(&mesh(&positions, &faces), &RenderOptions { view: back, ..options }).pixel(60, 70);
-        assert!(b > r && r > g, "{r} {g} {b}");
-    }
-}
-
-#[test]
 fn principal_axes_undo_a_motion() {
     let still = pear();
     let motion = Rotation3::from_euler_angles(0.4, 1.1, -2.0);

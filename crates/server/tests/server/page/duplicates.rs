@@ -69,12 +69,8 @@ fn groups_are_compared_and_marked() {
     page.browser.click("#fold").unwrap();
     assert_eq!(page.eval(open), 2);
 
-    // Every control is reached by Tab; Enter on a file shows it beside the one to keep.
-    let reached = page.eval(
-            "[...document.querySelectorAll('a, button, input, select')].filter(e => e.getClientRects().length > 0 && !e.disabled) \
-             .every(e => { e.focus({ preventScroll: true }); return document.activeElement === e && e.tabIndex === 0; })",
-        );
-    assert_eq!(reached, true);
+    page.assert_reached_by_tab();
+    // Enter on a file shows it beside the one to keep.
     page.browser.type_into(".tile[data-id='finer cat']", "\u{e007}").unwrap();
     page.overlaid("finer cat");
     assert_eq!(page.address(), "/duplicates?a=cat&b=finer+cat");

@@ -79,12 +79,7 @@ fn every_state_of_an_indexed_shape_is_reached_by_its_address() {
 /// The page can be used with the keyboard alone.
 fn use_the_keyboard(page: &Page) {
     page.wait_for(AT_THE_START);
-    // Every control is reached by Tab, in the order of the page, and shows its focus.
-    let reached = page.eval(
-        "[...document.querySelectorAll('a, button, input, select')].filter(e => e.getClientRects().length > 0) \
-         .every(e => { e.focus({ preventScroll: true }); return document.activeElement === e && e.tabIndex === 0; })",
-    );
-    assert_eq!(reached, true);
+    page.assert_reached_by_tab();
     page.browser.type_into("#shapes .tile[data-id^=cat]", "\u{e007}").unwrap();
     page.answered();
     page.browser.type_into("#results li:nth-child(2) .tile", "\u{e00d}").unwrap();

@@ -105,6 +105,15 @@ impl Page {
         self.wait_for("document.querySelector('#form-view').dataset.state === 'ready'");
     }
 
+    /// Every control is reached by Tab, in the order of the page.
+    pub(crate) fn assert_reached_by_tab(&self) {
+        let reached = self.eval(
+            "[...document.querySelectorAll('a, button, input, select')].filter(e => e.getClientRects().length > 0 && !e.disabled) \
+             .every(e => { e.focus({ preventScroll: true }); return document.activeElement === e && e.tabIndex === 0; })",
+        );
+        assert_eq!(reached, true);
+    }
+
     /// The console is empty, all requests went to this server, and nothing is wider than the window.
     pub(crate) fn assert_sound(&self) {
         assert_eq!(self.browser.console().unwrap(), []);
