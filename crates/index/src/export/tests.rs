@@ -1,22 +1,14 @@
 //! What is exported reads back.
 
-use std::fs::File;
-use std::io::{Read, Seek};
+use std::io::Read;
 
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::{Field, Row, RowAccessor};
 use zip::ZipArchive;
 
 use super::ExportFormat;
-use crate::tests::{Folder, OPTIONS, shape};
+use crate::tests::{Folder, OPTIONS, exported, shape};
 use crate::{Index, Shape};
-
-fn exported(index: &Index, format: ExportFormat) -> File {
-    let mut file = tempfile::tempfile().unwrap();
-    index.export_as(format, &mut file).unwrap();
-    file.rewind().unwrap();
-    file
-}
 
 /// An index in which one shape lacks a signature that another one has.
 fn uneven() -> (Folder, Index, Vec<Shape>) {
@@ -118,24 +110,5 @@ fn csv_holds_what_search_compares() {
         let mut last: Vec<f32> = line.rsplit(',').take(n).map(|x| x.parse().unwrap()).collect();
         last.reverse();
         assert_eq!(last, shape.fused);
-    }
-}
-
-#[test]
-fn equal_indexes_give_equal_bytes_in_every_format() {
-    let folder = Folder::new();
-    let [a, b] = ["a", "b"].map(|name| folder.path(name));
-    let shapes: Vec<Shape> = (0..7).map(shape).collect();
-    folder.fill(&a, &shapes);
-    folder.fill(&b, &shapes.iter().rev().cloned().collect::<Vec<_>>());
-    let [a, b] = [a, b].map(|path| Index::open(&path).unwrap());
-    for format in ExportFormat::ALL {
-        let bytes = |index| {
-            let mut bytes = Vec::new();
-            exported(index, format).read_to_end(&mut bytes).unwrap();
-            bytes
-        };
-        assert!(!bytes(&a).is_empty());
-        assert_eq!(bytes(&a), bytes(&b), "{format:?}");
     }
 }

@@ -4,11 +4,13 @@ mod damage;
 mod durability;
 mod equality;
 
+use std::fs::File;
+use std::io::Seek;
 use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
-use crate::{ContentHash, Entry, Facts, Index, IndexWriter, Shape, verify};
+use crate::{ContentHash, Entry, ExportFormat, Facts, Index, IndexWriter, Shape, verify};
 
 pub(crate) const OPTIONS: &str = "n=100";
 
@@ -85,6 +87,13 @@ pub(super) fn export(path: &Path) -> Vec<u8> {
     let mut bytes = Vec::new();
     Index::open(path).unwrap().export(&mut bytes).unwrap();
     bytes
+}
+
+pub(crate) fn exported(index: &Index, format: ExportFormat) -> File {
+    let mut file = tempfile::tempfile().unwrap();
+    index.export_as(format, &mut file).unwrap();
+    file.rewind().unwrap();
+    file
 }
 
 pub(super) fn faults(path: &Path) -> Vec<String> {
