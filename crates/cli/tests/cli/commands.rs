@@ -6,7 +6,7 @@ use canonform::mesh::shapes;
 use serde_json::{Value, json};
 
 use crate::index::{BUILD, collection};
-use crate::support::{Workplace, broken_ring, one_object, program, read_npy, ring};
+use crate::support::{Workplace, broken_ring, one_object, read_npy, ring};
 
 #[test]
 fn info_reports_what_a_mesh_contains() {
@@ -214,13 +214,7 @@ fn a_closed_pipe_is_not_an_error() {
         "completions bash",
         "--help",
     ] {
-        let mut child = std::process::Command::new(program())
-            .args(command.split(' '))
-            .current_dir(place.path(""))
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
+        let mut child = place.command(command).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         drop(child.stdout.take());
         let output = child.wait_with_output().unwrap();
         let message = String::from_utf8_lossy(&output.stderr);

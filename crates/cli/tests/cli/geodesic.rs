@@ -1,13 +1,14 @@
 //! `geodesic`: sources, limits, paths, all pairs, interruption.
 
 use std::fs;
+use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use canonform::mesh::{TriMesh, shapes};
 use canonform::surface::VertexId;
 use serde_json::{Value, json};
 
-use crate::support::{Workplace, broken_ring, program, read_npy};
+use crate::support::{Workplace, broken_ring, read_npy};
 
 /// A sheet of 9 x 7 vertices after a small component, which is dropped: vertex 0 of the sheet is vertex 9 of the file,
 /// face 0 is face 8.
@@ -173,19 +174,14 @@ fn an_interrupted_run_leaves_nothing_behind() {
         ("-INT", "duplicates models --threads 1", "tmp"),
     ] {
         let before = n_files(folder);
-        let mut child = std::process::Command::new(program())
-            .current_dir(place.path(""))
-            .env("TMPDIR", place.path("tmp"))
-            .args(command.split(' '))
-            .stdout(std::process::Stdio::null())
-            .stderr(std::process::Stdio::piped())
-            .spawn()
-            .unwrap();
+        let mut running = place.command(command);
+        running.env("TMPDIR", place.path("tmp")).stdout(Stdio::null()).stderr(Stdio::piped());
+        let mut child = running.spawn().unwrap();
         while n_files(folder) == before {
             assert!(child.try_wait().unwrap().is_none(), "it ended before it began");
             std::thread::sleep(Duration::from_millis(5));
         }
-        let sent = std::process::Command::new("kill").args([signal, &child.id().to_string()]).status();
+        let sent = Command::new("kill").args([signal, &child.id().to_string()]).status();
         assert!(sent.unwrap().success());
         let ended = child.wait_with_output().unwrap();
         assert_eq!(ended.status.code(), Some(130), "{command}");

@@ -8,7 +8,7 @@ use canonform::mesh::shapes;
 use serde_json::Value;
 
 use crate::index::body;
-use crate::support::{Workplace, program};
+use crate::support::Workplace;
 
 /// A line break, codes of terminals in 7 and in 8 bits, a reversed direction, and a formula.
 const HOSTILE: [&str; 4] = [
@@ -209,8 +209,7 @@ fn duplicates_move_with_their_journal_and_come_back_and_leave_nothing_else() {
     // No temporary file is left, whether it fails or not.
     fs::create_dir(place.path("t")).unwrap();
     for (options, code) in [("models --html no/such/folder.html", 2), ("models --kinds file", 0)] {
-        let mut command = std::process::Command::new(program());
-        command.arg("duplicates").args(options.split(' ')).current_dir(place.path(""));
+        let mut command = place.command(format!("duplicates {options}"));
         let output = command.env("TMPDIR", place.path("t")).output().unwrap();
         assert_eq!((output.status.code(), fs::read_dir(place.path("t")).unwrap().count()), (Some(code), 0));
     }

@@ -2,14 +2,14 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::time::{Duration, Instant};
 
 use canonform::index::{Index, log_path};
 
 use crate::hostile::tree;
 use crate::index::body;
-use crate::support::{Workplace, program};
+use crate::support::Workplace;
 
 const SHAPES: usize = 12;
 
@@ -45,13 +45,7 @@ fn n_kills() -> u32 {
 
 /// Starts the program and kills it after `time`, unless it ends before. Returns whether it was killed.
 fn kill_after(place: &Workplace, command: &str, time: Duration) -> bool {
-    let mut child = Command::new(program())
-        .args(command.split(' '))
-        .current_dir(place.path(""))
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
+    let mut child = place.command(command).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
     std::thread::sleep(time);
     child.kill().unwrap();
     !child.wait().unwrap().success()

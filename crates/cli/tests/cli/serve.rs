@@ -3,7 +3,7 @@
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, Command, Stdio};
 
-use crate::support::{Workplace, program, ring};
+use crate::support::{Workplace, ring};
 
 struct Serving {
     child: Child,
@@ -13,12 +13,8 @@ struct Serving {
 
 impl Serving {
     fn start(place: &Workplace) -> Self {
-        let mut child = Command::new(program())
-            .args(["serve", "i", "--listen", "127.0.0.1:0", "--max-vertices", "1000"])
-            .current_dir(place.path(""))
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
+        let mut command = place.command("serve i --listen 127.0.0.1:0 --max-vertices 1000");
+        let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
         let err = BufReader::new(child.stderr.take().unwrap());
         // Drop ends the program if the checks below fail.
         let mut serving = Self { child, address: String::new(), err };

@@ -57,24 +57,24 @@ impl Workplace {
         io::write(&path, mesh).unwrap();
     }
 
-    /// Runs the program in the folder.
-    pub(crate) fn run(&self, arguments: impl Arguments) -> Outcome {
+    /// The program, to be run in the folder.
+    pub(crate) fn command(&self, arguments: impl Arguments) -> Command {
         let mut command = Command::new(program());
-        let output = command.current_dir(self.0.path()).args(arguments.words()).output().unwrap();
+        command.current_dir(self.0.path()).args(arguments.words());
+        command
+    }
+
+    pub(crate) fn run(&self, arguments: impl Arguments) -> Outcome {
+        let output = self.command(arguments).output().unwrap();
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
         Outcome { code: output.status.code().unwrap(), out: text(output.stdout), err: text(output.stderr) }
     }
 
     /// Runs the program with these bytes as standard input: exit code, standard output, standard error.
     pub(crate) fn piped(&self, input: &[u8], arguments: impl Arguments) -> (i32, Vec<u8>, String) {
-        let mut child = Command::new(program())
-            .current_dir(self.0.path())
-            .args(arguments.words())
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
+        let mut command = self.command(arguments);
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().unwrap();
         // The program may refuse before it has read everything.
         let _ = child.stdin.take().unwrap().write_all(input);
         let output = child.wait_with_output().unwrap();
