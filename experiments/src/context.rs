@@ -153,7 +153,7 @@ impl Context<'_> {
         for specimen in self.specimens {
             let (plot, numbers) = of(specimen)?;
             all.push(plot);
-            note(&mut measured, specimen.label(), numbers);
+            note(&mut measured, &specimen.shape.label, numbers);
         }
         Ok(Record { figures: vec![plots("curves", all)], ..self.record(&[], measured) })
     }

@@ -54,14 +54,6 @@ impl<'a> Specimen<'a> {
         Self { shape, all_pairs, optimum, spectrum, reconstruction }
     }
 
-    pub(crate) fn name(&self) -> &'a str {
-        &self.shape.name
-    }
-
-    pub(crate) fn label(&self) -> &'a str {
-        &self.shape.label
-    }
-
     pub(crate) fn n_vertices(&self) -> usize {
         self.shape.surface.mesh().n_vertices()
     }
@@ -78,7 +70,7 @@ impl<'a> Specimen<'a> {
                 bail!(
                     "{}: this experiment needs the distances of all pairs, {} GiB for {p} vertices; use shapes of at \
                      most 23,000 vertices",
-                    self.name(),
+                    self.shape.name,
                     (p * p * size_of::<f64>()) >> 30
                 );
             }

@@ -1,7 +1,7 @@
 //! Reading an index.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 use base::ContentHash;
@@ -17,8 +17,10 @@ use crate::{Entry, IndexError, Shape, VectorTable};
 #[derive(Debug)]
 pub struct Index {
     database: Mutex<Database>,
-    path: std::path::PathBuf,
-    options: String,
+    /// The file.
+    pub path: PathBuf,
+    /// The options its shapes were described with.
+    pub options: String,
     n_shapes: usize,
     /// The number of transactions that led to this state.
     pub change: u64,
@@ -75,16 +77,6 @@ impl Index {
     /// A [note](crate::IndexWriter::set_note), if there is one of this name.
     pub fn note(&self, name: &'static str) -> Result<Option<String>, IndexError> {
         self.database().meta(name)
-    }
-
-    /// The file.
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
-    /// The options its shapes were described with.
-    pub fn options(&self) -> &str {
-        &self.options
     }
 
     /// Checks that its shapes were described with the options `requested`.

@@ -230,7 +230,7 @@ impl Index {
     /// How its shapes were described, as the index states it.
     #[getter]
     fn options(&self) -> &str {
-        self.search.index().options()
+        &self.search.index().options
     }
 
     #[getter]
@@ -440,7 +440,7 @@ pub(crate) fn class_threshold(py: Python<'_>, paths: Vec<PathBuf>) -> PyResult<S
         let indexes = paths.iter().map(|path| canonform::index::Index::open(path));
         let indexes = indexes.collect::<Result<Vec<_>, _>>()?;
         for index in &indexes {
-            index.expect_options(indexes[0].options())?;
+            index.expect_options(&indexes[0].options)?;
         }
         Ok(canonform::index::class_threshold(&indexes)?)
     })?;

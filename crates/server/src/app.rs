@@ -84,7 +84,7 @@ impl App {
     ) -> Result<Arc<Measured>, Error> {
         let index = collection.search.index();
         let content = index.entry(id)?.content;
-        let key = measured_key(&content, index.options());
+        let key = measured_key(&content, &index.options);
         if let Some(known) = self.measured.get(&key) {
             return Ok(known);
         }
@@ -98,7 +98,7 @@ impl App {
     /// What [`indexed`](Self::indexed) costs, in seconds: nothing if the shape is in the cache.
     pub(crate) fn cost(&self, collection: &Collection, id: &str) -> f64 {
         let Some(shape) = collection.shape(id) else { return 0.0 };
-        let key = measured_key(&shape.content, collection.search.index().options());
+        let key = measured_key(&shape.content, &collection.search.index().options);
         let is_known = self.measured.get(&key).is_some();
         if is_known { 0.0 } else { collection.n_vertices(id) as f64 * cost::MEASURED_VERTEX }
     }
@@ -119,7 +119,7 @@ impl App {
     /// A kept query, if it was described as the shapes of the index are.
     pub(crate) fn kept(&self, collection: &Collection, address: &str) -> Option<Arc<Query>> {
         let query = self.queries.get(address)?;
-        (query.described.options == collection.search.index().options()).then_some(query)
+        (query.described.options == collection.search.index().options).then_some(query)
     }
 
     /// As [`kept`](Self::kept), or an error for the client.

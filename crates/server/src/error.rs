@@ -36,14 +36,14 @@ pub enum ServerError {
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct ApiError {
     #[serde(skip)]
-    status: StatusCode,
+    pub(crate) status: StatusCode,
     /// What is wrong.
     pub(crate) error: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     remedy: Option<String>,
     /// In seconds.
     #[serde(skip)]
-    retry_after: Option<u32>,
+    pub(crate) retry_after: Option<u32>,
 }
 
 impl ApiError {
@@ -134,16 +134,6 @@ impl ApiError {
         let mut files = extensions.iter().map(|e| name.with_extension(e)).chain([name.to_owned()]);
         let is_named = files.any(|file| text.contains(&file.display().to_string()));
         Self::of_fault(status, if is_named { text } else { format!("{}: {text}", name.display()) }, &fault)
-    }
-
-    #[cfg(test)]
-    pub(crate) fn status(&self) -> u16 {
-        self.status.as_u16()
-    }
-
-    #[cfg(test)]
-    pub(crate) fn retry_after(&self) -> Option<u32> {
-        self.retry_after
     }
 }
 

@@ -160,7 +160,7 @@ mod tests {
         let work = Work::new(&ServeOptions { jobs: 3, ..ServeOptions::default() });
         let accepted: Vec<_> = (0..20).filter_map(|_| work.accept(20.0).ok()).collect();
         assert_eq!(accepted.len(), 3, "two at once, 20 seconds each");
-        assert_eq!(work.accept(20.0).unwrap_err().retry_after(), Some(31));
+        assert_eq!(work.accept(20.0).unwrap_err().retry_after, Some(31));
         drop((work.accept(0.2).unwrap(), accepted));
         // Nothing is before it.
         let huge = work.accept(2000.0).unwrap();
@@ -186,9 +186,9 @@ mod tests {
                 let _ = finished.recv();
                 Ok(())
             });
-            assert_eq!(late.await.unwrap_err().status(), 503);
+            assert_eq!(late.await.unwrap_err().status, 503);
             // The thread is still busy: a request that waits gets no turn.
-            assert_eq!(work.run(0.0, None, |_| Ok(())).await.unwrap_err().status(), 503);
+            assert_eq!(work.run(0.0, None, |_| Ok(())).await.unwrap_err().status, 503);
             finish.send(()).unwrap();
             until_done(&work, 0.0).await;
         });
@@ -229,7 +229,7 @@ mod tests {
         runtime().block_on(async {
             for _ in 0..3 {
                 let fault = work.run::<()>(0.0, None, |_| panic!("for the test")).await.unwrap_err();
-                assert_eq!(fault.status(), 500);
+                assert_eq!(fault.status, 500);
             }
             assert_eq!(work.run(0.0, None, |_| Ok(7)).await.unwrap(), 7);
         });

@@ -57,10 +57,11 @@ pub(crate) fn figure3(context: &Context<'_>) -> Result<Record> {
         for (distances, method) in settings {
             let is_default = method == Method::default();
             let methods = embeddings(context, specimen, method)?;
-            let key = format!("{distances} {}", specimen.label());
+            let key = format!("{distances} {}", specimen.shape.label);
             let ranges: Vec<PlotPoint> =
                 methods.iter().zip(0..).map(|(runs, i)| point(f64::from(i), &values(runs))).collect();
-            let paper = |method: &str| context.printed(&context.options.printed, specimen.label(), method);
+            let paper =
+                |method: &str| context.printed(&context.options.printed, &specimen.shape.label, method);
             for (method, range) in METHODS.into_iter().zip(&ranges) {
                 let PlotPoint { y, low, high, .. } = *range;
                 let numbers = [("stress", y), ("low", low), ("high", high), ("range", high / low)];
@@ -69,7 +70,7 @@ pub(crate) fn figure3(context: &Context<'_>) -> Result<Record> {
                 measured.insert(format!("{key} {method}"), y / ranges[0].y);
                 let below = METHODS.into_iter().zip(&ranges).map(|(other, of)| (other, of.y / y));
                 note(&mut measured, &format!("{key} {method} below"), below);
-                let names = [specimen.name(), distances, method].map(Into::into);
+                let names = [specimen.shape.name.as_str(), distances, method].map(Into::into);
                 let numbers = [y.into(), low.into(), high.into(), paper(method).into()];
                 rows.push([&names[..], &numbers].concat());
             }
@@ -87,7 +88,7 @@ pub(crate) fn figure3(context: &Context<'_>) -> Result<Record> {
             context.observer.step();
         }
         series.retain(|series| !series.points.is_empty());
-        panels.push(Plot { marks: marks.clone(), ..plot(specimen.name(), x.clone(), y, series) });
+        panels.push(Plot { marks: marks.clone(), ..plot(&specimen.shape.name, x.clone(), y, series) });
     }
     let heads = ["shape"].into_iter().chain(METHODS).map(str::to_owned).collect();
     let tiles = FigurePanels::Tiles(Tiles { is_paired: false, heads, rows: tiles });
@@ -154,7 +155,7 @@ fn pictured(
         let captions = [format!("stress {}", significant(*stress, 4))].into_iter().chain(printed).collect();
         tiles.push(tile(&form, true, distances, captions));
     }
-    Ok(TileRow { name: specimen.name().to_owned(), tiles })
+    Ok(TileRow { name: specimen.shape.name.clone(), tiles })
 }
 
 fn values(runs: &Runs) -> Vec<f64> {

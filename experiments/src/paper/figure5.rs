@@ -59,7 +59,7 @@ pub(crate) fn figure5a(context: &Context<'_>) -> Result<Record> {
         ];
         let x = Axis::linear(&format!("rank n₁ of n = {n} samples"));
         context.observer.step();
-        Ok((plot(specimen.name(), x, error_axis(), vec![low_rank, cur]), numbers))
+        Ok((plot(&specimen.shape.name, x, error_axis(), vec![low_rank, cur]), numbers))
     })
 }
 
@@ -89,7 +89,8 @@ pub(crate) fn figure5b(context: &Context<'_>) -> Result<Record> {
             Mark { x: recommended(context, specimen)?, name: "α = σ₁³ (paper)".to_owned() },
             Mark { x: RpiAlpha::default().relative(1.0), name: "10⁻¹⁰ (default)".to_owned() },
         ];
-        let plain = plot(specimen.name(), Axis::log("α / σ₁⁴", ""), error_axis(), vec![rpi, none, low_rank]);
+        let plain =
+            plot(&specimen.shape.name, Axis::log("α / σ₁⁴", ""), error_axis(), vec![rpi, none, low_rank]);
         context.observer.step();
         Ok((Plot { marks, ..plain }, numbers))
     })

@@ -37,6 +37,6 @@ pub(crate) fn figure6(context: &Context<'_>) -> Result<Record> {
         let mut numbers: Vec<(String, f64)> = curves[1..].iter().map(over_best).collect();
         let others: Vec<&Series> = curves[2..].iter().collect();
         numbers.push(("NMDS lowest".to_owned(), share_lowest(&curves[1], &others)));
-        Ok((plot(specimen.name(), Axis::linear("samples n"), error_axis(), curves), numbers))
+        Ok((plot(&specimen.shape.name, Axis::linear("samples n"), error_axis(), curves), numbers))
     })
 }

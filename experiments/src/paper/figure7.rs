@@ -40,7 +40,7 @@ pub(crate) fn figure7(context: &Context<'_>) -> Result<Record> {
         numbers.push(("plateau".to_owned(), landmark / half));
         numbers.push(("Landmark MDS over NMDS".to_owned(), landmark / last(&curves[0])));
         let y = Axis::log("stress above classical MDS", "mesh units²");
-        Ok((plot(specimen.name(), Axis::linear("samples n"), y, curves), numbers))
+        Ok((plot(&specimen.shape.name, Axis::linear("samples n"), y, curves), numbers))
     })
 }
 

@@ -57,7 +57,7 @@ pub(crate) fn figure8(context: &Context<'_>) -> Result<Record> {
     let over =
         |(name, i): (&str, usize)| (format!("{name} over low-rank"), last(&curves[i]) / last(&curves[0]));
     let measured = [("none", 1), ("RPI", 2), ("SMDS", 3)].into_iter().map(over).collect();
-    let title = format!("{}, {} vertices", specimen.name(), specimen.n_vertices());
+    let title = format!("{}, {} vertices", specimen.shape.name, specimen.n_vertices());
     let plot = plot(title, Axis::linear("samples n"), Axis::log("time without distances", "seconds"), curves);
     Ok(Record { figures: vec![plots("curves", vec![plot])], ..context.record(&[], measured) })
 }

@@ -38,7 +38,7 @@ impl ShapeSearch {
 
     /// The query of a mesh file, which may be one of the index.
     pub fn of_file(&self, query: Query, path: &Path) -> Query {
-        let home = Home::new(self.index().path()).ok();
+        let home = Home::new(&self.index().path).ok();
         Query { place: home.map(|home| home.file_text(path)), ..query }
     }
 

@@ -220,7 +220,7 @@ impl BuildReport {
         for (listed, hash) in files {
             match (others.remove(&listed.file.name), hash) {
                 (Some(entry), Ok(hash)) if entry.content == *hash && same_source(&entry, listed) => {
-                    found.note_dropped(index.path(), &entry);
+                    found.note_dropped(&index.path, &entry);
                 }
                 _ => return Ok(false),
             }

@@ -95,10 +95,10 @@ pub fn merge_indexes(inputs: &[PathBuf], path: &Path, observer: &dyn Observer) -
     let indexes = inputs.iter().map(|input| Index::open(input)).collect::<Result<Vec<_>, _>>()?;
     let Some(first) = indexes.first() else { return Ok(MergeReport { n_shapes: 0, repeated: 0 }) };
     for index in &indexes {
-        index.expect_options(first.options())?;
+        index.expect_options(&first.options)?;
     }
     let home = Home::new(path)?;
-    let mut writer = IndexWriter::build(path, first.options())?;
+    let mut writer = IndexWriter::build(path, &first.options)?;
     writer.clear()?;
     let mut repeated = 0;
     observer.begin("merging", indexes.iter().map(Index::len).sum());
@@ -107,12 +107,12 @@ pub fn merge_indexes(inputs: &[PathBuf], path: &Path, observer: &dyn Observer) -
             observer.step();
             match writer.entry(&shape.entry.id)? {
                 None => {
-                    let path = home.text_of(index.path(), &shape.entry.path);
+                    let path = home.text_of(&index.path, &shape.entry.path);
                     writer.put(&[Shape { entry: Entry { path, ..shape.entry }, ..shape }])?;
                 }
                 Some(entry) if entry.content == shape.entry.content => repeated += 1,
                 Some(entry) => {
-                    return Err(IndexError::Conflict { id: entry.id, path: index.path().to_owned() });
+                    return Err(IndexError::Conflict { id: entry.id, path: index.path.clone() });
                 }
             }
             Ok(())

@@ -295,7 +295,7 @@ fn candidates(search: &ShapeSearch) -> Result<Vec<Candidate>, Error> {
             candidates.push(Candidate { files, links, fused, invariants: None });
         }
         let Candidate { files, links, .. } = &mut candidates[number];
-        let file = FileId::of(&mesh_path(search.index().path(), &entry.path)).ok();
+        let file = FileId::of(&mesh_path(&search.index().path, &entry.path)).ok();
         match file
             .map(|file| *of_file.entry((number, file)).or_insert(files.len()))
             .filter(|place| *place < files.len())
@@ -401,11 +401,11 @@ impl<'a> Places<'a> {
         let DuplicateOptions { keep, reference, folders, .. } = options;
         let folder = if let Keep::In(folder) = keep { Some(canonical(folder)?) } else { None };
         let (reference, folders) = (all(reference)?, all(folders)?);
-        Ok(Self { search, home: Home::new(search.index().path())?, keep, folder, reference, folders })
+        Ok(Self { search, home: Home::new(&search.index().path)?, keep, folder, reference, folders })
     }
 
     fn file(&self, entry: &Entry, links: &[String], geometry: Option<&MeshGeometry>) -> DuplicateFile {
-        let path = mesh_path(self.search.index().path(), &entry.path);
+        let path = mesh_path(&self.search.index().path, &entry.path);
         let modified = std::fs::metadata(&path).ok().and_then(|facts| facts.modified().ok());
         let since_1970 = modified.and_then(|time| time.duration_since(std::time::UNIX_EPOCH).ok());
         let place = absolute(&path).unwrap_or_else(|_| path.clone());

@@ -37,7 +37,7 @@ impl ShapeSearch {
 
     /// The mesh of a shape in space, if its file can be read and is unchanged.
     pub(super) fn geometry(&self, entry: &Entry) -> Option<MeshGeometry> {
-        let mesh = read_unchanged(self.index().path(), entry).ok()?;
+        let mesh = read_unchanged(&self.index().path, entry).ok()?;
         MeshGeometry::new(&mesh, Some(entry.content))
     }
 

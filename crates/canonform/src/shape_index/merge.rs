@@ -68,7 +68,7 @@ mod tests {
             serde_json::from_str(&serde_json::to_string(&answer).unwrap()).unwrap()
         });
         let answers = answers.collect();
-        let indexes: Vec<Index> = shards.iter().map(|s| Index::open(s.index().path()).unwrap()).collect();
+        let indexes: Vec<Index> = shards.iter().map(|s| Index::open(&s.index().path).unwrap()).collect();
         merge_answers(query, answers, class_threshold(&indexes).unwrap(), k)
     }
 

@@ -64,7 +64,8 @@ pub(super) fn absolute(file: &Path) -> Result<PathBuf, Error> {
 /// A folder, an archive or a list of meshes, as seen from an index.
 #[derive(Debug, Clone)]
 pub(super) struct Root<'a> {
-    given: &'a Path,
+    /// As it was named.
+    pub(super) given: &'a Path,
     canonical: PathBuf,
     home: &'a Home,
     is_archive: bool,
@@ -75,11 +76,6 @@ impl<'a> Root<'a> {
     /// [`Error::File`] if the folder does not exist.
     pub(super) fn new(given: &'a Path, home: &'a Home) -> Result<Self, Error> {
         Ok(Self { given, canonical: canonical(given)?, home, is_archive: given.is_file() })
-    }
-
-    /// The folder as it was named.
-    pub(super) fn given(&self) -> &Path {
-        self.given
     }
 
     /// The text for a file below this folder, or named by this list. It does not depend on how the folder was named.

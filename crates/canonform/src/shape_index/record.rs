@@ -11,10 +11,8 @@ use crate::form::DescribeOptions;
 
 /// How the shapes of an index were described.
 pub(super) fn options_of(index: &Index) -> Result<DescribeOptions, Error> {
-    let options = DescribeOptions::from_text(index.options()).ok_or_else(|| Error::UnknownOptions {
-        path: index.path().to_owned(),
-        options: index.options().to_owned(),
-    })?;
+    let options = DescribeOptions::from_text(&index.options)
+        .ok_or_else(|| Error::UnknownOptions { path: index.path.clone(), options: index.options.clone() })?;
     options.validate()?;
     Ok(options)
 }

@@ -126,7 +126,7 @@ impl ShapeSearch {
     /// [`Error::MeshGone`] and [`Error::MeshChanged`] unless the file still has the content that was indexed;
     /// [`Error::Index`], [`Error::Mesh`].
     pub fn mesh(&self, id: &str) -> Result<TriMesh, Error> {
-        read_unchanged(self.index.path(), &self.index.entry(id)?)
+        read_unchanged(&self.index.path, &self.index.entry(id)?)
     }
 
     /// Names and contents of the files of the mesh of a shape, if they still have the content that was indexed.
@@ -134,7 +134,7 @@ impl ShapeSearch {
     /// # Errors
     /// As those of [`mesh`](Self::mesh), but nothing is parsed.
     pub fn files(&self, id: &str) -> Result<Vec<(PathBuf, Vec<u8>)>, Error> {
-        unchanged_files(self.index.path(), &self.index.entry(id)?)
+        unchanged_files(&self.index.path, &self.index.entry(id)?)
     }
 
     /// The shape that a text names, unless there is a file of this name, which goes first.
@@ -360,7 +360,7 @@ impl ShapeSearch {
         let kind = SignatureKind::FormSpectrum;
         let found = self.index.vector(id, &format!("signature_{}", kind.name()))?;
         let what = format_args!("{} signature", kind.name());
-        let found = found.ok_or_else(|| missing(self.index.path(), id, what))?;
+        let found = found.ok_or_else(|| missing(&self.index.path, id, what))?;
         Ok(OrderedBy::Forms { form_distance: ShapeMetric::fused(spectrum, &found) / ShapeMetric::unit(kind) })
     }
 
@@ -371,7 +371,7 @@ impl ShapeSearch {
     fn fit(&self, part: &PartDiscAreas, id: &str) -> Result<OrderedBy, Error> {
         let areas =
             self.index.vector(id, "disc_areas")?.and_then(|numbers| DiscAreas::from_numbers(&numbers));
-        let areas = areas.ok_or_else(|| missing(self.index.path(), id, "disc areas"))?;
+        let areas = areas.ok_or_else(|| missing(&self.index.path, id, "disc areas"))?;
         let PartDistance { distance, share } = part.distance(&areas);
         Ok(OrderedBy::Part { part_distance: distance, part_share: share })
     }
@@ -599,7 +599,7 @@ mod tests {
         let (_folder, search) = indexed(&DescribeOptions::default());
         let old = tempfile::tempdir().unwrap();
         let path = old.path().join("old.canonform");
-        let mut writer = IndexWriter::build(&path, search.index().options()).unwrap();
+        let mut writer = IndexWriter::build(&path, &search.index().options).unwrap();
         search
             .index()
             .each(|mut shape| {

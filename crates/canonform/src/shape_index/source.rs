@@ -128,7 +128,7 @@ pub(super) struct Listing {
 impl Listing {
     /// The meshes of a folder; files that differ only in their extensions have them in their names.
     pub(super) fn from_folder(root: &Root<'_>, labels: Option<&LabelSource>) -> Result<Self, Error> {
-        let Dataset { shapes, labelled_by, skipped } = Dataset::read(root.given(), labels)?;
+        let Dataset { shapes, labelled_by, skipped } = Dataset::read(root.given, labels)?;
         let stored = shapes.iter().map(|shape| root.text(&shape.path)).collect();
         let listing = Self::new(shapes, (stored, &[]), skipped, labels, |_| false)?;
         let is_unlabelled = |listed: &Listed| listed.file.label.is_empty();

@@ -84,7 +84,7 @@ impl Index {
     /// # Errors
     /// [`ExportError`].
     pub fn export(&self, out: &mut dyn Write) -> Result<(), ExportError> {
-        let (options, shapes) = (self.options(), self.len());
+        let (options, shapes) = (&self.options, self.len());
         write_line(out, &object! { format: "canonform-index", version: 3, options, shapes })?;
         self.each(|shape| write_line(out, &shape).map_err(ExportError::from))
     }

@@ -15,7 +15,7 @@ use crate::database::to_bytes;
 
 pub(super) fn write(index: &Index, file: &mut File) -> Result<(), ExportError> {
     let mut archive = Archive { zip: ZipWriter::new(BufWriter::with_capacity(1 << 16, file)) };
-    let (n, options) = (index.len(), index.options());
+    let (n, options) = (index.len(), &index.options);
     let longest = options.chars().count().max(1);
     archive.begin("options", &format!("<U{longest}"), &[], 4 * longest)?;
     archive.put(&text(options, longest))?;

@@ -23,7 +23,7 @@ const GROUP: usize = 1024;
 pub(super) fn write(index: &Index, file: &mut File) -> Result<(), ExportError> {
     let columns = columns(index)?;
     let schema = parse_message_type(&schema(&columns)).map_err(failed)?.into();
-    let options = KeyValue::new("canonform.options".to_owned(), index.options().to_owned());
+    let options = KeyValue::new("canonform.options".to_owned(), index.options.clone());
     let properties = WriterProperties::builder()
         .set_compression(Compression::SNAPPY)
         // Numbers hardly repeat.

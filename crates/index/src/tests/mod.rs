@@ -104,7 +104,7 @@ pub(super) fn faults(path: &Path) -> Vec<String> {
 fn shapes_round_trip() {
     let folder = Folder::new();
     let index = Index::open(&folder.index("a", 20)).unwrap();
-    assert_eq!((index.len(), index.options(), index.is_finished), (20, OPTIONS, true));
+    assert_eq!((index.len(), index.options.as_str(), index.is_finished), (20, OPTIONS, true));
     for i in 0..20 {
         assert_eq!(index.entry(&id(i)).unwrap(), shape(i).entry);
         assert_eq!(index.shape(&id(i)).unwrap(), shape(i));

@@ -47,7 +47,7 @@ pub(super) fn info(path: &Path, common: &Common) -> Result<ExitCode> {
         format: FORMAT_VERSION,
         n_shapes,
         n_bytes: index.n_bytes(),
-        options: serde_json::from_str(index.options()).unwrap_or_else(|_| Value::from(index.options())),
+        options: serde_json::from_str(&index.options).unwrap_or_else(|_| Value::from(index.options.as_str())),
         // Shapes of each class; those without one have an empty key.
         classes,
         unlabelled,
