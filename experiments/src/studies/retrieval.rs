@@ -150,12 +150,15 @@ fn rankings(
         }
     }
     let options = &context.options;
-    let mut ranked = |ranking: &str, rankings: &KeptRankings, least: Option<f64>| -> Result<Vec<Cell>> {
+    let mut ranked = |ranking: &str,
+                      rankings: &Vec<Vec<Neighbor>>,
+                      least: Option<f64>|
+     -> Result<Vec<Cell>> {
         let scores = QueryScores::new(rankings, labels)?;
         let interval = bootstrap(&scores, labels, &BootstrapOptions::default())?;
         let [micro, by_class] = [Averaging::Micro, Averaging::Macro].map(|of| scores.mean(labels, of));
         let queries = || (0..labels.n_points()).filter(|i| labels.is_query(*i));
-        let voted = |i: &usize| vote(&rankings.0[*i], |i| labels.class(i), options.voters, None).class();
+        let voted = |i: &usize| vote(&rankings[*i], |i| labels.class(i), options.voters, None).class();
         let right = queries().filter(|i| voted(i) == Some(labels.class(*i))).count();
         let knn = right as f64 / queries().count().max(1) as f64;
         let of =
@@ -176,8 +179,8 @@ fn rankings(
         }
         Ok(row)
     };
-    let plain = ranked("plain", &KeptRankings::new(distances), Some(least))?;
-    Ok([plain, ranked("graph", &KeptRankings::new(&GraphRankings::new(distances)), None)?])
+    let plain = ranked("plain", &all_rankings(distances), Some(least))?;
+    Ok([plain, ranked("graph", &all_rankings(&GraphRankings::new(distances)), None)?])
 }
 
 /// The table of all rankings.
@@ -273,23 +276,9 @@ fn classify(
     Ok((Figure { part: "confusion".to_owned(), caption, panels }, [wrong, unknown]))
 }
 
-/// Rankings of all shapes, made once.
-struct KeptRankings(Vec<Vec<Neighbor>>);
-
-impl KeptRankings {
-    fn new(rankings: &impl Rankings) -> Self {
-        Self((0..rankings.n_points()).into_par_iter().map(|query| rankings.ranking(query)).collect())
-    }
-}
-
-impl Rankings for KeptRankings {
-    fn n_points(&self) -> usize {
-        self.0.len()
-    }
-
-    fn ranking(&self, query: usize) -> Vec<Neighbor> {
-        self.0[query].clone()
-    }
+/// The rankings of all shapes, made once.
+fn all_rankings(rankings: &impl Rankings) -> Vec<Vec<Neighbor>> {
+    (0..rankings.n_points()).into_par_iter().map(|query| rankings.ranking(query)).collect()
 }
 
 /// The collection without one class.

@@ -5,7 +5,7 @@ use mesh::TriMesh;
 
 use super::coloring::{Coloring, ISOLINE_LIGHT};
 use super::draw::render;
-use super::options::{Background, RenderOptions};
+use super::options::RenderOptions;
 use super::text::{Label, empty, paint, type_size, write_labels};
 use crate::color::{ColorMap, from_linear, to_linear, value_range};
 use crate::error::ReportError;
@@ -32,7 +32,7 @@ pub fn annotated(
     let mut image = render(mesh, &room, observer)?;
     write_labels(&mut image, mesh, &room, labels, &observer.budget())?;
     let Some(bar) = bar else { return Ok(image) };
-    let mut image = bar.with_room(&image, options.background);
+    let mut image = image.beside(&RgbaImage::new(bar.width, bar.size[1], empty(options.background)));
     bar.paint(&mut image);
     paint(&mut image, options.background, (0.0, 1), "a colour bar", |area| {
         let [left, top, height] = [bar.left(), bar.top, bar.height].map(|at| at as i32);
@@ -89,11 +89,6 @@ impl ColorBar {
         (self.size[0] - self.width) as usize + (0.3 * self.em) as usize
     }
 
-    /// The image of the mesh, extended to the right by empty space for the bar.
-    fn with_room(&self, mesh: &RgbaImage, background: Background) -> RgbaImage {
-        mesh.beside(&RgbaImage::new(self.width, self.size[1], empty(background)))
-    }
-
     /// Fills the bar with the colour map and its isolines.
     fn paint(&self, image: &mut RgbaImage) {
         let (left, right) = (self.left(), self.left() + self.em as usize);
@@ -115,6 +110,7 @@ impl ColorBar {
 
 #[cfg(test)]
 mod tests {
+    use super::super::options::Background;
     use super::*;
     use crate::tests::meshes::sphere;
 
