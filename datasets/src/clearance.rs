@@ -28,7 +28,7 @@ struct Ball {
 /// Limbs are approximated by balls along the bones. A pair of balls counts if the balls are separate in the rest pose
 /// and do not belong to the same bend. The cost is quadratic in the number of balls, well under a millisecond.
 pub(crate) fn entanglement(posed: &PosedSkeleton<'_>) -> f64 {
-    let skeleton = posed.skeleton();
+    let skeleton = posed.skeleton;
     let balls: Vec<Ball> = (0..skeleton.chains.len()).flat_map(|chain| balls(posed, chain)).collect();
     let mut worst = f64::NEG_INFINITY;
     for (i, a) in balls.iter().enumerate() {
@@ -47,7 +47,7 @@ pub(crate) fn entanglement(posed: &PosedSkeleton<'_>) -> f64 {
 }
 
 fn balls<'a>(posed: &'a PosedSkeleton<'_>, chain: usize) -> impl Iterator<Item = Ball> + 'a {
-    let bones = &posed.skeleton().chains[chain];
+    let bones = &posed.skeleton.chains[chain];
     (0..N_BALLS).map(move |i| {
         let arc = bones.length() * (i as f64 + 0.5) / N_BALLS as f64;
         let (rest, posed) = (axis_point(bones, arc), posed.axis_point(chain, arc));

@@ -117,18 +117,12 @@ impl Blob {
     }
 }
 
-/// How a part changes the body so far.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Effect {
-    Add,
-    Carve,
-}
-
 /// Blobs that belong together: an arm, a head.
 #[derive(Debug, Clone)]
 pub(crate) struct BodyPart {
     blobs: Vec<Blob>,
-    effect: Effect,
+    /// Whether it is subtracted from the body so far, not added.
+    carves: bool,
     /// Blending radius of the union with the parts before it.
     blend: f64,
     center: Point3<f64>,
@@ -142,12 +136,7 @@ pub(crate) struct BodyPart {
 impl BodyPart {
     /// A part that is added to the body.
     pub(crate) fn added(blobs: Vec<Blob>) -> Self {
-        Self::new(Effect::Add, blobs)
-    }
-
-    /// A part that is subtracted from the body so far.
-    pub(crate) fn carved(blobs: Vec<Blob>) -> Self {
-        Self::new(Effect::Carve, blobs)
+        Self::new(false, blobs)
     }
 
     /// Sets the blending radius of the union with the parts before it.
@@ -155,7 +144,8 @@ impl BodyPart {
         Self { blend: reach, ..self }
     }
 
-    fn new(effect: Effect, blobs: Vec<Blob>) -> Self {
+    /// A part that is added, or that `carves`: it is subtracted from the body so far.
+    pub(crate) fn new(carves: bool, blobs: Vec<Blob>) -> Self {
         let ends = || blobs.iter().flat_map(|b| b.ends);
         let n = (2 * blobs.len()).max(1) as f64;
         let center = Point3::from(ends().fold(Vector3::zeros(), |sum, p| sum + p.coords) / n);
@@ -163,7 +153,7 @@ impl BodyPart {
         let radius = blobs.iter().map(reach).fold(0.0, f64::max);
         let scale = blobs.iter().map(|b| b.axis.scale).fold(1.0, f64::min);
         let slack = blobs.iter().map(|b| 0.25 * b.blend).sum();
-        Self { blobs, effect, blend: 0.0, center, radius, scale, slack }
+        Self { blobs, carves, blend: 0.0, center, radius, scale, slack }
     }
 
     #[inline]
@@ -177,10 +167,7 @@ impl BodyPart {
     /// blending radius a smooth union returns the smaller operand.
     #[inline]
     fn may_change(&self, p: Point3<f64>, so_far: f64) -> bool {
-        let operand = match self.effect {
-            Effect::Add => so_far,
-            Effect::Carve => -so_far,
-        };
+        let operand = if self.carves { -so_far } else { so_far };
         self.lower_bound(p) < operand + self.blend
     }
 
@@ -248,9 +235,9 @@ impl ImplicitBody {
         let mut sum = (f64::INFINITY, Vector3::zeros());
         for part in &self.parts {
             if part.may_change(folded, sum.0) {
-                sum = match part.effect {
-                    Effect::Add => smooth_min(sum, part.sample(folded), part.blend),
-                    Effect::Carve => negated(smooth_min(negated(sum), part.sample(folded), part.blend)),
+                sum = match part.carves {
+                    false => smooth_min(sum, part.sample(folded), part.blend),
+                    true => negated(smooth_min(negated(sum), part.sample(folded), part.blend)),
                 };
             }
         }
@@ -262,7 +249,7 @@ impl ImplicitBody {
 
     /// Center, in the plane of symmetry if there is one, and radius of a ball around the body.
     pub(crate) fn bounding_ball(&self) -> (Point3<f64>, f64) {
-        let added = || self.parts.iter().filter(|part| part.effect == Effect::Add);
+        let added = || self.parts.iter().filter(|part| !part.carves);
         let n = added().count().max(1) as f64;
         let mut center = Point3::from(added().fold(Vector3::zeros(), |sum, p| sum + p.center.coords) / n);
         if self.is_symmetric {
@@ -299,7 +286,7 @@ mod tests {
                 Blob::cone([5.0, 0.0, 0.0], 1.0, [9.0, 0.0, 1.0], 0.5).blend(0.7),
             ])
             .blend(1.0),
-            BodyPart::carved(vec![Blob::ball([0.0, -3.0, 3.0], 1.5)]).blend(0.5),
+            BodyPart::new(true, vec![Blob::ball([0.0, -3.0, 3.0], 1.5)]).blend(0.5),
         ])
     }
 

@@ -146,8 +146,7 @@ impl BodyDescription {
 impl PartData {
     fn part(&self) -> BodyPart {
         let blobs = self.blobs.iter().flat_map(BlobData::blobs).collect();
-        let part = if self.carved { BodyPart::carved(blobs) } else { BodyPart::added(blobs) };
-        part.blend(self.blend)
+        BodyPart::new(self.carved, blobs).blend(self.blend)
     }
 }
 

@@ -98,7 +98,8 @@ impl Motion {
 /// A skeleton bent into a pose: a rigid motion for every place along every chain.
 #[derive(Debug, Clone)]
 pub(crate) struct PosedSkeleton<'a> {
-    skeleton: &'a Skeleton,
+    /// The skeleton at rest.
+    pub(crate) skeleton: &'a Skeleton,
     /// Motions at equal steps along each chain.
     motions: Vec<Vec<Motion>>,
 }
@@ -149,11 +150,6 @@ impl<'a> PosedSkeleton<'a> {
             motions.push(plain.iter().enumerate().map(at).collect());
         }
         Self { motions, ..self }
-    }
-
-    /// The skeleton at rest.
-    pub(crate) fn skeleton(&self) -> &'a Skeleton {
-        self.skeleton
     }
 
     /// The posed point of a chain's axis at length `arc`.

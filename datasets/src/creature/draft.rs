@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use nalgebra::{Matrix3, Point3, Vector3};
 
-use crate::implicit::{Blob, BodyPart, ImplicitBody};
+use crate::implicit::{Blob, BodyPart};
 use crate::skeleton::{BoneNode, Joint, Skeleton, node};
 use crate::trig::sin_cos;
 
@@ -79,7 +79,8 @@ impl Limb {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Draft {
     pub(crate) skeleton: Skeleton,
-    parts: Vec<BodyPart>,
+    /// What makes up the body.
+    pub(crate) parts: Vec<BodyPart>,
     /// Number of handles.
     pub(crate) genus: usize,
     /// The smallest radius.
@@ -87,11 +88,6 @@ pub(crate) struct Draft {
 }
 
 impl Draft {
-    /// The body that the parts make up.
-    pub(crate) fn body(&self) -> ImplicitBody {
-        ImplicitBody::whole(self.parts.clone())
-    }
-
     /// Adds a part that has no bones of its own; its smallest radius is `finest`.
     pub(crate) fn skin(&mut self, part: BodyPart, finest: f64) {
         self.finest = Some(self.finest.map_or(finest, |least| least.min(finest)));

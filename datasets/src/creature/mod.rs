@@ -15,6 +15,7 @@ use crate::articulated::{ArticulatedOptions, LabeledShape, bent};
 use crate::clearance::entanglement;
 use crate::error::DatasetError;
 use crate::extract::{Lattice, extract};
+use crate::implicit::ImplicitBody;
 use crate::model::BodyModel;
 use crate::pose::{Pose, PosedSkeleton};
 use crate::shape::genus;
@@ -152,18 +153,17 @@ fn model(family: usize, options: &CreatureOptions, budget: &Budget) -> Result<Bo
 
 /// The model of a body with random poses; `None` if its limbs touch at rest.
 fn measured(draft: Draft, stream: &mut Stream, budget: &Budget) -> Result<Option<BodyModel>, DatasetError> {
-    let body = draft.body();
-    let Some(finest) = draft.finest else { return Ok(None) };
+    let Draft { skeleton, parts, genus: n_handles, finest: Some(finest) } = draft else { return Ok(None) };
+    let body = ImplicitBody::whole(parts);
     let spacing = SPACING * finest;
     let lattice = Lattice { rotation: Matrix3::identity(), shift: Vector3::repeat(0.37), spacing };
     let raw = extract(&body, lattice, budget)?;
-    if genus(&raw) != Some(draft.genus) {
+    if genus(&raw) != Some(n_handles) {
         return Ok(None);
     }
-    let mut poses = vec![Pose::rest(&draft.skeleton)];
-    poses.extend((1..N_POSES).map(|_| typical_pose(&draft.skeleton, stream)));
-    let Draft { skeleton, genus, .. } = draft;
-    Ok(Some(BodyModel { area: raw.area(), body, skeleton, poses, genus, spacing }))
+    let mut poses = vec![Pose::rest(&skeleton)];
+    poses.extend((1..N_POSES).map(|_| typical_pose(&skeleton, stream)));
+    Ok(Some(BodyModel { area: raw.area(), body, skeleton, poses, genus: n_handles, spacing }))
 }
 
 /// A random pose without intersecting limbs; after a few draws, the last one.

@@ -275,8 +275,7 @@ impl SkinPlan {
             Blob::cone(a, ra, b, rb).blend(self.join)
         };
         let cones = (0..n as usize).map(cone).collect();
-        let part = if self.carved { BodyPart::carved(cones) } else { BodyPart::added(cones) };
-        part.blend(names.value(&self.blend))
+        BodyPart::new(self.carved, cones).blend(names.value(&self.blend))
     }
 }
 
