@@ -57,31 +57,24 @@ fn radius(i: usize) -> f64 {
     RANGE[0] * (RANGE[1] / RANGE[0]).powf(i as f64 / (RADII - 1) as f64)
 }
 
-/// Where a disc counts points in part.
-#[derive(Debug, Clone, Copy)]
-struct Rim {
-    inner: f64,
-    outer: f64,
-}
-
-impl Rim {
-    fn of(radius: f64) -> Self {
-        Self { inner: radius * (1.0 - SOFT), outer: radius * (1.0 + SOFT) }
-    }
+/// From where and to where a disc counts points in part.
+fn rim(radius: f64) -> [f64; 2] {
+    [radius * (1.0 - SOFT), radius * (1.0 + SOFT)]
 }
 
 /// The masses of discs of ascending radii, as those of [`ByDistance::within`], without sorting the points.
-fn disc_masses(rims: &[Rim; RADII], points: impl Iterator<Item = (f64, f64)>) -> [f64; RADII] {
-    let inners = rims.map(|rim| rim.inner);
+fn disc_masses(rims: &[[f64; 2]; RADII], points: impl Iterator<Item = (f64, f64)>) -> [f64; RADII] {
+    let inners = rims.map(|[inner, _]| inner);
     // Sums of the masses that a disc and all larger ones count fully, and of what each counts of the points at its rim.
     let (mut sums, mut at_rim) = ([0.0; RADII + 1], [0.0; RADII]);
     for (d, m) in points {
         let first = inners.iter().filter(|inner| **inner < d).count();
         sums[first] += m;
         let mut i = first;
-        while i > 0 && rims[i - 1].outer > d {
+        while i > 0 && rims[i - 1][1] > d {
             i -= 1;
-            at_rim[i] += m * (rims[i].outer - d) / (rims[i].outer - rims[i].inner);
+            let [inner, outer] = rims[i];
+            at_rim[i] += m * (outer - d) / (outer - inner);
         }
     }
     let mut sum = 0.0;
@@ -115,7 +108,7 @@ impl ByDistance {
     /// The mass of a disc of radius `r`. Points near its rim count in part: fully at `r (1 - SOFT)`, not at all at
     /// `r (1 + SOFT)`, and linearly between.
     fn within(&self, r: f64) -> f64 {
-        let Rim { inner, outer } = Rim::of(r);
+        let [inner, outer] = rim(r);
         let [inside, rim] =
             [inner, outer].map(|limit| self.sums[self.distances.partition_point(|d| *d <= limit)]);
         inside[0] + (outer * (rim[0] - inside[0]) - (rim[1] - inside[1])) / (outer - inner)
@@ -151,7 +144,7 @@ impl DiscAreas {
     /// [`DescriptorError::Linalg`].
     pub fn new(distances: &LandmarkDistances, masses: &[f64]) -> Result<Self, DescriptorError> {
         let area = check(distances, masses)?;
-        let rims: [Rim; RADII] = std::array::from_fn(|i| Rim::of(radius(i) * area.sqrt()));
+        let rims = std::array::from_fn(|i| rim(radius(i) * area.sqrt()));
         let row = |landmark| {
             let column = distances.column(landmark)?;
             let points = column.iter().copied().zip(masses.iter().copied());
@@ -292,7 +285,7 @@ mod tests {
     fn discs_have_the_same_mass_without_sorting() {
         let points = || (0..3000).map(|i| (f64::from(i * 7919 % 3000) / 1000.0, 1.0 + f64::from(i % 5)));
         let sorted = ByDistance::new(points());
-        let found = disc_masses(&std::array::from_fn(|i| Rim::of(radius(i))), points());
+        let found = disc_masses(&std::array::from_fn(|i| rim(radius(i))), points());
         for (i, mass) in found.into_iter().enumerate() {
             let expected = sorted.within(radius(i));
             assert!((mass - expected).abs() < 1e-9 * expected, "{i}: {mass} {expected}");

@@ -19,5 +19,4 @@ pub use geodesic_spectrum::geodesic_spectrum;
 pub(crate) use geodesic_spectrum::log_magnitudes;
 pub use kind::{Signature, SignatureKind};
 pub use rigid::rigid_signature;
-pub use spectral::wave_kernels;
-pub use spectral::{heat_kernel_signature, shape_dna, wave_kernel_signature};
+pub use spectral::{heat_kernel_signature, shape_dna, wave_kernel_signature, wave_kernels};
