@@ -47,12 +47,12 @@ pub fn axis_deviation(a: [f64; 3], b: [f64; 3]) -> f64 {
 /// takes the first surface, at unit area, onto the second, at unit area: with a reflection only if the surfaces fit decisively
 /// better.
 pub fn align_surfaces(a: &RigidSurface, b: &RigidSurface) -> Option<Alignment> {
-    if axis_deviation(a.axis_std(), b.axis_std()) > MAX_DEVIATION {
+    if axis_deviation(a.axis_std, b.axis_std) > MAX_DEVIATION {
         return None;
     }
     let start = |by| Some(align_points(a.points()?, b.points()?, by));
     let [proper, reflected] = [start(Reflections::Forbid)?, start(Reflections::Require)?];
-    let turnable = equal_axes(a.axis_std(), b.axis_std()) != [false; 2];
+    let turnable = equal_axes(a.axis_std, b.axis_std) != [false; 2];
     let are_bodies = !(a.is_mechanical() && b.is_mechanical());
     if are_bodies && !turnable && f64::min(proper.gap.rms, reflected.gap.rms) > FAR {
         return None;
@@ -118,7 +118,7 @@ fn best(a: &RigidSurface, b: &RigidSurface, start: &Similarity) -> Option<Alignm
     if best.gap.rms < if is_mechanical { COINCIDENT_RMS } else { CLOSE } {
         return Some(best);
     }
-    let equal = equal_axes(a.axis_std(), b.axis_std());
+    let equal = equal_axes(a.axis_std, b.axis_std);
     let mut turned = turned_starts(equal, &b.principal_axes()?, start);
     if is_mechanical {
         turned.extend(framed_starts(a, b, start.reflected));

@@ -16,9 +16,12 @@ const SAMPLES: usize = 2000;
 #[derive(Debug)]
 pub struct RigidSurface {
     mesh: TriMesh,
-    size: f64,
-    center: Point3<f64>,
-    axis_std: [f64; 3],
+    /// The square root of the area, in mesh units.
+    pub size: f64,
+    /// The centroid of the surface, in mesh units.
+    pub center: Point3<f64>,
+    /// Root mean square distance of the surface from its centroid along its principal axes, descending, at unit area.
+    pub axis_std: [f64; 3],
     samples: OnceLock<Vec<Point3<f64>>>,
     tree: OnceLock<TriangleTree>,
     points: OnceLock<Option<PointSet>>,
@@ -41,8 +44,7 @@ impl RigidSurface {
         Some(Self::from_parts(mesh, size, origin + centroid * size, axis_std))
     }
 
-    /// A surface again, from its [mesh](Self::mesh), [size](Self::size), [center](Self::center) and
-    /// [deviations](Self::axis_std).
+    /// A surface again, from its [mesh](Self::mesh), size, center and deviations along the axes.
     pub fn from_parts(mesh: TriMesh, size: f64, center: Point3<f64>, axis_std: [f64; 3]) -> Self {
         let (samples, tree, points, regions) = Default::default();
         Self { mesh, size, center, axis_std, samples, tree, points, regions }
@@ -51,21 +53,6 @@ impl RigidSurface {
     /// The mesh at unit area, about its centroid.
     pub fn mesh(&self) -> &TriMesh {
         &self.mesh
-    }
-
-    /// The square root of the area, in mesh units.
-    pub fn size(&self) -> f64 {
-        self.size
-    }
-
-    /// The centroid of the surface, in mesh units.
-    pub fn center(&self) -> Point3<f64> {
-        self.center
-    }
-
-    /// Root mean square distance of the surface from its centroid along its principal axes, descending, at unit area.
-    pub fn axis_std(&self) -> [f64; 3] {
-        self.axis_std
     }
 
     /// Root mean square distance of the surface from its centroid, at unit area. Noise changes it less than the size.

@@ -71,9 +71,9 @@ impl Serialize for MeshGeometry {
             content: *content,
             positions: surface.mesh().positions.iter().map(|p| (*p).into()).collect(),
             faces: surface.mesh().faces.clone(),
-            size: surface.size(),
-            center: surface.center().into(),
-            axis_std: surface.axis_std(),
+            size: surface.size,
+            center: surface.center.into(),
+            axis_std: surface.axis_std,
             farthest: *farthest,
         };
         record.serialize(out)
@@ -135,12 +135,12 @@ impl MeshGeometry {
 
     /// The square root of the area, in mesh units.
     pub fn size(&self) -> f64 {
-        self.surface.size()
+        self.surface.size
     }
 
     /// The mesh in its own units and place, without repeated positions, degenerate and duplicate faces and unused vertices.
     pub fn to_mesh(&self) -> TriMesh {
-        let place = |p: &Point3<f64>| self.surface.center() + p.coords * self.size();
+        let place = |p: &Point3<f64>| self.surface.center + p.coords * self.size();
         TriMesh {
             positions: self.mesh().positions.iter().map(place).collect(),
             faces: self.mesh().faces.clone(),
@@ -179,7 +179,7 @@ impl MeshGeometry {
                     continue;
                 };
                 number.push(VertexId::from(part.n_vertices()));
-                part.positions.push(self.surface.center() + p.coords * self.size());
+                part.positions.push(self.surface.center + p.coords * self.size());
             }
             let mut areas = vec![0.0; parts.len()];
             for (face, area) in self.mesh().faces.iter().zip(self.mesh().face_areas()) {

@@ -77,7 +77,7 @@ impl MeshGeometry {
         let volume = |euler| (self.mesh().signed_volume().abs(), euler);
         SurfaceInvariants {
             n_vertices: self.n_vertices(),
-            spreads: self.surface.axis_std(),
+            spreads: self.surface.axis_std,
             closed: euler_characteristic_if_closed(&self.mesh().topology()).map(volume),
             chords: rms_chord_error(self),
             is_mechanical,

@@ -101,7 +101,7 @@ impl Relation {
         let mut changes = Vec::new();
         if !reflected {
             let angle = nalgebra::Rotation3::from_matrix_unchecked(rotation).angle();
-            let shift = b.surface.center().coords - rotation * a.surface.center().coords * scale;
+            let shift = b.surface.center.coords - rotation * a.surface.center.coords * scale;
             if shift.norm() > MOST_ROUNDING * b.size() {
                 changes.push(Change::Moved);
             }

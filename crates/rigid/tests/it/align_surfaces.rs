@@ -58,7 +58,7 @@ fn surfaces_are_centered_at_unit_area() {
     torus.positions.iter_mut().for_each(|p| *p = *p * 25.4 + Vector3::new(300.0, -7.0, 20.0));
     let torus = surface(&torus);
     assert!((torus.mesh().area() - 1.0).abs() < 1e-12);
-    assert!((torus.center() - Point3::new(300.0, -7.0, 20.0)).norm() < 1e-9);
+    assert!((torus.center - Point3::new(300.0, -7.0, 20.0)).norm() < 1e-9);
     assert!(torus.mesh().moments().0.norm() < 1e-12);
     assert!(RigidSurface::new(TriMesh::default()).is_none());
 }
