@@ -36,7 +36,7 @@ use plane::faces_around;
 use straighten::straighten;
 use strip::{PathSection, StripPath};
 use surface::SurfacePoint;
-use visibility::{Sight, nearest_visible};
+use visibility::nearest_visible;
 
 /// A path along the surface, straight in every face it crosses.
 #[derive(Debug, Clone, PartialEq)]
@@ -168,7 +168,7 @@ impl<'a> PathTracer<'a> {
         }
         let over_link = link.map_or(f64::INFINITY, |(total, _)| total);
         let (section, end) = match nearest_visible(field, target, over_link, enough, rays) {
-            Some(Sight { end, strip }) => (PathSection::Strip(strip), end),
+            Some((end, strip)) => (PathSection::Strip(strip), end),
             None => link.map(|(_, way)| (PathSection::Link(way.length), SurfacePoint::Vertex(way.to)))?,
         };
         let mut path = StripPath { nodes: vec![target], sections: vec![section] };

@@ -11,13 +11,6 @@ use surface::SurfacePoint;
 /// Share of a length within which two are the same up to rounding.
 const SAME: f64 = 1e-12;
 
-/// A straight line to a vertex or source, and the faces it crosses.
-#[derive(Debug, Clone)]
-pub(super) struct Sight {
-    pub(super) end: SurfacePoint,
-    pub(super) strip: Strip,
-}
-
 /// The rays from a point that cross one edge after the same faces, in the plane with that point in the origin.
 #[derive(Debug, Clone, Copy)]
 struct Rays {
@@ -44,7 +37,8 @@ struct SightSearch<'a> {
 }
 
 /// Searches in all directions for the visible vertex or source over which the path to a source is shortest, if it is
-/// shorter than `known`. Stops at the first that is no longer than `enough`, and after `n_rays` bundles of rays.
+/// shorter than `known`: the end of a straight line, and the faces it crosses. Stops at the first that is no longer than
+/// `enough`, and after `n_rays` bundles of rays.
 ///
 /// Rays are followed only while they may improve the result: the distance at a point `P` of an edge with ends `A` and
 /// `B` is at least `T(A) - |AP|` and `T(B) - |BP|`, which leaves a lens around the path. If `T` is exact, so is the
@@ -55,7 +49,7 @@ pub(super) fn nearest_visible(
     known: f64,
     enough: f64,
     n_rays: &mut usize,
-) -> Option<Sight> {
+) -> Option<(SurfacePoint, Strip)> {
     let best = (known * (1.0 - SAME), None);
     let mut search =
         SightSearch { field, rays: Vec::new(), most: *n_rays, queue: NearestFirst::default(), best };
@@ -78,7 +72,7 @@ pub(super) fn nearest_visible(
     }
     strip.faces.reverse();
     strip.portals.reverse();
-    Some(Sight { end, strip })
+    Some((end, strip))
 }
 
 impl SightSearch<'_> {

@@ -18,20 +18,18 @@ const ROUNDING: f64 = 1e-9;
 /// with the smaller circle.
 pub(super) fn agreed(stars: &Stars) -> Vec<[u32; 3]> {
     let mut proposals = stars.proposals.clone();
-    proposals.sort_unstable_by(|a, b| a.face.cmp(&b.face).then(a.radius.total_cmp(&b.radius)));
+    proposals.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
     let mut counted: Vec<(usize, Proposal)> = Vec::with_capacity(proposals.len() / 3);
-    for group in proposals.chunk_by(|a, b| a.face == b.face) {
+    for group in proposals.chunk_by(|a, b| a.0 == b.0) {
         counted.push((group.len(), group[0]));
     }
-    counted.sort_unstable_by(|(n, a), (m, b)| {
-        m.cmp(n).then(a.radius.total_cmp(&b.radius)).then(a.face.cmp(&b.face))
-    });
+    counted.sort_unstable_by(|(n, a), (m, b)| m.cmp(n).then(a.1.total_cmp(&b.1)).then(a.0.cmp(&b.0)));
     let mut sectors = Sectors { stars, taken: vec![Vec::new(); stars.points.len()] };
     let mut faces: Vec<[u32; 3]> = counted
         .iter()
         .take_while(|(n, _)| *n >= FEWEST)
-        .filter(|(_, proposal)| sectors.take(proposal.face))
-        .map(|(_, proposal)| proposal.face)
+        .map(|(_, (face, _))| *face)
+        .filter(|face| sectors.take(*face))
         .collect();
     close_gaps(&mut faces, &mut sectors);
     faces.sort_unstable();

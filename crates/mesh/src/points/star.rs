@@ -20,11 +20,7 @@ const ALIKE: f64 = 0.5;
 const STEEPEST: f64 = 0.8;
 
 /// A triangle that a point proposes: its corners, ascending, and the radius of its circle.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Proposal {
-    pub(super) face: [u32; 3],
-    pub(super) radius: f64,
-}
+pub(super) type Proposal = ([u32; 3], f64);
 
 /// The triangles that every point proposes, and the directions in which it sees its neighbors.
 pub(super) struct Stars {
@@ -74,7 +70,7 @@ pub(super) fn stars(points: &[Point3<f64>], neighbors: &Neighbors) -> Stars {
             .map(|([a, b], radius)| {
                 let mut face = [center as u32, a, b];
                 face.sort_unstable();
-                Proposal { face, radius }
+                (face, radius)
             })
             .collect::<Vec<_>>()
     };
