@@ -6,7 +6,7 @@ use geodesics::Method;
 use rayon::prelude::*;
 use surface::VertexId;
 
-use super::PreparedShape;
+use super::shapes::PreparedShape;
 use crate::sweep::mean;
 
 /// Vertices of a pair whose errors are measured.

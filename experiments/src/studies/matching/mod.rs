@@ -19,13 +19,12 @@ mod errors;
 mod shapes;
 
 use anyhow::{Context as _, Result};
-use canonform::Surface;
 use canonform::maps::{CorrespondOptions, MappedSurface};
 use report::Record;
 use report::record::{Axis, Mark, Plot};
 
 use self::errors::{JudgedMap, MappedPair};
-use self::shapes::{MapGroup, PlacedShape};
+use self::shapes::{MapGroup, PreparedShape};
 use crate::context::Context;
 use crate::sweep::{MeasuredNumbers, curve, mean, median, note, plot, plots, point, share};
 
@@ -39,9 +38,6 @@ const ALL: &str = "all";
 /// Published means on 343 pairs of people of FAUST and SCAPE, remeshed each on its own to 5,000 vertices, by methods without
 /// learning (`melzi2019` in `REFERENCES.bib`); no curve is at hand as numbers.
 const PUBLISHED: [(&str, f64); 2] = [("ZoomOut, mean", 0.0217), ("PMF, mean", 0.086)];
-
-/// A shape that is ready to be mapped.
-type PreparedShape<'a> = (&'a PlacedShape<'a>, MappedSurface<&'a Surface>);
 
 /// The name of a group, and its pairs.
 type MappedGroup<'a> = (&'a str, Vec<MappedPair>);

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 
 use anyhow::{Context as _, Result};
 use canonform::Surface;
-use canonform::maps::MapKind;
+use canonform::maps::{MapKind, MappedSurface};
 use datasets::{ArticulatedOptions, Damage, Family, RestedShape, articulated_at_rest};
 use mesh::TriMesh;
 use nalgebra::Point3;
@@ -13,6 +13,9 @@ use rigid::NearestPoints;
 use surface::VertexId;
 
 use crate::collection::{LabeledSurface, Setting, SurfaceCollection};
+
+/// A shape that is ready to be mapped.
+pub(super) type PreparedShape<'a> = (&'a PlacedShape<'a>, MappedSurface<&'a Surface>);
 
 /// Vertices of shapes that get triangles of their own, as in published comparisons.
 const REMESHED: usize = 5000;
