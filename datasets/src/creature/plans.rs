@@ -198,8 +198,7 @@ impl Plan {
         }
         let same = |name: &String| PLANS.iter().find(|plan| plan.name == *name);
         let shape = self.like.as_ref().and_then(same).unwrap_or(self);
-        let mut draft = Draft::default();
-        draft.genus = shape.handles;
+        let mut draft = Draft { genus: shape.handles, ..Draft::default() };
         draft.limb(None, &shape.trunk.limb(&names));
         for skin in &shape.skins {
             draft.skin(skin.part(&names), names.value(&skin.finest));
