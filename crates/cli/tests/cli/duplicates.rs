@@ -15,7 +15,8 @@ fn files_of_one_shape_are_one_group_and_nothing_is_changed() {
     let mesh = shapes::lopsided_torus();
     place.add("models/original.off", &mesh);
     fs::copy(place.path("models/original.off"), place.path("models/copy of original.off")).unwrap();
-    let changes: [(&str, fn(Point3<f64>) -> Point3<f64>); 3] = [
+    type Change = fn(Point3<f64>) -> Point3<f64>;
+    let changes: [(&str, Change); 3] = [
         ("turned and moved.ply", |p| Rotation3::from_euler_angles(0.4, 1.0, -0.3) * p),
         ("large.off", |p| p * 25.4),
         ("mirror image.off", |p| [-p.x, p.y, p.z].into()),
