@@ -215,8 +215,6 @@ fn welded(mesh: &TriMesh) -> TriMesh {
     TriMesh { positions: mesh.positions.clone(), faces }.without_unused_vertices()
 }
 
-/// The vertices of a face in ascending order.
-
 #[cfg(test)]
 mod tests {
     use mesh::shapes;
