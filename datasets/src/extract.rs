@@ -97,7 +97,7 @@ fn crossed_blocks(body: &ImplicitBody, lattice: Lattice, center: Point3<f64>, ra
             })
             .filter(|origin| {
                 let middle = origin.map(|x| x as f64 + 0.5 * size as f64);
-                body.sample(lattice.point(center, middle)).0.abs() <= reach
+                body.value(lattice.point(center, middle)).abs() <= reach
             })
             .collect();
     }
@@ -133,7 +133,7 @@ fn samples(body: &ImplicitBody, spacing: f64, point: &impl Fn([f64; 3]) -> Point
     let mut crossed = Vec::new();
     for middle in each(BLOCK / 2) {
         let low = middle.map(|x| 2 * x);
-        let (value, _) = body.sample(point(low.map(|x| x as f64 + 1.0)));
+        let value = body.value(point(low.map(|x| x as f64 + 1.0)));
         if value.abs() <= reach {
             crossed.push(low);
         } else {
@@ -145,7 +145,7 @@ fn samples(body: &ImplicitBody, spacing: f64, point: &impl Fn([f64; 3]) -> Point
     for low in crossed {
         for at in each(3).map(|offset| add(low, offset)) {
             if !std::mem::replace(&mut is_true[sample_index(at)], true) {
-                values[sample_index(at)] = body.sample(point(at.map(|x| x as f64))).0;
+                values[sample_index(at)] = body.value(point(at.map(|x| x as f64)));
             }
         }
     }

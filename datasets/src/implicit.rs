@@ -93,27 +93,33 @@ impl Blob {
         }
     }
 
-    /// The value, a lower bound of the distance to the blob that is exact unless the blob is flattened, and its gradient.
+    /// Vector to `p` from its foot on the axis, and the value: a lower bound of the distance to the blob,
+    /// exact unless the blob is flattened.
     ///
     /// The foot is the point where the surface normal through `p` meets the axis. A cone that loses `sin(a)`
     /// of its radius per unit of length has normals tilted by `a`, so the foot lies `rho tan(a)` before the
     /// projection of `p`, where `rho` is the distance of `p` from the axis.
     #[inline]
-    fn sample(&self, p: Point3<f64>) -> ImplicitSample {
+    fn offset_and_value(&self, p: Point3<f64>) -> (Vector3<f64>, f64) {
         let axis = &self.axis;
         let q = self.stretch(p.coords) - axis.start;
         let along = q.dot(&axis.direction);
         let rho = (q.norm_squared() - along * along).max(0.0).sqrt();
         let foot = (along - rho * axis.slope).clamp(0.0, axis.length);
         let away = q - axis.direction * foot;
+        (away, axis.scale * (away.norm() - (self.radii[0] - foot * axis.taper)))
+    }
+
+    #[inline]
+    fn sample(&self, p: Point3<f64>) -> ImplicitSample {
+        let (away, value) = self.offset_and_value(p);
         let distance = away.norm();
-        let value = axis.scale * (distance - (self.radii[0] - foot * axis.taper));
         if distance == 0.0 {
             return (value, Vector3::zeros());
         }
         let normal = away / distance;
         // The stretch is symmetric: the chain rule needs no transpose.
-        (value, self.stretch(normal) * axis.scale)
+        (value, self.stretch(normal) * self.axis.scale)
     }
 }
 
@@ -161,6 +167,14 @@ impl BodyPart {
         self.blobs
             .iter()
             .fold((f64::INFINITY, Vector3::zeros()), |sum, blob| smooth_min(sum, blob.sample(p), blob.blend))
+    }
+
+    #[inline]
+    fn value(&self, p: Point3<f64>) -> f64 {
+        self.blobs.iter().fold(f64::INFINITY, |least, blob| {
+            let value = blob.offset_and_value(p).1;
+            least.min(value) - dip(least, value, blob.blend)
+        })
     }
 
     /// Whether the part can change the value `so_far` at `p`. Skipping it otherwise is exact: beyond its
@@ -247,6 +261,20 @@ impl ImplicitBody {
         sum
     }
 
+    /// The value alone at `p`, the same as that of [`sample`](Self::sample).
+    pub(crate) fn value(&self, p: Point3<f64>) -> f64 {
+        let folded = self.folded(p);
+        let mut sum = f64::INFINITY;
+        for part in &self.parts {
+            if part.may_change(folded, sum) {
+                let (value, so_far) = (part.value(folded), if part.carves { -sum } else { sum });
+                let least = so_far.min(value) - dip(so_far, value, part.blend);
+                sum = if part.carves { -least } else { least };
+            }
+        }
+        sum
+    }
+
     /// Center, in the plane of symmetry if there is one, and radius of a ball around the body.
     pub(crate) fn bounding_ball(&self) -> (Point3<f64>, f64) {
         let added = || self.parts.iter().filter(|part| !part.carves);
@@ -323,7 +351,7 @@ mod tests {
             let slope = Vector3::from_fn(|i, _| {
                 let mut step = Vector3::zeros();
                 step[i] = h;
-                (body.sample(p + step).0 - body.sample(p - step).0) / (2.0 * h)
+                (body.value(p + step) - body.value(p - step)) / (2.0 * h)
             });
             assert!((slope - gradient).norm() < 1e-4, "{p}: {slope} {gradient}");
         }
