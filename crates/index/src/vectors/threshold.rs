@@ -43,11 +43,10 @@ impl Trial {
     }
 
     /// Compares it with some of the shapes, at most a block.
-    fn meet(&mut self, shapes: Range<usize>, vectors: &VectorTable, classes: &[String]) {
+    fn meet(&mut self, shapes: Range<usize>, vectors: &VectorTable, classes: &[String], unlimited: &[f32]) {
         let mut sqs = [0.0; BLOCK];
         let sqs = &mut sqs[..shapes.len()];
-        let unlimited = vec![f32::INFINITY; self.row.len()];
-        losses_into(&self.row, &unlimited, vectors.rows(shapes.clone()), sqs);
+        losses_into(&self.row, unlimited, vectors.rows(shapes.clone()), sqs);
         for (i, sq) in shapes.zip(sqs) {
             // The class of most does not matter, so that no names are compared.
             if *sq < self.own.max(self.foreign) && !classes[i].is_empty() && vectors.id(i) != self.id {
@@ -72,11 +71,12 @@ pub(crate) fn threshold<E>(
         trials.sort_by_key(|trial| trial.key);
         trials.truncate(TRIALS);
     })?;
+    let unlimited = vec![f32::INFINITY; trials.first().map_or(0, |trial| trial.row.len())];
     each(&mut |vectors, classes| {
         trials.par_chunks_mut(GROUP).for_each(|group| {
             for start in (0..vectors.len()).step_by(BLOCK) {
                 let shapes = start..(start + BLOCK).min(vectors.len());
-                group.iter_mut().for_each(|trial| trial.meet(shapes.clone(), vectors, classes));
+                group.iter_mut().for_each(|trial| trial.meet(shapes.clone(), vectors, classes, &unlimited));
             }
         });
     })?;
