@@ -8,6 +8,13 @@ for (const root of document.querySelectorAll('.gallery')) {
   const [shape, color, place] = ['.shape', '.color', '.views'].map((css) => root.querySelector(css));
   groups.forEach(({ name }, i) => shape.add(new Option(name, i)));
   const handles = [];
+  // Empty views keep their place, so that nothing below moves when they are drawn.
+  const added = () => {
+    const view = place.appendChild(document.createElement('div'));
+    view.className = 'view';
+    return view;
+  };
+  const places = groups[0].views.map(added);
 
   const show = () => {
     const group = groups[shape.value];
@@ -18,9 +25,7 @@ for (const root of document.querySelectorAll('.gallery')) {
         handles[i].update(shown, { title });
         return;
       }
-      const view = place.appendChild(document.createElement('div'));
-      view.className = 'view';
-      handles.push(canonform.view(view, shown, { title, linkedWith: handles[0] }));
+      handles.push(canonform.view(places[i] ?? added(), shown, { title, linkedWith: handles[0] }));
     });
   };
 
