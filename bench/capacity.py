@@ -1,8 +1,6 @@
 #!/usr/bin/env python3
 """Measures what a shape costs, and simulates the indexing of ten million shapes from that.
 
-    make bench-capacity         builds the programs, sets up the environment, writes its section of docs/benchmarks.md
-
 Needs no data: shapes are generated. The processor time of describing a shape is measured by the number of its vertices,
 the bytes of an index by the number of its shapes, search and merging among synthetic signatures as in search.py. Sizes
 of meshes are then drawn from a log-normal distribution, and shards of them are handed to workers as a scheduler would.
@@ -11,15 +9,12 @@ import heapq
 import json
 import os
 import shutil
-import subprocess
-import sys
 import tempfile
-import time
 
 import numpy as np
 
-from search import Ours, signatures
-from support import answer, arguments, machine, table, write_section
+from search import Ours, resident, signatures
+from support import CANONFORM, answer, benchmark, generate, machine, run, table
 
 SIZES = [1_000, 3_400, 10_000, 30_000, 100_000, 300_000]
 STORED = [100, 1_000, 4_000]
@@ -31,72 +26,59 @@ SHAPES = 10_000_000
 LARGEST = 1_000_000
 
 
-def processor_time(command):
-    """Processor time, elapsed time and peak memory (MB) of a program that must succeed."""
-    start = time.perf_counter()
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
-    _, status, usage = os.wait4(process.pid, 0)
-    elapsed = time.perf_counter() - start
-    process.returncode = os.waitstatus_to_exitcode(status)
-    if process.returncode:
-        sys.exit(f"{' '.join(command)} ended with {process.returncode}")
-    return usage.ru_utime + usage.ru_stime, elapsed, usage.ru_maxrss / 1000
-
-
-def describe(program, folder, sizes):
+def describe(folder, sizes):
     """Processor seconds, memory and file size per shape, for each number of vertices."""
     rows = []
     for n_vertices in sizes:
         shapes, index = os.path.join(folder, f"of{n_vertices}"), os.path.join(folder, f"of{n_vertices}.canonform")
-        answer([program, "generate", "--poses", "1", "--vertices", str(n_vertices), "-o", shapes, "--json"])
+        generate(shapes, "all", "--poses", 1, "--vertices", n_vertices)
         names = os.listdir(shapes)
+        build = [CANONFORM, "index", "build", shapes, "--threads", "1", "-q", "-o"]
         # The start of the program and the write of the file, which are paid once for an index.
-        empty = processor_time([program, "index", "build", shapes, "--shard", f"{len(names) + 1}/{len(names) + 1}",
-                                "--threads", "1", "-q", "-o", index + ".empty"])[0]
-        seconds, _, memory = processor_time([program, "index", "build", shapes, "--threads", "1", "-q", "-o", index])
+        empty = run([*build, index + ".empty", "--shard", f"{len(names) + 1}/{len(names) + 1}"])
+        built = run([*build, index])
         size = sum(os.path.getsize(os.path.join(shapes, name)) for name in names) / len(names)
-        rows.append((n_vertices, (seconds - empty) / len(names), memory, size / 1e6))
+        rows.append((n_vertices, (built.processor - empty.processor) / len(names), built.memory, size / 1e6))
         print("described %d vertices: %.3f s" % rows[-1][:2], flush=True)
     return rows
 
 
-def store(program, folder, counts):
-    """Processor seconds and bytes per shape, and seconds of a search, by the number of shapes in an index."""
+def store(folder, counts):
+    """Processor seconds per shape, bytes, seconds of a search and aligned forms, by the number of shapes in an index."""
     rows = []
     shapes = os.path.join(folder, "creatures")
     for count in counts:
-        answer([program, "generate", "--family", "creatures", "--classes", str(count // 5), "--poses", "5",
-                "--vertices", "1000", "-o", shapes, "--json"])
+        generate(shapes, "creatures", "--classes", count // 5, "--poses", 5, "--vertices", 1000)
         index = os.path.join(folder, f"{count}.canonform")
-        seconds, elapsed, _ = processor_time([program, "index", "build", shapes, "-o", index, "-q"])
-        listed = [shape["id"] for shape in answer([program, "index", "list", index, "--json"])["shapes"]]
-        found = [answer([program, "search", index, "--id", name, "--json", "-q"]) for name in listed[:: max(1, count // 15)]]
+        built = run([CANONFORM, "index", "build", shapes, "-o", index, "-q"])
+        listed = [shape["id"] for shape in answer([CANONFORM, "index", "list", index, "--json"])["shapes"]]
+        found = [answer([CANONFORM, "search", index, "--id", name, "--json", "-q"]) for name in listed[:: max(1, count // 15)]]
         searched = float(np.median([query["seconds"]["search"] for query in found]))
         aligned = float(np.median([query["aligned"] for query in found]))
-        rows.append((len(listed), seconds / len(listed), os.path.getsize(index), searched, aligned, elapsed))
+        rows.append((len(listed), built.processor / len(listed), os.path.getsize(index), searched, aligned))
         print("stored", rows[-1], flush=True)
         shutil.rmtree(shapes)
     return rows
 
 
-def search(vectors, program, folder, counts):
+def search(folder, counts):
     """Build, memory and latency by the number of signatures, and the seconds of a merge."""
     rows = []
     for n in counts:
         data = signatures(n + QUERIES, DIM, 7, 0.3)
-        base, queries = os.path.join(folder, "base.npy"), os.path.join(folder, "queries.npy")
+        base, queries, index = (os.path.join(folder, name) for name in ("base.npy", "queries.npy", "vectors"))
         np.save(queries, data[n:])
         np.save(base, data[:n])
         del data
-        index = os.path.join(folder, "vectors")
-        built = answer([vectors, "build", base, index])
-        ours = Ours(vectors, index, queries)
+        ours = Ours(index, queries, os.cpu_count())
+        built = ours.build(base)
+        ours.serve()
         ours.ask(0, QUERIES)
-        ms, memory = np.array(ours.ask(0, QUERIES)[0]) * 1e3, ours.memory()
+        ms, memory = np.array(ours.ask(0, QUERIES)[0]) * 1e3, resident(ours.process)
         ours.end()
-        merge = processor_time([program, "index", "merge", index, "-q", "-o", index + ".merged"])[1]
-        rows.append(dict(n=n, build_seconds=built["stored"] + built["finished"], size=os.path.getsize(index), memory=memory,
-                         merge=merge, ms=[np.median(ms), np.percentile(ms, 99)]))
+        merge = run([CANONFORM, "index", "merge", index, "-q", "-o", index + ".merged"]).elapsed
+        rows.append(dict(n=n, build_seconds=built, size=os.path.getsize(index), memory=memory, merge=merge,
+                         ms=[np.median(ms), np.percentile(ms, 99)]))
         for path in (base, index, index + ".merged"):
             os.remove(path)
         print("searched", rows[-1], flush=True)
@@ -136,7 +118,21 @@ def digits(x):
     return f"{x:,.0f}" if abs(x) >= 100 else f"{x:.3g}"
 
 
-def section(args, described, stored, searched):
+def measured(record):
+    """The measurements in a file, or new ones, which are written to it."""
+    if os.path.exists(record):
+        with open(record) as file:
+            return json.load(file)
+    with tempfile.TemporaryDirectory() as folder:
+        found = describe(folder, SIZES), store(folder, STORED), search(folder, VECTORS)
+    if record:
+        with open(record, "w") as file:
+            json.dump(found, file)
+    return found
+
+
+def section(args):
+    described, stored, searched = measured(args.record)
     random = np.random.default_rng(1)
     sizes = np.minimum(args.median * np.exp(args.sigma / 100 * random.standard_normal(SHAPES)), LARGEST)
     sizes = np.maximum(sizes, 200)
@@ -162,7 +158,7 @@ def section(args, described, stored, searched):
                 [(f"{v:,}", digits(s), digits(m), digits(f)) for v, s, m, f in described])
     yield "*An index* of creatures with 1,000 vertices, all cores. A search aligns " + f"{digits(stored[-1][4])} forms."
     yield table(["shapes", "processor seconds per shape", "bytes per shape", "search ms"],
-                [(f"{c:,}", digits(b), f"{z / c:,.0f}", digits(1000 * s)) for c, b, z, s, _, _ in stored])
+                [(f"{c:,}", digits(b), f"{z / c:,.0f}", digits(1000 * s)) for c, b, z, s, _ in stored])
     yield f"*Signatures* of {DIM} numbers without forms, all threads, {QUERIES} other queries."
     yield table(["signatures", "file MB", "build s", "merge s", "memory MB", "p50, p99 ms"],
                 [(f"{r['n']:,}", digits(r["size"] / 1e6), digits(r["build_seconds"]), digits(r["merge"]), digits(r["memory"]),
@@ -191,24 +187,6 @@ def section(args, described, stored, searched):
                    for runs in simulated.values())) for s in (1, 10, 100)])
 
 
-def main():
-    options = arguments(__doc__, "target/release/canonform", 1, median=5000, sigma=150)
-    options.add_argument("--vectors", default="target/release/examples/vectors")
-    options.add_argument("--record", help="measurements: read if the file exists, written if not")
-    args = options.parse_args()
-    if args.record and os.path.exists(args.record):
-        with open(args.record) as file:
-            described, stored, searched = json.load(file)
-    else:
-        with tempfile.TemporaryDirectory() as folder:
-            described = describe(args.program, folder, SIZES)
-            stored = store(args.program, folder, STORED)
-            searched = search(args.vectors, args.program, folder, VECTORS)
-        if args.record:
-            with open(args.record, "w") as file:
-                json.dump([described, stored, searched], file)
-    write_section(args.output, "bench-capacity", *section(args, described, stored, searched))
-
-
 if __name__ == "__main__":
-    main()
+    # `record` names a file of measurements, which is read if it exists, and written if not.
+    benchmark(__doc__, section, median=5000, sigma=150, record="")

@@ -1,8 +1,6 @@
 #!/usr/bin/env python3
 """Compares dense maps with pyFM: time of a pair, and error.
 
-    make bench-maps             builds the programs, sets up the environment, writes its section of docs/benchmarks.md
-
 Both map the same pairs of shapes with 5,000 vertices, one after the other, so that other load affects both alike: built-in men,
 and shapes of TOSCA in full resolution, each triangulated on its own. Both use all cores; processor
 seconds do not depend on other load. pyFM runs its quick start, which keeps
@@ -12,9 +10,8 @@ direct map and its true partner, as a share of the square root of the area; a ma
 """
 import glob
 import itertools
+import json
 import os
-import resource
-import subprocess
 import sys
 import tempfile
 import time
@@ -23,7 +20,7 @@ from importlib.metadata import version
 import numpy as np
 from scipy.spatial import cKDTree
 
-from support import answer, distances, machine, mesh_arguments, table, write_section
+from support import CANONFORM, DATA, EXAMPLES, benchmark, distances, machine, read_mesh, run, table
 
 # Vertices of a pair whose errors are measured.
 CHECKED = 300
@@ -33,32 +30,17 @@ FIT = dict(K=30, w_descr=1e0, w_lap=1e-1, w_dcomm=1e0, w_orient=1e0)
 ZOOM = dict(nit=16, step=5)
 
 
-def read_off(path):
-    with open(path) as file:
-        assert file.readline().strip() == "OFF"
-        n_vertices, n_faces, _ = map(int, file.readline().split())
-        vertices = np.loadtxt(file, max_rows=n_vertices)
-        return vertices, np.loadtxt(file, dtype=int, max_rows=n_faces)[:, 1:]
-
-
-def as_off(program, path, folder):
-    """Vertices of a mesh of any format."""
-    out = os.path.join(folder, "original.off")
-    subprocess.run([program, "convert", path, out, "--quiet"], check=True, capture_output=True)
-    return read_off(out)[0]
-
-
-def places(program, folder, shapes, originals):
+def places(folder, shapes, originals):
     """For every shape, its vertices and faces, and the places of its vertices on a surface that all of its kind share."""
     found, first = {}, {}
     for name in shapes:
-        vertices, faces = read_off(os.path.join(folder, name + ".off"))
+        vertices, faces = read_mesh(os.path.join(folder, name + ".off"))
         if name in originals:
             kind = name.rstrip("0123456789")
-            own = as_off(program, originals[name], folder)
+            own = read_mesh(originals[name])[0]
             place = first.setdefault(kind, own)[cKDTree(own).query(vertices)[1]]
         else:
-            place = read_off(os.path.join(folder, name + "-rest.off"))[0]
+            place = read_mesh(os.path.join(folder, name + "-rest.off"))[0]
         found[name] = vertices, faces, place
     return found
 
@@ -68,19 +50,13 @@ def area(vertices, faces):
     return np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
 
 
-def ours(program, folder, a, b):
+def ours(folder, a, b):
     out = os.path.join(folder, "map.npy")
-    spent = processor_seconds()
-    result = answer([program, "match", *(os.path.join(folder, name + ".off") for name in (a, b)), "-o", out, "--json", "--quiet"])
-    direct = [found["path"] for found in result["maps"] if found["kind"] == "direct"]
+    found = run([CANONFORM, "match", *(os.path.join(folder, name + ".off") for name in (a, b)), "-o", out, "--json", "--quiet"])
+    result = json.loads(found.output)
+    direct = [map["path"] for map in result["maps"] if map["kind"] == "direct"]
     seconds = result["seconds"]["prepare"] + result["seconds"]["matching"]
-    return (np.load(direct[0]) if direct else None), (seconds, processor_seconds() - spent)
-
-
-def processor_seconds():
-    """Of the programs that were run."""
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
+    return (np.load(direct[0]) if direct else None), (seconds, found.processor)
 
 
 def theirs(a, b):
@@ -105,15 +81,15 @@ def theirs(a, b):
     return found, (time.perf_counter() - start, time.process_time() - spent)
 
 
-def measure(program, folder, shapes, pairs):
+def measure(folder, shapes, pairs):
     """Seconds, processor seconds and mean errors by solver, a row for each pair."""
     rows = {"canonform": [], "pyFM": []}
     for a, b in pairs:
         (va, fa, from_), (vb, fb, to) = shapes[a], shapes[b]
         checked = np.arange(0, len(va), max(1, len(va) // CHECKED))
         truth = cKDTree(to).query(from_[checked])[1]
-        apart = distances(program, os.path.join(folder, b + ".off"), "fast-marching", truth)[0] / np.sqrt(area(vb, fb))
-        for name, (found, seconds) in [("canonform", ours(program, folder, a, b)), ("pyFM", theirs((va, fa), (vb, fb)))]:
+        apart = distances(os.path.join(folder, b + ".off"), "fast-marching", truth)[0] / np.sqrt(area(vb, fb))
+        for name, (found, seconds) in [("canonform", ours(folder, a, b)), ("pyFM", theirs((va, fa), (vb, fb)))]:
             error = np.inf if found is None else apart[np.arange(len(checked)), found[checked]].mean()
             rows[name].append((*seconds, error))
             print(f"{a} to {b}: {name} {seconds[0]:.2f} s, {seconds[1]:.2f} s of processors, error {error:.4f}", flush=True)
@@ -123,43 +99,6 @@ def measure(program, folder, shapes, pairs):
 def spread(pairs, n):
     """Up to `n` of the pairs, evenly spread."""
     return [pairs[i * len(pairs) // n] for i in range(n)] if len(pairs) > n else pairs
-
-
-def main():
-    args = mesh_arguments(__doc__, "target/release/canonform", rounds=6, vertices=5000)
-    make = "target/release/examples/placed_shapes"
-    meshes = sorted(glob.glob(os.path.join(args.data, "tosca-hires", "*.ply")))
-    if not meshes:
-        sys.exit(f"{args.data}/tosca-hires is missing: pass --data FOLDER")
-    originals = {os.path.basename(path)[:-4]: path for path in meshes}
-    groups = {"built-in men": None, "david of TOSCA": "david", "cats of TOSCA": "cat", "gorillas of TOSCA": "gorilla"}
-    cells, lines = {}, []
-    for title, kind in groups.items():
-        with tempfile.TemporaryDirectory(dir="target") as folder:
-            own = {name: path for name, path in originals.items() if kind and name.startswith(kind)}
-            poses = 0 if kind else 15
-            subprocess.run([make, folder, str(args.vertices), str(poses), *own.values()], check=True)
-            names = list(own) if kind else [f"david{pose}" for pose in range(poses)]
-            shapes = places(args.program, folder, names, own)
-            pairs = list(itertools.combinations(names, 2)) if kind else list(zip(names, names[1:]))
-            found = measure(args.program, folder, shapes, spread(pairs, args.rounds))
-        row = []
-        for name, all in found.items():
-            cells.setdefault(name, []).append(all)
-            row.append(cell(all))
-        lines.append((f"{title}, {len(found['pyFM'])} pairs", *row))
-    lines.append((f"all, {sum(map(len, cells['pyFM']))} pairs", *(cell(np.vstack(all)) for all in cells.values())))
-    own, other = (np.vstack(all) for all in cells.values())
-    ratio = lambda of, column: of(other[:, column]) / of(own[:, column])
-    write_section(
-        args.output, "bench-maps", "## Dense maps",
-        f"`make bench-maps` on {machine()}, pairs of {args.vertices:,} vertices with triangles of their own, and pyFM's "
-        f"({version('pyfmaps')}) quick start. Cells: medians of elapsed and of processor seconds of a pair; mean error of direct maps "
-        "as a share of the square root of the area, and median over the pairs; failed maps.",
-        table(["shapes", *cells], lines),
-        f"Over all pairs, pyFM takes {ratio(np.median, 0):.1f} times as long, {ratio(np.median, 1):.1f} times the processor seconds, "
-        f"and has {ratio(mean, 2):.1f} times the mean error. It gives no map of {np.isinf(other[:, 2]).sum()} pairs, whose matrices it cannot "
-        "factorize.")
 
 
 def cell(rows):
@@ -172,5 +111,36 @@ def mean(errors):
     return errors[np.isfinite(errors)].mean()
 
 
+def section(args):
+    meshes = sorted(glob.glob(os.path.join(args.data, "tosca-hires", "*.ply")))
+    if not meshes:
+        sys.exit(f"{args.data}/tosca-hires is missing: pass --data FOLDER")
+    originals = {os.path.basename(path)[:-4]: path for path in meshes}
+    groups = {"built-in men": None, "david of TOSCA": "david", "cats of TOSCA": "cat", "gorillas of TOSCA": "gorilla"}
+    cells, lines = {"canonform": [], "pyFM": []}, []
+    for title, kind in groups.items():
+        with tempfile.TemporaryDirectory(dir=EXAMPLES) as folder:
+            own = {name: path for name, path in originals.items() if kind and name.startswith(kind)}
+            poses = 0 if kind else 15
+            run([os.path.join(EXAMPLES, "placed_shapes"), folder, str(args.vertices), str(poses), *own.values()])
+            names = list(own) if kind else [f"david{pose}" for pose in range(poses)]
+            pairs = list(itertools.combinations(names, 2)) if kind else list(zip(names, names[1:]))
+            found = measure(folder, places(folder, names, own), spread(pairs, args.rounds))
+        for name, rows in found.items():
+            cells[name].append(rows)
+        lines.append((f"{title}, {len(found['pyFM'])} pairs", *map(cell, found.values())))
+    own, other = map(np.vstack, cells.values())
+    lines.append((f"all, {len(own)} pairs", cell(own), cell(other)))
+    ratio = lambda of, column: of(other[:, column]) / of(own[:, column])
+    yield "## Dense maps"
+    yield (f"`make bench-maps` on {machine()}, pairs of {args.vertices:,} vertices with triangles of their own, and pyFM's "
+           f"({version('pyfmaps')}) quick start. Cells: medians of elapsed and of processor seconds of a pair; mean error of direct "
+           "maps as a share of the square root of the area, and median over the pairs; failed maps.")
+    yield table(["shapes", *cells], lines)
+    yield (f"Over all pairs, pyFM takes {ratio(np.median, 0):.1f} times as long, {ratio(np.median, 1):.1f} times the processor seconds, "
+           f"and has {ratio(mean, 2):.1f} times the mean error. It gives no map of {np.isinf(other[:, 2]).sum()} pairs, whose matrices "
+           "it cannot factorize.")
+
+
 if __name__ == "__main__":
-    main()
+    benchmark(__doc__, section, rounds=6, vertices=5000, data=DATA)

@@ -1,27 +1,24 @@
 #!/usr/bin/env python3
 """Compares our pipeline from mesh to canonical form with the same pipeline on potpourri3d and NumPy.
 
-    make bench-nmds             builds the program, sets up the environment, writes its section of docs/benchmarks.md
-
 Both sides start from vertices and faces in memory and end with coordinates: setup per mesh (for canonform including
 repair), ten farthest samples with their distances to all vertices, and Nystrom scaling of rank five, in processes
 that have run once before. The peers implement Procedures 1 and 2 of the paper in NumPy, with potpourri3d's fast
 marching and with its heat method; NumPy may use all cores. Stress is that of eq. 17, against exact distances from
 some vertices.
 """
-import json
+import collections
 import os
-import statistics
-import subprocess
 import tempfile
 import time
 
 import numpy as np
 
-from support import distances, machine, mesh_arguments, mesh_table, read_mesh, write_section
+from support import (DATA, EXAMPLES, SOLVERS, Asked, benchmark, distances, machine, mesh_table, read_mesh, test_meshes)
 
 SAMPLES, RANK, DIM = 10, 5, 3
 SHARES = "canonform: % repair, distances, algebra"
+PEERS = ["potpourri3d fast marching", "potpourri3d heat"]
 
 
 def farthest_samples(solve, n):
@@ -50,88 +47,48 @@ def nystrom(distances, samples):
     return q @ (vectors[:, kept] * np.sqrt(np.maximum(values[kept], 0)))
 
 
-def peers(vertices, faces):
-    import potpourri3d as pp3d
-
-    def marching():
-        solver = pp3d.MeshFastMarchingDistanceSolver(vertices, faces)
-        return lambda s: solver.compute_distance([[(s, [])]])
-
-    def heat():
-        return pp3d.MeshHeatMethodDistanceSolver(vertices, faces).compute_distance
-
-    return {"potpourri3d fast marching + NumPy": marching, "potpourri3d heat + NumPy": heat}
-
-
-class Ours:
-    """The example `forms`, which embeds a mesh on each request."""
-
-    def __init__(self, program, path, threads, form):
-        self.form = form
-        self.process = subprocess.Popen([program, path, str(SAMPLES), str(RANK), form], stdin=subprocess.PIPE,
-                                        stdout=subprocess.PIPE, text=True,
-                                        env=dict(os.environ, RAYON_NUM_THREADS=str(threads)))
-        self.ask()
-
-    def ask(self):
-        self.process.stdin.write("\n")
-        self.process.stdin.flush()
-        return json.loads(self.process.stdout.readline()), np.fromfile(self.form).reshape(-1, DIM)
-
-    def end(self):
-        self.process.stdin.close()
-        self.process.wait()
-
-
 def stress(form, sources, exact):
     """Eq. 17, extrapolated from some rows."""
-    p = len(form)
-    total = 0.0
-    for source, row in zip(sources, exact):
-        straight = np.linalg.norm(form - form[source], axis=1)
-        total += ((straight**2 - row**2) ** 2).sum()
-    return np.sqrt(total * p / len(sources)) / p
+    straight = np.array([np.linalg.norm(form - form[source], axis=1) for source in sources])
+    return np.sqrt(((straight**2 - exact**2) ** 2).sum() / len(sources) / len(form))
 
 
-def measure(program, solver, path, rounds, folder):
+def measure(path, rounds):
     vertices, faces = read_mesh(path)
     sources = [int(s) for s in np.random.default_rng(0).integers(0, len(vertices), 40)]
-    exact, _, _ = distances(program, path, "exact", sources)
-    cores = os.cpu_count()
-    canonform = {count: Ours(solver, path, count, os.path.join(folder, "form.f64")) for count in sorted({1, cores})}
-    name = lambda count: f"canonform, {count} thread{'s' if count > 1 else ''}"
-    seconds, forms, parts = {}, {}, []
-    for _ in range(rounds):
-        for count, one in canonform.items():
-            spent, forms[name(count)] = one.ask()
-            seconds.setdefault(name(count), []).append(spent["total"])
-        parts.append([spent[part] / spent["total"] for part in ("repair", "geodesics", "embedding")])
-        for peer, make in peers(vertices, faces).items():
-            start = time.perf_counter()
-            forms[peer] = nystrom(*farthest_samples(make(), SAMPLES))
-            seconds.setdefault(peer, []).append(time.perf_counter() - start)
-    for one in canonform.values():
-        one.end()
-    cells = {}
-    for who, spent in sorted(seconds.items(), key=lambda item: statistics.median(item[1])):
-        cells[who] = f"{1e3 * statistics.median(spent):.1f}, {stress(forms[who], sources, exact):.4g}"
-    repair, geodesics, algebra = 100 * np.median(parts, 0)
-    cells[SHARES] = f"{repair:.1f}, {geodesics:.1f}, {algebra:.1f}"
-    return len(vertices), cells
+    exact, _, _ = distances(path, "exact", sources)
+    seconds, forms, parts = collections.defaultdict(list), {}, []
+    with tempfile.NamedTemporaryFile() as form:
+        command = [os.path.join(EXAMPLES, "forms"), path, str(SAMPLES), str(RANK), form.name]
+        ours = {f"canonform, {count} thread{'s' if count > 1 else ''}": Asked(command, count)
+                for count in sorted({1, os.cpu_count()})}
+        for program in ours.values():
+            program.ask()
+        for _ in range(rounds):
+            for name, program in ours.items():
+                spent = program.ask()
+                forms[name] = np.fromfile(form.name).reshape(-1, DIM)
+                seconds[name].append(spent["total"])
+            parts.append([spent[part] / spent["total"] for part in ("repair", "geodesics", "embedding")])
+            for peer in PEERS:
+                start = time.perf_counter()
+                forms[f"{peer} + NumPy"] = nystrom(*farthest_samples(SOLVERS[peer](vertices, faces), SAMPLES))
+                seconds[f"{peer} + NumPy"].append(time.perf_counter() - start)
+        for program in ours.values():
+            program.end()
+    cells = {who: f"{1e3 * np.median(spent):.1f}, {stress(forms[who], sources, exact):.4g}"
+             for who, spent in sorted(seconds.items(), key=lambda item: np.median(item[1]))}
+    return len(vertices), cells | {SHARES: ", ".join(f"{share:.1f}" for share in 100 * np.median(parts, 0))}
 
 
-def main():
-    args = mesh_arguments(__doc__, "target/release/canonform", rounds=9)
-    solver = os.path.join(os.path.dirname(args.program), "examples", "forms")
-    with tempfile.TemporaryDirectory() as folder:
-        pipelines = mesh_table("pipeline", args.data,
-                               lambda path: measure(args.program, solver, path, args.rounds, folder), 1)
-    write_section(
-        args.output, "bench-nmds", "## Canonical forms",
-        f"`make bench-nmds` on {machine()}: medians of {args.rounds} rounds in processes that have run once before, {SAMPLES} "
-        f"samples, rank {RANK}, from vertices and faces in memory. Cells: milliseconds, stress.",
-        pipelines)
+def section(args):
+    with test_meshes(args.data) as meshes:
+        meshes = dict(list(meshes.items())[1:])
+        yield "## Canonical forms"
+        yield (f"`make bench-nmds` on {machine()}: medians of {args.rounds} rounds in processes that have run once before, {SAMPLES} "
+               f"samples, rank {RANK}, from vertices and faces in memory. Cells: milliseconds, stress.")
+        yield mesh_table("pipeline", meshes, lambda path: measure(path, args.rounds))
 
 
 if __name__ == "__main__":
-    main()
+    benchmark(__doc__, section, rounds=9, data=DATA)

@@ -1,20 +1,17 @@
 #!/usr/bin/env python3
 """Times the preparation of a mesh, in milliseconds and in distance maps, over sizes, on one thread and on two.
 
-    make bench-preparation      builds the example, writes its section of docs/benchmarks.md (needs Python with NumPy, and test meshes)
-
 Preparation leads from vertices and faces in memory to a solver that is ready for its first source: repair, connectivity,
 edge lengths, intrinsic Delaunay flips, and the layout of one-rings. The unit is one distance map from one source on one
 thread.
 """
 import json
-import subprocess
+import os
 
-from support import machine, mesh_arguments, table, test_meshes, write_section
+from support import DATA, EXAMPLES, benchmark, machine, run, table, test_meshes
 
 
-def main():
-    args = mesh_arguments(__doc__, "target/release/examples/preparation", rounds=9)
+def section(args):
     lines = {}
     with test_meshes(args.data) as meshes:
         runs = [(title, path, 0) for title, path in meshes.items()]
@@ -22,22 +19,21 @@ def main():
                  for count, times in [(1, "once"), (2, "twice")]]
         for title, path, subdivisions in runs:
             rounds = max(3, args.rounds >> subdivisions)
-            command = [args.program, path, str(subdivisions), str(rounds)]
-            for line in subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines():
+            program = os.path.join(EXAMPLES, "preparation")
+            for line in run([program, path, str(subdivisions), str(rounds)]).output.splitlines():
                 row = json.loads(line)
                 spent = ", ".join(f"{1e3 * row[part]:.1f}" for part in ("connectivity", "solver", "map"))
                 cells = lines.setdefault(f"{title}, {row['vertices']:,}", {})
                 cells[row["threads"]] = f"{spent}, {row['both'] / row['map']:.1f}"
                 print(title, cells, flush=True)
     threads = sorted({count for cells in lines.values() for count in cells})
-    head = ["mesh, vertices", *(f"{count} thread{'s' if count > 1 else ''}" for count in threads)]
-    write_section(
-        args.output, "bench-preparation", "## Preparation of a mesh",
-        f"`make bench-preparation` on {machine()}: from vertices and faces in memory to a solver that is ready for its first "
-        f"source, medians of {args.rounds} rounds, fewer for subdivided meshes. Cells: milliseconds of connectivity, of the solver "
-        "and of one distance map; preparation in maps.",
-        table(head, [[title, *(cells.get(count, "-") for count in threads)] for title, cells in lines.items()]))
+    yield "## Preparation of a mesh"
+    yield (f"`make bench-preparation` on {machine()}: from vertices and faces in memory to a solver that is ready for its first "
+           f"source, medians of {args.rounds} rounds, fewer for subdivided meshes. Cells: milliseconds of connectivity, of the "
+           "solver and of one distance map; preparation in maps.")
+    yield table(["mesh, vertices", *(f"{count} thread{'s' if count > 1 else ''}" for count in threads)],
+                [[title, *(cells.get(count, "-") for count in threads)] for title, cells in lines.items()])
 
 
 if __name__ == "__main__":
-    main()
+    benchmark(__doc__, section, rounds=9, data=DATA)

@@ -1,38 +1,73 @@
-"""Shared by the benchmarks: arguments, meshes, calls of the program, tables, sections of the page."""
+"""Shared by the benchmarks: options, meshes, programs and packages in processes of their own, tables, sections of the page.
+
+`make bench-NAME` builds what `NAME.py` needs, runs it, and so writes its section of docs/benchmarks.md.
+"""
 import argparse
+import collections
 import contextlib
 import heapq
 import json
 import math
+import multiprocessing
 import os
 import platform
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 import numpy as np
 
+CANONFORM = os.environ.get("CANONFORM", "target/release/canonform")
+EXAMPLES = os.path.join(os.path.dirname(CANONFORM), "examples")
+DATA = os.environ.get("CANONFORM_DATA", "../shared/data")
 # The number of vertices in the published figures of the peers.
 FINE = 27_894
-
-# The page of all benchmarks. Each writes its own section.
-PAGE = "docs/benchmarks.md"
+ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 
-def arguments(doc, program, rounds, **more):
-    """A parser of the options of all benchmarks, and of `more` numbers, given by their defaults."""
+def benchmark(doc, section, **options):
+    """Writes the section of the running file from the parts that `section` yields, with options given by their defaults."""
     parser = argparse.ArgumentParser(description=doc.splitlines()[0])
-    parser.add_argument("--program", default=program)
-    parser.add_argument("--output", default=PAGE, help="the page whose section is written")
-    for name, default in {"rounds": rounds, **more}.items():
-        parser.add_argument(f"--{name}", type=int, default=default)
-    return parser
+    parser.add_argument("--output", default="docs/benchmarks.md", help="the page whose section is written")
+    for name, default in options.items():
+        parser.add_argument(f"--{name}", type=type(default), default=default)
+    args = parser.parse_args()
+    name = "bench-" + os.path.basename(sys.argv[0]).removesuffix(".py")
+    parts = [part.strip() for part in section(args)]
+    with open(args.output) as file:
+        page = file.read()
+    begin, end = f"<!-- {name} begins -->\n", f"<!-- {name} ends -->\n"
+    before, rest = page.split(begin)
+    _, after = rest.split(end)
+    with open(args.output + ".part", "w") as file:
+        file.write(before + begin + "\n\n".join(parts) + "\n" + end + after)
+    os.replace(args.output + ".part", args.output)
 
 
-def mesh_arguments(*args, **more):
-    parser = arguments(*args, **more)
-    parser.add_argument("--data", default=os.environ.get("CANONFORM_DATA", "../shared/data"))
-    return parser.parse_args()
+def machine():
+    return f"{platform.machine()}, {os.cpu_count()} cores"
+
+
+def table(head, rows):
+    return "\n".join([f"|{'|'.join(head)}|", "|" + "---|" * len(head), *(f"|{'|'.join(row)}|" for row in rows)])
+
+
+def columns_table(corner, columns):
+    """A table of columns that map names of rows to cells, in the order of the last column."""
+    names = list(dict.fromkeys(name for cells in reversed(columns.values()) for name in cells))
+    return table([corner, *columns], [[name, *(cells.get(name, "-") for cells in columns.values())] for name in names])
+
+
+def mesh_table(corner, meshes, measure):
+    """A table of meshes by title, a column each. `measure(path)` returns the number of vertices and the cells by name."""
+    columns = {}
+    for title, path in meshes.items():
+        n_vertices, cells = measure(path)
+        columns[f"{title}, {n_vertices:,}"] = cells
+        print(title, cells, flush=True)
+    return columns_table(corner, columns)
 
 
 @contextlib.contextmanager
@@ -49,39 +84,42 @@ def test_meshes(data):
 
 
 def read_mesh(path):
-    if path.endswith(".vert"):
-        return np.loadtxt(path), np.loadtxt(path[:-5] + ".tri").astype(np.int64) - 1
-    vertices, faces = [], []
+    """Vertices and triangles of a mesh in any format."""
+    if not path.endswith(".off"):
+        with tempfile.TemporaryDirectory() as folder:
+            converted = os.path.join(folder, "mesh.off")
+            run([CANONFORM, "convert", path, converted, "-q"])
+            return read_mesh(converted)
     with open(path) as file:
-        for line in file:
-            words = line.split()
-            if words[:1] == ["v"]:
-                vertices.append([float(x) for x in words[1:4]])
-            elif words[:1] == ["f"]:
-                faces.append([int(x.split("/")[0]) - 1 for x in words[1:4]])
-    return np.array(vertices), np.array(faces)
+        file.readline()
+        n_vertices, n_faces, _ = map(int, file.readline().split())
+        return np.loadtxt(file, max_rows=n_vertices), np.loadtxt(file, dtype=np.int64, max_rows=n_faces)[:, 1:]
 
 
 def write_mesh(path, vertices, faces):
+    """As OBJ or OFF, by the name."""
+    vertex, face, first = ("v ", "f ", 1) if path.endswith(".obj") else ("", "3 ", 0)
     with open(path, "w") as file:
-        file.writelines("v %.17g %.17g %.17g\n" % tuple(v) for v in vertices)
-        file.writelines("f %d %d %d\n" % tuple(f + 1) for f in faces)
+        if not first:
+            file.write(f"OFF\n{len(vertices)} {len(faces)} 0\n")
+        file.writelines(vertex + "%.17g %.17g %.17g\n" % tuple(v) for v in vertices)
+        file.writelines(face + "%d %d %d\n" % tuple(f + first) for f in faces)
 
 
 def bisected(vertices, faces, n_vertices):
     """Bisects longest edges up to a number of vertices, without changing the surface."""
     vertices, faces = [tuple(v) for v in vertices], [list(f) for f in faces]
-    at_edge = {}
-    length = lambda a, b: math.dist(vertices[a], vertices[b])
+    at_edge = collections.defaultdict(set)
     key = lambda a, b: (min(a, b), max(a, b))
     heap = []
 
+    def edges(face):
+        return [key(*pair) for pair in zip(face, face[1:] + face[:1])]
+
     def attach(face):
-        f = faces[face]
-        for k in range(3):
-            edge = key(f[k], f[(k + 1) % 3])
-            at_edge.setdefault(edge, set()).add(face)
-            heapq.heappush(heap, (-length(*edge), edge))
+        for edge in edges(faces[face]):
+            at_edge[edge].add(face)
+            heapq.heappush(heap, (-math.dist(*(vertices[v] for v in edge)), edge))
 
     for face in range(len(faces)):
         attach(face)
@@ -90,11 +128,11 @@ def bisected(vertices, faces, n_vertices):
         if edge not in at_edge:
             continue
         middle = len(vertices)
-        vertices.append(tuple(0.5 * (p + q) for p, q in zip(vertices[edge[0]], vertices[edge[1]])))
+        vertices.append(tuple(0.5 * (p + q) for p, q in zip(*(vertices[v] for v in edge))))
         for face in sorted(at_edge[edge]):
             old = faces[face]
-            for k in range(3):
-                at_edge[key(old[k], old[(k + 1) % 3])].discard(face)
+            for side in edges(old):
+                at_edge[side].discard(face)
             faces[face] = [middle if v == edge[1] else v for v in old]
             faces.append([middle if v == edge[0] else v for v in old])
             attach(face)
@@ -113,68 +151,191 @@ def subdivided(vertices, faces):
     return vertices, np.vstack([np.stack(f, 1) for f in [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]])
 
 
-def in_cache_order(vertices, faces):
-    """Renumbers vertices breadth-first, and sorts faces by their first vertex."""
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import breadth_first_order
+Run = collections.namedtuple("Run", "processor elapsed memory output")
 
-    n = len(vertices)
-    graph = coo_matrix((np.ones(faces.size), (faces.ravel(), np.roll(faces, 1, axis=1).ravel())), (n, n)).tocsr()
-    order = breadth_first_order(graph, 0, directed=False, return_predecessors=False)
-    order = np.concatenate([order, np.setdiff1d(np.arange(n), order)])
-    rank = np.empty(n, dtype=np.int64)
-    rank[order] = np.arange(n)
-    faces = rank[faces]
-    return vertices[order], faces[np.argsort(faces.min(axis=1), kind="stable")]
+
+def run(command, accepted=(0,), **how):
+    """Processor and elapsed seconds, peak memory in MB and the output of a program, which must succeed."""
+    with tempfile.TemporaryFile("w+") as output:
+        start = time.perf_counter()
+        process = subprocess.Popen(command, stdout=output, **how)
+        _, status, usage = os.wait4(process.pid, 0)
+        elapsed = time.perf_counter() - start
+        process.returncode = os.waitstatus_to_exitcode(status)
+        if process.returncode not in accepted:
+            sys.exit(f"{' '.join(command)} ended with {process.returncode}")
+        output.seek(0)
+        return Run(usage.ru_utime + usage.ru_stime, elapsed, usage.ru_maxrss / 1000, output.read())
 
 
 def answer(command, **how):
     """The JSON output of a program."""
-    return json.loads(subprocess.run(command, check=True, capture_output=True, text=True, **how).stdout)
+    return json.loads(run(command, **how).output)
 
 
-def distances(program, mesh, method, sources, *options):
+def generate(folder, family, *options):
+    answer([CANONFORM, "generate", "--family", family, *map(str, options), "-q", "--json", "-o", folder])
+
+
+def distances(mesh, method, sources):
     """`canonform geodesic` on one thread: distances (one row per source), seconds per source, seconds of setup."""
     with tempfile.TemporaryDirectory() as folder:
         out = os.path.join(folder, "distances.npy")
-        seconds = answer([program, "geodesic", mesh, "--method", method, "--threads", "1", "--json", "-o", out,
-                          "--source", ",".join(map(str, sources)), *options])["seconds"]
+        seconds = answer([CANONFORM, "geodesic", mesh, "--method", method, "--threads", "1", "--json", "-o", out,
+                          "--source", ",".join(map(str, sources))])["seconds"]
         return np.atleast_2d(np.load(out)), seconds["per_source"], seconds["setup"]
 
 
-def machine():
-    return f"{platform.machine()}, {os.cpu_count()} cores"
+def with_threads(count):
+    """The environment of a program of ours with so many threads."""
+    return os.environ | {"RAYON_NUM_THREADS": str(count)}
 
 
-def table(head, rows):
-    return "\n".join([f"|{'|'.join(head)}|", "|" + "---|" * len(head), *(f"|{'|'.join(row)}|" for row in rows)])
+class Asked:
+    """A program that answers every line with a line of JSON."""
+
+    def __init__(self, command, threads):
+        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+                                        env=with_threads(threads))
+
+    def read(self):
+        return json.loads(self.process.stdout.readline())
+
+    def ask(self, *words):
+        self.process.stdin.write(" ".join(map(str, words)) + "\n")
+        self.process.stdin.flush()
+        return self.read()
+
+    def end(self):
+        self.process.stdin.close()
+        self.process.wait()
 
 
-def mesh_table(corner, data, measure, first=0):
-    """A table of the test meshes, a column each. `measure(path)` returns the number of vertices and the cells by name; rows
-    are in the order of the last mesh."""
-    columns = {}
-    with test_meshes(data) as meshes:
-        for title, path in list(meshes.items())[first:]:
-            n_vertices, cells = measure(path)
-            columns[f"{title}, {n_vertices:,}"] = cells
-            print(title, cells, flush=True)
-    return columns_table(corner, columns)
+class Failed(Exception):
+    """What a package did instead of answering."""
 
 
-def columns_table(corner, columns):
-    """A table of columns that map names of rows to cells, in the order of the last column."""
-    names = list(dict.fromkeys(name for cells in reversed(columns.values()) for name in cells))
-    return table([corner, *columns], [[name, *(cells.get(name, "-") for cells in columns.values())] for name in names])
+def serve(pipe, clock, make, args):
+    """Makes an object and calls its methods. Sends results with their seconds, or the text of an error."""
+    for stream in (1, 2):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream)
+    try:
+        # The first time includes the import of the package.
+        make(*args)
+        start = clock()
+        made = make(*args)
+        pipe.send(clock() - start)
+        while True:
+            method, given = pipe.recv()
+            start = clock()
+            result = getattr(made, method)(*given)
+            seconds = clock() - start
+            # What converts a result does not count.
+            pipe.send((result() if callable(result) else result, seconds))
+    except EOFError:
+        pass
+    except Exception as error:
+        text = str(error).strip().splitlines()
+        # Without the path of a source file.
+        words = [word for word in (text[0] if text else "").split() if not word.startswith("/")]
+        pipe.send(f"{type(error).__name__}: {' '.join(words)}")
 
 
-def write_section(path, name, *parts):
-    """Replaces the section between the comments `name begins` and `name ends` of a page, atomically."""
-    with open(path) as file:
-        page = file.read()
-    begin, end = f"<!-- {name} begins -->\n", f"<!-- {name} ends -->\n"
-    before, rest = page.split(begin)
-    _, after = rest.split(end)
-    with open(path + ".part", "w") as file:
-        file.write(before + begin + "\n\n".join(part.strip() for part in parts) + "\n" + end + after)
-    os.replace(path + ".part", path)
+class Peer:
+    """What `make` returns, in a fresh interpreter, so that it may crash and its memory contains nothing else. Raises `Failed`."""
+
+    def __init__(self, make, *args, clock=time.perf_counter, patience=120):
+        self.patience = patience
+        context = multiprocessing.get_context("spawn")
+        self.pipe, theirs = context.Pipe()
+        self.process = context.Process(target=serve, args=(theirs, clock, make, args), daemon=True)
+        self.process.start()
+        theirs.close()
+        self.setup = self.receive()
+
+    def receive(self):
+        try:
+            if not self.pipe.poll(self.patience):
+                raise Failed(f"no answer in {self.patience} s")
+            received = self.pipe.recv()
+        except (EOFError, ConnectionResetError):
+            self.process.join()
+            code = self.process.exitcode
+            raise Failed(f"crashes ({signal.Signals(-code).name if code < 0 else f'exit code {code}'})") from None
+        if isinstance(received, str):
+            raise Failed(received)
+        return received
+
+    def call(self, method, *args):
+        """The result of a method and its seconds."""
+        self.pipe.send((method, args))
+        return self.receive()
+
+    def end(self):
+        self.process.kill()
+        self.process.join()
+
+
+def potpourri3d_heat(vertices, faces):
+    import potpourri3d
+
+    return potpourri3d.MeshHeatMethodDistanceSolver(vertices, faces).compute_distance
+
+
+def potpourri3d_marching(vertices, faces):
+    import potpourri3d
+
+    solver = potpourri3d.MeshFastMarchingDistanceSolver(vertices, faces)
+    return lambda source: solver.compute_distance([[(source, [])]])
+
+
+def pygeodesic(vertices, faces):
+    from pygeodesic import geodesic
+
+    solver = geodesic.PyGeodesicAlgorithmExact(vertices, faces)
+    return lambda source: solver.geodesicDistances(np.array([source]))[0]
+
+
+SOLVERS = {"potpourri3d heat": potpourri3d_heat, "potpourri3d fast marching": potpourri3d_marching,
+           "pygeodesic (exact)": pygeodesic}
+
+
+def errors(rows, exact):
+    """Mean and largest error in per cent of exact distances."""
+    known = np.isfinite(exact) & (exact > 0)
+    relative = 100 * np.abs(np.array(rows) - exact)[known] / exact[known]
+    return f"{relative.mean():.3f}, {relative.max():.1f}"
+
+
+def measure_solvers(path, rounds, methods, solvers, clock=time.perf_counter):
+    """The number of vertices and, by solver: milliseconds per source and of setup, mean and largest error. Every round runs all
+    solvers on one source, so that other load affects all of them alike. The fastest comes first."""
+    vertices, faces = read_mesh(path)
+    sources = [int(s) for s in np.random.default_rng(1).permutation(len(vertices))[:rounds]]
+    exact = distances(path, "exact", sources)[0]
+    runs, peers, failed = collections.defaultdict(list), {}, {}
+
+    def attempt(name, do):
+        try:
+            return do()
+        except Failed as fault:
+            failed[name] = str(fault)
+
+    for name, make in solvers.items():
+        peers[name] = attempt(name, lambda: Peer(make, vertices, faces, clock=clock))
+    for source in sources:
+        for method in methods:
+            # Repeats the source, because memory is warm from the second time on, as with the peers.
+            row, seconds, setup = distances(path, method, [source] * 4)
+            runs[f"canonform {method}"].append((np.median(seconds[1:]), setup, row[-1]))
+        for name, peer in peers.items():
+            if name not in failed and (answered := attempt(name, lambda: peer.call("__call__", source))):
+                runs[name].append((answered[1], peer.setup, answered[0]))
+    for name in peers.keys() - failed.keys():
+        peers[name].end()
+    cells = []
+    for name in runs.keys() - failed.keys():
+        seconds, setup, rows = zip(*runs[name])
+        spent = 1e3 * np.median(seconds)
+        cells.append((spent, name, f"{spent:.2f}, {1e3 * min(setup):.0f}, {errors(rows, exact)}"))
+    return len(vertices), {name: cell for _, name, cell in sorted(cells)} | failed
