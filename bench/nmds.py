@@ -82,12 +82,11 @@ def measure(path, rounds):
 
 
 def section(args):
-    with test_meshes(args.data) as meshes:
-        meshes = dict(list(meshes.items())[1:])
-        yield "## Canonical forms"
-        yield (f"`make bench-nmds` on {machine()}: medians of {args.rounds} rounds in processes that have run once before, {SAMPLES} "
-               f"samples, rank {RANK}, from vertices and faces in memory. Cells: milliseconds, stress.")
-        yield mesh_table("pipeline", meshes, lambda path: measure(path, args.rounds))
+    meshes = dict(list(test_meshes(args.data).items())[1:])
+    yield "## Canonical forms"
+    yield (f"`make bench-nmds` on {machine()}: medians of {args.rounds} rounds in processes that have run once before, {SAMPLES} "
+           f"samples, rank {RANK}, from vertices and faces in memory. Cells: milliseconds, stress.")
+    yield mesh_table("pipeline", meshes, lambda path: measure(path, args.rounds))
 
 
 if __name__ == "__main__":

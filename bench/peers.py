@@ -9,14 +9,13 @@ The variable GSP names a program for geodesic source propagation (Trettner, Bomm
 mesh.obj, sources (separated by commas), repeats and output: it writes the distances, one row per source, as 64-bit
 floats to the output, and the seconds of every run, one a line, to standard output. Without it, GSP is skipped.
 """
-import math
 import os
 import tempfile
 
 import numpy as np
 
-from support import (DATA, FINE, ONE_THREAD, SOLVERS, benchmark, bisected, distances, errors, machine, measure_solvers,
-                     mesh_table, read_mesh, run, subdivided, table, test_meshes, write_mesh)
+from support import (DATA, ONE_THREAD, SOLVERS, benchmark, distances, errors, generate, machine, measure_solvers, mesh_table,
+                     read_mesh, run, subdivided, table, test_meshes, write_mesh)
 
 METHODS = ["fast-marching", "exact", "heat", "dijkstra"]
 
@@ -63,10 +62,10 @@ def in_cache_order(vertices, faces):
 
 def propagation_meshes(data):
     """Title and mesh of the comparison with GSP: two-manifold, in the order of their files and in cache order."""
-    single = lambda name: read_mesh(os.path.join(data, "single", name))
-    yield "rocker-arm", *single("rocker-arm.obj")
-    yield "cat0, longest edges bisected", *bisected(*read_mesh(os.path.join(data, "tosca-lowres", "cat0.vert")), FINE)
-    mesh = single("armadillo.obj")
+    read = lambda name: read_mesh(os.path.join(data, name))
+    yield "rocker-arm", *read("single/rocker-arm.obj")
+    yield "cat0, full resolution", *read("tosca-hires/cat0.ply")
+    mesh = read("single/armadillo.obj")
     yield "armadillo", *mesh
     yield "armadillo in cache order", *in_cache_order(*mesh)
     mesh = subdivided(*mesh)
@@ -102,31 +101,15 @@ def propagation(data, rounds):
     return table(["mesh, vertices", *names], lines) + skipped
 
 
-def wavy_torus(n_vertices):
-    """An irregular closed surface of any size."""
-    m = int(round(math.sqrt(n_vertices / 3)))
-    n = n_vertices // m
-    random = np.random.default_rng(1)
-    i, j = np.meshgrid(np.arange(n), np.arange(m), indexing="ij")
-    u = 2 * np.pi * (i + random.uniform(-0.3, 0.3, i.shape)) / n
-    v = 2 * np.pi * (j + random.uniform(-0.3, 0.3, j.shape)) / m
-    r = 1 + 0.1 * np.sin(5 * u) * np.cos(3 * v)
-    vertices = np.stack([(3 + r * np.cos(v)) * np.cos(u), (3 + r * np.cos(v)) * np.sin(u), r * np.sin(v)], -1)
-    at = lambda i, j: ((i % n) * m + j % m).ravel()
-    a, b, c, d = at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)
-    return vertices.reshape(-1, 3), np.vstack([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
-
-
 def growth(sizes=(4_000, 16_000, 64_000, 256_000, 1_000_000)):
     best = []
-    with tempfile.TemporaryDirectory() as folder:
-        path = os.path.join(folder, "torus.obj")
-        for size in sizes:
-            write_mesh(path, *wavy_torus(size))
-            best.append(min(distances(path, "fast-marching", [0] * 5)[1]))
+    for size in sizes:
+        with tempfile.TemporaryDirectory() as folder:
+            generate(folder, "david", "--poses", 1, "--vertices", size)
+            best.append(min(distances(os.path.join(folder, "david0.off"), "fast-marching", [0] * 5)[1]))
     exponent = np.polyfit(np.log(sizes), np.log(best), 1)[0]
     milliseconds = ", ".join(f"{1e3 * spent:.2f} ({size:,})" for size, spent in zip(sizes, best))
-    return (f"Milliseconds per source on an irregular torus (vertices): {milliseconds}. Time grows with the number of vertices "
+    return (f"Milliseconds per source on a generated body (vertices): {milliseconds}. Time grows with the number of vertices "
             f"to the power {exponent:.2f}.")
 
 
@@ -136,8 +119,8 @@ def section(args):
     yield "## Distance solvers"
     yield (f"`make bench-peers` on {machine()}, one thread each, medians over {args.rounds} sources. Cells: milliseconds per source, "
            "milliseconds of setup, mean and largest error in per cent of exact polyhedral distances.")
-    with test_meshes(args.data) as meshes:
-        yield mesh_table("solver", meshes, lambda path: measure_solvers(path, args.rounds, METHODS, solvers))
+    meshes = test_meshes(args.data)
+    yield mesh_table("solver", meshes, lambda path: measure_solvers(path, args.rounds, METHODS, solvers))
     yield growth()
     yield ("*Fast marching and geodesic source propagation* (GSP; Trettner, Bommes and Kobbelt 2021), the fastest of three runs for "
            "each of three sources. Cells: milliseconds, mean and largest error in per cent.")

@@ -13,19 +13,18 @@ from support import DATA, EXAMPLES, benchmark, machine, run, table, test_meshes
 
 def section(args):
     lines = {}
-    with test_meshes(args.data) as meshes:
-        runs = [(title, path, 0) for title, path in meshes.items()]
-        runs += [(f"armadillo, subdivided {times}", meshes["armadillo"], count)
-                 for count, times in [(1, "once"), (2, "twice")]]
-        for title, path, subdivisions in runs:
-            rounds = max(3, args.rounds >> subdivisions)
-            program = os.path.join(EXAMPLES, "preparation")
-            for line in run([program, path, str(subdivisions), str(rounds)]).output.splitlines():
-                row = json.loads(line)
-                spent = ", ".join(f"{1e3 * row[part]:.1f}" for part in ("connectivity", "solver", "map"))
-                cells = lines.setdefault(f"{title}, {row['vertices']:,}", {})
-                cells[row["threads"]] = f"{spent}, {row['both'] / row['map']:.1f}"
-                print(title, cells, flush=True)
+    meshes = test_meshes(args.data)
+    runs = [(title, path, 0) for title, path in meshes.items()]
+    runs += [(f"armadillo, subdivided {times}", meshes["armadillo"], count) for count, times in [(1, "once"), (2, "twice")]]
+    for title, path, subdivisions in runs:
+        rounds = max(3, args.rounds >> subdivisions)
+        program = os.path.join(EXAMPLES, "preparation")
+        for line in run([program, path, str(subdivisions), str(rounds)]).output.splitlines():
+            row = json.loads(line)
+            spent = ", ".join(f"{1e3 * row[part]:.1f}" for part in ("connectivity", "solver", "map"))
+            cells = lines.setdefault(f"{title}, {row['vertices']:,}", {})
+            cells[row["threads"]] = f"{spent}, {row['both'] / row['map']:.1f}"
+            print(title, cells, flush=True)
     threads = sorted({count for cells in lines.values() for count in cells})
     yield "## Preparation of a mesh"
     yield (f"`make bench-preparation` on {machine()}: from vertices and faces in memory to a solver that is ready for its first "

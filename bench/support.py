@@ -4,10 +4,7 @@
 """
 import argparse
 import collections
-import contextlib
-import heapq
 import json
-import math
 import multiprocessing
 import os
 import platform
@@ -22,8 +19,6 @@ import numpy as np
 CANONFORM = os.environ.get("CANONFORM", "target/release/canonform")
 EXAMPLES = os.path.join(os.path.dirname(CANONFORM), "examples")
 DATA = os.environ.get("CANONFORM_DATA", "../shared/data")
-# The number of vertices in the published figures of the peers.
-FINE = 27_894
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 
@@ -70,17 +65,15 @@ def mesh_table(corner, meshes, measure):
     return columns_table(corner, columns)
 
 
-@contextlib.contextmanager
 def test_meshes(data):
-    """Title -> path of each test mesh. Generates the second one for the duration of the context."""
-    cat = os.path.join(data, "tosca-lowres", "cat0.vert")
-    if not os.path.exists(cat):
-        sys.exit(f"{cat} is missing: pass --data FOLDER with tosca-lowres/ and single/")
-    with tempfile.TemporaryDirectory() as folder:
-        fine = os.path.join(folder, "cat0-28k.obj")
-        write_mesh(fine, *bisected(*read_mesh(cat), FINE))
-        yield {"cat0 of TOSCA": cat, "cat0, longest edges bisected": fine,
-               "armadillo": os.path.join(data, "single", "armadillo.obj")}
+    """Title -> path of each test mesh."""
+    meshes = {"cat0 of TOSCA": "tosca-lowres/cat0.vert", "cat0, full resolution": "tosca-hires/cat0.ply",
+              "armadillo": "single/armadillo.obj"}
+    paths = {title: os.path.join(data, path) for title, path in meshes.items()}
+    for path in paths.values():
+        if not os.path.exists(path):
+            sys.exit(f"{path} is missing: pass --data FOLDER with tosca-lowres/, tosca-hires/ and single/")
+    return paths
 
 
 def read_mesh(path):
@@ -104,41 +97,6 @@ def write_mesh(path, vertices, faces):
             file.write(f"OFF\n{len(vertices)} {len(faces)} 0\n")
         file.writelines(vertex + "%.17g %.17g %.17g\n" % tuple(v) for v in vertices)
         file.writelines(face + "%d %d %d\n" % tuple(f + first) for f in faces)
-
-
-def bisected(vertices, faces, n_vertices):
-    """Bisects longest edges up to a number of vertices, without changing the surface."""
-    vertices, faces = [tuple(v) for v in vertices], [list(f) for f in faces]
-    at_edge = collections.defaultdict(set)
-    key = lambda a, b: (min(a, b), max(a, b))
-    heap = []
-
-    def edges(face):
-        return [key(*pair) for pair in zip(face, face[1:] + face[:1])]
-
-    def attach(face):
-        for edge in edges(faces[face]):
-            at_edge[edge].add(face)
-            heapq.heappush(heap, (-math.dist(*(vertices[v] for v in edge)), edge))
-
-    for face in range(len(faces)):
-        attach(face)
-    while len(vertices) < n_vertices:
-        _, edge = heapq.heappop(heap)
-        if edge not in at_edge:
-            continue
-        middle = len(vertices)
-        vertices.append(tuple(0.5 * (p + q) for p, q in zip(*(vertices[v] for v in edge))))
-        for face in sorted(at_edge[edge]):
-            old = faces[face]
-            for side in edges(old):
-                at_edge[side].discard(face)
-            faces[face] = [middle if v == edge[1] else v for v in old]
-            faces.append([middle if v == edge[0] else v for v in old])
-            attach(face)
-            attach(len(faces) - 1)
-        del at_edge[edge]
-    return np.array(vertices), np.array(faces)
 
 
 def subdivided(vertices, faces):
