@@ -63,9 +63,6 @@ pub(crate) struct RunArgs {
     /// Skip experiments that the folder already has, if the same version made them with the same shapes and seed
     #[arg(long)]
     pub(crate) resume: bool,
-    /// Set published scores beside those of `retrieval`: a TOML file of the form of experiments/published/*.toml
-    #[arg(long, value_name = "FILE.toml")]
-    pub(crate) compare: Option<PathBuf>,
     /// Worker threads; 0 for all cores. Results do not depend on it
     #[arg(long, default_value_t = 0, value_name = "N")]
     pub(crate) threads: usize,
@@ -80,7 +77,6 @@ impl RunArgs {
         let mut options = self.source.options();
         let path = |path: &Path| path.display().to_string();
         options.extend((self.output != Path::new(OUTPUT)).then(|| ("output", path(&self.output))));
-        options.extend(self.compare.as_deref().map(|compare| ("compare", path(compare))));
         options.iter().map(|(name, value)| format!(" --{name} {}", quoted(value))).collect()
     }
 
@@ -120,8 +116,8 @@ mod tests {
         assert!(command("retrieval").ends_with("-- run retrieval"));
         let line = "retrieval --families articulated,creatures:40x8 --vertices 1000";
         assert!(command(line).ends_with(line), "{}", command(line));
-        let line = "figure3 --dataset my&data --classes cat,dog --seed 2 --compare a.toml -o results/1";
-        let expected = "-- run figure3 --dataset 'my&data' --classes cat,dog --seed 2 --output results/1 --compare a.toml";
+        let line = "figure3 --dataset my&data --classes cat,dog --seed 2 -o results/1";
+        let expected = "-- run figure3 --dataset 'my&data' --classes cat,dog --seed 2 --output results/1";
         assert!(command(line).ends_with(expected), "{}", command(line));
         assert_eq!(quoted("it's"), r"'it'\''s'");
     }

@@ -51,9 +51,6 @@ pub(crate) struct Options {
     pub(crate) queries: usize,
     /// Nearest neighbours that vote.
     pub(crate) voters: usize,
-    /// Training shapes of each class, for classification over so many random splits.
-    pub(crate) training: Vec<usize>,
-    pub(crate) splits: usize,
     /// Most shapes whose forms are all aligned with each other.
     pub(crate) aligned: usize,
     /// Parts of which all pairs are compared, and parts that are compared with copies of themselves.

@@ -15,7 +15,6 @@ use crate::collection::{Setting, SurfaceCollection};
 use crate::config::{Config, Options, Printed};
 use crate::machine;
 use crate::specimen::Specimen;
-use crate::studies::published::Published;
 use crate::sweep::{MeasuredNumbers, curves, note, places, plots};
 use crate::text::filled;
 
@@ -30,8 +29,6 @@ pub(crate) struct Context<'a> {
     /// A few of its shapes, with values that several experiments share, such as the distances of all pairs of vertices.
     pub(crate) specimens: &'a [Specimen<'a>],
     pub(crate) seed: u64,
-    /// Published scores to stand beside those measured.
-    pub(crate) published: Option<&'a Published>,
     pub(crate) args: &'a RunArgs,
     pub(crate) observer: &'a dyn Observer,
     pub(crate) start: Instant,

@@ -74,7 +74,6 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitCode> {
     }
     let finished = Arc::new(Mutex::new(finished));
     keep_finished(args, Arc::clone(&finished));
-    let published = args.compare.as_deref().map(studies::published::published).transpose()?;
     if !open.is_empty() {
         let bars = Bars::new(args.quiet);
         let collection = SurfaceCollection::load(&args.source, &bars)?;
@@ -87,7 +86,6 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitCode> {
                 collection: &collection,
                 specimens: &specimens,
                 seed: args.source.seed,
-                published: published.as_ref(),
                 args,
                 observer: &bars,
                 start: Instant::now(),

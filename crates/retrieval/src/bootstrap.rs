@@ -84,7 +84,7 @@ pub fn bootstrap(
 }
 
 /// Uniform in `0..bound`, with a bias of at most `bound / 2^64`.
-pub(crate) fn below(random: &mut ChaCha8Rng, bound: usize) -> usize {
+fn below(random: &mut ChaCha8Rng, bound: usize) -> usize {
     ((u128::from(random.next_u64()) * bound as u128) >> 64) as usize
 }
 

@@ -28,7 +28,6 @@ mod labels;
 mod ranking;
 mod refinement;
 mod scores;
-mod splits;
 mod vote;
 
 pub use bootstrap::{BootstrapOptions, ScoreIntervals, bootstrap};
@@ -40,5 +39,4 @@ pub use labels::Labels;
 pub use ranking::{Neighbor, Rankings, rank, rank_row};
 pub use refinement::{Refinement, refine_nearest};
 pub use scores::{Averaging, QueryScores, Scores, precision_recall};
-pub use splits::{SplitOptions, split_accuracy};
 pub use vote::{Tally, UnknownThreshold, Vote, vote};

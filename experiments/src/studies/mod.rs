@@ -6,7 +6,6 @@ pub(crate) mod invariance;
 pub(crate) mod matching;
 pub(crate) mod partial;
 pub(crate) mod points;
-pub(crate) mod published;
 pub(crate) mod retrieval;
 pub(crate) mod robustness;
 pub(crate) mod scaling;

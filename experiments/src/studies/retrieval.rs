@@ -16,11 +16,10 @@ use rayon::prelude::*;
 use report::record::{Axis, Figure, FigurePanels, Heat, Plot};
 use report::{Cell, Record, Table};
 use retrieval::{
-    Averaging, BootstrapOptions, GraphRankings, Labels, Neighbor, QueryScores, Rankings, SplitOptions,
-    UnknownThreshold, bootstrap, precision_recall, rank, split_accuracy, vote,
+    Averaging, BootstrapOptions, GraphRankings, Labels, Neighbor, QueryScores, Rankings, UnknownThreshold,
+    bootstrap, precision_recall, rank, vote,
 };
 
-use super::published::{Published, PublishedMethod};
 use crate::context::Context;
 use crate::gallery::Gallery;
 use crate::sweep::{MeasuredNumbers, SCORES, best_e, curve, named, note, plot, point};
@@ -71,8 +70,7 @@ pub(crate) fn retrieval(context: &Context<'_>) -> Result<Record> {
     let mut figures = vec![Figure { part: "curves".to_owned(), caption, panels: FigurePanels::Plots(plots) }];
     let n_queries = (0..n).filter(|i| labels.is_query(*i)).count();
     measured.extend([("best e".to_owned(), best_e(labels)?), ("asked".to_owned(), n_queries as f64)]);
-    let mut tables = vec![table(context, rows)];
-    tables.extend(context.published.map(of_others));
+    let mut tables = vec![table(rows)];
     if let Some((figure, of_classes)) = classified {
         figures.push(figure);
         tables.extend(of_classes);
@@ -172,11 +170,6 @@ fn rankings(
         row.push(format!("{:.3} to {:.3}", interval.low.map, interval.high.map).into());
         row.extend([by_class.nn, by_class.map, knn].map(Cell::from));
         row.push(least.into());
-        for n_train in options.training.iter().copied() {
-            let split = SplitOptions { n_train, runs: options.splits, seed: context.seed };
-            let found = split_accuracy(rankings, labels, &split)?;
-            row.push(found.map(|[mean, deviation]| format!("{mean:.3} ± {deviation:.3}")).into());
-        }
         Ok(row)
     };
     let plain = ranked("plain", &all_rankings(distances), Some(least))?;
@@ -184,24 +177,10 @@ fn rankings(
 }
 
 /// The table of all rankings.
-fn table(context: &Context<'_>, rows: Vec<Vec<Cell>>) -> Table {
-    let splits = context.options.training.iter().map(|n| format!("1-NN, {n} a class"));
-    let splits: Vec<String> = splits.collect();
+fn table(rows: Vec<Vec<Cell>>) -> Table {
     let headings = ["method", "size", "ranking"].into_iter().chain(SCORES);
     let headings = headings.chain(["mAP interval", "macro NN", "macro mAP", "k-NN", "least mAP"]);
-    Table::new("", headings.chain(splits.iter().map(String::as_str)), rows)
-}
-
-/// Published scores, to compare them.
-fn of_others(published: &Published) -> Table {
-    let line = |method: &PublishedMethod| {
-        let uses = if method.uses_collection { "yes" } else { "no" };
-        let texts = [method.name.as_str(), uses, &method.source].map(Cell::from);
-        texts.into_iter().chain(method.scores().map(Cell::from)).collect()
-    };
-    let headings = ["method", "uses the collection", "source"].into_iter().chain(SCORES);
-    let caption = format!("Published scores on {}.", published.collection);
-    Table::new(caption, headings, published.method.iter().map(line).collect())
+    Table::new("", headings, rows)
 }
 
 /// The classification of every shape by the others, and the error rates for unknown shapes.

@@ -11,7 +11,6 @@ mod graph_gain;
 mod labels;
 mod refinement;
 mod scores;
-mod splits;
 mod vote;
 
 use linalg::DistanceMatrix;
