@@ -6,13 +6,12 @@
 
 use anyhow::{Context as _, Result};
 use canonform::describe;
-use canonform::embed::signature;
-use canonform::index::{Shape, VectorTable};
+use canonform::index::VectorTable;
 use canonform::relations::{MeshGeometry, Relation, RelationKind};
 use canonform::rigid::Handedness;
 use canonform::search::{bounds, rerank};
 use datasets::Damage;
-use descriptors::{ShapeMetric, ShapePair, SignatureKind};
+use descriptors::{ShapeMetric, ShapePair};
 use mesh::{SmoothRegions, TriMesh};
 use report::{Cell, Record, Table};
 
@@ -39,8 +38,6 @@ const DAMAGES: [Damage; 13] = [
 /// A damaged shape beside the undamaged collection.
 struct DamagedShape {
     name: String,
-    /// Of every signature, relative to its length and in its unit.
-    changes: Vec<[f64; 2]>,
     form: f64,
     combined: f64,
     is_top1: bool,
@@ -82,15 +79,12 @@ const HEADINGS: [&str; 9] = [
     "told",
     "aligned forms",
 ];
-const RELATIVE: &str = "Median distance between the signatures of the damaged and the undamaged shape, over the length of the latter.";
-const UNITS: &str = "The same changes in units of the distance between two poses of one body.";
-
 pub(crate) fn invariance(context: &Context<'_>) -> Result<Record> {
     let gallery = Gallery::new(context)?;
     let prepared = gallery.prepared()?;
     let mut vectors = VectorTable::default();
     prepared.iter().for_each(|shape| vectors.push("", &shape.fused));
-    let [mut found_again, mut relative, mut units]: [Vec<Vec<Cell>>; 3] = Default::default();
+    let mut rows: Vec<Vec<Cell>> = Vec::new();
     let (mut least_top1, mut most_unknown, mut least_told) = (1.0_f64, 0.0_f64, 1.0_f64);
     for damage in DAMAGES {
         let found = gallery.map(context.options.queries, &damage.to_string(), |query| {
@@ -117,7 +111,6 @@ pub(crate) fn invariance(context: &Context<'_>) -> Result<Record> {
             Ok(DamagedShape {
                 is_told,
                 name: query.shape.name.clone(),
-                changes: changes(&gallery.described[query.own], &damaged),
                 form: pair.best().gap.rms / ShapeMetric::FORM_UNIT,
                 combined: pair.distance().combined,
                 is_top1: gallery.is_right(query, first.index),
@@ -134,9 +127,8 @@ pub(crate) fn invariance(context: &Context<'_>) -> Result<Record> {
         least_top1 = least_top1.min(top1);
         least_told = least_told.min(told.unwrap_or(1.0));
         most_unknown = most_unknown.max(if damage.keeps_surface() { unknown } else { 0.0 });
-        let name = || Cell::from(damage.to_string());
-        found_again.push(vec![
-            name(),
+        rows.push(vec![
+            damage.to_string().into(),
             median_of(&|f| f.combined).into(),
             farthest.combined.into(),
             farthest.name.as_str().into(),
@@ -146,17 +138,8 @@ pub(crate) fn invariance(context: &Context<'_>) -> Result<Record> {
             told.into(),
             median_of(&|f| f.form).into(),
         ]);
-        for (table, which) in [(&mut relative, 0), (&mut units, 1)] {
-            let change = |i: usize| Cell::from(median_of(&|f| f.changes[i][which]));
-            table.push([name()].into_iter().chain((0..SignatureKind::INTRINSIC.len()).map(change)).collect());
-        }
     }
-    let headings = || ["damage"].into_iter().chain(SignatureKind::INTRINSIC.map(SignatureKind::name));
-    let tables = vec![
-        Table::new("", HEADINGS, found_again),
-        Table::new(RELATIVE, headings(), relative),
-        Table::new(UNITS, headings(), units),
-    ];
+    let tables = vec![Table::new("", HEADINGS, rows)];
     let vertices = context.collection.shapes.iter().map(|shape| shape.surface.mesh().n_vertices() as f64);
     let measured = numbers([
         ("least top1", least_top1),
@@ -167,18 +150,6 @@ pub(crate) fn invariance(context: &Context<'_>) -> Result<Record> {
         ("boundary of classes", ShapeMetric::SAME_CLASS.at),
     ]);
     Ok(Record { tables, ..context.record(&[("description", &gallery.options)], measured) })
-}
-
-/// The change of every signature, relative to its length and in its unit.
-fn changes(before: &Shape, after: &Shape) -> Vec<[f64; 2]> {
-    let pair = |kind| signature(before, kind).zip(signature(after, kind));
-    let pairs = SignatureKind::INTRINSIC.into_iter().filter_map(pair);
-    let change = pairs.map(|(before, after)| {
-        let distance = before.distance(&after);
-        let length = before.values.iter().map(|x| x * x).sum::<f64>().sqrt();
-        [distance / length.max(f64::MIN_POSITIVE), distance / ShapeMetric::unit(before.kind)]
-    });
-    change.collect()
 }
 
 /// The upper median; 0 of nothing.
