@@ -11,6 +11,7 @@ mod serve;
 mod settings;
 mod shared;
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use canonform::collection::Storage;
@@ -20,7 +21,7 @@ use canonform::mesh::io::{Content, files_in, mesh_files, or_list, writable};
 use canonform::relations::RelationKind;
 use canonform::settings::{Geodesic, MethodSettings, StressSettings};
 use clap::builder::TypedValueParser;
-use clap::{Arg, ArgAction, Args, CommandFactory, FromArgMatches, Id, Parser, Subcommand};
+use clap::{Arg, ArgAction, ArgMatches, Args, CommandFactory, FromArgMatches, Id, Parser, Subcommand};
 use clap_complete::Shell;
 
 use self::settings::{FormArgs, one_of};
@@ -81,7 +82,12 @@ const WRITTEN: [&str; 9] =
 /// Parses the command line, or prints help or an error and ends the program. All other files that it names are inputs, which
 /// no result may replace.
 pub(crate) fn parsed() -> Arguments {
-    let matches = program().try_get_matches().unwrap_or_else(|fault| exit(&fault));
+    let (matches, arguments) = read(std::env::args_os()).unwrap_or_else(|fault| {
+        // The fault quotes what was given, which may end its line or hold codes of terminals.
+        let printable =
+            std::env::args_os().map(|word| base::one_line(&word.to_string_lossy()).into_owned().into());
+        read(printable).err().unwrap_or(fault).exit()
+    });
     let mut command = Some(&matches);
     while let Some(inner) = command {
         let given = inner.ids().map(Id::as_str).filter(|id| !WRITTEN.contains(id));
@@ -89,24 +95,18 @@ pub(crate) fn parsed() -> Arguments {
         values.map(Path::new).filter(|path| path.is_file()).for_each(keep_inputs);
         command = inner.subcommand().map(|(_, inner)| inner);
     }
-    Arguments::from_arg_matches(&matches).unwrap_or_else(|fault| exit(&fault.format(&mut program())))
+    arguments
+}
+
+fn read(words: impl Iterator<Item = OsString>) -> Result<(ArgMatches, Arguments), clap::Error> {
+    let matches = program().try_get_matches_from(words)?;
+    let arguments = Arguments::from_arg_matches(&matches).map_err(|fault| fault.format(&mut program()))?;
+    Ok((matches, arguments))
 }
 
 /// Keeps the files of a mesh, or of whatever an argument names, from being replaced by a result.
 pub(crate) fn keep_inputs(path: &Path) {
     files_in(path, &Storage).iter().for_each(|file| base::files::keep_input(file));
-}
-
-/// Prints help to standard output, or an error to standard error, which may quote a name.
-fn exit(fault: &clap::Error) -> ! {
-    let text = fault.render().to_string();
-    let printable = base::printable(&text);
-    if !fault.use_stderr() || printable == text {
-        fault.exit();
-    }
-    // Standard error may be closed.
-    let _ = std::io::Write::write_all(&mut std::io::stderr(), printable.as_bytes());
-    std::process::exit(fault.exit_code());
 }
 
 /// What commands read.
