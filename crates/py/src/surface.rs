@@ -237,12 +237,11 @@ impl Surface {
     fn read(py: Python<'_>, path: PathBuf, settings: Settings) -> PyResult<(Self, Vec<String>)> {
         let mut notes = Vec::new();
         let surface = Self::repaired(py, &settings.repair(), || {
-            let content = content_hash(&path)?;
             let MeshFile { mesh, facts, .. } =
                 canonform::collection::read_mesh_file(&path, &ReadLimits::default())?;
             notes = facts.notes;
             notes.extend(facts.ignored.iter().map(|what| format!("ignored {what}")));
-            Ok((mesh, Some(content)))
+            Ok((mesh, Some(content_hash(&path)?)))
         })?;
         Ok((surface, notes))
     }
