@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from canonform import Surface
 from canonform.errors import CanonformError, MeshError, MissingFileError, OptionError
-from conftest import grid
+from conftest import ROOT, grid
 from numpy.typing import NDArray
 
 meshio = pytest.importorskip("meshio")
@@ -151,6 +151,17 @@ def test_what_is_refused_is_told(name: str) -> None:
     with pytest.raises(kind) as raised:
         make()
     assert words in str(raised.value)
+
+
+def test_meshes_that_the_command_line_refuses_are_refused_in_its_words() -> None:
+    contracts = ROOT / "tests" / "contracts"
+    rows = [row.split("\t") for row in (contracts / "broken-meshes.tsv").read_text().splitlines()]
+    refused = [(name, words) for name, _, words, _, exit_codes, _ in rows if exit_codes == "2, 2"]
+    assert len(refused) > 30
+    for name, words in refused:
+        with pytest.raises(CanonformError) as raised:
+            Surface(contracts / "meshes" / name)
+        assert words.split("; ")[0] in str(raised.value), name
 
 
 def test_quads_are_split_as_in_files(tmp_path: Path) -> None:

@@ -2,7 +2,6 @@
 
 use std::fs;
 
-use canonform::mesh::shapes;
 use serde_json::{Value, json};
 
 use crate::support::{Workplace, broken_ring, read_npy, ring};
@@ -57,30 +56,4 @@ fn pairs_have_distances_within_bounds() {
     assert_eq!((&json["bounds"]["kind"], &json["dropped"]), (&json!("measured"), &json!(10)));
     let info = place.json("field info a.field");
     assert_eq!((&info["n_vertices"], &info["method"]), (&json!(170), &json!("fast-marching")));
-}
-
-#[test]
-fn mistakes_are_named_and_leave_nothing_behind() {
-    let place = place();
-    place.add("b.off", &shapes::icosphere(0));
-    fs::write(place.path("bad.csv"), "1,2\n3\n").unwrap();
-    fs::write(place.path("far.csv"), "1,2\n3,999\n").unwrap();
-    let mut damaged = fs::read(place.path("x.field")).unwrap();
-    damaged[200] ^= 1;
-    fs::write(place.path("damaged.field"), damaged).unwrap();
-    place.all_refused(&[
-        ("field query x.field", &["--pairs"]),
-        ("field query x.field --nearest 3", &["--source"]),
-        ("field query x.field --pairs bad.csv", &["bad.csv", "line 2", "found 1 values"]),
-        ("field query x.field --pairs far.csv", &["x.field", "vertex 999", "160 vertices"]),
-        ("field query x.field --source 160", &["vertex 160"]),
-        ("field query x.field --source 1 -o row.ply", &["row.ply", ".csv or .npy"]),
-        ("field query x.field --source 1 --tolerance -1", &["-1", "none"]),
-        ("field query damaged.field --source 1", &["damaged.field", "checksum", "field build"]),
-        ("field query ring.off --source 1", &["ring.off", "not a distance field"]),
-        ("field query none.field --source 1", &["none.field"]),
-        ("field build b.off --landmarks 0 -o b.field", &["b.off", "at least 1"]),
-        ("field build b.off --rank 200 -o b.field", &["rank 200"]),
-        ("field build b.off -o no/b.field", &["folder no"]),
-    ]);
 }

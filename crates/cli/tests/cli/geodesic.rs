@@ -5,7 +5,6 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use canonform::mesh::{TriMesh, shapes};
-use canonform::surface::VertexId;
 use serde_json::{Value, json};
 
 use crate::support::{Workplace, broken_ring, read_npy};
@@ -65,42 +64,6 @@ fn the_nearest_of_several_sources_is_one_row() {
     assert!(near.iter().all(|d| *d <= 2.5 || d.is_infinite()));
     let beyond = [0, 1].map(|row| near[row * 72 + 9..][..63].iter().filter(|d| d.is_infinite()).count());
     assert_eq!((&json["beyond"], &json["unreached"]), (&json!(beyond), &json!((0..9).collect::<Vec<_>>())));
-}
-
-#[test]
-fn errors_name_missing_points() {
-    let place = Workplace::new();
-    let mut mesh = broken_ring();
-    // Face 328 is degenerate.
-    mesh.faces.push([3, 3, 4].map(VertexId));
-    fs::write(place.path("a.off"), crate::zoo::off(&mesh)).unwrap();
-    place.all_refused(&[
-        ("geodesic a.off -o d.npy --source 170", &["a.off: vertex 170", "170 vertices, counted from 0"]),
-        ("geodesic a.off -o d.npy --source 160", &["a.off: vertex 160", "left out", "--components bridge"]),
-        ("geodesic a.off -o d.npy --source f328", &["a.off: face 328", "left out", "--components bridge"]),
-        ("geodesic a.off -o d.npy --source f321", &["a.off: face 321", "left out"]),
-        ("geodesic a.off -o d.npy --source f999", &["a.off: face 999", "329 faces"]),
-        ("geodesic a.off -o d.npy --source 0-80@0.5", &["a.off: edge 0-80 does not exist"]),
-        ("geodesic a.off -o d.npy --source 161-162", &["vertex 161", "left out"]),
-        ("geodesic a.off -o d.npy --source seven", &["`seven`", "17-42@0.3"]),
-        ("geodesic a.off -o d.npy --source 3-4@nan", &["`3-4@nan`"]),
-        ("geodesic a.off -o p.obj --source 0 --path-to 160", &["a.off: vertex 160"]),
-        ("geodesic a.off -o p.obj --source 0 --path-to 3-4@nan", &["`3-4@nan`"]),
-        ("geodesic a.off -o d.npy --source 0 --max-distance nan", &["`nan`", "mesh units"]),
-        ("geodesic a.off -o d.npy --all-pairs --source 0", &["--all-pairs", "--source"]),
-        ("geodesic a.off -o d.npy --all-pairs --nearest", &["--all-pairs", "--nearest"]),
-        (
-            "geodesic a.off -o d.npy --all-pairs --memory 1",
-            &["a.off", "170 vertices", "2720 bytes", "--memory"],
-        ),
-        ("geodesic a.off -o d.npy --all-pairs --memory much", &["`much`", "2G"]),
-        ("geodesic a.off -o d.npy --source 0 --path-to 80", &["d.npy", ".obj, .ply, .csv or .json"]),
-        (
-            "geodesic a.off -o p.obj --source 0 --path-to 80 --max-distance 0.1",
-            &["a.off: there is no path", "to 80", "--max-distance"],
-        ),
-        ("geodesic a.off -o d.csv --all-pairs", &["d.csv", "use .npy"]),
-    ]);
 }
 
 #[test]

@@ -163,47 +163,4 @@ fn a_matrix_of_distances_is_scored() {
     let scores = place.json("evaluate named.csv");
     assert_eq!((&scores["nn"], &scores["confusion"]), (&1.0.into(), &serde_json::json!([[3, 0], [0, 3]])));
     assert_eq!(place.json("evaluate bare.csv --labels labels.csv"), scores);
-    place.all_refused(&[
-        ("evaluate bare.csv", &["bare.csv", "--labels"]),
-        ("evaluate none.csv", &["none.csv", "No such file"]),
-        ("evaluate labels.csv", &["labels.csv"]),
-    ]);
-}
-
-#[test]
-fn errors_name_files_that_are_not_indexes_or_cannot_be_written() {
-    let place = collection(3);
-    place.done(BUILD);
-    let before = fs::read(place.path("all.canonform")).unwrap();
-    fs::write(place.path("notes.txt"), "dear diary").unwrap();
-    fs::create_dir(place.path("folder")).unwrap();
-    place.add("meshes/ring0.off", &body(0, 3));
-    place.done("index build meshes -n 20 -o new");
-    place.done("index build meshes -n 21 -o other");
-    place.all_refused(&[
-        ("index info notes.txt", &["notes.txt", "not a shape index"]),
-        ("search notes.txt meshes/box0.off", &["notes.txt", "not a shape index"]),
-        ("evaluate notes.txt", &["notes.txt", "not a shape index"]),
-        ("index build meshes -o notes.txt", &["notes.txt", "not a shape index"]),
-        ("index info none", &["none", "No such file"]),
-        ("index build meshes -o nowhere/a", &["nowhere", "create it first"]),
-        ("index build nowhere -o a", &["nowhere"]),
-        ("index build meshes -n 30 -o all.canonform", &["other options", "30", "20"]),
-        ("index build meshes -n 3 -o a", &["at least 8 samples", "3"]),
-        ("index build meshes -o folder", &["folder", "this is a folder"]),
-        ("index build meshes --dim 2 -o x", &["3 dimensions", "2", "--dim"]),
-        ("index build meshes --sigma 1 -o x", &["--sigma has no effect", "kpca"]),
-        ("index build meshes --shard 5/4 -o x", &["--shard", "5", "4"]),
-        ("index merge all.canonform new -o x", &["`ring0`", "new"]),
-        ("index merge new other -o x", &["other options", "21", "20"]),
-        ("index info folder", &["folder", "this is a folder"]),
-        ("evaluate all.canonform --rank best", &["best", "possible values: plain, graph"]),
-        (
-            "search all.canonform --id ring1 --rank best",
-            &["best", "possible values: plain, graph, part, forms"],
-        ),
-        ("evaluate all.canonform --by colour", &["colour", "shape-dna"]),
-    ]);
-    assert_eq!(fs::read(place.path("all.canonform")).unwrap(), before);
-    assert_eq!(fs::read_to_string(place.path("notes.txt")).unwrap(), "dear diary");
 }

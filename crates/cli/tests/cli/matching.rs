@@ -102,8 +102,6 @@ fn landmarks_initial_maps_and_tables_to_carry_are_read_and_their_faults_are_name
     ] {
         place.refused(format!("{MATCH} {options}"), words);
     }
-    place.refused("match - - --format off", &["only once"]);
-    place.refused("match cat0.off none.off", &["none.off"]);
 }
 
 #[test]

@@ -93,36 +93,3 @@ fn what_a_repair_dropped_is_grey_counted_and_drawn_the_same_with_any_number_of_t
     let grey = drawn(&place, "--field nan.csv --background transparent");
     assert!(grey.iter().filter(|p| p[3] == 255).all(|p| p[0].abs_diff(p[2]) < 30));
 }
-
-#[test]
-fn errors_name_the_fault_and_leave_nothing() {
-    let place = place();
-    fs::write(place.path("three.csv"), "1,2,3").unwrap();
-    fs::write(place.path("ragged.csv"), "1,2\n3").unwrap();
-    fs::write(place.path("words.csv"), "1,two").unwrap();
-    fs::write(place.path("no.npy"), "numbers").unwrap();
-    fs::write(place.path("points.off"), "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n").unwrap();
-    place.done("geodesic ring.off --source 3,90 -o two.npy");
-    place.all_refused(&[
-        ("render ring.off -o x.jpg", &["x.jpg", ".png"]),
-        ("render ring.off", &["--output"]),
-        ("render ring.off -o absent/x.png", &["absent", "does not exist"]),
-        ("render ring.off --size 9 -o x.png", &["`9`", "800x600", "4096"]),
-        ("render ring.off --view up -o x.png", &["`up`", "principal"]),
-        ("render ring.off --color red -o x.png", &["`red`", "#rrggbb"]),
-        ("render ring.off --background sky -o x.png", &["`sky`", "transparent"]),
-        ("render ring.off --range 2,1 --distance-from 0 -o x.png", &["`2,1`", "smallest"]),
-        ("render ring.off --isolines 5 -o x.png", &["--isolines", "--field", "--distance-from"]),
-        ("render ring.off --field three.csv -o x.png", &["three.csv", "3 values", "160 vertices"]),
-        ("render ring.off --field ragged.csv -o x.png", &["ragged.csv", "line 2", "1 values"]),
-        ("render ring.off --field words.csv -o x.png", &["words.csv", "line 1", "`two`"]),
-        ("render ring.off --field no.npy -o x.png", &["no.npy"]),
-        ("render ring.off --field no.txt -o x.png", &["no.txt", ".npy or .csv"]),
-        ("render ring.off --field gone.npy -o x.png", &["gone.npy", "No such file"]),
-        ("render ring.off --field two.npy -o x.png", &["two.npy", "2 rows", "--row"]),
-        ("render ring.off --field two.npy --row 2 -o x.png", &["two.npy", "row 2 does not exist"]),
-        ("render ring.off --distance-from 160 -o x.png", &["ring.off", "vertex 160"]),
-        ("render ring.off --distance-from 0 --field two.npy -o x.png", &["--field"]),
-        ("render points.off -o x.png", &["points.off"]),
-    ]);
-}

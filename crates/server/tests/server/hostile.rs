@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::io::{Read, Write};
+use std::path::Path;
 
 use canonform::mesh::shapes;
 use canonform_server::ServeOptions;
@@ -30,61 +31,19 @@ fn zipped(content: &[&[u8]]) -> Vec<u8> {
     file
 }
 
-/// Bad uploads of every kind; what readers say to damaged files is tested beside them.
+/// Bad uploads of every kind beside those of `tests/contracts`.
 fn hostile() -> Vec<Files> {
     let ball = shapes::icosphere(2);
-    let written = |name: &str| written(name, &ball);
-    let mut all: Vec<Files> =
-        ["a.off", "a.ply", "a.stl"].iter().map(|name| one(name, &written(name)[..2000])).collect();
-    let [vert, tri, off] = ["b.vert", "b.tri", "a.off"].map(written);
-    all.extend([
+    let [vert, tri, off] = ["b.vert", "b.tri", "a.off"].map(|name| written(name, &ball));
+    let mut all = vec![
         one("b.vert", &*vert),
         one("b.tri", &*tri),
         [one("b.vert", &*vert), one("c.tri", &*tri)].concat(),
         [one("b.vert", &*vert), one("b.vert", &*vert)].concat(),
         [one("a.off", &*off), one("b.off", &*off)].concat(),
         [one("a.vert", "0 0 x\n1 0 0\n0 1 0\n"), one("a.tri", "1 2 3\n")].concat(),
-    ]);
-    // Headers with huge counts.
-    for count in ["200001", "4294967295", "99999999999999999999", "-4", "1e18"] {
-        all.extend([
-            one("a.off", format!("OFF\n{count} {count} 0\n0 0 0\n")),
-            one("a.off", format!("OFF\n3 {count} 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")),
-            one("a.obj", format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 {count}\n")),
-        ]);
-        for counts in [[count, "1"], ["0", count]] {
-            let header = format!(
-                "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\n\
-                 property float z\nelement face {}\nproperty list uint uint vertex_indices\nend_header\n0123456789",
-                counts[0], counts[1]
-            );
-            all.push(one("a.ply", header));
-        }
-    }
-    all.push(one("a.stl", [&[0; 80][..], &u32::MAX.to_le_bytes(), b"0123456789"].concat()));
-    // Malformed numbers, and surfaces that cannot be measured.
-    for (vertices, last) in [
-        ("0 0 nan\n1 0 0\n0 1 0", "2"),
-        ("0 0 1e999\n1 0 0\n0 1 0", "2"),
-        ("0 0 x\n1 0 0\n0 1 0", "2"),
-        ("0 0\n1 0 0\n0 1 0", "2"),
-        ("0 0 0\n1 0 0\n0 1 0", "3"),
-        ("0 0 0\n1 0 0\n0 1 0", "-1"),
-        ("0 0 0\n1 0 0\n0 1 0", "1.5"),
-        ("0 0 0\n0 0 0\n0 0 0", "2"),
-        ("-1e308 0 0\n1e308 0 0\n0 1e308 0", "2"),
-        ("0 0 0\n5e-324 0 0\n0 5e-324 0", "2"),
-    ] {
-        all.push(one("a.off", format!("OFF\n3 1 0\n{vertices}\n3 0 1 {last}\n")));
-    }
-    // Wrong formats, bad names, and compression bombs.
-    for name in ["a.off", "a.obj", "a.ply", "a.stl", "a.mat", "a.vert", "a.tri"] {
-        for content in
-            [&b" \n\t"[..], b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR", b"<html><script>alert(1)</script>"]
-        {
-            all.push(one(name, content));
-        }
-    }
+    ];
+    // Bad names, compression bombs, and what lacks its end.
     for name in ["../../etc/passwd", "C:\\boot.ini", "a.txt", "a.off.exe", "off", "a.", "..", " "] {
         all.push(one(name, &*off));
     }
@@ -126,6 +85,25 @@ fn bad_meshes_get_an_error() {
         let what = String::from_utf8_lossy(&content[..content.len().min(60)]);
         check(&format!("{name}: {what}"), &upload(server.address, &files, &[]).unwrap());
     }
+    still_serves(&server);
+}
+
+#[test]
+fn meshes_that_the_command_line_refuses_are_refused_in_its_words() {
+    let server = Served::start(ServeOptions { max_vertices: u64::MAX, ..options() });
+    let contracts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/contracts");
+    let table = fs::read_to_string(contracts.join("broken-meshes.tsv")).unwrap();
+    let refused = table.lines().map(|row| row.split('\t').collect::<Vec<_>>()).filter(|row| row[4] == "2, 2");
+    let mut n_refused = 0;
+    for row in refused {
+        let mesh = fs::read(contracts.join("meshes").join(row[0])).unwrap();
+        let answer = upload(server.address, &[(row[0], &mesh)], &[]).unwrap();
+        check(row[0], &answer);
+        let words = row[2].split("; ").next().unwrap();
+        assert!(answer.json()["error"].as_str().unwrap().contains(words), "{}: {}", row[0], answer.json());
+        n_refused += 1;
+    }
+    assert!(n_refused > 30, "{n_refused}");
     still_serves(&server);
 }
 
