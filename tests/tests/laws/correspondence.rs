@@ -28,13 +28,9 @@ fn motions_scale_and_numbering_change_no_map() {
     let (a, b) = (body(Family::Cat), pose(Family::Cat, 4));
     let usual = maps(&a, &b);
     let turn = Rotation3::from_euler_angles(0.3, 2.0, -1.0);
-    let mut moved = b.clone();
-    moved.positions.iter_mut().for_each(|p| *p = turn * *p * 7.0 + Point3::new(1.0, 2.0, 3.0).coords);
+    let moved = testkit::moved(&b, |p| turn * *p * 7.0 + Point3::new(1.0, 2.0, 3.0).coords);
     let n = b.n_vertices();
-    let renumbered = TriMesh {
-        positions: (0..n).map(|i| b.positions[n - 1 - i]).collect(),
-        faces: b.faces.iter().rev().map(|f| f.map(|v| VertexId::from(n - 1 - v.index()))).collect(),
-    };
+    let renumbered = testkit::renumbered(&b);
     let (moved, renumbered) = (maps(&a, &moved), maps(&a, &renumbered));
     for kind in [MapKind::Direct, MapKind::Mirrored] {
         let expected = images(of_kind(&usual, kind));
@@ -75,11 +71,7 @@ fn a_mirror_image_is_matched_by_the_mirrored_map() {
 fn maps_do_not_depend_on_threads() {
     let a = shapes::jittered_grid(25, 19, 0.1, 0.2, 3);
     let b = shapes::subdivide(&shapes::grid(13, 10, 0.2));
-    let on = |n: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap();
-        pool.install(|| maps(&a, &b))
-    };
-    let (one, three) = (on(1), on(3));
+    let [one, three] = [1, 3].map(|n| testkit::on_threads(n, || maps(&a, &b)));
     assert_eq!(one, three);
     let bits = |maps: &[VertexMap]| maps.iter().map(|map| map.distortion.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&one), bits(&three));

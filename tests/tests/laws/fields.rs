@@ -6,9 +6,6 @@ use geodesics::Method;
 use mesh::RepairOptions;
 use surface::VertexId;
 
-use crate::real_meshes::read_npy;
-use crate::support::data;
-
 fn field(surface: &Surface, method: Method) -> DistanceField {
     DistanceField::build(surface, &FieldOptions { method, ..FieldOptions::default() }, &()).unwrap()
 }
@@ -40,7 +37,7 @@ fn scored(field: &DistanceField, pairs: &[[VertexId; 2]], exact: &[f64]) -> Fiel
 #[test]
 #[ignore = "slow: make test-all"]
 fn intervals_hold_published_exact_distances_of_real_meshes() {
-    let Some(data) = data("distance fields against exact distances") else { return };
+    let Some(data) = testkit::data("") else { return };
     let scans = ["spot", "rocker-arm", "armadillo"].map(|name| (name, format!("single/{name}.obj")));
     let poses = ["cat0", "cat1", "centaur1", "centaur2", "horse0", "wolf0", "wolf1"];
     let poses = poses.map(|name| (name, format!("tosca-lowres/{name}.vert")));
@@ -50,8 +47,8 @@ fn intervals_hold_published_exact_distances_of_real_meshes() {
                 .unwrap();
         let n = surface.n_input_vertices();
         let file = |what| data.join("exact").join(format!("{name}-{what}.npy"));
-        let sources: Vec<u32> = read_npy(&file("sources"));
-        let rows: Vec<f64> = read_npy(&file("distances"));
+        let (_, sources) = testkit::array::<u32>(&file("sources"));
+        let (_, rows) = testkit::array::<f64>(&file("distances"));
         let each = 10_000 / sources.len() + 1;
         let picks = (0..each * sources.len()).map(|i| (i % sources.len(), (7919 * i + 13) % n));
         let (pairs, exact): (Vec<_>, Vec<_>) =

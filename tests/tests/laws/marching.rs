@@ -180,11 +180,10 @@ impl PrunedSolver for Careless<'_> {
 /// Asserts that pruned fronts, even careless ones, choose the samples of Procedure 1 with the same distances.
 pub(crate) fn pruning_changes_nothing(name: &str, surface: &IntrinsicMesh, n: usize) {
     let solver = FastMarching::new(surface, FastMarchingOptions::default(), &());
-    let threads = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
     for first in [FirstSample::Farthest, FirstSample::Vertex(VertexId(7))] {
         let full = farthest_point_sampling(&Unpruned(&solver), n, first).unwrap();
         for ahead in [&solver as &dyn DistanceSolver, &Careless(&solver)] {
-            let pruned = threads.install(|| farthest_point_sampling(ahead, n, first)).unwrap();
+            let pruned = testkit::on_threads(2, || farthest_point_sampling(ahead, n, first)).unwrap();
             assert_eq!(pruned.landmarks(), full.landmarks(), "{name} from {first:?}");
             assert_eq!(pruned, full, "{name} from {first:?}");
         }

@@ -14,7 +14,7 @@ use mesh::{TriMesh, shapes};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-use crate::support::{data, pose};
+use crate::support::pose;
 
 /// Changes after one another, with the kind of relation and the changes that must be told.
 type Variant = (&'static [Damage], RelationKind, &'static [Change]);
@@ -213,7 +213,7 @@ fn same_positions(a: &TriMesh, b: &TriMesh) -> bool {
 #[test]
 #[ignore = "slow: make test-all"]
 fn every_change_of_a_tosca_shape_is_told() {
-    let Some(data) = data("relations on TOSCA") else { return };
+    let Some(data) = testkit::data("") else { return };
     let files = list_shapes(&data.join("tosca-lowres"), None).unwrap();
     let shapes: Vec<_> =
         files.into_par_iter().filter_map(|file| Some((file.name, mesh_io::read(&file.path).ok()?))).collect();
@@ -242,10 +242,7 @@ fn every_change_of_a_tosca_shape_is_told() {
 
 /// The mesh at a place.
 fn at(mesh: &TriMesh, x: f64, y: f64) -> TriMesh {
-    TriMesh {
-        positions: mesh.positions.iter().map(|p| p + Vector3::new(x, y, 0.0)).collect(),
-        faces: mesh.faces.clone(),
-    }
+    testkit::moved(mesh, |p| p + Vector3::new(x, y, 0.0))
 }
 
 #[test]

@@ -1,7 +1,4 @@
 //! Expected results on real meshes: scans and TOSCA.
-//!
-//! The meshes are not part of the repository. Their folder is `CANONFORM_DATA`, or `../shared/data` next to the workspace.
-//! Without it the tests are skipped and print so.
 
 use std::path::Path;
 
@@ -12,7 +9,7 @@ use mesh::RepairOptions;
 use rayon::prelude::*;
 use surface::{IntrinsicMesh, VertexId};
 
-use crate::support::{data, marching};
+use crate::support::marching;
 
 fn read(path: &Path) -> Surface {
     let surface = canonform::read_surface(path, &RepairOptions::default(), &Default::default(), &()).unwrap();
@@ -24,16 +21,12 @@ fn tosca(data: &Path, name: &str) -> Surface {
     read(&data.join("tosca-lowres").join(format!("{name}.vert")))
 }
 
-pub(crate) fn read_npy<T: npyz::Deserialize>(path: &Path) -> Vec<T> {
-    npyz::NpyFile::new(std::fs::File::open(path).unwrap()).unwrap().into_vec().unwrap()
-}
-
 /// Mean relative error of fast marching over all vertices except the source, and the largest outside the one-ring of the
 /// source.
 fn errors(data: &Path, name: &str, surface: &IntrinsicMesh) -> (f64, f64) {
     let exact = |what| data.join("exact").join(format!("{name}-{what}.npy"));
-    let sources: Vec<u32> = read_npy(&exact("sources"));
-    let rows: Vec<f64> = read_npy(&exact("distances"));
+    let (_, sources) = testkit::array::<u32>(&exact("sources"));
+    let (_, rows) = testkit::array::<f64>(&exact("distances"));
     let p = surface.n_vertices();
     assert_eq!(rows.len(), sources.len() * p, "{name}");
     let solver = marching().prepare(surface, &()).unwrap();
@@ -55,7 +48,7 @@ fn errors(data: &Path, name: &str, surface: &IntrinsicMesh) -> (f64, f64) {
 
 #[test]
 fn fast_marching_is_close_to_exact_distances() {
-    let Some(data) = data("fast marching against exact distances") else { return };
+    let Some(data) = testkit::data("") else { return };
     let scans = [("armadillo", 0.0025), ("spot", 0.005)].map(|(name, most)| {
         (name, read(&data.join("single").join(format!("{name}.obj"))), [most, f64::INFINITY])
     });
@@ -72,7 +65,7 @@ fn fast_marching_is_close_to_exact_distances() {
 #[test]
 #[ignore = "slow: make test-all"]
 fn pruned_fronts_choose_the_same_samples_on_real_meshes() {
-    let Some(data) = data("pruned farthest point sampling") else { return };
+    let Some(data) = testkit::data("") else { return };
     for name in ["cat0", "david0", "centaur3", "horse5", "wolf1", "michael2"] {
         crate::marching::pruning_changes_nothing(name, tosca(&data, name).intrinsic(), 100);
     }
@@ -81,7 +74,7 @@ fn pruned_fronts_choose_the_same_samples_on_real_meshes() {
 #[test]
 #[ignore = "slow: make test-all"]
 fn distances_distinguish_poses_from_animals() {
-    let Some(data) = data("distances of poses and animals") else { return };
+    let Some(data) = testkit::data("") else { return };
     let shapes = list_shapes(&data.join("tosca-lowres"), None).unwrap();
     // Every other pose; all poses give the same result but take four times as long.
     let classes = ["cat", "centaur", "david", "dog"];

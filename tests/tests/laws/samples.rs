@@ -8,7 +8,7 @@ use mesh::TriMesh;
 use nmds::stress;
 use rayon::prelude::*;
 
-use crate::support::{data, marching, surface};
+use crate::support::{marching, surface};
 
 /// The first body of a kind, with this many vertices.
 fn of_kind(kind: &str, n_vertices: usize) -> TriMesh {
@@ -68,7 +68,7 @@ fn few_samples_are_enough_for_a_star_and_for_david() {
     let (n, sufficient) = enough(&surface(&of_kind("star", 3400)));
     println!("star: {sufficient} samples are enough, {n} taken");
     assert!((8..=20).contains(&sufficient) && n <= 40, "{sufficient} of {n}");
-    let Some(data) = data("few_samples_are_enough_for_a_star_and_for_david") else { return };
+    let Some(data) = testkit::data("") else { return };
     let path = data.join("tosca-lowres").join("david0.vert");
     let (n, sufficient) =
         enough(&canonform::read_surface(&path, &Default::default(), &Default::default(), &()).unwrap());

@@ -23,8 +23,7 @@ fn is_power_of_two(factor: f64) -> bool {
 }
 
 fn scaled(mesh: &TriMesh, factor: f64) -> TriMesh {
-    let positions = mesh.positions.iter().map(|p| p * factor).collect();
-    TriMesh { positions, faces: mesh.faces.clone() }
+    testkit::moved(mesh, |p| p * factor)
 }
 
 /// Requires `found` to be `expected` times `factor`: exactly, or within `tolerance` of the largest number.

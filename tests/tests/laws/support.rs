@@ -17,17 +17,6 @@ pub(crate) fn workspace_root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// The folder of real meshes. Prints that the test is skipped if it does not exist.
-pub(crate) fn data(test: &str) -> Option<PathBuf> {
-    let folder = std::env::var_os("CANONFORM_DATA")
-        .map_or_else(|| workspace_root().join("../shared/data"), PathBuf::from);
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    println!("skipped: {test}: no folder {}; set CANONFORM_DATA", folder.display());
-    None
-}
-
 /// The packages of the workspace.
 pub(crate) fn metadata() -> Metadata {
     let mut command = MetadataCommand::new();

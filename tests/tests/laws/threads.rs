@@ -10,7 +10,7 @@ use crate::support::{bits, body, facts, measured, surface};
 
 /// Runs work on pools of 1 and 3 threads.
 fn on_each_pool<T: Send>(work: impl Fn() -> T + Sync) -> [T; 2] {
-    [1, 3].map(|n| rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap().install(&work))
+    [1, 3].map(|n| testkit::on_threads(n, &work))
 }
 
 #[test]

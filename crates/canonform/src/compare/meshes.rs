@@ -227,9 +227,7 @@ mod tests {
     }
 
     fn scaled(mesh: &TriMesh, factor: f64) -> TriMesh {
-        let mut scaled = mesh.clone();
-        scaled.positions.iter_mut().for_each(|p| p.coords *= factor);
-        scaled
+        testkit::moved(mesh, |p| p * factor)
     }
 
     #[test]

@@ -305,11 +305,7 @@ mod tests {
     fn vertex_order_changes_little() {
         let mesh = lopsided_torus();
         let base = described(&mesh);
-        let n = mesh.n_vertices();
-        let renumbered = TriMesh {
-            positions: (0..n).map(|i| mesh.positions[n - 1 - i]).collect(),
-            faces: mesh.faces.iter().rev().map(|f| f.map(|v| VertexId::from(n - 1 - v.index()))).collect(),
-        };
+        let renumbered = testkit::renumbered(&mesh);
         // Another first sample changes distances and approximation slightly.
         assert!(gap(&base, &described(&renumbered)) < 0.5, "{}", gap(&base, &described(&renumbered)));
         let other = described(&shapes::torus(40, 20, 2.0, 0.7));

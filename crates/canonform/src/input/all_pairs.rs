@@ -221,12 +221,8 @@ mod tests {
 
     #[test]
     fn merged_vertices_have_equal_rows_and_dropped_ones_infinite_rows() {
-        let mut mesh = shapes::disjoint(&[shapes::icosphere(2), shapes::cube(0)]);
-        // A crack: some faces of a vertex get a copy of it.
-        let twin = VertexId::from(mesh.n_vertices());
-        mesh.positions.push(mesh.positions[0]);
-        let faces = mesh.faces.iter_mut().filter(|f| f.contains(&VertexId(0)));
-        faces.take(2).flatten().filter(|v| **v == VertexId(0)).for_each(|v| *v = twin);
+        let mesh = testkit::cracked(&shapes::disjoint(&[shapes::icosphere(2), shapes::cube(0)]), 0);
+        let twin = VertexId::from(mesh.n_vertices() - 1);
         let surface = surface(&mesh);
         let p = surface.n_input_vertices();
         let (found, _) = written(&surface, 7);

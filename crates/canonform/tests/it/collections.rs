@@ -15,6 +15,7 @@ use canonform::library::{
 use canonform::mesh::{TriMesh, io, shapes};
 use canonform::relations::RelationKind;
 use canonform::search::{SearchOptions, SearchRank, ShapeSearch};
+use testkit::tree;
 
 /// Names that a shell, a spreadsheet, a terminal or a browser may obey.
 const HOSTILE: [&str; 12] = [
@@ -50,23 +51,6 @@ fn duplicates(folder: &Path) -> DuplicateReport {
 fn moved(folder: &Path, place: &Path) -> MoveReport {
     check_place(folder, place).unwrap();
     move_duplicates(&duplicates(folder), &[folder], place).unwrap()
-}
-
-/// All files below a folder, links by where they lead.
-fn tree(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut found = BTreeMap::new();
-    for entry in fs::read_dir(folder).unwrap().map(Result::unwrap) {
-        let (path, kind) = (entry.path(), entry.file_type().unwrap());
-        let below = PathBuf::from(entry.file_name());
-        if kind.is_dir() {
-            found.extend(tree(&path).into_iter().map(|(name, bytes)| (below.join(name), bytes)));
-        } else if kind.is_symlink() {
-            found.insert(below, fs::read_link(&path).unwrap().into_os_string().into_encoded_bytes());
-        } else {
-            found.insert(below, fs::read(&path).unwrap());
-        }
-    }
-    found
 }
 
 fn written(folder: &Path, names: &[&str]) {

@@ -7,8 +7,7 @@ use canonform::mesh::{TriMesh, shapes};
 use canonform::search::{SearchOptions, ShapeSearch};
 use canonform::{DescribeOptions, Surface};
 use nalgebra::Vector3;
-
-use crate::moved;
+use testkit::moved;
 
 #[test]
 fn relations_of_a_search_are_those_of_a_comparison() {

@@ -7,8 +7,7 @@ use canonform::mesh::{TriMesh, shapes};
 use canonform::surface::VertexId;
 use canonform::{DescribeOptions, Surface, describe};
 use nalgebra::{Point3, Rotation3, Vector3};
-
-use crate::moved;
+use testkit::moved;
 
 /// Uniform in an interval.
 fn between(random: &mut SplitMix, low: f64, high: f64) -> f64 {

@@ -5,8 +5,8 @@ use std::fs;
 use canonform::mesh::shapes;
 use nalgebra::{Point3, Rotation3};
 use serde_json::{Value, json};
+use testkit::tree;
 
-use crate::hostile::tree;
 use crate::support::Workplace;
 
 #[test]

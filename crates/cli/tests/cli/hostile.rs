@@ -1,11 +1,10 @@
 //! Names that a shell, a spreadsheet, a browser or a terminal might obey, and files that must stay as they are.
 
-use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
 
 use canonform::mesh::shapes;
 use serde_json::Value;
+use testkit::tree;
 
 use crate::index::body;
 use crate::support::Workplace;
@@ -116,18 +115,6 @@ fn tables_for_people_hold_no_formula_and_pages_no_markup() {
     assert!(!page.contains("<img src=x") && page.contains("&lt;img src=x") && !page.contains('\u{202e}'));
 }
 
-/// All files below a folder.
-pub(crate) fn tree(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut found = BTreeMap::new();
-    for entry in fs::read_dir(folder).unwrap().map(Result::unwrap) {
-        match entry.file_type().unwrap().is_dir() {
-            true => found.extend(tree(&entry.path())),
-            false => drop(found.insert(entry.path(), fs::read(entry.path()).unwrap())),
-        }
-    }
-    found
-}
-
 #[cfg(unix)]
 #[test]
 fn no_result_takes_the_place_of_what_it_is_made_from() {
@@ -191,12 +178,9 @@ fn duplicates_move_with_their_journal_and_come_back_and_leave_nothing_else() {
     assert!(tree(&place.path("")) == before);
     place.done("index build models -n 20 -o i");
     // Members of an archive are named, and stay.
-    let mut zip = zip::ZipWriter::new(fs::File::create(place.path("all.zip")).unwrap());
-    for name in ["m/a.off", "m/b.off"] {
-        zip.start_file(name, zip::write::SimpleFileOptions::default()).unwrap();
-        std::io::Write::write_all(&mut zip, &fs::read(place.path("models/x/part.off")).unwrap()).unwrap();
-    }
-    zip.finish().unwrap();
+    let part = fs::read(place.path("models/x/part.off")).unwrap();
+    fs::write(place.path("all.zip"), testkit::zip_of(&["m/a.off", "m/b.off"].map(|name| (name, &part))))
+        .unwrap();
     let told = place.done("duplicates all.zip --move-to away").out;
     assert!(told.contains("not moved, since it is in an archive"), "{told}");
     place.all_refused(&[

@@ -6,8 +6,8 @@ use std::process::Stdio;
 use std::time::{Duration, Instant};
 
 use canonform::index::{Index, log_path};
+use testkit::tree;
 
-use crate::hostile::tree;
 use crate::index::body;
 use crate::support::Workplace;
 

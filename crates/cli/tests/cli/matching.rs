@@ -17,10 +17,7 @@ fn cats() -> Workplace {
 
 /// The numbers of an array of int64.
 fn numbers(place: &Workplace, name: &str) -> Vec<i64> {
-    let bytes = fs::read(place.path(name)).unwrap();
-    let file = npyz::NpyFile::new(&bytes[..]).unwrap();
-    assert_eq!(file.dtype().descr(), "'<i8'");
-    file.into_vec().unwrap()
+    testkit::array(&place.path(name)).1
 }
 
 #[test]

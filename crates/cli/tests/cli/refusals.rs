@@ -6,8 +6,8 @@ use std::path::Path;
 use canonform::mesh::shapes;
 use canonform::surface::VertexId;
 use rayon::prelude::*;
+use testkit::tree;
 
-use crate::hostile::tree;
 use crate::index::{BUILD, body, collection};
 use crate::support::{Workplace, broken_ring, ring};
 

@@ -1,26 +1,12 @@
 //! Archives, compressed files, lists, conversion and exports.
 
 use std::fs;
-use std::io::Write;
 
 use canonform::mesh::shapes;
-use flate2::Compression;
-use flate2::write::GzEncoder;
 use serde_json::{Value, json};
-use zip::ZipWriter;
-use zip::write::SimpleFileOptions;
+use testkit::{gzip_of, tar_of, zip_of};
 
 use crate::support::{Workplace, ring};
-
-/// Packs files of the folder.
-fn zip(place: &Workplace, archive: &str, names: &[&str]) {
-    let mut zip = ZipWriter::new(fs::File::create(place.path(archive)).unwrap());
-    for name in names {
-        zip.start_file(*name, SimpleFileOptions::default()).unwrap();
-        zip.write_all(&fs::read(place.path(name)).unwrap()).unwrap();
-    }
-    zip.finish().unwrap();
-}
 
 /// A folder `meshes`, archives and a list of the same files, and an archive of one mesh.
 fn collection() -> Workplace {
@@ -35,13 +21,14 @@ fn collection() -> Workplace {
     let meshes = [ring(), shapes::torus(18, 9, 2.0, 0.5), shapes::icosphere(2), shapes::icosphere(3)];
     names.iter().zip(&meshes).for_each(|(name, mesh)| place.add(name, mesh));
     fs::write(place.path("meshes/notes.md"), "no mesh").unwrap();
-    zip(&place, "meshes.zip", &names);
+    let files = |names: &[&'static str]| -> Vec<(&str, Vec<u8>)> {
+        names.iter().map(|name| (*name, fs::read(place.path(name)).unwrap())).collect()
+    };
+    fs::write(place.path("meshes.zip"), zip_of(&files(&names))).unwrap();
+    fs::write(place.path("meshes.tar.gz"), gzip_of(&tar_of(&files(&names)))).unwrap();
     place.add("s/ring.off", &ring());
     fs::write(place.path("s/notes.md"), "a").unwrap();
-    zip(&place, "one.zip", &["s/ring.off", "s/notes.md"]);
-    let mut tar = tar::Builder::new(GzEncoder::new(Vec::new(), Compression::fast()));
-    names.iter().for_each(|name| tar.append_path_with_name(place.path(name), name).unwrap());
-    fs::write(place.path("meshes.tar.gz"), tar.into_inner().unwrap().finish().unwrap()).unwrap();
+    fs::write(place.path("one.zip"), zip_of(&files(&["s/ring.off", "s/notes.md"]))).unwrap();
     fs::write(place.path("list.txt"), names[..4].join("\n")).unwrap();
     place
 }
@@ -80,9 +67,7 @@ fn an_index_of_an_archive_or_a_list_equals_that_of_the_folder() {
 fn every_command_reads_members_compressed_files_and_archives_of_one_mesh() {
     let place = collection();
     let plain = "meshes/ring/ring0.off";
-    let mut gzip = GzEncoder::new(Vec::new(), Compression::default());
-    gzip.write_all(&fs::read(place.path(plain)).unwrap()).unwrap();
-    fs::write(place.path("ring0.off.gz"), gzip.finish().unwrap()).unwrap();
+    fs::write(place.path("ring0.off.gz"), gzip_of(&fs::read(place.path(plain)).unwrap())).unwrap();
     let commands = [
         ("geodesic MESH --source 0 -o", "x.npy"),
         ("embed MESH -n 20 -o", "x.ply"),

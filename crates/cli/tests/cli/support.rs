@@ -154,9 +154,5 @@ pub(crate) fn broken_ring() -> TriMesh {
 
 /// Shape and rows of a NumPy array, which must be little-endian float64 in C order.
 pub(crate) fn read_npy(path: &Path) -> (Vec<u64>, Vec<f64>) {
-    let bytes = fs::read(path).unwrap();
-    let file = npyz::NpyFile::new(&bytes[..]).unwrap();
-    assert_eq!(file.dtype().descr(), "'<f8'");
-    assert_eq!(file.order(), npyz::Order::C);
-    (file.shape().to_vec(), file.into_vec().unwrap())
+    testkit::array(path)
 }

@@ -7,12 +7,9 @@ use ::parquet::data_type::{ByteArray, ByteArrayType};
 use ::parquet::file::properties::WriterProperties;
 use ::parquet::file::writer::SerializedFileWriter;
 use ::parquet::schema::parser::parse_message_type;
-use ::zip::ZipWriter;
-use ::zip::write::SimpleFileOptions;
-use flate2::Compression;
-use flate2::write::GzEncoder;
 use mesh::shapes;
 use tempfile::TempDir;
+use testkit::{gzip_of, tar_of, written, zip_of};
 
 use super::*;
 use crate::{Dataset, LabelSource, SkipKind, list_shapes};
@@ -30,21 +27,13 @@ fn put(place: &TempDir, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
     path
 }
 
-/// The bytes of a mesh file.
-fn bytes_of(mesh: &TriMesh, extension: &str) -> Vec<u8> {
-    let folder = folder();
-    let path = folder.path().join(format!("m.{extension}"));
-    mesh_io::write(&path, mesh).unwrap();
-    fs::read(path).unwrap()
-}
-
 /// Two classes of meshes, with other files between them.
 fn contents() -> Vec<(&'static str, Vec<u8>)> {
     vec![
-        ("all/cat/cat10.off", bytes_of(&shapes::icosphere(1), "off")),
-        ("all/cat/cat9.ply.gz", bytes_of(&shapes::icosphere(2), "ply.gz")),
-        ("all/dog/dog0.glb", bytes_of(&shapes::cube(1), "glb")),
-        ("all/dog/dog1.vert", bytes_of(&shapes::cube(2), "vert")),
+        ("all/cat/cat10.off", written("m.off", &shapes::icosphere(1))),
+        ("all/cat/cat9.ply.gz", written("m.ply.gz", &shapes::icosphere(2))),
+        ("all/dog/dog0.glb", written("m.glb", &shapes::cube(1))),
+        ("all/dog/dog1.vert", written("m.vert", &shapes::cube(2))),
         ("all/README.md", b"meshes".to_vec()),
     ]
 }
@@ -55,36 +44,6 @@ fn other_half() -> (&'static str, Vec<u8>) {
     let path = folder.path().join("m.vert");
     mesh_io::write(&path, &shapes::cube(2)).unwrap();
     ("all/dog/dog1.tri", fs::read(path.with_extension("tri")).unwrap())
-}
-
-fn zip_of(files: &[(&str, Vec<u8>)]) -> Vec<u8> {
-    let mut archive = ZipWriter::new(std::io::Cursor::new(Vec::new()));
-    for (name, content) in files {
-        archive.start_file(*name, SimpleFileOptions::default()).unwrap();
-        archive.write_all(content).unwrap();
-    }
-    archive.finish().unwrap().into_inner()
-}
-
-fn tar_of(files: &[(&str, Vec<u8>)]) -> Vec<u8> {
-    let mut archive = ::tar::Builder::new(Vec::new());
-    for (name, content) in files {
-        let mut header = ::tar::Header::new_gnu();
-        header.set_size(content.len() as u64);
-        header.set_mode(0o644);
-        // The library refuses to write names that lead out of the archive.
-        let raw = name.as_bytes();
-        header.as_old_mut().name[..raw.len()].copy_from_slice(raw);
-        header.set_cksum();
-        archive.append(&header, &content[..]).unwrap();
-    }
-    archive.into_inner().unwrap()
-}
-
-fn gzip_of(bytes: &[u8]) -> Vec<u8> {
-    let mut out = GzEncoder::new(Vec::new(), Compression::default());
-    out.write_all(bytes).unwrap();
-    out.finish().unwrap()
 }
 
 /// Rows of id, label, format and bytes.
@@ -126,7 +85,7 @@ fn described(dataset: &Dataset) -> Vec<(String, String)> {
 #[test]
 fn archives_in_folders_are_looked_into_or_listed() {
     let folder = folder();
-    let off = bytes_of(&shapes::icosphere(1), "off");
+    let off = written("m.off", &shapes::icosphere(1));
     let inner = zip_of(&[("b.off", off.clone())]);
     for (name, bytes) in [
         ("a.off", off.clone()),
@@ -223,7 +182,7 @@ fn files_of_macos_are_skipped_everywhere() {
     let double = b"\0\x05\x16\x07\0\x02\0\0Mac OS X        ".to_vec();
     let files = |names: [&'static str; 2]| {
         let [a, b] = names.map(|name| (name, double.clone()));
-        [("s/cat0.off", bytes_of(&shapes::cube(0), "off")), a, b]
+        [("s/cat0.off", written("m.off", &shapes::cube(0))), a, b]
     };
     let beside = files(["s/._cat0.off", "s/._notes.txt"]);
     for (name, content) in &beside {
@@ -243,7 +202,7 @@ fn files_of_macos_are_skipped_everywhere() {
 fn a_hard_link_in_a_tar_is_the_file_it_names() {
     let place = folder();
     let mut archive = ::tar::Builder::new(Vec::new());
-    let cube = bytes_of(&shapes::cube(1), "off");
+    let cube = written("m.off", &shapes::cube(1));
     let mut header = ::tar::Header::new_gnu();
     header.set_size(cube.len() as u64);
     archive.append_data(&mut header, "s/cat0.off", &cube[..]).unwrap();
@@ -271,7 +230,7 @@ fn a_hard_link_in_a_tar_is_the_file_it_names() {
 #[test]
 fn compressed_files_may_be_filled_up_with_zeros() {
     let place = folder();
-    let off = bytes_of(&shapes::icosphere(1), "off");
+    let off = written("m.off", &shapes::icosphere(1));
     for (name, bytes) in
         [("a.tar.gz", gzip_of(&tar_of(&[("a.off", off.clone())]))), ("a.off.gz", gzip_of(&off))]
     {
@@ -304,7 +263,7 @@ fn other_archives_and_files_are_no_datasets() {
 fn lists_may_have_byte_order_marks_and_no_other_encoding() {
     let place = folder();
     for name in ["a,1.off", "b;2.off"] {
-        put(&place, name, bytes_of(&shapes::cube(0), "off"));
+        put(&place, name, written("m.off", &shapes::cube(0)));
     }
     let list = put(&place, "list.txt", "\u{feff}a,1.off\r\n# more\r\nb;2.off\r\n");
     assert_eq!(list_shapes(&list, None).unwrap().len(), 2);
@@ -320,7 +279,7 @@ fn members_are_read_by_many_threads_at_once() {
 
     let place = folder();
     let files: Vec<(String, Vec<u8>)> =
-        (0..40).map(|i| (format!("m{i}.off"), bytes_of(&shapes::grid(3 + i, 4, 0.1), "off"))).collect();
+        (0..40).map(|i| (format!("m{i}.off"), written("m.off", &shapes::grid(3 + i, 4, 0.1)))).collect();
     let files: Vec<(&str, Vec<u8>)> =
         files.iter().map(|(name, bytes)| (name.as_str(), bytes.clone())).collect();
     for (name, bytes) in [("a.zip", zip_of(&files)), ("a.tar.gz", gzip_of(&tar_of(&files)))] {
@@ -337,7 +296,7 @@ fn a_changed_archive_is_read_again() {
     let place = folder();
     let path = place.path().join("a.zip");
     for n in [1, 2] {
-        fs::write(&path, zip_of(&[("m.off", bytes_of(&shapes::icosphere(n), "off"))])).unwrap();
+        fs::write(&path, zip_of(&[("m.off", written("m.off", &shapes::icosphere(n)))])).unwrap();
         assert_eq!(read_mesh(&path.join("m.off")).unwrap(), shapes::icosphere(n));
     }
 }
@@ -345,7 +304,7 @@ fn a_changed_archive_is_read_again() {
 #[test]
 fn members_that_lead_out_of_an_archive_are_skipped() {
     let place = folder();
-    let cube = bytes_of(&shapes::cube(0), "off");
+    let cube = written("m.off", &shapes::cube(0));
     let names = ["../evil.off", "/etc/evil.off", "a/../../evil.off", "C:\\evil.off", "good.off"];
     let files: Vec<(&str, Vec<u8>)> = names.map(|name| (name, cube.clone())).to_vec();
     let tar = tar_of(&files);
@@ -362,7 +321,7 @@ fn members_that_lead_out_of_an_archive_are_skipped() {
 #[test]
 fn names_that_are_not_utf_8_and_links_are_skipped() {
     let place = folder();
-    let cube = bytes_of(&shapes::cube(0), "off");
+    let cube = written("m.off", &shapes::cube(0));
     let mut tar = tar_of(&[("good.off", cube.clone()), ("baX.off", cube.clone())]);
     let at = tar.windows(7).position(|window| window == b"baX.off").unwrap();
     tar[at + 2] = 0xff;
@@ -381,7 +340,7 @@ fn names_that_are_not_utf_8_and_links_are_skipped() {
 fn encrypted_and_damaged_members_are_errors_that_name_them() {
     let place = folder();
     let path = place.path().join("a.zip");
-    let off = bytes_of(&shapes::icosphere(2), "off");
+    let off = written("m.off", &shapes::icosphere(2));
     let intact = zip_of(&[("a.off", off.clone()), ("b.off", off.clone())]);
     // Flags of the first entry, in its own header and in the directory.
     let mut locked = intact.clone();
@@ -434,10 +393,10 @@ fn rows_of_a_parquet_file_are_meshes_with_classes() {
     let path = place.path().join("meshes.parquet");
     let [ball, cube] = [shapes::icosphere(1), shapes::cube(1)];
     let rows = [
-        ("a/one", Some("round"), "off", bytes_of(&ball, "off")),
-        ("two.ply", Some("round"), "ply", bytes_of(&ball, "ply")),
-        ("three", None, ".stl", bytes_of(&cube, "stl")),
-        ("four", Some("square"), "obj.gz", bytes_of(&cube, "obj.gz")),
+        ("a/one", Some("round"), "off", written("m.off", &ball)),
+        ("two.ply", Some("round"), "ply", written("m.ply", &ball)),
+        ("three", None, ".stl", written("m.stl", &cube)),
+        ("four", Some("square"), "obj.gz", written("m.obj.gz", &cube)),
     ];
     fs::write(&path, parquet_of(&rows)).unwrap();
     let dataset = Dataset::read(&path, None).unwrap();
@@ -520,9 +479,9 @@ fn archives_with_bytes_changed_do_not_panic() {
 fn lists_name_files_and_members_relative_to_themselves() {
     let place = folder();
     for name in ["meshes/cat/cat0.off", "meshes/dog1.off"] {
-        put(&place, name, bytes_of(&shapes::cube(0), "off"));
+        put(&place, name, written("m.off", &shapes::cube(0)));
     }
-    put(&place, "meshes/more.zip", zip_of(&[("x/dog2.off", bytes_of(&shapes::cube(1), "off"))]));
+    put(&place, "meshes/more.zip", zip_of(&[("x/dog2.off", written("m.off", &shapes::cube(1)))]));
     let lines = "# comment\n../meshes/dog1.off\r\n\n ../meshes/more.zip/x/dog2.off\n./../meshes/cat/cat0.off\n../meshes/dog1.off\n";
     let list = put(&place, "lists/all.txt", lines);
     let dataset = Dataset::read(&list, None).unwrap();

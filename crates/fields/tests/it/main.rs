@@ -28,12 +28,7 @@ fn all_pairs(n: usize) -> Vec<[VertexId; 2]> {
 
 /// A torus with a crack, whose vertices are merged, beside a small component, which is dropped.
 fn repaired() -> TriMesh {
-    let mut mesh = shapes::disjoint(&[shapes::grid(2, 2, 0.01), shapes::torus(14, 8, 2.0, 0.6)]);
-    let twin = VertexId::from(mesh.n_vertices());
-    mesh.positions.push(mesh.positions[10]);
-    let faces = mesh.faces.iter_mut().filter(|f| f.contains(&VertexId(10)));
-    faces.take(2).flatten().filter(|v| **v == VertexId(10)).for_each(|v| *v = twin);
-    mesh
+    testkit::cracked(&shapes::disjoint(&[shapes::grid(2, 2, 0.01), shapes::torus(14, 8, 2.0, 0.6)]), 10)
 }
 
 /// Surfaces of every kind: closed, open, with handles, with needles, with a fold.
@@ -161,9 +156,7 @@ fn another_unit_changes_nothing_but_the_unit() {
     let mesh = shapes::jittered_grid(14, 11, 1.0, 0.3, 5);
     let pairs: Vec<_> = all_pairs(mesh.n_vertices()).into_iter().step_by(7).collect();
     let found = |scale: f64| {
-        let positions = mesh.positions.iter().map(|p| p * scale).collect();
-        let scaled = TriMesh { positions, faces: mesh.faces.clone() };
-        built(&scaled, &exact(12)).pairs(&pairs, Finish::Never, &()).unwrap()
+        built(&testkit::moved(&mesh, |p| p * scale), &exact(12)).pairs(&pairs, Finish::Never, &()).unwrap()
     };
     let plain = found(1.0);
     for scale in [2f64.powi(-40), 2f64.powi(60)] {
@@ -270,8 +263,7 @@ fn a_field_does_not_depend_on_the_number_of_threads() {
     let mesh = shapes::torus(30, 14, 2.0, 0.7);
     for method in [Method::default(), Method::Exact] {
         let of = |threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| {
+            testkit::on_threads(threads, || {
                 let field = built(&mesh, &FieldOptions { method, landmarks: 20, rank: None });
                 let pairs: Vec<_> = all_pairs(mesh.n_vertices()).into_iter().step_by(7).collect();
                 (field.to_bytes(), field.pairs(&pairs, Finish::default(), &()).unwrap())

@@ -234,8 +234,7 @@ fn columns_are_the_distances_from_single_sources_for_any_number_of_threads() {
             let single: Vec<f64> =
                 sources.iter().flat_map(|source| solver.distances(*source).unwrap()).collect();
             for threads in [1, 4] {
-                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-                let columns = pool.install(|| solver.distance_columns(&sources).unwrap());
+                let columns = testkit::on_threads(threads, || solver.distance_columns(&sources).unwrap());
                 assert_eq!(columns.as_slice(), single, "{name}");
             }
         }

@@ -1,7 +1,4 @@
 //! Laws of the crate, through what it exports, and surfaces and references for the tests of several modules.
-//!
-//! The real meshes are not part of the project. `CANONFORM_DATA` is their folder; without it, the tests that need
-//! them print a note and pass.
 
 mod budgets;
 mod every_method;
@@ -9,7 +6,7 @@ mod hubs;
 mod properties;
 mod slivers;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use mesh::{TriMesh, shapes};
 use proptest::prelude::*;
@@ -114,17 +111,6 @@ pub(crate) fn assert_close(found: f64, expected: f64, relative: f64) {
     );
 }
 
-/// The folder of real meshes.
-pub(crate) fn data() -> Option<PathBuf> {
-    let default = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    let path = std::env::var_os("CANONFORM_DATA").map_or_else(default, PathBuf::from);
-    if !path.join("exact").is_dir() {
-        println!("skipped: no exact distances in {}", path.display());
-        return None;
-    }
-    Some(path)
-}
-
 /// Exact distances on a real mesh, by the algorithm of Mitchell, Mount and Papadimitriou.
 pub(crate) struct Reference {
     /// The mesh without repairs, as for the references.
@@ -138,15 +124,8 @@ pub(crate) fn reference(data: &Path, mesh: &str) -> Reference {
     let name = Path::new(mesh).file_stem().unwrap().to_string_lossy().into_owned();
     let file = |what| data.join(format!("exact/{name}-{what}.npy"));
     let mesh = mesh_io::read(&data.join(mesh)).unwrap();
-    let sources = numbers(&file("sources"), u32::from_le_bytes).into_iter().map(VertexId);
-    let distances = numbers(&file("distances"), f64::from_le_bytes);
+    let sources = testkit::array(&file("sources")).1.into_iter().map(VertexId);
+    let (_, distances) = testkit::array::<f64>(&file("distances"));
     let rows = distances.chunks_exact(mesh.n_vertices()).map(<[f64]>::to_vec);
     Reference { rows: sources.zip(rows).collect(), mesh }
-}
-
-/// The numbers of a one- or two-dimensional `.npy` file, `N` bytes each.
-fn numbers<const N: usize, T>(path: &Path, read: fn([u8; N]) -> T) -> Vec<T> {
-    let bytes = std::fs::read(path).unwrap();
-    let header = 10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
-    bytes[header..].as_chunks().0.iter().map(|chunk| read(*chunk)).collect()
 }

@@ -128,8 +128,8 @@ fn results_do_not_depend_on_threads() {
     let w = torus(45, 31);
     let masses: Vec<f64> = (0..45 * 31).map(|i| 1.0 + 0.3 * (i as f64).cos()).collect();
     let on = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| smallest_eigenpairs(&w, &masses, 30, SymmetricEigen::ACCURATE, &()).unwrap())
+        let found = || smallest_eigenpairs(&w, &masses, 30, SymmetricEigen::ACCURATE, &()).unwrap();
+        testkit::on_threads(threads, found)
     };
     let one = on(1);
     // Bit for bit, at any alignment of the vectors in memory.

@@ -8,10 +8,11 @@ use canonform_mesh_io::{Format, LengthUnit, ReadLimits, read, read_from, write};
 use mesh::{TriMesh, shapes};
 use nalgebra::Point3;
 use tempfile::TempDir;
+use testkit::written;
 
 use crate::made::{
     Files, HEAD, OBJ, OFF, PLAIN, PLY, RECTANGLE, Rich, SQUARE, STL, Style, TRI, VERT, binary_ply,
-    binary_stl, check, gltf_text, mesh_text, model_of, one, outcome, package, package_of, read_all, written,
+    binary_stl, check, gltf_text, mesh_text, model_of, one, outcome, package_of, read_all,
 };
 
 /// The bytes that a text stands for, in which `\n`, `\r`, `\t`, `\\` and `\x00` are escapes.
@@ -482,7 +483,7 @@ fn threemf(target: &str, entry: &str, attributes: &str, more: &str) -> Files {
     let relationships = format!(
         r#"<Relationships><Relationship Target="{target}" Id="r" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>"#
     );
-    one("m.3mf", package(&[("_rels/.rels", relationships.as_bytes()), (entry, model.as_bytes())]))
+    one("m.3mf", testkit::zip_of(&[("_rels/.rels", relationships.as_bytes()), (entry, model.as_bytes())]))
 }
 
 #[test]
@@ -555,18 +556,18 @@ fn threemf_places_and_counts_components_and_items() {
          </components></object></resources><build><item objectid=\"1\"/></build></model>"
     );
     let parts = [("3D/3dmodel.model", root.as_bytes()), ("3d/objects/BALL.model", other.as_bytes())];
-    let whole = read_all(&one("m.3mf", package(&parts)), &ReadLimits::default()).unwrap().mesh;
+    let whole = read_all(&one("m.3mf", testkit::zip_of(&parts)), &ReadLimits::default()).unwrap().mesh;
     assert_eq!(whole, ball);
     let no_build =
         model_of(&ball).replace("<item objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 2 0 0\"/>", "");
     let file = read_all(&one("m.3mf", package_of(no_build.as_bytes())), &ReadLimits::default()).unwrap();
     assert_eq!((file.mesh.n_vertices(), file.facts.instances), (42, Some(1)));
     assert_eq!(written("m.3mf", &ball), written("m.3mf", &ball), "the same mesh gives the same bytes");
-    let other = package(&[("word/document.xml", b"<a/>")]);
+    let other = testkit::zip_of(&[("word/document.xml", b"<a/>")]);
     check([
         (
             "a part too few",
-            one("m.3mf", package(&parts[..1])),
+            one("m.3mf", testkit::zip_of(&parts[..1])),
             "m.3mf: expected all parts that the file refers to, found `no part 3D/Objects/ball.model`",
         ),
         ("another archive", one("m.3mf", other), "m.3mf: this is not a 3MF file (a zip archive without"),

@@ -14,6 +14,7 @@ use nalgebra::Point3;
 use proptest::prelude::*;
 use surface::VertexId;
 use tempfile::TempDir;
+use testkit::gzip_of;
 
 /// The message of a failure.
 fn refusal(outcome: Result<(), MeshError>) -> String {
@@ -525,12 +526,6 @@ fn compressed_files_are_read_within_their_limits() {
     assert!(matches!(&error, MeshError::File { fault: Fault::DecompressionBomb { .. }, .. }), "{error}");
 }
 
-fn gzip(text: &str) -> Vec<u8> {
-    let mut out = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::default());
-    out.write_all(text.as_bytes()).unwrap();
-    out.finish().unwrap()
-}
-
 fn gunzip(bytes: &[u8]) -> std::io::Result<String> {
     let mut text = String::new();
     GzipReader::new(bytes).read_to_string(&mut text).map(|_| text)
@@ -538,13 +533,13 @@ fn gunzip(bytes: &[u8]) -> std::io::Result<String> {
 
 #[test]
 fn members_follow_each_other_and_zeros_the_last() {
-    let [a, b, zeros] = [gzip("OFF\n"), gzip("3 1 0\n"), vec![0; 20_000]];
+    let [a, b, zeros] = [gzip_of(b"OFF\n"), gzip_of(b"3 1 0\n"), vec![0; 20_000]];
     for (pieces, text) in [
         (vec![&a], "OFF\n"),
         (vec![&a, &b], "OFF\n3 1 0\n"),
         (vec![&a, &zeros], "OFF\n"),
         (vec![&a, &zeros, &b, &zeros], "OFF\n3 1 0\n"),
-        (vec![&gzip(""), &a], "OFF\n"),
+        (vec![&gzip_of(b""), &a], "OFF\n"),
     ] {
         assert_eq!(gunzip(&pieces.into_iter().flatten().copied().collect::<Vec<_>>()).unwrap(), text);
     }

@@ -1,12 +1,12 @@
 //! Files as programs write them, and what reading them gives.
 
 use std::fmt::Write as _;
-use std::io::{self, Write as _};
+use std::io::Write as _;
 use std::path::Path;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use canonform_mesh_io::{FileSource, MeshFile, Opened, ReadLimits, read_file, write};
+use canonform_mesh_io::{FileSource, MeshFile, Opened, ReadLimits, read_file};
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use mesh::{MeshError, TriMesh};
@@ -114,16 +114,9 @@ pub(crate) fn binary_stl(header: &[u8], count: u32, end: &[u8]) -> Files {
     one("m.stl", bytes)
 }
 
-/// What the writer of a format writes.
-pub(crate) fn written(name: &str, mesh: &TriMesh) -> Vec<u8> {
-    let folder = tempfile::tempdir().unwrap();
-    write(&folder.path().join(name), mesh).unwrap();
-    std::fs::read(folder.path().join(name)).unwrap()
-}
-
 /// What the writer of GLB writes, as text with a data URI.
 pub(crate) fn gltf_text(mesh: &TriMesh) -> String {
-    let glb = written("m.glb", mesh);
+    let glb = testkit::written("m.glb", mesh);
     let length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
     let (json, data) = (std::str::from_utf8(&glb[20..20 + length]).unwrap().trim_end(), &glb[28 + length..]);
     let uri = format!("data:application/octet-stream;base64,{}", STANDARD.encode(data));
@@ -186,19 +179,9 @@ impl Rich {
     }
 }
 
-/// A zip archive with these parts.
-pub(crate) fn package(parts: &[(&str, &[u8])]) -> Vec<u8> {
-    let mut archive = zip::ZipWriter::new(io::Cursor::new(Vec::new()));
-    for (name, content) in parts {
-        archive.start_file(*name, zip::write::SimpleFileOptions::default()).unwrap();
-        archive.write_all(content).unwrap();
-    }
-    archive.finish().unwrap().into_inner()
-}
-
 /// A 3MF file with this model in the usual place.
 pub(crate) fn package_of(model: &[u8]) -> Vec<u8> {
-    package(&[("3D/3dmodel.model", model)])
+    testkit::zip_of(&[("3D/3dmodel.model", model)])
 }
 
 pub(crate) fn mesh_text(mesh: &TriMesh) -> String {

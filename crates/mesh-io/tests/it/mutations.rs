@@ -8,8 +8,9 @@ use base::SplitMix;
 use canonform_mesh_io::{Content, FORMATS, Format, ReadLimits, writable};
 use mesh::{MIN_POINTS, MeshError, TriMesh, shapes};
 use proptest::prelude::*;
+use testkit::written;
 
-use crate::made::{Files, PLAIN, Rich, Style, gltf_text, model_of, package_of, read_all, written};
+use crate::made::{Files, PLAIN, Rich, Style, gltf_text, model_of, package_of, read_all};
 
 /// Makes a file of bytes.
 type Wrap = fn(&[u8]) -> Vec<u8>;

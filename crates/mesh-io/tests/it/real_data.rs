@@ -1,5 +1,4 @@
-//! Real meshes with all their defects through reading, validation and repair. The data is not part of the
-//! project: `CANONFORM_DATA` is its folder; without it these tests print that they are skipped, and pass.
+//! Real meshes with all their defects through reading, validation and repair.
 
 use std::path::{Path, PathBuf};
 
@@ -7,16 +6,7 @@ use canonform_mesh_io as io;
 use mesh::{ComponentPolicy, Fault, MeshError, RepairOptions, TriMesh};
 use mesh::{repair, validate};
 use surface::{VertexId, components_with_links};
-
-fn data(folder: &str) -> Option<PathBuf> {
-    let default = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    let path = std::env::var_os("CANONFORM_DATA").map_or_else(default, PathBuf::from).join(folder);
-    if !path.is_dir() {
-        println!("skipped: no data in {}", path.display());
-        return None;
-    }
-    Some(path)
-}
+use testkit::data;
 
 /// The mesh paths of a folder, sorted.
 fn meshes_in(folder: &Path) -> Vec<PathBuf> {

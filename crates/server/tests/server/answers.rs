@@ -5,11 +5,12 @@ use std::fs;
 use canonform::mesh::shapes;
 use report::viewer::Geometry;
 use serde_json::Value;
+use testkit::written;
 
 use crate::client::{ask, upload};
 use crate::running::options;
 use crate::schema::told;
-use crate::support::{AWKWARD, INDEX, Served, bodies, get, written};
+use crate::support::{AWKWARD, INDEX, Served, bodies, get};
 
 fn geometry(value: &Value) -> Geometry {
     serde_json::from_value(value.clone()).unwrap()
@@ -56,20 +57,12 @@ fn an_upload_finds_itself_in_every_format() {
 fn an_archive_of_one_mesh_is_that_mesh() {
     let server = Served::start(options());
     let ring = fs::read(server.mesh("ring0")).unwrap();
-    let archive = |names: &[&str]| {
-        let mut archive = tar::Builder::new(flate2::write::GzEncoder::new(Vec::new(), Default::default()));
-        for name in names {
-            let mut header = tar::Header::new_gnu();
-            header.set_size(ring.len() as u64);
-            archive.append_data(&mut header, name, &ring[..]).unwrap();
-        }
-        archive.into_inner().unwrap().finish().unwrap()
-    };
-    let one = archive(&["scans/ring.off", "scans/notes.md"]);
+    let archive = |names: [&str; 2]| testkit::gzip_of(&testkit::tar_of(&names.map(|name| (name, &ring))));
+    let one = archive(["scans/ring.off", "scans/notes.md"]);
     let answer = upload(server.address, &[("scans.tar.gz", &one)], &[("explain", "true")]).unwrap().json();
     let kind = &answer["results"][0]["relation"]["kind"];
     assert_eq!((&answer["query"], kind), (&"ring.off".into(), &"identical-file".into()), "{answer}");
-    let refused = upload(server.address, &[("all.tar.gz", &archive(&["a.off", "b.off"]))], &[]).unwrap();
+    let refused = upload(server.address, &[("all.tar.gz", &archive(["a.off", "b.off"]))], &[]).unwrap();
     let error = refused.json()["error"].as_str().unwrap().to_owned();
     assert!(refused.status == 422 && error.starts_with("all.tar.gz: the archive holds 2 meshes"), "{error}");
 }

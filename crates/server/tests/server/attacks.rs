@@ -8,10 +8,11 @@ use std::time::{Duration, Instant};
 
 use canonform::mesh::shapes;
 use canonform_server::ServeOptions;
+use testkit::written;
 
 use crate::client::{Answer, ask, connect, form, upload, upload_head};
 use crate::running::options;
-use crate::support::{Served, written};
+use crate::support::Served;
 
 /// Asks for the health of the server and searches with a normal mesh, several times.
 fn assert_serves(server: &Served) {

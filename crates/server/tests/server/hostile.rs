@@ -8,10 +8,11 @@ use canonform::mesh::shapes;
 use canonform_server::ServeOptions;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
+use testkit::written;
 
 use crate::client::{Answer, ask, connect, form, read_answer, upload};
 use crate::running::options;
-use crate::support::{Served, written};
+use crate::support::Served;
 
 type Files = Vec<(String, Vec<u8>)>;
 

@@ -6,10 +6,11 @@ use std::time::{Duration, Instant};
 use canonform::mesh::shapes;
 use canonform_server::ServeOptions;
 use serde_json::Value;
+use testkit::written;
 
 use crate::client::upload;
 use crate::running::options;
-use crate::support::{INDEX, Served, get, written};
+use crate::support::{INDEX, Served, get};
 
 fn health(server: &Served) -> Value {
     get(server, "/healthz").json()

@@ -6,10 +6,11 @@ use std::time::Duration;
 
 use canonform::mesh::shapes;
 use canonform_server::ServeOptions;
+use testkit::written;
 
 use crate::client::{ask, connect, form, upload, upload_head};
 use crate::running::options;
-use crate::support::{Served, written};
+use crate::support::Served;
 
 /// The bytes of a mesh that takes a while.
 fn large() -> Vec<u8> {

@@ -146,10 +146,3 @@ impl Served {
 pub(crate) fn get(server: &Running, target: &str) -> Answer {
     ask(server.address, "GET", target, &[], b"").unwrap()
 }
-
-/// The bytes of a mesh in the format of this name.
-pub(crate) fn written(name: &str, mesh: &TriMesh) -> Vec<u8> {
-    let folder = tempfile::tempdir().unwrap();
-    canonform::mesh::io::write(&folder.path().join(name), mesh).unwrap();
-    fs::read(folder.path().join(name)).unwrap()
-}

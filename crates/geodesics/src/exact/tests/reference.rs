@@ -2,11 +2,11 @@
 
 use super::super::Exact;
 use crate::DistanceSolver;
-use crate::tests::{Reference, assert_close, data, reference};
+use crate::tests::{Reference, assert_close, reference};
 
 #[test]
 fn distances_equal_those_of_other_implementations() {
-    let Some(data) = data() else { return };
+    let Some(data) = testkit::data("") else { return };
     for mesh in [
         "tosca-lowres/cat0.vert",
         "tosca-lowres/cat1.vert",

@@ -2,11 +2,11 @@
 
 use super::{heat, surface};
 use crate::DistanceSolver;
-use crate::tests::{Reference, data, reference};
+use crate::tests::{Reference, reference};
 
 #[test]
 fn errors_beside_exact_distances_are_no_larger_than_those_of_geometry_central() {
-    let Some(data) = data() else { return };
+    let Some(data) = testkit::data("") else { return };
     // Mean and largest relative error of potpourri3d 1.4 on the same sources.
     for (name, mean, largest) in [
         ("tosca-lowres/cat0.vert", 0.0214, 0.460),

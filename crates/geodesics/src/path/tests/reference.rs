@@ -5,12 +5,12 @@ use rayon::prelude::*;
 use surface::VertexId;
 
 use super::vertex;
-use crate::tests::{Reference, assert_close, data, reference};
+use crate::tests::{Reference, assert_close, reference};
 use crate::{Dijkstra, DistanceSolver, Exact, FastMarching, PathTracer, Source};
 
 #[test]
 fn lengths_of_paths_equal_exact_distances() {
-    let Some(data) = data() else { return };
+    let Some(data) = testkit::data("") else { return };
     for mesh in
         ["tosca-lowres/cat0.vert", "tosca-lowres/centaur1.vert", "single/spot.obj", "single/rocker-arm.obj"]
     {
@@ -38,7 +38,7 @@ fn lengths_of_paths_equal_exact_distances() {
 
 #[test]
 fn exact_distances_on_every_tosca_mesh_are_symmetric_and_those_of_their_paths() {
-    let Some(data) = data() else { return };
+    let Some(data) = testkit::data("") else { return };
     let mut paths: Vec<_> =
         std::fs::read_dir(data.join("tosca-lowres")).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.retain(|path| path.extension().is_some_and(|e| e == "vert"));
