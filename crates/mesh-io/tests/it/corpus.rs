@@ -241,35 +241,6 @@ fn binary_ply_is_read_in_both_byte_orders_and_faults_name_the_byte() {
     ]);
 }
 
-#[test]
-fn polygons_are_covered_once_and_doubts_are_noted() {
-    let obj =
-        |points: &str, face: &str| one("m.obj", format!("v {}\nf {face}\n", points.replace(", ", "\nv ")));
-    let notch = "0 0 0, 4 0 0, 4 4 0, 2 1 0, 0 4 0";
-    let rows = notch.replace(", ", "\n");
-    let ply = PLY.replace("vertex 4", "vertex 5").replace("property float nx\nproperty uchar red\n", "");
-    let ply = format!("{}end_header\n{rows}\n5 4 3 2 1 0 0\n", &ply[..ply.find("end_header").unwrap()]);
-    check(vec![
-        ("concave", obj(notch, "1 2 3 4 5"), "5 vertices, 3 faces, area 10"),
-        (
-            "concave",
-            one("m.off", format!("OFF 5 1 0\n{rows}\n5 0 1 2 3 4\n")),
-            "5 vertices, 3 faces, area 10",
-        ),
-        ("concave", one("m.ply", ply), "5 vertices, 3 faces, area 10"),
-        (
-            "crossing",
-            obj("0 0 0, 1 1 0, 1 0 0, 0 1 0", "1 2 3 4"),
-            "4 vertices, 2 faces, area 1, polygons that cross themselves, which are covered in parts twice or not at all: 1",
-        ),
-        (
-            "bent",
-            obj("0 0 0, 1 0 0, 1 1 .5, 0 1 0", "1 2 3 4"),
-            "4 vertices, 2 faces, area 1.112372, polygons that are not flat, whose surface depends on how they are split: 1",
-        ),
-    ]);
-}
-
 fn far() -> TriMesh {
     let mut grid = shapes::grid(10, 10, 0.1);
     grid.positions.iter_mut().for_each(|p| *p += nalgebra::Vector3::new(1e7, 1e7, -3e5));
