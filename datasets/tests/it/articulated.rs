@@ -11,8 +11,8 @@ use canonform_datasets::{
 use mesh::{TriMesh, validate};
 use nalgebra::Point3;
 use rayon::prelude::*;
-use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use surface::VertexId;
+use testkit::on_threads;
 
 fn options(n_vertices: usize) -> ArticulatedOptions {
     ArticulatedOptions { n_vertices, ..ArticulatedOptions::default() }
@@ -35,13 +35,9 @@ fn hash(shapes: &[LabeledShape]) -> u64 {
     hash
 }
 
-fn threads(n: usize) -> Result<ThreadPool, ThreadPoolBuildError> {
-    ThreadPoolBuilder::new().num_threads(n).build()
-}
-
 /// The dataset with 1,000 vertices a shape.
 static SHAPES: LazyLock<Vec<LabeledShape>> =
-    LazyLock::new(|| threads(2).unwrap().install(|| articulated(&options(1000))).unwrap());
+    LazyLock::new(|| on_threads(2, || articulated(&options(1000))).unwrap());
 
 /// Coarse triangles cut corners, so that areas are smaller by more.
 fn are_clean_spheres_of_the_same_size(shapes: &[LabeledShape], n_vertices: usize, off: f64) {
@@ -78,7 +74,7 @@ fn every_shape_of_the_usual_size_is_a_clean_sphere() {
 fn bytes_depend_only_on_the_options() {
     assert_eq!(hash(&SHAPES), GOLDEN, "{:#018x}", hash(&SHAPES));
     for (family, pose, place) in [(Family::Cat, 8, 8), (Family::Centaur, 0, 9), (Family::David, 7, 22)] {
-        let alone = threads(1).unwrap().install(|| articulated_shape(family, pose, &options(1000))).unwrap();
+        let alone = on_threads(1, || articulated_shape(family, pose, &options(1000))).unwrap();
         assert_eq!(alone, SHAPES[place]);
     }
     let options = ArticulatedOptions { seed: 2, ..options(1000) };

@@ -7,8 +7,8 @@ use canonform_datasets::{
     CreatureOptions, LabeledShape, PartMesh, creature_body, creature_plans, creatures, mechanical_parts,
 };
 use mesh::{TriMesh, validate};
-use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
+use testkit::on_threads;
 
 fn options(n_families: usize, n_poses: usize) -> CreatureOptions {
     CreatureOptions { n_families, n_poses, n_vertices: 1000, ..CreatureOptions::default() }
@@ -62,9 +62,8 @@ fn creatures_are_clean_surfaces_of_their_own_with_the_handles_of_their_plans() {
 #[ignore = "slow: make test-all"]
 fn bytes_depend_on_the_seed_and_not_on_threads_or_the_number_of_families() {
     let few = options(4, 2);
-    let threads = |n| ThreadPoolBuilder::new().num_threads(n).build().unwrap();
-    let all = threads(2).install(|| creatures(&few)).unwrap();
-    assert_eq!(threads(1).install(|| creatures(&few)).unwrap(), all);
+    let all = on_threads(2, || creatures(&few)).unwrap();
+    assert_eq!(on_threads(1, || creatures(&few)).unwrap(), all);
     assert_eq!(creature_body(3, 0, 1, &options(40, 8), &()).unwrap(), all[7]);
     let other = CreatureOptions { seed: 2, ..few };
     assert_ne!(creature_body(3, 0, 1, &other, &()).unwrap().mesh, all[7].mesh);
