@@ -100,22 +100,3 @@ pub fn blocks(text: &str) -> Vec<CodeBlock> {
     }
     blocks
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn blocks_are_found_with_their_lines() {
-        let page = "text\n```sh\none\n\ntwo\n```\n\n```rust\nlet x = 1;\n```\n```sh,norun\nmake\n```\n";
-        let found: Vec<_> = blocks(page).into_iter().map(|b| (b.line, b.language, b.text)).collect();
-        assert_eq!(
-            found,
-            [
-                (3, Language::Script, "one\n\ntwo\n".to_owned()),
-                (9, Language::Other, "let x = 1;\n".to_owned()),
-                (12, Language::Unrun, "make\n".to_owned()),
-            ]
-        );
-    }
-}

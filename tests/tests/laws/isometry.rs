@@ -1,39 +1,12 @@
-//! Invariance to folding, motions and renumbering.
+//! Invariance to renumbering.
 
-use canonform::embed::{EmbedMethod, FormOptions, Samples, StressChoice};
+use canonform::embed::{FormOptions, StressChoice};
 use datasets::Family;
 use geodesics::FirstSample;
-use mesh::{TriMesh, shapes};
+use mesh::TriMesh;
 use surface::VertexId;
 
-use crate::support::{body, form_pairs, gap, measured};
-
-fn few_samples() -> FormOptions {
-    FormOptions { samples: Samples::Count(30), method: EmbedMethod::low_rank(8), ..FormOptions::default() }
-}
-
-/// A sheet of irregular triangles with a straight column of vertices along which it can be folded.
-fn creased_sheet() -> (TriMesh, f64) {
-    let (nx, ny, step, column) = (19, 14, 0.3, 7);
-    let mut sheet = shapes::jittered_grid(nx, ny, step, 0.2, 5);
-    let crease = step * column as f64;
-    for j in 0..ny {
-        sheet.positions[j * nx + column].x = crease;
-    }
-    (sheet, crease)
-}
-
-#[test]
-fn folding_along_a_mesh_line_changes_no_embedding() {
-    let (sheet, crease) = creased_sheet();
-    let flat_form = form_pairs(&sheet, &few_samples());
-    for angle in [0.4, 1.6, 2.9] {
-        let form = form_pairs(&shapes::fold(&sheet, crease, angle), &few_samples());
-        let gap = gap(form.as_slice(), flat_form.as_slice());
-        println!("folded by {angle}: embeddings differ by {gap:.1e}");
-        assert!(gap < 1e-12, "{angle}: {gap:e}");
-    }
-}
+use crate::support::{body, measured};
 
 /// The mesh with vertex `v` renumbered to `number[v]` and its faces in another order and rotation.
 fn renumbered(mesh: &TriMesh) -> (TriMesh, Vec<usize>) {

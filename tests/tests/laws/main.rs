@@ -20,7 +20,7 @@
 //! | `map_uses` | known pairs, points inside faces, and what maps carry |
 //! | `part_maps` | dense maps between a part and a whole |
 //! | `samples` | how many samples are enough, and the interval of the stress after that choice |
-//! | `isometry` | invariance to folding, motions, renumbering and units |
+//! | `isometry` | invariance to renumbering |
 //! | `scale` | the same results in any unit of length |
 //! | `threads` | independence of the number of threads |
 //! | `signatures` | signatures of bodies |

@@ -178,7 +178,7 @@ impl PrunedSolver for Careless<'_> {
 }
 
 /// Asserts that pruned fronts, even careless ones, choose the samples of Procedure 1 with the same distances.
-pub(crate) fn pruning_changes_nothing(name: &str, surface: &IntrinsicMesh, n: usize) {
+fn pruning_changes_nothing(name: &str, surface: &IntrinsicMesh, n: usize) {
     let solver = FastMarching::new(surface, FastMarchingOptions::default(), &());
     for first in [FirstSample::Farthest, FirstSample::Vertex(VertexId(7))] {
         let full = farthest_point_sampling(&Unpruned(&solver), n, first).unwrap();

@@ -64,15 +64,6 @@ fn fast_marching_is_close_to_exact_distances() {
 
 #[test]
 #[ignore = "slow: make test-all"]
-fn pruned_fronts_choose_the_same_samples_on_real_meshes() {
-    let Some(data) = testkit::data("") else { return };
-    for name in ["cat0", "david0", "centaur3", "horse5", "wolf1", "michael2"] {
-        crate::marching::pruning_changes_nothing(name, tosca(&data, name).intrinsic(), 100);
-    }
-}
-
-#[test]
-#[ignore = "slow: make test-all"]
 fn distances_distinguish_poses_from_animals() {
     let Some(data) = testkit::data("") else { return };
     let shapes = list_shapes(&data.join("tosca-lowres"), None).unwrap();

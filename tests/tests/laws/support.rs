@@ -4,12 +4,10 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 use canonform::Surface;
-use canonform::compare::embedded_distances;
 use canonform::embed::{EmbedOptions, Embedded, FormOptions, StressChoice, StressOptions, embed};
 use cargo_metadata::{Metadata, MetadataCommand};
 use datasets::{ArticulatedOptions, Family, LabeledShape, articulated};
 use geodesics::Method;
-use linalg::DistanceMatrix;
 use mesh::{RepairOptions, TriMesh};
 
 /// The folder of the workspace.
@@ -64,11 +62,6 @@ pub(crate) fn embedded(mesh: &TriMesh, options: &FormOptions) -> Embedded {
 pub(crate) fn measured(mesh: &TriMesh, options: &FormOptions, choice: StressChoice) -> Embedded {
     let stress = StressOptions { choice, ..StressOptions::default() };
     embed(&surface(mesh), EmbedOptions::from(options).stress(stress), &()).unwrap()
-}
-
-/// All distances between the embedded points of a mesh.
-pub(crate) fn form_pairs(mesh: &TriMesh, options: &FormOptions) -> DistanceMatrix {
-    embedded_distances(&embedded(mesh, options).embedding.coords).unwrap()
 }
 
 /// Fast marching with default options.

@@ -1,7 +1,7 @@
 use canonform_nmds::*;
 use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
 
-use crate::support::{Cloud, all_pairs, landmark_distances, pairwise, procrustes_free_gap, scaled};
+use crate::support::{Cloud, all_pairs, landmark_distances, pairwise, procrustes_free_gap};
 
 /// Distances of a cloud raised to a power, and their classical scaling.
 fn problem(p: usize, power: f64) -> (DistanceMatrix, Matrix) {
@@ -184,14 +184,6 @@ fn the_stress_of_landmarks_is_its_definition_and_never_increases() {
             last = stress;
         }
     }
-}
-
-#[test]
-fn the_unit_of_length_does_not_matter() {
-    let (distances, start) = of_landmarks(0.7);
-    let one = fitted(&start, &distances, 1.0, 20).0;
-    let large = fitted(&(&start * 7.0), &scaled(&distances, 7.0), 1.0, 20).0;
-    assert!((large.coords / 7.0 - one.coords).amax() < 1e-9);
 }
 
 #[test]

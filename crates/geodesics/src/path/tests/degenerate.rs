@@ -42,15 +42,6 @@ fn assert_sane(mesh: &IntrinsicMesh) {
 }
 
 #[test]
-fn repeated_faces_change_no_path() {
-    let sheet = shapes::jittered_grid(5, 4, 1.0, 0.2, 2);
-    for copies in [2, 3] {
-        let repeated = mesh::TriMesh { faces: sheet.faces.repeat(copies), ..sheet.clone() };
-        assert_sane(&repeated.intrinsic());
-    }
-}
-
-#[test]
 fn windows_around_a_thin_needle_come_to_an_end_and_paths_are_found() {
     // A double cone with n needles and a total angle far below a full turn at either tip.
     for (n, width) in [(3, 1e-3), (3, 1e-5), (7, 1e-7), (5, 1e-8), (40, 1e-3)] {
