@@ -1,5 +1,20 @@
 //! Comparing what a command printed with what the guide shows.
 
+use std::sync::LazyLock;
+
+use regex::Regex;
+
+/// Three dots, or a number: digits with commas between thousands, a decimal part, an exponent.
+static APART: LazyLock<Regex> =
+    LazyLock::new(|| pattern(r"\.\.\.|[0-9]+(,[0-9]{3}(?-u:\b))*(\.[0-9]+)?(e[-+]?[0-9]+)?"));
+
+/// `distances: 40 of 100, 12 s, about 18 s left`, or shorter.
+static PROGRESS: LazyLock<Regex> = LazyLock::new(|| pattern(r"^([^ ]*|.* of .*), [0-9]+ s(, about .*)?$"));
+
+fn pattern(text: &str) -> Regex {
+    Regex::new(text).unwrap_or_else(|fault| panic!("{fault}"))
+}
+
 /// Whether a command printed what the guide shows.
 ///
 /// - A line `...` stands for any number of lines, and `...` in a line for anything.
@@ -21,7 +36,7 @@ pub fn matches(shown: &str, printed: &str) -> bool {
 
 /// The lines that do not report progress.
 pub(crate) fn without_progress(printed: &str) -> impl Iterator<Item = &str> {
-    printed.lines().filter(|line| !is_progress(line))
+    printed.lines().filter(|line| !PROGRESS.is_match(line))
 }
 
 fn lines<'a>(lines: impl Iterator<Item = &'a str>) -> impl Iterator<Item = &'a str> {
@@ -30,19 +45,6 @@ fn lines<'a>(lines: impl Iterator<Item = &'a str>) -> impl Iterator<Item = &'a s
 
 fn is_frame(c: char) -> bool {
     c.is_whitespace() || matches!(c, '-' | '+' | '|' | '=' | '\u{2500}'..='\u{257f}')
-}
-
-/// `distances: 40 of 100, 12 s, about 18 s left`, or shorter.
-fn is_progress(line: &str) -> bool {
-    let is_seconds = |text: &str| {
-        text.strip_suffix(" s")
-            .is_some_and(|number| !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit()))
-    };
-    line.split_once(", ").is_some_and(|(stage, rest)| {
-        !stage.contains(' ') | stage.contains(" of ")
-            && (is_seconds(rest)
-                || rest.split_once(", about ").is_some_and(|(elapsed, _)| is_seconds(elapsed)))
-    })
 }
 
 /// Whether all elements are the `same` as those that are shown, where `...` stands for any number of them. `same` gets the
@@ -60,53 +62,15 @@ fn equal(shown: &[&str], printed: &[&str], same: &dyn Fn(&[&str], &str) -> bool)
 fn words(line: &str) -> Vec<&str> {
     let mut words = Vec::new();
     for word in line.split(|c: char| c.is_whitespace() || matches!(c, '|' | '\u{2500}'..='\u{257f}')) {
-        let mut rest = word;
-        while !rest.is_empty() {
-            let length = next_length(rest);
-            words.push(&rest[..length]);
-            rest = &rest[length..];
+        let mut end = 0;
+        for apart in APART.find_iter(word) {
+            words.extend([&word[end..apart.start()], apart.as_str()]);
+            end = apart.end();
         }
+        words.push(&word[end..]);
     }
+    words.retain(|word| !word.is_empty());
     words
-}
-
-/// The length of the dots, of the number, or of the text that a word begins with.
-fn next_length(word: &str) -> usize {
-    if word.starts_with("...") {
-        return 3;
-    }
-    let number = number_length(word);
-    if number > 0 {
-        return number;
-    }
-    let starts = word.char_indices().skip(1).map(|(start, _)| start);
-    let mut ends =
-        starts.filter(|&start| word[start..].starts_with("...") || number_length(&word[start..]) > 0);
-    ends.next().unwrap_or(word.len())
-}
-
-/// The length of the number that a text begins with: digits with commas between thousands, a decimal part, an exponent.
-fn number_length(text: &str) -> usize {
-    let bytes = text.as_bytes();
-    let digits = |from: usize| bytes[from..].iter().take_while(|b| b.is_ascii_digit()).count();
-    let mut end = digits(0);
-    if end == 0 {
-        return 0;
-    }
-    while bytes.get(end) == Some(&b',') && digits(end + 1) == 3 {
-        end += 4;
-    }
-    if bytes.get(end) == Some(&b'.') && digits(end + 1) > 0 {
-        end += 1 + digits(end + 1);
-    }
-    if let Some(sign) = bytes.get(end).filter(|b| **b == b'e').and_then(|_| bytes.get(end + 1)) {
-        let skip = 1 + usize::from(matches!(sign, b'-' | b'+'));
-        let exponent = if end + skip < bytes.len() { digits(end + skip) } else { 0 };
-        if exponent > 0 {
-            end += skip + exponent;
-        }
-    }
-    end
 }
 
 /// Whether a word is the shown one; `unit` is the word that follows in the guide.
@@ -129,7 +93,7 @@ fn match_word(shown: &str, printed: &str, unit: Option<&str>) -> bool {
 }
 
 fn number(word: &str) -> Option<f64> {
-    (number_length(word) == word.len()).then(|| word.replace(',', "").parse().ok()).flatten()
+    if word.starts_with(|c: char| c.is_ascii_digit()) { word.replace(',', "").parse().ok() } else { None }
 }
 
 #[cfg(test)]
