@@ -179,21 +179,11 @@ mod tests {
             a.iter().zip(&b).map(|(x, y)| (x - y).powi(2)).sum::<f64>().sqrt()
         };
         let turn = Rotation3::from_euler_angles(0.3, -0.7, 1.9);
-        let moved = |flip: f64| TriMesh {
-            positions: mesh
-                .positions
-                .iter()
-                .map(|p| turn * Point3::new(flip * p.x, p.y, p.z) * 25.4)
-                .collect(),
-            faces: mesh.faces.clone(),
-        };
+        let moved = |flip: f64| testkit::moved(&mesh, |p| turn * Point3::new(flip * p.x, p.y, p.z) * 25.4);
         for flip in [1.0, -1.0] {
             assert!(distance(&mesh, &moved(flip)) < 1e-3, "{flip}");
         }
-        let bent = TriMesh {
-            positions: mesh.positions.iter().map(|p| Point3::new(p.x, p.y, p.z + 0.2 * p.x * p.x)).collect(),
-            faces: mesh.faces.clone(),
-        };
+        let bent = testkit::moved(&mesh, |p| Point3::new(p.x, p.y, p.z + 0.2 * p.x * p.x));
         assert!(distance(&mesh, &bent) > 0.01);
         assert_eq!(rigid_signature(&mesh), None, "it may bend");
     }

@@ -209,10 +209,7 @@ mod tests {
             let share = piece.area() / whole.area();
             piece.positions.iter_mut().for_each(|p| *p = turn * *p + Vector3::new(4.0, 1.0, 2.0));
             for factor in [1.0, 25.4] {
-                let piece = TriMesh {
-                    positions: piece.positions.iter().map(|p| p * factor).collect(),
-                    faces: piece.faces.clone(),
-                };
+                let piece = testkit::moved(&piece, |p| p * factor);
                 let [a, b] = [&whole, &piece].map(|mesh| MeshGeometry::new(mesh, None).unwrap());
                 let (cut, by) = piece_of(Side::First, &a, &b).unwrap();
                 assert!((cut.left - share).abs() < 1e-9 && by == factor, "{cut:?}, {share}");

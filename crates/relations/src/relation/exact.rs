@@ -189,20 +189,11 @@ mod tests {
     /// The mesh moved, with vertices and faces in another order, and rounded as files do.
     fn moved(mesh: &TriMesh, scale: f64, flip: f64) -> TriMesh {
         let turn = Rotation3::from_euler_angles(0.3, 2.0, -1.0);
-        let n = mesh.n_vertices();
-        let to = |p: &Point3<f64>| {
+        let motion = |p: &Point3<f64>| {
             let p = turn * Point3::new(flip * p.x, p.y, p.z) * scale + Vector3::new(1.0, 2.0, 3.0);
             p.map(|x| f64::from(x as f32))
         };
-        TriMesh {
-            positions: (0..n).map(|i| to(&mesh.positions[n - 1 - i])).collect(),
-            faces: mesh
-                .faces
-                .iter()
-                .rev()
-                .map(|face| face.map(|v| VertexId::from(n - 1 - v.index())))
-                .collect(),
-        }
+        testkit::renumbered(&testkit::moved(mesh, motion))
     }
 
     fn found(a: &TriMesh, b: &TriMesh) -> Option<SameVertices> {
