@@ -165,12 +165,12 @@ def change(table: lance.LanceDataset, shard: str, now: pyarrow.Table) -> int:
         old, new = matrix(before), matrix(now)
         labels = np.array(before["label"].to_pylist(), object), np.array(now["label"].to_pylist(), object)
         differs |= (labels[0][places] != labels[1]) | (old[places] != new).any(axis=1)
-    gone = [name for name, place in known.items() if place not in set(places.tolist())]
+    gone = set(known) - set(now["id"].to_pylist())
     if differs.any():
         changed = now.filter(differs)
         table.merge_insert("id").when_matched_update_all().when_not_matched_insert_all().execute(changed)
     if gone:
-        table.delete(compute.field("id").isin(gone))
+        table.delete(compute.field("id").isin(sorted(gone)))
     return int(differs.sum()) + len(gone)
 
 
