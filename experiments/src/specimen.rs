@@ -1,8 +1,9 @@
 //! The shapes that several experiments examine closely, with cached measurements.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
+use base::Cache;
 use canonform::DescribeOptions;
 use canonform::embed::{EmbedMethod, FormOptions, Samples};
 use descriptors::LaplaceSpectrum;
@@ -19,16 +20,13 @@ const PAPER: [&str; 2] = ["david", "cat"];
 /// Dimensions of canonical forms.
 pub(crate) const DIM: usize = 3;
 
-/// Values that are computed once and then shared.
-type Once<K, T> = Mutex<Vec<(K, Arc<T>)>>;
-
 /// A shape, and what has been measured on it.
 pub(crate) struct Specimen<'a> {
     pub(crate) shape: &'a LabeledSurface,
-    all_pairs: Once<Method, DistanceMatrix>,
-    optimum: Once<Method, Optimum>,
-    spectrum: Once<usize, LaplaceSpectrum>,
-    reconstruction: Once<(usize, VertexId), Reconstruction>,
+    all_pairs: Cache<Method, Arc<DistanceMatrix>>,
+    optimum: Cache<Method, Arc<Optimum>>,
+    spectrum: Cache<usize, Arc<LaplaceSpectrum>>,
+    reconstruction: Cache<(usize, VertexId), Arc<Reconstruction>>,
 }
 
 /// Classical scaling of all pairs.
@@ -49,9 +47,13 @@ pub(crate) fn specimens(collection: &SurfaceCollection) -> Vec<Specimen<'_>> {
 
 impl<'a> Specimen<'a> {
     pub(crate) fn new(shape: &'a LabeledSurface) -> Self {
-        let (all_pairs, optimum) = Default::default();
-        let (spectrum, reconstruction) = Default::default();
-        Self { shape, all_pairs, optimum, spectrum, reconstruction }
+        Self {
+            shape,
+            all_pairs: Cache::new(usize::MAX),
+            optimum: Cache::new(usize::MAX),
+            spectrum: Cache::new(usize::MAX),
+            reconstruction: Cache::new(usize::MAX),
+        }
     }
 
     pub(crate) fn n_vertices(&self) -> usize {
@@ -64,7 +66,7 @@ impl<'a> Specimen<'a> {
 
     /// The distances between all pairs of vertices.
     pub(crate) fn all_pairs(&self, method: Method) -> Result<Arc<DistanceMatrix>> {
-        once(&self.all_pairs, method, || {
+        self.all_pairs.get_or_put(&method, || {
             let p = self.n_vertices();
             if p.saturating_mul(p) > canonform::embed::DISTANCES_LIMIT / size_of::<f64>() {
                 bail!(
@@ -74,33 +76,33 @@ impl<'a> Specimen<'a> {
                     (p * p * size_of::<f64>()) >> 30
                 );
             }
-            Ok(self.solver(method)?.distance_matrix()?)
+            Ok(Arc::new(self.solver(method)?.distance_matrix()?))
         })
     }
 
     /// Classical scaling of all pairs, the optimum of strain.
     pub(crate) fn optimum(&self, method: Method) -> Result<Arc<Optimum>> {
-        once(&self.optimum, method, || {
+        self.optimum.get_or_put(&method, || {
             let all = self.all_pairs(method)?;
             let embedding = classical(&all, DIM, &())?;
             let stress = paper_stress(&embedding.coords, all.as_ref())?;
-            Ok(Optimum { embedding, stress })
+            Ok(Arc::new(Optimum { embedding, stress }))
         })
     }
 
     /// Eigenfunctions of the surface.
     pub(crate) fn spectrum(&self, n_eigenvectors: usize) -> Result<Arc<LaplaceSpectrum>> {
-        once(&self.spectrum, n_eigenvectors, || {
-            Ok(LaplaceSpectrum::new(self.shape.surface.intrinsic(), n_eigenvectors, &())?)
+        self.spectrum.get_or_put(&n_eigenvectors, || {
+            Ok(Arc::new(LaplaceSpectrum::new(self.shape.surface.intrinsic(), n_eigenvectors, &())?))
         })
     }
 
     /// The reconstruction of all squared distances from `n` farthest samples, for the default distances.
     pub(crate) fn reconstruction(&self, n: usize, first: VertexId) -> Result<Arc<Reconstruction>> {
-        once(&self.reconstruction, (n, first), || {
+        self.reconstruction.get_or_put(&(n, first), || {
             let samples = self.nested(Method::default(), Sampling::Farthest, first, &[n])?;
             let all = self.all_pairs(Method::default())?;
-            Ok(Reconstruction::new(&samples[0], all.as_ref())?)
+            Ok(Arc::new(Reconstruction::new(&samples[0], all.as_ref())?))
         })
     }
 
@@ -138,15 +140,4 @@ pub(crate) fn low_rank(samples: usize, rank: usize, seed: u64) -> FormOptions {
 /// Descriptions by forms with these options.
 pub(crate) fn describing(form: FormOptions) -> DescribeOptions {
     DescribeOptions { form, ..DescribeOptions::default() }
-}
-
-/// Looks up a value, or computes it.
-fn once<K: PartialEq, T>(known: &Once<K, T>, key: K, make: impl FnOnce() -> Result<T>) -> Result<Arc<T>> {
-    let lock = || known.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some((_, value)) = lock().iter().find(|(k, _)| *k == key) {
-        return Ok(Arc::clone(value));
-    }
-    let value = Arc::new(make().context("cannot measure a shape")?);
-    lock().push((key, Arc::clone(&value)));
-    Ok(value)
 }

@@ -59,6 +59,22 @@ impl<K: PartialEq, V: Clone> Cache<K, V> {
         entries.push(Entry { key, value, weight, since: Instant::now() });
     }
 
+    /// The value of a key, or one that is made now and kept with a weight of 1.
+    ///
+    /// # Errors
+    /// That of making it.
+    pub fn get_or_put<E>(&self, key: &K, make: impl FnOnce() -> Result<V, E>) -> Result<V, E>
+    where
+        K: Clone,
+    {
+        if let Some(known) = self.get(key) {
+            return Ok(known);
+        }
+        let made = make()?;
+        self.put(key.clone(), made.clone(), 1);
+        Ok(made)
+    }
+
     /// Drops the value of a key.
     pub fn remove(&self, key: &K) {
         self.young().retain(|entry| entry.key != *key);

@@ -31,20 +31,6 @@ use crate::settings::{Settings, measure};
 /// Most prepared solvers, descriptions and sides of comparisons that a surface keeps of each kind.
 const MOST_KEPT: usize = 4;
 
-/// The value kept for a key, or one that is made now and kept.
-fn or_make<K: PartialEq + Clone, V>(
-    kept: &Cache<K, Arc<V>>,
-    key: &K,
-    make: impl FnOnce() -> Result<V, Error>,
-) -> Result<Arc<V>, Error> {
-    if let Some(kept) = kept.get(key) {
-        return Ok(kept);
-    }
-    let made = Arc::new(make()?);
-    kept.put(key.clone(), made.clone(), 1);
-    Ok(made)
-}
-
 /// A solver, and the budget that it was prepared with: who cancels that has to prepare another.
 #[derive(Clone)]
 struct Prepared {
@@ -159,7 +145,8 @@ impl Surface {
         options: &DescribeOptions,
         observer: &dyn Observer,
     ) -> Result<Arc<Shape>, Error> {
-        or_make(&self.descriptions, options, || canonform::describe(&self.inner, options, observer))
+        let describe = || canonform::describe(&self.inner, options, observer).map(Arc::new);
+        self.descriptions.get_or_put(options, describe)
     }
 
     /// The surface, ready to be compared, made once.
@@ -169,8 +156,8 @@ impl Surface {
         observer: &dyn Observer,
     ) -> Result<Arc<Compared>, Error> {
         let surface = self.inner.clone();
-        or_make(&self.compared, options, || {
-            ComparedMesh::new(&self.mesh, self.content, surface, options, observer)
+        self.compared.get_or_put(options, || {
+            ComparedMesh::new(&self.mesh, self.content, surface, options, observer).map(Arc::new)
         })
     }
 
@@ -195,7 +182,8 @@ impl Surface {
         options: &CorrespondOptions,
         observer: &dyn Observer,
     ) -> Result<Arc<Matched>, Error> {
-        or_make(&self.matched, options, || MappedSurface::new(self.inner.clone(), options, observer))
+        let prepare = || MappedSurface::new(self.inner.clone(), options, observer).map(Arc::new);
+        self.matched.get_or_put(options, prepare)
     }
 
     fn description_of(&self, py: Python<'_>, settings: Settings) -> PyResult<Arc<Shape>> {
