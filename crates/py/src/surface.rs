@@ -358,23 +358,16 @@ impl Surface {
         geodesic: Settings,
     ) -> PyResult<Vec<FoundPath<'py>>> {
         let method = geodesic.distances()?;
-        let (source, targets) = (point_of(source)?, points_of(targets)?);
+        let (source, targets) = ([point_of(source)?], points_of(targets)?);
         let paths = self.solve(py, method, |solver, _| {
             let inner = &self.inner;
-            let ends = targets.iter().map(|target| inner.locate(target)).collect::<Result<Vec<_>, _>>()?;
-            let sources = self.sources(std::slice::from_ref(&source))?;
+            targets.iter().try_for_each(|target| inner.locate(target).map(drop))?;
+            let sources = self.sources(&source)?;
             let mut distances = vec![0.0; solver.n_vertices()];
             solver.solve_into(&sources, f64::INFINITY, &mut distances)?;
             let tracer = PathTracer::new(inner.intrinsic(), &sources, &distances, &solver.budget());
-            let path = |(target, end): (&InputPoint, &_)| {
-                let mut path = SurfacePath::trace(inner, &tracer, *end)?;
-                // The ends as the user wrote them.
-                let last = path.points.len() - 1;
-                path.points[0].at = source;
-                path.points[last].at = *target;
-                Ok(path)
-            };
-            targets.iter().zip(&ends).map(path).collect::<Result<Vec<_>, Error>>()
+            let path = |target: &InputPoint| SurfacePath::trace(inner, &tracer, &source, *target);
+            targets.iter().map(path).collect::<Result<Vec<_>, Error>>()
         })?;
         let found = |path: canonform::geodesics::SurfacePath| {
             let positions: Vec<_> = path.points.iter().map(|point| point.position).collect();

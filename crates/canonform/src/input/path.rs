@@ -1,6 +1,6 @@
 //! Shortest paths, in the numbers of the input.
 
-use geodesics::{GeodesicError, PathTracer, SurfacePoint};
+use geodesics::{GeodesicError, PathTracer};
 use nalgebra::Point3;
 
 use mesh::{InputPoint, Surface};
@@ -28,12 +28,18 @@ pub struct PathPoint {
 }
 
 impl SurfacePath {
-    /// The shortest path from the nearest source of `tracer` to a point. The tracer must belong to the surface.
+    /// The shortest path from the nearest of some points, the sources of `tracer`, to another one. The tracer must belong to the
+    /// surface. The ends of the path are named as they are given.
     ///
     /// # Errors
-    /// [`Error::NoPath`], and [`Error::Geodesic`] if the point belongs to another surface.
-    pub fn trace(surface: &Surface, tracer: &PathTracer, target: SurfacePoint) -> Result<Self, Error> {
-        let path = match tracer.path_to(target) {
+    /// [`Error::NoPath`], and [`Error::Point`] for a point that does not exist.
+    pub fn trace(
+        surface: &Surface,
+        tracer: &PathTracer,
+        from: &[InputPoint],
+        to: InputPoint,
+    ) -> Result<Self, Error> {
+        let path = match tracer.path_to(surface.locate(&to)?) {
             Err(GeodesicError::NoPath { point }) => {
                 return Err(Error::NoPath { target: surface.input_point(point)?.to_string() });
             }
@@ -45,6 +51,17 @@ impl SurfacePath {
             let step = points.last().map_or(0.0, |last| last.distance + (position - last.position).norm());
             points.push(PathPoint { at: surface.input_point(point)?, position, distance: step });
         }
+        if let [first, ..] = &mut points[..] {
+            let start = first.position;
+            let mut nearest = f64::INFINITY;
+            for source in from {
+                let apart = (surface.position(surface.locate(source)?) - start).norm();
+                if apart < nearest {
+                    (nearest, first.at) = (apart, *source);
+                }
+            }
+        }
+        points.iter_mut().last().into_iter().for_each(|last| last.at = to);
         Ok(Self { points, length: path.length })
     }
 }

@@ -6,12 +6,11 @@ use std::time::Instant;
 use anyhow::Result;
 use base::files::write_atomically;
 use base::object;
-use canonform::Surface;
-use canonform::geodesics::{PathTracer, Source, SurfacePath};
+use canonform::geodesics::{PathTracer, SurfacePath};
 use canonform::mesh::InputPoint;
 use serde::Serialize;
 
-use super::task::{Row, Task, milliseconds, spelled};
+use super::task::{Task, milliseconds, spelled};
 use crate::input::named;
 use crate::output::{Answer, Fact, Output, count, shown};
 
@@ -26,21 +25,17 @@ pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
     let Task { args, surface, common, .. } = task;
     let fault = |fault| named(&args.mesh, fault);
     // Bad targets fail before any work is done.
-    let targets: Result<Vec<_>, _> = args.path_to.iter().map(|point| surface.locate(point)).collect();
-    let targets = targets.map_err(|point| fault(point.into()))?;
+    let found = args.path_to.iter().try_for_each(|point| surface.locate(point).map(drop));
+    found.map_err(|point| fault(point.into()))?;
     let rows = task.solve()?;
     let start = Instant::now();
     let (mut paths, mut facts) = (Vec::new(), Vec::new());
     for row in &rows {
         let tracer =
             PathTracer::new(surface.intrinsic(), &row.sources, &row.distances, &task.solver.budget());
-        for (target, at) in args.path_to.iter().zip(&targets) {
-            let mut path = SurfacePath::trace(surface, &tracer, *at).map_err(fault)?;
-            // The ends as the user wrote them.
-            let source = source_of(&path, row, surface).unwrap_or(*target);
-            let n_points = path.points.len();
-            path.points[0].at = source;
-            path.points[n_points - 1].at = *target;
+        for target in &args.path_to {
+            let path = SurfacePath::trace(surface, &tracer, &row.from, *target).map_err(fault)?;
+            let (source, n_points) = (path.points[0].at, path.points.len());
             let distance = match target {
                 InputPoint::Vertex(v) => Some(
                     row.distances[surface.repaired_vertex(*v).map_err(|point| fault(point.into()))?.index()],
@@ -97,14 +92,6 @@ pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
         };
         answer.text(common)
     })
-}
-
-/// The source where a path starts.
-fn source_of(path: &SurfacePath, row: &Row, surface: &Surface) -> Option<InputPoint> {
-    let start = path.points.first()?.position;
-    let away = |source: &Source| (surface.position(source.point()) - start).norm();
-    let all = row.from.iter().zip(&row.sources);
-    all.min_by(|(_, a), (_, b)| away(a).total_cmp(&away(b))).map(|(from, _)| *from)
 }
 
 fn write_paths(output: &Output, paths: &[SurfacePath], facts: &[impl Serialize]) -> Result<()> {
