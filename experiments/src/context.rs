@@ -122,18 +122,17 @@ impl Context<'_> {
         half: impl Fn(&LandmarkDistances) -> Result<f64>,
     ) -> Result<Vec<Series>> {
         let counts = &self.options.counts;
-        let mut runs: Vec<Vec<Vec<f64>>> = vec![Vec::new(); methods.len()];
+        let mut runs = Vec::new();
         for first in specimen.first_samples(self.options.runs, self.seed) {
             let nested = |distances, sampling| specimen.nested(distances, sampling, first, counts);
             let samples = nested(Method::default(), Sampling::Farthest)?;
             let hops = nested(Method::BreadthFirst, Sampling::Farthest)?;
             let least = nested(Method::default(), Sampling::MinVariance)?;
-            runs.iter_mut().for_each(|runs| runs.push(Vec::new()));
+            let mut run = Vec::new();
             for ((samples, hops), least) in samples.iter().zip(&hops).zip(&least) {
-                let values = farthest(samples)?.into_iter().chain([half(hops)?, half(least)?]);
-                let run = runs.iter_mut().filter_map(|runs| runs.last_mut());
-                run.zip(values).for_each(|(run, value)| run.push(value));
+                run.push([farthest(samples)?, vec![half(hops)?, half(least)?]].concat());
             }
+            runs.push(run);
             self.observer.step();
         }
         Ok(curves(methods, &places(counts), &runs))

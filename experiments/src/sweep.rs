@@ -93,9 +93,11 @@ pub(crate) fn series(name: &str, places: &[f64], runs: &[Vec<f64>]) -> Series {
     curve(name, places.iter().enumerate().map(|(i, &x)| point(x, &at(i))).collect())
 }
 
-/// A curve for each name over the places, from `runs[name][run][place]`.
+/// A curve for each name over the places, from `runs[run][place][name]`.
 pub(crate) fn curves(names: &[&str], places: &[f64], runs: &[Vec<Vec<f64>>]) -> Vec<Series> {
-    names.iter().zip(runs).map(|(name, runs)| series(name, places, runs)).collect()
+    let of =
+        |i: usize| runs.iter().map(|run| run.iter().map(|values| values[i]).collect()).collect::<Vec<_>>();
+    names.iter().enumerate().map(|(i, name)| series(name, places, &of(i))).collect()
 }
 
 /// The last median of a curve.

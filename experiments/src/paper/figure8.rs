@@ -39,18 +39,17 @@ pub(crate) fn figure8(context: &Context<'_>) -> Result<Record> {
     let nmds = |samples: &LandmarkDistances, regularization| -> Result<f64> {
         Ok(timed(|| nystrom(samples, &NystromOptions { regularization, dim: DIM }))?.1)
     };
-    let mut runs: Vec<Vec<Vec<f64>>> = vec![Vec::new(); METHODS.len()];
+    let mut runs = Vec::new();
     for _ in 0..options.runs {
-        runs.iter_mut().for_each(|runs| runs.push(Vec::new()));
+        let mut run = Vec::new();
         for samples in &sampled {
             let low_rank = nmds(samples, half(samples.n_landmarks()))?;
             let none = nmds(samples, Regularization::None)?;
             let rpi = nmds(samples, Regularization::Rpi { alpha: RpiAlpha::default() })?;
             let (_, smds) = timed(|| spectral(samples, &basis, &SpectralOptions::default()))?;
-            let run = runs.iter_mut().filter_map(|runs| runs.last_mut());
-            run.zip([low_rank, none, rpi, of_basis + smds, smds])
-                .for_each(|(run, seconds)| run.push(seconds));
+            run.push(vec![low_rank, none, rpi, of_basis + smds, smds]);
         }
+        runs.push(run);
         context.observer.step();
     }
     let curves = curves(&METHODS, &places(&options.counts), &runs);

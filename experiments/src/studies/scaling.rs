@@ -16,17 +16,16 @@ use surface::VertexId;
 
 use crate::context::Context;
 use crate::specimen::low_rank;
-use crate::sweep::{MeasuredNumbers, curves, places, plot, plots, series, timed};
+use crate::sweep::{MeasuredNumbers, curves, places, plot, plots, timed};
 
-/// The curves of time.
-const STEPS: [&str; 3] = ["preparation", "map", "NMDS"];
+/// The curves of time, and of memory.
+const CURVES: [&str; 4] = ["preparation", "map", "NMDS", "NMDS"];
 
 const MIB: f64 = (1u64 << 20) as f64;
 
 pub(crate) fn scaling(context: &Context<'_>) -> Result<Record> {
     let options = &context.options;
-    let mut seconds = vec![vec![Vec::new(); options.runs]; STEPS.len()];
-    let mut memory = vec![Vec::new(); options.runs];
+    let mut runs = vec![Vec::new(); options.runs];
     context.observer.begin("scaling", options.counts.len() * (options.runs + 1));
     for &n_vertices in &options.counts {
         let body =
@@ -34,26 +33,22 @@ pub(crate) fn scaling(context: &Context<'_>) -> Result<Record> {
         let surface = Surface::new(&body.mesh, &RepairOptions::default(), &())?;
         drop(body);
         context.observer.step();
-        for run in 0..options.runs {
-            let ([preparation, map], [whole, mib]) = (of_one_map(&surface)?, of_form(context, &surface)?);
-            for (curve, spent) in seconds.iter_mut().zip([preparation, map, whole]) {
-                curve[run].push(spent);
-            }
-            memory[run].push(mib);
+        for run in &mut runs {
+            run.push([of_one_map(&surface)?, of_form(context, &surface)?].concat());
             context.observer.step();
         }
     }
     let at = places(&options.counts);
-    let times = curves(&STEPS, &at, &seconds);
-    let memory = series("NMDS", &at, &memory);
+    let mut times = curves(&CURVES, &at, &runs);
+    let memory = times.split_off(3);
     let mut measured: MeasuredNumbers =
         times.iter().map(|curve| (format!("{} growth", curve.name), growth(curve))).collect();
-    measured.insert("memory growth".to_owned(), growth(&memory));
+    measured.insert("memory growth".to_owned(), growth(&memory[0]));
     measured.insert("NMDS seconds".to_owned(), times[2].points.last().map_or(f64::NAN, |p| p.low));
     let of = |title: &str, unit: &str, series| {
         plot(title, Axis::log("vertices", ""), Axis::log(&title.to_lowercase(), unit), series)
     };
-    let both = vec![of("Time", "seconds", times), of("Memory", "MiB", vec![memory])];
+    let both = vec![of("Time", "seconds", times), of("Memory", "MiB", memory)];
     Ok(Record { figures: vec![plots("curves", both)], ..context.record(&[], measured) })
 }
 
@@ -85,6 +80,7 @@ fn growth(curve: &Series) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sweep::series;
 
     #[test]
     fn the_growth_of_a_power_is_its_exponent() {
