@@ -32,7 +32,7 @@ pub(crate) use generate::{FamilyArg, GenerateArgs};
 pub(crate) use geodesic::GeodesicArgs;
 pub(crate) use index::{AddArgs, BuildArgs, EvaluateArgs, IndexCommand, ListArgs, SearchArgs};
 pub(crate) use matching::{MAP_FORMATS, MatchArgs};
-pub(crate) use render::{Place, RenderArgs};
+pub(crate) use render::RenderArgs;
 pub(crate) use serve::ServeArgs;
 pub(crate) use settings::{MAX_DROPPED, RepairArgs, geodesic_method, spelled};
 pub(crate) use shared::{Common, LimitArgs};

@@ -46,7 +46,7 @@ pub(crate) struct RenderArgs {
     pub(crate) size: [u32; 2],
     /// Where the viewer stands: the name of a view, or AZIMUTH,ELEVATION in degrees [default: 30,12, or principal with --form]
     #[arg(long, value_name = "VIEW", value_parser = parse_view, allow_hyphen_values = true)]
-    pub(crate) view: Option<Place>,
+    pub(crate) view: Option<View>,
     /// Axis of the mesh that points up
     #[arg(long, hide_short_help = true, value_parser = axis(), default_value = "z")]
     pub(crate) up: [f64; 3],
@@ -87,23 +87,6 @@ pub(crate) struct RenderArgs {
     pub(crate) limits: LimitArgs,
 }
 
-/// Where the viewer stands.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Place {
-    /// Azimuth and elevation in degrees.
-    Angles([f64; 2]),
-    Principal,
-}
-
-impl Place {
-    pub(crate) fn view(self, up: [f64; 3]) -> View {
-        match self {
-            Self::Principal => View::Principal,
-            Self::Angles([azimuth, elevation]) => View::Upright { azimuth, elevation, up: up.into() },
-        }
-    }
-}
-
 /// The direction of an axis.
 fn axis() -> impl TypedValueParser<Value = [f64; 3]> {
     PossibleValuesParser::new(["x", "y", "z"])
@@ -132,9 +115,9 @@ fn pair(text: &str) -> Option<[f64; 2]> {
     Some([number(a)?, number(b)?])
 }
 
-fn parse_view(text: &str) -> Result<Place, String> {
-    Ok(Place::Angles(match text {
-        "principal" => return Ok(Place::Principal),
+fn parse_view(text: &str) -> Result<View, String> {
+    let [azimuth, elevation] = match text {
+        "principal" => return Ok(View::Principal),
         "front" => [0.0, 0.0],
         "right" => [90.0, 0.0],
         "back" => [180.0, 0.0],
@@ -147,7 +130,8 @@ fn parse_view(text: &str) -> Result<Place, String> {
                  degrees such as 30,12"
             )
         })?,
-    }))
+    };
+    Ok(View::Upright { azimuth, elevation, up: [0.0, 0.0, 1.0].into() })
 }
 
 fn parse_range(text: &str) -> Result<[f64; 2], String> {
@@ -188,9 +172,11 @@ mod tests {
         for text in ["", "x", "15", "800x", "4097x10", "1e3", "10x20x30"] {
             assert!(parse_size(text).unwrap_err().contains("16 to 4096"), "{text}");
         }
-        assert_eq!(parse_view("-30,12.5"), Ok(Place::Angles([-30.0, 12.5])));
-        assert_eq!(parse_view("left"), Ok(Place::Angles([270.0, 0.0])));
-        assert_eq!(parse_view("principal"), Ok(Place::Principal));
+        let upright =
+            |azimuth, elevation| Ok(View::Upright { azimuth, elevation, up: [0.0, 0.0, 1.0].into() });
+        assert_eq!(parse_view("-30,12.5"), upright(-30.0, 12.5));
+        assert_eq!(parse_view("left"), upright(270.0, 0.0));
+        assert_eq!(parse_view("principal"), Ok(View::Principal));
         for text in ["", "up", "30", "30,", "nan,0", "1,2,3"] {
             assert!(parse_view(text).unwrap_err().contains("principal"), "{text}");
         }

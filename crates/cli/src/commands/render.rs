@@ -12,10 +12,10 @@ use canonform::embed::{FormOptions, embed};
 use canonform::geodesics::{Method, Source};
 use canonform::mesh::TriMesh;
 use canonform::mesh::io::{MeshFile, ScalarField};
-use report::render::{Coloring, RenderOptions, annotated, render, value_range};
+use report::render::{Coloring, RenderOptions, View, annotated, render, value_range};
 use serde::Serialize;
 
-use crate::args::{Common, Place, RenderArgs};
+use crate::args::{Common, RenderArgs};
 use crate::batch::Results;
 use crate::input::{file_name, is_single, named, print_repair, read_file};
 use crate::output::{Output, exit_code, facts, report};
@@ -173,10 +173,13 @@ fn options(args: &RenderArgs, field: Option<&ScalarField>) -> RenderOptions {
         (None, Some(color)) => Coloring::Plain(color),
         (None, None) => usual.coloring,
     };
-    let place = args.view.unwrap_or(if args.form { Place::Principal } else { Place::Angles([30.0, 12.0]) });
+    let mut view = args.view.unwrap_or(if args.form { View::Principal } else { usual.view });
+    if let View::Upright { up, .. } = &mut view {
+        *up = args.up.into();
+    }
     let [width, height] = args.size;
     // Nine samples per pixel of a large picture would take gigabytes; its pixels are small enough.
     let supersampling = if width * height > 2000 * 2000 { 2 } else { usual.supersampling };
-    let (view, background, colors) = (place.view(args.up), args.background, args.colors);
+    let (background, colors) = (args.background, args.colors);
     RenderOptions { width, height, view, background, coloring, colors, supersampling, ..usual }
 }
