@@ -186,19 +186,18 @@ pub struct Mark {
     pub name: String,
 }
 
-/// A matrix of colored cells, rows from top to bottom.
+/// A square matrix of colored cells, rows from top to bottom.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Heat {
     /// The heading; may be empty.
     pub title: String,
-    /// Names of the rows; equal neighbors are a group that is named once, and lines separate groups.
-    pub rows: Vec<String>,
-    /// Names of the columns.
-    pub columns: Vec<String>,
+    /// Names of the rows, which are those of the columns; equal neighbors are a group that is named once, and lines separate
+    /// groups.
+    pub names: Vec<String>,
     /// The value of every cell, row by row.
     pub values: Vec<Vec<f64>>,
-    /// The quantity, for the color bar. Without one, values are counts, written in their cells, and colors are shares of the row.
-    pub quantity: Option<Axis>,
+    /// The quantity, for the color bar.
+    pub quantity: Axis,
 }
 
 /// Rows of surfaces. Those of row number `n` have the color of class number `n`.
@@ -316,9 +315,9 @@ impl Record {
                 FigurePanels::Heats(heats) => {
                     for heat in heats {
                         let what = format!("the matrix {}", heat.title);
-                        length(what.clone(), heat.values.len(), heat.rows.len())?;
+                        length(what.clone(), heat.values.len(), heat.names.len())?;
                         for row in &heat.values {
-                            length(format!("a row of {what}"), row.len(), heat.columns.len())?;
+                            length(format!("a row of {what}"), row.len(), heat.names.len())?;
                             row.iter().try_for_each(|value| finite(*value, format!("an entry of {what}")))?;
                         }
                     }

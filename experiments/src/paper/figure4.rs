@@ -102,9 +102,9 @@ pub(crate) fn figure4(context: &Context<'_>) -> Result<Record> {
             let at = |i: usize| [plane.coords[(i, 0)], plane.coords[(i, 1)]];
             maps.push(map_of(context, &title, unit, at));
             let values = (0..n).map(|i| distances.row(i).to_vec()).collect();
-            let quantity = Some(Axis { unit: unit.to_owned(), ..Axis::linear("distance") });
+            let quantity = Axis { unit: unit.to_owned(), ..Axis::linear("distance") };
             let classes = context.collection.labels();
-            matrices.push(Heat { title, rows: classes.clone(), columns: classes, values, quantity });
+            matrices.push(Heat { title, names: classes, values, quantity });
         }
         let map = format!(
             "Multidimensional scaling of the distances between the canonical forms of {n} shapes, {forms}. Both axes of a 2D \

@@ -1,6 +1,6 @@
 //! Retrieval and classification by signatures and canonical forms.
 //!
-//! Measures `METHOD SCALE nn|ft|st|e|dcg|mAP|macro nn|macro mAP|knn|least mAP` for `METHOD` a signature, `aligned forms`,
+//! Measures `METHOD SCALE nn|ft|st|e|dcg|mAP|least mAP` for `METHOD` a signature, `aligned forms`,
 //! `fused`, `fused and forms`, with `SCALE` either `raw` (size counts) or `normalized`; at scale `raw` also for `forms in
 //! mesh units`; and `missed`, `mistaken`. Each score but the last is also measured on the neighbour graph, as `METHOD SCALE
 //! graph SCORE`.
@@ -13,7 +13,7 @@ use canonform::index::Shape;
 use descriptors::{CanonicalForm, Normalization, ShapeMetric, SignatureKind};
 use linalg::DistanceMatrix;
 use rayon::prelude::*;
-use report::record::{Axis, Figure, FigurePanels, Heat, Plot};
+use report::record::{Axis, Figure, FigurePanels, Plot};
 use report::{Cell, Record, Table};
 use retrieval::{
     Averaging, BootstrapOptions, GraphRankings, Labels, Neighbor, QueryScores, Rankings, UnknownThreshold,
@@ -67,14 +67,11 @@ pub(crate) fn retrieval(context: &Context<'_>) -> Result<Record> {
     let caption = format!(
         "Precision over recall, averaged over queries among {n} shapes. Further right and up is better."
     );
-    let mut figures = vec![Figure { part: "curves".to_owned(), caption, panels: FigurePanels::Plots(plots) }];
+    let figures = vec![Figure { part: "curves".to_owned(), caption, panels: FigurePanels::Plots(plots) }];
     let n_queries = (0..n).filter(|i| labels.is_query(*i)).count();
     measured.extend([("best e".to_owned(), best_e(labels)?), ("asked".to_owned(), n_queries as f64)]);
     let mut tables = vec![table(rows)];
-    if let Some((figure, of_classes)) = classified {
-        figures.push(figure);
-        tables.extend(of_classes);
-    }
+    tables.extend(classified.into_iter().flatten());
     Ok(Record { tables, figures, ..context.record(&[("description", &gallery.options)], measured) })
 }
 
@@ -163,7 +160,6 @@ fn rankings(
             if ranking == "graph" { format!("{method} {scale} graph") } else { format!("{method} {scale}") };
         let least = least.map(|least| least.min(micro.map));
         note(measured, &of, named(&micro));
-        note(measured, &of, [("macro nn", by_class.nn), ("macro mAP", by_class.map), ("knn", knn)]);
         note(measured, &of, least.map(|least| ("least mAP", least)));
         let mut row: Vec<Cell> = [method, scale, ranking].map(Cell::from).to_vec();
         row.extend(micro.to_array().map(Cell::from));
@@ -190,16 +186,16 @@ fn classify(
     distances: &DistanceMatrix,
     labels: &Labels,
     measured: &mut MeasuredNumbers,
-) -> Result<(Figure, [Table; 2])> {
+) -> Result<[Table; 3]> {
     let (voters, shapes) = (context.options.voters, &context.collection.shapes);
     let classes = labels.classes();
     let limit = UnknownThreshold::leave_one_out(distances, labels).map(|threshold| threshold.distance);
     let mut wrong: Vec<Vec<Cell>> = Vec::new();
-    let mut confusion = vec![vec![0.0; classes.len() + 1]; classes.len()];
+    let mut confusion = vec![vec![0usize; classes.len() + 1]; classes.len()];
     for i in 0..labels.n_points() {
         let ranking = rank(distances, i);
         let found = vote(&ranking, |i| labels.class(i), voters, limit).class();
-        confusion[labels.class(i)][found.unwrap_or(classes.len())] += 1.0;
+        confusion[labels.class(i)][found.unwrap_or(classes.len())] += 1;
         if found != Some(labels.class(i)) {
             let nearest = ranking.first();
             let assigned = found.map_or(UNKNOWN, |class| &classes[class]);
@@ -245,14 +241,15 @@ fn classify(
     };
     let caption = format!(
         "Classification of every shape by the vote of its {voters} nearest neighbours among the others, by {method}: true \
-         classes down, predicted classes across. A shape is unknown if its nearest neighbour is farther than {threshold:.3}. \
-         The color is the share of the class."
+         classes down, predicted classes across. A shape is unknown if its nearest neighbour is farther than {threshold:.3}."
     );
-    let columns = classes.iter().cloned().chain([UNKNOWN.to_owned()]).collect();
-    let heat =
-        Heat { title: String::new(), rows: classes.to_vec(), columns, values: confusion, quantity: None };
-    let panels = FigurePanels::Heats(vec![heat]);
-    Ok((Figure { part: "confusion".to_owned(), caption, panels }, [wrong, unknown]))
+    let row = |(class, counts): (&String, &Vec<usize>)| {
+        let counts = counts.iter().map(|n| Cell::from((*n > 0).then(|| n.to_string())));
+        [Cell::from(class.as_str())].into_iter().chain(counts).collect()
+    };
+    let headings = ["class"].into_iter().chain(classes.iter().map(String::as_str)).chain([UNKNOWN]);
+    let confusion = Table::new(caption, headings, classes.iter().zip(&confusion).map(row).collect());
+    Ok([confusion, wrong, unknown])
 }
 
 /// The rankings of all shapes, made once.
