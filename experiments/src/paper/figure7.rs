@@ -1,7 +1,7 @@
 //! Figure 7: the excess of the stress over that of classical scaling of all pairs, against the number n of samples.
 //!
 //! Measures, for a class `SHAPE` and `METHOD` in `NMDS`, `no regularisation`, `Landmark MDS`, `SMDS`, `Min-Var`, `BFS`:
-//! * `SHAPE METHOD first` and `SHAPE METHOD last`: the excess at the least and the greatest n, as a share of the optimum;
+//! * `SHAPE METHOD last`: the excess at the greatest n, as a share of the optimum;
 //! * `SHAPE NMDS lowest`: the share of n at which no other method is better;
 //! * `SHAPE plateau`: the ratio of the excess of Landmark MDS at the greatest n to that at half of it;
 //! * `SHAPE Landmark MDS over NMDS`: the ratio of their excesses at the greatest n.
@@ -28,8 +28,6 @@ pub(crate) fn figure7(context: &Context<'_>) -> Result<Record> {
         let optimum = specimen.optimum(Method::default())?.stress;
         let mut numbers = Vec::new();
         for curve in &curves {
-            let first = curve.points.first().map_or(f64::NAN, |p| p.y);
-            numbers.push((format!("{} first", curve.name), first / optimum));
             numbers.push((format!("{} last", curve.name), last(curve) / optimum));
         }
         let others: Vec<&Series> = curves[1..].iter().collect();

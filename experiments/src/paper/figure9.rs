@@ -2,7 +2,7 @@
 //!
 //! Measures ratios of times at the smaller number of vertices, `full MDS over NMDS`, `MDS over NMDS` (with the faster
 //! decomposition) and `SMDS over NMDS`; at the larger one, `large SMDS over NMDS` and `algebra share`, the share of linear
-//! algebra in the time of NMDS; `small|large METHOD seconds|bytes`, the time and memory of each method; and `growth`, the exponent of the time of NMDS in the number of vertices.
+//! algebra in the time of NMDS; and `small|large METHOD seconds`, the time of each method.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,6 @@ use nmds::classical_full;
 use report::numbers::{bytes, seconds};
 use report::record::{Axis, AxisScale, Figure, Mark, PlotPoint, SeriesKind};
 use report::{Cell, Record, Table};
-use surface::VertexId;
 
 use crate::collection::LabeledSurface;
 use crate::context::Context;
@@ -26,9 +25,6 @@ use crate::sweep::{Panels, note, numbers, plots, timed};
 
 /// The ratio of the numbers of vertices of both shapes: 28,000 and 3,400 in the paper.
 const LARGER: f64 = 28_000.0 / 3_400.0;
-
-/// The number of sources from which the time of all pairs is extrapolated.
-const TIMED_SOURCES: usize = 64;
 
 const TIMES: &str = "From the repaired mesh to coordinates";
 
@@ -96,13 +92,7 @@ pub(crate) fn figure9(context: &Context<'_>) -> Result<Record> {
         let (needed, limit) = (n.pow(2) * size_of::<f64>(), canonform::embed::DISTANCES_LIMIT);
         if needed > limit {
             let [needed, limit] = [needed, limit].map(|bytes| bytes as f64 / f64::from(1 << 30));
-            let seconds = all_pairs_seconds(shape)?;
-            add(
-                "MDS",
-                Err(format!(
-                    "all pairs need {needed:.1} GiB, above the limit of {limit:.0}; measuring them would take {seconds:.0} s"
-                )),
-            );
+            add("MDS", Err(format!("all pairs need {needed:.1} GiB, above the limit of {limit:.0}")));
         } else {
             add("MDS, three eigenpairs", Ok(fastest(EmbedMethod::Classical)?));
             add("MDS, all eigenpairs", Ok(full(shape)?));
@@ -114,7 +104,6 @@ pub(crate) fn figure9(context: &Context<'_>) -> Result<Record> {
     let headings = "shape vertices method distances algebra total memory paper remark".split(' ');
     let total = |size, method| spent.get(&(size, method)).map_or(f64::NAN, Spent::total);
     let ratio = |size, method| total(size, method) / total(size, "NMDS");
-    let factor = large.surface.mesh().n_vertices() as f64 / p as f64;
     let algebra = spent.get(&("large", "NMDS")).map_or(f64::NAN, |found| found.seconds[1]);
     let mut measured = numbers([
         ("full MDS over NMDS", ratio("small", "MDS, all eigenpairs")),
@@ -122,11 +111,9 @@ pub(crate) fn figure9(context: &Context<'_>) -> Result<Record> {
         ("SMDS over NMDS", ratio("small", "SMDS")),
         ("large SMDS over NMDS", ratio("large", "SMDS")),
         ("algebra share", algebra / total("large", "NMDS")),
-        ("growth", (total("large", "NMDS") / total("small", "NMDS")).ln() / factor.ln()),
     ]);
     for ((size, method), found) in &spent {
-        let numbers = [("seconds", found.total()), ("bytes", found.peak_bytes as f64)];
-        note(&mut measured, &format!("{size} {method}"), numbers);
+        note(&mut measured, &format!("{size} {method}"), [("seconds", found.total())]);
     }
     let tables = vec![Table::new("", headings, rows)];
     Ok(Record { figures: vec![figure], tables, ..context.record(&[], measured) })
@@ -157,14 +144,4 @@ fn full(shape: &LabeledSurface) -> Result<Spent> {
     };
     let (seconds, peak_bytes) = with_peak_bytes(run);
     Ok(Spent { seconds: seconds?, peak_bytes })
-}
-
-/// The seconds that all pairs would take, extrapolated from some of the sources.
-fn all_pairs_seconds(shape: &LabeledSurface) -> Result<f64> {
-    let p = shape.surface.mesh().n_vertices();
-    let solver = Method::default().prepare(shape.surface.intrinsic(), &())?;
-    let sources: Vec<VertexId> =
-        (0..TIMED_SOURCES).map(|i| VertexId::from(i * (p / TIMED_SOURCES).max(1) % p)).collect();
-    let (_, seconds) = timed(|| solver.distance_columns(&sources))?;
-    Ok(seconds * p as f64 / TIMED_SOURCES as f64)
 }

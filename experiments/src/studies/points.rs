@@ -4,10 +4,9 @@
 //! Noise moves points along the surface, too, which changes distances on the mesh itself. What it leaves of them is measured
 //! between the points of the mesh that are nearest to the noisy ones.
 //!
-//! Measures `NOISE, N points, error|bias|moved|own|nn`: the mean relative error of the distances, the same with its sign; the
-//! mean error of the distances on the mesh between the nearest points of noisy ones; the error beside distances on the
-//! mesh between the points nearest to those of the surface; and the share of queries whose nearest has their class. Also
-//! `least nn`.
+//! Measures `NOISE, N points, error|moved|own|nn`: the mean relative error of the distances; the mean error of the distances on
+//! the mesh between the nearest points of noisy ones; the error beside distances on the mesh between the points nearest to those
+//! of the surface; and the share of queries whose nearest has their class. Also `least nn`.
 
 use anyhow::Result;
 use canonform::{Surface, describe};
@@ -40,9 +39,9 @@ const ON_MESH: usize = 160_000;
 /// Standard deviations of the noise of a coordinate, as shares of the square root of the area.
 const NOISES: [f64; 4] = [0.0, 0.0025, 0.005, 0.01];
 
-/// The names of the mean relative errors of distances: of the distances between points; the same with its sign; of the mesh,
-/// between its points that are nearest to the noisy ones; beside the mesh between its points nearest to those of the surface.
-const ERRORS: [&str; 4] = ["error", "bias", "moved", "own"];
+/// The names of the mean relative errors of distances: of the distances between points; of the mesh, between its points that are
+/// nearest to the noisy ones; beside the mesh between its points nearest to those of the surface.
+const ERRORS: [&str; 3] = ["error", "moved", "own"];
 
 pub(crate) fn points(context: &Context<'_>) -> Result<Record> {
     let gallery = Gallery::new(context)?;
@@ -59,7 +58,7 @@ pub(crate) fn points(context: &Context<'_>) -> Result<Record> {
                 Ok((cloud.errors()?, scores.nn))
             })?;
             let nn = mean(found.iter().map(|(_, nn)| *nn));
-            let errors = [0, 1, 2, 3].map(|i| mean(found.iter().map(|(errors, _)| errors[i])));
+            let errors = [0, 1, 2].map(|i| mean(found.iter().map(|(errors, _)| errors[i])));
             note(&mut measured, &format!("{name},"), ERRORS.into_iter().zip(errors).chain([("nn", nn)]));
             least = least.min(nn);
             for (title, value) in [("mean relative error", errors[0]), ("NN", nn)] {
@@ -92,7 +91,7 @@ impl<'a> ScannedCloud<'a> {
     }
 
     /// The mean [`ERRORS`]. Points that were left out are not counted, nor are those of the face of the source.
-    fn errors(&self) -> Result<[f64; 4]> {
+    fn errors(&self) -> Result<[f64; 3]> {
         let mesh = self.shape.surface.mesh();
         let reference = Method::Exact.prepare(self.shape.surface.intrinsic(), &())?;
         let solver = Method::default().prepare(self.surface.intrinsic(), &())?;
@@ -108,18 +107,16 @@ impl<'a> ScannedCloud<'a> {
             corners.iter().zip(at.barycentric).map(|(v, b)| b * distances[v.index()]).sum()
         };
         let points: Vec<Triple> = self.triples()?;
-        let (mut sums, mut count) = ([0.0; 4], 0.0);
+        let (mut sums, mut count) = ([0.0; 3], 0.0);
         for from in points.iter().step_by((points.len() / SOURCES).max(1)).take(SOURCES) {
             let distances = [exact(&from.scanned)?, exact(&from.noisy)?, exact(&from.smooth)?];
             let found = solver.distances(from.vertex)?;
             for point in points.iter().filter(|point| point.scanned.face != from.scanned.face) {
                 let expected = to(&distances[0], &point.scanned);
-                let relative = found[point.vertex.index()] / expected - 1.0;
+                let error = (found[point.vertex.index()] / expected - 1.0).abs();
                 let moved = (to(&distances[1], &point.noisy) / expected - 1.0).abs();
                 let own = (found[point.vertex.index()] - to(&distances[2], &point.smooth)).abs() / expected;
-                sums.iter_mut()
-                    .zip([relative.abs(), relative, moved, own])
-                    .for_each(|(sum, one)| *sum += one);
+                sums.iter_mut().zip([error, moved, own]).for_each(|(sum, one)| *sum += one);
                 count += 1.0;
             }
         }

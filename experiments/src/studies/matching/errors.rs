@@ -86,9 +86,4 @@ impl MappedPair {
     pub(super) fn judged(&self) -> impl Iterator<Item = &JudgedMap> {
         self.direct.iter().chain(&self.mirrored).filter(|map| !map.errors.is_empty())
     }
-
-    /// The mean error of the direct map, if it is known.
-    pub(super) fn error(&self) -> Option<f64> {
-        self.direct.as_ref().filter(|map| !map.errors.is_empty()).map(JudgedMap::mean)
-    }
 }
