@@ -27,24 +27,18 @@ ADDED = 5
 EFS = [10, 20, 30, 40, 60, 80, 120, 160, 240, 320, 480, 640, 1000, 1500]
 
 
-def class_manifolds(random, n, dim):
-    """Classes of n points, in families: their centres, bases of a manifold of six dimensions, and shares of the points."""
+def signatures(n, dim, seed, width):
+    """n points: families > classes of different sizes > poses on a manifold of six dimensions."""
+    random = np.random.default_rng(seed)
     families, classes, sheet = 50, max(50, n // 200), 6
     centre = random.normal(size=(families, dim)).astype("f4")[random.integers(0, families, classes)]
     centre += 0.6 * random.normal(size=(classes, dim)).astype("f4")
     basis = (random.normal(size=(classes, sheet, dim)) / np.sqrt(sheet)).astype("f4")
     share = random.pareto(1.5, classes) + 0.2
-    return centre, basis, share / share.sum()
-
-
-def signatures(n, dim, seed, width):
-    """n points: families > classes of different sizes > poses on a manifold of six dimensions."""
-    random = np.random.default_rng(seed)
-    centre, basis, share = class_manifolds(random, n, dim)
-    of = np.sort(random.choice(len(share), n, p=share))
+    of = np.sort(random.choice(classes, n, p=share / share.sum()))
     rows = np.empty((n, dim), "f4")
     for c, first, count in zip(*np.unique(of, return_index=True, return_counts=True)):
-        pose = width * random.normal(size=(count, basis.shape[1]))
+        pose = width * random.normal(size=(count, sheet))
         pose[:, 0] += 0.3 * pose[:, 1] ** 2
         noise = 0.05 * random.normal(size=(count, dim))
         rows[first:first + count] = centre[c] + pose @ basis[c] + noise
@@ -163,28 +157,23 @@ class Theirs:
         self.start = lambda: Peer(kind, queries, threads, patience=3600)
         self.path = path
 
-    def build(self, base):
+    def seconds(self, *calls):
+        """Of the calls of methods in a fresh process."""
         peer = self.start()
-        peer.call("load", base)
-        seconds = peer.call("build", self.path)[1]
+        seconds = [peer.call(*call)[1] for call in calls]
         peer.end()
         return seconds
+
+    def build(self, base):
+        return self.seconds(("load", base), ("build", self.path))[1]
 
     def first(self):
         """Seconds from opening to the first answer."""
-        peer = self.start()
-        seconds = peer.call("open", self.path)[1]
-        peer.end()
-        return seconds
+        return self.seconds(("open", self.path))[0]
 
     def added(self):
         """Seconds of each addition."""
-        peer = self.start()
-        peer.call("open", self.path)
-        peer.call("room")
-        seconds = [peer.call("add", i, self.path)[1] for i in range(ADDED)]
-        peer.end()
-        return seconds
+        return self.seconds(("open", self.path), ("room",), *(("add", i, self.path) for i in range(ADDED)))[2:]
 
     def serve(self):
         self.peer = self.start()
