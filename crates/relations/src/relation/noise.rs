@@ -63,29 +63,42 @@ impl MeshGeometry {
         *self.noise.get_or_init(|| {
             let mesh = self.mesh();
             let topology = mesh.topology();
-            let tolerances = std::iter::successors(Some(MOST_ROUNDING), |t| Some(2.0 * t));
-            let tolerances = tolerances.take_while(|t| *t <= MOST);
-            let planes: Vec<[f64; 2]> = tolerances.map(|t| self.planes_within(t, &topology)).collect();
-            let most = planes.iter().map(|[area, _]| *area).fold(PLANES, f64::max);
-            // A few vertices may lie in a plane by chance.
-            let [area, squares] =
-                planes.into_iter().find(|[area, _]| *area >= 0.5 * most && *area >= PLANES)?;
-            Some((squares / area).sqrt())
+            let vectors: Vec<Vector3<f64>> = (0..mesh.n_faces()).map(|f| mesh.area_vector(f)).collect();
+            let mut order: Vec<usize> = (0..vectors.len()).collect();
+            order.sort_by(|&f, &g| {
+                vectors[g].norm_squared().total_cmp(&vectors[f].norm_squared()).then(f.cmp(&g))
+            });
+            let (mut planes, mut tolerance, mut most) = (Vec::new(), MOST_ROUNDING, PLANES);
+            while tolerance <= MOST {
+                let [area, squares] = self.planes_within(tolerance, &topology, &vectors, &order);
+                most = f64::max(most, area);
+                planes.push([area, squares]);
+                // A few vertices may lie in a plane by chance.
+                planes.retain(|[area, _]| *area >= 0.5 * most && *area >= PLANES);
+                // No tolerance finds planes with twice as much of the area.
+                if planes.first().is_some_and(|[area, _]| *area >= 0.5) {
+                    break;
+                }
+                tolerance *= 2.0;
+            }
+            planes.first().map(|[area, squares]| (squares / area).sqrt())
         })
     }
 
     /// The area of planes within a tolerance, and the squared distances of vertices from them, times the areas.
-    fn planes_within(&self, tolerance: f64, topology: &Topology) -> [f64; 2] {
+    /// `vectors` are the area vectors of faces, `order` has those with the largest first.
+    fn planes_within(
+        &self,
+        tolerance: f64,
+        topology: &Topology,
+        vectors: &[Vector3<f64>],
+        order: &[usize],
+    ) -> [f64; 2] {
         let mesh = self.mesh();
-        let vectors: Vec<Vector3<f64>> = (0..mesh.n_faces()).map(|f| mesh.area_vector(f)).collect();
-        let mut order: Vec<usize> = (0..vectors.len()).collect();
-        order.sort_by(|&f, &g| {
-            vectors[g].norm_squared().total_cmp(&vectors[f].norm_squared()).then(f.cmp(&g))
-        });
         let (mut is_taken, mut stamp) = (vec![false; vectors.len()], vec![usize::MAX; vectors.len()]);
         let mut seen = vec![usize::MAX; mesh.n_vertices()];
         let (mut area, mut squares) = (0.0, 0.0);
-        for seed in order {
+        for &seed in order {
             if is_taken[seed] || vectors[seed].norm_squared() == 0.0 {
                 continue;
             }
