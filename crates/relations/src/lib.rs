@@ -7,6 +7,6 @@
 mod relation;
 
 pub use relation::{
-    Basis, Change, CutPiece, Difference, Dimension, Evidence, Exactness, Merit, MeshGeometry, MeshOverlay,
-    Parts, Relation, RelationKind, SurfaceInvariants, UnitChange, in_four_digits,
+    Basis, Change, CutPiece, Difference, Dimension, Evidence, Merit, MeshGeometry, MeshOverlay, Parts,
+    Relation, RelationKind, SurfaceInvariants, UnitChange, in_four_digits,
 };

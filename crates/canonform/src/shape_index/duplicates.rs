@@ -17,7 +17,7 @@ use collection::Storage;
 use descriptors::{ShapeDistance, ShapeMetric};
 use index::Entry;
 use rayon::prelude::*;
-use relations::{Exactness, Merit, MeshGeometry, Relation, RelationKind, SurfaceInvariants};
+use relations::{Merit, MeshGeometry, Relation, RelationKind, SurfaceInvariants};
 use rigid::Handedness;
 use serde::Serialize;
 use surface::DisjointSets;
@@ -51,7 +51,7 @@ const KINDS: [RelationKind; 6] = [
 /// [`folders`](DuplicateOptions::folders), the oldest, the shortest path.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Keep {
-    /// The most [exact](relations::Exactness): without noise, with all detail, in the fewest vertices.
+    /// The most [exact](MeshGeometry::merit_over): without noise, with all detail, in the fewest vertices.
     #[default]
     Exact,
     /// That with the most vertices, then bytes.
@@ -459,7 +459,6 @@ impl<'a> Places<'a> {
 struct ClusterShape<'a> {
     candidate: &'a Candidate,
     geometry: Option<MeshGeometry>,
-    exactness: Option<Exactness>,
     /// The first to keep first.
     files: Vec<DuplicateFile>,
     wanted: [i64; 3],
@@ -471,23 +470,26 @@ impl<'a> ClusterShape<'a> {
         let file = |(entry, links): (&Entry, &Vec<String>)| places.file(entry, links, geometry.as_ref());
         let mut files: Vec<DuplicateFile> = candidate.files.iter().zip(&candidate.links).map(file).collect();
         files.sort_by_cached_key(|file| (places.wanted(file), places.order(file)));
-        let exactness = geometry.as_ref().map(MeshGeometry::exactness);
         let wanted = places.wanted(&files[0]);
-        Self { candidate, geometry, exactness, files, wanted }
+        Self { candidate, geometry, files, wanted }
+    }
+
+    /// Both meshes, if neither shape is wanted more.
+    fn meshes<'b>(&'b self, other: &'b Self) -> Option<[&'b MeshGeometry; 2]> {
+        let meshes = [self.geometry.as_ref()?, other.geometry.as_ref()?];
+        (self.wanted == other.wanted).then_some(meshes)
     }
 
     /// Why this shape is rather kept than another one, if it is.
     fn merit_over(&self, other: &Self) -> Option<Merit> {
-        let (own, others) = (self.exactness.as_ref()?, other.exactness.as_ref()?);
-        own.over(others).filter(|_| self.wanted == other.wanted)
+        let [own, others] = self.meshes(other)?;
+        own.merit_over(others)
     }
 
     /// Whether what it has beyond another shape, to which it has this relation, is noise.
     fn is_noise_beside(&self, other: &Self, told: &Relation) -> bool {
-        let both = self.exactness.as_ref().zip(other.exactness.as_ref());
-        let may_be = self.wanted == other.wanted && both.is_some_and(|(a, b)| a.may_be_noise(b));
-        let meshes = self.geometry.as_ref().zip(other.geometry.as_ref()).filter(|_| may_be);
-        meshes.and_then(|(a, b)| told.overlay([a, b])).is_some_and(|overlay| overlay.is_noise())
+        let meshes = self.meshes(other).filter(|[own, others]| own.may_be_noise_of(others));
+        meshes.and_then(|meshes| told.overlay(meshes)).is_some_and(|overlay| overlay.is_noise())
     }
 
     /// Its files but the first, which have the bytes of that.
@@ -533,6 +535,7 @@ fn groups(
     observer: &dyn Observer,
 ) -> Result<(Vec<DuplicateGroup>, usize), Error> {
     let budget = observer.budget();
+    let by = if options.asks_surfaces_only() { Relation::by_surfaces } else { Relation::by_meshes };
     let (mut groups, mut n_compared) = (Vec::new(), 0);
     let mut left: Vec<&ClusterShape<'_>> = shapes.iter().collect();
     // Shapes to which another one of their group is preferred.
@@ -549,7 +552,7 @@ fn groups(
         let relate = |other: &&ClusterShape<'_>| {
             budget.check()?;
             let may_be = keeper.candidate.may_be(other.candidate, options);
-            Ok(if may_be { related(keeper, other, options) } else { None })
+            Ok(if may_be { related(keeper, other, by) } else { None })
         };
         let relations = others.par_iter().map(relate).collect::<Result<Vec<_>, Error>>()?;
         n_compared += relations.iter().flatten().count();
@@ -597,7 +600,7 @@ fn group(
             !relation.kind.is_one_geometry() && shape.files[0].vertices == other.files[0].vertices
         };
         left.retain(|(other, _)| {
-            let found = may_have(other).then(|| related(shape, other, options)).flatten();
+            let found = may_have(other).then(|| related(shape, other, Relation::by_vertices)).flatten();
             let found = found.filter(|told| told.kind.is_one_geometry());
             members.extend(found.iter().flat_map(|told| other.members(&shape.files[0].id, told)));
             found.is_none()
@@ -608,11 +611,11 @@ fn group(
     (!members.is_empty()).then_some(DuplicateGroup { keeper, why, members })
 }
 
-/// How a shape is related to a keeper; `None` if a mesh cannot be read.
+/// How a shape is related to a keeper, told by their meshes; `None` if one cannot be read.
 fn related(
     keeper: &ClusterShape<'_>,
     other: &ClusterShape<'_>,
-    options: &DuplicateOptions,
+    by: fn(Relation, [&MeshGeometry; 2]) -> Relation,
 ) -> Option<Relation> {
     let contents = [keeper, other].map(|shape| Some(shape.candidate.files[0].content));
     let fused = keeper.candidate.distance(other.candidate);
@@ -620,11 +623,7 @@ fn related(
     let by_distance = Relation::by_distance(distance, 1.0, Handedness::Unknown)
         .named(&keeper.files[0].id, &other.files[0].id)
         .by_files(contents);
-    let (a, b) = (keeper.geometry.as_ref()?, other.geometry.as_ref()?);
-    Some(match options.asks_surfaces_only() {
-        true => by_distance.by_surfaces([a, b]),
-        false => by_distance.by_meshes([a, b]),
-    })
+    Some(by(by_distance, [keeper.geometry.as_ref()?, other.geometry.as_ref()?]))
 }
 
 /// Why a shape is kept.

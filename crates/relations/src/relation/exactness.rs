@@ -16,15 +16,10 @@ const ABOUT: f64 = 0.05;
 /// tenth less.
 const ROUGH: f64 = 0.2;
 
-/// What tells how exactly a mesh states a surface.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Exactness {
-    /// How far vertices are from the planes of a part, relative to the size; 0 if it has none.
-    noise: f64,
-    is_mechanical: bool,
-    is_noisy: bool,
+/// What tells how exactly a mesh states a surface, beside its noise.
+#[derive(Debug)]
+pub(super) struct Exactness {
     is_closed: bool,
-    counts: [usize; 2],
     /// Vertices without which the surface would be another one.
     n_needed: usize,
     /// Angles by which normals turn at edges, times their lengths, summed, at unit area. Other triangles of a surface hardly change
@@ -46,7 +41,7 @@ pub enum Merit {
 }
 
 /// Whether the first of two copies is better in some way.
-type Better<'a> = &'a dyn Fn(&Exactness, &Exactness) -> bool;
+type Better<'a> = &'a dyn Fn(&MeshGeometry, &MeshGeometry) -> bool;
 
 impl Merit {
     /// As the end of a sentence on a file that is kept.
@@ -60,77 +55,76 @@ impl Merit {
     }
 }
 
-impl Exactness {
-    /// Whether what it has beyond another copy may be noise, which then [an overlay](super::MeshOverlay::is_noise) tells.
-    pub fn may_be_noise(&self, other: &Self) -> bool {
-        self.bending > (1.0 + ROUGH) * other.bending
-    }
-
-    /// Why this copy is more exact than another one; `None` if it is not.
-    pub fn over(&self, other: &Self) -> Option<Merit> {
-        let same_counts = self.counts == other.counts;
+impl MeshGeometry {
+    /// Why this copy of a surface is more exact than another one; `None` if it is not.
+    ///
+    /// ```
+    /// use canonform_relations::{Merit, MeshGeometry};
+    /// use mesh::shapes;
+    ///
+    /// let of = |mesh| MeshGeometry::new(&mesh, None).unwrap();
+    /// let [cube, finer] = [of(shapes::cube(1)), of(shapes::cube(3))];
+    /// assert_eq!((cube.merit_over(&finer), finer.merit_over(&cube)), (Some(Merit::Plain), None));
+    /// let [ball, coarse] = [of(shapes::icosphere(3)), of(shapes::icosphere(2))];
+    /// assert_eq!(ball.merit_over(&coarse), Some(Merit::Detailed));
+    /// ```
+    pub fn merit_over(&self, other: &Self) -> Option<Merit> {
+        let same_counts = self.n_vertices() == other.n_vertices() && self.n_faces() == other.n_faces();
         let is_rougher = |a: &Self, b: &Self| {
             // Triangles of other sizes may look noisy, but bend no more.
-            let bends = |by: f64| a.bending > (1.0 + by) * b.bending;
-            let are_parts = a.is_mechanical || b.is_mechanical;
-            let by_planes = are_parts && a.noise > b.noise + ROUNDING && a.noise > 2.0 * b.noise;
-            (by_planes || same_counts) && bends(ONE_NORMAL) || a.is_noisy && !b.is_noisy && bends(ABOUT)
+            let bends = |by: f64| a.exactness().bending > (1.0 + by) * b.exactness().bending;
+            let has_noise = || {
+                let [more, less] = [a, b].map(|mesh| mesh.noise().unwrap_or_default());
+                more > less + ROUNDING && more > 2.0 * less
+            };
+            let by_planes = || (a.is_mechanical() || b.is_mechanical()) && has_noise();
+            bends(ONE_NORMAL) && (same_counts || by_planes()) || bends(ABOUT) && a.is_noisy() && !b.is_noisy()
         };
-        let has_more = |a: &Self, b: &Self| a.n_needed as f64 > (1.0 + ABOUT) * b.n_needed as f64;
+        let n_needed = |mesh: &Self| mesh.exactness().n_needed as f64;
         let merits: [(Merit, Better<'_>); 4] = [
             (Merit::Clean, &|a, b| is_rougher(b, a)),
-            (Merit::Closed, &|a, b| a.is_closed && !b.is_closed),
-            (Merit::Detailed, &has_more),
-            (Merit::Plain, &|a, b| a.counts[0] < b.counts[0]),
+            (Merit::Closed, &|a, b| a.exactness().is_closed && !b.exactness().is_closed),
+            (Merit::Detailed, &|a, b| n_needed(a) > (1.0 + ABOUT) * n_needed(b)),
+            (Merit::Plain, &|a, b| a.n_vertices() < b.n_vertices()),
         ];
         // The first in which they differ decides.
         let (merit, is_better) =
             merits.into_iter().find(|(_, is_better)| is_better(self, other) || is_better(other, self))?;
         is_better(self, other).then_some(merit)
     }
-}
 
-impl MeshGeometry {
-    /// How exactly it states its surface.
-    ///
-    /// ```
-    /// use canonform_relations::{Merit, MeshGeometry};
-    /// use mesh::shapes;
-    ///
-    /// let of = |mesh| MeshGeometry::new(&mesh, None).unwrap().exactness();
-    /// let [cube, finer] = [of(shapes::cube(1)), of(shapes::cube(3))];
-    /// assert_eq!((cube.over(&finer), finer.over(&cube)), (Some(Merit::Plain), None));
-    /// let [ball, coarse] = [of(shapes::icosphere(3)), of(shapes::icosphere(2))];
-    /// assert_eq!(ball.over(&coarse), Some(Merit::Detailed));
-    /// ```
-    pub fn exactness(&self) -> Exactness {
-        let mesh = self.mesh();
-        let normals: Vec<Vector3<f64>> =
-            (0..mesh.n_faces()).map(|f| mesh.area_vector(f).try_normalize(0.0).unwrap_or_default()).collect();
-        let mut around: Vec<Vec<Vector3<f64>>> = vec![Vec::new(); mesh.n_vertices()];
-        for (face, normal) in mesh.faces.iter().zip(&normals) {
-            for v in face {
-                let known = &mut around[v.index()];
-                if known.len() < 3 && known.iter().all(|other| other.cross(normal).norm() > ONE_NORMAL) {
-                    known.push(*normal);
+    /// Whether what it has beyond another copy may be noise, which then [an overlay](super::MeshOverlay::is_noise) tells.
+    pub fn may_be_noise_of(&self, other: &Self) -> bool {
+        self.exactness().bending > (1.0 + ROUGH) * other.exactness().bending
+    }
+
+    fn exactness(&self) -> &Exactness {
+        self.exactness.get_or_init(|| {
+            let mesh = self.mesh();
+            let normals: Vec<Vector3<f64>> = (0..mesh.n_faces())
+                .map(|f| mesh.area_vector(f).try_normalize(0.0).unwrap_or_default())
+                .collect();
+            let mut around: Vec<Vec<Vector3<f64>>> = vec![Vec::new(); mesh.n_vertices()];
+            for (face, normal) in mesh.faces.iter().zip(&normals) {
+                for v in face {
+                    let known = &mut around[v.index()];
+                    if known.len() < 3 && known.iter().all(|other| other.cross(normal).norm() > ONE_NORMAL) {
+                        known.push(*normal);
+                    }
                 }
             }
-        }
-        let topology = mesh.topology();
-        let turns = topology.edges().iter().enumerate().map(|(e, ends)| {
-            let &[a, b] = topology.edge_corners(surface::EdgeId::from(e)) else { return 0.0 };
-            let [a, b] = [a, b].map(|corner| normals[corner.face().index()]);
-            let [p, q] = ends.map(|v| mesh.positions[v.index()]);
-            a.cross(&b).norm().atan2(a.dot(&b)) * (p - q).norm()
-        });
-        Exactness {
-            noise: self.noise().unwrap_or_default(),
-            is_mechanical: self.is_mechanical(),
-            is_noisy: self.is_noisy(),
-            is_closed: euler_characteristic_if_closed(&topology).is_some(),
-            counts: [self.n_vertices(), self.n_faces()],
-            n_needed: around.iter().filter(|known| known.len() == 3).count(),
-            bending: turns.sum(),
-        }
+            let topology = mesh.topology();
+            let turns = topology.edges().iter().enumerate().map(|(e, ends)| {
+                let &[a, b] = topology.edge_corners(surface::EdgeId::from(e)) else { return 0.0 };
+                let [a, b] = [a, b].map(|corner| normals[corner.face().index()]);
+                let [p, q] = ends.map(|v| mesh.positions[v.index()]);
+                a.cross(&b).norm().atan2(a.dot(&b)) * (p - q).norm()
+            });
+            Exactness {
+                is_closed: euler_characteristic_if_closed(&topology).is_some(),
+                n_needed: around.iter().filter(|known| known.len() == 3).count(),
+                bending: turns.sum(),
+            }
+        })
     }
 }

@@ -11,6 +11,8 @@ use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use surface::{Components, VertexId, components_of_faces};
 
+use super::exactness::Exactness;
+
 /// How coarsely files round coordinates, relative to the largest coordinate: text with six digits, twice. Numbers of 32 bits
 /// are finer. A tolerance of rounding.
 pub(super) const ROUNDING: f64 = 1e-5;
@@ -49,6 +51,7 @@ pub struct MeshGeometry {
     components: Components,
     noisy: OnceLock<bool>,
     pub(super) noise: OnceLock<Option<f64>>,
+    pub(super) exactness: OnceLock<Exactness>,
     parts: OnceLock<Vec<MeshGeometry>>,
 }
 
@@ -104,8 +107,8 @@ impl MeshGeometry {
 
     fn from_surface(surface: RigidSurface, farthest: f64) -> Self {
         let components = components_of_faces(surface.mesh().n_vertices(), &surface.mesh().faces);
-        let (noisy, noise, parts) = Default::default();
-        Self { content: None, surface, farthest, components, noisy, noise, parts }
+        let (noisy, noise, exactness, parts) = Default::default();
+        Self { content: None, surface, farthest, components, noisy, noise, exactness, parts }
     }
 
     /// How far vertices may be apart because files round them, relative to the size.

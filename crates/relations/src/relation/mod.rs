@@ -30,7 +30,7 @@ use rigid::Handedness;
 
 pub use cut::CutPiece;
 pub use evidence::{Basis, Evidence};
-pub use exactness::{Exactness, Merit};
+pub use exactness::Merit;
 pub use geometry::MeshGeometry;
 pub use invariants::SurfaceInvariants;
 pub use kind::{Change, RelationKind};

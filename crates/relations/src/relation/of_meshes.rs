@@ -53,8 +53,30 @@ impl Relation {
         }
     }
 
+    /// The relation once both meshes are known, if all that matters is whether they have the same vertices.
+    #[must_use]
+    pub fn by_vertices(self, meshes: [&MeshGeometry; 2]) -> Self {
+        match self.with_vertices(meshes) {
+            Break(found) | Continue(found) => found,
+        }
+    }
+
     /// The relation, if the meshes are one surface, or one is a component of the other; else the search for it goes on.
     fn with_shared(self, [a, b]: [&MeshGeometry; 2]) -> ControlFlow<Self, Self> {
+        let found = self.with_vertices([a, b])?;
+        let sides = [(Side::Second, a, b), (Side::First, b, a)];
+        let copies = sides.into_iter().find_map(|(whole, mesh, of)| {
+            let (found, copy) = occurrences(mesh, of)?;
+            Some((Parts { whole, found, components: of.parts().len() }, copy))
+        });
+        match copies {
+            Some((parts, copy)) => Break(found.with_parts(parts, copy)),
+            None => found.with_surfaces([a, b]),
+        }
+    }
+
+    /// The relation, if the meshes have the same vertices; else the search for it goes on.
+    fn with_vertices(self, [a, b]: [&MeshGeometry; 2]) -> ControlFlow<Self, Self> {
         let [known_a, known_b] = self.evidence.content;
         let mut found = self.by_files([a.content.or(known_a), b.content.or(known_b)]);
         found.evidence.vertices = Some([a.n_vertices(), b.n_vertices()]);
@@ -65,18 +87,9 @@ impl Relation {
         }
         found.evidence.basis = Basis::Meshes;
         // Other faces between the same vertices may be another surface.
-        if let Some(same) = same_vertices(a, b).filter(|same| same.same_faces || is_one_surface(same, [a, b]))
-        {
-            return Break(found.with_same_vertices(&same, [a, b]));
-        }
-        let sides = [(Side::Second, a, b), (Side::First, b, a)];
-        let copies = sides.into_iter().find_map(|(whole, mesh, of)| {
-            let (found, copy) = occurrences(mesh, of)?;
-            Some((Parts { whole, found, components: of.parts().len() }, copy))
-        });
-        match copies {
-            Some((parts, copy)) => Break(found.with_parts(parts, copy)),
-            None => found.with_surfaces([a, b]),
+        match same_vertices(a, b).filter(|same| same.same_faces || is_one_surface(same, [a, b])) {
+            Some(same) => Break(found.with_same_vertices(&same, [a, b])),
+            None => Continue(found),
         }
     }
 
