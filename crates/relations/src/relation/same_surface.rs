@@ -3,9 +3,10 @@
 //! Two triangulations of one surface differ by the error of flat triangles: at most the height of the arcs that stand over
 //! them. What else differs is a difference of the surfaces, and one that is measured anywhere is enough.
 
+use mesh::TriMesh;
 use nalgebra::Point3;
 use rigid::{Alignment, NearestPoints, Similarity};
-use surface::Topology;
+use surface::{Topology, VertexId};
 
 use super::Change;
 use super::calibration::{
@@ -86,25 +87,34 @@ fn allowed(meshes: [&MeshGeometry; 2]) -> f64 {
 fn worst([a, b]: [&MeshGeometry; 2], map: &Similarity) -> f64 {
     let [errors_a, errors_b] = [a, b].map(|mesh| &mesh.surface.regions().chord_errors);
     let rounding = allowed([a, b]);
-    let probe = |(p, face): (Point3<f64>, usize)| {
+    let probe = |(p, error): (Point3<f64>, f64)| {
         let near = b.surface.tree().nearest(&map.apply(&p))?;
-        let allowed = rounding + ARCS * (errors_a[face] * map.scale + errors_b[near.face]);
+        let allowed = rounding + ARCS * (error * map.scale + errors_b[near.face]);
         Some(near.sq_distance.sqrt() / allowed)
     };
-    probes(a).into_iter().filter_map(probe).fold(0.0, f64::max)
+    probes(a.mesh(), errors_a).into_iter().filter_map(probe).fold(0.0, f64::max)
 }
 
-/// Corners, middles of edges and centres of at most 2,000 faces, with the face that each lies in: small features have them too, where
-/// points at random may miss them.
-fn probes(geometry: &MeshGeometry) -> Vec<(Point3<f64>, usize)> {
-    let step = geometry.n_faces().div_ceil(2000);
+/// Corners, middles of edges and centres of at most 2,000 faces, with the least error of a face that each lies in: small features have
+/// them too, where points at random may miss them.
+fn probes(mesh: &TriMesh, errors: &[f64]) -> Vec<(Point3<f64>, f64)> {
+    let chosen = || (0..mesh.n_faces()).step_by(mesh.n_faces().div_ceil(2000));
     let of_face = |f: usize| {
-        let [a, b, c] = geometry.mesh().triangle(f);
-        let centre = nalgebra::center(&nalgebra::center(&a, &b), &c);
-        [a, b, c, nalgebra::center(&a, &b), nalgebra::center(&b, &c), nalgebra::center(&c, &a), centre]
-            .map(|p| (p, f))
+        let [a, b, c] = mesh.faces[f];
+        [[a, a], [b, b], [c, c], [a, b], [b, c], [c, a]].map(|[v, w]| ([v.min(w), v.max(w)], errors[f]))
     };
-    (0..geometry.n_faces()).step_by(step).flat_map(of_face).collect()
+    let mut shared: Vec<_> = chosen().flat_map(of_face).collect();
+    shared.sort_unstable_by(|(v, x), (w, y)| v.cmp(w).then(x.total_cmp(y)));
+    shared.dedup_by_key(|(ends, _)| *ends);
+    let centre = |f: usize| {
+        let [a, b, c] = mesh.triangle(f);
+        (nalgebra::center(&nalgebra::center(&a, &b), &c), errors[f])
+    };
+    let middle = |(ends, error): ([VertexId; 2], f64)| {
+        let [p, q] = ends.map(|v| mesh.positions[v.index()]);
+        (nalgebra::center(&p, &q), error)
+    };
+    shared.into_iter().map(middle).chain(chosen().map(centre)).collect()
 }
 
 /// Vertices less edges plus faces, if every edge has two faces.
