@@ -46,7 +46,11 @@ impl Body for View<'_> {
     }
 
     #[inline]
-    fn nearest(&self, query: &Point3<f64>) -> Option<(Point3<f64>, Vector3<f64>)> {
+    fn nearest(
+        &self,
+        query: &Point3<f64>,
+        _known: Option<&Point3<f64>>,
+    ) -> Option<(Point3<f64>, Vector3<f64>)> {
         Some((self.searched.points()[self.searched.nearest(query).0], Vector3::zeros()))
     }
 }
@@ -92,7 +96,9 @@ pub fn align_points(a: &PointSet, b: &PointSet, reflections: Reflections) -> Ali
     }
     let [fine_a, fine_b] = views([a, b], PointSet::all);
     let (motion, _) = refine(&fine_a, &fine_b, best.1, FINE);
-    let Some(found) = Alignment::by(&fine_a, &fine_b, motion) else { unreachable!("sets have points") };
+    let Some(found) = Alignment::by(&fine_a, &fine_b, motion, f64::INFINITY) else {
+        unreachable!("sets have points")
+    };
     Alignment { map: b.to_principal.inverse().after(&motion).after(&a.to_principal), ..found }
 }
 

@@ -36,8 +36,13 @@ pub(crate) trait Body {
     /// Points of the body, of which any leading part is spread evenly.
     fn samples(&self) -> &[Point3<f64>];
 
-    /// The nearest point of the body, and the unit normal there; no normal of a body of points.
-    fn nearest(&self, query: &Point3<f64>) -> Option<(Point3<f64>, Vector3<f64>)>;
+    /// The nearest point of the body, and the unit normal there; no normal of a body of points. `known` is a point of it that may
+    /// be near.
+    fn nearest(
+        &self,
+        query: &Point3<f64>,
+        known: Option<&Point3<f64>>,
+    ) -> Option<(Point3<f64>, Vector3<f64>)>;
 }
 
 /// A point of the first body under a map, the point of the second that is as near as can be, and the normal there.
@@ -45,6 +50,8 @@ pub(crate) struct Contact {
     from: Point3<f64>,
     to: Point3<f64>,
     normal: Vector3<f64>,
+    /// The nearest point where the body lies that has it.
+    nearest: Point3<f64>,
 }
 
 impl Contact {
@@ -53,32 +60,42 @@ impl Contact {
     }
 }
 
-/// Nearest points in both directions, so that neither body is favored, of the first `n` samples under a map.
+/// Nearest points in both directions, so that neither body is favored, of the first `n` samples under a map. `known` are those
+/// under a map like it, or none.
 pub(crate) fn contacts<'a, B: Body>(
     a: &'a B,
     b: &'a B,
     map: &'a Similarity,
     n: usize,
+    known: &'a [Contact],
 ) -> impl Iterator<Item = Contact> + 'a {
-    let there = a.samples().iter().take(n).filter_map(move |p| {
+    let known = move |i: usize| known.get(i).map(|contact| &contact.nearest);
+    let there = a.samples().iter().take(n).enumerate().filter_map(move |(i, p)| {
         let from = map.apply(p);
-        let (to, normal) = b.nearest(&from)?;
-        Some(Contact { from, to, normal })
+        let (to, normal) = b.nearest(&from, known(i))?;
+        Some(Contact { from, to, normal, nearest: to })
     });
-    let back = map.inverse();
-    let here = b.samples().iter().take(n).filter_map(move |q| {
-        let (from, normal) = a.nearest(&back.apply(q))?;
-        Some(Contact { from: map.apply(&from), to: *q, normal: map.rotation * normal })
+    let (back, n_there) = (map.inverse(), a.samples().len().min(n));
+    let here = b.samples().iter().take(n).enumerate().filter_map(move |(i, q)| {
+        let (nearest, normal) = a.nearest(&back.apply(q), known(n_there + i))?;
+        Some(Contact { from: map.apply(&nearest), to: *q, normal: map.rotation * normal, nearest })
     });
     there.chain(here)
 }
 
 impl Alignment {
-    /// By a map, measured at all samples. `None` of bodies without points.
-    pub(crate) fn by<B: Body>(a: &B, b: &B, map: Similarity) -> Option<Self> {
-        let squares = contacts(a, b, &map, usize::MAX).map(|contact| contact.sq_distance());
-        let (n, sum, max) =
-            squares.fold((0, 0.0, 0.0), |(n, sum, max), sq| (n + 1, sum + sq, f64::max(max, sq)));
+    /// By a map, measured at all samples. `None` of bodies without points, or that are farther apart than `limit`, root mean square.
+    pub(crate) fn by<B: Body>(a: &B, b: &B, map: Similarity, limit: f64) -> Option<Self> {
+        let most = limit.powi(2) * (a.samples().len() + b.samples().len()) as f64;
+        let (mut n, mut sum, mut max) = (0, 0.0, 0.0);
+        for contact in contacts(a, b, &map, usize::MAX, &[]) {
+            let sq = contact.sq_distance();
+            (n, sum, max) = (n + 1, sum + sq, f64::max(max, sq));
+            // The sum only grows.
+            if sum > most {
+                return None;
+            }
+        }
         let gap = Gap { rms: (sum / f64::from(n)).sqrt(), max: max.sqrt() };
         (n > 0).then_some(Self { map, gap })
     }
@@ -106,10 +123,11 @@ pub(crate) enum Towards {
 
 /// Refines a map, which keeps its handedness. Returns the root mean square distance of the samples, too.
 pub(crate) fn refine<B: Body>(a: &B, b: &B, start: Similarity, effort: Effort) -> (Similarity, f64) {
-    let found = |map: &Similarity| contacts(a, b, map, effort.samples).collect::<Vec<_>>();
+    let found =
+        |map: &Similarity, known: &[Contact]| contacts(a, b, map, effort.samples, known).collect::<Vec<_>>();
     let mean_square =
         |all: &[Contact]| all.iter().map(Contact::sq_distance).sum::<f64>() / all.len().max(1) as f64;
-    let (mut map, mut near) = (start, found(&start));
+    let (mut map, mut near) = (start, found(&start, &[]));
     let mut error = mean_square(&near);
     let mut damping = MIN_DAMPING;
     for _ in 0..effort.steps {
@@ -121,7 +139,7 @@ pub(crate) fn refine<B: Body>(a: &B, b: &B, start: Similarity, effort: Effort) -
             Towards::Planes => tangent_step(&near, damping),
         };
         let Some(next) = step.map(|step| step.after(&map)) else { break };
-        let after = found(&next);
+        let after = found(&next, &near);
         let reached = mean_square(&after);
         let is_last = reached >= error * (1.0 - MIN_GAIN);
         if reached < error {
@@ -141,7 +159,7 @@ pub(crate) fn refine<B: Body>(a: &B, b: &B, start: Similarity, effort: Effort) -
 fn tangent_step(contacts: &[Contact], damping: f64) -> Option<Similarity> {
     let mut matrix = SMatrix::<f64, 7, 7>::zeros();
     let mut right = SVector::<f64, 7>::zeros();
-    for Contact { from, to, normal } in contacts {
+    for Contact { from, to, normal, .. } in contacts {
         let mut row = SVector::<f64, 7>::zeros();
         row.fixed_rows_mut::<3>(0).copy_from(&from.coords.cross(normal));
         row.fixed_rows_mut::<3>(3).copy_from(normal);

@@ -102,8 +102,12 @@ impl Body for RigidSurface {
         self.samples.get_or_init(|| sampled(&self.mesh))
     }
 
-    fn nearest(&self, query: &Point3<f64>) -> Option<(Point3<f64>, Vector3<f64>)> {
-        self.tree().nearest(query).map(|near| (near.point, near.normal))
+    fn nearest(
+        &self,
+        query: &Point3<f64>,
+        known: Option<&Point3<f64>>,
+    ) -> Option<(Point3<f64>, Vector3<f64>)> {
+        self.tree().nearest_from(query, known).map(|near| (near.point, near.normal))
     }
 }
 

@@ -86,11 +86,30 @@ impl TriangleTree {
 
     /// The point of the surface that is nearest to `query`; `None` for a surface without area.
     pub fn nearest(&self, query: &Point3<f64>) -> Option<NearestOnSurface> {
-        let mut best = Best { sq_distance: f64::INFINITY, point: Point3::origin(), triangle: 0 };
-        self.search(self.nodes.first()?, query, &mut best);
-        let Best { sq_distance, point, triangle } = best;
+        self.nearest_from(query, None)
+    }
+
+    /// The same, found sooner if a point of the surface is known that is near.
+    pub(crate) fn nearest_from(
+        &self,
+        query: &Point3<f64>,
+        known: Option<&Point3<f64>>,
+    ) -> Option<NearestOnSurface> {
+        // The known point is off the surface by rounding.
+        let limit = known.map_or(f64::INFINITY, |known| {
+            (known - query).norm_squared() * (1.0 + ROUNDING) + ROUNDING * ROUNDING
+        });
+        let found = self.nearest_within(query, limit);
+        let Best { sq_distance, point, triangle } =
+            found.or_else(|| self.nearest_within(query, f64::INFINITY))?;
         let Placed { normal, face, .. } = self.triangles[triangle];
         Some(NearestOnSurface { point, normal, sq_distance, face: face as usize })
+    }
+
+    fn nearest_within(&self, query: &Point3<f64>, sq_distance: f64) -> Option<Best> {
+        let mut best = Best { sq_distance, point: Point3::origin(), triangle: usize::MAX };
+        self.search(self.nodes.first()?, query, &mut best);
+        (best.triangle != usize::MAX).then_some(best)
     }
 
     fn search(&self, node: &Node, query: &Point3<f64>, best: &mut Best) {
