@@ -57,13 +57,11 @@ fn radius(i: usize) -> f64 {
     RANGE[0] * (RANGE[1] / RANGE[0]).powf(i as f64 / (RADII - 1) as f64)
 }
 
-/// From where and to where a disc counts points in part.
-fn rim(radius: f64) -> [f64; 2] {
-    [radius * (1.0 - SOFT), radius * (1.0 + SOFT)]
-}
-
-/// The masses of discs of ascending radii, as those of [`ByDistance::within`], without sorting the points.
-fn disc_masses(rims: &[[f64; 2]; RADII], points: impl Iterator<Item = (f64, f64)>) -> [f64; RADII] {
+/// The masses of discs of all radii, in units of a length, from the distances and the masses of points. Points near the rim of a disc
+/// count in part: fully at `r (1 - SOFT)`, not at all at `r (1 + SOFT)`, and linearly between.
+fn disc_masses(unit: f64, points: impl Iterator<Item = (f64, f64)>) -> [f64; RADII] {
+    let rims: [[f64; 2]; RADII] =
+        std::array::from_fn(|i| [1.0 - SOFT, 1.0 + SOFT].map(|end| end * radius(i) * unit));
     let inners = rims.map(|[inner, _]| inner);
     // Sums of the masses that a disc and all larger ones count fully, and of what each counts of the points at its rim.
     let (mut sums, mut at_rim) = ([0.0; RADII + 1], [0.0; RADII]);
@@ -82,37 +80,6 @@ fn disc_masses(rims: &[[f64; 2]; RADII], points: impl Iterator<Item = (f64, f64)
         sum += sums[i];
         sum + at_rim[i]
     })
-}
-
-/// Points by their distance from a landmark.
-struct ByDistance {
-    /// In ascending order.
-    distances: Vec<f64>,
-    /// The sum of the masses of all points before one, and of their masses times their distances.
-    sums: Vec<[f64; 2]>,
-}
-
-impl ByDistance {
-    fn new(points: impl Iterator<Item = (f64, f64)>) -> Self {
-        let mut points: Vec<(f64, f64)> = points.collect();
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let mut sums = vec![[0.0; 2]];
-        let mut sum = [0.0; 2];
-        for (d, m) in &points {
-            sum = [sum[0] + m, sum[1] + m * d];
-            sums.push(sum);
-        }
-        Self { distances: points.into_iter().map(|(d, _)| d).collect(), sums }
-    }
-
-    /// The mass of a disc of radius `r`. Points near its rim count in part: fully at `r (1 - SOFT)`, not at all at
-    /// `r (1 + SOFT)`, and linearly between.
-    fn within(&self, r: f64) -> f64 {
-        let [inner, outer] = rim(r);
-        let [inside, rim] =
-            [inner, outer].map(|limit| self.sums[self.distances.partition_point(|d| *d <= limit)]);
-        inside[0] + (outer * (rim[0] - inside[0]) - (rim[1] - inside[1])) / (outer - inner)
-    }
 }
 
 fn check(distances: &LandmarkDistances, masses: &[f64]) -> Result<f64, DescriptorError> {
@@ -144,11 +111,10 @@ impl DiscAreas {
     /// [`DescriptorError::Linalg`].
     pub fn new(distances: &LandmarkDistances, masses: &[f64]) -> Result<Self, DescriptorError> {
         let area = check(distances, masses)?;
-        let rims = std::array::from_fn(|i| rim(radius(i) * area.sqrt()));
         let row = |landmark| {
             let column = distances.column(landmark)?;
             let points = column.iter().copied().zip(masses.iter().copied());
-            Ok(disc_masses(&rims, points).map(|mass| (mass / area).ln()))
+            Ok(disc_masses(area.sqrt(), points).map(|mass| (mass / area).ln()))
         };
         let n = distances.n_landmarks().min(Self::LANDMARKS);
         Ok(Self { rows: (0..n).map(row).collect::<Result<_, DescriptorError>>()? })
@@ -189,34 +155,24 @@ impl PartDiscAreas {
             let nearest = (0..n).min_by(|a, b| columns[*a][v].total_cmp(&columns[*b][v]));
             nearest.into_iter().for_each(|j| weights[j] += mass / part);
         }
-        // In the part, and by the cut and through what is missing.
-        let known: Vec<[ByDistance; 2]> = (0..n)
-            .into_par_iter()
-            .map(|j| {
-                let to_cut = from_cut[distances.landmarks()[j]];
-                let points = || columns[j].iter().zip(from_cut).zip(masses);
-                [
-                    ByDistance::new(points().map(|((d, _), m)| (*d, *m))),
-                    ByDistance::new(points().map(|((d, b), m)| (d.min(to_cut + b), *m))),
-                ]
-            })
-            .collect();
-        let bounds = SHARES.map(|share| {
+        let of_share = |share: f64| {
             let (whole, unit) = (part / share, (part / share).sqrt());
             let of_landmark = |j: usize| {
                 let to_cut = from_cut[distances.landmarks()[j]];
-                let [least, most] = &known[j];
+                let points = || columns[j].iter().zip(from_cut).zip(masses);
+                // In the part, and by the cut and through what is missing.
+                let least = disc_masses(unit, points().map(|((d, _), m)| (*d, *m)));
+                let most = disc_masses(unit, points().map(|((d, b), m)| (d.min(to_cut + b), *m)));
                 std::array::from_fn(|i| {
-                    let r = radius(i) * unit;
                     // What is missing begins at the cut and widens in all directions.
-                    let beyond = (r * (1.0 + SOFT) - to_cut).max(0.0);
+                    let beyond = (radius(i) * unit * (1.0 + SOFT) - to_cut).max(0.0);
                     let missing = (cut * beyond + std::f64::consts::PI * beyond * beyond).min(whole - part);
-                    [(least.within(r) / whole).ln(), ((most.within(r) + missing) / whole).min(1.0).ln()]
+                    [(least[i] / whole).ln(), ((most[i] + missing) / whole).min(1.0).ln()]
                 })
             };
             (0..n).map(of_landmark).collect()
-        });
-        let bounds = bounds.into();
+        };
+        let bounds = SHARES.into_par_iter().map(of_share).collect();
         Ok(Self { weights, bounds })
     }
 
@@ -282,12 +238,12 @@ mod tests {
     }
 
     #[test]
-    fn discs_have_the_same_mass_without_sorting() {
-        let points = || (0..3000).map(|i| (f64::from(i * 7919 % 3000) / 1000.0, 1.0 + f64::from(i % 5)));
-        let sorted = ByDistance::new(points());
-        let found = disc_masses(&std::array::from_fn(|i| rim(radius(i))), points());
-        for (i, mass) in found.into_iter().enumerate() {
-            let expected = sorted.within(radius(i));
+    fn points_at_the_rim_of_a_disc_count_in_part() {
+        let points: Vec<(f64, f64)> =
+            (0..3000).map(|i| (f64::from(i * 7919 % 3000) / 1000.0, 1.0 + f64::from(i % 5))).collect();
+        for (i, mass) in disc_masses(1.0, points.iter().copied()).into_iter().enumerate() {
+            let counted = |d: f64| ((1.0 + SOFT - d / radius(i)) / (2.0 * SOFT)).clamp(0.0, 1.0);
+            let expected: f64 = points.iter().map(|(d, m)| m * counted(*d)).sum();
             assert!((mass - expected).abs() < 1e-9 * expected, "{i}: {mass} {expected}");
         }
     }
