@@ -7,6 +7,8 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;
 
+use crate::squares::unit_near;
+
 /// Rows of a p x p matrix of distances that an estimate is made from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RowSample {
@@ -14,8 +16,10 @@ pub struct RowSample {
     pub(crate) rows: Vec<usize>,
     /// For each, the mean probability of a row over its own.
     pub(crate) weights: Vec<f64>,
-    /// Per row of the matrix, what is subtracted from the residuals of that row and column; empty for zeros.
+    /// Per row of the matrix, what is subtracted from the residuals of that row and column, in the squared unit; empty for zeros.
     pub(crate) offsets: Vec<f64>,
+    /// The unit of lengths, a power of two, in which residuals neither vanish nor overflow; `None` to take one near the coordinates.
+    pub(crate) unit: Option<f64>,
     /// Share of the variance that is left because rows are drawn without replacement; 1 if they are not.
     pub(crate) correction: f64,
 }
@@ -33,7 +37,7 @@ impl RowSample {
     /// Takes these rows, which should be different and a random choice from all `n_points` rows.
     pub fn of_rows(rows: Vec<usize>, n_points: usize) -> Self {
         let (m, correction) = (rows.len(), 1.0 - rows.len() as f64 / n_points.max(1) as f64);
-        Self { rows, weights: vec![1.0; m], offsets: Vec::new(), correction }
+        Self { rows, weights: vec![1.0; m], offsets: Vec::new(), unit: None, correction }
     }
 
     /// Draws `m` rows with `seed` so that few of them give a narrow interval, by what the distances from landmarks tell of
@@ -52,19 +56,19 @@ impl RowSample {
     /// On canonical forms of animals and humans, 4 rows then give an interval of +-30 % and 20 rows one of +-8 %, four times
     /// as narrow as with equally likely rows.
     ///
-    /// `coords` are in units of `unit`, which is in the unit of the distances. Cost: `O(p n k)` time, three passes over the
-    /// distances.
+    /// Cost: `O(p n k)` time, three passes over the distances.
     ///
     /// # Errors
     /// [`LinalgError::File`].
     pub fn by_landmarks(
         coords: &Matrix,
         distances: &LandmarkDistances,
-        unit: f64,
         m: usize,
         seed: u64,
     ) -> Result<Self, LinalgError> {
         let landmarks = distances.landmarks();
+        let unit = unit_near(coords.amax());
+        let coords = coords / unit;
         let shares = shares(distances)?;
         // A number for every point, from its residuals with all landmarks, in blocks of points.
         let pass = |numbers: &(dyn Fn(Matrix, Range<usize>) -> Matrix + Sync)| {
@@ -103,7 +107,7 @@ impl RowSample {
         }
         let rows = drawn(&expected, &order, m, seed);
         let weights = rows.iter().map(|&i| total / (p * expected[i])).collect();
-        Ok(Self { rows, weights, offsets, correction: 1.0 })
+        Ok(Self { rows, weights, offsets, unit: Some(unit), correction: 1.0 })
     }
 
     /// The rows that are needed, in ascending order without repetitions.

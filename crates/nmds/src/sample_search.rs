@@ -3,7 +3,6 @@
 use linalg::{LandmarkDistances, Matrix};
 
 use crate::row_sample::RowSample;
-use crate::squares::check_extent;
 use crate::stress::{Stress, estimate_stress};
 use crate::{Embedding, NmdsError};
 
@@ -124,7 +123,7 @@ impl SampleSearch<'_> {
     /// one column each. Returns the embedding found and the distances it was made from.
     ///
     /// # Errors
-    /// [`NmdsError::NoExtent`], [`NmdsError::Linalg`], and those of the embedding and of the distances.
+    /// [`NmdsError::Linalg`], and those of the embedding and of the distances.
     pub fn run<E: From<NmdsError>>(
         &self,
         mut columns: impl FnMut(usize) -> Result<LandmarkDistances, E>,
@@ -133,15 +132,14 @@ impl SampleSearch<'_> {
         let mut asked = self.first.min(self.limit);
         let mut distances = columns(asked)?;
         let mut embedding = (self.embed)(&distances)?;
-        let unit = check_extent(distances.max(), distances.n_points())?;
         // Other rows than those of a certificate with the same seed.
         let seed = self.seed ^ 0x9e37_79b9_7f4a_7c15;
-        let sample = RowSample::by_landmarks(&(&embedding.coords / unit), &distances, unit, Self::ROWS, seed)
+        let sample = RowSample::by_landmarks(&embedding.coords, &distances, Self::ROWS, seed)
             .map_err(NmdsError::from)?;
-        let held_out = rows(&sample.rows())? / unit;
-        let held_out = LandmarkDistances::new(sample.rows(), held_out).map_err(NmdsError::from)?;
+        let held_out =
+            LandmarkDistances::new(sample.rows(), rows(&sample.rows())?).map_err(NmdsError::from)?;
         let stress = |embedding: &Embedding| -> Result<Stress, NmdsError> {
-            Ok(estimate_stress(&(&embedding.coords / unit), &held_out, &sample)?)
+            Ok(estimate_stress(&embedding.coords, &held_out, &sample)?)
         };
 
         let mut tried: Vec<SampleTrial> = Vec::new();
@@ -172,7 +170,6 @@ impl SampleSearch<'_> {
         tried.push(last);
         let enough = tried.iter().find(|trial| trial.stress <= (1.0 + GAIN) * last.stress);
         let sufficient = enough.unwrap_or(&last).n_samples;
-        tried.iter_mut().for_each(|trial| trial.stress *= unit * unit);
         let report = SamplesReport { stop, sufficient, rows: held_out.n_landmarks(), tried };
         Ok((embedding, distances, report))
     }

@@ -4,7 +4,7 @@ use base::{Budget, Observer};
 use linalg::{Matrix, pseudo_inverse};
 use rayon::prelude::*;
 
-use crate::squares::{check_dim, check_extent, check_points};
+use crate::squares::{check_dim, check_extent, check_points, unit_near};
 use crate::{DistanceRows, Embedding, NmdsError};
 
 /// Options of [`smacof`].
@@ -196,7 +196,7 @@ impl<'a> Fit<'a> {
         let largest = |row: &mut LandmarkRow, _| row.distances.iter().copied().fold(0.0, f64::max);
         let origin = Matrix::zeros(pairs.masses.len(), 1);
         let largest = fit.of_rows(&origin, largest)?.into_iter().fold(0.0, f64::max);
-        fit.unit = 2f64.powi(check_extent(largest, pairs.masses.len())?.log2().floor() as i32);
+        fit.unit = unit_near(check_extent(largest, pairs.masses.len())?);
         fit.total = fit.around(&origin)?.0;
         Ok(fit)
     }

@@ -12,6 +12,11 @@ pub(crate) fn check_extent(largest: f64, n_points: usize) -> Result<f64, NmdsErr
     if largest > 0.0 { Ok(largest) } else { Err(NmdsError::NoExtent(n_points)) }
 }
 
+/// A unit near a length: a power of two, so that dividing by it is exact; 1 if the length is zero.
+pub(crate) fn unit_near(length: f64) -> f64 {
+    if length > 0.0 { 2f64.powi(length.log2().floor() as i32) } else { 1.0 }
+}
+
 /// # Errors
 /// [`NmdsError::PointMismatch`] unless `given` is the number of points of the distances.
 pub(crate) fn check_points(given: usize, n_points: usize) -> Result<(), NmdsError> {

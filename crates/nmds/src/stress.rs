@@ -4,6 +4,7 @@ use linalg::{DistanceMatrix, LandmarkDistances, LinalgError, Matrix};
 use rayon::prelude::*;
 
 use crate::RowSample;
+use crate::squares::unit_near;
 
 /// The rows of a p x p matrix of distances, stored or computed on demand.
 pub trait DistanceRows: Sync {
@@ -158,9 +159,13 @@ pub fn estimate_stress(
     sample: &RowSample,
 ) -> Result<Stress, LinalgError> {
     let different = sample.rows();
+    // The fourth powers of very short or very long lengths vanish or overflow.
+    let unit = sample.unit.unwrap_or_else(|| unit_near(coords.amax()));
+    let coords = coords / unit;
     let of_row = |distances: &mut Vec<f64>, &i: &usize| {
         rows.row_into(i, distances)?;
-        Ok(RowSums::new(coords, distances, i, &sample.offsets))
+        distances.iter_mut().for_each(|distance| *distance /= unit);
+        Ok(RowSums::new(&coords, distances, i, &sample.offsets))
     };
     let sums = different.par_iter().map_init(|| vec![0.0; rows.n_points()], of_row);
     let sums = sums.collect::<Result<Vec<_>, LinalgError>>()?;
@@ -198,7 +203,7 @@ pub fn estimate_stress(
         };
         [square - half, square, square + half].map(|end| end.max(0.0).sqrt())
     };
-    let [low, value, high] = around(quadruple, quadruple_variance).map(|end| 0.5 * end);
+    let [low, value, high] = around(quadruple, quadruple_variance).map(|end| 0.5 * end * unit * unit);
     let [normalized_low, normalized, normalized_high] = around(ratio, ratio_variance);
     Ok(Stress {
         value,

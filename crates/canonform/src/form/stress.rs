@@ -4,7 +4,7 @@ use geodesics::{DistanceSolver, Method};
 use linalg::{LandmarkDistances, LinalgError, Matrix};
 use nmds::{DistanceRows, RowSample, Stress, estimate_stress, sample_rows};
 use serde::Serialize;
-use surface::{VertexId, unit_for};
+use surface::VertexId;
 
 use super::plan::check_memory;
 use crate::error::Error;
@@ -104,29 +104,16 @@ pub enum StressKind {
     Estimated,
 }
 
-/// Draws rows for coordinates in the unit that it is given.
-type Draw<'a> = &'a dyn Fn(&Matrix, f64) -> Result<RowSample, LinalgError>;
-
 impl StressReport {
-    /// The stress of `coords` against distances by `method`, of the rows that `sample` takes for coordinates in the unit that it
-    /// is given.
-    pub(super) fn new(
+    /// The stress of `coords` against distances by `method`, of a sample of their rows.
+    fn new(
         coords: &Matrix,
         distances: &dyn DistanceRows,
-        sample: Draw<'_>,
+        sample: &RowSample,
         method: Method,
     ) -> Result<Self, Error> {
-        // The fourth powers of very short or very long lengths vanish or overflow.
-        let unit = unit_for(coords.amax());
-        if unit != 1.0 {
-            let distances = ScaledRows { rows: distances, unit };
-            let sample = |coords: &Matrix, _| sample(coords, unit);
-            let scaled = Self::new(&(coords / unit), &distances, &sample, method)?;
-            let back = |value: f64| value * unit * unit;
-            return Ok(Self { value: back(scaled.value), interval: scaled.interval.map(back), ..scaled });
-        }
         let Stress { value, normalized, interval, normalized_interval, n_rows: rows } =
-            estimate_stress(coords, distances, &sample(coords, 1.0)?)?;
+            estimate_stress(coords, distances, sample)?;
         let kind = match rows == distances.n_points() {
             true => StressKind::Exact,
             false => StressKind::Estimated,
@@ -179,25 +166,7 @@ impl SharedStress {
     /// # Errors
     /// [`Error::Nmds`].
     pub fn measure(&self, coords: &Matrix) -> Result<StressReport, Error> {
-        StressReport::new(coords, self.distances.as_ref(), &|_, _| Ok(self.sample.clone()), self.method)
-    }
-}
-
-/// Rows divided by a unit of length.
-struct ScaledRows<'a> {
-    rows: &'a dyn DistanceRows,
-    unit: f64,
-}
-
-impl DistanceRows for ScaledRows<'_> {
-    fn n_points(&self) -> usize {
-        self.rows.n_points()
-    }
-
-    fn row_into(&self, i: usize, out: &mut [f64]) -> Result<(), LinalgError> {
-        self.rows.row_into(i, out)?;
-        out.iter_mut().for_each(|distance| *distance /= self.unit);
-        Ok(())
+        StressReport::new(coords, self.distances.as_ref(), &self.sample, self.method)
     }
 }
 
@@ -231,9 +200,9 @@ impl StressReport {
             choice => choice.n_rows(p, samples.n_landmarks(), searched),
         };
         observer.begin("stress", if are_known { 0 } else { n_rows.unwrap_or(p) });
-        let sample = |coords: &Matrix, unit: f64| match n_rows {
-            None => Ok(RowSample::all(p)),
-            Some(m) => RowSample::by_landmarks(coords, samples, unit, m, options.seed),
+        let sample = match n_rows {
+            None => RowSample::all(p),
+            Some(m) => RowSample::by_landmarks(coords, samples, m, options.seed)?,
         };
         Self::new(coords, rows, &sample, method)
     }

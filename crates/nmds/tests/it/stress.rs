@@ -68,7 +68,7 @@ fn estimates_from_all_rows_are_exact() {
     assert!(all.interval[1] - all.interval[0] < 1e-9 * exact.value);
     assert_eq!(all.normalized_interval[0], all.normalized_interval[1]);
     // What is subtracted from the residuals of guided rows changes nothing but the variance.
-    let guided = RowSample::by_landmarks(&coords, &landmarks, 1.0, 20_000, 0).unwrap();
+    let guided = RowSample::by_landmarks(&coords, &landmarks, 20_000, 0).unwrap();
     let guided = estimate_stress(&coords, &distances, &guided).unwrap();
     assert!((guided.value / exact.value - 1.0).abs() < 0.01);
 }
@@ -79,7 +79,7 @@ fn estimates_are_unbiased_and_intervals_cover_the_exact_stress() {
     let exact = stress(&coords, &distances).unwrap();
     type Draw<'a> = &'a dyn Fn(usize, u64) -> RowSample;
     let uniform: Draw<'_> = &|m, seed| equally_likely(300, m, seed);
-    let guided: Draw<'_> = &|m, seed| RowSample::by_landmarks(&coords, &landmarks, 1.0, m, seed).unwrap();
+    let guided: Draw<'_> = &|m, seed| RowSample::by_landmarks(&coords, &landmarks, m, seed).unwrap();
     for (name, draw, m) in [("uniform", uniform, 20), ("guided", guided, 4), ("guided", guided, 20)] {
         let runs = 300;
         let found: Vec<_> =
@@ -102,8 +102,7 @@ fn estimates_are_unbiased_and_intervals_cover_the_exact_stress() {
 #[test]
 fn one_row_has_no_interval() {
     let (distances, coords, landmarks) = bent(50);
-    for sample in [equally_likely(50, 1, 3), RowSample::by_landmarks(&coords, &landmarks, 1.0, 1, 3).unwrap()]
-    {
+    for sample in [equally_likely(50, 1, 3), RowSample::by_landmarks(&coords, &landmarks, 1, 3).unwrap()] {
         let found = estimate_stress(&coords, &distances, &sample).unwrap();
         for interval in [found.interval, found.normalized_interval] {
             assert_eq!(interval, [0.0, f64::INFINITY]);
@@ -121,7 +120,7 @@ fn an_exact_embedding_has_no_stress() {
     let coords = classical(&distances, 2, &()).unwrap().coords;
     let columns = Matrix::from_fn(60, 5, |i, j| distances.get(i, j));
     let landmarks = LandmarkDistances::new((0..5).collect(), columns).unwrap();
-    let sample = RowSample::by_landmarks(&coords, &landmarks, 1.0, 4, 0).unwrap();
+    let sample = RowSample::by_landmarks(&coords, &landmarks, 4, 0).unwrap();
     let found = estimate_stress(&coords, &distances, &sample).unwrap();
     assert!(found.value < 1e-6 && found.interval[1] < 1e-6, "{found:?}");
 }
