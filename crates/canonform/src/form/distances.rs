@@ -158,11 +158,13 @@ impl Measurement<'_> {
         Ok(self.timed(|| self.solver.distance_matrix())?)
     }
 
-    /// The columns of `all` that belong to samples, as a method with samples would take them.
-    pub(super) fn columns_of(&self, all: &DistanceMatrix) -> Result<LandmarkDistances, Error> {
-        let known = KnownDistances(all);
-        let mut sampler = self.sampling.start(&known, self.first, self.seed)?;
-        self.take(&mut sampler, self.samples.count_or(DEFAULT_COUNT))
+    /// The distances that a method with samples would measure.
+    pub(super) fn sample_distances(&self) -> Result<LandmarkDistances, Error> {
+        let n = self.samples.count_or(DEFAULT_COUNT);
+        // The first sample is found by one run more.
+        self.observer.begin("distances", n + 1);
+        let mut sampler = self.timed(|| self.sampling.start(self.solver, self.first, self.seed))?;
+        self.take(&mut sampler, n)
     }
 
     /// Counts the time of `work` as time spent on distances.
@@ -171,27 +173,6 @@ impl Measurement<'_> {
         let result = work();
         self.seconds.set(self.seconds.get() + start.elapsed().as_secs_f64());
         result
-    }
-}
-
-/// A solver that looks distances up.
-#[derive(Debug)]
-struct KnownDistances<'a>(&'a DistanceMatrix);
-
-impl DistanceSolver for KnownDistances<'_> {
-    fn n_vertices(&self) -> usize {
-        self.0.n_points()
-    }
-
-    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) -> Result<(), Exceeded> {
-        out.fill(f64::INFINITY);
-        for (vertex, offset) in sources.iter().flat_map(Source::reach) {
-            for (near, distance) in out.iter_mut().zip(self.0.row(vertex.index())) {
-                *near = near.min(offset + distance);
-            }
-        }
-        out.iter_mut().filter(|d| **d > max_distance).for_each(|d| *d = f64::INFINITY);
-        Ok(())
     }
 }
 

@@ -164,7 +164,7 @@ impl EmbedMethod {
             Self::Classical => {
                 let all = measurement.all_pairs()?;
                 let embedding = classical(&all, dim, &budget)?;
-                let distances = measurement.columns_of(&all)?;
+                let distances = measurement.sample_distances()?;
                 Ok(Outcome { embedding, distances, search: None, all: Some(all), descent: None })
             }
             Self::Smacof { regularization, descent } => {
