@@ -12,10 +12,6 @@ use crate::canonical_form::CanonicalForm;
 use crate::error::DescriptorError;
 use rigid::nearest_rotation;
 
-/// Weight of the distance from the form, against the bending of a surface of unit area. Chosen on 120 built-in shapes of 24
-/// bodies: with .1, .3, 1, 3, 10 and 30 the spectrum of the bent surface has an mAP of .797, .800, .799, .798, .765 and .693.
-const PULL: f64 = 1.0;
-
 /// Rounds that decide between the form and its mirror image, and rounds after that.
 const TRIALS: usize = 3;
 const ROUNDS: usize = 5;
@@ -31,7 +27,8 @@ impl CanonicalForm {
     /// `½ Σ_ij w_ij |x_i - x_j - R_i (v_i - v_j)|² + Σ_i a_i |x_i - z_i|²`,
     ///
     /// where `w` are the cotangent weights of the intrinsic Delaunay triangulation. Rotations and points are improved in
-    /// turn, from `x = z`.
+    /// turn, from `x = z`. Both sums weigh alike: on 120 built-in shapes of 24 bodies, with .1, .3, 1, 3, 10 and 30 times the second one
+    /// the spectrum of the bent surface has an mAP of .797, .800, .799, .798, .765 and .693.
     ///
     /// * The form is as good as its mirror image, the result is not: of both, the one nearer to the surface is taken, so that
     ///   results need no reflection to be aligned. Mirror images have mirrored results.
@@ -96,7 +93,7 @@ struct Bending {
     rest: Vec<Point3<f64>>,
     /// For each vertex, its neighbors and their cotangent weights.
     neighbors: Rows<(u32, f64)>,
-    /// Shares of the area, times [`PULL`].
+    /// Shares of the area.
     pull: Vec<f64>,
     /// The factor of the stiffness with the pull on its diagonal.
     factor: SparseCholesky,
@@ -123,7 +120,7 @@ impl Bending {
         let neighbors = Rows::collect(n, both);
         // A vertex without faces has neither weights nor area and stays in the form.
         let least = f64::EPSILON / n as f64;
-        let pull: Vec<f64> = masses.iter().map(|mass| PULL * (mass / total).max(least)).collect();
+        let pull: Vec<f64> = masses.iter().map(|mass| (mass / total).max(least)).collect();
         stiffness.add_to_diagonal(pull.iter().copied());
         let factor =
             SparseCholesky::new(&EliminationOrder::new(&stiffness, observer)?, &stiffness, observer)?;

@@ -1,6 +1,6 @@
 //! The best map of its kind.
 
-use descriptors::DescriptorError;
+use descriptors::{Boundary, DescriptorError};
 use linalg::Matrix;
 use rayon::prelude::*;
 use surface::VertexId;
@@ -61,7 +61,7 @@ pub(crate) fn scored_as_given(
         Some(best) => (params.odds(cost(&scored), Some(cost(&best.found))), Some(best.found)),
         None => (1.0, None),
     };
-    let rival = rival.filter(|_| confidence < SurfaceMap::BEYOND_DOUBT);
+    let rival = rival.filter(|_| confidence < Boundary::CERTAIN);
     let mut map = Refined { found: scored, confidence, rival }.on_all_vertices(shapes)?;
     for [x, y] in given.initial_pairs() {
         map.vertices[x.index()] = y;
@@ -156,7 +156,7 @@ fn judged(
     if best.refined.is_mixture(params.pure) || params.misses_one(&best.refined.misses) {
         confidence = confidence.min(DOUBTED);
     }
-    let rival = rival.filter(|_| confidence < SurfaceMap::BEYOND_DOUBT);
+    let rival = rival.filter(|_| confidence < Boundary::CERTAIN);
     Some(Refined { found: best.refined.clone(), confidence, rival: rival.map(|one| one.refined.clone()) })
 }
 

@@ -17,9 +17,6 @@ use crate::sketch::Sketch;
 use crate::start::Start;
 use crate::surface_map::MapKind;
 
-/// Scores of identities are below this, those of two poses near 1e-5. A safety limit.
-const IDENTITY: f64 = 1e-9;
-
 /// A search with what is known and its parameters.
 #[derive(Clone, Copy)]
 pub(crate) struct MapSearch<'a> {
@@ -38,8 +35,8 @@ impl MapSearch<'_> {
         known.check_orientation(&starts, params)?;
         let fits = known.fitted([self.a, self.b]).into_iter().map(FunctionalMaps::from);
         starts.extend(self.sketched(&self.stage(2), fits)?);
-        // What is beside an identity has its mirrors already.
-        if starts.iter().all(|start| start.score > IDENTITY) {
+        // What is beside an identity, whose score is rounding, has its mirrors already. Those of two poses are near 1e-5.
+        if starts.iter().all(|start| start.score > f64::EPSILON.sqrt()) {
             let turned = self.turned(&params.distinct(starts.clone()))?;
             starts.extend(self.sketched(&self.stage(2), turned.into_iter())?);
         }

@@ -10,12 +10,9 @@ use rigid::PointSet;
 use crate::curvature::{TIMES, bends, fine_curvature, mean_curvature, smoothed};
 use crate::functional::FunctionalMaps;
 use crate::nearest_rows::nearest_in_cells;
-use crate::operators::Operators;
+use crate::operators::{FITTED, Operators};
 use crate::orientation::{FUNCTIONS, Oriented, pairs};
 use descriptors::{CanonicalForm, DescriptorError, LaplaceSpectrum, Normalization, wave_kernels};
-
-/// Leading eigenfunctions of each surface by which the nearest samples of a vertex are found. A safety limit.
-const COARSE: usize = 40;
 
 /// One in so many wave kernels takes part in fitted maps: neighbors are nearly the same. As `ren2018` in `REFERENCES.bib`.
 const KERNELS: usize = 5;
@@ -199,10 +196,11 @@ impl MapShape {
         Operators::new(spectrum, Matrix::from_columns(&columns), self.oriented.as_ref())
     }
 
-    /// The nearest vertex to each of some places; `rows` are the places of all vertices by maps of functions.
+    /// The nearest vertex to each of some places; `rows` are the places of all vertices by maps of functions. The nearest samples are
+    /// found by twice as many eigenfunctions as fitted maps have.
     pub(crate) fn nearest_vertices(&self, rows: &Matrix, places: &Matrix) -> Vec<usize> {
         let k = rows.ncols() / 2;
-        let coarse: Vec<usize> = (0..k.min(COARSE)).flat_map(|j| [j, k + j]).collect();
+        let coarse: Vec<usize> = (0..k.min(2 * FITTED)).flat_map(|j| [j, k + j]).collect();
         nearest_in_cells(places, rows, (&self.samples, &self.cells), &coarse)
     }
 

@@ -84,7 +84,7 @@ pub struct SurfaceMap {
     /// The map of functions of the second surface to functions of the first, in their eigenfunctions: `C`, as in
     /// [`LaplaceSpectrum`](descriptors::LaplaceSpectrum).
     pub functional: Matrix,
-    /// The next best map of this kind, unless this one is [beyond doubt](Self::BEYOND_DOUBT).
+    /// The next best map of this kind, unless the odds of this one are [certain](descriptors::Boundary::CERTAIN).
     pub alternative: Option<Box<SurfaceMap>>,
     /// Which surface is a part of the other; `None` if both are mapped as wholes.
     pub part: Option<PartOfWhole>,
@@ -93,9 +93,6 @@ pub struct SurfaceMap {
 impl SurfaceMap {
     /// Maps of at least this confidence are certain. A convention.
     pub const CERTAIN: f64 = 0.7;
-
-    /// Maps of at least this confidence come without an alternative. A convention.
-    pub const BEYOND_DOUBT: f64 = 0.9;
 }
 
 /// The mean of `|d(x_i, g y_j) - d(f x_i, y_j)|` over landmarks, from the distances on the first and on the second surface

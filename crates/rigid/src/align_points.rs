@@ -27,7 +27,7 @@ const SKETCH: Effort = Effort { samples: 50, steps: 4, towards: Towards::Points 
 const ROUGH: Effort = Effort { samples: 100, steps: 20, towards: Towards::Points };
 
 /// For the very best.
-const FINE: Effort = Effort { samples: usize::MAX, steps: 30, towards: Towards::Points };
+pub(crate) const FINE: Effort = Effort { samples: PointSet::SAMPLES, steps: 30, towards: Towards::Points };
 
 const REFINED: usize = 8;
 

@@ -1,6 +1,6 @@
 //! Alignment of two surfaces in space, by the best motion, reflection and change of size.
 
-use crate::align_points::{Reflections, align_points};
+use crate::align_points::{self, Reflections, align_points};
 use crate::handedness::is_decisive;
 use crate::icp::{Alignment, Effort, Gap, Towards, contacts, refine};
 use crate::rigid_surface::{RigidSurface, rms_radius};
@@ -11,8 +11,8 @@ use crate::starts::{equal_axes, framed_starts, mirrors, turned_starts};
 /// aligned: they are farther apart than any copy of a surface (`cargo test -p tests --test laws matches`).
 pub const MAX_DEVIATION: f64 = 0.05;
 
-/// A limit of effort.
-const FINE: Effort = Effort { samples: 400, steps: 30, towards: Towards::Planes };
+/// As much effort as for points.
+const FINE: Effort = Effort { towards: Towards::Planes, ..align_points::FINE };
 
 /// Bodies are not aligned further if points of them, at unit rms radius, stay farther apart than this, unless they may be turned about
 /// their axes: twice what copies of built-in shapes with 1,000 to 10,000 vertices leave

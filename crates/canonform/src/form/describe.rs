@@ -22,7 +22,7 @@ const BYTES_PER_VERTEX: usize = 5000;
 /// Most vertices of a surface that is described, before it is [prepared](Surface::for_description); finer ones are
 /// [simplified](Surface::simplified), so that cost grows slowly from there on. A built-in cat of 500,000 vertices is then 0.12
 /// from one of 28,000 in the combined distance, where subdivision changes 0.14; other shapes are several units apart.
-const MOST_VERTICES: usize = 30_000;
+const MAX_VERTICES: usize = 30_000;
 
 /// Describes a surface: one embedding, one Laplacian, all signatures. Nothing is known of its components.
 ///
@@ -67,7 +67,7 @@ impl MeasuredSurface {
     /// # Errors
     /// [`Error::Exceeded`] and those of [`embed`].
     pub fn new(surface: &Surface, options: &FormOptions, observer: &dyn Observer) -> Result<Self, Error> {
-        Self::simplified(surface, MOST_VERTICES, options, observer)
+        Self::simplified(surface, MAX_VERTICES, options, observer)
     }
 
     fn simplified(

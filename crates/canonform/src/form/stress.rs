@@ -15,10 +15,10 @@ use mesh::Surface;
 const SAMPLES_PER_ROW: usize = 7;
 
 /// Fewest rows with a useful interval.
-const FEWEST_ROWS: usize = 3;
+const MIN_ROWS: usize = 3;
 
 /// Fewest rows where the interval is what the number of samples was searched for.
-const FEWEST_ROWS_OF_SEARCH: usize = 32;
+const MIN_ROWS_OF_SEARCH: usize = 32;
 
 /// Number of rows of [`StressChoice::Estimate`].
 const ESTIMATE_ROWS: usize = 100;
@@ -62,7 +62,7 @@ impl StressChoice {
     fn n_rows(self, n_vertices: usize, n_samples: usize, searched: bool) -> Option<usize> {
         let n = match self {
             Self::Auto => {
-                let fewest = if searched { FEWEST_ROWS_OF_SEARCH } else { FEWEST_ROWS };
+                let fewest = if searched { MIN_ROWS_OF_SEARCH } else { MIN_ROWS };
                 (n_samples / SAMPLES_PER_ROW).max(fewest)
             }
             Self::Exact => return None,

@@ -18,7 +18,7 @@ use base::Observer;
 use collection::{CollectionError, LabelSource, Row, TextTable, label_of};
 
 /// Most shapes evaluated at once, unless the budget says how much memory there is: their matrix takes 800 MB.
-const MOST: usize = 10_000;
+const MAX_SHAPES: usize = 10_000;
 
 /// The vectors that distances are measured between.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -87,7 +87,7 @@ pub fn evaluate_index(
     let EvaluateOptions { measure, labels, knn_k, rank_by } = *options;
     let index = Index::open(path)?;
     let n = index.len();
-    let limit = observer.budget().memory().map_or(MOST, |bytes| (bytes / size_of::<f64>()).isqrt());
+    let limit = observer.budget().memory().map_or(MAX_SHAPES, |bytes| (bytes / size_of::<f64>()).isqrt());
     if n > limit {
         return Err(Error::TooManyShapes { n_shapes: n, limit });
     }

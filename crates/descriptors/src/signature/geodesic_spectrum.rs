@@ -10,7 +10,7 @@ const EIGENVALUES: usize = SignatureKind::GeodesicSpectrum.n_values();
 
 /// Smaller eigenvalues count as this share of the largest. Those of surfaces are larger: number 24 is about 0.003 of the
 /// first. A tolerance of rounding.
-const LEAST: f64 = 1e-4;
+const MIN_SHARE: f64 = 1e-4;
 
 /// The spectrum of the square roots of all surface distances, every point weighted by the area around it.
 ///
@@ -81,7 +81,7 @@ pub(crate) fn log_magnitudes(mut spectrum: Vec<f64>, n: usize, offset: f64) -> O
     spectrum.sort_by(|a, b| b.total_cmp(a));
     let largest = spectrum.first().copied().filter(|value| *value > 0.0)?;
     let value = |i: usize| {
-        let share = spectrum.get(i).map_or(0.0, |value| value / largest).max(LEAST);
+        let share = spectrum.get(i).map_or(0.0, |value| value / largest).max(MIN_SHARE);
         (share * largest).ln() + offset
     };
     Some((0..n).map(value).collect())

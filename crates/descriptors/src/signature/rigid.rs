@@ -5,10 +5,7 @@ use nalgebra::{Point3, Vector3};
 
 use super::kind::{Signature, SignatureKind};
 use super::quantiles::quantiles;
-use rigid::farthest_points;
-
-/// Points between which distances are measured.
-const POINTS: usize = 400;
+use rigid::{PointSet, farthest_points};
 
 /// Bins of the distribution of distances.
 const DISTANCES: usize = 16;
@@ -66,7 +63,7 @@ fn in_space(mesh: &TriMesh) -> Vec<f64> {
 /// Distances between the centroids of evenly spread pieces, with the product of their areas.
 fn distances(mesh: &TriMesh) -> Vec<(f64, f64)> {
     let areas = mesh.vertex_areas();
-    let spread = farthest_points(&mesh.positions, POINTS);
+    let spread = farthest_points(&mesh.positions, PointSet::SAMPLES);
     let mut pieces = vec![(Vector3::zeros(), 0.0); spread.samples.len()];
     for ((&piece, p), area) in spread.nearest.iter().zip(&mesh.positions).zip(&areas) {
         pieces[piece].0 += p.coords * *area;

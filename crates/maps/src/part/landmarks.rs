@@ -13,8 +13,8 @@ const CURVATURE: f64 = 0.3;
 /// Hypotheses with fewer landmarks than this are all kept, up to `MANY`; of others those that are apart, up to `WIDTH`.
 /// Safety limits of time.
 const FEW: usize = 4;
-const MANY: usize = 3000;
 const WIDTH: usize = 300;
+const MANY: usize = 10 * WIDTH;
 
 /// Places of the landmarks of a part.
 struct Placement {

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::sides::{MOST, Sides};
+use super::sides::{MAX_CHANGE, Sides};
 
 /// Samples of the part, as many as are placed: positions among the samples of the whole.
 pub(super) type Places = Vec<usize>;
@@ -26,7 +26,10 @@ pub(super) fn placed(sides: &Sides<'_>, anchors: &[(usize, usize)], fineness: Fi
         for (landmark, place) in anchors {
             let known = sides.known(*landmark, x);
             let found = sides.in_whole.column(*place);
-            losses.iter_mut().zip(found.iter()).for_each(|(loss, found)| *loss += known.loss(*found, MOST));
+            losses
+                .iter_mut()
+                .zip(found.iter())
+                .for_each(|(loss, found)| *loss += known.loss(*found, MAX_CHANGE));
         }
         (0..n).min_by(|y, z| losses[*y].total_cmp(&losses[*z])).unwrap_or(0)
     };

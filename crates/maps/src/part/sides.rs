@@ -15,11 +15,11 @@ use crate::shape::MapShape;
 
 /// Changes of distances count up to this when points are placed: the pairs of a few wrong anchors, or with a path through what is
 /// missing. A part of a built-in man is mapped to him with a mean error of 0.0140, and of 0.0142 with 0.2.
-pub(super) const MOST: f64 = 0.1;
+pub(super) const MAX_CHANGE: f64 = 0.1;
 
 /// Weight of distances that the cut explains, beside 1 for others: most of the shortest paths between points near the cut
 /// stay in the part. A part of a built-in man is mapped to him with an error near the cut of 0.017, and of 0.042 with 0.
-const EXPLAINED: f64 = 0.3;
+const EXPLAINED_WEIGHT: f64 = 0.3;
 
 /// What is known of the distance of two points of the part in the whole: paths in the part are paths in the whole, and a path
 /// through what is missing is at least as long as the distances of its ends from the cut.
@@ -34,7 +34,7 @@ impl Known {
     pub(super) fn loss(self, found: f64, most: f64) -> f64 {
         let outside = (self.least - found).max(found - self.most).max(0.0).min(most);
         let apart = (found - self.most).abs().min(0.5 * most);
-        outside * outside + EXPLAINED * apart * apart
+        outside * outside + EXPLAINED_WEIGHT * apart * apart
     }
 }
 

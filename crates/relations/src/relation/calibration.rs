@@ -23,7 +23,7 @@ pub(super) const CHORDS: f64 = 0.35;
 pub(super) const NOISE: f64 = 0.006;
 
 /// How far vertices may be apart on which independent noise is the only change, which needs no small distance to be told.
-pub(super) const MOST_NOISE: f64 = 0.02;
+pub(super) const MAX_NOISE: f64 = 0.02;
 
 /// The largest distance of organic copies, in multiples of their root mean square: 30 with holes of 1 % in 10,000 vertices
 /// (`cargo test -p tests --test laws matches`). Twice as much changes no answer about other bodies.

@@ -1,7 +1,6 @@
 //! A mesh whose triangles are some of those of another mesh: cut out of it.
 
 use std::collections::HashSet;
-use std::num::NonZero;
 
 use descriptors::Side;
 use nalgebra::Point3;
@@ -9,27 +8,20 @@ use rigid::{NearestPoints, Similarity};
 use serde::Serialize;
 use surface::VertexId;
 
+use super::exact::{FEW, LEVERAGE};
 use super::geometry::MeshGeometry;
 use super::units::UnitChange;
 
 /// The least share of the faces of a piece that are faces of the whole: cutting makes new ones along the cut only. With .3, other
 /// bodies are called pieces; with 1, nothing is.
-const LEAST_SHARED: f64 = 0.6;
+const MIN_SHARED: f64 = 0.6;
 
 /// The largest share of the whole that a piece has; with more it is another triangulation. Pieces of 90 % must be found, and a
 /// surface with small holes is no piece.
-const MOST_LEFT: f64 = 0.98;
+const MAX_LEFT: f64 = 0.98;
 
 /// The least share that is looked for in another unit of length. It saves time and changes no answer.
-const LEAST_LEFT: f64 = 0.1;
-
-/// Faces of a piece that are looked for in the whole, candidates for each, vertices on which a motion is checked first, and the
-/// least number of faces in common. Half and twice as many change no answer.
-const FEW: NonZero<usize> = NonZero::new(24).unwrap();
-
-/// A motion is found from three corners, and moves other vertices a few times as far as these are off. It is made precise
-/// afterwards: half and twice as much change no answer.
-const LEVERAGE: f64 = 20.0;
+const MIN_LEFT: f64 = 0.1;
 
 /// A piece of a surface that was cut.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -51,7 +43,7 @@ pub(super) fn piece_of(side: Side, whole: &MeshGeometry, piece: &MeshGeometry) -
     }
     let left = |factor: f64| (piece.size() / (factor * whole.size())).powi(2);
     let is_possible =
-        |factor: &f64| left(*factor) <= MOST_LEFT && (*factor == 1.0 || left(*factor) >= LEAST_LEFT);
+        |factor: &f64| left(*factor) <= MAX_LEFT && (*factor == 1.0 || left(*factor) >= MIN_LEFT);
     let units = UnitChange::all().map(|(_, factor)| factor);
     let mut factors = std::iter::once(1.0).chain(units).filter(is_possible).peekable();
     factors.peek()?;
@@ -119,7 +111,7 @@ impl<'a> PieceSearch<'a> {
         let off = LEVERAGE * tolerance;
         let is_near = |p: &Point3<f64>| self.vertices.nearest(&motion.apply(p)).1 <= off * off;
         let probes = || points.iter().step_by((points.len() / FEW).max(1));
-        if (probes().filter(|p| is_near(p)).count() as f64) < LEAST_SHARED * probes().count() as f64 {
+        if (probes().filter(|p| is_near(p)).count() as f64) < MIN_SHARED * probes().count() as f64 {
             return false;
         }
         let partner =
@@ -138,7 +130,7 @@ impl<'a> PieceSearch<'a> {
             _ => false,
         };
         let n_shared = self.piece.mesh().faces.iter().filter(is_shared).count();
-        n_shared >= FEW.get() && n_shared as f64 >= LEAST_SHARED * self.piece.n_faces() as f64
+        n_shared >= FEW.get() && n_shared as f64 >= MIN_SHARED * self.piece.n_faces() as f64
     }
 }
 

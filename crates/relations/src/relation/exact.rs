@@ -1,6 +1,7 @@
 //! Whether two meshes have the same vertices, after a motion, a reflection and a change of size.
 
 use std::collections::HashSet;
+use std::num::NonZero;
 
 use nalgebra::{Point3, Vector3};
 use rigid::{NearestPoints, Similarity};
@@ -9,20 +10,21 @@ use surface::VertexId;
 use super::geometry::MeshGeometry;
 
 /// Most pairs of vertices that are tried as images of two vertices of the first mesh.
-const MOST_PAIRS: usize = 2_000_000;
+const MAX_PAIRS: usize = 2_000_000;
 
 /// Most motions that are checked on all vertices.
-const MOST_CHECKED: usize = 500;
+const MAX_CHECKED: usize = 500;
 
-/// Vertices on which a motion is checked first.
-const PROBES: usize = 24;
+/// Vertices on which a motion is checked first. Of a piece of another mesh, also the faces that are looked for in it, the candidates for
+/// each, and the least number of faces in common. Half and twice as many change no answer about pieces.
+pub(super) const FEW: NonZero<usize> = NonZero::new(24).unwrap();
 
-/// A motion is found from two vertices and the centroid, and moves the others a few times as far as these are off. A
-/// tolerance: the motion is made precise afterwards.
-const LEVERAGE: f64 = 20.0;
+/// A motion is found from two or three points, and moves others a few times as far as these are off. It is made precise
+/// afterwards: half and twice as much change no answer about pieces.
+pub(super) const LEVERAGE: f64 = 20.0;
 
 /// Vertices nearer to the centroid than this do not determine a motion, relative to the size. A safety limit.
-const LEAST_LEVER: f64 = 0.1;
+const MIN_LEVER: f64 = 0.1;
 
 /// Vertices of two meshes that coincide after a similarity.
 #[derive(Debug, Clone, PartialEq)]
@@ -94,16 +96,16 @@ impl<'a> VertexSearch<'a> {
                 count(i).cmp(&count(j)).then(radius(j).total_cmp(&radius(i))).then(i.cmp(&j))
             })
         };
-        let first = rarest(&|i| p[i].coords.norm() > LEAST_LEVER)?;
+        let first = rarest(&|i| p[i].coords.norm() > MIN_LEVER)?;
         let direction = p[first].coords.normalize();
-        let second = rarest(&|i| p[i].coords.cross(&direction).norm() > LEAST_LEVER)?;
+        let second = rarest(&|i| p[i].coords.cross(&direction).norm() > MIN_LEVER)?;
         let images = [first, second].map(|i| {
             let mut found: Vec<usize> = at_radius(p[i].coords.norm()).iter().map(|&(_, j)| j).collect();
             // Most copies keep the order of vertices.
             found.sort_by_key(|&j| j != i);
             found.into_iter().map(|j| q[j]).collect::<Vec<_>>()
         });
-        let step = (p.len() / PROBES).max(1);
+        let step = (p.len() / FEW).max(1);
         Some(Self {
             geometries: [a, b],
             tolerance,
@@ -128,8 +130,8 @@ impl<'a> VertexSearch<'a> {
         let is_near = |motion: &Similarity| {
             self.probes.iter().all(|p| self.nearest.nearest(&motion.apply(p)).1 <= off * off)
         };
-        let motions = pairs.take(MOST_PAIRS).filter(is_apart).filter_map(motion).filter(is_near);
-        preferred(motions.take(MOST_CHECKED).filter_map(|motion| self.checked(motion, off)))
+        let motions = pairs.take(MAX_PAIRS).filter(is_apart).filter_map(motion).filter(is_near);
+        preferred(motions.take(MAX_CHECKED).filter_map(|motion| self.checked(motion, off)))
     }
 
     /// The vertices as partners under a motion that is off by at most `off`, which is made precise.

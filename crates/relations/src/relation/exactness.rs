@@ -3,14 +3,11 @@
 use nalgebra::Vector3;
 
 use super::geometry::{MeshGeometry, ROUNDING};
+use super::mesh_change::ABOUT;
 use super::same_surface::euler_characteristic_if_closed;
 
 /// Normals that differ by less than this (sine) are one: the rounding of files turns small faces by as much. A tolerance.
 const ONE_NORMAL: f64 = 1e-3;
-
-/// Copies have equally many vertices that matter if the numbers differ by less than this share. A tolerance: a decimation that
-/// changes something leaves out more.
-const ABOUT: f64 = 0.05;
 
 /// Detail that bends a surface by this share more may be noise. A convention: decimated copies of smooth surfaces bend less than a
 /// tenth less.

@@ -19,13 +19,13 @@ pub(super) const ROUNDING: f64 = 1e-5;
 
 /// Vertices of one geometry are never farther apart than this, relative to the size, wherever the mesh lies, and their sizes and
 /// places are equal up to this share.
-pub(super) const MOST_ROUNDING: f64 = 1e-4;
+pub(super) const MAX_ROUNDING: f64 = 10.0 * ROUNDING;
 
 /// Most components that are compared on their own, the largest by area.
-const MOST_COMPONENTS: usize = 200;
+const MAX_COMPONENTS: usize = 200;
 
 /// The least share of the whole area of a component that is compared on its own. A safety limit: it saves time.
-const LEAST_COMPONENT: f64 = 1e-3;
+const MIN_COMPONENT: f64 = 1e-3;
 
 /// All triangles of a mesh file in space: every component, before any repair but the merging of vertices in the same
 /// position. It is kept at unit area, centred at the centroid of the surface.
@@ -113,7 +113,7 @@ impl MeshGeometry {
 
     /// How far vertices may be apart because files round them, relative to the size.
     pub(super) fn rounding(&self) -> f64 {
-        (ROUNDING * self.farthest / self.size()).min(MOST_ROUNDING)
+        (ROUNDING * self.farthest / self.size()).min(MAX_ROUNDING)
     }
 
     /// The mesh at unit area, about its centroid.
@@ -190,13 +190,13 @@ impl MeshGeometry {
                 parts[label].faces.push(face.map(|v| number[v.index()]));
                 areas[label] += area;
             }
-            let mut order: Vec<usize> = (0..areas.len()).filter(|&i| areas[i] >= LEAST_COMPONENT).collect();
+            let mut order: Vec<usize> = (0..areas.len()).filter(|&i| areas[i] >= MIN_COMPONENT).collect();
             order.sort_by(|&i, &j| areas[j].total_cmp(&areas[i]).then(i.cmp(&j)));
             let part = |&i: &usize| {
                 let surface = RigidSurface::new(std::mem::take(&mut parts[i]))?;
                 Some(Self::from_surface(surface, self.farthest))
             };
-            order.iter().take(MOST_COMPONENTS).filter_map(part).collect()
+            order.iter().take(MAX_COMPONENTS).filter_map(part).collect()
         })
     }
 }

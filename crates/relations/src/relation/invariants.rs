@@ -2,7 +2,7 @@
 
 use rigid::{MAX_DEVIATION, axis_deviation, rms_radius};
 
-use super::calibration::{ARCS, EXACT, MOST_NOISE};
+use super::calibration::{ARCS, EXACT, MAX_NOISE};
 use super::geometry::MeshGeometry;
 use super::same_surface::{allowed_in_bodies, euler_characteristic_if_closed, rms_chord_error};
 
@@ -62,7 +62,7 @@ impl SurfaceInvariants {
         }
         // Of the same faces, noise may be the only change.
         let allowed = match self.n_vertices == other.n_vertices {
-            true => MOST_NOISE,
+            true => MAX_NOISE,
             false => allowed_in_bodies(self.chords + other.chords, self.is_noisy || other.is_noisy),
         };
         let radius = rms_radius(self.spreads).min(rms_radius(other.spreads));

@@ -7,9 +7,10 @@ use surface::VertexId;
 use super::Change;
 use super::geometry::MeshGeometry;
 
-/// Meshes have about as many vertices if the numbers differ by less than this share. Vertices that a subdivision keeps, nearly all,
-/// are found again within this distance, relative to the mean edge. Half and twice as much change no answer.
-const ABOUT: f64 = 0.05;
+/// Meshes have about as many vertices, or vertices that matter, if the numbers differ by less than this share. Vertices that a
+/// subdivision keeps, nearly all, are found again within this distance, relative to the mean edge. Half and twice as much change no
+/// answer.
+pub(super) const ABOUT: f64 = 0.05;
 
 /// Displacements of neighbouring vertices are independent, as those by noise, if their correlation along edges is below
 /// this. A safety limit: it is 0 for noise and 1 for a smooth deformation.

@@ -5,23 +5,24 @@ use std::collections::VecDeque;
 use nalgebra::{Matrix3, Point3, Vector3};
 use surface::{FaceId, Topology};
 
-use super::geometry::{MOST_ROUNDING, MeshGeometry};
+use super::geometry::{MAX_ROUNDING, MeshGeometry};
 
-/// Planes are looked for within tolerances that double from that of rounding to this, relative to the size. With it, noise of up to a
-/// fifth of it is measured; beyond, parts of curved surfaces look flat.
-const MOST: f64 = 0.0128;
+/// How often the tolerance of planes doubles, from that of rounding. Noise of up to a fifth of the last one is measured; beyond, parts of
+/// curved surfaces look flat.
+const DOUBLINGS: i32 = 7;
 
 /// The farthest vertex of a plane is nearer than this share of the tolerance: a curved surface ends where the tolerance does. Of 10,000
 /// vertices with normal noise, none is as far as 4.5 times its root mean square.
-const INSIDE: f64 = 0.75;
+const MAX_GAP: f64 = 0.75;
 
 /// Faces of a plane turn by less than this (cosine), also with noise, and most of its boundary is an edge that turns by more. As at
 /// sharp edges of parts, 40°.
-const BLUNT: f64 = 0.766;
+const MIN_COSINE: f64 = 0.766;
 
-/// The least share of the area that planes of a part have, the two ends of a shaft for example, and that each of them has.
-const PLANES: f64 = 0.05;
-const PLANE: f64 = 0.0025;
+/// The least share of the area that planes of a part have, the two ends of a shaft for example, and the least that each of them has: as
+/// much of that share.
+const MIN_PLANES: f64 = 0.05;
+const MIN_PLANE: f64 = MIN_PLANES * MIN_PLANES;
 
 /// A plane through vertices, in least squares.
 #[derive(Default)]
@@ -68,18 +69,17 @@ impl MeshGeometry {
             order.sort_by(|&f, &g| {
                 vectors[g].norm_squared().total_cmp(&vectors[f].norm_squared()).then(f.cmp(&g))
             });
-            let (mut planes, mut tolerance, mut most) = (Vec::new(), MOST_ROUNDING, PLANES);
-            while tolerance <= MOST {
+            let (mut planes, mut most) = (Vec::new(), MIN_PLANES);
+            for tolerance in (0..=DOUBLINGS).map(|i| MAX_ROUNDING * 2f64.powi(i)) {
                 let [area, squares] = self.planes_within(tolerance, &topology, &vectors, &order);
                 most = f64::max(most, area);
                 planes.push([area, squares]);
                 // A few vertices may lie in a plane by chance.
-                planes.retain(|[area, _]| *area >= 0.5 * most && *area >= PLANES);
+                planes.retain(|[area, _]| *area >= 0.5 * most && *area >= MIN_PLANES);
                 // No tolerance finds planes with twice as much of the area.
                 if planes.first().is_some_and(|[area, _]| *area >= 0.5) {
                     break;
                 }
-                tolerance *= 2.0;
             }
             planes.first().map(|[area, squares]| (squares / area).sqrt())
         })
@@ -111,10 +111,10 @@ impl MeshGeometry {
             stamp[seed] = seed;
             while let Some((f, from, length)) = pending.pop_front() {
                 let is_near = |p: &Point3<f64>| normal.dot(&(p - center)).abs() < tolerance;
-                let is_along = vectors[f].dot(&normal) > BLUNT * vectors[f].norm();
+                let is_along = vectors[f].dot(&normal) > MIN_COSINE * vectors[f].norm();
                 if !(is_along && mesh.triangle(f).iter().all(is_near)) {
-                    let is_sharp =
-                        vectors[f].dot(&vectors[from]) < BLUNT * vectors[f].norm() * vectors[from].norm();
+                    let is_sharp = vectors[f].dot(&vectors[from])
+                        < MIN_COSINE * vectors[f].norm() * vectors[from].norm();
                     boundary[usize::from(is_sharp)] += length;
                     continue;
                 }
@@ -146,12 +146,12 @@ impl MeshGeometry {
                     }
                 }
             }
-            if !is_whole || boundary[0] > boundary[1] || own < PLANE || vertices.len() < 4 {
+            if !is_whole || boundary[0] > boundary[1] || own < MIN_PLANE || vertices.len() < 4 {
                 continue;
             }
             let (center, normal) = fit.plane();
             let gaps = || vertices.iter().map(|&v| normal.dot(&(mesh.positions[v] - center)));
-            if gaps().all(|gap| gap.abs() < INSIDE * tolerance) {
+            if gaps().all(|gap| gap.abs() < MAX_GAP * tolerance) {
                 area += own;
                 squares += own * gaps().map(|gap| gap * gap).sum::<f64>() / (vertices.len() - 3) as f64;
             }

@@ -8,7 +8,7 @@ use rigid::{Alignment, Similarity, align_surfaces, is_symmetric};
 use super::calibration::{CUT, EXACT, FARTHEST, VARIANT};
 use super::cut::piece_of;
 use super::exact::{SameVertices, same_vertices};
-use super::geometry::{MOST_ROUNDING, MeshGeometry};
+use super::geometry::{MAX_ROUNDING, MeshGeometry};
 use super::mesh_change::mesh_change;
 use super::noise::noise_of_parts;
 use super::parts::{PartCopy, Parts, occurrences};
@@ -115,17 +115,17 @@ impl Relation {
         if !reflected {
             let angle = nalgebra::Rotation3::from_matrix_unchecked(rotation).angle();
             let shift = b.surface.center.coords - rotation * a.surface.center.coords * scale;
-            if shift.norm() > MOST_ROUNDING * b.size() {
+            if shift.norm() > MAX_ROUNDING * b.size() {
                 changes.push(Change::Moved);
             }
-            if angle > MOST_ROUNDING {
+            if angle > MAX_ROUNDING {
                 changes.push(Change::Rotated);
             }
             self.evidence.rotation = Some(angle.to_degrees());
         }
         // A surface that is its own mirror image is not another one for being mirrored, only its triangles are.
         let is_turned = reflected && is_symmetric(&b.surface);
-        changes.extend(Change::of_similarity(scale, MOST_ROUNDING, reflected && !is_turned));
+        changes.extend(Change::of_similarity(scale, MAX_ROUNDING, reflected && !is_turned));
         changes.extend((is_turned || !same.same_faces).then_some(Change::Remeshed));
         let kind = match changes.last() {
             Some(Change::Scaled) => RelationKind::Scaled,
@@ -134,14 +134,14 @@ impl Relation {
             _ => RelationKind::IdenticalGeometry,
         };
         self.evidence.vertex_gap = Some(same.gap);
-        self.found(kind, 1.0, changes, scale, MOST_ROUNDING)
+        self.found(kind, 1.0, changes, scale, MAX_ROUNDING)
     }
 
     /// Of meshes of which one has the other as a component.
     fn with_parts(mut self, parts: Parts, copy: PartCopy) -> Self {
         let PartCopy { scale, mirrored, gap, confidence } = copy;
         let scale = if parts.whole == Side::Second { scale } else { 1.0 / scale };
-        let tolerance = if gap.is_none() { MOST_ROUNDING } else { SIZE_OF_SURFACES };
+        let tolerance = if gap.is_none() { MAX_ROUNDING } else { SIZE_OF_SURFACES };
         let mut changes = Change::of_similarity(scale, tolerance, mirrored);
         changes.extend(gap.map(|_| Change::Remeshed));
         let all = parts.found == parts.components && parts.found > 1;
@@ -184,9 +184,9 @@ impl Relation {
         if let Some((cut, factor)) = piece {
             let scale = if cut.whole == Side::First { factor } else { 1.0 / factor };
             self.evidence.cut = Some(cut);
-            let mut changes = Change::of_similarity(scale, MOST_ROUNDING, false);
+            let mut changes = Change::of_similarity(scale, MAX_ROUNDING, false);
             changes.push(Change::Cut);
-            return self.found(RelationKind::PartOf, CUT, changes, scale, MOST_ROUNDING);
+            return self.found(RelationKind::PartOf, CUT, changes, scale, MAX_ROUNDING);
         }
         let rms = self.evidence.surface_gap.map(|gap| gap.rms);
         if let Some(differences) = differences(meshes, rms) {

@@ -11,7 +11,7 @@ use super::mesh_change::mesh_change;
 use super::same_surface::same_surface;
 
 /// Most different components that are aligned with a mesh.
-const MOST_ALIGNED: usize = 20;
+const MAX_ALIGNED: usize = 20;
 
 /// How often one mesh occurs among the components of the other.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -56,7 +56,7 @@ pub(super) fn occurrences(mesh: &MeshGeometry, whole: &MeshGeometry) -> Option<(
             }))
         });
         let copy = known.unwrap_or_else(|| {
-            let copy = copy_of(mesh, part, kinds.len() < MOST_ALIGNED);
+            let copy = copy_of(mesh, part, kinds.len() < MAX_ALIGNED);
             kinds.push((part, copy));
             copy
         });

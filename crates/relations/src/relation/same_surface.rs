@@ -10,7 +10,7 @@ use surface::{Topology, VertexId};
 
 use super::Change;
 use super::calibration::{
-    ALLOWED, ARCS, CHORDS, EXACT, FARTHEST, LARGEST, MOST_NOISE, NOISE, PARTS, SAME_SURFACE,
+    ALLOWED, ARCS, CHORDS, EXACT, FARTHEST, LARGEST, MAX_NOISE, NOISE, PARTS, SAME_SURFACE,
 };
 use super::exact::{Fitted, SameVertices};
 use super::geometry::MeshGeometry;
@@ -28,7 +28,7 @@ pub(super) fn same_surface(aligned: &Alignment, meshes: [&MeshGeometry; 2], chan
 /// Organic surfaces: the root mean square decides, unless the largest distance is out of proportion.
 fn body_ratio(aligned: &Alignment, meshes: [&MeshGeometry; 2], change: Change) -> f64 {
     let allowed = match change {
-        Change::Noisy => MOST_NOISE,
+        Change::Noisy => MAX_NOISE,
         _ => allowed_in_bodies(
             meshes.map(rms_chord_error).iter().sum(),
             meshes.iter().any(|mesh| mesh.is_noisy()),

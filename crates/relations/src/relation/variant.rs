@@ -13,10 +13,10 @@ use super::same_surface::euler_characteristic_if_closed;
 /// as much change no answer.
 const EQUAL: f64 = 2e-3;
 
-/// No dimension of a variant differs by more than this factor, and no overall dimension by more than [`MOST_EXTENT`]: what differs
+/// No dimension of a variant differs by more than this factor, and no overall dimension by more than [`MAX_EXTENT`]: what differs
 /// more is another part. With .8 instead of 1.6, 11 of 32 single changes are missed.
-const MOST_CHANGE: f64 = 2.5;
-const MOST_EXTENT: f64 = 1.6;
+const MAX_CHANGE: f64 = 2.5;
+const MAX_EXTENT: f64 = 1.6;
 
 /// Surfaces this near to each other are variants even where their dimensions cannot be compared one by one: root mean
 /// square, relative to the size. A convention.
@@ -189,8 +189,8 @@ pub(super) fn differences([a, b]: [&MeshGeometry; 2], rms: Option<f64>) -> Optio
     let same_build = a.n_regions == b.n_regions;
     let far = |d: &Difference| {
         let most = match d.what {
-            Dimension::Length | Dimension::Width | Dimension::Height => MOST_EXTENT,
-            _ => MOST_CHANGE,
+            Dimension::Length | Dimension::Width | Dimension::Height => MAX_EXTENT,
+            _ => MAX_CHANGE,
         };
         f64::max(d.first / d.second, d.second / d.first) > most
     };
