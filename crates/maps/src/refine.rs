@@ -16,10 +16,8 @@ use crate::shape::MapShape;
 use crate::start::Start;
 use crate::surface_map::{DOUBTED, MapKind, SurfaceMap, codistortion};
 
-/// Maps of each kind that are refined and judged, and how much worse than the best sketch they may be: a rival of so much
-/// higher cost is right once in a hundred. Limits of effort.
+/// Maps of each kind that are refined and judged. A limit of effort.
 const FINALISTS: usize = 3;
-const RIVAL: f64 = 4.0;
 
 /// A map that was refined on all samples and eigenfunctions, with how likely it is the right one.
 pub(crate) struct Refined {
@@ -112,7 +110,8 @@ fn shortlist(mut of_kind: Vec<Scored>, params: &MapParams) -> (Vec<Scored>, Opti
     let is_mixture = |one: &Scored| one.is_mixture(params.pure - params.lost);
     of_kind.sort_by(|x, y| is_mixture(x).cmp(&is_mixture(y)).then(x.cost().total_cmp(&y.cost())));
     let Some(best) = of_kind.first() else { return (of_kind, None) };
-    let (only_pure, most) = (!is_mixture(best), RIVAL * best.cost());
+    // A rival of a higher cost is right less than once in a hundred times.
+    let (only_pure, most) = (!is_mixture(best), 99f64.powf(1.0 / params.steepness) * best.cost());
     let mut kept: Vec<Scored> = Vec::new();
     for one in of_kind {
         if only_pure && is_mixture(&one) || kept.iter().any(|other| other.is_same(&one, params)) {

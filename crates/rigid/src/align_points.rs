@@ -21,7 +21,7 @@ pub enum Reflections {
 
 /// For all starts: enough steps to rank them, since their order before the first step says little about the order at the
 /// end. Limits of effort, as are the other two.
-const SKETCH: Effort = Effort { samples: 50, steps: 4, towards: Towards::Points };
+pub(crate) const SKETCH: Effort = Effort { samples: 50, steps: 4, towards: Towards::Points };
 
 /// For the best [`REFINED`] starts.
 const ROUGH: Effort = Effort { samples: 100, steps: 20, towards: Towards::Points };

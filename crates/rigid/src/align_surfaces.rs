@@ -1,6 +1,6 @@
 //! Alignment of two surfaces in space, by the best motion, reflection and change of size.
 
-use crate::align_points::{self, Reflections, align_points};
+use crate::align_points::{self, Reflections, SKETCH, align_points};
 use crate::handedness::is_decisive;
 use crate::icp::{Alignment, Effort, Gap, Towards, contacts, refine};
 use crate::rigid_surface::{RigidSurface, rms_radius};
@@ -29,8 +29,7 @@ const COINCIDENT_RMS: f64 = 1e-5;
 /// The least difference of two root mean square distances that tells: those at which the refinement of copies ends.
 const RESOLUTION: f64 = 1e-4;
 
-/// Turned starts are ranked by so many samples, and so many of them are refined. Limits of effort.
-const RANKING: usize = 60;
+/// Turned starts that are refined: the best by as many samples as a sketch has. Limits of effort.
 const RANKED: usize = 4;
 
 /// An alignment of the samples is refined unless the other handedness is better by this factor, and one that is refined counts
@@ -95,8 +94,9 @@ fn unmirrored(a: &RigidSurface, b: &RigidSurface, mirrored: &Alignment) -> Optio
 pub fn is_symmetric(surface: &RigidSurface) -> bool {
     let itself = Alignment { map: Similarity::identity(), gap: Gap { rms: 0.0, max: 0.0 } };
     let is_near = |mirror: &Similarity| {
-        let squares = contacts(surface, surface, mirror, RANKING, &[]).map(|contact| contact.sq_distance());
-        squares.sum::<f64>() < 2.0 * RANKING as f64 * CLOSE * CLOSE
+        let squares =
+            contacts(surface, surface, mirror, SKETCH.samples, &[]).map(|contact| contact.sq_distance());
+        squares.sum::<f64>() < 2.0 * SKETCH.samples as f64 * CLOSE * CLOSE
     };
     mirrors(surface).filter(is_near).any(|mirror| {
         let found = Alignment::by(surface, surface, refine(surface, surface, mirror, FINE).0, f64::INFINITY);
@@ -148,7 +148,7 @@ fn nearest_starts(
         let most = ranked.get(RANKED - 1).map_or(f64::INFINITY, |last| last.0);
         let mut sum = 0.0;
         // The sum only grows, so most starts are left early.
-        let is_near = contacts(a, b, &start, RANKING, &[]).all(|contact| {
+        let is_near = contacts(a, b, &start, SKETCH.samples, &[]).all(|contact| {
             sum += contact.sq_distance();
             sum < most
         });

@@ -13,10 +13,6 @@ use crate::params::MapParams;
 use crate::search::MapSearch;
 use crate::shape::MapShape;
 
-/// Changes of distances count up to this when points are placed: the pairs of a few wrong anchors, or with a path through what is
-/// missing. A part of a built-in man is mapped to him with a mean error of 0.0140, and of 0.0142 with 0.2.
-pub(super) const MAX_CHANGE: f64 = 0.1;
-
 /// Weight of distances that the cut explains, beside 1 for others: most of the shortest paths between points near the cut
 /// stay in the part. A part of a built-in man is mapped to him with an error near the cut of 0.017, and of 0.042 with 0.
 const EXPLAINED_WEIGHT: f64 = 0.3;
@@ -51,6 +47,9 @@ pub(super) struct Sides<'a> {
     known: Vec<[usize; 2]>,
     /// Distances in the part from landmarks (rows), the first of the samples, to samples.
     pub(super) in_part: Matrix,
+    /// Changes of distances count up to this when points are placed: the pairs of a few wrong anchors, or with a path through what is
+    /// missing. A part of a built-in man is mapped to him with a mean error of 0.0140 with .1, and of 0.0142 with .2.
+    pub(super) max_change: f64,
     /// The distances of all vertices of the part from the cut.
     pub(super) from_cut: Vec<f64>,
     /// Distances between the samples of the whole, of which landmarks are the first.
@@ -79,6 +78,7 @@ impl<'a> Sides<'a> {
             side,
             params,
             scale,
+            max_change: 2.0 * params.same,
         };
         sides.known = sides.sampled(known.landmarks.iter().copied()).collect();
         Ok(Some(sides))
