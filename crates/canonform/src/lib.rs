@@ -117,8 +117,7 @@ pub mod geodesics {
 /// Maps between surfaces.
 pub mod maps {
     pub use crate::correspond::{
-        CorrespondOptions, Correspondence, FacePoint, MappedSurface, Mapping, PointMap, VertexMap,
-        correspond, score_map,
+        CorrespondOptions, Correspondence, FacePoint, MappedSurface, Mapping, PointMap, correspond, score_map,
     };
     pub use ::maps::*;
 }

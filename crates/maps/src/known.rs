@@ -150,12 +150,11 @@ impl KnownMap {
         b: &MapShape,
         params: &MapParams,
     ) -> Result<Vec<SurfaceMap>, DescriptorError> {
-        let (xs, ys): (Vec<usize>, Vec<usize>) =
-            self.initial_pairs().map(|pair| pair.map(VertexId::index).into()).unzip();
-        let to = b.distances_to(&ys)?;
         let gap = |map: &SurfaceMap| -> Result<f64, DescriptorError> {
-            let images: Vec<usize> = xs.iter().map(|x| map.vertices[*x].index()).collect();
-            Ok((b.distances_to(&images)? - &to).abs().sum())
+            let both =
+                self.initial_pairs().filter_map(|[x, y]| Some((map.vertices[x.index()]?.index(), y.index())));
+            let (images, partners): (Vec<usize>, Vec<usize>) = both.unzip();
+            Ok((b.distances_to(&images)? - b.distances_to(&partners)?).abs().sum())
         };
         if let [first, second] = &maps[..]
             && gap(second)? < gap(first)?
@@ -173,8 +172,9 @@ impl KnownMap {
 
     /// Puts the landmarks into a map and its alternative.
     fn kept_by(&self, map: &mut SurfaceMap) {
+        map.landmarks.clone_from(&self.landmarks);
         for [x, y] in &self.landmarks {
-            map.vertices[x.index()] = *y;
+            map.vertices[x.index()] = Some(*y);
             if let Some(part) = &mut map.part {
                 part.partners[0][x.index()] = Some(*y);
                 part.partners[1][y.index()] = Some(*x);

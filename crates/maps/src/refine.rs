@@ -62,10 +62,10 @@ pub(crate) fn scored_as_given(
     let rival = rival.filter(|_| confidence < Boundary::CERTAIN);
     let mut map = Refined { found: scored, confidence, rival }.on_all_vertices(shapes)?;
     for [x, y] in given.initial_pairs() {
-        map.vertices[x.index()] = y;
+        map.vertices[x.index()] = Some(y);
     }
     let [a, b] = shapes;
-    let images: Vec<usize> = map.vertices.iter().map(|y| y.index()).collect();
+    let images: Vec<usize> = map.vertices.iter().flatten().map(|y| y.index()).collect();
     map.vertex_confidence = vertex_confidence(shapes, [1.0; 2], &images)?;
     // A map that is only given in one direction changes the distances of the landmarks from each other.
     let of_landmarks: Vec<usize> = a.landmarks().iter().map(|&x| images[x]).collect();
@@ -222,8 +222,9 @@ fn on_all_vertices(
         agreement: found.agreement,
         confidence,
         vertex_confidence: vertex_confidence([a, b], [1.0; 2], &vertices)?,
-        vertices: vertices.into_iter().map(VertexId::from).collect(),
+        vertices: vertices.into_iter().map(|y| Some(VertexId::from(y))).collect(),
         functional: found.functional.forth.clone(),
+        landmarks: Vec::new(),
         alternative: None,
         part: None,
     })

@@ -61,8 +61,8 @@ impl From<Option<f64>> for MapKind {
 /// wrong as right.
 pub(crate) const DOUBTED: f64 = 0.5;
 
-/// A map from the vertices of one surface to those of another.
-#[derive(Debug, Clone, PartialEq)]
+/// A map from the vertices of one surface to those of another. [`map_surfaces`](crate::map_surfaces) numbers vertices as its surfaces do.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SurfaceMap {
     /// Whether it keeps the orientation.
     pub kind: MapKind,
@@ -75,24 +75,37 @@ pub struct SurfaceMap {
     /// How likely this map is the right one of its kind, and not the next best: the odds follow from the ratio of their scores
     /// (decision 19). At most 1/2 for a mixture of two maps, which agrees with an orientation in some places only.
     pub confidence: f64,
-    /// The partner of each vertex of the first surface.
-    pub vertices: Vec<VertexId>,
+    /// The next best map of this kind, unless the odds of this one are [certain](descriptors::Boundary::CERTAIN).
+    pub alternative: Option<Box<SurfaceMap>>,
+    /// Which surface is a part of the other, and how much of the whole it covers; `None` if both are mapped as wholes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub part: Option<PartOfWhole>,
+    /// The partner of each vertex of the first surface, if it has one.
+    #[serde(skip)]
+    pub vertices: Vec<Option<VertexId>>,
     /// How well the map keeps the distances of each vertex of the first surface to points near it, from 0, where it is torn or
     /// takes a region to a point, to 1: one less their relative change. It does not tell whether the whole map is right, which
     /// [`confidence`](Self::confidence) does.
+    #[serde(skip)]
     pub vertex_confidence: Vec<f64>,
     /// The map of functions of the second surface to functions of the first, in their eigenfunctions: `C`, as in
-    /// [`LaplaceSpectrum`](descriptors::LaplaceSpectrum).
+    /// [`LaplaceSpectrum`](descriptors::LaplaceSpectrum). That of a part has fewer eigenfunctions of the part, and functions of the
+    /// part are zero elsewhere.
+    #[serde(skip)]
     pub functional: Matrix,
-    /// The next best map of this kind, unless the odds of this one are [certain](descriptors::Boundary::CERTAIN).
-    pub alternative: Option<Box<SurfaceMap>>,
-    /// Which surface is a part of the other; `None` if both are mapped as wholes.
-    pub part: Option<PartOfWhole>,
+    /// The landmarks that it was given and contains.
+    #[serde(skip)]
+    pub landmarks: Vec<[VertexId; 2]>,
 }
 
 impl SurfaceMap {
     /// Maps of at least this confidence are certain. A convention.
     pub const CERTAIN: f64 = 0.7;
+
+    /// Whether no other map of its kind is nearly as good.
+    pub fn is_certain(&self) -> bool {
+        self.confidence >= Self::CERTAIN
+    }
 }
 
 /// The mean of `|d(x_i, g y_j) - d(f x_i, y_j)|` over landmarks, from the distances on the first and on the second surface

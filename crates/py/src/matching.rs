@@ -1,7 +1,7 @@
 //! Maps between surfaces.
 
 use canonform::descriptors::Side;
-use canonform::maps::{CorrespondOptions, KnownMap, Mapping, PointMap, VertexMap, correspond, score_map};
+use canonform::maps::{CorrespondOptions, KnownMap, Mapping, PointMap, SurfaceMap, correspond, score_map};
 use canonform::surface::VertexId;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -54,7 +54,7 @@ fn known(
     Ok(KnownMap { landmarks: pairs_of(landmarks)?, initial, functions })
 }
 
-fn arrays_of<'py>(py: Python<'py>, map: &VertexMap) -> PyResult<MapArrays<'py>> {
+fn arrays_of<'py>(py: Python<'py>, map: &SurfaceMap) -> PyResult<MapArrays<'py>> {
     let number = |v: &Option<VertexId>| v.map_or(-1, |v| i64::from(v.0));
     let numbers =
         |partners: &[Option<VertexId>]| partners.iter().map(number).collect::<Vec<_>>().into_pyarray(py);

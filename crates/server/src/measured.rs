@@ -5,7 +5,7 @@ use std::sync::Arc;
 use canonform::compare::Overlay;
 use canonform::descriptors::CanonicalForm;
 use canonform::embed::{FormOptions, MeasuredSurface};
-use canonform::maps::VertexMap;
+use canonform::maps::SurfaceMap;
 use canonform::mesh::TriMesh;
 use canonform::relations::{MeshGeometry, MeshOverlay};
 use canonform::surface::VertexId;
@@ -63,7 +63,7 @@ impl Measured {
     }
 
     /// The repaired mesh in the colours of another, carried to it by a map to that one.
-    pub(crate) fn carried(&self, from: &Self, map: &VertexMap) -> Geometry {
+    pub(crate) fn carried(&self, from: &Self, map: &SurfaceMap) -> Geometry {
         let value = |v: usize| {
             let input = self.surface.input_vertex(VertexId::from(v));
             let partner = map.vertices.get(input.index()).copied().flatten()?;

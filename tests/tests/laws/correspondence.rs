@@ -1,6 +1,6 @@
 //! Dense maps between surfaces: exact cases, invariances, and known partners.
 
-use canonform::maps::{MapKind, VertexMap};
+use canonform::maps::{MapKind, SurfaceMap};
 use datasets::Family;
 use geodesics::Method;
 use mesh::{TriMesh, shapes};
@@ -10,11 +10,11 @@ use surface::VertexId;
 use crate::rested::{Rested, of_kind, prepared};
 use crate::support::{body, pose};
 
-fn maps(a: &TriMesh, b: &TriMesh) -> Vec<VertexMap> {
+fn maps(a: &TriMesh, b: &TriMesh) -> Vec<SurfaceMap> {
     crate::rested::maps(&prepared(a), &prepared(b))
 }
 
-fn images(map: &VertexMap) -> Vec<usize> {
+fn images(map: &SurfaceMap) -> Vec<usize> {
     map.vertices.iter().map(|v| v.unwrap().index()).collect()
 }
 
@@ -73,7 +73,7 @@ fn maps_do_not_depend_on_threads() {
     let b = shapes::subdivide(&shapes::grid(13, 10, 0.2));
     let [one, three] = [1, 3].map(|n| testkit::on_threads(n, || maps(&a, &b)));
     assert_eq!(one, three);
-    let bits = |maps: &[VertexMap]| maps.iter().map(|map| map.distortion.to_bits()).collect::<Vec<_>>();
+    let bits = |maps: &[SurfaceMap]| maps.iter().map(|map| map.distortion.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&one), bits(&three));
 }
 

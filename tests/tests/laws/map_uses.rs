@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use canonform::descriptors::Side;
 use canonform::maps::{
-    CorrespondOptions, KnownMap, LandmarkConflict, MapKind, MappedSurface, Mapping, PointMap, VertexMap,
+    CorrespondOptions, KnownMap, LandmarkConflict, MapKind, MappedSurface, Mapping, PointMap, SurfaceMap,
     correspond, score_map,
 };
 use canonform::{Error, Surface};
@@ -18,7 +18,7 @@ use crate::rested::{Rested, maps, maps_with, of_kind, prepared};
 use crate::support::body;
 
 /// Two poses of a cat, and the maps between them if nothing is known.
-static CATS: LazyLock<([Rested; 2], Vec<VertexMap>)> = LazyLock::new(|| {
+static CATS: LazyLock<([Rested; 2], Vec<SurfaceMap>)> = LazyLock::new(|| {
     let cats = [0, 4].map(|pose| Rested::pose(Family::Cat, pose, 1000));
     let maps = cats[0].maps_to(&cats[1]);
     (cats, maps)
@@ -55,7 +55,7 @@ fn a_surface_is_mapped_to_itself_by_the_identity_which_carries_everything_and_by
     let found = maps(&side, &side);
     let map = of_kind(&found, MapKind::Direct);
     assert_eq!(found[0], *map, "the identity distorts nothing");
-    let n_fixed = |map: &VertexMap| {
+    let n_fixed = |map: &SurfaceMap| {
         map.vertices.iter().enumerate().filter(|(x, y)| **y == Some(VertexId::from(*x))).count()
     };
     assert_eq!(n_fixed(map), mesh.n_vertices());
@@ -68,7 +68,7 @@ fn a_surface_is_mapped_to_itself_by_the_identity_which_carries_everything_and_by
     let labels: Vec<usize> = (0..mesh.n_vertices()).collect();
     let of_faces: Vec<usize> = (0..mesh.n_faces()).collect();
     for of in [Side::First, Side::Second] {
-        let between = map.between([&side, &side]);
+        let between = Mapping::new(map, [&side, &side]);
         let points = between.vertices(of);
         assert!(gap(&points.values(&own), &own, &mesh) < 1e-6);
         assert_eq!(points.vertex_labels(&labels), labels.iter().copied().map(Some).collect::<Vec<_>>());
@@ -87,7 +87,7 @@ fn a_surface_is_mapped_to_itself_by_the_identity_which_carries_everything_and_by
 fn constants_stay_and_there_and_back_is_near_the_identity() {
     let (cats, maps) = &*CATS;
     let (meshes, map) = (cats.each_ref().map(|cat| &cat.mesh), &maps[0]);
-    let between = map.between(sides());
+    let between = Mapping::new(map, sides());
     for (of, [own, other]) in [(Side::First, [0, 1]), (Side::Second, [1, 0])] {
         let points = between.vertices(of);
         let n = meshes[other].n_vertices();
@@ -121,7 +121,7 @@ fn points_inside_faces_are_nearer_than_vertices() {
     let map = &maps(shapes[0], shapes[1])[0];
     let places = coordinates(&coarse);
     let truth = coordinates(&fine);
-    let inside = gap(&map.between(shapes).vertices(Side::First).values(&places), &truth, &fine);
+    let inside = gap(&Mapping::new(map, shapes).vertices(Side::First).values(&places), &truth, &fine);
     let images: Vec<usize> = map.vertices.iter().map(|v| v.unwrap().index()).collect();
     let at_vertices = gap(&places.select_rows(&images), &truth, &fine);
     println!("inside faces {inside:.5}, at vertices {at_vertices:.5}");
@@ -139,7 +139,7 @@ fn landmarks_that_break_the_symmetry_leave_one_map() {
     let found = maps_with(KnownMap { landmarks: landmarks.clone(), ..KnownMap::default() }, shapes);
     assert_eq!(found.iter().map(|map| map.kind).collect::<Vec<_>>(), [MapKind::Direct]);
     assert!(landmarks.iter().all(|[x, y]| found[0].vertices[x.index()] == Some(*y)), "known pairs are kept");
-    let points = found[0].between(shapes).vertices(Side::First).points;
+    let points = Mapping::new(&found[0], shapes).vertices(Side::First).points;
     assert!(landmarks.iter().all(|[x, y]| points[x.index()].unwrap().nearest_corner() == *y));
     // One of them is enough.
     let found = maps_with(KnownMap { landmarks: landmarks[..1].to_vec(), ..KnownMap::default() }, shapes);
@@ -247,7 +247,7 @@ fn a_given_map_is_scored_as_it_is() {
         let known = KnownMap { initial: initial.clone(), ..KnownMap::default() };
         let options = CorrespondOptions { known, ..CorrespondOptions::default() };
         let found = score_map(sides[0], sides[1], &options, &()).unwrap();
-        let [map] = <[VertexMap; 1]>::try_from(found.maps).unwrap();
+        let [map] = <[SurfaceMap; 1]>::try_from(found.maps).unwrap();
         assert_eq!(map.vertices, initial);
         map
     };
@@ -311,7 +311,7 @@ fn texture_coordinates_of_corners_are_not_torn_at_seams() {
     let corners = Matrix::from_column_slice(corners.len(), 1, &corners);
     let sides = [prepared(&a), prepared(&b)];
     let map = &maps(&sides[0], &sides[1])[0];
-    let mapping = map.between(sides.each_ref());
+    let mapping = Mapping::new(map, sides.each_ref());
     let by_corner = mapping.corners(Side::Second, &corners).unwrap().corner_values(&corners);
     assert_eq!(by_corner.nrows(), 3 * b.n_faces());
     let extent = |values: [f64; 3]| {

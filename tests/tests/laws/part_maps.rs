@@ -1,7 +1,7 @@
 //! Dense maps between a whole and what a cut has left of it.
 
 use canonform::descriptors::Side;
-use canonform::maps::{KnownMap, MapKind, PartOfWhole, PointMap, VertexMap};
+use canonform::maps::{KnownMap, MapKind, Mapping, PartOfWhole, PointMap, SurfaceMap};
 use datasets::Family;
 use mesh::TriMesh;
 use surface::VertexId;
@@ -12,7 +12,7 @@ fn pose(family: Family, pose: usize) -> Rested {
     Rested::pose(family, pose, 1500)
 }
 
-fn part_of(map: &VertexMap) -> &PartOfWhole {
+fn part_of(map: &SurfaceMap) -> &PartOfWhole {
     map.part.as_ref().unwrap_or_else(|| panic!("no map of a part: {}", map.distortion))
 }
 
@@ -100,7 +100,7 @@ fn a_piece_of_a_surface_is_mapped_to_itself() {
     // Points go by vertices, both ways; faces go where all of their corners do.
     let sides = [&part, &whole];
     for (of, partners) in [Side::First, Side::Second].into_iter().zip(&part_of(map).partners) {
-        let between = map.between(sides.map(|side| &side.mapped));
+        let between = Mapping::new(map, sides.map(|side| &side.mapped));
         let corners = |found: PointMap| found.points.into_iter().map(|p| Some(p?.nearest_corner()));
         assert!(corners(between.vertices(of)).eq(partners.iter().copied()));
         let mesh = &sides[of as usize].mesh;

@@ -1,6 +1,6 @@
 //! Surfaces whose true partners are known: poses of a body, and what a cut has left of them.
 
-use canonform::maps::{CorrespondOptions, KnownMap, MapKind, MappedSurface, VertexMap, correspond};
+use canonform::maps::{CorrespondOptions, KnownMap, MapKind, MappedSurface, SurfaceMap, correspond};
 use datasets::{ArticulatedOptions, Damage, Family, articulated_at_rest};
 use geodesics::Method;
 use mesh::TriMesh;
@@ -16,16 +16,16 @@ pub(crate) fn prepared(mesh: &TriMesh) -> MappedSurface {
 }
 
 /// The maps that fit what is known of them.
-pub(crate) fn maps_with(known: KnownMap, [a, b]: [&MappedSurface; 2]) -> Vec<VertexMap> {
+pub(crate) fn maps_with(known: KnownMap, [a, b]: [&MappedSurface; 2]) -> Vec<SurfaceMap> {
     let options = CorrespondOptions { known, ..CorrespondOptions::default() };
     correspond(a, b, &options, &()).unwrap().maps
 }
 
-pub(crate) fn maps(a: &MappedSurface, b: &MappedSurface) -> Vec<VertexMap> {
+pub(crate) fn maps(a: &MappedSurface, b: &MappedSurface) -> Vec<SurfaceMap> {
     maps_with(KnownMap::default(), [a, b])
 }
 
-pub(crate) fn of_kind(maps: &[VertexMap], kind: MapKind) -> &VertexMap {
+pub(crate) fn of_kind(maps: &[SurfaceMap], kind: MapKind) -> &SurfaceMap {
     maps.iter().find(|map| map.kind == kind).unwrap_or_else(|| panic!("no {kind:?} map"))
 }
 
@@ -56,7 +56,7 @@ impl Rested {
         Self::new(part, at_rest)
     }
 
-    pub(crate) fn maps_to(&self, other: &Self) -> Vec<VertexMap> {
+    pub(crate) fn maps_to(&self, other: &Self) -> Vec<SurfaceMap> {
         maps(&self.mapped, &other.mapped)
     }
 
@@ -74,7 +74,7 @@ impl Rested {
     }
 
     /// The mean distance on the other surface between images and true partners, over a unit of length.
-    pub(crate) fn error(&self, other: &Self, map: &VertexMap, unit: f64) -> f64 {
+    pub(crate) fn error(&self, other: &Self, map: &SurfaceMap, unit: f64) -> f64 {
         let sign = if map.kind == MapKind::Mirrored { -1.0 } else { 1.0 };
         let solver = Method::default().prepare(other.mesh.intrinsic(), &()).unwrap();
         let matched = map.vertices.iter().enumerate().filter_map(|(x, y)| Some((x, (*y)?.index())));

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 
 use descriptors::Side;
 use linalg::Matrix;
-use maps::{MapElements, mapped_points};
+use maps::{MapElements, SurfaceMap, mapped_points};
 use mesh::{InputPoint, Surface};
 use surface::{CornerId, FaceId, SurfacePoint, Topology, VertexId};
 
@@ -41,7 +41,7 @@ impl FacePoint {
 pub struct Mapping<'a, S = Surface> {
     /// The first and the second surface.
     pub shapes: [&'a MappedSurface<S>; 2],
-    /// The functional map, as in [`VertexMap::functional`](super::VertexMap::functional).
+    /// The functional map, as in [`SurfaceMap::functional`].
     pub functional: &'a Matrix,
     /// Pairs that stay as they are, in the numbers of the inputs.
     pub landmarks: &'a [[VertexId; 2]],
@@ -56,7 +56,7 @@ pub struct Mapping<'a, S = Surface> {
 /// use canonform::linalg::Matrix;
 /// use canonform::descriptors::Side;
 /// use canonform::Surface;
-/// use canonform::maps::{CorrespondOptions, MappedSurface, correspond};
+/// use canonform::maps::{CorrespondOptions, MappedSurface, Mapping, correspond};
 /// use canonform::mesh::shapes;
 ///
 /// let flat = shapes::grid(21, 17, 0.1);
@@ -69,7 +69,7 @@ pub struct Mapping<'a, S = Surface> {
 /// let map = &correspond(a, b, &options, &())?.maps[0];
 ///
 /// // From the first surface to the second: for every vertex of the second its place on the first.
-/// let places = map.between([a, b]).vertices(Side::Second);
+/// let places = Mapping::new(map, [a, b]).vertices(Side::Second);
 /// let constant = places.values(&Matrix::from_element(21 * 17, 1, 7.0));
 /// assert!(constant.iter().all(|value| (value - 7.0).abs() < 1e-12));
 /// # Ok::<(), canonform::Error>(())
@@ -141,7 +141,13 @@ impl PointMap {
     }
 }
 
-impl<S: Borrow<Surface>> Mapping<'_, S> {
+impl<'a, S: Borrow<Surface>> Mapping<'a, S> {
+    /// A map between the surfaces that it was found for.
+    pub fn new(map: &'a SurfaceMap, shapes: [&'a MappedSurface<S>; 2]) -> Self {
+        let partners = map.part.as_ref().map(|part| &part.partners);
+        Self { shapes, functional: &map.functional, landmarks: &map.landmarks, partners }
+    }
+
     /// For every vertex of one side, its point on the other surface: of the first side, where the map takes it; of the second, what
     /// is taken to it.
     pub fn vertices(&self, of: Side) -> PointMap {

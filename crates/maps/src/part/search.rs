@@ -167,10 +167,11 @@ fn refined(sides: &Sides<'_>, sketch: &ScoredPlaces, confidence: f64) -> Result<
         distortion: fine.distortion,
         agreement,
         confidence,
-        vertices: vertices.iter().map(id).collect(),
+        vertices: vertices.iter().map(|v| Some(id(v))).collect(),
         vertex_confidence: vertex_confidence(shapes, units, vertices)?,
         functional,
         part: Some(PartOfWhole { part: sides.side, covered, partners }),
+        landmarks: Vec::new(),
         alternative: None,
     })
 }

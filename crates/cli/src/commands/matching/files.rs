@@ -6,7 +6,7 @@ use anyhow::Result;
 use base::object;
 use canonform::descriptors::Side;
 use canonform::linalg::Matrix;
-use canonform::maps::{MappedSurface, PointMap, VertexMap};
+use canonform::maps::{MappedSurface, Mapping, PointMap, SurfaceMap};
 use canonform::mesh::TriMesh;
 use canonform::mesh::io::VertexField;
 use canonform::surface::VertexId;
@@ -42,7 +42,7 @@ pub(super) fn number(partner: &Option<VertexId>) -> i64 {
 pub(super) fn write_table(
     path: &Path,
     format: &str,
-    map: &VertexMap,
+    map: &SurfaceMap,
     points: Option<&PointMap>,
 ) -> Result<()> {
     match (format, points) {
@@ -79,14 +79,14 @@ pub(super) fn write_table(
 
 /// Colours of the first mesh by its place in the canonical form, fading to grey where the map is doubtful; the same colours,
 /// carried to the second mesh; and for every vertex of that, the vertex of the first whose colour it has, or -1.
-pub(super) fn corresponding(map: &VertexMap, [a, b]: [&MappedFile; 2]) -> ([Vec<Rgb>; 2], Vec<f64>) {
+pub(super) fn corresponding(map: &SurfaceMap, [a, b]: [&MappedFile; 2]) -> ([Vec<Rgb>; 2], Vec<f64>) {
     let grey = perceptual(f64::NAN);
     let surface = a.mapped.surface();
     let colors = surface.in_input_order(&place_colors(a.mapped.shape.form_points()), grey);
     let faded =
         |(color, confidence): (&Rgb, &f64)| mix(*color, grey, (1.5 - confidence / DOUBTFUL).clamp(0.0, 1.0));
     let source: Vec<Rgb> = colors.iter().zip(&map.vertex_confidence).map(faded).collect();
-    let places = map.between([&a.mapped, &b.mapped]).vertices(Side::Second);
+    let places = Mapping::new(map, [&a.mapped, &b.mapped]).vertices(Side::Second);
     let (target, origins) = carried(&places, &source);
     ([source, target], origins)
 }
@@ -129,7 +129,7 @@ pub(super) fn picture(path: &Path, meshes: [&TriMesh; 2], colors: [Vec<Rgb>; 2])
 /// was written, and the same in words.
 pub(super) fn write_functional(
     path: &Path,
-    map: &VertexMap,
+    map: &SurfaceMap,
     sides: [&MappedFile; 2],
 ) -> Result<(impl Serialize + use<>, String)> {
     let counts = [map.functional.nrows(), map.functional.ncols()];

@@ -8,7 +8,7 @@ use base::object;
 use base::terminal::Bars;
 use canonform::Error;
 use canonform::descriptors::Side;
-use canonform::maps::{MappedSurface, PartOfWhole, PointMap, VertexMap, correspond, score_map};
+use canonform::maps::{MappedSurface, Mapping, PartOfWhole, PointMap, SurfaceMap, correspond, score_map};
 use canonform::mesh::InputPoint;
 use canonform::settings::MethodSettings;
 use serde::Serialize;
@@ -25,7 +25,7 @@ use crate::output::{Fact, check_format, check_output, facts, report};
 #[derive(Serialize)]
 struct MapJson {
     #[serde(flatten)]
-    map: VertexMap,
+    map: SurfaceMap,
     /// Vertices of the first mesh that have a partner.
     matched: usize,
     /// The share of them with a confidence below one half.
@@ -122,13 +122,13 @@ pub(crate) fn match_meshes(args: &MatchArgs, common: &Common) -> Result<ExitCode
 /// Writes one of the maps, and its alternative, unless there is no output.
 fn written(
     i: usize,
-    map: VertexMap,
+    map: SurfaceMap,
     with_points: bool,
     output: Option<(&Path, &str)>,
     sides: [&MappedFile; 2],
 ) -> Result<MapJson> {
-    let points_of = |map: &VertexMap| {
-        with_points.then(|| map.between(sides.map(|side| &side.mapped)).vertices(Side::First))
+    let points_of = |map: &SurfaceMap| {
+        with_points.then(|| Mapping::new(map, sides.map(|side| &side.mapped)).vertices(Side::First))
     };
     let points = points_of(&map);
     let (mut path, mut picture, mut alternative_path) = (None, None, None);
@@ -159,7 +159,7 @@ fn written(
 fn write(
     path: &Path,
     format: &str,
-    map: &VertexMap,
+    map: &SurfaceMap,
     points: Option<&PointMap>,
     sides: [&MappedFile; 2],
 ) -> Result<Option<PathBuf>> {

@@ -8,7 +8,7 @@ use base::object;
 use canonform::collection::TextTable;
 use canonform::descriptors::Side;
 use canonform::linalg::Matrix;
-use canonform::maps::VertexMap;
+use canonform::maps::{Mapping, SurfaceMap};
 use report::color::{Rgb, class_color, color_scale, perceptual};
 use serde::Serialize;
 
@@ -95,10 +95,10 @@ impl Transfer {
     pub(super) fn write(
         &self,
         path: &Path,
-        map: &VertexMap,
+        map: &SurfaceMap,
         sides: [&MappedFile; 2],
     ) -> Result<(impl Serialize + use<>, String)> {
-        let mapping = map.between(sides.map(|side| &side.mapped));
+        let mapping = Mapping::new(map, sides.map(|side| &side.mapped));
         let elements = self.elements;
         let found = match (elements, &self.content) {
             (Elements::Vertices, Content::Values(values)) => {
