@@ -102,13 +102,6 @@ pub fn align_points(a: &PointSet, b: &PointSet, reflections: Reflections) -> Ali
     Alignment { map: b.to_principal.inverse().after(&motion).after(&a.to_principal), ..found }
 }
 
-/// Aligns two sets as [`align_points`] does, with or without a reflection, or returns `None` if the root mean square distance
-/// is larger than `limit`. Nothing is aligned if the [lower bound](PointSet::least_distance) of the distance is larger.
-pub fn align_near_points(a: &PointSet, b: &PointSet, limit: f64) -> Option<Alignment> {
-    let may_be_near = a.least_distance(b) <= limit;
-    may_be_near.then(|| align_points(a, b, Reflections::Allow)).filter(|found| found.gap.rms <= limit)
-}
-
 /// Motions of the principal axes of the first set to those of the second, the best of each handedness, after all stages
 /// but the last; by ascending error.
 pub fn alignments(a: &PointSet, b: &PointSet) -> Vec<Similarity> {

@@ -9,8 +9,6 @@ pub struct FarthestPoints {
     pub samples: Vec<usize>,
     /// For every point, the position in `samples` of the nearest one, the first in case of a tie.
     pub nearest: Vec<usize>,
-    /// No point is farther from the nearest sample.
-    pub covering: f64,
 }
 
 /// The points whose nearest sample is the same.
@@ -57,7 +55,7 @@ pub fn farthest_points_by(
     let whole = Cell::new((0..n_points).collect(), &from_origin);
     let mut nearest = vec![0; n_points];
     if n == 0 || n_points == 0 {
-        return FarthestPoints { samples: Vec::new(), nearest, covering: whole.farthest.1.max(0.0).sqrt() };
+        return FarthestPoints { samples: Vec::new(), nearest };
     }
     let mut samples = vec![if whole.farthest.0 < n_points { whole.farthest.0 } else { 0 }];
     let mut gaps: Vec<f64> = (0..n_points).map(|i| sq_distance(i, samples[0])).collect();
@@ -91,6 +89,5 @@ pub fn farthest_points_by(
         cells.push(Cell::new(taken, &gaps));
         samples.push(next);
     }
-    let covering = gaps.iter().copied().fold(0.0, f64::max).sqrt();
-    FarthestPoints { samples, nearest, covering }
+    FarthestPoints { samples, nearest }
 }

@@ -20,7 +20,7 @@ mod similarity;
 mod starts;
 mod triangles;
 
-pub use align_points::{Reflections, align_near_points, align_points, alignments};
+pub use align_points::{Reflections, align_points, alignments};
 pub use align_surfaces::{MAX_DEVIATION, align_surfaces, axis_deviation, is_symmetric};
 pub use farthest_points::{FarthestPoints, farthest_points, farthest_points_by};
 pub use handedness::{Handedness, OrientedPoints};

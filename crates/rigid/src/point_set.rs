@@ -11,10 +11,6 @@ use crate::similarity::Similarity;
 pub struct PointSet {
     points: NearestPoints,
     samples: NearestPoints,
-    /// No two points are farther apart.
-    diameter: f64,
-    /// Distances between disjoint pairs of samples far from each other, descending.
-    spans: Vec<f64>,
     /// Standard deviation along each principal axis, descending.
     pub(crate) axis_std: [f64; 3],
     /// The motion from the coordinates of the points to their principal axes.
@@ -36,10 +32,7 @@ impl PointSet {
         let points: Vec<_> = points.iter().map(|p| to_principal.apply(p)).collect();
         let spread = farthest_points(&points, Self::SAMPLES);
         let samples: Vec<_> = spread.samples.iter().map(|&i| points[i]).collect();
-        let (sq_diameter, spans) = extent(&samples);
         Ok(Self {
-            diameter: sq_diameter.sqrt() + 2.0 * spread.covering,
-            spans,
             points: NearestPoints::new(points)?,
             samples: NearestPoints::new(samples)?,
             axis_std,
@@ -61,20 +54,6 @@ impl PointSet {
     pub(crate) fn samples(&self) -> &NearestPoints {
         &self.samples
     }
-
-    /// A lower bound of the root mean square distance between nearest points of two sets, over all motions.
-    ///
-    /// Let samples `x, x'` of one set have the nearest points `y, y'` of the other, at distances `e, e'`. Then
-    /// `e + e' >= |x - x'| - |y - y'| >= |x - x'| - diameter`, so `e² + e'² >= (|x - x'| - diameter)² / 2` if the
-    /// difference is positive. Summing over disjoint pairs of samples bounds the sum of all squares.
-    pub fn least_distance(&self, other: &Self) -> f64 {
-        (0.5 * (self.beyond(other.diameter) + other.beyond(self.diameter))).sqrt()
-    }
-
-    fn beyond(&self, diameter: f64) -> f64 {
-        let sq = self.spans.iter().take_while(|span| **span > diameter).map(|span| (span - diameter).powi(2));
-        0.5 * sq.sum::<f64>() / self.samples.points().len().max(1) as f64
-    }
 }
 
 /// The rotation into principal axes, with the directions of largest, second largest and smallest deviation as rows, and the
@@ -89,28 +68,4 @@ fn principal_axes(points: &[Point3<f64>], weights: &[f64]) -> (Matrix3<f64>, [f6
     order.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]));
     let axes = Matrix3::from_columns(&order.map(|i| eigen.eigenvectors.column(i).into_owned()));
     (axes.transpose(), order.map(|i| eigen.eigenvalues[i].max(0.0).sqrt()))
-}
-
-/// The largest squared distance between samples, and the distances between disjoint pairs of them, descending.
-fn extent(samples: &[Point3<f64>]) -> (f64, Vec<f64>) {
-    let mut sq_diameter = 0.0f64;
-    let mut spans = Vec::with_capacity(samples.len() / 2);
-    let mut free = vec![true; samples.len()];
-    for i in 0..samples.len() {
-        let mut farthest = (0.0, i);
-        // Those before are paired already.
-        for j in i + 1..samples.len() {
-            let sq_length = (samples[i] - samples[j]).norm_squared();
-            sq_diameter = sq_diameter.max(sq_length);
-            if sq_length > farthest.0 && free[j] {
-                farthest = (sq_length, j);
-            }
-        }
-        if free[i] && farthest.1 != i {
-            free[farthest.1] = false;
-            spans.push(farthest.0.sqrt());
-        }
-    }
-    spans.sort_by(|a, b| b.total_cmp(a));
-    (sq_diameter, spans)
 }

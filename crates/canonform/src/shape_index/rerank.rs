@@ -5,7 +5,7 @@ use std::borrow::Borrow;
 use descriptors::{PreparedShape, ShapeDistance, ShapeMetric, ShapePair};
 use index::VectorTable;
 use retrieval::{Neighbor, Refinement, refine_nearest};
-use rigid::{Alignment, align_near_points};
+use rigid::{Alignment, Reflections, align_points};
 
 use crate::error::Error;
 
@@ -51,8 +51,10 @@ pub fn rerank<S: Borrow<PreparedShape>>(
         let shape: &PreparedShape = shape.borrow();
         let robust = query.robust(shape);
         let left = ShapeMetric::form_limit(robust, limit);
-        let (a, b) = (&query.unit, &shape.unit);
-        let Some(alignment) = align_near_points(a, b, left) else { return Ok(None) };
+        let alignment = align_points(&query.unit, &shape.unit, Reflections::Allow);
+        if alignment.gap.rms > left {
+            return Ok(None);
+        }
         let pair = ShapePair::new([query, shape]).with_best(alignment);
         let fused = ShapeMetric::fused(&query.fused, &shape.fused);
         let are_parts = !(query.rigid.is_empty() || shape.rigid.is_empty());
