@@ -45,7 +45,7 @@ pub use out_of_sample::OutOfSample;
 pub use reconstruction::{Reconstruction, ReconstructionError, low_rank_factor, sample_eigenvalues};
 pub use regularization::{Regularization, RpiAlpha};
 pub use row_sample::{RowSample, sample_rows};
-pub use sample_search::{EmbedOtherwise, EmbedSamples, SampleSearch, SampleStop, SampleTrial, SamplesReport};
+pub use sample_search::{EmbedSamples, SampleSearch, SampleStop, SampleTrial, SamplesReport};
 pub use smacof::{LandmarkPairs, SmacofOptions, SmacofReport, SmacofStop, smacof};
 pub use spectral::{SpectralBasis, SpectralOptions, spectral};
 pub use stress::{DistanceRows, Stress, estimate_stress, normalized_stress, paper_stress, stress};

@@ -43,25 +43,6 @@ impl NystromOptions {
             _ => first,
         }
     }
-
-    /// Embeddings with ranks besides the default one that are worth trying, since none is the best for all distances: the least one
-    /// that is safe, a quarter of the samples, and three quarters. None unless the regularisation is [`Regularization::LowRank`]
-    /// without a rank.
-    ///
-    /// # Errors
-    /// As [`nystrom`].
-    pub fn other_ranks(&self, distances: &LandmarkDistances) -> Result<Vec<Embedding>, NmdsError> {
-        let Regularization::LowRank { rank: None } = self.regularization else { return Ok(Vec::new()) };
-        let n = distances.n_landmarks();
-        let (usual, least) = (self.validate(n)?, (self.dim + 4).min(n));
-        let mut ranks = vec![least, n / 4, n - n / 4];
-        ranks.retain(|rank| *rank >= least && *rank != usual);
-        ranks.sort_unstable();
-        ranks.dedup();
-        let with =
-            |rank| Self { regularization: Regularization::LowRank { rank: Some(rank) }, dim: self.dim };
-        ranks.into_iter().map(|rank| nystrom(distances, &with(rank))).collect()
-    }
 }
 
 /// Nystrom multidimensional scaling (NMDS): embeds `p` points from `n << p` columns of distances.

@@ -56,9 +56,6 @@ pub struct SamplesReport {
 /// Embeds from a number of samples.
 pub type EmbedSamples<'a> = dyn Fn(&LandmarkDistances) -> Result<Embedding, NmdsError> + 'a;
 
-/// Embeds from the same samples in other ways.
-pub type EmbedOtherwise<'a> = dyn Fn(&LandmarkDistances) -> Result<Vec<Embedding>, NmdsError> + 'a;
-
 /// Finds how many samples an embedding needs: until twice as many reduced the [stress of the paper](crate::paper_stress) by less
 /// than 1 %. The stress is that on held-out rows: distances from [16 points](Self::ROWS) that are drawn once, by
 /// [`RowSample::by_landmarks`] for the first embedding.
@@ -89,7 +86,6 @@ pub type EmbedOtherwise<'a> = dyn Fn(&LandmarkDistances) -> Result<Vec<Embedding
 ///     limit: 100,
 ///     seed: 0,
 ///     embed: &|distances| nystrom(distances, &options),
-///     otherwise: &|distances| options.other_ranks(distances),
 /// };
 /// let (embedding, distances, report) = search.run(landmarks, |rows| Ok(columns(rows)))?;
 /// println!("{:?} with {} samples and rank {}", report.stop, distances.n_landmarks(), embedding.rank);
@@ -105,9 +101,6 @@ pub struct SampleSearch<'a> {
     pub seed: u64,
     /// Embeds.
     pub embed: &'a EmbedSamples<'a>,
-    /// Other embeddings from the samples found, as with other ranks. The best replaces the one found if its interval is below the
-    /// stress of that: a few rows would too often prefer a worse one.
-    pub otherwise: &'a EmbedOtherwise<'a>,
 }
 
 impl SampleSearch<'_> {
@@ -120,7 +113,7 @@ impl SampleSearch<'_> {
     }
 
     /// Searches. `columns` measures the distances from as many samples, or from all there are, and `rows` those from some points,
-    /// one column each. Returns the embedding found and the distances it was made from.
+    /// one column each. Returns the embedding and the distances it was made from.
     ///
     /// # Errors
     /// [`NmdsError::Linalg`], and those of the embedding and of the distances.
@@ -138,45 +131,28 @@ impl SampleSearch<'_> {
             .map_err(NmdsError::from)?;
         let held_out =
             LandmarkDistances::new(sample.rows(), rows(&sample.rows())?).map_err(NmdsError::from)?;
-        let stress = |embedding: &Embedding| -> Result<Stress, NmdsError> {
-            Ok(estimate_stress(&embedding.coords, &held_out, &sample)?)
-        };
-
         let mut tried: Vec<SampleTrial> = Vec::new();
-        let (stop, mut found) = loop {
-            let (n, found) = (distances.n_landmarks(), stress(&embedding)?);
+        let stop = loop {
+            let n = distances.n_landmarks();
+            let found = estimate_stress(&embedding.coords, &held_out, &sample).map_err(NmdsError::from)?;
             let of_half = tried.iter().rev().find(|other| 2 * other.n_samples <= n);
             let has_settled = of_half.is_some_and(|half| half.stress <= (1.0 + GAIN) * found.value);
-            tried.push(SampleTrial::new(n, &embedding, &found));
+            let Stress { value: stress, normalized, .. } = found;
+            tried.push(SampleTrial { n_samples: n, rank: embedding.rank, stress, normalized });
             match () {
-                () if found.normalized < NEGLIGIBLE || has_settled => break (SampleStop::Settled, found),
-                () if n < asked || n >= distances.n_points() => break (SampleStop::AllPoints, found),
-                () if n >= self.limit => break (SampleStop::Limit, found),
+                () if normalized < NEGLIGIBLE || has_settled => break SampleStop::Settled,
+                () if n < asked || n >= distances.n_points() => break SampleStop::AllPoints,
+                () if n >= self.limit => break SampleStop::Limit,
                 () => {}
             }
             asked = (n + ((n as f64 * GROWTH) as usize).max(1)).min(self.limit);
             distances = columns(asked)?;
             embedding = (self.embed)(&distances)?;
         };
-        let usual = found.value;
-        for other in (self.otherwise)(&distances)? {
-            let estimate = stress(&other)?;
-            if estimate.interval[1] <= usual && estimate.value < found.value {
-                (found, embedding) = (estimate, other);
-            }
-        }
-        let last = SampleTrial::new(distances.n_landmarks(), &embedding, &found);
-        tried.pop();
-        tried.push(last);
-        let enough = tried.iter().find(|trial| trial.stress <= (1.0 + GAIN) * last.stress);
-        let sufficient = enough.unwrap_or(&last).n_samples;
+        let least = tried.last().map_or(f64::NAN, |last| last.stress);
+        let enough = tried.iter().find(|trial| trial.stress <= (1.0 + GAIN) * least);
+        let sufficient = enough.map_or(distances.n_landmarks(), |trial| trial.n_samples);
         let report = SamplesReport { stop, sufficient, rows: held_out.n_landmarks(), tried };
         Ok((embedding, distances, report))
-    }
-}
-
-impl SampleTrial {
-    fn new(n_samples: usize, embedding: &Embedding, found: &Stress) -> Self {
-        Self { n_samples, rank: embedding.rank, stress: found.value, normalized: found.normalized }
     }
 }

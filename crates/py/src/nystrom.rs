@@ -48,7 +48,7 @@ impl Extension {
     }
 }
 
-/// Finds how many landmarks are enough, and the best rank for them; none if the regularisation has none to choose. `columns` gives
+/// Finds how many landmarks are enough, and the rank for them; none if the regularisation has none to choose. `columns` gives
 /// the first landmarks of a number and their columns of distances, `rows` the columns of some points.
 #[pyfunction]
 pub(crate) fn search_landmarks(
@@ -67,7 +67,6 @@ pub(crate) fn search_landmarks(
             limit,
             seed,
             embed: &|distances| nmds::nystrom(distances, &options),
-            otherwise: &|distances| options.other_ranks(distances),
         };
         let of_number = |n: usize| {
             let columns = columns.clone();

@@ -9,7 +9,7 @@ use std::time::Instant;
 use base::{Budget, Exceeded};
 use geodesics::{DistanceSolver, FirstSample, PrunedSolver, Sampler, Sampling, Source};
 use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
-use nmds::{EmbedOtherwise, EmbedSamples, SampleSearch};
+use nmds::{EmbedSamples, SampleSearch};
 use surface::VertexId;
 
 use super::outcome::Outcome;
@@ -93,14 +93,8 @@ pub(super) struct Measurement<'a> {
 }
 
 impl Measurement<'_> {
-    /// Takes samples and embeds by the distances from them. A search for their number begins with `first` of them and compares its
-    /// result with those of `otherwise`.
-    pub(super) fn sampled(
-        &self,
-        first: usize,
-        embed: &EmbedSamples<'_>,
-        otherwise: &EmbedOtherwise<'_>,
-    ) -> Result<Outcome, Error> {
+    /// Takes samples and embeds by the distances from them. A search for their number begins with `first` of them.
+    pub(super) fn sampled(&self, first: usize, embed: &EmbedSamples<'_>) -> Result<Outcome, Error> {
         self.observer.begin("distances", self.samples.count_or(AUTO_LAST));
         let mut sampler = self.timed(|| self.sampling.start(self.solver, self.first, self.seed))?;
         if self.streams && self.budget.spill().is_some() {
@@ -115,7 +109,7 @@ impl Measurement<'_> {
                 (embed(&distances)?, distances, None)
             }
             Samples::Auto => {
-                let search = SampleSearch { first, limit: AUTO_LAST, seed: self.seed, embed, otherwise };
+                let search = SampleSearch { first, limit: AUTO_LAST, seed: self.seed, embed };
                 let columns = |n| {
                     self.budget.check()?;
                     self.take(&mut sampler, n)

@@ -139,12 +139,9 @@ impl EmbedMethod {
         let budget = measurement.budget.clone();
         let by_nystrom = |regularization| {
             let options = NystromOptions { regularization, dim };
-            let embed = |distances: &_| nystrom(distances, &options);
-            measurement.sampled(options.first_samples(), &embed, &|distances| options.other_ranks(distances))
+            measurement.sampled(options.first_samples(), &|distances| nystrom(distances, &options))
         };
-        let sampled = |embed: &EmbedSamples<'_>| {
-            measurement.sampled(SampleSearch::first(dim), embed, &|_| Ok(Vec::new()))
-        };
+        let sampled = |embed: &EmbedSamples<'_>| measurement.sampled(SampleSearch::first(dim), embed);
         let surface = || surface.unwrap_or_else(|| unreachable!("{} needs the surface", self.name()));
         match *self {
             Self::Nystrom { regularization } => by_nystrom(regularization),

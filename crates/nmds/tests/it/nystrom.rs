@@ -97,20 +97,8 @@ fn impossible_options_are_rejected_with_the_limit() {
 }
 
 #[test]
-fn other_ranks_are_tried_unless_one_is_given() {
-    let cloud = Cloud::new(60, 3, 5);
-    let ranks = |options: NystromOptions, n: usize| -> Vec<usize> {
-        let columns = Matrix::from_fn(60, n, |i, j| cloud.distance(i, j).powf(0.7));
-        let distances = LandmarkDistances::new((0..n).collect(), columns).unwrap();
-        let others = options.other_ranks(&distances).unwrap();
-        others.iter().map(|embedding| embedding.rank).collect()
-    };
-    assert_eq!(ranks(NystromOptions::default(), 40), [7, 10, 30]);
-    assert_eq!(ranks(NystromOptions::default(), 12), [9]);
-    assert_eq!(ranks(NystromOptions::default(), 4), [0; 0]);
-    assert_eq!(ranks(low_rank(6), 40), [0; 0]);
-    assert_eq!(ranks(options(Regularization::None), 40), [0; 0]);
-    assert_eq!([NystromOptions::default(), low_rank(30)].map(|o| o.first_samples()), [8, 30]);
+fn a_search_begins_with_the_rank_that_is_given() {
+    assert_eq!([NystromOptions::default(), low_rank(30)].map(|options| options.first_samples()), [8, 30]);
 }
 
 #[test]

@@ -29,21 +29,10 @@ impl Problem {
         LandmarkDistances::new(landmarks, columns).unwrap()
     }
 
-    /// Runs a search that compares all ranks worth trying, and those given, at its end.
-    fn search(&self, limit: usize, seed: u64, ranks: &[usize]) -> Found {
-        let otherwise = |distances: &LandmarkDistances| {
-            let given = ranks.iter().map(|rank| self.of_rank(distances, *rank));
-            Ok(self.options.other_ranks(distances)?.into_iter().chain(given).collect())
-        };
+    fn search(&self, limit: usize, seed: u64) -> Found {
         let embed = |distances: &LandmarkDistances| nystrom(distances, &self.options);
-        let first = self.options.first_samples();
-        let search = SampleSearch { first, limit, seed, embed: &embed, otherwise: &otherwise };
+        let search = SampleSearch { first: self.options.first_samples(), limit, seed, embed: &embed };
         search.run::<NmdsError>(|n| Ok(self.landmarks(n)), |rows| Ok(self.columns(rows))).unwrap()
-    }
-
-    fn of_rank(&self, distances: &LandmarkDistances, rank: usize) -> Embedding {
-        let regularization = Regularization::LowRank { rank: Some(rank) };
-        nystrom(distances, &NystromOptions { regularization, ..self.options.clone() }).unwrap()
     }
 }
 
@@ -51,7 +40,7 @@ type Found = (Embedding, LandmarkDistances, SamplesReport);
 
 #[test]
 fn a_search_ends_when_twice_the_samples_do_not_help() {
-    let (_, distances, report) = Problem::new(240, 0.8, 3).search(200, 0, &[]);
+    let (_, distances, report) = Problem::new(240, 0.8, 3).search(200, 0);
     assert_eq!(report.stop, SampleStop::Settled);
     let (trials, half) = (report.tried, report.sufficient);
     assert_eq!(trials.last().unwrap().n_samples, distances.n_landmarks());
@@ -63,30 +52,20 @@ fn a_search_ends_when_twice_the_samples_do_not_help() {
 
 #[test]
 fn a_search_ends_for_other_reasons_too() {
-    let stop = |p, power, limit| Problem::new(p, power, 3).search(limit, 1, &[]).2.stop;
+    let stop = |p, power, limit| Problem::new(p, power, 3).search(limit, 1).2.stop;
     assert_eq!(stop(60, 0.8, 10), SampleStop::Limit);
     assert_eq!(stop(7, 0.8, 640), SampleStop::AllPoints);
     // Points in space are exact from the first samples.
-    let (_, _, report) = Problem::new(80, 1.0, 3).search(640, 0, &[]);
+    let (_, _, report) = Problem::new(80, 1.0, 3).search(640, 0);
     assert_eq!((report.tried.len(), report.stop), (1, SampleStop::Settled));
-}
-
-#[test]
-fn the_best_of_several_ranks_is_kept_and_a_worse_one_is_not() {
-    let problem = Problem::new(200, 0.8, 3);
-    let (found, distances, report) = problem.search(64, 3, &[]);
-    let again = problem.search(64, 3, &[4]);
-    assert_eq!((&again.0, &again.2), (&found, &report));
-    assert_ne!(problem.of_rank(&distances, 4), found);
-    assert_eq!(problem.of_rank(&distances, found.rank), found, "the same as with this rank given");
 }
 
 #[test]
 fn the_unit_of_length_changes_nothing() {
     let problem = Problem::new(150, 0.8, 3);
-    let base = problem.search(100, 5, &[]).2;
+    let base = problem.search(100, 5).2;
     let scaled = DistanceMatrix::from_pairs(150, |i, j| 1024.0 * problem.distances.get(i, j)).unwrap();
-    let other = Problem { distances: scaled, ..problem }.search(100, 5, &[]).2;
+    let other = Problem { distances: scaled, ..problem }.search(100, 5).2;
     assert_eq!(base.tried.len(), other.tried.len());
     for (a, b) in base.tried.iter().zip(&other.tried) {
         assert!((a.normalized / b.normalized - 1.0).abs() < 1e-9);

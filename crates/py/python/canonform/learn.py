@@ -259,7 +259,7 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         return X[:, i] if self.metric == "precomputed" else self._column(X[i], X)
 
     def _searched(self, X: Any, taken: _Landmarks) -> tuple[int, int | None]:
-        """Takes landmarks until they are enough; their number, and the best rank for them."""
+        """Takes landmarks until they are enough; their number, and the rank for them."""
         seed = int(check_random_state(self.random_state).randint(2**31 - 1)) if self.random_state is not None else 0
         settings = self._settings()
         limit = min(_MOST_LANDMARKS, len(X))
