@@ -126,7 +126,8 @@ pub fn repair(
     };
     let left = faces.iter().filter_map(kept);
     let part = |face: &[VertexId; 3]| {
-        Some([VertexId::sorted(kept(face)?), kept(parents.get(&VertexId::sorted(*face))?)?])
+        let whole = parents.get(&VertexId::sorted(*face))?;
+        Some([VertexId::sorted(kept(face)?), kept(whole)?])
     };
     let mut parts: Vec<FacePart> = faces.iter().filter_map(part).collect();
     parts.sort_unstable();
