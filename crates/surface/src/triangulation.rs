@@ -316,26 +316,6 @@ impl Triangulation {
     }
 }
 
-impl Triangulation {
-    /// The number of triangles around the vertex in a corner, glued side to side until they are back at the corner; zero if
-    /// they end at a free side.
-    #[inline]
-    pub fn n_around(&self, start: CornerId) -> usize {
-        let vertex = self.corner_vertex(start);
-        let (mut corner, mut is_forward, mut n) = (start, true, 0);
-        loop {
-            n += 1;
-            let side = if is_forward { corner.next() } else { corner.prev() };
-            let Some(far) = self.opposite(side) else { return 0 };
-            is_forward = self.corner_vertex(far.next()) == vertex;
-            corner = if is_forward { far.next() } else { far.prev() };
-            if corner == start {
-                return n;
-            }
-        }
-    }
-}
-
 #[cfg(test)]
 pub(crate) mod tests {
     use mesh::shapes;

@@ -4,12 +4,14 @@ use std::collections::HashMap;
 
 use rayon::prelude::*;
 use surface::{
-    AngleSum, CornerId, EdgeGraph, FaceId, Link, Rows, Triangulation, VertexId, scalar_product, twice_area,
+    AngleSum, CornerId, EdgeGraph, FaceId, GluedTriangle, Link, Rows, Triangulation, VertexId,
+    scalar_product, twice_area,
 };
 
 use super::window::COLLINEAR;
 use crate::order::ranks;
 use crate::plane::{self, PlanePoint};
+use crate::prefetch::prefetch;
 
 /// A triangle, laid out in the plane anticlockwise: one cache line. Corners are numbered 0, 1 and 2, sides by the corner
 /// opposite. Corner 0 is at the origin, and a shortest side, the base, runs from there along the x-axis to corner 1: from
@@ -130,6 +132,9 @@ const MIN_HEIGHT: f64 = 8.0 * COLLINEAR;
 /// The most that this may turn its shortest side, in radians.
 const MIN_SLOPE: f64 = 1e-6;
 
+/// Triangles that are laid out between the prefetch of one and its use. Affects speed, not results.
+const AHEAD: usize = 8;
+
 /// Edges of more triangles are hubs.
 const MAX_AROUND: usize = 8;
 
@@ -139,78 +144,100 @@ struct Renumbered<'t> {
     rank: Vec<u32>,
     /// The old number of every new one: triangles follow their first vertices.
     old: Vec<u32>,
-    /// The new number of every old one.
-    new: Vec<u32>,
+    /// The new number of the first corner of every old triangle.
+    new: Vec<CornerId>,
 }
 
 impl<'t> Renumbered<'t> {
     fn new(triangulation: &'t Triangulation, order: &[u32]) -> Self {
         let (rank, triangles) = (ranks(order), triangulation.triangles());
-        let first = |t: usize| triangles[t].vertices.iter().map(|v| rank[v.index()]).min().unwrap_or(0);
-        let by_vertex =
-            Rows::collect(order.len(), (0..triangles.len()).map(|t| (first(t) as usize, t as u32)));
+        let first = |t: &GluedTriangle| t.vertices.iter().map(|v| rank[v.index()]).min().unwrap_or(0);
+        let firsts: Vec<u32> = triangles.par_iter().map(first).collect();
+        let by_vertex = Rows::collect(order.len(), firsts.iter().map(|v| *v as usize).zip(0..));
         let old = by_vertex.items().to_vec();
         let new = ranks(&old);
-        Self { triangulation, rank, old, new }
-    }
-
-    /// The old corner that comes first: the last is opposite the shortest side.
-    fn first_corner(&self, old: u32) -> usize {
-        let lengths = self.triangulation.triangles()[old as usize].lengths;
-        let shortest = if lengths[1] < lengths[0] { 1 } else { 0 };
-        if lengths[2] <= lengths[shortest] { 0 } else { shortest + 1 }
+        let new = new.iter().zip(triangles);
+        let new = new.map(|(t, old)| CornerId::new(FaceId(*t), (3 - first_corner(old.lengths)) % 3));
+        Self { triangulation, old, new: new.collect(), rank }
     }
 
     /// The new number of an old corner.
     fn new_corner(&self, old: CornerId) -> CornerId {
-        let t = old.face();
-        CornerId::new(FaceId(self.new[t.index()]), (old.slot() + 3 - self.first_corner(t.0)) % 3)
-    }
-
-    /// The old number of a new corner.
-    fn old_corner(&self, new: CornerId) -> CornerId {
-        let old = self.old[new.face().index()];
-        CornerId::new(FaceId(old), (new.slot() + self.first_corner(old)) % 3)
+        let first = self.new[old.face().index()];
+        CornerId::new(first.face(), (first.slot() + old.slot()) % 3)
     }
 
     /// All triangles in their new order; `across` gives the next corner opposite the same side.
     fn laid_out(&self, across: impl Fn(CornerId) -> CornerId + Sync) -> Vec<MarchTriangle> {
-        let laid_out = |(new, old): (u32, &u32)| {
-            let corners = FaceId(new).corners().map(|corner| self.old_corner(corner));
-            let side =
-                |corner: CornerId| self.triangulation.triangles()[*old as usize].lengths[corner.slot()];
-            let lengths = corners.map(side);
-            let is_irregular = corners.into_iter().any(|corner| across(across(corner)) != corner);
-            let mut vertices =
-                corners.map(|corner| self.rank[self.triangulation.corner_vertex(corner).index()]);
-            vertices[0] |= if is_irregular { IS_IRREGULAR } else { 0 };
-            let across = corners.map(|corner| self.new_corner(across(corner)));
+        let triangles = self.triangulation.triangles();
+        let laid_out = |(new, old): (usize, &u32)| {
+            let triangle = &triangles[*old as usize];
+            if let Some(later) = self.old.get(new + AHEAD) {
+                // It may be in two cache lines.
+                let GluedTriangle { lengths, vertices, .. } = &triangles[*later as usize];
+                prefetch(&lengths[0]);
+                prefetch(&vertices[2]);
+            }
+            let first = first_corner(triangle.lengths);
+            let slots = [first, (first + 1) % 3, (first + 2) % 3];
+            let lengths = slots.map(|slot| triangle.lengths[slot]);
+            let mut vertices = slots.map(|slot| self.rank[triangle.vertices[slot].index()]);
+            let across = slots.map(|slot| {
+                let corner = CornerId::new(FaceId(*old), slot);
+                let far = across(corner);
+                // A free side has no other triangle, or several.
+                if far != corner && self.triangulation.opposite(corner).is_none() {
+                    vertices[0] |= IS_IRREGULAR;
+                }
+                self.new_corner(far)
+            });
             MarchTriangle { lengths, apex: apex(lengths), across, vertices }
         };
-        let numbers = (0..self.old.len() as u32).into_par_iter();
-        numbers.zip(&self.old).map(laid_out).collect()
+        self.old.par_iter().enumerate().map(laid_out).collect()
     }
+}
 
-    /// For every vertex in its new order whether shortest paths may bend there, and whether its triangles form several fans;
-    /// `corners` are those of the triangles at each.
-    fn kinds(&self, corners: &Rows<CornerId>) -> Vec<[bool; 2]> {
-        let kind = |v: usize| {
-            let (mut angle, mut n_free) = (AngleSum::default(), 0);
-            for corner in corners.row(v) {
-                let old = self.old_corner(*corner);
-                let is_free = |side: &CornerId| self.triangulation.opposite(*side).is_none();
-                n_free += [old.next(), old.prev()].iter().filter(|side| is_free(side)).count();
-                let lengths = self.triangulation.triangles()[old.face().index()].lengths;
-                let [opposite, p, q] = [0, 1, 2].map(|step| lengths[(old.slot() + step) % 3]);
-                angle.add([twice_area([opposite, p, q]), scalar_product(opposite, p, q)]);
+/// The corner that comes first in a triangle with these sides: the last is opposite the shortest side.
+fn first_corner(lengths: [f64; 3]) -> usize {
+    let shortest = if lengths[1] < lengths[0] { 1 } else { 0 };
+    if lengths[2] <= lengths[shortest] { 0 } else { shortest + 1 }
+}
+
+/// For every vertex whether shortest paths may bend there, and whether its triangles form several fans; `corners` are those of
+/// the triangles at each.
+fn kinds(triangles: &[MarchTriangle], corners: &Rows<CornerId>) -> Vec<[bool; 2]> {
+    let at = |corner: CornerId| &triangles[corner.face().index()];
+    let across = |side: CornerId| at(side).across[side.slot()];
+    let areas: Vec<f64> = triangles.par_iter().map(|triangle| twice_area(triangle.lengths)).collect();
+    // Only two triangles can be glued.
+    let is_free = |side: &CornerId| {
+        across(*side) == *side || (at(*side).is_irregular() && across(across(*side)) != *side)
+    };
+    let kind = |v: usize| {
+        let (mut angle, mut n_free) = (AngleSum::default(), 0);
+        for corner in corners.row(v) {
+            n_free += [corner.next(), corner.prev()].iter().filter(|side| is_free(side)).count();
+            let [opposite, p, q] = [0, 1, 2].map(|step| at(*corner).lengths[(corner.slot() + step) % 3]);
+            angle.add([areas[corner.face().index()], scalar_product(opposite, p, q)]);
+        }
+        let first = corners.row(v).first().filter(|_| n_free == 0);
+        let is_inside = first.is_some_and(|first| {
+            // Around the vertex, until the first corner comes again.
+            let (mut corner, mut is_forward, mut n) = (*first, true, 0);
+            loop {
+                n += 1;
+                let far = across(if is_forward { corner.next() } else { corner.prev() });
+                is_forward = at(far).vertex(far.next().slot()).index() == v;
+                corner = if is_forward { far.next() } else { far.prev() };
+                if corner == *first {
+                    return n == corners.row(v).len();
+                }
             }
-            let first = corners.row(v).first().filter(|_| n_free == 0).map(|first| self.old_corner(*first));
-            let is_inside = first.is_some_and(|old| self.triangulation.n_around(old) == corners.row(v).len());
-            let has_fans = n_free > 2 || (first.is_some() && !is_inside);
-            [angle.exceeds(if is_inside { 2 } else { 1 }, EXCESS), has_fans]
-        };
-        (0..corners.n_rows()).into_par_iter().map(kind).collect()
-    }
+        });
+        let has_fans = n_free > 2 || (first.is_some() && !is_inside);
+        [angle.exceeds(if is_inside { 2 } else { 1 }, EXCESS), has_fans]
+    };
+    (0..corners.n_rows()).into_par_iter().map(kind).collect()
 }
 
 impl Triangles {
@@ -232,7 +259,7 @@ impl Triangles {
         let hubs = hubs.map(|(corner, hub)| (renumbered.new_corner(corner), hub)).collect();
         let at_vertex = all.iter().flat_map(MarchTriangle::vertices).zip((0..).map(CornerId));
         let corners = Rows::collect(order.len(), at_vertex.map(|(v, corner)| (v.index(), corner)));
-        let kinds = renumbered.kinds(&corners);
+        let kinds = kinds(&all, &corners);
         all.par_iter_mut().for_each(|triangle| {
             for slot in 0..3 {
                 let [may_bend, _] = kinds[triangle.vertex(slot).index()];
