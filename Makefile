@@ -50,50 +50,41 @@ lint: ## Check formatting, clippy and rustdoc; warnings are errors
 bench: ## Time the distance solvers on meshes of several sizes
 	$(CARGO) bench --locked -p bench
 
-bench-peers: build ## Compare distance solvers with other programs and write its section of docs/benchmarks.md (needs Python and test meshes)
+# Runs bench/$(1).py with NumPy and other packages.
+define benchmark
 	test -x target/peers/bin/python || python3 -m venv target/peers
-	target/peers/bin/pip install --quiet numpy scipy potpourri3d pygeodesic meshlib
-	target/peers/bin/python bench/peers.py
+	target/peers/bin/pip install --quiet numpy $(2)
+	target/peers/bin/python bench/$(1).py
+endef
+
+bench-peers: build ## Compare distance solvers with other programs and write its section of docs/benchmarks.md (needs Python and test meshes)
+	$(call benchmark,peers,scipy potpourri3d pygeodesic meshlib)
 
 bench-nmds: build ## Compare canonical forms with potpourri3d and NumPy and write its section of docs/benchmarks.md (needs Python and test meshes)
 	$(CARGO) build --release --locked -p canonform --example forms
-	test -x target/peers/bin/python || python3 -m venv target/peers
-	target/peers/bin/pip install --quiet numpy potpourri3d
-	target/peers/bin/python bench/nmds.py
+	$(call benchmark,nmds,potpourri3d)
 
 bench-preparation: ## Time the preparation of meshes and write its section of docs/benchmarks.md (needs Python and test meshes)
 	$(CARGO) build --release --locked -p canonform --example preparation
-	test -x target/peers/bin/python || python3 -m venv target/peers
-	target/peers/bin/pip install --quiet numpy
-	target/peers/bin/python bench/preparation.py
+	$(call benchmark,preparation,)
 
 bench-maps: build ## Compare dense maps with pyFM and write its section of docs/benchmarks.md (needs Python and test meshes)
 	$(CARGO) build --release --locked -p canonform-datasets --example placed_shapes
-	test -x target/peers/bin/python || python3 -m venv target/peers
-	target/peers/bin/pip install --quiet numpy scipy pyfmaps
-	target/peers/bin/python bench/maps.py
+	$(call benchmark,maps,scipy pyfmaps)
 
 bench-search: ## Compare search among up to a million vectors with faiss and hnswlib and write its section of docs/benchmarks.md (needs Python; takes a quarter of an hour)
 	$(CARGO) build --release --locked -p canonform-index --example vectors
-	test -x target/peers/bin/python || python3 -m venv target/peers
-	target/peers/bin/pip install --quiet numpy hnswlib faiss-cpu
-	target/peers/bin/python bench/search.py
+	$(call benchmark,search,hnswlib faiss-cpu)
 
 bench-capacity: build ## Measure what a shape costs, simulate ten million and write its section of docs/benchmarks.md (needs Python; takes an hour)
 	$(CARGO) build --release --locked -p canonform-index --example vectors
-	test -x target/peers/bin/python || python3 -m venv target/peers
-	target/peers/bin/pip install --quiet numpy
-	target/peers/bin/python bench/capacity.py
+	$(call benchmark,capacity,)
 
 bench-duplicates: build ## Time the search for duplicates among 1,000 generated shapes and write its section of docs/benchmarks.md (needs Python)
-	test -x target/peers/bin/python || python3 -m venv target/peers
-	target/peers/bin/pip install --quiet numpy
-	target/peers/bin/python bench/duplicates.py
+	$(call benchmark,duplicates,)
 
 bench-packages: build ## Compare distances, embeddings and refusals with Python packages and write its section of docs/benchmarks.md (needs Python)
-	test -x target/peers/bin/python || python3 -m venv target/peers
-	target/peers/bin/pip install --quiet --no-binary gdist numpy scipy potpourri3d pygeodesic gdist scikit-learn
-	target/peers/bin/python bench/packages.py
+	$(call benchmark,packages,--no-binary gdist scipy potpourri3d pygeodesic gdist scikit-learn)
 
 fmt: ## Format the sources
 	$(CARGO) fmt --all
