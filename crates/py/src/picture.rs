@@ -1,6 +1,5 @@
 //! Shaded pictures, and surfaces to turn.
 
-use canonform::mesh::TriMesh;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
@@ -45,7 +44,7 @@ pub(crate) fn draw<'py>(
     marks: PyReadonlyArray2<'py, u8>,
     look: Look,
 ) -> PyResult<Bound<'py, PyBytes>> {
-    let mesh = finite_mesh(&vertices, &faces)?;
+    let mesh = arrays::mesh_of(&vertices, &faces)?;
     let usual = RenderOptions::default();
     let coloring = match (values, colors) {
         (None, None) => usual.coloring,
@@ -116,22 +115,9 @@ pub(crate) fn scene_page(
     title: &str,
     values_name: &str,
 ) -> PyResult<String> {
-    let mut geometry = Geometry::new(&finite_mesh(&vertices, &faces)?);
+    let mut geometry = Geometry::new(&arrays::mesh_of(&vertices, &faces)?);
     if let Some(values) = values {
         geometry = geometry.with_values(values_name, values.as_slice()?);
     }
     Ok(py.detach(|| viewer::scene_page(geometry, title)))
-}
-
-/// The mesh without the faces at vertices that have no finite coordinates.
-fn finite_mesh(vertices: &PyReadonlyArray2<'_, f64>, faces: &PyReadonlyArray2<'_, i64>) -> PyResult<TriMesh> {
-    let mut mesh: TriMesh = arrays::mesh_of(vertices, faces)?;
-    let finite: Vec<bool> = mesh.positions.iter().map(|p| p.coords.iter().all(|x| x.is_finite())).collect();
-    mesh.faces.retain(|face| face.iter().all(|v| finite.get(v.index()).is_some_and(|finite| *finite)));
-    for (p, finite) in mesh.positions.iter_mut().zip(finite) {
-        if !finite {
-            *p = Default::default();
-        }
-    }
-    Ok(mesh)
 }
