@@ -39,8 +39,8 @@ def nystrom(distances, samples):
     values, vectors = np.linalg.eigh((block + block.T) / 2)
     kept = np.argsort(-np.abs(values))[:RANK]
     values, vectors = values[kept], vectors[:, kept]
-    centred = squared - squared.mean(0)
-    q, r = np.linalg.qr(centred @ vectors)
+    centered = squared - squared.mean(0)
+    q, r = np.linalg.qr(centered @ vectors)
     gram = -0.5 * (r / values) @ r.T
     values, vectors = np.linalg.eigh((gram + gram.T) / 2)
     kept = np.argsort(-values)[:DIM]

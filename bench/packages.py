@@ -69,13 +69,13 @@ def embeddings(folder, path):
         add(name, spent.processor, np.load(out))
     measured = run([CANONFORM, "geodesic", path, "--all-pairs", "--threads", "1", "-o", pairs]).processor
     for name, make, data, before in [("scikit-learn ClassicalMDS, all pairs", classical, np.load(pairs), measured),
-                                     ("scikit-learn Isomap, 8 neighbours in space", isomap, vertices, 0)]:
+                                     ("scikit-learn Isomap, 8 neighbors in space", isomap, vertices, 0)]:
         try:
             form, seconds = asked(make, data)
             add(name, seconds + before, form)
         except Failed as fault:
             rows.append((name, "-", str(fault)))
-    return table(["embedding", "seconds", "normalised stress"], rows)
+    return table(["embedding", "seconds", "normalized stress"], rows)
 
 
 def broken(vertices, faces):

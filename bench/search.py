@@ -31,8 +31,8 @@ def signatures(n, dim, seed, width):
     """n points: families > classes of different sizes > poses on a manifold of six dimensions."""
     random = np.random.default_rng(seed)
     families, classes, sheet = 50, max(50, n // 200), 6
-    centre = random.normal(size=(families, dim)).astype("f4")[random.integers(0, families, classes)]
-    centre += 0.6 * random.normal(size=(classes, dim)).astype("f4")
+    center = random.normal(size=(families, dim)).astype("f4")[random.integers(0, families, classes)]
+    center += 0.6 * random.normal(size=(classes, dim)).astype("f4")
     basis = (random.normal(size=(classes, sheet, dim)) / np.sqrt(sheet)).astype("f4")
     share = random.pareto(1.5, classes) + 0.2
     of = np.sort(random.choice(classes, n, p=share / share.sum()))
@@ -41,7 +41,7 @@ def signatures(n, dim, seed, width):
         pose = width * random.normal(size=(count, sheet))
         pose[:, 0] += 0.3 * pose[:, 1] ** 2
         noise = 0.05 * random.normal(size=(count, dim))
-        rows[first:first + count] = centre[c] + pose @ basis[c] + noise
+        rows[first:first + count] = center[c] + pose @ basis[c] + noise
     return rows[random.permutation(n)]
 
 

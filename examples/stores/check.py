@@ -35,7 +35,7 @@ def same(a, b):
 
 
 def check(index, program="canonform"):
-    """Number of shapes whose neighbours were compared."""
+    """Number of shapes whose neighbors were compared."""
     with tempfile.TemporaryDirectory() as folder:
         parquet = str(Path(folder) / "shapes.parquet")
         subprocess.run([program, "index", "export", index, "-o", parquet], check=True)
@@ -53,4 +53,4 @@ def check(index, program="canonform"):
 
 
 if __name__ == "__main__":
-    print(f"{check(*sys.argv[1:])} shapes have the same neighbours in DuckDB, LanceDB and canonform")
+    print(f"{check(*sys.argv[1:])} shapes have the same neighbors in DuckDB, LanceDB and canonform")

@@ -49,7 +49,7 @@ pub(crate) struct Options {
     pub(crate) printed: Printed,
     /// Shapes of each class that are searched for.
     pub(crate) queries: usize,
-    /// Nearest neighbours that vote.
+    /// Nearest neighbors that vote.
     pub(crate) voters: usize,
     /// Most shapes whose forms are all aligned with each other.
     pub(crate) aligned: usize,

@@ -59,7 +59,7 @@ pub(crate) fn best_e(labels: &Labels) -> Result<f64> {
     Ok(QueryScores::new(&ideal, labels)?.mean(labels, Averaging::Micro).e)
 }
 
-/// The low-rank regularisation that keeps half of `n` eigenpairs.
+/// The low-rank regularization that keeps half of `n` eigenpairs.
 pub(crate) fn half(n: usize) -> Regularization {
     Regularization::LowRank { rank: Some(n.div_ceil(2)) }
 }

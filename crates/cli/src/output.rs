@@ -215,7 +215,7 @@ pub(crate) fn check_output(path: &Path) -> Result<()> {
     }
 }
 
-/// Writes a mesh coloured by one value per vertex.
+/// Writes a mesh colored by one value per vertex.
 pub(crate) fn write_colored(
     path: &Path,
     mesh: &TriMesh,

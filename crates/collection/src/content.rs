@@ -11,7 +11,7 @@ use mesh_io::ReadLimits;
 use crate::error::CollectionError;
 use crate::storage::{Storage, member_of, mesh_at, open_archive};
 
-/// The hash of the files of a mesh, by which an index recognises them. A member of an archive has the hash of the same file
+/// The hash of the files of a mesh, by which an index recognizes them. A member of an archive has the hash of the same file
 /// outside.
 ///
 /// # Errors

@@ -22,7 +22,7 @@ impl CanonicalForm {
     /// Scaling in three dimensions flattens what needs more of them: limbs become thin, ears vanish. Lian et al. 2013
     /// (`lian2013form` in `REFERENCES.bib`) move the rigid parts of a surface to where the form has them. Here every one-ring is
     /// such a part (Sorkine and Alexa 2007, `sorkine2007`): with `v` the vertices of the mesh, `z` those of the form, at unit
-    /// area, and `a` the shares of the area, the points `x` and rotations `R` minimise
+    /// area, and `a` the shares of the area, the points `x` and rotations `R` minimize
     ///
     /// `½ Σ_ij w_ij |x_i - x_j - R_i (v_i - v_j)|² + Σ_i a_i |x_i - z_i|²`,
     ///

@@ -13,7 +13,7 @@ use crate::{Embedding, NmdsError};
 /// Classical multidimensional scaling: the coordinates `Z = U √L` from the `dim` largest eigenpairs of
 /// `B = -1/2 J E J`, with `E_ij = d_ij^2` and `J = I - 11'/p`.
 ///
-/// * Minimises the strain `‖Z Z' - B‖`; exact for Euclidean distances.
+/// * Minimizes the strain `‖Z Z' - B‖`; exact for Euclidean distances.
 /// * `eigenvalues` holds only `dim` values, so `negative_mass` does not cover the rest; see [`classical_full`].
 /// * Cost: `O(p^2)` per step of a Krylov iteration; `O(p)` memory besides the distances.
 ///

@@ -50,7 +50,7 @@ impl Embedding {
         Ok(Self::from_orthonormal(columns.resize_horizontally(dim, 0.0), inner.values, unit, rank))
     }
 
-    /// Scales orthonormal columns by the roots of their eigenvalues and normalises their signs.
+    /// Scales orthonormal columns by the roots of their eigenvalues and normalizes their signs.
     pub(crate) fn from_orthonormal(columns: Matrix, eigenvalues: Vec<f64>, unit: f64, rank: usize) -> Self {
         Self::from_orthonormal_with_factors(columns, eigenvalues, unit, rank).0
     }

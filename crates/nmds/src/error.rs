@@ -19,7 +19,7 @@ pub enum NmdsError {
         /// The largest possible dimension.
         limit: usize,
     },
-    /// The regularisation parameter is not a positive number.
+    /// The regularization parameter is not a positive number.
     #[error("the c of alpha = c sigma1^4 must be a positive number, not {0}; 1e-10 is a good choice")]
     BadAlpha(f64),
     /// Two arguments have different numbers of points.

@@ -27,7 +27,7 @@ use crate::{Embedding, NmdsError};
 /// [`NmdsError::BadDimension`], [`NmdsError::NoExtent`], [`NmdsError::Linalg`].
 pub fn landmark_mds(distances: &LandmarkDistances, dim: usize) -> Result<Embedding, NmdsError> {
     let n = distances.n_landmarks();
-    // Centring removes one dimension.
+    // Centering removes one dimension.
     check_dim(dim, n.saturating_sub(1))?;
     let unit = check_extent(distances.max(), distances.n_points())?;
     let mut block = distances.sq_block() / (unit * unit);

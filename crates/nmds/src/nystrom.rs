@@ -51,7 +51,7 @@ impl NystromOptions {
 /// |---|---|---|---|
 /// | `R` | `columns` | p x n | squared distances to the landmarks |
 /// | `S` | `block` | n x n | its rows at the landmarks; symmetric, **indefinite** |
-/// | `V~ Λ~⁻¹ V~'` | `inverse` | n x n | its regularised pseudo-inverse, in factors |
+/// | `V~ Λ~⁻¹ V~'` | `inverse` | n x n | its regularized pseudo-inverse, in factors |
 /// | `Q W` | `q`, `w` | p x n1, n1 x n1 | QR decomposition of `J R V~` |
 /// | `Z` | result | p x k | coordinates, columns by descending eigenvalue |
 ///

@@ -29,8 +29,8 @@ pub struct ReconstructionError {
 ///
 /// With `A = Q' E Q` and `Ê = Q Â Q'`, the error is a sum of squares without cancellation:
 /// `‖E - Ê‖² = ‖E - QQ'E‖² + ‖Q'E - A Q'‖² + ‖A - Â‖²`. The first term is the error of the best projection, the first two
-/// that of the best symmetric `X`, and only the last depends on the regularisation. So two passes over the rows of `E`
-/// suffice for any number of regularisations of the same samples.
+/// that of the best symmetric `X`, and only the last depends on the regularization. So two passes over the rows of `E`
+/// suffice for any number of regularizations of the same samples.
 ///
 /// * Cost: [`Self::new`] takes `O(p^2 n)` time, in blocks of rows, and `O(p n)` memory; each error `O(n^3)` time.
 /// * Does not depend on the number of threads.
@@ -90,7 +90,7 @@ impl Reconstruction {
         self.error_of(self.outside_sq)
     }
 
-    /// The error of the Nystrom approximation with this regularisation, by eq. 4, 3 or 9. The default rank is that for three
+    /// The error of the Nystrom approximation with this regularization, by eq. 4, 3 or 9. The default rank is that for three
     /// dimensions.
     ///
     /// # Errors

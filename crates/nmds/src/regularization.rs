@@ -1,11 +1,11 @@
-//! Regularised inverses of the sample matrix.
+//! Regularized inverses of the sample matrix.
 
 use linalg::{LandmarkDistances, Matrix, SymmetricEigen, symmetric_eigen, thin_svd};
 
 use crate::NmdsError;
 use crate::squares::n_significant;
 
-/// How the pseudo-inverse `S⁺` in the Nystrom approximation `Ê = R S⁺ R'` is regularised: small eigenvalues of `S` are
+/// How the pseudo-inverse `S⁺` in the Nystrom approximation `Ê = R S⁺ R'` is regularized: small eigenvalues of `S` are
 /// mostly noise, and their reciprocals are large.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "kebab-case")]
@@ -51,7 +51,7 @@ pub enum RpiAlpha {
     /// `α = σ1³`, the paper's choice after Civril et al. (`civril2007` in `REFERENCES.bib`).
     ///
     /// **The only choice that depends on the unit of length**: `α` is compared with `σ⁴`, so `c = 1 / σ1` with `σ1` in the
-    /// squared unit of the distances. With distances in metres it regularises a million times as strongly as in
+    /// squared unit of the distances. With distances in metres it regularizes a million times as strongly as in
     /// millimetres.
     Paper,
 }
@@ -102,7 +102,7 @@ impl Regularization {
     }
 
     /// The number of eigenpairs (for CUR, of columns) used with `n_landmarks` samples to embed in `dim` dimensions: n1, or
-    /// n for regularisations that use all.
+    /// n for regularizations that use all.
     ///
     /// # Errors
     /// [`NmdsError::BadRank`], [`NmdsError::BadAlpha`].

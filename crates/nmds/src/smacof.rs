@@ -1,4 +1,4 @@
-//! SMACOF: iterative minimisation of the metric stress.
+//! SMACOF: iterative minimization of the metric stress.
 
 use base::{Budget, Observer};
 use linalg::{Matrix, pseudo_inverse};

@@ -94,7 +94,7 @@ pub fn spectral(
 /// demands and the basis allows.
 fn interpolant(samples: &[usize], basis: &SpectralBasis<'_>, mu: f64) -> Result<Matrix, NmdsError> {
     let area: f64 = basis.masses.iter().sum();
-    // Normalises to unit area: eigenvalues times the area, eigenvectors times its root.
+    // Normalizes to unit area: eigenvalues times the area, eigenvectors times its root.
     let values: Vec<f64> = basis.values.iter().map(|value| value * area).collect();
     let at_samples = basis.vectors.select_rows(samples) * area.sqrt();
     let coefficients = match mu.is_infinite() && samples.len() >= values.len() {

@@ -20,7 +20,7 @@ use crate::surface::Surface;
 pub(crate) struct DistanceField(canonform::fields::DistanceField);
 
 /// Vertices, and their distances.
-type Neighbours<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<f64>>);
+type Neighbors<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<f64>>);
 
 /// Distances, lower and upper bounds, and which distances are exact.
 type Answers<'py> = (
@@ -135,7 +135,7 @@ impl DistanceField {
         py: Python<'py>,
         source: &Bound<'py, PyAny>,
         k: usize,
-    ) -> PyResult<Neighbours<'py>> {
+    ) -> PyResult<Neighbors<'py>> {
         let source = vertex_of(source)?;
         let found = run(py, |observer| Ok(self.0.nearest(source, k, observer)?))?;
         let (vertices, distances): (Vec<i64>, Vec<f64>) =

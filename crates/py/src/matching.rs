@@ -63,7 +63,7 @@ fn arrays_of<'py>(py: Python<'py>, map: &SurfaceMap) -> PyResult<MapArrays<'py>>
     Ok((numbers(&map.vertices), confidence, arrays::of_matrix(py, &map.functional)?, partners))
 }
 
-/// The maps as the JSON of `canonform match`; the arrays of each of them and of its alternative; and a colour for each vertex of
+/// The maps as the JSON of `canonform match`; the arrays of each of them and of its alternative; and a color for each vertex of
 /// the first input, by its place in the form.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]

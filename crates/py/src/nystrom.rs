@@ -48,7 +48,7 @@ impl Extension {
     }
 }
 
-/// Finds how many landmarks are enough, and the rank for them; none if the regularisation has none to choose. `columns` gives
+/// Finds how many landmarks are enough, and the rank for them; none if the regularization has none to choose. `columns` gives
 /// the first landmarks of a number and their columns of distances, `rows` the columns of some points.
 #[pyfunction]
 pub(crate) fn search_landmarks(

@@ -24,7 +24,7 @@ pub(crate) struct Look {
     colormap: String,
     range: Option<[f64; 2]>,
     isolines: u32,
-    /// The name of the values, beside a bar of their colours; `None` for no bar.
+    /// The name of the values, beside a bar of their colors; `None` for no bar.
     bar: Option<String>,
     /// Points of the surface, and what they are called.
     labels: Vec<([f64; 3], String)>,
@@ -32,8 +32,8 @@ pub(crate) struct Look {
     background: Option<[u8; 3]>,
 }
 
-/// A picture of a mesh as the bytes of a PNG file, coloured by values or by colours at its vertices if there are some. `marks` are
-/// the colours of its last vertices. Faces at vertices without finite coordinates are left out.
+/// A picture of a mesh as the bytes of a PNG file, colored by values or by colors at its vertices if there are some. `marks` are
+/// the colors of its last vertices. Faces at vertices without finite coordinates are left out.
 #[pyfunction]
 pub(crate) fn draw<'py>(
     py: Python<'py>,
@@ -105,7 +105,7 @@ pub(crate) fn scene_scripts() -> &'static str {
     viewer::scene_scripts()
 }
 
-/// A page that shows a surface, coloured by values at its vertices if there are some.
+/// A page that shows a surface, colored by values at its vertices if there are some.
 #[pyfunction]
 pub(crate) fn scene_page(
     py: Python<'_>,

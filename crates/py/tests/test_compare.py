@@ -19,7 +19,7 @@ def test_poses_are_one_shape_and_families_are_not(cats: list[Shape]) -> None:
     assert "cat0" in str(found) and "'different'" in repr(other)
 
 
-def test_a_copy_in_other_units_is_recognised(cat: Shape) -> None:
+def test_a_copy_in_other_units_is_recognized(cat: Shape) -> None:
     inches = Surface(cat.vertices / 25.4, cat.faces)
     found = canonform.compare(inches, cat.surface(), names=("inch.stl", "mm.stl"))
     assert found.match == "scaled" and found.scale == pytest.approx(25.4)

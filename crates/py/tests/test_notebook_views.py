@@ -81,7 +81,7 @@ def decoded(png: bytes) -> np.ndarray:
 
 
 def share_of(png: bytes, color: tuple[int, int, int]) -> float:
-    """The share of the pixels of a picture that have nearly the hue of a colour."""
+    """The share of the pixels of a picture that have nearly the hue of a color."""
     pixels = decoded(png)
     lit = pixels[pixels[..., 3] > 0.9][:, :3]
     units = lit / np.maximum(np.linalg.norm(lit, axis=1, keepdims=True), 1e-9)
@@ -123,15 +123,15 @@ def test_pictures_have_marks_colors_ranges_and_bars(cat: Shape) -> None:
     points = [0, 7, canonform.FacePoint(500), "f800", canonform.EdgePoint(*map(int, surface.edges[900]))]
     assert share_of(surface.picture(points=points, **small), (30, 60, 200)) > 0.0002
     assert share_of(surface.picture(colors=np.tile([0.0, 1, 0], (1000, 1)), **small), (0, 1, 0)) > 0.05
-    # A range that ends early makes the rest the last colour.
+    # A range that ends early makes the rest the last color.
     yellow = (253, 231, 37)
     assert share_of(surface.picture(values, range=(0, 1), **small), yellow) > 2 * share_of(surface.picture(values, **small), yellow)
     looks: list[Any] = [{}, {"edges": True}, {"isolines": 9}, {"bar": True}, {"bar": "mm"}, {"colormap": "gray"}]
     assert len({surface.picture(values, **look, **small) for look in looks}) == len(looks)
     form = surface.canonical_form(20)
     assert form.picture(values, view="principal", width=80, height=80) != form.picture(view="principal", width=80, height=80)
-    with pytest.raises(TypeError, match="colour"):
-        surface.picture(colour=3)  # type: ignore[call-arg]
+    with pytest.raises(TypeError, match="color"):
+        surface.picture(color=3)  # type: ignore[call-arg]
     green = (path, "#00ff00")
     assert share_of(surface.picture(paths=[green], **small), (0, 255, 0)) > 0.001
     # Labels are dark text beside their points, on a light margin.

@@ -155,7 +155,7 @@ def test_the_logarithmic_map_of_a_plane_is_the_plane() -> None:
     vertices, faces = grid(12, 3.0)
     turned = vertices @ np.array([[0.6, 0.0, 0.8], [0.0, 1.0, 0.0], [-0.8, 0.0, 0.6]]).T + 5
     surface = Surface(turned, faces)
-    # Vertex v is at (v // 12, v % 12), and its neighbour with the lowest number one row before, diagonally.
+    # Vertex v is at (v // 12, v % 12), and its neighbor with the lowest number one row before, diagonally.
     source = 65
     along = vertices[source - 13] - vertices[source]
     x, y = along[:2] / np.linalg.norm(along)

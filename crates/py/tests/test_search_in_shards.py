@@ -99,7 +99,7 @@ def test_all_rankings_and_explanations_are_those_of_one_index(
     with pytest.raises(OptionError, match=r"Index\.merge"):
         search(table, file, rank="graph")
     with pytest.raises(OptionError, match='"forms"'):
-        search(table, file, rank="colour")
+        search(table, file, rank="color")
 
 
 @pytest.mark.slow
@@ -180,8 +180,8 @@ def test_shapes_are_added_while_others_search(
 @pytest.mark.slow
 def test_coded_vectors_state_their_recall(client: Client, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     random = np.random.default_rng(0)
-    centres = random.normal(size=(40, 20))
-    vectors = (centres[random.integers(0, 40, 3000)] + 0.3 * random.normal(size=(3000, 20))).astype("f4")
+    centers = random.normal(size=(40, 20))
+    vectors = (centers[random.integers(0, 40, 3000)] + 0.3 * random.normal(size=(3000, 20))).astype("f4")
     names = [f"s{i}" for i in range(3000)]
     path = str(tmp_path / "vectors.lance")
     rows = [_vectors.rows(names[i : i + 1000], [""] * 1000, [""] * 1000, "x.canonform", vectors[i : i + 1000]) for i in (0, 1000)]

@@ -14,7 +14,7 @@ from conftest import ROOT, Program
 pytestmark = pytest.mark.filterwarnings("default")
 
 
-def test_duckdb_and_lancedb_find_the_neighbours_that_the_program_finds(
+def test_duckdb_and_lancedb_find_the_neighbors_that_the_program_finds(
     program: Program, index: Index, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for package in ("duckdb", "lancedb", "pyarrow"):

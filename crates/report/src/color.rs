@@ -1,4 +1,4 @@
-//! Colours: the sRGB curve, a palette for classes, a colour map for numbers.
+//! Colors: the sRGB curve, a palette for classes, a color map for numbers.
 
 use nalgebra::Point3;
 use plotters::prelude::ViridisRGB;
@@ -8,7 +8,7 @@ pub use crate::color_map::ColorMap;
 /// 8-bit sRGB.
 pub type Rgb = [u8; 3];
 
-/// The palette of Okabe and Ito (2008), which people with any common colour blindness can tell apart. The colours
+/// The palette of Okabe and Ito (2008), which people with any common color blindness can tell apart. The colors
 /// that are strongest on white come first.
 const OKABE_ITO: [Rgb; 8] = [
     [0, 114, 178],
@@ -21,12 +21,12 @@ const OKABE_ITO: [Rgb; 8] = [
     [240, 228, 66],
 ];
 
-/// The colour of class number `class`. Colours repeat from the ninth class on.
+/// The color of class number `class`. Colors repeat from the ninth class on.
 pub fn class_color(class: usize) -> Rgb {
     OKABE_ITO[class % OKABE_ITO.len()]
 }
 
-/// The colour of the surfaces of class number `class`: its colour mixed with a pale clay, so that shading shows.
+/// The color of the surfaces of class number `class`: its color mixed with a pale clay, so that shading shows.
 pub fn class_clay(class: usize) -> Rgb {
     mix(class_color(class), [226, 224, 220], 0.55)
 }
@@ -36,8 +36,8 @@ pub fn mix(a: Rgb, b: Rgb, share: f64) -> Rgb {
     std::array::from_fn(|i| (f64::from(a[i]) * (1.0 - share) + f64::from(b[i]) * share).round() as u8)
 }
 
-/// The colour map viridis: dark for 0, light for 1, and equal steps look equal. Values outside 0..=1 are clamped;
-/// NaN is grey.
+/// The color map viridis: dark for 0, light for 1, and equal steps look equal. Values outside 0..=1 are clamped;
+/// NaN is gray.
 pub fn perceptual(t: f64) -> Rgb {
     if t.is_nan() {
         return [160, 160, 160];
@@ -46,8 +46,8 @@ pub fn perceptual(t: f64) -> Rgb {
     [color.0, color.1, color.2]
 }
 
-/// A colour for each point, by its place in the box around all of them: corresponding points of two surfaces are easy to
-/// find by eye if both have the colours of one. Points that are not finite are grey.
+/// A color for each point, by its place in the box around all of them: corresponding points of two surfaces are easy to
+/// find by eye if both have the colors of one. Points that are not finite are gray.
 pub fn place_colors(points: &[Point3<f64>]) -> Vec<Rgb> {
     let ranges = [0, 1, 2].map(|axis| {
         let values: Vec<f64> = points.iter().map(|p| p[axis]).collect();
@@ -73,8 +73,8 @@ pub fn value_range(values: &[f64]) -> Option<[f64; 2]> {
     Some([low, finite().fold(low, f64::max)])
 }
 
-/// The colours of values in [`perceptual`], from the least finite value (dark) to the greatest (bright);
-/// other values are grey.
+/// The colors of values in [`perceptual`], from the least finite value (dark) to the greatest (bright);
+/// other values are gray.
 pub fn color_scale(values: &[f64]) -> impl Fn(f64) -> Rgb + use<> {
     let [least, most] = value_range(values).unwrap_or_default();
     // Halved first: the range of finite values may overflow.
@@ -85,7 +85,7 @@ pub fn color_scale(values: &[f64]) -> impl Fn(f64) -> Rgb + use<> {
     }
 }
 
-/// The colours between which [`perceptual`] interpolates linearly, at equal steps from 0 to 1.
+/// The colors between which [`perceptual`] interpolates linearly, at equal steps from 0 to 1.
 pub fn perceptual_stops() -> [Rgb; 8] {
     std::array::from_fn(|i| perceptual(i as f64 / 7.0))
 }

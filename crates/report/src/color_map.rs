@@ -1,4 +1,4 @@
-//! Colour maps for numbers.
+//! Color maps for numbers.
 
 use std::str::FromStr;
 
@@ -6,29 +6,29 @@ use strum::VariantArray;
 
 use crate::color::{Rgb, mix, perceptual};
 
-/// A colour map for numbers.
+/// A color map for numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::IntoStaticStr, VariantArray)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[strum(serialize_all = "kebab-case")]
 pub enum ColorMap {
-    /// Violet, green, yellow; equal steps look equal, also to colour-blind readers
+    /// Violet, green, yellow; equal steps look equal, also to color-blind readers
     #[default]
     Viridis,
     /// Black, violet, orange, pale yellow; equal steps look equal
     Magma,
     /// Black, red, orange, pale yellow; equal steps look equal
     Inferno,
-    /// Blue, grey, yellow; looks the same to most colour-blind readers
+    /// Blue, gray, yellow; looks the same to most color-blind readers
     Cividis,
     /// A smooth rainbow; shows detail, but its steps look unequal
     Turbo,
-    /// Blue, pale grey, red; diverging, for values around the middle of the range
+    /// Blue, pale gray, red; diverging, for values around the middle of the range
     Coolwarm,
-    /// Black to white; for print without colour
+    /// Black to white; for print without color
     Gray,
 }
 
-/// Colours of a map at equal steps; between them it is linear.
+/// Colors of a map at equal steps; between them it is linear.
 const STOPS: usize = 33;
 
 #[rustfmt::skip]
@@ -72,7 +72,7 @@ const COOLWARM: [u32; STOPS] = [
 ];
 
 impl ColorMap {
-    /// The colour of a share of the range. Values outside 0..=1 are clamped; NaN is grey.
+    /// The color of a share of the range. Values outside 0..=1 are clamped; NaN is gray.
     pub fn color(self, share: f64) -> Rgb {
         let stops = match self {
             _ if share.is_nan() => return perceptual(share),
@@ -100,7 +100,7 @@ impl FromStr for ColorMap {
     fn from_str(name: &str) -> Result<Self, String> {
         let names: Vec<&str> = Self::VARIANTS.iter().map(|map| map.into()).collect();
         let found = names.iter().position(|known| *known == name).map(|place| Self::VARIANTS[place]);
-        found.ok_or_else(|| format!("there is no colour map `{name}`; choose from {}", names.join(", ")))
+        found.ok_or_else(|| format!("there is no color map `{name}`; choose from {}", names.join(", ")))
     }
 }
 

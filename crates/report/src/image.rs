@@ -18,7 +18,7 @@ pub struct RgbaImage {
 }
 
 impl RgbaImage {
-    /// An image of one colour.
+    /// An image of one color.
     pub fn new(width: u32, height: u32, color: [u8; 4]) -> Self {
         Self { width, height, pixels: vec![color; width as usize * height as usize] }
     }
@@ -49,7 +49,7 @@ impl RgbaImage {
         Ok(Self { width: info.width, height: info.height, pixels })
     }
 
-    /// Two images side by side; a missing part at the bottom of the lower one has the colour of its first pixel.
+    /// Two images side by side; a missing part at the bottom of the lower one has the color of its first pixel.
     pub fn beside(&self, right: &Self) -> Self {
         let pixel = |image: &Self, column: usize, row: usize| {
             let at = row * image.width as usize + column;

@@ -20,7 +20,7 @@ pub struct Scores {
     /// E-measure: harmonic mean of precision and recall at rank `min(32, n - 1)`. Cannot reach 1 if `C` is
     /// smaller than that rank.
     pub e: f64,
-    /// Normalised discounted cumulative gain: `g_1 + sum_{r >= 2} g_r / log2 r` over its best possible value.
+    /// Normalized discounted cumulative gain: `g_1 + sum_{r >= 2} g_r / log2 r` over its best possible value.
     pub dcg: f64,
     /// Average precision: mean of the precision at the rank of each relevant shape.
     pub map: f64,

@@ -20,7 +20,7 @@ impl UnknownThreshold {
     /// The threshold that separates labelled shapes best: `own` holds distances from shapes to the nearest other
     /// shape of their class, `foreign` distances to the nearest shape of any other class.
     ///
-    /// Minimises the sum of the two error rates; if a range of thresholds does, returns its middle. Without foreign
+    /// Minimizes the sum of the two error rates; if a range of thresholds does, returns its middle. Without foreign
     /// distances, returns twice the largest own distance. Returns `None` without own distances.
     pub fn of(own: &[f64], foreign: &[f64]) -> Option<Self> {
         let sorted = |distances: &[f64]| {

@@ -66,7 +66,7 @@ impl Similarity {
         }
     }
 
-    /// The motion that minimises the mean squared distance between the images of the first points and the second points of
+    /// The motion that minimizes the mean squared distance between the images of the first points and the second points of
     /// `pairs`, with a reflection if and only if `reflected` (Kabsch 1976, by the SVD of the 3 x 3 cross-covariance).
     /// `None` without pairs.
     pub fn fit_motion(pairs: &[Pair], reflected: bool) -> Option<Self> {

@@ -57,12 +57,12 @@ impl Measured {
         VERTEX_BYTES * mesh.n_vertices() + FACE_BYTES * mesh.n_faces() + geometry
     }
 
-    /// The repaired mesh, coloured by distance from the first sample.
+    /// The repaired mesh, colored by distance from the first sample.
     pub(crate) fn mesh(&self) -> Geometry {
         Geometry::new(self.surface.mesh()).with_values(DISTANCE, &self.distances)
     }
 
-    /// The repaired mesh in the colours of another, carried to it by a map to that one.
+    /// The repaired mesh in the colors of another, carried to it by a map to that one.
     pub(crate) fn carried(&self, from: &Self, map: &SurfaceMap) -> Geometry {
         let value = |v: usize| {
             let input = self.surface.input_vertex(VertexId::from(v));
@@ -74,7 +74,7 @@ impl Measured {
         Geometry::new(self.surface.mesh()).with_values(DISTANCE, &values)
     }
 
-    /// The form with the faces and colours of the mesh.
+    /// The form with the faces and colors of the mesh.
     pub(crate) fn form(&self) -> Geometry {
         let form = self.form.to_mesh(self.surface.mesh());
         Geometry::new(&form).with_values(DISTANCE, &self.distances)

@@ -112,8 +112,8 @@ fn components(shapes: &[DescribedBody], kind: SignatureKind) -> f64 {
             .collect();
         let mean = |i: usize| members.iter().map(|values| values[i]).sum::<f64>() / members.len() as f64;
         let means: Vec<f64> = (0..n_values).map(mean).collect();
-        let centred = Matrix::from_fn(members.len(), n_values, |row, i| members[row][i] - means[i]);
-        covariance += centred.transpose() * centred;
+        let centered = Matrix::from_fn(members.len(), n_values, |row, i| members[row][i] - means[i]);
+        covariance += centered.transpose() * centered;
     }
     covariance.trace().powi(2) / covariance.norm_squared()
 }

@@ -33,7 +33,7 @@ const SCALES: [[&str; 4]; 3] = [
         "forms of original size (in mesh units; those of kernel PCA have their own units)",
         "form units",
     ],
-    ["normalized", "normalised size", "forms scaled to the same size", "form size = 1"],
+    ["normalized", "normalized size", "forms scaled to the same size", "form size = 1"],
     [
         "spectrum",
         "16 dimensions",

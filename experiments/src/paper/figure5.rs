@@ -1,15 +1,15 @@
 //! Figures 5a and 5b: the error of reconstructing all squared distances from 100 columns, against the rank and against
-//! the alpha of the regularised pseudo-inverse.
+//! the alpha of the regularized pseudo-inverse.
 //!
 //! 5a measures, for a class `SHAPE`:
-//! * `SHAPE best rank`, the rank at which the error of the low-rank regularisation is least, and `SHAPE best rank over n`;
+//! * `SHAPE best rank`, the rank at which the error of the low-rank regularization is least, and `SHAPE best rank over n`;
 //! * `SHAPE good from` and `SHAPE good to`, the ends of the ranks at which its error is at most 1.5 times the least;
 //! * `SHAPE rise`, the ratio of its error at rank n to the least;
 //! * `SHAPE CUR over low-rank`, the ratio of the least error of CUR to that of low rank;
 //! * `SHAPE low-rank below CUR`, the share of ranks at which the error of low rank is at most that of CUR.
 //!
 //! 5b measures `SHAPE paper over best`, `SHAPE default over best` and `SHAPE none over best`, the ratios of the error at
-//! the paper's alpha, at our default and without regularisation to the least of the curve, and `SHAPE RPI over low-rank`,
+//! the paper's alpha, at our default and without regularization to the least of the curve, and `SHAPE RPI over low-rank`,
 //! the ratio of the least of the curve to the error of low rank at half of n, and `SHAPE best alpha`, relative to the fourth
 //! power of the largest eigenvalue.
 
@@ -23,7 +23,7 @@ use crate::context::Context;
 use crate::specimen::Specimen;
 use crate::sweep::{error_axis, half, last, least, median, places, plot, series, share_lowest};
 
-/// The error of each run at each of some regularisations.
+/// The error of each run at each of some regularizations.
 fn errors(
     context: &Context<'_>,
     specimen: &Specimen<'_>,
@@ -73,7 +73,7 @@ pub(crate) fn figure5b(context: &Context<'_>) -> Result<Record> {
         let fixed = |name: &str, regularization| curve(name, &ends, &[regularization; 2]);
         let relative = |c: &f64| Regularization::Rpi { alpha: RpiAlpha::Relative(*c) };
         let rpi = curve("RPI (eq. 3)", &alphas, &alphas.iter().map(relative).collect::<Vec<_>>())?;
-        let none = fixed("no regularisation (α = 0)", Regularization::None)?;
+        let none = fixed("no regularization (α = 0)", Regularization::None)?;
         let low_rank = fixed("low rank, n₁ = n / 2", half(context.options.samples))?;
         let paper = fixed("paper", Regularization::Rpi { alpha: RpiAlpha::Paper })?;
         let ours = fixed("default", Regularization::Rpi { alpha: RpiAlpha::default() })?;

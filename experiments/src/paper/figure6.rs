@@ -1,6 +1,6 @@
 //! Figure 6: the error of reconstructing all squared distances from n columns, against n.
 //!
-//! Measures, for a class `SHAPE` and `METHOD` in `NMDS`, `no regularisation`, `BFS`, `Min-Var`: `SHAPE METHOD over best`,
+//! Measures, for a class `SHAPE` and `METHOD` in `NMDS`, `no regularization`, `BFS`, `Min-Var`: `SHAPE METHOD over best`,
 //! the geometric mean over n of the ratio of its error to that of the best projection; `SHAPE NMDS lowest`, the share of n
 //! at which no other method except the projection is better.
 
@@ -14,7 +14,7 @@ use report::record::{Axis, Series};
 use crate::context::Context;
 use crate::sweep::{error_axis, half, mean, medians, plot, share_lowest};
 
-const METHODS: [&str; 5] = ["best projection R R⁺E", "NMDS", "no regularisation", "BFS", "Min-Var"];
+const METHODS: [&str; 5] = ["best projection R R⁺E", "NMDS", "no regularization", "BFS", "Min-Var"];
 
 pub(crate) fn figure6(context: &Context<'_>) -> Result<Record> {
     context.on_specimens(context.options.runs, |specimen| {

@@ -1,6 +1,6 @@
 //! Figure 7: the excess of the stress over that of classical scaling of all pairs, against the number n of samples.
 //!
-//! Measures, for a class `SHAPE` and `METHOD` in `NMDS`, `no regularisation`, `Landmark MDS`, `SMDS`, `Min-Var`, `BFS`:
+//! Measures, for a class `SHAPE` and `METHOD` in `NMDS`, `no regularization`, `Landmark MDS`, `SMDS`, `Min-Var`, `BFS`:
 //! * `SHAPE METHOD last`: the excess at the greatest n, as a share of the optimum;
 //! * `SHAPE NMDS lowest`: the share of n at which no other method is better;
 //! * `SHAPE plateau`: the ratio of the excess of Landmark MDS at the greatest n to that at half of it;
@@ -20,7 +20,7 @@ use crate::context::Context;
 use crate::specimen::{DIM, Specimen};
 use crate::sweep::{half, last, plot, share_lowest};
 
-const METHODS: [&str; 6] = ["NMDS", "no regularisation", "Landmark MDS", "SMDS", "BFS", "Min-Var"];
+const METHODS: [&str; 6] = ["NMDS", "no regularization", "Landmark MDS", "SMDS", "BFS", "Min-Var"];
 
 pub(crate) fn figure7(context: &Context<'_>) -> Result<Record> {
     context.on_specimens(context.options.runs, |specimen| {

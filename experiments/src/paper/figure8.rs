@@ -16,7 +16,7 @@ use crate::specimen::DIM;
 use crate::sweep::{curves, half, last, places, plot, plots, timed};
 
 const METHODS: [&str; 5] =
-    ["NMDS, low rank", "NMDS, no regularisation", "NMDS, RPI", "SMDS", "SMDS, eigenfunctions given"];
+    ["NMDS, low rank", "NMDS, no regularization", "NMDS, RPI", "SMDS", "SMDS, eigenfunctions given"];
 
 /// Runs that compute the eigenfunctions, which take a hundred times as long as anything else.
 const BASES: usize = 2;

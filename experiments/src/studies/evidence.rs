@@ -1,7 +1,7 @@
 //! Evidence: what is said of pairs of generated mechanical parts, of copies of them, and of pieces that were cut off.
 //!
 //! Measures `different called one surface` and `... above .9`, shares of the `pairs` of different parts; `true pairs denied`
-//! of the `true pairs`; `variants named` of the `single changes`; `cuts recognised` of the `cuts`; and `largest error of
+//! of the `true pairs`; `variants named` of the `single changes`; `cuts recognized` of the `cuts`; and `largest error of
 //! confidence`, over bins of at least [`FEWEST`] relations.
 
 use anyhow::Result;
@@ -38,7 +38,7 @@ pub(crate) fn evidence(context: &Context<'_>) -> Result<Record> {
         ("single changes", single.len() as f64),
         ("variants named", share(&single, |pair| pair.said.kind == RelationKind::Variant)),
         ("cuts", cuts.len() as f64),
-        ("cuts recognised", share(&cuts, |told| told.kind == RelationKind::PartOf)),
+        ("cuts recognized", share(&cuts, |told| told.kind == RelationKind::PartOf)),
         ("largest error of confidence", error),
     ]);
     let diagonal = curve("calibrated", points.points.iter().map(|p| point(p.x, &[p.x])).collect());

@@ -2,7 +2,7 @@
 //!
 //! Measures `METHOD SCALE nn|ft|st|e|dcg|mAP|least mAP` for `METHOD` a signature, `aligned forms`,
 //! `fused`, `fused and forms`, with `SCALE` either `raw` (size counts) or `normalized`; at scale `raw` also for `forms in
-//! mesh units`; and `missed`, `mistaken`. Each score but the last is also measured on the neighbour graph, as `METHOD SCALE
+//! mesh units`; and `missed`, `mistaken`. Each score but the last is also measured on the neighbor graph, as `METHOD SCALE
 //! graph SCORE`.
 
 use anyhow::Result;
@@ -226,7 +226,7 @@ fn classify(
     let caption = match wrong.len() {
         0 => "Every shape was assigned to its class.".to_owned(),
         n => format!(
-            "The {n} shapes that were not assigned to their class. A shape is unknown if its nearest neighbour is farther \
+            "The {n} shapes that were not assigned to their class. A shape is unknown if its nearest neighbor is farther \
              than {threshold:.3}."
         ),
     };
@@ -240,8 +240,8 @@ fn classify(
         ..Table::new(caption, ["missed", "mistaken", "threshold"], vec![values])
     };
     let caption = format!(
-        "Classification of every shape by the vote of its {voters} nearest neighbours among the others, by {method}: true \
-         classes down, predicted classes across. A shape is unknown if its nearest neighbour is farther than {threshold:.3}."
+        "Classification of every shape by the vote of its {voters} nearest neighbors among the others, by {method}: true \
+         classes down, predicted classes across. A shape is unknown if its nearest neighbor is farther than {threshold:.3}."
     );
     let row = |(class, counts): (&String, &Vec<usize>)| {
         let counts = counts.iter().map(|n| Cell::from((*n > 0).then(|| n.to_string())));

@@ -26,7 +26,7 @@ const BOTH: &str = "fused and forms";
 /// The strength at which forms are aligned, too; that takes most of the time.
 const ALIGNED_AT: usize = 3;
 
-/// Scores by method: nearest neighbour, and mean average precision.
+/// Scores by method: nearest neighbor, and mean average precision.
 type MethodScores = Vec<(&'static str, [f64; 2])>;
 
 const SCORES: [&str; 2] = ["nn", "mAP"];
@@ -113,7 +113,7 @@ fn record(stage: &str, found: &MethodScores, measured: &mut MeasuredNumbers) {
     }
 }
 
-/// Adds to the panels of a kind: nearest neighbours, and mean average precision.
+/// Adds to the panels of a kind: nearest neighbors, and mean average precision.
 fn draw(kind: DamageKind, strength: usize, found: &MethodScores, panels: &mut Panels) {
     for (method, scores) in found {
         for (name, score) in ["NN", "mAP"].into_iter().zip(scores) {

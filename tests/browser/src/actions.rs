@@ -16,7 +16,7 @@ const ELEMENT: &str = "element-6066-11e4-a52e-4f735466cecf";
 const STEPS: i32 = 12;
 
 impl Browser {
-    /// Waits for the first element that matches a CSS selector and clicks its centre.
+    /// Waits for the first element that matches a CSS selector and clicks its center.
     pub fn click(&self, css: &str) -> Result<()> {
         let element = self.element(css)?;
         self.session.post(&format!("/element/{element}/click"), &json!({})).map(drop)
@@ -51,7 +51,7 @@ impl Browser {
         .map(drop)
     }
 
-    /// Drags from the centre of an element by this many CSS pixels.
+    /// Drags from the center of an element by this many CSS pixels.
     pub fn drag(&self, css: &str, [dx, dy]: [i32; 2]) -> Result<()> {
         let [x, y] = self.center(css)?;
         let mut actions = vec![moved([x, y]), json!({ "type": "pointerDown", "button": 0 })];
@@ -67,7 +67,7 @@ impl Browser {
         Ok(found[ELEMENT].as_str().with_context(|| format!("no element in {found}"))?.to_owned())
     }
 
-    /// Scrolls an element into view and returns its centre in the window.
+    /// Scrolls an element into view and returns its center in the window.
     fn center(&self, css: &str) -> Result<[i32; 2]> {
         self.element(css)?;
         let at = self.eval(&format!(

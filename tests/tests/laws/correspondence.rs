@@ -35,7 +35,7 @@ fn motions_scale_and_numbering_change_no_map() {
     for kind in [MapKind::Direct, MapKind::Mirrored] {
         let expected = images(of_kind(&usual, kind));
         assert!(share(&images(of_kind(&moved, kind)), |x| expected[x]) > 0.99);
-        // Other samples: some vertices go to a neighbour.
+        // Other samples: some vertices go to a neighbor.
         let other = images(of_kind(&renumbered, kind));
         let solver = Method::default().prepare(b.intrinsic(), &()).unwrap();
         let gap = |x: usize| {

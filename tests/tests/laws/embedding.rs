@@ -70,7 +70,7 @@ fn intervals_contain_the_exact_stress(step: usize, least: usize) {
         error += (found.normalized / exact.normalized - 1.0).abs();
         all += 1;
     }
-    println!("{within:?} of {all} intervals, normalised stress off by {:.1} %", 100.0 * error / all as f64);
+    println!("{within:?} of {all} intervals, normalized stress off by {:.1} %", 100.0 * error / all as f64);
     assert!(all == 40 / step && within.iter().all(|n| *n >= least), "{within:?} of {all}");
 }
 

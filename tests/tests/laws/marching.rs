@@ -20,7 +20,7 @@ fn error_on_plane(sheet: &TriMesh, source: usize, obtuse: ObtuseTreatment) -> f6
     crate::support::gap(&found, &straight)
 }
 
-/// Three corners, the middle of a side, the centre, and one more vertex.
+/// Three corners, the middle of a side, the center, and one more vertex.
 fn sources(nx: usize, ny: usize) -> [usize; 6] {
     [0, nx - 1, nx * ny - 1, nx / 2, nx * (ny / 2) + nx / 2, 5 * nx + 3]
 }

@@ -217,14 +217,14 @@ fn every_change_of_a_tosca_shape_is_told() {
     let files = list_shapes(&data.join("tosca-lowres"), None).unwrap();
     let shapes: Vec<_> =
         files.into_par_iter().filter_map(|file| Some((file.name, mesh_io::read(&file.path).ok()?))).collect();
-    let neighbours = shapes.par_windows(2).map(|pair| {
+    let neighbors = shapes.par_windows(2).map(|pair| {
         let found = related(&geometry(&pair[0].1), &geometry(&pair[1].1)).named(&pair[0].0, &pair[1].0);
         // Two pairs of victorias have the same vertices in another order.
         let is_copy = same_positions(&pair[0].1, &pair[1].1);
         assert_eq!(found.kind.is_one_geometry(), is_copy, "{found}");
         (!found.kind.is_by_distance()).then(|| format!("{found} ({})", found.reason()))
     });
-    let one: Vec<_> = neighbours.collect::<Vec<_>>().into_iter().flatten().collect();
+    let one: Vec<_> = neighbors.collect::<Vec<_>>().into_iter().flatten().collect();
     println!(
         "{} of {} pairs of different shapes are called one surface: {one:?}",
         one.len(),

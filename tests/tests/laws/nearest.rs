@@ -39,7 +39,7 @@ fn the_results_for_a_number_of_results_are_the_first_of_those_for_a_larger_one()
     for query in [0, 9, 21, 34, 55] {
         let id = &shapes[query].0;
         for rank_by in [SearchRank::Plain, SearchRank::Graph, SearchRank::Forms] {
-            // Beyond the neighbours of a shape, the graph is looked at as far as results are wanted.
+            // Beyond the neighbors of a shape, the graph is looked at as far as results are wanted.
             let most = if rank_by == SearchRank::Graph { 24 } else { n };
             let all = found(&search, id, most, rank_by);
             assert_eq!((all.results.len(), all.measured, all.recall), (most, n, 1.0));

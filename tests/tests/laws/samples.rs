@@ -53,7 +53,7 @@ fn intervals_after_a_search_contain_the_exact_stress_as_often_as_they_say() {
         })
         .collect();
     let [normalized, paper] = [0, 1].map(|i| found.iter().filter(|hit| hit[i]).count());
-    println!("of {} searches: normalised stress in its interval {normalized}, stress {paper}", found.len());
+    println!("of {} searches: normalized stress in its interval {normalized}, stress {paper}", found.len());
     assert_eq!(found.len(), 100);
     assert!(normalized >= 95 && paper >= 95, "{normalized} {paper}");
 }

@@ -27,7 +27,7 @@ pub enum EmbedMethod {
     #[serde(rename = "nmds")]
     #[strum(serialize = "nmds")]
     Nystrom {
-        /// How the inverse of the sample matrix is regularised. Default: low rank, half the samples.
+        /// How the inverse of the sample matrix is regularized. Default: low rank, half the samples.
         regularization: Regularization,
     },
     /// Landmark MDS: classical scaling of the samples; the other vertices are placed by their distances to them.
@@ -55,7 +55,7 @@ pub enum EmbedMethod {
     Classical,
     /// SMACOF on all pairs, started from the result of NMDS: fits distances instead of squared distances.
     Smacof {
-        /// Regularisation of the NMDS it starts from.
+        /// Regularization of the NMDS it starts from.
         regularization: Regularization,
         /// When it stops.
         descent: SmacofOptions,
@@ -87,7 +87,7 @@ impl EmbedMethod {
         self.into()
     }
 
-    /// NMDS with the low-rank regularisation of this rank.
+    /// NMDS with the low-rank regularization of this rank.
     pub fn low_rank(rank: usize) -> Self {
         Self::Nystrom { regularization: Regularization::LowRank { rank: Some(rank) } }
     }
@@ -97,7 +97,7 @@ impl EmbedMethod {
         Self::Spectral { eigenvectors: EIGENVECTORS, mu: SpectralOptions::default().mu }
     }
 
-    /// The regularisation of the sample matrix, for methods that have one.
+    /// The regularization of the sample matrix, for methods that have one.
     pub fn regularization(&self) -> Option<Regularization> {
         match self {
             Self::Nystrom { regularization } | Self::Smacof { regularization, .. } => Some(*regularization),

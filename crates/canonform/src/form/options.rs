@@ -158,7 +158,7 @@ mod tests {
         assert_eq!(DescribeOptions::from_text(text), Some(DescribeOptions::default()));
         for other in [
             text.replace("\"description\":6", "\"description\":5"),
-            text.replace("\"points\"", "\"colour\":3,\"points\""),
+            text.replace("\"points\"", "\"color\":3,\"points\""),
             text.replace("seams", "glue"),
             text.replace('}', ""),
             String::new(),

@@ -15,7 +15,7 @@ pub struct EmbedReport {
     pub geodesic: &'static str,
     /// How samples were taken; `None` for classical scaling.
     pub sampling: Option<&'static str>,
-    /// Name of the regularisation, for methods that have one.
+    /// Name of the regularization, for methods that have one.
     pub regularization: Option<&'static str>,
     /// Vertices of the input.
     pub n_vertices: usize,

@@ -71,7 +71,7 @@ pub enum Inverse {
     /// Keep the eigenvalues of largest magnitude
     #[default]
     LowRank,
-    /// Keep all eigenvalues and damp the small ones (regularised pseudo-inverse)
+    /// Keep all eigenvalues and damp the small ones (regularized pseudo-inverse)
     Rpi,
     /// Keep all eigenvalues above rounding error
     None,
@@ -144,7 +144,7 @@ pub struct MethodSettings {
     /// First sample, a vertex of the input [default: the vertex farthest from vertex 0; with other samplings, drawn with --seed]
     #[cfg_attr(feature = "clap", arg(long = "first-sample", value_name = "V", hide_short_help = true))]
     pub first: Option<u32>,
-    /// How nmds, and the start of smacof, regularise the inverse of the sample matrix [default: low-rank]
+    /// How nmds, and the start of smacof, regularize the inverse of the sample matrix [default: low-rank]
     #[cfg_attr(feature = "clap", arg(long, hide_short_help = true))]
     pub regularization: Option<Inverse>,
     /// For --regularization rpi: alpha over the fourth power of the largest eigenvalue, or `paper` for the third power of that

@@ -27,7 +27,7 @@ use super::search::ShapeSearch;
 use crate::error::Error;
 
 /// Nearest shapes of each shape whose meshes are compared. A shape with more copies is still found by theirs.
-const NEIGHBOURS: usize = 16;
+const NEIGHBORS: usize = 16;
 
 /// Copies have vectors that are nearer than this: noise, decimation and arcs move them. Two classes are farther apart
 /// on most pairs of the built-in families. A safety limit: the meshes decide.
@@ -367,7 +367,7 @@ fn near_pairs(candidates: &[Candidate], observer: &dyn Observer) -> Result<Vec<P
             .collect();
         near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         observer.step();
-        Ok::<_, Error>(near.into_iter().take(NEIGHBOURS).map(|(_, j)| (i, j)).collect::<Vec<_>>())
+        Ok::<_, Error>(near.into_iter().take(NEIGHBORS).map(|(_, j)| (i, j)).collect::<Vec<_>>())
     };
     Ok((0..candidates.len()).into_par_iter().map(near).collect::<Result<Vec<_>, Error>>()?.concat())
 }

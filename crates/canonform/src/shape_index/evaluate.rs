@@ -52,9 +52,9 @@ pub struct EvaluateOptions<'a> {
     pub measure: Measure,
     /// Where classes come from. Default: those of the index, or from the names of a matrix.
     pub labels: Option<&'a LabelSource>,
-    /// Number of neighbours that vote. Default: 1.
+    /// Number of neighbors that vote. Default: 1.
     pub knn_k: usize,
-    /// Whether the ranking on the neighbour graph is scored beside that by distance. Default: [`RankBy::Plain`], that by
+    /// Whether the ranking on the neighbor graph is scored beside that by distance. Default: [`RankBy::Plain`], that by
     /// distance alone.
     pub rank_by: RankBy,
 }

@@ -15,9 +15,9 @@ use rigid::Handedness;
 pub enum OrderedBy {
     /// Its place on the graph.
     Graph {
-        /// Rank distance, from 0 to 1: by fused distance and by neighbours in common, see [`retrieval::graph_rank`].
+        /// Rank distance, from 0 to 1: by fused distance and by neighbors in common, see [`retrieval::graph_rank`].
         rank_distance: f64,
-        /// Its rank by fused distance, counted from 1; `None` if it is found through its neighbours only.
+        /// Its rank by fused distance, counted from 1; `None` if it is found through its neighbors only.
         plain_rank: Option<usize>,
     },
     /// How well the query fits into it as a part.

@@ -3,7 +3,7 @@
 //! ```text
 //! files -> content hash -> unchanged? -> describe -> Shape -> index::IndexWriter -> index::Index
 //! mesh -> describe -> Query -> bounds (robust distances of all vectors) -> rerank (aligned forms) -> vote -> Answer
-//!                           -> neighbour graph | disc areas | spectra of all shapes -> aligned forms of the results
+//!                           -> neighbor graph | disc areas | spectra of all shapes -> aligned forms of the results
 //! Query -> an Answer of every shard -> merge_answers -> Answer
 //! ```
 

@@ -28,7 +28,7 @@ pub enum SearchRank {
     /// By distance
     #[default]
     Plain,
-    /// By distance of signatures and by the neighbours that query and shape have in common
+    /// By distance of signatures and by the neighbors that query and shape have in common
     Graph,
     /// By how well the query fits as a part of the shape, for a mesh that was cut or scanned in part
     ///

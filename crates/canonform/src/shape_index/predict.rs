@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::found::{Hit, OrderedBy};
 
-/// Neighbours that vote on the class of a query.
+/// Neighbors that vote on the class of a query.
 const VOTERS: usize = 5;
 
 /// How many results of each index are needed for the `k` best of all and the class: those that vote are among them.
@@ -37,11 +37,11 @@ const OPEN: f64 = 0.3;
 pub struct Prediction {
     /// The class; `None` if no shape is near enough.
     pub label: Option<String>,
-    /// Neighbours of that class.
+    /// Neighbors of that class.
     pub votes: usize,
-    /// Neighbours that are near enough to vote.
+    /// Neighbors that are near enough to vote.
     pub voters: usize,
-    /// Share of the votes for the class, from 0 to 1; nearer neighbours count more.
+    /// Share of the votes for the class, from 0 to 1; nearer neighbors count more.
     pub confidence: f64,
     /// Fused distance below which a shape votes whatever its combined distance, since classes of this index are that wide; `None`
     /// if the classes are too small to estimate it.
@@ -66,7 +66,7 @@ pub struct Prediction {
 pub struct ClassVotes {
     /// The class.
     pub label: String,
-    /// Neighbours of this class.
+    /// Neighbors of this class.
     pub votes: usize,
     /// Their share of the weights, from 0 to 1.
     pub share: f64,

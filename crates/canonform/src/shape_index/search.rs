@@ -143,7 +143,7 @@ impl ShapeSearch {
     }
 
     /// Finds the shapes nearest to a query, ordered as the options say: by combined distance, by their places on the graph of
-    /// nearest neighbours, as wholes of which the query is a part, or by forms alone. The results for a number of results are
+    /// nearest neighbors, as wholes of which the query is a part, or by forms alone. The results for a number of results are
     /// the first of those for a larger one, and the class does not depend on it.
     ///
     /// ```
@@ -297,8 +297,8 @@ impl ShapeSearch {
         Ok(some)
     }
 
-    /// The first shapes by [rank distance](graph_rank), among the nearest and their neighbours. The graph knows fused distances
-    /// only, because aligning the forms of all pairs would take too long. Every list of neighbours is found when it is visited,
+    /// The first shapes by [rank distance](graph_rank), among the nearest and their neighbors. The graph knows fused distances
+    /// only, because aligning the forms of all pairs would take too long. Every list of neighbors is found when it is visited,
     /// at most about 600 of them. Up to [`LINKS`] results are the first of one another; more look farther around.
     fn on_graph(&self, fused: &[f32], wanted: usize) -> Result<Vec<OrderedShape>, Error> {
         let all = self.index.vector_table()?;
@@ -671,7 +671,7 @@ mod tests {
     }
 
     #[test]
-    fn the_file_of_a_query_and_copies_on_a_plate_are_recognised() {
+    fn the_file_of_a_query_and_copies_on_a_plate_are_recognized() {
         let (folder, search) = indexed(&DescribeOptions::default());
         let options = SearchOptions { explain: true, ..SearchOptions::default() };
         let path = folder.path().join("ring1.off");

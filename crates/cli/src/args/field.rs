@@ -33,7 +33,7 @@ Examples:
   canonform field build cat.off --method exact --landmarks 200 -o cat.field";
 
 #[derive(Debug, Args)]
-#[command(after_long_help = METHODS, after_help = "See `--help` for what the method means for the bounds.")]
+#[command(after_long_help = METHODS, after_help = "See `--help-all` for what the method means for the bounds.")]
 pub(crate) struct FieldBuildArgs {
     /// Mesh file, or `-` for standard input
     pub(crate) mesh: PathBuf,
@@ -71,7 +71,7 @@ Examples:
   canonform field query cat.field --source 17 --nearest 10 --json";
 
 #[derive(Debug, Args)]
-#[command(after_long_help = ANSWERS, after_help = "See `--help` for how to write pairs, and for examples.")]
+#[command(after_long_help = ANSWERS, after_help = "See `--help-all` for how to write pairs, and for examples.")]
 pub(crate) struct FieldQueryArgs {
     /// The field
     pub(crate) field: PathBuf,

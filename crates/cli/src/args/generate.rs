@@ -20,7 +20,7 @@ Examples:
   canonform generate --family parts --output-format stl -o parts/";
 
 #[derive(Debug, Args)]
-#[command(after_long_help = NOTES, after_help = "See `--help` for the names of the files, and for examples.")]
+#[command(after_long_help = NOTES, after_help = "See `--help-all` for the names of the files, and for examples.")]
 pub(crate) struct GenerateArgs {
     /// Folder to write the meshes into
     #[arg(short, long, value_name = "FOLDER")]

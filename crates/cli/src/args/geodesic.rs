@@ -28,7 +28,7 @@ Examples:
   canonform geodesic - --format off --source 0 -o - --output-format csv < cat.off";
 
 #[derive(Debug, Args)]
-#[command(after_long_help = POINTS, after_help = "See `--help` for how to write points, and for examples.")]
+#[command(after_long_help = POINTS, after_help = "See `--help-all` for how to write points, and for examples.")]
 pub(crate) struct GeodesicArgs {
     /// Mesh file, or `-` for standard input
     pub(crate) mesh: PathBuf,
@@ -76,7 +76,7 @@ pub(crate) struct GeodesicArgs {
 fn output_help() -> String {
     format!(
         "Output file. Distances: .npy (sources x vertices, float64), .csv (one row per source) or {} (one \
-         coloured mesh per source). Paths: {} (lines), .csv or .json. All pairs: .npy. `-` for standard output",
+         colored mesh per source). Paths: {} (lines), .csv or .json. All pairs: .npy. `-` for standard output",
         or_list(writable(Content::Field)),
         or_list(writable(Content::Lines))
     )

@@ -196,7 +196,7 @@ pub(crate) struct EvaluateArgs {
     /// `shape-dna`, `heat-kernel`, `wave-kernel` or `rigid`
     #[arg(long, value_name = "SIGNATURE", default_value = "fused")]
     pub(crate) by: Measure,
-    /// Number of neighbours that vote on the class of a shape
+    /// Number of neighbors that vote on the class of a shape
     #[arg(short, default_value_t = 1)]
     pub(crate) k: usize,
     /// Rankings to score

@@ -19,9 +19,9 @@ one goes to a file beside it: map.npy and map-mirrored.npy. Without -o, only the
   .npy   one int64 for each vertex of A, in its order: the vertex of B, or -1 for a vertex that the repair dropped; with --points,
          four float64: the face of B, and the weights of its corners
   .csv   a line `vertex,match,confidence` for each vertex of A; with --points, also `face,w0,w1,w2`
-  .ply   B in the colours that the map carries from A. Beside it A in its colours, as map-source.ply, and a picture of both, as
+  .ply   B in the colors that the map carries from A. Beside it A in its colors, as map-source.ply, and a picture of both, as
          map.png
-  .png   a picture of A in colours, and of B in the colours that the map carries to it; grey where the map is not to be relied on
+  .png   a picture of A in colors, and of B in the colors that the map carries to it; gray where the map is not to be relied on
 
 distortion  the mean change of distances under the map, as a share of the square root of the area; both meshes at unit area
 agreement   how far the map keeps the orientation of the surface, from -1 to 1
@@ -38,7 +38,7 @@ whole. To transfer from B to A, exchange the meshes.
 
 Examples:
   canonform match cat0.off cat1.off -o map.npy
-  canonform match cat0.off cat1.off -o b-in-a-colours.ply
+  canonform match cat0.off cat1.off -o b-in-a-colors.ply
   canonform match cat0.off cat1.off --landmarks pairs.csv --points -o map.csv
   canonform match cat0.off cat1.off --transfer parts-of-cat0.csv -o parts-of-cat1.csv
   canonform match cat0.off cat1.off --functional c.npy --json";

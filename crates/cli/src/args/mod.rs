@@ -145,7 +145,7 @@ pub(crate) enum Command {
     Match(MatchArgs),
     /// Convert a mesh, or every mesh of a folder or an archive, to another file format
     Convert(ConvertArgs),
-    /// Draw a shaded picture of a mesh, optionally coloured by distances or other values
+    /// Draw a shaded picture of a mesh, optionally colored by distances or other values
     Render(RenderArgs),
     /// Build, change, check and export an index of shapes
     #[command(subcommand)]
@@ -182,7 +182,7 @@ pub(crate) struct InfoArgs {
 const EMBED_NOTES: &str = "\
 Stress, with the distances d_ij between p vertices along the surface and the coordinates z_i:
   stress             ||Z Z' + 1/2 J E J||_F / p, with E_ij = d_ij^2 and J = I - 1/p: the paper's, in squared mesh units
-  normalised stress  sqrt(sum (d_ij - |z_i - z_j|)^2 / sum d_ij^2): the relative error of the distances, without a unit
+  normalized stress  sqrt(sum (d_ij - |z_i - z_j|)^2 / sum d_ij^2): the relative error of the distances, without a unit
 
 Number of samples: with -n auto, until twice as many reduced the stress by less than 1 %. The choice is made on distances
 from points that are no samples; the stress and its interval are then estimated from others, so the choice does not bias
@@ -241,7 +241,7 @@ pub(crate) struct EmbedArgs {
 /// What is kept and what is not.
 const CONVERT_NOTES: &str = "\
 Vertices keep their order, and coordinates their numbers: OFF, OBJ, PLY and 3MF files read back bit for bit, STL and GLB files
-round to 32 bits. Units are not converted. Colours, textures and materials are left out.
+round to 32 bits. Units are not converted. Colors, textures and materials are left out.
 
 Examples:
   canonform convert cat.glb cat.ply
@@ -354,7 +354,7 @@ fn form_help() -> String {
 
 fn residual_help() -> String {
     format!(
-        "Write the first mesh, coloured by the distance of each vertex from the second shape after alignment ({}; only \
+        "Write the first mesh, colored by the distance of each vertex from the second shape after alignment ({}; only \
          .ply also holds the values, and `canonform render` draws them)",
         or_list(writable(Content::Field))
     )

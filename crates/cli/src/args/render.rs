@@ -19,7 +19,7 @@ how far up. Many files have y up: pass `--up y`.
 
 A field has one value per vertex of the mesh file, in its order, as written by `canonform geodesic -o`: .npy
 (vertices, or rows x vertices) or .csv (one row per line, or one value per line). Vertices without a finite
-value, such as those that distances do not reach, are grey. A .ply file may carry the field itself, as written by
+value, such as those that distances do not reach, are gray. A .ply file may carry the field itself, as written by
 `geodesic -o x.ply` and `compare --residual-mesh x.ply`; it is drawn unless an option says otherwise.
 
 Examples:
@@ -50,32 +50,32 @@ pub(crate) struct RenderArgs {
     /// Axis of the mesh that points up
     #[arg(long, hide_short_help = true, value_parser = axis(), default_value = "z")]
     pub(crate) up: [f64; 3],
-    /// Background: white, dark, transparent or a colour #rrggbb
+    /// Background: white, dark, transparent or a color #rrggbb
     #[arg(long, hide_short_help = true, default_value = "white", value_name = "BACKGROUND", value_parser = parse_background)]
     pub(crate) background: Background,
-    /// Colour of the mesh, #rrggbb [default: a light clay, or the values that a .ply file carries]
+    /// Color of the mesh, #rrggbb [default: a light clay, or the values that a .ply file carries]
     #[arg(long, hide_short_help = true, value_name = "#rrggbb", value_parser = parse_color, conflicts_with_all = ["field", "distance_from"])]
     pub(crate) color: Option<[u8; 3]>,
-    /// Colours of the values
+    /// Colors of the values
     #[arg(long, value_enum, default_value_t, value_name = "MAP")]
     pub(crate) colors: ColorMap,
-    /// Colour by the values in this file, one per vertex: .npy or .csv
+    /// Color by the values in this file, one per vertex: .npy or .csv
     #[arg(long, value_name = "FIELD")]
     pub(crate) field: Option<PathBuf>,
     /// Row of the field, counted from 0; required if it has several
     #[arg(long, hide_short_help = true, value_name = "ROW", value_parser = counted::<usize>, requires = "field")]
     pub(crate) row: Option<usize>,
-    /// Colour by the distance from the nearest of these points, by fast marching; write points as for `canonform
+    /// Color by the distance from the nearest of these points, by fast marching; write points as for `canonform
     /// geodesic`
     #[arg(long, value_delimiter = ',', value_name = "POINTS", conflicts_with = "field")]
     pub(crate) distance_from: Vec<InputPoint>,
     /// Number of lines of equal value, evenly spaced over the range
     #[arg(long, hide_short_help = true, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub(crate) isolines: u32,
-    /// The values of the darkest and the lightest colour [default: the smallest and the largest]
+    /// The values of the darkest and the lightest color [default: the smallest and the largest]
     #[arg(long, hide_short_help = true, value_name = "LOW,HIGH", value_parser = parse_range, allow_hyphen_values = true)]
     pub(crate) range: Option<[f64; 2]>,
-    /// Omit the colour bar; small pictures have none
+    /// Omit the color bar; small pictures have none
     #[arg(long, hide_short_help = true)]
     pub(crate) no_bar: bool,
     /// Draw the canonical form (NMDS from 100 samples) instead of the mesh
@@ -147,7 +147,7 @@ fn parse_color(text: &str) -> Result<[u8; 3], String> {
     let is_hex = digits.len() == 6 && digits.bytes().all(|b| b.is_ascii_hexdigit());
     match (is_hex, channel(0), channel(1), channel(2)) {
         (true, Some(r), Some(g), Some(b)) => Ok([r, g, b]),
-        _ => Err(format!("`{text}` is not a colour; write it as #rrggbb, such as #3b6ea5")),
+        _ => Err(format!("`{text}` is not a color; write it as #rrggbb, such as #3b6ea5")),
     }
 }
 
@@ -157,7 +157,7 @@ fn parse_background(text: &str) -> Result<Background, String> {
         "dark" => Ok(Background::Color([24, 26, 31])),
         "transparent" => Ok(Background::Transparent),
         _ => parse_color(text).map(Background::Color).map_err(|_| {
-            format!("`{text}` is not a background; give white, dark, transparent or a colour such as #f4f1ea")
+            format!("`{text}` is not a background; give white, dark, transparent or a color such as #f4f1ea")
         }),
     }
 }

@@ -29,7 +29,7 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
     let options = args.form.options(&args.method, common)?;
     options.validate()?;
     if let Some(path) = &args.residual_mesh {
-        check_format(path, "a coloured mesh", &writable(Content::Field).collect::<Vec<_>>())?;
+        check_format(path, "a colored mesh", &writable(Content::Field).collect::<Vec<_>>())?;
         check_output(path)?;
     }
     let [a, b] =

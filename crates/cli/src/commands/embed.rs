@@ -179,7 +179,7 @@ fn batch(args: &EmbedArgs, options: &EmbedOptions<'_>, common: &Common) -> Resul
     });
     let json = object! { shapes: shapes.collect::<Vec<_>>(), failed };
     report(common, &json, |json| {
-        let header = ["shape", "class", "vertices", "samples", "stress", "normalised stress", "seconds"];
+        let header = ["shape", "class", "vertices", "samples", "stress", "normalized stress", "seconds"];
         let mut table = table_of(header);
         for shape in &json.shapes {
             let r = &shape.result.report;
@@ -240,7 +240,7 @@ fn stress_text(report: &EmbedReport) -> String {
     }
 }
 
-/// The normalised stress, with its interval if it is estimated.
+/// The normalized stress, with its interval if it is estimated.
 pub(super) fn normalized_text(stress: &StressReport) -> String {
     let value = format!("{:.4}", stress.normalized);
     match stress.kind {
@@ -303,7 +303,7 @@ fn answer(json: &EmbedJson) -> Answer {
     });
     let facts = [
         ("method", method_text(r)),
-        ("normalised stress", normalized_or_none(r)),
+        ("normalized stress", normalized_or_none(r)),
         ("seconds", format!("{:.3}", r.seconds.total)),
     ];
     Answer {

@@ -31,7 +31,7 @@ pub(crate) fn evaluate(args: &EvaluateArgs, common: &Common) -> Result<ExitCode>
 fn column(ranking: &RankingEvaluation, knn_k: usize) -> [Fact; 7] {
     type Score = fn(&Scores) -> f64;
     let scores: [(&str, Score); 6] = [
-        ("nearest neighbour", |s| s.nn),
+        ("nearest neighbor", |s| s.nn),
         ("first tier", |s| s.ft),
         ("second tier", |s| s.st),
         ("E-measure", |s| s.e),
@@ -75,7 +75,7 @@ fn answer(IndexEvaluation { scores, agreement }: &IndexEvaluation) -> Answer {
     let intervals = format!("{level:.0} % intervals of the mean over queries, from {resamples} resamples");
     Answer {
         sentence: format!(
-            "the nearest neighbour is of the same class for {:.1} % of {n} shapes in {n_classes} classes",
+            "the nearest neighbor is of the same class for {:.1} % of {n} shapes in {n_classes} classes",
             100.0 * scores.plain.mean.nn
         ),
         facts,
@@ -86,7 +86,7 @@ fn answer(IndexEvaluation { scores, agreement }: &IndexEvaluation) -> Answer {
 fn text(found: &IndexEvaluation, common: &Common) -> String {
     let (mut text, scores) = (answer(found).text(common), &found.scores);
     if let Some(graph) = &scores.graph {
-        text += "\n  ranked on the graph of nearest neighbours, instead of plain:\n";
+        text += "\n  ranked on the graph of nearest neighbors, instead of plain:\n";
         text += &facts(&column(graph, scores.knn_k));
     }
     if common.details {

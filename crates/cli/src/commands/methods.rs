@@ -68,7 +68,7 @@ pub(crate) fn methods(args: &MethodsArgs, common: &Common) -> Result<ExitCode> {
         let kind = kind.map_or_else(String::new, |s| format!(", {:?}", s.kind).to_lowercase());
         table(&json.methods, common)
             + &format!(
-                "\n* lowest of its column. {} vertices, {} dimensions; the normalised stress is the relative error of the {} \
+                "\n* lowest of its column. {} vertices, {} dimensions; the normalized stress is the relative error of the {} \
                  distances{kind}; seconds from the repaired mesh to the embedding",
                 json.n_embedded, json.dim, json.geodesic
             )
@@ -140,7 +140,7 @@ fn variants(shared: &FormOptions) -> Vec<(&'static str, FormOptions)> {
 
 /// The columns of a method; the lowest value is marked where there is a place for a star.
 const COLUMNS: [&str; 6] =
-    ["normalised stress  ", "seconds  ", "memory  ", "samples", "stress  ", "negative mass"];
+    ["normalized stress  ", "seconds  ", "memory  ", "samples", "stress  ", "negative mass"];
 
 /// The values of a method as text, and those of which the lowest is marked.
 fn cells(facts: &MethodFacts) -> [(String, Option<f64>); 6] {

@@ -91,12 +91,12 @@ fn draw_one(
             Some([low, high]) => format!("{low:.6} to {high:.6}"),
             None => "no finite value".to_owned(),
         };
-        lines.push(("coloured by", format!("{}, {}", field.name, ends(&field.values))));
+        lines.push(("colored by", format!("{}, {}", field.name, ends(&field.values))));
         if field.range != field.values {
-            lines.push(("colours", ends(&field.range)));
+            lines.push(("colors", ends(&field.range)));
         }
         if field.missing > 0 {
-            lines.push(("grey", format!("{} vertices without a finite value", field.missing)));
+            lines.push(("gray", format!("{} vertices without a finite value", field.missing)));
         }
     }
     lines.push(("picture", format!("{} x {} pixels, {:.2} s", json.width, json.height, json.seconds)));

@@ -141,7 +141,7 @@ fn text(query: String, report: &Answer, details: bool) -> String {
     text += match report.rank_by {
         SearchRank::Plain => "",
         SearchRank::Graph => {
-            "  ordered by rank distance: signatures and neighbours in common; `plain` is the rank by signatures\n"
+            "  ordered by rank distance: signatures and neighbors in common; `plain` is the rank by signatures\n"
         }
         SearchRank::Forms => "  ordered by form distance: how different the canonical forms alone look\n",
         SearchRank::Part => {

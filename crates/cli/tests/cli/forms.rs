@@ -36,7 +36,7 @@ fn a_mesh_bent_into_its_form_keeps_its_faces_and_nearly_its_area() {
 }
 
 #[test]
-fn distances_have_one_row_per_source_in_both_formats_and_a_coloured_mesh_each() {
+fn distances_have_one_row_per_source_in_both_formats_and_a_colored_mesh_each() {
     let place = Workplace::new();
     place.add("broken.off", &broken_ring());
     place.done("geodesic broken.off --source 4,99,0 -o d.npy");

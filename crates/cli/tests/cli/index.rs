@@ -136,10 +136,10 @@ fn an_index_is_scored_and_ranked_in_every_order() {
     let graph = both.as_object_mut().and_then(|both| both.remove("graph")).unwrap();
     assert!(both == scores && graph["nn"].is_number(), "{graph}");
     let text = place.done("evaluate all.canonform --rank graph").out;
-    assert!(["nearest neighbour", "plain", "graph"].iter().all(|words| text.contains(words)), "{text}");
+    assert!(["nearest neighbor", "plain", "graph"].iter().all(|words| text.contains(words)), "{text}");
     assert_ne!(place.json("evaluate all.canonform --by shape-dna")["silhouette"], scores["silhouette"]);
     for (option, key, words) in [
-        ("--rank graph", "rank_distance", ["rank distance", "neighbours in common"]),
+        ("--rank graph", "rank_distance", ["rank distance", "neighbors in common"]),
         ("--rank part", "part_distance", ["part distance", "100 %"]),
         ("--by forms", "form_distance", ["form distance", "forms alone"]),
     ] {

@@ -76,7 +76,7 @@ fn distances_and_the_same_numbers_from_files_give_the_same_picture() {
 }
 
 #[test]
-fn what_a_repair_dropped_is_grey_counted_and_drawn_the_same_with_any_number_of_threads() {
+fn what_a_repair_dropped_is_gray_counted_and_drawn_the_same_with_any_number_of_threads() {
     let place = place();
     let mut broken = broken_ring();
     broken.faces.push([broken.faces[0][0], broken.faces[0][1], broken.faces[9][2]]);
@@ -90,6 +90,6 @@ fn what_a_repair_dropped_is_grey_counted_and_drawn_the_same_with_any_number_of_t
     place.done(format!("{draw} --threads 2 -o 2.png"));
     assert_eq!(fs::read(place.path("1.png")).unwrap(), fs::read(place.path("2.png")).unwrap());
     fs::write(place.path("nan.csv"), vec!["nan"; 160].join(",")).unwrap();
-    let grey = drawn(&place, "--field nan.csv --background transparent");
-    assert!(grey.iter().filter(|p| p[3] == 255).all(|p| p[0].abs_diff(p[2]) < 30));
+    let gray = drawn(&place, "--field nan.csv --background transparent");
+    assert!(gray.iter().filter(|p| p[3] == 255).all(|p| p[0].abs_diff(p[2]) < 30));
 }

@@ -128,7 +128,7 @@ fn absurd_requests_are_refused_before_they_cost_anything() {
 }
 
 #[test]
-fn fields_are_written_in_every_format_with_colours_and_drawn_again() {
+fn fields_are_written_in_every_format_with_colors_and_drawn_again() {
     let place = place();
     let mut bumpy = ring();
     bumpy.positions[7].coords *= 1.3;

@@ -91,7 +91,7 @@ impl<'a> Lanczos<'a> {
         let within = (&within + within.transpose()) * 0.5;
         image -= &block * &within;
         self.last = block;
-        let coupling = self.orthonormalise(&mut image, &lengths);
+        let coupling = self.orthonormalize(&mut image, &lengths);
         self.next = image;
         self.blocks.push([within, coupling]);
         if self.is_exhausted() {
@@ -106,7 +106,7 @@ impl<'a> Lanczos<'a> {
         let random = Matrix::from_fn(n, count, |_, _| self.random.uniform());
         let mut fresh = self.operator.apply_to_columns(&random);
         let lengths = self.lengths(&fresh);
-        self.orthonormalise(&mut fresh, &lengths);
+        self.orthonormalize(&mut fresh, &lengths);
         let old = self.next.ncols();
         self.next = Matrix::from_fn(n, old + fresh.ncols(), |i, j| {
             if j < old { self.next[(i, j)] } else { fresh[(i, j - old)] }
@@ -119,7 +119,7 @@ impl<'a> Lanczos<'a> {
     /// Makes the columns of `w` orthonormal, and orthogonal to the basis and the next block. Drops columns that are
     /// rounding error compared with their original `lengths`. Returns `R` such that the columns were `V h + w R`, with
     /// `w` the result and some `h`.
-    fn orthonormalise(&self, w: &mut Matrix, lengths: &[f64]) -> Matrix {
+    fn orthonormalize(&self, w: &mut Matrix, lengths: &[f64]) -> Matrix {
         let mut r = Matrix::identity(w.ncols(), w.ncols());
         let mut lengths = lengths.to_vec();
         // Once is enough unless most of a vector cancels; three times are always enough.
@@ -140,7 +140,7 @@ impl<'a> Lanczos<'a> {
     }
 
     /// Makes the columns of `w` orthonormal among themselves, and drops those that are rounding error. Returns `R` such
-    /// that the old columns are `w R`, and the length of each column before normalisation.
+    /// that the old columns are `w R`, and the length of each column before normalization.
     fn gram_schmidt(&self, w: &mut Matrix, lengths: &[f64]) -> (Matrix, Vec<f64>) {
         let (n, m) = w.shape();
         let mut r = Matrix::zeros(m, m);

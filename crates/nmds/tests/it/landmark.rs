@@ -4,7 +4,7 @@ use linalg::{LandmarkDistances, Matrix, symmetric_eigen};
 use crate::support::{Cloud, landmark_distances, pairwise};
 
 /// `x_a = -1/2 L# (δ_a - δ_μ)` point by point, as de Silva and Tenenbaum print it. Compares distances, which do not
-/// depend on centring and rotation.
+/// depend on centering and rotation.
 #[test]
 fn equals_the_closed_form_for_non_euclidean_distances() {
     let cloud = Cloud::new(120, 4, 33);
@@ -15,8 +15,8 @@ fn equals_the_closed_form_for_non_euclidean_distances() {
 
     let squares = distances.sq_block();
     let columns = distances.to_matrix().unwrap();
-    let centring = Matrix::identity(n, n).add_scalar(-1.0 / n as f64);
-    let eigen = symmetric_eigen(&(&centring * &squares * &centring * -0.5)).unwrap();
+    let centering = Matrix::identity(n, n).add_scalar(-1.0 / n as f64);
+    let eigen = symmetric_eigen(&(&centering * &squares * &centering * -0.5)).unwrap();
     let position = |a: usize| -> Vec<f64> {
         let inner = |c: usize| -> f64 {
             let off = |j: usize| columns[(a, j)].powi(2) - squares.row(j).sum() / n as f64;

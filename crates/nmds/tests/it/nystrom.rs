@@ -47,7 +47,7 @@ fn gapped() -> LandmarkDistances {
 }
 
 #[test]
-fn the_regularised_pseudo_inverse_lies_between_none_and_low_rank() {
+fn the_regularized_pseudo_inverse_lies_between_none_and_low_rank() {
     let distances = gapped();
     let embed =
         |regularization| nystrom(&distances, &NystromOptions { regularization, dim: 2 }).unwrap().coords;

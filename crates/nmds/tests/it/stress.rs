@@ -7,8 +7,8 @@ use crate::support::{Cloud, circle};
 fn by_definition(coords: &Matrix, distances: &DistanceMatrix) -> f64 {
     let p = distances.n_points();
     let squares = Matrix::from_fn(p, p, |i, j| distances.get(i, j).powi(2));
-    let centring = Matrix::identity(p, p).add_scalar(-1.0 / p as f64);
-    (coords * coords.transpose() + &centring * squares * &centring * 0.5).norm() / p as f64
+    let centering = Matrix::identity(p, p).add_scalar(-1.0 / p as f64);
+    (coords * coords.transpose() + &centering * squares * &centering * 0.5).norm() / p as f64
 }
 
 #[test]

@@ -154,7 +154,7 @@ class Comparison(Stored):
             ("scale, second over first", f"{self.scale:.6g}"),
         ]
         pictures = [
-            _html.image(a.picture(self.residuals, width=440, height=440), title="the first, coloured by how far the forms are apart"),
+            _html.image(a.picture(self.residuals, width=440, height=440), title="the first, colored by how far the forms are apart"),
             _html.image(b.picture(width=440, height=440), title="the second"),
         ]
         return _html.card("Comparison", rows, pictures)

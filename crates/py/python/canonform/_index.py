@@ -89,7 +89,7 @@ class Result:
     relation
         How the query and the shape are related, as in `Comparison.relation`; by files and meshes, too, if the search explains.
     rank_distance
-        What results are ordered by if they are ranked on the graph of nearest neighbours.
+        What results are ordered by if they are ranked on the graph of nearest neighbors.
     part_distance
         What results are ordered by if the query is taken as a part: 0 if it fits.
     part_share
@@ -202,7 +202,7 @@ class Scores(dict[str, Any]):
     """
 
     def to_pandas(self) -> pandas.DataFrame:
-        """How many shapes of each class, a row, were taken for each class, a column, by their neighbours."""
+        """How many shapes of each class, a row, were taken for each class, a column, by their neighbors."""
         import pandas
 
         return pandas.DataFrame(self["confusion"], index=self["classes"], columns=self["classes"])
@@ -430,7 +430,7 @@ class Index(Stored):
         k
             Number of results.
         rank
-            "plain" orders results by distance, "graph" by distance and by the neighbours that query and shape have in common,
+            "plain" orders results by distance, "graph" by distance and by the neighbors that query and shape have in common,
             "part" by how well the query fits as a part of the shape, for a mesh that was cut or scanned in part, "forms" by
             canonical forms alone.
         explain
@@ -481,9 +481,9 @@ class Index(Stored):
             search orders results by, with aligned forms; or a matrix of your own, with a row and a column for each shape in the order of
             `shapes`.
         k
-            Number of neighbours that vote on the class of a shape.
+            Number of neighbors that vote on the class of a shape.
         rank
-            "plain", or "graph" to score the ranking on the graph of nearest neighbours as well, under the key `graph`.
+            "plain", or "graph" to score the ranking on the graph of nearest neighbors as well, under the key `graph`.
         labels
             Other classes, as in `build`.
 

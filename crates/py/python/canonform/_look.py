@@ -41,27 +41,27 @@ class Look(TypedDict, total=False):
     up
         The axis that points up: "x", "y" or "z", the default.
     colormap
-        Colours of values: "viridis", "magma", "inferno", "cividis", "turbo", "coolwarm" or "gray".
+        Colors of values: "viridis", "magma", "inferno", "cividis", "turbo", "coolwarm" or "gray".
     range
-        The values of the first and the last colour; by default the least and the greatest.
+        The values of the first and the last color; by default the least and the greatest.
     bar
-        The name of the values beside a bar of their colours; by default no bar. True for a bar without a name.
+        The name of the values beside a bar of their colors; by default no bar. True for a bar without a name.
     isolines
         Number of steps of the range that lines of equal value separate.
     colors
-        A colour for each vertex instead of values: shape (n, 3), from 0 to 255, or from 0 to 1 if they are fractions.
+        A color for each vertex instead of values: shape (n, 3), from 0 to 255, or from 0 to 1 if they are fractions.
     edges
         Whether edges are drawn.
     thickness
         Of paths and points, as a share of the usual.
     paths
-        Paths of `Surface.path`, or arrays of points of shape (k, 3), drawn as red lines; or pairs of one and a colour.
+        Paths of `Surface.path`, or arrays of points of shape (k, 3), drawn as red lines; or pairs of one and a color.
     points
         Points drawn as blue dots: vertices, points of edges and faces, or places of shape (k, 3).
     labels
         Texts by points, such as {0: "nose"}: they are written beside these, none over another.
     background
-        A colour such as "#ffffff", by default none.
+        A color such as "#ffffff", by default none.
 
     >>> look = canonform.Look(view="left", width=80, bar="distance", labels={0: "source"})
     >>> cat.picture(cat.distances(0), **look)[1:4]
@@ -86,7 +86,7 @@ class Look(TypedDict, total=False):
 
 
 def drawn(vertices: Floats, faces: Ints, values: Floats | None, look: Look) -> bytes:
-    """A PNG file of a mesh, coloured by values if there are some."""
+    """A PNG file of a mesh, colored by values if there are some."""
     for name in look.keys() - Look.__annotations__.keys():
         raise TypeError(f"got an unexpected keyword argument {name!r}")
     vertices, faces = vertices.view(np.ndarray), np.asarray(faces)
@@ -140,7 +140,7 @@ def figure(
     width, height
         With `at`, the size in pixels.
     background
-        A colour such as "#ffffff".
+        A color such as "#ffffff".
 
     Returns
     -------
@@ -210,7 +210,7 @@ def _settings(look: Look) -> dict[str, Any]:
         raise OptionError(f"view={view!r} is not possible: use {', '.join(map(repr, _VIEWS))}, 'principal', or two angles such as (30, 12)")
     ends = look.get("range")
     if ends is not None and not (len(ends) == 2 and -np.inf < number("range", ends[0]) < number("range", ends[1]) < np.inf):
-        raise OptionError(f"range={ends!r} is not possible: give the values of the first and the last colour, such as (0, 80)")
+        raise OptionError(f"range={ends!r} is not possible: give the values of the first and the last color, such as (0, 80)")
     sides = {name: min(whole(name, look.get(name, 600), 1), _LARGEST) for name in ("width", "height")}
     return {
         **sides,

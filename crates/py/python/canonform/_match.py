@@ -27,8 +27,8 @@ _OTHER: dict[Part, Part] = {"first": "second", "second": "first"}
 
 _Arrays: TypeAlias = tuple[Ints, Floats, Floats, list[Ints] | None]
 
-_GREY = 160
-# Colours fade to grey around this confidence, as in pictures of the command line.
+_GRAY = 160
+# Colors fade to gray around this confidence, as in pictures of the command line.
 _DOUBTFUL = 0.5
 
 
@@ -334,10 +334,10 @@ class SurfaceMap(Stored):
         return SurfaceMap(report, [(vertices, confidence, functional, None)], shapes, nothing, self._settings)
 
     def _colors(self, colors: NDArray[np.uint8]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Colours of the first surface, and those that the map carries to the second: grey where it is not to be relied on."""
+        """Colors of the first surface, and those that the map carries to the second: gray where it is not to be relied on."""
         doubt = np.clip(1.5 - self.vertex_confidence / _DOUBTFUL, 0, 1)
-        source: Floats = colors + (_GREY - colors.astype(np.float64)) * doubt[:, None] + 0.0
-        return source, np.nan_to_num(self.transfer(source), nan=_GREY)
+        source: Floats = colors + (_GRAY - colors.astype(np.float64)) * doubt[:, None] + 0.0
+        return source, np.nan_to_num(self.transfer(source), nan=_GRAY)
 
     def _report(self) -> dict[str, Any]:
         return {name: getattr(self, name) for name in ("kind", "distortion", "agreement", "confidence")}
@@ -406,7 +406,7 @@ class Match(Stored):
         return self.maps[0]
 
     def pictures(self, **look: Unpack[Look]) -> list[bytes]:
-        """PNG files: the first surface in colours, and the second in the colours that each map carries to it; grey where the map is
+        """PNG files: the first surface in colors, and the second in the colors that each map carries to it; gray where the map is
         not to be relied on. The keywords are those of `Look`."""
         a, b = self._shapes
         colors = [m._colors(self._colors) for m in self.maps]
@@ -414,7 +414,7 @@ class Match(Stored):
         return [drawn(shape.vertices, shape.faces, None, {**look, "colors": paint}) for shape, paint in both]
 
     def picture(self, kind: MapKind | None = None, *, n_lines: int = 0, **look: Unpack[Look]) -> bytes:
-        """A PNG file of both surfaces side by side, in the colours that a map carries from the first to the second.
+        """A PNG file of both surfaces side by side, in the colors that a map carries from the first to the second.
 
         Parameters
         ----------
@@ -451,7 +451,7 @@ class Match(Stored):
         return f"Match({', '.join(map(repr, self.maps))})"
 
     def _repr_html_(self) -> str:
-        titles = ["the first, in colours", *(f"the second, {m.kind} map" for m in self.maps)]
+        titles = ["the first, in colors", *(f"the second, {m.kind} map" for m in self.maps)]
         shown = zip(self.pictures(width=440, height=440), titles, strict=True)
         rows = [(m.kind, f"distortion {m.distortion:.4f}") for m in self.maps]
         return _html.card("Match", rows, [_html.image(png, title=title) for png, title in shown])

@@ -752,10 +752,10 @@ class Surface(Constant):
         """Where the vertices lie around a point, unrolled into the plane that touches there: shape (n, 2), in mesh units.
 
         Row v is the logarithm of vertex v: the direction in which the shortest path from the source to it starts, as long as this
-        path. So its norm is `distances(source, geodesic="exact")[v]`, and neighbourhoods of several points can be laid over each
+        path. So its norm is `distances(source, geodesic="exact")[v]`, and neighborhoods of several points can be laid over each
         other. NaN for vertices beyond `max_distance` and for those that the repair dropped.
 
-        The first axis points, from a vertex, along the edge to its neighbour with the lowest number; from a point of an edge, to the
+        The first axis points, from a vertex, along the edge to its neighbor with the lowest number; from a point of an edge, to the
         end with the higher number; in a face, from its first corner to the second. The second axis is 90 degrees to the left, seen
         from the side on which the corners of faces run counterclockwise. Angles at an inner vertex are scaled to a full turn.
 
@@ -836,7 +836,7 @@ class Surface(Constant):
         return mesh
 
     def picture(self, values: ArrayLike | None = None, **look: Unpack[Look]) -> bytes:
-        """A shaded picture of the surface as the bytes of a PNG file, coloured by values at its vertices if given.
+        """A shaded picture of the surface as the bytes of a PNG file, colored by values at its vertices if given.
 
         The keywords of `Look` say from where, how large, and what is drawn on it.
 
@@ -850,14 +850,14 @@ class Surface(Constant):
     def view(
         self, values: ArrayLike | None = None, *, name: str = "", height: int = 480, up: Literal["x", "y", "z"] = "z"
     ) -> SurfaceView:
-        """The surface to turn and zoom in a notebook, coloured by values at its vertices if given.
+        """The surface to turn and zoom in a notebook, colored by values at its vertices if given.
 
         Parameters
         ----------
         values
-            One number for each vertex; faces at vertices whose number is not finite are grey.
+            One number for each vertex; faces at vertices whose number is not finite are gray.
         name
-            What the values are, for the colour bar.
+            What the values are, for the color bar.
         height
             Height of the view, in pixels.
         up

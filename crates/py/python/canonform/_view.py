@@ -110,7 +110,7 @@ class _Cell:
 def scene(
     vertices: Floats, faces: Ints, values: Floats | None, title: str, values_name: str, height: int, up: Literal["x", "y", "z"]
 ) -> SurfaceView:
-    """A view of a mesh, coloured by values at its vertices."""
+    """A view of a mesh, colored by values at its vertices."""
     picture = drawn(vertices, faces, values, {"width": height, "height": height, "up": up})
     # The viewer has z up, and the axis after that to the right.
     vertices = np.roll(vertices, {"x": 2, "y": 1, "z": 0}[up], axis=1)

@@ -372,7 +372,7 @@ def search(
     """
     if rank == "graph":
         raise OptionError(
-            'rank="graph" needs the neighbours of all shapes, which several indexes do not know: merge them with Index.merge and search '
+            'rank="graph" needs the neighbors of all shapes, which several indexes do not know: merge them with Index.merge and search '
             'the result, or use "plain", "part" or "forms"'
         )
     start = time.perf_counter()
@@ -532,7 +532,7 @@ def _describe(
     contents = _canonform.content_hashes([path for _, _, path in shapes])
     name = _hash(settings, [(*shape, content) for shape, content in zip(shapes, contents, strict=True)])
     path = os.path.join(place, f"{name}.canonform")
-    # An unfinished batch is resumed, and one that is there is recognised by the content of its meshes.
+    # An unfinished batch is resumed, and one that is there is recognized by the content of its meshes.
     names = {name for name, _, _ in shapes}
     report = _canonform.Index.build(dataset, path, label_file, False, None, names, False, settings)
     return path, json.loads(report)

@@ -85,7 +85,7 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
     Attributes
     ----------
     embedding_ : ndarray of shape (n, n_components)
-        Coordinates of the points of the fit, centred, in the unit of the distances.
+        Coordinates of the points of the fit, centered, in the unit of the distances.
     landmarks_ : ndarray of shape (p,)
         The landmarks: indices of points of the fit.
     eigenvalues_ : ndarray

@@ -91,7 +91,7 @@ impl<'a> PieceSearch<'a> {
         // Vertices and the centroids are rounded.
         let tolerance = 2.0 * (whole.rounding() + piece.rounding() * scale);
         let points: Vec<Point3<f64>> = piece.mesh().positions.iter().map(|p| p * scale).collect();
-        // A piece that stayed in place has its own centre.
+        // A piece that stayed in place has its own center.
         let shift = (piece.surface.center.coords / factor - whole.surface.center.coords) / whole.size();
         let in_place = Similarity { translation: shift, ..Similarity::identity() };
         // Motions that take a face of the piece to one of the whole with the same sides.

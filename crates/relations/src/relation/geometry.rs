@@ -28,7 +28,7 @@ const MAX_COMPONENTS: usize = 200;
 const MIN_COMPONENT: f64 = 1e-3;
 
 /// All triangles of a mesh file in space: every component, before any repair but the merging of vertices in the same
-/// position. It is kept at unit area, centred at the centroid of the surface.
+/// position. It is kept at unit area, centered at the centroid of the surface.
 ///
 /// ```
 /// use canonform_relations::MeshGeometry;
@@ -161,7 +161,7 @@ impl MeshGeometry {
         self.surface.is_mechanical()
     }
 
-    /// Whether vertices have noise that is independent of their neighbours'.
+    /// Whether vertices have noise that is independent of their neighbors'.
     pub(super) fn is_noisy(&self) -> bool {
         *self.noisy.get_or_init(|| is_noisy(self.mesh()))
     }

@@ -12,12 +12,12 @@ use super::geometry::MeshGeometry;
 /// answer.
 pub(super) const ABOUT: f64 = 0.05;
 
-/// Displacements of neighbouring vertices are independent, as those by noise, if their correlation along edges is below
+/// Displacements of neighboring vertices are independent, as those by noise, if their correlation along edges is below
 /// this. A safety limit: it is 0 for noise and 1 for a smooth deformation.
 pub(super) const INDEPENDENT: f64 = 0.5;
 
 /// What happened to the triangles of a surface; `map` takes the first mesh onto the second. Of meshes with the same faces it is
-/// [`Change::Noisy`] if displacements do not depend on those of neighbours, else [`Change::Posed`].
+/// [`Change::Noisy`] if displacements do not depend on those of neighbors, else [`Change::Posed`].
 pub(super) fn mesh_change([a, b]: [&MeshGeometry; 2], map: &Similarity) -> Change {
     if a.n_vertices() == b.n_vertices() && a.mesh().faces == b.mesh().faces {
         let is_noise = displacements([a, b]).is_some_and(|coherence| coherence < INDEPENDENT);

@@ -20,7 +20,7 @@ pub struct MeshOverlay {
 }
 
 impl MeshOverlay {
-    /// Whether vertices of the first mesh are as far from the second as noise takes them: independently of their neighbours.
+    /// Whether vertices of the first mesh are as far from the second as noise takes them: independently of their neighbors.
     pub fn is_noise(&self) -> bool {
         let ([mesh, _], [gaps, _]) = (&self.meshes, &self.gaps);
         let mean = gaps.iter().sum::<f64>() / gaps.len().max(1) as f64;

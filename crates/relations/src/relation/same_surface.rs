@@ -95,7 +95,7 @@ fn worst([a, b]: [&MeshGeometry; 2], map: &Similarity) -> f64 {
     probes(a.mesh(), errors_a).into_iter().filter_map(probe).fold(0.0, f64::max)
 }
 
-/// Corners, middles of edges and centres of at most 2,000 faces, with the least error of a face that each lies in: small features have
+/// Corners, middles of edges and centers of at most 2,000 faces, with the least error of a face that each lies in: small features have
 /// them too, where points at random may miss them.
 fn probes(mesh: &TriMesh, errors: &[f64]) -> Vec<(Point3<f64>, f64)> {
     let chosen = || (0..mesh.n_faces()).step_by(mesh.n_faces().div_ceil(2000));
@@ -106,7 +106,7 @@ fn probes(mesh: &TriMesh, errors: &[f64]) -> Vec<(Point3<f64>, f64)> {
     let mut shared: Vec<_> = chosen().flat_map(of_face).collect();
     shared.sort_unstable_by(|(v, x), (w, y)| v.cmp(w).then(x.total_cmp(y)));
     shared.dedup_by_key(|(ends, _)| *ends);
-    let centre = |f: usize| {
+    let center = |f: usize| {
         let [a, b, c] = mesh.triangle(f);
         (nalgebra::center(&nalgebra::center(&a, &b), &c), errors[f])
     };
@@ -114,7 +114,7 @@ fn probes(mesh: &TriMesh, errors: &[f64]) -> Vec<(Point3<f64>, f64)> {
         let [p, q] = ends.map(|v| mesh.positions[v.index()]);
         (nalgebra::center(&p, &q), error)
     };
-    shared.into_iter().map(middle).chain(chosen().map(centre)).collect()
+    shared.into_iter().map(middle).chain(chosen().map(center)).collect()
 }
 
 /// Vertices less edges plus faces, if every edge has two faces.

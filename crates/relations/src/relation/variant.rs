@@ -87,7 +87,7 @@ struct Dimensions {
     bosses: Vec<f64>,
     /// Overall, descending.
     extents: [f64; 3],
-    /// Distances between neighbouring planes in all directions, ascending.
+    /// Distances between neighboring planes in all directions, ascending.
     steps: Vec<f64>,
     volume: Option<f64>,
     euler: Option<isize>,
@@ -126,7 +126,7 @@ impl Dimensions {
     }
 }
 
-/// Distances between neighbouring planes across a direction.
+/// Distances between neighboring planes across a direction.
 fn steps(regions: &[SmoothRegion], direction: &Vector3<f64>) -> Vec<f64> {
     let offset = |region: &SmoothRegion| match region.shape {
         RegionShape::Plane { normal, offset } if normal.dot(direction).abs() > SmoothRegions::PARALLEL => {

@@ -50,7 +50,7 @@ impl PlotAxis {
         Self { name, scale: AxisScale::Linear, range, ticks: ticks.collect() }
     }
 
-    /// The axis of a colour bar, with a tick at both ends of a range that has no round values.
+    /// The axis of a color bar, with a tick at both ends of a range that has no round values.
     pub(crate) fn bar(name: &str, unit: &str, range: [f64; 2], most: usize) -> Self {
         let [low, high] = range;
         // A step below the spacing of floating-point numbers would never arrive.

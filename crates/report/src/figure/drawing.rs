@@ -33,7 +33,7 @@ pub(crate) type Picture = (RgbaImage, [i32; 2]);
 /// A place of a drawing in pixels, and what the page says when the reader points at it.
 pub(crate) type Hover = ((i32, i32), String);
 
-/// The background. Dark pages have other colours for it, for ink and for grid lines.
+/// The background. Dark pages have other colors for it, for ink and for grid lines.
 pub(crate) const PAPER: Rgb = [255; 3];
 /// Text and lines.
 pub(crate) const INK: Rgb = [34; 3];
@@ -78,7 +78,7 @@ pub(crate) fn rgb([r, g, b]: Rgb) -> RGBColor {
     RGBColor(r, g, b)
 }
 
-/// The style of text of this size, in units, centred at its anchor.
+/// The style of text of this size, in units, centered at its anchor.
 pub(crate) fn text(size: f64, color: Rgb) -> TextStyle<'static> {
     scaled_text(size, color, PX)
 }
@@ -106,7 +106,7 @@ pub(crate) fn upwards(style: TextStyle<'static>) -> TextStyle<'static> {
     style.transform(FontTransform::Rotate270)
 }
 
-/// How far centred text moves down for its letters to be centred vertically, in pixels.
+/// How far centered text moves down for its letters to be centered vertically, in pixels.
 pub(crate) fn drop_of(style: &TextStyle<'_>) -> i32 {
     (0.19 * style.font.get_size()).round() as i32
 }
@@ -156,7 +156,7 @@ fn register_fonts() -> Result<(), ReportError> {
     if *done { Ok(()) } else { Err(ReportError::draw("text", "the embedded font cannot be read")) }
 }
 
-/// Draws the ticks and the name of a colour bar of this thickness at the left of an area, with `scale` pixels per unit.
+/// Draws the ticks and the name of a color bar of this thickness at the left of an area, with `scale` pixels per unit.
 pub(crate) fn bar_labels<DB: DrawingBackend>(
     area: &Area<DB>,
     axis: &PlotAxis,
@@ -266,14 +266,14 @@ pub(crate) fn svg(drawing: &impl Drawing) -> Result<String, String> {
     Ok(svg)
 }
 
-/// Rules of CSS that give drawings the colours of dark pages.
+/// Rules of CSS that give drawings the colors of dark pages.
 pub(crate) fn dark_rules() -> String {
     let colors = [
         (PAPER, [20, 23, 26]),
         (INK, [228, 231, 234]),
         (PALE_INK, [163, 171, 181]),
         (GRID, [53, 59, 66]),
-        // The darkest of the colours of classes.
+        // The darkest of the colors of classes.
         (class_color(6), [201, 204, 209]),
     ];
     let rule = |(light, dark): (Rgb, Rgb)| {

@@ -1,6 +1,6 @@
 //! Matrices: one by itself, others two in a row.
 //!
-//! Cells are a picture, as 148 shapes have 22,000 of them; names, lines and colour bars are drawn over it.
+//! Cells are a picture, as 148 shapes have 22,000 of them; names, lines and color bars are drawn over it.
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
@@ -22,7 +22,7 @@ const SPACE: f64 = 8.0;
 const CELL: f64 = 46.0;
 const WHOLE: f64 = 18.0;
 const TITLE_HEIGHT: f64 = 40.0;
-/// To the right: a gap, the colour bar, its labels.
+/// To the right: a gap, the color bar, its labels.
 const GAP: f64 = 12.0;
 const BAR: f64 = 14.0;
 const BAR_LABELS: f64 = 70.0;
@@ -76,7 +76,7 @@ struct MatrixFrame<'a> {
     side: f64,
     /// Room for names at the left and below.
     names: f64,
-    /// The value of the last colour; the first colour is that of zero.
+    /// The value of the last color; the first color is that of zero.
     max: f64,
 }
 
@@ -91,7 +91,7 @@ impl<'a> MatrixFrame<'a> {
         Self { heat, left: 0.0, top: 0.0, cell, side: (cell * n).floor(), names, max }
     }
 
-    /// The cells, and the colours of the bar.
+    /// The cells, and the colors of the bar.
     fn pictures(&self) -> [Picture; 2] {
         let Heat { names, values, .. } = self.heat;
         let [side, thick] = [self.side, BAR].map(|side| side as i32 * PICTURE_PX);

@@ -39,7 +39,7 @@ const MAP_SIZE: [f64; 2] = [PAGE_WIDTH as f64 / 2.0 - LEFT - RIGHT, HEIGHT];
 const MARKERS: [(u32, f64, f64); 5] =
     [(24, 0.0, 0.95), (3, 90.0, 1.25), (4, 45.0, 1.2), (4, 0.0, 1.25), (3, -90.0, 1.25)];
 
-/// The look of series number `n`: five markers and eight colours. The first 40 differ in the pair, neighbours in both.
+/// The look of series number `n`: five markers and eight colors. The first 40 differ in the pair, neighbors in both.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct SeriesStyle(usize);
 

@@ -1,4 +1,4 @@
-//! A colour bar with ticks next to an image.
+//! A color bar with ticks next to an image.
 
 use base::Observer;
 use mesh::TriMesh;
@@ -12,7 +12,7 @@ use crate::error::ReportError;
 use crate::figure::{INK, PlotAxis, bar_labels, scaled_text, text_width};
 use crate::image::RgbaImage;
 
-/// Draws like [`render`], with labels at points, and with a colour bar of this name and its ticks to the right of the mesh, in
+/// Draws like [`render`], with labels at points, and with a color bar of this name and its ticks to the right of the mesh, in
 /// an image of the same size.
 ///
 /// There is no bar if the surface has no finite numbers, or if the bar would take more than half of the image.
@@ -34,7 +34,7 @@ pub fn annotated(
     let Some(bar) = bar else { return Ok(image) };
     let mut image = image.beside(&RgbaImage::new(bar.width, bar.size[1], empty(options.background)));
     bar.paint(&mut image);
-    paint(&mut image, options.background, (0.0, 1), "a colour bar", |area| {
+    paint(&mut image, options.background, (0.0, 1), "a color bar", |area| {
         let [left, top, height] = [bar.left(), bar.top, bar.height].map(|at| at as i32);
         let width = bar.size[0] as i32 - left - (0.4 * bar.em) as i32;
         let place = area.clone().shrink((left, top), (width, height));
@@ -64,7 +64,7 @@ impl ColorBar {
     fn new(options: &RenderOptions, name: &str) -> Option<Self> {
         let Coloring::Scalars { values, range, isolines } = &options.coloring else { return None };
         let [low, high] = range.or_else(|| value_range(values))?;
-        // The range of the surface's colours if there is only one value.
+        // The range of the surface's colors if there is only one value.
         let high = if high > low { high } else { low + 1.0 };
         let size = [options.width, options.height].map(|side| side.clamp(1, 8192));
         let high_side = f64::from(size[1]);
@@ -89,7 +89,7 @@ impl ColorBar {
         (self.size[0] - self.width) as usize + (0.3 * self.em) as usize
     }
 
-    /// Fills the bar with the colour map and its isolines.
+    /// Fills the bar with the color map and its isolines.
     fn paint(&self, image: &mut RgbaImage) {
         let (left, right) = (self.left(), self.left() + self.em as usize);
         let half_line = self.em / 24.0;

@@ -47,7 +47,7 @@ pub(super) struct Camera {
     pub(super) axes: Matrix3<f64>,
     /// Samples per mesh unit.
     scale: f64,
-    /// Rotated coordinates of the centre of the image, at depth zero.
+    /// Rotated coordinates of the center of the image, at depth zero.
     center: Vector3<f64>,
     /// Half the size of the image, in samples.
     half: [f64; 2],

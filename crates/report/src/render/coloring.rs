@@ -1,38 +1,38 @@
-//! Colours of a surface, before lighting.
+//! Colors of a surface, before lighting.
 
 use nalgebra::Vector3;
 
 use crate::color::{ColorMap, to_linear, value_range};
 
-/// Colours of a surface.
+/// Colors of a surface.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Coloring {
-    /// One sRGB colour.
+    /// One sRGB color.
     Plain([u8; 3]),
     /// One number per vertex, mapped to [`colors`](super::RenderOptions::colors) and interpolated across faces.
     Scalars {
-        /// The numbers. Vertices beyond the list and numbers that are not finite are grey.
+        /// The numbers. Vertices beyond the list and numbers that are not finite are gray.
         values: Vec<f64>,
-        /// The ends of the colour map. `None`: the least and the greatest of `values`.
+        /// The ends of the color map. `None`: the least and the greatest of `values`.
         range: Option<[f64; 2]>,
         /// The number of equal steps of the range that isolines separate, 0 for no isolines. There is none at the
         /// ends of the range, and none on faces where the value is constant.
         isolines: u32,
     },
-    /// One sRGB colour per vertex, interpolated across faces in linear light. Vertices beyond the list are grey.
+    /// One sRGB color per vertex, interpolated across faces in linear light. Vertices beyond the list are gray.
     Colors(Vec<[u8; 3]>),
 }
 
 /// The share of light that an isoline leaves of its surface.
 pub(super) const ISOLINE_LIGHT: f32 = 0.35;
 
-/// The colour of a vertex without one.
+/// The color of a vertex without one.
 const MISSING: [u8; 3] = [160, 160, 160];
 
-/// The colours of a surface and of its marks, in linear light.
+/// The colors of a surface and of its marks, in linear light.
 pub(super) struct Paint {
     surface: Coat,
-    /// The colours of the last vertices, and where they begin.
+    /// The colors of the last vertices, and where they begin.
     marks: Vec<Vector3<f32>>,
     first_mark: usize,
 }
@@ -64,7 +64,7 @@ impl Paint {
         Self { surface: Coat::new(n_vertices, coloring, colors, samples), marks, first_mark }
     }
 
-    /// The colour at barycentric coordinates `at` of `face`; `slopes` are the changes of these coordinates per
+    /// The color at barycentric coordinates `at` of `face`; `slopes` are the changes of these coordinates per
     /// sample to the right and down.
     pub(super) fn color(
         &self,

@@ -17,11 +17,11 @@ pub struct RenderOptions {
     pub view: View,
     /// What is behind the surface. Default: [`Background::White`].
     pub background: Background,
-    /// Colours of the surface. Default: a light clay.
+    /// Colors of the surface. Default: a light clay.
     pub coloring: Coloring,
-    /// The sRGB colours of the last vertices of the mesh, which are those of marks on the surface, such as paths. Default: none.
+    /// The sRGB colors of the last vertices of the mesh, which are those of marks on the surface, such as paths. Default: none.
     pub marks: Vec<[u8; 3]>,
-    /// The colours of numbers. Default: [`ColorMap::Viridis`].
+    /// The colors of numbers. Default: [`ColorMap::Viridis`].
     pub colors: ColorMap,
     /// Dihedral angle in degrees, clamped to 0..=90, above which an edge is shaded as a crease. Default: 80.
     pub crease: f64,
@@ -51,7 +51,7 @@ impl Default for RenderOptions {
 pub enum Background {
     /// Opaque white.
     White,
-    /// An opaque sRGB colour.
+    /// An opaque sRGB color.
     Color([u8; 3]),
     /// Alpha 0; at edges, alpha is the covered share of the pixel.
     Transparent,

@@ -46,12 +46,12 @@ impl Projected {
         })
     }
 
-    /// Barycentric coordinates at the centre of a sample; all in 0..=1 inside the face.
+    /// Barycentric coordinates at the center of a sample; all in 0..=1 inside the face.
     pub(super) fn at(&self, column: usize, row: usize) -> Vector3<f64> {
         self.origin + self.slopes[0] * (column as f64 + 0.5) + self.slopes[1] * (row as f64 + 0.5)
     }
 
-    /// The largest depth at the centres of some samples, or a little more, as [`at`](Self::at) and the depths of the
+    /// The largest depth at the centers of some samples, or a little more, as [`at`](Self::at) and the depths of the
     /// corners give it with any rounding.
     fn greatest_depth(&self, columns: &Range<usize>, rows: &Range<usize>) -> f32 {
         let slopes = self.slopes.map(|slope| slope.dot(&self.depths));
@@ -167,7 +167,7 @@ impl DepthBuffer {
         for row in rows.clone() {
             for column in columns.clone() {
                 let at = face.at(column, row);
-                // A little slack closes the seams between neighbours.
+                // A little slack closes the seams between neighbors.
                 if at.min() < -1e-9 {
                     continue;
                 }
@@ -191,7 +191,7 @@ impl DepthBuffer {
     }
 }
 
-/// The samples with centres between two positions. Centres lie at halves.
+/// The samples with centers between two positions. Centers lie at halves.
 fn samples_between(low: f64, high: f64, size: usize) -> Range<usize> {
     // Casts saturate, so far-away corners are safe.
     let end = (high + 0.5).floor().max(0.0) as usize;

@@ -26,7 +26,7 @@ impl Lights {
         }
     }
 
-    /// The light that a surface of linear colour `base` reflects to the viewer. `open` is the share of ambient
+    /// The light that a surface of linear color `base` reflects to the viewer. `open` is the share of ambient
     /// light that reaches the point.
     fn reflect(&self, base: Vector3<f32>, normal: Vector3<f32>, open: f32) -> Vector3<f32> {
         let facing = normal.z.clamp(0.0, 1.0);

@@ -69,7 +69,7 @@ fn a_sphere_looks_the_same_from_all_sides_and_is_lit_from_the_upper_left() {
     assert!(difference(&front, &other) < 0.5, "{}", difference(&front, &other));
     let [upper_left, lower_right] = [front.pixel(45, 40), front.pixel(75, 80)].map(light);
     assert!(upper_left > 1.3 * lower_right, "{upper_left} {lower_right}");
-    // Neighbouring points have almost the same shade.
+    // Neighboring points have almost the same shade.
     assert!((light(front.pixel(59, 20)) - light(front.pixel(60, 20))).abs() < 12.0);
 }
 

@@ -160,7 +160,7 @@ fn write(
 /// Most pixels of a drawing that is averaged: 200 MB.
 const MOST_FINE: f64 = 6.4e7;
 
-/// Paints what is drawn in [`INK`], with this many pixels to a side of each of the image, in a colour that contrasts with the
+/// Paints what is drawn in [`INK`], with this many pixels to a side of each of the image, in a color that contrasts with the
 /// background, on a margin of this width.
 pub(super) fn paint(
     image: &mut RgbaImage,
@@ -209,7 +209,7 @@ pub(super) fn empty(background: Background) -> [u8; 4] {
     }
 }
 
-/// A text colour that contrasts with the background.
+/// A text color that contrasts with the background.
 fn pen(background: Background) -> Rgb {
     let light = match background {
         // As far from white as from black.
@@ -223,7 +223,7 @@ fn pen(background: Background) -> Rgb {
     if light > 0.18 { [34; 3] } else { [235; 3] }
 }
 
-/// A pixel of which an opaque colour covers `share`.
+/// A pixel of which an opaque color covers `share`.
 fn over([r, g, b, alpha]: [u8; 4], color: Rgb, share: f64) -> [u8; 4] {
     if share <= 0.0 {
         return [r, g, b, alpha];
@@ -292,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn a_partly_covered_pixel_mixes_both_colours() {
+    fn a_partly_covered_pixel_mixes_both_colors() {
         assert_eq!(over([10, 20, 30, 40], [0; 3], 0.0), [10, 20, 30, 40]);
         assert_eq!(over([10, 20, 30, 40], [1, 2, 3], 1.0), [1, 2, 3, 255]);
         assert_eq!(over([200, 200, 200, 255], [0; 3], 0.5), [100, 100, 100, 255]);

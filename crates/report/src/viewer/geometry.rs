@@ -19,16 +19,16 @@ pub struct Geometry {
     /// The vertices of every face.
     #[serde(with = "words")]
     pub faces: Vec<[u32; 3]>,
-    /// A number per vertex, for its colour; NaN if the vertex has none.
+    /// A number per vertex, for its color; NaN if the vertex has none.
     #[serde(with = "words", default, skip_serializing_if = "Option::is_none")]
     pub values: Option<Vec<f32>>,
-    /// The name and unit of the values, for the colour bar.
+    /// The name and unit of the values, for the color bar.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub values_name: Option<String>,
 }
 
 impl Geometry {
-    /// A surface whose bounding box is centred at the origin.
+    /// A surface whose bounding box is centered at the origin.
     ///
     /// Faces with a corner that does not exist or is not finite are left out.
     pub fn new(mesh: &TriMesh) -> Self {
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn surfaces_are_centred_without_being_scaled() {
+    fn surfaces_are_centered_without_being_scaled() {
         assert_eq!(
             Geometry::new(&triangle()).positions,
             [[-1.0, -3.0, -2.0], [1.0, -3.0, -2.0], [-1.0, 3.0, 2.0]]

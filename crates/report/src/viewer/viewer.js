@@ -15,7 +15,7 @@
 'use strict';
 
 const canonform = (() => {
-  // The colour map of the static images, whose equally spaced colours `viewer_js` inserts.
+  // The color map of the static images, whose equally spaced colors `viewer_js` inserts.
   const VIRIDIS = 'COLOR_STOPS'.split(' ').map((color, i, { length }) => [i / (length - 1), color]);
   const CLAY = '#b9b4aa';
   const NO_VALUE = '#9a9a9a';
@@ -30,7 +30,7 @@ const canonform = (() => {
   // plotly interprets some HTML in every text; names must appear as they are.
   const plain = (text) => String(text).replaceAll('&', '&amp;').replaceAll('<', '&lt;').replaceAll('>', '&gt;');
 
-  // Colours and font of the page.
+  // Colors and font of the page.
   function theme() {
     const style = getComputedStyle(document.documentElement);
     const color = (name, light, dark) => style.getPropertyValue(name).trim() || (darkScheme.matches ? dark : light);
@@ -143,7 +143,7 @@ const canonform = (() => {
       ...base, i: strided(indices, 0), j: strided(indices, 1), k: strided(indices, 2), ...more,
     });
     if (!values) return [drawn(faces, { color: geometry.color || CLAY })];
-    // A face is grey if one of its corners has no value.
+    // A face is gray if one of its corners has no value.
     const [known, unknown] = [[], []];
     for (let f = 0; f < faces.length; f += 3) {
       const face = faces.subarray(f, f + 3);
@@ -231,7 +231,7 @@ const canonform = (() => {
     return zoom;
   }
 
-  // Width of a colour bar, in pixels, which the scene leaves free.
+  // Width of a color bar, in pixels, which the scene leaves free.
   const BAR = 64;
 
   function layout(data, [width, height], colors, hasLegend) {

@@ -135,9 +135,9 @@ fn answer(
         found,
         // Of either form from the other, in units of the first mesh.
         residual,
-        // Both forms after alignment, coloured by the distance of each point from the other form.
+        // Both forms after alignment, colored by the distance of each point from the other form.
         forms,
-        // Both meshes after alignment in space, coloured by the distance of each vertex from the other mesh, if they are
+        // Both meshes after alignment in space, colored by the distance of each vertex from the other mesh, if they are
         // alike as rigid bodies.
         meshes,
         // How far the meshes are apart, in units of the first.

@@ -51,7 +51,7 @@ fn answer(
         // From the first mesh to the second, at most two of different kinds: the direct one first, unless it distorts
         // distances clearly more.
         maps,
-        // Points that the first map joins have the same colour.
+        // Points that the first map joins have the same color.
         meshes: [carried, b.mesh()],
     })
 }

@@ -12,10 +12,10 @@ function extent({ positions }) {
   return Math.max(...ends.map(([low, high]) => high - low));
 }
 
-// Gaps below this share of the extent come from rounded coordinates in files, and have the colour of zero.
+// Gaps below this share of the extent come from rounded coordinates in files, and have the color of zero.
 const ROUNDING = 1e-5;
 
-// The largest gap between two meshes, and the end of the scale of colours; no gap if it is rounding.
+// The largest gap between two meshes, and the end of the scale of colors; no gap if it is rounding.
 export function gapOf([first], { max }) {
   const rounding = ROUNDING * extent(first);
   return max < rounding ? { largest: 0, scale: rounding } : { largest: max, scale: max };
@@ -84,8 +84,8 @@ export class Comparison {
     byId('shown-both').textContent = inSpace ? 'both meshes' : 'both forms';
     const most = inSpace ? gapOf(meshes, gap).largest : Math.max(residual[0].max, residual[1].max);
     const shown = inSpace
-      ? 'The picture shows the meshes, aligned in space at the size of the first. Colour is the gap between them: '
-      : 'The picture shows the canonical forms, aligned, since the meshes are not one rigid body. Colour is the distance between them: ';
+      ? 'The picture shows the meshes, aligned in space at the size of the first. Color is the gap between them: '
+      : 'The picture shows the canonical forms, aligned, since the meshes are not one rigid body. Color is the distance between them: ';
     // Names keep their letters.
     byId('overlay-kind').textContent = `${relation.text} (${Math.round(100 * relation.confidence)} % certain).`;
     byId('overlay-kind').dataset.kind = relation.kind;
@@ -97,7 +97,7 @@ export class Comparison {
     overlay.dataset.state = 'ready';
   }
 
-  // Coloured by the gap or the residual; with both shown, the second is a pale shell around the first.
+  // Colored by the gap or the residual; with both shown, the second is a pale shell around the first.
   draw() {
     if (!this.answer) return undefined;
     const { meshes, gap, forms, residual, a, b } = this.answer;
@@ -121,7 +121,7 @@ export class Comparison {
     return Promise.all(drawn);
   }
 
-  // Maps the first shape to the second, and shows both in corresponding colours.
+  // Maps the first shape to the second, and shows both in corresponding colors.
   async match() {
     const { turn } = this;
     const [part, facts] = [byId('match'), byId('match-facts')];
@@ -140,7 +140,7 @@ export class Comparison {
     const words = { direct: 'the map that keeps left and right', mirrored: 'the mirrored map', unoriented: 'the map' };
     const doubt = ({ alternative }) => (alternative ? ' (uncertain: front and back may be exchanged)' : '');
     const change = (map) => `${words[map.kind]} changes distances by ${number(100 * map.distortion)} % of the square root of the area${doubt(map)}`;
-    facts.textContent = `${sentence(answer.maps.map(change).join(', '))} Points that the first map joins have the same colour.`;
+    facts.textContent = `${sentence(answer.maps.map(change).join(', '))} Points that the first map joins have the same color.`;
     await Promise.all(['match-first', 'match-second'].map(
       (id, i) => view(id, answer.meshes[i], { title: [answer.a, answer.b][i] })));
     part.scrollIntoView({ block: 'start' });

@@ -24,7 +24,7 @@ fn assert_serves(server: &Served) {
     }
 }
 
-/// A polygon with this many corners: one vertex of its triangulation has all of them as neighbours.
+/// A polygon with this many corners: one vertex of its triangulation has all of them as neighbors.
 fn polygon(corners: usize) -> Vec<u8> {
     let mut text = format!("OFF\n{corners} 1 0\n");
     for i in 0..corners {

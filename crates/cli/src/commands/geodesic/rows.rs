@@ -1,4 +1,4 @@
-//! Distances from sources: one row, or one coloured mesh, per source.
+//! Distances from sources: one row, or one colored mesh, per source.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

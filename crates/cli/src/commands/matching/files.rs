@@ -16,7 +16,7 @@ use serde::Serialize;
 
 use crate::table::{write_matrix, write_npy};
 
-/// Below this confidence a vertex is counted as doubtful. In pictures, colours fade from half as much above it to grey at half of
+/// Below this confidence a vertex is counted as doubtful. In pictures, colors fade from half as much above it to gray at half of
 /// it. A convention.
 pub(super) const DOUBTFUL: f64 = 0.5;
 
@@ -77,21 +77,21 @@ pub(super) fn write_table(
     }
 }
 
-/// Colours of the first mesh by its place in the canonical form, fading to grey where the map is doubtful; the same colours,
-/// carried to the second mesh; and for every vertex of that, the vertex of the first whose colour it has, or -1.
+/// Colors of the first mesh by its place in the canonical form, fading to gray where the map is doubtful; the same colors,
+/// carried to the second mesh; and for every vertex of that, the vertex of the first whose color it has, or -1.
 pub(super) fn corresponding(map: &SurfaceMap, [a, b]: [&MappedFile; 2]) -> ([Vec<Rgb>; 2], Vec<f64>) {
-    let grey = perceptual(f64::NAN);
+    let gray = perceptual(f64::NAN);
     let surface = a.mapped.surface();
-    let colors = surface.in_input_order(&place_colors(a.mapped.shape.form_points()), grey);
+    let colors = surface.in_input_order(&place_colors(a.mapped.shape.form_points()), gray);
     let faded =
-        |(color, confidence): (&Rgb, &f64)| mix(*color, grey, (1.5 - confidence / DOUBTFUL).clamp(0.0, 1.0));
+        |(color, confidence): (&Rgb, &f64)| mix(*color, gray, (1.5 - confidence / DOUBTFUL).clamp(0.0, 1.0));
     let source: Vec<Rgb> = colors.iter().zip(&map.vertex_confidence).map(faded).collect();
     let places = Mapping::new(map, [&a.mapped, &b.mapped]).vertices(Side::Second);
     let (target, origins) = carried(&places, &source);
     ([source, target], origins)
 }
 
-/// Colours of the vertices of one mesh at the places of the other one's vertices, and the nearest vertices.
+/// Colors of the vertices of one mesh at the places of the other one's vertices, and the nearest vertices.
 fn carried(places: &PointMap, colors: &[Rgb]) -> (Vec<Rgb>, Vec<f64>) {
     let channels = Matrix::from_fn(colors.len(), 3, |i, j| f64::from(colors[i][j]));
     let found = places.values(&channels);
@@ -104,7 +104,7 @@ fn carried(places: &PointMap, colors: &[Rgb]) -> (Vec<Rgb>, Vec<f64>) {
     ((0..places.points.len()).map(color).collect(), nearest.collect())
 }
 
-/// Writes a mesh in colours.
+/// Writes a mesh in colors.
 pub(super) fn write_colored(
     path: &Path,
     mesh: &TriMesh,
@@ -115,7 +115,7 @@ pub(super) fn write_colored(
     Ok(canonform::mesh::io::write_scalar_field(path, mesh, &VertexField { name, values, colors })?)
 }
 
-/// Writes a picture of two meshes in colours.
+/// Writes a picture of two meshes in colors.
 pub(super) fn picture(path: &Path, meshes: [&TriMesh; 2], colors: [Vec<Rgb>; 2]) -> Result<()> {
     let drawn = |mesh: &TriMesh, colors: Vec<Rgb>| {
         let coloring = Coloring::Colors(colors);

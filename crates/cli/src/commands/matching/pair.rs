@@ -31,7 +31,7 @@ struct MapJson {
     /// The share of them with a confidence below one half.
     doubtful: f64,
     path: Option<PathBuf>,
-    /// The picture beside a mesh in colours.
+    /// The picture beside a mesh in colors.
     picture: Option<PathBuf>,
     /// The file of the alternative.
     alternative_path: Option<PathBuf>,
@@ -98,9 +98,9 @@ pub(crate) fn match_meshes(args: &MatchArgs, common: &Common) -> Result<ExitCode
         b: &args.pair.b,
         n_vertices: sides.map(|side| side.mesh.n_vertices()),
         maps,
-        // The second mesh in the colours that the first map carries to it.
+        // The second mesh in the colors that the first map carries to it.
         target,
-        // The first mesh in its colours.
+        // The first mesh in its colors.
         source: target.map(|path| beside(path, "source")),
         // What was carried to the second mesh.
         transfer,
@@ -155,7 +155,7 @@ fn written(
     Ok(MapJson { matched, doubtful, map, path, picture, alternative_path, points })
 }
 
-/// Writes one map; returns the picture beside a mesh in colours.
+/// Writes one map; returns the picture beside a mesh in colors.
 fn write(
     path: &Path,
     format: &str,

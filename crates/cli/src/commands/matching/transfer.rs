@@ -149,7 +149,7 @@ impl Transfer {
         Ok((object! { path: path.to_owned(), elements, kind, rows, columns }, words))
     }
 
-    /// Writes the second mesh, or a picture of both, coloured by what was carried.
+    /// Writes the second mesh, or a picture of both, colored by what was carried.
     fn draw(&self, path: &Path, format: &str, found: &Content, sides: [&MappedFile; 2]) -> Result<()> {
         let mut names = match &self.content {
             Content::Labels(labels) => labels.clone(),
@@ -167,7 +167,7 @@ impl Transfer {
             (self.elements, numbers(&self.content), numbers(found))
         else {
             bail!(
-                "{}: colours show one value or label for each vertex; write rows of faces and corners, and several columns, to .npy or .csv",
+                "{}: colors show one value or label for each vertex; write rows of faces and corners, and several columns, to .npy or .csv",
                 path.display()
             )
         };

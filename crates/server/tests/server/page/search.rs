@@ -52,7 +52,7 @@ fn a_chosen_mesh_is_classified_and_overlaid_with_a_result() {
     page.browser.click("#match-hit").unwrap();
     page.wait_for("document.querySelector('#match').dataset.state === 'ready'");
     page.wait_for("document.querySelector('#match-second').dataset.state === 'ready'");
-    assert!(page.text("#match-facts").contains("same colour"), "{}", page.text("#match-facts"));
+    assert!(page.text("#match-facts").contains("same color"), "{}", page.text("#match-facts"));
     page.browser.click("input[name=shown][value=second]").unwrap();
     page.wait_for("document.querySelector('#overlay-view .canonform-scene').data.length === 1");
     page.assert_sound();
