@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::geometry::{MeshGeometry, ROUNDING};
+use super::geometry::{Exactness, MeshGeometry, ROUNDING};
 use super::mesh_change::ABOUT;
 use super::same_surface::euler_characteristic_if_closed;
 
@@ -12,17 +12,6 @@ const ONE_NORMAL: f64 = 1e-3;
 /// Detail that bends a surface by this share more may be noise. A convention: decimated copies of smooth surfaces bend less than a
 /// tenth less.
 const ROUGH: f64 = 0.2;
-
-/// What tells how exactly a mesh states a surface, beside its noise.
-#[derive(Debug)]
-pub(super) struct Exactness {
-    is_closed: bool,
-    /// Vertices without which the surface would be another one.
-    n_needed: usize,
-    /// Angles by which normals turn at edges, times their lengths, summed, at unit area. Other triangles of a surface hardly change
-    /// it, and noise increases it.
-    bending: f64,
-}
 
 /// Why one copy of a surface is more exact than another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

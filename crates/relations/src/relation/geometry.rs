@@ -11,8 +11,6 @@ use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use surface::{Components, VertexId, components_of_faces};
 
-use super::exactness::Exactness;
-
 /// How coarsely files round coordinates, relative to the largest coordinate: text with six digits, twice. Numbers of 32 bits
 /// are finer. A tolerance of rounding.
 pub(super) const ROUNDING: f64 = 1e-5;
@@ -53,6 +51,17 @@ pub struct MeshGeometry {
     pub(super) noise: OnceLock<Option<f64>>,
     pub(super) exactness: OnceLock<Exactness>,
     parts: OnceLock<Vec<MeshGeometry>>,
+}
+
+/// What tells how exactly a mesh states a surface, beside its noise.
+#[derive(Debug)]
+pub(super) struct Exactness {
+    pub(super) is_closed: bool,
+    /// Vertices without which the surface would be another one.
+    pub(super) n_needed: usize,
+    /// Angles by which normals turn at edges, times their lengths, summed, at unit area. Other triangles of a surface hardly change
+    /// it, and noise increases it.
+    pub(super) bending: f64,
 }
 
 /// What a geometry is sent as: all that is not found from it.
