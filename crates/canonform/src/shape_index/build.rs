@@ -9,7 +9,7 @@ use std::time::Instant;
 use base::{Budget, ContentHash, Exceeded};
 use index::{Entry, Index, IndexError, IndexWriter, Shape};
 use mesh::{Fault, MeshError};
-use rayon::prelude::*;
+use rayon::ThreadPoolBuilder;
 use serde::{Serialize, Serializer};
 
 use super::agreement::finish;
@@ -505,10 +505,10 @@ pub(super) fn fill(
     let whole = observer.budget();
     let (send, receive) = sync_channel(WAITING);
     let described = std::thread::scope(|scope| {
-        // Describing stays on this thread, and so on the thread pool of the caller.
+        let sender = send;
         let stored = scope.spawn(|| store(writer, receive, observer));
         // Sending fails only if the writer has failed; the error stops the loop.
-        let _ = equal.par_iter().try_for_each_with(send, |send, places| {
+        side_by_side(&equal, |places| {
             let mut known: Option<Shape> = None;
             places.iter().try_for_each(|&place| {
                 let (listed, content) = &wanted[place];
@@ -525,9 +525,10 @@ pub(super) fn fill(
                     (Ok(shape), None) if places.len() > 1 => known = Some(shape.clone()),
                     _ => {}
                 }
-                send.send((place, described)).map_err(drop)
+                sender.send((place, described)).map_err(drop)
             })
         });
+        drop(sender);
         stored.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     })?;
     let Outcome { stored, mut failed } = described;
@@ -540,6 +541,24 @@ pub(super) fn fill(
     failed.sort_by_key(|(place, _)| *place);
     failed.iter().for_each(|(place, fault)| report.fail(&wanted[*place].0, fault));
     Ok(kept)
+}
+
+/// Works on items side by side until one fails, each on threads of its own: one if there are no more threads than items. A thread
+/// that waits for others within an item would take up another one, and would be another thread to sampling, which then
+/// measures more to end sooner.
+fn side_by_side<T: Sync>(items: &[T], work: impl Fn(&T) -> Result<(), ()> + Sync) {
+    let n_threads = rayon::current_num_threads();
+    let (next, n_workers) = (AtomicUsize::new(0), items.len().clamp(1, n_threads));
+    let run =
+        || while items.get(next.fetch_add(1, Ordering::Relaxed)).is_some_and(|item| work(item).is_ok()) {};
+    std::thread::scope(|scope| {
+        for _ in 0..n_workers {
+            scope.spawn(|| match ThreadPoolBuilder::new().num_threads(n_threads / n_workers).build() {
+                Ok(pool) => pool.install(run),
+                Err(_) => run(),
+            });
+        }
+    });
 }
 
 /// What a description is made from: bytes, and the extension, which decides how they are read.
