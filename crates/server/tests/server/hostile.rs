@@ -150,7 +150,7 @@ fn bad_forms_get_an_error() {
 #[test]
 fn a_gigabyte_of_zeros_is_cut_off() {
     let limited = ServeOptions { max_upload: 1 << 20, ..options() };
-    let server = Served::start(limited);
+    let server = Served::start_alone(limited);
     let head = |length: &str| {
         format!(
             "POST /api/search HTTP/1.1\r\nHost: {}\r\nContent-Type: multipart/form-data; boundary=x\r\n{length}\r\n\r\n",

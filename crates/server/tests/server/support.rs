@@ -46,7 +46,7 @@ pub(crate) struct Served {
     _turn: Turn,
 }
 
-/// Held by every test with a server: tests under attack run alone, so that their times are those of the server.
+/// Held by every test with a server: tests under attack run alone, so that their times and their memory are those of the server.
 static TURNS: RwLock<()> = RwLock::new(());
 
 #[derive(Debug)]
