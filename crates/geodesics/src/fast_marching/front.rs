@@ -427,18 +427,20 @@ impl TriangleFront {
         Ok(())
     }
 
-    /// Lowers the vertices of triangles along their sides.
+    /// Lowers the vertices of triangles along their sides; vertices further on are left to the search along edges, which stops.
     fn relax_sides<'t>(&mut self, triangles: impl Iterator<Item = &'t MarchTriangle>) {
+        let mut ways = Vec::new();
         for triangle in triangles {
             let ([a, b, c], [to_a, to_b, to_c]) = (triangle.vertices(), triangle.lengths);
             let [at_a, at_b, at_c] = [a, b, c].map(|v| self.vertices[v.index()]);
             let (ab, bc, ca) = ((at_b - at_a).abs(), (at_c - at_b).abs(), (at_a - at_c).abs());
             if (bc > SLACK * to_a) | (ca > SLACK * to_b) | (ab > SLACK * to_c) {
-                for (length, [p, q]) in [(to_a, [b, c]), (to_b, [c, a]), (to_c, [a, b])] {
-                    self.relax(p, q, length);
-                    self.relax(q, p, length);
-                }
+                ways.extend([(to_a, [b, c]), (to_b, [c, a]), (to_c, [a, b])]);
             }
+        }
+        for (length, [p, q]) in ways {
+            self.relax(p, q, length);
+            self.relax(q, p, length);
         }
     }
 
