@@ -29,6 +29,12 @@ fn shapes_without_a_common_neighbor_keep_their_order() {
     let far: Vec<usize> = found.iter().rev().take(80).rev().map(|near| near.index).collect();
     let expected: Vec<usize> = plain.iter().rev().take(80).rev().map(|near| near.index).collect();
     assert_eq!(far, expected);
+    // They have nothing in common with the query, which counts two fifths, and the distance three.
+    let scale = plain[..LINKS].iter().map(|near| near.distance).sum::<f64>() / LINKS as f64;
+    for near in &found[119..] {
+        let x = near.distance / scale;
+        assert!((near.rank_distance - (0.6 * x / (1.0 + x) + 0.4)).abs() < 1e-12);
+    }
 }
 
 #[test]
