@@ -503,9 +503,8 @@ pub(super) fn fill(
     equal.sort();
     let copies = AtomicUsize::new(copied.len());
     let whole = observer.budget();
-    let (send, receive) = sync_channel(WAITING);
     let described = std::thread::scope(|scope| {
-        let sender = send;
+        let (send, receive) = sync_channel(WAITING);
         let stored = scope.spawn(|| store(writer, receive, observer));
         // Sending fails only if the writer has failed; the error stops the loop.
         side_by_side(&equal, |places| {
@@ -525,10 +524,10 @@ pub(super) fn fill(
                     (Ok(shape), None) if places.len() > 1 => known = Some(shape.clone()),
                     _ => {}
                 }
-                sender.send((place, described)).map_err(drop)
+                send.send((place, described)).map_err(drop)
             })
         });
-        drop(sender);
+        drop(send);
         stored.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     })?;
     let Outcome { stored, mut failed } = described;
@@ -543,9 +542,9 @@ pub(super) fn fill(
     Ok(kept)
 }
 
-/// Works on items side by side until one fails, each on threads of its own: one if there are no more threads than items. A thread
-/// that waits for others within an item would take up another one, and would be another thread to sampling, which then
-/// measures more to end sooner.
+/// Works on items side by side until one fails, each on threads of its own: on one if there are at least as many items as threads.
+/// If all items shared the threads, one that waits within an item would take up another item, and sampling would measure in advance
+/// for threads that are busy.
 fn side_by_side<T: Sync>(items: &[T], work: impl Fn(&T) -> Result<(), ()> + Sync) {
     let n_threads = rayon::current_num_threads();
     let (next, n_workers) = (AtomicUsize::new(0), items.len().clamp(1, n_threads));

@@ -29,7 +29,7 @@ pub(super) fn placed(sides: &Sides<'_>, anchors: &[(usize, usize)], fineness: Fi
             losses
                 .iter_mut()
                 .zip(found.iter())
-                .for_each(|(loss, found)| *loss += known.loss(*found, sides.max_change));
+                .for_each(|(loss, found)| *loss += known.loss(*found, sides.max_change()));
         }
         (0..n).min_by(|y, z| losses[*y].total_cmp(&losses[*z])).unwrap_or(0)
     };

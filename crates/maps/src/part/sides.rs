@@ -47,9 +47,6 @@ pub(super) struct Sides<'a> {
     known: Vec<[usize; 2]>,
     /// Distances in the part from landmarks (rows), the first of the samples, to samples.
     pub(super) in_part: Matrix,
-    /// Changes of distances count up to this when points are placed: the pairs of a few wrong anchors, or with a path through what is
-    /// missing. A part of a built-in man is mapped to him with a mean error of 0.0140 with .1, and of 0.0142 with .2.
-    pub(super) max_change: f64,
     /// The distances of all vertices of the part from the cut.
     pub(super) from_cut: Vec<f64>,
     /// Distances between the samples of the whole, of which landmarks are the first.
@@ -78,7 +75,6 @@ impl<'a> Sides<'a> {
             side,
             params,
             scale,
-            max_change: 2.0 * params.same,
         };
         sides.known = sides.sampled(known.landmarks.iter().copied()).collect();
         Ok(Some(sides))
@@ -96,6 +92,12 @@ impl<'a> Sides<'a> {
     pub(super) fn anchors(&self, pairs: impl Iterator<Item = [VertexId; 2]>) -> Vec<(usize, usize)> {
         let of_landmarks = self.sampled(pairs).filter(|[x, _]| *x < self.in_part.nrows());
         of_landmarks.map(|[x, y]| (x, y)).collect::<BTreeMap<_, _>>().into_iter().collect()
+    }
+
+    /// Changes of distances count up to this when points are placed: the pairs of a few wrong anchors, or with a path through what is
+    /// missing. A part of a built-in man is mapped to him with a mean error of 0.0140 with .1, and of 0.0142 with .2.
+    pub(super) fn max_change(&self) -> f64 {
+        2.0 * self.params.same
     }
 
     /// What is known of the distance of a landmark and a sample of the part.

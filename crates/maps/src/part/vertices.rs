@@ -41,8 +41,9 @@ pub(super) fn all_vertices(sides: &Sides<'_>, places: &[usize]) -> Result<Vec<us
         let place = places[part.nearest[v].min(places.len() - 1)];
         let members = near[place].iter().flat_map(|(_, y)| &whole.cells[*y]);
         let loss = |w: usize| -> f64 {
-            let of =
-                |l: usize| sides.known_of(l, v, in_part[(l, v)]).loss(from_images[(l, w)], sides.max_change);
+            let of = |l: usize| {
+                sides.known_of(l, v, in_part[(l, v)]).loss(from_images[(l, w)], sides.max_change())
+            };
             (0..n).map(of).sum()
         };
         let best = members.map(|w| (loss(*w), *w)).min_by(|a, b| a.0.total_cmp(&b.0));
