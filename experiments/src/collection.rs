@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result, bail};
 use base::terminal::note;
 use canonform::collection::{LabelSource, list_shapes};
-use canonform::{Observer, Surface, read_surface};
+use canonform::{Observer, Surface, read_surface, side_by_side};
 use clap::Args;
 use mesh::RepairOptions;
 use rayon::prelude::*;
@@ -215,7 +215,7 @@ impl SurfaceCollection {
     }
 }
 
-/// Calls `work` on all shapes in parallel. Every shape is a step of `stage`.
+/// Calls `work` on all shapes, side by side. Every shape is a step of `stage`.
 pub(crate) fn map<T: Send>(
     shapes: &[&LabeledSurface],
     stage: &str,
@@ -228,7 +228,7 @@ pub(crate) fn map<T: Send>(
         observer.step();
         result
     };
-    shapes.par_iter().map(one).collect()
+    side_by_side(shapes.iter().collect(), one)
 }
 
 /// The kind of a collection, which decides the expectations that apply.

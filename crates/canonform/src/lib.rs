@@ -88,6 +88,7 @@ mod error;
 mod form;
 mod input;
 mod shape_index;
+mod side_by_side;
 
 pub mod compare;
 
@@ -97,6 +98,7 @@ pub use error::{Error, Remedy};
 pub use form::{DescribeOptions, describe, settings};
 pub use index::Shape;
 pub use input::read_surface;
+pub use side_by_side::side_by_side;
 pub use {collection, descriptors, fields, index, linalg, nmds, relations, retrieval, rigid, surface};
 
 /// From distances to coordinates, and what they tell of a shape.

@@ -1,13 +1,14 @@
 //! One result for each of several meshes.
 
 use std::collections::HashMap;
+use std::convert::Infallible;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use base::files::is_input;
 use base::terminal::Bars;
 use canonform::collection::ShapeFile;
-use rayon::prelude::*;
+use canonform::side_by_side;
 use serde::Serialize;
 
 use crate::args::{Common, keep_inputs};
@@ -41,7 +42,7 @@ pub(crate) struct Results<'a> {
     pub(crate) arguments: &'a [PathBuf],
     pub(crate) folder: &'a Path,
     pub(crate) extension: &'a str,
-    /// Whether meshes share the threads, or each has all of them.
+    /// Whether meshes are worked on side by side, or each has all threads.
     pub(crate) in_parallel: bool,
 }
 
@@ -72,9 +73,10 @@ impl Results<'_> {
             bar.inc(1);
             result
         };
+        let each = shapes.iter().zip(&outputs);
         let results: Vec<Result<T>> = match self.in_parallel {
-            true => shapes.par_iter().zip(&outputs).map(work).collect(),
-            false => shapes.iter().zip(&outputs).map(work).collect(),
+            true => side_by_side(each.collect(), |one| Ok::<_, Infallible>(work(one)))?,
+            false => each.map(work).collect(),
         };
         bar.finish_and_clear();
         let (mut done, mut failed) = (Vec::new(), Vec::new());

@@ -12,7 +12,7 @@ use canonform::mesh::io::{
     FORMATS, FileSource, Format, MeshFile, ReadLimits, files_in, is_mesh_path, or_list, without_extension,
 };
 use canonform::mesh::{RepairReport, TriMesh};
-use canonform::{Remedy, Surface};
+use canonform::{Remedy, Surface, side_by_side};
 
 use crate::args::{Common, LimitArgs, PairArgs, RepairArgs};
 use crate::remedy::with_remedy;
@@ -95,21 +95,22 @@ pub(crate) fn read_reported(path: &Path, repair: &RepairArgs, common: &Common) -
     Ok((mesh, surface))
 }
 
-/// Reads and repairs two meshes, reports repairs, and prepares each of them within the limits.
-pub(crate) fn read_pair<T>(
+/// Reads and repairs two meshes, reports repairs, and prepares them side by side within the limits.
+pub(crate) fn read_pair<T: Send>(
     pair: &PairArgs,
     repair: &RepairArgs,
     limits: &LimitArgs,
     common: &Common,
-    prepare: impl Fn(&Path, TriMesh, Surface, &Bars) -> Result<T, canonform::Error>,
+    prepare: impl Fn(&Path, TriMesh, Surface, &Bars) -> Result<T, canonform::Error> + Sync,
 ) -> Result<[T; 2]> {
-    read_stream_once([&pair.a, &pair.b])?;
-    let side = |path: &Path| {
-        let (mesh, surface) = read_reported(path, repair, common)?;
+    let paths = [&pair.a, &pair.b];
+    read_stream_once(paths)?;
+    let [a, b] = paths.map(|path| read_reported(path, repair, common).map(|read| (path, read)));
+    let prepared = side_by_side(vec![a?, b?], |(path, (mesh, surface))| {
         let bars = Bars::with_budget(common.quiet, limits.budget());
         prepare(path, mesh, surface, &bars).map_err(|fault| named(path, fault))
-    };
-    Ok([side(&pair.a)?, side(&pair.b)?])
+    })?;
+    Ok(prepared.try_into().unwrap_or_else(|_| unreachable!("every item has a result")))
 }
 
 fn read_stream_once<'a>(arguments: impl IntoIterator<Item = &'a PathBuf>) -> Result<()> {

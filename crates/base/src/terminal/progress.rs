@@ -1,10 +1,10 @@
 //! Progress on standard error: bars on a terminal, lines elsewhere.
 
 use std::io::IsTerminal;
-use std::sync::{Mutex, Once, PoisonError};
+use std::sync::{LazyLock, Mutex, Once, PoisonError};
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle, WeakProgressBar};
+use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle, WeakProgressBar};
 
 use super::notes::is_quiet;
 use crate::{Budget, Observer, write_line};
@@ -41,7 +41,7 @@ impl Bars {
             return bar;
         }
         let style = ProgressStyle::with_template("{msg:>12} {wide_bar} {pos}/{len} {eta:>5} left");
-        let bar = ProgressBar::new(total as u64).with_message(stage.to_owned());
+        let bar = ON_TERMINAL.add(ProgressBar::new(total as u64).with_message(stage.to_owned()));
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         bar
     }
@@ -76,6 +76,9 @@ impl Observer for Bars {
         }
     }
 }
+
+/// The bars on the terminal, one below the other: two shapes may be worked on at a time.
+static ON_TERMINAL: LazyLock<MultiProgress> = LazyLock::new(MultiProgress::new);
 
 /// Time between two lines of progress.
 const INTERVAL: Duration = Duration::from_secs(5);

@@ -9,7 +9,6 @@ use std::time::Instant;
 use base::{Budget, ContentHash, Exceeded};
 use index::{Entry, Index, IndexError, IndexWriter, Shape};
 use mesh::{Fault, MeshError};
-use rayon::ThreadPoolBuilder;
 use serde::{Serialize, Serializer};
 
 use super::agreement::finish;
@@ -21,6 +20,7 @@ use super::source::{
 };
 use crate::error::{Error, Remedy};
 use crate::form::{DescribeOptions, describe};
+use crate::side_by_side::side_by_side;
 use base::Observer;
 use collection::{
     LabelOrigin, LabelSource, ShapeFile, SkipKind, Skipped, UnusedLabel, count_skipped, n_classes,
@@ -506,8 +506,8 @@ pub(super) fn fill(
     let described = std::thread::scope(|scope| {
         let (send, receive) = sync_channel(WAITING);
         let stored = scope.spawn(|| store(writer, receive, observer));
-        // Sending fails only if the writer has failed; the error stops the loop.
-        side_by_side(&equal, |places| {
+        // Sending fails only if the writer has failed, and then nothing more is described.
+        drop(side_by_side(equal, |places| {
             let mut known: Option<Shape> = None;
             places.iter().try_for_each(|&place| {
                 let (listed, content) = &wanted[place];
@@ -524,9 +524,9 @@ pub(super) fn fill(
                     (Ok(shape), None) if places.len() > 1 => known = Some(shape.clone()),
                     _ => {}
                 }
-                send.send((place, described)).map_err(drop)
+                send.send((place, described))
             })
-        });
+        }));
         drop(send);
         stored.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     })?;
@@ -540,24 +540,6 @@ pub(super) fn fill(
     failed.sort_by_key(|(place, _)| *place);
     failed.iter().for_each(|(place, fault)| report.fail(&wanted[*place].0, fault));
     Ok(kept)
-}
-
-/// Works on items side by side until one fails, each on threads of its own: on one if there are at least as many items as threads.
-/// If all items shared the threads, one that waits within an item would take up another item, and sampling would measure in advance
-/// for threads that are busy.
-fn side_by_side<T: Sync>(items: &[T], work: impl Fn(&T) -> Result<(), ()> + Sync) {
-    let n_threads = rayon::current_num_threads();
-    let (next, n_workers) = (AtomicUsize::new(0), items.len().clamp(1, n_threads));
-    let run =
-        || while items.get(next.fetch_add(1, Ordering::Relaxed)).is_some_and(|item| work(item).is_ok()) {};
-    std::thread::scope(|scope| {
-        for _ in 0..n_workers {
-            scope.spawn(|| match ThreadPoolBuilder::new().num_threads(n_threads / n_workers).build() {
-                Ok(pool) => pool.install(run),
-                Err(_) => run(),
-            });
-        }
-    });
 }
 
 /// What a description is made from: bytes, and the extension, which decides how they are read.

@@ -161,9 +161,10 @@ fn batch(args: &EmbedArgs, options: &EmbedOptions<'_>, common: &Common) -> Resul
     check_dim(Path::new(&format!("form.{extension}")), options.form.dim)?;
     let (arguments, folder) = (&args.meshes, &args.output);
     let results = Results { what: "forms", arguments, folder, extension, in_parallel: true };
+    let n_threads = rayon::current_num_threads();
     let (done, failed) = results.make(common, |shape, output| {
         let (_, surface) = read_both(&shape.path, &args.form.repair, common)?;
-        let bars = Bars::with_budget(true, budget(args, output, rayon::current_num_threads()));
+        let bars = Bars::with_budget(true, budget(args, output, n_threads));
         embed_and_write(&shape.path, (surface, None), output, args, options, &bars)
     })?;
     let shapes = done.into_iter().map(|(ShapeFile { name, label, path }, result)| {
