@@ -2,8 +2,6 @@
 
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 
-use crate::SymmetricOperator;
-
 /// A symmetric n x n matrix of which the lower triangle is stored, column by column.
 ///
 /// **Invariants.** The rows of a column ascend and start with the diagonal, which is always stored; no entry is stored
@@ -71,7 +69,8 @@ impl SparseSymmetric {
 
     /// The stored entries `(row, column, value)`, with `row >= column`.
     pub fn entries(&self) -> impl Iterator<Item = (usize, usize, f64)> {
-        (0..self.order()).flat_map(move |j| self.column(j).map(move |(i, value)| (i, j, value)))
+        let column = |j: usize| self.column_starts[j]..self.column_starts[j + 1];
+        (0..self.order()).flat_map(move |j| column(j).map(move |at| (self.rows[at], j, self.values[at])))
     }
 
     /// The diagonal.
@@ -90,35 +89,10 @@ impl SparseSymmetric {
         }
     }
 
-    fn column(&self, j: usize) -> impl Iterator<Item = (usize, f64)> {
-        let range = self.column_starts[j]..self.column_starts[j + 1];
-        self.rows[range.clone()].iter().copied().zip(self.values[range].iter().copied())
-    }
-
     /// A view of the lower triangle for faer, without a copy.
     pub(crate) fn view(&self) -> SparseColMatRef<'_, usize, f64> {
         let n = self.order();
         let pattern = SymbolicSparseColMatRef::new_checked(n, n, &self.column_starts, None, &self.rows);
         SparseColMatRef::new(pattern, &self.values)
-    }
-}
-
-impl SymmetricOperator for SparseSymmetric {
-    fn order(&self) -> usize {
-        self.order()
-    }
-
-    fn apply(&self, x: &[f64], y: &mut [f64]) {
-        y.fill(0.0);
-        for j in 0..self.order() {
-            let mut sum = 0.0;
-            for (i, value) in self.column(j) {
-                sum += value * x[i];
-                if i != j {
-                    y[i] += value * x[j];
-                }
-            }
-            y[j] += sum;
-        }
     }
 }

@@ -55,12 +55,12 @@ pub fn classical_full(distances: &DistanceMatrix, dim: usize) -> Result<Embeddin
 fn embed(
     distances: &DistanceMatrix,
     dim: usize,
-    decompose: impl FnOnce(&CenterdSquares<'_>) -> Result<SymmetricEigen, LinalgError>,
+    decompose: impl FnOnce(&CenteredSquares<'_>) -> Result<SymmetricEigen, LinalgError>,
 ) -> Result<Embedding, NmdsError> {
     let p = distances.n_points();
     check_dim(dim, p)?;
     let unit = check_extent(distances.max(), p)?;
-    let eigen = decompose(&CenterdSquares { distances, unit })?;
+    let eigen = decompose(&CenteredSquares { distances, unit })?;
     let columns = eigen.vectors.resize_horizontally(dim, 0.0);
     let rank = eigen.values.len();
     Ok(Embedding::from_orthonormal(columns, eigen.values, unit, rank))
@@ -68,12 +68,12 @@ fn embed(
 
 /// The matrix `-1/2 J E J` of distances in units of `unit`, as an operator.
 #[derive(Debug)]
-struct CenterdSquares<'a> {
+struct CenteredSquares<'a> {
     distances: &'a DistanceMatrix,
     unit: f64,
 }
 
-impl CenterdSquares<'_> {
+impl CenteredSquares<'_> {
     fn dense(&self) -> Matrix {
         let p = self.order();
         let square = |i: usize, j: usize| (self.distances.get(i, j) / self.unit).powi(2);
@@ -83,7 +83,7 @@ impl CenterdSquares<'_> {
     }
 }
 
-impl SymmetricOperator for CenterdSquares<'_> {
+impl SymmetricOperator for CenteredSquares<'_> {
     fn order(&self) -> usize {
         self.distances.n_points()
     }

@@ -1,4 +1,6 @@
-use canonform_linalg::{EliminationOrder, LinalgError, SparseCholesky, SparseSymmetric, SymmetricOperator};
+use canonform_linalg::{EliminationOrder, LinalgError, SparseCholesky, SparseSymmetric};
+
+use crate::sparse::product;
 
 fn factorize(matrix: &SparseSymmetric) -> Result<SparseCholesky, LinalgError> {
     SparseCholesky::new(&EliminationOrder::new(matrix, &())?, matrix, &())
@@ -23,9 +25,7 @@ fn right_hand_side(n: usize, seed: usize) -> Vec<f64> {
 }
 
 fn residual(a: &SparseSymmetric, x: &[f64], b: &[f64]) -> f64 {
-    let mut product = vec![0.0; b.len()];
-    a.apply(x, &mut product);
-    product.iter().zip(b).map(|(p, b)| (p - b).abs()).fold(0.0, f64::max)
+    product(a, x).iter().zip(b).map(|(p, b)| (p - b).abs()).fold(0.0, f64::max)
 }
 
 #[test]

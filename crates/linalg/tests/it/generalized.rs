@@ -1,8 +1,8 @@
 use std::f64::consts::PI;
 
-use canonform_linalg::{
-    LinalgError, Matrix, SparseSymmetric, SymmetricEigen, SymmetricOperator, smallest_eigenpairs,
-};
+use canonform_linalg::{LinalgError, Matrix, SparseSymmetric, SymmetricEigen, smallest_eigenpairs};
+
+use crate::sparse::product;
 
 /// The stiffness matrix of `n` points joined by springs of the given weights.
 fn springs(n: usize, pairs: impl IntoIterator<Item = (usize, usize, f64)>) -> SparseSymmetric {
@@ -37,8 +37,7 @@ fn faults(w: &SparseSymmetric, masses: &[f64], found: &SymmetricEigen) -> [f64; 
     let mut weighted = found.vectors.clone();
     let mut worst = 0.0f64;
     for (x, value) in found.vectors.column_iter().zip(&found.values) {
-        let mut image = vec![0.0; n];
-        w.apply(x.as_slice(), &mut image);
+        let image = product(w, x.as_slice());
         let residual = (0..n).map(|i| image[i] - value * masses[i] * x[i]).map(|r| r * r).sum::<f64>().sqrt();
         worst = worst.max(residual / scale);
     }
