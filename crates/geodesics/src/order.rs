@@ -1,13 +1,15 @@
 //! Orders of vertices in which neighbors are close in memory.
 
-use surface::{EdgeGraph, IntrinsicMesh, Rows, VertexId};
+use surface::{EdgeGraph, IntrinsicMesh, VertexId};
 
 /// Number of vertices in a patch.
 const PATCH: usize = 64;
 
-/// Vertices in patches of neighbors that grow breadth-first, one next to the other. A front, whatever its source,
-/// passes few patches at a time, where it would pass all of the rings of a breadth-first order.
-pub(crate) fn order_by_patches<I: Iterator<Item = u32>>(n: usize, neighbors: impl Fn(u32) -> I) -> Vec<u32> {
+/// Vertices in patches of neighbors, along edges and links, that grow breadth-first, one next to the other. A front,
+/// whatever its source, passes few patches at a time, where it would pass all of the rings of a breadth-first order.
+pub(crate) fn patches_of(mesh: &IntrinsicMesh) -> Vec<u32> {
+    let (n, graph) = (mesh.n_vertices(), EdgeGraph::of(mesh));
+    let neighbors = |v: u32| graph.ways(VertexId(v)).iter().map(|way| way.to.0);
     let mut is_visited = vec![false; n];
     let mut order = Vec::with_capacity(n);
     let (mut waiting, mut next, mut lowest) = (Vec::new(), 0, 0);
@@ -48,16 +50,4 @@ pub(crate) fn ranks(order: &[u32]) -> Vec<u32> {
         ranks[*v as usize] = rank;
     }
     ranks
-}
-
-/// Patches along the edges and links of a mesh: from each vertex first along edges, to lower vertices first.
-pub(crate) fn patches_of(mesh: &IntrinsicMesh) -> Vec<u32> {
-    let (n, topology) = (mesh.n_vertices(), mesh.topology());
-    let below = Rows::collect(n, topology.edges().iter().map(|[a, b]| (b.index(), a.0)));
-    let links = EdgeGraph::new(n, mesh.links().iter().copied());
-    order_by_patches(n, |v| {
-        let above = topology.edges_above(VertexId(v)).iter().map(|[_, b]| b.0);
-        let along_links = links.ways(VertexId(v)).iter().map(|way| way.to.0);
-        below.row(v as usize).iter().copied().chain(above).chain(along_links)
-    })
 }

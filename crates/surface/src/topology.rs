@@ -203,12 +203,7 @@ impl Topology {
         (0..self.n_edges()).map(EdgeId::from).filter(|edge| self.edge_corners(*edge).len() == 1)
     }
 
-    /// The edges from a vertex to higher ones, in ascending order.
-    #[inline]
-    pub fn edges_above(&self, vertex: VertexId) -> &[[VertexId; 2]] {
-        &self.edges[self.range_above(vertex)]
-    }
-
+    /// The edges from a vertex to higher ones.
     fn range_above(&self, vertex: VertexId) -> Range<usize> {
         let v = vertex.index();
         self.first_edge[v] as usize..self.first_edge[v + 1] as usize
@@ -313,8 +308,9 @@ mod tests {
     fn edges_above_a_vertex_are_sorted_and_complete() {
         let list = [[4, 1, 0], [1, 4, 2], [0, 3, 1], [6, 2, 1]];
         let t = Topology::new(8, faces(&list));
-        let above: Vec<Vec<u32>> =
-            (0..8).map(|v| t.edges_above(VertexId(v)).iter().map(|ends| ends[1].0).collect()).collect();
+        let above: Vec<Vec<u32>> = (0..8)
+            .map(|v| t.edges()[t.range_above(VertexId(v))].iter().map(|ends| ends[1].0).collect())
+            .collect();
         let expected: [&[u32]; 8] = [&[1, 3, 4], &[2, 3, 4, 6], &[4, 6], &[], &[], &[], &[], &[]];
         assert_eq!(above, expected);
         assert_eq!(t.edge_between(VertexId(6), VertexId(4)), None);
