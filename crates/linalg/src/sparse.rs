@@ -1,6 +1,7 @@
 //! Sparse symmetric matrices.
 
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use rayon::prelude::*;
 
 /// A symmetric n x n matrix of which the lower triangle is stored, column by column.
 ///
@@ -18,42 +19,27 @@ impl SparseSymmetric {
     /// The matrix with the given `(row, column, value)` entries. Each also stands for its mirror image; entries at the
     /// same place are summed.
     ///
-    /// Cost: linear in the number of entries, for columns of bounded length.
-    ///
     /// # Panics
     /// If a row or column is not below `order`.
     pub fn from_entries(order: usize, entries: impl IntoIterator<Item = (usize, usize, f64)>) -> Self {
-        let diagonal = (0..order).map(|i| (i, i, 0.0));
-        let entries: Vec<(usize, usize, f64)> = diagonal.chain(entries).collect();
-        // Counting sort by column; the entries of a column keep their order.
-        let mut next = vec![0; order + 1];
-        for &(i, j, _) in &entries {
+        let below_diagonal = |(i, j, value): (usize, usize, f64)| {
             assert!(i.max(j) < order, "entry ({i}, {j}) is outside of a matrix of order {order}");
-            next[i.min(j) + 1] += 1;
-        }
-        for j in 0..order {
-            next[j + 1] += next[j];
-        }
-        let mut buckets = vec![(0, 0.0); entries.len()];
-        for (i, j, value) in entries {
-            let slot = &mut next[i.min(j)];
-            buckets[*slot] = (i.max(j), value);
-            *slot += 1;
-        }
-        let mut matrix = Self { column_starts: vec![0], rows: Vec::new(), values: Vec::new() };
-        let mut start = 0;
-        // `next[j]` is now the end of bucket j.
-        for end in next.into_iter().take(order) {
-            let bucket = &mut buckets[start..end];
-            // A stable sort, so that sums are taken in the order of the entries.
-            bucket.sort_by_key(|(row, _)| *row);
-            for run in bucket.chunk_by(|a, b| a.0 == b.0) {
-                matrix.rows.push(run[0].0);
-                matrix.values.push(run.iter().map(|(_, value)| value).sum());
+            (i.min(j), i.max(j), value)
+        };
+        let diagonal = (0..order).map(|i| (i, i, 0.0));
+        let mut entries: Vec<_> = diagonal.chain(entries).map(below_diagonal).collect();
+        // A stable sort, so that sums are taken in the order of the entries.
+        entries.par_sort_by_key(|(column, row, _)| (*column, *row));
+        let mut matrix = Self { column_starts: Vec::new(), rows: Vec::new(), values: Vec::new() };
+        for run in entries.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+            let (column, row, _) = run[0];
+            if row == column {
+                matrix.column_starts.push(matrix.rows.len());
             }
-            matrix.column_starts.push(matrix.rows.len());
-            start = end;
+            matrix.rows.push(row);
+            matrix.values.push(run.iter().map(|(.., value)| value).sum());
         }
+        matrix.column_starts.push(matrix.rows.len());
         matrix
     }
 
