@@ -42,8 +42,8 @@ const SHARES: [f64; 2] = [0.25, 0.92];
 /// same unit of length. Then maps of a part are sought, too, and those that change distances less are returned.
 /// [`SurfaceMap::part`] tells which. With known functions, both are mapped as wholes. A part:
 ///
-/// 1. Twelve landmarks of the part go one after the other to all landmarks of the whole. What keeps distances, curvature and
-///    areas of discs is kept.
+/// 1. Twelve landmarks of the part go one after the other to all landmarks of the whole. What keeps distances and curvature
+///    is kept.
 /// 2. All other samples go where their distances from these fit best, and then all again by their distances from all
 ///    landmarks. Of distances that a path through what is missing may shorten, only bounds are known.
 /// 3. Of each orientation, the map that keeps distances, curvature and the products of functions best is taken.
