@@ -142,7 +142,12 @@ impl Output {
         let format = format.or(formats.first().copied()).unwrap_or_default().to_owned();
         let scratch = base::files::Scratch::new()?;
         let path = scratch.file(&format!("stdout.{format}"));
-        check_format(&path, what, formats)?;
+        if check_format(&path, what, formats).is_err() {
+            let formats = or_list(formats.iter().copied());
+            bail!(
+                "{what} cannot be written to standard output as {format}; pass --output-format with {formats}"
+            );
+        }
         Ok(Self { path, name, format, scratch: Some(scratch) })
     }
 

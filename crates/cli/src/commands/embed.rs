@@ -73,7 +73,7 @@ pub(crate) fn embed(args: &EmbedArgs, common: &Common) -> Result<ExitCode> {
 fn one(mesh: &Path, args: &EmbedArgs, options: &EmbedOptions<'_>, common: &Common) -> Result<ExitCode> {
     let formats = FORM_FORMATS.map(|(extension, _)| extension);
     let output = Output::new(&args.output, "a form", &formats, Some(output_format(args, common)?), common)?;
-    check_dim(&output.path, options.form.dim)?;
+    check_dim(&output.name, &output.format, options.form.dim)?;
     let surface = read_surface(mesh, &args.form.repair, common)?;
     let coarser =
         args.extend.as_ref().map(|path| read_surface(path, &args.form.repair, common)).transpose()?;
@@ -158,7 +158,7 @@ fn output_format(args: &EmbedArgs, common: &Common) -> Result<&'static str> {
 /// Embeds meshes in parallel. Failures are listed at the end and do not stop the rest.
 fn batch(args: &EmbedArgs, options: &EmbedOptions<'_>, common: &Common) -> Result<ExitCode> {
     let extension = output_format(args, common)?;
-    check_dim(Path::new(&format!("form.{extension}")), options.form.dim)?;
+    check_dim(&args.output, extension, options.form.dim)?;
     let (arguments, folder) = (&args.meshes, &args.output);
     let results = Results { what: "forms", arguments, folder, extension, in_parallel: true };
     let n_threads = rayon::current_num_threads();
@@ -200,9 +200,9 @@ fn batch(args: &EmbedArgs, options: &EmbedOptions<'_>, common: &Common) -> Resul
 }
 
 /// Refuses a form whose file cannot hold this many dimensions, before any work is done.
-fn check_dim(output: &Path, dim: usize) -> Result<()> {
-    if extension(output) != "npy" && dim != 3 {
-        bail!("{}: a mesh has 3 dimensions, not {dim}; write .npy or leave out --dim", output.display());
+fn check_dim(output: &Path, format: &str, dim: usize) -> Result<()> {
+    if format != "npy" && dim != 3 {
+        bail!("{}: a mesh has 3 dimensions, not {dim}; write .npy or leave out --dim", shown(output));
     }
     Ok(())
 }
