@@ -79,6 +79,9 @@ pub(crate) struct MatchArgs {
 /// Extensions of the files that maps are written to.
 pub(crate) const MAP_FORMATS: [&str; 4] = ["npy", "csv", "ply", "png"];
 
+/// Extensions of the files of rows that a map carries.
+pub(crate) const VALUE_FORMATS: [&str; 2] = ["npy", "csv"];
+
 fn match_help() -> String {
     format!("Output file of the first map: {}; a second map is written beside it", or_list(MAP_FORMATS))
 }

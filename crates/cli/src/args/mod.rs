@@ -31,7 +31,7 @@ pub(crate) use field::{FieldBuildArgs, FieldCommand, FieldQueryArgs};
 pub(crate) use generate::{FamilyArg, GenerateArgs};
 pub(crate) use geodesic::GeodesicArgs;
 pub(crate) use index::{AddArgs, BuildArgs, EvaluateArgs, IndexCommand, ListArgs, SearchArgs};
-pub(crate) use matching::{MAP_FORMATS, MatchArgs};
+pub(crate) use matching::{MAP_FORMATS, MatchArgs, VALUE_FORMATS};
 pub(crate) use render::RenderArgs;
 pub(crate) use serve::ServeArgs;
 pub(crate) use settings::{MAX_DROPPED, RepairArgs, geodesic_method, spelled};

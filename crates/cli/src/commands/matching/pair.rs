@@ -18,7 +18,7 @@ use super::files::{
 };
 use super::known;
 use super::transfer::read_transfer;
-use crate::args::{Common, MAP_FORMATS, MatchArgs};
+use crate::args::{Common, MAP_FORMATS, MatchArgs, VALUE_FORMATS};
 use crate::input::{named, read_pair};
 use crate::output::{Fact, check_format, check_output, facts, report};
 
@@ -53,7 +53,10 @@ pub(crate) fn match_meshes(args: &MatchArgs, common: &Common) -> Result<ExitCode
             ] {
                 check_output(&path)?;
             }
-            Some(check_format(path, "a map", &MAP_FORMATS)?)
+            Some(match args.transfer {
+                Some(_) => check_format(path, "values", &VALUE_FORMATS)?,
+                None => check_format(path, "a map", &MAP_FORMATS)?,
+            })
         }
         None => None,
     };
@@ -66,7 +69,8 @@ pub(crate) fn match_meshes(args: &MatchArgs, common: &Common) -> Result<ExitCode
         Ok(MappedFile { mesh, mapped: MappedSurface::new(surface, prepared, bars)? })
     })?;
     options.known = known::read(args, [a.mapped.surface(), b.mapped.surface()])?;
-    let carried = args.transfer.as_deref().map(|path| read_transfer(path, &a)).transpose()?;
+    let transfer = args.transfer.as_deref().zip(args.output.as_deref());
+    let carried = transfer.map(|(path, output)| read_transfer(path, &a, output)).transpose()?;
     let bars = Bars::with_budget(common.quiet, args.limits.budget());
     let search = if args.score { score_map } else { correspond };
     let found = search(&a.mapped, &b.mapped, &options, &bars);

@@ -2,17 +2,18 @@
 
 use std::path::Path;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use base::files::write_atomically;
 use base::object;
 use canonform::collection::TextTable;
 use canonform::descriptors::Side;
 use canonform::linalg::Matrix;
 use canonform::maps::{Mapping, SurfaceMap};
-use report::color::{Rgb, class_color, color_scale, perceptual};
+use canonform::mesh::io::extension;
 use serde::Serialize;
 
-use super::files::{MappedFile, picture, write_colored};
+use super::files::MappedFile;
+use crate::args::VALUE_FORMATS;
 use crate::output::check_format;
 use crate::table::{Numbers, Table, write_csv, write_matrix, write_npy};
 
@@ -40,11 +41,11 @@ pub(super) struct Transfer {
     content: Content,
 }
 
-/// Reads one row for each vertex, each face or each corner of the faces of a mesh.
-pub(super) fn read_transfer(path: &Path, side: &MappedFile) -> Result<Transfer> {
-    let formats = ["npy", "csv"];
-    let content = match check_format(path, "values", &formats)?.as_str() {
-        "npy" => of_table(Table::read(path, "values", &formats)?),
+/// Reads one row for each vertex, each face or each corner of the faces of a mesh. Refuses what cannot be carried, or not be
+/// written to `output`.
+pub(super) fn read_transfer(path: &Path, side: &MappedFile, output: &Path) -> Result<Transfer> {
+    let content = match check_format(path, "values", &VALUE_FORMATS)?.as_str() {
+        "npy" => of_table(Table::read(path, "values", &VALUE_FORMATS)?),
         _ => of_text(&TextTable::read(path)?)?,
     };
     let n = match &content {
@@ -63,6 +64,18 @@ pub(super) fn read_transfer(path: &Path, side: &MappedFile) -> Result<Transfer> 
             3 * n_faces
         ),
     };
+    if let Content::Labels(labels) = &content {
+        if elements == Elements::Corners {
+            bail!(
+                "{}: labels belong to vertices or faces; write the values of corners with fractions",
+                path.display()
+            );
+        }
+        let is_word = |label: &String| label.parse::<i64>().is_err();
+        if extension(output) == "npy" && labels.iter().flatten().any(is_word) {
+            bail!("{}: words cannot be written to .npy; use .csv", output.display());
+        }
+    }
     Ok(Transfer { elements, content })
 }
 
@@ -107,7 +120,8 @@ impl Transfer {
             (Elements::Vertices, Content::Labels(labels)) => {
                 Content::Labels(flat(mapping.vertices(Side::Second).vertex_labels(labels)))
             }
-            (Elements::Faces, Content::Labels(labels)) => {
+            // Corners have no labels.
+            (_, Content::Labels(labels)) => {
                 Content::Labels(flat(mapping.faces(Side::Second).face_labels(labels)))
             }
             (Elements::Corners, Content::Values(values)) => {
@@ -119,10 +133,6 @@ impl Transfer {
                 };
                 Content::Values(corners.corner_values(values))
             }
-            (Elements::Corners, Content::Labels(_)) => bail!(
-                "{}: labels belong to vertices or faces; write the values of corners with fractions",
-                path.display()
-            ),
             (Elements::Faces, Content::Values(values)) => {
                 let rows: Vec<usize> = (0..values.nrows()).collect();
                 let rows = mapping.faces(Side::Second).face_labels(&rows);
@@ -131,11 +141,7 @@ impl Transfer {
                 }))
             }
         };
-        match check_format(path, "values", &["npy", "csv", "ply", "png"])?.as_str() {
-            "csv" => found.write_csv(path)?,
-            "npy" => found.write_npy(path)?,
-            format => self.draw(path, format, &found, sides)?,
-        }
+        found.write(path)?;
         let (kind, rows, columns) = match &found {
             Content::Values(values) => ("values", values.nrows(), values.ncols()),
             Content::Labels(labels) => ("labels", labels.len(), 1),
@@ -148,42 +154,6 @@ impl Transfer {
         let words = format!("{kind} of {rows} {of}, in {}", path.display());
         Ok((object! { path: path.to_owned(), elements, kind, rows, columns }, words))
     }
-
-    /// Writes the second mesh, or a picture of both, colored by what was carried.
-    fn draw(&self, path: &Path, format: &str, found: &Content, sides: [&MappedFile; 2]) -> Result<()> {
-        let mut names = match &self.content {
-            Content::Labels(labels) => labels.clone(),
-            Content::Values(_) => Vec::new(),
-        };
-        names.sort_unstable();
-        names.dedup();
-        let class = |label: &Option<String>| names.binary_search(label).map_or(-1.0, |class| class as f64);
-        let numbers = |content: &Content| match content {
-            Content::Values(values) if values.ncols() == 1 => Some(values.as_slice().to_vec()),
-            Content::Labels(labels) => Some(labels.iter().map(class).collect()),
-            Content::Values(_) => None,
-        };
-        let (Elements::Vertices, Some(own), Some(values)) =
-            (self.elements, numbers(&self.content), numbers(found))
-        else {
-            bail!(
-                "{}: colors show one value or label for each vertex; write rows of faces and corners, and several columns, to .npy or .csv",
-                path.display()
-            )
-        };
-        let scale = color_scale(&own);
-        let color = |number: f64| match self.content {
-            Content::Values(_) => scale(number),
-            Content::Labels(_) if number < 0.0 => perceptual(f64::NAN),
-            Content::Labels(_) => class_color(number as usize),
-        };
-        let colors = |numbers: &[f64]| numbers.iter().map(|number| color(*number)).collect::<Vec<Rgb>>();
-        let meshes = sides.map(|side| &side.mesh);
-        match format {
-            "ply" => write_colored(path, meshes[1], "transfer", &values, &colors(&values)),
-            _ => picture(path, meshes, [colors(&own), colors(&values)]),
-        }
-    }
 }
 
 fn flat(labels: Vec<Option<Option<String>>>) -> Vec<Option<String>> {
@@ -191,28 +161,20 @@ fn flat(labels: Vec<Option<Option<String>>>) -> Vec<Option<String>> {
 }
 
 impl Content {
-    fn write_csv(&self, path: &Path) -> Result<()> {
-        match self {
-            Self::Values(values) => {
+    fn write(&self, path: &Path) -> Result<()> {
+        match (self, extension(path) == "npy") {
+            (Self::Values(values), true) => write_matrix(path, values),
+            (Self::Values(values), false) => {
                 write_csv(path, values.row_iter().map(|row| row.iter().copied().collect::<Vec<_>>()))
             }
-            Self::Labels(labels) => Ok(write_atomically(path, |out| {
-                labels.iter().try_for_each(|label| writeln!(out, "{}", label.as_deref().unwrap_or("-1")))
-            })?),
-        }
-    }
-
-    fn write_npy(&self, path: &Path) -> Result<()> {
-        match self {
-            Self::Values(values) => write_matrix(path, values),
-            Self::Labels(labels) => {
+            (Self::Labels(labels), true) => {
                 let number = |label: &Option<String>| label.as_ref().map_or(Ok(-1), |label| label.parse());
-                let numbers: Result<Vec<i64>, _> = labels.iter().map(number).collect();
-                let numbers = numbers.with_context(|| {
-                    format!("{}: words cannot be written to .npy; use .csv", path.display())
-                })?;
+                let numbers = labels.iter().map(number).collect::<Result<Vec<i64>, _>>()?;
                 write_npy(path, &[numbers.len()], numbers)
             }
+            (Self::Labels(labels), false) => Ok(write_atomically(path, |out| {
+                labels.iter().try_for_each(|label| writeln!(out, "{}", label.as_deref().unwrap_or("-1")))
+            })?),
         }
     }
 }
