@@ -81,9 +81,10 @@ pub(crate) fn shown(path: &Path) -> String {
     if is_stream(path) { "standard output".to_owned() } else { base::one_line(&name).into_owned() }
 }
 
-/// A number with a noun in the singular or, with an `s`, in the plural.
+/// A number with a noun in the singular or in the plural.
 pub(crate) fn count(n: usize, noun: &str) -> String {
-    if n == 1 { format!("1 {noun}") } else { format!("{n} {noun}s") }
+    let plural = if noun.ends_with('s') { "es" } else { "s" };
+    if n == 1 { format!("1 {noun}") } else { format!("{n} {noun}{plural}") }
 }
 
 /// A table of two columns: names and values.

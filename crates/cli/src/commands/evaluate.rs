@@ -11,7 +11,7 @@ use canonform::retrieval::{RankingEvaluation, ScoreIntervals, Scores};
 
 use crate::args::{Common, EvaluateArgs};
 use crate::input::named;
-use crate::output::{Answer, Fact, facts, report, row_of, table_of};
+use crate::output::{Answer, Fact, count, facts, report, row_of, table_of};
 
 /// Scores an index or a matrix.
 pub(crate) fn evaluate(args: &EvaluateArgs, common: &Common) -> Result<ExitCode> {
@@ -54,7 +54,7 @@ fn confusion(title: &str, classes: &[String], counts: &[Vec<usize>]) -> comfy_ta
 
 /// The number of queries whose nearest shape is of their class, and the scores that say more.
 fn answer(IndexEvaluation { scores, agreement }: &IndexEvaluation) -> Answer {
-    let (n, n_classes) = (scores.n, scores.classes.len());
+    let (shapes, classes) = (count(scores.n, "shape"), count(scores.classes.len(), "class"));
     let [nn, first_tier, second_tier, e, dcg, map, votes] = column(&scores.plain, scores.knn_k);
     let explained = |(name, value): Fact, words: &str| (name, format!("{value}: {words}"));
     let mut facts = vec![
@@ -75,7 +75,7 @@ fn answer(IndexEvaluation { scores, agreement }: &IndexEvaluation) -> Answer {
     let intervals = format!("{level:.0} % intervals of the mean over queries, from {resamples} resamples");
     Answer {
         sentence: format!(
-            "the nearest neighbor is of the same class for {:.1} % of {n} shapes in {n_classes} classes",
+            "the nearest neighbor is of the same class for {:.1} % of {shapes} in {classes}",
             100.0 * scores.plain.mean.nn
         ),
         facts,

@@ -12,32 +12,21 @@ use datasets::{
 use rayon::prelude::*;
 
 use crate::args::{Common, FamilyArg, GenerateArgs};
-use crate::output::{report, shown};
+use crate::output::{count, report, shown};
 
-/// One class: its shapes can be generated without those of the others, so that a large collection needs little memory.
-enum Class {
-    Articulated(Family),
-    Creature(usize),
-    Parts,
-}
-
-/// Writes the built-in shapes as mesh files.
+/// Writes the built-in shapes as mesh files, one class at a time, so that a large collection needs little memory.
 pub(crate) fn generate(args: &GenerateArgs, common: &Common) -> Result<ExitCode> {
-    let classes: Vec<Class> = match args.family {
-        FamilyArg::All => Family::all().map(Class::Articulated).into(),
-        FamilyArg::Cat => vec![Class::Articulated(Family::Cat)],
-        FamilyArg::Centaur => vec![Class::Articulated(Family::Centaur)],
-        FamilyArg::David => vec![Class::Articulated(Family::David)],
-        FamilyArg::Person => vec![Class::Articulated(Family::Person)],
-        FamilyArg::Creatures => (0..args.classes).map(Class::Creature).collect(),
-        FamilyArg::Parts => vec![Class::Parts],
+    let n_classes = match args.family {
+        FamilyArg::All => Family::all().len(),
+        FamilyArg::Creatures => args.classes,
+        _ => 1,
     };
-    let bar = Bars::new(common.quiet).bar("classes", classes.len());
-    let (n_classes, mut written) = (classes.len(), Vec::new());
-    for class in classes {
-        let shapes = shapes(&class, args, common)?;
-        let folder = match (&class, shapes.first()) {
-            (Class::Creature(_), Some(shape)) => args.output.join(&shape.label),
+    let bar = Bars::new(common.quiet).bar("classes", n_classes);
+    let mut written = Vec::new();
+    for class in 0..n_classes {
+        let shapes = shapes(class, args, common)?;
+        let folder = match (args.family, shapes.first()) {
+            (FamilyArg::Creatures, Some(shape)) => args.output.join(&shape.label),
             _ => args.output.clone(),
         };
         std::fs::create_dir_all(&folder)
@@ -56,24 +45,23 @@ pub(crate) fn generate(args: &GenerateArgs, common: &Common) -> Result<ExitCode>
     report(common, &json, |json| {
         let (n, folder, n_vertices) = (json.shapes.len(), shown(json.output), args.vertices);
         if args.family == FamilyArg::Parts {
-            return format!("{n} mechanical parts in {folder}");
+            return format!("{} in {folder}", count(n, "mechanical part"));
         }
-        let classes = if n_classes == 1 { "class" } else { "classes" };
-        format!("{n} shapes of {n_classes} {classes} with {n_vertices} vertices each in {folder}")
+        let (shapes, classes) = (count(n, "shape"), count(n_classes, "class"));
+        format!("{shapes} of {classes} with {n_vertices} vertices each in {folder}")
     })
 }
 
-fn shapes(class: &Class, args: &GenerateArgs, common: &Common) -> Result<Vec<LabeledShape>, DatasetError> {
+/// The shapes of a class, by its number.
+fn shapes(class: usize, args: &GenerateArgs, common: &Common) -> Result<Vec<LabeledShape>, DatasetError> {
     let n_vertices = args.vertices;
-    match class {
-        Class::Articulated(family) => {
-            // Seed 0, the default of every command, stands for the default of the dataset.
-            let seed = ArticulatedOptions::default().seed.wrapping_add(common.seed);
-            let options = ArticulatedOptions { seed, n_vertices };
-            let poses = (0..args.poses.unwrap_or(family.n_shapes())).into_par_iter();
-            poses.map(|pose| articulated_shape(*family, pose, &options)).collect()
-        }
-        Class::Creature(family) => {
+    let family = match args.family {
+        FamilyArg::All => Family::all()[class],
+        FamilyArg::Cat => Family::Cat,
+        FamilyArg::Centaur => Family::Centaur,
+        FamilyArg::David => Family::David,
+        FamilyArg::Person => Family::Person,
+        FamilyArg::Creatures => {
             let defaults = CreatureOptions::default();
             let options = CreatureOptions {
                 seed: defaults.seed.wrapping_add(common.seed),
@@ -81,9 +69,9 @@ fn shapes(class: &Class, args: &GenerateArgs, common: &Common) -> Result<Vec<Lab
                 n_poses: args.poses.unwrap_or(defaults.n_poses),
                 n_vertices,
             };
-            creature_family(*family, &options)
+            return creature_family(class, &options);
         }
-        Class::Parts => {
+        FamilyArg::Parts => {
             let options = PartMesh { arcs: args.arcs, ..PartMesh::default() };
             let parts = mechanical_parts(common.seed, args.parts).into_par_iter();
             let shape = |part: MechanicalPart| LabeledShape {
@@ -91,7 +79,12 @@ fn shapes(class: &Class, args: &GenerateArgs, common: &Common) -> Result<Vec<Lab
                 label: part.family().name().to_owned(),
                 mesh: part.mesh(&options),
             };
-            Ok(parts.map(shape).collect())
+            return Ok(parts.map(shape).collect());
         }
-    }
+    };
+    // Seed 0, the default of every command, stands for the default of the dataset.
+    let seed = ArticulatedOptions::default().seed.wrapping_add(common.seed);
+    let options = ArticulatedOptions { seed, n_vertices };
+    let poses = (0..args.poses.unwrap_or(family.n_shapes())).into_par_iter();
+    poses.map(|pose| articulated_shape(family, pose, &options)).collect()
 }

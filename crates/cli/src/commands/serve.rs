@@ -6,6 +6,7 @@ use anyhow::Result;
 use server::Server;
 
 use crate::args::ServeArgs;
+use crate::output::count;
 
 /// Serves an index until it is interrupted.
 pub(crate) fn serve(args: &ServeArgs) -> Result<ExitCode> {
@@ -21,8 +22,8 @@ pub(crate) fn serve(args: &ServeArgs) -> Result<ExitCode> {
             "warning: {address} is open to other machines: they can search, and see the index and its meshes"
         ));
     }
-    let (n_shapes, index) = (server.n_shapes(), args.index.display());
-    base::terminal::note(&format!("listening on http://{address} ({n_shapes} shapes in {index})"));
+    let (shapes, index) = (count(server.n_shapes(), "shape"), args.index.display());
+    base::terminal::note(&format!("listening on http://{address} ({shapes} in {index})"));
     server.run()?;
     Ok(ExitCode::SUCCESS)
 }

@@ -22,7 +22,7 @@ impl Serving {
         serving.err.read_line(&mut line).unwrap();
         let address = line.strip_prefix("listening on http://").unwrap_or_else(|| panic!("{line}"));
         let (address, rest) = address.split_once(' ').unwrap();
-        assert_eq!(rest, "(1 shapes in i)\n");
+        assert_eq!(rest, "(1 shape in i)\n");
         serving.address = address.to_owned();
         serving
     }

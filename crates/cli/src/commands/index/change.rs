@@ -202,7 +202,7 @@ pub(super) fn remove(index: &Path, ids: &[String], common: &Common) -> Result<Ex
     let n_shapes = remove_from_index(index, ids)?;
     let removed = ids.iter().collect::<HashSet<_>>().len();
     report(common, &object! { index, n_shapes, removed }, |_| {
-        format!("{removed} removed, {n_shapes} shapes in {}", shown(index))
+        format!("{removed} removed, {} in {}", count(n_shapes, "shape"), shown(index))
     })
 }
 
@@ -212,6 +212,6 @@ pub(super) fn merge(inputs: &[PathBuf], output: &Path, common: &Common) -> Resul
     report(common, &object! { index: output, n_shapes, repeated }, |_| {
         let twice =
             if repeated > 0 { format!(", {repeated} of them in more than one index") } else { String::new() };
-        format!("{n_shapes} shapes in {}{twice}", shown(output))
+        format!("{} in {}{twice}", count(n_shapes, "shape"), shown(output))
     })
 }

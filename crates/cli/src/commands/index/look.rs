@@ -22,7 +22,7 @@ pub(super) fn verify(index: &Path, common: &Common) -> Result<ExitCode> {
     if common.json {
         print_json(&object! { index, sound, n_shapes, n_bytes, faults: &faults })?;
     } else if sound {
-        print(&format!("{name}: intact, {n_shapes} shapes, {n_bytes} bytes"))?;
+        print(&format!("{name}: intact, {}, {n_bytes} bytes", count(n_shapes, "shape")))?;
     }
     for fault in faults {
         let message = format!("{name} is damaged: {fault}");
@@ -57,13 +57,14 @@ pub(super) fn info(path: &Path, common: &Common) -> Result<ExitCode> {
     report(common, &json, |json| {
         let (first, more) = named.split_at(named.len().min(MOST_CLASSES));
         let more = if more.is_empty() { String::new() } else { format!(" and {} more", more.len()) };
-        let mut facts = vec![("classes", first.join(", ") + &more)];
+        let mut facts = Vec::new();
+        facts.extend((!named.is_empty()).then(|| ("classes", first.join(", ") + &more)));
         facts.extend((unlabelled > 0).then(|| ("unlabelled", unlabelled.to_string())));
         let unfinished = "run the interrupted command again, or wait until it ends";
         facts.extend(json.unfinished.then(|| ("unfinished", unfinished.to_owned())));
-        let (index, shapes, n_classes) = (path.display(), count(n_shapes, "shape"), named.len());
+        let (index, shapes) = (path.display(), count(n_shapes, "shape"));
         let answer = Answer {
-            sentence: format!("{index} holds {shapes} of {n_classes} classes"),
+            sentence: format!("{index} holds {shapes} of {}", count(named.len(), "class")),
             facts,
             details: vec![
                 ("all classes", named.join(", ")),
