@@ -17,7 +17,6 @@ use crate::image::RgbaImage;
 /// * Faces that are degenerate, or have a corner that does not exist or is not finite, are left out. Without any
 ///   other face the image is empty.
 /// * Cost: linear in faces and pixels where few faces hide each other. 28 k vertices at 600 x 600 take about 0.1 s.
-///   Of faces hidden by earlier ones, only one in 64 samples is computed.
 ///
 /// # Errors
 /// [`Exceeded`] if the budget of the observer does not suffice.

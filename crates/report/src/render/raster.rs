@@ -50,21 +50,6 @@ impl Projected {
     pub(super) fn at(&self, column: usize, row: usize) -> Vector3<f64> {
         self.origin + self.slopes[0] * (column as f64 + 0.5) + self.slopes[1] * (row as f64 + 0.5)
     }
-
-    /// The largest depth at the centers of some samples, or a little more, as [`at`](Self::at) and the depths of the
-    /// corners give it with any rounding.
-    fn greatest_depth(&self, columns: &Range<usize>, rows: &Range<usize>) -> f32 {
-        let slopes = self.slopes.map(|slope| slope.dot(&self.depths));
-        let end = |slope: f64, range: &Range<usize>| {
-            (if slope > 0.0 { range.end - 1 } else { range.start }) as f64 + 0.5
-        };
-        let [column, row] = [end(slopes[0], columns), end(slopes[1], rows)];
-        let magnitude = self.origin.abs()
-            + self.slopes[0].abs() * columns.end as f64
-            + self.slopes[1].abs() * rows.end as f64;
-        let rounding = 16.0 * f64::EPSILON * magnitude.dot(&self.depths.abs());
-        (self.origin.dot(&self.depths) + slopes[0] * column + slopes[1] * row + rounding) as f32
-    }
 }
 
 /// The nearest face at every sample.
@@ -77,12 +62,7 @@ pub(super) struct DepthBuffer {
     pub(super) face: Vec<u32>,
     /// All drawable faces in order; `None` for those seen edge-on.
     pub(super) projected: Vec<Option<Projected>>,
-    /// The least depth in each tile, row by row: nothing behind it is visible there.
-    tiles: Vec<f32>,
 }
-
-/// Columns and rows of a tile, in samples.
-const TILE: usize = 8;
 
 /// The samples by which the edges of a face may be off by rounding, and more.
 const PADDING: f64 = 1.0;
@@ -92,7 +72,7 @@ impl DepthBuffer {
 
     /// Draws all faces. Of two faces at the same depth the first stays.
     ///
-    /// A face costs time in the tiles that it crosses, and in those where it is not hidden behind earlier faces.
+    /// A face costs time in the rows that it crosses, and in the samples that it covers.
     pub(super) fn draw(
         mesh: &TriMesh,
         faces: &[[usize; 3]],
@@ -107,7 +87,6 @@ impl DepthBuffer {
             depth: vec![f32::NEG_INFINITY; size[0] * size[1]],
             face: vec![Self::BACKGROUND; size[0] * size[1]],
             projected: Vec::with_capacity(faces.len()),
-            tiles: vec![f32::NEG_INFINITY; size[0].div_ceil(TILE) * size[1].div_ceil(TILE)],
         };
         let mut meter = budget.meter();
         for (f, &face) in faces.iter().enumerate() {
@@ -122,50 +101,19 @@ impl DepthBuffer {
         Ok(buffer)
     }
 
-    /// Draws a face; returns the number of tiles and samples that it was compared with.
+    /// Draws a face; returns the number of rows and samples that it was compared with.
     fn fill(&mut self, index: u32, face: &Projected, corners: [[f64; 3]; 3]) -> usize {
-        let [columns, rows] = [0, 1].map(|axis| {
-            let at = corners.map(|corner| corner[axis]);
-            samples_between(
-                at.into_iter().fold(f64::INFINITY, f64::min),
-                at.into_iter().fold(f64::NEG_INFINITY, f64::max),
-                self.size[axis],
-            )
-        });
-        let (mut work, n_tiles) = (0, self.size[0].div_ceil(TILE));
-        for tile_row in tiles(&rows) {
-            let rows = part(&rows, tile_row);
-            let band = [rows.start as f64 - PADDING, rows.end as f64 + PADDING];
-            let Some([left, right]) = extent_within(&corners, band) else { continue };
-            let reached = samples_between(left - PADDING, right + PADDING, self.size[0]);
-            let columns = columns.start.max(reached.start)..columns.end.min(reached.end);
-            for tile_column in tiles(&columns) {
-                work += 1;
-                let columns = part(&columns, tile_column);
-                let tile = tile_row * n_tiles + tile_column;
-                if face.greatest_depth(&columns, &rows) <= self.tiles[tile] {
-                    continue;
-                }
-                work += columns.len() * rows.len();
-                if self.fill_tile(index, face, &columns, &rows) {
-                    self.tiles[tile] = self.least_depth(tile_column, tile_row);
-                }
-            }
-        }
-        work
-    }
-
-    /// Draws the part of a face that covers some samples; returns whether it is visible at any of them.
-    fn fill_tile(
-        &mut self,
-        index: u32,
-        face: &Projected,
-        columns: &Range<usize>,
-        rows: &Range<usize>,
-    ) -> bool {
-        let mut is_visible = false;
-        for row in rows.clone() {
-            for column in columns.clone() {
+        let mut work = 0;
+        let rows = corners.map(|corner| corner[1]).into_iter();
+        let rows = [rows.clone().fold(f64::INFINITY, f64::min), rows.fold(f64::NEG_INFINITY, f64::max)];
+        for row in samples_between(rows, self.size[1]) {
+            let center = row as f64 + 0.5;
+            let Some([left, right]) = extent_within(&corners, [center - PADDING, center + PADDING]) else {
+                continue;
+            };
+            let columns = samples_between([left - PADDING, right + PADDING], self.size[0]);
+            work += 1 + columns.len();
+            for column in columns {
                 let at = face.at(column, row);
                 // A little slack closes the seams between neighbors.
                 if at.min() < -1e-9 {
@@ -176,36 +124,18 @@ impl DepthBuffer {
                 if depth > self.depth[sample] {
                     self.depth[sample] = depth;
                     self.face[sample] = index;
-                    is_visible = true;
                 }
             }
         }
-        is_visible
-    }
-
-    fn least_depth(&self, tile_column: usize, tile_row: usize) -> f32 {
-        let [columns, rows] =
-            [(tile_column, 0), (tile_row, 1)].map(|(tile, axis)| part(&(0..self.size[axis]), tile));
-        let rows = rows.map(|row| &self.depth[row * self.size[0]..][columns.clone()]);
-        rows.flatten().copied().fold(f32::INFINITY, f32::min)
+        work
     }
 }
 
 /// The samples with centers between two positions. Centers lie at halves.
-fn samples_between(low: f64, high: f64, size: usize) -> Range<usize> {
+fn samples_between([low, high]: [f64; 2], size: usize) -> Range<usize> {
     // Casts saturate, so far-away corners are safe.
     let end = (high + 0.5).floor().max(0.0) as usize;
     (low - 0.5).ceil().max(0.0) as usize..end.min(size)
-}
-
-/// The tiles that some columns or rows lie in.
-fn tiles(samples: &Range<usize>) -> Range<usize> {
-    if samples.is_empty() { 0..0 } else { samples.start / TILE..samples.end.div_ceil(TILE) }
-}
-
-/// The columns or rows that lie in a tile.
-fn part(samples: &Range<usize>, tile: usize) -> Range<usize> {
-    samples.start.max(tile * TILE)..samples.end.min((tile + 1) * TILE)
 }
 
 /// The least and greatest column of a triangle between two rows; `None` if no part of it is there.
@@ -253,7 +183,7 @@ mod tests {
         let faces = super::super::camera::drawable_faces(mesh);
         let camera = Camera::fit(mesh, &faces, &View::default(), [side; 2], 0.05);
         let mut buffer = DepthBuffer::draw(mesh, &faces, &camera, [side; 2], &Budget::unlimited()).unwrap();
-        // Drawing everything once more compares the same tiles and changes nothing.
+        // Drawing everything once more compares the same samples and changes nothing.
         let (depth, face) = (buffer.depth.clone(), buffer.face.clone());
         let mut work = 0;
         for (f, corners) in faces.iter().enumerate() {
