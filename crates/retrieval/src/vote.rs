@@ -1,9 +1,8 @@
 //! Classification by votes of neighbors, with a threshold for unknown classes.
 
-use linalg::DistanceMatrix;
 use serde::{Deserialize, Serialize};
 
-use crate::{Labels, Neighbor, rank};
+use crate::Neighbor;
 
 /// The distance beyond which a shape is considered to belong to none of the known classes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -49,22 +48,6 @@ impl UnknownThreshold {
         let end = steps.get(best + 1).map_or(2.0 * steps[best], |next| *next);
         let distance = 0.5 * (steps[best] + end);
         Some(Self { distance, missed: missed(distance), mistaken: mistaken(distance) })
-    }
-
-    /// The threshold from the distances between all shapes; see [`of`](Self::of). A shape that is alone in its class
-    /// has no own distance.
-    pub fn leave_one_out(distances: &DistanceMatrix, labels: &Labels) -> Option<Self> {
-        let (mut own, mut foreign) = (Vec::new(), Vec::new());
-        for i in 0..distances.n_points() {
-            let ranking = rank(distances, i);
-            let nearest = |same: bool| {
-                let found = ranking.iter().find(|n| (labels.class(n.index) == labels.class(i)) == same);
-                found.map(|neighbor| neighbor.distance)
-            };
-            own.extend(nearest(true));
-            foreign.extend(nearest(false));
-        }
-        Self::of(&own, &foreign)
     }
 }
 

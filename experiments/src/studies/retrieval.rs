@@ -2,7 +2,7 @@
 //!
 //! Measures `METHOD SCALE nn|ft|st|e|dcg|mAP|least mAP` for `METHOD` a signature, `aligned forms`,
 //! `fused`, `fused and forms`, with `SCALE` either `raw` (size counts) or `normalized`; at scale `raw` also for `forms in
-//! mesh units`; and `missed`, `mistaken`. Each score but the last is also measured on the neighbor graph, as `METHOD SCALE
+//! mesh units`. Each score but the last is also measured on the neighbor graph, as `METHOD SCALE
 //! graph SCORE`.
 
 use anyhow::Result;
@@ -16,8 +16,8 @@ use rayon::prelude::*;
 use report::record::{Axis, Figure, FigurePanels, Plot};
 use report::{Cell, Record, Table};
 use retrieval::{
-    Averaging, BootstrapOptions, GraphRankings, Labels, Neighbor, QueryScores, Rankings, UnknownThreshold,
-    bootstrap, precision_recall, rank, vote,
+    Averaging, BootstrapOptions, GraphRankings, Labels, Neighbor, QueryScores, Rankings, bootstrap,
+    precision_recall, vote,
 };
 
 use crate::context::Context;
@@ -27,24 +27,16 @@ use crate::sweep::{MeasuredNumbers, SCORES, best_e, curve, named, note, plot, po
 /// The number of recalls at which precision is measured.
 const RECALLS: usize = 21;
 
-/// The method that classifies, and the one for a collection too large for that.
-const CLASSIFIER: &str = "fused and forms";
-const LARGE_CLASSIFIER: &str = "fused";
-
 /// Whether size counts, the name of that in expectations, and the title of its plot.
 const SCALES: [(bool, &str, &str); 2] = [(false, "normalized", "size ignored"), (true, "raw", "size counts")];
-
-/// Stands for the class of shapes that are assigned to none.
-const UNKNOWN: &str = "unknown";
 
 pub(crate) fn retrieval(context: &Context<'_>) -> Result<Record> {
     let gallery = Gallery::new(context)?;
     let labels = &gallery.labels;
     let n = labels.n_points();
     let aligns = n <= context.options.aligned;
-    let classifier = if aligns { CLASSIFIER } else { LARGE_CLASSIFIER };
     let form = aligns.then(|| aligned(context, &gallery.described, Normalization::UnitArea)).transpose()?;
-    let (mut measured, mut rows, mut classified) = (MeasuredNumbers::new(), Vec::new(), None);
+    let (mut measured, mut rows) = (MeasuredNumbers::new(), Vec::new());
     let mut plots: Vec<Plot> = Vec::new();
     for (counts_size, scale, title) in SCALES {
         let found = distances(context, &gallery.described, form.as_ref(), counts_size)?;
@@ -56,9 +48,6 @@ pub(crate) fn retrieval(context: &Context<'_>) -> Result<Record> {
             let points = precision.iter().enumerate();
             let points = points.map(|(i, &p)| point(i as f64 / (RECALLS - 1) as f64, &[p]));
             series.push(curve(method, points.collect()));
-            if *method == classifier && !counts_size {
-                classified = Some(classify(context, method, distances, labels, &mut measured)?);
-            }
             context.observer.step();
         }
         let [x, y] = ["recall", "precision"].map(Axis::linear);
@@ -70,9 +59,11 @@ pub(crate) fn retrieval(context: &Context<'_>) -> Result<Record> {
     let figures = vec![Figure { part: "curves".to_owned(), caption, panels: FigurePanels::Plots(plots) }];
     let n_queries = (0..n).filter(|i| labels.is_query(*i)).count();
     measured.extend([("best e".to_owned(), best_e(labels)?), ("asked".to_owned(), n_queries as f64)]);
-    let mut tables = vec![table(rows)];
-    tables.extend(classified.into_iter().flatten());
-    Ok(Record { tables, figures, ..context.record(&[("description", &gallery.options)], measured) })
+    Ok(Record {
+        tables: vec![table(rows)],
+        figures,
+        ..context.record(&[("description", &gallery.options)], measured)
+    })
 }
 
 /// The distances of aligned forms.
@@ -102,12 +93,12 @@ fn distances(
     let mut add = |method: &str, distances| found.push((method.to_owned(), distances));
     if let Some(form) = form {
         let robust = |i: usize, j: usize| ShapeMetric::robust(&vectors[i], &vectors[j]);
-        add(CLASSIFIER, all(&|i, j| ShapeMetric::combined(robust(i, j), form.get(i, j)))?);
+        add("fused and forms", all(&|i, j| ShapeMetric::combined(robust(i, j), form.get(i, j)))?);
         let sized =
             |i: usize, j: usize| (form.get(i, j) / ShapeMetric::FORM_UNIT).hypot(size_of(i) - size_of(j));
         add("aligned forms", if counts_size { all(&sized)? } else { form.clone() });
     }
-    add(LARGE_CLASSIFIER, all(&|i, j| ShapeMetric::fused(&vectors[i], &vectors[j]))?);
+    add("fused", all(&|i, j| ShapeMetric::fused(&vectors[i], &vectors[j]))?);
     for kind in SignatureKind::ALL {
         let of = |shape: &Shape| {
             let own = signature(shape, kind)?;
@@ -177,79 +168,6 @@ fn table(rows: Vec<Vec<Cell>>) -> Table {
     let headings = ["method", "size", "ranking"].into_iter().chain(SCORES);
     let headings = headings.chain(["mAP interval", "macro NN", "macro mAP", "k-NN", "least mAP"]);
     Table::new("", headings, rows)
-}
-
-/// The classification of every shape by the others, and the error rates for unknown shapes.
-fn classify(
-    context: &Context<'_>,
-    method: &str,
-    distances: &DistanceMatrix,
-    labels: &Labels,
-    measured: &mut MeasuredNumbers,
-) -> Result<[Table; 3]> {
-    let (voters, shapes) = (context.options.voters, &context.collection.shapes);
-    let classes = labels.classes();
-    let limit = UnknownThreshold::leave_one_out(distances, labels).map(|threshold| threshold.distance);
-    let mut wrong: Vec<Vec<Cell>> = Vec::new();
-    let mut confusion = vec![vec![0usize; classes.len() + 1]; classes.len()];
-    for i in 0..labels.n_points() {
-        let ranking = rank(distances, i);
-        let found = vote(&ranking, |i| labels.class(i), voters, limit).class();
-        confusion[labels.class(i)][found.unwrap_or(classes.len())] += 1;
-        if found != Some(labels.class(i)) {
-            let nearest = ranking.first();
-            let assigned = found.map_or(UNKNOWN, |class| &classes[class]);
-            let near = nearest.map_or("", |near| &shapes[near.index].name);
-            let mut row =
-                [shapes[i].name.as_str(), &shapes[i].label, assigned, near].map(Cell::from).to_vec();
-            row.push(nearest.map(|near| near.distance).into());
-            wrong.push(row);
-        }
-    }
-    let (mut missed, mut mistaken) = ([0usize; 2], [0usize; 2]);
-    for class in 0..classes.len() {
-        let (rest, rest_labels) = without(distances, labels, class)?;
-        let Some(threshold) = UnknownThreshold::leave_one_out(&rest, &rest_labels) else { continue };
-        for i in (0..labels.n_points()).filter(|&i| labels.class(i) == class) {
-            let ranking = rank(distances, i);
-            for (same, [errors, all]) in [(true, &mut missed), (false, &mut mistaken)] {
-                let nearest = ranking.iter().find(|n| (labels.class(n.index) == class) == same);
-                let Some(nearest) = nearest else { continue };
-                *errors += usize::from((nearest.distance <= threshold.distance) != same);
-                *all += 1;
-            }
-        }
-    }
-    let [missed, mistaken] = [missed, mistaken].map(|[errors, all]| errors as f64 / all.max(1) as f64);
-    measured.extend([("missed".to_owned(), missed), ("mistaken".to_owned(), mistaken)]);
-    let threshold = limit.unwrap_or(0.0);
-    let caption = match wrong.len() {
-        0 => "Every shape was assigned to its class.".to_owned(),
-        n => format!(
-            "The {n} shapes that were not assigned to their class. A shape is unknown if its nearest neighbor is farther \
-             than {threshold:.3}."
-        ),
-    };
-    let wrong = Table::new(caption, ["shape", "class", "assigned to", "nearest shape", "distance"], wrong);
-    let caption = "Missed: the share of shapes classified as unknown although others of their class are in the collection. \
-                   Mistaken: the share of shapes assigned to a class although no other of their own is. The thresholds are \
-                   found without the class they are tested on.";
-    let values = [missed, mistaken, threshold].map(Cell::from).to_vec();
-    let unknown = Table {
-        folded: Some("Unknown shapes".to_owned()),
-        ..Table::new(caption, ["missed", "mistaken", "threshold"], vec![values])
-    };
-    let caption = format!(
-        "Classification of every shape by the vote of its {voters} nearest neighbors among the others, by {method}: true \
-         classes down, predicted classes across. A shape is unknown if its nearest neighbor is farther than {threshold:.3}."
-    );
-    let row = |(class, counts): (&String, &Vec<usize>)| {
-        let counts = counts.iter().map(|n| Cell::from((*n > 0).then(|| n.to_string())));
-        [Cell::from(class.as_str())].into_iter().chain(counts).collect()
-    };
-    let headings = ["class"].into_iter().chain(classes.iter().map(String::as_str)).chain([UNKNOWN]);
-    let confusion = Table::new(caption, headings, classes.iter().zip(&confusion).map(row).collect());
-    Ok([confusion, wrong, unknown])
 }
 
 /// The rankings of all shapes, made once.

@@ -1,4 +1,3 @@
-use crate::line;
 use canonform_retrieval::*;
 
 fn neighbors(distances: &[f64]) -> Vec<Neighbor> {
@@ -14,15 +13,6 @@ fn the_threshold_separates_own_from_foreign_distances() {
     assert_eq!((found.distance, found.missed, found.mistaken), (3.0, 0.25, 0.0));
     assert_eq!(UnknownThreshold::of(&[], &[1.0]), None);
     assert_eq!(UnknownThreshold::of(&[1.0, 2.0], &[]).unwrap().distance, 4.0);
-}
-
-#[test]
-fn leave_one_out_uses_every_shape() {
-    let distances = line(&[0.0, 1.0, 2.5, 10.0, 11.0, 30.0]);
-    let labels = Labels::new(&["a", "a", "a", "b", "b", "c"]);
-    let found = UnknownThreshold::leave_one_out(&distances, &labels).unwrap();
-    // Own: 1, 1, 1.5, 1, 1; foreign: 10, 9, 7.5, 7.5, 8.5, 19.
-    assert_eq!(found, UnknownThreshold { distance: 4.5, missed: 0.0, mistaken: 0.0 });
 }
 
 #[test]
