@@ -89,13 +89,10 @@ pub(crate) struct LandmarkMetric {
 /// What is known about the distance of two points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PairEstimate {
-    /// The estimate, in `bounds`.
+    /// The estimate, in what the landmarks leave open if the columns have no error: part of `bounds`.
     pub(crate) distance: f64,
     /// The interval that holds the distance.
     pub(crate) bounds: Interval,
-    /// What the landmarks leave open if the columns have no error: part of `bounds`. Its width says how well the landmarks
-    /// know the pair.
-    pub(crate) open: Interval,
 }
 
 /// The distance, in distances to the nearest landmarks, beyond which the value at equal points says nothing. Measured on
@@ -215,7 +212,7 @@ impl LandmarkMetric {
         }
         let distance = square.max(0.0).sqrt() * self.tables.factor_quantum;
         let distance = distance.max(open.lower).min(open.upper);
-        PairEstimate { distance, bounds, open }
+        PairEstimate { distance, bounds }
     }
 
     /// What the landmarks leave open if no column has an error, and the interval that holds the distance in any case.

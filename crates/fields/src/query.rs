@@ -15,8 +15,8 @@ use base::Observer;
 pub enum Finish {
     /// None.
     Never,
-    /// Those whose interval is wider than this share of its lower end. What the error of the columns adds does not count. In a
-    /// certified field no distance is then wrong by a larger share.
+    /// Those whose interval is wider than this share of its lower end. Where the intervals hold, no distance is then wrong by a
+    /// larger share.
     Beyond(f64),
 }
 
@@ -31,7 +31,7 @@ impl Finish {
     fn wants(self, pair: &PairEstimate) -> bool {
         match self {
             Self::Never => false,
-            Self::Beyond(share) => pair.open.width() > share * pair.open.lower,
+            Self::Beyond(share) => pair.bounds.width() > share * pair.bounds.lower,
         }
     }
 }
@@ -80,7 +80,7 @@ impl PairDistance {
     }
 
     fn estimated([a, b]: [VertexId; 2], pair: &PairEstimate) -> Self {
-        let PairEstimate { distance, bounds, .. } = *pair;
+        let PairEstimate { distance, bounds } = *pair;
         Self { a, b, distance, lower: bounds.lower, upper: bounds.upper, kind: PairKind::Estimated }
     }
 }
