@@ -77,8 +77,14 @@ fn answer(info: &MeshInfo) -> Answer {
         (1, _) => format!("a surface with {}", count(mesh.n_boundary_loops, "boundary loop")),
         (n, _) => format!("a surface in {n} pieces"),
     };
-    let changes = info.repair.summary();
-    let repair = if changes.is_empty() { "nothing to repair" } else { "it would be repaired" };
+    let uncertainty = info.repair.uncertainty();
+    let mut changes = info.repair.summary();
+    changes.retain(|line| Some(line) != uncertainty.as_ref());
+    let repair = match (changes.is_empty(), &uncertainty) {
+        (true, None) => "nothing to repair",
+        (true, Some(_)) => "its coordinates are coarse",
+        (false, _) => "it would be repaired",
+    };
     let (path, n_vertices, n_faces) = (info.path.display(), mesh.n_vertices, mesh.n_faces);
     // Five significant digits.
     let short = |x: f64| format!("{x:.4e}").parse().unwrap_or(x);
@@ -96,7 +102,8 @@ fn answer(info: &MeshInfo) -> Answer {
     }));
     let ignored = &info.file.ignored;
     facts.extend((!ignored.is_empty()).then(|| ("ignored", ignored.join(", "))));
-    facts.extend(info.file.notes.iter().map(|note| ("uncertain", note.clone())));
+    let notes = info.file.notes.iter().cloned().chain(uncertainty);
+    facts.extend(notes.map(|note| ("uncertain", note)));
     let mut details = facts_of(mesh);
     let FileFacts { unit, instances, .. } = &info.file;
     details.extend(unit.map(|unit| ("unit of length", unit.name().to_owned())));

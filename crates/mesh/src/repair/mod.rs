@@ -109,7 +109,7 @@ pub fn repair(
     }
 
     budget.check()?;
-    report.coordinate_rounding = coordinate_rounding(&scaled, &surface, unit);
+    (report.coordinate_rounding, report.is_single) = coordinate_rounding(&scaled, &surface, unit);
     let components = components_of_faces(mesh.n_vertices(), surface.topology().faces());
     report.components = components.count;
     let kept = match options.components {
@@ -253,17 +253,32 @@ fn checked_unit(mesh: &TriMesh) -> Result<f64, MeshError> {
     }
 }
 
-/// The spacing of numbers at the farthest coordinate of any face, relative to the mean side of the faces. Positions are
-/// in units of length.
-fn coordinate_rounding(positions: &[Point3<f64>], surface: &IntrinsicMesh, unit: f64) -> f64 {
-    let (mut farthest, mut sides) = (0.0, 0.0);
+/// Bits of a number of 64 bits that one of 32 bits lacks.
+const MORE_BITS: u32 = f64::MANTISSA_DIGITS - f32::MANTISSA_DIGITS;
+
+/// The spacing of numbers at the farthest coordinate of any face, relative to the mean side of the faces, and whether that is
+/// the spacing of numbers of 32 bits. Positions are in units of length, powers of two.
+///
+/// Coordinates were rounded to 32 bits if all fit into these. Rounded ones use the last of the bits at every size; others, such as
+/// whole numbers, are exact.
+fn coordinate_rounding(positions: &[Point3<f64>], surface: &IntrinsicMesh, unit: f64) -> (f64, bool) {
+    let (mut farthest, mut farthest_single, mut fits, mut sides) = (0.0f64, 0.0f64, true, 0.0);
     let faces = surface.topology().faces();
-    for (f, [first, ..]) in faces.iter().enumerate() {
-        farthest = f64::max(farthest, positions[first.index()].coords.amax());
+    for x in faces.iter().flatten().flat_map(|v| positions[v.index()].iter()) {
+        let last_bit = x.to_bits().trailing_zeros();
+        fits &= last_bit >= MORE_BITS;
+        farthest = farthest.max(x.abs());
+        if last_bit == MORE_BITS {
+            farthest_single = farthest_single.max(x.abs());
+        }
+    }
+    for f in 0..faces.len() {
         let [bc, ca, ab] = FaceId(f as u32).corners().map(|corner| surface.opposite_length(corner) / unit);
         sides += ab + bc + ca;
     }
-    f64::EPSILON * farthest * 3.0 * faces.len() as f64 / sides
+    let is_single = fits && farthest_single > 0.0;
+    let spacing = if is_single { f64::from(f32::EPSILON) * farthest_single } else { f64::EPSILON * farthest };
+    (spacing * 3.0 * faces.len() as f64 / sides, is_single)
 }
 
 fn disconnected(components: &Components) -> MeshError {

@@ -48,6 +48,10 @@ pub struct RepairReport {
     /// The spacing of numbers at the farthest coordinate, relative to the mean side of the faces: far from the origin,
     /// sides are known to this accuracy only.
     pub coordinate_rounding: f64,
+    /// Whether that is the spacing of numbers of 32 bits, as STL, GLB and many PLY files store, to which all coordinates
+    /// were rounded.
+    #[serde(skip)]
+    pub is_single: bool,
 
     /// Connected components found.
     pub components: usize,
@@ -69,8 +73,8 @@ pub struct RepairReport {
     pub dropped_vertices: Vec<VertexId>,
 }
 
-/// Rounding of coordinates that is worth a note.
-const COARSE: f64 = 1e-9;
+/// Rounding of coordinates that is worth a note: far more than that of a mesh at the origin, in 64 and in 32 bits.
+const COARSE: [f64; 2] = [1e-9, 1e-3];
 
 impl RepairReport {
     /// One short line per kind of change; empty if nothing was changed.
@@ -101,13 +105,7 @@ impl RepairReport {
                 self.weld_tolerance
             ));
         }
-        if self.coordinate_rounding > COARSE {
-            lines.push(format!(
-                "the mesh is so far from the origin that its edges are only known to {:.0e} of their length; \
-                 export it closer to the origin",
-                self.coordinate_rounding
-            ));
-        }
+        lines.extend(self.uncertainty());
         if self.dropped_components > 0 {
             lines.push(format!(
                 "{} of {} components dropped, {} and {} with {:.2} % of the area; the largest is kept",
@@ -127,6 +125,21 @@ impl RepairReport {
             ));
         }
         lines
+    }
+
+    /// The line of the [summary](Self::summary) that says how well coordinates tell edges, if that is badly. It is no change.
+    pub fn uncertainty(&self) -> Option<String> {
+        let rounding = self.coordinate_rounding;
+        let [place, remedy] = match self.is_single {
+            false => ["the mesh is so far from the origin", ""],
+            true => ["its coordinates have 32 bits and are so far from the origin", ", or with 64 bits"],
+        };
+        (rounding > COARSE[usize::from(self.is_single)]).then(|| {
+            format!(
+                "{place} that its edges are only known to {rounding:.0e} of their length; \
+                 export it closer to the origin{remedy}"
+            )
+        })
     }
 }
 

@@ -335,6 +335,32 @@ fn a_mesh_far_from_the_origin_is_reported() {
 }
 
 #[test]
+fn coordinates_of_32_bits_are_known_to_as_many() {
+    let rounded = |mesh: &TriMesh, offset: [f64; 3]| {
+        let mut mesh = shifted(mesh.clone(), offset);
+        mesh.positions.iter_mut().flat_map(|p| p.iter_mut()).for_each(|x| *x = f64::from(*x as f32));
+        mend(&mesh).report
+    };
+    let torus = shapes::torus(48, 24, 20.0, 5.0);
+    let at_origin = rounded(&torus, [0.0; 3]);
+    assert!((1e-7..1e-5).contains(&at_origin.coordinate_rounding), "{}", at_origin.coordinate_rounding);
+    assert!(at_origin.summary().is_empty());
+    // Where numbers are half a unit apart, and edges two units long.
+    let far = rounded(&torus, [5e5, 5.4e6, 100.0]);
+    assert!((0.1..0.5).contains(&far.coordinate_rounding), "{}", far.coordinate_rounding);
+    let note = far.uncertainty().unwrap();
+    assert!(note.contains("32 bits") && note.ends_with("or with 64 bits"), "{note}");
+    assert_eq!(far.summary(), [note]);
+    assert!(mend(&shifted(torus, [5e5, 5.4e6, 100.0])).report.summary().is_empty());
+    // Whole numbers are exact; the heights above them are not.
+    let mut terrain = shapes::grid(9, 9, 1.0);
+    terrain.positions.iter_mut().for_each(|p| p.z = 100.0 + (p.x * p.y).sin());
+    let terrain = rounded(&terrain, [5e5, 5.4e6, 0.0]);
+    assert!((1e-6..1e-4).contains(&terrain.coordinate_rounding), "{}", terrain.coordinate_rounding);
+    assert!(terrain.summary().is_empty(), "{:?}", terrain.summary());
+}
+
+#[test]
 fn pages_of_a_book_stay_apart() {
     // Each page nearly touches the next, and all together span 3 degrees.
     let points = [[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]].map(Point3::from);
