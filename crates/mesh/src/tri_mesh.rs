@@ -172,7 +172,12 @@ impl TriMesh {
 
     /// Lower and upper corner of the axis-aligned bounding box, in mesh units; `None` without vertices.
     pub fn bounds(&self) -> Option<[Point3<f64>; 2]> {
-        let first = *self.positions.first()?;
-        Some(self.positions.iter().fold([first, first], |[lo, hi], p| [lo.inf(p), hi.sup(p)]))
+        bounds_of(&self.positions)
     }
+}
+
+/// As [`TriMesh::bounds`], of some points.
+pub(crate) fn bounds_of<'a>(points: impl IntoIterator<Item = &'a Point3<f64>>) -> Option<[Point3<f64>; 2]> {
+    let points = points.into_iter().map(|p| [*p, *p]);
+    points.reduce(|[lo, hi], [low, high]| [lo.inf(&low), hi.sup(&high)])
 }

@@ -9,7 +9,7 @@ use surface::{EdgeId, Topology, VertexId, components_of_faces};
 use crate::coincidence::coincident_pairs;
 use crate::face_set::{remove_degenerate, remove_duplicates};
 use crate::orientation::{Orientation, has_same_direction};
-use crate::tri_mesh::TriMesh;
+use crate::tri_mesh::{TriMesh, bounds_of};
 
 /// The properties and defects of a mesh, from [`validate`].
 ///
@@ -68,7 +68,7 @@ pub struct MeshReport {
     pub max_edge_length: f64,
     /// Sum of the areas of all faces but duplicates, in squared mesh units.
     pub area: f64,
-    /// Lengths of the sides of the axis-aligned bounding box of all vertices, in mesh units.
+    /// Lengths of the sides of the axis-aligned bounding box of all faces, in mesh units.
     pub size: [f64; 3],
     /// Its diagonal.
     pub bounding_box_diagonal: f64,
@@ -112,7 +112,8 @@ impl MeshReport {
 pub fn validate(mesh: &TriMesh) -> MeshReport {
     let n_vertices = mesh.n_vertices();
     let unit = mesh.unit();
-    let size = mesh.bounds().map_or(Vector3::zeros(), |[low, high]| high - low);
+    let corners = mesh.faces.iter().flatten().map(|v| &mesh.positions[v.index()]);
+    let size = bounds_of(corners).map_or(Vector3::zeros(), |[low, high]| high - low);
     let mut faces = mesh.faces.clone();
     let degenerate_faces = remove_degenerate(&mut faces);
     let duplicate_faces = remove_duplicates(&mut faces);
@@ -216,6 +217,9 @@ mod tests {
         assert_eq!((report.min_edge_length, report.max_edge_length), (2.0, 8f64.sqrt()));
         assert!((report.bounding_box_diagonal - 52f64.sqrt()).abs() < 1e-12);
         assert_eq!((report.size, report.volume), ([6.0, 4.0, 0.0], None));
+        let mut stray = shapes::grid(4, 3, 2.0);
+        stray.positions.push([1e3, -1e3, 1e3].into());
+        assert_eq!(validate(&stray).size, [6.0, 4.0, 0.0]);
         let mut cube = shapes::cube(1);
         let report = validate(&cube);
         assert!(report.size == [1.0; 3] && (report.volume.unwrap() - 1.0).abs() < 1e-12, "{report:?}");
