@@ -53,7 +53,7 @@ struct Statements {
 impl Statements {
     fn of(bytes: &[u8], limits: &ReadLimits) -> Result<Self, Located> {
         let mut lines = Lines::new(bytes).peekable();
-        lines.peek().ok_or_else(|| Fault::Empty.whole())?;
+        let first = *lines.peek().ok_or_else(|| Fault::Empty.whole())?;
         let (mut text, mut starts) = (Vec::new(), Vec::new());
         let (mut words, mut counts) = (Vec::new(), [0; 2]);
         while let Some(line) = lines.next() {
@@ -79,7 +79,10 @@ impl Statements {
             }
             text.push(b'\n');
         }
-        Ok(Self { text, starts })
+        match starts.is_empty() {
+            true => Err(other_format("an OBJ file with vertices", first.text).whole()),
+            false => Ok(Self { text, starts }),
+        }
     }
 
     /// The lines of the statements that begin with this letter.
