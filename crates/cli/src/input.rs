@@ -83,6 +83,14 @@ pub(crate) fn is_there(path: &Path) -> bool {
     is_stream(path) || Storage.holds(path)
 }
 
+/// Refuses a mesh that is missing, before anything else is wrong.
+pub(crate) fn check_there(path: &Path) -> Result<()> {
+    if !is_there(path) {
+        Storage.open(path).map_err(canonform::Error::from)?;
+    }
+    Ok(())
+}
+
 /// Reads and repairs a mesh, and reports repairs.
 pub(crate) fn read_surface(path: &Path, repair: &RepairArgs, common: &Common) -> Result<Surface> {
     Ok(read_reported(path, repair, common)?.1)

@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use crate::args::{Common, ConvertArgs};
 use crate::batch::Results;
-use crate::input::{file_name, is_single, is_stream, named, print_repair, read_file};
+use crate::input::{check_there, file_name, is_single, is_stream, named, print_repair, read_file};
 use crate::output::{Output, exit_code, report, shown};
 
 #[derive(Serialize)]
@@ -33,6 +33,7 @@ pub(crate) fn convert(args: &ConvertArgs, common: &Common) -> Result<ExitCode> {
 }
 
 fn one(args: &ConvertArgs, common: &Common) -> Result<ExitCode> {
+    check_there(&args.input)?;
     if is_stream(&args.output) && args.output_format.is_none() {
         bail!("standard output has no file name: pass its format, such as --output-format ply");
     }

@@ -22,7 +22,7 @@ use serde::Serialize;
 
 use crate::args::{Common, EmbedArgs, FORM_FORMATS, LimitArgs};
 use crate::batch::Results;
-use crate::input::{is_single, is_stream, named, print_repair, read_both, read_surface};
+use crate::input::{check_there, is_single, is_stream, named, print_repair, read_both, read_surface};
 use crate::output::{Answer, Output, exit_code, report, row_of, shown, table_of};
 use crate::table::write_npy;
 
@@ -71,6 +71,7 @@ pub(crate) fn embed(args: &EmbedArgs, common: &Common) -> Result<ExitCode> {
 }
 
 fn one(mesh: &Path, args: &EmbedArgs, options: &EmbedOptions<'_>, common: &Common) -> Result<ExitCode> {
+    check_there(mesh)?;
     let formats = FORM_FORMATS.map(|(extension, _)| extension);
     let output = Output::new(&args.output, "a form", &formats, Some(output_format(args, common)?), common)?;
     check_dim(&output.name, &output.format, options.form.dim)?;

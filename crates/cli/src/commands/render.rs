@@ -17,7 +17,7 @@ use serde::Serialize;
 
 use crate::args::{Common, RenderArgs};
 use crate::batch::Results;
-use crate::input::{file_name, is_single, named, print_repair, read_file};
+use crate::input::{check_there, file_name, is_single, named, print_repair, read_file};
 use crate::output::{Output, exit_code, facts, report};
 use crate::table::read_field;
 
@@ -25,6 +25,7 @@ use crate::table::read_field;
 pub(crate) fn draw(args: &RenderArgs, common: &Common) -> Result<ExitCode> {
     let bars = |quiet| Bars::with_budget(quiet, args.limits.budget());
     if let ([mesh], true) = (&args.meshes[..], is_single(&args.meshes, &args.output)) {
+        check_there(mesh)?;
         let output = Output::new(&args.output, "a picture", &["png"], None, common)?;
         let (drawn, text) = draw_one(mesh, [&output.path, &output.name], args, &bars(common.quiet), common)?;
         return output.report(common, &drawn, |_| text);

@@ -15,12 +15,13 @@ use canonform::mesh::io::{Content, writable};
 
 use self::task::Task;
 use crate::args::{Common, GeodesicArgs, geodesic_method};
-use crate::input::{named, read_reported};
+use crate::input::{check_there, named, read_reported};
 use crate::output::Output;
 
 /// Measures distances or finds paths.
 pub(crate) fn geodesic(args: &GeodesicArgs, common: &Common) -> Result<ExitCode> {
     type Write = fn(Task<'_>) -> Result<ExitCode>;
+    check_there(&args.mesh)?;
     let (what, formats, write): (_, Vec<&str>, Write) = if args.all_pairs {
         ("all pairs", vec!["npy"], pairs::write)
     } else if args.path_to.is_empty() {
