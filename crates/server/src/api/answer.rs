@@ -18,7 +18,12 @@ impl<T: DeserializeOwned, S: Send + Sync> FromRequestParts<S> for Params<T> {
 
     async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, ApiError> {
         let found = Query::try_from_uri(&parts.uri);
-        found.map(|Query(params)| Self(params)).map_err(|fault| ApiError::bad_request(fault.body_text()))
+        found.map(|Query(params)| Self(params)).map_err(|fault| {
+            let text = fault.body_text();
+            let what = text.rsplit_once("query string: ").map_or(&text[..], |(_, what)| what);
+            ApiError::bad_request(format!("the parameters of the address are wrong: {what}"))
+                .with_remedy("/api/openapi.json lists them, with their values")
+        })
     }
 }
 

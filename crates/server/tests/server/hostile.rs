@@ -144,6 +144,16 @@ fn bad_forms_get_an_error() {
     for target in ["/api/search?k=0&shape=ring0", "/api/search?x=1", "/api/search?shape=none"] {
         check(target, &ask(server.address, "POST", target, &[], b"").unwrap());
     }
+    for (target, words) in [
+        ("/api/search?shape=ring0&k=-1", "the parameters of the address are wrong: k: "),
+        ("/api/compare?a=ring0", "the parameters of the address are wrong: missing field `b`"),
+    ] {
+        let answer = ask(server.address, "GET", target, &[], b"").unwrap();
+        check(target, &answer);
+        let json = answer.json();
+        assert!(json["error"].as_str().unwrap().starts_with(words), "{json}");
+        assert!(json["remedy"].as_str().unwrap().starts_with("/api/openapi.json"), "{json}");
+    }
     still_serves(&server);
 }
 
