@@ -96,6 +96,8 @@ pub struct SmoothRegion {
 pub struct SmoothRegions {
     /// The pieces.
     pub all: Vec<SmoothRegion>,
+    /// For every face, the number of its piece.
+    pub of_face: Vec<usize>,
     /// For every face, how far the curved surface may be from it.
     pub chord_errors: Vec<f64>,
     /// Whether planes and cylinders with sharp edges between them make up the surface, as in parts of machines.
@@ -167,12 +169,15 @@ impl SmoothRegions {
         }
         let mut members = vec![Vec::new(); flats.len()];
         (0..flats.len()).for_each(|flat| members[sets.find(flat as u32) as usize].push(flat));
-        let members = members.into_iter().filter(|members| !members.is_empty());
+        members.retain(|members| !members.is_empty());
+        let mut of_flat = vec![0; flats.len()];
+        members.iter().enumerate().for_each(|(i, flats)| flats.iter().for_each(|&flat| of_flat[flat] = i));
         let total = mesh.area();
         let (mut plain, mut wide) = (0.0, 0);
         let all: Vec<SmoothRegion> = members
+            .iter()
             .map(|members| {
-                let region = region(mesh, &flats, &members);
+                let region = region(mesh, &flats, members);
                 // A triangle is a plane by itself, divided or not; organic meshes of few triangles have many.
                 let flat = &flats[members[0]];
                 let is_plane =
@@ -189,7 +194,8 @@ impl SmoothRegions {
         let sharp = if is_mechanical { SHARP } else { ORGANIC_SHARP }.to_radians();
         let blunt = creases.iter().filter(|crease| crease.turn < sharp);
         let chord_errors = chord_errors(mesh, &flats, &of_face, blunt);
-        Self { all, chord_errors, is_mechanical }
+        let of_face = of_face.into_iter().map(|flat| of_flat[flat]).collect();
+        Self { all, of_face, chord_errors, is_mechanical }
     }
 
     /// Directions of planes and axes with the share of the area across or around them, the largest first.

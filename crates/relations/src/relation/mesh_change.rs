@@ -5,6 +5,7 @@ use rigid::{NearestPoints, Similarity};
 use surface::VertexId;
 
 use super::Change;
+use super::calibration::STANDARD_ERRORS;
 use super::geometry::MeshGeometry;
 
 /// Meshes have about as many vertices, or vertices that matter, if the numbers differ by less than this share. Vertices that a
@@ -20,7 +21,7 @@ pub(super) const INDEPENDENT: f64 = 0.5;
 /// [`Change::Noisy`] if displacements do not depend on those of neighbors, else [`Change::Posed`].
 pub(super) fn mesh_change([a, b]: [&MeshGeometry; 2], map: &Similarity) -> Change {
     if a.n_vertices() == b.n_vertices() && a.mesh().faces == b.mesh().faces {
-        let is_noise = displacements([a, b]).is_some_and(|coherence| coherence < INDEPENDENT);
+        let is_noise = displacements([a, b]).is_some_and(|[joint, own, _]| joint < INDEPENDENT * own);
         return if is_noise { Change::Noisy } else { Change::Posed };
     }
     let ratio = b.n_vertices() as f64 / a.n_vertices() as f64;
@@ -33,8 +34,17 @@ pub(super) fn mesh_change([a, b]: [&MeshGeometry; 2], map: &Similarity) -> Chang
     }
 }
 
-/// The correlation of the displacements of vertices along edges, in meshes with the same faces.
-fn displacements([a, b]: [&MeshGeometry; 2]) -> Option<f64> {
+/// How far vertices of meshes with the same faces are displaced together with their neighbors, root mean square, beyond what
+/// independent noise may seem to be.
+pub(super) fn systematic_displacement(meshes: [&MeshGeometry; 2]) -> f64 {
+    let Some([joint, own, n]) = displacements(meshes) else { return 0.0 };
+    // The product of two independent displacements in space has a third of the variance of their squares.
+    let error = own / (3.0 * n).sqrt();
+    ((joint - STANDARD_ERRORS * error) / n).max(0.0).sqrt()
+}
+
+/// Of the displacements of vertices, in meshes with the same faces: products over the ends of edges, squares, and how many edges.
+fn displacements([a, b]: [&MeshGeometry; 2]) -> Option<[f64; 3]> {
     let pairs: Vec<_> = a.mesh().positions.iter().copied().zip(b.mesh().positions.iter().copied()).collect();
     let fits = [false, true].map(|reflected| {
         let map = Similarity::fit_scaled(&pairs, reflected)?;
@@ -43,17 +53,24 @@ fn displacements([a, b]: [&MeshGeometry; 2]) -> Option<f64> {
         Some((square, moved))
     });
     let (_, moved) = fits.into_iter().flatten().min_by(|x, y| x.0.total_cmp(&y.0))?;
-    correlation_of_neighbors(a.mesh(), |v, w| moved[v].dot(&moved[w]))
+    Some(products_along_edges(a.mesh(), |v, w| moved[v].dot(&moved[w])))
 }
 
 /// The correlation of something at vertices that share an edge, by products of any two; `None` if it is zero everywhere.
 pub(super) fn correlation_of_neighbors(mesh: &TriMesh, product: impl Fn(usize, usize) -> f64) -> Option<f64> {
+    let [joint, own, _] = products_along_edges(mesh, product);
+    (own > 0.0).then(|| joint / own)
+}
+
+/// The products over the ends of edges, the squares at them, and how many edges there are.
+fn products_along_edges(mesh: &TriMesh, product: impl Fn(usize, usize) -> f64) -> [f64; 3] {
     let (mut joint, mut own) = (0.0, 0.0);
-    for [v, w] in mesh.topology().edges().iter().map(|edge| edge.map(VertexId::index)) {
+    let topology = mesh.topology();
+    for [v, w] in topology.edges().iter().map(|edge| edge.map(VertexId::index)) {
         joint += product(v, w);
         own += 0.5 * (product(v, v) + product(w, w));
     }
-    (own > 0.0).then(|| joint / own)
+    [joint, own, topology.n_edges() as f64]
 }
 
 /// Whether nearly all vertices of `coarse` are vertices of `fine`; `map` takes the first onto the second.

@@ -18,6 +18,7 @@ mod mesh_overlay;
 mod noise;
 mod numbers;
 mod of_meshes;
+mod offsets;
 mod parts;
 mod same_surface;
 mod units;

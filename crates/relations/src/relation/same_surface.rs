@@ -14,12 +14,14 @@ use super::calibration::{
 };
 use super::exact::{Fitted, SameVertices};
 use super::geometry::MeshGeometry;
+use super::mesh_change::systematic_displacement;
 use super::noise::noise_of_parts;
+use super::offsets::systematic_offset;
 
 /// How far two surfaces are apart, in multiples of what copies of one may be, and the probability that they are one.
 pub(super) fn same_surface(aligned: &Alignment, meshes: [&MeshGeometry; 2], change: Change) -> [f64; 2] {
     let ratio = match noise_of_parts(meshes) {
-        Some(_) => part_ratio(aligned, meshes),
+        Some(noise) => part_ratio(aligned, meshes, noise),
         None => body_ratio(aligned, meshes, change),
     };
     [ratio, SAME_SURFACE.probability(ratio)]
@@ -34,7 +36,9 @@ fn body_ratio(aligned: &Alignment, meshes: [&MeshGeometry; 2], change: Change) -
             meshes.iter().any(|mesh| mesh.is_noisy()),
         ),
     };
-    aligned.gap.rms.max(aligned.gap.max / LARGEST) / allowed
+    // What vertices have in common with their neighbors counts as it does without noise.
+    let systematic = if change == Change::Noisy { systematic_displacement(meshes) / ALLOWED } else { 0.0 };
+    systematic.max(aligned.gap.rms.max(aligned.gap.max / LARGEST) / allowed)
 }
 
 /// How far copies of a body with other triangles may be apart, root mean square; `chords` is the error of flat triangles in both.
@@ -54,15 +58,16 @@ pub(super) fn rms_chord_error(mesh: &MeshGeometry) -> f64 {
     mesh.mesh().face_areas().zip(errors).map(|(area, error)| area * error * error).sum::<f64>().sqrt()
 }
 
-/// Mechanical surfaces: no point of either may be farther from the other than arcs and rounding explain, and closed ones
-/// have equally many handles.
-fn part_ratio(aligned: &Alignment, [a, b]: [&MeshGeometry; 2]) -> f64 {
+/// Mechanical surfaces: no point of either may be farther from the other than arcs, rounding and noise explain, no region where noise
+/// averages out, and closed ones have equally many handles.
+fn part_ratio(aligned: &Alignment, [a, b]: [&MeshGeometry; 2], noise: [f64; 2]) -> f64 {
     let handles = [a, b].map(|geometry| euler_characteristic_if_closed(&geometry.mesh().topology()));
     if matches!(handles, [Some(x), Some(y)] if x != y) {
         return f64::INFINITY;
     }
     let worst = worst([a, b], &aligned.map).max(worst([b, a], &aligned.map.inverse()));
-    worst.max(displaced(aligned, [a, b]).unwrap_or(0.0)) / PARTS
+    let worst = worst.max(displaced(aligned, [a, b]).unwrap_or(0.0)) / PARTS;
+    worst.max(systematic_offset([a, b], noise, &aligned.map).unwrap_or(0.0))
 }
 
 /// How far the vertices of one triangulation are apart, in multiples of what is allowed: they lie on the surface, so arcs do not

@@ -1,0 +1,166 @@
+//! Systematic offsets between two surfaces of parts: what is left of their distance where independent noise averages out.
+//!
+//! ```text
+//! vertices of one mesh -> offsets from the faces of the other, along their normals -> without the best small motion and change of
+//! size -> means over regions, beyond their standard errors -> in multiples of what triangles and rounding explain
+//! ```
+
+use std::collections::{BTreeMap, HashMap, HashSet};
+
+use mesh::RegionShape;
+use nalgebra::{Point3, SMatrix, SVector, Vector3};
+use rigid::Similarity;
+use surface::VertexId;
+
+use super::calibration::{FLUSH, STANDARD_ERRORS};
+use super::geometry::{MAX_ROUNDING, MeshGeometry};
+
+/// Normals of faces that lie on each other turn by less than this (cosine), also with noise. As at sharp edges of parts, 40°.
+const MIN_COSINE: f64 = 0.766;
+
+/// Most faces whose vertices are measured. A limit of effort.
+const MAX_FACES: usize = 4000;
+
+/// Fewest vertices whose mean counts.
+const FEWEST: usize = 4;
+
+/// The damping of the motion, in shares of the trace: parts that are round may turn.
+const DAMPING: f64 = 1e-9;
+
+/// Where a vertex of one mesh is beside a region of the other. Of vertices with several faces there, sums over them.
+struct Contact {
+    n: f64,
+    at: Point3<f64>,
+    normal: Vector3<f64>,
+    offset: f64,
+    /// What triangles and rounding explain.
+    allowed: f64,
+    /// The vertices of the nearest faces.
+    on: Vec<VertexId>,
+}
+
+/// Contacts of a region, or of those in it whose normals have one main direction.
+type Patch = (usize, Option<(usize, bool)>);
+
+/// The largest systematic offset between two parts, in multiples of what triangles and rounding explain, under a map of the first
+/// onto the second; `noise` is that of each. `None` if the meshes have too few vertices.
+pub(super) fn systematic_offset(
+    [a, b]: [&MeshGeometry; 2],
+    noise: [f64; 2],
+    map: &Similarity,
+) -> Option<f64> {
+    let is_first = match noise[0] - noise[1] {
+        more if more > MAX_ROUNDING => true,
+        more if more < -MAX_ROUNDING => false,
+        _ => a.n_faces() >= b.n_faces(),
+    };
+    // Normals and regions of the one with less noise.
+    let (from, to, map, noise) =
+        if is_first { (a, b, *map, noise) } else { (b, a, map.inverse(), [noise[1], noise[0]]) };
+    let mut contacts = contacts(from, to, &map, noise[0]);
+    without_motion(&mut contacts, noise)?;
+    let mut patches: BTreeMap<Patch, Vec<&Contact>> = BTreeMap::new();
+    let mut whole: BTreeMap<Patch, Vec<&Contact>> = BTreeMap::new();
+    for (region, contact) in &contacts {
+        let axis = contact.normal.iamax();
+        patches.entry((*region, Some((axis, contact.normal[axis] > 0.0)))).or_default().push(contact);
+        whole.entry((*region, None)).or_default().push(contact);
+    }
+    // Deviations from the means of patches are noise, and little of them curvature.
+    let mean =
+        |all: &[&Contact], of: fn(&Contact) -> f64| all.iter().map(|c| of(c)).sum::<f64>() / all.len() as f64;
+    let square = |all: &Vec<&Contact>| {
+        let middle = mean(all, |contact| contact.offset);
+        all.iter().map(|contact| (contact.offset - middle).powi(2)).sum::<f64>()
+    };
+    let n_free = contacts.len().checked_sub(patches.len() + 7).filter(|n| *n > 0)?;
+    let variance = patches.values().map(square).sum::<f64>() / n_free as f64;
+    let beyond = |(_, all): (&Patch, &Vec<&Contact>)| {
+        let n_on = all.iter().flat_map(|contact| &contact.on).collect::<HashSet<_>>().len();
+        let error = (variance / all.len() as f64 + noise[1].powi(2) / n_on as f64).sqrt();
+        let offset = mean(all, |contact| contact.offset).abs() - STANDARD_ERRORS * error;
+        offset / mean(all, |contact| contact.allowed)
+    };
+    let large = patches.iter().chain(&whole).filter(|(_, all)| all.len() >= FEWEST);
+    large.map(beyond).reduce(f64::max)
+}
+
+/// Vertices of one mesh beside each region of the other that faces at them lie on.
+fn contacts(from: &MeshGeometry, to: &MeshGeometry, map: &Similarity, noise: f64) -> Vec<(usize, Contact)> {
+    let regions = to.surface.regions();
+    let own_chords = &from.surface.regions().chord_errors;
+    let rounding = FLUSH + from.rounding() + to.rounding();
+    let mut found: HashMap<(usize, VertexId), Contact> = HashMap::new();
+    for f in (0..from.n_faces()).step_by(from.n_faces().div_ceil(MAX_FACES)) {
+        let corners = from.mesh().triangle(f).map(|p| map.apply(&p));
+        let Some(own) = (corners[1] - corners[0]).cross(&(corners[2] - corners[0])).try_normalize(0.0) else {
+            continue;
+        };
+        let center = Point3::from(corners.iter().map(|p| p.coords).sum::<Vector3<f64>>() / 3.0);
+        for (v, p) in from.mesh().faces[f].into_iter().zip(corners) {
+            // A vertex at a sharp edge belongs to the region where its face is.
+            let Some(near) = to.surface.tree().nearest(&nalgebra::center(&p, &center)) else { continue };
+            if near.normal.dot(&own).abs() < MIN_COSINE {
+                continue;
+            }
+            let region = regions.of_face[near.face];
+            let chords = match regions.all[region].shape {
+                RegionShape::Plane { .. } => 0.0,
+                // Noise hides how far flat triangles are from a curved surface.
+                _ if noise > MAX_ROUNDING => 2.0 * regions.chord_errors[near.face],
+                _ => regions.chord_errors[near.face] + own_chords[f] * map.scale,
+            };
+            let bulge = chords * bulge(&to.mesh().triangle(near.face), &p, &near.normal);
+            let contact = found.entry((region, v)).or_insert_with(|| Contact {
+                n: 0.0,
+                at: p,
+                normal: Vector3::zeros(),
+                offset: 0.0,
+                allowed: 0.0,
+                on: Vec::new(),
+            });
+            contact.n += 1.0;
+            contact.normal += near.normal;
+            contact.offset += near.normal.dot(&(p - near.point));
+            contact.allowed += rounding + bulge;
+            contact.on.extend(to.mesh().faces[near.face]);
+        }
+    }
+    let mut found: Vec<_> = found.into_iter().collect();
+    found.sort_by_key(|(key, _)| *key);
+    let mean = |((region, _), contact): ((usize, VertexId), Contact)| {
+        let Contact { n, normal, offset, allowed, .. } = contact;
+        (region, Contact { normal: normal / n, offset: offset / n, allowed: allowed / n, ..contact })
+    };
+    found.into_iter().map(mean).collect()
+}
+
+/// How much of the height of an arc may be over a triangle at a point: nothing at its corners, which lie on the curved surface, and
+/// all of it from a quarter of the shortest side on.
+fn bulge(corners: &[Point3<f64>; 3], p: &Point3<f64>, normal: &Vector3<f64>) -> f64 {
+    let chord = (0..3).map(|i| (corners[i] - corners[(i + 1) % 3]).norm()).fold(f64::INFINITY, f64::min);
+    let along = |corner: &Point3<f64>| (p - corner).cross(normal).norm();
+    (4.0 * corners.iter().map(along).fold(f64::INFINITY, f64::min) / chord).min(1.0)
+}
+
+/// Takes the small motion and change of size from offsets that explains most of them.
+fn without_motion(contacts: &mut [(usize, Contact)], noise: [f64; 2]) -> Option<()> {
+    let row = |Contact { at, normal, .. }: &Contact| {
+        let mut row = SVector::<f64, 7>::zeros();
+        row.fixed_rows_mut::<3>(0).copy_from(&at.coords.cross(normal));
+        row.fixed_rows_mut::<3>(3).copy_from(normal);
+        row[6] = at.coords.dot(normal);
+        row
+    };
+    let (mut matrix, mut right) = (SMatrix::<f64, 7, 7>::zeros(), SVector::<f64, 7>::zeros());
+    for (_, contact) in contacts.iter() {
+        let weight = 1.0 / (noise[0].powi(2) + noise[1].powi(2) + contact.allowed.powi(2));
+        let row = row(contact);
+        matrix += row * row.transpose() * weight;
+        right += row * contact.offset * weight;
+    }
+    matrix += SMatrix::identity() * (DAMPING * matrix.trace()).max(f64::MIN_POSITIVE);
+    let step = matrix.cholesky()?.solve(&right);
+    contacts.iter_mut().for_each(|(_, contact)| contact.offset -= row(contact).dot(&step));
+    Some(())
+}
