@@ -4,9 +4,11 @@ use std::path::Path;
 
 use canonform::DescribeOptions;
 use canonform::collection::content_hash;
-use canonform::library::{DuplicateOptions, find_duplicates};
+use canonform::library::{DuplicateOptions, DuplicateReport, find_duplicates};
 use canonform::search::ShapeSearch;
-use datasets::{CreatureOptions, Damage, PartMesh, creature_body, mechanical_parts};
+use datasets::{
+    CreatureOptions, Damage, MechanicalPart, PartFamily, PartMesh, creature_body, mechanical_parts,
+};
 use descriptors::ShapeMetric;
 use index::{Entry, IndexWriter, Shape};
 use mesh::TriMesh;
@@ -53,25 +55,28 @@ fn files(group: usize, folder: &Path) -> Vec<String> {
     written.collect()
 }
 
-/// The groups whose keeper is not exact, of so many. Signatures only say which files may be one, so groups have made-up ones.
-fn wrong_keepers(n: usize) -> Vec<String> {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("all.canonform");
-    let shape = |group: usize, name: String| {
-        let content = content_hash(&folder.path().join(&name)).unwrap();
+/// The duplicates among files of a folder. Signatures only say which files may be one, so groups have made-up ones.
+fn duplicates(files: Vec<(usize, String)>, folder: &Path) -> DuplicateReport {
+    let path = folder.join("all.canonform");
+    let shape = |(group, name): (usize, String)| {
+        let content = content_hash(&folder.join(&name)).unwrap();
         let mut fused = vec![0.0; ShapeMetric::FUSED_LENGTH];
         fused.iter_mut().skip(group % 9).step_by(9).for_each(|value| *value = 1e3 * (1 + group) as f32);
         let entry = Entry { id: name.clone(), path: name, content, ..Entry::default() };
         Shape { entry, fused, ..Shape::default() }
     };
+    let mut writer = IndexWriter::build(&path, &DescribeOptions::default().text()).unwrap();
+    writer.put(&files.into_iter().map(shape).collect::<Vec<_>>()).unwrap();
+    writer.finish(&()).unwrap();
+    find_duplicates(&ShapeSearch::open(&path).unwrap(), &DuplicateOptions::default(), &()).unwrap()
+}
+
+/// The groups whose keeper is not exact, of so many.
+fn wrong_keepers(n: usize) -> Vec<String> {
+    let folder = tempfile::tempdir().unwrap();
     let of_group =
         |group| files(group, folder.path()).into_iter().map(move |name| (group, name)).collect::<Vec<_>>();
-    let files: Vec<_> = (0..n).into_par_iter().flat_map_iter(of_group).collect();
-    let mut writer = IndexWriter::build(&path, &DescribeOptions::default().text()).unwrap();
-    writer.put(&files.into_iter().map(|(group, name)| shape(group, name)).collect::<Vec<_>>()).unwrap();
-    writer.finish(&()).unwrap();
-    let found =
-        find_duplicates(&ShapeSearch::open(&path).unwrap(), &DuplicateOptions::default(), &()).unwrap();
+    let found = duplicates((0..n).into_par_iter().flat_map_iter(of_group).collect(), folder.path());
     assert!(found.groups.len() >= n, "{} of {n} groups", found.groups.len());
     // What is not proved to be the same is a group of its own, of which nothing is exact.
     let has_exact = |group: &&canonform::library::DuplicateGroup| {
@@ -98,6 +103,29 @@ fn wrong_keepers(n: usize) -> Vec<String> {
 #[test]
 fn an_exact_copy_is_kept() {
     assert_eq!(wrong_keepers(6), Vec::<String>::new());
+}
+
+#[test]
+fn a_noisy_copy_goes_to_the_part_that_it_fits_best() {
+    let folder = tempfile::tempdir().unwrap();
+    let plate = |thickness: f64| {
+        let part = MechanicalPart::new(PartFamily::Plate, &[40.0, 26.0, thickness, 3.0, 5.0, 4.0]);
+        Damage::Subdivide(2).apply(&part.mesh(&PartMesh::default()), 1)
+    };
+    let right = plate(3.0);
+    let files = [
+        ("a.ply", plate(3.03)),
+        ("b.ply", plate(2.97)),
+        ("right.ply", right.clone()),
+        ("noisy.ply", Damage::Move.apply(&Damage::Noise(0.002).apply(&right, 7), 7)),
+    ];
+    for (name, mesh) in &files {
+        mesh_io::write(&folder.path().join(name), mesh).unwrap();
+    }
+    let found = duplicates(files.map(|(name, _)| (0, name.to_owned())).to_vec(), folder.path());
+    let of_noisy =
+        found.groups.iter().flat_map(|group| &group.members).find(|member| member.file.id == "noisy.ply");
+    assert_eq!(of_noisy.unwrap().of, "right.ply");
 }
 
 #[test]

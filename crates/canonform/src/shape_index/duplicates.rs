@@ -573,13 +573,33 @@ fn groups(
             rough.push(keeper);
             continue;
         }
+        // What fits a shape better that is not the keeper's goes to the group of that.
+        let gap = |told: &Relation| told.evidence.surface_gap.map_or(0.0, |gap| gap.rms);
+        let fits_better = |(other, told): &(&ClusterShape<'_>, Relation)| {
+            if !told.kind.is_one_surface() || gap(told) == 0.0 {
+                return Ok(false);
+            }
+            let is_nearer = |shape: &&ClusterShape<'_>| {
+                budget.check()?;
+                let may_be = shape.candidate.may_be(other.candidate, options);
+                let found = if may_be { related(shape, other, Relation::by_surfaces) } else { None };
+                let found = found.filter(|found| found.kind.is_one_surface() && is_one(found));
+                Ok(found.is_some_and(|found| gap(&found) < gap(told)))
+            };
+            rest.iter().map(is_nearer).find(|found| !matches!(found, Ok(false))).unwrap_or(Ok(false))
+        };
+        let elsewhere = same.par_iter().map(fits_better).collect::<Result<Vec<bool>, Error>>()?;
+        let mut goes = elsewhere.iter();
+        same.retain(|_| goes.next() == Some(&false));
         (0..=same.len()).for_each(|_| observer.step());
         let place = |kind| RelationKind::ALL.iter().position(|known| *known == kind);
         same.sort_by(|(a, told), (b, other)| {
             place(told.kind).cmp(&place(other.kind)).then_with(|| a.files[0].id.cmp(&b.files[0].id))
         });
+        left.retain(|shape| {
+            !std::ptr::eq(*shape, keeper) && same.iter().all(|(other, _)| !std::ptr::eq(*other, *shape))
+        });
         groups.extend(group(keeper, same, options));
-        left = rest;
     }
     Ok((groups, n_compared))
 }
