@@ -203,16 +203,3 @@ pub(crate) fn write_csv(path: &Path, rows: impl IntoIterator<Item: IntoIterator<
 pub(crate) fn write_matrix(path: &Path, matrix: &Matrix) -> Result<()> {
     write_npy(path, &[matrix.nrows(), matrix.ncols()], matrix.transpose().as_slice().iter().copied())
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn vertices_are_whole_numbers_from_zero() {
-        assert_eq!(vertex(17.0).unwrap(), VertexId(17));
-        for number in [-1.0, 1.5, f64::NAN, 1e10] {
-            assert!(vertex(number).is_err(), "{number}");
-        }
-    }
-}

@@ -161,33 +161,3 @@ fn parse_background(text: &str) -> Result<Background, String> {
         }),
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn values_are_read_or_refused_with_what_is_possible() {
-        assert_eq!([parse_size("640x480"), parse_size("300")], [Ok([640, 480]), Ok([300, 300])]);
-        for text in ["", "x", "15", "800x", "4097x10", "1e3", "10x20x30"] {
-            assert!(parse_size(text).unwrap_err().contains("16 to 4096"), "{text}");
-        }
-        let upright =
-            |azimuth, elevation| Ok(View::Upright { azimuth, elevation, up: [0.0, 0.0, 1.0].into() });
-        assert_eq!(parse_view("-30,12.5"), upright(-30.0, 12.5));
-        assert_eq!(parse_view("left"), upright(270.0, 0.0));
-        assert_eq!(parse_view("principal"), Ok(View::Principal));
-        for text in ["", "up", "30", "30,", "nan,0", "1,2,3"] {
-            assert!(parse_view(text).unwrap_err().contains("principal"), "{text}");
-        }
-        assert_eq!([parse_color("#0a1bFF"), parse_color("0a1bff")], [Ok([10, 27, 255]), Ok([10, 27, 255])]);
-        for text in ["", "#fff", "red", "#12345g", "#+1+1+1", "ééé"] {
-            assert!(parse_color(text).is_err() && parse_background(text).is_err(), "{text}");
-        }
-        assert_eq!(parse_background("white"), Ok(Background::White));
-        assert_eq!(parse_range("-1,2.5"), Ok([-1.0, 2.5]));
-        for text in ["", "1", "2,1", "1,1", "0,inf"] {
-            assert!(parse_range(text).is_err(), "{text}");
-        }
-    }
-}

@@ -50,16 +50,3 @@ fn host_name(text: &str) -> Result<String, &'static str> {
     let is_name = !text.is_empty() && !text.contains(['/', ':']);
     is_name.then(|| text.to_owned()).ok_or("give the name alone, without https:// and without a port")
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_host_name_is_not_an_address() {
-        assert_eq!(host_name("shapes.example.org").as_deref(), Ok("shapes.example.org"));
-        for wrong in ["", "https://shapes.example.org", "shapes.example.org:443", "shapes.example.org/"] {
-            assert!(host_name(wrong).unwrap_err().contains("without https://"), "{wrong}");
-        }
-    }
-}

@@ -89,7 +89,7 @@ impl FormArgs {
 #[cfg(test)]
 mod tests {
     use canonform::DescribeOptions;
-    use canonform::settings::{DescriptionSettings, EmbeddingName};
+    use canonform::settings::DescriptionSettings;
     use clap::FromArgMatches;
 
     use super::*;
@@ -162,13 +162,5 @@ mod tests {
                 None => assert!(["--weld", "--size"].contains(&flag.as_str()), "{flag} states no default"),
             }
         }
-    }
-
-    #[test]
-    fn settings_without_effect_are_told_by_their_flags() {
-        let settings =
-            MethodSettings { first: Some(1), method: Some(EmbeddingName::Mds), ..Default::default() };
-        let words = settings.options().unwrap_err().in_words(spelled);
-        assert!(words.starts_with("--first-sample has no effect with --method mds; "), "{words}");
     }
 }

@@ -117,12 +117,4 @@ mod tests {
             assert!(parse_bytes(text).is_err(), "{text}");
         }
     }
-
-    #[test]
-    fn time_limits_are_positive_seconds() {
-        assert_eq!(parse_seconds("0.5"), Ok(Duration::from_millis(500)));
-        for text in ["", "0", "-1", "nan", "inf", "1e300", "1m"] {
-            assert!(parse_seconds(text).unwrap_err().contains("positive number of seconds"), "{text}");
-        }
-    }
 }

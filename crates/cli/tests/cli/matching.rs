@@ -57,7 +57,7 @@ fn both_maps_of_a_pair_are_written_in_every_format() {
 }
 
 #[test]
-fn landmarks_initial_maps_and_tables_to_carry_are_read_and_their_faults_are_named() {
+fn landmarks_initial_maps_and_tables_to_carry_are_read() {
     let place = cats();
     place.done(format!("{MATCH} -o both.npy"));
     // A partner that only the mirrored map takes a vertex to.
@@ -78,27 +78,6 @@ fn landmarks_initial_maps_and_tables_to_carry_are_read_and_their_faults_are_name
     assert_eq!((&json["transfer"]["kind"], &json["transfer"]["rows"]), (&"labels".into(), &1000.into()));
     let carried = fs::read_to_string(place.path("carried.csv")).unwrap();
     assert!(carried.lines().count() == 1000 && carried.lines().all(|word| labels.contains(&word)));
-    for (name, text) in [
-        ("far.csv", "1,2\n3,4000\n"),
-        ("twice.csv", "3,1\n3,900\n"),
-        ("words.csv", "1,2\n3;x\n"),
-        ("start.csv", "1\n2\nx\n"),
-        ("few.csv", "1.5\n2.5\n"),
-    ] {
-        fs::write(place.path(name), text).unwrap();
-    }
-    for (options, words) in [
-        ("--landmarks far.csv", &["far.csv", "line 2", "4000", "counted from 0", "second mesh"][..]),
-        ("--landmarks twice.csv", &["twice.csv", "3,1 and 3,900", "two partners", "correct or leave out"]),
-        ("--landmarks words.csv", &["words.csv", "line 2", "`3;x` is not a number"]),
-        ("--initial start.csv", &["start.csv", "line 3", "`x`"]),
-        ("--transfer parts.csv -o carried.npy", &["carried.npy", "use .csv"]),
-        ("--transfer few.csv -o c.csv", &["few.csv", "2 rows", "1000 vertices", "each face"]),
-        ("-o map.txt", &["map.txt", ".npy"]),
-        ("-o nowhere/map.npy", &["nowhere", "does not exist"]),
-    ] {
-        place.refused(format!("{MATCH} {options}"), words);
-    }
 }
 
 #[test]

@@ -104,12 +104,6 @@ fn every_command_reads_members_compressed_files_and_archives_of_one_mesh() {
     }
     let all = place.json("info meshes.tar.gz list.txt meshes");
     assert_eq!(all["meshes"].as_array().unwrap().len(), 12);
-    let several = &["meshes.zip: the archive holds 4 meshes", "meshes/ball/ball0.off", "name one of them"];
-    place.all_refused(&[
-        ("info meshes.zip/meshes/ring/none.off", &["none.off", "no such member"]),
-        ("geodesic meshes.zip --source 0 -o x.npy", several),
-        ("compare ring0.off.gz meshes.zip", several),
-    ]);
 }
 
 #[test]

@@ -111,22 +111,6 @@ impl Workplace {
             assert!(outcome.err.contains(word), "{arguments:?}: no `{word}` in: {}", outcome.err);
         }
     }
-
-    /// Runs commands that must all be [`refused`](Self::refused) and leave nothing behind.
-    pub(crate) fn all_refused(&self, table: &[(&str, &[&str])]) {
-        let before = self.names();
-        table.iter().for_each(|(command, words)| self.refused(*command, words));
-        assert_eq!(self.names(), before);
-    }
-
-    /// Names of all files and folders, sorted.
-    pub(crate) fn names(&self) -> Vec<String> {
-        let entries = fs::read_dir(self.0.path()).unwrap();
-        let mut names: Vec<String> =
-            entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-        names.sort();
-        names
-    }
 }
 
 pub(crate) fn program() -> &'static str {
