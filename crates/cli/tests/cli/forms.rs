@@ -3,7 +3,7 @@
 use std::fs;
 
 use canonform::mesh::io;
-use serde_json::{Value, json};
+use serde_json::json;
 
 use crate::support::{Workplace, broken_ring, read_npy, ring};
 
@@ -79,23 +79,5 @@ fn meshes_of_forms_keep_the_faces_of_the_input() {
             [ring().faces, ring().faces],
             "{format}"
         );
-    }
-}
-
-#[test]
-fn bytes_do_not_depend_on_threads() {
-    let place = Workplace::new();
-    place.add("ring.off", &ring());
-    for command in [
-        "embed ring.off -n 40 --seed 3 -o out.npy",
-        "embed ring.off -n 40 --seed 3 -o out.ply",
-        "geodesic ring.off --source 1,2,3 -o out.npy",
-    ] {
-        let [one, two] = [1, 2].map(|threads| {
-            let mut json = place.json(format!("{command} --threads {threads}"));
-            json["seconds"] = Value::Null;
-            (json, fs::read(place.path(command.rsplit(' ').next().unwrap())).unwrap())
-        });
-        assert!(one == two, "{command}");
     }
 }

@@ -64,26 +64,6 @@ fn a_folder_becomes_an_index_that_finds_its_shapes() {
 }
 
 #[test]
-fn only_changed_meshes_are_described_again() {
-    let place = collection(3);
-    place.done(BUILD);
-    let before = fs::read(place.path("all.canonform")).unwrap();
-    let again = place.json(BUILD);
-    assert_eq!((&again["described"], &again["unchanged"]), (&0.into(), &9.into()));
-    assert_eq!(fs::read(place.path("all.canonform")).unwrap(), before, "not even written");
-    place.add("meshes/ring1.off", &body(0, 5));
-    place.add("meshes/ring9.off", &body(0, 6));
-    fs::remove_file(place.path("meshes/box0.off")).unwrap();
-    let changed = place.json(BUILD);
-    let counts = ["described", "unchanged", "removed", "n_shapes"].map(|key| changed[key].as_u64().unwrap());
-    assert_eq!(counts, [2, 7, 1, 9]);
-    let text = export(&place);
-    fs::remove_file(place.path("all.canonform")).unwrap();
-    place.done(BUILD);
-    assert_eq!(export(&place), text, "as if built from scratch");
-}
-
-#[test]
 fn shapes_are_added_and_removed() {
     let place = collection(3);
     place.done(BUILD);

@@ -1,12 +1,10 @@
 //! Killed programs.
 
 use std::fs;
-use std::path::Path;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
 use canonform::index::{Index, log_path};
-use testkit::tree;
 
 use crate::index::body;
 use crate::support::Workplace;
@@ -49,50 +47,6 @@ fn kill_after(place: &Workplace, command: &str, time: Duration) -> bool {
     std::thread::sleep(time);
     child.kill().unwrap();
     !child.wait().unwrap().success()
-}
-
-fn is_leftover(path: &Path) -> bool {
-    path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(".unfinished-"))
-}
-
-#[test]
-#[ignore = "slow: make test-all"]
-fn killed_commands_leave_whole_files_and_the_next_run_tidies_up() {
-    let place = collection();
-    place.add("a.off", &canonform::mesh::shapes::icosphere(5));
-    place.add("b.off", &body(0, 3));
-    place.done(build("all"));
-    let commands = [
-        "index export all -o out/all.jsonl",
-        "embed a.off -o out/a.npy --stress skip",
-        "embed a.off -o out/a.ply --stress skip",
-        "embed meshes -n 20 -o out --format obj",
-        "render a.off -o out/a.png",
-        "compare a.off b.off -n 20 --residual-mesh out/residual.ply",
-        "geodesic a.off --source 7 -o out/distances.npy",
-        "geodesic b.off --all-pairs -o out/pairs.npy",
-    ];
-    let out = place.path("out");
-    let turns = (3 * n_kills() / 4).div_ceil(commands.len() as u32);
-    for command in commands {
-        fs::create_dir(&out).unwrap();
-        let start = Instant::now();
-        place.done(command);
-        let usual = start.elapsed();
-        let whole = tree(&out);
-        assert!(!whole.is_empty(), "{command:?}");
-        for turn in 0..turns {
-            fs::remove_dir_all(&out).unwrap();
-            fs::create_dir(&out).unwrap();
-            kill_after(&place, command, usual.mul_f64(f64::from(turn + 1) / f64::from(turns + 1)));
-            for (path, bytes) in tree(&out) {
-                assert!(is_leftover(&path) || whole.get(&path) == Some(&bytes), "{command:?}: {path:?}");
-            }
-            place.done(command);
-            assert!(tree(&out) == whole, "{command:?}: {:?}", tree(&out).keys());
-        }
-        fs::remove_dir_all(&out).unwrap();
-    }
 }
 
 #[test]
