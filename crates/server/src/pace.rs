@@ -69,27 +69,3 @@ impl Pace {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn only_waiting_for_the_client_counts_and_bytes_pay_for_it() {
-        let pace = Pace::new(1000, Duration::from_secs(10));
-        let pause = || std::thread::sleep(Duration::from_millis(30));
-        pause();
-        assert!(pace.delay() >= Duration::from_millis(30));
-        pace.begin(Phase::Working);
-        pause();
-        assert_eq!(pace.delay(), Duration::ZERO);
-        pace.begin(Phase::Receiving);
-        pause();
-        let before = pace.delay();
-        assert!(before >= Duration::from_millis(30));
-        pace.moved(10);
-        assert!(pace.delay() < before);
-        pace.moved(1 << 20);
-        assert!(pace.delay() < Duration::from_millis(20));
-    }
-}

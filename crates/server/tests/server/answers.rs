@@ -89,22 +89,6 @@ fn an_upload_gives_the_same_answer_as_the_library() {
 }
 
 #[test]
-fn a_shape_of_the_index_finds_itself() {
-    let server = Served::start(options());
-    for id in ["box0", AWKWARD] {
-        let target = format!("/api/search?shape={}&k=2&explain=true", escaped(id));
-        let answer = ask(server.address, "POST", &target, &[], b"").unwrap();
-        let json = told(&server, "post", "/api/search", 200, &answer);
-        assert_eq!(json["query"].as_str().unwrap(), id);
-        assert!(json["results"][0]["distance"].as_f64().unwrap() < 1e-9, "{json}");
-        // `box0` and `box1` are one surface, at one distance; any other shape is first alone.
-        let n_first = if id.starts_with("box") { 2 } else { 1 };
-        assert!(ids(&json, "results")[..n_first].contains(&id), "{json}");
-        assert!(json["query_id"].is_null() && json["mesh_missing"].is_null());
-    }
-}
-
-#[test]
 fn an_upload_can_be_searched_again_and_exported() {
     let server = Served::start(options());
     let mesh = written("q.off", &shapes::torus(24, 12, 2.0, 0.7));

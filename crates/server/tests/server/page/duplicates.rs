@@ -57,9 +57,7 @@ fn groups_are_compared_and_marked() {
 
     let keepers = "[...document.querySelectorAll('.group')].map(group => group.dataset.id)";
     let found = page.eval(keepers);
-    page.browser
-            .eval("document.querySelector('#sort').value = 'name'; document.querySelector('#sort').dispatchEvent(new Event('change'))")
-            .unwrap();
+    page.choose("sort", "name");
     let mut names: Vec<String> = serde_json::from_value(found).unwrap();
     names.sort();
     assert_eq!(page.eval(keepers), json!(names));

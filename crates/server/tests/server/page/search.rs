@@ -29,10 +29,7 @@ fn a_chosen_mesh_is_classified_and_overlaid_with_a_result() {
     assert_eq!(page.eval(labels), json!(["cat", "cat", "cat"]));
     let order = "[...document.querySelectorAll('#results .tile')].map(tile => tile.dataset.id)";
     let sorted = |by: &str| {
-        let choose = format!(
-            "document.querySelector('#sort').value = '{by}'; document.querySelector('#sort').dispatchEvent(new Event('change'))"
-        );
-        page.browser.eval(&choose).unwrap();
+        page.choose("sort", by);
         serde_json::from_value::<Vec<String>>(page.eval(order)).unwrap()
     };
     let (by_name, by_rank) = (sorted("name"), sorted("rank"));

@@ -15,14 +15,6 @@ const AT_THE_START: &str = "document.querySelector('#answer').dataset.state === 
                             document.querySelector('#page').dataset.at === 'start' && \
                             document.querySelectorAll('#shapes .tile').length === 10";
 
-/// Chooses a value of a list.
-fn choose(page: &Page, list: &str, value: &str) {
-    let choose = format!(
-        "const list = document.querySelector('#{list}'); list.value = '{value}'; list.dispatchEvent(new Event('change'))"
-    );
-    page.browser.eval(&choose).unwrap();
-}
-
 /// The first result that is not the query itself.
 fn hit(page: &Page) -> String {
     let hit = page.eval("document.querySelector('#results li:nth-child(2) .tile').dataset.id");
@@ -100,10 +92,10 @@ fn options_filters_and_downloads_follow_the_address() {
     assert_eq!(page.eval(N_RESULTS), 3);
     assert_eq!(page.eval("document.querySelector('#k').value"), "3");
     page.wait_for("document.querySelectorAll('#shapes .tile').length === 3");
-    choose(&page, "k", "6");
+    page.choose("k", "6");
     page.wait_for(&format!("{N_RESULTS} === 6"));
     assert_eq!(page.address(), "/?shape=cat0&k=6&filter=cent");
-    choose(&page, "rank", "forms");
+    page.choose("rank", "forms");
     page.wait_for("location.search.includes('rank=forms')");
     page.answered();
     page.browser.eval("history.back()").unwrap();

@@ -93,6 +93,13 @@ impl Page {
         self.browser.wait_for(expression).unwrap();
     }
 
+    /// Chooses a value of a list.
+    pub(crate) fn choose(&self, list: &str, value: &str) {
+        let list = format!("const list = document.querySelector('#{list}');");
+        let choose = format!("{list} list.value = '{value}'; list.dispatchEvent(new Event('change'))");
+        self.browser.eval(&choose).unwrap();
+    }
+
     /// The text of an element.
     pub(crate) fn text(&self, css: &str) -> String {
         let text = self.eval(&format!("document.querySelector({}).textContent", json!(css)));
