@@ -112,36 +112,11 @@ fn marching(surface: &IntrinsicMesh) -> FastMarching {
     FastMarching::new(surface, FastMarchingOptions::default(), &())
 }
 
-/// Three solvers prepared for one surface.
-struct Solvers {
-    exact: Exact,
-    marching: FastMarching,
-    along_edges: Dijkstra,
-}
-
-/// Distances from one source.
-struct Found {
-    exact: Vec<f64>,
-    marched: Vec<f64>,
-    along_edges: Vec<f64>,
-}
-
-impl Solvers {
-    fn new(surface: &IntrinsicMesh) -> Self {
-        Self {
-            exact: Exact::new(surface, &()),
-            marching: marching(surface),
-            along_edges: Dijkstra::new(surface, &()),
-        }
-    }
-
-    fn from(&self, surface: &IntrinsicMesh, source: VertexId) -> Option<Found> {
-        Some(Found {
-            exact: distances(&self.exact, surface, source)?,
-            marched: self.marching.distances(source).unwrap(),
-            along_edges: self.along_edges.distances(source).unwrap(),
-        })
-    }
+/// Distances from one source: exact ones, those of fast marching, and those along edges.
+fn found(surface: &IntrinsicMesh, source: VertexId) -> Option<[Vec<f64>; 3]> {
+    let exact = distances(&Exact::new(surface, &()), surface, source)?;
+    let along_edges = Dijkstra::new(surface, &()).distances(source).unwrap();
+    Some([exact, marching(surface).distances(source).unwrap(), along_edges])
 }
 
 /// Asserts that no distance grows faster than along an edge.
@@ -157,9 +132,8 @@ fn assert_lipschitz(surface: &IntrinsicMesh, distances: &[f64], name: &str) {
 fn assert_laws(mesh: &TriMesh) {
     let surface = mesh.intrinsic();
     let (longest, open) = (longest_edge(&surface), left_open(&surface));
-    let solvers = Solvers::new(&surface);
     for source in sources(mesh) {
-        let Some(Found { exact, marched, along_edges }) = solvers.from(&surface, source) else { continue };
+        let Some([exact, marched, along_edges]) = found(&surface, source) else { continue };
         assert_lipschitz(&surface, &exact, "exact");
         assert_lipschitz(&surface, &marched, "fast marching");
         assert_lipschitz(&surface, &along_edges, "Dijkstra");
@@ -243,9 +217,9 @@ proptest! {
         let surface = mesh.intrinsic();
         // Exact distances may miss paths through faces with a side of length zero, which repair drops.
         prop_assume!(surface.edge_lengths().iter().all(|length| *length > 0.0));
-        let (open, solvers) = (left_open(&surface), Solvers::new(&surface));
+        let open = left_open(&surface);
         for source in sources(&mesh) {
-            let Some(Found { exact, marched, along_edges }) = solvers.from(&surface, source) else { continue };
+            let Some([exact, marched, along_edges]) = found(&surface, source) else { continue };
             let sources = [Source::vertex(source)];
             for field in [&exact, &marched] {
                 let tracer = PathTracer::new(&surface, &sources, field, &());

@@ -9,24 +9,6 @@ use super::super::Exact;
 use super::{all_pairs, apart, assert_close, cone, faces, points, spatial};
 use crate::{DistanceSolver, Source, SurfacePoint};
 
-#[test]
-fn distances_on_flat_sheets_are_euclidean_for_any_triangles() {
-    for (sheet, tolerance) in [
-        (shapes::grid(15, 12, 0.7), 1e-14),
-        (shapes::sheared_grid(14, 15, 1.0, 2.3), 1e-13),
-        (shapes::sheared_grid(12, 12, 1.0, -9.5), 1e-12),
-        (shapes::jittered_grid(20, 18, 1e-3, 0.24, 5), 1e-13),
-    ] {
-        let solver = Exact::new(&sheet.intrinsic(), &());
-        for source in [0, 17, 100, 143] {
-            let from = sheet.positions[source];
-            for (found, p) in solver.distances(VertexId::from(source)).unwrap().iter().zip(&sheet.positions) {
-                assert_close(*found, (p - from).norm(), tolerance);
-            }
-        }
-    }
-}
-
 /// Distance on the unit cube from `(p, q)` on the bottom to `(x, y)` on the top: the shortest of the straight lines
 /// through one side or two.
 fn bottom_to_top([p, q]: [f64; 2], [x, y]: [f64; 2]) -> f64 {
@@ -156,20 +138,6 @@ fn distances_from_points_on_edges_and_in_faces_are_euclidean() {
         let [a, b] = mesh.topology().edges()[edge.index()].map(|v| sheet.positions[v.index()]);
         for t in [0.0, 0.25, 0.9, 1.0, 1e-14] {
             check(SurfacePoint::Edge { edge, t }, [a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)]);
-        }
-    }
-}
-
-#[test]
-fn refining_a_surface_does_not_change_it() {
-    let sphere = shapes::icosphere(1);
-    let coarse = all_pairs(&sphere.intrinsic());
-    let fine = shapes::subdivide(&shapes::subdivide(&sphere));
-    let solver = Exact::new(&fine.intrinsic(), &());
-    for (v, row) in coarse.iter().enumerate() {
-        let refined = solver.distances(VertexId::from(v)).unwrap();
-        for (found, expected) in refined.iter().zip(row) {
-            assert_close(*found, *expected, 1e-12);
         }
     }
 }

@@ -18,13 +18,23 @@ fn assert_flat(points: &[[f64; 3]], faces: &[[u32; 3]], relative: f64) {
 }
 
 #[test]
-fn stretched_sheets_stay_euclidean() {
-    let sheet = shapes::jittered_grid(8, 8, 1.0, 0.2, 1);
+fn flat_sheets_are_euclidean_for_any_triangles() {
+    let jittered = shapes::jittered_grid(8, 8, 1.0, 0.24, 1);
+    let [sheared, needles] = [2.3, -9.5].map(|shear| shapes::sheared_grid(9, 8, 1.0, shear));
     // The lengths of needles say less and less about their heights.
-    for (stretch, relative) in [(30.0, 1e-12), (1e3, 1e-9), (1e5, 1e-5)] {
-        let mut at = points(&sheet);
+    for (sheet, stretch, relative) in [
+        (&shapes::grid(9, 8, 0.7), 1.0, 1e-14),
+        (&jittered, 1e-3, 1e-9),
+        (&jittered, 1.0, 1e-13),
+        (&sheared, 1.0, 1e-13),
+        (&needles, 1.0, 1e-12),
+        (&jittered, 30.0, 1e-12),
+        (&jittered, 1e3, 1e-9),
+        (&jittered, 1e5, 1e-5),
+    ] {
+        let mut at = points(sheet);
         at.iter_mut().for_each(|p| p[0] *= stretch);
-        assert_flat(&at, &faces(&sheet), relative);
+        assert_flat(&at, &faces(sheet), relative);
     }
 }
 

@@ -3,7 +3,6 @@
 use mesh::shapes;
 use surface::{EdgeId, FaceId, VertexId};
 
-use super::super::plane::segment;
 use super::{assert_path, vertex};
 use crate::tests::{assert_close, bumpy, faces, points, spatial};
 use crate::{Dijkstra, DistanceSolver, Exact, FastMarching, HeatMethod, PathTracer, Source, SurfacePoint};
@@ -113,15 +112,4 @@ fn distances_with_a_limit_give_the_same_paths_within_it() {
             Err(_) => assert!(*distance > 4.0),
         }
     }
-}
-
-#[test]
-fn segments_on_an_edge_are_measured_along_it() {
-    let mesh = shapes::grid(2, 2, 1.0).intrinsic();
-    let edge = mesh.topology().edge_between(VertexId(0), VertexId(1)).unwrap();
-    let face = mesh.topology().edge_corners(edge)[0].face();
-    let at = |t| SurfacePoint::Edge { edge, t };
-    assert_eq!(segment(&mesh, face, at(0.25), at(0.75)), 0.5);
-    assert_eq!(segment(&mesh, face, vertex(1), at(0.25)), 0.75);
-    assert_eq!(segment(&mesh, face, vertex(1), vertex(0)), 1.0);
 }

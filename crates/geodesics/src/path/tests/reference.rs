@@ -1,12 +1,8 @@
 //! Comparison with exact distances on real meshes.
 
-use mesh::{RepairOptions, repair};
-use rayon::prelude::*;
-use surface::VertexId;
-
 use super::vertex;
 use crate::tests::{Reference, assert_close, reference};
-use crate::{Dijkstra, DistanceSolver, Exact, FastMarching, PathTracer, Source};
+use crate::{DistanceSolver, FastMarching, PathTracer, Source};
 
 #[test]
 fn lengths_of_paths_equal_exact_distances() {
@@ -34,36 +30,4 @@ fn lengths_of_paths_equal_exact_distances() {
             assert!(excess / f64::from(count) < 1e-3, "{excess}");
         }
     }
-}
-
-#[test]
-fn exact_distances_on_every_tosca_mesh_are_symmetric_and_those_of_their_paths() {
-    let Some(data) = testkit::data("") else { return };
-    let mut paths: Vec<_> =
-        std::fs::read_dir(data.join("tosca-lowres")).unwrap().map(|entry| entry.unwrap().path()).collect();
-    paths.retain(|path| path.extension().is_some_and(|e| e == "vert"));
-    let done = paths.par_iter().filter(|path| {
-        // One of them is damaged.
-        let Ok(read) = mesh_io::read(path) else { return false };
-        let mesh = repair(&read, &RepairOptions::default(), &()).unwrap().intrinsic;
-        let n = mesh.n_vertices();
-        let [source, other] = [n / 3, n / 2].map(VertexId::from);
-        let solver = Exact::new(&mesh, &());
-        let [exact, back] = [source, other].map(|v| solver.distances(v).unwrap());
-        assert_close(exact[other.index()], back[source.index()], 1e-10);
-        for (ends, length) in mesh.topology().edges().iter().zip(mesh.edge_lengths()) {
-            let [a, b] = ends.map(|v| exact[v.index()]);
-            assert!((a - b).abs() <= length + 1e-9 * a, "{}", path.display());
-        }
-        let along_edges = Dijkstra::new(&mesh, &()).distances(source).unwrap();
-        let sources = [Source::vertex(source)];
-        let tracer = PathTracer::new(&mesh, &sources, &exact, &());
-        for v in (0..n).step_by(97) {
-            assert_close(tracer.path_to(vertex(v)).unwrap().length, exact[v], 1e-10);
-        }
-        let is_bounded = |(d, bound): (&f64, &f64)| d.is_finite() && *d <= bound * (1.0 + 1e-14);
-        assert!(exact.iter().zip(&along_edges).all(is_bounded), "{}", path.display());
-        true
-    });
-    assert_eq!(done.count(), 147);
 }
