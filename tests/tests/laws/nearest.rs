@@ -5,8 +5,8 @@ use std::path::Path;
 use canonform::DescribeOptions;
 use canonform::library::{BuildOptions, build_index};
 use canonform::search::{Answer, Hit, SearchOptions, SearchRank, ShapeSearch};
-use datasets::{CreatureOptions, Damage, PartMesh, creatures, mechanical_parts};
-use descriptors::{ShapeMetric, ShapePair};
+use datasets::{CreatureOptions, Damage, creatures};
+use descriptors::ShapePair;
 use mesh::TriMesh;
 use rayon::prelude::*;
 
@@ -62,33 +62,5 @@ fn the_results_for_a_number_of_results_are_the_first_of_those_for_a_larger_one()
         let key = |hit: &Hit| (hit.distance, hit.id.clone());
         let expected: Vec<(f64, String)> = expected.into_iter().map(|(d, id)| (d, id.to_owned())).collect();
         assert_eq!(all.results.iter().map(key).collect::<Vec<_>>(), expected, "{id}");
-    }
-}
-
-#[test]
-fn a_rigid_signature_makes_no_shape_farther_from_one_without() {
-    let parts = mechanical_parts(0, 16);
-    let mut shapes = Vec::new();
-    for (i, part) in parts.iter().enumerate() {
-        let mesh = mesh::refine(
-            &part.mesh(&PartMesh::default()),
-            part.mesh(&PartMesh::default()).root_of_area() / 12.0,
-            20_000,
-        )
-        .mesh;
-        shapes.push((format!("part{i:02}"), mesh.clone()));
-        shapes.push((format!("noisy{i:02}"), Damage::Noise(0.0005).apply(&mesh, 7)));
-    }
-    let folder = tempfile::tempdir().unwrap();
-    let search = indexed(folder.path(), &shapes);
-    let has_rigid = |id: &str| !search.prepared(id).unwrap().rigid.is_empty();
-    let flipped: Vec<usize> = (0..parts.len())
-        .filter(|i| has_rigid(&format!("part{i:02}")) && !has_rigid(&format!("noisy{i:02}")))
-        .collect();
-    // How many depends on what counts as mechanical; the law is about every one.
-    assert!(!flipped.is_empty());
-    for i in flipped {
-        let [part, noisy] = ["part", "noisy"].map(|kind| search.prepared(&format!("{kind}{i:02}")).unwrap());
-        assert_eq!(part.robust(&noisy), ShapeMetric::robust(&part.fused, &noisy.fused), "part {i}");
     }
 }
