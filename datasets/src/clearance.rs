@@ -75,33 +75,3 @@ fn path_length(skeleton: &Skeleton, mut a: (usize, f64), mut b: (usize, f64)) ->
     }
     climbed + (a.1 - b.1).abs()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::pose::Pose;
-    use crate::skeleton::{Joint, JointId, node};
-
-    /// A trunk upwards with a straight arm on each side.
-    fn skeleton() -> Skeleton {
-        let mut skeleton = Skeleton::default();
-        let up = [0.0, 20.0, 40.0].map(|z| node([0.0, 0.0, z], 4.0, 1.0));
-        let trunk = skeleton.chain(None, up.to_vec(), Vec::new());
-        let left = [4.0, 15.0, 45.0].map(|x| node([x, 0.0, 35.0], 2.0, 0.5));
-        skeleton.pair((trunk, 1), left.to_vec(), vec![Joint::ball(1, 5.0, 5.0, [0.0; 3])]);
-        skeleton
-    }
-
-    fn depth(skeleton: &Skeleton, elbow: f64) -> f64 {
-        let pose = Pose::rest(skeleton).set(JointId { chain: 1, joint: 0 }, [0.0, elbow, 0.0]);
-        entanglement(&PosedSkeleton::new(skeleton, &pose))
-    }
-
-    #[test]
-    fn a_forearm_in_the_trunk_is_an_intersection_and_a_bent_elbow_is_not() {
-        let skeleton = skeleton();
-        assert!(depth(&skeleton, 0.0) < 0.0);
-        assert!(depth(&skeleton, 90.0) < 0.0, "hanging down: {}", depth(&skeleton, 90.0));
-        assert!(depth(&skeleton, 140.0) > 0.2, "folded into the trunk: {}", depth(&skeleton, 140.0));
-    }
-}

@@ -50,13 +50,4 @@ mod tests {
             assert!((cos - angle.cos()).abs() < 1e-14, "cos {angle}");
         }
     }
-
-    #[test]
-    fn rotations_are_orthogonal_and_composed_in_order() {
-        let r = rotation(20.0, -35.0, 110.0);
-        assert!((r * r.transpose() - Matrix3::identity()).norm() < 1e-14);
-        assert!((r.determinant() - 1.0).abs() < 1e-14);
-        let apart = rotation(0.0, 0.0, 110.0) * rotation(20.0, 0.0, 0.0) * rotation(0.0, -35.0, 0.0);
-        assert!((r - apart).norm() < 1e-14);
-    }
 }

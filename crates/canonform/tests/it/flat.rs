@@ -14,18 +14,10 @@ fn between(random: &mut SplitMix, low: f64, high: f64) -> f64 {
     low + (high - low) * (0.5 + 0.5 * random.uniform())
 }
 
-/// A sheet of n x m squares, each cut along either diagonal.
-fn sheet(n: usize, m: usize, size: [f64; 2], alternates: bool) -> TriMesh {
-    let at = |i: usize, j: usize| VertexId::from(i * (m + 1) + j);
-    let step = [size[0] / n as f64, size[1] / m as f64];
-    let vertices = (0..=n).flat_map(|i| (0..=m).map(move |j| (i, j)));
-    let positions = vertices.map(|(i, j)| Point3::new(step[0] * i as f64, step[1] * j as f64, 0.0)).collect();
-    let squares = (0..n).flat_map(|i| (0..m).map(move |j| (i, j)));
-    let faces = squares.flat_map(|(i, j)| {
-        let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-        if alternates && (i + j) % 2 == 1 { [[a, b, d], [b, c, d]] } else { [[a, b, c], [a, c, d]] }
-    });
-    TriMesh { positions, faces: faces.collect() }
+/// A sheet of n x m squares.
+fn sheet(n: usize, m: usize, [width, height]: [f64; 2]) -> TriMesh {
+    let step = [width / n as f64, height / m as f64];
+    moved(&shapes::grid(n + 1, m + 1, 1.0), |p| Point3::new(step[0] * p.x, step[1] * p.y, 0.0))
 }
 
 fn disc(n_rings: usize, n_around: usize) -> TriMesh {
@@ -53,18 +45,16 @@ fn flat(random: &mut SplitMix) -> Vec<(String, TriMesh)> {
     for i in 0..12 {
         let [n, m] = [0; 2].map(|_| between(random, 8.0, 40.0) as usize);
         let height = [10.0, 10.0, 5.0, 20.0][i % 4];
-        let plate = sheet(n, m, [10.0, height], i % 3 == 1);
+        let plate = sheet(n, m, [10.0, height]);
         found.push((format!("plate {n} x {m}, {height} high"), plate));
     }
-    found.push(("square".into(), sheet(20, 20, [10.0, 10.0], false)));
-    found.push(("strip".into(), sheet(60, 2, [10.0, 0.3], false)));
+    found.push(("square".into(), sheet(20, 20, [10.0, 10.0])));
+    found.push(("strip".into(), sheet(60, 2, [10.0, 0.3])));
     found.push(("disc".into(), disc(12, 36)));
     found.push(("bent plate".into(), shapes::fold(&shapes::grid(21, 17, 0.1), 0.8, 1.2)));
     for period in [2.5, 8.0] {
         let wave = |x: f64| (std::f64::consts::TAU * x / period).sin();
-        let mat = moved(&sheet(40, 40, [40.0, 40.0], false), |p| {
-            Point3::new(p.x, p.y, 0.3 * wave(p.x) * wave(p.y))
-        });
+        let mat = moved(&sheet(40, 40, [40.0, 40.0]), |p| Point3::new(p.x, p.y, 0.3 * wave(p.x) * wave(p.y)));
         found.push((format!("mat of period {period}"), mat));
     }
     for (n_around, radius) in [(6, 0.02), (12, 0.1), (8, 0.005)] {

@@ -228,18 +228,6 @@ fn a_hard_link_in_a_tar_is_the_file_it_names() {
 }
 
 #[test]
-fn compressed_files_may_be_filled_up_with_zeros() {
-    let place = folder();
-    let off = written("m.off", &shapes::icosphere(1));
-    for (name, bytes) in
-        [("a.tar.gz", gzip_of(&tar_of(&[("a.off", off.clone())]))), ("a.off.gz", gzip_of(&off))]
-    {
-        let path = put(&place, name, [bytes, vec![0; 512]].concat());
-        assert_eq!(read_mesh(&path).unwrap(), shapes::icosphere(1), "{name}");
-    }
-}
-
-#[test]
 fn other_archives_and_files_are_no_datasets() {
     let place = folder();
     for (name, words) in [
@@ -305,15 +293,25 @@ fn a_changed_archive_is_read_again() {
 fn members_that_lead_out_of_an_archive_are_skipped() {
     let place = folder();
     let cube = written("m.off", &shapes::cube(0));
-    let names = ["../evil.off", "/etc/evil.off", "a/../../evil.off", "C:\\evil.off", "good.off"];
+    let names = [
+        "../evil.off",
+        "/etc/evil.off",
+        "a/../../evil.off",
+        "C:\\evil.off",
+        "..\\evil.off",
+        "a\nevil.off",
+        "./in//good.off",
+        "in\\too.off",
+    ];
     let files: Vec<(&str, Vec<u8>)> = names.map(|name| (name, cube.clone())).to_vec();
     let tar = tar_of(&files);
     for (name, bytes) in [("a.zip", zip_of(&files)), ("a.tar", tar.clone()), ("a.tar.gz", gzip_of(&tar))] {
         let path = put(&place, name, bytes);
         let dataset = Dataset::read(&path, None).unwrap();
-        assert_eq!(described(&dataset), [("good".to_owned(), String::new())], "{name}");
+        let names: Vec<_> = dataset.shapes.iter().map(|shape| shape.name.as_str()).collect();
+        assert_eq!(names, ["good", "too"], "{name}");
         let unsafe_names = dataset.skipped.iter().filter(|skipped| skipped.kind == SkipKind::UnsafeName);
-        assert_eq!(unsafe_names.count(), 4, "{name}");
+        assert_eq!(unsafe_names.count(), 6, "{name}");
         assert!(read_mesh(&path.join("../evil.off")).is_err());
     }
 }
@@ -424,13 +422,8 @@ fn rows_of_a_parquet_file_are_meshes_with_classes() {
 
 /// Opens 10,000 files with a few bytes of `intact` changed, or cut off.
 fn open_mutations(name: &str, intact: &[u8], mut open: impl FnMut(fs::File) -> usize) {
-    let mut random = 0x9e37_79b9_7f4a_7c15u64;
-    let mut below = |n: usize| {
-        random ^= random << 13;
-        random ^= random >> 7;
-        random ^= random << 17;
-        (random % n as u64) as usize
-    };
+    let mut random = base::SplitMix(7);
+    let mut below = |n: usize| (random.bits() % n as u64) as usize;
     let mut file = tempfile::tempfile().unwrap();
     let mut read = 0;
     for _ in 0..10_000 {

@@ -36,12 +36,6 @@ fn placed(mesh: &TriMesh) -> TriMesh {
     TriMesh { positions, faces: mesh.faces.iter().map(|[a, b, c]| [*a, *c, *b]).collect() }
 }
 
-/// Six times the volume, positive if faces face outward.
-fn volume(mesh: &TriMesh) -> f64 {
-    let triangles = (0..mesh.n_faces()).map(|f| mesh.triangle(f));
-    triangles.map(|[a, b, c]| a.coords.dot(&b.coords.cross(&c.coords))).sum()
-}
-
 fn n_places(mesh: &TriMesh) -> usize {
     let rounded = mesh.positions.iter().map(|p| [p.x, p.y, p.z].map(|x| (x * 1e4).round() as i64));
     rounded.collect::<BTreeSet<_>>().len()
@@ -78,8 +72,8 @@ fn files_of_other_programs_hold_the_mesh() {
             _ => [mesh.area(), one.area() + two.area()],
         };
         assert!((area / expected - 1.0).abs() < 1e-5, "{name}: area {area}, not {expected}");
-        let expected = volume(&one) + if copies == 2 { volume(&two) } else { 0.0 };
-        let found = volume(&mesh);
+        let expected = one.signed_volume() + if copies == 2 { two.signed_volume() } else { 0.0 };
+        let found = mesh.signed_volume();
         assert!((found / expected - 1.0).abs() < 1e-4, "{name}: volume {found}, not {expected}");
         if let Some(instances) = facts.instances {
             assert_eq!(instances, copies, "{name}");

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use canonform_mesh_io as io;
 use mesh::{ComponentPolicy, Fault, MeshError, RepairOptions, TriMesh};
 use mesh::{repair, validate};
-use surface::{VertexId, components_with_links};
 use testkit::data;
 
 /// The mesh paths of a folder, sorted.
@@ -24,25 +23,9 @@ fn assert_repairs(path: &Path, mesh: &TriMesh) {
         let after = validate(&repaired.mesh);
         let name = path.display();
         assert_eq!(after.degenerate_faces + after.duplicate_faces + after.unreferenced_vertices, 0, "{name}");
-        assert!(after.min_edge_length > 0.0, "{name}");
         let pieces = if components == ComponentPolicy::Largest { 1 } else { repaired.report.components };
         assert_eq!(after.n_components, pieces, "{name}");
-        assert!(repaired.intrinsic.links().len() >= pieces - 1, "{name}");
-        assert_eq!(components_with_links(&repaired.intrinsic).count, 1, "{name}");
         assert!(repaired.report.components <= report.n_components, "{name}");
-        assert_eq!(repaired.intrinsic.n_vertices(), repaired.mesh.n_vertices());
-
-        // Every vertex of the result is an input vertex, in the input's order and place.
-        let mut next = VertexId(0);
-        for (v, to) in repaired.remap.all_to_new().enumerate() {
-            let Some(to) = to else { continue };
-            assert!(to <= next, "{name}: vertex {v} is out of order");
-            next = next.max(VertexId(to.0 + 1));
-            assert_eq!(repaired.mesh.positions[to.index()], mesh.positions[v], "{name}");
-        }
-        assert_eq!(next.index(), repaired.mesh.n_vertices(), "{name}");
-        let dropped = repaired.remap.all_to_new().filter(|to| to.is_none()).count();
-        assert_eq!(dropped, repaired.report.dropped_vertices.len(), "{name}");
 
         // A second repair changes nothing.
         let policy = if pieces == 1 { ComponentPolicy::Error } else { components };

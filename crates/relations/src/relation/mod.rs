@@ -229,24 +229,4 @@ mod tests {
         let part = Relation::by_distance(ShapeDistance::default(), 1.0, Handedness::Unknown).of_parts();
         assert_eq!((part.in_brief(), part.kind), ("a similar shape".into(), RelationKind::SameClass));
     }
-
-    #[test]
-    fn a_record_has_the_sentence_and_the_numbers() {
-        let json = serde_json::to_value(at(0.25, 1.0, Handedness::Unknown)).unwrap();
-        assert_eq!(
-            (&json["kind"], &json["text"]),
-            (&"other-pose".into(), &"b is probably a in this or another pose".into())
-        );
-        let because = &json["because"];
-        assert_eq!(
-            (&because["combined_distance"], &because["handedness"]),
-            (&0.25.into(), &"unknown".into())
-        );
-        assert!(
-            because["text"]
-                .as_str()
-                .unwrap()
-                .starts_with("combined distance 0.250 (probably one shape below ")
-        );
-    }
 }

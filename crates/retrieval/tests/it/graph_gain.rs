@@ -182,16 +182,3 @@ fn the_graph_never_loses_more_than_half_a_percent() {
     assert!(worst >= -MAX_LOST, "{worst}");
     assert!(mean > 0.015, "{mean}");
 }
-
-#[test]
-fn shapes_that_are_all_alone_are_ranked_too() {
-    let mut random = Random(ChaCha8Rng::seed_from_u64(5));
-    let set = Set::gaussian(&mut random, &[1; 100], 12, 0.3, true);
-    assert!(set.scored().iter().all(|score| score.is_nan()), "there are no queries");
-    let distances =
-        DistanceMatrix::from_pairs(100, |i, j| (set.points[i][0] - set.points[j][0]).abs()).unwrap();
-    let ranking = GraphRankings::new(&distances).ranking(0);
-    let mut found: Vec<usize> = ranking.iter().map(|near| near.index).collect();
-    found.sort_unstable();
-    assert!(found.into_iter().eq(1..100));
-}
