@@ -108,35 +108,23 @@ impl Source {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use surface::{EdgeId, FaceId, Topology};
-
-    /// Two right triangles over the unit square.
-    fn square() -> IntrinsicMesh {
-        let faces = [[0, 1, 2], [0, 2, 3]].map(|f: [u32; 3]| f.map(VertexId)).to_vec();
-        let topology = Topology::new(4, faces);
-        let at = [[0.0f64, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-        let length = |[a, b]: &[VertexId; 2]| {
-            let (p, q) = (at[a.index()], at[b.index()]);
-            (p[0] - q[0]).hypot(p[1] - q[1])
-        };
-        let lengths = topology.edges().iter().map(length).collect();
-        IntrinsicMesh::new(topology, lengths)
-    }
+    use mesh::shapes::grid;
+    use surface::{EdgeId, FaceId};
 
     #[test]
     fn the_reach_has_planar_distances() {
-        let mesh = square();
+        let mesh = grid(2, 2, 1.0).intrinsic();
         let face = SurfacePoint::Face { face: FaceId(0), barycentric: [0.2, 0.5, 0.3] };
         // The point is (0.8, 0.3).
         let expected = [0.8f64.hypot(0.3), 0.2f64.hypot(0.3), 0.2f64.hypot(0.7)];
         for ((_, d), e) in Source::new(&mesh, face).unwrap().reach().iter().zip(expected) {
             assert!((d - e).abs() < 1e-15);
         }
-        let diagonal = mesh.topology().edge_between(VertexId(0), VertexId(2)).unwrap();
+        let diagonal = mesh.topology().edge_between(VertexId(0), VertexId(3)).unwrap();
         let on_edge = Source::new(&mesh, SurfacePoint::Edge { edge: diagonal, t: 0.25 }).unwrap();
         // The point is (0.25, 0.25).
         let (near, side) = (0.25 * 2f64.sqrt(), 0.25f64.hypot(0.75));
-        let expected = [(0, near), (2, 3.0 * near), (1, side), (3, side)];
+        let expected = [(0, near), (3, 3.0 * near), (1, side), (2, side)];
         assert_eq!(on_edge.reach().len(), 4);
         for ((v, d), (w, e)) in on_edge.reach().iter().zip(expected) {
             assert!(v.0 == w && (d - e).abs() < 1e-15);
@@ -145,7 +133,7 @@ mod tests {
 
     #[test]
     fn points_off_the_surface_are_rejected() {
-        let mesh = square();
+        let mesh = grid(2, 2, 1.0).intrinsic();
         for point in [
             SurfacePoint::Edge { edge: EdgeId(9), t: 0.5 },
             SurfacePoint::Edge { edge: EdgeId(0), t: 1.5 },

@@ -244,16 +244,9 @@ impl<'a> Search<'a> {
 mod tests {
     use super::*;
 
-    /// A torus of m x n quadrilaterals, all edges of length 1, split along one diagonal.
-    fn torus(m: u32, n: u32) -> Vec<[VertexId; 3]> {
-        let at = |i: u32, j: u32| VertexId(i % m + m * (j % n));
-        let quads = (0..n).flat_map(|j| (0..m).map(move |i| (i, j)));
-        quads
-            .flat_map(|(i, j)| {
-                let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-                [[a, b, c], [a, c, d]]
-            })
-            .collect()
+    /// A torus of m x n quadrilaterals, split along one diagonal.
+    fn torus(m: usize, n: usize) -> Vec<[VertexId; 3]> {
+        mesh::shapes::torus(m, n, 2.0, 0.5).faces.iter().map(|face| face.map(|v| VertexId(v.0))).collect()
     }
 
     fn loops(faces: Vec<[VertexId; 3]>, longest: f64) -> Vec<SurfaceLoop> {

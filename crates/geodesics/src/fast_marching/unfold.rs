@@ -101,25 +101,15 @@ fn split(mesh: &IntrinsicMesh, corner: CornerId) -> Option<Split> {
 
 #[cfg(test)]
 mod tests {
-    use surface::Topology;
-
     use super::*;
-    use crate::plane::PlanePoint;
-
-    /// Vertices in the plane, and faces between them.
-    fn flat(points: &[PlanePoint], faces: &[[u32; 3]]) -> IntrinsicMesh {
-        let faces = faces.iter().map(|f| f.map(VertexId)).collect();
-        let topology = Topology::new(points.len(), faces);
-        let lengths =
-            topology.edges().iter().map(|[a, b]| norm(sub(points[a.index()], points[b.index()]))).collect();
-        IntrinsicMesh::new(topology, lengths)
-    }
+    use crate::tests::spatial;
 
     #[test]
     fn unfolding_stops_at_the_boundary_and_at_non_manifold_edges() {
-        let points = [[0.0, 0.4], [-2.0, 0.0], [2.0, 0.0], [0.3, -1.0], [0.2, -3.0]];
-        assert_eq!(split(&flat(&points, &[[0, 1, 2]]), CornerId(0)), None);
-        let fan = flat(&points, &[[0, 1, 2], [2, 1, 3], [1, 2, 4]]);
+        let points =
+            [[0.0, 0.4], [-2.0, 0.0], [2.0, 0.0], [0.3, -1.0], [0.2, -3.0]].map(|[x, y]| [x, y, 0.0]);
+        assert_eq!(split(&spatial(&points, &[[0, 1, 2]]), CornerId(0)), None);
+        let fan = spatial(&points, &[[0, 1, 2], [2, 1, 3], [1, 2, 4]]);
         assert_eq!(split(&fan, CornerId(0)), None);
     }
 }

@@ -6,10 +6,6 @@ use super::*;
 
 mod reference;
 
-fn surface(mesh: &TriMesh) -> IntrinsicMesh {
-    mesh.intrinsic()
-}
-
 fn heat(mesh: &IntrinsicMesh) -> HeatMethod {
     HeatMethod::new(mesh, HeatOptions::default(), &()).unwrap()
 }
@@ -42,7 +38,7 @@ fn errors_on_a_plane_and_on_a_sphere_fall_with_edge_length() {
     for n in [11, 21, 41, 81] {
         let mesh = jittered_grid(n, n, 1.0 / (n - 1) as f64, 0.24, 7);
         let source = mesh.n_vertices() / 2;
-        let found = heat(&surface(&mesh)).distances(VertexId::from(source)).unwrap();
+        let found = heat(&mesh.intrinsic()).distances(VertexId::from(source)).unwrap();
         let error = mean_error(&found, straight(&mesh, source));
         assert!(error < previous / 1.25, "{n}: {error} after {previous}");
         previous = error;
@@ -51,7 +47,7 @@ fn errors_on_a_plane_and_on_a_sphere_fall_with_edge_length() {
     for (level, bound) in [(2, 0.008), (3, 0.005), (4, 0.0025)] {
         let mesh = icosphere(level);
         let error =
-            mean_error(&heat(&surface(&mesh)).distances(VertexId(0)).unwrap(), great_circle(&mesh, 0));
+            mean_error(&heat(&mesh.intrinsic()).distances(VertexId(0)).unwrap(), great_circle(&mesh, 0));
         assert!(error < bound, "{level}: {error}");
     }
 }
@@ -61,7 +57,7 @@ fn a_time_of_first_order_makes_the_error_vanish() {
     let mut previous = f64::INFINITY;
     for (level, n) in [(3, 16.0), (4, 32.0), (5, 64.0)] {
         let mesh = icosphere(level);
-        let method = HeatMethod::new(&surface(&mesh), HeatOptions { time: n / 16.0 }, &()).unwrap();
+        let method = HeatMethod::new(&mesh.intrinsic(), HeatOptions { time: n / 16.0 }, &()).unwrap();
         let error = mean_error(&method.distances(VertexId(0)).unwrap(), great_circle(&mesh, 0));
         assert!(error < previous / 1.5, "{level}: {error} after {previous}");
         previous = error;
@@ -76,7 +72,7 @@ fn obtuse_triangles_do_not_increase_the_error() {
         let mesh = sheared_grid(31, 31, 1.0, shear);
         let source = 15 * 31 + 15;
         let error = mean_error(
-            &heat(&surface(&mesh)).distances(VertexId(source)).unwrap(),
+            &heat(&mesh.intrinsic()).distances(VertexId(source)).unwrap(),
             straight(&mesh, source as usize),
         );
         assert!(error < 0.03, "{shear}: {error}");
@@ -86,7 +82,7 @@ fn obtuse_triangles_do_not_increase_the_error() {
 #[test]
 fn sources_may_lie_in_faces_and_on_edges() {
     let mesh = jittered_grid(31, 31, 1.0, 0.2, 2);
-    let intrinsic = surface(&mesh);
+    let intrinsic = mesh.intrinsic();
     let method = heat(&intrinsic);
     let topology = intrinsic.topology();
     let edge = topology.edge_between(VertexId(480), VertexId(481)).unwrap();
@@ -112,7 +108,7 @@ fn sources_may_lie_in_faces_and_on_edges() {
 
 #[test]
 fn components_affect_each_other_only_through_the_time_of_heat_flow() {
-    let mesh = surface(&disjoint(&[icosphere(2), grid(5, 5, 0.1), icosphere(1)]));
+    let mesh = disjoint(&[icosphere(2), grid(5, 5, 0.1), icosphere(1)]).intrinsic();
     let method = heat(&mesh);
     let mut both = vec![0.0; mesh.n_vertices()];
     let sources = [5, 163].map(|v| Source::vertex(VertexId(v)));
@@ -125,12 +121,12 @@ fn components_affect_each_other_only_through_the_time_of_heat_flow() {
 /// Two spheres of 642 vertices joined by a link between their first vertices.
 fn dumbbell(length: f64) -> IntrinsicMesh {
     let link = Link { ends: [VertexId(0), VertexId(642)], length };
-    surface(&disjoint(&[icosphere(3), icosphere(3)])).with_links(vec![link])
+    disjoint(&[icosphere(3), icosphere(3)]).intrinsic().with_links(vec![link])
 }
 
 #[test]
 fn a_bridge_adds_its_length() {
-    let alone = heat(&surface(&icosphere(3)));
+    let alone = heat(&icosphere(3).intrinsic());
     for length in [0.0, 0.05, 1.0, 300.0] {
         let found = heat(&dumbbell(length)).distances(VertexId(100)).unwrap();
         let near = alone.distances(VertexId(100)).unwrap();
@@ -149,7 +145,7 @@ fn a_bridge_adds_its_length() {
 #[test]
 fn a_link_within_a_component_is_used_only_if_it_is_short() {
     // From one end of a long strip to the other.
-    let strip = surface(&grid(101, 6, 0.1));
+    let strip = grid(101, 6, 0.1).intrinsic();
     let (left, right) = (VertexId(303), VertexId(403));
     let with = |length: f64| {
         let link = Link { ends: [left, right], length };
@@ -171,7 +167,7 @@ fn loose_vertices_are_reached_only_over_links() {
         Link { ends: [VertexId(8), VertexId(9)], length: 2.5 },
         Link { ends: [VertexId(4), VertexId(4)], length: 1.0 },
     ];
-    let method = heat(&surface(&mesh).with_links(links));
+    let method = heat(&mesh.intrinsic().with_links(links));
     let found = method.distances(VertexId(8)).unwrap();
     assert!((found[9] - 2.5).abs() < 0.3 && found[10] == f64::INFINITY, "{found:?}");
     let back = method.distances(VertexId(9)).unwrap();
@@ -183,7 +179,7 @@ fn loose_vertices_are_reached_only_over_links() {
 #[test]
 fn heat_reaches_the_far_end_of_a_very_long_surface() {
     let pipe = cylinder(4, 4000, 0.5, 3000.0);
-    let method = heat(&surface(&pipe));
+    let method = heat(&pipe.intrinsic());
     let found = method.distances(VertexId(0)).unwrap();
     let far = found.len() - 4;
     assert!((found[far] / 3000.0 - 1.0).abs() < 0.01, "{}", found[far]);
@@ -226,21 +222,21 @@ fn degenerate_surfaces_give_no_nan() {
     }
     let mut squashed = grid(6, 6, 1.0);
     squashed.positions.iter_mut().for_each(|p| p.y = 0.0);
-    check(surface(&squashed), "a sheet without width");
+    check(squashed.intrinsic(), "a sheet without width");
     let mut pinched = grid(6, 6, 1.0);
     pinched.positions[14] = pinched.positions[15];
     pinched.positions[20] = pinched.positions[15];
-    check(surface(&pinched), "a face that is a point");
+    check(pinched.intrinsic(), "a face that is a point");
     let mut messy = icosphere(1);
     messy.faces.extend_from_within(..7);
     messy.faces.extend([[0, 11, 40], [0, 11, 41], [41, 11, 5]].map(|f| f.map(VertexId)));
     messy.positions.extend_from_within(..3);
-    check(surface(&messy), "double faces, edges of many faces, loose vertices");
+    check(messy.intrinsic(), "double faces, edges of many faces, loose vertices");
 }
 
 #[test]
 fn invalid_times_are_rejected() {
-    let mesh = surface(&icosphere(0));
+    let mesh = icosphere(0).intrinsic();
     for time in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let error = HeatMethod::new(&mesh, HeatOptions { time }, &()).unwrap_err();
         assert!(matches!(error, GeodesicError::BadHeatTime { .. }), "{error}");

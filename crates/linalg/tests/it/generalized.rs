@@ -10,6 +10,10 @@ fn springs(n: usize, pairs: impl IntoIterator<Item = (usize, usize, f64)>) -> Sp
     SparseSymmetric::from_entries(n, entries)
 }
 
+fn smallest(w: &SparseSymmetric, masses: &[f64], m: usize) -> Result<SymmetricEigen, LinalgError> {
+    smallest_eigenpairs(w, masses, m, SymmetricEigen::ACCURATE, &())
+}
+
 /// A `k` x `l` grid of unit springs, periodic in both directions.
 fn torus(k: usize, l: usize) -> SparseSymmetric {
     let at = |i: usize, j: usize| (i % k) * l + j % l;
@@ -72,12 +76,12 @@ fn a_torus_has_its_closed_form_eigenvalues_with_multiplicities() {
 fn eigenvalues_scale_inversely_with_masses() {
     let w = torus(30, 20);
     let masses: Vec<f64> = (0..600).map(|i| 1.0 + 0.9 * (i as f64).sin()).collect();
-    let found = smallest_eigenpairs(&w, &masses, 40, SymmetricEigen::ACCURATE, &()).unwrap();
+    let found = smallest(&w, &masses, 40).unwrap();
     let [residual, orthogonality] = faults(&w, &masses, &found);
     assert!(residual < 1e-9 && orthogonality < 1e-12, "{residual} {orthogonality}");
     for scale in [1e-12, 1e12] {
         let scaled: Vec<f64> = masses.iter().map(|m| scale * m).collect();
-        let other = smallest_eigenpairs(&w, &scaled, 40, SymmetricEigen::ACCURATE, &()).unwrap();
+        let other = smallest(&w, &scaled, 40).unwrap();
         for j in 1..40 {
             let ratio = other.values[j] * scale / found.values[j];
             assert!((ratio - 1.0).abs() < 1e-9, "{j} {scale}: {ratio}");
@@ -91,7 +95,7 @@ fn the_kernel_has_one_dimension_per_component() {
     let rings = 30;
     let w = springs(24 * rings, (0..24 * rings).map(|v| (v, v / 24 * 24 + (v + 1) % 24, 1.0)));
     let masses = vec![1.0; 24 * rings];
-    let found = smallest_eigenpairs(&w, &masses, 70, SymmetricEigen::ACCURATE, &()).unwrap();
+    let found = smallest(&w, &masses, 70).unwrap();
     let ring = |a: f64| 4.0 * (PI * a / 24.0).sin().powi(2);
     for (j, value) in found.values.iter().enumerate() {
         let expected = if j < rings { 0.0 } else { ring(1.0) };
@@ -107,7 +111,7 @@ fn rows_without_mass_follow_the_others_and_isolated_ones_are_zero() {
     let n = 81;
     let path = springs(n + 1, (1..n).map(|i| (i - 1, i, 1.0)));
     let masses: Vec<f64> = (0..=n).map(|i| if i < n && i % 2 == 0 { 1.0 } else { 0.0 }).collect();
-    let found = smallest_eigenpairs(&path, &masses, 100, SymmetricEigen::ACCURATE, &()).unwrap();
+    let found = smallest(&path, &masses, 100).unwrap();
     assert_eq!(found.values.len(), 41, "one pair per mass");
     for (j, value) in found.values.iter().enumerate() {
         let expected = 2.0 * (PI * j as f64 / 82.0).sin().powi(2);
@@ -127,7 +131,7 @@ fn results_do_not_depend_on_threads() {
     let w = torus(45, 31);
     let masses: Vec<f64> = (0..45 * 31).map(|i| 1.0 + 0.3 * (i as f64).cos()).collect();
     let on = |threads| {
-        let found = || smallest_eigenpairs(&w, &masses, 30, SymmetricEigen::ACCURATE, &()).unwrap();
+        let found = || smallest(&w, &masses, 30).unwrap();
         testkit::on_threads(threads, found)
     };
     let one = on(1);
@@ -141,19 +145,10 @@ fn results_do_not_depend_on_threads() {
 
 #[test]
 fn small_and_empty_matrices_have_all_their_pairs() {
-    let one = smallest_eigenpairs(
-        &SparseSymmetric::from_entries(1, [(0, 0, 6.0)]),
-        &[2.0],
-        5,
-        SymmetricEigen::ACCURATE,
-        &(),
-    )
-    .unwrap();
+    let one = smallest(&SparseSymmetric::from_entries(1, [(0, 0, 6.0)]), &[2.0], 5).unwrap();
     assert!(one.values.len() == 1 && (one.values[0] - 3.0).abs() < 1e-14);
     assert!((one.vectors[(0, 0)] - 0.5f64.sqrt()).abs() < 1e-15);
-    let none =
-        smallest_eigenpairs(&SparseSymmetric::from_entries(0, []), &[], 5, SymmetricEigen::ACCURATE, &())
-            .unwrap();
+    let none = smallest(&SparseSymmetric::from_entries(0, []), &[], 5).unwrap();
     assert_eq!((none.values.len(), none.vectors.shape()), (0, (0, 0)));
     let none_wanted =
         smallest_eigenpairs(&torus(4, 4), &[1.0; 16], 0, SymmetricEigen::ACCURATE, &()).unwrap();

@@ -22,22 +22,10 @@ pub(crate) fn mesh(positions: &[[f64; 3]], faces: &[[u32; 3]]) -> TriMesh {
 
 /// A unit sphere around the z axis, `2 n` by `n` quadrilaterals.
 pub(crate) fn sphere(n: usize) -> TriMesh {
-    let mut positions = Vec::new();
-    for ring in 0..=n {
-        for slice in 0..2 * n {
-            let (polar, azimuth) = (
-                ring as f64 / n as f64 * std::f64::consts::PI,
-                slice as f64 / n as f64 * std::f64::consts::PI,
-            );
-            positions.push([polar.sin() * azimuth.cos(), polar.sin() * azimuth.sin(), polar.cos()]);
-        }
+    let mut sphere = mesh::shapes::cylinder(2 * n, n + 1, 1.0, std::f64::consts::PI);
+    for p in &mut sphere.positions {
+        let (sine, cosine) = p.z.sin_cos();
+        *p = Point3::new(sine * p.x, sine * p.y, -cosine);
     }
-    let at = |ring: usize, slice: usize| (ring * 2 * n + slice % (2 * n)) as u32;
-    let faces: Vec<[u32; 3]> = (0..n)
-        .flat_map(|r| (0..2 * n).map(move |s| (r, s)))
-        .flat_map(|(r, s)| {
-            [[at(r, s), at(r + 1, s), at(r + 1, s + 1)], [at(r, s), at(r + 1, s + 1), at(r, s + 1)]]
-        })
-        .collect();
-    mesh(&positions, &faces)
+    sphere
 }

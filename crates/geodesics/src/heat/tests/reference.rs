@@ -1,6 +1,6 @@
 //! Comparison with exact distances on real meshes.
 
-use super::{heat, surface};
+use super::heat;
 use crate::DistanceSolver;
 use crate::tests::{Reference, reference};
 
@@ -19,7 +19,7 @@ fn errors_beside_exact_distances_are_no_larger_than_those_of_geometry_central() 
         ("single/armadillo.obj", 0.0091, 0.368),
     ] {
         let Reference { mesh, rows } = reference(&data, name);
-        let method = heat(&surface(&mesh));
+        let method = heat(&mesh.intrinsic());
         let (mut sum, mut worst, mut count) = (0.0, 0.0f64, 0);
         for (source, exact) in &rows {
             for (found, exact) in method.distances(*source).unwrap().iter().zip(exact) {
