@@ -181,22 +181,6 @@ fn help_fits_two_screens_unless_all_is_asked_for() {
 }
 
 #[test]
-fn only_json_goes_to_standard_output_and_notes_go_to_standard_error() {
-    let place = Workplace::new();
-    place.add("broken.off", &broken_ring());
-    for command in [
-        "embed broken.off -n 20 -o form.npy --json",
-        "geodesic broken.off --source 0 -o d.npy --json",
-        "compare broken.off broken.off -n 20 --json",
-    ] {
-        let outcome = place.done(command);
-        one_object(&outcome.out);
-        assert!(outcome.err.contains("broken.off: 1 vertex without a face dropped"), "{}", outcome.err);
-        assert!(outcome.err.contains("1 of 2 components dropped"), "{}", outcome.err);
-    }
-}
-
-#[test]
 fn a_closed_pipe_is_not_an_error() {
     let place = Workplace::new();
     place.add("ring.off", &ring());

@@ -4,24 +4,12 @@ use std::fs;
 
 use testkit::tree;
 
-use crate::support::{Workplace, broken_ring, one_object, ring};
+use crate::support::{Workplace, ring};
 
-/// An intact mesh, and a broken one with a very short name.
 fn place() -> Workplace {
     let place = Workplace::new();
     place.add("ring.off", &ring());
-    place.add("a.off", &broken_ring());
     place
-}
-
-#[test]
-fn info_continues_after_an_unreadable_file() {
-    let place = place();
-    let outcome = place.run("info missing.off ring.off --json");
-    let json = one_object(&outcome.out);
-    assert_eq!(outcome.code, 2);
-    assert_eq!(json["meshes"].as_array().unwrap().len(), 1);
-    assert_eq!(json["failed"][0]["path"], "missing.off");
 }
 
 #[test]

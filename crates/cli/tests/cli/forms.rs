@@ -8,21 +8,30 @@ use serde_json::json;
 use crate::support::{Workplace, broken_ring, read_npy, ring};
 
 #[test]
-fn an_array_has_one_row_per_vertex_and_nan_for_dropped_ones() {
+fn forms_have_one_row_per_vertex_nan_for_dropped_ones_and_the_faces_of_the_input() {
     let place = Workplace::new();
-    place.add("broken.off", &broken_ring());
-    place.add("ring.off", &ring());
-    let json = place.json("embed broken.off -n 20 -o form.npy");
+    place.add("broken.ply", &broken_ring());
+    place.add("ring.ply", &ring());
+    let json = place.json("embed broken.ply -n 20 -o form.npy");
     let (shape, rows) = read_npy(&place.path("form.npy"));
     assert_eq!(shape, [170, 3]);
     assert_eq!(json["repair"]["dropped_vertices"], json!((160..170).collect::<Vec<_>>()));
     assert!(rows[..480].iter().all(|x| x.is_finite()) && rows[480..].iter().all(|x| x.is_nan()));
     // Dropped vertices do not change the others.
-    place.done("embed ring.off -n 20 -o whole.npy");
+    place.done("embed ring.ply -n 20 -o whole.npy");
     assert_eq!(read_npy(&place.path("whole.npy")).1, rows[..480]);
     // As many columns as dimensions.
-    place.done("embed ring.off -n 20 --dim 5 -o five.npy");
+    place.done("embed ring.ply -n 20 --dim 5 -o five.npy");
     assert_eq!(read_npy(&place.path("five.npy")).0, [160, 5]);
+    for format in ["ply", "obj", "off"] {
+        let [whole, rest] = ["ring", "broken"].map(|mesh| {
+            place.done(format!("embed {mesh}.ply -n 20 -o form.{format}"));
+            io::read(&place.path(&format!("form.{format}"))).unwrap()
+        });
+        let coords: Vec<f64> = whole.positions.iter().flat_map(|p| [p.x, p.y, p.z]).collect();
+        assert_eq!(coords, rows[..480], "{format}");
+        assert_eq!([whole.faces, rest.faces], [ring().faces, ring().faces], "{format}");
+    }
 }
 
 #[test]
@@ -57,27 +66,5 @@ fn distances_have_one_row_per_source_in_both_formats_and_a_colored_mesh_each() {
     assert_eq!(json["outputs"], json!(["two-4.ply", "two-9.ply"]));
     for name in ["one.ply", "two-4.ply", "two-9.ply"] {
         assert_eq!(io::read(&place.path(name)).unwrap(), ring(), "{name}");
-    }
-}
-
-#[test]
-fn meshes_of_forms_keep_the_faces_of_the_input() {
-    let place = Workplace::new();
-    place.add("ring.ply", &ring());
-    place.add("broken.ply", &broken_ring());
-    place.done("embed ring.ply -n 20 -o form.npy");
-    let (_, rows) = read_npy(&place.path("form.npy"));
-    for format in ["ply", "obj", "off"] {
-        let form = |mesh: &str| {
-            place.done(format!("embed {mesh} -n 20 -o form.{format}"));
-            io::read(&place.path(&format!("form.{format}"))).unwrap()
-        };
-        let coords: Vec<f64> = form("ring.ply").positions.iter().flat_map(|p| [p.x, p.y, p.z]).collect();
-        assert_eq!(coords, rows, "{format}");
-        assert_eq!(
-            [form("ring.ply").faces, form("broken.ply").faces],
-            [ring().faces, ring().faces],
-            "{format}"
-        );
     }
 }
