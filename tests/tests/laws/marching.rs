@@ -134,41 +134,31 @@ fn virtual_sources_are_exact_from_points_of_edges_and_faces_in_the_plane() {
     }
 }
 
-/// A solver without pruning, which computes all distances from each sample as in Procedure 1 of the paper.
+/// A solver that computes all distances from each sample as in Procedure 1 of the paper, or one whose pruned fronts stop
+/// much too early.
 #[derive(Debug)]
-struct Unpruned<'a>(&'a dyn DistanceSolver);
-
-impl DistanceSolver for Unpruned<'_> {
-    fn n_vertices(&self) -> usize {
-        self.0.n_vertices()
-    }
-
-    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) -> Result<(), Exceeded> {
-        self.0.solve_into(sources, max_distance, out)
-    }
+struct Other<'a> {
+    solver: &'a dyn DistanceSolver,
+    is_careless: bool,
 }
 
-/// A solver whose pruned fronts stop much too early.
-#[derive(Debug)]
-struct Careless<'a>(&'a dyn DistanceSolver);
-
-impl DistanceSolver for Careless<'_> {
+impl DistanceSolver for Other<'_> {
     fn n_vertices(&self) -> usize {
-        self.0.n_vertices()
+        self.solver.n_vertices()
     }
 
     fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) -> Result<(), Exceeded> {
-        self.0.solve_into(sources, max_distance, out)
+        self.solver.solve_into(sources, max_distance, out)
     }
 
     fn pruned(&self) -> Option<&dyn PrunedSolver> {
-        Some(self)
+        self.is_careless.then_some(self as &dyn PrunedSolver)
     }
 }
 
-impl PrunedSolver for Careless<'_> {
+impl PrunedSolver for Other<'_> {
     fn lower(&self, source: VertexId, nearest: &mut [f64]) -> Result<(), Exceeded> {
-        for (near, distance) in nearest.iter_mut().zip(self.0.distances(source)?) {
+        for (near, distance) in nearest.iter_mut().zip(self.solver.distances(source)?) {
             if distance < 0.5 * *near {
                 *near = distance;
             }
@@ -180,9 +170,10 @@ impl PrunedSolver for Careless<'_> {
 /// Asserts that pruned fronts, even careless ones, choose the samples of Procedure 1 with the same distances.
 fn pruning_changes_nothing(name: &str, surface: &IntrinsicMesh, n: usize) {
     let solver = FastMarching::new(surface, FastMarchingOptions::default(), &());
+    let [unpruned, careless] = [false, true].map(|is_careless| Other { solver: &solver, is_careless });
     for first in [FirstSample::Farthest, FirstSample::Vertex(VertexId(7))] {
-        let full = farthest_point_sampling(&Unpruned(&solver), n, first).unwrap();
-        for ahead in [&solver as &dyn DistanceSolver, &Careless(&solver)] {
+        let full = farthest_point_sampling(&unpruned, n, first).unwrap();
+        for ahead in [&solver as &dyn DistanceSolver, &careless] {
             let pruned = testkit::on_threads(2, || farthest_point_sampling(ahead, n, first)).unwrap();
             assert_eq!(pruned.landmarks(), full.landmarks(), "{name} from {first:?}");
             let columns = |distances: &linalg::LandmarkDistances| distances.to_matrix().unwrap();

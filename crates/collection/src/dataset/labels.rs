@@ -187,7 +187,6 @@ mod tests {
             LabelFile::read(&path).map_err(|fault| fault.to_string())
         };
         for text in [
-            "cat0,cat\n\"cats, old\",pet\n",
             "\u{feff}cat0,cat\r\n\"cats, old\",pet\r\n",
             "Name;Label\ncat0;cat\ncats, old;pet\n",
             "\u{feff}id\tClass\ncat0\tcat\ncats, old\tpet\n",

@@ -45,7 +45,6 @@ fn a_clean_mesh_is_returned_unchanged() {
         let repaired = mend(&clean);
         assert_eq!(repaired.mesh, clean);
         assert!(repaired.report.summary().is_empty());
-        assert!(repaired.report.summary().is_empty());
         assert!(repaired.remap.is_identity());
     }
 }

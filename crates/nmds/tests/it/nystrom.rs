@@ -87,9 +87,7 @@ fn impossible_options_are_rejected_with_the_limit() {
         assert_eq!(embed(ranked(Some(7)), 3), Err(NmdsError::BadRank { rank: 7, n_landmarks: 6 }));
         assert_eq!(embed(ranked(Some(0)), 3), Err(NmdsError::BadRank { rank: 0, n_landmarks: 6 }));
         assert_eq!(embed(ranked(Some(2)), 3), Err(NmdsError::BadDimension { dim: 3, limit: 2 }));
-        assert_eq!(embed(ranked(None), 0), Err(NmdsError::BadDimension { dim: 0, limit: 4 }));
     }
-    assert_eq!(embed(Regularization::None, 7), Err(NmdsError::BadDimension { dim: 7, limit: 6 }));
     for alpha in [0.0, -1.0, f64::INFINITY] {
         let rpi = Regularization::Rpi { alpha: RpiAlpha::Relative(alpha) };
         assert_eq!(embed(rpi, 3), Err(NmdsError::BadAlpha(alpha)));
