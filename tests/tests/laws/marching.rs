@@ -64,6 +64,37 @@ fn graded_sheets_are_exact_for_all_triangle_sizes() {
     }
 }
 
+/// A flat ring between the radii 1 and 10, as a grid of `n` sectors.
+fn ring(n: usize) -> TriMesh {
+    let rings = n / 6 + 1;
+    let at = |i: usize| {
+        let angle = std::f64::consts::TAU * (i / rings) as f64 / n as f64;
+        let radius = 1.0 + 9.0 * (i % rings) as f64 / (rings - 1) as f64;
+        nalgebra::Point3::new(radius * angle.cos(), radius * angle.sin(), 0.0)
+    };
+    let vertex = |i: usize, j: usize| VertexId::from(i % n * rings + j);
+    let square = |(i, j): (usize, usize)| {
+        let [a, b, c, d] = [vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)];
+        [[a, b, c], [a, c, d]]
+    };
+    let squares = (0..n).flat_map(|i| (0..rings - 1).map(move |j| (i, j)));
+    TriMesh { positions: (0..n * rings).map(at).collect(), faces: squares.flat_map(square).collect() }
+}
+
+#[test]
+fn paths_go_around_a_hole_however_fine_the_mesh() {
+    for n in [60, 120, 240] {
+        let ring = ring(n);
+        let found =
+            FastMarching::new(ring.intrinsic(), Default::default(), &()).distances(VertexId(0)).unwrap();
+        let exact = Method::Exact.prepare(ring.intrinsic(), &()).unwrap().distances(VertexId(0)).unwrap();
+        let errors: Vec<f64> = found.iter().zip(&exact).skip(1).map(|(x, y)| x / y - 1.0).collect();
+        let mean = errors.iter().map(|error| error.abs()).sum::<f64>() / errors.len() as f64;
+        let least = errors.iter().copied().fold(0.0, f64::min);
+        assert!(mean < 1e-3 && least > -0.01, "{n} sectors: mean {mean:e}, least {least}");
+    }
+}
+
 /// The mean errors on spheres of ever shorter edges.
 fn errors_on_spheres(update: Update) -> Vec<f64> {
     let options = FastMarchingOptions { update, ..Default::default() };

@@ -524,7 +524,7 @@ pub(super) fn fill(
                     (Ok(shape), None) if places.len() > 1 => known = Some(shape.clone()),
                     _ => {}
                 }
-                send.send((place, described))
+                send.send((place, described)).map_err(drop)
             })
         }));
         drop(send);

@@ -12,12 +12,19 @@
 //!                    : .            The apex is reached through the entry, or along a side from one of its ends.
 //!                     S
 //! ```
+//!
+//! A triangle knows one virtual source, but not the triangles that its rays crossed before: behind a hole they may have left the
+//! surface. The ends of the entry show it, since they are then farther than the window tells. So the source moves to where it
+//! [agrees](agreeing) with both.
 
 use surface::{CornerId, VertexId};
 
 use super::triangles::{MarchTriangle, around};
-use super::window::{COLLINEAR, NEAR_MISS, SourceWindow, TEST_POINTS};
-use crate::plane::{PlanePoint, cross, dot, norm, sub};
+use super::window::{
+    COLLINEAR, DISAGREEMENT, NEAR_MISS, SourceWindow, below_or_nan, bend_at_limit, select, select_point,
+    shadows,
+};
+use crate::plane::{GateSide, PlanePoint, beyond, cross, dot, norm, sub};
 
 /// Number of crossings solved together.
 pub(super) const LANES: usize = 8;
@@ -58,6 +65,8 @@ pub(super) struct Crossing<'t> {
     pub(super) entry: usize,
     /// The distances known of the left and the right end of the entry.
     pub(super) known: [f64; 2],
+    /// The distance of the centroid.
+    pub(super) distance: f64,
     /// What is behind the exits on the left and on the right, if the window goes there: a triangle and its corner opposite.
     pub(super) behind: [Option<(CornerId, &'t MarchTriangle)>; 2],
 }
@@ -84,6 +93,10 @@ pub(super) struct Crossings {
     /// The base and the apex of the triangle, and its corner opposite the entry.
     triangle: Lanes<4>,
     known: Lanes<2>,
+    /// The distance of the centroid, and by how much the window may tell the ends of the entry to be nearer than known.
+    trust: Lanes<2>,
+    /// That, as a share of the entry.
+    disagreement: f64,
     /// Whether shortest paths may bend: at the left end of the entry, at the right one, and at the apex.
     bends: Lanes<3>,
     exits: [ExitLanes; 2],
@@ -94,8 +107,10 @@ pub(super) struct Crossings {
 }
 
 impl Crossings {
-    pub(super) fn clear(&mut self) {
+    /// Prepares for a surface. Where no path bends, no ray meets the end of the surface, and distances are exact in the plane.
+    pub(super) fn reset(&mut self, may_bend: bool) {
         self.len = 0;
+        self.disagreement = if may_bend { DISAGREEMENT } else { f64::INFINITY };
     }
 
     /// Adds a crossing; returns whether there is no room for another.
@@ -106,6 +121,7 @@ impl Crossings {
         self.window.set(lane, crossing.window.numbers());
         self.triangle.set(lane, triangle.numbers(entry));
         self.known.set(lane, crossing.known);
+        self.trust.set(lane, [crossing.distance, self.disagreement * triangle.lengths[entry]]);
         self.bends.set(lane, [left, right, entry].map(|slot| f64::from(triangle.bends_at(slot))));
         self.apex[lane] = triangle.vertex(entry);
         for ((exit, side), behind) in self.exits.iter_mut().zip([right, left]).zip(crossing.behind) {
@@ -155,32 +171,57 @@ impl Crossings {
     /// Without branches, so that the same instructions solve all lanes.
     #[inline(always)]
     fn solve_lanes(&mut self) {
+        let mut is_early = [0.0; LANES];
+        for i in 0..LANES {
+            let window = SourceWindow::of(self.window.at(i));
+            let [left, right, _] = seen_from_entry(self.triangle.at(i));
+            let ([at_left, at_right], [own, slack]) = (self.known.at(i), self.trust.at(i));
+            let left = (window.distance(left) + slack < at_left) & (at_left < own);
+            let right = (window.distance(right) + slack < at_right) & (at_right < own);
+            is_early[i] = select(left | right, 1.0, 0.0);
+        }
+        for (i, _) in is_early.into_iter().enumerate().filter(|(_, is_early)| *is_early > 0.0) {
+            let [left, right, _] = seen_from_entry(self.triangle.at(i));
+            let window = agreeing(SourceWindow::of(self.window.at(i)), [left, right], self.known.at(i));
+            self.window.set(i, window.numbers());
+        }
         let mut rays = [Lanes::default(); 3];
         for i in 0..LANES {
+            let [left, right, apex] = seen_from_entry(self.triangle.at(i));
+            let known = self.known.at(i);
             let SourceWindow { source, limits, offset } = SourceWindow::of(self.window.at(i));
-            let [to_left, to_right, to_apex] = seen_from_entry(self.triangle.at(i)).map(|at| sub(at, source));
-            let bend = bend_before_apex([to_left, to_right, to_apex], limits);
+            let [to_left, to_right, to_apex] = [left, right, apex].map(|at| sub(at, source));
+            let bend = bend_at_limit(to_apex, limits);
+            let misses = (cross(to_apex, to_left) < 0.0) | (cross(to_apex, to_right) > 0.0);
             let through = offset + norm(bend) + norm(sub(to_apex, bend));
-            let [at_left, at_right] = self.known.at(i);
-            let (at_left, at_right) =
-                (at_left + norm(sub(to_apex, to_left)), at_right + norm(sub(to_apex, to_right)));
+            let at_left = known[0] + norm(sub(apex, left));
+            let at_right = known[1] + norm(sub(apex, right));
             let along = select(at_left < at_right, at_left, at_right);
-            self.distance[i] = select(along < through, along, through);
+            self.distance[i] = select((along < through) | misses, along, through);
             rays[0].set(i, to_left);
             rays[1].set(i, to_apex);
             rays[2].set(i, to_right);
         }
         let [left, right] = &mut self.exits;
-        let [at_left, at_right, at_apex] = &self.bends.0;
-        left.solve_lanes(&self.window, [&rays[0], &rays[1]], [at_left, at_apex], false);
-        right.solve_lanes(&self.window, [&rays[1], &rays[2]], [at_apex, at_right], true);
+        let [bends_left, bends_right, bends_apex] = &self.bends.0;
+        let [at_left, at_right] = &self.known.0;
+        let (window, at_apex) = (&self.window, &self.distance);
+        left.solve_lanes(window, [&rays[0], &rays[1]], [at_apex, at_left], [bends_left, bends_apex], false);
+        right.solve_lanes(window, [&rays[1], &rays[2]], [at_apex, at_right], [bends_apex, bends_right], true);
     }
 }
 
 impl ExitLanes {
-    /// The rays to the `ends` of the exit go on behind it. Without branches.
+    /// The rays to the `ends` of the exit, one of which is the apex, go on behind it. Without branches.
     #[inline(always)]
-    fn solve_lanes(&mut self, own: &Lanes<7>, ends: [&Lanes<2>; 2], bends: [&Lane; 2], pivots_right: bool) {
+    fn solve_lanes(
+        &mut self,
+        own: &Lanes<7>,
+        ends: [&Lanes<2>; 2],
+        known: [&Lane; 2],
+        bends: [&Lane; 2],
+        pivots_right: bool,
+    ) {
         for i in 0..LANES {
             let [start, end, apex] = seen_from_entry(self.triangle.at(i));
             let (ends, bends) = (ends.map(|end| end.at(i)), bends.map(|lane| lane[i] > 0.0));
@@ -191,7 +232,8 @@ impl ExitLanes {
             let [cos, sin] = [dot(along, along_own) * scale, cross(along, along_own) * scale];
             let [x, y] = sub(apex, start);
             let apex = [ends[0][0] + (cos * x - sin * y), ends[0][1] + (sin * x + cos * y)];
-            let (distance, window) = Rays { ends, apex }.cross(limits, bends, offset, pivots_right);
+            let known = known.map(|lane| lane[i]);
+            let (distance, window) = Rays { ends, known, apex }.cross(limits, bends, offset, pivots_right);
             let back = |[x, y]: PlanePoint| [cos * x + sin * y, cos * y - sin * x];
             let [x, y] = back(sub(window.source, ends[0]));
             let source = [start[0] + x, start[1] + y];
@@ -225,23 +267,33 @@ fn seen_from_entry([base, x, y, entry]: [f64; 4]) -> [PlanePoint; 3] {
     ]
 }
 
-/// Where the path to the apex through the entry bends, from the rays to the left end, the right end and the apex: at a limit, or
-/// at the end that the straight line misses. At the source if nowhere.
 #[inline(always)]
-fn bend_before_apex(
-    [to_left, to_right, to_apex]: [PlanePoint; 3],
-    [left, right]: [PlanePoint; 2],
-) -> PlanePoint {
-    let [in_left, in_right] = shadows(cross(to_apex, left), -cross(to_apex, right));
-    let (misses_left, misses_right) = (cross(to_apex, to_left) < 0.0, cross(to_apex, to_right) > 0.0);
-    let end = select_point(misses_left, to_left, select_point(misses_right, to_right, [0.0; 2]));
-    select_point(in_left, left, select_point(in_right, right, end))
+fn centroid([p, q, r]: [PlanePoint; 3]) -> PlanePoint {
+    let third = 1.0 / 3.0;
+    [(p[0] + q[0] + r[0]) * third, (p[1] + q[1] + r[1]) * third]
+}
+
+/// The window from the point at the distances that are known of both ends of its entry, with the same offset, or a smaller one.
+#[cold]
+#[inline(never)]
+fn agreeing(window: SourceWindow, ends: [PlanePoint; 2], known: [f64; 2]) -> SourceWindow {
+    if known.contains(&f64::INFINITY) {
+        return window;
+    }
+    let offset = window.offset.min(known[0]).min(known[1]);
+    let length = norm(sub(ends[1], ends[0]));
+    // Until an end is finalized it may be farther than the side leads.
+    let [left, right] = [0, 1].map(|end| known[end].min(known[1 - end] + length) - offset);
+    let lengths = [length, left, right];
+    SourceWindow::around(beyond(ends, lengths, GateSide::Behind), offset)
 }
 
 /// The rays from a virtual source to the ends of an exit and to the corner behind it.
 #[derive(Clone, Copy)]
 struct Rays {
     ends: [PlanePoint; 2],
+    /// The distances of the end that is the apex, and of the other.
+    known: [f64; 2],
     apex: PlanePoint,
 }
 
@@ -257,10 +309,9 @@ impl Rays {
         offset: f64,
         pivots_right: bool,
     ) -> (f64, SourceWindow) {
-        let Self { ends: [start, end], apex } = self;
+        let Self { ends: [start, end], known, apex } = self;
         let base = sub(end, start);
-        let third = 1.0 / 3.0;
-        let ray = [(start[0] + end[0] + apex[0]) * third, (start[1] + end[1] + apex[1]) * third];
+        let ray = centroid([start, end, apex]);
         let is_behind = cross(end, start) <= COLLINEAR * (dot(start, base).abs() + dot(base, base));
         // On the left, an end that is to the right of the limit is a new limit, and the reverse.
         let left = select_point(bends[0] & below_or_nan(cross(left, start), 0.0), start, left);
@@ -268,8 +319,7 @@ impl Rays {
         // Negative in the shadow.
         let [at_left, at_right] = [cross(ray, left), -cross(ray, right)];
         let [in_left, in_right] = shadows(at_left, at_right);
-        let leaves_left = self.leaves_light(left, 1.0, at_left);
-        let leaves_right = self.leaves_light(right, -1.0, at_right);
+        let [leaves_left, leaves_right] = [self.leaves_light(left, 1.0), self.leaves_light(right, -1.0)];
         // A ray through an end may bend there or not; it must not bend because of rounding. Nor need it if it passes close
         // to an end where no shortest path bends.
         let slack = COLLINEAR * dot(ray, ray);
@@ -283,6 +333,10 @@ impl Rays {
         let limit = select_point(in_left, left, select_point(in_right, right, [0.0; 2]));
         let bend = select_point(is_end, select_point(is_right, end, start), limit);
         let before = norm(bend);
+        let [to_apex, to_entry] = [known[0] - offset - before, known[1] - offset - before];
+        let is_apex = is_end & (is_right != pivots_right) & (to_apex < f64::INFINITY);
+        let is_entry = is_end & (is_right == pivots_right) & (to_entry < f64::INFINITY);
+        let before = before + select(is_apex, to_apex, 0.0) + select(is_entry, to_entry, 0.0);
         let is_new = is_end | (in_left & leaves_left) | (in_right & leaves_right);
         let none = [f64::NAN; 2];
         let window = SourceWindow {
@@ -293,42 +347,15 @@ impl Rays {
         (offset + before + norm(sub(ray, bend)), window)
     }
 
-    /// Whether all test points of the triangle behind are in the shadow of a limit on the left (1) or right (-1); `at` is
-    /// negative if the centroid is.
+    /// Whether the triangle behind is in the shadow of a limit on the left (1) or right (-1).
     #[inline(always)]
-    fn leaves_light(self, limit: PlanePoint, sign: f64, at: f64) -> bool {
+    fn leaves_light(self, limit: PlanePoint, sign: f64) -> bool {
         let [start, end] = self.ends;
         let [p, q, r] =
             [sign * cross(start, limit), sign * cross(end, limit), sign * cross(self.apex, limit)];
         let most = select(p > q, p, q);
-        let most = select(most > r, most, r);
-        at + TEST_POINTS * (most - at) <= 0.0
+        select(most > r, most, r) <= 0.0
     }
-}
-
-/// Without a branch.
-#[inline(always)]
-fn select(condition: bool, yes: f64, no: f64) -> f64 {
-    if condition { yes } else { no }
-}
-
-#[inline(always)]
-fn select_point(condition: bool, yes: PlanePoint, no: PlanePoint) -> PlanePoint {
-    [select(condition, yes[0], no[0]), select(condition, yes[1], no[1])]
-}
-
-/// Whether a number is below another, or there is no limit to compare with.
-#[inline(always)]
-fn below_or_nan(a: f64, b: f64) -> bool {
-    (a < b) | a.is_nan() | b.is_nan()
-}
-
-/// Whether a point is in the shadow of the left and of the right limit, from products that are negative there. If it is
-/// in both, the deeper one counts.
-#[inline(always)]
-fn shadows(at_left: f64, at_right: f64) -> [bool; 2] {
-    let in_left = (at_left < 0.0) & (below_or_nan(at_left, at_right) | (at_left == at_right));
-    [in_left, (at_right < 0.0) & !in_left]
 }
 
 #[cfg(test)]
@@ -360,22 +387,31 @@ mod tests {
     /// The rules of a crossing, one after the other, with branches: the distance of the apex, and behind each exit that of the
     /// centroid and the window.
     fn by_rules(crossing: &Crossing<'_>) -> (f64, [Option<(f64, SourceWindow)>; 2]) {
-        let Crossing { window: SourceWindow { source, limits, offset }, triangle, entry, known, behind } =
-            *crossing;
-        let limits = limits.map(|limit| (!limit[0].is_nan()).then_some(limit));
+        let Crossing { window, triangle, entry, known, behind, .. } = *crossing;
         let [left, right] = around(entry);
-        let at = triangle.corners().map(|corner| sub(corner, source));
-        let missed = if cross(at[entry], at[left]) < 0.0 {
-            Some(at[left])
-        } else if cross(at[entry], at[right]) > 0.0 {
-            Some(at[right])
-        } else {
-            None
+        let ends = [left, right].map(|slot| triangle.corners()[slot]);
+        let length = distance(ends[0], ends[1]);
+        let is_early = (0..2).any(|i| {
+            known[i] - window.distance(ends[i]) > DISAGREEMENT * length && known[i] < crossing.distance
+        });
+        let SourceWindow { source, limits, offset } = match is_early {
+            true => {
+                let offset = window.offset.min(known[0]).min(known[1]);
+                let radii = [0, 1].map(|end| known[end].min(known[1 - end] + length) - offset);
+                let source = beyond(ends, [length, radii[0], radii[1]], GateSide::Behind);
+                SourceWindow::around(source, offset)
+            }
+            false => window,
         };
-        let bend = limit_before(at[entry], limits).or(missed).unwrap_or([0.0; 2]);
-        let through = offset + norm(bend) + distance(at[entry], bend);
+        let limits = limits.map(|limit| (!limit[0].is_nan()).then_some(limit));
+        let at = triangle.corners().map(|corner| sub(corner, source));
+        let misses = cross(at[entry], at[left]) < 0.0 || cross(at[entry], at[right]) > 0.0;
+        let bend = limit_before(at[entry], limits).unwrap_or([0.0; 2]);
+        let through = if misses { f64::INFINITY } else { offset + norm(bend) + distance(at[entry], bend) };
         let along = [left, right].map(|end| distance(at[entry], at[end]));
         let apex = through.min(known[0] + along[0]).min(known[1] + along[1]);
+        let mut at_corners = [apex; 3];
+        (at_corners[left], at_corners[right]) = (known[0], known[1]);
         let exit = |[start, end]: [usize; 2], behind: Option<(CornerId, &MarchTriangle)>, pivot: usize| {
             let (corner, other) = behind?;
             // The triangle behind, turned over if need be, rolled onto the exit.
@@ -405,27 +441,33 @@ mod tests {
                 let width = cross(centroid, at[start]) - cross(centroid, at[end]);
                 if triangle.bends_at(corner) { 0.0 } else { NEAR_MISS * width }
             };
-            let (bend, is_new) = if cross(at[end], at[start]) <= 0.0 {
-                (at[pivot], true)
-            } else if let Some(limit) = limit_before(centroid, [left, right]) {
-                // Dark if no test point is on the light side.
-                let sign = if left == Some(limit) { 1.0 } else { -1.0 };
-                let tests = [at[start], at[end], third].map(|corner| {
-                    [0, 1].map(|axis| centroid[axis] + TEST_POINTS * (corner[axis] - centroid[axis]))
-                });
-                (limit, tests.into_iter().all(|point| sign * cross(point, limit) <= 0.0))
+            let limit = limit_before(centroid, [left, right]);
+            let turns_at = if cross(at[end], at[start]) <= 0.0 {
+                Some(pivot)
+            } else if limit.is_some() {
+                None
             } else if cross(centroid, at[start]) < -slack(start) {
-                (at[start], true)
+                Some(start)
             } else if cross(centroid, at[end]) > slack(end) {
-                (at[end], true)
+                Some(end)
             } else {
-                ([0.0; 2], false)
+                None
             };
-            let found = offset + norm(bend) + distance(centroid, bend);
+            let (bend, before, is_new) = match (turns_at, limit) {
+                (Some(corner), _) => (at[corner], at_corners[corner] - offset, true),
+                (None, Some(limit)) => {
+                    // Dark if no corner is on the light side.
+                    let sign = if left == Some(limit) { 1.0 } else { -1.0 };
+                    let is_dark = [at[start], at[end], third].iter().all(|p| sign * cross(*p, limit) <= 0.0);
+                    (limit, norm(limit), is_dark)
+                }
+                (None, None) => ([0.0; 2], 0.0, false),
+            };
+            let found = offset + before + distance(centroid, bend);
             let [x, y] = turned(sub(if is_new { bend } else { [0.0; 2] }, at[start]), -turn);
             let limits = [left, right]
                 .map(|limit| limit.filter(|_| !is_new).map_or([f64::NAN; 2], |limit| turned(limit, -turn)));
-            let offset = offset + if is_new { norm(bend) } else { 0.0 };
+            let offset = offset + if is_new { before } else { 0.0 };
             let window = SourceWindow { source: [own_start[0] + x, own_start[1] + y], limits, offset };
             Some((found, if is_mirrored { window.mirrored(base) } else { window }))
         };
@@ -482,9 +524,11 @@ mod tests {
                 triangle: &triangle,
                 entry,
                 known,
+                distance: window.distance(triangle.centroid()),
                 behind: [0, 1].map(|exit| Some((exits[exit].0, &exits[exit].1))),
             };
             let mut lanes = Crossings::default();
+            lanes.reset(true);
             lanes.push(&crossing);
             assert_eq!(lanes.solve(), 1);
             let (apex, expected) = by_rules(&crossing);

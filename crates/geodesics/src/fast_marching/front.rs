@@ -56,6 +56,9 @@ pub(super) struct TriangleFront {
     /// The crossings that are solved next.
     crossings: Crossings,
     offers: Vec<WindowOffer>,
+    /// The vertices that the crossings of a round lead to, with their distances. Windows depend on what was known before the round, so
+    /// the order of its triangles changes nothing.
+    reached_vertices: Vec<(VertexId, f64)>,
     /// The distance of every vertex.
     vertices: Vec<f64>,
     /// Vertices whose neighbors may be too far away.
@@ -83,7 +86,8 @@ impl TriangleFront {
         self.hubs.clear();
         self.hubs.resize(triangles.n_hubs, f64::INFINITY);
         self.visits = VISITS_PER_TRIANGLE.saturating_mul(triangles.all.len());
-        self.crossings.clear();
+        self.crossings.reset(triangles.may_bend);
+        self.reached_vertices.clear();
     }
 
     /// Starts from a source.
@@ -239,6 +243,10 @@ impl TriangleFront {
                 self.free.push(label.place() as u32);
             }
             self.solve_crossings();
+            for (vertex, distance) in self.reached_vertices.drain(..) {
+                let known = &mut self.vertices[vertex.index()];
+                *known = if distance < *known { distance } else { *known };
+            }
             self.take_offers(triangles);
         }
         self.round = round;
@@ -311,6 +319,7 @@ impl TriangleFront {
             triangle,
             entry,
             known: around(entry).map(|end| self.vertices[triangle.vertex(end).index()]),
+            distance: self.triangles.distance(number),
             behind: behind.map(|corner| {
                 let corner = corner.filter(|corner| corner.face() != number)?;
                 Some((corner, triangles.at(corner.face())))
@@ -326,9 +335,7 @@ impl TriangleFront {
     #[inline(never)]
     fn solve_crossings(&mut self) {
         for lane in 0..self.crossings.solve() {
-            let (vertex, distance) = self.crossings.apex(lane);
-            let known = &mut self.vertices[vertex.index()];
-            *known = if distance < *known { distance } else { *known };
+            self.reached_vertices.push(self.crossings.apex(lane));
             for exit in 0..2 {
                 let Some((corner, distance)) = self.crossings.behind(lane, exit) else { continue };
                 let (triangle, entry) = (corner.face(), corner.slot());
@@ -341,7 +348,7 @@ impl TriangleFront {
     }
 
     /// Gives triangles other windows, if those are nearer to the source, or see as near but from a source that bent
-    /// less, or as much but through the next side. A triangle that has one already keeps it when there were too many visits.
+    /// less, or as much but through the side that their ray crosses. A triangle that has one already keeps it when there were too many visits.
     #[inline(never)]
     fn take_offers(&mut self, triangles: &Triangles) {
         let mut offers = std::mem::take(&mut self.offers);
@@ -352,11 +359,15 @@ impl TriangleFront {
             if !improves(distance, *known) {
                 let is_as_near = distance <= *known * (1.0 + ROUNDING);
                 let is_less_bent = improves(window.offset, label.offset);
-                // The order of the sides does not depend on numbers.
-                let is_next = label.entry() != INSIDE
-                    && around(label.entry())[0] == entry
-                    && window.offset <= label.offset * (1.0 + ROUNDING);
-                if !(is_as_near && (is_less_bent || is_next)) {
+                let is_better_side = || {
+                    let [its, known] = [entry, label.entry()]
+                        .map(|side| side != INSIDE && triangles.at(triangle).is_crossed(side, window.source));
+                    // The order of the sides does not depend on numbers.
+                    let is_next = label.entry() != INSIDE && around(label.entry())[0] == entry;
+                    window.offset <= label.offset * (1.0 + ROUNDING)
+                        && (its & !known | (its == known) & is_next)
+                };
+                if !(is_as_near && (is_less_bent || is_better_side())) {
                     continue;
                 }
             }

@@ -21,7 +21,9 @@
 //!    the first bucket that has any. Within the bucket they are not sorted.
 //! 3. **Leave.** The window of each leaves through the two sides where it did not enter. Eight triangles are solved
 //!    together, in lanes, by the same instructions without branches: the distance of the corner opposite the entry, which
-//!    lowers that vertex, and behind each of the two sides a window and the distance of the centroid there.
+//!    lowers that vertex after the round, and behind each of the two sides a window and the distance of the centroid there.
+//!    A window that tells an end of its entry to be nearer than it is known to be has rays that left the surface, at a hole or
+//!    beside a saddle vertex. Its source moves to where it agrees with both ends.
 //! 4. **Improve.** Only when all triangles of a round are solved, each triangle behind them takes the window through
 //!    which its centroid is nearest, so that the order of the triangles changes nothing. It enters the bucket of its new
 //!    distance; if that is the current one, another round follows. Between one triangle in twenty and one in ten is
@@ -107,7 +109,8 @@ pub struct FastMarchingOptions {
 ///
 /// * Distances are 1-Lipschitz along edges, at most those along edges ([`Dijkstra`](crate::Dijkstra)), never NaN, and
 ///   infinite exactly where no edge or link leads.
-/// * Exact in the plane to rounding. Elsewhere the mean error is 0.1 % on meshes of ten thousand vertices.
+/// * Exact to rounding on flat sheets where no path bends. Elsewhere the mean error is 0.1 % on meshes of ten thousand vertices, also
+///   behind holes: there distances converge when triangles get smaller, and are too short by less than 1 % everywhere.
 /// * With a limit, distances just below it may be too long: triangles beyond the limit are not solved.
 /// * Triangles are independent of each other, so edges may have any number of faces of any orientation. Flips and
 ///   unfolding stop at such edges.

@@ -10,7 +10,7 @@ use surface::{
 
 use super::window::COLLINEAR;
 use crate::order::ranks;
-use crate::plane::{self, PlanePoint};
+use crate::plane::{self, PlanePoint, cross, sub};
 use crate::prefetch::prefetch;
 
 /// A triangle, laid out in the plane anticlockwise: one cache line. Corners are numbered 0, 1 and 2, sides by the corner
@@ -85,6 +85,13 @@ impl MarchTriangle {
         [(self.base() + self.apex[0]) / 3.0, self.apex[1] / 3.0]
     }
 
+    /// Whether the straight line from a source to the centroid crosses the side opposite a corner.
+    pub(super) fn is_crossed(&self, side: usize, source: PlanePoint) -> bool {
+        let ray = sub(self.centroid(), source);
+        let [left, right] = around(side).map(|end| cross(ray, sub(self.corners()[end], source)));
+        left >= 0.0 && right <= 0.0
+    }
+
     /// The same triangle the other way round: corners 0 and 1 change places.
     #[inline]
     pub(super) fn mirrored(&self) -> Self {
@@ -112,6 +119,8 @@ pub(crate) struct Triangles {
     /// the middle of the edge is nearer through it than through those before.
     pub(super) hubs: HashMap<CornerId, u32>,
     pub(super) n_hubs: usize,
+    /// Whether shortest paths may bend at any vertex.
+    pub(super) may_bend: bool,
     /// The length of the longest side.
     pub(super) longest: f64,
     /// The width of the buckets to begin with.
@@ -282,6 +291,7 @@ impl Triangles {
             joints,
             hubs,
             n_hubs: many.len(),
+            may_bend: kinds.iter().any(|[may_bend, _]| *may_bend),
             order,
             rank,
             longest,
