@@ -172,13 +172,13 @@ impl Crossings {
     #[inline(always)]
     fn solve_lanes(&mut self) {
         let mut is_early = [0.0; LANES];
-        for i in 0..LANES {
+        for (i, is_early) in is_early.iter_mut().enumerate() {
             let window = SourceWindow::of(self.window.at(i));
             let [left, right, _] = seen_from_entry(self.triangle.at(i));
             let ([at_left, at_right], [own, slack]) = (self.known.at(i), self.trust.at(i));
             let left = (window.distance(left) + slack < at_left) & (at_left < own);
             let right = (window.distance(right) + slack < at_right) & (at_right < own);
-            is_early[i] = select(left | right, 1.0, 0.0);
+            *is_early = select(left | right, 1.0, 0.0);
         }
         for (i, _) in is_early.into_iter().enumerate().filter(|(_, is_early)| *is_early > 0.0) {
             let [left, right, _] = seen_from_entry(self.triangle.at(i));
