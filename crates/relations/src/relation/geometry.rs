@@ -19,6 +19,12 @@ pub(super) const ROUNDING: f64 = 1e-5;
 /// places are equal up to this share.
 pub(super) const MAX_ROUNDING: f64 = 10.0 * ROUNDING;
 
+/// Sizes that differ by less than this share are equal whatever the files: sums over many faces.
+pub(super) const MIN_ROUNDING: f64 = 1e-9;
+
+/// The sizes of two meshes may differ by the largest distance of their vertices times this, if it is rounding.
+pub(super) const SIZE_BY_VERTICES: f64 = 10.0;
+
 /// Most components that are compared on their own, the largest by area.
 const MAX_COMPONENTS: usize = 200;
 
