@@ -254,7 +254,7 @@ mod tests {
         pierced.faces.retain(|face| !face.contains(&VertexId(100)));
         let (whole, pierced) = (described(&lopsided_torus()), described(&pierced));
         // The spectrum of the form depends on which of its points are taken, the others change less.
-        assert!(gap(&whole, &pierced) < 0.4, "{}", gap(&whole, &pierced));
+        assert!(gap(&whole, &pierced) < 0.6, "{}", gap(&whole, &pierced));
         assert_eq!(whole.entry.facts.longest_boundary, 0.0);
         assert!(pierced.entry.facts.longest_boundary > 0.5);
     }

@@ -361,7 +361,7 @@ impl TriangleFront {
                 let is_less_bent = improves(window.offset, label.offset);
                 let is_better_side = || {
                     let [its, known] = [entry, label.entry()]
-                        .map(|side| side != INSIDE && triangles.at(triangle).is_crossed(side, window.source));
+                        .map(|side| side != INSIDE && triangles.at(triangle).is_crossed(side, window));
                     // The order of the sides does not depend on numbers.
                     let is_next = label.entry() != INSIDE && around(label.entry())[0] == entry;
                     window.offset <= label.offset * (1.0 + ROUNDING)

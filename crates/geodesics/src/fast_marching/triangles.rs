@@ -8,9 +8,9 @@ use surface::{
     scalar_product, twice_area,
 };
 
-use super::window::COLLINEAR;
+use super::window::{COLLINEAR, SourceWindow};
 use crate::order::ranks;
-use crate::plane::{self, PlanePoint, cross, sub};
+use crate::plane::{self, PlanePoint, cross, dot, sub};
 use crate::prefetch::prefetch;
 
 /// A triangle, laid out in the plane anticlockwise: one cache line. Corners are numbered 0, 1 and 2, sides by the corner
@@ -85,11 +85,13 @@ impl MarchTriangle {
         [(self.base() + self.apex[0]) / 3.0, self.apex[1] / 3.0]
     }
 
-    /// Whether the straight line from a source to the centroid crosses the side opposite a corner.
-    pub(super) fn is_crossed(&self, side: usize, source: PlanePoint) -> bool {
-        let ray = sub(self.centroid(), source);
-        let [left, right] = around(side).map(|end| cross(ray, sub(self.corners()[end], source)));
-        left >= 0.0 && right <= 0.0
+    /// Whether the last straight piece of the path of a window to the centroid crosses the side opposite a corner.
+    pub(super) fn is_crossed(&self, side: usize, window: &SourceWindow) -> bool {
+        let bend = window.bend(self.centroid());
+        let ray = sub(self.centroid(), bend);
+        let [left, right] = around(side).map(|end| cross(ray, sub(self.corners()[end], bend)));
+        let slack = COLLINEAR * dot(ray, ray);
+        left >= -slack && right <= slack
     }
 
     /// The same triangle the other way round: corners 0 and 1 change places.

@@ -52,6 +52,12 @@ impl SourceWindow {
         self.offset + norm(bend) + norm(sub(ray, bend))
     }
 
+    /// Where the path to a point bends last: at a limit or at the virtual source.
+    pub(super) fn bend(&self, target: PlanePoint) -> PlanePoint {
+        let [x, y] = bend_at_limit(sub(target, self.source), self.limits);
+        [self.source[0] + x, self.source[1] + y]
+    }
+
     /// All numbers of the window: source, limits, offset.
     #[inline(always)]
     pub(super) fn numbers(&self) -> [f64; 7] {

@@ -19,10 +19,8 @@ pub(super) const ROUNDING: f64 = 1e-5;
 /// places are equal up to this share.
 pub(super) const MAX_ROUNDING: f64 = 10.0 * ROUNDING;
 
-/// Sizes that differ by less than this share are equal whatever the files: sums over many faces.
-pub(super) const MIN_ROUNDING: f64 = 1e-9;
-
-/// The sizes of two meshes may differ by the largest distance of their vertices times this, if it is rounding.
+/// Rounding changes the sizes of two meshes by at most the largest distance of their vertices times this, or by [`ROUNDING`], which may
+/// be the same for all vertices.
 pub(super) const SIZE_BY_VERTICES: f64 = 10.0;
 
 /// Most components that are compared on their own, the largest by area.

@@ -204,6 +204,25 @@ mod tests {
     }
 
     #[test]
+    fn sizes_are_told_apart_as_precisely_as_vertices_agree() {
+        let ring = mesh::shapes::torus(24, 12, 2.0, 0.7);
+        let rounded = |x: f64| (1e5 * x).round() / 1e5;
+        for (factor, kind) in [(1.000_002, RelationKind::IdenticalGeometry), (1.000_05, RelationKind::Scaled)]
+        {
+            for is_rounded in [false, true] {
+                let mut other = ring.clone();
+                other.positions.iter_mut().for_each(|p| *p *= factor);
+                if is_rounded {
+                    other.positions.iter_mut().for_each(|p| p.coords.apply(|x| *x = rounded(*x)));
+                }
+                let [a, b] = [&ring, &other].map(|mesh| MeshGeometry::new(mesh, None).unwrap());
+                let found = at(0.1, factor, Handedness::Unknown).by_meshes([&a, &b]);
+                assert_eq!(found.kind, kind, "{factor}, {is_rounded}: {found}");
+            }
+        }
+    }
+
+    #[test]
     fn what_is_not_certain_is_probable() {
         let unsure = at(ShapeMetric::SAME_SHAPE.at * 1.01, 1.0, Handedness::Unknown);
         assert_eq!(unsure.to_string(), "b is similar to a, and perhaps a in another pose");

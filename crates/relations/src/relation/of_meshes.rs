@@ -8,7 +8,7 @@ use rigid::{Alignment, Similarity, align_surfaces, is_symmetric};
 use super::calibration::{CUT, EXACT, FARTHEST, VARIANT};
 use super::cut::piece_of;
 use super::exact::{SameVertices, same_vertices};
-use super::geometry::{MAX_ROUNDING, MIN_ROUNDING, MeshGeometry, SIZE_BY_VERTICES};
+use super::geometry::{MAX_ROUNDING, MeshGeometry, ROUNDING, SIZE_BY_VERTICES};
 use super::mesh_change::mesh_change;
 use super::noise::noise_of_parts;
 use super::parts::{PartCopy, Parts, occurrences};
@@ -126,7 +126,7 @@ impl Relation {
         // A surface that is its own mirror image is not another one for being mirrored, only its triangles are.
         let is_turned = reflected && is_symmetric(&b.surface);
         // Sizes are known as well as vertices agree.
-        let tolerance = (SIZE_BY_VERTICES * same.gap).clamp(MIN_ROUNDING, MAX_ROUNDING);
+        let tolerance = (SIZE_BY_VERTICES * same.gap).clamp(ROUNDING, MAX_ROUNDING);
         changes.extend(Change::of_similarity(scale, tolerance, reflected && !is_turned));
         changes.extend((is_turned || !same.same_faces).then_some(Change::Remeshed));
         let kind = match changes.last() {
