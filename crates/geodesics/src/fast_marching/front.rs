@@ -360,12 +360,16 @@ impl TriangleFront {
                 let is_as_near = distance <= *known * (1.0 + ROUNDING);
                 let is_less_bent = improves(window.offset, label.offset);
                 let is_better_side = || {
-                    let [its, known] = [entry, label.entry()]
-                        .map(|side| side != INSIDE && triangles.at(triangle).is_crossed(side, window));
-                    // The order of the sides does not depend on numbers.
+                    let triangle = triangles.at(triangle);
+                    // Through a corner the ray crosses two sides. Their order depends neither on numbers nor on orientation, unless they
+                    // are equally long.
+                    let worth = |side: usize| {
+                        (side != INSIDE).then(|| (triangle.is_crossed(side, window), triangle.lengths[side]))
+                    };
+                    let (its, known) = (worth(entry), worth(label.entry()));
                     let is_next = label.entry() != INSIDE && around(label.entry())[0] == entry;
                     window.offset <= label.offset * (1.0 + ROUNDING)
-                        && (its & !known | (its == known) & is_next)
+                        && (its > known || its == known && is_next)
                 };
                 if !(is_as_near && (is_less_bent || is_better_side())) {
                     continue;
