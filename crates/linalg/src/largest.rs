@@ -22,10 +22,23 @@ const TOLERANCE: f64 = 1e-11;
 /// [`LinalgError::NotConverged`], [`LinalgError::Exceeded`].
 ///
 /// ```
-/// use canonform_linalg::{SparseSymmetric, largest_eigenpairs};
+/// use canonform_linalg::{SymmetricOperator, largest_eigenpairs};
 ///
-/// let diagonal = SparseSymmetric::from_entries(300, (0..300).map(|i| (i, i, 1.0 / (1.0 + i as f64))));
-/// let eigen = largest_eigenpairs(&diagonal, 2, &())?;
+/// /// The diagonal matrix of 1, 1/2, 1/3 and so on.
+/// #[derive(Debug)]
+/// struct Harmonic;
+///
+/// impl SymmetricOperator for Harmonic {
+///     fn order(&self) -> usize {
+///         300
+///     }
+///
+///     fn apply(&self, x: &[f64], y: &mut [f64]) {
+///         (1..).zip(x.iter().zip(y)).for_each(|(i, (x, y))| *y = x / f64::from(i));
+///     }
+/// }
+///
+/// let eigen = largest_eigenpairs(&Harmonic, 2, &())?;
 /// assert!((eigen.values[0] - 1.0).abs() < 1e-9 && (eigen.values[1] - 0.5).abs() < 1e-9);
 /// # Ok::<(), canonform_linalg::LinalgError>(())
 /// ```
