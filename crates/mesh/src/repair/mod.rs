@@ -99,9 +99,10 @@ pub fn repair(
     let mut merged = DisjointSets::new(mesh.n_vertices());
     let surface = welded(mesh, &scaled, unit, options.weld, &mut merged, &mut report, &budget)?;
     let mut parents = HashMap::new();
+    let gap = if let Weld::Within(tolerance) = options.weld { tolerance / unit } else { 0.0 };
     let surface = match options.weld {
         Weld::None => surface,
-        _ => without_t_junctions(mesh, &scaled, surface, &mut parents, &mut report, &budget)?,
+        _ => without_t_junctions(mesh, &scaled, gap, surface, &mut parents, &mut report, &budget)?,
     };
     if surface.topology().n_faces() == 0 {
         let degenerate = report.degenerate_faces + report.zero_length_faces;
@@ -156,10 +157,11 @@ pub fn repair(
     Ok(Repaired { mesh: repaired, intrinsic, remap, parts, report })
 }
 
-/// The surface with faces split at the vertices that lie on their boundary edges.
+/// The surface with faces split at the vertices that lie on their boundary edges, or beside them in a gap of at most this width.
 fn without_t_junctions(
     mesh: &TriMesh,
     scaled: &[Point3<f64>],
+    gap: f64,
     mut surface: IntrinsicMesh,
     parents: &mut HashMap<[VertexId; 3], [VertexId; 3]>,
     report: &mut RepairReport,
@@ -168,7 +170,7 @@ fn without_t_junctions(
     let mut faces = Vec::new();
     for _ in 0..MAX_PASSES {
         budget.check()?;
-        let n_joined = t_junctions::close(scaled, surface.topology(), &mut faces, parents);
+        let n_joined = t_junctions::close(scaled, gap, surface.topology(), &mut faces, parents);
         if n_joined == 0 {
             break;
         }

@@ -13,8 +13,8 @@ const ROUNDING: f64 = 1e-5;
 /// Vertices of more boundary edges are left alone: comparing all of them would take quadratic time.
 const MAX_BESIDE: usize = 64;
 
-/// Splits faces at the vertices that lie on one of their boundary edges, up to rounding, and appends the parts of each to
-/// the faces; returns the number of vertices joined to an edge.
+/// Splits faces at the vertices that lie on one of their boundary edges, up to rounding or the width of gaps that are to be closed, and
+/// appends the parts of each to the faces; returns the number of vertices joined to an edge.
 ///
 /// Such an edge and the edges beside it leave a vertex in the same direction. The chain of boundary edges from there is
 /// followed as long as it stays on the edge, so that nothing is joined to an edge that it merely touches. Where the chain has
@@ -22,6 +22,7 @@ const MAX_BESIDE: usize = 64;
 /// part of.
 pub(super) fn close(
     positions: &[Point3<f64>],
+    gap: f64,
     topology: &Topology,
     faces: &mut Vec<[VertexId; 3]>,
     parents: &mut HashMap<[VertexId; 3], [VertexId; 3]>,
@@ -32,7 +33,7 @@ pub(super) fn close(
     }
     let ends = edges.iter().map(|edge| topology.edges()[edge.index()]);
     let both = ends.flat_map(|[a, b]| [(a.index(), b), (b.index(), a)]);
-    let boundary = Boundary { positions, beside: Rows::collect(positions.len(), both) };
+    let boundary = Boundary { positions, gap, beside: Rows::collect(positions.len(), both) };
     faces.clear();
     faces.extend(topology.faces());
     let mut n_joined = 0;
@@ -63,6 +64,7 @@ pub(super) fn close(
 
 struct Boundary<'a> {
     positions: &'a [Point3<f64>],
+    gap: f64,
     /// The other ends of the boundary edges at every vertex.
     beside: Rows<VertexId>,
 }
@@ -75,19 +77,20 @@ impl Boundary<'_> {
         let sides = [at(end) - at(start), at(apex) - at(start), at(apex) - at(end)];
         let shortest = sides.iter().map(|side| side.norm()).fold(f64::INFINITY, f64::min);
         let farthest = [start, end, apex].map(|v| at(v).coords.amax()).into_iter().fold(0.0, f64::max);
-        let tolerance = f64::min(ROUNDING * farthest, SEAM_TOLERANCE * shortest);
+        let rounding = f64::min(ROUNDING * farthest, SEAM_TOLERANCE * shortest);
+        let width = rounding.max(self.gap);
         let length = sides[0].norm();
         let along = sides[0] / length;
         // The part of a face without area could not be told from one beside it.
-        if sides[1].cross(&along).norm() <= tolerance {
+        if sides[1].cross(&along).norm() <= width {
             return Vec::new();
         }
         // How far along the edge a vertex on it is.
         let place = |v: VertexId| {
             let from_start = at(v) - at(start);
             let along_edge = from_start.dot(&along);
-            let is_on = (from_start - along * along_edge).norm() <= tolerance;
-            (is_on && along_edge > tolerance && along_edge < length - tolerance).then_some(along_edge)
+            let is_on = (from_start - along * along_edge).norm() <= width;
+            (is_on && along_edge > rounding && along_edge < length - rounding).then_some(along_edge)
         };
         let mut found: Vec<(f64, VertexId)> = Vec::new();
         for (first, sign) in [(start, 1.0), (end, -1.0)] {
@@ -96,7 +99,7 @@ impl Boundary<'_> {
                 let beside = self.beside.row(here.index());
                 let few = &beside[..if beside.len() <= MAX_BESIDE { beside.len() } else { 0 }];
                 let onward = few.iter().filter_map(|v| Some((place(*v)?, *v)));
-                let onward = onward.filter(|(to, _)| sign * (to - reached) > tolerance);
+                let onward = onward.filter(|(to, _)| sign * (to - reached) > rounding);
                 let Some(next) = onward.min_by(|a, b| (sign * a.0).total_cmp(&(sign * b.0))) else { break };
                 (reached, here) = next;
                 found.push(next);
@@ -104,7 +107,7 @@ impl Boundary<'_> {
         }
         found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         // Coincident vertices that were not welded are not joined either.
-        found.dedup_by(|next, before| next.0 - before.0 <= tolerance);
+        found.dedup_by(|next, before| next.0 - before.0 <= rounding);
         found.into_iter().map(|(_, v)| v).collect()
     }
 }

@@ -99,6 +99,28 @@ fn coordinates_may_be_rounded_to_single_precision_or_six_digits() {
 }
 
 #[test]
+fn cracks_up_to_the_tolerance_are_closed_between_rows_that_differ() {
+    let (width, gap) = (1.0, 1e-4);
+    let square = |n: usize, x: f64| {
+        let mut mesh = shapes::grid(n + 1, n + 1, width / n as f64);
+        mesh.positions.iter_mut().for_each(|p| p.x += x);
+        mesh
+    };
+    for n in [7, 13, 20] {
+        let mesh = shapes::disjoint(&[square(10, 0.0), square(n, width + gap)]);
+        for tolerance in [2.0 * gap, 20.0 * gap] {
+            let options = RepairOptions { weld: Weld::Within(tolerance), ..RepairOptions::default() };
+            let found = validate(&repair(&mesh, &options, &()).unwrap().mesh);
+            assert_eq!(
+                (found.n_components, found.n_boundary_loops, found.genus),
+                (1, 1, Some(0)),
+                "{n} {tolerance}"
+            );
+        }
+    }
+}
+
+#[test]
 fn meshes_without_t_junctions_stay_as_they_are() {
     for mesh in surfaces() {
         let repaired = repair(&mesh, &RepairOptions::default(), &()).unwrap();
