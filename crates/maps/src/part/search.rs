@@ -135,7 +135,7 @@ fn best(sides: &Sides<'_>, found: &[ScoredPlaces]) -> Result<Option<SurfaceMap>,
         confidence = confidence.min(DOUBTED);
     }
     let mut map = refined(sides, best, confidence)?;
-    if let Some(rival) = rival.filter(|_| confidence < SurfaceMap::CERTAIN) {
+    if let Some(rival) = rival.filter(|_| confidence < Boundary::CERTAIN) {
         map.alternative = Some(Box::new(refined(sides, rival, 1.0 - confidence)?));
     }
     Ok(Some(map))
