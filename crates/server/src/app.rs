@@ -49,14 +49,12 @@ impl Query {
         budget: &Budget,
     ) -> Result<Answer, Error> {
         let search = &collection.search;
-        match options.rank_by {
-            SearchRank::Part => {
-                let query = self.described.clone();
-                let query = query.as_part(&self.measured.surface, search.describe_options(), budget)?;
-                search.search(&query, options, budget)
-            }
-            _ => search.search(&self.described, options, budget),
+        // The same file in the index is not a neighbor of its own.
+        let mut query = search.of_bytes(self.described.clone())?;
+        if options.rank_by == SearchRank::Part {
+            query = query.as_part(&self.measured.surface, search.describe_options(), budget)?;
         }
+        search.search(&query, options, budget)
     }
 }
 
