@@ -19,9 +19,9 @@ pub(super) const ROUNDING: f64 = 1e-5;
 /// places are equal up to this share.
 pub(super) const MAX_ROUNDING: f64 = 10.0 * ROUNDING;
 
-/// Rounding changes the sizes of two meshes by at most the largest distance of their vertices times this, or by [`ROUNDING`], which may
-/// be the same for all vertices.
-pub(super) const SIZE_BY_VERTICES: f64 = 10.0;
+/// Rounding and other triangles change the sizes of two meshes by at most this multiple of how far their vertices or surfaces are apart, or
+/// by [`ROUNDING`], which may be the same for all vertices.
+pub(super) const SIZE_BY_DISTANCE: f64 = 10.0;
 
 /// Most components that are compared on their own, the largest by area.
 const MAX_COMPONENTS: usize = 200;

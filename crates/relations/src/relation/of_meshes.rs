@@ -3,12 +3,12 @@
 use std::ops::ControlFlow::{self, Break, Continue};
 
 use descriptors::Side;
-use rigid::{Alignment, Similarity, align_surfaces, is_symmetric};
+use rigid::{Alignment, Gap, Similarity, align_surfaces, is_symmetric};
 
 use super::calibration::{CUT, EXACT, FARTHEST, VARIANT};
 use super::cut::piece_of;
 use super::exact::{SameVertices, same_vertices};
-use super::geometry::{MAX_ROUNDING, MeshGeometry, ROUNDING, SIZE_BY_VERTICES};
+use super::geometry::{MAX_ROUNDING, MeshGeometry, ROUNDING, SIZE_BY_DISTANCE};
 use super::mesh_change::mesh_change;
 use super::noise::noise_of_parts;
 use super::parts::{PartCopy, Parts, occurrences};
@@ -16,6 +16,11 @@ use super::same_surface::{is_one_surface, same_surface};
 use super::units::UnitChange;
 use super::variant::differences;
 use super::{Basis, Change, Relation, RelationKind, SIZE_OF_SURFACES};
+
+/// Up to which share the sizes of two triangulations are equal that are so far apart, at unit area.
+fn size_tolerance(gap: Gap) -> f64 {
+    (SIZE_BY_DISTANCE * gap.rms).clamp(MAX_ROUNDING, SIZE_OF_SURFACES)
+}
 
 impl Relation {
     /// The relation once both meshes are known, too.
@@ -126,7 +131,7 @@ impl Relation {
         // A surface that is its own mirror image is not another one for being mirrored, only its triangles are.
         let is_turned = reflected && is_symmetric(&b.surface);
         // Sizes are known as well as vertices agree.
-        let tolerance = (SIZE_BY_VERTICES * same.gap).clamp(ROUNDING, MAX_ROUNDING);
+        let tolerance = (SIZE_BY_DISTANCE * same.gap).clamp(ROUNDING, MAX_ROUNDING);
         changes.extend(Change::of_similarity(scale, tolerance, reflected && !is_turned));
         changes.extend((is_turned || !same.same_faces).then_some(Change::Remeshed));
         let kind = match changes.last() {
@@ -143,7 +148,7 @@ impl Relation {
     fn with_parts(mut self, parts: Parts, copy: PartCopy) -> Self {
         let PartCopy { scale, mirrored, gap, confidence } = copy;
         let scale = if parts.whole == Side::Second { scale } else { 1.0 / scale };
-        let tolerance = if gap.is_none() { MAX_ROUNDING } else { SIZE_OF_SURFACES };
+        let tolerance = gap.map_or(MAX_ROUNDING, size_tolerance);
         let mut changes = Change::of_similarity(scale, tolerance, mirrored);
         changes.extend(gap.map(|_| Change::Remeshed));
         let all = parts.found == parts.components && parts.found > 1;
@@ -164,7 +169,8 @@ impl Relation {
             return Continue(self);
         }
         let scale = map.scale * b.size() / a.size();
-        let mut changes = Change::of_similarity(scale, SIZE_OF_SURFACES, map.reflected);
+        let tolerance = size_tolerance(gap);
+        let mut changes = Change::of_similarity(scale, tolerance, map.reflected);
         let kind = if change == Change::Noisy { RelationKind::Noisy } else { RelationKind::Remeshed };
         changes.push(change);
         // One of the two has noise, and the other has not.
@@ -175,7 +181,7 @@ impl Relation {
         if change != Change::Noisy && is_noisier {
             changes.push(Change::Noisy);
         }
-        Break(self.found(kind, probability, changes, scale, SIZE_OF_SURFACES))
+        Break(self.found(kind, probability, changes, scale, tolerance))
     }
 
     /// Of meshes that are not one surface. Parts of machines do not bend, so they are variants of one part, or other parts.
