@@ -12,7 +12,9 @@ use datasets::{
 use descriptors::ShapeMetric;
 use index::{Entry, IndexWriter, Shape};
 use mesh::TriMesh;
+use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
+use surface::VertexId;
 
 /// Copies that are as exact as the original, and then others.
 const EXACT: [&[Damage]; 2] = [&[Damage::Move], &[]];
@@ -30,11 +32,13 @@ const OTHERS: [&[Damage]; 8] = [
 fn original(group: usize) -> TriMesh {
     match group % 2 {
         0 => mechanical_parts(0, group / 2 + 1)[group / 2].mesh(&PartMesh::default()),
-        _ => {
-            let options = CreatureOptions { n_vertices: 1000, ..Default::default() };
-            creature_body(group / 2, group, 1, &options, &()).unwrap().mesh
-        }
+        _ => body(group, 1000),
     }
+}
+
+fn body(group: usize, n_vertices: usize) -> TriMesh {
+    let options = CreatureOptions { n_vertices, ..Default::default() };
+    creature_body(group / 2, group, 1, &options, &()).unwrap().mesh
 }
 
 /// The files of a group: the original, one or two exact copies, and three others. The names of exact ones begin with `e`.
@@ -103,6 +107,46 @@ fn wrong_keepers(n: usize) -> Vec<String> {
 #[test]
 fn an_exact_copy_is_kept() {
     assert_eq!(wrong_keepers(6), Vec::<String>::new());
+}
+
+/// The surface through the centroids of the faces of a closed mesh: twice as many vertices, all of them on the mesh, whose own are lost.
+fn through_centroids(mesh: &TriMesh) -> TriMesh {
+    let mut around = vec![Vec::new(); mesh.n_vertices()];
+    for (f, corners) in mesh.faces.iter().enumerate() {
+        corners.iter().for_each(|v| around[v.index()].push(f));
+    }
+    let positions: Vec<Point3<f64>> = (0..mesh.n_faces())
+        .map(|f| Point3::from(mesh.triangle(f).iter().map(|p| p.coords).sum::<Vector3<f64>>() / 3.0))
+        .collect();
+    let mut faces = Vec::new();
+    for (v, around) in around.iter_mut().enumerate() {
+        let normal: Vector3<f64> = around.iter().map(|&f| mesh.area_vector(f)).sum();
+        let from = |f: usize| positions[f] - mesh.positions[v];
+        let x = from(around[0]).cross(&normal).normalize();
+        let y = normal.normalize().cross(&x);
+        around.sort_by(|&f, &g| {
+            let angle = |f: usize| from(f).dot(&y).atan2(from(f).dot(&x));
+            angle(f).total_cmp(&angle(g))
+        });
+        faces.extend(around[1..].windows(2).map(|pair| [around[0], pair[0], pair[1]].map(VertexId::from)));
+    }
+    TriMesh { positions, faces }
+}
+
+#[test]
+fn the_original_is_kept_beside_a_finer_copy_that_has_lost_its_edges() {
+    for group in [0, 2, 4] {
+        let folder = tempfile::tempdir().unwrap();
+        let mesh = body(group, 4000);
+        let copy = through_centroids(&mesh);
+        for (name, mesh) in [("original.ply", &mesh), ("copy.ply", &Damage::Move.apply(&copy, 3))] {
+            mesh_io::write(&folder.path().join(name), mesh).unwrap();
+        }
+        let files = ["copy.ply", "original.ply"].map(|name| (0, name.to_owned()));
+        let found = duplicates(files.to_vec(), folder.path());
+        let kept: Vec<_> = found.groups.iter().map(|group| (&*group.keeper.id, &*group.why)).collect();
+        assert_eq!(kept, [("original.ply", "it has the most detail")], "{group}");
+    }
 }
 
 #[test]

@@ -5,8 +5,7 @@
 //! equal bytes -> fused vectors -> near pairs -> invariants -> clusters -> meshes -> keeper, and what is proved to be the keeper
 //! ```
 
-use std::cmp::Reverse;
-use std::collections::{BTreeMap, HashMap, VecDeque};
+use std::collections::{BTreeMap, HashMap, HashSet, VecDeque};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::time::Instant;
@@ -14,10 +13,10 @@ use std::time::Instant;
 use base::Observer;
 use base::files::FileId;
 use collection::Storage;
-use descriptors::{ShapeDistance, ShapeMetric};
+use descriptors::{ShapeDistance, ShapeMetric, Side};
 use index::Entry;
 use rayon::prelude::*;
-use relations::{Merit, MeshGeometry, Relation, RelationKind, SurfaceInvariants};
+use relations::{Change, Merit, MeshGeometry, Relation, RelationKind, SurfaceInvariants};
 use rigid::Handedness;
 use serde::Serialize;
 use surface::DisjointSets;
@@ -33,9 +32,6 @@ const NEIGHBORS: usize = 16;
 /// on most pairs of the built-in families. A safety limit: the meshes decide.
 const NEAR: f64 = 4.0;
 
-/// Sizes of files in one unit differ by less than this (logarithm). A tolerance of decimation.
-const SAME_SIZE: f64 = 0.01;
-
 /// The kinds that make two files duplicates.
 const KINDS: [RelationKind; 6] = [
     RelationKind::IdenticalFile,
@@ -46,12 +42,12 @@ const KINDS: [RelationKind; 6] = [
     RelationKind::Remeshed,
 ];
 
-/// Which file of a group is suggested to be kept. Between equal ones, references come first, then the size of most, files before
-/// links and members of archives, formats that lose nothing, the folders in the order of
-/// [`folders`](DuplicateOptions::folders), the oldest, the shortest path.
+/// Which file of a group is suggested to be kept. Between equal ones, references come first, then files before links and
+/// members of archives, formats that lose nothing, the folders in the order of [`folders`](DuplicateOptions::folders), the oldest, the
+/// shortest path.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Keep {
-    /// The most [exact](MeshGeometry::merit_over): without noise, with all detail, in the fewest vertices.
+    /// The most [exact](Relation::more_exact): without noise, with all detail, in the fewest vertices.
     #[default]
     Exact,
     /// That with the most vertices, then bytes.
@@ -148,9 +144,13 @@ pub struct DuplicateMember {
 }
 
 impl DuplicateMember {
-    /// Whether it can be spared: it is the surface of a file that is kept, is no reference, and its bytes would be free.
+    /// Whether it can be spared: it is the surface of a file that is kept, is no reference, and its bytes would be free. Parts of other
+    /// sizes, unless the unit changed, and left and right ones are not spared.
     pub fn is_spare(&self) -> bool {
-        self.relation.kind.is_one_surface() && !(self.file.reference || self.file.is_linked)
+        let told = &self.relation;
+        let is_other =
+            told.has(Change::Mirrored) || told.has(Change::Scaled) && told.evidence.units.is_none();
+        told.kind.is_one_surface() && !(is_other || self.file.reference || self.file.is_linked)
     }
 }
 
@@ -270,7 +270,7 @@ pub fn find_duplicates(
         .par_iter()
         .map(|cluster| {
             let read = |&number: &usize| ClusterShape::read(&candidates[number], &places);
-            groups(kept_first(cluster.par_iter().map(read).collect(), &places), options, observer)
+            groups(kept_first(cluster.par_iter().map(read).collect(), &places), &places, options, observer)
         })
         .collect::<Result<Vec<_>, Error>>()?;
     let n_compared = found.iter().map(|(_, n_compared)| n_compared).sum();
@@ -443,17 +443,32 @@ impl<'a> Places<'a> {
         [i64::from(is_elsewhere), first, second]
     }
 
-    /// Files in the order of these are kept, as far as nothing else decides.
-    fn order(&self, file: &DuplicateFile) -> impl Ord + use<> {
+    /// Files in the order of these are kept, as far as nothing else decides; [`ORDER`] says what they are.
+    fn order(&self, file: &DuplicateFile) -> ([u64; 6], String) {
         let place = absolute(&file.path).unwrap_or_else(|_| file.path.clone());
         let folder = self.folders.iter().position(|folder| place.starts_with(folder));
-        // Triangles of STL have no vertices in common, and coordinates of 32 bits.
-        let format = usize::from(mesh_io::extension(&file.path) == "stl");
-        let length = file.path.as_os_str().len();
-        let about = (format, folder.unwrap_or(self.folders.len()), file.modified, length, file.id.clone());
-        (!file.reference, file.is_linked, about)
+        let about = [
+            u64::from(!file.reference),
+            u64::from(file.is_linked),
+            u64::from(mesh_io::extension(&file.path) == "stl"),
+            folder.unwrap_or(self.folders.len()) as u64,
+            file.modified.unwrap_or_default(),
+            file.path.as_os_str().len() as u64,
+        ];
+        (about, file.id.clone())
     }
 }
+
+/// Why the first file is kept in the [order](Places::order) of two. Triangles of STL have no vertices in common, and coordinates of 32
+/// bits.
+const ORDER: [&str; 6] = [
+    "it is in a reference folder",
+    "it is neither a link nor in an archive",
+    "its format keeps what triangles share",
+    "its folder comes first",
+    "it is the oldest",
+    "it has the shortest path",
+];
 
 /// A content that may be that of others, with its mesh.
 struct ClusterShape<'a> {
@@ -480,16 +495,14 @@ impl<'a> ClusterShape<'a> {
         (self.wanted == other.wanted).then_some(meshes)
     }
 
-    /// Why this shape is rather kept than another one, if it is.
-    fn merit_over(&self, other: &Self) -> Option<Merit> {
-        let [own, others] = self.meshes(other)?;
-        own.merit_over(others)
+    /// Whether it is rather kept than another one, by their meshes alone.
+    fn is_before(&self, other: &Self) -> bool {
+        self.meshes(other).is_some_and(|[own, others]| own.merit_over(others).is_some())
     }
 
-    /// Whether what it has beyond another shape, to which it has this relation, is noise.
-    fn is_noise_beside(&self, other: &Self, told: &Relation) -> bool {
-        let meshes = self.meshes(other).filter(|[own, others]| own.may_be_noise_of(others));
-        meshes.and_then(|meshes| told.overlay(meshes)).is_some_and(|overlay| overlay.is_noise())
+    /// Which of the two is rather kept, and why, if this is how another shape is related to it.
+    fn more_exact(&self, other: &Self, told: &Relation) -> Option<(Side, Merit)> {
+        told.more_exact(self.meshes(other)?)
     }
 
     /// Its files but the first, which have the bytes of that.
@@ -516,14 +529,9 @@ impl<'a> ClusterShape<'a> {
     }
 }
 
-/// Shapes in the order in which they are kept where none is more exact: what is wanted, then the size of most.
+/// Shapes in the order in which they are kept where none is more exact.
 fn kept_first<'a>(mut shapes: Vec<ClusterShape<'a>>, places: &Places<'_>) -> Vec<ClusterShape<'a>> {
-    let sizes: Vec<f64> = shapes.iter().filter_map(|shape| Some(shape.geometry.as_ref()?.size())).collect();
-    let n_alike = |shape: &ClusterShape<'_>| {
-        let size = shape.geometry.as_ref().map_or(f64::NAN, MeshGeometry::size);
-        sizes.iter().filter(|other| (size / **other).ln().abs() < SAME_SIZE).count()
-    };
-    shapes.sort_by_cached_key(|shape| (shape.wanted, Reverse(n_alike(shape)), places.order(&shape.files[0])));
+    shapes.sort_by_cached_key(|shape| (shape.wanted, places.order(&shape.files[0])));
     shapes
 }
 
@@ -531,6 +539,7 @@ fn kept_first<'a>(mut shapes: Vec<ClusterShape<'a>>, places: &Places<'_>) -> Vec
 /// meshes that were compared, too.
 fn groups(
     shapes: Vec<ClusterShape<'_>>,
+    places: &Places<'_>,
     options: &DuplicateOptions,
     observer: &dyn Observer,
 ) -> Result<(Vec<DuplicateGroup>, usize), Error> {
@@ -547,7 +556,7 @@ fn groups(
         let keeper = left
             .iter()
             .filter(|shape| !is_in(&rough, shape))
-            .fold(first, |best, next| if next.merit_over(best).is_some() { next } else { best });
+            .fold(first, |best, next| if next.is_before(best) { next } else { best });
         let others: Vec<_> = left.iter().copied().filter(|shape| !std::ptr::eq(*shape, keeper)).collect();
         let relate = |other: &&ClusterShape<'_>| {
             budget.check()?;
@@ -567,9 +576,9 @@ fn groups(
         }
         // Merits over one shape and of another one over that need not add up.
         let is_better = |(other, told): &(&ClusterShape<'_>, Relation)| {
-            keeper.is_noise_beside(other, told) || !is_in(&rough, other) && other.merit_over(keeper).is_some()
+            !is_in(&rough, other) && matches!(keeper.more_exact(other, told), Some((Side::Second, _)))
         };
-        if !is_in(&rough, keeper) && same.iter().any(is_better) {
+        if !is_in(&rough, keeper) && same.par_iter().any(is_better) {
             rough.push(keeper);
             continue;
         }
@@ -599,7 +608,7 @@ fn groups(
         left.retain(|shape| {
             !std::ptr::eq(*shape, keeper) && same.iter().all(|(other, _)| !std::ptr::eq(*other, *shape))
         });
-        groups.extend(group(keeper, same, options));
+        groups.extend(group(keeper, same, places, options));
     }
     Ok((groups, n_compared))
 }
@@ -608,9 +617,10 @@ fn groups(
 fn group(
     keeper: &ClusterShape<'_>,
     same: Vec<(&ClusterShape<'_>, Relation)>,
+    places: &Places<'_>,
     options: &DuplicateOptions,
 ) -> Option<DuplicateGroup> {
-    let why = why(keeper, &same, options);
+    let why = why(keeper, &same, places);
     let mut members: Vec<DuplicateMember> = keeper.copies().collect();
     let mut left = VecDeque::from(same);
     while let Some((shape, relation)) = left.pop_front() {
@@ -646,27 +656,31 @@ fn related(
     Some(by(by_distance, [keeper.geometry.as_ref()?, other.geometry.as_ref()?]))
 }
 
-/// Why a shape is kept.
-fn why(
-    keeper: &ClusterShape<'_>,
-    same: &[(&ClusterShape<'_>, Relation)],
-    options: &DuplicateOptions,
-) -> String {
-    let others = || same.iter().flat_map(|(shape, _)| &shape.files).chain(&keeper.files[1..]);
-    let is_wanted = same.iter().any(|(shape, _)| shape.wanted != keeper.wanted);
-    let merit = same.iter().filter_map(|(shape, _)| keeper.merit_over(shape)).min();
+/// Why a shape is kept: its merits, and without any what comes first.
+fn why(keeper: &ClusterShape<'_>, same: &[(&ClusterShape<'_>, Relation)], places: &Places<'_>) -> String {
     let file = &keeper.files[0];
-    match (&options.keep, merit) {
-        (Keep::In(_), _) if is_wanted => "it is in the folder to keep".to_owned(),
-        (Keep::Largest, _) => "it is the largest".to_owned(),
-        (Keep::Smallest, _) => "it is the smallest".to_owned(),
-        (Keep::Oldest, _) => "it is the oldest".to_owned(),
-        (Keep::Newest, _) => "it is the newest".to_owned(),
-        (Keep::Exact | Keep::In(_), Some(merit)) => merit.words().to_owned(),
-        _ if file.reference && others().any(|other| !other.reference) => {
-            "it is in a reference folder".to_owned()
+    let against_file = |other: &DuplicateFile| match places.keep {
+        Keep::In(_) if places.wanted(file) != places.wanted(other) => "it is in the folder to keep",
+        Keep::Largest => "it is the largest",
+        Keep::Smallest => "it is the smallest",
+        Keep::Oldest => "it is the oldest",
+        Keep::Newest => "it is the newest",
+        Keep::Exact | Keep::In(_) => {
+            let [own, others] = [file, other].map(|file| places.order(file).0);
+            let first = own.iter().zip(others).position(|(own, other)| *own != other);
+            first.map_or("its name comes first", |first| ORDER[first])
         }
-        _ if others().any(|other| other.modified > file.modified) => "it is the oldest".to_owned(),
-        _ => "it has the size of most, or the shortest path".to_owned(),
+    };
+    let merit = |(other, told): &(&ClusterShape<'_>, Relation)| match keeper.more_exact(other, told) {
+        Some((Side::First, merit)) => Some(merit.words()),
+        _ => None,
+    };
+    let mut reasons: Vec<&str> = same.iter().filter_map(merit).collect();
+    if reasons.is_empty() {
+        let others = same.iter().map(|(other, _)| &other.files[0]).chain(&keeper.files[1..]);
+        reasons = others.map(against_file).collect();
     }
+    let mut seen = HashSet::new();
+    reasons.retain(|reason| seen.insert(*reason));
+    reasons.join("; ")
 }

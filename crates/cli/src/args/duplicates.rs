@@ -15,7 +15,7 @@ which it is an exact copy, by the triangles of both: `remeshed` and `noisy` say 
 without.
 
 By default, the most exact file is kept: without noise, with all detail, in the fewest vertices. Between equal ones, references
-come first, then the size of most, formats that lose nothing, folders in the order given, and the oldest.
+come first, then formats that lose nothing, folders in the order given, and the oldest.
 
 --move-to moves copies of a file or of its geometry, with all files of their meshes, into FOLDER, which scans leave out from
 then on. Links, what they lead to, files with several names and members of archives stay. A cell of the CSV that a spreadsheet

@@ -15,7 +15,7 @@ pub(super) const ABOUT: f64 = 0.05;
 
 /// Displacements of neighboring vertices are independent, as those by noise, if their correlation along edges is below
 /// this. A safety limit: it is 0 for noise and 1 for a smooth deformation.
-pub(super) const INDEPENDENT: f64 = 0.5;
+const INDEPENDENT: f64 = 0.5;
 
 /// What happened to the triangles of a surface; `map` takes the first mesh onto the second. Of meshes with the same faces it is
 /// [`Change::Noisy`] if displacements do not depend on those of neighbors, else [`Change::Posed`].
@@ -54,12 +54,6 @@ fn displacements([a, b]: [&MeshGeometry; 2]) -> Option<[f64; 3]> {
     });
     let (_, moved) = fits.into_iter().flatten().min_by(|x, y| x.0.total_cmp(&y.0))?;
     Some(products_along_edges(a.mesh(), |v, w| moved[v].dot(&moved[w])))
-}
-
-/// The correlation of something at vertices that share an edge, by products of any two; `None` if it is zero everywhere.
-pub(super) fn correlation_of_neighbors(mesh: &TriMesh, product: impl Fn(usize, usize) -> f64) -> Option<f64> {
-    let [joint, own, _] = products_along_edges(mesh, product);
-    (own > 0.0).then(|| joint / own)
 }
 
 /// The products over the ends of edges, the squares at them, and how many edges there are.

@@ -2,11 +2,10 @@
 
 use mesh::TriMesh;
 use nalgebra::Point3;
-use rigid::{TriangleTree, align_surfaces};
+use rigid::TriangleTree;
 
 use super::exact::same_vertices;
 use super::geometry::MeshGeometry;
-use super::mesh_change::{INDEPENDENT, correlation_of_neighbors};
 use super::{Relation, RelationKind};
 
 /// Two meshes laid over each other by the best motion, reflection and change of size, at the size of the first and in its
@@ -19,18 +18,8 @@ pub struct MeshOverlay {
     pub gaps: [Vec<f64>; 2],
 }
 
-impl MeshOverlay {
-    /// Whether vertices of the first mesh are as far from the second as noise takes them: independently of their neighbors.
-    pub fn is_noise(&self) -> bool {
-        let ([mesh, _], [gaps, _]) = (&self.meshes, &self.gaps);
-        let mean = gaps.iter().sum::<f64>() / gaps.len().max(1) as f64;
-        let found = correlation_of_neighbors(mesh, |v, w| (gaps[v] - mean) * (gaps[w] - mean));
-        found.is_some_and(|correlation| correlation < INDEPENDENT)
-    }
-}
-
 impl Relation {
-    /// The meshes laid over each other, if they are alike as rigid bodies: one surface, at any size or mirrored, or variants of a part.
+    /// The meshes, for which this relation was found, laid over each other, if they are alike as rigid bodies: one surface, at any size or mirrored, or variants of a part.
     ///
     /// ```
     /// use canonform_relations::{MeshGeometry, Relation};
@@ -49,8 +38,7 @@ impl Relation {
         if !(self.kind.is_one_surface() || self.kind == RelationKind::Variant) {
             return None;
         }
-        let exact = same_vertices(a, b).map(|same| same.map);
-        let map = exact.or_else(|| align_surfaces(&a.surface, &b.surface).map(|found| found.map))?;
+        let map = self.map.or_else(|| same_vertices(a, b).map(|same| same.map))?;
         // The map leads to the second mesh at unit area.
         let size = a.size() / map.scale;
         let laid = |mesh: &TriMesh, place: &dyn Fn(&Point3<f64>) -> Point3<f64>| TriMesh {

@@ -27,7 +27,7 @@ mod words;
 
 use base::ContentHash;
 use descriptors::{Boundary, ShapeDistance, ShapeMetric, Side};
-use rigid::Handedness;
+use rigid::{Handedness, Similarity};
 
 pub use cut::CutPiece;
 pub use evidence::{Basis, Evidence};
@@ -70,6 +70,8 @@ pub struct Relation {
     pub evidence: Evidence,
     /// What the two are called in words.
     names: [String; 2],
+    /// The map from the first mesh to the second, both at unit area, of surfaces that are alike in space.
+    map: Option<Similarity>,
 }
 
 impl Relation {
@@ -111,7 +113,7 @@ impl Relation {
             (RelationKind::Different, another_class, Vec::new())
         };
         let names = ["the first", "the second"].map(str::to_owned);
-        Self { kind, changes, confidence, evidence, names }
+        Self { kind, changes, confidence, evidence, names, map: None }
     }
 
     /// The relation of parts of machines: they do not bend, so that another pose is not what their distance may say.

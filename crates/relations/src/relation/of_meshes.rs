@@ -140,7 +140,7 @@ impl Relation {
             Some(Change::Remeshed) => RelationKind::Remeshed,
             _ => RelationKind::IdenticalGeometry,
         };
-        self.evidence.vertex_gap = Some(same.gap);
+        (self.evidence.vertex_gap, self.map) = (Some(same.gap), Some(same.map));
         self.found(kind, 1.0, changes, scale, tolerance)
     }
 
@@ -164,7 +164,7 @@ impl Relation {
         let Alignment { map, gap } = aligned;
         let change = mesh_change([a, b], &map);
         let [ratio, probability] = same_surface(&aligned, [a, b], change);
-        (self.evidence.surface_gap, self.evidence.gap_ratio) = (Some(gap), Some(ratio));
+        (self.evidence.surface_gap, self.evidence.gap_ratio, self.map) = (Some(gap), Some(ratio), Some(map));
         if probability < 0.5 || change == Change::Posed {
             return Continue(self);
         }
