@@ -48,4 +48,4 @@ pub use row_sample::{RowSample, sample_rows};
 pub use sample_search::{EmbedSamples, SampleSearch, SampleStop, SampleTrial, SamplesReport};
 pub use smacof::{LandmarkPairs, SmacofOptions, SmacofReport, SmacofStop, smacof};
 pub use spectral::{SpectralBasis, SpectralOptions, spectral};
-pub use stress::{DistanceRows, Stress, estimate_stress, normalized_stress, paper_stress, stress};
+pub use stress::{DistanceRows, Stress, estimate_stress, paper_stress, stress};

@@ -72,7 +72,7 @@ pub enum SmacofStop {
 /// * Finds a local minimum that depends on the start. Classical and Nystrom scaling are good starts. A dimension that is
 ///   zero in the start stays zero.
 /// * Fits distances, whereas classical and Nystrom scaling fit their squares: the paper's stress of the result is larger than
-///   that of classical scaling, [`normalized_stress`](crate::normalized_stress) is smaller, and small features count more.
+///   that of classical scaling, the [normalized](crate::Stress::normalized) one is smaller, and small features count more.
 /// * Landmarks that are spread evenly serve nearly as well as all pairs.
 /// * The result is centered and rotated to its principal axes; `eigenvalues` are the k of `X' X`.
 /// * Cost: `O(p n k)` per step; `O(p k)` memory besides the distances. Does not depend on the number of threads.

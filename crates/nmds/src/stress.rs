@@ -49,7 +49,8 @@ impl DistanceRows for LandmarkDistances {
 pub struct Stress {
     /// See [`paper_stress`].
     pub value: f64,
-    /// See [`normalized_stress`].
+    /// Kruskal's stress `sqrt(sum (d_ij - |z_i - z_j|)^2 / sum d_ij^2)` over all pairs; 0 for an embedding without distortion,
+    /// 1 if all points coincide. It has no unit.
     pub normalized: f64,
     /// 95 % confidence interval of `value`; the value twice if all rows were used.
     pub interval: [f64; 2],
@@ -79,7 +80,7 @@ pub fn paper_stress(coords: &Matrix, rows: &dyn DistanceRows) -> Result<f64, Lin
     Ok(stress(coords, rows)?.value)
 }
 
-/// [`paper_stress`] and [`normalized_stress`] in one pass over the rows: [`estimate_stress`] from all of them.
+/// Both stresses in one pass over the rows: [`estimate_stress`] from all of them.
 ///
 /// Cost: each row once, `O(p k)` time each; `O(p)` memory per thread.
 ///
@@ -228,21 +229,4 @@ fn t_99(freedom: usize) -> f64 {
         // Cornish and Fisher's expansion.
         _ => 2.3264 + 3.73 / freedom as f64 + 5.7 / (freedom * freedom) as f64,
     }
-}
-
-/// Kruskal's stress `sqrt(sum (d_ij - |z_i - z_j|)^2 / sum d_ij^2)` over all pairs; 0 for an embedding without distortion,
-/// 1 if all points coincide. It has no unit.
-///
-/// Cost: `O(p^2 k)` time on one thread, for small p; [`stress`] finds it faster.
-pub fn normalized_stress(coords: &Matrix, distances: &DistanceMatrix) -> f64 {
-    let p = distances.n_points();
-    let (mut residual, mut total) = (0.0, 0.0);
-    for i in 0..p {
-        for j in 0..i {
-            let d = distances.get(i, j);
-            residual += (d - (coords.row(i) - coords.row(j)).norm()).powi(2);
-            total += d * d;
-        }
-    }
-    if total > 0.0 { (residual / total).sqrt() } else { 0.0 }
 }

@@ -10,7 +10,7 @@ use canonform::embed::{EmbedMethod, FormOptions, embed};
 use descriptors::{CanonicalForm, Normalization};
 use geodesics::{FastMarchingOptions, Method, ObtuseTreatment};
 use linalg::DistanceMatrix;
-use nmds::{Bandwidth, classical_full, normalized_stress};
+use nmds::{Bandwidth, classical_full, stress};
 use rayon::prelude::*;
 use report::record::{Axis, AxisScale, Figure, FigurePanels, Heat, Plot, PlotPoint, Series, SeriesKind};
 use report::{Record, Table};
@@ -94,7 +94,7 @@ pub(crate) fn figure4(context: &Context<'_>) -> Result<Record> {
                 measured.insert(format!("{method} {scale} {score}"), value);
                 *measured.entry(format!("{scale} {score} gap")).or_default() += sign * value;
             }
-            let plane_only = [normalized_stress(&plane.coords, distances), plane.negative_mass];
+            let plane_only = [stress(&plane.coords, distances)?.normalized, plane.negative_mass];
             let numbers =
                 scores.plain.mean.to_array().into_iter().chain(own.map(|(_, value)| value)).chain(plane_only);
             rows.push([*method, scale].map(Into::into).into_iter().chain(numbers.map(Into::into)).collect());
