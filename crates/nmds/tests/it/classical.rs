@@ -1,24 +1,14 @@
 use canonform_nmds::{classical, classical_full};
 use linalg::DistanceMatrix;
 
-use crate::support::{Cloud, circle, procrustes_free_gap};
-
-#[test]
-fn euclidean_distances_are_exact_below_and_above_the_size_of_the_krylov_iteration() {
-    for p in [40, 700] {
-        let cloud = Cloud::new(p, 3, 5);
-        let distances = DistanceMatrix::from_pairs(p, |i, j| cloud.distance(i, j)).unwrap();
-        let embedding = classical(&distances, 3, &()).unwrap();
-        assert!(procrustes_free_gap(&cloud, &embedding) < 1e-9);
-    }
-}
+use crate::support::Cloud;
 
 #[test]
 fn a_few_eigenpairs_equal_those_of_the_full_decomposition() {
-    let distances = circle(601);
+    // Above the size of the Krylov iteration.
+    let cloud = Cloud::new(601, 4, 5);
+    let distances = DistanceMatrix::from_pairs(601, |i, j| cloud.distance(i, j).powf(1.2)).unwrap();
     let (few, all) = (classical(&distances, 4, &()).unwrap(), classical_full(&distances, 4).unwrap());
-    for j in 0..4 {
-        assert!((few.eigenvalues[j] - all.eigenvalues[j]).abs() < 1e-8 * all.eigenvalues[0]);
-    }
-    assert!(all.negative_mass > 0.05 && all.eigenvalues.len() == 601);
+    assert!((few.coords - &all.coords).amax() < 1e-7 * all.coords.amax());
+    assert!(all.negative_mass > 0.01 && all.eigenvalues.len() == 601);
 }

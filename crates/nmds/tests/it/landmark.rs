@@ -1,7 +1,7 @@
-use canonform_nmds::{NmdsError, landmark_mds};
+use canonform_nmds::landmark_mds;
 use linalg::{LandmarkDistances, Matrix, symmetric_eigen};
 
-use crate::support::{Cloud, landmark_distances, pairwise};
+use crate::support::{Cloud, pairwise};
 
 /// `x_a = -1/2 L# (δ_a - δ_μ)` point by point, as de Silva and Tenenbaum print it. Compares distances, which do not
 /// depend on centering and rotation.
@@ -26,11 +26,4 @@ fn equals_the_closed_form_for_non_euclidean_distances() {
     };
     let positions = Matrix::from_row_iterator(120, k, (0..120).flat_map(position));
     assert!((pairwise(&positions) - pairwise(&embedding.coords)).amax() < 1e-10);
-}
-
-#[test]
-fn impossible_dimensions_are_rejected_with_the_limit() {
-    let distances = landmark_distances(&Cloud::new(20, 3, 35), 4);
-    assert_eq!(landmark_mds(&distances, 4), Err(NmdsError::BadDimension { dim: 4, limit: 3 }));
-    assert_eq!(landmark_mds(&distances, 0), Err(NmdsError::BadDimension { dim: 0, limit: 3 }));
 }

@@ -3,10 +3,10 @@ use linalg::{DistanceMatrix, LandmarkDistances, Matrix, SymmetricEigen, pseudo_i
 
 use crate::support::{Cloud, scaled};
 
-/// All distances of a cloud raised to a power (1: Euclidean), and the columns of the first n points.
-fn problem(p: usize, n: usize, power: f64) -> (DistanceMatrix, LandmarkDistances) {
+/// Distances of a cloud that are not Euclidean, and the columns of the first n points.
+fn problem(p: usize, n: usize) -> (DistanceMatrix, LandmarkDistances) {
     let cloud = Cloud::new(p, 3, 41);
-    let all = DistanceMatrix::from_pairs(p, |i, j| cloud.distance(i, j).powf(power)).unwrap();
+    let all = DistanceMatrix::from_pairs(p, |i, j| cloud.distance(i, j).powf(0.7)).unwrap();
     let columns = Matrix::from_fn(p, n, |i, j| all.get(i, j));
     (all, LandmarkDistances::new((0..n).collect(), columns).unwrap())
 }
@@ -21,20 +21,6 @@ fn cur(rank: usize) -> Regularization {
     Regularization::Cur { rank: Some(rank) }
 }
 
-#[test]
-fn rank_five_reconstructs_a_matrix_of_rank_five() {
-    let (all, columns) = problem(150, 9, 1.0);
-    let reconstruction = Reconstruction::new(&columns, &all).unwrap();
-    assert!(reconstruction.best_projection().relative < 1e-13);
-    for exact in [low_rank(5), cur(5), Regularization::None, cur(9)] {
-        assert!(reconstruction.error(exact).unwrap().relative < 1e-11, "{exact:?}");
-    }
-    for short in [low_rank(4), cur(4)] {
-        assert!(reconstruction.error(short).unwrap().relative > 1e-4, "{short:?}");
-    }
-    assert!(reconstruction.error(RPI).unwrap().relative < 1e-3);
-}
-
 /// The eigenpairs of the `rank` largest magnitudes.
 fn by_magnitude(a: &Matrix, rank: usize) -> SymmetricEigen {
     let eigen = symmetric_eigen(a).unwrap();
@@ -45,14 +31,12 @@ fn by_magnitude(a: &Matrix, rank: usize) -> SymmetricEigen {
 
 #[test]
 fn errors_match_their_definition_in_any_unit() {
-    for scale in [1e-3, 1.0, 1e3] {
-        match_their_definition(scale);
-    }
+    [1e-3, 1.0, 1e3].into_iter().for_each(match_their_definition);
 }
 
 fn match_their_definition(scale: f64) {
     let (p, n) = (90, 8);
-    let (all, columns) = problem(p, n, 0.7);
+    let (all, columns) = problem(p, n);
     let all = DistanceMatrix::from_pairs(p, |i, j| scale * all.get(i, j)).unwrap();
     let reconstruction = Reconstruction::new(&scaled(&columns, scale), &all).unwrap();
     let squares = Matrix::from_fn(p, p, |i, j| all.get(i, j).powi(2));
@@ -87,25 +71,23 @@ fn match_their_definition(scale: f64) {
 #[test]
 fn the_projection_is_the_smallest_error_and_falls_with_more_samples() {
     let mut last = f64::INFINITY;
-    for n in [6, 12, 24, 48] {
-        let (all, columns) = problem(100, n, 0.7);
+    for n in [6, 12, 24, 48, 100] {
+        let (all, columns) = problem(100, n);
         let reconstruction = Reconstruction::new(&columns, &all).unwrap();
         let best = reconstruction.best_projection().relative;
-        assert!(best < last);
+        assert!(best < last && (n < 100 || best < 1e-13));
         last = best;
         for other in [Regularization::default(), RPI, Regularization::None, cur(5)] {
             assert!(reconstruction.error(other).unwrap().relative >= best, "{other:?}");
         }
+        let plain = reconstruction.error(Regularization::None).unwrap().relative;
+        assert!(n < 100 || plain < 1e-11);
     }
-    let (all, columns) = problem(40, 40, 0.7);
-    let reconstruction = Reconstruction::new(&columns, &all).unwrap();
-    assert!(reconstruction.best_projection().relative < 1e-13);
-    assert!(reconstruction.error(Regularization::None).unwrap().relative < 1e-11);
 }
 
 #[test]
 fn the_factor_is_exact_at_samples_if_no_eigenpair_is_dropped() {
-    let (all, columns) = problem(80, 20, 0.7);
+    let (all, columns) = problem(80, 20);
     let (z, n_positive) = low_rank_factor(&columns, 20).unwrap();
     let signs = Matrix::from_fn(20, 20, |i, j| match i == j {
         true if i < n_positive => 1.0,
@@ -122,8 +104,8 @@ fn the_factor_is_exact_at_samples_if_no_eigenpair_is_dropped() {
 
 #[test]
 fn mismatched_arguments_are_rejected() {
-    let (all, columns) = problem(20, 5, 1.0);
-    let (other, _) = problem(21, 5, 1.0);
+    let (all, columns) = problem(20, 5);
+    let (other, _) = problem(21, 5);
     let mismatch = NmdsError::PointMismatch { given: 20, n_points: 21 };
     assert_eq!(Reconstruction::new(&columns, &other).unwrap_err(), mismatch);
     let nothing = LandmarkDistances::new(vec![0, 1], Matrix::zeros(20, 2)).unwrap();
@@ -131,7 +113,4 @@ fn mismatched_arguments_are_rejected() {
     let reconstruction = Reconstruction::new(&columns, &all).unwrap();
     let bad = Err(NmdsError::BadRank { rank: 6, n_landmarks: 5 });
     assert_eq!(reconstruction.error(low_rank(6)), bad);
-    assert_eq!(reconstruction.error(cur(6)), bad);
-    let alpha = Regularization::Rpi { alpha: RpiAlpha::Relative(-1.0) };
-    assert_eq!(reconstruction.error(alpha), Err(NmdsError::BadAlpha(-1.0)));
 }
