@@ -55,11 +55,6 @@ impl ShapeDistance {
         self.same_shape() > 0.5
     }
 
-    /// Whether the shapes are at least as likely of one class as not. Neighbors as near as this vote on the class of a query.
-    pub fn may_be_same_class(&self) -> bool {
-        self.combined < ShapeMetric::SAME_CLASS.at
-    }
-
     /// Whether the shapes are certainly of different classes.
     pub fn is_different(&self) -> bool {
         self.combined > ShapeMetric::SAME_CLASS.gap()[1]
@@ -143,13 +138,6 @@ impl ShapeMetric {
         parts.chain(area.map(|area| Self::size_coordinate(area) as f32)).collect()
     }
 
-    /// The signature with the size of the surface as one more value, in the unit of the signature: a difference of
-    /// 5 % in size is as much as the difference between two poses.
-    pub fn with_size(mut signature: Signature, area: f64) -> Signature {
-        signature.values.push(Self::unit(signature.kind) * Self::size_coordinate(area));
-        signature
-    }
-
     /// The Euclidean distance between two fused vectors, or between two signatures rounded to 32 bits.
     pub fn fused(a: &[f32], b: &[f32]) -> f64 {
         a.iter().zip(b).map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>().sqrt()
@@ -218,8 +206,8 @@ impl ShapeMetric {
         left * Self::FORM_UNIT / Self::FORM_WEIGHT.sqrt() * SLACK
     }
 
-    /// The distance between aligned forms below which shapes with this robust distance
-    /// [may be of one class](ShapeDistance::may_be_same_class); 0 if their signatures alone are too far apart.
+    /// The distance between aligned forms below which shapes with this robust distance are at least as likely of one class as not;
+    /// 0 if their signatures alone are too far apart.
     pub fn same_below(robust: f64) -> f64 {
         Self::form_limit(robust, Self::SAME_CLASS.at)
     }
@@ -299,40 +287,33 @@ mod tests {
     }
 
     #[test]
-    fn a_combined_distance_has_its_parts() {
-        for (robust, form) in [(0.0, 0.0), (1.0, 0.03), (0.0, 0.1), (3.0, 0.0)] {
-            let combined = ShapeMetric::combined(robust, form);
-            assert!((ShapeMetric::robust_part(combined, form) - robust).abs() < 1e-9);
-        }
-        assert_eq!(ShapeMetric::robust_part(0.1, 9.0), 0.0);
-    }
-
-    #[test]
     fn answers_follow_each_other_as_the_distance_grows() {
         let at = |combined| ShapeDistance { fused: combined, combined };
         let mut last = at(0.0);
         // Not even distance 0 proves one shape.
         assert!(last.is_same_shape() && last.same_shape() < ShapeMetric::CERTAIN && last.same_class() > 0.99);
         for i in 1..4000 {
-            let next = at(f64::from(i) * 0.005);
+            let combined = f64::from(i) * 0.005;
+            let next = at(combined);
             assert!(next.same_shape() <= last.same_shape() && next.same_class() <= last.same_class());
             assert!(next.same_shape() <= next.same_class());
-            assert!(!next.is_same_shape() || next.may_be_same_class());
-            assert!(!(next.may_be_same_class() && next.is_different()));
-            assert_eq!(next.may_be_same_class(), next.same_class() > 0.5);
+            assert_eq!(combined < ShapeMetric::SAME_CLASS.at, next.same_class() > 0.5);
+            assert!(!next.is_same_shape() || next.same_class() > 0.5);
+            assert!(next.same_class() < 0.5 || !next.is_different());
             last = next;
         }
         assert!(last.is_different());
     }
 
     #[test]
-    fn a_form_at_the_limit_has_the_distance_at_which_classes_become_as_likely() {
+    fn a_combined_distance_has_its_parts_and_its_limit_is_that_of_the_form() {
         let at = ShapeMetric::SAME_CLASS.at;
-        for fused in [0.0, 0.3 * at, 0.85 * at] {
-            let limit = ShapeMetric::same_below(fused);
-            assert!(ShapeMetric::combined(fused, limit * 1.001) > at);
-            assert!(ShapeMetric::combined(fused, limit * 0.999) < at);
+        for robust in [0.0, 0.3 * at, 0.85 * at] {
+            let limit = ShapeMetric::same_below(robust);
+            let combined = ShapeMetric::combined(robust, limit);
+            assert!((combined / at - 1.0).abs() < 1e-6 && combined > at);
+            assert!((ShapeMetric::robust_part(combined, limit) - robust).abs() < 1e-6);
         }
-        assert_eq!(ShapeMetric::same_below(1.15 * at), 0.0);
+        assert_eq!((ShapeMetric::same_below(1.15 * at), ShapeMetric::robust_part(0.1, 9.0)), (0.0, 0.0));
     }
 }

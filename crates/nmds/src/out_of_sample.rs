@@ -38,19 +38,14 @@ pub struct OutOfSample {
 }
 
 impl OutOfSample {
-    /// Number of landmarks n.
-    pub fn n_landmarks(&self) -> usize {
-        self.means.len()
-    }
-
     /// The coordinates (q x k) of points with these distances to the landmarks (q x n), in the unit of the distances.
     ///
     /// # Errors
     /// [`NmdsError::Linalg`] if there is not one distance for each landmark, or one is infinite, NaN or negative.
     pub fn place(&self, distances: &Matrix) -> Result<Matrix, NmdsError> {
-        let (q, n) = (distances.nrows(), distances.ncols());
-        if n != self.n_landmarks() {
-            return Err(LinalgError::Shape { n_rows: q, n_columns: self.n_landmarks(), actual: q * n }.into());
+        let ((q, n), n_columns) = (distances.shape(), self.means.len());
+        if n != n_columns {
+            return Err(LinalgError::Shape { n_rows: q, n_columns, actual: q * n }.into());
         }
         let bad = |value: &f64| !(value.is_finite() && *value >= 0.0);
         if let Some(at) = distances.iter().position(bad) {

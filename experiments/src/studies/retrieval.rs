@@ -101,8 +101,11 @@ fn distances(
     add("fused", all(&|i, j| ShapeMetric::fused(&vectors[i], &vectors[j]))?);
     for kind in SignatureKind::ALL {
         let of = |shape: &Shape| {
-            let own = signature(shape, kind)?;
-            Some(area(shape).map_or(own.clone(), |area| ShapeMetric::with_size(own, area)))
+            let mut own = signature(shape, kind)?;
+            // A difference of 5 % in size is as much as between two poses.
+            let size = area(shape).map(ShapeMetric::size_coordinate);
+            own.values.extend(size.map(|size| size * ShapeMetric::unit(kind)));
+            Some(own)
         };
         let signatures: Vec<_> = shapes.iter().filter_map(of).collect();
         // Only mechanical parts have a rigid one.

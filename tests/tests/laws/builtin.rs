@@ -53,7 +53,7 @@ fn distances_distinguish_poses_from_families() {
                 [there, back].map(|found| Relation::by_distance(found, 1.0, Handedness::Unknown));
             assert!((one.confidence - other.confidence).abs() < 0.05, "{name}: {one:?} {other:?}");
             let is_family = shapes[i].label == shapes[j].label;
-            assert_eq!(there.may_be_same_class(), is_family, "{name}: {there:?}");
+            assert_eq!(there.same_class() > 0.5, is_family, "{name}: {there:?}");
             assert_eq!(there.is_different(), !is_family, "{name}: {there:?}");
             (is_family, there)
         })

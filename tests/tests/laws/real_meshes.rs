@@ -97,7 +97,7 @@ fn distances_distinguish_poses_from_animals() {
         pairs.len()
     );
     for (same, found, _) in &distances {
-        assert_eq!(found.may_be_same_class(), *same, "{found:?}");
+        assert_eq!(found.same_class() > 0.5, *same, "{found:?}");
         assert!(*same || !found.is_same_shape(), "{found:?}");
         assert!(!*same || !found.is_different(), "{found:?}");
     }

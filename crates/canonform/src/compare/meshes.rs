@@ -54,8 +54,8 @@ impl<S: Borrow<Surface>> ComparedMesh<S> {
         let description = describe(repaired, &reference, observer)?;
         let described = reference.prepare(&description)?;
         let (fused, area) = (description.fused, Some(description.entry.facts.area));
-        let shape = PreparedShape::new(fused, &form.reduced(reference.points), area)?;
-        let shape = shape.with_rigid(described.rigid.clone());
+        let form_of_shape = form.reduced(reference.points);
+        let shape = PreparedShape::new(fused, described.rigid.clone(), &form_of_shape, area)?;
         Ok(Self { geometry, form, shape, reference: Some(described), surface })
     }
 
@@ -167,10 +167,10 @@ pub fn compare_meshes([a, b]: [Compared<'_>; 2]) -> Result<MeshComparison, Error
 
 #[cfg(test)]
 mod tests {
-    use descriptors::{Normalization, ShapeDistance};
+    use descriptors::Normalization;
     use mesh::shapes;
     use nalgebra::Point3;
-    use relations::{Change, RelationKind};
+    use relations::Change;
 
     use super::*;
     use crate::compare::compare;
@@ -234,9 +234,8 @@ mod tests {
     fn mirror_images_differ_from_resized_and_from_equal_shapes() {
         let hand = four_arms([1.0, 2.0, 3.4, 5.0]);
         // Reflected as by a mirror: positions, and faces so that normals still point outwards.
-        let mut other = hand.clone();
-        other.positions.iter_mut().for_each(|p| p.x = -p.x);
-        let inside_out = other.clone();
+        let inside_out = testkit::moved(&hand, |p| Point3::new(-p.x, p.y, p.z));
+        let mut other = inside_out.clone();
         other.faces.iter_mut().for_each(|face| face.swap(1, 2));
         let found = compared(&hand, &hand);
         assert_eq!((found.relation.changes.len(), found.triangulation), (0, Some(FaceAgreement::Same)));
@@ -256,59 +255,34 @@ mod tests {
     }
 
     #[test]
-    fn signatures_and_forms_together_decide() {
-        let (hand, ball) = (four_arms([1.0, 1.7, 2.6, 3.5]), shapes::icosphere(3));
-        for (other, kind) in
-            [(&scaled(&hand, 2.0), RelationKind::OtherPose), (&ball, RelationKind::Different)]
-        {
-            let found = compared(&hand, other);
-            assert_eq!(found.relation.kind, kind);
-            assert_eq!(found.relation.has(Change::Scaled), kind == RelationKind::OtherPose);
-            let Comparison { normalized_distance, same_below, .. } = found.comparison;
-            assert_eq!(normalized_distance < same_below, kind != RelationKind::Different);
-            // Forms that fit do not make one shape if signatures are far apart.
-            let [a, b] = [&hand, other].map(|mesh| described(mesh, &DescribeOptions::default()));
-            let pair = ShapePair::new([&a.shape, &b.shape]);
-            let apart = ShapeDistance { fused: 9.0, combined: 9.0 };
-            assert_eq!(Comparison::new(&pair, apart).unwrap().same_below, 0.0);
-        }
-    }
-
-    #[test]
-    fn size_does_not_count_whether_or_not_vectors_contain_it() {
+    fn size_does_not_count_whatever_vectors_and_forms_contain_of_it() {
         let small = shapes::torus(24, 12, 2.0, 0.7);
         // A power of two, since other factors may change which of many equal first samples is chosen.
         let large = scaled(&small, 4.0);
-        for size in [Normalization::UnitArea, Normalization::Raw] {
-            let options = DescribeOptions { size, ..DescribeOptions::default() };
-            let found = compared_by(&options, [&small, &large]);
-            assert!(found.comparison.shape_distance.combined < 0.01, "{found:?}");
-            assert!(found.relation.has(Change::Scaled), "{found:?}");
-        }
-    }
-
-    #[test]
-    fn forms_without_a_unit_are_compared_and_sizes_still_are() {
         let method = EmbedMethod::KernelPca { rank: None, bandwidth: Default::default() };
-        let form = FormOptions { method, ..FormOptions::default() };
-        let options = DescribeOptions { form, ..DescribeOptions::default() };
-        let hand = four_arms([1.0, 1.7, 2.6, 3.5]);
-        let found = compared_by(&options, [&hand, &scaled(&hand, 2.0)]);
-        assert!(found.relation.has(Change::Scaled));
-        let found = found.comparison;
-        assert_eq!(found.distance, found.normalized_distance);
-        assert!((found.scale - 2.0).abs() < 1e-9);
+        let without_unit = FormOptions { method, ..FormOptions::default() };
+        for (form, size) in [
+            (FormOptions::default(), Normalization::UnitArea),
+            (FormOptions::default(), Normalization::Raw),
+            (without_unit, Normalization::UnitArea),
+        ] {
+            let options = DescribeOptions { form, size, ..DescribeOptions::default() };
+            let MeshComparison { comparison, relation, .. } = compared_by(&options, [&small, &large]);
+            assert!(comparison.shape_distance.combined < 0.01 && relation.has(Change::Scaled));
+            assert!((comparison.scale - 4.0).abs() < 1e-9);
+            let has_unit = options.form.method.has_unit();
+            assert_eq!(comparison.distance == comparison.normalized_distance, !has_unit);
+        }
     }
 
     #[test]
     fn residuals_are_distances_to_the_other_aligned_form() {
         let (hand, changed) = (four_arms([1.0, 1.7, 2.6, 3.5]), four_arms([1.0, 1.4, 2.6, 3.1]));
         let overlay = compared(&hand, &scaled(&changed, 5.0)).overlay;
-        for (mine, other) in [(0, 1), (1, 0)] {
-            let (points, others) = (&overlay.points[mine], &overlay.points[other]);
-            for (p, residual) in points.iter().zip(&overlay.residuals[mine]).step_by(97) {
-                let nearest = others.iter().map(|q| (p - q).norm()).fold(f64::INFINITY, f64::min);
-                assert!((nearest - residual).abs() < 1e-9, "{nearest} {residual}");
+        for [mine, other] in [[0, 1], [1, 0]] {
+            for (p, residual) in overlay.points[mine].iter().zip(&overlay.residuals[mine]).step_by(97) {
+                let gaps = overlay.points[other].iter().map(|q| (p - q).norm());
+                assert!((gaps.fold(f64::INFINITY, f64::min) - residual).abs() < 1e-9);
             }
         }
         let spread = |points: &[Point3<f64>]| points.iter().map(|p| p.coords.norm()).fold(0.0, f64::max);

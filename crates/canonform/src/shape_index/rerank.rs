@@ -78,7 +78,7 @@ mod tests {
             .map(|s| Point3::new(3.0 * s, s * (turns * s).cos(), 0.7 * s * (turns * s).sin()))
             .collect();
         let form = CanonicalForm::from_points(points, vec![1.0; 400]).unwrap();
-        PreparedShape::new(vec![fused as f32], &form, None).unwrap()
+        PreparedShape::new(vec![fused as f32], Vec::new(), &form, None).unwrap()
     }
 
     #[test]
@@ -109,28 +109,24 @@ mod tests {
                 let fused = |i: usize| usefulness * 0.05 * (i.abs_diff(query) as f64 + 2.0 * (i % 3) as f64);
                 let shapes: Vec<_> = (0..30).map(|i| spiral(turns(i), fused(i))).collect();
                 let asked = spiral(turns(query), 0.0);
-                let fused = |i: usize| ShapeMetric::fused(&asked.fused, &shapes[i].fused);
-                let robust = |i: usize| ShapeMetric::robust(&asked.fused, &shapes[i].fused);
                 let mut all = VectorTable::default();
                 shapes.iter().for_each(|shape| all.push("", &shape.fused));
                 let candidates: Vec<_> = bounds(&asked.fused, &all).collect();
-                let mut all: Vec<_> = (0..30)
-                    .map(|index| {
-                        let pair = ShapePair::new([&asked, &shapes[index]]);
-                        let (fused, alignment) = (fused(index), pair.best());
-                        let distance = ShapeMetric::combined(robust(index), alignment.gap.rms);
-                        let (shape_distance, scale) = (pair.distance(), pair.scale());
-                        let are_parts = false;
-                        (
-                            Neighbor { index, distance },
-                            Aligned { fused, shape_distance, scale, are_parts, alignment },
-                        )
-                    })
-                    .collect();
-                all.sort_by(|(a, _), (b, _)| a.distance.total_cmp(&b.distance).then(a.index.cmp(&b.index)));
+                let pair = |index: usize| ShapePair::new([&asked, &shapes[index]]);
+                let distance = |index: usize| pair(index).distance().combined;
+                let mut all: Vec<_> =
+                    (0..30).map(|index| Neighbor { index, distance: distance(index) }).collect();
+                all.sort_by(Neighbor::by_distance);
                 for k in [1, 5, 30] {
                     let found = rerank(&asked, candidates.clone(), k, |i| Ok(&shapes[i])).unwrap();
-                    assert_eq!(found.nearest, all[..k], "{query}, {k}");
+                    let (nearest, aligned): (Vec<_>, Vec<Aligned>) = found.nearest.into_iter().unzip();
+                    assert_eq!(nearest, all[..k], "{query}, {k}");
+                    for (Neighbor { index, .. }, found) in nearest.into_iter().zip(aligned) {
+                        assert_eq!(
+                            (found.shape_distance, found.alignment),
+                            (pair(index).distance(), pair(index).best())
+                        );
+                    }
                     assert!(k < 30 || found.abandoned == 0, "all are wanted");
                     assert!(k == 30 || found.evaluated - found.abandoned < 30);
                 }

@@ -6,6 +6,5 @@
 mod budgets;
 mod collections;
 mod explained;
-mod flat;
 mod progress;
 mod threads;

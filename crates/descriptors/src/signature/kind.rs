@@ -50,7 +50,7 @@ impl SignatureKind {
         TABLE[self as usize].0
     }
 
-    /// Number of values, without the size.
+    /// Number of values.
     pub const fn n_values(self) -> usize {
         TABLE[self as usize].1
     }
@@ -61,7 +61,7 @@ impl SignatureKind {
 pub struct Signature {
     /// The kind of signature.
     pub kind: SignatureKind,
-    /// [`SignatureKind::n_values`] numbers, and one more with the size.
+    /// [`SignatureKind::n_values`] numbers.
     pub values: Vec<f64>,
 }
 
