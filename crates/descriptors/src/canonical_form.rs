@@ -233,12 +233,14 @@ mod tests {
     fn invalid_forms_are_refused() {
         let mesh = square();
         let new = |coords| CanonicalForm::new(&embedding(coords), &mesh);
-        assert_eq!(new(Matrix::zeros(4, 2)), Err(DescriptorError::NotThreeDimensional { dim: 2 }));
-        assert_eq!(
-            new(Matrix::zeros(5, 3)),
-            Err(DescriptorError::SizeMismatch { n_points: 5, n_vertices: 4 })
-        );
-        assert_eq!(new(Matrix::zeros(4, 3)), Err(DescriptorError::NoExtent { n_points: 4 }));
-        assert_eq!(new(Matrix::from_element(4, 3, f64::NAN)), Err(DescriptorError::NoExtent { n_points: 4 }));
+        let no_extent = DescriptorError::NoExtent { n_points: 4 };
+        for (coords, fault) in [
+            (Matrix::zeros(4, 2), DescriptorError::NotThreeDimensional { dim: 2 }),
+            (Matrix::zeros(5, 3), DescriptorError::SizeMismatch { n_points: 5, n_vertices: 4 }),
+            (Matrix::zeros(4, 3), no_extent.clone()),
+            (Matrix::from_element(4, 3, f64::NAN), no_extent),
+        ] {
+            assert_eq!(new(coords), Err(fault));
+        }
     }
 }

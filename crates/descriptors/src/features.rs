@@ -201,55 +201,42 @@ mod tests {
     fn a_surface_bent_towards_itself_stays() {
         let mesh = body();
         let own = form(mesh.positions.clone(), &mesh);
-        let bent = own.with_features(&mesh, &()).unwrap();
-        assert!(farthest(&bent, own.points()) < 1e-9);
-        assert!((bent.area().unwrap() / mesh.area() - 1.0).abs() < 1e-12);
+        let points: Vec<_> = mesh.positions.iter().map(|p| p * 1e-3).collect();
+        // Without a unit, a form is scaled to the surface.
+        let unitless = CanonicalForm::from_points(points, mesh.vertex_areas()).unwrap();
+        for form in [&own, &unitless] {
+            let bent = form.with_features(&mesh, &()).unwrap();
+            assert!(farthest(&bent, own.points()) < 1e-9);
+            assert!((bent.area().unwrap() / mesh.area() - 1.0).abs() < 1e-12);
+        }
     }
 
     #[test]
-    fn a_moved_or_mirrored_form_has_the_same_surface_moved() {
+    fn what_moves_scales_or_mirrors_the_surface_or_the_form_moves_scales_or_mirrors_the_result() {
         let mesh = body();
         let own = flattened(&mesh);
         let bent = own.with_features(&mesh, &()).unwrap();
         let turn = Rotation3::from_euler_angles(0.4, 1.0, -2.0).into_inner();
         let mirror = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, -1.0));
+        let assert_moved =
+            |form: &CanonicalForm, mesh: &TriMesh, is_reflected: bool, [scale, most]: [f64; 2]| {
+                let again = form.with_features(mesh, &()).unwrap();
+                let pairs: Vec<_> =
+                    bent.points().iter().map(|p| p * scale).zip(again.points().iter().copied()).collect();
+                let fit = rigid::Similarity::fit_motion(&pairs, is_reflected).unwrap();
+                let error = pairs.iter().map(|(x, y)| (fit.apply(x) - y).norm()).fold(0.0, f64::max);
+                assert!(error < most * mesh.size(), "{error}");
+            };
+        // The surface is not mirrored with its form.
         for motion in [turn, turn * mirror] {
-            let moved = form(own.points().iter().map(|p| motion * p).collect(), &mesh);
-            let again = moved.with_features(&mesh, &()).unwrap();
-            // The surface is not mirrored with its form.
-            let pairs: Vec<_> = bent.points().iter().copied().zip(again.points().iter().copied()).collect();
-            let fit = rigid::Similarity::fit_motion(&pairs, false).unwrap();
-            let error = pairs.iter().map(|(x, y)| (fit.apply(x) - y).norm()).fold(0.0, f64::max);
-            assert!(error < 1e-6 * mesh.size(), "{error}");
+            let points = own.points().iter().map(|p| motion * p).collect();
+            assert_moved(&form(points, &mesh), &mesh, false, [1.0, 1e-6]);
         }
-    }
-
-    #[test]
-    fn the_mirror_image_of_a_surface_is_bent_to_the_mirror_image() {
-        let mesh = body();
-        let mut mirrored = mesh.clone();
-        mirrored.positions.iter_mut().for_each(|p| p.x = -p.x);
+        let mut mirrored = testkit::moved(&mesh, |p| Point3::new(-p.x, p.y, p.z));
         mirrored.faces.iter_mut().for_each(|face| face.swap(0, 1));
-        let own = flattened(&mesh);
-        let bent = own.with_features(&mesh, &()).unwrap();
-        let other = own.with_features(&mirrored, &()).unwrap();
-        let expected: Vec<_> = bent.points().iter().map(|p| Point3::new(p.x, p.y, -p.z)).collect();
-        assert!(farthest(&other, &expected) < 1e-6 * mesh.size());
-    }
-
-    #[test]
-    fn scale_scales_the_result_and_a_form_without_a_unit_is_scaled_to_the_surface() {
-        let mesh = body();
-        let bent = flattened(&mesh).with_features(&mesh, &()).unwrap();
-        let mut large = mesh.clone();
-        large.positions.iter_mut().for_each(|p| p.coords *= 64.0);
-        let other = flattened(&large).with_features(&large, &()).unwrap();
-        let expected: Vec<_> = bent.points().iter().map(|p| p * 64.0).collect();
-        assert!(farthest(&other, &expected) < 1e-9 * large.size());
-        let points: Vec<_> = mesh.positions.iter().map(|p| p * 1e-3).collect();
-        let unitless = CanonicalForm::from_points(points, mesh.vertex_areas()).unwrap();
-        let own = form(mesh.positions.clone(), &mesh);
-        assert!(farthest(&unitless.with_features(&mesh, &()).unwrap(), own.points()) < 1e-9);
+        assert_moved(&own, &mirrored, true, [1.0, 1e-6]);
+        let large = testkit::moved(&mesh, |p| p * 64.0);
+        assert_moved(&flattened(&large), &large, false, [64.0, 1e-9]);
     }
 
     #[test]

@@ -157,12 +157,11 @@ mod tests {
     #[test]
     fn scale_motions_and_mirror_images_change_no_spectrum() {
         let own = SampledForm::new(&cloud(), &masses()).unwrap();
-        let (sine, cosine) = 0.7f64.sin_cos();
+        // A turn in a plane and a reflection.
         let mut turn = Matrix::identity(5, 5) * -3.0;
-        turn[(0, 0)] = 3.0 * cosine;
-        turn[(0, 3)] = 3.0 * sine;
-        turn[(3, 0)] = -3.0 * sine;
-        turn[(3, 3)] = 3.0 * cosine;
+        let (sine, cosine) = 0.7f64.sin_cos();
+        let plane = Matrix::from_row_slice(2, 2, &[cosine, sine, -sine, cosine]) * 3.0;
+        turn.view_mut((0, 0), (2, 2)).copy_from(&plane);
         let moved = SampledForm::new(&(cloud() * turn), &masses()).unwrap();
         let gap = own.spectrum(0.5).unwrap().distance(&moved.spectrum(1.5).unwrap());
         assert!(gap < 1e-9, "{gap}");

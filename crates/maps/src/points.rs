@@ -202,8 +202,9 @@ mod tests {
     }
 
     #[test]
-    fn the_nearest_point_of_a_triangle_is_no_farther_than_any_other() {
+    fn the_nearest_point_of_a_triangle_is_no_farther_than_any_other_and_its_own_are_found_again() {
         let wave = |seed: f64| -> Vec<f64> { (0..7).map(|i| (seed + 1.7 * f64::from(i)).sin()).collect() };
+        let grid = || (0..=20).flat_map(|i| (0..=20 - i).map(move |j| [i, j].map(|n| f64::from(n) / 20.0)));
         for case in 0..40 {
             let seed = 3.1 * f64::from(case);
             let [p, q, r, x] = [0.0, 0.9, 2.3, 4.7].map(|shift| wave(seed * (1.0 + shift) + shift));
@@ -214,25 +215,15 @@ mod tests {
                 point(weights, corners).iter().zip(&x).map(|(a, b)| (a - b).powi(2)).sum()
             };
             assert!((sq(found.weights) - found.sq_distance).abs() < 1e-9);
-            for i in 0..=20 {
-                for j in 0..=20 - i {
-                    let [s, t] = [i, j].map(|n| f64::from(n) / 20.0);
-                    assert!(sq([1.0 - s - t, s, t]) >= found.sq_distance - 1e-9);
-                }
+            for [s, t] in grid() {
+                let weights = [1.0 - s - t, s, t];
+                assert!(sq(weights) >= found.sq_distance - 1e-9);
+                let again = OnTriangle::nearest(&point(weights, corners), corners);
+                assert!(again.weights.iter().zip(weights).all(|(a, b)| (a - b).abs() < 1e-9), "{again:?}");
             }
         }
-    }
-
-    #[test]
-    fn points_of_a_triangle_are_found_again() {
-        let [p, q, r] = [[0.0, 0.0, 0.0, 1.0], [1.0, 0.0, 0.2, 0.0], [0.0, 2.0, 0.0, -1.0]];
-        for weights in [[0.2, 0.3, 0.5], [1.0, 0.0, 0.0], [0.0, 0.4, 0.6]] {
-            let corners = [&p[..], &q[..], &r[..]];
-            let found = OnTriangle::nearest(&point(weights, corners), corners);
-            assert!(found.weights.iter().zip(weights).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?}");
-            assert!(found.sq_distance.abs() < 1e-12);
-        }
         // Without area, and without length.
+        let [p, q] = [wave(0.0), wave(0.9)];
         let found = OnTriangle::nearest(&q, [&p, &p, &q]);
         assert!(found.sq_distance.abs() < 1e-12 && (found.weights[2] - 1.0).abs() < 1e-12);
         assert_eq!(OnTriangle::nearest(&q, [&p, &p, &p]).weights[1..], [0.0, 0.0]);

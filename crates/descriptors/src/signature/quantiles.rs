@@ -82,12 +82,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn quantiles_depend_on_relative_mass_only() {
-        let heavy: Vec<(f64, f64)> = vec![(3.0, 1e-3), (1.0, 3e-3), (f64::NAN, 1.0), (7.0, 0.0)];
-        let repeated = vec![(3.0, 1.0), (1.0, 1.0), (1.0, 1.0), (1.0, 1.0)];
-        let (a, b) = (quantiles(heavy.into_iter(), 2), quantiles(repeated.into_iter(), 2));
-        assert_eq!(a[0], 1.0);
-        assert!(a[1] > 1.0 && a[1] <= 3.0 && b[1] > 1.0 && b[1] <= 3.0);
+    fn quantiles_of_few_samples_leave_out_what_is_no_number_or_has_no_mass() {
+        let samples = [(3.0, 1e-3), (1.0, 3e-3), (f64::NAN, 1.0), (7.0, 0.0)];
+        let [low, high] = quantiles(samples.into_iter(), 2)[..] else { panic!() };
+        assert!(low == 1.0 && high > 1.0 && high <= 3.0);
         assert_eq!(quantiles([(5.0, 2.0)].into_iter(), 3), [5.0; 3]);
         assert_eq!(quantiles(std::iter::empty(), 3), [0.0; 3]);
     }

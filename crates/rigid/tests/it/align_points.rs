@@ -26,39 +26,34 @@ fn prepared(points: &[Point3<f64>]) -> PointSet {
     PointSet::new(&centered(points), &vec![1.0 / points.len() as f64; points.len()]).unwrap()
 }
 
-fn turned(points: &[Point3<f64>], mirror: f64) -> Vec<Point3<f64>> {
+fn turned(points: &[Point3<f64>]) -> Vec<Point3<f64>> {
     let turn = Rotation3::from_euler_angles(1.0, 0.4, -2.0);
-    points.iter().map(|p| turn * Point3::new(p.x, p.y, mirror * p.z) + Vector3::new(3.0, 1.0, 0.0)).collect()
+    points.iter().map(|p| turn * p + Vector3::new(3.0, 1.0, 0.0)).collect()
 }
 
 #[test]
-fn a_moved_set_has_distance_zero_and_its_motion_is_found() {
+fn the_motion_of_a_moved_set_is_found_and_its_mirror_image_differs_without_reflections() {
     let points = figure(600, 1.0);
-    for mirror in [1.0, -1.0] {
-        let found = align_points(&prepared(&points), &prepared(&turned(&points, mirror)), Reflections::Allow);
-        assert_eq!(found.map.reflected, mirror < 0.0);
-        let (a, b) = (centered(&points), centered(&turned(&points, mirror)));
-        let gap = a.iter().zip(&b).map(|(p, q)| (found.map.apply(p) - q).norm());
-        assert!(gap.fold(0.0, f64::max) < 1e-9);
-    }
-}
-
-#[test]
-fn a_mirror_image_differs_if_reflections_are_forbidden() {
-    let points = figure(600, 1.0);
-    let by = |reflections, other: &PointSet| align_points(&prepared(&points), other, reflections);
+    let base = prepared(&points);
     // Whatever the handedness of the principal axes.
-    for axis in 0..3 {
-        let mut signs = Vector3::repeat(1.0);
-        signs[axis] = -1.0;
-        let mirrored: Vec<_> = points.iter().map(|p| Point3::from(p.coords.component_mul(&signs))).collect();
-        let found = by(Reflections::Forbid, &prepared(&mirrored));
-        assert!(found.gap.rms > 0.05 && !found.map.reflected, "{axis}");
-        let found = by(Reflections::Require, &prepared(&mirrored));
-        assert!(found.gap.rms < 1e-9 && found.map.reflected, "{axis}");
+    for signs in [[1.0; 3], [-1.0, 1.0, 1.0], [1.0, -1.0, 1.0], [1.0, 1.0, -1.0]] {
+        let is_mirrored = signs.contains(&-1.0);
+        let mirrored: Vec<_> =
+            points.iter().map(|p| Point3::from(p.coords.component_mul(&Vector3::from(signs)))).collect();
+        let other = turned(&mirrored);
+        let found = align_points(&base, &prepared(&other), Reflections::Allow);
+        assert_eq!(found.map.reflected, is_mirrored, "{signs:?}");
+        let (a, b) = (centered(&points), centered(&other));
+        let gap = a.iter().zip(&b).map(|(p, q)| (found.map.apply(p) - q).norm());
+        assert!(gap.fold(0.0, f64::max) < 1e-9, "{signs:?}");
+        let [right, wrong] = match is_mirrored {
+            true => [Reflections::Require, Reflections::Forbid],
+            false => [Reflections::Forbid, Reflections::Require],
+        };
+        let [right, wrong] = [right, wrong].map(|by| align_points(&base, &prepared(&other), by));
+        assert!(right.gap.rms < 1e-9 && right.map.reflected == is_mirrored, "{signs:?}");
+        assert!(wrong.gap.rms > 0.05 && wrong.map.reflected != is_mirrored, "{signs:?}");
     }
-    let same = by(Reflections::Require, &prepared(&points));
-    assert!(same.gap.rms > 0.05 && same.map.reflected);
 }
 
 #[test]
@@ -67,16 +62,10 @@ fn the_distance_is_symmetric_and_grows_with_the_difference() {
     let mut last = 0.0;
     for bend in [1.5, 2.5, 4.0] {
         let other = prepared(&figure(500, bend));
-        let there = align_points(&base, &other, Reflections::Allow);
-        let back = align_points(&other, &base, Reflections::Allow);
-        assert!(
-            (there.gap.rms - back.gap.rms).abs() < 0.02 * there.gap.rms,
-            "{} {}",
-            there.gap.rms,
-            back.gap.rms
-        );
-        assert!(there.gap.rms > last);
-        last = there.gap.rms;
+        let [there, back] =
+            [(&base, &other), (&other, &base)].map(|(a, b)| align_points(a, b, Reflections::Allow).gap.rms);
+        assert!((there - back).abs() < 0.02 * there && there > last, "{there} {back}");
+        last = there;
     }
 }
 
@@ -94,9 +83,8 @@ fn near_equal_axes_are_exchanged() {
             .collect()
     };
     let distance = |across: f64| {
-        align_points(&prepared(&cross(4.0, across)), &prepared(&cross(across, 4.0)), Reflections::Allow)
-            .gap
-            .rms
+        let crosses = [cross(4.0, across), cross(across, 4.0)].map(|points| prepared(&points));
+        align_points(&crosses[0], &crosses[1], Reflections::Allow).gap.rms
     };
     assert!(distance(4.4) < 0.7 * distance(5.0), "spreads that differ by 10 % and by 25 %");
 }
