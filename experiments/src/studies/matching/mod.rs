@@ -74,8 +74,7 @@ pub(crate) fn matching(context: &Context<'_>) -> Result<Record> {
     let all: Vec<&MappedPair> = found.iter().flat_map(|(_, pairs)| pairs).collect();
     measure(ALL, &all, &mut measured);
     let mut record = context.record(&[], measured);
-    let made = [("eigenfunctions", options.maps.eigenfunctions.into()), ("spread", options.spread.into())];
-    record.provenance.options.extend(made.map(|(name, value)| (name.to_owned(), value)));
+    record.provenance.options.insert("eigenfunctions".to_owned(), options.eigenfunctions.into());
     Ok(Record { figures: vec![plots("curves", panels(&found))], ..record })
 }
 
