@@ -10,7 +10,7 @@ use mesh::{Surface, TriMesh};
 use super::options::{SearchOptions, SearchRank};
 use super::place::Home;
 use super::query::Query;
-use super::search::{Answer, ShapeSearch};
+use super::search::ShapeSearch;
 use crate::error::Error;
 use crate::form::{describe, describe_part};
 
@@ -50,19 +50,6 @@ impl ShapeSearch {
         let Some(content) = query.content.filter(|_| query.place.is_none()) else { return Ok(query) };
         let place = self.index().entry_with(&content)?.map(|entry| entry.path);
         Ok(Query { place, ..query })
-    }
-
-    /// [Searches](Self::search) for a mesh.
-    ///
-    /// # Errors
-    /// As of [`query`](Self::query) and [`search`](Self::search).
-    pub fn search_mesh(
-        &self,
-        mesh: &TriMesh,
-        options: &SearchOptions,
-        observer: &dyn Observer,
-    ) -> Result<Answer, Error> {
-        self.search(&self.query(mesh, ("the query", None), options, observer)?, options, observer)
     }
 
     /// A shape of the index as a query, which finds itself. Its mesh is read if it is taken as a part, or if results are

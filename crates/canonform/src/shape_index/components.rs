@@ -56,40 +56,31 @@ pub(super) fn other_components(
 const MOST_SEARCHED: usize = 12;
 
 impl Query {
-    /// The different components of a query that comes with its mesh, as queries of their own. Results are to be found for each.
+    /// The different components of a query that comes with its mesh and has several, as queries of their own, largest first, and
+    /// what is said of each. Results are to be found for each. One that cannot be described is left out.
     ///
     /// # Errors
     /// [`Error::Exceeded`].
     pub fn components(&self, observer: &dyn Observer) -> Result<Vec<(ComponentResult, Self)>, Error> {
         let whole = self.geometry.as_deref().filter(|_| !self.is_component);
-        match whole.zip(DescribeOptions::from_text(&self.options)) {
-            Some((whole, options)) => components(whole, &self.name, &options, &observer.budget()),
-            None => Ok(Vec::new()),
+        let options = DescribeOptions::from_text(&self.options);
+        let (Some(whole), Some(options)) = (whole, options) else { return Ok(Vec::new()) };
+        let budget = observer.budget();
+        let mut found = Vec::new();
+        for (geometry, copies) in whole.different_components().into_iter().take(MOST_SEARCHED) {
+            budget.check()?;
+            let Some(shape) = described(geometry, &options, &budget)? else { continue };
+            let name = match copies {
+                1 => format!("a component of {}", self.name),
+                _ => format!("each of {copies} components of {}", self.name),
+            };
+            let area_share = (geometry.size() / whole.size()).powi(2);
+            let about =
+                ComponentResult { copies, area_share, n_vertices: geometry.n_vertices(), nearest: None };
+            let geometry = MeshGeometry::new(&geometry.to_mesh(), None).map(Arc::new);
+            let query = Self::new(shape, &options).named(&name, None);
+            found.push((about, Self { geometry, is_component: true, ..query }));
         }
+        Ok(found)
     }
-}
-
-/// The different components of a query that has several, largest first, and what is said of each without a shape. One that
-/// cannot be described is left out.
-fn components(
-    whole: &MeshGeometry,
-    name: &str,
-    options: &DescribeOptions,
-    budget: &Budget,
-) -> Result<Vec<(ComponentResult, Query)>, Error> {
-    let mut found = Vec::new();
-    for (geometry, copies) in whole.different_components().into_iter().take(MOST_SEARCHED) {
-        budget.check()?;
-        let Some(shape) = described(geometry, options, budget)? else { continue };
-        let name = match copies {
-            1 => format!("a component of {name}"),
-            _ => format!("each of {copies} components of {name}"),
-        };
-        let area_share = (geometry.size() / whole.size()).powi(2);
-        let about = ComponentResult { copies, area_share, n_vertices: geometry.n_vertices(), nearest: None };
-        let geometry = MeshGeometry::new(&geometry.to_mesh(), None).map(Arc::new);
-        let query = Query::new(shape, options).named(&name, None);
-        found.push((about, Query { geometry, is_component: true, ..query }));
-    }
-    Ok(found)
 }

@@ -88,12 +88,12 @@ mod tests {
         };
         let whole = built("whole", None);
         let shards = [1, 2].map(|i| built(&format!("part{i}"), Some(Shard::new(i, 2).unwrap())));
-        let mesh = shapes::torus(22, 13, 1.0, 0.36);
-        let usual = SearchOptions::default();
-        let queries = [
-            whole.query(&mesh, ("the query", None), &usual, &()).unwrap(),
-            whole.query_of("ring1", &usual, &()).unwrap(),
-        ];
+        let mut scaled = whole.mesh("ring0").unwrap();
+        scaled.positions.iter_mut().for_each(|p| p.coords *= 25.4);
+        let explained = SearchOptions { explain: true, ..SearchOptions::default() };
+        let queries = [&shapes::torus(22, 13, 1.0, 0.36), &scaled]
+            .map(|mesh| whole.query(mesh, ("the query", None), &explained, &()).unwrap());
+        let queries = queries.into_iter().chain([whole.query_of("ring1", &explained, &()).unwrap()]);
         for query in queries {
             let sent: Query = serde_json::from_str(&serde_json::to_string(&query).unwrap()).unwrap();
             assert_eq!((&sent.shape, &sent.name, &sent.options), (&query.shape, &query.name, &query.options));
@@ -109,24 +109,10 @@ mod tests {
                 let (aligned, seconds) = (expected.aligned, expected.seconds);
                 assert_eq!(Answer { aligned, seconds, ..found }, expected);
             }
+            // The mesh in space is sent with the query.
+            let relation =
+                |query: &Query| whole.search(query, &explained, &()).unwrap().results[0].relation.to_string();
+            assert_eq!(relation(&query), relation(&sent));
         }
-    }
-
-    #[test]
-    fn a_mesh_in_space_is_sent_with_the_query() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("ring0.off");
-        mesh_io::write(&path, &shapes::torus(20, 10, 2.0, 0.7)).unwrap();
-        let index = folder.path().join("index");
-        build_index(folder.path(), &index, &BuildOptions::new(&DescribeOptions::default()), &()).unwrap();
-        let search = ShapeSearch::open(&index).unwrap();
-        let options = SearchOptions { explain: true, ..SearchOptions::default() };
-        let mut mesh = mesh_io::read(&path).unwrap();
-        mesh.positions.iter_mut().for_each(|p| p.coords *= 25.4);
-        let query = search.query(&mesh, ("a.off", None), &options, &()).unwrap();
-        let sent: Query = serde_json::from_str(&serde_json::to_string(&query).unwrap()).unwrap();
-        let found = [query, sent].map(|query| search.search(&query, &options, &()).unwrap().results);
-        assert_eq!(found[0][0].relation.to_string(), found[1][0].relation.to_string());
-        assert_eq!(found[1][0].relation.kind, crate::relations::RelationKind::Scaled);
     }
 }

@@ -160,7 +160,8 @@ impl ShapeSearch {
     /// build_index(folder.path(), &index, &options, &())?;
     ///
     /// let (search, options) = (ShapeSearch::open(&index)?, SearchOptions::default());
-    /// let answer = search.search_mesh(&mesh::shapes::torus(22, 13, 1.0, 0.35), &options, &())?;
+    /// let ring = mesh::shapes::torus(22, 13, 1.0, 0.35);
+    /// let answer = search.search(&search.query(&ring, ("a ring", None), &options, &())?, &options, &())?;
     /// assert_eq!((answer.results[0].id.as_str(), answer.results.len()), ("ring1", 2));
     /// let itself = search.search(&search.query_of("ball1", &options, &())?, &options, &())?;
     /// assert_eq!(itself.results[0].id, "ball1");
@@ -420,9 +421,9 @@ mod tests {
     use std::fs;
 
     use base::ContentHash;
-    use index::IndexWriter;
+    use index::{IndexWriter, Shape};
     use mesh::{Surface, shapes};
-    use surface::VertexId;
+    use nalgebra::Point3;
     use tempfile::TempDir;
 
     use super::*;
@@ -450,7 +451,7 @@ mod tests {
     }
 
     fn search_for(search: &ShapeSearch, mesh: &TriMesh, options: &SearchOptions) -> Answer {
-        search.search_mesh(mesh, options, &()).unwrap()
+        search_as(search, mesh, ("the query", None), options)
     }
 
     fn search_as(
@@ -484,17 +485,17 @@ mod tests {
             let by_description =
                 search.search(&Query::new(described.clone(), &describe_options), &options, &()).unwrap();
             assert!(by_mesh.results[0].id == "ring0" && by_mesh.results[0].distance < 1e-6);
-            let unexplained = |report: &Answer| {
-                let results = report.results.iter();
+            let numbers = |report: &Answer| {
                 let numbers = |r: &Hit| (r.id.clone(), r.distance, r.fused, r.comparison.clone());
-                results.map(numbers).collect::<Vec<_>>()
+                report.results.iter().map(numbers).collect::<Vec<_>>()
             };
-            assert_eq!(unexplained(&by_mesh), unexplained(&by_name));
-            assert_eq!(unexplained(&by_mesh), unexplained(&by_description));
-            let kind = |report: &Answer| report.results[0].relation.kind;
-            assert_eq!(kind(&by_mesh), RelationKind::IdenticalGeometry);
-            assert_eq!(kind(&by_name), RelationKind::IdenticalFile);
-            assert_eq!(kind(&by_description), RelationKind::OtherPose, "only descriptions were compared");
+            assert_eq!(numbers(&by_mesh), numbers(&by_name));
+            assert_eq!(numbers(&by_mesh), numbers(&by_description));
+            // Of a description, only descriptions are compared.
+            let kinds = [&by_mesh, &by_name, &by_description].map(|report| report.results[0].relation.kind);
+            let expected =
+                [RelationKind::IdenticalGeometry, RelationKind::IdenticalFile, RelationKind::OtherPose];
+            assert_eq!(kinds, expected);
             // The comparison of the two shapes says the same.
             let query = describe_options.prepare(&described).unwrap();
             for result in &by_mesh.results {
@@ -507,25 +508,25 @@ mod tests {
         }
     }
 
+    /// The number that results are ordered by, which ascends.
+    fn order(answer: &Answer) -> Vec<f64> {
+        let order: Vec<f64> = answer.results.iter().map(|hit| hit.order.unwrap().distance()).collect();
+        assert!(order.len() == 4 && order.is_sorted(), "{order:?}");
+        order
+    }
+
     #[test]
     fn forms_alone_rank_every_shape_and_a_mirror_image_is_the_same() {
         let (_folder, search) = indexed(&DescribeOptions::default());
         let options = SearchOptions { rank_by: SearchRank::Forms, ..SearchOptions::default() };
         let by_name = search_by(&search, "ring0", &options);
-        assert_eq!((by_name.rank_by, by_name.results.len(), by_name.measured), (SearchRank::Forms, 4, 4));
-        let distance = |found: &Hit| found.order.unwrap().distance();
-        assert!(by_name.results.windows(2).all(|pair| distance(&pair[0]) <= distance(&pair[1])));
-        assert!(by_name.results[0].id == "ring0" && distance(&by_name.results[0]) == 0.0);
-        assert_eq!(by_name.results[1].id, "ring1");
+        assert_eq!((by_name.rank_by, order(&by_name)[0]), (SearchRank::Forms, 0.0));
+        assert_eq!([0, 1].map(|i| by_name.results[i].id.as_str()), ["ring0", "ring1"]);
         let mut mirrored = search.mesh("ring0").unwrap();
-        mirrored.positions.iter_mut().for_each(|p| (p.x, p.y) = (-3.0 * p.x, 3.0 * p.y));
-        mirrored.positions.iter_mut().for_each(|p| p.z *= 3.0);
+        mirrored.positions.iter_mut().for_each(|p| *p = Point3::new(-3.0 * p.x, 3.0 * p.y, 3.0 * p.z));
         let by_mesh = search_for(&search, &mirrored, &options);
-        let nearest = &by_mesh.results[0];
         // Which of the points of a ring are taken is left to rounding, so it is less than two poses apart, but not zero.
-        assert!(nearest.id == "ring0" && distance(nearest) < 0.8, "{}: {}", nearest.id, distance(nearest));
-        let plain = search_by(&search, "ring0", &SearchOptions::default());
-        assert!(plain.results.iter().all(|found| found.order.is_none()));
+        assert!(by_mesh.results[0].id == "ring0" && order(&by_mesh)[0] < 0.8, "{by_mesh:?}");
     }
 
     #[test]
@@ -534,24 +535,17 @@ mod tests {
         let plain = search_by(&search, "ring0", &SearchOptions::default());
         let options = SearchOptions { rank_by: SearchRank::Graph, ..SearchOptions::default() };
         let graph = search_by(&search, "ring0", &options);
+        order(&graph);
         assert_eq!((plain.rank_by, graph.rank_by), (SearchRank::Plain, SearchRank::Graph));
-        assert_eq!((graph.results.len(), graph.results[0].id.as_str()), (4, "ring0"));
-        let order = |found: &Hit| found.order.unwrap().distance();
-        assert!(graph.results.windows(2).all(|pair| order(&pair[0]) <= order(&pair[1])));
         assert!(matches!(graph.results[0].order, Some(OrderedBy::Graph { plain_rank: Some(1), .. })));
         for found in &graph.results {
             let same = plain.results.iter().find(|other| other.id == found.id).unwrap();
-            assert_eq!(
-                (same.distance, same.fused, &same.relation),
-                (found.distance, found.fused, &found.relation)
-            );
-            assert_eq!(same.order, None);
+            assert_eq!(Hit { rank: same.rank, order: None, ..found.clone() }, *same);
         }
-        let json = serde_json::to_value(&graph).unwrap();
-        assert_eq!(json["rank_by"], "graph");
-        assert_eq!(json["results"][0]["plain_rank"], 1);
-        assert!(json["results"][0]["rank_distance"].is_number());
-        assert!(serde_json::to_value(&plain).unwrap()["results"][0].get("rank_distance").is_none());
+        let [plain, graph] = [plain, graph].map(|answer| serde_json::to_value(answer).unwrap());
+        assert_eq!((&graph["rank_by"], &graph["results"][0]["plain_rank"]), (&"graph".into(), &1.into()));
+        assert!(graph["results"][0]["rank_distance"].is_number());
+        assert!(plain["results"][0].get("rank_distance").is_none());
     }
 
     #[test]
@@ -559,82 +553,58 @@ mod tests {
         let (folder, search) = indexed(&DescribeOptions::default());
         let options = SearchOptions { rank_by: SearchRank::Part, ..SearchOptions::default() };
         let mut part = search.mesh("ring1").unwrap();
-        let x = |v: VertexId, part: &TriMesh| part.positions[v.index()].x;
-        let kept = part.faces.iter().copied().filter(|face| face.iter().all(|v| x(*v, &part) < 1.0));
-        part.faces = kept.collect();
+        let TriMesh { positions, faces } = &mut part;
+        faces.retain(|face| face.iter().all(|v| positions[v.index()].x < 1.0));
         let found = search_for(&search, &part, &options);
-        assert_eq!(
-            (found.rank_by, found.results[0].id.as_str(), found.measured),
-            (options.rank_by, "ring1", 4)
-        );
-        let fit = |found: &Hit| found.order.unwrap().distance();
-        let share = |found: &Hit| match found.order {
+        order(&found);
+        assert_eq!((found.rank_by, found.results[0].id.as_str()), (options.rank_by, "ring1"));
+        let share = |found: &Answer| match found.results[0].order {
             Some(OrderedBy::Part { part_share, .. }) => part_share,
             other => panic!("{other:?}"),
         };
-        assert!(found.results.windows(2).all(|pair| fit(&pair[0]) <= fit(&pair[1])));
-        let of_ring = share(&found.results[0]);
-        assert!((0.5..0.9).contains(&of_ring), "{of_ring}");
+        assert!((0.5..0.9).contains(&share(&found)), "{}", share(&found));
         let json = serde_json::to_value(&found).unwrap();
         assert!(json["rank_by"] == "part" && json["results"][0]["part_distance"].is_number());
         // As a whole, it is another shape.
         let plain = search_for(&search, &part, &SearchOptions::default());
-        assert!(
-            !plain.results[0].relation.evidence.distance.may_be_same_class()
-                && plain.results[0].order.is_none()
-        );
+        assert!(plain.results[0].relation.evidence.distance.same_class() < 0.5);
         // A shape of the index is read again, and a description is not enough.
         let itself = search_by(&search, "box0", &options);
-        assert!(itself.results[0].id == "box0" && share(&itself.results[0]) == 1.0);
+        assert!(itself.results[0].id == "box0" && share(&itself) == 1.0);
         fs::remove_file(folder.path().join("box0.tri")).unwrap();
         assert!(matches!(search.query_of("box0", &options, &()), Err(Error::MeshGone { .. })));
-        let surface = Surface::new(&part, &Default::default(), &()).unwrap();
-        let shape = describe(&surface, search.describe_options(), &()).unwrap();
-        let query = Query::new(shape, search.describe_options());
+        let query = search.query(&part, ("", None), &SearchOptions::default(), &()).unwrap();
         assert!(matches!(search.search(&query, &options, &()), Err(Error::NoPart)));
     }
 
     #[test]
     fn an_index_without_disc_areas_is_named_with_its_remedy() {
-        let (_folder, search) = indexed(&DescribeOptions::default());
-        let old = tempfile::tempdir().unwrap();
-        let path = old.path().join("old.canonform");
+        let (folder, search) = indexed(&DescribeOptions::default());
+        let path = folder.path().join("old.canonform");
         let mut writer = IndexWriter::build(&path, &search.index().options).unwrap();
-        search
-            .index()
-            .each(|mut shape| {
-                shape.disc_areas.clear();
-                writer.put(&[shape])
-            })
-            .unwrap();
+        let shape = Shape { disc_areas: Vec::new(), ..search.index().shape("ball0").unwrap() };
+        writer.put(&[shape]).unwrap();
         writer.finish(&()).unwrap();
         let old = ShapeSearch::open(&path).unwrap();
         let options = SearchOptions { rank_by: SearchRank::Part, ..SearchOptions::default() };
-        let query = old.query(&shapes::icosphere(3), ("", None), &options, &()).unwrap();
+        let query = old.query_of("ball0", &options, &()).unwrap();
         let fault = old.search(&query, &options, &()).unwrap_err();
         assert!(fault.to_string().contains("has no disc areas"), "{fault}");
         assert_eq!(fault.remedy(), Some(Remedy::BuildIndexAgain));
-        search_for(&old, &shapes::icosphere(3), &SearchOptions::default());
     }
 
     #[test]
-    fn shapes_are_found_by_name_and_by_descriptions_of_the_same_options() {
+    fn unknown_names_and_descriptions_of_other_options_are_refused() {
         let (_folder, search) = indexed(&DescribeOptions::default());
-        let options = SearchOptions::default();
+        let options = SearchOptions { k: usize::MAX, ..SearchOptions::default() };
         let other = DescribeOptions { points: 500, ..DescribeOptions::default() };
-        let surface = Surface::new(&shapes::icosphere(2), &Default::default(), &()).unwrap();
-        let query = Query::new(describe(&surface, &other, &()).unwrap(), &other);
+        let query = Query { options: other.text(), ..search.query_of("box0", &options, &()).unwrap() };
         let fault = search.search(&query, &options, &()).unwrap_err();
         assert!(matches!(fault, Error::Index(IndexError::OtherOptions { .. })));
         assert!(fault.to_string().contains("\"points\":500"), "{fault}");
         assert!(matches!(search.query_of("none", &options, &()), Err(Error::Index(_))));
-        let names: Vec<String> =
-            search.index().entries().unwrap().into_iter().map(|entry| entry.id).collect();
-        assert_eq!(names, ["ball0", "box0", "ring0", "ring1"]);
-        assert_eq!(search.index().entry("box0").unwrap().label, "box");
         // More results than shapes are all shapes.
-        let all = search_by(&search, "box0", &SearchOptions { k: usize::MAX, ..options });
-        assert_eq!(all.results.len(), 4);
+        assert_eq!(search_by(&search, "box0", &options).results.len(), 4);
     }
 
     #[test]
@@ -694,30 +664,35 @@ mod tests {
         other.positions.iter_mut().for_each(|p| p.coords *= 3.0);
         let plate = plate([ball.clone(), other, ball]);
         let report = search_as(&search, &plate, ("plate.stl", None), &options);
-        let found: Vec<_> =
-            report.components.iter().map(|part| (part.copies, part.nearest.clone().unwrap())).collect();
-        assert_eq!((found[0].0, found[0].1.id.as_str()), (1, "ring0"));
-        assert_eq!((found[1].0, found[1].1.id.as_str(), found.len()), (2, "ball0", 2));
+        let about = |part: &ComponentResult| {
+            let nearest = part.nearest.as_ref().unwrap();
+            (part.copies, nearest.id.clone(), nearest.relation.kind)
+        };
+        let found: Vec<_> = report.components.iter().map(about).collect();
+        let expected = [
+            (1, "ring0".to_owned(), RelationKind::Scaled),
+            (2, "ball0".to_owned(), RelationKind::IdenticalGeometry),
+        ];
+        assert_eq!(found, expected);
+        assert!(search_as(&search, &plate, ("", None), &SearchOptions::default()).components.is_empty());
         // The ball is a component of the plate, but not the largest.
         mesh_io::write(&folder.path().join("plate7.off"), &plate).unwrap();
         let path = folder.path().join("all.canonform");
         build_index(folder.path(), &path, &BuildOptions::new(search.describe_options()), &()).unwrap();
         let again = ShapeSearch::open(&path).unwrap();
-        let wholes = search_by(&again, "ball0", &options).wholes;
-        assert_eq!((wholes.len(), wholes[0].id.as_str()), (1, "plate7"));
-        assert_eq!(
-            wholes[0].relation.to_string(),
-            "plate7 has two copies of ball0 among its three components"
-        );
+        let words = || {
+            search_by(&again, "ball0", &options)
+                .wholes
+                .into_iter()
+                .map(|hit| hit.relation.to_string())
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(words(), ["plate7 has two copies of ball0 among its three components"]);
         fs::remove_file(folder.path().join("plate7.off")).unwrap();
         assert_eq!(
-            search_by(&again, "ball0", &options).wholes[0].relation.to_string(),
-            "ball0 is part of plate7, one of its three components, in this or another pose"
+            words(),
+            ["ball0 is part of plate7, one of its three components, in this or another pose"]
         );
         assert!(search_by(&again, "box0", &options).wholes.is_empty());
-
-        let kinds: Vec<_> = found.iter().map(|(_, result)| result.relation.kind).collect();
-        assert_eq!(kinds, [RelationKind::Scaled, RelationKind::IdenticalGeometry]);
-        assert!(search_as(&search, &plate, ("", None), &SearchOptions::default()).components.is_empty());
     }
 }

@@ -48,10 +48,9 @@ fn torus(n: usize) -> Surface {
 fn every_embedding_is_cancellable() {
     let surface = torus(24);
     for method in EmbedMethod::all() {
+        let name = method.name();
         let options = FormOptions { method, samples: Samples::Count(60), ..FormOptions::default() };
-        assert_cancellable(options.method.name(), |budget| {
-            Ok(embed(&surface, &options, budget)?.embedding.coords)
-        });
+        assert_cancellable(name, |budget| Ok(embed(&surface, &options, budget)?.embedding.coords));
     }
 }
 
@@ -71,12 +70,10 @@ fn describing_searching_and_comparing_methods_are_cancellable() {
     build_index(folder.path(), &path, &build, &()).unwrap();
     let (search, query) = (ShapeSearch::open(&path).unwrap(), shapes::torus(23, 12, 2.0, 0.5));
     assert_cancellable("search", |budget| {
-        let report = search.search_mesh(&query, &SearchOptions::default(), budget)?;
-        Ok(report
-            .results
-            .into_iter()
-            .map(|result| (result.id, result.distance.to_bits()))
-            .collect::<Vec<_>>())
+        let options = SearchOptions::default();
+        let query = search.query(&query, ("a ring", None), &options, budget)?;
+        let report = search.search(&query, &options, budget)?;
+        Ok(report.results.into_iter().map(|hit| (hit.id, hit.distance.to_bits())).collect::<Vec<_>>())
     });
 
     let form = FormOptions::default();
@@ -93,10 +90,14 @@ fn distances_and_eigenpairs_keep_to_the_memory_of_the_budget() {
     for method in EmbedMethod::all() {
         let options = FormOptions { method, samples: Samples::Count(200), ..FormOptions::default() };
         let small = Budget::unlimited().with_memory(1 << 20);
-        let refused = embed(&surface, &options, &small).map(|_| ()).unwrap_err();
+        let refused = embed(&surface, &options, &small).unwrap_err();
         assert!(matches!(refused, Error::Exceeded(Exceeded::Memory { .. })), "{refused:?}");
         assert_eq!(refused.remedy(), Some(Remedy::RaiseMemory));
     }
+    let described = |bytes| {
+        describe(&surface, &DescribeOptions::default(), &Budget::unlimited().with_memory(bytes)).is_ok()
+    };
+    assert_eq!([1 << 20, 100 << 20].map(described), [false, true]);
 }
 
 #[test]
@@ -104,11 +105,8 @@ fn arguments_beyond_the_surface_are_clamped_to_it() {
     let mesh = shapes::icosphere(2);
     let surface = Surface::new(&mesh, &Default::default(), &()).unwrap();
     let all = surface.mesh().n_vertices();
-    let samples = |n| {
-        let options = FormOptions { samples: Samples::Count(n), ..FormOptions::default() };
-        embed(&surface, &options, &()).unwrap().report.n_samples
-    };
-    assert_eq!((samples(usize::MAX), samples(10_000_000)), (all, all));
+    let options = FormOptions { samples: Samples::Count(usize::MAX), ..FormOptions::default() };
+    assert_eq!(embed(&surface, &options, &()).unwrap().report.n_samples, all);
     let eigenvectors = |eigenvectors| {
         let method = EmbedMethod::Spectral { eigenvectors, mu: f64::INFINITY };
         let options = FormOptions { method, samples: Samples::Count(100), ..FormOptions::default() };

@@ -15,15 +15,16 @@ fn relations_of_a_search_are_those_of_a_comparison() {
     let (plate, ring) = (shapes::grid(21, 17, 0.5), shapes::torus(24, 12, 2.0, 0.6));
     let wave = |x: f64| (1.3 * x).sin();
     let mat = moved(&plate, |p| nalgebra::Point3::new(p.x, p.y, 0.2 * wave(p.x) * wave(p.y)));
-    let far = Vector3::new(1234.567, 1234.567, 1234.567);
+    let far = Vector3::repeat(1234.567);
+    let rounded = |mesh: &TriMesh| moved(mesh, |p| (p + far).map(|x| f64::from(x as f32)));
     // Its triangles are those of the ring, which it is far from by descriptions.
     let mut arc = ring.clone();
     arc.faces.truncate(ring.faces.len() / 3);
     let meshes = [
         ("plate", plate.clone()),
-        ("plate-rounded", moved(&plate, |p| (p + far).map(|x| f64::from(x as f32)))),
+        ("plate-rounded", rounded(&plate)),
         ("mat", mat.clone()),
-        ("mat-moved", moved(&mat, |p| (p + far).map(|x| f64::from(x as f32)))),
+        ("mat-moved", rounded(&mat)),
         ("ring", ring.clone()),
         ("arc", arc),
         ("ring-large", moved(&ring, |p| p * 25.4)),
@@ -36,24 +37,23 @@ fn relations_of_a_search_are_those_of_a_comparison() {
     let path = folder.path().join("all.canonform");
     build_index(folder.path(), &path, &BuildOptions::new(&DescribeOptions::default()), &()).unwrap();
     let search = ShapeSearch::open(&path).unwrap();
-    let compared = |mesh: &TriMesh| {
-        let surface = Surface::new(mesh, &Default::default(), &()).unwrap();
-        ComparedMesh::new(mesh, None, surface, &FormOptions::default(), &()).unwrap()
+    let compared = |(name, _): &(&str, TriMesh)| {
+        let mesh = search.mesh(name).unwrap();
+        let surface = Surface::new(&mesh, &Default::default(), &()).unwrap();
+        ComparedMesh::new(&mesh, None, surface, &FormOptions::default(), &()).unwrap()
     };
-    let sides: Vec<_> = meshes.iter().map(|(name, _)| compared(&search.mesh(name).unwrap())).collect();
+    let sides: Vec<_> = meshes.iter().map(compared).collect();
     let options = SearchOptions { k: meshes.len(), explain: true, ..SearchOptions::default() };
     let mut n_pairs = 0;
     for (query, a) in meshes.iter().zip(&sides) {
         let mesh = search.mesh(query.0).unwrap();
-        for found in search.search_mesh(&mesh, &options, &()).unwrap().results {
+        let asked = search.query(&mesh, ("the query", None), &options, &()).unwrap();
+        for found in search.search(&asked, &options, &()).unwrap().results {
             let b = meshes.iter().position(|(name, _)| *name == found.id).unwrap();
             let expected = compare_meshes([a.compared(), sides[b].compared()]).unwrap().relation;
-            let pair = format!("{} and {}: {}, {expected}", query.0, found.id, found.relation);
-            assert_eq!(
-                (found.relation.kind, &found.relation.changes),
-                (expected.kind, &expected.changes),
-                "{pair}"
-            );
+            let [found, expected] =
+                [found.relation, expected].map(|relation| (relation.kind, relation.changes));
+            assert_eq!(found, expected, "{} and {}", query.0, meshes[b].0);
             n_pairs += 1;
         }
     }

@@ -33,9 +33,9 @@ fn an_index_is_built_and_searched_on_the_pool_of_the_caller() {
         io::write(&folder.path().join("ring1.off"), &ring).unwrap();
         let report = build_index(folder.path(), &index, &BuildOptions::new(&describe), &()).unwrap();
         assert_eq!(report.described, 2, "{report:?}");
-        let found =
-            ShapeSearch::open(&index).unwrap().search_mesh(&ring, &SearchOptions::default(), &()).unwrap();
-        found.results[0].id.clone()
+        let (search, options) = (ShapeSearch::open(&index).unwrap(), SearchOptions::default());
+        let query = search.query(&ring, ("a ring", None), &options, &()).unwrap();
+        search.search(&query, &options, &()).unwrap().results[0].id.clone()
     });
     assert_eq!(nearest, "ring1");
     assert!(ThreadPoolBuilder::new().build_global().is_ok(), "some work ran on the global pool");
