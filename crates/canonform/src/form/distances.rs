@@ -84,8 +84,6 @@ pub(super) struct Measurement<'a> {
     pub(super) first: FirstSample,
     pub(super) seed: u64,
     pub(super) observer: &'a dyn Observer,
-    /// The limits of all work on the surface.
-    pub(super) budget: Budget,
     /// Whether the method reads distances in blocks, so that they may be in a file.
     pub(super) streams: bool,
     /// Seconds spent on distances so far.
@@ -97,21 +95,21 @@ impl Measurement<'_> {
     pub(super) fn sampled(&self, first: usize, embed: &EmbedSamples<'_>) -> Result<Outcome, Error> {
         self.observer.begin("distances", self.samples.count_or(AUTO_LAST));
         let mut sampler = self.timed(|| self.sampling.start(self.solver, self.first, self.seed))?;
-        if self.streams && self.budget.spill().is_some() {
-            let store = plan(self.solver.n_vertices(), self.samples).store(&self.budget)?;
+        if self.streams && self.observer.budget().spill().is_some() {
+            let store = plan(self.solver.n_vertices(), self.samples).store(&self.observer.budget())?;
             self.timed(|| sampler.move_to(store))?;
         }
         let (embedding, distances, search) = match self.samples {
             Samples::Count(n) => {
                 self.extend(&mut sampler, n)?;
                 let distances = self.timed(|| sampler.into_distances(n))?;
-                self.budget.check()?;
+                self.observer.budget().check()?;
                 (embed(&distances)?, distances, None)
             }
             Samples::Auto => {
                 let search = SampleSearch { first, limit: AUTO_LAST, seed: self.seed, embed };
                 let columns = |n| {
-                    self.budget.check()?;
+                    self.observer.budget().check()?;
                     self.take(&mut sampler, n)
                 };
                 let rows = |rows: &[usize]| self.columns(rows);
@@ -119,15 +117,15 @@ impl Measurement<'_> {
                 (embedding, distances, Some(report))
             }
         };
-        self.budget.check()?;
+        self.observer.budget().check()?;
         Ok(Outcome { embedding, distances, search, all: None, descent: None })
     }
 
     /// Takes samples until there are `n`, or as many as there are vertices.
     fn extend(&self, sampler: &mut Sampler, n: usize) -> Result<(), Error> {
-        if !self.streams || self.budget.spill().is_none() {
+        if !self.streams || self.observer.budget().spill().is_none() {
             let p = self.solver.n_vertices();
-            check_memory(p, n.min(p), &self.budget)?;
+            check_memory(p, n.min(p), &self.observer.budget())?;
         }
         Ok(self.timed(|| sampler.extend_to(n))?)
     }
@@ -139,7 +137,7 @@ impl Measurement<'_> {
 
     /// The distances from some vertices, one column each.
     pub(super) fn columns(&self, vertices: &[usize]) -> Result<Matrix, Error> {
-        check_memory(self.solver.n_vertices(), vertices.len(), &self.budget)?;
+        check_memory(self.solver.n_vertices(), vertices.len(), &self.observer.budget())?;
         let sources: Vec<VertexId> = vertices.iter().copied().map(VertexId::from).collect();
         Ok(self.timed(|| self.solver.distance_columns(&sources))?)
     }
@@ -147,7 +145,7 @@ impl Measurement<'_> {
     /// The distances between all pairs of vertices.
     pub(super) fn all_pairs(&self) -> Result<DistanceMatrix, Error> {
         let p = self.solver.n_vertices();
-        check_memory(p, p, &self.budget)?;
+        check_memory(p, p, &self.observer.budget())?;
         self.observer.begin("distances", p);
         Ok(self.timed(|| self.solver.distance_matrix())?)
     }

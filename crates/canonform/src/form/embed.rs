@@ -163,35 +163,9 @@ pub fn embed<'a, 'b>(
     options: impl Into<EmbedOptions<'b>>,
     observer: &dyn Observer,
 ) -> Result<Embedded, Error> {
-    run(surface.into(), options.into(), observer)
-}
-
-/// Distances on one surface differ by less than this share of the largest: what compilers and processors change.
-const SAME_DISTANCES: f64 = 1e-9;
-
-/// Refuses distances that were measured on another surface, by those from the first landmark.
-///
-/// # Errors
-/// [`Error::OtherSurface`].
-fn check_distances(solver: &dyn DistanceSolver, known: &LandmarkDistances) -> Result<(), Error> {
-    let Some(&first) = known.landmarks().first() else { return Ok(()) };
-    let (n_vertices, n_points) = (solver.n_vertices(), known.n_points());
-    let mut column = solver.budget().vector(n_vertices)?;
-    solver.distances_into(VertexId::from(first), &mut column)?;
-    let (known, most) = (known.column(0)?, SAME_DISTANCES * known.max());
-    match column.iter().zip(known.iter()).all(|(a, b)| (a - b).abs() <= most) {
-        true => Ok(()),
-        false => Err(Error::OtherSurface { n_vertices, n_points }),
-    }
-}
-
-fn run(
-    EmbedInput { intrinsic: surface, map }: EmbedInput<'_>,
-    EmbedOptions { form, stress, earlier }: EmbedOptions<'_>,
-    observer: &dyn Observer,
-) -> Result<Embedded, Error> {
+    let EmbedInput { intrinsic: surface, map } = surface.into();
+    let EmbedOptions { form, stress, earlier } = options.into();
     let start = Instant::now();
-    let budget = observer.budget();
     let options = FormOptions { repair: map.repair, ..form.clone() }.normalized();
     let first = match options.first_sample {
         FirstSample::Farthest => FirstSample::Farthest,
@@ -201,7 +175,7 @@ fn run(
         return Err(Error::NoStress { method: options.method.name() });
     }
     if options.method.streams() {
-        plan(surface.n_vertices(), options.samples).check(&budget)?;
+        plan(surface.n_vertices(), options.samples).check(&observer.budget())?;
     }
     let measures = options.method.has_unit() && stress.choice != StressChoice::Skip;
     let against = stress.against.filter(|other| measures && *other != options.geodesic);
@@ -230,7 +204,6 @@ fn run(
         first,
         seed: options.seed,
         observer,
-        budget: budget.clone(),
         streams: options.method.streams(),
         seconds: start.elapsed().as_secs_f64().into(),
     };
@@ -287,4 +260,23 @@ fn run(
         repair: map.report.clone(),
     };
     Ok(Embedded { options, embedding, distances, report, extension })
+}
+
+/// Distances on one surface differ by less than this share of the largest: what compilers and processors change.
+const SAME_DISTANCES: f64 = 1e-9;
+
+/// Refuses distances that were measured on another surface, by those from the first landmark.
+///
+/// # Errors
+/// [`Error::OtherSurface`].
+fn check_distances(solver: &dyn DistanceSolver, known: &LandmarkDistances) -> Result<(), Error> {
+    let Some(&first) = known.landmarks().first() else { return Ok(()) };
+    let (n_vertices, n_points) = (solver.n_vertices(), known.n_points());
+    let mut column = solver.budget().vector(n_vertices)?;
+    solver.distances_into(VertexId::from(first), &mut column)?;
+    let (known, most) = (known.column(0)?, SAME_DISTANCES * known.max());
+    match column.iter().zip(known.iter()).all(|(a, b)| (a - b).abs() <= most) {
+        true => Ok(()),
+        false => Err(Error::OtherSurface { n_vertices, n_points }),
+    }
 }

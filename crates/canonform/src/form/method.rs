@@ -136,7 +136,7 @@ impl EmbedMethod {
         dim: usize,
         measurement: &Measurement<'_>,
     ) -> Result<Outcome, Error> {
-        let budget = measurement.budget.clone();
+        let budget = measurement.observer.budget();
         let by_nystrom = |regularization| {
             let options = NystromOptions { regularization, dim };
             measurement.sampled(options.first_samples(), &|distances| nystrom(distances, &options))

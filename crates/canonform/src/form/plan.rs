@@ -20,39 +20,32 @@ const PER_PAIR: usize = 8;
 
 const BYTES: usize = size_of::<f64>();
 
-/// The memory of an embedding of `n_vertices` vertices from `n_columns` samples.
+/// The memory of an embedding, in bytes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Plan {
     n_vertices: usize,
     n_columns: usize,
-    /// Further columns, which always stay in memory.
-    n_held_out: usize,
-    n_threads: usize,
+    /// The distances.
+    columns: usize,
+    /// The matrices, and everything else for each vertex.
+    matrices: usize,
+    per_vertex: usize,
 }
 
 impl Plan {
-    /// `n_held_out` columns are held out to measure the stress.
+    /// Of `n_vertices` vertices from `n_columns` samples; `n_held_out` further columns, which always stay in memory, measure the stress.
     pub(super) fn new(n_vertices: usize, n_columns: usize, n_held_out: usize) -> Self {
-        let (n_columns, n_threads) = (n_columns.min(n_vertices), rayon::current_num_threads());
-        Self { n_vertices, n_columns, n_held_out, n_threads }
+        let n_columns = n_columns.min(n_vertices);
+        let columns = n_vertices.saturating_mul(n_columns).saturating_mul(BYTES);
+        let matrices = n_columns.saturating_mul(n_columns).saturating_mul(PER_PAIR * BYTES);
+        let per_vertex =
+            PER_VERTEX + rayon::current_num_threads() * PER_VERTEX_AND_THREAD + n_held_out * BYTES;
+        Self { n_vertices, n_columns, columns, matrices, per_vertex }
     }
 
-    /// Bytes of the distances.
-    fn columns(self) -> usize {
-        self.n_vertices.saturating_mul(self.n_columns).saturating_mul(BYTES)
-    }
-
-    fn per_vertex(self) -> usize {
-        PER_VERTEX + self.n_threads * PER_VERTEX_AND_THREAD + self.n_held_out * BYTES
-    }
-
-    fn matrices(self) -> usize {
-        self.n_columns.saturating_mul(self.n_columns).saturating_mul(PER_PAIR * BYTES)
-    }
-
-    /// Bytes of everything else.
+    /// Bytes of all but the distances.
     fn rest(self) -> usize {
-        self.n_vertices.saturating_mul(self.per_vertex()).saturating_add(self.matrices())
+        self.n_vertices.saturating_mul(self.per_vertex).saturating_add(self.matrices)
     }
 
     /// Refuses what does not fit into memory even with distances in a file.
@@ -64,7 +57,7 @@ impl Plan {
         if budget.spill().is_none() || self.rest() <= limit {
             return Ok(());
         }
-        let fits = limit.saturating_sub(self.matrices()) / self.per_vertex();
+        let fits = limit.saturating_sub(self.matrices) / self.per_vertex;
         Err(Error::EmbeddingTooLarge { n_vertices: self.n_vertices, needed: self.rest(), limit, fits })
     }
 
@@ -80,8 +73,8 @@ impl Plan {
         };
         self.check(budget)?;
         let fits = match budget.memory() {
-            None => self.columns() <= DISTANCES_LIMIT,
-            Some(limit) => self.rest().saturating_add(self.columns()) <= limit,
+            None => self.columns <= DISTANCES_LIMIT,
+            Some(limit) => self.rest().saturating_add(self.columns) <= limit,
         };
         // The system may have less memory than the budget.
         let mut store = ColumnStore::in_memory(self.n_vertices);

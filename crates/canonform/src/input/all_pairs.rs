@@ -80,7 +80,15 @@ impl<'a> AllPairs<'a> {
         let p = self.n_vertices();
         let origin = out.stream_position()?;
         let at = |row: usize, column: usize| SeekFrom::Start(origin + ((row * p + column) * BYTES) as u64);
-        let mut tally = Tally::default();
+        let (mut sum, mut largest, mut count) = (0.0, 0.0, 0_u64);
+        let mut average = |there: f64, back: f64| {
+            let longer = there.max(back);
+            if longer > 0.0 && longer < f64::INFINITY {
+                let share = (there - back).abs() / longer;
+                (sum, largest, count) = (sum + share, f64::max(largest, share), count + 1);
+            }
+            0.5 * (there + back)
+        };
         let mut block = vec![0.0; self.block * p];
         let mut bytes = vec![[0; BYTES]; self.block * STRIPE];
         observer.begin("all pairs", p);
@@ -99,7 +107,7 @@ impl<'a> AllPairs<'a> {
                 for (i, row) in rows.chunks_exact_mut(p).enumerate() {
                     for (j, there) in row[left..left + width].iter_mut().enumerate() {
                         let back = &mut stripe[j * n + i];
-                        *there = tally.average(*there, f64::from_le_bytes(*back));
+                        *there = average(*there, f64::from_le_bytes(*back));
                         *back = there.to_le_bytes();
                     }
                 }
@@ -110,9 +118,9 @@ impl<'a> AllPairs<'a> {
             }
             for i in 0..n {
                 for j in 0..i {
-                    let average = tally.average(rows[i * p + first + j], rows[j * p + first + i]);
-                    rows[i * p + first + j] = average;
-                    rows[j * p + first + i] = average;
+                    let mean = average(rows[i * p + first + j], rows[j * p + first + i]);
+                    rows[i * p + first + j] = mean;
+                    rows[j * p + first + i] = mean;
                 }
             }
             out.seek(at(first, 0))?;
@@ -121,7 +129,7 @@ impl<'a> AllPairs<'a> {
                 out.write_all(bytes[..part.len()].as_flattened())?;
             }
         }
-        Ok(tally.asymmetry())
+        Ok(Asymmetry { mean: sum / count.max(1) as f64, largest })
     }
 
     /// Solves the rows of the input vertices from `first` on.
@@ -148,31 +156,6 @@ impl<'a> AllPairs<'a> {
             }
         }
         Ok(())
-    }
-}
-
-/// The asymmetry of the pairs seen so far.
-#[derive(Debug, Default)]
-struct Tally {
-    sum: f64,
-    largest: f64,
-    count: u64,
-}
-
-impl Tally {
-    fn average(&mut self, there: f64, back: f64) -> f64 {
-        let longer = there.max(back);
-        if longer > 0.0 && longer < f64::INFINITY {
-            let share = (there - back).abs() / longer;
-            self.sum += share;
-            self.largest = self.largest.max(share);
-            self.count += 1;
-        }
-        0.5 * (there + back)
-    }
-
-    fn asymmetry(&self) -> Asymmetry {
-        Asymmetry { mean: self.sum / self.count.max(1) as f64, largest: self.largest }
     }
 }
 
