@@ -279,42 +279,84 @@ mod tests {
 
     use super::*;
 
-    fn result(rank: usize, label: &str, distance: f64) -> Hit {
-        let shape = ShapeDistance { fused: distance, combined: distance };
-        Hit {
-            rank,
-            id: format!("{label}{rank}"),
-            label: label.to_owned(),
-            itself: false,
-            path: String::new(),
-            distance,
-            fused: distance,
-            order: None,
-            relation: Relation::by_distance(shape, 1.0, Handedness::Unknown),
-            comparison: None,
-        }
-    }
-
+    /// Results of these classes at these distances.
     fn results(found: &[(&str, f64)]) -> Vec<Hit> {
-        found.iter().enumerate().map(|(i, (label, distance))| result(i + 1, label, *distance)).collect()
+        let hit = |(rank, &(label, distance)): (usize, &(&str, f64))| {
+            let shape = ShapeDistance { fused: distance, combined: distance };
+            Hit {
+                rank,
+                id: format!("{label}{rank}"),
+                label: label.to_owned(),
+                itself: false,
+                path: String::new(),
+                distance,
+                fused: distance,
+                order: None,
+                relation: Relation::by_distance(shape, 1.0, Handedness::Unknown),
+                comparison: None,
+            }
+        };
+        (1..).zip(found).map(hit).collect()
     }
 
-    fn threshold(distance: f64) -> Option<UnknownThreshold> {
-        Some(UnknownThreshold { distance, missed: 0.0, mistaken: 0.0 })
-    }
-
-    fn facts() -> Facts {
+    fn closed() -> Facts {
         Facts { area: 1.0, ..Facts::default() }
     }
 
     #[test]
-    fn a_shape_that_is_the_same_is_never_unknown() {
-        let near = results(&[("cat", 0.9), ("cat", 1.0)]);
-        // Narrow classes do not overrule the distance.
-        for width in [None, threshold(0.2), threshold(9.0)] {
-            let found = predicted(&near, (width, None), &facts());
-            assert_eq!((found.label.as_deref(), found.votes, found.unknown), (Some("cat"), 2, None));
-            assert_eq!(found.explanation, format!("cat, by 2 of 2 votes, confidence {:.2}", 1.0));
+    fn the_nearest_shapes_vote_and_what_is_unknown_says_why() {
+        let [near, far]: [&[(&str, f64)]; 2] =
+            [&[("cat", 0.9), ("cat", 1.0)], &[("cat", 9.25), ("dog", 9.5)]];
+        let open = Facts { longest_boundary: 1.25, ..closed() };
+        let lossy = Facts { dropped_area_share: 0.14, ..closed() };
+        let small_holes = Facts { dropped_area_share: 0.001, longest_boundary: 0.05, ..closed() };
+        let welded = |shortcuts| Facts { shortcuts, ..closed() };
+        let people: &[_] = &[("david", 1.0), ("michael", 1.05), ("david", 1.1), ("michael", 1.1)];
+        type Row<'a> =
+            (&'a [(&'a str, f64)], Option<f64>, Facts, Result<(&'a str, usize), Unknown>, &'a [&'a str]);
+        let table: [Row<'_>; 13] = [
+            // Narrow classes do not overrule the distance.
+            (near, None, closed(), Ok(("cat", 2)), &["cat, by 2 of 2 votes, confidence 1.00"]),
+            (near, Some(0.2), closed(), Ok(("cat", 2)), &[]),
+            (near, Some(9.0), open, Ok(("cat", 2)), &[]),
+            (near, None, welded(1), Ok(("cat", 2)), &["probably has a shortcut", "in one place"]),
+            (near, None, welded(3), Ok(("cat", 2)), &["in 3 places"]),
+            (people, None, closed(), Ok(("david", 2)), &["the vote is split; other votes: michael 2"]),
+            // Classes of a collection may be wider than those of the metric.
+            (far, Some(10.0), closed(), Ok(("cat", 1)), &["up to 10.000 wide"]),
+            (
+                far,
+                Some(2.0),
+                closed(),
+                Err(Unknown::NothingNear),
+                &["cat1", "9.250", "not the same shape", "up to 2.000 wide", "one class are below 3.730"],
+            ),
+            (far, None, small_holes, Err(Unknown::NothingNear), &[]),
+            (far, None, lossy, Err(Unknown::Partial), &["14 % of its surface", "ranking by parts"]),
+            (far, None, open, Err(Unknown::Partial), &["1.2 times", "ranking by parts"]),
+            (
+                &[("", 0.5)],
+                None,
+                closed(),
+                Err(Unknown::Unlabelled),
+                &["None of the nearest shapes has a class"],
+            ),
+            (&[], None, closed(), Err(Unknown::EmptyIndex), &["The index is empty"]),
+        ];
+        for (found, width, facts, expected, words) in table {
+            let width = width.map(|distance| UnknownThreshold { distance, missed: 0.0, mistaken: 0.0 });
+            let hits = results(found);
+            let Prediction { label, votes, unknown, explanation, tally, nearest, .. } =
+                predicted(&hits, (width, None), &facts);
+            assert_eq!(unknown.map_or(Ok((label.as_deref().unwrap_or_default(), votes)), Err), expected);
+            assert!(words.iter().all(|words| explanation.contains(words)), "{explanation}");
+            assert!(explanation.contains("shortcut") == (facts.shortcuts > 0), "{explanation}");
+            assert_eq!(
+                nearest.map(|nearest| nearest.relation).as_ref(),
+                hits.first().map(|hit| &hit.relation)
+            );
+            let shares = tally.iter().map(|of| of.share).sum::<f64>();
+            assert!(tally.is_empty() || (shares - 1.0).abs() < 1e-12);
         }
     }
 
@@ -322,90 +364,29 @@ mod tests {
     fn no_shape_votes_on_its_own_class() {
         let mut near = results(&[("dog", 0.0), ("cat", 0.9), ("cat", 1.0)]);
         near[0].itself = true;
-        let found = predicted(&near, (None, None), &facts());
+        let found = predicted(&near, (None, None), &closed());
         assert_eq!((found.label.as_deref(), found.voters), (Some("cat"), 2));
         assert_eq!(found.nearest.unwrap().id, "cat2");
     }
 
     #[test]
-    fn unknown_names_the_nearest_shape_and_the_limit_it_missed() {
-        let far = results(&[("cat", 9.25), ("dog", 9.5)]);
-        let found = predicted(&far, (threshold(2.0), None), &facts());
-        assert_eq!((found.label.as_deref(), found.unknown), (None, Some(Unknown::NothingNear)));
-        for words in
-            ["cat1", "9.250", "not the same shape", "up to 2.000 wide", &format!("{:.3}", found.class_below)]
-        {
+    fn parts_vote_by_how_well_they_fit() {
+        // A surface of a few faces fits everywhere.
+        for (fits, expected, words) in [
+            ([0.3, 1.2], Ok("cat"), "cat, by 1 of 1 votes"),
+            ([0.3, 0.35], Err(Unknown::SeveralClasses), "as a part of cat and of dog"),
+            ([0.0, 0.0], Err(Unknown::SeveralClasses), "nearly as well"),
+            ([1.1, 1.2], Err(Unknown::NothingNear), "fits best as a part of cat1"),
+        ] {
+            let mut hits = results(&[("cat", 9.0), ("dog", 9.0)]);
+            for (hit, times) in hits.iter_mut().zip(fits) {
+                let part_distance = times * PartDistance::SAME_CLASS;
+                hit.order = Some(OrderedBy::Part { part_distance, part_share: 0.7 });
+            }
+            let facts = Facts { longest_boundary: 1.25, ..closed() };
+            let found = predicted(&hits, (None, None), &facts);
+            assert_eq!(found.unknown.map_or(Ok(found.label.as_deref().unwrap_or_default()), Err), expected);
             assert!(found.explanation.contains(words), "{}", found.explanation);
         }
-        assert_eq!(found.nearest.as_ref().map(|n| &n.relation), Some(&far[0].relation));
-        // Classes of a collection may be wider than those of the metric.
-        let wide = predicted(&far, (threshold(10.0), None), &facts());
-        assert_eq!((wide.label.as_deref(), wide.voters), (Some("cat"), 2));
-        assert!(wide.explanation.contains("up to 10.000 wide"), "{}", wide.explanation);
-        let empty = predicted(&[], (None, None), &facts());
-        assert_eq!((empty.unknown, empty.nearest), (Some(Unknown::EmptyIndex), None));
-    }
-
-    #[test]
-    fn a_query_that_looks_like_a_part_is_said_to_be_one_only_if_nothing_is_near() {
-        let far = results(&[("cat", 9.0)]);
-        for (query, words) in [
-            (Facts { dropped_area_share: 0.14, ..facts() }, "14 % of its surface"),
-            (Facts { longest_boundary: 1.25, ..facts() }, "1.2 times"),
-        ] {
-            let found = predicted(&far, (None, None), &query);
-            assert_eq!(found.unknown, Some(Unknown::Partial));
-            assert!(found.explanation.contains(words) && found.explanation.contains("ranking by parts"));
-            assert_eq!(predicted(&results(&[("cat", 0.5)]), (None, None), &query).unknown, None);
-        }
-        let small_holes = Facts { dropped_area_share: 0.001, longest_boundary: 0.05, ..facts() };
-        assert_eq!(predicted(&far, (None, None), &small_holes).unknown, Some(Unknown::NothingNear));
-    }
-
-    #[test]
-    fn parts_vote_by_how_well_they_fit() {
-        let fit = |mut result: Hit, times: f64| {
-            let part_distance = times * PartDistance::SAME_CLASS;
-            result.order = Some(OrderedBy::Part { part_distance, part_share: 0.7 });
-            result
-        };
-        let shapes = results(&[("cat", 9.0), ("dog", 9.0)]);
-        let fits = |cat, dog| vec![fit(shapes[0].clone(), cat), fit(shapes[1].clone(), dog)];
-        let open = Facts { longest_boundary: 1.25, ..facts() };
-        let found = predicted(&fits(0.3, 1.2), (None, None), &open);
-        assert_eq!((found.label.as_deref(), found.votes, found.unknown), (Some("cat"), 1, None));
-        assert_eq!(found.explanation, "cat, by 1 of 1 votes");
-        let found = predicted(&fits(0.3, 0.35), (None, None), &open);
-        assert_eq!((found.label.as_deref(), found.unknown), (None, Some(Unknown::SeveralClasses)));
-        assert!(found.explanation.contains("as a part of cat and of dog"), "{}", found.explanation);
-        // A surface of a few faces fits everywhere.
-        let found = predicted(&fits(0.0, 0.0), (None, None), &open);
-        assert_eq!(found.unknown, Some(Unknown::SeveralClasses));
-        let found = predicted(&fits(1.1, 1.2), (None, None), &open);
-        assert_eq!(found.unknown, Some(Unknown::NothingNear));
-        assert!(found.explanation.contains("fits best as a part of cat1"), "{}", found.explanation);
-    }
-
-    #[test]
-    fn shortcuts_of_the_query_are_a_warning() {
-        let near = results(&[("cat", 0.5)]);
-        let words = |shortcuts| predicted(&near, (None, None), &Facts { shortcuts, ..facts() }).explanation;
-        assert!(!words(0).contains("shortcut"));
-        assert!(words(1).contains("probably has a shortcut") && words(1).contains("in one place"));
-        assert!(words(3).contains("in 3 places"), "{}", words(3));
-    }
-
-    #[test]
-    fn a_split_vote_says_so() {
-        let people = results(&[("david", 1.0), ("michael", 1.05), ("david", 1.1), ("michael", 1.1)]);
-        let found = predicted(&people, (None, None), &facts());
-        assert_eq!(found.label.as_deref(), Some("david"));
-        assert!(
-            found.explanation.contains("the vote is split; other votes: michael 2"),
-            "{}",
-            found.explanation
-        );
-        assert_eq!(found.tally.iter().map(|t| t.votes).collect::<Vec<_>>(), [2, 2]);
-        assert!((found.tally.iter().map(|t| t.share).sum::<f64>() - 1.0).abs() < 1e-12);
     }
 }
