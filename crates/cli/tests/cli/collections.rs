@@ -1,4 +1,4 @@
-//! Folders and indexes as people keep them: strange names, labels, limits, moves, damage.
+//! Folders and indexes as people keep them: labels, limits, moves.
 
 use std::fs;
 
@@ -36,12 +36,9 @@ fn shapes_are_listed_by_class() {
     let place = collection(2);
     place.done(BUILD);
     place.add("extra.ply", &body(2, 1));
-    fs::write(place.path("none.csv"), "other,x\n").unwrap();
-    place.done("index add all.canonform extra.ply --labels none.csv");
+    place.done("index add all.canonform extra.ply --labels none");
     let all = place.json("index list all.canonform");
     assert_eq!(ids(&all, "shapes"), ["ball0", "ball1", "ball2", "extra", "ring0", "ring1", "ring2"]);
-    let first = &all["shapes"][0];
-    assert_eq!((&first["path"], &first["vertices"]), (&"meshes/ball0.off".into(), &162.into()));
     let some = place.json("index list all.canonform --label ring --unlabelled");
     assert_eq!(ids(&some, "shapes"), ["extra", "ring0", "ring1", "ring2"]);
     let text = place.done("index list all.canonform --label ball").out;
@@ -62,12 +59,9 @@ fn queries_are_meshes_folders_and_shapes_of_the_index() {
     assert_eq!(ids(&search("--id ring0"), "results")[0], "ring0");
     let many = place.json("search all.canonform meshes --id ring2");
     assert_eq!(many["queries"].as_array().unwrap().len(), 7);
-    assert!(many.get("results").is_none() && many["failed"].as_array().unwrap().is_empty());
     // Without results the class is predicted all the same.
     let none = search("ball1 -k 0");
     assert!(none["results"].as_array().unwrap().is_empty() && none["predicted"]["label"] == "ball");
-    let text = place.done("search all.canonform ball1 -k 0").out;
-    assert!(text.contains("class: ball"), "{text}");
     // No more than there are.
     assert_eq!(ids(&search("ball1 -k 9223372036854775807"), "results").len(), 6);
 }
@@ -96,17 +90,15 @@ fn the_build_says_what_classes_it_took_and_obeys_whoever_chooses() {
         (0..3).for_each(|i| place.add(&format!("meshes/{class}{i}.off"), &body(kind, i)));
     }
     let classes = || place.json("index info all.canonform")["classes"].clone();
-    for (source, from, expected, said) in [
-        ("", "folders", json!({"animals": 3, "things": 3}), "2 from sub-folders; pass --labels none"),
-        (" --labels names", "names", json!({"ball": 3, "cat": 3}), "2 from leading letters"),
-        (" --labels none", "none", json!({"": 6}), "none"),
+    for (source, from, expected) in [
+        ("", "folders", json!({"animals": 3, "things": 3})),
+        (" --labels names", "names", json!({"ball": 3, "cat": 3})),
+        (" --labels none", "none", json!({"": 6})),
     ] {
         let built = place.json(format!("{BUILD}{source}"));
         assert_eq!((&built["labels_from"], &classes()), (&from.into(), &expected));
         // Other classes need no new descriptions.
         assert_eq!(built["described"], if source.is_empty() { 6 } else { 0 });
-        let told = place.done(format!("{BUILD}{source}")).out;
-        assert!(told.lines().any(|line| line.contains("classes") && line.contains(said)), "{told}");
     }
     let scores = place.json("evaluate all.canonform --labels folders");
     assert_eq!(scores["classes"], json!(["animals", "things"]));
@@ -123,14 +115,17 @@ fn the_build_says_what_classes_it_took_and_obeys_whoever_chooses() {
 }
 
 #[test]
-fn a_batch_goes_on_past_shapes_beyond_its_limits() {
+fn a_batch_goes_on_past_shapes_that_fail() {
     let place = collection(2);
     place.add("meshes/big0.off", &shapes::icosphere(4));
+    fs::write(place.path("meshes/bad.off"), "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 zero\n3 0 1 2\n").unwrap();
     let outcome = place.run(format!("{BUILD} --max-vertices 1000 --json"));
     let json = one_object(&outcome.out);
-    assert_eq!((outcome.code, &json["n_shapes"]), (2, &6.into()));
-    assert_eq!((ids(&json, "failed"), &json["failed"][0]["reason"]), (vec!["big0"], &"too-large".into()));
+    assert_eq!((outcome.code, &json["n_shapes"], ids(&json, "failed")), (2, &6.into(), vec!["bad", "big0"]));
+    assert_eq!([0, 1].map(|i| &json["failed"][i]["reason"]), ["unreadable", "too-large"]);
+    assert!(outcome.err.contains("meshes/bad.off") && outcome.err.contains("line 5"), "{}", outcome.err);
     // The next run, with more room, takes it.
+    fs::remove_file(place.path("meshes/bad.off")).unwrap();
     assert_eq!(place.json(BUILD)["n_shapes"], 7);
     for (limit, value, reason) in [("--memory", "100", "memory"), ("--timeout", "0.000001", "time")] {
         let outcome = place.run(format!("index build meshes -o none {limit} {value} --json"));
@@ -138,26 +133,6 @@ fn a_batch_goes_on_past_shapes_beyond_its_limits() {
         let failed = json["failed"].as_array().unwrap();
         assert!(failed.len() == 7 && failed.iter().all(|failure| failure["reason"] == reason), "{json}");
         assert!(outcome.code == 2 && outcome.err.contains(&format!("raise {limit}")), "{}", outcome.err);
+        assert!(!place.path("none").exists(), "an index of nothing");
     }
-}
-
-#[test]
-fn a_damaged_index_is_built_again() {
-    let place = collection(2);
-    place.done(BUILD);
-    let text = place.done("index export all.canonform").out;
-    assert_eq!(place.json("index verify all.canonform")["sound"], true);
-    let mut bytes = fs::read(place.path("all.canonform")).unwrap();
-    bytes[4096..].iter_mut().for_each(|byte| *byte ^= 1);
-    fs::write(place.path("all.canonform"), &bytes).unwrap();
-    for command in ["index info all.canonform", "search all.canonform ring0"] {
-        place.refused(command, &["all.canonform is damaged", "index build"]);
-    }
-    let outcome = place.run("index verify all.canonform --json");
-    assert_eq!((outcome.code, &one_object(&outcome.out)["sound"]), (2, &false.into()));
-    let outcome = place.done(format!("{BUILD} --json"));
-    assert_eq!(one_object(&outcome.out)["replaced_damaged"], true);
-    assert!(outcome.err.contains("all.canonform.damaged"), "{}", outcome.err);
-    assert_eq!(place.done("index export all.canonform").out, text);
-    assert_eq!(fs::read(place.path("all.canonform.damaged")).unwrap(), bytes);
 }

@@ -1,11 +1,11 @@
 //! The program as its users see it: arguments in; files, output and exit codes out.
 //!
 //! `cluster` (the scripts in `examples/cluster`), `collections` (folders and indexes as people keep them), `commands` (what
-//! each prints), `dropped` (lost surfaces), `errors` (batches, outputs that cannot be written), `field` (all pairs in little
-//! memory), `forms` (files), `generate`, `geodesic` (sources, paths, all pairs), `guide` (the commands of the user guide),
-//! `hostile` (names that others obey), `index` (building, changing, searching), `killed` (interruptions, full disks),
-//! `matching` (maps between meshes), `refusals`, `render` (pictures), `serve`, `storage` (archives, lists, conversion,
-//! exports), `streams` (standard input and output, several meshes, limits), `zoo` (broken meshes).
+//! each prints), `dropped` (lost surfaces), `field` (all pairs in little memory), `forms` (files), `generate`, `geodesic`
+//! (sources, paths, all pairs), `guide` (the commands of the user guide), `hostile` (names that others obey), `index`
+//! (building, changing, searching), `killed` (interruptions), `matching` (maps between meshes), `refusals`, `render`
+//! (pictures), `serve`, `storage` (archives, lists, conversion, exports), `streams` (standard input and output, several
+//! meshes, limits), `zoo` (broken meshes).
 
 #![allow(clippy::unwrap_used, reason = "these are tests")]
 
@@ -14,8 +14,6 @@ mod cluster;
 mod collections;
 mod commands;
 mod dropped;
-mod duplicates;
-mod errors;
 mod field;
 mod forms;
 mod generate;
@@ -27,6 +25,7 @@ mod killed;
 mod matching;
 mod refusals;
 mod render;
+#[cfg(unix)]
 mod serve;
 mod storage;
 mod streams;

@@ -1,6 +1,10 @@
 //! What the program refuses, by the table in `tests/contracts`.
 
 use std::fs;
+#[cfg(not(unix))]
+use std::fs::hard_link as link;
+#[cfg(unix)]
+use std::os::unix::fs::symlink as link;
 use std::path::Path;
 
 use canonform::mesh::shapes;
@@ -27,17 +31,28 @@ fn place() -> Workplace {
         ("ring.ply", &ring()),
         ("a.off", &broken),
         ("b.off", &shapes::icosphere(0)),
+        // Names that results might take.
+        ("x.ply", &ring()),
+        ("x-0.ply", &ring()),
+        ("x-source.ply", &ring()),
+        ("pair.vert", &ring()),
+        ("sub/ring.off", &ring()),
         ("ball.ply", &shapes::icosphere(6)),
         ("large.ply", &shapes::icosphere(7)),
     ] {
         place.add(name, mesh);
     }
+    link(place.path("ring.off"), place.path("link.off")).unwrap();
+    fs::hard_link(place.path("ring.off"), place.path("hard.off")).unwrap();
+    ["void", "taken.npy", "taken.csv"].iter().for_each(|name| fs::create_dir(place.path(name)).unwrap());
     place.done("geodesic ring.off --source 3,90 -o two.npy");
     place.done("field build ring.off --method exact --landmarks 20 -o x.field");
     let mut damaged = fs::read(place.path("x.field")).unwrap();
     damaged[200] ^= 1;
     fs::write(place.path("damaged.field"), damaged).unwrap();
-    fs::create_dir(place.path("void")).unwrap();
+    let mut damaged = fs::read(place.path("all.canonform")).unwrap();
+    damaged[4096..].iter_mut().for_each(|byte| *byte ^= 1);
+    fs::write(place.path("damaged.canonform"), damaged).unwrap();
     for (name, text) in [
         ("empty.off", ""),
         ("garbage.obj", "v 0 0\nf 1 2 x\n"),
@@ -46,6 +61,7 @@ fn place() -> Workplace {
         ("notes.txt", "dear diary"),
         ("meshes.tar.xz", "x"),
         ("taken", ""),
+        ("form.npy", "precious"),
         ("ring0", ""),
         ("bad.csv", "1,2\n3\n"),
         ("far.csv", "1,2\n3,999\n"),

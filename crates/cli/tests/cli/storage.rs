@@ -69,29 +69,27 @@ fn every_command_reads_members_compressed_files_and_archives_of_one_mesh() {
     let plain = "meshes/ring/ring0.off";
     fs::write(place.path("ring0.off.gz"), gzip_of(&fs::read(place.path(plain)).unwrap())).unwrap();
     let commands = [
-        ("geodesic MESH --source 0 -o", "x.npy"),
-        ("embed MESH -n 20 -o", "x.ply"),
-        ("convert MESH", "y.ply"),
-        ("render MESH --size 64x64 -o", "x.png"),
-        ("field build MESH --landmarks 10 -o", "x.field"),
-        ("match MESH meshes/ring/ring0.off -n 20 -o", "y.npy"),
+        "geodesic MESH --source 0 -o x.npy",
+        "embed MESH -n 20 -o x.ply",
+        "convert MESH y.ply",
+        "render MESH --size 64x64 -o x.png",
+        "field build MESH --landmarks 10 -o x.field",
+        "match MESH meshes/ring/ring0.off -n 20 -o y.npy",
     ];
-    let results = |mesh: &str, n: usize| -> Vec<Vec<u8>> {
-        let run = |(command, output): &(&str, &str)| {
-            place.done(format!("{} {output}", command.replace("MESH", mesh)));
-            fs::read(place.path(output)).unwrap()
-        };
-        commands[..n].iter().map(run).collect()
+    let result = |command: &str, mesh: &str| {
+        place.done(command.replace("MESH", mesh));
+        fs::read(place.path(command.rsplit(' ').next().unwrap())).unwrap()
     };
-    let expected = results(plain, 6);
-    let mesh = |path: &str| place.json(format!("info {path}"))["meshes"][0]["mesh"].clone();
+    let expected = commands.map(|command| result(command, plain));
+    let mesh = |path: &str| place.json(format!("info {path}"))["meshes"][0]["mesh"].take();
     for (path, n, kind) in [
         ("one.zip", 6, "identical-file"),
         ("meshes.zip/meshes/ring/ring0.off", 2, "identical-file"),
         ("meshes.tar.gz/meshes/ring/ring0.off", 2, "identical-file"),
         ("ring0.off.gz", 2, "identical-geometry"),
     ] {
-        assert!(results(path, n) == expected[..n] && mesh(path) == mesh(plain), "{path}");
+        let found = commands[..n].iter().map(|command| result(command, path));
+        assert!(found.eq(expected[..n].iter().cloned()) && mesh(path) == mesh(plain), "{path}");
         let compared = place.json(format!("compare {path} {plain} -n 20"));
         assert_eq!(compared["relation"]["kind"], kind, "{path}");
     }
@@ -102,8 +100,6 @@ fn every_command_reads_members_compressed_files_and_archives_of_one_mesh() {
         place.done(format!("embed {archive} -n 20 -o forms --output-format npy"));
         assert!(place.path("forms").join(form).exists(), "{form}");
     }
-    let all = place.json("info meshes.tar.gz list.txt meshes");
-    assert_eq!(all["meshes"].as_array().unwrap().len(), 12);
 }
 
 #[test]
@@ -112,8 +108,7 @@ fn meshes_are_converted_between_all_formats() {
     place.add("ring.off", &ring());
     let expected = fs::read(place.path("ring.off")).unwrap();
     for format in ["off", "obj", "ply", "3mf", "vert", "tri", "obj.gz", "off.gz", "3mf.gz", "stl", "glb"] {
-        let json = place.json(format!("convert ring.off copy.{format}"));
-        assert_eq!((&json["n_vertices"], &json["n_faces"]), (&160.into(), &320.into()), "{json}");
+        assert_eq!(place.json(format!("convert ring.off copy.{format}"))["n_faces"], 320);
         let back = place.done(format!("convert copy.{format} back.off"));
         // These round coordinates to 32 bits.
         if !matches!(format, "stl" | "glb") {
@@ -133,36 +128,11 @@ fn conversion_repairs_on_request_and_converts_datasets() {
     place.add("two.obj", &shapes::disjoint(&[ring(), shapes::cube(0)]));
     assert_eq!(place.json("convert two.obj kept.ply")["n_vertices"], 168);
     let repaired = place.json("convert --repair two.obj one.ply --max-dropped 1");
-    assert_eq!(repaired["n_vertices"], 160);
-    assert!(repaired["repair"]["dropped_area_share"].as_f64().unwrap() > 0.0);
+    assert_eq!([&repaired["n_vertices"], &repaired["repair"]["dropped_components"]], [160, 1]);
     place.refused("convert meshes.zip out", &["--output-format"]);
-    let json = place.json("convert meshes.zip out --output-format ply.gz");
-    assert_eq!(json["meshes"].as_array().unwrap().len(), 4);
-    assert_eq!(place.json("info out")["meshes"].as_array().unwrap().len(), 4);
+    place.done("convert meshes.zip out --output-format ply.gz");
+    assert_eq!(place.json("info out list.txt")["meshes"].as_array().unwrap().len(), 8);
     assert!(place.path("out/ball/ball1.ply.gz").exists());
-}
-
-#[test]
-fn format_names_the_format_of_standard_input() {
-    let place = collection();
-    place.add("ring.glb", &ring());
-    let [glb, off] = ["ring.glb", "meshes/ring/ring0.off"].map(|name| fs::read(place.path(name)).unwrap());
-    place.done(format!("index build one.zip {BUILD}"));
-    for (input, arguments, code, start) in [
-        (&glb, "info - --format glb --json", 0, "{"),
-        (&off, "search other.canonform - --format off --json", 0, "{"),
-        (&glb, "convert - - --format glb --output-format ply", 0, "ply"),
-        // With --input-format, and without standard input, it is the format of forms.
-        (&off, "embed - --input-format off --format npy -n 20 -o -", 0, "\u{fffd}NUMPY"),
-        (&off, "embed - --format off -n 20 -o -", 0, "ply"),
-        (&off, "convert - - --format off", 2, "--output-format"),
-        (&off, "info - --format txt", 2, "`txt`"),
-    ] {
-        let (found, out, err) = place.piped(input, arguments);
-        let out = String::from_utf8_lossy(&out).into_owned();
-        assert_eq!(found, code, "{arguments}: {err}");
-        assert!(if code == 0 { out.starts_with(start) } else { err.contains(start) }, "{arguments}: {err}");
-    }
 }
 
 #[test]
@@ -180,8 +150,4 @@ fn exports_go_to_files_and_to_standard_output() {
         );
     }
     assert_eq!(place.done("index export i").out, fs::read_to_string(place.path("x.jsonl")).unwrap());
-    // What a killed program left goes with the next export.
-    fs::write(place.path(".unfinished-Ab12"), "half").unwrap();
-    place.done("index export i -o all.jsonl");
-    assert!(!place.path(".unfinished-Ab12").exists());
 }

@@ -13,7 +13,7 @@ fn piped(place: &Workplace, input: &str, arguments: impl Arguments) -> (i32, Vec
 
 fn place() -> Workplace {
     let place = Workplace::new();
-    for name in ["ring.off", "ring.ply", "ring.stl", "ring.obj"] {
+    for name in ["ring.off", "ring.ply", "ring.stl", "ring.obj", "ring.glb"] {
         place.add(name, &ring());
     }
     place
@@ -22,12 +22,26 @@ fn place() -> Workplace {
 #[test]
 fn meshes_come_from_standard_input_in_every_format_of_one_file() {
     let place = place();
-    for format in ["off", "ply", "stl", "obj"] {
-        let info = format!("info - --input-format {format} --json");
-        let (code, out, err) = piped(&place, &format!("ring.{format}"), info);
-        assert_eq!(code, 0, "{err}");
-        let json = one_object(&String::from_utf8(out).unwrap());
-        assert_eq!(json["meshes"][0]["mesh"]["n_faces"], 320, "{format}");
+    place.done("index build . -n 20 -o i");
+    fs::write(place.path("bad.off"), "OFF\n3 1 0\n0 0 0\n").unwrap();
+    for (input, arguments, code, start) in [
+        ("ring.off", "info - --input-format off --json", 0, "{"),
+        ("ring.obj", "info - --input-format obj --json", 0, "{"),
+        ("ring.stl", "info - --format stl --json", 0, "{"),
+        ("ring.glb", "info - --format glb --json", 0, "{"),
+        ("ring.off", "search i - --format off --json", 0, "{"),
+        ("ring.ply", "convert - - --format ply --output-format off", 0, "OFF"),
+        // With --input-format, and without standard input, it is the format of forms.
+        ("ring.off", "embed - --input-format off --format npy -n 20 -o -", 0, "\u{fffd}NUMPY"),
+        ("ring.off", "embed - --format off -n 20 -o -", 0, "ply"),
+        ("ring.off", "convert - - --format off", 2, "--output-format"),
+        ("ring.off", "info - --format txt", 2, "`txt`"),
+        ("bad.off", "info - --input-format off", 2, "standard input, line 3"),
+    ] {
+        let (found, out, err) = piped(&place, input, arguments);
+        let out = String::from_utf8_lossy(&out).into_owned();
+        assert_eq!(found, code, "{arguments}: {err}");
+        assert!(if code == 0 { out.starts_with(start) } else { err.contains(start) }, "{arguments}: {err}");
     }
     place.done("embed ring.ply -n 20 -o named.npy");
     let stream = "embed - --input-format ply -n 20 -o streamed.npy -q";
@@ -58,14 +72,6 @@ fn results_go_to_standard_output_and_nothing_else_does() {
 }
 
 #[test]
-fn streams_that_cannot_work_are_refused() {
-    let place = place();
-    fs::write(place.path("bad.off"), "OFF\n3 1 0\n0 0 0\n").unwrap();
-    let (code, _, err) = piped(&place, "bad.off", "info - --input-format off");
-    assert!(code == 2 && err.contains("standard input, line 3"), "{err}");
-}
-
-#[test]
 fn lists_folders_and_patterns_are_embedded_and_drawn() {
     let place = Workplace::new();
     for name in ["scans/ring2.off", "scans/ring10.off", "more/sheet.ply"] {
@@ -78,12 +84,8 @@ fn lists_folders_and_patterns_are_embedded_and_drawn() {
     assert_eq!(names, ["ring10", "ring2", "sheet"]);
     // Each form is that which the mesh has alone.
     place.done("embed scans/ring2.off -n 20 -o alone.npy");
-    for name in names {
-        assert_eq!(read_npy(&place.path(&format!("forms/{name}.npy"))).0, [160, 3]);
-    }
     assert_eq!(read_npy(&place.path("alone.npy")), read_npy(&place.path("forms/ring2.npy")));
-    let drawn = place.json("render scans/ring2.off more/*.ply --size 40 -o pictures/");
-    assert_eq!(drawn["pictures"].as_array().unwrap().len(), 2);
+    place.done("render scans/ring2.off more/*.ply --size 40 -o pictures/");
     assert!(place.path("pictures/ring2.png").exists() && place.path("pictures/sheet.png").exists());
 }
 
@@ -120,16 +122,6 @@ fn quiet_runs_write_nothing_but_errors_to_standard_error() {
 }
 
 #[test]
-fn absurd_requests_are_refused_before_they_cost_anything() {
-    let place = place();
-    for option in ["-n 10000000", "--eigenvectors 9223372036854775807", "--dim 9223372036854775807"] {
-        let outcome = place.run(format!("embed ring.off --method spectral {option} -o form.npy"));
-        assert!([0, 2].contains(&outcome.code), "{option}: {}", outcome.err);
-        assert!(outcome.code == 0 || outcome.err.contains("error: "), "{option}: {}", outcome.err);
-    }
-}
-
-#[test]
 fn fields_are_written_in_every_format_with_colors_and_drawn_again() {
     let place = place();
     let mut bumpy = ring();
@@ -143,8 +135,4 @@ fn fields_are_written_in_every_format_with_colors_and_drawn_again() {
         let json = place.json(format!("render {name} -o r.png --size 60"));
         assert_eq!(json["field"]["name"].as_str(), name.ends_with("ply").then_some("residual"), "{name}");
     }
-    place.done("geodesic ring.off --source 3 -o d.ply");
-    let draw = "render - --input-format ply --range 0,1 --size 60 -o c.png";
-    let (code, _, err) = piped(&place, "d.ply", draw);
-    assert_eq!(code, 0, "{err}");
 }

@@ -96,20 +96,3 @@ pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
 fn stopped(fault: &FileError) -> Option<Exceeded> {
     fault.source.get_ref()?.downcast_ref().copied()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn files_beyond_100_gb_need_force() {
-        let refused = check_size(750_000, false).unwrap_err().to_string();
-        assert!(
-            refused.contains("750000 vertices take a file of 4.5 TB") && refused.contains("--force"),
-            "{refused}"
-        );
-        assert!(check_size(750_000, true).is_ok() && check_size(111_803, false).is_ok());
-        assert!(check_size(111_804, false).is_err());
-        assert_eq!([12, 12_345, 12_345_678].map(decimal_bytes), ["0.0 kB", "12.3 kB", "12.3 MB"]);
-    }
-}
