@@ -27,9 +27,7 @@ fn both_maps_of_a_pair_are_written_in_every_format() {
     let maps = json["maps"].as_array().unwrap();
     assert_eq!(maps.len(), 2);
     for (map, path) in maps.iter().zip(["map.npy", "map-mirrored.npy"]) {
-        assert!(map["kind"].is_string() && map["distortion"].is_number(), "{map}");
-        assert!(map["confidence"].as_f64().unwrap() > 0.9 && map["alternative"].is_null(), "{map}");
-        assert_eq!(map["path"], path);
+        assert!(map["confidence"].as_f64().unwrap() > 0.9 && map["path"] == path, "{map}");
         let found = numbers(&place, path);
         assert!(found.len() == 1000 && found.iter().all(|v| (0..1000).contains(v)));
     }
@@ -48,9 +46,7 @@ fn both_maps_of_a_pair_are_written_in_every_format() {
         assert_eq!(fs::metadata(place.path(name)).unwrap().len(), 128 + 8 * size, "{name}");
     }
     let table = place.done(format!("{MATCH} -o map.ply")).out;
-    for words in ["distortion", "map-source.ply", "map-mirrored.ply"] {
-        assert!(table.contains(words), "{table}");
-    }
+    assert!(table.contains("map-source.ply") && table.contains("map-mirrored.ply"), "{table}");
     let [colored, plain] = ["map.ply", "cat1.off"].map(|name| io::read(&place.path(name)).unwrap());
     assert_eq!(colored.faces, plain.faces);
     assert!(fs::read(place.path("map-mirrored.png")).unwrap().starts_with(b"\x89PNG"));

@@ -5,61 +5,35 @@ use std::process::{Child, Command, Stdio};
 
 use crate::support::{Workplace, ring};
 
-struct Serving {
-    child: Child,
-    address: String,
-    err: BufReader<std::process::ChildStderr>,
-}
-
-impl Serving {
-    fn start(place: &Workplace) -> Self {
-        let mut command = place.command("serve i --listen 127.0.0.1:0 --max-vertices 1000");
-        let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
-        let err = BufReader::new(child.stderr.take().unwrap());
-        // Drop ends the program if the checks below fail.
-        let mut serving = Self { child, address: String::new(), err };
-        let mut line = String::new();
-        serving.err.read_line(&mut line).unwrap();
-        let address = line.strip_prefix("listening on http://").unwrap_or_else(|| panic!("{line}"));
-        let (address, rest) = address.split_once(' ').unwrap();
-        assert_eq!(rest, "(1 shape in i)\n");
-        serving.address = address.to_owned();
-        serving
-    }
-}
+/// A program that ends with the test.
+struct Serving(Child);
 
 impl Drop for Serving {
     fn drop(&mut self) {
-        // The program may have stopped already.
-        let _ = self.child.kill();
-        let _ = self.child.wait();
+        // It may have ended already.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
     }
 }
 
-fn indexed() -> Workplace {
+#[test]
+fn a_server_keeps_its_address_and_ends_with_success_when_interrupted() {
     let place = Workplace::new();
     place.add("meshes/ring0.off", &ring());
     place.done("index build meshes -n 20 -o i");
-    place
-}
-
-#[test]
-fn an_error_names_a_taken_address() {
-    let place = indexed();
-    let serving = Serving::start(&place);
-    let again = ["serve", "i", "--listen", &serving.address];
-    place.refused(&again[..], &[&serving.address, "another program uses it", "--listen with another port"]);
-}
-
-#[cfg(unix)]
-#[test]
-fn an_interrupted_server_exits_with_success() {
-    let place = indexed();
-    let mut serving = Serving::start(&place);
-    let id = serving.child.id().to_string();
-    assert!(Command::new("kill").args(["-INT", &id]).status().unwrap().success());
-    assert_eq!(serving.child.wait().unwrap().code(), Some(0));
+    let mut command = place.command("serve i --listen 127.0.0.1:0 --max-vertices 1000");
+    let mut serving = Serving(command.stderr(Stdio::piped()).spawn().unwrap());
+    let mut err = BufReader::new(serving.0.stderr.take().unwrap());
+    let mut line = String::new();
+    err.read_line(&mut line).unwrap();
+    let address = line.strip_prefix("listening on http://").unwrap_or_else(|| panic!("{line}"));
+    let address = address.strip_suffix(" (1 shape in i)\n").unwrap();
+    let again = ["serve", "i", "--listen", address];
+    place.refused(&again[..], &[address, "another program uses it", "--listen with another port"]);
+    let interrupted = Command::new("kill").args(["-INT", &serving.0.id().to_string()]).status();
+    assert!(interrupted.unwrap().success());
+    assert_eq!(serving.0.wait().unwrap().code(), Some(0));
     let mut rest = String::new();
-    serving.err.read_to_string(&mut rest).unwrap();
+    err.read_to_string(&mut rest).unwrap();
     assert!(rest.starts_with("finishing the requests in progress"), "{rest}");
 }
