@@ -57,28 +57,23 @@ mod tests {
 
     #[test]
     fn long_rankings_and_matches_are_long_jobs() {
-        use SearchRank::{Forms, Graph, Part, Plain};
+        use SearchRank::{Forms, Part, Plain};
         for (rank_by, explain, k, n_shapes, vertices, expected) in [
             (Plain, false, 10, 100_000, 3000, false),
             (Plain, false, 100, 100_000, 3000, true),
-            (Graph, false, 10, 100_000, 3000, false),
             (Part, false, 10, 100, 3000, false),
             (Part, false, 10, 1000, 3000, true),
             (Part, false, 10, 10, 60_000, true),
             (Forms, false, 10, 100_000, 3000, true),
-            (Plain, true, 10, 100_000, 3000, false),
             (Plain, true, 24, 100_000, 30_000, true),
         ] {
             let options = SearchOptions { rank_by, explain, k };
             let cost = of_search(&options, n_shapes, 3000, vertices);
             assert_eq!(is_long(cost), expected, "{options:?}, {n_shapes} shapes, {vertices} vertices");
         }
-        let of_large = of_search(&SearchOptions { explain: true, ..Default::default() }, 100, 100_000, 3000);
-        assert!(is_long(of_large), "the shapes are large");
         for (n, each, expected) in [
             (300, MATCHED_VERTEX, false),
             (6800, MATCHED_VERTEX, true),
-            (400_000, COMPARED_VERTEX, true),
             (600_000, DRAWN_VERTEX, true),
             (2_000_000, UPLOADED_BYTE, true),
         ] {

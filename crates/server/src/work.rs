@@ -129,8 +129,6 @@ mod tests {
     use std::sync::mpsc;
 
     use super::*;
-    use crate::pace::Pace;
-    use crate::places::Places;
 
     const LONG: f64 = 16.0;
 
@@ -195,16 +193,6 @@ mod tests {
     }
 
     #[test]
-    fn a_job_whose_client_has_gone_is_cancelled() {
-        let work = Work::new(&ServeOptions { jobs: 1, queue: 0, ..ServeOptions::default() });
-        runtime().block_on(async {
-            let gone = work.run(0.0, None, obedient);
-            assert!(tokio::time::timeout(Duration::from_millis(50), gone).await.is_err());
-            until_done(&work, 0.0).await;
-        });
-    }
-
-    #[test]
     fn long_jobs_leave_a_place_to_short_ones() {
         let work = Arc::new(Work::new(&ServeOptions { jobs: 2, ..ServeOptions::default() }));
         runtime().block_on(async {
@@ -232,18 +220,6 @@ mod tests {
                 assert_eq!(fault.status, 500);
             }
             assert_eq!(work.run(0.0, None, |_| Ok(7)).await.unwrap(), 7);
-        });
-    }
-
-    #[test]
-    fn uploads_are_counted_until_they_are_measured() {
-        let work = Work::new(&ServeOptions::default());
-        let (places, pace) = (Places::new(1), Arc::new(Pace::new(1000, Duration::from_secs(10))));
-        runtime().block_on(async {
-            let place = places.try_enter(&pace).unwrap();
-            assert!(places.try_enter(&pace).is_none());
-            work.run(0.0, Some(place), |_| Ok(())).await.unwrap();
-            drop(places.try_enter(&pace).unwrap());
         });
     }
 }

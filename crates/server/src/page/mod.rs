@@ -19,7 +19,7 @@ const CSS: &str = "text/css; charset=utf-8";
 const JS: &str = "text/javascript; charset=utf-8";
 
 /// A page with what all pages have in common.
-pub(crate) fn whole(text: &str) -> String {
+fn whole(text: &str) -> String {
     let shared =
         [("{{icon}}", include_str!("icon.html")), ("{{comparison}}", include_str!("comparison.html"))];
     filled_in(&shared.iter().fold(text.to_owned(), |text, (name, part)| text.replace(name, part.trim_end())))

@@ -1,6 +1,7 @@
 //! Responses: their content, and that they follow `openapi.json`.
 
 use std::fs;
+use std::path::Path;
 
 use canonform::mesh::shapes;
 use report::viewer::Geometry;
@@ -8,9 +9,8 @@ use serde_json::Value;
 use testkit::written;
 
 use crate::client::{ask, upload};
-use crate::running::options;
 use crate::schema::told;
-use crate::support::{AWKWARD, INDEX, Served, bodies, get};
+use crate::support::{AWKWARD, INDEX, Served, bodies, get, options};
 
 fn geometry(value: &Value) -> Geometry {
     serde_json::from_value(value.clone()).unwrap()
@@ -49,7 +49,6 @@ fn an_upload_finds_itself_in_every_format() {
     let answer = upload(server.address, &[("q.ply", &written("q.ply", &two))], &[]).unwrap().json();
     let line = answer["repaired"][0].as_str().unwrap();
     assert!(line.starts_with("1 of 2 components dropped, 4 faces and 4 vertices"), "{line}");
-    assert_eq!(answer["repair"]["dropped_vertices"].as_array().unwrap().len(), 4);
     assert_eq!(geometry(&answer["mesh"]).positions.len(), two.n_vertices() - 4);
 }
 
@@ -57,14 +56,14 @@ fn an_upload_finds_itself_in_every_format() {
 fn an_archive_of_one_mesh_is_that_mesh() {
     let server = Served::start(options());
     let ring = fs::read(server.mesh("ring0")).unwrap();
-    let archive = |names: [&str; 2]| testkit::gzip_of(&testkit::tar_of(&names.map(|name| (name, &ring))));
-    let one = archive(["scans/ring.off", "scans/notes.md"]);
-    let answer = upload(server.address, &[("scans.tar.gz", &one)], &[("explain", "true")]).unwrap().json();
-    let kind = &answer["results"][0]["relation"]["kind"];
-    assert_eq!((&answer["query"], kind), (&"ring.off".into(), &"identical-file".into()), "{answer}");
-    let refused = upload(server.address, &[("all.tar.gz", &archive(["a.off", "b.off"]))], &[]).unwrap();
-    let error = refused.json()["error"].as_str().unwrap().to_owned();
-    assert!(refused.status == 422 && error.starts_with("all.tar.gz: the archive holds 2 meshes"), "{error}");
+    let send = |names: [&str; 2]| {
+        let archive = testkit::gzip_of(&testkit::tar_of(&names.map(|name| (name, &ring))));
+        upload(server.address, &[("scans.tar.gz", &archive)], &[("explain", "true")]).unwrap()
+    };
+    let one = send(["scans/ring.off", "scans/notes.md"]).json();
+    assert_eq!(one["query"], "ring.off");
+    assert_eq!(one["results"][0]["relation"]["kind"], "identical-file", "{one}");
+    assert_eq!(send(["a.off", "b.off"]).status, 422);
 }
 
 #[test]
@@ -127,10 +126,7 @@ fn an_upload_can_be_searched_again_and_exported() {
         assert!(head.ends_with(&format!(",signature_distance{columns}")), "{head}");
     }
     let gone = get(&server, "/api/search?query=0123456789abcdef0123456789abcdef").json();
-    assert_eq!(
-        (&gone["error"], &gone["remedy"]),
-        (&"this upload has expired".into(), &"choose the file again".into())
-    );
+    assert_eq!([&gone["error"], &gone["remedy"]], ["this upload has expired", "choose the file again"]);
 }
 
 #[test]
@@ -243,7 +239,6 @@ fn an_upload_can_be_compared_with_its_results() {
     let found = upload(server.address, &[("q.off", &written("q.off", &mesh))], &[("explain", "true")]);
     let found = found.unwrap().json();
     let query = found["query_id"].as_str().unwrap();
-    assert!(query.len() == 32 && query.bytes().all(|c| c.is_ascii_hexdigit()));
     let answer = get(&server, &format!("/api/compare?query={query}&b=ring1"));
     let json = told(&server, "get", "/api/compare", 200, &answer);
     assert_eq!((json["a"].as_str(), json["b"].as_str()), (Some("q.off"), Some("ring1")));
@@ -258,11 +253,8 @@ fn an_upload_can_be_compared_with_its_results() {
     for (key, value) in result["comparison"].as_object().unwrap() {
         assert_eq!(*value, json[key], "{key}");
     }
-    for i in 0..2 {
-        let values = geometry(&json["forms"][i]).values.unwrap();
-        let (largest, stated) = (values.into_iter().fold(0.0, f32::max), json["residual"][i]["max"].as_f64());
-        assert!((f64::from(largest) - stated.unwrap()).abs() < 1e-5, "{largest}, {stated:?}");
-    }
+    let largest = geometry(&json["forms"][1]).values.unwrap().into_iter().fold(0.0, f32::max);
+    assert!((f64::from(largest) - json["residual"][1]["max"].as_f64().unwrap()).abs() < 1e-5, "{largest}");
     assert_eq!(geometry(&json["meshes"][0]).faces.len(), mesh.n_faces());
     assert!(json["gap"]["max"].as_f64().unwrap() < 1e-6, "{}", json["gap"]);
     let pair = told(&server, "get", "/api/compare", 200, &get(&server, "/api/compare?a=ring0&b=box0"));
@@ -275,19 +267,6 @@ fn an_upload_can_be_compared_with_its_results() {
     let values = [0, 1].map(|i| geometry(&matched["meshes"][i]).values.unwrap());
     assert!(values[0].iter().all(|value| values[1].contains(value)));
     assert!(values[0].iter().any(|value| *value > 0.0));
-    let both = format!("query={query}&a=ring0&b=ring1");
-    for (target, status) in [
-        ("query=0123456789abcdef0123456789abcdef&b=ring1", 410),
-        ("a=none&b=ring1", 404),
-        ("a=ring1&b=none", 404),
-        ("b=ring1", 400),
-        (&both, 400),
-        ("a=ring1", 400),
-    ] {
-        for path in ["/api/compare", "/api/match"] {
-            told(&server, "get", path, status, &get(&server, &format!("{path}?{target}")));
-        }
-    }
 }
 
 #[test]
@@ -300,6 +279,7 @@ fn the_page_and_its_files_have_tags_and_security_headers() {
     let html = String::from_utf8(page.body.clone()).unwrap();
     let files: Vec<&str> = html.split(['"', '\'']).filter(|text| text.starts_with("/assets/")).collect();
     assert_eq!(files.len(), 4, "the page loads its other scripts as modules");
+    assert!(html.contains(&canonform::mesh::io::mesh_files()) && !html.contains("{{"));
     for address in files {
         let file = get(&server, address);
         assert!(file.status == 200 && !file.body.is_empty(), "{address}");
@@ -318,36 +298,24 @@ fn the_page_and_its_files_have_tags_and_security_headers() {
 }
 
 #[test]
-fn wrong_requests_get_errors_in_json() {
+fn requests_are_answered_as_the_table_says_and_errors_are_in_json() {
     let server = Served::start(options());
-    for (method, target, status) in [
-        ("GET", "/none", 404),
-        ("GET", "/../../etc/passwd", 404),
-        ("GET", "/assets/../openapi.json", 404),
-        ("DELETE", "/api/search", 405),
-        ("POST", "/api/shapes", 405),
-        ("DELETE", "/api/shapes/ring0/mesh", 405),
-        ("GET", "/api/shapes/none/form", 404),
-        ("GET", "/api/shapes/..%2f..%2fmeshes%2fball0/file", 404),
-        ("GET", "/api/shapes/%2fetc%2fpasswd/thumbnail", 404),
-        ("GET", "/api/shapes/%ff/mesh", 400),
-    ] {
-        let answer = ask(server.address, method, target, &[], b"").unwrap();
-        assert!(answer.status == status && answer.json()["error"].is_string(), "{target}: {}", answer.status);
+    let contracts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/contracts");
+    let table = fs::read_to_string(contracts.join("requests.txt")).unwrap();
+    let rows: Vec<&str> = table.lines().filter(|row| row.contains(" | ")).collect();
+    let described = get(&server, "/api/openapi.json").json();
+    for row in &rows {
+        let (asked, status) = row.rsplit_once(" | ").unwrap();
+        let mut parts = asked.split("; ");
+        let (method, target) = parts.next().unwrap().split_once(' ').unwrap();
+        let headers: Vec<_> = parts.map(|header| header.split_once(':').unwrap()).collect();
+        let answer = ask(server.address, method, target, &headers, b"").unwrap();
+        assert_eq!(answer.status.to_string(), status, "{row}");
+        assert!(answer.status == 200 || answer.json()["error"].is_string(), "{row}");
+        let (method, route) = (method.to_lowercase(), target.split('?').next().unwrap());
+        if headers.is_empty() && described["paths"][route][&method].is_object() {
+            told(&server, &method, route, answer.status, &answer);
+        }
     }
-    for (route, query, status) in [
-        ("/api/shapes", "limit=0", 400),
-        ("/api/shapes", "limit=501", 400),
-        ("/api/shapes", "limit=x", 400),
-        ("/api/shapes", "offset=-1", 400),
-        ("/api/shapes", "other=1", 400),
-        ("/api/shapes", "sample=0", 400),
-        ("/api/search", "query=0123456789abcdef0123456789abcdef", 410),
-        ("/api/search", "shape=ring0&query=0123456789abcdef0123456789abcdef", 400),
-        ("/api/search", "k=3", 400),
-        ("/api/search", "shape=ring0&format=xml", 400),
-        ("/api/search", "shape=ring0&rank=best", 400),
-    ] {
-        told(&server, "get", route, status, &get(&server, &format!("{route}?{query}")));
-    }
+    assert!(rows.len() > 70, "{}", rows.len());
 }

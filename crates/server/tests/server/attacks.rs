@@ -11,8 +11,7 @@ use canonform_server::ServeOptions;
 use testkit::written;
 
 use crate::client::{Answer, ask, connect, form, upload, upload_head};
-use crate::running::options;
-use crate::support::Served;
+use crate::support::{Served, options};
 
 /// Asks for the health of the server and searches with a normal mesh, several times.
 fn assert_serves(server: &Served) {
@@ -36,22 +35,25 @@ fn polygon(corners: usize) -> Vec<u8> {
     text.into_bytes()
 }
 
+/// The answers to clients that all send a mesh at once, while others are served.
+fn attacked(server: &Served, n: usize, name: &str, mesh: &[u8]) -> Vec<Answer> {
+    let attack = || upload(server.address, &[(name, mesh)], &[("geometry", "false")]).unwrap();
+    std::thread::scope(|scope| {
+        let attackers: Vec<_> = (0..n).map(|_| scope.spawn(attack)).collect();
+        std::thread::sleep(Duration::from_millis(500));
+        assert_serves(server);
+        attackers.into_iter().map(|attacker| attacker.join().unwrap()).collect()
+    })
+}
+
 #[test]
 #[ignore = "slow: make test-all"]
 fn uploads_of_huge_polygons_free_their_places_at_the_time_limit() {
     let limit = Duration::from_secs(8);
     let server = Served::start_alone(ServeOptions { time_limit: limit, ..options() });
-    let mesh = polygon(100_000);
-    let attack = |_| upload(server.address, &[("hub.off", &mesh)], &[("geometry", "false")]).unwrap();
-    std::thread::scope(|scope| {
-        let attackers: Vec<_> = (0..4).map(|i| scope.spawn(move || attack(i))).collect();
-        std::thread::sleep(Duration::from_millis(500));
-        assert_serves(&server);
-        for attacker in attackers {
-            let status = attacker.join().unwrap().status;
-            assert!([200, 422, 503].contains(&status), "{status}");
-        }
-    });
+    for answer in attacked(&server, 4, "hub.off", &polygon(100_000)) {
+        assert!([200, 422, 503].contains(&answer.status), "{}", answer.status);
+    }
     assert_serves(&server);
 }
 
@@ -62,13 +64,7 @@ fn large_uploads_are_answered_in_time_or_refused_at_once() {
     let server = Served::start_alone(ServeOptions { time_limit: limit, max_uploads: 20, ..options() });
     // 2 MB, some seconds each.
     let mesh = written("large.off", &shapes::torus(200, 160, 2.0, 0.6));
-    let attack = |_| upload(server.address, &[("large.off", &mesh)], &[("geometry", "false")]).unwrap();
-    let answers: Vec<Answer> = std::thread::scope(|scope| {
-        let attackers: Vec<_> = (0..20).map(|i| scope.spawn(move || attack(i))).collect();
-        std::thread::sleep(Duration::from_millis(500));
-        assert_serves(&server);
-        attackers.into_iter().map(|attacker| attacker.join().unwrap()).collect()
-    });
+    let answers = attacked(&server, 20, "large.off", &mesh);
     let (done, refused): (Vec<_>, Vec<_>) = answers.iter().partition(|answer| answer.status == 200);
     assert!(!done.is_empty(), "some are answered");
     assert!(refused.iter().all(|answer| answer.status == 503));

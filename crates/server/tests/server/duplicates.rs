@@ -8,9 +8,8 @@ use canonform::search::ShapeSearch;
 use canonform_server::ServeOptions;
 use serde_json::Value;
 
-use crate::running::options;
 use crate::schema::told;
-use crate::support::{INDEX, Served, get};
+use crate::support::{INDEX, Served, get, options};
 
 /// Asks until the search is done, or until a report is as it should be.
 fn report(server: &Served, is_wanted: impl Fn(&Value) -> bool) -> Value {

@@ -9,8 +9,7 @@ use canonform_server::ServeOptions;
 use testkit::written;
 
 use crate::client::{Answer, ask, connect, form, read_answer, upload};
-use crate::running::options;
-use crate::support::Served;
+use crate::support::{Served, options};
 
 type Files = Vec<(String, Vec<u8>)>;
 
@@ -105,14 +104,11 @@ fn bad_forms_get_an_error() {
     for (what, kind, body) in [
         ("no form", "application/json", &b"{}"[..]),
         ("no boundary", "multipart/form-data", &body),
-        ("another boundary", "multipart/form-data; boundary=other", &body),
         ("no end", &multipart, &body[..body.len() / 2]),
-        ("no beginning", &multipart, &body[20..]),
         ("nothing", &multipart, b""),
         ("no parts", "multipart/form-data; boundary=x", b"--x--\r\n"),
         ("many parts", "multipart/form-data; boundary=x", parts.as_bytes()),
         ("many headers", "multipart/form-data; boundary=x", headers.as_bytes()),
-        ("zeros", &multipart, &[0; 10_000]),
     ] {
         check(what, &post(kind, body));
     }
@@ -124,19 +120,11 @@ fn bad_forms_get_an_error() {
     }
     check("no file", &upload(server.address, &[], &[("k", "3")]).unwrap());
     check("an empty choice", &upload(server.address, &[("", b"")], &[]).unwrap());
-    for target in ["/api/search?k=0&shape=ring0", "/api/search?x=1", "/api/search?shape=none"] {
-        check(target, &ask(server.address, "POST", target, &[], b"").unwrap());
-    }
-    for (target, words) in [
-        ("/api/search?shape=ring0&k=-1", "the parameters of the address are wrong: k: "),
-        ("/api/compare?a=ring0", "the parameters of the address are wrong: missing field `b`"),
-    ] {
-        let answer = ask(server.address, "GET", target, &[], b"").unwrap();
-        check(target, &answer);
-        let json = answer.json();
-        assert!(json["error"].as_str().unwrap().starts_with(words), "{json}");
-        assert!(json["remedy"].as_str().unwrap().starts_with("/api/openapi.json"), "{json}");
-    }
+    let wrong = ask(server.address, "POST", "/api/search?shape=ring0&k=-1", &[], b"").unwrap();
+    check("a negative number", &wrong);
+    let json = wrong.json();
+    assert!(json["error"].as_str().unwrap().starts_with("the parameters of the address are wrong: k: "));
+    assert!(json["remedy"].as_str().unwrap().starts_with("/api/openapi.json"), "{json}");
     still_serves(&server);
 }
 

@@ -9,8 +9,7 @@ use serde_json::Value;
 use testkit::written;
 
 use crate::client::upload;
-use crate::running::options;
-use crate::support::{INDEX, Served, get};
+use crate::support::{INDEX, Served, get, options};
 
 fn health(server: &Served) -> Value {
     get(server, "/healthz").json()

@@ -11,6 +11,5 @@ mod index;
 mod limits;
 mod page;
 mod proxy;
-mod running;
 mod schema;
 mod support;

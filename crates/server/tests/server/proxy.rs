@@ -5,14 +5,13 @@
 use std::fs;
 use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Command};
 use std::time::{Duration, Instant};
 
 use canonform_server::ServeOptions;
 use tempfile::TempDir;
 
-use crate::running::options;
-use crate::support::Served;
+use crate::support::{Served, options};
 
 const NAME: &str = "shapes.example.org";
 const USER: &str = "ada:secret";
@@ -51,18 +50,10 @@ impl Drop for Proxy {
 impl Proxy {
     /// Only ports and files differ from the recipe.
     fn start(server: SocketAddr) -> Option<Self> {
-        let programs = [("nginx", "-v"), ("openssl", "version"), ("curl", "--version")];
-        let missing = programs.into_iter().find_map(|(program, version)| {
-            let asked =
-                Command::new(program).arg(version).stdout(Stdio::null()).stderr(Stdio::null()).status();
-            asked.is_err().then_some(program)
-        });
-        if let Some(program) = missing {
+        let is_missing = |program: &&str| Command::new(program).arg("-V").output().is_err();
+        if let Some(program) = ["nginx", "openssl", "curl"].into_iter().find(is_missing) {
             let is_required = std::env::var("CANONFORM_PROXY").is_ok_and(|value| value == "required");
-            assert!(
-                !is_required,
-                "{program} is not installed (on Debian: apt-get install nginx-light openssl curl)"
-            );
+            assert!(!is_required, "{program} is missing: apt-get install nginx-light openssl curl");
             println!("skipped: {program} is not installed");
             return None;
         }
@@ -135,7 +126,6 @@ fn the_proxy_of_the_guide_passes_requests_on() {
     assert_eq!(proxy.curl(NAME, "/", &[]).0, 401, "without the password");
     let (status, page) = ask("/", &[]);
     assert!(status == 200 && page.contains("<title>canonform"), "{page}");
-    assert_eq!(ask("/healthz", &[]).0, 200);
 
     // An upload beyond the usual limit of nginx.
     let file = proxy.folder.path().join("ring.off");
@@ -149,20 +139,15 @@ fn the_proxy_of_the_guide_passes_requests_on() {
         ask("/api/search", &arguments)
     };
     let own = format!("Origin: https://{NAME}:{}", proxy.port);
-    let (own, same, cross) = (&*own, "Sec-Fetch-Site: same-origin", "Sec-Fetch-Site: cross-site");
-    for headers in [&[][..], &[own], &[same], &[own, same]] {
+    for (headers, expected) in [
+        (&[][..], 200),
+        (&[&*own], 200),
+        (&[&*own, "Sec-Fetch-Site: same-origin"], 200),
+        (&["Origin: https://evil.example"], 403),
+        (&["Sec-Fetch-Site: cross-site"], 403),
+    ] {
         let (status, answer) = upload(headers);
-        assert_eq!(status, 200, "{headers:?}: {answer}");
-        let answer: serde_json::Value = serde_json::from_str(&answer).unwrap();
-        assert_eq!(answer["results"][0]["id"], "ring0");
-    }
-    for header in ["Origin: https://evil.example", "Origin: null", cross] {
-        let (status, answer) = upload(&[header]);
-        assert_eq!(status, 403, "{header}: {answer}");
-    }
-    for target in ["/api/duplicates", "/api/match?a=box0&b=box1", "/api/search?shape=ring0"] {
-        assert_eq!(ask(target, &["-H", cross]).0, 403, "{target}");
-        assert!([200, 202].contains(&ask(target, &["-H", same]).0), "{target}");
+        assert_eq!(status, expected, "{headers:?}: {answer}");
     }
     // Another name that leads to the proxy, with its certificate accepted.
     assert_eq!(proxy.curl("evil.example", "/healthz", &["-k", "-u", USER]).0, 421);
@@ -170,12 +155,10 @@ fn the_proxy_of_the_guide_passes_requests_on() {
 
 #[test]
 fn the_proxy_of_the_guide_allows_what_the_server_allows() {
-    let recipe = recipe();
+    let (recipe, options) = (recipe(), ServeOptions::default());
     let number = |name: &str, unit: char| -> u64 {
-        let (_, rest) = recipe.split_once(name).unwrap();
-        rest.split(unit).next().unwrap().trim().parse().unwrap()
+        recipe.split_once(name).and_then(|(_, rest)| rest.split(unit).next()?.trim().parse().ok()).unwrap()
     };
-    let options = ServeOptions::default();
     // nginx counts in powers of two, and the form around the file needs some space.
     assert!(number("client_max_body_size", 'm') << 20 > options.max_upload as u64 + (1 << 20));
     assert!(number("proxy_read_timeout", 's') > options.time_limit.as_secs() + 10);

@@ -1,18 +1,19 @@
 //! A server on a small index, in this process.
 
+use std::any::Any;
 use std::fs;
-use std::ops::Deref;
+use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
-use std::sync::{OnceLock, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
+use std::sync::{OnceLock, PoisonError, RwLock};
+use std::thread::JoinHandle;
 
 use canonform::DescribeOptions;
 use canonform::library::{BuildOptions, build_index};
 use canonform::mesh::{TriMesh, shapes};
-use canonform_server::{ServeOptions, ServerError};
+use canonform_server::{ServeOptions, Server, ServerError, Stop};
 use tempfile::TempDir;
 
 use crate::client::{Answer, ask};
-use crate::running::Running;
 
 /// Name of the index in its folder.
 pub(crate) const INDEX: &str = "all.canonform";
@@ -23,7 +24,7 @@ pub(crate) const AWKWARD: &str = "<b>&'\" ü 100%#?";
 pub(crate) fn bodies() -> Vec<(&'static str, TriMesh)> {
     vec![
         ("ball0", shapes::icosphere(3)),
-        ("ball1", egg()),
+        ("ball1", testkit::moved(&shapes::icosphere(3), |p| [p.x, p.y, 0.8 * p.z].into())),
         ("box0", shapes::cube(3)),
         ("box1", shapes::cube(4)),
         ("ring0", shapes::torus(24, 12, 2.0, 0.6)),
@@ -32,41 +33,24 @@ pub(crate) fn bodies() -> Vec<(&'static str, TriMesh)> {
     ]
 }
 
-fn egg() -> TriMesh {
-    let mut mesh = shapes::icosphere(3);
-    mesh.positions.iter_mut().for_each(|p| p.z *= 0.8);
-    mesh
+/// Options with a free port.
+pub(crate) fn options() -> ServeOptions {
+    ServeOptions { listen: "127.0.0.1:0".parse().unwrap(), ..ServeOptions::default() }
 }
 
-/// A running server, and the folder of its index.
+/// A running server, stopped on drop.
 pub(crate) struct Served {
-    running: Running,
+    pub(crate) address: SocketAddr,
+    pub(crate) stop: Stop,
+    /// The folder of its index.
     pub(crate) folder: PathBuf,
+    thread: Option<JoinHandle<Result<(), ServerError>>>,
     _own: Option<TempDir>,
-    _turn: Turn,
+    _turn: Box<dyn Any + Sync>,
 }
 
 /// Held by every test with a server: tests under attack run alone, so that their times and their memory are those of the server.
 static TURNS: RwLock<()> = RwLock::new(());
-
-#[derive(Debug)]
-pub(crate) enum Turn {
-    Shared(#[expect(dead_code, reason = "held")] RwLockReadGuard<'static, ()>),
-    Alone(#[expect(dead_code, reason = "held")] RwLockWriteGuard<'static, ()>),
-}
-
-/// A test that failed holds nothing back.
-pub(crate) fn shared_turn() -> Turn {
-    Turn::Shared(TURNS.read().unwrap_or_else(PoisonError::into_inner))
-}
-
-impl Deref for Served {
-    type Target = Running;
-
-    fn deref(&self) -> &Running {
-        &self.running
-    }
-}
 
 /// Writes meshes into a folder, and an index of them.
 pub(crate) fn write_indexed(folder: &Path, meshes: &[(&str, TriMesh)]) {
@@ -101,13 +85,14 @@ fn shared() -> PathBuf {
 impl Served {
     /// A server on the shared index.
     pub(crate) fn start(options: ServeOptions) -> Self {
-        Self::serve(shared(), None, options, shared_turn())
+        Self::on(shared(), None, options)
     }
 
     /// A server on the shared index while no other test has a server.
     pub(crate) fn start_alone(options: ServeOptions) -> Self {
+        // A test that failed holds nothing back.
         let turn = TURNS.write().unwrap_or_else(PoisonError::into_inner);
-        Self::serve(shared(), None, options, Turn::Alone(turn))
+        Self::serve(shared(), None, options, Box::new(turn))
     }
 
     /// A server on an index of its own, whose meshes the test may change.
@@ -119,11 +104,25 @@ impl Served {
         fs::create_dir(own.path().join("meshes")).unwrap();
         bodies().iter().for_each(|(id, _)| copy(&Path::new("meshes").join(format!("{id}.off"))));
         copy(Path::new(INDEX));
-        Self::serve(own.path().to_owned(), Some(own), options, shared_turn())
+        Self::on(own.path().to_owned(), Some(own), options)
     }
 
-    fn serve(folder: PathBuf, own: Option<TempDir>, options: ServeOptions, turn: Turn) -> Self {
-        Self { running: Running::start(&folder.join(INDEX), options), folder, _own: own, _turn: turn }
+    /// A server on the index in a folder.
+    pub(crate) fn on(folder: PathBuf, own: Option<TempDir>, options: ServeOptions) -> Self {
+        let turn = TURNS.read().unwrap_or_else(PoisonError::into_inner);
+        Self::serve(folder, own, options, Box::new(turn))
+    }
+
+    fn serve(
+        folder: PathBuf,
+        own: Option<TempDir>,
+        options: ServeOptions,
+        turn: Box<dyn Any + Sync>,
+    ) -> Self {
+        let server = Server::bind(&folder.join(INDEX), options).unwrap();
+        let (address, stop) = (server.address(), server.stop_handle());
+        let thread = Some(std::thread::spawn(move || server.run()));
+        Self { address, stop, folder, thread, _own: own, _turn: turn }
     }
 
     /// Builds the index again, from the meshes that are there now.
@@ -138,11 +137,18 @@ impl Served {
 
     /// Waits until a stopped server has ended.
     pub(crate) fn join(&mut self) -> Result<(), ServerError> {
-        self.running.join().unwrap().unwrap()
+        self.thread.take().unwrap().join().unwrap()
+    }
+}
+
+impl Drop for Served {
+    fn drop(&mut self) {
+        self.stop.stop();
+        let _ = self.thread.take().map(JoinHandle::join);
     }
 }
 
 /// Asks for an address of a server.
-pub(crate) fn get(server: &Running, target: &str) -> Answer {
+pub(crate) fn get(server: &Served, target: &str) -> Answer {
     ask(server.address, "GET", target, &[], b"").unwrap()
 }

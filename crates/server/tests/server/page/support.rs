@@ -8,8 +8,7 @@ use canonform_server::ServeOptions;
 use datasets::{ArticulatedOptions, Family, LabeledShape, articulated_shape};
 use serde_json::{Value, json};
 
-use crate::running::{Running, options};
-use crate::support::{INDEX, Turn, shared_turn, write_indexed};
+use crate::support::{Served, options, write_indexed};
 
 /// A file name that contains HTML.
 pub(crate) const AWKWARD: &str = "<img src=x onerror=console.error(1)>&'\" ü";
@@ -38,8 +37,7 @@ fn collection() -> PathBuf {
 /// The page of a server in a browser.
 pub(crate) struct Page {
     pub(crate) browser: Browser,
-    server: Running,
-    _turn: Turn,
+    server: Served,
 }
 
 impl Page {
@@ -50,20 +48,19 @@ impl Page {
 
     /// As [`open`](Self::open), with options of the server.
     pub(crate) fn with(width: u32, height: u32, options: ServeOptions) -> Option<Self> {
-        let page = Self::of(&collection().join(INDEX), [width, height], options)?;
+        let page = Self::of(&collection(), [width, height], options)?;
         page.go("/");
         page.wait_for("document.querySelectorAll('#shapes .tile').length === 10");
         Some(page)
     }
 
-    /// A browser for the pages of an index, which opens none yet.
-    pub(crate) fn of(index: &Path, [width, height]: [u32; 2], options: ServeOptions) -> Option<Self> {
+    /// A browser for the pages of the index in a folder, which opens none yet.
+    pub(crate) fn of(folder: &Path, [width, height]: [u32; 2], options: ServeOptions) -> Option<Self> {
         let browser = Browser::start()?;
-        let turn = shared_turn();
-        let server = Running::start(index, options);
+        let server = Served::on(folder.to_owned(), None, options);
         browser.resize(width, height).unwrap();
         browser.watch_layout().unwrap();
-        Some(Self { browser, server, _turn: turn })
+        Some(Self { browser, server })
     }
 
     /// Opens an address of the page.
