@@ -18,6 +18,12 @@ use crate::options::ServeOptions;
 use crate::places::Places;
 use crate::work::Work;
 
+/// Size of the cache of meshes, forms and thumbnails, in bytes.
+const CACHE: usize = 256_000_000;
+
+/// Size of the cache of queries, in bytes; the last query is always kept. A kept query can be compared with its results.
+const KEPT_QUERIES: usize = 128_000_000;
+
 /// The index, the caches and the queue.
 pub(crate) struct App {
     pub(crate) served: Served,
@@ -66,9 +72,9 @@ impl App {
             uploads: Places::new(options.max_uploads),
             duplicates: Duplicates::new(options.idle_time),
             // Thumbnails are smaller than meshes.
-            measured: Cache::new(options.cache / 4 * 3),
-            thumbnails: Cache::new(options.cache / 4),
-            queries: Cache::new(options.kept_queries).with_lifetime(options.query_lifetime),
+            measured: Cache::new(CACHE / 4 * 3),
+            thumbnails: Cache::new(CACHE / 4),
+            queries: Cache::new(KEPT_QUERIES).with_lifetime(options.query_lifetime),
             options,
         })
     }

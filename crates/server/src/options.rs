@@ -21,7 +21,8 @@ pub struct ServeOptions {
     pub max_upload: usize,
     /// Maximum number of vertices of a mesh; it may have four times as many faces. Default: 200,000.
     pub max_vertices: u64,
-    /// Maximum number of uploads being received or waiting. Default: 16.
+    /// Maximum number of uploads being received or waiting; a further one takes the place of the one that has kept the server
+    /// waiting longest. Default: 16.
     pub max_uploads: usize,
     /// Number of requests processed at once; 0 for one more than there are cores. One of several places is kept for
     /// requests that take little time. Default: 0.
@@ -34,24 +35,12 @@ pub struct ServeOptions {
     /// Maximum time for a complete upload. Default: five minutes.
     pub upload_time: Duration,
     /// How long a client may keep the server waiting: for a request, for its body, or for taking the response. Every byte
-    /// that moves is worth some of that time, see `min_rate`. Default: 15 seconds.
+    /// that moves is worth some of that time: at 4,000 bytes per second it does not wait. Default: 15 seconds.
     pub idle_time: Duration,
-    /// The rate in bytes per second at which a client does not keep the server waiting. Default: 4,000.
-    pub min_rate: usize,
-    /// Maximum number of connections; a further one takes the place of the one that has kept the server waiting longest.
-    /// The same holds for uploads. Default: 256.
-    pub connections: usize,
-    /// Size of the cache of meshes, forms and thumbnails, in bytes. Default: 256 MB.
-    pub cache: usize,
-    /// Size of the cache of queries, in bytes; the last query is always kept. A kept query can be compared with its
-    /// results. Default: 128 MB.
-    pub kept_queries: usize,
     /// How long a query is kept. Default: one hour.
     pub query_lifetime: Duration,
     /// Time between two looks at the file of the index, which is opened again when it has changed. Default: one second.
     pub index_check: Duration,
-    /// How long requests in progress may take to finish after the server is stopped. Default: 30 seconds.
-    pub farewell: Duration,
 }
 
 impl Default for ServeOptions {
@@ -67,13 +56,8 @@ impl Default for ServeOptions {
             time_limit: Duration::from_secs(60),
             upload_time: Duration::from_secs(300),
             idle_time: Duration::from_secs(15),
-            min_rate: 4000,
-            connections: 256,
-            cache: 256_000_000,
-            kept_queries: 128_000_000,
             query_lifetime: Duration::from_secs(3600),
             index_check: Duration::from_secs(1),
-            farewell: Duration::from_secs(30),
         }
     }
 }

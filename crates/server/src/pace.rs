@@ -3,12 +3,13 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+/// The rate in bytes per second at which a client does not keep the server waiting.
+const RATE: f64 = 4000.0;
+
 /// The account of one connection: when the server has waited long enough for the client, to send or to receive. Every byte that
 /// moves puts that off, so a client that keeps the minimum rate has all the time that is allowed.
 #[derive(Debug)]
 pub(crate) struct Pace {
-    /// In bytes per second.
-    rate: f64,
     allowed: Duration,
     state: Mutex<(Phase, Instant)>,
 }
@@ -26,15 +27,14 @@ pub(crate) enum Phase {
 
 impl Pace {
     /// A new connection, of which nothing has arrived.
-    pub(crate) fn new(rate: usize, allowed: Duration) -> Self {
-        let state = Mutex::new((Phase::Waiting, Instant::now() + allowed));
-        Self { rate: rate.max(1) as f64, allowed, state }
+    pub(crate) fn new(allowed: Duration) -> Self {
+        Self { allowed, state: Mutex::new((Phase::Waiting, Instant::now() + allowed)) }
     }
 
     /// This many bytes were received or sent.
     pub(crate) fn moved(&self, bytes: usize) {
         let (_, end) = &mut *self.lock();
-        *end = (*end + Duration::from_secs_f64(bytes as f64 / self.rate)).min(Instant::now() + self.allowed);
+        *end = (*end + Duration::from_secs_f64(bytes as f64 / RATE)).min(Instant::now() + self.allowed);
     }
 
     /// Begins a phase, without delay.

@@ -80,39 +80,28 @@ mod tests {
     use super::*;
     use crate::pace::Phase;
 
-    fn runtime() -> tokio::runtime::Runtime {
-        tokio::runtime::Builder::new_current_thread().enable_time().build().unwrap()
-    }
-
     #[test]
     fn the_slowest_client_loses_its_place_and_only_that_one() {
         let places = Places::new(2);
-        let [first, second, third] = [(); 3].map(|()| Arc::new(Pace::new(1000, Duration::from_secs(10))));
+        let [first, second, third, fourth] = [(); 4].map(|()| Arc::new(Pace::new(Duration::from_secs(10))));
         let slow = places.try_enter(&first).unwrap();
         let quick = places.try_enter(&second).unwrap();
         assert!(places.try_enter(&third).is_none(), "nobody is slow yet");
         std::thread::sleep(2 * TOLERATED);
         second.moved(1 << 20);
         let new = places.try_enter(&third).unwrap();
-        runtime().block_on(async {
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_time().build().unwrap();
+        runtime.block_on(async {
             tokio::time::timeout(Duration::from_secs(10), slow.lost()).await.unwrap();
             assert!(tokio::time::timeout(TOLERATED, quick.lost()).await.is_err());
         });
         drop(slow);
         assert_eq!(places.lock().len(), 2, "its place was taken, not freed");
+        // Those that wait for the server keep their places.
+        [&second, &third].iter().for_each(|pace| pace.begin(Phase::Working));
+        std::thread::sleep(2 * TOLERATED);
+        assert!(places.try_enter(&fourth).is_none());
         drop((quick, new));
         assert_eq!(places.lock().len(), 0);
-    }
-
-    #[test]
-    fn a_client_that_waits_for_the_server_keeps_its_place() {
-        let places = Places::new(1);
-        let pace = Arc::new(Pace::new(1000, Duration::from_secs(10)));
-        let place = places.try_enter(&pace).unwrap();
-        pace.begin(Phase::Working);
-        std::thread::sleep(2 * TOLERATED);
-        assert!(places.try_enter(&pace).is_none());
-        drop(place);
-        runtime().block_on(places.enter(&pace));
     }
 }

@@ -22,6 +22,12 @@ use crate::{api, connection, page};
 /// Pause after a connection could not be accepted, for example because of too many open files.
 const RETRY_PAUSE: Duration = Duration::from_millis(100);
 
+/// Most connections; a further one takes the place of the one that has kept the server waiting longest.
+const CONNECTIONS: usize = 256;
+
+/// How long requests in progress may take to finish after the server is stopped.
+const GRACE: Duration = Duration::from_secs(30);
+
 /// A server with its address and its index, ready to [`run`](Self::run).
 pub struct Server {
     listener: TcpListener,
@@ -90,9 +96,8 @@ impl Server {
             .thread_stack_size(STACK)
             .build()
             .map_err(ServerError::Runtime)?;
-        let farewell = self.app.options.farewell;
         let served = runtime.block_on(self.serve());
-        runtime.shutdown_timeout(farewell);
+        runtime.shutdown_timeout(GRACE);
         served
     }
 
@@ -107,12 +112,12 @@ impl Server {
             .with_state(app.clone());
         let refreshing = tokio::spawn(refresh(app.clone()));
         let options = &app.options;
-        let places = Places::new(options.connections);
+        let places = Places::new(CONNECTIONS);
         let graceful = GracefulShutdown::new();
         loop {
             let next = pin!(async {
                 let (stream, _) = listener.accept().await?;
-                let pace = Arc::new(Pace::new(options.min_rate, options.idle_time));
+                let pace = Arc::new(Pace::new(options.idle_time));
                 let place = places.enter(&pace).await;
                 Ok::<_, std::io::Error>((stream, place, pace))
             });
@@ -129,7 +134,7 @@ impl Server {
         drop(listener);
         refreshing.abort();
         app.duplicates.cancel();
-        let _ = tokio::time::timeout(options.farewell, graceful.shutdown()).await;
+        let _ = tokio::time::timeout(GRACE, graceful.shutdown()).await;
         Ok(())
     }
 }
