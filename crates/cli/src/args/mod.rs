@@ -320,9 +320,6 @@ pub(crate) struct CompareArgs {
     #[arg(long, value_name = "KIND", num_args = 0..=1, require_equals = true, default_missing_value = "same-shape",
         value_parser = at_least())]
     pub(crate) exit_code: Option<&'static [RelationKind]>,
-    /// Print all numbers: of the alignment, the residual, and what decided
-    #[arg(long)]
-    pub(crate) details: bool,
     #[command(flatten)]
     pub(crate) method: MethodSettings,
     #[command(flatten)]

@@ -79,7 +79,7 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
         last,
     ];
     let mut text = format!("{}.\n{}", base::one_line(&relation.to_string()), facts(&rows));
-    if args.details {
+    if common.details {
         text += &format!("\n\n{}", facts(&detailed(&found, max_vertex)));
     }
     let json = object! {
