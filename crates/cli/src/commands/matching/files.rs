@@ -8,7 +8,6 @@ use canonform::descriptors::Side;
 use canonform::linalg::Matrix;
 use canonform::maps::{MappedSurface, Mapping, PointMap, SurfaceMap};
 use canonform::mesh::TriMesh;
-use canonform::mesh::io::VertexField;
 use canonform::surface::VertexId;
 use report::color::{Rgb, mix, perceptual, place_colors};
 use report::render::{Coloring, RenderOptions, render};
@@ -102,17 +101,6 @@ fn carried(places: &PointMap, colors: &[Rgb]) -> (Vec<Rgb>, Vec<f64>) {
     let nearest = places.points.iter();
     let nearest = nearest.map(|point| point.map_or(-1.0, |point| f64::from(point.nearest_corner().0)));
     ((0..places.points.len()).map(color).collect(), nearest.collect())
-}
-
-/// Writes a mesh in colors.
-pub(super) fn write_colored(
-    path: &Path,
-    mesh: &TriMesh,
-    name: &str,
-    values: &[f64],
-    colors: &[Rgb],
-) -> Result<()> {
-    Ok(canonform::mesh::io::write_scalar_field(path, mesh, &VertexField { name, values, colors })?)
 }
 
 /// Writes a picture of two meshes in colors.

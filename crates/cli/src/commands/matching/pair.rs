@@ -10,12 +10,11 @@ use canonform::Error;
 use canonform::descriptors::Side;
 use canonform::maps::{MappedSurface, Mapping, PartOfWhole, PointMap, SurfaceMap, correspond, score_map};
 use canonform::mesh::InputPoint;
+use canonform::mesh::io::{VertexField, write_scalar_field};
 use canonform::settings::MethodSettings;
 use serde::Serialize;
 
-use super::files::{
-    DOUBTFUL, MappedFile, beside, corresponding, picture, write_colored, write_functional, write_table,
-};
+use super::files::{DOUBTFUL, MappedFile, beside, corresponding, picture, write_functional, write_table};
 use super::known;
 use super::transfer::read_transfer;
 use crate::args::{Common, MAP_FORMATS, MatchArgs, VALUE_FORMATS};
@@ -141,8 +140,8 @@ fn written(
         picture = write(&at, format, &map, points.as_ref(), sides)?;
         if format == "ply" && i == 0 {
             let ([source, _], _) = corresponding(&map, sides);
-            let path = beside(&at, "source");
-            write_colored(&path, &sides[0].mesh, "confidence", &map.vertex_confidence, &source)?;
+            let field = VertexField { name: "confidence", values: &map.vertex_confidence, colors: &source };
+            write_scalar_field(&beside(&at, "source"), &sides[0].mesh, &field)?;
         }
         if let Some(other) = &map.alternative {
             let at = beside(&at, "alternative");
@@ -175,7 +174,8 @@ fn write(
     if format == "png" {
         return picture(path, meshes, colors).map(|()| None);
     }
-    write_colored(path, meshes[1], "match", &origins, &colors[1])?;
+    let field = VertexField { name: "match", values: &origins, colors: &colors[1] };
+    write_scalar_field(path, meshes[1], &field)?;
     let drawn = path.with_extension("png");
     picture(&drawn, meshes, colors)?;
     Ok(Some(drawn))
