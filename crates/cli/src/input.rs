@@ -66,7 +66,7 @@ pub(crate) fn read_file(path: &Path, common: &Common) -> Result<MeshFile> {
     if !is_stream(path) {
         return Ok(read_mesh_file(path, &ReadLimits::default()).map_err(canonform::Error::from)?);
     }
-    let Some(format) = common.input_format.or(common.format.as_deref()) else {
+    let Some(format) = common.input_format.as_deref().or(common.format.as_deref()) else {
         bail!("standard input has no file name: pass its format, such as --format ply");
     };
     let format = Format::named(format).with_context(|| {

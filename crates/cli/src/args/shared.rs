@@ -6,7 +6,7 @@ use std::time::Duration;
 use base::Budget;
 use canonform::library::ShapeLimits;
 use clap::Args;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::PossibleValuesParser;
 
 /// Options of every command.
 #[derive(Debug, Clone, Args)]
@@ -29,7 +29,7 @@ pub(crate) struct Common {
     pub(crate) format: Option<String>,
     /// The same, where --format means something else
     #[arg(long, global = true, value_name = "EXT", value_parser = input_format(), hide_short_help = true)]
-    pub(crate) input_format: Option<&'static str>,
+    pub(crate) input_format: Option<String>,
     /// Write nothing but errors to standard error: no progress, no notes on repairs
     #[arg(long, short, global = true)]
     pub(crate) quiet: bool,
@@ -44,12 +44,9 @@ pub(super) fn counted<T: FromStr>(text: &str) -> Result<T, String> {
 const MOST_THREADS: i64 = 1024;
 
 /// The extensions of formats that hold a mesh in one file.
-fn input_format() -> impl TypedValueParser<Value = &'static str> {
-    let single = || canonform::mesh::io::FORMATS.iter().filter(|format| format.extensions.len() == 1);
-    PossibleValuesParser::new(single().map(|format| format.extensions[0])).try_map(move |chosen| {
-        let found = single().find(|format| format.extensions[0] == chosen);
-        found.map(|format| format.extensions[0]).ok_or_else(|| format!("`{chosen}` is unknown"))
-    })
+fn input_format() -> PossibleValuesParser {
+    let single = canonform::mesh::io::FORMATS.iter().filter(|format| format.extensions.len() == 1);
+    PossibleValuesParser::new(single.map(|format| format.extensions[0]))
 }
 
 /// Limits on what a command may use. Flatten it last.
