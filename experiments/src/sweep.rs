@@ -8,7 +8,7 @@ use anyhow::Result;
 use linalg::DistanceMatrix;
 use nmds::Regularization;
 use report::record::{Axis, Figure, FigurePanels, Plot, PlotPoint, Series, SeriesKind};
-use retrieval::{Averaging, Labels, QueryScores, Scores};
+use retrieval::{Labels, QueryScores, Scores};
 
 pub(crate) type MeasuredNumbers = BTreeMap<String, f64>;
 
@@ -56,7 +56,7 @@ pub(crate) fn named(s: &Scores) -> [(&'static str, f64); 6] {
 pub(crate) fn best_e(labels: &Labels) -> Result<f64> {
     let apart = |i: usize, j: usize| f64::from(u8::from(labels.class(i) != labels.class(j)));
     let ideal = DistanceMatrix::from_pairs(labels.n_points(), apart)?;
-    Ok(QueryScores::new(&ideal, labels)?.mean(labels, Averaging::Micro).e)
+    Ok(QueryScores::new(&ideal, labels)?.mean().e)
 }
 
 /// The low-rank regularization that keeps half of `n` eigenpairs.

@@ -4,24 +4,16 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use serde::{Deserialize, Serialize};
 
-use crate::{Labels, QueryScores, RetrievalError, Scores};
+use crate::{Labels, QueryScores, Scores};
 
-/// How a confidence interval is found.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BootstrapOptions {
-    /// Number of resamples. Default: 1000.
-    pub resamples: usize,
-    /// Probability that the interval covers. Default: 0.95.
-    pub level: f64,
-    /// Seed of the random numbers. Default: 0.
-    pub seed: u64,
-}
+/// Number of resamples.
+const RESAMPLES: usize = 1000;
 
-impl Default for BootstrapOptions {
-    fn default() -> Self {
-        Self { resamples: 1000, level: 0.95, seed: 0 }
-    }
-}
+/// Probability that an interval covers.
+const LEVEL: f64 = 0.95;
+
+/// Seed of the random numbers.
+const SEED: u64 = 0;
 
 /// A confidence interval of every mean score.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -43,28 +35,16 @@ pub struct ScoreIntervals {
 ///
 /// The intervals tell how far the means depend on which shapes of these classes are queries. The gallery stays the same,
 /// so they do not tell what other classes would score.
-///
-/// # Errors
-/// [`RetrievalError::NothingToScore`].
-pub fn bootstrap(
-    scores: &QueryScores,
-    labels: &Labels,
-    options: &BootstrapOptions,
-) -> Result<ScoreIntervals, RetrievalError> {
+pub fn bootstrap(scores: &QueryScores, labels: &Labels) -> ScoreIntervals {
     let mut classes: Vec<Vec<[f64; Scores::N]>> = vec![Vec::new(); labels.classes().len()];
     for (query, scores) in &scores.of {
         classes[labels.class(*query)].push(scores.to_array());
     }
     classes.retain(|queries| !queries.is_empty());
-    let n_queries: usize = classes.iter().map(Vec::len).sum();
-    if n_queries == 0 {
-        let (n_points, n_classes) = (labels.n_points(), labels.classes().len());
-        return Err(RetrievalError::NothingToScore { n_points, n_classes });
-    }
-    let mut random = ChaCha8Rng::seed_from_u64(options.seed);
-    let mut means: [Vec<f64>; Scores::N] = std::array::from_fn(|_| Vec::with_capacity(options.resamples));
-    let weight = 1.0 / n_queries as f64;
-    for _ in 0..options.resamples {
+    let mut random = ChaCha8Rng::seed_from_u64(SEED);
+    let mut means: [Vec<f64>; Scores::N] = std::array::from_fn(|_| Vec::with_capacity(RESAMPLES));
+    let weight = 1.0 / scores.of.len() as f64;
+    for _ in 0..RESAMPLES {
         let mut total = [0.0; Scores::N];
         for queries in &classes {
             for _ in 0..queries.len() {
@@ -75,12 +55,12 @@ pub fn bootstrap(
         means.iter_mut().zip(total).for_each(|(means, mean)| means.push(mean));
     }
     means.iter_mut().for_each(|means| means.sort_by(f64::total_cmp));
-    let tail = 0.5 * (1.0 - options.level);
+    let tail = 0.5 * (1.0 - LEVEL);
     // Scores are shares; rounded sums may exceed 1.
     let score = |i: usize, share: f64| quantile(&means[i], share).clamp(0.0, 1.0);
     let end = |share: f64| Scores::from_array(std::array::from_fn(|i| score(i, share)));
     let (low, high) = (end(tail), end(1.0 - tail));
-    Ok(ScoreIntervals { level: options.level, resamples: options.resamples, seed: options.seed, low, high })
+    ScoreIntervals { level: LEVEL, resamples: RESAMPLES, seed: SEED, low, high }
 }
 
 /// Uniform in `0..bound`, with a bias of at most `bound / 2^64`.
@@ -88,10 +68,9 @@ fn below(random: &mut ChaCha8Rng, bound: usize) -> usize {
     ((u128::from(random.next_u64()) * bound as u128) >> 64) as usize
 }
 
-/// The quantile of ascending values, interpolated between its two neighbors; NaN if there are none.
+/// The quantile of ascending values, interpolated between its two neighbors.
 fn quantile(sorted: &[f64], share: f64) -> f64 {
-    let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
-    let at = share.clamp(0.0, 1.0) * last as f64;
+    let at = share * (sorted.len() - 1) as f64;
     let (low, high) = (at.floor() as usize, at.ceil() as usize);
     sorted[low] + (at - low as f64) * (sorted[high] - sorted[low])
 }

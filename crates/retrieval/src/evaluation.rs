@@ -4,8 +4,8 @@ use linalg::DistanceMatrix;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Averaging, BootstrapOptions, GraphRankings, Labels, QueryScores, Rankings, RetrievalError,
-    ScoreIntervals, Scores, bootstrap, silhouette, vote,
+    GraphRankings, Labels, QueryScores, Rankings, RetrievalError, ScoreIntervals, Scores, bootstrap,
+    silhouette, vote,
 };
 
 /// How shapes are ordered.
@@ -103,7 +103,7 @@ impl RankingEvaluation {
     /// Classifies each shape whose class has more than two members by the first `knn_k` of all others.
     fn of(rankings: &impl Rankings, labels: &Labels, knn_k: usize) -> Result<Self, RetrievalError> {
         let scores = QueryScores::new(rankings, labels)?;
-        let intervals = bootstrap(&scores, labels, &BootstrapOptions::default())?;
+        let intervals = bootstrap(&scores, labels);
         let n_classes = labels.classes().len();
         let mut confusion = vec![vec![0; n_classes]; n_classes];
         let mut correct = 0;
@@ -113,7 +113,7 @@ impl RankingEvaluation {
             correct += usize::from(class == found);
         }
         let knn_accuracy = correct as f64 / scores.of.len() as f64;
-        Ok(Self { mean: scores.mean(labels, Averaging::Micro), knn_accuracy, confusion, intervals })
+        Ok(Self { mean: scores.mean(), knn_accuracy, confusion, intervals })
     }
 }
 

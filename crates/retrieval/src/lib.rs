@@ -30,7 +30,7 @@ mod refinement;
 mod scores;
 mod vote;
 
-pub use bootstrap::{BootstrapOptions, ScoreIntervals, bootstrap};
+pub use bootstrap::{ScoreIntervals, bootstrap};
 pub use clustering::silhouette;
 pub use error::RetrievalError;
 pub use evaluation::{Evaluation, RankBy, RankingEvaluation, evaluate};
@@ -38,5 +38,5 @@ pub use graph::{GraphNeighbor, GraphRankings, LINKS, graph_rank};
 pub use labels::Labels;
 pub use ranking::{Neighbor, Rankings, rank, rank_row};
 pub use refinement::{Refinement, refine_nearest};
-pub use scores::{Averaging, QueryScores, Scores, precision_recall};
+pub use scores::{QueryScores, Scores, precision_recall};
 pub use vote::{Tally, UnknownThreshold, Vote, vote};

@@ -40,17 +40,6 @@ impl Rankings for DistanceMatrix {
     }
 }
 
-/// The ranking of each shape.
-impl Rankings for Vec<Vec<Neighbor>> {
-    fn n_points(&self) -> usize {
-        self.len()
-    }
-
-    fn ranking(&self, query: usize) -> Vec<Neighbor> {
-        self[query].clone()
-    }
-}
-
 /// All shapes except `query`, nearest first; ties by index.
 ///
 /// ```

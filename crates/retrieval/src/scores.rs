@@ -71,21 +71,9 @@ impl Scores {
     }
 }
 
-/// How scores of queries are averaged.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Averaging {
-    /// Over queries: large classes count more.
-    Micro,
-    /// Over the means of the classes: all classes count the same.
-    Macro,
-}
-
 /// The scores of all queries of a collection.
 #[derive(Debug, Clone, PartialEq)]
 pub struct QueryScores {
-    /// Number of shapes.
-    pub n_points: usize,
     /// The queries in ascending order, with their scores.
     pub of: Vec<(usize, Scores)>,
 }
@@ -97,22 +85,16 @@ impl QueryScores {
     /// [`RetrievalError::LabelCount`], [`RetrievalError::NothingToScore`].
     pub fn new(rankings: &impl Rankings, labels: &Labels) -> Result<Self, RetrievalError> {
         let score = |i: usize| Scores::of_query(&rankings.ranking(i), i, labels);
-        let of = of_queries(rankings.n_points(), labels, score)?;
-        Ok(Self { n_points: rankings.n_points(), of })
+        Ok(Self { of: of_queries(rankings.n_points(), labels, score)? })
     }
 
-    /// The mean scores; 0 without queries.
-    pub fn mean(&self, labels: &Labels, averaging: Averaging) -> Scores {
-        let (mut sum, mut total) = ([0.0; Scores::N], 0.0);
-        for (i, scores) in &self.of {
-            let weight = match averaging {
-                Averaging::Micro => 1.0,
-                Averaging::Macro => 1.0 / labels.size(labels.class(*i)) as f64,
-            };
-            sum.iter_mut().zip(scores.to_array()).for_each(|(sum, score)| *sum += weight * score);
-            total += weight;
+    /// The mean scores over the queries.
+    pub fn mean(&self) -> Scores {
+        let mut sum = [0.0; Scores::N];
+        for (_, scores) in &self.of {
+            sum.iter_mut().zip(scores.to_array()).for_each(|(sum, score)| *sum += score);
         }
-        Scores::from_array(sum.map(|sum| if total > 0.0 { sum / total } else { sum }))
+        Scores::from_array(sum.map(|sum| sum / self.of.len() as f64))
     }
 }
 

@@ -16,7 +16,7 @@ use nmds::{
 use rayon::prelude::*;
 use report::record::{Axis, AxisScale, Mark, PlotPoint, SeriesKind};
 use report::{Cell, Record, Table};
-use retrieval::{Averaging, BootstrapOptions, Labels, QueryScores, bootstrap, silhouette};
+use retrieval::{Labels, RankBy, evaluate, silhouette};
 
 use crate::collection::map;
 use crate::context::Context;
@@ -101,7 +101,6 @@ pub(crate) fn forms(context: &Context<'_>) -> Result<Record> {
         Ok((surface.mesh().clone(), embedded.distances, seconds))
     })?;
     let (mut measured, mut rows, mut panels) = (MeasuredNumbers::new(), Vec::new(), Panels::default());
-    let level = 100.0 * BootstrapOptions::default().level;
     for (name, method) in METHODS {
         context.observer.begin(name, shapes.len());
         let made = measured_shapes.par_iter().map(|(mesh, distances, seconds)| {
@@ -117,14 +116,10 @@ pub(crate) fn forms(context: &Context<'_>) -> Result<Record> {
                 continue;
             }
             let (distances, seconds) = compared(comparison, &made, context)?;
-            let scores = QueryScores::new(&distances, &labels)?;
-            let mean = scores.mean(&labels, Averaging::Micro);
-            let intervals = bootstrap(&scores, &labels, &BootstrapOptions::default())?;
+            let scores = evaluate(&distances, &labels, 1, RankBy::Plain)?;
+            let (mean, intervals) = (scores.plain.mean, scores.plain.intervals);
             let plane = embedded_distances(&classical_full(&distances, 2)?.coords)?;
-            let own = [
-                ("silhouette", silhouette(&distances, &labels)),
-                ("2D silhouette", silhouette(&plane, &labels)),
-            ];
+            let own = [("silhouette", scores.silhouette), ("2D silhouette", silhouette(&plane, &labels))];
             let numbers = named(&mean).into_iter().chain(own).chain([("seconds", seconds)]);
             note(&mut measured, &format!("{name} {comparison}"), numbers);
             let ends = intervals.low.to_array().into_iter().zip(intervals.high.to_array());
@@ -143,9 +138,7 @@ pub(crate) fn forms(context: &Context<'_>) -> Result<Record> {
     }
     let headings = ["form", "compared by"].into_iter().chain(SCORES);
     let headings = headings.chain(["silhouette", "2D silhouette", "form, ms", "signature, ms"]);
-    let caption = format!(
-        "Retrieval by forms alone, size ignored; intervals cover {level:.0} % of the resampled queries."
-    );
+    let caption = "Retrieval by forms alone, size ignored; intervals cover 95 % of the resampled queries.";
     let marks =
         COMPARISONS.iter().enumerate().map(|(i, name)| Mark { x: i as f64, name: (*name).to_owned() });
     panels.0.iter_mut().for_each(|plot| plot.marks = marks.clone().collect());

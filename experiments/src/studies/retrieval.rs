@@ -12,13 +12,9 @@ use canonform::embed::signature;
 use canonform::index::Shape;
 use descriptors::{CanonicalForm, Normalization, ShapeMetric, SignatureKind};
 use linalg::DistanceMatrix;
-use rayon::prelude::*;
 use report::record::{Axis, Figure, FigurePanels, Plot};
 use report::{Cell, Record, Table};
-use retrieval::{
-    Averaging, BootstrapOptions, GraphRankings, Labels, Neighbor, QueryScores, Rankings, bootstrap,
-    precision_recall, vote,
-};
+use retrieval::{Labels, QueryScores, RankBy, RankingEvaluation, evaluate, precision_recall};
 
 use crate::context::Context;
 use crate::gallery::Gallery;
@@ -127,7 +123,7 @@ fn rankings(
     distances: &DistanceMatrix,
     labels: &Labels,
     measured: &mut MeasuredNumbers,
-) -> Result<[Vec<Cell>; 2]> {
+) -> Result<Vec<Vec<Cell>>> {
     let mut least = f64::INFINITY;
     for class in 0..labels.classes().len() {
         // Without one of two classes there is nothing to distinguish.
@@ -135,47 +131,31 @@ fn rankings(
         if rest_labels.classes().len() > 1
             && let Ok(scores) = QueryScores::new(&rest, &rest_labels)
         {
-            least = least.min(scores.mean(&rest_labels, Averaging::Micro).map);
+            least = least.min(scores.mean().map);
         }
     }
-    let options = &context.options;
-    let mut ranked = |ranking: &str,
-                      rankings: &Vec<Vec<Neighbor>>,
-                      least: Option<f64>|
-     -> Result<Vec<Cell>> {
-        let scores = QueryScores::new(rankings, labels)?;
-        let interval = bootstrap(&scores, labels, &BootstrapOptions::default())?;
-        let [micro, by_class] = [Averaging::Micro, Averaging::Macro].map(|of| scores.mean(labels, of));
-        let queries = || (0..labels.n_points()).filter(|i| labels.is_query(*i));
-        let voted = |i: &usize| vote(&rankings[*i], |i| labels.class(i), options.voters, None).class();
-        let right = queries().filter(|i| voted(i) == Some(labels.class(*i))).count();
-        let knn = right as f64 / queries().count().max(1) as f64;
-        let of =
-            if ranking == "graph" { format!("{method} {scale} graph") } else { format!("{method} {scale}") };
-        let least = least.map(|least| least.min(micro.map));
-        note(measured, &of, named(&micro));
-        note(measured, &of, least.map(|least| ("least mAP", least)));
+    let found = evaluate(distances, labels, context.options.voters, RankBy::Graph)?;
+    let least = least.min(found.plain.mean.map);
+    let of = format!("{method} {scale}");
+    note(measured, &of, [("least mAP", least)]);
+    let mut row = |ranking: &str, of: &str, found: &RankingEvaluation, least: Option<f64>| {
+        note(measured, of, named(&found.mean));
         let mut row: Vec<Cell> = [method, scale, ranking].map(Cell::from).to_vec();
-        row.extend(micro.to_array().map(Cell::from));
-        row.push(format!("{:.3} to {:.3}", interval.low.map, interval.high.map).into());
-        row.extend([by_class.nn, by_class.map, knn].map(Cell::from));
-        row.push(least.into());
-        Ok(row)
+        row.extend(found.mean.to_array().map(Cell::from));
+        row.push(format!("{:.3} to {:.3}", found.intervals.low.map, found.intervals.high.map).into());
+        row.extend([Cell::from(found.knn_accuracy), least.into()]);
+        row
     };
-    let plain = ranked("plain", &all_rankings(distances), Some(least))?;
-    Ok([plain, ranked("graph", &all_rankings(&GraphRankings::new(distances)), None)?])
+    let mut rows = vec![row("plain", &of, &found.plain, Some(least))];
+    rows.extend(found.graph.iter().map(|graph| row("graph", &format!("{of} graph"), graph, None)));
+    Ok(rows)
 }
 
 /// The table of all rankings.
 fn table(rows: Vec<Vec<Cell>>) -> Table {
     let headings = ["method", "size", "ranking"].into_iter().chain(SCORES);
-    let headings = headings.chain(["mAP interval", "macro NN", "macro mAP", "k-NN", "least mAP"]);
+    let headings = headings.chain(["mAP interval", "k-NN", "least mAP"]);
     Table::new("", headings, rows)
-}
-
-/// The rankings of all shapes, made once.
-fn all_rankings(rankings: &impl Rankings) -> Vec<Vec<Neighbor>> {
-    (0..rankings.n_points()).into_par_iter().map(|query| rankings.ranking(query)).collect()
 }
 
 /// The collection without one class.

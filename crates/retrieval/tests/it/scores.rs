@@ -4,14 +4,6 @@ use canonform_retrieval::*;
 
 use crate::line;
 
-fn mean_scores(
-    distances: &DistanceMatrix,
-    labels: &Labels,
-    averaging: Averaging,
-) -> Result<Scores, RetrievalError> {
-    Ok(QueryScores::new(distances, labels)?.mean(labels, averaging))
-}
-
 /// Class `a` of four on the left; class `b` of three on the right, one of them among `a`.
 fn example() -> (DistanceMatrix, Labels) {
     let positions = [0.0, 1.0, 2.0, 3.5, 1.4, 50.0, 51.5];
@@ -54,12 +46,11 @@ fn a_class_of_one_has_no_scores() {
 }
 
 #[test]
-fn micro_means_weigh_queries_alike_and_macro_means_classes() {
+fn means_weigh_queries_alike() {
     let (distances, labels) = example();
-    let nn = |averaging| mean_scores(&distances, &labels, averaging).unwrap().nn;
     // Correct nearest neighbors: the first and last of a, the two distant ones of b.
-    assert!((nn(Averaging::Micro) - 4.0 / 7.0).abs() < 1e-15);
-    assert!((nn(Averaging::Macro) - (0.5 + 2.0 / 3.0) / 2.0).abs() < 1e-15);
+    let found = QueryScores::new(&distances, &labels).unwrap().mean();
+    assert!((found.nn - 4.0 / 7.0).abs() < 1e-15);
 }
 
 #[test]
@@ -75,7 +66,7 @@ fn precision_falls_with_recall_and_is_one_for_perfect_rankings() {
 #[test]
 fn scores_need_a_large_class_and_a_label_per_shape() {
     let distances = DistanceMatrix::from_pairs(2, |_, _| 1.0).unwrap();
-    let error = mean_scores(&distances, &Labels::new(&["a", "a"]), Averaging::Micro).unwrap_err();
+    let error = QueryScores::new(&distances, &Labels::new(&["a", "a"])).unwrap_err();
     assert_eq!(error, RetrievalError::NothingToScore { n_points: 2, n_classes: 1 });
     let error = precision_recall(&distances, &Labels::new(&["a"]), 11).unwrap_err();
     assert_eq!(error, RetrievalError::LabelCount { n_labels: 1, n_points: 2 });
