@@ -27,26 +27,6 @@ pub enum ReportError {
         /// Where and why parsing stopped.
         source: serde_json::Error,
     },
-    /// Two lists of a record do not belong together.
-    #[error("{what} has {found} entries instead of {expected}; run the experiment again")]
-    Shape {
-        /// The part of the record.
-        what: String,
-        /// Its number of entries.
-        found: usize,
-        /// The number of entries it needs.
-        expected: usize,
-    },
-    /// A number of a record is not finite.
-    #[error(
-        "{what} is {value}, not a finite number; look for a failed embedding and run the experiment again"
-    )]
-    NotFinite {
-        /// Which number.
-        what: String,
-        /// Its value.
-        value: f64,
-    },
 }
 
 impl ReportError {

@@ -259,73 +259,27 @@ impl Record {
     /// [`ReportError::File`] if the file cannot be read, [`ReportError::Parse`] if it is not such a record.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, ReportError> {
         let path = path.as_ref();
-        let bytes = std::fs::read(path).map_err(|source| FileError::read(path, source))?;
-        serde_json::from_slice(&bytes)
-            .map_err(|source| ReportError::Parse { path: path.to_path_buf(), source })
+        Self::parse(path, &std::fs::read(path).map_err(|source| FileError::read(path, source))?)
+    }
+
+    fn parse(path: &Path, json: &[u8]) -> Result<Self, ReportError> {
+        serde_json::from_slice(json).map_err(|source| ReportError::Parse { path: path.to_path_buf(), source })
     }
 
     /// Writes the figures and then `NAME.json` into a folder, each file completely or not at all.
     ///
     /// # Errors
-    /// Those of [`check`](Self::check); [`ReportError::Draw`] or [`ReportError::File`] if drawing or writing fails.
+    /// [`ReportError::Parse`] if a number is not finite, so that it would not read back; [`ReportError::Draw`] or
+    /// [`ReportError::File`] if drawing or writing fails.
     pub fn save(&self, folder: &Path, name: &str) -> Result<(), ReportError> {
-        self.check()?;
-        for figure in &self.figures {
-            figure.save(folder, name)?;
-        }
         let path = folder.join(format!("{name}.json"));
         let mut json = serde_json::to_vec_pretty(self).map_err(|e| FileError::write(&path, e.into()))?;
         json.push(b'\n');
-        Ok(write_bytes(&path, &json)?)
-    }
-
-    /// Checks that numbers are finite and that lists agree in length.
-    ///
-    /// # Errors
-    /// [`ReportError::NotFinite`] or [`ReportError::Shape`], which name the part of the record.
-    pub fn check(&self) -> Result<(), ReportError> {
-        let finite = |value: f64, what: String| match value.is_finite() {
-            true => Ok(()),
-            false => Err(ReportError::NotFinite { what, value }),
-        };
-        let length = |what: String, found: usize, expected: usize| match found == expected {
-            true => Ok(()),
-            false => Err(ReportError::Shape { what, found, expected }),
-        };
-        for table in &self.tables {
-            for row in &table.rows {
-                length(format!("a row of the table `{}`", table.caption), row.len(), table.headings.len())?;
-            }
-        }
+        Self::parse(&path, &json)?;
         for figure in &self.figures {
-            match &figure.panels {
-                FigurePanels::Plots(plots) => {
-                    for plot in plots {
-                        for (series, p) in
-                            plot.series.iter().flat_map(|s| s.points.iter().map(move |p| (s, p)))
-                        {
-                            let what = format!("{} in {} at {}", series.name, plot.title, p.x);
-                            finite(p.x + p.y + p.low + p.high, what)?;
-                        }
-                        for mark in &plot.marks {
-                            finite(mark.x, format!("the mark {} in {}", mark.name, plot.title))?;
-                        }
-                    }
-                }
-                FigurePanels::Heats(heats) => {
-                    for heat in heats {
-                        let what = format!("the matrix {}", heat.title);
-                        length(what.clone(), heat.values.len(), heat.names.len())?;
-                        for row in &heat.values {
-                            length(format!("a row of {what}"), row.len(), heat.names.len())?;
-                            row.iter().try_for_each(|value| finite(*value, format!("an entry of {what}")))?;
-                        }
-                    }
-                }
-                FigurePanels::Tiles(_) => {}
-            }
+            figure.save(folder, name)?;
         }
-        Ok(())
+        Ok(write_bytes(&path, &json)?)
     }
 
     /// The tables that a run prints: the first, or the medians of the curves.

@@ -172,7 +172,7 @@ mod tests {
     use std::fs;
 
     use super::*;
-    use crate::record::{Plot, RunProvenance, TileRow, Tiles};
+    use crate::record::{RunProvenance, TileRow, Tiles};
     use crate::table::Table;
     use crate::tests::{assert_balanced, assert_holds, figure, plot, tile, without_scripts};
 
@@ -292,24 +292,17 @@ mod tests {
     }
 
     #[test]
-    fn broken_records_are_errors_that_name_the_file_or_the_number() {
+    fn broken_records_are_errors_that_name_the_file() {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("figure1.json"), "{\"names\": 3").unwrap();
         let error = write_report(folder.path(), &[], &sections()).unwrap_err();
         assert!(error.to_string().contains("figure1.json"), "{error}");
         assert!(!folder.path().join(FILE).exists());
-        let fault = |change: fn(&mut Plot), part: &str| {
-            let mut broken = plot("cat0");
-            change(&mut broken);
-            let error = record(FigurePanels::Plots(vec![broken])).save(folder.path(), "x").unwrap_err();
-            assert!(error.to_string().contains(part), "{error}");
-            assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
-        };
-        fault(|plot| plot.series[0].points[0].high = f64::NAN, "NMDS in cat0");
-        fault(|plot| plot.marks[0].x = f64::INFINITY, "the mark recommended");
-        let mut ragged = record(FigurePanels::Plots(vec![]));
-        ragged.tables[0].headings.pop();
-        assert!(ragged.save(folder.path(), "x").unwrap_err().to_string().contains("Scores."));
+        let mut broken = plot("cat0");
+        broken.series[0].points[0].high = f64::NAN;
+        let error = record(FigurePanels::Plots(vec![broken])).save(folder.path(), "x").unwrap_err();
+        assert!(error.to_string().contains("x.json"), "{error}");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 
     #[test]
