@@ -30,7 +30,7 @@ pub fn render(
     let faces = drawable_faces(mesh);
     let samples = options.supersampling.clamp(1, 4);
     let size = [options.width, options.height].map(|side| side.clamp(1, 8192) * samples);
-    let camera = Camera::fit(mesh, &faces, &options.view, size, options.margin.clamp(0.0, 0.45));
+    let camera = Camera::fit(mesh, &faces, &options.view, size);
     let buffer = DepthBuffer::draw(mesh, &faces, &camera, size, &budget)?;
     let normals = corner_normals(mesh, &faces, &camera, options.crease.clamp(0.0, 90.0));
     let paint = Paint::new(mesh.n_vertices(), (&options.coloring, options.colors), &options.marks, samples);

@@ -11,8 +11,6 @@ pub struct RenderOptions {
     pub width: u32,
     /// Height in pixels, clamped to 1..=8192. Default: 600.
     pub height: u32,
-    /// Empty border, as a share of the shorter side, clamped to 0..=0.45. Default: 0.04.
-    pub margin: f64,
     /// Direction of the view. Default: [`View::default`].
     pub view: View,
     /// What is behind the surface. Default: [`Background::White`].
@@ -34,7 +32,6 @@ impl Default for RenderOptions {
         Self {
             width: 600,
             height: 600,
-            margin: 0.04,
             view: View::default(),
             background: Background::White,
             coloring: Coloring::Plain([214, 206, 194]),

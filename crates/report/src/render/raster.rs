@@ -181,7 +181,7 @@ mod tests {
 
     fn drawn(mesh: &TriMesh, side: u32) -> (DepthBuffer, usize) {
         let faces = super::super::camera::drawable_faces(mesh);
-        let camera = Camera::fit(mesh, &faces, &View::default(), [side; 2], 0.05);
+        let camera = Camera::fit(mesh, &faces, &View::default(), [side; 2]);
         let mut buffer = DepthBuffer::draw(mesh, &faces, &camera, [side; 2], &Budget::unlimited()).unwrap();
         // Drawing everything once more compares the same samples and changes nothing.
         let (depth, face) = (buffer.depth.clone(), buffer.face.clone());

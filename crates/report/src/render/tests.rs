@@ -47,16 +47,15 @@ fn pear() -> TriMesh {
 
 #[test]
 fn a_sphere_is_a_disc_that_fills_the_image_up_to_the_margin() {
-    let options = RenderOptions { margin: 0.1, ..small(FRONT) };
-    let image = drawn(&sphere(60), &options);
+    let image = drawn(&sphere(60), &small(FRONT));
     let radius = (covered(&image) / std::f64::consts::PI).sqrt();
-    assert!((radius - 48.0).abs() < 0.3, "radius {radius}");
+    assert!((radius - 55.2).abs() < 0.3, "radius {radius}");
     for y in 0..120 {
         for x in 0..120 {
             let distance = (f64::from(x) - 59.5).hypot(f64::from(y) - 59.5);
             let alpha = image.pixel(x, y)[3];
-            assert!(distance > 47.0 || alpha == 255, "hole at {x}, {y}");
-            assert!(distance < 49.5 || alpha == 0, "speck at {x}, {y}");
+            assert!(distance > 54.2 || alpha == 255, "hole at {x}, {y}");
+            assert!(distance < 56.7 || alpha == 0, "speck at {x}, {y}");
         }
     }
 }
@@ -104,7 +103,7 @@ fn meshes_without_drawable_faces_give_empty_images() {
         mesh(&[[0.0; 3], [1.0; 3], [2.0; 3]], &[[0, 1, 2]]),
     ];
     let mut sizes = vec![small(FRONT), small(View::Principal)];
-    sizes.push(RenderOptions { width: 0, height: 0, supersampling: 0, margin: 9.0, ..small(FRONT) });
+    sizes.push(RenderOptions { width: 0, height: 0, supersampling: 0, ..small(FRONT) });
     for options in &sizes {
         for case in &cases {
             assert_eq!(covered(&drawn(case, options)), 0.0, "{case:?}");

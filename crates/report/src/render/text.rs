@@ -78,7 +78,7 @@ pub(super) fn write_labels(
         return Ok(());
     }
     let (size, faces) = ([image.width(), image.height()], drawable_faces(mesh));
-    let camera = Camera::fit(mesh, &faces, &options.view, size, options.margin.clamp(0.0, 0.45));
+    let camera = Camera::fit(mesh, &faces, &options.view, size);
     let nearest = DepthBuffer::draw(mesh, &faces, &camera, size, budget)?;
     let em = type_size(size);
     let seen = |label: &&Label| {
