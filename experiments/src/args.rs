@@ -34,20 +34,9 @@ pub(crate) enum ExperimentCommand {
         markdown: Option<PathBuf>,
     },
     /// Measure the numbers of the metric on built-in shapes: units, weights, and the boundaries of shapes and classes
-    Units {
-        /// Number of seeds of the built-in dataset, from 1 on; 30 shapes each
-        #[arg(long, default_value_t = 5, value_name = "N")]
-        seeds: usize,
-        /// Show no progress bars
-        #[arg(long, short)]
-        quiet: bool,
-    },
+    Units,
     /// Measure the numbers of relations on built-in shapes: the boundary of one surface, and how often confidence is right
-    Relations {
-        /// Show no progress bars
-        #[arg(long, short)]
-        quiet: bool,
-    },
+    Relations,
 }
 
 #[derive(Debug, Args)]

@@ -44,7 +44,7 @@ fn main() -> ExitCode {
         ExperimentCommand::Run(args) => run::run(args),
         ExperimentCommand::List => run::list(),
         ExperimentCommand::Report { output, markdown } => run::report(output, markdown.as_deref()),
-        ExperimentCommand::Units { seeds, quiet } => calibration::units(*seeds, *quiet),
-        ExperimentCommand::Relations { quiet } => calibration::relations(*quiet),
+        ExperimentCommand::Units => calibration::units(),
+        ExperimentCommand::Relations => calibration::relations(),
     })
 }

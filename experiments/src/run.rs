@@ -1,13 +1,12 @@
 //! The experiments, and the commands that run them.
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
-use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 use anyhow::{Context as _, Result, bail};
-use base::terminal::{Bars, note, on_interruption};
+use base::terminal::{Bars, note};
 use report::Record;
 use report::page::{Section, write_report};
 
@@ -56,9 +55,6 @@ const ALL: &str = "all";
 /// The experiments that can begin a page, the most telling first.
 const LEADS: [&str; 3] = ["figure4", "retrieval", "figure1"];
 
-/// Exit code after an interruption, by the convention of shells: 128 plus the number of the signal.
-const INTERRUPTED: i32 = 130;
-
 /// `experiments run`.
 pub(crate) fn run(args: &RunArgs) -> Result<ExitCode> {
     let known: Vec<&str> = [ALL].into_iter().chain(EXPERIMENTS.map(|(name, ..)| name)).collect();
@@ -68,12 +64,9 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitCode> {
     let is_wanted = |(name, ..): &Experiment| args.names.iter().any(|wanted| wanted == name || wanted == ALL);
     let wanted = EXPERIMENTS.into_iter().filter(is_wanted);
     let (kept, open): (Vec<_>, Vec<_>) = wanted.partition(|(name, ..)| args.resume && is_made(args, name));
-    let finished: Vec<&'static str> = kept.iter().map(|(name, ..)| *name).collect();
-    for name in &finished {
+    for (name, ..) in kept {
         note(&format!("{name} is there already, made with these options"));
     }
-    let finished = Arc::new(Mutex::new(finished));
-    keep_finished(args, Arc::clone(&finished));
     if !open.is_empty() {
         let bars = Bars::new(args.quiet);
         let collection = SurfaceCollection::load(&args.source, &bars)?;
@@ -101,7 +94,6 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitCode> {
             if let Some(table) = record.summary() {
                 writeln!(std::io::stdout().lock(), "{}\n{}", table.caption, table.to_text())?;
             }
-            finished.lock().unwrap_or_else(PoisonError::into_inner).push(name);
         }
     }
     report(&args.output, None)
@@ -114,23 +106,6 @@ fn is_made(args: &RunArgs, name: &str) -> bool {
         let made = record.provenance;
         made.version == version && made.commit == commit && made.arguments == args.arguments()
     })
-}
-
-/// On an interruption, writes the page of what is finished, names it, and says how to continue.
-fn keep_finished(args: &RunArgs, finished: Arc<Mutex<Vec<&'static str>>>) {
-    let (folder, command) = (args.output.clone(), args.command());
-    on_interruption(move || {
-        let names = finished.lock().unwrap_or_else(PoisonError::into_inner).join(", ");
-        if names.is_empty() {
-            note("interrupted; no experiment is finished");
-        } else {
-            let page = write_page(&folder).map_or_else(|e| e.to_string(), |page| page.display().to_string());
-            note(&format!("interrupted; finished: {names} (report: {page})"));
-            note(&format!("to continue: {command} --resume"));
-        }
-        base::files::abandon_unfinished();
-        std::process::exit(INTERRUPTED);
-    });
 }
 
 /// The names and titles of all experiments.
@@ -150,14 +125,10 @@ pub(crate) fn list() -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn write_page(folder: &Path) -> Result<PathBuf> {
-    Ok(write_report(folder, &LEADS, &sections()?)?)
-}
-
 /// `experiments report`: writes the page and prints its path; with a path, also the summary of the paper.
 pub(crate) fn report(folder: &Path, markdown: Option<&Path>) -> Result<ExitCode> {
     let mut out = std::io::stdout().lock();
-    writeln!(out, "report: {}", write_page(folder)?.display())?;
+    writeln!(out, "report: {}", write_report(folder, &LEADS, &sections()?)?.display())?;
     if let Some(path) = markdown {
         crate::summary::write(folder, path)?;
         writeln!(out, "summary: {}", path.display())?;

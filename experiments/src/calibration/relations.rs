@@ -226,8 +226,8 @@ pub(crate) fn beyond_a_plane(mesh: &TriMesh, left: f64) -> TriMesh {
 
 /// `experiments relations`: the rows of `crates/relations/src/relation/calibration.rs`, and how often confidence is right about
 /// families that were held out.
-pub(crate) fn relations(quiet: bool) -> Result<ExitCode> {
-    let bars = Bars::new(quiet);
+pub(crate) fn relations() -> Result<ExitCode> {
+    let bars = Bars::new(false);
     bars.begin("comparing parts", PARTS);
     let mut pairs = of_parts(0, PARTS, TREATED, &bars);
     let n_families = creature_plans().len();

@@ -17,7 +17,7 @@ use report::{Cell, Table};
 use super::boundaries;
 use crate::parts::parts;
 
-/// Vertices of the shapes of each seed, in turn, since collections mix resolutions.
+/// Vertices of the shapes of each seed, from 1 on, since collections mix resolutions.
 const VERTICES: [usize; 5] = [3400, 1500, 8000, 2500, 5000];
 
 /// Mechanical parts whose rigid signatures are measured, and copies of each.
@@ -44,13 +44,12 @@ impl DescribedBody {
 /// `experiments units`: for every signature and for aligned forms, the root mean square distance between two shapes of
 /// one built-in family with poses and triangulations of their own, and the ratio of the mean squared distance between
 /// families to its square, next to the values in use; then the boundaries of shapes and classes.
-pub(crate) fn units(seeds: usize, quiet: bool) -> Result<ExitCode> {
-    let bars = Bars::new(quiet);
+pub(crate) fn units() -> Result<ExitCode> {
+    let bars = Bars::new(false);
     let mut shapes = Vec::new();
     bars.begin("describing", 0);
-    for seed in 1..=seeds {
-        let options =
-            ArticulatedOptions { seed: seed as u64, n_vertices: VERTICES[(seed - 1) % VERTICES.len()] };
+    for (seed, n_vertices) in (1..).zip(VERTICES) {
+        let options = ArticulatedOptions { seed, n_vertices };
         let one = |shape: &LabeledShape| DescribedBody::new(shape, options.seed);
         shapes.extend(articulated(&options)?.par_iter().map(one).collect::<Result<Vec<_>>>()?);
     }

@@ -1,7 +1,7 @@
-//! The program: its page in a browser, interruptions, and the chapters of the guide.
+//! The program: its page in a browser, runs that go on, and the chapters of the guide.
 
 #![allow(clippy::unwrap_used, reason = "these are tests")]
 
 mod guide;
-mod interruption;
 mod page;
+mod resumed;
