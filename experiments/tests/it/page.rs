@@ -58,33 +58,17 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap()
 }
 
-/// The position of the camera of a view.
-fn eye(browser: &Browser, view: usize) -> [f64; 3] {
-    let scene = format!("document.querySelectorAll('.view .canonform-scene')[{view}]");
-    let eye = browser
-        .eval(&format!("const e = {scene}._fullLayout.scene._scene.getCamera().eye; return [e.x, e.y, e.z]"))
-        .unwrap();
-    [0, 1, 2].map(|i| number(&eye[i]))
-}
-
-/// Whether something becomes true within five seconds.
-fn soon(is_true: impl Fn() -> bool) -> bool {
-    (0..50).any(|_| {
-        let found = is_true();
-        if !found {
-            std::thread::sleep(std::time::Duration::from_millis(100));
-        }
-        found
-    })
-}
-
 #[test]
 fn views_show_a_shape_with_its_form_and_rotate_together() {
     let Some(browser) = opened([1280, 900]) else { return };
-    let before = eye(&browser, 0);
+    let eyes = "[...document.querySelectorAll('.view .canonform-scene')].map(view => {
+        const { x, y, z } = view._fullLayout.scene._scene.getCamera().eye;
+        return [x, y, z].map(value => value.toFixed(6)).join(' ');
+    })";
+    let before = browser.eval(&format!("return {eyes}[0]")).unwrap();
     browser.drag(".view .canonform-scene", [70, -25]).unwrap();
-    let same = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6);
-    assert!(soon(|| same(eye(&browser, 0), eye(&browser, 1)) && !same(eye(&browser, 0), before)));
+    let turned = "(([a, b]) => a === b && a !== BEFORE)".replace("BEFORE", &before.to_string());
+    browser.wait_for(&format!("{turned}({eyes})")).unwrap();
     for (css, choice) in [(".color", "distance"), (".shape", "4"), (".color", "class")] {
         browser
             .eval(&format!(

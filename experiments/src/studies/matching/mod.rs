@@ -24,7 +24,7 @@ use report::Record;
 use report::record::{Axis, Mark, Plot};
 
 use self::errors::{JudgedMap, MappedPair};
-use self::shapes::{MapGroup, PreparedShape};
+use self::shapes::{MapGroup, PreparedShape, pairs};
 use crate::context::Context;
 use crate::sweep::{MeasuredNumbers, curve, mean, median, note, plot, plots, point, share};
 
@@ -49,7 +49,7 @@ pub(crate) fn matching(context: &Context<'_>) -> Result<Record> {
     // One after the other, so that times are those of a machine at rest.
     let groups = MapGroup::all(context.collection, context.seed)?;
     for group in &groups {
-        let pairs = group.pairs();
+        let pairs = pairs(group.shapes.len());
         context.observer.begin("preparing", group.shapes.len());
         let mut prepared: Vec<PreparedShape<'_>> = Vec::new();
         for shape in &group.shapes {
