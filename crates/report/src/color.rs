@@ -120,10 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn the_color_map_accepts_any_number_and_is_linear_between_its_stops() {
-        assert_eq!(perceptual(-5.0), perceptual(0.0));
-        assert_eq!(perceptual(f64::INFINITY), perceptual(1.0));
-        assert_eq!(perceptual(f64::NAN), [160, 160, 160]);
+    fn the_color_map_is_linear_between_its_stops() {
         let [stops, middle] = [perceptual_stops(), [perceptual(1.5 / 7.0); 8]];
         assert_eq!(middle[0], mix(stops[1], stops[2], 0.5));
     }

@@ -138,9 +138,4 @@ mod tests {
         let digits = [12345.0, 1060.4, 0.012_34, 1e-9, 2.5e7 + 0.5].map(|value| significant(value, 3));
         assert_eq!(digits, ["12345", "1060", "0.0123", "1.0e-9", "2.5e7"]);
     }
-
-    #[test]
-    fn ticks_are_round_and_inside_the_range() {
-        assert_eq!(ticks([-1.0, 21.0], 5), [0.0, 5.0, 10.0, 15.0, 20.0]);
-    }
 }

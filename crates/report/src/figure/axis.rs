@@ -198,20 +198,4 @@ mod tests {
             }
         }
     }
-
-    #[test]
-    fn linear_axes_state_the_unit_and_the_power_of_ten_of_their_ticks() {
-        assert_eq!(axis(&[0.0, 5.0], AxisScale::Linear).name, "length (m)");
-        assert_eq!(axis(&[0.0, 5e6], AxisScale::Linear).name, "length (×10⁶, m)");
-    }
-
-    #[test]
-    fn categories_are_one_unit_apart() {
-        let axis = PlotAxis::categories("kind", ["a", "b"].map(String::from).into_iter());
-        assert_eq!(axis.range, [-0.5, 1.5]);
-        assert_eq!(
-            [0.0, 1.0].map(|tick| (axis.share(tick), axis.label(tick))),
-            [(Some(0.25), "a".into()), (Some(0.75), "b".into())]
-        );
-    }
 }

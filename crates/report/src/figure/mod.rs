@@ -51,7 +51,6 @@ impl Figure {
 
 #[cfg(test)]
 mod tests {
-    use super::drawing::{LABEL, NAME, PX, bold, text};
     use super::*;
     use crate::record::{Axis, AxisScale, Heat, Mark, Plot, PlotPoint, Series, SeriesKind, TileRow, Tiles};
     use crate::tests::{assert_balanced, assert_holds, figure, plot, tile};
@@ -79,19 +78,6 @@ mod tests {
             svg.starts_with(&format!("<svg width=\"1000\" height=\"{height}\" viewBox=\"0 0 4000 ")),
             "{svg}"
         );
-    }
-
-    #[test]
-    fn plots_name_their_axes_series_marks_and_points() {
-        let svg = drawn(FigurePanels::Plots(vec![plot("david0")]));
-        assert_holds(&svg, &["david0", "samples n", "error (m⁴)", "recommended", "NMDS", "a &amp; b"]);
-        assert_holds(&svg, &["<title>a &amp; b: 300000 (210000 to 450000) at 10, 5 runs</title>"]);
-        // Single points, and values that a logarithmic axis cannot show.
-        let mut broken = plot("x");
-        broken.series[0].points[0].low = 0.0;
-        broken.series[0].points[1].y = -1.0;
-        broken.series[1].points.truncate(1);
-        drawn(FigurePanels::Plots(vec![broken]));
     }
 
     #[test]
@@ -139,26 +125,20 @@ mod tests {
     }
 
     #[test]
-    fn dark_pages_have_rules_for_the_colors_of_drawings() {
+    fn plots_name_their_axes_series_marks_and_points() {
+        let svg = drawn(FigurePanels::Plots(vec![plot("david0")]));
+        assert_holds(&svg, &["david0", "samples n", "error (m⁴)", "recommended", "NMDS", "a &amp; b"]);
+        assert_holds(&svg, &["<title>a &amp; b: 300000 (210000 to 450000) at 10, 5 runs</title>"]);
+        // Dark pages have rules for the colors of drawings.
         let rules = dark_rules();
-        let svg = drawn(FigurePanels::Plots(vec![plot("a")]));
         for color in ["#222222", "#696969", "#E4E4E4", "#FFFFFF"] {
             assert!(svg.contains(color) && rules.contains(&format!("[fill=\"{color}\"]")), "{color}");
         }
-    }
-
-    #[test]
-    fn text_width_grows_with_the_text_and_its_weight() {
-        let style = text(NAME, INK);
-        assert_eq!(text_width("", &style), 0.0);
-        let digit = text_width("0", &style) / f64::from(PX) / NAME;
-        assert!((digit - 0.636).abs() < 0.02, "a digit of DejaVu Sans is 0.636 em wide: {digit}");
-        assert!(text_width("wide", &bold(style.clone())) > text_width("wide", &text(LABEL, INK)));
-    }
-
-    #[test]
-    fn averaging_halves_an_image() {
-        let row = [0, 10, 20, 100, 110, 121, 8, 8, 8, 8, 8, 8];
-        assert_eq!(average(&[row, row].concat(), 4, 2), [50, 60, 71, 8, 8, 8]);
+        // Single points, and values that a logarithmic axis cannot show.
+        let mut broken = plot("x");
+        broken.series[0].points[0].low = 0.0;
+        broken.series[0].points[1].y = -1.0;
+        broken.series[1].points.truncate(1);
+        drawn(FigurePanels::Plots(vec![broken]));
     }
 }

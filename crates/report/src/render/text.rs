@@ -290,12 +290,4 @@ mod tests {
         assert!(inked(&image).iter().all(|x| (x - 20.0).abs() <= 10.0) && !inked(&image).is_empty());
         assert!(inked(&made(100.0)).iter().any(|x| (x - 20.0).abs() > 12.0));
     }
-
-    #[test]
-    fn a_partly_covered_pixel_mixes_both_colors() {
-        assert_eq!(over([10, 20, 30, 40], [0; 3], 0.0), [10, 20, 30, 40]);
-        assert_eq!(over([10, 20, 30, 40], [1, 2, 3], 1.0), [1, 2, 3, 255]);
-        assert_eq!(over([200, 200, 200, 255], [0; 3], 0.5), [100, 100, 100, 255]);
-        assert_eq!(over([0; 4], [80; 3], 0.5), [80, 80, 80, 128]);
-    }
 }

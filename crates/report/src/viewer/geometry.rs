@@ -117,18 +117,13 @@ mod tests {
     }
 
     #[test]
-    fn surfaces_are_centered_without_being_scaled() {
+    fn surfaces_are_centered_unusable_faces_are_left_out_and_missing_values_are_nan() {
         assert_eq!(
             Geometry::new(&triangle()).positions,
             [[-1.0, -3.0, -2.0], [1.0, -3.0, -2.0], [-1.0, 3.0, 2.0]]
         );
-        assert_eq!(Geometry::in_place(&triangle()).positions[2], [0.0, 6.0, 4.0]);
         assert_eq!(Geometry::in_place(&triangle()).mesh(), triangle());
         assert_eq!(Geometry::new(&TriMesh::default()), Geometry::default());
-    }
-
-    #[test]
-    fn unusable_faces_are_left_out_and_missing_values_are_nan() {
         let mut mesh = triangle();
         mesh.positions.push(Point3::new(f64::NAN, 0.0, 0.0));
         mesh.faces.extend([[0, 1, 3], [0, 1, 9]].map(|f: [u32; 3]| f.map(VertexId)));
@@ -160,12 +155,9 @@ mod tests {
 
     #[test]
     fn strings_that_are_not_arrays_are_refused() {
-        let parse = |positions: &str| {
+        for (positions, what) in [("AAAA", "3 bytes are not a whole number of groups"), ("?", "not base64")] {
             let json = serde_json::json!({"positions": positions, "faces": ""});
-            serde_json::from_value::<Geometry>(json).map_err(|fault| fault.to_string())
-        };
-        assert!(parse("AAAAAAEAAAACAAAA").is_ok());
-        assert!(parse("AAAA").unwrap_err().contains("3 bytes are not a whole number of groups"));
-        assert!(parse("?").unwrap_err().contains("not base64"));
+            assert!(serde_json::from_value::<Geometry>(json).unwrap_err().to_string().contains(what));
+        }
     }
 }
