@@ -177,7 +177,7 @@ impl Index {
     }
 
     /// Checks that as many shapes were found as there are.
-    fn expect_all(&self, n: usize) -> Result<(), IndexError> {
+    pub(crate) fn expect_all(&self, n: usize) -> Result<(), IndexError> {
         match n == self.n_shapes {
             true => Ok(()),
             false => Err(self.damaged(format!("{n} of its {} shapes are there", self.n_shapes))),

@@ -38,7 +38,9 @@ pub fn class_threshold(indexes: &[Index]) -> Result<Option<UnknownThreshold>, In
     threshold(|visit| {
         indexes.iter().try_for_each(|index| {
             let classes: Vec<String> = index.entries()?.into_iter().map(|entry| entry.label).collect();
-            visit(&vectors(&index.database())?, &classes);
+            let vectors = vectors(&index.database())?;
+            index.expect_all(vectors.len())?;
+            visit(&vectors, &classes);
             Ok(())
         })
     })

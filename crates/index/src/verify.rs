@@ -2,8 +2,7 @@
 
 use std::path::Path;
 
-use crate::vectors::threshold;
-use crate::{Index, IndexError, Shape};
+use crate::{Index, IndexError, Shape, class_threshold};
 
 /// The result of [`verify`].
 #[derive(Debug, Clone, PartialEq)]
@@ -61,12 +60,7 @@ fn check(index: &Index, n_shapes: &mut usize) -> Result<Vec<String>, IndexError>
         }
     }
     if index.is_finished {
-        let (vectors, classes) = (index.vector_table()?, index.entries()?);
-        let classes: Vec<String> = classes.into_iter().map(|entry| entry.label).collect();
-        let fresh = threshold(|visit| {
-            visit(vectors, &classes);
-            Ok::<_, IndexError>(())
-        })?;
+        let fresh = class_threshold(std::slice::from_ref(index))?;
         // Other processors round in another way.
         let agree = match (index.threshold, fresh) {
             (Some(a), Some(b)) => (a.distance - b.distance).abs() <= 1e-3 * b.distance,

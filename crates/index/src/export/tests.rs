@@ -47,22 +47,21 @@ fn parquet_holds_everything() {
         assert_eq!(row.get_string(1).unwrap(), &shape.entry.label);
         assert_eq!(row.get_string(2).unwrap(), &shape.entry.path);
         assert_eq!(row.get_string(3).unwrap(), &shape.entry.content.to_string());
-        for (column, (name, field)) in row.get_column_iter().enumerate() {
+        for (column, (name, field)) in row.get_column_iter().enumerate().skip(4) {
             if let Some(fact) = name.strip_prefix("fact_") {
                 let facts = shape.entry.facts.named();
                 let (_, expected) = facts.iter().find(|(name, _)| *name == fact).unwrap();
                 assert_eq!(row.get_double(column).unwrap(), *expected, "{name}: {field}");
-            } else if let Some(signature) = name.strip_prefix("signature_") {
-                assert_eq!(floats(row, column).as_ref(), shape.signatures.get(signature), "{name}");
-            } else if name == "components" {
-                assert_eq!(floats(row, column).unwrap(), shape.components.concat());
-            } else if name == "disc_areas" {
-                assert_eq!(floats(row, column).unwrap(), shape.disc_areas);
-            } else if name == "fused" {
-                assert_eq!(floats(row, column).unwrap(), shape.fused);
-            } else if name == "form" {
-                assert_eq!(floats(row, column).unwrap(), shape.form.as_flattened());
+                continue;
             }
+            let expected = match name.as_str() {
+                "components" => Some(shape.components.concat()),
+                "disc_areas" => Some(shape.disc_areas.clone()),
+                "fused" => Some(shape.fused.clone()),
+                "form" => Some(shape.form.as_flattened().to_vec()),
+                name => shape.signatures.get(name.strip_prefix("signature_").unwrap()).cloned(),
+            };
+            assert_eq!(floats(row, column), expected, "{name}");
         }
     }
 }
@@ -76,17 +75,16 @@ fn npz_holds_everything() {
         archive.by_name(&format!("{name}.npy")).unwrap().read_to_end(&mut bytes).unwrap();
         bytes
     };
-    let fused = bytes("fused");
-    let array = npyz::NpyFile::new(&fused[..]).unwrap();
-    assert_eq!(array.shape(), [shapes.len() as u64, shapes[0].fused.len() as u64]);
-    let values: Vec<f32> = array.into_vec().unwrap();
-    assert!(values.iter().eq(shapes.iter().flat_map(|shape| &shape.fused)));
-    let form = bytes("form");
-    assert_eq!(npyz::NpyFile::new(&form[..]).unwrap().shape()[2], 4);
-    let components = bytes("components");
-    assert_eq!(npyz::NpyFile::new(&components[..]).unwrap().shape(), [shapes.len() as u64, 2, 3]);
-    let extra = bytes("signature_extra");
-    let extra: Vec<f32> = npyz::NpyFile::new(&extra[..]).unwrap().into_vec().unwrap();
+    let mut array = |name: &str| -> (Vec<u64>, Vec<f32>) {
+        let bytes = bytes(name);
+        let array = npyz::NpyFile::new(&bytes[..]).unwrap();
+        (array.shape().to_vec(), array.into_vec().unwrap())
+    };
+    let n = shapes.len() as u64;
+    let fused: Vec<f32> = shapes.iter().flat_map(|shape| shape.fused.clone()).collect();
+    assert_eq!(array("fused"), (vec![n, 3], fused));
+    assert_eq!((array("form").0[2], array("components").0), (4, vec![n, 2, 3]));
+    let (_, extra) = array("signature_extra");
     assert_eq!(extra.iter().filter(|x| x.is_nan()).count(), 2 * (shapes.len() - 1));
     let ids = bytes("id");
     let start = ids.iter().position(|byte| *byte == b'\n').unwrap() + 1;

@@ -8,7 +8,8 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use rusqlite::Connection;
 
 use super::{Folder, OPTIONS, export, faults, id, shape};
-use crate::{Index, IndexError, IndexWriter, Shape, damaged_path, verify};
+use crate::database::checksum;
+use crate::{Index, IndexError, IndexWriter, Shape, class_threshold, damaged_path, verify};
 
 /// All shapes, and what a search finds.
 type Everything = (Vec<Shape>, Vec<(String, f64)>);
@@ -22,6 +23,36 @@ fn read_all(path: &Path) -> Result<Everything, IndexError> {
         Ok::<(), IndexError>(())
     })?;
     Ok((shapes, index.nearest(&shape(2).fused, 4)?))
+}
+
+/// Whether a defect is noticed. What is read is the truth, and errors are those of defects.
+fn is_noticed(path: &Path, truth: &Everything, what: &str) -> bool {
+    let is_named = |error: &IndexError| {
+        use IndexError as E;
+        matches!(
+            error,
+            E::Damaged { .. }
+                | E::Foreign(_)
+                | E::FutureVersion { .. }
+                | E::PastVersion { .. }
+                | E::Io { .. }
+        )
+    };
+    let read = read_all(path);
+    match &read {
+        Ok(found) => assert!(found == truth, "{what}"),
+        Err(error) => assert!(is_named(error), "{what}: {error}"),
+    }
+    match verify(path) {
+        Ok(found) => {
+            assert!(!found.faults.is_empty() || read.is_ok(), "{what}");
+            !found.faults.is_empty()
+        }
+        Err(error) => {
+            assert!(is_named(&error), "{what}: {error}");
+            true
+        }
+    }
 }
 
 /// Changes an index by SQL, behind its back.
@@ -43,49 +74,25 @@ fn a_changed_byte_is_detected_and_never_returned() {
     let mut random = ChaCha8Rng::seed_from_u64(3);
     let others: Vec<usize> = (0..1500).map(|_| (random.next_u64() % bytes.len() as u64) as usize).collect();
     let copy = folder.path("b");
-    let (mut detected, mut n) = (0, 0);
+    let mut detected = 0;
     for at in (0..160).chain(others) {
         let mut changed = bytes.clone();
         changed[at] ^= 1 << (at % 8);
         fs::write(&copy, &changed).unwrap();
-        let is_named = |error: &IndexError| {
-            use IndexError as E;
-            matches!(
-                error,
-                E::Damaged { .. } | E::Foreign(_) | E::FutureVersion { .. } | E::PastVersion { .. }
-            ) || matches!(error, E::Io { .. } | E::NoSuchShape { .. })
-        };
-        n += 1;
-        match verify(&copy) {
-            Ok(found) if found.faults.is_empty() => assert!(read_all(&copy).unwrap() == truth, "byte {at}"),
-            Ok(_) => detected += 1,
-            Err(error) => {
-                assert!(is_named(&error), "byte {at}: {error}");
-                detected += 1;
-            }
-        }
-        match read_all(&copy) {
-            Ok(found) => assert!(found == truth, "byte {at}"),
-            Err(error) => assert!(is_named(&error), "byte {at}: {error}"),
-        }
+        detected += usize::from(is_noticed(&copy, &truth, &format!("byte {at}")));
     }
-    assert!(detected * 4 > n, "{detected} of {n}");
+    assert!(detected * 4 > 1660, "{detected}");
 }
 
 #[test]
 fn truncated_files_are_damaged() {
     let folder = Folder::new();
-    let bytes = fs::read(folder.index("a", 60)).unwrap();
+    let path = folder.index("a", 60);
+    let (bytes, truth) = (fs::read(&path).unwrap(), read_all(&path).unwrap());
     let copy = folder.path("b");
     for length in [bytes.len() - 1, bytes.len() / 2, 16_384, 4096, 101] {
         fs::write(&copy, &bytes[..length]).unwrap();
-        let found = verify(&copy);
-        let is_damaged = match &found {
-            Ok(found) => !found.faults.is_empty(),
-            Err(error) => matches!(error, IndexError::Damaged { .. } | IndexError::Io { .. }),
-        };
-        assert!(is_damaged, "{length}: {found:?}");
-        assert!(read_all(&copy).is_err(), "{length}");
+        assert!(is_noticed(&copy, &truth, &length.to_string()) && read_all(&copy).is_err(), "{length}");
     }
 }
 
@@ -169,8 +176,13 @@ fn a_damaged_index_cannot_be_extended_and_is_built_again_and_kept_under_another_
 fn forged_rows_are_named_and_nothing_else_happens() {
     let folder = Folder::new();
     let template = folder.index("a", 30);
+    let truth = read_all(&template).unwrap();
     let path = folder.path("b");
+    // A vector without a shape, with a checksum of its own.
+    let vector = checksum(&["zebra", "fused"], &[0; 12]);
+    let vector = format!("INSERT INTO fused VALUES ('zebra', zeroblob(12), {vector})");
     for sql in [
+        &vector,
         "UPDATE shapes SET label = 'dog' WHERE id = 'class1/0004'",
         "UPDATE shapes SET vertices = -1",
         "UPDATE shapes SET area = 1e300 WHERE id = 'class1/0004'",
@@ -192,13 +204,11 @@ fn forged_rows_are_named_and_nothing_else_happens() {
     ] {
         fs::copy(&template, &path).unwrap();
         forge(&path, sql);
-        match verify(&path) {
-            Ok(found) => assert!(!found.faults.is_empty() || sql.contains("TRIGGER"), "{sql}"),
-            Err(error) => assert!(matches!(error, IndexError::Damaged { .. }), "{sql}: {error}"),
-        }
+        assert!(is_noticed(&path, &truth, sql) || sql.contains("TRIGGER"), "{sql}");
         if let Err(error) = read_all(&path) {
             assert!(matches!(error, IndexError::Damaged { .. }), "{sql}: {error}");
         }
+        let _ = Index::open(&path).and_then(|index| class_threshold(&[index]));
         // A writer reports it or works, and never panics.
         let changed = IndexWriter::open(&path).and_then(|mut writer| {
             writer.put(&[shape(1000)])?;

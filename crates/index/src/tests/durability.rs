@@ -55,60 +55,6 @@ fn an_index_has_one_writer_at_a_time() {
 }
 
 #[test]
-fn other_options_are_not_mixed() {
-    let folder = Folder::new();
-    let path = folder.index("a", 1);
-    let error = IndexWriter::build(&path, "n=50").unwrap_err().to_string();
-    assert!(error.contains("other options") && error.contains("n=50") && error.contains(OPTIONS), "{error}");
-    let error = IndexWriter::open(&folder.path("none")).unwrap_err().to_string();
-    assert!(error.contains("none") && error.contains("check that the path exists"), "{error}");
-    assert_eq!(folder.names(), ["a"]);
-}
-
-#[test]
-fn a_new_index_without_a_commit_leaves_nothing() {
-    let folder = Folder::new();
-    let mut writer = IndexWriter::build(&folder.path("a"), OPTIONS).unwrap();
-    writer.put(&[shape(1)]).unwrap();
-    drop(writer);
-    assert!(folder.names().is_empty());
-}
-
-/// The files of an index in a moment.
-fn files(path: &Path) -> [Vec<u8>; 2] {
-    [path.to_owned(), with_suffix(path, "-wal")].map(|file| fs::read(file).unwrap())
-}
-
-#[test]
-fn a_transaction_that_is_cut_at_any_byte_is_there_or_not() {
-    let folder = Folder::new();
-    let path = folder.index("a", 20);
-    let before = export(&path);
-    // A reader keeps the log from being copied into the file.
-    let reader = Index::open(&path).unwrap();
-    let mut writer = IndexWriter::open(&path).unwrap();
-    writer.put(&[shape(20)]).unwrap();
-    writer.remove(&[id(3)]).unwrap();
-    writer.finish(&()).unwrap();
-    let after = export(&path);
-    let [file, log] = files(&path);
-    drop(reader);
-    let mut seen = [0, 0];
-    let copy = folder.path("b");
-    for length in (0..log.len()).step_by(293).chain(log.len().saturating_sub(40)..=log.len()) {
-        fs::write(&copy, &file).unwrap();
-        fs::write(with_suffix(&copy, "-wal"), &log[..length]).unwrap();
-        let found = export(&copy);
-        assert!(found == before || found == after, "{length} of {} bytes", log.len());
-        seen[usize::from(found == after)] += 1;
-        if length % 5 == 0 {
-            assert_eq!(faults(&copy), Vec::<String>::new(), "{length}");
-        }
-    }
-    assert!(seen[0] > 100 && seen[1] > 0, "{seen:?}");
-}
-
-#[test]
 fn a_log_of_another_file_is_noticed_and_changes_nothing() {
     let folder = Folder::new();
     let path = folder.index("a", 20);
@@ -139,30 +85,43 @@ fn a_log_of_another_file_is_noticed_and_changes_nothing() {
 }
 
 #[test]
-fn a_copy_into_the_file_that_is_cut_at_any_page_loses_nothing() {
+fn a_transaction_and_its_copy_into_the_file_may_be_cut_anywhere() {
     let folder = Folder::new();
     let path = folder.index("a", 20);
+    let before = export(&path);
+    // A reader keeps the log from being copied into the file.
     let reader = Index::open(&path).unwrap();
     folder.change(&path, &[20, 21], &[id(3)]);
-    let [old, log] = files(&path);
     let after = export(&path);
+    let [old, log] = [path.clone(), with_suffix(&path, "-wal")].map(|file| fs::read(file).unwrap());
     drop(reader);
     drop(Index::open(&path).unwrap());
     let new = fs::read(&path).unwrap();
     assert!(old != new && folder.names() == ["a"]);
-    // Some of the pages are new, and the others still old.
     let copy = folder.path("b");
-    let page = |bytes: &[u8], i: usize| {
-        bytes[(16_384 * i).min(bytes.len())..(16_384 * (i + 1)).min(bytes.len())].to_vec()
+    let found = |file: &[u8], log: &[u8]| {
+        fs::write(&copy, file).unwrap();
+        fs::write(with_suffix(&copy, "-wal"), log).unwrap();
+        export(&copy)
     };
+    let mut seen = [0, 0];
+    for length in (0..log.len()).step_by(293).chain(log.len().saturating_sub(40)..=log.len()) {
+        let found = found(&old, &log[..length]);
+        assert!(found == before || found == after, "{length} of {} bytes", log.len());
+        seen[usize::from(found == after)] += 1;
+        if length % 5 == 0 {
+            assert_eq!(faults(&copy), Vec::<String>::new(), "{length}");
+        }
+    }
+    assert!(seen[0] > 100 && seen[1] > 0, "{seen:?}");
+    // Some of the pages are new, and the others still old.
+    let page = |bytes: &[u8], i: usize| bytes.chunks(16_384).nth(i).unwrap_or_default().to_vec();
     let n_pages = new.len().div_ceil(16_384);
     for turn in 0..=n_pages {
         for is_new in [&|i: usize| i < turn, &|i: usize| i >= turn] as [&dyn Fn(usize) -> bool; 2] {
             let mixed: Vec<u8> =
                 (0..n_pages).flat_map(|i| page(if is_new(i) { &new } else { &old }, i)).collect();
-            fs::write(&copy, mixed).unwrap();
-            fs::write(with_suffix(&copy, "-wal"), &log).unwrap();
-            assert!(export(&copy) == after, "{turn}");
+            assert!(found(&mixed, &log) == after, "{turn}");
         }
     }
 }
@@ -188,21 +147,6 @@ fn a_failing_disk_loses_nothing_that_was_committed() {
         }
         assert_eq!(faults(&path), Vec::<String>::new());
     }
-}
-
-#[test]
-fn vectors_that_cannot_be_compared_are_rejected() {
-    let folder = Folder::new();
-    let path = folder.path("a");
-    let mut writer = IndexWriter::build(&path, OPTIONS).unwrap();
-    writer.put(&[shape(0)]).unwrap();
-    writer.commit().unwrap();
-    let with = |fused: Vec<f32>| [crate::Shape { fused, ..shape(1) }];
-    assert!(matches!(writer.put(&with(vec![])), Err(IndexError::BadVector(_))));
-    assert!(matches!(writer.put(&with(vec![1.0, f32::NAN, 1.0])), Err(IndexError::BadVector(_))));
-    let error = writer.put(&with(vec![1.0; 4])).unwrap_err();
-    assert!(matches!(error, IndexError::OtherLength { found: 4, expected: 3, .. }));
-    assert_eq!(writer.finish(&()).unwrap().len(), 1);
 }
 
 #[cfg(unix)]

@@ -3,7 +3,7 @@
 use std::io::Read;
 
 use super::{Folder, OPTIONS, export, exported, faults, id, shape};
-use crate::{ExportFormat, Index, IndexError, IndexWriter, Shape};
+use crate::{Entry, ExportFormat, Index, IndexError, IndexWriter, Shape};
 
 #[test]
 fn order_batches_and_history_do_not_matter() {
@@ -21,6 +21,8 @@ fn order_batches_and_history_do_not_matter() {
     assert_eq!(export(&path), whole);
     let both = [path, folder.path("whole")].map(|path| Index::open(&path).unwrap());
     assert_eq!(both[0].threshold, both[1].threshold);
+    let nearest = both.each_ref().map(|index| index.nearest(&shape(3).fused, 30).unwrap());
+    assert_eq!(nearest[0], nearest[1]);
     for format in ExportFormat::ALL {
         let [ours, other] = both.each_ref().map(|index| {
             let mut bytes = Vec::new();
@@ -37,27 +39,6 @@ fn order_batches_and_history_do_not_matter() {
 }
 
 #[test]
-fn equal_vectors_are_found_by_name_whatever_came_first() {
-    let folder = Folder::new();
-    let copies = |order: &mut dyn Iterator<Item = usize>, name| {
-        let path = folder.path(name);
-        folder.fill(&path, &[shape(50)]);
-        for i in order {
-            let mut copy = shape(3);
-            copy.entry.id = format!("copy{i:02}");
-            let mut writer = IndexWriter::open(&path).unwrap();
-            writer.put(&[copy]).unwrap();
-            writer.finish(&()).unwrap();
-        }
-        let found = Index::open(&path).unwrap().nearest(&shape(3).fused, 4).unwrap();
-        found.into_iter().map(|(id, _)| id).collect::<Vec<_>>()
-    };
-    let expected = ["copy00", "copy01", "copy02", "copy03"];
-    assert_eq!(copies(&mut (0..12), "a"), expected);
-    assert_eq!(copies(&mut (0..12).rev(), "b"), expected);
-}
-
-#[test]
 fn entries_change_without_vectors() {
     let folder = Folder::new();
     let path = folder.index("a", 4);
@@ -65,8 +46,6 @@ fn entries_change_without_vectors() {
     let mut entry = writer.entry(&id(2)).unwrap().unwrap();
     entry.label = "dog".to_owned();
     writer.set_entries(std::slice::from_ref(&entry)).unwrap();
-    entry.id = "no".to_owned();
-    assert!(matches!(writer.set_entries(&[entry]), Err(IndexError::NoSuchShape { .. })));
     writer.finish(&()).unwrap();
     let index = Index::open(&path).unwrap();
     assert_eq!(index.entry(&id(2)).unwrap().label, "dog");
@@ -75,13 +54,26 @@ fn entries_change_without_vectors() {
 }
 
 #[test]
-fn removing_a_missing_shape_removes_nothing() {
+fn what_is_refused_changes_nothing() {
     let folder = Folder::new();
     let path = folder.index("a", 4);
+    let whole = export(&path);
+    let error = |result: Result<(), IndexError>, parts: &[&str]| {
+        let error = result.unwrap_err().to_string();
+        assert!(parts.iter().all(|part| error.contains(part)), "{error}");
+    };
     let mut writer = IndexWriter::open(&path).unwrap();
-    let error = writer.remove(&[id(1), "cat9".to_owned()]).unwrap_err();
-    assert!(error.to_string().contains("`cat9`"), "{error}");
+    error(writer.remove(&[id(1), "cat9".to_owned()]), &["`cat9`"]);
+    error(writer.set_entries(&[Entry { id: "cat9".to_owned(), ..Entry::default() }]), &["`cat9`"]);
+    for (fused, what) in
+        [(vec![], "not finite"), (vec![1.0, f32::NAN, 1.0], "not finite"), (vec![1.0; 4], "4")]
+    {
+        error(writer.put(&[Shape { fused, ..shape(5) }]), &[&id(5), what]);
+    }
     drop(writer);
-    assert_eq!(Index::open(&path).unwrap().len(), 4);
-    assert_eq!(folder.names(), ["a"]);
+    error(IndexWriter::build(&path, "n=50").map(drop), &["other options", "n=50", OPTIONS]);
+    error(IndexWriter::open(&folder.path("none")).map(drop), &["none", "check that the path exists"]);
+    // A new index goes with a writer that has not committed.
+    IndexWriter::build(&folder.path("b"), OPTIONS).unwrap().put(&[shape(1)]).unwrap();
+    assert_eq!((export(&path), folder.names()), (whole, vec!["a".to_owned()]));
 }

@@ -135,15 +135,11 @@ fn a_search_finds_the_nearest() {
     assert_eq!(index.nearest(&shape(3).fused, 999).unwrap().len(), 50);
     assert!(index.nearest(&[1.0], 5).unwrap_err().to_string().contains("the query"));
     assert!(index.nearest(&[1.0, f32::NAN, 0.0], 5).is_err());
-}
-
-#[test]
-fn an_empty_index_finds_nothing() {
-    let folder = Folder::new();
     let path = folder.index("empty", 0);
-    let index = Index::open(&path).unwrap();
-    assert!(index.is_empty() && faults(&path).is_empty());
-    assert!(index.nearest(&[1.0, 2.0], 5).unwrap().is_empty());
+    let empty = Index::open(&path).unwrap();
+    assert!(
+        empty.is_empty() && faults(&path).is_empty() && empty.nearest(&[1.0, 2.0], 5).unwrap().is_empty()
+    );
 }
 
 /// What the guide shows works with any program that reads SQLite.

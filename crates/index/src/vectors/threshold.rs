@@ -93,21 +93,16 @@ mod tests {
     use super::super::testing::noise;
     use super::*;
 
-    fn of_pieces(
-        pieces: &[std::ops::Range<usize>],
-        rows: &[f32],
-        class: impl Fn(usize) -> String,
-    ) -> Option<UnknownThreshold> {
-        let pieces: Vec<(VectorTable, Vec<String>)> = pieces
-            .iter()
-            .map(|range| {
-                let mut table = VectorTable::default();
-                range.clone().for_each(|i| table.push(&i.to_string(), &rows[16 * i..][..16]));
-                (table, range.clone().map(&class).collect())
-            })
-            .collect();
+    /// The threshold of vectors of 16 numbers in pieces that end at these numbers.
+    fn of_pieces(ends: &[usize], rows: &[f32], class: impl Fn(usize) -> String) -> Option<UnknownThreshold> {
         let found = threshold(|visit| {
-            pieces.iter().for_each(|(vectors, classes)| visit(vectors, classes));
+            let mut start = 0;
+            for end in ends {
+                let mut table = VectorTable::default();
+                (start..*end).for_each(|i| table.push(&i.to_string(), &rows[16 * i..][..16]));
+                visit(&table, &(start..*end).map(&class).collect::<Vec<_>>());
+                start = *end;
+            }
             Ok::<_, Infallible>(())
         });
         found.unwrap()
@@ -117,17 +112,16 @@ mod tests {
     fn pieces_give_the_threshold_of_the_whole() {
         let rows = noise(900, 16, 5);
         let class = |i: usize| if i % 5 == 4 { String::new() } else { format!("c{}", i % 7) };
-        let whole = of_pieces(std::slice::from_ref(&(0..900)), &rows, class);
+        let whole = of_pieces(&[900], &rows, class);
         assert!(whole.is_some());
-        assert_eq!(of_pieces(&[0..10, 10..700, 700..900], &rows, class), whole);
+        assert_eq!(of_pieces(&[10, 700, 900], &rows, class), whole);
     }
 
     #[test]
     fn matches_the_threshold_from_all_pairs() {
         let positions = [0.0f32, 1.0, 2.5, 10.0, 11.0, 30.0];
         let rows: Vec<f32> = positions.iter().flat_map(|x| [&[*x][..], &[0.0; 15]].concat()).collect();
-        let of =
-            |classes: [&str; 6]| of_pieces(std::slice::from_ref(&(0..6)), &rows, |i| classes[i].to_owned());
+        let of = |classes: [&str; 6]| of_pieces(&[6], &rows, |i| classes[i].to_owned());
         // Own: 1, 1, 1.5, 1, 1; foreign: 10, 9, 7.5, 7.5, 8.5, 19.
         let expected = UnknownThreshold { distance: 4.5, missed: 0.0, mistaken: 0.0 };
         assert_eq!(of(["a", "a", "a", "b", "b", "c"]), Some(expected));
