@@ -271,8 +271,7 @@ mod tests {
         let fault = TextTable::parse(b"a,b\nc,\xe4".to_vec(), Path::new("t.csv")).unwrap_err().to_string();
         assert!(fault.contains("t.csv, line 2") && fault.contains("save the file as UTF-8"), "{fault}");
         for (text, what) in [
-            ("", "line 1: the table has no rows"),
-            ("\u{feff}# nothing\n\n", "no rows"),
+            ("\u{feff}# nothing\n\n", "line 1: the table has no rows"),
             ("\n\nx,y\n", "line 3: there are no rows below these names"),
             ("1,2\n\n3\n", "line 3: found 1 values instead of 2"),
             ("1,2\n3,x", "line 2: `x` is not a number"),

@@ -235,6 +235,11 @@ mod tests {
             (&["a/x1", "a/y1", "b/z1", "b/c/w1", "b/v1"], LabelOrigin::None, &["", "", "", "", ""]),
             (&["cat0", "dog0", "17"], LabelOrigin::None, &["", "", ""]),
             (&["cat0", "cat1", "17"], LabelOrigin::Names, &["cat", "cat", ""]),
+            (
+                &["in/cats/a1", "in/cats/b1", "in/dogs/a1", "in/dogs/b1", "top"],
+                LabelOrigin::Folders,
+                &["cats", "cats", "dogs", "dogs", ""],
+            ),
         ] {
             let (found, labels) = labelled(names, None);
             assert_eq!(
@@ -246,20 +251,11 @@ mod tests {
     }
 
     #[test]
-    fn classes_may_lie_at_any_depth() {
-        let names = ["in/cats/a1", "in/cats/b1", "in/dogs/a1", "in/dogs/b1", "top"];
-        let expected = ["cats", "cats", "dogs", "dogs", ""].map(str::to_owned).to_vec();
-        assert_eq!(labelled(&names, None), (LabelOrigin::Folders, expected));
-        let level = LabelSource::read("folders:1".as_ref()).unwrap();
-        assert_eq!(labelled(&["cats/new/1", "dogs/old/1"], Some(&level)).1, ["cats", "dogs"]);
-        assert!(LabelSource::read("folders:0".as_ref()).is_err());
-    }
-
-    #[test]
     fn whoever_says_where_classes_come_from_is_believed() {
         let names = ["game/old/cat0", "game/dog0", "7"];
         for (source, origin, expected) in [
             (LabelSource::Folders(None), LabelOrigin::Folders, ["game/old", "game", ""]),
+            (LabelSource::Folders(Some(1)), LabelOrigin::Folders, ["game", "game", ""]),
             (LabelSource::Names, LabelOrigin::Names, ["cat", "dog", ""]),
             (LabelSource::None, LabelOrigin::None, ["", "", ""]),
         ] {
@@ -272,6 +268,7 @@ mod tests {
         assert_eq!((stated[0].label.as_str(), stated[1].label.as_str()), ("beast", ""));
         label_shapes(&mut stated, Some(&LabelSource::None));
         assert_eq!((stated[0].label.as_str(), n_classes(&stated)), ("", 0));
+        assert!(LabelSource::read("folders:0".as_ref()).is_err());
     }
 
     #[test]

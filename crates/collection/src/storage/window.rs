@@ -1,4 +1,4 @@
-//! A part of a file that several threads read at once.
+//! A file that several threads read at once.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
@@ -8,25 +8,20 @@ use std::sync::Arc;
 #[derive(Debug, Clone)]
 pub(super) struct Window {
     file: Arc<File>,
-    start: u64,
     at: u64,
     length: u64,
 }
 
 impl Window {
-    pub(super) fn new(file: Arc<File>, start: u64, length: u64) -> Self {
-        Self { file, start, at: 0, length }
-    }
-
     /// The whole of a file.
     pub(super) fn whole(file: File) -> io::Result<Self> {
         let length = file.metadata()?.len();
-        Ok(Self::new(Arc::new(file), 0, length))
+        Ok(Self { file: Arc::new(file), at: 0, length })
     }
 
-    /// A part of this window.
-    pub(super) fn part(&self, start: u64, length: u64) -> Self {
-        Self::new(self.file.clone(), self.start + start, length)
+    /// The bytes from a place on, at most so many.
+    pub(super) fn part(&self, at: u64, length: u64) -> io::Take<Self> {
+        Self { at, ..self.clone() }.take(length)
     }
 
     pub(super) fn len(&self) -> u64 {
@@ -38,7 +33,7 @@ impl Read for Window {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let left = usize::try_from(self.length.saturating_sub(self.at)).unwrap_or(usize::MAX);
         let wanted = buffer.len().min(left);
-        let n = read_at(&self.file, &mut buffer[..wanted], self.start + self.at)?;
+        let n = read_at(&self.file, &mut buffer[..wanted], self.at)?;
         self.at += n as u64;
         Ok(n)
     }
