@@ -29,13 +29,13 @@ impl Random {
         (-2.0 * self.uniform().ln()).sqrt() * (std::f64::consts::TAU * self.uniform()).cos()
     }
 
-    /// A point around `center`, with a deviation for each coordinate.
-    fn around(&mut self, center: &[f64], width: &[f64]) -> Vec<f64> {
-        center.iter().zip(width).map(|(x, w)| x + w * self.normal()).collect()
+    /// A point around `center`, with this deviation of each coordinate.
+    fn around(&mut self, center: &[f64], width: f64) -> Vec<f64> {
+        center.iter().map(|x| x + width * self.normal()).collect()
     }
 
     fn point(&mut self, dim: usize) -> Vec<f64> {
-        self.around(&vec![0.0; dim], &vec![1.0; dim])
+        self.around(&vec![0.0; dim], 1.0)
     }
 }
 
@@ -46,15 +46,11 @@ impl Set {
     }
 
     /// Gaussian classes of these sizes, `width` wide, whose centers have deviation 1.
-    fn gaussian(random: &mut Random, sizes: &[usize], dim: usize, width: f64, is_even: bool) -> Self {
+    fn gaussian(random: &mut Random, sizes: &[usize], dim: usize, width: f64) -> Self {
         let mut set = Self::default();
         for (class, size) in sizes.iter().enumerate() {
             let center = random.point(dim);
-            let spread = if is_even { 1.0 } else { 0.6 + random.uniform() };
-            let widths: Vec<f64> = (0..dim)
-                .map(|_| width * if is_even { 1.0 } else { spread * (0.3 + 1.4 * random.uniform()) })
-                .collect();
-            (0..*size).for_each(|_| set.add(random.around(&center, &widths), class));
+            (0..*size).for_each(|_| set.add(random.around(&center, width), class));
         }
         set
     }
@@ -69,7 +65,7 @@ impl Set {
                 let (sin, cos) = (2.5 * i as f64 / size as f64).sin_cos();
                 let on = center.iter().zip(a.iter().zip(&b)).map(|(x, (a, b))| x + 0.4 * (cos * a + sin * b));
                 let on: Vec<f64> = on.collect();
-                set.add(random.around(&on, &[noise; DIM]), class);
+                set.add(random.around(&on, noise), class);
             }
         }
         set
@@ -82,10 +78,10 @@ impl Set {
         for group in 0..8 {
             let center = random.point(DIM);
             for part in 0..5 {
-                let within = random.around(&center, &[0.35; DIM]);
+                let within = random.around(&center, 0.35);
                 let size = [3, 5, 6, 10, 20][(group + part) % 5];
                 let class = if parts_are_classes { 5 * group + part } else { group };
-                (0..size).for_each(|_| set.add(random.around(&within, &[width; DIM]), class));
+                (0..size).for_each(|_| set.add(random.around(&within, width), class));
             }
         }
         set
@@ -127,7 +123,7 @@ fn sets(seed: u64) -> Vec<(String, Set)> {
         for size in [2, 3, 5, 10, 20, 40] {
             for width in widths {
                 let sizes = vec![size; (240 / size).max(8)];
-                let set = Set::gaussian(random, &sizes, dim, width, true);
+                let set = Set::gaussian(random, &sizes, dim, width);
                 sets.push((format!("classes of {size}, {dim} dimensions, width {width}"), set));
             }
         }
@@ -139,11 +135,10 @@ fn sets(seed: u64) -> Vec<(String, Set)> {
     let huge = [&[200][..], &[3; 20], &[5; 10]].concat();
     let alone = [&[1; 150][..], &[3; 15], &[5; 10]].concat();
     for width in [0.3, 0.5, 0.7] {
-        sets.push((format!("mixed sizes, width {width}"), Set::gaussian(random, &mixed, 12, width, true)));
-        sets.push((format!("uneven, width {width}"), Set::gaussian(random, &mixed, 12, width, false)));
-        sets.push((format!("one huge class, width {width}"), Set::gaussian(random, &huge, 12, width, true)));
-        sets.push((format!("most alone, width {width}"), Set::gaussian(random, &alone, 12, width, true)));
-        let hubs = Set::gaussian(random, &[6; 40], 32, width, true).with_hubs(random);
+        for (name, sizes) in [("mixed sizes", &mixed), ("one huge class", &huge), ("most alone", &alone)] {
+            sets.push((format!("{name}, width {width}"), Set::gaussian(random, sizes, 12, width)));
+        }
+        let hubs = Set::gaussian(random, &[6; 40], 32, width).with_hubs(random);
         sets.push((format!("hubs, width {width}"), hubs));
     }
     for noise in [0.05, 0.15, 0.3] {
@@ -176,9 +171,7 @@ fn the_graph_never_loses_more_than_half_a_percent() {
         println!("{name}: plain {plain:.4}, graph {graph:.4} ({:+.4})", graph - plain);
         gains.push(graph - plain);
     }
-    let (mean, worst) =
-        (gains.iter().sum::<f64>() / gains.len() as f64, gains.iter().fold(0.0f64, |a, b| a.min(*b)));
-    println!("{} kinds of sets: mean {mean:+.4}, worst {worst:+.4}", gains.len());
-    assert!(worst >= -MAX_LOST, "{worst}");
-    assert!(mean > 0.015, "{mean}");
+    let mean = gains.iter().sum::<f64>() / gains.len() as f64;
+    println!("{} kinds of sets: mean {mean:+.4}", gains.len());
+    assert!(gains.iter().all(|gain| *gain >= -MAX_LOST) && mean > 0.015, "{mean} {gains:?}");
 }

@@ -24,9 +24,7 @@ fn near_neighbors_outvote_many_far_ones() {
     assert!((plain.tally[0].share - 2.0 / 3.0).abs() < 1e-15);
     let weighted = vote(&near, class, 3, Some(1.0));
     assert_eq!((weighted.class(), weighted.tally[0].votes), (Some(0), 1));
-    assert!(weighted.tally[0].share > 0.9);
-    let tally: Vec<_> = weighted.tally.iter().map(|of| (of.class, of.votes)).collect();
-    assert_eq!(tally, [(0, 1), (1, 2)], "the winner comes first");
+    assert!(weighted.tally[0].share > 0.9 && weighted.tally[1].class == 1, "the winner comes first");
 }
 
 #[test]
