@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
 use base::terminal::note;
-use canonform::collection::{LabelSource, list_shapes};
+use canonform::collection::list_shapes;
 use canonform::{Observer, Surface, read_surface, side_by_side};
 use clap::Args;
 use mesh::RepairOptions;
@@ -43,9 +43,6 @@ pub(crate) struct ShapeSource {
     /// [default: the built-in articulated families]
     #[arg(long, value_name = "DIR")]
     dataset: Option<PathBuf>,
-    /// Where classes come from: `folders`, `names`, or a file of lines `name,label`
-    #[arg(long, value_name = "folders|names|FILE.csv", requires = "dataset")]
-    labels: Option<PathBuf>,
     /// Classes to use, in this order, or `all` [default: cat, centaur and david, as in the paper, if the
     /// folder has them; else all]
     #[arg(long, value_delimiter = ',', value_name = "CLASS,...")]
@@ -76,11 +73,9 @@ impl ShapeSource {
 
     /// The options that are not the default, with their values.
     pub(crate) fn options(&self) -> Vec<(&'static str, String)> {
-        let path = |path: &Option<PathBuf>| path.as_ref().map(|path| path.display().to_string());
         let is_default = self.families == [Families::Articulated];
         [
-            ("dataset", path(&self.dataset)),
-            ("labels", path(&self.labels)),
+            ("dataset", self.dataset.as_ref().map(|path| path.display().to_string())),
             ("classes", Some(self.classes.join(","))),
             ("families", Some(self.families()).filter(|_| !is_default)),
             ("vertices", Some(self.vertices.to_string()).filter(|_| self.vertices != VERTICES)),
@@ -131,9 +126,7 @@ impl SurfaceCollection {
                 (dataset, shapes.into_par_iter().map(shape).collect::<Vec<_>>())
             }
             Some(folder) => {
-                let labels = args.labels.as_deref().map(LabelSource::read).transpose()?;
-                let mut files = list_shapes(folder, labels.as_ref())?;
-                // A label file need not name all shapes.
+                let mut files = list_shapes(folder, None)?;
                 files.retain(|file| !file.label.is_empty());
                 let is_there = |class: &&str| files.iter().any(|file| file.label == *class);
                 if wanted.is_empty() && !takes_all && PAPER_CLASSES.iter().all(is_there) {

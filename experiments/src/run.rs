@@ -91,7 +91,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitCode> {
                 note(&format!("{kind}: {} is {}, {}", e.what, e.measured, e.expected));
             }
             record.save(&args.output, name)?;
-            if let Some(table) = record.summary() {
+            if let Some(table) = record.tables.first() {
                 writeln!(std::io::stdout().lock(), "{}\n{}", table.caption, table.to_text())?;
             }
         }

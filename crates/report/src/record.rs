@@ -281,41 +281,9 @@ impl Record {
         }
         Ok(write_bytes(&path, &json)?)
     }
-
-    /// The tables that a run prints: the first, or the medians of the curves.
-    pub fn summary(&self) -> Option<Table> {
-        self.tables.first().cloned().or_else(|| self.figures.iter().find_map(Figure::medians))
-    }
 }
 
 impl Figure {
-    /// The values of all curves side by side, a row for each plot and place on the horizontal axis.
-    pub fn medians(&self) -> Option<Table> {
-        let FigurePanels::Plots(plots) = &self.panels else { return None };
-        let curves = |plot: &'_ Plot| plot.series.iter().filter(|s| s.kind == SeriesKind::Curve).count();
-        let across = &plots.iter().find(|plot| curves(plot) > 0)?.x.name;
-        let names = distinct(plots.iter().flat_map(|plot| &plot.series).map(|series| series.name.as_str()));
-        let mut rows = Vec::new();
-        for plot in plots {
-            let points = || plot.series.iter().flat_map(|series| &series.points);
-            let mut places: Vec<f64> = points().map(|p| p.x).collect();
-            places.sort_by(f64::total_cmp);
-            places.dedup();
-            for x in places {
-                let value = |name: &&str| {
-                    let series = plot.series.iter().find(|series| series.name == **name);
-                    series.and_then(|s| s.points.iter().find(|p| p.x == x)).map(|p| p.y).into()
-                };
-                let mut row = vec![plot.title.as_str().into(), x.into()];
-                row.extend(names.iter().map(value));
-                rows.push(row);
-            }
-        }
-        let headings = ["", across].into_iter().chain(names).map(str::to_owned).collect();
-        let folded = Some(format!("Values of the {} curves", plots.iter().map(curves).sum::<usize>()));
-        Some(Table { caption: self.caption.clone(), folded, headings, rows })
-    }
-
     /// The path of a static file of the figure.
     pub(crate) fn file(&self, folder: &Path, name: &str, extension: &str) -> PathBuf {
         folder.join(format!("{name}-{}.{extension}", self.part))

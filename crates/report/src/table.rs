@@ -10,9 +10,6 @@ use crate::numbers::significant;
 pub struct Table {
     /// What the table shows, in a sentence or two.
     pub caption: String,
-    /// The line under which the page folds the table; `None` if it is always open.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub folded: Option<String>,
     /// One heading per column.
     pub headings: Vec<String>,
     /// The rows, with one cell per column.
@@ -70,7 +67,7 @@ impl Table {
         rows: Vec<Vec<Cell>>,
     ) -> Self {
         let headings = headings.into_iter().map(str::to_owned).collect();
-        Self { caption: caption.into(), folded: None, headings, rows }
+        Self { caption: caption.into(), headings, rows }
     }
 
     /// The numbers of a column.

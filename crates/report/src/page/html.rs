@@ -19,7 +19,7 @@ pub(super) fn outcome(e: &Expectation) -> (&'static str, &'static str) {
     }
 }
 
-/// A table with its caption above it, folded if it says so.
+/// A table with its caption above it.
 pub(super) fn table(table: &Table) -> String {
     let class = |column: usize| if table.is_numeric(column) { " class=\"number\"" } else { "" };
     let row = |row: &[String], open: &str, close: &str| -> String {
@@ -33,10 +33,7 @@ pub(super) fn table(table: &Table) -> String {
         let body: String = table.texts().iter().map(|cells| row(cells, "td", "td")).collect();
         html += &wide(&head, &body);
     }
-    match &table.folded {
-        Some(line) => folded(line, &html),
-        None => html,
-    }
+    html
 }
 
 /// A table that may be wider than the page.

@@ -14,8 +14,7 @@ use crate::record::{Expectation, Figure, FigurePanels, Record, RunProvenance, Ti
 pub(super) fn section(name: &str, record: &Record) -> Result<String, ReportError> {
     let figures: String =
         record.figures.iter().map(|figure| drawn(name, figure)).collect::<Result<_, _>>()?;
-    let medians = record.figures.iter().filter_map(Figure::medians);
-    let tables: String = record.tables.iter().cloned().chain(medians).map(|one| table(&one)).collect();
+    let tables: String = record.tables.iter().map(table).collect();
     let html = [
         paragraphs(&record.analysis),
         figures,
