@@ -158,8 +158,9 @@ mod tests {
             [of("scan.001"), of("scan.002"), of("scan"), of("sub/x")],
             [Some("a"), Some("b"), None, Some("d")]
         );
-        // Another mesh has another extension.
+        // Another mesh has another extension, and a compressed one two.
         assert_eq!(labels.label("scan.002", Some(Path::new("scan.002.ply"))), None);
+        assert_eq!(labels.label("scan.002", Some(Path::new("scan.002.off.gz"))), Some("b"));
         // Rows of a matrix are no files.
         assert_eq!([labels.label("scan.002", None), labels.label("scan", None)], [Some("b"), None]);
         let shape = |name: &str| ShapeFile {

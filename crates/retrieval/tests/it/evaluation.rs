@@ -34,8 +34,12 @@ fn scale_changes_no_score() {
 #[test]
 fn shapes_in_classes_of_two_are_not_queries() {
     let matrix = line(&[0.0, 1.0, 2.0, 3.0, 4.0]);
-    let scores = evaluate(&matrix, &Labels::new(&["a", "a", "a", "b", "b"]), 1, RankBy::Plain).unwrap();
-    assert_eq!(scores.plain.confusion, [[3, 0], [0, 0]]);
+    // Classes are sorted.
+    let scores = evaluate(&matrix, &Labels::new(&["b", "b", "b", "a", "a"]), 1, RankBy::Plain).unwrap();
+    assert_eq!(
+        (scores.plain.confusion, scores.classes),
+        (vec![vec![0, 0], vec![0, 3]], vec!["a".into(), "b".into()])
+    );
     let error = evaluate(&matrix, &Labels::new(&["a", "a", "b", "b", "c"]), 1, RankBy::Plain).unwrap_err();
     assert_eq!(error, RetrievalError::NothingToScore { n_points: 5, n_classes: 3 });
 }

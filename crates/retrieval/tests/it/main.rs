@@ -8,7 +8,6 @@ mod clustering;
 mod evaluation;
 mod graph;
 mod graph_gain;
-mod labels;
 mod refinement;
 mod scores;
 mod vote;
