@@ -3,8 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
+use base::SplitMix;
 use rusqlite::Connection;
 
 use super::{Folder, OPTIONS, export, faults, id, shape};
@@ -71,8 +70,8 @@ fn a_changed_byte_is_detected_and_never_returned() {
     let truth = read_all(&path).unwrap();
     assert_eq!(faults(&path), Vec::<String>::new());
     // The head completely, and many other bytes; some of them are not used.
-    let mut random = ChaCha8Rng::seed_from_u64(3);
-    let others: Vec<usize> = (0..1500).map(|_| (random.next_u64() % bytes.len() as u64) as usize).collect();
+    let mut random = SplitMix(3);
+    let others: Vec<usize> = (0..1500).map(|_| (random.bits() % bytes.len() as u64) as usize).collect();
     let copy = folder.path("b");
     let mut detected = 0;
     for at in (0..160).chain(others) {
@@ -123,19 +122,11 @@ fn other_files_are_never_overwritten() {
     assert_eq!(folder.names(), ["empty", "long", "notes.txt", "photos"]);
 }
 
-/// Replaces an index that cannot be read by one of `n` shapes.
-fn built_again(path: &Path, n: usize) {
-    let mut writer = IndexWriter::build(path, OPTIONS).unwrap();
-    assert!(writer.replaced_damaged && writer.n_shapes() == 0);
-    writer.put(&(0..n).map(shape).collect::<Vec<_>>()).unwrap();
-    writer.finish(&()).unwrap();
-}
-
 #[test]
-fn another_format_is_reported_and_an_earlier_one_built_again() {
+fn what_cannot_be_read_is_reported_kept_and_built_again() {
     let folder = Folder::new();
-    let path = folder.index("a", 3);
-    let whole = export(&path);
+    let path = folder.index("a", 200);
+    let (whole, intact) = (export(&path), fs::read(&path).unwrap());
     forge(&path, "PRAGMA user_version = 7");
     for error in [Index::open(&path).unwrap_err(), IndexWriter::build(&path, OPTIONS).unwrap_err()] {
         assert!(matches!(error, IndexError::FutureVersion { found: 7, .. }), "{error}");
@@ -143,32 +134,22 @@ fn another_format_is_reported_and_an_earlier_one_built_again() {
     }
     // Formats that were no databases begin with their name.
     let old = [&b"canonform index\n\x04\0\0\0"[..], &[7; 5000]].concat();
-    fs::write(&path, &old).unwrap();
-    for error in [Index::open(&path).unwrap_err(), IndexWriter::open(&path).unwrap_err()] {
-        assert!(matches!(error, IndexError::PastVersion { found: 4, .. }), "{error}");
+    let damaged = [&intact[..16_384], &[0xFF; 16], &intact[16_400..]].concat();
+    for (bytes, is_old) in [(old, true), (damaged, false)] {
+        fs::write(&path, &bytes).unwrap();
+        let error = IndexWriter::open(&path).unwrap_err();
+        match is_old {
+            true => assert!(matches!(error, IndexError::PastVersion { found: 4, .. }), "{error}"),
+            false => assert!(matches!(error, IndexError::Damaged { .. }), "{error}"),
+        }
+        assert_eq!(fs::read(&path).unwrap(), bytes);
+        let mut writer = IndexWriter::build(&path, OPTIONS).unwrap();
+        assert!(writer.replaced_damaged && writer.n_shapes() == 0);
+        writer.put(&(0..200).map(shape).collect::<Vec<_>>()).unwrap();
+        writer.finish(&()).unwrap();
+        assert!(export(&path) == whole && fs::read(damaged_path(&path)).unwrap() == bytes);
+        assert_eq!(folder.names(), ["a", "a.damaged"]);
     }
-    built_again(&path, 3);
-    assert_eq!(export(&path), whole);
-    assert_eq!(fs::read(damaged_path(&path)).unwrap(), old);
-}
-
-#[test]
-fn a_damaged_index_cannot_be_extended_and_is_built_again_and_kept_under_another_name() {
-    let folder = Folder::new();
-    let path = folder.index("a", 200);
-    let whole = export(&path);
-    let mut bytes = fs::read(&path).unwrap();
-    bytes[16_384..16_400].fill(0xFF);
-    fs::write(&path, &bytes).unwrap();
-    match IndexWriter::open(&path) {
-        Err(IndexError::Damaged { .. }) => {}
-        other => panic!("{other:?}"),
-    }
-    assert_eq!(fs::read(&path).unwrap(), bytes);
-    built_again(&path, 200);
-    assert_eq!(export(&path), whole);
-    assert_eq!(fs::read(damaged_path(&path)).unwrap(), bytes);
-    assert_eq!(folder.names(), ["a", "a.damaged"]);
 }
 
 #[test]

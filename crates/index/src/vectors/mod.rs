@@ -5,7 +5,7 @@
 mod kernels;
 mod table;
 #[cfg(test)]
-mod testing;
+mod tests;
 mod threshold;
 
 pub use table::VectorTable;

@@ -130,39 +130,3 @@ impl VectorTable {
 fn distance(a: &[f32], b: &[f32]) -> f64 {
     a.iter().zip(b).map(|(x, y)| (f64::from(*x) - f64::from(*y)).powi(2)).sum::<f64>().sqrt()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::super::testing::{huber, noise};
-    use super::*;
-
-    #[test]
-    fn vectors_come_in_the_order_of_their_distances_for_ties_and_outliers_too() {
-        const DIM: usize = 21;
-        let (mut rows, limits) = (noise(1500, DIM, 7), [0.1; DIM - 1]);
-        // Equal rows, in other blocks, and rows that differ by the last bits.
-        for i in (0..600).step_by(3) {
-            let copy = (1490 - 2 * i) * DIM;
-            rows.copy_within(i * DIM..(i + 1) * DIM, copy);
-            rows[copy] += f32::EPSILON * (i % 2) as f32;
-        }
-        for (i, outlier) in [1e12, -1e20, f32::MAX, -f32::MAX, 1e-42].into_iter().enumerate() {
-            (0..20).for_each(|n| rows[(67 * n + i) * DIM + n] = outlier);
-        }
-        let mut all = VectorTable::default();
-        rows.chunks(DIM).for_each(|row| all.push("", row));
-        for query in [0, 2, 3, 900].map(|i| all.vector(i)) {
-            for limits in [&limits[..], &[]] {
-                let distance = |vector: &[f32]| huber(query, vector, limits);
-                let neighbor = |index| Neighbor { index, distance: distance(all.vector(index)) };
-                let mut expected: Vec<_> = (0..all.len()).map(neighbor).collect();
-                expected.sort_by(Neighbor::by_distance);
-                assert!(all.nearest_first(query, limits, distance).eq(expected.iter().copied()));
-                if limits.is_empty() {
-                    assert_eq!(all.nearest(query, 40), expected[..40]);
-                }
-            }
-        }
-        assert_eq!(VectorTable::default().nearest(&[], 3), []);
-    }
-}
