@@ -93,8 +93,8 @@ mod tests {
         for (line, expected) in [
             ("all --threads 1 -q", "all"),
             (
-                "retrieval --families articulated,creatures:40x8 --vertices 1000",
-                "retrieval --families articulated,creatures:40x8 --vertices 1000",
+                "retrieval --families articulated,bodies:6x5,creatures:40x8,parts:56x4 --vertices 1000",
+                "retrieval --families articulated,bodies:6x5,creatures:40x8,parts:56x4 --vertices 1000",
             ),
             (
                 "figure3 --dataset my&data's --classes cat,dog --seed 2 -o results/1",

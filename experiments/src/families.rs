@@ -101,12 +101,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn families_are_written_as_they_are_read() {
-        for text in ["articulated", "bodies:6x5", "creatures:40x8", "parts:56x4"] {
-            assert_eq!(text.parse::<Families>().unwrap().to_string(), text);
-        }
-        for text in ["", "cats", "creatures", "creatures:40", "creatures:0x8", "creatures:4x-1", "gears:4x4"]
-        {
+    fn other_families_are_refused() {
+        for text in ["cats", "creatures:40", "creatures:0x8", "creatures:4x-1", "gears:4x4"] {
             assert!(text.parse::<Families>().unwrap_err().contains("creatures:40x8"), "{text}");
         }
     }

@@ -153,7 +153,7 @@ fn parse_color(text: &str) -> Result<[u8; 3], String> {
 
 fn parse_background(text: &str) -> Result<Background, String> {
     match text {
-        "white" => Ok(Background::White),
+        "white" => Ok(Background::WHITE),
         "dark" => Ok(Background::Color([24, 26, 31])),
         "transparent" => Ok(Background::Transparent),
         _ => parse_color(text).map(Background::Color).map_err(|_| {

@@ -78,6 +78,17 @@ fn parquet_of(rows: Rows<'_>) -> Vec<u8> {
     out
 }
 
+/// Archives of every kind of some files.
+fn archives(place: &TempDir, files: &[(&str, Vec<u8>)]) -> [PathBuf; 3] {
+    let tar = tar_of(files);
+    [("a.zip", zip_of(files)), ("a.tar.gz", gzip_of(&tar)), ("a.tar", tar)]
+        .map(|(name, bytes)| put(place, name, bytes))
+}
+
+fn names(dataset: &Dataset) -> Vec<&str> {
+    dataset.shapes.iter().map(|shape| shape.name.as_str()).collect()
+}
+
 fn described(dataset: &Dataset) -> Vec<(String, String)> {
     dataset.shapes.iter().map(|shape| (shape.name.clone(), shape.label.clone())).collect()
 }
@@ -99,8 +110,7 @@ fn archives_in_folders_are_looked_into_or_listed() {
         put(&folder, name, bytes);
     }
     let found = Dataset::read(folder.path(), None).unwrap();
-    let names: Vec<_> = found.shapes.iter().map(|shape| shape.name.as_str()).collect();
-    assert_eq!(names, ["a", "all.zip/in/b", "old.tar/c"]);
+    assert_eq!(names(&found), ["a", "all.zip/in/b", "old.tar/c"]);
     assert!(found.shapes.iter().all(|shape| read_mesh(&shape.path).unwrap().n_vertices() == 42));
     let unread: Vec<_> =
         found.skipped.iter().filter(|it| !it.kind.is_expected()).map(|it| it.path.clone()).collect();
@@ -119,24 +129,17 @@ fn an_archive_is_the_dataset_that_it_was_made_from() {
         put(&place, &format!("plain/{name}"), content);
     }
     let plain = Dataset::read(&place.path().join("plain/all"), None).unwrap();
-    let names: Vec<_> = plain.shapes.iter().map(|shape| shape.name.as_str()).collect();
-    assert_eq!(names, ["cat/cat9", "cat/cat10", "dog/dog0", "dog/dog1"]);
-    let tar = tar_of(&files);
-    for (name, bytes) in [
-        ("a.zip", zip_of(&files)),
-        ("a.tar", tar.clone()),
-        ("a.tar.gz", gzip_of(&tar)),
-        ("A.TGZ", gzip_of(&tar)),
-    ] {
-        let path = put(&place, name, bytes);
+    assert_eq!(names(&plain), ["cat/cat9", "cat/cat10", "dog/dog0", "dog/dog1"]);
+    let other = put(&place, "A.TGZ", gzip_of(&tar_of(&files)));
+    for path in archives(&place, &files).into_iter().chain([other]) {
         assert!(is_dataset(&path));
         let dataset = Dataset::read(&path, None).unwrap();
-        assert_eq!(described(&dataset), described(&plain), "{name}");
-        assert_eq!(count_skipped(&dataset.skipped), count_skipped(&plain.skipped), "{name}");
+        assert_eq!(described(&dataset), described(&plain), "{path:?}");
+        assert_eq!(count_skipped(&dataset.skipped), count_skipped(&plain.skipped), "{path:?}");
         for (member, file) in dataset.shapes.iter().zip(&plain.shapes) {
             assert!(member.path.starts_with(&path) && Storage.holds(&member.path));
-            assert_eq!(read_mesh(&member.path).unwrap(), read_mesh(&file.path).unwrap(), "{name}");
-            assert_eq!(content_hash(&member.path).unwrap(), content_hash(&file.path).unwrap(), "{name}");
+            assert_eq!(read_mesh(&member.path).unwrap(), read_mesh(&file.path).unwrap(), "{path:?}");
+            assert_eq!(content_hash(&member.path).unwrap(), content_hash(&file.path).unwrap(), "{path:?}");
         }
         let missing = read_mesh(&path.join("all/cat/cat11.off")).unwrap_err().to_string();
         assert!(missing.contains("cat11.off") && missing.contains("no such member"), "{missing}");
@@ -153,19 +156,19 @@ fn an_archive_of_one_mesh_is_that_mesh() {
     let place = folder();
     let files = &contents()[3..];
     let files = [files, &[other_half()]].concat();
-    let tar = tar_of(&files);
-    for (name, bytes) in [("a.zip", zip_of(&files)), ("a.tar", tar.clone()), ("a.tar.gz", gzip_of(&tar))] {
-        let path = put(&place, name, bytes);
+    for path in archives(&place, &files) {
         let member = path.join("all/dog/dog1.vert");
-        assert_eq!(mesh_at(&path).unwrap(), member);
-        assert_eq!(mesh_at(&member).unwrap(), member);
-        assert_eq!(read_mesh(&path).unwrap(), shapes::cube(2), "{name}");
-        assert_eq!(content_hash(&path).unwrap(), content_hash(&member).unwrap(), "{name}");
+        assert_eq!(
+            (mesh_at(&path).unwrap(), mesh_at(&member).unwrap()),
+            ((&member).into(), (&member).into())
+        );
+        assert_eq!(read_mesh(&path).unwrap(), shapes::cube(2), "{path:?}");
+        assert_eq!(content_hash(&path).unwrap(), content_hash(&member).unwrap(), "{path:?}");
     }
     let path = put(&place, "none.zip", zip_of(&[("README.md", b"meshes".to_vec())]));
     assert!(read_mesh(&path).unwrap_err().to_string().contains("holds 0 meshes, not one"));
     // The same from memory.
-    let found = single_mesh(Path::new("dog.tar"), &tar, 1 << 20).unwrap();
+    let found = single_mesh(Path::new("dog.tar"), &tar_of(&files), 1 << 20).unwrap();
     let names: Vec<_> = found.iter().map(|(name, _)| name.to_str().unwrap()).collect();
     assert_eq!(names, ["dog1.vert", "dog1.tri"]);
     let both = tar_of(&[("a.off", b"OFF".to_vec()), ("b.off", b"OFF".to_vec())]);
@@ -223,8 +226,7 @@ fn a_hard_link_in_a_tar_is_the_file_it_names() {
     archive.append(&header, &b""[..]).unwrap();
     let path = put(&place, "a.tar", archive.into_inner().unwrap());
     let dataset = Dataset::read(&path, None).unwrap();
-    let names: Vec<_> = dataset.shapes.iter().map(|shape| shape.name.as_str()).collect();
-    assert_eq!(names, ["again", "cat0", "same"]);
+    assert_eq!(names(&dataset), ["again", "cat0", "same"]);
     for shape in &dataset.shapes {
         assert_eq!(read_mesh(&shape.path).unwrap(), shapes::cube(1));
     }
@@ -253,10 +255,10 @@ fn other_archives_and_files_are_no_datasets() {
 fn members_are_read_by_many_threads_at_once() {
     let place = folder();
     let files = ["m1.off", "m2.off", "m3.off"].map(|name| (name, written(name, &shapes::grid(99, 98, 0.1))));
-    for (name, bytes) in [("a.zip", zip_of(&files)), ("a.tar.gz", gzip_of(&tar_of(&files)))] {
-        let shapes = list_shapes(&put(&place, name, bytes), None).unwrap();
+    for path in archives(&place, &files) {
+        let shapes = list_shapes(&path, None).unwrap();
         (0..60).into_par_iter().for_each(|i| {
-            assert_eq!(read_mesh(&shapes[i % 3].path).unwrap(), shapes::grid(99, 98, 0.1), "{name}");
+            assert_eq!(read_mesh(&shapes[i % 3].path).unwrap(), shapes::grid(99, 98, 0.1), "{path:?}");
         });
     }
 }
@@ -275,7 +277,7 @@ fn a_changed_archive_is_read_again() {
 fn members_that_lead_out_of_an_archive_are_skipped() {
     let place = folder();
     let cube = written("m.off", &shapes::cube(0));
-    let names = [
+    let evil = [
         "../evil.off",
         "/etc/evil.off",
         "a/../../evil.off",
@@ -285,15 +287,11 @@ fn members_that_lead_out_of_an_archive_are_skipped() {
         "./in//good.off",
         "in\\too.off",
     ];
-    let files: Vec<(&str, Vec<u8>)> = names.map(|name| (name, cube.clone())).to_vec();
-    let tar = tar_of(&files);
-    for (name, bytes) in [("a.zip", zip_of(&files)), ("a.tar", tar.clone()), ("a.tar.gz", gzip_of(&tar))] {
-        let path = put(&place, name, bytes);
+    for path in archives(&place, &evil.map(|name| (name, cube.clone()))) {
         let dataset = Dataset::read(&path, None).unwrap();
-        let names: Vec<_> = dataset.shapes.iter().map(|shape| shape.name.as_str()).collect();
-        assert_eq!(names, ["good", "too"], "{name}");
+        assert_eq!(names(&dataset), ["good", "too"], "{path:?}");
         let unsafe_names = dataset.skipped.iter().filter(|skipped| skipped.kind == SkipKind::UnsafeName);
-        assert_eq!(unsafe_names.count(), 6, "{name}");
+        assert_eq!(unsafe_names.count(), 6, "{path:?}");
         assert!(read_mesh(&path.join("../evil.off")).is_err());
     }
 }
@@ -340,8 +338,7 @@ fn encrypted_and_damaged_members_are_errors_that_name_them() {
 #[test]
 fn decompression_bombs_are_cut_off() {
     let place = folder();
-    let blanks = vec![b'\n'; 100 << 20];
-    let files = [("bomb.obj", blanks.clone())];
+    let files = [("bomb.obj", vec![b'\n'; 100 << 20])];
     for (name, bytes) in [("a.zip", zip_of(&files)), ("a.tar.gz", gzip_of(&tar_of(&files)))] {
         let path = put(&place, name, bytes);
         let error = list_shapes(&path, None).and_then(|shapes| read_mesh(&shapes[0].path)).unwrap_err();

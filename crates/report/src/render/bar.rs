@@ -166,7 +166,7 @@ mod tests {
             let right = image.pixels().iter().enumerate().filter(|(i, _)| i % 320 > 270);
             right.map(|(_, pixel)| *pixel).collect::<Vec<_>>()
         };
-        assert!(on(Background::White).iter().any(|p| p[0] < 60));
+        assert!(on(Background::WHITE).iter().any(|p| p[0] < 60));
         assert!(on(Background::Color([20, 20, 24])).iter().any(|p| p[0] > 200));
         let clear = on(Background::Transparent);
         assert!(

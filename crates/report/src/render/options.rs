@@ -13,7 +13,7 @@ pub struct RenderOptions {
     pub height: u32,
     /// Direction of the view. Default: [`View::default`].
     pub view: View,
-    /// What is behind the surface. Default: [`Background::White`].
+    /// What is behind the surface. Default: [`Background::WHITE`].
     pub background: Background,
     /// Colors of the surface. Default: a light clay.
     pub coloring: Coloring,
@@ -33,7 +33,7 @@ impl Default for RenderOptions {
             width: 600,
             height: 600,
             view: View::default(),
-            background: Background::White,
+            background: Background::WHITE,
             coloring: Coloring::Plain([214, 206, 194]),
             marks: Vec::new(),
             colors: ColorMap::default(),
@@ -46,10 +46,13 @@ impl Default for RenderOptions {
 /// What is behind the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Background {
-    /// Opaque white.
-    White,
     /// An opaque sRGB color.
     Color([u8; 3]),
     /// Alpha 0; at edges, alpha is the covered share of the pixel.
     Transparent,
+}
+
+impl Background {
+    /// Opaque white.
+    pub const WHITE: Self = Self::Color([255; 3]);
 }

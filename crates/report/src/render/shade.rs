@@ -135,7 +135,6 @@ pub(super) fn shade(
             }
         }
         let (light, alpha) = match background {
-            Background::White => ((sum + Vector3::repeat(total - covered)) / total, 1.0),
             Background::Color(color) => {
                 ((sum + Vector3::from(color.map(to_linear)) * (total - covered)) / total, 1.0)
             }

@@ -133,7 +133,7 @@ fn scalars_follow_the_color_map_with_isolines_at_equal_steps() {
 #[test]
 fn backgrounds_are_opaque_and_images_are_deterministic() {
     for (background, color) in
-        [(Background::Color([20, 30, 40]), [20, 30, 40, 255]), (Background::White, [255; 4])]
+        [(Background::Color([20, 30, 40]), [20, 30, 40, 255]), (Background::WHITE, [255; 4])]
     {
         let options = RenderOptions { background, ..small(View::default()) };
         let image = drawn(&pear(), &options);

@@ -190,7 +190,7 @@ pub(super) fn paint(
     }
     // On a margin, text is on white where nothing is behind the surface.
     let background = match background {
-        Background::Transparent if reach > 0 => Background::White,
+        Background::Transparent if reach > 0 => Background::WHITE,
         background => background,
     };
     let [r, g, b, _] = empty(background);
@@ -203,7 +203,6 @@ pub(super) fn paint(
 /// A pixel without a surface.
 pub(super) fn empty(background: Background) -> [u8; 4] {
     match background {
-        Background::White => [255; 4],
         Background::Color([r, g, b]) => [r, g, b, 255],
         Background::Transparent => [0; 4],
     }
@@ -214,7 +213,6 @@ fn pen(background: Background) -> Rgb {
     let light = match background {
         // As far from white as from black.
         Background::Transparent => return [118; 3],
-        Background::White => 1.0,
         Background::Color(color) => {
             let [r, g, b] = color.map(to_linear);
             0.2126 * r + 0.7152 * g + 0.0722 * b
@@ -274,7 +272,7 @@ mod tests {
         let clear = RgbaImage::new(2, 2, [0, 0, 255, 0]);
         let placed = [(red, [1, 1]), (clear, [0, 0]), (RgbaImage::new(3, 1, [0, 255, 0, 255]), [-1, 29])];
         let title = |width| [Title { text: "a long title".into(), middle: [20.0, 15.0], width }];
-        let made = |width| collage([40, 30], Background::White, &placed, (&title(width), 12.0)).unwrap();
+        let made = |width| collage([40, 30], Background::WHITE, &placed, (&title(width), 12.0)).unwrap();
         let image = made(18.0);
         assert_eq!(
             [image.pixel(0, 0), image.pixel(1, 1), image.pixel(2, 2)],
