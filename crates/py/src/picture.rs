@@ -119,5 +119,5 @@ pub(crate) fn scene_page(
     if let Some(values) = values {
         geometry = geometry.with_values(values_name, values.as_slice()?);
     }
-    Ok(py.detach(|| viewer::scene_page(geometry, title)))
+    Ok(py.detach(|| viewer::scene_page(&geometry, title)))
 }

@@ -64,9 +64,8 @@ mod tests {
     #[test]
     fn files_are_the_same_every_time_and_have_the_size_of_the_drawing() {
         let folder = tempfile::tempdir().unwrap();
-        let figure = figure(FigurePanels::Plots(vec![plot("a"), plot("b")]));
         let saved = || {
-            figure.save(folder.path(), "x").unwrap();
+            figure(FigurePanels::Plots(vec![plot("a"), plot("b")])).save(folder.path(), "x").unwrap();
             ["png", "svg"].map(|end| std::fs::read(folder.path().join(format!("x-part.{end}"))).unwrap())
         };
         let [png, svg] = saved();

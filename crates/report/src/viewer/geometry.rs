@@ -67,28 +67,6 @@ impl Geometry {
         let values = (0..self.positions.len()).map(value).collect();
         Self { values: Some(values), values_name: Some(name.into()), ..self }
     }
-
-    /// The surface with positions rounded to about [`GRAIN`] of its size, and values to that of their range: they compress
-    /// better.
-    pub(super) fn rounded(mut self) -> Self {
-        let positions = self.positions.as_flattened_mut();
-        let grain = grain(positions);
-        positions.iter_mut().for_each(|x| *x = (*x / grain).round() * grain);
-        for values in self.values.iter_mut() {
-            let grain = self::grain(values);
-            values.iter_mut().for_each(|x| *x = (*x / grain).round() * grain);
-        }
-        self
-    }
-}
-
-/// A convention: below what a screen shows.
-const GRAIN: f32 = 1.0 / 16_384.0;
-
-/// A power of two, so that rounded numbers end in zeros: at most [`GRAIN`] of the largest finite magnitude.
-fn grain(numbers: &[f32]) -> f32 {
-    let largest = numbers.iter().filter(|x| x.is_finite()).fold(0.0_f32, |most, x| most.max(x.abs()));
-    (largest * GRAIN).log2().floor().exp2().max(f32::MIN_POSITIVE)
 }
 
 #[cfg(test)]
@@ -131,26 +109,6 @@ mod tests {
         assert_eq!(geometry.faces, [[0, 1, 2]]);
         let values = geometry.values.unwrap();
         assert!(values.len() == 4 && values[0] == 1.0 && values[1..].iter().all(|v| v.is_nan()));
-    }
-
-    #[test]
-    fn rounding_moves_numbers_by_less_than_a_screen_shows_and_keeps_what_is_missing() {
-        let mut mesh = triangle();
-        mesh.positions.push(Point3::new(f64::NAN, 0.1, 1.0 / 3.0));
-        let before = Geometry::in_place(&mesh).with_values("v", &[1e-30, 0.7, f64::INFINITY]);
-        let after = before.clone().rounded();
-        for (a, b) in before.positions.as_flattened().iter().zip(after.positions.as_flattened()) {
-            assert!((a - b).abs() <= 6.0 * GRAIN || a.is_nan() && b.is_nan());
-            assert!(b.is_nan() || b.to_bits() & 0xff == 0, "{b} ends in zeros");
-        }
-        let values = after.values.unwrap();
-        assert!(
-            values[0] == 0.0
-                && (values[1] - 0.7).abs() < 1e-4
-                && values[2].is_infinite()
-                && values[3].is_nan()
-        );
-        assert_eq!(Geometry::default().rounded(), Geometry::default());
     }
 
     #[test]

@@ -16,10 +16,10 @@ use crate::markup::escape;
 ///
 /// It fetches nothing, and its policy allows its own scripts only. Before the surface is drawn, and without scripts or
 /// WebGL, the page is transparent. Without [`scene_scripts`] the page asks the page around it for them.
-pub fn scene_page(geometry: Geometry, title: &str) -> String {
+pub fn scene_page(geometry: &Geometry, title: &str) -> String {
     let [islands, hashes] = &*SCRIPTS;
     let start = include_str!("scene.js");
-    let scene = serde_json::to_string(&geometry.rounded()).unwrap_or_default();
+    let scene = serde_json::to_string(geometry).unwrap_or_default();
     format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title>\n\
          <meta http-equiv=\"content-security-policy\" content=\"default-src 'none'; script-src {hashes} {start_hash}; \
@@ -71,7 +71,7 @@ mod tests {
     fn a_scene_runs_its_own_scripts_only_and_names_cannot_leave_their_place() {
         let geometry =
             Geometry { positions: vec![[0.0, 0.5, 1.0]; 3], faces: vec![[0, 1, 2]], ..Geometry::default() };
-        let page = scene_page(geometry.with_values("</script>", &[1.0, 2.0, 3.0]), "<b>cat");
+        let page = scene_page(&geometry.with_values("</script>", &[1.0, 2.0, 3.0]), "<b>cat");
         assert!(page.contains("&lt;b&gt;cat") && !page.contains("<b>cat"));
         assert_eq!((page.matches("'sha256-").count(), page.matches("<script>").count()), (4, 1));
         assert_eq!(page.matches("</script>").count(), 5);
