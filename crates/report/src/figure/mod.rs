@@ -53,11 +53,11 @@ impl Figure {
 mod tests {
     use super::*;
     use crate::record::{Axis, AxisScale, Heat, Mark, Plot, PlotPoint, Series, SeriesKind, TileRow, Tiles};
-    use crate::tests::{assert_balanced, assert_holds, figure, plot, tile};
+    use crate::tests::{assert_closed, assert_holds, figure, plot, tile};
 
     fn drawn(panels: FigurePanels) -> String {
         let svg = figure(panels).svg().unwrap();
-        assert_balanced(&svg);
+        assert_closed(&svg);
         svg
     }
 

@@ -48,15 +48,3 @@ pub fn plotly_js() -> &'static str {
 const PRELUDE: &str = include_str!("prelude.js");
 
 const BUNDLE: &[u8] = include_bytes!("../../assets/plotly/plotly.js.gz");
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use sha2::{Digest, Sha256};
-
-    #[test]
-    fn the_readme_states_the_checksum_of_the_bundle() {
-        let sum: String = Sha256::digest(BUNDLE).iter().map(|byte| format!("{byte:02x}")).collect();
-        assert!(include_str!("../../assets/plotly/README.md").contains(&sum), "{sum}");
-    }
-}
