@@ -1,17 +1,16 @@
 //! Robustness: some shapes of every class are damaged in every way at strengths from 1 to 5, and searched for in the
 //! undamaged collection. The shape itself is left out, so that another one of its class has to be found.
 //!
-//! Measures `KIND STRENGTH METHOD nn|mAP` for `METHOD` a signature or `fused`, at strength 3 also `aligned forms` and `fused
-//! and forms`; `undamaged METHOD nn|mAP`; `least fused nn`, over all kinds at strength 3; `false alarms`, the share of
-//! undamaged shapes with a shortcut; and `KIND STRENGTH cut`, the number of shortcuts that are cut, relative to the number of
-//! welds.
+//! Measures `KIND STRENGTH METHOD nn|mAP` for `METHOD` a signature or `fused`; `undamaged METHOD nn|mAP`; `least fused nn`,
+//! over all kinds at strength 3; `false alarms`, the share of undamaged shapes with a shortcut; and `KIND STRENGTH cut`, the
+//! number of shortcuts that are cut, relative to the number of welds.
 
 use anyhow::{Context as _, Result};
 use canonform::describe;
 use canonform::embed::signature;
 use canonform::index::Shape;
 use datasets::DamageKind;
-use descriptors::{PreparedShape, ShapeMetric, ShapePair, SignatureKind};
+use descriptors::{ShapeMetric, SignatureKind};
 use report::Record;
 use report::record::{Axis, SeriesKind};
 
@@ -20,11 +19,9 @@ use crate::gallery::{Gallery, GalleryQuery};
 use crate::sweep::{MeasuredNumbers, Panels, mean, note, numbers, plots, point, share};
 
 const FUSED: &str = "fused";
-const FORMS: &str = "aligned forms";
-const BOTH: &str = "fused and forms";
 
-/// The strength at which forms are aligned, too; that takes most of the time.
-const ALIGNED_AT: usize = 3;
+/// The strength of `least fused nn`.
+const MIDDLE: usize = 3;
 
 /// Scores by method: nearest neighbor, and mean average precision.
 type MethodScores = Vec<(&'static str, [f64; 2])>;
@@ -33,11 +30,10 @@ const SCORES: [&str; 2] = ["nn", "mAP"];
 
 pub(crate) fn robustness(context: &Context<'_>) -> Result<Record> {
     let gallery = Gallery::new(context)?;
-    let prepared = gallery.prepared()?;
     let alarms = share(&gallery.described, |shape| shape.entry.facts.shortcuts > 0);
     let mut measured = numbers([("false alarms", alarms)]);
     let undamaged = gallery.map(context.options.queries, "undamaged", |query| {
-        scores(&gallery, &prepared, query, &gallery.described[query.own], true)
+        scores(&gallery, query, &gallery.described[query.own])
     })?;
     let undamaged = means(&undamaged);
     record("undamaged", &undamaged, &mut measured);
@@ -49,8 +45,7 @@ pub(crate) fn robustness(context: &Context<'_>) -> Result<Record> {
             let stage = format!("{} {strength}", kind.name());
             let found = gallery.map(context.options.queries, &stage, |query| {
                 let damaged = describe(&query.damaged(kind.at(strength))?, &gallery.options, &())?;
-                let found = scores(&gallery, &prepared, query, &damaged, strength == ALIGNED_AT)?;
-                Ok((found, damaged.entry.facts.shortcuts))
+                Ok((scores(&gallery, query, &damaged)?, damaged.entry.facts.shortcuts))
             })?;
             let (found, cut): (Vec<_>, Vec<_>) = found.into_iter().unzip();
             if matches!(kind, DamageKind::Weld | DamageKind::FarWeld | DamageKind::Contact) {
@@ -59,7 +54,7 @@ pub(crate) fn robustness(context: &Context<'_>) -> Result<Record> {
             }
             let found = means(&found);
             record(&stage, &found, &mut measured);
-            let fused = found.iter().find(|(method, _)| *method == FUSED && strength == ALIGNED_AT);
+            let fused = found.iter().find(|(method, _)| *method == FUSED && strength == MIDDLE);
             least = fused.map_or(least, |(_, [nn, _])| least.min(*nn));
             draw(kind, strength, &found, &mut panels);
         }
@@ -70,13 +65,7 @@ pub(crate) fn robustness(context: &Context<'_>) -> Result<Record> {
 }
 
 /// The scores of one query by every method.
-fn scores(
-    gallery: &Gallery<'_>,
-    prepared: &[PreparedShape],
-    query: &GalleryQuery<'_>,
-    description: &Shape,
-    aligned: bool,
-) -> Result<MethodScores> {
+fn scores(gallery: &Gallery<'_>, query: &GalleryQuery<'_>, description: &Shape) -> Result<MethodScores> {
     let mut found = Vec::new();
     let mut add = |method: &'static str, distance: &dyn Fn(usize) -> f64| {
         let scores = gallery.scores(query, distance);
@@ -86,17 +75,7 @@ fn scores(
         let own = signature(description, kind).context("a signature of every kind")?;
         add(kind.name(), &|i| signature(&gallery.described[i], kind).map_or(f64::NAN, |s| own.distance(&s)));
     }
-    let shape = gallery.options.prepare(description)?;
-    add(FUSED, &|i| ShapeMetric::fused(&shape.fused, &prepared[i].fused));
-    if aligned {
-        let pairs = prepared.iter().map(|other| {
-            let pair = ShapePair::new([&shape, other]);
-            (pair.best().gap.rms, pair.distance().combined)
-        });
-        let pairs: Vec<(f64, f64)> = pairs.collect();
-        add(FORMS, &|i| pairs[i].0);
-        add(BOTH, &|i| pairs[i].1);
-    }
+    add(FUSED, &|i| ShapeMetric::fused(&description.fused, &gallery.described[i].fused));
     Ok(found)
 }
 
