@@ -162,18 +162,14 @@ impl Index {
     /// The vector of one name of a shape, such as a signature; `None` if the shape has none.
     pub fn vector(&self, id: &str, name: &str) -> Result<Option<Vec<f32>>, IndexError> {
         let sql = "SELECT id, name, vector, checksum FROM vectors WHERE id = ? AND name = ?";
-        Ok(some_vectors(&self.database(), sql, (id, name))?.pop().map(|(_, vector)| vector))
+        Ok(some_vectors(&self.database(), sql, (id, name))?.pop().map(|(.., vector)| vector))
     }
 
     /// The names of shapes of several components, each with the fused vectors of its components but the largest.
     pub fn components(&self) -> Result<Vec<(String, Vec<f32>)>, IndexError> {
         let sql = "SELECT id, CAST(place AS TEXT), vector, checksum FROM components ORDER BY id, place";
-        let mut all = Vec::new();
-        each_vector(&self.database(), sql, [], |id, _, vector| {
-            all.push((id, vector));
-            Ok(())
-        })?;
-        Ok(all)
+        let all = some_vectors(&self.database(), sql, [])?;
+        Ok(all.into_iter().map(|(id, _, vector)| (id, vector)).collect())
     }
 
     /// Checks that as many shapes were found as there are.
@@ -247,15 +243,15 @@ fn each_vector(
     })
 }
 
-/// Vectors with their names.
+/// Vectors with the names of their shapes and their own.
 fn some_vectors(
     database: &Database,
     sql: &str,
     values: impl rusqlite::Params,
-) -> Result<Vec<(String, Vec<f32>)>, IndexError> {
+) -> Result<Vec<(String, String, Vec<f32>)>, IndexError> {
     let mut all = Vec::new();
-    each_vector(database, sql, values, |_, name, vector| {
-        all.push((name, vector));
+    each_vector(database, sql, values, |id, name, vector| {
+        all.push((id, name, vector));
         Ok(())
     })?;
     Ok(all)
@@ -272,8 +268,8 @@ pub(crate) fn shape_of(database: &Database, row: EntryRow) -> Result<Shape, Inde
     let id = entry.id.clone();
     // The fused vector comes first, and every shape has one.
     let fused = "SELECT id, 'fused', vector, checksum FROM fused WHERE id = ?";
-    let fused = some_vectors(database, fused, [&id])?.pop().filter(|(_, vector)| !vector.is_empty());
-    let (_, fused) = fused.ok_or_else(|| database.damaged(format!("`{id}` has no vector")))?;
+    let fused = some_vectors(database, fused, [&id])?.pop().filter(|(.., vector)| !vector.is_empty());
+    let (.., fused) = fused.ok_or_else(|| database.damaged(format!("`{id}` has no vector")))?;
     let mut shape = Shape { entry, fused, ..Shape::default() };
     let others =
         some_vectors(database, "SELECT id, name, vector, checksum FROM vectors WHERE id = ?", [&id])?;
@@ -281,7 +277,7 @@ pub(crate) fn shape_of(database: &Database, row: EntryRow) -> Result<Shape, Inde
         "SELECT id, CAST(place AS TEXT), vector, checksum FROM components WHERE id = ? ORDER BY place";
     let components = some_vectors(database, components, [&id])?;
     let found = (others.len() + components.len()) as u64;
-    for (name, vector) in others {
+    for (_, name, vector) in others {
         match (name.as_str(), name.strip_prefix(SIGNATURE)) {
             (_, Some(signature)) => drop(shape.signatures.insert(signature.to_owned(), vector)),
             (FORM, _) => shape.form = vector.as_chunks::<4>().0.to_vec(),
@@ -289,7 +285,7 @@ pub(crate) fn shape_of(database: &Database, row: EntryRow) -> Result<Shape, Inde
             _ => return Err(database.damaged(format!("`{id}` has an unknown vector `{name}`"))),
         }
     }
-    shape.components = components.into_iter().map(|(_, vector)| vector).collect();
+    shape.components = components.into_iter().map(|(.., vector)| vector).collect();
     match found == vectors {
         true => Ok(shape),
         false => Err(database.damaged(format!("`{id}` has {found} vectors, not {vectors}"))),
