@@ -11,30 +11,15 @@ use tempfile::TempDir;
 use testkit::written;
 
 use crate::made::{
-    Files, HEAD, OBJ, OFF, PLAIN, PLY, RECTANGLE, Rich, SQUARE, STL, Style, TRI, VERT, binary_ply,
-    binary_stl, check, gltf_text, mesh_text, model_of, one, outcome, package_of, read_all,
+    HEAD, OBJ, OFF, PLAIN, PLY, RECTANGLE, Rich, SQUARE, STL, Style, TRI, VERT, binary_ply, binary_stl,
+    check, gltf_text, mesh_text, model_of, one, outcome, package_of, read_all,
 };
 
-/// The bytes that a text stands for, in which `\n`, `\r`, `\t`, `\\` and `\x00` are escapes.
+/// The bytes that a text stands for, in which `\n`, `\\` and `\u00ff` are escapes as in JSON.
 fn unescaped(text: &str) -> Vec<u8> {
-    let mut rest = text.bytes();
-    let mut bytes = Vec::new();
-    while let Some(byte) = rest.next() {
-        let mut next = || rest.next().unwrap();
-        bytes.push(match byte {
-            b'\\' => match next() {
-                b'n' => b'\n',
-                b'r' => b'\r',
-                b't' => b'\t',
-                b'x' => {
-                    [next(), next()].iter().fold(0, |x, b| 16 * x + (*b as char).to_digit(16).unwrap() as u8)
-                }
-                other => other,
-            },
-            byte => byte,
-        });
-    }
-    bytes
+    let text = format!("\"{}\"", text.replace('"', "\\\""));
+    let text: String = serde_json::from_str(&text).unwrap_or_else(|fault| panic!("{fault}: {text}"));
+    text.chars().map(|byte| u8::try_from(byte).unwrap()).collect()
 }
 
 /// `corpus.tsv`: the name of a file, what it shows, its content and how its outcome begins. `@OFF|a|b` is the text [`OFF`]
@@ -48,6 +33,7 @@ fn files_of_any_dialect_are_read_or_refused_with_the_place() {
         ("@OBJ", OBJ.to_owned()),
         ("@PLY", PLY.to_owned()),
         ("@STL", STL.to_owned()),
+        ("@XYZ", xyz()),
         ("@RICH", rich.json("data.bin")),
         ("@MODEL", model),
     ];
@@ -78,26 +64,13 @@ fn files_of_any_dialect_are_read_or_refused_with_the_place() {
     }));
 }
 
-#[test]
-fn line_numbers_do_not_depend_on_the_line_ends() {
-    for end in ["\n", "\r\n", "\r"] {
-        let text =
-            ["\u{feff}OFF", "3 1.0000e+00 0", "", "# x", "0 -1.5e3 .5 # y", "1 0 5.", "0 x 0", ""].join(end);
-        assert!(outcome(&one("m.off", text)).starts_with("m.off, line 7: "), "{end:?}");
-    }
-}
-
-/// A grid of points, of which the fourth has this text.
-fn xyz(separator: &str, mark: &str, fourth: &str) -> String {
+/// A grid of points, of which the fourth is elsewhere.
+fn xyz() -> String {
     let row = |i: usize| match i {
-        4 => fourth.to_owned(),
-        i => [i % 4, i / 4, 0].map(|x| format!("{x}{mark}5")).join(separator),
+        4 => "1.5 2.5 1\n".to_owned(),
+        i => format!("{}.5 {}.5 0.5\n", i % 4, i / 4),
     };
-    (0..16).map(|i| row(i) + "\n").collect()
-}
-
-fn utf16(text: &str, mark: &[u8], encode: fn(u16) -> [u8; 2]) -> Vec<u8> {
-    [mark, &text.encode_utf16().flat_map(encode).collect::<Vec<u8>>()].concat()
+    (0..16).map(row).collect()
 }
 
 #[test]
@@ -110,7 +83,7 @@ fn words_that_are_no_numbers_are_never_read_as_their_beginnings() {
             ("m.off", OFF.replace("2 1 0", &format!("2 1 {word}"))),
             ("m.ply", PLY.replace("2 1 0 0 9", &format!("2 1 {word} 0 9"))),
             ("m.stl", STL.replace("vertex 2 1 0", &format!("vertex 2 1 {word}"))),
-            ("m.xyz", xyz(" ", ".", "1.5 2.5 1").replace("1.5 2.5 1", &format!("1.5 2.5 {word}"))),
+            ("m.xyz", xyz().replace("1.5 2.5 1", &format!("1.5 2.5 {word}"))),
             ("m.vert", VERT.replace("2 1 0", &format!("2 1 {word}"))),
             ("m.tri", TRI.replace("1 3 4", &format!("1 3 {word}"))),
         ] {
@@ -139,12 +112,13 @@ fn text_in_utf16_is_named_in_every_format() {
         ("m.vert", VERT),
         ("m.gltf", "{\"asset\":{\"version\":\"2.0\"}}"),
     ] {
-        for content in [
-            utf16(text, b"\xff\xfe", u16::to_le_bytes),
-            utf16(text, b"\xfe\xff", u16::to_be_bytes),
-            utf16(text, b"", u16::to_le_bytes),
-            utf16(text, b"", u16::to_be_bytes),
+        for (mark, encode) in [
+            (&b"\xff\xfe"[..], u16::to_le_bytes as fn(u16) -> [u8; 2]),
+            (b"\xfe\xff", u16::to_be_bytes),
+            (b"", u16::to_le_bytes),
+            (b"", u16::to_be_bytes),
         ] {
+            let content = [mark, &text.encode_utf16().flat_map(encode).collect::<Vec<u8>>()].concat();
             let mut files = one(name, content);
             files.push(("m.tri", TRI.into()));
             assert_eq!(outcome(&files), format!("{name}: the text is encoded as UTF-16; save it as UTF-8"));
@@ -153,51 +127,22 @@ fn text_in_utf16_is_named_in_every_format() {
 }
 
 #[test]
-fn commas_mark_decimals_or_separate_numbers_or_are_refused() {
-    let tetrahedra = "16 vertices, 0 faces";
-    let refused =
-        "m.xyz, line 5: commas may separate numbers here, or mark decimals; write decimals with points";
-    let numbers = |separator: &str, mark: &str, fourth: &str| one("m.xyz", xyz(separator, mark, fourth));
-    let mut cases = Vec::new();
-    for separator in [" ", "\t", ";", "; ", "  "] {
-        cases.push((separator, numbers(separator, ",", "1,25 2,5 3"), tetrahedra));
-    }
-    for fourth in
-        ["1, 2, 3", "1,2,3", "1.5,-2.5, 3.5", "12.345,123, 3", "-1,-22, 3", "1 2 3 0,5", "1;2;3;4,5,6"]
-    {
-        cases.push((fourth, numbers(",", ".", fourth), tetrahedra));
-    }
-    for fourth in
-        ["1,234.5 2 3", "1,5 2.5 3", "1,5, 2,5, 3,5", "1,2 3", "1,2,3 255 0", "1,5;2", "1,234,567 2 3"]
-    {
-        cases.push((fourth, numbers(" ", ".", fourth), refused));
-    }
-    cases.push(("-1,#IND", numbers(" ", ",", "1,5 1,5 -1,#IND"), "m.xyz, line 5: "));
-    check(cases);
-    let mesh =
-        read_all(&one("m.xyz", xyz(";", ",", "-1,25;+2,5e-1;318")), &ReadLimits::default()).unwrap().mesh;
-    assert_eq!(mesh.positions[4..6], [[-1.25, 0.25, 318.0], [1.5, 1.5, 0.5]].map(Point3::from));
-}
-
-#[test]
 fn binary_stl_has_the_length_that_its_header_promises() {
     let longer = "m.stl: the file continues after the 1 triangles that its header promises";
     let shorter = "m.stl: the header promises 3 triangles but the file holds only 2";
     let mut cases = Vec::new();
-    for header in [&b"solid plate"[..], b"plate", b"# plate", b"", b"\xef\xbb\xbfsolid", b"s\0o\0l\0i\0d\0"] {
-        cases.push(("whole", binary_stl(header, 2, b""), RECTANGLE));
-    }
+    cases.push(("like UTF-16", binary_stl(b"s\0o\0l\0i\0d\0", 2, b""), RECTANGLE));
     for header in [&b"solid plate"[..], b"plate", b"# plate", b"", b"\xef\xbb\xbfsolid"] {
-        cases.push(("bytes at the end", binary_stl(header, 2, b"ab"), RECTANGLE));
-        cases.push(("almost a triangle at the end", binary_stl(header, 2, &[1; 49]), RECTANGLE));
-        cases.push(("a count too large", binary_stl(header, 3, b""), shorter));
-        cases.push(("a count too large, and bytes", binary_stl(header, 3, &[0; 49]), shorter));
-        cases.push(("a count too small", binary_stl(header, 1, b""), longer));
-        cases.push((
-            "a count of nothing",
-            binary_stl(header, 0, b""),
-            "m.stl: the file continues after the 0 triangles",
-        ));
+        let of = |count: u32, end: &[u8]| binary_stl(header, count, end);
+        cases.extend([
+            ("whole", of(2, b""), RECTANGLE),
+            ("bytes at the end", of(2, b"ab"), RECTANGLE),
+            ("almost a triangle at the end", of(2, &[1; 49]), RECTANGLE),
+            ("a count too large", of(3, b""), shorter),
+            ("a count too large, and bytes", of(3, &[0; 49]), shorter),
+            ("a count too small", of(1, b""), longer),
+            ("a count of nothing", of(0, b""), "m.stl: the file continues after the 0 triangles"),
+        ]);
     }
     cases.push(("no triangles", one("m.stl", [0; 84]), "m.stl: the file has 0 vertices but no faces"));
     cases.push(("no count", one("m.stl", [0; 83]), "m.stl, byte 0: this is not an STL file (it is not text"));
@@ -209,11 +154,7 @@ fn binary_stl_has_the_length_that_its_header_promises() {
     let nan = of_numbers(84 + 50 + 16, f32::NAN.to_bits());
     cases.push(("no number", nan, "m.stl, byte 134: vertex 3 has the coordinate NaN"));
     let bold = of_numbers(80, u32::MAX);
-    cases.push((
-        "a bold count",
-        bold,
-        "m.stl: the header promises 4294967295 triangles but the file holds only 2",
-    ));
+    cases.push(("a bold count", bold, "m.stl: the header promises 4294967295 triangles"));
     check(cases);
 }
 
@@ -241,22 +182,17 @@ fn binary_ply_is_read_in_both_byte_orders_and_faults_name_the_byte() {
     ]);
 }
 
-fn far() -> TriMesh {
-    let mut grid = shapes::grid(10, 10, 0.1);
-    grid.positions.iter_mut().for_each(|p| *p += nalgebra::Vector3::new(1e7, 1e7, -3e5));
-    grid
-}
-
 #[test]
 fn writing_merges_no_corners_of_a_face() {
     let folder = TempDir::new().unwrap();
     let at = |name: &str| folder.path().join(name);
-    let mesh = far();
-    let refused = write(&at("far.stl"), &mesh).unwrap_err().to_string();
-    assert_eq!(
-        refused,
-        "corners of face 0 coincide in the 32-bit floats of STL; move the mesh to the origin or use another format"
-    );
+    let mesh = testkit::moved(&shapes::grid(10, 10, 0.1), |p| p + nalgebra::Vector3::new(1e7, 1e7, -3e5));
+    let refused = |name: &str, mesh: &TriMesh| {
+        let text = write(&at(name), mesh).unwrap_err().to_string();
+        assert!(text.starts_with("corners of face 0 coincide in the 32-bit floats of "), "{text}");
+        assert!(!at(name).exists());
+    };
+    refused("far.stl", &mesh);
     write(&at("far.glb"), &mesh).unwrap();
     let back = read(&at("far.glb")).unwrap();
     assert_eq!(back.faces, mesh.faces);
@@ -265,12 +201,7 @@ fn writing_merges_no_corners_of_a_face() {
     // What no origin can save: two specks far from each other.
     let mut tiny = shapes::disjoint(&[shapes::grid(2, 2, 1e-9), shapes::grid(2, 2, 1e-9)]);
     tiny.positions.iter_mut().enumerate().for_each(|(v, p)| p.x += if v < 4 { 1.0 } else { 3.0 });
-    for name in ["tiny.stl", "tiny.glb"] {
-        assert!(
-            write(&at(name), &tiny).unwrap_err().to_string().starts_with("corners of face 0 coincide in")
-        );
-        assert!(!at(name).exists());
-    }
+    ["tiny.stl", "tiny.glb"].iter().for_each(|name| refused(name, &tiny));
     // Corners that were one before, a speck on a surface, and other formats.
     let mut speck = shapes::disjoint(&[shapes::grid(2, 2, 1e-9), shapes::grid(2, 2, 1.0)]);
     speck.positions.iter_mut().for_each(|p| p.x += 1.0);
@@ -286,59 +217,6 @@ fn writing_merges_no_corners_of_a_face() {
         write(&at(name), mesh).unwrap();
         assert_eq!(read(&at(name)).unwrap().n_faces(), mesh.n_faces(), "{name}");
     }
-}
-
-/// A glTF file of the rectangle, with members of its second node and of the root.
-fn gltf(uri: &str, second: &str, root: &str) -> Vec<u8> {
-    format!(
-        r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0,1]}}],"nodes":[{{"mesh":0}},{{"mesh":0{second}}}],
-"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"indices":1}}]}}],
-"accessors":[{{"bufferView":0,"componentType":5126,"type":"VEC3","count":4}},
-{{"bufferView":1,"componentType":5121,"type":"SCALAR","count":6}}],
-"bufferViews":[{{"buffer":0,"byteLength":48}},{{"buffer":0,"byteOffset":48,"byteLength":6}}],
-"buffers":[{{"byteLength":54,"uri":"{uri}"}}]{root}}}"#
-    )
-    .into_bytes()
-}
-
-#[test]
-fn gltf_refers_to_files_and_hides_nodes() {
-    let corners = [0f32, 0., 0., 2., 0., 0., 2., 1., 0., 0., 1., 0.];
-    let data: Vec<u8> = corners.iter().flat_map(|x| x.to_le_bytes()).chain([0, 1, 2, 0, 2, 3]).collect();
-    let with = |uri: &str, second: &str, root: &str| {
-        vec![("m.gltf", gltf(uri, second, root)), ("my data.bin", data.clone())]
-    };
-    let hidden = r#","children":[],"extensions":{"KHR_node_visibility":{"visible":false}}"#;
-    let both = "8 vertices, 4 faces, area 4";
-    check(vec![
-        ("a dot", with("./my%20data.bin", "", ""), both),
-        ("dots", with("././my data.bin", "", ""), both),
-        ("another folder", with("./../my%20data.bin", "", ""), "m.gltf, buffer 0: its data is in"),
-        ("hidden", with("my data.bin", hidden, ""), "4 vertices, 2 faces, area 2, ignored hidden nodes"),
-        (
-            "hidden, as required",
-            with("my data.bin", hidden, r#","extensionsRequired":["KHR_node_visibility"]"#),
-            "4 vertices, 2 faces, area 2, ignored hidden nodes",
-        ),
-        ("shown", with("my data.bin", &hidden.replace("false", "true"), ""), both),
-        ("no such member", with("my data.bin", r#","extensions":{"KHR_node_visibility":7}"#, ""), both),
-        (
-            "below a hidden one",
-            with("my data.bin", &hidden.replace("[]", "[2]"), "")
-                .into_iter()
-                .map(|(name, content)| {
-                    let text = String::from_utf8_lossy(&content).replace(
-                        r#"}}],
-"meshes""#,
-                        r#"}},{"mesh":0}],
-"meshes""#,
-                    );
-                    (name, if name == "m.gltf" { text.into_bytes() } else { content })
-                })
-                .collect(),
-            "4 vertices, 2 faces, area 2, ignored hidden nodes",
-        ),
-    ]);
 }
 
 #[test]
@@ -400,28 +278,11 @@ fn small_files_cannot_make_huge_meshes() {
         one("m.3mf", package_of(model.as_bytes()))
     };
     let first = format!("<object id=\"1\">{}</object>", mesh_text(&shapes::tetrahedron(0)));
-    // A column of 96 MB of zeros, declared as such.
+    // A column of 20 MB of zeros.
+    let mut fields = PLAIN.fields(&shapes::tetrahedron(0));
+    fields[0].1 = PLAIN.matrix("", 9, 20 << 17, 1, &vec![0.0; 20 << 17]);
     let style = Style { compressed: true, ..PLAIN };
-    let length = 96u32 << 20;
-    let triangle = PLAIN.fields(&shapes::tetrahedron(0));
-    let mut small = style.structure("surface", &triangle);
-    let start =
-        small.len() - [&triangle[1], &triangle[2], &triangle[3]].map(|f| f.1.len()).iter().sum::<usize>();
-    let column = start - triangle[0].1.len();
-    let head = 8 + 16 + 16 + 8;
-    small[column + 32..column + 36].copy_from_slice(&(length / 8).to_le_bytes());
-    small[column + head + 4..column + head + 8].copy_from_slice(&length.to_le_bytes());
-    small.truncate(column + head + 8);
-    small[4..8].copy_from_slice(&(length + 4096).to_le_bytes());
-    let mut zlib = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::fast());
-    zlib.write_all(&small).unwrap();
-    (0..length >> 20).for_each(|_| zlib.write_all(&vec![0; 1 << 20]).unwrap());
-    let data = zlib.finish().unwrap();
-    let mut bytes = PLAIN.file(&[]);
-    bytes.extend([15u32.to_le_bytes(), (data.len() as u32).to_le_bytes()].concat());
-    bytes.extend(data);
-    assert!(bytes.len() < 4 << 20);
-    let mat = one("m.mat", bytes);
+    let mat = one("m.mat", style.file(&[PLAIN.structure("surface", &fields)]));
     let over = read_all(&mat, &ReadLimits::of_vertices(1000)).unwrap_err().to_string();
     assert!(over.contains("the mesh exceeds the limit of 1000 vertices"), "{over}");
     check([
@@ -442,52 +303,27 @@ fn small_files_cannot_make_huge_meshes() {
     ]);
 }
 
-/// A 3MF file whose relationship names a part, and whose second object has attributes and content.
-fn threemf(target: &str, entry: &str, attributes: &str, more: &str) -> Files {
-    let mesh = r#"<vertices><vertex x="0" y="0" z="0"/><vertex x="&#50;" y="0" z="0"/><vertex x="2" y="1" z="0"/>
-<vertex x="0" y="1" z="0"/></vertices><triangles><triangle v1="0" v2="1" v3="2"/><triangle v1="0" v2="2" v3="3"/></triangles>"#;
-    let model = format!(
-        r#"<model xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources>
-<object id="1"><mesh>{mesh}</mesh></object><object id="2"{attributes}><mesh>{mesh}{more}</mesh></object></resources>
-<build><item objectid="1"/><item objectid="2" transform="1 0 0 0 1 0 0 0 1 &#x31;0 0 0"/></build></model>"#
-    );
-    let relationships = format!(
-        r#"<Relationships><Relationship Target="{target}" Id="r" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>"#
-    );
-    one("m.3mf", testkit::zip_of(&[("_rels/.rels", relationships.as_bytes()), (entry, model.as_bytes())]))
-}
-
 #[test]
-fn threemf_finds_its_parts_and_leaves_out_supports() {
-    let both = "8 vertices, 4 faces, area 4";
-    check(vec![
-        ("absolute", threemf("/3D/a.model", "3D/a.model", "", ""), both),
-        ("a dot", threemf("./3D/a.model", "3D/a.model", "", ""), both),
-        ("escaped", threemf("/3D/Foo%20Bar.model", "3D/Foo Bar.model", "", ""), both),
-        ("escaped in the archive", threemf("/3D/Foo Bar.model", "3D/Foo%20Bar.model", "", ""), both),
-        ("an entity", threemf("/3D/a&amp;b.model", "3D/A&B.model", "", ""), both),
-        (
-            "missing",
-            threemf("/3D/b.model", "3D/a.model", "", ""),
-            "m.3mf: this is not a 3MF file (a zip archive without 3D/b.model)",
-        ),
-        ("a model", threemf("/3D/a.model", "3D/a.model", r#" type="model""#, ""), both),
-        (
-            "a support",
-            threemf("/3D/a.model", "3D/a.model", r#" type="support""#, ""),
-            "4 vertices, 2 faces, area 2, ignored supports",
-        ),
-        (
-            "a solid support",
-            threemf("/3D/a.model", "3D/a.model", r#" type="solidsupport""#, ""),
-            "4 vertices, 2 faces, area 2, ignored supports",
-        ),
-        (
-            "beams",
-            threemf("/3D/a.model", "3D/a.model", "", "<b:beamlattice/>"),
-            "8 vertices, 4 faces, area 4, ignored beam lattices",
-        ),
-    ]);
+fn threemf_finds_its_parts() {
+    let whole = "4 vertices, 4 faces";
+    check(
+        [
+            ("absolute", "/3D/a.model", "3D/a.model", whole),
+            ("a dot", "./3D/a.model", "3D/a.model", whole),
+            ("escaped", "/3D/Foo%20Bar.model", "3D/Foo Bar.model", whole),
+            ("escaped in the archive", "/3D/Foo Bar.model", "3D/Foo%20Bar.model", whole),
+            ("an entity", "/3D/a&amp;b.model", "3D/A&B.model", whole),
+            ("missing", "/3D/b.model", "3D/a.model", "m.3mf: this is not a 3MF file (a zip archive without"),
+        ]
+        .map(|(what, target, entry, expected)| {
+            let relationships = format!(
+                "<Relationships><Relationship Target=\"{target}\" Id=\"r\" \
+                 Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>"
+            );
+            let parts = [("_rels/.rels", relationships), (entry, model_of(&shapes::tetrahedron(0)))];
+            (what, one("m.3mf", testkit::zip_of(&parts)), expected)
+        }),
+    );
 }
 
 #[test]
@@ -511,11 +347,8 @@ fn threemf_places_and_counts_components_and_items() {
         assert_eq!([q.x, q.y, q.z], [-2.0 * p.y, 2.0 * p.x + 10.0, 2.0 * p.z + 5.0]);
         assert_eq!(file.mesh.positions[v + 8], *p);
     }
-    let volume = |faces: std::ops::Range<usize>| -> f64 {
-        faces.map(|f| file.mesh.triangle(f)).map(|[a, b, c]| a.coords.dot(&b.coords.cross(&c.coords))).sum()
-    };
     // The mirrored copy keeps its outside.
-    assert!(volume(4..8) * volume(8..12) > 0.0);
+    assert!((file.mesh.signed_volume() / corner.signed_volume() - 10.0).abs() < 1e-12);
     // Objects of other parts, and without a build every object that is no component.
     let ball = shapes::icosphere(1);
     let other = format!(
@@ -534,20 +367,9 @@ fn threemf_places_and_counts_components_and_items() {
     let file = read_all(&one("m.3mf", package_of(no_build.as_bytes())), &ReadLimits::default()).unwrap();
     assert_eq!((file.mesh.n_vertices(), file.facts.instances), (42, Some(1)));
     assert_eq!(written("m.3mf", &ball), written("m.3mf", &ball), "the same mesh gives the same bytes");
-    let other = testkit::zip_of(&[("word/document.xml", b"<a/>")]);
-    check([
-        (
-            "a part too few",
-            one("m.3mf", testkit::zip_of(&parts[..1])),
-            "m.3mf: expected all parts that the file refers to, found `no part 3D/Objects/ball.model`",
-        ),
-        ("another archive", one("m.3mf", other), "m.3mf: this is not a 3MF file (a zip archive without"),
-        (
-            "no archive",
-            one("m.3mf", "PNG"),
-            "m.3mf: this is not a 3MF file, which is a zip archive (it begins with `PNG`)",
-        ),
-    ]);
+    let too_few = one("m.3mf", testkit::zip_of(&parts[..1]));
+    let expected = "m.3mf: expected all parts that the file refers to, found `no part 3D/Objects/ball.model`";
+    assert!(outcome(&too_few).starts_with(expected), "{}", outcome(&too_few));
 }
 
 #[test]
@@ -562,42 +384,32 @@ fn matlab_files_are_read_in_every_encoding() {
     }
     let mesh = shapes::tetrahedron(0);
     let x: Vec<f64> = mesh.positions.iter().map(|p| p.x).collect();
-    let with = |field: usize, kind: u32, rows: usize, columns: usize, values: &[f64]| {
+    let index = "m.mat, byte 136: a face refers to vertex";
+    let short = "m.mat, byte 136: expected columns X Y Z of equal length";
+    let wide = "m.mat, byte 136: expected three columns in TRIV, found `3 x 4`";
+    let bold =
+        "m.mat, byte 136: the header promises 1000000000000 numbers of a matrix but the file holds only 4";
+    let of_fields: [(usize, usize, usize, &[f64], &str); 9] = [
+        (0, 1, 4, &x, "4 vertices, 4 faces"),
+        (1, 4, 1, &[0.0, 0.0, f64::NAN, 0.0], "m.mat, byte 136: vertex 3 has the coordinate NaN"),
+        (1, 3, 1, &[0.0; 3], short),
+        (3, 3, 4, &[1.0; 12], wide),
+        (3, 1, 3, &[1.0, 2.0, 5.0], index),
+        (3, 1, 3, &[1.0, 2.0, 2.5], index),
+        (3, 1, 3, &[1.0, 2.0, f64::NAN], index),
+        (3, 0, 3, &[], "m.mat: the file has 4 vertices but no faces"),
+        (0, 1_000_000, 1_000_000, &[0.0; 4], bold),
+    ];
+    check(of_fields.map(|(field, rows, columns, values, expected)| {
         let mut fields = PLAIN.fields(&mesh);
-        fields[field].1 = PLAIN.matrix("", kind, rows, columns, values);
-        one("m.mat", PLAIN.file(&[PLAIN.structure("surface", &fields)]))
-    };
+        fields[field].1 = PLAIN.matrix("", 9, rows, columns, values);
+        (expected, one("m.mat", PLAIN.file(&[PLAIN.structure("surface", &fields)])), expected)
+    }));
     let mut nested = PLAIN.fields(&mesh);
     nested[0].1 = PLAIN.structure("", &[]);
     let many: Vec<_> = (0..100).map(|i| PLAIN.matrix(&format!("{i:06000}"), 9, 1, 1, &[1.0])).collect();
     let whole = PLAIN.surface(&mesh);
-    let index = "m.mat, byte 136: a face refers to vertex";
     check([
-        ("a row of coordinates", with(0, 9, 1, 4, &x), "4 vertices, 4 faces"),
-        (
-            "no number",
-            with(1, 9, 4, 1, &[0.0, 0.0, f64::NAN, 0.0]),
-            "m.mat, byte 136: vertex 3 has the coordinate NaN",
-        ),
-        (
-            "three for four",
-            with(1, 9, 3, 1, &[0.0; 3]),
-            "m.mat, byte 136: expected columns X Y Z of equal length",
-        ),
-        (
-            "four columns",
-            with(3, 9, 3, 4, &[1.0; 12]),
-            "m.mat, byte 136: expected three columns in TRIV, found `3 x 4`",
-        ),
-        ("vertex 5", with(3, 9, 1, 3, &[1.0, 2.0, 5.0]), index),
-        ("vertex 2.5", with(3, 9, 1, 3, &[1.0, 2.0, 2.5]), index),
-        ("vertex NaN", with(3, 9, 1, 3, &[1.0, 2.0, f64::NAN]), index),
-        ("no faces", with(3, 9, 0, 3, &[]), "m.mat: the file has 4 vertices but no faces"),
-        (
-            "a bold header",
-            with(0, 9, 1_000_000, 1_000_000, &[0.0; 4]),
-            "m.mat, byte 136: the header promises 1000000000000 numbers of a matrix but the file holds only 4",
-        ),
         (
             "a struct in a field",
             one("m.mat", PLAIN.file(&[PLAIN.structure("surface", &nested)])),
@@ -608,24 +420,7 @@ fn matlab_files_are_read_in_every_encoding() {
             one("m.mat", PLAIN.file(&[PLAIN.matrix("other", 9, 1, 1, &[1.0])])),
             "m.mat: the file has no struct with the fields X Y Z TRIV (its variables: other)",
         ),
-        (
-            "nothing",
-            one("m.mat", PLAIN.file(&[])),
-            "m.mat: the file has no struct with the fields X Y Z TRIV (its variables: none)",
-        ),
         ("cut", one("m.mat", &whole[..whole.len() - 8]), "m.mat, byte 208: the header promises"),
-        (
-            "a new version",
-            one("m.mat", "MATLAB 7.3 MAT-file"),
-            "m.mat: this is a MATLAB 7.3 file; save it with `save -v7`",
-        ),
-        ("HDF", one("m.mat", b"\x89HDF\r\n"), "m.mat: this is a MATLAB 7.3 file"),
-        (
-            "no version",
-            one("m.mat", [7; 300]),
-            "m.mat: this is not a MATLAB 5 file (its header lacks the version",
-        ),
-        ("short", one("m.mat", "OFF"), "m.mat: this is not a MATLAB 5 file (it is shorter than the header)"),
     ]);
     let message = outcome(&one("m.mat", PLAIN.file(&many)));
     assert!(message.contains("and 92 more") && message.len() < 1000, "{message}");

@@ -273,13 +273,8 @@ impl Style {
         columns: usize,
         values: &[f64],
     ) -> Vec<u8> {
-        let class = match kind {
-            4 => 11,
-            5 => 12,
-            7 => 7,
-            _ => 6,
-        };
-        let data = [self.head(class, rows, columns, name), self.numbers(kind, values)].concat();
+        // A matrix of doubles, whose numbers may be stored as any type.
+        let data = [self.head(6, rows, columns, name), self.numbers(kind, values)].concat();
         self.element(14, &data)
     }
 
