@@ -93,33 +93,26 @@ impl Blob {
         }
     }
 
-    /// Vector to `p` from its foot on the axis, and the value: a lower bound of the distance to the blob,
-    /// exact unless the blob is flattened.
+    /// The value, a lower bound of the distance to the blob that is exact unless the blob is flattened, and its gradient.
     ///
     /// The foot is the point where the surface normal through `p` meets the axis. A cone that loses `sin(a)`
     /// of its radius per unit of length has normals tilted by `a`, so the foot lies `rho tan(a)` before the
     /// projection of `p`, where `rho` is the distance of `p` from the axis.
     #[inline]
-    fn offset_and_value(&self, p: Point3<f64>) -> (Vector3<f64>, f64) {
+    fn sample(&self, p: Point3<f64>) -> ImplicitSample {
         let axis = &self.axis;
         let q = self.stretch(p.coords) - axis.start;
         let along = q.dot(&axis.direction);
         let rho = (q.norm_squared() - along * along).max(0.0).sqrt();
         let foot = (along - rho * axis.slope).clamp(0.0, axis.length);
         let away = q - axis.direction * foot;
-        (away, axis.scale * (away.norm() - (self.radii[0] - foot * axis.taper)))
-    }
-
-    #[inline]
-    fn sample(&self, p: Point3<f64>) -> ImplicitSample {
-        let (away, value) = self.offset_and_value(p);
         let distance = away.norm();
+        let value = axis.scale * (distance - (self.radii[0] - foot * axis.taper));
         if distance == 0.0 {
             return (value, Vector3::zeros());
         }
-        let normal = away / distance;
         // The stretch is symmetric: the chain rule needs no transpose.
-        (value, self.stretch(normal) * self.axis.scale)
+        (value, self.stretch(away / distance) * axis.scale)
     }
 }
 
@@ -169,14 +162,6 @@ impl BodyPart {
             .fold((f64::INFINITY, Vector3::zeros()), |sum, blob| smooth_min(sum, blob.sample(p), blob.blend))
     }
 
-    #[inline]
-    fn value(&self, p: Point3<f64>) -> f64 {
-        self.blobs.iter().fold(f64::INFINITY, |least, blob| {
-            let value = blob.offset_and_value(p).1;
-            least.min(value) - dip(least, value, blob.blend)
-        })
-    }
-
     /// Whether the part can change the value `so_far` at `p`. Skipping it otherwise is exact: beyond its
     /// blending radius a smooth union returns the smaller operand.
     #[inline]
@@ -199,23 +184,16 @@ impl BodyPart {
 #[inline]
 fn smooth_min(a: ImplicitSample, b: ImplicitSample, reach: f64) -> ImplicitSample {
     let (near, far) = if a.0 <= b.0 { (a, b) } else { (b, a) };
-    let depth = dip(near.0, far.0, reach);
-    if depth == 0.0 {
+    let overlap = reach - (far.0 - near.0);
+    if overlap <= 0.0 {
         return near;
     }
-    let weight = 0.5 * (reach - (far.0 - near.0)) / reach;
-    (near.0 - depth, near.1 * (1.0 - weight) + far.1 * weight)
+    let weight = 0.5 * overlap / reach;
+    (near.0 - 0.25 * overlap * overlap / reach, near.1 * (1.0 - weight) + far.1 * weight)
 }
 
 fn negated(s: ImplicitSample) -> ImplicitSample {
     (-s.0, -s.1)
-}
-
-/// The amount by which the smooth union of two values lies below the smaller one.
-#[inline]
-fn dip(a: f64, b: f64, reach: f64) -> f64 {
-    let overlap = reach - (a - b).abs();
-    if overlap <= 0.0 { 0.0 } else { 0.25 * overlap * overlap / reach }
 }
 
 /// A whole body.
@@ -244,6 +222,7 @@ impl ImplicitBody {
     }
 
     /// Value and gradient at `p`. The value is 1-Lipschitz.
+    #[inline]
     pub(crate) fn sample(&self, p: Point3<f64>) -> ImplicitSample {
         let folded = self.folded(p);
         let mut sum = (f64::INFINITY, Vector3::zeros());
@@ -261,18 +240,9 @@ impl ImplicitBody {
         sum
     }
 
-    /// The value alone at `p`, the same as that of [`sample`](Self::sample).
+    /// The value alone at `p`.
     pub(crate) fn value(&self, p: Point3<f64>) -> f64 {
-        let folded = self.folded(p);
-        let mut sum = f64::INFINITY;
-        for part in &self.parts {
-            if part.may_change(folded, sum) {
-                let (value, so_far) = (part.value(folded), if part.carves { -sum } else { sum });
-                let least = so_far.min(value) - dip(so_far, value, part.blend);
-                sum = if part.carves { -least } else { least };
-            }
-        }
-        sum
+        self.sample(p).0
     }
 
     /// Center, in the plane of symmetry if there is one, and radius of a ball around the body.
@@ -306,8 +276,9 @@ impl ImplicitBody {
 mod tests {
     use super::*;
 
-    fn body() -> ImplicitBody {
-        ImplicitBody::new(vec![
+    #[test]
+    fn the_gradient_is_the_derivative_and_at_most_one() {
+        let body = ImplicitBody::new(vec![
             BodyPart::added(vec![Blob::cone([0.0, 0.0, 0.0], 3.0, [0.0, 1.0, 9.0], 1.5)]),
             BodyPart::added(vec![
                 Blob::ball([4.0, 0.0, 0.0], 2.0).flat([0.0, 1.0, 1.0], 0.4),
@@ -315,37 +286,10 @@ mod tests {
             ])
             .blend(1.0),
             BodyPart::new(true, vec![Blob::ball([0.0, -3.0, 3.0], 1.5)]).blend(0.5),
-        ])
-    }
-
-    fn grid() -> impl Iterator<Item = Point3<f64>> {
-        (0..1000).map(|i| {
-            let at = |k: i32| f64::from(k % 10) * 2.3 - 10.1;
-            Point3::new(at(i), at(i / 10), at(i / 100))
-        })
-    }
-
-    #[test]
-    fn the_value_of_a_round_cone_is_the_distance_to_its_balls_and_common_tangent() {
-        let cone = Blob::cone([0.0, 0.0, 0.0], 2.0, [0.0, 0.0, 5.0], 1.0);
-        let value = |x, z| cone.sample(Point3::new(x, 0.0, z)).0;
-        assert!((value(0.0, -3.0) - 1.0).abs() < 1e-12);
-        assert!((value(0.0, 7.0) - 1.0).abs() < 1e-12);
-        // The common tangent: sin(a) = 1/5, so the radius at the point z of the axis is 2 - z/5.
-        let (sin, cos) = (0.2, 0.96f64.sqrt());
-        let on_surface = |z: f64| (cos * (2.0 - z * sin), z + sin * (2.0 - z * sin));
-        for z in [0.0, 1.0, 2.5, 5.0] {
-            let (x, z) = on_surface(z);
-            assert!(value(x, z).abs() < 1e-12);
-        }
-        let inside_out = Blob::cone([0.0; 3], 2.0, [0.0, 0.0, 0.5], 1.0);
-        assert!((inside_out.sample(Point3::new(0.0, 0.0, 4.0)).0 - 2.0).abs() < 1e-12);
-    }
-
-    #[test]
-    fn the_gradient_is_the_derivative_and_at_most_one() {
-        let (body, h) = (body(), 1e-6);
-        for p in grid() {
+        ]);
+        let h = 1e-6;
+        for i in 0..1000 {
+            let p = Point3::from([1, 10, 100].map(|place| f64::from(i / place % 10) * 2.3 - 10.1));
             let (_, gradient) = body.sample(p);
             assert!(gradient.norm() <= 1.0 + 1e-9);
             let slope = Vector3::from_fn(|i, _| {
