@@ -2,11 +2,12 @@
 
 use std::collections::{BTreeMap, HashMap};
 
+use nalgebra::{Matrix3, Vector3};
 use serde::Deserialize;
 
 use crate::implicit::{Blob, BodyPart, ImplicitBody};
 use crate::pose::{JointTurn, Pose};
-use crate::skeleton::{Joint, JointId, Skeleton, node};
+use crate::skeleton::{BoneNode, Joint, JointId, Skeleton};
 
 /// A body at rest, its skeleton and its poses.
 #[derive(Debug, Clone)]
@@ -126,8 +127,9 @@ impl BodyDescription {
         let (mut skeleton, mut names) = (Skeleton::default(), JointNames::default());
         for data in &self.chains {
             let parent = data.parent.as_deref().map(|name| (names.chains[name][0], data.node));
-            let nodes =
-                data.nodes.iter().map(|&[x, y, z, radius, grain]| node([x, y, z], radius, grain)).collect();
+            let node =
+                |&[x, y, z, radius, grain]: &[f64; 5]| BoneNode { at: [x, y, z].into(), radius, grain };
+            let nodes = data.nodes.iter().map(node).collect();
             let joints = data.joints.iter().map(JointData::joint).collect();
             let chains = match parent.filter(|_| data.pair) {
                 Some(parent) => skeleton.pair(parent, nodes, joints).to_vec(),
@@ -163,8 +165,14 @@ impl BlobData {
 
 impl JointData {
     fn joint(&self) -> Joint {
-        let ball = Joint::ball(self.at, self.reach[0], self.reach[1], self.play);
-        self.hinge.map_or(ball.clone(), |[axis, along]| ball.hinge(axis, along))
+        let hinge = |[axis, along]: [[f64; 3]; 2]| {
+            let (x, along) = (Vector3::from(axis).normalize(), Vector3::from(along));
+            let y = (along - x * x.dot(&along)).normalize();
+            Matrix3::from_columns(&[x, y, x.cross(&y)])
+        };
+        let frame = self.hinge.map_or_else(Matrix3::identity, hinge);
+        let [before, after] = self.reach;
+        Joint { node: self.at, before, after, frame, play: self.play }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Chains of bones in the body at rest, and the position of a point of the body along them.
 
-use nalgebra::{Matrix3, Point3, Vector3};
+use nalgebra::{Matrix3, Point3};
 
 /// A point on the axis of a limb.
 #[derive(Debug, Clone, Copy)]
@@ -10,11 +10,6 @@ pub(crate) struct BoneNode {
     pub(crate) radius: f64,
     /// Target edge length of the triangles nearby, up to a common factor.
     pub(crate) grain: f64,
-}
-
-/// Short constructor for tables of nodes.
-pub(crate) fn node(at: [f64; 3], radius: f64, grain: f64) -> BoneNode {
-    BoneNode { at: at.into(), radius, grain }
 }
 
 /// A place where a chain bends.
@@ -157,20 +152,5 @@ impl Skeleton {
             .memberships(p)
             .fold((0.0, 0.0), |(sum, weight), m| (sum + m.weight * m.grain, weight + m.weight));
         sum / weight
-    }
-}
-
-impl Joint {
-    /// A joint that rotates about the axes of the body.
-    pub(crate) fn ball(node: usize, before: f64, after: f64, play: [f64; 3]) -> Self {
-        Self { node, before, after, frame: Matrix3::identity(), play }
-    }
-
-    /// The same joint with axes of its own: it flexes about `axis`, and its second axis is the direction `along` of the limb.
-    pub(crate) fn hinge(self, axis: [f64; 3], along: [f64; 3]) -> Self {
-        let x = Vector3::from(axis).normalize();
-        let along = Vector3::from(along);
-        let y = (along - x * x.dot(&along)).normalize();
-        Self { frame: Matrix3::from_columns(&[x, y, x.cross(&y)]), ..self }
     }
 }

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use nalgebra::{Matrix3, Point3, Vector3};
 
 use crate::implicit::{Blob, BodyPart};
-use crate::skeleton::{BoneNode, Joint, Skeleton, node};
+use crate::skeleton::{BoneNode, Joint, Skeleton};
 use crate::trig::sin_cos;
 
 /// Greatest product of the angle of a joint in radians and the girth of the limb, over the length that bends. A straight
@@ -145,7 +145,7 @@ impl Draft {
         let nodes: Vec<BoneNode> = axis
             .iter()
             .zip(&radii)
-            .map(|(at, radius)| node(at.coords.into(), radius * squeezed, grain(*radius)))
+            .map(|(at, radius)| BoneNode { at: *at, radius: radius * squeezed, grain: grain(*radius) })
             .collect();
         let inner = 1..axis.len() - 1;
         let joints = inner.map(|i| joint(&nodes, i, limb.bend)).collect();
