@@ -24,21 +24,15 @@ const NO_VERTEX: VertexId = VertexId(u32::MAX);
 const NO_CORNER: CornerId = CornerId(u32::MAX);
 
 impl EditableCorners {
-    /// `None` unless the faces form a closed, consistently oriented manifold that uses every vertex.
+    /// `None` unless every vertex has a face and every edge two. The faces are oriented consistently, and those of a vertex
+    /// form one cycle.
     pub(crate) fn new(n_vertices: usize, faces: &[[VertexId; 3]]) -> Option<Self> {
         let topology = Topology::new(n_vertices, faces.to_vec());
-        let corners = || (0..3 * faces.len()).map(CornerId::from);
-        let twin = corners().map(|c| topology.opposite(c)).collect::<Option<Vec<CornerId>>>()?;
-        // The two faces at an edge traverse it in opposite directions.
-        let start = |c: CornerId| topology.corner_vertex(c.next());
-        if corners().zip(&twin).any(|(c, &twin)| start(c) == start(twin)) {
-            return None;
-        }
-        let at = |v: usize| topology.vertex_corners(VertexId::from(v));
-        let corner = (0..n_vertices).map(|v| at(v).last().copied()).collect::<Option<_>>()?;
-        let table = Self { vertex: faces.concat(), twin, corner };
-        let is_one_cycle = |v: usize| table.around(VertexId::from(v)).count() == at(v).len();
-        (0..n_vertices).all(is_one_cycle).then_some(table)
+        let twin =
+            (0..3 * faces.len()).map(|c| topology.opposite(CornerId::from(c))).collect::<Option<_>>()?;
+        let corner = |v: usize| topology.vertex_corners(VertexId::from(v)).last().copied();
+        let corner = (0..n_vertices).map(corner).collect::<Option<_>>()?;
+        Some(Self { vertex: faces.concat(), twin, corner })
     }
 
     pub(crate) fn n_corners(&self) -> usize {
@@ -172,30 +166,5 @@ impl EditableCorners {
     /// The living faces, in their original order.
     pub(crate) fn faces(&self) -> impl Iterator<Item = [VertexId; 3]> + '_ {
         self.vertex.as_chunks().0.iter().copied().filter(|face| face[0] != NO_VERTEX)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn faces(list: &[[u32; 3]]) -> Vec<[VertexId; 3]> {
-        list.iter().map(|f| f.map(VertexId)).collect()
-    }
-
-    #[test]
-    fn only_closed_oriented_manifolds_have_a_corner_table() {
-        let tetrahedron = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]];
-        assert!(EditableCorners::new(4, &faces(&tetrahedron)).is_some());
-        assert!(EditableCorners::new(5, &faces(&tetrahedron)).is_none(), "an unused vertex");
-        assert!(EditableCorners::new(4, &faces(&tetrahedron[..3])).is_none(), "a hole");
-        let mut flipped = tetrahedron;
-        flipped[3] = [2, 0, 3];
-        assert!(EditableCorners::new(4, &faces(&flipped)).is_none(), "a flipped face");
-        let twice = [tetrahedron.as_slice(), &tetrahedron.map(|f| f.map(|v| if v == 0 { 0 } else { v + 3 }))];
-        assert!(
-            EditableCorners::new(7, &faces(&twice.concat())).is_none(),
-            "two surfaces touching in a point"
-        );
     }
 }

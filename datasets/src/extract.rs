@@ -249,7 +249,6 @@ fn triangles(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::corner_table::EditableCorners;
     use crate::implicit::{Blob, BodyPart};
     use crate::trig::rotation;
 
@@ -269,7 +268,8 @@ mod tests {
             extract(&ImplicitBody::new(vec![BodyPart::added(blobs)]), lattice(0.6), &Budget::unlimited())
                 .unwrap();
         assert!(raw.faces.len() > 1000);
-        let table = EditableCorners::new(raw.positions.len(), &raw.faces);
-        assert!(table.is_some(), "an edge does not have two faces, or a vertex has two fans");
+        let report = mesh::validate(&raw);
+        let defects = [report.n_boundary_edges, report.non_manifold_edges, report.non_manifold_vertices];
+        assert_eq!((defects, report.inconsistent_edges, report.unreferenced_vertices), ([0; 3], 0, 0));
     }
 }
