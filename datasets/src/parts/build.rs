@@ -44,43 +44,6 @@ impl MechanicalPart {
             PartFamily::Block => solid.extrude(&rectangle([v[0], v[1]], 0.0, arcs), &[], [0.0, v[2]]),
         }
     }
-
-    /// The volume in cubic millimetres of the exact part, whose circles are round; `None` where there is no simple formula.
-    pub fn volume(&self) -> Option<f64> {
-        let v = &self.values[..];
-        let disc = |diameter: f64| PI / 4.0 * diameter * diameter;
-        let ring = |outer: f64, wall: f64| disc(outer) - disc(outer - 2.0 * wall);
-        Some(match self.family {
-            PartFamily::Bracket => v[3] * ((v[0] + v[1] - v[3]) * v[2] - 2.0 * v[5] * disc(v[4])),
-            PartFamily::Plate => v[2] * (v[0] * v[1] - (4.0 - PI) * v[3] * v[3] - v[5] * disc(v[4])),
-            PartFamily::Gear => v[2] * (area(&gear_outline(v[0], v[1])) - disc(v[3])),
-            PartFamily::Enclosure => {
-                let inside = (v[0] - 2.0 * v[3]) * (v[1] - 2.0 * v[3]) * (v[2] - v[3]);
-                v[0] * v[1] * v[2] - inside - v[4] * v[3] * disc(FLOOR_HOLE)
-            }
-            PartFamily::HexScrew => return None,
-            // The center of a section moves this far (Pappus).
-            PartFamily::BentPipe => ring(v[0], v[1]) * (2.0 * v[4] + v[2] * v[3].to_radians()),
-            PartFamily::Shaft => (0..3).map(|i| disc(v[i]) * v[i + 3]).sum(),
-            PartFamily::Block => v[0] * v[1] * v[2],
-        })
-    }
-
-    /// The number of handles of the surface: one for each hole through the part.
-    pub fn genus(&self) -> usize {
-        match self.family {
-            PartFamily::Bracket => 2 * self.values[5] as usize,
-            PartFamily::Plate => self.values[5] as usize,
-            PartFamily::Enclosure => self.values[4] as usize,
-            PartFamily::Gear | PartFamily::BentPipe => 1,
-            _ => 0,
-        }
-    }
-}
-
-fn area(outline: &[[f64; 2]]) -> f64 {
-    let next = outline.iter().cycle().skip(1);
-    outline.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>() / 2.0
 }
 
 fn plate_holes(v: &[f64]) -> Vec<[f64; 2]> {
