@@ -351,24 +351,6 @@ mod tests {
     }
 
     #[test]
-    #[ignore = "slow: make test-all"]
-    fn limbs_do_not_intersect_for_any_seed() {
-        let mut n_entangled = 0;
-        for family in Family::all() {
-            let model = family.model();
-            for (seed, pose) in (0..30).flat_map(|seed| (1..family.n_shapes()).map(move |pose| (seed, pose)))
-            {
-                let stream = || Stream::new(seed, family as usize, pose, Purpose::Pose);
-                let first = model.poses[pose].varied(&model.skeleton, &mut stream());
-                n_entangled += usize::from(entanglement(&PosedSkeleton::new(&model.skeleton, &first)) > 0.0);
-                let depth = entanglement(&posed_skeleton(&model, pose, &mut stream()));
-                assert!(depth <= 0.0, "{}{pose}, seed {seed}: {depth}", family.name());
-            }
-        }
-        assert!(n_entangled > 0, "no pose was drawn again");
-    }
-
-    #[test]
     fn a_body_with_two_components_is_an_error() {
         let mut model = Family::Cat.model();
         model.body = ImplicitBody::new(vec![
