@@ -71,7 +71,7 @@ pub(crate) struct Provenance {
 }
 
 /// What the intervals of a field rest on.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case", tag = "kind")]
 pub enum FieldBounds {
     /// Exact distances from all landmarks and the triangle inequality: no interval can miss the distance.
@@ -137,16 +137,6 @@ impl DistanceField {
                 exact_columns: tables.n_exact,
             },
         }
-    }
-
-    /// The method that measured the columns.
-    pub fn method(&self) -> Method {
-        self.provenance.method
-    }
-
-    /// How the mesh was repaired.
-    pub fn repair(&self) -> RepairOptions {
-        self.provenance.repair
     }
 
     /// The landmarks: vertices of the input.

@@ -19,10 +19,6 @@ impl Interval {
     fn between(a: f64, b: f64) -> Self {
         Self { lower: a.min(b).max(0.0), upper: a.max(b).max(0.0) }
     }
-
-    pub(crate) fn width(&self) -> f64 {
-        self.upper - self.lower
-    }
 }
 
 /// The error of computed distances: `computed - over <= true <= computed + under`.
@@ -84,15 +80,6 @@ pub(crate) struct LandmarkMetric {
     /// For every point, the distance to the nearest landmark and the approximation of its squared distance from itself, in
     /// the quanta of the distances and the squared quanta of the factor.
     local: Vec<[f32; 2]>,
-}
-
-/// What is known about the distance of two points.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct PairEstimate {
-    /// The estimate, in what the landmarks leave open if the columns have no error: part of `bounds`.
-    pub(crate) distance: f64,
-    /// The interval that holds the distance.
-    pub(crate) bounds: Interval,
 }
 
 /// The distance, in distances to the nearest landmarks, beyond which the value at equal points says nothing. Measured on
@@ -199,8 +186,9 @@ impl LandmarkMetric {
         f64::from(codes) * self.tables.quantum
     }
 
-    /// What is known about the distance of two points, in the unit of the distances.
-    pub(crate) fn pair(&self, a: usize, b: usize) -> PairEstimate {
+    /// The estimate of the distance of two points, in what the landmarks leave open if the columns have no error, and the
+    /// interval that holds the distance; in the unit of the distances.
+    pub(crate) fn pair(&self, a: usize, b: usize) -> (f64, Interval) {
         let (open, bounds) = self.intervals(a, b);
         let [[near_a, own_a], [near_b, own_b]] =
             [self.local[a], self.local[b]].map(|local| local.map(f64::from));
@@ -211,8 +199,7 @@ impl LandmarkMetric {
             square -= 0.5 * (own_a + own_b) * (-far).exp();
         }
         let distance = square.max(0.0).sqrt() * self.tables.factor_quantum;
-        let distance = distance.max(open.lower).min(open.upper);
-        PairEstimate { distance, bounds }
+        (distance.max(open.lower).min(open.upper), bounds)
     }
 
     /// What the landmarks leave open if no column has an error, and the interval that holds the distance in any case.

@@ -7,7 +7,7 @@ use surface::VertexId;
 
 use crate::distance_field::DistanceField;
 use crate::error::FieldError;
-use crate::metric::PairEstimate;
+use crate::metric::Interval;
 use base::Observer;
 
 /// Which pairs are finished by exact propagation.
@@ -28,10 +28,12 @@ impl Default for Finish {
 }
 
 impl Finish {
-    fn wants(self, pair: &PairEstimate) -> bool {
+    fn wants(self, pair: &PairDistance) -> bool {
         match self {
             Self::Never => false,
-            Self::Beyond(share) => pair.bounds.width() > share * pair.bounds.lower,
+            Self::Beyond(share) => {
+                pair.kind == PairKind::Estimated && pair.upper - pair.lower > share * pair.lower
+            }
         }
     }
 }
@@ -73,20 +75,7 @@ impl PairDistance {
         let [lower, upper] = [distance * (1.0 - ROUNDING), distance * (1.0 + ROUNDING)];
         Self { a, b, distance, lower, upper, kind: PairKind::Exact }
     }
-
-    fn dropped([a, b]: [VertexId; 2]) -> Self {
-        let infinite = f64::INFINITY;
-        Self { a, b, distance: infinite, lower: infinite, upper: infinite, kind: PairKind::Dropped }
-    }
-
-    fn estimated([a, b]: [VertexId; 2], pair: &PairEstimate) -> Self {
-        let PairEstimate { distance, bounds } = *pair;
-        Self { a, b, distance, lower: bounds.lower, upper: bounds.upper, kind: PairKind::Estimated }
-    }
 }
-
-/// An estimate that can be finished, and its vertices on the repaired mesh.
-type Open = (PairEstimate, [VertexId; 2]);
 
 /// A pair that is to be finished: its place among the answers and its vertices on the repaired mesh.
 #[derive(Debug, Clone, Copy)]
@@ -104,20 +93,15 @@ impl DistanceField {
     /// # Errors
     /// [`FieldError::Geodesic`] for a vertex that does not exist.
     pub fn pair(&self, a: VertexId, b: VertexId) -> Result<PairDistance, FieldError> {
-        Ok(self.estimate([a, b])?.0)
-    }
-
-    /// The estimate of a pair, and what it takes to finish it; `None` if nothing is left to finish.
-    fn estimate(&self, pair: [VertexId; 2]) -> Result<(PairDistance, Option<Open>), FieldError> {
-        let [a, b] = pair;
-        let (Some(a), Some(b)) = (self.repaired(a)?, self.repaired(b)?) else {
-            return Ok((PairDistance::dropped(pair), None));
+        let (Some(on_a), Some(on_b)) = (self.repaired(a)?, self.repaired(b)?) else {
+            let [distance, lower, upper] = [f64::INFINITY; 3];
+            return Ok(PairDistance { a, b, distance, lower, upper, kind: PairKind::Dropped });
         };
-        if a == b {
-            return Ok((PairDistance::exact(pair, 0.0), None));
+        if on_a == on_b {
+            return Ok(PairDistance::exact([a, b], 0.0));
         }
-        let estimate = self.metric.pair(a.index(), b.index());
-        Ok((PairDistance::estimated(pair, &estimate), Some((estimate, [a, b]))))
+        let (distance, Interval { lower, upper }) = self.metric.pair(on_a.index(), on_b.index());
+        Ok(PairDistance { a, b, distance, lower, upper, kind: PairKind::Estimated })
     }
 
     /// The distances of many pairs of vertices of the input, in parallel, in their order. Finished pairs are grouped by vertex,
@@ -131,17 +115,15 @@ impl DistanceField {
         finish: Finish,
         observer: &dyn Observer,
     ) -> Result<Vec<PairDistance>, FieldError> {
-        let answers = pairs.par_iter().enumerate().with_min_len(1024).map(|(place, pair)| {
-            let (answer, open) = self.estimate(*pair)?;
-            let unfinished = open.filter(|(estimate, _)| finish.wants(estimate)).map(|(estimate, [a, b])| {
-                let upper = estimate.bounds.upper;
-                Unfinished { place, source: a.min(b), target: a.max(b), upper }
-            });
-            Ok((answer, unfinished))
-        });
-        let (mut answers, unfinished): (Vec<_>, Vec<_>) =
-            answers.collect::<Result<Vec<_>, FieldError>>()?.into_iter().unzip();
-        let mut unfinished: Vec<Unfinished> = unfinished.into_iter().flatten().collect();
+        let answers = pairs.par_iter().with_min_len(1024).map(|[a, b]| self.pair(*a, *b));
+        let mut answers = answers.collect::<Result<Vec<_>, FieldError>>()?;
+        let open = answers.iter().enumerate().filter(|(_, answer)| finish.wants(answer));
+        let mut unfinished: Vec<Unfinished> = open
+            .filter_map(|(place, answer)| {
+                let [a, b] = [self.remap.to_new(answer.a)?, self.remap.to_new(answer.b)?];
+                Some(Unfinished { place, source: a.min(b), target: a.max(b), upper: answer.upper })
+            })
+            .collect();
         // From the lower vertex, so that both directions of a pair give the same number.
         unfinished.sort_by_key(|pair| (pair.source, pair.place));
         let groups: Vec<&[Unfinished]> = unfinished.chunk_by(|a, b| a.source == b.source).collect();
@@ -174,13 +156,10 @@ impl DistanceField {
     ) -> Result<Vec<PairDistance>, FieldError> {
         let from = self.repaired(source)?;
         let vertices = (0..self.n_vertices()).into_par_iter().with_min_len(1024);
-        let answers = vertices.map(|vertex| self.estimate([source, VertexId::from(vertex)]));
-        let answers = answers.collect::<Result<Vec<_>, FieldError>>()?;
-        let open =
-            answers.iter().filter_map(|(_, open)| open.as_ref()).filter(|(pair, _)| finish.wants(pair));
-        let radius = open
-            .fold(None, |radius: Option<f64>, (pair, _)| Some(radius.unwrap_or(0.0).max(pair.bounds.upper)));
-        let mut row: Vec<PairDistance> = answers.into_iter().map(|(answer, _)| answer).collect();
+        let row = vertices.map(|vertex| self.pair(source, VertexId::from(vertex)));
+        let mut row = row.collect::<Result<Vec<_>, FieldError>>()?;
+        let open = row.iter().filter(|answer| finish.wants(answer));
+        let radius = open.map(|answer| answer.upper).reduce(f64::max);
         if let (Some(from), Some(radius)) = (from, radius) {
             let mut distances = Vec::new();
             self.propagate(from, radius, &mut distances, observer)?;

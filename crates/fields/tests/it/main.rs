@@ -5,6 +5,7 @@
 
 use canonform_fields::*;
 use geodesics::{GeodesicError, Method};
+use linalg::Matrix;
 use mesh::{ComponentPolicy, RepairOptions, Surface, TriMesh, shapes};
 use nmds::NmdsError;
 use surface::VertexId;
@@ -17,8 +18,8 @@ fn exact(landmarks: usize) -> FieldOptions {
     FieldOptions { method: Method::Exact, landmarks, rank: None }
 }
 
-fn built(mesh: &TriMesh, options: &FieldOptions) -> DistanceField {
-    DistanceField::build(&surface(mesh), options, &()).unwrap()
+fn built(surface: &Surface, options: &FieldOptions) -> DistanceField {
+    DistanceField::build(surface, options, &()).unwrap()
 }
 
 /// All pairs of vertices.
@@ -26,14 +27,21 @@ fn all_pairs(n: usize) -> Vec<[VertexId; 2]> {
     (0..n).flat_map(|a| (0..n).map(move |b| [VertexId::from(a), VertexId::from(b)])).collect()
 }
 
-/// A torus with a crack, whose vertices are merged, beside a small component, which is dropped.
-fn repaired() -> TriMesh {
-    testkit::cracked(&shapes::disjoint(&[shapes::grid(2, 2, 0.01), shapes::torus(14, 8, 2.0, 0.6)]), 10)
+/// Exact distances from every vertex, each in its column.
+fn exact_columns(surface: &Surface) -> Matrix {
+    let vertices: Vec<_> = (0..surface.intrinsic().n_vertices()).map(VertexId::from).collect();
+    Method::Exact.prepare(surface.intrinsic(), &()).unwrap().distance_columns(&vertices).unwrap()
 }
 
-/// Surfaces of every kind: closed, open, with handles, with needles, with a fold.
-fn zoo() -> Vec<TriMesh> {
-    vec![
+/// A torus with a crack, whose vertices are merged, beside a small component, which is dropped.
+fn repaired() -> Surface {
+    let pieces = shapes::disjoint(&[shapes::grid(2, 2, 0.01), shapes::torus(14, 8, 2.0, 0.6)]);
+    surface(&testkit::cracked(&pieces, 10))
+}
+
+/// Surfaces of every kind: closed, open, with handles, with needles, with a fold, in two pieces that are joined.
+fn zoo() -> Vec<Surface> {
+    let meshes = [
         shapes::icosphere(2),
         shapes::torus(16, 9, 2.0, 0.7),
         shapes::jittered_grid(14, 11, 1.0, 0.3, 5),
@@ -41,28 +49,35 @@ fn zoo() -> Vec<TriMesh> {
         shapes::fold(&shapes::grid(12, 8, 1.0), 5.0, 1.5),
         shapes::cube(2),
         shapes::cylinder(24, 3, 1.0, 9.0),
-    ]
+        shapes::disjoint(&[shapes::icosphere(1), shapes::cube(1)]),
+    ];
+    let bridged = RepairOptions { components: ComponentPolicy::Bridge, ..Default::default() };
+    meshes.map(|mesh| Surface::new(&mesh, &bridged, &()).unwrap()).into()
 }
 
 #[test]
 fn certified_and_measured_intervals_hold_every_exact_distance() {
     let methods = [Method::Exact, Method::default(), Method::Dijkstra, Method::Heat(Default::default())];
-    for mesh in zoo() {
-        let solver = Method::Exact.prepare(surface(&mesh).intrinsic(), &()).unwrap();
+    for surface in zoo() {
+        let columns = exact_columns(&surface);
         for method in methods {
             let landmarks = if method == Method::Exact { 12 } else { 16 };
-            let field = built(&mesh, &FieldOptions { method, ..exact(landmarks) });
-            match field.bounds() {
-                FieldBounds::Certified => assert_eq!(method, Method::Exact),
-                bounds => assert!(matches!(bounds, FieldBounds::Measured { exact_columns: 4, .. })),
-            }
-            for a in (0..mesh.n_vertices()).map(VertexId::from) {
-                for (b, distance) in solver.distances(a).unwrap().iter().enumerate() {
-                    let pair = field.pair(a, VertexId::from(b)).unwrap();
-                    let holds = pair.lower <= *distance && *distance <= pair.upper;
-                    assert!(holds, "{}: {pair:?}: {distance}", field.facts().method);
-                    assert!(pair.lower <= pair.distance && pair.distance <= pair.upper, "{pair:?}");
-                }
+            let field = built(&surface, &FieldOptions { method, ..exact(landmarks) });
+            // Where other columns contradict exact ones, the interval is as wide as their error.
+            let (n_exact, error) = match field.bounds() {
+                FieldBounds::Certified => (landmarks, 0.0),
+                FieldBounds::Measured { exact_columns, over, under } => (exact_columns, over + under),
+            };
+            assert_eq!(n_exact, if method == Method::Exact { landmarks } else { 4 });
+            let sources = &field.landmarks()[..n_exact];
+            // Distances are stored in 16 bits.
+            let known = error + 2.2 * columns.max() / 65535.0;
+            for [a, b] in all_pairs(field.n_vertices()) {
+                let (pair, distance) = (field.pair(a, b).unwrap(), columns[(b.index(), a.index())]);
+                let holds = pair.lower <= distance && distance <= pair.upper;
+                assert!(holds, "{}: {pair:?}: {distance}", field.facts().method);
+                assert!(pair.lower <= pair.distance && pair.distance <= pair.upper, "{pair:?}");
+                assert!(!sources.contains(&a) || pair.upper - pair.lower < known, "{pair:?}");
             }
         }
     }
@@ -71,11 +86,10 @@ fn certified_and_measured_intervals_hold_every_exact_distance() {
 #[test]
 fn finished_pairs_are_exact_and_the_others_as_near_as_promised() {
     let methods = [Method::Exact, Method::default(), Method::Heat(Default::default())];
-    for (mesh, method) in zoo().into_iter().flat_map(|mesh| methods.map(|method| (mesh.clone(), method))) {
-        let field = built(&mesh, &FieldOptions { method, ..exact(12) });
-        let n = mesh.n_vertices();
-        let solver = Method::Exact.prepare(surface(&mesh).intrinsic(), &()).unwrap();
-        let columns = solver.distance_columns(&(0..n).map(VertexId::from).collect::<Vec<_>>()).unwrap();
+    for (surface, method) in zoo().iter().flat_map(|surface| methods.map(|method| (surface, method))) {
+        let field = built(surface, &FieldOptions { method, ..exact(12) });
+        let n = field.n_vertices();
+        let columns = exact_columns(surface);
         let pairs = all_pairs(n);
         let share = 0.1;
         let found = field.pairs(&pairs, Finish::Beyond(share), &()).unwrap();
@@ -88,6 +102,10 @@ fn finished_pairs_are_exact_and_the_others_as_near_as_promised() {
             }
             assert!(error <= share * distance, "{pair:?}: {distance}");
             assert!(pair.lower <= distance && distance <= pair.upper, "{pair:?}: {distance}");
+            // The same in both directions, and zero from a vertex to itself.
+            let back = found[pair.b.index() * n + pair.a.index()];
+            assert_eq!(PairDistance { a: pair.a, b: pair.b, ..back }, *pair);
+            assert!(pair.a != pair.b || pair.upper == 0.0);
         }
         let is_estimated = found.iter().any(|pair| pair.kind == PairKind::Estimated);
         assert!(is_estimated || method != Method::Exact);
@@ -108,58 +126,12 @@ fn finished_pairs_are_exact_and_the_others_as_near_as_promised() {
 }
 
 #[test]
-fn distances_are_symmetric_and_zero_on_the_diagonal() {
-    for method in [Method::default(), Method::Exact] {
-        let mesh = shapes::torus(16, 9, 2.0, 0.7);
-        let field = built(&mesh, &FieldOptions { method, landmarks: 10, rank: None });
-        let n = mesh.n_vertices();
-        for finish in [Finish::Never, Finish::default()] {
-            let all = field.pairs(&all_pairs(n), finish, &()).unwrap();
-            for a in 0..n {
-                assert_eq!((all[a * n + a].distance, all[a * n + a].upper), (0.0, 0.0));
-                for b in 0..a {
-                    let [there, back] = [all[a * n + b], all[b * n + a]];
-                    assert_eq!(
-                        (there.distance, there.lower, there.upper),
-                        (back.distance, back.lower, back.upper)
-                    );
-                    assert_eq!(there.kind, back.kind);
-                }
-            }
-        }
-    }
-}
-
-#[test]
-fn distances_from_landmarks_with_exact_columns_are_known_to_rounding() {
-    for mesh in zoo() {
-        for method in [Method::Exact, Method::default()] {
-            let field = built(&mesh, &FieldOptions { method, ..exact(16) });
-            // Other columns may contradict an exact one by their error.
-            let (n_exact, error) = match field.bounds() {
-                FieldBounds::Certified => (field.landmarks().len(), 0.0),
-                FieldBounds::Measured { exact_columns, over, under } => (exact_columns, over + under),
-            };
-            let from = |landmark: &VertexId| {
-                let vertices = (0..mesh.n_vertices()).map(VertexId::from);
-                vertices.map(|v| field.pair(*landmark, v).unwrap()).collect::<Vec<_>>()
-            };
-            let pairs: Vec<_> = field.landmarks().iter().map(from).collect();
-            // Distances are stored in 16 bits.
-            let farthest = pairs.iter().flatten().map(|pair| pair.distance).fold(0.0, f64::max);
-            for pair in pairs[..n_exact].iter().flatten() {
-                assert!(pair.upper - pair.lower < error + 2.2 * farthest / 65535.0, "{pair:?}");
-            }
-        }
-    }
-}
-
-#[test]
 fn another_unit_changes_nothing_but_the_unit() {
     let mesh = shapes::jittered_grid(14, 11, 1.0, 0.3, 5);
     let pairs: Vec<_> = all_pairs(mesh.n_vertices()).into_iter().step_by(7).collect();
     let found = |scale: f64| {
-        built(&testkit::moved(&mesh, |p| p * scale), &exact(12)).pairs(&pairs, Finish::Never, &()).unwrap()
+        let surface = surface(&testkit::moved(&mesh, |p| p * scale));
+        built(&surface, &exact(12)).pairs(&pairs, Finish::Never, &()).unwrap()
     };
     let plain = found(1.0);
     for scale in [2f64.powi(-40), 2f64.powi(60)] {
@@ -173,16 +145,16 @@ fn another_unit_changes_nothing_but_the_unit() {
 #[test]
 fn the_nearest_vertices_are_those_of_the_exact_distances() {
     for method in [Method::default(), Method::Exact] {
-        for mesh in zoo() {
-            let field = built(&mesh, &FieldOptions { method, landmarks: 9, rank: None });
-            let solver = Method::Exact.prepare(surface(&mesh).intrinsic(), &()).unwrap();
-            for source in [0, mesh.n_vertices() / 3].map(VertexId::from) {
+        for surface in zoo() {
+            let field = built(&surface, &FieldOptions { method, landmarks: 9, rank: None });
+            let solver = Method::Exact.prepare(surface.intrinsic(), &()).unwrap();
+            for source in [0, field.n_vertices() / 3].map(VertexId::from) {
                 let distances = solver.distances(source).unwrap();
                 let mut sorted = distances.clone();
                 sorted.sort_by(f64::total_cmp);
-                for k in [1, 7, mesh.n_vertices() + 5] {
+                for k in [1, 7, field.n_vertices() + 5] {
                     let nearest = field.nearest(source, k, &()).unwrap();
-                    assert_eq!(nearest.len(), k.min(mesh.n_vertices() - 1));
+                    assert_eq!(nearest.len(), k.min(field.n_vertices() - 1));
                     for (pair, expected) in nearest.iter().zip(&sorted[1..]) {
                         assert_eq!((pair.a, pair.kind), (source, PairKind::Exact));
                         assert!((distances[pair.b.index()] - pair.distance).abs() <= 1e-9 * expected);
@@ -196,59 +168,43 @@ fn the_nearest_vertices_are_those_of_the_exact_distances() {
 
 #[test]
 fn answers_are_in_the_vertex_numbers_of_the_input() {
-    let mesh = repaired();
-    let twin = mesh.n_vertices() - 1;
-    let field = built(&mesh, &exact(10));
-    assert_eq!(field.n_vertices(), mesh.n_vertices());
+    let surface = repaired();
+    let n_vertices = surface.n_input_vertices();
+    let field = built(&surface, &exact(10));
+    assert_eq!(field.n_vertices(), n_vertices);
     assert!(field.landmarks().iter().all(|v| v.index() >= 4), "the first component was dropped");
-    let solver = Method::Exact.prepare(surface(&mesh).intrinsic(), &()).unwrap();
-    let source = surface(&mesh).repaired_vertex(VertexId(30)).unwrap();
-    let distances = surface(&mesh).in_input_order(&solver.distances(source).unwrap(), f64::INFINITY);
+    let solver = Method::Exact.prepare(surface.intrinsic(), &()).unwrap();
+    let source = surface.repaired_vertex(VertexId(30)).unwrap();
+    let distances = surface.in_input_order(&solver.distances(source).unwrap(), f64::INFINITY);
     let row = field.row(VertexId(30), Finish::Never, &()).unwrap();
     for (pair, distance) in row.iter().zip(&distances) {
         assert!(pair.lower <= *distance && *distance <= pair.upper, "{pair:?}: {distance}");
         assert_eq!(pair.kind == PairKind::Dropped, distance.is_infinite());
     }
-    let [a, b] = [VertexId(10), VertexId::from(twin)];
+    let [a, b] = [VertexId(10), VertexId::from(n_vertices - 1)];
     assert_eq!(field.pair(a, b).unwrap().distance, 0.0);
     assert_eq!(field.nearest(a, 1, &()).unwrap()[0].b, b, "the merged vertex is nearest");
     assert!(field.nearest(VertexId(0), 3, &()).unwrap().is_empty(), "a dropped vertex has no neighbors");
-    let beyond = VertexId::from(mesh.n_vertices());
+    let beyond = VertexId::from(n_vertices);
     let fault = field.pairs(&[[a, beyond]], Finish::Never, &()).unwrap_err();
-    let n_vertices = mesh.n_vertices();
     assert!(
         matches!(fault, FieldError::Geodesic(f) if f == GeodesicError::NoSuchVertex { vertex: beyond, n_vertices })
     );
 }
 
 #[test]
-fn bridged_components_are_measured_over_their_bridges() {
-    let mesh = shapes::disjoint(&[shapes::icosphere(1), shapes::cube(1)]);
-    let options = RepairOptions { components: ComponentPolicy::Bridge, ..Default::default() };
-    let surface = Surface::new(&mesh, &options, &()).unwrap();
-    let field = DistanceField::build(&surface, &exact(6), &()).unwrap();
-    let again = DistanceField::from_bytes(&field.to_bytes()).unwrap();
-    let solver = Method::Exact.prepare(surface.intrinsic(), &()).unwrap();
-    let distances = solver.distances(VertexId(3)).unwrap();
-    for (b, distance) in distances.iter().enumerate() {
-        let pair = again.pairs(&[[VertexId(3), VertexId::from(b)]], Finish::Beyond(0.0), &()).unwrap()[0];
-        assert!((pair.distance - distance).abs() <= 1e-9 * distance);
-    }
-}
-
-#[test]
 fn a_field_that_was_saved_gives_the_same_answers() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("x.field");
-    for (mesh, method) in [(repaired(), Method::default()), (shapes::icosphere(2), Method::Exact)] {
-        let field = built(&mesh, &FieldOptions { method, landmarks: 9, rank: Some(4) });
+    let bridged = zoo().pop().unwrap();
+    for (surface, method) in [(repaired(), Method::default()), (bridged, Method::Exact)] {
+        let field = built(&surface, &FieldOptions { method, landmarks: 9, rank: Some(4) });
         field.save(&path).unwrap();
         let again = DistanceField::open(&path).unwrap();
         assert_eq!(again.facts(), field.facts());
         assert_eq!(again.facts().bytes as u64, std::fs::metadata(&path).unwrap().len());
-        assert_eq!((again.method(), again.repair()), (field.method(), field.repair()));
         assert_eq!(again.landmarks(), field.landmarks());
-        let pairs = all_pairs(mesh.n_vertices());
+        let pairs = all_pairs(field.n_vertices());
         for finish in [Finish::Never, Finish::default()] {
             // Infinity equals itself, so whole answers can be compared.
             assert_eq!(again.pairs(&pairs, finish, &()).unwrap(), field.pairs(&pairs, finish, &()).unwrap());
@@ -263,12 +219,12 @@ fn a_field_that_was_saved_gives_the_same_answers() {
 
 #[test]
 fn a_field_does_not_depend_on_the_number_of_threads() {
-    let mesh = shapes::torus(30, 14, 2.0, 0.7);
+    let surface = surface(&shapes::torus(30, 14, 2.0, 0.7));
     for method in [Method::default(), Method::Exact] {
         let of = |threads| {
             testkit::on_threads(threads, || {
-                let field = built(&mesh, &FieldOptions { method, landmarks: 20, rank: None });
-                let pairs: Vec<_> = all_pairs(mesh.n_vertices()).into_iter().step_by(7).collect();
+                let field = built(&surface, &FieldOptions { method, landmarks: 20, rank: None });
+                let pairs: Vec<_> = all_pairs(field.n_vertices()).into_iter().step_by(7).collect();
                 (field.to_bytes(), field.pairs(&pairs, Finish::default(), &()).unwrap())
             })
         };
@@ -280,7 +236,7 @@ fn a_field_does_not_depend_on_the_number_of_threads() {
 
 #[test]
 fn every_changed_byte_of_a_file_is_detected() {
-    let field = built(&shapes::icosphere(0), &exact(3));
+    let field = built(&surface(&shapes::icosphere(0)), &exact(3));
     let bytes = field.to_bytes();
     assert!(DistanceField::from_bytes(&bytes).is_ok());
     for at in 0..bytes.len() {
@@ -345,16 +301,14 @@ fn impossible_options_are_refused() {
     assert!(matches!(fault(exact(0)), FieldError::Geodesic(GeodesicError::NoSamples)));
     let rank = FieldOptions { rank: Some(9), ..exact(8) };
     assert!(matches!(fault(rank), FieldError::Nmds(NmdsError::BadRank { rank: 9, n_landmarks: 8 })));
-    // As many landmarks as there are vertices: every distance is known.
-    let all = DistanceField::build(&surface, &exact(1000), &()).unwrap();
-    assert_eq!(all.facts().n_landmarks, 42);
-    let pair = all.pair(VertexId(0), VertexId(40)).unwrap();
-    assert!(pair.upper - pair.lower < 1e-3 * pair.distance);
+    let all = built(&surface, &exact(1000));
+    assert_eq!(all.facts().n_landmarks, 42, "as many landmarks as there are vertices");
 }
 
 #[test]
 fn every_query_keeps_to_a_budget_of_its_own() {
-    let field = built(&shapes::torus(40, 20, 2.0, 0.7), &FieldOptions { landmarks: 4, ..Default::default() });
+    let surface = surface(&shapes::torus(40, 20, 2.0, 0.7));
+    let field = built(&surface, &FieldOptions { landmarks: 4, ..Default::default() });
     let source = VertexId(3);
     // The first query prepares the exact solver, which the next ones share.
     let small = base::Budget::unlimited().with_memory(1 << 10);
