@@ -84,14 +84,3 @@ fn very_many_faces_on_one_edge() {
     let book = mesh(points.into_iter().chain(pages).collect(), (0..MANY).map(|i| [0, 1, i + 2]));
     assert_eq!(prepare(&book, &RepairOptions::default()).non_manifold_edges, 1);
 }
-
-#[test]
-fn all_triangles_over_some_points() {
-    for n in [18, 60] {
-        let points = (0..n).map(|i| on_circle(f64::from(i) * 0.618) + nalgebra::Vector3::z() * f64::from(i));
-        let triples = (0..n).flat_map(|a| (0..a).flat_map(move |b| (0..b).map(move |c| [a, b, c])));
-        let report = prepare(&mesh(points.collect(), triples), &RepairOptions::default());
-        assert_eq!(report.n_edges, (n * (n - 1) / 2) as usize);
-        assert_eq!(report.non_manifold_edges, report.n_edges);
-    }
-}
