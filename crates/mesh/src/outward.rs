@@ -52,21 +52,3 @@ pub fn oriented_faces(mesh: &TriMesh) -> Option<Vec<[VertexId; 3]>> {
     });
     (n_twisted <= TOLERATED * n_inner).then(|| topology.faces().to_vec())
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::shapes;
-
-    #[test]
-    fn closed_surfaces_face_outwards_and_open_ones_have_no_outside() {
-        let mut ball = shapes::icosphere(2);
-        ball.faces.iter_mut().step_by(3).for_each(|face| face.swap(1, 2));
-        let turned = outward(&ball).unwrap();
-        assert!(volume(&turned) > 0.9);
-        assert_eq!(oriented_faces(&ball).unwrap(), turned.faces);
-        let sheet = shapes::grid(5, 4, 1.0);
-        assert!(outward(&sheet).is_none());
-        assert_eq!(oriented_faces(&sheet).unwrap(), sheet.faces);
-    }
-}

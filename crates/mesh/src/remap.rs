@@ -117,32 +117,3 @@ impl Remapped {
         Self { mesh: next.mesh, remap: self.remap.then(&next.remap) }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn maps_in_sequence_lead_where_each_of_them_does() {
-        let v = |i: u32| Some(VertexId(i));
-        let maps = [
-            Remap::new(vec![v(2), None, v(0), v(1), v(0)], 3),
-            Remap::extended(3, vec![VertexId(2), VertexId(0)]),
-            Remap::extended(5, vec![VertexId(4)]),
-            Remap::new(vec![v(0), v(0), v(1), v(2), None, v(3)], 4),
-            Remap::extended(4, Vec::new()),
-        ];
-        let whole = maps.iter().skip(1).fold(maps[0].clone(), |so_far, next| so_far.then(next));
-        assert_eq!((whole.n_old(), whole.n_new()), (5, 4));
-        for old in (0..6).map(VertexId) {
-            let expected = maps.iter().try_fold(old, |at, map| map.to_new(at));
-            assert_eq!(whole.to_new(old), expected, "{old}");
-        }
-        for new in (0..4).map(VertexId) {
-            let expected = maps.iter().rev().fold(new, |at, map| map.to_old(at));
-            assert_eq!(whole.to_old(new), expected, "{new}");
-        }
-        assert_eq!(maps[1].then(&maps[2]), Remap::extended(3, vec![VertexId(2), VertexId(0), VertexId(0)]));
-        assert!(Remap::new(vec![v(0), v(1)], 2).is_identity() && !whole.is_identity());
-    }
-}

@@ -22,14 +22,9 @@ impl Frame {
         }
         let axes = spread.symmetric_eigen();
         let least = axes.eigenvalues.imin();
-        Self::with_normal(axes.eigenvectors.column(least).into_owned())
-    }
-
-    /// A frame with this normal, which is turned so that equal planes have equal frames.
-    pub(super) fn with_normal(normal: Vector3<f64>) -> Self {
-        let normal = normal.try_normalize(0.0).unwrap_or_else(Vector3::z);
-        let axis = Vector3::ith(normal.iamin(), 1.0);
-        let u = normal.cross(&axis).normalize();
+        // Turned so that equal planes have equal frames.
+        let normal = axes.eigenvectors.column(least).try_normalize(0.0).unwrap_or_else(Vector3::z);
+        let u = normal.cross(&Vector3::ith(normal.iamin(), 1.0)).normalize();
         Self { u, v: normal.cross(&u), normal }
     }
 

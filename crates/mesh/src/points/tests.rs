@@ -13,6 +13,11 @@ fn uniform() -> impl FnMut() -> f64 {
     move || 0.5 * random.uniform()
 }
 
+/// Noise of this standard deviation in every coordinate. The variance of a uniform number is 1/12.
+fn noise(draw: &mut impl FnMut() -> f64, deviation: f64) -> Vector3<f64> {
+    Vector3::from([(); 3].map(|()| draw() * 12f64.sqrt())) * deviation
+}
+
 /// Random points of the unit sphere, each coordinate moved by noise of this standard deviation.
 fn ball(n: usize, deviation: f64) -> Vec<Point3<f64>> {
     let mut draw = uniform();
@@ -20,9 +25,7 @@ fn ball(n: usize, deviation: f64) -> Vec<Point3<f64>> {
     while points.len() < n {
         let d = Vector3::from([(); 3].map(|()| 2.0 * draw()));
         if (0.1..1.0).contains(&d.norm()) {
-            // The variance of a uniform number is 1/12.
-            let noise = Vector3::from([(); 3].map(|()| draw() * 12f64.sqrt()));
-            points.push(Point3::from(d.normalize() + noise * deviation));
+            points.push(Point3::from(d.normalize() + noise(&mut draw, deviation)));
         }
     }
     points
@@ -67,20 +70,12 @@ fn noise_is_measured_and_smoothed() {
 /// Random points of a torus, each coordinate moved by noise of this standard deviation.
 fn torus(n: usize, thickness: f64, deviation: f64) -> Vec<Point3<f64>> {
     let mut draw = uniform();
-    let mut points = Vec::new();
-    while points.len() < n {
-        let [turn, around, chance] = [(); 3].map(|()| draw());
-        let (sin, cos) = (std::f64::consts::TAU * around).sin_cos();
-        // The outer side has more area than the inner one.
-        if (chance + 0.5) * (1.0 + thickness) > 1.0 + thickness * cos {
-            continue;
-        }
-        let (y, x) = (std::f64::consts::TAU * turn).sin_cos();
+    let point = |_| {
+        let [(sin, cos), (y, x)] = [(); 2].map(|()| (std::f64::consts::TAU * draw()).sin_cos());
         let radius = 1.0 + thickness * cos;
-        let noise = Vector3::from([(); 3].map(|()| draw() * 12f64.sqrt()));
-        points.push(Point3::new(x * radius, y * radius, thickness * sin) + noise * deviation);
-    }
-    points
+        Point3::new(x * radius, y * radius, thickness * sin) + noise(&mut draw, deviation)
+    };
+    (0..n).map(point).collect()
 }
 
 #[test]
@@ -110,23 +105,19 @@ fn boundaries_stay_open_and_sheets_stay_apart() {
 #[test]
 fn order_and_scale_change_nothing() {
     let points = ball(800, 0.01);
-    let mut faces = triangulated(&points).mesh.faces;
-    faces.iter_mut().for_each(|face| face.sort_unstable());
-    faces.sort_unstable();
+    let faces = |points: &[Point3<f64>], number: &dyn Fn(usize) -> usize| {
+        let renumbered = |face: [VertexId; 3]| VertexId::sorted(face.map(|v| number(v.index()).into()));
+        let mut faces: Vec<_> = triangulated(points).mesh.faces.into_iter().map(renumbered).collect();
+        faces.sort_unstable();
+        faces
+    };
+    let expected = faces(&points, &|v| v);
     let scaled: Vec<_> = points.iter().map(|p| p * 1024.0).collect();
-    let mut same = triangulated(&scaled).mesh.faces;
-    same.iter_mut().for_each(|face| face.sort_unstable());
-    same.sort_unstable();
-    assert_eq!(faces, same);
+    assert_eq!(faces(&scaled, &|v| v), expected);
     let reversed: Vec<_> = points.iter().rev().copied().collect();
-    let mut same = triangulated(&reversed).mesh.faces;
-    same.iter_mut().for_each(|face| {
-        *face = face.map(|v| VertexId::from(points.len() - 1 - v.index()));
-        face.sort_unstable();
-    });
-    same.sort_unstable();
-    let common = same.iter().filter(|face| faces.binary_search(face).is_ok()).count();
-    assert!(common as f64 > 0.98 * faces.len() as f64, "{common} of {}", faces.len());
+    let same = faces(&reversed, &|v| points.len() - 1 - v);
+    let common = same.iter().filter(|face| expected.binary_search(face).is_ok()).count();
+    assert!(common as f64 > 0.98 * expected.len() as f64, "{common} of {}", expected.len());
 }
 
 #[test]

@@ -191,12 +191,6 @@ impl GroupTree {
 mod tests {
     use super::*;
 
-    /// Pseudo-random numbers in [0, 1).
-    fn stream(seed: u64) -> impl FnMut() -> f64 {
-        let mut random = base::SplitMix(seed);
-        move || 0.5 + 0.5 * random.uniform()
-    }
-
     fn shortest_links(positions: &[Point3<f64>], labels: &[u32]) -> Vec<Link> {
         let mut links = super::shortest_links(positions, labels, &Budget::unlimited()).unwrap();
         links.sort_unstable_by_key(|link| link.ends);
@@ -217,10 +211,7 @@ mod tests {
         let mut links: Vec<Link> = all
             .into_iter()
             .filter(|(_, ends)| sets.union(labels[ends[0] as usize], labels[ends[1] as usize]))
-            .map(|(_, ends)| {
-                let [p, q] = ends.map(|v| positions[v as usize]);
-                Link { ends: ends.map(VertexId), length: (q - p).norm() }
-            })
+            .map(|(_, ends)| link(positions, ends))
             .collect();
         links.sort_by_key(|link| link.ends);
         links
@@ -229,7 +220,8 @@ mod tests {
     #[test]
     fn links_equal_those_of_kruskal_on_all_pairs() {
         for seed in 0..20 {
-            let mut next = stream(seed);
+            let mut random = base::SplitMix(seed);
+            let mut next = || 0.5 + 0.5 * random.uniform();
             let n_components = 2 + (next() * 12.0) as usize;
             // Half of the runs use a coarse lattice with many equal distances.
             let round = |x: f64| if seed % 2 == 0 { x } else { (x * 4.0).floor() };
@@ -250,14 +242,7 @@ mod tests {
         let budget = Budget::unlimited();
         budget.cancel();
         let positions: Vec<_> = (0..5000).map(|i| Point3::new(f64::from(i), 0.0, 0.0)).collect();
-        let labels: Vec<u32> = (0..5000).map(|i| i % 2).collect();
-        let found = super::shortest_links(&positions, &labels, &budget);
-        assert_eq!(found, Err(Exceeded::Cancelled));
-    }
-
-    #[test]
-    fn one_component_or_none_needs_no_link() {
-        assert_eq!(shortest_links(&[], &[]), []);
-        assert_eq!(shortest_links(&[Point3::origin(); 3], &[0; 3]), []);
+        let labels = [0, 1].repeat(2500);
+        assert_eq!(super::shortest_links(&positions, &labels, &budget), Err(Exceeded::Cancelled));
     }
 }

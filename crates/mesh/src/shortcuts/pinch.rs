@@ -160,11 +160,12 @@ mod tests {
     fn a_welded_vertex_is_split_and_goes_back_into_its_surface() {
         let ball = shapes::icosphere(4);
         let ends = [nearest(&ball, [0.0, 0.0, 1.0]), nearest(&ball, [1.0, 0.0, 0.0])];
-        let opened = cut(&welded(ball.clone(), ends), 1.0);
+        let weld = welded(ball.clone(), ends);
+        let opened = cut(&weld, 1.0);
         let [shortcut] = opened.shortcuts[..] else { panic!("{:?}", opened.shortcuts) };
         assert_eq!((shortcut.kind, shortcut.vertex), (ShortcutKind::Pinch, ends[0]));
         assert!((shortcut.detour - 1.57).abs() < 1.0, "{}", shortcut.detour);
-        assert!(cut(&welded(ball.clone(), ends), 2.0).cut.mesh == welded(ball.clone(), ends));
+        assert!(cut(&weld, 2.0).cut.mesh == weld);
         let mesh = opened.cut.mesh;
         let report = validate(&mesh);
         assert_eq!((report.non_manifold_vertices, report.genus), (0, Some(0)));
