@@ -108,7 +108,6 @@ fn text_in_utf16_is_named_in_every_format() {
         ("m.ply", PLY),
         ("m.stl", STL),
         ("m.xyz", "0 0 0\n1 1 1\n"),
-        ("m.pts", "0 0 0\n1 1 1\n"),
         ("m.vert", VERT),
         ("m.gltf", "{\"asset\":{\"version\":\"2.0\"}}"),
     ] {

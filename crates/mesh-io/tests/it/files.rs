@@ -191,7 +191,6 @@ fn paths_without_a_mesh_are_errors() {
     let folder = folder();
     let missing = read(&folder.path().join("none.off")).unwrap_err();
     assert!(matches!(&missing, MeshError::Io(fault) if fault.action == "read"));
-    assert!(missing.to_string().contains("none.off"));
     let directory = folder.path().join("folder.off");
     fs::create_dir(&directory).unwrap();
     assert!(read(&directory).unwrap_err().to_string().contains("not a regular file"));
@@ -258,8 +257,6 @@ fn a_stream_reads_like_a_file_within_its_limits() {
         let bytes = fs::read(&path).unwrap();
         assert_eq!(from(&bytes, extension, &ReadLimits::default()).unwrap(), read(&path).unwrap());
     }
-    let [all, few] = [u64::MAX, 100].map(ReadLimits::of_vertices);
-    assert_eq!((all, few.max_faces), (ReadLimits::default(), 400));
     // Endless streams end with an error.
     for extension in ["off", "obj", "ply", "stl", "mat", "glb", "gltf", "3mf", "xyz", "pts"] {
         let mut zeros = std::io::repeat(0);

@@ -88,6 +88,4 @@ fn scans_load_with_all_their_vertices_and_can_be_repaired() {
         assert_eq!(found, (n_vertices, n_faces, unused), "{name}");
         assert_repairs(&path, &mesh);
     }
-    let genus = validate(&io::read(&folder.join("rocker-arm.obj")).unwrap()).genus;
-    assert_eq!(genus, Some(1));
 }

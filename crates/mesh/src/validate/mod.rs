@@ -219,15 +219,6 @@ mod tests {
     }
 
     #[test]
-    fn a_flipped_face_counts_in_edges_and_faces() {
-        let mut sphere = shapes::icosphere(2);
-        sphere.faces[7].swap(0, 1);
-        let report = validate(&sphere);
-        assert_eq!((report.inconsistent_edges, report.flipped_faces, report.orientable), (3, 1, true));
-        assert_eq!(report.genus, Some(0));
-    }
-
-    #[test]
     fn meshes_without_faces_or_vertices_have_a_report() {
         for mesh in [TriMesh::default(), from(3, &[]), from(2, &[[0, 0, 1]])] {
             let report = validate(&mesh);
