@@ -11,11 +11,10 @@ use descriptors::Sample;
 use mesh::TriMesh;
 use rayon::prelude::*;
 use report::Record;
-use report::record::{Axis, Series};
 
 use crate::calibration::{LEFT, Truth, beyond_a_plane, of_parts, related, reliability};
 use crate::context::Context;
-use crate::sweep::{curve, numbers, plot, plots, point, share};
+use crate::sweep::{numbers, share};
 
 /// Relations of a bin from which its share counts.
 const FEWEST: f64 = 50.0;
@@ -26,7 +25,8 @@ pub(crate) fn evidence(context: &Context<'_>) -> Result<Record> {
     let single: Vec<_> = told.iter().filter(|pair| pair.truth == Truth::OneChange).collect();
     let cuts = cuts(context);
     let said: Vec<Sample> = pairs.iter().map(|pair| (pair.said.confidence, pair.is_right(), 1.0)).collect();
-    let (points, error) = calibration(&said);
+    let bins = reliability(&said).into_iter().filter(|[n, ..]| *n >= FEWEST);
+    let error = bins.map(|[_, stated, truth]| (stated - truth).abs()).fold(0.0, f64::max);
     let called_one =
         |least: f64| share(&told, |pair| pair.said.kind.is_one_surface() && pair.said.confidence > least);
     let measured = numbers([
@@ -41,10 +41,7 @@ pub(crate) fn evidence(context: &Context<'_>) -> Result<Record> {
         ("cuts recognized", share(&cuts, |told| told.kind == RelationKind::PartOf)),
         ("largest error of confidence", error),
     ]);
-    let diagonal = curve("calibrated", points.points.iter().map(|p| point(p.x, &[p.x])).collect());
-    let [x, y] = ["confidence", "share that is right"].map(Axis::linear);
-    let plot = plot("Calibration", x, y, vec![points, diagonal]);
-    Ok(Record { figures: vec![plots("curves", vec![plot])], ..context.record(&[], measured) })
+    Ok(context.record(&[], measured))
 }
 
 fn geometry(mesh: &TriMesh) -> Option<MeshGeometry> {
@@ -61,14 +58,6 @@ fn cuts(context: &Context<'_>) -> Vec<Relation> {
         Some(related(&geometry(mesh)?, &geometry(&piece)?))
     });
     told.collect()
-}
-
-/// The share of relations that is right against the mean confidence, by bins, and the largest difference of both.
-fn calibration(said: &[Sample]) -> (Series, f64) {
-    let bins: Vec<[f64; 3]> = reliability(said).into_iter().filter(|[n, ..]| *n >= FEWEST).collect();
-    let error = bins.iter().map(|[_, stated, truth]| (stated - truth).abs()).fold(0.0, f64::max);
-    let points = bins.iter().map(|[_, stated, truth]| point(*stated, &[*truth])).collect();
-    (curve("measured", points), error)
 }
 
 #[cfg(test)]

@@ -75,7 +75,11 @@ pub(crate) fn matching(context: &Context<'_>) -> Result<Record> {
     measure(ALL, &all, &mut measured);
     let mut record = context.record(&[], measured);
     record.provenance.options.insert("eigenfunctions".to_owned(), options.eigenfunctions.into());
-    Ok(Record { figures: vec![plots("curves", panels(&found))], ..record })
+    // Errors are known only where points correspond by their numbers.
+    record.figures.extend(
+        Some(panels(&found)).filter(|panels| !panels.is_empty()).map(|panels| plots("curves", panels)),
+    );
+    Ok(record)
 }
 
 /// The errors of one kind of map over some pairs.
