@@ -51,21 +51,3 @@ pub fn has_other_names(file: &File) -> bool {
     #[cfg(not(unix))]
     return false;
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_of_one_file_are_the_same() {
-        let folder = tempfile::tempdir().unwrap();
-        let [a, b] = ["a", "b"].map(|name| folder.path().join(name));
-        fs::write(&a, "x").unwrap();
-        assert!(!is_same_file(&a, &b));
-        fs::write(&b, "x").unwrap();
-        assert!(!is_same_file(&a, &b));
-        assert!(is_same_file(&a, &folder.path().join(".").join("a")));
-        let open = File::open(&a).unwrap();
-        assert!(is_at(&open, &a) && !is_at(&open, &b));
-    }
-}
