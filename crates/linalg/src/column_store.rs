@@ -44,18 +44,6 @@ enum Backing {
     File(Arc<Mutex<File>>),
 }
 
-impl PartialEq for ColumnStore {
-    /// Stores in files are equal if they share a file.
-    fn eq(&self, other: &Self) -> bool {
-        let same = match (&self.backing, &other.backing) {
-            (Backing::Memory(a), Backing::Memory(b)) => a == b,
-            (Backing::File(a), Backing::File(b)) => Arc::ptr_eq(a, b),
-            _ => false,
-        };
-        same && (self.n_rows, self.n_columns) == (other.n_rows, other.n_columns)
-    }
-}
-
 impl ColumnStore {
     /// No columns yet, in memory.
     pub fn in_memory(n_rows: usize) -> Self {

@@ -20,7 +20,7 @@ use crate::{ColumnStore, LinalgError, Matrix};
 /// assert_eq!(distances.sq_block()[(0, 1)], 9.0);
 /// # Ok::<(), canonform_linalg::LinalgError>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct LandmarkDistances {
     landmarks: Vec<usize>,
     columns: ColumnStore,

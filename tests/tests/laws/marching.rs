@@ -207,7 +207,7 @@ fn pruning_changes_nothing(name: &str, surface: &IntrinsicMesh, n: usize) {
         for ahead in [&solver as &dyn DistanceSolver, &careless] {
             let pruned = testkit::on_threads(2, || farthest_point_sampling(ahead, n, first)).unwrap();
             assert_eq!(pruned.landmarks(), full.landmarks(), "{name} from {first:?}");
-            assert_eq!(pruned, full, "{name} from {first:?}");
+            assert_eq!(pruned.to_matrix(), full.to_matrix(), "{name} from {first:?}");
         }
     }
 }

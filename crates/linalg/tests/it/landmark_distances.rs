@@ -19,8 +19,8 @@ fn the_block_is_symmetric() {
 fn unreachable_points_and_bad_landmarks_are_rejected() {
     let columns = Matrix::from_columns(&[vec![0.0, f64::INFINITY].into()]);
     assert_eq!(
-        LandmarkDistances::new(vec![0], columns),
-        Err(LinalgError::BadDistance { row: 1, column: 0, value: f64::INFINITY })
+        LandmarkDistances::new(vec![0], columns).unwrap_err(),
+        LinalgError::BadDistance { row: 1, column: 0, value: f64::INFINITY }
     );
     let zeros = Matrix::zeros(2, 2);
     assert!(matches!(
