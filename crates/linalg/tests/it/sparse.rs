@@ -21,19 +21,6 @@ fn entries_are_summed_mirrored_and_sorted_and_the_diagonal_is_stored() {
 }
 
 #[test]
-fn numbers_are_added_to_the_diagonal_only() {
-    let mut a = SparseSymmetric::from_entries(3, [(2, 0, 2.0), (1, 1, 4.0), (1, 0, -1.0)]);
-    a.add_to_diagonal([1.0, 2.0, 3.0].into_iter());
-    assert_eq!(product(&a, &[1.0, 10.0, 100.0]), [1.0 - 10.0 + 200.0, -1.0 + 60.0, 2.0 + 300.0]);
-}
-
-#[test]
-fn a_matrix_may_be_empty() {
-    let a = SparseSymmetric::from_entries(0, []);
-    assert_eq!((a.order(), a.n_stored(), a.entries().count()), (0, 0, 0));
-}
-
-#[test]
 #[should_panic(expected = "outside of a matrix of order 2")]
 fn entries_outside_the_matrix_panic() {
     let _ = SparseSymmetric::from_entries(2, [(0, 2, 1.0)]);
