@@ -97,10 +97,4 @@ mod tests {
         assert_eq!((found.count, labels(&found)), (3, vec![0, 1, 1, 1, 0, 0, 0, 2, 1, 1]));
         assert_eq!(found.lowest_vertices(), [0, 1, 7].map(VertexId));
     }
-
-    #[test]
-    fn a_mesh_without_faces_has_no_component() {
-        let found = components_of_faces(3, &[]);
-        assert_eq!((found.count, found.labels), (0, vec![None; 3]));
-    }
 }

@@ -274,22 +274,16 @@ mod tests {
 
     #[test]
     fn a_fan_is_followed_through_faces_of_either_orientation() {
-        let (ring, ends) = fans(&[[0, 1, 2], [4, 3, 0], [0, 2, 3], [1, 0, 4]]);
-        assert_eq!(ends, [[1, 2, 3, 4, 1]]);
-        assert_eq!(
-            [6.0, 6.3].map(|angle| ring.kind(angle, 1e-9)),
-            [VertexKind::Ordinary, VertexKind::Saddle]
-        );
-    }
-
-    #[test]
-    fn an_open_fan_goes_from_boundary_to_boundary() {
-        let (ring, ends) = fans(&[[2, 3, 0], [0, 1, 2], [0, 4, 3]]);
-        assert_eq!(ends, [[1, 2, 3, 4]]);
-        assert_eq!(
-            [3.1, 3.2].map(|angle| ring.kind(angle, 1e-9)),
-            [VertexKind::Ordinary, VertexKind::Boundary]
-        );
+        let closed: &[[u32; 3]] = &[[0, 1, 2], [4, 3, 0], [0, 2, 3], [1, 0, 4]];
+        let open: &[[u32; 3]] = &[[2, 3, 0], [0, 1, 2], [0, 4, 3]];
+        for (faces, fan, angles, wide) in [
+            (closed, vec![1, 2, 3, 4, 1], [6.0, 6.3], VertexKind::Saddle),
+            (open, vec![1, 2, 3, 4], [3.1, 3.2], VertexKind::Boundary),
+        ] {
+            let (ring, ends) = fans(faces);
+            assert_eq!(ends, [fan]);
+            assert_eq!(angles.map(|angle| ring.kind(angle, 1e-9)), [VertexKind::Ordinary, wide]);
+        }
     }
 
     #[test]

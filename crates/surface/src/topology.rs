@@ -275,65 +275,30 @@ impl Topology {
 mod tests {
     use super::*;
 
-    fn faces(list: &[[u32; 3]]) -> Vec<[VertexId; 3]> {
-        list.iter().map(|f| f.map(VertexId)).collect()
-    }
-
-    #[test]
-    fn a_tetrahedron_has_six_edges_with_two_faces_each() {
-        let t = Topology::new(4, faces(&[[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]]));
-        assert_eq!(t.n_edges(), 6);
-        for e in 0..6 {
-            assert_eq!(t.edge_corners(EdgeId(e)).len(), 2);
-        }
-        for c in (0..12).map(CornerId) {
-            let twin = t.opposite(c).unwrap();
-            assert_eq!(t.opposite(twin), Some(c));
-            assert_eq!(t.opposite_edge(twin), t.opposite_edge(c));
-            assert_ne!(t.corner_vertex(twin), t.corner_vertex(c));
-        }
-        assert_eq!(t.edge_between(VertexId(3), VertexId(1)), Some(EdgeId(4)));
-    }
-
-    #[test]
-    fn an_edge_with_three_faces_has_no_opposite_corners() {
-        let t = Topology::new(5, faces(&[[0, 1, 2], [0, 1, 3], [1, 0, 4]]));
-        let shared = t.edge_between(VertexId(0), VertexId(1)).unwrap();
-        assert_eq!(t.edge_corners(shared).len(), 3);
-        assert_eq!(t.opposite(CornerId(2)), None);
-        assert_eq!(t.vertex_corners(VertexId(1)).len(), 3);
-    }
-
-    #[test]
-    fn edges_above_a_vertex_are_sorted_and_complete() {
-        let list = [[4, 1, 0], [1, 4, 2], [0, 3, 1], [6, 2, 1]];
-        let t = Topology::new(8, faces(&list));
-        let above: Vec<Vec<u32>> = (0..8)
-            .map(|v| t.edges()[t.range_above(VertexId(v))].iter().map(|ends| ends[1].0).collect())
-            .collect();
-        let expected: [&[u32]; 8] = [&[1, 3, 4], &[2, 3, 4, 6], &[4, 6], &[], &[], &[], &[], &[]];
-        assert_eq!(above, expected);
-        assert_eq!(t.edge_between(VertexId(6), VertexId(4)), None);
-        assert_eq!(t.edge_between(VertexId(6), VertexId(9)), None);
-        assert_eq!(t.into_faces(), faces(&list));
-    }
-
     #[test]
     fn the_numbers_of_vertices_and_blocks_do_not_matter() {
         // More vertices than a block has, in an order without locality.
         let n = 3 * BLOCK as u32 + 5;
-        let list: Vec<_> = (0..n).map(|i| [i, i + 1, i + 2].map(|v| VertexId(v * 7919 % n))).collect();
+        let mut list: Vec<_> = (0..n).map(|i| [i, i + 1, i + 2].map(|v| VertexId(v * 7919 % n))).collect();
+        // Edges of three faces.
+        list.extend((0..99).map(|i| [i, i + 1, i + 500].map(|v| VertexId(v * 7919 % n))));
         let t = Topology::new(n as usize, list.clone());
         assert!(t.edges().is_sorted() && t.edges().iter().all(|[a, b]| a < b));
+        assert_eq!([n - 1, n].map(|far| t.edge_between(VertexId(0), VertexId(far))), [None; 2]);
         for corner in (0..3 * list.len()).map(CornerId::from) {
             let mut ends = t.edge_ends(corner);
             ends.sort_unstable();
             assert_eq!(t.edges()[t.opposite_edge(corner).index()], ends);
             assert!(t.vertex_corners(t.corner_vertex(corner)).contains(&corner));
+            let around = t.edge_corners(t.opposite_edge(corner)).iter().filter(|other| **other != corner);
+            let others: Vec<_> = around.copied().collect();
+            assert_eq!(t.opposite(corner), if others.len() == 1 { Some(others[0]) } else { None });
         }
         for edge in (0..t.n_edges()).map(EdgeId::from) {
             let corners = t.edge_corners(edge);
             assert!(!corners.is_empty() && corners.is_sorted());
+            let [a, b] = t.edges()[edge.index()];
+            assert_eq!(t.edge_between(b, a), Some(edge));
             assert!(corners.iter().all(|corner| t.opposite_edge(*corner) == edge));
         }
     }

@@ -133,13 +133,4 @@ mod tests {
         assert!((scalar_product(5.0, 3.0, 4.0) - 0.0).abs() < 1e-15);
         assert!((scalar_product(2.0, 2.0, 2.0) - 2.0).abs() < 1e-15);
     }
-
-    #[test]
-    fn a_square_has_two_equal_diagonals() {
-        let half = Triangle::from_sides([2f64.sqrt(), 1.0, 1.0]);
-        assert!((half.apex_to_apex(half) - 2f64.sqrt()).abs() < 1e-15);
-        // A kite: apices of heights 1 and 3 over the middle of a base of 2.
-        let (low, high) = (Triangle { base: 2.0, x: 1.0, y: 1.0 }, Triangle { base: 2.0, x: 1.0, y: 3.0 });
-        assert_eq!(low.apex_to_apex(high), 4.0);
-    }
 }

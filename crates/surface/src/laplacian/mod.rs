@@ -116,33 +116,6 @@ mod tests {
     }
 
     #[test]
-    fn rows_sum_to_zero_and_diagonals_are_positive() {
-        let laplacian = of(&shapes::sheared_grid(9, 7, 1.0, 2.7));
-        let mut sums = vec![0.0; laplacian.n_vertices];
-        let mut diagonal = sums.clone();
-        for (i, j, value) in laplacian.stiffness_entries() {
-            sums[i] += value;
-            if i == j {
-                diagonal[i] += value;
-            } else {
-                sums[j] += value;
-            }
-        }
-        assert!(sums.iter().zip(&diagonal).all(|(sum, d)| *d > 0.0 && sum.abs() < 1e-13 * d));
-    }
-
-    #[test]
-    fn weights_between_vertices_are_not_negative_even_at_boundaries() {
-        for mesh in [shapes::jittered_grid(12, 12, 1.0, 0.24, 1), shapes::sheared_grid(8, 8, 1.0, 3.2)] {
-            let mut sums = std::collections::BTreeMap::new();
-            for (i, j, value) in of(&mesh).stiffness_entries().filter(|(i, j, _)| i != j) {
-                *sums.entry((i.min(j), i.max(j))).or_insert(0.0) += value;
-            }
-            assert!(sums.values().all(|value: &f64| *value < 1e-9));
-        }
-    }
-
-    #[test]
     fn the_energy_of_a_linear_function_is_its_squared_slope_times_the_area() {
         let share = |mesh: &TriMesh| {
             let laplacian = of(mesh);
@@ -155,17 +128,6 @@ mod tests {
             let found = share(&mesh);
             assert!(found > 0.5 && found < 1.0 + 1e-12, "{found}");
         }
-    }
-
-    #[test]
-    fn scale_changes_only_the_unit() {
-        let mesh = shapes::jittered_grid(8, 8, 1.0, 0.2, 3);
-        let mut large = mesh.clone();
-        large.positions.iter_mut().for_each(|p| p.coords *= 1024.0);
-        let (a, b) = (of(&mesh), of(&large));
-        assert_eq!(b.metric.unit, 1024.0 * a.metric.unit);
-        assert_eq!(b.masses(), a.masses());
-        assert!(a.stiffness_entries().eq(b.stiffness_entries()));
     }
 
     #[test]
