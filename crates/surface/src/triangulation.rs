@@ -15,7 +15,7 @@ const SLACK: f64 = 1e-10;
 /// Marks a side without a neighbor.
 const NONE: u32 = u32::MAX;
 
-/// Number of triangles that one thread handles at a time.
+/// Fewest triangles or sides that one thread handles at a time.
 const BLOCK: usize = 1024;
 
 /// Triangles given by their side lengths and glued side to side, as a corner table.
@@ -199,24 +199,12 @@ impl Triangulation {
         removed
     }
 
-    /// The sides that are not Delaunay, in ascending order.
+    /// The sides that are not Delaunay, in ascending order; each at the corners that are obtuse.
     fn sides_to_flip(&self, loops: Loops) -> Vec<CornerId> {
-        let blocks = (0..self.triangles.len().div_ceil(BLOCK)).into_par_iter();
-        let blocks: Vec<Vec<CornerId>> = blocks
-            .map(|block| {
-                let triangles = block * BLOCK..self.triangles.len().min((block + 1) * BLOCK);
-                // No branch depends on angles, which could not be predicted.
-                let (mut obtuse, mut n_obtuse) = (vec![CornerId(0); 3 * triangles.len() + 1], 0);
-                for corner in triangles.flat_map(|t| FaceId(t as u32).corners()) {
-                    obtuse[n_obtuse] = corner;
-                    n_obtuse += usize::from(!is_acute(self.sides(corner)));
-                }
-                obtuse.truncate(n_obtuse);
-                obtuse.retain(|side| self.flippable_quad(*side, loops).is_some());
-                obtuse
-            })
-            .collect();
-        blocks.concat()
+        let sides = (0..3 * self.triangles.len()).into_par_iter().with_min_len(BLOCK).map(CornerId::from);
+        let is_flippable =
+            |side: &CornerId| !is_acute(self.sides(*side)) && self.flippable_quad(*side, loops).is_some();
+        sides.filter(is_flippable).collect()
     }
 
     /// The two triangles at a side, if it is not Delaunay and can be flipped.
