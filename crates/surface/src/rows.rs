@@ -15,12 +15,6 @@ pub struct Rows<T> {
     items: Vec<T>,
 }
 
-impl<T> Default for Rows<T> {
-    fn default() -> Self {
-        Self { offsets: vec![0], items: Vec::new() }
-    }
-}
-
 impl<T: Copy> Rows<T> {
     /// Sorts `(row, item)` pairs by row; items of a row keep their order. Linear time.
     ///
@@ -42,16 +36,6 @@ impl<T: Copy> Rows<T> {
             next[row] += 1;
         }
         Self { offsets, items }
-    }
-
-    /// Appends a row.
-    ///
-    /// # Panics
-    /// If the number of all items does not fit into 32 bits.
-    pub fn push_row(&mut self, items: impl IntoIterator<Item = T>) {
-        self.items.extend(items);
-        assert!(u32::try_from(self.items.len()).is_ok(), "more items than fit into 32 bits");
-        self.offsets.push(self.items.len() as u32);
     }
 
     /// Rows whose items lie back to back: row `i` has the items from `offsets[i]` to `offsets[i + 1]`.

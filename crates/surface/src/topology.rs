@@ -203,12 +203,6 @@ impl Topology {
         (0..self.n_edges()).map(EdgeId::from).filter(|edge| self.edge_corners(*edge).len() == 1)
     }
 
-    /// The edges from a vertex to higher ones.
-    fn range_above(&self, vertex: VertexId) -> Range<usize> {
-        let v = vertex.index();
-        self.first_edge[v] as usize..self.first_edge[v + 1] as usize
-    }
-
     /// The vertex in a corner.
     #[inline]
     pub fn corner_vertex(&self, corner: CornerId) -> VertexId {
@@ -262,12 +256,13 @@ impl Topology {
 
     /// The edge between two vertices, if there is one.
     pub fn edge_between(&self, a: VertexId, b: VertexId) -> Option<EdgeId> {
-        if a.max(b).index() >= self.n_vertices {
+        let (low, high) = (a.min(b).index(), a.max(b));
+        if high.index() >= self.n_vertices {
             return None;
         }
-        let above = self.range_above(a.min(b));
-        let found = self.edges[above.clone()].binary_search_by_key(&a.max(b), |ends| ends[1]);
-        found.ok().map(|i| EdgeId::from(above.start + i))
+        let [start, end] = [low, low + 1].map(|v| self.first_edge[v] as usize);
+        let found = self.edges[start..end].binary_search_by_key(&high, |ends| ends[1]);
+        found.ok().map(|i| EdgeId::from(start + i))
     }
 }
 

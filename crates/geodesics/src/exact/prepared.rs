@@ -303,7 +303,7 @@ impl Fans {
     pub(super) fn new(mesh: &IntrinsicMesh, faces: &Faces) -> Self {
         let topology = mesh.topology();
         let n_vertices = topology.n_vertices();
-        let mut fans = Self { sectors: Rows::default(), kinds: Vec::with_capacity(n_vertices) };
+        let (mut sectors, mut ends, mut kinds) = (Vec::new(), vec![0], Vec::with_capacity(n_vertices));
         let mut ring = OneRing::default();
         for vertex in (0..n_vertices).map(VertexId::from) {
             ring.collect(topology, vertex);
@@ -313,21 +313,22 @@ impl Fans {
                 angle += faces.of(corner.corner.face()).angle(corner.corner.slot());
                 FanSector { corner: *corner, start, end: angle }
             };
-            fans.sectors.push_row(ring.fans().flat_map(|fan| fan.corners).map(sector));
-            fans.kinds.push(ring.kind(angle, MIN_EXCESS));
+            sectors.extend(ring.fans().flat_map(|fan| fan.corners).map(sector));
+            ends.push(sectors.len() as u32);
+            kinds.push(ring.kind(angle, MIN_EXCESS));
         }
         for link_end in mesh.links().iter().flat_map(|link| link.ends) {
-            fans.kinds[link_end.index()] = VertexKind::Irregular;
+            kinds[link_end.index()] = VertexKind::Irregular;
         }
         // An edge without length has no direction.
         for face in &faces.all {
             for slot in (0..3).filter(|slot| face.is_point_like(*slot)) {
                 for end in [1, 2].map(|step| face.vertices[(slot + step) % 3]) {
-                    fans.kinds[end as usize] = VertexKind::Irregular;
+                    kinds[end as usize] = VertexKind::Irregular;
                 }
             }
         }
-        fans
+        Self { sectors: Rows::from_offsets(ends, sectors), kinds }
     }
 
     pub(super) fn kind(&self, vertex: u32) -> VertexKind {
