@@ -112,26 +112,6 @@ mod tests {
     use surface::{EdgeId, FaceId};
 
     #[test]
-    fn the_reach_has_planar_distances() {
-        let mesh = grid(2, 2, 1.0).intrinsic();
-        let face = SurfacePoint::Face { face: FaceId(0), barycentric: [0.2, 0.5, 0.3] };
-        // The point is (0.8, 0.3).
-        let expected = [0.8f64.hypot(0.3), 0.2f64.hypot(0.3), 0.2f64.hypot(0.7)];
-        for ((_, d), e) in Source::new(&mesh, face).unwrap().reach().iter().zip(expected) {
-            assert!((d - e).abs() < 1e-15);
-        }
-        let diagonal = mesh.topology().edge_between(VertexId(0), VertexId(3)).unwrap();
-        let on_edge = Source::new(&mesh, SurfacePoint::Edge { edge: diagonal, t: 0.25 }).unwrap();
-        // The point is (0.25, 0.25).
-        let (near, side) = (0.25 * 2f64.sqrt(), 0.25f64.hypot(0.75));
-        let expected = [(0, near), (3, 3.0 * near), (1, side), (2, side)];
-        assert_eq!(on_edge.reach().len(), 4);
-        for ((v, d), (w, e)) in on_edge.reach().iter().zip(expected) {
-            assert!(v.0 == w && (d - e).abs() < 1e-15);
-        }
-    }
-
-    #[test]
     fn points_off_the_surface_are_rejected() {
         let mesh = grid(2, 2, 1.0).intrinsic();
         for point in [

@@ -134,11 +134,4 @@ mod tests {
         }
         assert_eq!([1.9, 2.1].map(|at_b| update([0.0, at_b])), [f64::INFINITY; 2]);
     }
-
-    #[test]
-    fn a_base_without_length_never_updates() {
-        for [dot, cross] in [[0.0, 0.0], [f64::NAN, f64::NAN]] {
-            assert_eq!(f64::min(7.0, planar_update(0.0, dot, cross, [1.0, 1.0])), 7.0);
-        }
-    }
 }

@@ -1,21 +1,22 @@
 //! Laws of all distance solvers, through the trait: a new method needs one line in [`promises`].
 
+use base::Exceeded;
 use mesh::shapes;
-use surface::{IntrinsicMesh, Link, Topology, VertexId};
+use surface::{EdgeId, FaceId, IntrinsicMesh, Link, SurfacePoint, Topology, VertexId};
 
-use super::{bumpy, longest_edge, methods};
+use super::{bumpy, distances_from, longest_edge, methods};
 use crate::{DistanceSolver, Method, Source};
 
 /// What a method promises beyond what all do.
-struct Promises {
+pub(super) struct Promises {
     /// By how much distances may deviate from those of a metric, in lengths of the longest edge.
     slack: f64,
     /// Share of a distance that rounding may take or add.
     rounding: f64,
     /// Whether no distance grows faster than along an edge.
-    is_lipschitz: bool,
+    pub(super) is_lipschitz: bool,
     /// Whether no distance is below the exact one.
-    is_upper_bound: bool,
+    pub(super) is_upper_bound: bool,
     /// Whether a limit changes no distance below it.
     has_exact_limit: bool,
 }
@@ -43,7 +44,7 @@ fn promises(method: Method) -> Promises {
 }
 
 /// Every method, prepared for a surface, and its promises.
-fn solvers(surface: &IntrinsicMesh) -> Vec<(&'static str, Promises, Box<dyn DistanceSolver>)> {
+pub(super) fn solvers(surface: &IntrinsicMesh) -> Vec<(&'static str, Promises, Box<dyn DistanceSolver>)> {
     let prepare = |(name, method): (&'static str, Method)| {
         (name, promises(method), method.prepare(surface, &()).unwrap())
     };
@@ -57,13 +58,6 @@ fn hills(seed: u64) -> IntrinsicMesh {
 
 fn surfaces() -> [IntrinsicMesh; 3] {
     [hills(3), hills(8), shapes::torus(24, 12, 2.0, 0.7).intrinsic()]
-}
-
-fn solve(solver: &dyn DistanceSolver, sources: &[u32], max_distance: f64) -> Vec<f64> {
-    let sources: Vec<Source> = sources.iter().map(|v| Source::vertex(VertexId(*v))).collect();
-    let mut out = vec![0.0; solver.n_vertices()];
-    solver.solve_into(&sources, max_distance, &mut out).unwrap();
-    out
 }
 
 #[track_caller]
@@ -98,48 +92,28 @@ fn distances_are_zero_at_the_source_symmetric_and_satisfy_the_triangle_inequalit
 }
 
 #[test]
-fn distances_grow_no_faster_than_edges_and_lie_between_exact_ones_and_those_along_edges() {
-    for surface in surfaces() {
-        let [exact, along_edges] =
-            [Method::Exact, Method::Dijkstra].map(|m| m.prepare(&surface, &()).unwrap());
-        for (name, promises, solver) in solvers(&surface) {
-            for source in [0, 50, 111].map(VertexId) {
-                let found = solver.distances(source).unwrap();
-                if promises.is_lipschitz {
-                    for (ends, length) in surface.topology().edges().iter().zip(surface.edge_lengths()) {
-                        let [a, b] = ends.map(|v| found[v.index()]);
-                        assert!((a - b).abs() <= length * (1.0 + 1e-12) + 1e-13 * a, "{name}: {a} {b}");
-                    }
-                    // Growth along edges bounds distances by those along edges.
-                    let bounds = along_edges.distances(source).unwrap();
-                    assert!(found.iter().zip(bounds).all(|(d, b)| *d <= b * (1.0 + 1e-12)), "{name}");
-                }
-                if promises.is_upper_bound {
-                    let bounds = exact.distances(source).unwrap();
-                    assert!(found.iter().zip(bounds).all(|(d, b)| *d >= b * (1.0 - 1e-12)), "{name}");
-                }
-            }
-        }
-    }
-}
-
-#[test]
 fn the_nearest_of_several_sources_counts() {
+    let sources = [
+        SurfacePoint::Vertex(VertexId(3)),
+        SurfacePoint::Vertex(VertexId(77)),
+        SurfacePoint::Edge { edge: EdgeId(150), t: 0.3 },
+        SurfacePoint::Face { face: FaceId(200), barycentric: [0.2, 0.7, 0.1] },
+    ];
     for surface in surfaces() {
+        let sources = sources.map(|point| Source::new(&surface, point).unwrap());
         for (name, promises, solver) in solvers(&surface) {
-            let sources = [3, 77, 140];
-            let single = sources.map(|source| solver.distances(VertexId(source)).unwrap());
+            let solve = |sources: &[Source]| distances_from(solver.as_ref(), sources, f64::INFINITY);
+            let single = sources.each_ref().map(|source| solve(std::slice::from_ref(source)));
             let nearest: Vec<f64> = (0..surface.n_vertices())
                 .map(|v| single.iter().map(|row| row[v]).fold(f64::INFINITY, f64::min))
                 .collect();
             let slack = promises.slack * longest_edge(&surface);
-            let found = solve(solver.as_ref(), &sources, f64::INFINITY);
-            assert!(sources.iter().all(|s| found[*s as usize] == 0.0), "{name}");
+            let found = solve(&sources);
+            assert_eq!([3, 77].map(|v: usize| found[v]), [0.0; 2], "{name}");
             assert_close(&found, &nearest, promises.rounding, slack, name);
-            let twice = solve(solver.as_ref(), &[77, 77], f64::INFINITY);
+            let twice = solve(&[&sources[1..2], &sources[1..2]].concat());
             assert_close(&twice, &single[1], promises.rounding, 0.0, name);
-            let none = solve(solver.as_ref(), &[], f64::INFINITY);
-            assert!(none.iter().all(|d| *d == f64::INFINITY), "{name}");
+            assert!(solve(&[]).iter().all(|d| *d == f64::INFINITY), "{name}");
         }
     }
 }
@@ -150,7 +124,7 @@ fn distances_beyond_a_limit_are_infinite_and_those_below_it_stay() {
         for (name, promises, solver) in solvers(&surface) {
             let full = solver.distances(VertexId(50)).unwrap();
             for limit in [0.0, 0.7, 2.0, 5.5, 1e3, full[20]] {
-                let found = solve(solver.as_ref(), &[50], limit);
+                let found = distances_from(solver.as_ref(), &[Source::vertex(VertexId(50))], limit);
                 for (found, full) in found.iter().zip(&full) {
                     assert!(*found >= *full && (*found <= limit || *found == f64::INFINITY), "{name}");
                     if promises.has_exact_limit {
@@ -180,19 +154,6 @@ fn distances_are_infinite_exactly_on_unconnected_components() {
                     assert_eq!(d.is_finite(), (start..end).contains(&v), "{name}, vertex {v}");
                 }
             }
-        }
-    }
-}
-
-#[test]
-fn folding_a_sheet_changes_no_distance() {
-    let sheet = shapes::grid(9, 7, 0.3);
-    let flat = solvers(&sheet.intrinsic());
-    let folded = solvers(&shapes::fold(&sheet, 4.0 * 0.3, 2.9).intrinsic());
-    for ((name, .., flat), (.., folded)) in flat.into_iter().zip(folded) {
-        for source in [0, 17, 40].map(VertexId) {
-            let [found, expected] = [&folded, &flat].map(|solver| solver.distances(source).unwrap());
-            assert_close(&found, &expected, 1e-9, 0.0, name);
         }
     }
 }
@@ -245,11 +206,46 @@ fn columns_are_the_distances_from_single_sources_for_any_number_of_threads() {
 fn surfaces_without_faces_or_vertices_are_handled() {
     let empty = IntrinsicMesh::new(Topology::new(0, Vec::new()), Vec::new());
     for (name, _, solver) in solvers(&empty) {
-        assert_eq!((solver.n_vertices(), solve(solver.as_ref(), &[], f64::INFINITY)), (0, vec![]), "{name}");
+        assert!(distances_from(solver.as_ref(), &[], f64::INFINITY).is_empty(), "{name}");
         assert_eq!(solver.distance_columns(&[]).unwrap().shape(), (0, 0), "{name}");
     }
     let points = IntrinsicMesh::new(Topology::new(2, Vec::new()), Vec::new());
     for (name, _, solver) in solvers(&points) {
         assert_eq!(solver.distances(VertexId(1)).unwrap(), [f64::INFINITY, 0.0], "{name}");
+    }
+}
+
+/// Pseudo-random numbers in [0, 1).
+fn noise(i: usize) -> f64 {
+    (i as f64 * 0.618_033_988_749_894_9 + (i * i) as f64 * 0.414_213_562_373_095).fract()
+}
+
+#[test]
+fn lengths_of_no_surface_give_distances_where_edges_lead() {
+    let topology = || Topology::new(36, shapes::grid(6, 6, 1.0).faces);
+    let n_edges = topology().n_edges();
+    type Length = fn(usize) -> f64;
+    let lengths: [(&str, Length); 7] = [
+        ("points", |_| 0.0),
+        ("random", noise),
+        ("random over many scales", |i| 10f64.powf(40.0 * noise(i) - 20.0)),
+        ("half of them zero", |i| if noise(i) < 0.5 { 0.0 } else { 1.0 }),
+        ("one huge", |i| if i == 20 { 1e300 } else { 1.0 }),
+        ("huge", |_| 1e306),
+        ("tiny", |_| 5e-324),
+    ];
+    for (what, length) in lengths {
+        let surface = IntrinsicMesh::new(topology(), (0..n_edges).map(length).collect());
+        for (name, _, solver) in solvers(&surface) {
+            for source in [0, 18, 35].map(VertexId) {
+                let found = match solver.distances(source) {
+                    // They may need any number of windows.
+                    Err(Exceeded::Steps { .. }) => continue,
+                    found => found.unwrap(),
+                };
+                assert_eq!(found[source.index()], 0.0, "{name}, {what}");
+                assert!(found.iter().all(|d| *d >= 0.0 && d.is_finite()), "{name}, {what}: {found:?}");
+            }
+        }
     }
 }

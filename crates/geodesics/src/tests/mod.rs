@@ -3,16 +3,14 @@
 mod budgets;
 mod every_method;
 mod hubs;
-mod properties;
+pub(crate) mod properties;
+mod reference;
 mod slivers;
 
-use std::path::Path;
-
 use mesh::{TriMesh, shapes};
-use proptest::prelude::*;
 use surface::{IntrinsicMesh, Topology, VertexId};
 
-use crate::{FastMarchingOptions, Method, Update};
+use crate::{DistanceSolver, FastMarchingOptions, Method, Source, Update};
 
 /// Connectivity and lengths of a mesh in space.
 pub(crate) fn spatial(points: &[[f64; 3]], faces: &[[u32; 3]]) -> IntrinsicMesh {
@@ -25,11 +23,18 @@ pub(crate) fn spatial(points: &[[f64; 3]], faces: &[[u32; 3]]) -> IntrinsicMesh 
 }
 
 /// All triangles between `n` points.
-fn all_triangles(n: u32) -> IntrinsicMesh {
+pub(crate) fn all_triangles(n: u32) -> IntrinsicMesh {
     let faces = (0..n).flat_map(|a| (a + 1..n).flat_map(move |b| (b + 1..n).map(move |c| [a, b, c])));
     let at = |t: f64| [(0.7 * t).sin() + 0.05 * t, (1.3 * t).cos(), (2.1 * t + 0.5).sin()];
     let points: Vec<_> = (0..n).map(|i| at(f64::from(i))).collect();
     spatial(&points, &faces.collect::<Vec<_>>())
+}
+
+/// The distance of every vertex from the nearest source; infinite beyond a limit.
+pub(crate) fn distances_from(solver: &dyn DistanceSolver, sources: &[Source], max_distance: f64) -> Vec<f64> {
+    let mut out = vec![0.0; solver.n_vertices()];
+    solver.solve_into(sources, max_distance, &mut out).unwrap();
+    out
 }
 
 fn longest_edge(surface: &IntrinsicMesh) -> f64 {
@@ -63,42 +68,35 @@ pub(crate) fn bumpy(n: usize, height: f64, seed: u64) -> IntrinsicMesh {
     spatial(&at, &faces(&sheet))
 }
 
-/// Lengths that violate the triangle inequality as a rule.
-pub(crate) fn lengths_of_nothing() -> impl Strategy<Value = f64> {
-    prop_oneof![
-        0.5..1.5f64,
-        Just(0.0),
-        Just(1.0),
-        Just(1e-300),
-        Just(1e-14),
-        0.0..1e-9f64,
-        Just(7.0),
-        Just(2.0)
-    ]
+/// Distance of two points at these distances from the origin, at this angle.
+pub(crate) fn apart(p: f64, q: f64, angle: f64) -> f64 {
+    ((p - q).powi(2) + 4.0 * p * q * (0.5 * angle).sin().powi(2)).sqrt()
 }
 
-/// Faces between nine vertices, with such lengths.
-pub(crate) fn impossible() -> impl Strategy<Value = IntrinsicMesh> {
-    let raw = prop::collection::vec((0..9u32, 1..9u32, 0..9u32), 1..30);
-    (raw, prop::collection::vec(lengths_of_nothing(), 40)).prop_map(|(raw, lengths)| {
-        let faces = raw.iter().map(|(a, b, c)| [*a, (a + b) % 9, *c]).filter(|[a, b, c]| a != c && b != c);
-        let topology = Topology::new(9, faces.map(|f| f.map(VertexId)).collect());
-        let lengths = lengths[..topology.n_edges()].to_vec();
-        IntrinsicMesh::new(topology, lengths)
-    })
-}
-
-/// A sheet over points of a 3 x 3 x 3 lattice, hardly moved: collinear, coplanar, coincident.
-pub(crate) fn pinched(nx: usize, ny: usize) -> impl Strategy<Value = IntrinsicMesh> {
-    let picks = prop::collection::vec((0..27usize, prop::array::uniform3(-1.0..1.0f64)), nx * ny);
-    let scale = prop_oneof![Just(0.0), Just(1e-16), Just(1e-13), Just(1e-8), Just(1e-3)];
-    (picks, scale).prop_map(move |(picks, scale)| {
-        let at = |(pick, by): &(usize, [f64; 3])| {
-            [0, 1, 2].map(|i| (pick / 3usize.pow(i as u32) % 3) as f64 + scale * by[i])
-        };
-        let at: Vec<[f64; 3]> = picks.iter().map(at).collect();
-        spatial(&at, &faces(&shapes::grid(nx, ny, 1.0)))
-    })
+/// Flat rings of `n` sectors around vertex 0 with this total angle, closed or open, by their lengths alone, and the polar
+/// coordinates of the vertices on the surface.
+pub(crate) fn cone(n: usize, total: f64, n_rings: usize, is_closed: bool) -> (IntrinsicMesh, Vec<[f64; 2]>) {
+    let spokes = if is_closed { n } else { n + 1 };
+    let at = |ring: usize, sector: usize| VertexId::from(1 + ring * spokes + sector % spokes);
+    let (mut faces, mut polar) = (Vec::new(), vec![[0.0; 2]]);
+    for r in 0..n_rings {
+        polar.extend((0..spokes).map(|s| [(r + 1) as f64, total * s as f64 / n as f64]));
+        for s in 0..n {
+            match r {
+                0 => faces.push([VertexId(0), at(0, s), at(0, s + 1)]),
+                _ => faces.extend([
+                    [at(r - 1, s), at(r, s), at(r, s + 1)],
+                    [at(r - 1, s), at(r, s + 1), at(r - 1, s + 1)],
+                ]),
+            }
+        }
+    }
+    let length = |ends: [VertexId; 2]| {
+        let [[p, a], [q, b]] = ends.map(|v| polar[v.index()]);
+        let angle = if p * q == 0.0 { 0.0 } else { (a - b).abs() };
+        apart(p, q, if is_closed { angle.min(total - angle) } else { angle })
+    };
+    (IntrinsicMesh::with_lengths(Topology::new(polar.len(), faces), length), polar)
 }
 
 #[track_caller]
@@ -109,23 +107,4 @@ pub(crate) fn assert_close(found: f64, expected: f64, relative: f64) {
         "{found} instead of {expected}, off by {:e}",
         (found - expected) / expected
     );
-}
-
-/// Exact distances on a real mesh, by the algorithm of Mitchell, Mount and Papadimitriou.
-pub(crate) struct Reference {
-    /// The mesh without repairs, as for the references.
-    pub(crate) mesh: TriMesh,
-    /// Sources, and the distances from each to all vertices.
-    pub(crate) rows: Vec<(VertexId, Vec<f64>)>,
-}
-
-/// The reference for a mesh such as `tosca-lowres/cat0.vert`.
-pub(crate) fn reference(data: &Path, mesh: &str) -> Reference {
-    let name = Path::new(mesh).file_stem().unwrap().to_string_lossy().into_owned();
-    let file = |what| data.join(format!("exact/{name}-{what}.npy"));
-    let mesh = mesh_io::read(&data.join(mesh)).unwrap();
-    let sources = testkit::array(&file("sources")).1.into_iter().map(VertexId);
-    let (_, distances) = testkit::array::<f64>(&file("distances"));
-    let rows = distances.chunks_exact(mesh.n_vertices()).map(<[f64]>::to_vec);
-    Reference { rows: sources.zip(rows).collect(), mesh }
 }

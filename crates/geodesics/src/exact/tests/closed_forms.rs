@@ -1,59 +1,83 @@
-//! Surfaces whose distances have a formula.
+//! Surfaces whose distances have a formula, or are those of another surface.
 
 use std::f64::consts::PI;
 
 use mesh::shapes;
-use surface::{FaceId, VertexId};
+use surface::{FaceId, IntrinsicMesh, Topology};
 
 use super::super::Exact;
-use super::{all_pairs, apart, assert_close, cone, faces, points, spatial};
+use super::{all_pairs, assert_close, bumpy, faces, points, spatial};
+use crate::tests::{apart, cone, distances_from};
 use crate::{DistanceSolver, Source, SurfacePoint};
 
-/// Distance on the unit cube from `(p, q)` on the bottom to `(x, y)` on the top: the shortest of the straight lines
-/// through one side or two.
-fn bottom_to_top([p, q]: [f64; 2], [x, y]: [f64; 2]) -> f64 {
-    let mut shortest = f64::INFINITY;
-    // Both mirror images, and both roles of the axes.
-    for (p, x) in [(p, x), (1.0 - p, 1.0 - x)] {
-        for (q, y) in [(q, y), (1.0 - q, 1.0 - y)] {
-            for ([p, x], [q, y]) in [([p, x], [q, y]), ([q, y], [p, x])] {
-                let one_side = (p + 1.0 + x).hypot(q - y);
-                let two_sides = (q + x).hypot(p + 1.0 + y);
-                shortest = shortest.min(one_side).min(two_sides);
-            }
+/// A flat sheet whose distances must stay Euclidean when vertices are added.
+fn assert_flat(points: &[[f64; 3]], faces: &[[u32; 3]], relative: f64) {
+    for (v, row) in all_pairs(&spatial(points, faces)).iter().enumerate() {
+        for (w, found) in row.iter().enumerate() {
+            let [p, q] = [points[v], points[w]];
+            assert_close(*found, (p[0] - q[0]).hypot(p[1] - q[1]), relative);
         }
     }
-    shortest
 }
 
 #[test]
-fn distances_on_a_cube_are_those_of_the_best_unfolding() {
-    let cube = shapes::cube(2);
-    let mesh = cube.intrinsic();
-    let solver = Exact::new(&mesh, &());
-    let top = |v: usize| (cube.positions[v].z == 1.0).then(|| [cube.positions[v].x, cube.positions[v].y]);
-    let mut out = vec![0.0; cube.positions.len()];
-    let mut sources = Vec::new();
-    for (v, p) in cube.positions.iter().enumerate().filter(|(_, p)| p.z == 0.0) {
-        sources.push((Source::vertex(VertexId::from(v)), [p.x, p.y]));
+fn flat_sheets_are_euclidean_for_any_triangles() {
+    let jittered = shapes::jittered_grid(8, 8, 1.0, 0.24, 1);
+    let [sheared, needles] = [2.3, -9.5].map(|shear| shapes::sheared_grid(9, 8, 1.0, shear));
+    // The lengths of needles say less and less about their heights.
+    for (sheet, stretch, relative) in [
+        (&shapes::grid(9, 8, 0.7), 1.0, 1e-14),
+        (&jittered, 1e-3, 1e-9),
+        (&jittered, 1.0, 1e-13),
+        (&sheared, 1.0, 1e-13),
+        (&needles, 1.0, 1e-12),
+        (&jittered, 30.0, 1e-12),
+        (&jittered, 1e3, 1e-9),
+        (&jittered, 1e5, 1e-5),
+    ] {
+        let mut at = points(sheet);
+        at.iter_mut().for_each(|p| p[0] *= stretch);
+        assert_flat(&at, &faces(sheet), relative);
     }
-    for (f, face) in cube.faces.iter().enumerate() {
-        let [a, b, c] = face.map(|v| cube.positions[v.index()]);
-        if a.z == 0.0 && b.z == 0.0 && c.z == 0.0 {
-            let barycentric = [0.5, 0.3, 0.2];
-            let at = a.coords * 0.5 + b.coords * 0.3 + c.coords * 0.2;
-            let point = SurfacePoint::Face { face: FaceId::from(f), barycentric };
-            sources.push((Source::new(&mesh, point).unwrap(), [at.x, at.y]));
-        }
-    }
-    for (source, from) in sources {
-        solver.solve_into(&[source], f64::INFINITY, &mut out).unwrap();
-        for (v, found) in out.iter().enumerate() {
-            if let Some(to) = top(v) {
-                assert_close(*found, bottom_to_top(from, to), 1e-14);
+}
+
+#[test]
+fn repeated_faces_and_pillows_have_the_distances_of_one_sheet() {
+    let sheet = bumpy(9, 0.8, 6);
+    let faces = sheet.topology().faces();
+    let expected = all_pairs(&sheet);
+    for copies in 2..=4 {
+        // Corners of a copy in another order, and in every other copy of the other orientation.
+        let copy =
+            |k: usize| faces.iter().map(move |[a, b, c]| [[*a, *b, *c], [*b, *a, *c], [*c, *a, *b]][k % 3]);
+        let topology = Topology::new(sheet.n_vertices(), (0..copies).flat_map(copy).collect());
+        let repeated = IntrinsicMesh::new(topology, sheet.edge_lengths().to_vec());
+        assert_eq!(all_pairs(&repeated), expected);
+
+        let solve = |mesh: &IntrinsicMesh, face: usize, barycentric: [f64; 3]| {
+            let point = SurfacePoint::Face { face: FaceId::from(face), barycentric };
+            distances_from(&Exact::new(mesh, &()), &[Source::new(mesh, point).unwrap()], f64::INFINITY)
+        };
+        for [s, t, u] in [[0.2, 0.3, 0.5], [0.6, 0.4, 0.0], [0.0, 0.3, 0.7]] {
+            let expected = solve(&sheet, 50, [s, t, u]);
+            for k in 1..copies {
+                let found = solve(&repeated, 50 + k * faces.len(), [[s, t, u], [t, s, u], [u, s, t]][k % 3]);
+                for (found, expected) in found.iter().zip(&expected) {
+                    assert_close(*found, *expected, 1e-14);
+                }
             }
         }
     }
+}
+
+#[test]
+fn edges_without_length_are_points() {
+    // A sheet whose column 3 is doubled, with faces of no width in between.
+    let (n, m) = (8, 6);
+    let sheet = shapes::grid(n, m, 1.0);
+    let mut at = points(&sheet);
+    at.iter_mut().filter(|p| p[0] > 3.0).for_each(|p| p[0] -= 1.0);
+    assert_flat(&at, &faces(&sheet), 1e-12);
 }
 
 #[test]
@@ -64,6 +88,8 @@ fn paths_around_cones_take_the_shorter_side_and_bend_at_saddles() {
         (14, 2.9 * PI, true),
         (16, 4.0 * PI, true),
         (10, 1.7 * PI, false),
+        // The tip of a slit.
+        (12, 2.0 * PI, false),
         (10, 1.0 * PI, false),
         (14, 3.1 * PI, false),
     ] {
@@ -78,31 +104,6 @@ fn paths_around_cones_take_the_shorter_side_and_bend_at_saddles() {
                 assert_close(*found, expected, 1e-13);
             }
         }
-    }
-}
-
-#[test]
-fn paths_bend_at_the_tip_of_a_slit() {
-    // Cut from (5, 0) to (5, 6): the vertices below (5, 6) have copies for the faces to their right.
-    let n = 11;
-    let sheet = shapes::grid(n, n, 1.0);
-    let (mut at, mut cut) = (points(&sheet), faces(&sheet));
-    for j in 0..6usize {
-        let (old, copy) = ((j * n + 5) as u32, at.len() as u32);
-        at.push(at[old as usize]);
-        for face in cut.iter_mut().filter(|f| f.iter().any(|v| at[*v as usize][0] > 5.0)) {
-            face.iter_mut().filter(|v| **v == old).for_each(|v| *v = copy);
-        }
-    }
-    let found = Exact::new(&spatial(&at, &cut), &()).distances(VertexId(3 * n as u32 + 2)).unwrap();
-    let tip = 3f64.hypot(3.0);
-    for (v, p) in at.iter().enumerate() {
-        let is_right = p[0] > 5.0 || v >= n * n;
-        // The line from (2, 3) passes above the tip from slope 1 on.
-        let is_hidden = is_right && p[1] - 3.0 < p[0] - 2.0;
-        let straight = (p[0] - 2.0).hypot(p[1] - 3.0);
-        let bent = tip + (p[0] - 5.0).hypot(p[1] - 6.0);
-        assert_close(found[v], if is_hidden { bent } else { straight }, 1e-14);
     }
 }
 

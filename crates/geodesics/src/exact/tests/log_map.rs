@@ -5,8 +5,9 @@ use std::f64::consts::{PI, TAU};
 use mesh::shapes;
 use surface::{EdgeId, FaceId, IntrinsicMesh, VertexId};
 
-use super::{assert_close, cone};
-use crate::{DistanceSolver, Exact, Source, SurfacePoint, log_map};
+use super::assert_close;
+use crate::tests::{cone, distances_from};
+use crate::{Exact, Source, SurfacePoint, log_map};
 
 fn vertex(index: usize) -> SurfacePoint {
     SurfacePoint::Vertex(VertexId::from(index))
@@ -14,8 +15,7 @@ fn vertex(index: usize) -> SurfacePoint {
 
 fn about(mesh: &IntrinsicMesh, point: SurfacePoint) -> Vec<[f64; 2]> {
     let source = Source::new(mesh, point).unwrap();
-    let mut distances = vec![0.0; mesh.n_vertices()];
-    Exact::new(mesh, &()).solve_into(std::slice::from_ref(&source), f64::INFINITY, &mut distances).unwrap();
+    let distances = distances_from(&Exact::new(mesh, &()), &[source], f64::INFINITY);
     let map = log_map(mesh, point, f64::INFINITY, &()).unwrap();
     for ([x, y], distance) in map.iter().zip(&distances) {
         assert_close(x.hypot(*y), *distance, 1e-12);
@@ -49,32 +49,36 @@ fn the_map_of_a_flat_sheet_is_the_sheet() {
     for face in turned.faces.iter_mut().skip(1).step_by(3) {
         face.swap(1, 2);
     }
-    for (sheet, is_turned) in [(&sheet, false), (&turned, true)] {
-        let mesh = sheet.intrinsic();
-        // The first axis points to the neighbor with the lowest number: before an inner vertex, and after the first corner.
-        for (source, lowest) in [(0, 1), (31, 21), (62, 52)] {
-            let neighbors = mesh.topology().edges().iter().filter(|ends| ends.contains(&VertexId(source)));
-            assert_eq!(neighbors.flatten().map(|v| v.0).filter(|v| *v != source).min(), Some(lowest));
-            let [from, to] = [source, lowest].map(|v| at[v as usize]);
-            let along = [to[0] - from[0], to[1] - from[1]];
-            let (found, expected) = (about(&mesh, vertex(source as usize)), in_frame(&at, from, along));
-            let is_mirrored = (found[35][1] - expected[35][1]).abs() > 1e-9;
-            assert!(is_turned || !is_mirrored);
-            let expected: Vec<_> =
-                expected.iter().map(|[x, y]| [*x, if is_mirrored { -y } else { *y }]).collect();
+    let mesh = sheet.intrinsic();
+    let topology = mesh.topology();
+    let mixed = |points: &[VertexId], shares: &[f64]| {
+        [0, 1].map(|axis| points.iter().zip(shares).map(|(v, share)| share * at[v.index()][axis]).sum())
+    };
+    let (ends, corners) = (topology.edges()[60], topology.faces()[40]);
+    let inside = [0.5, 0.3, 0.2];
+    // Points, where they are, and the ends of a segment along the first axis: from a vertex to the neighbor with the lowest
+    // number, which is before an inner vertex, and after the first corner.
+    let vertices = [[0, 1], [31, 21], [62, 52]].map(|ends| ends.map(VertexId));
+    let vertices = vertices.map(|along| (SurfacePoint::Vertex(along[0]), at[along[0].index()], along));
+    let others = [
+        (SurfacePoint::Edge { edge: EdgeId(60), t: 0.3 }, mixed(&ends, &[0.7, 0.3]), ends),
+        (
+            SurfacePoint::Face { face: FaceId(40), barycentric: inside },
+            mixed(&corners, &inside),
+            [corners[0], corners[1]],
+        ),
+    ];
+    for (point, origin, [from, to]) in vertices.into_iter().chain(others) {
+        let along = [0, 1].map(|axis| at[to.index()][axis] - at[from.index()][axis]);
+        let expected = in_frame(&at, origin, along);
+        assert_same(&about(&mesh, point), &expected, 1e-11);
+        if let SurfacePoint::Vertex(_) = point {
+            let found = about(&turned.intrinsic(), point);
+            let sign = if (found[35][1] - expected[35][1]).abs() > 1e-9 { -1.0 } else { 1.0 };
+            let expected: Vec<_> = expected.iter().map(|[x, y]| [*x, sign * y]).collect();
             assert_same(&found, &expected, 1e-11);
         }
     }
-    let mesh = sheet.intrinsic();
-    let [a, b] = mesh.topology().edges()[60].map(|v| at[v.index()]);
-    let along = [b[0] - a[0], b[1] - a[1]];
-    let middle = [a[0] + 0.3 * along[0], a[1] + 0.3 * along[1]];
-    let point = SurfacePoint::Edge { edge: EdgeId(60), t: 0.3 };
-    assert_same(&about(&mesh, point), &in_frame(&at, middle, along), 1e-11);
-    let [a, b, c] = mesh.topology().faces()[40].map(|v| at[v.index()]);
-    let middle = [0, 1].map(|axis| 0.5 * a[axis] + 0.3 * b[axis] + 0.2 * c[axis]);
-    let point = SurfacePoint::Face { face: FaceId(40), barycentric: [0.5, 0.3, 0.2] };
-    assert_same(&about(&mesh, point), &in_frame(&at, middle, [b[0] - a[0], b[1] - a[1]]), 1e-11);
 }
 
 /// The point at a distance in a direction.

@@ -1,10 +1,10 @@
 //! Paths that can be drawn by hand.
 
-use mesh::{TriMesh, shapes};
+use mesh::shapes;
 use surface::{FaceId, Link, VertexId};
 
 use super::{assert_path, shortest, vertex};
-use crate::tests::{assert_close, spatial};
+use crate::tests::{assert_close, distances_from};
 use crate::{DistanceSolver, Exact, FastMarching, GeodesicError, PathTracer, Source, SurfacePoint};
 
 #[test]
@@ -21,47 +21,6 @@ fn a_path_to_its_own_source_is_a_point() {
     let sources = [Source::vertex(a)];
     let distances = Exact::new(&mesh, &()).distances(a).unwrap();
     assert_eq!(PathTracer::new(&mesh, &sources, &distances, &()).path_to(edge).unwrap().length, 0.0);
-}
-
-#[test]
-fn paths_bend_at_the_corner_of_a_boundary() {
-    // An L of three squares of 4 x 4 cells: the inner corner is in the way.
-    let sheet = shapes::grid(9, 9, 1.0);
-    let is_cut = |f: &[VertexId; 3]| f.iter().all(|v| v.0 % 9 >= 4 && v.0 / 9 >= 4);
-    let faces = sheet.faces.iter().copied().filter(|f| !is_cut(f)).collect();
-    let mesh = (TriMesh { faces, ..sheet }).intrinsic();
-    // From (8, 2) to (1, 8) around (4, 4).
-    let path = shortest(&mesh, vertex(2 * 9 + 8), vertex(8 * 9 + 1));
-    assert_close(path.length, 4f64.hypot(2.0) + 3f64.hypot(4.0), 1e-13);
-    assert!(path.points.contains(&vertex(4 * 9 + 4)));
-}
-
-#[test]
-fn paths_between_pages_of_a_book_cross_the_spine() {
-    // Four pages on one spine, along the y-axis; unfolded, every two of them are one sheet.
-    let n = 6;
-    let mut at: Vec<[f64; 3]> = (0..=n).map(|j| [0.0, j as f64, 0.0]).collect();
-    let mut faces = Vec::new();
-    for page in 0..4 {
-        let (sin, cos) = (0.4 * f64::from(page)).sin_cos();
-        let number =
-            |i: usize, j: usize| if i == 0 { j } else { page as usize * n * (n + 1) + i * (n + 1) + j };
-        for i in 1..=n {
-            at.extend((0..=n).map(|j| [i as f64 * cos, j as f64, i as f64 * sin]));
-        }
-        for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
-            let [a, b, c, d] =
-                [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| number(i, j) as u32);
-            // Every second page is printed upside down.
-            faces.extend(if page % 2 == 0 { [[a, b, c], [a, c, d]] } else { [[b, a, c], [c, a, d]] });
-        }
-    }
-    let mesh = spatial(&at, &faces);
-    let number = |page: usize, i: usize, j: usize| vertex(page * n * (n + 1) + i * (n + 1) + j);
-    for (p, q) in [(0, 1), (1, 3), (2, 0), (3, 2)] {
-        let path = shortest(&mesh, number(p, 5, 1), number(q, 3, 6));
-        assert_close(path.length, 8f64.hypot(5.0), 1e-13);
-    }
 }
 
 #[test]
@@ -92,10 +51,8 @@ fn paths_lead_to_the_nearest_of_several_sources() {
     let point = SurfacePoint::Face { face: FaceId(100), barycentric: [0.2, 0.5, 0.3] };
     let sources =
         [Source::vertex(VertexId(3)), Source::new(&mesh, point).unwrap(), Source::vertex(VertexId(115))];
-    let mut distances = vec![0.0; mesh.n_vertices()];
-    FastMarching::new(&mesh, Default::default(), &())
-        .solve_into(&sources, f64::INFINITY, &mut distances)
-        .unwrap();
+    let marching = FastMarching::new(&mesh, Default::default(), &());
+    let distances = distances_from(&marching, &sources, f64::INFINITY);
     let tracer = PathTracer::new(&mesh, &sources, &distances, &());
     let corners = mesh.topology().faces()[100].map(|v| sheet.positions[v.index()].coords);
     let inside = corners[0] * 0.2 + corners[1] * 0.5 + corners[2] * 0.3;

@@ -3,13 +3,13 @@
 mod closed_forms;
 mod degenerate;
 mod laws;
-mod reference;
 
 use surface::{FaceId, IntrinsicMesh, VertexId};
 
 use super::plane::{faces_around, segment};
 use super::{GeodesicPath, PathTracer};
-use crate::{DistanceSolver, Exact, Source, SurfacePoint};
+use crate::tests::distances_from;
+use crate::{Exact, Source, SurfacePoint};
 
 /// Whether a face holds a point.
 fn holds(mesh: &IntrinsicMesh, face: FaceId, point: SurfacePoint) -> bool {
@@ -55,8 +55,7 @@ fn assert_path(mesh: &IntrinsicMesh, path: &GeodesicPath, source: SurfacePoint, 
 /// The shortest path between two points, by exact distances from the first.
 fn shortest(mesh: &IntrinsicMesh, source: SurfacePoint, target: SurfacePoint) -> GeodesicPath {
     let sources = [Source::new(mesh, source).unwrap()];
-    let mut distances = vec![0.0; mesh.n_vertices()];
-    Exact::new(mesh, &()).solve_into(&sources, f64::INFINITY, &mut distances).unwrap();
+    let distances = distances_from(&Exact::new(mesh, &()), &sources, f64::INFINITY);
     let path = PathTracer::new(mesh, &sources, &distances, &()).path_to(target).unwrap();
     assert_path(mesh, &path, source, target);
     path
