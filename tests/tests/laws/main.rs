@@ -26,7 +26,7 @@
 //! | `signatures` | signatures of bodies |
 //! | `shortcuts` | welds that are found and cut |
 //! | `builtin` | the built-in dataset |
-//! | `real_meshes` | scans and TOSCA; skipped without the meshes |
+//! | `real_meshes` | TOSCA; skipped without the meshes |
 
 // Helper functions are test code too, which clippy cannot see.
 #![allow(clippy::unwrap_used)]
