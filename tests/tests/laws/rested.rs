@@ -1,5 +1,7 @@
 //! Surfaces whose true partners are known: poses of a body, and what a cut has left of them.
 
+use std::sync::LazyLock;
+
 use canonform::maps::{CorrespondOptions, KnownMap, MapKind, MappedSurface, SurfaceMap, correspond};
 use datasets::{ArticulatedOptions, Damage, Family, articulated_at_rest};
 use geodesics::Method;
@@ -9,6 +11,13 @@ use rigid::NearestPoints;
 use surface::VertexId;
 
 use crate::support::surface;
+
+/// Two poses of a cat, and the maps between them if nothing is known.
+pub(crate) static CATS: LazyLock<([Rested; 2], Vec<SurfaceMap>)> = LazyLock::new(|| {
+    let cats = [0, 4].map(|pose| Rested::pose(Family::Cat, pose, 1000));
+    let maps = cats[0].maps_to(&cats[1]);
+    (cats, maps)
+});
 
 /// A mesh, ready for dense maps.
 pub(crate) fn prepared(mesh: &TriMesh) -> MappedSurface {
