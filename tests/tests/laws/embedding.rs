@@ -2,39 +2,20 @@
 
 use std::sync::LazyLock;
 
-use canonform::embed::{EmbedMethod, FormOptions, Samples, StressChoice, StressKind};
+use canonform::Surface;
+use canonform::embed::{EmbedMethod, FormOptions, Samples, StressChoice, StressKind, embed};
 use datasets::{CreatureOptions, Family};
-use geodesics::{DistanceSolver, FirstSample, farthest_point_sampling};
 use linalg::DistanceMatrix;
-use mesh::TriMesh;
-use nmds::{
-    NystromOptions, Reconstruction, Regularization, SmacofOptions, SpectralOptions, classical, nystrom,
-    paper_stress, stress,
-};
+use nmds::{Reconstruction, Regularization, SmacofOptions, SpectralOptions, paper_stress, stress};
 
-use crate::support::{SHAPES, body, embedded, marching, measured};
+use crate::support::{SHAPES, all_pairs, body, measured, surface};
 
-/// A cat, a solver on it and all its distances.
-static CAT: LazyLock<(TriMesh, Box<dyn DistanceSolver>, DistanceMatrix)> = LazyLock::new(|| {
-    let mesh = body(Family::Cat);
-    let solver = marching().prepare(mesh.intrinsic(), &()).unwrap();
-    let distances = solver.distance_matrix().unwrap();
-    (mesh, solver, distances)
+/// A cat and all its distances.
+static CAT: LazyLock<(Surface, DistanceMatrix)> = LazyLock::new(|| {
+    let surface = surface(&body(Family::Cat));
+    let distances = all_pairs(&surface);
+    (surface, distances)
 });
-
-#[test]
-fn more_samples_approach_the_optimal_stress_from_above() {
-    let (_, solver, distances) = &*CAT;
-    let optimum = paper_stress(&classical(distances, 3, &()).unwrap().coords, distances).unwrap();
-    let excess = |n: usize| {
-        let samples = farthest_point_sampling(solver.as_ref(), n, FirstSample::default()).unwrap();
-        let embedding = nystrom(&samples, &NystromOptions::default()).unwrap();
-        paper_stress(&embedding.coords, distances).unwrap() / optimum - 1.0
-    };
-    let [few, many] = [10, 100].map(excess);
-    println!("above classical scaling: {few:.2e} with 10 samples, {many:.2e} with 100");
-    assert!(many > -1e-12 && many < 0.003 && many < few && few < 0.2, "{few} {many}");
-}
 
 #[test]
 fn the_default_stress_costs_few_rows_and_its_intervals_contain_the_exact_one() {
@@ -56,7 +37,8 @@ fn intervals_contain_the_exact_stress(step: usize, least: usize) {
     let (mut within, mut all, mut error) = ([0; 2], 0, 0.0);
     for (n, shape) in [20, 60, 100].into_iter().cycle().zip(shapes.step_by(step)) {
         let options = FormOptions { samples: Samples::Count(n), ..FormOptions::default() };
-        let stress = |choice| measured(&shape.mesh, &options, choice).report.stress.unwrap();
+        let surface = surface(&shape.mesh);
+        let stress = |choice| measured(&surface, &options, choice).report.stress.unwrap();
         let [exact, found] = [StressChoice::Exact, StressChoice::Auto].map(stress);
         assert!(
             found.kind == StressKind::Estimated && found.rows <= n / 5,
@@ -85,10 +67,10 @@ fn methods() -> Vec<EmbedMethod> {
 
 #[test]
 fn classical_scaling_has_the_lowest_stress_and_smacof_the_lowest_normalized_stress() {
-    let (mesh, _, distances) = &*CAT;
+    let (surface, distances) = &*CAT;
     let coords = |method: EmbedMethod| {
         let options = FormOptions { method, ..FormOptions::default() };
-        embedded(mesh, &options).embedding.coords
+        embed(surface, &options, &()).unwrap().embedding.coords
     };
     let optimum = paper_stress(&coords(EmbedMethod::Classical), distances).unwrap();
     let descended = methods().into_iter().find(|method| method.name() == "smacof").map(coords).unwrap();
@@ -104,8 +86,9 @@ fn classical_scaling_has_the_lowest_stress_and_smacof_the_lowest_normalized_stre
 /// Fig. 5 of the paper: with errors in the distances, small eigenvalues are harmful.
 #[test]
 fn the_best_rank_is_between_the_extremes_and_beats_cur() {
-    let (_, solver, distances) = &*CAT;
-    let samples = farthest_point_sampling(solver.as_ref(), 60, FirstSample::default()).unwrap();
+    let (surface, distances) = &*CAT;
+    let options = FormOptions { samples: Samples::Count(60), ..FormOptions::default() };
+    let samples = embed(surface, &options, &()).unwrap().distances;
     let reconstruction = Reconstruction::new(&samples, distances).unwrap();
     let error = |regularization| reconstruction.error(regularization).unwrap().relative;
     let ranks = [5, 10, 20, 30, 40, 50, 60];

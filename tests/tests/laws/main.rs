@@ -20,13 +20,11 @@
 //! | `map_uses` | known pairs, points inside faces, and what maps carry |
 //! | `part_maps` | dense maps between a part and a whole |
 //! | `samples` | how many samples are enough, and the interval of the stress after that choice |
-//! | `isometry` | invariance to renumbering |
 //! | `scale` | the same results in any unit of length |
 //! | `threads` | independence of the number of threads |
 //! | `signatures` | signatures of bodies |
 //! | `shortcuts` | welds that are found and cut |
 //! | `builtin` | the built-in dataset |
-//! | `real_meshes` | TOSCA; skipped without the meshes |
 
 // Helper functions are test code too, which clippy cannot see.
 #![allow(clippy::unwrap_used)]
@@ -40,7 +38,6 @@ mod fields;
 mod guarantees;
 mod invariance;
 mod invariants;
-mod isometry;
 mod keepers;
 mod licences;
 mod map_uses;
@@ -52,7 +49,6 @@ mod one_of_each;
 mod packaging;
 mod pages;
 mod part_maps;
-mod real_meshes;
 mod rested;
 mod samples;
 mod scale;

@@ -1,36 +1,23 @@
 //! How many samples are enough: `-n auto` stops where it should, and says how sure it is.
 
 use canonform::Surface;
-use canonform::embed::{EmbedOptions, Embedded, FormOptions, Samples, StressOptions, embed};
+use canonform::embed::{Embedded, FormOptions, Samples, StressChoice};
 use datasets::{CreatureOptions, creature_body, creature_plans};
-use linalg::DistanceMatrix;
 use mesh::TriMesh;
 use nmds::stress;
 use rayon::prelude::*;
 
-use crate::support::{marching, surface};
+use crate::support::{all_pairs, surface};
 
-/// The first body of a kind, with this many vertices.
-fn of_kind(kind: &str, n_vertices: usize) -> TriMesh {
-    of_plan(creature_plans().iter().position(|plan| *plan == kind).unwrap(), n_vertices)
-}
-
+/// The first body of a plan, with this many vertices.
 fn of_plan(plan: usize, n_vertices: usize) -> TriMesh {
     let options = CreatureOptions { n_vertices, ..CreatureOptions::default() };
     creature_body(plan, 0, 0, &options, &()).unwrap().mesh
 }
 
-fn all_pairs(surface: &Surface) -> DistanceMatrix {
-    marching().prepare(surface.intrinsic(), &()).unwrap().distance_matrix().unwrap()
-}
-
-fn auto(seed: u64) -> FormOptions {
-    FormOptions { samples: Samples::Auto, seed, ..FormOptions::default() }
-}
-
-fn measured(surface: &Surface, options: &FormOptions) -> Embedded {
-    let stress = StressOptions { seed: options.seed, ..StressOptions::default() };
-    embed(surface, EmbedOptions::from(options).stress(stress), &()).unwrap()
+fn measured(surface: &Surface, seed: u64) -> Embedded {
+    let options = FormOptions { samples: Samples::Auto, seed, ..FormOptions::default() };
+    crate::support::measured(surface, &options, StressChoice::Auto)
 }
 
 /// 25 bodies and 4 seeds; beyond 1,000 vertices, where the stress is estimated.
@@ -43,7 +30,7 @@ fn intervals_after_a_search_contain_the_exact_stress_as_often_as_they_say() {
             let surface = surface(&of_plan(plan, 1010));
             let distances = all_pairs(&surface);
             let of_seed = |seed| {
-                let embedded = measured(&surface, &auto(seed));
+                let embedded = measured(&surface, seed);
                 let exact = stress(&embedded.embedding.coords, &distances).unwrap();
                 let report = embedded.report.stress.unwrap();
                 let within = |[low, high]: [f64; 2], value| (low..=high).contains(&value);
@@ -62,10 +49,11 @@ fn intervals_after_a_search_contain_the_exact_stress_as_often_as_they_say() {
 #[test]
 fn few_samples_are_enough_for_a_star_and_for_david() {
     let enough = |surface: &Surface| {
-        let found = measured(surface, &auto(0)).report;
+        let found = measured(surface, 0).report;
         (found.n_samples, found.auto.unwrap().sufficient)
     };
-    let (n, sufficient) = enough(&surface(&of_kind("star", 3400)));
+    let star = creature_plans().iter().position(|plan| *plan == "star").unwrap();
+    let (n, sufficient) = enough(&surface(&of_plan(star, 3400)));
     println!("star: {sufficient} samples are enough, {n} taken");
     assert!((8..=20).contains(&sufficient) && n <= 40, "{sufficient} of {n}");
     let Some(data) = testkit::data("") else { return };

@@ -8,6 +8,7 @@ use canonform::embed::{EmbedOptions, Embedded, FormOptions, StressChoice, Stress
 use cargo_metadata::{Metadata, MetadataCommand};
 use datasets::{ArticulatedOptions, Family, LabeledShape, articulated};
 use geodesics::Method;
+use linalg::DistanceMatrix;
 use mesh::{RepairOptions, TriMesh};
 
 /// The folder of the workspace.
@@ -55,33 +56,21 @@ pub(crate) fn surface(mesh: &TriMesh) -> Surface {
     Surface::new(mesh, &RepairOptions::default(), &()).unwrap()
 }
 
-pub(crate) fn embedded(mesh: &TriMesh, options: &FormOptions) -> Embedded {
-    embed(&surface(mesh), options, &()).unwrap()
+/// An embedding with its stress.
+pub(crate) fn measured(surface: &Surface, options: &FormOptions, choice: StressChoice) -> Embedded {
+    let stress = StressOptions { choice, seed: options.seed, ..StressOptions::default() };
+    embed(surface, EmbedOptions::from(options).stress(stress), &()).unwrap()
 }
 
-pub(crate) fn measured(mesh: &TriMesh, options: &FormOptions, choice: StressChoice) -> Embedded {
-    let stress = StressOptions { choice, ..StressOptions::default() };
-    embed(&surface(mesh), EmbedOptions::from(options).stress(stress), &()).unwrap()
+/// All distances by the default method.
+pub(crate) fn all_pairs(surface: &Surface) -> DistanceMatrix {
+    Method::default().prepare(surface.intrinsic(), &()).unwrap().distance_matrix().unwrap()
 }
 
-/// Fast marching with default options.
-pub(crate) fn marching() -> Method {
-    Method::default()
-}
-
-pub(crate) fn bits(values: &[f64]) -> Vec<u64> {
-    values.iter().map(|x| x.to_bits()).collect()
-}
-
-/// Coordinates, eigenvalues, samples and stress, bit by bit.
-pub(crate) fn facts(result: &Embedded) -> (Vec<u64>, Vec<u64>, Vec<u32>, Option<Vec<u64>>) {
-    let stress = result.report.stress.as_ref();
-    (
-        bits(result.embedding.coords.as_slice()),
-        bits(&result.embedding.eigenvalues),
-        result.report.samples.clone(),
-        stress.map(|s| bits(&[s.value, s.interval[0], s.interval[1]])),
-    )
+/// Coordinates, eigenvalues, samples and stress, with all their digits.
+pub(crate) fn facts(result: &Embedded) -> String {
+    let stress = result.report.stress.as_ref().map(|stress| (stress.value, stress.interval));
+    format!("{:?} {:?} {stress:?}", result.embedding, result.report.samples)
 }
 
 /// The largest difference between two lists, relative to the largest magnitude in the second.
