@@ -22,7 +22,6 @@
 //! | `samples` | how many samples are enough, and the interval of the stress after that choice |
 //! | `scale` | the same results in any unit of length |
 //! | `threads` | independence of the number of threads |
-//! | `signatures` | signatures of bodies |
 //! | `shortcuts` | welds that are found and cut |
 //! | `builtin` | the built-in dataset |
 
@@ -53,6 +52,5 @@ mod rested;
 mod samples;
 mod scale;
 mod shortcuts;
-mod signatures;
 mod support;
 mod threads;
