@@ -4,9 +4,10 @@ use canonform::Exceeded;
 use datasets::Family;
 use geodesics::{
     DistanceSolver, FastMarching, FastMarchingOptions, FirstSample, Method, ObtuseTreatment, PrunedSolver,
-    Source, SurfacePoint, Update, farthest_point_sampling,
+    Source, Update, farthest_point_sampling,
 };
 use mesh::{TriMesh, shapes};
+use nalgebra::Point3;
 use surface::{IntrinsicMesh, VertexId};
 
 use crate::support::body;
@@ -64,27 +65,13 @@ fn graded_sheets_are_exact_for_all_triangle_sizes() {
     }
 }
 
-/// A flat ring between the radii 1 and 10, as a grid of `n` sectors.
-fn ring(n: usize) -> TriMesh {
-    let rings = n / 6 + 1;
-    let at = |i: usize| {
-        let angle = std::f64::consts::TAU * (i / rings) as f64 / n as f64;
-        let radius = 1.0 + 9.0 * (i % rings) as f64 / (rings - 1) as f64;
-        nalgebra::Point3::new(radius * angle.cos(), radius * angle.sin(), 0.0)
-    };
-    let vertex = |i: usize, j: usize| VertexId::from(i % n * rings + j);
-    let square = |(i, j): (usize, usize)| {
-        let [a, b, c, d] = [vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)];
-        [[a, b, c], [a, c, d]]
-    };
-    let squares = (0..n).flat_map(|i| (0..rings - 1).map(move |j| (i, j)));
-    TriMesh { positions: (0..n * rings).map(at).collect(), faces: squares.flat_map(square).collect() }
-}
-
 #[test]
 fn paths_go_around_a_hole_however_fine_the_mesh() {
     for n in [60, 120, 240] {
-        let ring = ring(n);
+        // Flat, between the radii 1 and 10.
+        let ring = testkit::moved(&shapes::cylinder(n, n / 6 + 1, 1.0, 9.0), |p| {
+            Point3::new(p.x * (1.0 + p.z), p.y * (1.0 + p.z), 0.0)
+        });
         let found =
             FastMarching::new(ring.intrinsic(), Default::default(), &()).distances(VertexId(0)).unwrap();
         let exact = Method::Exact.prepare(ring.intrinsic(), &()).unwrap().distances(VertexId(0)).unwrap();
@@ -119,50 +106,6 @@ fn errors_on_spheres_are_below_half_of_those_of_the_planar_update() {
         assert!(*carried < 0.5 * planar, "{carried} {planar}");
     }
     assert!(carried[3] < 1.5e-3, "{carried:?}");
-}
-
-/// The mean error relative to exact distances from a few vertices.
-fn mean_error(mesh: &TriMesh, update: Update) -> f64 {
-    let surface = mesh.intrinsic();
-    let marching = FastMarching::new(&surface, FastMarchingOptions { update, ..Default::default() }, &());
-    let exact = Method::Exact.prepare(&surface, &()).unwrap();
-    let mut errors = Vec::new();
-    for source in [3, 60, 500, 800].map(VertexId) {
-        let exact = exact.distances(source).unwrap();
-        let found = marching.distances(source).unwrap();
-        errors.extend(found.iter().zip(&exact).filter(|(_, e)| **e > 0.0).map(|(f, e)| (f - e).abs() / e));
-    }
-    errors.iter().sum::<f64>() / errors.len() as f64
-}
-
-/// A subdivided surface is the same polyhedron. Virtual sources profit from its flat parts.
-#[test]
-fn virtual_sources_are_more_accurate_the_more_often_a_surface_is_subdivided() {
-    let coarse = body(Family::Centaur);
-    let fine = shapes::subdivide(&shapes::subdivide(&coarse));
-    let [before, after] = [&coarse, &fine].map(|mesh| mean_error(mesh, Update::VirtualSource));
-    let planar = mean_error(&fine, Update::Planar);
-    println!("mean error {before:.1e}, {after:.1e} after two subdivisions; planar {planar:.1e}");
-    assert!(after < 0.7 * before && after < 0.2 * planar, "{before} {after} {planar}");
-}
-
-#[test]
-fn virtual_sources_are_exact_from_points_of_edges_and_faces_in_the_plane() {
-    let sheet = shapes::sheared_grid(21, 17, 0.3, -0.3);
-    let surface = sheet.intrinsic();
-    let solver = FastMarching::new(&surface, FastMarchingOptions::default(), &());
-    for i in (0..surface.topology().n_faces()).step_by(37) {
-        let face = surface::FaceId::from(i);
-        let barycentric = [0.2, 0.5, 0.3];
-        let corners = surface.topology().faces()[i].map(|v| sheet.positions[v.index()].coords);
-        let at: nalgebra::Vector3<f64> = corners.iter().zip(barycentric).map(|(p, b)| p * b).sum();
-        let source = Source::new(&surface, SurfacePoint::Face { face, barycentric }).unwrap();
-        let mut found = vec![0.0; surface.n_vertices()];
-        solver.solve_into(&[source], f64::INFINITY, &mut found).unwrap();
-        let straight: Vec<f64> = sheet.positions.iter().map(|p| (p.coords - at).norm()).collect();
-        let error = crate::support::gap(&found, &straight);
-        assert!(error < 1e-9, "face {i}: {error:e}");
-    }
 }
 
 /// A solver that computes all distances from each sample as in Procedure 1 of the paper, or one whose pruned fronts stop
