@@ -58,16 +58,16 @@ fn body(family: Family, n_vertices: usize) -> TriMesh {
 }
 
 /// Asserts bounds on the changes by all damages of bodies with this many vertices.
-fn check(n_vertices: usize, damages: &[Damage], most: f64, most_of_signature: f64) {
+fn check(n_vertices: usize, damages: &[Damage], most: f64) {
     let bodies: Vec<_> =
         Family::all().into_par_iter().map(|family| (family, body(family, n_vertices))).collect();
     bodies.par_iter().for_each(|(family, mesh)| {
         let body = format!("{} of {n_vertices} vertices", family.name());
-        check_body(mesh, &body, damages, most, most_of_signature);
+        check_body(mesh, &body, damages, most);
     });
 }
 
-fn check_body(mesh: &TriMesh, body: &str, damages: &[Damage], most: f64, most_of_signature: f64) {
+fn check_body(mesh: &TriMesh, body: &str, damages: &[Damage], most: f64) {
     let before = described(mesh);
     for damage in damages {
         let after = described(&damage.apply(mesh, 7));
@@ -75,61 +75,52 @@ fn check_body(mesh: &TriMesh, body: &str, damages: &[Damage], most: f64, most_of
         let form = change_of(SignatureKind::FormSpectrum, [&before, &after]);
         let what = format!("{body}, {damage}");
         println!("{what}: {combined:.3}, by one signature {signature:.3}, by the form {form:.3}");
-        assert!(combined < most && signature < most_of_signature, "{what}: {combined} {signature}");
-        assert!(form < SAME_FORM || most_of_signature.is_infinite(), "{what}: {form}");
+        let is_same = signature < SAME_SIGNATURE && form < SAME_FORM;
+        assert!(combined < most && (is_same || most > SAME_SURFACE), "{what}");
     }
 }
 
 #[test]
 fn the_same_surface_has_the_same_signatures() {
     assert!(SAME.iter().all(|damage| damage.keeps_surface()));
-    check(250, &SAME, SAME_SURFACE, SAME_SIGNATURE);
+    check(250, &SAME, SAME_SURFACE);
 }
 
 #[test]
 #[ignore = "slow: make test-all"]
 fn another_triangulation_is_the_same_shape() {
     let damages = [Damage::Remesh, Damage::Decimate(0.5)];
-    check(1000, &damages, SAME_COARSE_SHAPE, f64::INFINITY);
-    check(4000, &damages, SAME_SHAPE, f64::INFINITY);
-    check(4000, &[Damage::Decimate(0.2)], SAME_SHAPE, f64::INFINITY);
+    check(1000, &damages, SAME_COARSE_SHAPE);
+    check(4000, &damages, SAME_SHAPE);
+    check(4000, &[Damage::Decimate(0.2)], SAME_SHAPE);
 }
 
 #[test]
 fn noise_leaves_the_same_shape() {
-    check(1000, &[Damage::Noise(0.002)], SAME_COARSE_SHAPE, f64::INFINITY);
+    check(1000, &[Damage::Noise(0.002)], SAME_COARSE_SHAPE);
     // Noise much smaller than the edges cannot be told from shape.
-    check(1000, &[Damage::Noise(0.005)], 2.87, f64::INFINITY);
+    check(1000, &[Damage::Noise(0.005)], 2.87);
 }
 
 #[test]
 fn small_holes_leave_the_same_shape() {
-    check(1000, &[Damage::Holes(0.01)], SAME_COARSE_SHAPE, f64::INFINITY);
+    check(1000, &[Damage::Holes(0.01)], SAME_COARSE_SHAPE);
 }
 
 #[test]
 #[ignore = "slow: make test-all"]
 fn finer_meshes_are_the_same_shape_when_damaged() {
-    [1000, 4000].into_iter().for_each(|n| check(n, &SAME, SAME_SURFACE, SAME_SIGNATURE));
-    check(250, &[Damage::Subdivide(3)], SAME_SURFACE, SAME_SIGNATURE);
-    check(
-        4000,
-        &[Damage::Noise(0.002), Damage::Noise(0.005), Damage::Holes(0.01)],
-        SAME_SHAPE,
-        f64::INFINITY,
-    );
-    check(16_000, &[Damage::Noise(0.002), Damage::Noise(0.005)], SAME_SHAPE, f64::INFINITY);
+    [1000, 4000].into_iter().for_each(|n| check(n, &SAME, SAME_SURFACE));
+    check(250, &[Damage::Subdivide(3)], SAME_SURFACE);
+    let damages = [Damage::Noise(0.002), Damage::Noise(0.005), Damage::Holes(0.01)];
+    check(4000, &damages, SAME_SHAPE);
+    check(16_000, &[Damage::Noise(0.002), Damage::Noise(0.005)], SAME_SHAPE);
 }
 
 #[test]
 #[ignore = "slow: make test-all"]
 fn large_meshes_are_the_same_shape_as_small_and_noisy_ones() {
     let mesh = body(Family::all()[0], 50_000);
-    check_body(
-        &mesh,
-        "50,000 vertices",
-        &[Damage::Decimate(0.1), Damage::Noise(0.001)],
-        SAME_SURFACE,
-        SAME_SIGNATURE,
-    );
+    let damages = [Damage::Decimate(0.1), Damage::Noise(0.001)];
+    check_body(&mesh, "50,000 vertices", &damages, SAME_SURFACE);
 }
