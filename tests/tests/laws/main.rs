@@ -5,7 +5,7 @@
 //! | `architecture` | which crate may depend on which |
 //! | `correspondence` | dense maps between surfaces |
 //! | `cycles` | imports between the modules of a crate |
-//! | `one_of_each` | unique names, the packages of the project |
+//! | `one_of_each` | unique names |
 //! | `packaging` | whether all packages can be published |
 //! | `licences` | licences of dependencies |
 //! | `guarantees` | the tests behind `docs/robustness.md` |
