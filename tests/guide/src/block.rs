@@ -56,10 +56,28 @@ impl Chapter {
         paths.map(|path| Self::read(&path.map_err(io::Error::other)?)).collect()
     }
 
-    /// The blocks of code of the page.
+    /// The blocks of code of the page. Only fences of three backquotes at the start of a line count.
     #[must_use]
     pub fn blocks(&self) -> Vec<CodeBlock> {
-        blocks(&self.text)
+        let mut blocks = Vec::new();
+        let mut open: Option<CodeBlock> = None;
+        for (number, line) in self.text.lines().enumerate() {
+            match (line.strip_prefix("```"), &mut open) {
+                (Some(_), block @ Some(_)) => blocks.extend(block.take()),
+                (Some(info), None) => {
+                    let language = match info.trim() {
+                        "console" => Language::Console,
+                        "sh" => Language::Script,
+                        "sh,norun" => Language::Unrun,
+                        _ => Language::Other,
+                    };
+                    open = Some(CodeBlock { line: number + 2, language, text: String::new() });
+                }
+                (None, Some(block)) => block.text += &format!("{line}\n"),
+                (None, None) => {}
+            }
+        }
+        blocks
     }
 
     /// Whether a command of the page that a test runs calls this program.
@@ -72,31 +90,4 @@ impl Chapter {
             block.text.lines().any(words)
         })
     }
-}
-
-/// The blocks of code of a page. Only fences of three backquotes at the start of a line count.
-#[must_use]
-pub fn blocks(text: &str) -> Vec<CodeBlock> {
-    let mut blocks = Vec::new();
-    let mut open: Option<CodeBlock> = None;
-    for (number, line) in text.lines().enumerate() {
-        match (line.strip_prefix("```"), &mut open) {
-            (Some(_), block @ Some(_)) => blocks.extend(block.take()),
-            (Some(info), None) => {
-                let language = match info.trim() {
-                    "console" => Language::Console,
-                    "sh" => Language::Script,
-                    "sh,norun" => Language::Unrun,
-                    _ => Language::Other,
-                };
-                open = Some(CodeBlock { line: number + 2, language, text: String::new() });
-            }
-            (None, Some(block)) => {
-                block.text += line;
-                block.text.push('\n');
-            }
-            (None, None) => {}
-        }
-    }
-    blocks
 }

@@ -17,7 +17,7 @@ mod block;
 mod output;
 mod run;
 
-pub use block::{Chapter, CodeBlock, Language, blocks};
+pub use block::{Chapter, CodeBlock, Language};
 pub use output::matches;
 pub use run::{Ran, Run, run};
 

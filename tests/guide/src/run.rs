@@ -57,15 +57,6 @@ impl Run {
     }
 }
 
-/// A command and what the chapter shows of its output.
-struct GuideStep {
-    line: usize,
-    command: String,
-    shown: Option<String>,
-    /// The lines of the chapter behind the command, counted from 0.
-    lines: Range<usize>,
-}
-
 /// Runs all commands of a chapter with these programs, in a new folder with links to these files or folders.
 ///
 /// # Errors
@@ -79,22 +70,21 @@ pub fn run(chapter: &Chapter, programs: &[&Path], links: &[&Path]) -> io::Result
         }
     }
     let path = search_path(programs_folder.path());
-    for step in chapter.blocks().iter().flat_map(steps) {
+    for (mut ran, shown) in chapter.blocks().iter().flat_map(steps) {
         let mut command = Command::new("bash");
         command.current_dir(run.folder.path()).env("PATH", &path).env("LC_ALL", "C.UTF-8");
         let output =
-            command.args(["-c", &format!("set -euo pipefail; exec 2>&1\n{}", step.command)]).output()?;
-        let printed = String::from_utf8_lossy(&output.stdout).into_owned();
-        let place = format!("{}:{}: `{}`", chapter.path.display(), step.line, step.command.trim());
-        let expected = exit_code(&step.command);
-        if output.status.code() != Some(expected) {
-            run.faults.push(format!("{place} ended with {}, not {expected}:\n{printed}", output.status));
-        }
-        let differs = step.shown.as_ref().is_some_and(|shown| !matches(shown, &printed));
-        if differs && output.status.code() == Some(expected) {
-            run.faults.push(format!("{place} printed something else than the chapter shows:\n{printed}"));
-        }
-        run.ran.push(Ran { line: step.line, command: step.command, printed, differs, shown: step.lines });
+            command.args(["-c", &format!("set -euo pipefail; exec 2>&1\n{}", ran.command)]).output()?;
+        ran.printed = String::from_utf8_lossy(&output.stdout).into_owned();
+        ran.differs = shown.is_some_and(|shown| !matches(&shown, &ran.printed));
+        let expected = exit_code(&ran.command);
+        let fault = match output.status.code() == Some(expected) {
+            true => ran.differs.then(|| "printed something else than the chapter shows".to_owned()),
+            false => Some(format!("ended with {}, not {expected}", output.status)),
+        };
+        let place = format!("{}:{}: `{}`", chapter.path.display(), ran.line, ran.command.trim());
+        run.faults.extend(fault.map(|fault| format!("{place} {fault}:\n{}", ran.printed)));
+        run.ran.push(ran);
     }
     Ok(run)
 }
@@ -105,25 +95,29 @@ fn exit_code(command: &str) -> i32 {
     comment.and_then(|(_, code)| code.trim().parse().ok()).unwrap_or(0)
 }
 
-fn steps(block: &CodeBlock) -> Vec<GuideStep> {
+/// The commands of a block, and what it shows of their output.
+fn steps(block: &CodeBlock) -> Vec<(Ran, Option<String>)> {
+    let step = |line: usize, command: &str| Ran {
+        line,
+        command: command.to_owned(),
+        printed: String::new(),
+        differs: false,
+        shown: line..line,
+    };
     match block.language {
-        Language::Script => {
-            vec![GuideStep { line: block.line, command: block.text.clone(), shown: None, lines: 0..0 }]
-        }
+        Language::Script => vec![(step(block.line, &block.text), None)],
         Language::Console => {
-            let mut steps: Vec<GuideStep> = Vec::new();
+            let mut steps: Vec<(Ran, Option<String>)> = Vec::new();
             for (number, line) in block.text.lines().enumerate() {
                 match (line.strip_prefix("$ "), steps.last_mut()) {
                     (Some(command), _) => {
-                        let next = block.line + number;
-                        let (command, shown) = (command.to_owned(), Some(String::new()));
-                        steps.push(GuideStep { line: next, command, shown, lines: next..next });
+                        steps.push((step(block.line + number, command), Some(String::new())));
                     }
-                    (None, Some(GuideStep { command, shown: Some(shown), lines, .. })) => {
-                        lines.end += 1;
-                        if shown.is_empty() && command.ends_with('\\') {
-                            *command += &format!("\n{}", line.strip_prefix("> ").unwrap_or(line));
-                            lines.start += 1;
+                    (None, Some((ran, Some(shown)))) => {
+                        ran.shown.end += 1;
+                        if shown.is_empty() && ran.command.ends_with('\\') {
+                            ran.command += &format!("\n{}", line.strip_prefix("> ").unwrap_or(line));
+                            ran.shown.start += 1;
                         } else {
                             *shown += &format!("{line}\n");
                         }
@@ -158,30 +152,23 @@ fn link(from: &Path, to: &Path) -> io::Result<()> {
 mod tests {
     use super::*;
 
-    fn faults(text: &str) -> Vec<String> {
-        run(&Chapter { path: "page.md".into(), text: text.to_owned() }, &[], &[]).unwrap().faults
-    }
-
     #[test]
-    fn commands_run_in_one_folder_and_their_output_is_compared() {
-        let page = "```sh\necho 1 > a\n```\n```console\n$ cat a\n1\n$ wc -l \\\n>   a\n1 a\n$ exit 3 # exit code 3\n```\n";
-        assert!(faults(page).is_empty(), "{:?}", faults(page));
-        assert!(faults("```sh,norun\nexit 7\n```\n").is_empty());
-    }
-
-    #[test]
-    fn a_wrong_command_is_a_fault_with_its_place() {
+    fn commands_run_in_one_folder_and_a_wrong_one_is_a_fault_with_its_place() {
         for (page, place) in [
-            ("\n```sh\nno-such-program\n```\n", "page.md:3:"),
-            ("```sh\nfalse\ntrue\n```\n", "page.md:2:"),
-            ("```console\n$ true\n$ echo a\nb\n```\n", "page.md:3:"),
-            ("```console\n$ echo a\n```\n", "page.md:2:"),
-            ("```console\n$ true # exit code 1\n```\n", "page.md:2:"),
-            ("```console\n$ cat missing | sort\n```\n", "page.md:2:"),
+            ("```sh\necho 1 > a\n```\n```console\n$ cat a\n1\n$ exit 3 # exit code 3\n```\n", None),
+            ("```console\n$ echo \\\n>   a\na\n```\n", None),
+            ("```sh,norun\nexit 7\n```\n", None),
+            ("\n```sh\nno-such-program\n```\n", Some("page.md:3:")),
+            ("```sh\nfalse\ntrue\n```\n", Some("page.md:2:")),
+            ("```console\n$ true\n$ echo a\nb\n```\n", Some("page.md:3:")),
+            ("```console\n$ echo a\n```\n", Some("page.md:2:")),
+            ("```console\n$ true # exit code 1\n```\n", Some("page.md:2:")),
+            ("```console\n$ cat missing | sort\n```\n", Some("page.md:2:")),
         ] {
-            let faults = faults(page);
-            assert_eq!(faults.len(), 1, "{page}: {faults:?}");
-            assert!(faults[0].starts_with(place), "{faults:?}");
+            let chapter = Chapter { path: "page.md".into(), text: page.to_owned() };
+            let faults = run(&chapter, &[], &[]).unwrap().faults;
+            assert_eq!(faults.len(), usize::from(place.is_some()), "{page}: {faults:?}");
+            assert!(faults.iter().zip(place).all(|(fault, place)| fault.starts_with(place)), "{faults:?}");
         }
     }
 }
