@@ -45,7 +45,7 @@ fn drawn(browser: &Browser) {
 
 /// Asserts that the console is empty and that the page requested nothing but itself.
 fn assert_silent(browser: &Browser) {
-    assert_eq!(browser.console().unwrap(), []);
+    assert_eq!(browser.console().unwrap(), Vec::<String>::new());
     let outside = |address: &String| {
         let is_page = address.starts_with("file://") && address.ends_with("/report.html");
         !is_page && !["data:", "blob:"].iter().any(|inside| address.starts_with(inside))

@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use serde_json::{Value, json};
+use serde_json::json;
 
 use crate::Browser;
 
@@ -57,7 +57,10 @@ impl Browser {
         let mut actions = vec![moved([x, y]), json!({ "type": "pointerDown", "button": 0 })];
         actions.extend((1..=STEPS).map(|i| moved([x + dx * i / STEPS, y + dy * i / STEPS])));
         actions.push(json!({ "type": "pointerUp", "button": 0 }));
-        self.pointer(actions)
+        let pointer = json!({
+            "type": "pointer", "id": "mouse", "parameters": { "pointerType": "mouse" }, "actions": actions,
+        });
+        self.session.post("/actions", &json!({ "actions": [pointer] })).map(drop)
     }
 
     /// Waits for an element and returns its handle.
@@ -80,15 +83,8 @@ impl Browser {
         let number = |i: usize| at[i].as_i64().and_then(|x| i32::try_from(x).ok()).unwrap_or(0);
         Ok([number(0), number(1)])
     }
-
-    fn pointer(&self, actions: Vec<Value>) -> Result<()> {
-        let pointer = json!({
-            "type": "pointer", "id": "mouse", "parameters": { "pointerType": "mouse" }, "actions": actions,
-        });
-        self.session.post("/actions", &json!({ "actions": [pointer] })).map(drop)
-    }
 }
 
-fn moved([x, y]: [i32; 2]) -> Value {
+fn moved([x, y]: [i32; 2]) -> serde_json::Value {
     json!({ "type": "pointerMove", "duration": 15, "origin": "viewport", "x": x, "y": y })
 }

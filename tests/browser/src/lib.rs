@@ -8,6 +8,7 @@
 mod actions;
 mod session;
 
+use std::cell::RefCell;
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -37,15 +38,6 @@ const WATCH: &str = "window.shifts = 0; window.moved = []; new PerformanceObserv
     }
 }).observe({ type: 'layout-shift', buffered: true });";
 
-/// A console message.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Message {
-    /// `SEVERE`, `WARNING`, `INFO` or `DEBUG`.
-    pub level: String,
-    /// Source and text.
-    pub text: String,
-}
-
 /// A running browser with one page.
 ///
 /// Only one runs at a time in a process: software rendering uses all cores, so several would slow each other down.
@@ -58,7 +50,8 @@ pub struct Browser {
     session: Session,
     _profile: TempDir,
     /// Console messages and requested addresses; the driver returns each only once.
-    logs: Mutex<(Vec<Message>, Vec<String>)>,
+    messages: RefCell<Vec<String>>,
+    requests: RefCell<Vec<String>>,
     _turn: MutexGuard<'static, ()>,
 }
 
@@ -90,12 +83,13 @@ impl Browser {
         let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
         let profile = TempDir::new()?;
         let session = Session::start(programs, profile.path())?;
-        let browser = Self { session, _profile: profile, logs: Mutex::default(), _turn: turn };
+        let (messages, requests) = Default::default();
+        let browser = Self { session, _profile: profile, messages, requests, _turn: turn };
         browser.resize(1280, 800)?;
         // Discards the requests of the new-tab page.
         browser.open("about:blank")?;
         browser.requests()?;
-        *browser.logs() = Default::default();
+        browser.requests.borrow_mut().clear();
         Ok(browser)
     }
 
@@ -117,24 +111,23 @@ impl Browser {
         let is_phone = width < 600;
         let metrics = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": is_phone });
         self.devtools("Emulation.setDeviceMetricsOverride", &metrics)?;
-        self.devtools("Emulation.setTouchEmulationEnabled", &json!({ "enabled": is_phone }))?;
-        Ok(())
+        self.devtools("Emulation.setTouchEmulationEnabled", &json!({ "enabled": is_phone }))
     }
 
     /// Emulates a system preference, such as `prefers-color-scheme` with the value `dark`.
     pub fn prefer(&self, feature: &str, value: &str) -> Result<()> {
         let features = json!({ "features": [{ "name": feature, "value": value }] });
-        self.devtools("Emulation.setEmulatedMedia", &features).map(drop)
+        self.devtools("Emulation.setEmulatedMedia", &features)
     }
 
     /// Emulates the medium `print`, or `screen` again.
     pub fn media(&self, media: &str) -> Result<()> {
-        self.devtools("Emulation.setEmulatedMedia", &json!({ "media": media })).map(drop)
+        self.devtools("Emulation.setEmulatedMedia", &json!({ "media": media }))
     }
 
-    /// Sends a command of the Chrome DevTools Protocol and returns the response.
-    pub fn devtools(&self, command: &str, parameters: &Value) -> Result<Value> {
-        self.session.post("/goog/cdp/execute", &json!({ "cmd": command, "params": parameters }))
+    /// Sends a command of the Chrome DevTools Protocol.
+    fn devtools(&self, command: &str, parameters: &Value) -> Result<()> {
+        self.session.post("/goog/cdp/execute", &json!({ "cmd": command, "params": parameters })).map(drop)
     }
 
     /// Runs the body of a function in the page and returns its result. Waits for promises.
@@ -159,7 +152,7 @@ impl Browser {
 
     /// Watches the layout of all pages opened from now on.
     pub fn watch_layout(&self) -> Result<()> {
-        self.devtools("Page.addScriptToEvaluateOnNewDocument", &json!({ "source": WATCH })).map(drop)
+        self.devtools("Page.addScriptToEvaluateOnNewDocument", &json!({ "source": WATCH }))
     }
 
     /// The sum of all layout shift scores of the page, and the elements that moved.
@@ -170,24 +163,18 @@ impl Browser {
 
     /// All console messages since the start, oldest first, including those of the browser itself, such as violations of the
     /// content-security policy, but without its warnings about slow WebGL in software.
-    pub fn console(&self) -> Result<Vec<Message>> {
-        let mut logs = self.logs();
-        let entries = self.session.post("/se/log", &json!({ "type": "browser" }))?;
-        for entry in entries.as_array().into_iter().flatten() {
-            let [level, text] = ["level", "message"].map(|key| entry[key].as_str().unwrap_or_default());
-            if !SOFTWARE.iter().all(|part| text.contains(part)) {
-                logs.0.push(Message { level: level.to_owned(), text: text.to_owned() });
-            }
-        }
-        Ok(logs.0.clone())
+    pub fn console(&self) -> Result<Vec<String>> {
+        let entries = self.log("browser")?;
+        let texts = entries.iter().filter_map(|entry| entry["message"].as_str());
+        let texts = texts.filter(|text| !SOFTWARE.iter().all(|part| text.contains(part)));
+        self.messages.borrow_mut().extend(texts.map(str::to_owned));
+        Ok(self.messages.borrow().clone())
     }
 
     /// All addresses requested since the start, in order, including those not found or blocked. The browser reaches this
     /// machine only: other names are not resolved.
     pub fn requests(&self) -> Result<Vec<String>> {
-        let mut logs = self.logs();
-        let entries = self.session.post("/se/log", &json!({ "type": "performance" }))?;
-        for entry in entries.as_array().into_iter().flatten() {
+        for entry in self.log("performance")? {
             let event: Value = serde_json::from_str(entry["message"].as_str().unwrap_or("null"))?;
             let parameters = &event["message"]["params"];
             let address = match event["message"]["method"].as_str() {
@@ -195,12 +182,14 @@ impl Browser {
                 Some("Network.webSocketCreated") => &parameters["url"],
                 _ => continue,
             };
-            logs.1.extend(address.as_str().map(str::to_owned));
+            self.requests.borrow_mut().extend(address.as_str().map(str::to_owned));
         }
-        Ok(logs.1.clone())
+        Ok(self.requests.borrow().clone())
     }
 
-    fn logs(&self) -> MutexGuard<'_, (Vec<Message>, Vec<String>)> {
-        self.logs.lock().unwrap_or_else(PoisonError::into_inner)
+    /// What the driver has logged since the last call.
+    fn log(&self, kind: &str) -> Result<Vec<Value>> {
+        let mut entries = self.session.post("/se/log", &json!({ "type": kind }))?;
+        Ok(entries.as_array_mut().map(std::mem::take).unwrap_or_default())
     }
 }

@@ -21,8 +21,8 @@ fn requests_and_errors_are_recorded_and_other_machines_are_unreachable() {
     assert!(requests.iter().any(|r| r.ends_with("page.html")), "{requests:?}");
     assert!(requests.iter().any(|r| r == "http://example.com/style.css"), "{requests:?}");
     let console = browser.console().unwrap();
-    assert!(console.iter().any(|m| m.text.contains("ERR_NAME_NOT_RESOLVED")), "{console:?}");
-    assert!(console.iter().any(|m| m.text.contains("Content Security Policy")), "{console:?}");
+    assert!(console.iter().any(|text| text.contains("ERR_NAME_NOT_RESOLVED")), "{console:?}");
+    assert!(console.iter().any(|text| text.contains("Content Security Policy")), "{console:?}");
 
     let error = browser.eval("throw new Error('of the page')").unwrap_err();
     assert!(error.to_string().contains("of the page"), "{error}");

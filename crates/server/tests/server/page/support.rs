@@ -120,7 +120,7 @@ impl Page {
 
     /// The console is empty, all requests went to this server, and nothing is wider than the window.
     pub(crate) fn assert_sound(&self) {
-        assert_eq!(self.browser.console().unwrap(), []);
+        assert_eq!(self.browser.console().unwrap(), Vec::<String>::new());
         let origin = format!("http://{}/", self.server.address);
         let inside =
             |address: &String| ["data:", "blob:", &origin].iter().any(|own| address.starts_with(own));
