@@ -271,8 +271,5 @@ def test_all_other_calls_take_limits_and_pass_them_on() -> None:
         assert of_call is None or re.search(r"\*\*call\b|running\(call\)|, call, ", body), name
 
 
-PROPERTIES = (property, cached_property)
-
-
 def test_the_version_is_that_of_the_workspace() -> None:
     assert f'version = "{canonform.__version__}"' in (ROOT / "Cargo.toml").read_text()
