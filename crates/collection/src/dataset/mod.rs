@@ -241,7 +241,7 @@ mod tests {
         let expected = [
             (".txt", 1),
             ("broken link", 1),
-            ("link to something found already", 5),
+            ("found already under this or another name", 5),
             ("name is not UTF-8", 2),
             ("no extension", 2),
             ("special file", 2),

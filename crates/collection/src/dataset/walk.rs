@@ -32,7 +32,8 @@ pub enum SkipKind {
     NotUtf8,
     /// The name of a member that leads out of its archive.
     UnsafeName,
-    /// A link to a file or a folder that is found without it, or a second line of a list for the same file.
+    /// A link to a file or a folder that is found without it, a second line of a list for the same file, or the first of two members of
+    /// one name.
     Repeated,
     /// What macOS stores beside a file, under its name after `._`.
     AppleDouble,
@@ -72,7 +73,7 @@ impl fmt::Display for SkipKind {
             Self::Special => f.write_str("special file"),
             Self::NotUtf8 => f.write_str("name is not UTF-8"),
             Self::UnsafeName => f.write_str("name leads out of the archive"),
-            Self::Repeated => f.write_str("link to something found already"),
+            Self::Repeated => f.write_str("found already under this or another name"),
             Self::AppleDouble => f.write_str("._ file of macOS"),
             Self::BrokenLink => f.write_str("broken link"),
             Self::Unreadable => f.write_str("unreadable folder or archive"),

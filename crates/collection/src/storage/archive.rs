@@ -61,7 +61,9 @@ impl Archive {
         match safe_name(name) {
             Some(name) if is_apple_double(Path::new(&name)) => self.skip(&name, SkipKind::AppleDouble),
             Some(name) => {
-                self.members.insert(name, member);
+                if self.members.insert(name.clone(), member).is_some() {
+                    self.skip(&name, SkipKind::Repeated);
+                }
             }
             None => self.skip(name, SkipKind::UnsafeName),
         }
